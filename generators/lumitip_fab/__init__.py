@@ -1,0 +1,1 @@
+"""Lumitip on the maker's side: one parameter file to every part, and the proof that they fit."""

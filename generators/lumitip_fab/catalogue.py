@@ -1,0 +1,226 @@
+"""The catalogue of parts in `design/parts/*.toml`: what a parameter file names by name.
+
+Every entry says where its figures come from (`source`) and how far to trust them
+(`confidence`). Adding a part needs no Python.
+"""
+
+from collections.abc import Mapping
+from typing import Annotated, Literal, Self
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+Length = Annotated[float, Field(gt=0, le=500)]
+Offset = Annotated[float, Field(ge=-500, le=500)]
+Name = Annotated[str, Field(min_length=1, max_length=64, pattern=r"^[A-Za-z0-9][\w .+/\-]*$")]
+
+
+class Strict(BaseModel):
+    """What every record read from a user's file has in common."""
+
+    model_config = ConfigDict(
+        strict=True,
+        frozen=True,
+        extra="forbid",
+        allow_inf_nan=False,
+        use_attribute_docstrings=True,
+    )
+
+
+class Entry(Strict):
+    """What every catalogue entry carries."""
+
+    source: str = Field(min_length=1)
+    """Where the figures come from."""
+    confidence: Literal["datasheet", "measured", "inferred", "assumed"]
+    """How far to trust them."""
+
+
+class Chip(Entry):
+    """A two-terminal part soldered flat on its board."""
+
+    body_mm: tuple[Length, Length, Length]
+    """Body: along its terminals, across them, height above the board."""
+    pad_mm: tuple[Length, Length]
+    """One solder pad: along the terminals, across them."""
+    pad_pitch_mm: Length
+    """Distance between the centres of the two pads."""
+
+    @property
+    def over_pads_mm(self) -> tuple[float, float]:
+        """Length and width of the land pattern, body included."""
+        along = max(self.pad_pitch_mm + self.pad_mm[0], self.body_mm[0])
+        return along, max(self.pad_mm[1], self.body_mm[1])
+
+
+class Led(Chip):
+    """An infrared light-emitting diode."""
+
+    die_height_mm: Length
+    """Height of the light-emitting surface above the board."""
+    forward_voltage_v: float = Field(gt=0, le=10)
+    """Forward voltage at the working current."""
+    max_current_ma: float = Field(gt=0, le=1000)
+    """Largest continuous current."""
+    exponent: float = Field(ge=0, le=50)
+    """Exponent m of the radiant intensity cos(angle) ** m; 1 is Lambertian."""
+
+
+class Photodetector(Chip):
+    """A phototransistor or photodiode."""
+
+    die_height_mm: Length
+    """Height of the light-sensitive surface above the board."""
+    exponent: float = Field(ge=0, le=50)
+    """Exponent n of the sensitivity cos(angle) ** n."""
+
+
+class Resistor(Chip):
+    """A resistor package."""
+
+    power_w: float = Field(gt=0, le=10)
+    """Rated power at 70 °C."""
+
+
+class Multiplexer(Entry):
+    """An analog multiplexer with its leads in two rows."""
+
+    body_mm: tuple[Length, Length, Length]
+    """Body: along the rows of leads, across them, height above the board."""
+    lead_span_mm: Length
+    """Outer ends of the pads of the two rows."""
+    lead_pitch_mm: Length
+    """Distance between neighbouring leads."""
+    leads: int = Field(ge=8, le=128)
+    """Number of leads, both rows together."""
+    inputs: dict[str, int]
+    """Lead number of each input, by channel: `0 = 13` means Y0 is lead 13."""
+    select: tuple[int, ...] = Field(min_length=1, max_length=8)
+    """Lead numbers of the select lines, least significant first."""
+    output: int = Field(ge=1)
+    """Lead number of the common terminal."""
+
+    @property
+    def channels(self) -> int:
+        """Number of inputs."""
+        return len(self.inputs)
+
+    @model_validator(mode="after")
+    def _leads_exist(self) -> Self:
+        used = (*self.inputs.values(), *self.select, self.output)
+        if set(self.inputs) != {str(i) for i in range(len(self.inputs))} or not self.inputs:
+            raise ValueError("inputs need the channels 0, 1, 2 … without a gap")
+        if self.channels > 2 ** len(self.select):
+            raise ValueError(f"{len(self.select)} select lines cannot reach {self.channels} inputs")
+        if len(set(used)) != len(used) or not all(1 <= lead <= self.leads for lead in used):
+            raise ValueError(f"leads must differ from each other and be 1 to {self.leads}")
+        return self
+
+
+class Controller(Entry):
+    """A microcontroller board that reads the multiplexers."""
+
+    analog_pins: tuple[str, ...]
+    """Analog inputs in the order in which they are used."""
+    unlimited_analog_pins: bool = False
+    """Whether further inputs are invented as needed: for benchmarks only."""
+    select_pins: tuple[str, ...] = Field(min_length=1)
+    """Digital outputs for the select lines, least significant first."""
+    adc_bits: int = Field(ge=8, le=16)
+    """Resolution of the analog-to-digital converter."""
+    supply_v: float = Field(gt=0, le=5.5)
+    """Supply of its inputs, which is also the detectors' supply."""
+
+
+class Nose(Strict):
+    """The tapered end that sits in the V-shaped seat of a gripper's finger."""
+
+    front_width_mm: Length
+    """Width at its front."""
+    front_w_mm: Offset
+    """Distance of its front behind the rim plane."""
+    half_angle_deg: float = Field(gt=0, lt=90)
+    """Angle of each flank with the finger's centreline, seen along the finger."""
+    height_mm: Length
+    """Height above the mount plane."""
+
+
+class Gripper(Entry):
+    """Where a gripper holds a fingertip; distances w are behind the plate's rim plane."""
+
+    stroke_mm: Length
+    """Opening of the gripper between its own pads."""
+    pad_w_mm: Length
+    """Distance of the gripper's own pad face before the bolt axis."""
+    tilt_deg: float = Field(ge=-10, le=10)
+    """Tilt of the mount plane; above zero the tip leans towards the other finger."""
+    block_width_mm: Length
+    """Width of the mounting block."""
+    block_corner_mm: Length
+    """Corner radius of the block's back."""
+    block_back_w_mm: Length
+    """Distance of the block's back behind the rim plane."""
+    bolt_w_mm: Length
+    """Distance of the bolt axis behind the rim plane."""
+    bolt_hole_mm: Length
+    """Clearance hole of the bolt."""
+    counterbore_mm: Length
+    """Diameter of the counterbore for the bolt's head."""
+    land_mm: Length
+    """Material between counterbore and mount plane, on the bolt axis."""
+    pin_mm: Length
+    """Diameter of the locating pins' holes."""
+    pin_spacing_mm: Length
+    """Distance between the two pins, side by side through the bolt axis."""
+    pin_depth_mm: Length
+    """Depth of the pins' holes."""
+    seat_width_mm: Length
+    """Width of the gripper's finger where the fingertip stands on it."""
+    nose: Nose | None = None
+    """The tapered seat, if the gripper has one."""
+
+
+class Silicone(Entry):
+    """A two-part casting silicone."""
+
+    density_g_ml: float = Field(gt=0.5, le=3)
+    """Density of the mixture."""
+    mix_ratio: tuple[float, float]
+    """Parts A and B by mass."""
+    refractive_index: float = Field(ge=1.0, le=2.0)
+    """Refractive index when cured."""
+    cure_h: float = Field(gt=0, le=200)
+    """Time to cure at room temperature (h)."""
+
+
+class Film(Entry):
+    """A printable film for the mask."""
+
+    thickness_mm: Length
+    """Thickness."""
+    soften_c: float = Field(gt=20, le=200)
+    """Temperature at which it wraps (°C)."""
+
+
+class Printer(Entry):
+    """A 3D printer with its nozzle: what the walls can be."""
+
+    line_mm: Length
+    """Width of one extruded line."""
+    layer_mm: Length
+    """Height of one layer."""
+    bed_mm: tuple[Length, Length, Length]
+    """Print volume."""
+
+
+class Catalogue(Strict):
+    """All parts by kind and name."""
+
+    leds: Mapping[Name, Led]
+    photodetectors: Mapping[Name, Photodetector]
+    resistors: Mapping[Name, Resistor]
+    multiplexers: Mapping[Name, Multiplexer]
+    controllers: Mapping[Name, Controller]
+    grippers: Mapping[Name, Gripper]
+    silicones: Mapping[Name, Silicone]
+    films: Mapping[Name, Film]
+    printers: Mapping[Name, Printer]

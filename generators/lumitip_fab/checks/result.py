@@ -1,0 +1,52 @@
+"""`Measurement`: what a check found in a file, and what it should have found."""
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from lumitip_fab.design import Design
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """One figure measured in a file, with the range that it must lie in."""
+
+    check: str
+    """Name of the promise, like `"mask.position"`."""
+    subject: str
+    """The file, relative to the output folder, and where needed the place in it."""
+    measured: float
+    """The figure; NaN where it could not be taken, which fails."""
+    low: float = -math.inf
+    high: float = math.inf
+    unit: str = ""
+    note: str = ""
+
+    @property
+    def margin(self) -> float:
+        """Distance to the nearer limit, below zero outside the range."""
+        return min(self.measured - self.low, self.high - self.measured)
+
+    @property
+    def passed(self) -> bool:
+        """Whether the figure lies in its range."""
+        return self.low <= self.measured <= self.high
+
+    @property
+    def limit(self) -> str:
+        """The range in words."""
+        if self.low == self.high:
+            return f"= {self.low:g}"
+        if math.isinf(self.low):
+            return "any" if math.isinf(self.high) else f"≤ {self.high:g}"
+        return f"≥ {self.low:g}" if math.isinf(self.high) else f"{self.low:g} … {self.high:g}"
+
+
+Check = Callable[[Path, Design], Iterator[Measurement]]
+"""A check reads files below the output folder and holds them against `design.json`."""
+
+
+def unreadable(check: str, subject: str, reason: str) -> Measurement:
+    """The failed measurement for a file that is missing or cannot be read."""
+    return Measurement(check, subject, math.nan, 0.0, 0.0, note=reason)

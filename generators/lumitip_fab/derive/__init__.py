@@ -1,0 +1,101 @@
+"""Parameters to `Design`: each quantity is derived once, here, and nowhere else."""
+
+import hashlib
+
+from lumitip.layout import Layout, Optics
+from lumitip_fab.derive import boards, closing, mask, mould, mount, outline, wiring
+from lumitip_fab.derive.cells import derive_cells
+from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.stack import derive_printing, derive_stack, derive_tip
+from lumitip_fab.design import Controller, Design, Grid, Title
+from lumitip_fab.encoding import canonical, settled
+from lumitip_fab.load import Input
+
+
+def derive(given: Input) -> Design:
+    """Derive the whole sensor.
+
+    Raises:
+        InputError: with every combination of values that is impossible, and the numbers.
+    """
+    p, faults = given.parameters, Faults(given)
+    cells = derive_cells(p, faults)
+    faults.stop_if_any()  # without a grid nothing else can be judged
+    stack = derive_stack(given, faults)
+    strings = wiring.derive_strings(given, cells, faults)
+    muxing = wiring.derive_muxing(given, cells, faults)
+    faults.stop_if_any()  # without parts and nets there are no boards to place
+    plan = boards.derive_plan(given, cells, strings, muxing, faults)
+    silhouette = outline.derive_outline(p, plan.board, faults)
+    coupling = mount.derive_mount(given, silhouette, plan, faults)
+    tip = derive_tip(p, silhouette, plan.board, faults)
+    casting = mould.derive_mould(given, silhouette, plan.board, faults)
+    printing = derive_printing(given, silhouette, faults)
+    sheet = mask.derive_mask(given, silhouette, plan, faults)
+    meeting = closing.derive_closing(silhouette, stack, coupling, casting, faults)
+    faults.stop_if_any()
+    mux, channel = wiring.assign(given, cells, plan.muxes)
+    layout = Layout(
+        x_mm=cells.x_mm,
+        y_mm=cells.y_mm,
+        column=cells.column,
+        row=cells.row,
+        neighbours=cells.neighbours,
+        mux=mux,
+        channel=channel,
+        adc_pin=wiring.pins_of(mux, muxing.adc_pins),
+        pitch_mm=p.grid.pitch_mm,
+        optics=_optics(given),
+    )
+    return settled(
+        Design(
+            title=Title(p.name, p.revision),
+            grid=Grid(p.grid.columns, p.grid.pitch_mm),
+            layout=layout,
+            stack=stack,
+            outline=silhouette,
+            tip=tip,
+            board=plan.board,
+            emitter=plan.emitter,
+            receiver=plan.receiver,
+            mount=coupling,
+            closing=meeting,
+            wiring=wiring.joined(given, strings, muxing),
+            mask=sheet,
+            mould=casting,
+            printing=printing,
+            controller=Controller(
+                p.controller.board,
+                p.controller.name,
+                given.catalogue.controllers[p.controller.board].adc_bits,
+            ),
+            parameters_hash=_parameters_hash(given),
+        )
+    )
+
+
+def _optics(given: Input) -> Optics:
+    p, parts = given.parameters, given.catalogue
+    led = parts.leds[p.emitter.led]
+    detector = parts.photodetectors[p.receiver.photodetector]
+    return Optics(
+        hole_mm=p.mask.hole_mm,
+        hole_shape=p.mask.hole_shape,
+        emitter_depth_mm=p.stack.silicone_mm - led.die_height_mm,
+        detector_depth_mm=p.stack.silicone_mm - detector.die_height_mm,
+        emitter_exponent=led.exponent,
+        detector_exponent=detector.exponent,
+        silicone_index=parts.silicones[p.mould.silicone].refractive_index,
+        film_mm=p.stack.film_mm,
+        pull_up_ohm=p.receiver.pull_up_ohm,
+        supply_v=parts.controllers[p.controller.board].supply_v,
+    )
+
+
+def _parameters_hash(given: Input) -> str:
+    """SHA-256 of every value in force: the parameters and the parts that they name."""
+    told = [
+        given.parameters.model_dump(),
+        {f: e.model_dump() for f, e in given.named_parts().items()},
+    ]
+    return hashlib.sha256(canonical(told).encode()).hexdigest()

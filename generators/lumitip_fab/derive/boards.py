@@ -1,0 +1,215 @@
+"""Outline, holes, zones and parts of the two boards.
+
+y_max ┌──────────────────┐
+      │   ·    ·    ·    │  holes for the pins, clear of the first row
+      │  o o o o o o o   │
+      │  o o o o o o o   │  zone "cells"
+      │                  │  channel
+      │   [U1][U2][U3]   │  zone "parts": multiplexers (receiver), resistors (emitter)
+      │                  │  channel
+      │ ·  ▫▫▫▫▫▫▫▫▫   · │  zone "connector", two more holes
+y_min └──────────────────┘
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from lumitip_fab.derive import chips, connectors, placing
+from lumitip_fab.derive.cells import Cells
+from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.wiring import Muxing, Strings
+from lumitip_fab.design import Board, Box, Connector, Finger, Part, Point, Zone
+from lumitip_fab.load import Input
+
+NOTCH_BEFORE_PADS_MM = 0.6
+NOTCH_BESIDE_MM = 0.5
+SEAT_CLEARANCE_MM = 1.0
+WINDOW_MARGIN_MM = 2.0
+HOLE_TO_EDGE_MM = 1.0
+LEAST_PIN_MM = 1.0
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Both boards, and where the multiplexers are."""
+
+    board: Board
+    emitter: Finger
+    receiver: Finger
+    muxes: tuple[Point, ...]
+    """Centre of each multiplexer, U1 first, in the receiver's frame."""
+
+
+@dataclass(frozen=True)
+class Frame:
+    """What the boards share: extents and rows, before parts are placed."""
+
+    box: Box
+    cells: Box
+    parts: Box
+    connector_y_mm: float
+    wide: bool
+    notch: Box
+    pin_mm: float
+    rear_hole_x_mm: float
+
+
+def derive_plan(
+    given: Input, cells: Cells, strings: Strings, muxing: Muxing, faults: Faults
+) -> Plan:
+    """Lay out both boards."""
+    p, parts = given.parameters, given.catalogue
+    led = parts.leds[p.emitter.led]
+    detector = parts.photodetectors[p.receiver.photodetector]
+    led_turned = chips.derive_turned(p, "emitter.led", p.emitter.led, led, faults)
+    detector_turned = chips.derive_turned(
+        p, "receiver.photodetector", p.receiver.photodetector, detector, faults
+    )
+    leds = placing.at_cells("D", "led", led, led_turned, _mirrored(cells))
+    detectors = placing.at_cells("Q", "photodetector", detector, detector_turned, _plain(cells))
+    frame = _frame(given, cells, muxing, (*leds, *detectors), faults)
+    board = _board(given, frame)
+    muxes = placing.multiplexers(given, muxing, frame.parts)
+    tip_holes = placing.tip_holes(given, cells, (*detectors, *_flipped(leds)), frame.box, faults)
+    rear = ((-frame.rear_hole_x_mm, frame.connector_y_mm),
+            (frame.rear_hole_x_mm, frame.connector_y_mm))  # fmt: skip
+    resistors, reliefs = placing.resistors(given, strings, frame.parts, faults)
+    wires = connectors.place(connectors.emitter_signals(given), True, frame.connector_y_mm)
+    emitter = Finger(
+        name="emitter",
+        cells=_mirrored(cells),
+        turned=led_turned,
+        holes=(*((-x, y) for x, y in tip_holes), *rear),
+        connector=wires,
+        parts=(*leds, *resistors),
+        zones=_zones(frame),
+        reliefs=reliefs,
+        notch=frame.notch,
+        window=_window(wires),
+    )
+    wires = connectors.place(connectors.receiver_signals(muxing), frame.wide, frame.connector_y_mm)
+    receiver = Finger(
+        name="receiver",
+        cells=_plain(cells),
+        turned=detector_turned,
+        holes=(*tip_holes, *rear),
+        connector=wires,
+        parts=(*detectors, *muxes),
+        zones=_zones(frame),
+        reliefs=(),
+        notch=frame.notch,
+        window=_window(wires),
+    )
+    return Plan(board, emitter, receiver, tuple((m.x_mm, m.y_mm) for m in muxes))
+
+
+def _frame(
+    given: Input, cells: Cells, muxing: Muxing, chips_: tuple[Part, ...], faults: Faults
+) -> Frame:
+    p = given.parameters
+    gripper = given.catalogue.grippers[p.coupling.gripper]
+    ways = len(connectors.receiver_signals(muxing))
+    pin_mm = p.board.hole_mm - 2 * p.backing.pin_clearance_mm
+    faults.refuse_unless(
+        pin_mm >= LEAST_PIN_MM,
+        "backing.pin_clearance_mm",
+        f"{p.backing.pin_clearance_mm:g} given, which leaves pins of {pin_mm:.2f} mm in holes of "
+        f"{p.board.hole_mm:g} mm; at least {LEAST_PIN_MM:g} mm is needed",
+    )
+    half = float(np.abs(cells.x_mm).max()) + p.board.side_margin_mm
+    rim = p.board.hole_mm / 2 + HOLE_TO_EDGE_MM
+    fits = half - rim - p.board.hole_mm / 2 - NOTCH_BESIDE_MM
+    wide = ways <= connectors.MOST_WIDE_WAYS and connectors.half_width_mm(ways, True) <= fits
+    wires_half = connectors.half_width_mm(ways, wide)
+    notch_half = max(wires_half + NOTCH_BESIDE_MM, gripper.seat_width_mm / 2 + SEAT_CLEARANCE_MM)
+    least_hole_x = notch_half + p.printer.min_wall_mm + pin_mm / 2
+    half = _up(max(half, least_hole_x + rim))
+    hole_x = min(max(float(np.abs(cells.x_mm).max()), least_hole_x), half - rim)
+    top, bottom = float(cells.y_mm.max()), float(cells.y_mm.min())
+    reach = max(part.size_y_mm for part in chips_) / 2
+    side = max(part.size_x_mm for part in chips_) / 2
+    parts_top = bottom - reach - p.board.channel_mm
+    depth = placing.parts_zone_depth_mm(given, muxing, 2 * half, faults)
+    pad = connectors.WIDE[1]  # the emitter's two pads are wide whatever the receiver's are
+    connector_y = parts_top - depth - pad / 2
+    y_max = top + p.board.tip_margin_mm
+    y_min = y_max - 2 * _up((y_max - (connector_y - p.board.end_margin_mm)) / 2)
+    faults.refuse_unless(
+        p.board.end_margin_mm >= pad / 2 + 0.3,
+        "board.end_margin_mm",
+        f"{p.board.end_margin_mm:g} given, pads of {pad:g} mm need at least {pad / 2 + 0.3:.2f}",
+    )
+    for field, margin, taken in (
+        ("board.tip_margin_mm", p.board.tip_margin_mm, reach),
+        ("board.side_margin_mm", p.board.side_margin_mm, side),
+    ):
+        faults.refuse_unless(
+            margin >= taken + p.board.clearance_mm,
+            field,
+            f"{margin:g} given, parts reach {taken:g} mm beyond their cells: at least "
+            f"{taken + p.board.clearance_mm:.2f} is needed",
+        )
+    x_min, x_max = float(cells.x_mm.min()), float(cells.x_mm.max())
+    widest = max(-x_min, x_max) + side
+    end = y_min - p.outline.end_margin_mm
+    notch = Box(-notch_half, notch_half, end, connector_y + pad / 2 + NOTCH_BEFORE_PADS_MM)
+    return Frame(
+        box=Box(-half, half, y_min, y_max),
+        cells=Box(-widest, widest, bottom - reach, top + reach),
+        parts=Box(-half + 1, half - 1, parts_top - depth + p.board.channel_mm, parts_top),
+        connector_y_mm=connector_y,
+        wide=wide,
+        notch=notch,
+        pin_mm=pin_mm,
+        rear_hole_x_mm=hole_x,
+    )
+
+
+def _board(given: Input, frame: Frame) -> Board:
+    p = given.parameters
+    return Board(
+        box=frame.box,
+        hole_mm=p.board.hole_mm,
+        pocket=frame.box.grown(p.backing.pocket_clearance_mm),
+        pocket_clearance_mm=p.backing.pocket_clearance_mm,
+        pin_mm=frame.pin_mm,
+    )
+
+
+def _zones(frame: Frame) -> tuple[Zone, ...]:
+    half = connectors.WIDE[1] / 2
+    wires = Box(
+        frame.notch.x_min_mm, frame.notch.x_max_mm,
+        frame.connector_y_mm - half, frame.connector_y_mm + half,
+    )  # fmt: skip
+    return Zone("cells", frame.cells), Zone("parts", frame.parts), Zone("connector", wires)
+
+
+def _window(wires: Connector) -> Box:
+    half = wires.pad_mm / 2 + WINDOW_MARGIN_MM
+    (first, y), (last, _) = wires.pads[0], wires.pads[-1]
+    return Box(first - half, last + half, y - half, y + half)
+
+
+def _plain(cells: Cells) -> tuple[Point, ...]:
+    return tuple(zip(cells.x_mm.tolist(), cells.y_mm.tolist(), strict=True))
+
+
+def _mirrored(cells: Cells) -> tuple[Point, ...]:
+    """Facing rule: in the emitter's own frame, LED i is at (-x_i, y_i)."""
+    return tuple((-x + 0.0, y) for x, y in _plain(cells))
+
+
+def _flipped(parts: tuple[Part, ...]) -> tuple[Part, ...]:
+    """Parts of the emitter as they face the receiver's frame."""
+    return tuple(
+        Part(q.name, q.kind, -q.x_mm, q.y_mm, q.size_x_mm, q.size_y_mm, q.height_mm, q.side)
+        for q in parts
+    )
+
+
+def _up(value_mm: float) -> float:
+    """Rounded up so that twice the value is a whole tenth of a millimetre."""
+    return math.ceil(round(value_mm * 20, 6)) / 20

@@ -1,0 +1,26 @@
+"""Collects everything that is impossible together, so that all of it is reported at once."""
+
+from lumitip_fab.errors import InputError, Problem
+from lumitip_fab.load import Input
+
+
+class Faults:
+    """The faults found so far in one parameter file."""
+
+    def __init__(self, given: Input) -> None:
+        self._given = given
+        self._found: list[Problem] = []
+
+    def refuse(self, field: str, message: str) -> None:
+        """Note a fault of a field; `message` has what was given and what is allowed."""
+        self._found.append(self._given.problem(field, message))
+
+    def refuse_unless(self, holds: bool, field: str, message: str) -> None:
+        """Note a fault unless a condition holds."""
+        if not holds:
+            self.refuse(field, message)
+
+    def stop_if_any(self) -> None:
+        """Raise `InputError` with all faults noted so far, if there are any."""
+        if self._found:
+            raise InputError(self._found)

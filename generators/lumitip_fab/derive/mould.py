@@ -1,0 +1,60 @@
+"""The silicone mould: where its stops stand and what is poured into it."""
+
+from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.outline import half_width_at
+from lumitip_fab.design import Board, Mould, Outline, Point
+from lumitip_fab.load import Input
+
+PAD_MM = 2.0
+PAD_MARGIN_MM = 0.1
+END_ROUND = 2 / 3  # of the silicone's thickness
+
+
+def derive_mould(given: Input, outline: Outline, board: Board, faults: Faults) -> Mould:
+    """The mould, refused where the silicone cannot be shaped as asked."""
+    p = given.parameters
+    silicone = given.catalogue.silicones[p.mould.silicone]
+    faults.refuse_unless(
+        p.mould.taper_length_mm <= p.outline.tip_margin_mm,
+        "mould.taper_length_mm",
+        f"{p.mould.taper_length_mm:g} given, at most outline.tip_margin_mm = "
+        f"{p.outline.tip_margin_mm:g} is allowed: the silicone keeps its thickness over the board",
+    )
+    faults.refuse_unless(
+        p.mould.tip_silicone_mm < p.stack.silicone_mm,
+        "mould.tip_silicone_mm",
+        f"{p.mould.tip_silicone_mm:g} given, less than stack.silicone_mm = "
+        f"{p.stack.silicone_mm:g} is allowed",
+    )
+    return Mould(
+        taper_length_mm=p.mould.taper_length_mm,
+        tip_silicone_mm=p.mould.tip_silicone_mm,
+        end_round_mm=END_ROUND * p.stack.silicone_mm,
+        wall_gap_mm=p.mould.wall_gap_mm,
+        draft_deg=p.mould.draft_deg,
+        wall_mm=p.mould.wall_mm,
+        pads=_pads(given, outline, board, faults),
+        pad_mm=PAD_MM,
+        silicone=p.mould.silicone,
+        density_g_ml=silicone.density_g_ml,
+        mix_ratio=silicone.mix_ratio,
+        cure_h=silicone.cure_h,
+        waste_fraction=p.mould.waste_fraction,
+    )
+
+
+def _pads(given: Input, outline: Outline, board: Board, faults: Faults) -> tuple[Point, ...]:
+    """Stops on the rim beside the board, as near the gripper end as the rim takes them: the
+    finger's weight is in its coupling and must lie between them and the tip."""
+    y = max(board.pocket.y_min_mm, outline.end_y_mm + given.parameters.outline.end_corner_mm)
+    y += PAD_MM / 2 + PAD_MARGIN_MM
+    inner, outer = board.pocket.x_max_mm, half_width_at(outline, y)
+    needed = PAD_MM + 2 * PAD_MARGIN_MM
+    faults.refuse_unless(
+        outer - inner >= needed - 1e-6,
+        "outline.waist_margin_mm",
+        f"{given.parameters.outline.waist_margin_mm:g} given, which leaves a rim of "
+        f"{outer - inner:.2f} mm beside the board; the mould's stops need {needed:.2f} mm",
+    )
+    x = (inner + outer) / 2
+    return (-x, y), (x, y)

@@ -1,0 +1,64 @@
+"""The gripper coupling, from its catalogue entry."""
+
+from lumitip_fab.derive.boards import HOLE_TO_EDGE_MM, Plan
+from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.outline import half_width_at
+from lumitip_fab.design import Mount, Nose, Outline
+from lumitip_fab.load import Input
+
+LEAST_LEG_MM = 2.0  # plate beside the notch at the gripper end
+
+
+def derive_mount(given: Input, outline: Outline, plan: Plan, faults: Faults) -> Mount:
+    """The coupling, refused where finger and gripper do not go together."""
+    p = given.parameters
+    gripper = given.catalogue.grippers[p.coupling.gripper]
+    plate = p.stack.floor_mm + p.stack.pcb_mm
+    notch = plan.receiver.notch
+    leg = outline.end_width_mm / 2 - notch.x_max_mm
+    faults.refuse_unless(
+        leg >= LEAST_LEG_MM,
+        "outline.end_corner_mm",
+        f"{p.outline.end_corner_mm:g} given, which leaves {leg:.2f} mm of plate beside the wire "
+        f"notch of {notch.width_mm:.1f} mm at the gripper end; at least {LEAST_LEG_MM:g} is needed",
+    )
+    ramp = gripper.block_back_w_mm - plate
+    opening = notch.y_max_mm - outline.end_y_mm
+    length = gripper.land_mm + ramp
+    faults.refuse_unless(
+        length <= outline.length_mm - p.tip.slant_start_mm and opening < length,
+        "coupling.gripper",
+        f"{p.coupling.gripper!r} given, its block and 45° ramp need {length:.1f} mm of finger "
+        f"beyond a wire notch of {opening:.1f} mm; the finger is {outline.length_mm:.1f} mm long",
+    )
+    waist = half_width_at(outline, outline.end_y_mm + length)
+    faults.refuse_unless(
+        waist >= gripper.block_width_mm / 2 + HOLE_TO_EDGE_MM,
+        "coupling.gripper",
+        f"{p.coupling.gripper!r} given, its block is {gripper.block_width_mm:g} mm wide and the "
+        f"finger {2 * waist:.1f} mm",
+    )
+    nose = gripper.nose
+    front = max(p.stack.pcb_mm + p.backing.tail_mm, nose.front_w_mm if nose else 0.0)
+    return Mount(
+        gripper=p.coupling.gripper,
+        origin_y_mm=outline.end_y_mm,
+        tilt_deg=gripper.tilt_deg,
+        block_width_mm=gripper.block_width_mm,
+        block_corner_mm=gripper.block_corner_mm,
+        block_front_w_mm=front,
+        block_back_w_mm=gripper.block_back_w_mm,
+        bolt_w_mm=gripper.bolt_w_mm,
+        bolt_hole_mm=gripper.bolt_hole_mm,
+        counterbore_mm=gripper.counterbore_mm,
+        land_mm=gripper.land_mm,
+        pin_mm=gripper.pin_mm,
+        pin_u_mm=(-gripper.pin_spacing_mm / 2, gripper.pin_spacing_mm / 2),
+        pin_depth_mm=gripper.pin_depth_mm,
+        seat_width_mm=gripper.seat_width_mm,
+        nose=Nose(nose.front_width_mm, nose.front_w_mm, nose.half_angle_deg, nose.height_mm)
+        if nose
+        else None,
+        stroke_mm=gripper.stroke_mm,
+        pad_w_mm=gripper.pad_w_mm,
+    )

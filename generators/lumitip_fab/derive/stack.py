@@ -1,0 +1,100 @@
+"""Layers, the wedge at the tip, and what the printer can make."""
+
+import math
+
+from lumitip_fab.derive.faults import Faults
+from lumitip_fab.design import Board, Outline, Printing, Stack, Tip
+from lumitip_fab.load import Input
+from lumitip_fab.parameters import Parameters
+
+LEAST_SILICONE_MM = 0.3
+
+
+def derive_stack(given: Input, faults: Faults) -> Stack:
+    """The layers, refused where a part would stick out of the silicone or a floor is too thin."""
+    p, parts = given.parameters, given.catalogue
+    film = parts.films[p.mask.film]
+    faults.refuse_unless(
+        math.isclose(p.stack.film_mm, film.thickness_mm),
+        "stack.film_mm",
+        f"{p.stack.film_mm:g} given, but {p.mask.film!r} is {film.thickness_mm:g} mm thick: "
+        "change one of them",
+    )
+    faults.refuse_unless(
+        p.stack.floor_mm >= p.printer.min_wall_mm,
+        "stack.floor_mm",
+        f"{p.stack.floor_mm:g} given, at least printer.min_wall_mm = "
+        f"{p.printer.min_wall_mm:g} is needed behind a pocket {p.stack.pcb_mm:g} mm deep",
+    )
+    heights = {
+        "emitter.led": parts.leds[p.emitter.led].body_mm[2],
+        "receiver.photodetector": parts.photodetectors[p.receiver.photodetector].body_mm[2],
+        "receiver.multiplexer": parts.multiplexers[p.receiver.multiplexer].body_mm[2],
+    }
+    if p.emitter.resistor_side == "front":
+        heights["emitter.resistor"] = parts.resistors[p.emitter.resistor].body_mm[2]
+    for field, height in heights.items():
+        left = p.stack.silicone_mm - height
+        faults.refuse_unless(
+            left >= LEAST_SILICONE_MM - 1e-9,
+            "stack.silicone_mm",
+            f"{p.stack.silicone_mm:g} given, which leaves {left:.2f} mm over {field}, "
+            f"{height:g} mm high; at least {height + LEAST_SILICONE_MM:.2f} is needed",
+        )
+    return Stack(p.stack.floor_mm, p.stack.pcb_mm, p.stack.silicone_mm, p.stack.film_mm)
+
+
+def derive_tip(p: Parameters, outline: Outline, board: Board, faults: Faults) -> Tip:
+    """The wedge, refused where it would cut into the pocket's floor."""
+    plate = p.stack.floor_mm + p.stack.pcb_mm
+    start_y = outline.tip_y_mm - p.tip.slant_start_mm
+    to_pocket = outline.tip_y_mm - board.pocket.y_max_mm
+    faults.refuse_unless(
+        p.tip.slant_start_mm <= to_pocket + 1e-6,
+        "tip.slant_start_mm",
+        f"{p.tip.slant_start_mm:g} given, at most {to_pocket:.3f} is allowed: there the pocket "
+        f"begins, whose floor is only {p.stack.floor_mm:g} mm thick",
+    )
+    faults.refuse_unless(
+        p.tip.edge_mm < plate,
+        "tip.edge_mm",
+        f"{p.tip.edge_mm:g} given, less than the plate's {plate:g} mm is allowed",
+    )
+    angle = math.degrees(math.atan2(plate - p.tip.edge_mm, p.tip.slant_start_mm))
+    faults.refuse_unless(
+        angle <= 45,
+        "tip.slant_start_mm",
+        f"{p.tip.slant_start_mm:g} given, which makes a wedge of {angle:.0f}° behind the tip; "
+        f"at least {plate - p.tip.edge_mm:g} is needed for 45°",
+    )
+    return Tip(start_y, p.tip.edge_mm, angle)
+
+
+def derive_printing(given: Input, outline: Outline, faults: Faults) -> Printing:
+    """Material and limits, refused where a part is larger than the bed."""
+    p = given.parameters
+    printer = given.catalogue.printers[p.printer.profile]
+    faults.refuse_unless(
+        p.tip.edge_mm >= printer.line_mm - 1e-9,
+        "tip.edge_mm",
+        f"{p.tip.edge_mm:g} given, at least one printed line of {printer.line_mm:g} is needed",
+    )
+    faults.refuse_unless(
+        p.printer.min_wall_mm >= printer.line_mm,
+        "printer.min_wall_mm",
+        f"{p.printer.min_wall_mm:g} given, at least one printed line of {printer.line_mm:g} "
+        "is needed",
+    )
+    width = float(abs(outline.polygon()[:, 0]).max()) * 2 + 4 * p.mould.wall_mm
+    length = outline.length_mm + 4 * p.mould.wall_mm
+    bed = printer.bed_mm
+    faults.refuse_unless(
+        width <= bed[0] and length <= min(bed[1], bed[2]),
+        "printer.profile",
+        f"{p.printer.profile!r} given, its {bed[0]:g} x {bed[1]:g} x {bed[2]:g} mm cannot take "
+        f"a mould of {width:.0f} x {length:.0f} mm or a finger {length:.0f} mm tall",
+    )
+    return Printing(
+        p.backing.material, p.backing.density_g_ml, p.printer.min_wall_mm,
+        printer.line_mm, printer.layer_mm, printer.bed_mm,
+    )  # fmt: skip

@@ -1,0 +1,185 @@
+"""Which cells hang on which LED string, multiplexer, channel and pin."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumitip.grid import Integers
+from lumitip_fab.derive.cells import Cells
+from lumitip_fab.derive.faults import Faults
+from lumitip_fab.design import Point, Wiring
+from lumitip_fab.load import Input
+
+LEAST_RESISTOR_SHARE = 0.1  # of the supply: below it the current follows every millivolt
+MOST_RESISTOR_LOAD = 0.6  # of the package's rating
+MOST_CURRENT_SPREAD = 0.05  # between strings
+
+
+@dataclass(frozen=True)
+class Strings:
+    """Series strings of LEDs with their resistors."""
+
+    cells: tuple[tuple[int, ...], ...]
+    resistor_ohm: tuple[float, ...]
+    current_ma: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Muxing:
+    """How many multiplexers there are and which pins they use."""
+
+    muxes: int
+    adc_pins: tuple[str, ...]
+    select_pins: tuple[str, ...]
+
+
+def derive_strings(given: Input, cells: Cells, faults: Faults) -> Strings:
+    """As few strings as the supply allows, differing by at most one LED."""
+    p = given.parameters
+    led, volts = given.catalogue.leds[p.emitter.led], p.supply.voltage_v
+    package = given.catalogue.resistors[p.emitter.resistor]
+    longest = int(volts * (1 - LEAST_RESISTOR_SHARE) / led.forward_voltage_v)
+    if longest < 1:
+        faults.refuse(
+            "supply.voltage_v",
+            f"{volts:g} given, one LED needs {led.forward_voltage_v:g} V and its resistor a tenth "
+            f"of the supply: at least {led.forward_voltage_v / (1 - LEAST_RESISTOR_SHARE):.2f}",
+        )
+        return Strings((), (), ())
+    faults.refuse_unless(
+        p.emitter.current_ma <= led.max_current_ma,
+        "emitter.current_ma",
+        f"{p.emitter.current_ma:g} given, {p.emitter.led!r} takes at most {led.max_current_ma:g}",
+    )
+    groups = np.array_split(np.arange(len(cells)), math.ceil(len(cells) / longest))
+    strings = tuple(tuple(int(i) for i in group) for group in groups)
+    drops = [volts - len(s) * led.forward_voltage_v for s in strings]
+    ohms = tuple(_e96(1000 * drop / p.emitter.current_ma) for drop in drops)
+    amps_ma = tuple(1000 * drop / ohm for drop, ohm in zip(drops, ohms, strict=True))
+    load = max(i * i * r * 1e-6 for i, r in zip(amps_ma, ohms, strict=True))
+    allowed = MOST_RESISTOR_LOAD * package.power_w
+    faults.refuse_unless(
+        load <= allowed,
+        "emitter.current_ma",
+        f"{p.emitter.current_ma:g} given, a string's resistor would take {1000 * load:.0f} mW; a "
+        f"{p.emitter.resistor!r} may take {1000 * allowed:.0f} mW: use a larger package, less "
+        f"current, or a supply below {volts:g} V",
+    )
+    spread = max(amps_ma) / min(amps_ma) - 1
+    faults.refuse_unless(
+        spread <= MOST_CURRENT_SPREAD,
+        "emitter.current_ma",
+        f"{p.emitter.current_ma:g} given, strings would differ by {100 * spread:.1f} %; "
+        f"at most {100 * MOST_CURRENT_SPREAD:g} % is allowed",
+    )
+    faults.refuse_unless(
+        sum(amps_ma) <= p.supply.max_ma,
+        "supply.max_ma",
+        f"{p.supply.max_ma:g} given, {len(strings)} strings at {p.emitter.current_ma:g} mA draw "
+        f"{sum(amps_ma):.0f} mA",
+    )
+    return Strings(strings, ohms, amps_ma)
+
+
+def derive_muxing(given: Input, cells: Cells, faults: Faults) -> Muxing:
+    """As few multiplexers as hold all detectors, each on an analog pin of its own."""
+    p = given.parameters
+    mux = given.catalogue.multiplexers[p.receiver.multiplexer]
+    controller = given.catalogue.controllers[p.controller.board]
+    muxes = math.ceil(len(cells) / mux.channels)
+    pins = controller.analog_pins
+    if controller.unlimited_analog_pins:
+        pins = tuple(f"A{i}" for i in range(muxes))
+    faults.refuse_unless(
+        muxes <= len(pins),
+        "grid.columns",
+        f"{len(cells)} cells given, which need {muxes} of {p.receiver.multiplexer!r} "
+        f"({mux.channels} inputs each); {p.controller.board!r} has {len(pins)} analog pins: at "
+        f"most {mux.channels * len(pins)} cells, or a multiplexer with more inputs",
+    )
+    faults.refuse_unless(
+        len(mux.select) <= len(controller.select_pins),
+        "receiver.multiplexer",
+        f"{p.receiver.multiplexer!r} given, which needs {len(mux.select)} select lines; "
+        f"{p.controller.board!r} has {len(controller.select_pins)}",
+    )
+    return Muxing(muxes, pins[:muxes], controller.select_pins[: len(mux.select)])
+
+
+def assign(given: Input, cells: Cells, places: tuple[Point, ...]) -> tuple[Integers, Integers]:
+    """Multiplexer and channel of each cell, by nearness so that tracks are short.
+
+    Args:
+        given: the input.
+        cells: the cells.
+        places: centre of each multiplexer, U1 first.
+
+    Returns:
+        Multiplexer and channel, each of shape `(cells,)`.
+    """
+    from scipy.optimize import linear_sum_assignment
+
+    mux, channel = (np.zeros(len(cells), dtype=np.int64) for _ in range(2))
+    leads = _input_leads(given)
+    left_to_right = sorted(range(len(places)), key=lambda i: (places[i][0], -places[i][1]))
+    groups = np.array_split(np.arange(len(cells)), len(places))
+    for which, group in zip(left_to_right, groups, strict=True):
+        at = np.array(places[which]) + leads
+        here = np.stack([cells.x_mm[group], cells.y_mm[group]], axis=1)
+        cost = np.round(np.linalg.norm(here[:, None] - at[None], axis=2), 6)
+        # Among equally short wirings, the one in which channels follow the cells' order.
+        cost += 1e-6 * np.outer(np.arange(group.size)[::-1], np.arange(len(leads)))
+        taken, inputs = linear_sum_assignment(cost)
+        mux[group[taken]], channel[group[taken]] = which, inputs
+    return mux, channel
+
+
+def pins_of(mux: Integers, adc_pins: tuple[str, ...]) -> NDArray[np.str_]:
+    """The analog pin that reads each cell, shape `(cells,)`."""
+    return np.array(adc_pins)[mux]
+
+
+def joined(given: Input, strings: Strings, muxing: Muxing) -> Wiring:
+    """All wiring beyond the layout."""
+    p = given.parameters
+    return Wiring(
+        multiplexer=p.receiver.multiplexer,
+        muxes=muxing.muxes,
+        select_pins=muxing.select_pins,
+        adc_pins=muxing.adc_pins,
+        strings=strings.cells,
+        resistor=p.emitter.resistor,
+        resistor_ohm=strings.resistor_ohm,
+        current_ma=strings.current_ma,
+        supply_v=p.supply.voltage_v,
+    )
+
+
+def _input_leads(given: Input) -> NDArray[np.float64]:
+    """Place of each input's lead about the multiplexer's centre, by channel, shape `(n, 2)`.
+
+    The package lies with its rows of leads facing the cells and the connector:
+
+        16 15 14 … 9      towards the cells
+        |O           |
+         1  2  3 … 8      towards the connector
+    """
+    mux = given.catalogue.multiplexers[given.parameters.receiver.multiplexer]
+    row = mux.leads // 2
+    places = []
+    for channel in range(mux.channels):
+        lead = mux.inputs[str(channel)]
+        along = (lead - 1 if lead <= row else mux.leads - lead) - (row - 1) / 2
+        side = -1 if lead <= row else 1
+        places.append((along * mux.lead_pitch_mm, side * mux.lead_span_mm / 2))
+    return np.array(places)
+
+
+def _e96(ohm: float) -> float:
+    """The nearest value of the E96 series (IEC 60063: 96 steps a decade, three digits)."""
+    decade = 10.0 ** math.floor(math.log10(ohm))
+    mantissas = np.round(np.power(10.0, np.arange(97) / 96), 2)
+    nearest = mantissas[np.abs(np.log(mantissas * decade / ohm)).argmin()]
+    return round(float(nearest) * decade, 6)

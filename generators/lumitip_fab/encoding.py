@@ -1,0 +1,86 @@
+"""The one JSON form of a `Design` and its parts: the same values give the same text."""
+
+import json
+import types
+import typing
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
+from pathlib import Path
+from typing import Any, TypeVar
+
+from lumitip.errors import LayoutError
+from lumitip.layout import Layout
+from lumitip_fab.design import Design
+from lumitip_fab.errors import OutputError
+
+T = TypeVar("T")
+_DECIMALS = 9  # a picometre: keeps curves smooth, drops the noise of arithmetic
+
+
+def canonical(value: Any) -> str:
+    """The compact text of any part of a design, for keys and hashes."""
+    return json.dumps(encoded(value), sort_keys=True, separators=(",", ":"))
+
+
+def encoded(value: Any) -> Any:
+    """A part of a design as plain JSON values."""
+    if isinstance(value, Layout):
+        return json.loads(value.to_json())
+    if is_dataclass(value) and not isinstance(value, type):
+        return {f.name: encoded(getattr(value, f.name)) for f in fields(value)}
+    if isinstance(value, list | tuple):
+        return [encoded(v) for v in value]
+    if isinstance(value, Mapping):
+        return {k: encoded(v) for k, v in value.items()}
+    if isinstance(value, float):
+        return round(value, _DECIMALS) + 0.0
+    return value
+
+
+def settled(design: Design) -> Design:
+    """The design with its lengths rounded as `design.json` holds them, so that what is built
+    and what is read back are the very same."""
+    return _decoded(encoded(design), Design)
+
+
+def design_text(design: Design) -> str:
+    """The text of `design.json`."""
+    told = encoded(design)
+    lines = (f"{json.dumps(k)}: {json.dumps(told[k], sort_keys=True)}" for k in sorted(told))
+    return "{\n " + ",\n ".join(lines) + "\n}\n"
+
+
+def read_design(path: Path) -> Design:
+    """Read a `design.json`.
+
+    Raises:
+        OutputError: if it is missing or was not written by this version.
+    """
+    try:
+        return _decoded(json.loads(path.read_text(encoding="utf-8")), Design)
+    except FileNotFoundError as error:
+        raise OutputError(f"{path}: no such file: build the design first") from error
+    except (OSError, ValueError, KeyError, TypeError, LayoutError) as error:
+        raise OutputError(f"{path}: is not a design of this version: {error!r}") from error
+
+
+def _decoded(told: Any, wanted: type[T]) -> T:
+    if wanted is Layout:
+        return typing.cast(T, Layout.from_json(json.dumps(told)))
+    if is_dataclass(wanted):
+        hints = typing.get_type_hints(wanted)
+        values = {f.name: _decoded(told[f.name], hints[f.name]) for f in fields(wanted)}
+        return typing.cast(T, wanted(**values))
+    arguments = typing.get_args(wanted)
+    if isinstance(wanted, types.UnionType):
+        inner = next(a for a in arguments if a is not type(None))
+        return typing.cast(T, None if told is None else _decoded(told, inner))
+    if typing.get_origin(wanted) is tuple:
+        if arguments[-1] is Ellipsis:
+            return typing.cast(T, tuple(_decoded(v, arguments[0]) for v in told))
+        return typing.cast(T, tuple(_decoded(v, a) for v, a in zip(told, arguments, strict=True)))
+    if wanted is float and isinstance(told, int | float):
+        return typing.cast(T, float(told))
+    if not isinstance(told, wanted):
+        raise TypeError(f"{told!r:.80} is not {wanted.__name__}")
+    return told

@@ -1,0 +1,40 @@
+"""The exceptions of the maker's side, all under one root, and the record of one fault."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+
+class FabError(Exception):
+    """Root of every error that `lumitip_fab` raises on purpose."""
+
+
+@dataclass(frozen=True, order=True)
+class Problem:
+    """One fault of the input: where it is, what was given, and what is allowed."""
+
+    file: str
+    line: int
+    field: str
+    message: str
+
+    def __str__(self) -> str:
+        place = f"{self.file}:{self.line}" if self.line else self.file
+        return (
+            f"{place}: {self.field}: {self.message}" if self.field else f"{place}: {self.message}"
+        )
+
+
+class InputError(FabError):
+    """The parameter file or a catalogue file is refused; `problems` has every fault found."""
+
+    def __init__(self, problems: Iterable[Problem]) -> None:
+        self.problems = tuple(sorted(set(problems)))
+        super().__init__("\n".join(map(str, self.problems)))
+
+
+class BuildError(FabError):
+    """An artefact could not be made; the message names it and the reason."""
+
+
+class OutputError(FabError):
+    """A file in `outputs/` is missing or cannot be read; the message says what to do."""

@@ -1,0 +1,75 @@
+"""Every conversion between coordinate frames, as 4x4 matrices on column vectors, in mm.
+
+- Sensor frame of a finger: gripping face seen with the tip up; x right, y to the tip, z out.
+- Mount frame: see `lumitip_fab.design.Mount`; the backing is printed in it, standing on h = 0.
+- Bed of the mould: the sensor frame turned over about x, so that the open side is up.
+- Gripper frame: z = 0 is the mid-plane between the fingers, the lean applied; the receiver
+  looks along +z. Opening is the smallest distance from skin to skin.
+- Page of a mask: seen from the film's inside, tip towards the top, so page x = -x of the
+  finger's own frame; origin at the sensor frame's origin, before the page is stretched.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumitip_fab.design import Closing, Mould, Mount, Point, Stack
+
+Matrix = NDArray[np.float64]
+
+
+def translation(x_mm: float, y_mm: float, z_mm: float) -> Matrix:
+    """A shift."""
+    matrix = np.eye(4)
+    matrix[:3, 3] = x_mm, y_mm, z_mm
+    return matrix
+
+
+def rotation_x(angle_deg: float) -> Matrix:
+    """A right-handed turn about x."""
+    sine, cosine = np.sin(np.radians(angle_deg)), np.cos(np.radians(angle_deg))
+    matrix = np.eye(4)
+    matrix[1:3, 1:3] = ((cosine, -sine), (sine, cosine))
+    return matrix
+
+
+def mount_to_sensor(mount: Mount, stack: Stack) -> Matrix:
+    """From the mount frame (u, w, h), which is also the backing's print bed."""
+    sine, cosine = np.sin(np.radians(mount.tilt_deg)), np.cos(np.radians(mount.tilt_deg))
+    matrix = translation(0.0, mount.origin_y_mm, stack.rim_z_mm)
+    matrix[:3, 1] = 0.0, -sine, -cosine
+    matrix[:3, 2] = 0.0, cosine, -sine
+    return matrix
+
+
+def mould_bed_to_sensor(stack: Stack, mould: Mould) -> Matrix:
+    """From the mould's print bed: its floor is `wall_mm` thick below the silicone's face."""
+    return translation(0.0, 0.0, stack.silicone_z_mm + mould.wall_mm) @ rotation_x(180.0)
+
+
+def finger_to_gripper(finger: str, mount: Mount, closing: Closing, opening_mm: float) -> Matrix:
+    """From a finger's sensor frame to the gripper frame.
+
+    Args:
+        finger: `"emitter"` or `"receiver"`.
+        mount: its coupling, for the lean.
+        closing: where the fingers touch first.
+        opening_mm: smallest distance from skin to skin.
+    """
+    leaned = rotation_x(mount.tilt_deg)
+    receiver = translation(0.0, 0.0, -closing.contact_z_mm - opening_mm / 2) @ leaned
+    turned = np.diag([-1.0, 1.0, -1.0, 1.0])  # half a turn about y
+    return turned @ receiver if finger == "emitter" else receiver
+
+
+def sensor_to_page(measured_ruler_mm: Point) -> Matrix:
+    """From a finger's sensor frame to its mask's page, stretched by what the rulers measured."""
+    across, up = (100.0 / measured for measured in measured_ruler_mm)
+    return np.diag([-across, up, 1.0, 1.0])
+
+
+def applied(matrix: Matrix, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Points of shape `(n, 2)` or `(n, 3)` through a matrix, as `(n, 3)`."""
+    flat = np.zeros((len(points), 4))
+    flat[:, : points.shape[1]] = points
+    flat[:, 3] = 1.0
+    return np.asarray((flat @ matrix.T)[:, :3])

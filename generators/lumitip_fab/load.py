@@ -1,0 +1,167 @@
+"""Read a parameter file with its base and its catalogue, and report every fault at once."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pydantic import TypeAdapter, ValidationError
+
+from lumitip_fab.catalogue import Catalogue, Entry
+from lumitip_fab.errors import InputError, Problem
+from lumitip_fab.locate import design_folder, parts_file
+from lumitip_fab.parameters import Parameters
+from lumitip_fab.source import Source, read_toml
+from lumitip_fab.wording import problems_of, shown_path, unknown_name
+
+# Which fields name an entry of which catalogue file.
+NAMED = {
+    "emitter.led": "leds",
+    "emitter.resistor": "resistors",
+    "receiver.photodetector": "photodetectors",
+    "receiver.multiplexer": "multiplexers",
+    "controller.board": "controllers",
+    "coupling.gripper": "grippers",
+    "mould.silicone": "silicones",
+    "mask.film": "films",
+    "printer.profile": "printers",
+}
+
+
+@dataclass(frozen=True)
+class Input:
+    """A valid parameter file: its values, the catalogue, and where each value was written."""
+
+    parameters: Parameters
+    catalogue: Catalogue
+    sources: tuple[Source, ...]
+    """The file itself, then its base if it has one."""
+
+    def named_parts(self) -> dict[str, Entry]:
+        """The catalogue entry that each field in `NAMED` names, by field."""
+        found: dict[str, Entry] = {}
+        for field, kind in NAMED.items():
+            section, key = field.split(".")
+            name = getattr(getattr(self.parameters, section), key)
+            found[field] = getattr(self.catalogue, kind)[name]
+        return found
+
+    def problem(self, field: str, message: str) -> Problem:
+        """A fault of a field, placed in the file that set it."""
+        source = _setting(self.sources, field)
+        return Problem(shown_path(source.path), source.line(field), field, message)
+
+
+def load(path: Path) -> Input:
+    """Read and validate a parameter file.
+
+    Raises:
+        InputError: with every fault of the file, its base and the catalogue files it uses.
+    """
+    own = read_toml(path, shown_path(path))
+    sources = (own, *_base(own))
+    merged: dict[str, Any] = {}
+    for source in reversed(sources):
+        merged = _merge(merged, {k: v for k, v in source.table.items() if k != "extends"})
+    catalogue, faults = _catalogue(design_folder(path))
+    parameters = None
+    try:
+        parameters = Parameters.model_validate(_tuples(merged))
+    except ValidationError as error:
+        faults += problems_of(error, Parameters, lambda field: _setting(sources, field))
+    faults += _unknown_parts(merged, catalogue, sources)
+    if faults or parameters is None:
+        raise InputError(faults)
+    return Input(parameters, Catalogue.model_validate(catalogue), sources)
+
+
+def _setting(sources: tuple[Source, ...], field: str) -> Source:
+    """The file that wrote a field; of a field that none wrote, the one that wrote its table."""
+    while field:
+        for source in sources:
+            if field in source.lines:
+                return source
+        field = field.rpartition(".")[0]
+    return sources[0]
+
+
+def _base(own: Source) -> tuple[Source, ...]:
+    if "extends" not in own.table:
+        return ()
+    name = own.table["extends"]
+
+    def refuse(message: str) -> InputError:
+        file = shown_path(own.path)
+        return InputError([Problem(file, own.line("extends"), "extends", message)])
+
+    if not isinstance(name, str) or not name.endswith(".toml"):
+        raise refuse(f"{name!r:.80} given, the name of a .toml file is needed")
+    folder = design_folder(own.path)
+    try:
+        base = (own.path.resolve().parent / name).resolve()
+        inside, exists = base.is_relative_to(folder), base.is_file()
+    except (OSError, ValueError, RuntimeError) as error:
+        raise refuse(f"{name!r:.80} given, which is no usable file name") from error
+    if not inside:
+        raise refuse(f"{name!r:.80} given, which is outside the design folder")
+    if not exists:
+        near = sorted(p.name for p in base.parent.glob("*.toml") if p != own.path.resolve())
+        raise refuse(f"{name!r:.80} given, no such file; there are {', '.join(near) or 'none'}")
+    if base == own.path.resolve():
+        raise refuse(f"{name!r:.80} given, a file cannot extend itself")
+    source = read_toml(base, shown_path(base))
+    if "extends" in source.table:
+        raise refuse(f"{name!r:.80} given, which extends another file; one level is allowed")
+    return (source,)
+
+
+def _merge(base: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]:
+    merged = dict(base)
+    for key, value in over.items():
+        below = merged.get(key)
+        both = isinstance(below, dict) and isinstance(value, dict)
+        merged[key] = _merge(below, value) if both else value  # type: ignore[arg-type]
+    return merged
+
+
+def _tuples(value: Any) -> Any:
+    """TOML has arrays only; the strict models hold tuples."""
+    if isinstance(value, dict):
+        return {k: _tuples(v) for k, v in value.items()}
+    return tuple(map(_tuples, value)) if isinstance(value, list) else value
+
+
+def _catalogue(folder: Path) -> tuple[dict[str, Any], list[Problem]]:
+    tables: dict[str, Any] = {}
+    faults: list[Problem] = []
+    for kind, field in Catalogue.model_fields.items():
+        path = parts_file(folder, kind)
+        tables[kind] = {}
+        try:
+            source = read_toml(path, shown_path(path))
+            model: Any = field.annotation
+            tables[kind] = TypeAdapter[Any](model).validate_python(_tuples(source.table))
+        except InputError as error:
+            faults += error.problems
+        except ValidationError as error:
+            faults += problems_of(error, field.annotation, _always(source))
+    return tables, faults
+
+
+def _always(source: Source) -> Callable[[str], Source]:
+    return lambda _: source
+
+
+def _unknown_parts(
+    merged: dict[str, Any], catalogue: dict[str, Any], sources: tuple[Source, ...]
+) -> list[Problem]:
+    faults = []
+    for field, kind in NAMED.items():
+        section, key = field.split(".")
+        table = merged.get(section)
+        name = table.get(key) if isinstance(table, dict) else None
+        if isinstance(name, str) and catalogue[kind] and name not in catalogue[kind]:
+            source = _setting(sources, field)
+            message = unknown_name(name, list(catalogue[kind]), f"parts/{kind}.toml")
+            faults.append(Problem(shown_path(source.path), source.line(field), field, message))
+    return faults

@@ -1,0 +1,25 @@
+"""Where the design folder is: the user's own, or the one that comes with the package."""
+
+from importlib.resources import files
+from pathlib import Path
+
+
+def packaged_design() -> Path:
+    """The `design/` that comes with the package: inside the wheel, or beside the source."""
+    inside = Path(str(files("lumitip_fab"))) / "_design"
+    return inside if inside.is_dir() else Path(__file__).parents[2] / "design"
+
+
+def design_folder(file: Path) -> Path:
+    """The folder that a parameter file belongs to: that or the one above with `parts/` in it.
+
+    No base file outside it is read.
+    """
+    here = file.resolve().parent
+    return next((f for f in (here, here.parent) if (f / "parts").is_dir()), here)
+
+
+def parts_file(folder: Path, kind: str) -> Path:
+    """The catalogue file of a kind: the user's own, else the packaged one."""
+    own = folder / "parts" / f"{kind}.toml"
+    return own if own.is_file() else packaged_design() / "parts" / f"{kind}.toml"

@@ -1,0 +1,133 @@
+"""How faults are worded: what was given, what is allowed, and the nearest valid name."""
+
+import difflib
+import types
+import typing
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel, ValidationError
+
+from lumitip_fab.errors import Problem
+from lumitip_fab.source import Source
+
+_KINDS = {
+    "float_type": "a number",
+    "int_type": "a whole number",
+    "int_from_float": "a whole number",
+    "string_type": "text in quotes",
+    "bool_type": "true or false",
+    "tuple_type": "a list in brackets",
+    "dict_type": "a table",
+    "mapping_type": "a table",
+    "model_type": "a table",
+    "model_attributes_type": "a table",
+}
+_BOUNDS = {
+    "greater_than": "more than {gt}",
+    "greater_than_equal": "at least {ge}",
+    "less_than": "less than {lt}",
+    "less_than_equal": "at most {le}",
+    "string_too_short": "text of at least {min_length} characters",
+    "string_too_long": "text of at most {max_length} characters",
+    "string_pattern_mismatch": "text that matches {pattern}",
+    "literal_error": "{expected}",
+}
+
+
+def shown_path(path: Path) -> str:
+    """A file's name in messages: relative to the working folder where it lies below it."""
+    try:
+        return str(path.resolve().relative_to(Path.cwd()))
+    except ValueError:
+        return str(path)
+
+
+def unknown_name(given: str, allowed: Iterable[str], where: str) -> str:
+    """The message for a name that is not among those allowed."""
+    names = sorted(allowed)
+    near = difflib.get_close_matches(given, names, n=1, cutoff=0.5)
+    hint = f"did you mean {near[0]!r}? " if near else ""
+    listed = ", ".join(names[:20]) + (", …" if len(names) > 20 else "")
+    return f"{given!r:.80} given, {hint}{where} has {listed}"
+
+
+def problems_of(
+    error: ValidationError, model: Any, setting: Callable[[str], Source]
+) -> list[Problem]:
+    """One problem for each fault that pydantic found.
+
+    Args:
+        error: what pydantic raised.
+        model: the model or annotation that was validated, for the valid names.
+        setting: gives the file that wrote a field.
+    """
+    problems = []
+    faults = error.errors(include_url=False)
+    within = {fault["loc"][:-1] for fault in faults}
+    for fault in faults:
+        if fault["type"] == "too_short" and fault["loc"] in within:
+            continue  # pydantic counts only the values that are valid themselves
+        location = tuple(part for part in fault["loc"] if part != "[key]")
+        field = ".".join(map(str, location))
+        source = setting(field)
+        message = _message(fault, model, location)
+        problems.append(Problem(shown_path(source.path), source.line(field), field, message))
+    return problems
+
+
+def _message(fault: Any, model: Any, location: tuple[Any, ...]) -> str:
+    kind, given, told = fault["type"], fault["input"], fault.get("ctx", {})
+    if kind == "missing":
+        return "is missing; " + _described(model, location)
+    if kind == "extra_forbidden":
+        return unknown_name(str(location[-1]), _names(model, location[:-1]), "this table")
+    if kind in ("too_long", "too_short"):
+        bound = "at most" if kind == "too_long" else "at least"
+        count = told.get("max_length", told.get("min_length"))
+        return f"{told['actual_length']} values given, {bound} {count} are allowed"
+    if kind in _KINDS:
+        return f"{_brief(given)} given, {_KINDS[kind]} is needed"
+    if kind in _BOUNDS:
+        return f"{_brief(given)} given, {_BOUNDS[kind].format(**told)} is allowed"
+    return f"{_brief(given)} given: {fault['msg']}"
+
+
+def _brief(value: Any) -> str:
+    text = repr(list(value)) if isinstance(value, tuple) else repr(value)
+    return text if len(text) <= 80 else text[:77] + "…"
+
+
+def _names(model: Any, location: tuple[Any, ...]) -> list[str]:
+    found = _model_at(model, location)
+    return list(found.model_fields) if found else []
+
+
+def _described(model: Any, location: tuple[Any, ...]) -> str:
+    around = _model_at(model, location[:-1])
+    field = around.model_fields.get(str(location[-1])) if around else None
+    if field is None:
+        return "it is needed"
+    if field.description:
+        return "it is needed: " + " ".join(field.description.split())
+    inner = _model_at(field.annotation, ())
+    return f"the table [{'.'.join(map(str, location))}] is needed" if inner else "it is needed"
+
+
+def _model_at(annotation: Any, location: tuple[Any, ...]) -> type[BaseModel] | None:
+    """The model that stands at a location of an annotation, if one does."""
+    origin, arguments = typing.get_origin(annotation), typing.get_args(annotation)
+    if origin is typing.Annotated:
+        return _model_at(arguments[0], location)
+    if origin in (typing.Union, types.UnionType):
+        found = (_model_at(a, location) for a in arguments)
+        return next((m for m in found if m is not None), None)
+    if origin is not None and issubclass(origin, Mapping):
+        return _model_at(arguments[1], location[1:]) if location else None
+    if not (isinstance(annotation, type) and issubclass(annotation, BaseModel)):
+        return None
+    if not location:
+        return annotation
+    field = annotation.model_fields.get(str(location[0]))
+    return _model_at(field.annotation, location[1:]) if field else None

@@ -1,0 +1,260 @@
+"""`Layout`: where the cells of a fingertip are and how they are read; the form of `layout.json`.
+
+The only thing the robot side needs to know about a design. It is written by `lumitip-fab` and
+read back here with numpy alone.
+"""
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumitip.errors import LayoutError
+from lumitip.grid import Floats, Integers
+
+SCHEMA_VERSION = 1
+_DECIMALS = 6  # a nanometre: far below any tolerance, far above the noise of arithmetic
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One cell as a record; see `Layout` for units and frames."""
+
+    index: int
+    x_mm: float
+    y_mm: float
+    column: int
+    row: int
+    mux: int
+    channel: int
+    adc_pin: str
+
+
+@dataclass(frozen=True)
+class Optics:
+    """What light meets between an LED and a photodetector, the same at every cell."""
+
+    hole_mm: float
+    """Mask aperture: across flats of a hexagon, diameter of a circle (mm)."""
+    hole_shape: str
+    """`"hexagon"` (flats face the tip) or `"circle"`."""
+    emitter_depth_mm: float
+    """Depth of the LED die below the inner face of the film (mm)."""
+    detector_depth_mm: float
+    """Depth of the photodetector die below the inner face of the film (mm)."""
+    emitter_exponent: float
+    """Exponent m of the LED's radiant intensity, cos(angle) ** m."""
+    detector_exponent: float
+    """Exponent n of the photodetector's sensitivity, cos(angle) ** n."""
+    silicone_index: float
+    """Refractive index of the silicone."""
+    film_mm: float
+    """Thickness of the mask film (mm)."""
+    pull_up_ohm: float
+    """Pull-up resistor of each analog line (ohm)."""
+    supply_v: float
+    """Supply of the detectors and reference of the ADC (V)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Layout:
+    """Cells of a fingertip in frame order, in the receiver's sensor frame.
+
+    Sensor frame: gripping face seen with the tip up, origin at the mean of the cell centres on
+    the outer face of the film, x to the right, y towards the tip, z out of the face; mm.
+    Two layouts are equal when their `design_hash` is. Arrays are read-only.
+    """
+
+    x_mm: Floats
+    """Cell centres, shape `(cells,)` (mm)."""
+    y_mm: Floats
+    """Cell centres, shape `(cells,)` (mm)."""
+    column: Integers
+    """Column of each cell, 0 leftmost, shape `(cells,)`."""
+    row: Integers
+    """Row of each cell, 0 nearest the tip, shape `(cells,)`."""
+    neighbours: Integers
+    """Pairs of neighbouring cells, shape `(pairs, 2)`, smaller index first."""
+    mux: Integers
+    """Multiplexer that each detector is wired to, 0 is U1, shape `(cells,)`."""
+    channel: Integers
+    """Input of that multiplexer, shape `(cells,)`."""
+    adc_pin: NDArray[np.str_]
+    """Controller pin that reads that multiplexer, shape `(cells,)`."""
+    pitch_mm: float
+    """Distance between neighbouring cells (mm)."""
+    optics: Optics
+    schema_version: int = SCHEMA_VERSION
+
+    def __post_init__(self) -> None:
+        for name in _ARRAYS:
+            array = np.array(getattr(self, name))
+            array.flags.writeable = False
+            object.__setattr__(self, name, array)
+
+    def __len__(self) -> int:
+        return int(self.x_mm.size)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Layout) and self.design_hash == other.design_hash
+
+    def __hash__(self) -> int:
+        return hash(self.design_hash)
+
+    @property
+    def cells(self) -> tuple[Cell, ...]:
+        """The cells as records, in frame order."""
+        columns = [getattr(self, name).tolist() for name in _PER_CELL]
+        return tuple(Cell(i, *values) for i, values in enumerate(zip(*columns, strict=True)))
+
+    @property
+    def design_hash(self) -> str:
+        """SHA-256 (hex) of cells, wiring and frame order, and of nothing else."""
+        told = {name: _plain(getattr(self, name)) for name in _PER_CELL}
+        text = json.dumps(told, sort_keys=True, separators=(",", ":"))
+        return hashlib.sha256(text.encode()).hexdigest()
+
+    def to_json(self) -> str:
+        """The canonical text of `layout.json`: the same layout gives the same bytes."""
+        told = {name: _plain(getattr(self, name)) for name in _ARRAYS}
+        told |= {
+            "schema_version": self.schema_version,
+            "design_hash": self.design_hash,
+            "pitch_mm": round(self.pitch_mm, _DECIMALS),
+            "optics": {
+                k: v if isinstance(v, str) else _plain(float(v))
+                for k, v in asdict(self.optics).items()
+            },
+        }
+        lines = (f"{json.dumps(k)}: {json.dumps(told[k], sort_keys=True)}" for k in sorted(told))
+        return "{\n " + ",\n ".join(lines) + "\n}\n"
+
+    @classmethod
+    def load(cls, path: str | Path) -> "Layout":
+        """Read a `layout.json`.
+
+        Raises:
+            LayoutError: if the file cannot be read, or is not a layout that this version reads.
+        """
+        try:
+            text = Path(path).read_text(encoding="utf-8")
+        except (OSError, UnicodeDecodeError) as error:
+            raise LayoutError(f"{path}: cannot be read as a layout: {error}") from error
+        return cls.from_json(text, source=str(path))
+
+    @classmethod
+    def from_json(cls, text: str, source: str = "layout") -> "Layout":
+        """Read the text of a `layout.json`; keys of later versions are ignored.
+
+        Args:
+            text: the JSON text.
+            source: name of its origin, for messages.
+
+        Raises:
+            LayoutError: if the text is not a layout that this version reads.
+        """
+        try:
+            told = json.loads(text)
+        except (ValueError, RecursionError) as error:
+            raise LayoutError(f"{source}: is not JSON: {error}") from error
+        try:
+            return _read(told)
+        except LayoutError as error:
+            raise LayoutError(f"{source}: {error}") from error
+
+
+_PER_CELL = tuple(f.name for f in fields(Cell))[1:]
+_ARRAYS = ("x_mm", "y_mm", "column", "row", "neighbours", "mux", "channel", "adc_pin")
+_INTEGERS = ("column", "row", "mux", "channel")
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, np.ndarray):
+        # Adding zero turns -0.0 into 0.0, which would otherwise change the text and the hash.
+        return (np.round(value, _DECIMALS) + 0.0 if value.dtype.kind == "f" else value).tolist()
+    return round(value, _DECIMALS) if isinstance(value, float) else value
+
+
+def _read(told: Any) -> Layout:
+    if not isinstance(told, Mapping):
+        raise LayoutError(f"{type(told).__name__} given, a JSON object is needed")
+    version = told.get("schema_version")
+    if version != SCHEMA_VERSION or isinstance(version, bool):
+        raise LayoutError(
+            f"schema_version: {version!r} given, this version reads {SCHEMA_VERSION}: "
+            "install the lumitip that made the file, or build the design again"
+        )
+    x_mm = _numbers(told, "x_mm")
+    cells = x_mm.size
+    arrays: dict[str, Any] = {"x_mm": x_mm, "y_mm": _numbers(told, "y_mm", cells)}
+    arrays |= {name: _whole(told, name, (cells,)) for name in _INTEGERS}
+    arrays["neighbours"] = _whole(told, "neighbours", (None, 2), below=cells)
+    pins = told.get("adc_pin")
+    if not isinstance(pins, list) or len(pins) != cells or not all(type(p) is str for p in pins):
+        raise LayoutError(f"adc_pin: a list of {cells} pin names is needed")
+    layout = Layout(
+        **arrays, adc_pin=np.array(pins), pitch_mm=_number(told, "pitch_mm"), optics=_optics(told)
+    )
+    if layout.design_hash != told.get("design_hash"):
+        raise LayoutError(
+            f"design_hash: {str(told.get('design_hash'))[:16]!r} given, the cells and wiring give "
+            f"{layout.design_hash[:16]!r}: the file was changed by hand; build the design again"
+        )
+    return layout
+
+
+def _number(told: Mapping[str, Any], name: str) -> float:
+    value = told.get(name)
+    if type(value) not in (int, float) or not 0 <= float(value or 0) < 1e12:
+        raise LayoutError(f"{name}: {value!r:.80} given, a finite number not below 0 is needed")
+    return float(value)  # type: ignore[arg-type]
+
+
+def _numbers(told: Mapping[str, Any], name: str, count: int | None = None) -> Floats:
+    values = told.get(name)
+    needed = "numbers" if count is None else f"{count} numbers"
+    if (
+        not isinstance(values, list)
+        or not values
+        or (count is not None and len(values) != count)
+        or not all(type(v) in (int, float) and abs(v) < 1e6 for v in values)
+    ):
+        raise LayoutError(f"{name}: a list of {needed} below 1e6 is needed")
+    return np.array(values, dtype=np.float64)
+
+
+def _whole(
+    told: Mapping[str, Any], name: str, shape: tuple[int | None, ...], below: int = 2**31
+) -> Integers:
+    values = told.get(name)
+    rows = values if isinstance(values, list) else []
+    flat = [v for row in rows for v in (row if isinstance(row, list) else [row])]
+    fits = (
+        isinstance(values, list)
+        and (shape[0] is None or len(rows) == shape[0])
+        and all(type(v) is int and 0 <= v < below for v in flat)
+        and all(isinstance(r, list) and len(r) == 2 if len(shape) == 2 else type(r) is int
+                for r in rows)
+    )  # fmt: skip
+    if not fits:
+        what = "pairs of cell indices" if len(shape) == 2 else f"{shape[0]} whole numbers"
+        raise LayoutError(f"{name}: a list of {what} from 0 to {below - 1} is needed")
+    return np.array(values, dtype=np.int64).reshape([-1 if n is None else n for n in shape])
+
+
+def _optics(told: Mapping[str, Any]) -> Optics:
+    optics = told.get("optics")
+    if not isinstance(optics, Mapping):
+        raise LayoutError("optics: an object is needed")
+    if optics.get("hole_shape") not in ("hexagon", "circle"):
+        raise LayoutError(
+            f"optics.hole_shape: {optics.get('hole_shape')!r:.80} given, "
+            'allowed are "hexagon" and "circle"'
+        )
+    read = {f.name: _number(optics, f.name) for f in fields(Optics) if f.type is float}
+    return Optics(hole_shape=str(optics["hole_shape"]), **read)
