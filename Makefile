@@ -1,0 +1,54 @@
+# `make outputs` and `make test` set up all they need in .venv; nothing outside this folder changes.
+DESIGN ?= design/fingertip.toml
+OUT ?= outputs
+PYTHON ?= python3
+BIN := .venv/bin
+SETUP := .venv/.lumitip-setup
+
+.DEFAULT_GOAL := help
+.PHONY: help outputs check watch test lint bench schema golden clean
+
+help: ## show this list
+	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /  make \1\t/' | expand -t 18
+
+$(SETUP): pyproject.toml constraints.txt
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
+	  { echo "Lumitip needs Python 3.11 or newer: make PYTHON=python3.11"; exit 2; }
+	@$(PYTHON) -c 'import venv, ensurepip' || \
+	  { echo "Python's venv is missing; on Debian and Ubuntu: apt-get install python3-venv"; exit 2; }
+	test -x $(BIN)/python || $(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[fab,dev]'
+	@touch $@
+
+outputs: $(SETUP) ## build DESIGN into OUT, then check it
+	$(BIN)/lumitip-fab build $(DESIGN) --out $(OUT)
+	@$(MAKE) --no-print-directory check
+
+check: $(SETUP) ## re-read the files in OUT and prove that they fit
+	$(BIN)/lumitip-fab check --out $(OUT) --junit $(OUT)/checks.xml --report $(OUT)/checks.json
+
+watch: $(SETUP) ## build whenever DESIGN is saved
+	$(BIN)/lumitip-fab watch $(DESIGN) --out $(OUT)
+
+test: $(SETUP) ## run the tests
+	$(BIN)/python -m pytest
+
+lint: $(SETUP) ## format, lint, types, schema
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	@$(BIN)/lumitip-fab schema | diff -u design/schema.json - || \
+	  { echo "design/schema.json is stale: make schema"; exit 1; }
+
+bench: $(SETUP) ## measure speed and growth
+	$(BIN)/python benchmarks/bench_fab.py
+
+schema: $(SETUP) ## write design/schema.json anew
+	$(BIN)/lumitip-fab schema > design/schema.json
+
+golden: $(SETUP) ## write the tests' reference files anew; read the diff before committing
+	LUMITIP_GOLDEN=1 $(BIN)/python -m pytest -q -m golden
+
+clean: ## remove what was generated, and .venv
+	rm -rf .venv .mypy_cache .pytest_cache .ruff_cache
+	find outputs -mindepth 1 ! -name README.md -delete

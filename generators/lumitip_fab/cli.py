@@ -1,0 +1,66 @@
+"""The command `lumitip-fab`. Everything heavy is imported by the command that needs it."""
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+FAILED, REFUSED = 1, 2
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run a command; returns 0, 1 if a check or a build failed, 2 if the input is refused."""
+    options = _parser().parse_args(arguments)
+    try:
+        from lumitip_fab import commands
+
+        return commands.run(options)
+    except ModuleNotFoundError as error:
+        if (error.name or "lumitip").startswith("lumitip"):
+            raise
+        print(f"lumitip-fab needs {error.name}: pip install 'lumitip[fab]'", file=sys.stderr)
+        return REFUSED
+    except KeyboardInterrupt:
+        return 130
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="lumitip-fab",
+        description="From one parameter file to every part of an optical fingertip, and the "
+        "proof that they fit.",
+    )
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+
+    def command(name: str, told: str) -> argparse.ArgumentParser:
+        sub = commands.add_parser(name, help=told, description=told)
+        sub.add_argument("--quiet", action="store_true", help="print failures only")
+        sub.add_argument("--json", action="store_true", help="print the result as JSON")
+        return sub
+
+    def with_file(sub: argparse.ArgumentParser) -> None:
+        sub.add_argument("file", type=Path, metavar="FILE", help="the parameter file")
+
+    def with_out(sub: argparse.ArgumentParser) -> None:
+        sub.add_argument("--out", type=Path, required=True, metavar="DIR", help="output folder")
+
+    sub = command("init", "Copy the design folder (parameters, presets, parts) to DIR.")
+    sub.add_argument("directory", type=Path, metavar="DIR", help="a new or empty folder")
+    sub = command("build", "Build FILE into DIR; only what changed is made again.")
+    with_file(sub)
+    with_out(sub)
+    sub = command("check", "Re-read the files in DIR and prove that they fit. Builds nothing.")
+    with_out(sub)
+    sub.add_argument("--junit", type=Path, metavar="XML", help="also write a JUnit file")
+    sub.add_argument("--report", type=Path, metavar="JSON", help="also write a JSON file")
+    sub = command("spec", "Print the published Table I beside the figures of FILE.")
+    with_file(sub)
+    sub = command("watch", "Build FILE into DIR whenever it is saved, and say what changed.")
+    with_file(sub)
+    with_out(sub)
+    sub = command("schema", "Print the JSON Schema of parameter files, for editors.")
+    return parser
+
+
+if __name__ == "__main__":
+    sys.exit(main())

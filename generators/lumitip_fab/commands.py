@@ -1,0 +1,137 @@
+"""What each command of `lumitip-fab` does."""
+
+import argparse
+import json
+import shutil
+import sys
+from contextlib import nullcontext
+from pathlib import Path
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+from lumitip_fab.cli import FAILED, REFUSED
+from lumitip_fab.errors import BuildError, InputError, OutputError
+from lumitip_fab.locate import packaged_design
+
+WIDE = None if sys.stdout.isatty() else 160  # a file or a log has no edge to fold at
+OUT, ERR = Console(highlight=False, width=WIDE), Console(stderr=True, highlight=False)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Carry out a parsed command line."""
+    try:
+        return COMMANDS[options.command](options)
+    except InputError as error:
+        if options.json:
+            print(json.dumps({"problems": [vars(p) for p in error.problems]}, indent=1))
+        print(error, file=sys.stderr)
+        return REFUSED
+    except OutputError as error:
+        print(error, file=sys.stderr)
+        return REFUSED
+    except BuildError as error:
+        print(error, file=sys.stderr)
+        return FAILED
+
+
+def _init(options: argparse.Namespace) -> int:
+    target: Path = options.directory
+    if target.exists() and (not target.is_dir() or any(target.iterdir())):
+        print(f"{target}: exists and is not empty: name a new or empty folder", file=sys.stderr)
+        return REFUSED
+    try:
+        shutil.copytree(packaged_design(), target, dirs_exist_ok=True)
+    except (OSError, shutil.Error) as error:
+        print(f"{target}: cannot be written: {error}", file=sys.stderr)
+        return REFUSED
+    if not options.quiet:
+        OUT.print(f"{target}: edit fingertip.toml, then: lumitip-fab build "
+                  f"{target / 'fingertip.toml'} --out outputs")  # fmt: skip
+    return 0
+
+
+def _build(options: argparse.Namespace) -> int:
+    from lumitip_fab.build import build
+
+    columns = (TextColumn("{task.description:<24}"), BarColumn(), MofNCompleteColumn(),
+               TimeElapsedColumn())  # fmt: skip
+    silent = options.quiet or options.json
+    with Progress(*columns, console=ERR, disable=silent, transient=True) as bar:
+        shown = bar.add_task("reading", total=None)
+
+        def progress(name: str, done: int, total: int) -> None:
+            bar.update(shown, description=name, completed=done, total=total)
+
+        report = build(options.file, options.out, progress)
+    if options.json:
+        told = {
+            "design_hash": report.design.layout.design_hash,
+            "parameters_hash": report.design.parameters_hash,
+            **{name: getattr(report, name) for name in ("written", "removed", "made", "kept")},
+        }
+        print(json.dumps(told, indent=1))
+    elif not options.quiet:
+        for path in report.written:
+            OUT.print(f"  wrote {options.out / path}", soft_wrap=True)
+        for path in report.removed:
+            OUT.print(f"  removed {options.out / path}", soft_wrap=True)
+        OUT.print(f"{len(report.written)} files changed, {len(report.kept)} of "
+                  f"{len(report.kept) + len(report.made)} steps were up to date")  # fmt: skip
+    return 0
+
+
+def _check(options: argparse.Namespace) -> int:
+    from lumitip_fab.checks import report
+    from lumitip_fab.checks.run import as_json, run_checks
+    from lumitip_fab.manifest import write_file
+
+    with ERR.status("reading the files back") if not options.quiet else nullcontext():
+        outcome = run_checks(options.out)
+    told = json.dumps(as_json(outcome), indent=1) + "\n"
+    if options.junit:
+        write_file(options.junit, report.junit(outcome))
+    if options.report:
+        write_file(options.report, told.encode())
+    if options.json:
+        print(told, end="")
+    elif not options.quiet or outcome.failed:
+        report.print_table(outcome, OUT, failed_only=options.quiet)
+    return FAILED if outcome.failed else 0
+
+
+def _spec(options: argparse.Namespace) -> int:
+    from lumitip_fab import spec
+    from lumitip_fab.derive import derive
+    from lumitip_fab.load import load
+
+    rows = spec.rows(derive(load(options.file)))
+    if options.json:
+        print(json.dumps([vars(row) for row in rows], indent=1))
+    else:
+        spec.print_table(rows, OUT)
+    return 0
+
+
+def _watch(options: argparse.Namespace) -> int:
+    from lumitip_fab.watch import watch
+
+    watch(options.file, options.out, OUT)
+    return 0
+
+
+def _schema(_: argparse.Namespace) -> int:
+    from lumitip_fab.schema import schema_text
+
+    print(schema_text(), end="")
+    return 0
+
+
+COMMANDS = {
+    "init": _init,
+    "build": _build,
+    "check": _check,
+    "spec": _spec,
+    "watch": _watch,
+    "schema": _schema,
+}

@@ -1,0 +1,105 @@
+"""What is built from what: the steps, and the key that tells whether one must run again.
+
+A generator's arguments are its dependencies: each is named after a field of `Design`, but for
+`finger`, which makes the step run once for each finger. They are read from the source, because
+importing a generator of solids takes seconds.
+"""
+
+import ast
+import hashlib
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any
+
+import lumitip
+from lumitip_fab.design import Design
+from lumitip_fab.encoding import canonical
+
+PACKAGE = Path(__file__).parent
+SHARED = ("artefact.py", "design.py", "encoding.py", "errors.py", "frames.py", "graph.py", "derive")
+
+
+@dataclass(frozen=True)
+class Step:
+    """A generator: the function `name` of `lumitip_fab.<folder>.<module>`."""
+
+    folder: str
+    module: str
+    name: str
+    heavy: bool
+    """Whether it imports the CAD kernel, and so runs in a worker."""
+    tools: tuple[str, ...]
+    """Distributions whose version its output may depend on."""
+
+
+_CAD = ("build123d", "cadquery-ocp", "cadquery-ocp-novtk", "lib3mf", "numpy", "trimesh")
+_INK = ("reportlab", "ezdxf", "numpy", "shapely")
+STEPS = (
+    Step("mask", "files", "mask_files", False, _INK),
+    Step("mechanical", "assembly", "assembly", True, _CAD),
+    Step("mechanical", "mould", "mould_files", True, _CAD),
+    Step("mechanical", "backing", "backing", True, _CAD),
+)
+
+
+@dataclass(frozen=True)
+class Task:
+    """One run of a step."""
+
+    name: str
+    step: Step
+    arguments: dict[str, Any]
+
+    @property
+    def key(self) -> str:
+        """Changes when the output may: arguments, code and tools."""
+        told = [self.step.name, canonical(self.arguments), code_hash(self.step.folder)]
+        told += [tool_version(tool) for tool in self.step.tools]
+        return hashlib.sha256("\n".join(told).encode()).hexdigest()
+
+
+def tasks(design: Design) -> Iterator[Task]:
+    """Every run of every step for a design."""
+    for step in STEPS:
+        names = argument_names(step)
+        shared = {name: getattr(design, name) for name in names if name != "finger"}
+        if "finger" not in names:
+            yield Task(step.name, step, shared)
+            continue
+        for finger in design.fingers:
+            yield Task(f"{step.name}.{finger.name}", step, {"finger": finger, **shared})
+
+
+@lru_cache
+def argument_names(step: Step) -> tuple[str, ...]:
+    """Names of a generator's arguments, read from its source."""
+    source = (PACKAGE / step.folder / f"{step.module}.py").read_text(encoding="utf-8")
+    for node in ast.parse(source).body:
+        if isinstance(node, ast.FunctionDef) and node.name == step.name:
+            return tuple(a.arg for a in (*node.args.args, *node.args.kwonlyargs))
+    raise LookupError(f"lumitip_fab.{step.folder}.{step.module} has no function {step.name}")
+
+
+@lru_cache
+def code_hash(folder: str) -> str:
+    """Hash of a generator's folder and of the modules that all generators share."""
+    roots = [PACKAGE / name for name in (folder, *SHARED)] + [Path(lumitip.__file__).parent]
+    files = [f for r in roots for f in (sorted(r.rglob("*.py")) if r.is_dir() else [r])]
+    digest = hashlib.sha256()
+    for file in files:
+        digest.update(file.name.encode() + b"\0" + file.read_bytes() + b"\0")
+    return digest.hexdigest()
+
+
+@lru_cache
+def tool_version(distribution: str) -> str:
+    """A distribution with its version; Python itself goes with every one."""
+    python = f"{sys.version_info.major}.{sys.version_info.minor}"
+    try:
+        return f"{distribution} {version(distribution)} on Python {python}"
+    except PackageNotFoundError:  # one of two distributions of the same kernel
+        return f"no {distribution}"

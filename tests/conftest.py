@@ -1,0 +1,44 @@
+"""Built designs that many tests read; a test that changes files works on a copy."""
+
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from lumitip_fab.build import build
+
+DESIGN = Path(__file__).parents[1] / "design"
+
+
+@pytest.fixture(scope="session")
+def design_dir() -> Path:
+    """The repository's design folder."""
+    return DESIGN
+
+
+@pytest.fixture(scope="session")
+def built(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
+    """`built("dense")`: the output folder of a preset, built once a session. Do not change it."""
+    folders: dict[str, Path] = {}
+
+    def get(preset: str) -> Path:
+        if preset not in folders:
+            out = tmp_path_factory.mktemp(preset)
+            build(DESIGN / "presets" / f"{preset}.toml", out)
+            folders[preset] = out
+        return folders[preset]
+
+    return get
+
+
+@pytest.fixture(scope="session")
+def outputs(built: Callable[[str], Path]) -> Path:
+    """The published design, built. Do not change it: `damaged` is a copy."""
+    return built("published")
+
+
+@pytest.fixture
+def damaged(outputs: Path, tmp_path: Path) -> Path:
+    """A copy of the published design's files, to damage."""
+    return Path(shutil.copytree(outputs, tmp_path / "damaged"))
