@@ -1,0 +1,158 @@
+"""Shapes to the bytes of STEP, STL and 3MF files: the same shape gives the same bytes.
+
+STL and 3MF hold one and the same mesh, welded, in mm. The 3MF is written here rather than by a
+library because every library puts random identifiers and today's date into it.
+"""
+
+import io
+import re
+import zipfile
+from dataclasses import dataclass
+from functools import partial
+from itertools import count
+from typing import Any
+from xml.sax.saxutils import quoteattr
+
+import numpy as np
+from build123d import Shape, export_step
+from numpy.typing import NDArray
+from OCP.BRep import BRep_Tool
+from OCP.BRepMesh import BRepMesh_IncrementalMesh
+from OCP.TopAbs import TopAbs_REVERSED
+from OCP.TopLoc import TopLoc_Location
+
+CHORD_MM = 0.01
+ANGLE_RAD = 0.15
+_WELD_DECIMALS = 5  # of a mm: far below the chord error, above the noise of edges shared by faces
+_TIMESTAMP = "2000-01-01T00:00:00"
+_ZIP_DATE = (2000, 1, 1, 0, 0, 0)
+_USAGE = re.compile(rb"NEXT_ASSEMBLY_USAGE_OCCURRENCE\('[^']*'")
+_TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+
+_CONTENT_TYPES = """<?xml version="1.0" encoding="UTF-8"?>
+<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">
+<Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/>
+<Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/>
+</Types>
+"""
+_RELATIONSHIPS = """<?xml version="1.0" encoding="UTF-8"?>
+<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">
+<Relationship Id="rel0" Target="/3D/3dmodel.model"
+ Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/>
+</Relationships>
+"""
+_MODEL = """<?xml version="1.0" encoding="UTF-8"?>
+<model unit="millimeter" xml:lang="en-US"
+ xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02">
+<resources><object id="1" type="model" name={name}><mesh>
+<vertices>
+{vertices}
+</vertices>
+<triangles>
+{triangles}
+</triangles>
+</mesh></object></resources>
+<build><item objectid="1"/></build>
+</model>
+"""
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """A closed surface of triangles."""
+
+    points_mm: NDArray[np.float64]
+    """Corners, shape `(n, 3)`, each once."""
+    triangles: NDArray[np.int64]
+    """Indices of the corners of each triangle, shape `(m, 3)`, counter-clockwise from outside."""
+
+
+def mesh(shape: Shape, chord_mm: float = CHORD_MM) -> Mesh:
+    """The surface of a shape.
+
+    Args:
+        shape: a solid or several.
+        chord_mm: how far a triangle may lie off a curved face.
+    """
+    BRepMesh_IncrementalMesh(shape.wrapped, chord_mm, False, ANGLE_RAD, False)
+    points: list[Any] = []
+    triangles: list[Any] = []
+    for face in shape.faces():
+        place = TopLoc_Location()
+        facets = BRep_Tool.Triangulation_s(face.wrapped, place)
+        shift, first = place.Transformation(), len(points) - 1
+        flipped = face.wrapped.Orientation() == TopAbs_REVERSED
+        for k in range(1, facets.NbNodes() + 1):
+            node = facets.Node(k).Transformed(shift)
+            points.append((node.X(), node.Y(), node.Z()))
+        for k in range(1, facets.NbTriangles() + 1):
+            a, b, c = facets.Triangle(k).Get()
+            corners = (a, c, b) if flipped else (a, b, c)
+            triangles.append([first + corner for corner in corners])
+    rounded = np.round(np.array(points), _WELD_DECIMALS) + 0.0
+    welded, places = np.unique(rounded, axis=0, return_inverse=True)
+    joined = places.reshape(-1)[np.array(triangles)]
+    distinct = (joined != np.roll(joined, 1, axis=1)).all(axis=1)
+    return Mesh(welded, joined[distinct])
+
+
+def stl(shape: Shape) -> bytes:
+    """A binary STL."""
+    surface = mesh(shape)
+    corners = surface.points_mm[surface.triangles]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    records = np.zeros(len(corners), dtype=_TRIANGLE)
+    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+    records["normal"] = normals / np.where(lengths > 0, lengths, 1.0)
+    records["corners"] = corners
+    header = b"Lumitip, units mm".ljust(80)
+    return header + np.uint32(len(records)).tobytes() + records.tobytes()
+
+
+def three_mf(shape: Shape, name: str) -> bytes:
+    """A 3MF package with one object.
+
+    Args:
+        shape: what to print, in print orientation on z = 0.
+        name: what slicers call it.
+    """
+    surface = mesh(shape)
+    vertices = "\n".join(
+        f'<vertex x="{x:.5f}" y="{y:.5f}" z="{z:.5f}"/>' for x, y, z in surface.points_mm.tolist()
+    )
+    triangles = "\n".join(
+        f'<triangle v1="{a}" v2="{b}" v3="{c}"/>' for a, b, c in surface.triangles.tolist()
+    )
+    model = _MODEL.format(name=quoteattr(name), vertices=vertices, triangles=triangles)
+    package = io.BytesIO()
+    with zipfile.ZipFile(package, "w") as files:
+        for path, text in (
+            ("[Content_Types].xml", _CONTENT_TYPES),
+            ("_rels/.rels", _RELATIONSHIPS),
+            ("3D/3dmodel.model", model),
+        ):
+            entry = zipfile.ZipInfo(path, _ZIP_DATE)
+            entry.create_system = 3  # the same on every system
+            files.writestr(entry, text, zipfile.ZIP_DEFLATED, compresslevel=6)
+    return package.getvalue()
+
+
+def step(shape: Shape, name: str) -> bytes:
+    """A STEP file.
+
+    Args:
+        shape: a shape, or a compound with labelled and coloured children.
+        name: what other programs call it.
+    """
+    written = io.BytesIO()
+    before, shape.label = shape.label, name
+    try:
+        export_step(shape, written, timestamp=_TIMESTAMP)
+    finally:
+        shape.label = before
+    return _USAGE.sub(partial(_numbered, count(1)), written.getvalue())
+
+
+def _numbered(numbers: "count[int]", _: re.Match[bytes]) -> bytes:
+    """The kernel numbers uses over the life of the process; here they start again at 1."""
+    return b"NEXT_ASSEMBLY_USAGE_OCCURRENCE('%d'" % next(numbers)
