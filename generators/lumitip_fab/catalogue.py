@@ -9,9 +9,13 @@ from typing import Annotated, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-Length = Annotated[float, Field(gt=0, le=500)]
+NAME = r"^[A-Za-z0-9][\w .+/\-]*$"
+Length = Annotated[float, Field(ge=0.01, le=500)]
+Share = Annotated[float, Field(ge=0.01, le=1000)]
+PIN = r"^[A-Za-z][A-Za-z0-9_]{0,15}$"
+Pin = Annotated[str, Field(pattern=PIN)]
 Offset = Annotated[float, Field(ge=-500, le=500)]
-Name = Annotated[str, Field(min_length=1, max_length=64, pattern=r"^[A-Za-z0-9][\w .+/\-]*$")]
+Name = Annotated[str, Field(min_length=1, max_length=64, pattern=NAME)]
 
 
 class Strict(BaseModel):
@@ -52,24 +56,36 @@ class Chip(Entry):
         return along, max(self.pad_mm[1], self.body_mm[1])
 
 
-class Led(Chip):
-    """An infrared light-emitting diode."""
+class Optical(Chip):
+    """A chip that shines or sees through its top."""
 
     die_height_mm: Length
-    """Height of the light-emitting surface above the board."""
-    forward_voltage_v: float = Field(gt=0, le=10)
+    """Height of the light-emitting or light-sensitive surface above the board."""
+
+    @model_validator(mode="after")
+    def _die_in_body(self) -> Self:
+        if self.die_height_mm > self.body_mm[2]:
+            raise ValueError(
+                f"die_height_mm = {self.die_height_mm:g} given, at most the body's height of "
+                f"{self.body_mm[2]:g} is allowed"
+            )
+        return self
+
+
+class Led(Optical):
+    """An infrared light-emitting diode."""
+
+    forward_voltage_v: float = Field(ge=0.1, le=10)
     """Forward voltage at the working current."""
-    max_current_ma: float = Field(gt=0, le=1000)
+    max_current_ma: float = Field(ge=0.1, le=1000)
     """Largest continuous current."""
     exponent: float = Field(ge=0, le=50)
     """Exponent m of the radiant intensity cos(angle) ** m; 1 is Lambertian."""
 
 
-class Photodetector(Chip):
+class Photodetector(Optical):
     """A phototransistor or photodiode."""
 
-    die_height_mm: Length
-    """Height of the light-sensitive surface above the board."""
     exponent: float = Field(ge=0, le=50)
     """Exponent n of the sensitivity cos(angle) ** n."""
 
@@ -108,27 +124,42 @@ class Multiplexer(Entry):
     def _leads_exist(self) -> Self:
         used = (*self.inputs.values(), *self.select, self.output)
         if set(self.inputs) != {str(i) for i in range(len(self.inputs))} or not self.inputs:
-            raise ValueError("inputs need the channels 0, 1, 2 … without a gap")
+            given = ", ".join(self.inputs) or "none"
+            raise ValueError(f"inputs {given} given, the channels 0, 1, 2 … are needed, no gap")
         if self.channels > 2 ** len(self.select):
-            raise ValueError(f"{len(self.select)} select lines cannot reach {self.channels} inputs")
+            raise ValueError(
+                f"{self.channels} inputs given, {len(self.select)} select lines reach at most "
+                f"{2 ** len(self.select)}"
+            )
         if len(set(used)) != len(used) or not all(1 <= lead <= self.leads for lead in used):
-            raise ValueError(f"leads must differ from each other and be 1 to {self.leads}")
+            raise ValueError(
+                f"inputs, select and output on leads {sorted(used)} given, each needs a lead of "
+                f"its own from 1 to leads = {self.leads}"
+            )
         return self
 
 
 class Controller(Entry):
     """A microcontroller board that reads the multiplexers."""
 
-    analog_pins: tuple[str, ...]
+    analog_pins: tuple[Pin, ...] = Field(min_length=1)
     """Analog inputs in the order in which they are used."""
     unlimited_analog_pins: bool = False
     """Whether further inputs are invented as needed: for benchmarks only."""
-    select_pins: tuple[str, ...] = Field(min_length=1)
+    select_pins: tuple[Pin, ...] = Field(min_length=1)
     """Digital outputs for the select lines, least significant first."""
     adc_bits: int = Field(ge=8, le=16)
     """Resolution of the analog-to-digital converter."""
     supply_v: float = Field(gt=0, le=5.5)
     """Supply of its inputs, which is also the detectors' supply."""
+
+    @model_validator(mode="after")
+    def _pins_differ(self) -> Self:
+        pins = (*self.analog_pins, *self.select_pins)
+        twice = sorted({pin for pin in pins if pins.count(pin) > 1})
+        if twice:
+            raise ValueError(f"{', '.join(twice)} given twice, each pin is used once")
+        return self
 
 
 class Nose(Strict):
@@ -184,7 +215,7 @@ class Silicone(Entry):
 
     density_g_ml: float = Field(gt=0.5, le=3)
     """Density of the mixture."""
-    mix_ratio: tuple[float, float]
+    mix_ratio: tuple[Share, Share]
     """Parts A and B by mass."""
     refractive_index: float = Field(ge=1.0, le=2.0)
     """Refractive index when cured."""

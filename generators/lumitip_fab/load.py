@@ -1,5 +1,6 @@
 """Read a parameter file with its base and its catalogue, and report every fault at once."""
 
+import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,7 +13,7 @@ from lumitip_fab.errors import InputError, Problem
 from lumitip_fab.locate import design_folder, parts_file
 from lumitip_fab.parameters import Parameters
 from lumitip_fab.source import Source, read_toml
-from lumitip_fab.wording import problems_of, shown_path, unknown_name
+from lumitip_fab.wording import brief, problems_of, shown_path, unknown_name
 
 # Which fields name an entry of which catalogue file.
 NAMED = {
@@ -59,16 +60,20 @@ def load(path: Path) -> Input:
         InputError: with every fault of the file, its base and the catalogue files it uses.
     """
     own = read_toml(path, shown_path(path))
-    sources = (own, *_base(own))
+    sources, faults = _with_base(own)
+    based = not faults  # without its base, what a file leaves out is no fault
     merged: dict[str, Any] = {}
     for source in reversed(sources):
         merged = _merge(merged, {k: v for k, v in source.table.items() if k != "extends"})
-    catalogue, faults = _catalogue(design_folder(path))
+    catalogue, broken = _catalogue(design_folder(path))
+    faults += broken
     parameters = None
     try:
         parameters = Parameters.model_validate(_tuples(merged))
     except ValidationError as error:
-        faults += problems_of(error, Parameters, lambda field: _setting(sources, field))
+        faults += problems_of(
+            error, Parameters, lambda field: _setting(sources, field), missing=based
+        )
     faults += _unknown_parts(merged, catalogue, sources)
     if faults or parameters is None:
         raise InputError(faults)
@@ -79,15 +84,21 @@ def _setting(sources: tuple[Source, ...], field: str) -> Source:
     """The file that wrote a field; of a field that none wrote, the one that wrote its table."""
     while field:
         for source in sources:
-            if field in source.lines:
+            if source.sets(field):
                 return source
         field = field.rpartition(".")[0]
     return sources[0]
 
 
-def _base(own: Source) -> tuple[Source, ...]:
-    if "extends" not in own.table:
-        return ()
+def _with_base(own: Source) -> tuple[tuple[Source, ...], list[Problem]]:
+    """The file and its base, if it has one, with the faults of a base that cannot be used."""
+    try:
+        return ((own, _base(own)) if "extends" in own.table else (own,)), []
+    except InputError as error:
+        return (own,), list(error.problems)
+
+
+def _base(own: Source) -> Source:
     name = own.table["extends"]
 
     def refuse(message: str) -> InputError:
@@ -95,24 +106,38 @@ def _base(own: Source) -> tuple[Source, ...]:
         return InputError([Problem(file, own.line("extends"), "extends", message)])
 
     if not isinstance(name, str) or not name.endswith(".toml"):
-        raise refuse(f"{name!r:.80} given, the name of a .toml file is needed")
+        raise refuse(f"{brief(name)} given, the name of a .toml file is needed")
     folder = design_folder(own.path)
     try:
         base = (own.path.resolve().parent / name).resolve()
-        inside, exists = base.is_relative_to(folder), base.is_file()
+        inside, exists = base.is_relative_to(folder.resolve()), base.is_file()
     except (OSError, ValueError, RuntimeError) as error:
         raise refuse(f"{name!r:.80} given, which is no usable file name") from error
     if not inside:
-        raise refuse(f"{name!r:.80} given, which is outside the design folder")
+        raise refuse(
+            f"{name!r:.80} given, which is outside the design folder {shown_path(folder)!r}; "
+            "copy the base into it"
+        )
     if not exists:
-        near = sorted(p.name for p in base.parent.glob("*.toml") if p != own.path.resolve())
-        raise refuse(f"{name!r:.80} given, no such file; there are {', '.join(near) or 'none'}")
+        raise refuse(f"{name!r:.80} given, no such file; {_bases(folder, own.path)}")
     if base == own.path.resolve():
         raise refuse(f"{name!r:.80} given, a file cannot extend itself")
     source = read_toml(base, shown_path(base))
     if "extends" in source.table:
-        raise refuse(f"{name!r:.80} given, which extends another file; one level is allowed")
-    return (source,)
+        raise refuse(
+            f"{name!r:.80} given, which extends {brief(source.table['extends'])} itself; one level "
+            "is allowed: name a complete file"
+        )
+    return source
+
+
+def _bases(folder: Path, own: Path) -> str:
+    """The files of the design folder that a file may extend, as it would name them."""
+    here = own.resolve().parent
+    found = [*folder.glob("*.toml"), *folder.glob("presets/*.toml")]
+    names = sorted(os.path.relpath(p, here) for p in found if p.resolve() != own.resolve())
+    listed = ", ".join(names[:20]) + (", …" if len(names) > 20 else "")
+    return f"there are {listed}" if names else "there is no other"
 
 
 def _merge(base: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]:

@@ -18,9 +18,11 @@ from pydantic import Field
 
 from lumitip_fab.catalogue import Name, Strict
 
-Small = Annotated[float, Field(ge=0.05, le=20)]
+PRINTABLE = r"^[\x20-\x7e]+$"
+REVISION = r"^[A-Za-z0-9.\-]{1,8}$"
 Gap = Annotated[float, Field(ge=0, le=20)]
-Text = Annotated[str, Field(min_length=1, max_length=32, pattern=r"^[\x20-\x7e]+$")]
+Text = Annotated[str, Field(min_length=1, max_length=32, pattern=PRINTABLE)]
+DeviceName = Annotated[str, Field(min_length=1, max_length=29, pattern=PRINTABLE)]
 Column = Annotated[int, Field(ge=1, le=256)]
 
 
@@ -128,7 +130,7 @@ class Emitter(Strict):
 
     led: Name
     """Name of an LED in `parts/leds.toml`."""
-    current_ma: float = Field(gt=0, le=1000)
+    current_ma: float = Field(ge=0.1, le=1000)
     """Target current of each string of LEDs (mA)."""
     resistor: Name
     """Package of the string resistors in `parts/resistors.toml`."""
@@ -152,8 +154,8 @@ class Controller(Strict):
 
     board: Name
     """Name of a controller in `parts/controllers.toml`."""
-    name: Text
-    """Bluetooth name of the device."""
+    name: DeviceName
+    """Bluetooth name of the device; what one scan response carries."""
 
 
 class Supply(Strict):
@@ -161,7 +163,7 @@ class Supply(Strict):
 
     voltage_v: float = Field(gt=2, le=48)
     """Supply voltage (V)."""
-    max_ma: float = Field(gt=0, le=5000)
+    max_ma: float = Field(ge=0.1, le=5000)
     """Largest current that may be drawn for the LEDs (mA)."""
 
 
@@ -218,7 +220,7 @@ class Parameters(Strict):
 
     name: Text
     """Name of the design, on boards and drawings."""
-    revision: Annotated[str, Field(pattern=r"^[A-Za-z0-9.\-]{1,8}$")]
+    revision: Annotated[str, Field(pattern=REVISION)]
     """Revision of the design, on boards and drawings."""
     grid: Grid
     stack: Stack

@@ -1,6 +1,5 @@
 """TOML files that remember on which line of which file each value was written."""
 
-import math
 import re
 import tomllib
 from dataclasses import dataclass, field
@@ -13,7 +12,10 @@ Table = dict[str, Any]
 _HEADER = re.compile(r"\s*\[{1,2}\s*([^\[\]]+?)\s*\]{1,2}\s*(#.*)?$")
 _KEY = re.compile(r"\s*([A-Za-z0-9_\-.\"' ]+?)\s*=")
 _SYNTAX = re.compile(r"(?P<what>.*) \(at (?:line (?P<line>\d+), column \d+|end of document)\)")
-LARGEST_FILE_BYTES = 1_000_000
+LARGEST_FILE_BYTES = 200_000
+DEEPEST = 12  # tables and lists within each other; a parameter file needs three
+_LONGEST_NUMBER = re.compile(r"\d{4000}")  # beyond it Python itself refuses to read a number
+_LONGEST_STATEMENT = 400  # lines
 
 
 @dataclass(frozen=True)
@@ -32,6 +34,18 @@ class Source:
             dotted = dotted.rpartition(".")[0]
         return 1
 
+    def sets(self, dotted: str) -> bool:
+        """Whether the file itself gives a value to a field."""
+        found: Any = self.table
+        for key in dotted.split("."):
+            if isinstance(found, list) and key.isdecimal() and int(key) < len(found):
+                found = found[int(key)]
+            elif isinstance(found, dict) and key in found:
+                found = found[key]
+            else:
+                return False
+        return True
+
 
 def read_toml(path: Path, shown: str) -> Source:
     """Parse a TOML file.
@@ -41,33 +55,62 @@ def read_toml(path: Path, shown: str) -> Source:
         shown: its name in messages.
 
     Raises:
-        InputError: if it cannot be read, is not TOML, or holds a value that is not finite.
+        InputError: if it cannot be read, is too large or too deep, or is not TOML.
     """
     try:
         if path.stat().st_size > LARGEST_FILE_BYTES:
             size = path.stat().st_size
             raise _refusal(shown, 0, f"{size} bytes given, at most {LARGEST_FILE_BYTES} are read")
-        text = path.read_text(encoding="utf-8")
+        data = path.read_bytes()
+        text = data.decode("utf-8-sig")  # some editors begin a file with a byte-order mark
     except UnicodeDecodeError as error:
-        raise _refusal(shown, 0, f"is not UTF-8 text ({error.reason})") from error
+        line = data.count(b"\n", 0, error.start) + 1
+        given = f"the byte 0x{data[error.start]:02x} given"
+        raise _refusal(shown, line, f"{given}, only UTF-8 text is read: save as UTF-8") from error
     except OSError as error:
         raise _refusal(shown, 0, f"cannot be read: {error.strerror}") from error
+    except ValueError as error:
+        raise _refusal(shown, 0, f"is no usable file name: {error}") from error
     try:
         table = tomllib.loads(text)
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
-        told = _SYNTAX.match(str(error))
-        line = int(told["line"]) if told and told["line"] else text.count("\n") + 1
-        what = told["what"] if told else str(error)
-        raise _refusal(shown, line, f"is not TOML: {what}") from error
-    source = Source(path, table, _lines_of(text))
-    faults = [
-        Problem(shown, source.line(name), name, f"{value} given, a finite number is needed")
-        for name, value in flat(table)
-        if isinstance(value, float) and not math.isfinite(value)
-    ]
-    if faults:
-        raise InputError(faults)
-    return source
+    except RecursionError as error:
+        raise _refusal(shown, 0, _TOO_DEEP) from error
+    except tomllib.TOMLDecodeError as error:
+        raise _refusal(shown, *_syntax_fault(text, error)) from error
+    except ValueError as error:
+        digits = _LONGEST_NUMBER.search(text)
+        line = text.count("\n", 0, digits.start()) + 1 if digits else 0
+        raise _refusal(shown, line, "is not TOML: a number of more than 4300 digits given") from error
+    if _too_deep(table):
+        raise _refusal(shown, 0, _TOO_DEEP)
+    return Source(path, table, _lines_of(text))
+
+
+def _syntax_fault(text: str, error: tomllib.TOMLDecodeError) -> tuple[int, str]:
+    """Line and wording of what the TOML reader found wrong."""
+    told = _SYNTAX.match(str(error))
+    lines = text.rstrip().split("\n")
+    line = int(told["line"]) if told and told["line"] else len(lines)
+    what = told["what"] if told else str(error)
+    if what.startswith(("Cannot overwrite", "Cannot declare")):
+        return line, "is not TOML: this key or table is given twice; keep one of them"
+    given = lines[min(line, len(lines)) - 1].strip()
+    return line, f"is not TOML: {given!r:.80} given: {what[:1].lower()}{what[1:]}"
+
+
+_TOO_DEEP = f"tables or lists within each other given, at most {DEEPEST} levels are read"
+
+
+def _too_deep(table: Table) -> bool:
+    level: list[Any] = [table]
+    for _ in range(DEEPEST):
+        level = [
+            inner
+            for outer in level
+            for inner in (outer.values() if isinstance(outer, dict) else outer)
+            if isinstance(inner, dict | list)
+        ]
+    return bool(level)
 
 
 def flat(table: Table, prefix: str = "") -> list[tuple[str, Any]]:
@@ -95,19 +138,26 @@ def _lines_of(text: str) -> dict[str, int]:
     lines: dict[str, int] = {}
     section = ""
     statement, begun = "", 0
-    for number, line in enumerate(text.splitlines(), start=1):
+    for number, line in enumerate(text.split("\n"), start=1):
         if statement:
             statement += "\n" + line
         elif header := _HEADER.match(line):
-            section = _bare(header[1]) + "."
-            lines.setdefault(section[:-1], number)
+            section = _bare(header[1])
+            _note(lines, section, number)
             continue
         elif key := _KEY.match(line):
             statement, begun = line, number
-            lines.setdefault(section + _bare(key[1]), number)
-        if statement and (_whole(statement) or number - begun > 400):
+            _note(lines, f"{section}.{_bare(key[1])}" if section else _bare(key[1]), number)
+        if statement and (_whole(statement) or number - begun > _LONGEST_STATEMENT):
             statement = ""
     return lines
+
+
+def _note(lines: dict[str, int], dotted: str, number: int) -> None:
+    """Note the line of a field, and of the tables around it where they are new."""
+    while dotted:
+        lines.setdefault(dotted, number)
+        dotted = dotted.rpartition(".")[0]
 
 
 def _bare(dotted: str) -> str:
@@ -117,6 +167,6 @@ def _bare(dotted: str) -> str:
 def _whole(statement: str) -> bool:
     try:
         tomllib.loads(statement)
-    except tomllib.TOMLDecodeError:
+    except (ValueError, RecursionError):
         return False
     return True

@@ -1,5 +1,6 @@
 """How faults are worded: what was given, what is allowed, and the nearest valid name."""
 
+import datetime
 import difflib
 import types
 import typing
@@ -9,11 +10,14 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
+from lumitip_fab.catalogue import NAME, PIN
 from lumitip_fab.errors import Problem
+from lumitip_fab.parameters import PRINTABLE, REVISION
 from lumitip_fab.source import Source
 
 _KINDS = {
     "float_type": "a number",
+    "finite_number": "a finite number",
     "int_type": "a whole number",
     "int_from_float": "a whole number",
     "string_type": "text in quotes",
@@ -31,8 +35,13 @@ _BOUNDS = {
     "less_than_equal": "at most {le}",
     "string_too_short": "text of at least {min_length} characters",
     "string_too_long": "text of at most {max_length} characters",
-    "string_pattern_mismatch": "text that matches {pattern}",
     "literal_error": "{expected}",
+}
+_PATTERNS = {
+    NAME: "letters, digits, spaces and any of . + - / _, beginning with a letter or digit,",
+    PIN: "1 to 16 letters, digits or _, beginning with a letter,",
+    PRINTABLE: "ASCII letters, digits, punctuation and spaces",
+    REVISION: "1 to 8 letters, digits, dots or hyphens",
 }
 
 
@@ -53,8 +62,14 @@ def unknown_name(given: str, allowed: Iterable[str], where: str) -> str:
     return f"{given!r:.80} given, {hint}{where} has {listed}"
 
 
+def brief(value: Any) -> str:
+    """A value as it was written in TOML, shortened."""
+    text = _written(value)
+    return text if len(text) <= 80 else text[:79] + "…"
+
+
 def problems_of(
-    error: ValidationError, model: Any, setting: Callable[[str], Source]
+    error: ValidationError, model: Any, setting: Callable[[str], Source], missing: bool = True
 ) -> list[Problem]:
     """One problem for each fault that pydantic found.
 
@@ -62,6 +77,7 @@ def problems_of(
         error: what pydantic raised.
         model: the model or annotation that was validated, for the valid names.
         setting: gives the file that wrote a field.
+        missing: whether to report fields that are not there.
     """
     problems = []
     faults = error.errors(include_url=False)
@@ -69,6 +85,8 @@ def problems_of(
     for fault in faults:
         if fault["type"] == "too_short" and fault["loc"] in within:
             continue  # pydantic counts only the values that are valid themselves
+        if fault["type"] == "missing" and not missing:
+            continue
         location = tuple(part for part in fault["loc"] if part != "[key]")
         field = ".".join(map(str, location))
         source = setting(field)
@@ -88,15 +106,30 @@ def _message(fault: Any, model: Any, location: tuple[Any, ...]) -> str:
         count = told.get("max_length", told.get("min_length"))
         return f"{told['actual_length']} values given, {bound} {count} are allowed"
     if kind in _KINDS:
-        return f"{_brief(given)} given, {_KINDS[kind]} is needed"
+        return f"{brief(given)} given, {_KINDS[kind]} is needed"
     if kind in _BOUNDS:
-        return f"{_brief(given)} given, {_BOUNDS[kind].format(**told)} is allowed"
-    return f"{_brief(given)} given: {fault['msg']}"
+        return f"{brief(given)} given, {_BOUNDS[kind].format(**told)} is allowed"
+    if kind == "string_pattern_mismatch":
+        pattern = told["pattern"]
+        return f"{brief(given)} given, {_PATTERNS.get(pattern, pattern)} are allowed"
+    if kind == "value_error":
+        return str(told["error"])
+    return f"{brief(given)} given: {fault['msg']}"
 
 
-def _brief(value: Any) -> str:
-    text = repr(list(value)) if isinstance(value, tuple) else repr(value)
-    return text if len(text) <= 80 else text[:77] + "…"
+def _written(value: Any) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, tuple | list):
+        return f"[{', '.join(map(_written, value))}]"
+    if isinstance(value, dict):
+        return f"{{ {', '.join(f'{k} = {_written(v)}' for k, v in value.items())} }}"
+    if isinstance(value, datetime.date | datetime.time):
+        return str(value)
+    try:
+        return repr(value)
+    except ValueError:  # Python prints no number of more than 4300 digits
+        return "a number of thousands of digits"
 
 
 def _names(model: Any, location: tuple[Any, ...]) -> list[str]:

@@ -19,12 +19,14 @@ def derive(given: Input) -> Design:
         InputError: with every combination of values that is impossible, and the numbers.
     """
     p, faults = given.parameters, Faults(given)
-    cells = derive_cells(p, faults)
-    faults.stop_if_any()  # without a grid nothing else can be judged
     stack = derive_stack(given, faults)
+    cells = derive_cells(p, faults)
+    if not len(cells):
+        faults.stop()  # without a grid nothing else can be judged
     strings = wiring.derive_strings(given, cells, faults)
     muxing = wiring.derive_muxing(given, cells, faults)
-    faults.stop_if_any()  # without parts and nets there are no boards to place
+    if not strings.cells or len(muxing.adc_pins) < muxing.muxes:
+        faults.stop()  # without parts and nets there are no boards to place
     plan = boards.derive_plan(given, cells, strings, muxing, faults)
     silhouette = outline.derive_outline(p, plan.board, faults)
     coupling = mount.derive_mount(given, silhouette, plan, faults)
@@ -33,7 +35,7 @@ def derive(given: Input) -> Design:
     printing = derive_printing(given, silhouette, faults)
     sheet = mask.derive_mask(given, silhouette, plan, faults)
     meeting = closing.derive_closing(silhouette, stack, coupling, casting, faults)
-    faults.stop_if_any()
+    faults.stop()
     mux, channel = wiring.assign(given, cells, plan.muxes)
     layout = Layout(
         x_mm=cells.x_mm,

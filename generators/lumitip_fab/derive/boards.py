@@ -22,12 +22,14 @@ from lumitip_fab.derive.faults import Faults
 from lumitip_fab.derive.wiring import Muxing, Strings
 from lumitip_fab.design import Board, Box, Connector, Finger, Part, Point, Zone
 from lumitip_fab.load import Input
+from lumitip_fab.parameters import Parameters
 
 NOTCH_BEFORE_PADS_MM = 0.6
 NOTCH_BESIDE_MM = 0.5
 SEAT_CLEARANCE_MM = 1.0
 WINDOW_MARGIN_MM = 2.0
 HOLE_TO_EDGE_MM = 1.0
+PAD_TO_EDGE_MM = 0.3
 LEAST_PIN_MM = 1.0
 
 
@@ -75,7 +77,8 @@ def derive_plan(
     tip_holes = placing.tip_holes(given, cells, (*detectors, *_flipped(leds)), frame.box, faults)
     rear = ((-frame.rear_hole_x_mm, frame.connector_y_mm),
             (frame.rear_hole_x_mm, frame.connector_y_mm))  # fmt: skip
-    resistors, reliefs = placing.resistors(given, strings, frame.parts, faults)
+    room = _resistor_room(given, frame)
+    resistors, reliefs = placing.resistors(given, strings, room, faults)
     wires = connectors.place(connectors.emitter_signals(given), True, frame.connector_y_mm)
     emitter = Finger(
         name="emitter",
@@ -136,11 +139,7 @@ def _frame(
     connector_y = parts_top - depth - pad / 2
     y_max = top + p.board.tip_margin_mm
     y_min = y_max - 2 * _up((y_max - (connector_y - p.board.end_margin_mm)) / 2)
-    faults.refuse_unless(
-        p.board.end_margin_mm >= pad / 2 + 0.3,
-        "board.end_margin_mm",
-        f"{p.board.end_margin_mm:g} given, pads of {pad:g} mm need at least {pad / 2 + 0.3:.2f}",
-    )
+    _refuse_holes(p, pad, faults)
     for field, margin, taken in (
         ("board.tip_margin_mm", p.board.tip_margin_mm, reach),
         ("board.side_margin_mm", p.board.side_margin_mm, side),
@@ -165,6 +164,42 @@ def _frame(
         pin_mm=pin_mm,
         rear_hole_x_mm=hole_x,
     )
+
+
+def _refuse_holes(p: Parameters, pad_mm: float, faults: Faults) -> None:
+    """Refuse holes and pads that break out of the board or into the parts."""
+    radius = p.board.hole_mm / 2
+    for_hole, for_pad = radius + placing.HOLE_WEB_MM, pad_mm / 2 + PAD_TO_EDGE_MM
+    what = f"holes of {p.board.hole_mm:g} mm"
+    faults.refuse_unless(
+        p.board.end_margin_mm >= max(for_hole, for_pad) - 1e-9,
+        "board.end_margin_mm",
+        f"{p.board.end_margin_mm:g} given, {what} and pads of {pad_mm:g} mm in the connector's "
+        f"row need at least {max(for_hole, for_pad):.2f}",
+    )
+    faults.refuse_unless(
+        p.board.hole_edge_mm >= for_hole - 1e-9,
+        "board.hole_edge_mm",
+        f"{p.board.hole_edge_mm:g} given, {what} need at least {for_hole:.2f}",
+    )
+    least = radius + placing.HOLE_CLEARANCE_MM - pad_mm / 2
+    faults.refuse_unless(
+        p.board.channel_mm >= least - 1e-9,
+        "board.channel_mm",
+        f"{p.board.channel_mm:g} given, {what} beside the connector would reach the parts: at "
+        f"least {least:.2f} is needed",
+    )
+
+
+def _resistor_room(given: Input, frame: Frame) -> Box:
+    """The zone for parts; on the back without what lies so near notch and pins that too little
+    floor would be left between them and the resistors' relief."""
+    p, zone = given.parameters, frame.parts
+    if p.emitter.resistor_side == "front":
+        return zone
+    solid = max(frame.notch.y_max_mm, frame.connector_y_mm + frame.pin_mm / 2)
+    lowest = solid + p.printer.min_wall_mm + p.backing.relief_clearance_mm
+    return Box(zone.x_min_mm, zone.x_max_mm, max(zone.y_min_mm, lowest), zone.y_max_mm)
 
 
 def _board(given: Input, frame: Frame) -> Board:

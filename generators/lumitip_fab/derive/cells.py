@@ -9,6 +9,7 @@ import numpy as np
 from lumitip.grid import Floats, Integers, hexagonal_grid, hexagonal_neighbours
 from lumitip_fab.derive.faults import Faults
 from lumitip_fab.parameters import Parameters
+from lumitip_fab.wording import brief
 
 MOST_CELLS = 4096
 LEAST_WEB_MM = 0.4
@@ -30,22 +31,20 @@ class Cells:
 
 
 def derive_cells(p: Parameters, faults: Faults) -> Cells:
-    """The cells of the grid; an empty grid where it is refused."""
+    """The cells of the grid; none where its columns are refused."""
     columns, pitch = p.grid.columns, p.grid.pitch_mm
     uneven = _not_by_one(columns)
     if uneven:
         left, right = uneven
         faults.refuse(
             "grid.columns",
-            f"{list(columns)} given, columns {left} and {right} have {columns[left]} and "
-            f"{columns[right]} cells; neighbouring columns must differ by one",
+            f"{brief(columns)} given, columns {left} and {right} (of 0 to {len(columns) - 1}) have "
+            f"{columns[left]} and {columns[right]} cells; neighbouring columns must differ by one",
         )
-        columns = (1, 2)
     if sum(columns) > MOST_CELLS:
         faults.refuse(
             "grid.columns", f"{sum(columns)} cells given, at most {MOST_CELLS} are allowed"
         )
-        columns = (1, 2)
     web = pitch - p.mask.hole_mm
     if web < LEAST_WEB_MM:
         faults.refuse(
@@ -54,6 +53,9 @@ def derive_cells(p: Parameters, faults: Faults) -> Cells:
             f"{pitch:g} mm apart; at least {LEAST_WEB_MM} mm is needed: "
             f"at most {max(pitch - LEAST_WEB_MM, 0):.2f} is allowed",
         )
+    if uneven or sum(columns) > MOST_CELLS:
+        none = np.zeros(0, dtype=np.int64)
+        return Cells(none * 1.0, none * 1.0, none, none, none.reshape(0, 2))
     grid = hexagonal_grid(columns, pitch)
     neighbours = hexagonal_neighbours(columns)
     # To a nanometre, as in `layout.json`, so that every artefact has the very same positions.

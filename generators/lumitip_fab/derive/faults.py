@@ -20,7 +20,7 @@ class Faults:
         if not holds:
             self.refuse(field, message)
 
-    def stop_if_any(self) -> None:
+    def stop(self) -> None:
         """Raise `InputError` with all faults noted so far, if there are any."""
         if self._found:
             raise InputError(self._found)

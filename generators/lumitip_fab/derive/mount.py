@@ -38,8 +38,21 @@ def derive_mount(given: Input, outline: Outline, plan: Plan, faults: Faults) -> 
         f"{p.coupling.gripper!r} given, its block is {gripper.block_width_mm:g} mm wide and the "
         f"finger {2 * waist:.1f} mm",
     )
+    faults.refuse_unless(
+        ramp > 0,
+        "stack.floor_mm",
+        f"{p.stack.floor_mm:g} given, which makes a plate of {plate:g} mm; less than the "
+        f"{gripper.block_back_w_mm:g} mm of the block of {p.coupling.gripper!r} is allowed",
+    )
     nose = gripper.nose
     front = max(p.stack.pcb_mm + p.backing.tail_mm, nose.front_w_mm if nose else 0.0)
+    most = gripper.bolt_w_mm - gripper.counterbore_mm / 2 - p.printer.min_wall_mm
+    faults.refuse_unless(
+        front <= most,
+        "backing.tail_mm",
+        f"{p.backing.tail_mm:g} given, which leaves no wall before the bolt's counterbore; at "
+        f"most {most - p.stack.pcb_mm:.2f} is allowed",
+    )
     return Mount(
         gripper=p.coupling.gripper,
         origin_y_mm=outline.end_y_mm,

@@ -13,6 +13,7 @@ from lumitip_fab.load import Input
 
 PASSIVE_MM = 0.95  # width of an 0603 land pattern: pull-up and capacitor beside each multiplexer
 HOLE_CLEARANCE_MM = 0.25
+HOLE_WEB_MM = 0.5  # board left between a hole and its edge
 RELIEF_DEPTH_MM = 0.2  # below the part
 RESISTOR_GAP_MM = 0.6
 COUPLING_GAP_MM = 2.0  # mounting block to a relief
@@ -95,7 +96,8 @@ def tip_holes(
     for x in sorted({round(float(v), 6) for v in cells.x_mm}):
         dx = np.maximum(np.maximum(boxes[:, 0] - x, x - boxes[:, 1]), 0)
         dy = np.maximum(np.maximum(boxes[:, 2] - y, y - boxes[:, 3]), 0)
-        if np.hypot(dx, dy).min() >= keep:
+        inside = abs(x) + p.board.hole_mm / 2 + HOLE_WEB_MM <= box.x_max_mm + 1e-9
+        if inside and np.hypot(dx, dy).min() >= keep:
             room.append(x)
     if len(room) < 2:
         top = max(float(b[3]) for b in boxes)
