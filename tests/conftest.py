@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from lumitip_fab.build import build
+from lumitip_fab.checks.run import modules_reading, run_checks
 
 DESIGN = Path(__file__).parents[1] / "design"
 
@@ -42,3 +43,23 @@ def outputs(built: Callable[[str], Path]) -> Path:
 def damaged(outputs: Path, tmp_path: Path) -> Path:
     """A copy of the published design's files, to damage."""
     return Path(shutil.copytree(outputs, tmp_path / "damaged"))
+
+
+@pytest.fixture(scope="session")
+def failing(outputs: Path) -> Callable[[Path], set[str]]:
+    """`failing(damaged)`: names of the checks that fail on a damaged copy of `outputs`.
+
+    Only the modules that open a changed file are run: the others see what they passed before.
+    """
+
+    def names(folder: Path) -> set[str]:
+        paths = {str(f.relative_to(d)) for d in (outputs, folder) for f in d.rglob("*.*")}
+        changed = [p for p in sorted(paths) if _bytes(outputs / p) != _bytes(folder / p)]
+        assert changed, "nothing was damaged"
+        return {m.check for m in run_checks(folder, modules_reading(changed)).failed}
+
+    return names
+
+
+def _bytes(path: Path) -> bytes | None:
+    return path.read_bytes() if path.is_file() else None

@@ -51,14 +51,14 @@ class Stack(Strict):
 class Outline(Strict):
     """The silhouette of the gripping face: a smooth curve round the board."""
 
-    tip_width_mm: float = Field(ge=5, le=300)
-    """Straight edge at the tip (mm)."""
+    tip_fraction: float = Field(ge=0.1, le=0.95)
+    """Straight edge at the tip, as a fraction of the widest width."""
     tip_margin_mm: float = Field(ge=1, le=50)
     """Tip edge to the board (mm)."""
     shoulder_margin_mm: float = Field(ge=0, le=50)
     """Board edge to the outline at its widest point, on each side (mm)."""
-    shoulder_at: float = Field(gt=0.02, lt=0.6)
-    """Place of the widest point, as a fraction of the length from the tip."""
+    shoulder_at_mm: float = Field(ge=1, le=100)
+    """Distance of the widest point from the tip edge (mm)."""
     waist_margin_mm: float = Field(ge=0, le=50)
     """Board edge to the outline at its narrowest point, on each side (mm)."""
     waist_at: float = Field(gt=0.3, lt=0.95)
@@ -66,7 +66,7 @@ class Outline(Strict):
     end_margin_mm: float = Field(ge=1, le=50)
     """Board to the gripper end (mm)."""
     end_corner_mm: float = Field(ge=0.5, le=50)
-    """Size of the rounding at the corners of the gripper end (mm)."""
+    """Rounding at the corners of the gripper end; less where the wire notch needs the room (mm)."""
 
 
 class Backing(Strict):

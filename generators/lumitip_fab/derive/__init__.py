@@ -28,7 +28,7 @@ def derive(given: Input) -> Design:
     if not strings.cells or len(muxing.adc_pins) < muxing.muxes:
         faults.stop()  # without parts and nets there are no boards to place
     plan = boards.derive_plan(given, cells, strings, muxing, faults)
-    silhouette = outline.derive_outline(p, plan.board, faults)
+    silhouette = outline.derive_outline(p, plan.board, plan.receiver.notch, faults)
     coupling = mount.derive_mount(given, silhouette, plan, faults)
     tip = derive_tip(p, silhouette, plan.board, faults)
     casting = mould.derive_mould(given, silhouette, plan.board, faults)

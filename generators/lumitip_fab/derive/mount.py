@@ -6,8 +6,6 @@ from lumitip_fab.derive.outline import half_width_at
 from lumitip_fab.design import Mount, Nose, Outline
 from lumitip_fab.load import Input
 
-LEAST_LEG_MM = 2.0  # plate beside the notch at the gripper end
-
 
 def derive_mount(given: Input, outline: Outline, plan: Plan, faults: Faults) -> Mount:
     """The coupling, refused where finger and gripper do not go together."""
@@ -15,13 +13,6 @@ def derive_mount(given: Input, outline: Outline, plan: Plan, faults: Faults) -> 
     gripper = given.catalogue.grippers[p.coupling.gripper]
     plate = p.stack.floor_mm + p.stack.pcb_mm
     notch = plan.receiver.notch
-    leg = outline.end_width_mm / 2 - notch.x_max_mm
-    faults.refuse_unless(
-        leg >= LEAST_LEG_MM,
-        "outline.end_corner_mm",
-        f"{p.outline.end_corner_mm:g} given, which leaves {leg:.2f} mm of plate beside the wire "
-        f"notch of {notch.width_mm:.1f} mm at the gripper end; at least {LEAST_LEG_MM:g} is needed",
-    )
     ramp = gripper.block_back_w_mm - plate
     opening = notch.y_max_mm - outline.end_y_mm
     length = gripper.land_mm + ramp

@@ -9,36 +9,48 @@ import math
 import numpy as np
 
 from lumitip_fab.derive.faults import Faults
-from lumitip_fab.design import Board, Cubic, Outline, Point
+from lumitip_fab.design import Board, Box, Cubic, Outline, Point
 from lumitip_fab.parameters import Parameters
 
 _ROUND = 4 / 3 * (math.sqrt(2) - 1)  # handle of a cubic that follows a quarter ellipse
 
 
-def derive_outline(p: Parameters, board: Board, faults: Faults) -> Outline:
-    """The outline, refused where it is no smooth curve round the board."""
+LEAST_LEG_MM = 2.0  # plate beside the wire notch at the gripper end
+LEAST_CORNER_MM = 0.5
+
+
+def derive_outline(p: Parameters, board: Board, notch: Box, faults: Faults) -> Outline:
+    """The outline, refused where it is no smooth curve round the board.
+
+    Args:
+        p: the parameters.
+        board: the board, with its pocket.
+        notch: the wire notch, which leaves two legs at the gripper end.
+        faults: where to refuse.
+    """
     tip_y = board.box.y_max_mm + p.outline.tip_margin_mm
     end_y = board.box.y_min_mm - p.outline.end_margin_mm
     length, half_board = tip_y - end_y, board.box.x_max_mm
-    shoulder = (half_board + p.outline.shoulder_margin_mm, tip_y - p.outline.shoulder_at * length)
+    shoulder = (half_board + p.outline.shoulder_margin_mm, tip_y - p.outline.shoulder_at_mm)
     waist = (half_board + p.outline.waist_margin_mm, tip_y - p.outline.waist_at * length)
-    tip_half, corner = p.outline.tip_width_mm / 2, p.outline.end_corner_mm
+    tip_half = p.outline.tip_fraction * shoulder[0]
+    room = waist[0] - notch.x_max_mm - LEAST_LEG_MM
+    corner = min(p.outline.end_corner_mm, max(room, LEAST_CORNER_MM))
     end_half = waist[0] - corner
     for holds, field, message in (
-        (tip_half < shoulder[0] - 1, "outline.tip_width_mm",
-         f"{p.outline.tip_width_mm:g} given, less than {2 * shoulder[0] - 2:.2f} is allowed: the "
-         "widest point is there"),
         (shoulder[0] >= waist[0], "outline.shoulder_margin_mm",
          f"{p.outline.shoulder_margin_mm:g} given, at least waist_margin_mm = "
          f"{p.outline.waist_margin_mm:g} is needed"),
         (shoulder[1] > waist[1] + 1, "outline.waist_at",
-         f"{p.outline.waist_at:g} given, more than shoulder_at = {p.outline.shoulder_at:g} and "
-         "1 mm is needed"),
+         f"{p.outline.waist_at:g} given, more than {(p.outline.shoulder_at_mm + 1) / length:.3f} is "
+         "needed: there is the widest point"),
         (waist[1] > end_y + corner, "outline.waist_at",
          f"{p.outline.waist_at:g} given, at most {1 - corner / length:.3f} is allowed: there the "
          f"corner of {corner:g} mm begins"),
-        (end_half > 1, "outline.end_corner_mm",
-         f"{corner:g} given, less than {waist[0] - 1:.2f} is allowed"),
+        (room >= LEAST_CORNER_MM, "outline.waist_margin_mm",
+         f"{p.outline.waist_margin_mm:g} given, which leaves {room + LEAST_LEG_MM:.2f} mm of plate "
+         f"beside the wire notch of {notch.width_mm:.1f} mm at the gripper end; at least "
+         f"{LEAST_LEG_MM + LEAST_CORNER_MM:g} is needed"),
     ):  # fmt: skip
         faults.refuse_unless(holds, field, message)
     right = [

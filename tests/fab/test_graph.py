@@ -1,0 +1,54 @@
+"""Which change makes which task run again."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from lumitip_fab.derive import derive
+from lumitip_fab.graph import STEPS, argument_names, tasks
+from lumitip_fab.load import load
+
+Keys = Callable[..., dict[str, str]]
+
+
+@pytest.fixture
+def keys(design_dir: Path, tmp_path: Path) -> Keys:
+    """Key of every task of the published design with some lines added."""
+
+    def of(text: str = "") -> dict[str, str]:
+        file = tmp_path / "presets" / "changed.toml"
+        file.parent.mkdir(exist_ok=True)
+        published = design_dir / "presets" / "published.toml"
+        (file.parent / "published.toml").write_bytes(published.read_bytes())
+        (tmp_path / "parts").mkdir(exist_ok=True)
+        file.write_text('extends = "published.toml"\n' + text)
+        return {task.name: task.key for task in tasks(derive(load(file)))}
+
+    return of
+
+
+def changed(before: dict[str, str], after: dict[str, str]) -> set[str]:
+    assert before.keys() == after.keys()
+    return {name.partition(".")[0] for name in before if before[name] != after[name]}
+
+
+def test_controller_name_touches_no_task(keys: Keys) -> None:
+    assert changed(keys(), keys('[controller]\nname = "Other"\n')) == set()
+
+
+def test_mask_hole_touches_the_mask_alone(keys: Keys) -> None:
+    assert changed(keys(), keys("[mask]\nhole_mm = 2.0\n")) == {"mask_files"}
+
+
+def test_waste_of_silicone_touches_the_mould_and_what_shares_its_figures(keys: Keys) -> None:
+    assert "backing" not in changed(keys(), keys("[mould]\nwaste_fraction = 0.5\n"))
+
+
+def test_pitch_touches_everything(keys: Keys) -> None:
+    assert changed(keys(), keys("[grid]\npitch_mm = 6.1\n")) == {s.name for s in STEPS}
+
+
+def test_every_step_names_real_arguments(keys: Keys) -> None:
+    assert all(argument_names(step) for step in STEPS)
+    assert len(keys()) == sum(2 if "finger" in argument_names(step) else 1 for step in STEPS)
