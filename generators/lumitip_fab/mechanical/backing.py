@@ -1,0 +1,102 @@
+"""The rigid backing: a plate with a pocket for the board, and the gripper coupling."""
+
+import numpy as np
+from build123d import Solid
+
+from lumitip_fab.artefact import Artefact
+from lumitip_fab.design import Board, Box, Finger, Mount, Outline, Printing, Stack, Tip
+from lumitip_fab.errors import BuildError
+from lumitip_fab.frames import mount_to_sensor
+from lumitip_fab.mechanical import coupling, export
+from lumitip_fab.mechanical.shapes import (
+    box_solid,
+    cylinder,
+    outline_face,
+    placed,
+    prism,
+    side_prism,
+)
+
+BEYOND_MM = 1.0  # how far a cutter reaches past what it cuts
+PIN_LEAD_MM = 0.25  # chamfer that leads the board onto a pin
+
+
+def backing(
+    finger: Finger, stack: Stack, outline: Outline, tip: Tip, board: Board, mount: Mount
+) -> tuple[Artefact, ...]:
+    """The backing of one finger: STEP in the sensor frame, STL and 3MF standing on the bed."""
+    solid = backing_solid(finger, stack, outline, tip, board, mount)
+    to_sensor = mount_to_sensor(mount, stack)
+    standing = placed(solid, np.linalg.inv(to_sensor))
+    name = f"{finger.name}_backing"
+    return (
+        Artefact(f"backing/{name}.step", export.step(solid, name)),
+        Artefact(f"backing/{name}.stl", export.stl(standing), to_sensor),
+        Artefact(f"backing/{name}.3mf", export.three_mf(standing, name), to_sensor),
+    )
+
+
+def backing_solid(
+    finger: Finger, stack: Stack, outline: Outline, tip: Tip, board: Board, mount: Mount
+) -> Solid:
+    """The backing in the finger's sensor frame.
+
+    Raises:
+        BuildError: if the kernel does not make one valid solid of it.
+    """
+    plate = _plate(stack, outline) - _tip_cutter(stack, outline, tip)
+    plate = plate - box_solid(board.pocket, stack.pocket_z_mm, stack.rim_z_mm + BEYOND_MM)
+    plate = plate - coupling.notch_cutter(stack, mount, finger.notch)
+    whole = plate + coupling.coupling_solid(mount, stack, finger.notch)
+    whole = whole + [_pin(x, y, stack, board.pin_mm) for x, y in finger.holes]
+    taken = [
+        coupling.beyond_mount_plane(mount, stack),
+        *coupling.coupling_holes(mount, stack),
+        *(_relief(r.box, r.depth_mm, r.through, stack) for r in finger.reliefs),
+    ]
+    whole = (whole - taken).clean()
+    solids = whole.solids()
+    if len(solids) != 1 or not solids[0].is_valid:
+        raise BuildError(
+            f"{finger.name} backing: the CAD kernel made {len(solids)} solids of it, one valid "
+            "solid is needed; change the outline or the coupling a little"
+        )
+    return solids[0]
+
+
+def _plate(stack: Stack, outline: Outline) -> Solid:
+    """The plate, reaching past the gripper end so that the tilted mount plane cuts it all."""
+    half = outline.end_width_mm / 2
+    foot = Box(-half, half, outline.end_y_mm - BEYOND_MM, outline.end_y_mm)
+    plate = prism(outline_face(outline), stack.back_z_mm, stack.rim_z_mm)
+    return plate + box_solid(foot, stack.back_z_mm, stack.rim_z_mm)
+
+
+def _tip_cutter(stack: Stack, outline: Outline, tip: Tip) -> Solid:
+    """What the wedge takes from the back of the plate."""
+    edge_z = stack.rim_z_mm - tip.edge_mm
+    rise = (edge_z - stack.back_z_mm) / (outline.tip_y_mm - tip.slant_start_y_mm)
+    end_y, far_z = outline.tip_y_mm + BEYOND_MM, stack.back_z_mm - BEYOND_MM
+    start_y = tip.slant_start_y_mm
+    half = float(np.abs(outline.polygon()[:, 0]).max()) + BEYOND_MM
+    corners = [
+        (start_y, stack.back_z_mm),
+        (end_y, edge_z + rise * BEYOND_MM),
+        (end_y, far_z),
+        (start_y, far_z),
+    ]
+    return side_prism(corners, -half, half)
+
+
+def _pin(x_mm: float, y_mm: float, stack: Stack, pin_mm: float) -> Solid:
+    """A locating pin from inside the floor to the rim plane."""
+    lead = min(PIN_LEAD_MM, pin_mm / 4, stack.pcb_mm / 4)
+    pin = cylinder((x_mm, y_mm), pin_mm, stack.pocket_z_mm - stack.floor_mm / 2, stack.rim_z_mm)
+    top = max(pin.edges(), key=lambda edge: edge.center().Z)
+    return pin.chamfer(lead, None, [top])
+
+
+def _relief(box: Box, depth_mm: float, through: bool, stack: Stack) -> Solid:
+    """Room behind the board, from inside the pocket to its depth or through the plate."""
+    bottom = stack.back_z_mm - BEYOND_MM if through else stack.pocket_z_mm - depth_mm
+    return box_solid(box, bottom, stack.pocket_z_mm + stack.pcb_mm / 2)
