@@ -74,7 +74,9 @@ def load(path: Path) -> Input:
         faults += problems_of(
             error, Parameters, lambda field: _setting(sources, field), missing=based
         )
-    faults += _unknown_parts(merged, catalogue, sources)
+    unknown = _unknown_parts(merged, catalogue, sources)
+    named = {fault.field for fault in unknown}
+    faults = [fault for fault in faults if fault.field not in named] + unknown
     if faults or parameters is None:
         raise InputError(faults)
     return Input(parameters, Catalogue.model_validate(catalogue), sources)
@@ -118,6 +120,8 @@ def _base(own: Source) -> Source:
             f"{name!r:.80} given, which is outside the design folder {shown_path(folder)!r}; "
             "copy the base into it"
         )
+    if base.is_dir():
+        raise refuse(f"{name!r:.80} given, which is a folder; {_bases(folder, own.path)}")
     if not exists:
         raise refuse(f"{name!r:.80} given, no such file; {_bases(folder, own.path)}")
     if base == own.path.resolve():
@@ -135,7 +139,8 @@ def _bases(folder: Path, own: Path) -> str:
     """The files of the design folder that a file may extend, as it would name them."""
     here = own.resolve().parent
     found = [*folder.glob("*.toml"), *folder.glob("presets/*.toml")]
-    names = sorted(os.path.relpath(p, here) for p in found if p.resolve() != own.resolve())
+    others = (p for p in found if p.is_file() and p.resolve() != own.resolve())
+    names = sorted(os.path.relpath(p, here) for p in others)
     listed = ", ".join(names[:20]) + (", …" if len(names) > 20 else "")
     return f"there are {listed}" if names else "there is no other"
 

@@ -12,6 +12,12 @@ Table = dict[str, Any]
 _HEADER = re.compile(r"\s*\[{1,2}\s*([^\[\]]+?)\s*\]{1,2}\s*(#.*)?$")
 _KEY = re.compile(r"\s*([A-Za-z0-9_\-.\"' ]+?)\s*=")
 _SYNTAX = re.compile(r"(?P<what>.*) \(at (?:line (?P<line>\d+), column \d+|end of document)\)")
+_HINTS = {
+    "Invalid value": "; text needs quotes, and a number a decimal point",
+    "Expected newline": "; one value is needed on each line, and a number has a decimal point",
+    "Illegal character": "; text ends with the quotes that began it",
+    "Unclosed": "; every bracket needs its partner",
+}
 LARGEST_FILE_BYTES = 200_000
 DEEPEST = 12  # tables and lists within each other; a parameter file needs three
 _LONGEST_NUMBER = re.compile(r"\d{4000}")  # beyond it Python itself refuses to read a number
@@ -80,7 +86,8 @@ def read_toml(path: Path, shown: str) -> Source:
     except ValueError as error:
         digits = _LONGEST_NUMBER.search(text)
         line = text.count("\n", 0, digits.start()) + 1 if digits else 0
-        raise _refusal(shown, line, "is not TOML: a number of more than 4300 digits given") from error
+        given = "a number of more than 4300 digits given"
+        raise _refusal(shown, line, f"is not TOML: {given}") from error
     if _too_deep(table):
         raise _refusal(shown, 0, _TOO_DEEP)
     return Source(path, table, _lines_of(text))
@@ -95,10 +102,11 @@ def _syntax_fault(text: str, error: tomllib.TOMLDecodeError) -> tuple[int, str]:
     if what.startswith(("Cannot overwrite", "Cannot declare")):
         return line, "is not TOML: this key or table is given twice; keep one of them"
     given = lines[min(line, len(lines)) - 1].strip()
-    return line, f"is not TOML: {given!r:.80} given: {what[:1].lower()}{what[1:]}"
+    hint = next((h for start, h in _HINTS.items() if what.startswith(start)), "")
+    return line, f"is not TOML: {given!r:.80} given: {what[:1].lower()}{what[1:]}{hint}"
 
 
-_TOO_DEEP = f"tables or lists within each other given, at most {DEEPEST} levels are read"
+_TOO_DEEP = f"tables or lists nested deeper than {DEEPEST} levels given; three are needed at most"
 
 
 def _too_deep(table: Table) -> bool:

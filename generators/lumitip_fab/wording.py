@@ -29,13 +29,13 @@ _KINDS = {
     "model_attributes_type": "a table",
 }
 _BOUNDS = {
-    "greater_than": "more than {gt}",
-    "greater_than_equal": "at least {ge}",
-    "less_than": "less than {lt}",
-    "less_than_equal": "at most {le}",
-    "string_too_short": "text of at least {min_length} characters",
-    "string_too_long": "text of at most {max_length} characters",
-    "literal_error": "{expected}",
+    "greater_than": "more than {gt:g} is needed",
+    "greater_than_equal": "at least {ge:g} is needed",
+    "less_than": "less than {lt:g} is allowed",
+    "less_than_equal": "at most {le:g} is allowed",
+    "string_too_short": "text of {min_length} or more characters is needed",
+    "string_too_long": "text of at most {max_length} characters is allowed",
+    "literal_error": "{expected} is allowed",
 }
 _PATTERNS = {
     NAME: "letters, digits, spaces and any of . + - / _, beginning with a letter or digit,",
@@ -102,13 +102,16 @@ def _message(fault: Any, model: Any, location: tuple[Any, ...]) -> str:
     if kind == "extra_forbidden":
         return unknown_name(str(location[-1]), _names(model, location[:-1]), "this table")
     if kind in ("too_long", "too_short"):
-        bound = "at most" if kind == "too_long" else "at least"
-        count = told.get("max_length", told.get("min_length"))
-        return f"{told['actual_length']} values given, {bound} {count} are allowed"
+        bound, count = (
+            ("at most {} are allowed", told["max_length"])
+            if kind == "too_long"
+            else ("at least {} are needed", told["min_length"])
+        )
+        return f"{brief(given)} given, a list of {len(given)}; {bound.format(count)}"
     if kind in _KINDS:
         return f"{brief(given)} given, {_KINDS[kind]} is needed"
     if kind in _BOUNDS:
-        return f"{brief(given)} given, {_BOUNDS[kind].format(**told)} is allowed"
+        return f"{brief(given)} given, {_BOUNDS[kind].format(**told)}"
     if kind == "string_pattern_mismatch":
         pattern = told["pattern"]
         return f"{brief(given)} given, {_PATTERNS.get(pattern, pattern)} are allowed"

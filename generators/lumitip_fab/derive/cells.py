@@ -54,8 +54,8 @@ def derive_cells(p: Parameters, faults: Faults) -> Cells:
             f"at most {max(pitch - LEAST_WEB_MM, 0):.2f} is allowed",
         )
     if uneven or sum(columns) > MOST_CELLS:
-        none = np.zeros(0, dtype=np.int64)
-        return Cells(none * 1.0, none * 1.0, none, none, none.reshape(0, 2))
+        nowhere, none = np.zeros(0), np.zeros(0, dtype=np.int64)
+        return Cells(nowhere, nowhere, none, none, none.reshape(0, 2))
     grid = hexagonal_grid(columns, pitch)
     neighbours = hexagonal_neighbours(columns)
     # To a nanometre, as in `layout.json`, so that every artefact has the very same positions.

@@ -134,7 +134,8 @@ def resistors(
             "emitter.resistor",
             f"{p.emitter.resistor!r} given, {count} string resistors do not fit into two "
             f"banks of {outer - inner:.1f} x {zone.length_mm:.1f} mm"
-            + (" beside the coupling" if p.emitter.resistor_side == "back" else ""),
+            + (" beside the coupling" if p.emitter.resistor_side == "back" else "")
+            + ": use a smaller package, the other emitter.resistor_side, or more board.channel_mm",
         )
         return (), ()
     parts: list[Part] = []

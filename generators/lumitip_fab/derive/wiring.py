@@ -64,8 +64,9 @@ def derive_strings(given: Input, cells: Cells, faults: Faults) -> Strings:
         load <= allowed,
         "emitter.current_ma",
         f"{p.emitter.current_ma:g} given, a string's resistor would take {1000 * load:.0f} mW; a "
-        f"{p.emitter.resistor!r} may take {1000 * allowed:.0f} mW: use a larger package, less "
-        f"current, or a supply below {volts:g} V",
+        f"{p.emitter.resistor!r} may take {1000 * allowed:.0f} mW: at most "
+        f"{math.floor(1e4 * allowed / max(drops)) / 10:g} mA, a larger package, or a supply other "
+        f"than {volts:g} V, so that less than {max(drops):.2f} V is left for the resistor",
     )
     spread = max(amps_ma) / min(amps_ma) - 1
     faults.refuse_unless(
@@ -78,7 +79,7 @@ def derive_strings(given: Input, cells: Cells, faults: Faults) -> Strings:
         sum(amps_ma) <= p.supply.max_ma,
         "supply.max_ma",
         f"{p.supply.max_ma:g} given, {len(strings)} strings at {p.emitter.current_ma:g} mA draw "
-        f"{sum(amps_ma):.0f} mA",
+        f"{sum(amps_ma):.1f} mA: at least that, or less emitter.current_ma, is needed",
     )
     return Strings(strings, ohms, amps_ma)
 

@@ -1,0 +1,101 @@
+"""Every bad file is refused with exactly the message that an engineer was promised.
+
+`tests/bad_inputs/NAME.toml` is put into a copy of `design/`, together with the files of the
+folder `NAME/` where there is one; `NAME.expected` holds the message. `LUMITIP_GOLDEN=1` rewrites
+the expectations: read the difference before committing it.
+"""
+
+import os
+import re
+import shutil
+from pathlib import Path
+
+import pytest
+
+from lumitip_fab.derive import derive
+from lumitip_fab.errors import InputError
+from lumitip_fab.load import load
+
+ROOT = Path(__file__).parents[2]
+BAD = ROOT / "tests" / "bad_inputs"
+NAMES = sorted(f.stem for f in BAD.glob("*.toml"))
+
+
+@pytest.fixture
+def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A working folder with a copy of the design folder, and a file outside it."""
+    shutil.copytree(ROOT / "design", tmp_path / "design")
+    shutil.copy(ROOT / "design" / "presets" / "published.toml", tmp_path / "outside.toml")
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def _refusal(name: str, project: Path) -> InputError:
+    overlay = BAD / name
+    if overlay.is_dir():
+        shutil.copytree(overlay, project / "design", symlinks=True, dirs_exist_ok=True)
+    file = Path("design") / f"{name}.toml"
+    shutil.copy(BAD / f"{name}.toml", file)
+    with pytest.raises(InputError) as caught:
+        derive(load(file))
+    return caught.value
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_bad_file_is_refused_with_exactly_the_expected_lines(name: str, project: Path) -> None:
+    told = str(_refusal(name, project)) + "\n"
+    expected = BAD / f"{name}.expected"
+    if os.environ.get("LUMITIP_GOLDEN"):
+        expected.write_text(told, encoding="utf-8")
+    assert told == expected.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_expected_lines_name_a_file_and_a_field_once_each_and_in_order(name: str) -> None:
+    lines = (BAD / f"{name}.expected").read_text(encoding="utf-8").splitlines()
+    assert lines
+    places = []
+    for line in lines:
+        place = re.match(r"(design/[\w./]+\.toml)(?::(\d+))?: (?:([\w.\" -]+): )?\S", line)
+        assert place, line
+        assert str(ROOT) not in line
+        places.append((place[1], int(place[2] or 0)))
+    assert places == sorted(places)
+    assert len(set(lines)) == len(lines)
+
+
+def test_every_bad_file_has_its_expectation_and_no_expectation_is_left_over() -> None:
+    assert {f.stem for f in BAD.glob("*.expected")} == set(NAMES)
+    assert {f.name for f in BAD.iterdir() if f.is_dir()} <= set(NAMES)
+    assert len(NAMES) >= 45
+
+
+def test_line_numbers_point_at_the_text_that_is_at_fault(project: Path) -> None:
+    problems = _refusal("several_faults_in_file_and_base", project).problems
+    assert {Path(p.file).name for p in problems} == {
+        "several_faults_in_file_and_base.toml",
+        "broken_base.toml",
+    }
+    for problem in problems:
+        line = Path(problem.file).read_text(encoding="utf-8").splitlines()[problem.line - 1]
+        key = next(k for k in reversed(problem.field.split(".")) if not k.isdecimal())
+        missing = "is missing" in problem.message
+        assert key in line or (missing and problem.field.split(".")[0] in line), problem
+
+
+def test_the_pitch_that_the_published_detector_needs_is_accepted(project: Path) -> None:
+    problems = _refusal("detector_too_long_for_pitch", project).problems
+    (problem,) = (p for p in problems if p.field == "receiver.photodetector")
+    assert "3.45 mm over its pads" in problem.message
+    needed = re.search(r"a pitch of at least ([\d.]+) mm", problem.message)
+    assert needed
+    file = Path("design/wider.toml")
+    text = (
+        'extends = "presets/published.toml"\n[grid]\npitch_mm = {}\n[mask]\nhole_mm = 1.5\n'
+        '[board]\ntip_margin_mm = 5.0\n[emitter]\nresistor_side = "front"\n'
+    )
+    file.write_text(text.format(needed[1]), encoding="utf-8")
+    assert derive(load(file)).grid.pitch_mm == float(needed[1])
+    file.write_text(text.format(float(needed[1]) - 0.01), encoding="utf-8")
+    with pytest.raises(InputError, match=r"receiver\.photodetector"):
+        derive(load(file))
