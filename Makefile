@@ -6,7 +6,7 @@ BIN := .venv/bin
 SETUP := .venv/.lumitip-setup
 
 .DEFAULT_GOAL := help
-.PHONY: help outputs check watch test lint bench schema golden clean
+.PHONY: help outputs check watch test lint bench pictures schema golden clean
 
 help: ## show this list
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /  make \1\t/' | expand -t 18
@@ -42,6 +42,10 @@ lint: $(SETUP) ## format, lint, types, schema
 
 bench: $(SETUP) ## measure speed and growth
 	$(BIN)/python benchmarks/bench_fab.py
+
+pictures: outputs ## draw the README's pictures from OUT
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[docs]'
+	$(BIN)/python docs/pictures.py $(OUT)
 
 schema: $(SETUP) ## write design/schema.json anew
 	$(BIN)/lumitip-fab schema > design/schema.json

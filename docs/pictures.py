@@ -1,0 +1,128 @@
+"""Draw the README's pictures from the real outputs: `make pictures`, then look at them.
+
+Needs the extra `[docs]` (VTK drawing off screen, PDFium).
+"""
+
+import shutil
+import sys
+from pathlib import Path
+
+import pypdfium2
+from vtkmodules import vtkInteractionStyle as _  # noqa: F401 - registers the renderer
+from vtkmodules import vtkRenderingOpenGL2 as __  # noqa: F401
+from vtkmodules.vtkFiltersCore import vtkFeatureEdges, vtkPolyDataNormals
+from vtkmodules.vtkIOGeometry import vtkGLTFReader, vtkSTLReader
+from vtkmodules.vtkIOImage import vtkPNGWriter
+from vtkmodules.vtkRenderingCore import (
+    vtkActor,
+    vtkLightKit,
+    vtkPolyDataMapper,
+    vtkRenderer,
+    vtkRenderWindow,
+    vtkWindowToImageFilter,
+)
+
+Vector = tuple[float, float, float]
+IMAGES = Path(__file__).parent / "images"
+SHARP_DEG = 12
+PLASTIC: Vector = (0.56, 0.66, 0.80)
+MOULD: Vector = (0.84, 0.76, 0.62)
+
+
+def main(out: Path) -> None:
+    """Draw everything that the README shows."""
+    IMAGES.mkdir(exist_ok=True)
+    shots: tuple[tuple[str, str, Vector, Vector], ...] = (
+        ("backing/emitter_backing.stl", "backing_back.png", (0.7, 1, 0.5), PLASTIC),
+        ("backing/emitter_backing.stl", "backing_front.png", (0.6, -1, 0.4), PLASTIC),
+        ("mould/receiver_mould.stl", "mould.png", (0.5, -0.8, 1), MOULD),
+    )
+    for part, picture, direction, colour in shots:
+        draw([actor(out / part, colour)], IMAGES / picture, direction, (0, 0, 1))
+    for side in ("receiver", "emitter"):
+        page = pypdfium2.PdfDocument(out / f"mask/{side}_mask_a4.pdf")[0]
+        page.render(scale=110 / 72).to_pil().convert("L").save(
+            IMAGES / f"mask_{side}.png", optimize=True
+        )
+    shutil.copy(out / "assembly/exploded.svg", IMAGES / "exploded.svg")
+    draw_glb(out / "assembly/assembly.glb", IMAGES / "assembly.png")
+
+
+def actor(stl: Path, colour: Vector) -> list[vtkActor]:
+    """A part shaded, with its sharp edges drawn."""
+    reader = vtkSTLReader()
+    reader.SetFileName(str(stl))
+    smooth = vtkPolyDataNormals()
+    smooth.SetInputConnection(reader.GetOutputPort())
+    smooth.SetFeatureAngle(SHARP_DEG)
+    edges = vtkFeatureEdges()
+    edges.SetInputConnection(reader.GetOutputPort())
+    edges.SetFeatureAngle(SHARP_DEG)
+    edges.BoundaryEdgesOff()
+    edges.ColoringOff()
+    actors = []
+    for source, tint in ((smooth, colour), (edges, (0.1, 0.1, 0.1))):
+        mapper = vtkPolyDataMapper()
+        mapper.SetInputConnection(source.GetOutputPort())
+        mapper.ScalarVisibilityOff()
+        shown = vtkActor()
+        shown.SetMapper(mapper)
+        shown.GetProperty().SetColor(*tint)
+        shown.GetProperty().SetAmbient(0.25)
+        shown.GetProperty().SetLineWidth(1.4)
+        actors.append(shown)
+    return actors
+
+
+def draw(parts: list[list[vtkActor]], picture: Path, direction: Vector, up: Vector) -> None:
+    """Draw parts seen from a direction, without perspective."""
+    scene = vtkRenderer()
+    for shown in (a for part in parts for a in part):
+        scene.AddActor(shown)
+    _save(scene, picture, direction, up)
+
+
+def draw_glb(glb: Path, picture: Path) -> None:
+    """Draw the assembly with the colours that it carries."""
+    reader = vtkGLTFReader()
+    reader.SetFileName(str(glb))
+    reader.Update()
+    scene = vtkRenderer()
+    blocks = reader.GetOutput().NewIterator()
+    while not blocks.IsDoneWithTraversal():
+        mapper = vtkPolyDataMapper()
+        mapper.SetInputData(blocks.GetCurrentDataObject())
+        shown = vtkActor()
+        shown.SetMapper(mapper)
+        scene.AddActor(shown)
+        blocks.GoToNextItem()
+    _save(scene, picture, (1, 0.6, 0.9), (0, 1, 0))
+
+
+def _save(scene: vtkRenderer, picture: Path, direction: Vector, up: Vector) -> None:
+    scene.SetBackground(1, 1, 1)
+    vtkLightKit().AddLightsToRenderer(scene)
+    camera = scene.GetActiveCamera()
+    camera.SetFocalPoint(0, 0, 0)
+    camera.SetPosition(*direction)
+    camera.SetViewUp(*up)
+    camera.ParallelProjectionOn()
+    scene.ResetCamera()
+    camera.Zoom(1.15)
+    window = vtkRenderWindow()
+    window.SetOffScreenRendering(1)
+    window.SetMultiSamples(8)
+    window.SetSize(1000, 800)
+    window.AddRenderer(scene)
+    window.Render()
+    grab = vtkWindowToImageFilter()
+    grab.SetInput(window)
+    grab.ReadFrontBufferOff()
+    writer = vtkPNGWriter()
+    writer.SetFileName(str(picture))
+    writer.SetInputConnection(grab.GetOutputPort())
+    writer.Write()
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))

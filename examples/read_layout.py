@@ -1,0 +1,15 @@
+"""Where the cells of a built fingertip are, and how each is wired. Needs numpy alone.
+
+    python examples/read_layout.py outputs/layout.json
+"""
+
+import sys
+
+from lumitip import Layout
+
+layout = Layout.load(sys.argv[1])
+print(f"{len(layout)} cells {layout.pitch_mm} mm apart, design {layout.design_hash[:16]}")
+for cell in layout.cells:
+    print(f"{cell.index:4} x {cell.x_mm:8.3f} y {cell.y_mm:8.3f}  U{cell.mux + 1} input "
+          f"{cell.channel:2} on {cell.adc_pin}")  # fmt: skip
+print(f"{len(layout.neighbours)} pairs of neighbours; through apertures of {layout.optics.hole_mm} mm")

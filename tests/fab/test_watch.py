@@ -1,0 +1,50 @@
+"""`watch` rebuilds on save and says what changed."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from lumitip_fab.cli import main
+from lumitip_fab.watch import differences
+
+
+def test_differences_name_what_changed() -> None:
+    before = {"parameters.grid.pitch_mm": 6.0, "parts.emitter.led.exponent": 1.0}
+    after = {"parameters.grid.pitch_mm": 5.0, "parts.emitter.led.exponent": 1.0, "new": 1}
+    assert list(differences(before, after)) == ["grid.pitch_mm: 6.0 → 5.0", "new: None → 1"]
+
+
+def test_saving_rebuilds_and_a_fault_is_waited_out(outputs: Path, tmp_path: Path) -> None:
+    main(["init", str(tmp_path / "design"), "--quiet"])
+    file = tmp_path / "design" / "presets" / "published.toml"
+    out = tmp_path / "out"
+    subprocess.run(["cp", "-r", outputs, out], check=True)
+    log = tmp_path / "log"
+    with log.open("w") as told:
+        command = [sys.executable, "-m", "lumitip_fab.cli", "watch", str(file), "--out", str(out)]
+        running = subprocess.Popen(
+            command, stdout=told, stderr=told, env={**os.environ, "PYTHONUNBUFFERED": "1"}
+        )
+        try:
+            _wait_for(log, "watching")
+            text = file.read_text()
+            file.write_text(text.replace('name = "Lumitip"  ', "name = 7  "))
+            _wait_for(log, "controller.name: 7 given")
+            file.write_text(text.replace('name = "Lumitip"  ', 'name = "Other"  '))
+            _wait_for(log, "controller.name: Lumitip → Other")
+            _wait_for(log, "design.json")
+        finally:
+            running.send_signal(signal.SIGINT)
+            assert running.wait(timeout=20) == 0
+    assert '"Other"' in (out / "design.json").read_text()
+    assert "backing" not in log.read_text()
+
+
+def _wait_for(log: Path, text: str) -> None:
+    end = time.monotonic() + 60
+    while text not in log.read_text():
+        assert time.monotonic() < end, f"{text!r} never came:\n{log.read_text()}"
+        time.sleep(0.1)
