@@ -143,7 +143,7 @@ class Layout:
         """
         try:
             text = Path(path).read_text(encoding="utf-8")
-        except (OSError, UnicodeDecodeError) as error:
+        except (OSError, ValueError) as error:
             raise LayoutError(f"{path}: cannot be read as a layout: {error}") from error
         return cls.from_json(text, source=str(path))
 
@@ -194,6 +194,9 @@ def _read(told: Any) -> Layout:
     arrays: dict[str, Any] = {"x_mm": x_mm, "y_mm": _numbers(told, "y_mm", cells)}
     arrays |= {name: _whole(told, name, (cells,)) for name in _INTEGERS}
     arrays["neighbours"] = _whole(told, "neighbours", (None, 2), below=cells)
+    pairs = arrays["neighbours"].tolist()
+    if any(a >= b for a, b in pairs) or len({(a, b) for a, b in pairs}) != len(pairs):
+        raise LayoutError("neighbours: each pair is needed once, its smaller index first")
     pins = told.get("adc_pin")
     if not isinstance(pins, list) or len(pins) != cells or not all(type(p) is str for p in pins):
         raise LayoutError(f"adc_pin: a list of {cells} pin names is needed")
@@ -208,11 +211,13 @@ def _read(told: Any) -> Layout:
     return layout
 
 
-def _number(told: Mapping[str, Any], name: str) -> float:
-    value = told.get(name)
-    if type(value) not in (int, float) or not 0 <= float(value or 0) < 1e12:
-        raise LayoutError(f"{name}: {value!r:.80} given, a finite number not below 0 is needed")
-    return float(value)  # type: ignore[arg-type]
+def _number(told: Mapping[str, Any], name: str, within: str = "") -> float:
+    value: Any = told.get(name)
+    if type(value) not in (int, float) or not 0 <= value < 1e12:
+        raise LayoutError(
+            f"{within}{name}: {value!r:.80} given, a finite number not below 0 is needed"
+        )
+    return float(value)
 
 
 def _numbers(told: Mapping[str, Any], name: str, count: int | None = None) -> Floats:
@@ -256,5 +261,5 @@ def _optics(told: Mapping[str, Any]) -> Optics:
             f"optics.hole_shape: {optics.get('hole_shape')!r:.80} given, "
             'allowed are "hexagon" and "circle"'
         )
-    read = {f.name: _number(optics, f.name) for f in fields(Optics) if f.type is float}
+    read = {f.name: _number(optics, f.name, "optics.") for f in fields(Optics) if f.type is float}
     return Optics(hole_shape=str(optics["hole_shape"]), **read)
