@@ -27,37 +27,42 @@ OPTICS = Optics(
     supply_v=3.3,
 )
 
-# Photodetectors of the published receiver board (arXiv 2306.05902, public board file): x from the
-# board's centreline and y from its tip edge, mm, so that the sensor frame's y is 15.65 - y. Column
-# 0 is Q1 to Q5. Further columns are given by their place, since the published designators run
-# against the frame order in one of them.
-PUBLISHED_BOARD_MM = {
-    0: (-15.5885, 3.65),
-    1: (-15.5885, 9.65),
-    2: (-15.5885, 15.65),
-    3: (-15.5885, 21.65),
-    4: (-15.5885, 27.65),
-    5: (-10.3923, 6.65),
-    6: (-10.3923, 12.65),
-    7: (-10.3923, 18.65),
-    8: (-10.3923, 24.65),
-    9: (-5.1962, 3.65),
-    10: (-5.1962, 9.65),
-    13: (-5.1962, 27.65),
-    14: (0.0, 6.65),
-    15: (0.0, 12.65),
-    16: (0.0, 18.65),
-    17: (0.0, 24.65),
-    18: (5.1962, 3.65),
-    22: (5.1962, 27.65),
-    23: (10.3923, 6.65),
-    24: (10.3923, 12.65),
-    25: (10.3923, 18.65),
-    26: (10.3923, 24.65),
-    27: (15.5885, 3.65),
-    28: (15.5885, 9.65),
-    31: (15.5885, 27.65),
-}
+# Photodetectors of the published receiver board (arXiv 2306.05902, public board file), Q1 first: x
+# from the board's centreline and y from its tip edge, mm. The sensor frame's y is 15.65 - y.
+PUBLISHED_BOARD_MM = (
+    (-15.5885, 3.65),  # Q1
+    (-15.5885, 9.65),  # Q2
+    (-15.5885, 15.65),  # Q3
+    (-15.5885, 21.65),  # Q4
+    (-15.5885, 27.65),  # Q5
+    (-10.3923, 6.65),  # Q6
+    (-10.3923, 12.65),  # Q7
+    (-10.3923, 18.65),  # Q8
+    (-10.3923, 24.65),  # Q9
+    (-5.1962, 3.65),  # Q10
+    (-5.1962, 9.65),  # Q11
+    (-5.1962, 15.65),  # Q12
+    (-5.1962, 21.65),  # Q13
+    (-5.1962, 27.65),  # Q14
+    (0.0, 6.65),  # Q15
+    (0.0, 12.65),  # Q16
+    (0.0, 18.65),  # Q17
+    (0.0, 24.65),  # Q18
+    (5.1962, 3.65),  # Q19
+    (5.1962, 9.65),  # Q20
+    (5.1962, 15.65),  # Q21
+    (5.1962, 21.65),  # Q22
+    (5.1962, 27.65),  # Q23
+    (10.3923, 6.65),  # Q24
+    (10.3923, 12.65),  # Q25
+    (10.3923, 18.65),  # Q26
+    (10.3923, 24.65),  # Q27
+    (15.5885, 3.65),  # Q28
+    (15.5885, 9.65),  # Q29
+    (15.5885, 15.65),  # Q30
+    (15.5885, 21.65),  # Q31
+    (15.5885, 27.65),  # Q32
+)
 
 
 def _layout(columns: tuple[int, ...] = (5, 4, 5, 4, 5, 4, 5), pitch_mm: float = 6.0) -> Layout:
@@ -98,19 +103,18 @@ def test_the_published_grid_has_32_cells_and_73_pairs_of_neighbours(layout: Layo
     assert seven.min() == 2
 
 
-@pytest.mark.parametrize("index", PUBLISHED_BOARD_MM)
-def test_cells_are_where_the_published_board_has_them(layout: Layout, index: int) -> None:
-    x_mm, from_tip_mm = PUBLISHED_BOARD_MM[index]
-    assert layout.x_mm[index] == pytest.approx(x_mm, abs=1e-4)
-    assert layout.y_mm[index] == pytest.approx(15.65 - from_tip_mm, abs=1e-4)
+def test_cells_are_where_the_published_board_has_them_in_its_order(layout: Layout) -> None:
+    published = np.array(PUBLISHED_BOARD_MM)
+    assert layout.x_mm == pytest.approx(published[:, 0], abs=1e-4)
+    assert layout.y_mm == pytest.approx(15.65 - published[:, 1], abs=1e-4)
 
 
 def test_the_mirrored_cells_face_cells_of_the_same_grid_as_the_published_boards_do(
     layout: Layout,
 ) -> None:
     # Published pairs of emitter and receiver designators that face each other: D1-Q28, D5-Q32,
-    # D20-Q11, D14-Q23. The published emitter board has the receiver's order; LED i of this layout
-    # is the one that faces photodetector i, at (-x, y) of its own frame.
+    # D20-Q11, D14-Q23; in these columns both boards are numbered alike. LED i of a `Layout` is the
+    # one that faces photodetector i, at (-x, y) of its own frame.
     at = {(round(c.x_mm, 3), round(c.y_mm, 3)): c.index for c in layout.cells}
     faces = {c.index: at[round(-c.x_mm, 3) + 0.0, round(c.y_mm, 3)] for c in layout.cells}
     for led, detector in ((1, 28), (5, 32), (20, 11), (14, 23), (28, 1)):
