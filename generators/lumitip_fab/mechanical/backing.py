@@ -4,7 +4,7 @@ import numpy as np
 from build123d import Solid
 
 from lumitip_fab.artefact import Artefact
-from lumitip_fab.design import Board, Box, Finger, Mount, Outline, Printing, Stack, Tip
+from lumitip_fab.design import Board, Box, Finger, Mount, Outline, Stack, Tip
 from lumitip_fab.errors import BuildError
 from lumitip_fab.frames import mount_to_sensor
 from lumitip_fab.mechanical import coupling, export
@@ -27,7 +27,7 @@ def backing(
     """The backing of one finger: STEP in the sensor frame, STL and 3MF standing on the bed."""
     solid = backing_solid(finger, stack, outline, tip, board, mount)
     to_sensor = mount_to_sensor(mount, stack)
-    standing = placed(solid, np.linalg.inv(to_sensor))
+    standing = placed(solid, np.asarray(np.linalg.inv(to_sensor), dtype=np.float64))
     name = f"{finger.name}_backing"
     return (
         Artefact(f"backing/{name}.step", export.step(solid, name)),

@@ -13,7 +13,9 @@ Side view, the gripper at the left and the tip to the right (w is down):
 """
 
 import math
+from itertools import pairwise
 
+import numpy as np
 from build123d import Edge, Face, Plane, Solid, Vector, Wire
 
 from lumitip_fab.design import Box, Mount, Point, Stack
@@ -144,9 +146,7 @@ def _profile(mount: Mount, stack: Stack, notch: Box) -> Wire:
     steepness = math.tan(math.radians(FLARE_END_DEG))
     sunk = (end[0] + (inside_z - end[1]) / steepness, inside_z)
     straight = [sunk, at_floor, front, foot, back, shoulder, start]
-    edges = [
-        Edge.make_line(_point(a), _point(b)) for a, b in zip(straight, straight[1:], strict=False)
-    ]
+    edges = [Edge.make_line(_point(a), _point(b)) for a, b in pairwise(straight)]
     edges.append(Edge.make_three_point_arc(_point(start), _point(middle), _point(end)))
     edges.append(Edge.make_line(_point(end), _point(sunk)))
     return Wire(edges)
@@ -208,8 +208,6 @@ def _across(profile: Wire, half_width_mm: float) -> Solid:
 
 
 def _yz(to_sensor: Matrix, w_mm: float, h_mm: float) -> Point:
-    import numpy as np
-
     point = applied(to_sensor, np.array([[0.0, w_mm, h_mm]]))[0]
     return float(point[1]), float(point[2])
 

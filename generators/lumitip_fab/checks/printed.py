@@ -1,0 +1,75 @@
+"""`Printed`: a backing's mesh in both of its frames, with what it should be."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import shapely
+
+from lumitip_fab.checks.result import Measurement
+from lumitip_fab.checks.solids import Vectors, section
+from lumitip_fab.design import Design, Finger, Point
+
+
+@dataclass(frozen=True, eq=False)
+class Printed:
+    """The backing of one finger as it was read."""
+
+    subject: str
+    standing: Any
+    """Mesh in the mount frame (u, w, h), as the file has it."""
+    sensor: Any
+    """Mesh in the finger's sensor frame."""
+    finger: Finger
+    design: Design
+
+    def figure(
+        self, check: str, measured: float, low: float, high: float, unit: str = "mm", at: str = ""
+    ) -> Measurement:
+        """A measurement of this file, or of a place in it."""
+        subject = f"{self.subject}: {at}" if at else self.subject
+        return Measurement(f"backing.{check}", subject, measured, low, high, unit)
+
+    def near(
+        self,
+        check: str,
+        measured: Vectors,
+        wanted: float,
+        by: float,
+        unit: str = "mm",
+        at: str = "",
+    ) -> Measurement:
+        """The value that strays farthest from what is wanted; NaN if one could not be taken."""
+        return self.figure(check, farthest(measured, wanted), wanted - by, wanted + by, unit, at)
+
+
+def farthest(values: Vectors, wanted: float) -> float:
+    """Of several values the one farthest from a wanted one; NaN if any is, or there is none."""
+    if not len(values) or not np.isfinite(values).all():
+        return float("nan")
+    return float(values[np.abs(values - wanted).argmax()])
+
+
+def circles(rings: list[Any], centres: tuple[Point, ...], reach_mm: float) -> tuple[Vectors, ...]:
+    """Of the ring nearest to each centre: how far it is off and its diameter, NaN without one."""
+    polygons = [shapely.Polygon(ring) for ring in rings]
+    found = np.array([(p.centroid.x, p.centroid.y) for p in polygons]).reshape(-1, 2)
+    wide = np.array([2 * np.sqrt(p.area / np.pi) for p in polygons])
+    off, diameter = np.full(len(centres), np.nan), np.full(len(centres), np.nan)
+    for k, centre in enumerate(centres):
+        distance = np.hypot(*(found - np.array(centre)).T)
+        if distance.size and distance.min() <= reach_mm:
+            off[k], diameter[k] = distance.min(), wide[distance.argmin()]
+    return off, diameter
+
+
+def holes_at(mesh: Any, z_mm: float) -> list[Any]:
+    """Rings of the holes through a mesh's section."""
+    parts = shapely.get_parts(section(mesh, z_mm))
+    return [ring for part in parts if part.geom_type == "Polygon" for ring in part.interiors]
+
+
+def islands_at(mesh: Any, z_mm: float, area_mm2: float) -> list[Any]:
+    """Outlines of the small pieces of a mesh's section."""
+    parts = shapely.get_parts(section(mesh, z_mm))
+    return [p.exterior for p in parts if p.geom_type == "Polygon" and p.area < area_mm2]
