@@ -313,6 +313,10 @@ class Mask:
     film: str
     soften_c: float
     measured_ruler_mm: Point
+    registration: tuple[Point, ...]
+    """Marks round the artwork, in both x and -x, so the same on the page and in the frame."""
+    mark: Box
+    """Box of the letter F on the tip flap, which tells a mirror image from half a turn."""
 
 
 @dataclass(frozen=True)

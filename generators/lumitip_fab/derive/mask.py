@@ -3,11 +3,18 @@
 from lumitip_fab.derive.boards import Plan
 from lumitip_fab.derive.cells import LEAST_WEB_MM
 from lumitip_fab.derive.faults import Faults
-from lumitip_fab.design import Mask, Outline
+from lumitip_fab.design import Box, Mask, Outline
 from lumitip_fab.load import Input
 
 PAGE_MM = (210.0, 279.4)  # what A4 and US Letter have in common
-PAGE_MARGIN_MM = 5.0
+PAGE_MARGIN_MM = 8.0  # most printers reach 5 mm from the edge; registration marks reach 2 mm out
+BESIDE_MM = 15.0  # the upright ruler with its figures, left and, for balance, right
+ABOVE_AND_BELOW_MM = 50.0  # heading, level ruler and notes
+RULER_MM = 110.0  # 100 mm with its figures
+MARK_SHARE = (0.42, 0.72)  # of the tip flap's length: clear of its black band and of the name
+MARK_MM = 4.0
+MARK_INSET_MM = 0.5  # from the tip flap's side
+FLAP_TAPER = 0.18  # of the tip flap's side: a little over 10°
 
 
 def derive_mask(given: Input, outline: Outline, plan: Plan, faults: Faults) -> Mask:
@@ -22,15 +29,21 @@ def derive_mask(given: Input, outline: Outline, plan: Plan, faults: Faults) -> M
         f"{p.mask.hole_mm:g} given, which leaves {lowest - window:.2f} mm of web between the last "
         f"row and the connector's window; at least {LEAST_WEB_MM} mm is needed",
     )
-    around = 2 * (p.mask.allowance_mm + p.mask.flap_mm + PAGE_MARGIN_MM)
-    widest = 2 * float(abs(outline.polygon()[:, 0]).max())
-    stretch = [100 / measured for measured in p.mask.measured_ruler_mm]
-    sheet = ((widest + around) * stretch[0], (outline.length_mm + around) * stretch[1])
+    sheet = _sheet(outline, p.mask.allowance_mm + p.mask.flap_mm)
+    needed = (
+        max(sheet.width_mm + 2 * BESIDE_MM, RULER_MM),
+        max(sheet.length_mm, RULER_MM) + ABOVE_AND_BELOW_MM,
+    )
+    page = tuple(
+        side * 100 / measured + 2 * PAGE_MARGIN_MM
+        for side, measured in zip(needed, p.mask.measured_ruler_mm, strict=True)
+    )
     faults.refuse_unless(
-        sheet[0] <= PAGE_MM[0] and sheet[1] <= PAGE_MM[1],
+        page[0] <= PAGE_MM[0] and page[1] <= PAGE_MM[1],
         "mask.flap_mm",
-        f"{p.mask.flap_mm:g} given, the mask of this finger needs a sheet of {sheet[0]:.0f} x "
-        f"{sheet[1]:.0f} mm; A4 and US Letter take {PAGE_MM[0]:.0f} x {PAGE_MM[1]:.0f} mm",
+        f"{p.mask.flap_mm:g} given, the mask of this finger with its rulers needs a page of "
+        f"{page[0]:.0f} x {page[1]:.0f} mm; A4 and US Letter take {PAGE_MM[0]:.0f} x "
+        f"{PAGE_MM[1]:.0f} mm",
     )
     return Mask(
         hole_mm=p.mask.hole_mm,
@@ -40,4 +53,26 @@ def derive_mask(given: Input, outline: Outline, plan: Plan, faults: Faults) -> M
         film=p.mask.film,
         soften_c=film.soften_c,
         measured_ruler_mm=p.mask.measured_ruler_mm,
+        registration=tuple(
+            (x, y)
+            for y in (sheet.y_max_mm, sheet.y_min_mm)
+            for x in (sheet.x_min_mm, sheet.x_max_mm)
+        ),
+        mark=_mark(outline, p.mask.allowance_mm, p.mask.flap_mm),
     )
+
+
+def _sheet(outline: Outline, around_mm: float) -> Box:
+    """The film that is needed: the outline with its flaps. Its corners are always free."""
+    half = float(abs(outline.polygon()[:, 0]).max())
+    return Box(-half, half, outline.end_y_mm, outline.tip_y_mm).grown(around_mm)
+
+
+def _mark(outline: Outline, allowance_mm: float, flap_mm: float) -> Box:
+    """On the tip flap, left of the middle, so that its place too tells left from right."""
+    fold = outline.tip_y_mm + allowance_mm
+    bottom, top = (fold + share * flap_mm for share in MARK_SHARE)
+    height = min(top - bottom, MARK_MM)
+    half = outline.tip_width_mm / 2
+    left = -max(half - MARK_INSET_MM - FLAP_TAPER * flap_mm, half / 2)
+    return Box(left, left + 0.7 * height, bottom, bottom + height)

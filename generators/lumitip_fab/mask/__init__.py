@@ -1,0 +1,1 @@
+"""The black print on the inside of the film: artwork, and its paper, drawing and cutting files."""
