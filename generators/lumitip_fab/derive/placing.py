@@ -14,6 +14,7 @@ from lumitip_fab.load import Input
 PASSIVE_MM = 0.95  # width of an 0603 land pattern: pull-up and capacitor beside each multiplexer
 HOLE_CLEARANCE_MM = 0.25
 HOLE_WEB_MM = 0.5  # board left between a hole and its edge
+HOLES_APART_MM = 0.4  # board left between two holes
 RELIEF_DEPTH_MM = 0.2  # below the part
 RESISTOR_GAP_MM = 0.6
 COUPLING_GAP_MM = 2.0  # mounting block to a relief
@@ -109,7 +110,16 @@ def tip_holes(
             f"{least:.2f} is always enough",
         )
         return ()
+    apart = p.board.hole_mm + HOLES_APART_MM
+    faults.refuse_unless(
+        room[-1] - room[0] >= apart,
+        "board.hole_mm",
+        f"{p.board.hole_mm:g} given, the outer holes at the tip are only {room[-1] - room[0]:.2f} "
+        f"mm apart: at most {room[-1] - room[0] - HOLES_APART_MM:.2f} is allowed, or a wider grid",
+    )
     middle = min(room, key=lambda x: abs(x - (room[0] + room[-1]) / 2))
+    if min(middle - room[0], room[-1] - middle) < apart:
+        middle = room[0]
     return tuple((x, y) for x in sorted({room[0], middle, room[-1]}))
 
 

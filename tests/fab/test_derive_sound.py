@@ -1,0 +1,320 @@
+"""What holds for every design that is not refused: nothing collides and all of it fits."""
+
+import dataclasses
+import math
+from collections.abc import Iterator
+from itertools import combinations, pairwise
+from typing import Any
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from pydantic import ValidationError
+
+from lumitip.grid import hexagonal_grid, hexagonal_neighbours
+from lumitip_fab.derive import derive
+from lumitip_fab.design import Box, Design, Finger, Point
+from lumitip_fab.errors import InputError
+
+NOISE_MM = 1e-6
+PRESETS = ("asymmetric", "dense", "published")
+
+
+def _gap_mm(a: Box, b: Box) -> float:
+    """Distance between two boxes; below zero where they overlap."""
+    dx = max(a.x_min_mm - b.x_max_mm, b.x_min_mm - a.x_max_mm)
+    dy = max(a.y_min_mm - b.y_max_mm, b.y_min_mm - a.y_max_mm)
+    return math.hypot(max(dx, 0), max(dy, 0)) if max(dx, dy) > 0 else max(dx, dy)
+
+
+def _inside_mm(inner: Box, outer: Box) -> float:
+    """Least distance from a box to the sides of the one around it; below zero outside."""
+    return min(
+        inner.x_min_mm - outer.x_min_mm,
+        outer.x_max_mm - inner.x_max_mm,
+        inner.y_min_mm - outer.y_min_mm,
+        outer.y_max_mm - inner.y_max_mm,
+    )
+
+
+def _round(at: Point, across_mm: float) -> Box:
+    return Box(at[0], at[0], at[1], at[1]).grown(across_mm / 2)
+
+
+def _from_point_mm(box: Box, at: Point) -> float:
+    return _gap_mm(box, Box(at[0], at[0], at[1], at[1]))
+
+
+def _faults(design: Design) -> Iterator[str]:
+    """Every promise that a design breaks."""
+    for finger in design.fingers:
+        for promise in (_of_parts, _of_holes, _of_reliefs, _of_connector):
+            yield from (f"{finger.name}: {fault}" for fault in promise(design, finger))
+    yield from _of_outline(design)
+    yield from _of_wiring(design)
+
+
+def _of_parts(design: Design, finger: Finger) -> Iterator[str]:
+    zones = {zone.name: zone.box for zone in finger.zones}
+    for (a, here), (b, there) in combinations(zones.items(), 2):
+        if _gap_mm(here, there) < -NOISE_MM:
+            yield f"zones {a} and {b} overlap"
+    for name, box in zones.items():
+        if _inside_mm(box, design.board.box) < -NOISE_MM:
+            yield f"zone {name} leaves the board"
+    for part in finger.parts:
+        zone = "cells" if part.kind in ("led", "photodetector") else "parts"
+        if _inside_mm(part.box, zones[zone]) < -NOISE_MM:
+            yield f"{part.name} leaves the zone {zone}"
+    sides = {side: [q for q in finger.parts if q.side == side] for side in ("front", "back")}
+    for parts in sides.values():
+        boxes = shapely.box(
+            *np.array([(q.box.x_min_mm, q.box.y_min_mm, q.box.x_max_mm, q.box.y_max_mm)
+                       for q in parts]).reshape(-1, 4).T
+        )  # fmt: skip
+        near = shapely.STRtree(boxes).query(boxes, predicate="dwithin", distance=0.1 - NOISE_MM)
+        for i, j in near.T.tolist():
+            if i < j:
+                yield f"{parts[i].name} and {parts[j].name} collide"
+    if len({q.name for q in finger.parts}) != len(finger.parts):
+        yield "two parts have the same name"
+    heights = {q.height_mm for q in sides["front"]}
+    if design.stack.silicone_mm - max(heights) < 0.3 - NOISE_MM:
+        yield "less than 0.3 mm of silicone over a part"
+
+
+def _of_holes(design: Design, finger: Finger) -> Iterator[str]:
+    radius = design.board.hole_mm / 2
+    if len(finger.holes) < 4 or len(set(finger.holes)) != len(finger.holes):
+        yield "fewer than four holes"
+    for at in finger.holes:
+        if _inside_mm(_round(at, design.board.hole_mm), design.board.box) < 0.5 - NOISE_MM:
+            yield f"hole {at} is too near the board's edge"
+        for part in finger.parts:
+            if _from_point_mm(part.box, at) < radius + 0.2:
+                yield f"hole {at} meets {part.name}"
+        for pad in finger.connector.pads:
+            if math.dist(pad, at) < radius + finger.connector.pad_mm / 2 + 0.2:
+                yield f"hole {at} meets a pad"
+        openings = {"notch": finger.notch} | {f"relief {r.box}": r.box for r in finger.reliefs}
+        for name, box in openings.items():
+            wall = _from_point_mm(box, at) - design.board.pin_mm / 2
+            if wall < design.printing.min_wall_mm - NOISE_MM:
+                yield f"the pin at {at} stands {wall:.2f} mm from the {name}"
+    for a, b in combinations(finger.holes, 2):
+        if math.dist(a, b) < design.board.hole_mm + 0.4 - NOISE_MM:
+            yield f"holes {a} and {b} are too near each other"
+    if not 1.0 - NOISE_MM <= design.board.pin_mm < design.board.hole_mm:
+        yield f"pins of {design.board.pin_mm} mm"
+
+
+def _of_reliefs(design: Design, finger: Finger) -> Iterator[str]:
+    wall = design.printing.min_wall_mm
+    for relief in finger.reliefs:
+        if _inside_mm(relief.box, design.board.pocket) < -NOISE_MM:
+            yield "a relief leaves the pocket"
+        if _gap_mm(relief.box, finger.notch) < wall - NOISE_MM:
+            yield "a relief is too near the notch"
+        reach = design.mount.block_width_mm / 2
+        if min(abs(relief.box.x_min_mm), abs(relief.box.x_max_mm)) < reach + wall - NOISE_MM:
+            yield "a relief is too near the coupling"
+        left = design.stack.floor_mm - relief.depth_mm
+        if relief.through != (left < wall - NOISE_MM) or (relief.through and left != 0):
+            yield f"a relief leaves {left} mm of floor"
+    for part in finger.parts:
+        if part.side == "back" and not any(
+            _inside_mm(part.box, relief.box) > 0.2 - NOISE_MM and relief.depth_mm >= part.height_mm
+            for relief in finger.reliefs
+        ):
+            yield f"{part.name} on the back has no relief"
+
+
+def _of_connector(design: Design, finger: Finger) -> Iterator[str]:
+    for pad in finger.connector.pads:
+        box = _round(pad, finger.connector.pad_mm)
+        if _inside_mm(box, design.board.box) < 0.3 - NOISE_MM:
+            yield f"pad {pad} is too near the board's edge"
+        if _inside_mm(box, finger.notch) < 0.5 - NOISE_MM:
+            yield f"pad {pad} is not over the notch"
+        if _inside_mm(box, finger.window) < 1.0:
+            yield f"pad {pad} is not in the window"
+    if any(b - a < finger.connector.pad_mm + 0.2 for (a, _), (b, _) in pairwise(
+        finger.connector.pads
+    )):  # fmt: skip
+        yield "pads touch"
+    lowest = min(y for _, y in finger.cells) - design.mask.hole_mm / 2
+    if lowest - finger.window.y_max_mm < 0.4 - NOISE_MM:
+        yield "an aperture meets the window"
+    if finger.notch.y_min_mm > design.outline.end_y_mm + NOISE_MM:
+        yield "the notch is not open to the gripper end"
+
+
+def _of_outline(design: Design) -> Iterator[str]:
+    corners = design.outline.polygon()
+    skin = shapely.Polygon(corners)
+    if not skin.is_valid or not skin.exterior.is_ccw:
+        yield "the outline is no simple counter-clockwise curve"
+    if not shapely.Polygon(corners * (-1, 1)).symmetric_difference(skin).area < 1e-6:
+        yield "the outline is not symmetric"
+    pocket = design.board.pocket
+    hole = shapely.box(pocket.x_min_mm, pocket.y_min_mm, pocket.x_max_mm, pocket.y_max_mm)
+    if not skin.contains(hole) or skin.exterior.distance(hole) < design.printing.min_wall_mm - 1e-3:
+        yield "too little rim round the pocket"
+    if abs(corners[:, 1].max() - design.outline.tip_y_mm) > NOISE_MM:
+        yield "the tip is elsewhere"
+    if abs(corners[:, 1].min() - design.outline.end_y_mm) > NOISE_MM:
+        yield "the gripper end is elsewhere"
+    if design.tip.slant_start_y_mm < pocket.y_max_mm - NOISE_MM:
+        yield "the wedge begins beyond the pocket"
+    for at in design.mould.pads:
+        pad = shapely.Point(at).buffer(design.mould.pad_mm / 2)
+        if not skin.contains(pad) or pad.distance(hole) < 0.05:
+            yield "a stop of the mould is not on the rim"
+    if design.outline.tip_y_mm - design.mould.taper_length_mm < design.board.box.y_max_mm:
+        yield "the silicone thins over the board"
+    if design.closing.max_opening_mm < 10:
+        yield "the fingers hardly open"
+
+
+def _of_wiring(design: Design) -> Iterator[str]:
+    layout, wiring = design.layout, design.wiring
+    cells = range(len(layout))
+    grid = hexagonal_grid(design.grid.columns, design.grid.pitch_mm)
+    if not np.allclose([layout.x_mm, layout.y_mm], [grid.x_mm, grid.y_mm], atol=1e-6):
+        yield "cells are off the grid"
+    if layout.neighbours.tolist() != hexagonal_neighbours(design.grid.columns).tolist():
+        yield "neighbours are wrong"
+    if design.receiver.cells != tuple(zip(layout.x_mm.tolist(), layout.y_mm.tolist(), strict=True)):
+        yield "photodetectors are not at their cells"
+    if design.emitter.cells != tuple((-x + 0.0, y) for x, y in design.receiver.cells):
+        yield "an LED does not face its photodetector"
+    if len(set(zip(layout.mux.tolist(), layout.channel.tolist(), strict=True))) != len(layout):
+        yield "two cells share an input"
+    if layout.mux.max() >= wiring.muxes or layout.channel.max() >= 2 ** len(wiring.select_pins):
+        yield "a cell is on an input that there is not"
+    if layout.adc_pin.tolist() != [wiring.adc_pins[m] for m in layout.mux]:
+        yield "a cell is read by another multiplexer's pin"
+    if len(set(wiring.adc_pins)) != wiring.muxes:
+        yield "multiplexers share a pin"
+    if sorted(i for string in wiring.strings for i in string) != list(cells):
+        yield "strings do not hold every LED once"
+    if not len(wiring.strings) == len(wiring.resistor_ohm) == len(wiring.current_ma):
+        yield "a string has no resistor"
+    lengths = {len(string) for string in wiring.strings}
+    if max(lengths) - min(lengths) > 1:
+        yield "strings differ by more than one LED"
+    signals = design.receiver.connector.signals
+    if len(set(signals)) != len(signals) or not set(wiring.adc_pins) < set(signals):
+        yield "the connector lacks a signal"
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_presets_derive_and_nothing_collides(designs: dict[str, Design], name: str) -> None:
+    assert not list(_faults(designs[name]))
+
+
+def test_collisions_are_seen(designs: dict[str, Design]) -> None:
+    """The promises above can fail."""
+    design = designs["published"]
+
+    def broken(**changes: Any) -> str:
+        emitter = dataclasses.replace(design.emitter, **changes)
+        return " / ".join(_faults(dataclasses.replace(design, emitter=emitter)))
+
+    first, *others = design.emitter.parts
+    x, y = design.emitter.holes[0]
+    moved = dataclasses.replace(first, x_mm=others[0].x_mm, y_mm=others[0].y_mm + 0.5)
+    assert "D1 and D2 collide" in broken(parts=(moved, *others))
+    assert "D1 leaves the zone" in broken(parts=(dataclasses.replace(first, x_mm=30.0), *others))
+    assert "meets D" in broken(holes=(first.box.centre_mm, *design.emitter.holes[1:]))
+    assert "too near the board's edge" in broken(holes=((x, y + 1.5), *design.emitter.holes[1:]))
+    assert "has no relief" in broken(reliefs=())
+    assert "too near the notch" in broken(notch=design.emitter.notch.grown(3.0))
+    assert "does not face" in broken(cells=design.receiver.cells[::-1])
+    taken = dataclasses.replace(design.layout, channel=design.layout.channel * 0)
+    assert "share an input" in " ".join(_faults(dataclasses.replace(design, layout=taken)))
+
+
+COLUMNS = [
+    (5, 4, 5, 4, 5, 4, 5),
+    (4, 5, 6, 5),
+    (3, 4),
+    (4, 3, 2, 1),
+    (1, 2, 3, 4, 5),
+    (6, 5) * 4,
+    (2, 3) * 8,
+    (8, 7, 8, 7, 8),
+]
+ROOMY = {
+    "mask.hole_mm": 1.5,
+    "mask.flap_mm": 5.0,
+    "board.tip_margin_mm": 5.0,
+    "emitter.resistor_side": "front",
+    "emitter.current_ma": 2.0,
+    "outline.tip_margin_mm": 7.0,
+}
+
+
+@pytest.mark.parametrize("columns", COLUMNS, ids=str)
+def test_a_design_of_any_pitch_is_sound_or_refused(
+    inputs: Any, vary: Any, columns: tuple[int, ...]
+) -> None:
+    sound = 0
+    for pitch_mm in np.arange(3.0, 10.25, 0.5).tolist():
+        for changes in ({}, ROOMY):
+            wanted = {**changes, "grid.columns": columns, "grid.pitch_mm": pitch_mm}
+            try:
+                design = derive(vary(inputs["published"], wanted))
+            except InputError:
+                continue
+            sound += 1
+            assert not list(_faults(design)), wanted
+    assert sound, "every pitch was refused"
+
+
+def _any_values(told: dict[str, Any]) -> st.SearchStrategy[dict[str, Any]]:
+    fields = [
+        f"{section}.{key}"
+        for section, table in told.items()
+        if isinstance(table, dict)
+        for key, value in table.items()
+        if isinstance(value, float)
+    ]
+    factor = st.one_of(st.floats(0.4, 2.5), st.sampled_from([1e-9, 0.01, 100.0, 1e9]))
+    return st.dictionaries(st.sampled_from(fields), factor, max_size=4)
+
+
+def test_random_values_give_a_sound_design_or_are_refused(inputs: Any, vary: Any) -> None:
+    derived = 0
+
+    def value_of(told: dict[str, Any], field: str) -> float:
+        section, key = field.split(".")
+        return float(told[section][key])
+
+    @settings(
+        max_examples=200,
+        deadline=None,
+        derandomize=True,
+        database=None,
+        suppress_health_check=list(HealthCheck),
+    )
+    @given(
+        name=st.sampled_from(PRESETS),
+        factors=_any_values(inputs["published"].parameters.model_dump()),
+        side=st.sampled_from(["front", "back"]),
+    )
+    def attempt(name: str, factors: dict[str, float], side: str) -> None:
+        nonlocal derived
+        told = inputs[name].parameters.model_dump()
+        values: dict[str, Any] = {f: value_of(told, f) * by for f, by in factors.items()}
+        try:
+            design = derive(vary(inputs[name], values | {"emitter.resistor_side": side}))
+        except (InputError, ValidationError):
+            return
+        derived += 1
+        assert not list(_faults(design)), values
+
+    attempt()
+    assert derived > 20
