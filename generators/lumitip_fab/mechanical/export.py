@@ -96,9 +96,9 @@ def mesh(shape: Shape, chord_mm: float = CHORD_MM) -> Mesh:
     return Mesh(welded, joined[distinct])
 
 
-def stl(shape: Shape) -> bytes:
+def stl(shape: Shape, chord_mm: float = CHORD_MM) -> bytes:
     """A binary STL."""
-    surface = mesh(shape)
+    surface = mesh(shape, chord_mm)
     corners = surface.points_mm[surface.triangles]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     records = np.zeros(len(corners), dtype=_TRIANGLE)
@@ -109,14 +109,15 @@ def stl(shape: Shape) -> bytes:
     return header + np.uint32(len(records)).tobytes() + records.tobytes()
 
 
-def three_mf(shape: Shape, name: str) -> bytes:
+def three_mf(shape: Shape, name: str, chord_mm: float = CHORD_MM) -> bytes:
     """A 3MF package with one object.
 
     Args:
         shape: what to print, in print orientation on z = 0.
         name: what slicers call it.
+        chord_mm: how far a triangle may lie off a curved face.
     """
-    surface = mesh(shape)
+    surface = mesh(shape, chord_mm)
     vertices = "\n".join(
         f'<vertex x="{x:.5f}" y="{y:.5f}" z="{z:.5f}"/>' for x, y, z in surface.points_mm.tolist()
     )

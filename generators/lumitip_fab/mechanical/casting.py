@@ -1,0 +1,75 @@
+"""The note for the person who pours: how much of what, for how long, in which order."""
+
+from lumitip_fab.design import Mould, Printing, Stack
+
+_NOTE = """# Casting the {finger} finger
+
+| what | how much |
+|---|---|
+| silicone that stays on the finger | **{volume_ml:.2f} mL** |
+| to mix, with {waste:.0%} for the cup and the weir | {mix_ml:.2f} mL |
+| {silicone}, part A | **{part_a_g:.2f} g** |
+| {silicone}, part B | **{part_b_g:.2f} g** |
+| curing at room temperature | {cure_h:g} h |
+
+Print `{finger}_mould.3mf` open side up, without supports, in layers of {layer_mm:g} mm: the floor at
+{floor_mm:g} mm and the stops at {rim_mm:g} mm are then whole layers. The stops set the thickness of
+the silicone: cut off blobs, sand nothing.
+
+1. Glue the board into the backing, flush with its rim. Close every window on the back with tape,
+   and fill the slit round the board with a thin line of silicone; let it cure.
+2. Degrease the board. Keep sulphur, latex gloves and fresh superglue away: they stop the cure.
+3. Weigh A and B, stir for three minutes, and degas until no bubbles rise.
+4. Wet the parts of the board with a drop from a brush, so that no air stays between them.
+5. Put the mould level on paper. Fill it from one corner until the silicone bulges over the rim.
+6. Set the tip on its stop at the closed end, the coupling towards the weir, and lower the finger
+   slowly about the tip: air and surplus leave through the wire notch and over the weir.
+7. Press on the plate, not on the coupling, until it rests on the tip line and both pads; lay the
+   wires out over the weir. The silicone must stand at the rim in the wire notch, not above it.
+8. Leave it for {cure_h:g} h. Take the plate between two fingers in the gaps of the wall, hold the
+   coupling with the other hand and pull straight out. Cut the flash along the rim.
+"""
+_WHOLE = 1e-6
+
+
+def casting_note(
+    finger: str, volume_ml: float, stack: Stack, mould: Mould, printing: Printing
+) -> str:
+    """The note as Markdown.
+
+    Args:
+        finger: its name.
+        volume_ml: silicone that stays on it.
+        stack: for the height of the stops.
+        mould: the silicone, and how much is wasted.
+        printing: the printer's layers.
+    """
+    mix_ml = volume_ml * (1 + mould.waste_fraction)
+    a, b = mould.mix_ratio
+    mass_g = mix_ml * mould.density_g_ml
+    rim_mm = mould.wall_mm + stack.silicone_mm
+    return _NOTE.format(
+        finger=finger,
+        volume_ml=volume_ml,
+        waste=mould.waste_fraction,
+        mix_ml=mix_ml,
+        silicone=mould.silicone,
+        part_a_g=mass_g * a / (a + b),
+        part_b_g=mass_g * b / (a + b),
+        cure_h=mould.cure_h,
+        layer_mm=layer_mm(printing.layer_mm, (mould.wall_mm, rim_mm)),
+        floor_mm=mould.wall_mm,
+        rim_mm=rim_mm,
+    )
+
+
+def layer_mm(usual_mm: float, heights_mm: tuple[float, ...]) -> float:
+    """The thickest layer, up to the printer's usual one, that divides all heights.
+
+    Layers are tried in steps of 0.01 mm; below 0.05 mm none is wanted, and the usual one stays.
+    """
+    for hundredths in range(round(usual_mm * 100), 4, -1):
+        layers = [height * 100 / hundredths for height in heights_mm]
+        if all(abs(count - round(count)) < _WHOLE for count in layers):
+            return hundredths / 100
+    return usual_mm

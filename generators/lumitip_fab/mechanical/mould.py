@@ -1,0 +1,175 @@
+"""The silicone mould of a finger, printed open side up.
+
+Section along the finger, as it stands on the bed:
+
+                            guide wall                        guide wall
+      trough   weir at rim  ┌─┐                               ┌─┐
+     ┌┐    ┌───────────────  rim ── ─ ── ─ ── ─ ── ─ ── ─ ── ─┤ │ ← tip line, at the rim
+     ││    │              ╰───────────────────────────────╱   │ │
+     │└────┘                     cavity: the silicone         │ │
+     └────────────────────────────────────────────────────────┴─┘
+
+The finger lies in it face down, on two pads beside the board and on the tip line.
+"""
+
+import math
+
+import numpy as np
+from build123d import Face, Location, Solid, Vector, Wire
+
+from lumitip_fab.artefact import Artefact
+from lumitip_fab.design import Box, Finger, Mould, Outline, Printing, Stack
+from lumitip_fab.errors import BuildError
+from lumitip_fab.frames import mould_bed_to_sensor
+from lumitip_fab.mechanical import export
+from lumitip_fab.mechanical.casting import casting_note
+from lumitip_fab.mechanical.shapes import box_face, box_solid, placed, side_prism
+from lumitip_fab.mechanical.skin import (
+    drafted_prism,
+    offset_wire,
+    side_solid,
+    silicone_solid,
+    stops,
+    wall_offset_mm,
+)
+
+CHORD_MM = 0.002  # finer than other parts: the draft is measured on walls 1.6 mm high
+FOOT_CHAMFER_MM = 0.4  # the first layer spreads
+WEIR_FRACTION = 0.8  # of the wire notch, through which wires and surplus leave
+WEIR_DRAFT_DEG = 15.0
+TROUGH_MM = 4.0  # along y
+LEDGE_MM = 0.5  # between weir and trough
+GRIP_MM = 14.0  # gap in both walls to take the plate between two fingers
+GRIP_ABOVE_RIM_MM = 0.4
+GRIP_SLOPE_DEG = 45.0
+GRIP_AT = 0.4  # of the finger's length from the gripper end
+BEYOND_MM = 1.0
+
+
+def mould_files(
+    finger: Finger, stack: Stack, outline: Outline, mould: Mould, printing: Printing
+) -> tuple[Artefact, ...]:
+    """The mould of one finger: STEP in the sensor frame, STL and 3MF on the bed, and the note
+    for the person who pours."""
+    solid = mould_solid(finger.notch, stack, outline, mould)
+    to_sensor = mould_bed_to_sensor(stack, mould)
+    on_bed = placed(solid, np.linalg.inv(to_sensor))
+    name = f"{finger.name}_mould"
+    volume_ml = cast_volume_ml(finger, stack, outline, mould)
+    note = casting_note(finger.name, volume_ml, stack, mould, printing)
+    return (
+        Artefact(f"mould/{name}.step", export.step(solid, name)),
+        Artefact(f"mould/{name}.stl", export.stl(on_bed, CHORD_MM), to_sensor),
+        Artefact(f"mould/{name}.3mf", export.three_mf(on_bed, name, CHORD_MM), to_sensor),
+        Artefact(f"mould/{finger.name}_casting.md", note.encode(), frame=""),
+    )
+
+
+def cast_volume_ml(finger: Finger, stack: Stack, outline: Outline, mould: Mould) -> float:
+    """Silicone that stays on a finger: the cavity to the rim less the parts that dip into it."""
+    cavity = float(silicone_solid(stack, outline, mould).volume)
+    dipped = sum(
+        part.size_x_mm * part.size_y_mm * part.height_mm
+        for part in finger.parts
+        if part.side == "front"
+    )
+    return (cavity - dipped) / 1000
+
+
+def mould_solid(notch: Box, stack: Stack, outline: Outline, mould: Mould) -> Solid:
+    """The mould in the finger's sensor frame, where its open side looks to -z.
+
+    Args:
+        notch: opening of the plate through which wires leave.
+        stack: heights; the wall ends at the pocket's floor, so that the plate stands out.
+        outline: of the plate.
+        mould: the wall and the skin.
+
+    Raises:
+        BuildError: if the kernel does not make one valid solid of it.
+    """
+    top_z = stack.pocket_z_mm
+    outside = wall_offset_mm(stack, mould, top_z) + mould.wall_mm
+    weir_half = WEIR_FRACTION * notch.x_max_mm
+    catch_y = outline.end_y_mm - outside - LEDGE_MM
+    catch = Box(-weir_half - LEDGE_MM, weir_half + LEDGE_MM, catch_y - TROUGH_MM, catch_y)
+    block = _footed(stack, outline, mould, top_z, outside) + _lip(stack, mould, catch, outside)
+    cavity = drafted_prism(stack, outline, mould, top_z - BEYOND_MM, BEYOND_MM)
+    taken = [
+        cavity & side_solid(stack, outline, mould),
+        _weir(stack, outline, weir_half, outside),
+        _trough(stack, mould, catch),
+        _grip(stack, outline, outside),
+    ]
+    whole = (block - taken) + stops(stack, outline, mould)
+    solids = whole.solids()
+    if len(solids) != 1 or not solids[0].is_valid:
+        raise BuildError(
+            f"mould: the CAD kernel made {len(solids)} solids of it, one valid solid is needed; "
+            "change mould.wall_mm or the outline a little"
+        )
+    return solids[0]
+
+
+def _footed(
+    stack: Stack, outline: Outline, mould: Mould, top_z_mm: float, outside_mm: float
+) -> Solid:
+    """The outer body, chamfered where it stands on the bed."""
+    bed_z = stack.silicone_z_mm + mould.wall_mm
+    shoulder_z = bed_z - FOOT_CHAMFER_MM
+    top, shoulder = (offset_wire(outline, outside_mm, z) for z in (top_z_mm, shoulder_z))
+    foot = offset_wire(outline, outside_mm - FOOT_CHAMFER_MM, bed_z)
+    return Solid.make_loft([top, shoulder, foot], ruled=True)
+
+
+def _lip(stack: Stack, mould: Mould, catch: Box, outside_mm: float) -> Solid:
+    """The block that holds the trough, joined to the body."""
+    bed_z = stack.silicone_z_mm + mould.wall_mm
+    inside_y = catch.y_max_mm + LEDGE_MM + outside_mm / 2
+    outer = Box(
+        catch.x_min_mm - mould.wall_mm, catch.x_max_mm + mould.wall_mm,
+        catch.y_min_mm - mould.wall_mm, inside_y,
+    )  # fmt: skip
+    lip = box_solid(outer, stack.rim_z_mm, bed_z, mould.wall_mm / 2)
+    on_bed = [edge for edge in lip.edges() if abs(edge.center().Z - bed_z) < 1e-6]
+    return lip.chamfer(FOOT_CHAMFER_MM, None, on_bed)
+
+
+def _weir(stack: Stack, outline: Outline, half_mm: float, outside_mm: float) -> Solid:
+    """The opening of the wall at the gripper end, down to the rim plane."""
+    rise = stack.plate_mm
+    wider = half_mm + rise * math.tan(math.radians(WEIR_DRAFT_DEG))
+    rim, over = stack.rim_z_mm, stack.rim_z_mm - rise
+    start = outline.end_y_mm - outside_mm - BEYOND_MM
+    length = outside_mm + 2 * BEYOND_MM
+    corners = [(-half_mm, rim), (-wider, over), (wider, over), (half_mm, rim)]
+    face = Face(Wire.make_polygon([(x, start, z) for x, z in corners], close=True))
+    return Solid.extrude(face, Vector(0, length, 0))
+
+
+def _trough(stack: Stack, mould: Mould, catch: Box) -> Solid:
+    """The basin for the surplus, over a floor half as thick as the mould's."""
+    rim, floor = stack.rim_z_mm, stack.silicone_z_mm + mould.wall_mm / 2
+    slope = math.tan(math.radians(WEIR_DRAFT_DEG))
+    over = LEDGE_MM  # above the rim, where there is nothing left to cut
+    rings = [
+        box_face(catch.grown(slope * over)).outer_wire().moved(_height(rim - over)),
+        box_face(catch.grown(-slope * (floor - rim))).outer_wire().moved(_height(floor)),
+    ]
+    return Solid.make_loft(rings, ruled=True)
+
+
+def _grip(stack: Stack, outline: Outline, outside_mm: float) -> Solid:
+    """The gaps in both side walls, as one cutter across the mould."""
+    centre_y = outline.end_y_mm + GRIP_AT * outline.length_mm
+    bottom, over = stack.rim_z_mm - GRIP_ABOVE_RIM_MM, stack.back_z_mm
+    half = GRIP_MM / 2
+    wider = half + (bottom - over) * math.tan(math.radians(GRIP_SLOPE_DEG))
+    far = float(np.abs(outline.polygon()[:, 0]).max()) + outside_mm + BEYOND_MM
+    corners = [(centre_y - half, bottom), (centre_y - wider, over),
+               (centre_y + wider, over), (centre_y + half, bottom)]  # fmt: skip
+    return side_prism(corners, -far, far)
+
+
+def _height(z_mm: float) -> Location:
+    return Location((0, 0, z_mm))
