@@ -25,7 +25,12 @@ class Measurement:
 
     @property
     def margin(self) -> float:
-        """Distance to the nearer limit, below zero outside the range."""
+        """Distance to the nearer limit, below zero outside the range.
+
+        Of a magnitude, which may be 0 at best, only the upper limit can be neared.
+        """
+        if self.low == 0 <= self.measured:
+            return self.high - self.measured
         return min(self.measured - self.low, self.high - self.measured)
 
     @property
@@ -38,7 +43,7 @@ class Measurement:
         """The range in words."""
         if self.low == self.high:
             return f"= {self.low:g}"
-        if math.isinf(self.low):
+        if math.isinf(self.low) or (self.low == 0 and not math.isinf(self.high)):
             return "any" if math.isinf(self.high) else f"≤ {self.high:g}"
         return f"≥ {self.low:g}" if math.isinf(self.high) else f"{self.low:g} … {self.high:g}"
 
