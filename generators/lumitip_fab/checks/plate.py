@@ -25,7 +25,8 @@ _START_MM = 5.0  # rays start this far in front of the rim
 def measure_outline(part: Printed) -> Iterator[Measurement]:
     """The plate's silhouette just behind the rim, above the wedge, but for the notch."""
     design, notch = part.design, part.finger.notch
-    corners = design.outline.polygon(24)
+    silhouette = shapely.LinearRing(design.outline.polygon(24))
+    corners = shapely.get_coordinates(shapely.segmentize(silhouette, 1.0))
     open_ = (np.abs(corners[:, 0]) < notch.x_max_mm) & (corners[:, 1] < notch.y_max_mm)
     cut = section(part.sensor, design.stack.rim_z_mm - design.tip.edge_mm / 2)
     skins = [p.exterior for p in shapely.get_parts(cut) if p.geom_type == "Polygon"]
@@ -122,10 +123,10 @@ def _rim_z(part: Printed) -> float:
 
 
 def _front_z(part: Printed, points: Vectors) -> Vectors:
-    """Height of what is seen from the front at points (x, y); minus infinity through a hole."""
+    """Height of what is seen from the front at points (x, y); NaN through a hole."""
     above = np.column_stack([points, np.full(len(points), part.design.stack.rim_z_mm + _START_MM)])
     drop, _ = cast(part.sensor, above, _DOWN, 40.0).first(len(points))
-    return above[:, 2] - drop
+    return np.asarray(np.where(np.isfinite(drop), above[:, 2] - drop, np.nan))
 
 
 def _thickness(part: Printed, points: Vectors) -> Vectors:

@@ -10,6 +10,8 @@ from lumitip_fab.checks.result import Measurement
 from lumitip_fab.checks.solids import Vectors, section
 from lumitip_fab.design import Design, Finger, Point
 
+_LEAST_MM2 = 1e-6  # smaller rings of a section are where it grazes an edge
+
 
 @dataclass(frozen=True, eq=False)
 class Printed:
@@ -52,7 +54,7 @@ def farthest(values: Vectors, wanted: float) -> float:
 
 def circles(rings: list[Any], centres: tuple[Point, ...], reach_mm: float) -> tuple[Vectors, ...]:
     """Of the ring nearest to each centre: how far it is off and its diameter, NaN without one."""
-    polygons = [shapely.Polygon(ring) for ring in rings]
+    polygons = [p for p in map(shapely.Polygon, rings) if p.area > _LEAST_MM2]
     found = np.array([(p.centroid.x, p.centroid.y) for p in polygons]).reshape(-1, 2)
     wide = np.array([2 * np.sqrt(p.area / np.pi) for p in polygons])
     off, diameter = np.full(len(centres), np.nan), np.full(len(centres), np.nan)

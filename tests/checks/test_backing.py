@@ -1,0 +1,284 @@
+"""Damage the backings' files, and exactly the right checks fail."""
+
+import shutil
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+from manifold3d import Manifold, Mesh
+
+from lumitip_fab.checks import backing
+from lumitip_fab.design import Design
+from lumitip_fab.encoding import read_design
+from lumitip_fab.frames import mount_to_sensor
+
+STL = "backing/receiver_backing.stl"
+EMITTER_STL = "backing/emitter_backing.stl"
+
+
+def failing(folder: Path) -> set[str]:
+    design = read_design(folder / "design.json")
+    found = {m.check for m in backing.measure(folder, design) if not m.passed}
+    return {name.removeprefix("backing.") for name in found}
+
+
+def box(low: tuple[float, float, float], high: tuple[float, float, float]) -> Manifold:
+    size = [b - a for a, b in zip(low, high, strict=True)]
+    return Manifold.cube(size).translate(low)
+
+
+def tube(x: float, y: float, diameter: float, z_min: float, z_max: float) -> Manifold:
+    return Manifold.cylinder(z_max - z_min, diameter / 2, -1.0, 96).translate((x, y, z_min))
+
+
+# Damages of the mesh in the sensor frame, whose rim plane is at z = -1.6 and back at z = -4.
+
+
+def pin_shifted(part: Manifold, design: Design) -> Manifold:
+    x, y = design.receiver.holes[0]
+    without = part - tube(x, y, 2.2, -3.19, -1.0)
+    return without + tube(x + 0.2, y, design.board.pin_mm, -3.4, -1.6)
+
+
+def pin_thinner(part: Manifold, design: Design) -> Manifold:
+    x, y = design.receiver.holes[1]
+    return part - tube(x, y, 2.2, -3.19, -1.0) + tube(x, y, 1.6, -3.4, -1.6)
+
+
+def pin_taller(part: Manifold, design: Design) -> Manifold:
+    return part + tube(*design.receiver.holes[3], 1.2, -1.8, -1.3)
+
+
+def pin_missing(part: Manifold, design: Design) -> Manifold:
+    return part - tube(*design.receiver.holes[2], 2.2, -3.19, -1.0)
+
+
+def pocket_enlarged(part: Manifold, design: Design) -> Manifold:
+    x = design.board.pocket.x_max_mm
+    return part - box((x - 1, -10, -3.2), (x + 0.2, 0, -1.0))
+
+
+def pocket_shallower(part: Manifold, _: Design) -> Manifold:
+    return part + box((-14, -8, -3.4), (14, 8, -3.1))
+
+
+def floor_thinned(part: Manifold, _: Design) -> Manifold:
+    return part - box((10, 0, -4.5), (13, 3, -3.8))
+
+
+def outline_shaved(part: Manifold, _: Design) -> Manifold:
+    return part - box((23.7, -20, -5), (30, -16, 0))
+
+
+def notch_plugged(part: Manifold, design: Design) -> Manifold:
+    x, y = design.receiver.notch.x_max_mm, design.outline.end_y_mm
+    return part + box((x - 1.5, y + 1, -4), (x + 1, y + 3, -1.6))
+
+
+def tip_cut(part: Manifold, design: Design) -> Manifold:
+    y = design.outline.tip_y_mm
+    return part - box((-20, y - 0.15, -5), (20, y + 1, -1.6 - design.tip.edge_mm + 0.1))
+
+
+def slant_filled(part: Manifold, design: Design) -> Manifold:
+    y = design.tip.slant_start_y_mm
+    return part + box((-20, y - 0.5, -4), (20, y + 2, -3.2))
+
+
+def shelf_added(part: Manifold, _: Design) -> Manifold:
+    return part + box((-20, 5, -11), (20, 15, -3.5))
+
+
+def island_added(part: Manifold, _: Design) -> Manifold:
+    return part + box((15, 0, -8), (17, 2, -6))
+
+
+# Damages of the part in the mount frame: the bolt's axis is at u = 0, w = 13.8.
+
+
+def bolt_moved(part: Manifold, _: Design) -> Manifold:
+    return part + tube(0, 13.8, 5.5, 0, 4.34) - tube(0, 14.0, 5.3, -1, 5)
+
+
+def bolt_hole_narrow(part: Manifold, _: Design) -> Manifold:
+    return part + (tube(0, 13.8, 5.5, 0, 4.34) - tube(0, 13.8, 5.0, -1, 5))
+
+
+def gripper_pins_apart(part: Manifold, _: Design) -> Manifold:
+    for side in (-1, 1):
+        part = part + tube(side * 4.5, 13.8, 2.5, 0, 2.84) - tube(side * 4.7, 13.8, 2.4, -1, 2.84)
+    return part
+
+
+def gripper_pin_hole_narrow(part: Manifold, _: Design) -> Manifold:
+    return part + (tube(4.5, 13.8, 2.5, 0, 2.84) - tube(4.5, 13.8, 2.1, -1, 2.84))
+
+
+def gripper_pin_hole_shallow(part: Manifold, _: Design) -> Manifold:
+    return part + tube(4.5, 13.8, 2.5, 2.4, 2.84)
+
+
+def lump_in_counterbore(part: Manifold, _: Design) -> Manifold:
+    return part + box((2.0, 13, 7), (5.0, 15, 9))
+
+
+def nose_widened(part: Manifold, _: Design) -> Manifold:
+    return part + box((2.0, 4.0, 0.5), (6.5, 5.5, 2.9))
+
+
+def foot_hollow(part: Manifold, _: Design) -> Manifold:
+    return part - box((-9, 2.8, -1), (9, 20, 0.2))
+
+
+SENSOR_FRAME = {
+    pin_shifted: {"pins"},
+    pin_thinner: {"pin_clearance"},
+    pin_taller: {"pin_height", "step"},
+    pin_missing: {"pins", "pin_clearance", "pin_height"},
+    pocket_enlarged: {"pocket_gap"},
+    pocket_shallower: {"pocket_depth"},
+    floor_thinned: {"min_wall"},
+    outline_shaved: {"outline"},
+    notch_plugged: {"notch"},
+    tip_cut: {"tip_edge", "min_wall"},
+    slant_filled: {"slant"},
+    shelf_added: {"overhang"},
+    island_added: {"bodies"},
+}
+MOUNT_FRAME = {
+    bolt_moved: {"bolt", "screw_seat"},
+    bolt_hole_narrow: {"bolt_hole"},
+    gripper_pins_apart: {"gripper_pins"},
+    gripper_pin_hole_narrow: {"gripper_pin_hole"},
+    gripper_pin_hole_shallow: {"gripper_pin_depth"},
+    lump_in_counterbore: {"screw_seat"},
+    nose_widened: {"nose"},
+    foot_hollow: {"bed_contact", "step"},
+}
+
+Damage = Callable[[Manifold, Design], Manifold]
+
+
+def damage_solid(folder: Path, damage: Damage, in_sensor_frame: bool) -> None:
+    design = read_design(folder / "design.json")
+    to_sensor = mount_to_sensor(design.mount, design.stack)
+    frame = to_sensor if in_sensor_frame else np.eye(4)
+    mesh = trimesh.load(folder / STL, force="mesh").apply_transform(frame)
+    whole = Manifold(Mesh(np.float32(mesh.vertices), np.uint32(mesh.faces)))
+    hurt = damage(whole, design).to_mesh()
+    told = trimesh.Trimesh(hurt.vert_properties[:, :3], hurt.tri_verts)
+    told.apply_transform(np.linalg.inv(frame)).export(folder / STL)
+
+
+@pytest.mark.parametrize("damage", SENSOR_FRAME, ids=lambda d: d.__name__)
+def test_a_damage_in_the_sensor_frame(damage: Damage, damaged: Path) -> None:
+    damage_solid(damaged, damage, in_sensor_frame=True)
+    assert failing(damaged) == SENSOR_FRAME[damage]
+
+
+@pytest.mark.parametrize("damage", MOUNT_FRAME, ids=lambda d: d.__name__)
+def test_a_damage_in_the_mount_frame(damage: Damage, damaged: Path) -> None:
+    damage_solid(damaged, damage, in_sensor_frame=False)
+    assert failing(damaged) == MOUNT_FRAME[damage]
+
+
+def triangle_flipped(folder: Path) -> None:
+    mesh = trimesh.load(folder / STL, force="mesh")
+    faces = mesh.faces.copy()
+    smallest = int(mesh.area_faces.argmin())
+    faces[smallest] = faces[smallest][::-1]
+    trimesh.Trimesh(mesh.vertices, faces, process=False).export(folder / STL)
+
+
+def triangle_lost(folder: Path) -> None:
+    mesh = trimesh.load(folder / STL, force="mesh")
+    faces = np.delete(mesh.faces, int(mesh.area_faces.argmin()), axis=0)
+    trimesh.Trimesh(mesh.vertices, faces, process=False).export(folder / STL)
+
+
+def windows_missing(folder: Path) -> None:
+    shutil.copy(folder / STL, folder / EMITTER_STL)
+
+
+def in_inches(folder: Path) -> None:
+    trimesh.load(folder / STL, force="mesh").apply_scale(1 / 25.4).export(folder / STL)
+
+
+def longer(folder: Path) -> None:
+    mesh = trimesh.load(folder / STL, force="mesh")
+    mesh.apply_transform(np.diag([1.0, 1.0, 1.002, 1.0])).export(folder / STL)
+
+
+def cut_short(folder: Path) -> None:
+    (folder / STL).write_bytes((folder / STL).read_bytes()[:5000])
+
+
+def not_a_mesh(folder: Path) -> None:
+    (folder / STL).write_text("solid nothing\nendsolid nothing\n")
+
+
+def gone(folder: Path) -> None:
+    (folder / STL).unlink()
+
+
+def packages_gone(folder: Path) -> None:
+    (folder / STL).with_suffix(".3mf").unlink()
+    (folder / STL).with_suffix(".step").unlink()
+
+
+def package_in_inches(folder: Path) -> None:
+    path = (folder / STL).with_suffix(".3mf")
+    with zipfile.ZipFile(path) as package:
+        entries = {name: package.read(name) for name in package.namelist()}
+    with zipfile.ZipFile(path, "w") as package:
+        for name, data in entries.items():
+            package.writestr(name, data.replace(b'"millimeter"', b'"inch"'))
+
+
+def step_of_nothing(folder: Path) -> None:
+    path = (folder / STL).with_suffix(".step")
+    path.write_text(path.read_text().replace("MANIFOLD_SOLID_BREP", "SHELL_BASED_SURFACE_MODEL"))
+
+
+EVERY_LENGTH = {
+    "bed_contact", "bolt", "bolt_hole", "gripper_pin_depth", "gripper_pin_hole", "gripper_pins",
+    "min_wall", "nose", "notch", "outline", "pin_clearance", "pin_height", "pins", "pocket_depth",
+    "pocket_gap", "screw_seat", "size", "slant", "step", "three_mf", "tip_edge",
+}  # fmt: skip
+FILES = {
+    triangle_flipped: {"watertight"},
+    triangle_lost: {"watertight"},
+    windows_missing: {"reliefs"},
+    longer: {"size", "outline", "pins", "three_mf", "step"},
+    in_inches: EVERY_LENGTH,
+    cut_short: {"readable"},
+    not_a_mesh: {"readable"},
+    gone: {"readable"},
+    packages_gone: {"three_mf", "step"},
+    package_in_inches: {"three_mf"},
+    step_of_nothing: {"step"},
+}
+
+
+@pytest.mark.parametrize("damage", FILES, ids=lambda d: d.__name__)
+def test_a_damaged_file(damage: Callable[[Path], None], damaged: Path) -> None:
+    damage(damaged)
+    assert failing(damaged) == FILES[damage]
+
+
+def test_the_other_finger_s_backing_is_told_apart(
+    built: Callable[[str], Path], tmp_path: Path
+) -> None:
+    """Boards of an uneven grid are each other's mirror image; so are their pins."""
+    folder = Path(shutil.copytree(built("asymmetric"), tmp_path / "swapped"))
+    shutil.copy(folder / EMITTER_STL, folder / STL)
+    assert failing(folder) == {"pins", "pin_clearance", "pin_height"}
+
+
+def test_every_check_fails_for_some_damage(outputs: Path) -> None:
+    design = read_design(outputs / "design.json")
+    names = {m.check.removeprefix("backing.") for m in backing.measure(outputs, design)}
+    assert names == set().union(*SENSOR_FRAME.values(), *MOUNT_FRAME.values(), *FILES.values())

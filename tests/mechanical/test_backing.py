@@ -1,0 +1,73 @@
+"""The backing's geometry for designs that are far from the published one."""
+
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lumitip_fab.derive import derive
+from lumitip_fab.design import Design
+from lumitip_fab.frames import applied
+from lumitip_fab.load import load
+from lumitip_fab.mechanical.backing import backing, backing_solid
+
+
+def solid_of(design: Design, which: int = 1) -> object:
+    finger = design.fingers[which]
+    return backing_solid(
+        finger, design.stack, design.outline, design.tip, design.board, design.mount
+    )
+
+
+@pytest.fixture
+def changed(design_dir: Path, tmp_path: Path) -> Callable[..., Design]:
+    """The published design with text of its file replaced."""
+
+    def get(*changes: tuple[str, str]) -> Design:
+        folder = Path(shutil.copytree(design_dir, tmp_path / "design"))
+        file = folder / "fingertip.toml"
+        text = file.read_text(encoding="utf-8")
+        for before, after in changes:
+            assert before in text
+            text = text.replace(before, after)
+        file.write_text(text, encoding="utf-8")
+        return derive(load(file))
+
+    return get
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        (("floor_mm = 0.8", "floor_mm = 2.4"),),  # a blind relief, and tails within the plate
+        (("slant_start_mm = 6.0", "slant_start_mm = 2.5"),),
+        (("waist_margin_mm = 2.5", "waist_margin_mm = 7.5"),),  # straight sides
+        (("pcb_mm = 1.6", "pcb_mm = 0.8"),),
+    ],
+)
+def test_other_designs_make_one_valid_solid(
+    changed: Callable[..., Design], changes: tuple[tuple[str, str], ...]
+) -> None:
+    solid = solid_of(changed(*changes), which=0)
+    assert solid.is_valid
+    assert solid.volume > 4000
+
+
+def test_files_carry_the_way_back_to_the_sensor_frame(design_dir: Path) -> None:
+    design = derive(load(design_dir / "presets" / "published.toml"))
+    made = backing(design.receiver, design.stack, design.outline, design.tip, design.board,
+                   design.mount)  # fmt: skip
+    assert [a.path for a in made] == [
+        f"backing/receiver_backing.{e}" for e in ("step", "stl", "3mf")
+    ]
+    foot = applied(made[1].to_sensor, np.zeros((1, 3)))[0]
+    assert foot == pytest.approx((0.0, design.mount.origin_y_mm, design.stack.rim_z_mm))
+    assert (made[0].to_sensor == np.eye(4)).all()
+
+
+def test_each_board_has_its_own_pins(design_dir: Path) -> None:
+    design = derive(load(design_dir / "presets" / "asymmetric.toml"))
+    emitter, receiver = solid_of(design, 0), solid_of(design, 1)
+    assert (emitter - receiver).volume > 1.0
