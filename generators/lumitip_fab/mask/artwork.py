@@ -85,7 +85,7 @@ def make_artwork(finished: Finished, mask: Mask) -> Artwork:
 
 def _polygon(corners: list[Point]) -> Path:
     kept = [p for p, before in zip(corners, corners[-1:] + corners[:-1], strict=True)
-            if not np.allclose(p, before, atol=1e-9)]  # fmt: skip
+            if math.dist(p, before) > 1e-9]  # fmt: skip
     return Path(kept[0], tuple((p,) for p in kept[1:]))
 
 

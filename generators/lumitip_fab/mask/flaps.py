@@ -122,7 +122,7 @@ def _longest(most_mm: float, allowed: Callable[[float], bool]) -> float:
     """The greatest length that is allowed, to 0.05 mm."""
     if allowed(most_mm):
         return most_mm
-    low, high = 0.0, most_mm
+    low, high = 0.05, most_mm
     while high - low > 0.05:
         middle = (low + high) / 2
         low, high = (middle, high) if allowed(middle) else (low, middle)

@@ -1,0 +1,144 @@
+"""The masks, from their PDFs, SVGs and DXFs, against the cells and the back of each finger."""
+
+import math
+from collections.abc import Generator, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from lumitip_fab.checks.mask_drawings import read_dxf, read_svg
+from lumitip_fab.checks.mask_flaps import flaps_of, measure_flaps
+from lumitip_fab.checks.mask_holes import Black, apart, black_of, cut_of, edges_apart, sort_out
+from lumitip_fab.checks.mask_page import PageError, Points, read_page
+from lumitip_fab.checks.mask_place import Placed, place, registration_of
+from lumitip_fab.checks.mask_print import measure_black, measure_page
+from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip_fab.design import Design, Finger
+
+READS = ("mask/*.pdf", "mask/*.svg", "mask/*.dxf")
+
+PAPERS_MM = {"a4": (210.0, 297.0), "letter": (215.9, 279.4)}
+_PAGE = ("page", "marks", "scale_x", "scale_y", "ruler", "mirrored")
+_BLACK = ("count", "position", "size", "shape", "web", "outline", "window", "clear")
+_FLAPS = ("flaps", "folds", "reach")
+SAME_MM = 0.01
+Finding = Iterator[Measurement]
+FACING_MM = 0.02  # both may be off by the tolerance of a place
+
+
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """The black of one finger on one paper."""
+
+    subject: str
+    black: Black
+    cut: Points
+
+
+def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
+    """Read every file of both masks."""
+    seen: dict[tuple[str, str], Seen] = {}
+    for finger in design.fingers:
+        for paper in PAPERS_MM:
+            subject = f"mask/{finger.name}_mask_{paper}.pdf"
+            found = yield from _paper(outputs, subject, finger, paper, design)
+            if found:
+                seen[finger.name, paper] = found
+        reference = seen.get((finger.name, "a4"))
+        yield from _svg(outputs, finger, design, reference)
+        yield from _dxf(outputs, finger, design, reference)
+    for paper in PAPERS_MM:
+        yield _facing(paper, seen.get(("emitter", paper)), seen.get(("receiver", paper)))
+
+
+def _paper(
+    outputs: Path, subject: str, finger: Finger, paper: str, design: Design
+) -> Generator[Measurement, None, Seen | None]:
+    """Everything about one PDF; returns its black if it could be read."""
+    names: tuple[str, ...] = (*_PAGE, *_BLACK)
+    try:
+        page = read_page(outputs / subject)
+        placed = place(registration_of(page), design.mask)
+        yield from measure_page(subject, page, placed, PAPERS_MM[paper], design.mask)
+        names = _BLACK
+        black, cut = black_of(page, placed), cut_of(page, placed)
+    except PageError as error:
+        yield from _unreadable(names, subject, error)
+        return None
+    yield from measure_black(subject, page, placed, black, finger, design)
+    return Seen(subject, black, cut)
+
+
+def _svg(outputs: Path, finger: Finger, design: Design, reference: Seen | None) -> Finding:
+    subject = f"mask/{finger.name}_mask.svg"
+    try:
+        drawing = read_svg(outputs / subject)
+        placed = place(drawing.marks, design.mask)
+        black = sort_out(placed.subpath(run) for run in drawing.black)
+    except PageError as error:
+        yield from _unreadable(("svg",), subject, error)
+        return
+    yield from _same("svg", subject, black, placed, reference)
+
+
+def _dxf(outputs: Path, finger: Finger, design: Design, reference: Seen | None) -> Finding:
+    subject = f"mask/{finger.name}_mask.dxf"
+    try:
+        drawing = read_dxf(outputs / subject)
+        placed = place(drawing.marks, design.mask)
+        black = sort_out(placed.subpath(run) for run in drawing.black)
+    except PageError as error:
+        yield from _unreadable(("dxf", *_FLAPS), subject, error)
+        return
+    yield from _same("dxf", subject, black, placed, reference)
+    cut = placed.points(drawing.cut)
+    if reference:
+        worst = edges_apart(cut, reference.cut)
+        yield Measurement("mask.dxf", f"{subject} cut", worst, 0, SAME_MM, "mm", "against A4")
+    try:
+        flaps = flaps_of(cut, tuple(placed.points(fold) for fold in drawing.folds))
+    except PageError as error:
+        yield from _unreadable(_FLAPS, subject, error)
+        return
+    yield from measure_flaps(subject, flaps, black.edge, finger, design)
+
+
+def _same(name: str, subject: str, black: Black, placed: Placed, reference: Seen | None) -> Finding:
+    """A drawing is 1:1, and its black is the same as on A4."""
+    check = f"mask.{name}"
+    stretch = max(abs(s - 1) for s in placed.scale)
+    yield Measurement(check, f"{subject} scale", stretch, 0, 1e-4, "", "off 1:1 by its marks")
+    if not reference:
+        yield unreadable(check, subject, "no A4 page to compare with")
+        return
+    other = reference.black
+    count = abs(len(black.centres) - len(other.centres))
+    yield Measurement(check, f"{subject} count", count, 0, 0, "apertures", "more or less")
+    worst = max(
+        apart(black.centres, other.centres),
+        abs(black.size_mm.min() - other.size_mm.min()),
+        abs(black.size_mm.max() - other.size_mm.max()),
+        float(black.misshape_mm.max()),
+        _windows_apart(black.window, other.window),
+        edges_apart(black.edge, other.edge),
+    )
+    yield Measurement(check, subject, worst, 0, SAME_MM, "mm", f"worst against {reference.subject}")
+
+
+def _windows_apart(a: Points, b: Points) -> float:
+    return apart(a, b) if len(a) and len(b) else math.inf
+
+
+def _facing(paper: str, emitter: Seen | None, receiver: Seen | None) -> Measurement:
+    """LED i faces detector i: the emitter's apertures turned about y are the receiver's."""
+    subject = f"mask/*_mask_{paper}.pdf"
+    if not emitter or not receiver:
+        return unreadable("mask.facing", subject, "a mask is missing or cannot be read")
+    turned = emitter.black.centres * np.array([-1.0, 1.0])
+    worst = apart(turned, receiver.black.centres)
+    return Measurement("mask.facing", subject, worst, 0, FACING_MM, "mm", "worst pair of apertures")
+
+
+def _unreadable(names: tuple[str, ...], subject: str, error: PageError) -> Finding:
+    return (unreadable(f"mask.{name}", subject, str(error)) for name in names)

@@ -1,0 +1,121 @@
+"""Reading a mask's SVG and DXF, in mm with y up; x is mirrored as on the page."""
+
+import math
+import re
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree as XmlTree
+
+import ezdxf
+import numpy as np
+from ezdxf import units
+
+from lumitip_fab.checks.mask_page import PageError, Points, Subpath
+
+_SVG = "{http://www.w3.org/2000/svg}"
+_NONE = np.zeros((0, 2))
+_HANDLE = 0.5522847498
+_WORDS = {"M": 1, "L": 1, "C": 3, "Z": 0}
+_NUMBER = r"-?\d+(?:\.\d+)?"
+
+
+@dataclass(frozen=True, eq=False)
+class Drawing:
+    """What both drawings hold; the cut and the folds of the DXF as well."""
+
+    black: tuple[Subpath, ...]
+    marks: Points
+    cut: Points = field(default_factory=lambda: _NONE)
+    folds: tuple[Points, ...] = ()
+
+
+def read_svg(path: Path) -> Drawing:
+    """Read an SVG whose black is one path of absolute M, L, C and Z.
+
+    Raises:
+        PageError: if it is missing, damaged, not in mm or 1:1, or has no such path.
+    """
+    try:
+        root = XmlTree.parse(path).getroot()
+        _one_to_one(root)
+        elements = {e.get("id"): e for e in root.iter() if e.get("id")}
+        black = _path_data(elements["black"].attrib["d"])
+        rings = elements["registration"].iter(f"{_SVG}circle")
+        marks = [(float(e.attrib["cx"]), -float(e.attrib["cy"])) for e in rings]
+    except FileNotFoundError as error:
+        raise PageError("no such file") from error
+    except (OSError, XmlTree.ParseError, KeyError, ValueError, IndexError) as error:
+        raise PageError(f"cannot be read: {error!r:.200}") from error
+    return Drawing(black, np.array(marks).reshape(-1, 2))
+
+
+def _one_to_one(root: XmlTree.Element) -> None:
+    box = [float(v) for v in root.attrib["viewBox"].split()]
+    for name, units_wide in zip(("width", "height"), box[2:], strict=True):
+        told = root.attrib[name]
+        if not told.endswith("mm") or not math.isclose(float(told[:-2]), units_wide):
+            raise ValueError(f"{name} {told} for {units_wide:g} units is not 1:1 in mm")
+
+
+def _path_data(data: str) -> tuple[Subpath, ...]:
+    runs = []
+    for text in filter(None, map(str.strip, data.split("M"))):
+        if not text.endswith("Z") or re.search(r"[^MLCZ\d.,\s-]", text):
+            raise ValueError(f"path {text[:40]!r} is not closed, or not of M, L and C")
+        words = re.findall(rf"([MLC])((?:[ ,]?{_NUMBER})*)", "M" + text)
+        corners, controls = [], []
+        for letter, told in words:
+            points = np.array(re.findall(_NUMBER, told), dtype=float).reshape(-1, 2) * (1.0, -1.0)
+            if len(points) != _WORDS[letter]:
+                raise ValueError(f"path {text[:40]!r}: {letter} with {len(points)} points")
+            corners.append(points[-1])
+            controls += list(points[:-1])
+        runs.append(_closed(np.array(corners), np.array(controls).reshape(-1, 2)))
+    return tuple(runs)
+
+
+def _closed(corners: Points, controls: Points) -> Subpath:
+    again = len(corners) > 1 and np.allclose(corners[0], corners[-1], atol=1e-6)
+    return Subpath(corners[:-1] if again else corners, controls, True)
+
+
+def read_dxf(path: Path) -> Drawing:
+    """Read a DXF by its layers.
+
+    Raises:
+        PageError: if it is missing, damaged, not in mm, or lacks a layer's drawing.
+    """
+    try:
+        document = ezdxf.readfile(path)
+        space = document.modelspace()
+        layers: dict[str, list[Any]] = {}
+        for entity in space:
+            layers.setdefault(entity.dxf.layer, []).append(entity)
+        if document.units != units.MM:
+            raise PageError("its unit is not the millimetre")
+        runs = [_run(e) for name in ("BLACK", "WINDOW", "APERTURES") for e in layers[name]]
+        marks = [e.dxf.center for e in layers["MARKS"] if e.dxftype() == "CIRCLE"]
+        cuts = [_run(e).corners for e in layers["CUT"]]
+        folds = [np.array([(p.x, p.y) for p in (e.dxf.start, e.dxf.end)]) for e in layers["FOLD"]]
+    except FileNotFoundError as error:
+        raise PageError("no such file") from error
+    except (OSError, ezdxf.DXFError, KeyError, ValueError, AttributeError, TypeError) as error:
+        raise PageError(f"cannot be read: {error!r:.200}") from error
+    if len(cuts) != 1:
+        raise PageError(f"{len(cuts)} paths on layer CUT, one is needed")
+    return Drawing(
+        tuple(runs), np.array([(p.x, p.y) for p in marks]).reshape(-1, 2), cuts[0], tuple(folds)
+    )
+
+
+def _run(entity: Any) -> Subpath:
+    """A closed polyline, or a circle as four cubics."""
+    if entity.dxftype() == "LWPOLYLINE" and entity.closed:
+        return _closed(np.array([p[:2] for p in entity.get_points()], dtype=float), _NONE)
+    centre, r = np.array([entity.dxf.center.x, entity.dxf.center.y]), float(entity.dxf.radius)
+    quarter = np.array([(1, 0), (1, _HANDLE), (_HANDLE, 1)])
+    turn = np.array([(0.0, 1.0), (-1.0, 0.0)])
+    turned = [centre + r * quarter @ np.linalg.matrix_power(turn, n) for n in range(4)]
+    corners = np.array([q[0] for q in turned])
+    return Subpath(corners, np.concatenate([q[1:] for q in turned]), True)

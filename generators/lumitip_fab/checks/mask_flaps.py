@@ -1,0 +1,154 @@
+"""The flaps, from the cut and fold lines of a mask's DXF: flat, and folded onto the back."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from lumitip_fab.checks.mask_page import PageError, Points
+from lumitip_fab.checks.result import Measurement
+from lumitip_fab.design import Box, Design, Finger
+
+SAGITTA_MM = 0.3
+FILLETS_MM = 2.0  # at the foot of the coupling
+NOTCH_MM = 0.25
+REACH_MM = 0.8  # onto the back, less than which holds nothing
+OVERLAP_MM2 = 0.01
+_SAME_MM = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class Flap:
+    """One flap in the sensor frame."""
+
+    fold: Points
+    corners: Points
+    """From one end of the fold round to the other."""
+
+    @property
+    def outward(self) -> Points:
+        """Unit vector away from the fold."""
+        across = self.fold[1] - self.fold[0]
+        normal: Points = np.array([across[1], -across[0]]) / np.hypot(*across)
+        side = ((self.corners - self.fold[0]) @ normal).sum()
+        return normal if side > 0 else -normal
+
+
+def flaps_of(cut: Points, folds: tuple[Points, ...]) -> tuple[Flap, ...]:
+    """The flaps: what the cut goes round between the two ends of each fold.
+
+    Raises:
+        PageError: if a fold does not end at corners of the cut.
+    """
+    if not folds:
+        raise PageError("no folds")
+    flaps = []
+    for fold in folds:
+        apart = np.hypot(*(cut[:, None] - fold[None]).transpose(2, 0, 1))
+        distance, at = apart.min(axis=0), apart.argmin(axis=0)
+        if distance.max() > _SAME_MM:
+            raise PageError("a fold does not end on the cut")
+        first, last = sorted(int(i) for i in at)
+        inner, outer = cut[first : last + 1], np.concatenate([cut[last:], cut[: first + 1]])
+        flaps.append(Flap(fold, min(inner, outer, key=len)))
+    return tuple(flaps)
+
+
+def measure_flaps(
+    subject: str, flaps: tuple[Flap, ...], edge: Points, finger: Finger, design: Design
+) -> Iterator[Measurement]:
+    """Flaps that overlap flat, folds off the black's edge, and what folded flaps come to cover.
+
+    Args:
+        subject: the file.
+        flaps: in the sensor frame.
+        edge: of the black, in the same file.
+        finger: whose back it is.
+        design: for the heights of its sides and the coupling.
+    """
+    yield Measurement("mask.flaps", subject, _overlap(flaps), 0, OVERLAP_MM2, "mm²",
+                      f"of {len(flaps)} flaps laid flat")  # fmt: skip
+    sagitta = max(_sagitta(flap.fold, edge) for flap in flaps)
+    yield Measurement("mask.folds", subject, sagitta, 0, SAGITTA_MM, "mm", "chord to black's edge")
+    sides = [_side_mm(flap.fold, design) for flap in flaps]
+    back = shapely.union_all(
+        [_on_back(f, s, design.mask.allowance_mm) for f, s in zip(flaps, sides, strict=True)]
+    )
+    keep = (("coupling", _coupling(design), FILLETS_MM), ("notch", finger.notch, NOTCH_MM))
+    for name, box, least in keep:
+        apart = float(shapely.distance(back, _area(box)))
+        yield Measurement("mask.folds", f"{subject} {name}", apart, least, math.inf, "mm",
+                          f"folded flaps to the {name}")  # fmt: skip
+    for relief in finger.reliefs:
+        apart = float(shapely.distance(back, _area(relief.box)))
+        yield Measurement("mask.folds", f"{subject} window", apart, unit="mm",
+                          note="flaps to a window behind parts; for information")  # fmt: skip
+    reaches = [
+        float(((f.corners - f.fold[0]) @ f.outward).max()) + design.mask.allowance_mm - side
+        for f, side in zip(flaps, sides, strict=True)
+    ]
+    yield Measurement("mask.reach", subject, min(reaches), REACH_MM, math.inf, "mm",
+                      "shortest flap onto the back")  # fmt: skip
+
+
+def _overlap(flaps: tuple[Flap, ...]) -> float:
+    """Area that two flaps share when the film is flat (mm²)."""
+    areas = [shapely.Polygon(flap.corners).buffer(0) for flap in flaps]
+    tree = shapely.STRtree(areas)
+    pairs = tree.query(areas, predicate="intersects")
+    ordered = pairs[:, pairs[0] < pairs[1]]
+    each = np.array(areas, dtype=object)
+    return float(shapely.area(shapely.intersection(each[ordered[0]], each[ordered[1]])).sum())
+
+
+def _sagitta(fold: Points, edge: Points) -> float:
+    """Greatest distance between a fold and the stretch of the edge beside it."""
+    ring = shapely.LinearRing(edge)
+    ends = [ring.project(shapely.Point(p)) for p in fold]
+    low, high = min(ends), max(ends)
+    there, line = np.array(ring.coords), shapely.LineString(fold)
+    passed = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(there, axis=0).T))])
+    inside = (passed >= low) & (passed <= high)
+    if high - low > ring.length / 2:  # the fold spans the ring's first point
+        inside = ~inside
+    off = [float(shapely.distance(shapely.points(there[inside]), line).max(initial=0.0))]
+    return max(*off, *(float(ring.distance(shapely.Point(p))) for p in fold))
+
+
+def _side_mm(fold: Points, design: Design) -> float:
+    """Least height of the finger's side along a fold: there a flap reaches farthest."""
+    outline, tip, mould, stack = design.outline, design.tip, design.mould, design.stack
+    y = np.linspace(fold[0, 1], fold[1, 1], 17)
+    plate = np.interp(y, [tip.slant_start_y_mm, outline.tip_y_mm], [stack.plate_mm, tip.edge_mm])
+    tapered = [outline.tip_y_mm - mould.taper_length_mm, outline.tip_y_mm]
+    silicone = np.interp(y, tapered, [stack.silicone_mm, mould.tip_silicone_mm])
+    return float((plate + silicone).min())
+
+
+def _on_back(flap: Flap, side_mm: float, allowance_mm: float) -> shapely.Geometry:
+    """What of a flap lies on the back, drawn tight over allowance and side."""
+    outward, start = flap.outward, flap.fold[0]
+    out = (flap.corners - start) @ outward
+    along = flap.corners - out[:, None] * outward
+    inward = out + allowance_mm - side_mm  # from the finger's edge, which is inside the fold
+    laid = shapely.Polygon(along - (inward + allowance_mm)[:, None] * outward)
+    edge = np.array([np.array([outward[1], -outward[0]]) * s for s in (-1e3, 1e3)]) + start
+    edge = edge - allowance_mm * outward
+    beyond = shapely.Polygon([*edge, edge[1] - 1e3 * outward, edge[0] - 1e3 * outward])
+    return laid.buffer(0).intersection(beyond)
+
+
+def _coupling(design: Design) -> Box:
+    """Block and ramp where they stand on the plate's back, without fillets."""
+    mount, half = design.mount, design.mount.block_width_mm / 2
+    tilt = math.radians(mount.tilt_deg)
+    shoulder_y = mount.land_mm * math.cos(tilt) - mount.block_back_w_mm * math.sin(tilt)
+    rise = mount.block_back_w_mm - design.stack.plate_mm
+    end = mount.origin_y_mm + shoulder_y + rise / math.tan(math.pi / 4 - tilt)
+    return Box(-half, half, mount.origin_y_mm, end)
+
+
+def _area(box: Box) -> shapely.Geometry:
+    return shapely.box(box.x_min_mm, box.y_min_mm, box.x_max_mm, box.y_max_mm)

@@ -1,0 +1,155 @@
+"""What a mask's page promises: its paper, scale and marks, and the black with its apertures."""
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from lumitip_fab.checks.mask_holes import Black, apart, edges_apart
+from lumitip_fab.checks.mask_page import Page, Painted, Points
+from lumitip_fab.checks.mask_place import Placed
+from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip_fab.design import Box, Design, Finger, Mask
+
+Shapes = NDArray[np.object_]
+
+PAPER_MM = 0.1
+PRINTABLE_MM = 5.0  # from every edge of the paper
+SCALE = 0.001
+RULER_MM = 0.02
+MARK_MM = 0.05
+PLACE_MM = 0.01
+EDGE_MM = 0.05
+WEB_MM = 0.4  # less tears, and leaks light
+_TICKS = 101
+_F_CORNERS = 10
+
+
+def measure_page(
+    subject: str, page: Page, placed: Placed, paper_mm: tuple[float, float], mask: Mask
+) -> Iterator[Measurement]:
+    """Paper, margins, registration, scale, rulers and the letter F."""
+    for side, got, wanted in zip(("width", "height"), page.size_mm, paper_mm, strict=True):
+        yield Measurement("mask.page", f"{subject} {side}", got, wanted - PAPER_MM,
+                          wanted + PAPER_MM, "mm")  # fmt: skip
+    left, low, right, high = page.extent
+    margin = min(left, low, page.size_mm[0] - right, page.size_mm[1] - high)
+    yield Measurement("mask.page", f"{subject} margin", margin, PRINTABLE_MM, math.inf, "mm",
+                      "to the nearest edge")  # fmt: skip
+    yield Measurement("mask.marks", subject, placed.residual_mm, 0, PLACE_MM, "mm",
+                      "worst of four registration marks")  # fmt: skip
+    for axis, got, reading in zip("xy", placed.scale, mask.measured_ruler_mm, strict=True):
+        wanted = 100 / reading
+        yield Measurement(f"mask.scale_{axis}", subject, got, wanted * (1 - SCALE),
+                          wanted * (1 + SCALE), "", f"a ruler measured {reading:g}")  # fmt: skip
+    yield from _rulers(subject, page, placed)
+    yield from _letter(subject, page, placed, mask.mark)
+
+
+def measure_black(
+    subject: str, page: Page, placed: Placed, black: Black, finger: Finger, design: Design
+) -> Iterator[Measurement]:
+    """The apertures against the cells, and the edge and the window against the finger."""
+    mask, cells = design.mask, np.array(finger.cells)
+    count = len(black.centres)
+    yield Measurement("mask.count", subject, count, len(cells), len(cells), "apertures")
+    worst = apart(black.centres, cells)
+    yield Measurement("mask.position", subject, worst, 0, PLACE_MM, "mm", "worst aperture or cell")
+    off = float(np.abs(black.size_mm - mask.hole_mm).max())
+    yield Measurement("mask.size", subject, off, 0, PLACE_MM, "mm", f"off {mask.hole_mm:g}")
+    wrong = black.round_ != (mask.hole_shape == "circle")
+    shape = math.inf if wrong else float(black.misshape_mm.max())
+    yield Measurement("mask.shape", subject, shape, 0, PLACE_MM, "mm", f"off a {mask.hole_shape}")
+    shapes = np.array([shapely.Polygon(ring) for ring in black.rings])
+    web = _web(black, shapes, design.grid.pitch_mm)
+    yield Measurement("mask.web", subject, web, WEB_MM, math.inf, "mm", "least between openings")
+    outline = shapely.Polygon(design.outline.polygon(96)).buffer(mask.allowance_mm, 64)
+    edge = edges_apart(black.edge, np.array(outline.exterior.coords)[:-1])
+    yield Measurement("mask.outline", subject, edge, 0, EDGE_MM, "mm",
+                      f"off the finger's outline grown by {mask.allowance_mm:g}")  # fmt: skip
+    if len(black.window):
+        window = apart(black.window, _corners(finger.window))
+        yield Measurement("mask.window", subject, window, 0, PLACE_MM, "mm", "worst corner")
+    else:
+        yield unreadable("mask.window", subject, "the black has no window for the connector")
+    yield Measurement("mask.clear", subject, _nearest_other(page, placed, shapes), 0.1, math.inf,
+                      "mm", "other print to the nearest aperture")  # fmt: skip
+
+
+def _rulers(subject: str, page: Page, placed: Placed) -> Iterator[Measurement]:
+    """Length of both rulers by the scale of the marks."""
+    lengths: dict[int, float] = {}
+    for painted in page.painted:
+        if painted.filled or len(painted.subpaths) < _TICKS:
+            continue
+        feet = np.array([placed.points(s.corners)[0] for s in painted.subpaths])
+        spans = np.ptp(feet, axis=0)
+        lengths[int(spans.argmax())] = float(spans.max())
+    for axis, name in enumerate(("horizontal", "vertical")):
+        if axis in lengths:
+            yield Measurement("mask.ruler", f"{subject} {name}", lengths[axis], 100 - RULER_MM,
+                              100 + RULER_MM, "mm", "by the marks' scale")  # fmt: skip
+        else:
+            yield unreadable("mask.ruler", f"{subject} {name}", "no such ruler")
+
+
+def _letter(subject: str, page: Page, placed: Placed, box: Box) -> Iterator[Measurement]:
+    """The letter F reads right in the sensor frame: it is in place, stem left and arms up."""
+    found = [
+        placed.points(p.subpaths[0].corners)
+        for p in page.painted
+        if p.filled and len(p.subpaths) == 1 and len(p.subpaths[0].corners) == _F_CORNERS
+    ]
+    if len(found) != 1:
+        yield unreadable("mask.mirrored", subject, f"{len(found)} letters F, one is needed")
+        return
+    letter = found[0]
+    extent = np.array([letter.min(axis=0), letter.max(axis=0)])
+    nominal = np.array([(box.x_min_mm, box.y_min_mm), (box.x_max_mm, box.y_max_mm)])
+    place = float(np.abs(extent - nominal).max())
+    yield Measurement("mask.mirrored", f"{subject} place", place, 0, MARK_MM, "mm", "of the F")
+    middle = shapely.Polygon(letter).centroid
+    left, up = extent.mean(axis=0) - (middle.x, middle.y)
+    for name, share in (("stem", left / box.width_mm), ("arms", -up / box.length_mm)):
+        yield Measurement("mask.mirrored", f"{subject} {name}", float(share), 0.03, 0.5, "",
+                          f"the F's {name} by its centre of area")  # fmt: skip
+
+
+def _web(black: Black, shapes: Shapes, within_mm: float) -> float:
+    """Least distance between two apertures, or from one to the window or the edge."""
+    tree = shapely.STRtree(shapes)
+    pairs = tree.query(shapes, predicate="dwithin", distance=within_mm)
+    one, other = pairs[:, pairs[0] < pairs[1]]
+    between = shapely.distance(shapes[one], shapes[other]).min(initial=within_mm)
+    rings = [black.edge, black.window] if len(black.window) else [black.edge]
+    around = min(float(shapely.distance(shapes, shapely.LinearRing(r)).min()) for r in rings)
+    return min(float(between), around)
+
+
+def _nearest_other(page: Page, placed: Placed, shapes: Shapes) -> float:
+    """Least distance from an aperture to anything printed that is not the black."""
+    most = max(len(p.subpaths) for p in page.painted if p.filled and p.even_odd and p.black)
+    others = [
+        _geometry(placed.points(run.corners), painted)
+        for painted in page.painted
+        if not (painted.even_odd and painted.black and len(painted.subpaths) == most)
+        for run in painted.subpaths
+    ]
+    texts = placed.points(page.texts).reshape(-1, 4, 2)
+    others += [shapely.Polygon(box) for box in texts]
+    tree = shapely.STRtree(shapes)
+    _, distance = tree.query_nearest(others, return_distance=True, all_matches=False)
+    return float(distance.min(initial=math.inf))
+
+
+def _geometry(corners: Points, painted: Painted) -> shapely.Geometry:
+    if painted.filled and len(corners) > 2:
+        return shapely.Polygon(corners).buffer(0)
+    return shapely.LineString(corners) if len(corners) > 1 else shapely.Point(corners[0])
+
+
+def _corners(box: Box) -> Points:
+    return np.array([(x, y) for x in (box.x_min_mm, box.x_max_mm)
+                     for y in (box.y_min_mm, box.y_max_mm)])  # fmt: skip
