@@ -8,7 +8,6 @@ from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
-from lumitip.errors import LayoutError
 from lumitip.layout import Layout
 from lumitip_fab.design import Design
 from lumitip_fab.errors import OutputError
@@ -60,7 +59,7 @@ def read_design(path: Path) -> Design:
         return _decoded(json.loads(path.read_text(encoding="utf-8")), Design)
     except FileNotFoundError as error:
         raise OutputError(f"{path}: no such file: build the design first") from error
-    except (OSError, ValueError, KeyError, TypeError, LayoutError) as error:
+    except (OSError, ValueError, KeyError, TypeError, ArithmeticError, RecursionError) as error:
         raise OutputError(f"{path}: is not a design of this version: {error!r}") from error
 
 

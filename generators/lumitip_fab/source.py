@@ -68,7 +68,8 @@ def read_toml(path: Path, shown: str) -> Source:
             size = path.stat().st_size
             raise _refusal(shown, 0, f"{size} bytes given, at most {LARGEST_FILE_BYTES} are read")
         data = path.read_bytes()
-        text = data.decode("utf-8-sig")  # some editors begin a file with a byte-order mark
+        # Some editors begin a file with a byte-order mark, or end lines with two characters.
+        text = data.decode("utf-8-sig").replace("\r\n", "\n")
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
         given = f"the byte 0x{data[error.start]:02x} given"
