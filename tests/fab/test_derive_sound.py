@@ -294,7 +294,7 @@ def test_random_values_give_a_sound_design_or_are_refused(inputs: Any, vary: Any
         return float(told[section][key])
 
     @settings(
-        max_examples=200,
+        max_examples=120,
         deadline=None,
         derandomize=True,
         database=None,

@@ -1,0 +1,92 @@
+"""The catalogue against datasheets and the published boards; entries that cannot be are refused."""
+
+from typing import Any
+
+import pytest
+from pydantic import ValidationError
+
+from lumitip_fab.catalogue import Catalogue, Controller, Led, Multiplexer
+from lumitip_fab.load import Input
+
+
+@pytest.fixture(scope="module")
+def parts(inputs: dict[str, Input]) -> Catalogue:
+    """The catalogue that comes with the package."""
+    return inputs["published"].catalogue
+
+
+def test_the_4051s_leads_are_those_of_the_datasheet(parts: Catalogue) -> None:
+    mux = parts.multiplexers["74HC4051PW"]
+    leads = [mux.inputs[str(i)] for i in range(8)]
+    assert leads == [13, 14, 15, 12, 1, 5, 2, 4]
+    assert (mux.select, mux.output, mux.leads, mux.channels) == ((11, 10, 9), 3, 16, 8)
+    assert mux.lead_pitch_mm == 0.65
+
+
+def test_the_4067s_leads_are_those_of_the_datasheet(parts: Catalogue) -> None:
+    mux = parts.multiplexers["74HC4067PW"]
+    leads = [mux.inputs[str(i)] for i in range(16)]
+    assert leads == [9, 8, 7, 6, 5, 4, 3, 2, 23, 22, 21, 20, 19, 18, 17, 16]
+    assert (mux.select, mux.output, mux.leads) == ((10, 11, 14, 13), 1, 24)
+    used = {*leads, *mux.select, mux.output}
+    assert set(range(1, 25)) - used == {12, 15, 24}, "ground, enable and supply are left"
+
+
+def test_the_published_detector_is_345_mm_over_its_pads(parts: Catalogue) -> None:
+    assert parts.photodetectors["SML-H10TBT86"].over_pads_mm == pytest.approx((3.45, 1.25))
+
+
+def test_the_published_led_is_2_mm_over_its_pads(parts: Catalogue) -> None:
+    assert parts.leds["15406085BA300"].over_pads_mm == pytest.approx((2.0, 1.0))
+
+
+def test_a_body_larger_than_its_pads_counts(parts: Catalogue) -> None:
+    led = parts.leds["15406085BA300"].model_copy(update={"body_mm": (9.0, 8.0, 1.0)})
+    assert led.over_pads_mm == (9.0, 8.0)
+
+
+def test_every_entry_says_where_its_figures_come_from(parts: Catalogue) -> None:
+    for kind in Catalogue.model_fields:
+        entries = getattr(parts, kind)
+        assert entries, kind
+        for name, entry in entries.items():
+            assert len(entry.source) > 20, name
+
+
+def _changed(entry: Any, **values: Any) -> dict[str, Any]:
+    return {**entry.model_dump(), **values}
+
+
+@pytest.mark.parametrize(
+    ("values", "said"),
+    [
+        ({"output": 13}, "each needs a lead of its own"),
+        ({"leads": 14}, "each needs a lead of its own from 1 to leads = 14"),
+        ({"select": (11, 10)}, "8 inputs given, 2 select lines reach at most 4"),
+        ({"inputs": {"1": 13}}, "inputs 1 given, the channels 0, 1, 2"),
+        ({"inputs": {}}, "inputs none given"),
+    ],
+)
+def test_a_multiplexer_that_cannot_be_wired_is_refused(
+    parts: Catalogue, values: dict[str, Any], said: str
+) -> None:
+    with pytest.raises(ValidationError, match=said):
+        Multiplexer.model_validate(_changed(parts.multiplexers["74HC4051PW"], **values))
+
+
+def test_a_die_above_its_body_is_refused(parts: Catalogue) -> None:
+    with pytest.raises(ValidationError, match=r"die_height_mm = 0\.7 given, at most the body's"):
+        Led.model_validate(_changed(parts.leds["15406085BA300"], die_height_mm=0.7))
+
+
+def test_a_controller_uses_each_pin_once(parts: Catalogue) -> None:
+    board = parts.controllers["arduino_nano_33_ble"]
+    with pytest.raises(ValidationError, match="A0 given twice"):
+        Controller.model_validate(_changed(board, select_pins=("A0",)))
+    with pytest.raises(ValidationError, match="analog_pins"):
+        Controller.model_validate(_changed(board, analog_pins=()))
+
+
+def test_entries_cannot_be_changed(parts: Catalogue) -> None:
+    with pytest.raises(ValidationError, match="frozen"):
+        parts.leds["15406085BA300"].exponent = 2.0

@@ -1,0 +1,183 @@
+"""Every value of a parameter file does something: none is read and forgotten."""
+
+import dataclasses
+from typing import Any
+
+import pytest
+
+from lumitip_fab.derive import derive
+from lumitip_fab.design import Design
+from lumitip_fab.encoding import design_text
+from lumitip_fab.load import Input, load
+from lumitip_fab.parameters import Parameters
+
+# Another valid value of every field.
+CHANGES: dict[str, Any] = {
+    "name": "Other",
+    "revision": "B",
+    "grid.columns": (3, 4, 5, 4, 5, 6, 5),
+    "grid.pitch_mm": 5.9,
+    "stack.floor_mm": 1.0,
+    "stack.pcb_mm": 1.5,
+    "stack.silicone_mm": 1.6,
+    "stack.film_mm": 0.15,
+    "outline.tip_fraction": 0.5,
+    "outline.tip_margin_mm": 6.5,
+    "outline.shoulder_margin_mm": 7.6,
+    "outline.shoulder_at_mm": 10.2,
+    "outline.waist_margin_mm": 2.6,
+    "outline.waist_at": 0.66,
+    "outline.end_margin_mm": 5.5,
+    "outline.end_corner_mm": 6.9,
+    "backing.material": "PLA",
+    "backing.density_g_ml": 1.24,
+    "backing.pocket_clearance_mm": 0.15,
+    "backing.pin_clearance_mm": 0.2,
+    "backing.relief_clearance_mm": 0.7,
+    "backing.tail_mm": 1.6,
+    "tip.slant_start_mm": 5.9,
+    "tip.edge_mm": 0.5,
+    "board.side_margin_mm": 6.0,
+    "board.tip_margin_mm": 3.75,
+    "board.end_margin_mm": 2.0,
+    "board.hole_mm": 2.0,
+    "board.hole_edge_mm": 2.1,
+    "board.channel_mm": 2.3,
+    "emitter.led": "other",
+    "emitter.current_ma": 15.0,
+    "emitter.resistor": "0805",
+    "emitter.resistor_side": "front",
+    "receiver.photodetector": "generic 0603 phototransistor",
+    "receiver.multiplexer": "74HC4067PW",
+    "receiver.pull_up_ohm": 68e3,
+    "controller.board": "bench",
+    "controller.name": "Other",
+    "supply.voltage_v": 23.9,
+    "mask.film": "other",
+    "mask.hole_mm": 2.4,
+    "mask.hole_shape": "circle",
+    "mask.measured_ruler_mm": (99.0, 100.0),
+    "mask.allowance_mm": 0.8,
+    "mask.flap_mm": 12.0,
+    "mould.silicone": "Sylgard 184",
+    "mould.taper_length_mm": 2.9,
+    "mould.tip_silicone_mm": 0.3,
+    "mould.wall_gap_mm": 0.2,
+    "mould.draft_deg": 4.0,
+    "mould.wall_mm": 2.6,
+    "mould.waste_fraction": 0.5,
+    "printer.min_wall_mm": 0.7,
+    "coupling.gripper": "other",
+    "printer.profile": "other",
+}
+# What else must change with a field.
+WITH: dict[str, dict[str, Any]] = {"stack.film_mm": {"mask.film": "thick"}}
+# Limits that only refuse, or that a later step works by; changing them leaves the design as it is.
+LIMITS: dict[str, Any] = {"supply.max_ma": 400.0, "board.clearance_mm": 0.3}
+# Only one value is allowed so far.
+SINGLE = {"backing.variant", "board.connector_side"}
+
+
+@pytest.fixture(scope="module")
+def published(inputs: dict[str, Input]) -> Input:
+    """The published file with a second part, "other", of every kind that has only one."""
+    given = inputs["published"]
+    parts = given.catalogue
+    more = {
+        "leds": ("15406085BA300", {"exponent": 2.0}),
+        "films": ("TPU 100um", {"soften_c": 80.0}),
+        "grippers": ("robotiq_2f85", {"stroke_mm": 84.0}),
+        "printers": ("fdm 0.4", {"layer_mm": 0.1}),
+    }
+    tables = {
+        kind: {**getattr(parts, kind), "other": getattr(parts, kind)[name].model_copy(update=new)}
+        for kind, (name, new) in more.items()
+    }
+    film = parts.films["TPU 100um"].model_copy(update={"thickness_mm": 0.15})
+    tables["films"] = {**tables["films"], "thick": film}
+    return dataclasses.replace(given, catalogue=parts.model_copy(update=tables))
+
+
+@pytest.fixture(scope="module")
+def before(published: Input) -> Design:
+    """The published design."""
+    return derive(published)
+
+
+def _without_hash(design: Design) -> str:
+    return design_text(dataclasses.replace(design, parameters_hash=""))
+
+
+def test_these_tests_cover_every_field() -> None:
+    fields = set()
+    for name, field in Parameters.model_fields.items():
+        inner = getattr(field.annotation, "model_fields", None)
+        fields |= {f"{name}.{key}" for key in inner} if inner else {name}
+    assert fields == {*CHANGES, *LIMITS, *SINGLE}
+
+
+@pytest.mark.parametrize("field", CHANGES)
+def test_a_changed_value_changes_the_design_and_its_parameters_hash(
+    published: Input, before: Design, vary: Any, field: str
+) -> None:
+    after = derive(vary(published, {field: CHANGES[field], **WITH.get(field, {})}))
+    assert after.parameters_hash != before.parameters_hash
+    assert _without_hash(after) != _without_hash(before)
+
+
+@pytest.mark.parametrize("field", LIMITS)
+def test_a_changed_limit_changes_the_parameters_hash_alone(
+    published: Input, before: Design, vary: Any, field: str
+) -> None:
+    after = derive(vary(published, {field: LIMITS[field]}))
+    assert after.parameters_hash != before.parameters_hash
+    assert _without_hash(after) == _without_hash(before)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"controller.name": "Renamed", "name": "Renamed", "revision": "Z"},
+        {"mask.measured_ruler_mm": (99.2, 100.4)},
+        {"mask.hole_mm": 2.0, "mask.hole_shape": "circle"},
+        {"mask.film": "other"},
+        {"mould.silicone": "Sylgard 184", "emitter.current_ma": 10.0},
+        {"stack.silicone_mm": 1.6, "receiver.pull_up_ohm": 1e5},
+    ],
+    ids=", ".join,
+)
+def test_what_is_no_cell_or_wire_keeps_the_design_hash(
+    published: Input, before: Design, vary: Any, changes: dict[str, Any]
+) -> None:
+    after = derive(vary(published, changes))
+    assert after.layout.design_hash == before.layout.design_hash
+    assert after.layout == before.layout
+    assert after.parameters_hash != before.parameters_hash
+
+
+@pytest.mark.parametrize("field", ["grid.pitch_mm", "grid.columns", "receiver.multiplexer"])
+def test_cells_and_wires_change_the_design_hash(
+    published: Input, before: Design, vary: Any, field: str
+) -> None:
+    after = derive(vary(published, {field: CHANGES[field]}))
+    assert after.layout.design_hash != before.layout.design_hash
+
+
+def test_a_part_counts_by_its_figures_and_not_by_what_else_is_in_the_catalogue(
+    published: Input, inputs: dict[str, Input], before: Design
+) -> None:
+    assert derive(inputs["published"]).parameters_hash == before.parameters_hash
+    led = published.catalogue.leds["15406085BA300"].model_copy(update={"exponent": 1.5})
+    parts = published.catalogue.model_copy(update={"leds": {"15406085BA300": led}})
+    after = derive(dataclasses.replace(published, catalogue=parts))
+    assert after.parameters_hash != before.parameters_hash
+    assert after.layout.optics.emitter_exponent == 1.5
+
+
+def test_the_same_values_written_otherwise_give_the_same_design(
+    inputs: dict[str, Input], tmp_path: Any
+) -> None:
+    file = tmp_path / "mine.toml"
+    told = inputs["published"].sources[0].path.read_text(encoding="utf-8")
+    file.write_text(told.replace("pitch_mm = 6.0 ", "pitch_mm = 6 "), encoding="utf-8")
+    assert design_text(derive(load(file))) == design_text(derive(inputs["published"]))

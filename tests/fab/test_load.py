@@ -1,0 +1,145 @@
+"""Files, bases and catalogues together: what counts, where a fault is placed, what is found."""
+
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from lumitip_fab.derive import derive
+from lumitip_fab.errors import InputError, Problem
+from lumitip_fab.load import NAMED, Input, load
+
+DESIGN = Path(__file__).parents[2] / "design"
+BASE = 'extends = "presets/published.toml"\n'
+Write = Callable[[str], Path]
+
+
+@pytest.fixture
+def write(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Write:
+    """`write(text)`: a file of that text in a copy of the design folder."""
+    shutil.copytree(DESIGN, tmp_path / "design")
+    monkeypatch.chdir(tmp_path)
+
+    def saved(text: str) -> Path:
+        path = Path("design/x.toml")
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    return saved
+
+
+def _problems(path: Path) -> tuple[Problem, ...]:
+    with pytest.raises(InputError) as caught:
+        derive(load(path))
+    return caught.value.problems
+
+
+def test_what_a_file_says_wins_over_its_base_and_the_rest_is_the_bases(write: Write) -> None:
+    given = load(write(BASE + "[grid]\npitch_mm = 5.0\n"))
+    assert given.parameters.grid.pitch_mm == 5.0
+    assert given.parameters.grid.columns == (5, 4, 5, 4, 5, 4, 5)
+    assert [s.path.name for s in given.sources] == ["x.toml", "published.toml"]
+
+
+def test_lists_are_replaced_and_not_joined(write: Write) -> None:
+    assert load(write(BASE + "[grid]\ncolumns = [2, 1]\n")).parameters.grid.columns == (2, 1)
+
+
+def test_the_file_to_edit_is_complete_and_is_the_published_sensor() -> None:
+    mine, published = load(DESIGN / "fingertip.toml"), load(DESIGN / "presets" / "published.toml")
+    assert len(mine.sources) == len(published.sources) == 1
+    own, other = mine.parameters.model_dump(), published.parameters.model_dump()
+    assert {**own, "name": other["name"]} == other
+
+
+def test_a_file_outside_any_design_folder_uses_the_catalogue_of_the_package(
+    tmp_path: Path,
+) -> None:
+    file = tmp_path / "alone.toml"
+    shutil.copy(DESIGN / "fingertip.toml", file)
+    assert load(file).parameters == load(DESIGN / "fingertip.toml").parameters
+
+
+def test_a_part_of_ones_own_needs_no_python(write: Write) -> None:
+    leds = Path("design/parts/leds.toml")
+    text = leds.read_text(encoding="utf-8")
+    entry = text[text.index("[") :].replace("15406085BA300", "my own LED")
+    leds.write_text(text + "\n" + entry.split("\n\n")[0] + "\n", encoding="utf-8")
+    given = load(write(BASE + '[emitter]\nled = "my own LED"\n'))
+    assert given.named_parts()["emitter.led"].source
+    assert set(given.named_parts()) == set(NAMED)
+
+
+def test_a_fault_is_placed_in_the_file_that_set_the_value(write: Write) -> None:
+    given = load(write(BASE + "grid.pitch_mm = 5.0\n"))
+    assert given.problem("grid.pitch_mm", "m") == Problem("design/x.toml", 2, "grid.pitch_mm", "m")
+    inherited = given.problem("mask.hole_mm", "m")
+    assert inherited.file == "design/presets/published.toml"
+    line = Path(inherited.file).read_text(encoding="utf-8").splitlines()[inherited.line - 1]
+    assert line.startswith("hole_mm")
+
+
+def test_a_bad_base_does_not_hide_the_files_own_faults(write: Write) -> None:
+    problems = _problems(write('extends = "none.toml"\n[grid]\npich_mm = 5\n[mask]\nhole_mm = ""'))
+    assert [p.field for p in problems] == ["extends", "grid.pich_mm", "mask.hole_mm"]
+
+
+def test_faults_of_different_kinds_are_told_together(write: Write) -> None:
+    text = BASE + "[grid]\ncolumns = [5, 7]\n[stack]\nfloor_mm = 0.5\n[mask]\nhole_mm = 5.9\n"
+    assert [p.field for p in _problems(write(text))] == [
+        "grid.columns", "stack.floor_mm", "mask.hole_mm",
+    ]  # fmt: skip
+
+
+def test_problems_are_sorted_told_once_and_read_as_file_line_field_message() -> None:
+    late, early = Problem("b.toml", 3, "x", "late"), Problem("a.toml", 12, "", "early")
+    error = InputError([late, early, late])
+    assert error.problems == (early, late)
+    assert str(error) == "a.toml:12: early\nb.toml:3: x: late"
+    assert str(Problem("a.toml", 0, "", "cannot be read")) == "a.toml: cannot be read"
+
+
+def test_random_values_for_random_fields_are_derived_or_refused(write: Write) -> None:
+    published = load(DESIGN / "presets" / "published.toml").parameters.model_dump()
+    fields = [f"{s}.{k}" for s, t in published.items() if isinstance(t, dict) for k in t]
+    value = st.one_of(
+        st.floats().map(repr),
+        st.integers(-(10**20), 10**20).map(str),
+        st.floats(0.1, 100).map(repr),
+        st.sampled_from(
+            ["true", '""', '"x"', "[]", "[5, 4, 5]", "[[1]]", "{}", "{ a = 1 }", "2020-01-01",
+             "12:00:00", "[100.0, nan]", '"\\u0000"', "0xffff", "1e400", "[1, 2, 3, 2, 1]"]
+        ),
+    )  # fmt: skip
+    lines = st.dictionaries(st.sampled_from([*fields, "name", "grid", "extra", "mask.x"]), value,
+                            min_size=1, max_size=4)  # fmt: skip
+
+    @settings(
+        max_examples=60,
+        deadline=None,
+        derandomize=True,
+        database=None,
+        suppress_health_check=list(HealthCheck),
+    )
+    @given(lines)
+    def attempt(told: dict[str, str]) -> None:
+        path = write(BASE + "".join(f"{field} = {v}\n" for field, v in told.items()))
+        try:
+            derive(load(path))
+        except InputError as error:
+            for problem in error.problems:
+                assert problem.file.startswith("design/")
+                assert "\n" not in problem.message
+                assert len(str(problem)) < 600
+
+    attempt()
+
+
+def test_an_input_knows_the_part_behind_every_name() -> None:
+    given: Input = load(DESIGN / "presets" / "dense.toml")
+    parts = given.named_parts()
+    assert parts["receiver.multiplexer"] == given.catalogue.multiplexers["74HC4067PW"]
+    assert parts["coupling.gripper"] == given.catalogue.grippers["robotiq_2f85"]
