@@ -12,9 +12,9 @@ _NOTE = """# Casting the {finger} finger
 | {silicone}, part B | **{part_b_g:.2f} g** |
 | curing at room temperature | {cure_h:g} h |
 
-Print `{finger}_mould.3mf` open side up, without supports, in layers of {layer_mm:g} mm: the floor at
-{floor_mm:g} mm and the stops at {rim_mm:g} mm are then whole layers. The stops set the thickness of
-the silicone: cut off blobs, sand nothing.
+Print `{finger}_mould.3mf` open side up, without supports, in layers of {layer_mm:g} mm: the floor
+at {floor_mm:g} mm and the stops at {rim_mm:g} mm are then whole layers. The stops set the thickness
+of the silicone: cut off blobs, sand nothing.
 
 1. Glue the board into the backing, flush with its rim. Close every window on the back with tape,
    and fill the slit round the board with a thin line of silicone; let it cure.

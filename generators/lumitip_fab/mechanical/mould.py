@@ -53,7 +53,7 @@ def mould_files(
     for the person who pours."""
     solid = mould_solid(finger.notch, stack, outline, mould)
     to_sensor = mould_bed_to_sensor(stack, mould)
-    on_bed = placed(solid, np.linalg.inv(to_sensor))
+    on_bed = placed(solid, np.asarray(np.linalg.inv(to_sensor), dtype=np.float64))
     name = f"{finger.name}_mould"
     volume_ml = cast_volume_ml(finger, stack, outline, mould)
     note = casting_note(finger.name, volume_ml, stack, mould, printing)

@@ -1,7 +1,7 @@
 """The finger's skin: the silicone that a mould casts on it, the film over that, and the stops
 that set the thickness. All in the sensor frame.
 
-Side view of the silicone, gripping face up, and of a stop below its tip edge:
+Side view of the silicone, gripping face up:
 
      gripper end                                             tip
         ╭───────────────────────────────────────╮ face
@@ -10,6 +10,7 @@ Side view of the silicone, gripping face up, and of a stop below its tip edge:
 """
 
 import math
+from itertools import pairwise
 
 import numpy as np
 from build123d import Edge, Face, Plane, Solid, Vector, Wire
@@ -52,9 +53,7 @@ def drafted_prism(
     stack: Stack, outline: Outline, mould: Mould, z_min_mm: float, z_max_mm: float
 ) -> Solid:
     """What the mould's wall encloses between two heights."""
-    rings = [
-        offset_wire(outline, wall_offset_mm(stack, mould, z), z) for z in (z_min_mm, z_max_mm)
-    ]
+    rings = [offset_wire(outline, wall_offset_mm(stack, mould, z), z) for z in (z_min_mm, z_max_mm)]
     return Solid.make_loft(rings, ruled=True)
 
 
@@ -91,7 +90,7 @@ def side_solid(stack: Stack, outline: Outline, mould: Mould, shift_mm: float = 0
     middle = (end_y - diagonal, face_z - radius + diagonal)
     corners = [finish, (tip_y - taper, face_z), (out_y, out_z), (out_y, back_z),
                (wall_y - _FAR_MM, back_z), start]  # fmt: skip
-    edges = [Edge.make_line(_yz(a), _yz(b)) for a, b in zip(corners, corners[1:], strict=False)]
+    edges = [Edge.make_line(_yz(a), _yz(b)) for a, b in pairwise(corners)]
     edges.append(Edge.make_three_point_arc(_yz(start), _yz(middle), _yz(finish)))
     return Solid.extrude(Face(Wire(edges)), Vector(2 * _FAR_MM, 0, 0))
 

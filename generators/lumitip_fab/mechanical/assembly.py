@@ -1,0 +1,111 @@
+"""Both fingers with boards, silicone and film, facing each other in the gripper frame."""
+
+from collections.abc import Iterator
+from copy import copy
+
+import numpy as np
+from build123d import Color, Compound, Shape, Solid
+
+from lumitip_fab.artefact import Artefact
+from lumitip_fab.design import Board, Closing, Finger, Mould, Mount, Outline, Stack, Tip
+from lumitip_fab.frames import finger_to_gripper
+from lumitip_fab.mechanical import export
+from lumitip_fab.mechanical.backing import backing_solid
+from lumitip_fab.mechanical.bodies import Bodies, board_solid, part_solid
+from lumitip_fab.mechanical.exploded import exploded_view
+from lumitip_fab.mechanical.glb import Body, Colour, Group, glb
+from lumitip_fab.mechanical.shapes import placed
+from lumitip_fab.mechanical.skin import film_solid, silicone_solid
+
+OPENING_MM = 30.0
+CHORD_MM = 0.02
+_M_TO_MM = np.diag([1000.0, 1000.0, 1000.0, 1.0])
+_COLOURS: dict[str, Colour] = {
+    "backing": (0.82, 0.84, 0.86, 1.0),
+    "board": (0.10, 0.38, 0.24, 1.0),
+    "silicone": (0.75, 0.88, 0.95, 0.35),
+    "film": (0.08, 0.08, 0.09, 0.55),
+    "led": (0.95, 0.80, 0.35, 1.0),
+    "photodetector": (0.22, 0.24, 0.30, 1.0),
+    "multiplexer": (0.12, 0.12, 0.13, 1.0),
+    "resistor": (0.25, 0.22, 0.20, 1.0),
+}
+
+
+def assembly(
+    stack: Stack,
+    outline: Outline,
+    tip: Tip,
+    board: Board,
+    emitter: Finger,
+    receiver: Finger,
+    mount: Mount,
+    closing: Closing,
+    mould: Mould,
+) -> tuple[Artefact, ...]:
+    """STEP and GLB of the fingers in an open gripper, and an exploded drawing of the receiver."""
+    silicone, film = silicone_solid(stack, outline, mould), film_solid(stack, outline, mould)
+    both = [
+        Bodies(
+            finger=finger,
+            backing=backing_solid(finger, stack, outline, tip, board, mount),
+            board=board_solid(finger, stack, board),
+            silicone=silicone,
+            film=film,
+            parts=tuple(part_solid(part, stack) for part in finger.parts),
+        )
+        for finger in (emitter, receiver)
+    ]
+    opening = min(OPENING_MM, closing.max_opening_mm)
+    places = {
+        f.name: finger_to_gripper(f.name, mount, closing, opening) for f in (emitter, receiver)
+    }
+    tree = Compound(children=[placed(_coloured(b), places[b.finger.name]) for b in both])
+    groups = tuple(Group(b.finger.name, places[b.finger.name], tuple(_meshed(b))) for b in both)
+    drawing = exploded_view(both[1], stack, outline)
+    return (
+        Artefact("assembly/assembly.step", export.step(tree, "assembly"), frame="gripper"),
+        Artefact("assembly/assembly.glb", glb("assembly", groups), _M_TO_MM, "gripper"),
+        Artefact("assembly/exploded.svg", drawing.encode(), frame=""),
+    )
+
+
+def _coloured(bodies: Bodies) -> Compound:
+    """A finger as a tree of named and coloured shapes; parts of a kind are one shape."""
+    name = bodies.finger.name
+    children = [_told(f"{name}.{kind}", solid, kind) for kind, solid in _layers(bodies)]
+    for kind in dict.fromkeys(part.kind for part in bodies.finger.parts):
+        alike = [
+            solid
+            for part, solid in zip(bodies.finger.parts, bodies.parts, strict=True)
+            if part.kind == kind
+        ]
+        children.append(_told(f"{name}.{kind}s", Compound(alike), kind))
+    return Compound(label=name, children=children)
+
+
+def _told(label: str, shape: Shape, kind: str) -> Shape:
+    told = copy(shape)  # the fingers share silicone and film, under names of their own
+    told.label, told.color = label, Color(*_COLOURS[kind])
+    return told
+
+
+def _layers(bodies: Bodies) -> Iterator[tuple[str, Solid]]:
+    for kind in ("backing", "board", "silicone", "film"):
+        yield kind, getattr(bodies, kind)
+
+
+def _meshed(bodies: Bodies) -> Iterator[Body]:
+    """A finger's bodies for a GLB: parts of one size share a box, centred on its footprint."""
+    name = bodies.finger.name
+    for kind, solid in _layers(bodies):
+        yield Body(f"{name}.{kind}", export.mesh(solid, CHORD_MM), _COLOURS[kind])
+    boxes: dict[tuple[float, float, float], export.Mesh] = {}
+    for part, solid in zip(bodies.finger.parts, bodies.parts, strict=True):
+        size = (part.size_x_mm, part.size_y_mm, part.height_mm)
+        if size not in boxes:
+            corner = np.array([-size[0] / 2, -size[1] / 2, 0.0])
+            boxes[size] = export.mesh(Solid.make_box(*size))
+            boxes[size] = export.Mesh(boxes[size].points_mm + corner, boxes[size].triangles)
+        low = float(solid.bounding_box().min.Z)
+        yield Body(part.name, boxes[size], _COLOURS[part.kind], (part.x_mm, part.y_mm, low))

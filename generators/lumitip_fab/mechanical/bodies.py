@@ -1,0 +1,45 @@
+"""The bodies that make one finger: backing, board with its parts, silicone, film."""
+
+from dataclasses import dataclass
+
+from build123d import Face, Location, Plane, Solid, Vector, Wire
+
+from lumitip_fab.design import Board, Finger, Part, Point, Stack
+from lumitip_fab.mechanical.shapes import box_face
+
+
+@dataclass(frozen=True, eq=False)
+class Bodies:
+    """The solids of one finger in its sensor frame.
+
+    The silicone is whole: the parts on the board stick into it. Taking out a hundred boxes would
+    double the time and the size of every file, and show nothing more.
+    """
+
+    finger: Finger
+    backing: Solid
+    board: Solid
+    silicone: Solid
+    film: Solid
+    parts: tuple[Solid, ...]
+    """One box for each of the finger's parts, in the same order."""
+
+
+def part_solid(part: Part, stack: Stack) -> Solid:
+    """A part as a box on its side of the board."""
+    low = stack.rim_z_mm if part.side == "front" else stack.pocket_z_mm - part.height_mm
+    corner = Plane((part.box.x_min_mm, part.box.y_min_mm, low))
+    return Solid.make_box(part.size_x_mm, part.size_y_mm, part.height_mm, corner)
+
+
+def board_solid(finger: Finger, stack: Stack, board: Board) -> Solid:
+    """The board with the holes for pins and wires."""
+    holes = [_circle(at, board.hole_mm) for at in finger.holes]
+    holes += [_circle(at, finger.connector.drill_mm) for at in finger.connector.pads]
+    face = Face(box_face(board.box).outer_wire(), holes)
+    low = face.moved(Location((0, 0, stack.pocket_z_mm)))
+    return Solid.extrude(low, Vector(0, 0, stack.pcb_mm))
+
+
+def _circle(at: Point, diameter_mm: float) -> Wire:
+    return Wire.make_circle(diameter_mm / 2, Plane((at[0], at[1], 0.0)))
