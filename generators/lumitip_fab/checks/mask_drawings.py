@@ -11,7 +11,7 @@ import ezdxf
 import numpy as np
 from ezdxf import units
 
-from lumitip_fab.checks.mask_page import PageError, Points, Subpath
+from lumitip_fab.checks.mask_page import MALFORMED, PageError, Points, Subpath
 
 _SVG = "{http://www.w3.org/2000/svg}"
 _NONE = np.zeros((0, 2))
@@ -45,7 +45,7 @@ def read_svg(path: Path) -> Drawing:
         marks = [(float(e.attrib["cx"]), -float(e.attrib["cy"])) for e in rings]
     except FileNotFoundError as error:
         raise PageError("no such file") from error
-    except (OSError, XmlTree.ParseError, KeyError, ValueError, IndexError) as error:
+    except (OSError, XmlTree.ParseError, *MALFORMED) as error:
         raise PageError(f"cannot be read: {error!r:.200}") from error
     return Drawing(black, np.array(marks).reshape(-1, 2))
 
@@ -100,7 +100,7 @@ def read_dxf(path: Path) -> Drawing:
         folds = [np.array([(p.x, p.y) for p in (e.dxf.start, e.dxf.end)]) for e in layers["FOLD"]]
     except FileNotFoundError as error:
         raise PageError("no such file") from error
-    except (OSError, ezdxf.DXFError, KeyError, ValueError, AttributeError, TypeError) as error:
+    except (OSError, ezdxf.DXFError, *MALFORMED) as error:
         raise PageError(f"cannot be read: {error!r:.200}") from error
     if len(cuts) != 1:
         raise PageError(f"{len(cuts)} paths on layer CUT, one is needed")

@@ -52,7 +52,10 @@ def flaps_of(cut: Points, folds: tuple[Points, ...]) -> tuple[Flap, ...]:
             raise PageError("a fold does not end on the cut")
         first, last = sorted(int(i) for i in at)
         inner, outer = cut[first : last + 1], np.concatenate([cut[last:], cut[: first + 1]])
-        flaps.append(Flap(fold, min(inner, outer, key=len)))
+        flap = Flap(fold, min(inner, outer, key=len))
+        if len(flap.corners) < 4:
+            raise PageError("there is no flap on a fold")
+        flaps.append(flap)
     return tuple(flaps)
 
 

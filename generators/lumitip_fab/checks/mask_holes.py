@@ -56,7 +56,7 @@ def cut_of(page: Page, placed: Placed) -> Points:
         if p.stroked and not p.filled and len(p.subpaths) == 1
         and p.subpaths[0].closed and not len(p.subpaths[0].controls)
     ]  # fmt: skip
-    if not lines:
+    if not lines or len(max(lines, key=len)) < 3:
         raise PageError("no line to cut along")
     return placed.points(max(lines, key=len))
 
@@ -67,10 +67,11 @@ def sort_out(runs: Iterable[Subpath]) -> Black:
     Raises:
         PageError: if nothing is left for apertures.
     """
-    every = sorted(runs, key=_spread, reverse=True)
-    if not every:
-        raise PageError("the black is empty")
-    edge, rest = every[0], every[1:]
+    every = list(runs)
+    if not every or min(len(run.corners) for run in every) < 3:
+        raise PageError("the black is empty or has runs without area")
+    edge = max(every, key=_spread)
+    rest = [run for run in every if run is not edge]
     square = [r for r in rest if len(r.corners) == 4 and not len(r.controls)]
     holes = [r for r in rest if len(r.corners) != 4 or len(r.controls)]
     if not holes:

@@ -17,6 +17,11 @@ _BLACK = {"g": ((0.0,),), "rg": ((0.0, 0.0, 0.0),), "k": ((0.0, 0.0, 0.0, 1.0), 
 _FILLS = {"f": False, "F": False, "f*": True, "b": False, "b*": True, "B": False, "B*": True}
 _STROKES = ("S", "s", "b", "b*", "B", "B*")
 _HIDING = ("Do", "INLINE IMAGE", "W", "W*", "sh")
+# What readers raise on damaged files, beside their own exceptions.
+MALFORMED = (
+    ValueError, LookupError, TypeError, AttributeError, ArithmeticError, StopIteration,
+    RuntimeError,
+)  # fmt: skip
 _IDENTITY = np.eye(3)
 
 
@@ -90,7 +95,7 @@ def read_page(path: Path) -> Page:
                 reader.take(str(instruction.operator), instruction.operands)
     except FileNotFoundError as error:
         raise PageError("no such file") from error
-    except (OSError, pikepdf.PdfError, ValueError, KeyError, IndexError, TypeError) as error:
+    except (OSError, pikepdf.PdfError, *MALFORMED) as error:
         raise PageError(f"cannot be read: {error!r:.200}") from error
     if not reader.painted:
         raise PageError("nothing is painted on it")

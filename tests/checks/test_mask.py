@@ -1,0 +1,371 @@
+"""Damage the masks' files, and exactly the right checks fail."""
+
+import re
+import shutil
+from collections.abc import Callable, Iterator
+from decimal import Decimal
+from pathlib import Path
+from typing import Any
+
+import ezdxf
+import pikepdf
+import pytest
+
+from lumitip_fab.checks import mask
+from lumitip_fab.derive import derive
+from lumitip_fab.encoding import design_text, read_design
+from lumitip_fab.load import load
+from lumitip_fab.mask.files import mask_files
+
+A4, LETTER = "mask/emitter_mask_a4.pdf", "mask/emitter_mask_letter.pdf"
+SVG, DXF = "mask/emitter_mask.svg", "mask/emitter_mask.dxf"
+PAGE = {"page", "marks", "scale_x", "scale_y", "ruler", "mirrored"}
+BLACK = {"count", "position", "size", "shape", "web", "outline", "window", "clear"}
+DRAWN = {"svg", "dxf"}  # both are compared with the A4 page
+FLAPS = {"flaps", "folds", "reach"}
+
+Operation = tuple[list[Any], str]
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory, design_dir: Path) -> Path:
+    """The masks of the published design. Do not change them."""
+    out = tmp_path_factory.mktemp("masks")
+    d = derive(load(design_dir / "presets" / "published.toml"))
+    (out / "mask").mkdir()
+    (out / "design.json").write_text(design_text(d), encoding="utf-8")
+    for finger in d.fingers:
+        made = mask_files(finger, d.outline, d.stack, d.tip, d.mould, d.mount, d.mask, d.title)
+        for artefact in made:
+            (out / artefact.path).write_bytes(artefact.data)
+    return out
+
+
+def failing(folder: Path) -> set[str]:
+    design = read_design(folder / "design.json")
+    found = {m.check for m in mask.measure(folder, design) if not m.passed}
+    return {name.removeprefix("mask.") for name in found}
+
+
+# Damages of a page edit the operators of its content stream.
+
+
+def edited(file: Path, change: Callable[[list[Operation]], list[Operation]]) -> None:
+    with pikepdf.open(file, allow_overwriting_input=True) as pdf:
+        page = pdf.pages[0]
+        before = [
+            ([Decimal(str(v)) if isinstance(v, int | Decimal) else v for v in i.operands],
+             str(i.operator))
+            for i in pikepdf.parse_content_stream(page)
+        ]  # fmt: skip
+        after = [(o, pikepdf.Operator(name)) for o, name in change(before)]
+        page.Contents = pdf.make_stream(pikepdf.unparse_content_stream(after))
+        pdf.save(file)
+
+
+def runs(operations: list[Operation]) -> Iterator[tuple[int, int]]:
+    """First and last operator of each run of the black: edge, window, then the apertures."""
+    start = 0
+    for at, (_, name) in enumerate(operations):
+        if name == "m":
+            start = at
+        elif name == "h":
+            yield start, at
+        elif name == "f*":
+            return
+
+
+def moved(
+    which: int, by_mm: float, corners: slice = slice(None), axis: int = 0
+) -> Callable[..., Any]:
+    """Move a run of the black, or some corners of it, in the sensor frame."""
+
+    def change(operations: list[Operation]) -> list[Operation]:
+        first, last = list(runs(operations))[which]
+        for operands, _ in operations[first:last][corners]:
+            operands[axis] += Decimal(str(by_mm))
+        return operations
+
+    return change
+
+
+def reshaped(turn: complex) -> Callable[..., Any]:
+    """Turn and scale one aperture about its centre."""
+
+    def change(operations: list[Operation]) -> list[Operation]:
+        first, last = list(runs(operations))[10]
+        points = [complex(*map(float, operands)) for operands, _ in operations[first:last]]
+        centre = sum(points) / len(points)
+        for (operands, _), point in zip(operations[first:last], points, strict=True):
+            new = centre + (point - centre) * turn
+            operands[:] = [Decimal(f"{new.real:.6f}"), Decimal(f"{new.imag:.6f}")]
+        return operations
+
+    return change
+
+
+def removed(operations: list[Operation]) -> list[Operation]:
+    first, last = list(runs(operations))[7]
+    return operations[:first] + operations[last + 1 :]
+
+
+def doubled(operations: list[Operation]) -> list[Operation]:
+    first, last = list(runs(operations))[7]
+    return operations[: last + 1] + operations[first:]
+
+
+def without_window(operations: list[Operation]) -> list[Operation]:
+    first, last = list(runs(operations))[1]
+    return operations[:first] + operations[last + 1 :]
+
+
+def scaled(across: float, up: float) -> Callable[..., Any]:
+    """Scale the whole page, as a wrong print setting does."""
+
+    def change(operations: list[Operation]) -> list[Operation]:
+        scale = next(o for o, name in operations if name == "cm" and float(o[0]) > 2)
+        scale[0], scale[3] = scale[0] * Decimal(str(across)), scale[3] * Decimal(str(up))
+        return operations
+
+    return change
+
+
+def facing(across: int, up: int) -> Callable[..., Any]:
+    """Set the directions of the artwork, which are -1 and 1."""
+
+    def change(operations: list[Operation]) -> list[Operation]:
+        matrix = next(o for o, name in operations if name == "cm" and float(o[0]) == -1)
+        matrix[0], matrix[3] = Decimal(across), Decimal(up)
+        return operations
+
+    return change
+
+
+def paths(operations: list[Operation]) -> Iterator[tuple[int, int]]:
+    """First and last operator of each painted path."""
+    start = None
+    for at, (_, name) in enumerate(operations):
+        if name in ("m", "re") and start is None:
+            start = at
+        elif name in ("S", "s", "f", "f*", "n") and start is not None:
+            yield start, at
+            start = None
+
+
+def registration(operations: list[Operation]) -> tuple[int, int]:
+    return next(
+        (a, b) for a, b in paths(operations) if [n for _, n in operations[a:b]].count("c") == 4
+    )
+
+
+def mark_removed(operations: list[Operation]) -> list[Operation]:
+    first, last = registration(operations)
+    return operations[:first] + operations[last + 1 :]
+
+
+def mark_moved(operations: list[Operation]) -> list[Operation]:
+    first, last = registration(operations)
+    for operands, name in operations[first:last]:
+        if name in "mlc":
+            operands[::2] = [v + Decimal("0.025") for v in operands[::2]]
+    return operations
+
+
+def letter(operations: list[Operation]) -> tuple[int, int]:
+    return next((a, b) for a, b in paths(operations) if b - a == 11 and operations[b][1] == "f")
+
+
+def letter_removed(operations: list[Operation]) -> list[Operation]:
+    first, last = letter(operations)
+    return operations[:first] + operations[last + 1 :]
+
+
+def letter_flipped(operations: list[Operation]) -> list[Operation]:
+    """In its own place, so that only its shape tells."""
+    first, last = letter(operations)
+    corners = [o for o, name in operations[first:last] if name in "ml"]
+    middle = min(o[0] for o in corners) + max(o[0] for o in corners)
+    for operands in corners:
+        operands[0] = middle - operands[0]
+    return operations
+
+
+def ruler_shortened(operations: list[Operation]) -> list[Operation]:
+    first, last = next(
+        (a, b) for a, b in paths(operations) if [n for _, n in operations[a:b]].count("m") > 100
+    )
+    for operands, _ in operations[first:last]:
+        if float(operands[0]) == 100:
+            operands[0] = Decimal("99.9")
+    return operations
+
+
+def speck_added(operations: list[Operation]) -> list[Operation]:
+    at = next(i for i, (_, name) in enumerate(operations) if name == "f*") + 1
+    x, y = (Decimal(v) for v in ("15.3", "12.0"))  # in the first aperture
+    half = Decimal("0.2")
+    return [*operations[:at], ([x, y, half, half], "re"), ([], "f"), *operations[at:]]
+
+
+def text_moved(operations: list[Operation]) -> list[Operation]:
+    matrix = next(o for o, name in reversed(operations) if name == "Tm")
+    matrix[4] -= 60
+    return operations
+
+
+def picture_added(operations: list[Operation]) -> list[Operation]:
+    return [([pikepdf.Name("/Im0")], "Do"), *operations]
+
+
+def page_damage(file: str, change: Callable[..., Any]) -> Callable[[Path], None]:
+    return lambda out: edited(out / file, change)
+
+
+# Damages of the drawings.
+
+
+def cut_corner_moved(file: Path, corner: int, share: float) -> None:
+    """Move two outer corners of a flap along its sides: longer above 1, shorter below."""
+    document = ezdxf.readfile(file)
+    cut = next(iter(document.modelspace().query('LWPOLYLINE[layer=="CUT"]')))
+    points = [tuple(p) for p in cut.get_points()]
+    for inner, outer in ((corner - 1, corner), (corner + 2, corner + 1)):
+        (x0, y0), (x1, y1) = points[inner][:2], points[outer][:2]
+        points[outer] = (x0 + share * (x1 - x0), y0 + share * (y1 - y0), *points[outer][2:])
+    cut.set_points(points)
+    document.saveas(file)
+
+
+def flaps_overlapping(out: Path) -> None:
+    document = ezdxf.readfile(out / DXF)
+    cut = next(iter(document.modelspace().query('LWPOLYLINE[layer=="CUT"]')))
+    points = [tuple(p) for p in cut.get_points()]
+    at = 3 * 4 + 2  # second outer corner of the flap at the waist, over to its neighbour
+    points[at] = (points[at][0], points[at][1] + 8, *points[at][2:])
+    cut.set_points(points)
+    document.saveas(out / DXF)
+
+
+def fold_astray(out: Path) -> None:
+    """A fold from the start of one flap to the end of the next: a chord too long."""
+    document = ezdxf.readfile(out / DXF)
+    one, other = list(document.modelspace().query('LINE[layer=="FOLD"]'))[1:3]
+    one.dxf.end = other.dxf.end
+    other.destroy()
+    document.saveas(out / DXF)
+
+
+def dxf_in_inches(out: Path) -> None:
+    document = ezdxf.readfile(out / DXF)
+    document.units = ezdxf.units.IN
+    document.saveas(out / DXF)
+
+
+def svg_hole_moved(out: Path) -> None:
+    lines = (out / SVG).read_text().splitlines()
+    first = next(i for i, line in enumerate(lines) if 'id="black"' in line)
+    x = re.match(r"M([\d.]+)", lines[first + 5])
+    assert x
+    lines[first + 5] = lines[first + 5].replace(x[1], f"{float(x[1]) + 0.3:.5f}", 1)
+    (out / SVG).write_text("\n".join(lines))
+
+
+def svg_in_inches(out: Path) -> None:
+    text = (out / SVG).read_text()
+    (out / SVG).write_text(re.sub(r'width="([\d.]+)mm"', r'width="\1in"', text, count=1))
+
+
+def truncated(file: str) -> Callable[[Path], None]:
+    return lambda out: (out / file).write_bytes((out / file).read_bytes()[:1500]) and None
+
+
+def papers_swapped(out: Path) -> None:
+    shutil.copy(out / A4, out / LETTER)
+
+
+def fingers_swapped(out: Path) -> None:
+    shutil.copy(out / A4.replace("emitter", "receiver"), out / A4)
+
+
+SIXTH_OF_A_TURN = 3**0.5 / 2 + 0.5j  # half of one: 30°
+
+DAMAGES: dict[str, tuple[Callable[[Path], None], set[str]]] = {
+    "hole moved 0.05 mm": (page_damage(A4, moved(9, 0.05)), {"position", "facing", *DRAWN}),
+    "hole moved on letter": (page_damage(LETTER, moved(9, 0.05)), {"position", "facing"}),
+    "hole moved 0.013 mm": (page_damage(LETTER, moved(9, 0.013)), {"position"}),
+    "hole dented": (
+        page_damage(LETTER, moved(9, 0.1, slice(0, 1))),
+        {"position", "size", "shape"},
+    ),
+    "hole enlarged": (page_damage(A4, reshaped(1.02 + 0j)), {"size", *DRAWN}),
+    "hole turned": (page_damage(LETTER, reshaped(SIXTH_OF_A_TURN)), {"shape"}),
+    "hole removed": (
+        page_damage(A4, removed),
+        {"count", "position", "facing", *DRAWN},
+    ),
+    "hole doubled": (page_damage(A4, doubled), {"count", "web", *DRAWN}),
+    "holes touch": (
+        page_damage(LETTER, moved(9, 3.3, axis=1)),
+        {"position", "facing", "web"},
+    ),
+    "not mirrored": (page_damage(LETTER, facing(1, 1)), {"mirrored"}),
+    "half a turn": (
+        page_damage(LETTER, facing(1, -1)),
+        {"mirrored", "position", "facing", "outline", "window"},
+    ),
+    "letter removed": (page_damage(LETTER, letter_removed), {"mirrored"}),
+    "letter flipped": (page_damage(LETTER, letter_flipped), {"mirrored"}),
+    "page scaled 0.5 %": (page_damage(LETTER, scaled(1.005, 1.005)), {"scale_x", "scale_y"}),
+    "page widened 0.2 %": (page_damage(A4, scaled(1.002, 1)), {"scale_x"}),
+    "page lengthened 0.2 %": (page_damage(A4, scaled(1, 1.002)), {"scale_y"}),
+    "mark removed": (page_damage(LETTER, mark_removed), {*PAGE, *BLACK, "facing"}),
+    "mark moved": (page_damage(LETTER, mark_moved), {"marks"}),
+    "ruler shortened": (page_damage(LETTER, ruler_shortened), {"ruler"}),
+    "edge moved": (
+        page_damage(A4, moved(0, 0.3, slice(40, 41))),
+        {"outline", *DRAWN},
+    ),
+    "window moved": (page_damage(A4, moved(1, 0.2)), {"window", *DRAWN}),
+    "window missing": (page_damage(LETTER, without_window), {"window"}),
+    "speck in a hole": (page_damage(LETTER, speck_added), {"clear"}),
+    "text off the page": (page_damage(LETTER, text_moved), {"page"}),
+    "picture added": (page_damage(LETTER, picture_added), {*PAGE, *BLACK, "facing"}),
+    "letter is A4": (papers_swapped, {"page"}),
+    "other finger's": (fingers_swapped, {"window", *DRAWN}),
+    "page truncated": (truncated(A4), {*PAGE, *BLACK, "facing", *DRAWN}),
+    "page missing": (lambda out: (out / LETTER).unlink(), {*PAGE, *BLACK, "facing"}),
+    "flap over coupling": (lambda out: cut_corner_moved(out / DXF, 10, 1.8), {"folds", "dxf"}),
+    "flap too short": (lambda out: cut_corner_moved(out / DXF, 10, 0.3), {"reach", "dxf"}),
+    "flaps overlap": (flaps_overlapping, {"flaps", "dxf"}),
+    "fold astray": (fold_astray, {"folds"}),
+    "drawing in inches": (dxf_in_inches, {"dxf", *FLAPS}),
+    "drawing truncated": (truncated(DXF), {"dxf", *FLAPS}),
+    "drawing missing": (lambda out: (out / DXF).unlink(), {"dxf", *FLAPS}),
+    "SVG hole moved": (svg_hole_moved, {"svg"}),
+    "SVG in inches": (svg_in_inches, {"svg"}),
+    "SVG truncated": (truncated(SVG), {"svg"}),
+}
+
+
+@pytest.mark.parametrize("file", [LETTER, SVG, DXF])
+@pytest.mark.parametrize("share", [0.0, 0.3, 0.6, 0.9])
+def test_no_damage_raises(file: str, share: float, whole: Path, tmp_path: Path) -> None:
+    out = Path(shutil.copytree(whole, tmp_path / "damaged"))
+    data = (whole / file).read_bytes()
+    (out / file).write_bytes(data[: int(share * len(data))])
+    assert failing(out)
+
+
+@pytest.mark.parametrize("name", DAMAGES)
+def test_damage_fails_exactly(name: str, whole: Path, tmp_path: Path) -> None:
+    damage, expected = DAMAGES[name]
+    out = Path(shutil.copytree(whole, tmp_path / "damaged"))
+    damage(out)
+    assert failing(out) == expected
+
+
+def test_every_check_is_in_a_damage(whole: Path) -> None:
+    found = list(mask.measure(whole, read_design(whole / "design.json")))
+    assert not [m for m in found if not m.passed]
+    names = {m.check.removeprefix("mask.") for m in found}
+    assert names == set().union(*(expected for _, expected in DAMAGES.values()))
