@@ -11,6 +11,7 @@ PAGE_MARGIN_MM = 8.0  # most printers reach 5 mm from the edge; registration mar
 BESIDE_MM = 15.0  # the upright ruler with its figures, left and, for balance, right
 ABOVE_AND_BELOW_MM = 50.0  # heading, level ruler and notes
 RULER_MM = 110.0  # 100 mm with its figures
+LEAST_REACH_MM = 2.0  # of a flap onto the back, to hold there
 MARK_SHARE = (0.42, 0.72)  # of the tip flap's length: clear of its black band and of the name
 MARK_MM = 4.0
 MARK_INSET_MM = 0.5  # from the tip flap's side
@@ -28,6 +29,14 @@ def derive_mask(given: Input, outline: Outline, plan: Plan, faults: Faults) -> M
         "mask.hole_mm",
         f"{p.mask.hole_mm:g} given, which leaves {lowest - window:.2f} mm of web between the last "
         f"row and the connector's window; at least {LEAST_WEB_MM} mm is needed",
+    )
+    side = p.stack.floor_mm + p.stack.pcb_mm + p.stack.silicone_mm
+    reach = p.mask.flap_mm + p.mask.allowance_mm - side
+    faults.refuse_unless(
+        reach >= LEAST_REACH_MM,
+        "mask.flap_mm",
+        f"{p.mask.flap_mm:g} given, which reaches {max(reach, 0):.2f} mm onto the back of a finger "
+        f"{side:g} mm thick; at least {side - p.mask.allowance_mm + LEAST_REACH_MM:.2f} is needed",
     )
     sheet = _sheet(outline, p.mask.allowance_mm + p.mask.flap_mm)
     needed = (
