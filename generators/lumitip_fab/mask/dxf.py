@@ -34,6 +34,8 @@ def dxf_drawing(artwork: Artwork, mask: Mask) -> bytes:
         _film(space, artwork)
         _apertures(space, artwork, mask)
         _marks(space, artwork, mask)
+        for kind in sorted(document.entitydb.dxf_types_in_use()):
+            document.classes.add_class(kind)  # else in the order of a set, which varies
         stream = io.StringIO()
         document.write(stream)
     return stream.getvalue().encode()
