@@ -164,11 +164,11 @@ def test_same_bytes_in_any_process(design_dir: Path) -> None:
             [sys.executable, "-c", script, str(file)], env={**os.environ, "PYTHONHASHSEED": seed},
             check=True, capture_output=True, text=True,
         ).stdout
-        for seed in ("0", "1")
+        for seed in ("0", "1", "4", "77")
     ]  # fmt: skip
     design = derive(load(file))
     here = "".join(f"{a.path} {hashlib.sha256(a.data).hexdigest()}\n" for a in made(design))
-    assert told[0] == told[1] == here
+    assert set(told) == {here}
 
 
 def test_metadata(preset: Callable[[str], Design], tmp_path: Path) -> None:
