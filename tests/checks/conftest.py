@@ -1,0 +1,38 @@
+"""Masks to damage, and the names of the checks that then fail."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from lumitip_fab.checks import mask
+from lumitip_fab.derive import derive
+from lumitip_fab.encoding import design_text, read_design
+from lumitip_fab.load import load
+from lumitip_fab.mask.files import mask_files
+
+
+@pytest.fixture(scope="session")
+def masks(tmp_path_factory: pytest.TempPathFactory, design_dir: Path) -> Path:
+    """The masks of the published design and nothing else. Do not change them."""
+    out = tmp_path_factory.mktemp("masks")
+    d = derive(load(design_dir / "presets" / "published.toml"))
+    (out / "mask").mkdir()
+    (out / "design.json").write_text(design_text(d), encoding="utf-8")
+    for finger in d.fingers:
+        made = mask_files(finger, d.outline, d.stack, d.tip, d.mould, d.mount, d.mask, d.title)
+        for artefact in made:
+            (out / artefact.path).write_bytes(artefact.data)
+    return out
+
+
+@pytest.fixture(scope="session")
+def failing_masks() -> Callable[[Path], set[str]]:
+    """`failing_masks(folder)`: names of the mask's checks that fail there, without `mask.`."""
+
+    def names(folder: Path) -> set[str]:
+        design = read_design(folder / "design.json")
+        found = {m.check for m in mask.measure(folder, design) if not m.passed}
+        return {name.removeprefix("mask.") for name in found}
+
+    return names
