@@ -34,8 +34,6 @@ def dxf_drawing(artwork: Artwork, mask: Mask) -> bytes:
         _film(space, artwork)
         _apertures(space, artwork, mask)
         _marks(space, artwork, mask)
-        for kind in sorted(document.entitydb.dxf_types_in_use()):
-            document.classes.add_class(kind)  # else in the order of a set, which varies
         # ezdxf lists the classes in use in the order of a set of strings.
         document.classes.add_required_classes(document.dxfversion)
         document.classes.classes = dict(sorted(document.classes.classes.items()))
