@@ -62,10 +62,11 @@ def assembly(
     }
     tree = Compound(children=[placed(_coloured(b), places[b.finger.name]) for b in both])
     groups = tuple(Group(b.finger.name, places[b.finger.name], tuple(_meshed(b))) for b in both)
+    scene = glb("assembly", groups, {"opening_mm": opening})
     drawing = exploded_view(both[1], stack, outline)
     return (
         Artefact("assembly/assembly.step", export.step(tree, "assembly"), frame="gripper"),
-        Artefact("assembly/assembly.glb", glb("assembly", groups), _M_TO_MM, "gripper"),
+        Artefact("assembly/assembly.glb", scene, _M_TO_MM, "gripper"),
         Artefact("assembly/exploded.svg", drawing.encode(), frame=""),
     )
 

@@ -36,12 +36,13 @@ class Group:
     bodies: tuple[Body, ...]
 
 
-def glb(scene: str, groups: tuple[Group, ...]) -> bytes:
+def glb(scene: str, groups: tuple[Group, ...], extras: dict[str, float]) -> bytes:
     """A GLB file with a node for each group and each body.
 
     Args:
         scene: name of the root.
         groups: what is in it.
+        extras: what else the file says of the scene.
     """
     store = _Store()
     nodes: list[dict[str, Any]] = []
@@ -62,7 +63,7 @@ def glb(scene: str, groups: tuple[Group, ...]) -> bytes:
     told = {
         "asset": {"version": "2.0", "generator": "Lumitip"},
         "scene": 0,
-        "scenes": [{"name": scene, "nodes": roots}],
+        "scenes": [{"name": scene, "nodes": roots, "extras": extras}],
         "nodes": nodes,
         **store.told(),
     }

@@ -1,0 +1,188 @@
+"""The assembled gripper: what faces what, what touches first, and that nothing else touches.
+
+Measured from the bodies of the GLB file, in the gripper frame: the fingers meet at z = 0.
+"""
+
+import math
+from collections.abc import Iterator
+from itertools import combinations
+from pathlib import Path
+
+import numpy as np
+
+from lumitip_fab.checks import overlap
+from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip_fab.checks.scene import Node, Scene, read_scene
+from lumitip_fab.checks.solids import Vectors
+from lumitip_fab.design import Design, Finger
+from lumitip_fab.errors import OutputError
+from lumitip_fab.frames import applied, mount_to_sensor, translation
+
+READS = ("assembly/assembly.glb",)
+NAMES = (
+    "assembly.bodies", "assembly.facing", "assembly.lean", "assembly.skew",
+    "assembly.first_contact", "assembly.opening", "assembly.stroke", "assembly.interference",
+)  # fmt: skip
+LAYERS = ("backing", "board", "silicone", "film")
+FACING_MM = 0.05
+LEAN_DEG = 0.02
+CONTACT_MM = 4.0
+OPENING_MM = 0.02
+STROKE_MM = 0.05
+SHARED_MM3 = 0.05
+_FILE = "assembly/assembly.glb"
+_FLAT = 0.9  # of the face's own normal: leaves out taper and rounding
+
+
+def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
+    """Hold the assembly against the design."""
+    try:
+        scene = read_scene(outputs / _FILE)
+    except OutputError as error:
+        yield from (unreadable(name, _FILE, str(error)) for name in NAMES)
+        return
+    missing = [name for name in _wanted(design) if name not in scene.nodes]
+    note = f"of {len(scene.nodes)}" + (f", first {missing[0]}" if missing else "")
+    yield Measurement("assembly.bodies", _FILE, len(missing), 0, 0, "missing", note)
+    if missing:
+        reason = f"{missing[0]} is missing"
+        yield from (unreadable(name, _FILE, reason) for name in NAMES[1:])
+        return
+    yield _facing(scene, design)
+    yield from _leans(scene, design)
+    yield from _contacts(scene, design)
+    yield from _openings(scene, design)
+    yield from _interference(scene, design)
+
+
+def _wanted(design: Design) -> Iterator[str]:
+    for finger in design.fingers:
+        yield from (f"{finger.name}.{layer}" for layer in LAYERS)
+        yield from (part.name for part in finger.parts)
+
+
+def _facing(scene: Scene, design: Design) -> Measurement:
+    """LED i against photodetector i, seen along z."""
+    numbers = range(1, len(design.layout) + 1)
+    lit = np.array([scene.nodes[f"D{i}"].centre_mm for i in numbers])
+    seen = np.array([scene.nodes[f"Q{i}"].centre_mm for i in numbers])
+    apart = np.hypot(*(lit - seen)[:, :2].T)
+    worst = int(apart.argmax())
+    return Measurement("assembly.facing", _FILE, float(apart[worst]), 0, FACING_MM, "mm",
+                       f"D{worst + 1} to Q{worst + 1}, the worst of {len(apart)}")  # fmt: skip
+
+
+def _leans(scene: Scene, design: Design) -> Iterator[Measurement]:
+    """How far each face is tilted towards the other finger at the tip."""
+    tilt = design.mount.tilt_deg
+    leans = [_lean_deg(scene.nodes[f"{finger.name}.film"]) for finger in design.fingers]
+    for finger, lean in zip(design.fingers, leans, strict=True):
+        yield Measurement("assembly.lean", f"{_FILE}: {finger.name}", lean, tilt - LEAN_DEG,
+                          tilt + LEAN_DEG, "deg", "tip inward")  # fmt: skip
+    yield Measurement("assembly.skew", _FILE, sum(leans), unit="deg",
+                      note="between the axes of LED and photodetector; information")  # fmt: skip
+
+
+def _lean_deg(film: Node) -> float:
+    mesh = film.mesh
+    flat = mesh.face_normals[:, 2] > _FLAT
+    summed = (mesh.face_normals * mesh.area_faces[:, None])[flat]
+    heights = mesh.triangles_center[flat][:, 2]
+    face = summed[heights > heights.max(initial=-math.inf) - 1e-3].sum(axis=0)
+    normal = film.to_scene[:3, :3] @ face
+    return float(np.degrees(np.arctan2(-normal[1], abs(normal[2]))))
+
+
+def _contacts(scene: Scene, design: Design) -> Iterator[Measurement]:
+    """The line of each face that stands out farthest, by its distance from the tip."""
+    for finger in design.fingers:
+        film = scene.nodes[f"{finger.name}.film"]
+        place = film.points_mm[_reach_mm(film, finger).argmax()]
+        yield Measurement("assembly.first_contact", f"{_FILE}: {finger.name}",
+                          float(design.outline.tip_y_mm - place[1]), 0, CONTACT_MM, "mm",
+                          "from the tip edge")  # fmt: skip
+
+
+def _reach_mm(node: Node, finger: Finger) -> Vectors:
+    """How far each corner stands towards the other finger, from the mid-plane."""
+    return np.asarray(node.in_scene_mm[:, 2] * _inward(finger))
+
+
+def _inward(finger: Finger) -> float:
+    return 1.0 if finger.name == "receiver" else -1.0
+
+
+def _openings(scene: Scene, design: Design) -> Iterator[Measurement]:
+    """Skin to skin as it is and as the file says, and with the gripper open."""
+    stated = scene.extras.get("opening_mm", math.nan)
+    opening = _opening_mm(scene, design)
+    yield Measurement("assembly.opening", _FILE, opening, stated - OPENING_MM, stated + OPENING_MM,
+                      "mm", "skin to skin")  # fmt: skip
+    widest = design.mount.stroke_mm
+    for finger in design.fingers:
+        skin = _reach_mm(scene.nodes[f"{finger.name}.film"], finger).max()
+        bolt = _bolt_z_mm(scene.nodes[f"{finger.name}.backing"], design) * _inward(finger)
+        widest += design.mount.pad_w_mm - (skin - bolt)
+    wanted = design.closing.max_opening_mm
+    yield Measurement("assembly.stroke", _FILE, float(widest), wanted - STROKE_MM,
+                      wanted + STROKE_MM, "mm", "skin to skin in the open gripper")  # fmt: skip
+
+
+def _opening_mm(scene: Scene, design: Design) -> float:
+    reaches = [_reach_mm(scene.nodes[f"{f.name}.film"], f).max() for f in design.fingers]
+    return float(-sum(reaches))
+
+
+def _bolt_z_mm(backing: Node, design: Design) -> float:
+    """Height of the bolt's axis in the gripper frame, by its hole in the mount plane."""
+    mount = design.mount
+    to_sensor = mount_to_sensor(mount, design.stack)
+    corners = applied(np.asarray(np.linalg.inv(to_sensor), dtype=np.float64), backing.points_mm)
+    radius = np.hypot(corners[:, 0], corners[:, 1] - mount.bolt_w_mm)
+    rim = corners[(np.abs(corners[:, 2]) < 0.01) & (radius < mount.bolt_hole_mm / 2 + 0.4)]
+    if not len(rim):
+        return math.nan
+    middle = (rim.min(axis=0) + rim.max(axis=0)) / 2
+    return float(applied(backing.to_scene @ to_sensor, middle[None])[0, 2])
+
+
+def _interference(scene: Scene, design: Design) -> Iterator[Measurement]:
+    """What bodies of a finger share, and what the fingers share when they just touch."""
+    try:
+        fingers = [_bodies(scene, finger) for finger in design.fingers]
+    except OutputError as error:
+        yield unreadable("assembly.interference", _FILE, str(error))
+        return
+    for finger, bodies in zip(design.fingers, fingers, strict=True):
+        pairs = [p for p in combinations(bodies, 2) if p != ("silicone", "parts")]
+        yield _worst(
+            f"{_FILE}: {finger.name}",
+            {f"{a} and {b}": overlap.shared_mm3(bodies[a], bodies[b]) for a, b in pairs},
+        )
+    opening = _opening_mm(scene, design)
+    closed = []
+    for finger, bodies in zip(design.fingers, fingers, strict=True):
+        to_scene = scene.nodes[f"{finger.name}.film"].to_scene
+        shut = translation(0.0, 0.0, _inward(finger) * opening / 2) @ to_scene
+        closed.append({name: overlap.placed(body, shut) for name, body in bodies.items()})
+    yield _worst(f"{_FILE}: closed", {
+        f"{a} and {b}": overlap.shared_mm3(closed[0][a], closed[1][b])
+        for a in closed[0] for b in closed[1]
+    })  # fmt: skip
+
+
+def _bodies(scene: Scene, finger: Finger) -> dict[str, overlap.Solid]:
+    """The layers and, as one body, the parts."""
+    made = {
+        layer: overlap.solid(scene.nodes[f"{finger.name}.{layer}"].mesh, layer) for layer in LAYERS
+    }
+    made["parts"] = overlap.joined(
+        [overlap.solid(scene.nodes[part.name].mesh, part.name) for part in finger.parts]
+    )
+    return made
+
+
+def _worst(subject: str, shared: dict[str, float]) -> Measurement:
+    which = max(shared, key=lambda pair: shared[pair])
+    return Measurement("assembly.interference", subject, shared[which], 0, SHARED_MM3, "mm³",
+                       f"{which}, the worst of {len(shared)} pairs")  # fmt: skip

@@ -1,0 +1,185 @@
+"""The moulds: what the silicone and the finger will meet, measured from the STL files.
+
+Everything is in the mould's own frame: it stands on z = 0, open side up.
+"""
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import manifold3d
+import numpy as np
+import shapely
+
+from lumitip_fab.checks import mould_walls, overlap, solids
+from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip_fab.checks.walls import walls
+from lumitip_fab.design import Design, Finger
+from lumitip_fab.errors import OutputError
+from lumitip_fab.frames import applied, mould_bed_to_sensor, mount_to_sensor
+
+READS = ("mould/*_mould.stl", "mould/*_casting.md", "backing/*_backing.stl")
+NAMES = (
+    "mould.watertight", "mould.bodies", "mould.thickness", "mould.tip_thickness", "mould.stops",
+    "mould.gap", "mould.draft", "mould.undercut", "mould.min_wall", "mould.volume",
+    "mould.fits_bed", "mould.seat",
+)  # fmt: skip
+THICKNESS_MM = 0.02
+STOPS_MM = 0.02
+VOLUME_FRACTION = 0.02
+SHARED_MM3 = 0.05
+GRID_MM = 0.8
+_PAD_INNER, _PAD_OUTER = 0.95, 1.13  # of a pad's radius: on it, and beside its drafted foot
+_LINE_MM = 0.15  # how far under the plate the tip line is probed
+_STATED = re.compile(r"stays on the finger \| \*\*([0-9.]+) mL\*\*")
+
+
+def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
+    """Hold each finger's mould against the design."""
+    for finger in design.fingers:
+        file = f"mould/{finger.name}_mould.stl"
+        try:
+            mesh = solids.read_mesh(outputs / file)
+        except OutputError as error:
+            yield from (unreadable(name, file, str(error)) for name in NAMES)
+            continue
+        yield from _measured(mesh, file, outputs, design, finger)
+
+
+def _measured(
+    mesh: Any, file: str, outputs: Path, design: Design, finger: Finger
+) -> Iterator[Measurement]:
+    yield Measurement("mould.watertight", file, solids.open_edges(mesh), 0, 0, "edges")
+    yield Measurement("mould.bodies", file, solids.bodies(mesh), 1, 1, "bodies")
+    room = np.array(design.printing.bed_mm) - mesh.extents
+    yield Measurement("mould.fits_bed", file, float(room.min()), 0, unit="mm", note="room left")
+    yield Measurement("mould.fits_bed", f"{file}: foot", float(mesh.bounds[0, 2]), -0.001, 0.001,
+                      "mm", "height over the bed")  # fmt: skip
+    probe = Probe(mesh, design)
+    yield _thickness(probe, file)
+    yield _tip_thickness(probe, file)
+    yield from _stops(probe, file)
+    yield from mould_walls.measured(mesh, file, design, finger.notch)
+    yield from walls("mould.min_wall", file, mesh, design.printing.min_wall_mm, ())
+    try:
+        body = overlap.solid(mesh, "the mould")
+    except OutputError as error:
+        yield from (unreadable(name, file, str(error)) for name in ("mould.volume", "mould.seat"))
+        return
+    yield _volume(body, file, outputs, design, finger)
+    yield _seat(body, file, outputs, design, finger)
+
+
+class Probe:
+    """Heights of a mould's surface below points of the finger."""
+
+    def __init__(self, mesh: Any, design: Design) -> None:
+        self.mesh, self.design = mesh, design
+        to_sensor = mould_bed_to_sensor(design.stack, design.mould)
+        self.to_bed = np.asarray(np.linalg.inv(to_sensor), dtype=np.float64)
+        self.rim_mm = design.mould.wall_mm + design.stack.silicone_mm
+
+    def depths_mm(self, points: solids.Vectors) -> solids.Vectors:
+        """How far the mould lies below the rim plane at points (x, y) of the sensor frame."""
+        at = applied(self.to_bed, points)
+        at[:, 2] = self.mesh.bounds[1, 2] + 1.0
+        down = np.array([0.0, 0.0, -1.0])
+        reach = float(np.ptp(self.mesh.bounds[:, 2])) + 2.0
+        distance, _ = solids.cast(self.mesh, at, down, reach).first(len(at))
+        return np.asarray(self.rim_mm - (at[:, 2] - distance))
+
+
+def _thickness(probe: Probe, file: str) -> Measurement:
+    """The silicone over the board; the stops stand beside it."""
+    box = probe.design.board.box
+    x = np.arange(box.x_min_mm, box.x_max_mm, GRID_MM)
+    y = np.arange(box.y_min_mm, box.y_max_mm, GRID_MM)
+    depth = probe.depths_mm(np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2))
+    wanted = probe.design.stack.silicone_mm
+    worst = float(depth[np.abs(depth - wanted).argmax()])
+    note = f"farthest from {wanted:g} at {len(depth)} places over the board"
+    return Measurement("mould.thickness", file, worst, wanted - THICKNESS_MM,
+                       wanted + THICKNESS_MM, "mm", note)  # fmt: skip
+
+
+def _tip_thickness(probe: Probe, file: str) -> Measurement:
+    """The silicone at the tip edge, beside the stop in its middle."""
+    outline, wanted = probe.design.outline, probe.design.mould.tip_silicone_mm
+    half = outline.tip_width_mm / 2
+    x = np.concatenate([np.linspace(-0.95, -0.5, 10), np.linspace(0.5, 0.95, 10)]) * half
+    depth = probe.depths_mm(np.column_stack([x, np.full(len(x), outline.tip_y_mm)]))
+    worst = float(depth[np.abs(depth - wanted).argmax()])
+    return Measurement("mould.tip_thickness", file, worst, wanted - THICKNESS_MM,
+                       wanted + THICKNESS_MM, "mm", "at the tip edge, beside the stop")  # fmt: skip
+
+
+def _stops(probe: Probe, file: str) -> Iterator[Measurement]:
+    """Pads and tip line end at the rim plane, and stand where the design has them."""
+    mould, outline = probe.design.mould, probe.design.outline
+    angle = np.linspace(0, 2 * np.pi, 48, endpoint=False)
+    for number, (x, y) in enumerate(mould.pads, 1):
+        # A pad is joined to the wall on its outer side.
+        ring = np.column_stack([np.cos(angle), np.sin(angle)]) * mould.pad_mm / 2
+        free = ring[ring[:, 0] * x < 0.0]
+        tops = probe.depths_mm(ring * _PAD_INNER + (x, y))
+        feet = probe.depths_mm(free * _PAD_OUTER + (x, y)) - probe.design.stack.silicone_mm
+        worst = float(max(np.abs(tops).max(), np.abs(feet).max()))
+        yield Measurement("mould.stops", f"{file}: pad {number}", worst, 0, STOPS_MM, "mm",
+                          "top against the rim plane, and floor around it")  # fmt: skip
+    along = np.linspace(-1, 1, 9) * outline.tip_width_mm / 8
+    line = probe.depths_mm(np.column_stack([along, np.full(9, outline.tip_y_mm - _LINE_MM)]))
+    yield Measurement("mould.stops", f"{file}: tip line", float(np.abs(line).max()), 0, STOPS_MM,
+                      "mm", "top against the rim plane")  # fmt: skip
+
+
+def _seat(
+    body: overlap.Solid, file: str, outputs: Path, design: Design, finger: Finger
+) -> Measurement:
+    """The backing lying on the stops touches nothing else: neither wall nor weir."""
+    part = f"backing/{finger.name}_backing.stl"
+    try:
+        backing = overlap.solid(solids.read_mesh(outputs / part), "the backing")
+    except OutputError as error:
+        return unreadable("mould.seat", part, str(error))
+    to_bed = np.linalg.inv(mould_bed_to_sensor(design.stack, design.mould))
+    seated = overlap.placed(backing, to_bed @ mount_to_sensor(design.mount, design.stack))
+    return Measurement("mould.seat", file, overlap.shared_mm3(body, seated), 0, SHARED_MM3, "mm³",
+                       f"shared with {part} when it lies on the stops")  # fmt: skip
+
+
+def _volume(
+    body: overlap.Solid, file: str, outputs: Path, design: Design, finger: Finger
+) -> Measurement:
+    """Millilitres in the note against the cavity below the rim, less the parts that dip in."""
+    note_file = f"mould/{finger.name}_casting.md"
+    try:
+        stated = _STATED.search((outputs / note_file).read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        return unreadable("mould.volume", note_file, repr(error))
+    if stated is None:
+        return unreadable("mould.volume", note_file, "states no volume")
+    dipped = sum(
+        part.box.width_mm * part.box.length_mm * part.height_mm
+        for part in finger.parts
+        if part.side == "front"
+    )
+    measured = (_cavity_mm3(body, design) - dipped) / 1000
+    if not measured > 0:
+        return unreadable("mould.volume", file, "has no cavity that could be measured")
+    return Measurement("mould.volume", note_file, float(stated[1]),
+                       round(measured * (1 - VOLUME_FRACTION), 4),
+                       round(measured * (1 + VOLUME_FRACTION), 4),
+                       "mL", f"{measured:.3f} mL in {file}")  # fmt: skip
+
+
+def _cavity_mm3(body: overlap.Solid, design: Design) -> float:
+    """Volume between rim plane and mould within the middle of the walls."""
+    mould = design.mould
+    silhouette = shapely.Polygon(design.outline.polygon() * (1, -1))
+    within = silhouette.buffer(mould.wall_gap_mm + mould.wall_mm / 2)
+    ring = np.array(shapely.geometry.polygon.orient(within).exterior.coords)[:-1]
+    low = mould.wall_mm / 2
+    section = manifold3d.CrossSection([ring])
+    filled = section.extrude(mould.wall_mm + design.stack.silicone_mm - low).translate([0, 0, low])
+    return float((filled - body).volume())

@@ -1,0 +1,179 @@
+"""Damage the assembly's GLB file, and exactly the right checks fail."""
+
+import json
+import struct
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from lumitip_fab.checks import assembly
+from lumitip_fab.encoding import read_design
+
+GLB = "assembly/assembly.glb"
+EVERY = {name.removeprefix("assembly.") for name in assembly.NAMES}
+Told = dict[str, Any]
+
+
+def failing(folder: Path) -> set[str]:
+    design = read_design(folder / "design.json")
+    found = {m.check for m in assembly.measure(folder, design) if not m.passed}
+    return {name.removeprefix("assembly.") for name in found}
+
+
+def node(told: Told, name: str) -> Told:
+    return next(n for n in told["nodes"] if n["name"] == name)
+
+
+def move(told: Told, name: str, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> None:
+    """Move a body in its finger, mm."""
+    at = node(told, name)
+    before = at.get("translation", [0.0, 0.0, 0.0])
+    at["translation"] = [a + b / 1000 for a, b in zip(before, (x, y, z), strict=True)]
+
+
+def led_moved(told: Told) -> None:
+    move(told, "D7", x=0.1)
+
+
+def photodetector_moved(told: Told) -> None:
+    move(told, "Q32", y=-0.1)
+
+
+def multiplexer_raised(told: Told) -> None:
+    move(told, "U1", z=0.6)
+
+
+def multiplexer_through_the_skin(told: Told) -> None:
+    move(told, "U1", z=3.0)
+
+
+def finger_shifted(told: Told) -> None:
+    node(told, "receiver")["matrix"][12] += 0.0001
+
+
+def finger_nearer(told: Told) -> None:
+    node(told, "receiver")["matrix"][14] += 0.0001
+
+
+def lean_removed(told: Told) -> None:
+    matrix = node(told, "receiver")["matrix"]
+    matrix[:12] = np.eye(4).ravel()[:12].tolist()
+
+
+def opening_edited(told: Told) -> None:
+    told["scenes"][0]["extras"]["opening_mm"] += 0.1
+
+
+def opening_unstated(told: Told) -> None:
+    del told["scenes"][0]["extras"]
+
+
+def film_lifted(told: Told) -> None:
+    move(told, "receiver.film", z=0.2)
+
+
+def film_moved_back(told: Told) -> None:
+    move(told, "receiver.film", y=-1.5)
+
+
+def backing_sunk(told: Told) -> None:
+    move(told, "emitter.backing", z=-0.2)
+
+
+def board_turned_out(told: Told) -> None:
+    move(told, "emitter.board", x=0.3)
+
+
+def part_renamed(told: Told) -> None:
+    node(told, "Q3")["name"] = "Q33"
+
+
+def layer_missing(told: Told) -> None:
+    node(told, "emitter.silicone")["name"] = "silicone"
+
+
+def no_nodes(told: Told) -> None:
+    del told["nodes"]
+
+
+SCENE = {
+    led_moved: {"facing"},
+    photodetector_moved: {"facing"},
+    multiplexer_raised: {"interference"},
+    multiplexer_through_the_skin: {"interference"},
+    finger_shifted: {"facing"},
+    finger_nearer: {"opening"},
+    lean_removed: {"first_contact", "lean", "opening", "stroke"},
+    opening_edited: {"opening"},
+    opening_unstated: {"opening"},
+    film_lifted: {"opening", "stroke"},
+    film_moved_back: {"first_contact", "opening", "interference"},
+    backing_sunk: {"stroke"},
+    board_turned_out: {"interference"},
+    part_renamed: EVERY,
+    layer_missing: EVERY,
+    no_nodes: EVERY,
+}
+
+
+def rewritten(data: bytes, damage: Callable[[Told], None]) -> bytes:
+    """A GLB file with its tables changed."""
+    size = struct.unpack_from("<I", data, 12)[0]
+    told, rest = json.loads(data[20 : 20 + size]), data[20 + size :]
+    damage(told)
+    text = json.dumps(told).encode()
+    text += b" " * (-len(text) % 4)
+    head = struct.pack("<4sII", b"glTF", 2, 20 + len(text) + len(rest))
+    return head + struct.pack("<I4s", len(text), b"JSON") + text + rest
+
+
+@pytest.mark.parametrize("damage", SCENE, ids=lambda d: d.__name__)
+def test_a_damaged_scene(damage: Callable[[Told], None], damaged: Path) -> None:
+    file = damaged / GLB
+    file.write_bytes(rewritten(file.read_bytes(), damage))
+    assert failing(damaged) == SCENE[damage]
+
+
+def truncated(data: bytes) -> bytes:
+    return data[: len(data) // 2]
+
+
+def foreign(_: bytes) -> bytes:
+    return b"solid nothing"
+
+
+def mesh_opened(data: bytes) -> bytes:
+    """Make the first triangle of the emitter's film a corner."""
+    size = struct.unpack_from("<I", data, 12)[0]
+    told = json.loads(data[20 : 20 + size])
+    primitive = told["meshes"][node(told, "emitter.film")["mesh"]]["primitives"][0]
+    view = told["bufferViews"][told["accessors"][primitive["indices"]]["bufferView"]]
+    at = 28 + size + view["byteOffset"]
+    return data[:at] + data[at + 4 : at + 8] + data[at + 4 :]
+
+
+BYTES = {truncated: EVERY, foreign: EVERY, mesh_opened: {"interference"}}
+
+
+@pytest.mark.parametrize("damage", BYTES, ids=lambda d: d.__name__)
+def test_damaged_bytes(damage: Callable[[bytes], bytes], damaged: Path) -> None:
+    file = damaged / GLB
+    file.write_bytes(damage(file.read_bytes()))
+    assert failing(damaged) == BYTES[damage]
+
+
+def test_a_missing_file_fails_every_check(damaged: Path) -> None:
+    (damaged / GLB).unlink()
+    assert failing(damaged) == EVERY
+
+
+def test_the_undamaged_assembly_passes(outputs: Path) -> None:
+    assert failing(outputs) == set()
+
+
+def test_every_check_but_the_information_fails_alone_or_among_few() -> None:
+    told = [names for names in SCENE.values() if names != EVERY]
+    assert set().union(*told) == EVERY - {"bodies", "skew"}

@@ -1,0 +1,196 @@
+"""Damage the moulds' files, and exactly the right checks fail."""
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+from manifold3d import Manifold, Mesh
+
+from lumitip_fab.checks import mould
+from lumitip_fab.encoding import read_design
+
+STL = "mould/receiver_mould.stl"
+NOTE = "mould/receiver_casting.md"
+Damage = Callable[[Manifold], Manifold]
+
+
+def failing(folder: Path) -> set[str]:
+    design = read_design(folder / "design.json")
+    found = {m.check for m in mould.measure(folder, design) if not m.passed}
+    return {name.removeprefix("mould.") for name in found}
+
+
+def box(low: tuple[float, float, float], high: tuple[float, float, float]) -> Manifold:
+    size = [b - a for a, b in zip(low, high, strict=True)]
+    return Manifold.cube(size).translate(low)
+
+
+# The published mould on its bed: floor at 2.4, rim at 3.9, wall to 5.5; tip at y = -21.85, flank
+# of the finger at x = 23.9 and of the wall at 24.05, pads at (±22.75, 24.75), weir at y = 33.
+
+
+def pad_lowered(part: Manifold) -> Manifold:
+    return part - box((21.5, 23.5, 3.8), (24.0, 26.0, 3.95))
+
+
+def pad_moved(part: Manifold) -> Manifold:
+    without = part - box((21.5, 23.6, 2.4), (23.95, 25.9, 4))
+    pad = Manifold.cylinder(2.7, 1.1, 1.0, 64).translate((22.75, 24.9, 1.2))
+    return without + pad + box((22.75, 23.9, 1.2), (24.5, 25.9, 3.9))
+
+
+def tip_line_lowered(part: Manifold) -> Manifold:
+    return part - box((-5, -21.99, 3.8), (5, -21.4, 3.95))
+
+
+def floor_raised(part: Manifold) -> Manifold:
+    return part + box((0, 0, 2), (5, 5, 2.45))
+
+
+def tip_floor_raised(part: Manifold) -> Manifold:
+    return part + box((8, -21.95, 2.9), (11, -20.5, 3.8))
+
+
+def wall_upright(part: Manifold) -> Manifold:
+    return part + box((24.06, 19, 2), (25.5, 21, 5.5))
+
+
+def wall_too_near(part: Manifold) -> Manifold:
+    return part + box((23.95, 19, 2), (24.6, 21, 3.5)) + wedge(23.95, 0.1)
+
+
+def wedge(x: float, slope: float) -> Manifold:
+    """A piece of wall with its foot at x, opening upward."""
+    foot, top = box((x, 19, 3.5), (25, 21, 3.51)), box((x + 2 * slope, 19, 5.49), (25, 21, 5.5))
+    return Manifold.batch_hull([foot, top])
+
+
+def wall_too_far(part: Manifold) -> Manifold:
+    foot, top = box((23, 19, 3.9), (24.4, 21, 3.91)), box((23, 19, 5.99), (24.55, 21, 6))
+    return part - Manifold.batch_hull([foot, top])
+
+
+def wall_overhanging(part: Manifold) -> Manifold:
+    return part + box((24.0, 19, 5.25), (26.0, 21, 6.2))
+
+
+def wall_thin(part: Manifold) -> Manifold:
+    return part - box((24.8, 18, -1), (30, 22, 6))
+
+
+def island_added(part: Manifold) -> Manifold:
+    return part + box((-2, 46, 0), (2, 50, 4))
+
+
+def sprue_added(part: Manifold) -> Manifold:
+    return part + box((-130, 38, 0), (130, 41, 2))
+
+
+def post_added(part: Manifold) -> Manifold:
+    return part + box((-3, 33.15, 3.5), (3, 35.4, 25))
+
+
+def squashed(part: Manifold) -> Manifold:
+    return part.scale((1, 1, 0.98))
+
+
+def tilted(part: Manifold) -> Manifold:
+    return part.transform([[1, 0, 0.1, -0.39], [0, 1, 0, 0], [0, 0, 1, 0]])
+
+
+def lifted(part: Manifold) -> Manifold:
+    return part.translate((0, 0, 0.004))
+
+
+SOLID = {
+    pad_lowered: {"stops"},
+    pad_moved: {"stops"},
+    tip_line_lowered: {"stops"},
+    floor_raised: {"thickness"},
+    tip_floor_raised: {"tip_thickness"},
+    wall_upright: {"draft"},
+    wall_too_near: {"gap"},
+    wall_too_far: {"gap"},
+    wall_overhanging: {"undercut"},
+    wall_thin: {"min_wall"},
+    island_added: {"bodies"},
+    sprue_added: {"fits_bed"},
+    post_added: {"seat"},
+    squashed: {"thickness", "tip_thickness", "stops", "volume"},
+    tilted: {"stops", "draft", "undercut"},
+    lifted: {"fits_bed"},
+}
+
+
+@pytest.mark.parametrize("damage", SOLID, ids=lambda d: d.__name__)
+def test_a_damaged_mould(damage: Damage, damaged: Path) -> None:
+    mesh = trimesh.load(damaged / STL, force="mesh")
+    whole = Manifold(Mesh(np.float32(mesh.vertices), np.uint32(mesh.faces)))
+    hurt = damage(whole).to_mesh()
+    trimesh.Trimesh(hurt.vert_properties[:, :3], hurt.tri_verts).export(damaged / STL)
+    assert failing(damaged) == SOLID[damage]
+
+
+def triangle_flipped(folder: Path) -> None:
+    mesh = trimesh.load(folder / STL, force="mesh")
+    faces = mesh.faces.copy()
+    smallest = int(mesh.area_faces.argmin())
+    faces[smallest] = faces[smallest][::-1]
+    trimesh.Trimesh(mesh.vertices, faces, process=False).export(folder / STL)
+
+
+def mould_truncated(folder: Path) -> None:
+    data = (folder / STL).read_bytes()
+    (folder / STL).write_bytes(data[: len(data) // 2])
+
+
+def mould_missing(folder: Path) -> None:
+    (folder / STL).unlink()
+
+
+def volume_edited(folder: Path) -> None:
+    text = (folder / NOTE).read_text(encoding="utf-8")
+    changed = re.sub(r"\*\*([0-9.]+) mL", lambda m: f"**{float(m[1]) * 1.03:.2f} mL", text)
+    (folder / NOTE).write_text(changed, encoding="utf-8")
+
+
+def note_empty(folder: Path) -> None:
+    (folder / NOTE).write_text("", encoding="utf-8")
+
+
+def note_missing(folder: Path) -> None:
+    (folder / NOTE).unlink()
+
+
+def backing_missing(folder: Path) -> None:
+    (folder / "backing/receiver_backing.stl").unlink()
+
+
+EVERY = {name.removeprefix("mould.") for name in mould.NAMES}
+FILES = {
+    triangle_flipped: {"watertight", "volume", "seat"},
+    mould_truncated: EVERY,
+    mould_missing: EVERY,
+    volume_edited: {"volume"},
+    note_empty: {"volume"},
+    note_missing: {"volume"},
+    backing_missing: {"seat"},
+}
+
+
+@pytest.mark.parametrize("damage", FILES, ids=lambda d: d.__name__)
+def test_a_damaged_file(damage: Callable[[Path], None], damaged: Path) -> None:
+    damage(damaged)
+    assert failing(damaged) == FILES[damage]
+
+
+def test_undamaged_moulds_pass(outputs: Path) -> None:
+    assert failing(outputs) == set()
+
+
+def test_every_check_appears_in_a_damage_of_its_own() -> None:
+    told = [*SOLID.values(), FILES[triangle_flipped], FILES[volume_edited]]
+    assert set().union(*told) == EVERY

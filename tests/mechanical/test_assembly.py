@@ -1,0 +1,92 @@
+"""The assembly's files and drawing."""
+
+import json
+import struct
+from collections.abc import Callable
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+import trimesh
+
+from lumitip_fab.encoding import read_design
+from lumitip_fab.mechanical import assembly
+
+PRESETS = ("published", "asymmetric", "dense")
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+def test_the_same_design_gives_the_same_files_in_any_process(outputs: Path) -> None:
+    d = read_design(outputs / "design.json")
+    made = assembly.assembly(
+        d.stack, d.outline, d.tip, d.board, d.emitter, d.receiver, d.mount, d.closing, d.mould
+    )
+    assert [a.path for a in made] == [
+        "assembly/assembly.step",
+        "assembly/assembly.glb",
+        "assembly/exploded.svg",
+    ]
+    for artefact in made:
+        assert artefact.data == (outputs / artefact.path).read_bytes(), artefact.path
+
+
+@pytest.mark.parametrize("preset", PRESETS)
+def test_other_programs_read_the_scene_in_metres(preset: str, built: Callable[[str], Path]) -> None:
+    folder = built(preset)
+    design = read_design(folder / "design.json")
+    scene = trimesh.load(folder / "assembly/assembly.glb")
+    names = set(scene.graph.nodes_geometry)
+    parts = {part.name for finger in design.fingers for part in finger.parts}
+    layers = {f"{f.name}.{k}" for f in design.fingers for k in ("backing", "board", "film")}
+    assert parts | layers < names
+    assert scene.extents[1] == pytest.approx(design.outline.length_mm / 1000, abs=0.002)
+    matrix, shape = scene.graph["receiver.film"]
+    assert scene.geometry[shape].is_watertight
+    assert matrix[2, 2] == pytest.approx(np.cos(np.radians(design.mount.tilt_deg)))
+
+
+def test_the_scene_is_valid_gltf(outputs: Path) -> None:
+    data = (outputs / "assembly/assembly.glb").read_bytes()
+    magic, version, length, size, kind = struct.unpack_from("<4sIII4s", data)
+    assert (magic, version, length, kind) == (b"glTF", 2, len(data), b"JSON")
+    assert size % 4 == 0
+    told = json.loads(data[20 : 20 + size])
+    assert told["asset"]["version"] == "2.0"
+    for view in told["bufferViews"]:
+        assert view["byteOffset"] % 4 == 0
+        assert view["byteOffset"] + view["byteLength"] <= told["buffers"][0]["byteLength"]
+    for material in told["materials"]:
+        clear = material["pbrMetallicRoughness"]["baseColorFactor"][3] < 1
+        assert (material.get("alphaMode") == "BLEND") == clear
+
+
+def test_step_names_every_body(outputs: Path) -> None:
+    text = (outputs / "assembly/assembly.step").read_text(encoding="latin-1")
+    for finger in ("emitter", "receiver"):
+        for layer in ("backing", "board", "silicone", "film"):
+            assert f"'{finger}.{layer}'" in text
+    assert "'receiver.photodetectors'" in text
+    assert "COLOUR_RGB" in text
+
+
+@pytest.mark.parametrize("preset", PRESETS)
+def test_the_drawing_keeps_its_words_apart_and_on_the_page(
+    preset: str, built: Callable[[str], Path]
+) -> None:
+    root = ElementTree.parse(built(preset) / "assembly/exploded.svg").getroot()
+    left, top, width, height = (float(v) for v in root.attrib["viewBox"].split())
+    assert root.attrib["width"] == f"{width:.2f}mm"
+    columns: dict[float, list[float]] = {}
+    for text in root.iter(f"{SVG}text"):
+        x, y = float(text.attrib["x"]), float(text.attrib["y"])
+        assert left < x < left + width
+        assert top < y < top + height
+        columns.setdefault(x, []).append(y)
+    for lines in columns.values():
+        assert np.diff(sorted(lines)).min(initial=9.0) > 3.0
+    words = "".join(root.itertext())
+    assert "Receiver finger, exploded" in words
+    assert "Silicone, 1.5 mm" in words
+    for path in root.iter(f"{SVG}path"):
+        assert "nan" not in path.attrib["d"]

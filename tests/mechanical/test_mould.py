@@ -1,0 +1,107 @@
+"""The mould's solids, note and files."""
+
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+
+from lumitip_fab.derive import derive
+from lumitip_fab.design import Design
+from lumitip_fab.encoding import read_design
+from lumitip_fab.load import load
+from lumitip_fab.mechanical import casting, mould, skin
+
+PRESETS = ("published", "asymmetric", "dense")
+
+
+@pytest.fixture(scope="module")
+def design(design_dir: Path) -> Design:
+    return derive(load(design_dir / "presets" / "published.toml"))
+
+
+def test_the_same_design_gives_the_same_files_in_any_process(outputs: Path) -> None:
+    built = read_design(outputs / "design.json")
+    made = mould.mould_files(
+        built.receiver, built.stack, built.outline, built.mould, built.printing
+    )
+    assert {a.path for a in made} == {
+        "mould/receiver_mould.step",
+        "mould/receiver_mould.stl",
+        "mould/receiver_mould.3mf",
+        "mould/receiver_casting.md",
+    }
+    for artefact in made:
+        assert artefact.data == (outputs / artefact.path).read_bytes(), artefact.path
+
+
+@pytest.mark.parametrize("preset", PRESETS)
+def test_the_mould_is_one_piece_round_the_finger(preset: str, built: Callable[[str], Path]) -> None:
+    folder = built(preset)
+    shape = read_design(folder / "design.json")
+    mesh = trimesh.load(folder / "mould/emitter_mould.stl", force="mesh")
+    assert mesh.is_watertight
+    assert mesh.body_count == 1
+    wide = np.ptp(shape.outline.polygon()[:, 0])
+    assert wide + 2 * shape.mould.wall_mm < mesh.extents[0] < wide + 2 * shape.mould.wall_mm + 1
+    assert mesh.bounds[0, 2] == pytest.approx(0.0, abs=1e-6)
+    assert mesh.extents[2] == pytest.approx(
+        shape.mould.wall_mm + shape.stack.silicone_mm + shape.stack.pcb_mm
+    )
+
+
+def test_offset_wires_keep_their_distance(design: Design) -> None:
+    shapely = pytest.importorskip("shapely")
+    inner = shapely.Polygon(design.outline.polygon(400)).exterior
+    for by_mm in (-0.4, 0.15, 2.6):
+        wire = skin.offset_wire(design.outline, by_mm, 0.0)
+        points = [wire.position_at(t) for t in np.linspace(0, 1, 150)]
+        apart = [inner.distance(shapely.Point(p.X, p.Y)) for p in points]
+        assert max(abs(d - abs(by_mm)) for d in apart) < 0.001
+
+
+def test_the_silicone_tapers_and_keeps_its_thickness(design: Design) -> None:
+    body = skin.silicone_solid(design.stack, design.outline, design.mould)
+    box = body.bounding_box()
+    heights = [box.min.to_tuple()[2], box.max.to_tuple()[2]]
+    assert heights == pytest.approx([-1.6, -0.1], abs=1e-6)
+    for y_mm, z_mm in ((0.0, -0.11), (21.84, -1.42), (20.35, -0.76), (-32.3, -0.4)):
+        assert body.is_inside((5.5, y_mm, z_mm)), (y_mm, z_mm)
+    for y_mm, z_mm in ((0.0, -0.09), (21.84, -1.38), (20.35, -0.74), (-32.8, -0.4)):
+        assert not body.is_inside((5.5, y_mm, z_mm)), (y_mm, z_mm)
+
+
+def test_stops_leave_their_hollow_in_the_silicone(design: Design) -> None:
+    body = skin.silicone_solid(design.stack, design.outline, design.mould)
+    for x, y in design.mould.pads:
+        assert not body.is_inside((x, y, -0.8))
+    assert not body.is_inside((0.0, design.outline.tip_y_mm - 0.1, -1.5))
+
+
+def test_the_film_lies_on_the_silicone(design: Design) -> None:
+    film = skin.film_solid(design.stack, design.outline, design.mould)
+    assert film.bounding_box().max.to_tuple()[2] == pytest.approx(0.0, abs=1e-6)
+    assert film.is_inside((0.0, 0.0, -0.05))
+    assert not film.is_inside((0.0, 0.0, -0.11))
+
+
+def test_the_note_weighs_both_parts(design: Design) -> None:
+    mixed = replace(design.mould, mix_ratio=(10.0, 1.0), density_g_ml=1.1, waste_fraction=0.5)
+    note = casting.casting_note("emitter", 4.0, design.stack, mixed, design.printing)
+    masses = [float(m) for m in re.findall(r"\*\*([0-9.]+) g\*\*", note)]
+    assert masses == pytest.approx([6.0, 0.6])
+    assert "6.00 mL" in note
+
+
+@pytest.mark.parametrize(
+    ("usual", "heights", "wanted"),
+    [(0.2, (2.4, 3.9), 0.15), (0.2, (2.4, 4.0), 0.2), (0.3, (2.0, 3.5), 0.25),
+     (0.2, (2.411, 3.907), 0.2)],
+)  # fmt: skip
+def test_layers_divide_the_heights_that_count(
+    usual: float, heights: tuple[float, float], wanted: float
+) -> None:
+    assert casting.layer_mm(usual, heights) == wanted
