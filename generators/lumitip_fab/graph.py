@@ -20,7 +20,7 @@ from lumitip_fab.design import Design
 from lumitip_fab.encoding import canonical
 
 PACKAGE = Path(__file__).parent
-SHARED = ("artefact.py", "design.py", "encoding.py", "errors.py", "frames.py", "graph.py", "derive")
+SHARED = ("artefact.py", "design", "encoding.py", "errors.py", "frames.py", "graph.py", "derive")
 
 
 @dataclass(frozen=True)

@@ -18,8 +18,8 @@ from lumitip_fab.design import Design, Finger
 from lumitip_fab.errors import OutputError
 from lumitip_fab.frames import applied, mount_to_sensor, translation
 
-READS = ("assembly/assembly.glb",)
-NAMES = (
+READS = ("assembly/assembly.glb", "assembly/assembly.step")
+NAMES = (  # measured in the GLB
     "assembly.bodies", "assembly.facing", "assembly.lean", "assembly.skew",
     "assembly.first_contact", "assembly.opening", "assembly.stroke", "assembly.interference",
 )  # fmt: skip
@@ -31,11 +31,14 @@ OPENING_MM = 0.02
 STROKE_MM = 0.05
 SHARED_MM3 = 0.05
 _FILE = "assembly/assembly.glb"
+_STEP = "assembly/assembly.step"
+_STEP_END = "END-ISO-10303-21;"
 _FLAT = 0.9  # of the face's own normal: leaves out taper and rounding
 
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     """Hold the assembly against the design."""
+    yield _step(outputs, design)
     try:
         scene = read_scene(outputs / _FILE)
     except OutputError as error:
@@ -53,6 +56,21 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     yield from _contacts(scene, design)
     yield from _openings(scene, design)
     yield from _interference(scene, design)
+
+
+def _step(outputs: Path, design: Design) -> Measurement:
+    """The STEP file holds every body, in mm, the layers under their names."""
+    try:
+        text = (outputs / _STEP).read_text(encoding="ascii")
+    except (OSError, ValueError) as error:
+        return unreadable("assembly.step", _STEP, f"cannot be read: {error!r:.200}")
+    names = [f"{finger.name}.{layer}" for finger in design.fingers for layer in LAYERS]
+    for told in (*(f"PRODUCT('{name}'" for name in names), "SI_UNIT(.MILLI.,.METRE.)", _STEP_END):
+        if told not in text:
+            return unreadable("assembly.step", _STEP, f"holds no {told}")
+    wanted = len(names) + sum(len(finger.parts) for finger in design.fingers)
+    solids = text.count("MANIFOLD_SOLID_BREP(")
+    return Measurement("assembly.step", _STEP, solids, wanted, wanted, "bodies")
 
 
 def _wanted(design: Design) -> Iterator[str]:

@@ -11,19 +11,21 @@ from typing import Any
 import manifold3d
 import numpy as np
 import shapely
+from shapely.errors import GEOSException
 
 from lumitip_fab.checks import mould_walls, overlap, solids
+from lumitip_fab.checks.packages import measure_boxes
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.checks.walls import walls
 from lumitip_fab.design import Design, Finger
 from lumitip_fab.errors import OutputError
 from lumitip_fab.frames import applied, mould_bed_to_sensor, mount_to_sensor
 
-READS = ("mould/*_mould.stl", "mould/*_casting.md", "backing/*_backing.stl")
+READS = ("mould/*", "backing/*_backing.stl")
 NAMES = (
-    "mould.watertight", "mould.bodies", "mould.thickness", "mould.tip_thickness", "mould.stops",
-    "mould.gap", "mould.draft", "mould.undercut", "mould.min_wall", "mould.volume",
-    "mould.fits_bed", "mould.seat",
+    "mould.watertight", "mould.bodies", "mould.fits_bed", "mould.thickness", "mould.tip_thickness",
+    "mould.stops", "mould.gap", "mould.draft", "mould.undercut", "mould.min_wall", "mould.three_mf",
+    "mould.step", "mould.volume", "mould.seat",
 )  # fmt: skip
 THICKNESS_MM = 0.02
 STOPS_MM = 0.02
@@ -38,13 +40,15 @@ _STATED = re.compile(r"stays on the finger \| \*\*([0-9.]+) mL\*\*")
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     """Hold each finger's mould against the design."""
     for finger in design.fingers:
-        file = f"mould/{finger.name}_mould.stl"
+        file, told = f"mould/{finger.name}_mould.stl", set[str]()
         try:
             mesh = solids.read_mesh(outputs / file)
-        except OutputError as error:
-            yield from (unreadable(name, file, str(error)) for name in NAMES)
-            continue
-        yield from _measured(mesh, file, outputs, design, finger)
+            for measurement in _measured(mesh, file, outputs, design, finger):
+                told.add(measurement.check)
+                yield measurement
+        except (OutputError, ArithmeticError, LookupError, ValueError, GEOSException) as error:
+            reason = str(error) if isinstance(error, OutputError) else f"not measurable: {error!r}"
+            yield from (unreadable(name, file, reason) for name in NAMES if name not in told)
 
 
 def _measured(
@@ -62,11 +66,9 @@ def _measured(
     yield from _stops(probe, file)
     yield from mould_walls.measured(mesh, file, design, finger.notch)
     yield from walls("mould.min_wall", file, mesh, design.printing.min_wall_mm, ())
-    try:
-        body = overlap.solid(mesh, "the mould")
-    except OutputError as error:
-        yield from (unreadable(name, file, str(error)) for name in ("mould.volume", "mould.seat"))
-        return
+    sensor = solids.moved(mesh, mould_bed_to_sensor(design.stack, design.mould))
+    yield from measure_boxes("mould", outputs, file, mesh.bounds, sensor.bounds)
+    body = overlap.solid(mesh, "the mould")
     yield _volume(body, file, outputs, design, finger)
     yield _seat(body, file, outputs, design, finger)
 

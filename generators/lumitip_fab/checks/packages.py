@@ -19,19 +19,33 @@ _POINT = re.compile(r"#(\d+) = CARTESIAN_POINT\('',\(([^,()]+),([^,()]+),([^,()]
 
 
 def measure_files(outputs: Path, part: Printed) -> Iterator[Measurement]:
-    """How far the boxes round 3MF and STEP differ from the STL's, and what else they hold."""
-    for kind, read, bounds in (
-        ("three_mf", _three_mf, part.standing.bounds),
-        ("step", _step, part.sensor.bounds),
-    ):
-        path = part.subject.replace(".stl", ".3mf" if kind == "three_mf" else ".step")
+    """How far the boxes round a backing's 3MF and STEP differ from the STL's."""
+    yield from measure_boxes(
+        "backing", outputs, part.subject, part.standing.bounds, part.sensor.bounds
+    )
+
+
+def measure_boxes(
+    prefix: str, outputs: Path, stl: str, standing: Vectors, sensor: Vectors
+) -> Iterator[Measurement]:
+    """How far the boxes round 3MF and STEP differ from the STL's, and what else they hold.
+
+    Args:
+        prefix: of the checks' names.
+        outputs: the output folder.
+        stl: the part's STL file in it; the others lie beside it.
+        standing: bounds of the part in the printer, shape `(2, 3)`.
+        sensor: its bounds in the sensor frame.
+    """
+    for kind, read, bounds in (("three_mf", _three_mf, standing), ("step", _step, sensor)):
+        path = stl.replace(".stl", ".3mf" if kind == "three_mf" else ".step")
         try:
             points = read(outputs / path)
         except (OSError, ValueError, LookupError, SyntaxError, zipfile.BadZipFile) as error:
-            yield unreadable(f"backing.{kind}", path, f"cannot be read: {error!r:.200}")
+            yield unreadable(f"{prefix}.{kind}", path, f"cannot be read: {error!r:.200}")
             continue
         off = np.abs(np.array([points.min(axis=0), points.max(axis=0)]) - bounds).max()
-        yield Measurement(f"backing.{kind}", path, float(off), 0.0, AGREE_MM, "mm")
+        yield Measurement(f"{prefix}.{kind}", path, float(off), 0.0, AGREE_MM, "mm")
 
 
 def _three_mf(path: Path) -> Vectors:

@@ -42,8 +42,8 @@ def derive_outline(p: Parameters, board: Board, notch: Box, faults: Faults) -> O
          f"{p.outline.shoulder_margin_mm:g} given, at least waist_margin_mm = "
          f"{p.outline.waist_margin_mm:g} is needed"),
         (shoulder[1] > waist[1] + 1, "outline.waist_at",
-         f"{p.outline.waist_at:g} given, more than {(p.outline.shoulder_at_mm + 1) / length:.3f} is "
-         "needed: there is the widest point"),
+         f"{p.outline.waist_at:g} given, more than "
+         f"{(p.outline.shoulder_at_mm + 1) / length:.3f} is needed: there is the widest point"),
         (waist[1] > end_y + corner, "outline.waist_at",
          f"{p.outline.waist_at:g} given, at most {1 - corner / length:.3f} is allowed: there the "
          f"corner of {corner:g} mm begins"),

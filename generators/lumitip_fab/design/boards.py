@@ -1,0 +1,130 @@
+"""The boards, what is on them, and what is connected to what.
+
+Every length is in mm and in the sensor frame of the finger it belongs to, unless it says
+otherwise.
+"""
+
+from dataclasses import dataclass
+
+from lumitip_fab.design.shape import Box, Point
+
+
+@dataclass(frozen=True)
+class Grid:
+    """The grid as it was asked for; the cells are in `Design.layout`."""
+
+    columns: tuple[int, ...]
+    pitch_mm: float
+
+
+@dataclass(frozen=True)
+class Board:
+    """Outline shared by both boards, and the pocket that holds one."""
+
+    box: Box
+    hole_mm: float
+    pocket: Box
+    pocket_clearance_mm: float
+    pin_mm: float
+    """Diameter of the pocket's locating pins, which stand at the board's holes."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part on a board: land pattern with body, seen from the front whatever its side."""
+
+    name: str
+    kind: str
+    x_mm: float
+    y_mm: float
+    size_x_mm: float
+    size_y_mm: float
+    height_mm: float
+    side: str
+    """`"front"` (under the silicone) or `"back"`."""
+
+    @property
+    def box(self) -> Box:
+        """Its land pattern with body."""
+        dx, dy = self.size_x_mm / 2, self.size_y_mm / 2
+        return Box(self.x_mm - dx, self.x_mm + dx, self.y_mm - dy, self.y_mm + dy)
+
+
+@dataclass(frozen=True)
+class Zone:
+    """A region of a board kept for a purpose; placement works inside it or fails."""
+
+    name: str
+    box: Box
+
+
+@dataclass(frozen=True)
+class Connector:
+    """A row of through-hole pads for wires."""
+
+    signals: tuple[str, ...]
+    """Signal of each pad, left to right in the finger's frame."""
+    pads: tuple[Point, ...]
+    pitch_mm: float
+    pad_mm: float
+    drill_mm: float
+
+
+@dataclass(frozen=True)
+class Relief:
+    """Room in the pocket's floor for parts on the back of the board."""
+
+    box: Box
+    depth_mm: float
+    """Below the pocket's floor; the floor's thickness where it is a window."""
+    through: bool
+    """Whether it is a window through the plate."""
+
+
+@dataclass(frozen=True)
+class Finger:
+    """What differs between the two fingers, in the finger's own sensor frame."""
+
+    name: str
+    """`"emitter"` or `"receiver"`."""
+    cells: tuple[Point, ...]
+    """LED or photodetector of each cell, in frame order."""
+    turned: bool
+    """Whether the terminals of LEDs or photodetectors lie along y instead of x."""
+    holes: tuple[Point, ...]
+    """Holes of the board and pins of the pocket."""
+    connector: Connector
+    parts: tuple[Part, ...]
+    zones: tuple[Zone, ...]
+    reliefs: tuple[Relief, ...]
+    notch: Box
+    """Opening through the plate behind the connector, to beyond the gripper end."""
+    window: Box
+    """Opening of mask and film over the connector."""
+
+
+@dataclass(frozen=True)
+class Wiring:
+    """What is connected to what, beyond the layout."""
+
+    multiplexer: str
+    muxes: int
+    select_pins: tuple[str, ...]
+    adc_pins: tuple[str, ...]
+    strings: tuple[tuple[int, ...], ...]
+    """LEDs of each series string, by cell."""
+    resistor: str
+    """Package of the string resistors."""
+    resistor_ohm: tuple[float, ...]
+    current_ma: tuple[float, ...]
+    """Nominal current of each string."""
+    supply_v: float
+
+
+@dataclass(frozen=True)
+class Controller:
+    """The microcontroller board."""
+
+    board: str
+    name: str
+    adc_bits: int

@@ -1,0 +1,141 @@
+"""Layers and outlines of a finger: what its parts are cut from.
+
+Every length is in mm and in the sensor frame of the finger it belongs to, unless it says
+otherwise.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Point = tuple[float, float]
+Cubic = tuple[Point, Point, Point, Point]
+
+
+@dataclass(frozen=True)
+class Box:
+    """An upright rectangle."""
+
+    x_min_mm: float
+    x_max_mm: float
+    y_min_mm: float
+    y_max_mm: float
+
+    @property
+    def width_mm(self) -> float:
+        """Extent along x."""
+        return self.x_max_mm - self.x_min_mm
+
+    @property
+    def length_mm(self) -> float:
+        """Extent along y."""
+        return self.y_max_mm - self.y_min_mm
+
+    @property
+    def centre_mm(self) -> Point:
+        """Its middle."""
+        return (self.x_min_mm + self.x_max_mm) / 2, (self.y_min_mm + self.y_max_mm) / 2
+
+    def grown(self, by_mm: float) -> "Box":
+        """The rectangle with every side moved out."""
+        return Box(
+            self.x_min_mm - by_mm, self.x_max_mm + by_mm,
+            self.y_min_mm - by_mm, self.y_max_mm + by_mm,
+        )  # fmt: skip
+
+    def mirrored(self) -> "Box":
+        """The rectangle with x negated."""
+        return Box(-self.x_max_mm, -self.x_min_mm, self.y_min_mm, self.y_max_mm)
+
+
+@dataclass(frozen=True)
+class Stack:
+    """Layers of a finger, and the heights of the planes between them.
+
+    z = 0      ────────────── skin: outer face of the film
+    silicone_z ────────────── inner face of the film
+    rim_z      ────────────── front of the board and of the plate
+    pocket_z   ────────────── back of the board
+    back_z     ────────────── back of the plate
+    """
+
+    floor_mm: float
+    pcb_mm: float
+    silicone_mm: float
+    film_mm: float
+
+    @property
+    def plate_mm(self) -> float:
+        """Thickness of the printed plate."""
+        return self.floor_mm + self.pcb_mm
+
+    @property
+    def thickness_mm(self) -> float:
+        """Thickness of the whole finger without its coupling."""
+        return self.plate_mm + self.silicone_mm + self.film_mm
+
+    @property
+    def silicone_z_mm(self) -> float:
+        """Inner face of the film."""
+        return -self.film_mm
+
+    @property
+    def rim_z_mm(self) -> float:
+        """Front of board and plate."""
+        return -(self.film_mm + self.silicone_mm)
+
+    @property
+    def pocket_z_mm(self) -> float:
+        """Back of the board: the pocket's floor."""
+        return self.rim_z_mm - self.pcb_mm
+
+    @property
+    def back_z_mm(self) -> float:
+        """Back of the plate."""
+        return self.rim_z_mm - self.plate_mm
+
+
+@dataclass(frozen=True)
+class Outline:
+    """The silhouette of the gripping face: closed, counter-clockwise, mirror-symmetric in x.
+
+    Starts at the left end of the straight gripper end. A straight piece is a cubic whose inner
+    control points lie on its chord at the thirds.
+    """
+
+    curve: tuple[Cubic, ...]
+    tip_y_mm: float
+    end_y_mm: float
+    tip_width_mm: float
+    end_width_mm: float
+
+    @property
+    def length_mm(self) -> float:
+        """From tip edge to gripper end."""
+        return self.tip_y_mm - self.end_y_mm
+
+    def polygon(self, steps: int = 64) -> NDArray[np.float64]:
+        """Corners of the outline, shape `(n, 2)`, without repeating the first.
+
+        Args:
+            steps: chords for each curved piece; straight pieces need one.
+        """
+        corners = []
+        for piece in self.curve:
+            p = np.array(piece)
+            straight = np.allclose(p[1], p[0] + (p[3] - p[0]) / 3, atol=1e-9)
+            t = np.linspace(0.0, 1.0, (1 if straight else steps) + 1)[:-1, None]
+            b = ((1 - t) ** 3, 3 * t * (1 - t) ** 2, 3 * t * t * (1 - t), t**3)
+            corners.append(sum(w * q for w, q in zip(b, p, strict=True)))
+        return np.concatenate(corners)
+
+
+@dataclass(frozen=True)
+class Tip:
+    """The wedge on the back of the plate: from full thickness at `slant_start_y_mm` to
+    `edge_mm` at the tip edge."""
+
+    slant_start_y_mm: float
+    edge_mm: float
+    angle_deg: float
