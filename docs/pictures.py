@@ -11,8 +11,9 @@ import pypdfium2
 from vtkmodules import vtkInteractionStyle as _  # noqa: F401 - registers the renderer
 from vtkmodules import vtkRenderingOpenGL2 as __  # noqa: F401
 from vtkmodules.vtkFiltersCore import vtkFeatureEdges, vtkPolyDataNormals
-from vtkmodules.vtkIOGeometry import vtkGLTFReader, vtkSTLReader
+from vtkmodules.vtkIOGeometry import vtkSTLReader
 from vtkmodules.vtkIOImage import vtkPNGWriter
+from vtkmodules.vtkIOImport import vtkGLTFImporter
 from vtkmodules.vtkRenderingCore import (
     vtkActor,
     vtkLightKit,
@@ -83,23 +84,31 @@ def draw(parts: list[list[vtkActor]], picture: Path, direction: Vector, up: Vect
 
 
 def draw_glb(glb: Path, picture: Path) -> None:
-    """Draw the assembly with the colours that it carries."""
-    reader = vtkGLTFReader()
-    reader.SetFileName(str(glb))
-    reader.Update()
-    scene = vtkRenderer()
-    blocks = reader.GetOutput().NewIterator()
-    while not blocks.IsDoneWithTraversal():
-        mapper = vtkPolyDataMapper()
-        mapper.SetInputData(blocks.GetCurrentDataObject())
-        shown = vtkActor()
-        shown.SetMapper(mapper)
-        scene.AddActor(shown)
-        blocks.GoToNextItem()
-    _save(scene, picture, (1, 0.6, 0.9), (0, 1, 0))
+    """Draw the assembly with the colours that it carries, the dark films left away."""
+    scene, window = vtkRenderer(), vtkRenderWindow()
+    window.SetOffScreenRendering(1)
+    window.AddRenderer(scene)
+    importer = vtkGLTFImporter()
+    importer.SetFileName(str(glb))
+    importer.SetRenderWindow(window)
+    importer.Update()
+    scene.RemoveAllLights()
+    for shown in scene.GetActors():
+        look = shown.GetProperty()
+        look.SetInterpolationToPhong()
+        look.SetAmbient(0.3)
+        look.SetDiffuse(0.9)
+        shown.SetVisibility(look.GetOpacity() == 1 or sum(look.GetColor()) > 1)
+    _save(scene, picture, (1, 0.45, 0.5), (0, 1, 0), window)
 
 
-def _save(scene: vtkRenderer, picture: Path, direction: Vector, up: Vector) -> None:
+def _save(
+    scene: vtkRenderer,
+    picture: Path,
+    direction: Vector,
+    up: Vector,
+    window: vtkRenderWindow | None = None,
+) -> None:
     scene.SetBackground(1, 1, 1)
     vtkLightKit().AddLightsToRenderer(scene)
     camera = scene.GetActiveCamera()
@@ -108,12 +117,13 @@ def _save(scene: vtkRenderer, picture: Path, direction: Vector, up: Vector) -> N
     camera.SetViewUp(*up)
     camera.ParallelProjectionOn()
     scene.ResetCamera()
-    camera.Zoom(1.15)
-    window = vtkRenderWindow()
-    window.SetOffScreenRendering(1)
+    camera.Zoom(1.3 if picture.stem == "assembly" else 1.15)
+    if window is None:
+        window = vtkRenderWindow()
+        window.SetOffScreenRendering(1)
+        window.AddRenderer(scene)
     window.SetMultiSamples(8)
     window.SetSize(1000, 800)
-    window.AddRenderer(scene)
     window.Render()
     grab = vtkWindowToImageFilter()
     grab.SetInput(window)

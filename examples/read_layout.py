@@ -1,6 +1,6 @@
 """Where the cells of a built fingertip are, and how each is wired. Needs numpy alone.
 
-    python examples/read_layout.py outputs/layout.json
+python examples/read_layout.py outputs/layout.json
 """
 
 import sys
@@ -12,4 +12,4 @@ print(f"{len(layout)} cells {layout.pitch_mm} mm apart, design {layout.design_ha
 for cell in layout.cells:
     print(f"{cell.index:4} x {cell.x_mm:8.3f} y {cell.y_mm:8.3f}  U{cell.mux + 1} input "
           f"{cell.channel:2} on {cell.adc_pin}")  # fmt: skip
-print(f"{len(layout.neighbours)} pairs of neighbours; through apertures of {layout.optics.hole_mm} mm")
+print(f"{len(layout.neighbours)} pairs of neighbours, apertures of {layout.optics.hole_mm} mm")

@@ -165,6 +165,36 @@ def test_damaged_bytes(damage: Callable[[bytes], bytes], damaged: Path) -> None:
     assert failing(damaged) == BYTES[damage]
 
 
+def step_truncated(text: str) -> str:
+    return text[: len(text) - 100]
+
+
+def step_without_a_part(text: str) -> str:
+    return text.replace("MANIFOLD_SOLID_BREP(", "BREP_WITH_VOIDS(", 1)
+
+
+def step_without_a_name(text: str) -> str:
+    return text.replace("'receiver.film'", "'film'")
+
+
+def step_in_inches(text: str) -> str:
+    return text.replace(".MILLI.", "$")
+
+
+@pytest.mark.parametrize(
+    "damage", [step_truncated, step_without_a_part, step_without_a_name, step_in_inches]
+)
+def test_a_damaged_step(damage: Callable[[str], str], damaged: Path) -> None:
+    file = damaged / "assembly/assembly.step"
+    file.write_text(damage(file.read_text(encoding="ascii")), encoding="ascii")
+    assert failing(damaged) == {"step"}
+
+
+def test_a_missing_step(damaged: Path) -> None:
+    (damaged / "assembly/assembly.step").unlink()
+    assert failing(damaged) == {"step"}
+
+
 def test_a_missing_file_fails_every_check(damaged: Path) -> None:
     (damaged / GLB).unlink()
     assert failing(damaged) == EVERY

@@ -105,6 +105,7 @@ def lifted(part: Manifold) -> Manifold:
     return part.translate((0, 0, 0.004))
 
 
+OTHER_FILES = {"three_mf", "step"}  # no longer the part that the STL holds
 SOLID = {
     pad_lowered: {"stops"},
     pad_moved: {"stops"},
@@ -114,13 +115,13 @@ SOLID = {
     wall_upright: {"draft"},
     wall_too_near: {"gap"},
     wall_too_far: {"gap"},
-    wall_overhanging: {"undercut"},
+    wall_overhanging: OTHER_FILES | {"undercut"},
     wall_thin: {"min_wall"},
-    island_added: {"bodies"},
-    sprue_added: {"fits_bed"},
-    post_added: {"seat"},
-    squashed: {"thickness", "tip_thickness", "stops", "volume"},
-    tilted: {"stops", "draft", "undercut"},
+    island_added: OTHER_FILES | {"bodies"},
+    sprue_added: OTHER_FILES | {"fits_bed"},
+    post_added: OTHER_FILES | {"seat"},
+    squashed: OTHER_FILES | {"thickness", "tip_thickness", "stops", "volume"},
+    tilted: OTHER_FILES | {"stops", "draft", "undercut"},
     lifted: {"fits_bed"},
 }
 
@@ -145,6 +146,18 @@ def triangle_flipped(folder: Path) -> None:
 def mould_truncated(folder: Path) -> None:
     data = (folder / STL).read_bytes()
     (folder / STL).write_bytes(data[: len(data) // 2])
+
+
+def packages_gone(folder: Path) -> None:
+    (folder / STL).with_suffix(".3mf").unlink()
+    (folder / STL).with_suffix(".step").unlink()
+
+
+def packages_swapped(folder: Path) -> None:
+    """The backing's files under the mould's names."""
+    for kind in ("3mf", "step"):
+        data = (folder / f"backing/receiver_backing.{kind}").read_bytes()
+        (folder / STL).with_suffix(f".{kind}").write_bytes(data)
 
 
 def mould_missing(folder: Path) -> None:
@@ -174,6 +187,8 @@ FILES = {
     triangle_flipped: {"watertight", "volume", "seat"},
     mould_truncated: EVERY,
     mould_missing: EVERY,
+    packages_gone: {"three_mf", "step"},
+    packages_swapped: {"three_mf", "step"},
     volume_edited: {"volume"},
     note_empty: {"volume"},
     note_missing: {"volume"},
@@ -192,5 +207,5 @@ def test_undamaged_moulds_pass(outputs: Path) -> None:
 
 
 def test_every_check_appears_in_a_damage_of_its_own() -> None:
-    told = [*SOLID.values(), FILES[triangle_flipped], FILES[volume_edited]]
+    told = [*SOLID.values(), *(names for names in FILES.values() if names != EVERY)]
     assert set().union(*told) == EVERY

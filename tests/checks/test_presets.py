@@ -30,8 +30,13 @@ def test_every_file_of_a_part_is_read_by_some_check(outputs: Path) -> None:
         for f in outputs.rglob("*.*")
         if not list(modules_reading([str(f.relative_to(outputs))]))
     ]
-    assert sorted(unread) == ["assembly/exploded.svg", "manifest.json", "mask/emitter_wrapping.md", "mask/receiver_wrapping.md",
-                              "resolved.toml"]  # fmt: skip
+    assert sorted(unread) == [
+        "assembly/exploded.svg",
+        "manifest.json",
+        "mask/emitter_wrapping.md",
+        "mask/receiver_wrapping.md",
+        "resolved.toml",
+    ]
 
 
 def test_the_json_report_has_no_value_that_json_lacks(outputs: Path, tmp_path: Path) -> None:

@@ -17,6 +17,13 @@ PRESETS = ("published", "asymmetric", "dense")
 SVG = "{http://www.w3.org/2000/svg}"
 
 
+@pytest.fixture(scope="module", autouse=True)
+def _builds_come_first(built: Callable[[str], Path]) -> None:
+    """A build forks workers, which hang if the CAD kernel's threads already ran here."""
+    for preset in PRESETS:
+        built(preset)
+
+
 def test_the_same_design_gives_the_same_files_in_any_process(outputs: Path) -> None:
     d = read_design(outputs / "design.json")
     made = assembly.assembly(
