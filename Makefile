@@ -31,7 +31,7 @@ watch: $(SETUP) ## build whenever DESIGN is saved
 	$(BIN)/lumitip-fab watch $(DESIGN) --out $(OUT)
 
 test: $(SETUP) ## run the tests
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n auto --dist loadfile
 
 lint: $(SETUP) ## format, lint, types, schema
 	$(BIN)/ruff format --check .
