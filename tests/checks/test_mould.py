@@ -114,7 +114,7 @@ SOLID = {
     tip_floor_raised: {"tip_thickness"},
     wall_upright: {"draft"},
     wall_too_near: {"gap"},
-    wall_too_far: {"gap"},
+    wall_too_far: {"gap", "draft"},  # the ends of the cut are upright
     wall_overhanging: OTHER_FILES | {"undercut"},
     wall_thin: {"min_wall"},
     island_added: OTHER_FILES | {"bodies"},

@@ -5,11 +5,8 @@ library because every library puts random identifiers and today's date into it.
 """
 
 import io
-import re
 import zipfile
 from dataclasses import dataclass
-from functools import partial
-from itertools import count
 from typing import Any
 from xml.sax.saxutils import quoteattr
 
@@ -21,12 +18,13 @@ from OCP.BRepMesh import BRepMesh_IncrementalMesh
 from OCP.TopAbs import TopAbs_REVERSED
 from OCP.TopLoc import TopLoc_Location
 
+from lumitip_fab.mechanical.step_text import canonical
+
 CHORD_MM = 0.01
 ANGLE_RAD = 0.15
 _WELD_DECIMALS = 5  # of a mm: far below the chord error, above the noise of edges shared by faces
 _TIMESTAMP = "2000-01-01T00:00:00"
 _ZIP_DATE = (2000, 1, 1, 0, 0, 0)
-_USAGE = re.compile(rb"NEXT_ASSEMBLY_USAGE_OCCURRENCE\('[^']*'")
 _TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
 _CONTENT_TYPES = """<?xml version="1.0" encoding="UTF-8"?>
@@ -151,9 +149,4 @@ def step(shape: Shape, name: str) -> bytes:
         export_step(shape, written, timestamp=_TIMESTAMP)
     finally:
         shape.label = before
-    return _USAGE.sub(partial(_numbered, count(1)), written.getvalue())
-
-
-def _numbered(numbers: "count[int]", _: re.Match[bytes]) -> bytes:
-    """The kernel numbers uses over the life of the process; here they start again at 1."""
-    return b"NEXT_ASSEMBLY_USAGE_OCCURRENCE('%d'" % next(numbers)
+    return canonical(written.getvalue().decode("ascii")).encode("ascii")
