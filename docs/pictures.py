@@ -45,7 +45,8 @@ def main(out: Path) -> None:
         page.render(scale=110 / 72).to_pil().convert("L").save(
             IMAGES / f"mask_{side}.png", optimize=True
         )
-    shutil.copy(out / "assembly/exploded.svg", IMAGES / "exploded.svg")
+    for side in ("receiver", "emitter"):
+        shutil.copy(out / f"assembly/{side}_exploded.svg", IMAGES)
     draw_glb(out / "assembly/assembly.glb", IMAGES / "assembly.png")
 
 

@@ -1,7 +1,8 @@
 """Built designs that many tests read; a test that changes files works on a copy."""
 
+import os
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -63,3 +64,13 @@ def failing(outputs: Path) -> Callable[[Path], set[str]]:
 
 def _bytes(path: Path) -> bytes | None:
     return path.read_bytes() if path.is_file() else None
+
+
+@pytest.hookimpl(hookwrapper=True)
+def pytest_runtest_makereport() -> Iterator[None]:
+    """With `LUMITIP_REQUIRE=all` a test that is skipped, for want of a tool, fails."""
+    outcome = yield
+    report = outcome.get_result()
+    if report.skipped and os.environ.get("LUMITIP_REQUIRE") == "all":
+        report.outcome = "failed"
+        report.longrepr = f"skipped, but LUMITIP_REQUIRE=all: {report.longrepr}"

@@ -5,7 +5,9 @@ import multiprocessing
 import os
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
+from multiprocessing.context import BaseContext
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +18,8 @@ from lumitip_fab.design import Design
 from lumitip_fab.documents import documents
 from lumitip_fab.errors import BuildError, OutputError
 from lumitip_fab.graph import STEPS, Step, Task, tasks
-from lumitip_fab.load import load
+from lumitip_fab.load import Input, load
+from lumitip_fab.lock import locked
 
 Progress = Callable[[str, int, int], None]
 """Called with the name of what was just made, how many are done, and how many there are."""
@@ -52,36 +55,43 @@ def build(file: Path, out: Path, progress: Progress | None = None) -> Report:
     """
     given = load(file)
     design = derive(given)
+    try:
+        with locked(out):
+            return _build(given, design, out, progress or _untold)
+    except OSError as error:
+        raise OutputError(
+            f"{error.filename or out}: cannot be written: {error.strerror}"
+        ) from error
+
+
+def _build(given: Input, design: Design, out: Path, progress: Progress) -> Report:
     before = manifest.read(out)
     wanted = {task.name: (task, task.key) for task in tasks(design)}
     kept = [name for name, (_, key) in wanted.items() if before.whole(out, name, key)]
     stale = [task for name, (task, _) in wanted.items() if name not in kept]
     files = {path: e for path, e in before.files.items() if e.task in kept}
     written: list[str] = []
-    try:
-        batches = [("documents", documents(given, design))]
-        for done, (name, artefacts) in enumerate(_chained(batches, _run(stale)), start=1):
-            for artefact in artefacts:
-                made = manifest.entry(artefact, name)
-                if before.files.get(artefact.path) != made or not (out / artefact.path).is_file():
-                    written.append(artefact.path)
+    batches = [("documents", documents(given, design))]
+    for done, (name, artefacts) in enumerate(_chained(batches, _run(stale)), start=1):
+        for artefact in artefacts:
+            files[artefact.path] = manifest.entry(artefact, name)
+            if manifest.sha256_of(out / artefact.path) != files[artefact.path].sha256:
+                written.append(artefact.path)
                 manifest.write_file(out / artefact.path, artefact.data)
-                files[artefact.path] = made
-            if progress:
-                progress(name, done, len(stale) + 1)
-        removed = _remove(out, set(before.files) - set(files))
-        keys = {name: key for name, (_, key) in wanted.items()}
-        about = {
-            "design_hash": design.layout.design_hash,
-            "parameters_hash": design.parameters_hash,
-        }
-        manifest.write(out, manifest.Manifest(files, keys), about)
-    except OSError as error:
-        raise OutputError(
-            f"{error.filename or out}: cannot be written: {error.strerror}"
-        ) from error
+        progress(name, done, len(stale) + 1)
+    removed = _remove(out, set(before.files) - set(files))
+    keys = {name: key for name, (_, key) in wanted.items()}
+    about = {
+        "design_hash": design.layout.design_hash,
+        "parameters_hash": design.parameters_hash,
+    }
+    manifest.write(out, manifest.Manifest(files, keys), about)
     made_names = tuple(task.name for task in stale)
     return Report(design, tuple(sorted(written)), removed, made_names, tuple(kept))
+
+
+def _untold(_name: str, _done: int, _total: int) -> None:
+    """Progress that nobody asked for."""
 
 
 Batch = tuple[str, tuple[Artefact, ...]]
@@ -93,25 +103,37 @@ def _chained(first: list[Batch], rest: Iterator[Batch]) -> Iterator[Batch]:
 
 
 def _run(stale: list[Task]) -> Iterator[Batch]:
-    """Run tasks: light ones here, heavy ones in workers forked after the kernel's import."""
+    """Run tasks: light ones here, heavy ones in workers of which each has the kernel ready."""
     for task in stale:
         if not task.step.heavy:
             yield task.name, _make(task)
     heavy = [task for task in stale if task.step.heavy]
     if not heavy:
         return
-    forking = "fork" in multiprocessing.get_all_start_methods()
-    if forking:
-        for task in heavy:
-            _function(task.step)
-    context = multiprocessing.get_context("fork" if forking else None)
+    context = _workers_context()
     workers = min(len(heavy), os.cpu_count() or 1)
     with ProcessPoolExecutor(workers, mp_context=context) as pool:
         running: dict[Future[tuple[Artefact, ...]], str] = {
             pool.submit(_make, task): task.name for task in _slowest_first(heavy)
         }
         for future in as_completed(running):
-            yield running[future], future.result()
+            try:
+                yield running[future], future.result()
+            except BrokenProcessPool as error:
+                raise BuildError(
+                    f"{running[future]}: its worker was stopped from outside; if the machine ran "
+                    "out of memory, close other programs and build again"
+                ) from error
+
+
+def _workers_context() -> BaseContext:
+    """Workers forked from a server that has imported the kernel once and never used it: a process
+    in which the kernel has run cannot be forked safely."""
+    if "forkserver" not in multiprocessing.get_all_start_methods():
+        return multiprocessing.get_context()
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload([_module(step) for step in STEPS if step.heavy])
+    return context
 
 
 def _slowest_first(heavy: list[Task]) -> list[Task]:
@@ -127,9 +149,12 @@ def _make(task: Task) -> tuple[Artefact, ...]:
 
 
 def _function(step: Step) -> Callable[..., Any]:
-    module = importlib.import_module(f"lumitip_fab.{step.folder}.{step.module}")
-    function: Callable[..., Any] = getattr(module, step.name)
+    function: Callable[..., Any] = getattr(importlib.import_module(_module(step)), step.name)
     return function
+
+
+def _module(step: Step) -> str:
+    return f"lumitip_fab.{step.folder}.{step.module}"
 
 
 def _remove(out: Path, paths: set[str]) -> tuple[str, ...]:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 FAILED, REFUSED = 1, 2
+FLAGS = {"quiet": "print failures only", "json": "print the result as JSON"}
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -32,10 +33,11 @@ def _parser() -> argparse.ArgumentParser:
     )
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
 
-    def command(name: str, told: str) -> argparse.ArgumentParser:
+    def command(name: str, told: str, *flags: str) -> argparse.ArgumentParser:
         sub = commands.add_parser(name, help=told, description=told)
-        sub.add_argument("--quiet", action="store_true", help="print failures only")
-        sub.add_argument("--json", action="store_true", help="print the result as JSON")
+        sub.set_defaults(quiet=False, json=False)
+        for flag in flags:
+            sub.add_argument(f"--{flag}", action="store_true", help=FLAGS[flag])
         return sub
 
     def with_file(sub: argparse.ArgumentParser) -> None:
@@ -44,16 +46,17 @@ def _parser() -> argparse.ArgumentParser:
     def with_out(sub: argparse.ArgumentParser) -> None:
         sub.add_argument("--out", type=Path, required=True, metavar="DIR", help="output folder")
 
-    sub = command("init", "Copy the design folder (parameters, presets, parts) to DIR.")
+    sub = command("init", "Copy the design folder (parameters, presets, parts) to DIR.", "quiet")
     sub.add_argument("directory", type=Path, metavar="DIR", help="a new or empty folder")
-    sub = command("build", "Build FILE into DIR; only what changed is made again.")
+    sub = command("build", "Build FILE into DIR; only what changed is made again.", "quiet", "json")
     with_file(sub)
     with_out(sub)
-    sub = command("check", "Re-read the files in DIR and prove that they fit. Builds nothing.")
+    told = "Re-read the files in DIR and prove that they fit. Builds nothing."
+    sub = command("check", told, "quiet", "json")
     with_out(sub)
     sub.add_argument("--junit", type=Path, metavar="XML", help="also write a JUnit file")
     sub.add_argument("--report", type=Path, metavar="JSON", help="also write a JSON file")
-    sub = command("spec", "Print the published Table I beside the figures of FILE.")
+    sub = command("spec", "Print the published Table I beside the figures of FILE.", "json")
     with_file(sub)
     sub = command("watch", "Build FILE into DIR whenever it is saved, and say what changed.")
     with_file(sub)

@@ -14,7 +14,7 @@ from lumitip_fab.cli import FAILED, REFUSED
 from lumitip_fab.errors import BuildError, InputError, OutputError
 from lumitip_fab.locate import packaged_design
 
-WIDE = None if sys.stdout.isatty() else 160  # a file or a log has no edge to fold at
+WIDE = None if sys.stdout.isatty() else 200  # a file or a log has no edge to fold at
 OUT, ERR = Console(highlight=False, width=WIDE), Console(stderr=True, highlight=False)
 
 
@@ -27,12 +27,11 @@ def run(options: argparse.Namespace) -> int:
             print(json.dumps({"problems": [vars(p) for p in error.problems]}, indent=1))
         print(error, file=sys.stderr)
         return REFUSED
-    except OutputError as error:
+    except (OutputError, BuildError) as error:
+        if options.json:
+            print(json.dumps({"error": str(error)}, indent=1))
         print(error, file=sys.stderr)
-        return REFUSED
-    except BuildError as error:
-        print(error, file=sys.stderr)
-        return FAILED
+        return FAILED if isinstance(error, BuildError) else REFUSED
 
 
 def _init(options: argparse.Namespace) -> int:
@@ -89,10 +88,12 @@ def _check(options: argparse.Namespace) -> int:
     with ERR.status("reading the files back") if not options.quiet else nullcontext():
         outcome = run_checks(options.out)
     told = json.dumps(as_json(outcome), indent=1) + "\n"
-    if options.junit:
-        write_file(options.junit, report.junit(outcome))
-    if options.report:
-        write_file(options.report, told.encode())
+    for path, data in ((options.junit, report.junit(outcome)), (options.report, told.encode())):
+        try:
+            if path:
+                write_file(path, data)
+        except OSError as error:
+            raise OutputError(f"{path}: cannot be written: {error.strerror}") from error
     if options.json:
         print(told, end="")
     elif not options.quiet or outcome.failed:

@@ -49,7 +49,9 @@ class Input:
 
     def problem(self, field: str, message: str) -> Problem:
         """A fault of a field, placed in the file that set it."""
-        source = _setting(self.sources, field)
+        source, own = _setting(self.sources, field), self.sources[0]
+        if source is not own:  # the base may be good for others
+            message += f"; set it in {shown_path(own.path)}"
         return Problem(shown_path(source.path), source.line(field), field, message)
 
 

@@ -41,7 +41,7 @@ class Manifest:
         return (
             self.keys.get(task) == key
             and bool(mine)
-            and all(_sha256_of(out / path) == self.files[path].sha256 for path in mine)
+            and all(sha256_of(out / path) == self.files[path].sha256 for path in mine)
         )
 
 
@@ -90,7 +90,8 @@ def write_file(path: Path, data: bytes) -> None:
         raise
 
 
-def _sha256_of(path: Path) -> str | None:
+def sha256_of(path: Path) -> str | None:
+    """SHA-256 (hex) of a file; none where it cannot be read."""
     try:
         return hashlib.sha256(path.read_bytes()).hexdigest()
     except OSError:

@@ -192,11 +192,12 @@ class Mould(Strict):
 
     silicone: Name
     """Name of a silicone in `parts/silicones.toml`."""
-    taper_length_mm: float = Field(ge=0.5, le=20)
-    """Distance from the tip edge over which the silicone thins (mm)."""
+    taper_length_mm: float = Field(ge=0.5, le=3.9)
+    """Distance from the tip edge over which the silicone thins; the fingers touch first where it
+    ends, at most 4 mm from the tip (mm)."""
     tip_silicone_mm: float = Field(ge=0.05, le=5)
     """Silicone left at the tip edge (mm)."""
-    wall_gap_mm: float = Field(ge=0.05, le=0.5)
+    wall_gap_mm: float = Field(ge=0.12, le=0.28)
     """Gap between the plate's rim and the mould's wall (mm)."""
     draft_deg: float = Field(ge=2, le=20)
     """Opening of the wall above the rim (degrees from the pull direction)."""

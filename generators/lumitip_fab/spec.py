@@ -34,8 +34,10 @@ def _table_1(design: Design) -> tuple[Row, ...]:
     area = (np.ptp(x_mm) + pitch * 2 / math.sqrt(3), np.ptp(y_mm) + pitch)
     density = 100 / (pitch**2 * math.sqrt(3) / 2)
     return (
-        Row("width", "58 mm", f"{width:.1f} mm", "own outline curve, published 57.9 measured"),
-        Row("height", "54 mm", f"{design.outline.length_mm:.1f} mm", "published 54.7 measured"),
+        Row("width", "58 mm", f"{width:.1f} mm",
+            "own curve round the board; the published part measures 57.9"),
+        Row("height", "54 mm", f"{design.outline.length_mm:.1f} mm",
+            "board and its margins; the published part measures 54.7"),
         Row("depth", "21 mm", f"{depth:.1f} mm", "silicone and film before the coupling's 19.1"),
         Row("board", "42.8 x 43.1 mm", f"{box.width_mm:.1f} x {box.length_mm:.1f} mm",
             "follows grid, margins and parts"),

@@ -1,6 +1,6 @@
 """Build again whenever the parameter file, its base or the catalogue is saved."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -25,12 +25,14 @@ def watch(file: Path, out: Path, console: Console) -> None:
     """
     known = _rebuilt(file, out, {}, console)
     console.print(f"watching {design_folder(file)}; stop with Ctrl-C")
-    for _ in changes(design_folder(file), raise_interrupt=False, watch_filter=_is_toml):
+    folder = design_folder(file)
+    for _ in changes(folder, raise_interrupt=False, watch_filter=_input_files(out)):
         known = _rebuilt(file, out, known, console)
 
 
-def _is_toml(_: Any, path: str) -> bool:
-    return path.endswith(".toml")
+def _input_files(out: Path) -> Callable[[Any, str], bool]:
+    """TOML files, but for those that a build writes, should the outputs lie among the inputs."""
+    return lambda _, path: path.endswith(".toml") and not Path(path).is_relative_to(out.resolve())
 
 
 def _rebuilt(file: Path, out: Path, known: dict[str, Any], console: Console) -> dict[str, Any]:

@@ -36,10 +36,8 @@ def pad_lowered(part: Manifold) -> Manifold:
     return part - box((21.5, 23.5, 3.8), (24.0, 26.0, 3.95))
 
 
-def pad_moved(part: Manifold) -> Manifold:
-    without = part - box((21.5, 23.6, 2.4), (23.95, 25.9, 4))
-    pad = Manifold.cylinder(2.7, 1.1, 1.0, 64).translate((22.75, 24.9, 1.2))
-    return without + pad + box((22.75, 23.9, 1.2), (24.5, 25.9, 3.9))
+def pad_cut(part: Manifold) -> Manifold:
+    return part - box((21.5, 23.6, 2.41), (22.6, 25.9, 4))
 
 
 def tip_line_lowered(part: Manifold) -> Manifold:
@@ -108,7 +106,7 @@ def lifted(part: Manifold) -> Manifold:
 OTHER_FILES = {"three_mf", "step"}  # no longer the part that the STL holds
 SOLID = {
     pad_lowered: {"stops"},
-    pad_moved: {"stops"},
+    pad_cut: {"stops"},
     tip_line_lowered: {"stops"},
     floor_raised: {"thickness"},
     tip_floor_raised: {"tip_thickness"},
@@ -170,6 +168,12 @@ def volume_edited(folder: Path) -> None:
     (folder / NOTE).write_text(changed, encoding="utf-8")
 
 
+def mass_edited(folder: Path) -> None:
+    text = (folder / NOTE).read_text(encoding="utf-8")
+    changed = re.sub(r"part A \| \*\*[0-9.]+ g", "part A | **99.00 g", text)
+    (folder / NOTE).write_text(changed, encoding="utf-8")
+
+
 def note_empty(folder: Path) -> None:
     (folder / NOTE).write_text("", encoding="utf-8")
 
@@ -189,9 +193,10 @@ FILES = {
     mould_missing: EVERY,
     packages_gone: {"three_mf", "step"},
     packages_swapped: {"three_mf", "step"},
-    volume_edited: {"volume"},
-    note_empty: {"volume"},
-    note_missing: {"volume"},
+    volume_edited: {"volume", "masses"},
+    mass_edited: {"masses"},
+    note_empty: {"volume", "masses"},
+    note_missing: {"volume", "masses"},
     backing_missing: {"seat"},
 }
 

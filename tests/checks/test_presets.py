@@ -31,8 +31,8 @@ def test_every_file_of_a_part_is_read_by_some_check(outputs: Path) -> None:
         if not list(modules_reading([str(f.relative_to(outputs))]))
     ]
     assert sorted(unread) == [
-        "assembly/exploded.svg",
-        "manifest.json",
+        "assembly/emitter_exploded.svg",
+        "assembly/receiver_exploded.svg",
         "mask/emitter_wrapping.md",
         "mask/receiver_wrapping.md",
         "resolved.toml",

@@ -14,6 +14,7 @@ from lumitip import Layout
 from lumitip_fab import manifest
 from lumitip_fab.build import build
 from lumitip_fab.errors import InputError, OutputError
+from lumitip_fab.lock import locked
 
 PUBLISHED = "presets/published.toml"
 
@@ -82,6 +83,14 @@ def test_an_output_folder_that_is_a_file_is_refused(design_dir: Path, tmp_path: 
     with pytest.raises(OutputError, match="cannot be written"):
         build(design_dir / PUBLISHED, tmp_path / "out" / "below")
     assert (tmp_path / "out").read_text() == "here already"
+
+
+def test_a_second_build_at_the_same_time_is_refused(design_dir: Path, damaged: Path) -> None:
+    before = contents(damaged)
+    with locked(damaged), pytest.raises(OutputError, match="another build is writing there"):
+        build(design_dir / PUBLISHED, damaged)
+    assert contents(damaged) == before
+    assert build(design_dir / PUBLISHED, damaged).written == ()
 
 
 def test_same_bytes_in_another_folder_process_and_hash_seed(

@@ -104,6 +104,15 @@ def test_a_failed_check_exits_1_and_says_which(
     assert ElementTree.parse(tmp_path / "x").find(".//failure") is not None
 
 
+def test_a_report_that_cannot_be_written_is_told(
+    outputs: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "file").write_text("")
+    told = ["check", "--out", str(outputs), "--quiet", "--junit", str(tmp_path / "file" / "x.xml")]
+    assert main(told) == 2
+    assert "cannot be written" in capsys.readouterr().err
+
+
 def test_check_of_an_empty_folder_says_what_to_do(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -219,7 +219,7 @@ COLUMNS = [
 ]
 ROOMY = {
     "mask.hole_mm": 1.5,
-    "mask.flap_mm": 5.0,
+    "mask.flap_mm": 6.0,
     "board.tip_margin_mm": 5.0,
     "emitter.resistor_side": "front",
     "emitter.current_ma": 2.0,

@@ -14,7 +14,7 @@ from lumitip_fab.watch import differences
 def test_differences_name_what_changed() -> None:
     before = {"parameters.grid.pitch_mm": 6.0, "parts.emitter.led.exponent": 1.0}
     after = {"parameters.grid.pitch_mm": 5.0, "parts.emitter.led.exponent": 1.0, "new": 1}
-    assert list(differences(before, after)) == ["grid.pitch_mm: 6.0 → 5.0", "new: None → 1"]
+    assert list(differences(before, after)) == ["new: None → 1", "grid.pitch_mm: 6.0 → 5.0"]
 
 
 def test_saving_rebuilds_and_a_fault_is_waited_out(outputs: Path, tmp_path: Path) -> None:

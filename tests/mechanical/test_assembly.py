@@ -32,7 +32,8 @@ def test_the_same_design_gives_the_same_files_in_any_process(outputs: Path) -> N
     assert [a.path for a in made] == [
         "assembly/assembly.step",
         "assembly/assembly.glb",
-        "assembly/exploded.svg",
+        "assembly/emitter_exploded.svg",
+        "assembly/receiver_exploded.svg",
     ]
     for artefact in made:
         assert artefact.data == (outputs / artefact.path).read_bytes(), artefact.path
@@ -81,7 +82,7 @@ def test_step_names_every_body(outputs: Path) -> None:
 def test_the_drawing_keeps_its_words_apart_and_on_the_page(
     preset: str, built: Callable[[str], Path]
 ) -> None:
-    root = ElementTree.parse(built(preset) / "assembly/exploded.svg").getroot()
+    root = ElementTree.parse(built(preset) / "assembly/receiver_exploded.svg").getroot()
     left, top, width, height = (float(v) for v in root.attrib["viewBox"].split())
     assert root.attrib["width"] == f"{width:.2f}mm"
     columns: dict[float, list[float]] = {}

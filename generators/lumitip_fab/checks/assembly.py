@@ -27,6 +27,7 @@ LAYERS = ("backing", "board", "silicone", "film")
 FACING_MM = 0.05
 LEAN_DEG = 0.02
 CONTACT_MM = 4.0
+_TOUCH_MM = 1e-4
 OPENING_MM = 0.02
 STROKE_MM = 0.05
 SHARED_MM3 = 0.05
@@ -97,8 +98,9 @@ def _leans(scene: Scene, design: Design) -> Iterator[Measurement]:
     for finger, lean in zip(design.fingers, leans, strict=True):
         yield Measurement("assembly.lean", f"{_FILE}: {finger.name}", lean, tilt - LEAN_DEG,
                           tilt + LEAN_DEG, "deg", "tip inward")  # fmt: skip
-    yield Measurement("assembly.skew", _FILE, sum(leans), unit="deg",
-                      note="between the axes of LED and photodetector; information")  # fmt: skip
+    yield Measurement("assembly.skew", _FILE, sum(leans), 2 * (tilt - LEAN_DEG),
+                      2 * (tilt + LEAN_DEG), "deg",
+                      "between the axes of LED and photodetector")  # fmt: skip
 
 
 def _lean_deg(film: Node) -> float:
@@ -115,7 +117,9 @@ def _contacts(scene: Scene, design: Design) -> Iterator[Measurement]:
     """The line of each face that stands out farthest, by its distance from the tip."""
     for finger in design.fingers:
         film = scene.nodes[f"{finger.name}.film"]
-        place = film.points_mm[_reach_mm(film, finger).argmax()]
+        reach = _reach_mm(film, finger)
+        touching = film.points_mm[reach > reach.max() - _TOUCH_MM]
+        place = touching[touching[:, 1].argmax()]  # of a whole line or face, where it begins
         yield Measurement("assembly.first_contact", f"{_FILE}: {finger.name}",
                           float(design.outline.tip_y_mm - place[1]), 0, CONTACT_MM, "mm",
                           "from the tip edge")  # fmt: skip

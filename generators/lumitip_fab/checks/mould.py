@@ -25,7 +25,7 @@ READS = ("mould/*", "backing/*_backing.stl")
 NAMES = (
     "mould.watertight", "mould.bodies", "mould.fits_bed", "mould.thickness", "mould.tip_thickness",
     "mould.stops", "mould.gap", "mould.draft", "mould.undercut", "mould.min_wall", "mould.three_mf",
-    "mould.step", "mould.volume", "mould.seat",
+    "mould.step", "mould.volume", "mould.masses", "mould.seat",
 )  # fmt: skip
 THICKNESS_MM = 0.02
 STOPS_MM = 0.02
@@ -34,6 +34,7 @@ SHARED_MM3 = 0.05
 GRID_MM = 0.8
 _PAD_INNER, _PAD_OUTER = 0.95, 1.13  # of a pad's radius: on it, and beside its drafted foot
 _LINE_MM = 0.15  # how far under the plate the tip line is probed
+_PART = re.compile(r", part ([AB]) \| \*\*([0-9.]+) g\*\*")
 _STATED = re.compile(r"stays on the finger \| \*\*([0-9.]+) mL\*\*")
 
 
@@ -54,6 +55,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
 def _measured(
     mesh: Any, file: str, outputs: Path, design: Design, finger: Finger
 ) -> Iterator[Measurement]:
+    yield _masses(outputs, design, finger)
     yield Measurement("mould.watertight", file, solids.open_edges(mesh), 0, 0, "edges")
     yield Measurement("mould.bodies", file, solids.bodies(mesh), 1, 1, "bodies")
     room = np.array(design.printing.bed_mm) - mesh.extents
@@ -99,8 +101,10 @@ def _thickness(probe: Probe, file: str) -> Measurement:
     y = np.arange(box.y_min_mm, box.y_max_mm, GRID_MM)
     depth = probe.depths_mm(np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2))
     wanted = probe.design.stack.silicone_mm
+    # The finger lies on the stops, so its board is as high as they really are.
+    depth -= float(np.min([probe.depths_mm(np.array([pad]))[0] for pad in probe.design.mould.pads]))
     worst = float(depth[np.abs(depth - wanted).argmax()])
-    note = f"farthest from {wanted:g} at {len(depth)} places over the board"
+    note = f"farthest from {wanted:g} at {len(depth)} places over the board, from the pads' tops"
     return Measurement("mould.thickness", file, worst, wanted - THICKNESS_MM,
                        wanted + THICKNESS_MM, "mm", note)  # fmt: skip
 
@@ -173,6 +177,23 @@ def _volume(
                        round(measured * (1 - VOLUME_FRACTION), 4),
                        round(measured * (1 + VOLUME_FRACTION), 4),
                        "mL", f"{measured:.3f} mL in {file}")  # fmt: skip
+
+
+def _masses(outputs: Path, design: Design, finger: Finger) -> Measurement:
+    """Grams of parts A and B in the note against its own millilitres and the mixing ratio."""
+    file, mould = f"mould/{finger.name}_casting.md", design.mould
+    try:
+        text = (outputs / file).read_text(encoding="utf-8")
+    except (OSError, ValueError) as error:
+        return unreadable("mould.masses", file, repr(error))
+    stated, grams = _STATED.search(text), dict(_PART.findall(text))
+    if stated is None or grams.keys() != {"A", "B"}:
+        return unreadable("mould.masses", file, "does not state the mass of parts A and B")
+    whole = float(stated[1]) * (1 + mould.waste_fraction) * mould.density_g_ml
+    wanted = [whole * part / sum(mould.mix_ratio) for part in mould.mix_ratio]
+    worst = max(abs(float(grams[p]) / w - 1) for p, w in zip("AB", wanted, strict=True))
+    return Measurement("mould.masses", file, 100 * worst, 0, 100 * VOLUME_FRACTION, "%",
+                       f"parts of {wanted[0]:.2f} g and {wanted[1]:.2f} g")  # fmt: skip
 
 
 def _cavity_mm3(body: overlap.Solid, design: Design) -> float:

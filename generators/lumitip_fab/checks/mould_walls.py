@@ -1,5 +1,6 @@
 """The walls of a mould: how near they guide the finger, and whether they let it go."""
 
+import math
 from collections.abc import Iterator
 from typing import Any
 
@@ -15,7 +16,8 @@ LEAST_DRAFT_DEG = 2.0
 DRAFT_MESH_DEG = 0.25  # of triangles on curved walls
 _ABOVE_MM = 0.05  # stops and weir end at the rim itself
 _STEP_MM = 0.5
-_LEVEL = 1e-3  # a facet that faces down by less is upright, or nearer to the bed lies on it
+_UPRIGHT = math.sin(math.radians(0.5))  # a facet that leans by less is an upright wall's mesh
+_ON_BED_MM = 1e-3
 
 
 def measured(mesh: Any, file: str, design: Design, notch: Box) -> Iterator[Measurement]:
@@ -65,8 +67,8 @@ def _undercut_mm2(mesh: Any, silhouette: Any, design: Design) -> float:
     """Faces that look down, from the wall's middle inward and above the bed."""
     mould = design.mould
     inner = silhouette.buffer(mould.wall_gap_mm + mould.wall_mm / 2)
-    above_bed = mesh.triangles[:, :, 2].min(axis=1) > mesh.bounds[0, 2] + _LEVEL
-    down = (mesh.face_normals[:, 2] < -_LEVEL) & above_bed
+    above_bed = mesh.triangles[:, :, 2].min(axis=1) > mesh.bounds[0, 2] + _ON_BED_MM
+    down = (mesh.face_normals[:, 2] < -_UPRIGHT) & above_bed
     centres = mesh.triangles_center[down]
     held = shapely.contains_xy(inner, centres[:, 0], centres[:, 1])
     return float(mesh.area_faces[down][held].sum())

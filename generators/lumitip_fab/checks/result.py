@@ -7,6 +7,8 @@ from pathlib import Path
 
 from lumitip_fab.design import Design
 
+NOISE = 1e-5  # of coordinates in files: STL keeps 24 bits, which is 4e-6 mm at 50 mm
+
 
 @dataclass(frozen=True)
 class Measurement:
@@ -36,7 +38,7 @@ class Measurement:
     @property
     def passed(self) -> bool:
         """Whether the figure lies in its range."""
-        return self.low <= self.measured <= self.high
+        return self.low - NOISE <= self.measured <= self.high + NOISE
 
     @property
     def limit(self) -> str:

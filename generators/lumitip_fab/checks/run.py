@@ -11,7 +11,7 @@ from types import ModuleType
 from lumitip_fab.checks.result import Measurement
 from lumitip_fab.encoding import read_design
 
-MODULES = ("layout", "mask", "backing", "mould", "assembly")
+MODULES = ("manifest", "layout", "mask", "backing", "mould", "assembly")
 
 
 @dataclass(frozen=True)

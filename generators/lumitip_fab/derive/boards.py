@@ -128,7 +128,7 @@ def _frame(
     wires_half = connectors.half_width_mm(ways, wide)
     notch_half = max(wires_half + NOTCH_BESIDE_MM, gripper.seat_width_mm / 2 + SEAT_CLEARANCE_MM)
     least_hole_x = notch_half + p.printer.min_wall_mm + pin_mm / 2
-    half = _up(max(half, least_hole_x + rim))
+    half = _up(max(half, least_hole_x + rim, placing.least_half_width_mm(given)))
     hole_x = min(max(float(np.abs(cells.x_mm).max()), least_hole_x), half - rim)
     top, bottom = float(cells.y_mm.max()), float(cells.y_mm.min())
     reach = max(part.size_y_mm for part in chips_) / 2
@@ -153,11 +153,18 @@ def _frame(
     x_min, x_max = float(cells.x_mm.min()), float(cells.x_mm.max())
     widest = max(-x_min, x_max) + side
     end = y_min - p.outline.end_margin_mm
-    notch = Box(-notch_half, notch_half, end, connector_y + pad / 2 + NOTCH_BEFORE_PADS_MM)
+    # Behind the plate the block rises at 45° from the notch; the solder tails are to stay clear.
+    before_pads = max(NOTCH_BEFORE_PADS_MM, p.backing.tail_mm - p.stack.floor_mm)
+    notch = Box(-notch_half, notch_half, end, connector_y + pad / 2 + before_pads)
     return Frame(
         box=Box(-half, half, y_min, y_max),
         cells=Box(-widest, widest, bottom - reach, top + reach),
-        parts=Box(-half + 1, half - 1, parts_top - depth + p.board.channel_mm, parts_top),
+        parts=Box(
+            -half + placing.ZONE_MARGIN_MM,
+            half - placing.ZONE_MARGIN_MM,
+            parts_top - depth + p.board.channel_mm,
+            parts_top,
+        ),
         connector_y_mm=connector_y,
         wide=wide,
         notch=notch,

@@ -5,6 +5,8 @@ import math
 from lumitip_fab.derive.faults import Faults
 from lumitip_fab.design import Closing, Mould, Mount, Outline, Stack
 
+CONTACT_MM = 4.0
+
 
 def derive_closing(
     outline: Outline, stack: Stack, mount: Mount, mould: Mould, faults: Faults
@@ -24,6 +26,13 @@ def derive_closing(
     reach, y = max((y * sine + z * cosine, y) for y, z in profile)
     bolt = mount.origin_y_mm * sine + stack.rim_z_mm * cosine - mount.bolt_w_mm
     opening = mount.stroke_mm + 2 * (mount.pad_w_mm - (reach - bolt))
+    faults.refuse_unless(
+        outline.tip_y_mm - y <= CONTACT_MM,
+        "coupling.gripper",
+        f"{mount.gripper!r} given, whose tilt of {mount.tilt_deg:g}° lets the fingers touch first "
+        f"{outline.tip_y_mm - y:.1f} mm from the tip; at most {CONTACT_MM:g} mm is allowed: a tilt "
+        "of 0 or more",
+    )
     faults.refuse_unless(
         opening >= 10,
         "coupling.gripper",

@@ -1,11 +1,14 @@
 """The silicone mould: where its stops stand and what is poured into it."""
 
+import math
+
 from lumitip_fab.derive.faults import Faults
 from lumitip_fab.derive.outline import half_width_at
 from lumitip_fab.design import Board, Mould, Outline, Point
 from lumitip_fab.load import Input
 
 PAD_MM = 2.0
+LEAST_FLOOR_RIM_MM = 0.5
 PAD_MARGIN_MM = 0.1
 END_ROUND = 2 / 3  # of the silicone's thickness
 
@@ -26,6 +29,24 @@ def derive_mould(given: Input, outline: Outline, board: Board, faults: Faults) -
         f"{p.mould.tip_silicone_mm:g} given, less than stack.silicone_mm = "
         f"{p.stack.silicone_mm:g} is allowed",
     )
+    faults.refuse_unless(
+        p.mould.wall_mm >= 2 * p.printer.min_wall_mm,
+        "mould.wall_mm",
+        f"{p.mould.wall_mm:g} given, at least {2 * p.printer.min_wall_mm:g} is needed: the trough "
+        "is half as deep as the floor, and printer.min_wall_mm must remain",
+    )
+    lean = math.tan(math.radians(p.mould.draft_deg))
+    for depth, allowed, what in (
+        (p.stack.silicone_mm, LEAST_FLOOR_RIM_MM, "leans the skin in under the rim"),
+        (p.mould.tip_silicone_mm, p.mould.wall_gap_mm - 0.02, "reaches under the tip edge"),
+    ):
+        faults.refuse_unless(
+            depth * lean <= allowed + 1e-9,
+            "mould.draft_deg",
+            f"{p.mould.draft_deg:g} given, which over {depth:g} mm of silicone {what} by "
+            f"{depth * lean:.2f} mm; at most {allowed:.2f} mm is allowed: "
+            f"{math.degrees(math.atan(allowed / depth)):.1f}° or less",
+        )
     return Mould(
         taper_length_mm=p.mould.taper_length_mm,
         tip_silicone_mm=p.mould.tip_silicone_mm,

@@ -17,6 +17,7 @@ HOLE_WEB_MM = 0.5  # board left between a hole and its edge
 HOLES_APART_MM = 0.4  # board left between two holes
 RELIEF_DEPTH_MM = 0.2  # below the part
 RESISTOR_GAP_MM = 0.6
+ZONE_MARGIN_MM = 1.0  # zone for parts to the board's long edges
 COUPLING_GAP_MM = 2.0  # mounting block to a relief
 
 
@@ -130,10 +131,7 @@ def resistors(
     p = given.parameters
     chip = given.catalogue.resistors[p.emitter.resistor]
     along, across = chip.over_pads_mm
-    inner = RESISTOR_GAP_MM / 2
-    if p.emitter.resistor_side == "back":
-        block = given.catalogue.grippers[p.coupling.gripper].block_width_mm
-        inner = block / 2 + COUPLING_GAP_MM + p.backing.relief_clearance_mm
+    inner = _inner_mm(given)
     outer = zone.x_max_mm - p.backing.relief_clearance_mm
     step_x, step_y = across + RESISTOR_GAP_MM, along + RESISTOR_GAP_MM
     across_bank = int((outer - inner + RESISTOR_GAP_MM) / step_x + 1e-9)
@@ -169,6 +167,22 @@ def resistors(
         if bank and p.emitter.resistor_side == "back":
             reliefs.append(_relief(given, bank, chip.body_mm[2]))
     return tuple(parts), tuple(reliefs)
+
+
+def least_half_width_mm(given: Input) -> float:
+    """Half the board's width that takes one string resistor on each side of the coupling."""
+    p = given.parameters
+    _, across = given.catalogue.resistors[p.emitter.resistor].over_pads_mm
+    return _inner_mm(given) + across + p.backing.relief_clearance_mm + ZONE_MARGIN_MM
+
+
+def _inner_mm(given: Input) -> float:
+    """Where the banks of string resistors begin: behind the board, beside the coupling."""
+    p = given.parameters
+    if p.emitter.resistor_side == "front":
+        return RESISTOR_GAP_MM / 2
+    block = given.catalogue.grippers[p.coupling.gripper].block_width_mm
+    return block / 2 + COUPLING_GAP_MM + p.backing.relief_clearance_mm
 
 
 def _relief(given: Input, bank: list[Part], height_mm: float) -> Relief:

@@ -8,6 +8,8 @@ from lumitip_fab.load import Input
 from lumitip_fab.parameters import Parameters
 
 LEAST_SILICONE_MM = 0.3
+MOULD_ROOM_MM = 2.0  # gaps and draft of a mould beyond its walls
+TROUGH_ROOM_MM = 5.0  # its trough at the gripper end
 
 
 def derive_stack(given: Input, faults: Faults) -> Stack:
@@ -85,8 +87,8 @@ def derive_printing(given: Input, outline: Outline, faults: Faults) -> Printing:
         f"{p.printer.min_wall_mm:g} given, at least one printed line of {printer.line_mm:g} "
         "is needed",
     )
-    width = float(abs(outline.polygon()[:, 0]).max()) * 2 + 4 * p.mould.wall_mm
-    length = outline.length_mm + 4 * p.mould.wall_mm
+    width = float(abs(outline.polygon()[:, 0]).max()) * 2 + 2 * p.mould.wall_mm + MOULD_ROOM_MM
+    length = outline.length_mm + 3 * p.mould.wall_mm + MOULD_ROOM_MM + TROUGH_ROOM_MM
     bed = printer.bed_mm
     faults.refuse_unless(
         width <= bed[0] and length <= min(bed[1], bed[2]),

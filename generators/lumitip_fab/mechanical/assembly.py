@@ -43,7 +43,7 @@ def assembly(
     closing: Closing,
     mould: Mould,
 ) -> tuple[Artefact, ...]:
-    """STEP and GLB of the fingers in an open gripper, and an exploded drawing of the receiver."""
+    """STEP and GLB of the fingers in an open gripper, and an exploded drawing of each."""
     silicone, film = silicone_solid(stack, outline, mould), film_solid(stack, outline, mould)
     both = [
         Bodies(
@@ -63,11 +63,18 @@ def assembly(
     tree = Compound(children=[placed(_coloured(b), places[b.finger.name]) for b in both])
     groups = tuple(Group(b.finger.name, places[b.finger.name], tuple(_meshed(b))) for b in both)
     scene = glb("assembly", groups, {"opening_mm": opening})
-    drawing = exploded_view(both[1], stack, outline)
+    drawings = [
+        Artefact(
+            f"assembly/{bodies.finger.name}_exploded.svg",
+            exploded_view(bodies, stack, outline).encode(),
+            frame="",
+        )
+        for bodies in both
+    ]
     return (
         Artefact("assembly/assembly.step", export.step(tree, "assembly"), frame="gripper"),
         Artefact("assembly/assembly.glb", scene, _M_TO_MM, "gripper"),
-        Artefact("assembly/exploded.svg", drawing.encode(), frame=""),
+        *drawings,
     )
 
 

@@ -20,6 +20,7 @@ from lumitip_fab.derive.outline import half_width_at
 from lumitip_fab.design import Box, Cubic, Mould, Outline, Point, Stack
 from lumitip_fab.mechanical.shapes import box_face
 
+FOOT_MM = 0.1  # a stop widens by this at the most
 TIP_LAND_MM = 0.3  # how far the tip line reaches under the plate; with the gap, one printed line
 TIP_LAND_FRACTION = 1 / 3  # of the straight tip edge; the rest keeps its silicone
 _SAMPLES = 13  # points that fix each offset curve: off by less than 0.0005 mm
@@ -114,7 +115,8 @@ def stops(stack: Stack, outline: Outline, mould: Mould) -> list[Solid]:
 def _drafted(top: Face, stack: Stack, mould: Mould) -> Solid:
     """A stop with its top at the rim plane, wider towards the mould's floor and ending in it."""
     depth = stack.silicone_mm + mould.wall_mm / 2
-    wider = depth * math.tan(math.radians(mould.draft_deg))
+    # Deep silicone must not make feet that reach the board.
+    wider = min(depth * math.tan(math.radians(mould.draft_deg)), FOOT_MM)
     ring = top.outer_wire()
     base = ring.offset_2d(wider) if wider > 0 else ring
     rings = [ring.moved(Plane((0, 0, stack.rim_z_mm)).location),
