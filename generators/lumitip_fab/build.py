@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
+from itertools import chain
 from multiprocessing.context import BaseContext
 from pathlib import Path
 from typing import Any
@@ -72,7 +73,7 @@ def _build(given: Input, design: Design, out: Path, progress: Progress) -> Repor
     files = {path: e for path, e in before.files.items() if e.task in kept}
     written: list[str] = []
     batches = [("documents", documents(given, design))]
-    for done, (name, artefacts) in enumerate(_chained(batches, _run(stale)), start=1):
+    for done, (name, artefacts) in enumerate(chain(batches, _run(stale)), start=1):
         for artefact in artefacts:
             files[artefact.path] = manifest.entry(artefact, name)
             if manifest.sha256_of(out / artefact.path) != files[artefact.path].sha256:
@@ -95,11 +96,6 @@ def _untold(_name: str, _done: int, _total: int) -> None:
 
 
 Batch = tuple[str, tuple[Artefact, ...]]
-
-
-def _chained(first: list[Batch], rest: Iterator[Batch]) -> Iterator[Batch]:
-    yield from first
-    yield from rest
 
 
 def _run(stale: list[Task]) -> Iterator[Batch]:
