@@ -4,9 +4,10 @@ OUT ?= outputs
 PYTHON ?= python3
 BIN := .venv/bin
 SETUP := .venv/.lumitip-setup
+CHECK = $(BIN)/lumitip-fab check --out $(OUT) --junit $(OUT)/checks.xml --report $(OUT)/checks.json
 
 .DEFAULT_GOAL := help
-.PHONY: help outputs check watch test lint bench pictures schema golden clean
+.PHONY: help outputs check watch test lint fuzz bench pictures schema golden clean
 
 help: ## show this list
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /  make \1\t/' | expand -t 18
@@ -22,10 +23,10 @@ $(SETUP): pyproject.toml constraints.txt
 
 outputs: $(SETUP) ## build DESIGN into OUT, then check it
 	$(BIN)/lumitip-fab build $(DESIGN) --out $(OUT)
-	@$(MAKE) --no-print-directory check
+	$(CHECK) --memory $(OUT)/.checked.json
 
-check: $(SETUP) ## re-read the files in OUT and prove that they fit
-	$(BIN)/lumitip-fab check --out $(OUT) --junit $(OUT)/checks.xml --report $(OUT)/checks.json
+check: $(SETUP) ## re-read every file in OUT and prove that they fit
+	$(CHECK)
 
 watch: $(SETUP) ## build whenever DESIGN is saved
 	$(BIN)/lumitip-fab watch $(DESIGN) --out $(OUT)
@@ -40,12 +41,26 @@ lint: $(SETUP) ## format, lint, types, schema
 	@$(BIN)/lumitip-fab schema | diff -u design/schema.json - || \
 	  { echo "design/schema.json is stale: make schema"; exit 1; }
 
+fuzz: $(SETUP) ## feed a million damaged inputs to all that reads bytes from outside
+	$(BIN)/python -m fuzz
+
 bench: $(SETUP) ## measure speed and growth
 	$(BIN)/python benchmarks/bench_fab.py
+	$(BIN)/python benchmarks/bench_boards.py
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python benchmarks/bench_estimation.py
+	$(BIN)/lumitip bench-tasks --trials 100 --out $(OUT)/bench-tasks
+	$(BIN)/python benchmarks/bench_processing.py
+	$(BIN)/python benchmarks/bench_protocol.py
+	$(BIN)/python benchmarks/bench_links.py
+	$(BIN)/python benchmarks/bench_twin.py
+	$(BIN)/python benchmarks/bench_view.py
 
 pictures: outputs ## draw the README's pictures from OUT
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[docs]'
 	$(BIN)/python docs/pictures.py $(OUT)
+	$(BIN)/python docs/view_picture.py
+	$(BIN)/python docs/contacts.py
+	$(BIN)/python docs/twin_figures.py
 
 schema: $(SETUP) ## write design/schema.json anew
 	$(BIN)/lumitip-fab schema > design/schema.json

@@ -15,7 +15,11 @@ pitch_mm = 2.5
 [emitter]
 led = "bench 0402"
 current_ma = 5.0
+max_heat_w = 20.0
 resistor_side = "front"
+
+[board]
+copper_gap_mm = 0.15
 
 [receiver]
 photodetector = "bench 0402"

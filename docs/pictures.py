@@ -36,7 +36,7 @@ def main(out: Path) -> None:
     shots: tuple[tuple[str, str, Vector, Vector], ...] = (
         ("backing/emitter_backing.stl", "backing_back.png", (0.7, 1, 0.5), PLASTIC),
         ("backing/emitter_backing.stl", "backing_front.png", (0.6, -1, 0.4), PLASTIC),
-        ("mould/receiver_mould.stl", "mould.png", (0.5, -0.8, 1), MOULD),
+        ("mould/receiver_mould.stl", "mould.png", (0.25, 1, 0.6), MOULD),
     )
     for part, picture, direction, colour in shots:
         draw([actor(out / part, colour)], IMAGES / picture, direction, (0, 0, 1))
@@ -47,6 +47,9 @@ def main(out: Path) -> None:
         )
     for side in ("receiver", "emitter"):
         shutil.copy(out / f"assembly/{side}_exploded.svg", IMAGES)
+        for face in ("front", "back"):
+            board = out / f"boards/{side}/{side}_{face}.png"
+            shutil.copy(board, IMAGES / f"board_{side}_{face}.png")
     draw_glb(out / "assembly/assembly.glb", IMAGES / "assembly.png")
 
 

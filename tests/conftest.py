@@ -1,5 +1,6 @@
 """Built designs that many tests read; a test that changes files works on a copy."""
 
+import fcntl
 import os
 import shutil
 from collections.abc import Callable, Iterator
@@ -11,6 +12,7 @@ from lumitip_fab.build import build
 from lumitip_fab.checks.run import modules_reading, run_checks
 
 DESIGN = Path(__file__).parents[1] / "design"
+Once = Callable[[str, Callable[[Path], object]], Path]
 
 
 @pytest.fixture(scope="session")
@@ -20,18 +22,32 @@ def design_dir() -> Path:
 
 
 @pytest.fixture(scope="session")
-def built(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
-    """`built("dense")`: the output folder of a preset, built once a session. Do not change it."""
-    folders: dict[str, Path] = {}
+def once(tmp_path_factory: pytest.TempPathFactory) -> Once:
+    """`once("dense", make)`: a folder that `make` fills once a run, by whichever worker needs it
+    first. Do not change it."""
+    own = tmp_path_factory.getbasetemp()
+    root = own.parent if "PYTEST_XDIST_WORKER" in os.environ else own
 
-    def get(preset: str) -> Path:
-        if preset not in folders:
-            out = tmp_path_factory.mktemp(preset)
-            build(DESIGN / "presets" / f"{preset}.toml", out)
-            folders[preset] = out
-        return folders[preset]
+    def get(name: str, make: Callable[[Path], object]) -> Path:
+        folder, part = root / f"once-{name}", root / f"{name}.part"
+        with (root / f"{name}.lock").open("w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            if not folder.is_dir():
+                shutil.rmtree(part, ignore_errors=True)  # of a worker that failed
+                part.mkdir()
+                make(part)
+                part.rename(folder)
+        return folder
 
     return get
+
+
+@pytest.fixture(scope="session")
+def built(once: Once) -> Callable[[str], Path]:
+    """`built("dense")`: the output folder of a preset. Do not change it."""
+    return lambda preset: once(
+        preset, lambda out: build(DESIGN / "presets" / f"{preset}.toml", out)
+    )
 
 
 @pytest.fixture(scope="session")
@@ -51,19 +67,41 @@ def failing(outputs: Path) -> Callable[[Path], set[str]]:
     """`failing(damaged)`: names of the checks that fail on a damaged copy of `outputs`.
 
     Only the modules that open a changed file are run: the others see what they passed before.
+    The manifest, which lists the hash of every file, is left out unless it is what was damaged:
+    a damage is to be found in the file itself.
     """
 
     def names(folder: Path) -> set[str]:
         paths = {str(f.relative_to(d)) for d in (outputs, folder) for f in d.rglob("*.*")}
         changed = [p for p in sorted(paths) if _bytes(outputs / p) != _bytes(folder / p)]
         assert changed, "nothing was damaged"
-        return {m.check for m in run_checks(folder, modules_reading(changed)).failed}
+        modules = set(modules_reading(changed)) - ({"manifest"} - set(map(_stem, changed)))
+        return {m.check for m in run_checks(folder, sorted(modules)).failed}
 
     return names
 
 
+def _stem(path: str) -> str:
+    return Path(path).stem
+
+
 def _bytes(path: Path) -> bytes | None:
     return path.read_bytes() if path.is_file() else None
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """`--slow` runs the tests marked `slow` too; so does `LUMITIP_REQUIRE=all`."""
+    parser.addoption("--slow", action="store_true", help="run the tests marked slow too")
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Without that, they are left out."""
+    if config.getoption("--slow") or os.environ.get("LUMITIP_REQUIRE") == "all":
+        return
+    slow = [item for item in items if item.get_closest_marker("slow")]
+    if slow:
+        config.hook.pytest_deselected(items=slow)
+        items[:] = [item for item in items if item not in slow]
 
 
 @pytest.hookimpl(hookwrapper=True)

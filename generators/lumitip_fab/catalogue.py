@@ -5,41 +5,24 @@ Every entry says where its figures come from (`source`) and how far to trust the
 """
 
 from collections.abc import Mapping
-from typing import Annotated, Literal, Self
+from typing import Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
 
-NAME = r"^[A-Za-z0-9][\w .+/\-]*$"
-Length = Annotated[float, Field(ge=0.01, le=500)]
-Share = Annotated[float, Field(ge=0.01, le=1000)]
-PIN = r"^[A-Za-z][A-Za-z0-9_]{0,15}$"
-Pin = Annotated[str, Field(pattern=PIN)]
-Offset = Annotated[float, Field(ge=-500, le=500)]
-Name = Annotated[str, Field(min_length=1, max_length=64, pattern=NAME)]
+from lumitip_fab.entry import Entry, Length, Name, Offset, Pin, Share, Strict
+from lumitip_fab.fab_entry import Fab
 
 
-class Strict(BaseModel):
-    """What every record read from a user's file has in common."""
+class Bought(Entry):
+    """What every part that is soldered to a board carries."""
 
-    model_config = ConfigDict(
-        strict=True,
-        frozen=True,
-        extra="forbid",
-        allow_inf_nan=False,
-        use_attribute_docstrings=True,
-    )
+    manufacturer: str = Field(min_length=1, max_length=64)
+    """Who makes it, for the bill of materials; "any" where it does not matter."""
+    order_number: str = Field(min_length=1, max_length=64)
+    """What to order; of resistors, `{code}` stands for the value, such as 75K or 4K99."""
 
 
-class Entry(Strict):
-    """What every catalogue entry carries."""
-
-    source: str = Field(min_length=1)
-    """Where the figures come from."""
-    confidence: Literal["datasheet", "measured", "inferred", "assumed"]
-    """How far to trust them."""
-
-
-class Chip(Entry):
+class Chip(Bought):
     """A two-terminal part soldered flat on its board."""
 
     body_mm: tuple[Length, Length, Length]
@@ -77,6 +60,12 @@ class Led(Optical):
 
     forward_voltage_v: float = Field(ge=0.1, le=10)
     """Forward voltage at the working current."""
+    forward_tolerance_v: float = Field(ge=0, le=2)
+    """How far the forward voltage of one part may be off, either way."""
+    ideality: float = Field(ge=1, le=5)
+    """Ideality factor n: how its voltage grows with the logarithm of its current."""
+    marked: Literal["anode", "cathode"]
+    """Terminal that the part's mark shows; the board's mark is beside it."""
     max_current_ma: float = Field(ge=0.1, le=1000)
     """Largest continuous current."""
     exponent: float = Field(ge=0, le=50)
@@ -88,6 +77,16 @@ class Photodetector(Optical):
 
     exponent: float = Field(ge=0, le=50)
     """Exponent n of the sensitivity cos(angle) ** n."""
+    marked: Literal["collector", "emitter"]
+    """Terminal that the part's mark shows; the board's mark is beside it."""
+    dark_current_na: float = Field(ge=0, le=1e6)
+    """Largest collector current without light."""
+    light_current_ua: float = Field(gt=0, le=1e6)
+    """Collector current under a bare LED, nothing between the fingers."""
+    saturation_v: float = Field(ge=0, le=2)
+    """Collector to emitter voltage when the light asks for more current than there is."""
+    capacitance_pf: float = Field(ge=0, le=1e4)
+    """Capacitance of the collector."""
 
 
 class Resistor(Chip):
@@ -97,13 +96,24 @@ class Resistor(Chip):
     """Rated power at 70 °C."""
 
 
-class Multiplexer(Entry):
+class Capacitor(Chip):
+    """A ceramic capacitor."""
+
+    capacitance_nf: float = Field(gt=0, le=1e6)
+    """Capacitance."""
+
+
+class Multiplexer(Bought):
     """An analog multiplexer with its leads in two rows."""
 
     body_mm: tuple[Length, Length, Length]
     """Body: along the rows of leads, across them, height above the board."""
     lead_span_mm: Length
     """Outer ends of the pads of the two rows."""
+    lead_tips_mm: Length
+    """Outer ends of the leads of the two rows."""
+    lead_pad_mm: tuple[Length, Length]
+    """Pad of one lead: along the lead, across it."""
     lead_pitch_mm: Length
     """Distance between neighbouring leads."""
     leads: int = Field(ge=8, le=128)
@@ -114,6 +124,18 @@ class Multiplexer(Entry):
     """Lead numbers of the select lines, least significant first."""
     output: int = Field(ge=1)
     """Lead number of the common terminal."""
+    supply: int = Field(ge=1)
+    """Lead number of the supply."""
+    ground: int = Field(ge=1)
+    """Lead number of the ground."""
+    enable: int = Field(ge=1)
+    """Lead number of the enable input, active low: tied to ground."""
+    negative: int | None = None
+    """Lead number of the negative supply, if there is one: tied to ground."""
+    on_resistance_ohm: float = Field(gt=0, le=1e4)
+    """Largest resistance from an input to the common terminal at the detectors' supply."""
+    common_pf: float = Field(ge=0, le=1e4)
+    """Capacitance of the common terminal."""
 
     @property
     def channels(self) -> int:
@@ -122,7 +144,8 @@ class Multiplexer(Entry):
 
     @model_validator(mode="after")
     def _leads_exist(self) -> Self:
-        used = (*self.inputs.values(), *self.select, self.output)
+        single = (self.output, self.supply, self.ground, self.enable, self.negative)
+        used = (*self.inputs.values(), *self.select, *(lead for lead in single if lead is not None))
         if set(self.inputs) != {str(i) for i in range(len(self.inputs))} or not self.inputs:
             given = ", ".join(self.inputs) or "none"
             raise ValueError(f"inputs {given} given, the channels 0, 1, 2 … are needed, no gap")
@@ -133,8 +156,8 @@ class Multiplexer(Entry):
             )
         if len(set(used)) != len(used) or not all(1 <= lead <= self.leads for lead in used):
             raise ValueError(
-                f"inputs, select and output on leads {sorted(used)} given, each needs a lead of "
-                f"its own from 1 to leads = {self.leads}"
+                f"inputs, select, output, supply, ground, enable and negative on leads "
+                f"{sorted(used)} given, each needs a lead of its own from 1 to leads = {self.leads}"
             )
         return self
 
@@ -150,6 +173,8 @@ class Controller(Entry):
     """Digital outputs for the select lines, least significant first."""
     adc_bits: int = Field(ge=8, le=16)
     """Resolution of the analog-to-digital converter."""
+    input_pf: float = Field(ge=0, le=1e4)
+    """Capacitance of an analog input with the wire to it."""
     supply_v: float = Field(gt=0, le=5.5)
     """Supply of its inputs, which is also the detectors' supply."""
 
@@ -249,9 +274,11 @@ class Catalogue(Strict):
     leds: Mapping[Name, Led]
     photodetectors: Mapping[Name, Photodetector]
     resistors: Mapping[Name, Resistor]
+    capacitors: Mapping[Name, Capacitor]
     multiplexers: Mapping[Name, Multiplexer]
     controllers: Mapping[Name, Controller]
     grippers: Mapping[Name, Gripper]
     silicones: Mapping[Name, Silicone]
     films: Mapping[Name, Film]
     printers: Mapping[Name, Printer]
+    fabs: Mapping[Name, Fab]

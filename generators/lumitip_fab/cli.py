@@ -56,8 +56,13 @@ def _parser() -> argparse.ArgumentParser:
     with_out(sub)
     sub.add_argument("--junit", type=Path, metavar="XML", help="also write a JUnit file")
     sub.add_argument("--report", type=Path, metavar="JSON", help="also write a JSON file")
+    told = "tell again what an earlier run with this file measured where nothing changed since"
+    sub.add_argument("--memory", type=Path, metavar="FILE", help=told)
     sub = command("spec", "Print the published Table I beside the figures of FILE.", "json")
     with_file(sub)
+    told = "Print which detector each multiplexer input of a board reads, from its copper."
+    sub = command("channel-map", told, "json")
+    sub.add_argument("file", type=Path, metavar="FILE", help="a .kicad_pcb of KiCad 5 to 10")
     sub = command("watch", "Build FILE into DIR whenever it is saved, and say what changed.")
     with_file(sub)
     with_out(sub)

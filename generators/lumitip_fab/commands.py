@@ -65,8 +65,8 @@ def _build(options: argparse.Namespace) -> int:
         report = build(options.file, options.out, progress)
     if options.json:
         told = {
-            "design_hash": report.design.layout.design_hash,
-            "parameters_hash": report.design.parameters_hash,
+            "design_hash": report.origin.design_hash,
+            "parameters_hash": report.origin.parameters_hash,
             **{name: getattr(report, name) for name in ("written", "removed", "made", "kept")},
         }
         print(json.dumps(told, indent=1))
@@ -82,11 +82,14 @@ def _build(options: argparse.Namespace) -> int:
 
 def _check(options: argparse.Namespace) -> int:
     from lumitip_fab.checks import report
-    from lumitip_fab.checks.run import as_json, run_checks
+    from lumitip_fab.checks.memory import Memory
+    from lumitip_fab.checks.run import MODULES, as_json, run_checks
     from lumitip_fab.manifest import write_file
 
     with ERR.status("reading the files back") if not options.quiet else nullcontext():
-        outcome = run_checks(options.out)
+        reports = [path for path in (options.junit, options.report) if path]
+        memory = Memory(options.memory, options.out, reports) if options.memory else None
+        outcome = run_checks(options.out, MODULES, memory)
     told = json.dumps(as_json(outcome), indent=1) + "\n"
     for path, data in ((options.junit, report.junit(outcome)), (options.report, told.encode())):
         try:
@@ -121,6 +124,21 @@ def _watch(options: argparse.Namespace) -> int:
     return 0
 
 
+def _channel_map(options: argparse.Namespace) -> int:
+    from lumitip_fab.checks.channel_map import read_channels
+
+    found = read_channels(options.file)
+    if options.json:
+        print(json.dumps(found.best, indent=1))
+    else:
+        for mux, inputs in found.best.items():
+            listed = "  ".join(f"{channel}:{detector}" for channel, detector in inputs.items())
+            print(f"{mux} ({found.output[mux] or 'no net'})  {listed}")
+    for doubt in found.doubts:
+        print(doubt, file=sys.stderr)
+    return FAILED if found.contradicted else 0
+
+
 def _schema(_: argparse.Namespace) -> int:
     from lumitip_fab.schema import schema_text
 
@@ -133,6 +151,7 @@ COMMANDS = {
     "build": _build,
     "check": _check,
     "spec": _spec,
+    "channel-map": _channel_map,
     "watch": _watch,
     "schema": _schema,
 }

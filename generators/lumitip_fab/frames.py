@@ -5,6 +5,8 @@
 - Bed of the mould: the sensor frame turned over about x, so that the open side is up.
 - Gripper frame: z = 0 is the mid-plane between the fingers, the lean applied; the receiver
   looks along +z. Opening is the smallest distance from skin to skin.
+- Page of a board file: seen from the board's front with the tip up, y down, as KiCad has it;
+  z = 0 is the board's front, and looks to the back so that the frame stays right-handed.
 - Page of a mask: seen from the film's inside, tip towards the top, so page x = -x of the
   finger's own frame; origin at the sensor frame's origin, before the page is stretched.
 """
@@ -15,6 +17,8 @@ from numpy.typing import NDArray
 from lumitip_fab.design import Closing, Mould, Mount, Point, Stack
 
 Matrix = NDArray[np.float64]
+BOARD_ON_PAGE_MM = (150.0, 100.0)
+"""Where the sensor frame's origin lies on a board's page, which is an A4 sheet."""
 
 
 def translation(x_mm: float, y_mm: float, z_mm: float) -> Matrix:
@@ -65,6 +69,18 @@ def sensor_to_page(measured_ruler_mm: Point) -> Matrix:
     """From a finger's sensor frame to its mask's page, stretched by what the rulers measured."""
     across, up = (100.0 / measured for measured in measured_ruler_mm)
     return np.diag([-across, up, 1.0, 1.0])
+
+
+def board_page_to_sensor(stack: Stack) -> Matrix:
+    """From the page of a finger's board file to its sensor frame."""
+    across, down = BOARD_ON_PAGE_MM
+    return translation(-across, down, stack.rim_z_mm) @ rotation_x(180.0)
+
+
+def on_board_page(point: Point) -> Point:
+    """A point of the sensor frame on the page of a finger's board file."""
+    across, down = BOARD_ON_PAGE_MM
+    return across + point[0], down - point[1]
 
 
 def applied(matrix: Matrix, points: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -7,20 +7,14 @@ importing a generator of solids takes seconds.
 
 import ast
 import hashlib
-import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
-from importlib.metadata import PackageNotFoundError, version
-from pathlib import Path
 from typing import Any
 
-import lumitip
 from lumitip_fab.design import Design
 from lumitip_fab.encoding import canonical
-
-PACKAGE = Path(__file__).parent
-SHARED = ("artefact.py", "design", "encoding.py", "errors.py", "frames.py", "graph.py", "derive")
+from lumitip_fab.toolchain import PACKAGE, code_hash, tool_version
 
 
 @dataclass(frozen=True)
@@ -31,15 +25,19 @@ class Step:
     module: str
     name: str
     heavy: bool
-    """Whether it imports the CAD kernel, and so runs in a worker."""
+    """Whether it takes long, and so runs in a worker: routing, and what imports the CAD kernel."""
     tools: tuple[str, ...]
     """Distributions whose version its output may depend on."""
 
 
 _CAD = ("build123d", "cadquery-ocp", "cadquery-ocp-novtk", "lib3mf", "numpy", "trimesh")
 _INK = ("reportlab", "ezdxf", "numpy", "shapely")
+_COPPER = ("gerbonara", "matplotlib", "networkx", "numba", "numpy", "scipy", "shapely")
 STEPS = (
     Step("mask", "files", "mask_files", False, _INK),
+    Step("firmware", "files", "firmware_files", False, ("numpy",)),
+    Step("boards", "files", "board_files", True, _COPPER),
+    Step("boards", "spice", "simulation", False, ()),
     Step("mechanical", "assembly", "assembly", True, _CAD),
     Step("mechanical", "mould", "mould_files", True, _CAD),
     Step("mechanical", "backing", "backing", True, _CAD),
@@ -82,24 +80,3 @@ def argument_names(step: Step) -> tuple[str, ...]:
         if isinstance(node, ast.FunctionDef) and node.name == step.name:
             return tuple(a.arg for a in (*node.args.args, *node.args.kwonlyargs))
     raise LookupError(f"lumitip_fab.{step.folder}.{step.module} has no function {step.name}")
-
-
-@lru_cache
-def code_hash(folder: str) -> str:
-    """Hash of a generator's folder and of the modules that all generators share."""
-    roots = [PACKAGE / name for name in (folder, *SHARED)] + [Path(lumitip.__file__).parent]
-    files = [f for r in roots for f in (sorted(r.rglob("*.py")) if r.is_dir() else [r])]
-    digest = hashlib.sha256()
-    for file in files:
-        digest.update(file.name.encode() + b"\0" + file.read_bytes() + b"\0")
-    return digest.hexdigest()
-
-
-@lru_cache
-def tool_version(distribution: str) -> str:
-    """A distribution with its version; Python itself goes with every one."""
-    python = f"{sys.version_info.major}.{sys.version_info.minor}"
-    try:
-        return f"{distribution} {version(distribution)} on Python {python}"
-    except PackageNotFoundError:  # one of two distributions of the same kernel
-        return f"no {distribution}"

@@ -8,7 +8,8 @@ from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
-from lumitip_fab.catalogue import Catalogue, Entry
+from lumitip_fab.catalogue import Catalogue
+from lumitip_fab.entry import Entry
 from lumitip_fab.errors import InputError, Problem
 from lumitip_fab.locate import design_folder, parts_file
 from lumitip_fab.parameters import Parameters
@@ -20,6 +21,8 @@ NAMED = {
     "emitter.led": "leds",
     "emitter.resistor": "resistors",
     "receiver.photodetector": "photodetectors",
+    "receiver.resistor": "resistors",
+    "receiver.capacitor": "capacitors",
     "receiver.multiplexer": "multiplexers",
     "controller.board": "controllers",
     "coupling.gripper": "grippers",

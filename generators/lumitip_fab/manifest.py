@@ -4,15 +4,14 @@ import hashlib
 import json
 import os
 import tempfile
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from pathlib import Path
-from typing import Any
 
 from lumitip_fab.artefact import Artefact
 from lumitip_fab.encoding import encoded
 
 NAME = "manifest.json"
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 
 
 @dataclass(frozen=True)
@@ -29,11 +28,26 @@ class Entry:
 
 
 @dataclass(frozen=True)
+class Origin:
+    """What an output folder was built from."""
+
+    design_hash: str = ""
+    parameters_hash: str = ""
+
+
+@dataclass(frozen=True)
 class Manifest:
     """All files of an output folder and the key of each task that made them."""
 
     files: dict[str, Entry]
     keys: dict[str, str]
+    origin: Origin = Origin()
+
+    def intact(self, out: Path) -> bool:
+        """Whether every file is there and unedited."""
+        return bool(self.files) and all(
+            sha256_of(out / path) == entry.sha256 for path, entry in self.files.items()
+        )
 
     def whole(self, out: Path, task: str, key: str) -> bool:
         """Whether a task's files are all there, unedited, and made by this key."""
@@ -59,16 +73,17 @@ def read(out: Path) -> Manifest:
         if told["schema_version"] != SCHEMA_VERSION:
             return Manifest({}, {})
         files = {path: Entry(**values) for path, values in told["files"].items()}
-        return Manifest(files, dict(told["keys"]))
+        origin = Origin(**{f.name: str(told[f.name]) for f in fields(Origin)})
+        return Manifest(files, dict(told["keys"]), origin)
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return Manifest({}, {})
 
 
-def write(out: Path, manifest: Manifest, about: dict[str, Any]) -> None:
-    """Write the manifest; `about` says what the folder was built from."""
+def write(out: Path, manifest: Manifest) -> None:
+    """Write the manifest."""
     told = {
         "schema_version": SCHEMA_VERSION,
-        **about,
+        **asdict(manifest.origin),
         "files": {path: asdict(e) for path, e in sorted(manifest.files.items())},
         "keys": manifest.keys,
     }

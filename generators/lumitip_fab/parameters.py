@@ -16,7 +16,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from lumitip_fab.catalogue import Name, Strict
+from lumitip_fab.entry import Name, Strict
 
 PRINTABLE = r"^[\x20-\x7e]+$"
 REVISION = r"^[A-Za-z0-9.\-]{1,8}$"
@@ -121,6 +121,16 @@ class Board(Strict):
     """Smallest gap between land patterns of neighbouring parts (mm)."""
     channel_mm: float = Field(ge=0.5, le=20)
     """Routing channel after the cells and after each row of multiplexers (mm)."""
+    track_mm: float = Field(ge=0.1, le=1)
+    """Width of signal tracks (mm)."""
+    supply_track_mm: float = Field(ge=0.1, le=3)
+    """Width of the tracks of a supply (mm)."""
+    copper_gap_mm: float = Field(ge=0.1, le=1)
+    """Smallest gap between copper of different nets (mm)."""
+    via_mm: float = Field(ge=0.3, le=2)
+    """Diameter of vias (mm)."""
+    via_drill_mm: float = Field(ge=0.15, le=1)
+    """Hole of vias (mm)."""
     connector_side: Literal["gripper"]
     """Edge of the board with the connector."""
 
@@ -132,6 +142,10 @@ class Emitter(Strict):
     """Name of an LED in `parts/leds.toml`."""
     current_ma: float = Field(ge=0.1, le=1000)
     """Target current of each string of LEDs (mA)."""
+    string_leds: int = Field(ge=1, le=64)
+    """Most LEDs in a string; fewer make its current depend less on supply and LEDs."""
+    max_heat_w: float = Field(ge=0.05, le=20)
+    """Most heat that LEDs and resistors may leave in the finger (W)."""
     resistor: Name
     """Package of the string resistors in `parts/resistors.toml`."""
     resistor_side: Literal["front", "back"]
@@ -147,6 +161,10 @@ class Receiver(Strict):
     """Name of a multiplexer in `parts/multiplexers.toml`."""
     pull_up_ohm: float = Field(ge=1e3, le=1e7)
     """Pull-up resistor of each analog line (ohm)."""
+    resistor: Name
+    """Package of the pull-ups in `parts/resistors.toml`."""
+    capacitor: Name
+    """Name of the capacitor at each multiplexer's supply in `parts/capacitors.toml`."""
 
 
 class Controller(Strict):

@@ -10,7 +10,7 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
-from lumitip_fab.catalogue import NAME, PIN
+from lumitip_fab.entry import NAME, PIN
 from lumitip_fab.errors import Problem
 from lumitip_fab.parameters import PRINTABLE, REVISION
 from lumitip_fab.source import Source

@@ -3,7 +3,51 @@
 Needs numpy alone; links, recording and views come with extras.
 """
 
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
 from lumitip.errors import LayoutError, LumitipError
 from lumitip.layout import Cell, Layout, Optics
 
-__all__ = ["Cell", "Layout", "LayoutError", "LumitipError", "Optics"]
+if TYPE_CHECKING:
+    from lumitip.async_fingertip import AsyncFingertip
+    from lumitip.calibration import Calibration
+    from lumitip.fingertip import Fingertip
+    from lumitip.frame import Block, Frame
+    from lumitip.group import FingertipGroup
+    from lumitip.links.base import LinkEvent
+    from lumitip.stats import Stats
+
+__all__ = [
+    "AsyncFingertip",
+    "Block",
+    "Calibration",
+    "Cell",
+    "Fingertip",
+    "FingertipGroup",
+    "Frame",
+    "Layout",
+    "LayoutError",
+    "LinkEvent",
+    "LumitipError",
+    "Optics",
+    "Stats",
+]
+
+_LATER = {
+    "AsyncFingertip": "async_fingertip",
+    "Block": "frame",
+    "Calibration": "calibration",
+    "Fingertip": "fingertip",
+    "FingertipGroup": "group",
+    "Frame": "frame",
+    "LinkEvent": "links.base",
+    "Stats": "stats",
+}
+
+
+def __getattr__(name: str) -> Any:
+    # What only a reader needs is imported when it is first named: many programs want the layout.
+    if name not in _LATER:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{_LATER[name]}"), name)

@@ -1,13 +1,12 @@
-"""Masks to damage, and the names of the checks that then fail."""
+"""Masks by themselves, to damage."""
 
-from collections.abc import Callable
+import shutil
 from pathlib import Path
 
 import pytest
 
-from lumitip_fab.checks import mask
 from lumitip_fab.derive import derive
-from lumitip_fab.encoding import design_text, read_design
+from lumitip_fab.encoding import design_text
 from lumitip_fab.load import load
 from lumitip_fab.mask.files import mask_files
 
@@ -26,13 +25,7 @@ def masks(tmp_path_factory: pytest.TempPathFactory, design_dir: Path) -> Path:
     return out
 
 
-@pytest.fixture(scope="session")
-def failing_masks() -> Callable[[Path], set[str]]:
-    """`failing_masks(folder)`: names of the mask's checks that fail there, without `mask.`."""
-
-    def names(folder: Path) -> set[str]:
-        design = read_design(folder / "design.json")
-        found = {m.check for m in mask.measure(folder, design) if not m.passed}
-        return {name.removeprefix("mask.") for name in found}
-
-    return names
+@pytest.fixture
+def damaged_masks(masks: Path, tmp_path: Path) -> Path:
+    """A copy of the masks, to damage."""
+    return Path(shutil.copytree(masks, tmp_path / "damaged"))

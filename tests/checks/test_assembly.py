@@ -1,6 +1,7 @@
 """Damage the assembly's GLB file, and exactly the right checks fail."""
 
 import json
+import re
 import struct
 from collections.abc import Callable
 from pathlib import Path
@@ -9,18 +10,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lumitip_fab.checks import assembly
-from lumitip_fab.encoding import read_design
+from damages import failing
+from lumitip_fab.checks import assembly, exploded
 
 GLB = "assembly/assembly.glb"
+SVG = "assembly/receiver_exploded.svg"
 EVERY = {name.removeprefix("assembly.") for name in assembly.NAMES}
 Told = dict[str, Any]
-
-
-def failing(folder: Path) -> set[str]:
-    design = read_design(folder / "design.json")
-    found = {m.check for m in assembly.measure(folder, design) if not m.passed}
-    return {name.removeprefix("assembly.") for name in found}
 
 
 def node(told: Told, name: str) -> Told:
@@ -134,7 +130,7 @@ def rewritten(data: bytes, damage: Callable[[Told], None]) -> bytes:
 def test_a_damaged_scene(damage: Callable[[Told], None], damaged: Path) -> None:
     file = damaged / GLB
     file.write_bytes(rewritten(file.read_bytes(), damage))
-    assert failing(damaged) == SCENE[damage]
+    assert failing(damaged, "assembly") == SCENE[damage]
 
 
 def truncated(data: bytes) -> bytes:
@@ -162,7 +158,7 @@ BYTES = {truncated: EVERY, foreign: EVERY, mesh_opened: {"interference"}}
 def test_damaged_bytes(damage: Callable[[bytes], bytes], damaged: Path) -> None:
     file = damaged / GLB
     file.write_bytes(damage(file.read_bytes()))
-    assert failing(damaged) == BYTES[damage]
+    assert failing(damaged, "assembly") == BYTES[damage]
 
 
 def step_truncated(text: str) -> str:
@@ -187,21 +183,80 @@ def step_in_inches(text: str) -> str:
 def test_a_damaged_step(damage: Callable[[str], str], damaged: Path) -> None:
     file = damaged / "assembly/assembly.step"
     file.write_text(damage(file.read_text(encoding="ascii")), encoding="ascii")
-    assert failing(damaged) == {"step"}
+    assert failing(damaged, "assembly") == {"step"}
 
 
 def test_a_missing_step(damaged: Path) -> None:
     (damaged / "assembly/assembly.step").unlink()
-    assert failing(damaged) == {"step"}
+    assert failing(damaged, "assembly") == {"step"}
 
 
 def test_a_missing_file_fails_every_check(damaged: Path) -> None:
     (damaged / GLB).unlink()
-    assert failing(damaged) == EVERY
+    assert failing(damaged, "assembly") == EVERY
+
+
+def drawn(before: str, after: str) -> Callable[[str], str]:
+    def edit(text: str) -> str:
+        assert re.search(before, text, re.DOTALL)
+        return re.sub(before, after, text, count=1, flags=re.DOTALL)
+
+    return edit
+
+
+def silicone_blank(text: str) -> str:
+    """The group is there, but nothing in it."""
+    return drawn(r'(<g id="silicone">).*?</g>', r"\1</g>")(text)
+
+
+def film_over_the_board(text: str) -> str:
+    """The names of two layers exchanged."""
+    swapped = text.replace('id="film"', 'id="x"').replace('id="board"', 'id="film"')
+    return swapped.replace('id="x"', 'id="board"')
+
+
+def smaller(text: str) -> str:
+    return re.sub(r"(-?[\d.]+),(-?[\d.]+)", lambda m: f"{float(m[1]) * 0.99:.2f},{m[2]}", text)
+
+
+def part_astray(text: str) -> str:
+    """All of Q5 half a millimetre to the right."""
+    start = text.index('<g id="Q5">')
+    end = text.index("</g>", start)
+    told = re.sub(r"([ML])(-?[\d.]+)", lambda m: f"{m[1]}{float(m[2]) + 0.5:.2f}", text[start:end])
+    return text[:start] + told + text[end:]
+
+
+EVERY_DRAWING = {name.removeprefix("assembly.") for name in exploded.NAMES}
+DRAWINGS: dict[str, tuple[Callable[[str], str], set[str]]] = {
+    "part missing": (drawn(r'<g id="Q7">.*?</g>', ""), {"drawing"}),
+    "part astray": (part_astray, {"drawing"}),
+    "layer missing": (drawn(r'<g id="film">', "<g>"), EVERY_DRAWING),
+    "layer blank": (silicone_blank, EVERY_DRAWING),
+    "layers exchanged": (film_over_the_board, {"drawing"}),
+    "drawn smaller": (smaller, {"drawing"}),
+    "page cut": (drawn(r'viewBox="(\S+)', 'viewBox="-40'), {"drawing_page"}),
+    "label off the page": (drawn(r'x="[-\d.]+"( y="[-\d.]+" text-anchor="end")', r'x="-80"\1'),
+                           {"drawing_page"}),
+    "label wrong": (drawn("Silicone, 1.5", "Silicone, 1.6"), {"drawing_labels"}),
+    "count wrong": (drawn("32 photodetectors", "31 photodetectors"), {"drawing_labels"}),
+    "labels meet": (drawn(r'( y=")(-?[\d.]+)("[^>]*>Silicone.*?<text [^>]* y=")[-\d.]+',
+                          r"\1\2\3\2"), {"drawing_labels"}),
+    "not 1:1": (drawn(r'width="[\d.]+mm"', 'width="300mm"'), EVERY_DRAWING),
+    "truncated": (lambda text: text[: len(text) // 2], EVERY_DRAWING),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", DRAWINGS)
+def test_a_damaged_drawing(name: str, damaged: Path) -> None:
+    damage, expected = DRAWINGS[name]
+    file = damaged / SVG
+    file.write_text(damage(file.read_text(encoding="utf-8")), encoding="utf-8")
+    assert failing(damaged, "assembly") == expected
 
 
 def test_the_undamaged_assembly_passes(outputs: Path) -> None:
-    assert failing(outputs) == set()
+    assert failing(outputs, "assembly") == set()
 
 
 def test_every_check_fails_alone_or_among_few() -> None:

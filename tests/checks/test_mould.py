@@ -4,28 +4,15 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
-import numpy as np
 import pytest
-import trimesh
-from manifold3d import Manifold, Mesh
+from manifold3d import Manifold
 
+from damages import box, carve, failing, flip_a_triangle, remove_packages, swap
 from lumitip_fab.checks import mould
-from lumitip_fab.encoding import read_design
 
 STL = "mould/receiver_mould.stl"
 NOTE = "mould/receiver_casting.md"
 Damage = Callable[[Manifold], Manifold]
-
-
-def failing(folder: Path) -> set[str]:
-    design = read_design(folder / "design.json")
-    found = {m.check for m in mould.measure(folder, design) if not m.passed}
-    return {name.removeprefix("mould.") for name in found}
-
-
-def box(low: tuple[float, float, float], high: tuple[float, float, float]) -> Manifold:
-    size = [b - a for a, b in zip(low, high, strict=True)]
-    return Manifold.cube(size).translate(low)
 
 
 # The published mould on its bed: floor at 2.4, rim at 3.9, wall to 5.5; tip at y = -21.85, flank
@@ -99,6 +86,10 @@ def tilted(part: Manifold) -> Manifold:
     return part.transform([[1, 0, 0.1, -0.39], [0, 1, 0, 0], [0, 0, 1, 0]])
 
 
+def letter_filled(part: Manifold) -> Manifold:
+    return part + box((-3, 41, 0.5), (3, 42.38, 3.7))
+
+
 def lifted(part: Manifold) -> Manifold:
     return part.translate((0, 0, 0.004))
 
@@ -119,26 +110,24 @@ SOLID = {
     sprue_added: OTHER_FILES | {"fits_bed"},
     post_added: OTHER_FILES | {"seat"},
     squashed: OTHER_FILES | {"thickness", "tip_thickness", "stops", "volume"},
-    tilted: OTHER_FILES | {"stops", "draft", "undercut"},
+    tilted: OTHER_FILES | {"stops", "draft", "undercut", "letter"},
+    letter_filled: {"letter"},
     lifted: {"fits_bed"},
 }
 
 
 @pytest.mark.parametrize("damage", SOLID, ids=lambda d: d.__name__)
 def test_a_damaged_mould(damage: Damage, damaged: Path) -> None:
-    mesh = trimesh.load(damaged / STL, force="mesh")
-    whole = Manifold(Mesh(np.float32(mesh.vertices), np.uint32(mesh.faces)))
-    hurt = damage(whole).to_mesh()
-    trimesh.Trimesh(hurt.vert_properties[:, :3], hurt.tri_verts).export(damaged / STL)
-    assert failing(damaged) == SOLID[damage]
+    carve(damaged / STL, damage)
+    assert failing(damaged, "mould") == SOLID[damage]
 
 
 def triangle_flipped(folder: Path) -> None:
-    mesh = trimesh.load(folder / STL, force="mesh")
-    faces = mesh.faces.copy()
-    smallest = int(mesh.area_faces.argmin())
-    faces[smallest] = faces[smallest][::-1]
-    trimesh.Trimesh(mesh.vertices, faces, process=False).export(folder / STL)
+    flip_a_triangle(folder / STL)
+
+
+def fingers_swapped(folder: Path) -> None:
+    swap(folder / STL, folder / "mould/emitter_mould.stl")
 
 
 def mould_truncated(folder: Path) -> None:
@@ -147,8 +136,7 @@ def mould_truncated(folder: Path) -> None:
 
 
 def packages_gone(folder: Path) -> None:
-    (folder / STL).with_suffix(".3mf").unlink()
-    (folder / STL).with_suffix(".step").unlink()
+    remove_packages(folder / STL)
 
 
 def packages_swapped(folder: Path) -> None:
@@ -191,6 +179,7 @@ FILES = {
     triangle_flipped: {"watertight", "volume", "seat"},
     mould_truncated: EVERY,
     mould_missing: EVERY,
+    fingers_swapped: {"letter"},
     packages_gone: {"three_mf", "step"},
     packages_swapped: {"three_mf", "step"},
     volume_edited: {"volume", "masses"},
@@ -204,11 +193,11 @@ FILES = {
 @pytest.mark.parametrize("damage", FILES, ids=lambda d: d.__name__)
 def test_a_damaged_file(damage: Callable[[Path], None], damaged: Path) -> None:
     damage(damaged)
-    assert failing(damaged) == FILES[damage]
+    assert failing(damaged, "mould") == FILES[damage]
 
 
 def test_undamaged_moulds_pass(outputs: Path) -> None:
-    assert failing(outputs) == set()
+    assert failing(outputs, "mould") == set()
 
 
 def test_every_check_appears_in_a_damage_of_its_own() -> None:

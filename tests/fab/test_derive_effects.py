@@ -43,13 +43,22 @@ CHANGES: dict[str, Any] = {
     "board.hole_mm": 2.0,
     "board.hole_edge_mm": 2.1,
     "board.channel_mm": 2.3,
+    "board.clearance_mm": 0.3,
+    "board.track_mm": 0.15,
+    "board.supply_track_mm": 0.6,
+    "board.copper_gap_mm": 0.15,
+    "board.via_mm": 0.7,
+    "board.via_drill_mm": 0.25,
     "emitter.led": "other",
     "emitter.current_ma": 15.0,
+    "emitter.string_leds": 12,
     "emitter.resistor": "0805",
     "emitter.resistor_side": "front",
     "receiver.photodetector": "generic 0603 phototransistor",
     "receiver.multiplexer": "74HC4067PW",
     "receiver.pull_up_ohm": 68e3,
+    "receiver.resistor": "0805",
+    "receiver.capacitor": "other",
     "controller.board": "bench",
     "controller.name": "Other",
     "supply.voltage_v": 23.9,
@@ -71,9 +80,12 @@ CHANGES: dict[str, Any] = {
     "printer.profile": "other",
 }
 # What else must change with a field.
-WITH: dict[str, dict[str, Any]] = {"stack.film_mm": {"mask.film": "thick"}}
-# Limits that only refuse, or that a later step works by; changing them leaves the design as it is.
-LIMITS: dict[str, Any] = {"supply.max_ma": 400.0, "board.clearance_mm": 0.3}
+WITH: dict[str, dict[str, Any]] = {
+    "stack.film_mm": {"mask.film": "thick"},
+    "emitter.string_leds": {"emitter.current_ma": 5.0},
+}
+# Limits that only refuse; changing them leaves the design as it is.
+LIMITS: dict[str, Any] = {"supply.max_ma": 400.0, "emitter.max_heat_w": 1.9}
 # Only one value is allowed so far.
 SINGLE = {"backing.variant", "board.connector_side"}
 
@@ -85,6 +97,7 @@ def published(inputs: dict[str, Input]) -> Input:
     parts = given.catalogue
     more = {
         "leds": ("15406085BA300", {"exponent": 2.0}),
+        "capacitors": ("100nF 0603", {"capacitance_nf": 220.0}),
         "films": ("TPU 100um", {"soften_c": 80.0}),
         "grippers": ("robotiq_2f85", {"stroke_mm": 84.0}),
         "printers": ("fdm 0.4", {"layer_mm": 0.1}),
@@ -161,6 +174,15 @@ def test_cells_and_wires_change_the_design_hash(
 ) -> None:
     after = derive(vary(published, {field: CHANGES[field]}))
     assert after.layout.design_hash != before.layout.design_hash
+
+
+def test_fewer_leds_make_a_string(published: Input, vary: Any) -> None:
+    def lengths(most: int) -> list[int]:
+        given = vary(published, {"emitter.current_ma": 5.0, "emitter.string_leds": most})
+        return [len(string) for string in derive(given).wiring.strings]
+
+    assert lengths(16) == [16, 16]
+    assert lengths(12) == [11, 11, 10]
 
 
 def test_a_part_counts_by_its_figures_and_not_by_what_else_is_in_the_catalogue(

@@ -19,7 +19,7 @@ from lumitip_fab.errors import InputError
 
 NOISE_MM = 1e-6
 Faults = Callable[[Design], Iterator[str]]
-PRESETS = ("asymmetric", "dense", "published")
+PRESETS = ("asymmetric", "dense", "mux16", "published")
 
 
 def _gap_mm(a: Box, b: Box) -> float:

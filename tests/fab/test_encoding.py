@@ -15,7 +15,7 @@ from lumitip_fab.design import Box, Design, Nose
 from lumitip_fab.encoding import canonical, design_text, encoded, read_design, settled
 from lumitip_fab.errors import FabError, OutputError
 
-PRESETS = ("asymmetric", "dense", "published")
+PRESETS = ("asymmetric", "dense", "mux16", "published")
 
 
 @pytest.fixture

@@ -10,7 +10,7 @@ from lumitip_fab import frames
 from lumitip_fab.design import Design
 from lumitip_fab.frames import applied
 
-PRESETS = ("asymmetric", "dense", "published")
+PRESETS = ("asymmetric", "dense", "mux16", "published")
 
 
 @pytest.fixture(params=PRESETS)

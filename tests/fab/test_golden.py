@@ -10,7 +10,7 @@ from lumitip_fab.encoding import design_text
 from lumitip_fab.load import load
 
 GOLDEN = Path(__file__).parents[1] / "golden"
-PRESETS = ("published", "asymmetric", "dense")
+PRESETS = ("published", "asymmetric", "dense", "mux16")
 
 
 @pytest.mark.golden

@@ -33,12 +33,12 @@ def changed(before: dict[str, str], after: dict[str, str]) -> set[str]:
     return {name.partition(".")[0] for name in before if before[name] != after[name]}
 
 
-def test_controller_name_touches_no_task(keys: Keys) -> None:
-    assert changed(keys(), keys('[controller]\nname = "Other"\n')) == set()
+def test_controller_name_touches_the_firmware_alone(keys: Keys) -> None:
+    assert changed(keys(), keys('[controller]\nname = "Other"\n')) == {"firmware_files"}
 
 
-def test_mask_hole_touches_the_mask_alone(keys: Keys) -> None:
-    assert changed(keys(), keys("[mask]\nhole_mm = 2.0\n")) == {"mask_files"}
+def test_mask_hole_touches_the_mask_and_what_reads_the_layout(keys: Keys) -> None:
+    assert changed(keys(), keys("[mask]\nhole_mm = 2.0\n")) == {"mask_files", "firmware_files"}
 
 
 def test_waste_of_silicone_touches_the_mould_and_what_shares_its_figures(keys: Keys) -> None:

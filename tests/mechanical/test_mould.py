@@ -112,3 +112,17 @@ def test_layers_divide_the_heights_that_count(
     usual: float, heights: tuple[float, float], wanted: float
 ) -> None:
     assert casting.layer_mm(usual, heights) == wanted
+
+
+def test_each_finger_s_mould_has_its_letter(design: Design) -> None:
+    """The letters take the same wall, and nothing else differs."""
+    one, other = (
+        mould.mould_solid(f, design.stack, design.outline, design.mould) for f in design.fingers
+    )
+    letter = design.mould.letter
+    stroke = letter.box.width_mm * letter.box.length_mm * letter.depth_mm
+    for left, right in ((one, other), (other, one)):
+        apart = left - right
+        box = apart.bounding_box()
+        assert 0.05 * stroke < apart.volume < 0.5 * stroke
+        assert pytest.approx(letter.depth_mm) == box.max.Y - box.min.Y

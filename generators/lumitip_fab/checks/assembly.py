@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from lumitip_fab.checks import overlap
+from lumitip_fab.checks import exploded, overlap
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.checks.scene import Node, Scene, read_scene
 from lumitip_fab.checks.solids import Vectors
@@ -18,7 +18,10 @@ from lumitip_fab.design import Design, Finger
 from lumitip_fab.errors import OutputError
 from lumitip_fab.frames import applied, mount_to_sensor, translation
 
-READS = ("assembly/assembly.glb", "assembly/assembly.step")
+READS = (
+    "assembly/assembly.glb", "assembly/assembly.step", "assembly/*_exploded.svg",
+    "backing/*_backing.stl",
+)  # fmt: skip
 NAMES = (  # measured in the GLB
     "assembly.bodies", "assembly.facing", "assembly.lean", "assembly.skew",
     "assembly.first_contact", "assembly.opening", "assembly.stroke", "assembly.interference",
@@ -40,6 +43,8 @@ _FLAT = 0.9  # of the face's own normal: leaves out taper and rounding
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     """Hold the assembly against the design."""
     yield _step(outputs, design)
+    for finger in design.fingers:
+        yield from exploded.measure_drawing(outputs, design, finger)
     try:
         scene = read_scene(outputs / _FILE)
     except OutputError as error:

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import shapely
 
-from lumitip_fab.checks import packages, solids
+from lumitip_fab.checks import letters, packages, solids
 from lumitip_fab.checks.coupling import measure_bolt, measure_nose, measure_screw
 from lumitip_fab.checks.plate import (
     measure_notch,
@@ -52,7 +52,7 @@ def _measured(part: Printed) -> Iterator[Measurement]:
     steps: tuple[Callable[[Printed], Iterator[Measurement]], ...] = (
         measure_surface, measure_print, measure_size, measure_walls,
         measure_outline, measure_pocket, measure_pins, measure_reliefs, measure_notch, measure_tip,
-        measure_bolt, measure_screw, measure_nose,
+        measure_bolt, measure_screw, measure_nose, measure_letter,
     )  # fmt: skip
     for step in steps:
         try:
@@ -92,6 +92,12 @@ def measure_size(part: Printed) -> Iterator[Measurement]:
     yield part.near("size", (part.standing.bounds - wanted).ravel(), 0.0, SIZE_MM)
 
 
+def measure_letter(part: Printed) -> Iterator[Measurement]:
+    """The letter on the back of the coupling's block."""
+    letter = part.design.mount.letter
+    yield letters.measure_letter("backing.letter", part.subject, part.standing, part.finger, letter)
+
+
 def measure_walls(part: Printed) -> Iterator[Measurement]:
     """The thinnest walls. Thinner ones are listed here by name, each with its own limit."""
     design, mount = part.design, part.design.mount
@@ -106,7 +112,10 @@ def measure_walls(part: Printed) -> Iterator[Measurement]:
         low = points[:, 2] < mount.land_mm
         return np.asarray(beside & low & (np.abs(points[:, 0]) < far))
 
-    exempt = [Exempt("tip edge", design.tip.edge_mm, on_tip)]
+    exempt = [
+        Exempt("tip edge", design.tip.edge_mm, on_tip),
+        letters.beside(mount.letter, design.printing),
+    ]
     if mount.pin_u_mm:
         apart = max(mount.pin_u_mm) - (mount.pin_mm + mount.bolt_hole_mm) / 2
         least = min(apart, design.printing.min_wall_mm)

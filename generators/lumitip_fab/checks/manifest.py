@@ -11,7 +11,7 @@ from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.design import Design
 from lumitip_fab.errors import OutputError
 
-READS = ("manifest.json",)  # and the bytes of every other file, whatever is in them
+READS = ("*",)
 _FILE = "manifest.json"
 _PLACE_MM = 0.05
 

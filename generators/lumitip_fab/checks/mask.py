@@ -7,21 +7,30 @@ from pathlib import Path
 
 import numpy as np
 
-from lumitip_fab.checks.mask_drawings import read_dxf, read_svg
-from lumitip_fab.checks.mask_flaps import flaps_of, measure_flaps
+from lumitip_fab.checks.mask_bands import (
+    bands_of,
+    folds_of,
+    measure_bands,
+    measure_numbers,
+    numbers_of,
+)
+from lumitip_fab.checks.mask_drawings import Drawing, read_dxf, read_svg
+from lumitip_fab.checks.mask_flaps import Flap, flaps_of, measure_flaps
 from lumitip_fab.checks.mask_holes import Black, apart, black_of, cut_of, edges_apart, sort_out
+from lumitip_fab.checks.mask_note import measure_note
 from lumitip_fab.checks.mask_page import PageError, Points, read_page
 from lumitip_fab.checks.mask_place import Placed, place, registration_of
 from lumitip_fab.checks.mask_print import measure_black, measure_page
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.design import Design, Finger
 
-READS = ("mask/*.pdf", "mask/*.svg", "mask/*.dxf")
+READS = ("mask/*.pdf", "mask/*.svg", "mask/*.dxf", "mask/*_wrapping.md")
 
 PAPERS_MM = {"a4": (210.0, 297.0), "letter": (215.9, 279.4)}
 _PAGE = ("page", "marks", "scale_x", "scale_y", "ruler", "mirrored")
 _BLACK = ("count", "position", "size", "shape", "web", "outline", "window", "clear")
 _FLAPS = ("flaps", "folds", "reach")
+_BANDS = ("bands", "numbers")
 SAME_MM = 0.01
 Finding = Iterator[Measurement]
 FACING_MM = 0.02  # both may be off by the tolerance of a place
@@ -34,6 +43,9 @@ class Seen:
     subject: str
     black: Black
     cut: Points
+    flaps: tuple[Flap, ...]
+    numbers: tuple[int, ...]
+    bands: tuple[Points, ...]
 
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
@@ -46,6 +58,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
             if found:
                 seen[finger.name, paper] = found
         reference = seen.get((finger.name, "a4"))
+        yield from _note(outputs, finger, design, reference)
         yield from _svg(outputs, finger, design, reference)
         yield from _dxf(outputs, finger, design, reference)
     for paper in PAPERS_MM:
@@ -56,18 +69,43 @@ def _paper(
     outputs: Path, subject: str, finger: Finger, paper: str, design: Design
 ) -> Generator[Measurement, None, Seen | None]:
     """Everything about one PDF; returns its black if it could be read."""
-    names: tuple[str, ...] = (*_PAGE, *_BLACK)
+    names: tuple[str, ...] = (*_PAGE, *_BLACK, *_FLAPS, *_BANDS)
     try:
         page = read_page(outputs / subject)
         placed = place(registration_of(page), design.mask)
         yield from measure_page(subject, page, placed, PAPERS_MM[paper], design.mask)
-        names = _BLACK
+        names = (*_BLACK, *_FLAPS, *_BANDS)
         black, cut = black_of(page, placed), cut_of(page, placed)
     except PageError as error:
         yield from _unreadable(names, subject, error)
         return None
     yield from measure_black(subject, page, placed, black, finger, design)
-    return Seen(subject, black, cut)
+    flaps: tuple[Flap, ...] = ()
+    numbers: tuple[int, ...] = ()
+    bands: tuple[Points, ...] = ()
+    try:
+        flaps = flaps_of(cut, folds_of(page, placed, np.array(design.mask.registration)))
+        yield from measure_flaps(subject, flaps, len(cut), black.edge, finger, design)
+        numbers = numbers_of(page, placed, flaps)
+        yield measure_numbers(subject, flaps, numbers)
+        names = ("bands",)
+        bands = bands_of(page, placed)
+        yield from measure_bands(subject, flaps, bands, black.edge, design)
+    except PageError as error:
+        yield from _unreadable(names if names == ("bands",) else (*_FLAPS, *_BANDS), subject, error)
+    return Seen(subject, black, cut, flaps, numbers, bands)
+
+
+def _note(outputs: Path, finger: Finger, design: Design, reference: Seen | None) -> Finding:
+    subject = f"mask/{finger.name}_wrapping.md"
+    if not reference or not reference.flaps:
+        yield unreadable("mask.note", subject, "no flaps on an A4 page to compare with")
+        return
+    try:
+        flaps, numbers = reference.flaps, reference.numbers
+        yield from measure_note(outputs, subject, flaps, numbers, finger, design)
+    except PageError as error:
+        yield from _unreadable(("note",), subject, error)
 
 
 def _svg(outputs: Path, finger: Finger, design: Design, reference: Seen | None) -> Finding:
@@ -80,6 +118,7 @@ def _svg(outputs: Path, finger: Finger, design: Design, reference: Seen | None) 
         yield from _unreadable(("svg",), subject, error)
         return
     yield from _same("svg", subject, black, placed, reference)
+    yield from _same_flaps("svg", subject, drawing, placed, reference)
 
 
 def _dxf(outputs: Path, finger: Finger, design: Design, reference: Seen | None) -> Finding:
@@ -92,6 +131,7 @@ def _dxf(outputs: Path, finger: Finger, design: Design, reference: Seen | None) 
         yield from _unreadable(("dxf", *_FLAPS), subject, error)
         return
     yield from _same("dxf", subject, black, placed, reference)
+    yield from _same_flaps("dxf", subject, drawing, placed, reference)
     cut = placed.points(drawing.cut)
     if reference:
         worst = edges_apart(cut, reference.cut)
@@ -101,7 +141,7 @@ def _dxf(outputs: Path, finger: Finger, design: Design, reference: Seen | None) 
     except PageError as error:
         yield from _unreadable(_FLAPS, subject, error)
         return
-    yield from measure_flaps(subject, flaps, black.edge, finger, design)
+    yield from measure_flaps(subject, flaps, len(cut), black.edge, finger, design)
 
 
 def _same(name: str, subject: str, black: Black, placed: Placed, reference: Seen | None) -> Finding:
@@ -124,6 +164,22 @@ def _same(name: str, subject: str, black: Black, placed: Placed, reference: Seen
         edges_apart(black.edge, other.edge),
     )
     yield Measurement(check, subject, worst, 0, SAME_MM, "mm", f"worst against {reference.subject}")
+
+
+def _same_flaps(
+    name: str, subject: str, drawing: Drawing, placed: Placed, reference: Seen | None
+) -> Finding:
+    """A drawing's bands and folds are those of A4."""
+    if not reference or not reference.flaps or not reference.bands:
+        return
+    for what, drawn, other in (
+        ("bands", drawing.bands, reference.bands),
+        ("folds", drawing.folds, tuple(flap.fold for flap in reference.flaps)),
+    ):
+        same = len(drawn) == len(other) and len(drawn) > 0
+        worst = apart(placed.points(np.concatenate(drawn)), np.concatenate(other)) if same else None
+        yield Measurement(f"mask.{name}", f"{subject} {what}", math.inf if worst is None else worst,
+                          0, SAME_MM, "mm", f"{len(drawn)} against {len(other)} on A4")  # fmt: skip
 
 
 def _windows_apart(a: Points, b: Points) -> float:

@@ -22,12 +22,13 @@ _NUMBER = r"-?\d+(?:\.\d+)?"
 
 @dataclass(frozen=True, eq=False)
 class Drawing:
-    """What both drawings hold; the cut and the folds of the DXF as well."""
+    """What both drawings hold; the cut of the DXF as well."""
 
     black: tuple[Subpath, ...]
     marks: Points
+    bands: tuple[Points, ...]
+    folds: tuple[Points, ...]
     cut: Points = field(default_factory=lambda: _NONE)
-    folds: tuple[Points, ...] = ()
 
 
 def read_svg(path: Path) -> Drawing:
@@ -41,13 +42,19 @@ def read_svg(path: Path) -> Drawing:
         _one_to_one(root)
         elements = {e.get("id"): e for e in root.iter() if e.get("id")}
         black = _path_data(elements["black"].attrib["d"])
+        bands, folds = (_path_data(elements[e].attrib["d"]) for e in ("bands", "fold"))
         rings = elements["registration"].iter(f"{_SVG}circle")
         marks = [(float(e.attrib["cx"]), -float(e.attrib["cy"])) for e in rings]
     except FileNotFoundError as error:
         raise PageError("no such file") from error
     except (OSError, XmlTree.ParseError, *MALFORMED) as error:
         raise PageError(f"cannot be read: {error!r:.200}") from error
-    return Drawing(black, np.array(marks).reshape(-1, 2))
+    return Drawing(
+        black,
+        np.array(marks).reshape(-1, 2),
+        tuple(run.corners for run in bands),
+        tuple(run.corners for run in folds),
+    )
 
 
 def _one_to_one(root: XmlTree.Element) -> None:
@@ -95,6 +102,7 @@ def read_dxf(path: Path) -> Drawing:
         if document.units != units.MM:
             raise PageError("its unit is not the millimetre")
         runs = [_run(e) for name in ("BLACK", "WINDOW", "APERTURES") for e in layers[name]]
+        bands = [_run(e).corners for e in layers["BANDS"]]
         marks = [e.dxf.center for e in layers["MARKS"] if e.dxftype() == "CIRCLE"]
         cuts = [_run(e).corners for e in layers["CUT"]]
         folds = [np.array([(p.x, p.y) for p in (e.dxf.start, e.dxf.end)]) for e in layers["FOLD"]]
@@ -104,9 +112,8 @@ def read_dxf(path: Path) -> Drawing:
         raise PageError(f"cannot be read: {error!r:.200}") from error
     if len(cuts) != 1:
         raise PageError(f"{len(cuts)} paths on layer CUT, one is needed")
-    return Drawing(
-        tuple(runs), np.array([(p.x, p.y) for p in marks]).reshape(-1, 2), cuts[0], tuple(folds)
-    )
+    places = np.array([(p.x, p.y) for p in marks]).reshape(-1, 2)
+    return Drawing(tuple(runs), places, tuple(bands), tuple(folds), cuts[0])
 
 
 def _run(entity: Any) -> Subpath:

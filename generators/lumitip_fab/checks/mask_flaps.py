@@ -35,6 +35,11 @@ class Flap:
         side = ((self.corners - self.fold[0]) @ normal).sum()
         return normal if side > 0 else -normal
 
+    @property
+    def length_mm(self) -> float:
+        """From the fold to its outer edge."""
+        return float(((self.corners - self.fold[0]) @ self.outward).max())
+
 
 def flaps_of(cut: Points, folds: tuple[Points, ...]) -> tuple[Flap, ...]:
     """The flaps: what the cut goes round between the two ends of each fold.
@@ -60,22 +65,31 @@ def flaps_of(cut: Points, folds: tuple[Points, ...]) -> tuple[Flap, ...]:
 
 
 def measure_flaps(
-    subject: str, flaps: tuple[Flap, ...], edge: Points, finger: Finger, design: Design
+    subject: str,
+    flaps: tuple[Flap, ...],
+    corners: int,
+    edge: Points,
+    finger: Finger,
+    design: Design,
 ) -> Iterator[Measurement]:
     """Flaps that overlap flat, folds off the black's edge, and what folded flaps come to cover.
 
     Args:
         subject: the file.
         flaps: in the sensor frame.
+        corners: of the cut: neighbouring flaps share one.
         edge: of the black, in the same file.
         finger: whose back it is.
         design: for the heights of its sides and the coupling.
     """
+    odd = abs(3 * len(flaps) + 1 - corners)
+    yield Measurement("mask.folds", f"{subject} count", odd, 0, 0, "corners",
+                      f"of the cut more or less than {len(flaps)} flaps have")  # fmt: skip
     yield Measurement("mask.flaps", subject, _overlap(flaps), 0, OVERLAP_MM2, "mm²",
                       f"of {len(flaps)} flaps laid flat")  # fmt: skip
     sagitta = max(_sagitta(flap.fold, edge) for flap in flaps)
     yield Measurement("mask.folds", subject, sagitta, 0, SAGITTA_MM, "mm", "chord to black's edge")
-    sides = [_side_mm(flap.fold, design) for flap in flaps]
+    sides = [float(side_mm(flap.fold, design).min()) for flap in flaps]
     back = shapely.union_all(
         [_on_back(f, s, design.mask.allowance_mm) for f, s in zip(flaps, sides, strict=True)]
     )
@@ -89,8 +103,7 @@ def measure_flaps(
         yield Measurement("mask.folds", f"{subject} window", apart, unit="mm",
                           note="flaps to a window behind parts; for information")  # fmt: skip
     reaches = [
-        float(((f.corners - f.fold[0]) @ f.outward).max()) + design.mask.allowance_mm - side
-        for f, side in zip(flaps, sides, strict=True)
+        f.length_mm + design.mask.allowance_mm - side for f, side in zip(flaps, sides, strict=True)
     ]
     yield Measurement("mask.reach", subject, min(reaches), REACH_MM, math.inf, "mm",
                       "shortest flap onto the back")  # fmt: skip
@@ -120,14 +133,14 @@ def _sagitta(fold: Points, edge: Points) -> float:
     return max(*off, *(float(ring.distance(shapely.Point(p))) for p in fold))
 
 
-def _side_mm(fold: Points, design: Design) -> float:
-    """Least height of the finger's side along a fold: there a flap reaches farthest."""
+def side_mm(fold: Points, design: Design) -> Points:
+    """Heights of the finger's side along a fold; where it is least a flap reaches farthest."""
     outline, tip, mould, stack = design.outline, design.tip, design.mould, design.stack
     y = np.linspace(fold[0, 1], fold[1, 1], 17)
     plate = np.interp(y, [tip.slant_start_y_mm, outline.tip_y_mm], [stack.plate_mm, tip.edge_mm])
     tapered = [outline.tip_y_mm - mould.taper_length_mm, outline.tip_y_mm]
     silicone = np.interp(y, tapered, [stack.silicone_mm, mould.tip_silicone_mm])
-    return float((plate + silicone).min())
+    return np.asarray(plate + silicone)
 
 
 def _on_back(flap: Flap, side_mm: float, allowance_mm: float) -> shapely.Geometry:

@@ -66,6 +66,8 @@ class Page:
     painted: tuple[Painted, ...]
     texts: Points
     """Corners of the boxes of all texts."""
+    words: tuple[str, ...]
+    """What they say."""
 
     @property
     def extent(self) -> tuple[float, float, float, float]:
@@ -100,7 +102,7 @@ def read_page(path: Path) -> Page:
     if not reader.painted:
         raise PageError("nothing is painted on it")
     texts = np.array(reader.texts).reshape(-1, 2)
-    return Page((right - left, high - low), tuple(reader.painted), texts)
+    return Page((right - left, high - low), tuple(reader.painted), texts, tuple(reader.words))
 
 
 def _fonts(page: pikepdf.Page) -> dict[str, str]:
@@ -121,6 +123,7 @@ class _Reader:
     runs: list[list[Any]] = field(default_factory=list)
     painted: list[Painted] = field(default_factory=list)
     texts: list[Points] = field(default_factory=list)
+    words: list[str] = field(default_factory=list)
 
     def take(self, operator: str, operands: Any) -> None:
         """Follow one operator."""
@@ -185,7 +188,8 @@ class _Reader:
             self.font = self.fonts[str(operands[0])], float(operands[1])
         elif operator == "Tj":
             name, size = self.font
-            width = stringWidth(bytes(operands[0]).decode("cp1252"), name, size)
+            self.words.append(bytes(operands[0]).decode("cp1252"))
+            width = stringWidth(self.words[-1], name, size)
             matrix = self.matrix @ self.text_matrix
             box = np.array([(0, 0), (width, 0), (width, size), (0, size)])
             self.texts.append(box @ matrix[:2, :2].T + matrix[:2, 2])

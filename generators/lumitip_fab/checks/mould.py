@@ -13,7 +13,7 @@ import numpy as np
 import shapely
 from shapely.errors import GEOSException
 
-from lumitip_fab.checks import mould_walls, overlap, solids
+from lumitip_fab.checks import letters, mould_walls, overlap, solids
 from lumitip_fab.checks.packages import measure_boxes
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.checks.walls import walls
@@ -25,7 +25,7 @@ READS = ("mould/*", "backing/*_backing.stl")
 NAMES = (
     "mould.watertight", "mould.bodies", "mould.fits_bed", "mould.thickness", "mould.tip_thickness",
     "mould.stops", "mould.gap", "mould.draft", "mould.undercut", "mould.min_wall", "mould.three_mf",
-    "mould.step", "mould.volume", "mould.masses", "mould.seat",
+    "mould.step", "mould.volume", "mould.masses", "mould.seat", "mould.letter",
 )  # fmt: skip
 THICKNESS_MM = 0.02
 STOPS_MM = 0.02
@@ -67,7 +67,10 @@ def _measured(
     yield _tip_thickness(probe, file)
     yield from _stops(probe, file)
     yield from mould_walls.measured(mesh, file, design, finger.notch)
-    yield from walls("mould.min_wall", file, mesh, design.printing.min_wall_mm, ())
+    letter = design.mould.letter
+    yield letters.measure_letter("mould.letter", file, mesh, finger, letter)
+    exempt = (letters.beside(letter, design.printing),)
+    yield from walls("mould.min_wall", file, mesh, design.printing.min_wall_mm, exempt)
     sensor = solids.moved(mesh, mould_bed_to_sensor(design.stack, design.mould))
     yield from measure_boxes("mould", outputs, file, mesh.bounds, sensor.bounds)
     body = overlap.solid(mesh, "the mould")

@@ -44,7 +44,7 @@ def measured(mesh: Any, file: str, design: Design, notch: Box) -> Iterator[Measu
     yield Measurement("mould.draft", file, draft, least, unit="deg",
                       note=f"least above the rim; designed {mould.draft_deg:g}")  # fmt: skip
     yield Measurement("mould.undercut", file, _undercut_mm2(mesh, silhouette, design), 0, 0.01,
-                      "mm²", "that faces away from the pull")  # fmt: skip
+                      "mm²", "that hangs over, seen along the pull")  # fmt: skip
 
 
 def _along(silhouette: Any, design: Design, notch: Box) -> Any:
@@ -64,11 +64,13 @@ def _distances(mesh: Any, z_mm: float, places: Any) -> solids.Vectors:
 
 
 def _undercut_mm2(mesh: Any, silhouette: Any, design: Design) -> float:
-    """Faces that look down, from the wall's middle inward and above the bed."""
+    """Faces that look down, from the wall's middle inward and above the bed, as they are seen
+    along the pull: a facet of a curved wall may lean, but hangs over next to nothing."""
     mould = design.mould
     inner = silhouette.buffer(mould.wall_gap_mm + mould.wall_mm / 2)
     above_bed = mesh.triangles[:, :, 2].min(axis=1) > mesh.bounds[0, 2] + _ON_BED_MM
     down = (mesh.face_normals[:, 2] < -_UPRIGHT) & above_bed
     centres = mesh.triangles_center[down]
     held = shapely.contains_xy(inner, centres[:, 0], centres[:, 1])
-    return float(mesh.area_faces[down][held].sum())
+    overhung = mesh.area_faces * -mesh.face_normals[:, 2]
+    return float(overhung[down][held].sum())

@@ -8,10 +8,14 @@ from fnmatch import fnmatch
 from pathlib import Path
 from types import ModuleType
 
+from lumitip_fab.checks.memory import Memory, Watched, reads
 from lumitip_fab.checks.result import Measurement
 from lumitip_fab.encoding import read_design
 
-MODULES = ("manifest", "layout", "mask", "backing", "mould", "assembly")
+MODULES = (
+    "manifest", "layout", "firmware", "mask", "backing", "mould", "assembly", "board", "schematic",
+    "orders",
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -31,21 +35,37 @@ class Outcome:
         return frozenset(m.check for m in self.measurements)
 
 
-def run_checks(out: Path, modules: Iterable[str] = MODULES) -> Outcome:
+def run_checks(
+    out: Path, modules: Iterable[str] = MODULES, memory: Memory | None = None
+) -> Outcome:
     """Measure the files below `out` against its `design.json`.
+
+    Args:
+        out: the output folder.
+        modules: the check modules to run.
+        memory: measurements of earlier runs, told again where nothing changed.
 
     Raises:
         OutputError: if there is no usable `design.json`.
     """
     design = read_design(out / "design.json")
-    return Outcome(tuple(m for name in modules for m in _module(name).measure(out, design)))
+    measurements: list[Measurement] = []
+    for name in modules:
+        known = memory.recalled(name, design) if memory else None
+        if known is None:
+            watched = Watched(design)
+            known = tuple(_module(name).measure(out, watched))
+            if memory:
+                memory.keep(name, known, watched)
+        measurements += known
+    return Outcome(tuple(measurements))
 
 
 def modules_reading(paths: Iterable[str]) -> Iterator[str]:
     """The check modules that open any of these files (relative to the output folder)."""
     touched = tuple(paths)
     for name in MODULES:
-        patterns = (*_module(name).READS, "design.json")
+        patterns = (*reads(name), "design.json")
         if any(fnmatch(path, pattern) for path in touched for pattern in patterns):
             yield name
 

@@ -5,7 +5,9 @@ import hashlib
 from lumitip.layout import Layout, Optics
 from lumitip_fab.derive import boards, closing, mask, mould, mount, outline, wiring
 from lumitip_fab.derive.cells import derive_cells
+from lumitip_fab.derive.electrical import derive_electrical
 from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.packages import derive_fabs, derive_packages, derive_rules
 from lumitip_fab.derive.stack import derive_printing, derive_stack, derive_tip
 from lumitip_fab.design import Controller, Design, Grid, Title
 from lumitip_fab.encoding import canonical, settled
@@ -34,6 +36,7 @@ def derive(given: Input) -> Design:
     casting = mould.derive_mould(given, silhouette, plan.board, faults)
     printing = derive_printing(given, silhouette, faults)
     sheet = mask.derive_mask(given, silhouette, plan, faults)
+    rules = derive_rules(given, faults)
     meeting = closing.derive_closing(silhouette, stack, coupling, casting, faults)
     faults.stop()
     mux, channel = wiring.assign(given, cells, plan.muxes)
@@ -63,6 +66,9 @@ def derive(given: Input) -> Design:
             mount=coupling,
             closing=meeting,
             wiring=wiring.joined(given, strings, muxing),
+            packages=derive_packages(given),
+            rules=rules,
+            electrical=derive_electrical(given, strings),
             mask=sheet,
             mould=casting,
             printing=printing,
@@ -71,6 +77,7 @@ def derive(given: Input) -> Design:
                 p.controller.name,
                 given.catalogue.controllers[p.controller.board].adc_bits,
             ),
+            fabs=derive_fabs(given),
             parameters_hash=_parameters_hash(given),
         )
     )

@@ -26,7 +26,7 @@ from lumitip_fab.parameters import Parameters
 
 NOTCH_BEFORE_PADS_MM = 0.6
 NOTCH_BESIDE_MM = 0.5
-SEAT_CLEARANCE_MM = 1.0
+SEAT_CLEARANCE_MM = 1.8  # a wire of 1.5 mm passes on each side of the coupling
 WINDOW_MARGIN_MM = 2.0
 HOLE_TO_EDGE_MM = 1.0
 PAD_TO_EDGE_MM = 0.3

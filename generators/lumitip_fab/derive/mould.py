@@ -3,14 +3,19 @@
 import math
 
 from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.letter import DEPTH_MM, LEAST_MM, letter_on
 from lumitip_fab.derive.outline import half_width_at
-from lumitip_fab.design import Board, Mould, Outline, Point
+from lumitip_fab.design import Board, Letter, Mould, Outline, Point
 from lumitip_fab.load import Input
 
 PAD_MM = 2.0
 LEAST_FLOOR_RIM_MM = 0.5
 PAD_MARGIN_MM = 0.1
 END_ROUND = 2 / 3  # of the silicone's thickness
+TROUGH_MM = 4.0  # along y
+LEDGE_MM = 0.5  # between weir and trough
+LETTER_OVER_BED_MM = 0.6  # clear of the chamfer at the foot
+LETTER_UNDER_RIM_MM = 0.5
 
 
 def derive_mould(given: Input, outline: Outline, board: Board, faults: Faults) -> Mould:
@@ -56,12 +61,29 @@ def derive_mould(given: Input, outline: Outline, board: Board, faults: Faults) -
         wall_mm=p.mould.wall_mm,
         pads=_pads(given, outline, board, faults),
         pad_mm=PAD_MM,
+        letter=_letter(given, outline, faults),
         silicone=p.mould.silicone,
         density_g_ml=silicone.density_g_ml,
         mix_ratio=silicone.mix_ratio,
         cure_h=silicone.cure_h,
         waste_fraction=p.mould.waste_fraction,
     )
+
+
+def _letter(given: Input, outline: Outline, faults: Faults) -> Letter:
+    """On the outside of the trough's end, whose wall is as high as the cavity and its floor."""
+    p = given.parameters
+    wall, rise = p.mould.wall_mm, p.stack.pcb_mm * math.tan(math.radians(p.mould.draft_deg))
+    low, high = LETTER_OVER_BED_MM, wall + p.stack.silicone_mm - LETTER_UNDER_RIM_MM
+    faults.refuse_unless(
+        high - low >= LEAST_MM - 1e-9,
+        "mould.wall_mm",
+        f"{wall:g} given, which leaves {high - low:.2f} mm for the letter that tells the fingers' "
+        f"moulds apart; at least {wall + LEAST_MM - (high - low):.2f} is needed",
+    )
+    trough_y = outline.end_y_mm - p.mould.wall_gap_mm - rise - wall - LEDGE_MM
+    end_mm = wall + TROUGH_MM - trough_y
+    return letter_on(low, high, min(DEPTH_MM, wall - p.printer.min_wall_mm), end_mm)
 
 
 def _pads(given: Input, outline: Outline, board: Board, faults: Faults) -> tuple[Point, ...]:

@@ -11,7 +11,6 @@ from lumitip_fab.derive.wiring import Muxing, Strings
 from lumitip_fab.design import Box, Part, Point, Relief
 from lumitip_fab.load import Input
 
-PASSIVE_MM = 0.95  # width of an 0603 land pattern: pull-up and capacitor beside each multiplexer
 HOLE_CLEARANCE_MM = 0.25
 HOLE_WEB_MM = 0.5  # board left between a hole and its edge
 HOLES_APART_MM = 0.4  # board left between two holes
@@ -38,6 +37,13 @@ def parts_zone_depth_mm(given: Input, muxing: Muxing, width_mm: float, faults: F
     p = given.parameters
     mux = given.catalogue.multiplexers[p.receiver.multiplexer]
     per_row = _per_row(given, width_mm)
+    beside = sum(chip.over_pads_mm[0] for chip in _passives(given)) + p.board.clearance_mm
+    faults.refuse_unless(
+        beside <= mux.lead_span_mm,
+        "receiver.resistor",
+        f"{p.receiver.resistor!r} given, which takes {beside:.2f} mm beside a multiplexer, with "
+        f"{p.receiver.capacitor!r}; {mux.lead_span_mm:g} mm is there: use a smaller package",
+    )
     if per_row < 1:
         faults.refuse(
             "board.side_margin_mm",
@@ -50,16 +56,22 @@ def parts_zone_depth_mm(given: Input, muxing: Muxing, width_mm: float, faults: F
 
 
 def multiplexers(given: Input, muxing: Muxing, zone: Box) -> tuple[Part, ...]:
-    """Multiplexers in rows across the zone, evenly spread, U1 at the upper left."""
+    """Multiplexers in rows across the zone, evenly spread, U1 at the upper left.
+
+    Capacitor and pull-up stand to the left of each, where supply and output leads are.
+    """
     p = given.parameters
     mux = given.catalogue.multiplexers[p.receiver.multiplexer]
+    passives = (_slot_mm(given) - mux.body_mm[0]) - p.board.clearance_mm
     per_row = max(_per_row(given, zone.width_mm + 2), 1)
     rows = np.array_split(np.arange(muxing.muxes), math.ceil(muxing.muxes / per_row))
     parts = []
     for r, row in enumerate(rows):
         y = zone.y_max_mm - mux.lead_span_mm / 2 - r * (mux.lead_span_mm + p.board.channel_mm)
         for k, which in enumerate(row):
-            x = zone.x_min_mm + zone.width_mm * (k + 0.5) / row.size
+            slot = zone.width_mm / row.size
+            x = zone.x_min_mm + slot * (k + 0.5)
+            x += max(0.0, round(passives - (slot - mux.body_mm[0]) / 2, 9))
             name = f"U{which + 1}"
             size = (mux.body_mm[0], mux.lead_span_mm)
             parts.append(Part(name, "multiplexer", x, y, *size, mux.body_mm[2], "front"))
@@ -69,7 +81,13 @@ def multiplexers(given: Input, muxing: Muxing, zone: Box) -> tuple[Part, ...]:
 def _slot_mm(given: Input) -> float:
     p = given.parameters
     body = given.catalogue.multiplexers[p.receiver.multiplexer].body_mm[0]
-    return body + PASSIVE_MM + 2 * p.board.clearance_mm
+    return body + max(chip.over_pads_mm[1] for chip in _passives(given)) + 2 * p.board.clearance_mm
+
+
+def _passives(given: Input) -> tuple[Chip, Chip]:
+    """Capacitor and pull-up, which stand upright beside each multiplexer."""
+    p, parts = given.parameters, given.catalogue
+    return parts.capacitors[p.receiver.capacitor], parts.resistors[p.receiver.resistor]
 
 
 def _per_row(given: Input, width_mm: float) -> int:
@@ -127,7 +145,10 @@ def tip_holes(
 def resistors(
     given: Input, strings: Strings, zone: Box, faults: Faults
 ) -> tuple[tuple[Part, ...], tuple[Relief, ...]]:
-    """String resistors in two banks beside the coupling, and the reliefs behind them."""
+    """String resistors in two banks beside the coupling, and the reliefs behind them.
+
+    R1 is rightmost, because the strings begin with column 0, which is on the emitter's right.
+    """
     p = given.parameters
     chip = given.catalogue.resistors[p.emitter.resistor]
     along, across = chip.over_pads_mm
@@ -148,12 +169,12 @@ def resistors(
         return (), ()
     parts: list[Part] = []
     reliefs: list[Relief] = []
-    for side, in_bank in ((-1, math.ceil(count / 2)), (1, count // 2)):
+    for side, in_bank in ((1, math.ceil(count / 2)), (-1, count // 2)):
         bank = [
             Part(
                 name=f"R{len(parts) + place + 1}",
                 kind="resistor",
-                x_mm=side * ((inner + outer) / 2 + (k - (row.size - 1) / 2) * step_x),
+                x_mm=side * (inner + outer) / 2 - (k - (row.size - 1) / 2) * step_x,
                 y_mm=zone.centre_mm[1] + ((rows - 1) / 2 - r) * step_y,
                 size_x_mm=across,
                 size_y_mm=along,

@@ -15,6 +15,8 @@ from lumitip_fab.load import Input
 LEAST_RESISTOR_SHARE = 0.1  # of the supply: below it the current follows every millivolt
 MOST_RESISTOR_LOAD = 0.6  # of the package's rating
 MOST_CURRENT_SPREAD = 0.05  # between strings
+_E24 = (1.0, 1.1, 1.2, 1.3, 1.5, 1.6, 1.8, 2.0, 2.2, 2.4, 2.7, 3.0, 3.3, 3.6, 3.9, 4.3, 4.7, 5.1,
+        5.6, 6.2, 6.8, 7.5, 8.2, 9.1)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -41,6 +43,7 @@ def derive_strings(given: Input, cells: Cells, faults: Faults) -> Strings:
     led, volts = given.catalogue.leds[p.emitter.led], p.supply.voltage_v
     package = given.catalogue.resistors[p.emitter.resistor]
     longest = int(volts * (1 - LEAST_RESISTOR_SHARE) / led.forward_voltage_v)
+    longest = min(longest, p.emitter.string_leds)
     if longest < 1:
         faults.refuse(
             "supply.voltage_v",
@@ -53,10 +56,10 @@ def derive_strings(given: Input, cells: Cells, faults: Faults) -> Strings:
         "emitter.current_ma",
         f"{p.emitter.current_ma:g} given, {p.emitter.led!r} takes at most {led.max_current_ma:g}",
     )
-    groups = np.array_split(np.arange(len(cells)), math.ceil(len(cells) / longest))
-    strings = tuple(tuple(int(i) for i in group) for group in groups)
+    groups = np.array_split(_winding(cells), math.ceil(len(cells) / longest))
+    strings = tuple(_from_the_gripper(cells, group) for group in groups)
     drops = [volts - len(s) * led.forward_voltage_v for s in strings]
-    ohms = tuple(_e96(1000 * drop / p.emitter.current_ma) for drop in drops)
+    ohms = tuple(e96(1000 * drop / p.emitter.current_ma) for drop in drops)
     amps_ma = tuple(1000 * drop / ohm for drop, ohm in zip(drops, ohms, strict=True))
     load = max(i * i * r * 1e-6 for i, r in zip(amps_ma, ohms, strict=True))
     allowed = MOST_RESISTOR_LOAD * package.power_w
@@ -81,7 +84,27 @@ def derive_strings(given: Input, cells: Cells, faults: Faults) -> Strings:
         f"{p.supply.max_ma:g} given, {len(strings)} strings at {p.emitter.current_ma:g} mA draw "
         f"{sum(amps_ma):.1f} mA: at least that, or less emitter.current_ma, is needed",
     )
+    heat_w = sum(amps_ma) * volts / 1000
+    faults.refuse_unless(
+        heat_w <= p.emitter.max_heat_w,
+        "emitter.max_heat_w",
+        f"{p.emitter.max_heat_w:g} given, {len(strings)} strings at {p.emitter.current_ma:g} mA "
+        f"from {volts:g} V leave {heat_w:.2f} W in the finger: at least that, or less "
+        "emitter.current_ma, is needed",
+    )
     return Strings(strings, ohms, amps_ma)
+
+
+def _winding(cells: Cells) -> Integers:
+    """The cells along a path from neighbour to neighbour: up one column and down the next."""
+    order = np.lexsort((np.where(cells.column % 2, cells.row, -cells.row), cells.column))
+    return np.asarray(order, dtype=np.int64)
+
+
+def _from_the_gripper(cells: Cells, string: Integers) -> tuple[int, ...]:
+    """A string that begins at its end nearer to the gripper, where its resistor is."""
+    first, last = cells.y_mm[string[[0, -1]]]
+    return tuple(string[:: -1 if last < first else 1].tolist())
 
 
 def derive_muxing(given: Input, cells: Cells, faults: Faults) -> Muxing:
@@ -105,6 +128,13 @@ def derive_muxing(given: Input, cells: Cells, faults: Faults) -> Muxing:
         "receiver.multiplexer",
         f"{p.receiver.multiplexer!r} given, which needs {len(mux.select)} select lines; "
         f"{p.controller.board!r} has {len(controller.select_pins)}",
+    )
+    sold = _sold(p.receiver.pull_up_ohm)
+    faults.refuse_unless(
+        math.isclose(sold, p.receiver.pull_up_ohm),
+        "receiver.pull_up_ohm",
+        f"{p.receiver.pull_up_ohm:.10g} given, which is not sold: a value of the E24 or E96 series "
+        f"is needed, such as {sold:g}",
     )
     return Muxing(muxes, pins[:muxes], controller.select_pins[: len(mux.select)])
 
@@ -155,6 +185,7 @@ def joined(given: Input, strings: Strings, muxing: Muxing) -> Wiring:
         resistor_ohm=strings.resistor_ohm,
         current_ma=strings.current_ma,
         supply_v=p.supply.voltage_v,
+        pull_up_ohm=p.receiver.pull_up_ohm,
     )
 
 
@@ -178,9 +209,19 @@ def _input_leads(given: Input) -> NDArray[np.float64]:
     return np.array(places)
 
 
-def _e96(ohm: float) -> float:
+def e96(ohm: float) -> float:
     """The nearest value of the E96 series (IEC 60063: 96 steps a decade, three digits)."""
+    steps: NDArray[np.float64] = np.power(10.0, np.arange(97) / 96)
+    return _nearest(ohm, np.round(steps, 2))
+
+
+def _sold(ohm: float) -> float:
+    """The nearest value of the E24 and E96 series, in both of which 1 % resistors are sold."""
+    steps = np.array([e96(ohm), _nearest(ohm, np.array([*_E24, 10.0]))])
+    return float(steps[np.abs(np.log(steps / ohm)).argmin()])
+
+
+def _nearest(ohm: float, mantissas: NDArray[np.float64]) -> float:
     decade = 10.0 ** math.floor(math.log10(ohm))
-    mantissas = np.round(np.power(10.0, np.arange(97) / 96), 2)
     nearest = mantissas[np.abs(np.log(mantissas * decade / ohm)).argmin()]
     return round(float(nearest) * decade, 6)

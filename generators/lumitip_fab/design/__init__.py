@@ -10,38 +10,55 @@ from dataclasses import dataclass
 from lumitip.layout import Layout
 from lumitip_fab.design.boards import (
     Board,
+    CellInput,
+    Chip,
     Connector,
     Controller,
     Finger,
     Grid,
+    Multiplexer,
+    Packages,
     Part,
+    Reading,
     Relief,
+    Rules,
     Wiring,
     Zone,
 )
+from lumitip_fab.design.electrical import Electrical
 from lumitip_fab.design.gripper import Closing, Mount, Nose
-from lumitip_fab.design.making import Mask, Mould, Printing
+from lumitip_fab.design.making import Letter, Mask, Mould, Printing
+from lumitip_fab.design.ordering import Fab
 from lumitip_fab.design.shape import Box, Cubic, Outline, Point, Stack, Tip
 
 __all__ = [
     "Board",
     "Box",
+    "CellInput",
+    "Chip",
     "Closing",
     "Connector",
     "Controller",
     "Cubic",
     "Design",
+    "Electrical",
+    "Fab",
     "Finger",
     "Grid",
+    "Letter",
     "Mask",
     "Mould",
     "Mount",
+    "Multiplexer",
     "Nose",
     "Outline",
+    "Packages",
     "Part",
     "Point",
     "Printing",
+    "Reading",
     "Relief",
+    "Rules",
     "Stack",
     "Tip",
     "Title",
@@ -74,13 +91,23 @@ class Design:
     mount: Mount
     closing: Closing
     wiring: Wiring
+    packages: Packages
+    rules: Rules
+    electrical: Electrical
     mask: Mask
     mould: Mould
     printing: Printing
     controller: Controller
+    fabs: tuple[Fab, ...]
     parameters_hash: str
 
     @property
     def fingers(self) -> tuple[Finger, Finger]:
         """Both fingers, emitter first."""
         return self.emitter, self.receiver
+
+    @property
+    def reading(self) -> Reading:
+        """Which input reads each cell."""
+        cells = tuple(CellInput(c.index, c.mux, c.channel) for c in self.layout.cells)
+        return Reading(self.layout.design_hash, self.layout.pitch_mm, cells)

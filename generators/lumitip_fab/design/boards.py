@@ -104,6 +104,25 @@ class Finger:
 
 
 @dataclass(frozen=True)
+class CellInput:
+    """The input that reads a cell."""
+
+    index: int
+    """Of the cell."""
+    mux: int
+    channel: int
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What of the layout a board needs: its optics, which change oftener, are not in it."""
+
+    design_hash: str
+    pitch_mm: float
+    cells: tuple[CellInput, ...]
+
+
+@dataclass(frozen=True)
 class Wiring:
     """What is connected to what, beyond the layout."""
 
@@ -119,6 +138,81 @@ class Wiring:
     current_ma: tuple[float, ...]
     """Nominal current of each string."""
     supply_v: float
+    pull_up_ohm: float
+    """At each multiplexer's output."""
+
+
+@dataclass(frozen=True)
+class Chip:
+    """A two-terminal part: what to order, and its size with its pads."""
+
+    part: str
+    """What to order; of resistors, `{code}` stands for the value."""
+    manufacturer: str
+    value: str
+    """What a drawing says of it; empty of resistors, whose value is in `Wiring`."""
+    body_mm: tuple[float, float, float]
+    """Body: along its terminals, across them, height above the board."""
+    pad_mm: tuple[float, float]
+    """One pad: along the terminals, across them."""
+    pad_pitch_mm: float
+    marked: str
+    """Terminal that the part's mark shows, which is pad 1; empty of parts without polarity."""
+
+
+@dataclass(frozen=True)
+class Multiplexer:
+    """An analog multiplexer: what to order, its size, and what each lead is."""
+
+    part: str
+    manufacturer: str
+    value: str
+    body_mm: tuple[float, float, float]
+    """Body: along the rows of leads, across them, height above the board."""
+    lead_span_mm: float
+    """Outer ends of the pads of the two rows."""
+    lead_tips_mm: float
+    """Outer ends of the leads."""
+    lead_pitch_mm: float
+    lead_pad_mm: tuple[float, float]
+    """Pad of one lead: along the lead, across it."""
+    leads: int
+    inputs: tuple[int, ...]
+    """Lead of each channel."""
+    select: tuple[int, ...]
+    output: int
+    supply: int
+    ground: int
+    enable: int
+    """Active low."""
+    negative: int | None
+
+
+@dataclass(frozen=True)
+class Packages:
+    """The parts of both boards."""
+
+    led: Chip
+    string_resistor: Chip
+    photodetector: Chip
+    pull_up: Chip
+    capacitor: Chip
+    multiplexer: Multiplexer
+
+
+@dataclass(frozen=True)
+class Rules:
+    """What tracks, vias and gaps between parts must keep."""
+
+    part_gap_mm: float
+    """Between land patterns."""
+    track_mm: float
+    supply_track_mm: float
+    copper_gap_mm: float
+    via_mm: float
+    via_drill_mm: float
+    edge_gap_mm: float
+    """Copper to the board's edge and to unplated holes."""
 
 
 @dataclass(frozen=True)

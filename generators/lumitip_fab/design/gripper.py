@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from lumitip_fab.design.making import Letter
+
 
 @dataclass(frozen=True)
 class Nose:
@@ -43,6 +45,8 @@ class Mount:
     nose: Nose | None
     stroke_mm: float
     pad_w_mm: float
+    letter: Letter
+    """On the back of the block, beside the bolt's land."""
 
 
 @dataclass(frozen=True)

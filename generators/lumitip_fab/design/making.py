@@ -27,6 +27,21 @@ class Mask:
 
 
 @dataclass(frozen=True)
+class Letter:
+    """The first letter of the finger's name, sunk into an upright wall of a printed part.
+
+    In the frame in which the part is printed. The wall looks along the second axis, so that the
+    letter, read from before the wall, runs against the first.
+    """
+
+    box: Box
+    """Along the first axis, and upward."""
+    wall_mm: float
+    """Where the wall stands on the second axis."""
+    depth_mm: float
+
+
+@dataclass(frozen=True)
 class Mould:
     """The silicone mould and what is poured into it."""
 
@@ -40,6 +55,8 @@ class Mould:
     pads: tuple[Point, ...]
     """Hard stops on the plate's rim, beside the board."""
     pad_mm: float
+    letter: Letter
+    """On the outside of the trough's end, which is where it says."""
     silicone: str
     density_g_ml: float
     mix_ratio: Point

@@ -19,6 +19,8 @@ LEAST_REACH_MM = 2.0  # onto the back, before the windows behind parts are given
 START_GAP_MM = 0.1  # first fold to what it must keep clear of
 BAND_MM = 0.5  # black beyond the back's edge
 CLEAR_END_MM = 3.2  # left unprinted: bonds better, and takes the number
+LEAST_CLEAR_MM = 2.0  # of a flap so short that its side would not be black otherwise
+LAP_MM = 0.2  # of black past the side of such a flap
 UNDER_MM = 0.6  # how far a band runs under the black, past any sagitta
 
 
@@ -106,14 +108,18 @@ def _flap(
     length = _longest(mask.flap_mm, lambda value: clear(value, areas))
     corners = trapezoid(length)
     middle, outward = (a + b) / 2, _outward(a, b)
-    band = min(highest + mask.allowance_mm + BAND_MM, length - CLEAR_END_MM)
-    label = middle + outward * (length - CLEAR_END_MM / 2)
+    band = max(
+        min(highest + mask.allowance_mm + BAND_MM, length - CLEAR_END_MM),
+        min(highest - mask.allowance_mm + LAP_MM, length - LEAST_CLEAR_MM),
+        0.0,
+    )
+    label = middle + outward * (length - min(length - band, CLEAR_END_MM) / 2)
     return Flap(
         number=number,
         corners=corners,
         length_mm=length,
         reach_mm=length + mask.allowance_mm - lowest,
-        band=_band(a, b, corners, length, max(band, 0.0)),
+        band=_band(a, b, corners, length, band),
         label=(float(label[0]), float(label[1])),
     )
 
@@ -145,13 +151,12 @@ def _trapezoid(
 def _band(
     a: Points, b: Points, corners: tuple[Point, Point, Point, Point], length: float, band: float
 ) -> tuple[Point, Point, Point, Point]:
-    """The flap cut off `band` from its fold, and run under the black."""
-    outward, share = _outward(a, b), band / length
-    c, d = np.array(corners[1]), np.array(corners[2])
-    under = outward * UNDER_MM
-    return _point(a - under), _point(a + (c - a) * share), _point(b + (d - b) * share), _point(
-        b - under
-    )  # fmt: skip
+    """The flap cut off `band` from its fold; its sides run on under the black."""
+    share, under = band / length, UNDER_MM / length
+    left, right = np.array(corners[1]) - a, np.array(corners[2]) - b
+    ends = (a - left * under, a + left * share, b + right * share, b - right * under)
+    first, second, third, fourth = map(_point, ends)
+    return first, second, third, fourth
 
 
 def _outward(a: Points, b: Points) -> Points:

@@ -45,8 +45,9 @@ leave them. For a plotter, `{name}_mask.dxf` has the layers `CUT`, `WINDOW` and 
 4. Bond the clear ends of the flaps with a thin film of silicone adhesive or double-sided tape.
 
 The flaps are black where they cover the side of the finger ({side_mm:.1f} mm of silicone and
-plate) and {band_mm:g} mm beyond, so that no stray light comes in through the silicone's edge. Their
-ends are left clear because glue holds better on bare film than on ink.
+plate) and, where they are long enough, {band_mm:g} mm beyond, so that no stray light comes in
+through the silicone's edge. Their ends are left clear because glue holds better on bare film than
+on ink.
 
 | fold | width of fold (mm) | length of flap (mm) | onto the back (mm) |
 |---:|---:|---:|---:|

@@ -8,6 +8,7 @@ from lumitip_fab.design import Board, Box, Finger, Mount, Outline, Stack, Tip
 from lumitip_fab.errors import BuildError
 from lumitip_fab.frames import mount_to_sensor
 from lumitip_fab.mechanical import coupling, export
+from lumitip_fab.mechanical.letters import letter_cutter
 from lumitip_fab.mechanical.shapes import (
     box_solid,
     cylinder,
@@ -52,6 +53,7 @@ def backing_solid(
     taken = [
         coupling.beyond_mount_plane(mount, stack),
         *coupling.coupling_holes(mount, stack),
+        letter_cutter(finger.name, mount.letter, mount_to_sensor(mount, stack)),
         *(_relief(r.box, r.depth_mm, r.through, stack) for r in finger.reliefs),
     ]
     whole = (whole - taken).clean()

@@ -14,7 +14,8 @@ _NOTE = """# Casting the {finger} finger
 
 Print `{finger}_mould.3mf` open side up, without supports, in layers of {layer_mm:g} mm: the floor
 at {floor_mm:g} mm and the stops at {rim_mm:g} mm are then whole layers. The stops set the thickness
-of the silicone: cut off blobs, sand nothing.
+of the silicone: cut off blobs, sand nothing. The mould has a {letter} in the end of its trough, and
+the backing that belongs to it a {letter} on the back of its block.
 
 1. Glue the board into the backing, flush with its rim. Close every window on the back with tape,
    and fill the slit round the board with a thin line of silicone; let it cure.
@@ -50,6 +51,7 @@ def casting_note(
     rim_mm = mould.wall_mm + stack.silicone_mm
     return _NOTE.format(
         finger=finger,
+        letter=finger[0].upper(),
         volume_ml=volume_ml,
         waste=mould.waste_fraction,
         mix_ml=mix_ml,

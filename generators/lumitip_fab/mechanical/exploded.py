@@ -65,15 +65,17 @@ def exploded_view(bodies: Bodies, stack: Stack, outline: Outline) -> str:
     guides = [int(corners[:, 0].argmin()), int(corners[:, 0].argmax())]
     pins = _projected(_at(np.array(finger.holes), stack.rim_z_mm))
     for layer, above in zip(layers, (*layers[1:], None), strict=True):
-        sheet.area(_silhouette(layer), "area", _TINTS[layer.name])
-        sheet.lines(_visible_lines(layer), "line")
+        with sheet.group(layer.name):
+            sheet.area(_silhouette(layer), "area", _TINTS[layer.name])
+            sheet.lines(_visible_lines(layer), "line")
         if layer.name == "board":
             _draw_parts(sheet, finger, stack, layer.rise_mm)
         if above:
             starts = [corners[k] for k in guides] + (list(pins) if above.name == "board" else [])
             sheet.lines([_upright(at, layer.rise_mm, above.rise_mm) for at in starts], "axis")
-    _label(sheet, layers, finger, stack)
-    return sheet.svg()
+    with sheet.group("labels"):
+        _label(sheet, layers, finger, stack)
+    return sheet.svg({"data-azimuth-deg": AZIMUTH_DEG, "data-elevation-deg": ELEVATION_DEG})
 
 
 def _layers(bodies: Bodies, stack: Stack, outline: Outline) -> list[Layer]:
@@ -163,8 +165,9 @@ def _draw_parts(sheet: Sheet, finger: Finger, stack: Stack, rise_mm: float) -> N
     front.sort(key=lambda part: float(viewer[0] * part.x_mm + viewer[1] * part.y_mm))
     for part in front:
         corners = _projected(_box_corners(part, stack.rim_z_mm), rise_mm)
-        for face in _FACES:
-            sheet.area([corners[list(face)]], "part", _PART_TINTS[part.kind])
+        with sheet.group(part.name):
+            for face in _FACES:
+                sheet.area([corners[list(face)]], "part", _PART_TINTS[part.kind])
 
 
 def _box_corners(part: Part, low_mm: float) -> Points:

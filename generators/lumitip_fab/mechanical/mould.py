@@ -18,11 +18,13 @@ import numpy as np
 from build123d import Face, Location, Solid, Vector, Wire
 
 from lumitip_fab.artefact import Artefact
+from lumitip_fab.derive.mould import LEDGE_MM
 from lumitip_fab.design import Box, Finger, Mould, Outline, Printing, Stack
 from lumitip_fab.errors import BuildError
 from lumitip_fab.frames import mould_bed_to_sensor
 from lumitip_fab.mechanical import export
 from lumitip_fab.mechanical.casting import casting_note
+from lumitip_fab.mechanical.letters import letter_cutter
 from lumitip_fab.mechanical.shapes import box_face, box_solid, placed, side_prism
 from lumitip_fab.mechanical.skin import (
     drafted_prism,
@@ -37,8 +39,6 @@ CHORD_MM = 0.002  # finer than other parts: the draft is measured on walls 1.6 m
 FOOT_CHAMFER_MM = 0.4  # the first layer spreads
 WEIR_FRACTION = 0.8  # of the wire notch, through which wires and surplus leave
 WEIR_DRAFT_DEG = 15.0
-TROUGH_MM = 4.0  # along y
-LEDGE_MM = 0.5  # between weir and trough
 GRIP_MM = 14.0  # gap in both walls to take the plate between two fingers
 GRIP_ABOVE_RIM_MM = 0.4
 GRIP_SLOPE_DEG = 45.0
@@ -51,7 +51,7 @@ def mould_files(
 ) -> tuple[Artefact, ...]:
     """The mould of one finger: STEP in the sensor frame, STL and 3MF on the bed, and the note
     for the person who pours."""
-    solid = mould_solid(finger.notch, stack, outline, mould)
+    solid = mould_solid(finger, stack, outline, mould)
     to_sensor = mould_bed_to_sensor(stack, mould)
     on_bed = placed(solid, np.asarray(np.linalg.inv(to_sensor), dtype=np.float64))
     name = f"{finger.name}_mould"
@@ -76,11 +76,11 @@ def cast_volume_ml(finger: Finger, stack: Stack, outline: Outline, mould: Mould)
     return (cavity - dipped) / 1000
 
 
-def mould_solid(notch: Box, stack: Stack, outline: Outline, mould: Mould) -> Solid:
+def mould_solid(finger: Finger, stack: Stack, outline: Outline, mould: Mould) -> Solid:
     """The mould in the finger's sensor frame, where its open side looks to -z.
 
     Args:
-        notch: opening of the plate through which wires leave.
+        finger: for the wire notch, before which the mould is open, and for its letter.
         stack: heights; the wall ends at the pocket's floor, so that the plate stands out.
         outline: of the plate.
         mould: the wall and the skin.
@@ -90,9 +90,10 @@ def mould_solid(notch: Box, stack: Stack, outline: Outline, mould: Mould) -> Sol
     """
     top_z = stack.pocket_z_mm
     outside = wall_offset_mm(stack, mould, top_z) + mould.wall_mm
-    weir_half = WEIR_FRACTION * notch.x_max_mm
+    weir_half = WEIR_FRACTION * finger.notch.x_max_mm
     catch_y = outline.end_y_mm - outside - LEDGE_MM
-    catch = Box(-weir_half - LEDGE_MM, weir_half + LEDGE_MM, catch_y - TROUGH_MM, catch_y)
+    end_y = mould.wall_mm - mould.letter.wall_mm
+    catch = Box(-weir_half - LEDGE_MM, weir_half + LEDGE_MM, end_y, catch_y)
     block = _footed(stack, outline, mould, top_z, outside) + _lip(stack, mould, catch, outside)
     cavity = drafted_prism(stack, outline, mould, top_z - BEYOND_MM, BEYOND_MM)
     taken = [
@@ -100,6 +101,7 @@ def mould_solid(notch: Box, stack: Stack, outline: Outline, mould: Mould) -> Sol
         _weir(stack, outline, weir_half, outside),
         _trough(stack, mould, catch),
         _grip(stack, outline, outside),
+        letter_cutter(finger.name, mould.letter, mould_bed_to_sensor(stack, mould)),
     ]
     whole = (block - taken) + stops(stack, outline, mould)
     solids = whole.solids()

@@ -1,6 +1,7 @@
 """A line drawing on a page: collects lines, areas and words in mm, y up, and writes SVG."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from xml.sax.saxutils import escape
 
@@ -33,6 +34,13 @@ class Sheet:
     drawn: list[str] = field(default_factory=list)
     low: Points = field(default_factory=lambda: np.full(2, np.inf))
     high: Points = field(default_factory=lambda: np.full(2, -np.inf))
+
+    @contextmanager
+    def group(self, name: str) -> Iterator[None]:
+        """Everything drawn meanwhile is one element, with this id."""
+        self.drawn.append(f'<g id="{name}">')
+        yield
+        self.drawn.append("</g>")
 
     def area(self, rings: Iterable[Points], style: str, fill: str) -> None:
         """A filled area; rings inside others are holes."""
@@ -67,8 +75,12 @@ class Sheet:
         """Make the page reach a point."""
         self._joined(np.array([[x_mm, y_mm]]))
 
-    def svg(self) -> str:
-        """The page, cut to what is on it."""
+    def svg(self, told: Mapping[str, float]) -> str:
+        """The page, cut to what is on it.
+
+        Args:
+            told: figures that go with it, for programs; their names begin with `data-`.
+        """
         left, bottom = self.low - self.margin_mm
         right, top = self.high + self.margin_mm
         width, height = right - left, top - bottom
@@ -76,7 +88,9 @@ class Sheet:
             [
                 f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:.2f}mm" '
                 f'height="{height:.2f}mm" viewBox="{left:.2f} {-top:.2f} {width:.2f} {height:.2f}" '
-                'font-family="Helvetica, Arial, sans-serif">',
+                'font-family="Helvetica, Arial, sans-serif"'
+                + "".join(f' {name}="{value:g}"' for name, value in told.items())
+                + ">",
                 f'<rect x="{left:.2f}" y="{-top:.2f}" width="{width:.2f}" height="{height:.2f}" '
                 'fill="#fff"/>',
                 *self.drawn,

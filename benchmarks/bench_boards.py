@@ -1,0 +1,135 @@
+"""Speed of the boards: placement, routing, pour and files against the number of cells.
+
+Run by `make bench`, or with numbers of cells as arguments. Each stage runs once unmeasured, so that
+compiled code is there. Wall time depends on the machine and on what else it does, so processor time
+is shown too.
+"""
+
+import math
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import TypeVar
+
+from lumitip_fab.boards.fab.package import layers_of, order_files
+from lumitip_fab.boards.model import BoardModel
+from lumitip_fab.boards.pcb.files import project_files
+from lumitip_fab.boards.picture.files import picture_files
+from lumitip_fab.boards.placement import place
+from lumitip_fab.boards.pour import pour
+from lumitip_fab.boards.routing import route
+from lumitip_fab.boards.schematic.files import schematic_files
+from lumitip_fab.boards.verify import verify
+from lumitip_fab.derive import derive
+from lumitip_fab.design import Design, Finger
+from lumitip_fab.errors import FabError
+from lumitip_fab.load import load
+
+DESIGN = Path(__file__).parents[1] / "design"
+COLUMNS = {65: [7, 6] * 5, 128: [9, 8] * 7 + [9], 257: [14, 13] * 9 + [14]}
+_FILE = """\
+extends = "published.toml"
+name = "bench {cells}"
+
+[grid]
+columns = {columns}
+
+[emitter]
+current_ma = 4.5
+resistor_side = "front"
+
+[receiver]
+multiplexer = "74HC4067PW"
+
+[controller]
+board = "bench"
+
+[supply]
+max_ma = 5000
+"""
+_T = TypeVar("_T")
+
+
+def design_of(cells: int) -> Design:
+    """The published design with another grid."""
+    if cells == 32:
+        return derive(load(DESIGN / "presets" / "published.toml"))
+    with tempfile.TemporaryDirectory() as name:
+        presets = Path(name) / "presets"
+        presets.mkdir()
+        (Path(name) / "parts").symlink_to(DESIGN / "parts")
+        published = (DESIGN / "presets" / "published.toml").read_text(encoding="utf-8")
+        (presets / "published.toml").write_text(published, encoding="utf-8")
+        file = presets / "bench.toml"
+        file.write_text(_FILE.format(cells=cells, columns=COLUMNS[cells]), encoding="utf-8")
+        return derive(load(file))
+
+
+def files(design: Design, model: BoardModel) -> int:
+    """Make every file of a board; returns their size in bytes."""
+    layers = layers_of(model)
+    made = {
+        **project_files(model, design.stack.pcb_mm),
+        **schematic_files(model.placement, design.wiring, design.packages),
+        **picture_files(model),
+    }
+    for fab in design.fabs:
+        made |= order_files(model, layers, fab, model.placement.finger)
+    return sum(map(len, made.values()))
+
+
+def measure(design: Design, finger: Finger) -> str:
+    """One row of the table: each stage once."""
+    d, seconds = design, []
+
+    def timed(stage: Callable[[], _T]) -> _T:
+        begun = time.perf_counter()
+        result = stage()
+        seconds.append(time.perf_counter() - begun)
+        return result
+
+    busy = time.process_time()
+    placement = timed(
+        lambda: place(d.title, d.reading, d.board, finger, d.wiring, d.packages, d.rules)
+    )
+    found = timed(lambda: route(placement))
+    routing, fills = timed(lambda: pour(placement, found))
+    model = BoardModel(placement, routing, fills)
+    timed(lambda: files(design, model))
+    busy = time.process_time() - busy
+    length = sum(math.dist(t.start, t.end) for t in routing.tracks)
+    return (
+        f"{len(design.layout):>6}{finger.name:>10}"
+        + "".join(f"{s:>8.2f}" for s in (*seconds, sum(seconds), busy))
+        + f"{len(routing.vias):>7}{length:>9.0f}{routing.iterations:>8}{len(verify(model)):>8}"
+    )
+
+
+def main(counts: list[int]) -> None:
+    """Print the table."""
+    small = design_of(32)
+    files(small, _board(small))  # compiles, and imports what is imported late
+    print("seconds, but for the last columns; cpu is processor time")
+    print(
+        f"{'cells':>6}{'board':>10}{'place':>8}{'route':>8}{'pour':>8}{'files':>8}{'all':>8}{'cpu':>8}"
+        f"{'vias':>7}{'track mm':>9}{'rounds':>8}{'faults':>8}"
+    )
+    for cells in counts:
+        design = design_of(cells)
+        for finger in design.fingers:
+            try:
+                print(measure(design, finger), flush=True)
+            except FabError as fault:
+                print(f"{cells:>6}{finger.name:>10}  {fault}", flush=True)
+
+
+def _board(design: Design) -> BoardModel:
+    d = design
+    placement = place(d.title, d.reading, d.board, d.emitter, d.wiring, d.packages, d.rules)
+    return BoardModel(placement, *pour(placement, route(placement)))
+
+
+if __name__ == "__main__":
+    main([int(a) for a in sys.argv[1:]] or [32, *COLUMNS])

@@ -1,0 +1,116 @@
+"""Links: frames lost and processor time at 500 frames a second over Bluetooth, 20 s at a time.
+
+bleak is as installed; `org.bluez` is faked on a private D-Bus by a process of its own, so that the
+processor time is the reader's alone. Run by `make bench`; exits 1 if a frame is lost.
+"""
+
+import asyncio
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+sys.path.insert(0, str(ROOT / "tests"))
+
+from bluetooth_peers import ScriptedPeer  # noqa: E402
+from fake_bluez import FakeBluez  # noqa: E402
+from lumitip.fingertip import Fingertip  # noqa: E402
+from lumitip.links.twin import Scene, packet_at, published_layout  # noqa: E402
+from lumitip.protocol.packet import encode, needed_mtu  # noqa: E402
+from lumitip.protocol.status import Fault, Status  # noqa: E402
+from lumitip.protocol.uuids import FRAMES, SERVICE, STATUS  # noqa: E402
+from private_bus import private_bus  # noqa: E402
+
+RATE_HZ, SECONDS = 500, 20
+BATCHES = (1, 4)  # frames in a notification: the hardest case, and what 7.5 ms intervals ask for
+
+
+def serve(address: str, batch: int) -> None:
+    """Be a device that sends `RATE_HZ * SECONDS` frames once somebody listens."""
+    layout = published_layout()
+    scene = Scene("disc", 12.0, 1.5, RATE_HZ, 8, 0)
+    numbers = range(0, RATE_HZ * SECONDS, batch)
+    packets = [encode(packet_at(layout, scene, n, batch)) for n in numbers]
+    peer = ScriptedPeer("Bench", "C0:FF:EE:00:00:01",
+                        {SERVICE: {FRAMES: ["notify"], STATUS: ["read", "notify"]}})  # fmt: skip
+    peer.values[STATUS] = Status(
+        (1, 0, 0), layout.design_hash[:16], len(layout), 247, needed_mtu(len(layout), 8), Fault(0)
+    ).encode()
+    bluez = FakeBluez(address)
+    bluez.add(peer)
+    print("ready", flush=True)
+
+    async def send() -> None:
+        while FRAMES not in peer.subscribed:
+            await asyncio.sleep(0.01)
+        await asyncio.sleep(0.5)
+        began = time.monotonic()
+        for n, packet in zip(numbers, packets, strict=True):
+            await asyncio.sleep(began + n / RATE_HZ - time.monotonic())
+            peer.notify(FRAMES, packet)
+        await asyncio.sleep(1.0)
+
+    task = asyncio.run_coroutine_threadsafe(send(), bluez._loop)
+    task.result()
+    sys.stdin.read()
+    bluez.stop()
+
+
+def measure(batch: int) -> bool:
+    """Read it all; returns whether every frame came."""
+    with tempfile.TemporaryDirectory() as folder, private_bus(Path(folder)) as address:
+        os.environ["DBUS_SYSTEM_BUS_ADDRESS"] = address
+        command = [sys.executable, __file__, "serve", address, str(batch)]
+        with subprocess.Popen(
+            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+        ) as device:
+            assert device.stdin
+            assert device.stdout
+            assert device.stdout.readline() == "ready\n"
+            wanted = RATE_HZ * SECONDS
+            with Fingertip.open("ble://Bench", published_layout(), calibrated=False) as tip:
+                first = tip.read(10.0)
+                cpu_s, wall_s = time.process_time(), time.monotonic()
+                last = first
+                while last.seq < wanted - 1:
+                    last = tip.read(5.0)
+                cpu_s, wall_s = time.process_time() - cpu_s, time.monotonic() - wall_s
+                stats = tip.stats
+            device.stdin.close()
+    lost = wanted - stats.received
+    print(f"{batch:>12}{stats.received:>11}{lost:>7}{wanted / wall_s:>10.0f}"
+          f"{cpu_s / wall_s:>12.2f}{stats.jitter_ms or 0:>12.2f}")  # fmt: skip
+    return lost == 0 and sum((stats.dropped or {}).values()) == 0
+
+
+def imported() -> None:
+    """Print what `import lumitip` takes, numpy and the interpreter's start apart."""
+    code = ("import time; a = time.perf_counter(); import numpy; b = time.perf_counter(); "
+            "import lumitip; c = time.perf_counter(); import lumitip.fingertip; "
+            "print(*(round(t, 3) for t in (b - a, c - b, time.perf_counter() - c)))")  # fmt: skip
+    told = subprocess.run([sys.executable, "-I", "-c", code], capture_output=True, text=True,
+                          check=True).stdout.split()  # fmt: skip
+    print(f"import: numpy {told[0]} s, lumitip {told[1]} s more (goal: below 0.25 s together), "
+          f"Fingertip {told[2]} s more")  # fmt: skip
+
+
+def main() -> int:
+    """Print the table."""
+    if sys.argv[1:2] == ["serve"]:
+        serve(sys.argv[2], int(sys.argv[3]))
+        return 0
+    if sys.argv[1:]:
+        return 0 if measure(int(sys.argv[1])) else 1
+    imported()
+    print(f"links: {SECONDS} s at {RATE_HZ} frames/s over fake BlueZ; goal: none lost, core < 0.5")
+    print(f"{'frames/value':>12}{'received':>11}{'lost':>7}{'rate/Hz':>10}{'core share':>12}"
+          f"{'jitter/ms':>12}", flush=True)  # fmt: skip
+    # A process for each, since bleak keeps to the bus that it first saw.
+    return max(subprocess.call([sys.executable, __file__, str(batch)]) for batch in BATCHES)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,175 @@
+"""Speed of the processing, all in one run on one core: per frame, in batches, and its growth.
+
+Run by `make bench`. Time depends on the machine, so the published way runs beside it; processor
+time is measured, or what else runs would slow the longer of the two more.
+"""
+
+import os
+import sys
+import time
+import warnings
+from collections.abc import Callable, Sequence
+from statistics import median
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from designs import columns_for
+from lumitip import Layout, Optics
+from lumitip.grid import hexagonal_grid, hexagonal_neighbours
+from lumitip.processing import Processor
+from published_processing import published
+
+Frames = NDArray[np.uint8]
+Pose = tuple[tuple[float, float], float, float]
+PUBLISHED = (5, 4, 5, 4, 5, 4, 5)
+STARTS = (4, 8)  # with eight the published fit finds the best corner in every frame
+SHAPES = ("edge", "corner", "cable")
+CELLS = (32, 128, 512, 2048)
+LIMIT_US, LIMIT_RATIO, LIMIT_BATCH = 100.0, 100.0, 100_000.0
+
+
+def layout_of(columns: Sequence[int], pitch_mm: float) -> Layout:
+    """A layout whose wiring does not matter here."""
+    grid = hexagonal_grid(columns, pitch_mm)
+    index = np.arange(grid.x_mm.size)
+    return Layout(
+        grid.x_mm, grid.y_mm, grid.column, grid.row, hexagonal_neighbours(columns),
+        index // 8, index % 8, np.array([f"A{i}" for i in index // 8]), pitch_mm,
+        Optics(2.5, "hexagon", 0.9, 0.9, 1.0, 2.0, 1.41, 0.1, 75e3, 3.3),
+    )  # fmt: skip
+
+
+def frames_of(layout: Layout, shape: str, count: int) -> tuple[Frames, list[Pose]]:
+    """Frames of random poses with two counts of noise: vertex, direction and opening of each."""
+    chance = np.random.default_rng(len(layout) + SHAPES.index(shape))
+    reach_mm = float(min(np.ptp(layout.x_mm), np.ptp(layout.y_mm)))
+    rows, poses = [], []
+    for _ in range(count):
+        x_mm, y_mm = chance.uniform(-0.15, 0.15, 2) * reach_mm
+        angle, half = chance.uniform(-np.pi, np.pi), np.radians(chance.uniform(30.0, 60.0))
+        x, y = layout.x_mm - x_mm, layout.y_mm - y_mm
+        up, side = y * np.cos(angle) - x * np.sin(angle), x * np.cos(angle) + y * np.sin(angle)
+        outside_mm = {
+            "edge": up,
+            "corner": np.abs(side) * np.cos(half) + up * np.sin(half),
+            "cable": np.abs(up) - 0.15 * reach_mm,
+        }[shape]
+        light = 127.5 + 127.5 * np.tanh(outside_mm / 1.5)
+        rows.append(np.clip(light + chance.normal(0.0, 2.0, x.size), 1.0, 255.0))
+        poses.append(((x_mm, y_mm), angle, 2.0 * float(half)))
+    return np.array(rows).astype(np.uint8), poses
+
+
+def each_us(work: Callable[[Any], object], items: Sequence[Any]) -> float:
+    """Median processor time of `work` on one of the items (µs)."""
+    times = []
+    for item in items:
+        begun = time.thread_time()
+        work(item)
+        times.append(time.thread_time() - begun)
+    return 1e6 * median(times)
+
+
+def per_frame() -> tuple[float, float]:
+    """Full pipeline against the published way: the slowest median (µs) and the least ratio."""
+    layout = layout_of(PUBLISHED, 6.0)
+    process = Processor(layout)
+    print(f"{'32 cells':<10}{'µs':>8}{'published, µs':>24}{'times faster':>24}")
+    print(f"{'':<18}" + 2 * f"{'4 starts':>14}{'8 starts':>10}")
+    slowest, least = 0.0, np.inf
+    for shape in SHAPES:
+        frames, _ = frames_of(layout, shape, 300)
+        each_us(process, frames[:50])
+        mine = each_us(process, list(np.tile(frames, (5, 1))))
+        lists = [row.tolist() for row in frames[:30]]
+        theirs = [each_us(lambda v, n=n: published(v, layout, n), lists) for n in STARTS]
+        print(
+            f"{shape:<10}{mine:>8.1f}{theirs[0]:>14,.0f}{theirs[1]:>10,.0f}"
+            f"{theirs[0] / mine:>14.0f}{theirs[1] / mine:>10.0f}"
+        )
+        slowest, least = max(slowest, mine), min(least, theirs[-1] / mine)
+    return slowest, least
+
+
+def corners() -> None:
+    """How far both ways miss the vertex and the opening of the same corners."""
+    layout = layout_of(PUBLISHED, 6.0)
+    process = Processor(layout)
+    frames, poses = frames_of(layout, "corner", 100)
+    misses: dict[str, list[tuple[float, float]]] = {"here": [], "published": []}
+    untold = 0
+    for frame, (vertex_mm, _, opening) in zip(frames, poses, strict=True):
+        corner = process(frame).corner
+        if corner is None:
+            untold += 1
+        else:
+            miss_mm = float(np.hypot(*np.subtract(corner.vertex_mm, vertex_mm)))
+            misses["here"].append((miss_mm, abs(corner.opening_deg - np.degrees(opening))))
+        x_mm, y_mm, one, other = published(frame.tolist(), layout, STARTS[-1]).corner
+        turn = abs((other - one + np.pi) % (2.0 * np.pi) - np.pi)
+        miss_mm = float(np.hypot(x_mm - vertex_mm[0], y_mm - vertex_mm[1]))
+        misses["published"].append((miss_mm, float(np.degrees(abs(turn - opening)))))
+    print("\nmedian miss of 100 corners  vertex mm  opening deg")
+    for name, told in misses.items():
+        vertex, angle = np.median(told, axis=0)
+        print(f"{name:<28}{vertex:>9.2f}{angle:>13.1f}")
+    print(f"not called a corner here: {untold}")
+
+
+def batches() -> float:
+    """Frames a second for thresholds, centres and markers at 32 cells."""
+    layout = layout_of(PUBLISHED, 6.0)
+    frames = np.concatenate([frames_of(layout, shape, 1500)[0] for shape in SHAPES])
+    process = Processor(layout)
+    spent = min(each_us(process.batch, [frames]) for _ in range(7))
+    rate = 1e6 * len(frames) / spent
+    print(f"\nbatch of {len(frames)} frames: {rate:,.0f} frames/s")
+    return rate
+
+
+def growth() -> None:
+    """Time against the number of cells, over the same area; corners take longest."""
+    print(f"\n{'cells':>6}{'markers':>9}{'frame µs':>10}{'a cell':>8}{'batch µs':>10}{'a cell':>8}")
+    for cells in CELLS:
+        columns = columns_for(cells)
+        layout = layout_of(columns, 6.0 * float(np.sqrt(32.0 / cells)))
+        frames, _ = frames_of(layout, "corner", 200)
+        process = Processor(layout)
+        each_us(process, frames[:20])
+        alone = each_us(process, list(np.tile(frames, (3, 1))))
+        many = min(each_us(process.batch, [frames]) for _ in range(7)) / len(frames)
+        markers = float(process.batch(frames).counts.mean())
+        count = len(layout)
+        print(
+            f"{count:>6}{markers:>9.1f}{alone:>10.1f}{alone / count:>8.3f}"
+            f"{many:>10.2f}{many / count:>8.4f}"
+        )
+
+
+def on_one_core() -> None:
+    """Keep this process, started anew if need be, on one core with one thread of each library.
+
+    Libraries read these variables when they load, which they have; idle threads of theirs on the
+    same core would make the published way look slower than it is.
+    """
+    single = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+    if not single.items() <= os.environ.items():
+        os.execve(sys.executable, [sys.executable, *sys.argv], {**os.environ, **single})
+    if hasattr(os, "sched_setaffinity"):
+        os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
+
+
+if __name__ == "__main__":
+    on_one_core()
+    warnings.simplefilter("ignore")  # the published fits warn where they find no covariance
+    slowest_us, ratio = per_frame()
+    corners()
+    per_second = batches()
+    growth()
+    print(
+        f"\nslowest shape {slowest_us:.0f} µs a frame (goal {LIMIT_US:.0f}), at least {ratio:.0f} "
+        f"times faster than published (goal {LIMIT_RATIO:.0f}); "
+        f"batch {per_second:,.0f} frames/s (goal {LIMIT_BATCH:,.0f})"
+    )

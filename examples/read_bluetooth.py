@@ -1,0 +1,25 @@
+"""A Bluetooth fingertip in a control loop: the freshest frame at each step, and what happens.
+
+python examples/read_bluetooth.py ble://Lumitip outputs/layout.json
+"""
+
+import sys
+import time
+
+from lumitip import Fingertip, LinkEvent, LumitipError
+
+
+def told(event: LinkEvent) -> None:
+    """Called on the link's thread: connected, lost, connected again, …"""
+    print(f"{event.kind}: {event.detail}")
+
+
+try:
+    with Fingertip.open(sys.argv[1], layout=sys.argv[2], on_event=told) as tip:
+        for _ in range(50):
+            frame = tip.latest()
+            if frame is not None and time.monotonic() - frame.t < 0.5:
+                print(f"{frame.seq:6}  {(frame.values < 128).sum():2} cells covered")
+            time.sleep(0.02)
+except LumitipError as error:  # each says what to do: not found, several of that name, MTU, …
+    sys.exit(str(error))

@@ -1,0 +1,29 @@
+"""Follow the edge of a simulated cloth in real time and stop at its corner, in the live view.
+
+python examples/trace_cloth.py 80 8642     speed in mm/s; port of the live view, without it none
+"""
+
+import sys
+
+from lumitip.control import LineLaw, Tracer
+from lumitip.estimation import PoseEstimator
+from lumitip.links.twin import published_layout
+from lumitip.tasks import Settings, Task
+from lumitip.tasks.live import LiveTask
+
+speed, port = float(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else None
+layout = published_layout()
+task = Task(layout, Settings("cloth", corner=True, latency=0))
+world = LiveTask(task, "twin://trace-cloth", seed=1)
+estimator = PoseEstimator(layout, tracking=True)
+trace = Tracer(LineLaw(speed, gain_per_s=8.0, turn_per_s=10.0), corner_at_mm=0.0)
+estimator(world.first_values())  # makes its tables before time runs
+with world.open() as tip, world.shown(tip, port):
+    for frame in tip.frames(timeout=2.0):
+        if frame is not tip.latest():
+            continue  # a newer one is here already
+        world.command(trace(estimator(frame.values), world.period_s))
+m = world.metrics()
+print(f"{m.reason} after {m.travelled_mm:.0f} mm in {m.seconds:.1f} s")
+print(f"lateral {m.lateral_rms_mm:.2f} mm rms, angle {m.angle_rms_deg:.1f}° rms (simulated)")
+print(f"stopped {m.corner_error_mm:+.2f} mm from the corner")

@@ -1,0 +1,174 @@
+"""The circuit of a board: its parts, and the net of each of their pads.
+
+supply ── R1 ──►|── … ──►|── GND            one string of LEDs; more beside it
+
+3V3 ── R1 ──┬── A0                          one multiplexer with its detectors
+           U1 ──┬── Q1 ──▷ GND
+                └── …  (S0, S1, S2 choose)
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from lumitip_fab.boards import footprints
+from lumitip_fab.boards.model import Component, Footprint, Net, NetClass, Side
+from lumitip_fab.design import Chip, Finger, Packages, Reading, Rules, Wiring
+
+GROUND = "GND"
+SIGNAL, SUPPLY = "signal", "supply"
+ROOMY_MM = 0.7
+"""Gap between parts at cells from which there is room for lines along their sides."""
+
+
+@dataclass(frozen=True)
+class Circuit:
+    """Parts without a place yet, and nets."""
+
+    components: tuple[Component, ...]
+    nets: tuple[Net, ...]
+    classes: tuple[NetClass, NetClass]
+
+
+def circuit(
+    reading: Reading, finger: Finger, wiring: Wiring, packages: Packages, rules: Rules
+) -> Circuit:
+    """The circuit of one board."""
+    of_finger = _emitter if finger.name == "emitter" else _receiver
+    supply = finger.connector.signals[1]
+    parts = (
+        *of_finger(reading, finger, wiring, packages, rules, supply),
+        *_bare_copper(finger, rules),
+    )
+    names = dict.fromkeys((GROUND, supply, *(net for part in parts for _, net in part.nets)))
+    return Circuit(
+        components=parts,
+        nets=tuple(Net(n, SUPPLY if n in (GROUND, supply) else SIGNAL) for n in names),
+        classes=(_net_class(SIGNAL, rules.track_mm, rules),
+                 _net_class(SUPPLY, rules.supply_track_mm, rules)),
+    )  # fmt: skip
+
+
+def _emitter(
+    _: Reading, finger: Finger, wiring: Wiring, packages: Packages, rules: Rules, supply: str
+) -> Iterator[Component]:
+    led, resistor = packages.led, packages.string_resistor
+    shape = footprints.chip(led, "LEDC", rules, _roomy(finger, led))
+    nets_of = {}
+    for number, string in enumerate(wiring.strings, start=1):
+        links = [f"S{number}_{k}" for k in range(len(string))] + [GROUND]
+        for place, cell in enumerate(string):
+            nets_of[cell] = _polar(led, anode=links[place], cathode=links[place + 1])
+    for cell in sorted(nets_of):
+        yield _part(f"D{cell + 1}", led.value, led, "led", shape, nets_of[cell])
+    shape = footprints.chip(resistor, "RESC", rules)
+    for number, ohm in enumerate(wiring.resistor_ohm, start=1):
+        nets = ("1", supply), ("2", f"S{number}_0")
+        yield _resistor(f"R{number}", ohm, resistor, shape, nets)
+
+
+def _receiver(
+    reading: Reading, finger: Finger, wiring: Wiring, packages: Packages, rules: Rules, supply: str
+) -> Iterator[Component]:
+    detector, mux = packages.photodetector, packages.multiplexer
+    shape = footprints.chip(detector, "PTRC", rules, _roomy(finger, detector))
+    for cell in reading.cells:
+        ref = f"Q{cell.index + 1}"
+        nets = _polar(detector, collector=ref, emitter=GROUND)
+        yield _part(ref, detector.value, detector, "photodetector", shape, nets)
+    shape = footprints.multiplexer(mux, rules)
+    shared = {str(lead): f"S{i}" for i, lead in enumerate(mux.select)}
+    shared |= {str(mux.supply): supply, str(mux.ground): GROUND, str(mux.enable): GROUND}
+    shared |= {} if mux.negative is None else {str(mux.negative): GROUND}
+    for which, pin in enumerate(wiring.adc_pins):
+        leads = shared | {str(mux.output): pin}
+        leads |= {
+            str(mux.inputs[cell.channel]): f"Q{cell.index + 1}"
+            for cell in reading.cells
+            if cell.mux == which
+        }
+        # An input without a detector is tied to ground, so that nothing floats.
+        leads |= {str(lead): GROUND for lead in mux.inputs if str(lead) not in leads}
+        told = tuple(sorted(leads.items(), key=lambda item: int(item[0])))
+        yield Component(f"U{which + 1}", mux.value, mux.part, "multiplexer", shape, 0.0, 0.0, 0.0,
+                        "front", told, manufacturer=mux.manufacturer)  # fmt: skip
+    pull_up = footprints.chip(packages.pull_up, "RESC", rules)
+    bypass = footprints.chip(packages.capacitor, "CAPC", rules)
+    for which, pin in enumerate(wiring.adc_pins, start=1):
+        nets = ("1", supply), ("2", pin)
+        yield _resistor(f"R{which}", wiring.pull_up_ohm, packages.pull_up, pull_up, nets)
+        nets = ("1", supply), ("2", GROUND)
+        chip = packages.capacitor
+        yield _part(f"C{which}", chip.value, chip, "capacitor", bypass, nets)
+
+
+def _bare_copper(finger: Finger, rules: Rules) -> Iterator[Component]:
+    """Connector, test points and fiducials: no part is bought for them."""
+    signals = finger.connector.signals
+    shape = footprints.wire_pads(finger.connector, rules)
+    nets = tuple((str(i), signal) for i, signal in enumerate(signals, start=1))
+    yield _copper("J1", f"{len(signals)} wires", "connector", shape, nets)
+    shape = footprints.test_point(rules)
+    for i, signal in enumerate(signals, start=1):
+        yield _copper(f"TP{i}", signal, "test point", shape, (("1", signal),), "back")
+    for i in range(1, 4):
+        yield _copper(f"FID{i}", "Fiducial", "fiducial", footprints.fiducial(), ())
+
+
+def resistor_code(ohm: float) -> str:
+    """The value as printed on drawings and in order numbers: 150R, 4K99, 75K, 1M."""
+    power, letter = next((p, c) for p, c in ((6, "M"), (3, "K"), (0, "R")) if ohm >= 10**p or not p)
+    digits = f"{ohm / 10**power:.4g}"
+    return digits.replace(".", letter) if "." in digits else digits + letter
+
+
+def _resistor(
+    ref: str, ohm: float, chip: Chip, shape: Footprint, nets: tuple[tuple[str, str], ...]
+) -> Component:
+    code = resistor_code(ohm)
+    return Component(ref, code, chip.part.replace("{code}", code), "resistor", shape, 0.0, 0.0, 0.0,
+                     "front", nets, manufacturer=chip.manufacturer)  # fmt: skip
+
+
+def _part(
+    ref: str,
+    value: str,
+    chip: Chip,
+    kind: str,
+    shape: Footprint,
+    nets: tuple[tuple[str, str], ...],
+) -> Component:
+    return Component(ref, value, chip.part, kind, shape, 0.0, 0.0, 0.0, "front", nets,
+                     manufacturer=chip.manufacturer)  # fmt: skip
+
+
+def _copper(
+    ref: str,
+    value: str,
+    kind: str,
+    shape: Footprint,
+    nets: tuple[tuple[str, str], ...],
+    side: Side = "front",
+) -> Component:
+    return Component(ref, value, "", kind, shape, 0.0, 0.0, 0.0, side, nets)
+
+
+def _polar(chip: Chip, **terminals: str) -> tuple[tuple[str, str], ...]:
+    """Nets of a part with polarity: pad 1 is the terminal that its mark shows."""
+    (other,) = (name for name in terminals if name != chip.marked)
+    return ("1", terminals[chip.marked]), ("2", terminals[other])
+
+
+def _roomy(finger: Finger, chip: Chip) -> bool:
+    """Whether the parts at the cells are so far apart that lines fit along their sides."""
+    along = max(chip.pad_pitch_mm + chip.pad_mm[0], chip.body_mm[0])
+    across = max(chip.pad_mm[1], chip.body_mm[1])
+    size = (across, along) if finger.turned else (along, across)
+    first = finger.cells[0]
+    gaps = (
+        max(abs(x - first[0]) - size[0], abs(y - first[1]) - size[1]) for x, y in finger.cells[1:]
+    )
+    return min(gaps, default=ROOMY_MM) >= ROOMY_MM
+
+
+def _net_class(name: str, track_mm: float, rules: Rules) -> NetClass:
+    return NetClass(name, track_mm, rules.copper_gap_mm, rules.via_mm, rules.via_drill_mm)

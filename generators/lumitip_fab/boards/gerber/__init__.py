@@ -1,0 +1,1 @@
+"""What a board house makes a board from: Gerber X2 layers and Excellon drills."""

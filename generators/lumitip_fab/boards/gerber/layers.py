@@ -1,0 +1,106 @@
+"""The Gerber layers of a board."""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from gerbonara.apertures import CircleAperture
+from gerbonara.cam import FileSettings
+from gerbonara.graphic_objects import Arc, GraphicObject
+from gerbonara.rs274x import GerberFile
+from gerbonara.utils import MM
+
+from lumitip_fab.boards.edges import EDGE_MM, corners, straight_edges
+from lumitip_fab.boards.geometry import PlacedPad, placed_pads
+from lumitip_fab.boards.gerber import objects
+from lumitip_fab.boards.model import SIDES, BoardModel, Placement, Side
+from lumitip_fab.boards.openings import MASK_MM, opening_mm
+from lumitip_fab.boards.silk import silkscreen
+
+_FORMAT = (4, 6)  # digits before and after the point: to 1 nm
+
+
+@dataclass(frozen=True)
+class Layer:
+    """A layer by its key in the table of fabs, such as `front copper`, and its file."""
+
+    key: str
+    data: bytes
+
+
+def gerber_layers(model: BoardModel) -> Iterator[Layer]:
+    """Copper, mask, paste and silkscreen of both sides, and the outline."""
+    board = model.placement
+    pads = [pad for part in board.components for pad in placed_pads(part)]
+    for side in SIDES:
+        number, place = ("L1", "Top") if side == "front" else ("L2", "Bot")
+        here = [pad for pad in pads if side in pad.sides]
+        yield _layer(f"{side} copper", _copper(model, side, here), "Copper", number, place)
+        yield _layer(f"{side} mask", _mask(board, here), "Soldermask", place, polarity="Negative")
+        yield _layer(f"{side} paste", _paste(here), "Paste", place)
+        yield _layer(f"{side} silk", _silk(board, side), "Legend", place)
+    yield _layer("outline", _outline(board), "Profile", "NP")
+
+
+def _copper(model: BoardModel, side: Side, pads: list[PlacedPad]) -> Iterator[GraphicObject]:
+    for fill in model.fills:
+        if fill.side == side:
+            yield objects.net(fill.net)
+            yield objects.region(fill.area)
+    for track in model.routing.tracks:
+        if track.side == side:
+            yield objects.net(track.net)
+            yield objects.line(track.start, track.end, track.width_mm)
+    for via in model.routing.vias:
+        yield objects.net(via.net)
+        yield objects.dot((via.x_mm, via.y_mm), via.diameter_mm)
+    for pad in pads:
+        yield objects.pad_of(pad)
+        yield objects.pad(pad)
+
+
+def _mask(board: Placement, pads: list[PlacedPad]) -> Iterator[GraphicObject]:
+    """What the mask leaves open: a negative layer draws its openings."""
+    yield from (objects.pad(pad, opening_mm(pad.component)) for pad in pads)
+    yield from (objects.dot(hole, board.hole_mm + 2 * MASK_MM) for hole in board.holes)
+
+
+def _paste(pads: list[PlacedPad]) -> Iterator[GraphicObject]:
+    yield from (objects.pad(p) for p in pads if p.pad.paste and not p.pad.drill_mm)
+
+
+def _silk(board: Placement, side: Side) -> Iterator[GraphicObject]:
+    for where, stroke in silkscreen(board):
+        if where == side:
+            yield from objects.lines(stroke)
+
+
+def _outline(board: Placement) -> Iterator[GraphicObject]:
+    for start, end in straight_edges(board):
+        yield objects.line(start, end, EDGE_MM)
+    for bow in corners(board):
+        centre = bow.centre[0] - bow.start[0], bow.centre[1] - bow.start[1]
+        yield Arc(
+            *bow.start, *bow.end, *centre, clockwise=False,
+            aperture=CircleAperture(EDGE_MM, unit=MM), unit=MM, polarity_dark=True,
+        )  # fmt: skip
+
+
+def _layer(
+    key: str, drawn: Iterable[GraphicObject], *function: str, polarity: str = "Positive"
+) -> Layer:
+    attributes = {
+        ".GenerationSoftware": ("Lumitip", "lumitip-fab"),
+        ".SameCoordinates": ("Sensor",),
+        ".FileFunction": function,
+        ".FilePolarity": (polarity,),
+    }
+    if key == "outline":
+        del attributes[".FilePolarity"]  # the profile has none
+    made = GerberFile(objects=list(drawn), file_attrs=attributes)
+    settings = FileSettings(unit=MM, notation="absolute", number_format=_FORMAT)
+    return Layer(key, _mended(made.write_to_bytes(settings)))
+
+
+def _mended(data: bytes) -> bytes:
+    """Gerbonara 1.5 leaves out one end of a command and writes another twice."""
+    return data.replace(b"\nG75\n", b"\nG75*\n").replace(b"G01**", b"G01*") + b"\n"

@@ -1,0 +1,184 @@
+"""What a board is, between its circuit and its files. Types only.
+
+Lengths are in mm. Places are in the finger's own sensor frame, seen from the front with y up,
+whatever side a part is on; only the writers of files turn the page (`lumitip_fab.frames`).
+"""
+
+from dataclasses import dataclass
+from typing import Literal
+
+from shapely import Polygon
+
+from lumitip_fab.design import Box, Point
+
+Side = Literal["front", "back"]
+SIDES: tuple[Side, Side] = ("front", "back")
+
+
+@dataclass(frozen=True)
+class Pad:
+    """A pad in its footprint's frame: seen from the side that the part is on, y up."""
+
+    number: str
+    x_mm: float
+    y_mm: float
+    width_mm: float
+    height_mm: float
+    shape: Literal["rect", "circle"] = "rect"
+    drill_mm: float = 0.0
+    """Diameter of the plated hole; 0 for a surface-mount pad."""
+    paste: bool = True
+    """Whether solder paste is printed on it."""
+
+
+@dataclass(frozen=True)
+class Stroke:
+    """A drawn polyline."""
+
+    points: tuple[Point, ...]
+    width_mm: float = 0.12
+
+
+@dataclass(frozen=True)
+class Text:
+    """A centred line of text."""
+
+    text: str
+    x_mm: float
+    y_mm: float
+    height_mm: float = 0.8
+    width_mm: float = 0.12
+    """Stroke."""
+    angle_deg: float = 0.0
+
+
+@dataclass(frozen=True)
+class Footprint:
+    """A land pattern with its drawing, in its own frame."""
+
+    name: str
+    """By IPC-7351, such as `LEDC1608X60N`."""
+    pads: tuple[Pad, ...]
+    body: Box
+    courtyard: Box
+    height_mm: float
+    silk: tuple[Stroke, ...] = ()
+    """Outline and polarity mark."""
+
+
+@dataclass(frozen=True)
+class Component:
+    """A part in its place."""
+
+    ref: str
+    value: str
+    part: str
+    """What to order; empty of bare copper: wire pads, test points and fiducials."""
+    kind: str
+    """`"led"`, `"photodetector"`, `"multiplexer"`, `"resistor"`, `"capacitor"`, `"connector"`,
+    `"test point"` or `"fiducial"`."""
+    footprint: Footprint
+    x_mm: float
+    y_mm: float
+    angle_deg: float
+    """Counter-clockwise, seen from the front."""
+    side: Side
+    nets: tuple[tuple[str, str], ...]
+    """Net of each connected pad: `(("1", "GND"), ("2", "Q1"))`."""
+    ref_text: Text | None = None
+    """Reference on the silkscreen, in the footprint's frame; none where there is no room."""
+    manufacturer: str = ""
+
+
+@dataclass(frozen=True)
+class NetClass:
+    """Rules that a kind of net is routed by."""
+
+    name: str
+    track_mm: float
+    clearance_mm: float
+    via_mm: float
+    via_drill_mm: float
+
+
+@dataclass(frozen=True)
+class Net:
+    """A net and the name of its class."""
+
+    name: str
+    net_class: str
+
+
+@dataclass(frozen=True)
+class Placement:
+    """A board before it has copper."""
+
+    finger: str
+    name: str
+    revision: str
+    design_hash: str
+    outline: Box
+    corner_mm: float
+    """Radius of the outline's corners."""
+    holes: tuple[Point, ...]
+    """Centres of the unplated locating holes."""
+    hole_mm: float
+    edge_clearance_mm: float
+    """Copper to the board's edge and to unplated holes."""
+    components: tuple[Component, ...]
+    nets: tuple[Net, ...]
+    classes: tuple[NetClass, ...]
+    ground: str
+    """Net that the pour belongs to."""
+    silk: tuple[tuple[Side, Stroke], ...]
+    texts: tuple[tuple[Side, Text], ...]
+    """Silkscreen beyond the components' own."""
+
+
+@dataclass(frozen=True)
+class Track:
+    """A straight piece of track."""
+
+    net: str
+    side: Side
+    start: Point
+    end: Point
+    width_mm: float
+
+
+@dataclass(frozen=True)
+class Via:
+    """A plated hole from front to back."""
+
+    net: str
+    x_mm: float
+    y_mm: float
+    diameter_mm: float
+    drill_mm: float
+
+
+@dataclass(frozen=True)
+class Fill:
+    """A filled part of the pour: an outline, with holes, of copper as it will be."""
+
+    net: str
+    side: Side
+    area: Polygon
+
+
+@dataclass(frozen=True)
+class Routing:
+    """Tracks and vias, with what it took to find them."""
+
+    tracks: tuple[Track, ...]
+    vias: tuple[Via, ...]
+    iterations: int
+
+
+@dataclass(frozen=True)
+class BoardModel:
+    """A finished board: everything that its files say."""
+
+    placement: Placement
+    routing: Routing
+    fills: tuple[Fill, ...]

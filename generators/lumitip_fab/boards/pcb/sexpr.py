@@ -1,0 +1,67 @@
+"""S-expressions as KiCad writes them."""
+
+from collections.abc import Iterator
+
+Value = str | int | float | tuple["Value", ...]
+Node = tuple[Value, ...]
+"""`("at", 1.0, 2.0)`: the first is the keyword; a `Quoted` is written between quotes."""
+
+FORMAT = 20211014
+"""Of the boards and footprints that KiCad 6 writes, which 6 to 10 open."""
+_WIDTH = 160
+
+
+class Quoted(str):
+    """Text that is written between quotes."""
+
+    __slots__ = ()
+
+
+def number(value: float) -> str:
+    """A length or an angle to 1 nm, without needless zeros and without minus zero."""
+    told = f"{value:.6f}".rstrip("0").rstrip(".")
+    return "0" if told in {"-0", ""} else told
+
+
+def written(node: Node) -> str:
+    """A node as text that ends with a line feed."""
+    return "\n".join(_lines(node, 0)) + "\n"
+
+
+def _lines(node: Node, depth: int) -> Iterator[str]:
+    """One line where it fits; else the keyword with its plain values, then a line per node."""
+    indent = "  " * depth
+    flat = _flat(node)
+    if len(indent) + len(flat) <= _WIDTH or not any(isinstance(v, tuple) for v in node):
+        yield indent + flat
+        return
+    plain = 0
+    while plain < len(node) and not isinstance(node[plain], tuple):
+        plain += 1
+    yield indent + "(" + " ".join(_flat(v) for v in node[:plain])
+    packed = ""
+    for value in node[plain:]:
+        told = _flat(value)
+        if node[0] == "pts":  # points are many and short: as many on a line as fit
+            if packed and len(indent) + len(packed) + len(told) + 3 > _WIDTH:
+                yield f"{indent}  {packed}"
+                packed = ""
+            packed = f"{packed} {told}" if packed else told
+        elif isinstance(value, tuple):
+            yield from _lines(value, depth + 1)
+        else:
+            yield f"{indent}  {told}"
+    if packed:
+        yield f"{indent}  {packed}"
+    yield indent + ")"
+
+
+def _flat(value: Value) -> str:
+    if isinstance(value, tuple):
+        return "(" + " ".join(_flat(v) for v in value) + ")"
+    if isinstance(value, Quoted):
+        escaped = value.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
+        return f'"{escaped}"'
+    if isinstance(value, bool):
+        raise TypeError("write yes or no: KiCad's files know no other truth values")
+    return number(value) if isinstance(value, int | float) else value

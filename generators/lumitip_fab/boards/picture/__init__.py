@@ -1,0 +1,1 @@
+"""Pictures of a finished board, as it comes from the board house."""

@@ -1,0 +1,189 @@
+"""Where the parts of a board are: at the places that the design gives, and beside them."""
+
+import dataclasses
+
+from lumitip_fab.boards import spots
+from lumitip_fab.boards.circuit import GROUND, circuit
+from lumitip_fab.boards.geometry import courtyard, pad_at
+from lumitip_fab.boards.legend import with_legend
+from lumitip_fab.boards.model import Component, Placement, Side
+from lumitip_fab.boards.polarity import string_angles
+from lumitip_fab.design import (
+    Board,
+    Box,
+    Finger,
+    Multiplexer,
+    Packages,
+    Part,
+    Point,
+    Reading,
+    Rules,
+    Title,
+    Wiring,
+)
+from lumitip_fab.errors import BuildError
+
+CORNER_MM = 0.5
+PASSIVE_GAP_MM = 0.6
+"""Multiplexer to the capacitor and pull-up beside it, where there is room."""
+_NOISE_MM = 1e-6
+
+
+def place(
+    title: Title,
+    reading: Reading,
+    board: Board,
+    finger: Finger,
+    wiring: Wiring,
+    packages: Packages,
+    rules: Rules,
+) -> Placement:
+    """A board with every part in its place.
+
+    Raises:
+        BuildError: if a part has no room, with the numbers.
+    """
+    plan = circuit(reading, finger, wiring, packages, rules)
+    parts = {part.ref: part for part in plan.components}
+    given = {part.name: part for part in finger.parts}
+    for ref, part in given.items():
+        parts[ref] = _at(parts[ref], (part.x_mm, part.y_mm), side=_side(part))
+    if finger.name == "emitter":
+        _emitter(parts, finger, wiring, packages)
+    else:
+        _receiver(parts, given, finger, wiring, packages, rules)
+    _connector(parts, finger, rules)
+    obstacles = [courtyard(part) for ref, part in parts.items() if not ref.startswith("FID")]
+    mark = parts["FID1"].footprint
+    corners = spots.fiducials(board, obstacles, mark, finger.holes, rules.edge_gap_mm)
+    for ref, at in zip(("FID1", "FID2", "FID3"), corners, strict=True):
+        parts[ref] = _at(parts[ref], at)
+    _refuse_overlaps(finger.name, tuple(parts.values()), board)
+    bare = Placement(
+        finger=finger.name,
+        name=title.name,
+        revision=title.revision,
+        design_hash=reading.design_hash,
+        outline=board.box,
+        corner_mm=CORNER_MM,
+        holes=finger.holes,
+        hole_mm=board.hole_mm,
+        edge_clearance_mm=rules.edge_gap_mm,
+        components=tuple(parts.values()),
+        nets=plan.nets,
+        classes=plan.classes,
+        ground=GROUND,
+        silk=(),
+        texts=(),
+    )
+    marked = packages.led if finger.name == "emitter" else packages.photodetector
+    return with_legend(bare, finger, reading.pitch_mm, marked.marked)
+
+
+def _emitter(
+    parts: dict[str, Component], finger: Finger, wiring: Wiring, packages: Packages
+) -> None:
+    """Turn resistors and LEDs so that neighbours of a string face each other."""
+    anode = "1" if packages.led.marked == "anode" else "2"
+    for ref in [ref for ref in parts if ref.startswith("R")]:
+        turns = [dataclasses.replace(parts[ref], angle_deg=angle) for angle in (90.0, 270.0)]
+        parts[ref] = min(turns, key=lambda part: pad_at(part, "1")[1])  # supply to the connector
+    for number, string in enumerate(wiring.strings, start=1):
+        chain = [parts[f"D{cell + 1}"] for cell in string]
+        start = pad_at(parts[f"R{number}"], "2")
+        choices = (90.0, 270.0) if finger.turned else (0.0, 180.0)
+        angles = string_angles(chain, start, anode, choices)
+        for part, angle in zip(chain, angles, strict=True):
+            parts[part.ref] = dataclasses.replace(part, angle_deg=angle)
+
+
+def _receiver(
+    parts: dict[str, Component],
+    given: dict[str, Part],
+    finger: Finger,
+    wiring: Wiring,
+    packages: Packages,
+    rules: Rules,
+) -> None:
+    """Turn detectors with their nets to the left or to the connector; passives by each mux."""
+    towards = 90.0 if finger.turned else 0.0
+    if packages.photodetector.marked != "collector":
+        towards += 180.0
+    for ref in [ref for ref in parts if ref.startswith("Q")]:
+        parts[ref] = dataclasses.replace(parts[ref], angle_deg=towards)
+    zone = next(zone.box for zone in finger.zones if zone.name == "parts")
+    muxes = [given[f"U{i + 1}"] for i in range(wiring.muxes)]
+    for mux in muxes:
+        before = [u.box.x_max_mm for u in muxes if u.y_mm == mux.y_mm and u.x_mm < mux.x_mm]
+        left = max(before, default=zone.x_min_mm - rules.part_gap_mm)
+        _beside(parts, mux, mux.box.x_min_mm - left, packages.multiplexer, rules)
+
+
+def _beside(
+    parts: dict[str, Component], mux: Part, room_mm: float, leads: Multiplexer, rules: Rules
+) -> None:
+    """Capacitor and pull-up to the left of a multiplexer, each at the lead that it serves."""
+    for letter, lead, outward in (("C", leads.supply, "1"), ("R", leads.output, "2")):
+        part = parts[letter + mux.name[1:]]
+        yard = part.footprint.courtyard.grown(-rules.part_gap_mm / 2)
+        spare = room_mm - yard.length_mm
+        if spare < 2 * rules.part_gap_mm - _NOISE_MM:
+            raise BuildError(
+                f"{part.ref} needs {yard.length_mm + 2 * rules.part_gap_mm:.2f} mm beside "
+                f"{mux.name}, {room_mm:.2f} mm is there: widen the board (board.side_margin_mm) "
+                "or choose a smaller package"
+            )
+        gap = min(PASSIVE_GAP_MM, spare / 2)
+        up = lead > leads.leads // 2
+        reach = (mux.size_y_mm - yard.width_mm) / 2
+        at = (mux.box.x_min_mm - gap - yard.length_mm / 2, mux.y_mm + (reach if up else -reach))
+        parts[part.ref] = _at(part, at, angle_deg=270.0 if up == (outward == "1") else 90.0)
+
+
+def _connector(parts: dict[str, Component], finger: Finger, rules: Rules) -> None:
+    """The wire pads where the design has them, and a test point on the back behind each."""
+    pads = finger.connector.pads
+    parts["J1"] = _at(parts["J1"], ((pads[0][0] + pads[-1][0]) / 2, pads[0][1]))
+    for i, (x, y) in enumerate(pads, start=1):
+        point = parts[f"TP{i}"]
+        apart = (finger.connector.pad_mm + point.footprint.body.length_mm) / 2 + rules.part_gap_mm
+        parts[point.ref] = _at(point, (x, y + apart))
+
+
+def _refuse_overlaps(name: str, parts: tuple[Component, ...], board: Board) -> None:
+    """Courtyards keep clear of each other and of the board's edge."""
+    for side in ("front", "back"):
+        yards = [(part.ref, courtyard(part)) for part in parts if part.side == side]
+        for (one, here), (other, there) in spots.overlaps(yards):
+            raise BuildError(
+                f"{name}: {one} at {_told(here)} and {other} at {_told(there)} overlap: give them "
+                "more room in [board], or choose smaller parts"
+            )
+        for ref, yard in yards:
+            if spots.beyond_mm(yard, board.box) > _NOISE_MM:
+                raise BuildError(
+                    f"{name}: {ref} at {_told(yard)} leaves the board at {_told(board.box)}: give "
+                    "it more room in [board], or choose smaller parts"
+                )
+
+
+def _told(box: Box) -> str:
+    return (
+        f"x {box.x_min_mm:.2f} to {box.x_max_mm:.2f}, y {box.y_min_mm:.2f} to {box.y_max_mm:.2f} mm"
+    )
+
+
+def _at(
+    part: Component, at: Point, angle_deg: float | None = None, side: Side | None = None
+) -> Component:
+    return dataclasses.replace(
+        part,
+        x_mm=round(at[0], 6) + 0.0,
+        y_mm=round(at[1], 6) + 0.0,
+        angle_deg=part.angle_deg if angle_deg is None else angle_deg,
+        side=side or part.side,
+    )
+
+
+def _side(part: Part) -> Side:
+    return "back" if part.side == "back" else "front"

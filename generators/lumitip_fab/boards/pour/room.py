@@ -1,0 +1,102 @@
+"""Where the pour may be, and where a via through it may be."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import shapely
+from shapely import Geometry
+
+from lumitip_fab.boards.geometry import placed_pads
+from lumitip_fab.boards.model import SIDES, Placement, Routing, Side
+from lumitip_fab.boards.openings import fiducial_margin_mm
+from lumitip_fab.boards.pour_rules import CLEARANCE_MM, MIN_WIDTH_MM
+from lumitip_fab.boards.verify import DRILL_WALL_MM
+
+MARGIN_MM = 0.005  # beyond clearances: curves become polygons, and places are rounded
+PAD_TO_VIA_MM = 0.1  # solder mask between a pad and a via
+_ARC = 12  # chords of a quarter circle
+
+
+@dataclass(frozen=True)
+class Thing:
+    """Copper of another net: all within a radius of its core."""
+
+    core: Geometry
+    radius_mm: float
+    sides: tuple[Side, ...]
+    gap_mm: float
+    """To the pour."""
+
+
+def room(placement: Placement, routing: Routing, side: Side) -> Geometry:
+    """Where the pour may be on a side, nowhere narrower than its least width."""
+    taken = [
+        t.core.buffer(t.radius_mm + t.gap_mm + MARGIN_MM, quad_segs=_ARC)
+        for t in _things(placement, routing)
+        if side in t.sides
+    ]
+    edge = placement.edge_clearance_mm + MARGIN_MM
+    free = shapely.difference(_board(placement, edge), shapely.union_all(taken))
+    return opened(free)
+
+
+def via_room(placement: Placement, routing: Routing, via_mm: float, drill_mm: float) -> Geometry:
+    """Where the middle of a via may be: off all pads and holes, in the room of both sides."""
+    radius = via_mm / 2 + MARGIN_MM
+    taken = [
+        t.core.buffer(t.radius_mm + t.gap_mm + radius, quad_segs=_ARC)
+        for t in _things(placement, routing)
+    ]
+    taken += [
+        pad.area.buffer(radius + PAD_TO_VIA_MM)
+        for component in placement.components
+        for pad in placed_pads(component)
+    ]
+    apart = drill_mm + DRILL_WALL_MM + MARGIN_MM
+    taken += [shapely.Point(v.x_mm, v.y_mm).buffer(apart) for v in routing.vias]
+    board = _board(placement, placement.edge_clearance_mm + radius)
+    return shapely.difference(board, shapely.union_all(taken))
+
+
+def opened(area: Geometry) -> Geometry:
+    """What is left of an area without all that is narrower than the pour may be."""
+    half = MIN_WIDTH_MM / 2
+    grown = area.buffer(-half, quad_segs=_ARC).buffer(half, quad_segs=_ARC)
+    return shapely.intersection(grown, area)
+
+
+def _things(placement: Placement, routing: Routing) -> Iterator[Thing]:
+    classes = {c.name: c.clearance_mm for c in placement.classes}
+    of_net = {n.name: classes[n.net_class] for n in placement.nets}
+    least = max(CLEARANCE_MM, of_net.get(placement.ground, 0.0))
+    for component in placement.components:
+        for pad in placed_pads(component):
+            if pad.net != placement.ground:
+                round_ = pad.pad.shape == "circle"
+                core = shapely.Point(pad.x_mm, pad.y_mm) if round_ else pad.area
+                radius = pad.pad.width_mm / 2 if round_ else 0.0
+                gap = max(least, of_net.get(pad.net, 0.0), fiducial_margin_mm(component))
+                yield Thing(core, radius, pad.sides, gap)
+    for track in routing.tracks:
+        if track.net != placement.ground:
+            line = shapely.LineString([track.start, track.end])
+            gap = max(least, of_net[track.net])
+            yield Thing(line, track.width_mm / 2, (track.side,), gap)
+    for via in routing.vias:
+        if via.net != placement.ground:
+            at = shapely.Point(via.x_mm, via.y_mm)
+            yield Thing(at, via.diameter_mm / 2, SIDES, max(least, of_net[via.net]))
+
+
+def _board(placement: Placement, edge_mm: float) -> Geometry:
+    """The board without a rim along its edge and its holes."""
+    box, corner = placement.outline, placement.corner_mm
+    inner = shapely.box(
+        box.x_min_mm + corner, box.y_min_mm + corner, box.x_max_mm - corner, box.y_max_mm - corner
+    )
+    whole = inner.buffer(corner - edge_mm, quad_segs=_ARC)
+    holes = [
+        shapely.Point(at).buffer(placement.hole_mm / 2 + edge_mm, quad_segs=2 * _ARC)
+        for at in placement.holes
+    ]
+    return shapely.difference(whole, shapely.union_all(holes))

@@ -1,0 +1,236 @@
+"""What the router spends its time in, compiled: the search, and the room that copper takes.
+
+All work on a grid of nodes `(layer, y, x)`, front and back. A node index is
+`(layer * height + y) * width + x`. Directions 0 to 7 go counter-clockwise from +x in steps of
+45°; `VIA` changes the layer. Plane 0 and 1 of a map are for tracks on a layer, plane 2 is for
+vias.
+"""
+
+from collections.abc import Callable
+from typing import Any, TypeVar, cast
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Ints = NDArray[np.int32]
+Shorts = NDArray[np.int16]
+Bytes = NDArray[np.uint8]
+Reals = NDArray[np.float32]
+
+VIA = 8
+SOURCE = 9
+BLOCKED = -1
+INSIDE_PAD = 0x100  # a node of the net where tracks may leave in any direction
+DX = np.array([1, 1, 0, -1, -1, -1, 0, 1], dtype=np.int32)
+DY = np.array([0, 1, 1, 1, 0, -1, -1, -1], dtype=np.int32)
+STEP = np.array([1.0, 2**0.5] * 4)
+
+_F = TypeVar("_F", bound=Callable[..., Any])
+
+
+def kernel(function: _F) -> _F:
+    """Compile on first use, and keep the machine code beside the source for later runs."""
+    return cast(_F, njit(cache=True)(function))
+
+
+@kernel
+def _sift_up(keys: NDArray[np.float64], nodes: Ints, at: int) -> None:
+    key, node = keys[at], nodes[at]
+    while at > 0:
+        above = (at - 1) >> 1
+        if keys[above] <= key:
+            break
+        keys[at], nodes[at] = keys[above], nodes[above]
+        at = above
+    keys[at], nodes[at] = key, node
+
+
+@kernel
+def _sift_down(keys: NDArray[np.float64], nodes: Ints, size: int) -> None:
+    key, node, at = keys[0], nodes[0], 0
+    while True:
+        below = 2 * at + 1
+        if below >= size:
+            break
+        if below + 1 < size and keys[below + 1] < keys[below]:
+            below += 1
+        if keys[below] >= key:
+            break
+        keys[at], nodes[at] = keys[below], nodes[below]
+        at = below
+    keys[at], nodes[at] = key, node
+
+
+@kernel
+def _left(y: int, x: int, box: Ints) -> float:
+    """Octile distance to a box of nodes."""
+    dx = max(box[2] - x, x - box[3], 0)
+    dy = max(box[0] - y, y - box[1], 0)
+    return float(max(dx, dy) + (2**0.5 - 1) * min(dx, dy))
+
+
+@kernel
+def search(  # noqa: PLR0912, PLR0915 - one loop; calls would hand on a score of arrays
+    owner: Shorts,
+    taken: Shorts,
+    history: Reals,
+    tree: Shorts,
+    starts: Ints,
+    target: Bytes,
+    box: Ints,
+    window: Ints,
+    neck: Bytes,
+    near_via: Bytes,
+    net: int,
+    wide: int,
+    narrow: int,
+    crowded: float,
+    grain: NDArray[np.float64],
+    costs: NDArray[np.float64],
+    reached: NDArray[np.float64],
+    came: Bytes,
+    seen: Ints,
+    turn: int,
+    keys: NDArray[np.float64],
+    queue: Ints,
+) -> Ints:
+    """The cheapest path between two parts of a net, or nothing (length 0).
+
+    Args:
+        owner: `(classes, 3, H, W)`: 0 where any net may be, `BLOCKED`, or the only net that may.
+        taken: same shape: number of other nets too near for copper of the class.
+        history: `(2, H, W)`: how often a node was fought for.
+        tree: `(2 * H * W,)`: of the net's nodes a bit for each direction that has a track, and
+            `INSIDE_PAD`; other tracks meet it at right angles or flatter.
+        starts: nodes to start from, all of the net's.
+        target: `(2 * H * W,)`: 1 at the nodes to reach, all of the net's.
+        box: of the target: first and last y, first and last x.
+        window: where to search, in the same form.
+        neck: `(H, W)`: 1 where the narrow class applies.
+        near_via: `(H, W)`: 1 where a new via would be too near to one of this net.
+        net: its number.
+        wide: its class.
+        narrow: its class beside pads narrower than its tracks.
+        crowded: present cost of each net in the way.
+        grain: `(2, 8)`: length of a step, more across the grain of a layer.
+        costs: of a via, of a bend of 45° and of one of 90°, in steps of the grid.
+        reached, came, seen: scratch of `2 * H * W`: cost, direction, and turn of last use.
+        turn: number of this search, above all before it.
+        keys, queue: scratch of the heap.
+
+    Returns:
+        Nodes from start to target.
+    """
+    height, width = owner.shape[2], owner.shape[3]
+    plane = height * width
+    capacity = keys.shape[0] - 12
+    size = 0
+    for node in starts:
+        rest = node % plane
+        y, x = rest // width, rest % width
+        if y < window[0] or y > window[1] or x < window[2] or x > window[3]:
+            continue
+        if size >= capacity:
+            break
+        seen[node], reached[node], came[node] = turn, 0.0, SOURCE
+        keys[size], queue[size] = _left(y, x, box), node
+        _sift_up(keys, queue, size)
+        size += 1
+    end = -1
+    while size > 0 and size < capacity:
+        node, key = queue[0], keys[0]
+        size -= 1
+        keys[0], queue[0] = keys[size], queue[size]
+        if size > 0:
+            _sift_down(keys, queue, size)
+        layer, rest = node // plane, node % plane
+        y, x = rest // width, rest % width
+        so_far = reached[node]
+        if key > so_far + _left(y, x, box) + 1e-3:
+            continue
+        if target[node]:
+            end = node
+            break
+        before = came[node]
+        here = tree[node] if before == SOURCE else 0
+        for way in range(8):
+            bend = 0.0
+            if before < VIA:
+                apart = (way - before) & 7
+                apart = min(apart, 8 - apart)
+                if apart > 3:
+                    continue
+                bend = costs[apart] if apart else 0.0
+            elif here and not here & INSIDE_PAD:
+                sharp = (1 << ((way + 1) & 7)) | (1 << way) | (1 << ((way + 7) & 7))
+                if here & sharp:
+                    continue
+            ny, nx = y + DY[way], x + DX[way]
+            if ny < window[0] or ny > window[1] or nx < window[2] or nx > window[3]:
+                continue
+            c = narrow if neck[ny, nx] else wide
+            holder = owner[c, layer, ny, nx]
+            if holder not in (0, net):
+                continue
+            there = layer * plane + ny * width + nx
+            at_goal = tree[there]
+            if at_goal:
+                if not target[there]:
+                    continue
+                back = way + 4
+                sharp = (1 << ((back + 1) & 7)) | (1 << (back & 7)) | (1 << ((back + 7) & 7))
+                if not at_goal & INSIDE_PAD and at_goal & sharp:
+                    continue
+            cost = (
+                so_far
+                + bend
+                + grain[layer, way]
+                * (1 + history[layer, ny, nx])
+                * (1 + crowded * taken[c, layer, ny, nx])
+            )
+            if seen[there] != turn or cost < reached[there] - 1e-4:
+                seen[there], reached[there], came[there] = turn, cost, way
+                keys[size], queue[size] = cost + _left(ny, nx, box), there
+                _sift_up(keys, queue, size)
+                size += 1
+        if before == VIA or near_via[y, x]:
+            continue
+        c = narrow if neck[y, x] else wide
+        holder = owner[c, 2, y, x]
+        there = node + plane if layer == 0 else node - plane
+        if holder not in (0, net) or (tree[there] and not target[there]):
+            continue
+        cost = so_far + costs[0] * (1 + history[0, y, x] + history[1, y, x]) * (
+            1 + crowded * taken[c, 2, y, x]
+        )
+        if seen[there] != turn or cost < reached[there] - 1e-4:
+            seen[there], reached[there], came[there] = turn, cost, VIA
+            keys[size], queue[size] = cost + _left(y, x, box), there
+            _sift_up(keys, queue, size)
+            size += 1
+    if end < 0:
+        return np.empty(0, dtype=np.int32)
+    return _walked(end, came, plane, width)
+
+
+@kernel
+def _walked(end: int, came: Bytes, plane: int, width: int) -> Ints:
+    count, node = 1, end
+    while came[node] != SOURCE:
+        node = _before(node, came[node], plane, width)
+        count += 1
+    path = np.empty(count, dtype=np.int32)
+    node = end
+    for i in range(count - 1, -1, -1):
+        path[i] = node
+        if i:
+            node = _before(node, came[node], plane, width)
+    return path
+
+
+@kernel
+def _before(node: int, way: int, plane: int, width: int) -> int:
+    if way == VIA:
+        return node - plane if node >= plane else node + plane
+    return int(node - DY[way] * width - DX[way])

@@ -1,0 +1,96 @@
+"""Where no track and no via can be, whatever else is routed."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumitip_fab.boards.geometry import PlacedPad
+from lumitip_fab.boards.model import SIDES, Placement
+from lumitip_fab.boards.openings import fiducial_margin_mm
+from lumitip_fab.boards.routing.grid import Grid
+from lumitip_fab.boards.routing.kernels import BLOCKED
+from lumitip_fab.boards.routing.rules import MARGIN_MM, PAD_TO_VIA_MM, Rules
+
+Reals = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Obstacles:
+    """The map of what is fixed."""
+
+    grid: Grid
+    rules: Rules
+    number: dict[str, int]
+    """Of each net, from 1."""
+
+    def owners(self, placement: Placement, pads: tuple[PlacedPad, ...]) -> NDArray[np.int16]:
+        """Who may be where: `(classes, 3, H, W)`, see `kernels.search`."""
+        grid, rules = self.grid, self.rules
+        owner = np.zeros((len(rules.classes), 3, grid.height, grid.width), dtype=np.int16)
+        for c, kind in enumerate(rules.classes):
+            for p, size in ((0, kind.track_mm), (1, kind.track_mm), (2, kind.via_mm)):
+                self._edge(placement, owner[c, p], size / 2)
+            for pad in pads:
+                self._pad(pad, c, owner[c])
+        return owner
+
+    def _edge(self, placement: Placement, owner: NDArray[np.int16], half_mm: float) -> None:
+        keep = placement.edge_clearance_mm + half_mm + MARGIN_MM
+        everywhere = slice(0, self.grid.height), slice(0, self.grid.width)
+        x, y = self.grid.offsets(everywhere, *placement.outline.centre_mm)
+        half = placement.outline.width_mm / 2, placement.outline.length_mm / 2
+        corner = placement.corner_mm
+        dx, dy = np.abs(x) - half[0] + corner, np.abs(y) - half[1] + corner
+        outside = np.hypot(np.maximum(dx, 0), np.maximum(dy, 0))
+        inside = np.minimum(np.maximum(dx, dy), 0)
+        owner[outside + inside - corner > -keep] = BLOCKED
+        reach = self._rounded(placement.hole_mm / 2 + keep)
+        for hole in placement.holes:
+            where = self.grid.near(*hole, reach)
+            x, y = self.grid.offsets(where, *hole)
+            owner[where][np.hypot(x, y) < reach] = BLOCKED
+
+    def _pad(self, pad: PlacedPad, c: int, owner: NDArray[np.int16]) -> None:
+        own = self.number.get(pad.net, BLOCKED)
+        kind = self.rules.classes[c]
+        clearance = self.rules.clearance_mm(c, self.rules.of_net.get(pad.net, c))
+        clearance = max(clearance, fiducial_margin_mm(pad.component)) + MARGIN_MM
+        layers = [SIDES.index(side) for side in pad.sides]
+        for p in (*layers, 2):
+            size = (kind.via_mm if p == 2 else kind.track_mm) / 2
+            self._claim(owner[p], pad, size + clearance, own)
+        self._claim(owner[2], pad, kind.via_mm / 2 + PAD_TO_VIA_MM, BLOCKED)
+
+    def _claim(self, owner: NDArray[np.int16], pad: PlacedPad, keep: float, own: int) -> None:
+        round_mm = self._rounded(keep)
+        x, y, where = self.from_pad(pad, round_mm)
+        if pad.pad.shape == "circle":
+            near = np.hypot(x, y) < self._rounded(pad.pad.width_mm / 2 + keep)
+        else:
+            dx, dy = np.abs(x) - pad.pad.width_mm / 2, np.abs(y) - pad.pad.height_mm / 2
+            beside = np.minimum(dx, dy) <= 0
+            near = np.where(
+                beside,
+                np.maximum(dx, dy) < keep,
+                np.hypot(np.maximum(dx, 0), np.maximum(dy, 0)) < round_mm,
+            )
+        view = owner[where]
+        view[near] = np.where((view[near] == 0) | (view[near] == own), own, BLOCKED)
+
+    def from_pad(
+        self, pad: PlacedPad, beyond_mm: float
+    ) -> tuple[Reals, Reals, tuple[slice, slice]]:
+        """Nodes round a pad, as x and y (mm) in the pad's own axes, and which they are."""
+        size = pad.pad
+        where = self.grid.near(
+            pad.x_mm, pad.y_mm, np.hypot(size.width_mm, size.height_mm) / 2 + beyond_mm
+        )
+        x, y = self.grid.offsets(where, pad.x_mm, pad.y_mm)
+        turn = np.radians(pad.component.angle_deg)
+        c, s = np.cos(turn), np.sin(turn)
+        return c * x + s * y, c * y - s * x, where
+
+    def _rounded(self, radius_mm: float) -> float:
+        """Radius round a place off the grid that keeps whole diagonal steps outside."""
+        return float(np.sqrt(radius_mm**2 + self.grid.pitch_mm**2 / 2))

@@ -1,0 +1,88 @@
+"""Widths and clearances of the net classes, as the router needs them."""
+
+import dataclasses
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumitip_fab.boards.model import NetClass, Placement
+
+MARGIN_MM = 0.002  # kept beyond every rule by what is off the grid, so that rounding breaks none
+PAD_TO_VIA_MM = 0.1  # solder mask between a pad and a via of its own net
+HOLE_TO_HOLE_MM = 0.25  # wall between two drills
+
+
+@dataclass(frozen=True)
+class Rules:
+    """The net classes in a fixed order, and which is which net's."""
+
+    classes: tuple[NetClass, ...]
+    of_net: dict[str, int]
+    """Class of each net."""
+    narrow: int
+    """The class of the thinnest tracks, with the greatest clearance: what wide tracks become
+    beside narrow pads."""
+
+    @classmethod
+    def of(cls, placement: Placement) -> "Rules":
+        """The rules of a board."""
+        given = placement.classes
+        thin = dataclasses.replace(
+            given[0],
+            name="narrow",
+            track_mm=min(c.track_mm for c in given),
+            clearance_mm=max(c.clearance_mm for c in given),
+            via_mm=max(c.via_mm for c in given),
+            via_drill_mm=max(c.via_drill_mm for c in given),
+        )
+        like_thin = [i for i, c in enumerate(given) if dataclasses.replace(thin, name=c.name) == c]
+        names = {c.name: i for i, c in enumerate(given)}
+        return cls(
+            classes=given if like_thin else (*given, thin),
+            of_net={n.name: names[n.net_class] for n in placement.nets},
+            narrow=like_thin[0] if like_thin else len(given),
+        )
+
+    def clearance_mm(self, a: int, b: int) -> float:
+        """Between the copper of two classes: the greater of theirs."""
+        return max(self.classes[a].clearance_mm, self.classes[b].clearance_mm)
+
+    @property
+    def drill_mm(self) -> float:
+        """Of the widest via."""
+        return max(c.via_drill_mm for c in self.classes)
+
+    def radii(self, pitch_mm: float, via: bool) -> NDArray[np.float64]:
+        """Squared distances, in steps, that copper keeps from the middle of other copper.
+
+        Args:
+            pitch_mm: of the grid.
+            via: whether the copper is a via, not a track.
+
+        Returns:
+            `(own class, other class, kind, 2)`: kind 0 for the other's tracks and 1 for its vias;
+            beside the copper and round its ends.
+        """
+        count = len(self.classes)
+        radii = np.empty((count, count, 2, 2))
+        for a, own in enumerate(self.classes):
+            for b, other in enumerate(self.classes):
+                for kind, width in enumerate((other.track_mm, other.via_mm)):
+                    size = own.via_mm if via else own.track_mm
+                    reach = (size + width) / 2 + self.clearance_mm(a, b)
+                    square = (reach / pitch_mm) ** 2
+                    radii[a, b, kind] = square, _round_end(square)
+        return radii
+
+
+def _round_end(square: float) -> float:
+    """Squared radius round a node that also keeps diagonal steps outside.
+
+    A diagonal step past a node at an odd number k of half diagonals comes nearer in its middle,
+    k²/2, than at its ends, (k² + 1)/2.
+    """
+    k = math.isqrt(math.ceil(2 * square - 1e-9) - 1)
+    k -= 1 - k % 2
+    return (k * k + 1) / 2 + 1e-3 if k * k + 1 >= 2 * square - 1e-9 else square

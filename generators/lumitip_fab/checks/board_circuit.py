@@ -1,0 +1,132 @@
+"""The circuit of a board, followed along its copper."""
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from lumitip_fab.checks.board_read import Read, ohm
+from lumitip_fab.checks.channel_map import channels
+from lumitip_fab.checks.result import Measurement
+
+CURRENT_SHARE = 0.02
+WIRE_MM = 0.001
+GROUND = "GND"
+
+
+def measure_connector(read: Read) -> Iterator[Measurement]:
+    """The pads for the wires, in the design's order."""
+    wanted = np.array(read.finger.connector.pads)
+    part = read.parts.get("J1")
+    found = {t.number: t.at for t in part.terminals} if part else {}
+    pads = [found.get(str(i + 1), (math.nan, math.nan)) for i in range(len(wanted))]
+    off = np.hypot(*(read.sensor(pads) - wanted).T)
+    yield read.figure("wires", off.max() if len(found) == len(wanted) else math.nan, 0, WIRE_MM)
+
+
+def measure_channels(read: Read) -> Iterator[Measurement]:
+    """Which detector each input reads, against the layout; and what serves the multiplexers."""
+    layout = read.design.layout
+    found = channels(read.board, read.clusters)
+    wanted: dict[str, dict[str, str]] = {f"U{m + 1}": {} for m in range(read.design.wiring.muxes)}
+    for cell in layout.cells:
+        wanted[f"U{cell.mux + 1}"][str(cell.channel)] = f"Q{cell.index + 1}"
+    wrong = [
+        f"{mux} channel {channel}: {found.by_copper.get(mux, {}).get(channel, 'none')}, not {ref}"
+        for mux, inputs in wanted.items()
+        for channel, ref in inputs.items()
+        if found.by_copper.get(mux, {}).get(channel) != ref
+    ]
+    spare = [f"{mux} reads more" for mux, inputs in found.by_copper.items()
+             if set(inputs) - set(wanted.get(mux, ()))]  # fmt: skip
+    yield read.count("channels", wrong + spare, "channels")
+    yield read.count("names", list(found.doubts), "channels")
+    yield read.count("service", list(_unserved(read)), "leads")
+    yield read.count("polarity", _reversed_detectors(read), "detectors")
+
+
+def measure_strings(read: Read) -> Iterator[Measurement]:
+    """Each string from the supply through its resistor and LEDs to ground, and its current."""
+    wiring = read.design.wiring
+    supply, marked = read.finger.connector.signals[1], read.design.packages.led.marked
+    anode = "1" if marked == "anode" else "2"
+    wrong: list[str] = []
+    turned: list[str] = []
+    shares = []
+    for i, cells in enumerate(wiring.strings):
+        chain, ends = _chain(read, f"R{i + 1}", supply, anode)
+        told = [f"D{cell + 1}" for cell in cells]
+        turned += [ref.removeprefix("-") for ref in chain if ref.startswith("-")]
+        if [ref.removeprefix("-") for ref in chain] != told or not ends:
+            wrong.append(f"R{i + 1} feeds {len(chain)} LEDs, not the {len(told)} of string {i + 1}")
+        part = read.parts.get(f"R{i + 1}")
+        resistance = ohm(part.value) if part else math.nan
+        drop = wiring.supply_v - wiring.current_ma[i] * 1e-3 * wiring.resistor_ohm[i]
+        amps_ma = 1e3 * (wiring.supply_v - drop / len(told) * len(chain)) / resistance
+        shares.append(amps_ma / wiring.current_ma[i])
+    yield read.count("strings", wrong, "strings")
+    yield read.count("polarity", turned, "LEDs")
+    off = np.array(shares) - 1
+    worst = off[np.abs(np.nan_to_num(off, nan=math.inf)).argmax()]
+    yield read.figure("current", 1 + worst, 1 - CURRENT_SHARE, 1 + CURRENT_SHARE, "of nominal")
+
+
+def _chain(read: Read, resistor: str, supply: str, anode: str) -> tuple[list[str], bool]:
+    """LEDs after a resistor, with a minus where the current meets the cathode first; and whether
+    the last is at ground."""
+    ends = [read.group(resistor, 1), read.group(resistor, 2)]
+    source = read.wire(supply)
+    if None in ends or source not in ends:
+        return [], False
+    at, ground = ends[1 - ends.index(source)], read.wire(GROUND)
+    cathode = "1" if anode == "2" else "2"
+    leds = {ref: (read.group(ref, anode), read.group(ref, cathode))
+            for ref in read.parts if ref.startswith("D")}  # fmt: skip
+    chain: list[str] = []
+    while at != ground:
+        after = [ref for ref, pads in leds.items() if at in pads]
+        if len(after) != 1:
+            return chain, False
+        into, out = leds.pop(after[0])
+        chain.append(after[0] if into == at else f"-{after[0]}")
+        at = out if into == at else into
+    return chain, True
+
+
+def _unserved(read: Read) -> Iterator[str]:
+    """Leads of multiplexers without their line, and outputs without their pull-up."""
+    design, leads = read.design, read.design.packages.multiplexer
+    supply = read.finger.connector.signals[1]
+    shared = {leads.supply: supply, leads.ground: GROUND, leads.enable: GROUND}
+    shared |= {} if leads.negative is None else {leads.negative: GROUND}
+    shared |= {lead: f"S{i}" for i, lead in enumerate(leads.select)}
+    for which, pin in enumerate(design.wiring.adc_pins, start=1):
+        for lead, signal in (shared | {leads.output: pin}).items():
+            if read.group(f"U{which}", lead) != read.wire(signal) or read.wire(signal) is None:
+                yield f"U{which} lead {lead} is not at {signal}"
+        if not _bridged(read, "R", {read.wire(supply), read.wire(pin)}, design.wiring.pull_up_ohm):
+            yield f"{pin} has no pull-up of {design.wiring.pull_up_ohm:g} ohm"
+    bypasses = [ref for ref in read.parts if ref.startswith("C")
+                and _ends(read, ref) == {read.wire(supply), read.wire(GROUND)}]  # fmt: skip
+    if len(bypasses) < design.wiring.muxes:
+        yield f"{len(bypasses)} capacitors for {design.wiring.muxes} multiplexers"
+
+
+def _bridged(read: Read, letter: str, ends: set[int | None], value: float) -> bool:
+    """Whether a resistor of this value joins two groups."""
+    return any(
+        _ends(read, ref) == ends and math.isclose(ohm(part.value), value, rel_tol=1e-6)
+        for ref, part in read.parts.items()
+        if ref.startswith(letter)
+    )
+
+
+def _ends(read: Read, ref: str) -> set[int | None]:
+    return {read.group(ref, 1), read.group(ref, 2)}
+
+
+def _reversed_detectors(read: Read) -> list[str]:
+    """Detectors whose emitter is not at ground."""
+    emitter = "2" if read.design.packages.photodetector.marked == "collector" else "1"
+    refs = [f"Q{i + 1}" for i in range(len(read.design.layout))]
+    return [ref for ref in refs if read.group(ref, emitter) != read.wire(GROUND)]

@@ -1,0 +1,102 @@
+"""`Read`: the board of one finger as its file has it, in the finger's sensor frame."""
+
+import math
+import re
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely.geometry.base import BaseGeometry
+
+from lumitip_fab.checks.copper import Clusters
+from lumitip_fab.checks.kicad_board import KicadBoard, Part, Terminal
+from lumitip_fab.checks.result import Measurement
+from lumitip_fab.design import Design, Finger, Point
+from lumitip_fab.frames import applied, board_page_to_sensor
+
+_VALUE = re.compile(r"(\d+)([RKM])(\d*)")
+_CLOSED_MM = 1e-5  # ends of lines nearer than this meet
+_POWER = {"R": 1.0, "K": 1e3, "M": 1e6}
+
+
+@dataclass(frozen=True, eq=False)
+class Read:
+    """A board file with what it should be."""
+
+    subject: str
+    board: KicadBoard
+    finger: Finger
+    design: Design
+
+    @cached_property
+    def clusters(self) -> Clusters:
+        """Copper in connected groups."""
+        return Clusters(self.board)
+
+    @cached_property
+    def parts(self) -> dict[str, Part]:
+        """Parts by reference."""
+        return {part.ref: part for part in self.board.parts}
+
+    @cached_property
+    def outline(self) -> BaseGeometry:
+        """The board by its drawn edge, on the page."""
+        edges = shapely.set_precision(np.array(self.board.edges, dtype=object), _CLOSED_MM)
+        rings = shapely.polygonize([shapely.union_all(edges)])
+        return shapely.union_all(shapely.get_parts(rings))
+
+    @cached_property
+    def holes(self) -> tuple[Terminal, ...]:
+        """Unplated holes."""
+        return tuple(
+            t
+            for part in self.board.parts
+            for t in part.terminals
+            if t.copper is None and t.drill_mm
+        )
+
+    def sensor(self, points: Any) -> NDArray[np.float64]:
+        """Places on the page, in the sensor frame; shape `(n, 2)`."""
+        flat = np.asarray(points, dtype=np.float64).reshape(-1, 2)
+        return applied(board_page_to_sensor(self.design.stack), flat)[:, :2]
+
+    def group(self, ref: str, number: str | int) -> int | None:
+        """The connected group of a part's pad; none where there is no such pad."""
+        part = self.parts.get(ref)
+        for terminal in part.terminals if part else ():
+            if terminal.number == str(number) and terminal.copper is not None:
+                return self.clusters.of(terminal.copper)
+        return None
+
+    def wire(self, signal: str) -> int | None:
+        """The group of a signal at the connector, by the place of its pad in the row."""
+        signals = self.finger.connector.signals
+        return self.group("J1", signals.index(signal) + 1) if signal in signals else None
+
+    def figure(
+        self, check: str, measured: float, low: float, high: float, unit: str = "mm", note: str = ""
+    ) -> Measurement:
+        """A measurement of this file."""
+        return Measurement(f"board.{check}", self.subject, float(measured), low, high, unit, note)
+
+    def count(self, check: str, wrong: list[str], unit: str) -> Measurement:
+        """How many things are wrong, of which there may be none; the first few are named."""
+        note = "; ".join(wrong[:4]) + (" …" if len(wrong) > 4 else "")
+        return self.figure(check, len(wrong), 0, 0, unit, note)
+
+
+def ohm(value: str) -> float:
+    """Resistance that a value tells, such as 150R or 4K99; NaN if it tells none."""
+    told = _VALUE.fullmatch(value)
+    return float(f"{told[1]}.{told[3] or 0}") * _POWER[told[2]] if told else math.nan
+
+
+def middle(part: Part | None) -> Point:
+    """The middle of a part's pads on the page; NaN of none."""
+    if part is None or not part.terminals:
+        return math.nan, math.nan
+    x, y = np.mean([t.at for t in part.terminals], axis=0)
+    return float(x), float(y)

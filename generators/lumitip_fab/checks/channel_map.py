@@ -1,0 +1,190 @@
+"""Which detector each multiplexer input reads, from the copper of any board.
+
+Knows the 74HC4051 and its kin (CD4051, MAX4051 …: 8:1, 16 leads) and the 74HC4067 and its kin
+(16:1, 24 leads), whatever the part is called on the board. Leads are numbered alike in all their
+packages; see the makers' datasheets.
+"""
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from lumitip_fab.checks.copper import Clusters
+from lumitip_fab.checks.kicad_board import KicadBoard, Part, Terminal, read_board
+from lumitip_fab.errors import OutputError
+
+ChannelMap = dict[str, dict[str, str]]
+"""`{"U1": {"0": "Q7", …}, …}`."""
+
+
+@dataclass(frozen=True)
+class Pinout:
+    """The leads of a kind of multiplexer."""
+
+    name: re.Pattern[str]
+    leads: int
+    inputs: tuple[str, ...]
+    """Lead of each channel."""
+    select: tuple[str, ...]
+    output: str
+    rails: tuple[str, ...]
+    """Supplies and enable."""
+
+
+PINOUTS = (
+    Pinout(
+        re.compile(r"40\s?51"), 16, ("13", "14", "15", "12", "1", "5", "2", "4"),
+        ("11", "10", "9"), "3", ("16", "8", "7", "6"),
+    ),
+    Pinout(
+        re.compile(r"40\s?67"), 24,
+        ("9", "8", "7", "6", "5", "4", "3", "2", "23", "22", "21", "20", "19", "18", "17", "16"),
+        ("10", "11", "14", "13"), "1", ("24", "12", "15"),
+    ),
+)  # fmt: skip
+_LEAST_READ = 2  # detectors that an unnamed part must read to be taken for a multiplexer
+_NO_DETECTOR = re.compile(r"(R|C|L|FB|TP|J|H|FID)(\d|\?|$)", re.IGNORECASE)
+
+
+@dataclass(frozen=True)
+class Channels:
+    """What was found on a board."""
+
+    by_copper: ChannelMap
+    by_name: ChannelMap
+    """By the names of nets that the file gives to the pads."""
+    output: Mapping[str, str]
+    """Net at the common terminal of each multiplexer."""
+    parts: Mapping[str, tuple[Part, Pinout]]
+    doubts: tuple[str, ...] = field(default=())
+    """Where copper and names disagree, in words."""
+
+    @property
+    def contradicted(self) -> bool:
+        """Whether copper leads to another detector than the names say, not just to none."""
+        return any(
+            detector != self.by_name[mux].get(channel)
+            for mux, found in self.by_copper.items()
+            for channel, detector in found.items()
+        )
+
+    @property
+    def best(self) -> ChannelMap:
+        """What the copper says; where it says nothing, as on a board without tracks, the names."""
+        return {
+            mux: {
+                channel: self.by_copper[mux].get(channel) or self.by_name[mux][channel]
+                for channel in sorted({*self.by_copper[mux], *self.by_name[mux]}, key=int)
+            }
+            for mux in self.by_copper
+        }
+
+
+def read_channels(path: Path) -> Channels:
+    """The channels of a board file.
+
+    Raises:
+        OutputError: if it cannot be read, or has no multiplexer that is known.
+    """
+    board = read_board(path)
+    found = channels(board, Clusters(board))
+    if not found.parts:
+        raise OutputError(
+            f"{path}: no multiplexer found among {len(board.parts)} parts: one like 74HC4051 (16 "
+            "leads) or 74HC4067 (24 leads) is needed"
+        )
+    return found
+
+
+def channels(board: KicadBoard, clusters: Clusters) -> Channels:
+    """Find the multiplexers of a board, and follow each input to its detector."""
+    copper, names = _Follower(board, _Copper(clusters)), _Follower(board, _Names())
+    parts = {p.ref: (p, pins) for p, pins in sorted(_muxes(board, copper, names), key=_by_ref)}
+    by_copper = {ref: copper.map(*found) for ref, found in parts.items()}
+    by_name = {ref: names.map(*found) for ref, found in parts.items()}
+    output = {ref: _terminal(part, pins.output).net for ref, (part, pins) in parts.items()}
+    doubts = tuple(_doubts(by_copper, by_name))
+    return Channels(by_copper, by_name, output, parts, doubts)
+
+
+class _Copper:
+    """Follows copper."""
+
+    def __init__(self, clusters: Clusters) -> None:
+        self.clusters = clusters
+
+    def key(self, terminal: Terminal) -> object:
+        return None if terminal.copper is None else self.clusters.of(terminal.copper)
+
+
+class _Names:
+    """Follows the names of nets."""
+
+    def key(self, terminal: Terminal) -> object:
+        return terminal.net or None
+
+
+class _Follower:
+    """From a lead to the detector at the other end."""
+
+    def __init__(self, board: KicadBoard, by: _Copper | _Names) -> None:
+        self.by = by
+        self.reached: dict[object, set[str]] = {}
+        for part in filter(_may_detect, board.parts):
+            for terminal in part.terminals:
+                if (key := by.key(terminal)) is not None:
+                    self.reached.setdefault(key, set()).add(part.ref)
+
+    def map(self, part: Part, pins: Pinout) -> dict[str, str]:
+        """The detector of each input that has one; several are told together."""
+        rails = {self.by.key(t) for t in part.terminals if t.number in (*pins.rails, *pins.select)}
+        found = {}
+        for channel, lead in enumerate(pins.inputs):
+            key = self.by.key(_terminal(part, lead))
+            refs = self.reached.get(key, set()) if key not in rails else set()
+            if refs:
+                found[str(channel)] = "+".join(sorted(refs))
+        return found
+
+
+def _muxes(board: KicadBoard, copper: _Follower, names: _Follower) -> Iterator[tuple[Part, Pinout]]:
+    """By what a part is called; else by its leads, and that its inputs read detectors."""
+    for part in board.parts:
+        numbers = {t.number for t in part.terminals}
+        told = " ".join((part.value, part.footprint, *part.texts))
+        for pins in PINOUTS:
+            if not numbers.issuperset(map(str, range(1, pins.leads + 1))):
+                continue
+            others = any(p.name.search(told) for p in PINOUTS if p is not pins)
+            read = max(len(f.map(part, pins)) for f in (copper, names))
+            alike = len({*numbers} - {""}) <= pins.leads + 1 and read >= _LEAST_READ
+            if pins.name.search(told) or (alike and not others):
+                yield part, pins
+                break
+
+
+def _may_detect(part: Part) -> bool:
+    """Two leads, and no resistor or capacitor."""
+    numbers = {t.number for t in part.terminals if t.copper is not None}
+    return len(numbers) == 2 and not _NO_DETECTOR.match(part.ref)
+
+
+def _terminal(part: Part, number: str) -> Terminal:
+    return next(t for t in part.terminals if t.number == number)
+
+
+def _doubts(by_copper: ChannelMap, by_name: ChannelMap) -> Iterator[str]:
+    for mux, named in by_name.items():
+        for channel in sorted({*named, *by_copper[mux]}, key=int):
+            copper, name = by_copper[mux].get(channel), named.get(channel)
+            if copper != name:
+                yield (
+                    f"{mux} channel {channel}: the copper leads to {copper or 'no detector'}, the "
+                    f"net names to {name or 'none'}"
+                )
+
+
+def _by_ref(found: tuple[Part, Pinout]) -> tuple[str, int]:
+    letters, number = re.fullmatch(r"(\D*)(\d*).*", found[0].ref).groups()  # type: ignore[union-attr]
+    return letters, int(number or 0)

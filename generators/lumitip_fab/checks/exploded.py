@@ -1,0 +1,193 @@
+"""The exploded drawings: every body is there in its size and order, all on the page, labelled."""
+
+import math
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from xml.etree import ElementTree as XmlTree
+
+import numpy as np
+from reportlab.pdfbase.pdfmetrics import stringWidth
+
+from lumitip_fab.checks import solids
+from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip_fab.checks.solids import Vectors
+from lumitip_fab.design import Box, Design, Finger
+from lumitip_fab.errors import OutputError
+from lumitip_fab.frames import mount_to_sensor
+
+NAMES = ("assembly.drawing", "assembly.drawing_page", "assembly.drawing_labels")
+LAYERS = ("backing", "board", "silicone", "film")
+SIZE_MM = 0.1
+SKIN_MM = 0.6  # of silicone and film, whose walls stand off the outline and lean
+ORDER_MM = 10.0  # from layer to layer
+MARGIN_MM = 2.0
+COLUMN_MM = 3.0  # from a line of words to the next
+_SVG = "{http://www.w3.org/2000/svg}"
+_PATH = f"{_SVG}path"
+_ANGLES = ("azimuth", "elevation")
+_PAIR = re.compile(r"(-?\d*\.?\d+),(-?\d*\.?\d+)")
+
+
+@dataclass(frozen=True, eq=False)
+class Drawing:
+    """What the file holds, in mm of the page with y up."""
+
+    size_mm: tuple[float, float]
+    view: Vectors
+    """The page's x and y in the finger's frame, as rows."""
+    extent: Vectors
+    """Lower left and upper right corner."""
+    groups: dict[str, Vectors]
+    """Points of each group by its id."""
+    words: list[tuple[str, Vectors]]
+    """Each line of words with its extent."""
+
+
+def measure_drawing(outputs: Path, design: Design, finger: Finger) -> Iterator[Measurement]:
+    """Hold a finger's drawing against the design and its backing."""
+    file = f"assembly/{finger.name}_exploded.svg"
+    try:
+        drawing = _read(outputs / file)
+        backing = solids.read_mesh(outputs / f"backing/{finger.name}_backing.stl")
+        to_sensor = mount_to_sensor(design.mount, design.stack)
+        wanted = _wanted(design, finger, solids.moved(backing, to_sensor).vertices)
+        yield from _bodies(file, drawing, wanted)
+        yield _page(file, drawing)
+        yield from _labels(file, drawing, design, finger)
+    except (OutputError, OSError, XmlTree.ParseError, LookupError, ValueError) as error:
+        yield from (unreadable(name, file, f"cannot be read: {error!r:.200}") for name in NAMES)
+
+
+def _read(path: Path) -> Drawing:
+    root = XmlTree.parse(path).getroot()
+    left, top, width, height = (float(v) for v in root.attrib["viewBox"].split())
+    for name, wide in (("width", width), ("height", height)):
+        if not math.isclose(float(root.attrib[name].removesuffix("mm")), wide, abs_tol=0.01):
+            raise ValueError(f"{name} {root.attrib[name]} for {wide:g} units is not 1:1 in mm")
+    turn, lift = (math.radians(float(root.attrib[f"data-{a}-deg"])) for a in _ANGLES)
+    right = (math.cos(turn), math.sin(turn), 0.0)
+    up = (-math.sin(turn) * math.sin(lift), math.cos(turn) * math.sin(lift), math.cos(lift))
+    groups = {
+        group.attrib["id"]: np.concatenate([_points(p.attrib["d"]) for p in group.iter(_PATH)])
+        for group in root.iter(f"{_SVG}g")
+    }
+    words = [(str(text.text), _extent(text)) for text in root.iter(f"{_SVG}text")]
+    extent = np.array([(left, -top - height), (left + width, -top)])
+    return Drawing((width, height), np.array([right, up]), extent, groups, words)
+
+
+def _points(data: str) -> Vectors:
+    return np.array(_PAIR.findall(data), dtype=np.float64).reshape(-1, 2) * (1.0, -1.0)
+
+
+def _extent(text: XmlTree.Element) -> Vectors:
+    x, y, size = float(text.attrib["x"]), -float(text.attrib["y"]), float(text.attrib["font-size"])
+    font = "Helvetica-Bold" if text.get("font-weight") == "bold" else "Helvetica"
+    width = stringWidth(str(text.text), font, size)
+    start = x - width if text.attrib["text-anchor"] == "end" else x
+    return np.array([(start, y - size / 4), (start + width, y + size)])
+
+
+def _wanted(design: Design, finger: Finger, backing: Vectors) -> dict[str, tuple[Vectors, float]]:
+    """Corners of each body that is to be seen, in the finger's frame, and how true they are."""
+    stack, mould = design.stack, design.mould
+    low, face = stack.rim_z_mm, stack.silicone_z_mm
+    lean = stack.silicone_mm * math.tan(math.radians(mould.draft_deg))
+    foot = _grown(design.outline.polygon(), mould.wall_gap_mm)
+    found = {
+        "backing": (backing, SIZE_MM),
+        "board": (_block(design.board.box, stack.pocket_z_mm, low), SIZE_MM),
+        "silicone": (_between(foot, low, face), SKIN_MM),
+        "film": (_film(_grown(foot, -lean), face, mould.end_round_mm), SKIN_MM),
+    }
+    for part in finger.parts:
+        if part.side == "front":
+            found[part.name] = (_block(part.box, low, low + part.height_mm), SIZE_MM)
+    return found
+
+
+def _film(skin: Vectors, face_mm: float, radius_mm: float) -> Vectors:
+    """The film over a face: at the gripper end it goes round the edge."""
+    into = np.clip(skin[:, 1] - skin[:, 1].min(), 0.0, radius_mm)
+    edge = face_mm - radius_mm + np.sqrt(radius_mm**2 - (radius_mm - into) ** 2)
+    return np.concatenate([_between(skin, face_mm, 0.0), np.column_stack([skin, edge])])
+
+
+def _grown(flat: Vectors, by_mm: float) -> Vectors:
+    """An outline stretched so that its extents grow by a distance on each side."""
+    return np.asarray(flat * (1 + by_mm / np.abs(flat).max(axis=0)))
+
+
+def _bodies(
+    file: str, drawing: Drawing, wanted: dict[str, tuple[Vectors, float]]
+) -> Iterator[Measurement]:
+    """Bodies that are missing, sizes on the page, and how far the layers are apart."""
+    missing = [name for name in wanted if not len(drawing.groups.get(name, ()))]
+    note = f"of {len(wanted)} bodies" + (f", first {missing[0]}" if missing else "")
+    yield Measurement("assembly.drawing", file, len(missing), 0, 0, "missing", note)
+    off: dict[str, float] = {}
+    shifts: dict[str, Vectors] = {}
+    for name, (corners, within) in wanted.items():
+        if name not in missing:
+            drawn, flat = drawing.groups[name], corners @ drawing.view.T
+            off[name] = float(np.abs(np.ptp(drawn, axis=0) - np.ptp(flat, axis=0)).max()) / within
+            shifts[name] = (drawn.min(axis=0) + drawn.max(axis=0)
+                            - flat.min(axis=0) - flat.max(axis=0)) / 2  # fmt: skip
+    worst = max(off, key=lambda name: off[name])
+    yield Measurement("assembly.drawing", f"{file} size", off[worst] * wanted[worst][1], 0,
+                      wanted[worst][1], "mm", f"of {worst}, against its size at 1:1")  # fmt: skip
+    if not all(name in shifts for name in LAYERS):
+        yield unreadable("assembly.drawing", f"{file} order", "a layer is missing")
+        return
+    rise = float(np.diff([shifts[name][1] for name in LAYERS]).min())
+    yield Measurement("assembly.drawing", f"{file} order", rise, ORDER_MM, math.inf, "mm",
+                      "least rise from layer to layer")  # fmt: skip
+    astray = {name: float(np.abs(shift - shifts["board"]).max())
+              for name, shift in shifts.items() if name not in LAYERS}  # fmt: skip
+    loose = max(astray, key=lambda name: astray[name])
+    yield Measurement("assembly.drawing", f"{file} place", astray[loose], 0, SIZE_MM, "mm",
+                      f"of {loose}, on its board")  # fmt: skip
+
+
+def _page(file: str, drawing: Drawing) -> Measurement:
+    """Least distance of anything drawn or written from the page's edge."""
+    every = np.concatenate([*drawing.groups.values(), *(extent for _, extent in drawing.words)])
+    (left, low), (right, high) = drawing.extent
+    margin = min(*(every.min(axis=0) - (left, low)), *((right, high) - every.max(axis=0)))
+    return Measurement("assembly.drawing_page", file, float(margin), MARGIN_MM, math.inf, "mm",
+                       "to the page's edge")  # fmt: skip
+
+
+def _labels(file: str, drawing: Drawing, design: Design, finger: Finger) -> Iterator[Measurement]:
+    """Words that are missing or wrong, and words that meet."""
+    stack = design.stack
+    kinds = [part.kind for part in finger.parts if part.side == "front"]
+    plural = {"led": "LEDs"}
+    wanted = [
+        f"Backing, {stack.plate_mm:g} mm", f"Board, {stack.pcb_mm:g} mm",
+        f"Silicone, {stack.silicone_mm:g} mm", f"Film, {stack.film_mm:g} mm",
+        f"{len(finger.connector.pads)} wires", f"{finger.name.capitalize()} finger, exploded",
+        *(f"{kinds.count(k)} {plural.get(k, k + 's')}" for k in dict.fromkeys(kinds)),
+    ]  # fmt: skip
+    told = [word for word, _ in drawing.words]
+    missing = [word for word in wanted if word not in told]
+    note = f"of {len(wanted)}" + (f", first {missing[0]!r}" if missing else "")
+    yield Measurement("assembly.drawing_labels", file, len(missing), 0, 0, "missing", note)
+    columns: dict[float, list[float]] = {}
+    for text in (extent for _, extent in drawing.words):
+        columns.setdefault(round(float(text[0, 0]), 1), []).append(float(text[0, 1]))
+    gap = min(float(np.diff(sorted(c)).min(initial=math.inf)) for c in columns.values())
+    yield Measurement("assembly.drawing_labels", f"{file} lines", gap, COLUMN_MM, math.inf, "mm",
+                      "from a line of words to the next")  # fmt: skip
+
+
+def _block(box: Box, low_mm: float, high_mm: float) -> Vectors:
+    corners = [(x, y) for x in (box.x_min_mm, box.x_max_mm) for y in (box.y_min_mm, box.y_max_mm)]
+    return _between(np.array(corners), low_mm, high_mm)
+
+
+def _between(flat: Vectors, low_mm: float, high_mm: float) -> Vectors:
+    levels = [np.column_stack([flat, np.full(len(flat), z)]) for z in (low_mm, high_mm)]
+    return np.concatenate(levels)

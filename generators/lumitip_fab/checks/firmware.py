@@ -1,0 +1,118 @@
+"""The sketch folder against the layout: channel map, pins, identity and name in the written
+headers, and no file missing. That `layout.json` is the same layout is checked in `layout`."""
+
+import math
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+from lumitip.layout import Layout
+from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip_fab.design import Design
+
+READS = ("firmware/*",)
+_LAYOUT, _PROTOCOL = "firmware/layout.h", "firmware/protocol.h"
+_SKETCH = "firmware/firmware.ino"
+
+
+def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
+    """Read both headers as a compiler would, and hold them against the cells."""
+    layout = design.layout
+    wired, told = _text(outputs / _LAYOUT), _text(outputs / _PROTOCOL)
+    yield _channels(wired, layout)
+    yield _pins(wired, layout, design)
+    yield _converter(wired, layout, design)
+    yield _hash(wired, told, layout)
+    name = re.search(r'#define LUMITIP_DEVICE_NAME "(.*)"$', told, re.MULTILINE)
+    same = name is not None and re.sub(r"\\(.)", r"\1", name[1]) == design.controller.name
+    yield _faults("firmware.name", _PROTOCOL, int(not same), "Bluetooth name")
+    yield _complete(outputs)
+
+
+def _channels(text: str, layout: Layout) -> Measurement:
+    """Multiplexer and channel of every cell, in frame order."""
+    mux, channel = _table(text, "MUX"), _table(text, "CHANNEL")
+    if not len(mux) == len(channel) == len(layout) == _number(text, "CELLS"):
+        reason = f"{len(mux)} multiplexers and {len(channel)} channels, {len(layout)} cells"
+        return unreadable("firmware.channels", _LAYOUT, reason)
+    pairs = zip(mux, channel, layout.mux.tolist(), layout.channel.tolist(), strict=True)
+    wrong = sum((m, c) != (wanted_m, wanted_c) for m, c, wanted_m, wanted_c in pairs)
+    return Measurement("firmware.channels", _LAYOUT, float(wrong), 0, 0, "cells",
+                       f"of {len(layout)} on another input than in the layout")  # fmt: skip
+
+
+def _pins(text: str, layout: Layout, design: Design) -> Measurement:
+    """The analog pin that reads each cell, and the order of the select lines."""
+    analog, select = _list(text, "LUMITIP_ADC_PINS"), _list(text, "LUMITIP_SELECT_PINS")
+    wanted = dict(zip(layout.mux.tolist(), layout.adc_pin.tolist(), strict=True))
+    faults = sum(analog[m : m + 1] != [pin] for m, pin in wanted.items())
+    faults += abs(len(analog) - len(wanted))
+    # Arduino's functions take D6 as 6, and A0 by its name.
+    numbers = [re.sub(r"^D(?=\d+$)", "", pin) for pin in design.wiring.select_pins]
+    faults += int(select != numbers)
+    return _faults("firmware.pins", _LAYOUT, faults, "analog and select pins")
+
+
+def _converter(text: str, layout: Layout, design: Design) -> Measurement:
+    """What the scan is worked out from: lines, inputs, bits, pull-up and capacitance."""
+    lines, channel = len(design.wiring.select_pins), design.electrical.channel
+    wanted = {
+        "MUXES": design.wiring.muxes,
+        "SELECT_LINES": lines,
+        "CHANNELS": 2**lines,
+        "ADC_BITS": design.controller.adc_bits,
+        "PULL_UP_OHM": round(layout.optics.pull_up_ohm),
+        "LINE_PF": math.ceil(channel.line_pf + channel.detector_pf),
+    }
+    wrong = [name for name, value in wanted.items() if _number(text, name) != value]
+    return _faults("firmware.converter", _LAYOUT, len(wrong), ", ".join(wrong) or "inputs, bits")
+
+
+def _hash(wired: str, told: str, layout: Layout) -> Measurement:
+    """The design hash, whole in both headers and shortened for packets and status."""
+    wanted = layout.design_hash
+    told_bytes = re.search(r"DESIGN_HASH\[8\] = \{([^}]*)\}", told)
+    code = re.search(r"DESIGN_CODE = (0x[0-9a-f]{4});", told)
+    faults = int(f'LAYOUT_HASH[] = "{wanted}"' not in wired)
+    faults += int(f'PROTOCOL_HASH[] = "{wanted}"' not in told)
+    faults += int(code is None or int(code[1], 16) != int(wanted[:4], 16))
+    shortened = [f"0x{wanted[i : i + 2]}" for i in range(0, 16, 2)]
+    faults += int(told_bytes is None or told_bytes[1].split(", ") != shortened)
+    return _faults("firmware.hash", _LAYOUT, faults, "equals the layout's")
+
+
+def _complete(outputs: Path) -> Measurement:
+    """Every header that a file includes is there, and the sketch is named like its folder."""
+    folder = outputs / "firmware"
+    files = [f for f in sorted(folder.glob("*")) if f.suffix in (".h", ".ino")]
+    asked = {n for f in files for n in re.findall(r'#include "([^"]+)"', _text(f))}
+    missing = sorted(n for n in asked | {Path(_SKETCH).name} if not (folder / n).is_file())
+    note = "missing: " + ", ".join(missing) if missing else f"of {len(files)}"
+    return Measurement("firmware.complete", _SKETCH, len(missing), 0, 0, "files", note)
+
+
+def _faults(check: str, subject: str, faults: int, note: str) -> Measurement:
+    return Measurement(check, subject, float(faults), 0, 0, "faults", note)
+
+
+def _text(file: Path) -> str:
+    """The text of a file; none where it cannot be read, which no figure then fits."""
+    try:
+        return file.read_text(encoding="utf-8")
+    except (OSError, ValueError):
+        return ""
+
+
+def _number(text: str, name: str) -> int | None:
+    found = re.search(rf"^constexpr \w+ {name} = (\d+);", text, re.MULTILINE)
+    return int(found[1]) if found else None
+
+
+def _table(text: str, name: str) -> list[int]:
+    found = re.search(rf"^constexpr \w+ {name}\[CELLS\] = \{{([\d,\s]*)\}};", text, re.MULTILINE)
+    return [int(value) for value in re.findall(r"\d+", found[1])] if found else []
+
+
+def _list(text: str, name: str) -> list[str]:
+    found = re.search(rf"^#define {name} (.*)$", text, re.MULTILINE)
+    return found[1].split(", ") if found else []

@@ -1,0 +1,60 @@
+"""What the circuit does: figures in closed form, which the tests hold against a simulation."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Strings:
+    """Currents of the LED strings beyond the nominal ones in `Wiring`."""
+
+    forward_v: float
+    """Forward voltage of an LED at `target_ma`."""
+    forward_tolerance_v: float
+    ideality: float
+    """The voltage grows by this many times the thermal voltage for each factor e of current."""
+    target_ma: float
+    supply_tolerance: float
+    """Fraction by which the supply may be off, either way."""
+    low_ma: tuple[float, ...]
+    """Of each string with the lowest supply and the highest forward voltages."""
+    high_ma: tuple[float, ...]
+    fewer_leds: int
+    """A shorter string, to compare: LEDs in it, and its currents."""
+    fewer_low_ma: float
+    fewer_high_ma: float
+    resistor_w: float
+    """Largest load of a string resistor, nominal."""
+    resistor_high_w: float
+    """The same at the highest current."""
+
+
+@dataclass(frozen=True)
+class Channel:
+    """What the controller sees of a detector."""
+
+    supply_v: float
+    """Of the detectors, which is also the reference of the ADC."""
+    light_current_ua: float
+    dark_current_na: float
+    saturation_v: float
+    on_resistance_ohm: float
+    detector_pf: float
+    line_pf: float
+    """Common terminal of the multiplexer, wire and input of the controller."""
+    step_v: float
+    """One step of the ADC."""
+    full_scale_v: float
+    """At full light."""
+    dark_v: float
+    settle_us: float
+    """From full light to darkness within half a step of the ADC, after a change of channel."""
+
+
+@dataclass(frozen=True)
+class Electrical:
+    """Figures of both boards."""
+
+    strings: Strings
+    channel: Channel
+    heat_w: float
+    """LEDs and string resistors, nominal."""

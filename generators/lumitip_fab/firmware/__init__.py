@@ -1,0 +1,1 @@
+"""The sketch folder: what every design shares, and two headers written for this one."""

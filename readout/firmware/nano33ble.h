@@ -1,0 +1,134 @@
+// The Arduino Nano 33 BLE as a Board: pins, Bluetooth, serial over USB, watchdog, light.
+#pragma once
+
+#include <Arduino.h>
+#include <ArduinoBLE.h>
+#include <nrf.h>
+#include <utility/ATT.h>
+
+#include "blink.h"
+#include "device.h"
+#include "protocol.h"
+
+namespace lumitip {
+
+class Nano33Ble {
+ public:
+  // Returns what is wrong already.
+  uint16_t begin() {
+    const bool bitten = (NRF_POWER->RESETREAS & POWER_RESETREAS_DOG_Msk) != 0;
+    NRF_POWER->RESETREAS = POWER_RESETREAS_DOG_Msk;  // writing a one clears it
+    for (uint8_t line = 0; line < SELECT_LINES; ++line) {
+      pinMode(SELECT_PINS[line], OUTPUT);
+    }
+    pinMode(LED_BUILTIN, OUTPUT);
+    analogReadResolution(ADC_BITS);
+    Serial.begin(115200);  // over USB: the rate means nothing
+    beginBluetooth();
+    beginWatchdog();
+    return bitten ? WATCHDOG_RESET : 0;
+  }
+
+  // Between frames: serves the radio and tells the watchdog that all is well.
+  void poll() {
+    NRF_WDT->RR[0] = WDT_RR_RR_Reload;
+    if (bluetooth_) {
+      BLE.poll();
+    }
+  }
+
+  void light(uint16_t faults) {
+    Flashes flashes = LISTENED_TO;
+    if (!bluetooth_) {
+      flashes = NO_BLUETOOTH;
+    } else if (faults & MTU_TOO_SMALL) {
+      flashes = TOO_SMALL_MTU;
+    } else if (!BLE.connected() && !serialOpen()) {
+      flashes = WAITING;
+    }
+    digitalWrite(LED_BUILTIN, lightOn(millis(), flashes) ? HIGH : LOW);
+  }
+
+  void select(uint8_t line, bool high) { digitalWrite(SELECT_PINS[line], high ? HIGH : LOW); }
+  uint16_t read(uint16_t mux) { return static_cast<uint16_t>(analogRead(ADC_PINS[mux])); }
+  void waitUs(uint32_t us) { delayMicroseconds(us); }
+  uint32_t microseconds() { return micros(); }
+
+  // ArduinoBLE cuts notifications off at the MTU and has no call that tells it. Its ATT layer
+  // knows the MTU of each connection handle, and 23 for handles that are not in use.
+  uint16_t mtu() {
+    if (!bluetooth_ || !ATT.connected()) {
+      return 0;
+    }
+    uint16_t largest = 0;
+    for (uint16_t handle = 0; handle < MOST_HANDLES; ++handle) {
+      const uint16_t mtu = ATT.mtu(handle);
+      largest = mtu > largest ? mtu : largest;
+    }
+    return largest;
+  }
+
+  bool subscribed() { return bluetooth_ && frames_.subscribed(); }
+  bool notify(const uint8_t* data, size_t size) { return write(frames_, data, size); }
+  bool status(const uint8_t* data, size_t size) { return write(status_, data, size); }
+
+  bool legacy(const uint8_t* data, size_t size) {
+    // Read or notified, but never cut off.
+    const bool fits = !legacy_.subscribed() || size + ATT_BYTES <= mtu();
+    return fits && write(legacy_, data, size);
+  }
+
+  bool serialOpen() { return static_cast<bool>(Serial); }
+
+  size_t serialWrite(const uint8_t* data, size_t size) {
+    uint32_t taken = 0;  // write() would wait for a computer that does not read
+    Serial.send_nb(const_cast<uint8_t*>(data), size, &taken);
+    return taken;
+  }
+
+ private:
+  static constexpr uint16_t MOST_HANDLES = 8;
+
+  bool write(BLECharacteristic& to, const uint8_t* data, size_t size) {
+    return bluetooth_ && to.writeValue(data, static_cast<int>(size)) > 0;
+  }
+
+  void beginBluetooth() {
+    bluetooth_ = BLE.begin() != 0;
+    if (!bluetooth_) {
+      return;
+    }
+    BLE.setLocalName(LUMITIP_DEVICE_NAME);
+    BLE.setDeviceName(LUMITIP_DEVICE_NAME);
+    BLE.setConnectionInterval(6, 12);  // in steps of 1.25 ms: 7.5 to 15 ms
+    service_.addCharacteristic(frames_);
+    service_.addCharacteristic(status_);
+    BLE.addService(service_);
+    legacyService_.addCharacteristic(legacy_);
+    BLE.addService(legacyService_);
+    BLE.setAdvertisedService(service_);
+    bluetooth_ = BLE.advertise() != 0;
+  }
+
+  void beginWatchdog() {
+    if (LUMITIP_WATCHDOG_S == 0) {
+      return;
+    }
+    NRF_WDT->CONFIG = WDT_CONFIG_SLEEP_Run << WDT_CONFIG_SLEEP_Pos;
+    NRF_WDT->CRV = 32768u * LUMITIP_WATCHDOG_S - 1;
+    NRF_WDT->RREN = WDT_RREN_RR0_Msk;
+    NRF_WDT->TASKS_START = 1;
+  }
+
+  const int ADC_PINS[MUXES] = {LUMITIP_ADC_PINS};
+  const int SELECT_PINS[SELECT_LINES] = {LUMITIP_SELECT_PINS};
+
+  BLEService service_{SERVICE_UUID};
+  BLECharacteristic frames_{FRAMES_UUID, BLENotify, NOTIFICATION_BYTES};
+  BLECharacteristic status_{STATUS_UUID, BLERead | BLENotify, STATUS_BYTES, true};
+  BLEService legacyService_{LEGACY_SERVICE_UUID};
+  BLECharacteristic legacy_{LEGACY_FRAMES_UUID, BLERead | BLENotify, CELLS, true};
+  bool bluetooth_ = false;
+};
+
+}  // namespace lumitip

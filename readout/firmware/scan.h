@@ -1,0 +1,99 @@
+// Reads every cell once: the multiplexers step through their inputs in Gray-code order, so that
+// only one select line changes at a time, and each input settles before it is read.
+//
+// Hardware: select(line, high), read(mux) -> code of ADC_BITS bits, waitUs(us).
+#pragma once
+
+#include <stdint.h>
+
+#include "layout.h"
+#include "settings.h"
+#include "wiring.h"
+
+namespace lumitip {
+
+constexpr uint16_t FULL_SCALE = (1u << ADC_BITS) - 1;
+
+// The pull-up charges the line until half a step of the bits sent is left: R C ln(2^(BITS + 1)).
+constexpr double SETTLED_US = PULL_UP_OHM * 1e-6 * LINE_PF * 0.6931472 * (BITS + 1);
+constexpr uint32_t SETTLE_US = static_cast<uint32_t>(SETTLE_FACTOR * SETTLED_US) + 1;
+
+template <class Hardware, unsigned Samples = SAMPLES>
+class Scanner {
+ public:
+  explicit Scanner(Hardware& hardware) : hardware_(hardware) {}
+
+  void begin() {
+    for (uint8_t line = 0; line < SELECT_LINES; ++line) {
+      hardware_.select(line, false);
+    }
+    selected_ = 0;
+  }
+
+  // Writes the code of each cell, in frame order.
+  void scan(uint16_t* codes) {
+    for (uint16_t step = 0; step < CHANNELS; ++step) {
+      const uint16_t channel = step ^ (step >> 1);
+      select(channel);
+      if (inUse(channel)) {
+        hardware_.waitUs(SETTLE_US);
+        readAll(channel, codes);
+      }
+    }
+  }
+
+  // The same without ambient light, where the light of the emitter can be switched:
+  // light(on) switches it and waits until it is steady. Dark is high, so ambient light lowers
+  // a code; what it lowers without the emitter is given back.
+  template <class Light>
+  void scan(uint16_t* codes, Light&& light) {
+    uint16_t unlit[CELLS];
+    light(false);
+    scan(unlit);
+    light(true);
+    scan(codes);
+    for (uint16_t cell = 0; cell < CELLS; ++cell) {
+      const uint32_t code = uint32_t{codes[cell]} + (FULL_SCALE - unlit[cell]);
+      codes[cell] = static_cast<uint16_t>(code < FULL_SCALE ? code : FULL_SCALE);
+    }
+  }
+
+ private:
+  static bool inUse(uint16_t channel) {
+    for (uint16_t mux = 0; mux < MUXES; ++mux) {
+      if (INPUT_MAP.cell[mux][channel] != NO_CELL) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  void select(uint16_t channel) {
+    for (uint8_t line = 0; line < SELECT_LINES; ++line) {
+      const uint16_t bit = 1u << line;
+      if ((channel ^ selected_) & bit) {
+        hardware_.select(line, (channel & bit) != 0);
+      }
+    }
+    selected_ = channel;
+  }
+
+  void readAll(uint16_t channel, uint16_t* codes) {
+    for (uint16_t mux = 0; mux < MUXES; ++mux) {
+      const uint16_t cell = INPUT_MAP.cell[mux][channel];
+      if (cell == NO_CELL) {
+        continue;
+      }
+      uint32_t sum = Samples / 2;
+      for (unsigned i = 0; i < Samples; ++i) {
+        sum += hardware_.read(mux);
+      }
+      codes[cell] = static_cast<uint16_t>(sum / Samples);
+    }
+  }
+
+  Hardware& hardware_;
+  uint16_t selected_ = 0;
+};
+
+}  // namespace lumitip

@@ -1,0 +1,38 @@
+// What may be tuned. Each value can also be given to the compiler: -DLUMITIP_BITS=10.
+#pragma once
+
+#include <stdint.h>
+
+#ifndef LUMITIP_BITS
+#define LUMITIP_BITS 8  // of each value sent: 8, 10 or 12, not more than the converter has
+#endif
+#ifndef LUMITIP_PERIOD_US
+#define LUMITIP_PERIOD_US 5000  // from frame to frame; a scan of 32 cells takes about 1.5 ms
+#endif
+#ifndef LUMITIP_LATENCY_US
+#define LUMITIP_LATENCY_US 7500  // a frame waits no longer for others to share its packet
+#endif
+#ifndef LUMITIP_SAMPLES
+#define LUMITIP_SAMPLES 1  // conversions whose mean is one value
+#endif
+#ifndef LUMITIP_SETTLE_FACTOR
+#define LUMITIP_SETTLE_FACTOR 2  // times the computed settling: for tolerances and long wires
+#endif
+#ifndef LUMITIP_WATCHDOG_S
+#define LUMITIP_WATCHDOG_S 10  // longer than a lost connection blocks the radio; 0: none
+#endif
+
+namespace lumitip {
+
+constexpr uint8_t BITS = LUMITIP_BITS;
+constexpr uint16_t PERIOD_US = LUMITIP_PERIOD_US;
+constexpr uint32_t LATENCY_US = LUMITIP_LATENCY_US;
+constexpr uint8_t SAMPLES = LUMITIP_SAMPLES;
+constexpr uint8_t SETTLE_FACTOR = LUMITIP_SETTLE_FACTOR;
+constexpr uint8_t FIRMWARE_VERSION[3] = {1, 0, 0};
+
+static_assert(LUMITIP_PERIOD_US >= 100 && LUMITIP_PERIOD_US <= 65535, "PERIOD_US: 100 to 65535");
+static_assert(LUMITIP_SAMPLES >= 1 && LUMITIP_SAMPLES <= 64, "SAMPLES: 1 to 64");
+static_assert(BITS == 8 || BITS == 10 || BITS == 12, "BITS: 8, 10 or 12");
+
+}  // namespace lumitip

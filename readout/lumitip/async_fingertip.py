@@ -1,0 +1,163 @@
+"""`AsyncFingertip`: `Fingertip` for asyncio.
+
+async with AsyncFingertip.open("ble://Lumitip", layout="outputs/layout.json") as tip:
+    async for frame in tip: ...
+"""
+
+import asyncio
+import contextlib
+import threading
+from collections.abc import AsyncIterator
+from types import TracebackType
+from typing import Any
+
+from lumitip.arguments import count, seconds
+from lumitip.calibration import Calibration, Kind
+from lumitip.errors import EndOfRecording, FingertipClosed
+from lumitip.fingertip import Fingertip
+from lumitip.frame import Block, Frame, ended_early, too_late
+from lumitip.hub import Hub
+
+
+class AsyncFingertip:
+    """An open fingertip, read by coroutines of one loop; made by `AsyncFingertip.open`.
+
+    Coroutines are for the loop that entered it, where any number of tasks may call them; `open`,
+    `latest` and `fingertip` may be called from any thread.
+
+    `tip.fingertip` is the plain one underneath, for what needs no waiting: `latest()`, `stats`,
+    `layout`, `device_id`, `connected`, `drift`, `calibration`, `subscribe`.
+    """
+
+    def __init__(self, url: str, options: dict[str, Any]) -> None:
+        self._url = url
+        self._options = options
+        self._open: Fingertip | None = None
+        self._queue: _AsyncQueue | None = None
+        self._opening = threading.Lock()
+        self._abandoned = False
+
+    @classmethod
+    def open(cls, url: str, layout: Any = None, **options: Any) -> "AsyncFingertip":
+        """A fingertip to enter with `async with`; arguments and errors as of `Fingertip.open`.
+        From any thread."""
+        return cls(url, {"layout": layout, **options})
+
+    @property
+    def fingertip(self) -> Fingertip:
+        """The plain fingertip underneath. From any thread.
+
+        Raises:
+            FingertipClosed: outside of `async with`.
+        """
+        if self._open is None:
+            raise FingertipClosed("not open: use `async with AsyncFingertip.open(url) as tip:`")
+        return self._open
+
+    def latest(self) -> Frame | None:
+        """As `Fingertip.latest`; from any thread."""
+        return self.fingertip.latest()
+
+    async def read(self, timeout: float | None = 1.0) -> Frame:
+        """As `Fingertip.read`, for tasks of the loop; a call that is cancelled takes no frame."""
+        return await self._reading().next(timeout)
+
+    async def get_data(self, num_samples: int, timeout: float | None = 10.0) -> Block:
+        """As `Fingertip.get_data`, for tasks of the loop, also in what its errors hold."""
+        wanted, within_s = count(num_samples, "num_samples"), seconds(timeout)
+        frames: list[Frame] = []
+        try:
+            async with asyncio.timeout(within_s):
+                while len(frames) < wanted:
+                    frames.append(await self._reading().next(None))
+        except TimeoutError:
+            raise too_late(frames, wanted, within_s or 0.0) from None
+        except EndOfRecording as end:
+            raise ended_early(frames, wanted, end) from None
+        return Block.of(frames)
+
+    async def tare(self, kind: Kind = "empty", **options: Any) -> Calibration:
+        """As `Fingertip.tare`, for tasks of the loop, which runs on meanwhile."""
+        return await asyncio.to_thread(self.fingertip.tare, kind, **options)
+
+    async def __aiter__(self) -> AsyncIterator[Frame]:
+        """Every frame from the first step of the loop on, to the end of a recording or closing.
+        Any number of tasks of the loop may do so, each with every frame."""
+        tip = self.fingertip
+        queue = _AsyncQueue(tip._hub, tip._buffer)
+        try:
+            while True:
+                yield await queue.next(None)
+        except (EndOfRecording, FingertipClosed):
+            return
+        finally:
+            queue.end()
+
+    async def __aenter__(self) -> "AsyncFingertip":
+        try:
+            await asyncio.to_thread(self._open_now)
+        except asyncio.CancelledError:
+            self._abandon()
+            raise
+        return self
+
+    async def __aexit__(
+        self, _: type[BaseException] | None, __: BaseException | None, ___: TracebackType | None
+    ) -> None:
+        tip, self._open, self._queue = self.fingertip, None, None
+        await asyncio.to_thread(tip.close)
+
+    def _open_now(self) -> None:
+        tip = Fingertip.open(self._url, **self._options)
+        with self._opening:
+            self._open = tip
+            abandoned = self._abandoned
+        if abandoned:
+            tip.close()
+
+    def _abandon(self) -> None:
+        # The thread that connects cannot be stopped: whoever is last closes what it opened.
+        with self._opening:
+            self._abandoned = True
+            tip = self._open
+        if tip is not None:
+            tip.close()
+
+    def _reading(self) -> "_AsyncQueue":
+        tip = self.fingertip
+        if self._queue is None:
+            self._queue = _AsyncQueue(tip._hub, tip._buffer)
+        return self._queue
+
+
+class _AsyncQueue:
+    """A queue of the hub that wakes coroutines instead of threads."""
+
+    def __init__(self, hub: Hub, size: int) -> None:
+        self._hub = hub
+        self._loop = asyncio.get_running_loop()
+        self._came = asyncio.Event()
+        self._queue = hub.queue(size, self._wake)
+
+    async def next(self, timeout_s: float | None) -> Frame:
+        """As `Hub.next`."""
+        timeout_s = seconds(timeout_s)
+        try:
+            async with asyncio.timeout(timeout_s):
+                while True:
+                    self._came.clear()
+                    frame = self._queue.get(0)
+                    if frame is not None:
+                        return frame
+                    await self._came.wait()
+        except TimeoutError:
+            raise self._hub.silent(timeout_s) from None
+
+    def end(self) -> None:
+        """Get nothing more."""
+        self._hub.remove(self._queue)
+
+    def _wake(self) -> None:
+        # Frames may still come while the program ends, when its loop is closed already.
+        with contextlib.suppress(RuntimeError):
+            self._loop.call_soon_threadsafe(self._came.set)

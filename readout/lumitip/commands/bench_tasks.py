@@ -1,0 +1,42 @@
+"""`lumitip bench-tasks`: how fast each controller follows cloth and cable in simulation."""
+
+import argparse
+from pathlib import Path
+
+from lumitip.commands.common import Subparsers
+
+
+def add(subparsers: Subparsers) -> None:
+    """Say what the command takes."""
+    told = (
+        "Follow simulated cloth edges and cables with each controller, faster and faster: "
+        "a table, and plots where matplotlib is installed."
+    )
+    parser = subparsers.add_parser("bench-tasks", help=told, description=told)
+    parser.add_argument(
+        "--layout", type=Path, metavar="FILE", help="layout.json (the published sensor's)"
+    )
+    parser.add_argument(
+        "--trials", type=int, default=100, metavar="N", help="curves at each speed (100)"
+    )
+    parser.add_argument(
+        "--out", type=Path, default=Path("bench-tasks"), metavar="FOLDER",
+        help="where tasks.md, tasks.json and tasks.svg go (bench-tasks)",
+    )  # fmt: skip
+
+
+def run(options: argparse.Namespace) -> int:
+    """Carry it out."""
+    from lumitip.errors import LumitipError
+    from lumitip.layout import Layout
+    from lumitip.links.twin import published_layout
+    from lumitip.tasks.bench import bench_tasks
+    from lumitip.tasks.report import write
+
+    if options.trials < 1:
+        raise LumitipError(f"--trials {options.trials} given, one or more are needed")
+    layout = Layout.load(options.layout) if options.layout else published_layout()
+    results = bench_tasks(layout, options.trials, say=print)
+    for path in write(results, options.out):
+        print(path)
+    return 0

@@ -1,0 +1,78 @@
+"""`Sight`: the little that control needs of a `Contact` or an `Estimate`."""
+
+import math
+from dataclasses import dataclass
+
+from lumitip.estimation import KINDS, Estimate
+from lumitip.processing import Contact
+
+_STEEPEST_DEG = 80.0  # a line across the way of the finger cannot be followed
+_CORNER_DEG = 30.0  # a corner opens by a right angle within this; what is flatter is a curve
+_CORNER_MM = 13.0  # a vertex further from the middle is not seen by enough cells
+_BEARABLE = frozenset({"misfit", "unfinished"})
+
+
+@dataclass(frozen=True, slots=True)
+class Sight:
+    """What is followed, in the sensor frame."""
+
+    height_mm: float | None = None
+    """Where the line crosses x = 0 (mm); `None` without a line that can be followed."""
+    angle: float = 0.0
+    """Direction of the line against x (rad)."""
+    centre_mm: float | None = None
+    """Height of the middle of the dark (mm); told by a `Contact` alone."""
+    corner_mm: float | None = None
+    """How far ahead in x the vertex of a corner is (mm); `None` without a corner."""
+
+
+def sight_of(seen: Contact | Estimate) -> Sight:
+    """What control needs of what was seen.
+
+    A corner's border is followed like an edge's. An estimate that says itself that it is wrong
+    shows no line.
+    """
+    if isinstance(seen, Contact):
+        return _of_contact(seen)
+    # A curved line misfits its straight model, and is a line all the same.
+    if seen.kind not in KINDS or not _BEARABLE.issuperset(seen.flags):
+        return Sight()
+    corner_mm = None
+    if seen.vertex_mm is not None and abs(seen.opening_deg - 90.0) <= _CORNER_DEG:
+        corner_mm = _ahead(seen.vertex_mm[0])
+    return _line(seen.offset_mm, seen.angle_deg, None, corner_mm)
+
+
+def _of_contact(seen: Contact) -> Sight:
+    centre_mm = seen.centre_mm[1] if seen.centre_mm else None
+    line = seen.line
+    corner_mm = None
+    if seen.shape == "cable" and seen.cable is not None:
+        point_mm, angle_deg = seen.cable.axis_point_mm, seen.cable.angle_deg
+    elif seen.shape == "corner" and seen.corner is not None:
+        point_mm = seen.corner.vertex_mm
+        if abs(seen.corner.opening_deg - 90.0) <= _CORNER_DEG:
+            corner_mm = _ahead(point_mm[0])
+        # Of both rays the one that lies along the way, told as a line.
+        ray = min(seen.corner.directions_deg, key=lambda a: abs(math.sin(math.radians(a))))
+        angle_deg = (ray + 90.0) % 180.0 - 90.0
+    elif line is not None:
+        point_mm, angle_deg = line.point_mm, line.angle_deg
+    else:
+        return Sight(centre_mm=centre_mm)
+    turn = math.radians(angle_deg)
+    offset_mm = point_mm[1] * math.cos(turn) - point_mm[0] * math.sin(turn)
+    return _line(offset_mm, angle_deg, centre_mm, corner_mm)
+
+
+def _line(
+    offset_mm: float, angle_deg: float, centre_mm: float | None, corner_mm: float | None
+) -> Sight:
+    if abs(angle_deg) > _STEEPEST_DEG:
+        return Sight(centre_mm=centre_mm, corner_mm=corner_mm)
+    turn = math.radians(angle_deg)
+    return Sight(offset_mm / math.cos(turn), turn, centre_mm, corner_mm)
+
+
+def _ahead(vertex_mm: float) -> float | None:
+    return vertex_mm if abs(vertex_mm) <= _CORNER_MM else None

@@ -1,0 +1,117 @@
+"""Levenberg–Marquardt with a Huber loss on what the cells read."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumitip.estimation.shapes import Shape
+from lumitip.grid import Floats
+
+ROUNDS = 12
+_FLOOR = 1e-6
+_SETTLED = 1e-3  # loss that a last step may still promise
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """One frame as the fit sees it; arrays of shape `(cells,)`."""
+
+    light: Floats
+    """Shares of the empty grasp's light."""
+    scale: Floats
+    """One over the standard deviation of each share."""
+    counts: Floats
+    """Counts of 255 that a share of one is worth there."""
+    full: NDArray[np.bool_]
+    """Cells that read full light: more of it would read the same."""
+    huber: float
+    """Standard deviations beyond which the loss grows linearly."""
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """Where the fit ended."""
+
+    pose: Floats
+    """With `light` and `taken` at its end."""
+    cost: float
+    """Sum of Huber losses, in standard deviations squared."""
+    normal: Floats
+    """Matrix of the normal equations, shape `(p, p)`."""
+    model: Floats
+    """Shares that the pose gives, shape `(cells,)`."""
+    settled: bool
+
+
+def fit(shape: Shape, start: Floats, frame: Frame, rounds: int = ROUNDS) -> Fit:
+    """The pose of least loss near a start.
+
+    Args:
+        shape: the object.
+        start: pose with `light` and `taken` at its end.
+        frame: what was read.
+        rounds: most steps.
+    """
+    means, deviations = shape.priors()
+    # Light beside the object is that of the empty grasp but for drift; sheets take what they will.
+    known = np.concatenate([means, [1.0, 0.0]])
+    strength = 1.0 / np.concatenate([deviations, [0.1, np.inf]]) ** 2
+    tied = 400.0 if shape.kind == "cable" else 1.0  # cables are opaque, sheets need not be
+    pose = np.array(start, dtype=np.float64)
+    damping, settled = 1e-3, False
+    now = _Point(shape, pose, frame, known, strength, tied)
+    for _ in range(rounds):
+        matrix = now.normal.copy()
+        # The floor keeps the matrix regular where a line has left every cell's sight.
+        matrix.flat[:: pose.size + 1] += damping * now.normal.diagonal() + _FLOOR
+        step = np.linalg.solve(matrix, now.slope)
+        expected = float(step @ now.slope)
+        then = _Point(shape, pose + step, frame, known, strength, tied)
+        if then.cost <= now.cost:
+            gained = now.cost - then.cost
+            pose, now, damping = pose + step, then, damping * 0.1
+            if expected < _SETTLED or gained < 1e-3 * now.cost:
+                settled = True
+                break
+        else:
+            if expected < _SETTLED:
+                settled = True
+                break
+            damping = max(damping, 1e-4) * 20.0
+    return Fit(pose, now.cost, now.normal, now.model, settled)
+
+
+class _Point:
+    """Loss and normal equations at one pose."""
+
+    __slots__ = ("cost", "model", "normal", "slope")
+
+    def __init__(
+        self, shape: Shape, pose: Floats, frame: Frame, known: Floats, strength: Floats, tied: float
+    ) -> None:
+        share, slopes = shape.slopes(pose)
+        taken = pose[-1]
+        self.model = pose[-2] - taken * share
+        miss = (frame.light - self.model) * frame.scale
+        miss[frame.full & (miss < 0.0)] = 0.0
+        size = np.abs(miss)
+        weight = frame.huber / np.maximum(size, frame.huber)
+        by_pose = np.empty((pose.size, share.size))
+        np.multiply(slopes, -taken, out=by_pose[:-2])
+        by_pose[-2] = 1.0
+        np.negative(share, out=by_pose[-1])
+        by_pose *= frame.scale
+        weighted = by_pose * weight
+        away, opaque = known - pose, pose[-2] - taken
+        self.normal = weighted @ by_pose.T
+        self.normal.flat[:: pose.size + 1] += strength
+        self.slope = weighted @ miss + strength * away
+        self.normal[-2:, -2:] += tied * _TIE
+        self.slope[-2] -= tied * opaque
+        self.slope[-1] += tied * opaque
+        loss = weight * size * (2.0 * size - weight * size)
+        self.cost = float(loss.sum() + strength @ away**2 + tied * opaque**2)
+
+
+_TIE = np.array([[1.0, -1.0], [-1.0, 1.0]])

@@ -1,0 +1,173 @@
+"""What each kind of object does to the cells: shares of light and their derivatives by the pose.
+
+A pose is a vector that ends with `light` (beside the object, 1 is the empty grasp) and `taken`
+(of that, by the object): a cell gets `light − taken · share`. An edge covers what is right of its
+line. A corner is the product of its two edges, which is exact where a cell's light is spread
+alike in both directions and an approximation elsewhere.
+"""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from lumitip.estimation.lookup import Lookup
+from lumitip.grid import Floats
+
+_HALF_TURN = np.pi
+
+
+@dataclass(frozen=True, eq=False)
+class Cells:
+    """Where the cells are (mm), shape `(cells,)`."""
+
+    x_mm: Floats
+    y_mm: Floats
+
+    def beside(self, angle: Floats, offset_mm: Floats) -> Floats:
+        """Distance of the cells to the left of lines, shape `(..., cells)` (mm)."""
+        angle, offset_mm = np.asarray(angle)[..., None], np.asarray(offset_mm)[..., None]
+        left: Floats = self.y_mm * np.cos(angle) - self.x_mm * np.sin(angle) - offset_mm
+        return left
+
+    def ahead(self, angle: Floats) -> Floats:
+        """Distance of the cells along directions, shape `(..., cells)` (mm)."""
+        angle = np.asarray(angle)[..., None]
+        along: Floats = self.x_mm * np.cos(angle) + self.y_mm * np.sin(angle)
+        return along
+
+
+class Shape(Protocol):
+    """A kind of object."""
+
+    names: tuple[str, ...]
+    """Entries of a pose before `light` and `taken`; angles in rad."""
+    kind: str
+
+    def shares(self, poses: Floats) -> Floats:
+        """Shares of light taken at many poses, shape `(n, cells)`."""
+
+    def slopes(self, pose: Floats) -> tuple[Floats, Floats]:
+        """Share at one pose, shape `(cells,)`, and its derivatives, shape `(entries, cells)`."""
+
+    def priors(self) -> tuple[Floats, Floats]:
+        """What is known beforehand of each entry of a pose: means and standard deviations."""
+
+
+class Edge:
+    """A half-plane; pose (angle, offset_mm, light, taken)."""
+
+    kind = "edge"
+    names: tuple[str, ...] = ("angle_deg", "offset_mm")
+
+    def __init__(self, cells: Cells, table: Lookup) -> None:
+        self._cells, self._table = cells, table
+
+    def shares(self, poses: Floats) -> Floats:
+        """See `Shape`."""
+        return self._table.shares(poses[:, 0], self._cells.beside(poses[:, 0], poses[:, 1]))
+
+    def slopes(self, pose: Floats) -> tuple[Floats, Floats]:
+        """See `Shape`."""
+        angle = pose[0]
+        share, by_left, by_angle = self._table(angle, self._cells.beside(angle, pose[1]))
+        return share, np.stack([by_angle - by_left * self._cells.ahead(angle), -by_left])
+
+    def priors(self) -> tuple[Floats, Floats]:
+        """See `Shape`."""
+        return np.array([0.0, 0.0]), np.array([np.inf, np.inf])
+
+
+class Cable:
+    """A round cable; pose (angle, offset_mm, width_mm, light, taken).
+
+    Its table is of the diameter that is expected; other widths differ from it by strips at its
+    two borders.
+    """
+
+    kind = "cable"
+    names: tuple[str, ...] = ("angle_deg", "offset_mm", "width_mm")
+
+    def __init__(self, cells: Cells, table: Lookup, edge: Lookup, diameter_mm: float) -> None:
+        self._cells, self._table, self._edge = cells, table, edge
+        self._diameter_mm = diameter_mm
+        self._sides = np.array([1.0, -1.0, 1.0, -1.0])[:, None]
+        self._signs = np.array([1.0, -1.0, -1.0, 1.0])[:, None]
+
+    def shares(self, poses: Floats) -> Floats:
+        """See `Shape`; for poses of the diameter that is expected."""
+        return self._table.shares(poses[:, 0], self._cells.beside(poses[:, 0], poses[:, 1]))
+
+    def slopes(self, pose: Floats) -> tuple[Floats, Floats]:
+        """See `Shape`."""
+        angle = pose[0]
+        left = self._cells.beside(angle, pose[1])
+        share, by_left, by_angle = self._table(angle, left)
+        half = np.array([pose[2], pose[2], self._diameter_mm, self._diameter_mm])[:, None] / 2.0
+        strips = self._edge(np.full(4, angle), left - self._sides * half)
+        more, more_by_left, more_by_angle = (
+            np.add.reduce(self._signs * s, axis=0) for s in strips
+        )  # fmt: skip
+        by_left, by_angle = by_left + more_by_left, by_angle + more_by_angle
+        by_width = -0.5 * (strips[1][0] + strips[1][1])
+        ahead = self._cells.ahead(angle)
+        return share + more, np.stack([by_angle - by_left * ahead, -by_left, by_width])
+
+    def priors(self) -> tuple[Floats, Floats]:
+        """See `Shape`: the diameter within a tenth, more where the frame shows it."""
+        return np.array([0.0, 0.0, self._diameter_mm]), np.array(
+            [np.inf, np.inf, self._diameter_mm / 10.0]
+        )
+
+
+class Corner:
+    """A corner of a sheet; pose (angle, x_mm, y_mm, opening, light, taken), the angle from the
+    vertex into the sheet."""
+
+    kind = "corner"
+    names: tuple[str, ...] = ("angle_deg", "x_mm", "y_mm", "opening_deg")
+
+    def __init__(self, cells: Cells, table: Lookup) -> None:
+        self._cells, self._table = cells, table
+
+    def shares(self, poses: Floats) -> Floats:
+        """See `Shape`."""
+        angles, offsets = self.borders(poses.T)
+        one, two = (
+            self._table.shares(a, self._cells.beside(a, o))
+            for a, o in zip(angles, offsets, strict=True)
+        )
+        return one * two
+
+    def slopes(self, pose: Floats) -> tuple[Floats, Floats]:
+        """See `Shape`."""
+        angles, offsets = self.borders(pose)
+        shares, by_left, by_angle = self._table(angles, self._cells.beside(angles, offsets))
+        share = shares[0] * shares[1]
+        cos, sin = np.cos(angles)[:, None], np.sin(angles)[:, None]
+        turning = by_angle - by_left * (
+            (self._cells.x_mm - pose[1]) * cos + (self._cells.y_mm - pose[2]) * sin
+        )
+        one, two = shares[1], shares[0]
+        first, second = one * by_left[0], two * by_left[1]
+        by_first, by_second = one * turning[0], two * turning[1]
+        return share, np.stack([
+            by_first + by_second,
+            first * sin[0] + second * sin[1],
+            -first * cos[0] - second * cos[1],
+            0.5 * (by_first - by_second),
+        ])  # fmt: skip
+
+    def borders(self, pose: Floats) -> tuple[Floats, Floats]:
+        """Directions (rad) and offsets (mm) of both borders, the sheet to the right of each,
+        shape `(2, ...)`."""
+        angle, x_mm, y_mm, opening = pose[0], pose[1], pose[2], pose[3]
+        angles = np.stack([angle + opening / 2.0, angle - opening / 2.0 + _HALF_TURN])
+        return angles, y_mm * np.cos(angles) - x_mm * np.sin(angles)
+
+    def priors(self) -> tuple[Floats, Floats]:
+        """See `Shape`: corners of sheets open by 90 degrees, more or less."""
+        return (
+            np.array([0.0, 0.0, 0.0, np.pi / 2.0]),
+            np.array([np.inf, np.inf, np.inf, np.radians(12.0)]),
+        )

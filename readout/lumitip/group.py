@@ -1,0 +1,139 @@
+"""`FingertipGroup`: several fingertips read together, their frames aligned in time.
+
+with FingertipGroup.open({"left": "ble://A1", "right": "ble://A2"}, layout=path) as group:
+    moment = group.read()
+    moment["left"].values
+"""
+
+import math
+import time
+from collections import deque
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType, TracebackType
+from typing import Any
+
+from lumitip.arguments import seconds
+from lumitip.errors import ArgumentError, LinkTimeout
+from lumitip.fingertip import Fingertip
+from lumitip.frame import Frame
+from lumitip.layout import Layout
+
+
+@dataclass(frozen=True, eq=False)
+class Moment:
+    """A frame of each fingertip, as near to each other in time as they come. Immutable."""
+
+    frames: Mapping[str, Frame]
+    """By name."""
+
+    def __getitem__(self, name: str) -> Frame:
+        return self.frames[name]
+
+    @property
+    def t(self) -> float:
+        """The middle of their times (s)."""
+        times = [f.t for f in self.frames.values()]
+        return (min(times) + max(times)) / 2.0
+
+    @property
+    def spread_s(self) -> float:
+        """How far apart their times are (s): at most about a period of the slowest."""
+        times = [f.t for f in self.frames.values()]
+        return max(times) - min(times)
+
+
+class FingertipGroup:
+    """Several open fingertips; made by `FingertipGroup.open`.
+
+    `read` and `moments` are for one thread at a time; the fingertips in `tips` are read as usual.
+    """
+
+    def __init__(self, tips: Mapping[str, Fingertip]) -> None:
+        self.tips = MappingProxyType(dict(tips))
+        """The fingertips by name."""
+        self._waiting: dict[str, deque[Frame]] = {name: deque() for name in tips}
+
+    @classmethod
+    def open(
+        cls,
+        urls: Mapping[str, str],
+        layout: Layout | str | Path | Mapping[str, Layout | str | Path] | None = None,
+        **options: Any,
+    ) -> "FingertipGroup":
+        """Connect to every fingertip, or to none. From any thread.
+
+        Args:
+            urls: address of each by name.
+            layout: of all, or by name.
+            options: for all, as of `Fingertip.open`.
+
+        Raises:
+            ArgumentError: if no fingertip is named.
+            LumitipError: as `Fingertip.open`, for the first that fails; the others are closed.
+        """
+        if not isinstance(urls, Mapping) or not urls:
+            raise ArgumentError(
+                f"{urls!r:.40} given, names and addresses of at least one fingertip are needed: "
+                "{'left': 'ble://A1'}"
+            )
+        with ExitStack() as stack:
+            tips = {}
+            for name, url in urls.items():
+                own = layout.get(name) if isinstance(layout, Mapping) else layout
+                tips[name] = stack.enter_context(Fingertip.open(url, own, **options))
+            stack.pop_all()
+            return cls(tips)
+
+    def read(self, timeout: float | None = 1.0) -> Moment:
+        """The next moment at which every fingertip has a frame of its own, waiting up to `timeout`
+        (s), without one as long as it takes. The slowest sets the pace; frames of the others in
+        between are left out.
+
+        Raises:
+            LinkTimeout: if it did not come in time, naming the fingertip.
+            LinkError: if a fingertip is given up: why.
+        """
+        within_s = seconds(timeout)
+        until = math.inf if within_s is None else time.monotonic() + within_s
+        for name in self.tips:
+            self._fill(name, 1, until)
+        # The last of the heads is the first moment that all can meet.
+        t = max(waiting[0].t for waiting in self._waiting.values())
+        for name, waiting in self._waiting.items():
+            while waiting[0].t < t:
+                self._fill(name, 2, until)
+                if waiting[1].t - t >= t - waiting[0].t:
+                    break
+                waiting.popleft()
+        taken = {name: waiting.popleft() for name, waiting in self._waiting.items()}
+        return Moment(MappingProxyType(taken))
+
+    def moments(self, timeout: float | None = 1.0) -> Iterator[Moment]:
+        """`read` again and again; raises as it does."""
+        while True:
+            yield self.read(timeout)
+
+    def close(self) -> None:
+        """Disconnect all. From any thread, any number of times."""
+        for tip in self.tips.values():
+            tip.close()
+
+    def _fill(self, name: str, number: int, until: float) -> None:
+        waiting = self._waiting[name]
+        while len(waiting) < number:
+            try:
+                waiting.append(self.tips[name].read(max(0.0, until - time.monotonic())))
+            except LinkTimeout as error:
+                # What the others gave is kept for the next call.
+                raise LinkTimeout(f"{name}: {error}") from error
+
+    def __enter__(self) -> "FingertipGroup":
+        return self
+
+    def __exit__(
+        self, _: type[BaseException] | None, __: BaseException | None, ___: TracebackType | None
+    ) -> None:
+        self.close()

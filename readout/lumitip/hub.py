@@ -1,0 +1,199 @@
+"""One link and everyone who reads it: state, queues, events. What `Fingertip` stands on."""
+
+import logging
+import math
+import threading
+import time
+from collections.abc import Callable
+
+from lumitip.arguments import seconds
+from lumitip.drift import Drift, DriftWatch
+from lumitip.errors import EndOfRecording, FingertipClosed, LinkError, LinkTimeout
+from lumitip.frame import Frame
+from lumitip.intake import Intake, Source
+from lumitip.links.base import Arrival, Link, LinkEvent, Prepares, Report
+from lumitip.queues import FrameQueue
+from lumitip.stats import Counter, Stats
+
+_log = logging.getLogger(__name__)
+
+
+class Hub:
+    """Starts a link and hands its frames to queues. Every method may be called from any thread.
+
+    Args:
+        link: not yet started.
+        any_design: whether frames of another design are taken.
+        on_event: called on the link's thread with whatever happens to the link.
+    """
+
+    def __init__(self, link: Link, any_design: bool, on_event: Report | None) -> None:
+        self.link = link
+        self._counter = Counter()
+        self._on_event = on_event
+        source = Source(link.layout, lambda: link.device_id, any_design)
+        self.intake = Intake(source, self._counter, self._report)
+        self._drift = DriftWatch()
+        self._lock = threading.Lock()
+        self._changed = threading.Condition(self._lock)
+        self._queues: tuple[FrameQueue, ...] = ()
+        self._latest: Frame | None = None
+        self._connected = False
+        self._was_connected = False
+        self._over: LinkError | None = None
+
+    def start(self, timeout_s: float | None) -> None:
+        """Start the link and wait until it is connected, without a time as long as it takes.
+
+        Raises:
+            LinkTimeout: if it is not in time; the link is stopped then.
+            LinkError: why it cannot be; likewise.
+            ArgumentError: if this is no time; nothing is started.
+        """
+        timeout_s = seconds(timeout_s)
+        self.link.start(self._deliver, self._report)
+        until = math.inf if timeout_s is None else time.monotonic() + timeout_s
+        with self._changed:
+            while not (self._was_connected or self._over) and time.monotonic() < until:
+                self._changed.wait(min(until - time.monotonic(), threading.TIMEOUT_MAX))
+            failed = None if self._was_connected else self._over or self._too_late(timeout_s or 0)
+        if failed:
+            self.close(failed)
+            raise failed
+
+    def close(self, reason: LinkError | None = None) -> None:
+        """Stop the link; readers get what is queued, then the reason. May be called again."""
+        self._end(reason or FingertipClosed("the fingertip was closed: open it again"))
+        self.link.stop()
+
+    @property
+    def connected(self) -> bool:
+        """Whether the link stands at this moment."""
+        return self._connected
+
+    @property
+    def over(self) -> LinkError | None:
+        """Why no more frames will come, if so."""
+        return self._over
+
+    @property
+    def latest(self) -> Frame | None:
+        """The last frame that came."""
+        return self._latest
+
+    @property
+    def stats(self) -> Stats:
+        """What became of the frames."""
+        return self._counter.snapshot()
+
+    @property
+    def drift(self) -> Drift | None:
+        """How far the cells wandered."""
+        return self._drift.drift
+
+    def queue(self, size: int, notify: Callable[[], None] | None = None) -> FrameQueue:
+        """A queue that gets every frame from now on, until it is given back to `remove`."""
+        queue = FrameQueue(size, notify)
+        with self._lock:
+            self._queues += (queue,)
+            self._changed.notify_all()
+            over = self._over
+        if over:
+            queue.close(over)
+        return queue
+
+    def remove(self, queue: FrameQueue) -> None:
+        """Put nothing more into a queue."""
+        with self._lock:
+            self._queues = tuple(q for q in self._queues if q is not queue)
+        queue.cancel(FingertipClosed("this reader was given back"))
+
+    def next(self, queue: FrameQueue, timeout_s: float | None) -> Frame:
+        """The next frame of a queue.
+
+        Raises:
+            LinkTimeout: if none came in time.
+            LinkError: why none will come any more.
+            ArgumentError: if this is no time.
+        """
+        timeout_s = seconds(timeout_s)
+        frame = queue.get(timeout_s)
+        if frame is None:
+            raise self.silent(timeout_s)
+        return frame
+
+    def silent(self, timeout_s: float | None) -> LinkTimeout:
+        """What to raise when no frame came in time."""
+        return LinkTimeout(f"no frame in {timeout_s or 0:g} s: {self._why_silent()}")
+
+    def _too_late(self, timeout_s: float) -> LinkTimeout:
+        why = "is the device switched on and near? `lumitip scan` lists what can be seen"
+        if isinstance(self.link, Prepares):
+            why = self.link.why_late
+        return LinkTimeout(f"no connection after {timeout_s:g} s: {why}")
+
+    def _why_silent(self) -> str:
+        fault = self.intake.last_fault
+        if not self._connected:
+            return f"the link to {self.link.device_id} is cut and is being made again"
+        if fault:
+            return (
+                f"{self.stats.unreadable} packets came that cannot be read, the last: {fault.why}"
+            )
+        return f"{self.link.device_id} is connected but sends nothing; is its firmware running?"
+
+    def _deliver(self, arrival: Arrival) -> None:
+        if self._over:
+            return
+        try:
+            frames = self.intake.frames(arrival)
+        except LinkError as error:
+            # The link runs on until it is closed, since this is its own thread.
+            self._report(LinkEvent("failed", str(error), error))
+            return
+        if not frames:
+            return
+        if arrival.patient:
+            self._wait_for_reader()
+        last = self._latest = frames[-1]
+        for queue in self._queues:
+            if lost := queue.put(frames, wait=arrival.patient):
+                self._counter.lost("queue", lost)
+        if self._drift.add(last.raw, last.bits, last.t, last.t_device):
+            self._report(LinkEvent("warm", f"{self.link.device_id}: {self._drift.drift}"))
+
+    def _wait_for_reader(self) -> None:
+        with self._changed:
+            while not self._queues and not self._over:
+                self._changed.wait()
+
+    def _report(self, event: LinkEvent) -> None:
+        _log.info("%s: %s", event.kind, event.detail)
+        if event.kind == "connected":
+            self._now_connected()
+        elif event.kind == "lost":
+            self._connected = False
+        elif event.kind in ("failed", "ended"):
+            self._end(event.error or EndOfRecording(event.detail))
+        if self._on_event:
+            try:
+                self._on_event(event)
+            except Exception:  # noqa: BLE001 - a user's function must not end the link's thread
+                _log.exception("on_event failed on %s", event)
+
+    def _now_connected(self) -> None:
+        if self._was_connected:
+            self._counter.add("reconnects")
+            self.intake.reconnected()
+        with self._changed:
+            self._connected = self._was_connected = True
+            self._changed.notify_all()
+
+    def _end(self, reason: LinkError) -> None:
+        with self._changed:
+            self._over = self._over or reason
+            self._connected = False
+            self._changed.notify_all()
+            queues = self._queues
+        for queue in queues:
+            queue.close(self._over)

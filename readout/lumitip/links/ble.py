@@ -1,0 +1,188 @@
+"""`ble://Lumitip`: packets as Bluetooth notifications; version 2, or version 1 of the published
+sensor.
+
+    ble://NAME-OR-ADDRESS?adapter=hci0&scan=8
+
+Without a name the only fingertip in sight is taken; `scan` is how long to look for it (s). bleak
+runs in a thread of its own and only queues there; packets are read on the link's thread. Needs
+bleak: `pip install 'lumitip[ble]'`.
+"""
+
+import threading
+import time
+from collections.abc import Callable, Coroutine
+from concurrent.futures import CancelledError, Future
+from dataclasses import dataclass
+from queue import SimpleQueue
+from typing import Any, TypeVar
+
+from lumitip.errors import LinkError, LinkTimeout, MissingExtra, MtuTooSmall, NotConnected
+from lumitip.layout import Layout
+from lumitip.links.base import Arrival, Cause, Deliver, Fault, Report
+from lumitip.links.ble_loop import shared_loop
+from lumitip.links.retry import keep_connected
+from lumitip.links.url import Url
+from lumitip.protocol.legacy import decode_legacy
+from lumitip.protocol.packet import (
+    ATT_BYTES,
+    Codes,
+    ForeignPacketError,
+    Packet,
+    PacketError,
+    decode,
+)
+
+try:
+    from bleak import BleakClient
+    from bleak.exc import BleakError
+
+    from lumitip.links.ble_find import Sighting, find, is_fingertip, look
+    from lumitip.links.ble_gatt import Service, begin
+except ModuleNotFoundError as missing:
+    raise MissingExtra("ble", "ble://") from missing
+
+T = TypeVar("T")
+
+_CONNECT_S = 20.0
+
+
+@dataclass(frozen=True)
+class Notified:
+    """What bleak's thread hands over: a notification, or why there will be none."""
+
+    t_host: float
+    data: bytes
+
+
+Item = Notified | LinkError
+
+
+class BleLink:
+    """Packets of a Bluetooth device."""
+
+    def __init__(self, layout: Layout, target: str, adapter: str, scan_s: float, any_design: bool):
+        self.layout = layout
+        self.device_id = f"ble:{target}"
+        self._target = target
+        self._adapter = adapter
+        self._scan_s = scan_s
+        self._any_design = any_design
+        self._stopping = threading.Event()
+        self._items: SimpleQueue[Item] = SimpleQueue()
+        self._thread: threading.Thread | None = None
+        self._cancel: Callable[[], object] = lambda: None
+        self._deliver: Deliver
+
+    def start(self, deliver: Deliver, report: Report) -> None:
+        """Begin to look for the device."""
+        self._deliver = deliver
+        self._thread = threading.Thread(
+            target=keep_connected,
+            args=(self._session, report, self._stopping),
+            name="lumitip-ble",
+            daemon=True,
+        )
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Disconnect."""
+        self._stopping.set()
+        self._items.put(NotConnected("closed"))
+        self._cancel()
+        if self._thread and self._thread is not threading.current_thread():
+            self._thread.join()
+
+    def _session(self, connected: Callable[[str], None]) -> None:
+        items: SimpleQueue[Item] = SimpleQueue()
+        self._items = items
+        client, service = self._await(self._connect(items))
+        try:
+            connected(f"{self.device_id}, protocol {service.version}")
+            while not self._stopping.is_set():
+                item = items.get()
+                if isinstance(item, LinkError):
+                    raise item
+                self._deliver(Arrival(item.t_host, self._read(item.data, service)))
+        finally:
+            shared_loop().submit(_disconnect(client)).result()
+
+    def _read(self, data: bytes, service: Service) -> Packet | Codes | Fault:
+        cells = len(self.layout)
+        try:
+            return decode(data, cells) if service.version == 2 else decode_legacy(data, cells)
+        except PacketError as error:
+            if service.version == 1 and len(data) < cells:
+                raise MtuTooSmall(len(data) + ATT_BYTES, cells + ATT_BYTES) from error
+            foreign = error if isinstance(error, ForeignPacketError) else None
+            cause: Cause = "length" if error.reason == "length" else "crc"
+            return Fault(cause, 1, str(error), foreign)
+
+    async def _connect(self, items: "SimpleQueue[Item]") -> tuple[BleakClient, Service]:
+        device = await find(self._target, self._adapter, self._scan_s)
+        # From now on this very device is meant, whatever else takes its name.
+        self._target = device.address
+        self.device_id = f"ble:{device.address}"
+
+        def gone(_: BleakClient) -> None:
+            items.put(NotConnected(f"{self.device_id} disconnected"))
+
+        def notified(data: bytearray) -> None:
+            items.put(Notified(time.monotonic(), bytes(data)))
+
+        client = BleakClient(device, disconnected_callback=gone, timeout=_CONNECT_S)
+        try:
+            await client.connect()
+            service = await begin(client, self.layout, self._any_design, notified, items.put)
+        except BaseException:
+            await _disconnect(client)
+            raise
+        return client, service
+
+    def _await(self, coroutine: Coroutine[Any, Any, T]) -> T:
+        future = shared_loop().submit(coroutine)
+        self._cancel = future.cancel
+        if self._stopping.is_set():
+            future.cancel()
+        return _result(future, self.device_id)
+
+
+def sightings(seconds: float) -> list[Sighting]:
+    """The fingertips that advertise within some time, by address.
+
+    Raises:
+        LinkError: if Bluetooth cannot be used.
+    """
+    seen = _result(shared_loop().submit(look("", seconds, lambda _: False, 0.0)), "Bluetooth")
+    return [seen[address] for address in sorted(seen) if is_fingertip(seen[address][1])]
+
+
+def _result(future: "Future[T]", what: str) -> T:
+    try:
+        return future.result()
+    except LinkError:
+        raise
+    except TimeoutError as error:
+        raise LinkTimeout(f"{what}: no answer; is it in reach?") from error
+    except CancelledError as error:
+        raise NotConnected(f"{what}: closed while connecting") from error
+    except (BleakError, OSError, EOFError) as error:
+        told = str(error) or type(error).__name__
+        raise NotConnected(f"{what}: {told}; is Bluetooth switched on?") from error
+
+
+async def _disconnect(client: BleakClient) -> None:
+    try:
+        await client.disconnect()
+    except (BleakError, OSError, EOFError, TimeoutError):
+        return  # it is gone already
+
+
+def make(url: Url, layout: Layout, any_design: bool) -> BleLink:
+    """The link of an address.
+
+    Raises:
+        UrlError: if there is no such option.
+    """
+    url.allow("adapter", "scan")
+    scan_s = url.number("scan", 8.0, 0.1, 600.0)
+    return BleLink(layout, url.target, url.options.get("adapter", ""), scan_s, any_design)

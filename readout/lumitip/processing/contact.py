@@ -1,0 +1,75 @@
+"""`Contact`: what one frame says about the object between the fingers.
+
+Sensor frame of the receiver: millimetres, x to the right, y towards the tip; angles in degrees,
+counter-clockwise from +x.
+"""
+
+from dataclasses import dataclass
+
+from lumitip.grid import Floats
+
+Point = tuple[float, float]
+SHAPES = ("none", "edge", "corner", "cable", "covered")
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """The straight line closest to all markers, by total least squares."""
+
+    point_mm: Point
+    """Mean of the markers, which lies on the line (mm)."""
+    angle_deg: float
+    """Direction of the line, in (−90, 90]."""
+    rms_mm: float
+    """Root mean square distance of the markers to the line (mm)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Corner:
+    """Two straight rays that meet, each closest to its own part of the markers."""
+
+    vertex_mm: Point
+    """Where the rays meet (mm)."""
+    directions_deg: tuple[float, float]
+    """Directions of the rays away from the vertex, in (−180, 180]; turning counter-clockwise
+    from the first by `opening_deg` gives the second."""
+    opening_deg: float
+    """Angle between the rays, in (0, 180)."""
+    rms_mm: float
+    """Root mean square distance of the markers to the line of their own ray (mm)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Cable:
+    """Two parallel borders with the dark between them, and the axis in their middle."""
+
+    axis_point_mm: Point
+    """The point of the axis nearest to the mean of the markers (mm)."""
+    angle_deg: float
+    """Direction of the axis, in (−90, 90]."""
+    width_mm: float
+    """Distance of the two borders (mm)."""
+    rms_mm: float
+    """Root mean square distance of the markers to their own border (mm)."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Contact:
+    """What one frame says; without contrast every field but `shape` is `None`."""
+
+    shape: str
+    """One of `SHAPES`; the rule is told at `lumitip.processing.shape`."""
+    threshold: float | None = None
+    """λ: cells below it are dark (8-bit complement, 255 is full light)."""
+    contrast: float | None = None
+    """Difference between the means of the light and the dark cluster (counts of 255)."""
+    centre_mm: Point | None = None
+    """Mean of the dark cells' centres, weighted with their 8-bit complements (mm)."""
+    markers_mm: Floats | None = None
+    """Where λ is crossed between neighbours, shape `(k, 2)`, read-only (mm)."""
+    line: Line | None = None
+    """`None` with fewer than two markers, or when they favour no direction."""
+    corner: Corner | None = None
+    """`None` unless two rays that meet describe the markers, see `lumitip.processing.shape`."""
+    cable: Cable | None = None
+    """`None` unless there is light on both sides of the dark, see `lumitip.processing.shape`."""

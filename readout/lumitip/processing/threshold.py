@@ -1,0 +1,34 @@
+"""The threshold λ between dark and light cells: the mean of the means of two clusters.
+
+The values are sorted and cut in two at the largest step between neighbours in this order; of equal
+steps the lowest counts. λ lies half-way between the means of both parts, so a value between the
+step and λ is dark or light by λ alone.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumitip.grid import Floats
+
+MOST = 1e9
+"""Values further from zero are of no sensor, and their sums might be of no float."""
+
+
+def usable(values: Floats) -> NDArray[np.bool_]:
+    """Which values count: neither NaN nor beyond `MOST`."""
+    told: NDArray[np.bool_] = np.abs(values) <= MOST
+    return told
+
+
+def threshold(values: Floats) -> tuple[float, float]:
+    """λ and the contrast, which is the difference of the two means, of one frame.
+
+    Args:
+        values: finite, shape `(cells,)`, at least two.
+    """
+    ordered = values.copy()
+    ordered.sort()
+    first = int((ordered[1:] - ordered[:-1]).argmax()) + 1
+    low = float(np.add.reduce(ordered[:first])) / first
+    high = float(np.add.reduce(ordered[first:])) / (ordered.size - first)
+    return (low + high) / 2.0, high - low

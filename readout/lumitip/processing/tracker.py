@@ -1,0 +1,89 @@
+"""`Tracker`: contacts of one fingertip over time, without flicker between shapes."""
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from lumitip.layout import Layout
+from lumitip.processing.contact import Contact
+from lumitip.processing.processor import COVERED_BELOW, MIN_CONTRAST, Processor
+from lumitip.processing.threshold import usable
+
+
+class Tracker:
+    """Adds hysteresis to `Processor`: one tracker follows one fingertip, from one thread.
+
+    A contact begins at `min_contrast` and ends below `release_contrast`. Another shape is told
+    once it came `hold` times in a row; until then the shape before is told, as long as its fit
+    applies to the frame. Whether there is contact at all is told at once.
+    """
+
+    def __init__(
+        self,
+        layout: Layout,
+        min_contrast: float = MIN_CONTRAST,
+        release_contrast: float = 0.75 * MIN_CONTRAST,
+        hold: int = 3,
+        covered_below: float = COVERED_BELOW,
+    ) -> None:
+        """Prepare for the grid of a layout.
+
+        Args:
+            layout: where the cells are, and which are neighbours.
+            min_contrast: contrast at which a contact begins (counts of 255).
+            release_contrast: contrast below which it ends, not above `min_contrast`.
+            hold: frames in a row that it takes to tell another shape, at least 1.
+            covered_below: as for `Processor`.
+
+        Raises:
+            ValueError: if a parameter is out of its range.
+        """
+        if not release_contrast <= min_contrast:
+            raise ValueError(
+                f"release_contrast: {release_contrast} given, it must not be above "
+                f"min_contrast, {min_contrast}"
+            )
+        if hold < 1:
+            raise ValueError(f"hold: {hold} given, must be at least 1")
+        self._processor = Processor(layout, release_contrast, covered_below)
+        self._min_contrast = min_contrast
+        self._hold = hold
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget the frames so far."""
+        self._told: Contact | None = None
+        self._other = ""
+        self._times = 0
+
+    def __call__(self, values: ArrayLike) -> Contact:
+        """What the next frame says, given those before; see `Processor`."""
+        contact = self._processor(values)
+        before = self._told
+        touched = before is not None and before.contrast is not None
+        if contact.contrast is not None and contact.contrast < self._min_contrast and not touched:
+            given = np.asarray(values, dtype=np.float64)
+            contact = self._processor.without_contrast(given[usable(given)])
+        if before is not None and touched and contact.contrast is not None:
+            contact = self._steadied(contact, before.shape)
+        else:
+            self._times = 0
+        self._told = contact
+        return contact
+
+    def _steadied(self, contact: Contact, shape: str) -> Contact:
+        if contact.shape == shape or not _applies(shape, contact):
+            self._times = 0
+            return contact
+        self._times = self._times + 1 if contact.shape == self._other else 1
+        self._other = contact.shape
+        if self._times >= self._hold:
+            self._times = 0
+            return contact
+        return replace(contact, shape=shape)
+
+
+def _applies(shape: str, contact: Contact) -> bool:
+    fit = {"edge": contact.line, "corner": contact.corner, "cable": contact.cable}[shape]
+    return fit is not None

@@ -1,0 +1,78 @@
+"""What a device says of itself: 20 bytes, which fit into a notification at every MTU.
+
+Little-endian: protocol version u8, firmware version 3 x u8, first 8 bytes of the design hash,
+cells u16, MTU u16, needed MTU u16, faults u16. Later versions may append to it.
+"""
+
+import struct
+from dataclasses import dataclass
+from enum import IntFlag
+
+from lumitip.protocol.packet import VERSION, PacketError
+
+_STATUS = struct.Struct("<BBBB8sHHHH")
+STATUS_BYTES = _STATUS.size
+
+
+class Fault(IntFlag):
+    """What is, or since power-on was, wrong on the device."""
+
+    MTU_TOO_SMALL = 1
+    """A frame does not fit into a notification, so none is sent."""
+    NOTIFY_FAILED = 2
+    """The Bluetooth stack refused a notification: its frames are lost."""
+    SERIAL_FULL = 4
+    """The serial line did not take a packet: its frames are lost there."""
+    LATE = 8
+    """A scan began later than its period asks."""
+    WATCHDOG = 16
+    """The watchdog started the device anew."""
+
+
+@dataclass(frozen=True)
+class Status:
+    """What the status characteristic holds."""
+
+    firmware: tuple[int, int, int]
+    """Version of the firmware."""
+    design_hash: str
+    """First 16 hexadecimal digits of the hash of the design it was made for."""
+    cells: int
+    mtu: int
+    """ATT MTU in force; 23 until a computer asks for more."""
+    needed_mtu: int
+    """The smallest at which a frame fits into a notification."""
+    faults: Fault
+    protocol: int = VERSION
+
+    def encode(self) -> bytes:
+        """The bytes of the characteristic.
+
+        Raises:
+            PacketError: if a value is outside what it can carry.
+        """
+        try:
+            code = int(self.design_hash, 16).to_bytes(8, "big")
+            return _STATUS.pack(self.protocol, *self.firmware, code, self.cells, self.mtu,
+                                self.needed_mtu, self.faults)  # fmt: skip
+        except (struct.error, ValueError, OverflowError) as error:
+            raise PacketError("field", f"{self}: cannot be sent: {error}") from error
+
+    @classmethod
+    def decode(cls, data: bytes) -> "Status":
+        """Read the bytes of the characteristic.
+
+        Raises:
+            PacketError: if there are too few, or they are of another version.
+        """
+        if len(data) < STATUS_BYTES:
+            raise PacketError(
+                "length", f"{len(data)} bytes given, a status has {STATUS_BYTES} or more"
+            )
+        protocol, *firmware, code, cells, mtu, needed, faults = _STATUS.unpack_from(data)
+        if protocol != VERSION:
+            raise PacketError(
+                "version", f"protocol {protocol} given, this lumitip speaks {VERSION}"
+            )
+        major, minor, patch = firmware
+        return cls((major, minor, patch), code.hex(), cells, mtu, needed, Fault(faults), protocol)

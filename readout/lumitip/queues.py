@@ -1,0 +1,91 @@
+"""A bounded queue of frames between the thread of a link and the one that reads."""
+
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Sequence
+
+from lumitip.errors import LinkError
+from lumitip.frame import Frame
+
+PATIENCE_S = 5.0
+"""How long a recording waits for a reader that takes nothing."""
+
+
+class FrameQueue:
+    """Frames in order; when it is full the oldest make room. Any thread may call any method.
+
+    Args:
+        size: most frames that wait.
+        notify: called, on the link's thread, after frames came or the queue was closed.
+    """
+
+    def __init__(self, size: int, notify: Callable[[], None] | None = None) -> None:
+        if size < 1:
+            raise ValueError(f"buffer: {size} frames given, at least 1 is needed")
+        self._frames: deque[Frame] = deque(maxlen=size)
+        self._changed = threading.Condition()
+        self._notify = notify
+        self._closed: LinkError | None = None
+        self._waits = self._idle = False
+
+    def put(self, frames: Sequence[Frame], wait: bool = False) -> int:
+        """Add frames; returns how many old ones made room.
+
+        Args:
+            frames: in order.
+            wait: rather wait until there is room; not for a reader that takes nothing for
+                `PATIENCE_S`, until it takes something again.
+        """
+        with self._changed:
+            while wait and self._frames and self._full(len(frames)) and not self._gone():
+                self._waits = True
+                self._idle = not self._changed.wait(PATIENCE_S)
+            before = len(self._frames)
+            self._frames.extend(frames)
+            lost = before + len(frames) - len(self._frames)
+            self._changed.notify_all()
+        if self._notify:
+            self._notify()
+        return lost
+
+    def close(self, reason: LinkError) -> None:
+        """No more frames will come: once those that wait are read, `get` raises the reason."""
+        with self._changed:
+            self._closed = self._closed or reason
+            self._changed.notify_all()
+        if self._notify:
+            self._notify()
+
+    def cancel(self, reason: LinkError) -> None:
+        """Close it and forget the frames that wait."""
+        with self._changed:
+            self._frames.clear()
+        self.close(reason)
+
+    def get(self, timeout_s: float | None) -> Frame | None:
+        """The next frame, or `None` after `timeout_s`; without one it waits as long as it takes.
+
+        Raises:
+            LinkError: the reason, if the queue was closed and is empty.
+        """
+        until = None if timeout_s is None else time.monotonic() + timeout_s
+        with self._changed:
+            while not self._frames:
+                if self._closed:
+                    raise self._closed.with_traceback(None)
+                left = None if until is None else until - time.monotonic()
+                if left is not None and left <= 0:
+                    return None
+                self._changed.wait(None if left is None else min(left, threading.TIMEOUT_MAX))
+            self._idle = False
+            if self._waits:
+                self._waits = False
+                self._changed.notify_all()
+            return self._frames.popleft()
+
+    def _gone(self) -> bool:
+        return self._idle or self._closed is not None
+
+    def _full(self, more: int) -> bool:
+        return len(self._frames) + more > (self._frames.maxlen or 0)

@@ -1,0 +1,155 @@
+"""The message of a frame: its ROS 2 definition, and its bytes as ROS 2 encodes them (CDR).
+
+Little-endian; every field stands at a multiple of its own size, counted from after the four bytes
+that name the encoding.
+"""
+
+import math
+import struct
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from lumitip.protocol.packet import Codes
+from lumitip.recording.errors import RecordingError
+
+LONGEST_GAP_S = 1.0
+"""Of a gap in a recording, no more is waited for where people look on (s)."""
+SCHEMA_NAME = "lumitip_msgs/msg/Frame"
+SCHEMA_TEXT = """\
+# All cells of an optical fingertip at one moment.
+
+# When the cells were read (UTC), and which fingertip they are of.
+std_msgs/Header header
+# Grows by one with every frame of the device, also with those that were lost.
+uint64 sequence
+# The device's own clock (s), NaN where it has none.
+float64 device_time
+# When the frame arrived, by the monotonic clock of the computer that recorded it (s).
+float64 host_time
+# Frames lost just before this one, -1 where nobody can tell.
+int32 dropped_before
+# Bits of each value.
+uint8 bits
+# ADC codes in cell order, dark is high.
+uint16[] values
+
+================================================================================
+MSG: std_msgs/Header
+builtin_interfaces/Time stamp
+string frame_id
+
+================================================================================
+MSG: builtin_interfaces/Time
+int32 sec
+uint32 nanosec
+"""
+
+_CDR_LITTLE = b"\x00\x01\x00\x00"
+_NUMBERS = struct.Struct("<QddiB3xI")
+_TIME = struct.Struct("<iI")
+_LENGTH = struct.Struct("<I")
+_NANO = 1_000_000_000
+_MOST_SEQ = (1 << 63) - 1  # what tables and arrays hold
+
+
+class Recordable(Protocol):
+    """What a recording keeps of a frame; `lumitip.frame.Frame` has it all."""
+
+    @property
+    def seq(self) -> int: ...
+    @property
+    def t_device(self) -> float | None: ...
+    @property
+    def t_host(self) -> float: ...
+    @property
+    def t_wall(self) -> float: ...
+    @property
+    def raw(self) -> Codes: ...
+    @property
+    def bits(self) -> int: ...
+    @property
+    def dropped_before(self) -> int | None: ...
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class RecordedFrame:
+    """A frame as it was recorded; fields as of `lumitip.frame.Frame`."""
+
+    seq: int
+    t_device: float | None
+    t_host: float
+    t_wall: float
+    raw: Codes
+    bits: int
+    dropped_before: int | None
+
+
+def stamp_ns(t_wall: float) -> int:
+    """Whole nanoseconds of a time, which give the same float again."""
+    # The whole seconds apart: a float of nanoseconds since 1970 has steps of 256.
+    seconds = math.floor(t_wall)
+    return seconds * _NANO + round((t_wall - seconds) * _NANO)
+
+
+def encode(frame: Recordable, device_id: str) -> bytes:
+    """The bytes of a message."""
+    name = device_id.encode() + b"\0"
+    sec, nanosec = divmod(stamp_ns(frame.t_wall), _NANO)
+    text = _LENGTH.pack(len(name)) + name
+    padding = -(len(text) + _TIME.size) % 8
+    codes = frame.raw.astype("<u2")
+    numbers = _NUMBERS.pack(
+        frame.seq,
+        float("nan") if frame.t_device is None else frame.t_device,
+        frame.t_host,
+        -1 if frame.dropped_before is None else frame.dropped_before,
+        frame.bits,
+        codes.size,
+    )
+    parts: Sequence[bytes] = (
+        _CDR_LITTLE, _TIME.pack(sec, nanosec), text, bytes(padding), numbers, codes.tobytes()
+    )  # fmt: skip
+    return b"".join(parts)
+
+
+def decode(data: bytes, cells: int) -> RecordedFrame:
+    """The frame of a message.
+
+    Raises:
+        RecordingError: if the bytes are no message of a fingertip of so many cells.
+    """
+    if data[:4] != _CDR_LITTLE:
+        raise RecordingError(f"a message begins with {data[:4].hex()}, not with little-endian CDR")
+    body = memoryview(data)[4:]
+    try:
+        sec, nanosec = _TIME.unpack_from(body)
+        (length,) = _LENGTH.unpack_from(body, _TIME.size)
+        at = _TIME.size + _LENGTH.size + length
+        at += -at % 8
+        seq, t_device, t_host, dropped, bits, count = _NUMBERS.unpack_from(body, at)
+    except struct.error as error:
+        raise RecordingError(f"a message of {len(data)} bytes is cut off") from error
+    codes = body[at + _NUMBERS.size :]
+    if count != cells or len(codes) != 2 * cells or bits not in (8, 10, 12):
+        raise RecordingError(
+            f"a message of {count} values of {bits} bits in {len(codes)} bytes, {cells} of 8, 10 "
+            "or 12 bits are needed"
+        )
+    raw = np.frombuffer(codes, "<u2")
+    too_much = int(raw.max()) >> bits or seq > _MOST_SEQ or nanosec >= _NANO
+    if too_much or not np.isfinite(t_host):
+        raise RecordingError("a message with a value or time out of its range")
+    kept: Codes = raw.astype(np.uint8) if bits == 8 else raw.astype(np.uint16)
+    kept.flags.writeable = False
+    return RecordedFrame(
+        seq=seq,
+        t_device=t_device if np.isfinite(t_device) else None,
+        t_host=t_host,
+        t_wall=sec + nanosec / _NANO,
+        raw=kept,
+        bits=bits,
+        dropped_before=None if dropped < 0 else dropped,
+    )

@@ -1,0 +1,93 @@
+"""What became of the frames: counted while they pass, read at any time."""
+
+import threading
+from collections import deque
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+import numpy as np
+
+from lumitip.frame import Frame
+
+CAUSES = ("link", "queue", "crc", "length")
+_RECENT = 512  # frames that rate and jitter are of
+
+
+@dataclass(frozen=True)
+class Stats:
+    """What became of the frames since the link was opened. Immutable."""
+
+    received: int
+    """Frames that came and were new."""
+    dropped: Mapping[str, int] | None
+    """Frames lost, by cause: `"link"` on the way, `"crc"` damaged, `"length"` cut off, `"queue"`
+    not read in time. `None` of a legacy device, which cannot tell."""
+    overflowed: int
+    """Frames that a reader was too slow for; the same as `dropped["queue"]`, and known of a legacy
+    device too."""
+    unreadable: int
+    """Packets that could not be read, whether or not a frame was lost with them."""
+    repeated: int
+    """Frames that came again, or too late to be given in order, and were left out."""
+    reconnects: int
+    """How often the link was cut and made again."""
+    restarts: int
+    """How often the device started anew."""
+    rate_hz: float | None
+    """Frames a second over the last few hundred; `None` before there are two."""
+    jitter_ms: float | None
+    """Standard deviation of the delay from reading the cells to arrival (ms), of the same frames;
+    `None` of a legacy device."""
+
+
+class Counter:
+    """Counts for `Stats`. Every method may be called from any thread."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._count = dict.fromkeys(("received", "repeated", "reconnects", "restarts"), 0)
+        self._dropped = dict.fromkeys(CAUSES, 0)
+        self._unreadable = 0
+        self._recent: deque[tuple[float, float]] = deque(maxlen=_RECENT)
+        self._legacy = False
+
+    def frames(self, frames: list[Frame]) -> None:
+        """New frames."""
+        with self._lock:
+            self._count["received"] += len(frames)
+            self._recent.extend((f.t, f.t_host) for f in frames)
+            self._legacy = bool(frames) and frames[-1].t_device is None
+
+    def add(self, name: str, number: int = 1) -> None:
+        """Count on `"repeated"`, `"reconnects"` or `"restarts"`."""
+        with self._lock:
+            self._count[name] += number
+
+    def lost(self, cause: str, frames: int) -> None:
+        """Frames that nobody will read, by cause."""
+        with self._lock:
+            self._dropped[cause] += frames
+
+    def unreadable(self, packets: int) -> None:
+        """Packets that could not be read."""
+        with self._lock:
+            self._unreadable += packets
+
+    def snapshot(self) -> Stats:
+        """The counts of this moment."""
+        with self._lock:
+            recent = np.array(self._recent).reshape(-1, 2)
+            span_s = float(recent[-1, 0] - recent[0, 0]) if len(recent) > 1 else 0.0
+            return Stats(
+                **self._count,
+                dropped=None if self._legacy else MappingProxyType(dict(self._dropped)),
+                overflowed=self._dropped["queue"],
+                unreadable=self._unreadable,
+                rate_hz=(len(recent) - 1) / span_s if span_s > 0 else None,
+                jitter_ms=_jitter_ms(recent) if span_s > 0 and not self._legacy else None,
+            )
+
+
+def _jitter_ms(recent: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> float:
+    return float(np.std(recent[:, 1] - recent[:, 0]) * 1e3)

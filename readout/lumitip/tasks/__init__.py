@@ -1,0 +1,24 @@
+"""The two tasks in closed loop, simulated: follow the edge of a cloth, follow a cable.
+
+task = Task(layout, Settings("cable"))
+values = task.reset(seed=1)
+values, ended = task.step(Command(forward_mm_s=80.0))
+"""
+
+from lumitip.tasks.curve import Curve
+from lumitip.tasks.task import Metrics, Settings, Task, TaskError
+from lumitip.tasks.trial import CONTROLLERS, Bench, Summary, Tuning, summary, tune
+
+__all__ = [
+    "CONTROLLERS",
+    "Bench",
+    "Curve",
+    "Metrics",
+    "Settings",
+    "Summary",
+    "Task",
+    "TaskError",
+    "Tuning",
+    "summary",
+    "tune",
+]

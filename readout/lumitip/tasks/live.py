@@ -1,0 +1,152 @@
+"""`LiveTask`: a task in real time behind a link, as a robot with a fingertip would be.
+
+    world = LiveTask(Task(layout, Settings("cable")), "twin://trace-cable")
+    with world.open() as tip, world.shown(tip, port=8642):
+        for frame in tip.frames(timeout=2.0):
+            if frame is not tip.latest():
+                continue  # a newer one is here already
+            world.command(tracer(estimator(frame.values), world.period_s))
+    print(world.metrics())
+
+Frames are packets of version 2 with raw codes, and come at the rate of the task whether commands
+do or not: a program that computes too long flies blind meanwhile.
+"""
+
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+
+from lumitip.calibration import Calibration
+from lumitip.control import Command
+from lumitip.fingertip import Fingertip
+from lumitip.frame import Values
+from lumitip.grid import Floats
+from lumitip.hub import Hub
+from lumitip.layout import Layout
+from lumitip.links.base import Arrival, Deliver, LinkEvent, Report
+from lumitip.links.retry import UnexpectedError
+from lumitip.protocol.packet import Packet, design_code
+from lumitip.tasks.task import Metrics, Task
+
+_MOST_S = 120.0
+_BUFFER = 4096
+
+
+class LiveTask:
+    """A link whose fingertip moves as it is commanded, until its task ends."""
+
+    def __init__(self, task: Task, url: str, seed: int = 0) -> None:
+        """A task that has not begun.
+
+        Args:
+            task: with its own latency or none: what the program and the link take comes on top.
+            url: what it is called, for people.
+            seed: of the curve.
+        """
+        self.layout: Layout = task.layout
+        self.device_id = url.replace("://", ":")
+        self.url = url
+        self.period_s = 1.0 / task.settings.rate_hz
+        """Time from frame to frame (s)."""
+        empty: Values = task.twin.empty.astype(np.float32)
+        self.calibration = Calibration(self.device_id, task.layout.design_hash, empty)
+        """The twin's empty grasp, which every pick of an object begins with."""
+        self._task = task
+        self._first = self._task.reset(seed)
+        self._command = Command()
+        self._stopping = threading.Event()
+        self._thread: threading.Thread | None = None
+
+    def open(self) -> Fingertip:
+        """Begin in real time; the fingertip that reads it."""
+        hub = Hub(self, any_design=False, on_event=None)
+        hub.start(timeout_s=10.0)
+        return Fingertip(hub, _BUFFER, calibrated=True)
+
+    def first_values(self) -> Floats:
+        """Calibrated values before anything moves, shape `(cells,)`: to make tables ready."""
+        return self._first
+
+    def command(self, command: Command) -> None:
+        """What holds until the next command. From any thread."""
+        self._command = command
+
+    def metrics(self) -> Metrics:
+        """How it went so far, against the truth."""
+        return self._task.metrics()
+
+    @contextmanager
+    def shown(self, tip: Fingertip, port: int | None) -> Iterator[None]:
+        """Show the fingertip in the live view meanwhile, at a port of this computer.
+
+        Args:
+            tip: what `open` gave.
+            port: 0 takes a free one; `None` shows nothing.
+        """
+        if port is None:
+            yield
+            return
+        from lumitip.view.finger import Finger
+        from lumitip.view.room import Room
+        from lumitip.view.server import ViewServer
+
+        room = Room((), Path("recordings"))
+        room.add(Finger(self.url, tip))
+        try:
+            with ViewServer(room, port=port) as server:
+                print(f"live view at {server.url}", flush=True)
+                yield
+        finally:
+            room.close()
+
+    def start(self, deliver: Deliver, report: Report) -> None:
+        """Begin to send; see `Link`."""
+        self._thread = threading.Thread(
+            target=self._run, args=(deliver, report), name="lumitip-task", daemon=True
+        )
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Send nothing more."""
+        self._stopping.set()
+        if self._thread and self._thread is not threading.current_thread():
+            self._thread.join()
+
+    def _run(self, deliver: Deliver, report: Report) -> None:
+        try:
+            self._send(deliver, report)
+        except Exception as problem:  # noqa: BLE001 - a thread must not die without a word
+            error = UnexpectedError(problem)
+            report(LinkEvent("failed", str(error), error))
+
+    def _send(self, deliver: Deliver, report: Report) -> None:
+        self._packet(0)  # so that the tables are made before time runs
+        report(LinkEvent("connected", f"{self.url} is computed, no device"))
+        began, ended, number = time.monotonic(), False, 0
+        while not ended and number * self.period_s < _MOST_S:
+            due_s = began + (number + 1) * self.period_s
+            if self._stopping.wait(max(0.0, due_s - time.monotonic())):
+                return
+            if number:
+                ended = self._task.step(self._command)[1]
+            deliver(Arrival(time.monotonic(), self._packet(number)))
+            number += 1
+        reason = self._task.metrics().reason or "time is up"
+        report(LinkEvent("ended", f"the task ended: {reason}"))
+
+    def _packet(self, number: int) -> Packet:
+        t = number * self.period_s
+        twin = self._task.twin
+        codes = twin.codes(twin.light(self._task.scene())[None], np.array([t]))
+        return Packet(
+            design=design_code(self.layout.design_hash),
+            sequence=number % 2**16,
+            bits=twin.bits,
+            time_us=round(t * 1e6) % 2**32,
+            period_us=min(round(self.period_s * 1e6), 2**16 - 1),
+            values=codes,
+        )

@@ -1,0 +1,225 @@
+"""`Task`: a finger that follows the edge of a cloth or a cable, in closed loop, simulated.
+
+    values = task.reset(seed)
+    values, ended = task.step(command)      # one frame later
+    task.metrics()
+
+Each step is a frame of the sensor. A frame arrives `latency` frames late, and the finger takes on
+commanded velocities with the lag of its actuator. The object lies still and does not deform.
+"""
+
+import math
+from collections import deque
+from dataclasses import dataclass
+
+import numpy as np
+
+from lumitip.control import Command
+from lumitip.errors import LumitipError
+from lumitip.grid import Floats
+from lumitip.layout import Layout
+from lumitip.tasks.curve import STEP_MM, Curve
+from lumitip.twin import Cable, Corner, HalfPlane, Scene, Twin
+
+KINDS = ("cloth", "cable")
+RATE_HZ = 55.0
+"""Frames a second that the published firmware sends."""
+LOST_MM = 9.0
+"""Distance of the line from where it is to be held, beyond which it is lost (mm)."""
+_CORNER_SEEN_MM = 40.0
+_STRAIGHT_MM = 80.0
+_END_MM = 25.0  # the fingertip must not see where a plain curve ends
+_STANDS_MM_S = 0.5
+
+
+class TaskError(LumitipError, ValueError):
+    """A task that cannot be so."""
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What a task is made of."""
+
+    kind: str = "cloth"
+    """`"cloth"` (sheet on the side of the tip) or `"cable"`."""
+    length_mm: float = 400.0
+    """Length of the curve (mm)."""
+    corner: bool = False
+    """Whether a cloth ends in a corner; else the curve ends the task."""
+    rate_hz: float = RATE_HZ
+    latency: int = 1
+    """Frames between what the finger meets and what the controller is given."""
+    lag_s: float = 0.03
+    """Time constant of the velocity of the actuator (s)."""
+    noise: float = 1.5
+    """Standard deviation of a value (counts of 255)."""
+    target_mm: float = 0.0
+    """Height in the grid at which the line is to be held (mm)."""
+
+    def __post_init__(self) -> None:
+        if self.kind not in KINDS:
+            raise TaskError(f"kind: {self.kind!r} given, allowed are {', '.join(KINDS)}")
+        if self.corner and self.kind != "cloth":
+            raise TaskError("corner: a cable has none")
+        if self.latency < 0 or not min(self.rate_hz, self.length_mm) > 0 or self.lag_s < 0:
+            raise TaskError(f"{self} given: rate and length above 0, latency and lag not below")
+
+
+@dataclass(frozen=True, slots=True)
+class Metrics:
+    """How a trial went, against the truth."""
+
+    reason: str
+    """`"end"`, `"corner"`, `"lost"`, or `""` while it goes on."""
+    travelled_mm: float
+    seconds: float
+    lateral_rms_mm: float
+    """Of the distance of the line from where it is to be held."""
+    angle_rms_deg: float
+    """Of the direction of the line against the way of the finger."""
+    corner_error_mm: float
+    """At the end, of the corner's vertex in x from where it is to be; NaN without corner."""
+
+    @property
+    def lost(self) -> bool:
+        """Whether the line was lost, or the finger stopped where there was nothing."""
+        return self.reason == "lost"
+
+
+class Task:
+    """A simulated finger on a line. Seeded: the same commands give the same frames."""
+
+    def __init__(
+        self, layout: Layout, settings: Settings | None = None, twin: Twin | None = None
+    ) -> None:
+        """A task; call `reset` to begin.
+
+        Args:
+            layout: the cells.
+            settings: what is followed and how late.
+            twin: what reads the object; the layout's own if not given. Its noise is not used.
+        """
+        self.layout, self.settings = layout, settings or Settings()
+        self.twin = twin or Twin(layout)
+        self.reset()
+
+    def reset(self, seed: int = 0) -> Floats:
+        """Begin a trial on the curve of a seed; returns the first values, shape `(cells,)`."""
+        s = self.settings
+        straight_mm = _STRAIGHT_MM if s.corner else 0.0
+        self.curve = Curve.random(s.length_mm, seed, straight_mm)
+        self._chance = np.random.default_rng((8, seed))
+        self.x_mm, self.y_mm, self.heading = 0.0, -s.target_mm, 0.0
+        self._at = 0
+        self._velocity = np.zeros(3)
+        self._frames = 0
+        self._misses: list[tuple[float, float]] = []
+        self.reason = ""
+        first = self._read()
+        self._late = deque([first] * (s.latency + 1), maxlen=s.latency + 1)
+        return first
+
+    def step(self, command: Command) -> tuple[Floats, bool]:
+        """Go on for one frame.
+
+        Args:
+            command: velocity in the sensor frame. A state of `"stop"` ends the trial once the
+                finger stands still.
+
+        Returns:
+            The values that have arrived by then, shape `(cells,)`, and whether the trial ended.
+        """
+        self._move(command)
+        self._frames += 1
+        self._at = self.curve.nearest(self.x_mm, self.y_mm, self._at)
+        height_mm, angle = self.line()
+        self._misses.append((height_mm - self.settings.target_mm, angle))
+        self._late.append(self._read())
+        self._judge(command, height_mm)
+        return self._late[0], bool(self.reason)
+
+    @property
+    def travelled_mm(self) -> float:
+        """Way along the curve so far (mm)."""
+        return self._at * STEP_MM
+
+    def line(self) -> tuple[float, float]:
+        """The truth: height of the line above the middle of the grid (mm), and its direction
+        (rad), in the sensor frame."""
+        offset_mm, angle = self._tangent()
+        return offset_mm / math.cos(angle), angle
+
+    def scene(self) -> Scene:
+        """What is between the fingers now."""
+        offset_mm, angle = self._tangent()
+        bend = float(self.curve.bend_per_mm[self._at])
+        if self.settings.kind == "cable":
+            return Cable(offset_mm=offset_mm, angle_deg=math.degrees(angle), curvature_per_mm=bend)
+        vertex = self._vertex()
+        if vertex is not None and vertex[0] < _CORNER_SEEN_MM:
+            turn = math.degrees(float(self.curve.heading[-1]) - self.heading)
+            return Corner(x_mm=vertex[0], y_mm=vertex[1], angle_deg=turn + 135.0)
+        # The sheet lies left of the way, towards the tip: right of the line seen backwards.
+        return HalfPlane(
+            offset_mm=-offset_mm, angle_deg=math.degrees(angle) + 180.0, curvature_per_mm=-bend
+        )
+
+    def metrics(self) -> Metrics:
+        """How the trial went so far."""
+        misses = np.array(self._misses or [(0.0, 0.0)])
+        rms = np.sqrt((misses**2).mean(axis=0))
+        vertex = self._vertex()
+        at_corner = self.reason == "corner" and vertex is not None
+        return Metrics(
+            reason=self.reason,
+            travelled_mm=self.travelled_mm,
+            seconds=self._frames / self.settings.rate_hz,
+            lateral_rms_mm=float(rms[0]),
+            angle_rms_deg=math.degrees(float(rms[1])),
+            corner_error_mm=vertex[0] if at_corner and vertex else math.nan,
+        )
+
+    def _judge(self, command: Command, height_mm: float) -> None:
+        stands = float(np.hypot(*self._velocity[:2])) < _STANDS_MM_S
+        if abs(height_mm - self.settings.target_mm) > LOST_MM:
+            self.reason = "lost"
+        elif command.state == "stop" and stands:
+            near = (v := self._vertex()) is not None and abs(v[0]) < LOST_MM
+            self.reason = "corner" if command.reason == "corner" and near else "lost"
+        elif self.settings.corner:
+            vertex = self._vertex()
+            if vertex is not None and vertex[0] < -LOST_MM:  # the edge is behind the finger
+                self.reason = "lost"
+        elif self.travelled_mm >= self.curve.length_mm - _END_MM:
+            self.reason = "end"
+
+    def _move(self, command: Command) -> None:
+        """Velocities follow the command with the actuator's lag, exactly over the step."""
+        dt, lag = 1.0 / self.settings.rate_hz, self.settings.lag_s
+        asked = np.array([command.forward_mm_s, command.lateral_mm_s, command.rotation_rad_s])
+        kept = math.exp(-dt / lag) if lag else 0.0
+        moved = asked * dt + (self._velocity - asked) * lag * (1.0 - kept)
+        self._velocity = asked + (self._velocity - asked) * kept
+        middle = self.heading + 0.5 * moved[2]
+        self.x_mm += float(moved[0] * math.cos(middle) - moved[1] * math.sin(middle))
+        self.y_mm += float(moved[0] * math.sin(middle) + moved[1] * math.cos(middle))
+        self.heading += float(moved[2])
+
+    def _in_sensor(self, at: int) -> tuple[float, float]:
+        x, y = float(self.curve.x_mm[at]) - self.x_mm, float(self.curve.y_mm[at]) - self.y_mm
+        cos, sin = math.cos(self.heading), math.sin(self.heading)
+        return x * cos + y * sin, y * cos - x * sin
+
+    def _tangent(self) -> tuple[float, float]:
+        """Signed distance (mm) and direction (rad) of the curve at its point next to the origin."""
+        x, y = self._in_sensor(self._at)
+        angle = float(self.curve.heading[self._at]) - self.heading
+        return y * math.cos(angle) - x * math.sin(angle), angle
+
+    def _vertex(self) -> tuple[float, float] | None:
+        return self._in_sensor(-1) if self.settings.corner else None
+
+    def _read(self) -> Floats:
+        noise = self.settings.noise * self._chance.standard_normal(len(self.layout))
+        values: Floats = np.floor(np.clip(self.twin.values(self.scene()) + noise, 0.0, 255.0))
+        return values

@@ -1,0 +1,128 @@
+"""Controllers by name, and trials of them: one closed loop after another until the task ends."""
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from lumitip.control import CentreLaw, LineLaw, Tracer
+from lumitip.estimation import Estimate, PoseEstimator
+from lumitip.grid import Floats
+from lumitip.processing import Contact, Processor
+from lumitip.tasks.task import Metrics, Settings, Task
+from lumitip.twin import Cable, HalfPlane, Twin
+
+Observer = Callable[[Floats], Contact | Estimate]
+CONTROLLERS = ("centre", "line", "pose")
+"""`centre`: the published law on the published processing; `line`: angle feed-forward on the same
+processing; `pose`: angle feed-forward on the pose estimator."""
+_LONGEST_S = 120.0
+
+
+@dataclass(frozen=True)
+class Tuning:
+    """What a controller is tuned by."""
+
+    gain_per_s: float = 8.0
+    turn_per_s: float = 8.0
+
+
+class Bench:
+    """Everything that trials of one task share: twin, estimator, processor."""
+
+    def __init__(self, task: Task) -> None:
+        self.task = task
+        layout, kind = task.layout, task.settings.kind
+        self._processor = Processor(layout)
+        self._estimator = PoseEstimator(layout, tracking=True)
+        self._kind = "cable" if kind == "cable" else None if task.settings.corner else "edge"
+        self._centre_mm = centre_height_mm(task.twin, task.settings)
+
+    def observer(self, controller: str) -> Observer:
+        """What turns values into what the controller sees."""
+        if controller != "pose":
+            return self._processor
+        self._estimator.reset()
+        return lambda values: self._estimator(values, self._kind)
+
+    def tracer(self, controller: str, speed_mm_s: float, tuning: Tuning) -> Tracer:
+        """A controller that has seen nothing yet."""
+        corner_at_mm = 0.0 if self.task.settings.corner else None
+        if controller == "centre":
+            law: CentreLaw | LineLaw = CentreLaw(speed_mm_s, tuning.gain_per_s, self._centre_mm)
+        else:
+            target_mm = self.task.settings.target_mm
+            law = LineLaw(speed_mm_s, tuning.gain_per_s, tuning.turn_per_s, target_mm)
+        return Tracer(law, corner_at_mm=corner_at_mm)
+
+    def run(self, controller: str, speed_mm_s: float, tuning: Tuning, seed: int) -> Metrics:
+        """One trial on the curve of a seed."""
+        tracer, observe = self.tracer(controller, speed_mm_s, tuning), self.observer(controller)
+        values, ended = self.task.reset(seed), False
+        dt_s = 1.0 / self.task.settings.rate_hz
+        for _ in range(round(_LONGEST_S * self.task.settings.rate_hz)):
+            values, ended = self.task.step(tracer(observe(values), dt_s))
+            if ended:
+                return self.task.metrics()
+        return replace(self.task.metrics(), reason="lost")
+
+
+def centre_height_mm(twin: Twin, settings: Settings) -> float:
+    """Height of the middle of the dark when the line is where it is to be held (mm)."""
+    if settings.kind == "cable":
+        values = twin.values(Cable(offset_mm=settings.target_mm))
+    else:
+        values = twin.values(HalfPlane(offset_mm=-settings.target_mm, angle_deg=180.0))
+    centre = Processor(twin.layout)(values).centre_mm
+    return centre[1] if centre else settings.target_mm
+
+
+@dataclass(frozen=True)
+class Summary:
+    """Many trials of one controller at one speed."""
+
+    speed_mm_s: float
+    trials: int
+    losses: int
+    lateral_rms_mm: float
+    angle_rms_deg: float
+    corner_rms_mm: float
+
+    @property
+    def loss_rate(self) -> float:
+        """Share of the trials that lost the line."""
+        return self.losses / self.trials
+
+
+def summary(
+    bench: Bench, controller: str, speed_mm_s: float, tuning: Tuning, seeds: Iterable[int]
+) -> Summary:
+    """Run trials; root mean squares are of those that kept the line."""
+    done = [bench.run(controller, speed_mm_s, tuning, seed) for seed in seeds]
+    kept = [m for m in done if not m.lost]
+    corners = [m.corner_error_mm for m in kept if not np.isnan(m.corner_error_mm)]
+    return Summary(
+        speed_mm_s, len(done), len(done) - len(kept),
+        _rms([m.lateral_rms_mm for m in kept]), _rms([m.angle_rms_deg for m in kept]),
+        _rms(corners),
+    )  # fmt: skip
+
+
+def tune(
+    bench: Bench,
+    controller: str,
+    speed_mm_s: float,
+    grid: Sequence[Tuning],
+    seeds: Sequence[int],
+) -> Tuning:
+    """The tuning with fewest losses, among these of least lateral rms, on seeds for tuning."""
+
+    def badness(tuning: Tuning) -> tuple[int, float]:
+        told = summary(bench, controller, speed_mm_s, tuning, seeds)
+        return told.losses, told.lateral_rms_mm if told.losses < told.trials else np.inf
+
+    return min(grid, key=badness)
+
+
+def _rms(values: Sequence[float]) -> float:
+    return float(np.sqrt(np.mean(np.square(values)))) if values else float("nan")

@@ -1,0 +1,81 @@
+"""The twin fitted to a real frame of a cloth edge, by no more numbers than a table could hold.
+
+Nine numbers: offset, angle and curvature of the edge; clear transmittance of the cloth; gap; the
+share of scattered light, alpha; the gain; and how the light falls off across the fingertip, in x
+and y. A frame before calibration is fitted, so differences between single cells remain in the
+residual.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from lumitip.grid import Floats
+from lumitip.layout import Layout
+from lumitip.twin.optics import Model, values_of_drive
+from lumitip.twin.scene import HalfPlane
+from lumitip.twin.twin import Twin
+
+NAMES = ("offset_mm", "angle_deg", "curvature_per_mm", "clear", "gap_mm", "alpha", "gain",
+         "slope_x", "slope_y")  # fmt: skip
+# Least, most and step of differentiation of each; the steps of gap and alpha make new tables.
+_LEAST = np.array([-30.0, -360.0, -0.05, 0.0, 1.0, 0.0, 0.3, -0.5, -0.5])
+_MOST = np.array([30.0, 360.0, 0.05, 0.5, 8.0, 1.0, 1.5, 0.5, 0.5])
+_STEPS = np.array([0.02, 0.2, 1e-4, 1e-3, 0.05, 0.05, 1e-3, 1e-3, 1e-3])
+
+
+@dataclass(frozen=True, eq=False)
+class Fitted:
+    """A frame and the twin that comes closest to it."""
+
+    numbers: dict[str, float]
+    """What was fitted, by the names of `NAMES`: lengths in mm, slopes as the share by which light
+    rises over half of the fingertip."""
+    values: Floats
+    """What that twin reads, before calibration, 0 to 255, shape `(cells,)`."""
+    rms: float
+    """Root of the mean square of what remains (counts of 255)."""
+
+
+def read(layout: Layout, numbers: Floats) -> Floats:
+    """What the twin of these numbers, in the order of `NAMES`, reads before calibration."""
+    offset, angle, curvature, clear, gap, alpha, gain, slope_x, slope_y = map(float, numbers)
+    twin = Twin(layout, Model.from_layout(layout, gap, alpha=alpha, gain=gain))
+    light = twin.light(HalfPlane(offset, angle, curvature, clear=clear))
+    slope = 1.0 + slope_x * layout.x_mm / np.abs(layout.x_mm).max()
+    slope += slope_y * layout.y_mm / np.abs(layout.y_mm).max()
+    return values_of_drive(light * twin.drive * slope, twin.model)
+
+
+def fit_edge(layout: Layout, values: Floats, offset_mm: float, angle_deg: float) -> Fitted:
+    """Fit an edge to a frame, by Levenberg's and Marquardt's method, which finds the nearest best:
+    few cells lie across an edge, so start within some two degrees.
+
+    Args:
+        layout: the cells.
+        values: of a real frame, before calibration, 255 is full light, shape `(cells,)`.
+        offset_mm: roughly where the edge is: signed distance from the origin along its left
+            normal, the cloth to the right of it (mm).
+        angle_deg: roughly its direction.
+    """
+    place = np.array([offset_mm, angle_deg, 0.0, 0.05, 2.5, 0.6, 0.9, 0.0, 0.0])
+    error = read(layout, place) - values
+    damping, settled = 1.0, 0
+    while settled < 3 and damping < 1e6:
+        slopes = np.stack(
+            [(read(layout, place + s) - values - error) / s.sum() for s in np.diag(_STEPS)], axis=1
+        )
+        normal = slopes.T @ slopes
+        while damping < 1e6:
+            step = np.linalg.solve(normal + damping * np.diag(np.diag(normal)), -slopes.T @ error)
+            tried = np.clip(place + step, _LEAST, _MOST - _STEPS)
+            new = read(layout, tried) - values
+            if new @ new < error @ error:
+                break
+            damping *= 4.0
+        else:
+            break
+        settled = settled + 1 if error @ error - new @ new < 1e-3 * (error @ error) else 0
+        place, error, damping = tried, new, damping / 6.0
+    numbers = dict(zip(NAMES, place.tolist(), strict=True))
+    return Fitted(numbers, error + values, float(np.sqrt(np.mean(error**2))))

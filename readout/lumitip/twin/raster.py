@@ -1,0 +1,201 @@
+"""The plane of an object as a raster: what each pixel gives to each cell.
+
+Direct is light that crosses the pixel on its way from an LED to the cell's detector. Scattered is
+light that a diffuse object in that pixel sends there, as a Lambertian sheet: the irradiance by all
+LEDs, times what the detector sees of the pixel, times its area over pi.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumitip.grid import Floats, Integers
+from lumitip.layout import Layout
+from lumitip.twin.optics import Model
+from lumitip.twin.pairs import Emitter, Pairs, spread, tally
+from lumitip.twin.rays import REACH_MM, hole_points, in_hole
+from lumitip.twin.scene import PIXEL_MM, Numbers, Singles
+
+_DENSE_CELLS = 64  # for more cells gathering the pixels of each is faster
+_PATCH_MM = 8.0  # around an LED or detector, beyond which a scattering sheet is left out
+_THICK_MM = 0.2  # a sheet that touches a mask still lies this far from it
+_COARSE = 3  # points across half of a hole, enough for light that is scattered anyway
+_LEAST = 1e-5  # share of a cell's light below which a pixel is left out
+
+
+@dataclass(frozen=True, eq=False)
+class Plane:
+    """Pixels of a plane, and the share of its light that each cell gets by them."""
+
+    x_mm: Singles
+    """Centre of each pixel, shape `(pixels,)` (mm)."""
+    y_mm: Singles
+    pixel_mm: float
+    """Width of a pixel (mm)."""
+    weights: Singles
+    """Share of each cell's light, shape `(cells, pixels)`, or `(cells, most)` with `index`."""
+    index: NDArray[np.intp] | None
+    """Of many cells: the pixels that each sees, shape `(cells, most)`."""
+
+    def __call__(self, coverage: Singles) -> Numbers:
+        """What a coverage of the pixels gives to each cell.
+
+        Args:
+            coverage: shape `(pixels,)` or `(n, pixels)`.
+
+        Returns:
+            Shape `(cells,)` or `(n, cells)`.
+        """
+        if self.index is None:
+            if coverage.ndim == 1:
+                one: Numbers = np.dot(self.weights, coverage)
+                return one
+            many: Numbers = np.dot(coverage, self.weights.T)
+            return many
+        if coverage.ndim == 1:
+            alone: Numbers = np.einsum("jk,jk->j", self.weights, coverage[self.index])
+            return alone
+        by_pixel = np.ascontiguousarray(coverage.T)
+        pairs = zip(self.weights, self.index, strict=True)
+        return np.stack([weight @ by_pixel[index] for weight, index in pairs], axis=1)
+
+
+def direct_plane(layout: Layout, pairs: Pairs, emitter: Emitter, height: float) -> Plane:
+    """Light that crosses the plane at a height in the gap (0 receiver, 1 emitter)."""
+    grid = _Grid.around(layout, emitter.model)
+    return _plane(len(layout), grid, _Direct(layout, pairs, height, grid).row)
+
+
+def scattered_plane(layout: Layout, pairs: Pairs, emitter: Emitter, height: float) -> Plane:
+    """Light that a plane sends to the cells if all of it scatters all that falls on it."""
+    grid = _Grid.around(layout, emitter.model)
+    scattered = _Scattered(layout, emitter, height, grid)
+    return _plane(len(layout), grid, lambda cell: scattered.row(cell) / pairs.full[cell])
+
+
+def _plane(cells: int, grid: "_Grid", row: Callable[[int], Floats]) -> Plane:
+    seen, rows = [], []
+    for cell in range(cells):
+        light = row(cell)
+        lit = np.flatnonzero(light > _LEAST)
+        seen.append(lit)
+        # What the dimmest pixels would give is spread over the others.
+        rows.append(light[lit] * (light.sum() / light[lit].sum()))
+    used = np.unique(np.concatenate(seen))
+    dense = cells <= _DENSE_CELLS
+    most = used.size if dense else max(map(len, seen))
+    index = np.zeros((cells, most), dtype=np.intp)
+    weights = np.zeros((cells, most), dtype=np.float32)
+    for cell, (lit, light) in enumerate(zip(seen, rows, strict=True)):
+        places = np.searchsorted(used, lit)
+        index[cell, : lit.size] = places
+        weights[cell, places if dense else slice(lit.size)] = light
+    return Plane(*grid.centres(used), grid.pixel_mm, weights, None if dense else index)
+
+
+@dataclass(frozen=True)
+class _Grid:
+    """Pixels from column and row 0 on; centres at odd multiples of half a pixel, so symmetric."""
+
+    left: int
+    low: int
+    wide: int
+    high: int
+    pixel_mm: float
+
+    @classmethod
+    def around(cls, layout: Layout, model: Model) -> "_Grid":
+        # Small holes see finer than the usual pixel.
+        pixel_mm = min(PIXEL_MM, model.hole_mm / 5.0)
+        margin = REACH_MM / 2.0 + _PATCH_MM / 2.0
+        half = [int(np.ceil((np.abs(a).max() + margin) / pixel_mm))
+                for a in (layout.x_mm, layout.y_mm)]  # fmt: skip
+        return cls(-half[0], -half[1], 2 * half[0], 2 * half[1], pixel_mm)
+
+    @property
+    def pixels(self) -> int:
+        return self.wide * self.high
+
+    def centres(self, index: Integers) -> tuple[Singles, Singles]:
+        x = (index % self.wide + self.left + 0.5) * self.pixel_mm
+        y = (index // self.wide + self.low + 0.5) * self.pixel_mm
+        return x.astype(np.float32), y.astype(np.float32)
+
+    def near(self, x_mm: float, y_mm: float) -> Integers:
+        """Pixels within a patch around a place."""
+        half = round(_PATCH_MM / self.pixel_mm)
+        column, row = int(np.floor(x_mm / self.pixel_mm)), int(np.floor(y_mm / self.pixel_mm))
+        columns = np.arange(max(column - half, self.left), min(column + half, -self.left - 1) + 1)
+        rows = np.arange(max(row - half, self.low), min(row + half, -self.low - 1) + 1)
+        return self.index(columns[None, :], rows[:, None]).ravel()
+
+    def index(self, column: Integers, row: Integers) -> Integers:
+        return (row - self.low) * self.wide + column - self.left
+
+
+class _Direct:
+    """Light that crosses each pixel, as shares of a cell's light."""
+
+    def __init__(self, layout: Layout, pairs: Pairs, height: float, grid: _Grid) -> None:
+        self._layout, self._pairs, self._grid = layout, pairs, grid
+        self._spots = [pairs.spots(kind, height) for kind in range(len(pairs.kinds))]
+
+    def row(self, cell: int) -> Floats:
+        """Of one cell, shape `(pixels,)`."""
+        spots = [self._spots[k] for k in self._pairs.kind[self._pairs.cell == cell]]
+        x, y, light = (np.concatenate(part) for part in zip(*spots, strict=True))
+        column, row, share = spread(
+            (x + self._layout.x_mm[cell]) / self._grid.pixel_mm - 0.5,
+            (y + self._layout.y_mm[cell]) / self._grid.pixel_mm - 0.5,
+        )
+        made = tally(
+            self._grid.index(column, row).ravel(), (share * light).ravel(), self._grid.pixels
+        )
+        shares: Floats = made / self._pairs.full[cell]
+        return shares
+
+
+class _Scattered:
+    """Light that each pixel sends to a cell if it scatters all that falls on it."""
+
+    def __init__(self, layout: Layout, emitter: Emitter, height: float, grid: _Grid) -> None:
+        self._layout, self._grid, self._height = layout, grid, height
+        self._model = model = emitter.model
+        self._gap_mm = gap_mm = emitter.gap_mm(layout.y_mm)
+        led_x, led_y = emitter.leds_mm(layout)
+        self._irradiance = np.zeros(grid.pixels)
+        for x, y, gap in zip(led_x, led_y, gap_mm, strict=True):
+            index, light = self._patch(
+                x, y, (1.0 - height) * gap, model.emitter_depth_mm, model.led_exponent
+            )
+            self._irradiance[index] += light
+
+    def row(self, cell: int) -> Floats:
+        """Of one cell, shape `(pixels,)`, on the scale of the bundles."""
+        index, light = self._patch(
+            self._layout.x_mm[cell], self._layout.y_mm[cell], self._height * self._gap_mm[cell],
+            self._model.detector_depth_mm, self._model.detector_exponent,
+        )  # fmt: skip
+        made = np.zeros(self._grid.pixels)
+        made[index] = self._irradiance[index] * light * (self._grid.pixel_mm**2 / np.pi)
+        return made
+
+    def _patch(
+        self, x_mm: float, y_mm: float, away_mm: float, depth_mm: float, exponent: float
+    ) -> tuple[Integers, Floats]:
+        """Pixels around one end, and what passes between it and each of them."""
+        away_mm = max(away_mm, _THICK_MM)
+        index = self._grid.near(x_mm, y_mm)
+        x, y = (a.astype(np.float64) for a in self._grid.centres(index))
+        x, y = x - x_mm, y - y_mm
+        power = -(exponent + 3.0) / 2.0
+        deep = away_mm + depth_mm
+        through = in_hole(self._model)(x * (depth_mm / deep), y * (depth_mm / deep))
+        die = through * (1.0 + (x * x + y * y) / deep**2) ** power / deep**2
+        hole_x, hole_y = hole_points(self._model, _COARSE)
+        square = (x[:, None] - hole_x) ** 2 + (y[:, None] - hole_y) ** 2
+        hole = ((1.0 + square / away_mm**2) ** power).mean(axis=1) / away_mm**2
+        light: Floats = (1.0 - self._model.alpha) * die + self._model.alpha * hole
+        return index, light

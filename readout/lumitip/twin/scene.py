@@ -1,0 +1,297 @@
+"""What is between the fingers: objects by their signed distance, in the receiver's sensor frame.
+
+Every object has a height in the gap (0 at the receiver, 1 at the emitter), a clear transmittance
+(light that goes straight on) and a diffuse one (light that the object scatters). A scene is one
+object, or a sequence of them; nothing at all is the empty grasp.
+
+Lines follow one convention: `angle_deg` is the direction of the line, `offset_mm` its signed
+distance from the origin along its left normal (−sin, cos).
+"""
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from copy import copy
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumitip.grid import Floats
+from lumitip.twin.optics import TwinError
+
+Numbers = NDArray[np.floating[Any]]
+"""Floating-point numbers of any precision: rasters are single, tables double."""
+Singles = NDArray[np.float32]
+PIXEL_MM = 0.5
+"""Pixel of the rasters on which objects are drawn (mm)."""
+
+
+def covered(outside_mm: Numbers, pixel_mm: float = PIXEL_MM) -> Numbers:
+    """Share of each pixel that is covered, from the signed distance of its centre (mm)."""
+    share: Numbers = outside_mm * (-1.0 / pixel_mm)
+    share += 0.5
+    np.maximum(share, 0.0, out=share)
+    np.minimum(share, 1.0, out=share)
+    return share
+
+
+@dataclass(frozen=True, kw_only=True)
+class Thing(ABC):
+    """An object between the fingers."""
+
+    clear: float = 0.0
+    """Share of light that goes straight through."""
+    diffuse: float = 0.0
+    """Share of light that is scattered on its way through."""
+    height: float = 0.5
+    """Where in the gap: 0 on the receiver, 1 on the emitter."""
+
+    def __post_init__(self) -> None:
+        if not (self.clear >= 0.0 and self.diffuse >= 0.0 and self.clear + self.diffuse <= 1.0):
+            raise TwinError(
+                f"clear {self.clear}, diffuse {self.diffuse} given: not below 0, together 1 at most"
+            )
+        if not 0.0 <= self.height <= 1.0:
+            raise TwinError(f"height: {self.height} given, 0 (receiver) to 1 (emitter) is needed")
+
+    def layers(self, x_mm: Numbers, y_mm: Numbers, pixel_mm: float = PIXEL_MM) -> Sequence[Numbers]:
+        """Coverage by each layer of the material, one over the other, at places (mm)."""
+        return (self.coverage(x_mm, y_mm, pixel_mm),)
+
+    @abstractmethod
+    def coverage(self, x_mm: Numbers, y_mm: Numbers, pixel_mm: float = PIXEL_MM) -> Numbers:
+        """Share of a pixel around each place that is covered, 0 to 1."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Shape(Thing):
+    """An object that is known by the distance from its border."""
+
+    hem_mm: float = 0.0
+    """Width of a hem along the border, where the material lies double (mm)."""
+
+    @abstractmethod
+    def signed_distance_mm(self, x_mm: Numbers, y_mm: Numbers) -> Numbers:
+        """Distance of places from the border, negative under the object (mm)."""
+
+    def coverage(self, x_mm: Numbers, y_mm: Numbers, pixel_mm: float = PIXEL_MM) -> Numbers:
+        """See `Thing`."""
+        return covered(self.signed_distance_mm(x_mm, y_mm), pixel_mm)
+
+    def layers(self, x_mm: Numbers, y_mm: Numbers, pixel_mm: float = PIXEL_MM) -> Sequence[Numbers]:
+        """The material, and the hem upon it."""
+        outside_mm = self.signed_distance_mm(x_mm, y_mm)
+        whole = covered(outside_mm, pixel_mm)
+        if not self.hem_mm:
+            return (whole,)
+        return whole, whole - covered(outside_mm + self.hem_mm, pixel_mm)
+
+
+@dataclass(frozen=True)
+class Line(Shape):
+    """What lies along a line, or along an arc that touches it at its point next to the origin."""
+
+    offset_mm: float = 0.0
+    angle_deg: float = 0.0
+    curvature_per_mm: float = 0.0
+    """One over the radius, positive where it bends to the left (1/mm)."""
+
+    def left_of(self, x_mm: Numbers, y_mm: Numbers) -> tuple[Numbers, Numbers]:
+        """Signed distance of places from the line along its left normal (mm), and the direction
+        of the line beside each place (degrees)."""
+        left, x, y = self._from_foot(x_mm, y_mm)
+        bend = self.curvature_per_mm
+        if not bend:
+            return left, np.full(np.shape(left), float(self.angle_deg))
+        angle = math.radians(self.angle_deg)
+        across, up = bend * x + math.sin(angle), math.cos(angle) - bend * y
+        return self._bent(left, x, y), np.degrees(np.arctan2(across, up))
+
+    def left_mm(self, x_mm: Numbers, y_mm: Numbers) -> Numbers:
+        """The distance of `left_of` alone (mm)."""
+        left, x, y = self._from_foot(x_mm, y_mm)
+        return self._bent(left, x, y) if self.curvature_per_mm else left
+
+    def _from_foot(self, x_mm: Numbers, y_mm: Numbers) -> tuple[Numbers, Numbers, Numbers]:
+        # From the line's point next to the origin: distance to the left of its tangent, x and y.
+        angle = math.radians(self.angle_deg)
+        cos, sin = math.cos(angle), math.sin(angle)
+        left = y_mm * cos - x_mm * sin - self.offset_mm
+        return left, x_mm + self.offset_mm * sin, y_mm - self.offset_mm * cos
+
+    def _bent(self, left: Numbers, x: Numbers, y: Numbers) -> Numbers:
+        # The distance from a circle, in a form that stays exact as the radius grows.
+        bend = self.curvature_per_mm
+        square = x * x + y * y
+        rest = np.sqrt(np.maximum(1.0 - 2.0 * bend * left + (bend * bend) * square, 0.0))
+        away: Numbers = (2.0 * left - bend * square) / (1.0 + rest)
+        return away
+
+
+@dataclass(frozen=True)
+class HalfPlane(Line):
+    """A sheet whose edge is the line: it covers all that is to the right of it."""
+
+    def signed_distance_mm(self, x_mm: Numbers, y_mm: Numbers) -> Numbers:
+        """See `Shape`."""
+        return self.left_mm(x_mm, y_mm)
+
+
+@dataclass(frozen=True)
+class Cable(Line):
+    """A round cable whose axis is the line. A ray is shaded if it passes within the radius of the
+    axis, so slanting light meets a wider shadow than upright light."""
+
+    diameter_mm: float = 3.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not 0.0 < self.diameter_mm < np.inf:
+            raise TwinError(f"diameter_mm: {self.diameter_mm} given, must be above 0")
+
+    def signed_distance_mm(self, x_mm: Numbers, y_mm: Numbers) -> Numbers:
+        """Distance from the cable seen from above; slanting rays need `shade`."""
+        away: Numbers = np.abs(self.left_mm(x_mm, y_mm)) - self.diameter_mm / 2.0
+        return away
+
+    def shade(
+        self, x_mm: Numbers, y_mm: Numbers, across: Numbers, along: Numbers, pixel_mm: float
+    ) -> Numbers:
+        """Share of rays that the cable takes, from where they cross the plane of its axis (mm)
+        and how far they go in x and y for each mm in z."""
+        left_mm, beside_deg = self.left_of(x_mm, y_mm)
+        beside = np.radians(beside_deg)
+        slant = along * np.cos(beside) - across * np.sin(beside)
+        return covered(np.abs(left_mm) - self.diameter_mm / 2.0 * np.sqrt(1.0 + slant**2), pixel_mm)
+
+
+@dataclass(frozen=True)
+class Corner(Shape):
+    """A corner of a sheet: its vertex, the direction from there into the sheet, its opening."""
+
+    x_mm: float = 0.0
+    y_mm: float = 0.0
+    angle_deg: float = -90.0
+    opening_deg: float = 90.0
+
+    def signed_distance_mm(self, x_mm: Numbers, y_mm: Numbers) -> Numbers:
+        """See `Shape`; beyond the vertex the distance from the nearer edge's line."""
+        angle, half = math.radians(self.angle_deg), math.radians(self.opening_deg) / 2.0
+        x, y = x_mm - self.x_mm, y_mm - self.y_mm
+        cos, sin = math.cos(angle), math.sin(angle)
+        inward, side = x * cos + y * sin, y * cos - x * sin
+        away: Numbers = np.abs(side) * math.cos(half) - inward * math.sin(half)
+        return away
+
+
+@dataclass(frozen=True)
+class Disc(Shape):
+    """A disc that lies flat: its middle and diameter (mm)."""
+
+    x_mm: float = 0.0
+    y_mm: float = 0.0
+    diameter_mm: float = 10.0
+
+    def signed_distance_mm(self, x_mm: Numbers, y_mm: Numbers) -> Numbers:
+        """See `Shape`."""
+        away: Numbers = np.hypot(x_mm - self.x_mm, y_mm - self.y_mm) - self.diameter_mm / 2.0
+        return away
+
+
+@dataclass(frozen=True)
+class Sheet(Shape):
+    """A sheet that covers everything."""
+
+    def signed_distance_mm(self, x_mm: Numbers, y_mm: Numbers) -> Numbers:
+        """See `Shape`: the border is far away."""
+        return np.full(np.broadcast_shapes(np.shape(x_mm), np.shape(y_mm)), -1e6)
+
+
+@dataclass(frozen=True, eq=False)
+class Polygon(Shape):
+    """A closed polygon, its corners in either order, shape `(n, 2)` (mm)."""
+
+    points_mm: Floats | Sequence[tuple[float, float]] = ()
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        points = np.array(self.points_mm, dtype=np.float64)
+        if points.ndim != 2 or points.shape[1] != 2 or len(points) < 3:
+            raise TwinError(f"points_mm of shape {points.shape} given, three or more (x, y) needed")
+        object.__setattr__(self, "points_mm", points)
+
+    def signed_distance_mm(self, x_mm: Numbers, y_mm: Numbers) -> Numbers:
+        """See `Shape`; inside is where a ray to the right crosses an odd number of edges."""
+        begin: Floats = np.asarray(self.points_mm)
+        nearest = np.full(np.broadcast_shapes(np.shape(x_mm), np.shape(y_mm)), np.inf)
+        inside = np.zeros(nearest.shape, dtype=bool)
+        for (ax, ay), (bx, by) in zip(begin, np.roll(begin, -1, axis=0), strict=True):
+            dx, dy, x, y = bx - ax, by - ay, x_mm - ax, y_mm - ay
+            share = np.clip((x * dx + y * dy) / max(dx * dx + dy * dy, 1e-18), 0.0, 1.0)
+            nearest = np.minimum(nearest, (x - share * dx) ** 2 + (y - share * dy) ** 2)
+            if ay != by:
+                inside ^= ((y_mm < ay) != (y_mm < by)) & (x < dx * y / dy)
+        distance: Numbers = np.sqrt(nearest)
+        return np.where(inside, -distance, distance)
+
+
+@dataclass(frozen=True, eq=False)
+class Image(Thing):
+    """A drawn object: coverage 0 to 1 in rows, the first nearest the tip, shape `(rows, columns)`;
+    its middle at `(x_mm, y_mm)`, turned by `angle_deg`. Outside of it nothing is covered."""
+
+    pixels: Numbers
+    pixel_mm: float = PIXEL_MM
+    x_mm: float = 0.0
+    y_mm: float = 0.0
+    angle_deg: float = 0.0
+    _framed: Singles = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        pixels = np.asarray(self.pixels)
+        if pixels.ndim != 2 or not pixels.size or not (0.0 <= pixels.min() <= pixels.max() <= 1.0):
+            raise TwinError(
+                f"pixels of shape {pixels.shape} given, rows of coverage from 0 to 1 are needed"
+            )
+        if not self.pixel_mm > 0.0:
+            raise TwinError(f"pixel_mm: {self.pixel_mm} given, must be above 0")
+        # A frame of nothing around it, so that a place outside finds nothing without a test.
+        object.__setattr__(self, "_framed", np.pad(pixels.astype(np.float32), 1))
+
+    @classmethod
+    def of(cls, thing: Thing, size_mm: float = 80.0, pixel_mm: float = 0.1) -> "Image":
+        """An object drawn once, a square around the origin, so that it can be moved cheaply."""
+        half = int(np.ceil(size_mm / 2.0 / pixel_mm))
+        line = np.arange(-half, half + 1) * pixel_mm
+        pixels = thing.coverage(line[None, :], -line[:, None]).astype(np.float32)
+        return cls(pixels, pixel_mm, clear=thing.clear, diffuse=thing.diffuse, height=thing.height)
+
+    def coverage(self, x_mm: Numbers, y_mm: Numbers, pixel_mm: float = PIXEL_MM) -> Numbers:  # noqa: ARG002
+        """See `Thing`: the pixel that each place falls on."""
+        angle, scale = math.radians(self.angle_deg), 1.0 / self.pixel_mm
+        cos, sin = math.cos(angle) * scale, math.sin(angle) * scale
+        rows, columns = self._framed.shape
+        right = 0.5 * columns - self.x_mm * cos - self.y_mm * sin
+        down = 0.5 * rows + self.y_mm * cos - self.x_mm * sin
+        column = np.clip(x_mm * cos + y_mm * sin + right, 0.0, columns - 1.0).astype(np.int32)
+        row = np.clip(x_mm * sin - y_mm * cos + down, 0.0, rows - 1.0).astype(np.int32)
+        found: Numbers = self._framed.ravel()[row * np.int32(columns) + column]
+        return found
+
+    def at(self, x_mm: float, y_mm: float, angle_deg: float) -> "Image":
+        """The same elsewhere (mm, degrees), without a copy of the pixels."""
+        moved = copy(self)
+        for name, value in (("x_mm", x_mm), ("y_mm", y_mm), ("angle_deg", angle_deg)):
+            object.__setattr__(moved, name, value)
+        return moved
+
+
+Scene = Thing | Sequence[Thing]
+
+
+def things(scene: Scene) -> tuple[Thing, ...]:
+    """The objects of a scene."""
+    return (scene,) if isinstance(scene, Thing) else tuple(scene)

@@ -1,0 +1,154 @@
+"""How much of a cell's light an edge or a cable takes, by its direction and its distance.
+
+Behind an edge or a cable that is straight over the reach of a cell, a cell knows of the object
+only the direction and the signed distance of its line, so one look-up replaces the raster. Borders
+are as soft as on the raster, which stands for dies that are no points.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from lumitip.grid import Floats, Integers
+from lumitip.twin.pairs import Pairs, tally
+from lumitip.twin.scene import PIXEL_MM, Numbers, Singles
+
+STEP_MM = 0.05
+STEP_DEG = 3.0
+_SOFT = round(PIXEL_MM / STEP_MM / 2.0)  # half the width of a border, in steps
+
+
+@dataclass(frozen=True, eq=False)
+class LineTable:
+    """Share of light that an opaque object along a line takes from each cell."""
+
+    shares: Singles
+    """Shape `(cells, angles, distances)`: angles from 0 up to below 360 in `STEP_DEG`, distances
+    from `-reach_mm` to `reach_mm` in `STEP_MM`. Angle: direction of the line; distance: of the
+    cell's centre from the line along its left normal, positive where a half-plane, which covers
+    what is right of its line, leaves the cell free."""
+    reach_mm: float
+    """Beyond this distance from the line nothing changes any more (mm)."""
+
+    @property
+    def angles_deg(self) -> Floats:
+        """Direction of each row."""
+        return np.arange(self.shares.shape[1], dtype=np.float64) * STEP_DEG
+
+    @property
+    def distances_mm(self) -> Floats:
+        """Distance of each column."""
+        return np.arange(self.shares.shape[2], dtype=np.float64) * STEP_MM - self.reach_mm
+
+    def __call__(self, angle_deg: Numbers, distance_mm: Numbers) -> Floats:
+        """Share of light taken from each cell, shape `(..., cells)`, linear between entries.
+
+        Args:
+            angle_deg: direction of the line beside each cell, any shape that goes with the other.
+            distance_mm: of each cell's centre, left of the line, shape `(..., cells)` (mm).
+        """
+        angles, distances = self.shares.shape[1:]
+        turn = np.asarray(angle_deg) * (1.0 / STEP_DEG)
+        whole = np.floor(turn)
+        way = np.clip((distance_mm + self.reach_mm) * (1.0 / STEP_MM), 0.0, distances - 1.001)
+        column = way.astype(np.int64)
+        right, down = way - column, turn - whole
+        first = whole.astype(np.int64) % angles
+        begin = self._begin
+        one = begin + first * distances + column
+        other = begin + (first + 1) % angles * distances + column
+        flat, below = self._flat
+        # Each entry lies beside what it grows by, so that a look-up is a gather and a product.
+        low = flat[one] + right * below[one]
+        share: Floats = low + down * (flat[other] + right * below[other] - low)
+        return share
+
+    @cached_property
+    def _begin(self) -> Integers:
+        cells, angles, distances = self.shares.shape
+        begin: Integers = np.arange(cells) * (angles * distances)
+        return begin
+
+    @cached_property
+    def _flat(self) -> tuple[Singles, Singles]:
+        growth = np.diff(self.shares, axis=2, append=self.shares[:, :, -1:])
+        return self.shares.ravel(), growth.ravel()
+
+
+def edge_table(pairs: Pairs, height: float = 0.5) -> LineTable:
+    """The table of an opaque half-plane at a height in the gap."""
+    spots = [pairs.spots(kind, height) for kind in range(len(pairs.kinds))]
+    reach_mm = _reach(max(float(np.hypot(x, y).max(initial=0.0)) for x, y, _ in spots))
+
+    def taken(kind: int, cos: float, sin: float) -> Floats:
+        x, y, light = spots[kind]
+        return _steps(y * cos - x * sin, light, reach_mm)
+
+    half = _table(pairs, taken, reach_mm)
+    # The other way round the same line covers the other side.
+    other = pairs.full[:, None, None] - half[:, :, ::-1]
+    return _finished(pairs, np.concatenate([half, other], axis=1), reach_mm)
+
+
+def cable_table(pairs: Pairs, diameter_mm: float, height: float = 0.5) -> LineTable:
+    """The table of an opaque round cable: a ray is taken if it passes within the radius."""
+    kinds = range(len(pairs.kinds))
+    rays = [pairs.bundle(kind) for kind in kinds]
+    places = [rays[k].at(height * pairs.kinds[k][0].gap_mm) for k in kinds]
+    far = max(
+        float((np.hypot(*places[k]) + diameter_mm / 2.0
+               * np.sqrt(1.0 + r.across**2 + r.along**2)).max())
+        for k, r in enumerate(rays)
+    )  # fmt: skip
+    reach_mm = _reach(far)
+
+    def taken(kind: int, cos: float, sin: float) -> Floats:
+        ray, (x, y) = rays[kind], places[kind]
+        slant = ray.along * cos - ray.across * sin
+        half = diameter_mm / 2.0 * np.sqrt(1.0 + slant * slant)
+        left = y * cos - x * sin
+        return _steps(left - half, ray.weight, reach_mm) - _steps(left + half, ray.weight, reach_mm)
+
+    half = _table(pairs, taken, reach_mm)
+    return _finished(pairs, np.concatenate([half, half[:, :, ::-1]], axis=1), reach_mm)
+
+
+def _reach(far_mm: float) -> float:
+    return float((np.ceil(far_mm / STEP_MM) + 1.0 + _SOFT) * STEP_MM)
+
+
+def _steps(left_mm: Floats, light: Floats, reach_mm: float) -> Floats:
+    """Light that lies right of a line, for every distance that the cell is left of it."""
+    entries = 2 * round(reach_mm / STEP_MM) + 1
+    way = (left_mm + reach_mm) * (1.0 / STEP_MM)
+    column = way.astype(np.int64)
+    right = light * (way - column)
+    bins = tally(column, light - right, entries) + tally(column + 1, right, entries)
+    summed: Floats = (np.cumsum(bins) - 0.5 * bins)[::-1]
+    return summed
+
+
+def _table(pairs: Pairs, taken: Callable[[int, float, float], Floats], reach_mm: float) -> Floats:
+    angles = np.radians(np.arange(0.0, 180.0, STEP_DEG))
+    entries = 2 * round(reach_mm / STEP_MM) + 1
+    kinds = np.empty((len(pairs.kinds), angles.size, entries))
+    for kind in range(len(pairs.kinds)):
+        for a, angle in enumerate(angles):
+            kinds[kind, a] = taken(kind, float(np.cos(angle)), float(np.sin(angle)))
+    made: Floats = np.tensordot(pairs.counts, _softened(kinds), axes=1)
+    return made
+
+
+def _softened(light: Floats) -> Floats:
+    """The mean of every entry's surroundings, as wide as a border is soft."""
+    ends = ((0, 0), (0, 0), (_SOFT + 1, _SOFT))
+    summed = np.cumsum(np.pad(light, ends, mode="edge"), axis=2)
+    whole = summed[:, :, 2 * _SOFT :] - summed[:, :, : -2 * _SOFT]
+    mean: Floats = (whole[:, :, 1:] + whole[:, :, :-1]) / (4.0 * _SOFT)
+    return mean
+
+
+def _finished(pairs: Pairs, light: Floats, reach_mm: float) -> LineTable:
+    return LineTable((light / pairs.full[:, None, None]).astype(np.float32), reach_mm)

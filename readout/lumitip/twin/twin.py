@@ -1,0 +1,238 @@
+"""`Twin`: what a fingertip of a layout reads of a scene.
+
+twin = Twin(layout)
+twin.values(HalfPlane(offset_mm=2.0, angle_deg=15.0))   # calibrated, without noise
+twin.frame(Cable(angle_deg=30.0), t=1.5)                # raw codes, as the firmware sends them
+"""
+
+from collections.abc import Sequence
+from functools import cached_property, lru_cache
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from lumitip.grid import Floats
+from lumitip.layout import Layout
+from lumitip.protocol.packet import BITS, Codes
+from lumitip.twin.mixed import Mixed
+from lumitip.twin.optics import FULL, Model, TwinError, values_of_drive
+from lumitip.twin.pairs import Emitter, Misregistration, Pairs
+from lumitip.twin.raster import Plane, direct_plane, scattered_plane
+from lumitip.twin.scene import Cable, Line, Numbers, Scene, Singles, Thing, things
+from lumitip.twin.tables import LineTable, cable_table, edge_table
+
+WARM_UP_S = 100.0
+"""Time in which the LEDs come down to a third of what they give too much when switched on."""
+
+
+class Twin:
+    """The optical twin of a fingertip pair. Thread-safe: nothing changes but for caches."""
+
+    def __init__(
+        self,
+        layout: Layout,
+        model: Model | None = None,
+        gains: ArrayLike | None = None,
+        misregistration: Misregistration | None = None,
+        ambient: float = 0.0,
+        noise: float = 1.0,
+        bits: int = 8,
+        seed: int = 0,
+        warm_up: float = 0.025,
+    ) -> None:
+        """A twin of a layout.
+
+        Args:
+            layout: the cells.
+            model: optics and circuit; those of the layout at a gap of 3 mm if not given.
+            gains: light of each cell relative to when its empty grasp was measured, shape
+                `(cells,)`; 1 if not given.
+            misregistration: how the emitter stands; part of the empty grasp.
+            ambient: light from outside, as a share of the full light of the brightest cell; not
+                part of the empty grasp.
+            noise: standard deviation of what is read, in counts of 255.
+            bits: of the raw codes, 8, 10 or 12.
+            seed: of the noise; the same seed and time give the same codes.
+            warm_up: share of light that the LEDs give too much when switched on.
+
+        Raises:
+            TwinError: if one of them cannot be so.
+        """
+        self.layout = layout
+        self.model = model or Model.from_layout(layout)
+        self.emitter = Emitter(self.model, misregistration or Misregistration())
+        self.gains: Floats = np.ones(len(layout)) if gains is None else np.array(gains, np.float64)
+        if self.gains.shape != (len(layout),) or not (self.gains >= 0.0).all():
+            raise TwinError(f"gains: {len(layout)} numbers not below 0 are needed")
+        if bits not in BITS:
+            raise TwinError(f"bits: {bits} given, allowed are {', '.join(map(str, BITS))}")
+        if not (ambient >= 0.0 and noise >= 0.0 and warm_up >= 0.0):
+            raise TwinError("ambient, noise and warm_up must not be below 0")
+        self.ambient, self.noise, self.bits, self.seed = ambient, noise, bits, seed
+        self.warm_up = warm_up
+        self._pairs = Pairs.of(layout, self.emitter)
+        straight = Pairs.of(layout, Emitter(self.model)).full
+        self.drive: Floats = self.model.gain * self._pairs.full / straight.max()
+        """Photocurrent of each cell with an empty grasp, 1 is what the pull-up carries."""
+        self.empty: Floats = values_of_drive(self.drive, self.model)
+        """What each cell reads with an empty grasp before calibration, 0 to 255."""
+        self._direct = lru_cache(maxsize=8)(self._direct_plane)
+        self._scatter = lru_cache(maxsize=8)(self._scattered_plane)
+        self._edges = lru_cache(maxsize=8)(self._edge_table)
+        self._cables = lru_cache(maxsize=8)(self._cable_table)
+
+    def values(self, scene: Scene = ()) -> Floats:
+        """Values without noise, calibrated with the empty grasp, 0 to 255, shape `(cells,)`."""
+        return self.calibrated(self.light(scene))
+
+    def batch(self, scenes: Sequence[Scene] | Singles, height: float = 0.5) -> Floats:
+        """Values of many scenes, shape `(n, cells)`.
+
+        Args:
+            scenes: scenes, or the coverage of an opaque object on `plane(height)`, shape
+                `(n, pixels)`.
+            height: where in the gap that coverage lies.
+        """
+        if isinstance(scenes, np.ndarray):
+            return self.calibrated(1.0 - self.plane(height)(scenes))
+        if not scenes:
+            return np.empty((0, len(self.layout)))
+        return self.calibrated(np.stack([self.light(scene) for scene in scenes]))
+
+    def light(self, scene: Scene = ()) -> Numbers:
+        """Share of its empty-grasp light that each cell gets, 1 is all, shape `(cells,)`.
+
+        A single edge or cable is looked up in a table, flat objects at one height go through the
+        raster, everything else ray by ray.
+        """
+        found = things(scene)
+        if not found:
+            return np.ones(len(self.layout))
+        if len(found) == 1 and isinstance(found[0], Line) and not found[0].hem_mm:
+            return self._of_line(found[0])
+        flat = not any(isinstance(thing, Cable) for thing in found)
+        if flat and len({thing.height for thing in found}) == 1:
+            return self._of_flat(found)
+        return self._mixed.light(found)
+
+    def edges(self, offset_mm: ArrayLike, angle_deg: ArrayLike, clear: ArrayLike = 0.0) -> Floats:
+        """Values of many straight edges, shape `(n, cells)`: one look-up each.
+
+        Args:
+            offset_mm: signed distance of each edge from the origin along its left normal,
+                shape `(n,)`; what is right of it is covered.
+            angle_deg: its direction, shape `(n,)`.
+            clear: transmittance of each sheet, shape `(n,)` or one for all.
+        """
+        offset, angle, through = np.broadcast_arrays(
+            *(np.atleast_1d(np.asarray(a, np.float64)) for a in (offset_mm, angle_deg, clear))
+        )
+        turn = np.radians(angle)[:, None]
+        left = self.layout.y_mm * np.cos(turn) - self.layout.x_mm * np.sin(turn) - offset[:, None]
+        share = self.edge_table()(angle[:, None], left)
+        return self.calibrated(1.0 - (1.0 - through[:, None]) * share)
+
+    def edge_table(self, height: float = 0.5) -> LineTable:
+        """Share of its light that an opaque half-plane takes from each cell, by the direction and
+        the signed distance of its edge."""
+        return self._edges(height)
+
+    def cable_table(self, diameter_mm: float = 3.0, height: float = 0.5) -> LineTable:
+        """The same of an opaque round cable, by the distance from its axis."""
+        return self._cables(diameter_mm, height)
+
+    def plane(self, height: float = 0.5) -> Plane:
+        """The raster at a height in the gap: places of its pixels and what each gives."""
+        return self._direct(height)
+
+    def calibrated(self, light: Numbers) -> Floats:
+        """Values of shares of light, both of shape `(..., cells)`, 255 is the empty grasp."""
+        values: Floats = self.uncalibrated(light) * (FULL / self.empty)
+        return np.clip(values, 0.0, FULL, out=values)
+
+    def uncalibrated(self, light: Numbers, extra: float | Floats = 0.0) -> Floats:
+        """What the circuit reads, 0 to 255, of shares of light; LEDs give `extra` too much."""
+        drive = light * (self.drive * self.gains * (1.0 + extra))
+        return values_of_drive(drive + self.ambient * self.model.gain, self.model)
+
+    def frame(self, scene: Scene = (), t: float = 0.0) -> Codes:
+        """Raw codes of one frame, dark is high, shape `(cells,)`: what the firmware sends.
+
+        Args:
+            scene: what is between the fingers.
+            t: time since switching on (s); the LEDs warm up by it.
+        """
+        one: Codes = self.codes(self.light(scene)[None], np.array([t]))[0]
+        return one
+
+    def codes(self, light: Numbers, times_s: Floats) -> Codes:
+        """Raw codes of shares of light, shape `(n, cells)`, at times since switching on (s)."""
+        extra = self.warm_up * np.exp(-np.asarray(times_s) / WARM_UP_S)[:, None]
+        voltage = (FULL - self.uncalibrated(light, extra)) / FULL
+        if self.noise:
+            chances = [self._chance(t).standard_normal(len(self.layout)) for t in times_s]
+            voltage = voltage + (self.noise / FULL) * np.stack(chances)
+        most = 2**self.bits - 1
+        # An ADC tells how many whole steps the voltage has, and so is half a step low.
+        codes = np.clip(np.floor(voltage * (most + 1)), 0, most)
+        as_sent: Codes = codes.astype(np.uint8 if self.bits == 8 else np.uint16)
+        return as_sent
+
+    def _chance(self, t: float) -> np.random.Generator:
+        return np.random.Generator(np.random.SFC64([self.seed, round(t * 1e6)]))
+
+    def _of_line(self, line: Line) -> Numbers:
+        left_mm, beside_deg = line.left_of(self.layout.x_mm, self.layout.y_mm)
+        if isinstance(line, Cable):
+            table = self._cables(line.diameter_mm, line.height)
+        else:
+            table = self._edges(line.height)
+        light: Numbers = 1.0 - (1.0 - line.clear) * table(beside_deg, left_mm)
+        if line.diffuse:
+            light = light + line.diffuse * self._scattered(line)
+        return light
+
+    def _of_flat(self, found: Sequence[Thing]) -> Numbers:
+        at = self.plane(found[0].height)
+        layers = found[0].layers(at.x_mm, at.y_mm, at.pixel_mm)
+        if len(found) == len(layers) == 1:
+            alone: Numbers = 1.0 - (1.0 - found[0].clear) * at(np.asarray(layers[0], np.float32))
+            if found[0].diffuse:
+                alone = alone + found[0].diffuse * self._scattered(found[0])
+            return alone
+        clear, _ = self._through(found, at)
+        light: Numbers = 1.0 - at(np.float32(1.0) - clear)
+        if any(thing.diffuse for thing in found):
+            at = self._scatter(found[0].height)
+            clear, whole = self._through(found, at)
+            light = light + at(whole - clear)
+        return light
+
+    def _through(self, found: Sequence[Thing], at: Plane) -> tuple[Singles, Singles]:
+        """What goes straight through each pixel, and what goes through at all."""
+        clear = whole = np.ones(at.x_mm.size, np.float32)
+        for thing in found:
+            for layer in thing.layers(at.x_mm, at.y_mm, at.pixel_mm):
+                clear = clear * (1.0 - (1.0 - thing.clear) * layer)
+                whole = whole * (1.0 - (1.0 - thing.clear - thing.diffuse) * layer)
+        return clear, whole
+
+    def _scattered(self, thing: Thing) -> Numbers:
+        at = self._scatter(thing.height)
+        return at(thing.coverage(at.x_mm, at.y_mm, at.pixel_mm).astype(np.float32))
+
+    @cached_property
+    def _mixed(self) -> Mixed:
+        return Mixed(self.layout, self._pairs, self._scattered)
+
+    def _direct_plane(self, height: float) -> Plane:
+        return direct_plane(self.layout, self._pairs, self.emitter, height)
+
+    def _scattered_plane(self, height: float) -> Plane:
+        return scattered_plane(self.layout, self._pairs, self.emitter, height)
+
+    def _edge_table(self, height: float) -> LineTable:
+        return edge_table(self._pairs, height)
+
+    def _cable_table(self, diameter_mm: float, height: float) -> LineTable:
+        return cable_table(self._pairs, diameter_mm, height)

@@ -1,0 +1,137 @@
+"""`Room`: the fingertips that are shown, and the browsers that are told when one has changed."""
+
+import asyncio
+import re
+import threading
+from collections.abc import Iterable
+from contextlib import ExitStack, suppress
+from pathlib import Path
+from typing import Any
+
+from lumitip.view.errors import ViewError
+from lumitip.view.finger import Finger
+
+_SUFFIX = ".mcap"
+
+
+class Room:
+    """Fingers by number, and where recordings go.
+
+    Args:
+        fingers: open; the room closes them.
+        folder: of the recordings that are made and replayed.
+    """
+
+    def __init__(self, fingers: Iterable[Finger], folder: Path) -> None:
+        self.folder = folder
+        self.fingers: dict[int, Finger] = {}
+        self._number = 0
+        self._wakers: set[asyncio.Event] = set()
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._waking = threading.Event()
+        self._adding = threading.Lock()
+        for finger in fingers:
+            self.add(finger)
+
+    def open(self, loop: asyncio.AbstractEventLoop) -> None:
+        """Begin to read all fingers; browsers live on `loop`."""
+        self._loop = loop
+        for finger in self.fingers.values():
+            finger.start(self.changed)
+
+    def close(self) -> None:
+        """End recordings and disconnect."""
+        self._loop = None
+        with ExitStack() as stack:  # each is closed, whatever the others say
+            for finger in self.fingers.values():
+                stack.callback(finger.close)
+
+    def add(self, finger: Finger) -> int:
+        """Show one more; returns its number. It is read once the room is open. From any thread."""
+        with self._adding:
+            self._number += 1
+            self.fingers = {**self.fingers, self._number: finger}
+            if self._loop:
+                finger.start(self.changed)
+            return self._number
+
+    def remove(self, number: int) -> None:
+        """Show one no more. From any thread."""
+        with self._adding:
+            finger = self.fingers[number]
+            self.fingers = {n: f for n, f in self.fingers.items() if n != number}
+        finger.close()
+        self.changed()
+
+    def listen(self) -> asyncio.Event:
+        """An event that is set whenever something has changed; on the loop."""
+        event = asyncio.Event()
+        self._wakers.add(event)
+        return event
+
+    def leave(self, event: asyncio.Event) -> None:
+        """Set it no more; on the loop."""
+        self._wakers.discard(event)
+
+    def changed(self) -> None:
+        """Wake the browsers' tasks. From any thread."""
+        loop = self._loop
+        # One call in flight is enough: whoever wakes looks at everything.
+        if loop is None or self._waking.is_set():
+            return
+        self._waking.set()
+        try:
+            loop.call_soon_threadsafe(self._wake)
+        except RuntimeError:  # the loop was closed meanwhile: nobody is left to wake
+            self._waking.clear()
+
+    def _wake(self) -> None:
+        self._waking.clear()
+        for event in self._wakers:
+            event.set()
+
+    def describe(self) -> list[dict[str, Any]]:
+        """What the page needs to draw the fingers, as JSON can say it."""
+        return [
+            {
+                "number": number,
+                "url": finger.url,
+                "device": finger.tip.device_id,
+                "replayed": finger.player is not None,
+                "design": finger.tip.layout.design_hash[:16],
+                "pitch_mm": finger.tip.layout.pitch_mm,
+                "x_mm": finger.tip.layout.x_mm.tolist(),
+                "y_mm": finger.tip.layout.y_mm.tolist(),
+            }
+            for number, finger in self.fingers.items()
+        ]
+
+    def recordings(self) -> list[str]:
+        """Names of the recordings in the folder, newest first."""
+        changed_ns: dict[str, int] = {}
+        for file in self.folder.glob(f"*{_SUFFIX}"):
+            # A name that is no text cannot be sent; a file may be gone again.
+            with suppress(OSError, UnicodeEncodeError):
+                file.name.encode()
+                if file.is_file():
+                    changed_ns[file.name] = file.stat().st_mtime_ns
+        return sorted(changed_ns, key=changed_ns.__getitem__, reverse=True)
+
+    def recording(self, name: str) -> Path:
+        """The file of a recording that is in the folder.
+
+        Raises:
+            ViewError: if there is none of that name.
+        """
+        if name not in self.recordings():
+            raise ViewError(f"{name!r} given, there is no such recording in {self.folder}")
+        return self.folder / name
+
+    def fresh(self, finger: Finger) -> Path:
+        """A file for a new recording of a finger: named after it, numbered, not there yet."""
+        name = re.sub(r"[^A-Za-z0-9-]+", "-", finger.tip.device_id).strip("-") or "lumitip"
+        taken = set(self.recordings())
+        number = 1
+        while f"{name}-{number:03d}{_SUFFIX}" in taken:
+            number += 1
+        return self.folder / f"{name}-{number:03d}{_SUFFIX}"

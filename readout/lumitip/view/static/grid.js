@@ -1,0 +1,141 @@
+// The cells of one finger as hexagons where the layout says they are, tip up.
+
+import { fit, theme } from "./canvas.js";
+import { colourOf, inkOn, LINES } from "./colour.js";
+import { drawContact } from "./overlay.js";
+
+const GAP = 0.955; // size of a hexagon, as a share of what would touch its neighbours
+const SIDE = 1 / Math.sqrt(3); // of a hexagon one pitch across its flats
+const LEAST_FOR_TEXT = 26; // CSS pixels of pitch
+
+export class Grid {
+  constructor(canvas, layout) {
+    this.canvas = canvas;
+    this.layout = layout;
+    this.selected = [];
+    this.place();
+  }
+
+  /** Work out where the cells are on the canvas; on every change of its size. */
+  place() {
+    const { x_mm, y_mm, pitch_mm } = this.layout;
+    const { width, height } = fit(this.canvas);
+    const margin = pitch_mm * 0.85;
+    const [left, right] = [Math.min(...x_mm) - margin, Math.max(...x_mm) + margin];
+    const [low, high] = [Math.min(...y_mm) - margin, Math.max(...y_mm) + margin];
+    this.scale = Math.min(width / (right - left), height / (high - low));
+    this.middle = [width / 2, height / 2];
+    this.origin = [(left + right) / 2, (low + high) / 2];
+    this.rectangle = [
+      ...this.at([left, high]), (right - left) * this.scale, (high - low) * this.scale,
+    ];
+    this.reach = Math.hypot(right - left, high - low);
+    this.radius = pitch_mm * this.scale * SIDE;
+    this.centres = x_mm.map((x, i) => this.at([x, y_mm[i]]));
+    this.hexagon = hexagon(this.radius * GAP);
+  }
+
+  /** Canvas position (CSS pixels) of a point of the sensor frame (mm); y up becomes y down. */
+  at([x, y]) {
+    return [
+      this.middle[0] + (x - this.origin[0]) * this.scale,
+      this.middle[1] - (y - this.origin[1]) * this.scale,
+    ];
+  }
+
+  /** The cell under a position on the canvas, -1 if there is none. */
+  cellAt(x, y) {
+    let best = -1;
+    let least = this.radius;
+    this.centres.forEach(([cx, cy], i) => {
+      const far = Math.hypot(x - cx, y - cy);
+      if (far < least) [best, least] = [i, far];
+    });
+    return best;
+  }
+
+  /** Leave a cell out if it is selected, else select it, up to as many as there are colours. */
+  toggle(cell) {
+    if (this.selected.includes(cell)) this.selected = this.selected.filter((c) => c !== cell);
+    else this.selected = [...this.selected, cell].slice(-LINES.length);
+  }
+
+  draw(values, contact, show) {
+    const { brush, width, height } = fit(this.canvas);
+    brush.clearRect(0, 0, width, height);
+    this.centres.forEach((centre, i) => this.drawCell(brush, centre, values[i]));
+    if (show.values) this.drawValues(brush, values);
+    this.selected.forEach((cell, i) => this.outline(brush, this.centres[cell], LINES[i]));
+    if (show.overlay && contact) drawContact(brush, this, contact);
+    this.drawFrame(brush, width, height);
+  }
+
+  drawCell(brush, [x, y], value) {
+    brush.translate(x, y);
+    if (Number.isNaN(value)) {
+      brush.strokeStyle = theme.soft;
+      brush.lineWidth = 1;
+      brush.stroke(this.hexagon);
+    } else {
+      brush.fillStyle = colourOf(value);
+      brush.fill(this.hexagon);
+    }
+    brush.translate(-x, -y);
+  }
+
+  drawValues(brush, values) {
+    const pitch = this.radius / SIDE;
+    if (pitch < LEAST_FOR_TEXT) return;
+    brush.font = `${Math.min(15, Math.round(pitch * 0.24))}px system-ui, sans-serif`;
+    brush.textAlign = "center";
+    brush.textBaseline = "middle";
+    this.centres.forEach(([x, y], i) => {
+      if (Number.isNaN(values[i])) return;
+      brush.fillStyle = inkOn(values[i]);
+      brush.fillText(Math.round(values[i]), x, y);
+    });
+  }
+
+  outline(brush, [x, y], colour) {
+    brush.translate(x, y);
+    brush.lineJoin = "round";
+    brush.strokeStyle = theme.well;
+    brush.lineWidth = 5;
+    brush.stroke(this.hexagon);
+    brush.strokeStyle = colour;
+    brush.lineWidth = 3;
+    brush.stroke(this.hexagon);
+    brush.translate(-x, -y);
+  }
+
+  /** Which way is up, and how large a pitch is. */
+  drawFrame(brush, width, height) {
+    const length = this.layout.pitch_mm * this.scale;
+    const [x, y] = [14.5, height - 14.5];
+    brush.strokeStyle = brush.fillStyle = theme.soft;
+    brush.lineWidth = 1;
+    brush.beginPath();
+    brush.moveTo(x, y - 4);
+    brush.lineTo(x, y);
+    brush.lineTo(x + length, y);
+    brush.lineTo(x + length, y - 4);
+    brush.stroke();
+    brush.font = "12px system-ui, sans-serif";
+    brush.textAlign = "left";
+    brush.textBaseline = "bottom";
+    brush.fillText(`${Number(this.layout.pitch_mm.toFixed(2))} mm`, x, y - 5);
+    brush.textBaseline = "top";
+    brush.fillText("↑ tip", 14, 12);
+  }
+}
+
+/** Flats face the tip: corners left and right. */
+function hexagon(radius) {
+  const path = new Path2D();
+  for (let i = 0; i < 6; i += 1) {
+    const angle = (i * Math.PI) / 3;
+    path.lineTo(radius * Math.cos(angle), radius * Math.sin(angle));
+  }
+  path.closePath();
+  return path;
+}

@@ -1,0 +1,152 @@
+// The live view: panels for the fingers, one stream, one picture at a time.
+
+import { drawScale } from "./colour.js";
+import { Keys } from "./keys.js";
+import { Panel } from "./panel.js";
+import { get, post, Stream } from "./stream.js";
+
+const SPANS_S = [10, 30, 60];
+const NOTICE_MS = 6000;
+const NEVER_MS = 2 ** 31 - 1;
+
+const panels = new Map();
+const show = { values: true, overlay: true, span: SPANS_S[0], frozen: false };
+let chosen = 0;
+let noticed = 0;
+let listing = false;
+
+const byId = (id) => document.getElementById(id);
+
+/** Tell the user something for a while. */
+function say(text, isError = false, forMs = NOTICE_MS) {
+  byId("notice").textContent = text;
+  byId("notice").className = isError ? "error" : "";
+  clearTimeout(noticed);
+  noticed = setTimeout(() => { byId("notice").textContent = ""; }, forMs);
+}
+
+/** Show the fingers that the server has now. */
+async function list() {
+  if (listing) return;
+  listing = true;
+  try {
+    const fingers = await get("api/fingers");
+    // A server that was started anew may show another finger under the same number.
+    const shown = new Map(fingers.map((layout) => [layout.number, JSON.stringify(layout)]));
+    for (const [number, panel] of panels) {
+      if (shown.get(number) === JSON.stringify(panel.layout)) continue;
+      panel.element.remove();
+      panels.delete(number);
+    }
+    for (const layout of fingers) {
+      if (panels.has(layout.number)) continue;
+      const panel = new Panel(layout, say);
+      panels.set(layout.number, panel);
+      byId("fingers").append(panel.element);
+      panel.element.addEventListener("pointerdown", () => choose(layout.number));
+      panel.placed(show);
+    }
+    choose(panels.has(chosen) ? chosen : fingers[0]?.number);
+  } catch (error) {
+    say(error.message, true);
+  } finally {
+    listing = false;
+  }
+}
+
+function choose(number) {
+  chosen = number;
+  for (const [n, { element }] of panels) element.classList.toggle("chosen", n === number);
+}
+
+const stream = new Stream({
+  frames: (message) => panels.get(message.finger)?.take(message),
+  status: ({ fingers }) => {
+    for (const [number, status] of Object.entries(fingers)) {
+      panels.get(Number(number))?.told(status);
+    }
+    const known = Object.keys(fingers);
+    if (known.length !== panels.size || known.some((n) => !panels.has(Number(n)))) list();
+  },
+  open: (whether) => {
+    document.body.dataset.stream = whether ? "open" : "closed";
+    if (whether) {
+      say("");
+      list();
+    } else say("no connection to lumitip view, trying again", true, NEVER_MS);
+  },
+});
+
+function picture() {
+  if (!show.frozen) for (const panel of panels.values()) panel.draw();
+  stream.acknowledge();
+  requestAnimationFrame(picture);
+}
+requestAnimationFrame(picture);
+
+function redraw() {
+  for (const panel of panels.values()) panel.draw(true);
+}
+
+function freeze() {
+  show.frozen = !show.frozen;
+  byId("freeze").setAttribute("aria-pressed", show.frozen);
+  if (!show.frozen) redraw();
+}
+
+/** Switch values or overlay. */
+function flip(what) {
+  show[what] = !show[what];
+  redraw();
+}
+
+function widen() {
+  show.span = SPANS_S[(SPANS_S.indexOf(show.span) + 1) % SPANS_S.length];
+  redraw();
+}
+
+async function replay() {
+  const names = await get("api/recordings").catch((error) => say(error.message, true));
+  if (!names) return;
+  const dialog = byId("recordings");
+  dialog.querySelector(".none").hidden = names.length > 0;
+  dialog.querySelector("ul").replaceChildren(...names.map((name) => {
+    const [item, button] = [document.createElement("li"), document.createElement("button")];
+    button.textContent = name;
+    button.onclick = () => post("api/replay", { name }).then(
+      ({ said, number }) => { say(said); chosen = number; list(); },
+      (error) => say(error.message, true),
+    );
+    item.append(button);
+    return item;
+  }));
+  dialog.showModal();
+}
+
+const current = () => panels.get(chosen);
+const help = () => byId("keys").showModal();
+
+new Keys([
+  [[" "], "freeze the picture, or go on", freeze],
+  [["t"], "tare: take the grasp as it is for empty", () => current()?.tare()],
+  [["r"], "begin or end a recording", () => current()?.record()],
+  [["p"], "replay a recording", replay],
+  [["k"], "pause a replay, or go on", () => current()?.player?.toggle()],
+  [["ArrowLeft"], "wind a replay back by a second", () => current()?.player?.wind(-1)],
+  [["ArrowRight"], "wind a replay on by a second", () => current()?.player?.wind(1)],
+  [["v"], "values on the cells", () => flip("values")],
+  [["o"], "markers, centre and fitted lines", () => flip("overlay")],
+  [["w"], "span of the time plot: 10, 30 or 60 s", widen],
+  [["c"], "leave all selected cells out of the plot", () => current()?.clear()],
+  [[..."123456789"], "choose a finger", (key) => choose([...panels.keys()][key - 1] ?? chosen)],
+  [["?", "h", "F1"], "this help", help],
+], byId("keys").querySelector("dl"));
+
+byId("freeze").onclick = freeze;
+byId("replay").onclick = replay;
+byId("help").onclick = help;
+window.addEventListener("themed", redraw);
+drawScale(byId("scale"));
+
+/** For the console and the tests. */
+window.lumitip = { panels, show };

@@ -1,0 +1,115 @@
+// Values over time: mean and range of all cells, and the selected ones by themselves.
+
+import { fit, theme } from "./canvas.js";
+import { LINES } from "./colour.js";
+
+const LEFT = 30;
+const BOTTOM = 18;
+const TOP = 6;
+const GAP_S = 0.5; // a line is broken where nothing came for so long
+
+export class Plot {
+  constructor(canvas, history) {
+    this.canvas = canvas;
+    this.history = history;
+  }
+
+  draw(selected, span) {
+    const { brush, width, height } = fit(this.canvas);
+    const axes = {
+      brush, span, left: LEFT, right: width - 2, top: TOP, bottom: height - BOTTOM,
+      now: this.history.last,
+      x(t) { return this.right - ((this.now - t) / this.span) * (this.right - this.left); },
+      y(value) { return this.bottom - (value / 255) * (this.bottom - this.top); },
+    };
+    brush.clearRect(0, 0, width, height);
+    drawAxes(axes);
+    if (!this.history.count) return;
+    const columns = this.columns(axes, selected);
+    drawBand(axes, columns);
+    drawLine(axes, columns, 0, theme.text, 1.5);
+    selected.forEach((_, i) => drawLine(axes, columns, i + 1, LINES[i], 2));
+  }
+
+  /**
+   * Frames gathered by pixel of the time axis: x, range of all cells, and the mean of each line,
+   * so that a long span costs no more to draw than a short one.
+   */
+  columns(axes, selected) {
+    const { t, mean, least, most, values, cells } = this.history;
+    const columns = [];
+    let column = null;
+    for (const at of this.history.since(axes.now - axes.span)) {
+      const x = Math.round(axes.x(t[at]));
+      if (!column || column.x !== x) {
+        const broken = !column || t[at] - column.t > GAP_S;
+        column = { x, broken, number: 0, least: 255, most: 0, sums: selected.map(() => 0) };
+        column.sums.push(0);
+        columns.push(column);
+      }
+      column.t = t[at];
+      column.number += 1;
+      column.least = Math.min(column.least, least[at]);
+      column.most = Math.max(column.most, most[at]);
+      column.sums[0] += mean[at];
+      selected.forEach((cell, i) => {
+        column.sums[i + 1] += values[at * cells + cell];
+      });
+    }
+    return columns;
+  }
+}
+
+function drawAxes(axes) {
+  const { brush, left, right, top, bottom, span } = axes;
+  brush.font = "11px system-ui, sans-serif";
+  brush.fillStyle = theme.soft;
+  brush.strokeStyle = theme.line;
+  brush.lineWidth = 1;
+  brush.beginPath();
+  brush.textAlign = "right";
+  brush.textBaseline = "middle";
+  for (const value of [0, 64, 128, 192, 255]) {
+    const y = Math.round(axes.y(value)) + 0.5;
+    brush.moveTo(left, y);
+    brush.lineTo(right, y);
+    if (value % 128 === 0 || value === 255) brush.fillText(value, left - 6, y);
+  }
+  brush.textBaseline = "top";
+  const step = span / 5;
+  for (let ago = 0; ago <= span; ago += step) {
+    const x = Math.round(right - (ago / span) * (right - left)) - 0.5;
+    brush.moveTo(x, top);
+    brush.lineTo(x, bottom);
+    brush.textAlign = ago === 0 ? "right" : ago === span ? "left" : "center";
+    brush.fillText(ago === 0 ? "now" : `−${ago} s`, x, bottom + 5);
+  }
+  brush.stroke();
+}
+
+function drawBand(axes, columns) {
+  const { brush } = axes;
+  brush.fillStyle = theme.soft;
+  brush.globalAlpha = 0.2;
+  for (const [i, column] of columns.entries()) {
+    const next = columns[i + 1];
+    const wide = next && !next.broken ? next.x - column.x : 1;
+    const top = axes.y(column.most);
+    brush.fillRect(column.x, top, wide, axes.y(column.least) - top);
+  }
+  brush.globalAlpha = 1;
+}
+
+function drawLine(axes, columns, line, colour, width) {
+  const { brush } = axes;
+  brush.strokeStyle = colour;
+  brush.lineWidth = width;
+  brush.lineJoin = "round";
+  brush.beginPath();
+  for (const column of columns) {
+    const y = axes.y(column.sums[line] / column.number);
+    if (column.broken) brush.moveTo(column.x, y);
+    else brush.lineTo(column.x, y);
+  }
+  brush.stroke();
+}

@@ -1,0 +1,70 @@
+"""Boards by themselves: every file of both boards of a preset, without the printed parts."""
+
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from lumitip_fab.boards.files import board_files
+from lumitip_fab.derive import derive
+from lumitip_fab.design import Design
+from lumitip_fab.encoding import design_text
+from lumitip_fab.graph import tasks
+from lumitip_fab.load import load
+
+Boards = Callable[[str], Path]
+
+
+SMALL = """\
+extends = "published.toml"
+name = "Small"
+[grid]
+columns = [3, 2, 3, 2, 3]
+[board]
+tip_margin_mm = 4.6
+[supply]
+voltage_v = 12.0
+[emitter]
+current_ma = 12.0
+"""
+
+
+@pytest.fixture(scope="session")
+def designs(design_dir: Path, tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Design]:
+    """`designs("dense")`: a preset's design; `"small"` is a grid of 13 cells on two muxes."""
+    folder = tmp_path_factory.mktemp("designs") / "design"
+    shutil.copytree(design_dir, folder)
+    (folder / "presets" / "small.toml").write_text(SMALL)
+    return lambda preset: derive(load(folder / "presets" / f"{preset}.toml"))
+
+
+@pytest.fixture(scope="session")
+def boards(
+    once: Callable[[str, Callable[[Path], object]], Path],
+    built: Callable[[str], Path],
+    designs: Callable[[str], Design],
+) -> Boards:
+    """`boards("dense")`: a folder with a preset's boards and design. Do not change it."""
+    return lambda preset: (
+        once("small", lambda out: _write(designs("small"), out))
+        if preset == "small"
+        else built(preset)
+    )
+
+
+def _write(design: Design, out: Path) -> None:
+    (out / "design.json").write_text(design_text(design), encoding="utf-8")
+    for task in tasks(design):
+        if task.step.name != "board_files":
+            continue
+        for artefact in board_files(**task.arguments):
+            path = out / artefact.path
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(artefact.data)
+
+
+@pytest.fixture
+def damaged_boards(boards: Boards, tmp_path: Path) -> Path:
+    """A copy of the small design's boards, to damage."""
+    return Path(shutil.copytree(boards("small"), tmp_path / "damaged"))

@@ -1,0 +1,243 @@
+"""Damage the board files, and exactly the right checks fail."""
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from board_damages import in_part, moved_part, once, swapped_pads
+from damages import cut_short, failing, swap
+from lumitip_fab.checks import board
+from lumitip_fab.encoding import read_design
+
+Damage = Callable[[str], str]
+EMITTER = "boards/emitter/emitter.kicad_pcb"
+RECEIVER = "boards/receiver/receiver.kicad_pcb"
+
+
+def led_moved(text: str) -> str:
+    return moved_part(text, "D7", 0.05, 0.0)
+
+
+def led_on_the_back(text: str) -> str:
+    return in_part(text, "D7", r'\(layer "F.Cu"\)', '(layer "B.Cu")')
+
+
+def led_added(text: str) -> str:
+    extra = '(fp_text reference "D99" (at 0 0) (layer "F.SilkS"))'
+    return text.rstrip()[:-1] + f'(footprint "X" (layer "F.Cu") (at 150 100) {extra}))\n'
+
+
+def led_reversed(text: str) -> str:
+    return swapped_pads(text, "D7", "1", "2")
+
+
+def resistor_smaller(text: str) -> str:
+    return in_part(text, "R1", r'value "\d+R"', 'value "100R"')
+
+
+def led_bridged(text: str) -> str:
+    return in_part(text, "D7", r'(\(pad "1".*\(size )\S+ \S+\)', r"\g<1>2.0 1)")
+
+
+def led_taller(text: str) -> str:
+    return in_part(text, "D7", "LEDC1608X60N", "LEDC1608X160N")
+
+
+def resistor_taller(text: str) -> str:
+    return in_part(text, "R1", r"(RESC\d+X)\d+N", r"\g<1>90N")
+
+
+EMITTER_DAMAGES: dict[Damage, set[str]] = {
+    led_moved: {"cells", "clearance"},  # the pour is as near as it may be
+    led_on_the_back: {"cells", "room_behind"},
+    led_added: {"cell_count"},
+    led_reversed: {"polarity"},
+    led_bridged: {"short", "strings", "current"},
+    led_taller: {"height_front"},
+    resistor_smaller: {"current"},
+    resistor_taller: {"room_behind"},
+}
+
+
+def net_names_swapped(text: str) -> str:
+    """Two detectors whose pads say each other's net; their copper is as before."""
+    first = re.search(r'\(net (\d+) "Q1"\)', text)
+    second = re.search(r'\(net (\d+) "Q2"\)', text)
+    assert first and second
+    text = in_part(text, "Q1", re.escape(first[0]), second[0])
+    return in_part(text, "Q2", re.escape(second[0]), first[0])
+
+
+def inputs_swapped(text: str) -> str:
+    """Two leads of a multiplexer exchanged: copper and names agree, but not with the layout."""
+    return swapped_pads(text, "U1", "13", "14")
+
+
+def detector_reversed(text: str) -> str:
+    return swapped_pads(text, "Q3", "1", "2")
+
+
+def track_narrow(text: str) -> str:
+    return once(text, r"(\(segment .*?\(width )0\.2\)", r"\g<1>0.15)")
+
+
+def via_dropped(text: str) -> str:
+    net = re.search(r'\(net (\d+) "S0"\)', text)
+    assert net
+    return once(text, rf"\n  \(via [^\n]*\(net {net[1]}\)[^\n]*", "")
+
+
+def via_ring_thin(text: str) -> str:
+    return once(text, r"(\(via .*?\(size )0\.6\)", r"\g<1>0.5)")
+
+
+def hole_moved(text: str) -> str:
+    return moved_part(text, "H1", 0.05, 0.0)
+
+
+def hole_narrow(text: str) -> str:
+    return in_part(text, "H1", r"\(drill 2\.1\)", "(drill 2)")
+
+
+def hole_missing(text: str) -> str:
+    return in_part(text, "H1", r"np_thru_hole", "connect")
+
+
+def edge_moved(text: str) -> str:
+    """The edge towards the gripper 0.1 mm farther out, with its corners."""
+    low = max(float(y) for y in re.findall(r"\(gr_line \(start \S+ (\S+)\)[^\n]*Edge", text))
+
+    def farther(m: re.Match[str]) -> str:
+        y = float(m[3])
+        return f"({m[1]} {m[2]} {y + 0.1 if y > low - 0.6 else y:g})"
+
+    return "\n".join(
+        re.sub(r"\((start|mid|end) (\S+) (\S+)\)", farther, line) if "Edge.Cuts" in line else line
+        for line in text.split("\n")
+    )
+
+
+def pull_up_wrong(text: str) -> str:
+    return in_part(text, "R2", r'value "75K"', 'value "7K5"')
+
+
+def capacitor_missing(text: str) -> str:
+    return in_part(text, "C1", r'\(fp_text reference "C1"', '(fp_text reference "X1"')
+
+
+def select_lines_swapped(text: str) -> str:
+    return swapped_pads(text, "U2", "10", "11")
+
+
+def connector_reversed(text: str) -> str:
+    return swapped_pads(text, "J1", "3", "4")
+
+
+def track_added_near_another(text: str) -> str:
+    """A short piece with its edge 0.15 mm from one that there is."""
+    found = re.search(
+        r"\(segment \(start (\S+) (\S+)\) \(end \1 (\S+)\) \(width 0.2\)(.*?)\)\n", text
+    )
+    assert found
+    x, y = float(found[1]) + 0.35, (float(found[2]) + float(found[3])) / 2
+    layer = re.search(r'\(layer "\S+"\)', found[4])
+    assert layer
+    piece = f"  (segment (start {x} {y}) (end {x} {y}) (width 0.2) {layer[0]} (net 0))\n"
+    return text.replace("  (segment", piece + "  (segment", 1)
+
+
+def track_over_the_edge(text: str) -> str:
+    piece = '  (segment (start 128.8 100) (end 128.8 100.2) (width 0.2) (layer "F.Cu") (net 0))\n'
+    return text.replace("  (segment", piece + "  (segment", 1)
+
+
+def fill_adrift(text: str) -> str:
+    """An island of pour over the middle of a hole's clearance, where no other copper is."""
+    hole = re.search(r'"lumitip:MountingHole_[^\n]*\n[^\n]*\n[^\n]*\n\s*\(at (\S+) (\S+)\)', text)
+    assert hole
+    x, y = float(hole[1]), float(hole[2])
+    corners = " ".join(f"(xy {x + dx} {y + dy})" for dx, dy in ((0, 0), (0.2, 0), (0, 0.2)))
+    island = f'    (filled_polygon (layer "F.Cu") (pts {corners}))\n    (filled_polygon'
+    return text.replace("    (filled_polygon", island, 1)
+
+
+RECEIVER_DAMAGES: dict[Damage, set[str]] = {
+    net_names_swapped: {"names", "open", "short"},
+    inputs_swapped: {"channels"},
+    detector_reversed: {"polarity"},
+    track_narrow: {"track_width"},
+    via_dropped: {"open", "service"},
+    via_ring_thin: {"via_ring"},
+    hole_moved: {"holes", "edge_clearance"},
+    hole_narrow: {"pin_clearance"},
+    hole_missing: {"hole_count", "holes"},
+    edge_moved: {"outline", "pocket_gap"},
+    pull_up_wrong: {"service"},
+    capacitor_missing: {"service"},
+    select_lines_swapped: {"service"},
+    connector_reversed: {"wires", "service"},
+    track_added_near_another: {"clearance"},
+    track_over_the_edge: {"edge_clearance"},
+    fill_adrift: {"islands", "edge_clearance"},
+}
+
+
+def hurt(folder: Path, file: str, damage: Damage) -> set[str]:
+    path = folder / file
+    before = path.read_text()
+    path.write_text(damage(before))
+    assert path.read_text() != before
+    return failing(folder, "board")
+
+
+@pytest.mark.parametrize("damage", EMITTER_DAMAGES, ids=lambda d: d.__name__)
+def test_a_damage_of_the_emitter(damage: Damage, damaged_boards: Path) -> None:
+    assert hurt(damaged_boards, EMITTER, damage) == EMITTER_DAMAGES[damage]
+
+
+@pytest.mark.parametrize("damage", RECEIVER_DAMAGES, ids=lambda d: d.__name__)
+def test_a_damage_of_the_receiver(damage: Damage, damaged_boards: Path) -> None:
+    assert hurt(damaged_boards, RECEIVER, damage) == RECEIVER_DAMAGES[damage]
+
+
+def gone(folder: Path) -> None:
+    (folder / RECEIVER).unlink()
+
+
+def short(folder: Path) -> None:
+    cut_short(folder / RECEIVER, 50_000)
+
+
+def exchanged(folder: Path) -> None:
+    swap(folder / EMITTER, folder / RECEIVER)
+
+
+@pytest.mark.parametrize("damage", [gone, short], ids=lambda d: d.__name__)
+def test_a_file_that_cannot_be_read(damage: Callable[[Path], None], damaged_boards: Path) -> None:
+    damage(damaged_boards)
+    assert failing(damaged_boards, "board") == {"readable"}
+
+
+def test_the_boards_exchanged(damaged_boards: Path) -> None:
+    exchanged(damaged_boards)
+    assert {"cells", "channels", "strings"} <= failing(damaged_boards, "board")
+
+
+def test_every_check_fails_for_some_damage(boards: Callable[[str], Path]) -> None:
+    folder = boards("small")
+    design = read_design(folder / "design.json")
+    found = list(board.measure(folder, design))
+    assert [m for m in found if not m.passed] == []
+    names = {m.check.removeprefix("board.") for m in found}
+    tables = (*EMITTER_DAMAGES.values(), *RECEIVER_DAMAGES.values(), {"readable"})
+    assert names == set().union(*tables)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("preset", ["published", "asymmetric", "dense", "mux16"])
+def test_the_boards_of_a_preset_pass(boards: Callable[[str], Path], preset: str) -> None:
+    folder = boards(preset)
+    found = list(board.measure(folder, read_design(folder / "design.json")))
+    assert [m for m in found if not m.passed] == []

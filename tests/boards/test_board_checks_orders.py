@@ -1,0 +1,184 @@
+"""Damage what is sent to board houses, and exactly the right checks fail."""
+
+import re
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from damages import cut_short, failing, swap
+from lumitip_fab.checks import orders
+from lumitip_fab.encoding import read_design
+
+Files = dict[str, bytes]
+Damage = Callable[[Files], None]
+FIRST, SECOND = "generic", "jlcpcb"
+
+
+def folder_of(boards: Path) -> Path:
+    return boards / "boards" / "receiver" / "order"
+
+
+def rezip(path: Path, damage: Damage) -> None:
+    """Change the files of a zip."""
+    with zipfile.ZipFile(path) as package:
+        files = {name: package.read(name) for name in package.namelist()}
+    before = dict(files)
+    damage(files)
+    assert files != before
+    with zipfile.ZipFile(path, "w") as package:
+        for name, data in files.items():
+            package.writestr(name, data)
+
+
+def edit(files: Files, ending: str, pattern: bytes, put: bytes) -> None:
+    (name,) = (n for n in files if n.endswith(ending))
+    files[name], count = re.subn(pattern, put, files[name], count=1)
+    assert count == 1
+
+
+def pour_missing(files: Files) -> None:
+    edit(files, "F_Cu.gbr", rb"G36\*(?s:.)*?G37\*", b"")
+
+
+def tracks_thin(files: Files) -> None:
+    edit(files, "B_Cu.gbr", rb"(%ADD\d+C,)0\.2\*", rb"\g<1>0.1*")
+
+
+def opening_missing(files: Files) -> None:
+    edit(files, "F_Mask.gbr", rb"X[-\d]+Y[-\d]+D03\*\n", b"")
+
+
+def mask_open_on_copper(files: Files) -> None:
+    edit(files, "F_Mask.gbr", rb"(X[-\d]+Y[-\d]+D03\*\n)", rb"\g<1>X0Y0D03*\n")
+
+
+def paste_missing(files: Files) -> None:
+    edit(files, "F_Paste.gbr", rb"X[-\d]+Y[-\d]+D03\*\n", b"")
+
+
+def paste_on_bare_copper(files: Files) -> None:
+    edit(files, "F_Paste.gbr", rb"(X[-\d]+Y[-\d]+D03\*\n)", rb"\g<1>X0Y0D03*\n")
+
+
+def edge_farther(files: Files) -> None:
+    edit(files, "Edge_Cuts.gbr", rb"X-0016200000", b"X-0016300000")
+
+
+def drill_missing(files: Files) -> None:
+    edit(files, "-PTH.drl", rb"\nX[-\d.]+Y[-\d.]+", b"")
+
+
+def drill_larger(files: Files) -> None:
+    edit(files, "-NPTH.drl", rb"C002\.1000", b"C002.2000")
+
+
+def layer_missing(files: Files) -> None:
+    del files["receiver-B_Mask.gbr"]
+
+
+def not_gerber(files: Files) -> None:
+    files["receiver-F_Cu.gbr"] = b"nothing"
+
+
+def another_layer(files: Files) -> None:
+    edit(files, ".GBO", rb"D01\*", b"D02*")
+
+
+FIRST_DAMAGES: dict[Damage, set[str]] = {
+    pour_missing: {"copper", "same"},
+    tracks_thin: {"copper", "same"},
+    opening_missing: {"mask", "same"},
+    mask_open_on_copper: {"exposed", "same"},
+    paste_missing: {"paste", "same"},
+    paste_on_bare_copper: {"paste", "same"},
+    edge_farther: {"outline", "same"},
+    drill_missing: {"drills", "same"},
+    drill_larger: {"drills", "same"},
+    layer_missing: {"readable"},
+    not_gerber: {"readable"},
+}
+
+
+@pytest.mark.parametrize("damage", FIRST_DAMAGES, ids=lambda d: d.__name__)
+def test_a_damage_of_the_layers(damage: Damage, damaged_boards: Path) -> None:
+    rezip(folder_of(damaged_boards) / f"{FIRST}_receiver.zip", damage)
+    assert failing(damaged_boards, "orders") == FIRST_DAMAGES[damage]
+
+
+def test_another_layer_in_another_zip(damaged_boards: Path) -> None:
+    rezip(folder_of(damaged_boards) / f"{SECOND}_receiver.zip", another_layer)
+    assert failing(damaged_boards, "orders") == {"same"}
+
+
+# Damages of a table are made in the zip and beside it alike: pattern, what is put, what fails.
+
+BOM, PLACES = "bom.csv", "positions.csv"
+TABLES = {
+    "reference lost": (BOM, rb"Q1,Q2,", b"Q2,", {"bom"}),
+    "reference twice": (BOM, rb"Q1,Q2,", b"Q1,Q1,Q2,", {"bom"}),
+    "quantity": (BOM, rb",13\r", b",12\r", {"bom"}),
+    "number lost": (BOM, rb"SML-H10TBT86,13", b",13", {"bom"}),
+    "another resistor": (BOM, rb"RC0603FR-0775KL", b"RC0603FR-077K5L", {"bom"}),
+    "row lost": (PLACES, rb"Q5,[^\n]*\n", b"", {"placed"}),
+    "place": (PLACES, rb"(Q5,[-\d]+\.\d)", rb"\g<1>7", {"positions"}),
+    "side": (PLACES, rb"(Q5,.*?)Top", rb"\g<1>Bottom", {"sides"}),
+    "turn": (PLACES, rb"(Q5,.*?,Top,)\d+", rb"\g<1>45", {"turns"}),
+}
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_a_damage_of_a_table(name: str, damaged_boards: Path) -> None:
+    table, pattern, put, wanted = TABLES[name]
+    order = folder_of(damaged_boards)
+    rezip(order / f"{SECOND}_receiver.zip", lambda files: edit(files, table, pattern, put))
+    with zipfile.ZipFile(order / f"{SECOND}_receiver.zip") as package:
+        told = package.read(f"receiver_{table}")
+    (order / f"{SECOND}_receiver_{table}").write_bytes(told)
+    assert failing(damaged_boards, "orders") == wanted
+
+
+def table_beside(order: Path) -> None:
+    path = order / f"{SECOND}_receiver_{BOM}"
+    path.write_bytes(path.read_bytes().replace(b"Q1,", b""))
+
+
+def table_gone(order: Path) -> None:
+    (order / f"{SECOND}_receiver_{BOM}").unlink()
+
+
+def zip_short(order: Path) -> None:
+    cut_short(order / f"{SECOND}_receiver.zip")
+
+
+def zips_swapped(order: Path) -> None:
+    swap(order / f"{SECOND}_receiver.zip", order / f"{FIRST}_receiver.zip")
+
+
+def board_gone(order: Path) -> None:
+    (order.parent / "receiver.kicad_pcb").unlink()
+
+
+FOLDER_DAMAGES: dict[Callable[[Path], None], set[str]] = {
+    table_beside: {"tables"},
+    table_gone: {"readable"},
+    zip_short: {"readable"},
+    zips_swapped: {"readable"},
+    board_gone: {"board"},
+}
+
+
+@pytest.mark.parametrize("damage", FOLDER_DAMAGES, ids=lambda d: d.__name__)
+def test_a_damage_of_the_folder(damage: Callable[[Path], None], damaged_boards: Path) -> None:
+    damage(folder_of(damaged_boards))
+    assert failing(damaged_boards, "orders") == FOLDER_DAMAGES[damage]
+
+
+def test_every_check_fails_for_some_damage(boards: Callable[[str], Path]) -> None:
+    folder = boards("small")
+    found = list(orders.measure(folder, read_design(folder / "design.json")))
+    assert [m for m in found if not m.passed] == []
+    names = {m.check.removeprefix("orders.") for m in found}
+    tables = [*FIRST_DAMAGES.values(), *FOLDER_DAMAGES.values(), *(t[3] for t in TABLES.values())]
+    assert names <= set().union(*tables)

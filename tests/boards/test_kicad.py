@@ -1,0 +1,137 @@
+"""KiCad itself on the written boards: rules, schematic parity, plots, and its own copper fill."""
+
+import json
+import os
+import shutil
+import subprocess
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+import shapely
+
+from lumitip_fab.checks.gerber_read import gerber_area
+from lumitip_fab.checks.kicad_board import read_board
+
+Boards = Callable[[str], Path]
+PRESETS = (
+    "small",
+    *(
+        pytest.param(preset, marks=pytest.mark.slow)
+        for preset in ("published", "asymmetric", "dense", "mux16")
+    ),
+)
+FINGERS = ("emitter", "receiver")
+ALLOWED: dict[str, str] = {}  # names of warnings, each with the reason why it may stand
+SYSTEM_PYTHON = Path("/usr/bin/python3")
+LAYERS = ("F_Cu", "B_Cu", "F_Mask", "B_Mask", "F_Paste", "B_Paste", "F_Silkscreen",
+          "B_Silkscreen", "Edge_Cuts")  # fmt: skip
+
+pytestmark = pytest.mark.skipif(
+    shutil.which("kicad-cli") is None, reason="kicad-cli is missing: install KiCad 9"
+)
+
+
+@pytest.fixture(scope="module")
+def kicad(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., str]:
+    """Runs a command of KiCad with a home of its own."""
+    home = tmp_path_factory.mktemp("kicad_home")
+
+    def run(*command: str | Path) -> str:
+        environment = {**os.environ, "HOME": str(home), "XDG_CONFIG_HOME": str(home)}
+        done = subprocess.run(
+            [str(word) for word in command], env=environment, capture_output=True, text=True,
+            check=False,
+        )  # fmt: skip
+        assert done.returncode == 0, done.stdout + done.stderr
+        return done.stdout
+
+    return run
+
+
+@pytest.mark.parametrize("finger", FINGERS)
+@pytest.mark.parametrize("preset", PRESETS)
+def test_kicad_finds_no_fault(
+    boards: Boards, kicad: Callable[..., str], tmp_path: Path, preset: str, finger: str
+) -> None:
+    board = boards(preset) / "boards" / finger / f"{finger}.kicad_pcb"
+    report = tmp_path / "drc.json"
+    kicad("kicad-cli", "pcb", "drc", "--severity-all", "--schematic-parity", "--format", "json",
+          "-o", report, board)  # fmt: skip
+    told = json.loads(report.read_text())
+    assert told["unconnected_items"] == []
+    assert told["schematic_parity"] == []
+    assert {v["type"] for v in told["violations"]} <= set(ALLOWED), told["violations"][:3]
+
+
+@pytest.mark.parametrize("finger", FINGERS)
+@pytest.mark.parametrize("preset", PRESETS)
+def test_gerbers_paint_what_kicad_plots(
+    boards: Boards, kicad: Callable[..., str], tmp_path: Path, preset: str, finger: str
+) -> None:
+    folder = boards(preset) / "boards" / finger
+    kicad("kicad-cli", "pcb", "export", "gerbers", "--layers",
+          "F.Cu,B.Cu,F.Mask,B.Mask,F.Paste,B.Paste,F.SilkS,B.SilkS,Edge.Cuts",
+          "--use-drill-file-origin", "--precision", "6", "--no-protel-ext",
+          "-o", f"{tmp_path}/", folder / f"{finger}.kicad_pcb")  # fmt: skip
+    package = zipfile.ZipFile(folder / "order" / f"generic_{finger}.zip")
+    ours = {n: gerber_area(package.read(f"{finger}-{n}.gbr").decode()) for n in LAYERS}
+    plotted = {n: gerber_area((tmp_path / f"{finger}-{n}.gbr").read_text()) for n in LAYERS}
+    copper = plotted["F_Cu"].area + plotted["B_Cu"].area
+    apart = {n: ours[n].symmetric_difference(plotted[n]).area / copper for n in LAYERS}
+    assert max(apart.values()) < 0.001, apart
+    assert {n for n in LAYERS if ours[n].area} == {n for n in LAYERS if plotted[n].area}
+    assert {n for n in LAYERS if not ours[n].area} <= {"B_Paste"}
+
+
+REFILL = """
+import sys
+import pcbnew
+board = pcbnew.LoadBoard(sys.argv[1])
+pcbnew.ZONE_FILLER(board).Fill(board.Zones())
+board.Save(sys.argv[2])
+"""
+
+
+@pytest.mark.parametrize("finger", FINGERS)
+@pytest.mark.parametrize("preset", PRESETS)
+def test_the_written_fill_is_what_kicad_fills(
+    boards: Boards, kicad: Callable[..., str], tmp_path: Path, preset: str, finger: str
+) -> None:
+    written = boards(preset) / "boards" / finger / f"{finger}.kicad_pcb"
+    shutil.copy(written.with_suffix(".kicad_pro"), tmp_path / "again.kicad_pro")
+    shutil.copy(written, tmp_path / "again.kicad_pcb")
+    refilled = tmp_path / "refilled.kicad_pcb"
+    kicad(SYSTEM_PYTHON, "-c", REFILL, tmp_path / "again.kicad_pcb", refilled)
+    ours, theirs = read_board(written), read_board(refilled)
+    for layer in ours.layers:
+        areas = [
+            shapely.union_all([p.area for p in b.loose if p.kind == "fill" and layer in p.layers])
+            for b in (ours, theirs)
+        ]
+        # No copper where KiCad has none; slivers between leads and between the many lines of a
+        # dense board, which it has, are left out.
+        assert (areas[0] - areas[1]).area < 0.001 * areas[1].area, layer
+        assert (areas[1] - areas[0]).area < 0.08 * areas[1].area, layer
+
+
+def test_a_broken_rule_is_found(damaged_boards: Path, kicad: Callable[..., str]) -> None:
+    """The rules reach KiCad: a narrow track in the file is a fault in its report."""
+    board = damaged_boards / "boards" / "emitter" / "emitter.kicad_pcb"
+    text = board.read_text()
+    board.write_text(text.replace("(width 0.2) (layer", "(width 0.15) (layer", 1))
+    report = damaged_boards / "drc.json"
+    kicad("kicad-cli", "pcb", "drc", "--severity-all", "--format", "json", "-o", report, board)
+    assert "track_width" in {v["type"] for v in json.loads(report.read_text())["violations"]}
+
+
+def test_net_classes_reach_kicad(boards: Boards, kicad: Callable[..., str]) -> None:
+    board = boards("small") / "boards" / "receiver" / "receiver.kicad_pcb"
+    code = (
+        "import sys, pcbnew; nets = pcbnew.LoadBoard(sys.argv[1]).GetNetInfo().NetsByName(); "
+        "print({str(n): net.GetNetClassName() for n, net in nets.items()})"
+    )
+    told = kicad(SYSTEM_PYTHON, "-c", code, board)
+    assert "'3V3': 'supply'" in told
+    assert "'Q1': 'signal'" in told

@@ -1,0 +1,211 @@
+"""Where parts and print are on the boards of every preset."""
+
+import dataclasses
+import math
+from collections.abc import Iterator
+from itertools import combinations, pairwise
+from pathlib import Path
+
+import pytest
+import shapely
+from shapely import LineString
+
+from lumitip_fab.boards.geometry import courtyard, pad_at, placed_pads
+from lumitip_fab.boards.model import SIDES, Component, Placement
+from lumitip_fab.boards.openings import opening_mm
+from lumitip_fab.boards.placement import place
+from lumitip_fab.boards.silk import silkscreen
+from lumitip_fab.derive import derive
+from lumitip_fab.design import Box, Design, Finger
+from lumitip_fab.errors import BuildError
+from lumitip_fab.load import load
+
+PRESETS = ("published", "asymmetric", "dense", "mux16")
+FINGERS = ("emitter", "receiver")
+Placed = tuple[Design, Finger, Placement]
+
+
+def _placed(design: Design, finger: Finger) -> Placement:
+    d = design
+    return place(d.title, d.reading, d.board, finger, d.wiring, d.packages, d.rules)
+
+
+@pytest.fixture(scope="module")
+def boards(design_dir: Path) -> dict[tuple[str, str], Placed]:
+    """Both boards of every preset."""
+    found = {}
+    for preset in PRESETS:
+        design = derive(load(design_dir / "presets" / f"{preset}.toml"))
+        for finger in design.fingers:
+            found[preset, finger.name] = design, finger, _placed(design, finger)
+    return found
+
+
+@pytest.fixture(params=[(p, f) for p in PRESETS for f in FINGERS], ids="-".join)
+def board(boards: dict[tuple[str, str], Placed], request: pytest.FixtureRequest) -> Placed:
+    """Each board."""
+    return boards[request.param]
+
+
+def _box(box: Box) -> shapely.Polygon:
+    return shapely.box(box.x_min_mm, box.y_min_mm, box.x_max_mm, box.y_max_mm)
+
+
+def _parts(placement: Placement, kind: str) -> list[Component]:
+    return [part for part in placement.components if part.kind == kind]
+
+
+def test_parts_are_where_the_design_says(board: Placed) -> None:
+    _, finger, placement = board
+    parts = {part.ref: part for part in placement.components}
+    for given in finger.parts:
+        part = parts[given.name]
+        assert part.side == given.side
+        assert (part.x_mm, part.y_mm) == pytest.approx((given.x_mm, given.y_mm), abs=1e-6)
+        land = courtyard(part).grown(-board[0].rules.part_gap_mm / 2)
+        for side in ("x_min_mm", "x_max_mm", "y_min_mm", "y_max_mm"):
+            assert getattr(land, side) == pytest.approx(getattr(given.box, side), abs=0.03)
+    for pad, at in zip(parts["J1"].footprint.pads, finger.connector.pads, strict=True):
+        assert pad_at(parts["J1"], pad.number) == pytest.approx(at)
+    assert placement.holes == finger.holes
+
+
+def test_no_courtyards_overlap_and_all_are_on_the_board(board: Placed) -> None:
+    placement = board[2]
+    rim = _box(placement.outline.grown(1e-6))
+    for side in SIDES:
+        yards = [(p.ref, _box(courtyard(p))) for p in placement.components if p.side == side]
+        for (one, here), (other, there) in combinations(yards, 2):
+            assert shapely.intersection(here, there).area < 1e-6, (one, other)
+        assert all(rim.contains(yard) for _, yard in yards)
+
+
+def test_pads_keep_their_gap_to_each_other_the_edge_and_the_holes(board: Placed) -> None:
+    design, _, placement = board
+    gap = design.rules.copper_gap_mm - 1e-6
+    pads = [pad for part in placement.components for pad in placed_pads(part)]
+    tree = shapely.STRtree([pad.area for pad in pads])
+    for pad in pads:
+        for j in tree.query(pad.area, predicate="dwithin", distance=gap).tolist():
+            other = pads[j]
+            if other is not pad and set(pad.sides) & set(other.sides):
+                assert pad.net == other.net != "", (pad.component.ref, other.component.ref)
+        rim = _box(placement.outline).exterior.distance(pad.area)
+        assert rim >= placement.edge_clearance_mm - 1e-6
+        for hole in placement.holes:
+            apart = pad.area.distance(shapely.Point(hole)) - placement.hole_mm / 2
+            assert apart >= placement.edge_clearance_mm - 1e-6
+
+
+def test_passives_stand_beside_their_multiplexer_at_its_leads(
+    boards: dict[tuple[str, str], Placed],
+) -> None:
+    for preset in PRESETS:
+        design, finger, placement = boards[preset, "receiver"]
+        parts = {part.ref: part for part in placement.components}
+        zone = next(z.box for z in finger.zones if z.name == "parts")
+        mux = design.packages.multiplexer
+        for i in range(1, design.wiring.muxes + 1):
+            for ref, pad, lead in ((f"C{i}", "1", mux.supply), (f"R{i}", "2", mux.output)):
+                near = math.dist(pad_at(parts[ref], pad), pad_at(parts[f"U{i}"], str(lead)))
+                assert near < 3.6, (preset, ref)
+                land = courtyard(parts[ref]).grown(-design.rules.part_gap_mm / 2)
+                assert _box(zone.grown(1e-6)).contains(_box(land))
+
+
+def test_neighbours_of_a_string_face_each_other(boards: dict[tuple[str, str], Placed]) -> None:
+    for preset in PRESETS:
+        design, _, placement = boards[preset, "emitter"]
+        parts = {part.ref: part for part in placement.components}
+        for string in design.wiring.strings:
+            for one, other in pairwise(string):
+                link = math.dist(
+                    pad_at(parts[f"D{one + 1}"], "1"), pad_at(parts[f"D{other + 1}"], "2")
+                )
+                assert link <= 1.3 * design.grid.pitch_mm, (preset, one, other)
+
+
+def test_three_fiducials_are_near_three_corners(board: Placed) -> None:
+    placement = board[2]
+    box = placement.outline
+    marks = _parts(placement, "fiducial")
+    corners = {(part.x_mm > 0, part.y_mm > box.centre_mm[1]) for part in marks}
+    assert corners == {(False, True), (True, True), (False, False)}
+    assert all(part.side == "front" for part in marks)
+
+
+def test_silkscreen_is_clear_of_pads_holes_and_the_edge(board: Placed) -> None:
+    placement = board[2]
+    openings = {side: [] for side in SIDES}
+    for part in placement.components:
+        for pad in placed_pads(part):
+            for side in pad.sides:
+                openings[side].append(pad.area.buffer(opening_mm(part)))
+    holes = [shapely.Point(at).buffer(placement.hole_mm / 2) for at in placement.holes]
+    rim = _box(placement.outline)
+    trees = {side: shapely.STRtree([*shapes, *holes]) for side, shapes in openings.items()}
+    for side, stroke in silkscreen(placement):
+        ink = LineString(stroke.points).buffer(stroke.width_mm / 2)
+        assert not trees[side].query(ink, predicate="dwithin", distance=0.05).size
+        assert rim.contains(ink)
+
+
+def test_titles_labels_and_references_are_printed(board: Placed) -> None:
+    design, finger, placement = board
+    told = {side: [t.text for s, t in placement.texts if s == side] for side in SIDES}
+    for side in SIDES:
+        words = " ".join(told[side])
+        assert design.title.name in words
+        assert f"rev {design.title.revision}" in words
+        assert design.layout.design_hash[:8] in words
+        assert "TIP" in told[side]
+        assert set(finger.connector.signals) <= set(told[side])
+    assert "1" in told["front"]
+    named = {p.ref for p in placement.components if p.ref_text}
+    assert {p.ref for p in _parts(placement, "multiplexer")} <= named
+
+
+def test_references_stand_at_the_cells_of_the_published_grid(
+    boards: dict[tuple[str, str], Placed],
+) -> None:
+    for preset in ("published", "mux16"):
+        for finger, kind in (("emitter", "led"), ("receiver", "photodetector")):
+            assert all(p.ref_text for p in _parts(boards[preset, finger][2], kind))
+
+
+def test_hexagons_surround_the_cells(board: Placed) -> None:
+    design, finger, placement = board
+    drawn = shapely.union_all(
+        [LineString(s.points) for side, s in placement.silk if side == "front"]
+    ).buffer(0.05)
+    inner = min(drawn.distance(shapely.Point(at)) for at in finger.cells)
+    assert inner == pytest.approx(design.grid.pitch_mm / 2 - 0.05, abs=0.02)
+
+
+def test_the_same_design_gives_the_same_board(boards: dict[tuple[str, str], Placed]) -> None:
+    design, finger, placement = boards["asymmetric", "receiver"]
+    assert _placed(design, finger) == placement
+
+
+def _crowded(design: Design) -> Iterator[tuple[Finger, str]]:
+    emitter, receiver = design.fingers
+    first, *others = emitter.parts
+    moved = dataclasses.replace(first, x_mm=others[0].x_mm + 0.5, y_mm=others[0].y_mm)
+    yield dataclasses.replace(emitter, parts=(moved, *others)), r"D1 at .* and D2 at .* overlap"
+    shifted = tuple(
+        dataclasses.replace(p, x_mm=p.x_mm - 4.5) if p.name == "U1" else p for p in receiver.parts
+    )
+    yield dataclasses.replace(receiver, parts=shifted), r"C1 needs 1\.45 mm beside U1"
+    wires = dataclasses.replace(
+        receiver.connector, pads=tuple((x, y - 1.5) for x, y in receiver.connector.pads)
+    )
+    yield dataclasses.replace(receiver, connector=wires), r"J1 at .* leaves the board"
+
+
+def test_what_has_no_room_is_refused_with_the_numbers(
+    boards: dict[tuple[str, str], Placed],
+) -> None:
+    design = boards["published", "receiver"][0]
+    for finger, said in _crowded(design):
+        with pytest.raises(BuildError, match=said):
+            _placed(design, finger)

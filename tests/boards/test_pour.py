@@ -1,0 +1,124 @@
+"""The ground pour reaches every ground pad, keeps clear of the rest, and replaces ground tracks."""
+
+import dataclasses
+from pathlib import Path
+
+import pytest
+import shapely
+
+import small_boards as small
+from lumitip_fab.boards.geometry import placed_pads
+from lumitip_fab.boards.model import SIDES, BoardModel, Fill, Placement, Routing, Track
+from lumitip_fab.boards.pour import pour
+from lumitip_fab.boards.pour_rules import MIN_WIDTH_MM, THERMAL_GAP_MM, THERMAL_SPOKE_MM
+from lumitip_fab.boards.routing import route
+from lumitip_fab.boards.verify import summary, verify
+from lumitip_fab.errors import BuildError
+
+Poured = tuple[Placement, Routing, tuple[Fill, ...]]
+PRESETS = [("published", "emitter"), ("published", "receiver"), ("asymmetric", "receiver")]
+
+
+@pytest.fixture(scope="module")
+def routed() -> tuple[Placement, Routing]:
+    """A small board with tracks."""
+    placement = small.crossing()
+    return placement, route(placement)
+
+
+@pytest.fixture(scope="module")
+def poured(routed: tuple[Placement, Routing]) -> Poured:
+    """A small board with its pour."""
+    return routed[0], *pour(*routed)
+
+
+def test_a_poured_board_has_no_fault(poured: Poured) -> None:
+    faults = verify(BoardModel(*poured))
+    assert not faults, summary(faults)
+
+
+@pytest.mark.parametrize(("preset", "finger"), PRESETS)
+def test_presets_have_no_fault(design_dir: Path, preset: str, finger: str) -> None:
+    placement = small.preset(design_dir, preset, finger)
+    routing, fills = pour(placement, route(placement))
+    faults = verify(BoardModel(placement, routing, fills))
+    assert not faults, summary(faults)
+    box = placement.outline
+    for side in SIDES:
+        share = sum(f.area.area for f in fills if f.side == side) / (box.width_mm * box.length_mm)
+        assert 0.3 < share < 0.97, side
+
+
+def test_the_same_board_gets_the_same_pour(
+    routed: tuple[Placement, Routing], poured: Poured
+) -> None:
+    routing, fills = pour(*routed)
+    assert routing == poured[1]
+    assert [f.area.wkb for f in fills] == [f.area.wkb for f in poured[2]]
+
+
+def test_the_pour_replaces_ground_tracks(routed: tuple[Placement, Routing], poured: Poured) -> None:
+    def length(routing: Routing) -> float:
+        return sum(
+            shapely.LineString([t.start, t.end]).length for t in routing.tracks if t.net == "GND"
+        )
+
+    assert length(poured[1]) < 0.3 * length(routed[1])
+    others = [[t for t in r.tracks if t.net != "GND"] for r in (routed[1], poured[1])]
+    assert others[0] == others[1]
+
+
+def test_ground_pads_are_bridged_by_spokes(poured: Poured) -> None:
+    placement, _, fills = poured
+    bridged = 0
+    for component in placement.components:
+        for pad in placed_pads(component):
+            if pad.net != "GND":
+                continue
+            for side in pad.sides:
+                copper = shapely.union_all([f.area for f in fills if f.side == side])
+                ring = pad.area.buffer(THERMAL_GAP_MM / 2).exterior
+                crossed = shapely.intersection(copper, ring).length
+                assert crossed < 4.2 * THERMAL_SPOKE_MM, "the pad cannot be soldered"
+                bridged += crossed > 1.9 * THERMAL_SPOKE_MM
+    assert bridged >= 3
+
+
+def test_no_sliver_is_left(poured: Poured) -> None:
+    for fill in poured[2]:
+        half = 0.97 * MIN_WIDTH_MM / 2
+        thin = fill.area.difference(fill.area.buffer(-half).buffer(half + 0.02))
+        corners = 2e-3  # of the spokes' square ends
+        assert all(part.area < corners for part in shapely.get_parts(thin))
+
+
+def test_every_piece_is_joined_to_ground(poured: Poured) -> None:
+    """Without its stitching vias the pour falls apart, or loses nothing but a spare way."""
+    placement, routing, fills = poured
+    stitches = [v for v in routing.vias if v.net == "GND"]
+    assert stitches
+    bare = dataclasses.replace(routing, vias=tuple(v for v in routing.vias if v.net != "GND"))
+    faults = verify(BoardModel(placement, bare, fills))
+    assert {(f.rule, f.nets) for f in faults} <= {("open", ("GND", "GND"))}
+
+
+def test_curves_are_on_whole_micrometres(poured: Poured) -> None:
+    for fill in poured[2]:
+        assert fill.area.is_valid
+        for x, y in shapely.get_coordinates(fill.area).tolist():
+            assert (round(x, 3), round(y, 3)) == (
+                pytest.approx(x, abs=1e-9),
+                pytest.approx(y, abs=1e-9),
+            )
+
+
+def test_a_board_that_is_not_routed_is_refused() -> None:
+    wall = small.board(
+        small.part("R1", small.CHIP, (-6, 0), {"2": "GND"}),
+        small.part("R2", small.CHIP, (6, 0), {"2": "GND"}, side="back"),
+        *(small.part(f"W{k}{s}", small.CHIP, (0, y), {"1": "A", "2": "A"}, side=s)
+          for s in SIDES for k, y in enumerate((-4, -3, -2, 2, 3, 4))),
+    )  # fmt: skip
+    tracks = tuple(Track("A", s, (-0.8, -4.9), (-0.8, 4.9), 2.0) for s in SIDES)
+    with pytest.raises(BuildError, match=r"R2\.2 .* is not joined to net GND"):
+        pour(wall, Routing(tracks, (), 1))

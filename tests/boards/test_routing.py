@@ -1,0 +1,111 @@
+"""Boards are routed completely, within their rules, and always the same way."""
+
+import dataclasses
+import math
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+import shapely
+
+import small_boards as small
+from lumitip_fab.boards.geometry import placed_pads
+from lumitip_fab.boards.model import BoardModel, Placement, Routing
+from lumitip_fab.boards.routing import route
+from lumitip_fab.boards.verify import summary, verify
+from lumitip_fab.errors import BuildError
+
+
+@pytest.fixture(scope="module")
+def crossing() -> tuple[Placement, Routing]:
+    """A small board and its routing."""
+    placement = small.crossing()
+    return placement, route(placement)
+
+
+def test_a_board_is_routed_within_its_rules(crossing: tuple[Placement, Routing]) -> None:
+    faults = verify(BoardModel(*crossing, fills=()))
+    assert not faults, summary(faults)
+
+
+def test_the_same_board_gets_the_same_copper(crossing: tuple[Placement, Routing]) -> None:
+    placement, routing = crossing
+    assert route(placement) == routing
+
+
+def test_tracks_run_at_multiples_of_45_degrees(crossing: tuple[Placement, Routing]) -> None:
+    for track in crossing[1].tracks:
+        dx, dy = (abs(b - a) for a, b in zip(track.start, track.end, strict=True))
+        assert min(dx, dy, abs(dx - dy)) < 1e-9, track
+        assert max(dx, dy) > 0, track
+
+
+def test_tracks_meet_at_no_sharp_angle(crossing: tuple[Placement, Routing]) -> None:
+    placement, routing = crossing
+    pads = [p.area for c in placement.components for p in placed_pads(c)]
+    vias = {(v.x_mm, v.y_mm) for v in routing.vias}
+    ends: dict[tuple[str, str, float, float], list[float]] = {}
+    for t in routing.tracks:
+        for a, b in ((t.start, t.end), (t.end, t.start)):
+            heading = math.degrees(math.atan2(b[1] - a[1], b[0] - a[0]))
+            ends.setdefault((t.net, t.side, *a), []).append(heading)
+    for (net, _, *at), headings in ends.items():
+        if tuple(at) in vias or any(shapely.Point(at).within(pad) for pad in pads):
+            continue
+        for a, b in pairwise(sorted(headings)):
+            assert min((a - b) % 360, (b - a) % 360) >= 90, (net, at, headings)
+
+
+def test_vias_keep_off_pads(crossing: tuple[Placement, Routing]) -> None:
+    placement, routing = crossing
+    assert routing.vias
+    for via in routing.vias:
+        at = shapely.Point(via.x_mm, via.y_mm)
+        for component in placement.components:
+            for pad in placed_pads(component):
+                assert pad.area.distance(at) >= via.diameter_mm / 2 + 0.1
+
+
+def test_supply_tracks_are_wide_away_from_narrow_pads(
+    crossing: tuple[Placement, Routing],
+) -> None:
+    placement, routing = crossing
+    widths = {t.width_mm for t in routing.tracks if t.net == "3V3"}
+    assert widths == {0.2, 0.5}
+    narrow = [p for c in placement.components for p in placed_pads(c) if p.pad.width_mm < 0.5]
+    for t in routing.tracks:
+        if t.net == "3V3" and t.width_mm < 0.5:
+            for at in (t.start, t.end):
+                assert min(math.dist(at, (p.x_mm, p.y_mm)) for p in narrow) < 1.5
+
+
+def test_what_cannot_be_routed_is_refused_with_nets_and_places() -> None:
+    with pytest.raises(BuildError, match=r"rounds.*[A-E] at \(-?\d"):
+        route(small.narrows())
+
+
+def test_a_pad_that_is_walled_in_is_named() -> None:
+    placement = small.crossing()
+    parts = [
+        dataclasses.replace(c, x_mm=-9.75) if c.ref == "J1" else c for c in placement.components
+    ]
+    with pytest.raises(BuildError, match=r"GND.*J1\.1"):
+        route(dataclasses.replace(placement, components=tuple(parts), outline=placement.outline))
+
+
+PRESETS = [
+    ("asymmetric", "emitter"),
+    ("asymmetric", "receiver"),
+    *(
+        pytest.param(preset, finger, marks=pytest.mark.slow)
+        for preset in ("published", "mux16")
+        for finger in ("emitter", "receiver")
+    ),
+]
+
+
+@pytest.mark.parametrize(("preset", "finger"), PRESETS)
+def test_presets_are_routed_without_fault(design_dir: Path, preset: str, finger: str) -> None:
+    placement = small.preset(design_dir, preset, finger)
+    faults = verify(BoardModel(placement, route(placement), ()))
+    assert not faults, summary(faults)

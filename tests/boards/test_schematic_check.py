@@ -1,0 +1,66 @@
+"""The check of the schematics passes on what is built, and fails on each damage."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from lumitip_fab.checks import schematic
+from lumitip_fab.encoding import read_design
+
+
+def _failed(out: Path) -> dict[str, str]:
+    """Name and note of each figure out of its range."""
+    told = schematic.measure(out, read_design(out / "design.json"))
+    return {m.check.removeprefix("schematic."): m.note for m in told if not m.passed}
+
+
+@pytest.mark.parametrize("preset", ["small", "published"])
+def test_schematics_and_boards_agree(boards: Callable[[str], Path], preset: str) -> None:
+    out = boards(preset)
+    told = list(schematic.measure(out, read_design(out / "design.json")))
+    assert [m.check for m in told] == ["schematic.parts", "schematic.nets"] * 2
+    assert all(m.passed for m in told), [m.note for m in told]
+
+
+@pytest.mark.parametrize(
+    ("finger", "old", "new", "check"),
+    [
+        ("receiver", '(global_label "Q3"', '(global_label "Q30"', "nets"),
+        ("emitter", '(property "Reference" "D2"', '(property "Reference" "D3"', "nets"),
+        ("receiver", '(property "Value" "75K"', '(property "Value" "7K5"', "parts"),
+        ("receiver", '"lumitip:RESC1608X50N" (id', '"lumitip:RESC2012X50N" (id', "parts"),
+        ("receiver", "(kicad_sch", "(kicad_pcb", "readable"),
+    ],
+)  # fmt: skip
+def test_a_damaged_schematic_fails(
+    damaged_boards: Path, finger: str, old: str, new: str, check: str
+) -> None:
+    file = damaged_boards / f"boards/{finger}/{finger}.kicad_sch"
+    text = file.read_text(encoding="utf-8")
+    assert old in text
+    file.write_text(text.replace(old, new, 1), encoding="utf-8")
+    assert check in _failed(damaged_boards)
+
+
+def test_a_cut_wire_fails(damaged_boards: Path) -> None:
+    file = damaged_boards / "boards/receiver/receiver.kicad_sch"
+    lines = file.read_text(encoding="utf-8").splitlines()
+    wires = [i for i, line in enumerate(lines) if line.startswith("  (wire")]
+    del lines[wires[len(wires) // 2]]
+    file.write_text("\n".join(lines), encoding="utf-8")
+    assert "nets" in _failed(damaged_boards)
+
+
+def test_a_renamed_supply_fails(damaged_boards: Path) -> None:
+    file = damaged_boards / "boards/receiver/receiver.kicad_sch"
+    before, own, after = file.read_text(encoding="utf-8").partition('"#PWR003"')
+    assert '"Value" "3V3"' in after
+    changed = after.replace('"Value" "3V3"', '"Value" "5V"', 1)
+    file.write_text(before + own + changed, encoding="utf-8")
+    assert "nets" in _failed(damaged_boards)
+
+
+def test_a_missing_schematic_fails(damaged_boards: Path) -> None:
+    (damaged_boards / "boards/emitter/emitter.kicad_sch").unlink()
+    assert _failed(damaged_boards).keys() == {"readable"}

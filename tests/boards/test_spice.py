@@ -1,0 +1,134 @@
+"""ngspice against the closed forms of derive, from the nets of the boards."""
+
+import dataclasses
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from lumitip_fab.boards.spice import simulation
+from lumitip_fab.derive import derive
+from lumitip_fab.derive.electrical import string_current_ma
+from lumitip_fab.design import Design, Electrical, Wiring
+from lumitip_fab.load import load
+
+PRESETS = ("published", "asymmetric", "dense", "mux16")
+NGSPICE = shutil.which("ngspice")
+needs_ngspice = pytest.mark.skipif(NGSPICE is None, reason="ngspice is not installed")
+
+
+@pytest.fixture(scope="module")
+def presets(design_dir: Path) -> dict[str, Design]:
+    """Every preset, derived."""
+    return {name: derive(load(design_dir / "presets" / f"{name}.toml")) for name in PRESETS}
+
+
+def _simulated(netlist: str, folder: Path) -> dict[str, float]:
+    """What ngspice prints of a netlist."""
+    file = folder / "board.cir"
+    file.write_text(netlist, encoding="utf-8")
+    command = [NGSPICE or "", "-b", str(file)]
+    # Some versions end with 1 where a netlist plots nothing, though all went well.
+    done = subprocess.run(command, check=False, capture_output=True, text=True)
+    found = re.findall(r"^(\w+) = (\S+)$", done.stdout, re.MULTILINE)
+    assert found, done.stdout + done.stderr
+    return {k: float(v) for k, v in found}
+
+
+def _netlist(
+    design: Design,
+    name: str,
+    wiring: Wiring | None = None,
+    electrical: Electrical | None = None,
+) -> str:
+    d, finger = design, getattr(design, name)
+    (made,) = simulation(
+        d.title, d.reading, finger, wiring or d.wiring, d.packages, d.rules,
+        electrical or d.electrical,
+    )  # fmt: skip
+    assert made.path == f"boards/{name}/{name}.cir"
+    return made.data.decode()
+
+
+@needs_ngspice
+@pytest.mark.parametrize("preset", PRESETS)
+def test_a_string_draws_its_nominal_current(
+    presets: dict[str, Design], preset: str, tmp_path: Path
+) -> None:
+    design = presets[preset]
+    found = _simulated(_netlist(design, "emitter"), tmp_path)
+    assert found["i_ma"] == pytest.approx(design.wiring.current_ma[0], rel=0.002)
+
+
+@needs_ngspice
+@pytest.mark.parametrize("sign", [-1, 1])
+@pytest.mark.parametrize("preset", ["published", "asymmetric"])
+def test_the_spread_over_tolerances_is_what_ngspice_finds(
+    presets: dict[str, Design], preset: str, sign: int, tmp_path: Path
+) -> None:
+    design = presets[preset]
+    strings = design.electrical.strings
+    supply_v = design.wiring.supply_v * (1 + sign * strings.supply_tolerance)
+    forward_v = strings.forward_v - sign * strings.forward_tolerance_v
+    off = dataclasses.replace(
+        design.electrical, strings=dataclasses.replace(strings, forward_v=forward_v)
+    )
+    wiring = dataclasses.replace(design.wiring, supply_v=supply_v)
+    found = _simulated(_netlist(design, "emitter", wiring, off), tmp_path)
+    wanted = (strings.low_ma if sign < 0 else strings.high_ma)[0]
+    assert found["i_ma"] == pytest.approx(wanted, rel=0.002)
+
+
+@needs_ngspice
+@pytest.mark.parametrize("preset", PRESETS)
+def test_a_channel_reads_and_settles_as_computed(
+    presets: dict[str, Design], preset: str, tmp_path: Path
+) -> None:
+    design = presets[preset]
+    found = _simulated(_netlist(design, "receiver"), tmp_path)
+    channel = design.electrical.channel
+    assert found["full_v"] == pytest.approx(channel.full_scale_v, abs=0.001)
+    assert found["dark_v"] == pytest.approx(channel.dark_v, abs=0.001)
+    assert found["settle_us"] == pytest.approx(channel.settle_us, rel=0.01)
+
+
+@needs_ngspice
+def test_a_detector_that_does_not_saturate_reads_by_its_light(
+    presets: dict[str, Design], tmp_path: Path
+) -> None:
+    design = presets["published"]
+    channel = dataclasses.replace(design.electrical.channel, light_current_ua=20.0)
+    dim = dataclasses.replace(design.electrical, channel=channel)
+    found = _simulated(_netlist(design, "receiver", electrical=dim), tmp_path)
+    assert found["full_v"] == pytest.approx(3.3 - 20e-6 * 75e3, abs=0.001)
+
+
+def test_the_published_string_is_wide_and_fewer_leds_are_steadier(
+    presets: dict[str, Design],
+) -> None:
+    strings = presets["published"].electrical.strings
+    assert strings.low_ma == pytest.approx((6.5, 6.5), abs=0.1)
+    assert strings.high_ma == pytest.approx((34.6, 34.6), abs=0.1)
+    assert strings.fewer_leds == 12
+    wide = strings.high_ma[0] / strings.low_ma[0]
+    assert strings.fewer_high_ma / strings.fewer_low_ma < wide / 2
+
+
+def test_the_published_channel_has_the_figures_of_its_time_constant(
+    presets: dict[str, Design],
+) -> None:
+    channel = presets["published"].electrical.channel
+    assert channel.full_scale_v == pytest.approx(0.2 + 250 * 3.1 / 75250)
+    assert channel.dark_v == pytest.approx(3.3 - 75e3 * 100e-9)
+    assert channel.settle_us == pytest.approx(75e3 * 75e-6 * 8.942, rel=0.001)
+
+
+def test_current_falls_with_leds_and_rises_with_supply() -> None:
+    def current(supply_v: float, leds: int) -> float:
+        return string_current_ma(supply_v, leds, 150.0, 1.32, 19.2, 2.0)
+
+    assert current(24.0, 16) == pytest.approx(19.2, rel=1e-6)
+    assert current(25.0, 16) > 19.2 > current(24.0, 17)
+    assert current(5.0, 16) < 0.01

@@ -1,0 +1,50 @@
+// Scans with several conversions a value, and without ambient light.
+#include "bench_board.h"
+
+struct Noisy : BenchBoard {
+  unsigned reads = 0;
+  uint16_t read(uint16_t) {
+    us += 15;
+    return static_cast<uint16_t>(100 + (reads++ % 4));  // mean 101.5
+  }
+};
+
+struct Lit : BenchBoard {
+  bool lit = true;
+  // Ambient light takes 300 of the full scale, the emitter 1000 and 17 more for each channel.
+  uint16_t read(uint16_t mux) {
+    const uint16_t through = lit ? 1000 + static_cast<uint16_t>(17 * mux) : 0;
+    return static_cast<uint16_t>(lumitip::FULL_SCALE - 300 - through);
+  }
+};
+
+static void print(const uint16_t* codes) {
+  for (unsigned cell = 0; cell < lumitip::CELLS; ++cell) {
+    printf("%u ", codes[cell]);
+  }
+  printf("\n");
+}
+
+int main() {
+  uint16_t codes[lumitip::CELLS] = {};
+  Noisy noisy;
+  lumitip::Scanner<Noisy, 4> averaging(noisy);
+  averaging.begin();
+  averaging.scan(codes);
+  print(codes);
+
+  Lit board;
+  lumitip::Scanner<Lit> scanner(board);
+  scanner.begin();
+  scanner.scan(codes, [&](bool on) { board.lit = on; });
+  print(codes);
+
+  BenchBoard order;
+  lumitip::Scanner<BenchBoard> once(order);
+  once.begin();
+  const unsigned before = order.selects;
+  once.scan(codes);
+  const unsigned first = order.selects - before;
+  once.scan(codes);
+  printf("%u %u %u\n", first, order.selects - before - first, order.unsettled);
+}

@@ -1,0 +1,154 @@
+"""`AsyncFingertip` and `FingertipGroup`."""
+
+import asyncio
+
+import numpy as np
+import pytest
+
+from lumitip import AsyncFingertip, FingertipGroup
+from lumitip.errors import FingertipClosed, LinkTimeout, UrlError
+from lumitip.hub import Hub
+
+FAST = "twin://disc?rate=1000"
+
+
+def test_coroutines_read_in_every_way() -> None:
+    async def main() -> None:
+        async with AsyncFingertip.open(FAST) as tip:
+            one, two = await tip.read(5.0), await tip.read(5.0)
+            assert two.seq == one.seq + 1
+            block = await tip.get_data(30)
+            assert block.values.shape == (30, 32)
+            assert block.seq[0] == two.seq + 1
+            assert tip.latest().seq >= block.seq[-1]
+            seen = []
+            async for frame in tip:
+                seen.append(frame.seq)
+                if len(seen) == 20:
+                    break
+            assert np.diff(seen).tolist() == [1] * 19
+            assert tip.fingertip.stats.received > 50
+        with pytest.raises(FingertipClosed, match="not open: use `async with"):
+            await tip.read()
+
+    asyncio.run(main())
+
+
+def test_a_cancelled_read_takes_no_frame() -> None:
+    async def main() -> None:
+        async with AsyncFingertip.open("twin://disc?rate=20") as tip:
+            first = await tip.read(5.0)
+            reading = asyncio.create_task(tip.read(5.0))
+            await asyncio.sleep(0)
+            reading.cancel()
+            with pytest.raises(asyncio.CancelledError):
+                await reading
+            assert (await tip.read(5.0)).seq == first.seq + 1
+
+    asyncio.run(main())
+
+
+def test_timeouts_and_errors_are_those_of_the_plain_fingertip() -> None:
+    async def main() -> None:
+        async with AsyncFingertip.open("twin://disc?rate=1") as tip:
+            with pytest.raises(LinkTimeout, match=r"no frame in 0\.02 s"):
+                await tip.read(0.02)
+            with pytest.raises(LinkTimeout, match=r"0 of 5 frames came in 0\.02 s"):
+                await tip.get_data(5, timeout=0.02)
+            with pytest.raises(ValueError, match="num_samples: 0 given"):
+                await tip.get_data(0)
+        with pytest.raises(UrlError):
+            async with AsyncFingertip.open("twin://pyramid"):
+                pass
+
+    asyncio.run(main())
+
+
+def test_closing_ends_a_loop_that_waits() -> None:
+    async def main() -> None:
+        async with AsyncFingertip.open("twin://disc?rate=1") as tip:
+
+            async def loop() -> int:
+                return len([frame async for frame in tip])
+
+            looping = asyncio.create_task(loop())
+            await asyncio.sleep(0.05)
+            tip.fingertip.close()
+            assert await asyncio.wait_for(looping, 5.0) == 0
+
+    asyncio.run(main())
+
+
+def test_a_fingertip_that_opens_after_its_task_was_cancelled_is_closed_again(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    closed: list[Hub] = []
+    close = Hub.close
+    monkeypatch.setattr(Hub, "close", lambda hub, *a: (closed.append(hub), close(hub, *a)))
+
+    async def main() -> None:
+        async def open_it() -> None:
+            async with AsyncFingertip.open("twin://disc?rate=1"):
+                raise AssertionError("was cancelled before")
+
+        opening = asyncio.create_task(open_it())
+        await asyncio.sleep(0)
+        opening.cancel()
+        with pytest.raises(asyncio.CancelledError):
+            await opening
+
+    asyncio.run(main())
+    assert len(closed) == 1
+
+
+def test_frames_of_a_group_belong_together() -> None:
+    urls = {"slow": "twin://disc?rate=50", "fast": "twin://cable?rate=400"}
+    with FingertipGroup.open(urls) as group:
+        moments = [group.read(5.0) for _ in range(12)]
+    slow = [m["slow"].seq for m in moments]
+    assert np.diff(slow).tolist() == [1] * 11, "the slowest sets the pace"
+    assert np.diff([m["fast"].seq for m in moments]).min() > 1
+    assert np.median([m.spread_s for m in moments]) < 0.01
+    assert all(m["slow"].device_id == "twin:disc" for m in moments)
+    for m in moments:
+        assert min(f.t for f in m.frames.values()) <= m.t <= max(f.t for f in m.frames.values())
+
+
+def test_the_nearest_frame_is_chosen_and_none_is_lost_on_a_timeout(open_feed) -> None:
+    one, left = open_feed(device_id="left")
+    two, right = open_feed(device_id="right")
+    group = FingertipGroup({"left": one, "right": two})
+    with pytest.raises(LinkTimeout, match=r"^left: no frame"):
+        group.read(0.0)
+    with pytest.raises(LinkTimeout):
+        two.read(0.0)
+    at = 100.0
+    left.packet(0, t_host=at)
+    with pytest.raises(LinkTimeout, match=r"^right: no frame"):
+        group.read(0.0)
+    for n in range(5):
+        right.packet(n, t_host=at + 0.01 * n - 0.014)
+    moment = group.read(0.0)
+    assert moment["left"].seq == 0
+    assert moment["right"].raw[0] == 1, "4 ms before, the next is 6 ms after"
+    left.packet(2, t_host=at + 0.02)
+    assert group.read(0.0)["right"].raw[0] == 3
+
+
+def test_a_group_opens_all_or_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    closed: list[Hub] = []
+    close = Hub.close
+    monkeypatch.setattr(Hub, "close", lambda hub, *a: (closed.append(hub), close(hub, *a)))
+    with pytest.raises(UrlError):
+        FingertipGroup.open({"a": FAST, "b": "twin://pyramid"})
+    assert len(closed) == 1
+    with pytest.raises(ValueError, match="at least one"):
+        FingertipGroup.open({})
+
+
+def test_layouts_of_a_group_by_name(make_layout) -> None:
+    small = make_layout((4, 5, 4), 5.0)
+    with FingertipGroup.open({"a": FAST, "b": FAST}, {"b": small}) as group:
+        moment = group.read(5.0)
+    assert moment["a"].values.shape == (32,)
+    assert moment["b"].values.shape == (13,)

@@ -1,0 +1,79 @@
+"""How far estimates miss the truth, on small seeded samples; the benchmark has large ones."""
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from estimation_frames import Frames, misses
+from lumitip.estimation import PoseEstimator
+from lumitip.twin import HalfPlane, Twin
+
+
+def _rms(missed: NDArray[np.float64]) -> tuple[float, float]:
+    mm, deg = np.sqrt((missed**2).mean(axis=0))
+    return float(mm), float(deg)
+
+
+@pytest.mark.parametrize(
+    ("kind", "most_mm", "most_deg"), [("edge", 0.1, 0.45), ("cable", 0.1, 0.3)]
+)
+def test_with_the_right_optics(
+    estimator: PoseEstimator, twin: Twin, frames: Frames, kind: str, most_mm: float, most_deg: float
+) -> None:
+    missed = misses(estimator, frames(kind, [twin], 60), kind)
+    assert missed[:, 0].max() < 1.0 and missed[:, 1].max() < 5.0
+    mm, deg = _rms(missed)
+    assert mm < most_mm and deg < most_deg
+    assert np.median(missed[:, 0]) < 0.03 and np.median(missed[:, 1]) < 0.15
+
+
+@pytest.mark.parametrize("kind", ["edge", "cable"])
+def test_with_wrong_optics_and_gains(
+    estimator: PoseEstimator, wrong_twins: list[Twin], frames: Frames, kind: str
+) -> None:
+    missed = misses(estimator, frames(kind, wrong_twins, 64), kind)
+    gross = (missed[:, 0] > 2.0) | (missed[:, 1] > 10.0)
+    assert gross.sum() <= 3
+    mm, deg = _rms(missed[~gross])
+    assert mm < 0.45 and deg < 1.5
+
+
+@pytest.mark.parametrize("kind", ["edge", "cable"])
+@pytest.mark.parametrize("optics", ["right", "wrong"])
+def test_stated_deviations_are_about_as_large_as_the_misses(
+    estimator: PoseEstimator, twin: Twin, wrong_twins: list[Twin], frames: Frames,
+    kind: str, optics: str,
+) -> None:  # fmt: skip
+    ratios = []
+    for (offset_mm, angle_deg), values in frames(
+        kind, [twin] if optics == "right" else wrong_twins, 80
+    ):
+        told = estimator(values, kind)
+        ratios.append(
+            (
+                (told.offset_mm - offset_mm) / told.offset_sd_mm,
+                (told.angle_deg - angle_deg) / told.angle_sd_deg,
+            )
+        )
+    # Not the mean: a line between two rows of cells is stated to be far from certain.
+    typical = np.median(np.abs(ratios), axis=0)
+    assert (typical > 0.2).all() and (typical < 1.1).all()
+
+
+def test_a_tracker_follows_as_well_and_finds_its_way_back(twin: Twin) -> None:
+    tracker = PoseEstimator(twin.layout, tracking=True)
+    poses = [(o, 4.0 * o) for o in np.linspace(-4.0, 4.0, 40)]
+    poses += [(-5.0, 30.0), (5.0, -30.0), (0.0, 0.0)]  # jumps
+    for offset_mm, angle_deg in poses:
+        told = tracker(np.floor(twin.values(HalfPlane(offset_mm=offset_mm, angle_deg=angle_deg))))
+        assert told.kind == "edge"
+        assert told.offset_mm == pytest.approx(offset_mm, abs=0.35)
+        assert told.angle_deg == pytest.approx(angle_deg, abs=1.5)
+
+
+@pytest.mark.parametrize("kind", ["edge", "cable"])
+def test_the_kind_is_decided(
+    estimator: PoseEstimator, twin: Twin, frames: Frames, kind: str
+) -> None:
+    told = [estimator(values).kind for _, values in frames(kind, [twin], 30)]
+    assert told.count(kind) >= 29

@@ -1,0 +1,143 @@
+"""Closed loops on few curves, and what carries them."""
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lumitip.control import CentreLaw, Command, LineLaw, Tracer
+from lumitip.links.twin import published_layout
+from lumitip.tasks import Bench, Curve, Settings, Summary, Task, TaskError, Tuning, summary, tune
+from lumitip.tasks.bench import Result, bench_tasks
+from lumitip.tasks.report import markdown, write
+from lumitip.twin import Corner
+
+LAYOUT = published_layout()
+TUNED = Tuning(8.0, 10.0)
+
+
+@pytest.fixture(scope="module")
+def cloth() -> Bench:
+    """A cloth's edge of 200 mm."""
+    return Bench(Task(LAYOUT, Settings("cloth", length_mm=200.0)))
+
+
+def test_curves_are_smooth_seeded_and_straight_at_the_end() -> None:
+    curve = Curve.random(400.0, seed=3, straight_end_mm=80.0)
+    again, other = (Curve.random(400.0, seed=s, straight_end_mm=80.0) for s in (3, 4))
+    assert np.array_equal(curve.y_mm, again.y_mm) and not np.array_equal(curve.y_mm, other.y_mm)
+    steps = np.hypot(np.diff(curve.x_mm), np.diff(curve.y_mm))
+    assert steps == pytest.approx(0.25) and curve.length_mm == 400.0
+    assert np.abs(curve.bend_per_mm).max() < 1.0 / 20.0
+    assert np.abs(curve.heading[-300:]).max() == pytest.approx(0.0, abs=1e-9)
+    assert np.degrees(np.abs(curve.heading).max()) > 10.0
+    assert curve.nearest(float(curve.x_mm[800]) + 0.05, float(curve.y_mm[800]), near=760) == 800
+
+
+def test_the_finger_moves_as_commanded_with_lag_and_latency() -> None:
+    task = Task(LAYOUT, Settings("cable", rate_hz=100.0, lag_s=0.05, latency=2, noise=0.0))
+    seen = [task.reset(0)]
+    for _ in range(100):
+        values, _ = task.step(Command(forward_mm_s=10.0))
+        seen.append(values)
+    # A first-order lag is behind by velocity times its time constant.
+    assert task.x_mm == pytest.approx(10.0 * (1.0 - 0.05), abs=0.01)
+    task = Task(LAYOUT, Settings("cable", latency=2, noise=0.0))
+    first = task.reset(0)
+    moved = [task.step(Command(lateral_mm_s=40.0))[0] for _ in range(4)]
+    assert np.array_equal(moved[0], first) and np.array_equal(moved[1], first)
+    assert not np.array_equal(moved[2], first)
+
+
+def test_what_is_seen_is_where_the_truth_says() -> None:
+    from lumitip.estimation import PoseEstimator
+
+    estimator = PoseEstimator(LAYOUT)
+    for kind in ("cloth", "cable"):
+        task = Task(LAYOUT, Settings(kind, latency=0, noise=0.0))
+        task.reset(5)
+        task.heading, task.y_mm = math.radians(12.0), 1.5
+        values, _ = task.step(Command())
+        told = estimator(values)
+        height_mm, angle = task.line()
+        assert told.kind == ("edge" if kind == "cloth" else "cable")
+        assert told.angle_deg == pytest.approx(math.degrees(angle), abs=0.8)
+        seen_mm = told.offset_mm / math.cos(math.radians(told.angle_deg))
+        assert seen_mm == pytest.approx(height_mm, abs=0.2)
+        assert told.dark_side == ("left" if kind == "cloth" else "")
+
+
+def test_the_line_law_follows_three_times_faster_than_the_centre(cloth: Bench) -> None:
+    slow = summary(cloth, "centre", 30.0, TUNED, range(3))
+    fast = summary(cloth, "line", 120.0, TUNED, range(3))
+    pose = summary(cloth, "pose", 120.0, TUNED, range(3))
+    assert fast.losses == pose.losses == 0
+    assert max(fast.lateral_rms_mm, pose.lateral_rms_mm) < min(slow.lateral_rms_mm, 1.6)
+    assert summary(cloth, "centre", 200.0, TUNED, range(3)).losses >= 2
+
+
+def test_a_law_with_the_wrong_sign_loses_the_line(cloth: Bench) -> None:
+    assert summary(cloth, "line", 80.0, Tuning(-8.0, -10.0), range(2)).losses == 2
+
+
+def test_the_same_seed_gives_the_same_trial(cloth: Bench) -> None:
+    first, again = (cloth.run("line", 120.0, TUNED, 7) for _ in range(2))
+    assert first.lateral_rms_mm == again.lateral_rms_mm and first.reason == "end"
+
+
+def test_cloth_tracing_ends_at_the_corner() -> None:
+    bench = Bench(Task(LAYOUT, Settings("cloth", length_mm=200.0, corner=True)))
+    for controller in ("line", "pose"):
+        told = bench.run(controller, 80.0, TUNED, 1)
+        assert told.reason == "corner" and abs(told.corner_error_mm) < 1.5
+    assert isinstance(bench.task.scene(), Corner)
+    # Without being told to stop there it runs off the corner.
+    tracer, values = Tracer(LineLaw(80.0)), bench.task.reset(1)
+    observe, ended = bench.observer("line"), False
+    while not ended:
+        values, ended = bench.task.step(tracer(observe(values), 1.0 / 55.0))
+    assert bench.task.metrics().lost
+
+
+def test_tuning_takes_the_best_and_keeps_off_bad_ones(cloth: Bench) -> None:
+    grid = (Tuning(-8.0, 4.0), TUNED, Tuning(0.0, 0.0))
+    assert tune(cloth, "line", 100.0, grid, (10_000, 10_001)) == TUNED
+
+
+def test_settings_are_checked() -> None:
+    for wrong in ({"kind": "rope"}, {"kind": "cable", "corner": True}, {"rate_hz": 0.0}):
+        with pytest.raises(TaskError):
+            Settings(**wrong)  # type: ignore[arg-type]
+
+
+def test_the_bench_writes_table_figures_and_plots(tmp_path: Path) -> None:
+    said: list[str] = []
+    results = bench_tasks(
+        LAYOUT, 1, said.append, ("line",), (80.0, 5000.0), (TUNED,), tuning_seeds=(10_000,)
+    )
+    assert [r.task for r in results] == ["cloth", "cable", "corner"]
+    for r in results:
+        best = r.fastest()
+        assert best is not None and best.speed_mm_s == 80.0 and len(r.rows) == 2
+    written = {p.name: p for p in write(results, tmp_path)}
+    assert "NaN" not in written["tasks.json"].read_text()
+    assert written["tasks.md"].read_text().count("| line angle | 8, 10 | 80 mm/s |") == 3
+    if "tasks.svg" in written:
+        text = written["tasks.svg"].read_text()
+        assert "edge of a cloth" in text and "curves lost" in text
+
+
+def test_highest_speeds_count_only_up_to_the_first_failure() -> None:
+    row = Summary(20.0, 100, 0, 0.5, 2.0, math.nan)
+    rows = (row, replace(row, speed_mm_s=40.0, losses=3), replace(row, speed_mm_s=60.0))
+    told = Result("cloth", "centre", TUNED, rows)
+    assert [r.speed_mm_s if r else None for r in (told.fastest(), told.fastest(0.05))] == [20, 60]
+    none = replace(told, rows=(replace(row, losses=100),))
+    assert none.fastest() is None and "| – | – | – | – | – |" in markdown([none])
+
+
+def test_centre_target_is_the_middle_of_the_dark(cloth: Bench) -> None:
+    law = cloth.tracer("centre", 20.0, TUNED).law
+    assert isinstance(law, CentreLaw) and law.target_mm > 2.0  # the sheet is towards the tip

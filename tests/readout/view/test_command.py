@@ -1,0 +1,79 @@
+"""`lumitip view` as it is typed."""
+
+import json
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+import urllib.request
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from lumitip.cli import main
+from lumitip.links.twin import published_layout
+from lumitip.recording import Reader
+
+
+@contextmanager
+def running(folder: Path, *arguments: str) -> Iterator[tuple["subprocess.Popen[str]", str]]:
+    """The command in a process of its own, and the address that it prints."""
+    command = [sys.executable, "-m", "lumitip.cli", "view", "--port", "0", *arguments]
+    environment = os.environ | {"XDG_DATA_HOME": str(folder / "data")}
+    with subprocess.Popen(
+        command, cwd=folder, env=environment, stdout=subprocess.PIPE, text=True
+    ) as process:
+        assert process.stdout
+        try:
+            found = re.search(r"http://\S+", process.stdout.readline())
+            assert found
+            yield process, found[0]
+        finally:
+            process.kill()
+
+
+def test_two_words_show_a_demonstration_and_ctrl_c_ends_it(tmp_path: Path) -> None:
+    with running(tmp_path, "twin://demo") as (process, url):
+        assert url.startswith("http://127.0.0.1:")
+        (finger,) = json.load(urllib.request.urlopen(f"{url}api/fingers", timeout=10))
+        assert len(finger["x_mm"]) == 32
+        assert b"<title>Lumitip</title>" in urllib.request.urlopen(url, timeout=10).read()
+        told = urllib.request.Request(
+            f"{url}api/fingers/1/record", b'{"on": true}', {"Origin": url.rstrip("/")}
+        )
+        name = json.load(urllib.request.urlopen(told, timeout=10))["file"]
+        process.send_signal(signal.SIGINT)
+        assert process.wait(timeout=20) == 130
+    reader = Reader(tmp_path / "recordings" / name)
+    assert reader.layout == published_layout()
+    assert reader.metadata.device_id == "twin:demo"
+
+
+def test_port_that_is_taken_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        assert main(["view", "twin://demo", "--port", str(port)]) == 2
+    error = capsys.readouterr().err
+    assert f"127.0.0.1:{port} cannot be listened at" in error
+    assert "--port" in error
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["twin://nothing"], "allowed are demo"),
+        (["twin://demo", "nonsense"], "an address like"),
+        (["replay://none.mcap"], "cannot be read"),
+        (["twin://demo", "--host", "203.0.113.1", "--port", "0"], "cannot be listened at"),
+        (["twin://demo", "--port", "70000"], "allowed is 0 to 65535"),
+    ],
+)
+def test_what_cannot_be_shown_is_told(
+    arguments: list[str], told: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["view", *arguments]) == 2
+    assert told in capsys.readouterr().err

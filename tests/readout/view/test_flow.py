@@ -1,0 +1,170 @@
+"""Slow browsers get fewer frames; the server reads every one."""
+
+import json
+import struct
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import Page
+from websockets.sync.client import ClientConnection, connect
+
+from lumitip.frame import Frame
+from lumitip.view.finger import KEPT, Finger
+from lumitip.view.room import Room
+from lumitip.view.server import ViewServer
+from lumitip.view.session import WINDOW
+
+Serve = Callable[..., ViewServer]
+WaitFor = Callable[[Callable[[], bool]], None]
+
+
+class Seen:
+    """The numbers of all frames that the server read."""
+
+    def __init__(self) -> None:
+        self.seq: list[int] = []
+
+    def take(self, finger: Finger, frame: Frame) -> None:  # noqa: ARG002
+        """Note one."""
+        self.seq.append(frame.seq)
+
+
+def stream(server: ViewServer) -> ClientConnection:
+    here = f"127.0.0.1:{server.port}"
+    return connect(f"ws://{here}/stream", origin=f"http://{here}")  # type: ignore[arg-type]
+
+
+def told(message: bytes) -> dict[str, Any]:
+    head = struct.unpack_from("<BBHHHHHIII", message)
+    finger, frames, _, markers, _, number, skipped, _ = head[2:]
+    at = 24 + 8 * frames + 80 + 8 * markers
+    seq = struct.unpack_from(f"<{frames}I", message, at)
+    return {"finger": finger, "number": number, "skipped": skipped, "seq": list(seq)}
+
+
+def until_silent(client: ClientConnection) -> list[bytes]:
+    """Messages of frames until nothing comes for a while."""
+    messages = []
+    while True:
+        try:
+            message = client.recv(timeout=0.5)
+        except TimeoutError:
+            return messages
+        if isinstance(message, bytes):
+            messages.append(message)
+            assert len(messages) < 50, "it does not wait for the browser"
+
+
+def test_a_browser_that_does_not_draw_gets_a_window_and_no_more(
+    serve: Serve, wait_for: WaitFor
+) -> None:
+    server = serve("twin://disc?rate=500")
+    finger = server.room.fingers[1]
+    with stream(server) as client:
+        first = until_silent(client)
+        assert [told(m)["number"] for m in first] == list(range(1, WINDOW + 1))
+        before = finger.count
+        wait_for(lambda: finger.count > before + 2 * KEPT)
+        client.send(json.dumps({"drawn": {"1": WINDOW}}))
+        after = until_silent(client)
+    assert [told(m)["number"] for m in after] == list(range(WINDOW + 1, 2 * WINDOW + 1))
+    assert sum(told(m)["skipped"] for m in first) == 0
+    caught_up = told(after[0])
+    assert len(caught_up["seq"]) == KEPT
+    # Nothing is missing but what is said to be.
+    last = told(first[-1])["seq"][-1]
+    assert caught_up["seq"][0] == last + 1 + caught_up["skipped"]
+    assert caught_up["skipped"] > 0
+    following = [s for m in after for s in told(m)["seq"]]
+    assert following == list(range(following[0], following[0] + len(following)))
+
+
+def test_a_browser_that_draws_gets_every_frame(serve: Serve) -> None:
+    server = serve("twin://disc?rate=200")
+    got: list[int] = []
+    with stream(server) as client:
+        while len(got) < 300:
+            message = client.recv(timeout=10)
+            if isinstance(message, str):
+                client.send(json.dumps({"status": True}))
+                continue
+            frames = told(message)
+            assert frames["skipped"] == 0
+            got += frames["seq"]
+            client.send(json.dumps({"drawn": {"1": frames["number"]}}))
+    assert got == list(range(got[0], got[0] + len(got)))
+
+
+def test_one_slow_browser_does_not_slow_another(serve: Serve) -> None:
+    server = serve("twin://disc?rate=500")
+    with stream(server) as slow, stream(server) as quick:
+        frames = 0
+        while frames < 300:
+            message = quick.recv(timeout=10)
+            if isinstance(message, bytes):
+                frames += len(told(message)["seq"])
+                quick.send(json.dumps({"drawn": {"1": told(message)["number"]}}))
+        assert len(until_silent(slow)) == WINDOW
+
+
+def test_who_comes_late_sees_the_last_frame(serve: Serve, wait_for: WaitFor) -> None:
+    server = serve("twin://disc")
+    finger = server.room.fingers[1]
+    wait_for(lambda: finger.count > 3)
+    finger.tip.close()
+    wait_for(lambda: finger.status()["state"] == "ended")
+    with stream(server) as client:
+        (message,) = until_silent(client)
+    last = finger.tip.stats.received - 1
+    assert told(message)["seq"] == [last]
+
+
+NONSENSE = (
+    "", "[]", "7", "{", '{"drawn": 3}', '{"drawn": {"x": 1}}', '{"drawn": {"1": null}}',
+    '{"drawn": {"9": 1}}', '{"drawn": {"1": -5}}', '{"drawn": {"1": 1e999}}', "[" * 5000,
+)  # fmt: skip
+
+
+def test_nonsense_from_a_browser_changes_nothing(serve: Serve) -> None:
+    server = serve("twin://disc")
+    with stream(server) as client:
+        for said in NONSENSE:
+            client.send(said)
+        assert len(until_silent(client)) == WINDOW
+        client.send(json.dumps({"drawn": {"1": WINDOW}}))
+        assert len(until_silent(client)) == WINDOW
+
+
+def run(page: Page, folder: Path, wait_for: WaitFor, seconds: float) -> None:
+    """200 Hz into a page that stands still for half a second now and then."""
+    seen = Seen()
+    finger = Finger.open("twin://demo?rate=200", sinks=(seen,))
+    with ViewServer(Room([finger], folder), port=0) as server:
+        page.goto(server.url)
+        page.wait_for_selector(".finger[data-seq]")
+        statuses = []
+        for _ in range(max(1, round(seconds / 2))):
+            page.evaluate(
+                "const until = performance.now() + 500; while (performance.now() < until);"
+            )
+            before = finger.count
+            wait_for(lambda: finger.count >= before + 300)  # noqa: B023
+            statuses.append(page.evaluate("lumitip.panels.get(1).status"))
+        drawn = int(page.locator(".finger").get_attribute("data-seq") or -1)
+        stats = finger.tip.stats
+    assert seen.seq == list(range(seen.seq[0], seen.seq[0] + len(seen.seq)))
+    assert stats.dropped == {"link": 0, "queue": 0, "crc": 0, "length": 0}
+    assert len(seen.seq) >= 300 * len(statuses)
+    assert all(status["in_flight"] <= WINDOW for status in statuses)
+    assert drawn > seen.seq[0]
+
+
+def test_200_hz_into_a_browser(page: Page, tmp_path: Path, wait_for: WaitFor) -> None:
+    run(page, tmp_path, wait_for, 2.0)
+
+
+@pytest.mark.slow
+def test_200_hz_into_a_browser_for_20_s(page: Page, tmp_path: Path, wait_for: WaitFor) -> None:
+    run(page, tmp_path, wait_for, 20.0)

@@ -1,0 +1,202 @@
+"""Recording, replaying and taring from the page."""
+
+import os
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from playwright.sync_api import Page, expect
+
+from lumitip import Layout, LumitipError
+from lumitip.calibration import Calibration
+from lumitip.fingertip import Fingertip
+from lumitip.recording import Reader, RecordingError, Writer, summarise
+from lumitip.view.finger import Finger
+from lumitip.view.player import Player
+from lumitip.view.room import Room
+from lumitip.view.server import ViewServer
+
+Serve = Callable[..., ViewServer]
+StillFinger = Callable[[Layout, np.ndarray], Finger]
+WaitFor = Callable[[Callable[[], bool]], None]
+PLAYER = "lumitip.panels.get({}).status?.player"
+
+
+def opened(page: Page, server: ViewServer) -> Page:
+    page.goto(server.url)
+    page.wait_for_selector(".finger[data-seq]")
+    return page
+
+
+@pytest.fixture
+def recording(tmp_path: Path) -> Path:
+    """800 frames at 100 Hz of a cable that moves."""
+    path = tmp_path / "recordings" / "run.mcap"
+    path.parent.mkdir()
+    with Fingertip.open("twin://cable?rate=2000&speed=240&noise=0") as tip:
+        frames = [tip.read() for _ in range(800)]
+        with Writer(path, tip.layout, device_id="finger", start_wall=1000.0) as writer:
+            for i, frame in enumerate(frames):
+                writer.write(replace(frame, t_wall=1000.0 + i / 100))
+    return path
+
+
+def test_recording_from_the_page_makes_a_readable_file(
+    serve: Serve, page: Page, wait_for: WaitFor, tmp_path: Path
+) -> None:
+    server = serve("twin://demo?rate=200")
+    opened(page, server)
+    page.locator(".record").click()
+    expect(page.locator(".record")).to_have_attribute("aria-pressed", "true")
+    wait_for(lambda: (server.room.fingers[1].status()["recording"] or {}).get("frames", 0) > 200)
+    page.keyboard.press("r")
+    expect(page.locator("#notice")).to_have_text("twin-demo-001.mcap written")
+    expect(page.locator(".record")).to_have_attribute("aria-pressed", "false")
+    reader = Reader(tmp_path / "recordings" / "twin-demo-001.mcap")
+    frames = list(reader)
+    assert reader.layout == server.room.fingers[1].tip.layout
+    assert reader.metadata.device_id == "twin:demo"
+    seq = [f.seq for f in frames]
+    assert len(seq) > 200
+    assert seq == list(range(seq[0], seq[0] + len(seq)))
+
+    page.keyboard.press("r")
+    expect(page.locator(".detail")).to_have_text(re.compile("recording twin-demo-002.mcap"))
+
+
+def test_recording_ends_with_the_server(
+    serve: Serve, page: Page, wait_for: WaitFor, tmp_path: Path
+) -> None:
+    server = serve("twin://demo?rate=200")
+    opened(page, server)
+    page.keyboard.press("r")
+    wait_for(lambda: (server.room.fingers[1].status()["recording"] or {}).get("frames", 0) > 50)
+    page.goto("about:blank")
+    server.__exit__(None, None, None)
+    assert len(list(Reader(tmp_path / "recordings" / "twin-demo-001.mcap"))) > 50
+
+
+def test_replay_from_the_page_pauses_winds_and_closes(
+    serve: Serve, page: Page, wait_for: WaitFor, recording: Path
+) -> None:
+    opened(page, serve("twin://edge"))
+    page.keyboard.press("p")
+    page.get_by_role("button", name=recording.name).click()
+    expect(page.locator(".finger")).to_have_count(2)
+    replay = page.locator(".finger").nth(1)
+    expect(replay.locator(".tare")).to_be_hidden()
+    wait_for(lambda: bool(page.evaluate(PLAYER.format(2))))
+    page.keyboard.press("k")
+    wait_for(lambda: page.evaluate(PLAYER.format(2))["playing"] is False)
+    replay.locator(".seek").fill("1.5")
+    wait_for(lambda: abs(page.evaluate(PLAYER.format(2))["position_s"] - 1.5) < 0.02)
+    wait_for(
+        lambda: (
+            page.evaluate("lumitip.panels.get(2).newest.seq") == list(Reader(recording))[150].seq
+        )
+    )
+    page.keyboard.press("ArrowRight")
+    wait_for(lambda: abs(page.evaluate(PLAYER.format(2))["position_s"] - 2.5) < 0.02)
+    replay.locator(".speed").select_option("0.5")
+    wait_for(lambda: page.evaluate(PLAYER.format(2))["speed"] == 0.5)
+    replay.locator(".play").click()
+    wait_for(lambda: page.evaluate(PLAYER.format(2))["position_s"] > 2.9)
+    replay.locator(".close").click()
+    expect(page.locator(".finger")).to_have_count(1)
+
+
+def test_player_gives_every_frame_as_it_was(recording: Path, wait_for: WaitFor) -> None:
+    expected = list(Reader(recording))
+    got: list[Any] = []
+    player = Player(recording, speed=16.0)
+    player.start(lambda arrival: got.append(arrival.what), lambda _: None)
+    wait_for(lambda: len(got) == len(expected))
+    for given, was in zip(got, expected, strict=True):
+        assert (given.seq, given.t_wall, given.bits) == (was.seq, was.t_wall, was.bits)
+        np.testing.assert_array_equal(given.raw, was.raw)
+    assert player.status()["playing"] is False
+    # At its end it begins again.
+    player.control(playing=True)
+    wait_for(lambda: len(got) == 2 * len(expected))
+    player.stop()
+
+
+def test_player_shows_the_frame_it_is_wound_to(recording: Path, wait_for: WaitFor) -> None:
+    got: list[Any] = []
+    player = Player(recording)
+    player.control(playing=False)
+    player.start(lambda arrival: got.append(arrival.what), lambda _: None)
+    expected = list(Reader(recording))
+    for count, (position_s, frame) in enumerate(((2.0, 200), (0.0, 0), (99.0, 799), (-1.0, 0)), 1):
+        player.control(position_s=position_s)
+        wait_for(lambda count=count: len(got) == count)  # type: ignore[misc]
+        assert got[-1].seq == expected[frame].seq
+    player.stop()
+    assert len(got) == 4
+
+
+def test_player_refuses_what_it_cannot_play(tmp_path: Path, recording: Path) -> None:
+    with pytest.raises(LumitipError, match="cannot be read"):
+        Finger.open(f"replay://{tmp_path / 'none.mcap'}")
+    broken = tmp_path / "broken.mcap"
+    broken.write_bytes(b"not a recording")
+    with pytest.raises(LumitipError, match="no recording"):
+        Finger.open(f"replay://{broken}")
+    with pytest.raises(LumitipError, match="speed"):
+        Finger.open(f"replay://{recording}?speed=1000")
+    with pytest.raises(LumitipError, match="speed"):
+        Player(recording).control(speed=0.0)
+
+
+def test_tare_from_the_page_is_kept_and_refused_when_something_moves(
+    serve: Serve, page: Page, wait_for: WaitFor, still: StillFinger, layout: Layout
+) -> None:
+    finger = still(layout, np.linspace(10, 40, len(layout)))
+    server = serve(finger, "twin://cable?speed=400&rate=500")
+    opened(page, server)
+    page.keyboard.press("2")
+    page.keyboard.press("t")
+    expect(page.locator("#notice")).to_contain_text("hold the fingers still")
+    expect(page.locator("#notice")).to_have_class("error")
+    assert server.room.fingers[2].tip.calibration.empty is None
+
+    assert min(page.evaluate("[...lumitip.panels.get(1).newest.values]")) == 255 - 40
+    page.keyboard.press("1")
+    page.keyboard.press("t")
+    expect(page.locator("#notice")).to_have_text("still: tared, empty reference")
+    kept = Calibration.kept("still", layout.design_hash, len(layout))
+    assert kept.empty is not None
+    np.testing.assert_allclose(kept.empty, 255 - np.floor(np.linspace(10, 40, len(layout))))
+    wait_for(lambda: min(page.evaluate("[...lumitip.panels.get(1).newest.values]")) > 254)
+
+
+def test_files_that_cannot_be_named_or_read_hide_no_others(recording: Path) -> None:
+    folder = recording.parent
+    (Path(os.fsdecode(os.fsencode(folder) + b"/\xff.mcap"))).write_bytes(b"x")
+    (folder / "broken.mcap").symlink_to(folder / "gone")
+    assert Room((), folder).recordings() == ["run.mcap"]
+
+
+def test_one_recording_that_cannot_be_ended_keeps_no_other_open(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fingers = [Finger.open("twin://demo"), Finger.open("twin://edge")]
+    room = Room(fingers, tmp_path)
+    for finger in fingers:
+        finger.record(room.fresh(finger))
+
+    stop = fingers[0]._recorder.stop
+
+    def fails() -> None:
+        stop()
+        raise RecordingError("disk full")
+
+    monkeypatch.setattr(fingers[0]._recorder, "stop", fails)
+    with pytest.raises(RecordingError, match="disk full"):
+        room.close()
+    assert summarise(tmp_path / "twin-edge-001.mcap").damage == ()
+    assert not any(finger.tip.connected for finger in fingers)

@@ -1,0 +1,78 @@
+"""Small boards of plain parts, to route and to damage, and placed boards of presets."""
+
+from pathlib import Path
+
+from lumitip_fab.boards.model import Component, Footprint, Net, NetClass, Pad, Placement, Side
+from lumitip_fab.boards.placement import place
+from lumitip_fab.derive import derive
+from lumitip_fab.design import Box, Point
+from lumitip_fab.load import load
+
+CLASSES = (NetClass("signal", 0.2, 0.2, 0.6, 0.3), NetClass("supply", 0.5, 0.2, 0.6, 0.3))
+
+
+def _footprint(*pads: Pad) -> Footprint:
+    body = Box(-1, 1, -0.5, 0.5)
+    return Footprint("plain", pads, body, body.grown(0.1), 1.0)
+
+
+CHIP = _footprint(Pad("1", -0.8, 0, 0.8, 0.9), Pad("2", 0.8, 0, 0.8, 0.9))
+PIN = _footprint(Pad("1", 0, 0, 1.6, 1.6, "circle", drill_mm=1.0))
+FINE = _footprint(*(Pad(str(i), 0.65 * i, 0, 0.3, 1.4) for i in range(4)))
+
+
+def part(
+    ref: str, footprint: Footprint, at: Point, nets: dict[str, str],
+    angle_deg: float = 0, side: Side = "front",
+) -> Component:  # fmt: skip
+    """A part in its place."""
+    kind = "connector" if footprint is PIN else "resistor"
+    return Component(ref, "", "", kind, footprint, *at, angle_deg, side, tuple(nets.items()))
+
+
+def board(*parts: Component, supply: tuple[str, ...] = ("GND",), width_mm: float = 20) -> Placement:
+    """A board of 10 mm by the width with a hole in its middle."""
+    nets = sorted({net for p in parts for _, net in p.nets})
+    return Placement(
+        finger="receiver", name="small", revision="A", design_hash="",
+        outline=Box(-width_mm / 2, width_mm / 2, -5, 5), corner_mm=0.5,
+        holes=((0.0, 0.0),), hole_mm=2.0, edge_clearance_mm=0.3, components=parts,
+        nets=tuple(Net(n, "supply" if n in supply else "signal") for n in nets),
+        classes=CLASSES, ground="GND", silk=(), texts=(),
+    )  # fmt: skip
+
+
+def crossing() -> Placement:
+    """Two nets that cross, a bus of fine leads round the hole, supply and ground, both sides."""
+    return board(
+        part("R1", CHIP, (-6, 3.03), {"1": "A", "2": "GND"}),
+        part("R2", CHIP, (6.017, 3), {"1": "B", "2": "3V3"}, 90),
+        part("R3", CHIP, (-6, -3), {"1": "B", "2": "GND"}),
+        part("R4", CHIP, (6, -3.04), {"1": "A", "2": "3V3"}, 90, "back"),
+        part("U1", FINE, (-3.01, 0), {"0": "S0", "1": "S1", "2": "3V3", "3": "GND"}, 90),
+        part("U2", FINE, (3, -1), {"0": "S0", "1": "S1", "2": "3V3", "3": "GND"}, 90),
+        part("J1", PIN, (-8.8, 0), {"1": "GND"}),
+        part("J2", PIN, (8.8, 0), {"1": "3V3"}),
+        supply=("GND", "3V3"),
+    )
+
+
+def narrows() -> Placement:
+    """Five nets past the hole, where beside it each side has room for one track a layer."""
+    rows = {"A": 4.0, "B": 2.0, "C": 0.0, "D": -2.0, "E": -4.0}
+    left = [part(f"R{n}", CHIP, (-2.6, y), {"2": n}) for n, y in rows.items()]
+    right = [part(f"Q{n}", CHIP, (2.6, y), {"1": n}) for n, y in rows.items()]
+    wall = [
+        part(f"W{i}", PIN, (0, y), {"1": f"W{i}"}) for i, y in enumerate((-4.1, -2.7, 2.7, 4.1))
+    ]
+    return board(*left, *right, *wall, width_mm=9)
+
+
+def preset(design_dir: Path, name: str, finger: str) -> Placement:
+    """A placed board of a preset."""
+    design = derive(load(design_dir / "presets" / f"{name}.toml"))
+    which = next(f for f in design.fingers if f.name == finger)
+    return place(
+        design.title, design.reading, design.board, which,
+        design.wiring, design.packages, design.rules,
+    )  # fmt: skip
