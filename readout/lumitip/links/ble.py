@@ -8,7 +8,7 @@ runs in a thread of its own and only queues there; packets are read on the link'
 bleak: `pip install 'lumitip[ble]'`.
 """
 
-import threading
+import re
 import time
 from collections.abc import Callable, Coroutine
 from concurrent.futures import CancelledError, Future
@@ -16,11 +16,19 @@ from dataclasses import dataclass
 from queue import SimpleQueue
 from typing import Any, TypeVar
 
-from lumitip.errors import LinkError, LinkTimeout, MissingExtra, MtuTooSmall, NotConnected
+from lumitip.errors import (
+    LinkError,
+    LinkTimeout,
+    MissingExtra,
+    MtuTooSmall,
+    NotConnected,
+    UrlError,
+)
 from lumitip.layout import Layout
 from lumitip.links.base import Arrival, Cause, Deliver, Fault, Report
 from lumitip.links.ble_loop import shared_loop
 from lumitip.links.retry import keep_connected
+from lumitip.links.thread import ThreadedLink
 from lumitip.links.url import Url
 from lumitip.protocol.legacy import decode_legacy
 from lumitip.protocol.packet import (
@@ -57,40 +65,33 @@ class Notified:
 Item = Notified | LinkError
 
 
-class BleLink:
+class BleLink(ThreadedLink):
     """Packets of a Bluetooth device."""
 
+    _name = "lumitip-ble"
+
     def __init__(self, layout: Layout, target: str, adapter: str, scan_s: float, any_design: bool):
+        super().__init__()
         self.layout = layout
         self.device_id = f"ble:{target}"
         self._target = target
         self._adapter = adapter
         self._scan_s = scan_s
         self._any_design = any_design
-        self._stopping = threading.Event()
         self._items: SimpleQueue[Item] = SimpleQueue()
-        self._thread: threading.Thread | None = None
         self._cancel: Callable[[], object] = lambda: None
         self._deliver: Deliver
-
-    def start(self, deliver: Deliver, report: Report) -> None:
-        """Begin to look for the device."""
-        self._deliver = deliver
-        self._thread = threading.Thread(
-            target=keep_connected,
-            args=(self._session, report, self._stopping),
-            name="lumitip-ble",
-            daemon=True,
-        )
-        self._thread.start()
 
     def stop(self) -> None:
         """Disconnect."""
         self._stopping.set()
         self._items.put(NotConnected("closed"))
         self._cancel()
-        if self._thread and self._thread is not threading.current_thread():
-            self._thread.join()
+        super().stop()
+
+    def _run(self, deliver: Deliver, report: Report) -> None:
+        self._deliver = deliver
+        keep_connected(self._session, report, self._stopping)
 
     def _session(self, connected: Callable[[str], None]) -> None:
         items: SimpleQueue[Item] = SimpleQueue()
@@ -181,8 +182,11 @@ def make(url: Url, layout: Layout, any_design: bool) -> BleLink:
     """The link of an address.
 
     Raises:
-        UrlError: if there is no such option.
+        UrlError: if there is no such option, or no adapter can have that name.
     """
     url.allow("adapter", "scan")
     scan_s = url.number("scan", 8.0, 0.1, 600.0)
-    return BleLink(layout, url.target, url.options.get("adapter", ""), scan_s, any_design)
+    adapter = url.options.get("adapter", "")
+    if not re.fullmatch(r"\w*", adapter, re.ASCII):
+        raise UrlError(f"{url.text!r}: adapter={adapter} given, a name like hci0 is needed")
+    return BleLink(layout, url.target, adapter, scan_s, any_design)

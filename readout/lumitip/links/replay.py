@@ -10,52 +10,33 @@ are those of the recording. `~` is the home folder. Gaps take as long as they to
 `pip install 'lumitip[record]'`.
 """
 
-import threading
 import time
 
 from lumitip.calibration import Calibration
-from lumitip.errors import LinkError, LumitipError, WrongDesign
+from lumitip.errors import WrongDesign
 from lumitip.layout import Layout
 from lumitip.links.base import Arrival, Deliver, LinkEvent, Recorded, Report
-from lumitip.links.retry import UnexpectedError
+from lumitip.links.thread import ThreadedLink
 from lumitip.links.url import Url
 from lumitip.recording import Reader, RecordedFrame
 
 
-class ReplayLink:
+class ReplayLink(ThreadedLink):
     """The frames of a recording."""
 
+    _name = "lumitip-replay"
+
     def __init__(self, reader: Reader, speed: float) -> None:
+        super().__init__()
         self.layout = reader.layout
         self.device_id = reader.metadata.device_id
         self.calibration: Calibration | None = reader.metadata.calibration
         self._reader = reader
         self._speed = speed
-        self._stopping = threading.Event()
-        self._thread: threading.Thread | None = None
-
-    def start(self, deliver: Deliver, report: Report) -> None:
-        """Begin to play."""
-        self._thread = threading.Thread(
-            target=self._run, args=(deliver, report), name="lumitip-replay", daemon=True
-        )
-        self._thread.start()
-
-    def stop(self) -> None:
-        """Play nothing more."""
-        self._stopping.set()
-        if self._thread and self._thread is not threading.current_thread():
-            self._thread.join()
 
     def _run(self, deliver: Deliver, report: Report) -> None:
         report(LinkEvent("connected", f"{self._reader.path} of {self.device_id}"))
-        try:
-            self._play(deliver)
-        except Exception as problem:  # noqa: BLE001 - a thread must not die without a word
-            known = isinstance(problem, LumitipError)
-            error = LinkError(str(problem)) if known else UnexpectedError(problem)
-            report(LinkEvent("failed", str(error), error))
-            return
+        self._play(deliver)
         if not self._stopping.is_set():
             report(LinkEvent("ended", f"{self._reader.path} is over"))
 

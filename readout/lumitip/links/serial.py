@@ -8,7 +8,6 @@ found again under whatever port it comes back as. Needs pyserial: `pip install '
 
 import importlib.util
 import re
-import threading
 import time
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -17,6 +16,7 @@ from lumitip.errors import AmbiguousDevice, DeviceNotFound, LinkError, MissingEx
 from lumitip.layout import Layout
 from lumitip.links.base import Arrival, Cause, Deliver, Fault, Report
 from lumitip.links.retry import keep_connected
+from lumitip.links.thread import ThreadedLink
 from lumitip.links.url import Url
 from lumitip.protocol.packet import ForeignPacketError
 from lumitip.protocol.stream import StreamDecoder
@@ -36,16 +36,17 @@ _PIECES = re.compile(rb"[^\0]*\0|[^\0]+")
 CAUSES: tuple[Cause, ...] = ("crc", "length")
 
 
-class SerialLink:
+class SerialLink(ThreadedLink):
     """Packets over a serial port."""
 
+    _name = "lumitip-serial"
+
     def __init__(self, layout: Layout, port: str, baud: int) -> None:
+        super().__init__()
         self.layout = layout
         self._port = port
         self._baud = baud
         self._usb_serial = next((p.serial_number for p in usb_ports() if p.device == port), None)
-        self._stopping = threading.Event()
-        self._thread: threading.Thread | None = None
         self._deliver: Deliver
 
     @property
@@ -53,22 +54,9 @@ class SerialLink:
         """`serial:` and the USB serial number, or the port where there is none."""
         return f"serial:{self._usb_serial or self._port}"
 
-    def start(self, deliver: Deliver, report: Report) -> None:
-        """Begin to read."""
+    def _run(self, deliver: Deliver, report: Report) -> None:
         self._deliver = deliver
-        self._thread = threading.Thread(
-            target=keep_connected,
-            args=(self._session, report, self._stopping),
-            name="lumitip-serial",
-            daemon=True,
-        )
-        self._thread.start()
-
-    def stop(self) -> None:
-        """Close the port."""
-        self._stopping.set()
-        if self._thread and self._thread is not threading.current_thread():
-            self._thread.join()
+        keep_connected(self._session, report, self._stopping)
 
     def _session(self, connected: Callable[[str], None]) -> None:
         port = self._port_now()

@@ -23,8 +23,8 @@ import numpy as np
 from lumitip.errors import UrlError
 from lumitip.layout import Layout
 from lumitip.links.base import Arrival, Deliver, LinkEvent, Report
-from lumitip.links.retry import UnexpectedError
 from lumitip.links.shapes import OPAQUE, SHAPES, Matter, shown
+from lumitip.links.thread import ThreadedLink
 from lumitip.links.url import Url
 from lumitip.protocol.packet import BITS, Packet, design_code
 from lumitip.twin import Model, Twin
@@ -48,10 +48,13 @@ class Scene:
     warm_up: float = 0.025
 
 
-class TwinLink:
+class TwinLink(ThreadedLink):
     """A fingertip that is computed: see the module."""
 
+    _name = "lumitip-twin"
+
     def __init__(self, layout: Layout, scene: Scene) -> None:
+        super().__init__()
         self.layout = layout
         self.device_id = f"twin:{scene.shape}"
         self.why_late = (
@@ -59,35 +62,17 @@ class TwinLink:
             "for thousands: give more time, or a layout of fewer cells"
         )
         self._scene = scene
-        self._stopping = threading.Event()
         self._beginning = threading.Lock()
         self._begun = False
-        self._thread: threading.Thread | None = None
-
-    def start(self, deliver: Deliver, report: Report) -> None:
-        """Begin to send."""
-        self._thread = threading.Thread(
-            target=self._run, args=(deliver, report), name="lumitip-twin", daemon=True
-        )
-        self._thread.start()
 
     def stop(self) -> None:
         """Send nothing more; a thread that still makes tables is not waited for, it ends then."""
         with self._beginning:
             self._stopping.set()
-        if self._begun and self._thread and self._thread is not threading.current_thread():
-            self._thread.join()
+        if self._begun:
+            super().stop()
 
     def _run(self, deliver: Deliver, report: Report) -> None:
-        try:
-            self._send(deliver, report)
-        except Exception as problem:  # noqa: BLE001 - a thread must not die without a word
-            error = UnexpectedError(problem)
-            if self._stopping.is_set():
-                return
-            report(LinkEvent("failed", str(error), error))
-
-    def _send(self, deliver: Deliver, report: Report) -> None:
         packet_at(self.layout, self._scene, 0, 1)  # so that the tables are made before time runs
         with self._beginning:
             if self._stopping.is_set():

@@ -1,11 +1,15 @@
 """Addresses of links: `scheme://target?option=value`."""
 
 import math
+import os
+import unicodedata
 from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import parse_qsl, unquote
 
 from lumitip.errors import UrlError
+
+_LONGEST = 4096  # of a path on Linux; no name or port is as long
 
 
 @dataclass(frozen=True)
@@ -24,10 +28,15 @@ class Url:
         """Take an address apart.
 
         Raises:
-            UrlError: if it has no scheme, or options that are none.
+            UrlError: if it has no scheme, options that are none, or characters that no name,
+                port or file has.
         """
         if not isinstance(text, str):
             raise UrlError(f"{text!r:.40} given, an address like ble://Lumitip is needed")
+        if len(text) > _LONGEST:
+            raise UrlError(
+                f"{text[:40]!r}… of {len(text)} characters given, at most {_LONGEST} are allowed"
+            )
         scheme, found, rest = text.partition("://")
         if not found:
             raise UrlError(
@@ -40,6 +49,9 @@ class Url:
             raise UrlError(f"{text!r}: options like ?name=value&other=value are needed") from error
         if len(dict(pairs)) != len(pairs):
             raise UrlError(f"{text!r}: an option is given twice")
+        for part in (unquote(target), *(word for pair in pairs for word in pair)):
+            if odd := next(filter(_unusable, part), None):
+                raise UrlError(f"{text!r}: {odd!r} in it, which no name, port or file has")
         return cls(text, scheme.lower(), unquote(target), dict(pairs))
 
     @property
@@ -90,3 +102,12 @@ class Url:
         if value not in allowed:
             raise UrlError(f"{self.text!r}: {name}={value} given, allowed are {', '.join(allowed)}")
         return value
+
+
+def _unusable(character: str) -> bool:
+    """Whether it is a control character, or none that the system takes in a name."""
+    try:
+        os.fsencode(character)
+    except UnicodeEncodeError:
+        return True
+    return unicodedata.category(character) == "Cc"

@@ -12,7 +12,6 @@ Frames are packets of version 2 with raw codes, and come at the rate of the task
 do or not: a program that computes too long flies blind meanwhile.
 """
 
-import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -28,7 +27,7 @@ from lumitip.grid import Floats
 from lumitip.hub import Hub
 from lumitip.layout import Layout
 from lumitip.links.base import Arrival, Deliver, LinkEvent, Report
-from lumitip.links.retry import UnexpectedError
+from lumitip.links.thread import ThreadedLink
 from lumitip.protocol.packet import Packet, design_code
 from lumitip.tasks.task import Metrics, Task
 
@@ -36,8 +35,10 @@ _MOST_S = 120.0
 _BUFFER = 4096
 
 
-class LiveTask:
+class LiveTask(ThreadedLink):
     """A link whose fingertip moves as it is commanded, until its task ends."""
+
+    _name = "lumitip-task"
 
     def __init__(self, task: Task, url: str, seed: int = 0) -> None:
         """A task that has not begun.
@@ -47,6 +48,7 @@ class LiveTask:
             url: what it is called, for people.
             seed: of the curve.
         """
+        super().__init__()
         self.layout: Layout = task.layout
         self.device_id = url.replace("://", ":")
         self.url = url
@@ -58,8 +60,6 @@ class LiveTask:
         self._task = task
         self._first = self._task.reset(seed)
         self._command = Command()
-        self._stopping = threading.Event()
-        self._thread: threading.Thread | None = None
 
     def open(self) -> Fingertip:
         """Begin in real time; the fingertip that reads it."""
@@ -103,27 +103,7 @@ class LiveTask:
         finally:
             room.close()
 
-    def start(self, deliver: Deliver, report: Report) -> None:
-        """Begin to send; see `Link`."""
-        self._thread = threading.Thread(
-            target=self._run, args=(deliver, report), name="lumitip-task", daemon=True
-        )
-        self._thread.start()
-
-    def stop(self) -> None:
-        """Send nothing more."""
-        self._stopping.set()
-        if self._thread and self._thread is not threading.current_thread():
-            self._thread.join()
-
     def _run(self, deliver: Deliver, report: Report) -> None:
-        try:
-            self._send(deliver, report)
-        except Exception as problem:  # noqa: BLE001 - a thread must not die without a word
-            error = UnexpectedError(problem)
-            report(LinkEvent("failed", str(error), error))
-
-    def _send(self, deliver: Deliver, report: Report) -> None:
         self._packet(0)  # so that the tables are made before time runs
         report(LinkEvent("connected", f"{self.url} is computed, no device"))
         began, ended, number = time.monotonic(), False, 0

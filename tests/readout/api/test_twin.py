@@ -1,12 +1,20 @@
 """Addresses of links, and the twin behind one."""
 
 import threading
+import time
 
 import numpy as np
 import pytest
 
 from lumitip import Fingertip, Layout, LinkEvent, LumitipError
-from lumitip.errors import LinkTimeout, UrlError
+from lumitip.errors import ArgumentError, LinkError, LinkTimeout, UrlError
+from lumitip.links.base import Deliver, Report
+from lumitip.links.retry import UnexpectedError
+from lumitip.links.thread import ThreadedLink
+from lumitip.links.twin import published_layout
+from lumitip.links.url import Url
+from lumitip.twin import Model
+from lumitip.twin.pairs import Emitter, Pairs
 
 
 def test_an_address_is_checked_before_anything_is_opened() -> None:
@@ -20,11 +28,29 @@ def test_an_address_is_checked_before_anything_is_opened() -> None:
         "twin://disc?bits=9": "bits=9 given, allowed are 8, 10, 12",
         "twin://disc?rate=1&rate=2": "an option is given twice",
         "twin://disc?rate": "options like",
+        "twin://" + 5000 * "a": "'twin://a+'… of 5007 characters given, at most 4096",
+        "ble://Lumitip?adapter=../hci0": "adapter=../hci0 given, a name like hci0 is needed",
     }.items():
         with pytest.raises(UrlError, match=told):
-            Fingertip.open(url)
+            Fingertip.open(url, published_layout())
     with pytest.raises(LumitipError, match=r"layout='outputs/layout\.json'"):
         Fingertip.open("ble://Lumitip")
+
+
+@pytest.mark.parametrize("odd", ["%00", "%0A", "a%1B[31m", "~%00", "\x7f", "\ud800"])
+@pytest.mark.parametrize("place", ["ble://{}", "serial://{}", "replay://{}", "twin://{}",
+                                   "serial:///dev/ttyACM0?baud={}", "ble://a?{}=1"])  # fmt: skip
+def test_characters_that_no_name_has_are_refused(place: str, odd: str) -> None:
+    with pytest.raises(UrlError, match=r"in it, which no name, port or file has") as caught:
+        Fingertip.open(place.format(odd), published_layout())
+    assert str(caught.value).isprintable(), "it may be printed to a terminal as it is"
+
+
+def test_odd_but_possible_names_are_taken() -> None:
+    for text in ("ble://Ä 1", "replay://a%20b", "replay://\udcff.mcap", "ble://100%", "ble://"):
+        assert Url.parse(text).scheme in ("ble", "replay")
+    assert Url.parse("replay://a%20b").target == "a b"
+    assert Url.parse("ble://100%").target == "100%"
 
 
 def test_a_twin_needs_nothing(make_layout) -> None:
@@ -95,3 +121,42 @@ def test_a_twin_that_still_makes_its_tables_is_not_waited_for(
     threads[0].join(10.0)
     assert not threads[0].is_alive()
     assert events == []
+
+
+@pytest.mark.parametrize(
+    ("problem", "told"),
+    [
+        (LinkTimeout("late"), LinkTimeout("late")),
+        (ArgumentError("odd"), LinkError("odd")),
+        (KeyError("x"), UnexpectedError(KeyError("x"))),
+    ],
+)
+def test_what_ends_the_thread_of_a_link_is_told(problem: Exception, told: LinkError) -> None:
+    class Failing(ThreadedLink):
+        def _run(self, *_: Deliver | Report) -> None:
+            raise problem
+
+    link, events = Failing(), list[LinkEvent]()
+    link.start(lambda _: None, events.append)
+    link.stop()
+    [event] = events
+    assert (event.kind, type(event.error), event.detail) == ("failed", type(told), str(told))
+
+
+def test_pairs_of_a_large_twin_are_sorted_without_holding_up_other_threads(make_layout) -> None:
+    """Sorted row by row they held the interpreter for seconds, in which no timeout could count;
+    that took forty times as long as the distances, this takes a few times as long."""
+    large = make_layout((46, 45) * 22 + (46,), 1.5)
+    emitter = Emitter(Model.from_layout(large))
+    begun = time.thread_time()
+    pairs = Pairs.of(large, emitter)
+    spent_s = time.thread_time() - begun
+    begun = time.thread_time()
+    np.hypot(large.x_mm - large.x_mm[:, None], large.y_mm - large.y_mm[:, None])
+    assert spent_s < 15.0 * (time.thread_time() - begun)
+    told = {kind[1:] for kind in pairs.kinds}
+    assert len(told) == len(pairs.kinds), "each way from a cell to an LED is there once"
+    assert {(-x, -y) for x, y in told} == told
+    x_mm, y_mm = np.array([pairs.kinds[k][1:] for k in pairs.kind[pairs.cell == 0]]).T
+    beside = np.hypot(large.x_mm - large.x_mm[0], large.y_mm - large.y_mm[0])
+    assert np.sort(np.hypot(x_mm, y_mm)) == pytest.approx(np.sort(beside)[: x_mm.size], abs=2e-3)

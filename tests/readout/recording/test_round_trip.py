@@ -2,6 +2,7 @@
 
 import resource
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
@@ -179,64 +180,64 @@ def test_what_cannot_be_written_is_refused(
     assert len(list(Reader(tmp_path / "a.mcap"))) == 1
 
 
-@pytest.fixture
-def limit() -> Iterator[Callable[[int], None]]:
-    """`limit(bytes)`: files of this process end there; the rest is refused as on a full disk."""
+@contextmanager
+def full_disk(size: int) -> Iterator[None]:
+    """Files of this process end at so many bytes meanwhile; the rest is refused as on a full disk.
+
+    Not longer than the lines of a test that need it: a file that the test run prints to ends too.
+    """
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
-    yield lambda size: resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
-    resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
 
 
 def test_a_full_disk_is_told_and_what_was_written_is_saved(
-    tmp_path: Path, layout: Layout, make_frames: Make, limit: Callable[[int], None]
+    tmp_path: Path, layout: Layout, make_frames: Make
 ) -> None:
     writer = Writer(tmp_path / "a.mcap", layout, device_id="x")
-    limit(12_000)
-    with pytest.raises(RecordingError, match=r"a\.mcap: cannot be written"):
-        for frame in make_frames(5000):
-            writer.write(frame)
-    with pytest.raises(RecordingError, match="is closed"):
-        writer.write(make_frames(1)[0])
-    writer.close()
-    limit(1_000_000)
+    with full_disk(12_000):
+        with pytest.raises(RecordingError, match=r"a\.mcap: cannot be written"):
+            for frame in make_frames(5000):
+                writer.write(frame)
+        with pytest.raises(RecordingError, match="is closed"):
+            writer.write(make_frames(1)[0])
+        writer.close()
     assert recover(tmp_path / "a.mcap", tmp_path / "b.mcap").frames > 10
 
 
 def test_recovering_to_a_full_disk_leaves_nothing_in_the_way(
-    tmp_path: Path, layout: Layout, make_frames: Make, limit: Callable[[int], None]
+    tmp_path: Path, layout: Layout, make_frames: Make
 ) -> None:
     old, new = tmp_path / "a.mcap", tmp_path / "b.mcap"
     with Writer(old, layout, device_id="x") as writer:
         for frame in make_frames(400):
             writer.write(frame)
-    limit(12_000)
-    with pytest.raises(RecordingError, match=r"b\.mcap: cannot be written"):
+    with full_disk(12_000), pytest.raises(RecordingError, match=r"b\.mcap: cannot be written"):
         recover(old, new)
     assert not new.exists()
-    limit(1_000_000)
     assert recover(old, new).frames == 400
     with pytest.raises(RecordingError, match="is there already"):
         recover(old, new)
     assert len(list(Reader(new))) == 400
 
 
-def test_a_disk_that_is_full_keeps_no_empty_file(
-    tmp_path: Path, layout: Layout, limit: Callable[[int], None]
-) -> None:
-    limit(100)
-    with pytest.raises(RecordingError, match=r"a\.mcap: cannot be written"):
+def test_a_disk_that_is_full_keeps_no_empty_file(tmp_path: Path, layout: Layout) -> None:
+    with full_disk(100), pytest.raises(RecordingError, match=r"a\.mcap: cannot be written"):
         Writer(tmp_path / "a.mcap", layout, device_id="x")
     assert not (tmp_path / "a.mcap").exists()
 
 
 def test_a_disk_that_fills_at_the_very_end_is_told(
-    tmp_path: Path, layout: Layout, make_frames: Make, limit: Callable[[int], None]
+    tmp_path: Path, layout: Layout, make_frames: Make
 ) -> None:
     writer = Writer(tmp_path / "a.mcap", layout, device_id="x")
-    limit((tmp_path / "a.mcap").stat().st_size)
-    writer.write(make_frames(1)[0])
-    with pytest.raises(RecordingError, match="cannot be written"):
-        writer.close()
+    with full_disk((tmp_path / "a.mcap").stat().st_size):
+        writer.write(make_frames(1)[0])
+        with pytest.raises(RecordingError, match="cannot be written"):
+            writer.close()
 
 
 def test_a_recording_without_frames_is_whole(layout: Layout, tmp_path: Path) -> None:
