@@ -26,10 +26,9 @@ def measure_connector(read: Read) -> Iterator[Measurement]:
 
 def measure_channels(read: Read) -> Iterator[Measurement]:
     """Which detector each input reads, against the layout; and what serves the multiplexers."""
-    layout = read.design.layout
     found = channels(read.board, read.clusters)
     wanted: dict[str, dict[str, str]] = {f"U{m + 1}": {} for m in range(read.design.wiring.muxes)}
-    for cell in layout.cells:
+    for cell in read.design.cells:
         wanted[f"U{cell.mux + 1}"][str(cell.channel)] = f"Q{cell.index + 1}"
     wrong = [
         f"{mux} channel {channel}: {found.by_copper.get(mux, {}).get(channel, 'none')}, not {ref}"
@@ -128,5 +127,5 @@ def _ends(read: Read, ref: str) -> set[int | None]:
 def _reversed_detectors(read: Read) -> list[str]:
     """Detectors whose emitter is not at ground."""
     emitter = "2" if read.design.packages.photodetector.marked == "collector" else "1"
-    refs = [f"Q{i + 1}" for i in range(len(read.design.layout))]
+    refs = [f"Q{i + 1}" for i in range(len(read.design.cells))]
     return [ref for ref in refs if read.group(ref, emitter) != read.wire(GROUND)]

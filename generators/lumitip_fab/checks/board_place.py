@@ -21,15 +21,15 @@ _FLAT = ("TestPoint", "Fiducial", "WirePads", "MountingHole")
 def measure_cells(read: Read) -> Iterator[Measurement]:
     """LED or detector i on the front at cell i: at (-x, y) on the emitter, by the facing rule."""
     letter, sign = ("D", -1) if read.finger.name == "emitter" else ("Q", 1)
-    layout = read.design.layout
-    wanted = np.stack([sign * layout.x_mm, layout.y_mm], axis=1)
-    found = [read.parts.get(f"{letter}{i + 1}") for i in range(len(layout))]
+    cells = read.design.cells
+    wanted = np.array([(sign * cell.x_mm, cell.y_mm) for cell in cells])
+    found = [read.parts.get(f"{letter}{i + 1}") for i in range(len(cells))]
     found = [part if part and part.front else None for part in found]
     off = np.hypot(*(read.sensor([middle(part) for part in found]) - wanted).T)
     worst = int(np.nan_to_num(off, nan=math.inf).argmax())
     yield read.figure("cells", off[worst], 0, CELL_MM, note=f"worst at {letter}{worst + 1}")
     extra = [ref for ref in read.parts if re.fullmatch(rf"{letter}\d+", ref)]
-    yield read.figure("cell_count", len(extra), len(layout), len(layout), "parts")
+    yield read.figure("cell_count", len(extra), len(cells), len(cells), "parts")
 
 
 def measure_outline(read: Read) -> Iterator[Measurement]:

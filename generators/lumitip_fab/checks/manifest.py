@@ -6,10 +6,11 @@ from pathlib import Path
 import numpy as np
 
 from lumitip_fab import manifest
-from lumitip_fab.checks import solids
 from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip_fab.checks.stl import corners_mm
 from lumitip_fab.design import Design
 from lumitip_fab.errors import OutputError
+from lumitip_fab.frames import Matrix, applied
 
 READS = ("*",)
 _FILE = "manifest.json"
@@ -31,14 +32,14 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
             yield _frame(outputs, path, np.array(entry.to_sensor), design)
 
 
-def _frame(outputs: Path, path: str, matrix: solids.Vectors, design: Design) -> Measurement:
+def _frame(outputs: Path, path: str, matrix: Matrix, design: Design) -> Measurement:
     """How far a part, moved by its matrix, lies from where the sensor frame has it."""
     name = f"{_FILE}: {path}"
     try:
-        mesh = solids.read_mesh(outputs / path)
+        corners = applied(matrix, corners_mm(outputs / path))
     except OutputError as error:
         return unreadable("manifest.frames", name, str(error))
-    low, high = solids.moved(mesh, matrix).bounds
+    low, high = corners.min(axis=0), corners.max(axis=0)
     stack, tip_y = design.stack, design.outline.tip_y_mm
     apart = [abs(low[0] + high[0])]
     if path.startswith("backing/"):

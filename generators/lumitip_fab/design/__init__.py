@@ -7,7 +7,7 @@ film's outer face, x to the right, y towards the tip, z out of the face.
 
 from dataclasses import dataclass
 
-from lumitip.layout import Layout
+from lumitip.layout import Cell, Layout
 from lumitip_fab.design.boards import (
     Board,
     CellInput,
@@ -105,6 +105,12 @@ class Design:
     def fingers(self) -> tuple[Finger, Finger]:
         """Both fingers, emitter first."""
         return self.emitter, self.receiver
+
+    @property
+    def cells(self) -> tuple[Cell, ...]:
+        """Where each cell is and what reads it: the layout without its optics, which change
+        oftener."""
+        return self.layout.cells
 
     @property
     def reading(self) -> Reading:
