@@ -4,6 +4,7 @@ OUT ?= outputs
 PYTHON ?= python3
 BIN := .venv/bin
 SETUP := .venv/.lumitip-setup
+BENCHES = fab boards estimation processing protocol links twin view
 CHECK = $(BIN)/lumitip-fab check --out $(OUT) --junit $(OUT)/checks.xml --report $(OUT)/checks.json
 
 .DEFAULT_GOAL := help
@@ -44,16 +45,15 @@ lint: $(SETUP) ## format, lint, types, schema
 fuzz: $(SETUP) ## feed a million damaged inputs to all that reads bytes from outside
 	$(BIN)/python -m fuzz
 
-bench: $(SETUP) ## measure speed and growth
-	$(BIN)/python benchmarks/bench_fab.py
-	$(BIN)/python benchmarks/bench_boards.py
-	OPENBLAS_NUM_THREADS=1 $(BIN)/python benchmarks/bench_estimation.py
-	$(BIN)/lumitip bench-tasks --trials 100 --out $(OUT)/bench-tasks
-	$(BIN)/python benchmarks/bench_processing.py
-	$(BIN)/python benchmarks/bench_protocol.py
-	$(BIN)/python benchmarks/bench_links.py
-	$(BIN)/python benchmarks/bench_twin.py
-	$(BIN)/python benchmarks/bench_view.py
+bench: $(SETUP) ## measure speed and growth; every part runs, then it fails if a goal was missed
+	@missed=; \
+	for part in $(BENCHES); do \
+	  echo "=== $$part"; \
+	  OPENBLAS_NUM_THREADS=1 $(BIN)/python benchmarks/bench_$$part.py || missed="$$missed $$part"; \
+	done; \
+	echo "=== tasks"; \
+	$(BIN)/lumitip bench-tasks --trials 100 --out $(OUT)/bench-tasks || missed="$$missed tasks"; \
+	test -z "$$missed" || { echo "goals missed in:$$missed"; exit 1; }
 
 pictures: outputs ## draw the README's pictures from OUT
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[docs]'

@@ -1,8 +1,8 @@
 """Speed of the boards: placement, routing, pour and files against the number of cells.
 
-Run by `make bench`, or with numbers of cells as arguments. Each stage runs once unmeasured, so that
-compiled code is there. Wall time depends on the machine and on what else it does, so processor time
-is shown too.
+Run by `make bench`, or with numbers of cells as arguments; exits 1 if a goal is missed. Each stage
+runs once unmeasured, so that compiled code is there. Wall time depends on the machine and on what
+else it does, so processor time is shown too.
 """
 
 import math
@@ -13,6 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar
 
+from goals import Goals
 from lumitip_fab.boards.fab.package import layers_of, order_files
 from lumitip_fab.boards.model import BoardModel
 from lumitip_fab.boards.pcb.files import project_files
@@ -28,6 +29,7 @@ from lumitip_fab.errors import FabError
 from lumitip_fab.load import load
 
 DESIGN = Path(__file__).parents[1] / "design"
+LIMITS_S = {32: 15.0, 128: 120.0, 257: 400.0}
 COLUMNS = {65: [7, 6] * 5, 128: [9, 8] * 7 + [9], 257: [14, 13] * 9 + [14]}
 _FILE = """\
 extends = "published.toml"
@@ -80,7 +82,7 @@ def files(design: Design, model: BoardModel) -> int:
     return sum(map(len, made.values()))
 
 
-def measure(design: Design, finger: Finger) -> str:
+def measure(design: Design, finger: Finger, goals: Goals) -> str:
     """One row of the table: each stage once."""
     d, seconds = design, []
 
@@ -99,6 +101,8 @@ def measure(design: Design, finger: Finger) -> str:
     model = BoardModel(placement, routing, fills)
     timed(lambda: files(design, model))
     busy = time.process_time() - busy
+    if limit_s := LIMITS_S.get(len(d.layout)):
+        goals.at_most(f"{len(d.layout)} cells, {finger.name}", sum(seconds), limit_s, "s")
     length = sum(math.dist(t.start, t.end) for t in routing.tracks)
     return (
         f"{len(design.layout):>6}{finger.name:>10}"
@@ -107,8 +111,9 @@ def measure(design: Design, finger: Finger) -> str:
     )
 
 
-def main(counts: list[int]) -> None:
-    """Print the table."""
+def main(counts: list[int]) -> int:
+    """Print the table; the exit code."""
+    goals = Goals()
     small = design_of(32)
     files(small, _board(small))  # compiles, and imports what is imported late
     print("seconds, but for the last columns; cpu is processor time")
@@ -120,9 +125,10 @@ def main(counts: list[int]) -> None:
         design = design_of(cells)
         for finger in design.fingers:
             try:
-                print(measure(design, finger), flush=True)
+                print(measure(design, finger, goals), flush=True)
             except FabError as fault:
-                print(f"{cells:>6}{finger.name:>10}  {fault}", flush=True)
+                goals.not_measured(f"{cells} cells, {finger.name}", str(fault))
+    return goals.told()
 
 
 def _board(design: Design) -> BoardModel:
@@ -132,4 +138,4 @@ def _board(design: Design) -> BoardModel:
 
 
 if __name__ == "__main__":
-    main([int(a) for a in sys.argv[1:]] or [32, *COLUMNS])
+    sys.exit(main([int(a) for a in sys.argv[1:]] or [32, *COLUMNS]))
