@@ -1,9 +1,8 @@
 """What is wrong with the cells of a fingertip, told from a recording of a few seconds.
 
 Dead, stuck, saturated and noisy cells show themselves by their own values. Swapped cells show
-themselves while an object moves over them all: neighbours darken together, so a pair of cells that
-would go with each other's neighbours better than with their own looks swapped. That is evidence of
-wrong wiring or of another `layout.json`, no proof.
+themselves while an object moves over them all, however thin: see `lumitip.swaps`. That is evidence
+of wrong wiring or of another `layout.json`, and says how good it is.
 """
 
 from dataclasses import dataclass
@@ -12,10 +11,10 @@ from typing import Literal
 import numpy as np
 
 from lumitip.frame import Values
-from lumitip.grid import Floats, Integers
 from lumitip.layout import Layout
+from lumitip.swaps import LEAST_ORDER, Mask, enough_ways, order, swaps
 
-Kind = Literal["dark", "saturated", "stuck", "noisy", "swapped"]
+Kind = Literal["dark", "saturated", "stuck", "noisy", "swapped", "astray"]
 
 _DARK = 12.75  # a twentieth of full light
 _FULL = 254.0
@@ -24,21 +23,19 @@ _NOISE_RATIO = 5.0  # to the median cell
 _MOVED = 15.0  # standard deviation of a cell that an object passed
 _MOVED_SHARE = 0.8  # of the cells, for neighbours to be compared
 _CALM_SHARE = 0.5
-_SWAP_GAIN = 0.1
-"""Least gain of correlation for each neighbour. On the twin (20 s of a disc, a corner or a
-9 mm cable) a sound fingertip stays below 0.01, swaps of distant cells reach 0.3 to 0.8, of
-neighbours 0.05 to 0.3: about half of those are not seen. Under a cable thinner than two pitches
-that moves to and fro, neighbours differ and sound cells look swapped."""
 
 
 @dataclass(frozen=True)
 class Finding:
-    """Something wrong with one cell, or with a pair."""
+    """Something wrong with one cell, with a pair, or with all."""
 
     kind: Kind
     cells: tuple[int, ...]
+    """Their numbers; empty if it is all of them."""
     detail: str
     """For people: what was seen, what to look at."""
+    sure: bool = True
+    """Whether both halves of the recording say so; otherwise look again, for longer."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,8 +45,8 @@ class Report:
     findings: tuple[Finding, ...]
     noise: Values
     """Standard deviation from frame to frame of each cell, 255 is full light, shape `(cells,)`."""
-    moved: bool
-    """Whether enough moved for swapped cells to show."""
+    unseen: str | None
+    """Why swapped cells could not show, for people; `None` if they could."""
 
 
 def examine(light: Values, layout: Layout) -> Report:
@@ -70,11 +67,23 @@ def examine(light: Values, layout: Layout) -> Report:
     findings = _single(light, noise)
     suspect = {cell for finding in findings for cell in finding.cells}
     moving = light.std(axis=0) > _MOVED
-    moved = bool(moving.mean() >= _MOVED_SHARE)
-    if moved:
+    unseen = _unseen(moving, layout)
+    if unseen is None:
         usable = moving & ~np.isin(np.arange(len(layout)), list(suspect))
-        findings += _swapped(light, layout.neighbours, usable)
-    return Report(tuple(findings), noise, moved)
+        findings += _misplaced(light, layout, usable)
+    return Report(tuple(findings), noise, unseen)
+
+
+def _unseen(moving: Mask, layout: Layout) -> str | None:
+    if not enough_ways(layout):
+        return f"of {len(layout)} cells, too few lie alike for swapped ones to show"
+    share = float(moving.mean())
+    if share < _MOVED_SHARE:
+        return (
+            f"something moved over {share:.0%} of the cells, for swapped ones to show at least "
+            f"{_MOVED_SHARE:.0%} are needed: move an object over all of them, in all directions"
+        )
+    return None
 
 
 def _noise(light: Values) -> Values:
@@ -113,42 +122,23 @@ def _single(light: Values, noise: Values) -> list[Finding]:
     return findings
 
 
-def _swapped(
-    light: Values, neighbours: Integers, usable: np.ndarray[tuple[int], np.dtype[np.bool_]]
-) -> list[Finding]:
-    with np.errstate(invalid="ignore"):
-        alike: Floats = np.atleast_2d(np.nan_to_num(np.corrcoef(light.T.astype(np.float64))))
-    beside = np.zeros_like(alike)
-    beside[neighbours[:, 0], neighbours[:, 1]] = beside[neighbours[:, 1], neighbours[:, 0]] = 1.0
-    beside *= np.outer(usable, usable)
-    findings = []
-    place = np.arange(len(alike))
-    for _ in range(len(alike) // 2):
-        gain = _gains(alike[np.ix_(place, place)], beside)
-        i, j = (int(n) for n in np.unravel_index(int(gain.argmax()), gain.shape))
-        if gain[i, j] < _SWAP_GAIN:
-            break
-        place[[i, j]] = place[[j, i]]
-        beside[i] = beside[:, i] = beside[j] = beside[:, j] = 0.0
+def _misplaced(light: Values, layout: Layout, usable: Mask) -> list[Finding]:
+    ordered = order(light, layout, usable)
+    if ordered < LEAST_ORDER:
         told = (
-            "each goes with the other's neighbours: is the layout.json that of this board, is the "
-            "wiring as it says?"
+            f"pairs that lie alike do not darken alike (order {ordered:.2f}, usual is {LEAST_ORDER} or "
+            "more): is the layout.json that of this board, is the wiring as it says?"
         )
-        findings.append(Finding("swapped", (min(i, j), max(i, j)), told))
-    return findings
-
-
-def _gains(alike: Floats, beside: Floats) -> Floats:
-    """By how much swapping two cells would make neighbours alike, for each neighbour."""
-    with_other = alike @ beside  # [i, j]: how much i is like the neighbours of j
-    own = np.diag(with_other)
-    gain = with_other + with_other.T - own[:, None] - own[None, :]
-    # A neighbour is not its own neighbour once swapped.
-    gain -= 2.0 * beside * (1.0 - alike)
-    degree = beside.sum(axis=0)
-    both = degree[:, None] + degree[None, :]
-    shared: Floats = np.where(
-        (degree[:, None] > 0) & (degree[None, :] > 0), gain / np.maximum(both, 1.0), -1.0
-    )
-    np.fill_diagonal(shared, -1.0)
-    return shared
+        return [Finding("astray", (), told)]
+    return [
+        Finding(
+            "swapped", swap.cells,
+            f"each goes with the other's surroundings, in "
+            f"{'both halves' if swap.sure else 'a part'} of the recording "
+            f"(nearer by {swap.gain:.2f} of correlation): "
+            + ("is the layout.json that of this board, is the wiring as it says?" if swap.sure
+               else "look again, longer, and move in all directions"),
+            swap.sure,
+        )
+        for swap in swaps(light, layout, usable)
+    ]  # fmt: skip

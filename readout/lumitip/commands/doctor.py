@@ -18,9 +18,8 @@ def add(subparsers: Subparsers) -> None:
     """Say what the command takes."""
     told = "Find dead, saturated, noisy and swapped-looking cells."
     parser = subparsers.add_parser(
-        "doctor", help=told, description=f"{told} Move an object wider than two cells over all "
-        "cells meanwhile, in all directions: only then do swapped cells show. Exits 1 if something "
-        "is found."
+        "doctor", help=told, description=f"{told} Move an object over all cells meanwhile, "
+        "in all directions: only then do swapped cells show. Exits 1 if something is found."
     )  # fmt: skip
     add_fingertip(parser)
     parser.add_argument(
@@ -56,10 +55,12 @@ def run(options: argparse.Namespace) -> int:
           f"noise of {np.median(report.noise):.2f} of 255")  # fmt: skip
     if first.t_device is not None and first.t_device < WARM_UP_S:
         print(f"switched on {first.t_device:.0f} s ago: cells drift for the first five minutes")
-    if not report.moved:
-        print("too little moved over the cells for swapped ones to show")
+    if report.unseen:
+        print(report.unseen)
     for finding in report.findings:
-        print(f"cell {' and '.join(map(str, finding.cells))} {finding.kind}: {finding.detail}")
+        kind = finding.kind if finding.sure else f"perhaps {finding.kind}"
+        cells = " and ".join(map(str, finding.cells))
+        print(f"{f'cell {cells}' if cells else 'all cells'} {kind}: {finding.detail}")
     if not report.findings:
         print("nothing wrong was found")
     return UNWELL if report.findings else 0
