@@ -126,8 +126,9 @@ def _misplaced(light: Values, layout: Layout, usable: Mask) -> list[Finding]:
     ordered = order(light, layout, usable)
     if ordered < LEAST_ORDER:
         told = (
-            f"pairs that lie alike do not darken alike (order {ordered:.2f}, usual is {LEAST_ORDER} or "
-            "more): is the layout.json that of this board, is the wiring as it says?"
+            f"pairs that lie alike do not darken alike (order {ordered:.2f}, usual is "
+            f"{LEAST_ORDER} or more): is the layout.json that of this board, is the wiring as it "
+            "says?"
         )
         return [Finding("astray", (), told)]
     return [
