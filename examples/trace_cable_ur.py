@@ -1,0 +1,32 @@
+"""Follow a simulated cable in real time with a UR arm, which moves for real. Untried on an arm:
+read docs/robots.md first, keep a hand on the emergency stop and nothing near the arm.
+
+python examples/trace_cable_ur.py 192.168.0.10 40     address of the arm; speed in mm/s
+"""
+
+import sys
+
+from lumitip.control import LineLaw, Tracer
+from lumitip.estimation import PoseEstimator
+from lumitip.links.twin import published_layout
+from lumitip.robots import ArmLimits, Mount, URArm
+from lumitip.tasks import Settings, Task
+from lumitip.tasks.live import LiveTask
+
+host, speed = sys.argv[1], float(sys.argv[2])
+layout = published_layout()
+world = LiveTask(Task(layout, Settings("cable", latency=0, lag_s=0.0)), "twin://trace-cable", 1)
+estimator = PoseEstimator(layout, tracking=True)
+trace = Tracer(LineLaw(speed, gain_per_s=4.0, turn_per_s=4.0))
+estimator(world.first_values(), "cable")  # makes its tables before anything moves
+mount = Mount(x=(1, 0, 0), y=(0, 0, 1), origin_mm=(0, 0, 20))  # the sensor in the tool frame
+limits = ArmLimits(speed_mm_s=1.5 * speed, travel_mm=600.0, stale_s=0.3, watchdog_hz=5.0)
+with URArm(host, mount, limits) as arm, world.open() as tip:  # or Fingertip.open("ble://Lumitip")
+    for frame in tip.frames(timeout=2.0):
+        if frame is not tip.latest():
+            continue  # a newer one is here already
+        arm.move(trace(estimator(frame.values, "cable"), world.period_s), frame.t)
+        world.command(arm.measured())  # the cable slides through as the arm moves
+m = world.metrics()
+print(f"{m.reason} after {m.travelled_mm:.0f} mm in {m.seconds:.1f} s, arm: {arm.stopped}")
+print(f"lateral {m.lateral_rms_mm:.2f} mm rms, angle {m.angle_rms_deg:.1f}° rms (simulated)")

@@ -1,0 +1,61 @@
+"""`ArmLimits`: how fast, how hard and how far an arm may go with a fingertip."""
+
+from dataclasses import dataclass, fields
+
+from lumitip.robots.errors import ArmError
+
+_ALLOWED: dict[str, tuple[float, float, str]] = {
+    "speed_mm_s": (0.0, 250.0, "the reduced speed of ISO 10218-1"),
+    "rotation_rad_s": (0.0, 2.0, "a third of a turn in a second"),
+    "acceleration_mm_s2": (50.0, 2000.0, "slower than 50 no stop is short"),
+    "force_n": (0.0, 100.0, "below the 140 N that ISO/TS 15066 allows on a hand"),
+    "travel_mm": (0.0, 1000.0, "the reach of the smaller arms"),
+    "turn_deg": (0.0, 170.0, "the finger's cable winds up"),
+    "stale_s": (0.0, 0.5, "what is older says nothing about now"),
+    "watchdog_hz": (2.0, 50.0, "the controller waits for one period of it"),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class ArmLimits:
+    """Limits of an arm with a fingertip; absurd ones are refused.
+
+    They slow an arm down and stop it, and replace none of its own safety functions: set those of
+    the controller as narrow as the task allows.
+    """
+
+    speed_mm_s: float = 100.0
+    """Of the fingertip and of the tool centre point; faster commands are slowed down (mm/s)."""
+    rotation_rad_s: float = 1.0
+    """Rotation; faster commands are slowed down (rad/s)."""
+    acceleration_mm_s2: float = 500.0
+    """Speeding up and braking (mm/s²)."""
+    force_n: float = 30.0
+    """Largest change of the force on the tool since the arm was opened (N)."""
+    travel_mm: float = 300.0
+    """How far the fingertip may go from where it began (mm)."""
+    turn_deg: float = 120.0
+    """How far the fingertip may turn from where it began (°)."""
+    stale_s: float = 0.1
+    """Oldest frame that may move the arm (s)."""
+    watchdog_hz: float = 10.0
+    """The controller stops the arm by itself when commands come more seldom than this (Hz)."""
+
+    def __post_init__(self) -> None:
+        faults = []
+        for field in fields(self):
+            least, most, why = _ALLOWED[field.name]
+            given = getattr(self, field.name)
+            if not (least < given <= most or given == least > 0.0):
+                told = f"above 0 up to {most:g}" if least == 0.0 else f"{least:g} to {most:g}"
+                faults.append(f"{field.name}: {given!r} given, allowed is {told} ({why})")
+        if faults:
+            raise ArmError("; ".join(faults))
+
+    def share(self, speed_mm_s: float, rotation_rad_s: float) -> float:
+        """By how much to slow down, 1 for not at all, so that both are within the limits."""
+        return min(
+            1.0,
+            self.speed_mm_s / max(speed_mm_s, 1e-9),
+            self.rotation_rad_s / max(rotation_rad_s, 1e-9),
+        )

@@ -1,0 +1,103 @@
+"""`Mount`: where the fingertip sits on the tool, and velocities from frame to frame.
+
+Three frames: the sensor frame of the receiving finger (mm; x to the right, y towards the tip, z out
+of its face), the tool frame of the arm (its tool centre point, as set on the controller) and the
+arm's base. Poses and twists of an arm are in m and rad: `(x, y, z, rx, ry, rz)`, where a pose turns
+by the vector's length about its direction, and a twist moves the tool centre point.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from lumitip.control import Command
+from lumitip.grid import Floats
+from lumitip.robots.errors import ArmError
+
+Vector = tuple[float, float, float]
+_TOLERANCE = 1e-3
+
+
+@dataclass(frozen=True, slots=True)
+class Mount:
+    """The sensor frame, told in the tool frame of the arm.
+
+    A gripper on a UR arm points along the tool's z. With the fingers opening along the tool's y, a
+    receiver on the side of +y looks along -y: `Mount(x=(1, 0, 0), y=(0, 0, 1))`.
+    """
+
+    x: Vector
+    """Direction of the sensor's x, which the tracer calls forward."""
+    y: Vector
+    """Direction of the sensor's y, towards the fingertip's end."""
+    origin_mm: Vector = (0.0, 0.0, 0.0)
+    """The middle of the sensor's cells, from the tool centre point."""
+
+    def __post_init__(self) -> None:
+        told = np.array([self.x, self.y, self.origin_mm], float)
+        if told.shape != (3, 3) or not np.isfinite(told).all():
+            raise ArmError(f"{self} given: x, y and origin_mm are three numbers each")
+        off = max(abs(math.hypot(*self.x) - 1), abs(math.hypot(*self.y) - 1))
+        if max(off, abs(float(told[0] @ told[1]))) > _TOLERANCE:
+            raise ArmError(
+                f"x {self.x} and y {self.y} given: both must be of length 1 and square to each "
+                "other, as the edges of a box are"
+            )
+
+    @property
+    def rotation(self) -> Floats:
+        """Columns are the sensor's x, y and z in the tool frame, shape `(3, 3)`."""
+        x = np.array(self.x, float)
+        x /= np.linalg.norm(x)
+        y = np.array(self.y, float)
+        y -= x * (x @ y)
+        y /= np.linalg.norm(y)
+        return np.column_stack([x, y, np.cross(x, y)])
+
+    def tool_twist(self, command: Command) -> Floats:
+        """Twist of the tool centre point, in the tool frame, that moves the fingertip so; `(6,)`.
+
+        A turn of the fingertip about itself moves a tool centre point that is somewhere else.
+        """
+        axes = self.rotation
+        turn = axes[:, 2] * command.rotation_rad_s
+        velocity = axes @ (command.forward_mm_s, command.lateral_mm_s, 0.0) / 1000.0
+        arm_m = np.array(self.origin_mm) / 1000.0
+        return np.concatenate([velocity - np.cross(turn, arm_m), turn])
+
+    def command(self, twist: Floats) -> Command:
+        """What the fingertip does at a twist of the tool centre point in the tool frame: what
+        remains of it in the plane of the sensor."""
+        velocity, turn = twist[:3], twist[3:]
+        moved = velocity + np.cross(turn, np.array(self.origin_mm) / 1000.0)
+        forward, lateral, _ = self.rotation.T @ moved * 1000.0
+        return Command(float(forward), float(lateral), float(self.rotation[:, 2] @ turn))
+
+    def origin_in_base_mm(self, pose: Floats) -> Floats:
+        """The middle of the cells in the arm's base at a pose of the tool centre point, `(3,)`."""
+        origin_mm: Floats = pose[:3] * 1000.0 + rotation_of(pose) @ np.array(self.origin_mm)
+        return origin_mm
+
+
+def in_base(pose: Floats, twist: Floats) -> Floats:
+    """A twist in the tool frame, told in the base: the same motion, other directions; `(6,)`."""
+    axes = rotation_of(pose)
+    return np.concatenate([axes @ twist[:3], axes @ twist[3:]])
+
+
+def in_tool(pose: Floats, twist: Floats) -> Floats:
+    """A twist in the base, told in the tool frame; `(6,)`."""
+    axes = rotation_of(pose).T
+    return np.concatenate([axes @ twist[:3], axes @ twist[3:]])
+
+
+def rotation_of(pose: Floats) -> Floats:
+    """Columns are the tool's axes in the base, shape `(3, 3)`: Rodrigues' formula."""
+    angle = float(np.linalg.norm(pose[3:]))
+    if angle < 1e-12:
+        return np.eye(3)
+    x, y, z = pose[3:] / angle
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    turned: Floats = np.eye(3) + math.sin(angle) * cross + (1.0 - math.cos(angle)) * cross @ cross
+    return turned

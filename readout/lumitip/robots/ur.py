@@ -1,0 +1,246 @@
+"""`URArm`: a Universal Robots arm through RTDE, with ur_rtde (extra `[ur]`).
+
+A thread of its own sends what holds at `RATE_HZ`, looks at the arm before each and stops it for any
+reason of `WHY`. A stop is final: opening anew is for whoever has looked at the arm.
+
+ur_rtde's script repeats the last speed for ever, whatever time it was given for, and ur_rtde makes
+a cut connection again by itself. Hence the watchdog of the controller, which stops the program when
+no register is written any more, and hence an arm that was silent once is not moved again.
+"""
+
+import logging
+import math
+import socket
+import threading
+import time
+from types import TracebackType
+from typing import Any
+
+import numpy as np
+
+from lumitip.control import Command
+from lumitip.errors import MissingExtra
+from lumitip.grid import Floats
+from lumitip.robots.errors import ArmError, ArmStopped
+from lumitip.robots.guard import ArmState, Guard
+from lumitip.robots.limits import ArmLimits
+from lumitip.robots.mount import Mount, in_base, in_tool
+
+RATE_HZ = 125.0
+"""Commands and states a second."""
+_PORT = 30004
+_PLAYING = 2  # of RTDE's runtime_state; ur_rtde does not hand its names to Python
+_VARIABLES = [
+    "timestamp", "actual_TCP_pose", "actual_TCP_speed", "actual_TCP_force", "runtime_state",
+    "safety_status_bits",
+]  # fmt: skip
+_STANDS = 1e-3  # m/s or rad/s
+_REFUSAL_STATES = 10
+_BRAKING_MORE_S = 0.5
+_ENDING_S = 10.0  # braking takes 5 s where the limits are extreme
+_log = logging.getLogger(__name__)
+
+
+class URArm:
+    """An open arm, which stands still until its first command. From any thread."""
+
+    def __init__(
+        self, host: str, mount: Mount, limits: ArmLimits | None = None, timeout: float = 5.0
+    ) -> None:
+        """Connect, hand the controller its script and set the watchdog; nothing moves yet.
+
+        The arm must be on, in remote control and free to move, its payload and tool centre point
+        set. ur_rtde lets no other Python thread run while it connects: open the arm first, then
+        the fingertip.
+
+        Args:
+            host: address of the controller.
+            mount: where the fingertip sits on the tool.
+            limits: how fast, how hard, how far.
+            timeout: how long finding the controller may take (s).
+
+        Raises:
+            MissingExtra: if ur_rtde is not installed.
+            ArmError: if the controller does not answer or does not run the script.
+        """
+        self.host, self.mount, self.limits = host, mount, limits or ArmLimits()
+        self._control, self._receive = _connected(host, timeout)
+        self._asked: tuple[Command, float] | None = None
+        self._stop: ArmStopped | None = None
+        self._closing = threading.Event()
+        try:
+            if not self._control.setWatchdog(self.limits.watchdog_hz):
+                raise ArmError(f"{host}: the controller does not take a watchdog, so nothing moves")
+            self._guard = Guard(self.limits, mount, self._state(), time.monotonic())
+        except BaseException:
+            self._leave()
+            raise
+        # No daemon: a program that ends for whatever reason waits until the arm stands.
+        self._thread = threading.Thread(target=self._run, name="lumitip-ur")
+        self._thread.start()
+
+    @property
+    def stopped(self) -> str:
+        """Why the arm was stopped, a key of `WHY`; empty while it takes commands."""
+        return self._stop.reason if self._stop else ""
+
+    def move(self, command: Command, seen_s: float) -> None:
+        """What holds until the next command, or until the frame is too old. Does not wait, except
+        for a command to stop: then until the arm stands.
+
+        Args:
+            command: of the tracer. Too fast ones are slowed down as a whole.
+            seen_s: when the frame was read that it follows from, `Frame.t` (s).
+
+        Raises:
+            ArmStopped: if the arm was stopped before: why.
+            ArmError: if a velocity or the time is no number; leave the `with` block then.
+        """
+        if self._stop:
+            raise self._stop.with_traceback(None)
+        asked = (command.forward_mm_s, command.lateral_mm_s, command.rotation_rad_s, seen_s)
+        if not all(math.isfinite(value) for value in asked):
+            raise ArmError(f"{command}, seen at {seen_s} given: all must be numbers")
+        # A frame that claims to be of later would move the arm without any frame until then.
+        self._asked = (command, min(seen_s, time.monotonic()))
+        if command.state == "stop":
+            self._thread.join()
+
+    def measured(self) -> Command:
+        """How the fingertip moves now, as the arm's controller tells it."""
+        state = self._state()
+        return self.mount.command(in_tool(state.pose, state.twist))
+
+    def close(self) -> None:
+        """Stop the arm, wait until it stands, and disconnect. Any number of times."""
+        self._closing.set()
+        self._thread.join()
+
+    def _run(self) -> None:
+        try:
+            reason, detail = self._drive()
+        except Exception as problem:  # noqa: BLE001 - whatever goes wrong must stop the arm
+            reason, detail = "error", str(problem)
+        self._stop = ArmStopped(reason, detail)
+        _log.log(logging.INFO if reason == "closed" else logging.WARNING, "%s", self._stop)
+        # Cut off from the arm, ur_rtde may wait for it for ever: then it is left behind.
+        ending = threading.Thread(target=self._end, args=(reason,), name="lumitip-ur-end")
+        ending.daemon = True
+        ending.start()
+        ending.join(_ENDING_S)
+        if ending.is_alive():
+            _log.warning("%s: no answer while stopping, the controller's watchdog does", self.host)
+
+    def _drive(self) -> tuple[str, str]:
+        """Send what holds until there is a reason to stop: that, and its figures."""
+        due_s = time.monotonic()
+        while not self._closing.wait(max(0.0, due_s - time.monotonic())):
+            if not threading.main_thread().is_alive():
+                break
+            state, asked, now_s = self._state(), self._asked, time.monotonic()
+            reason, detail = self._guard.reason(state, now_s, asked[1] if asked else None)
+            if reason:
+                return reason, detail
+            if asked and asked[0].state == "stop":
+                return asked[0].reason or "closed", ""
+            if not self._sent(asked[0] if asked else None, state):
+                return self._refusal()
+            due_s = max(due_s + 1.0 / RATE_HZ, now_s)
+        return "closed", ""
+
+    def _refusal(self) -> tuple[str, str]:
+        """Why the controller took no command: its state tells, a little later."""
+        for _ in range(_REFUSAL_STATES):
+            reason, detail = self._guard.reason(self._state(), time.monotonic(), None)
+            if reason:
+                return reason, detail
+            time.sleep(1.0 / RATE_HZ)
+        return "error", "the controller took no command"
+
+    def _sent(self, command: Command | None, state: ArmState) -> bool:
+        if command is None:
+            return bool(self._control.kickWatchdog())
+        twist = self.mount.tool_twist(command)
+        fingertip_mm_s = math.hypot(command.forward_mm_s, command.lateral_mm_s)
+        tool_mm_s = float(np.linalg.norm(twist[:3])) * 1000.0
+        twist *= self.limits.share(max(fingertip_mm_s, tool_mm_s), abs(command.rotation_rad_s))
+        return self._told(in_base(state.pose, twist))
+
+    def _told(self, twist: Floats) -> bool:
+        """Whether the controller took a twist in the base."""
+        speed = twist.tolist()
+        return bool(self._control.speedL(speed, self._acceleration_m_s2, 1.0 / RATE_HZ))
+
+    @property
+    def _acceleration_m_s2(self) -> float:
+        return self.limits.acceleration_mm_s2 / 1000.0
+
+    def _end(self, reason: str) -> None:
+        """Brake, end the script and leave; each is tried whatever became of the others."""
+        if reason != "connection":
+            _tried(self._brake)
+            _tried(self._control.speedStop, self._acceleration_m_s2)
+            _tried(self._control.stopScript)
+        elif self._control.isConnected():
+            # What waits for an answer would wait for minutes; the watchdog does the rest.
+            _tried(self._told, np.zeros(6))
+        self._leave()
+
+    def _brake(self) -> None:
+        """Tell it to stand until it does: `speedStop` alone would let the watchdog bite."""
+        speed_m_s = float(np.linalg.norm(self._state().twist[:3]))
+        until_s = time.monotonic() + speed_m_s / self._acceleration_m_s2 + _BRAKING_MORE_S
+        while time.monotonic() < until_s and self._told(np.zeros(6)):
+            if float(np.abs(self._state().twist).max()) < _STANDS:
+                return
+            time.sleep(1.0 / RATE_HZ)
+
+    def _leave(self) -> None:
+        _tried(self._control.disconnect)
+        _tried(self._receive.disconnect)
+
+    def _state(self) -> ArmState:
+        arm = self._receive
+        return ArmState(
+            time_s=arm.getTimestamp(),
+            pose=np.array(arm.getActualTCPPose()),
+            twist=np.array(arm.getActualTCPSpeed()),
+            force_n=np.array(arm.getActualTCPForce()[:3]),
+            connected=arm.isConnected(),
+            runs=arm.getRuntimeState() == _PLAYING,
+            protective=arm.isProtectiveStopped(),
+            emergency=arm.isEmergencyStopped(),
+        )
+
+    def __enter__(self) -> "URArm":
+        return self
+
+    def __exit__(
+        self, _: type[BaseException] | None, __: BaseException | None, ___: TracebackType | None
+    ) -> None:
+        self.close()
+
+
+def _connected(host: str, timeout_s: float) -> tuple[Any, Any]:
+    """Control and state of an arm; first a plain connection, since ur_rtde's cannot time out."""
+    try:
+        from rtde_control import RTDEControlInterface
+        from rtde_receive import RTDEReceiveInterface
+    except ImportError:
+        raise MissingExtra("ur", "a UR arm") from None
+    try:
+        socket.create_connection((host, _PORT), timeout_s).close()
+        receive = RTDEReceiveInterface(host, RATE_HZ, _VARIABLES)
+        return RTDEControlInterface(host, RATE_HZ), receive
+    except (OSError, RuntimeError) as problem:
+        raise ArmError(
+            f"{host} given, no arm there takes commands at port {_PORT} ({problem}): switch it on, "
+            "unlock the brakes, enable remote control and check the address"
+        ) from None
+
+
+def _tried(call: Any, *arguments: Any) -> None:
+    try:
+        call(*arguments)
+    except Exception as problem:  # noqa: BLE001 - what follows must be tried all the same
+        _log.warning("while stopping the arm: %s", problem)
