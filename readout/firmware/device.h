@@ -6,6 +6,7 @@
 //   mtu() -> ATT MTU in force, 0 while nobody is connected
 //   subscribed() -> whether the connected computer asked for packets
 //   notify(data, size), status(data, size), legacy(data, size) -> whether Bluetooth took them
+//   light(on): switches the emitter, which a design with EMITTER_PIN can
 //   serialOpen() -> whether somebody listens; serialWrite(data, size) -> bytes taken at once
 #pragma once
 
@@ -64,7 +65,7 @@ class Device {
 
  private:
   void takeFrame(uint32_t now) {
-    scanner_.scan(codes_);
+    scan();
     uint8_t bytes[CELLS];
     for (uint16_t cell = 0; cell < CELLS; ++cell) {
       bytes[cell] = static_cast<uint8_t>(codes_[cell] >> (ADC_BITS - 8));
@@ -83,6 +84,18 @@ class Device {
     if (writer_.frames() >= batch()) {
       send();
     }
+  }
+
+  // With an emitter that can be switched, twice, to take the ambient light off.
+  void scan() {
+    if (EMITTER_PIN < 0) {
+      scanner_.scan(codes_);
+      return;
+    }
+    scanner_.scan(codes_, [this](bool on) {
+      board_.light(on);
+      board_.waitUs(EMITTER_US);
+    });
   }
 
   bool onTime(uint32_t now) const {

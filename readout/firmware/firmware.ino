@@ -15,5 +15,5 @@ void setup() {
 void loop() {
   nano.poll();
   device.poll();
-  nano.light(device.faults());
+  nano.tell(device.faults());
 }

@@ -22,6 +22,10 @@ class Nano33Ble {
       pinMode(SELECT_PINS[line], OUTPUT);
     }
     pinMode(LED_BUILTIN, OUTPUT);
+    if (EMITTER_PIN >= 0) {
+      pinMode(EMITTER_PIN, OUTPUT);
+      light(true);
+    }
     analogReadResolution(ADC_BITS);
     Serial.begin(115200);  // over USB: the rate means nothing
     beginBluetooth();
@@ -37,7 +41,8 @@ class Nano33Ble {
     }
   }
 
-  void light(uint16_t faults) {
+  // The light on the board, for people.
+  void tell(uint16_t faults) {
     Flashes flashes = LISTENED_TO;
     if (!bluetooth_) {
       flashes = NO_BLUETOOTH;
@@ -51,6 +56,7 @@ class Nano33Ble {
 
   void select(uint8_t line, bool high) { digitalWrite(SELECT_PINS[line], high ? HIGH : LOW); }
   uint16_t read(uint16_t mux) { return static_cast<uint16_t>(analogRead(ADC_PINS[mux])); }
+  void light(bool on) { digitalWrite(EMITTER_PIN, on ? HIGH : LOW); }
   void waitUs(uint32_t us) { delayMicroseconds(us); }
   uint32_t microseconds() { return micros(); }
 
@@ -78,7 +84,8 @@ class Nano33Ble {
     return fits && write(legacy_, data, size);
   }
 
-  bool serialOpen() { return static_cast<bool>(Serial); }
+  // Not `if (Serial)`, which waits a millisecond on this board to let other threads run.
+  bool serialOpen() { return Serial.connected(); }
 
   size_t serialWrite(const uint8_t* data, size_t size) {
     uint32_t taken = 0;  // write() would wait for a computer that does not read
@@ -101,6 +108,9 @@ class Nano33Ble {
     BLE.setLocalName(LUMITIP_DEVICE_NAME);
     BLE.setDeviceName(LUMITIP_DEVICE_NAME);
     BLE.setConnectionInterval(6, 12);  // in steps of 1.25 ms: 7.5 to 15 ms
+    // In steps of 10 ms: until a computer that vanished counts as gone, the radio takes packets for
+    // it and then blocks. Some ask for longer than the watchdog waits.
+    BLE.setSupervisionTimeout(100);
     service_.addCharacteristic(frames_);
     service_.addCharacteristic(status_);
     BLE.addService(service_);

@@ -21,6 +21,12 @@
 #ifndef LUMITIP_WATCHDOG_S
 #define LUMITIP_WATCHDOG_S 10  // longer than a lost connection blocks the radio; 0: none
 #endif
+#ifndef LUMITIP_EMITTER_PIN
+#define LUMITIP_EMITTER_PIN -1  // switches the emitter's supply, high is on; -1: it is always on
+#endif
+#ifndef LUMITIP_EMITTER_US
+#define LUMITIP_EMITTER_US 200  // from switching the emitter until its light is steady
+#endif
 
 namespace lumitip {
 
@@ -29,7 +35,9 @@ constexpr uint16_t PERIOD_US = LUMITIP_PERIOD_US;
 constexpr uint32_t LATENCY_US = LUMITIP_LATENCY_US;
 constexpr uint8_t SAMPLES = LUMITIP_SAMPLES;
 constexpr uint8_t SETTLE_FACTOR = LUMITIP_SETTLE_FACTOR;
-constexpr uint8_t FIRMWARE_VERSION[3] = {1, 0, 0};
+constexpr int EMITTER_PIN = LUMITIP_EMITTER_PIN;
+constexpr uint32_t EMITTER_US = LUMITIP_EMITTER_US;
+constexpr uint8_t FIRMWARE_VERSION[3] = {1, 1, 0};
 
 static_assert(LUMITIP_PERIOD_US >= 100 && LUMITIP_PERIOD_US <= 65535, "PERIOD_US: 100 to 65535");
 static_assert(LUMITIP_SAMPLES >= 1 && LUMITIP_SAMPLES <= 64, "SAMPLES: 1 to 64");

@@ -75,6 +75,7 @@ def test_what_is_served_and_asked_for(seen: Seen) -> None:
     ]
     assert seen.of("setup", "name") == [["Lumitip"]]
     assert seen.of("setup", "interval") == [["6", "12"]]  # 7.5 to 15 ms
+    assert seen.of("setup", "timeout") == [["100"]]  # 1 s, well below that of the watchdog
     assert seen.of("setup", "resolution") == [["12"]]
     assert sorted(seen.of("setup", "pin")) == [["13", "1"], ["6", "1"], ["7", "1"], ["8", "1"]]
 
@@ -118,6 +119,20 @@ def test_serial_works_where_bluetooth_does_not_start(played: Callable[..., Seen]
     decoder = StreamDecoder(32)
     assert len(decoder.feed(b"".join(seen.sent("serial", "serial")))) >= 2048 // 5
     assert flashes(seen, "alone") == flashes(seen, "serial") == 3
+
+
+def test_an_emitter_that_is_switched_takes_ambient_light_off(
+    host_program: Callable[..., Path], run: Callable[..., Any], sketch: Callable[[str], Path]
+) -> None:
+    done = run(str(host_program("sketch", "published", STUBS, "-DLUMITIP_EMITTER_PIN=9")))
+    assert done.returncode == 0, done.stderr
+    seen = Seen(done.stdout)
+    assert ["9", "1"] in seen.of("setup", "pin")
+    layout = Layout.load(sketch("published").parent / "layout.json")
+    wanted = np.maximum((layout.mux * 977 + layout.channel * 131) % 4096, 300) >> 4
+    packets = [decode(data, 32) for data in seen.sent("mtu_247", uuids.FRAMES)]
+    assert len(packets) > 2048 // 6
+    assert all(np.array_equal(values, wanted) for p in packets for values in p.values)
 
 
 def test_the_light_tells_the_state(seen: Seen) -> None:

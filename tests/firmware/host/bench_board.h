@@ -27,6 +27,7 @@ class BenchBoard {
     ++selects;
   }
 
+  void light(bool) {}
   void waitUs(uint32_t time) { us += time; }
 
   uint16_t read(uint16_t mux) {

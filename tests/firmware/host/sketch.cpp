@@ -42,8 +42,8 @@ static void print(const std::string& what, const uint8_t* data, size_t size) {
   printf("\n");
 }
 
-void pinMode(int pin, int mode) { printf("pin %d %d\n", pin, mode); }
-void digitalWrite(int pin, int level) {
+void pinMode(pin_size_t pin, PinMode mode) { printf("pin %d %d\n", pin, mode); }
+void digitalWrite(pin_size_t pin, PinStatus level) {
   if (pin == LED_BUILTIN && level != world.level[pin]) {
     world.rises += level;
     world.onUs += level == HIGH ? 0 : world.us - world.litUs;
@@ -51,14 +51,21 @@ void digitalWrite(int pin, int level) {
   }
   world.level[pin] = level;
 }
-int analogRead(int pin) {
+int analogRead(pin_size_t pin) {
   static const int lines[] = {LUMITIP_SELECT_PINS};
   int channel = 0;
   for (int line = 0; line < lumitip::SELECT_LINES; ++line) {
     channel |= world.level[lines[line]] << line;
   }
   world.us += 15;
-  return ((pin - A0) * 977 + channel * 131) & 4095;
+  const int code = ((pin - A0) * 977 + channel * 131) & 4095;
+  if (lumitip::EMITTER_PIN < 0) {
+    return code;
+  }
+  // Room light takes 200 off, of codes that the emitter leaves above it.
+  const bool lit = world.level[lumitip::EMITTER_PIN] == HIGH;
+  const int floor = code > 300 ? code : 300;
+  return (lit ? floor : 4095) - 200;
 }
 void analogReadResolution(int bits) { printf("resolution %d\n", bits); }
 unsigned long micros() { return world.us; }
@@ -66,7 +73,7 @@ unsigned long millis() { return world.us / 1000; }
 void delayMicroseconds(unsigned int us) { world.us += us; }
 
 void USBSerial::begin(unsigned long) {}
-USBSerial::operator bool() { return world.serialOpen; }
+bool USBSerial::connected() { return world.serialOpen; }
 void USBSerial::send_nb(uint8_t* buffer, uint32_t size, uint32_t* actual, bool) {
   *actual = size < 64 ? size : 64;
   print("serial", buffer, *actual);
@@ -104,6 +111,7 @@ void BLELocalDevice::setDeviceName(const char*) {}
 void BLELocalDevice::setConnectionInterval(uint16_t least, uint16_t most) {
   printf("interval %u %u\n", least, most);
 }
+void BLELocalDevice::setSupervisionTimeout(uint16_t timeout) { printf("timeout %u\n", timeout); }
 void BLELocalDevice::setAdvertisedService(const BLEService&) {}
 void BLELocalDevice::addService(BLEService&) {}
 int BLELocalDevice::advertise() { return 1; }

@@ -29,6 +29,7 @@ class BLELocalDevice {
   virtual void setLocalName(const char* localName);
   virtual void setDeviceName(const char* deviceName);
   virtual void setConnectionInterval(uint16_t minimum, uint16_t maximum);
+  virtual void setSupervisionTimeout(uint16_t timeout);
   virtual void setAdvertisedService(const BLEService& service);
   virtual void addService(BLEService& service);
   virtual int advertise();
