@@ -66,6 +66,20 @@ def _parser() -> argparse.ArgumentParser:
     sub = command("watch", "Build FILE into DIR whenever it is saved, and say what changed.")
     with_file(sub)
     with_out(sub)
+    told = "Judge designs before any is built: accuracy, cells, cost and LED current, simulated."
+    sub = command("explore", told, "quiet", "json")
+    with_file(sub)
+    with_out(sub)
+    told = "A:B, A:B:STEP, A,B,C or a TOML list [A, B]; give it again for further fields"
+    sub.add_argument("--vary", action="append", required=True, metavar="FIELD=SPEC", help=told)
+    told = "values of a range A:B (6)"
+    sub.add_argument("--points", type=int, default=6, metavar="N", help=told)
+    told = "count columns and rows anew for each pitch, so that the grid keeps its size"
+    sub.add_argument("--keep-size", action="store_true", help=told)
+    told = "of the poses and faults that are drawn for every design (0)"
+    sub.add_argument("--seed", type=int, default=0, metavar="N", help=told)
+    told = "evaluate on this Dask cluster (tcp://…) instead of on all cores of this machine"
+    sub.add_argument("--scheduler", metavar="ADDRESS", help=told)
     sub = command("schema", "Print the JSON Schema of parameter files, for editors.")
     return parser
 

@@ -124,6 +124,33 @@ def _watch(options: argparse.Namespace) -> int:
     return 0
 
 
+def _explore(options: argparse.Namespace) -> int:
+    from lumitip_fab.explore import report
+    from lumitip_fab.explore.accuracy import Sample
+    from lumitip_fab.explore.run import explore
+
+    columns = (TextColumn("designs"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    silent = options.quiet or options.json
+    with Progress(*columns, console=ERR, disable=silent, transient=True) as bar:
+        shown = bar.add_task("designs", total=None)
+
+        def progress(done: int, total: int) -> None:
+            bar.update(shown, completed=done, total=total)
+
+        study = explore(
+            options.file, options.vary, options.out, options.points, options.keep_size,
+            Sample(seed=options.seed), options.scheduler, progress,
+        )  # fmt: skip
+    written = report.write(study, options.out)
+    if options.json:
+        print((options.out / "designs.json").read_text(encoding="utf-8"), end="")
+    elif not options.quiet:
+        report.print_table(study, OUT)
+        OUT.print(f"{study.evaluated} of {len(study.designs)} designs evaluated now, the others "
+                  "were known; wrote " + ", ".join(map(str, written)), soft_wrap=True)  # fmt: skip
+    return 0
+
+
 def _channel_map(options: argparse.Namespace) -> int:
     from lumitip_fab.checks.channel_map import read_channels
 
@@ -153,5 +180,6 @@ COMMANDS = {
     "spec": _spec,
     "channel-map": _channel_map,
     "watch": _watch,
+    "explore": _explore,
     "schema": _schema,
 }

@@ -23,6 +23,8 @@ def code_hash(*parts: str) -> str:
     roots += [Path(lumitip.__file__).parent / name for name in LAYOUT]
     if "firmware" in parts:
         roots += [Path(lumitip.__file__).parent / "protocol", *firmware_sources()]
+    if "explore" in parts:
+        roots += [Path(lumitip.__file__).parent / name for name in ("twin", "estimation")]
     return _hash(f for r in roots for f in (sorted(r.rglob("*.py")) if r.is_dir() else [r]))
 
 

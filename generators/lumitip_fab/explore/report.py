@@ -1,0 +1,140 @@
+"""A study as a table, with its front: the designs that no other one is better than in every way."""
+
+import csv
+import io
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+
+from lumitip_fab.explore.plot import plot
+from lumitip_fab.explore.run import Found, Study
+from lumitip_fab.manifest import write_file
+
+OBJECTIVES = {"error_mm": 1, "cells": 1, "cost": 1, "current_ma": 1, "grid_cm2": -1}
+"""What counts, and whether less (1) or more (-1) of it is better: a small grid is no merit."""
+_UNITS = {"cost": "cost_{currency}"}
+
+
+def front(designs: Sequence[Found]) -> set[int]:
+    """Numbers of the designs of which no other is as good in all and better in one."""
+    rated = {
+        number: tuple(sign * found.figures[name] for name, sign in OBJECTIVES.items())
+        for number, found in enumerate(designs)
+        if found.figures
+    }
+    return {
+        number
+        for number, own in rated.items()
+        if not any(
+            other != own and all(o <= m for o, m in zip(other, own, strict=True))
+            for other in rated.values()
+        )
+    }
+
+
+def write(study: Study, folder: Path) -> list[Path]:
+    """Write `designs.csv`, `designs.json`, and the front as `pareto.svg` and `pareto.png`.
+
+    Returns:
+        What was written.
+    """
+    best = front(study.designs)
+    told = [_row(study, n, n in best) for n in range(len(study.designs))]
+    files = {"designs.csv": _csv(told), "designs.json": _json(study, told)}
+    files |= plot(study, best)
+    for name, data in files.items():
+        write_file(folder / name, data)
+    return [folder / name for name in files]
+
+
+def print_table(study: Study, console: Console) -> None:
+    """Print the front, and what was refused."""
+    best = sorted(front(study.designs))
+    names = [axis.field for axis in study.axes]
+    table = Table(title="designs that no other one is better than in every way, simulated")
+    for heading in (*names, "error mm", "error °", "gross %", "bound mm", "cells", "grid cm²",
+                    f"cost {study.currency}", "LEDs mA"):  # fmt: skip
+        table.add_column(heading, justify="right")
+    for number in best:
+        found = study.designs[number]
+        f = found.figures
+        table.add_row(
+            *(_shown(value) for _, value in found.changes), f"{f['error_mm']:.3f}",
+            f"{f['error_deg']:.2f}", f"{f['gross_percent']:.1f}", f"{f['bound_mm']:.3f}",
+            f"{f['cells']:.0f}", f"{f['grid_cm2']:.1f}", f"{f['cost']:.2f}",
+            f"{f['current_ma']:.1f}",
+        )  # fmt: skip
+    console.print(table)
+    _print_refused(study, console)
+
+
+def _print_refused(study: Study, console: Console) -> None:
+    """Each reason once, with the first design that it holds for; the tables have every design."""
+    by_reason: dict[str, list[Found]] = {}
+    for found in study.designs:
+        for reason in found.refused:
+            by_reason.setdefault(reason, []).append(found)
+    if by_reason:
+        count = sum(bool(found.refused) for found in study.designs)
+        console.print(f"{count} of {len(study.designs)} designs are refused:")
+    for reason, those in by_reason.items():
+        told = ", ".join(f"{field} = {_shown(value)}" for field, value in those[0].changes)
+        others = f" and {len(those) - 1} more" if len(those) > 1 else ""
+        console.print(f"  {told}{others}: {reason}", soft_wrap=True)
+
+
+def _row(study: Study, number: int, best: bool) -> dict[str, Any]:
+    found = study.designs[number]
+    return {
+        **{field: _plain(value) for field, value in found.changes},
+        "columns": list(found.columns),
+        **{_UNITS.get(n, n).format(currency=study.currency): v for n, v in found.figures.items()},
+        "pareto": best,
+        "refused": list(found.refused),
+    }
+
+
+def _csv(rows: Sequence[dict[str, Any]]) -> bytes:
+    names = list(dict.fromkeys(name for row in rows for name in row if name != "refused"))
+    text = io.StringIO()
+    table = csv.DictWriter(text, [*names, "refused"], lineterminator="\n", restval="")
+    table.writeheader()
+    for row in rows:
+        table.writerow({name: _cell(value) for name, value in row.items()})
+    return text.getvalue().encode()
+
+
+def _json(study: Study, rows: Sequence[dict[str, Any]]) -> bytes:
+    told = {
+        "varied": {axis.field: [_plain(v) for v in axis.values] for axis in study.axes},
+        "objectives": {n: "least" if s > 0 else "most" for n, s in OBJECTIVES.items()},
+        "currency": study.currency,
+        "designs": list(rows),
+    }
+    return (json.dumps(told, indent=1, ensure_ascii=False) + "\n").encode()
+
+
+def _cell(value: Any) -> Any:
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, list):
+        return (
+            " | ".join(map(str, value))
+            if value and isinstance(value[0], str)
+            else " ".join(map(str, value))
+        )
+    return value
+
+
+def _plain(value: Any) -> Any:
+    return list(map(_plain, value)) if isinstance(value, tuple) else value
+
+
+def _shown(value: Any) -> str:
+    if isinstance(value, tuple):
+        return f"[{', '.join(map(_shown, value))}]"
+    return f"{value:g}" if isinstance(value, float) else str(value)

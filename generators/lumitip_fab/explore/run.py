@@ -1,0 +1,182 @@
+"""A whole study: on all cores of this machine, or on a Dask cluster."""
+
+import multiprocessing
+import os
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from lumitip_fab.errors import BuildError, InputError, OutputError, Problem
+from lumitip_fab.explore.accuracy import Sample
+from lumitip_fab.explore.evaluate import FIGURES, Job, Record, evaluate
+from lumitip_fab.explore.journal import Journal
+from lumitip_fab.explore.prices import Prices, load_prices, unpriced
+from lumitip_fab.explore.vary import Axis, Changes, axes, changed, combinations
+from lumitip_fab.load import NAMED, Input, load
+from lumitip_fab.lock import locked
+
+_PRICED = ("leds", "resistors", "photodetectors", "multiplexers", "capacitors", "controllers")
+_THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
+
+Progress = Callable[[int, int], object]
+
+
+@dataclass(frozen=True)
+class Found:
+    """One design of a study."""
+
+    changes: Changes
+    columns: tuple[int, ...]
+    """Cells of each column of its grid."""
+    figures: dict[str, float]
+    """Empty if it is refused."""
+    refused: tuple[str, ...]
+    """Every reason why it cannot be."""
+
+
+@dataclass(frozen=True)
+class Study:
+    """All designs of a study, in the order in which they were asked for."""
+
+    axes: tuple[Axis, ...]
+    designs: tuple[Found, ...]
+    currency: str
+    evaluated: int
+    """How many were evaluated now; the others were known."""
+
+
+def explore(
+    file: Path,
+    texts: Sequence[str],
+    out: Path,
+    points: int,
+    keep_size: bool,
+    sample: Sample,
+    scheduler: str | None,
+    progress: Progress,
+) -> Study:
+    """Evaluate all combinations; what the folder's journal knows is not evaluated again.
+
+    Args:
+        file: the parameter file that is varied.
+        texts: `FIELD=SPEC`, each.
+        out: folder of the journal.
+        points: values of a range that has no step.
+        keep_size: whether columns follow the pitch, so that the grid keeps its size.
+        sample: what is drawn to judge accuracy.
+        scheduler: address of a Dask scheduler; all cores of this machine if not given.
+        progress: called with how many are done, and of how many.
+
+    Raises:
+        InputError: if file, prices or texts are refused; then nothing is evaluated.
+        OutputError: if the folder cannot be used.
+        BuildError: if workers fail.
+    """
+    given = load(file)
+    prices = load_prices(given)
+    asked = axes(given, texts, points)
+    _check(given, asked, prices, keep_size)
+    jobs = [
+        Job.of(changed(given, changes, keep_size), changes, prices, sample)
+        for changes in combinations(asked)
+    ]
+    keys = [job.key for job in jobs]
+    with locked(out), Journal(out) as journal:
+        records = dict(journal.known)
+        missing = {key: job for key, job in zip(keys, jobs, strict=True) if key not in records}
+        known = len(set(keys)) - len(missing)
+        progress(known, known + len(missing))
+        for done, record in enumerate(_evaluated(list(missing.values()), scheduler), start=1):
+            journal.add(record)
+            records[record["key"]] = record
+            progress(known + done, known + len(missing))
+    designs = tuple(_found(job, records[key]) for job, key in zip(jobs, keys, strict=True))
+    return Study(asked, designs, prices.currency, len(missing))
+
+
+def _check(given: Input, asked: Sequence[Axis], prices: Prices, keep_size: bool) -> None:
+    """Refuse what no design could be judged by."""
+    varied = {axis.field: axis.values for axis in asked}
+    parts = {field: part for field, part in NAMED.items() if part in _PRICED}
+    names: set[str] = set()
+    for field in parts:
+        section, key = field.split(".")
+        own = getattr(getattr(given.parameters, section), key)
+        names |= set(varied.get(field, (own,)))
+    faults = unpriced(given, prices, names)
+    if keep_size and "grid.columns" in varied:
+        told = "given with --keep-size, which counts the columns itself; leave one of them out"
+        faults.append(Problem("--vary", 0, "grid.columns", told))
+    if faults:
+        raise InputError(faults)
+
+
+def _found(job: Job, record: Record) -> Found:
+    told = record.get("figures")
+    figures = {name: told[name] for name in FIGURES} if told else {}
+    columns = job.given.parameters.grid.columns
+    return Found(job.changes, columns, figures, tuple(record.get("refused", ())))
+
+
+def _evaluated(jobs: list[Job], scheduler: str | None) -> Iterator[Record]:
+    if not jobs:
+        return iter(())
+    return _on_cluster(jobs, scheduler) if scheduler else _here(jobs)
+
+
+def _here(jobs: list[Job]) -> Iterator[Record]:
+    context = multiprocessing.get_context("spawn")
+    workers = min(len(jobs), os.cpu_count() or 1)
+    with _single_threaded(), ProcessPoolExecutor(workers, mp_context=context) as pool:
+        running = [pool.submit(evaluate, job) for job in jobs]
+        try:
+            for future in as_completed(running):
+                yield future.result()
+        except BrokenProcessPool as error:
+            raise BuildError(
+                "a worker was stopped from outside; the same command again goes on from here"
+            ) from error
+        finally:
+            pool.shutdown(cancel_futures=True)
+
+
+@contextmanager
+def _single_threaded() -> Iterator[None]:
+    """Workers, one for each core, in which linear algebra asks for no further threads."""
+    before = {name: os.environ.get(name) for name in _THREADS}
+    os.environ.update(dict.fromkeys(_THREADS, "1"))
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
+
+
+def _on_cluster(jobs: list[Job], scheduler: str) -> Iterator[Record]:
+    try:
+        from distributed import Client
+        from distributed import as_completed as as_gathered
+    except ModuleNotFoundError as error:
+        raise OutputError(
+            f"--scheduler {scheduler}: needs Dask: pip install 'lumitip[fab,dask]'"
+        ) from error
+    try:
+        client = Client(scheduler, timeout=10)
+    except (OSError, ValueError) as error:
+        raise OutputError(
+            f"--scheduler {scheduler}: no scheduler answers there ({error}); start one with `dask "
+            "scheduler`, and workers with `dask worker ADDRESS`"
+        ) from error
+    with client:
+        futures = client.map(evaluate, jobs, key=[job.key for job in jobs], retries=2)
+        try:
+            for _, record in as_gathered(futures, with_results=True):
+                yield record
+        finally:
+            client.cancel(futures)

@@ -1,0 +1,207 @@
+"""What is varied: `FIELD=SPEC`, and the designs that come of all combinations.
+
+grid.pitch_mm=3:8                        as many values as `points`, evenly from 3 to 8
+grid.pitch_mm=3:8:0.5                    from 3 in steps of 0.5, 8 included
+mask.hole_mm=1.5,2,2.5                   these values
+grid.columns=[[5, 4, 5], [4, 5, 6, 5]]   a TOML list of values
+"""
+
+import itertools
+import math
+import tomllib
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from pydantic import ValidationError
+
+from lumitip_fab.errors import InputError, Problem
+from lumitip_fab.load import NAMED, Input
+from lumitip_fab.parameters import Parameters
+from lumitip_fab.source import Source, flat
+from lumitip_fab.wording import problems_of, unknown_name
+
+MOST_DESIGNS = 10_000
+_DECIMALS = 6  # a nanometre
+
+
+@dataclass(frozen=True)
+class Axis:
+    """A field and the values that it takes."""
+
+    field: str
+    values: tuple[Any, ...]
+
+
+Changes = tuple[tuple[str, Any], ...]
+
+
+def axes(given: Input, texts: Sequence[str], points: int) -> tuple[Axis, ...]:
+    """What the texts of `--vary` ask for.
+
+    Args:
+        given: the parameter file that is varied.
+        texts: `FIELD=SPEC`, each.
+        points: values of a range that has no step.
+
+    Raises:
+        InputError: with every fault of every text.
+    """
+    read: list[Axis] = []
+    faults: list[Problem] = []
+    for text in texts:
+        try:
+            read.append(_axis(given, text, points))
+        except InputError as error:
+            faults += error.problems
+    fields = [axis.field for axis in read]
+    for field in sorted({f for f in fields if fields.count(f) > 1}):
+        faults.append(_fault(field, "given twice; give all of its values in one"))
+    for axis in read:
+        faults += _not_allowed(given, axis)
+    designs = math.prod(len(axis.values) for axis in read)
+    if not faults and designs > MOST_DESIGNS:
+        faults.append(_fault("", f"{designs} designs given, at most {MOST_DESIGNS} are evaluated"))
+    if faults:
+        raise InputError(faults)
+    return tuple(read)
+
+
+def combinations(asked: Sequence[Axis]) -> Iterator[Changes]:
+    """Every design: the last axis varies fastest."""
+    fields = [axis.field for axis in asked]
+    for values in itertools.product(*(axis.values for axis in asked)):
+        yield tuple(zip(fields, values, strict=True))
+
+
+def changed(given: Input, changes: Changes, keep_size: bool = False) -> Input:
+    """The parameter file with some fields changed.
+
+    Args:
+        given: the file.
+        changes: fields and their values.
+        keep_size: whether the grid gets as many columns and rows as keep its size when its pitch
+            changes.
+    """
+    told = given.parameters.model_dump()
+    for field, value in changes:
+        _set(told, field, value)
+    if keep_size:
+        grid = given.parameters.grid
+        told["grid"]["columns"] = same_size(grid.columns, grid.pitch_mm, told["grid"]["pitch_mm"])
+    return replace(given, parameters=Parameters.model_validate(told))
+
+
+def same_size(columns: Sequence[int], pitch_mm: float, new_mm: float) -> tuple[int, ...]:
+    """Columns of a grid of another pitch that is as wide and as long, to the nearest cell.
+
+    Long and short columns alternate, and the first is long or short as it was.
+    """
+    share = pitch_mm / new_mm
+    count = max(2, round((len(columns) - 1) * share) + 1)
+    longest = max(2, round((max(columns) - 1) * share) + 1)
+    short_first = columns[0] < columns[1]
+    return tuple(longest - (i + short_first) % 2 for i in range(count))
+
+
+def _set(told: dict[str, Any], field: str, value: Any) -> None:
+    *sections, key = field.split(".")
+    for section in sections:
+        told = told[section]
+    told[key] = value
+
+
+def _axis(given: Input, text: str, points: int) -> Axis:
+    field, equals, spec = (part.strip() for part in text.partition("="))
+    known = given.parameters.model_dump()
+    fields = [name for name, _ in flat(known)]
+    if not equals or not spec:
+        raise _refusal(text, "given, FIELD=FROM:TO, FIELD=FROM:TO:STEP or FIELD=A,B,C is needed")
+    if field not in fields:
+        raise _refusal("", unknown_name(field, fields, "a parameter file"))
+    return Axis(field, tuple(dict.fromkeys(_values(field, spec, points, _whole(known, field)))))
+
+
+def _whole(known: dict[str, Any], field: str) -> bool:
+    value = dict(flat(known))[field]
+    return isinstance(value, int) and not isinstance(value, bool)
+
+
+def _values(field: str, spec: str, points: int, whole: bool) -> list[Any]:
+    if spec.startswith("["):
+        try:
+            listed = tomllib.loads(f"list = {spec}")["list"]
+        except tomllib.TOMLDecodeError as error:
+            raise _refusal(field, f"{spec!r:.80} given, which is no TOML list: {error}") from error
+        if not listed:
+            raise _refusal(field, "an empty list given, at least one value is needed")
+        return [_tuple(value) for value in listed]
+    if ":" in spec:
+        numbers = _range(field, spec, points)
+        return [round(v) if whole else v for v in numbers]
+    return [_scalar(part.strip()) for part in spec.split(",")]
+
+
+def _range(field: str, spec: str, points: int) -> list[float]:
+    try:
+        bounds = [float(part) for part in spec.split(":")]
+    except ValueError:
+        bounds = []
+    if len(bounds) not in (2, 3) or not all(map(math.isfinite, bounds)):
+        raise _refusal(field, f"{spec!r:.80} given, FROM:TO or FROM:TO:STEP in numbers is needed")
+    low, high = bounds[:2]
+    if not low < high:
+        raise _refusal(field, f"{spec!r:.80} given, FROM must be below TO")
+    if len(bounds) == 2:
+        if points < 2:
+            raise _refusal(field, f"{points} points given, a range needs at least 2")
+        return [round(low + (high - low) * i / (points - 1), _DECIMALS) for i in range(points)]
+    step = bounds[2]
+    if not (high - low) / MOST_DESIGNS <= step:
+        raise _refusal(
+            field, f"a step of {step:g} given, at least {(high - low) / MOST_DESIGNS:g} is needed"
+        )
+    count = math.floor((high - low) / step + 1e-9) + 1
+    return [round(low + i * step, _DECIMALS) for i in range(count)]
+
+
+def _scalar(text: str) -> Any:
+    try:
+        return tomllib.loads(f"value = {text}")["value"]
+    except tomllib.TOMLDecodeError:
+        return text  # names need no quotes
+
+
+def _tuple(value: Any) -> Any:
+    return tuple(map(_tuple, value)) if isinstance(value, list) else value
+
+
+def _not_allowed(given: Input, axis: Axis) -> list[Problem]:
+    """What no design may have, whatever the rest of it."""
+    faults = []
+    kind = NAMED.get(axis.field)
+
+    def source(_: str) -> Source:
+        return given.sources[0]
+
+    for value in axis.values:
+        if kind is not None:
+            names = getattr(given.catalogue, kind)
+            if value not in names:
+                message = unknown_name(str(value), list(names), f"parts/{kind}.toml")
+                faults.append(_fault(axis.field, message))
+            continue
+        try:
+            changed(given, ((axis.field, value),))
+        except ValidationError as error:
+            found = problems_of(error, Parameters, source)
+            faults += [_fault(axis.field, problem.message) for problem in found]
+    return faults
+
+
+def _fault(field: str, message: str) -> Problem:
+    return Problem("--vary", 0, field, message)
+
+
+def _refusal(field: str, message: str) -> InputError:
+    return InputError([_fault(field, message)])

@@ -1,0 +1,80 @@
+"""What `--vary` asks for, and what it refuses."""
+
+import itertools
+from pathlib import Path
+
+import pytest
+
+from lumitip_fab.errors import InputError
+from lumitip_fab.explore.vary import axes, changed, combinations, same_size
+from lumitip_fab.load import Input, load
+
+
+@pytest.fixture(scope="module")
+def given(design_dir: Path) -> Input:
+    return load(design_dir / "fingertip.toml")
+
+
+@pytest.mark.parametrize(
+    ("text", "values"),
+    [
+        ("grid.pitch_mm=3:8", (3.0, 4.25, 5.5, 6.75, 8.0)),
+        ("grid.pitch_mm=3:4:0.25", (3.0, 3.25, 3.5, 3.75, 4.0)),
+        ("mask.hole_mm=0.5:0.9:0.3", (0.5, 0.8)),
+        ("mask.hole_mm = 1.5, 2", (1.5, 2)),
+        ("emitter.string_leds=2:4", (2, 3, 4)),
+        ("grid.columns=[[5, 4, 5], [4, 5]]", ((5, 4, 5), (4, 5))),
+        ("receiver.multiplexer=74HC4051PW,74HC4067PW", ("74HC4051PW", "74HC4067PW")),
+        ('mask.hole_shape="circle"', ("circle",)),
+    ],
+)
+def test_values_of_a_field(given: Input, text: str, values: tuple[object, ...]) -> None:
+    (axis,) = axes(given, [text], points=5)
+    assert axis.values == values
+    assert [type(v) for v in axis.values] == [type(v) for v in values]
+
+
+def test_the_last_field_varies_fastest(given: Input) -> None:
+    asked = axes(given, ["grid.pitch_mm=5,6", "mask.hole_mm=2,3"], points=2)
+    made = [tuple(value for _, value in changes) for changes in combinations(asked)]
+    assert made == [(5, 2), (5, 3), (6, 2), (6, 3)]
+    parameters = changed(given, (("grid.pitch_mm", 5), ("mask.hole_mm", 2))).parameters
+    assert (parameters.grid.pitch_mm, parameters.mask.hole_mm) == (5, 2)
+    assert parameters.grid.columns == given.parameters.grid.columns
+
+
+def test_every_fault_of_every_text_is_told_at_once(given: Input) -> None:
+    texts = [
+        "grid.pich_mm=3:8", "mask.hole_mm", "mask.hole_mm=4:1", "mask.flap_mm=5:x",
+        "stack.film_mm=0.1:0.2:0", "grid.columns=[[5, 4", "emitter.led=none", "tip.edge_mm=9",
+        "tip.edge_mm=0.5", "grid.columns=[]", "mould.draft_deg=inf:3",
+    ]  # fmt: skip
+    with pytest.raises(InputError) as caught:
+        axes(given, texts, points=6)
+    told = str(caught.value)
+    for part in (
+        "did you mean 'grid.pitch_mm'?", "FIELD=FROM:TO",
+        "FROM must be below TO", "'5:x' given", "a step of 0 given", "no TOML list",
+        "'none' given", "parts/leds.toml has", "9 given, at most 5 is allowed",
+        "tip.edge_mm: given twice", "an empty list given", "'inf:3' given",
+    ):  # fmt: skip
+        assert part in told, part
+    assert all(problem.file == "--vary" for problem in caught.value.problems)
+
+
+def test_no_more_designs_than_can_be_evaluated(given: Input) -> None:
+    with pytest.raises(InputError, match="40000 designs given, at most 10000"):
+        axes(given, ["grid.pitch_mm=3:8", "mask.hole_mm=1:4"], points=200)
+    with pytest.raises(InputError, match="1 points given, a range needs at least 2"):
+        axes(given, ["grid.pitch_mm=3:8"], points=1)
+
+
+@pytest.mark.parametrize("columns", [(5, 4, 5, 4, 5, 4, 5), (4, 5, 4), (4, 5, 6, 5)])
+def test_a_grid_keeps_its_size_with_another_pitch(columns: tuple[int, ...]) -> None:
+    assert same_size((5, 4, 5, 4, 5, 4, 5), 6.0, 6.0) == (5, 4, 5, 4, 5, 4, 5)
+    for new_mm in (3.0, 4.3, 6.0, 8.0):
+        made = same_size(columns, 6.0, new_mm)
+        assert {abs(a - b) for a, b in itertools.pairwise(made)} == {1}
+        assert abs((len(made) - 1) * new_mm - (len(columns) - 1) * 6.0) <= new_mm / 2.0 + 1e-9
+        assert abs((max(made) - 1) * new_mm - (max(columns) - 1) * 6.0) <= new_mm / 2.0 + 1e-9
+        assert (made[0] < made[1]) == (columns[0] < columns[1])
