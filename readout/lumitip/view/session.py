@@ -13,7 +13,7 @@ from contextlib import suppress
 from typing import Any
 
 import numpy as np
-from starlette.websockets import WebSocket, WebSocketDisconnect
+from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 
 from lumitip.view.finger import Finger
 from lumitip.view.room import Room
@@ -108,7 +108,8 @@ class Session:
                 task.result()
 
     async def _listen(self) -> None:
-        while True:
+        # Sending notices first that the browser is gone; what it said before still comes.
+        while self._websocket.application_state is WebSocketState.CONNECTED:
             with suppress(KeyError):  # bytes, which our page never sends
                 self._heard(await self._websocket.receive_text())
 

@@ -1,5 +1,6 @@
 """Slow browsers get fewer frames; the server reads every one."""
 
+import asyncio
 import json
 import struct
 from collections.abc import Callable
@@ -8,13 +9,14 @@ from typing import Any
 
 import pytest
 from playwright.sync_api import Page
+from starlette.websockets import WebSocket, WebSocketState
 from websockets.sync.client import ClientConnection, connect
 
 from lumitip.frame import Frame
 from lumitip.view.finger import KEPT, Finger
 from lumitip.view.room import Room
 from lumitip.view.server import ViewServer
-from lumitip.view.session import WINDOW
+from lumitip.view.session import WINDOW, Session
 
 Serve = Callable[..., ViewServer]
 WaitFor = Callable[[Callable[[], bool]], None]
@@ -119,6 +121,32 @@ def test_who_comes_late_sees_the_last_frame(serve: Serve, wait_for: WaitFor) -> 
         (message,) = until_silent(client)
     last = finger.tip.stats.received - 1
     assert told(message)["seq"] == [last]
+
+
+def test_a_browser_that_left_before_its_last_words_are_read_leaves_quietly(
+    tmp_path: Path,
+) -> None:
+    """The socket refuses what is sent while words of the browser still wait to be read."""
+
+    async def main() -> None:
+        refused = asyncio.Event()
+
+        async def receive() -> dict[str, Any]:
+            if websocket.client_state is WebSocketState.CONNECTING:
+                return {"type": "websocket.connect"}
+            await refused.wait()
+            return {"type": "websocket.receive", "text": "{}"}
+
+        async def send(message: dict[str, Any]) -> None:
+            if message["type"] == "websocket.send":
+                refused.set()
+                raise OSError("gone")
+
+        websocket = WebSocket({"type": "websocket"}, receive, send)
+        await websocket.accept()
+        await asyncio.wait_for(Session(websocket, Room((), tmp_path)).run(), 10.0)
+
+    asyncio.run(main())
 
 
 NONSENSE = (
