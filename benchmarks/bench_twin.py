@@ -63,6 +63,7 @@ def scenes(twin: Twin) -> tuple[float, float]:
     cells = len(twin.layout)
     poses = [(x, 30.0 * np.sin(x)) for x in np.linspace(-6.0, 6.0, 64).tolist()]
     drawn = Image.of(Polygon(STAR))
+    stars = [np.add(STAR, (x, -x / 2.0)) for x, _ in poses]
     corner = lambda i: Corner(*poses[i % 64], -80.0, 90.0)  # noqa: E731
     print(f"{f'{cells} cells':<46}{'frames/s':>12}{'readings/s':>14}")
     moving = [
@@ -75,14 +76,12 @@ def scenes(twin: Twin) -> tuple[float, float]:
             "any drawn shape that moves, on the raster": lambda i: drawn.at(
                 poses[i % 64][0], 1.0, poses[i % 64][1]
             ),
+            "polygon of ten corners, new each time": lambda i: Polygon(stars[i % 64]),
+            "corner of cloth that scatters": lambda i: Corner(*poses[i % 64], diffuse=0.3),
         }.items()
     ]
-    for name, make in {
-        "polygon of ten corners, drawn anew": lambda _: Polygon(STAR),
-        "corner of cloth that scatters": lambda i: Corner(*poses[i % 64], diffuse=0.3),
-        "cable on cloth, ray by ray": lambda i: [Cable(*poses[i % 64]), Sheet(clear=0.5)],
-    }.items():
-        told(name, 1, each_s(lambda i, make=make: twin.values(make(i))), cells)
+    mixed = lambda i: twin.values([Cable(*poses[i % 64]), Sheet(clear=0.5)])  # noqa: E731
+    told("cable on cloth, ray by ray", 1, each_s(mixed), cells)
     at = twin.plane()
     coverage = np.random.default_rng(0).random((BATCH, at.x_mm.size), dtype=np.float32)
     batch = told(f"batch of {BATCH} coverages of {at.x_mm.size} pixels", BATCH,

@@ -6,6 +6,7 @@ Twin(layout).values(Cable(angle_deg=30.0, diameter_mm=4.0))
 
 from lumitip.twin.optics import Model, TwinError
 from lumitip.twin.pairs import Misregistration
+from lumitip.twin.polygon import Polygon
 from lumitip.twin.scene import (
     Cable,
     Corner,
@@ -13,7 +14,6 @@ from lumitip.twin.scene import (
     HalfPlane,
     Image,
     Line,
-    Polygon,
     Scene,
     Shape,
     Sheet,

@@ -75,6 +75,21 @@ def scattered_plane(layout: Layout, pairs: Pairs, emitter: Emitter, height: floa
     return _plane(len(layout), grid, lambda cell: scattered.row(cell) / pairs.full[cell])
 
 
+def blended(direct: Plane, scattered: Plane, clear: float, diffuse: float) -> Plane:
+    """The plane of one material: what an object of it takes from each cell, less what it scatters.
+
+    Both planes must be dense.
+    """
+    size = scattered.weights.shape[1]
+    both = np.concatenate([direct.x_mm + 1j * direct.y_mm, scattered.x_mm + 1j * scattered.y_mm])
+    places, each = np.unique(both, return_inverse=True)
+    weights = np.zeros((len(direct.weights), places.size), dtype=np.float32)
+    weights[:, each[:-size]] = np.float32(1.0 - clear) * direct.weights
+    weights[:, each[-size:]] -= np.float32(diffuse) * scattered.weights
+    x_mm, y_mm = places.real.astype(np.float32), places.imag.astype(np.float32)
+    return Plane(x_mm, y_mm, direct.pixel_mm, weights, None)
+
+
 def _plane(cells: int, grid: "_Grid", row: Callable[[int], Floats]) -> Plane:
     seen, rows = [], []
     for cell in range(cells):

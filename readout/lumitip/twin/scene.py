@@ -18,7 +18,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lumitip.grid import Floats
 from lumitip.twin.optics import TwinError
 
 Numbers = NDArray[np.floating[Any]]
@@ -207,34 +206,6 @@ class Sheet(Shape):
     def signed_distance_mm(self, x_mm: Numbers, y_mm: Numbers) -> Numbers:
         """See `Shape`: the border is far away."""
         return np.full(np.broadcast_shapes(np.shape(x_mm), np.shape(y_mm)), -1e6)
-
-
-@dataclass(frozen=True, eq=False)
-class Polygon(Shape):
-    """A closed polygon, its corners in either order, shape `(n, 2)` (mm)."""
-
-    points_mm: Floats | Sequence[tuple[float, float]] = ()
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        points = np.array(self.points_mm, dtype=np.float64)
-        if points.ndim != 2 or points.shape[1] != 2 or len(points) < 3:
-            raise TwinError(f"points_mm of shape {points.shape} given, three or more (x, y) needed")
-        object.__setattr__(self, "points_mm", points)
-
-    def signed_distance_mm(self, x_mm: Numbers, y_mm: Numbers) -> Numbers:
-        """See `Shape`; inside is where a ray to the right crosses an odd number of edges."""
-        begin: Floats = np.asarray(self.points_mm)
-        nearest = np.full(np.broadcast_shapes(np.shape(x_mm), np.shape(y_mm)), np.inf)
-        inside = np.zeros(nearest.shape, dtype=bool)
-        for (ax, ay), (bx, by) in zip(begin, np.roll(begin, -1, axis=0), strict=True):
-            dx, dy, x, y = bx - ax, by - ay, x_mm - ax, y_mm - ay
-            share = np.clip((x * dx + y * dy) / max(dx * dx + dy * dy, 1e-18), 0.0, 1.0)
-            nearest = np.minimum(nearest, (x - share * dx) ** 2 + (y - share * dy) ** 2)
-            if ay != by:
-                inside ^= ((y_mm < ay) != (y_mm < by)) & (x < dx * y / dy)
-        distance: Numbers = np.sqrt(nearest)
-        return np.where(inside, -distance, distance)
 
 
 @dataclass(frozen=True, eq=False)

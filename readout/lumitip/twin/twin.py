@@ -6,6 +6,7 @@ twin.frame(Cable(angle_deg=30.0), t=1.5)                # raw codes, as the firm
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -16,8 +17,10 @@ from lumitip.layout import Layout
 from lumitip.protocol.packet import BITS, Codes
 from lumitip.twin.mixed import Mixed
 from lumitip.twin.optics import FULL, Model, TwinError, values_of_drive
+from lumitip.twin.outline import Outline
 from lumitip.twin.pairs import Emitter, Misregistration, Pairs
-from lumitip.twin.raster import Plane, direct_plane, scattered_plane
+from lumitip.twin.polygon import Polygon
+from lumitip.twin.raster import Plane, blended, direct_plane, scattered_plane
 from lumitip.twin.scene import Cable, Line, Numbers, Scene, Singles, Thing, things
 from lumitip.twin.tables import LineTable, cable_table, edge_table
 
@@ -78,6 +81,8 @@ class Twin:
         """What each cell reads with an empty grasp before calibration, 0 to 255."""
         self._direct = lru_cache(maxsize=8)(self._direct_plane)
         self._scatter = lru_cache(maxsize=8)(self._scattered_plane)
+        self._material = lru_cache(maxsize=8)(self._material_plane)
+        self._outline = lru_cache(maxsize=8)(self._outline_of)
         self._edges = lru_cache(maxsize=8)(self._edge_table)
         self._cables = lru_cache(maxsize=8)(self._cable_table)
 
@@ -193,13 +198,28 @@ class Twin:
         return light
 
     def _of_flat(self, found: Sequence[Thing]) -> Numbers:
-        at = self.plane(found[0].height)
-        layers = found[0].layers(at.x_mm, at.y_mm, at.pixel_mm)
+        thing = found[0]
+        if len(found) == 1 and isinstance(thing, Polygon) and not thing.hem_mm and thing.simple:
+            outline = self._outline(thing.height, thing.clear, thing.diffuse)
+            if outline is not None:
+                return 1.0 - outline(np.asarray(thing.points_mm))
+        at = self.plane(thing.height)
+        dense = at.index is None
+        if len(found) == 1 and dense and thing.diffuse:
+            at = self._material(thing.height, thing.clear, thing.diffuse)
+        layers = thing.layers(at.x_mm, at.y_mm, at.pixel_mm)
         if len(found) == len(layers) == 1:
-            alone: Numbers = 1.0 - (1.0 - found[0].clear) * at(np.asarray(layers[0], np.float32))
-            if found[0].diffuse:
-                alone = alone + found[0].diffuse * self._scattered(found[0])
+            taken = at(np.asarray(layers[0], np.float32))
+            if dense and thing.diffuse:
+                return 1.0 - taken
+            alone: Numbers = 1.0 - (1.0 - thing.clear) * taken
+            if thing.diffuse:
+                alone = alone + thing.diffuse * self._scattered(thing)
             return alone
+        return self._of_layers(found)
+
+    def _of_layers(self, found: Sequence[Thing]) -> Numbers:
+        at = self.plane(found[0].height)
         clear, _ = self._through(found, at)
         light: Numbers = 1.0 - at(np.float32(1.0) - clear)
         if any(thing.diffuse for thing in found):
@@ -230,6 +250,16 @@ class Twin:
 
     def _scattered_plane(self, height: float) -> Plane:
         return scattered_plane(self.layout, self._pairs, self.emitter, height)
+
+    def _material_plane(self, height: float, clear: float, diffuse: float) -> Plane:
+        return blended(self._direct(height), self._scatter(height), clear, diffuse)
+
+    def _outline_of(self, height: float, clear: float, diffuse: float) -> Outline | None:
+        at = self.plane(height)
+        if not Outline.fits(at):
+            return None
+        scattered = self._scatter(height) if diffuse else replace(at, weights=0.0 * at.weights)
+        return Outline(blended(at, scattered, clear, diffuse))
 
     def _edge_table(self, height: float) -> LineTable:
         return edge_table(self._pairs, height)

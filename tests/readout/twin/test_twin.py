@@ -95,7 +95,8 @@ def test_drawn_objects_read_as_those_they_were_drawn_from(twin: Twin) -> None:
     corner = Corner(0.0, 0.0, -90.0, 90.0)
     far = 80.0
     square = Polygon([(0, 0), (far, -far), (0, -2 * far), (-far, -far)])
-    assert rms(twin.values(corner), twin.values(square)) < 0.1
+    # One on the raster, the other along its outline.
+    assert rms(twin.values(corner), twin.values(square)) < 0.6
 
 
 def test_a_hem_is_darker_than_the_cloth(twin: Twin) -> None:
