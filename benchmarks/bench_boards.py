@@ -78,7 +78,7 @@ def files(design: Design, model: BoardModel) -> int:
         **picture_files(model),
     }
     for fab in design.fabs:
-        made |= order_files(model, layers, fab, model.placement.finger)
+        made |= order_files(model, layers, design.packages, fab, model.placement.finger)
     return sum(map(len, made.values()))
 
 

@@ -20,6 +20,9 @@ class Bought(Entry):
     """Who makes it, for the bill of materials; "any" where it does not matter."""
     order_number: str = Field(min_length=1, max_length=64)
     """What to order; of resistors, `{code}` stands for the value, such as 75K or 4K99."""
+    lcsc: str = Field(default="", pattern=r"^(C[1-9]\d*)?$")
+    """Number at the distributor LCSC, by which JLCPCB finds a part; empty where it is not known,
+    and of resistors, whose number depends on the value."""
 
 
 class Chip(Bought):

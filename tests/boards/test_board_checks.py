@@ -49,15 +49,110 @@ def resistor_taller(text: str) -> str:
     return in_part(text, "R1", r"(RESC\d+X)\d+N", r"\g<1>90N")
 
 
+def without(pattern: str, count: int = 1) -> Damage:
+    """A damage that takes out the first lines that match."""
+
+    def damage(text: str) -> str:
+        hurt, found = re.subn(rf"\n[^\n]*{pattern}[^\n]*", "", text, count=count)
+        assert found == count, f"{found} lines match {pattern}"
+        return hurt
+
+    return damage
+
+
+def title_lost(text: str) -> str:
+    return text.replace('(gr_text "Small"', '(gr_text "Other"')
+
+
+def arrow_bent(text: str) -> str:
+    """The shaft, which is the only upright line of 2.4 mm, ends elsewhere."""
+    for m in re.finditer(r"\(gr_line \(start (\S+) (\S+)\) \(end (\S+) (\S+)\)", text):
+        x, y, u, v = map(float, m.groups())
+        if x == u and abs(abs(y - v) - 2.4) < 1e-6:
+            return text.replace(m[0], f"(gr_line (start {x + 0.3} {y}) (end {u} {v})", 1)
+    raise AssertionError("no arrow")
+
+
+def cell_lost(text: str) -> str:
+    return without(r'\(gr_line [^\n]*"F.SilkS"', 6)(text)
+
+
+def mark_lost(text: str) -> str:
+    for _ in range(3):
+        text = in_part(text, "D7", r'\n[^\n]*\(fp_line [^\n]*"F.SilkS"[^\n]*', "")
+    return text
+
+
+def label_lost(text: str) -> str:
+    return without(r'\(gr_text "12V"')(text)
+
+
+def labels_swapped(text: str) -> str:
+    text = once(text, r'\(gr_text "GND"', '(gr_text "?"')
+    return once(
+        once(text, r'\(gr_text "12V"', '(gr_text "GND"'), r'\(gr_text "\?"', '(gr_text "12V"'
+    )
+
+
+def first_pad_unmarked(text: str) -> str:
+    return without(r'\(gr_text "1" ')(text)
+
+
+def letters_small(text: str) -> str:
+    return once(text, r'(\(gr_text "GND"[^\n]*)\(size 0\.8 0\.8\)', r"\g<1>(size 0.7 0.7)")
+
+
+def silk_line_thin(text: str) -> str:
+    return once(text, r'(\(gr_line [^\n]*"F.SilkS"\) \(width )0\.15', r"\g<1>0.1")
+
+
+def silk_on_a_pad(text: str) -> str:
+    at = re.search(r'"lumitip:LEDC[^\n]*\n[^\n]*\n[^\n]*\n\s*\(at (\S+) (\S+)', text)
+    assert at
+    x, y = float(at[1]), float(at[2])
+    line = f'  (gr_line (start {x} {y}) (end {x + 0.4} {y}) (layer "F.SilkS") (width 0.15))\n'
+    return text.replace("  (gr_line", line + "  (gr_line", 1)
+
+
+def fiducial_lost(text: str) -> str:
+    return in_part(text, "FID3", "FID3", "X3")
+
+
+def fiducials_near(text: str) -> str:
+    return moved_part(text, "FID3", 0.0, -16.0)
+
+
+def probe_lost(text: str) -> str:
+    return in_part(text, "TP1", 'reference "TP1"', 'reference "X1"')
+
+
+def reference_twice(text: str) -> str:
+    return in_part(text, "FID3", "FID3", "FID2")
+
+
 EMITTER_DAMAGES: dict[Damage, set[str]] = {
     led_moved: {"cells", "clearance"},  # the pour is as near as it may be
-    led_on_the_back: {"cells", "room_behind"},
-    led_added: {"cell_count"},
-    led_reversed: {"polarity"},
-    led_bridged: {"short", "strings", "current"},
+    led_on_the_back: {"cells", "room_behind", "silk_marks"},
+    led_added: {"cell_count", "silk_marks"},
+    led_reversed: {"polarity", "silk_marks"},
+    led_bridged: {"short", "strings", "current", "silk_gap"},
     led_taller: {"height_front"},
     resistor_smaller: {"current"},
     resistor_taller: {"room_behind"},
+    title_lost: {"silk_title"},
+    arrow_bent: {"silk_arrow"},
+    cell_lost: {"silk_cells"},
+    mark_lost: {"silk_marks"},
+    label_lost: {"silk_labels"},
+    labels_swapped: {"silk_labels"},
+    first_pad_unmarked: {"silk_marks"},
+    letters_small: {"silk_letters"},
+    silk_line_thin: {"silk_lines"},
+    silk_on_a_pad: {"silk_gap"},
+    fiducial_lost: {"fiducials"},
+    fiducials_near: {"fiducial_spread"},
+    probe_lost: {"test_points", "silk_labels"},
+    reference_twice: {"references"},
 }
 
 
@@ -127,6 +222,15 @@ def capacitor_missing(text: str) -> str:
     return in_part(text, "C1", r'\(fp_text reference "C1"', '(fp_text reference "X1"')
 
 
+def capacitor_far(text: str) -> str:
+    return moved_part(text, "C1", 0.0, -6.0)
+
+
+def dot_lost(text: str) -> str:
+    """The dot is the last line of a multiplexer's drawing."""
+    return in_part(text, "U1", r'\n[^\n]*\(fp_line [^\n]*"F.SilkS"\) \(width 0\.3\)[^\n]*', "")
+
+
 def select_lines_swapped(text: str) -> str:
     return swapped_pads(text, "U2", "10", "11")
 
@@ -166,18 +270,29 @@ def fill_adrift(text: str) -> str:
 RECEIVER_DAMAGES: dict[Damage, set[str]] = {
     net_names_swapped: {"names", "open", "short"},
     inputs_swapped: {"channels"},
-    detector_reversed: {"polarity"},
+    detector_reversed: {"polarity", "silk_marks"},
     track_narrow: {"track_width"},
     via_dropped: {"open", "service"},
     via_ring_thin: {"via_ring"},
     hole_moved: {"holes", "edge_clearance"},
     hole_narrow: {"pin_clearance"},
-    hole_missing: {"hole_count", "holes"},
+    hole_missing: {"hole_count", "holes", "silk_gap"},
     edge_moved: {"outline", "pocket_gap"},
     pull_up_wrong: {"service"},
-    capacitor_missing: {"service"},
+    capacitor_missing: {"bypass_supply", "bypass_ground"},
+    capacitor_far: {
+        "bypass_supply",
+        "bypass_ground",
+        "open",
+        "short",
+        "clearance",
+        "channels",
+        "names",
+        "silk_gap",
+    },
+    dot_lost: {"silk_marks"},
     select_lines_swapped: {"service"},
-    connector_reversed: {"wires", "service"},
+    connector_reversed: {"wires", "service", "silk_labels"},
     track_added_near_another: {"clearance"},
     track_over_the_edge: {"edge_clearance"},
     fill_adrift: {"islands", "edge_clearance"},

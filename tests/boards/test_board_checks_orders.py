@@ -86,6 +86,39 @@ def another_layer(files: Files) -> None:
     edit(files, ".GBO", rb"D01\*", b"D02*")
 
 
+def silk_on_a_pad(files: Files) -> None:
+    edit(files, "F_Silkscreen.gbr", rb"(X[-\d]+Y[-\d]+D01\*\n)", rb"\g<1>X0Y0D01*\n")
+
+
+def silk_lines_thin(files: Files) -> None:
+    edit(files, "F_Silkscreen.gbr", rb"(%ADD\d+C,)0\.15\*", rb"\g<1>0.1*")
+
+
+def silk_lost(files: Files) -> None:
+    (name,) = (n for n in files if n.endswith("B_Silkscreen.gbr"))
+    files[name] = files[name].replace(b"D01*", b"D02*")
+
+
+def note_missing(files: Files) -> None:
+    del files["receiver_assembly.txt"]
+
+
+def note_of_the_mark(files: Files) -> None:
+    edit(files, "assembly.txt", b"pad 1 is the collector", b"pad 1 is the emitter")
+
+
+def note_too_sure(files: Files) -> None:
+    edit(files, "assembly.txt", b"collector is inferred", b"collector is certain")
+
+
+def note_of_a_place(files: Files) -> None:
+    edit(files, "assembly.txt", rb"(Q5  collector \S+ )\S+", rb"\g<1>1.000")
+
+
+def note_without_a_part(files: Files) -> None:
+    edit(files, "assembly.txt", rb"Q5  .*\n", b"")
+
+
 FIRST_DAMAGES: dict[Damage, set[str]] = {
     pour_missing: {"copper", "same"},
     tracks_thin: {"copper", "same"},
@@ -96,6 +129,14 @@ FIRST_DAMAGES: dict[Damage, set[str]] = {
     edge_farther: {"outline", "same"},
     drill_missing: {"drills", "same"},
     drill_larger: {"drills", "same"},
+    silk_on_a_pad: {"silk", "silk_clear", "same"},
+    silk_lines_thin: {"silk", "same"},
+    silk_lost: {"silk", "words", "same"},
+    note_missing: {"readable"},
+    note_of_the_mark: {"note"},
+    note_too_sure: {"note"},
+    note_of_a_place: {"note"},
+    note_without_a_part: {"note"},
     layer_missing: {"readable"},
     not_gerber: {"readable"},
 }
@@ -109,7 +150,17 @@ def test_a_damage_of_the_layers(damage: Damage, damaged_boards: Path) -> None:
 
 def test_another_layer_in_another_zip(damaged_boards: Path) -> None:
     rezip(folder_of(damaged_boards) / f"{SECOND}_receiver.zip", another_layer)
-    assert failing(damaged_boards, "orders") == {"same"}
+    assert failing(damaged_boards, "orders") == {"silk", "same"}
+
+
+def test_the_layers_of_every_zip_are_held_against_the_board(damaged_boards: Path) -> None:
+    def thin(files: Files) -> None:
+        edit(files, ".GBL", rb"(%ADD\d+C,)0\.2\*", rb"\g<1>0.1*")
+
+    for house in (FIRST, SECOND, "pcbway"):
+        package = folder_of(damaged_boards) / f"{house}_receiver.zip"
+        rezip(package, tracks_thin if house == FIRST else thin)
+    assert failing(damaged_boards, "orders") == {"copper"}
 
 
 # Damages of a table are made in the zip and beside it alike: pattern, what is put, what fails.

@@ -10,6 +10,7 @@ import pytest
 import shapely
 from shapely import LineString
 
+from lumitip_fab.boards.clear import extent
 from lumitip_fab.boards.geometry import courtyard, pad_at, placed_pads
 from lumitip_fab.boards.model import SIDES, Component, Placement
 from lumitip_fab.boards.openings import opening_mm
@@ -209,3 +210,33 @@ def test_what_has_no_room_is_refused_with_the_numbers(
     for finger, said in _crowded(design):
         with pytest.raises(BuildError, match=said):
             _placed(design, finger)
+
+
+def test_a_title_without_room_is_refused_with_the_numbers(
+    boards: dict[tuple[str, str], Placed],
+) -> None:
+    design, finger, _ = boards["asymmetric", "emitter"]
+    title = dataclasses.replace(design.title, name="W" * 80)
+    with pytest.raises(
+        BuildError, match=r"the title on the back, .* mm high and \d+\.\d\d mm long"
+    ):
+        _placed(dataclasses.replace(design, title=title), finger)
+
+
+def test_a_long_title_is_printed_smaller(boards: dict[tuple[str, str], Placed]) -> None:
+    design, finger, _ = boards["asymmetric", "emitter"]
+    title = dataclasses.replace(design.title, name="Lumitip with the longest of names")
+    placement = _placed(dataclasses.replace(design, title=title), finger)
+    heights = [text.height_mm for _, text in placement.texts if title.name in text.text]
+    assert heights
+    assert min(heights) >= design.rules.silk_text_mm
+
+
+def test_labels_of_a_row_stand_apart(board: Placed) -> None:
+    """Signals at the wire pads read apart: no two of them touch."""
+    _, finger, placement = board
+    for side in SIDES:
+        labels = [extent(text, side) for where, text in placement.texts
+                  if where == side and text.text in finger.connector.signals]  # fmt: skip
+        assert len(labels) == len(finger.connector.signals)
+        assert all(a.distance(b) >= 0.15 for a, b in combinations(labels, 2))

@@ -90,7 +90,7 @@ def _receiver(
         leads |= {str(lead): GROUND for lead in mux.inputs if str(lead) not in leads}
         told = tuple(sorted(leads.items(), key=lambda item: int(item[0])))
         yield Component(f"U{which + 1}", mux.value, mux.part, "multiplexer", shape, 0.0, 0.0, 0.0,
-                        "front", told, manufacturer=mux.manufacturer)  # fmt: skip
+                        "front", told, manufacturer=mux.manufacturer, lcsc=mux.lcsc)  # fmt: skip
     pull_up = footprints.chip(packages.pull_up, "RESC", rules)
     bypass = footprints.chip(packages.capacitor, "CAPC", rules)
     for which, pin in enumerate(wiring.adc_pins, start=1):
@@ -138,7 +138,7 @@ def _part(
     nets: tuple[tuple[str, str], ...],
 ) -> Component:
     return Component(ref, value, chip.part, kind, shape, 0.0, 0.0, 0.0, "front", nets,
-                     manufacturer=chip.manufacturer)  # fmt: skip
+                     manufacturer=chip.manufacturer, lcsc=chip.lcsc)  # fmt: skip
 
 
 def _copper(

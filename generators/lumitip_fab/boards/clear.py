@@ -13,9 +13,6 @@ from lumitip_fab.boards.model import Placement, Side, Text
 from lumitip_fab.boards.openings import opening_mm
 from lumitip_fab.boards.strokes import text_strokes, upright
 
-GAP_MM = 0.12
-"""Silkscreen to openings of the mask, to holes, to the board's edge and to other silkscreen."""
-LINE_MM = 0.12
 _SHORTEST_MM = 0.5
 _MOST_LATE = 32  # shapes beside the tree of those before, which are looked at one by one
 
@@ -26,14 +23,18 @@ class Clear:
 
     inside: Polygon
     """Where silkscreen may be at all."""
+    gap_mm: float
+    """Silkscreen to openings of the mask, to holes, to the board's edge and to other silkscreen."""
+    line_mm: float
+    """Width of lines."""
     taken: list[BaseGeometry] = field(default_factory=list)
     _tree: shapely.STRtree | None = None
     _in_tree: int = 0
 
     @classmethod
-    def of(cls, board: Placement, side: Side) -> "Clear":
+    def of(cls, board: Placement, side: Side, gap_mm: float, line_mm: float) -> "Clear":
         """A side with its pads, its holes and the lines of its footprints."""
-        box = board.outline.grown(-GAP_MM)
+        box = board.outline.grown(-gap_mm)
         rim = shapely.box(box.x_min_mm, box.y_min_mm, box.x_max_mm, box.y_max_mm)
         taken: list[BaseGeometry] = [
             shapely.Point(at).buffer(board.hole_mm / 2) for at in board.holes
@@ -46,7 +47,7 @@ class Clear:
                     LineString([placed(part, *p) for p in s.points]).buffer(s.width_mm / 2)
                     for s in part.footprint.silk
                 ]
-        return cls(rim, taken)
+        return cls(rim, gap_mm, line_mm, taken)
 
     def free(self, shape: BaseGeometry) -> bool:
         """Whether a shape keeps its gap to all that is taken."""
@@ -54,10 +55,10 @@ class Clear:
             return False
         if self._tree is None or len(self.taken) > self._in_tree + _MOST_LATE:
             self._tree, self._in_tree = shapely.STRtree(self.taken), len(self.taken)
-        if self._tree.query(shape, predicate="dwithin", distance=GAP_MM).size:
+        if self._tree.query(shape, predicate="dwithin", distance=self.gap_mm).size:
             return False
         late = self.taken[self._in_tree :]
-        return not late or float(np.min(shapely.distance(shape, late))) > GAP_MM
+        return not late or float(np.min(shapely.distance(shape, late))) > self.gap_mm
 
     def take(self, *shapes: BaseGeometry) -> None:
         """Take room."""
@@ -66,11 +67,11 @@ class Clear:
     def clipped(self, lines: Sequence[LineString]) -> list[LineString]:
         """The free pieces of lines that are long enough to see."""
         keep_out = shapely.union_all(
-            shapely.buffer(np.array(self.taken, dtype=object), GAP_MM + LINE_MM / 2)
+            shapely.buffer(np.array(self.taken, dtype=object), self.gap_mm + self.line_mm / 2)
         )
         rest = shapely.intersection(
             shapely.difference(np.array(lines, dtype=object), keep_out),
-            self.inside.buffer(-LINE_MM / 2),
+            self.inside.buffer(-self.line_mm / 2),
         )
         pieces = [p for p in shapely.get_parts(rest) if p.length >= _SHORTEST_MM]
         return [shapely.set_precision(p, 1e-6) for p in pieces]

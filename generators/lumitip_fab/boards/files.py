@@ -59,7 +59,7 @@ def board_files(
     orders = {
         f"order/{name}": data
         for fab in fabs
-        for name, data in order_files(model, layers, fab, finger.name).items()
+        for name, data in order_files(model, layers, packages, fab, finger.name).items()
     }
     files = {
         **project_files(model, stack.pcb_mm),

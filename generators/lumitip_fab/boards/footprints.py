@@ -7,9 +7,6 @@ terminal, pad 1, to the left; a multiplexer lies with lead 1 at the lower left.
 from lumitip_fab.boards.model import Footprint, Pad, Stroke
 from lumitip_fab.design import Box, Chip, Connector, Multiplexer, Rules
 
-SILK_MM = 0.12
-SILK_GAP_MM = 0.15
-"""Between silkscreen and pads."""
 TEST_POINT_MM = 1.0
 FIDUCIAL_MM = 1.0
 COPPER_MM = 0.035
@@ -35,25 +32,27 @@ def chip(chip: Chip, letters: str, rules: Rules, roomy: bool = True) -> Footprin
         body=body,
         courtyard=_courtyard(body, pads, rules),
         height_mm=height,
-        silk=_bracket(chip, roomy) if chip.marked else _sides(chip),
+        silk=_bracket(chip, rules, roomy) if chip.marked else _sides(chip, rules),
     )
 
 
-def _bracket(chip: Chip, roomy: bool) -> tuple[Stroke, ...]:
+def _bracket(chip: Chip, rules: Rules, roomy: bool) -> tuple[Stroke, ...]:
     """A bracket round the marked end; a bar where there is little room."""
     half = max(chip.pad_mm[1], chip.body_mm[1]) / 2
-    x = (chip.pad_pitch_mm + chip.pad_mm[0]) / 2 + SILK_GAP_MM + SILK_MM / 2
-    y = half + SILK_GAP_MM + SILK_MM / 2
+    line = rules.silk_line_mm
+    x = (chip.pad_pitch_mm + chip.pad_mm[0]) / 2 + rules.silk_gap_mm + line / 2
+    y = half + rules.silk_gap_mm + line / 2
     if not roomy:
-        return (Stroke(((-x, -half), (-x, half)), SILK_MM),)
-    return (Stroke(((0.0, y), (-x, y), (-x, -y), (0.0, -y)), SILK_MM),)
+        return (Stroke(((-x, -half), (-x, half)), line),)
+    return (Stroke(((0.0, y), (-x, y), (-x, -y), (0.0, -y)), line),)
 
 
-def _sides(chip: Chip) -> tuple[Stroke, ...]:
+def _sides(chip: Chip, rules: Rules) -> tuple[Stroke, ...]:
     """A line along each side of the body, between the pads."""
-    x = (chip.pad_pitch_mm - chip.pad_mm[0]) / 2 - SILK_GAP_MM - SILK_MM / 2
-    y = chip.body_mm[1] / 2 + SILK_MM / 2
-    return tuple(Stroke(((-x, side), (x, side)), SILK_MM) for side in (y, -y)) if x > 0 else ()
+    line = rules.silk_line_mm
+    x = (chip.pad_pitch_mm - chip.pad_mm[0]) / 2 - rules.silk_gap_mm - line / 2
+    y = chip.body_mm[1] / 2 + line / 2
+    return tuple(Stroke(((-x, side), (x, side)), line) for side in (y, -y)) if x > 0 else ()
 
 
 def multiplexer(mux: Multiplexer, rules: Rules) -> Footprint:
@@ -75,19 +74,20 @@ def multiplexer(mux: Multiplexer, rules: Rules) -> Footprint:
         body=body,
         courtyard=_courtyard(body, tuple(pads), rules),
         height_mm=mux.body_mm[2],
-        silk=_mux_silk(pads[0], body, mux.lead_span_mm / 2 - along),
+        silk=_mux_silk(pads[0], body, mux.lead_span_mm / 2 - along, rules),
     )
 
 
-def _mux_silk(first: Pad, body: Box, inner_mm: float) -> tuple[Stroke, ...]:
+def _mux_silk(first: Pad, body: Box, inner_mm: float, rules: Rules) -> tuple[Stroke, ...]:
     """The body between the rows of pads, with a notch at lead 1's end, and a dot at lead 1."""
     left, right = body.x_min_mm, body.x_max_mm
-    y = min(inner_mm - SILK_GAP_MM - SILK_MM / 2, body.y_max_mm)
+    gap, line = rules.silk_gap_mm, rules.silk_line_mm
+    y = min(inner_mm - gap - line / 2, body.y_max_mm)
     notch = 0.4
     outline = ((left, notch), (left, y), (right, y), (right, -y), (left, -y), (left, -notch),
                (left + notch, -notch), (left + notch, notch), (left, notch))  # fmt: skip
-    dot = first.x_mm, first.y_mm - first.height_mm / 2 - SILK_GAP_MM - 0.15
-    return Stroke(outline, SILK_MM), Stroke((dot, (dot[0] + 0.02, dot[1])), 0.3)
+    dot = first.x_mm, first.y_mm - first.height_mm / 2 - gap - 0.15
+    return Stroke(outline, line), Stroke((dot, (dot[0] + 0.02, dot[1])), 0.3)
 
 
 def wire_pads(connector: Connector, rules: Rules) -> Footprint:

@@ -1,28 +1,32 @@
 """What is printed on a board beyond its parts' outlines: cells, labels, references and title."""
 
 import dataclasses
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
-import shapely
-from shapely import LineString
 
 from lumitip_fab.boards.cells import cell_edges
-from lumitip_fab.boards.clear import GAP_MM, LINE_MM, Clear, extent
+from lumitip_fab.boards.clear import extent
 from lumitip_fab.boards.geometry import courtyard
-from lumitip_fab.boards.model import Component, Placement, Side, Stroke, Text
-from lumitip_fab.design import Connector, Finger, Point
+from lumitip_fab.boards.model import Component, Placement, Side, Text
+from lumitip_fab.boards.openings import MASK_MM
+from lumitip_fab.boards.page import Page
+from lumitip_fab.design import Connector, Finger, Point, Rules
 
-_HEIGHT_MM = 0.8
 _TITLE_MM = 1.0
-_ARROW_MM, _HEAD_MM = 2.4, 0.7
 _APART_MM = 0.1  # more than the least gap round references, so that they do not run together
+_LABEL_GAP_MM = 0.3  # between words in a row, so that they are read apart
+_OUTWARD_MM = 0.25  # that the first and the last label of a row give way
 _STEP_MM = 0.25
+_SPARE_MM = 0.06  # letters do not stand quite in the middle of their text
+_BESIDE_MM = 5.0  # farthest place of the mark of pad 1 from the pad
 _SHOWN = ("multiplexer", "resistor", "capacitor")
 _AT_CELLS = ("led", "photodetector")
 
 
-def with_legend(board: Placement, finger: Finger, pitch_mm: float, mark: str) -> Placement:
+def with_legend(
+    board: Placement, finger: Finger, pitch_mm: float, mark: str, rules: Rules
+) -> Placement:
     """The board with its silkscreen.
 
     Args:
@@ -30,168 +34,168 @@ def with_legend(board: Placement, finger: Finger, pitch_mm: float, mark: str) ->
         finger: for its cells and its connector.
         pitch_mm: of the cells.
         mark: terminal that a bracket round one end of an LED or photodetector means.
+        rules: for the least size of letters and lines.
+
+    Raises:
+        BuildError: if a label, the mark of pad 1, the title or the arrow has no room, with the
+            numbers. References of parts are left out where they have none.
     """
-    front, back = Clear.of(board, "front"), Clear.of(board, "back")
-    page = _Page(front, back)
-    page.labels(board, finger.connector)
-    cells = front.clipped(cell_edges(finger.cells, pitch_mm))
-    page.lines("front", cells)
-    components = page.references(board.components)
-    page.side_title(board)
-    page.back_title(board, finger, mark)
+    page = Page(board, rules)
+    _labels(page, finger.connector)
+    page.lines("front", page.sides["front"].clipped(cell_edges(finger.cells, pitch_mm)))
+    components = _references(page)
+    arrows = [_along_the_edges(page), _back(page, finger, mark)]
+    if not any(arrows):
+        page.miss("the arrow to the tip", 3.0, 1.0, board.outline.centre_mm)
+    page.refuse_losses()
     return dataclasses.replace(
         board, components=components, silk=tuple(page.strokes), texts=tuple(page.texts)
     )
 
 
-class _Page:
-    """Both sides while they are drawn: what is printed takes its room."""
-
-    def __init__(self, front: Clear, back: Clear) -> None:
-        self.sides: dict[Side, Clear] = {"front": front, "back": back}
-        self.strokes: list[tuple[Side, Stroke]] = []
-        self.texts: list[tuple[Side, Text]] = []
-
-    def lines(self, side: Side, lines: Iterable[LineString]) -> None:
-        """Print lines."""
-        for line in lines:
-            self.strokes.append((side, Stroke(tuple(line.coords), LINE_MM)))
-            self.sides[side].take(line.buffer(LINE_MM / 2))
-
-    def first_free(self, side: Side, choices: Iterable[Text]) -> bool:
-        """Print a text at the first of some places that is free."""
-        for text in choices:
-            if self.sides[side].free(box := extent(text, side)):
-                self.texts.append((side, text))
-                self.sides[side].take(box)
-                return True
-        return False
-
-    def labels(self, board: Placement, wires: Connector) -> None:
-        """Signals at the wire pads and, on the back, at the test points; pin 1."""
-        half = wires.pad_mm / 2
-        for signal, at in zip(wires.signals, wires.pads, strict=True):
-            self.first_free("front", _beside(signal, at, half, wires.pitch_mm))
-        (x, y), steps = wires.pads[0], np.arange(0.6, 5.0, _STEP_MM).tolist()
-        self.first_free("front", (Text("1", x - half - step, y, _HEIGHT_MM) for step in steps))
-        for part in board.components:
-            if part.kind == "test point":
-                around = part.footprint.body.length_mm / 2
-                at = part.x_mm, part.y_mm
-                self.first_free(part.side, _beside(part.value, at, around, wires.pitch_mm))
-
-    def references(self, components: tuple[Component, ...]) -> tuple[Component, ...]:
-        """Parts with their references where there is room: at the cells for all or for none."""
-        shown = {part.ref: self.reference(part) for part in components if part.kind in _SHOWN}
-        cells = [part for part in components if part.kind in _AT_CELLS]
-        places = [self.place_of(part) for part in cells]
-        if all(places):
-            shown |= {part.ref: self.printed(part, text)
-                      for part, text in zip(cells, places, strict=True) if text}  # fmt: skip
-        return tuple(shown.get(part.ref, part) for part in components)
-
-    def reference(self, part: Component) -> Component:
-        """A part with its reference if there is room."""
-        text = self.place_of(part)
-        return self.printed(part, text) if text else part
-
-    def place_of(self, part: Component) -> Text | None:
-        """A free place for a part's reference, on the board."""
-        yard = courtyard(part)
-        middle = yard.centre_mm
-        up = yard.length_mm / 2 + _HEIGHT_MM + _APART_MM
-        aside = yard.width_mm / 2 + _HEIGHT_MM + _APART_MM
-        (x, y), r = middle, part.ref
-        long = yard.length_mm / 2 + _HEIGHT_MM / 2 + _width_mm(r, _HEIGHT_MM) / 2
-        choices = [
-            Text(r, x, y + up, _HEIGHT_MM), Text(r, x, y - up, _HEIGHT_MM),
-            Text(r, x - aside, y, _HEIGHT_MM, angle_deg=90.0),
-            Text(r, x + aside, y, _HEIGHT_MM, angle_deg=90.0),
-            Text(r, x, y + long, _HEIGHT_MM, angle_deg=90.0),
-        ]  # fmt: skip
-        if part.kind == "multiplexer":
-            choices.insert(0, Text(r, x, y, 1.2, 0.15))
-        side = self.sides[part.side]
-        room = (extent(text, part.side).buffer(_APART_MM) for text in choices)
-        return next((t for t, box in zip(choices, room, strict=True) if side.free(box)), None)
-
-    def printed(self, part: Component, text: Text) -> Component:
-        """A part with its reference at a place on the board, told in its footprint's frame."""
-        self.sides[part.side].take(extent(text, part.side))
-        x, y = _in_footprint(part, (text.x_mm, text.y_mm))
-        angle = text.angle_deg - part.angle_deg
-        local = dataclasses.replace(
-            text, text="", x_mm=x, y_mm=y, angle_deg=angle if part.side == "front" else -angle
-        )
-        return dataclasses.replace(part, ref_text=local)
-
-    def side_title(self, board: Placement) -> None:
-        """Along the long edges: arrow to the tip and name; finger, revision and design."""
-        box = board.outline
-        told = f"{board.finger} rev {board.revision}  {board.design_hash[:8]}"
-        for sign, text in ((-1, board.name), (1, told)):
-            edge = box.x_min_mm if sign < 0 else box.x_max_mm
-            xs = [edge - sign * d for d in np.arange(_TITLE_MM, 4.0, _STEP_MM).tolist()]
-            ys = np.arange(box.y_max_mm - 2.0, box.y_min_mm, -_STEP_MM).tolist()
-            if sign < 0:
-                self.arrow("front", xs, ys)
-            for height in (_TITLE_MM, _HEIGHT_MM):
-                if self.first_free(
-                    "front",
-                    (Text(text, x, y, height, 0.15 * height, 90.0) for x in xs for y in ys),
-                ):
-                    break
-
-    def arrow(self, side: Side, xs: list[float], ys: list[float]) -> None:
-        """An arrow to the tip with its word below, at the first free place."""
-        for x in xs:
-            for y in ys:
-                word = Text("TIP", x, y - _ARROW_MM - 1.5, _HEIGHT_MM, angle_deg=90.0)
-                room = shapely.box(x - _HEAD_MM / 2, y - _ARROW_MM, x + _HEAD_MM / 2, y)
-                free = self.sides[side].free
-                if free(room.buffer(LINE_MM)) and free(extent(word, side)):
-                    head = LineString([(x - _HEAD_MM / 2, y - _HEAD_MM), (x, y),
-                                       (x + _HEAD_MM / 2, y - _HEAD_MM)])  # fmt: skip
-                    self.lines(side, [head, LineString([(x, y - _ARROW_MM), (x, y)])])
-                    self.first_free(side, [word])
-                    self.sides[side].take(extent(word, side).buffer(_TITLE_MM))
-                    return
-
-    def back_title(self, board: Placement, finger: Finger, mark: str) -> None:
-        """On the back, where there are no cells: the whole title, and what the marks mean."""
-        zone = next(zone.box for zone in finger.zones if zone.name == "cells")
-        x, y = zone.centre_mm
-        lines = (
-            (board.name, 2.0), (f"{board.finger} board  rev {board.revision}", 1.5),
-            (f"design {board.design_hash[:8]}", 1.5), (f"bracket: {mark}", 1.2),
-        )  # fmt: skip
-        widest = max(_width_mm(told, height) for told, height in lines)
-        scale = min(1.0, (board.outline.width_mm - 4 * _TITLE_MM) / widest)
-        y += scale * sum(height * 1.8 for _, height in lines) / 2
-        for told, height in lines:
-            h = scale * height
-            y -= 0.9 * h
-            self.first_free("back", [Text(told, x, y, h, 0.15 * h)])
-            y -= 0.9 * h
-        self.arrow("back", [x], np.arange(y - 0.5, zone.y_min_mm, -_STEP_MM).tolist())
+def _labels(page: Page, wires: Connector) -> None:
+    """Signals at the wire pads and, on the back, at the test points; pin 1."""
+    half = wires.pad_mm / 2
+    _row(page, "front", wires.signals, wires.pads, half)
+    x, y = wires.pads[0]
+    out = half + np.arange(0.6, _BESIDE_MM, _STEP_MM)
+    places = [*((x - d, y) for d in out), *((x, y + s * d) for d in out for s in (-1, 1))]
+    if not page.first_free("front", (page.text("1", at) for at in places)):
+        page.miss("the mark '1' of the first wire pad", page.text("1", (x, y)).height_mm,
+                  page.length_mm("1"), (x, y))  # fmt: skip
+    points = [part for part in page.board.components if part.kind == "test point"]
+    for side in ("front", "back"):
+        here = sorted((p for p in points if p.side == side), key=lambda p: (p.y_mm, p.x_mm))
+        if here:
+            at = tuple((part.x_mm, part.y_mm) for part in here)
+            half = here[0].footprint.body.length_mm / 2
+            _row(page, "front" if side == "front" else "back",
+                 tuple(p.value for p in here), at, half)  # fmt: skip
 
 
-def _beside(signal: str, at: Point, half_mm: float, pitch_mm: float) -> Iterator[Text]:
-    """Places for the name of a pad in a row: above it, upright above it, below, to the left."""
+def _row(
+    page: Page, side: Side, signals: Sequence[str], pads: Sequence[Point], half_mm: float
+) -> None:
+    """The names of pads in a row: all alike if there is room, else each where it has some."""
+    choices = [
+        list(_beside(page, signal, at, half_mm)) for signal, at in zip(signals, pads, strict=True)
+    ]
+    for texts in map(list, zip(*choices, strict=True)):
+        flat = texts[0].angle_deg == 0.0
+        if flat and len(texts) > 1:
+            for end, sign in ((0, -1), (-1, 1)):
+                texts[end] = dataclasses.replace(
+                    texts[end], x_mm=texts[end].x_mm + sign * _OUTWARD_MM
+                )
+        if page.free(side, texts, _LABEL_GAP_MM if flat else page.rules.silk_gap_mm):
+            page.put(side, texts)
+            return
+    for signal, at, places in zip(signals, pads, choices, strict=True):
+        if not page.first_free(side, places):
+            text = places[0]
+            page.miss(f"the label {signal!r}", text.height_mm, page.length_mm(signal), at)
+
+
+def _beside(page: Page, signal: str, at: Point, half_mm: float) -> Iterator[Text]:
+    """Places for the name of a pad in a row: above it, upright above it, both ways below it."""
     x, y = at
-    flat = Text(signal, x, y + half_mm + _HEIGHT_MM * 0.75, _HEIGHT_MM)
-    length = _width_mm(signal, _HEIGHT_MM)
-    upright = Text(signal, x, y + half_mm + 0.25 + length / 2, _HEIGHT_MM, angle_deg=90.0)
-    if length < pitch_mm - GAP_MM:
-        yield flat
-    yield upright
-    yield dataclasses.replace(flat, y_mm=y - half_mm - _HEIGHT_MM * 0.75)
-    yield dataclasses.replace(flat, x_mm=x - half_mm - 0.3 - length / 2, y_mm=y)
+    length = page.length_mm(signal)
+    text = page.text(signal, at)
+    off = half_mm + MASK_MM + page.rules.silk_gap_mm + _SPARE_MM
+    flat = off + (text.height_mm + text.width_mm) / 2
+    upright = off + length / 2
+    for sign in (1, -1):
+        yield page.text(signal, (x, y + sign * flat))
+        yield page.text(signal, (x, y + sign * upright), angle_deg=90.0)
 
 
-def _width_mm(told: str, height_mm: float) -> float:
-    low, _, high, _ = extent(Text(told, 0.0, 0.0, height_mm), "front").bounds
-    return float(high - low)
+def _references(page: Page) -> tuple[Component, ...]:
+    """Parts with their references where there is room: at the cells for all or for none."""
+    components = page.board.components
+    shown = {}
+    for part in components:
+        if part.kind in _SHOWN and (text := _place_of(page, part)):
+            shown[part.ref] = _printed(page, part, text)
+    cells = [part for part in components if part.kind in _AT_CELLS]
+    places = [_place_of(page, part) for part in cells]
+    if all(places):
+        shown |= {part.ref: _printed(page, part, text)
+                  for part, text in zip(cells, places, strict=True) if text}  # fmt: skip
+    return tuple(shown.get(part.ref, part) for part in components)
+
+
+def _place_of(page: Page, part: Component) -> Text | None:
+    """A free place for a part's reference, on the board."""
+    yard = courtyard(part)
+    (x, y), r = yard.centre_mm, part.ref
+    height = page.text(r, (x, y)).height_mm
+    choices: list[Text] = []
+    for closer in (0.0, 0.1, 0.2, 0.3):
+        off = height + page.rules.silk_gap_mm - closer
+        up, aside = (size / 2 + off for size in (yard.length_mm, yard.width_mm))
+        long = (yard.length_mm + height + page.length_mm(r)) / 2 - closer
+        choices += [
+            page.text(r, (x, y + up)), page.text(r, (x, y - up)),
+            page.text(r, (x - aside, y), angle_deg=90.0),
+            page.text(r, (x + aside, y), angle_deg=90.0),
+            page.text(r, (x, y + long), angle_deg=90.0),
+        ]  # fmt: skip
+    if part.kind == "multiplexer":
+        choices.insert(0, page.text(r, (x, y), 1.2))
+    side = page.sides[part.side]
+    room = (extent(text, part.side).buffer(_APART_MM) for text in choices)
+    return next((t for t, box in zip(choices, room, strict=True) if side.free(box)), None)
+
+
+def _printed(page: Page, part: Component, text: Text) -> Component:
+    """A part with its reference at a place on the board, told in its footprint's frame."""
+    page.sides[part.side].take(extent(text, part.side))
+    x, y = _in_footprint(part, (text.x_mm, text.y_mm))
+    angle = text.angle_deg - part.angle_deg
+    local = dataclasses.replace(
+        text, text="", x_mm=x, y_mm=y, angle_deg=angle if part.side == "front" else -angle
+    )
+    return dataclasses.replace(part, ref_text=local)
+
+
+def _along_the_edges(page: Page) -> bool:
+    """Along the long edges of the front where there is room: arrow to the tip and name; finger,
+    revision and design. Tells whether the arrow is there."""
+    board, box = page.board, page.board.outline
+    ys = np.arange(box.y_max_mm - 2.0, box.y_min_mm, -_STEP_MM).tolist()
+    inwards = np.arange(_TITLE_MM, 4.0, _STEP_MM).tolist()
+    left, right = ([edge + sign * d for d in inwards]
+                   for edge, sign in ((box.x_min_mm, 1), (box.x_max_mm, -1)))  # fmt: skip
+    arrow = page.arrow("front", ((x, y) for x in left for y in ys))
+    told = f"{board.finger} rev {board.revision}  {board.design_hash[:8]}"
+    for xs, line in ((left, board.name), (right, told)):
+        for height in (_TITLE_MM, 0.0):
+            if page.first_free(
+                "front", (page.text(line, (x, y), height, 90.0) for x in xs for y in ys)
+            ):
+                break
+    return arrow
+
+
+def _back(page: Page, finger: Finger, mark: str) -> bool:
+    """On the back, where there are no cells: the whole title, what the marks mean, an arrow.
+    Tells whether the arrow is there."""
+    board = page.board
+    zone = next(zone.box for zone in finger.zones if zone.name == "cells")
+    lines = (
+        (board.name, 2.0), (f"{board.finger} board  rev {board.revision}", 1.5),
+        (f"design {board.design_hash[:8]}", 1.5), (f"bracket: {mark}", 1.2),
+    )  # fmt: skip
+    x, y = zone.centre_mm
+    room = page.block("back", lines, (x, y))
+    if room is None:
+        longest = max(page.length_mm(told) for told, _ in lines)
+        page.miss("the title on the back", page.text("", (x, y)).height_mm * 1.8 * len(lines),
+                  longest, (x, y))  # fmt: skip
+        return False
+    x = room.centre_mm[0]
+    below = [(x, room.y_min_mm - d) for d in np.arange(0.5, 10.0, _STEP_MM).tolist()]
+    return page.arrow("back", [*below, *page.anywhere((x, y))])
 
 
 def _in_footprint(part: Component, at: Point) -> Point:

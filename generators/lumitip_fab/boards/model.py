@@ -88,6 +88,8 @@ class Component:
     ref_text: Text | None = None
     """Reference on the silkscreen, in the footprint's frame; none where there is no room."""
     manufacturer: str = ""
+    lcsc: str = ""
+    """Number at the distributor LCSC, where it is known."""
 
 
 @dataclass(frozen=True)

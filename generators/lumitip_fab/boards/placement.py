@@ -77,7 +77,7 @@ def place(
         texts=(),
     )
     marked = packages.led if finger.name == "emitter" else packages.photodetector
-    return with_legend(bare, finger, reading.pitch_mm, marked.marked)
+    return with_legend(bare, finger, reading.pitch_mm, marked.marked, rules)
 
 
 def _emitter(

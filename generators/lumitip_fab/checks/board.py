@@ -1,4 +1,4 @@
-"""The boards' KiCad files: cells, edge, holes, heights, copper and circuit, each measured."""
+"""The boards' KiCad files: cells, edge, holes, heights, copper, circuit and silkscreen."""
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -14,6 +14,7 @@ from lumitip_fab.checks.board_place import (
     measure_outline,
 )
 from lumitip_fab.checks.board_read import Read
+from lumitip_fab.checks.board_silk import measure_silk, measure_targets
 from lumitip_fab.checks.kicad_board import read_board
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.design import Design, Finger
@@ -24,7 +25,7 @@ READS = ("boards/*.kicad_pcb",)
 Step = Callable[[Read], Iterator[Measurement]]
 _BOTH: tuple[Step, ...] = (
     measure_cells, measure_outline, measure_holes, measure_heights, measure_copper, measure_nets,
-    measure_connector,
+    measure_connector, measure_silk, measure_targets,
 )  # fmt: skip
 
 

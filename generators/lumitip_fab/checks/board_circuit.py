@@ -7,10 +7,12 @@ import numpy as np
 
 from lumitip_fab.checks.board_read import Read, ohm
 from lumitip_fab.checks.channel_map import channels
+from lumitip_fab.checks.kicad_board import Part
 from lumitip_fab.checks.result import Measurement
 
 CURRENT_SHARE = 0.02
 WIRE_MM = 0.001
+BYPASS_MM = 4.0  # from a supply lead to its capacitor, at most
 GROUND = "GND"
 
 
@@ -41,6 +43,7 @@ def measure_channels(read: Read) -> Iterator[Measurement]:
     yield read.count("channels", wrong + spare, "channels")
     yield read.count("names", list(found.doubts), "channels")
     yield read.count("service", list(_unserved(read)), "leads")
+    yield from _bypasses(read)
     yield read.count("polarity", _reversed_detectors(read), "detectors")
 
 
@@ -105,10 +108,36 @@ def _unserved(read: Read) -> Iterator[str]:
                 yield f"U{which} lead {lead} is not at {signal}"
         if not _bridged(read, "R", {read.wire(supply), read.wire(pin)}, design.wiring.pull_up_ohm):
             yield f"{pin} has no pull-up of {design.wiring.pull_up_ohm:g} ohm"
-    bypasses = [ref for ref in read.parts if ref.startswith("C")
-                and _ends(read, ref) == {read.wire(supply), read.wire(GROUND)}]  # fmt: skip
-    if len(bypasses) < design.wiring.muxes:
-        yield f"{len(bypasses)} capacitors for {design.wiring.muxes} multiplexers"
+
+
+def _bypasses(read: Read) -> Iterator[Measurement]:
+    """From each multiplexer's supply and ground leads to the pads of a capacitor of its own."""
+    leads, supply = read.design.packages.multiplexer, read.finger.connector.signals[1]
+    rails = read.wire(supply), read.wire(GROUND)
+    free = {ref: part for ref, part in read.parts.items()
+            if ref.startswith("C") and _ends(read, ref) == set(rails)}  # fmt: skip
+    far: list[tuple[float, float]] = []
+    for which in range(1, read.design.wiring.muxes + 1):
+        mux = read.parts.get(f"U{which}")
+        own = min(free, key=lambda ref: _reach(read, mux, leads.supply, free[ref]), default=None)
+        chip = free.pop(own) if own else None
+        far.append((_reach(read, mux, leads.supply, chip), _reach(read, mux, leads.ground, chip)))
+    across = math.hypot(leads.body_mm[0], leads.lead_tips_mm)  # the two are at opposite corners
+    for name, worst, limit in (
+        ("bypass_supply", max(d for d, _ in far), BYPASS_MM),
+        ("bypass_ground", max(d for _, d in far), BYPASS_MM + across),
+    ):
+        yield read.figure(name, worst, 0, limit, note="from a multiplexer to its capacitor")
+
+
+def _reach(read: Read, mux: Part | None, lead: int, chip: Part | None) -> float:
+    """From a lead to the pad of a part that is on the same net; infinite without either."""
+    if mux is None or chip is None:
+        return math.inf
+    net = read.group(mux.ref, lead)
+    ends = [t.at for t in mux.terminals if t.number == str(lead)]
+    pads = [t.at for t in chip.terminals if read.group(chip.ref, t.number) == net]
+    return min((math.dist(a, b) for a in ends for b in pads), default=math.inf)
 
 
 def _bridged(read: Read, letter: str, ends: set[int | None], value: float) -> bool:

@@ -61,7 +61,8 @@ def measure_holes(read: Read) -> Iterator[Measurement]:
 
 
 def measure_heights(read: Read) -> Iterator[Measurement]:
-    """Parts on the front under the silicone, those on the back in their room in the pocket."""
+    """Heights of the parts by their footprints' names: those on the front at most the silicone's
+    thickness, those on the back with room to the walls and the floor of their relief."""
     tall = {part.ref: _height_mm(part) for part in read.board.parts if part.terminals}
     front = [tall[p.ref] for p in read.board.parts if p.terminals and p.front]
     highest = max(front, key=lambda h: math.inf if math.isnan(h) else h, default=math.nan)

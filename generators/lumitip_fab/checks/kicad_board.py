@@ -10,6 +10,7 @@ from pathlib import Path
 from shapely.geometry.base import BaseGeometry
 
 from lumitip_fab.checks import kicad_shapes as shapes
+from lumitip_fab.checks.kicad_silk import Silk, silk
 from lumitip_fab.checks.kicad_text import Node, child, children, numbers, read_nodes, words
 from lumitip_fab.errors import OutputError
 
@@ -70,6 +71,8 @@ class KicadBoard:
     """Copper layers from front to back."""
     edges: tuple[BaseGeometry, ...]
     """Lines of the outline."""
+    silk: Silk
+    """What is printed."""
 
     def copper(self) -> Iterator[Copper]:
         """Every piece of copper."""
@@ -111,7 +114,7 @@ class _Reader:
         parts = tuple(self.part(node) for node in children(self.root, "footprint", "module"))
         lines = children(self.root, "gr_line", "gr_arc", "gr_circle", "gr_rect", "gr_poly")
         edges = [shapes.outline(n) for n in lines if words(child(n, "layer")) == ["Edge.Cuts"]]
-        return KicadBoard(parts, tuple(loose), self.layers, tuple(edges))
+        return KicadBoard(parts, tuple(loose), self.layers, tuple(edges), silk(self.root))
 
     def net(self, node: Node) -> str:
         """Net of a pad, track, via or zone: by number until KiCad 9, then by name."""

@@ -1,34 +1,36 @@
-"""What is sent to the board houses, against the board files: layers, drills, parts, places."""
+"""What is sent to the board houses, against the board files: layers, parts, places, note."""
 
 import csv
 import io
 import math
+import re
 import zipfile
 from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
-import shapely
-from shapely.geometry.base import BaseGeometry
 
 from lumitip_fab.checks.board_read import Read
-from lumitip_fab.checks.gerber_read import drilled, gerber_area
 from lumitip_fab.checks.kicad_board import Part, read_board
+from lumitip_fab.checks.order_layers import Painted, measure_layers
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.design import Design, Fab
 from lumitip_fab.errors import OutputError
 
 READS = ("boards/*.kicad_pcb", "boards/*.zip", "boards/*.csv")
-AREA_SHARE = 0.001  # of the copper
 PLACE_MM = 0.001
-MASK_GAP_MM = 0.1  # an opening round a pad, each side, at most
 TURN_DEG = 0.1
-_SIDES = ("front", "back")
 _Files = dict[str, bytes]
+_TERMINALS = re.compile(
+    r"^(?P<ref>[DQ]\d+)  (?P<one>[a-z]+) (?P<x1>\S+) (?P<y1>\S+)  "
+    r"(?P<other>[a-z]+) (?P<x2>\S+) (?P<y2>\S+)$",
+    re.MULTILINE,
+)
+"""A row of the assembly note: a part, the terminal at pad 1 and the other, each with its place."""
 
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
-    """Every zip of both boards; the layers of the first, which the others are to equal."""
+    """Every zip of both boards; all are to have the same layers."""
     for finger in design.fingers:
         folder = outputs / "boards" / finger.name
         subject = f"boards/{finger.name}/{finger.name}.kicad_pcb"
@@ -37,7 +39,8 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
         except OutputError as error:
             yield unreadable("orders.board", subject, str(error))
             continue
-        first: _Files | None = None
+        painted: Painted = {}
+        first: _Files = {}
         for fab in design.fabs:
             name = f"{fab.name}_{finger.name}.zip"
             path = f"boards/{finger.name}/order/{name}"
@@ -45,88 +48,15 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
                 files = _unzipped(folder / "order" / name)
                 layers = {key: files[finger.name + end] for key, end in fab.layers}
                 yield _tables_twice(path, folder / "order", fab, finger.name, files)
-                if first is None:
-                    yield from _layers(path, read, layers)
-                else:
-                    other = [key for key in first if first[key] != layers[key]]
-                    yield _count("same", path, other, "layers that differ")
+                yield from measure_layers(path, read, layers, painted)
                 first = first or layers
+                other = [key for key in first if first[key] != layers[key]]
+                yield _count("same", path, other, "layers that differ")
                 yield from _parts(path, read, fab, files)
+                note = files[f"{finger.name}_assembly.txt"].decode()
+                yield _count("note", path, list(_misled(read, note)), "parts")
             except (OSError, KeyError, ValueError, SyntaxError, zipfile.BadZipFile) as error:
                 yield unreadable("orders.readable", path, f"cannot be read: {error!r:.200}")
-
-
-def _layers(path: str, read: Read, layers: _Files) -> Iterator[Measurement]:
-    """Copper, mask, edge and drills against the board file."""
-    text = {key: data.decode() for key, data in layers.items()}
-    for side, layer in zip(_SIDES, (read.board.layers[0], read.board.layers[-1]), strict=True):
-        areas = [p.area for p in read.board.copper() if layer in p.layers]
-        copper = _in_sensor(read, shapely.union_all(areas))
-        painted = gerber_area(text[f"{side} copper"])
-        share = painted.symmetric_difference(copper).area / copper.area
-        yield Measurement("orders.copper", f"{path}: {side}", share, 0, AREA_SHARE, "of the copper")
-        pads = [t.copper.area for part in read.board.parts for t in part.terminals
-                if t.copper is not None and layer in t.copper.layers]  # fmt: skip
-        covered = _in_sensor(read, shapely.union_all(pads)) - gerber_area(text[f"{side} mask"])
-        yield Measurement("orders.mask", f"{path}: {side}", covered.area, 0, PLACE_MM, "mm²",
-                          "of pads under the mask")  # fmt: skip
-        bare = gerber_area(text[f"{side} mask"]) - _in_sensor(read, _openable(read, layer))
-        yield Measurement("orders.exposed", f"{path}: {side}", bare.area, 0, PLACE_MM, "mm²",
-                          "open away from pads and holes")  # fmt: skip
-        soldered = _in_sensor(read, _soldered(read, layer))
-        off = gerber_area(text[f"{side} paste"]).symmetric_difference(soldered).area
-        yield Measurement("orders.paste", f"{path}: {side}", off, 0, PLACE_MM, "mm²",
-                          "differs from the pads of mounted parts")  # fmt: skip
-    edge = gerber_area(text["outline"]).bounds
-    wanted = _in_sensor(read, shapely.union_all(list(read.board.edges))).bounds
-    pen = (np.subtract(edge, wanted) * (-1, -1, 1, 1)).tolist()
-    off = max(pen) - min(pen)
-    yield Measurement("orders.outline", path, off, 0, PLACE_MM, "mm", "from the board's edge")
-    plated = [(t.at, t.drill_mm) for part in read.board.parts for t in part.terminals
-              if t.copper is not None and t.drill_mm]  # fmt: skip
-    vias = [((p.area.centroid.x, p.area.centroid.y), p.drill_mm)
-            for p in read.board.loose if p.kind == "via"]  # fmt: skip
-    holes = [(t.at, t.drill_mm) for t in read.holes]
-    for key, told in (("plated", plated + vias), ("unplated", holes)):
-        off = _apart(read, drilled(text[key]), told)
-        note = f"worst of {len(told)} {key} holes"
-        yield Measurement("orders.drills", path, off, 0, PLACE_MM, "mm", note)
-
-
-def _openable(read: Read, layer: str) -> BaseGeometry:
-    """Where the mask may be open on a layer: pads and holes with a gap, marks with their ring."""
-    areas = []
-    for part in read.board.parts:
-        for t in part.terminals:
-            if t.copper is None:
-                areas.append(shapely.Point(t.at).buffer(t.drill_mm / 2 + MASK_GAP_MM))
-            elif layer in t.copper.layers:
-                left, _, right, _ = t.copper.area.bounds
-                ring = (right - left) / 2 if part.footprint.startswith("Fiducial") else 0.0
-                areas.append(t.copper.area.buffer(ring + MASK_GAP_MM))
-    return shapely.union_all(areas)
-
-
-def _soldered(read: Read, layer: str) -> BaseGeometry:
-    """Pads on a layer of the parts that are mounted on it."""
-    return shapely.union_all([
-        t.copper.area for part in read.board.parts if "exclude_from_bom" not in part.attributes
-        for t in part.terminals
-        if t.copper is not None and not t.drill_mm and layer in t.copper.layers
-    ])  # fmt: skip
-
-
-def _apart(
-    read: Read, found: list[tuple[float, float, float]],
-    wanted: list[tuple[tuple[float, float], float]],
-) -> float:  # fmt: skip
-    """Worst place or diameter of a hole; NaN if there are more or fewer."""
-    if len(found) != len(wanted) or not found:
-        return math.nan
-    places = read.sensor([at for at, _ in wanted])
-    told = np.column_stack([places, [size for _, size in wanted]])
-    order = [np.lexsort(np.round(a, 2).T) for a in (told, np.array(found))]
-    return float(np.abs(told[order[0]] - np.array(found)[order[1]]).max())
 
 
 def _parts(path: str, read: Read, fab: Fab, files: _Files) -> Iterator[Measurement]:
@@ -182,15 +112,32 @@ def _turned_by(row: dict[str, str], part: Part, fab: Fab) -> float:
     return abs((float(row["angle_deg"]) - seen + 180) % 360 - 180)
 
 
+def _misled(read: Read, note: str) -> Iterator[str]:
+    """Parts with polarity of which the assembly note tells another place of a terminal than the
+    board has, or another terminal at the mark than the catalogue."""
+    chip = read.design.packages.led if read.finger.name == "emitter" else (
+        read.design.packages.photodetector)  # fmt: skip
+    told = {m["ref"]: m for m in _TERMINALS.finditer(note)}
+    if f"pad 1 is the {chip.marked}" not in note or (
+        chip.confidence != "datasheet" and f"{chip.marked} is {chip.confidence}" not in note
+    ):
+        yield "the mark"
+    for part in (p for p in read.board.parts if re.fullmatch(r"[DQ]\d+", p.ref)):
+        row, pads = told.get(part.ref), {t.number: t.at for t in part.terminals}
+        wanted = read.sensor([pads["1"], pads["2"]])
+        if row is None or row["one"] != chip.marked or row["other"] == chip.marked:
+            yield part.ref
+            continue
+        given = [[float(row["x1"]), float(row["y1"])], [float(row["x2"]), float(row["y2"])]]
+        if np.abs(wanted - given).max() > PLACE_MM:
+            yield part.ref
+
+
 def _tables_twice(path: str, folder: Path, fab: Fab, name: str, files: _Files) -> Measurement:
     """The tables beside a zip are those inside it."""
     told = (f"{name}_bom.csv", f"{name}_positions.csv")
     differ = [t for t in told if (folder / f"{fab.name}_{t}").read_bytes() != files[t]]
     return _count("tables", path, differ, "tables that differ")
-
-
-def _in_sensor(read: Read, area: BaseGeometry) -> BaseGeometry:
-    return shapely.transform(area, read.sensor)
 
 
 def _count(check: str, path: str, wrong: list[str], unit: str) -> Measurement:

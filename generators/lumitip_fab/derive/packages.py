@@ -4,9 +4,11 @@ from lumitip_fab import catalogue
 from lumitip_fab.derive import placing
 from lumitip_fab.derive.faults import Faults
 from lumitip_fab.design import Chip, Fab, Multiplexer, Packages, Rules
+from lumitip_fab.fab_entry import Silk
 from lumitip_fab.load import Input
 
 LEAST_RING_MM = 0.1  # copper round the hole of a via
+COMMON_SILK = Silk(text_mm=0.8, line_mm=0.15, gap_mm=0.15)  # where the catalogue has no house
 
 
 def derive_packages(given: Input) -> Packages:
@@ -38,6 +40,7 @@ def derive_packages(given: Input) -> Packages:
             ground=mux.ground,
             enable=mux.enable,
             negative=mux.negative,
+            lcsc=mux.lcsc,
         ),
     )
 
@@ -51,6 +54,8 @@ def _chip(entry: catalogue.Chip, value: str = "", marked: str = "") -> Chip:
         pad_mm=entry.pad_mm,
         pad_pitch_mm=entry.pad_pitch_mm,
         marked=marked,
+        confidence=entry.confidence,
+        lcsc=entry.lcsc,
     )
 
 
@@ -76,6 +81,7 @@ def derive_rules(given: Input, faults: Faults) -> Rules:
         "board.supply_track_mm",
         f"{board.supply_track_mm:g} given, at least board.track_mm = {board.track_mm:g} is needed",
     )
+    silks = [fab.silk for fab in given.catalogue.fabs.values()] or [COMMON_SILK]
     return Rules(
         part_gap_mm=board.clearance_mm,
         track_mm=board.track_mm,
@@ -84,6 +90,9 @@ def derive_rules(given: Input, faults: Faults) -> Rules:
         via_mm=board.via_mm,
         via_drill_mm=board.via_drill_mm,
         edge_gap_mm=placing.HOLE_CLEARANCE_MM,
+        silk_text_mm=max(silk.text_mm for silk in silks),
+        silk_line_mm=max(silk.line_mm for silk in silks),
+        silk_gap_mm=max(silk.gap_mm for silk in silks),
     )
 
 
@@ -98,6 +107,7 @@ def derive_fabs(given: Input) -> tuple[Fab, ...]:
             sides=fab.sides,
             back_from_behind=fab.back_angle == "from behind",
             rotations=tuple(fab.rotations.items()),
+            remark=fab.remark,
         )
         for name, fab in given.catalogue.fabs.items()
     )

@@ -158,6 +158,11 @@ class Chip:
     pad_pitch_mm: float
     marked: str
     """Terminal that the part's mark shows, which is pad 1; empty of parts without polarity."""
+    confidence: str
+    """How far to trust the catalogue's figures of it: "datasheet", "measured", "inferred" or
+    "assumed"."""
+    lcsc: str
+    """Number at the distributor LCSC; empty where it is not known."""
 
 
 @dataclass(frozen=True)
@@ -186,6 +191,8 @@ class Multiplexer:
     enable: int
     """Active low."""
     negative: int | None
+    lcsc: str
+    """Number at the distributor LCSC; empty where it is not known."""
 
 
 @dataclass(frozen=True)
@@ -213,6 +220,12 @@ class Rules:
     via_drill_mm: float
     edge_gap_mm: float
     """Copper to the board's edge and to unplated holes."""
+    silk_text_mm: float
+    """Height of the smallest letters that every board house prints legibly."""
+    silk_line_mm: float
+    """Width of the thinnest lines."""
+    silk_gap_mm: float
+    """Silkscreen to pads."""
 
 
 @dataclass(frozen=True)

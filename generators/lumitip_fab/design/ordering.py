@@ -23,3 +23,5 @@ class Fab:
     are told as KiCad tells them."""
     rotations: tuple[tuple[str, float], ...]
     """What is added to the angle (degrees) of footprints whose name begins so."""
+    remark: str
+    """What to mind when ordering there; may be empty."""

@@ -28,14 +28,15 @@ def bought(board: Placement) -> list[Component]:
 
 def bom_rows(board: Placement) -> Iterator[Row]:
     """The rows by field."""
-    kinds: dict[tuple[str, str, str, str], list[str]] = {}
+    kinds: dict[tuple[str, ...], list[str]] = {}
     for part in bought(board):
-        key = (part.manufacturer, part.part, part.value, part.footprint.name)
+        key = (part.manufacturer, part.part, part.value, part.footprint.name, part.lcsc)
         kinds.setdefault(key, []).append(part.ref)
-    for item, ((manufacturer, number, value, footprint), refs) in enumerate(kinds.items(), 1):
+    for item, ((manufacturer, number, value, footprint, lcsc), refs) in enumerate(kinds.items(), 1):
         yield {
             "item": str(item), "refs": ",".join(refs), "quantity": str(len(refs)),
             "manufacturer": manufacturer, "part": number, "value": value, "footprint": footprint,
+            "lcsc": lcsc,
         }  # fmt: skip
 
 

@@ -1,0 +1,91 @@
+"""The note for who places the parts: which way round each of them goes, and what is not certain."""
+
+from collections.abc import Iterator
+
+from lumitip_fab.boards.fab.lists import bom_rows, bought
+from lumitip_fab.boards.geometry import pad_at
+from lumitip_fab.boards.model import Placement
+from lumitip_fab.design import Chip, Fab, Packages
+
+_OTHER = {"anode": "cathode", "cathode": "anode", "collector": "emitter", "emitter": "collector"}
+_POLAR = {"led": "LED", "photodetector": "photodetector"}
+
+
+def assembly_note(board: Placement, packages: Packages, fab: Fab) -> bytes:
+    """Plain text: what marks mean, how far to trust that, and where each terminal goes.
+
+    Args:
+        board: parts in their places.
+        packages: for the terminal that a part's mark shows, and its confidence.
+        fab: the board house, whose remark is added.
+    """
+    emitter = board.finger == "emitter"
+    chip = packages.led if emitter else packages.photodetector
+    lines = [
+        f"{board.name}: {board.finger} board, revision {board.revision}, "
+        f"design {board.design_hash[:8]}",
+        "",
+        *_polarity(board, chip, "led" if emitter else "photodetector"),
+        *_others(board),
+        *_ordering(board, fab),
+        "Places of the terminals, in mm as in the Gerber files, seen from the front:",
+        *_places(board, chip),
+    ]
+    return "".join(f"{line}\n" for line in lines).encode()
+
+
+def _polarity(board: Placement, chip: Chip, kind: str) -> Iterator[str]:
+    parts = [part for part in bought(board) if part.kind == kind]
+    yield (
+        f"{_refs(board, kind)}, {parts[0].part} by {chip.manufacturer}: pad 1 is the "
+        f"{chip.marked}, pad 2 the {_OTHER[chip.marked]}. On the silkscreen a bracket stands round "
+        "pad 1, or a bar beside it."
+    )
+    if chip.confidence == "datasheet":
+        yield f"The mark on the part itself shows its {chip.marked}, by its datasheet."
+    else:
+        yield (
+            f"CHECK BEFORE PLACING: that the mark on the part itself shows its {chip.marked} is "
+            f"{chip.confidence}, not read from a datasheet. Hold a part against its leaflet; if "
+            f"its mark shows the {_OTHER[chip.marked]}, all {_POLAR[kind]}s are turned by 180 "
+            "degrees against the placement list."
+        )
+    yield ""
+
+
+def _others(board: Placement) -> Iterator[str]:
+    kinds = {part.kind for part in bought(board)}
+    if "multiplexer" in kinds:
+        yield f"{_refs(board, 'multiplexer')}: lead 1 is at the dot, on the notch's side."
+    plain = [_refs(board, kind) for kind in ("resistor", "capacitor") if kind in kinds]
+    yield f"{' and '.join(plain)}: either way round."
+    yield ""
+
+
+def _ordering(board: Placement, fab: Fab) -> Iterator[str]:
+    if fab.remark:
+        yield fab.remark
+        yield ""
+    if "lcsc" in (field for _, field in fab.bom):
+        unknown = [row["part"] for row in bom_rows(board) if not row["lcsc"]]
+        if unknown:
+            yield (
+                f"Without a number of the distributor in the bill of materials: "
+                f"{', '.join(unknown)}. Choose them by hand."
+            )
+            yield ""
+
+
+def _places(board: Placement, chip: Chip) -> Iterator[str]:
+    for part in bought(board):
+        if part.kind in _POLAR:
+            one, other = (pad_at(part, number) for number in ("1", "2"))
+            yield (
+                f"{part.ref}  {chip.marked} {one[0]:.3f} {one[1]:.3f}  "
+                f"{_OTHER[chip.marked]} {other[0]:.3f} {other[1]:.3f}"
+            )
+
+
+def _refs(board: Placement, kind: str) -> str:
+    refs = [part.ref for part in bought(board) if part.kind == kind]
+    return refs[0] if len(refs) == 1 else f"{refs[0]} to {refs[-1]}"

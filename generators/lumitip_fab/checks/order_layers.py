@@ -1,0 +1,158 @@
+"""The layers and drills of a zip, as areas and holes, against the board file."""
+
+import math
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+import shapely
+from shapely import affinity, box
+from shapely.geometry.base import BaseGeometry
+
+from lumitip_fab.checks.board_read import Read
+from lumitip_fab.checks.gerber_read import drilled, gerber_area
+from lumitip_fab.checks.kicad_silk import Word
+from lumitip_fab.checks.result import Measurement
+
+AREA_SHARE = 0.001  # of the copper
+PLACE_MM = 0.001
+MASK_GAP_MM = 0.1  # an opening round a pad, each side, at most
+INK_SHARE = 0.03  # of the room of a word, at least
+_ROUND_MM2 = 0.01  # what chords of round pens leave of all lines of a side
+_SIDES = ("front", "back")
+Painted = dict[bytes, BaseGeometry]
+"""Layers that were read before, by their bytes: the zips share most of them."""
+
+
+def measure_layers(
+    path: str, read: Read, layers: Mapping[str, bytes], painted: Painted
+) -> Iterator[Measurement]:
+    """Copper, mask, paste, silkscreen, edge and drills."""
+
+    def area(key: str) -> BaseGeometry:
+        data = layers[key]
+        if data not in painted:
+            painted[data] = gerber_area(data.decode())
+        return painted[data]
+
+    outline = _in_sensor(read, read.outline)
+    for side, layer in zip(_SIDES, (read.board.layers[0], read.board.layers[-1]), strict=True):
+        yield from _copper(f"{path}: {side}", read, layer, area(f"{side} copper"))
+        yield from _mask(f"{path}: {side}", read, layer, area(f"{side} mask"))
+        soldered = _in_sensor(read, _soldered(read, layer))
+        off = area(f"{side} paste").symmetric_difference(soldered).area
+        yield Measurement("orders.paste", f"{path}: {side}", off, 0, PLACE_MM, "mm²",
+                          "differs from the pads of mounted parts")  # fmt: skip
+        bare = shapely.union(area(f"{side} mask"), shapely.difference(_all(outline), outline))
+        yield from _silk(f"{path}: {side}", read, side == "front", area(f"{side} silk"), bare)
+    yield _edge(path, read, area("outline"))
+    yield from _drills(path, read, layers)
+
+
+def _copper(subject: str, read: Read, layer: str, painted: BaseGeometry) -> Iterator[Measurement]:
+    areas = [p.area for p in read.board.copper() if layer in p.layers]
+    copper = _in_sensor(read, shapely.union_all(areas))
+    share = painted.symmetric_difference(copper).area / copper.area
+    yield Measurement("orders.copper", subject, share, 0, AREA_SHARE, "of the copper")
+
+
+def _mask(subject: str, read: Read, layer: str, open_: BaseGeometry) -> Iterator[Measurement]:
+    pads = [t.copper.area for part in read.board.parts for t in part.terminals
+            if t.copper is not None and layer in t.copper.layers]  # fmt: skip
+    covered = _in_sensor(read, shapely.union_all(pads)) - open_
+    yield Measurement("orders.mask", subject, covered.area, 0, PLACE_MM, "mm²",
+                      "of pads under the mask")  # fmt: skip
+    bare = open_ - _in_sensor(read, _openable(read, layer))
+    yield Measurement("orders.exposed", subject, bare.area, 0, PLACE_MM, "mm²",
+                      "open away from pads and holes")  # fmt: skip
+
+
+def _silk(
+    subject: str, read: Read, front: bool, printed: BaseGeometry, bare: BaseGeometry
+) -> Iterator[Measurement]:
+    """What is printed: the board's lines, ink in the room of each of its words, and no more."""
+    silk = read.board.silk
+    lines = _in_sensor(
+        read, shapely.union_all([line.area for line in silk.lines if line.front == front])
+    )
+    rooms = [_in_sensor(read, _room(word)) for word in silk.words if word.front == front]
+    lost = shapely.difference(lines, printed).area
+    more = shapely.difference(printed, shapely.union_all([lines, *rooms]).buffer(PLACE_MM)).area
+    yield Measurement("orders.silk", subject, lost + more, 0, _ROUND_MM2, "mm²",
+                      "differs from the board's lines and words")  # fmt: skip
+    inked = [shapely.intersection(printed, room).area / room.area for room in rooms]
+    yield Measurement("orders.words", subject, min(inked, default=math.nan), INK_SHARE, 1.0,
+                      "of a word's room", "the least that has ink")  # fmt: skip
+    off = shapely.intersection(printed, bare).area
+    yield Measurement("orders.silk_clear", subject, off, 0, PLACE_MM, "mm²",
+                      "printed on pads or off the board")  # fmt: skip
+
+
+def _room(word: Word) -> BaseGeometry:
+    """Where the letters of a word may be, on the page."""
+    half = (0.2 + 0.55 * len(word.text) * word.height_mm, 0.85 * word.height_mm)
+    flat = box(-half[0], -half[1], half[0], half[1])
+    return affinity.translate(affinity.rotate(flat, -word.angle_deg, origin=(0, 0)), *word.at)
+
+
+def _edge(path: str, read: Read, drawn: BaseGeometry) -> Measurement:
+    wanted = _in_sensor(read, shapely.union_all(list(read.board.edges))).bounds
+    pen = (np.subtract(drawn.bounds, wanted) * (-1, -1, 1, 1)).tolist()
+    off = max(pen) - min(pen)
+    return Measurement("orders.outline", path, off, 0, PLACE_MM, "mm", "from the board's edge")
+
+
+def _drills(path: str, read: Read, layers: Mapping[str, bytes]) -> Iterator[Measurement]:
+    plated = [(t.at, t.drill_mm) for part in read.board.parts for t in part.terminals
+              if t.copper is not None and t.drill_mm]  # fmt: skip
+    vias = [((p.area.centroid.x, p.area.centroid.y), p.drill_mm)
+            for p in read.board.loose if p.kind == "via"]  # fmt: skip
+    holes = [(t.at, t.drill_mm) for t in read.holes]
+    for key, told in (("plated", plated + vias), ("unplated", holes)):
+        off = _apart(read, drilled(layers[key].decode()), told)
+        note = f"worst of {len(told)} {key} holes"
+        yield Measurement("orders.drills", path, off, 0, PLACE_MM, "mm", note)
+
+
+def _openable(read: Read, layer: str) -> BaseGeometry:
+    """Where the mask may be open on a layer: pads and holes with a gap, marks with their ring."""
+    areas = []
+    for part in read.board.parts:
+        for t in part.terminals:
+            if t.copper is None:
+                areas.append(shapely.Point(t.at).buffer(t.drill_mm / 2 + MASK_GAP_MM))
+            elif layer in t.copper.layers:
+                left, _, right, _ = t.copper.area.bounds
+                ring = (right - left) / 2 if part.footprint.startswith("Fiducial") else 0.0
+                areas.append(t.copper.area.buffer(ring + MASK_GAP_MM))
+    return shapely.union_all(areas)
+
+
+def _soldered(read: Read, layer: str) -> BaseGeometry:
+    """Pads on a layer of the parts that are mounted on it."""
+    return shapely.union_all([
+        t.copper.area for part in read.board.parts if "exclude_from_bom" not in part.attributes
+        for t in part.terminals
+        if t.copper is not None and not t.drill_mm and layer in t.copper.layers
+    ])  # fmt: skip
+
+
+def _apart(
+    read: Read, found: list[tuple[float, float, float]],
+    wanted: list[tuple[tuple[float, float], float]],
+) -> float:  # fmt: skip
+    """Worst place or diameter of a hole; NaN if there are more or fewer."""
+    if len(found) != len(wanted) or not found:
+        return math.nan
+    places = read.sensor([at for at, _ in wanted])
+    told = np.column_stack([places, [size for _, size in wanted]])
+    order = [np.lexsort(np.round(a, 2).T) for a in (told, np.array(found))]
+    return float(np.abs(told[order[0]] - np.array(found)[order[1]]).max())
+
+
+def _in_sensor(read: Read, area: BaseGeometry) -> BaseGeometry:
+    return shapely.transform(area, read.sensor)
+
+
+def _all(outline: BaseGeometry) -> BaseGeometry:
+    """Far more than the board."""
+    return box(*outline.bounds).buffer(100.0)
