@@ -1,5 +1,7 @@
 """`lumitip doctor`: what is wrong with a cell shows, what is right does not."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -19,6 +21,11 @@ def twin() -> Layout:
 def _light(
     layout: Layout, shape: str = "disc", seconds: float = 20.0, diameter_mm: float = 9.0
 ) -> np.ndarray:
+    return _once(layout, shape, seconds, diameter_mm).copy()
+
+
+@cache
+def _once(layout: Layout, shape: str, seconds: float, diameter_mm: float) -> np.ndarray:
     scene = Scene(shape, 30.0, 1.5, 40.0, 8, 0, matter=Matter(diameter_mm=diameter_mm))
     return complement(packet_at(layout, scene, 0, int(40 * seconds)).values, 8)
 
