@@ -18,6 +18,7 @@ from lumitip.twin.scene import PIXEL_MM, Numbers, Singles
 STEP_MM = 0.05
 STEP_DEG = 3.0
 _SOFT = round(PIXEL_MM / STEP_MM / 2.0)  # half the width of a border, in steps
+_AT_ONCE = 128  # cells of a product of matrices
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,7 +138,11 @@ def _table(pairs: Pairs, taken: Callable[[int, float, float], Floats], reach_mm:
     for kind in range(len(pairs.kinds)):
         for a, angle in enumerate(angles):
             kinds[kind, a] = taken(kind, float(np.cos(angle)), float(np.sin(angle)))
-    made: Floats = np.tensordot(pairs.counts, _softened(kinds), axes=1)
+    soft = _softened(kinds)
+    made = np.empty((pairs.cells, angles.size, entries))
+    for first in range(0, pairs.cells, _AT_ONCE):  # other threads run in between
+        some = slice(first, first + _AT_ONCE)
+        made[some] = np.tensordot(pairs.counts[some], soft, axes=1)
     return made
 
 
