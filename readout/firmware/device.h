@@ -61,6 +61,12 @@ class Device {
     tellStatus();
   }
 
+  // How long until the next frame is due (us).
+  uint32_t idleUs() {
+    const int32_t left = static_cast<int32_t>(due_ - board_.microseconds());
+    return left > 0 ? static_cast<uint32_t>(left) : 0;
+  }
+
   uint16_t faults() const { return faults_; }
 
  private:

@@ -16,4 +16,5 @@ void loop() {
   nano.poll();
   device.poll();
   nano.tell(device.faults());
+  nano.rest(device.idleUs());
 }

@@ -54,6 +54,14 @@ class Nano33Ble {
     digitalWrite(LED_BUILTIN, lightOn(millis(), flashes) ? HIGH : LOW);
   }
 
+  // The radio has a thread of the same priority, which runs at once while this one sleeps. Sleeping
+  // for a millisecond takes up to two.
+  void rest(uint32_t idleUs) {
+    if (idleUs > 2500) {
+      delay(1);
+    }
+  }
+
   void select(uint8_t line, bool high) { digitalWrite(SELECT_PINS[line], high ? HIGH : LOW); }
   uint16_t read(uint16_t mux) { return static_cast<uint16_t>(analogRead(ADC_PINS[mux])); }
   void light(bool on) { digitalWrite(EMITTER_PIN, on ? HIGH : LOW); }

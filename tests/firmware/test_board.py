@@ -105,6 +105,14 @@ def test_nothing_is_cut_off_at_a_small_mtu(seen: Seen) -> None:
     assert (status.mtu, status.faults) == (247, Fault.WATCHDOG)
 
 
+def test_the_radio_gets_time_of_its_own_between_frames(seen: Seen) -> None:
+    for phase in ("alone", "mtu_23", "mtu_247", "serial"):
+        ((rests,),) = seen.of(phase, "rests")
+        assert 2048 // 5 - 2 <= int(rests) <= 2 * 2048 // 5
+    (status,) = map(Status.decode, seen.sent("mtu_247", uuids.STATUS))
+    assert not status.faults & Fault.LATE
+
+
 def test_serial_carries_the_same_packets(seen: Seen, measured: Any) -> None:
     decoder = StreamDecoder(32)
     packets = decoder.feed(b"".join(seen.sent("serial", "serial")))

@@ -30,6 +30,7 @@ static struct {
   bool serialOpen = false;
   int level[32] = {};
   int rises = 0;
+  int rests = 0;
   uint32_t onUs = 0;
   uint32_t litUs = 0;
 } world;
@@ -70,6 +71,10 @@ int analogRead(pin_size_t pin) {
 void analogReadResolution(int bits) { printf("resolution %d\n", bits); }
 unsigned long micros() { return world.us; }
 unsigned long millis() { return world.us / 1000; }
+void delay(unsigned long ms) {
+  world.us += 1000 * ms + 990;  // Mbed sleeps for whole ticks, and begins within one
+  ++world.rests;
+}
 void delayMicroseconds(unsigned int us) { world.us += us; }
 
 void USBSerial::begin(unsigned long) {}
@@ -126,6 +131,7 @@ uint16_t ATTClass::mtu(uint16_t handle) const { return handle == 2 ? world.mtu :
 static void phase(const char* name) {
   printf("phase %s\n", name);
   world.rises = 0;
+  world.rests = 0;
   world.onUs = 0;
   world.litUs = world.us;
   unsigned unfed = 0;
@@ -136,7 +142,7 @@ static void phase(const char* name) {
     world.us += 100;
   }
   const uint32_t onUs = world.onUs + (world.level[LED_BUILTIN] ? world.us - world.litUs : 0);
-  printf("light %d %u\nunfed %u\n", world.rises, onUs / 1000, unfed);
+  printf("light %d %u\nunfed %u\nrests %d\n", world.rises, onUs / 1000, unfed, world.rests);
 }
 
 static void ask(bool asked) {

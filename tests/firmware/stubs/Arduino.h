@@ -16,6 +16,7 @@ int analogRead(pin_size_t pin);
 void analogReadResolution(int bits);
 unsigned long micros();
 unsigned long millis();
+void delay(unsigned long ms);
 void delayMicroseconds(unsigned int us);
 void setup();
 void loop();
