@@ -26,6 +26,8 @@ from vtkmodules.vtkRenderingCore import (
 Vector = tuple[float, float, float]
 IMAGES = Path(__file__).parent / "images"
 SHARP_DEG = 12
+ZOOM = {"assembly": 1.3, "fit_plate": 1.9}
+SIZE, FLAT = (1000, 800), (1000, 480)
 PLASTIC: Vector = (0.56, 0.66, 0.80)
 MOULD: Vector = (0.84, 0.76, 0.62)
 
@@ -40,6 +42,8 @@ def main(out: Path) -> None:
     )
     for part, picture, direction, colour in shots:
         draw([actor(out / part, colour)], IMAGES / picture, direction, (0, 0, 1))
+    plate = actor(out / "fit/fit_plate.stl", PLASTIC)
+    draw([plate], IMAGES / "fit_plate.png", (0.3, -0.9, 0.9), (0, 0, 1), FLAT)
     for side in ("receiver", "emitter"):
         page = pypdfium2.PdfDocument(out / f"mask/{side}_mask_a4.pdf")[0]
         page.render(scale=110 / 72).to_pil().convert("L").save(
@@ -79,12 +83,18 @@ def actor(stl: Path, colour: Vector) -> list[vtkActor]:
     return actors
 
 
-def draw(parts: list[list[vtkActor]], picture: Path, direction: Vector, up: Vector) -> None:
+def draw(
+    parts: list[list[vtkActor]],
+    picture: Path,
+    direction: Vector,
+    up: Vector,
+    size: tuple[int, int] = SIZE,
+) -> None:
     """Draw parts seen from a direction, without perspective."""
     scene = vtkRenderer()
     for shown in (a for part in parts for a in part):
         scene.AddActor(shown)
-    _save(scene, picture, direction, up)
+    _save(scene, picture, direction, up, size=size)
 
 
 def draw_glb(glb: Path, picture: Path) -> None:
@@ -112,6 +122,7 @@ def _save(
     direction: Vector,
     up: Vector,
     window: vtkRenderWindow | None = None,
+    size: tuple[int, int] = SIZE,
 ) -> None:
     scene.SetBackground(1, 1, 1)
     vtkLightKit().AddLightsToRenderer(scene)
@@ -121,13 +132,13 @@ def _save(
     camera.SetViewUp(*up)
     camera.ParallelProjectionOn()
     scene.ResetCamera()
-    camera.Zoom(1.3 if picture.stem == "assembly" else 1.15)
+    camera.Zoom(ZOOM.get(picture.stem, 1.15))
     if window is None:
         window = vtkRenderWindow()
         window.SetOffScreenRendering(1)
         window.AddRenderer(scene)
     window.SetMultiSamples(8)
-    window.SetSize(1000, 800)
+    window.SetSize(*size)
     window.Render()
     grab = vtkWindowToImageFilter()
     grab.SetInput(window)

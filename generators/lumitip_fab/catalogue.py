@@ -9,8 +9,9 @@ from typing import Literal, Self
 
 from pydantic import Field, model_validator
 
-from lumitip_fab.entry import Entry, Length, Name, Offset, Pin, Share, Strict
+from lumitip_fab.entry import Entry, Length, Name, Pin, Share, Strict
 from lumitip_fab.fab_entry import Fab
+from lumitip_fab.gripper_entry import Gripper
 
 
 class Bought(Entry):
@@ -188,54 +189,6 @@ class Controller(Entry):
         if twice:
             raise ValueError(f"{', '.join(twice)} given twice, each pin is used once")
         return self
-
-
-class Nose(Strict):
-    """The tapered end that sits in the V-shaped seat of a gripper's finger."""
-
-    front_width_mm: Length
-    """Width at its front."""
-    front_w_mm: Offset
-    """Distance of its front behind the rim plane."""
-    half_angle_deg: float = Field(gt=0, lt=90)
-    """Angle of each flank with the finger's centreline, seen along the finger."""
-    height_mm: Length
-    """Height above the mount plane."""
-
-
-class Gripper(Entry):
-    """Where a gripper holds a fingertip; distances w are behind the plate's rim plane."""
-
-    stroke_mm: Length
-    """Opening of the gripper between its own pads."""
-    pad_w_mm: Length
-    """Distance of the gripper's own pad face before the bolt axis."""
-    tilt_deg: float = Field(ge=-10, le=10)
-    """Tilt of the mount plane; above zero the tip leans towards the other finger."""
-    block_width_mm: Length
-    """Width of the mounting block."""
-    block_corner_mm: Length
-    """Corner radius of the block's back."""
-    block_back_w_mm: Length
-    """Distance of the block's back behind the rim plane."""
-    bolt_w_mm: Length
-    """Distance of the bolt axis behind the rim plane."""
-    bolt_hole_mm: Length
-    """Clearance hole of the bolt."""
-    counterbore_mm: Length
-    """Diameter of the counterbore for the bolt's head."""
-    land_mm: Length
-    """Material between counterbore and mount plane, on the bolt axis."""
-    pin_mm: Length
-    """Diameter of the locating pins' holes."""
-    pin_spacing_mm: Length
-    """Distance between the two pins, side by side through the bolt axis."""
-    pin_depth_mm: Length
-    """Depth of the pins' holes."""
-    seat_width_mm: Length
-    """Width of the gripper's finger where the fingertip stands on it."""
-    nose: Nose | None = None
-    """The tapered seat, if the gripper has one."""
 
 
 class Silicone(Entry):

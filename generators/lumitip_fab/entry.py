@@ -11,6 +11,7 @@ PIN = r"^[A-Za-z][A-Za-z0-9_]{0,15}$"
 Pin = Annotated[str, Field(pattern=PIN)]
 Offset = Annotated[float, Field(ge=-500, le=500)]
 Name = Annotated[str, Field(min_length=1, max_length=64, pattern=NAME)]
+Confidence = Literal["datasheet", "measured", "inferred", "assumed"]
 
 
 class Strict(BaseModel):
@@ -30,5 +31,5 @@ class Entry(Strict):
 
     source: str = Field(min_length=1)
     """Where the figures come from."""
-    confidence: Literal["datasheet", "measured", "inferred", "assumed"]
+    confidence: Confidence
     """How far to trust them."""

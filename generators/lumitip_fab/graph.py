@@ -41,6 +41,7 @@ STEPS = (
     Step("mechanical", "assembly", "assembly", True, _CAD),
     Step("mechanical", "mould", "mould_files", True, _CAD),
     Step("mechanical", "backing", "backing", True, _CAD),
+    Step("mechanical", "fit_plate", "fit_plate_files", True, _CAD),
 )
 
 

@@ -88,6 +88,7 @@ def _electrical(design: Design) -> tuple[Row, ...]:
 
 def _further(design: Design) -> tuple[Row, ...]:
     stack, printing, tip = design.stack, design.printing, design.tip
+    plate = design.fit_plate
     kinds = {part.kind: part for finger in design.fingers for part in finger.parts}
     over = [
         Row(f"silicone over the {kind}", "not stated",
@@ -112,6 +113,11 @@ def _further(design: Design) -> tuple[Row, ...]:
         Row("wedge at the tip", "12.2°", f"{tip.angle_deg:.1f}°",
             f"from {stack.plate_mm:g} to {tip.edge_mm:g} mm over {slant:g} mm; published: from 1.3 "
             "to 0 over 6"),
+        Row("gripper", "Robotiq 2F-85", f"{design.mount.gripper}, {design.mount.bolt}",
+            _trusted(design)),
+        Row("fit test plate", "none", f"{plate.volume_ml:.1f} cm³",
+            f"about {plate.minutes:.0f} min; its reading is printer.fit_mm, here "
+            f"{printing.fit_mm:g} mm (docs/making.md)"),
         Row("lean of each finger", "1.5°", f"{design.mount.tilt_deg:g}°",
             f"of {design.mount.gripper} in parts/grippers.toml"),
         Row("largest opening", "not stated", f"{design.closing.max_opening_mm:.1f} mm",
@@ -122,6 +128,14 @@ def _further(design: Design) -> tuple[Row, ...]:
         Row("heat in the emitter", "not stated", f"{design.electrical.heat_w:.2f} W",
             f"{current:.1f} mA from {volts:g} V, all of it in LEDs and their resistors"),
     )  # fmt: skip
+
+
+def _trusted(design: Design) -> str:
+    """How far the gripper's figures go, and what to do about those that go not far enough."""
+    if not design.mount.unsure:
+        return "every figure from a datasheet or a measurement: parts/grippers.toml"
+    return (f"neither datasheet nor measurement gives {', '.join(design.mount.unsure)}: print the "
+            "coupling alone and try it first (docs/making.md)")  # fmt: skip
 
 
 def _strings(design: Design) -> tuple[Row, ...]:

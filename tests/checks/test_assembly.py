@@ -75,6 +75,11 @@ def film_moved_back(told: Told) -> None:
     move(told, "receiver.film", y=-1.5)
 
 
+def film_behind_the_pads(told: Told) -> None:
+    """The skin so far back that the gripper is closed before the fingers meet."""
+    move(told, "receiver.film", z=-12.0)
+
+
 def backing_sunk(told: Told) -> None:
     move(told, "emitter.backing", z=-0.2)
 
@@ -107,6 +112,7 @@ SCENE = {
     opening_unstated: {"opening"},
     film_lifted: {"opening", "stroke"},
     film_moved_back: {"first_contact", "opening", "interference"},
+    film_behind_the_pads: {"opening", "stroke", "closes", "interference"},
     backing_sunk: {"stroke"},
     board_turned_out: {"interference"},
     part_renamed: EVERY,

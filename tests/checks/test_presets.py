@@ -10,13 +10,15 @@ import pytest
 from lumitip_fab.checks.result import Measurement
 from lumitip_fab.checks.run import MODULES, as_json, modules_reading, run_checks
 
+SLOW = ("dense", "mux16", "robotiq_2f140", "wsg50", "franka_hand")
+
 
 @pytest.mark.parametrize(
     "preset",
     [
         "published",
         "asymmetric",
-        *(pytest.param(p, marks=pytest.mark.slow) for p in ("dense", "mux16")),
+        *(pytest.param(p, marks=pytest.mark.slow) for p in SLOW),
     ],
 )
 def test_a_preset_passes_every_check(built: Callable[[str], Path], preset: str) -> None:

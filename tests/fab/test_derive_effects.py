@@ -76,6 +76,7 @@ CHANGES: dict[str, Any] = {
     "mould.wall_mm": 2.6,
     "mould.waste_fraction": 0.5,
     "printer.min_wall_mm": 0.7,
+    "printer.fit_mm": 0.05,
     "coupling.gripper": "other",
     "printer.profile": "other",
 }

@@ -10,7 +10,9 @@ from lumitip_fab.encoding import design_text
 from lumitip_fab.load import load
 
 GOLDEN = Path(__file__).parents[1] / "golden"
-PRESETS = ("published", "asymmetric", "dense", "mux16")
+PRESETS = (
+    "published", "asymmetric", "dense", "mux16", "robotiq_2f140", "wsg50", "franka_hand"
+)  # fmt: skip
 
 
 @pytest.mark.golden

@@ -24,7 +24,8 @@ READS = (
 )  # fmt: skip
 NAMES = (  # measured in the GLB
     "assembly.bodies", "assembly.facing", "assembly.lean", "assembly.skew",
-    "assembly.first_contact", "assembly.opening", "assembly.stroke", "assembly.interference",
+    "assembly.first_contact", "assembly.opening", "assembly.stroke", "assembly.closes",
+    "assembly.interference",
 )  # fmt: skip
 LAYERS = ("backing", "board", "silicone", "film")
 FACING_MM = 0.05
@@ -87,7 +88,7 @@ def _wanted(design: Design) -> Iterator[str]:
 
 def _facing(scene: Scene, design: Design) -> Measurement:
     """LED i against photodetector i, seen along z."""
-    numbers = range(1, len(design.layout) + 1)
+    numbers = range(1, len(design.cells) + 1)
     lit = np.array([scene.nodes[f"D{i}"].centre_mm for i in numbers])
     seen = np.array([scene.nodes[f"Q{i}"].centre_mm for i in numbers])
     apart = np.hypot(*(lit - seen)[:, :2].T)
@@ -140,7 +141,7 @@ def _inward(finger: Finger) -> float:
 
 
 def _openings(scene: Scene, design: Design) -> Iterator[Measurement]:
-    """Skin to skin as it is and as the file says, and with the gripper open."""
+    """Skin to skin as it is and as the file says, with the gripper open, and closed."""
     stated = scene.extras.get("opening_mm", math.nan)
     opening = _opening_mm(scene, design)
     yield Measurement("assembly.opening", _FILE, opening, stated - OPENING_MM, stated + OPENING_MM,
@@ -153,6 +154,14 @@ def _openings(scene: Scene, design: Design) -> Iterator[Measurement]:
     wanted = design.closing.max_opening_mm
     yield Measurement("assembly.stroke", _FILE, float(widest), wanted - STROKE_MM,
                       wanted + STROKE_MM, "mm", "skin to skin in the open gripper")  # fmt: skip
+    yield Measurement(
+        "assembly.closes",
+        _FILE,
+        float(design.mount.stroke_mm - widest),
+        0,
+        unit="mm",
+        note="left between the gripper's pads when the skins meet",
+    )
 
 
 def _opening_mm(scene: Scene, design: Design) -> float:
@@ -161,12 +170,14 @@ def _opening_mm(scene: Scene, design: Design) -> float:
 
 
 def _bolt_z_mm(backing: Node, design: Design) -> float:
-    """Height of the bolt's axis in the gripper frame, by its hole in the mount plane."""
+    """Height of the bolts' axes in the gripper frame, by the first one's hole (or the sleeve's
+    round it) in the mount plane."""
     mount = design.mount
+    hole = max(mount.bolt_hole_mm, mount.pin_mm) if mount.sleeved else mount.bolt_hole_mm
     to_sensor = mount_to_sensor(mount, design.stack)
     corners = applied(np.asarray(np.linalg.inv(to_sensor), dtype=np.float64), backing.points_mm)
-    radius = np.hypot(corners[:, 0], corners[:, 1] - mount.bolt_w_mm)
-    rim = corners[(np.abs(corners[:, 2]) < 0.01) & (radius < mount.bolt_hole_mm / 2 + 0.4)]
+    radius = np.hypot(corners[:, 0] - mount.bolt_u_mm[0], corners[:, 1] - mount.bolt_w_mm)
+    rim = corners[(np.abs(corners[:, 2]) < 0.01) & (radius < hole / 2 + 0.4)]
     if not len(rim):
         return math.nan
     middle = (rim.min(axis=0) + rim.max(axis=0)) / 2

@@ -107,7 +107,7 @@ def measure_walls(part: Printed) -> Iterator[Measurement]:
         return np.asarray(applied(to_sensor, points)[:, 1] > design.tip.slant_start_y_mm)
 
     def between(points: Vectors) -> Mask:
-        far = max(mount.pin_u_mm, default=0.0) + mount.pin_mm / 2
+        far = max(*mount.pin_u_mm, *mount.bolt_u_mm) + max(mount.pin_mm, mount.bolt_hole_mm) / 2
         beside = np.abs(points[:, 1] - mount.bolt_w_mm) < mount.bolt_hole_mm / 2
         low = points[:, 2] < mount.land_mm
         return np.asarray(beside & low & (np.abs(points[:, 0]) < far))
@@ -116,8 +116,9 @@ def measure_walls(part: Printed) -> Iterator[Measurement]:
         Exempt("tip edge", design.tip.edge_mm, on_tip),
         letters.beside(mount.letter, design.printing),
     ]
-    if mount.pin_u_mm:
-        apart = max(mount.pin_u_mm) - (mount.pin_mm + mount.bolt_hole_mm) / 2
+    if mount.pin_u_mm and not mount.sleeved:
+        away = abs(max(mount.pin_u_mm) - max(mount.bolt_u_mm))
+        apart = away - (mount.pin_mm + mount.bolt_hole_mm) / 2
         least = min(apart, design.printing.min_wall_mm)
         exempt.append(Exempt("bolt to gripper pins", least, between))
     yield from walls(

@@ -16,36 +16,40 @@ _DOWN, _UP = np.array([0.0, 0.0, -1.0]), np.array([0.0, 0.0, 1.0])
 
 
 def measure_bolt(part: Printed) -> Iterator[Measurement]:
-    """Bolt hole and gripper pins: place and diameter."""
+    """Bolt holes, above the pins, and gripper pins: place and diameter."""
     mount = part.design.mount
-    rings = holes_at(part.standing, min(mount.land_mm, mount.pin_depth_mm) / 2)
-    off, wide = circles(rings, ((0.0, mount.bolt_w_mm),), mount.bolt_hole_mm / 2)
-    yield part.figure("bolt", float(off[0]), 0.0, POSITION_MM)
+    rings = holes_at(part.standing, (mount.land_mm + mount.pin_depth_mm) / 2)
+    bolts = tuple((u, mount.bolt_w_mm) for u in mount.bolt_u_mm)
+    off, wide = circles(rings, bolts, mount.bolt_hole_mm / 2)
+    yield part.near("bolt", off, 0.0, POSITION_MM)
     yield part.near("bolt_hole", wide, mount.bolt_hole_mm, DIAMETER_MM)
     pins = tuple((u, mount.bolt_w_mm) for u in mount.pin_u_mm)
     if pins:
+        rings = holes_at(part.standing, mount.pin_depth_mm / 2)
         off, wide = circles(rings, pins, mount.pin_mm / 2)
         yield part.near("gripper_pins", off, 0.0, POSITION_MM)
         yield part.near("gripper_pin_hole", wide, mount.pin_mm, DIAMETER_MM)
-        below = np.array([(*pin, -1.0) for pin in pins])
+        beside = (mount.pin_mm + mount.bolt_hole_mm) / 4 if mount.sleeved else 0.0
+        below = np.array([(u + beside, w, -1.0) for u, w in pins])
         depth, _ = cast(part.standing, below, _UP, 2 * mount.land_mm + 1).first(len(pins))
         yield part.near("gripper_pin_depth", depth - 1.0, mount.pin_depth_mm, DEPTH_MM)
 
 
 def measure_screw(part: Printed) -> Iterator[Measurement]:
-    """The screw's seat, seen from where screw and driver come: nothing may stand above it."""
+    """The screws' seats, seen from where screw and driver come: nothing may stand above them."""
     mount = part.design.mount
     above = float(part.standing.bounds[1, 2]) + 1.0
     turn = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
     radii = np.linspace(mount.bolt_hole_mm / 2 + 0.15, mount.counterbore_mm / 2 - 0.1, 4)
     radius, angle = (grid.ravel() for grid in np.meshgrid(radii, turn))
-    origins = np.column_stack(
+    around = np.column_stack(
         [
             radius * np.cos(angle),
             mount.bolt_w_mm + radius * np.sin(angle),
             np.full(radius.size, above),
         ]
     )
+    origins = np.concatenate([around + np.array([u, 0.0, 0.0]) for u in mount.bolt_u_mm])
     drop, _ = cast(part.standing, origins, _DOWN, above + 1).first(len(origins))
     yield part.near("screw_seat", above - drop, mount.land_mm, DEPTH_MM)
 

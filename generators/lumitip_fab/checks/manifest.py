@@ -40,6 +40,9 @@ def _frame(outputs: Path, path: str, matrix: Matrix, design: Design) -> Measurem
     except OutputError as error:
         return unreadable("manifest.frames", name, str(error))
     low, high = corners.min(axis=0), corners.max(axis=0)
+    if path.startswith("fit/"):  # a part of no finger: its frame is the bed's
+        off = float(np.abs(matrix - np.eye(4)).max())
+        return Measurement("manifest.frames", name, off, 0, _PLACE_MM, "mm", "from the bed's frame")
     stack, tip_y = design.stack, design.outline.tip_y_mm
     apart = [abs(low[0] + high[0])]
     if path.startswith("backing/"):

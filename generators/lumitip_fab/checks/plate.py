@@ -37,6 +37,7 @@ def measure_outline(part: Printed) -> Iterator[Measurement]:
 def measure_pocket(part: Printed) -> Iterator[Measurement]:
     """Gap from each side of the board to the pocket, and the pocket's depth."""
     design = part.design
+    low, high = (gap + design.printing.fit_mm for gap in GAP_MM)
     stack, box, notch = design.stack, design.board.box, part.finger.notch
     cut = section(part.sensor, stack.rim_z_mm - stack.pcb_mm / 2)
     steps = np.linspace(0.01, 0.99, 25)
@@ -53,7 +54,7 @@ def measure_pocket(part: Printed) -> Iterator[Measurement]:
         lines = shapely.linestrings(np.stack([from_, from_ + np.array(outward) * 3.0], axis=1))
         gaps = shapely.distance(shapely.points(from_), shapely.intersection(lines, cut)) - 0.5
         yield part.figure(
-            "pocket_gap", farthest(np.asarray(gaps), sum(GAP_MM) / 2), *GAP_MM, at=side
+            "pocket_gap", farthest(np.asarray(gaps), (low + high) / 2), low, high, at=side
         )
     depths = _rim_z(part) - _front_z(part, _floor_points(part))
     yield part.near("pocket_depth", depths, stack.pcb_mm, DEPTH_MM)
@@ -65,7 +66,7 @@ def measure_pins(part: Printed) -> Iterator[Measurement]:
     rings = islands_at(part.sensor, stack.pocket_z_mm + 0.4 * stack.pcb_mm, 4 * board.pin_mm**2)
     off, wide = circles(rings, holes, board.hole_mm)
     yield part.near("pins", off, 0.0, PIN_MM)
-    wanted = (board.hole_mm - board.pin_mm) / 2
+    wanted = (board.hole_mm - board.pin_mm) / 2  # the fit in it
     yield part.near("pin_clearance", (board.hole_mm - wide) / 2, wanted, PIN_MM)
     low = _rim_z(part) - _front_z(part, np.array(holes))
     yield part.figure("pin_height", farthest(low, 0.0), -0.02, stack.pcb_mm / 4)

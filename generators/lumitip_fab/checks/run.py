@@ -13,8 +13,8 @@ from lumitip_fab.checks.result import Measurement
 from lumitip_fab.encoding import read_design
 
 MODULES = (
-    "manifest", "layout", "firmware", "mask", "backing", "mould", "assembly", "board", "schematic",
-    "orders",
+    "manifest", "layout", "firmware", "mask", "backing", "fit_plate", "mould", "assembly", "board",
+    "schematic", "orders",
 )  # fmt: skip
 
 

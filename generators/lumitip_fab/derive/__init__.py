@@ -7,6 +7,7 @@ from lumitip_fab.derive import boards, closing, mask, mould, mount, outline, wir
 from lumitip_fab.derive.cells import derive_cells
 from lumitip_fab.derive.electrical import derive_electrical
 from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.fit_plate import derive_fit_plate
 from lumitip_fab.derive.packages import derive_fabs, derive_packages, derive_rules
 from lumitip_fab.derive.stack import derive_printing, derive_stack, derive_tip
 from lumitip_fab.design import Controller, Design, Grid, Title
@@ -35,6 +36,7 @@ def derive(given: Input) -> Design:
     tip = derive_tip(p, silhouette, plan.board, faults)
     casting = mould.derive_mould(given, silhouette, plan.board, faults)
     printing = derive_printing(given, silhouette, faults)
+    plate = derive_fit_plate(given, plan, coupling, faults)
     sheet = mask.derive_mask(given, silhouette, plan, faults)
     rules = derive_rules(given, faults)
     meeting = closing.derive_closing(silhouette, stack, coupling, casting, faults)
@@ -72,6 +74,7 @@ def derive(given: Input) -> Design:
             mask=sheet,
             mould=casting,
             printing=printing,
+            fit_plate=plate,
             controller=Controller(
                 p.controller.board,
                 p.controller.name,

@@ -19,6 +19,7 @@ import numpy as np
 from lumitip_fab.derive import chips, connectors, placing
 from lumitip_fab.derive.cells import Cells
 from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.fits import derive_fits
 from lumitip_fab.derive.wiring import Muxing, Strings
 from lumitip_fab.design import Board, Box, Connector, Finger, Part, Point, Zone
 from lumitip_fab.load import Input
@@ -31,6 +32,7 @@ WINDOW_MARGIN_MM = 2.0
 HOLE_TO_EDGE_MM = 1.0
 PAD_TO_EDGE_MM = 0.3
 LEAST_PIN_MM = 1.0
+LEAST_CLEARANCE_MM = 0.02  # of a pin as drawn
 
 
 @dataclass(frozen=True)
@@ -115,11 +117,19 @@ def _frame(
     gripper = given.catalogue.grippers[p.coupling.gripper]
     ways = len(connectors.receiver_signals(muxing))
     pin_mm = p.board.hole_mm - 2 * p.backing.pin_clearance_mm
+    printed_mm = derive_fits(given, p.printer.fit_mm).pin_mm
     faults.refuse_unless(
-        pin_mm >= LEAST_PIN_MM,
+        printed_mm >= LEAST_PIN_MM,
         "backing.pin_clearance_mm",
-        f"{p.backing.pin_clearance_mm:g} given, which leaves pins of {pin_mm:.2f} mm in holes of "
-        f"{p.board.hole_mm:g} mm; at least {LEAST_PIN_MM:g} mm is needed",
+        f"{p.backing.pin_clearance_mm:g} given, which leaves pins of {printed_mm:.2f} mm in holes "
+        f"of {p.board.hole_mm:g} mm; at least {LEAST_PIN_MM:g} mm is needed",
+    )
+    faults.refuse_unless(
+        p.backing.pin_clearance_mm + p.printer.fit_mm >= LEAST_CLEARANCE_MM,
+        "printer.fit_mm",
+        f"{p.printer.fit_mm:g} given, which with backing.pin_clearance_mm = "
+        f"{p.backing.pin_clearance_mm:g} leaves pins that are drawn as wide as their holes; at "
+        f"least {LEAST_CLEARANCE_MM - p.backing.pin_clearance_mm:.2f} is needed",
     )
     half = float(np.abs(cells.x_mm).max()) + p.board.side_margin_mm
     rim = p.board.hole_mm / 2 + HOLE_TO_EDGE_MM
@@ -210,13 +220,13 @@ def _resistor_room(given: Input, frame: Frame) -> Box:
 
 
 def _board(given: Input, frame: Frame) -> Board:
-    p = given.parameters
+    fits = derive_fits(given, given.parameters.printer.fit_mm)
     return Board(
         box=frame.box,
-        hole_mm=p.board.hole_mm,
-        pocket=frame.box.grown(p.backing.pocket_clearance_mm),
-        pocket_clearance_mm=p.backing.pocket_clearance_mm,
-        pin_mm=frame.pin_mm,
+        hole_mm=given.parameters.board.hole_mm,
+        pocket=frame.box.grown(fits.pocket_gap_mm),
+        pocket_clearance_mm=fits.pocket_gap_mm,
+        pin_mm=fits.pin_mm,
     )
 
 

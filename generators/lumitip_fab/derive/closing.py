@@ -39,4 +39,10 @@ def derive_closing(
         f"{mount.gripper!r} given, these fingers open to {opening:.1f} mm in it; at least 10 mm "
         "is needed",
     )
+    faults.refuse_unless(
+        opening <= mount.stroke_mm,
+        "coupling.gripper",
+        f"{mount.gripper!r} given, in which these fingers stay {opening - mount.stroke_mm:.1f} mm "
+        "apart when it is closed: its bolt_w_mm less its pad_w_mm must grow by half of that",
+    )
     return Closing(y, reach, opening)

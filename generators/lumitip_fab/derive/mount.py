@@ -1,11 +1,14 @@
 """The gripper coupling, from its catalogue entry."""
 
-from lumitip_fab.catalogue import Gripper
+import math
+
 from lumitip_fab.derive.boards import HOLE_TO_EDGE_MM, Plan
 from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.fits import derive_fits
 from lumitip_fab.derive.letter import DEPTH_MM, LEAST_DEPTH_MM, LEAST_MM, WIDTH, letter_on
 from lumitip_fab.derive.outline import half_width_at
-from lumitip_fab.design import Letter, Mount, Nose, Outline
+from lumitip_fab.design import Letter, Mount, Outline
+from lumitip_fab.gripper_entry import Gripper
 from lumitip_fab.load import Input
 
 LETTER_MARGIN_MM = 0.6  # to the bed, and to where the ramp begins
@@ -15,10 +18,56 @@ def derive_mount(given: Input, outline: Outline, plan: Plan, faults: Faults) -> 
     """The coupling, refused where finger and gripper do not go together."""
     p = given.parameters
     gripper = given.catalogue.grippers[p.coupling.gripper]
+    _refuse_place(given, gripper, outline, plan, faults)
+    _refuse_holes(given, gripper, faults)
+    nose, fits = gripper.nose, derive_fits(given, p.printer.fit_mm)
+    front = max(p.stack.pcb_mm + p.backing.tail_mm, nose.front_w_mm if nose else 0.0)
+    most = gripper.bolt_w_mm - gripper.counterbore_mm / 2 - p.printer.min_wall_mm
+    faults.refuse_unless(
+        front <= most,
+        "backing.tail_mm",
+        f"{p.backing.tail_mm:g} given, which leaves no wall before the bolt's counterbore; at "
+        f"most {most - p.stack.pcb_mm:.2f} is allowed",
+    )
+    pins = gripper.pins
+    return Mount(
+        gripper=p.coupling.gripper,
+        origin_y_mm=outline.end_y_mm,
+        tilt_deg=gripper.tilt_deg,
+        block_width_mm=gripper.block_width_mm,
+        block_corner_mm=gripper.block_corner_mm,
+        block_front_w_mm=front,
+        block_back_w_mm=gripper.block_back_w_mm,
+        bolt=gripper.bolt,
+        bolt_u_mm=_side_by_side(gripper.bolt_spacing_mm) or (0.0,),
+        bolt_w_mm=gripper.bolt_w_mm,
+        bolt_hole_mm=fits.bolt_hole_mm,
+        counterbore_mm=gripper.counterbore_mm,
+        land_mm=gripper.land_mm,
+        pin_mm=fits.gripper_pin_mm,
+        pin_u_mm=_side_by_side(pins.spacing_mm if pins else None),
+        pin_depth_mm=pins.depth_mm if pins else 0.0,
+        seat_width_mm=gripper.seat_width_mm,
+        nose=fits.nose,
+        stroke_mm=gripper.stroke_mm,
+        pad_w_mm=gripper.pad_w_mm,
+        letter=_letter(given, gripper, faults),
+        unsure=gripper.unsure,
+    )
+
+
+def _side_by_side(spacing_mm: float | None) -> tuple[float, ...]:
+    return () if spacing_mm is None else (-spacing_mm / 2, spacing_mm / 2)
+
+
+def _refuse_place(
+    given: Input, gripper: Gripper, outline: Outline, plan: Plan, faults: Faults
+) -> None:
+    """Refuse a block that does not stand on this finger's back."""
+    p = given.parameters
     plate = p.stack.floor_mm + p.stack.pcb_mm
-    notch = plan.receiver.notch
     ramp = gripper.block_back_w_mm - plate
-    opening = notch.y_max_mm - outline.end_y_mm
+    opening = plan.receiver.notch.y_max_mm - outline.end_y_mm
     length = gripper.land_mm + ramp
     faults.refuse_unless(
         length <= outline.length_mm - p.tip.slant_start_mm and opening < length,
@@ -39,44 +88,57 @@ def derive_mount(given: Input, outline: Outline, plan: Plan, faults: Faults) -> 
         f"{p.stack.floor_mm:g} given, which makes a plate of {plate:g} mm; less than the "
         f"{gripper.block_back_w_mm:g} mm of the block of {p.coupling.gripper!r} is allowed",
     )
-    nose = gripper.nose
-    front = max(p.stack.pcb_mm + p.backing.tail_mm, nose.front_w_mm if nose else 0.0)
-    most = gripper.bolt_w_mm - gripper.counterbore_mm / 2 - p.printer.min_wall_mm
-    faults.refuse_unless(
-        front <= most,
-        "backing.tail_mm",
-        f"{p.backing.tail_mm:g} given, which leaves no wall before the bolt's counterbore; at "
-        f"most {most - p.stack.pcb_mm:.2f} is allowed",
-    )
-    return Mount(
-        gripper=p.coupling.gripper,
-        origin_y_mm=outline.end_y_mm,
-        tilt_deg=gripper.tilt_deg,
-        block_width_mm=gripper.block_width_mm,
-        block_corner_mm=gripper.block_corner_mm,
-        block_front_w_mm=front,
-        block_back_w_mm=gripper.block_back_w_mm,
-        bolt_w_mm=gripper.bolt_w_mm,
-        bolt_hole_mm=gripper.bolt_hole_mm,
-        counterbore_mm=gripper.counterbore_mm,
-        land_mm=gripper.land_mm,
-        pin_mm=gripper.pin_mm,
-        pin_u_mm=(-gripper.pin_spacing_mm / 2, gripper.pin_spacing_mm / 2),
-        pin_depth_mm=gripper.pin_depth_mm,
-        seat_width_mm=gripper.seat_width_mm,
-        nose=Nose(nose.front_width_mm, nose.front_w_mm, nose.half_angle_deg, nose.height_mm)
-        if nose
-        else None,
-        stroke_mm=gripper.stroke_mm,
-        pad_w_mm=gripper.pad_w_mm,
-        letter=_letter(given, gripper, faults),
-    )
+
+
+def _refuse_holes(given: Input, gripper: Gripper, faults: Faults) -> None:
+    """Refuse holes that leave too little of the block between them and round them."""
+    p, pins = given.parameters, gripper.pins
+    head, hole = gripper.counterbore_mm / 2, gripper.bolt_hole_mm / 2 + p.printer.fit_mm
+    apart = gripper.bolt_spacing_mm
+    line_mm = given.catalogue.printers[p.printer.profile].line_mm
+    walls = (
+        ("behind its counterbores", gripper.block_back_w_mm - gripper.bolt_w_mm - head, None),
+        ("beside its counterbores",
+         gripper.block_width_mm / 2 - (apart or 0.0) / 2 - head, None),
+        ("between its counterbores", apart - 2 * head if apart else math.inf, None),
+        ("at its corners", _corner_wall_mm(gripper, head), None),
+        ("round the bolts under their heads", head - hole, line_mm),
+        ("over the pins", gripper.land_mm - (pins.depth_mm if pins else 0.0), None),
+        ("between bolts and pins", _to_pins_mm(gripper, p.printer.fit_mm), line_mm),
+    )  # fmt: skip
+    for place, wall, printed in walls:
+        least = p.printer.min_wall_mm if printed is None else printed
+        faults.refuse_unless(
+            wall >= least - 1e-9,
+            "coupling.gripper",
+            f"{p.coupling.gripper!r} given, whose block keeps {wall:.2f} mm {place}; at least "
+            f"{least:g} is needed",
+        )
+
+
+def _to_pins_mm(gripper: Gripper, fit_mm: float) -> float:
+    """Wall between a bolt's hole and a pin's beside it; none where the pins are sleeves."""
+    pins, bolts = gripper.pins, gripper.bolt_spacing_mm or 0.0
+    if pins is None or pins.spacing_mm == bolts:
+        return math.inf
+    return abs(pins.spacing_mm - bolts) / 2 - (pins.hole_mm + gripper.bolt_hole_mm) / 2 - 2 * fit_mm
+
+
+def _corner_wall_mm(gripper: Gripper, head_mm: float) -> float:
+    """Wall between a counterbore and the rounded corner of the block's back."""
+    radius = gripper.block_corner_mm
+    across = (gripper.bolt_spacing_mm or 0.0) / 2 - (gripper.block_width_mm / 2 - radius)
+    back = gripper.bolt_w_mm - (gripper.block_back_w_mm - radius)
+    if across <= 0 or back <= 0:
+        return math.inf  # the straight sides are nearer
+    return radius - math.hypot(across, back) - head_mm
 
 
 def _letter(given: Input, gripper: Gripper, faults: Faults) -> Letter:
     """On the back of the block, between its rounded corners and below the ramp."""
     p = given.parameters
-    behind = gripper.block_back_w_mm - gripper.bolt_w_mm - gripper.bolt_hole_mm / 2
+    hole = max(gripper.bolt_hole_mm, gripper.pins.hole_mm if gripper.pins else 0.0)
+    behind = gripper.block_back_w_mm - gripper.bolt_w_mm - hole / 2 - p.printer.fit_mm
     deep = behind - p.printer.min_wall_mm
     wide = gripper.block_width_mm - 2 * gripper.block_corner_mm
     low, high = LETTER_MARGIN_MM, gripper.land_mm - LETTER_MARGIN_MM

@@ -49,8 +49,11 @@ def derive_stack(given: Input, faults: Faults) -> Stack:
 def derive_tip(p: Parameters, outline: Outline, board: Board, faults: Faults) -> Tip:
     """The wedge, refused where it would cut into the pocket's floor."""
     plate = p.stack.floor_mm + p.stack.pcb_mm
-    start_y = outline.tip_y_mm - p.tip.slant_start_mm
-    to_pocket = outline.tip_y_mm - board.pocket.y_max_mm
+    fit = p.printer.fit_mm
+    to_pocket = outline.tip_y_mm - board.pocket.y_max_mm + fit
+    # Where the fit widens the pocket, the wedge begins that much later.
+    later = min(max(p.tip.slant_start_mm - (to_pocket - fit), 0.0), max(fit, 0.0))
+    start_y = outline.tip_y_mm - p.tip.slant_start_mm + later
     faults.refuse_unless(
         p.tip.slant_start_mm <= to_pocket + 1e-6,
         "tip.slant_start_mm",
@@ -62,7 +65,7 @@ def derive_tip(p: Parameters, outline: Outline, board: Board, faults: Faults) ->
         "tip.edge_mm",
         f"{p.tip.edge_mm:g} given, less than the plate's {plate:g} mm is allowed",
     )
-    angle = math.degrees(math.atan2(plate - p.tip.edge_mm, p.tip.slant_start_mm))
+    angle = math.degrees(math.atan2(plate - p.tip.edge_mm, outline.tip_y_mm - start_y))
     faults.refuse_unless(
         angle <= 45,
         "tip.slant_start_mm",
@@ -98,5 +101,5 @@ def derive_printing(given: Input, outline: Outline, faults: Faults) -> Printing:
     )
     return Printing(
         p.backing.material, p.backing.density_g_ml, p.printer.min_wall_mm,
-        printer.line_mm, printer.layer_mm, printer.bed_mm,
+        p.printer.fit_mm, printer.line_mm, printer.layer_mm, printer.bed_mm,
     )  # fmt: skip

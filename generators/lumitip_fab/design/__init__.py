@@ -26,6 +26,7 @@ from lumitip_fab.design.boards import (
     Zone,
 )
 from lumitip_fab.design.electrical import Electrical
+from lumitip_fab.design.fit_plate import FitPlate, Fits
 from lumitip_fab.design.gripper import Closing, Mount, Nose
 from lumitip_fab.design.making import Letter, Mask, Mould, Printing
 from lumitip_fab.design.ordering import Fab
@@ -44,6 +45,8 @@ __all__ = [
     "Electrical",
     "Fab",
     "Finger",
+    "FitPlate",
+    "Fits",
     "Grid",
     "Letter",
     "Mask",
@@ -97,6 +100,7 @@ class Design:
     mask: Mask
     mould: Mould
     printing: Printing
+    fit_plate: FitPlate
     controller: Controller
     fabs: tuple[Fab, ...]
     parameters_hash: str

@@ -34,6 +34,9 @@ class Mount:
     block_front_w_mm: float
     """Front of the block where the plate is open: leaves room for solder tails."""
     block_back_w_mm: float
+    bolt: str
+    """Thread of the bolts, like M5."""
+    bolt_u_mm: tuple[float, ...]
     bolt_w_mm: float
     bolt_hole_mm: float
     counterbore_mm: float
@@ -47,6 +50,13 @@ class Mount:
     pad_w_mm: float
     letter: Letter
     """On the back of the block, beside the bolt's land."""
+    unsure: tuple[str, ...]
+    """Figures of the gripper that neither a datasheet nor a measurement gives."""
+
+    @property
+    def sleeved(self) -> bool:
+        """Whether the pins are sleeves round the bolts."""
+        return self.pin_u_mm == self.bolt_u_mm
 
 
 @dataclass(frozen=True)

@@ -71,6 +71,8 @@ class Printing:
     material: str
     density_g_ml: float
     min_wall_mm: float
+    fit_mm: float
+    """Added to every gap of backing and coupling, on each side."""
     line_mm: float
     layer_mm: float
     bed_mm: tuple[float, float, float]

@@ -4,7 +4,7 @@ import numpy as np
 from build123d import Solid
 
 from lumitip_fab.artefact import Artefact
-from lumitip_fab.design import Board, Box, Finger, Mount, Outline, Stack, Tip
+from lumitip_fab.design import Board, Box, Finger, Mount, Outline, Point, Stack, Tip
 from lumitip_fab.errors import BuildError
 from lumitip_fab.frames import mount_to_sensor
 from lumitip_fab.mechanical import coupling, export
@@ -49,7 +49,10 @@ def backing_solid(
     plate = plate - box_solid(board.pocket, stack.pocket_z_mm, stack.rim_z_mm + BEYOND_MM)
     plate = plate - coupling.notch_cutter(stack, mount, finger.notch)
     whole = plate + coupling.coupling_solid(mount, stack, finger.notch)
-    whole = whole + [_pin(x, y, stack, board.pin_mm) for x, y in finger.holes]
+    foot = stack.pocket_z_mm - stack.floor_mm / 2
+    whole = whole + [
+        pin_solid(hole, board.pin_mm, foot, stack.rim_z_mm, stack.pcb_mm) for hole in finger.holes
+    ]
     taken = [
         coupling.beyond_mount_plane(mount, stack),
         *coupling.coupling_holes(mount, stack),
@@ -64,6 +67,24 @@ def backing_solid(
             "solid is needed; change the outline or the coupling a little"
         )
     return solids[0]
+
+
+def pin_solid(
+    centre: Point, pin_mm: float, foot_mm: float, top_mm: float, pocket_mm: float
+) -> Solid:
+    """A locating pin, upright.
+
+    Args:
+        centre: its axis.
+        pin_mm: its diameter.
+        foot_mm: where it begins, inside the floor.
+        top_mm: its top, which is chamfered.
+        pocket_mm: how far it stands out of the floor.
+    """
+    lead = min(PIN_LEAD_MM, pin_mm / 4, pocket_mm / 4)
+    pin = cylinder(centre, pin_mm, foot_mm, top_mm)
+    top = max(pin.edges(), key=lambda edge: edge.center().Z)
+    return pin.chamfer(lead, None, [top])
 
 
 def _plate(stack: Stack, outline: Outline) -> Solid:
@@ -88,14 +109,6 @@ def _tip_cutter(stack: Stack, outline: Outline, tip: Tip) -> Solid:
         (start_y, far_z),
     ]
     return side_prism(corners, -half, half)
-
-
-def _pin(x_mm: float, y_mm: float, stack: Stack, pin_mm: float) -> Solid:
-    """A locating pin from inside the floor to the rim plane."""
-    lead = min(PIN_LEAD_MM, pin_mm / 4, stack.pcb_mm / 4)
-    pin = cylinder((x_mm, y_mm), pin_mm, stack.pocket_z_mm - stack.floor_mm / 2, stack.rim_z_mm)
-    top = max(pin.edges(), key=lambda edge: edge.center().Z)
-    return pin.chamfer(lead, None, [top])
 
 
 def _relief(box: Box, depth_mm: float, through: bool, stack: Stack) -> Solid:

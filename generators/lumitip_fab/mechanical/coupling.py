@@ -41,7 +41,7 @@ def coupling_solid(mount: Mount, stack: Stack, notch: Box) -> Solid:
     to_sensor = mount_to_sensor(mount, stack)
     top_mm = mount.land_mm + mount.block_back_w_mm + FLARE_RADIUS_MM
     block = prism(_plan(mount), -BEYOND_MM, top_mm)
-    for side in _beside_nose(mount):
+    for side in beside_nose(mount):
         block = block - side
     profile = _profile(mount, stack, notch)
     wide = mount.block_width_mm / 2 + 2 * SIDE_FLARE_MM
@@ -50,13 +50,15 @@ def coupling_solid(mount: Mount, stack: Stack, notch: Box) -> Solid:
 
 
 def coupling_holes(mount: Mount, stack: Stack) -> list[Solid]:
-    """What screw and gripper pins take away, in the sensor frame: bolt hole, counterbore open
-    towards the tip so that the screw and its driver go in, and pin holes."""
-    axis = (0.0, mount.bolt_w_mm)
-    holes = [
-        cylinder(axis, mount.bolt_hole_mm, -BEYOND_MM, mount.land_mm + BEYOND_MM),
-        cylinder(axis, mount.counterbore_mm, mount.land_mm, _FAR_MM),
-    ]
+    """What screws and gripper pins take away, in the sensor frame: bolt holes, counterbores open
+    towards the tip so that screws and their driver go in, and pin holes."""
+    holes = []
+    for u in mount.bolt_u_mm:
+        axis = (u, mount.bolt_w_mm)
+        holes += [
+            cylinder(axis, mount.bolt_hole_mm, -BEYOND_MM, mount.land_mm + BEYOND_MM),
+            cylinder(axis, mount.counterbore_mm, mount.land_mm, _FAR_MM),
+        ]
     holes += [
         cylinder((u, mount.bolt_w_mm), mount.pin_mm, -BEYOND_MM, mount.pin_depth_mm)
         for u in mount.pin_u_mm
@@ -90,15 +92,7 @@ def notch_cutter(stack: Stack, mount: Mount, notch: Box) -> Solid:
     return Solid.extrude(face, Vector(notch.width_mm, 0, 0))
 
 
-def _plan(mount: Mount) -> Face:
-    """The block in the (u, w) plane, its back corners rounded."""
-    half, back, front = mount.block_width_mm / 2, mount.block_back_w_mm, -mount.block_back_w_mm
-    face = polygon_face([(-half, front), (half, front), (half, back), (-half, back)])
-    corners = [v for v in face.vertices() if v.Y > 0]
-    return face.fillet_2d(mount.block_corner_mm, corners)
-
-
-def _beside_nose(mount: Mount) -> list[Solid]:
+def beside_nose(mount: Mount) -> list[Solid]:
     """What is taken from the block on either side of its nose, in the mount frame.
 
     Above the nose the block widens at 45°, so that it prints without support.
@@ -120,6 +114,14 @@ def _beside_nose(mount: Mount) -> list[Solid]:
         face = Face(Wire.make_polygon(points, close=True))
         sides.append(Solid.extrude(face, along * (3 * reach)))
     return sides
+
+
+def _plan(mount: Mount) -> Face:
+    """The block in the (u, w) plane, its back corners rounded."""
+    half, back, front = mount.block_width_mm / 2, mount.block_back_w_mm, -mount.block_back_w_mm
+    face = polygon_face([(-half, front), (half, front), (half, back), (-half, back)])
+    corners = [v for v in face.vertices() if v.Y > 0]
+    return face.fillet_2d(mount.block_corner_mm, corners)
 
 
 def _notch_end(mount: Mount, stack: Stack, notch: Box) -> tuple[Point, Point]:

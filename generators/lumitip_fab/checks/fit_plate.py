@@ -1,0 +1,214 @@
+"""The fit test plate: every step really is as much looser than the backing as its value says."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import shapely
+
+from lumitip_fab.checks import packages, solids
+from lumitip_fab.checks.printed import circles, farthest, holes_at
+from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip_fab.checks.solids import Vectors, cast, section
+from lumitip_fab.design import Design, Point
+from lumitip_fab.errors import OutputError
+
+READS = ("fit/*.stl", "fit/*.3mf", "fit/*.step")
+TIGHT_MM = 0.02  # less than half a step: no step passes for its neighbour
+PLACE_MM = 0.05
+SIZE_MM = 0.05
+VOLUME_FRACTION = 0.05
+_FILE = "fit/fit_plate.stl"
+_DOWN = np.array([0.0, 0.0, -1.0])
+# Places in parts of a character's height from its lower left corner, and which of them are sunk.
+_PLACES = {
+    "a": (0.3, 0.915), "b": (0.515, 0.71), "c": (0.515, 0.29), "d": (0.3, 0.085),
+    "e": (0.085, 0.29), "f": (0.085, 0.71), "g": (0.3, 0.5), "p": (0.3, 0.68), "q": (0.3, 0.25),
+}  # fmt: skip
+_SUNK = {"0": "abcdef", "1": "adgpq", "5": "acdfg", "-": "g", "+": "gpq", " ": ""}
+_CHARACTERS, _CHARACTER_PITCH = 3, 0.85
+
+
+@dataclass(frozen=True, eq=False)
+class _Plate:
+    """The plate as it was read."""
+
+    mesh: Any
+    design: Design
+
+    def names(self) -> list[str]:
+        """Values of the steps."""
+        hundredths = [f"{100 * fits.fit_mm:+.0f}" for fits in self.design.fit_plate.steps]
+        return ["0" if value in {"+0", "-0"} else value for value in hundredths]
+
+    def looser_mm(self, step: int) -> float:
+        """How much looser than the backing a step is to be."""
+        return self.design.fit_plate.steps[step].fit_mm - self.design.printing.fit_mm
+
+    def mounted(self, step: int, us: tuple[float, ...]) -> tuple[Point, ...]:
+        """Places on the line of the bolts, of those in the slice that is shown."""
+        plate, w = self.design.fit_plate, self.design.mount.bolt_w_mm
+        x, y = plate.at(step, plate.slice_at)
+        return tuple((x - u, y - w) for u in us if plate.slice.x_min_mm < u < plate.slice.x_max_mm)
+
+
+def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
+    """Every figure of the plate."""
+    try:
+        mesh = solids.read_mesh(outputs / _FILE)
+    except OutputError as error:
+        yield unreadable("fit_plate.readable", _FILE, str(error))
+        return
+    yield _figure("readable", "", float(len(mesh.faces)), 4, np.inf, "triangles")
+    plate = _Plate(mesh, design)
+    steps: tuple[Callable[[_Plate], Iterator[Measurement]], ...] = (
+        measure_body, measure_corners, measure_bolts, measure_pins, measure_seats, measure_noses,
+        measure_labels,
+    )  # fmt: skip
+    for measured in steps:
+        try:
+            yield from measured(plate)
+        except (ArithmeticError, LookupError, ValueError, shapely.errors.ShapelyError) as error:
+            name = measured.__name__.removeprefix("measure_")
+            yield unreadable(f"fit_plate.{name}", _FILE, f"cannot be measured: {error!r:.200}")
+    yield from packages.measure_boxes("fit_plate", outputs, _FILE, mesh.bounds, mesh.bounds)
+
+
+def measure_body(plate: _Plate) -> Iterator[Measurement]:
+    """One closed body of the stated size and volume."""
+    mesh, wanted = plate.mesh, plate.design.fit_plate
+    yield _figure("watertight", "", solids.open_edges(mesh), 0, 0, "open edges")
+    yield _figure("bodies", "", solids.bodies(mesh), 1, 1, "bodies")
+    off = mesh.bounds - np.array([(0.0, 0.0, 0.0), wanted.size_mm])
+    yield _near("size", "", off.ravel(), 0.0, SIZE_MM)
+    least, most = ((1 + side * VOLUME_FRACTION) * wanted.volume_ml for side in (-1, 1))
+    yield _figure("volume", "", float(mesh.volume) / 1000, least, most, "mL")
+
+
+def measure_corners(plate: _Plate) -> Iterator[Measurement]:
+    """On each tower: gaps from a board's edges to the walls, the pin, and the floor."""
+    wanted, board = plate.design.fit_plate, plate.design.board
+    for step, (name, floor) in enumerate(zip(plate.names(), wanted.floors_mm, strict=True)):
+        looser = plate.looser_mm(step)
+        cut = section(plate.mesh, floor + wanted.pocket_mm / 2)
+        x, y = wanted.at(step, wanted.corner)
+        pin_x, pin_y = wanted.at(step, wanted.pin)
+        free = np.array([0.25, 0.4])
+        beside = [(x, y + (pin_y - y) * f) for f in free]
+        behind = [(x + (pin_x - x) * f, y) for f in free]
+        gaps = np.concatenate([_gaps(cut, beside, (-1.0, 0.0)), _gaps(cut, behind, (0.0, 1.0))])
+        yield _near("pocket_gap", name, gaps, board.pocket_clearance_mm + looser, TIGHT_MM)
+        rings = [p.exterior for p in shapely.get_parts(cut) if p.geom_type == "Polygon"]
+        off, wide = circles(rings, ((pin_x, pin_y),), board.hole_mm / 2)
+        yield _near("pins", name, off, 0.0, PLACE_MM)
+        yield _near("pin", name, wide, board.pin_mm - 2 * looser, TIGHT_MM)
+        open_floor = np.array([(x + 0.3, pin_y), ((x + pin_x) / 2, pin_y)])
+        yield _near("floor", name, _height(plate, open_floor), floor, PLACE_MM)
+
+
+def measure_bolts(plate: _Plate) -> Iterator[Measurement]:
+    """The bolt's hole in each slice: place and diameter."""
+    wanted, mount = plate.design.fit_plate, plate.design.mount
+    low = wanted.pin_depth_mm if mount.sleeved else 0.0
+    rings = holes_at(plate.mesh, (low + wanted.land_mm) / 2)
+    for step, name in enumerate(plate.names()):
+        bolts = plate.mounted(step, mount.bolt_u_mm)
+        off, wide = circles(rings, bolts, mount.bolt_hole_mm / 2)
+        yield _near("bolt", name, off, 0.0, PLACE_MM)
+        hole = mount.bolt_hole_mm + 2 * plate.looser_mm(step)
+        yield _near("bolt_hole", name, wide, hole, TIGHT_MM)
+
+
+def measure_pins(plate: _Plate) -> Iterator[Measurement]:
+    """The holes for the gripper's pins in each slice: place and diameter."""
+    wanted, mount = plate.design.fit_plate, plate.design.mount
+    rings = holes_at(plate.mesh, min(wanted.pin_depth_mm, wanted.land_mm) / 2)
+    for step, name in enumerate(plate.names() if mount.pin_u_mm else ()):
+        off, wide = circles(rings, plate.mounted(step, mount.pin_u_mm), mount.pin_mm / 2)
+        yield _near("gripper_pins", name, off, 0.0, PLACE_MM)
+        hole = mount.pin_mm + 2 * plate.looser_mm(step)
+        yield _near("gripper_pin_hole", name, wide, hole, TIGHT_MM)
+
+
+def measure_seats(plate: _Plate) -> Iterator[Measurement]:
+    """What is left under each bolt's head, but for the holes beside it."""
+    wanted, mount = plate.design.fit_plate, plate.design.mount
+    turn = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
+    radius = (mount.bolt_hole_mm / 2 + 0.1 + mount.counterbore_mm / 2) / 2
+    around = radius * np.column_stack([np.cos(turn), np.sin(turn)])
+    for step, name in enumerate(plate.names()):
+        points = np.concatenate([around + at for at in plate.mounted(step, mount.bolt_u_mm)])
+        if not mount.sleeved:
+            for pin in plate.mounted(step, mount.pin_u_mm):
+                points = points[np.hypot(*(points - pin).T) > mount.pin_mm / 2 + 0.2]
+        yield _near("land", name, _height(plate, points), wanted.land_mm, PLACE_MM)
+
+
+def measure_noses(plate: _Plate) -> Iterator[Measurement]:
+    """Half the width of each nose on either side, less than its step allows no gap."""
+    wanted, mount, nose = plate.design.fit_plate, plate.design.mount, plate.design.mount.nose
+    if nose is None:
+        return
+    angle, box = np.radians(nose.half_angle_deg), wanted.slice
+    height = min(nose.height_mm, wanted.thickness_mm) / 2
+    cut = section(plate.mesh, height)
+    rows = np.linspace(box.y_min_mm + 0.2, box.y_max_mm - 0.2, 12)
+    for step, name in enumerate(plate.names()):
+        x, y = wanted.at(step, wanted.slice_at)
+        front = nose.front_width_mm / 2 - plate.looser_mm(step) / np.cos(angle)
+        half = front + (rows - nose.front_w_mm) * np.tan(angle)
+        flank = half < mount.block_width_mm / 2 - 0.2
+        reach = box.width_mm / 2 + 0.3
+        errors = []
+        for w, wide in zip(rows[flank], half[flank], strict=True):
+            line = shapely.LineString([(x - reach, y - w), (x + reach, y - w)])
+            bounds = line.intersection(cut).bounds
+            errors += [bounds[2] - x - wide, x - bounds[0] - wide] if bounds else [np.nan]
+        yield _near("nose", name, np.array(errors), 0.0, TIGHT_MM)
+
+
+def measure_labels(plate: _Plate) -> Iterator[Measurement]:
+    """Each value as it is engraved: places that are sunk though they should stand, or stand."""
+    wanted = plate.design.fit_plate
+    high = wanted.label.length_mm
+    for step, name in enumerate(plate.names()):
+        x, y = wanted.at(step, (wanted.label.x_min_mm, wanted.label.y_min_mm))
+        places, sunk = [], []
+        for k, character in enumerate(name.ljust(_CHARACTERS)):
+            for stroke, (along, up) in _PLACES.items():
+                places.append((x + (k * _CHARACTER_PITCH + along) * high, y + up * high))
+                sunk.append(stroke in _SUNK[character])
+        heights = _height(plate, np.array(places))
+        due = wanted.thickness_mm - np.array(sunk) * wanted.label_mm
+        wrong = int((np.abs(heights - due) > PLACE_MM).sum())
+        yield _figure("label", name, wrong, 0, 0, f"of {len(places)} places wrong")
+
+
+def _gaps(cut: Any, starts: list[Point], outward: Point) -> Vectors:
+    """From points on a board's edge outward to the wall."""
+    from_ = np.array(starts) - np.array(outward) * 0.1
+    lines = shapely.linestrings(np.stack([from_, from_ + np.array(outward) * 2.0], axis=1))
+    return np.asarray(
+        shapely.distance(shapely.points(from_), shapely.intersection(lines, cut)) - 0.1
+    )
+
+
+def _height(plate: _Plate, points: Vectors) -> Vectors:
+    """Height of what is seen from above at points (x, y)."""
+    above = float(plate.mesh.bounds[1, 2]) + 1.0
+    origins = np.column_stack([points, np.full(len(points), above)])
+    drop, _ = cast(plate.mesh, origins, _DOWN, above + 1).first(len(points))
+    return np.asarray(above - drop)
+
+
+def _figure(
+    check: str, at: str, measured: float, low: float, high: float, unit: str = "mm"
+) -> Measurement:
+    subject = f"{_FILE}: {at}" if at else _FILE
+    return Measurement(f"fit_plate.{check}", subject, measured, low, high, unit)
+
+
+def _near(check: str, at: str, measured: Vectors, wanted: float, by: float) -> Measurement:
+    return _figure(check, at, farthest(measured, wanted), wanted - by, wanted + by)

@@ -1,0 +1,92 @@
+"""The fit test plate: what is drawn looser and tighter by steps, and where each is on the plate."""
+
+from dataclasses import dataclass, replace
+
+from lumitip_fab.design.gripper import Mount, Nose
+from lumitip_fab.design.shape import Box, Point
+
+
+@dataclass(frozen=True)
+class Fits:
+    """Everything of backing and coupling that is drawn looser by a fit."""
+
+    fit_mm: float
+    """Added to every gap, on each side; below zero all is tighter."""
+    pocket_gap_mm: float
+    """Board to pocket, on each side."""
+    pin_mm: float
+    """Diameter of the locating pins in the board's holes."""
+    bolt_hole_mm: float
+    gripper_pin_mm: float
+    """Diameter of the holes for the gripper's pins; 0 where it has none."""
+    nose: Nose | None
+
+    def of(self, mount: Mount) -> Mount:
+        """A coupling drawn with this fit."""
+        return replace(
+            mount, bolt_hole_mm=self.bolt_hole_mm, pin_mm=self.gripper_pin_mm, nose=self.nose
+        )
+
+
+@dataclass(frozen=True)
+class FitPlate:
+    """The plate as it lies on the bed: x to the right, y away from the reader, z up.
+
+    Each step has a tower, with a corner of the pocket and a pin, and behind it a slice of the
+    coupling. Towers fall to the right, so that a board on one passes over all lower ones.
+
+        ┌────┐ ┌────┐
+        │ ◎  │ │ ◎  │    slices of the coupling, the nose away from the reader
+     ┌──┴────┴─┴────┴──┐
+     │▛▔▔ -10 ▛▔▔ -5 … │  towers: the corner at the left behind, the pin in it; values in 0.01 mm
+     └─────────────────┘
+    """
+
+    steps: tuple[Fits, ...]
+    """Tightest first, which is the leftmost."""
+    pitch_mm: float
+    """From step to step along x; the first begins at x = 0."""
+    tower: Box
+    """Of the first step."""
+    pin: Point
+    """Of the first step."""
+    corner: Point
+    """The corner of a board on the first tower: its left and its far edge."""
+    floors_mm: tuple[float, ...]
+    """Height of each tower's floor, on which the board lies."""
+    pocket_mm: float
+    """Height of walls and pin over that floor."""
+    label: Box
+    """The value of the first step, of three characters."""
+    label_mm: float
+    """Depth of the engraving."""
+    slice: Box
+    """Of the coupling, in the mount's axes u and w."""
+    slice_at: Point
+    """Place of u = 0, w = 0 of the first step's slice; u runs against x, and w against y."""
+    thickness_mm: float
+    """Of slices and of the strip under the towers."""
+    land_mm: float
+    """Left under a bolt's head."""
+    pin_depth_mm: float
+    """Of the holes for the gripper's pins, from below: through, unless they are sleeves round
+    the bolts."""
+    volume_ml: float
+    """Estimated, from towers, strip and slices."""
+    minutes: float
+    """Estimated time to print it, solid."""
+
+    @property
+    def size_mm(self) -> tuple[float, float, float]:
+        """Box round it, from the origin."""
+        depth = self.slice_at[1] - self.slice.y_min_mm
+        return len(self.steps) * self.pitch_mm, depth, max(self.floors_mm) + self.pocket_mm
+
+    def at(self, step: int, place: Point) -> Point:
+        """A place of the first step moved to another."""
+        return place[0] + step * self.pitch_mm, place[1]
+
+    def label_of(self, step: int) -> str:
+        """Value of a step in 0.01 mm, with its sign."""
+        hundredths = round(100 * self.steps[step].fit_mm)
+        return f"{hundredths:+d}" if hundredths else "0"
