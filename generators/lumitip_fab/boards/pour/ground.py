@@ -167,4 +167,10 @@ def _kept(net: Net, tree: nx.Graph, sheets: dict[Side, Sheet]) -> Kept:
     for thing in (things[number] for number in tree.nodes):
         if thing[0] in reached and isinstance(thing[1], int):
             reached[thing[0]].add(thing[1])
+    for side, sheet in sheets.items():
+        copper: list[shapely.Geometry] = [shapely.Point(via.x_mm, via.y_mm) for via in vias]
+        copper += [shapely.LineString([t.start, t.end]) for t in tracks if t.side == side]
+        cores = np.array(copper, dtype=object)
+        touched = shapely.STRtree(sheet.pieces).query(cores, predicate="intersects")[1]
+        reached[side].update(touched.tolist())
     return Kept(tuple(tracks), tuple(vias), {s: tuple(sorted(p)) for s, p in reached.items()})

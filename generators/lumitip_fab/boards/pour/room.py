@@ -12,9 +12,9 @@ from lumitip_fab.boards.openings import fiducial_margin_mm
 from lumitip_fab.boards.pour_rules import CLEARANCE_MM, MIN_WIDTH_MM
 from lumitip_fab.boards.verify import DRILL_WALL_MM
 
-MARGIN_MM = 0.005  # beyond clearances: curves become polygons, and places are rounded
+MARGIN_MM = 0.002  # beyond clearances: curves become polygons, and places are rounded
 PAD_TO_VIA_MM = 0.1  # solder mask between a pad and a via
-_ARC = 12  # chords of a quarter circle
+_ARC = 24  # chords of a quarter circle
 
 
 @dataclass(frozen=True)

@@ -12,9 +12,7 @@ from lumitip_fab.boards.pour.room import opened
 from lumitip_fab.boards.pour_rules import MIN_WIDTH_MM, THERMAL_GAP_MM, THERMAL_SPOKE_MM
 from lumitip_fab.design import Point
 
-LEAST_SPOKES = 2
-"""With fewer a pad is left to tracks alone."""
-LEAST_AREA_MM2 = 0.5  # smaller pieces of pour are left out
+LEAST_AREA_MM2 = 0.04  # smaller pieces of pour are left out
 _INTO_MM = 0.1  # how far a spoke reaches into pad and pour
 
 
@@ -59,7 +57,6 @@ def sheet(room: Geometry, pads: list[PlacedPad]) -> Sheet:
             for piece in tree.query(end)
             if pieces[piece].covers(end)
         ]
-        found = found if len(found) >= LEAST_SPOKES else []
         for piece, spoke in found:
             added[piece].append(spoke)
         reached.append(tuple(sorted({piece for piece, _ in found})))
