@@ -11,6 +11,7 @@ from pydantic import Field, model_validator
 
 from lumitip_fab.entry import Entry, Length, Name, Pin, Share, Strict
 from lumitip_fab.fab_entry import Fab
+from lumitip_fab.filament_entry import Filament
 from lumitip_fab.gripper_entry import Gripper
 
 
@@ -216,6 +217,8 @@ class Film(Entry):
 class Printer(Entry):
     """A 3D printer with its nozzle: what the walls can be."""
 
+    nozzle_mm: Length
+    """Bore of the nozzle."""
     line_mm: Length
     """Width of one extruded line."""
     layer_mm: Length
@@ -237,4 +240,5 @@ class Catalogue(Strict):
     silicones: Mapping[Name, Silicone]
     films: Mapping[Name, Film]
     printers: Mapping[Name, Printer]
+    filaments: Mapping[Name, Filament]
     fabs: Mapping[Name, Fab]

@@ -80,6 +80,11 @@ def _parser() -> argparse.ArgumentParser:
     sub.add_argument("--seed", type=int, default=0, metavar="N", help=told)
     told = "evaluate on this Dask cluster (tcp://…) instead of on all cores of this machine"
     sub.add_argument("--scheduler", metavar="ADDRESS", help=told)
+    told = "Slice every printed part in DIR with PrusaSlicer: time, filament and overhangs."
+    sub = command("slice", told, "quiet", "json")
+    with_out(sub)
+    told = "keep the G-code there; without it only the figures are kept"
+    sub.add_argument("--gcode", type=Path, metavar="FOLDER", help=told)
     sub = command("schema", "Print the JSON Schema of parameter files, for editors.")
     return parser
 

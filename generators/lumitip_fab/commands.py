@@ -151,6 +151,25 @@ def _explore(options: argparse.Namespace) -> int:
     return 0
 
 
+def _slice(options: argparse.Namespace) -> int:
+    from lumitip_fab.slicing import report, slice_parts
+
+    columns = (TextColumn("{task.description:<32}"), BarColumn(), MofNCompleteColumn())
+    silent = options.quiet or options.json
+    with Progress(*columns, console=ERR, disable=silent, transient=True) as bar:
+        shown = bar.add_task("slicing", total=None)
+
+        def progress(name: str, done: int, total: int) -> None:
+            bar.update(shown, description=name, completed=done, total=total)
+
+        parts = slice_parts(options.out, options.gcode, progress)
+    if options.json:
+        print(report.as_json(parts))
+    elif not options.quiet:
+        report.print_table(parts, OUT)
+    return 0
+
+
 def _channel_map(options: argparse.Namespace) -> int:
     from lumitip_fab.checks.channel_map import read_channels
 
@@ -181,5 +200,6 @@ COMMANDS = {
     "channel-map": _channel_map,
     "watch": _watch,
     "explore": _explore,
+    "slice": _slice,
     "schema": _schema,
 }

@@ -35,6 +35,7 @@ _INK = ("reportlab", "ezdxf", "numpy", "shapely")
 _COPPER = ("gerbonara", "matplotlib", "networkx", "numba", "numpy", "scipy", "shapely")
 STEPS = (
     Step("mask", "files", "mask_files", False, _INK),
+    Step("printing", "settings", "print_settings", False, ()),
     Step("firmware", "files", "firmware_files", False, ("numpy",)),
     Step("boards", "files", "board_files", True, _COPPER),
     Step("boards", "spice", "simulation", False, ()),

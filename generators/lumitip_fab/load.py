@@ -24,6 +24,7 @@ NAMED = {
     "receiver.resistor": "resistors",
     "receiver.capacitor": "capacitors",
     "receiver.multiplexer": "multiplexers",
+    "backing.material": "filaments",
     "controller.board": "controllers",
     "coupling.gripper": "grippers",
     "mould.silicone": "silicones",

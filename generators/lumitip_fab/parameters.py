@@ -74,8 +74,8 @@ class Backing(Strict):
 
     variant: Literal["rigid"]
     """Kind of backing."""
-    material: Text
-    """Filament it is printed from."""
+    material: Name
+    """Name of a filament in `parts/filaments.toml`."""
     density_g_ml: float = Field(ge=0.5, le=3)
     """Density of that filament (g/mL)."""
     pocket_clearance_mm: float = Field(ge=0.10, le=0.30)

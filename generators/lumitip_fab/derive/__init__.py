@@ -9,6 +9,7 @@ from lumitip_fab.derive.electrical import derive_electrical
 from lumitip_fab.derive.faults import Faults
 from lumitip_fab.derive.fit_plate import derive_fit_plate
 from lumitip_fab.derive.packages import derive_fabs, derive_packages, derive_rules
+from lumitip_fab.derive.slicing import derive_slicing
 from lumitip_fab.derive.stack import derive_printing, derive_stack, derive_tip
 from lumitip_fab.design import Controller, Design, Grid, Title
 from lumitip_fab.encoding import canonical, settled
@@ -36,6 +37,7 @@ def derive(given: Input) -> Design:
     tip = derive_tip(p, silhouette, plan.board, faults)
     casting = mould.derive_mould(given, silhouette, plan.board, faults)
     printing = derive_printing(given, silhouette, faults)
+    slicing = derive_slicing(given, faults)
     plate = derive_fit_plate(given, plan, coupling, faults)
     sheet = mask.derive_mask(given, silhouette, plan, faults)
     rules = derive_rules(given, faults)
@@ -74,6 +76,7 @@ def derive(given: Input) -> Design:
             mask=sheet,
             mould=casting,
             printing=printing,
+            slicing=slicing,
             fit_plate=plate,
             controller=Controller(
                 p.controller.board,

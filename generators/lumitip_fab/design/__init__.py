@@ -31,6 +31,7 @@ from lumitip_fab.design.gripper import Closing, Mount, Nose
 from lumitip_fab.design.making import Letter, Mask, Mould, Printing
 from lumitip_fab.design.ordering import Fab
 from lumitip_fab.design.shape import Box, Cubic, Outline, Point, Stack, Tip
+from lumitip_fab.design.slicing import Filament, Slicing
 
 __all__ = [
     "Board",
@@ -44,6 +45,7 @@ __all__ = [
     "Design",
     "Electrical",
     "Fab",
+    "Filament",
     "Finger",
     "FitPlate",
     "Fits",
@@ -62,6 +64,7 @@ __all__ = [
     "Reading",
     "Relief",
     "Rules",
+    "Slicing",
     "Stack",
     "Tip",
     "Title",
@@ -100,6 +103,7 @@ class Design:
     mask: Mask
     mould: Mould
     printing: Printing
+    slicing: Slicing
     fit_plate: FitPlate
     controller: Controller
     fabs: tuple[Fab, ...]

@@ -1,0 +1,73 @@
+"""Settings for the slicer against the printer, the filaments and the parts in the folder."""
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip_fab.design import Design
+from lumitip_fab.design.slicing import Filament
+
+READS = ("print/*",)
+_NOTE = "print/printing.md"
+
+
+def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
+    """Read the settings as the slicer would."""
+    for filament in design.slicing.filaments:
+        yield _settings(outputs, design, filament)
+    yield _parts(outputs, design)
+
+
+def _settings(outputs: Path, design: Design, filament: Filament) -> Measurement:
+    try:
+        lines = (outputs / filament.file).read_text(encoding="utf-8").splitlines()
+    except (OSError, UnicodeDecodeError) as problem:
+        return unreadable("printing.settings", filament.file, str(problem))
+    told = {key.strip(): value.strip() for key, _, value in (n.partition("=") for n in lines)}
+    wrong = [key for key, value in _wanted(design, filament).items() if told.get(key) != value]
+    return Measurement(
+        "printing.settings", filament.file, float(len(wrong)), 0, 0, "settings",
+        f"other than printer and filament say: {', '.join(wrong) or 'none'}",
+    )  # fmt: skip
+
+
+def _wanted(design: Design, filament: Filament) -> dict[str, str]:
+    printing = design.printing
+    x, y, z = (f"{value:g}" for value in printing.bed_mm)
+    least, most = filament.fan_percent
+    return {
+        "layer_height": f"{printing.layer_mm:g}",
+        "first_layer_height": f"{printing.layer_mm:g}",
+        "extrusion_width": f"{printing.line_mm:g}",
+        "external_perimeter_extrusion_width": f"{printing.line_mm:g}",
+        "nozzle_diameter": f"{design.slicing.nozzle_mm:g}",
+        "bed_shape": f"0x0,{x}x0,{x}x{y},0x{y}",
+        "max_print_height": z,
+        "support_material": "0",
+        "fill_density": "100%",
+        "filament_density": f"{filament.density_g_ml:g}",
+        "filament_max_volumetric_speed": f"{filament.max_flow_mm3_s:g}",
+        "filament_type": filament.kind,
+        "temperature": str(filament.nozzle_c),
+        "bed_temperature": str(filament.bed_c),
+        "min_fan_speed": str(least),
+        "max_fan_speed": str(most),
+        "retract_length": f"{filament.retract_mm:g}",
+    }
+
+
+def _parts(outputs: Path, design: Design) -> Measurement:
+    """Every printed part of a finger is listed with the settings of its filament, and none else."""
+    try:
+        text = (outputs / _NOTE).read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as problem:
+        return unreadable("printing.parts", _NOTE, str(problem))
+    listed = set(re.findall(r"^\| `(\S+\.3mf)` \| `(\S+)` \|", text, re.MULTILINE))
+    kinds, fingers = ("backing", "mould"), design.fingers
+    paths = [f"{kind}/{finger.name}_{kind}.3mf" for kind in kinds for finger in fingers]
+    wrong = listed ^ {(path, design.slicing.of(path).file) for path in paths}
+    return Measurement(
+        "printing.parts", _NOTE, float(len(wrong)), 0, 0, "parts",
+        f"listed wrongly or not at all, of {len(paths)}",
+    )  # fmt: skip

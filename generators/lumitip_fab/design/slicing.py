@@ -1,0 +1,43 @@
+"""What the slicer is told."""
+
+import re
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Filament:
+    """A filament, as it is printed."""
+
+    name: str
+    kind: str
+    density_g_ml: float
+    nozzle_c: int
+    bed_c: int
+    fan_percent: tuple[int, int]
+    speed_mm_s: float
+    max_flow_mm3_s: float
+    retract_mm: float
+
+    @property
+    def file(self) -> str:
+        """Path of its settings below the output folder."""
+        return f"print/{re.sub(r'[^a-z0-9]+', '_', self.name.lower()).strip('_')}.ini"
+
+
+@dataclass(frozen=True)
+class Slicing:
+    """What is printed from what, and the nozzle."""
+
+    nozzle_mm: float
+    backing: Filament
+    rigid: Filament
+    """Of everything but the backings."""
+
+    @property
+    def filaments(self) -> tuple[Filament, ...]:
+        """Each once."""
+        return tuple(dict.fromkeys((self.backing, self.rigid)))
+
+    def of(self, path: str) -> Filament:
+        """What a part is printed from, by its path below the output folder."""
+        return self.backing if path.startswith("backing/") else self.rigid

@@ -1,0 +1,125 @@
+"""Damage the slicer's settings, and exactly the right checks fail; filaments and their rules."""
+
+import dataclasses
+import re
+import shutil
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from lumitip_fab.checks.printing import measure
+from lumitip_fab.derive import derive
+from lumitip_fab.design import Design
+from lumitip_fab.encoding import design_text, read_design
+from lumitip_fab.errors import InputError
+from lumitip_fab.load import Input, load
+from lumitip_fab.printing.settings import print_settings
+
+
+def _written(design: Design, out: Path) -> Path:
+    (out / "print").mkdir(parents=True)
+    (out / "design.json").write_text(design_text(design), encoding="utf-8")
+    for artefact in print_settings(design.title, design.printing, design.slicing):
+        (out / artefact.path).write_bytes(artefact.data)
+    return out
+
+
+@pytest.fixture(scope="module")
+def given(design_dir: Path) -> Input:
+    return load(design_dir / "presets" / "published.toml")
+
+
+@pytest.fixture(scope="module")
+def settings(given: Input, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Settings of the published design and `design.json`. Do not change them."""
+    return _written(derive(given), tmp_path_factory.mktemp("settings") / "out")
+
+
+def failing(folder: Path) -> set[str]:
+    design = read_design(folder / "design.json")
+    return {m.check.removeprefix("printing.") for m in measure(folder, design) if not m.passed}
+
+
+INI, NOTE = "petg.ini", "printing.md"
+EDITS = [
+    (INI, "\nlayer_height = 0.2", "\nlayer_height = 0.3", {"settings"}),
+    (INI, "first_layer_height = 0.2", "first_layer_height = 0.35", {"settings"}),
+    (INI, "\nextrusion_width = 0.45", "\nextrusion_width = 0.6", {"settings"}),
+    (INI, "external_perimeter_extrusion_width = 0.45",
+     "external_perimeter_extrusion_width = 0", {"settings"}),
+    (INI, "nozzle_diameter = 0.4", "nozzle_diameter = 0.6", {"settings"}),
+    (INI, "support_material = 0", "support_material = 1", {"settings"}),
+    (INI, "fill_density = 100%", "fill_density = 15%", {"settings"}),
+    (INI, "250x210", "180x180", {"settings"}),
+    (INI, "max_print_height = 210", "max_print_height = 21", {"settings"}),
+    (INI, "filament_density = 1.27", "filament_density = 1.72", {"settings"}),
+    (INI, "filament_type = PET", "filament_type = PLA", {"settings"}),
+    (INI, "filament_max_volumetric_speed = 8", "filament_max_volumetric_speed = 80",
+     {"settings"}),
+    (INI, "\ntemperature = 240", "\ntemperature = 204", {"settings"}),
+    (INI, "\nbed_temperature = 85\n", "\n", {"settings"}),
+    (INI, "min_fan_speed = 30", "min_fan_speed = 100", {"settings"}),
+    (INI, "max_fan_speed = 50", "max_fan_speed = 0", {"settings"}),
+    (INI, "retract_length = 0.8", "retract_length = 8", {"settings"}),
+    (NOTE, "| `mould/emitter_mould.3mf`", "| `mould/emitter_cast.3mf`", {"parts"}),
+    (NOTE, "petg.ini` | PETG | on", "pla.ini` | PLA | on", {"parts"}),
+    (NOTE, "| `backing/receiver_backing.3mf`", "`backing/receiver_backing.3mf`", {"parts"}),
+]  # fmt: skip
+
+
+def test_nothing_fails_as_it_is_written(settings: Path) -> None:
+    assert failing(settings) == set()
+
+
+@pytest.mark.parametrize(("file", "old", "new", "expected"), EDITS)
+def test_a_damage_fails_its_check(
+    settings: Path, tmp_path: Path, file: str, old: str, new: str, expected: set[str]
+) -> None:
+    damaged = Path(shutil.copytree(settings, tmp_path / "damaged"))
+    path = damaged / "print" / file
+    text = path.read_text(encoding="utf-8")
+    assert old in text
+    path.write_text(text.replace(old, new, 1), encoding="utf-8")
+    assert failing(damaged) == expected
+
+
+def test_lost_files_are_told(settings: Path, tmp_path: Path) -> None:
+    damaged = Path(shutil.copytree(settings, tmp_path / "damaged"))
+    (damaged / "print" / INI).unlink()
+    assert failing(damaged) == {"settings"}
+    (damaged / "print" / NOTE).write_bytes(b"\xff\xfe")
+    assert failing(damaged) == {"settings", "parts"}
+
+
+def _with(given: Input, material: str, **filament: Any) -> Input:
+    backing = given.parameters.backing.model_copy(update={"material": material})
+    known = dict(given.catalogue.filaments)
+    known[material] = known[material].model_copy(update=filament)
+    return dataclasses.replace(
+        given,
+        parameters=given.parameters.model_copy(update={"backing": backing}),
+        catalogue=given.catalogue.model_copy(update={"filaments": known}),
+    )
+
+
+def test_what_must_not_bend_is_printed_from_another_filament(given: Input, tmp_path: Path) -> None:
+    design = derive(_with(given, "TPU 98A"))
+    told = design.slicing
+    assert (told.backing.name, told.rigid.name) == ("TPU 98A", "PETG")
+    # The spool at hand is the backing's; the other's density is the catalogue's.
+    assert told.backing.density_g_ml == given.parameters.backing.density_g_ml
+    out = _written(design, tmp_path / "out")
+    assert failing(out) == set()
+    assert sorted(p.name for p in (out / "print").iterdir()) == [
+        "petg.ini", "printing.md", "tpu_98a.ini",
+    ]  # fmt: skip
+    note = (out / "print/printing.md").read_text(encoding="utf-8")
+    assert re.search(r"emitter_backing.3mf` \| `print/tpu_98a.ini", note)
+    assert re.search(r"emitter_mould.3mf` \| `print/petg.ini", note)
+
+
+@pytest.mark.parametrize("other", ["TPU 98A", "wood"])
+def test_a_filament_for_rigid_parts_must_be_one(given: Input, other: str) -> None:
+    with pytest.raises(InputError, match=f"rigid_parts '{other}' is no filament"):
+        derive(_with(given, "TPU 98A", rigid_parts=other))

@@ -1,0 +1,80 @@
+"""Every printed part of the default design goes through Debian's PrusaSlicer."""
+
+import json
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lumitip_fab.cli import main
+from lumitip_fab.errors import BuildError
+from lumitip_fab.slicing import gcode
+
+CODE = """
+;TYPE:Custom
+G1 X0 Y0 F9000
+;LAYER_CHANGE
+;Z:0.2
+;TYPE:Skirt/Brim
+G1 X90 Y0 E5
+G92 E0
+;TYPE:External perimeter
+G1 X0 Y0
+G1 X10 Y0 E1 F1200
+;LAYER_CHANGE
+;Z:0.4
+G1 X10 Y3 F9000
+G1 X0 Y3 E2
+G1 E1.2
+;TYPE:Support material
+G1 X0 Y50 E4
+; total filament used [g] = 7.24
+; estimated printing time (normal mode) = 1d 2h 3m 4s
+"""
+
+
+def test_layers_are_of_the_part_alone() -> None:
+    told = gcode.layers(CODE)
+    assert [layer.z_mm for layer in told] == [0.2, 0.4]
+    assert [layer.length_mm for layer in told] == pytest.approx([10.0, 10.0])
+    assert np.ptp(told[0].points_mm, axis=0).tolist() == pytest.approx([10.0, 0.0])
+    assert gcode.reach_mm(told) == pytest.approx((3.0, 0.4))
+    assert gcode.seconds(CODE) == 93784 and gcode.grams(CODE) == 7.24
+    with pytest.raises(BuildError, match="no time"):
+        gcode.seconds("")
+    with pytest.raises(BuildError, match="no mass"):
+        gcode.grams("")
+
+
+@pytest.mark.slow
+def test_every_part_slices_without_support(
+    outputs: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    if not shutil.which("prusa-slicer"):
+        pytest.skip("prusa-slicer is not installed")
+    assert main(["slice", "--out", str(outputs), "--gcode", str(tmp_path), "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    parts = {part["part"]: part for part in told["parts"]}
+    assert set(parts) == {p.relative_to(outputs).as_posix() for p in outputs.rglob("*.3mf")}
+    assert {"backing/emitter_backing.3mf", "mould/receiver_mould.3mf"} <= set(parts)
+    for name, part in parts.items():
+        assert part["warnings"] == [], name
+        # The brim, and lines that are a little wider than their gap.
+        assert 0.97 < part["grams"] / part["solid_g"] < 1.10, name
+        assert part["reach_mm"] < 2.5, name  # a bridge of 5 mm at most
+        assert part["first_layer_mm2"] > 150.0 and part["seconds"] > 600, name
+        assert (tmp_path / f"{Path(name).stem}.gcode").stat().st_size > 10_000
+    assert parts["backing/emitter_backing.3mf"]["layers"] == 273
+    assert told["grams"] == pytest.approx(sum(p["grams"] for p in parts.values()), abs=0.01)
+
+
+def test_a_folder_that_was_not_built_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(shutil, "which", lambda _: None)
+    assert main(["slice", "--out", str(tmp_path)]) == 2
+    assert "none of prusa-slicer, PrusaSlicer" in capsys.readouterr().err
+    monkeypatch.setattr(shutil, "which", lambda _: "/bin/false")
+    assert main(["slice", "--out", str(tmp_path)]) == 2
+    assert "design.json" in capsys.readouterr().err
