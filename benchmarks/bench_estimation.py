@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from bench_real_frame import real_frame
 from designs import columns_for
 from goals import Goals
 from lumitip.estimation import PoseEstimator, learn
@@ -29,10 +30,6 @@ NOISE, GAINS = 1.5, 0.06
 PAIRS = 40  # of wrong fingers; each is used for several poses
 GOALS = {("edge", "clean"): (0.08, 0.3, 1.0), ("cable", "clean"): (0.1, 0.3, 1.0),
          ("edge", "wrong"): (0.45, 1.5, 3.0), ("cable", "wrong"): (0.5, 1.6, 3.0)}  # fmt: skip
-# The published frame (8-bit complements, column by column); its figure draws the line at 5.8 deg.
-REAL = (19, 11, 44, 228, 239, 7, 17, 196, 206, 13, 8, 84, 238, 226, 13, 22, 216, 232,
-        11, 13, 131, 244, 205, 13, 19, 234, 240, 8, 11, 196, 213, 239)  # fmt: skip
-
 Line = tuple[float, float]
 Method = Callable[[Floats, str], Line | None]
 
@@ -228,26 +225,6 @@ def self_calibration(layout: Layout, count: int, pairs: int = 6) -> None:
     print("  all: edge {:.3f} mm, {:.2f}° before; {:.3f} mm, {:.2f}° after".format(*mean))
 
 
-def real_frame(layout: Layout) -> None:
-    """The one published frame by both methods."""
-    values = np.array(REAL, dtype=np.float64)
-    line = published(layout)(values, "edge") or (np.nan, np.nan)
-    print("\nthe published frame (measured on hardware), gap not published")
-    print(f"  published method: {line[0]:+.2f} mm, {line[1]:.1f}° (its error in simulation: above)")
-    for gap_mm in (2.0, 3.0, 4.0, 5.0):
-        told = PoseEstimator(layout, gap_mm=gap_mm)(values, "edge")
-        line_told = f"{told.offset_mm:+.2f} ± {told.offset_sd_mm:.2f} mm, "
-        line_told += f"{told.angle_deg:.1f} ± {told.angle_sd_deg:.1f}°"
-        print(f"  estimator, gap {gap_mm:g} mm: {line_told}, misfit {told.rms_counts:.1f} counts")
-        # Light beside and behind the sheet as estimated; the dark is left of the line.
-        twin = Twin(layout, Model.from_layout(layout, gap_mm))
-        behind = told.angle_deg + 180.0
-        edge = HalfPlane(offset_mm=-told.offset_mm, angle_deg=behind, clear=told.transmittance)
-        again = published(layout)(told.gain * twin.values(edge), "edge")
-        assert again is not None
-        print(f"    of that pose the published method says {again[0]:+.2f} mm, {again[1]:.1f}°")
-
-
 def speed(count: int = 300) -> float:
     """Time of a frame; returns the median of an edge at 32 cells (ms)."""
     print("\ntime of a frame, one core (ms)")
@@ -295,6 +272,6 @@ if __name__ == "__main__":
     accuracy(published_cells, poses, goals)
     kinds(published_cells, fewer)
     self_calibration(published_cells, fewer)
-    real_frame(published_cells)
+    real_frame(published_cells, published(published_cells))
     goals.at_most("an edge at 32 cells", speed(), 1.0, "ms median")
     sys.exit(goals.told())

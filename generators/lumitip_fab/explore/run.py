@@ -1,14 +1,12 @@
 """A whole study: on all cores of this machine, or on a Dask cluster."""
 
-import multiprocessing
-import os
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import as_completed
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
+from lumitip.cores import workers
 from lumitip_fab.errors import BuildError, InputError, OutputError, Problem
 from lumitip_fab.explore.accuracy import Sample
 from lumitip_fab.explore.evaluate import FIGURES, Job, Record, evaluate
@@ -19,7 +17,6 @@ from lumitip_fab.load import NAMED, Input, load
 from lumitip_fab.lock import locked
 
 _PRICED = ("leds", "resistors", "photodetectors", "multiplexers", "capacitors", "controllers")
-_THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 
 Progress = Callable[[int, int], object]
 
@@ -128,34 +125,14 @@ def _evaluated(jobs: list[Job], scheduler: str | None) -> Iterator[Record]:
 
 
 def _here(jobs: list[Job]) -> Iterator[Record]:
-    context = multiprocessing.get_context("spawn")
-    workers = min(len(jobs), os.cpu_count() or 1)
-    with _single_threaded(), ProcessPoolExecutor(workers, mp_context=context) as pool:
-        running = [pool.submit(evaluate, job) for job in jobs]
+    with workers(len(jobs)) as pool:
         try:
-            for future in as_completed(running):
+            for future in as_completed([pool.submit(evaluate, job) for job in jobs]):
                 yield future.result()
         except BrokenProcessPool as error:
             raise BuildError(
                 "a worker was stopped from outside; the same command again goes on from here"
             ) from error
-        finally:
-            pool.shutdown(cancel_futures=True)
-
-
-@contextmanager
-def _single_threaded() -> Iterator[None]:
-    """Workers, one for each core, in which linear algebra asks for no further threads."""
-    before = {name: os.environ.get(name) for name in _THREADS}
-    os.environ.update(dict.fromkeys(_THREADS, "1"))
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                del os.environ[name]
-            else:
-                os.environ[name] = value
 
 
 def _on_cluster(jobs: list[Job], scheduler: str) -> Iterator[Record]:

@@ -1,6 +1,7 @@
 """`lumitip bench-tasks`: how fast each controller follows cloth and cable in simulation."""
 
 import argparse
+import os
 from pathlib import Path
 
 from lumitip.commands.common import Subparsers
@@ -20,6 +21,10 @@ def add(subparsers: Subparsers) -> None:
         "--trials", type=int, default=100, metavar="N", help="curves at each speed (100)"
     )
     parser.add_argument(
+        "--cores", type=int, default=os.cpu_count() or 1, metavar="N",
+        help="processes that share the trials (all cores)",
+    )  # fmt: skip
+    parser.add_argument(
         "--out", type=Path, default=Path("bench-tasks"), metavar="FOLDER",
         help="where tasks.md, tasks.json and tasks.svg go (bench-tasks)",
     )  # fmt: skip
@@ -35,8 +40,14 @@ def run(options: argparse.Namespace) -> int:
 
     if options.trials < 1:
         raise LumitipError(f"--trials {options.trials} given, one or more are needed")
+    if options.cores < 1:
+        raise LumitipError(f"--cores {options.cores} given, one or more are needed")
     layout = Layout.load(options.layout) if options.layout else published_layout()
-    results = bench_tasks(layout, options.trials, say=print)
+
+    def say(line: str) -> None:
+        print(line, flush=True)
+
+    results = bench_tasks(layout, options.trials, say=say, cores=options.cores)
     for path in write(results, options.out):
         print(path)
     return 0

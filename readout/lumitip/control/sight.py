@@ -9,7 +9,7 @@ from lumitip.processing import Contact
 _STEEPEST_DEG = 80.0  # a line across the way of the finger cannot be followed
 _CORNER_DEG = 30.0  # a corner opens by a right angle within this; what is flatter is a curve
 _CORNER_MM = 13.0  # a vertex further from the middle is not seen by enough cells
-_BEARABLE = frozenset({"misfit", "unfinished"})
+_BEARABLE = frozenset({"misfit", "unfinished", "ambiguous"})
 
 
 @dataclass(frozen=True, slots=True)

@@ -41,7 +41,8 @@ class Estimate:
     flags: tuple[str, ...] = ()
     """What is wrong with the fit, empty if nothing is: `"misfit"` if the shape does not explain
     the frame, `"weak"` if the frame hardly shows the line, `"astray"` if the fit left the
-    fingertip, `"unfinished"` if it did not settle."""
+    fingertip, `"unfinished"` if it did not settle, `"ambiguous"` if another line explains the frame
+    nearly as well."""
     dark_side: str = ""
     """Side of the line that an edge's or corner's sheet lies on, `"left"` or `"right"`."""
     vertex_mm: Point | None = None

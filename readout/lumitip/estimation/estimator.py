@@ -29,7 +29,10 @@ GAIN_ERROR = 0.01
 """Share by which a cell's light is expected to differ from its empty grasp."""
 HUBER = 3.0
 """Standard deviations beyond which the loss grows linearly."""
-_STARTS, _DOUBT = 3, 1.3  # starts when the first fit leaves more than this loss for each cell
+_DOUBT = 1.3  # loss for each cell beyond which other starts are tried
+_STARTS, _GLANCE = 8, 6  # how many, and the rounds of each
+_LOOSE = 0.06  # share of a cell's light that is then taken to be uncertain
+_RIVAL, _ELSEWHERE = 1.35, 2.0  # losses that are nearly alike; poses that are not
 _HOPELESS = 2.5  # times what the best bank leaves of a frame: no fit makes up for more
 _BLURRED = np.array([np.radians(ANGLE_SD_DEG), OFFSET_SD_MM])
 _WORSE = 1.3  # times the misfit of the last search: then a tracker searches anew
@@ -132,7 +135,7 @@ class PoseEstimator:
 
     def _remember(self, name: str, found: Fit, estimate: Estimate) -> None:
         """Begin the next frame here, unless this one went wrong."""
-        fine = self._tracking and {"misfit"}.issuperset(estimate.flags)
+        fine = self._tracking and {"misfit", "ambiguous"}.issuperset(estimate.flags)
         # The misfit stays that of the last search, which later frames are held against.
         misfit = self._last[2] if self._last else estimate.rms_counts
         self._last = (name, found.pose, misfit) if fine else None
@@ -198,19 +201,24 @@ class PoseEstimator:
     def _doubtful(self, found: Fit, frame: Frame) -> bool:
         return found.cost > _DOUBT * int(np.count_nonzero(frame.scale))
 
-    def _start(self, kind: str, frame: Frame) -> tuple[Floats, float]:
+    def _start(self, kind: str, frame: Frame, starts: int = 1) -> tuple[Floats, float]:
         weights = (frame.scale > 0.0).astype(np.float64)
-        return self._bank(kind).best(frame.light, weights, _STARTS)
+        return self._bank(kind).best(frame.light, weights, starts)
 
     def _searched(self, kind: str, starts: Floats, frame: Frame) -> Fit:
         best = self._from(kind, starts[0], frame)
         if not self._doubtful(best, frame):
             return best
-        for start in starts[1:]:
-            other = self._from(kind, start, frame, rounds=4)
-            if other.cost < best.cost:
-                best = fit(self._shape(kind), other.pose, frame)
-        return best
+        # Optics or cells are not as expected: which start is best is judged with that allowed for.
+        loose = frame.looser(_LOOSE)
+        starts, _ = self._start(kind, frame, _STARTS)
+        fits = sorted(
+            (self._from(kind, start, loose, _GLANCE) for start in starts), key=lambda f: f.cost
+        )
+        first, apart = fits[0], self._bank(kind).apart
+        near = [f for f in fits[1:] if f.cost < _RIVAL * first.cost]
+        rivals = [f for f in near if _between(kind, f.pose, first.pose) @ apart > _ELSEWHERE]
+        return replace(fit(self._shape(kind), first.pose, frame), ambiguous=bool(rivals))
 
     def _from(self, kind: str, pose: Floats, frame: Frame, rounds: int = ROUNDS) -> Fit:
         usable = frame.light[frame.scale > 0.0]
@@ -237,6 +245,17 @@ class PoseEstimator:
             poses = corners(self._cells) if kind == "corner" else self._lines
             self._banks[kind] = Bank.of(self._shape(kind), poses, np.ones(len(self.layout)))
         return self._banks[kind]
+
+
+def _between(kind: str, one: Floats, two: Floats) -> Floats:
+    """How far two poses are from each other in each entry, without light and what is taken."""
+    away = (one - two)[: 4 if kind == "corner" else 2]
+    turn = np.pi if kind == "cable" else 2.0 * np.pi  # an edge turned round covers the other side
+    turns = np.round(away[0] / turn)
+    away[0] -= turns * turn
+    if kind == "cable" and turns % 2.0:
+        away[1] = one[1] + two[1]  # the same line the other way round
+    return np.abs(away)
 
 
 def _model(layout: Layout, optics: Optics | Model | None, gap_mm: float) -> Model:

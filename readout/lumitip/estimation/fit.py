@@ -1,6 +1,6 @@
 """Levenberg–Marquardt with a Huber loss on what the cells read."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +28,11 @@ class Frame:
     huber: float
     """Standard deviations beyond which the loss grows linearly."""
 
+    def looser(self, share: float) -> "Frame":
+        """The same frame, if this share of each cell's light were uncertain as well."""
+        more = share * self.light * self.scale
+        return replace(self, scale=self.scale / np.sqrt(1.0 + more * more))
+
 
 @dataclass(frozen=True, eq=False)
 class Fit:
@@ -42,6 +47,8 @@ class Fit:
     model: Floats
     """Shares that the pose gives, shape `(cells,)`."""
     settled: bool
+    ambiguous: bool = False
+    """Whether another line, elsewhere, explains the frame nearly as well."""
 
 
 def fit(shape: Shape, start: Floats, frame: Frame, rounds: int = ROUNDS) -> Fit:
@@ -71,7 +78,7 @@ def fit(shape: Shape, start: Floats, frame: Frame, rounds: int = ROUNDS) -> Fit:
         if then.cost <= now.cost:
             gained = now.cost - then.cost
             pose, now, damping = pose + step, then, damping * 0.1
-            if expected < _SETTLED or gained < 1e-3 * now.cost:
+            if expected < _SETTLED or gained < 5e-3 * now.cost:
                 settled = True
                 break
         else:

@@ -59,7 +59,7 @@ def report(shape: Shape, found: Fit, frame: Frame, reach_mm: float) -> Estimate:
     astray = max(map(abs, pose[1:3] if corner else pose[1:2])) > reach_mm
     wrong = {
         "misfit": misfit > MISFIT_COUNTS, "weak": weak, "astray": astray,
-        "unfinished": not found.settled,
+        "unfinished": not found.settled, "ambiguous": found.ambiguous,
     }  # fmt: skip
     object.__setattr__(estimate, "flags", tuple(name for name, is_so in wrong.items() if is_so))
     return estimate

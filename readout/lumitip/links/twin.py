@@ -30,6 +30,8 @@ from lumitip.protocol.packet import BITS, Packet, design_code
 from lumitip.twin import Model, Twin
 from lumitip.twin.materials import MATERIALS, material
 
+TASKS = {"trace-cloth": "trace_cloth.py", "trace-cable": "trace_cable.py"}
+"""What `lumitip.tasks.live` calls its links, and the example that runs each."""
 _PACKETS_HZ = 133.0  # one packet each shortest Bluetooth connection interval of 7.5 ms
 
 
@@ -120,6 +122,12 @@ def make(url: Url, layout: Layout | None, any_design: bool) -> TwinLink:  # noqa
     """
     url.allow("speed", "noise", "rate", "bits", "seed", "gap", "diameter", "warm", "material")
     shape = url.target or "demo"
+    if shape in TASKS:
+        raise UrlError(
+            f"{url.text!r}: a task, in which the finger moves as a program commands; run `python "
+            f"examples/{TASKS[shape]} 60 8642` and open http://127.0.0.1:8642, or see "
+            "lumitip.tasks.live; what moves by itself is twin://edge or twin://cable"
+        )
     if shape not in SHAPES:
         raise UrlError(f"{url.text!r}: {shape!r} given, allowed are {', '.join(SHAPES)}")
     sheet = url.choice("material", "opaque", *(m.key for m in MATERIALS))

@@ -5,11 +5,13 @@ in ten; its highest speed at a loss is the last one before it loses more.
 """
 
 from collections.abc import Callable, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass
 
+from lumitip.cores import workers
 from lumitip.layout import Layout
 from lumitip.tasks.task import Settings, Task
-from lumitip.tasks.trial import CONTROLLERS, Bench, Summary, Tuning, summary, tune
+from lumitip.tasks.trial import CONTROLLERS, Bench, Summary, Team, Tuning, summary, tune
 
 SPEEDS_MM_S = (20.0, 30.0, 40.0, 50.0, 60.0, 80.0, 120.0, 160.0, 200.0, 240.0, 280.0, 320.0)
 _FIRST_MM_S = {"centre": 0.0, "line": 80.0, "pose": 80.0}
@@ -18,6 +20,10 @@ GRID = tuple(Tuning(gain, turn) for gain in (4.0, 8.0, 12.0) for turn in (6.0, 1
 TUNING_SEEDS = tuple(range(10_000, 10_006))
 _TUNED_AT_MM_S = {"centre": 50.0, "line": 240.0, "pose": 240.0}
 """Near where each begins to fail, where tuning matters."""
+TASKS = {
+    "cloth": Settings("cloth"), "cable": Settings("cable"),
+    "corner": Settings("cloth", corner=True),
+}  # fmt: skip
 _ENOUGH = 0.1  # share of lost curves above which faster ones are not tried
 
 
@@ -48,6 +54,7 @@ def bench_tasks(
     speeds_mm_s: Sequence[float] = SPEEDS_MM_S,
     grid: Sequence[Tuning] = GRID,
     tuning_seeds: Sequence[int] = TUNING_SEEDS,
+    cores: int = 1,
 ) -> list[Result]:
     """Every controller on cloth, on cable, and on cloth up to its corner.
 
@@ -59,22 +66,37 @@ def bench_tasks(
         speeds_mm_s: rising (mm/s).
         grid: tunings to choose from.
         tuning_seeds: curves to tune on, others than those of the test, which begin at 0.
+        cores: processes that share the trials; the results are the same.
     """
     results = []
-    for name, settings in (("cloth", Settings("cloth")), ("cable", Settings("cable")),
-                           ("corner", Settings("cloth", corner=True))):  # fmt: skip
-        bench = Bench(Task(layout, settings))
-        for controller in controllers:
-            tuning = tune(bench, controller, _TUNED_AT_MM_S[controller], grid, tuning_seeds)
-            say(f"{name}, {controller}: K_p {tuning.gain_per_s:g}/s, K_θ {tuning.turn_per_s:g}/s")
-            rows: list[Summary] = []
-            for speed_mm_s in (v for v in speeds_mm_s if v >= _FIRST_MM_S[controller]):
-                rows.append(summary(bench, controller, speed_mm_s, tuning, range(trials)))
-                say(line(rows[-1]))
-                if rows[-1].loss_rate > _ENOUGH:
-                    break
-            results.append(Result(name, controller, tuning, tuple(rows)))
+    with workers(cores) if cores > 1 else nullcontext() as pool:
+        for name, settings in TASKS.items():
+            bench = Team(pool, layout, settings) if pool else Bench(Task(layout, settings))
+            for controller in controllers:
+                tuning = tune(bench, controller, _TUNED_AT_MM_S[controller], grid, tuning_seeds)
+                kept = f"K_p {tuning.gain_per_s:g}/s, K_θ {tuning.turn_per_s:g}/s"
+                say(f"{name}, {controller}: {kept}")
+                speeds = [v for v in speeds_mm_s if v >= _FIRST_MM_S[controller]]
+                rows = _faster(bench, controller, tuning, speeds, trials, say)
+                results.append(Result(name, controller, tuning, rows))
     return results
+
+
+def _faster(
+    bench: Bench | Team,
+    controller: str,
+    tuning: Tuning,
+    speeds_mm_s: Sequence[float],
+    trials: int,
+    say: Callable[[str], object],
+) -> tuple[Summary, ...]:
+    rows: list[Summary] = []
+    for speed_mm_s in speeds_mm_s:
+        rows.append(summary(bench, controller, speed_mm_s, tuning, range(trials)))
+        say(line(rows[-1]))
+        if rows[-1].loss_rate > _ENOUGH:
+            break
+    return tuple(rows)
 
 
 def line(row: Summary) -> str:

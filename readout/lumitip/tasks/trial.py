@@ -1,13 +1,16 @@
 """Controllers by name, and trials of them: one closed loop after another until the task ends."""
 
 from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass, replace
+from functools import lru_cache, partial
 
 import numpy as np
 
 from lumitip.control import CentreLaw, LineLaw, Tracer
 from lumitip.estimation import Estimate, PoseEstimator
 from lumitip.grid import Floats
+from lumitip.layout import Layout
 from lumitip.processing import Contact, Processor
 from lumitip.tasks.task import Metrics, Settings, Task
 from lumitip.twin import Cable, HalfPlane, Twin
@@ -66,6 +69,42 @@ class Bench:
                 return self.task.metrics()
         return replace(self.task.metrics(), reason="lost")
 
+    def run_all(
+        self, controller: str, speed_mm_s: float, tuning: Tuning, seeds: Iterable[int]
+    ) -> list[Metrics]:
+        """One trial on the curve of each seed."""
+        return [self.run(controller, speed_mm_s, tuning, seed) for seed in seeds]
+
+
+class Team:
+    """A `Bench` in each process of a pool; trials come out as from one bench."""
+
+    def __init__(self, pool: Executor, layout: Layout, settings: Settings) -> None:
+        self._pool, self._layout, self._settings = pool, layout, settings
+
+    def run_all(
+        self, controller: str, speed_mm_s: float, tuning: Tuning, seeds: Iterable[int]
+    ) -> list[Metrics]:
+        """See `Bench`."""
+        run = partial(_run, self._layout, self._settings, controller, speed_mm_s, tuning)
+        return list(self._pool.map(run, seeds))
+
+
+def _run(
+    layout: Layout,
+    settings: Settings,
+    controller: str,
+    speed_mm_s: float,
+    tuning: Tuning,
+    seed: int,
+) -> Metrics:
+    return _bench(layout, settings).run(controller, speed_mm_s, tuning, seed)
+
+
+@lru_cache(maxsize=4)
+def _bench(layout: Layout, settings: Settings) -> Bench:
+    return Bench(Task(layout, settings))
+
 
 def centre_height_mm(twin: Twin, settings: Settings) -> float:
     """Height of the middle of the dark when the line is where it is to be held (mm)."""
@@ -95,10 +134,14 @@ class Summary:
 
 
 def summary(
-    bench: Bench, controller: str, speed_mm_s: float, tuning: Tuning, seeds: Iterable[int]
+    bench: Bench | Team,
+    controller: str,
+    speed_mm_s: float,
+    tuning: Tuning,
+    seeds: Iterable[int],
 ) -> Summary:
     """Run trials; root mean squares are of those that kept the line."""
-    done = [bench.run(controller, speed_mm_s, tuning, seed) for seed in seeds]
+    done = bench.run_all(controller, speed_mm_s, tuning, seeds)
     kept = [m for m in done if not m.lost]
     corners = [m.corner_error_mm for m in kept if not np.isnan(m.corner_error_mm)]
     return Summary(
@@ -109,7 +152,7 @@ def summary(
 
 
 def tune(
-    bench: Bench,
+    bench: Bench | Team,
     controller: str,
     speed_mm_s: float,
     grid: Sequence[Tuning],

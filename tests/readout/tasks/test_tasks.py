@@ -8,10 +8,12 @@ import numpy as np
 import pytest
 
 from lumitip.control import CentreLaw, Command, LineLaw, Tracer
+from lumitip.cores import workers
 from lumitip.links.twin import published_layout
 from lumitip.tasks import Bench, Curve, Settings, Summary, Task, TaskError, Tuning, summary, tune
 from lumitip.tasks.bench import Result, bench_tasks
 from lumitip.tasks.report import markdown, write
+from lumitip.tasks.trial import Team
 from lumitip.twin import Corner
 
 LAYOUT = published_layout()
@@ -127,6 +129,15 @@ def test_the_bench_writes_table_figures_and_plots(tmp_path: Path) -> None:
     if "tasks.svg" in written:
         text = written["tasks.svg"].read_text()
         assert "edge of a cloth" in text and "curves lost" in text
+
+
+@pytest.mark.slow
+def test_a_team_of_processes_finds_what_one_bench_finds() -> None:
+    settings = Settings("cable", length_mm=120.0)
+    one = Bench(Task(LAYOUT, settings)).run_all("line", 100.0, TUNED, range(3))
+    with workers(2) as pool:
+        team = Team(pool, LAYOUT, settings).run_all("line", 100.0, TUNED, range(3))
+    assert list(map(repr, team)) == list(map(repr, one))  # NaN is not equal to itself
 
 
 def test_highest_speeds_count_only_up_to_the_first_failure() -> None:

@@ -59,3 +59,9 @@ def test_an_address_sets_them() -> None:
     for wrong in ("material=silk", "gap=0", "diameter=100", "warm=-1"):
         with pytest.raises(UrlError, match=wrong):
             open_link(f"twin://edge?{wrong}")
+
+
+@pytest.mark.parametrize("task", ["trace-cloth", "trace-cable"])
+def test_a_task_says_how_it_is_run(task: str) -> None:
+    with pytest.raises(UrlError, match=f"examples/{task.replace('-', '_')}.py 60 8642"):
+        open_link(f"twin://{task}")
