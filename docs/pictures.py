@@ -39,6 +39,7 @@ def main(out: Path) -> None:
         ("backing/emitter_backing.stl", "backing_back.png", (0.7, 1, 0.5), PLASTIC),
         ("backing/emitter_backing.stl", "backing_front.png", (0.6, -1, 0.4), PLASTIC),
         ("mould/receiver_mould.stl", "mould.png", (0.25, 1, 0.6), MOULD),
+        ("holder/holder.stl", "holder.png", (0.5, -1, 0.9), PLASTIC),
     )
     for part, picture, direction, colour in shots:
         draw([actor(out / part, colour)], IMAGES / picture, direction, (0, 0, 1))
@@ -54,6 +55,7 @@ def main(out: Path) -> None:
         for face in ("front", "back"):
             board = out / f"boards/{side}/{side}_{face}.png"
             shutil.copy(board, IMAGES / f"board_{side}_{face}.png")
+    shutil.copy(out / "boards/breakout/breakout_front.png", IMAGES / "board_breakout.png")
     draw_glb(out / "assembly/assembly.glb", IMAGES / "assembly.png")
 
 

@@ -9,6 +9,7 @@ from typing import Literal, Self
 
 from pydantic import Field, model_validator
 
+from lumitip_fab.carrier_entry import Plug, Strip
 from lumitip_fab.entry import Entry, Length, Name, Pin, Share, Strict
 from lumitip_fab.fab_entry import Fab
 from lumitip_fab.filament_entry import Filament
@@ -182,6 +183,8 @@ class Controller(Entry):
     """Capacitance of an analog input with the wire to it."""
     supply_v: float = Field(gt=0, le=5.5)
     """Supply of its inputs, which is also the detectors' supply."""
+    plug: Plug | None = None
+    """How it stands on sockets, if it does."""
 
     @model_validator(mode="after")
     def _pins_differ(self) -> Self:
@@ -189,6 +192,12 @@ class Controller(Entry):
         twice = sorted({pin for pin in pins if pins.count(pin) > 1})
         if twice:
             raise ValueError(f"{', '.join(twice)} given twice, each pin is used once")
+        if self.plug is not None:
+            there = {*self.plug.rows[0], *self.plug.rows[1]}
+            wanted = (*pins, self.plug.ground, self.plug.supply, self.plug.regulated)
+            lost = sorted(set(wanted) - there)
+            if lost:
+                raise ValueError(f"{', '.join(lost)} given, which no row of its plug has")
         return self
 
 
@@ -236,6 +245,7 @@ class Catalogue(Strict):
     capacitors: Mapping[Name, Capacitor]
     multiplexers: Mapping[Name, Multiplexer]
     controllers: Mapping[Name, Controller]
+    strips: Mapping[Name, Strip]
     grippers: Mapping[Name, Gripper]
     silicones: Mapping[Name, Silicone]
     films: Mapping[Name, Film]

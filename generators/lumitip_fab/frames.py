@@ -1,6 +1,7 @@
 """Every conversion between coordinate frames, as 4x4 matrices on column vectors, in mm.
 
 - Sensor frame of a finger: gripping face seen with the tip up; x right, y to the tip, z out.
+- Frame of a carrier: see `lumitip_fab.design.carriers`; a holder is printed standing on its end.
 - Mount frame: see `lumitip_fab.design.Mount`; the backing is printed in it, standing on h = 0.
 - Bed of the mould: the sensor frame turned over about x, so that the open side is up.
 - Gripper frame: z = 0 is the mid-plane between the fingers, the lean applied; the receiver
@@ -14,7 +15,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from lumitip_fab.design import Closing, Mould, Mount, Point, Stack
+from lumitip_fab.design import Closing, Holder, Mould, Mount, Point, Stack
 
 Matrix = NDArray[np.float64]
 BOARD_ON_PAGE_MM = (150.0, 100.0)
@@ -36,6 +37,14 @@ def rotation_x(angle_deg: float) -> Matrix:
     return matrix
 
 
+def rotation_y(angle_deg: float) -> Matrix:
+    """A right-handed turn about y."""
+    sine, cosine = np.sin(np.radians(angle_deg)), np.cos(np.radians(angle_deg))
+    matrix = np.eye(4)
+    matrix[0, 0], matrix[0, 2], matrix[2, 0], matrix[2, 2] = cosine, sine, -sine, cosine
+    return matrix
+
+
 def mount_to_sensor(mount: Mount, stack: Stack) -> Matrix:
     """From the mount frame (u, w, h), which is also the backing's print bed."""
     sine, cosine = np.sin(np.radians(mount.tilt_deg)), np.cos(np.radians(mount.tilt_deg))
@@ -48,6 +57,14 @@ def mount_to_sensor(mount: Mount, stack: Stack) -> Matrix:
 def mould_bed_to_sensor(stack: Stack, mould: Mould) -> Matrix:
     """From the mould's print bed: its floor is `wall_mm` thick below the silicone's face."""
     return translation(0.0, 0.0, stack.silicone_z_mm + mould.wall_mm) @ rotation_x(180.0)
+
+
+def holder_bed_to_carrier(holder: Holder) -> Matrix:
+    """From the print bed of a holder, which stands on its end at the lowest y, to the frame of
+    the carrier in it: bed x = x, bed y = -z, bed z = y."""
+    matrix = translation(0.0, holder.outer.y_min_mm, 0.0)
+    matrix[:3, :3] = ((1, 0, 0), (0, 0, 1), (0, -1, 0))
+    return matrix
 
 
 def finger_to_gripper(finger: str, mount: Mount, closing: Closing, opening_mm: float) -> Matrix:
@@ -75,6 +92,12 @@ def board_page_to_sensor(stack: Stack) -> Matrix:
     """From the page of a finger's board file to its sensor frame."""
     across, down = BOARD_ON_PAGE_MM
     return translation(-across, down, stack.rim_z_mm) @ rotation_x(180.0)
+
+
+def board_page_to_carrier(stack: Stack) -> Matrix:
+    """From the page of a carrier's board file to its frame, z = 0 on the board's back."""
+    across, down = BOARD_ON_PAGE_MM
+    return translation(-across, down, stack.pcb_mm) @ rotation_x(180.0)
 
 
 def on_board_page(point: Point) -> Point:

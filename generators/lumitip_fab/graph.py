@@ -1,8 +1,8 @@
 """What is built from what: the steps, and the key that tells whether one must run again.
 
 A generator's arguments are its dependencies: each is named after a field of `Design`, but for
-`finger`, which makes the step run once for each finger. They are read from the source, because
-importing a generator of solids takes seconds.
+`finger`, `carrier` and `holder`, which make the step run once for each of those. They are read
+from the source, because importing a generator of solids takes seconds.
 """
 
 import ast
@@ -38,12 +38,18 @@ STEPS = (
     Step("printing", "settings", "print_settings", False, ()),
     Step("firmware", "files", "firmware_files", False, ("numpy",)),
     Step("boards", "files", "board_files", True, _COPPER),
+    Step("boards", "carrier", "carrier_files", True, _COPPER),
     Step("boards", "spice", "simulation", False, ()),
     Step("mechanical", "assembly", "assembly", True, _CAD),
     Step("mechanical", "mould", "mould_files", True, _CAD),
     Step("mechanical", "backing", "backing", True, _CAD),
+    Step("mechanical", "holder", "holder_files", True, _CAD),
     Step("mechanical", "fit_plate", "fit_plate_files", True, _CAD),
 )
+
+
+EACH = {"finger": "fingers", "carrier": "carriers", "holder": "holders"}
+"""Arguments that a step takes one of at a time, and the field that has them all."""
 
 
 @dataclass(frozen=True)
@@ -66,12 +72,13 @@ def tasks(design: Design) -> Iterator[Task]:
     """Every run of every step for a design."""
     for step in STEPS:
         names = argument_names(step)
-        shared = {name: getattr(design, name) for name in names if name != "finger"}
-        if "finger" not in names:
+        shared = {name: getattr(design, name) for name in names if name not in EACH}
+        each = next((name for name in names if name in EACH), None)
+        if each is None:
             yield Task(step.name, step, shared)
             continue
-        for finger in design.fingers:
-            yield Task(f"{step.name}.{finger.name}", step, {"finger": finger, **shared})
+        for one in getattr(design, EACH[each]):
+            yield Task(f"{step.name}.{one.name}", step, {each: one, **shared})
 
 
 @lru_cache

@@ -26,6 +26,7 @@ NAMED = {
     "receiver.multiplexer": "multiplexers",
     "backing.material": "filaments",
     "controller.board": "controllers",
+    "breakout.socket": "strips",
     "coupling.gripper": "grippers",
     "mould.silicone": "silicones",
     "mask.film": "films",

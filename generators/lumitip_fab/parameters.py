@@ -16,6 +16,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from lumitip_fab.carrier_parameters import Breakout, Holder
 from lumitip_fab.entry import Name, Strict
 
 PRINTABLE = r"^[\x20-\x7e]+$"
@@ -257,4 +258,6 @@ class Parameters(Strict):
     supply: Supply
     mask: Mask
     mould: Mould
+    breakout: Breakout
+    holder: Holder
     printer: Printer

@@ -1,28 +1,21 @@
 """The published Table I (arXiv 2306.05902) beside the figures of a design, and why they differ."""
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 from rich.console import Console
 from rich.table import Table
 
 from lumitip_fab.design import Design
-
-
-@dataclass(frozen=True)
-class Row:
-    """One figure: published, computed, and the reason where they differ."""
-
-    quantity: str
-    published: str
-    computed: str
-    reason: str = ""
+from lumitip_fab.spec_outside import Row, outside
 
 
 def rows(design: Design) -> tuple[Row, ...]:
     """Table I of the publication, then the figures that it does not have."""
-    return (*_table_1(design), *_further(design), *_strings(design), *_channel(design))
+    return (
+        *_table_1(design), *_further(design), *_strings(design), *_channel(design),
+        *outside(design),
+    )  # fmt: skip
 
 
 def _table_1(design: Design) -> tuple[Row, ...]:

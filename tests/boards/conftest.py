@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from lumitip_fab.boards.carrier import carrier_files
 from lumitip_fab.boards.files import board_files
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
@@ -56,9 +57,8 @@ def boards(
 def _write(design: Design, out: Path) -> None:
     (out / "design.json").write_text(design_text(design), encoding="utf-8")
     for task in tasks(design):
-        if task.step.name != "board_files":
-            continue
-        for artefact in board_files(**task.arguments):
+        make = {"board_files": board_files, "carrier_files": carrier_files}.get(task.step.name)
+        for artefact in make(**task.arguments) if make else ():
             path = out / artefact.path
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_bytes(artefact.data)

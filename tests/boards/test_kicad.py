@@ -23,7 +23,8 @@ PRESETS = (
         for preset in ("published", "asymmetric", "dense", "mux16")
     ),
 )
-FINGERS = ("emitter", "receiver")
+BOARDS = ("emitter", "receiver", "breakout")
+CARRIERS = BOARDS[2:]
 ALLOWED: dict[str, str] = {}  # names of warnings, each with the reason why it may stand
 MISSING_SHARE = 0.01  # of KiCad's fill, that ours may leave out
 SYSTEM_PYTHON = Path("/usr/bin/python3")
@@ -55,12 +56,12 @@ def kicad(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., str]:
     return run
 
 
-@pytest.mark.parametrize("finger", FINGERS)
+@pytest.mark.parametrize("name", BOARDS)
 @pytest.mark.parametrize("preset", PRESETS)
 def test_kicad_finds_no_fault(
-    boards: Boards, kicad: Callable[..., str], tmp_path: Path, preset: str, finger: str
+    boards: Boards, kicad: Callable[..., str], tmp_path: Path, preset: str, name: str
 ) -> None:
-    board = boards(preset) / "boards" / finger / f"{finger}.kicad_pcb"
+    board = boards(preset) / "boards" / name / f"{name}.kicad_pcb"
     report = tmp_path / "drc.json"
     kicad("kicad-cli", "pcb", "drc", "--severity-all", "--schematic-parity", "--format", "json",
           "-o", report, board)  # fmt: skip
@@ -70,24 +71,25 @@ def test_kicad_finds_no_fault(
     assert {v["type"] for v in told["violations"]} <= set(ALLOWED), told["violations"][:3]
 
 
-@pytest.mark.parametrize("finger", FINGERS)
+@pytest.mark.parametrize("name", BOARDS)
 @pytest.mark.parametrize("preset", PRESETS)
 def test_gerbers_paint_what_kicad_plots(
-    boards: Boards, kicad: Callable[..., str], tmp_path: Path, preset: str, finger: str
+    boards: Boards, kicad: Callable[..., str], tmp_path: Path, preset: str, name: str
 ) -> None:
-    folder = boards(preset) / "boards" / finger
+    folder = boards(preset) / "boards" / name
     kicad("kicad-cli", "pcb", "export", "gerbers", "--layers",
           "F.Cu,B.Cu,F.Mask,B.Mask,F.Paste,B.Paste,F.SilkS,B.SilkS,Edge.Cuts",
           "--use-drill-file-origin", "--precision", "6", "--no-protel-ext",
-          "-o", f"{tmp_path}/", folder / f"{finger}.kicad_pcb")  # fmt: skip
-    package = zipfile.ZipFile(folder / "order" / f"generic_{finger}.zip")
-    ours = {n: gerber_area(package.read(f"{finger}-{n}.gbr").decode()) for n in LAYERS}
-    plotted = {n: gerber_area((tmp_path / f"{finger}-{n}.gbr").read_text()) for n in LAYERS}
+          "-o", f"{tmp_path}/", folder / f"{name}.kicad_pcb")  # fmt: skip
+    package = zipfile.ZipFile(folder / "order" / f"generic_{name}.zip")
+    ours = {n: gerber_area(package.read(f"{name}-{n}.gbr").decode()) for n in LAYERS}
+    plotted = {n: gerber_area((tmp_path / f"{name}-{n}.gbr").read_text()) for n in LAYERS}
     copper = plotted["F_Cu"].area + plotted["B_Cu"].area
     apart = {n: ours[n].symmetric_difference(plotted[n]).area / copper for n in LAYERS}
     assert max(apart.values()) < 0.001, apart
     assert {n for n in LAYERS if ours[n].area} == {n for n in LAYERS if plotted[n].area}
-    assert {n for n in LAYERS if not ours[n].area} <= {"B_Paste"}
+    bare = {"B_Paste", "F_Paste"} if name == "breakout" else {"B_Paste"}  # all parts have leads
+    assert {n for n in LAYERS if not ours[n].area} <= bare
 
 
 # KiCad's Python module now and then crashes when the interpreter takes its objects down in whatever
@@ -103,12 +105,12 @@ os._exit(0)
 """
 
 
-@pytest.mark.parametrize("finger", FINGERS)
+@pytest.mark.parametrize("name", BOARDS)
 @pytest.mark.parametrize("preset", PRESETS)
 def test_the_written_fill_is_what_kicad_fills(
-    boards: Boards, kicad: Callable[..., str], tmp_path: Path, preset: str, finger: str
+    boards: Boards, kicad: Callable[..., str], tmp_path: Path, preset: str, name: str
 ) -> None:
-    written = boards(preset) / "boards" / finger / f"{finger}.kicad_pcb"
+    written = boards(preset) / "boards" / name / f"{name}.kicad_pcb"
     shutil.copy(written.with_suffix(".kicad_pro"), tmp_path / "again.kicad_pro")
     shutil.copy(written, tmp_path / "again.kicad_pcb")
     refilled = tmp_path / "refilled.kicad_pcb"
@@ -127,6 +129,17 @@ def test_the_written_fill_is_what_kicad_fills(
         # No copper where KiCad has none, and nearly all that it has.
         assert (areas[0] - areas[1]).area < 0.001 * areas[1].area, layer
         assert (areas[1] - areas[0]).area < MISSING_SHARE * areas[1].area, layer
+
+
+@pytest.mark.parametrize("name", CARRIERS)
+def test_kicad_finds_no_fault_in_a_carriers_schematic(
+    boards: Boards, kicad: Callable[..., str], tmp_path: Path, name: str
+) -> None:
+    sheet = boards("small") / "boards" / name / f"{name}.kicad_sch"
+    report = tmp_path / "erc.json"
+    kicad("kicad-cli", "sch", "erc", "--severity-all", "--format", "json", "-o", report, sheet)
+    told = json.loads(report.read_text())
+    assert [v for page in told["sheets"] for v in page["violations"]] == []
 
 
 def test_a_broken_rule_is_found(damaged_boards: Path, kicad: Callable[..., str]) -> None:

@@ -45,10 +45,16 @@ def test_waste_of_silicone_touches_the_mould_and_what_shares_its_figures(keys: K
     assert "backing" not in changed(keys(), keys("[mould]\nwaste_fraction = 0.5\n"))
 
 
-def test_pitch_touches_everything(keys: Keys) -> None:
-    # But for what the slicer is told: layers and filaments know no size.
-    touched = {s.name for s in STEPS} - {"print_settings"}
-    assert changed(keys(), keys("[grid]\npitch_mm = 6.1\n")) == touched
+def test_pitch_touches_everything_of_the_fingers(keys: Keys) -> None:
+    # What the slicer is told and what holds the controller know nothing of the cells.
+    outside = {"holder_files", "print_settings"}
+    assert changed(keys(), keys("[grid]\npitch_mm = 6.1\n")) == {s.name for s in STEPS} - outside
+
+
+def test_what_is_outside_touches_no_finger(keys: Keys) -> None:
+    after = keys("[breakout]\nhole_spacing_mm = 34.0\n")
+    assert changed(keys(), after) == {"carrier_files", "holder_files"}
+    assert changed(keys(), keys("[holder]\nbody_mm = 76.0\n")) == {"holder_files"}
 
 
 def test_every_step_names_real_arguments(keys: Keys) -> None:

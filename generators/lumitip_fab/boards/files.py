@@ -1,6 +1,9 @@
-"""Every file of one finger's board, from its circuit to the zips that it is ordered with."""
+"""Every file of a board, from its circuit to the zips that it is ordered with."""
+
+from collections.abc import Callable
 
 from lumitip_fab.artefact import Artefact
+from lumitip_fab.boards.fab.note import assembly_note
 from lumitip_fab.boards.fab.package import layers_of, order_files
 from lumitip_fab.boards.model import BoardModel
 from lumitip_fab.boards.pcb.files import project_files
@@ -21,7 +24,7 @@ from lumitip_fab.design import (
     Title,
     Wiring,
 )
-from lumitip_fab.frames import board_page_to_sensor
+from lumitip_fab.frames import Matrix, board_page_to_sensor
 
 
 def board_files(
@@ -55,22 +58,48 @@ def board_files(
     placement = place(title, reading, board, finger, wiring, packages, rules)
     routing, fills = pour(placement, route(placement))
     model = sound(BoardModel(placement, routing, fills))
-    layers = layers_of(model)
+    sheet = schematic_files(placement, wiring, packages)
+    return model_files(
+        model, sheet, lambda fab: assembly_note(model.placement, packages, fab), stack, fabs,
+        board_page_to_sensor(stack), "sensor",
+    )  # fmt: skip
+
+
+def model_files(
+    model: BoardModel,
+    sheet: dict[str, bytes],
+    note: Callable[[Fab], bytes],
+    stack: Stack,
+    fabs: tuple[Fab, ...],
+    page: Matrix,
+    frame: str,
+) -> tuple[Artefact, ...]:
+    """The files of any finished board.
+
+    Args:
+        model: the board.
+        sheet: files of its schematic.
+        note: for who places the parts, by board house.
+        stack: for its thickness.
+        fabs: where it may be ordered.
+        page: from the board file's page to its frame.
+        frame: name of that frame.
+    """
+    name, layers = model.placement.finger, layers_of(model)
     orders = {
-        f"order/{name}": data
+        f"order/{path}": data
         for fab in fabs
-        for name, data in order_files(model, layers, packages, fab, finger.name).items()
+        for path, data in order_files(model, layers, note(fab), fab, name).items()
     }
     files = {
         **project_files(model, stack.pcb_mm),
-        **schematic_files(placement, wiring, packages),
+        **sheet,
         **picture_files(model),
         **orders,
     }
-    page = board_page_to_sensor(stack)
     return tuple(
-        Artefact(f"boards/{finger.name}/{name}", data, page)
-        if name.endswith(".kicad_pcb")
-        else Artefact(f"boards/{finger.name}/{name}", data, frame="")
-        for name, data in files.items()
+        Artefact(f"boards/{name}/{path}", data, page, frame)
+        if path.endswith(".kicad_pcb")
+        else Artefact(f"boards/{name}/{path}", data, frame="")
+        for path, data in files.items()
     )

@@ -2,9 +2,17 @@
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import TypeVar
 
 import shapely
 
+from lumitip_fab.checks.board_carrier import (
+    measure_edge,
+    measure_joined,
+    measure_lands,
+    measure_names,
+    measure_screws,
+)
 from lumitip_fab.checks.board_circuit import measure_channels, measure_connector, measure_strings
 from lumitip_fab.checks.board_copper import measure_copper, measure_nets
 from lumitip_fab.checks.board_place import (
@@ -13,38 +21,42 @@ from lumitip_fab.checks.board_place import (
     measure_holes,
     measure_outline,
 )
-from lumitip_fab.checks.board_read import Read
+from lumitip_fab.checks.board_read import Read, ReadCarrier, read_all
 from lumitip_fab.checks.board_silk import measure_silk, measure_targets
-from lumitip_fab.checks.kicad_board import read_board
 from lumitip_fab.checks.result import Measurement, unreadable
-from lumitip_fab.design import Design, Finger
-from lumitip_fab.errors import OutputError
+from lumitip_fab.design import Design
 
 READS = ("boards/*.kicad_pcb",)
 
-Step = Callable[[Read], Iterator[Measurement]]
-_BOTH: tuple[Step, ...] = (
+_Any = TypeVar("_Any", Read, ReadCarrier)
+_OF_FINGERS: tuple[Callable[[Read], Iterator[Measurement]], ...] = (
     measure_cells, measure_outline, measure_holes, measure_heights, measure_copper, measure_nets,
     measure_connector, measure_silk, measure_targets,
+)  # fmt: skip
+_OF_CARRIERS: tuple[Callable[[ReadCarrier], Iterator[Measurement]], ...] = (
+    measure_edge, measure_screws, measure_lands, measure_names, measure_copper, measure_nets,
+    measure_joined,
 )  # fmt: skip
 
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
-    """Every figure of both boards."""
-    for finger in design.fingers:
-        subject = f"boards/{finger.name}/{finger.name}.kicad_pcb"
-        try:
-            read = Read(subject, read_board(outputs / subject), finger, design)
-        except OutputError as error:
-            yield unreadable("board.readable", subject, str(error))
+    """Every figure of every board."""
+    for subject, read in read_all(outputs, design):
+        if isinstance(read, str):
+            yield unreadable("board.readable", subject, read)
             continue
         yield read.figure("readable", len(read.board.parts), 1, float("inf"), "parts")
-        yield from _measured(read, finger)
+        if isinstance(read, ReadCarrier):
+            yield from _measured(read, _OF_CARRIERS)
+        else:
+            own = measure_strings if read.name == "emitter" else measure_channels
+            yield from _measured(read, (*_OF_FINGERS, own))
 
 
-def _measured(read: Read, finger: Finger) -> Iterator[Measurement]:
-    own = measure_strings if finger.name == "emitter" else measure_channels
-    for step in (*_BOTH, own):
+def _measured(
+    read: _Any, steps: "tuple[Callable[[_Any], Iterator[Measurement]], ...]"
+) -> Iterator[Measurement]:
+    for step in steps:
         try:
             yield from step(read)
         except (ArithmeticError, LookupError, ValueError, shapely.errors.ShapelyError) as error:

@@ -5,14 +5,14 @@ from collections.abc import Iterator
 
 import shapely
 
-from lumitip_fab.checks.board_read import Read
+from lumitip_fab.checks.board_read import ReadBoard
 from lumitip_fab.checks.kicad_board import Copper
 from lumitip_fab.checks.result import Measurement
 
 _ROUND_MM = 0.0006  # what chords of round copper take away, and six digits in files
 
 
-def measure_copper(read: Read) -> Iterator[Measurement]:
+def measure_copper(read: ReadBoard) -> Iterator[Measurement]:
     """Gaps, widths and rings against the rules of the design."""
     rules = read.design.rules
     yield _gap(read, rules.copper_gap_mm)
@@ -25,7 +25,7 @@ def measure_copper(read: Read) -> Iterator[Measurement]:
         yield read.figure("via_ring", min(rings), wanted, math.inf)
 
 
-def measure_nets(read: Read) -> Iterator[Measurement]:
+def measure_nets(read: ReadBoard) -> Iterator[Measurement]:
     """Nets that the copper leaves open, and those that it joins."""
     groups, names = read.clusters.groups(), read.clusters.nets()
     opened = sorted(net for net, found in groups.items() if len(found) > 1)
@@ -41,7 +41,7 @@ def measure_nets(read: Read) -> Iterator[Measurement]:
     yield read.count("islands", adrift, "fills")
 
 
-def _gap(read: Read, least_mm: float) -> Measurement:
+def _gap(read: ReadBoard, least_mm: float) -> Measurement:
     """The narrowest gap between copper that is not connected."""
     gaps = read.clusters.gaps(2 * least_mm)
     worst = min(gaps, key=lambda gap: gap[0], default=None)
@@ -51,7 +51,7 @@ def _gap(read: Read, least_mm: float) -> Measurement:
     return read.figure("clearance", worst[0], least_mm - _ROUND_MM, math.inf, note=note)
 
 
-def _edge_gap(read: Read, least_mm: float) -> Measurement:
+def _edge_gap(read: ReadBoard, least_mm: float) -> Measurement:
     """The narrowest gap from copper to the edge and to unplated holes."""
     holes = [shapely.Point(h.at).buffer(h.drill_mm / 2, quad_segs=32) for h in read.holes]
     borders = [read.outline.boundary, *holes]

@@ -1,9 +1,11 @@
-"""`Read`: the board of one finger as its file has it, in the finger's sensor frame."""
+"""`Read` and `ReadCarrier`: a board as its file has it, in the frame of what it is the board of."""
 
 import math
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,9 +14,10 @@ from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
 from lumitip_fab.checks.copper import Clusters
-from lumitip_fab.checks.kicad_board import KicadBoard, Part, Terminal
+from lumitip_fab.checks.kicad_board import KicadBoard, Part, Terminal, read_board
 from lumitip_fab.checks.result import Measurement
-from lumitip_fab.design import Design, Finger, Point
+from lumitip_fab.design import Carrier, Design, Finger, Point
+from lumitip_fab.errors import OutputError
 from lumitip_fab.frames import applied, board_page_to_sensor
 
 _VALUE = re.compile(r"(\d+)([RKM])(\d*)")
@@ -23,12 +26,11 @@ _POWER = {"R": 1.0, "K": 1e3, "M": 1e6}
 
 
 @dataclass(frozen=True, eq=False)
-class Read:
+class ReadBoard:
     """A board file with what it should be."""
 
     subject: str
     board: KicadBoard
-    finger: Finger
     design: Design
 
     @cached_property
@@ -71,11 +73,6 @@ class Read:
                 return self.clusters.of(terminal.copper)
         return None
 
-    def wire(self, signal: str) -> int | None:
-        """The group of a signal at the connector, by the place of its pad in the row."""
-        signals = self.finger.connector.signals
-        return self.group("J1", signals.index(signal) + 1) if signal in signals else None
-
     def figure(
         self, check: str, measured: float, low: float, high: float, unit: str = "mm", note: str = ""
     ) -> Measurement:
@@ -86,6 +83,66 @@ class Read:
         """How many things are wrong, of which there may be none; the first few are named."""
         note = "; ".join(wrong[:4]) + (" …" if len(wrong) > 4 else "")
         return self.figure(check, len(wrong), 0, 0, unit, note)
+
+
+@dataclass(frozen=True, eq=False)
+class Read(ReadBoard):
+    """The board of a finger."""
+
+    finger: Finger
+
+    @property
+    def name(self) -> str:
+        """Of its folder and its files."""
+        return self.finger.name
+
+    def wire(self, signal: str) -> int | None:
+        """The group of a signal at the connector, by the place of its pad in the row."""
+        signals = self.finger.connector.signals
+        return self.group("J1", signals.index(signal) + 1) if signal in signals else None
+
+    def ordered(self, ref: str) -> str:
+        """What to order for a part, by the catalogue; the board tells a resistor's value."""
+        packages, part = self.design.packages, self.parts.get(ref)
+        emitter = self.finger.name == "emitter"
+        numbers = {
+            "D": packages.led.part, "Q": packages.photodetector.part,
+            "U": packages.multiplexer.part, "C": packages.capacitor.part,
+            "R": (packages.string_resistor if emitter else packages.pull_up).part,
+        }  # fmt: skip
+        return numbers.get(ref[:1], "").replace("{code}", part.value if part else "?")
+
+
+@dataclass(frozen=True, eq=False)
+class ReadCarrier(ReadBoard):
+    """The board of a carrier; its own frame stands for the sensor frame."""
+
+    carrier: Carrier
+
+    @property
+    def name(self) -> str:
+        """Of its folder and its files."""
+        return self.carrier.name
+
+    def ordered(self, ref: str) -> str:
+        """What to order for a part."""
+        return next((d.part for d in self.carrier.devices if d.ref == ref), "")
+
+
+def read_all(outputs: Path, design: Design) -> Iterator[tuple[str, Read | ReadCarrier | str]]:
+    """Path of each board file, with what was read or why it could not be."""
+    both: tuple[Finger | Carrier, ...] = (*design.fingers, *design.carriers)
+    for of in both:
+        subject = f"boards/{of.name}/{of.name}.kicad_pcb"
+        try:
+            board = read_board(outputs / subject)
+        except OutputError as error:
+            yield subject, str(error)
+            continue
+        if isinstance(of, Finger):
+            yield subject, Read(subject, board, design, of)
+        else:
+            yield subject, ReadCarrier(subject, board, design, of)
 
 
 def ohm(value: str) -> float:

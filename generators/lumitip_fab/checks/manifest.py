@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lumitip_fab import manifest
 from lumitip_fab.checks.result import Measurement, unreadable
@@ -11,6 +12,8 @@ from lumitip_fab.checks.stl import corners_mm
 from lumitip_fab.design import Design
 from lumitip_fab.errors import OutputError
 from lumitip_fab.frames import Matrix, applied
+
+Vector = NDArray[np.float64]
 
 READS = ("*",)
 _FILE = "manifest.json"
@@ -43,14 +46,23 @@ def _frame(outputs: Path, path: str, matrix: Matrix, design: Design) -> Measurem
     if path.startswith("fit/"):  # a part of no finger: its frame is the bed's
         off = float(np.abs(matrix - np.eye(4)).max())
         return Measurement("manifest.frames", name, off, 0, _PLACE_MM, "mm", "from the bed's frame")
-    stack, tip_y = design.stack, design.outline.tip_y_mm
-    apart = [abs(low[0] + high[0])]
-    if path.startswith("backing/"):
-        apart += [abs(high[1] - tip_y), abs(high[2] - stack.rim_z_mm)]
-    else:  # a mould lies under the skin, its floor `wall_mm` thick, and reaches round the tip
-        apart += [abs(high[2] - (stack.silicone_z_mm + design.mould.wall_mm)),
-                  max(tip_y - high[1], 0.0)]  # fmt: skip
+    apart = [abs(low[0] + high[0]), *_apart(path, low, high, design)]
     turn = matrix[:3, :3]
     apart.append(float(np.abs(turn @ turn.T - np.eye(3)).max()) + abs(np.linalg.det(turn) - 1))
     return Measurement("manifest.frames", name, float(max(apart)), 0, _PLACE_MM, "mm",
-                       "after its matrix, from its place in the sensor frame")  # fmt: skip
+                       "after its matrix, from its place in its frame")  # fmt: skip
+
+
+def _apart(path: str, low: Vector, high: Vector, design: Design) -> Iterator[float]:
+    """How far sides of a part lie from where they should be."""
+    stack, tip_y = design.stack, design.outline.tip_y_mm
+    if path.startswith("backing/"):
+        yield from (abs(high[1] - tip_y), abs(high[2] - stack.rim_z_mm))
+    elif path.startswith("mould/"):
+        # It lies under the skin, its floor `wall_mm` thick, and reaches round the tip.
+        yield abs(high[2] - (stack.silicone_z_mm + design.mould.wall_mm))
+        yield max(tip_y - high[1], 0.0)
+    for holder in design.holders:
+        if path == f"holder/{holder.name}.stl":
+            yield abs(high[2] - holder.top_z_mm)
+            yield from (abs(low[1] - holder.outer.y_min_mm), abs(high[1] - holder.outer.y_max_mm))

@@ -8,7 +8,7 @@ import shapely
 from shapely import affinity, box
 from shapely.geometry.base import BaseGeometry
 
-from lumitip_fab.checks.board_read import Read
+from lumitip_fab.checks.board_read import ReadBoard
 from lumitip_fab.checks.gerber_read import drilled, gerber_area
 from lumitip_fab.checks.kicad_silk import Word
 from lumitip_fab.checks.result import Measurement
@@ -24,7 +24,7 @@ Painted = dict[bytes, BaseGeometry]
 
 
 def measure_layers(
-    path: str, read: Read, layers: Mapping[str, bytes], painted: Painted
+    path: str, read: ReadBoard, layers: Mapping[str, bytes], painted: Painted
 ) -> Iterator[Measurement]:
     """Copper, mask, paste, silkscreen, edge and drills."""
 
@@ -48,14 +48,16 @@ def measure_layers(
     yield from _drills(path, read, layers)
 
 
-def _copper(subject: str, read: Read, layer: str, painted: BaseGeometry) -> Iterator[Measurement]:
+def _copper(
+    subject: str, read: ReadBoard, layer: str, painted: BaseGeometry
+) -> Iterator[Measurement]:
     areas = [p.area for p in read.board.copper() if layer in p.layers]
     copper = _in_sensor(read, shapely.union_all(areas))
     share = painted.symmetric_difference(copper).area / copper.area
     yield Measurement("orders.copper", subject, share, 0, AREA_SHARE, "of the copper")
 
 
-def _mask(subject: str, read: Read, layer: str, open_: BaseGeometry) -> Iterator[Measurement]:
+def _mask(subject: str, read: ReadBoard, layer: str, open_: BaseGeometry) -> Iterator[Measurement]:
     pads = [t.copper.area for part in read.board.parts for t in part.terminals
             if t.copper is not None and layer in t.copper.layers]  # fmt: skip
     covered = _in_sensor(read, shapely.union_all(pads)) - open_
@@ -67,7 +69,7 @@ def _mask(subject: str, read: Read, layer: str, open_: BaseGeometry) -> Iterator
 
 
 def _silk(
-    subject: str, read: Read, front: bool, printed: BaseGeometry, bare: BaseGeometry
+    subject: str, read: ReadBoard, front: bool, printed: BaseGeometry, bare: BaseGeometry
 ) -> Iterator[Measurement]:
     """What is printed: the board's lines, ink in the room of each of its words, and no more."""
     silk = read.board.silk
@@ -94,14 +96,14 @@ def _room(word: Word) -> BaseGeometry:
     return affinity.translate(affinity.rotate(flat, -word.angle_deg, origin=(0, 0)), *word.at)
 
 
-def _edge(path: str, read: Read, drawn: BaseGeometry) -> Measurement:
+def _edge(path: str, read: ReadBoard, drawn: BaseGeometry) -> Measurement:
     wanted = _in_sensor(read, shapely.union_all(list(read.board.edges))).bounds
     pen = (np.subtract(drawn.bounds, wanted) * (-1, -1, 1, 1)).tolist()
     off = max(pen) - min(pen)
     return Measurement("orders.outline", path, off, 0, PLACE_MM, "mm", "from the board's edge")
 
 
-def _drills(path: str, read: Read, layers: Mapping[str, bytes]) -> Iterator[Measurement]:
+def _drills(path: str, read: ReadBoard, layers: Mapping[str, bytes]) -> Iterator[Measurement]:
     plated = [(t.at, t.drill_mm) for part in read.board.parts for t in part.terminals
               if t.copper is not None and t.drill_mm]  # fmt: skip
     vias = [((p.area.centroid.x, p.area.centroid.y), p.drill_mm)
@@ -113,7 +115,7 @@ def _drills(path: str, read: Read, layers: Mapping[str, bytes]) -> Iterator[Meas
         yield Measurement("orders.drills", path, off, 0, PLACE_MM, "mm", note)
 
 
-def _openable(read: Read, layer: str) -> BaseGeometry:
+def _openable(read: ReadBoard, layer: str) -> BaseGeometry:
     """Where the mask may be open on a layer: pads and holes with a gap, marks with their ring."""
     areas = []
     for part in read.board.parts:
@@ -127,7 +129,7 @@ def _openable(read: Read, layer: str) -> BaseGeometry:
     return shapely.union_all(areas)
 
 
-def _soldered(read: Read, layer: str) -> BaseGeometry:
+def _soldered(read: ReadBoard, layer: str) -> BaseGeometry:
     """Pads on a layer of the parts that are mounted on it."""
     return shapely.union_all([
         t.copper.area for part in read.board.parts if "exclude_from_bom" not in part.attributes
@@ -137,7 +139,7 @@ def _soldered(read: Read, layer: str) -> BaseGeometry:
 
 
 def _apart(
-    read: Read, found: list[tuple[float, float, float]],
+    read: ReadBoard, found: list[tuple[float, float, float]],
     wanted: list[tuple[tuple[float, float], float]],
 ) -> float:  # fmt: skip
     """Worst place or diameter of a hole; NaN if there are more or fewer."""
@@ -149,7 +151,7 @@ def _apart(
     return float(np.abs(told[order[0]] - np.array(found)[order[1]]).max())
 
 
-def _in_sensor(read: Read, area: BaseGeometry) -> BaseGeometry:
+def _in_sensor(read: ReadBoard, area: BaseGeometry) -> BaseGeometry:
     return shapely.transform(area, read.sensor)
 
 

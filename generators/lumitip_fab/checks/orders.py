@@ -10,12 +10,11 @@ from pathlib import Path
 
 import numpy as np
 
-from lumitip_fab.checks.board_read import Read
-from lumitip_fab.checks.kicad_board import Part, read_board
+from lumitip_fab.checks.board_read import Read, ReadCarrier, read_all
+from lumitip_fab.checks.kicad_board import Part
 from lumitip_fab.checks.order_layers import Painted, measure_layers
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.design import Design, Fab
-from lumitip_fab.errors import OutputError
 
 READS = ("boards/*.kicad_pcb", "boards/*.zip", "boards/*.csv")
 PLACE_MM = 0.001
@@ -27,41 +26,41 @@ _TERMINALS = re.compile(
     re.MULTILINE,
 )
 """A row of the assembly note: a part, the terminal at pad 1 and the other, each with its place."""
+_FIRST_PADS = re.compile(r"^(?P<ref>[A-Z]+\d+)  (?P<x>\S+) (?P<y>\S+)$", re.MULTILINE)
+"""A row of a carrier's note: a part and the place of its first pad."""
 
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
-    """Every zip of both boards; all are to have the same layers."""
-    for finger in design.fingers:
-        folder = outputs / "boards" / finger.name
-        subject = f"boards/{finger.name}/{finger.name}.kicad_pcb"
-        try:
-            read = Read(subject, read_board(outputs / subject), finger, design)
-        except OutputError as error:
-            yield unreadable("orders.board", subject, str(error))
+    """Every zip of every board; all are to have the same layers."""
+    for subject, read in read_all(outputs, design):
+        folder = (outputs / subject).parent
+        if isinstance(read, str):
+            yield unreadable("orders.board", subject, read)
             continue
         painted: Painted = {}
         first: _Files = {}
         for fab in design.fabs:
-            name = f"{fab.name}_{finger.name}.zip"
-            path = f"boards/{finger.name}/order/{name}"
+            name = f"{fab.name}_{read.name}.zip"
+            path = f"boards/{read.name}/order/{name}"
             try:
                 files = _unzipped(folder / "order" / name)
-                layers = {key: files[finger.name + end] for key, end in fab.layers}
-                yield _tables_twice(path, folder / "order", fab, finger.name, files)
+                layers = {key: files[read.name + end] for key, end in fab.layers}
+                yield _tables_twice(path, folder / "order", fab, read.name, files)
                 yield from measure_layers(path, read, layers, painted)
                 first = first or layers
                 other = [key for key in first if first[key] != layers[key]]
                 yield _count("same", path, other, "layers that differ")
                 yield from _parts(path, read, fab, files)
-                note = files[f"{finger.name}_assembly.txt"].decode()
-                yield _count("note", path, list(_misled(read, note)), "parts")
+                note = files[f"{read.name}_assembly.txt"].decode()
+                wrong = _misled(read, note) if isinstance(read, Read) else _misplaced(read, note)
+                yield _count("note", path, list(wrong), "parts")
             except (OSError, KeyError, ValueError, SyntaxError, zipfile.BadZipFile) as error:
                 yield unreadable("orders.readable", path, f"cannot be read: {error!r:.200}")
 
 
-def _parts(path: str, read: Read, fab: Fab, files: _Files) -> Iterator[Measurement]:
+def _parts(path: str, read: Read | ReadCarrier, fab: Fab, files: _Files) -> Iterator[Measurement]:
     """Bill of materials and placement list against the parts on the board."""
-    name = read.finger.name
+    name = read.name
     bom = _rows(files[f"{name}_bom.csv"], fab.bom)
     mounted = {p.ref for p in read.board.parts if "exclude_from_bom" not in p.attributes}
     refs = [ref for row in bom for ref in row["refs"].split(",")]
@@ -71,7 +70,7 @@ def _parts(path: str, read: Read, fab: Fab, files: _Files) -> Iterator[Measureme
     wrong += [
         f"{row['refs']:.20} is {row['part'] or 'without a number'}"
         for row in bom
-        if {row["part"]} != {_number(read, ref) for ref in row["refs"].split(",")}
+        if {row["part"]} != {read.ordered(ref) for ref in row["refs"].split(",")}
     ]
     yield _count("bom", path, wrong, "parts")
     rows = _rows(files[f"{name}_positions.csv"], fab.positions)
@@ -85,18 +84,6 @@ def _parts(path: str, read: Read, fab: Fab, files: _Files) -> Iterator[Measureme
     yield _count("sides", path, sides, "parts")
     turns = [_turned_by(row, part, fab) for row, part in known]
     yield Measurement("orders.turns", path, max(turns), 0, TURN_DEG, "°")
-
-
-def _number(read: Read, ref: str) -> str:
-    """What to order for a part, by the catalogue; the board tells a resistor's value."""
-    packages, part = read.design.packages, read.parts.get(ref)
-    emitter = read.finger.name == "emitter"
-    numbers = {
-        "D": packages.led.part, "Q": packages.photodetector.part, "U": packages.multiplexer.part,
-        "C": packages.capacitor.part,
-        "R": (packages.string_resistor if emitter else packages.pull_up).part,
-    }  # fmt: skip
-    return numbers.get(ref[:1], "").replace("{code}", part.value if part else "?")
 
 
 def _turned_by(row: dict[str, str], part: Part, fab: Fab) -> float:
@@ -130,6 +117,18 @@ def _misled(read: Read, note: str) -> Iterator[str]:
             continue
         given = [[float(row["x1"]), float(row["y1"])], [float(row["x2"]), float(row["y2"])]]
         if np.abs(wanted - given).max() > PLACE_MM:
+            yield part.ref
+
+
+def _misplaced(read: ReadCarrier, note: str) -> Iterator[str]:
+    """Parts of a carrier whose first pad the assembly note tells elsewhere than the board has."""
+    told = {m["ref"]: (float(m["x"]), float(m["y"])) for m in _FIRST_PADS.finditer(note)}
+    for part in read.board.parts:
+        if "exclude_from_bom" in part.attributes:
+            continue
+        first = next(t.at for t in part.terminals if t.number == "1")
+        given = told.get(part.ref, (math.nan, math.nan))
+        if not np.abs(read.sensor([first])[0] - given).max() <= PLACE_MM:
             yield part.ref
 
 

@@ -2,11 +2,12 @@
 
 import re
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from lumitip_fab.checks.printed import Printed
 from lumitip_fab.checks.result import Measurement, unreadable
@@ -37,15 +38,57 @@ def measure_boxes(
         standing: bounds of the part in the printer, shape `(2, 3)`.
         sensor: its bounds in the sensor frame.
     """
-    for kind, read, bounds in (("three_mf", _three_mf, standing), ("step", _step, sensor)):
-        path = stl.replace(".stl", ".3mf" if kind == "three_mf" else ".step")
-        try:
-            points = read(outputs / path)
-        except (OSError, ValueError, LookupError, SyntaxError, zipfile.BadZipFile) as error:
-            yield unreadable(f"{prefix}.{kind}", path, f"cannot be read: {error!r:.200}")
-            continue
-        off = np.abs(np.array([points.min(axis=0), points.max(axis=0)]) - bounds).max()
-        yield Measurement(f"{prefix}.{kind}", path, float(off), 0.0, AGREE_MM, "mm")
+    yield _measured(
+        f"{prefix}.three_mf", outputs, stl.replace(".stl", ".3mf"), _three_mf, _from_box(standing)
+    )
+    yield _measured(
+        f"{prefix}.step", outputs, stl.replace(".stl", ".step"), _step, _from_box(sensor)
+    )
+
+
+def measure_corners(
+    prefix: str, outputs: Path, stl: str, standing: Vectors, corners: Vectors
+) -> Iterator[Measurement]:
+    """The same of a part whose widest places are round, where a STEP file has no corner: how far
+    its corners lie from those of the STL.
+
+    Args:
+        prefix: of the checks' names.
+        outputs: the output folder.
+        stl: the part's STL file in it; the others lie beside it.
+        standing: bounds of the part in the printer, shape `(2, 3)`.
+        corners: the STL's corners in the STEP file's frame, shape `(n, 3)`.
+    """
+    tree = cKDTree(corners)
+
+    def off_mm(points: Vectors) -> float:
+        return float(tree.query(points)[0].max())
+
+    yield _measured(
+        f"{prefix}.three_mf", outputs, stl.replace(".stl", ".3mf"), _three_mf, _from_box(standing)
+    )
+    yield _measured(f"{prefix}.step", outputs, stl.replace(".stl", ".step"), _step, off_mm)
+
+
+def _from_box(bounds: Vectors) -> Callable[[Vectors], float]:
+    """How far the box round some points differs from this one."""
+    return lambda points: float(
+        np.abs(np.array([points.min(axis=0), points.max(axis=0)]) - bounds).max()
+    )
+
+
+def _measured(
+    check: str,
+    outputs: Path,
+    path: str,
+    read: Callable[[Path], Vectors],
+    off_mm: Callable[[Vectors], float],
+) -> Measurement:
+    try:
+        points = read(outputs / path)
+    except (OSError, ValueError, LookupError, SyntaxError, zipfile.BadZipFile) as error:
+        return unreadable(check, path, f"cannot be read: {error!r:.200}")
+    return Measurement(check, path, off_mm(points), 0.0, AGREE_MM, "mm")
 
 
 def _three_mf(path: Path) -> Vectors:

@@ -14,9 +14,10 @@ READS = ("boards/*.kicad_sch", "boards/*.kicad_pcb")
 
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
-    """Both schematics against their boards."""
-    for finger in design.fingers:
-        subject = f"boards/{finger.name}/{finger.name}.kicad_sch"
+    """Every schematic against its board."""
+    names = [finger.name for finger in design.fingers] + [c.name for c in design.carriers]
+    for name in names:
+        subject = f"boards/{name}/{name}.kicad_sch"
         try:
             sheet = read_sheet(outputs / subject)
             board = read_board((outputs / subject).with_suffix(".kicad_pcb"))

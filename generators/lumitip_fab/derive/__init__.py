@@ -4,10 +4,12 @@ import hashlib
 
 from lumitip.layout import Layout, Optics
 from lumitip_fab.derive import boards, closing, mask, mould, mount, outline, wiring
+from lumitip_fab.derive.breakout import derive_breakout
 from lumitip_fab.derive.cells import derive_cells
 from lumitip_fab.derive.electrical import derive_electrical
 from lumitip_fab.derive.faults import Faults
 from lumitip_fab.derive.fit_plate import derive_fit_plate
+from lumitip_fab.derive.holder import derive_holder
 from lumitip_fab.derive.packages import derive_fabs, derive_packages, derive_rules
 from lumitip_fab.derive.slicing import derive_slicing
 from lumitip_fab.derive.stack import derive_printing, derive_stack, derive_tip
@@ -42,6 +44,8 @@ def derive(given: Input) -> Design:
     sheet = mask.derive_mask(given, silhouette, plan, faults)
     rules = derive_rules(given, faults)
     meeting = closing.derive_closing(silhouette, stack, coupling, casting, faults)
+    breakout = derive_breakout(given, muxing, faults)
+    holders = derive_holder(given, breakout, faults)
     faults.stop()
     mux, channel = wiring.assign(given, cells, plan.muxes)
     layout = Layout(
@@ -84,6 +88,8 @@ def derive(given: Input) -> Design:
                 given.catalogue.controllers[p.controller.board].adc_bits,
             ),
             fabs=derive_fabs(given),
+            carriers=breakout,
+            holders=holders,
             parameters_hash=_parameters_hash(given),
         )
     )

@@ -25,6 +25,7 @@ from lumitip_fab.design.boards import (
     Wiring,
     Zone,
 )
+from lumitip_fab.design.carriers import Carrier, Device, Holder, Land, Note, Pattern
 from lumitip_fab.design.electrical import Electrical
 from lumitip_fab.design.fit_plate import FitPlate, Fits
 from lumitip_fab.design.gripper import Closing, Mount, Nose
@@ -36,6 +37,7 @@ from lumitip_fab.design.slicing import Filament, Slicing
 __all__ = [
     "Board",
     "Box",
+    "Carrier",
     "CellInput",
     "Chip",
     "Closing",
@@ -43,6 +45,7 @@ __all__ = [
     "Controller",
     "Cubic",
     "Design",
+    "Device",
     "Electrical",
     "Fab",
     "Filament",
@@ -50,15 +53,19 @@ __all__ = [
     "FitPlate",
     "Fits",
     "Grid",
+    "Holder",
+    "Land",
     "Letter",
     "Mask",
     "Mould",
     "Mount",
     "Multiplexer",
     "Nose",
+    "Note",
     "Outline",
     "Packages",
     "Part",
+    "Pattern",
     "Point",
     "Printing",
     "Reading",
@@ -107,6 +114,10 @@ class Design:
     fit_plate: FitPlate
     controller: Controller
     fabs: tuple[Fab, ...]
+    carriers: tuple[Carrier, ...]
+    """Boards outside the fingers."""
+    holders: tuple[Holder, ...]
+    """What holds the breakout board on the gripper; none without that board."""
     parameters_hash: str
 
     @property

@@ -62,6 +62,25 @@ def _others(board: Placement) -> Iterator[str]:
     yield ""
 
 
+def carrier_note(board: Placement, title: str, fab: Fab) -> bytes:
+    """The same of a carrier: which pad is the first of each part.
+
+    Args:
+        board: parts in their places.
+        title: what the board says of itself.
+        fab: the board house, whose remark is added.
+    """
+    lines = [
+        f"{board.name}: {title}, revision {board.revision}, design {board.design_hash[:8]}",
+        "",
+        *_ordering(board, fab),
+        "Pad 1 of each part, in mm as in the Gerber files, seen from the front:",
+        *(f"{part.ref}  {x:.3f} {y:.3f}" for part in bought(board)
+          for x, y in [pad_at(part, "1")]),
+    ]  # fmt: skip
+    return "".join(f"{line}\n" for line in lines).encode()
+
+
 def _ordering(board: Placement, fab: Fab) -> Iterator[str]:
     if fab.remark:
         yield fab.remark

@@ -4,11 +4,10 @@ import io
 import zipfile
 
 from lumitip_fab.boards.fab.lists import bill_of_materials, placement_list
-from lumitip_fab.boards.fab.note import assembly_note
 from lumitip_fab.boards.gerber.drills import plated_drills, unplated_drills
 from lumitip_fab.boards.gerber.layers import gerber_layers
 from lumitip_fab.boards.model import BoardModel
-from lumitip_fab.design import Fab, Packages
+from lumitip_fab.design import Fab
 
 _EPOCH = (1980, 1, 1, 0, 0, 0)
 _MODE = 0o644 << 16
@@ -21,14 +20,14 @@ def layers_of(model: BoardModel) -> dict[str, bytes]:
 
 
 def order_files(
-    model: BoardModel, layers: dict[str, bytes], packages: Packages, fab: Fab, stem: str
+    model: BoardModel, layers: dict[str, bytes], note: bytes, fab: Fab, stem: str
 ) -> dict[str, bytes]:
     """The zip for a board house, and its two tables once more by themselves.
 
     Args:
         model: the finished board.
         layers: from `layers_of`.
-        packages: for what is known of parts with polarity.
+        note: for who places the parts.
         fab: the board house.
         stem: what the files' names begin with.
     """
@@ -38,9 +37,12 @@ def order_files(
         f"{stem}_positions.csv": placement_list(board, fab),
     }
     files = {stem + ending: layers[layer] for layer, ending in fab.layers}
-    note = {f"{stem}_assembly.txt": assembly_note(board, packages, fab)}
+    files[f"{stem}_assembly.txt"] = note
     told = {f"{fab.name}_{name}": data for name, data in tables.items()}
-    return {f"{fab.name}_{stem}.zip": _zipped(files | tables | note), **told}
+    return {
+        f"{fab.name}_{stem}.zip": _zipped(files | tables),
+        **told,
+    }
 
 
 def _zipped(files: dict[str, bytes]) -> bytes:

@@ -23,6 +23,21 @@ def schematic_files(board: Placement, wiring: Wiring, packages: Packages) -> dic
     supply = next(net for _, net in parts["J1"].nets if net != board.ground)
     shapes = _symbols(board, packages, supply)
     paper, sheet = _drawn(board, wiring, packages, parts, supply)
+    return sheet_files(board, paper, sheet, shapes, parts)
+
+
+def sheet_files(
+    board: Placement, paper: str, sheet: Sheet, shapes: dict[str, Node], parts: dict[str, Component]
+) -> dict[str, bytes]:
+    """A drawn sheet with the library of its symbols, and the table that finds it.
+
+    Args:
+        board: whose schematic it is.
+        paper: name of the paper.
+        sheet: the drawing.
+        shapes: symbols by name.
+        parts: the board's parts by reference.
+    """
     library: Node = ("kicad_symbol_lib", ("version", FORMAT), ("generator", "lumitip"),
                *(symbols.named(name, shape, True) for name, shape in shapes.items()))  # fmt: skip
     return {

@@ -107,14 +107,14 @@ def mux_pins(mux: Multiplexer) -> list[tuple[str, int, Point, int, str]]:
     return pins
 
 
-def wires(ways: int) -> Node:
+def wires(ways: int, pitch_mm: float = ROW_MM) -> Node:
     """A row of wire pads, first at the top."""
-    first = (ways - 1) / 2 * ROW_MM
+    first = (ways - 1) / 2 * pitch_mm
     pins = [
-        _pin(str(i + 1), 5.08, first - i * ROW_MM, 180, PIN_MM, str(i + 1)) for i in range(ways)
+        _pin(str(i + 1), 5.08, first - i * pitch_mm, 180, PIN_MM, str(i + 1)) for i in range(ways)
     ]
-    half = ways / 2 * ROW_MM
-    dots = [_circle(1.27, first - i * ROW_MM, 0.762) for i in range(ways)]
+    half = ways / 2 * pitch_mm
+    dots = [_circle(1.27, first - i * pitch_mm, 0.762) for i in range(ways)]
     return _symbol("J", [_box(-2.54, -half, 2.54, half, fill="background"), *dots], pins)
 
 

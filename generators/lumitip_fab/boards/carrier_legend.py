@@ -1,0 +1,75 @@
+"""What is printed on a carrier: names of contacts, references, notes and the title."""
+
+import dataclasses
+from collections.abc import Iterator
+from itertools import pairwise
+
+from lumitip_fab.boards.geometry import courtyard, placed_pads
+from lumitip_fab.boards.model import SIDES, Component, Placement, Text
+from lumitip_fab.boards.page import Page
+from lumitip_fab.design import Box, Carrier, Device, Point, Rules
+
+_REF_MM = 1.0
+_AWAY_MM = 0.4  # from a pad to its name, and from a part to its reference
+
+
+def with_legend(board: Placement, carrier: Carrier, rules: Rules) -> Placement:
+    """The board with its silkscreen.
+
+    Raises:
+        BuildError: if something that must be told has no room, with what and where.
+    """
+    page = Page(board, rules)
+    for note in carrier.notes:
+        text = page.text(note.text, note.at, note.height_mm, note.angle_deg)
+        _put(page, note.text, note.at, [text])
+    parts = {part.ref: part for part in board.components}
+    for device in carrier.devices:
+        _names(page, device, parts[device.ref], carrier.box)
+    for ref, part in parts.items():
+        _put(page, ref, (part.x_mm, part.y_mm), [*_round(page, ref, courtyard(part))])
+    lines = ((board.name, 2.0), (carrier.title, 1.5),
+             (f"rev {board.revision}  {board.design_hash[:8]}", 1.5))  # fmt: skip
+    for side in SIDES:
+        if page.block(side, lines, carrier.box.centre_mm) is None:
+            page.miss(f"the title on its {side}", 1.0, page.length_mm(carrier.title), (0.0, 0.0))
+    page.refuse_losses()
+    return dataclasses.replace(board, silk=tuple(page.strokes), texts=tuple(page.texts))
+
+
+def _put(page: Page, told: str, at: Point, choices: list[Text]) -> None:
+    """Print a text at the first place that is free, or note that there is none."""
+    if not page.first_free("front", choices):
+        page.miss(repr(told), choices[0].height_mm, page.length_mm(told), at)
+
+
+def _names(page: Page, device: Device, part: Component, board: Box) -> None:
+    """The name of each contact beside it: all along their row if they fit, else upright."""
+    if not device.pins:
+        return
+    pads = placed_pads(part)
+    pitch = min((abs(a.x_mm - b.x_mm) for a, b in pairwise(pads)), default=0.0)
+    flat = max(map(page.length_mm, device.pins)) + page.rules.silk_gap_mm < pitch
+    inward = 1.0 if part.y_mm < board.centre_mm[1] else -1.0
+    drawn = part.footprint.body.y_max_mm if part.footprint.silk else 0.0
+    for pad, name in zip(pads, device.pins, strict=True):
+        tall = page.rules.silk_text_mm if flat else page.length_mm(name)
+        reach = max(pad.pad.height_mm / 2, drawn) + tall / 2 + _AWAY_MM
+        at = pad.x_mm, pad.y_mm
+        places = [
+            page.text(name, (pad.x_mm, pad.y_mm + way * reach), angle_deg=0.0 if flat else 90.0)
+            for way in (inward, -inward)
+        ]
+        _put(page, f"{device.ref} {name}", at, places)
+
+
+def _round(page: Page, ref: str, yard: Box) -> Iterator[Text]:
+    """Places for a reference round its part: at its ends, then above, below and upright."""
+    (x, y), half = yard.centre_mm, page.length_mm(ref, _REF_MM) / 2 + _AWAY_MM
+    rise = _REF_MM / 2 + _AWAY_MM
+    sides = [(yard.x_min_mm, -1), (yard.x_max_mm, 1)]
+    ends = [(yard.y_max_mm, 1), (yard.y_min_mm, -1)]
+    yield from (page.text(ref, (at + way * half, y), _REF_MM) for at, way in sides)
+    yield from (page.text(ref, (x, at + way * rise), _REF_MM) for at, way in ends)
+    yield from (page.text(ref, (x, at + way * half), _REF_MM, 90.0) for at, way in ends)
+    yield from (page.text(ref, (at + way * rise, y), _REF_MM, 90.0) for at, way in sides)

@@ -1,0 +1,54 @@
+"""The sheet of a carrier: every part with the names of its nets at its pins."""
+
+from lumitip_fab.boards.model import Component, Placement
+from lumitip_fab.boards.pcb.sexpr import Node
+from lumitip_fab.boards.schematic import symbols
+from lumitip_fab.boards.schematic.files import sheet_files
+from lumitip_fab.boards.schematic.paper import MARGIN_MM, paper_for
+from lumitip_fab.boards.schematic.sheet import Drawn, Sheet
+from lumitip_fab.design import Carrier, Point
+
+_PITCH_MM = 2.54  # from pin to pin
+_COLUMN_MM = 50.8
+_ABOVE_MM = 12.7  # of a part, for its reference
+_TALL_MM = 150.0  # of a column of parts
+_LABEL_MM = 5.08  # wire from a pin to its label
+
+
+def carrier_sheet(board: Placement, carrier: Carrier) -> dict[str, bytes]:
+    """Sheet, symbol library and its table, by their path beside the board.
+
+    Args:
+        board: its parts, with their nets.
+        carrier: for what their contacts are called.
+    """
+    parts = {part.ref: part for part in board.components}
+    shapes: dict[str, Node] = {}
+    sheet = Sheet()
+    x = y = MARGIN_MM
+    sheet.texts.append((carrier.title, (x, y), 2.5))
+    for device in carrier.devices:
+        tall = len(device.nets) * _PITCH_MM + _ABOVE_MM
+        if y + tall > MARGIN_MM + _TALL_MM:
+            x, y = x + _COLUMN_MM, MARGIN_MM
+        shapes.setdefault(f"Strip{len(device.nets)}", symbols.wires(len(device.nets), _PITCH_MM))
+        _row(sheet, (x + _PITCH_MM, y + _ABOVE_MM), parts[device.ref])
+        y += tall
+    paper, _ = paper_for(x + _COLUMN_MM - MARGIN_MM, _TALL_MM)
+    return sheet_files(board, paper, sheet, shapes, parts)
+
+
+def _row(sheet: Sheet, at: Point, part: Component) -> None:
+    """A row of contacts, first at the top, each with the name of its net."""
+    ways = len(part.nets)
+    x, first = at
+    middle = first + (ways - 1) / 2 * _PITCH_MM
+    sheet.symbols.append(
+        Drawn(f"Strip{ways}", part.ref, part.value, x, middle,
+              pins=tuple(pad for pad, _ in part.nets),
+              ref_at=(0, -ways / 2 * _PITCH_MM - 1.27))
+    )  # fmt: skip
+    for i, (_, net) in enumerate(part.nets):
+        y = first + i * _PITCH_MM
+        sheet.wire((x + _LABEL_MM, y), (x + 2 * _LABEL_MM, y))
+        sheet.flag(net, (x + 2 * _LABEL_MM, y), 0)

@@ -1,0 +1,118 @@
+"""A carrier's board against the design: edge, screw holes, every pad, every connection, names."""
+
+import math
+from collections import defaultdict
+from collections.abc import Iterator
+
+import numpy as np
+
+from lumitip_fab.checks.board_read import ReadCarrier
+from lumitip_fab.checks.kicad_board import Part, Terminal
+from lumitip_fab.checks.result import Measurement
+from lumitip_fab.design import Device, Land, Point
+
+LAND_MM = 0.001
+EDGE_MM = 0.002
+HOLE_MM = 0.01
+NAME_MM = 4.0  # from a pad to the name beside it, at most
+
+
+def measure_edge(read: ReadCarrier) -> Iterator[Measurement]:
+    """The edge against the carrier's box."""
+    box = read.carrier.box
+    left, low, right, high = read.outline.bounds
+    (x_min, y_max), (x_max, y_min) = read.sensor([(left, low), (right, high)])
+    off = [x_min - box.x_min_mm, x_max - box.x_max_mm, y_min - box.y_min_mm, y_max - box.y_max_mm]
+    yield read.figure("outline", np.abs(off).max(), 0, EDGE_MM)
+
+
+def measure_screws(read: ReadCarrier) -> Iterator[Measurement]:
+    """Screw holes: how many, where, how wide."""
+    wanted, found = read.carrier.holes, read.sensor([hole.at for hole in read.holes])
+    yield read.figure("hole_count", len(found), len(wanted), len(wanted), "holes")
+    if not wanted:
+        return
+    apart = np.hypot(*(np.array(wanted)[:, None] - found[None]).transpose(2, 0, 1))
+    yield read.figure("holes", apart.min(axis=1).max() if found.size else math.nan, 0, HOLE_MM)
+    off = [abs(hole.drill_mm - read.carrier.hole_mm) for hole in read.holes]
+    yield read.figure("hole_width", max(off, default=math.nan), 0, HOLE_MM, note="from the design")
+
+
+def measure_lands(read: ReadCarrier) -> Iterator[Measurement]:
+    """Every pad of every part: its place, its size and its hole."""
+    devices = {device.ref: device for device in read.carrier.devices}
+    others = [p.ref for p in read.board.parts if p.ref not in devices and _has_copper(p)]
+    yield read.count("other_parts", others, "parts")
+    off = {ref: _off_mm(read, device, read.parts.get(ref)) for ref, device in devices.items()}
+    worst = max(off, key=lambda ref: math.inf if math.isnan(off[ref]) else off[ref])
+    yield read.figure("lands", off[worst], 0, LAND_MM, note=f"worst at {worst}")
+
+
+def measure_joined(read: ReadCarrier) -> Iterator[Measurement]:
+    """Pads that the design joins, followed along the copper, and pads that it does not."""
+    pads: dict[str, dict[int | None, list[str]]] = defaultdict(lambda: defaultdict(list))
+    owners: dict[int, set[str]] = defaultdict(set)
+    for device in read.carrier.devices:
+        for number, net in device.nets:
+            group = read.group(device.ref, number)
+            pads[net][group].append(f"{device.ref}.{number}")
+            if group is not None:
+                owners[group].add(net)
+    apart = [f"{net}: {min(groups.values(), key=len)[0]} is apart"
+             for net, groups in pads.items() if len(groups) > 1 or None in groups]  # fmt: skip
+    yield read.count("apart", apart, "nets")
+    both = [" and ".join(sorted(nets)) for nets in owners.values() if len(nets) > 1]
+    yield read.count("joined", both, "places")
+
+
+def measure_names(read: ReadCarrier) -> Iterator[Measurement]:
+    """The name beside each contact: of all that is printed but references, the nearest."""
+    refs = {device.ref for device in read.carrier.devices}
+    printed = [w for w in read.board.silk.words if w.front and w.text not in refs]
+    places = read.sensor([word.at for word in printed])
+    wrong = []
+    for device in read.carrier.devices:
+        for land, name in zip(device.pattern.lands, device.pins, strict=False):
+            apart = np.hypot(*(places - np.array(_placed(device, land))).T)
+            nearest = int(apart.argmin()) if apart.size else -1
+            if nearest < 0 or printed[nearest].text != name or apart[nearest] > NAME_MM:
+                wrong.append(f"{device.ref}.{land.number} is not called {name}")
+    yield read.count("names", wrong, "contacts")
+
+
+def _has_copper(part: Part) -> bool:
+    return any(t.copper is not None for t in part.terminals)
+
+
+def _off_mm(read: ReadCarrier, device: Device, part: Part | None) -> float:
+    """Worst place, size or hole of a part's pads; NaN if one is missing or there are more."""
+    lands = device.pattern.lands
+    found = {t.number: t for t in part.terminals} if part and part.front else {}
+    if set(found) != {land.number for land in lands} or part is None:
+        return math.nan
+    if len(part.terminals) != len(lands):
+        return math.nan
+    return max(_pad_off_mm(read, device, land, found[land.number]) for land in lands)
+
+
+def _pad_off_mm(read: ReadCarrier, device: Device, land: Land, pad: Terminal) -> float:
+    if pad.copper is None:
+        return math.nan
+    x, y = read.sensor([pad.at])[0]
+    turned = round(device.angle_deg / 90) % 2
+    size = (land.height_mm, land.width_mm) if turned else (land.width_mm, land.height_mm)
+    left, low, right, high = pad.copper.area.bounds
+    off: float = max(
+        math.dist((x, y), _placed(device, land)),
+        abs(pad.drill_mm - land.drill_mm),
+        abs(right - left - size[0]),
+        abs(high - low - size[1]),
+    )
+    return off
+
+
+def _placed(device: Device, land: Land) -> Point:
+    turn = math.radians(device.angle_deg)
+    c, s = math.cos(turn), math.sin(turn)
+    return (device.x_mm + land.x_mm * c - land.y_mm * s,
+            device.y_mm + land.x_mm * s + land.y_mm * c)  # fmt: skip

@@ -1,0 +1,197 @@
+"""The holder as files: printable, the board's screws meet its holes, and it clips on the gripper.
+
+Everything is measured in the frame of the carrier in it.
+"""
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import shapely
+
+from lumitip_fab.checks import packages, solids
+from lumitip_fab.checks.board_read import ReadCarrier, read_all
+from lumitip_fab.checks.printed import circles, farthest, holes_at
+from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip_fab.checks.walls import walls
+from lumitip_fab.design import Design, Holder
+from lumitip_fab.errors import OutputError
+from lumitip_fab.frames import holder_bed_to_carrier, rotation_y, translation
+
+READS = ("holder/*.stl", "holder/*.3mf", "holder/*.step", "boards/*.kicad_pcb")
+
+SIZE_MM = 0.05
+HOLE_MM = 0.05
+SPACING_MM = 0.02  # from hole to hole, of the printed part against the board
+MOST_OVERHANG_MM2 = 100.0  # the roofs of its holes
+LEAST_BED_MM2 = 300.0
+LEAST_GRIP_MM = 0.25  # each arm's end inside the body's widest place
+_UP, _DOWN = np.array([0.0, 0.0, 1.0]), np.array([0.0, 0.0, -1.0])
+_REACH_MM = 100.0
+
+
+@dataclass(frozen=True, eq=False)
+class Clip:
+    """A holder as it was read, with the board that goes into it."""
+
+    subject: str
+    standing: Any
+    """Mesh as the file has it."""
+    mesh: Any
+    """Mesh in the carrier's frame."""
+    holder: Holder
+    board: ReadCarrier
+    design: Design
+
+    def figure(
+        self, check: str, measured: float, low: float, high: float, unit: str = "mm", note: str = ""
+    ) -> Measurement:
+        """A measurement of this file."""
+        return Measurement(f"holder.{check}", self.subject, float(measured), low, high, unit, note)
+
+
+def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
+    """Every figure of the holder."""
+    boards = {of.carrier.name: of for _, of in read_all(outputs, design)
+              if isinstance(of, ReadCarrier)}  # fmt: skip
+    for holder in design.holders:
+        subject = f"holder/{holder.name}.stl"
+        try:
+            standing = solids.read_mesh(outputs / subject)
+            board = boards[holder.carrier]
+        except (OutputError, LookupError) as error:
+            yield unreadable("holder.readable", subject, f"{error}")
+            continue
+        mesh = solids.moved(standing, holder_bed_to_carrier(holder))
+        clip = Clip(subject, standing, mesh, holder, board, design)
+        yield clip.figure("readable", len(mesh.faces), 4, math.inf, "triangles")
+        yield from _measured(clip)
+        yield from packages.measure_corners(
+            "holder", outputs, subject, standing.bounds, mesh.vertices
+        )
+
+
+def _measured(clip: Clip) -> Iterator[Measurement]:
+    steps: tuple[Callable[[Clip], Iterator[Measurement]], ...] = (
+        measure_print, measure_tray, measure_screws, measure_nuts, measure_cradle, measure_straps,
+    )  # fmt: skip
+    for step in steps:
+        try:
+            yield from step(clip)
+        except (ArithmeticError, LookupError, ValueError, shapely.errors.ShapelyError) as error:
+            name = step.__name__.removeprefix("measure_")
+            yield unreadable(f"holder.{name}", clip.subject, f"cannot be measured: {error!r:.200}")
+
+
+def measure_print(clip: Clip) -> Iterator[Measurement]:
+    """One closed body that prints standing, and its walls."""
+    least = clip.design.printing.min_wall_mm
+    yield clip.figure("watertight", solids.open_edges(clip.standing), 0, 0, "open edges")
+    yield clip.figure("bodies", solids.bodies(clip.standing), 1, 1, "bodies")
+    hang, bed = solids.overhang_mm2(clip.standing), solids.bed_contact_mm2(clip.standing)
+    yield clip.figure("overhang", hang, 0, MOST_OVERHANG_MM2, "mm²")
+    yield clip.figure("bed_contact", bed, LEAST_BED_MM2, math.inf, "mm²")
+    yield from walls("holder.min_wall", clip.subject, clip.standing, least, ())
+
+
+def measure_tray(clip: Clip) -> Iterator[Measurement]:
+    """The board's edge, as its file has it, in the tray; the rim, the floor and the bosses."""
+    holder = clip.holder
+    left, _, right, _ = clip.board.outline.bounds
+    x_min, x_max = clip.board.sensor([(left, 0.0), (right, 0.0)])[:, 0]
+    z = holder.top_z_mm / 2
+    ys = np.linspace(0.9, -0.9, 13) * holder.tray.y_max_mm
+    gaps = []
+    for x, way in ((x_min, -1.0), (x_max, 1.0)):
+        inside = np.column_stack([np.full_like(ys, x - way), ys, np.full_like(ys, z)])
+        hit, _ = solids.cast(clip.mesh, inside, np.array([way, 0.0, 0.0]), 10.0).first(len(ys))
+        gaps.append(hit - 1.0)
+    clearance = holder.tray.x_max_mm - clip.board.carrier.box.x_max_mm
+    worst = farthest(np.concatenate(gaps), clearance)
+    yield clip.figure("tray_gap", worst, clearance - SIZE_MM, clearance + SIZE_MM)
+    rim = clip.mesh.bounds[1][2] - clip.design.stack.pcb_mm
+    yield clip.figure("rim", rim, -SIZE_MM, SIZE_MM, note="above the board's front")
+    floor = _height(clip, np.array([(0.0, y) for y in ys]))
+    wanted = -holder.floor_z_mm
+    room = farthest(-floor, wanted)
+    yield clip.figure("tail_room", room, wanted - SIZE_MM, math.inf, note="under the board")
+    beside = 0.45 * holder.boss_mm[0]
+    ring = [(x + dx, y) for x, y in holder.holes for dx in (-beside, beside)]
+    seat = farthest(_height(clip, np.array(ring)), 0.0)
+    yield clip.figure("bosses", seat, -SIZE_MM, SIZE_MM, note="from the board's back")
+
+
+def measure_screws(clip: Clip) -> Iterator[Measurement]:
+    """The screws' holes against those in the board's file: one by one, and from hole to hole."""
+    board = clip.board.sensor([hole.at for hole in clip.board.holes])
+    at = tuple((float(x), float(y)) for x, y in board)
+    rings = holes_at(clip.mesh, -0.5)
+    off, wide = circles(rings, at, 2.0)
+    yield clip.figure("screws", farthest(off, 0.0), 0, HOLE_MM, note="from the board's holes")
+    width = clip.holder.screw_mm
+    yield clip.figure("screw_width", farthest(wide, width), width - HOLE_MM, width + HOLE_MM)
+    centres = np.array([shapely.Polygon(ring).centroid.coords[0] for ring in rings])
+    spans = [np.ptp(places[:, 0]) if len(places) else math.nan for places in (board, centres)]
+    yield clip.figure("spacing", spans[1] - spans[0], -SPACING_MM, SPACING_MM,
+                      note="from hole to hole, against the board")  # fmt: skip
+
+
+def measure_nuts(clip: Clip) -> Iterator[Measurement]:
+    """The nuts' pockets: across flats, and how far under the board the nuts bear."""
+    holder = clip.holder
+    rings = holes_at(clip.mesh, holder.seat_z_mm - 0.5)
+    off, wide = circles(rings, holder.holes, 2.0)
+    yield clip.figure("nuts", farthest(off, 0.0), 0, HOLE_MM, note="from the screws")
+    # `circles` tells the diameter of a circle of the same area
+    flats = wide * math.sqrt(math.pi / (2 * math.sqrt(3)))
+    width = holder.nut_mm
+    yield clip.figure("nut_width", farthest(flats, width), width - HOLE_MM, width + HOLE_MM)
+    beside = (holder.screw_mm + holder.nut_mm) / 4
+    start = np.array([(x, y + beside, holder.axis_z_mm) for x, y in holder.holes])
+    hit, _ = solids.cast(clip.mesh, start, _UP, _REACH_MM).first(len(start))
+    seat = farthest(holder.axis_z_mm + hit, holder.seat_z_mm)
+    yield clip.figure("nut_seat", seat, holder.seat_z_mm - SIZE_MM, holder.seat_z_mm + SIZE_MM)
+
+
+def measure_cradle(clip: Clip) -> Iterator[Measurement]:
+    """The cradle's radius by rays from its axis, and how far the arms close behind the body."""
+    holder = clip.holder
+    turns = np.radians(np.linspace(-holder.wrap_deg + 2.0, holder.wrap_deg - 2.0, 61))
+    away = np.column_stack([np.sin(turns), np.zeros_like(turns), np.cos(turns)])
+    y = holder.outer.y_max_mm / 2  # beside nuts and straps
+    start = np.tile((0.0, y, holder.axis_z_mm), (len(turns), 1))
+    hit, _ = solids.cast(clip.mesh, start, away, _REACH_MM).first(len(turns))
+    wanted = holder.cradle_mm
+    yield clip.figure("cradle", farthest(hit, wanted), wanted - SIZE_MM, wanted + SIZE_MM)
+    below = clip.mesh.vertices[clip.mesh.vertices[:, 2] < holder.axis_z_mm]
+    inward = float(np.abs(below[:, 0]).min(initial=math.inf))
+    grip = holder.body_mm / 2 - inward
+    yield clip.figure("grip", grip, LEAST_GRIP_MM, math.inf,
+                      note="each arm's end inside the body's widest place")  # fmt: skip
+
+
+def measure_straps(clip: Clip) -> Iterator[Measurement]:
+    """The holes through both arms, seen along each hole."""
+    holder = clip.holder
+    offs, widths = [], []
+    for side in (-1, 1):
+        upright = rotation_y(-side * holder.strap_deg) @ translation(0, 0, -holder.axis_z_mm)
+        turned = solids.moved(clip.mesh, upright)
+        rings = holes_at(turned, holder.cradle_mm + holder.wall_mm / 2)
+        off, wide = circles(rings, tuple((0.0, y) for y in holder.strap_y_mm), 2.0)
+        offs.append(off)
+        widths.append(wide)
+    yield clip.figure("straps", farthest(np.concatenate(offs), 0.0), 0, HOLE_MM)
+    wanted = holder.strap_hole_mm
+    worst = farthest(np.concatenate(widths), wanted)
+    yield clip.figure("strap_width", worst, wanted - HOLE_MM, wanted + HOLE_MM)
+
+
+def _height(clip: Clip, points: solids.Vectors) -> solids.Vectors:
+    """Height of what is seen from above at points (x, y); infinite through a hole."""
+    above = np.column_stack([points, np.full(len(points), _REACH_MM / 2)])
+    drop, _ = solids.cast(clip.mesh, above, _DOWN, 2 * _REACH_MM).first(len(points))
+    return np.asarray(above[:, 2] - drop)

@@ -1,0 +1,101 @@
+"""The holder that clips the breakout board to the gripper."""
+
+import math
+
+from lumitip_fab.derive.faults import Faults
+from lumitip_fab.design import Box, Carrier, Holder
+from lumitip_fab.load import Input
+
+SCREW_PLAY_MM = 0.1  # screw holes beyond the board's, which a printer narrows
+NUT_PLAY_MM = 0.2  # nut pockets beyond the nuts
+BOSS_RIM_MM = 1.2  # of a boss round its screw
+BOSS_LENGTH_MM = 7.0
+MOST_STRAIN = 0.01  # of the arms while they clip on; PETG yields at some 4 %
+LEAST_GRIP_MM = 0.3  # each arm's end inside the body's widest place
+
+
+def derive_holder(
+    given: Input, carriers: tuple[Carrier, ...], faults: Faults
+) -> tuple[Holder, ...]:
+    """The holder of the breakout board; none without that board."""
+    p = given.parameters
+    of = next((carrier for carrier in carriers if carrier.name == "breakout"), None)
+    if of is None:
+        return ()
+    wall, play = p.holder.wall_mm, p.holder.clearance_mm
+    tray = Box(of.box.x_min_mm - play, of.box.x_max_mm + play, of.box.y_min_mm, of.box.y_max_mm)
+    floor_z = -p.holder.standoff_mm
+    radius = p.holder.body_mm / 2 + play
+    width = of.hole_mm + 2 * BOSS_RIM_MM
+    spacing = p.holder.strap_spacing_mm / 2
+    holder = Holder(
+        name="holder",
+        carrier=of.name,
+        tray=tray,
+        outer=Box(tray.x_min_mm - wall, tray.x_max_mm + wall, tray.y_min_mm, tray.y_max_mm),
+        top_z_mm=p.stack.pcb_mm,
+        floor_z_mm=floor_z,
+        seat_z_mm=floor_z - wall,
+        axis_z_mm=floor_z - wall - radius,
+        body_mm=p.holder.body_mm,
+        cradle_mm=radius,
+        wall_mm=wall,
+        wrap_deg=p.holder.wrap_deg,
+        holes=of.holes,
+        screw_mm=of.hole_mm + SCREW_PLAY_MM,
+        nut_mm=p.holder.nut_mm + NUT_PLAY_MM,
+        boss_mm=(BOSS_LENGTH_MM, width, width + 2 * p.holder.standoff_mm),  # 45°, to print
+        strap_deg=(p.holder.wrap_deg + _shoulder_deg(tray.x_max_mm + wall, radius + wall)) / 2,
+        strap_y_mm=(-spacing, spacing),
+        strap_hole_mm=p.holder.strap_hole_mm,
+    )
+    _refuse(given, of, holder, faults)
+    return (holder,)
+
+
+def _shoulder_deg(x_mm: float, radius_mm: float) -> float:
+    """Where the tray's side meets the arm, from the middle of the tray."""
+    return math.degrees(math.asin(min(x_mm / radius_mm, 1.0)))
+
+
+def _refuse(given: Input, of: Carrier, holder: Holder, faults: Faults) -> None:
+    """Refuse a tray wider than its cradle, arms that break or do not hold, bosses under tails."""
+    p, outer = given.parameters.holder, holder.cradle_mm + holder.wall_mm
+    if holder.outer.x_max_mm > outer:
+        faults.refuse(
+            "holder.body_mm",
+            f"{p.body_mm:g} given, the tray is {holder.outer.width_mm:.1f} mm wide: at least "
+            f"{2 * (holder.outer.x_max_mm - holder.wall_mm - p.clearance_mm):.1f} is needed",
+        )
+        return
+    grip = holder.body_mm / 2 - holder.cradle_mm * math.sin(math.radians(holder.wrap_deg))
+    faults.refuse_unless(
+        grip >= LEAST_GRIP_MM,
+        "holder.wrap_deg",
+        f"{p.wrap_deg:g} given, which leaves the arms' ends {grip:.2f} mm inside the body's widest "
+        f"place; at least {LEAST_GRIP_MM:g} holds: wrap farther, or less holder.clearance_mm",
+    )
+    free_deg = holder.wrap_deg - _shoulder_deg(holder.outer.x_max_mm, outer)
+    length = outer * math.radians(free_deg)
+    strain = 3 * holder.wall_mm * max(grip, 0.0) / (2 * length**2)
+    faults.refuse_unless(
+        strain <= MOST_STRAIN,
+        "holder.wrap_deg",
+        f"{p.wrap_deg:g} given, clipping on would stretch the arms by {100 * strain:.1f} %; at "
+        f"most {100 * MOST_STRAIN:g} % is allowed: wrap less, or thinner holder.wall_mm",
+    )
+    half_x, half_y = holder.boss_mm[0] / 2, holder.boss_mm[2] / 2
+    tails = [
+        abs(device.y_mm + land.y_mm) - land.height_mm / 2
+        for device in of.devices
+        for land in device.pattern.lands
+        for x, _ in of.holes
+        if land.drill_mm and abs(device.x_mm + land.x_mm - x) < half_x + land.width_mm / 2
+    ]
+    faults.refuse_unless(
+        min(tails, default=math.inf) >= half_y,
+        "holder.standoff_mm",
+        f"{p.standoff_mm:g} given, the bosses under the screws would be {2 * half_y:.1f} mm wide "
+        f"and reach solder tails: at most {min(tails, default=0.0) - holder.boss_mm[1] / 2:.2f} is "
+        "allowed",
+    )

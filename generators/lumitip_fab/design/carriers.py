@@ -1,0 +1,148 @@
+"""Boards that carry what is outside the fingers, each in a frame of its own.
+
+Frame of a carrier: seen from its front, origin at the middle of its outline, x to the right, y up.
+Every length is in mm.
+"""
+
+from dataclasses import dataclass
+
+from lumitip_fab.design.shape import Box, Point
+
+
+@dataclass(frozen=True)
+class Land:
+    """A pad of a land pattern, in the part's own frame: seen from its side, y up."""
+
+    number: str
+    x_mm: float
+    y_mm: float
+    width_mm: float
+    height_mm: float
+    drill_mm: float
+    """Diameter of its plated hole; 0 of a surface-mount pad."""
+    round: bool
+
+
+@dataclass(frozen=True)
+class Pattern:
+    """A land pattern with its body."""
+
+    name: str
+    """By IPC-7351 where that has a name for it."""
+    lands: tuple[Land, ...]
+    body: Box
+    height_mm: float
+    """Above the board; 0 of bare copper."""
+
+
+@dataclass(frozen=True)
+class Device:
+    """A part, or bare copper, in its place on a carrier's front."""
+
+    ref: str
+    kind: str
+    """`"socket"`, `"wires"`, `"capacitor"` …, by which its symbol is chosen."""
+    value: str
+    part: str
+    """What to order; empty of bare copper."""
+    manufacturer: str
+    lcsc: str
+    """Number at the distributor LCSC; empty where it is not known."""
+    pattern: Pattern
+    x_mm: float
+    y_mm: float
+    angle_deg: float
+    """Counter-clockwise."""
+    nets: tuple[tuple[str, str], ...]
+    """Net of each land, by number."""
+    pins: tuple[str, ...]
+    """Name of each land, in the order of the lands; empty where a part has no names."""
+
+
+@dataclass(frozen=True)
+class Note:
+    """A line that is printed on a carrier's front."""
+
+    text: str
+    at: Point
+    """Its middle."""
+    height_mm: float
+    angle_deg: float
+
+
+@dataclass(frozen=True)
+class Carrier:
+    """A board with everything on it: what its files must hold."""
+
+    name: str
+    """Of its folder and its files."""
+    title: str
+    """What it says of itself."""
+    box: Box
+    corner_mm: float
+    """Radius of the outline's corners."""
+    holes: tuple[Point, ...]
+    """Centres of its screw holes."""
+    hole_mm: float
+    devices: tuple[Device, ...]
+    notes: tuple[Note, ...]
+    supplies: tuple[str, ...]
+    """Nets that are routed wide; ground is one of them."""
+
+    @property
+    def nets(self) -> tuple[str, ...]:
+        """Every net once, ground first."""
+        told = (net for device in self.devices for _, net in device.nets)
+        return tuple(dict.fromkeys((*self.supplies, *told)))
+
+
+@dataclass(frozen=True)
+class Holder:
+    """A printed tray for a carrier on a cradle that clips round the gripper's body.
+
+    In the carrier's frame, z = 0 on the back of the board and out of its front: the body's axis
+    runs along y at `axis_z_mm`. It is printed standing on its end at the lowest y.
+
+    ```
+       ┌┐              ┌┐   z = board's front
+       │└─┐▁        ▁┌─┘│   bosses carry the board, z = 0
+       │  └──────────┘  │   floor of the tray
+       │   ╭────────╮   │
+      ╭╯  ╱          ╲  ╰╮  cradle
+      │  │     ·      │  │  axis of the body
+      ╰──╯            ╰──╯  arms reach beyond it
+    ```
+    """
+
+    name: str
+    carrier: str
+    """Name of the board in it."""
+    tray: Box
+    """Inside of the tray, open at both ends along y."""
+    outer: Box
+    """Outside of the tray, seen along z."""
+    top_z_mm: float
+    """Rim of the tray."""
+    floor_z_mm: float
+    """Floor of the tray."""
+    seat_z_mm: float
+    """Where the nuts bear, below the floor."""
+    axis_z_mm: float
+    body_mm: float
+    """Diameter of the gripper's body."""
+    cradle_mm: float
+    """Radius of the cradle."""
+    wall_mm: float
+    wrap_deg: float
+    """Where the arms end, from the middle of the tray."""
+    holes: tuple[Point, ...]
+    """Screws of the board."""
+    screw_mm: float
+    nut_mm: float
+    """Across flats of the nuts' pockets."""
+    boss_mm: tuple[float, float, float]
+    """Of a boss under the board: length along x, width along y on top and at the floor."""
+    strap_deg: float
+    """Where the holes through the arms are, from the middle of the tray."""
+    strap_y_mm: tuple[float, ...]
+    strap_hole_mm: float
