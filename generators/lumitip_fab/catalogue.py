@@ -219,6 +219,8 @@ class Film(Entry):
 
     thickness_mm: Length
     """Thickness."""
+    density_g_ml: float = Field(gt=0.5, le=3)
+    """Density (g/mL)."""
     soften_c: float = Field(gt=20, le=200)
     """Temperature at which it wraps (°C)."""
 

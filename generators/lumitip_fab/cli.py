@@ -60,6 +60,8 @@ def _parser() -> argparse.ArgumentParser:
     sub.add_argument("--memory", type=Path, metavar="FILE", help=told)
     sub = command("spec", "Print the published Table I beside the figures of FILE.", "json")
     with_file(sub)
+    told = "what FILE was built into: also tells what the fingers weigh"
+    sub.add_argument("--out", type=Path, metavar="DIR", help=told)
     told = "Print which detector each multiplexer input of a board reads, from its copper."
     sub = command("channel-map", told, "json")
     sub.add_argument("file", type=Path, metavar="FILE", help="a .kicad_pcb of KiCad 5 to 10")
@@ -70,6 +72,18 @@ def _parser() -> argparse.ArgumentParser:
     sub = command("explore", told, "quiet", "json")
     with_file(sub)
     with_out(sub)
+    _study_options(sub)
+    told = "Slice every printed part in DIR with PrusaSlicer: time, filament and overhangs."
+    sub = command("slice", told, "quiet", "json")
+    with_out(sub)
+    told = "keep the G-code there; without it only the figures are kept"
+    sub.add_argument("--gcode", type=Path, metavar="FOLDER", help=told)
+    sub = command("schema", "Print the JSON Schema of parameter files, for editors.")
+    return parser
+
+
+def _study_options(sub: argparse.ArgumentParser) -> None:
+    """What a design study varies, and where it is computed."""
     told = "A:B, A:B:STEP, A,B,C or a TOML list [A, B]; give it again for further fields"
     sub.add_argument("--vary", action="append", required=True, metavar="FIELD=SPEC", help=told)
     told = "values of a range A:B (6)"
@@ -80,13 +94,6 @@ def _parser() -> argparse.ArgumentParser:
     sub.add_argument("--seed", type=int, default=0, metavar="N", help=told)
     told = "evaluate on this Dask cluster (tcp://…) instead of on all cores of this machine"
     sub.add_argument("--scheduler", metavar="ADDRESS", help=told)
-    told = "Slice every printed part in DIR with PrusaSlicer: time, filament and overhangs."
-    sub = command("slice", told, "quiet", "json")
-    with_out(sub)
-    told = "keep the G-code there; without it only the figures are kept"
-    sub.add_argument("--gcode", type=Path, metavar="FOLDER", help=told)
-    sub = command("schema", "Print the JSON Schema of parameter files, for editors.")
-    return parser
 
 
 if __name__ == "__main__":

@@ -109,7 +109,12 @@ def _spec(options: argparse.Namespace) -> int:
     from lumitip_fab.derive import derive
     from lumitip_fab.load import load
 
-    rows = spec.rows(derive(load(options.file)))
+    design = derive(load(options.file))
+    rows = spec.rows(design)
+    if options.out:
+        from lumitip_fab.spec_built import built_rows
+
+        rows += built_rows(options.out, design)
     if options.json:
         print(json.dumps([vars(row) for row in rows], indent=1))
     else:

@@ -6,6 +6,9 @@
 - Bed of the mould: the sensor frame turned over about x, so that the open side is up.
 - Gripper frame: z = 0 is the mid-plane between the fingers, the lean applied; the receiver
   looks along +z. Opening is the smallest distance from skin to skin.
+- Base of a robot's model: in the mount plane, midway between the fingers; x along the opening,
+  from the receiver to the emitter, z to the tips. The tool centre point is the gripper frame's
+  origin: between the middles of both grids.
 - Page of a board file: seen from the board's front with the tip up, y down, as KiCad has it;
   z = 0 is the board's front, and looks to the back so that the frame stays right-handed.
 - Page of a mask: seen from the film's inside, tip towards the top, so page x = -x of the
@@ -80,6 +83,13 @@ def finger_to_gripper(finger: str, mount: Mount, closing: Closing, opening_mm: f
     receiver = translation(0.0, 0.0, -closing.contact_z_mm - opening_mm / 2) @ leaned
     turned = np.diag([-1.0, 1.0, -1.0, 1.0])  # half a turn about y
     return turned @ receiver if finger == "emitter" else receiver
+
+
+def gripper_to_base(stack: Stack, mount: Mount, closing: Closing) -> Matrix:
+    """From the gripper frame to the base of a robot's model."""
+    plane = finger_to_gripper("receiver", mount, closing, 0.0) @ mount_to_sensor(mount, stack)
+    turned = np.array([[0.0, 0, 1, 0], [1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
+    return np.asarray(translation(0.0, 0.0, -float(plane[1, 3])) @ turned)
 
 
 def sensor_to_page(measured_ruler_mm: Point) -> Matrix:

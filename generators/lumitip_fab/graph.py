@@ -41,6 +41,7 @@ STEPS = (
     Step("boards", "carrier", "carrier_files", True, _COPPER),
     Step("boards", "spice", "simulation", False, ()),
     Step("mechanical", "assembly", "assembly", True, _CAD),
+    Step("mechanical", "robot", "robot_files", True, _CAD),
     Step("mechanical", "mould", "mould_files", True, _CAD),
     Step("mechanical", "backing", "backing", True, _CAD),
     Step("mechanical", "holder", "holder_files", True, _CAD),

@@ -7,6 +7,7 @@ from rich.console import Console
 from rich.table import Table
 
 from lumitip_fab.design import Design
+from lumitip_fab.frames import gripper_to_base
 from lumitip_fab.spec_outside import Row, outside
 
 
@@ -91,6 +92,7 @@ def _further(design: Design) -> tuple[Row, ...]:
     ]  # fmt: skip
     current, volts = sum(design.wiring.current_ma), design.wiring.supply_v
     slant = design.outline.tip_y_mm - tip.slant_start_y_mm
+    tcp_mm = float(gripper_to_base(stack, design.mount, design.closing)[2, 3])
     skin = (design.mount.stroke_mm - design.closing.max_opening_mm) / 2
     across = "diameter" if design.mask.hole_shape == "circle" else "across flats"
     return (
@@ -116,6 +118,8 @@ def _further(design: Design) -> tuple[Row, ...]:
         Row("largest opening", "not stated", f"{design.closing.max_opening_mm:.1f} mm",
             f"stroke of {design.mount.stroke_mm:g} mm less {skin:.1f} for each finger's skin, "
             "which stands before the gripper's own pad"),
+        Row("tool centre point", "not stated", f"{tcp_mm:.1f} mm",
+            "from the mount plane, midway between the fingers: the middle of both grids"),
         Row("aperture", "2.5 mm", f"{design.mask.hole_mm:g} mm",
             f"{across} of a {design.mask.hole_shape}, by mask.hole_mm; published: a hexagon"),
         Row("heat in the emitter", "not stated", f"{design.electrical.heat_w:.2f} W",

@@ -31,7 +31,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     note = ", ".join(changed[:3]) or f"of {len(told.files)}"
     yield Measurement("manifest.files", _FILE, len(changed), 0, 0, "missing or changed", note)
     for path, entry in sorted(told.files.items()):
-        if path.endswith(".stl"):
+        if path.endswith(".stl") and path.startswith(("backing/", "mould/")):
             yield _frame(outputs, path, np.array(entry.to_sensor), design)
 
 

@@ -13,6 +13,7 @@ from lumitip_fab.derive.holder import derive_holder
 from lumitip_fab.derive.packages import derive_fabs, derive_packages, derive_rules
 from lumitip_fab.derive.slicing import derive_slicing
 from lumitip_fab.derive.stack import derive_printing, derive_stack, derive_tip
+from lumitip_fab.derive.weights import derive_densities
 from lumitip_fab.design import Controller, Design, Grid, Title
 from lumitip_fab.encoding import canonical, settled
 from lumitip_fab.load import Input
@@ -82,6 +83,7 @@ def derive(given: Input) -> Design:
             printing=printing,
             slicing=slicing,
             fit_plate=plate,
+            densities=derive_densities(given),
             controller=Controller(
                 p.controller.board,
                 p.controller.name,

@@ -33,6 +33,7 @@ from lumitip_fab.design.making import Letter, Mask, Mould, Printing
 from lumitip_fab.design.ordering import Fab
 from lumitip_fab.design.shape import Box, Cubic, Outline, Point, Stack, Tip
 from lumitip_fab.design.slicing import Filament, Slicing
+from lumitip_fab.design.weights import Densities
 
 __all__ = [
     "Board",
@@ -44,6 +45,7 @@ __all__ = [
     "Connector",
     "Controller",
     "Cubic",
+    "Densities",
     "Design",
     "Device",
     "Electrical",
@@ -112,6 +114,7 @@ class Design:
     printing: Printing
     slicing: Slicing
     fit_plate: FitPlate
+    densities: Densities
     controller: Controller
     fabs: tuple[Fab, ...]
     carriers: tuple[Carrier, ...]

@@ -95,8 +95,12 @@ def mesh(shape: Shape, chord_mm: float = CHORD_MM) -> Mesh:
 
 
 def stl(shape: Shape, chord_mm: float = CHORD_MM) -> bytes:
-    """A binary STL."""
-    surface = mesh(shape, chord_mm)
+    """A binary STL of a shape."""
+    return mesh_stl(mesh(shape, chord_mm))
+
+
+def mesh_stl(surface: Mesh) -> bytes:
+    """A binary STL of a surface."""
     corners = surface.points_mm[surface.triangles]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     records = np.zeros(len(corners), dtype=_TRIANGLE)

@@ -1,0 +1,159 @@
+"""The URDF of both fingers: tree, places when closed and open, masses, and what touches."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import trimesh
+
+from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip_fab.checks.solids import Vectors, moved
+from lumitip_fab.checks.urdf_read import Link, Model, read_macros, read_urdf
+from lumitip_fab.design import Design, Finger
+from lumitip_fab.errors import OutputError
+
+READS = ("robot/*", "robot/meshes/*")
+_FILE, _MACROS = "robot/lumitip.urdf", "robot/lumitip.xacro"
+_FINGERS = ("receiver", "emitter")
+_CHECKS = ("tree", "facing", "tcp", "seat", "closed", "open", "mass", "centre", "reach", "bulk")
+PLACE_MM = 0.02
+GAP_MM = 0.1  # the meshes are coarser than the parts, and a film's taper ends in one edge
+MASS = 0.01
+CENTRE_MM = 0.1
+REACH_MM = 0.02
+BULK = 1.6  # volume of what touches, of what is seen
+
+
+def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
+    """Read the model and hold it against the design; its meshes give gaps, masses and reach."""
+    try:
+        model = read_urdf(outputs / _FILE)
+    except OutputError as error:
+        yield from (unreadable(f"robot.{name}", _FILE, str(error)) for name in _CHECKS)
+    else:
+        wrong = _misplaced(model)
+        yield _figure("tree", len(wrong), 0, 0, "links and joints", note=", ".join(wrong[:3]))
+        if not wrong:
+            yield from _places(model, design)
+            for finger in design.fingers:
+                yield from _body(model.links[f"lumitip_{finger.name}"], finger, design)
+    yield _macros(outputs)
+
+
+def _misplaced(model: Model) -> list[str]:
+    """What is not as users of the model expect it by name."""
+    wanted = {
+        **{f"lumitip_{f}_joint": ("prismatic", "lumitip_base", f"lumitip_{f}") for f in _FINGERS},
+        "lumitip_tcp_joint": ("fixed", "lumitip_base", "lumitip_tcp"),
+    }
+    found = {name: (j.kind, j.parent, j.child) for name, j in model.joints.items()}
+    wrong = sorted(name for name in {*wanted, *found} if wanted.get(name) != found.get(name))
+    bodies = {"lumitip_base", "lumitip_tcp", *(f"lumitip_{f}" for f in _FINGERS)}
+    wrong += sorted(bodies ^ set(model.links))
+    emitter = model.joints.get("lumitip_emitter_joint")
+    if emitter and emitter.mimics != "lumitip_receiver_joint":
+        wrong.append("lumitip_emitter_joint mimics nothing")
+    return wrong
+
+
+def _places(model: Model, design: Design) -> Iterator[Measurement]:
+    places = [model.to_base(f"lumitip_{f}") for f in _FINGERS]
+    turned = np.diag([-1.0, 1.0, -1.0, 1.0])  # the fingers face: half a turn about the tips' axis
+    facing = np.linalg.inv(places[0]) @ places[1]
+    lean = design.mount.tilt_deg
+    want = _about_x(-lean) @ turned @ _about_x(lean)
+    off = np.abs(facing[:3, :3] - want[:3, :3]).max()
+    yield _figure("facing", np.degrees(off), 0, 0.01, "°", "one finger's frame in the other's")
+    tcp = model.to_base("lumitip_tcp")[:3, 3]
+    middle = (places[0][:3, 3] + places[1][:3, 3]) / 2
+    yield _figure("tcp", np.abs(tcp - middle).max(), 0, PLACE_MM, "mm", "from between the cells")
+    lowest = [_bounds(model, f, 0.0, "backing")[0][2] for f in _FINGERS]
+    worst = max(lowest, key=abs)
+    yield _figure("seat", worst, -PLACE_MM, PLACE_MM, "mm", "foot of a backing to the mount plane")
+    for name, share in (("closed", 0.0), ("open", 1.0)):
+        wanted = share * design.closing.max_opening_mm
+        gap = _gap(model, share)
+        yield _figure(name, gap, wanted - GAP_MM, wanted + GAP_MM, "mm", "from skin to skin")
+
+
+def _gap(model: Model, share: float) -> float:
+    """Along the opening, from the receiver to the emitter."""
+    receiver, emitter = (_bounds(model, f, share) for f in _FINGERS)
+    return float(emitter[0][0] - receiver[1][0])
+
+
+def _bounds(model: Model, finger: str, share: float, layer: str = "") -> Vectors:
+    """Least and greatest corner of a finger, or one layer, in the base's frame, so far opened."""
+    link = f"lumitip_{finger}"
+    way = model.to_base(link, share * model.joints[f"{link}_joint"].upper_mm)
+    visuals = model.links[link].visuals
+    corners = [moved(mesh, way).bounds for name, mesh in visuals.items() if layer in name]
+    return np.array([np.min(corners, axis=0)[0], np.max(corners, axis=0)[1]])
+
+
+def _body(link: Link, finger: Finger, design: Design) -> Iterator[Measurement]:
+    masses, centres = zip(*_pieces(link, finger, design), strict=True)
+    mass, told = sum(masses), f"{finger.name}"
+    centre = np.average(centres, axis=0, weights=masses)
+    yield _figure("mass", link.mass_g, mass * (1 - MASS), mass * (1 + MASS), "g", told)
+    off = float(np.abs(link.centre_mm - centre).max())
+    yield _figure("centre", off, 0, CENTRE_MM, "mm", told)
+    hulls = [mesh.convex_hull for mesh in link.collisions.values()]
+    seen = np.concatenate([mesh.vertices for mesh in link.visuals.values()])
+    outside = np.min([_outside(hull, seen) for hull in hulls], axis=0).max() if hulls else np.inf
+    yield _figure("reach", float(outside), -np.inf, REACH_MM, "mm",
+                  f"{told}: farthest that anything stands out of what touches")  # fmt: skip
+    bulk = sum(h.volume for h in hulls) / sum(abs(m.volume) for m in link.visuals.values())
+    yield _figure("bulk", bulk, 0, BULK, "times what is seen", told)
+
+
+def _pieces(link: Link, finger: Finger, design: Design) -> Iterator[tuple[float, Vectors]]:
+    """Mass (g) and centre of each layer, by the volume of its mesh, and of each part."""
+    densities = design.densities
+    for kind in ("backing", "board", "silicone", "film"):
+        mesh = link.visuals[f"{finger.name}_{kind}"]
+        yield mesh.volume * getattr(densities, f"{kind}_g_ml") / 1000, mesh.center_mass
+    for part in finger.parts:
+        front = part.side == "front"
+        density = densities.board_g_ml - front * densities.silicone_g_ml
+        volume = part.size_x_mm * part.size_y_mm * part.height_mm
+        stack = design.stack
+        z_mm = (
+            stack.rim_z_mm if front else stack.pocket_z_mm - part.height_mm
+        ) + part.height_mm / 2
+        yield volume * density / 1000, np.array([part.x_mm, part.y_mm, z_mm])
+
+
+def _outside(hull: Any, points_mm: Vectors) -> Vectors:
+    """How far each point stands out of a convex body; below zero inside."""
+    normals, origins = hull.face_normals, hull.triangles[:, 0]
+    return np.asarray((points_mm @ normals.T - np.einsum("ij,ij->i", normals, origins)).max(axis=1))
+
+
+def _macros(outputs: Path) -> Measurement:
+    try:
+        told = read_macros(outputs / _MACROS)
+        model = read_urdf(outputs / _FILE)
+    except OutputError as error:
+        return unreadable("robot.macros", _MACROS, str(error))
+    wanted = {f"lumitip_{f}": model.links[f"lumitip_{f}"].text for f in _FINGERS
+              if f"lumitip_{f}" in model.links}  # fmt: skip
+    apart = sorted(name for name in {*wanted, *told} if wanted.get(name) != told.get(name))
+    note = ", ".join(apart) or f"{len(wanted)} macros"
+    return Measurement(
+        "robot.macros", _MACROS, len(apart), 0, 0, "links unlike the URDF's", note
+    )  # fmt: skip
+
+
+def _about_x(angle_deg: float) -> Vectors:
+    angle = np.radians(angle_deg)
+    matrix = trimesh.transformations.rotation_matrix(angle, (1, 0, 0))
+    return np.asarray(matrix)
+
+
+def _figure(
+    check: str, measured: float, low: float, high: float, unit: str, note: str = ""
+) -> Measurement:
+    limits = float(low), float(high)
+    return Measurement(f"robot.{check}", _FILE, float(measured), *limits, unit, note)

@@ -1,0 +1,152 @@
+"""Both fingers as a robot's software wants them: URDF, xacro, meshes, masses."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import trimesh
+from build123d import Shape, Solid
+from numpy.typing import NDArray
+from OCP.BRepGProp import BRepGProp
+from OCP.GProp import GProp_GProps
+
+from lumitip_fab.artefact import Artefact
+from lumitip_fab.design import (
+    Board,
+    Closing,
+    Densities,
+    Finger,
+    Mould,
+    Mount,
+    Outline,
+    Stack,
+    Tip,
+)
+from lumitip_fab.frames import Matrix, finger_to_gripper, gripper_to_base
+from lumitip_fab.mechanical import export, urdf
+from lumitip_fab.mechanical.backing import backing_solid
+from lumitip_fab.mechanical.bodies import board_solid, part_solid
+from lumitip_fab.mechanical.skin import film_solid, silicone_solid
+
+CHORD_MM = 0.05
+_MESHES = "meshes"
+_COLOURS = {
+    "backing": (0.82, 0.84, 0.86, 1.0),
+    "board": (0.10, 0.38, 0.24, 1.0),
+    "silicone": (0.75, 0.88, 0.95, 0.35),
+    "film": (0.08, 0.08, 0.09, 0.55),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class _Layers:
+    """The solids of one finger in its sensor frame."""
+
+    backing: Solid
+    board: Solid
+    silicone: Solid
+    film: Solid
+
+
+def robot_files(
+    stack: Stack,
+    outline: Outline,
+    tip: Tip,
+    board: Board,
+    emitter: Finger,
+    receiver: Finger,
+    mount: Mount,
+    closing: Closing,
+    mould: Mould,
+    densities: Densities,
+) -> tuple[Artefact, ...]:
+    """URDF of the pair, a xacro macro for each finger, and the meshes that both name."""
+    silicone, film = silicone_solid(stack, outline, mould), film_solid(stack, outline, mould)
+    to_base = gripper_to_base(stack, mount, closing)
+    models, files = [], []
+    for finger in (receiver, emitter):
+        layers = _Layers(
+            backing_solid(finger, stack, outline, tip, board, mount),
+            board_solid(finger, stack, board),
+            silicone,
+            film,
+        )
+        meshes = dict(_meshes(finger, layers, stack))
+        models.append(
+            urdf.FingerModel(
+                name=finger.name,
+                weight=_weight(finger, layers, stack, densities),
+                visuals=tuple((f"{finger.name}_{k}.stl", c) for k, c in _COLOURS.items()),
+                collisions=tuple(name for name in meshes if "collision" in name),
+                to_base=to_base @ _closed(finger.name, mount, closing),
+                opening=_opening(finger.name, mount, closing),
+            )
+        )
+        files += [Artefact(f"robot/{_MESHES}/{n}", export.mesh_stl(m)) for n, m in meshes.items()]
+    pair = tuple(models)
+    travel_mm = closing.max_opening_mm / 2
+    return (
+        Artefact(
+            "robot/lumitip.urdf",
+            urdf.pair(pair, float(to_base[2, 3]), travel_mm, _MESHES),
+            frame="",
+        ),
+        Artefact("robot/lumitip.xacro", urdf.macros(pair, _MESHES), frame=""),
+        *files,
+    )
+
+
+def _meshes(finger: Finger, layers: _Layers, stack: Stack) -> Iterator[tuple[str, export.Mesh]]:
+    """What is looked at, and the convex bodies that touch: the plate with its skin, and the block
+    behind it."""
+    shown = {kind: export.mesh(getattr(layers, kind), CHORD_MM) for kind in _COLOURS}
+    for kind, surface in shown.items():
+        yield f"{finger.name}_{kind}.stl", surface
+    backing = trimesh.Trimesh(shown["backing"].points_mm, shown["backing"].triangles)
+    plane = (0.0, 0.0, stack.back_z_mm)
+    plate = [backing.slice_plane(plane, (0, 0, 1)).vertices]
+    plate += [shown[kind].points_mm for kind in ("silicone", "film")]
+    yield f"{finger.name}_collision_plate.stl", _hull(np.concatenate(plate))
+    block = backing.slice_plane(plane, (0, 0, -1)).vertices
+    yield f"{finger.name}_collision_block.stl", _hull(block)
+
+
+def _hull(points_mm: NDArray[np.float64]) -> export.Mesh:
+    hull = trimesh.PointCloud(points_mm).convex_hull
+    return export.Mesh(np.asarray(hull.vertices), np.asarray(hull.faces))
+
+
+def _weight(finger: Finger, layers: _Layers, stack: Stack, densities: Densities) -> urdf.Weight:
+    """Everything of a finger, each with its density; parts weigh like the board."""
+    whole = GProp_GProps()
+    for kind in _COLOURS:
+        _add(whole, getattr(layers, kind), getattr(densities, f"{kind}_g_ml"))
+    for part in finger.parts:
+        # The silicone is whole: where a part stands in it, there is the part instead.
+        buried = densities.silicone_g_ml if part.side == "front" else 0.0
+        _add(whole, part_solid(part, stack), densities.board_g_ml - buried)
+    inertia = whole.MatrixOfInertia()
+    centre = whole.CentreOfMass()
+    return urdf.Weight(
+        mass_g=whole.Mass() / 1000,
+        centre_mm=np.array([centre.X(), centre.Y(), centre.Z()]),
+        inertia_g_mm2=np.array([[inertia.Value(i, j) for j in (1, 2, 3)] for i in (1, 2, 3)])
+        / 1000,
+    )
+
+
+def _add(whole: GProp_GProps, shape: Shape, density_g_ml: float) -> None:
+    own = GProp_GProps()
+    BRepGProp.VolumeProperties_s(shape.wrapped, own)
+    whole.Add(own, density_g_ml)
+
+
+def _closed(finger: str, mount: Mount, closing: Closing) -> Matrix:
+    return finger_to_gripper(finger, mount, closing, 0.0)
+
+
+def _opening(finger: str, mount: Mount, closing: Closing) -> NDArray[np.float64]:
+    """The way a finger goes when the gripper opens, in its own frame."""
+    outward = 1.0 if finger == "emitter" else -1.0
+    turn = _closed(finger, mount, closing)[:3, :3]
+    return np.asarray(turn.T @ (0.0, 0.0, outward))

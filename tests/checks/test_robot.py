@@ -1,0 +1,130 @@
+"""Damage the robot's model, and exactly the right checks fail."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+import trimesh
+
+from lumitip_fab.checks import robot
+
+URDF, MACROS = "robot/lumitip.urdf", "robot/lumitip.xacro"
+FILM = "robot/meshes/emitter_film.stl"
+PLATE = "robot/meshes/receiver_collision_plate.stl"
+BLOCK = "robot/meshes/receiver_collision_block.stl"
+EVERY = {"tree", "facing", "tcp", "seat", "closed", "open", "mass", "centre", "reach", "bulk",
+         "macros"}  # fmt: skip
+Damage = Callable[[Path], None]
+
+
+def edited(file: str, old: str, new: str, count: int = 1) -> Damage:
+    """Replace the first occurrence of a text, of which there must be one."""
+
+    def damage(folder: Path) -> None:
+        text = (folder / file).read_text()
+        assert old in text
+        (folder / file).write_text(text.replace(old, new, count))
+
+    return damage
+
+
+def scaled(file: str, by: float) -> Damage:
+    """Another size for a mesh."""
+
+    def damage(folder: Path) -> None:
+        trimesh.load(folder / file, force="mesh").apply_scale(by).export(folder / file)
+
+    return damage
+
+
+def raised(file: str, by_mm: float) -> Damage:
+    """Another height for a mesh."""
+
+    def damage(folder: Path) -> None:
+        mesh = trimesh.load(folder / file, force="mesh")
+        mesh.apply_translation((0, 0, by_mm)).export(folder / file)
+
+    return damage
+
+
+def removed(file: str) -> Damage:
+    return lambda folder: (folder / file).unlink()
+
+
+def in_both(old: str, new: str) -> Damage:
+    """The same fault in the URDF and in its macros, which then agree."""
+
+    def damage(folder: Path) -> None:
+        for file in (URDF, MACROS):
+            edited(file, old, new)(folder)
+
+    return damage
+
+
+def heavier(folder: Path) -> None:
+    """The first finger's mass times ten."""
+    text = (folder / URDF).read_text()
+    mass = text.split('<mass value="')[1].split('"')[0]
+    in_both(f'<mass value="{mass}"', f'<mass value="{10 * float(mass):g}"')(folder)
+
+
+def _first_pose(folder: Path, tag: str) -> str:
+    """The place of the first thing with this text before it."""
+    text = (folder / URDF).read_text()
+    return text.split(tag)[1].split('<origin xyz="')[1].split('"')[0]
+
+
+def moved(tag: str, by_m: tuple[float, float, float]) -> Damage:
+    def damage(folder: Path) -> None:
+        told = _first_pose(folder, tag)
+        values = [float(v) + d for v, d in zip(told.split(), by_m, strict=True)]
+        edited(URDF, f'"{told}"', '"' + " ".join(f"{v:.9g}" for v in values) + '"')(folder)
+
+    return damage
+
+
+RECEIVER = 'joint name="lumitip_receiver_joint"'
+TCP = 'joint name="lumitip_tcp_joint"'
+DAMAGES: tuple[tuple[str, Damage, set[str]], ...] = (
+    ("no file", removed(URDF), EVERY),
+    ("no xml", edited(URDF, "</robot>", ""), EVERY),
+    ("a mesh is missing", removed(FILM), EVERY),
+    ("no macros", removed(MACROS), {"macros"}),
+    ("a joint renamed", edited(URDF, "lumitip_emitter_joint", "emitter_joint"), {"tree"}),
+    ("nothing mimics", edited(URDF, '<mimic joint="lumitip_receiver_joint" />', ""), {"tree"}),
+    ("one finger towards the other", moved(RECEIVER, (0.001, 0, 0)), {"tcp", "closed", "open"}),
+    ("one finger up", moved(RECEIVER, (0, 0, 0.0003)), {"tcp", "seat"}),
+    ("tool centre point", moved(TCP, (0, 0, 0.0001)), {"tcp"}),
+    ("without the lean", edited(URDF, 'rpy="1.59', 'rpy="1.57'), {"facing", "seat", "closed",
+                                                                  "open"}),
+    ("short travel", edited(URDF, 'upper="0.039', 'upper="0.038', 2), {"open"}),
+    ("mass in one file", edited(URDF, '<mass value="0.01', '<mass value="0.02'),
+     {"mass", "macros"}),
+    ("ten times the mass", heavier, {"mass"}),
+    ("centre of mass", moved('link name="lumitip_receiver"', (0, 0.001, 0)),
+     {"centre", "macros"}),
+    ("a macro's mesh", edited(MACROS, "receiver_film.stl", "emitter_film.stl"), {"macros"}),
+    ("film too large", scaled(FILM, 1.02), {"reach"}),
+    ("film too high", raised(FILM, 0.3), {"closed", "open", "reach"}),
+    ("too small to touch", scaled(PLATE, 0.98), {"reach"}),
+    ("touches far out", scaled(BLOCK, 3.0), {"bulk", "reach"}),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("damage", "wanted"), [d[1:] for d in DAMAGES], ids=[d[0] for d in DAMAGES]
+)
+def test_damage(
+    damaged: Path, failing: Callable[[Path], set[str]], damage: Damage, wanted: set[str]
+) -> None:
+    damage(damaged)
+    assert failing(damaged) == {f"robot.{name}" for name in wanted}
+
+
+def test_every_check_fails_for_some_damage(outputs: Path) -> None:
+    from lumitip_fab.encoding import read_design
+
+    told = {m.check for m in robot.measure(outputs, read_design(outputs / "design.json"))}
+    assert told == {f"robot.{name}" for name in EVERY}
+    one_by_one = [wanted for _, _, wanted in DAMAGES if wanted != EVERY]
+    assert set().union(*one_by_one) == EVERY

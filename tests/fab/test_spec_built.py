@@ -1,0 +1,48 @@
+"""What the fingers weigh, told from the files that were built."""
+
+from pathlib import Path
+
+import pytest
+
+from lumitip_fab.cli import main
+from lumitip_fab.encoding import read_design
+from lumitip_fab.errors import OutputError
+from lumitip_fab.spec_built import built_rows
+
+
+def test_the_payload_is_both_fingers(outputs: Path) -> None:
+    rows = {
+        r.quantity: r.computed for r in built_rows(outputs, read_design(outputs / "design.json"))
+    }
+    told = [
+        float(rows[f"mass of the {f} finger"].removesuffix(" g")) for f in ("emitter", "receiver")
+    ]
+    assert all(10 < mass < 40 for mass in told)
+    assert float(rows["payload of both fingers"].removesuffix(" g")) == pytest.approx(
+        sum(told), abs=0.11
+    )
+
+
+def test_files_of_another_design_are_refused(
+    outputs: Path, design_dir: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = design_dir / "presets" / "dense.toml"
+    assert main(["spec", str(file), "--out", str(outputs)]) == 2
+    assert "not built from these values: run lumitip-fab build first" in capsys.readouterr().err
+
+
+def test_the_command_adds_the_rows(
+    outputs: Path, design_dir: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert (
+        main(["spec", str(design_dir / "presets/published.toml"), "--out", str(outputs), "--json"])
+        == 0
+    )
+    assert "payload of both fingers" in capsys.readouterr().out
+
+
+def test_a_model_that_is_missing_is_told(damaged: Path) -> None:
+    design = read_design(damaged / "design.json")
+    (damaged / "robot/lumitip.urdf").unlink()
+    with pytest.raises(OutputError, match="cannot be read"):
+        built_rows(damaged, design)
