@@ -13,7 +13,9 @@ from lumitip.tasks.live import LiveTask
 
 speed, port = float(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else None
 layout = published_layout()
-world = LiveTask(Task(layout, Settings("cable", latency=0)), "twin://trace-cable", seed=1)
+world = LiveTask(
+    Task(layout, Settings("cable", latency=0)), "twin://trace-cable", 1, patience_s=0.5
+)
 estimator = PoseEstimator(layout, tracking=True)
 trace = Tracer(LineLaw(speed, gain_per_s=8.0, turn_per_s=10.0))
 estimator(world.first_values(), "cable")  # makes its tables before time runs

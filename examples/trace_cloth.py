@@ -14,7 +14,7 @@ from lumitip.tasks.live import LiveTask
 speed, port = float(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else None
 layout = published_layout()
 task = Task(layout, Settings("cloth", corner=True, latency=0))
-world = LiveTask(task, "twin://trace-cloth", seed=1)
+world = LiveTask(task, "twin://trace-cloth", seed=1, patience_s=0.5)
 estimator = PoseEstimator(layout, tracking=True)
 trace = Tracer(LineLaw(speed, gain_per_s=8.0, turn_per_s=10.0), corner_at_mm=0.0)
 estimator(world.first_values())  # makes its tables before time runs

@@ -63,6 +63,7 @@ def _files(folder: Path) -> dict[str, bytes]:
     return {f.name: f.read_bytes() for f in sorted(folder.iterdir()) if f.name != NAME}
 
 
+@pytest.mark.slow
 def test_every_design_has_figures_or_the_reasons_why_it_is_refused(
     studied: tuple[Path, Study],
 ) -> None:
@@ -82,6 +83,7 @@ def test_every_design_has_figures_or_the_reasons_why_it_is_refused(
     assert (out / "pareto.png").read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.slow
 def test_what_is_known_is_not_evaluated_again(
     explored: Explored, studied: tuple[Path, Study], tmp_path: Path
 ) -> None:
@@ -181,6 +183,7 @@ def test_figures_are_those_of_the_design(given: Input) -> None:
     assert cost(given, design, prices) - cost(given, design, free) == pytest.approx(32 * led)
 
 
+@pytest.mark.slow
 def test_a_finer_grid_sees_better(given: Input) -> None:
     errors = [
         accuracy(derive(changed(given, (("grid.pitch_mm", pitch),))).layout, Sample(2, 15))

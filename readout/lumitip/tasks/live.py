@@ -12,6 +12,7 @@ Frames are packets of version 2 with raw codes, and come at the rate of the task
 do or not: a program that computes too long flies blind meanwhile.
 """
 
+import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -40,13 +41,16 @@ class LiveTask(ThreadedLink):
 
     _name = "lumitip-task"
 
-    def __init__(self, task: Task, url: str, seed: int = 0) -> None:
+    def __init__(self, task: Task, url: str, seed: int = 0, patience_s: float = 0.0) -> None:
         """A task that has not begun.
 
         Args:
             task: with its own latency or none: what the program and the link take comes on top.
             url: what it is called, for people.
             seed: of the curve.
+            patience_s: how long time stands still for a command that is late (s). With none a
+                program that computes too long flies blind; with some, a busy computer slows the
+                world down.
         """
         super().__init__()
         self.layout: Layout = task.layout
@@ -60,6 +64,8 @@ class LiveTask(ThreadedLink):
         self._task = task
         self._first = self._task.reset(seed)
         self._command = Command()
+        self._patience_s = patience_s
+        self._commanded = threading.Event()
 
     def open(self) -> Fingertip:
         """Begin in real time; the fingertip that reads it."""
@@ -74,6 +80,7 @@ class LiveTask(ThreadedLink):
     def command(self, command: Command) -> None:
         """What holds until the next command. From any thread."""
         self._command = command
+        self._commanded.set()
 
     def metrics(self) -> Metrics:
         """How it went so far, against the truth."""
@@ -106,12 +113,16 @@ class LiveTask(ThreadedLink):
     def _run(self, deliver: Deliver, report: Report) -> None:
         self._packet(0)  # so that the tables are made before time runs
         report(LinkEvent("connected", f"{self.url} is computed, no device"))
-        began, ended, number = time.monotonic(), False, 0
+        due_s, ended, number = time.monotonic(), False, 0
         while not ended and number * self.period_s < _MOST_S:
-            due_s = began + (number + 1) * self.period_s
+            due_s += self.period_s
             if self._stopping.wait(max(0.0, due_s - time.monotonic())):
                 return
             if number:
+                if self._patience_s and not self._commanded.is_set():
+                    self._commanded.wait(self._patience_s)
+                    due_s = time.monotonic()
+                self._commanded.clear()
                 ended = self._task.step(self._command)[1]
             deliver(Arrival(time.monotonic(), self._packet(number)))
             number += 1
