@@ -91,7 +91,7 @@ def _silk(
 
 def _room(word: Word) -> BaseGeometry:
     """Where the letters of a word may be, on the page."""
-    half = (0.2 + 0.55 * len(word.text) * word.height_mm, 0.85 * word.height_mm)
+    half = (0.2 + 0.55 * len(word.text) * word.height_mm, 0.95 * word.height_mm)
     flat = box(-half[0], -half[1], half[0], half[1])
     return affinity.translate(affinity.rotate(flat, -word.angle_deg, origin=(0, 0)), *word.at)
 
