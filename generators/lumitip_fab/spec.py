@@ -111,7 +111,7 @@ def _further(design: Design) -> tuple[Row, ...]:
         Row("gripper", "Robotiq 2F-85", f"{design.mount.gripper}, {design.mount.bolt}",
             _trusted(design)),
         Row("fit test plate", "none", f"{plate.volume_ml:.1f} cm³",
-            f"about {plate.minutes:.0f} min; its reading is printer.fit_mm, here "
+            "lumitip-fab slice tells how long it prints; its reading is printer.fit_mm, here "
             f"{printing.fit_mm:g} mm (docs/making.md)"),
         Row("lean of each finger", "1.5°", f"{design.mount.tilt_deg:g}°",
             f"of {design.mount.gripper} in parts/grippers.toml"),

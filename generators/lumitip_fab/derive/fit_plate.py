@@ -22,7 +22,6 @@ DIGIT_WIDTH = 0.6  # of the height
 DIGIT_PITCH = 0.85
 MARGIN_MM = 0.6
 APART_MM = 0.8  # between slices
-SPEED_MM_S = 80.0  # of the nozzle, for the time
 
 
 def derive_fit_plate(given: Input, plan: Plan, mount: Mount, faults: Faults) -> FitPlate:
@@ -59,7 +58,6 @@ def derive_fit_plate(given: Input, plan: Plan, mount: Mount, faults: Faults) -> 
         land_mm=thickness - p.printer.min_wall_mm,
         pin_depth_mm=p.printer.min_wall_mm if mount.sleeved else thickness,
         volume_ml=0.0,
-        minutes=0.0,
     )
     width, depth, _ = plate.size_mm
     bed = printer.bed_mm
@@ -69,9 +67,7 @@ def derive_fit_plate(given: Input, plan: Plan, mount: Mount, faults: Faults) -> 
         f"{p.printer.profile!r} given, its bed of {bed[0]:g} x {bed[1]:g} mm cannot take a fit "
         f"test plate of {width:.0f} x {depth:.0f} mm",
     )
-    volume_mm3 = _volume_mm3(plate, mount)
-    flow = printer.line_mm * printer.layer_mm * SPEED_MM_S
-    return replace(plate, volume_ml=volume_mm3 / 1000, minutes=volume_mm3 / flow / 60)
+    return replace(plate, volume_ml=_volume_mm3(plate, mount) / 1000)
 
 
 def _hole_to_edges(plan: Plan) -> Point:

@@ -73,8 +73,6 @@ class FitPlate:
     the bolts."""
     volume_ml: float
     """Estimated, from towers, strip and slices."""
-    minutes: float
-    """Estimated time to print it, solid."""
 
     @property
     def size_mm(self) -> tuple[float, float, float]:
