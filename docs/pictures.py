@@ -55,7 +55,8 @@ def main(out: Path) -> None:
         for face in ("front", "back"):
             board = out / f"boards/{side}/{side}_{face}.png"
             shutil.copy(board, IMAGES / f"board_{side}_{face}.png")
-    shutil.copy(out / "boards/breakout/breakout_front.png", IMAGES / "board_breakout.png")
+    for name in ("breakout", "flange"):
+        shutil.copy(out / f"boards/{name}/{name}_front.png", IMAGES / f"board_{name}.png")
     draw_glb(out / "assembly/assembly.glb", IMAGES / "assembly.png")
 
 

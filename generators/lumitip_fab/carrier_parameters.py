@@ -4,6 +4,7 @@ from typing import Annotated
 
 from pydantic import Field
 
+from lumitip_fab.carrier_entry import Signal
 from lumitip_fab.entry import Name, Strict
 
 Size = Annotated[float, Field(ge=5, le=200)]
@@ -44,3 +45,38 @@ class Holder(Strict):
     """Diameter of the two holes in each arm, for screws of the gripper or a cable tie (mm)."""
     strap_spacing_mm: float = Field(ge=3, le=100)
     """From hole to hole (mm)."""
+
+
+class Flange(Strict):
+    """The board in the flange between robot and gripper: tool contacts, 5 V, cables."""
+
+    enabled: bool
+    """Whether it is made."""
+    contacts: Name
+    """Spring contacts in `parts/strips.toml`, two rows."""
+    signals: tuple[Signal, ...]
+    """Signal of each contact, counter-clockwise from the lower left: `SUPPLY`, `GND`, and names of
+    your own for lines that a header has too. Which contact carries what differs from coupling to
+    coupling."""
+    header: Name
+    """Headers for cables in `parts/strips.toml`, two rows."""
+    headers: tuple[tuple[Signal, ...], tuple[Signal, ...]]
+    """Signals of both headers, left to right; `REGULATED` is the regulator's output."""
+    regulator: Name
+    """Switching regulator in `parts/regulators.toml`."""
+    inductor: Name
+    """In `parts/inductors.toml`."""
+    input_capacitor: Name
+    """In `parts/capacitors.toml`."""
+    output_capacitor: Name
+    """In `parts/capacitors.toml`; two of them."""
+    boot_capacitor: Name
+    """In `parts/capacitors.toml`."""
+    fuse: Name
+    """In `parts/fuses.toml`."""
+    transistor: Name
+    """P-channel MOSFET against reversed supplies in `parts/transistors.toml`."""
+    resistor: Name
+    """Package of the resistors at its gate in `parts/resistors.toml`."""
+    gate_ohm: float = Field(ge=1e3, le=1e6)
+    """Both resistors, which halve the supply for the gate (ohm)."""

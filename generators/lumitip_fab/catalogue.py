@@ -9,7 +9,7 @@ from typing import Literal, Self
 
 from pydantic import Field, model_validator
 
-from lumitip_fab.carrier_entry import Plug, Strip
+from lumitip_fab.carrier_entry import Plug, Regulator, Strip, Transistor
 from lumitip_fab.entry import Entry, Length, Name, Pin, Share, Strict
 from lumitip_fab.fab_entry import Fab
 from lumitip_fab.filament_entry import Filament
@@ -107,6 +107,22 @@ class Capacitor(Chip):
 
     capacitance_nf: float = Field(gt=0, le=1e6)
     """Capacitance."""
+
+
+class Inductor(Chip):
+    """A power inductor."""
+
+    inductance_uh: float = Field(gt=0, le=1e5)
+    """Inductance."""
+
+
+class Fuse(Chip):
+    """A fuse."""
+
+    rated_a: float = Field(gt=0, le=100)
+    """Current that it carries."""
+    rated_v: float = Field(gt=0, le=1000)
+    """Voltage that it breaks."""
 
 
 class Multiplexer(Bought):
@@ -248,6 +264,10 @@ class Catalogue(Strict):
     multiplexers: Mapping[Name, Multiplexer]
     controllers: Mapping[Name, Controller]
     strips: Mapping[Name, Strip]
+    regulators: Mapping[Name, Regulator]
+    inductors: Mapping[Name, Inductor]
+    fuses: Mapping[Name, Fuse]
+    transistors: Mapping[Name, Transistor]
     grippers: Mapping[Name, Gripper]
     silicones: Mapping[Name, Silicone]
     films: Mapping[Name, Film]

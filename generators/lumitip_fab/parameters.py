@@ -16,7 +16,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from lumitip_fab.carrier_parameters import Breakout, Holder
+from lumitip_fab.carrier_parameters import Breakout, Flange, Holder
 from lumitip_fab.entry import Name, Strict
 
 PRINTABLE = r"^[\x20-\x7e]+$"
@@ -260,4 +260,5 @@ class Parameters(Strict):
     mould: Mould
     breakout: Breakout
     holder: Holder
+    flange: Flange
     printer: Printer

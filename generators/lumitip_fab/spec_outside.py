@@ -21,6 +21,8 @@ def outside(design: Design) -> Iterator[Row]:
     for carrier in design.carriers:
         if carrier.name == "breakout":
             yield from _breakout(carrier)
+        else:
+            yield from _flange(carrier)
     for holder in design.holders:
         yield from _holder(holder)
 
@@ -32,6 +34,20 @@ def _breakout(carrier: Carrier) -> Iterator[Row]:
               f"{box.width_mm:.1f} x {box.length_mm:.1f} mm", "by breakout.board_mm")  # fmt: skip
     yield Row("its screw holes", "35.56 mm apart, in the holder 36.00", f"{spacing:.2f} mm apart",
               "one figure for board and holder, breakout.hole_spacing_mm")  # fmt: skip
+
+
+def _flange(carrier: Carrier) -> Iterator[Row]:
+    box = carrier.box
+    yield Row("board of the flange", "32.8 x 63.5 mm",
+              f"{box.width_mm:.1f} x {box.length_mm:.1f} mm",
+              "a rectangle with round corners; published: one side is an arc")  # fmt: skip
+    values = {device.ref: device.value for device in carrier.devices}
+    yield Row("its supply", "AP63205, 4.7 uH, 10 uF, 2 x 22 uF",
+              f"{values['U1']}, {values['L1']}, {values['C1']}, 2 x {values['C2']}",
+              "parts of [flange]")  # fmt: skip
+    yield Row("its fuse and reversed supply", "not stated",
+              f"{values['F1']}, {values['Q1']}",
+              "a MOSFET costs the LEDs no voltage, as a diode would")  # fmt: skip
 
 
 def _holder(holder: Holder) -> Iterator[Row]:

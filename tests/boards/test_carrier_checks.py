@@ -72,6 +72,10 @@ def track_narrow(text: str) -> str:
     return once(text, r"(\(segment .*?\(width )0\.2\)", r"\g<1>0.15)")
 
 
+def supply_narrow(text: str) -> str:
+    return once(text, r"(\(segment .*?\(width )0\.5\)", r"\g<1>0.4)")
+
+
 def track_across(text: str) -> str:
     """A track over a gap between two nets."""
     piece = '  (segment (start 130.3 85.633) (end 132.82 85.633) (width 0.2) (layer "B.Cu") '
@@ -127,6 +131,7 @@ DAMAGES: dict[Damage, set[str]] = {
     via_ring_thin: {"via_ring"},
     track_narrow: {"track_width"},
     track_across: {"short", "joined"},
+    supply_narrow: {"supply_width"},
     track_over_the_edge: {"edge_clearance", "clearance"},
     hole_moved: {"holes", "edge_clearance"},
     hole_narrow: {"hole_width"},

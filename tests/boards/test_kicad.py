@@ -23,7 +23,7 @@ PRESETS = (
         for preset in ("published", "asymmetric", "dense", "mux16")
     ),
 )
-BOARDS = ("emitter", "receiver", "breakout")
+BOARDS = ("emitter", "receiver", "breakout", "flange")
 CARRIERS = BOARDS[2:]
 ALLOWED: dict[str, str] = {}  # names of warnings, each with the reason why it may stand
 MISSING_SHARE = 0.01  # of KiCad's fill, that ours may leave out

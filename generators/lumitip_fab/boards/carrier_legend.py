@@ -1,15 +1,18 @@
 """What is printed on a carrier: names of contacts, references, notes and the title."""
 
 import dataclasses
+import math
 from collections.abc import Iterator
 from itertools import pairwise
 
+from lumitip_fab.boards.clear import extent
 from lumitip_fab.boards.geometry import courtyard, placed_pads
 from lumitip_fab.boards.model import SIDES, Component, Placement, Text
 from lumitip_fab.boards.page import Page
 from lumitip_fab.design import Box, Carrier, Device, Point, Rules
 
 _REF_MM = 1.0
+_APART_MM = 0.2  # more than the least gap round references, so that they do not run together
 _AWAY_MM = 0.4  # from a pad to its name, and from a part to its reference
 
 
@@ -27,19 +30,25 @@ def with_legend(board: Placement, carrier: Carrier, rules: Rules) -> Placement:
     for device in carrier.devices:
         _names(page, device, parts[device.ref], carrier.box)
     for ref, part in parts.items():
-        _put(page, ref, (part.x_mm, part.y_mm), [*_round(page, ref, courtyard(part))])
+        if part.kind == "fiducial":
+            continue
+        _put(page, ref, (part.x_mm, part.y_mm), [*_round(page, ref, courtyard(part))], _APART_MM)
     lines = ((board.name, 2.0), (carrier.title, 1.5),
              (f"rev {board.revision}  {board.design_hash[:8]}", 1.5))  # fmt: skip
     for side in SIDES:
-        if page.block(side, lines, carrier.box.centre_mm) is None:
+        if page.block(side, lines, carrier.title_at) is None:
             page.miss(f"the title on its {side}", 1.0, page.length_mm(carrier.title), (0.0, 0.0))
     page.refuse_losses()
     return dataclasses.replace(board, silk=tuple(page.strokes), texts=tuple(page.texts))
 
 
-def _put(page: Page, told: str, at: Point, choices: list[Text]) -> None:
+def _put(page: Page, told: str, at: Point, choices: list[Text], apart_mm: float = 0.0) -> None:
     """Print a text at the first place that is free, or note that there is none."""
-    if not page.first_free("front", choices):
+    free = page.sides["front"].free
+    found = next((t for t in choices if free(extent(t, "front").buffer(apart_mm))), None)
+    if found:
+        page.put("front", [found])
+    else:
         page.miss(repr(told), choices[0].height_mm, page.length_mm(told), at)
 
 
@@ -48,28 +57,34 @@ def _names(page: Page, device: Device, part: Component, board: Box) -> None:
     if not device.pins:
         return
     pads = placed_pads(part)
-    pitch = min((abs(a.x_mm - b.x_mm) for a, b in pairwise(pads)), default=0.0)
+    apart = [abs(a.x_mm - b.x_mm) for a, b in pairwise(pads) if a.y_mm == b.y_mm]
+    pitch = min(apart, default=0.0)
     flat = max(map(page.length_mm, device.pins)) + page.rules.silk_gap_mm < pitch
     inward = 1.0 if part.y_mm < board.centre_mm[1] else -1.0
     drawn = part.footprint.body.y_max_mm if part.footprint.silk else 0.0
     for pad, name in zip(pads, device.pins, strict=True):
+        way = math.copysign(1.0, pad.pad.y_mm) if pad.pad.y_mm else inward  # of two rows, outward
         tall = page.rules.silk_text_mm if flat else page.length_mm(name)
-        reach = max(pad.pad.height_mm / 2, drawn) + tall / 2 + _AWAY_MM
+        edge = max(pad.pad.height_mm / 2, drawn - abs(pad.pad.y_mm))
+        reach = edge + tall / 2 + _AWAY_MM
         at = pad.x_mm, pad.y_mm
         places = [
-            page.text(name, (pad.x_mm, pad.y_mm + way * reach), angle_deg=0.0 if flat else 90.0)
-            for way in (inward, -inward)
+            page.text(name, (pad.x_mm, pad.y_mm + away * reach), angle_deg=0.0 if flat else 90.0)
+            for away in (way, -way)
         ]
         _put(page, f"{device.ref} {name}", at, places)
 
 
 def _round(page: Page, ref: str, yard: Box) -> Iterator[Text]:
-    """Places for a reference round its part: at its ends, then above, below and upright."""
-    (x, y), half = yard.centre_mm, page.length_mm(ref, _REF_MM) / 2 + _AWAY_MM
-    rise = _REF_MM / 2 + _AWAY_MM
-    sides = [(yard.x_min_mm, -1), (yard.x_max_mm, 1)]
-    ends = [(yard.y_max_mm, 1), (yard.y_min_mm, -1)]
-    yield from (page.text(ref, (at + way * half, y), _REF_MM) for at, way in sides)
-    yield from (page.text(ref, (x, at + way * rise), _REF_MM) for at, way in ends)
-    yield from (page.text(ref, (x, at + way * half), _REF_MM, 90.0) for at, way in ends)
-    yield from (page.text(ref, (at + way * rise, y), _REF_MM, 90.0) for at, way in sides)
+    """Places for a reference round its part: at its ends, then above, below and upright; then the
+    same farther away."""
+    (x, y), long = yard.centre_mm, page.length_mm(ref, _REF_MM) / 2 + _AWAY_MM
+    short = _REF_MM / 2 + _AWAY_MM
+    for farther in (0.0, 1.0, 2.0, 3.0):
+        half, rise = long + farther, short + farther
+        sides = [(yard.x_min_mm, -1), (yard.x_max_mm, 1)]
+        ends = [(yard.y_max_mm, 1), (yard.y_min_mm, -1)]
+        yield from (page.text(ref, (at + way * half, y), _REF_MM) for at, way in sides)
+        yield from (page.text(ref, (x, at + way * rise), _REF_MM) for at, way in ends)
+        yield from (page.text(ref, (x, at + way * half), _REF_MM, 90.0) for at, way in ends)
+        yield from (page.text(ref, (at + way * rise, y), _REF_MM, 90.0) for at, way in sides)

@@ -1,7 +1,7 @@
 """Parts of a carrier as footprints, with what is printed round them."""
 
 from lumitip_fab.boards.model import Component, Footprint, Pad, Stroke
-from lumitip_fab.design import Box, Device, Pattern, Rules
+from lumitip_fab.design import Box, Device, Land, Pattern, Rules
 
 _BAR_MM = 0.3  # at the first contact
 
@@ -21,7 +21,8 @@ def _footprint(device: Device, rules: Rules) -> Footprint:
     pads = tuple(
         Pad(
             land.number, land.x_mm, land.y_mm, land.width_mm, land.height_mm,
-            "circle" if land.round else "rect", land.drill_mm, paste=not land.drill_mm,
+            "circle" if land.round else "rect", land.drill_mm,
+            paste=not land.drill_mm and device.kind != "fiducial",
         )
         for land in pattern.lands
     )  # fmt: skip
@@ -31,7 +32,7 @@ def _footprint(device: Device, rules: Rules) -> Footprint:
         body=pattern.body,
         courtyard=_courtyard(pattern, rules),
         height_mm=pattern.height_mm,
-        silk=_socket(pattern.body, rules) if device.kind == "socket" else (),
+        silk=_silk(device, rules),
     )
 
 
@@ -50,6 +51,31 @@ def _courtyard(pattern: Pattern, rules: Rules) -> Box:
         min(pads.y_min_mm, body.y_min_mm), max(pads.y_max_mm, body.y_max_mm),
     )  # fmt: skip
     return whole.grown(rules.part_gap_mm / 2)
+
+
+def _silk(device: Device, rules: Rules) -> tuple[Stroke, ...]:
+    body, lands = device.pattern.body, device.pattern.lands
+    if device.kind in ("socket", "header"):
+        return _socket(body, rules)
+    if device.kind in ("regulator", "transistor"):
+        return (_dot(lands[0], rules),)
+    return _sides(body, lands, rules) if device.kind not in ("wires", "fiducial") else ()
+
+
+def _dot(first: Land, rules: Rules) -> Stroke:
+    """A dot beyond lead 1, away from the body."""
+    at = first.x_mm, first.y_mm - first.height_mm / 2 - rules.silk_gap_mm - _BAR_MM
+    return Stroke((at, (at[0] + 0.02, at[1])), _BAR_MM)
+
+
+def _sides(body: Box, lands: tuple[Land, ...], rules: Rules) -> tuple[Stroke, ...]:
+    """A line along each side of the body, between the pads where they are as wide as it."""
+    pen, first = rules.silk_line_mm, lands[0]
+    reach = -first.x_mm - first.width_mm / 2 - rules.silk_gap_mm - pen
+    y = body.y_max_mm + pen / 2
+    if reach <= pen:
+        return ()
+    return tuple(Stroke(((-reach, side), (reach, side)), pen) for side in (y, -y))
 
 
 def _socket(body: Box, rules: Rules) -> tuple[Stroke, ...]:

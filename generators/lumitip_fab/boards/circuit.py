@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from lumitip_fab.boards import footprints
 from lumitip_fab.boards.model import Component, Footprint, Net, NetClass, Side
 from lumitip_fab.design import Chip, Finger, Packages, Reading, Rules, Wiring
+from lumitip_fab.values import resistor_code
 
 GROUND = "GND"
 SIGNAL, SUPPLY = "signal", "supply"
@@ -112,13 +113,6 @@ def _bare_copper(finger: Finger, rules: Rules) -> Iterator[Component]:
         yield _copper(f"TP{i}", signal, "test point", shape, (("1", signal),), "back")
     for i in range(1, 4):
         yield _copper(f"FID{i}", "Fiducial", "fiducial", footprints.fiducial(), ())
-
-
-def resistor_code(ohm: float) -> str:
-    """The value as printed on drawings and in order numbers: 150R, 4K99, 75K, 1M."""
-    power, letter = next((p, c) for p, c in ((6, "M"), (3, "K"), (0, "R")) if ohm >= 10**p or not p)
-    digits = f"{ohm / 10**power:.4g}"
-    return digits.replace(".", letter) if "." in digits else digits + letter
 
 
 def _resistor(

@@ -8,10 +8,12 @@ import shapely
 
 from lumitip_fab.checks.board_carrier import (
     measure_edge,
+    measure_hot_loop,
     measure_joined,
     measure_lands,
     measure_names,
     measure_screws,
+    measure_supplies,
 )
 from lumitip_fab.checks.board_circuit import measure_channels, measure_connector, measure_strings
 from lumitip_fab.checks.board_copper import measure_copper, measure_nets
@@ -35,7 +37,7 @@ _OF_FINGERS: tuple[Callable[[Read], Iterator[Measurement]], ...] = (
 )  # fmt: skip
 _OF_CARRIERS: tuple[Callable[[ReadCarrier], Iterator[Measurement]], ...] = (
     measure_edge, measure_screws, measure_lands, measure_names, measure_copper, measure_nets,
-    measure_joined,
+    measure_joined, measure_supplies, measure_hot_loop,
 )  # fmt: skip
 
 

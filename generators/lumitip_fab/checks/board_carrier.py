@@ -3,8 +3,11 @@
 import math
 from collections import defaultdict
 from collections.abc import Iterator
+from itertools import pairwise
 
+import networkx as nx
 import numpy as np
+import shapely
 
 from lumitip_fab.checks.board_read import ReadCarrier
 from lumitip_fab.checks.kicad_board import Part, Terminal
@@ -14,6 +17,10 @@ from lumitip_fab.design import Device, Land, Point
 LAND_MM = 0.001
 EDGE_MM = 0.002
 HOLE_MM = 0.01
+HOT_LOOP_MM2 = 6.0
+"""A loop of about 5 mm² is what a TSOT26 with an 0603 beside it can have."""
+HOT_TRACK_MM = 3.0
+GROUND_SHARE = 80.0  # of the loop, in percent
 NAME_MM = 4.0  # from a pad to the name beside it, at most
 
 
@@ -65,6 +72,34 @@ def measure_joined(read: ReadCarrier) -> Iterator[Measurement]:
     yield read.count("joined", both, "places")
 
 
+def measure_supplies(read: ReadCarrier) -> Iterator[Measurement]:
+    """Width of the tracks of supplies, which are wide but where ground's pour does the work."""
+    wide = {net for net in read.carrier.supplies if net != "GND"}
+    widths = [c.width_mm for c in read.board.loose if c.kind == "track" and c.net in wide]
+    least = read.design.rules.supply_track_mm
+    yield read.figure("supply_width", min(widths, default=math.nan), least, math.inf)
+
+
+def measure_hot_loop(read: ReadCarrier) -> Iterator[Measurement]:
+    """The loop in which a regulator's current jumps: its area, and the ground under it."""
+    if not read.carrier.hot_loop:
+        return
+    pads = [_terminal(read, ref, number) for ref, number in read.carrier.hot_loop]
+    corners = [pad.at for pad in pads if pad is not None]
+    if len(corners) < len(pads):
+        yield read.figure("hot_loop", math.nan, 0, HOT_LOOP_MM2, "mm²")
+        return
+    loop = shapely.MultiPoint(corners).convex_hull
+    yield read.figure("hot_loop", loop.area, 0, HOT_LOOP_MM2, "mm²", "between its pads' middles")
+    back = read.board.layers[-1]
+    ground = [c.area for c in read.board.loose
+              if c.kind == "fill" and c.net == "GND" and back in c.layers]  # fmt: skip
+    share = shapely.union_all(ground).intersection(loop).area / loop.area
+    yield read.figure("hot_loop_ground", 100 * share, GROUND_SHARE, 100, "%", "of it, on the back")
+    reach = _copper_mm(read, *read.carrier.hot_loop[0], *read.carrier.hot_loop[1])
+    yield read.figure("hot_loop_input", reach, 0, HOT_TRACK_MM, note="of track to the capacitor")
+
+
 def measure_names(read: ReadCarrier) -> Iterator[Measurement]:
     """The name beside each contact: of all that is printed but references, the nearest."""
     refs = {device.ref for device in read.carrier.devices}
@@ -78,6 +113,38 @@ def measure_names(read: ReadCarrier) -> Iterator[Measurement]:
             if nearest < 0 or printed[nearest].text != name or apart[nearest] > NAME_MM:
                 wrong.append(f"{device.ref}.{land.number} is not called {name}")
     yield read.count("names", wrong, "contacts")
+
+
+def _terminal(read: ReadCarrier, ref: str, number: str) -> Terminal | None:
+    part = read.parts.get(ref)
+    return next((t for t in part.terminals if t.number == number), None) if part else None
+
+
+def _copper_mm(read: ReadCarrier, ref: str, number: str, other: str, pad: str) -> float:
+    """Length of the shortest way along tracks of one side from pad to pad; infinite if none."""
+    ends = [_terminal(read, ref, number), _terminal(read, other, pad)]
+    areas = [t.copper.area if t and t.copper else shapely.Point() for t in ends]
+    net = ends[0].net if ends[0] else ""
+    graph = nx.Graph()
+    for track in (c for c in read.board.loose if c.kind == "track" and c.net == net):
+        line = shapely.get_coordinates(track.area.minimum_rotated_rectangle)
+        sides = [math.dist(a, b) for a, b in pairwise(line)]
+        length = max(sides) - track.width_mm
+        graph.add_node(id(track), area=track.area, length=max(length, 0.0), on=track.layers)
+    nodes = list(graph.nodes(data=True))
+    for i, (one, a) in enumerate(nodes):
+        for other_, b in nodes[i + 1 :]:
+            if a["on"] & b["on"] and a["area"].intersects(b["area"]):
+                graph.add_edge(one, other_)
+    starts = [n for n, d in nodes if d["area"].intersects(areas[0])]
+    goals = {n for n, d in nodes if d["area"].intersects(areas[1])}
+    best = math.inf
+    for start in starts:
+        for goal in goals:
+            if nx.has_path(graph, start, goal):
+                way = nx.shortest_path(graph, start, goal)
+                best = min(best, sum(graph.nodes[n]["length"] for n in way))
+    return best
 
 
 def _has_copper(part: Part) -> bool:

@@ -9,6 +9,7 @@ from lumitip_fab.derive.cells import derive_cells
 from lumitip_fab.derive.electrical import derive_electrical
 from lumitip_fab.derive.faults import Faults
 from lumitip_fab.derive.fit_plate import derive_fit_plate
+from lumitip_fab.derive.flange import derive_flange
 from lumitip_fab.derive.holder import derive_holder
 from lumitip_fab.derive.packages import derive_fabs, derive_packages, derive_rules
 from lumitip_fab.derive.slicing import derive_slicing
@@ -47,6 +48,7 @@ def derive(given: Input) -> Design:
     meeting = closing.derive_closing(silhouette, stack, coupling, casting, faults)
     breakout = derive_breakout(given, muxing, faults)
     holders = derive_holder(given, breakout, faults)
+    flange = derive_flange(given, faults)
     faults.stop()
     mux, channel = wiring.assign(given, cells, plan.muxes)
     layout = Layout(
@@ -90,7 +92,7 @@ def derive(given: Input) -> Design:
                 given.catalogue.controllers[p.controller.board].adc_bits,
             ),
             fabs=derive_fabs(given),
-            carriers=breakout,
+            carriers=(*breakout, *flange),
             holders=holders,
             parameters_hash=_parameters_hash(given),
         )

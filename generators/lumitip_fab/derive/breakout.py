@@ -58,6 +58,7 @@ def derive_breakout(given: Input, muxing: Muxing, faults: Faults) -> tuple[Carri
         Carrier(
             name="breakout",
             title="controller breakout",
+            title_at=(0.0, 0.0),
             box=Box(-length / 2, length / 2, -width / 2, width / 2),
             corner_mm=CORNER_MM,
             holes=((-half, 0.0), (half, 0.0)),
@@ -65,6 +66,7 @@ def derive_breakout(given: Input, muxing: Muxing, faults: Faults) -> tuple[Carri
             devices=_devices(given, plug, strip, muxing, rows),
             notes=(Note("USB", (1.5 - length / 2, 0.0), 1.2, 90.0),),
             supplies=tuple(dict.fromkeys(("GND", REGULATED, "3V3", *emitter[1:]))),
+            hot_loop=(),
         ),
     )
 

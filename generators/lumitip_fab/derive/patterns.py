@@ -3,6 +3,7 @@
 import dataclasses
 
 from lumitip_fab import catalogue
+from lumitip_fab.carrier_entry import Leaded, Strip
 from lumitip_fab.design import Box, Land, Pattern
 
 
@@ -45,3 +46,41 @@ def chip(letters: str, entry: catalogue.Chip) -> Pattern:
 def raised(pattern: Pattern, height_mm: float) -> Pattern:
     """The same pattern under a part of this height."""
     return dataclasses.replace(pattern, height_mm=height_mm)
+
+
+def rows(name: str, strip: Strip) -> Pattern:
+    """Two rows of plated holes along x, counted counter-clockwise from the lower left."""
+    ways, pitch = strip.ways, strip.pitch_mm
+    lands = []
+    for i in range(2 * ways):
+        place, y = (i, -pitch / 2) if i < ways else (2 * ways - 1 - i, pitch / 2)
+        x = (place - (ways - 1) / 2) * pitch
+        lands.append(Land(str(i + 1), x, y, strip.pad_mm, strip.pad_mm, strip.drill_mm, i > 0))
+    body = Box(-ways * pitch / 2, ways * pitch / 2, -pitch, pitch)
+    told = f"{name}_2x{ways:02d}_P{pitch:.2f}mm_D{strip.drill_mm:.2f}mm"
+    return Pattern(told, tuple(lands), body, strip.height_mm)
+
+
+def leaded(entry: Leaded) -> Pattern:
+    """Leads in two rows along x, lead 1 at the lower left; a row with less leads is centred."""
+    along, across = entry.lead_pad_mm
+    low = (len(entry.names) + 1) // 2
+    high = len(entry.names) - low
+    y = (entry.lead_span_mm - along) / 2
+    lands = []
+    for i in range(low + high):
+        count, place, side = (low, i, -1) if i < low else (high, low + high - 1 - i, 1)
+        x = (place - (count - 1) / 2) * entry.lead_pitch_mm
+        lands.append(Land(str(i + 1), x, side * y, across, along, 0.0, False))
+    length, width, height = entry.body_mm
+    body = Box(-length / 2, length / 2, -width / 2, width / 2)
+    pitch, span = round(entry.lead_pitch_mm * 100), round(entry.lead_span_mm * 100)
+    name = f"SOT{pitch}P{span}X{round(height * 100)}-{low + high}N"
+    return Pattern(name, tuple(lands), body, height)
+
+
+def fiducial(diameter_mm: float) -> Pattern:
+    """A round mark for the placing machine's camera."""
+    body = Box(0.0, 0.0, 0.0, 0.0).grown(diameter_mm / 2)
+    land = Land("1", 0.0, 0.0, diameter_mm, diameter_mm, 0.0, True)
+    return Pattern(f"Fiducial_D{diameter_mm:.1f}mm", (land,), body, 0.0)

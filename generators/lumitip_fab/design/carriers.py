@@ -78,6 +78,8 @@ class Carrier:
     """Of its folder and its files."""
     title: str
     """What it says of itself."""
+    title_at: Point
+    """Near which its title stands."""
     box: Box
     corner_mm: float
     """Radius of the outline's corners."""
@@ -88,6 +90,9 @@ class Carrier:
     notes: tuple[Note, ...]
     supplies: tuple[str, ...]
     """Nets that are routed wide; ground is one of them."""
+    hot_loop: tuple[tuple[str, str], ...]
+    """Lands round which the current of a switching regulator jumps, by part and number of the
+    land: from its input over the capacitor back to its ground; empty without a regulator."""
 
     @property
     def nets(self) -> tuple[str, ...]:

@@ -12,6 +12,8 @@ _PITCH_MM = 2.54  # from pin to pin
 _COLUMN_MM = 50.8
 _ABOVE_MM = 12.7  # of a part, for its reference
 _TALL_MM = 150.0  # of a column of parts
+_PLAIN = {"resistor": "R", "capacitor": "C"}  # symbols of parts with two like terminals
+_PLAIN_MM = 25.4
 _LABEL_MM = 5.08  # wire from a pin to its label
 
 
@@ -27,15 +29,33 @@ def carrier_sheet(board: Placement, carrier: Carrier) -> dict[str, bytes]:
     sheet = Sheet()
     x = y = MARGIN_MM
     sheet.texts.append((carrier.title, (x, y), 2.5))
-    for device in carrier.devices:
-        tall = len(device.nets) * _PITCH_MM + _ABOVE_MM
+    hand = symbols.hand_drawn()
+    for device in (d for d in carrier.devices if d.nets):
+        plain = _PLAIN.get(device.kind)
+        tall = _PLAIN_MM if plain else len(device.nets) * _PITCH_MM + _ABOVE_MM
         if y + tall > MARGIN_MM + _TALL_MM:
             x, y = x + _COLUMN_MM, MARGIN_MM
-        shapes.setdefault(f"Strip{len(device.nets)}", symbols.wires(len(device.nets), _PITCH_MM))
-        _row(sheet, (x + _PITCH_MM, y + _ABOVE_MM), parts[device.ref])
+        ways, part = len(device.nets), parts[device.ref]
+        if plain:
+            shapes.setdefault(plain, hand[plain])
+            _two(sheet, (x + 4 * _PITCH_MM, y + _PLAIN_MM / 2), plain, part)
+        else:
+            shapes.setdefault(f"Strip{ways}", symbols.wires(ways, _PITCH_MM))
+            _row(sheet, (x + _PITCH_MM, y + _ABOVE_MM), part)
         y += tall
     paper, _ = paper_for(x + _COLUMN_MM - MARGIN_MM, _TALL_MM)
     return sheet_files(board, paper, sheet, shapes, parts)
+
+
+def _two(sheet: Sheet, at: Point, symbol: str, part: Component) -> None:
+    """A part with two terminals, upright, each with the name of its net."""
+    x, y = at[0] // 1.27 * 1.27, at[1] // 1.27 * 1.27
+    sheet.symbols.append(
+        Drawn(symbol, part.ref, part.value, x, y, ref_at=(-5.08, -1.27), value_at=(-5.08, 1.27))
+    )
+    for (_, net), way in zip(part.nets, (-1, 1), strict=True):
+        sheet.wire((x, y + way * 3.81), (x, y + way * 7.62), (x + _LABEL_MM, y + way * 7.62))
+        sheet.flag(net, (x + _LABEL_MM, y + way * 7.62), 0)
 
 
 def _row(sheet: Sheet, at: Point, part: Component) -> None:
@@ -46,7 +66,8 @@ def _row(sheet: Sheet, at: Point, part: Component) -> None:
     sheet.symbols.append(
         Drawn(f"Strip{ways}", part.ref, part.value, x, middle,
               pins=tuple(pad for pad, _ in part.nets),
-              ref_at=(0, -ways / 2 * _PITCH_MM - 1.27))
+              ref_at=(0, -ways / 2 * _PITCH_MM - 1.27),
+              value_at=(0, ways / 2 * _PITCH_MM + 1.27))
     )  # fmt: skip
     for i, (_, net) in enumerate(part.nets):
         y = first + i * _PITCH_MM

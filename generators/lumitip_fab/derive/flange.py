@@ -1,0 +1,227 @@
+"""The board in the flange: from the robot's contacts over fuse, MOSFET and regulator to cables.
+
+```
+╭──────────────────────────╮
+│   [ header J3, 2 rows ]  │
+│  C4  L1  C2 C3           │   SW ─ L1 ─ 5V; C2, C3 beside L1's output
+│  U1 C1        [contacts] │   C1 at VIN and GND of U1: the hot loop
+│  R1 Q1 R2  F1  J1        │   24V_IN ─ F1 ─ 24V_F ─ Q1 ─ 24V
+│   [ header J2, 2 rows ]  │
+╰──────────────────────────╯
+```
+"""
+
+from lumitip_fab import catalogue
+from lumitip_fab.carrier_entry import Leaded, Strip
+from lumitip_fab.derive import patterns
+from lumitip_fab.derive.faults import Faults
+from lumitip_fab.design import Box, Carrier, Device, Pattern, Point
+from lumitip_fab.load import Input
+from lumitip_fab.values import resistor_code
+
+BOX = Box(-15.4, 15.4, -27.0, 27.0)
+CORNER_MM = 8.0
+"""Inside the spigot of 70.7 mm of the published flange, whose board reaches as far."""
+CONTACTS_AT: Point = (7.46, 0.0)
+HEADERS_AT: tuple[Point, Point] = ((-3.5, -20.5), (-3.5, 20.5))
+TITLE_AT: Point = (6.5, 11.5)
+HOLES_AT: tuple[Point, ...] = ((11.0, 19.5), (11.0, -19.5))
+HOLE_MM = 2.2
+"""For M2 screws into the printed flange."""
+FIDUCIAL_MM = 1.0
+FIDUCIALS_AT: tuple[Point, ...] = ((-13.0, -13.5), (13.0, -15.5), (-13.0, 13.5))
+HEADROOM_V = 1.0
+"""A step-down regulator's input above its output."""
+Nets = tuple[tuple[str, str], ...]
+
+
+def derive_flange(given: Input, faults: Faults) -> tuple[Carrier, ...]:
+    """The flange's board; none if it is not wanted."""
+    if not given.parameters.flange.enabled:
+        return ()
+    _refuse(given, faults)
+    raw, supply, output = _supplies(given)
+    names = given.catalogue.regulators[given.parameters.flange.regulator].names
+
+    def lead(name: str) -> str:
+        return str(names.index(name) + 1)
+
+    return (
+        Carrier(
+            name="flange",
+            title="breakout flange",
+            title_at=TITLE_AT,
+            box=BOX,
+            corner_mm=CORNER_MM,
+            holes=HOLES_AT,
+            hole_mm=HOLE_MM,
+            devices=(*_strips(given), *_input(given), *_regulator(given), *_fiducials()),
+            notes=(),
+            supplies=tuple(dict.fromkeys(("GND", supply, raw, "FUSED", output, "SW"))),
+            hot_loop=(("U1", lead("VIN")), ("C1", "1"), ("C1", "2"), ("U1", lead("GND"))),
+        ),
+    )
+
+
+def _supplies(given: Input) -> tuple[str, str, str]:
+    """Nets of the contacts' supply, of the same after the MOSFET, and of the regulator."""
+    volts = f"{given.parameters.supply.voltage_v:g}V"
+    regulator = given.catalogue.regulators[given.parameters.flange.regulator]
+    return f"{volts}_IN", volts, f"{regulator.output_v:g}V"
+
+
+def _strips(given: Input) -> tuple[Device, ...]:
+    """Contacts and headers."""
+    p, known = given.parameters.flange, given.catalogue.strips
+    raw, supply, output = _supplies(given)
+    called = {"SUPPLY": supply, "REGULATED": output}
+    nets = tuple(raw if signal == "SUPPLY" else signal for signal in p.signals)
+    names = tuple(called.get(signal, signal) for signal in p.signals)
+    contacts = _strip("J1", p.contacts, known[p.contacts], CONTACTS_AT, nets, names)
+    both = []
+    for ref, at, signals in zip(("J2", "J3"), HEADERS_AT, p.headers, strict=True):
+        there = tuple(called.get(signal, signal) for signal in signals)
+        around = (*there, *reversed(there))
+        both.append(_strip(ref, p.header, known[p.header], at, around, around))
+    return contacts, *both
+
+
+def _input(given: Input) -> tuple[Device, ...]:
+    """Fuse, and the MOSFET with half the supply at its gate."""
+    p, known = given.parameters.flange, given.catalogue
+    raw, supply, _ = _supplies(given)
+    resistor = known.resistors[p.resistor]
+    code = resistor_code(p.gate_ohm)
+    part = resistor.order_number.replace("{code}", code)
+    transistor = known.transistors[p.transistor]
+    leads = {"G": "GATE", "S": supply, "D": "FUSED"}
+    return (
+        _chip("F1", "fuse", p.fuse, known.fuses[p.fuse], "FUSC", (5.4, -7.0), 180.0,
+              (raw, "FUSED")),
+        _leaded("Q1", "transistor", p.transistor, transistor, (-1.0, -7.0), 270.0, leads),
+        _chip("R1", "resistor", code, resistor, "RESC", (-5.2, -7.0), 90.0, (supply, "GATE"),
+              part),
+        _chip("R2", "resistor", code, resistor, "RESC", (-2.0, -3.8), 0.0, ("GATE", "GND"), part),
+    )  # fmt: skip
+
+
+def _regulator(given: Input) -> tuple[Device, ...]:
+    """The regulator with its input capacitor across VIN and GND, and what hangs on SW."""
+    p, known = given.parameters.flange, given.catalogue
+    _, supply, output = _supplies(given)
+    leads = {"FB": output, "EN": supply, "VIN": supply, "GND": "GND", "SW": "SW", "BST": "BST"}
+    caps = known.capacitors
+    return (
+        _leaded("U1", "regulator", p.regulator, known.regulators[p.regulator], (-7.5, 0.0), 0.0,
+                leads),
+        _chip("C1", "capacitor", p.input_capacitor.split()[0], caps[p.input_capacitor], "CAPC",
+              (-4.9, 0.0), 90.0, (supply, "GND")),
+        _chip("C4", "capacitor", p.boot_capacitor.split()[0], caps[p.boot_capacitor], "CAPC",
+              (-10.8, 2.1), 90.0, ("BST", "SW")),
+        _chip("L1", "inductor", p.inductor.split()[0], known.inductors[p.inductor], "INDC",
+              (-7.5, 5.2), 90.0, ("SW", output)),
+        *(
+            _chip(ref, "capacitor", p.output_capacitor.split()[0], caps[p.output_capacitor],
+                  "CAPC", (x, 5.8), 270.0, (output, "GND"))
+            for ref, x in (("C2", -3.6), ("C3", -1.2))
+        ),
+    )  # fmt: skip
+
+
+def _fiducials() -> tuple[Device, ...]:
+    shape = patterns.fiducial(FIDUCIAL_MM)
+    return tuple(
+        Device(ref=f"FID{i}", kind="fiducial", value="Fiducial", part="", manufacturer="", lcsc="",
+               pattern=shape, x_mm=x, y_mm=y, angle_deg=0.0, nets=(), pins=())
+        for i, (x, y) in enumerate(FIDUCIALS_AT, start=1)
+    )  # fmt: skip
+
+
+def _strip(
+    ref: str, value: str, strip: Strip, at: Point, nets: tuple[str, ...], pins: tuple[str, ...]
+) -> Device:
+    return Device(
+        ref=ref, kind="header", value=value, part=strip.order_number,
+        manufacturer=strip.manufacturer, lcsc=strip.lcsc, pattern=patterns.rows("Header", strip),
+        x_mm=at[0], y_mm=at[1], angle_deg=0.0, nets=_numbered(nets), pins=pins,
+    )  # fmt: skip
+
+
+def _chip(
+    ref: str,
+    kind: str,
+    value: str,
+    entry: catalogue.Chip,
+    letters: str,
+    at: Point,
+    angle_deg: float,
+    nets: tuple[str, str],
+    part: str = "",
+) -> Device:
+    shape: Pattern = patterns.chip(letters, entry)
+    return Device(
+        ref=ref, kind=kind, value=value, part=part or entry.order_number,
+        manufacturer=entry.manufacturer, lcsc=entry.lcsc, pattern=shape, x_mm=at[0], y_mm=at[1],
+        angle_deg=angle_deg, nets=_numbered(nets), pins=(),
+    )  # fmt: skip
+
+
+def _leaded(
+    ref: str,
+    kind: str,
+    value: str,
+    entry: Leaded,
+    at: Point,
+    angle_deg: float,
+    nets: dict[str, str],
+) -> Device:
+    return Device(
+        ref=ref, kind=kind, value=value, part=entry.order_number, manufacturer=entry.manufacturer,
+        lcsc=entry.lcsc, pattern=patterns.leaded(entry), x_mm=at[0], y_mm=at[1],
+        angle_deg=angle_deg, nets=_numbered(tuple(nets[name] for name in entry.names)), pins=(),
+    )  # fmt: skip
+
+
+def _numbered(nets: tuple[str, ...]) -> Nets:
+    return tuple((str(i), net) for i, net in enumerate(nets, start=1))
+
+
+def _refuse(given: Input, faults: Faults) -> None:
+    """Refuse strips of another size, signals that lead nowhere, and voltages beyond the parts'."""
+    p, known, volts = given.parameters.flange, given.catalogue, given.parameters.supply.voltage_v
+    for field, name, told in (
+        ("flange.signals", p.contacts, (p.signals,)),
+        ("flange.headers", p.header, p.headers),
+    ):
+        strip = known.strips[name]
+        wanted = strip.ways * (2 if field == "flange.signals" else 1)
+        faults.refuse_unless(
+            strip.rows == 2 and all(len(signals) == wanted for signals in told),
+            field,
+            f"{' and '.join(str(len(s)) for s in told)} signals given, {name!r} has "
+            f"{strip.rows} x {strip.ways} contacts: {wanted} are needed, in two rows",
+        )
+    cables = {*p.headers[0], *p.headers[1]}
+    lost = sorted((set(p.signals) ^ cables) - {"SUPPLY", "GND", "REGULATED"})
+    faults.refuse_unless(
+        not lost,
+        "flange.signals",
+        f"{', '.join(lost)} given at one end only: a line of the contacts ends in a header",
+    )
+    absent = sorted({"SUPPLY", "GND"} - set(p.signals))
+    faults.refuse_unless(
+        not absent and "REGULATED" not in p.signals,
+        "flange.signals",
+        f"{', '.join(p.signals):.80} given, SUPPLY and GND are needed, and no REGULATED, which the "
+        "board makes",
+    )
+    least, most = known.regulators[p.regulator].input_v
+    allowed = min(most, known.fuses[p.fuse].rated_v, known.transistors[p.transistor].rated_v,
+                  2 * known.transistors[p.transistor].gate_v)  # fmt: skip
+    least = max(least, known.regulators[p.regulator].output_v + HEADROOM_V)
+    faults.refuse_unless(
+        least <= volts <= allowed,
+        "supply.voltage_v",
+        f"{volts:g} given, the flange's regulator, fuse and transistor take {least:g} to "
+        f"{allowed:g} V; other parts, or flange.enabled = false",
+    )

@@ -1,0 +1,73 @@
+"""Damage the flange's board, and exactly the right checks fail."""
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from board_damages import moved_part, once
+from damages import failing
+from lumitip_fab.checks import board
+from lumitip_fab.encoding import read_design
+
+Damage = Callable[[str], str]
+FLANGE = "boards/flange/flange.kicad_pcb"
+
+
+def capacitor_far(text: str) -> str:
+    """The input capacitor where there is nothing: a wide loop, and nothing joins it."""
+    return moved_part(text, "C1", 8.0, 8.0)
+
+
+def supply_narrow(text: str) -> str:
+    return once(text, r"(\(segment .*?\(width )0\.5\)", r"\g<1>0.4)")
+
+
+def ground_under_the_regulator_missing(text: str) -> str:
+    """The pour of the back, which is of no net any more."""
+    zone = text.index("(zone", text.index("(zone") + 1)
+    return text[:zone] + re.sub(r'\(net \d+\)\s+\(net_name "GND"\)', '(net 0) (net_name "")',
+                                text[zone:], count=1)  # fmt: skip
+
+
+def way_to_the_capacitor_missing(text: str) -> str:
+    """The tracks of the supply that end at the capacitor taken away."""
+    net = re.search(r'\(net (\d+) "12V"\)', text)
+    assert net
+    x, y = 150 - 4.9, 100 + 0.825
+    kept = []
+    for line in text.split("\n"):
+        if "(segment" in line and f"(net {net[1]})" in line:
+            ends = re.findall(r"\((?:start|end) (\S+) (\S+)\)", line)
+            if any(abs(float(a) - x) < 0.5 and abs(float(b) - y) < 0.6 for a, b in ends):
+                continue
+        kept.append(line)
+    return "\n".join(kept)
+
+
+DAMAGES: dict[Damage, set[str]] = {
+    # Its pads lie in the ground pour.
+    capacitor_far: {"lands", "hot_loop", "hot_loop_input", "open", "short", "apart", "joined"},
+    supply_narrow: {"supply_width"},
+    ground_under_the_regulator_missing: {"hot_loop_ground"},
+    way_to_the_capacitor_missing: {"hot_loop_input", "open", "apart"},
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGES, ids=lambda d: d.__name__)
+def test_a_damage_of_the_flange(damage: Damage, damaged_boards: Path) -> None:
+    path = damaged_boards / FLANGE
+    before = path.read_text()
+    path.write_text(damage(before))
+    assert path.read_text() != before
+    assert failing(damaged_boards, "board") == DAMAGES[damage]
+
+
+def test_the_flange_passes(boards: Callable[[str], Path]) -> None:
+    folder = boards("small")
+    found = [m for m in board.measure(folder, read_design(folder / "design.json"))
+             if m.subject == FLANGE]  # fmt: skip
+    assert [m for m in found if not m.passed] == []
+    layout = {m.check.removeprefix("board.") for m in found if "hot_loop" in m.check}
+    assert layout == {"hot_loop", "hot_loop_ground", "hot_loop_input"}
