@@ -62,6 +62,19 @@ CHANGES: dict[str, Any] = {
     "controller.board": "bench",
     "controller.name": "Other",
     "supply.voltage_v": 23.9,
+    "breakout.enabled": False,
+    "breakout.socket": "other",
+    "breakout.board_mm": (46.0, 33.02),
+    "breakout.hole_mm": 2.2,
+    "breakout.hole_spacing_mm": 35.0,
+    "holder.body_mm": 76.0,
+    "holder.clearance_mm": 0.4,
+    "holder.wall_mm": 3.2,
+    "holder.wrap_deg": 106.0,
+    "holder.standoff_mm": 3.2,
+    "holder.nut_mm": 4.1,
+    "holder.strap_hole_mm": 4.1,
+    "holder.strap_spacing_mm": 12.5,
     "mask.film": "other",
     "mask.hole_mm": 2.4,
     "mask.hole_shape": "circle",
@@ -102,6 +115,7 @@ def published(inputs: dict[str, Input]) -> Input:
         "films": ("TPU 100um", {"soften_c": 80.0}),
         "grippers": ("robotiq_2f85", {"stroke_mm": 84.0}),
         "printers": ("fdm 0.4", {"layer_mm": 0.1}),
+        "strips": ("socket 1x15", {"height_mm": 8.0}),
     }
     tables = {
         kind: {**getattr(parts, kind), "other": getattr(parts, kind)[name].model_copy(update=new)}
