@@ -57,6 +57,7 @@ def main(out: Path) -> None:
             shutil.copy(board, IMAGES / f"board_{side}_{face}.png")
     for name in ("breakout", "flange"):
         shutil.copy(out / f"boards/{name}/{name}_front.png", IMAGES / f"board_{name}.png")
+    shutil.copy(out / "wiring/wiring.svg", IMAGES)
     draw_glb(out / "assembly/assembly.glb", IMAGES / "assembly.png")
 
 

@@ -199,6 +199,8 @@ class Controller(Entry):
     """Capacitance of an analog input with the wire to it."""
     supply_v: float = Field(gt=0, le=5.5)
     """Supply of its inputs, which is also the detectors' supply."""
+    draws_ma: float = Field(default=0.0, ge=0, le=2000)
+    """Largest current of the board itself; 0 where it is not known (mA)."""
     plug: Plug | None = None
     """How it stands on sockets, if it does."""
 

@@ -36,6 +36,7 @@ _COPPER = ("gerbonara", "matplotlib", "networkx", "numba", "numpy", "scipy", "sh
 STEPS = (
     Step("mask", "files", "mask_files", False, _INK),
     Step("printing", "settings", "print_settings", False, ()),
+    Step("wiring", "files", "wiring_files", False, ()),
     Step("firmware", "files", "firmware_files", False, ("numpy",)),
     Step("boards", "files", "board_files", True, _COPPER),
     Step("boards", "carrier", "carrier_files", True, _COPPER),

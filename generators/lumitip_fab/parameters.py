@@ -186,6 +186,20 @@ class Supply(Strict):
     """Largest current that may be drawn for the LEDs (mA)."""
 
 
+class Cables(Strict):
+    """The wires from the fingers to supply and controller."""
+
+    supply_mm: float = Field(ge=20, le=10000)
+    """To the flange or a supply: from the controller's breakout, or from the fingers' gripper end
+    where there is none (mm)."""
+    controller_mm: float = Field(ge=20, le=2000)
+    """Along the gripper, from the fingers' gripper end to the controller or its breakout (mm)."""
+    slack_mm: float = Field(ge=0, le=1000)
+    """Added to every wire for bends, stripping and strain relief (mm)."""
+    section_mm2: float = Field(ge=0.01, le=2)
+    """Copper of each wire, at least; what carries more current is thicker. 0.08 is AWG 28 (mm²)."""
+
+
 class Mask(Strict):
     """The black print on the inside of the film."""
 
@@ -256,6 +270,7 @@ class Parameters(Strict):
     receiver: Receiver
     controller: Controller
     supply: Supply
+    wiring: Cables
     mask: Mask
     mould: Mould
     breakout: Breakout

@@ -46,8 +46,8 @@ def test_waste_of_silicone_touches_the_mould_and_what_shares_its_figures(keys: K
 
 
 def test_pitch_touches_everything_of_the_fingers(keys: Keys) -> None:
-    # What the slicer is told and what holds the controller know nothing of the cells.
-    outside = {"holder_files", "print_settings"}
+    # What the slicer is told, what holds the controller, and wires know nothing of the cells.
+    outside = {"holder_files", "print_settings", "wiring_files"}
     assert changed(keys(), keys("[grid]\npitch_mm = 6.1\n")) == {s.name for s in STEPS} - outside
 
 
@@ -55,6 +55,10 @@ def test_what_is_outside_touches_no_finger(keys: Keys) -> None:
     after = keys("[breakout]\nhole_spacing_mm = 34.0\n")
     assert changed(keys(), after) == {"carrier_files", "holder_files"}
     assert changed(keys(), keys("[holder]\nbody_mm = 76.0\n")) == {"holder_files"}
+
+
+def test_lengths_of_wires_touch_the_wiring_alone(keys: Keys) -> None:
+    assert changed(keys(), keys("[wiring]\nslack_mm = 60.0\n")) == {"wiring_files"}
 
 
 def test_every_step_names_real_arguments(keys: Keys) -> None:

@@ -5,6 +5,7 @@ import hashlib
 from lumitip.layout import Layout, Optics
 from lumitip_fab.derive import boards, closing, mask, mould, mount, outline, wiring
 from lumitip_fab.derive.breakout import derive_breakout
+from lumitip_fab.derive.cabling import Boards, derive_cabling
 from lumitip_fab.derive.cells import derive_cells
 from lumitip_fab.derive.electrical import derive_electrical
 from lumitip_fab.derive.faults import Faults
@@ -49,6 +50,9 @@ def derive(given: Input) -> Design:
     breakout = derive_breakout(given, muxing, faults)
     holders = derive_holder(given, breakout, faults)
     flange = derive_flange(given, faults)
+    circuit, figures = wiring.joined(given, strings, muxing), derive_electrical(given, strings)
+    joined = Boards(plan.emitter, plan.receiver, (*breakout, *flange))
+    cabling = derive_cabling(given, joined, silhouette, coupling, circuit, figures, faults)
     faults.stop()
     mux, channel = wiring.assign(given, cells, plan.muxes)
     layout = Layout(
@@ -76,10 +80,11 @@ def derive(given: Input) -> Design:
             receiver=plan.receiver,
             mount=coupling,
             closing=meeting,
-            wiring=wiring.joined(given, strings, muxing),
+            wiring=circuit,
+            cabling=cabling,
             packages=derive_packages(given),
             rules=rules,
-            electrical=derive_electrical(given, strings),
+            electrical=figures,
             mask=sheet,
             mould=casting,
             printing=printing,

@@ -25,6 +25,7 @@ from lumitip_fab.design.boards import (
     Wiring,
     Zone,
 )
+from lumitip_fab.design.cabling import Cable, Cabling, Terminal, Wire
 from lumitip_fab.design.carriers import Carrier, Device, Holder, Land, Note, Pattern
 from lumitip_fab.design.electrical import Electrical
 from lumitip_fab.design.fit_plate import FitPlate, Fits
@@ -38,6 +39,8 @@ from lumitip_fab.design.weights import Densities
 __all__ = [
     "Board",
     "Box",
+    "Cable",
+    "Cabling",
     "Carrier",
     "CellInput",
     "Chip",
@@ -75,8 +78,10 @@ __all__ = [
     "Rules",
     "Slicing",
     "Stack",
+    "Terminal",
     "Tip",
     "Title",
+    "Wire",
     "Wiring",
     "Zone",
 ]
@@ -106,6 +111,7 @@ class Design:
     mount: Mount
     closing: Closing
     wiring: Wiring
+    cabling: Cabling
     packages: Packages
     rules: Rules
     electrical: Electrical

@@ -1,0 +1,214 @@
+"""The list of cables, its note and its diagram against the boards, the firmware and the layout."""
+
+import math
+import re
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from lumitip_fab.checks.cables import Row, note_row, read_diagram, read_list, read_note
+from lumitip_fab.checks.channel_map import PINOUTS
+from lumitip_fab.checks.kicad_board import KicadBoard, read_board
+from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip_fab.colours import INKS, codes_of
+from lumitip_fab.design import Design
+from lumitip_fab.errors import OutputError
+from lumitip_fab.frames import applied, board_page_to_sensor
+
+READS = ("wiring/*", "boards/*.kicad_pcb", "firmware/layout.h")
+_LIST, _NOTE, _DIAGRAM = "wiring/cables.csv", "wiring/cables.md", "wiring/wiring.svg"
+_HEADER = "firmware/layout.h"
+_CONNECTORS = {"emitter": ("J1",), "receiver": ("J1",), "breakout": ("J5", "J6", "J7")}
+_STEP_MM = 10.0
+_MOST_A_PER_MM2 = 3.0
+_MOST_DROP = 0.02
+_OHM_MM2_PER_M = 0.0178
+_FIXED = {"GND": "BK", "3V3": "OG"}
+
+Nets = dict[str, dict[str, str]]
+"""Net of each pad, by board and by `"J1.3"`."""
+
+
+def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
+    """Read the list, follow every wire from board to board, and compare note and diagram."""
+    try:
+        rows = read_list(outputs / _LIST)
+        boards = {
+            name: read_board(outputs / f"boards/{name}/{name}.kicad_pcb")
+            for name in ("emitter", "receiver", *(c.name for c in design.carriers))
+        }
+    except OutputError as error:
+        yield unreadable("wiring.readable", _LIST, str(error))
+        return
+    nets = {name: _nets(board) for name, board in boards.items()}
+    yield _count("ends", _LIST, _wrong_ends(rows, nets), "pads")
+    yield _count(
+        "pins", _LIST, _wrong_pins(outputs, rows, boards["receiver"], nets, design), "pins"
+    )
+    yield _count("colours", _LIST, _wrong_colours(rows, design), "wires")
+    yield _lengths(rows, boards, design)
+    yield from _currents(rows, design)
+    yield _note(outputs, rows)
+    yield _diagram(outputs, rows)
+
+
+def _nets(board: KicadBoard) -> dict[str, str]:
+    return {f"{p.ref}.{t.number}": t.net for p in board.parts for t in p.terminals}
+
+
+def _wrong_ends(rows: tuple[Row, ...], nets: Nets) -> list[str]:
+    """Pads wired never or twice, and wires whose ends are of different nets."""
+    taken = Counter(end for row in rows for end in (row.start, row.end))
+    pads = {
+        (board, pad)
+        for board, of in nets.items()
+        for pad in of
+        if pad.partition(".")[0] in _CONNECTORS.get(board, ())
+    }
+    wrong = [f"{board} {pad}" for board, pad in sorted(pads) if taken[board, pad] != 1]
+    wrong += [f"{' '.join(end)} twice" for end, times in taken.items() if times > 1]
+    for row in rows:
+        told = {
+            nets[board].get(pad, "none") for board, pad in (row.start, row.end) if board in nets
+        }
+        if told != {row.signal}:
+            wrong.append(f"{row.wire}: {' and '.join(sorted(told))}")
+    twice = [wire for wire, times in Counter(row.wire for row in rows).items() if times > 1]
+    return wrong + [f"{wire} twice" for wire in twice]
+
+
+def _wrong_pins(
+    outputs: Path, rows: tuple[Row, ...], receiver: KicadBoard, nets: Nets, design: Design
+) -> list[str]:
+    """From each multiplexer's leads along the wires to the pin that the firmware uses."""
+    analog, select = _header(outputs, "LUMITIP_ADC_PINS"), _header(outputs, "LUMITIP_SELECT_PINS")
+    analog = [pin for pin in analog if pin in design.layout.adc_pin.tolist()]
+    arrives = {row.signal: _arrives(row, nets, design) for row in rows if "receiver" in row.start}
+    muxes = [p for p in receiver.parts if re.fullmatch(r"U\d+", p.ref)]
+    wrong = [] if len(muxes) == len(analog) else [f"{len(analog)} analog pins"]
+    for mux in sorted(muxes, key=lambda part: int(part.ref[1:])):
+        pinout = next(p for p in PINOUTS if p.leads == len(mux.terminals))
+        net = {t.number: t.net for t in mux.terminals}
+        wanted = {net[pinout.output]: analog[int(mux.ref[1:]) - 1 :][:1]}
+        wanted |= {net[lead]: [pin] for lead, pin in zip(pinout.select, select, strict=False)}
+        wrong += [f"{mux.ref}: {arrives.get(name)}, not {pins}" for name, pins in wanted.items()
+                  if [arrives.get(name)] != pins]  # fmt: skip
+    return wrong
+
+
+def _arrives(row: Row, nets: Nets, design: Design) -> str:
+    """The controller's pin at the other end, as the firmware names it: straight, or through the
+    socket of the breakout."""
+    board, pad = row.end
+    pin = pad
+    for carrier in (c for c in design.carriers if c.name == board):
+        net = nets[board].get(pad)
+        pins = {
+            name
+            for device in carrier.devices
+            if device.kind == "socket"
+            for (number, _), name in zip(device.nets, device.pins, strict=True)
+            if nets[board].get(f"{device.ref}.{number}") == net
+        }
+        pin = "+".join(sorted(pins))
+    return re.sub(r"^D(?=\d+$)", "", pin)
+
+
+def _header(outputs: Path, name: str) -> list[str]:
+    try:
+        text = (outputs / _HEADER).read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError):
+        return []
+    found = re.search(rf"^#define {name} (.*)$", text, re.MULTILINE)
+    return found[1].split(", ") if found else []
+
+
+def _wrong_colours(rows: tuple[Row, ...], design: Design) -> list[str]:
+    """Ground black, the LEDs' supply red, known codes, and no colour twice in a cable."""
+    fixed = _FIXED | {design.emitter.connector.signals[1]: "RD"}
+    wrong = []
+    seen: set[tuple[str, str]] = set()
+    for row in rows:
+        known = set(codes_of(row.colour)) <= set(INKS)
+        reserved = row.colour in fixed.values() and fixed.get(row.signal) != row.colour
+        other = fixed.get(row.signal, row.colour) != row.colour
+        if not known or reserved or other or (row.cable, row.colour) in seen:
+            wrong.append(f"{row.wire} {row.colour}")
+        seen.add((row.cable, row.colour))
+    return wrong
+
+
+def _lengths(rows: tuple[Row, ...], boards: dict[str, KicadBoard], design: Design) -> Measurement:
+    """How far the worst wire is from the way that it has to go; up to a centimetre is rounding."""
+    told, over = design.cabling, []
+    for row in rows:
+        way = told.slack_mm
+        if row.start[0] in ("emitter", "receiver"):
+            way += told.travel_mm + _reach_mm(boards[row.start[0]], design)
+            way += told.supply_mm if row.end[0] == "supply" else told.controller_mm
+        else:
+            way += told.supply_mm
+        over.append(row.length_mm - way)
+    worst = max(over, key=lambda mm: abs(mm - _STEP_MM / 2), default=math.nan)
+    note = "longer than reach, travel, way and slack"
+    return Measurement("wiring.lengths", _LIST, worst, 0, _STEP_MM, "mm", note)
+
+
+def _reach_mm(board: KicadBoard, design: Design) -> float:
+    pads = np.array([t.at for p in board.parts if p.ref == "J1" for t in p.terminals])
+    places = applied(board_page_to_sensor(design.stack), pads)[:, :2]
+    return float((abs(places[:, 0]) + places[:, 1]).max() - design.outline.end_y_mm)
+
+
+def _currents(rows: tuple[Row, ...], design: Design) -> Iterator[Measurement]:
+    """What the supply's wires carry against the strings, and what the copper makes of it."""
+    supply = design.emitter.connector.signals[1]
+    lit_ma = sum(design.electrical.strings.high_ma)
+    feeding = [row for row in rows if row.signal == supply]
+    least = min((row.current_ma for row in feeding), default=math.nan)
+    yield Measurement("wiring.current", _LIST, least, lit_ma - 0.01, math.inf, "mA",
+                      "least told of the LEDs' supply")  # fmt: skip
+    dense = max((r.current_ma / 1000 / r.section_mm2 for r in rows), default=math.nan)
+    yield Measurement("wiring.density", _LIST, dense, 0, _MOST_A_PER_MM2, "A/mm²")
+    drop = sum(
+        row.current_ma / 1000 * _OHM_MM2_PER_M * row.length_mm / 1000 / row.section_mm2
+        for row in rows
+        if row.signal == supply or (row.signal == "GND" and "receiver" not in row.start)
+    )
+    most = _MOST_DROP * design.wiring.supply_v
+    yield Measurement("wiring.drop", _LIST, drop, 0, most, "V", "supply to emitter and back")
+
+
+def _note(outputs: Path, rows: tuple[Row, ...]) -> Measurement:
+    try:
+        told = read_note(outputs / _NOTE)
+    except OutputError as error:
+        return unreadable("wiring.note", _NOTE, str(error))
+    wanted = {row.wire: note_row(row) for row in rows}
+    wrong = [w for w in sorted({*wanted, *told}) if wanted.get(w) != told.get(w)]
+    return _count("note", _NOTE, wrong, "wires")
+
+
+def _diagram(outputs: Path, rows: tuple[Row, ...]) -> Measurement:
+    """Each line ends on the pads of the list, in the ink of its colour, with its own label."""
+    try:
+        drawn = read_diagram(outputs / _DIAGRAM)
+    except OutputError as error:
+        return unreadable("wiring.diagram", _DIAGRAM, str(error))
+    wrong = sorted({*drawn} ^ {row.wire for row in rows})
+    for row in rows:
+        wire = drawn.get(row.wire)
+        if wire is None:
+            continue
+        told = (wire.start, wire.end, wire.inks, wire.label.split()[:2])
+        inks = tuple(INKS.get(code, "") for code in codes_of(row.colour))
+        if told != (".".join(row.start), ".".join(row.end), inks, [row.wire, row.colour]):
+            wrong.append(f"{row.wire} from {wire.start} to {wire.end}")
+    return _count("diagram", _DIAGRAM, wrong, "wires")
+
+
+def _count(check: str, subject: str, wrong: list[str], unit: str) -> Measurement:
+    note = "; ".join(wrong[:4]) + (" …" if len(wrong) > 4 else "")
+    return Measurement(f"wiring.{check}", subject, float(len(wrong)), 0, 0, unit, note)

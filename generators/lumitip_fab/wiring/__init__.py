@@ -1,0 +1,1 @@
+"""How the fingers are wired: list of cables, note and diagram."""

@@ -1,0 +1,89 @@
+"""The list of cables as a table for machines and as a note for people."""
+
+import csv
+import io
+
+from lumitip_fab.colours import named
+from lumitip_fab.design import Cable, Cabling, Title, Wire
+
+COLUMNS = (
+    "wire", "signal", "from_board", "from_pad", "to_board", "to_pad", "colour", "section_mm2",
+    "length_mm", "current_ma",
+)  # fmt: skip
+_NOTE = """\
+# Wiring {title}
+
+Stranded copper, colours by IEC 60757; `wiring.svg` shows the same as a drawing. Pads are counted
+from the square one: on a finger's board that is the leftmost, seen from the front with the tip up.
+Put the wires of a finger in from the back of its board, solder them on the front, and cut the
+joints short.
+
+{tables}
+
+Lengths are for each wire, rounded up to whole centimetres. From a finger: its reach on the finger,
+{travel_mm:g} mm for half the gripper's stroke and {controller_mm:g} mm along the gripper; to the
+supply {supply_mm:g} mm; and {slack_mm:g} mm each for bends and stripping.
+
+{power}
+- Measure a supply before it is connected: makers' colours differ from these. On the tool connector
+  of Universal Robots' arms red is 0 V, and grey carries the voltage.
+- Twist the two wires of the emitter. Leave a loop at each finger, so that it opens without pulling.
+"""
+_FED = """\
+- The wire of 5 V feeds the controller. Leave it away where it is fed over USB.
+- At a flange the wires end in a socket for its header J2, whose contact 1 has the square pad."""
+_ALONE = """\
+- The controller is fed over USB. Its ground and that of the LEDs' supply need not be joined:
+  between the fingers there is only light."""
+
+
+def cable_list(cabling: Cabling) -> str:
+    """One line for each wire, in order of their numbers."""
+    file = io.StringIO()
+    writer = csv.writer(file, lineterminator="\n")
+    writer.writerow(COLUMNS)
+    for cable in cabling.cables:
+        for wire in cable.wires:
+            writer.writerow((
+                wire.number, wire.signal, wire.start.board, wire.start.label, wire.end.board,
+                wire.end.label, wire.colour, f"{cable.section_mm2:g}",
+                f"{cable.length_mm:g}", f"{wire.current_ma:.2f}",
+            ))  # fmt: skip
+    return file.getvalue()
+
+
+def wiring_note(title: Title, cabling: Cabling) -> str:
+    """The wires with what to mind, in Markdown."""
+    return _NOTE.format(
+        title=f"{title.name} {title.revision}",
+        tables="\n\n".join(map(_table, cabling.cables)),
+        power=_FED if fed(cabling) else _ALONE,
+        travel_mm=cabling.travel_mm,
+        controller_mm=cabling.controller_mm,
+        supply_mm=cabling.supply_mm,
+        slack_mm=cabling.slack_mm,
+    )
+
+
+def fed(cabling: Cabling) -> bool:
+    """Whether a wire feeds the controller."""
+    return any(wire.signal == "5V" for cable in cabling.cables[2:] for wire in cable.wires)
+
+
+def _table(cable: Cable) -> str:
+    start, end = cable.start.board, cable.end.board
+    head = f"""\
+## {cable.name}: {start} to {end}, {cable.length_mm:g} mm of {cable.section_mm2:g} mm²
+
+| wire | colour | {start} | signal | {end} | at most (mA) |
+|---|---|---|---|---|---:|
+"""
+    return head + "\n".join(map(_row, cable.wires))
+
+
+def _row(wire: Wire) -> str:
+    current = f"{wire.current_ma:.2f}" if wire.current_ma else "–"
+    return (
+        f"| {wire.number} | {wire.colour} {named(wire.colour)} | {wire.start.label} "
+        f"| {wire.signal} | {wire.end.label} | {current} |"
+    )

@@ -1,0 +1,189 @@
+"""Damage list, note or diagram of the cables, and exactly the right checks fail."""
+
+import re
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from damages import failing as failing_of
+from lumitip_fab.derive import derive
+from lumitip_fab.errors import InputError
+from lumitip_fab.load import load
+from lumitip_fab.wiring.files import wiring_files
+
+Edit = Callable[[str], str]
+LIST, NOTE, DIAGRAM = "cables.csv", "cables.md", "wiring.svg"
+
+
+@pytest.fixture(scope="module")
+def wired(outputs: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What the check reads, of the published design. Do not change it."""
+    folder = tmp_path_factory.mktemp("wired") / "out"
+    for part in ("wiring", "boards"):
+        shutil.copytree(outputs / part, folder / part)
+    (folder / "firmware").mkdir()
+    for file in ("design.json", "firmware/layout.h"):
+        shutil.copy(outputs / file, folder / file)
+    return folder
+
+
+@pytest.fixture
+def copied(wired: Path, tmp_path: Path) -> Path:
+    """A copy of it, to damage."""
+    return Path(shutil.copytree(wired, tmp_path / "copied"))
+
+
+def failing(folder: Path) -> set[str]:
+    return failing_of(folder, "wiring")
+
+
+def replaced(old: str, new: str) -> Edit:
+    def edit(text: str) -> str:
+        assert old in text
+        return text.replace(old, new, 1)
+
+    return edit
+
+
+def swapped(one: str, other: str) -> Edit:
+    def edit(text: str) -> str:
+        assert one in text
+        assert other in text
+        return text.replace(one, "\0").replace(other, one).replace("\0", other)
+
+    return edit
+
+
+def without(pattern: str) -> Edit:
+    def edit(text: str) -> str:
+        less = re.sub(pattern, "", text, count=1, flags=re.MULTILINE | re.DOTALL)
+        assert less != text
+        return less
+
+    return edit
+
+
+EDITS: list[tuple[str, Edit, set[str]]] = [
+    # Two wires swapped at one end, in each file.
+    (LIST, swapped("breakout,J5.3,", "breakout,J5.4,"), {"ends", "pins", "note", "diagram"}),
+    (NOTE, swapped("| J5.3 |", "| J5.4 |"), {"note"}),
+    (DIAGRAM, swapped('id="breakout.J5.3"', 'id="breakout.J5.4"'), {"diagram"}),
+    # A wire dropped.
+    (LIST, without(r"^W2\.7,.*?\n"), {"ends", "pins", "note", "diagram"}),
+    (LIST, without(r"^W3\.2,.*?\n"), {"ends", "note", "diagram"}),
+    (NOTE, without(r"^\| W1\.2 .*?\n"), {"note"}),
+    (DIAGRAM, without(r'^<g class="wire" id="W2\.9".*?</g>\n'), {"diagram"}),
+    # What is told of a wire.
+    (LIST, replaced("W2.2,", "W2.1,"), {"ends", "note", "diagram"}),
+    (LIST, replaced("S0,receiver,J1.3", "S0,receiver,J1.4"), {"ends", "note", "diagram"}),
+    (LIST, replaced("J6.1,BK", "J6.1,RD"), {"colours", "note", "diagram"}),
+    (LIST, replaced("J6.2,RD", "J6.2,BU"), {"colours", "note", "diagram"}),
+    (LIST, replaced("J5.5,GN", "J5.5,YE"), {"colours", "note", "diagram"}),
+    (LIST, replaced("J5.5,GN", "J5.5,XX"), {"colours", "note", "diagram"}),
+    (LIST, replaced("BK,0.08,250", "BK,0.08,150"), {"lengths", "note"}),
+    (LIST, replaced("BK,0.08,250", "BK,0.08,300"), {"lengths", "note"}),
+    (LIST, replaced("RD,0.08,250", "RD,0.02,250"), {"density", "note"}),
+    (LIST, replaced("RD,0.08,250,69.23", "RD,0.08,250,34.10"), {"current", "note"}),
+    (LIST, replaced("RD,0.08,340,", "RD,0.0005,340,"), {"density", "drop", "note"}),
+    (LIST, replaced("colour,", "color,"), {"readable"}),
+    (NOTE, replaced("| 69.23 |", "| 96.23 |"), {"note"}),
+    (NOTE, replaced("breakout, 250 mm", "breakout, 520 mm"), {"note"}),
+    (NOTE, replaced("| RD red", "| BU blue"), {"note"}),
+    (DIAGRAM, replaced(">W1.2 RD", ">W1.2 BK"), {"diagram"}),
+    (DIAGRAM, replaced('stroke="#d11f2e"', 'stroke="#1a1a1a"'), {"diagram"}),
+    (DIAGRAM, replaced("</svg>", ""), {"diagram"}),
+]
+
+
+def test_nothing_fails_as_it_is_written(wired: Path) -> None:
+    assert failing(wired) == set()
+
+
+@pytest.mark.parametrize(("file", "edit", "expected"), EDITS)
+def test_a_damage_fails_its_check(copied: Path, file: str, edit: Edit, expected: set[str]) -> None:
+    path = copied / "wiring" / file
+    path.write_text(edit(path.read_text(encoding="utf-8")), encoding="utf-8")
+    assert failing(copied) == expected
+
+
+def test_a_net_or_a_pin_on_another_lead_is_seen(copied: Path) -> None:
+    board = copied / "boards/receiver/receiver.kicad_pcb"
+    text = board.read_text(encoding="utf-8")
+    board.write_text(swapped('"A0"', '"A1"')(text), encoding="utf-8")
+    assert failing(copied) == {"ends", "pins"}
+    board.write_text(text, encoding="utf-8")
+    header = copied / "firmware/layout.h"
+    told = header.read_text(encoding="utf-8")
+    header.write_text(replaced("A0, A1", "A1, A0")(told), encoding="utf-8")
+    assert failing(copied) == {"pins"}
+    header.write_text(replaced("PINS 6, 7", "PINS 7, 6")(told), encoding="utf-8")
+    assert failing(copied) == {"pins"}
+
+
+def test_lost_files_are_told(copied: Path) -> None:
+    (copied / "wiring" / NOTE).unlink()
+    (copied / "wiring" / DIAGRAM).write_bytes(b"\xff\xfe")
+    assert failing(copied) == {"note", "diagram"}
+    (copied / "firmware/layout.h").unlink()
+    assert failing(copied) == {"pins", "note", "diagram"}
+    (copied / "boards/breakout/breakout.kicad_pcb").unlink()
+    assert failing(copied) == {"readable"}
+
+
+def _designed(design_dir: Path, tmp_path: Path, text: str) -> Path:
+    folder = Path(shutil.copytree(design_dir, tmp_path / "design"))
+    file = folder / "presets" / "changed.toml"
+    file.write_text('extends = "published.toml"\n' + text, encoding="utf-8")
+    return file
+
+
+def test_without_a_breakout_the_wires_go_to_the_pins(design_dir: Path, tmp_path: Path) -> None:
+    file = _designed(design_dir, tmp_path, "[breakout]\nenabled = false\n")
+    design = derive(load(file))
+    emitter, receiver = design.cabling.cables
+    assert [w.end.label for w in emitter.wires] == ["GND", "24V"]
+    assert {w.signal: w.end.label for w in receiver.wires} == {
+        "GND": "GND", "3V3": "3V3", "S0": "D6", "S1": "D7", "S2": "D8",
+        "A0": "A0", "A1": "A1", "A2": "A2", "A3": "A3",
+    }  # fmt: skip
+    assert emitter.length_mm > receiver.length_mm
+    svg = wiring_files(design.title, design.cabling)[2].data.decode()
+    assert svg.count('class="wire"') == 11
+
+
+def test_what_carries_more_current_is_thicker(design_dir: Path, tmp_path: Path) -> None:
+    text = "[wiring]\nsupply_mm = 10000.0\nsection_mm2 = 0.05\n"
+    emitter, receiver, supply = derive(load(_designed(design_dir, tmp_path, text))).cabling.cables
+    assert (emitter.section_mm2, receiver.section_mm2, supply.section_mm2) == (0.08, 0.05, 0.14)
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        (
+            "[wiring]\nsection_mm2 = 1.0\n",
+            "1 given; strands of at most 0.718 mm² go into the holes of 1.2",
+        ),
+        (
+            "[wiring]\nsupply_mm = 1e4\n[emitter]\nstring_leds = 1\n"
+            "[supply]\nvoltage_v = 2.5\nmax_ma = 5e3\n",
+            "0.08 given, .* is needed for .*: less emitter.current_ma is needed",
+        ),
+    ],
+)
+def test_wires_too_thick_are_refused(
+    design_dir: Path, tmp_path: Path, text: str, told: str
+) -> None:
+    with pytest.raises(InputError, match=told):
+        derive(load(_designed(design_dir, tmp_path, text)))
+
+
+def test_a_cable_of_many_wires_has_striped_ones(design_dir: Path) -> None:
+    cables = derive(load(design_dir / "presets" / "dense.toml")).cabling.cables
+    colours = [wire.colour for wire in cables[1].wires]
+    assert len({*colours}) == len(colours)
+    assert any(len(colour) == 4 for colour in colours)
+    numbers = [wire.number for cable in cables for wire in cable.wires]
+    assert len({*numbers}) == len(numbers)
