@@ -75,6 +75,34 @@ CHANGES: dict[str, Any] = {
     "holder.nut_mm": 4.1,
     "holder.strap_hole_mm": 4.1,
     "holder.strap_spacing_mm": 12.5,
+    "flange.enabled": False,
+    "flange.contacts": "other contacts",
+    "flange.signals": (
+        "SUPPLY",
+        "SUPPLY",
+        "GND",
+        "GND",
+        "TI1",
+        "TI0",
+        "TO0",
+        "TO1",
+        "AI2",
+        "AI3",
+    ),
+    "flange.header": "other header",
+    "flange.headers": (
+        ("GND", "SUPPLY", "REGULATED", "GND", "TI0", "TO0", "AI2"),
+        ("SUPPLY", "GND", "REGULATED", "GND", "TI1", "TO1", "AI3"),
+    ),
+    "flange.regulator": "other",
+    "flange.inductor": "other",
+    "flange.input_capacitor": "other",
+    "flange.output_capacitor": "other",
+    "flange.boot_capacitor": "other",
+    "flange.fuse": "other",
+    "flange.transistor": "other",
+    "flange.resistor": "0805",
+    "flange.gate_ohm": 120000.0,
     "wiring.supply_mm": 310.0,
     "wiring.controller_mm": 160.0,
     "wiring.slack_mm": 50.0,
@@ -120,6 +148,10 @@ def published(inputs: dict[str, Input]) -> Input:
         "grippers": ("robotiq_2f85", {"stroke_mm": 84.0}),
         "printers": ("fdm 0.4", {"layer_mm": 0.1}),
         "strips": ("socket 1x15", {"height_mm": 8.0}),
+        "regulators": ("AP63205", {"order_number": "other"}),
+        "inductors": ("4.7uH 4x4", {"order_number": "other"}),
+        "fuses": ("500mA 1206", {"order_number": "other"}),
+        "transistors": ("Si2309CDS", {"order_number": "other"}),
     }
     tables = {
         kind: {**getattr(parts, kind), "other": getattr(parts, kind)[name].model_copy(update=new)}
@@ -127,6 +159,8 @@ def published(inputs: dict[str, Input]) -> Input:
     }
     film = parts.films["TPU 100um"].model_copy(update={"thickness_mm": 0.15})
     tables["films"] = {**tables["films"], "thick": film}
+    for name, like in (("other contacts", "pogo 2x5"), ("other header", "box header 2x7")):
+        tables["strips"][name] = parts.strips[like].model_copy(update={"height_mm": 5.0})
     return dataclasses.replace(given, catalogue=parts.model_copy(update=tables))
 
 
