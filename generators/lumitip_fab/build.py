@@ -1,7 +1,7 @@
 """Parameter file to output folder: only what changed is made again, on all cores."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,6 +12,8 @@ from lumitip_fab.fingerprint import input_hash, remember, unchanged
 from lumitip_fab.lock import locked
 
 if TYPE_CHECKING:
+    from lumitip_fab.artefact import Artefact
+    from lumitip_fab.design import Design
     from lumitip_fab.graph import Task
     from lumitip_fab.workers import Batch
 
@@ -59,7 +61,6 @@ def _build_anew(file: Path, told: str, out: Path, progress: Progress) -> Report:
     # Imported here: to see that nothing changed, none of it is needed.
     from lumitip_fab.derive import derive
     from lumitip_fab.documents import documents
-    from lumitip_fab.graph import tasks
     from lumitip_fab.load import load
     from lumitip_fab.workers import Batch
 
@@ -69,7 +70,7 @@ def _build_anew(file: Path, told: str, out: Path, progress: Progress) -> Report:
     ready: list[Batch] = [("documents", documents(given, design))]
     try:
         with locked(out):
-            report = _write(out, origin, ready, tuple(tasks(design)), progress)
+            report = _write(out, origin, ready, design, progress)
             remember(out, told)
             return report
     except OSError as error:
@@ -79,30 +80,57 @@ def _build_anew(file: Path, told: str, out: Path, progress: Progress) -> Report:
 
 
 def _write(
-    out: Path,
-    origin: manifest.Origin,
-    ready: "list[Batch]",
-    wanted: "tuple[Task, ...]",
-    progress: Progress,
+    out: Path, origin: manifest.Origin, ready: "list[Batch]", design: "Design", progress: Progress
 ) -> Report:
-    from lumitip_fab.workers import made
+    from lumitip_fab.graph import late_tasks, tasks
+    from lumitip_fab.made import Made
 
-    before, keys = manifest.read(out), {task.name: task.key for task in wanted}
-    kept = tuple(name for name, key in keys.items() if before.whole(out, name, key))
-    stale = [task for task in wanted if task.name not in kept]
-    files = {path: e for path, e in before.files.items() if e.task in kept}
-    written: list[str] = []
-    for done, (name, artefacts) in enumerate(chain(ready, made(stale)), start=1):
-        for artefact in artefacts:
-            files[artefact.path] = manifest.entry(artefact, name)
-            if manifest.sha256_of(out / artefact.path) != files[artefact.path].sha256:
-                written.append(artefact.path)
-                manifest.write_file(out / artefact.path, artefact.data)
-        progress(name, done, len(stale) + len(ready))
-    removed = _remove(out, set(before.files) - set(files))
-    manifest.write(out, manifest.Manifest(files, keys, origin))
-    ran = tuple(task.name for task in stale)
-    return Report(origin, tuple(sorted(written)), removed, ran, kept)
+    run = _Run(out, manifest.read(out), progress)
+    run.make(ready, tuple(tasks(design)))
+    made = Made(out, {path: entry.sha256 for path, entry in run.files.items()})
+    run.make([], tuple(late_tasks(design, made)))
+    removed = _remove(out, set(run.before.files) - set(run.files))
+    manifest.write(out, manifest.Manifest(run.files, run.keys, origin))
+    return Report(origin, tuple(sorted(run.written)), removed, tuple(run.ran), tuple(run.kept))
+
+
+@dataclass
+class _Run:
+    """One build: what it has made so far."""
+
+    out: Path
+    before: manifest.Manifest
+    progress: Progress
+    files: dict[str, manifest.Entry] = field(default_factory=dict)
+    keys: dict[str, str] = field(default_factory=dict)
+    written: list[str] = field(default_factory=list)
+    ran: list[str] = field(default_factory=list)
+    kept: list[str] = field(default_factory=list)
+    done: int = 0
+
+    def make(self, ready: "list[Batch]", wanted: "tuple[Task, ...]") -> None:
+        """Run those tasks whose files are not there already, and write what is ready."""
+        from lumitip_fab.workers import made
+
+        keys = {task.name: task.key for task in wanted}
+        kept = [name for name, key in keys.items() if self.before.whole(self.out, name, key)]
+        stale = [task for task in wanted if task.name not in kept]
+        self.files |= {path: e for path, e in self.before.files.items() if e.task in kept}
+        total = self.done + len(stale) + len(ready)
+        for name, artefacts in chain(ready, made(stale)):
+            for artefact in artefacts:
+                self._write(name, artefact)
+            self.done += 1
+            self.progress(name, self.done, total)
+        self.keys |= keys
+        self.kept += kept
+        self.ran += [task.name for task in stale]
+
+    def _write(self, task: str, artefact: "Artefact") -> None:
+        entry = self.files[artefact.path] = manifest.entry(artefact, task)
+        if manifest.sha256_of(self.out / artefact.path) != entry.sha256:
+            self.written.append(artefact.path)
+            manifest.write_file(self.out / artefact.path, artefact.data)
 
 
 def _untold(_name: str, _done: int, _total: int) -> None:

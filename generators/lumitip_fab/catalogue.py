@@ -14,6 +14,7 @@ from lumitip_fab.entry import Entry, Length, Name, Pin, Share, Strict
 from lumitip_fab.fab_entry import Fab
 from lumitip_fab.filament_entry import Filament
 from lumitip_fab.gripper_entry import Gripper
+from lumitip_fab.price_entry import Prices
 
 
 class Bought(Entry):
@@ -276,3 +277,4 @@ class Catalogue(Strict):
     printers: Mapping[Name, Printer]
     filaments: Mapping[Name, Filament]
     fabs: Mapping[Name, Fab]
+    prices: Prices

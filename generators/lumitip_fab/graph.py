@@ -14,6 +14,7 @@ from typing import Any
 
 from lumitip_fab.design import Design
 from lumitip_fab.encoding import canonical
+from lumitip_fab.made import Made
 from lumitip_fab.toolchain import PACKAGE, code_hash, tool_version
 
 
@@ -28,11 +29,18 @@ class Step:
     """Whether it takes long, and so runs in a worker: routing, and what imports the CAD kernel."""
     tools: tuple[str, ...]
     """Distributions whose version its output may depend on."""
+    reads: tuple[str, ...] = ()
+    """Patterns of files that other steps write: it runs after them, and is given those files as
+    `made`."""
 
 
 _CAD = ("build123d", "cadquery-ocp", "cadquery-ocp-novtk", "lib3mf", "numpy", "trimesh")
 _INK = ("reportlab", "ezdxf", "numpy", "shapely")
 _COPPER = ("gerbonara", "matplotlib", "networkx", "numba", "numpy", "scipy", "shapely")
+_LISTED = (
+    "backing/*.stl", "mould/*.stl", "holder/*.stl", "fit/*.stl", "mould/*_casting.md",
+    "boards/*/order/generic_*_bom.csv",
+)  # fmt: skip
 STEPS = (
     Step("mask", "files", "mask_files", False, _INK),
     Step("printing", "settings", "print_settings", False, ()),
@@ -47,6 +55,7 @@ STEPS = (
     Step("mechanical", "backing", "backing", True, _CAD),
     Step("mechanical", "holder", "holder_files", True, _CAD),
     Step("mechanical", "fit_plate", "fit_plate_files", True, _CAD),
+    Step("parts_list", "files", "bill_of_materials", False, ("numpy",), _LISTED),
 )
 
 
@@ -65,14 +74,28 @@ class Task:
     @property
     def key(self) -> str:
         """Changes when the output may: arguments, code and tools."""
-        told = [self.step.name, canonical(self.arguments), code_hash(self.step.folder)]
+        plain = {name: value for name, value in self.arguments.items() if name != "made"}
+        told = [self.step.name, canonical(plain), code_hash(self.step.folder)]
+        if self.step.reads:
+            told.append(canonical(self.arguments["made"].sha256))
         told += [tool_version(tool) for tool in self.step.tools]
         return hashlib.sha256("\n".join(told).encode()).hexdigest()
 
 
-def tasks(design: Design) -> Iterator[Task]:
-    """Every run of every step for a design."""
+def late_tasks(design: Design, made: Made) -> Iterator[Task]:
+    """A run of every step that reads what the others made."""
     for step in STEPS:
+        if step.reads:
+            names = (name for name in argument_names(step) if name != "made")
+            shared = {name: getattr(design, name) for name in names}
+            yield Task(step.name, step, {"made": made.only(step.reads), **shared})
+
+
+def tasks(design: Design) -> Iterator[Task]:
+    """Every run for a design of every step that needs nothing else."""
+    for step in STEPS:
+        if step.reads:
+            continue
         names = argument_names(step)
         shared = {name: getattr(design, name) for name in names if name not in EACH}
         each = next((name for name in names if name in EACH), None)

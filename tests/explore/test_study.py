@@ -19,7 +19,7 @@ from lumitip_fab.explore import report
 from lumitip_fab.explore.accuracy import Sample, accuracy
 from lumitip_fab.explore.evaluate import Job, evaluate
 from lumitip_fab.explore.journal import NAME, Journal
-from lumitip_fab.explore.prices import bill, cost, load_prices
+from lumitip_fab.explore.prices import bill, cost
 from lumitip_fab.explore.run import Found, Study, explore
 from lumitip_fab.explore.vary import changed
 from lumitip_fab.load import Input, load
@@ -158,7 +158,7 @@ def test_a_scheduler_that_does_not_answer_is_told(explored: Explored, tmp_path: 
 
 
 def test_another_seed_or_price_is_evaluated_anew(given: Input) -> None:
-    prices = load_prices(given)
+    prices = given.catalogue.prices
     one = Job.of(given, (), prices, FEW)
     assert one.key == Job.of(given, (), prices, FEW).key
     dearer = prices.model_copy(update={"each": {**prices.each, "0603": 9.0}})
@@ -171,7 +171,7 @@ def test_another_seed_or_price_is_evaluated_anew(given: Input) -> None:
 
 
 def test_figures_are_those_of_the_design(given: Input) -> None:
-    prices, design = load_prices(given), derive(given)
+    prices, design = given.catalogue.prices, derive(given)
     told = evaluate(Job.of(given, (), prices, FEW))["figures"]
     assert (told["cells"], told["current_ma"]) == (32, pytest.approx(38.4, abs=1.0))
     needed = bill(given, design)

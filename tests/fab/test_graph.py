@@ -6,9 +6,11 @@ from pathlib import Path
 import pytest
 
 from lumitip_fab.derive import derive
-from lumitip_fab.graph import STEPS, argument_names, tasks
+from lumitip_fab.graph import EACH, STEPS, argument_names, late_tasks, tasks
 from lumitip_fab.load import load
+from lumitip_fab.made import Made
 
+EARLY = {step.name for step in STEPS if not step.reads}
 Keys = Callable[..., dict[str, str]]
 
 
@@ -48,7 +50,7 @@ def test_waste_of_silicone_touches_the_mould_and_what_shares_its_figures(keys: K
 def test_pitch_touches_everything_of_the_fingers(keys: Keys) -> None:
     # What the slicer is told, what holds the controller, and wires know nothing of the cells.
     outside = {"holder_files", "print_settings", "wiring_files"}
-    assert changed(keys(), keys("[grid]\npitch_mm = 6.1\n")) == {s.name for s in STEPS} - outside
+    assert changed(keys(), keys("[grid]\npitch_mm = 6.1\n")) == EARLY - outside
 
 
 def test_what_is_outside_touches_no_finger(keys: Keys) -> None:
@@ -61,7 +63,33 @@ def test_lengths_of_wires_touch_the_wiring_alone(keys: Keys) -> None:
     assert changed(keys(), keys("[wiring]\nslack_mm = 60.0\n")) == {"wiring_files"}
 
 
-def test_every_step_names_real_arguments(keys: Keys) -> None:
+def test_every_step_names_real_arguments(keys: Keys, design_dir: Path) -> None:
     assert all(argument_names(step) for step in STEPS)
-    twice = {"finger", "carrier"}  # emitter and receiver, breakout and flange
-    assert len(keys()) == sum(1 + bool(twice & {*argument_names(step)}) for step in STEPS)
+    design = derive(load(design_dir / "presets" / "published.toml"))
+    runs = 0
+    for step in (step for step in STEPS if not step.reads):
+        each = next((name for name in argument_names(step) if name in EACH), None)
+        runs += len(getattr(design, EACH[each])) if each else 1
+    assert len(keys()) == runs
+
+
+def test_what_reads_others_files_runs_again_when_those_change(design_dir: Path) -> None:
+    design = derive(load(design_dir / "presets" / "published.toml"))
+
+    def late(files: dict[str, str]) -> dict[str, str]:
+        return {task.name: task.key for task in late_tasks(design, Made(Path(), files))}
+
+    before = late({"backing/emitter_backing.stl": "1", "mask/emitter_mask.svg": "1"})
+    assert "bill_of_materials" in before
+    other = late({"backing/emitter_backing.stl": "2", "mask/emitter_mask.svg": "1"})
+    assert changed(before, other) >= {"bill_of_materials"}
+    unread = late({"backing/emitter_backing.stl": "1", "mask/emitter_mask.svg": "2"})
+    assert before["bill_of_materials"] == unread["bill_of_materials"]
+
+
+def test_a_step_reads_no_more_than_it_says(tmp_path: Path) -> None:
+    (tmp_path / "a.txt").write_text("a", encoding="utf-8")
+    made = Made(tmp_path, {"a.txt": "1", "b.csv": "2"}).only(("*.txt",))
+    assert made.text("a.txt") == "a"
+    with pytest.raises(LookupError, match=r"b.csv: was not made"):
+        made.read("b.csv")

@@ -13,6 +13,7 @@ from lumitip_fab.derive.fit_plate import derive_fit_plate
 from lumitip_fab.derive.flange import derive_flange
 from lumitip_fab.derive.holder import derive_holder
 from lumitip_fab.derive.packages import derive_fabs, derive_packages, derive_rules
+from lumitip_fab.derive.purchase import derive_purchase
 from lumitip_fab.derive.slicing import derive_slicing
 from lumitip_fab.derive.stack import derive_printing, derive_stack, derive_tip
 from lumitip_fab.derive.weights import derive_densities
@@ -99,6 +100,7 @@ def derive(given: Input) -> Design:
             fabs=derive_fabs(given),
             carriers=(*breakout, *flange),
             holders=holders,
+            purchase=derive_purchase(given, coupling, holders, slicing),
             parameters_hash=_parameters_hash(given),
         )
     )

@@ -32,12 +32,14 @@ from lumitip_fab.design.fit_plate import FitPlate, Fits
 from lumitip_fab.design.gripper import Closing, Mount, Nose
 from lumitip_fab.design.making import Letter, Mask, Mould, Printing
 from lumitip_fab.design.ordering import Fab
+from lumitip_fab.design.purchase import Bought, PartPrice, Purchase
 from lumitip_fab.design.shape import Box, Cubic, Outline, Point, Stack, Tip
 from lumitip_fab.design.slicing import Filament, Slicing
 from lumitip_fab.design.weights import Densities
 
 __all__ = [
     "Board",
+    "Bought",
     "Box",
     "Cable",
     "Cabling",
@@ -70,9 +72,11 @@ __all__ = [
     "Outline",
     "Packages",
     "Part",
+    "PartPrice",
     "Pattern",
     "Point",
     "Printing",
+    "Purchase",
     "Reading",
     "Relief",
     "Rules",
@@ -127,6 +131,7 @@ class Design:
     """Boards outside the fingers."""
     holders: tuple[Holder, ...]
     """What holds the breakout board on the gripper; none without that board."""
+    purchase: Purchase
     parameters_hash: str
 
     @property

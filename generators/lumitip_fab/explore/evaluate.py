@@ -10,9 +10,10 @@ from lumitip_fab.derive import derive
 from lumitip_fab.encoding import canonical
 from lumitip_fab.errors import InputError
 from lumitip_fab.explore.accuracy import Sample, accuracy
-from lumitip_fab.explore.prices import Prices, cost
+from lumitip_fab.explore.prices import cost
 from lumitip_fab.explore.vary import Changes
 from lumitip_fab.load import Input
+from lumitip_fab.price_entry import Prices
 from lumitip_fab.toolchain import code_hash
 
 _DIGITS = 5  # of every figure: the same on any machine

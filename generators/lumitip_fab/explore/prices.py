@@ -1,62 +1,11 @@
 """What a design's boards cost, by `parts/prices.toml`."""
 
-from collections.abc import Mapping
-from typing import Annotated
-
-from pydantic import Field, ValidationError
-
 from lumitip_fab.design import Design
-from lumitip_fab.entry import Entry, Strict
-from lumitip_fab.errors import InputError, Problem
+from lumitip_fab.errors import Problem
 from lumitip_fab.load import Input
 from lumitip_fab.locate import design_folder, parts_file
-from lumitip_fab.source import read_toml
-from lumitip_fab.wording import problems_of, shown_path
-
-Price = Annotated[float, Field(ge=0, le=1e6)]
-
-
-class BoardPrice(Strict):
-    """One bare board."""
-
-    each: Price
-    """Whatever its size."""
-    per_cm2: Price
-    """By its area."""
-
-
-class PlacingPrice(Strict):
-    """Placing and soldering."""
-
-    each: Price
-    """Of one part."""
-
-
-class Prices(Entry):
-    """What parts cost, in one currency."""
-
-    currency: str = Field(pattern=r"^[A-Z]{3}$")
-    """Three letters, such as EUR."""
-    dated: str = Field(pattern=r"^\d{4}-\d{2}$")
-    """Year and month of the prices."""
-    each: Mapping[str, Price]
-    """One piece, by name of the entry in another file of `parts/`."""
-    board: BoardPrice
-    placing: PlacingPrice
-
-
-def load_prices(given: Input) -> Prices:
-    """The prices that go with a parameter file.
-
-    Raises:
-        InputError: with every fault of the file of prices.
-    """
-    path = parts_file(design_folder(given.sources[0].path), "prices")
-    source = read_toml(path, shown_path(path))
-    try:
-        return Prices.model_validate(source.table)
-    except ValidationError as error:
-        raise InputError(problems_of(error, Prices, lambda _: source)) from error
+from lumitip_fab.price_entry import Prices
+from lumitip_fab.wording import shown_path
 
 
 def unpriced(given: Input, prices: Prices, names: set[str]) -> list[Problem]:

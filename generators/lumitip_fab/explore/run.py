@@ -11,10 +11,11 @@ from lumitip_fab.errors import BuildError, InputError, OutputError, Problem
 from lumitip_fab.explore.accuracy import Sample
 from lumitip_fab.explore.evaluate import FIGURES, Job, Record, evaluate
 from lumitip_fab.explore.journal import Journal
-from lumitip_fab.explore.prices import Prices, load_prices, unpriced
+from lumitip_fab.explore.prices import unpriced
 from lumitip_fab.explore.vary import Axis, Changes, axes, changed, combinations
 from lumitip_fab.load import NAMED, Input, load
 from lumitip_fab.lock import locked
+from lumitip_fab.price_entry import Prices
 
 _PRICED = ("leds", "resistors", "photodetectors", "multiplexers", "capacitors", "controllers")
 
@@ -73,7 +74,7 @@ def explore(
         BuildError: if workers fail.
     """
     given = load(file)
-    prices = load_prices(given)
+    prices = given.catalogue.prices
     asked = axes(given, texts, points)
     _check(given, asked, prices, keep_size)
     jobs = [

@@ -1,0 +1,209 @@
+"""`bom.csv` against the boards' lists, the printed parts, the casting notes, the cables, and its
+own sums."""
+
+import csv
+import math
+import re
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from lumitip_fab.checks.cables import read_list
+from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip_fab.checks.stl import corners_mm
+from lumitip_fab.design import Design
+from lumitip_fab.errors import OutputError
+
+READS = (
+    "bom.csv", "boards/*/order/*_bom.csv", "backing/*.stl", "mould/*.stl", "holder/*.stl",
+    "fit/*.stl", "mould/*_casting.md", "wiring/cables.csv",
+)  # fmt: skip
+_FILE = "bom.csv"
+_PART_G = re.compile(r"^\| .*, part [AB] \| \*\*([\d.]+) g\*\* \|$", re.MULTILINE)
+_CENT = 0.0051
+_FRACTION = 0.01
+
+
+@dataclass(frozen=True)
+class Row:
+    """A line of the bill."""
+
+    group: str
+    item: str
+    part: str
+    quantity: float
+    each: float | None
+    price: float | None
+
+
+def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
+    """Read the bill as whoever orders by it, and count again."""
+    try:
+        rows, total, note = _read(outputs / _FILE)
+        parts = _parts(outputs, design)
+        grams = _grams(outputs, design)
+        metres = sum(row.length_mm for row in read_list(outputs / "wiring/cables.csv")) / 1000
+        cast = sum(map(float, _casting(outputs, design)))
+    except OutputError as error:
+        yield unreadable("bom.readable", _FILE, str(error))
+        return
+    yield _count("parts", _wrong_parts(rows, parts, design), "parts")
+    boards = {f"{name} board" for name in _boards(design)} | {"placing and soldering"}
+    yield _count("boards", sorted({r.item for r in rows if r.group == "boards"} ^ boards), "boards")
+    yield _prints(rows, grams)
+    yield _near("silicone", rows, "casting", cast, "g", "parts A and B of both casting notes")
+    yield _near("film", rows, "mask", 2.0, "sheets", "one for each finger")
+    yield _near("wire", rows, "wiring", metres, "m", "of every wire in the list of cables")
+    bolts = sum(r.quantity for r in rows if r.item.startswith(f"{design.mount.bolt} socket"))
+    wanted = float(2 * len(design.mount.bolt_u_mm))
+    yield Measurement("bom.bolts", _FILE, bolts, wanted, wanted, "bolts", "of both fingers")
+    yield _count("prices", _wrong_prices(rows, design), "lines")
+    yield _sum(rows, total, note, design)
+
+
+def _read(path: Path) -> tuple[tuple[Row, ...], float, str]:
+    try:
+        with path.open(encoding="utf-8", newline="") as file:
+            told = list(csv.DictReader(file))
+        rows = tuple(
+            Row(r["group"], r["item"], r["part"], float(r["quantity"]), _price(r["unit_price"]),
+                _price(r["price"]))
+            for r in told[:-1]
+        )  # fmt: skip
+        if told[-1]["group"] != "total":
+            raise ValueError("its last line is no total")
+        return rows, float(told[-1]["price"]), told[-1]["for"]
+    except (OSError, ValueError, KeyError, IndexError, TypeError, csv.Error) as error:
+        raise OutputError(f"{path}: cannot be read as a bill: {error!r:.120}") from error
+
+
+def _price(text: str) -> float | None:
+    return float(text) if text else None
+
+
+def _boards(design: Design) -> tuple[str, ...]:
+    return (*(f.name for f in design.fingers), *(c.name for c in design.carriers))
+
+
+def _parts(outputs: Path, design: Design) -> Counter[str]:
+    """How many of each order number, by the list that goes to a board house that tells it."""
+    fab = next(
+        fab for fab in design.fabs if {"part", "quantity"} <= {field for _, field in fab.bom}
+    )
+    heading = {field: head for head, field in fab.bom}
+    found: Counter[str] = Counter()
+    for name in _boards(design):
+        path = outputs / f"boards/{name}/order/{fab.name}_{name}_bom.csv"
+        try:
+            with path.open(encoding="utf-8", newline="") as file:
+                for row in csv.DictReader(file):
+                    found[row[heading["part"]]] += int(row[heading["quantity"]])
+        except (OSError, ValueError, KeyError) as error:
+            raise OutputError(f"{path}: cannot be read: {error!r:.120}") from error
+    return found
+
+
+def _grams(outputs: Path, design: Design) -> dict[str, float]:
+    """Mass of each printed part, solid."""
+    found = {}
+    for path in sorted(
+        p for k in ("backing", "mould", "holder", "fit") for p in (outputs / k).glob("*.stl")
+    ):
+        corners = corners_mm(path).reshape(-1, 3, 3)
+        mm3 = float(np.linalg.det(corners).sum() / 6)
+        name = path.relative_to(outputs).as_posix()
+        found[name] = mm3 / 1000 * design.slicing.of(name).density_g_ml
+    return found
+
+
+def _casting(outputs: Path, design: Design) -> Iterator[str]:
+    for finger in design.fingers:
+        path = outputs / f"mould/{finger.name}_casting.md"
+        try:
+            yield from _PART_G.findall(path.read_text(encoding="utf-8"))
+        except (OSError, UnicodeDecodeError) as error:
+            raise OutputError(f"{path}: {error}") from error
+
+
+def _wrong_parts(rows: tuple[Row, ...], parts: Counter[str], design: Design) -> list[str]:
+    told: Counter[str] = Counter()
+    for row in rows:
+        if row.group == "electronics":
+            told[row.part] += round(row.quantity)
+    wanted = parts + Counter({design.controller.board: 1})
+    return [f"{part}: {told[part]}, not {wanted[part]}" for part in sorted({*told, *wanted})
+            if told[part] != wanted[part]]  # fmt: skip
+
+
+def _prints(rows: tuple[Row, ...], grams: dict[str, float]) -> Measurement:
+    told = {row.item: row.quantity for row in rows if row.group == "prints"}
+    if told.keys() != grams.keys():
+        wrong = sorted(told.keys() ^ grams.keys())
+        return unreadable("bom.prints", _FILE, f"lists other parts: {', '.join(wrong[:3])}")
+    off = {name: abs(told[name] / grams[name] - 1) for name in grams}
+    worst = max(off, key=lambda name: off[name])
+    return Measurement("bom.prints", _FILE, 100 * off[worst], 0, 100 * _FRACTION, "%",
+                       f"mass against volume and density, worst at {worst}")  # fmt: skip
+
+
+def _near(
+    check: str, rows: tuple[Row, ...], group: str, wanted: float, unit: str, note: str
+) -> Measurement:
+    told = sum(row.quantity for row in rows if row.group == group)
+    room = _FRACTION * wanted
+    return Measurement(f"bom.{check}", _FILE, told, wanted - room, wanted + room, unit, note)
+
+
+def _wrong_prices(rows: tuple[Row, ...], design: Design) -> list[str]:
+    """Lines whose price is not quantity times unit price, or whose unit price is not the one of
+    the design."""
+    wrong = []
+    for row in rows:
+        each = _each(row, design)
+        price = None if each is None else row.quantity * each
+        if not _same(row.each, each, 5e-4 * (each or 0)) or not _same(row.price, price, _CENT):
+            wrong.append(f"{row.item}: {row.each} each, {row.price} in all")
+    return wrong
+
+
+def _each(row: Row, design: Design) -> float | None:
+    """Unit price of a line."""
+    purchase = design.purchase
+    if row.group in ("electronics", "fasteners"):
+        known = {piece.item: piece.each for piece in purchase.pieces}
+        priced = next((p.each for p in purchase.parts if p.of(row.part)), None)
+        return known.get(row.item, priced)
+    if row.group == "boards":
+        boxes = {c.name: c.box for c in design.carriers}
+        box = boxes.get(row.item.removesuffix(" board"), design.board.box)
+        bare = purchase.board_each + box.width_mm * box.length_mm / 100 * purchase.board_per_cm2
+        return round(bare, 2) if row.item.endswith(" board") else purchase.placing_each
+    if row.group == "prints":
+        kg = purchase.filament_kg[design.slicing.of(row.item) != design.slicing.backing]
+        return None if kg is None else kg / 1000
+    if row.group == "casting":
+        return None if purchase.silicone_kg is None else purchase.silicone_kg / 1000
+    return {"mask": purchase.film_sheet, "wiring": purchase.wire_m}.get(row.group)
+
+
+def _same(told: float | None, wanted: float | None, room: float) -> bool:
+    if told is None or wanted is None:
+        return told is wanted
+    return abs(told - wanted) <= room
+
+
+def _sum(rows: tuple[Row, ...], total: float, note: str, design: Design) -> Measurement:
+    """The total against its lines; it must say of when the prices are, and what they are worth."""
+    purchase = design.purchase
+    told = (purchase.currency, purchase.dated, purchase.confidence)
+    lines = sum(row.price or 0.0 for row in rows)
+    off = abs(lines - total) if all(word in note for word in told) else math.nan
+    return Measurement("bom.total", _FILE, off, 0, _CENT, purchase.currency, f"of {lines:.2f}")
+
+
+def _count(check: str, wrong: list[str], unit: str) -> Measurement:
+    note = "; ".join(wrong[:4]) + (" …" if len(wrong) > 4 else "")
+    return Measurement(f"bom.{check}", _FILE, float(len(wrong)), 0, 0, unit, note)

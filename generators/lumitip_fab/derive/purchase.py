@@ -1,0 +1,83 @@
+"""What is bought, with the prices of the catalogue; a price that is missing stays open."""
+
+import math
+from collections.abc import Mapping
+
+from lumitip_fab.design import Holder, Mount
+from lumitip_fab.design.purchase import Bought, PartPrice, Purchase
+from lumitip_fab.design.slicing import Slicing
+from lumitip_fab.load import Input
+from lumitip_fab.price_entry import Prices
+
+_METRIC = {4.0: "M2", 5.0: "M2.5", 5.5: "M3", 7.0: "M4"}  # by width of the nut, ISO 4032
+_NUT_SHARE = 0.8  # height of a nut, of its thread's diameter
+
+
+def derive_purchase(
+    given: Input, mount: Mount, holders: tuple[Holder, ...], slicing: Slicing
+) -> Purchase:
+    """Screws and controller, and the prices of everything else."""
+    p, prices = given.parameters, given.catalogue.prices
+    pieces = [
+        Bought("electronics", p.controller.board, "", p.controller.board, "reads the receiver", 1,
+               prices.each.get(p.controller.board)),
+        *_bolts(mount, prices),
+        *(each for holder in holders for each in _screws(given, holder, prices)),
+    ]  # fmt: skip
+    return Purchase(
+        currency=prices.currency,
+        dated=prices.dated,
+        source=prices.source,
+        confidence=prices.confidence,
+        pieces=tuple(pieces),
+        parts=_parts(given, prices),
+        board_each=prices.board.each,
+        board_per_cm2=prices.board.per_cm2,
+        placing_each=prices.placing.each,
+        filament_kg=(
+            prices.kg.get(slicing.backing.name),
+            prices.kg.get(slicing.rigid.name),
+        ),
+        silicone_kg=prices.kg.get(p.mould.silicone),
+        film_sheet=prices.sheet.get(p.mask.film),
+        wire_m=prices.wire_m,
+    )
+
+
+def _bolts(mount: Mount, prices: Prices) -> list[Bought]:
+    item = f"{mount.bolt} socket head screw"
+    where = f"fingers to gripper; passes {mount.land_mm:g} mm, then into the gripper's thread"
+    count = 2 * len(mount.bolt_u_mm)
+    return [Bought("fasteners", item, "", "ISO 4762", where, count, prices.each.get(item))]
+
+
+def _screws(given: Input, holder: Holder, prices: Prices) -> list[Bought]:
+    """Screws through the breakout board into nuts under its holder."""
+    p = given.parameters
+    thread = _METRIC.get(p.holder.nut_mm)
+    count = len(holder.holes)
+    if thread is None:
+        name = f"for nuts of {p.holder.nut_mm:g} mm across flats"
+        return [Bought("fasteners", f"screw and nut, {name}", "", "", "breakout on its holder",
+                       count, None)]  # fmt: skip
+    through = p.stack.pcb_mm + p.holder.standoff_mm + holder.wall_mm
+    length = 2 * math.ceil((through + _NUT_SHARE * float(thread[1:])) / 2)
+    where = "breakout on its holder"
+    return [
+        Bought("fasteners", f"{thread} x {length} screw", "", "ISO 4762", where, count,
+               prices.each.get(f"{thread} screw")),
+        Bought("fasteners", f"{thread} nut", "", "ISO 4032", where, count,
+               prices.each.get(f"{thread} nut")),
+    ]  # fmt: skip
+
+
+def _parts(given: Input, prices: Prices) -> tuple[PartPrice, ...]:
+    """Everything in the catalogue that has an order number and a price."""
+    told: dict[str, float] = {}
+    for kind in type(given.catalogue).model_fields:
+        entries = getattr(given.catalogue, kind)
+        for name, entry in entries.items() if isinstance(entries, Mapping) else ():
+            order = getattr(entry, "order_number", None)
+            if order is not None and name in prices.each:
+                told[order] = prices.each[name]
+    return tuple(PartPrice(part, told[part]) for part in sorted(told))

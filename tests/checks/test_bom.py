@@ -1,0 +1,92 @@
+"""Damage the bill of materials or what it is counted from, and exactly the right checks fail."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from damages import failing as failing_of
+from lumitip_fab.derive import derive
+from lumitip_fab.load import load
+
+_NEEDED = ("boards", "backing", "mould", "holder", "fit", "wiring")
+
+
+@pytest.fixture(scope="module")
+def billed(outputs: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The bill of the published design, and what it is counted from. Do not change it."""
+    folder = tmp_path_factory.mktemp("billed") / "out"
+    for part in _NEEDED:
+        shutil.copytree(outputs / part, folder / part)
+    for file in ("design.json", "bom.csv"):
+        shutil.copy(outputs / file, folder / file)
+    return folder
+
+
+@pytest.fixture
+def copied(billed: Path, tmp_path: Path) -> Path:
+    """A copy of it, to damage."""
+    return Path(shutil.copytree(billed, tmp_path / "copied"))
+
+
+def failing(folder: Path) -> set[str]:
+    return failing_of(folder, "bom")
+
+
+# File, what is replaced in it, by what, and the checks that then fail.
+EDITS = [
+    ("bom.csv", "32 on emitter,32,piece,0.3,9.60", "31 on emitter,31,piece,0.3,9.30",
+     {"parts", "total"}),
+    ("bom.csv", "32,piece,0.3,9.60", "32,piece,0.2,6.40", {"prices", "total"}),
+    ("bom.csv", "32,piece,0.3,9.60", "32,piece,0.3,6.90", {"prices", "total"}),
+    ("bom.csv", "Elektronik,15406085BA300,", "Elektronik,15406085BA200,", {"parts", "prices"}),
+    ("bom.csv", "emitter board", "emitting board", {"boards"}),
+    ("bom.csv", "backing/emitter_backing.stl", "backing/emitter_back.stl", {"prints"}),
+    ("bom.csv", "a sheet for each finger,2,sheet,2,4.00",
+     "a sheet for each finger,1,sheet,2,2.00", {"film", "total"}),
+    ("bom.csv", "thread\",2,piece", "thread\",4,piece", {"bolts", "prices"}),
+    ("bom.csv", "EUR, 2026-11", "EUR", {"total"}),
+    ("bom.csv", "\ntotal,", "\nsum,", {"readable"}),
+    ("boards/receiver/order/generic_receiver_bom.csv", ',"74HC4051PW,118"', ',"74HC4067PW,118"',
+     {"parts"}),
+    ("mould/emitter_casting.md", "part A | **", "part A | **1", {"silicone"}),
+    ("wiring/cables.csv", "BK,0.08,250", "BK,0.08,950", {"wire"}),
+]  # fmt: skip
+
+
+def test_nothing_fails_as_it_is_written(billed: Path) -> None:
+    assert failing(billed) == set()
+
+
+@pytest.mark.parametrize(("file", "old", "new", "expected"), EDITS)
+def test_a_damage_fails_its_check(
+    copied: Path, file: str, old: str, new: str, expected: set[str]
+) -> None:
+    path = copied / file
+    text = path.read_text(encoding="utf-8")
+    assert old in text
+    path.write_text(text.replace(old, new, 1), encoding="utf-8")
+    assert failing(copied) == expected
+
+
+def test_a_part_of_another_size_is_seen(copied: Path) -> None:
+    shutil.copy(copied / "mould/emitter_mould.stl", copied / "backing/emitter_backing.stl")
+    assert failing(copied) == {"prints"}
+
+
+def test_lost_files_are_told(copied: Path) -> None:
+    (copied / "mould/emitter_casting.md").unlink()
+    assert failing(copied) == {"readable"}
+
+
+def test_a_users_own_prices_replace_those_of_the_package(design_dir: Path, tmp_path: Path) -> None:
+    folder = Path(shutil.copytree(design_dir, tmp_path / "design"))
+    prices = folder / "parts" / "prices.toml"
+    text = prices.read_text(encoding="utf-8")
+    dearer = text.replace('"15406085BA300" = 0.30', '"15406085BA300" = 0.45')
+    prices.write_text(dearer.replace('"Solaris" = 60.0\n', ""), encoding="utf-8")
+    before, after = (derive(load(at / "fingertip.toml")).purchase for at in (design_dir, folder))
+    told = {part.part: part.each for part in after.parts}
+    assert told["15406085BA300"] == 0.45
+    assert after.silicone_kg is None
+    assert {p.part: p.each for p in before.parts}["15406085BA300"] == 0.3
