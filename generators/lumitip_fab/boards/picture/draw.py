@@ -49,7 +49,8 @@ def png_picture(seen: tuple[Painted, ...]) -> bytes:
     axes.set(xlim=(left, right), ylim=(low, high))
     for each in seen:
         for polygon in _polygons(each):
-            axes.add_patch(PathPatch(_outline(polygon), facecolor=each.colour, linewidth=0))
+            # Unlike add_patch this fits no limits to each of a thousand pieces.
+            axes.add_artist(PathPatch(_outline(polygon), facecolor=each.colour, linewidth=0))
     file = io.BytesIO()
     figure.savefig(file, format="png", transparent=True, metadata={"Software": None})
     return file.getvalue()
