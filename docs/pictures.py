@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import pypdfium2
+from PIL import Image
 from vtkmodules import vtkInteractionStyle as _  # noqa: F401 - registers the renderer
 from vtkmodules import vtkRenderingOpenGL2 as __  # noqa: F401
 from vtkmodules.vtkFiltersCore import vtkFeatureEdges, vtkPolyDataNormals
@@ -58,7 +59,18 @@ def main(out: Path) -> None:
     for name in ("breakout", "flange"):
         shutil.copy(out / f"boards/{name}/{name}_front.png", IMAGES / f"board_{name}.png")
     shutil.copy(out / "wiring/wiring.svg", IMAGES)
+    _pages(pypdfium2.PdfDocument(out / "manual/manual.pdf"), (0, 5, 7))
     draw_glb(out / "assembly/assembly.glb", IMAGES / "assembly.png")
+
+
+def _pages(document: pypdfium2.PdfDocument, numbers: tuple[int, ...]) -> None:
+    """Pages of the manual side by side."""
+    shown = [document[number].render(scale=0.75).to_pil() for number in numbers]
+    width, height = shown[0].size
+    together = Image.new("RGB", (len(shown) * (width + 8) - 8, height), "#c9d0d6")
+    for place, page in enumerate(shown):
+        together.paste(page, (place * (width + 8), 0))
+    together.save(IMAGES / "manual.png", optimize=True)
 
 
 def actor(stl: Path, colour: Vector) -> list[vtkActor]:

@@ -82,13 +82,14 @@ def _build_anew(file: Path, told: str, out: Path, progress: Progress) -> Report:
 def _write(
     out: Path, origin: manifest.Origin, ready: "list[Batch]", design: "Design", progress: Progress
 ) -> Report:
-    from lumitip_fab.graph import late_tasks, tasks
+    from lumitip_fab.graph import late_steps, late_task, tasks
     from lumitip_fab.made import Made
 
     run = _Run(out, manifest.read(out), progress)
     run.make(ready, tuple(tasks(design)))
-    made = Made(out, {path: entry.sha256 for path, entry in run.files.items()})
-    run.make([], tuple(late_tasks(design, made)))
+    for step in late_steps():
+        made = Made(out, {path: entry.sha256 for path, entry in run.files.items()})
+        run.make([], (late_task(step, design, made),))
     removed = _remove(out, set(run.before.files) - set(run.files))
     manifest.write(out, manifest.Manifest(run.files, run.keys, origin))
     return Report(origin, tuple(sorted(run.written)), removed, tuple(run.ran), tuple(run.kept))

@@ -41,6 +41,11 @@ _LISTED = (
     "backing/*.stl", "mould/*.stl", "holder/*.stl", "fit/*.stl", "mould/*_casting.md",
     "boards/*/order/generic_*_bom.csv",
 )  # fmt: skip
+_SHOWN = (
+    "assembly/*_exploded.svg", "bom.csv", "boards/*/*_front.png", "mask/*_mask.svg",
+    "mask/*_wrapping.md", "mould/*_casting.md", "print/printing.md", "wiring/*",
+)  # fmt: skip
+_SET = ("lxml", "markdown-it-py", "pillow", "reportlab", "svglib")
 STEPS = (
     Step("mask", "files", "mask_files", False, _INK),
     Step("printing", "settings", "print_settings", False, ()),
@@ -56,6 +61,7 @@ STEPS = (
     Step("mechanical", "holder", "holder_files", True, _CAD),
     Step("mechanical", "fit_plate", "fit_plate_files", True, _CAD),
     Step("parts_list", "files", "bill_of_materials", False, ("numpy",), _LISTED),
+    Step("manual", "files", "manual_files", False, _SET, _SHOWN),
 )
 
 
@@ -82,13 +88,16 @@ class Task:
         return hashlib.sha256("\n".join(told).encode()).hexdigest()
 
 
-def late_tasks(design: Design, made: Made) -> Iterator[Task]:
-    """A run of every step that reads what the others made."""
-    for step in STEPS:
-        if step.reads:
-            names = (name for name in argument_names(step) if name != "made")
-            shared = {name: getattr(design, name) for name in names}
-            yield Task(step.name, step, {"made": made.only(step.reads), **shared})
+def late_steps() -> tuple[Step, ...]:
+    """The steps that read what others made, in their order: a later one may read an earlier's."""
+    return tuple(step for step in STEPS if step.reads)
+
+
+def late_task(step: Step, design: Design, made: Made) -> Task:
+    """The run of a step that reads what others made."""
+    names = (name for name in argument_names(step) if name != "made")
+    shared = {name: getattr(design, name) for name in names}
+    return Task(step.name, step, {"made": made.only(step.reads), **shared})
 
 
 def tasks(design: Design) -> Iterator[Task]:

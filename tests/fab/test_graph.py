@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from lumitip_fab.derive import derive
-from lumitip_fab.graph import EACH, STEPS, argument_names, late_tasks, tasks
+from lumitip_fab.graph import EACH, STEPS, argument_names, late_steps, late_task, tasks
 from lumitip_fab.load import load
 from lumitip_fab.made import Made
 
@@ -77,7 +77,8 @@ def test_what_reads_others_files_runs_again_when_those_change(design_dir: Path) 
     design = derive(load(design_dir / "presets" / "published.toml"))
 
     def late(files: dict[str, str]) -> dict[str, str]:
-        return {task.name: task.key for task in late_tasks(design, Made(Path(), files))}
+        made = Made(Path(), files)
+        return {step.name: late_task(step, design, made).key for step in late_steps()}
 
     before = late({"backing/emitter_backing.stl": "1", "mask/emitter_mask.svg": "1"})
     assert "bill_of_materials" in before

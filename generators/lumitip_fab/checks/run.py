@@ -14,7 +14,7 @@ from lumitip_fab.encoding import read_design
 
 MODULES = (
     "manifest", "layout", "firmware", "mask", "backing", "fit_plate", "mould", "assembly", "board",
-    "schematic", "orders", "printing", "holder", "robot", "wiring", "bom",
+    "schematic", "orders", "printing", "holder", "robot", "wiring", "bom", "manual",
 )  # fmt: skip
 
 

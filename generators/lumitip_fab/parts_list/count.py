@@ -70,7 +70,7 @@ def made_things(
         for path in made.like(pattern):
             filament = slicing.of(path)
             kg = purchase.filament_kg[filament != slicing.backing]
-            grams = round(volume_ml(made.read(path)) * filament.density_g_ml, 1)
+            grams = round(volume_ml(made.read(path)) * filament.density_g_ml, 2)
             yield Line("prints", path, "", filament.name, "solid, brim left out", grams, "g",
                        None if kg is None else kg / _GRAMS)  # fmt: skip
     notes = [made.text(path) for path in made.like("mould/*_casting.md")]

@@ -1,0 +1,157 @@
+"""The build manual against the design, the notes and the drawings beside it; PDF against HTML."""
+
+import csv
+import re
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+from lumitip_fab.checks.manual_read import Chapter, Manual, pdf_words, read_html
+from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip_fab.design import Design
+from lumitip_fab.errors import OutputError
+
+READS = (
+    "manual/*", "assembly/*_exploded.svg", "bom.csv", "boards/*/*_front.png", "mask/*",
+    "mould/*_casting.md", "wiring/*", "print/*",
+)  # fmt: skip
+_HTML, _PDF = "manual/manual.html", "manual/manual.pdf"
+_GLANCE = "At a glance"
+_WARM_UP_MIN = 5.0  # Table I of the published sensor
+_FLAP = re.compile(r"^\| (\d+) \| ([\d.]+) \| ([\d.]+) \| ([\d.]+) \|$", re.MULTILINE)
+_AMOUNT = re.compile(r"^\| (.*?) \| \**([\d.]+ (?:mL|g|h))\** \|$", re.MULTILINE)
+_WIRE = re.compile(
+    r"^\| (W\d+\.\d+) \| (.*?) \| (.*?) \| (.*?) \| (.*?) \| (.*?) \|$", re.MULTILINE
+)
+_FILE = re.compile(r"[\w*]+(?:/[\w*]+)+\.\w+")
+_PLAIN = str.maketrans({"−": "-", "≥": ">=", "≤": "<=", "→": "->"})  # as the PDF's letters have it
+
+
+def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
+    """Read both manuals as their readers do."""
+    try:
+        manual = read_html(outputs / _HTML)
+    except OutputError as error:
+        yield unreadable("manual.readable", _HTML, str(error))
+        return
+    yield _count("drawings", _HTML, _wrong_drawings(outputs, manual, design), "drawings")
+    yield _count("files", _HTML, _lost_files(outputs, manual), "files that are named")
+    yield _count("figures", _HTML, _wrong_figures(manual, design), "figures")
+    yield _count("units", _HTML, _wrong_units(manual, design), "figures with a unit")
+    for check, wanted in (
+        ("flaps", _noted(outputs, "mask/{}_wrapping.md", _FLAP, design)),
+        ("amounts", _noted(outputs, "mould/{}_casting.md", _AMOUNT, design)),
+        ("wires", _noted(outputs, "wiring/cables.md", _WIRE, design)),
+        ("parts", _billed(outputs)),
+    ):
+        yield _count(check, _HTML, _differing(manual, wanted), "rows")
+    yield _pdf(outputs, manual)
+
+
+def _wrong_drawings(outputs: Path, manual: Manual, design: Design) -> list[str]:
+    """Pictures other than the file of their name, and those that are missing."""
+    names = [finger.name for finger in design.fingers]
+    boards = [*names, *(carrier.name for carrier in design.carriers)]
+    wanted = {"assembly/receiver_exploded.svg", "wiring/wiring.svg"}
+    wanted |= {f"mask/{name}_mask.svg" for name in names}
+    wanted |= {f"boards/{name}/{name}_front.png" for name in boards}
+    shown = dict(manual.pictures)
+    wrong = sorted(wanted ^ shown.keys())
+    for name in sorted(wanted & shown.keys()):
+        path = outputs / name
+        if not path.is_file() or path.read_bytes() != shown[name]:
+            wrong.append(f"{name} is another")
+    return wrong
+
+
+def _lost_files(outputs: Path, manual: Manual) -> list[str]:
+    named = {code for code in manual.codes if _FILE.fullmatch(code)}
+    return sorted(name for name in named if not any(outputs.glob(name)))
+
+
+def _wrong_figures(manual: Manual, design: Design) -> list[str]:
+    """The table at a glance, and chapters that must be there."""
+    wanted = {
+        "layers of the backings": f"{design.printing.layer_mm:g} mm",
+        "filament of the backings": design.printing.material,
+        "silicone": design.mould.silicone,
+        "curing at room temperature": f"{design.mould.cure_h:g} h",
+        "film": design.mask.film,
+        "wrapping": f"{design.mask.soften_c:g} °C",
+        "supply of the LEDs": f"{design.wiring.supply_v:g} V",
+        "current of the LEDs, nominal": f"{sum(design.wiring.current_ma):.1f} mA",
+        "wires": str(sum(len(cable.wires) for cable in design.cabling.cables)),
+        "gripper": design.mount.gripper,
+        "bolts for each finger": f"{len(design.mount.bolt_u_mm)} x {design.mount.bolt}",
+        "warm-up": f"{_WARM_UP_MIN:g} min",
+    }
+    chapter = next((c for c in manual.chapters if c.heading == _GLANCE), Chapter(""))
+    told = {row[0]: row[-1] for table in chapter.tables for row in table[1:]}
+    return sorted(k for k in {*wanted, *told} if wanted.get(k) != told.get(k))
+
+
+def _wrong_units(manual: Manual, design: Design) -> list[str]:
+    """Hours, degrees and volts anywhere in the text that are not the design's."""
+    volts = {design.wiring.supply_v, 5.0, 0.0}  # the controller's supply, and ground
+    allowed = {"h": {design.mould.cure_h}, "°C": {design.mask.soften_c}, "V": volts}
+    told = re.findall(r"(?<![\w.])(\d+(?:\.\d+)?) (h|°C|V)\b", " ".join(manual.blocks))
+    found = {(float(value), unit) for value, unit in told}
+    wrong = [f"{value:g} {unit}" for value, unit in sorted(found) if value not in allowed[unit]]
+    lost = [f"no {unit}" for unit in allowed if unit not in {u for _, u in found}]
+    return wrong + lost
+
+
+def _noted(outputs: Path, name: str, row: re.Pattern[str], design: Design) -> list[tuple[str, ...]]:
+    """Rows of the notes, of both fingers where each has its own, in their order."""
+    files = dict.fromkeys(name.format(finger.name) for finger in design.fingers)
+    found: list[tuple[str, ...]] = []
+    for file in files:
+        try:
+            found += row.findall((outputs / file).read_text(encoding="utf-8"))
+        except (OSError, UnicodeDecodeError):
+            found.append((f"{file} cannot be read",))
+    return found
+
+
+def _billed(outputs: Path) -> list[tuple[str, ...]]:
+    try:
+        with (outputs / "bom.csv").open(encoding="utf-8", newline="") as file:
+            rows = list(csv.DictReader(file))
+        told = [
+            (r["item"], r["for"], f"{r['quantity']} {r['unit']}", r["price"]) for r in rows[:-1]
+        ]
+        return [*told, ("all together", "", "", rows[-1]["price"])]
+    except (OSError, ValueError, LookupError, csv.Error) as error:
+        return [(f"bom.csv cannot be read: {error!r:.80}",)]
+
+
+def _differing(manual: Manual, wanted: list[tuple[str, ...]]) -> list[str]:
+    """Rows that are missing from the manual's tables, or stand there in another order."""
+    chapters = (chapter for chapter in manual.chapters if chapter.heading != _GLANCE)
+    rows = [tuple(row) for c in chapters for table in c.tables for row in table]
+    known = set(wanted)
+    keys = {row[0] for row in wanted}
+    width = {len(row) for row in wanted}
+    shown = [row for row in rows if row in known or (row[0] in keys and len(row) in width)]
+    if shown == wanted and wanted:
+        return []
+    wrong = [" ".join(row) for row in wanted if row not in shown]
+    return wrong or ["another order, or more of them"]
+
+
+def _pdf(outputs: Path, manual: Manual) -> Measurement:
+    """Words of the HTML that are not in the PDF."""
+    try:
+        told = pdf_words(outputs / _PDF)
+    except OutputError as error:
+        return unreadable("manual.pdf", _PDF, str(error))
+    wrong = [text for text in _plain(manual.blocks) if text not in told]
+    return _count("pdf", _PDF, wrong, "paragraphs of the HTML")
+
+
+def _plain(texts: Iterable[str]) -> Iterator[str]:
+    return (re.sub(r"\s", "", text.translate(_PLAIN)) for text in texts)
+
+
+def _count(check: str, subject: str, wrong: list[str], unit: str) -> Measurement:
+    note = "; ".join(text[:60] for text in wrong[:4]) + (" …" if len(wrong) > 4 else "")
+    return Measurement(f"manual.{check}", subject, float(len(wrong)), 0, 0, unit, note)

@@ -1,0 +1,51 @@
+"""`manual/manual.html` and `manual.pdf`, which say the same."""
+
+from lumitip_fab.artefact import Artefact
+from lumitip_fab.design import (
+    Cabling,
+    Carrier,
+    Controller,
+    Electrical,
+    Holder,
+    Mask,
+    Mould,
+    Mount,
+    Printing,
+    Title,
+    Wiring,
+)
+from lumitip_fab.made import Made
+from lumitip_fab.manual.page import html_page
+from lumitip_fab.manual.sheet import pdf_sheets
+from lumitip_fab.manual.text import Facts, manual_text
+
+
+def manual_files(
+    made: Made, title: Title, printing: Printing, mould: Mould, mask: Mask, mount: Mount,
+    wiring: Wiring, cabling: Cabling, controller: Controller, electrical: Electrical,
+    carriers: tuple[Carrier, ...], holders: tuple[Holder, ...],
+) -> tuple[Artefact, ...]:  # fmt: skip
+    """The manual twice: to read on a screen, and to print.
+
+    Args:
+        made: drawings, notes, the list of parts.
+        title: of the design.
+        printing: layers.
+        mould: silicone.
+        mask: film.
+        mount: bolts and gripper.
+        wiring: supply of the LEDs.
+        cabling: cables.
+        controller: its name.
+        electrical: currents.
+        carriers: boards outside the fingers.
+        holders: what holds the controller's board.
+    """
+    facts = Facts(title, printing, mould, mask, mount, wiring, cabling, controller, electrical,
+                  carriers, holders)  # fmt: skip
+    text = manual_text(facts, made)
+    name = f"{title.name} {title.revision}: build manual"
+    return (
+        Artefact("manual/manual.html", html_page(name, text, made).encode(), frame=""),
+        Artefact("manual/manual.pdf", pdf_sheets(name, text, made), frame=""),
+    )

@@ -1,0 +1,171 @@
+"""The manual as a PDF on A4: the same text, set by reportlab."""
+
+import io
+from collections.abc import Iterator
+from html import escape
+
+from markdown_it.token import Token
+from reportlab.lib import colors
+from reportlab.lib.pagesizes import A4
+from reportlab.lib.styles import ParagraphStyle
+from reportlab.lib.units import mm
+from reportlab.pdfgen.canvas import Canvas
+from reportlab.platypus import (
+    CondPageBreak,
+    Flowable,
+    Image,
+    KeepTogether,
+    LongTable,
+    Paragraph,
+    SimpleDocTemplate,
+    Spacer,
+    TableStyle,
+)
+from svglib.svglib import svg2rlg
+
+from lumitip_fab.made import Made
+from lumitip_fab.manual.page import markdown
+
+_MARGIN = 20 * mm
+_WIDTH = A4[0] - 2 * _MARGIN
+_MOST_HIGH = 100 * mm
+_LEAST_LEFT = 110 * mm  # of a page, for a chapter to begin on it
+_BODY = ParagraphStyle("body", fontName="Helvetica", fontSize=9.5, leading=13, spaceAfter=5)
+_ITEM = ParagraphStyle("item", _BODY, leftIndent=16, spaceAfter=3)
+_CELL = ParagraphStyle("cell", _BODY, fontSize=8, leading=10, spaceAfter=0)
+_GREY = colors.HexColor("#5a6b7a")
+_SMALL = ParagraphStyle("small", _BODY, fontSize=8, alignment=1, textColor=_GREY)
+_HEADS = {
+    level: ParagraphStyle(f"h{level}", _BODY, fontName="Helvetica-Bold", fontSize=size,
+                          leading=size * 1.25, spaceBefore=before, spaceAfter=6, keepWithNext=1)
+    for level, (size, before) in {1: (20, 0), 2: (15, 14), 3: (12, 10), 4: (10.5, 8)}.items()
+}  # fmt: skip
+_LINES = TableStyle([
+    ("GRID", (0, 0), (-1, -1), 0.4, colors.HexColor("#cfd6dc")),
+    ("BACKGROUND", (0, 0), (-1, 0), colors.HexColor("#f4f6f8")),
+    ("VALIGN", (0, 0), (-1, -1), "TOP"),
+    ("TOPPADDING", (0, 0), (-1, -1), 2), ("BOTTOMPADDING", (0, 0), (-1, -1), 2),
+])  # fmt: skip
+_PLAIN = str.maketrans({"−": "-", "≥": ">=", "≤": "<=", "→": "->"})  # not in the fonts of every PDF
+
+
+def pdf_sheets(name: str, text: str, made: Made) -> bytes:
+    """The bytes of the PDF; the same text gives the same.
+
+    Args:
+        name: its title.
+        text: in Markdown.
+        made: for the pictures.
+    """
+    buffer = io.BytesIO()
+    document = SimpleDocTemplate(
+        buffer, pagesize=A4, leftMargin=_MARGIN, rightMargin=_MARGIN, topMargin=18 * mm,
+        bottomMargin=18 * mm, title=name, author="lumitip-fab", creator="lumitip-fab", invariant=1,
+    )  # fmt: skip
+
+    def foot(canvas: Canvas, _document: object) -> None:
+        canvas.setFont("Helvetica", 8)
+        canvas.setFillGray(0.45)
+        canvas.drawString(_MARGIN, 10 * mm, name.translate(_PLAIN))
+        canvas.drawRightString(A4[0] - _MARGIN, 10 * mm, str(canvas.getPageNumber()))
+
+    document.build(list(_flowables(markdown().parse(text), made)), onFirstPage=foot,
+                   onLaterPages=foot)  # fmt: skip
+    return buffer.getvalue()
+
+
+def _flowables(tokens: list[Token], made: Made) -> Iterator[Flowable]:
+    """The blocks of the text, one after the other."""
+    numbers: list[int | None] = []
+    rows: list[list[Paragraph]] = []
+    for at, token in enumerate(tokens):
+        if token.type in ("bullet_list_open", "ordered_list_open"):
+            numbers.append(int(token.attrs.get("start", 1)) if token.tag == "ol" else None)
+        elif token.type in ("bullet_list_close", "ordered_list_close"):
+            numbers.pop()
+        elif token.type == "table_open":
+            rows = []
+        elif token.type == "tr_open":
+            rows.append([])
+        elif token.type == "table_close":
+            yield _table(rows)
+        elif token.type == "inline":
+            before = tokens[at - 1]
+            if before.type in ("th_open", "td_open"):
+                told = _inline(token)
+                rows[-1].append(Paragraph(f"<b>{told}</b>" if before.tag == "th" else told, _CELL))
+            elif before.type == "heading_open":
+                yield from _heading(int(before.tag[1]), token)
+            elif numbers:
+                yield Paragraph(_inline(token), _ITEM, bulletText=_bullet(numbers))
+            else:
+                yield from _paragraph(token, made)
+
+
+def _bullet(numbers: list[int | None]) -> str:
+    number = numbers[-1]
+    if number is None:
+        return "\u2022"
+    numbers[-1] = number + 1
+    return f"{number}."
+
+
+def _heading(level: int, token: Token) -> Iterator[Flowable]:
+    if level == 2:
+        yield CondPageBreak(_LEAST_LEFT)
+    yield Paragraph(_inline(token), _HEADS[min(level, 4)])
+
+
+def _paragraph(token: Token, made: Made) -> Iterator[Flowable]:
+    children = token.children or []
+    pictures = [child for child in children if child.type == "image"]
+    if not pictures:
+        yield Paragraph(_inline(token), _BODY)
+    for child in pictures:
+        caption = Paragraph(escape(child.content), _SMALL)
+        yield KeepTogether([_picture(str(child.attrs["src"]), made), caption, Spacer(0, 6)])
+
+
+def _picture(path: str, made: Made) -> Flowable:
+    """A drawing stays a drawing; a picture of points is shown as it is."""
+    if path.endswith(".svg"):
+        drawing = svg2rlg(io.BytesIO(made.read(path)))
+        scale = min(_WIDTH / drawing.width, _MOST_HIGH / drawing.height)
+        drawing.scale(scale, scale)
+        drawing.width, drawing.height = drawing.width * scale, drawing.height * scale
+        drawing.hAlign = "CENTER"
+        return drawing
+    image = Image(io.BytesIO(made.read(path)))
+    scale = min(_WIDTH / image.imageWidth, _MOST_HIGH / image.imageHeight)
+    image.drawWidth, image.drawHeight = image.imageWidth * scale, image.imageHeight * scale
+    return image
+
+
+def _table(rows: list[list[Paragraph]]) -> Flowable:
+    """Columns as wide as their longest words ask, within the page."""
+    asked = [
+        max(min(len(row[i].getPlainText()), 34) for row in rows if i < len(row)) + 3
+        for i in range(max(map(len, rows)))
+    ]
+    share = min(_WIDTH / sum(asked), 5.0)
+    table = LongTable(rows, [share * a for a in asked], repeatRows=1, style=_LINES, hAlign="LEFT")
+    table.spaceBefore = table.spaceAfter = 6
+    return table
+
+
+def _inline(token: Token) -> str:
+    """Text in reportlab's own mark-up."""
+    told = []
+    for child in token.children or []:
+        match child.type:
+            case "text":
+                told.append(escape(child.content))
+            case "code_inline":
+                told.append(f'<font face="Courier">{escape(child.content)}</font>')
+            case "softbreak" | "hardbreak":
+                told.append(" ")
+            case "strong_open" | "em_open":
+                told.append("<b>" if child.tag == "strong" else "<i>")
+            case "strong_close" | "em_close":
+                told.append("</b>" if child.tag == "strong" else "</i>")
+    return "".join(told).translate(_PLAIN)

@@ -1,0 +1,209 @@
+"""What the manual says, in Markdown: its own chapters, and the notes that lie beside the parts."""
+
+import csv
+import io
+import re
+from dataclasses import dataclass
+
+from lumitip_fab.design import (
+    Cabling,
+    Carrier,
+    Controller,
+    Electrical,
+    Holder,
+    Mask,
+    Mould,
+    Mount,
+    Printing,
+    Title,
+    Wiring,
+)
+from lumitip_fab.made import Made
+
+WARM_UP_MIN = 5
+"""Until the readings stand still: Table I of the published sensor (arXiv 2306.05902)."""
+WEAR_GRASPS = 100
+"""After about so many grasps the published sensor's silicone had worn above the LEDs."""
+_HEADING = re.compile(r"^(#+) ", re.MULTILINE)
+
+
+@dataclass(frozen=True)
+class Facts:
+    """Of the design, what the manual's own chapters tell."""
+
+    title: Title
+    printing: Printing
+    mould: Mould
+    mask: Mask
+    mount: Mount
+    wiring: Wiring
+    cabling: Cabling
+    controller: Controller
+    electrical: Electrical
+    carriers: tuple[Carrier, ...]
+    holders: tuple[Holder, ...]
+
+
+def manual_text(facts: Facts, made: Made) -> str:
+    """The whole manual. An image stands alone in its paragraph; its path is below the outputs."""
+    chapters = (
+        _front(facts), _bought(made), _printed(made), _boards(facts, made), _wired(facts, made),
+        _cast(made), _wrapped(facts, made), _mounted(facts), _run(facts), _kept(facts),
+    )  # fmt: skip
+    return "\n\n".join(chapter.strip() for chapter in chapters) + "\n"
+
+
+def _front(facts: Facts) -> str:
+    mould, mask, printing = facts.mould, facts.mask, facts.printing
+    lit_ma = sum(facts.wiring.current_ma)
+    return f"""# {facts.title.name} {facts.title.revision}: build manual
+
+Made from the design, with the drawings of the files beside it. File names are below the folder of
+outputs. Read a chapter to its end before you begin with it.
+
+![The receiver, exploded: what lies upon what](assembly/receiver_exploded.svg)
+
+## At a glance
+
+| figure | value |
+|---|---|
+| layers of the backings | {printing.layer_mm:g} mm |
+| filament of the backings | {printing.material} |
+| silicone | {mould.silicone} |
+| curing at room temperature | {mould.cure_h:g} h |
+| film | {mask.film} |
+| wrapping | {mask.soften_c:g} °C |
+| supply of the LEDs | {facts.wiring.supply_v:g} V |
+| current of the LEDs, nominal | {lit_ma:.1f} mA |
+| wires | {sum(len(cable.wires) for cable in facts.cabling.cables)} |
+| gripper | {facts.mount.gripper} |
+| bolts for each finger | {len(facts.mount.bolt_u_mm)} x {facts.mount.bolt} |
+| warm-up | {WARM_UP_MIN} min |
+
+The order of work: print, order and solder boards, solder the wires on, glue the boards in, cast,
+print the film, wrap, mount, load the firmware, calibrate. Casting takes longest: {mould.cure_h:g} h
+for each finger, both at once in their own moulds."""
+
+
+def _bought(made: Made) -> str:
+    rows = list(csv.DictReader(io.StringIO(made.text("bom.csv"))))
+    lines = "\n".join(
+        f"| {row['item']} | {row['for']} | {row['quantity']} {row['unit']} | {row['price']} |"
+        for row in rows[:-1]
+    )
+    return f"""## 1. Parts
+
+`bom.csv` has makers and order numbers too. Prices in {rows[-1]["for"]}.
+
+| what | for | how much | price |
+|---|---|---:|---:|
+{lines}
+| all together | | | {rows[-1]["price"]} |"""
+
+
+def _printed(made: Made) -> str:
+    return f"""## 2. Print
+
+Print `fit/fit_plate.3mf` first: it takes minutes, and its reading is `printer.fit_mm`. Hold a
+board and the bolts against it, write the reading into the parameter file, build again, and print
+the rest.
+
+{_included(made.text("print/printing.md"))}"""
+
+
+def _boards(facts: Facts, made: Made) -> str:
+    names = ("emitter", "receiver", *(carrier.name for carrier in facts.carriers))
+    pictures = "\n\n".join(
+        f"![The {name} board, front](boards/{name}/{name}_front.png)"
+        for name in names
+        if f"boards/{name}/{name}_front.png" in made.sha256
+    )
+    zips = "\n".join(f"- `boards/{name}/order/`: {name}" for name in names)
+    return f"""## 3. Boards
+
+Each board has a zip for each board house, with Gerber and drill files, parts and places:
+
+{zips}
+
+1. Order the boards, or have them placed as well. Hold an LED and a photodetector against their
+   leaflets first: the note in each zip tells which terminal is marked, and how sure that is.
+2. Solder what is left: parts on the front first, the string resistors on the back of the emitter.
+3. Before the wires go in, measure between ground and supply of each board: no short.
+
+{pictures}"""
+
+
+def _cast(made: Made) -> str:
+    notes = "\n\n".join(_included(made.text(p)) for p in made.like("mould/*_casting.md"))
+    return f"""## 5. Cast
+
+The wires of chapter 4 are soldered before: they lie over the weir while the silicone cures.
+
+{notes}"""
+
+
+def _wrapped(facts: Facts, made: Made) -> str:
+    notes = "\n\n".join(
+        f"![The {name} mask, as it is printed](mask/{name}_mask.svg)\n\n"
+        + _included(made.text(f"mask/{name}_wrapping.md"))
+        for name in ("emitter", "receiver")
+    )
+    return f"""## 6. Print the film and wrap it
+
+The film goes limp at {facts.mask.soften_c:g} °C. Wrap each finger in the order of the
+flaps' numbers.
+
+{notes}"""
+
+
+def _wired(facts: Facts, made: Made) -> str:
+    return f"""## 4. Wire
+
+![Wiring](wiring/wiring.svg)
+
+{_included(made.text("wiring/cables.md"))}
+
+Measure {facts.wiring.supply_v:g} V and its polarity at the supply before the emitter is connected;
+the LEDs then draw about {sum(facts.wiring.current_ma):.1f} mA."""
+
+
+def _mounted(facts: Facts) -> str:
+    holder = (
+        "The controller's board goes into `holder/holder.3mf`, whose arms clip round the gripper.\n"
+        if facts.holders
+        else ""
+    )
+    return f"""## 7. Mount
+
+Screw each finger on ({len(facts.mount.bolt_u_mm)} x {facts.mount.bolt}); emitter and receiver
+face each other. Then join the cables of chapter 4 to their other ends.
+{holder}Open and close the gripper slowly once: no wire may be drawn taut."""
+
+
+def _run(facts: Facts) -> str:
+    return f"""## 8. Firmware, warm-up and calibration
+
+1. Open `firmware/firmware.ino` in the Arduino IDE and upload it; `firmware/README.md` tells how.
+   The device then calls itself {facts.controller.name}.
+2. Switch the LEDs on and wait {WARM_UP_MIN} minutes: the readings drift while the finger warms.
+3. `lumitip scan` finds the device. `lumitip doctor` with its address names dead, swapped and
+   saturated cells.
+4. Close the gripper on nothing, and run `lumitip tare`: it measures the empty grasp, against which
+   everything else is read.
+5. `lumitip view` shows the cells. Lay a card between the fingers: its edge must run where it is."""
+
+
+def _kept(facts: Facts) -> str:
+    return f"""## 9. What wears
+
+- The silicone above the LEDs: the published sensor's wore within about {WEAR_GRASPS} grasps. Run
+  `lumitip doctor` now and then; cast the emitter anew when its light falls.
+- The film: where ink is rubbed off, light leaks in. Print and wrap a new one, it takes an hour and
+  {facts.mask.soften_c:g} °C.
+- The wires at the fingers, which bend with each grasp.
+- After each of these, tare again."""
+
+
+def _included(note: str) -> str:
+    """A note as a part of a chapter: its headings two levels lower."""
+    return _HEADING.sub(lambda found: f"{found[1]}## ", note).strip()

@@ -1,0 +1,117 @@
+"""Damage the manual or what it shows, and exactly the right checks fail."""
+
+import re
+import shutil
+from pathlib import Path
+
+import pikepdf
+import pytest
+
+from damages import failing as failing_of
+
+_NEEDED = (
+    "assembly", "backing", "boards", "firmware", "fit", "holder", "manual", "mask", "mould",
+    "print", "wiring",
+)  # fmt: skip
+HTML, PDF = "manual/manual.html", "manual/manual.pdf"
+
+
+@pytest.fixture(scope="module")
+def told(outputs: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The manual of the published design and all that it names. Do not change it."""
+    folder = tmp_path_factory.mktemp("told") / "out"
+    for part in _NEEDED:
+        shutil.copytree(outputs / part, folder / part)
+    for file in ("design.json", "bom.csv"):
+        shutil.copy(outputs / file, folder / file)
+    return folder
+
+
+@pytest.fixture
+def copied(told: Path, tmp_path: Path) -> Path:
+    """A copy of it, to damage."""
+    return Path(shutil.copytree(told, tmp_path / "copied"))
+
+
+def failing(folder: Path) -> set[str]:
+    return failing_of(folder, "manual")
+
+
+# What is replaced in the HTML, by what, and the checks that then fail: the PDF says it still.
+EDITS = [
+    ("<td>24 h</td>", "<td>12 h</td>", {"figures", "units", "pdf"}),
+    ("Leave it for 24 h", "Leave it for 2 h", {"units", "pdf"}),
+    ("goes limp at 90 °C", "goes limp at 190 °C", {"units", "pdf"}),
+    ("<td>24 V</td>", "<td>5 V</td>", {"figures"}),
+    ("<td>1 x M5</td>", "<td>1 x M4</td>", {"figures", "pdf"}),
+    ("<td>warm-up</td>", "<td>cool-down</td>", {"figures", "pdf"}),
+    ("<code>fit/fit_plate.3mf</code>", "<code>fit/plate.3mf</code>", {"files", "pdf"}),
+    ('data-file="wiring/wiring.svg"', 'data-file="wiring/cables.svg"', {"drawings"}),
+    ("2.47 g", "3.47 g", {"amounts", "pdf"}),
+    ("<td>W2.3</td>", "<td>W2.4</td>", {"wires"}),
+    ("<td>all together</td>", "<td>in all</td>", {"parts", "pdf"}),
+]
+
+
+def test_nothing_fails_as_it_is_written(told: Path) -> None:
+    assert failing(told) == set()
+
+
+@pytest.mark.parametrize(("old", "new", "expected"), EDITS)
+def test_a_damage_fails_its_check(copied: Path, old: str, new: str, expected: set[str]) -> None:
+    path = copied / HTML
+    text = path.read_text(encoding="utf-8")
+    assert old in text
+    path.write_text(text.replace(old, new, 1), encoding="utf-8")
+    assert failing(copied) == expected
+
+
+def test_flaps_in_another_order_are_seen(copied: Path) -> None:
+    path = copied / HTML
+    text = path.read_text(encoding="utf-8")
+    rows = re.findall(r"<tr>\s*<td[^>]*>\d+</td>.*?</tr>", text, re.DOTALL)
+    one, other = rows[0], rows[1]
+    swapped = text.replace(one, "\0", 1).replace(other, one, 1).replace("\0", other, 1)
+    path.write_text(swapped, encoding="utf-8")
+    assert failing(copied) == {"flaps"}
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "expected"),
+    [
+        ("mask/emitter_wrapping.md", "| 4 | 14.1 |", "| 4 | 15.1 |", {"flaps"}),
+        ("mould/receiver_casting.md", "part A | **", "part A | **1", {"amounts"}),
+        ("wiring/cables.md", "| W1.2 | RD red", "| W1.2 | BU blue", {"wires"}),
+        ("wiring/wiring.svg", "Emitter", "Radiator", {"drawings"}),
+        ("bom.csv", "Solaris", "Lunaris", {"parts"}),
+    ],
+)
+def test_a_manual_of_another_build_is_seen(
+    copied: Path, file: str, old: str, new: str, expected: set[str]
+) -> None:
+    path = copied / file
+    text = path.read_text(encoding="utf-8")
+    assert old in text
+    path.write_text(text.replace(old, new, 1), encoding="utf-8")
+    assert failing(copied) == expected
+
+
+def test_a_page_that_is_lost_is_seen(copied: Path) -> None:
+    with pikepdf.open(copied / PDF, allow_overwriting_input=True) as document:
+        assert len(document.pages) > 6
+        del document.pages[6]
+        document.save(copied / PDF)
+    assert failing(copied) == {"pdf"}
+
+
+def test_lost_files_are_told(copied: Path) -> None:
+    (copied / PDF).unlink()
+    assert failing(copied) == {"pdf"}
+    (copied / HTML).write_bytes(b"\xff\xfe")
+    assert failing(copied) == {"readable"}
+
+
+def test_the_pdf_tells_no_day(told: Path) -> None:
+    data = (told / PDF).read_bytes()
+    assert b"D:20000101000000" in data
+    assert not re.search(rb"D:(?!20000101)\d{8}", data)
