@@ -183,7 +183,7 @@ DAMAGES = {
     second_bolt_moved: {"bolt", "screw_seat"},
     second_bolt_hole_narrow: {"bolt_hole"},
     sleeve_narrow: {"gripper_pin_hole"},
-    sleeve_shallow: {"gripper_pin_depth"},
+    sleeve_shallow: {"gripper_pin_depth", "min_wall"},
     second_seat_low: {"screw_seat"},
 }
 

@@ -36,7 +36,8 @@ def changed(design_dir: Path, tmp_path: Path) -> Callable[[Changes], Path]:
         folder = Path(shutil.copytree(design_dir, tmp_path / "design"))
         grippers, printers = folder / "parts/grippers.toml", folder / "parts/printers.toml"
         text = grippers.read_text(encoding="utf-8")
-        entry = text[text.index("[robotiq_2f85]") :].replace("robotiq_2f85", "upright")
+        entry = text[text.index("[robotiq_2f85]") : text.index("[robotiq_2f140]")]
+        entry = entry.replace("robotiq_2f85", "upright")
         grippers.write_text(text + entry.replace("tilt_deg = 1.5", "tilt_deg = 0.0"), "utf-8")
         text = printers.read_text(encoding="utf-8")
         entry = text[text.index('["fdm 0.4"]') :].replace("250.0, 210.0, 210.0", "90.0, 90.0, 90.0")

@@ -125,7 +125,7 @@ def test_frames_that_claim_to_be_of_later_do_not_move_it_on(peer: Peer) -> None:
         ("emergency", "emergency", "emergency"),
         ("pause", "program", "pause"),
         pytest.param("freeze", "connection", "watchdog", marks=pytest.mark.slow),
-        ("drop", "connection", "watchdog"),
+        ("drop", "connection or error", "watchdog"),  # by who sees it first: reader or sender
     ],
 )
 @patient
@@ -135,8 +135,8 @@ def test_it_stops_whatever_happens_to_the_arm(
     with URArm(peer.host, MOUNT, CALM) as arm:
         _follow(arm, Command(forward_mm_s=20.0), 0.3)
         peer.does(mishap)
-        assert _until_stopped(arm, Command(forward_mm_s=20.0)) == reason
-        assert arm.stopped == reason
+        assert _until_stopped(arm, Command(forward_mm_s=20.0)) in reason.split(" or ")
+        assert arm.stopped in reason.split(" or ")
     assert peer.wait("program ended")["why"] == why
     assert peer.wait("stands")
     after = peer.events[peer.events.index(peer.wait("stands")) :]

@@ -24,13 +24,9 @@ def running(folder: Path, *arguments: str) -> Iterator[tuple["subprocess.Popen[s
     """The command in a process of its own, and the address that it prints."""
     command = [sys.executable, "-m", "lumitip.cli", "view", "--port", "0", *arguments]
     environment = os.environ | {"XDG_DATA_HOME": str(folder / "data")}
-    # Shells start what runs in the background deaf to Ctrl-C, and so would be what it starts.
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    started = subprocess.Popen(
+    with subprocess.Popen(
         command, cwd=folder, env=environment, stdout=subprocess.PIPE, text=True
-    )
-    signal.signal(signal.SIGINT, before)
-    with started as process:
+    ) as process:
         assert process.stdout
         try:
             found = re.search(r"http://\S+", process.stdout.readline())

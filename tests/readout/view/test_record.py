@@ -86,7 +86,7 @@ def test_replay_from_the_page_pauses_winds_and_closes(
     opened(page, serve("twin://edge"))
     page.keyboard.press("p")
     page.get_by_role("button", name=recording.name).click()
-    expect(page.locator(".finger")).to_have_count(2)
+    expect(page.locator(".finger")).to_have_count(2, timeout=30_000)
     replay = page.locator(".finger").nth(1)
     expect(replay.locator(".tare")).to_be_hidden()
     wait_for(lambda: bool(page.evaluate(PLAYER.format(2))))
@@ -106,7 +106,7 @@ def test_replay_from_the_page_pauses_winds_and_closes(
     replay.locator(".play").click()
     wait_for(lambda: page.evaluate(PLAYER.format(2))["position_s"] > 2.9)
     replay.locator(".close").click()
-    expect(page.locator(".finger")).to_have_count(1)
+    expect(page.locator(".finger")).to_have_count(1, timeout=30_000)
 
 
 def test_player_gives_every_frame_as_it_was(recording: Path, wait_for: WaitFor) -> None:
