@@ -45,7 +45,7 @@ UNREAD = (
     "boards/*/*-lib-table",
     "boards/*/lumitip.kicad_sym",
     "boards/*/lumitip.pretty/*.kicad_mod",
-    "boards/*/*_front.*",  # pictures
+    "boards/*/*_front.svg",  # pictures; the manual shows the fronts as PNG
     "boards/*/*_back.*",
 )
 

@@ -10,7 +10,7 @@ from pydantic import BaseModel, ValidationError
 from lumitip_fab.load import NAMED, Input
 from lumitip_fab.parameters import Parameters
 
-UNITS = ("mm", "deg", "g_ml", "ma", "v", "w", "ohm", "fraction")
+UNITS = ("mm", "mm2", "deg", "g_ml", "ma", "v", "w", "ohm", "fraction")
 PLAIN = {"outline.waist_at"}  # fractions of the length, by their description
 
 
