@@ -95,7 +95,8 @@ def one_stage(stage: str, cells: int) -> None:
         seconds = time.perf_counter() - begun
         if stage != "layout":
             begun = time.perf_counter()
-            made = [a for t in tasks(design) if not t.step.heavy for a in mask_files(**t.arguments)]
+            masks = (t for t in tasks(design) if t.step.name == "mask_files")
+            made = [a for t in masks for a in mask_files(**t.arguments)]
             seconds = time.perf_counter() - begun
             for artefact in (*made, *documents(given, design)):
                 path = out / artefact.path
