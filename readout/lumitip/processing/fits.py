@@ -16,13 +16,12 @@ both parts leave the smallest sum of squares: two rays. Every cut is tried, from
 
 import math
 from cmath import phase
-from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lumitip.grid import Integers
+from lumitip.grid import Floats, Integers
 from lumitip.processing.contact import Cable, Corner, Line, Point
 
 Points = NDArray[np.complex128]
@@ -35,7 +34,7 @@ _CABLE_ROUNDS = 2  # the second changes which border a marker belongs to in few 
 class Border:
     """The markers of one frame, and where the dark is."""
 
-    __slots__ = ("dark", "light", "markers", "mean", "moments", "outward", "sums")
+    __slots__ = ("dark", "light", "markers", "mean", "moments", "outward", "size", "squares")
 
     def __init__(self, markers: Points, outward: Points, dark: complex, light: complex) -> None:
         """Take the moments that all fits need.
@@ -48,46 +47,49 @@ class Border:
         """
         self.outward, self.dark, self.light = outward, dark, light
         self.mean = complex(np.add.reduce(markers)) / max(markers.size, 1)
-        self.markers: Points = markers - self.mean
-        """Relative to their mean."""
-        z = self.markers
-        self.moments: Points = np.array((z, z * z, z * z.conj()))
-        """Each marker, its square and its squared distance, shape `(3, k)`."""
-        self.sums: list[complex] = np.add.reduce(self.moments, axis=1).tolist()
+        self.moments: Points = np.empty((2, markers.size), dtype=np.complex128)
+        """Each marker relative to their mean, and its square, shape `(2, k)`."""
+        self.markers: Points = np.subtract(markers, self.mean, out=self.moments[0])
+        np.multiply(self.markers, self.markers, out=self.moments[1])
+        self.squares = complex(np.add.reduce(self.moments[1]))
+        """Sum of the squares as complex numbers (mm²)."""
+        self.size = float(np.vdot(self.markers, self.markers).real)
+        """Sum of the squared distances from the mean (mm²)."""
 
 
-@dataclass(slots=True)
-class _Scatter:
-    """Points about their mean."""
+class _Parts:
+    """Two parts of the markers of a border, each about its own mean.
 
-    count: int
-    mean: complex
-    squares: complex
-    """Sum of the squares as complex numbers (mm²)."""
-    size: float
-    """Sum of the squared distances (mm²)."""
+    The markers are relative to the mean of all, so the totals of both parts cancel.
+    """
 
-    @classmethod
-    def of(cls, count: int, total: complex, squares: complex, size: complex) -> "_Scatter":
-        """From the sums of the moments of so many points."""
-        mean = total / count
-        about_mean = (size - total * mean.conjugate()).real
-        return cls(count, mean, squares - total * mean, about_mean)
+    __slots__ = ("counts", "means", "size", "squares")
 
-    def with_other(self, other: "_Scatter") -> "_Scatter":
-        """Of both, each about its own mean."""
-        squares, size = self.squares + other.squares, self.size + other.size
-        return _Scatter(self.count + other.count, 0.0, squares, size)
+    def __init__(self, border: Border, count: int, total: complex, squares: complex) -> None:
+        """Take the sums of one part's markers and of their squares."""
+        rest = border.markers.size - count
+        here, there = total / count, -total / rest
+        self.counts = count, rest
+        self.means = here, there
+        self.squares = squares - total * here, border.squares - squares + total * there
+        """Sum of the squares as complex numbers (mm²)."""
+        self.size = border.size - (total * (here - there).conjugate()).real
+        """Sum of the squared distances of all markers, each to the mean of its part (mm²)."""
 
     @property
-    def angle(self) -> float:
-        """Direction of largest scatter, in (−π/2, π/2] (rad)."""
-        return phase(self.squares) / 2.0
+    def together(self) -> complex:
+        """Sum of the squares of all markers, each about the mean of its part (mm²)."""
+        return self.squares[0] + self.squares[1]
 
-    @property
-    def across(self) -> float:
-        """Sum of squared distances to the line of that direction through the mean (mm²)."""
-        return max((self.size - abs(self.squares)) / 2.0, 0.0)
+
+def _along_scatter(squares: complex) -> float:
+    """Direction of largest scatter, in (−π/2, π/2] (rad)."""
+    return phase(squares) / 2.0
+
+
+def _rms(size: float, along: float, count: int) -> float:
+    """Distance of points to the lines along their largest scatter, root of the mean square."""
+    return math.sqrt(max(size - along, 0.0) / (2 * count))
 
 
 def point(at: complex) -> Point:
@@ -97,14 +99,11 @@ def point(at: complex) -> Point:
 
 def fit_line(border: Border) -> Line | None:
     """The line of total least squares, `None` when the markers favour no direction."""
-    count = border.markers.size
-    if count < 2:
+    count, along = border.markers.size, abs(border.squares)
+    if count < 2 or along <= 1e-9 * border.size:
         return None
-    scatter = _Scatter.of(count, *border.sums)
-    if abs(scatter.squares) <= 1e-9 * scatter.size:
-        return None
-    rms_mm = math.sqrt(scatter.across / count)
-    return Line(point(border.mean), _half_turn_deg(scatter.angle), rms_mm)
+    angle_deg = _half_turn_deg(_along_scatter(border.squares))
+    return Line(point(border.mean), angle_deg, _rms(border.size, along, count))
 
 
 def fit_rays(border: Border) -> tuple[Corner | None, Cable | None]:
@@ -116,34 +115,32 @@ def fit_rays(border: Border) -> tuple[Corner | None, Cable | None]:
     """
     if border.markers.size < 2 * _RAY_MARKERS:
         return None, None
-    first, second = _cut(border)
-    return _corner(border, first, second), _cable(border, first, second)
+    rays = _cut(border)
+    return _corner(border, rays), _cable(border, rays)
 
 
-def _cut(border: Border) -> tuple[_Scatter, _Scatter]:
+def _cut(border: Border) -> _Parts:
     """The two parts of the markers whose lines leave the smallest sum of squares."""
-    count = border.markers.size
-    counts = _counts(count)
+    sizes = _sizes(border.markers.size)
     running = np.add.accumulate(border.moments[:, _along(border)], axis=1)
-    sums = np.empty((3, *counts.shape), dtype=np.complex128)
-    sums[:, 0] = running[:, _RAY_MARKERS - 1 : count - _RAY_MARKERS]
-    np.subtract(running[:, -1:], sums[:, 0], out=sums[:, 1])
-    total, squares, size = sums
-    mean = total / counts
-    twice_across = (size - total * mean.conj()).real - np.abs(squares - total * mean)
-    at = int((twice_across[0] + twice_across[1]).argmin())
-    first, second = sums[:, :, at].T.tolist()
-    before, behind = counts[:, at].tolist()
-    return _Scatter.of(before, *first), _Scatter.of(behind, *second)
+    totals, squares = running[:, _RAY_MARKERS - 1 : -_RAY_MARKERS]
+    # What is smallest is the size less this, which is twice what lies along both lines.
+    about = totals * totals / sizes
+    along = np.abs(about)
+    about[0] -= squares
+    about[1] -= border.squares - squares
+    along += np.abs(about)
+    at = int((along[0] + along[1]).argmax())
+    return _Parts(border, _RAY_MARKERS + at, complex(totals[at]), complex(squares[at]))
 
 
 @lru_cache(maxsize=128)
-def _counts(markers: int) -> Integers:
+def _sizes(markers: int) -> Floats:
     """Sizes of both parts for every cut, shape `(2, cuts)`."""
-    sizes = np.arange(_RAY_MARKERS, markers - _RAY_MARKERS + 1)
-    counts = np.array((sizes, markers - sizes))
-    counts.flags.writeable = False
-    return counts
+    before = np.arange(_RAY_MARKERS, markers - _RAY_MARKERS + 1, dtype=np.float64)
+    sizes = np.array((before, markers - before))
+    sizes.flags.writeable = False
+    return sizes
 
 
 def _along(border: Border) -> Integers:
@@ -165,52 +162,51 @@ def _along(border: Border) -> Integers:
     return order
 
 
-def _corner(border: Border, first: _Scatter, second: _Scatter) -> Corner | None:
-    one, two = first.angle, second.angle
+def _corner(border: Border, rays: _Parts) -> Corner | None:
+    one, two = _along_scatter(rays.squares[0]), _along_scatter(rays.squares[1])
     crossing = math.sin(two - one)
     if abs(crossing) < 1e-9:
         return None
-    apart = second.mean - first.mean
+    first, second = rays.means
+    apart = second - first
     far = (apart.real * math.sin(two) - apart.imag * math.cos(two)) / crossing
-    vertex = first.mean + complex(far * math.cos(one), far * math.sin(one))
-    one, two = phase(first.mean - vertex), phase(second.mean - vertex)
+    vertex = first + far * _unit(one)
+    one, two = phase(first - vertex), phase(second - vertex)
     turn = (two - one) % (2.0 * math.pi)
     if turn > math.pi:
         one, two, turn = two, one, 2.0 * math.pi - turn
+    along = abs(rays.squares[0]) + abs(rays.squares[1])
     return Corner(
         vertex_mm=point(border.mean + vertex),
         directions_deg=(_whole_turn_deg(one), _whole_turn_deg(two)),
         opening_deg=math.degrees(turn),
-        rms_mm=math.sqrt((first.across + second.across) / border.markers.size),
+        rms_mm=_rms(rays.size, along, border.markers.size),
     )
 
 
-def _cable(border: Border, first: _Scatter, second: _Scatter) -> Cable | None:
+def _cable(border: Border, rays: _Parts) -> Cable | None:
     """Parallel borders: their common direction from the scatter about the mean of each.
 
     The rays give the direction to begin with; then each marker belongs to the border that its
     light cell lies beyond.
     """
-    count = border.markers.size
-    pooled = first.with_other(second)
+    count, borders = border.markers.size, rays
     for _ in range(_CABLE_ROUNDS):
-        upper = (border.outward * _unit(-pooled.angle)).imag > 0.0
+        upper = (border.outward * _unit(-_along_scatter(borders.together))).imag > 0.0
         above = int(np.count_nonzero(upper))
         if not _BORDER_MARKERS <= above <= count - _BORDER_MARKERS:
             return None
-        sums = (border.moments @ upper).tolist()
-        rest = [whole - part for whole, part in zip(border.sums, sums, strict=True)]
-        first, second = _Scatter.of(above, *sums), _Scatter.of(count - above, *rest)
-        pooled = first.with_other(second)
-    turned = _unit(-pooled.angle)
-    top, bottom = (first.mean * turned).imag, (second.mean * turned).imag
+        borders = _Parts(border, above, *border.moments.dot(upper).tolist())
+    angle = _along_scatter(borders.together)
+    turned = _unit(-angle)
+    top, bottom = (borders.means[0] * turned).imag, (borders.means[1] * turned).imag
     if top <= bottom:
         return None
     return Cable(
-        axis_point_mm=point(border.mean + (top + bottom) / 2.0 * 1j * _unit(pooled.angle)),
-        angle_deg=_half_turn_deg(pooled.angle),
+        axis_point_mm=point(border.mean + (top + bottom) / 2.0 * 1j * _unit(angle)),
+        angle_deg=_half_turn_deg(angle),
         width_mm=top - bottom,
-        rms_mm=math.sqrt(pooled.across / count),
+        rms_mm=_rms(borders.size, abs(borders.together), count),
     )
 
 

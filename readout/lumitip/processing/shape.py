@@ -63,7 +63,7 @@ def shape_of(corner: Corner | None, cable: Cable | None) -> str:
 
 
 def _is_round(border: Border, line: Line) -> bool:
-    return line.rms_mm**2 * border.markers.size > _ROUND * border.sums[2].real
+    return line.rms_mm**2 * border.markers.size > _ROUND * border.size
 
 
 def _is_corner(corner: Corner, pitch_mm: float, reach_mm: Rectangle) -> bool:
