@@ -2,6 +2,7 @@
 
 import argparse
 import json
+import os
 import shutil
 import sys
 from contextlib import nullcontext
@@ -89,7 +90,7 @@ def _check(options: argparse.Namespace) -> int:
     with ERR.status("reading the files back") if not options.quiet else nullcontext():
         reports = [path for path in (options.junit, options.report) if path]
         memory = Memory(options.memory, options.out, reports) if options.memory else None
-        outcome = run_checks(options.out, MODULES, memory)
+        outcome = run_checks(options.out, MODULES, memory, os.cpu_count() or 1)
     told = json.dumps(as_json(outcome), indent=1) + "\n"
     for path, data in ((options.junit, report.junit(outcome)), (options.report, told.encode())):
         try:

@@ -60,7 +60,7 @@ def _untold(read: Read) -> Iterator[str]:
     title, packages = read.design.title, read.design.packages
     chip = packages.led if read.finger.name == "emitter" else packages.photodetector
     printed = [word.text for word in read.board.silk.words if not word.ref]
-    digest = read.design.layout.design_hash[:8]
+    digest = read.design.reading.design_hash[:8]
     for line in (title.name, f"rev {title.revision}", digest, f"bracket: {chip.marked}"):
         if not any(line in text for text in printed):
             yield f"{line!r} is not printed"
@@ -108,16 +108,16 @@ def _is_tip(head: tuple[float, float], ends: list[list[tuple[float, float]]], ti
 def _least_cell(read: Read) -> tuple[float, int]:
     """The least share of a cell's outline that is drawn on the front, and which cell it is."""
     sign = -1 if read.finger.name == "emitter" else 1
-    layout = read.design.layout
+    cells = read.design.cells
     radius = read.design.grid.pitch_mm / math.sqrt(3)
     angles = np.radians(60 * np.arange(7))
     corners = radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    middles = np.stack([sign * layout.x_mm, layout.y_mm], axis=1)
-    cells = shapely.linestrings(middles[:, None] + corners[None])
+    middles = np.array([(sign * cell.x_mm, cell.y_mm) for cell in cells])
+    hexagons = shapely.linestrings(middles[:, None] + corners[None])
     drawn = [line.path for line in read.board.silk.lines if line.front and not line.ref]
     on_board = shapely.transform(shapely.union_all(drawn), read.sensor)
     near = on_board.buffer(TO_EDGE_MM, cap_style="flat")
-    shares = shapely.length(shapely.intersection(cells, near)) / shapely.length(cells)
+    shares = shapely.length(shapely.intersection(hexagons, near)) / shapely.length(hexagons)
     return float(shares.min()), int(shares.argmin())
 
 

@@ -58,9 +58,15 @@ class Memory:
             return None
         return tuple(Measurement(**m) for m in told["measurements"])
 
-    def keep(self, module: str, measurements: tuple[Measurement, ...], design: Watched) -> None:
-        """Remember what a module has just measured with this design."""
-        names = sorted(design.read)
+    def keep(
+        self,
+        module: str,
+        measurements: tuple[Measurement, ...],
+        design: Design,
+        fields: Iterable[str],
+    ) -> None:
+        """Remember what a module has just measured with these fields of the design."""
+        names = sorted(fields)
         self._told[module] = {
             "key": self._key(module, design, names),
             "fields": names,
@@ -68,7 +74,7 @@ class Memory:
         }
         write_file(self._path, json.dumps(self._told).encode())
 
-    def _key(self, module: str, design: Design | Watched, names: list[str]) -> str:
+    def _key(self, module: str, design: Design, names: list[str]) -> str:
         told = [
             f"{path}\0{digest}"
             for path, digest in self._hashes.items()
@@ -78,7 +84,7 @@ class Memory:
         told += [module, whole_code_hash(), installed_hash()]
         return hashlib.sha256("\n".join(told).encode()).hexdigest()
 
-    def _slice(self, design: Design | Watched, name: str) -> str:
+    def _slice(self, design: Design, name: str) -> str:
         if name not in self._slices:  # many modules read the same fields
             self._slices[name] = canonical(getattr(design, name, None))
         return self._slices[name]

@@ -81,12 +81,17 @@ def _silk(
     more = shapely.difference(printed, shapely.union_all([lines, *rooms]).buffer(PLACE_MM)).area
     yield Measurement("orders.silk", subject, lost + more, 0, _ROUND_MM2, "mm²",
                       "differs from the board's lines and words")  # fmt: skip
-    inked = [shapely.intersection(printed, room).area / room.area for room in rooms]
+    inked = [_inside(printed, room) / room.area for room in rooms]
     yield Measurement("orders.words", subject, min(inked, default=math.nan), INK_SHARE, 1.0,
                       "of a word's room", "the least that has ink")  # fmt: skip
     off = shapely.intersection(printed, bare).area
     yield Measurement("orders.silk_clear", subject, off, 0, PLACE_MM, "mm²",
                       "printed on pads or off the board")  # fmt: skip
+
+
+def _inside(printed: BaseGeometry, room: BaseGeometry) -> float:
+    """Area (mm²) of what is printed in a room; the rest of the board is cut off first."""
+    return float(shapely.clip_by_rect(printed, *room.bounds).intersection(room).area)
 
 
 def _room(word: Word) -> BaseGeometry:

@@ -2,7 +2,9 @@
 
 import importlib
 import math
+import multiprocessing
 from collections.abc import Iterable, Iterator
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
 from fnmatch import fnmatch
 from pathlib import Path
@@ -10,12 +12,17 @@ from types import ModuleType
 
 from lumitip_fab.checks.memory import Memory, Watched, reads
 from lumitip_fab.checks.result import Measurement
+from lumitip_fab.design import Design
 from lumitip_fab.encoding import read_design
 
 MODULES = (
     "manifest", "layout", "firmware", "mask", "backing", "fit_plate", "mould", "assembly", "board",
     "schematic", "orders", "printing", "holder", "robot", "wiring", "bom", "manual",
 )  # fmt: skip
+_LONG = frozenset({"orders", "board"})
+"""Modules that take longer than another process takes to start."""
+_Told = tuple[tuple[Measurement, ...], list[str]]
+"""What a module measured, and the fields of the design that it read."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +43,7 @@ class Outcome:
 
 
 def run_checks(
-    out: Path, modules: Iterable[str] = MODULES, memory: Memory | None = None
+    out: Path, modules: Iterable[str] = MODULES, memory: Memory | None = None, cores: int = 1
 ) -> Outcome:
     """Measure the files below `out` against its `design.json`.
 
@@ -44,21 +51,43 @@ def run_checks(
         out: the output folder.
         modules: the check modules to run.
         memory: measurements of earlier runs, told again where nothing changed.
+        cores: how many modules measure at a time.
 
     Raises:
         OutputError: if there is no usable `design.json`.
     """
     design = read_design(out / "design.json")
-    measurements: list[Measurement] = []
-    for name in modules:
-        known = memory.recalled(name, design) if memory else None
-        if known is None:
-            watched = Watched(design)
-            known = tuple(_module(name).measure(out, watched))
-            if memory:
-                memory.keep(name, known, watched)
-        measurements += known
-    return Outcome(tuple(measurements))
+    told = {name: memory.recalled(name, design) if memory else None for name in modules}
+    anew = [name for name, known in told.items() if known is None]
+    for name, (measured, fields) in _measured(out, design, anew, cores):
+        told[name] = measured
+        if memory:
+            memory.keep(name, measured, design, fields)
+    return Outcome(tuple(m for measured in told.values() for m in measured or ()))
+
+
+def _measured(
+    out: Path, design: Design, names: list[str], cores: int
+) -> Iterator[tuple[str, _Told]]:
+    """Run modules, the long ones first; in one process if it would be done before others start."""
+    if cores == 1 or len(_LONG & set(names)) < 2:
+        yield from ((name, _measure(name, out, design)) for name in names)
+        return
+    context = multiprocessing.get_context(
+        "forkserver" if "forkserver" in multiprocessing.get_all_start_methods() else None
+    )
+    with ProcessPoolExecutor(min(cores, len(names)), mp_context=context) as pool:
+        running = {
+            pool.submit(_measure, name, out, design): name
+            for name in sorted(names, key=lambda name: name not in _LONG)
+        }
+        for future in as_completed(running):
+            yield running[future], future.result()
+
+
+def _measure(name: str, out: Path, design: Design) -> _Told:
+    watched = Watched(design)
+    return tuple(_module(name).measure(out, watched)), sorted(watched.read)
 
 
 def modules_reading(paths: Iterable[str]) -> Iterator[str]:

@@ -84,7 +84,8 @@ def _wrong_pins(
 ) -> list[str]:
     """From each multiplexer's leads along the wires to the pin that the firmware uses."""
     analog, select = _header(outputs, "LUMITIP_ADC_PINS"), _header(outputs, "LUMITIP_SELECT_PINS")
-    analog = [pin for pin in analog if pin in design.layout.adc_pin.tolist()]
+    used = {cell.adc_pin for cell in design.cells}
+    analog = [pin for pin in analog if pin in used]
     arrives = {row.signal: _arrives(row, nets, design) for row in rows if "receiver" in row.start}
     muxes = [p for p in receiver.parts if re.fullmatch(r"U\d+", p.ref)]
     wrong = [] if len(muxes) == len(analog) else [f"{len(analog)} analog pins"]

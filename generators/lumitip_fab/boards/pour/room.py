@@ -12,7 +12,8 @@ from lumitip_fab.boards.openings import fiducial_margin_mm
 from lumitip_fab.boards.pour_rules import CLEARANCE_MM, MIN_WIDTH_MM
 from lumitip_fab.boards.verify import DRILL_WALL_MM
 
-MARGIN_MM = 0.002  # beyond clearances: curves become polygons, and places are rounded
+MARGIN_MM = 0.004  # beyond clearances: curves become polygons, places are rounded,
+DETAIL_MM = 0.002  # and corners that move an outline by less than this are left out
 PAD_TO_VIA_MM = 0.1  # solder mask between a pad and a via
 _ARC = 24  # chords of a quarter circle
 
@@ -62,7 +63,7 @@ def opened(area: Geometry) -> Geometry:
     """What is left of an area without all that is narrower than the pour may be."""
     half = MIN_WIDTH_MM / 2
     grown = area.buffer(-half, quad_segs=_ARC).buffer(half, quad_segs=_ARC)
-    return shapely.intersection(grown, area)
+    return shapely.intersection(grown, area).simplify(DETAIL_MM)
 
 
 def _things(placement: Placement, routing: Routing) -> Iterator[Thing]:
