@@ -2,7 +2,8 @@
 
 - Sensor frame of a finger: gripping face seen with the tip up; x right, y to the tip, z out.
 - Frame of a carrier: see `lumitip_fab.design.carriers`; a holder is printed standing on its end.
-- Mount frame: see `lumitip_fab.design.Mount`; the backing is printed in it, standing on h = 0.
+- Mount frame: see `lumitip_fab.design.Mount`; what is bolted on is printed in it,
+  standing on h = 0.
 - Bed of the mould: the sensor frame turned over about x, so that the open side is up.
 - Gripper frame: z = 0 is the mid-plane between the fingers, the lean applied; the receiver
   looks along +z. Opening is the smallest distance from skin to skin.
@@ -14,6 +15,8 @@
 - Page of a mask: seen from the film's inside, tip towards the top, so page x = -x of the
   finger's own frame; origin at the sensor frame's origin, before the page is stretched.
 """
+
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,6 +58,19 @@ def mount_to_sensor(mount: Mount, stack: Stack) -> Matrix:
     matrix[:3, 1] = 0.0, -sine, -cosine
     matrix[:3, 2] = 0.0, cosine, -sine
     return matrix
+
+
+def backing_bed_to_sensor(mount: Mount, stack: Stack) -> Matrix:
+    """From a backing's print bed: a rigid one stands on its mount face, a bendable plate lies on
+    its front."""
+    if stack.sunk:
+        return mount_to_sensor(mount, stack)
+    return translation(0.0, 0.0, stack.face_z_mm) @ rotation_x(180.0)
+
+
+def plate_back_to_sensor(mount: Mount, stack: Stack) -> Matrix:
+    """From the mount frame as it were without tilt, whose w runs square through the plate."""
+    return mount_to_sensor(replace(mount, tilt_deg=0.0), stack)
 
 
 def mould_bed_to_sensor(stack: Stack, mould: Mould) -> Matrix:
@@ -107,7 +123,7 @@ def board_page_to_sensor(stack: Stack) -> Matrix:
 def board_page_to_carrier(stack: Stack) -> Matrix:
     """From the page of a carrier's board file to its frame, z = 0 on the board's back."""
     across, down = BOARD_ON_PAGE_MM
-    return translation(-across, down, stack.pcb_mm) @ rotation_x(180.0)
+    return translation(-across, down, stack.carrier_mm) @ rotation_x(180.0)
 
 
 def on_board_page(point: Point) -> Point:

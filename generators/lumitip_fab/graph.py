@@ -38,7 +38,8 @@ _CAD = ("build123d", "cadquery-ocp", "cadquery-ocp-novtk", "lib3mf", "numpy", "t
 _INK = ("reportlab", "ezdxf", "numpy", "shapely")
 _COPPER = ("gerbonara", "matplotlib", "networkx", "numba", "numpy", "scipy", "shapely")
 _LISTED = (
-    "backing/*.stl", "mould/*.stl", "holder/*.stl", "fit/*.stl", "mould/*_casting.md",
+    "backing/*.stl", "interface/*.stl", "mould/*.stl", "holder/*.stl", "fit/*.stl",
+    "mould/*_casting.md",
     "boards/*/order/generic_*_bom.csv",
 )  # fmt: skip
 _SHOWN = (

@@ -18,6 +18,7 @@ from pydantic import Field
 
 from lumitip_fab.carrier_parameters import Breakout, Flange, Holder
 from lumitip_fab.entry import Name, Strict
+from lumitip_fab.flex_parameters import Flex
 
 PRINTABLE = r"^[\x20-\x7e]+$"
 REVISION = r"^[A-Za-z0-9.\-]{1,8}$"
@@ -41,8 +42,9 @@ class Stack(Strict):
 
     floor_mm: float = Field(ge=0.4, le=10)
     """Floor of the pocket behind the board (mm)."""
-    pcb_mm: float = Field(ge=0.4, le=3.2)
-    """Board, and so the depth of its pocket (mm)."""
+    pcb_mm: float = Field(ge=0.1, le=3.2)
+    """Board, and so the depth of its pocket where it lies in one; a flexible one is 0.1 to 0.2
+    thick (mm)."""
     silicone_mm: float = Field(ge=0.5, le=10)
     """Silicone over the board (mm)."""
     film_mm: float = Field(ge=0.02, le=1)
@@ -73,8 +75,9 @@ class Outline(Strict):
 class Backing(Strict):
     """The printed part that carries the board."""
 
-    variant: Literal["rigid"]
-    """Kind of backing."""
+    variant: Literal["rigid", "flex"]
+    """Rigid with a pocket for the board, or bendable: a plate, tied to a flexible board, with a
+    rigid interface glued to its back (`flex`)."""
     material: Name
     """Name of a filament in `parts/filaments.toml`."""
     density_g_ml: float = Field(ge=0.5, le=3)
@@ -263,6 +266,7 @@ class Parameters(Strict):
     stack: Stack
     outline: Outline
     backing: Backing
+    flex: Flex
     tip: Tip
     coupling: Coupling
     board: Board

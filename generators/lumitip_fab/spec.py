@@ -80,6 +80,35 @@ def _electrical(design: Design) -> tuple[Row, ...]:
     )  # fmt: skip
 
 
+def _of_rigid(design: Design) -> tuple[Row, ...]:
+    stack, printing = design.stack, design.printing
+    return (
+        Row("pocket depth", "0.8 mm", f"{stack.pcb_mm:g} mm",
+            f"as deep as the board is thick, so that it is flush with the rim; the published board "
+            f"stands {stack.pcb_mm - 0.8:.1f} mm proud"),
+        Row("floor behind the board", "0.5 mm", f"{stack.floor_mm:g} mm",
+            f"at least printer.min_wall_mm = {printing.min_wall_mm:g}; 0.5 mm is little more than "
+            f"one line of {printing.line_mm:g}"),
+    )  # fmt: skip
+
+
+def _of_flex(design: Design) -> tuple[Row, ...]:
+    """Of a compliant finger; the published flexible part's own figures, measured."""
+    stack, (interface,) = design.stack, design.interfaces
+    rows = len({y for _, y in design.receiver.holes})
+    return (
+        Row("bendable plate", "2.0 mm", f"{stack.floor_mm:g} mm",
+            f"of {design.printing.material}, with the board on its flat front"),
+        Row("holes for thread", "2.2 mm", f"{interface.thread_hole_mm:g} mm",
+            f"{len(design.receiver.holes)} in {rows} rows, behind those of the board; the "
+            "published part has them 1 mm farther from the tip than its own board"),
+        Row("interface", "26 mm", f"{interface.box.length_mm:.1f} mm",
+            f"rim of {interface.rim_mm:g} x {interface.rim_height_mm:g} mm in a groove of "
+            f"{interface.groove_mm:g} x {interface.groove_depth_mm:g}; published: 1.1 x 0.65 in "
+            "1.5 x 0.75"),
+    )  # fmt: skip
+
+
 def _further(design: Design) -> tuple[Row, ...]:
     stack, printing, tip = design.stack, design.printing, design.tip
     plate = design.fit_plate
@@ -97,24 +126,20 @@ def _further(design: Design) -> tuple[Row, ...]:
     across = "diameter" if design.mask.hole_shape == "circle" else "across flats"
     return (
         *over,
-        Row("pocket depth", "0.8 mm", f"{stack.pcb_mm:g} mm",
-            f"as deep as the board is thick, so that it is flush with the rim; the published board "
-            f"stands {stack.pcb_mm - 0.8:.1f} mm proud"),
-        Row("floor behind the board", "0.5 mm", f"{stack.floor_mm:g} mm",
-            f"at least printer.min_wall_mm = {printing.min_wall_mm:g}; 0.5 mm is little more than "
-            f"one line of {printing.line_mm:g}"),
+        *(_of_flex(design) if design.interfaces else _of_rigid(design)),
         Row("tip edge", "0 mm", f"{tip.edge_mm:g} mm",
             f"one printed line is {printing.line_mm:g} mm wide: a knife edge cannot be printed"),
         Row("wedge at the tip", "12.2°", f"{tip.angle_deg:.1f}°",
             f"from {stack.plate_mm:g} to {tip.edge_mm:g} mm over {slant:g} mm; published: from 1.3 "
-            "to 0 over 6"),
+            "to 0 over 6, of the flexible part from 2 to 0 over 14.2"),
         Row("gripper", "Robotiq 2F-85", f"{design.mount.gripper}, {design.mount.bolt}",
             _trusted(design)),
         Row("fit test plate", "none", f"{plate.volume_ml:.1f} cm³",
             "lumitip-fab slice tells how long it prints; its reading is printer.fit_mm, here "
             f"{printing.fit_mm:g} mm (docs/making.md)"),
         Row("lean of each finger", "1.5°", f"{design.mount.tilt_deg:g}°",
-            f"of {design.mount.gripper} in parts/grippers.toml"),
+            f"of {design.mount.gripper} in parts/grippers.toml"
+            + (" and flex.lean_deg" if design.interfaces else "")),
         Row("largest opening", "not stated", f"{design.closing.max_opening_mm:.1f} mm",
             f"stroke of {design.mount.stroke_mm:g} mm less {skin:.1f} for each finger's skin, "
             "which stands before the gripper's own pad"),

@@ -10,7 +10,7 @@ import pytest
 from lumitip_fab.checks.result import Measurement
 from lumitip_fab.checks.run import MODULES, as_json, modules_reading, run_checks
 
-SLOW = ("dense", "mux16", "robotiq_2f140", "wsg50", "franka_hand")
+SLOW = ("dense", "mux16", "robotiq_2f140", "wsg50", "franka_hand", "flex")
 
 
 @pytest.mark.parametrize(

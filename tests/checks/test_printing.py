@@ -20,7 +20,9 @@ from lumitip_fab.printing.settings import print_settings
 def _written(design: Design, out: Path) -> Path:
     (out / "print").mkdir(parents=True)
     (out / "design.json").write_text(design_text(design), encoding="utf-8")
-    for artefact in print_settings(design.title, design.printing, design.slicing):
+    for artefact in print_settings(
+        design.title, design.printing, design.slicing, design.interfaces
+    ):
         (out / artefact.path).write_bytes(artefact.data)
     return out
 

@@ -29,6 +29,7 @@ CHANGES: dict[str, Any] = {
     "outline.waist_at": 0.66,
     "outline.end_margin_mm": 5.5,
     "outline.end_corner_mm": 6.9,
+    "backing.variant": "flex",
     "backing.material": "PLA",
     "backing.density_g_ml": 1.24,
     "backing.pocket_clearance_mm": 0.15,
@@ -127,13 +128,25 @@ CHANGES: dict[str, Any] = {
 }
 # What else must change with a field.
 WITH: dict[str, dict[str, Any]] = {
+    "backing.variant": {"stack.floor_mm": 2.0, "stack.pcb_mm": 0.2},
     "stack.film_mm": {"mask.film": "thick"},
     "emitter.string_leds": {"emitter.current_ma": 5.0},
 }
 # Limits that only refuse; changing them leaves the design as it is.
 LIMITS: dict[str, Any] = {"supply.max_ma": 400.0, "emitter.max_heat_w": 1.9}
 # Only one value is allowed so far.
-SINGLE = {"backing.variant", "board.connector_side"}
+SINGLE = {"board.connector_side"}
+# Of a compliant finger alone.
+FLEX: dict[str, Any] = {
+    "flex.thread_hole_mm": 2.3,
+    "flex.interface_mm": 27.0,
+    "flex.pad_mm": 1.7,
+    "flex.standoff_mm": 2.1,
+    "flex.groove_mm": 1.6,
+    "flex.groove_depth_mm": 0.8,
+    "flex.glue_mm": 0.12,
+    "flex.lean_deg": 0.5,
+}
 
 
 @pytest.fixture(scope="module")
@@ -179,7 +192,7 @@ def test_these_tests_cover_every_field() -> None:
     for name, field in Parameters.model_fields.items():
         inner = getattr(field.annotation, "model_fields", None)
         fields |= {f"{name}.{key}" for key in inner} if inner else {name}
-    assert fields == {*CHANGES, *LIMITS, *SINGLE}
+    assert fields == {*CHANGES, *FLEX, *LIMITS, *SINGLE}
 
 
 @pytest.mark.parametrize("field", CHANGES)
@@ -189,6 +202,17 @@ def test_a_changed_value_changes_the_design_and_its_parameters_hash(
     after = derive(vary(published, {field: CHANGES[field], **WITH.get(field, {})}))
     assert after.parameters_hash != before.parameters_hash
     assert _without_hash(after) != _without_hash(before)
+
+
+@pytest.mark.parametrize("field", FLEX)
+def test_a_field_of_compliant_fingers_changes_those_alone(
+    inputs: dict[str, Input], vary: Any, field: str
+) -> None:
+    for preset, changes in (("flex", True), ("published", False)):
+        design = derive(inputs[preset])
+        after = derive(vary(inputs[preset], {field: FLEX[field]}))
+        assert after.parameters_hash != design.parameters_hash
+        assert (_without_hash(after) != _without_hash(design)) == changes
 
 
 @pytest.mark.parametrize("field", LIMITS)

@@ -17,7 +17,7 @@ from lumitip_fab.mechanical.backing import backing, backing_solid
 def solid_of(design: Design, which: int = 1) -> object:
     finger = design.fingers[which]
     return backing_solid(
-        finger, design.stack, design.outline, design.tip, design.board, design.mount
+        finger, design.stack, design.outline, design.tip, design.board, design.mount, ()
     )
 
 
@@ -58,7 +58,7 @@ def test_other_designs_make_one_valid_solid(
 def test_files_carry_the_way_back_to_the_sensor_frame(design_dir: Path) -> None:
     design = derive(load(design_dir / "presets" / "published.toml"))
     made = backing(design.receiver, design.stack, design.outline, design.tip, design.board,
-                   design.mount)  # fmt: skip
+                   design.mount, ())  # fmt: skip
     assert [a.path for a in made] == [
         f"backing/receiver_backing.{e}" for e in ("step", "stl", "3mf")
     ]

@@ -33,7 +33,7 @@ def design(design_dir: Path) -> Design:
 def test_the_same_design_gives_the_same_files_in_any_process(outputs: Path) -> None:
     built = read_design(outputs / "design.json")
     made = mould.mould_files(
-        built.receiver, built.stack, built.outline, built.mould, built.printing
+        built.receiver, built.stack, built.outline, built.board, built.mould, built.printing
     )
     assert {a.path for a in made} == {
         "mould/receiver_mould.step",
@@ -71,7 +71,7 @@ def test_offset_wires_keep_their_distance(design: Design) -> None:
 
 
 def test_the_silicone_tapers_and_keeps_its_thickness(design: Design) -> None:
-    body = skin.silicone_solid(design.stack, design.outline, design.mould)
+    body = skin.silicone_solid(design.stack, design.outline, design.board, design.mould)
     box = body.bounding_box()
     heights = [tuple(box.min)[2], tuple(box.max)[2]]
     assert heights == pytest.approx([-1.6, -0.1], abs=1e-6)
@@ -82,7 +82,7 @@ def test_the_silicone_tapers_and_keeps_its_thickness(design: Design) -> None:
 
 
 def test_stops_leave_their_hollow_in_the_silicone(design: Design) -> None:
-    body = skin.silicone_solid(design.stack, design.outline, design.mould)
+    body = skin.silicone_solid(design.stack, design.outline, design.board, design.mould)
     for x, y in design.mould.pads:
         assert not body.is_inside((x, y, -0.8))
     assert not body.is_inside((0.0, design.outline.tip_y_mm - 0.1, -1.5))

@@ -45,7 +45,8 @@ def carrier_files(
     model = sound(BoardModel(placement, routing, fills))
     sheet = carrier_sheet(placement, carrier)
     return model_files(
-        model, sheet, lambda fab: carrier_note(model.placement, carrier.title, fab), stack, fabs,
+        model, sheet, lambda fab: carrier_note(model.placement, carrier.title, fab),
+        stack.carrier_mm, fabs,
         board_page_to_carrier(stack), "carrier",
     )  # fmt: skip
 

@@ -60,8 +60,8 @@ def board_files(
     model = sound(BoardModel(placement, routing, fills))
     sheet = schematic_files(placement, wiring, packages)
     return model_files(
-        model, sheet, lambda fab: assembly_note(model.placement, packages, fab), stack, fabs,
-        board_page_to_sensor(stack), "sensor",
+        model, sheet, lambda fab: assembly_note(model.placement, packages, fab),
+        stack.pcb_mm, fabs, board_page_to_sensor(stack), "sensor",
     )  # fmt: skip
 
 
@@ -69,7 +69,7 @@ def model_files(
     model: BoardModel,
     sheet: dict[str, bytes],
     note: Callable[[Fab], bytes],
-    stack: Stack,
+    thickness_mm: float,
     fabs: tuple[Fab, ...],
     page: Matrix,
     frame: str,
@@ -80,7 +80,7 @@ def model_files(
         model: the board.
         sheet: files of its schematic.
         note: for who places the parts, by board house.
-        stack: for its thickness.
+        thickness_mm: of it.
         fabs: where it may be ordered.
         page: from the board file's page to its frame.
         frame: name of that frame.
@@ -92,7 +92,7 @@ def model_files(
         for path, data in order_files(model, layers, note(fab), fab, name).items()
     }
     files = {
-        **project_files(model, stack.pcb_mm),
+        **project_files(model, thickness_mm),
         **sheet,
         **picture_files(model),
         **orders,

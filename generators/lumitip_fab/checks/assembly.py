@@ -20,14 +20,13 @@ from lumitip_fab.frames import applied, mount_to_sensor, translation
 
 READS = (
     "assembly/assembly.glb", "assembly/assembly.step", "assembly/*_exploded.svg",
-    "backing/*_backing.stl",
+    "backing/*_backing.stl", "interface/*_interface.stl",
 )  # fmt: skip
 NAMES = (  # measured in the GLB
     "assembly.bodies", "assembly.facing", "assembly.lean", "assembly.skew",
     "assembly.first_contact", "assembly.opening", "assembly.stroke", "assembly.closes",
     "assembly.interference",
 )  # fmt: skip
-LAYERS = ("backing", "board", "silicone", "film")
 FACING_MM = 0.05
 LEAN_DEG = 0.02
 CONTACT_MM = 4.0
@@ -71,7 +70,7 @@ def _step(outputs: Path, design: Design) -> Measurement:
         text = (outputs / _STEP).read_text(encoding="ascii")
     except (OSError, ValueError) as error:
         return unreadable("assembly.step", _STEP, f"cannot be read: {error!r:.200}")
-    names = [f"{finger.name}.{layer}" for finger in design.fingers for layer in LAYERS]
+    names = [f"{finger.name}.{layer}" for finger in design.fingers for layer in design.layers]
     for told in (*(f"PRODUCT('{name}'" for name in names), "SI_UNIT(.MILLI.,.METRE.)", _STEP_END):
         if told not in text:
             return unreadable("assembly.step", _STEP, f"holds no {told}")
@@ -82,7 +81,7 @@ def _step(outputs: Path, design: Design) -> Measurement:
 
 def _wanted(design: Design) -> Iterator[str]:
     for finger in design.fingers:
-        yield from (f"{finger.name}.{layer}" for layer in LAYERS)
+        yield from (f"{finger.name}.{layer}" for layer in design.layers)
         yield from (part.name for part in finger.parts)
 
 
@@ -149,7 +148,7 @@ def _openings(scene: Scene, design: Design) -> Iterator[Measurement]:
     widest = design.mount.stroke_mm
     for finger in design.fingers:
         skin = _reach_mm(scene.nodes[f"{finger.name}.film"], finger).max()
-        bolt = _bolt_z_mm(scene.nodes[f"{finger.name}.backing"], design) * _inward(finger)
+        bolt = _bolt_z_mm(scene.nodes[f"{finger.name}.{design.held}"], design) * _inward(finger)
         widest += design.mount.pad_w_mm - (skin - bolt)
     wanted = design.closing.max_opening_mm
     yield Measurement("assembly.stroke", _FILE, float(widest), wanted - STROKE_MM,
@@ -187,7 +186,7 @@ def _bolt_z_mm(backing: Node, design: Design) -> float:
 def _interference(scene: Scene, design: Design) -> Iterator[Measurement]:
     """What bodies of a finger share, and what the fingers share when they just touch."""
     try:
-        fingers = [_bodies(scene, finger) for finger in design.fingers]
+        fingers = [_bodies(scene, finger, design.layers) for finger in design.fingers]
     except OutputError as error:
         yield unreadable("assembly.interference", _FILE, str(error))
         return
@@ -209,10 +208,10 @@ def _interference(scene: Scene, design: Design) -> Iterator[Measurement]:
     })  # fmt: skip
 
 
-def _bodies(scene: Scene, finger: Finger) -> dict[str, overlap.Solid]:
+def _bodies(scene: Scene, finger: Finger, layers: tuple[str, ...]) -> dict[str, overlap.Solid]:
     """The layers and, as one body, the parts."""
     made = {
-        layer: overlap.solid(scene.nodes[f"{finger.name}.{layer}"].mesh, layer) for layer in LAYERS
+        layer: overlap.solid(scene.nodes[f"{finger.name}.{layer}"].mesh, layer) for layer in layers
     }
     made["parts"] = overlap.joined(
         [overlap.solid(scene.nodes[part.name].mesh, part.name) for part in finger.parts]

@@ -1,12 +1,14 @@
 """The backings as files: printable, and everything that goes into or onto them fits."""
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import shapely
 
-from lumitip_fab.checks import letters, packages, solids
+from lumitip_fab.checks import flex, letters, packages, solids
 from lumitip_fab.checks.coupling import measure_bolt, measure_nose, measure_screw
 from lumitip_fab.checks.plate import (
     measure_notch,
@@ -20,46 +22,84 @@ from lumitip_fab.checks.printed import Printed
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.checks.solids import Vectors
 from lumitip_fab.checks.walls import Exempt, Mask, walls
-from lumitip_fab.design import Design
+from lumitip_fab.design import Design, Finger, Letter
 from lumitip_fab.errors import OutputError
-from lumitip_fab.frames import applied, mount_to_sensor
+from lumitip_fab.frames import (
+    Matrix,
+    applied,
+    backing_bed_to_sensor,
+    mount_to_sensor,
+    plate_back_to_sensor,
+)
 
-READS = ("backing/*.stl", "backing/*.3mf", "backing/*.step")
+READS = tuple(
+    f"{kind}/*.{ending}" for kind in ("backing", "interface") for ending in ("stl", "3mf", "step")
+)
 
 PUBLISHED_OVERHANG_MM2 = 341.0  # of the published part, standing on its mount face
+FLAT_OVERHANG_MM2 = 0.5  # of a plate printed on its front: no support
 LEAST_BED_MM2 = 120.0  # on which a finger 55 mm tall stays up
 SIZE_MM = 0.05
+Step = Callable[[Printed], Iterator[Measurement]]
 
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     """Every figure of both backings."""
-    to_sensor = mount_to_sensor(design.mount, design.stack)
+    stack, mount = design.stack, design.mount
     for finger in design.fingers:
-        subject = f"backing/{finger.name}_backing.stl"
-        try:
-            standing = solids.read_mesh(outputs / subject)
-        except OutputError as error:
-            yield unreadable("backing.readable", subject, str(error))
-            continue
-        sensor = solids.moved(standing, to_sensor)
-        part = Printed(subject, standing, sensor, finger, design)
-        yield part.figure("readable", float(len(standing.faces)), 4, np.inf, "triangles")
-        yield from _measured(part)
-        yield from packages.measure_files(outputs, part)
+        made = [_read(outputs, design, finger, "backing", backing_bed_to_sensor(mount, stack))]
+        if design.interfaces:
+            made.append(_read(outputs, design, finger, "interface", mount_to_sensor(mount, stack)))
+        for part in made:
+            if isinstance(part, Measurement):
+                yield part
+                continue
+            yield part.figure("readable", float(len(part.standing.faces)), 4, np.inf, "triangles")
+            yield from _measured(part)
+            yield from packages.measure_files(outputs, part)
+        whole = [part for part in made if isinstance(part, Printed)]
+        if len(whole) == 2:
+            yield from _told(partial(flex.measure_joint, whole[0]), whole[1], "joint")
+
+
+def _read(
+    outputs: Path, design: Design, finger: Finger, kind: str, to_sensor: Matrix
+) -> Printed | Measurement:
+    subject = f"{kind}/{finger.name}_{kind}.stl"
+    try:
+        standing = solids.read_mesh(outputs / subject)
+    except OutputError as error:
+        return unreadable("backing.readable", subject, str(error))
+    sensor = solids.moved(standing, to_sensor)
+    return Printed(subject, standing, sensor, finger, design, to_sensor, kind)
+
+
+_PLATE: tuple[Step, ...] = (measure_outline, measure_reliefs, measure_notch, measure_tip)
+_HELD: tuple[Step, ...] = (measure_bolt, measure_screw, measure_nose)
 
 
 def _measured(part: Printed) -> Iterator[Measurement]:
-    steps: tuple[Callable[[Printed], Iterator[Measurement]], ...] = (
-        measure_surface, measure_print, measure_size, measure_walls,
-        measure_outline, measure_pocket, measure_pins, measure_reliefs, measure_notch, measure_tip,
-        measure_bolt, measure_screw, measure_nose, measure_letter,
-    )  # fmt: skip
+    steps: tuple[Step, ...] = (measure_surface, measure_print, measure_walls, measure_letter)
+    if part.design.stack.sunk:
+        steps += (measure_size, measure_pocket, measure_pins, *_PLATE, *_HELD)
+    elif part.kind == "backing":
+        steps += (
+            flex.measure_sheet_size, flex.measure_face, flex.measure_ties, flex.measure_groove,
+            *_PLATE,
+        )  # fmt: skip
+    else:
+        steps += (flex.measure_interface_size, *_HELD)
     for step in steps:
-        try:
-            yield from step(part)
-        except (ArithmeticError, LookupError, ValueError, shapely.errors.ShapelyError) as error:
-            name = step.__name__.removeprefix("measure_")
-            yield unreadable(f"backing.{name}", part.subject, f"cannot be measured: {error!r:.200}")
+        yield from _told(step, part, step.__name__.removeprefix("measure_"))
+
+
+def _told(step: Step, part: Printed, name: str) -> Iterator[Measurement]:
+    try:
+        yield from step(part)
+    except (
+        ArithmeticError, LookupError, ValueError, OutputError, shapely.errors.ShapelyError,
+    ) as error:  # fmt: skip
+        yield unreadable(f"backing.{name}", part.subject, f"cannot be measured: {error!r:.200}")
 
 
 def measure_surface(part: Printed) -> Iterator[Measurement]:
@@ -71,7 +111,8 @@ def measure_surface(part: Printed) -> Iterator[Measurement]:
 def measure_print(part: Printed) -> Iterator[Measurement]:
     """What the printer lays over air, and what holds the part on the bed."""
     hang, bed = solids.overhang_mm2(part.standing), solids.bed_contact_mm2(part.standing)
-    yield part.figure("overhang", hang, 0.0, PUBLISHED_OVERHANG_MM2, "mm²")
+    most = PUBLISHED_OVERHANG_MM2 if part.kind == part.design.held else FLAT_OVERHANG_MM2
+    yield part.figure("overhang", hang, 0.0, most, "mm²")
     yield part.figure("bed_contact", bed, LEAST_BED_MM2, np.inf, "mm²")
 
 
@@ -93,18 +134,29 @@ def measure_size(part: Printed) -> Iterator[Measurement]:
 
 
 def measure_letter(part: Printed) -> Iterator[Measurement]:
-    """The letter on the back of the coupling's block."""
-    letter = part.design.mount.letter
-    yield letters.measure_letter("backing.letter", part.subject, part.standing, part.finger, letter)
+    """The letter on the back of the coupling's block, or of a bendable plate."""
+    letter, to_letter = _letter(part)
+    mesh = solids.moved(part.standing, to_letter)
+    yield letters.measure_letter("backing.letter", part.subject, mesh, part.finger, letter)
+
+
+def _letter(part: Printed) -> tuple[Letter, Matrix]:
+    """The part's letter, and the matrix from its print bed to the frame that it is given in."""
+    design = part.design
+    if part.kind == design.held:
+        return design.mount.letter, np.eye(4)
+    from_sensor = np.linalg.inv(plate_back_to_sensor(design.mount, design.stack))
+    return design.interfaces[0].letter, np.asarray(from_sensor @ part.to_sensor)
 
 
 def measure_walls(part: Printed) -> Iterator[Measurement]:
     """The thinnest walls. Thinner ones are listed here by name, each with its own limit."""
     design, mount = part.design, part.design.mount
-    to_sensor = mount_to_sensor(mount, design.stack)
+    letter, to_letter = _letter(part)
+    about = letters.beside(letter, design.printing)
 
     def on_tip(points: Vectors) -> Mask:
-        return np.asarray(applied(to_sensor, points)[:, 1] > design.tip.slant_start_y_mm)
+        return np.asarray(applied(part.to_sensor, points)[:, 1] > design.tip.slant_start_y_mm)
 
     def between(points: Vectors) -> Mask:
         far = max(*mount.pin_u_mm, *mount.bolt_u_mm) + max(mount.pin_mm, mount.bolt_hole_mm) / 2
@@ -112,11 +164,10 @@ def measure_walls(part: Printed) -> Iterator[Measurement]:
         low = points[:, 2] < mount.land_mm
         return np.asarray(beside & low & (np.abs(points[:, 0]) < far))
 
-    exempt = [
-        Exempt("tip edge", design.tip.edge_mm, on_tip),
-        letters.beside(mount.letter, design.printing),
-    ]
-    if mount.pin_u_mm and not mount.sleeved:
+    exempt = [replace(about, holds=lambda points: about.holds(applied(to_letter, points)))]
+    if part.kind == "backing":
+        exempt.insert(0, Exempt("tip edge", design.tip.edge_mm, on_tip))
+    if part.kind == design.held and mount.pin_u_mm and not mount.sleeved:
         away = abs(max(mount.pin_u_mm) - max(mount.bolt_u_mm))
         apart = away - (mount.pin_mm + mount.bolt_hole_mm) / 2
         least = min(apart, design.printing.min_wall_mm)

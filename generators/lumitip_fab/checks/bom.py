@@ -18,8 +18,8 @@ from lumitip_fab.design import Design
 from lumitip_fab.errors import OutputError
 
 READS = (
-    "bom.csv", "boards/*/order/*_bom.csv", "backing/*.stl", "mould/*.stl", "holder/*.stl",
-    "fit/*.stl", "mould/*_casting.md", "wiring/cables.csv",
+    "bom.csv", "boards/*/order/*_bom.csv", "backing/*.stl", "interface/*.stl", "mould/*.stl",
+    "holder/*.stl", "fit/*.stl", "mould/*_casting.md", "wiring/cables.csv",
 )  # fmt: skip
 _FILE = "bom.csv"
 _PART_G = re.compile(r"^\| .*, part [AB] \| \*\*([\d.]+) g\*\* \|$", re.MULTILINE)
@@ -110,7 +110,9 @@ def _grams(outputs: Path, design: Design) -> dict[str, float]:
     """Mass of each printed part, solid."""
     found = {}
     for path in sorted(
-        p for k in ("backing", "mould", "holder", "fit") for p in (outputs / k).glob("*.stl")
+        p
+        for k in ("backing", "interface", "mould", "holder", "fit")
+        for p in (outputs / k).glob("*.stl")
     ):
         corners = corners_mm(path).reshape(-1, 3, 3)
         mm3 = float(np.linalg.det(corners).sum() / 6)

@@ -15,10 +15,9 @@ from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.checks.solids import Vectors
 from lumitip_fab.design import Box, Design, Finger
 from lumitip_fab.errors import OutputError
-from lumitip_fab.frames import mount_to_sensor
+from lumitip_fab.frames import backing_bed_to_sensor, mount_to_sensor
 
 NAMES = ("assembly.drawing", "assembly.drawing_page", "assembly.drawing_labels")
-LAYERS = ("backing", "board", "silicone", "film")
 SIZE_MM = 0.1
 SKIN_MM = 0.6  # of silicone and film, whose walls stand off the outline and lean
 ORDER_MM = 10.0  # from layer to layer
@@ -50,10 +49,8 @@ def measure_drawing(outputs: Path, design: Design, finger: Finger) -> Iterator[M
     file = f"assembly/{finger.name}_exploded.svg"
     try:
         drawing = _read(outputs / file)
-        backing = solids.read_mesh(outputs / f"backing/{finger.name}_backing.stl")
-        to_sensor = mount_to_sensor(design.mount, design.stack)
-        wanted = _wanted(design, finger, solids.moved(backing, to_sensor).vertices)
-        yield from _bodies(file, drawing, wanted)
+        wanted = _wanted(design, finger, dict(_printed(outputs, design, finger)))
+        yield from _bodies(file, drawing, wanted, design.layers)
         yield _page(file, drawing)
         yield from _labels(file, drawing, design, finger)
     except (OutputError, OSError, XmlTree.ParseError, LookupError, ValueError) as error:
@@ -90,16 +87,29 @@ def _extent(text: XmlTree.Element) -> Vectors:
     return np.array([(start, y - size / 4), (start + width, y + size)])
 
 
-def _wanted(design: Design, finger: Finger, backing: Vectors) -> dict[str, tuple[Vectors, float]]:
+def _printed(outputs: Path, design: Design, finger: Finger) -> Iterator[tuple[str, Vectors]]:
+    """Corners of the printed parts in the finger's frame."""
+    stack, mount = design.stack, design.mount
+    frames = {"backing": backing_bed_to_sensor(mount, stack)}
+    if design.interfaces:
+        frames["interface"] = mount_to_sensor(mount, stack)
+    for kind, to_sensor in frames.items():
+        mesh = solids.read_mesh(outputs / f"{kind}/{finger.name}_{kind}.stl")
+        yield kind, solids.moved(mesh, to_sensor).vertices
+
+
+def _wanted(
+    design: Design, finger: Finger, printed: dict[str, Vectors]
+) -> dict[str, tuple[Vectors, float]]:
     """Corners of each body that is to be seen, in the finger's frame, and how true they are."""
     stack, mould = design.stack, design.mould
     low, face = stack.rim_z_mm, stack.silicone_z_mm
-    lean = stack.silicone_mm * math.tan(math.radians(mould.draft_deg))
+    lean = stack.cover_mm * math.tan(math.radians(mould.draft_deg))
     foot = _grown(design.outline.polygon(), mould.wall_gap_mm)
     found = {
-        "backing": (backing, SIZE_MM),
+        **{kind: (corners, SIZE_MM) for kind, corners in printed.items()},
         "board": (_block(design.board.box, stack.pocket_z_mm, low), SIZE_MM),
-        "silicone": (_between(foot, low, face), SKIN_MM),
+        "silicone": (_between(foot, stack.face_z_mm, face), SKIN_MM),
         "film": (_film(_grown(foot, -lean), face, mould.end_round_mm), SKIN_MM),
     }
     for part in finger.parts:
@@ -121,7 +131,10 @@ def _grown(flat: Vectors, by_mm: float) -> Vectors:
 
 
 def _bodies(
-    file: str, drawing: Drawing, wanted: dict[str, tuple[Vectors, float]]
+    file: str,
+    drawing: Drawing,
+    wanted: dict[str, tuple[Vectors, float]],
+    layers: tuple[str, ...],
 ) -> Iterator[Measurement]:
     """Bodies that are missing, sizes on the page, and how far the layers are apart."""
     missing = [name for name in wanted if not len(drawing.groups.get(name, ()))]
@@ -138,14 +151,14 @@ def _bodies(
     worst = max(off, key=lambda name: off[name])
     yield Measurement("assembly.drawing", f"{file} size", off[worst] * wanted[worst][1], 0,
                       wanted[worst][1], "mm", f"of {worst}, against its size at 1:1")  # fmt: skip
-    if not all(name in shifts for name in LAYERS):
+    if not all(name in shifts for name in layers):
         yield unreadable("assembly.drawing", f"{file} order", "a layer is missing")
         return
-    rise = float(np.diff([shifts[name][1] for name in LAYERS]).min())
+    rise = float(np.diff([shifts[name][1] for name in layers]).min())
     yield Measurement("assembly.drawing", f"{file} order", rise, ORDER_MM, math.inf, "mm",
                       "least rise from layer to layer")  # fmt: skip
     astray = {name: float(np.abs(shift - shifts["board"]).max())
-              for name, shift in shifts.items() if name not in LAYERS}  # fmt: skip
+              for name, shift in shifts.items() if name not in layers}  # fmt: skip
     loose = max(astray, key=lambda name: astray[name])
     yield Measurement("assembly.drawing", f"{file} place", astray[loose], 0, SIZE_MM, "mm",
                       f"of {loose}, on its board")  # fmt: skip
@@ -168,6 +181,7 @@ def _labels(file: str, drawing: Drawing, design: Design, finger: Finger) -> Iter
     wanted = [
         f"Backing, {stack.plate_mm:g} mm", f"Board, {stack.pcb_mm:g} mm",
         f"Silicone, {stack.silicone_mm:g} mm", f"Film, {stack.film_mm:g} mm",
+        *(["Interface"] if design.interfaces else []),
         f"{len(finger.connector.pads)} wires", f"{finger.name.capitalize()} finger, exploded",
         *(f"{kinds.count(k)} {plural.get(k, k + 's')}" for k in dict.fromkeys(kinds)),
     ]  # fmt: skip

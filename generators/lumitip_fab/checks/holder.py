@@ -112,7 +112,7 @@ def measure_tray(clip: Clip) -> Iterator[Measurement]:
     clearance = holder.tray.x_max_mm - clip.board.carrier.box.x_max_mm
     worst = farthest(np.concatenate(gaps), clearance)
     yield clip.figure("tray_gap", worst, clearance - SIZE_MM, clearance + SIZE_MM)
-    rim = clip.mesh.bounds[1][2] - clip.design.stack.pcb_mm
+    rim = clip.mesh.bounds[1][2] - clip.design.stack.carrier_mm
     yield clip.figure("rim", rim, -SIZE_MM, SIZE_MM, note="above the board's front")
     floor = _height(clip, np.array([(0.0, y) for y in ys]))
     wanted = -holder.floor_z_mm

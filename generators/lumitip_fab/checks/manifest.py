@@ -31,7 +31,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     note = ", ".join(changed[:3]) or f"of {len(told.files)}"
     yield Measurement("manifest.files", _FILE, len(changed), 0, 0, "missing or changed", note)
     for path, entry in sorted(told.files.items()):
-        if path.endswith(".stl") and path.startswith(("backing/", "mould/")):
+        if path.endswith(".stl") and path.startswith(("backing/", "interface/", "mould/")):
             yield _frame(outputs, path, np.array(entry.to_sensor), design)
 
 
@@ -57,7 +57,11 @@ def _apart(path: str, low: Vector, high: Vector, design: Design) -> Iterator[flo
     """How far sides of a part lie from where they should be."""
     stack, tip_y = design.stack, design.outline.tip_y_mm
     if path.startswith("backing/"):
-        yield from (abs(high[1] - tip_y), abs(high[2] - stack.rim_z_mm))
+        yield from (abs(high[1] - tip_y), abs(high[2] - stack.face_z_mm))
+    elif path.startswith("interface/"):
+        (interface,) = design.interfaces
+        yield abs(high[1] - interface.box.y_max_mm)
+        yield abs(high[2] - stack.back_z_mm - interface.rim_height_mm)
     elif path.startswith("mould/"):
         # It lies under the skin, its floor `wall_mm` thick, and reaches round the tip.
         yield abs(high[2] - (stack.silicone_z_mm + design.mould.wall_mm))

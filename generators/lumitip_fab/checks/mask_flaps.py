@@ -93,7 +93,8 @@ def measure_flaps(
     back = shapely.union_all(
         [_on_back(f, s, design.mask.allowance_mm) for f, s in zip(flaps, sides, strict=True)]
     )
-    keep = (("coupling", _coupling(design), FILLETS_MM), ("notch", finger.notch, NOTCH_MM))
+    keep = [("coupling", _coupling(design), FILLETS_MM), ("notch", finger.notch, NOTCH_MM)]
+    keep += [("interface", interface.box, NOTCH_MM) for interface in design.interfaces]
     for name, box, least in keep:
         apart = float(shapely.distance(back, _area(box)))
         yield Measurement("mask.folds", f"{subject} {name}", apart, least, math.inf, "mm",
@@ -139,7 +140,7 @@ def side_mm(fold: Points, design: Design) -> Points:
     y = np.linspace(fold[0, 1], fold[1, 1], 17)
     plate = np.interp(y, [tip.slant_start_y_mm, outline.tip_y_mm], [stack.plate_mm, tip.edge_mm])
     tapered = [outline.tip_y_mm - mould.taper_length_mm, outline.tip_y_mm]
-    silicone = np.interp(y, tapered, [stack.silicone_mm, mould.tip_silicone_mm])
+    silicone = np.interp(y, tapered, [stack.cover_mm, mould.tip_silicone_mm])
     return np.asarray(plate + silicone)
 
 
@@ -161,7 +162,7 @@ def _coupling(design: Design) -> Box:
     mount, half = design.mount, design.mount.block_width_mm / 2
     tilt = math.radians(mount.tilt_deg)
     shoulder_y = mount.land_mm * math.cos(tilt) - mount.block_back_w_mm * math.sin(tilt)
-    rise = mount.block_back_w_mm - design.stack.plate_mm
+    rise = mount.block_back_w_mm - design.stack.rim_z_mm + design.stack.back_z_mm
     end = mount.origin_y_mm + shoulder_y + rise / math.tan(math.pi / 4 - tilt)
     return Box(-half, half, mount.origin_y_mm, end)
 

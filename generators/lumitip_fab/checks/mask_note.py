@@ -51,7 +51,7 @@ def measure_note(
         worst = float(off[:, column].max()) if len(off) else np.nan
         yield Measurement("mask.note", f"{subject} {name}", worst, 0, limit, "mm",
                           "worst row against the A4 page")  # fmt: skip
-    whole = design.stack.plate_mm + design.stack.silicone_mm
+    whole = design.stack.plate_mm + design.stack.cover_mm
     told = np.array([float(v) for v in (count[1], side[1], *readings.groups())])
     wanted = np.array([len(finger.cells), whole, *design.mask.measured_ruler_mm])
     yield Measurement("mask.note", f"{subject} figures", float(np.abs(told - wanted).max()), 0,

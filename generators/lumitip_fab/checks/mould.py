@@ -19,7 +19,7 @@ from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.checks.walls import walls
 from lumitip_fab.design import Design, Finger
 from lumitip_fab.errors import OutputError
-from lumitip_fab.frames import applied, mould_bed_to_sensor, mount_to_sensor
+from lumitip_fab.frames import applied, backing_bed_to_sensor, mould_bed_to_sensor
 
 READS = ("mould/*", "backing/*_backing.stl")
 NAMES = (
@@ -85,7 +85,7 @@ class Probe:
         self.mesh, self.design = mesh, design
         to_sensor = mould_bed_to_sensor(design.stack, design.mould)
         self.to_bed = np.asarray(np.linalg.inv(to_sensor), dtype=np.float64)
-        self.rim_mm = design.mould.wall_mm + design.stack.silicone_mm
+        self.rim_mm = design.mould.wall_mm + design.stack.cover_mm
 
     def depths_mm(self, points: solids.Vectors) -> solids.Vectors:
         """How far the mould lies below the rim plane at points (x, y) of the sensor frame."""
@@ -103,9 +103,14 @@ def _thickness(probe: Probe, file: str) -> Measurement:
     x = np.arange(box.x_min_mm, box.x_max_mm, GRID_MM)
     y = np.arange(box.y_min_mm, box.y_max_mm, GRID_MM)
     depth = probe.depths_mm(np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2))
-    wanted = probe.design.stack.silicone_mm
+    stack = probe.design.stack
+    wanted = stack.silicone_mm
+    proud = 0.0 if stack.sunk else stack.pcb_mm  # of the board before the plate
     # The finger lies on the stops, so its board is as high as they really are.
-    depth -= float(np.min([probe.depths_mm(np.array([pad]))[0] for pad in probe.design.mould.pads]))
+    depth -= (
+        float(np.min([probe.depths_mm(np.array([pad]))[0] for pad in probe.design.mould.pads]))
+        + proud
+    )
     worst = float(depth[np.abs(depth - wanted).argmax()])
     note = f"farthest from {wanted:g} at {len(depth)} places over the board, from the pads' tops"
     return Measurement("mould.thickness", file, worst, wanted - THICKNESS_MM,
@@ -132,7 +137,7 @@ def _stops(probe: Probe, file: str) -> Iterator[Measurement]:
         ring = np.column_stack([np.cos(angle), np.sin(angle)]) * mould.pad_mm / 2
         free = ring[ring[:, 0] * x < 0.0]
         tops = probe.depths_mm(ring * _PAD_INNER + (x, y))
-        feet = probe.depths_mm(free * _PAD_OUTER + (x, y)) - probe.design.stack.silicone_mm
+        feet = probe.depths_mm(free * _PAD_OUTER + (x, y)) - probe.design.stack.cover_mm
         worst = float(max(np.abs(tops).max(), np.abs(feet).max()))
         yield Measurement("mould.stops", f"{file}: pad {number}", worst, 0, STOPS_MM, "mm",
                           "top against the rim plane, and floor around it")  # fmt: skip
@@ -152,7 +157,7 @@ def _seat(
     except OutputError as error:
         return unreadable("mould.seat", part, str(error))
     to_bed = np.linalg.inv(mould_bed_to_sensor(design.stack, design.mould))
-    seated = overlap.placed(backing, to_bed @ mount_to_sensor(design.mount, design.stack))
+    seated = overlap.placed(backing, to_bed @ backing_bed_to_sensor(design.mount, design.stack))
     return Measurement("mould.seat", file, overlap.shared_mm3(body, seated), 0, SHARED_MM3, "mm³",
                        f"shared with {part} when it lies on the stops")  # fmt: skip
 
@@ -173,6 +178,9 @@ def _volume(
         for part in finger.parts
         if part.side == "front"
     )
+    box, stack = design.board.box, design.stack
+    if not stack.sunk:
+        dipped += box.width_mm * box.length_mm * stack.pcb_mm
     measured = (_cavity_mm3(body, design) - dipped) / 1000
     if not measured > 0:
         return unreadable("mould.volume", file, "has no cavity that could be measured")
@@ -207,5 +215,5 @@ def _cavity_mm3(body: overlap.Solid, design: Design) -> float:
     ring = np.array(shapely.geometry.polygon.orient(within).exterior.coords)[:-1]
     low = mould.wall_mm / 2
     section = manifold3d.CrossSection([ring])
-    filled = section.extrude(mould.wall_mm + design.stack.silicone_mm - low).translate([0, 0, low])
+    filled = section.extrude(mould.wall_mm + design.stack.cover_mm - low).translate([0, 0, low])
     return float((filled - body).volume())

@@ -30,7 +30,7 @@ def measured(mesh: Any, file: str, design: Design, notch: Box) -> Iterator[Measu
         notch: the finger's wire notch, where the wall may be open.
     """
     mould, stack = design.mould, design.stack
-    rim_mm = mould.wall_mm + stack.silicone_mm
+    rim_mm = mould.wall_mm + stack.cover_mm
     silhouette = shapely.Polygon(design.outline.polygon() * (1, -1))  # as seen from above
     places = _along(silhouette, design, notch)
     near = _distances(mesh, rim_mm + _ABOVE_MM, places)

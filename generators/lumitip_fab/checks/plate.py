@@ -28,7 +28,7 @@ def measure_outline(part: Printed) -> Iterator[Measurement]:
     silhouette = shapely.LinearRing(design.outline.polygon(24))
     corners = shapely.get_coordinates(shapely.segmentize(silhouette, 1.0))
     open_ = (np.abs(corners[:, 0]) < notch.x_max_mm) & (corners[:, 1] < notch.y_max_mm)
-    cut = section(part.sensor, design.stack.rim_z_mm - design.tip.edge_mm / 2)
+    cut = section(part.sensor, design.stack.face_z_mm - design.tip.edge_mm / 2)
     skins = [p.exterior for p in shapely.get_parts(cut) if p.geom_type == "Polygon"]
     off = shapely.distance(shapely.points(corners[~open_]), shapely.union_all(skins))
     yield part.near("outline", np.asarray(off), 0.0, OUTLINE_MM)
@@ -56,7 +56,7 @@ def measure_pocket(part: Printed) -> Iterator[Measurement]:
         yield part.figure(
             "pocket_gap", farthest(np.asarray(gaps), (low + high) / 2), low, high, at=side
         )
-    depths = _rim_z(part) - _front_z(part, _floor_points(part))
+    depths = _rim_z(part) - front_z(part, floor_points(part))
     yield part.near("pocket_depth", depths, stack.pcb_mm, DEPTH_MM)
 
 
@@ -68,7 +68,7 @@ def measure_pins(part: Printed) -> Iterator[Measurement]:
     yield part.near("pins", off, 0.0, PIN_MM)
     wanted = (board.hole_mm - board.pin_mm) / 2  # the fit in it
     yield part.near("pin_clearance", (board.hole_mm - wide) / 2, wanted, PIN_MM)
-    low = _rim_z(part) - _front_z(part, np.array(holes))
+    low = _rim_z(part) - front_z(part, np.array(holes))
     yield part.figure("pin_height", farthest(low, 0.0), -0.02, stack.pcb_mm / 4)
 
 
@@ -76,7 +76,8 @@ def measure_reliefs(part: Printed) -> Iterator[Measurement]:
     """Material where parts on the back of the board and the connector's solder are."""
     stack, mount = part.design.stack, part.design.mount
     pads = part.finger.connector
-    tail = mount.block_front_w_mm - stack.pcb_mm
+    # Behind a bendable plate is the interface's pad.
+    tail = mount.block_front_w_mm - stack.pcb_mm if stack.sunk else stack.floor_mm
     rooms = [(q.name, q.box, q.height_mm) for q in part.finger.parts if q.side == "back"]
     for place, (x, y) in enumerate(pads.pads, start=1):
         solder, wire = pads.pad_mm / 2, pads.drill_mm / 2
@@ -94,7 +95,7 @@ def measure_notch(part: Printed) -> Iterator[Measurement]:
     """Material in the way of the wires: notch through the plate, but for the coupling behind."""
     design, notch = part.design, part.finger.notch
     open_ = Box(notch.x_min_mm, notch.x_max_mm, design.outline.end_y_mm, notch.y_max_mm)
-    points = _lattice(open_.grown(-0.05), design.stack.back_z_mm, design.stack.rim_z_mm, 12)
+    points = _lattice(open_.grown(-0.05), design.stack.back_z_mm, design.stack.face_z_mm, 12)
     inverse = np.asarray(
         np.linalg.inv(mount_to_sensor(design.mount, design.stack)), dtype=np.float64
     )
@@ -120,10 +121,10 @@ def _rim_z(part: Printed) -> float:
     design = part.design
     y = (design.board.pocket.y_max_mm + design.outline.tip_y_mm) / 2
     xs = np.array([-0.3, 0.0, 0.3]) * design.outline.tip_width_mm
-    return float(np.median(_front_z(part, np.array([(x, y) for x in xs]))))
+    return float(np.median(front_z(part, np.array([(x, y) for x in xs]))))
 
 
-def _front_z(part: Printed, points: Vectors) -> Vectors:
+def front_z(part: Printed, points: Vectors) -> Vectors:
     """Height of what is seen from the front at points (x, y); NaN through a hole."""
     above = np.column_stack([points, np.full(len(points), part.design.stack.rim_z_mm + _START_MM)])
     drop, _ = cast(part.sensor, above, _DOWN, 40.0).first(len(points))
@@ -142,7 +143,7 @@ def _thickness(part: Printed, points: Vectors) -> Vectors:
     return thick
 
 
-def _floor_points(part: Printed) -> Vectors:
+def floor_points(part: Printed) -> Vectors:
     """Points over the pocket's floor, away from pins, reliefs and notch."""
     design = part.design
     box, floor = design.board.box.grown(-0.5), design.stack.floor_mm

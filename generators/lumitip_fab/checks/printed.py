@@ -9,21 +9,26 @@ import shapely
 from lumitip_fab.checks.result import Measurement
 from lumitip_fab.checks.solids import Vectors, section
 from lumitip_fab.design import Design, Finger, Point
+from lumitip_fab.frames import Matrix
 
 _LEAST_MM2 = 1e-6  # smaller rings of a section are where it grazes an edge
 
 
 @dataclass(frozen=True, eq=False)
 class Printed:
-    """The backing of one finger as it was read."""
+    """The backing of one finger, or the interface behind it, as it was read."""
 
     subject: str
     standing: Any
-    """Mesh in the mount frame (u, w, h), as the file has it."""
+    """Mesh as the file has it, on its bed; what is bolted on, in the mount frame (u, w, h)."""
     sensor: Any
     """Mesh in the finger's sensor frame."""
     finger: Finger
     design: Design
+    to_sensor: Matrix
+    """From the first frame to the second."""
+    kind: str = "backing"
+    """Or `interface`."""
 
     def figure(
         self, check: str, measured: float, low: float, high: float, unit: str = "mm", at: str = ""

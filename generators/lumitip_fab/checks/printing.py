@@ -64,7 +64,8 @@ def _parts(outputs: Path, design: Design) -> Measurement:
     except (OSError, UnicodeDecodeError) as problem:
         return unreadable("printing.parts", _NOTE, str(problem))
     listed = set(re.findall(r"^\| `(\S+\.3mf)` \| `(\S+)` \|", text, re.MULTILINE))
-    kinds, fingers = ("backing", "mould"), design.fingers
+    kinds = ("backing", *(["interface"] if design.interfaces else []), "mould")
+    fingers = design.fingers
     paths = [f"{kind}/{finger.name}_{kind}.3mf" for kind in kinds for finger in fingers]
     wrong = listed ^ {(path, design.slicing.of(path).file) for path in paths}
     return Measurement(

@@ -68,9 +68,12 @@ def _places(model: Model, design: Design) -> Iterator[Measurement]:
     tcp = model.to_base("lumitip_tcp")[:3, 3]
     middle = (places[0][:3, 3] + places[1][:3, 3]) / 2
     yield _figure("tcp", np.abs(tcp - middle).max(), 0, PLACE_MM, "mm", "from between the cells")
-    lowest = [_bounds(model, f, 0.0, "backing")[0][2] for f in _FINGERS]
+    held = design.held
+    lowest = [_bounds(model, f, 0.0, held)[0][2] for f in _FINGERS]
     worst = max(lowest, key=abs)
-    yield _figure("seat", worst, -PLACE_MM, PLACE_MM, "mm", "foot of a backing to the mount plane")
+    yield _figure(
+        "seat", worst, -PLACE_MM, PLACE_MM, "mm", f"foot of the {held} to the mount plane"
+    )
     for name, share in (("closed", 0.0), ("open", 1.0)):
         wanted = share * design.closing.max_opening_mm
         gap = _gap(model, share)
@@ -111,7 +114,7 @@ def _body(link: Link, finger: Finger, design: Design) -> Iterator[Measurement]:
 def _pieces(link: Link, finger: Finger, design: Design) -> Iterator[tuple[float, Vectors]]:
     """Mass (g) and centre of each layer, by the volume of its mesh, and of each part."""
     densities = design.densities
-    for kind in ("backing", "board", "silicone", "film"):
+    for kind in design.layers:
         mesh = link.visuals[f"{finger.name}_{kind}"]
         yield mesh.volume * getattr(densities, f"{kind}_g_ml") / 1000, mesh.center_mass
     for part in finger.parts:

@@ -11,6 +11,7 @@ from lumitip_fab.derive.electrical import derive_electrical
 from lumitip_fab.derive.faults import Faults
 from lumitip_fab.derive.fit_plate import derive_fit_plate
 from lumitip_fab.derive.flange import derive_flange
+from lumitip_fab.derive.flex import derive_interfaces
 from lumitip_fab.derive.holder import derive_holder
 from lumitip_fab.derive.packages import derive_fabs, derive_packages, derive_rules
 from lumitip_fab.derive.purchase import derive_purchase
@@ -39,9 +40,10 @@ def derive(given: Input) -> Design:
         faults.stop()  # without parts and nets there are no boards to place
     plan = boards.derive_plan(given, cells, strings, muxing, faults)
     silhouette = outline.derive_outline(p, plan.board, plan.receiver.notch, faults)
+    interfaces = derive_interfaces(given, silhouette, plan.receiver.notch, faults)
     coupling = mount.derive_mount(given, silhouette, plan, faults)
-    tip = derive_tip(p, silhouette, plan.board, faults)
-    casting = mould.derive_mould(given, silhouette, plan.board, faults)
+    tip = derive_tip(p, silhouette, plan.board, stack, faults)
+    casting = mould.derive_mould(given, silhouette, plan.board, stack, faults)
     printing = derive_printing(given, silhouette, faults)
     slicing = derive_slicing(given, faults)
     plate = derive_fit_plate(given, plan, coupling, faults)
@@ -79,6 +81,7 @@ def derive(given: Input) -> Design:
             board=plan.board,
             emitter=plan.emitter,
             receiver=plan.receiver,
+            interfaces=interfaces,
             mount=coupling,
             closing=meeting,
             wiring=circuit,
@@ -91,7 +94,7 @@ def derive(given: Input) -> Design:
             printing=printing,
             slicing=slicing,
             fit_plate=plate,
-            densities=derive_densities(given),
+            densities=derive_densities(given, slicing),
             controller=Controller(
                 p.controller.board,
                 p.controller.name,

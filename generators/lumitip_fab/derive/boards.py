@@ -20,6 +20,7 @@ from lumitip_fab.derive import chips, connectors, placing
 from lumitip_fab.derive.cells import Cells
 from lumitip_fab.derive.faults import Faults
 from lumitip_fab.derive.fits import derive_fits
+from lumitip_fab.derive.flex import foot_half_mm, is_flex
 from lumitip_fab.derive.wiring import Muxing, Strings
 from lumitip_fab.design import Board, Box, Connector, Finger, Part, Point, Zone
 from lumitip_fab.load import Input
@@ -58,6 +59,7 @@ class Frame:
     notch: Box
     pin_mm: float
     rear_hole_x_mm: float
+    foot_half_mm: float
 
 
 def derive_plan(
@@ -80,7 +82,7 @@ def derive_plan(
     rear = ((-frame.rear_hole_x_mm, frame.connector_y_mm),
             (frame.rear_hole_x_mm, frame.connector_y_mm))  # fmt: skip
     room = _resistor_room(given, frame)
-    resistors, reliefs = placing.resistors(given, strings, room, faults)
+    resistors, reliefs = placing.resistors(given, strings, room, frame.foot_half_mm, faults)
     wires = connectors.place(connectors.emitter_signals(given), True, frame.connector_y_mm)
     emitter = Finger(
         name="emitter",
@@ -137,8 +139,11 @@ def _frame(
     wide = ways <= connectors.MOST_WIDE_WAYS and connectors.half_width_mm(ways, True) <= fits
     wires_half = connectors.half_width_mm(ways, wide)
     notch_half = max(wires_half + NOTCH_BESIDE_MM, gripper.seat_width_mm / 2 + SEAT_CLEARANCE_MM)
+    foot_half = foot_half_mm(given, notch_half)
     least_hole_x = notch_half + p.printer.min_wall_mm + pin_mm / 2
-    half = _up(max(half, least_hole_x + rim, placing.least_half_width_mm(given)))
+    if is_flex(p):
+        least_hole_x = foot_half + p.printer.min_wall_mm + p.flex.thread_hole_mm / 2
+    half = _up(max(half, least_hole_x + rim, placing.least_half_width_mm(given, foot_half)))
     hole_x = min(max(float(np.abs(cells.x_mm).max()), least_hole_x), half - rim)
     top, bottom = float(cells.y_mm.max()), float(cells.y_mm.min())
     reach = max(part.size_y_mm for part in chips_) / 2
@@ -180,6 +185,7 @@ def _frame(
         notch=notch,
         pin_mm=pin_mm,
         rear_hole_x_mm=hole_x,
+        foot_half_mm=foot_half,
     )
 
 

@@ -17,7 +17,7 @@ def derive_closing(
     finger. The gripper's opening is between its own pads, `pad_w_mm` before the bolt axis.
     """
     sine, cosine = math.sin(math.radians(mount.tilt_deg)), math.cos(math.radians(mount.tilt_deg))
-    thinnest = mould.tip_silicone_mm - stack.silicone_mm
+    thinnest = mould.tip_silicone_mm - stack.cover_mm
     profile = (
         (outline.tip_y_mm, thinnest),
         (outline.tip_y_mm - mould.taper_length_mm, 0.0),

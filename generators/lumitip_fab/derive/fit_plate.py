@@ -8,6 +8,7 @@ import numpy as np
 from lumitip_fab.derive.boards import Plan
 from lumitip_fab.derive.faults import Faults
 from lumitip_fab.derive.fits import derive_fits
+from lumitip_fab.derive.flex import stiff_mm
 from lumitip_fab.design import Box, FitPlate, Fits, Mount, Point
 from lumitip_fab.load import Input
 
@@ -41,7 +42,7 @@ def derive_fit_plate(given: Input, plan: Plan, mount: Mount, faults: Faults) -> 
     label = Box(left, left + wide, middle - high / 2, middle + high / 2)
     part = _slice(mount, wall)
     pitch = max(label.x_max_mm + MARGIN_MM, part.width_mm + APART_MM)
-    rise = p.stack.pcb_mm + OVER_MM
+    rise = stiff_mm(p) + OVER_MM
     plate = FitPlate(
         steps=steps,
         pitch_mm=pitch,
@@ -49,7 +50,7 @@ def derive_fit_plate(given: Input, plan: Plan, mount: Mount, faults: Faults) -> 
         pin=pin,
         corner=corner,
         floors_mm=tuple(thickness + rise * below for below in reversed(range(len(steps)))),
-        pocket_mm=p.stack.pcb_mm,
+        pocket_mm=stiff_mm(p),
         label=label,
         label_mm=LABEL_DEPTH_MM,
         slice=part,

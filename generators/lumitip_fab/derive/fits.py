@@ -2,6 +2,7 @@
 
 import math
 
+from lumitip_fab.derive.flex import held_by
 from lumitip_fab.design import Fits, Nose
 from lumitip_fab.gripper_entry import Gripper
 from lumitip_fab.load import Input
@@ -15,7 +16,7 @@ def derive_fits(given: Input, fit_mm: float) -> Fits:
         fit_mm: above zero everything sits looser.
     """
     p = given.parameters
-    gripper = given.catalogue.grippers[p.coupling.gripper]
+    gripper = held_by(given)
     return Fits(
         fit_mm=fit_mm,
         pocket_gap_mm=p.backing.pocket_clearance_mm + fit_mm,

@@ -3,6 +3,7 @@
 import math
 
 from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.flex import stiff_mm
 from lumitip_fab.design import Box, Carrier, Holder
 from lumitip_fab.load import Input
 
@@ -33,7 +34,7 @@ def derive_holder(
         carrier=of.name,
         tray=tray,
         outer=Box(tray.x_min_mm - wall, tray.x_max_mm + wall, tray.y_min_mm, tray.y_max_mm),
-        top_z_mm=p.stack.pcb_mm,
+        top_z_mm=stiff_mm(p),
         floor_z_mm=floor_z,
         seat_z_mm=floor_z - wall,
         axis_z_mm=floor_z - wall - radius,

@@ -5,7 +5,7 @@ import math
 from lumitip_fab.derive.faults import Faults
 from lumitip_fab.derive.letter import DEPTH_MM, LEAST_MM, letter_on
 from lumitip_fab.derive.outline import half_width_at
-from lumitip_fab.design import Board, Letter, Mould, Outline, Point
+from lumitip_fab.design import Board, Letter, Mould, Outline, Point, Stack
 from lumitip_fab.load import Input
 
 PAD_MM = 2.0
@@ -18,7 +18,9 @@ LETTER_OVER_BED_MM = 0.6  # clear of the chamfer at the foot
 LETTER_UNDER_RIM_MM = 0.5
 
 
-def derive_mould(given: Input, outline: Outline, board: Board, faults: Faults) -> Mould:
+def derive_mould(
+    given: Input, outline: Outline, board: Board, stack: Stack, faults: Faults
+) -> Mould:
     """The mould, refused where the silicone cannot be shaped as asked."""
     p = given.parameters
     silicone = given.catalogue.silicones[p.mould.silicone]
@@ -42,7 +44,7 @@ def derive_mould(given: Input, outline: Outline, board: Board, faults: Faults) -
     )
     lean = math.tan(math.radians(p.mould.draft_deg))
     for depth, allowed, what in (
-        (p.stack.silicone_mm, LEAST_FLOOR_RIM_MM, "leans the skin in under the rim"),
+        (stack.cover_mm, LEAST_FLOOR_RIM_MM, "leans the skin in under the rim"),
         (p.mould.tip_silicone_mm, p.mould.wall_gap_mm - 0.02, "reaches under the tip edge"),
     ):
         faults.refuse_unless(
@@ -61,7 +63,7 @@ def derive_mould(given: Input, outline: Outline, board: Board, faults: Faults) -
         wall_mm=p.mould.wall_mm,
         pads=_pads(given, outline, board, faults),
         pad_mm=PAD_MM,
-        letter=_letter(given, outline, faults),
+        letter=_letter(given, outline, stack, faults),
         silicone=p.mould.silicone,
         density_g_ml=silicone.density_g_ml,
         mix_ratio=silicone.mix_ratio,
@@ -70,11 +72,11 @@ def derive_mould(given: Input, outline: Outline, board: Board, faults: Faults) -
     )
 
 
-def _letter(given: Input, outline: Outline, faults: Faults) -> Letter:
+def _letter(given: Input, outline: Outline, stack: Stack, faults: Faults) -> Letter:
     """On the outside of the trough's end, whose wall is as high as the cavity and its floor."""
     p = given.parameters
-    wall, rise = p.mould.wall_mm, p.stack.pcb_mm * math.tan(math.radians(p.mould.draft_deg))
-    low, high = LETTER_OVER_BED_MM, wall + p.stack.silicone_mm - LETTER_UNDER_RIM_MM
+    wall, rise = p.mould.wall_mm, stack.guided_mm * math.tan(math.radians(p.mould.draft_deg))
+    low, high = LETTER_OVER_BED_MM, wall + stack.cover_mm - LETTER_UNDER_RIM_MM
     faults.refuse_unless(
         high - low >= LEAST_MM - 1e-9,
         "mould.wall_mm",

@@ -5,6 +5,7 @@ import math
 from lumitip_fab.derive.boards import HOLE_TO_EDGE_MM, Plan
 from lumitip_fab.derive.faults import Faults
 from lumitip_fab.derive.fits import derive_fits
+from lumitip_fab.derive.flex import behind_mm, held_by, is_flex
 from lumitip_fab.derive.letter import DEPTH_MM, LEAST_DEPTH_MM, LEAST_MM, WIDTH, letter_on
 from lumitip_fab.derive.outline import half_width_at
 from lumitip_fab.design import Letter, Mount, Outline
@@ -17,17 +18,21 @@ LETTER_MARGIN_MM = 0.6  # to the bed, and to where the ramp begins
 def derive_mount(given: Input, outline: Outline, plan: Plan, faults: Faults) -> Mount:
     """The coupling, refused where finger and gripper do not go together."""
     p = given.parameters
-    gripper = given.catalogue.grippers[p.coupling.gripper]
+    gripper = held_by(given)
     _refuse_place(given, gripper, outline, plan, faults)
     _refuse_holes(given, gripper, faults)
     nose, fits = gripper.nose, derive_fits(given, p.printer.fit_mm)
-    front = max(p.stack.pcb_mm + p.backing.tail_mm, nose.front_w_mm if nose else 0.0)
+    field, value = "backing.tail_mm", p.backing.tail_mm
+    if is_flex(p):
+        field, value = "flex.pad_mm", p.flex.pad_mm
+    before = p.stack.pcb_mm + (p.stack.floor_mm if is_flex(p) else 0.0)
+    front = max(before + value, nose.front_w_mm if nose else 0.0)
     most = gripper.bolt_w_mm - gripper.counterbore_mm / 2 - p.printer.min_wall_mm
     faults.refuse_unless(
         front <= most,
-        "backing.tail_mm",
-        f"{p.backing.tail_mm:g} given, which leaves no wall before the bolt's counterbore; at "
-        f"most {most - p.stack.pcb_mm:.2f} is allowed",
+        field,
+        f"{value:g} given, which leaves no wall before the bolt's counterbore; at "
+        f"most {most - before:.2f} is allowed",
     )
     pins = gripper.pins
     return Mount(
@@ -65,7 +70,7 @@ def _refuse_place(
 ) -> None:
     """Refuse a block that does not stand on this finger's back."""
     p = given.parameters
-    plate = p.stack.floor_mm + p.stack.pcb_mm
+    plate = behind_mm(p)
     ramp = gripper.block_back_w_mm - plate
     opening = plan.receiver.notch.y_max_mm - outline.end_y_mm
     length = gripper.land_mm + ramp

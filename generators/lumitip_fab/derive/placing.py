@@ -7,6 +7,7 @@ import numpy as np
 from lumitip_fab.catalogue import Chip
 from lumitip_fab.derive.cells import Cells
 from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.flex import is_flex
 from lumitip_fab.derive.wiring import Muxing, Strings
 from lumitip_fab.design import Box, Part, Point, Relief
 from lumitip_fab.load import Input
@@ -143,7 +144,7 @@ def tip_holes(
 
 
 def resistors(
-    given: Input, strings: Strings, zone: Box, faults: Faults
+    given: Input, strings: Strings, zone: Box, foot_half_mm: float, faults: Faults
 ) -> tuple[tuple[Part, ...], tuple[Relief, ...]]:
     """String resistors in two banks beside the coupling, and the reliefs behind them.
 
@@ -152,7 +153,7 @@ def resistors(
     p = given.parameters
     chip = given.catalogue.resistors[p.emitter.resistor]
     along, across = chip.over_pads_mm
-    inner = _inner_mm(given)
+    inner = _inner_mm(given, foot_half_mm)
     outer = zone.x_max_mm - p.backing.relief_clearance_mm
     step_x, step_y = across + RESISTOR_GAP_MM, along + RESISTOR_GAP_MM
     across_bank = int((outer - inner + RESISTOR_GAP_MM) / step_x + 1e-9)
@@ -190,20 +191,19 @@ def resistors(
     return tuple(parts), tuple(reliefs)
 
 
-def least_half_width_mm(given: Input) -> float:
+def least_half_width_mm(given: Input, foot_half_mm: float) -> float:
     """Half the board's width that takes one string resistor on each side of the coupling."""
     p = given.parameters
     _, across = given.catalogue.resistors[p.emitter.resistor].over_pads_mm
-    return _inner_mm(given) + across + p.backing.relief_clearance_mm + ZONE_MARGIN_MM
+    return _inner_mm(given, foot_half_mm) + across + p.backing.relief_clearance_mm + ZONE_MARGIN_MM
 
 
-def _inner_mm(given: Input) -> float:
+def _inner_mm(given: Input, foot_half_mm: float) -> float:
     """Where the banks of string resistors begin: behind the board, beside the coupling."""
     p = given.parameters
     if p.emitter.resistor_side == "front":
         return RESISTOR_GAP_MM / 2
-    block = given.catalogue.grippers[p.coupling.gripper].block_width_mm
-    return block / 2 + COUPLING_GAP_MM + p.backing.relief_clearance_mm
+    return foot_half_mm + COUPLING_GAP_MM + p.backing.relief_clearance_mm
 
 
 def _relief(given: Input, bank: list[Part], height_mm: float) -> Relief:
@@ -214,5 +214,6 @@ def _relief(given: Input, bank: list[Part], height_mm: float) -> Relief:
         min(b.y_min_mm for b in boxes), max(b.y_max_mm for b in boxes),
     ).grown(p.backing.relief_clearance_mm)  # fmt: skip
     depth = height_mm + RELIEF_DEPTH_MM
-    through = p.stack.floor_mm - depth < p.printer.min_wall_mm
+    # A plate that is printed face down must not hang over.
+    through = is_flex(p) or p.stack.floor_mm - depth < p.printer.min_wall_mm
     return Relief(box, p.stack.floor_mm if through else depth, through)

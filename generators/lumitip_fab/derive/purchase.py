@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 
+from lumitip_fab.derive.flex import stiff_mm
 from lumitip_fab.design import Holder, Mount
 from lumitip_fab.design.purchase import Bought, PartPrice, Purchase
 from lumitip_fab.design.slicing import Slicing
@@ -60,7 +61,7 @@ def _screws(given: Input, holder: Holder, prices: Prices) -> list[Bought]:
         name = f"for nuts of {p.holder.nut_mm:g} mm across flats"
         return [Bought("fasteners", f"screw and nut, {name}", "", "", "breakout on its holder",
                        count, None)]  # fmt: skip
-    through = p.stack.pcb_mm + p.holder.standoff_mm + holder.wall_mm
+    through = stiff_mm(p) + p.holder.standoff_mm + holder.wall_mm
     length = 2 * math.ceil((through + _NUT_SHARE * float(thread[1:])) / 2)
     where = "breakout on its holder"
     return [

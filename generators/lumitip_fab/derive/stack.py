@@ -3,11 +3,14 @@
 import math
 
 from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.flex import is_flex, stiff_mm
 from lumitip_fab.design import Board, Outline, Printing, Stack, Tip
 from lumitip_fab.load import Input
 from lumitip_fab.parameters import Parameters
 
 LEAST_SILICONE_MM = 0.3
+STIFF_MM = (0.4, 3.2)  # boards that keep their shape
+FLEXIBLE_MM = (0.1, 0.2)  # boards of polyimide with two copper layers
 MOULD_ROOM_MM = 2.0  # gaps and draft of a mould beyond its walls
 TROUGH_ROOM_MM = 5.0  # its trough at the gripper end
 
@@ -28,6 +31,13 @@ def derive_stack(given: Input, faults: Faults) -> Stack:
         f"{p.stack.floor_mm:g} given, at least printer.min_wall_mm = "
         f"{p.printer.min_wall_mm:g} is needed behind a pocket {p.stack.pcb_mm:g} mm deep",
     )
+    least, most = FLEXIBLE_MM if is_flex(p) else STIFF_MM
+    faults.refuse_unless(
+        least <= p.stack.pcb_mm <= most,
+        "stack.pcb_mm",
+        f"{p.stack.pcb_mm:g} given, for backing.variant = {p.backing.variant!r} {least:g} to "
+        f"{most:g} is allowed",
+    )
     heights = {
         "emitter.led": parts.leds[p.emitter.led].body_mm[2],
         "receiver.photodetector": parts.photodetectors[p.receiver.photodetector].body_mm[2],
@@ -43,19 +53,22 @@ def derive_stack(given: Input, faults: Faults) -> Stack:
             f"{p.stack.silicone_mm:g} given, which leaves {left:.2f} mm over {field}, "
             f"{height:g} mm high; at least {height + LEAST_SILICONE_MM:.2f} is needed",
         )
-    return Stack(p.stack.floor_mm, p.stack.pcb_mm, p.stack.silicone_mm, p.stack.film_mm)
+    return Stack(
+        p.stack.floor_mm, p.stack.pcb_mm, p.stack.silicone_mm, p.stack.film_mm,
+        sunk=not is_flex(p), carrier_mm=stiff_mm(p),
+    )  # fmt: skip
 
 
-def derive_tip(p: Parameters, outline: Outline, board: Board, faults: Faults) -> Tip:
+def derive_tip(p: Parameters, outline: Outline, board: Board, stack: Stack, faults: Faults) -> Tip:
     """The wedge, refused where it would cut into the pocket's floor."""
-    plate = p.stack.floor_mm + p.stack.pcb_mm
+    plate = stack.plate_mm
     fit = p.printer.fit_mm
     to_pocket = outline.tip_y_mm - board.pocket.y_max_mm + fit
     # Where the fit widens the pocket, the wedge begins that much later.
-    later = min(max(p.tip.slant_start_mm - (to_pocket - fit), 0.0), max(fit, 0.0))
+    later = min(max(p.tip.slant_start_mm - (to_pocket - fit), 0.0), max(fit, 0.0)) * stack.sunk
     start_y = outline.tip_y_mm - p.tip.slant_start_mm + later
     faults.refuse_unless(
-        p.tip.slant_start_mm <= to_pocket + 1e-6,
+        not stack.sunk or p.tip.slant_start_mm <= to_pocket + 1e-6,
         "tip.slant_start_mm",
         f"{p.tip.slant_start_mm:g} given, at most {to_pocket:.3f} is allowed: there the pocket "
         f"begins, whose floor is only {p.stack.floor_mm:g} mm thick",

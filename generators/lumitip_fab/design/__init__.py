@@ -29,6 +29,7 @@ from lumitip_fab.design.cabling import Cable, Cabling, Terminal, Wire
 from lumitip_fab.design.carriers import Carrier, Device, Holder, Land, Note, Pattern
 from lumitip_fab.design.electrical import Electrical
 from lumitip_fab.design.fit_plate import FitPlate, Fits
+from lumitip_fab.design.flex import Interface
 from lumitip_fab.design.gripper import Closing, Mount, Nose
 from lumitip_fab.design.making import Letter, Mask, Mould, Printing
 from lumitip_fab.design.ordering import Fab
@@ -61,6 +62,7 @@ __all__ = [
     "Fits",
     "Grid",
     "Holder",
+    "Interface",
     "Land",
     "Letter",
     "Mask",
@@ -112,6 +114,8 @@ class Design:
     board: Board
     emitter: Finger
     receiver: Finger
+    interfaces: tuple[Interface, ...]
+    """Between a bendable plate and the gripper, alike for both fingers; none of rigid ones."""
     mount: Mount
     closing: Closing
     wiring: Wiring
@@ -138,6 +142,17 @@ class Design:
     def fingers(self) -> tuple[Finger, Finger]:
         """Both fingers, emitter first."""
         return self.emitter, self.receiver
+
+    @property
+    def layers(self) -> tuple[str, ...]:
+        """The bodies of a finger, from the back."""
+        return (*(("interface",) if self.interfaces else ()), "backing", "board", "silicone",
+                "film")  # fmt: skip
+
+    @property
+    def held(self) -> str:
+        """The part that is bolted to the gripper."""
+        return "interface" if self.interfaces else "backing"
 
     @property
     def cells(self) -> tuple[Cell, ...]:

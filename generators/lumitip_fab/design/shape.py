@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 Point = tuple[float, float]
 Cubic = tuple[Point, Point, Point, Point]
+GUIDED = 0.75  # of a plate without a pocket, in the mould
 
 
 @dataclass(frozen=True)
@@ -55,25 +56,31 @@ class Stack:
 
     z = 0      ────────────── skin: outer face of the film
     silicone_z ────────────── inner face of the film
-    rim_z      ────────────── front of the board and of the plate
+    rim_z      ────────────── front of the board
     pocket_z   ────────────── back of the board
     back_z     ────────────── back of the plate
+
+    The plate's front, face_z, is rim_z where the board lies in a pocket, else pocket_z.
     """
 
     floor_mm: float
     pcb_mm: float
     silicone_mm: float
     film_mm: float
+    sunk: bool
+    """Whether the board lies in a pocket of the plate, not on its front."""
+    carrier_mm: float
+    """Thickness of the boards outside the fingers."""
 
     @property
     def plate_mm(self) -> float:
         """Thickness of the printed plate."""
-        return self.floor_mm + self.pcb_mm
+        return self.floor_mm + self.pcb_mm if self.sunk else self.floor_mm
 
     @property
     def thickness_mm(self) -> float:
         """Thickness of the whole finger without its coupling."""
-        return self.plate_mm + self.silicone_mm + self.film_mm
+        return self.floor_mm + self.pcb_mm + self.silicone_mm + self.film_mm
 
     @property
     def silicone_z_mm(self) -> float:
@@ -82,18 +89,33 @@ class Stack:
 
     @property
     def rim_z_mm(self) -> float:
-        """Front of board and plate."""
+        """Front of the board."""
         return -(self.film_mm + self.silicone_mm)
 
     @property
+    def face_z_mm(self) -> float:
+        """Front of the plate, on which the mould's stops press."""
+        return self.rim_z_mm if self.sunk else self.pocket_z_mm
+
+    @property
+    def cover_mm(self) -> float:
+        """Thickness of the silicone over the plate, beside the board."""
+        return self.silicone_z_mm - self.face_z_mm
+
+    @property
+    def guided_mm(self) -> float:
+        """How far the mould's wall reaches along the plate's side."""
+        return self.pcb_mm if self.sunk else GUIDED * self.floor_mm
+
+    @property
     def pocket_z_mm(self) -> float:
-        """Back of the board: the pocket's floor."""
+        """Back of the board: the pocket's floor, or the plate's front."""
         return self.rim_z_mm - self.pcb_mm
 
     @property
     def back_z_mm(self) -> float:
         """Back of the plate."""
-        return self.rim_z_mm - self.plate_mm
+        return self.pocket_z_mm - self.floor_mm
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from lumitip_fab.design import (
     Controller,
     Electrical,
     Holder,
+    Interface,
     Mask,
     Mould,
     Mount,
@@ -24,6 +25,7 @@ def manual_files(
     made: Made, title: Title, printing: Printing, mould: Mould, mask: Mask, mount: Mount,
     wiring: Wiring, cabling: Cabling, controller: Controller, electrical: Electrical,
     carriers: tuple[Carrier, ...], holders: tuple[Holder, ...],
+    interfaces: tuple[Interface, ...],
 ) -> tuple[Artefact, ...]:  # fmt: skip
     """The manual twice: to read on a screen, and to print.
 
@@ -40,9 +42,10 @@ def manual_files(
         electrical: currents.
         carriers: boards outside the fingers.
         holders: what holds the controller's board.
+        interfaces: what holds backings that bend.
     """
     facts = Facts(title, printing, mould, mask, mount, wiring, cabling, controller, electrical,
-                  carriers, holders)  # fmt: skip
+                  carriers, holders, interfaces)  # fmt: skip
     text = manual_text(facts, made)
     name = f"{title.name} {title.revision}: build manual"
     return (

@@ -11,6 +11,7 @@ from lumitip_fab.design import (
     Controller,
     Electrical,
     Holder,
+    Interface,
     Mask,
     Mould,
     Mount,
@@ -42,6 +43,7 @@ class Facts:
     electrical: Electrical
     carriers: tuple[Carrier, ...]
     holders: tuple[Holder, ...]
+    interfaces: tuple[Interface, ...]
 
 
 def manual_text(facts: Facts, made: Made) -> str:
@@ -56,6 +58,7 @@ def manual_text(facts: Facts, made: Made) -> str:
 def _front(facts: Facts) -> str:
     mould, mask, printing = facts.mould, facts.mask, facts.printing
     lit_ma = sum(facts.wiring.current_ma)
+    fixed = "tie the boards on" if facts.interfaces else "glue the boards in"
     return f"""# {facts.title.name} {facts.title.revision}: build manual
 
 Made from the design, with the drawings of the files beside it. File names are below the folder of
@@ -80,7 +83,7 @@ outputs. Read a chapter to its end before you begin with it.
 | bolts for each finger | {len(facts.mount.bolt_u_mm)} x {facts.mount.bolt} |
 | warm-up | {WARM_UP_MIN} min |
 
-The order of work: print, order and solder boards, solder the wires on, glue the boards in, cast,
+The order of work: print, order and solder boards, solder the wires on, {fixed}, cast,
 print the film, wrap, mount, load the firmware, calibrate. Casting takes longest: {mould.cure_h:g} h
 for each finger, both at once in their own moulds."""
 

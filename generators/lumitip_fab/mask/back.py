@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import shapely
 
-from lumitip_fab.design import Box, Finger, Mould, Mount, Outline, Point, Stack, Tip
+from lumitip_fab.design import Box, Finger, Interface, Mould, Mount, Outline, Point, Stack, Tip
 
 NOTCH_GAP_MM = 0.5
 RELIEF_GAP_MM = 0.5
@@ -22,6 +22,7 @@ class Finished:
     tip: Tip
     mould: Mould
     mount: Mount
+    interfaces: tuple[Interface, ...]
 
     def side_mm(self, y_mm: float) -> float:
         """Height of the finger's side, from the silicone's face to the plate's back: full but
@@ -30,18 +31,21 @@ class Finished:
         slant = self.outline.tip_y_mm - self.tip.slant_start_y_mm
         plate = _ramp(to_tip / slant, self.tip.edge_mm, self.stack.plate_mm)
         taper = to_tip / self.mould.taper_length_mm
-        return plate + _ramp(taper, self.mould.tip_silicone_mm, self.stack.silicone_mm)
+        return plate + _ramp(taper, self.mould.tip_silicone_mm, self.stack.cover_mm)
 
     def free_from_x_mm(self) -> float:
         """Where, along the gripper end, coupling and notch leave room for flaps."""
         return max(
-            self.finger.notch.x_max_mm + NOTCH_GAP_MM, self.mount.block_width_mm / 2 + FOOT_MM
+            self.finger.notch.x_max_mm + NOTCH_GAP_MM,
+            self.mount.block_width_mm / 2 + FOOT_MM,
+            *(i.box.x_max_mm + NOTCH_GAP_MM for i in self.interfaces),
         )
 
     def kept_clear(self) -> tuple[shapely.Geometry, ...]:
-        """Coupling and notch, with their gaps: no flap may lie there."""
+        """Coupling, notch and interface, with their gaps: no flap may lie there."""
         notch = self.finger.notch.grown(NOTCH_GAP_MM)
-        return _area(notch), _area(_coupling(self.mount, self.stack).grown(FOOT_MM))
+        pads = [_area(i.box.grown(NOTCH_GAP_MM)) for i in self.interfaces]
+        return _area(notch), _area(_coupling(self.mount, self.stack).grown(FOOT_MM)), *pads
 
     def better_clear(self) -> tuple[shapely.Geometry, ...]:
         """Windows behind parts on the back of the board, with their gaps."""
@@ -56,7 +60,9 @@ def _coupling(mount: Mount, stack: Stack) -> Box:
     """Block with its 45° ramp where they stand on the plate's back."""
     tilt, half = math.radians(mount.tilt_deg), mount.block_width_mm / 2
     shoulder = mount.land_mm * math.cos(tilt) - mount.block_back_w_mm * math.sin(tilt)
-    ramp = (mount.block_back_w_mm - stack.plate_mm) / math.tan(math.radians(45) - tilt)
+    ramp = (mount.block_back_w_mm - stack.rim_z_mm + stack.back_z_mm) / math.tan(
+        math.radians(45) - tilt
+    )
     return Box(-half, half, mount.origin_y_mm - FOOT_MM, mount.origin_y_mm + shoulder + ramp)
 
 

@@ -1,7 +1,7 @@
 """Every file of one finger's mask."""
 
 from lumitip_fab.artefact import Artefact
-from lumitip_fab.design import Finger, Mask, Mould, Mount, Outline, Stack, Tip, Title
+from lumitip_fab.design import Finger, Interface, Mask, Mould, Mount, Outline, Stack, Tip, Title
 from lumitip_fab.mask.artwork import make_artwork
 from lumitip_fab.mask.back import Finished
 from lumitip_fab.mask.dxf import dxf_drawing, dxf_to_sensor
@@ -18,6 +18,7 @@ def mask_files(
     tip: Tip,
     mould: Mould,
     mount: Mount,
+    interfaces: tuple[Interface, ...],
     mask: Mask,
     title: Title,
 ) -> tuple[Artefact, ...]:
@@ -30,10 +31,11 @@ def mask_files(
         tip: wedge of the plate.
         mould: for the taper of the silicone.
         mount: coupling, which the flaps keep clear of.
+        interfaces: what holds a bendable plate, which they keep clear of too.
         mask: apertures, allowance, flaps, rulers.
         title: of the design.
     """
-    artwork = make_artwork(Finished(finger, outline, stack, tip, mould, mount), mask)
+    artwork = make_artwork(Finished(finger, outline, stack, tip, mould, mount, interfaces), mask)
     stem = f"mask/{finger.name}_mask"
     pages = (
         Artefact(

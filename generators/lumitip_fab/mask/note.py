@@ -86,7 +86,7 @@ def wrapping_note(artwork: Artwork, mask: Mask, stack: Stack, title: Title) -> b
         across=across,
         up=up,
         count=len(artwork.apertures),
-        side_mm=stack.plate_mm + stack.silicone_mm,
+        side_mm=stack.plate_mm + stack.cover_mm,
         band_mm=BAND_MM,
         last=len(flaps),
         table="\n".join(map(_row, flaps)),

@@ -7,20 +7,29 @@ import numpy as np
 from build123d import Color, Compound, Shape, Solid
 
 from lumitip_fab.artefact import Artefact
-from lumitip_fab.design import Board, Closing, Finger, Mould, Mount, Outline, Stack, Tip
+from lumitip_fab.design import (
+    Board,
+    Closing,
+    Finger,
+    Interface,
+    Mould,
+    Mount,
+    Outline,
+    Stack,
+    Tip,
+)
 from lumitip_fab.frames import finger_to_gripper
 from lumitip_fab.mechanical import export
-from lumitip_fab.mechanical.backing import backing_solid
-from lumitip_fab.mechanical.bodies import Bodies, board_solid, part_solid
+from lumitip_fab.mechanical.bodies import Bodies, finger_bodies, layers_of
 from lumitip_fab.mechanical.exploded import exploded_view
 from lumitip_fab.mechanical.glb import Body, Colour, Group, glb
 from lumitip_fab.mechanical.shapes import placed
-from lumitip_fab.mechanical.skin import film_solid, silicone_solid
 
 OPENING_MM = 30.0
 CHORD_MM = 0.02
 _M_TO_MM = np.diag([1000.0, 1000.0, 1000.0, 1.0])
 _COLOURS: dict[str, Colour] = {
+    "interface": (0.62, 0.66, 0.72, 1.0),
     "backing": (0.82, 0.84, 0.86, 1.0),
     "board": (0.10, 0.38, 0.24, 1.0),
     "silicone": (0.75, 0.88, 0.95, 0.35),
@@ -42,18 +51,11 @@ def assembly(
     mount: Mount,
     closing: Closing,
     mould: Mould,
+    interfaces: tuple[Interface, ...],
 ) -> tuple[Artefact, ...]:
     """STEP and GLB of the fingers in an open gripper, and an exploded drawing of each."""
-    silicone, film = silicone_solid(stack, outline, mould), film_solid(stack, outline, mould)
     both = [
-        Bodies(
-            finger=finger,
-            backing=backing_solid(finger, stack, outline, tip, board, mount),
-            board=board_solid(finger, stack, board),
-            silicone=silicone,
-            film=film,
-            parts=tuple(part_solid(part, stack) for part in finger.parts),
-        )
+        finger_bodies(finger, stack, outline, tip, board, mount, mould, interfaces)
         for finger in (emitter, receiver)
     ]
     opening = min(OPENING_MM, closing.max_opening_mm)
@@ -81,7 +83,7 @@ def assembly(
 def _coloured(bodies: Bodies) -> Compound:
     """A finger as a tree of named and coloured shapes; parts of a kind are one shape."""
     name = bodies.finger.name
-    children = [_told(f"{name}.{kind}", solid, kind) for kind, solid in _layers(bodies)]
+    children = [_told(f"{name}.{kind}", solid, kind) for kind, solid in layers_of(bodies)]
     for kind in dict.fromkeys(part.kind for part in bodies.finger.parts):
         alike = [
             solid
@@ -93,20 +95,15 @@ def _coloured(bodies: Bodies) -> Compound:
 
 
 def _told(label: str, shape: Shape, kind: str) -> Shape:
-    told = copy(shape)  # the fingers share silicone and film, under names of their own
+    told = copy(shape)
     told.label, told.color = label, Color(*_COLOURS[kind])
     return told
-
-
-def _layers(bodies: Bodies) -> Iterator[tuple[str, Solid]]:
-    for kind in ("backing", "board", "silicone", "film"):
-        yield kind, getattr(bodies, kind)
 
 
 def _meshed(bodies: Bodies) -> Iterator[Body]:
     """A finger's bodies for a GLB: parts of one size share a box, centred on its footprint."""
     name = bodies.finger.name
-    for kind, solid in _layers(bodies):
+    for kind, solid in layers_of(bodies):
         yield Body(f"{name}.{kind}", export.mesh(solid, CHORD_MM), _COLOURS[kind])
     boxes: dict[tuple[float, float, float], export.Mesh] = {}
     for part, solid in zip(bodies.finger.parts, bodies.parts, strict=True):

@@ -1,17 +1,17 @@
-"""The rigid backing: a plate with a pocket for the board, and the gripper coupling."""
+"""The backing: a plate with a pocket for the board, and the gripper coupling."""
 
 import numpy as np
 from build123d import Solid
 
 from lumitip_fab.artefact import Artefact
-from lumitip_fab.design import Board, Box, Finger, Mount, Outline, Point, Stack, Tip
-from lumitip_fab.errors import BuildError
-from lumitip_fab.frames import mount_to_sensor
-from lumitip_fab.mechanical import coupling, export
+from lumitip_fab.design import Board, Box, Finger, Interface, Mount, Outline, Point, Stack, Tip
+from lumitip_fab.frames import Matrix, backing_bed_to_sensor, mount_to_sensor
+from lumitip_fab.mechanical import coupling, export, flex
 from lumitip_fab.mechanical.letters import letter_cutter
 from lumitip_fab.mechanical.shapes import (
     box_solid,
     cylinder,
+    one_solid,
     outline_face,
     placed,
     prism,
@@ -23,29 +23,51 @@ PIN_LEAD_MM = 0.25  # chamfer that leads the board onto a pin
 
 
 def backing(
-    finger: Finger, stack: Stack, outline: Outline, tip: Tip, board: Board, mount: Mount
+    finger: Finger,
+    stack: Stack,
+    outline: Outline,
+    tip: Tip,
+    board: Board,
+    mount: Mount,
+    interfaces: tuple[Interface, ...],
 ) -> tuple[Artefact, ...]:
-    """The backing of one finger: STEP in the sensor frame, STL and 3MF standing on the bed."""
-    solid = backing_solid(finger, stack, outline, tip, board, mount)
-    to_sensor = mount_to_sensor(mount, stack)
-    standing = placed(solid, np.asarray(np.linalg.inv(to_sensor), dtype=np.float64))
-    name = f"{finger.name}_backing"
+    """The backing of one finger and, where it bends, the interface behind it: STEP in the sensor
+    frame, STL and 3MF as they lie on the bed."""
+    solid = backing_solid(finger, stack, outline, tip, board, mount, interfaces)
+    files = _files("backing", finger, solid, backing_bed_to_sensor(mount, stack))
+    for interface in interfaces:
+        solid = flex.interface_solid(finger, stack, mount, interface)
+        files += _files("interface", finger, solid, mount_to_sensor(mount, stack))
+    return files
+
+
+def _files(kind: str, finger: Finger, solid: Solid, to_sensor: Matrix) -> tuple[Artefact, ...]:
+    printed = placed(solid, np.asarray(np.linalg.inv(to_sensor), dtype=np.float64))
+    name = f"{finger.name}_{kind}"
     return (
-        Artefact(f"backing/{name}.step", export.step(solid, name)),
-        Artefact(f"backing/{name}.stl", export.stl(standing), to_sensor),
-        Artefact(f"backing/{name}.3mf", export.three_mf(standing, name), to_sensor),
+        Artefact(f"{kind}/{name}.step", export.step(solid, name)),
+        Artefact(f"{kind}/{name}.stl", export.stl(printed), to_sensor),
+        Artefact(f"{kind}/{name}.3mf", export.three_mf(printed, name), to_sensor),
     )
 
 
 def backing_solid(
-    finger: Finger, stack: Stack, outline: Outline, tip: Tip, board: Board, mount: Mount
+    finger: Finger,
+    stack: Stack,
+    outline: Outline,
+    tip: Tip,
+    board: Board,
+    mount: Mount,
+    interfaces: tuple[Interface, ...],
 ) -> Solid:
-    """The backing in the finger's sensor frame.
+    """The backing in the finger's sensor frame: with its coupling, or as a plate that bends.
 
     Raises:
         BuildError: if the kernel does not make one valid solid of it.
     """
     plate = _plate(stack, outline) - _tip_cutter(stack, outline, tip)
+    for interface in interfaces:
+        return one_solid(flex.sheet(plate, finger, stack, mount, interface), finger, "backing")
     plate = plate - box_solid(board.pocket, stack.pocket_z_mm, stack.rim_z_mm + BEYOND_MM)
     plate = plate - coupling.notch_cutter(stack, mount, finger.notch)
     whole = plate + coupling.coupling_solid(mount, stack, finger.notch)
@@ -59,14 +81,7 @@ def backing_solid(
         letter_cutter(finger.name, mount.letter, mount_to_sensor(mount, stack)),
         *(_relief(r.box, r.depth_mm, r.through, stack) for r in finger.reliefs),
     ]
-    whole = (whole - taken).clean()
-    solids = whole.solids()
-    if len(solids) != 1 or not solids[0].is_valid:
-        raise BuildError(
-            f"{finger.name} backing: the CAD kernel made {len(solids)} solids of it, one valid "
-            "solid is needed; change the outline or the coupling a little"
-        )
-    return solids[0]
+    return one_solid((whole - taken).clean(), finger, "backing")
 
 
 def pin_solid(
@@ -91,13 +106,13 @@ def _plate(stack: Stack, outline: Outline) -> Solid:
     """The plate, reaching past the gripper end so that the tilted mount plane cuts it all."""
     half = outline.end_width_mm / 2
     foot = Box(-half, half, outline.end_y_mm - BEYOND_MM, outline.end_y_mm)
-    plate = prism(outline_face(outline), stack.back_z_mm, stack.rim_z_mm)
-    return plate + box_solid(foot, stack.back_z_mm, stack.rim_z_mm)
+    plate = prism(outline_face(outline), stack.back_z_mm, stack.face_z_mm)
+    return plate + box_solid(foot, stack.back_z_mm, stack.face_z_mm)
 
 
 def _tip_cutter(stack: Stack, outline: Outline, tip: Tip) -> Solid:
     """What the wedge takes from the back of the plate."""
-    edge_z = stack.rim_z_mm - tip.edge_mm
+    edge_z = stack.face_z_mm - tip.edge_mm
     rise = (edge_z - stack.back_z_mm) / (outline.tip_y_mm - tip.slant_start_y_mm)
     end_y, far_z = outline.tip_y_mm + BEYOND_MM, stack.back_z_mm - BEYOND_MM
     start_y = tip.slant_start_y_mm

@@ -1,11 +1,26 @@
-"""The bodies that make one finger: backing, board with its parts, silicone, film."""
+"""The bodies that make one finger: backing, what holds it, board with its parts, silicone, film."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from build123d import Face, Location, Plane, Solid, Vector, Wire
 
-from lumitip_fab.design import Board, Finger, Part, Point, Stack
+from lumitip_fab.design import (
+    Board,
+    Finger,
+    Interface,
+    Mould,
+    Mount,
+    Outline,
+    Part,
+    Point,
+    Stack,
+    Tip,
+)
+from lumitip_fab.mechanical import flex
+from lumitip_fab.mechanical.backing import backing_solid
 from lumitip_fab.mechanical.shapes import box_face
+from lumitip_fab.mechanical.skin import film_solid, silicone_solid
 
 
 @dataclass(frozen=True, eq=False)
@@ -18,11 +33,44 @@ class Bodies:
 
     finger: Finger
     backing: Solid
+    interface: Solid | None
+    """What holds a bendable backing."""
     board: Solid
     silicone: Solid
     film: Solid
     parts: tuple[Solid, ...]
     """One box for each of the finger's parts, in the same order."""
+
+
+def layers_of(bodies: Bodies) -> Iterator[tuple[str, Solid]]:
+    """Name and solid of each layer, from the back."""
+    if bodies.interface is not None:
+        yield "interface", bodies.interface
+    for kind in ("backing", "board", "silicone", "film"):
+        yield kind, getattr(bodies, kind)
+
+
+def finger_bodies(
+    finger: Finger,
+    stack: Stack,
+    outline: Outline,
+    tip: Tip,
+    board: Board,
+    mount: Mount,
+    mould: Mould,
+    interfaces: tuple[Interface, ...],
+) -> Bodies:
+    """Every body of a finger."""
+    held = [flex.interface_solid(finger, stack, mount, interface) for interface in interfaces]
+    return Bodies(
+        finger=finger,
+        backing=backing_solid(finger, stack, outline, tip, board, mount, interfaces),
+        interface=held[0] if held else None,
+        board=board_solid(finger, stack, board),
+        silicone=silicone_solid(stack, outline, board, mould),
+        film=film_solid(stack, outline, mould),
+        parts=tuple(part_solid(part, stack) for part in finger.parts),
+    )
 
 
 def part_solid(part: Part, stack: Stack) -> Solid:

@@ -15,10 +15,9 @@ _NOTE = """# Casting the {finger} finger
 Print `{finger}_mould.3mf` open side up, without supports, in layers of {layer_mm:g} mm: the floor
 at {floor_mm:g} mm and the stops at {rim_mm:g} mm are then whole layers. The stops set the thickness
 of the silicone: cut off blobs, sand nothing. The mould has a {letter} in the end of its trough, and
-the backing that belongs to it a {letter} on the back of its block.
+the backing that belongs to it a {letter} on {letter_on}.
 
-1. Glue the board into the backing, flush with its rim. Close every window on the back with tape,
-   and fill the slit round the board with a thin line of silicone; let it cure.
+{board}
 2. Degrease the board. Keep sulphur, latex gloves and fresh superglue away: they stop the cure.
 3. Weigh A and B, stir for three minutes, and degas until no bubbles rise.
 4. Wet the parts of the board with a drop from a brush, so that no air stays between them.
@@ -30,6 +29,13 @@ the backing that belongs to it a {letter} on the back of its block.
 8. Leave it for {cure_h:g} h. Take the plate between two fingers in the gaps of the wall, hold the
    coupling with the other hand and pull straight out. Cut the flash along the rim.
 """
+_IN_POCKET = """\
+1. Glue the board into the backing, flush with its rim. Close every window on the back with tape,
+   and fill the slit round the board with a thin line of silicone; let it cure."""
+_ON_PLATE = """\
+1. Glue the interface to the backing, its rim in the groove, with an adhesive that bends; let it
+   cure. Lay the board on the backing's flat face and tie it on with thread through their holes,
+   knots on the back. Close every window and hole on the back with tape."""
 _WHOLE = 1e-6
 
 
@@ -48,10 +54,12 @@ def casting_note(
     mix_ml = volume_ml * (1 + mould.waste_fraction)
     a, b = mould.mix_ratio
     mass_g = mix_ml * mould.density_g_ml
-    rim_mm = mould.wall_mm + stack.silicone_mm
+    rim_mm = mould.wall_mm + stack.cover_mm
     return _NOTE.format(
         finger=finger,
         letter=finger[0].upper(),
+        letter_on="the back of its block" if stack.sunk else "its back",
+        board=_IN_POCKET if stack.sunk else _ON_PLATE,
         volume_ml=volume_ml,
         waste=mould.waste_fraction,
         mix_ml=mix_ml,

@@ -30,13 +30,14 @@ BEYOND_MM = 1.0  # how far a cutter reaches past what it cuts
 _FAR_MM = 200.0
 
 
-def coupling_solid(mount: Mount, stack: Stack, notch: Box) -> Solid:
+def coupling_solid(mount: Mount, stack: Stack, notch: Box | None) -> Solid:
     """Block, ramp and flares in the sensor frame, without holes, not yet cut on the mount plane.
 
     Args:
         mount: the coupling.
         stack: for the plate that it grows from.
-        notch: opening of the plate in front of it.
+        notch: opening of the plate in front of it; without one the block goes down to the bed, and
+            has no fillets at its sides.
     """
     to_sensor = mount_to_sensor(mount, stack)
     top_mm = mount.land_mm + mount.block_back_w_mm + FLARE_RADIUS_MM
@@ -46,6 +47,8 @@ def coupling_solid(mount: Mount, stack: Stack, notch: Box) -> Solid:
     profile = _profile(mount, stack, notch)
     wide = mount.block_width_mm / 2 + 2 * SIDE_FLARE_MM
     body = placed(block, to_sensor) & _across(profile, wide)
+    if notch is None:
+        return body
     return body + (_side_flares(mount, stack, notch, top_mm) & _across(profile, wide))
 
 
@@ -132,26 +135,33 @@ def _notch_end(mount: Mount, stack: Stack, notch: Box) -> tuple[Point, Point]:
     return low, (notch.y_max_mm + slope * stack.floor_mm, stack.pocket_z_mm)
 
 
-def _profile(mount: Mount, stack: Stack, notch: Box) -> Wire:
+def _profile(mount: Mount, stack: Stack, notch: Box | None) -> Wire:
     """Block and ramp in the (y, z) plane, closed inside the plate's floor."""
     to_sensor = mount_to_sensor(mount, stack)
     inside_z = stack.back_z_mm + SHEET_MM * stack.floor_mm
-    (low_y, low_z), (high_y, high_z) = _notch_end(mount, stack, notch)
-    rise = (high_y - low_y) / (high_z - low_z)
-    at_floor = (low_y + rise * (inside_z - low_z), inside_z)
-    front_h = _front_top_h(mount, to_sensor, (low_y, low_z))
-    foot = _yz(to_sensor, mount.block_front_w_mm, -BEYOND_MM)
-    front = _yz(to_sensor, mount.block_front_w_mm, front_h)
     back = _yz(to_sensor, mount.block_back_w_mm, -BEYOND_MM)
     shoulder = _yz(to_sensor, mount.block_back_w_mm, mount.land_mm)
     start, middle, end = _flare(mount, shoulder, stack.back_z_mm)
     steepness = math.tan(math.radians(FLARE_END_DEG))
     sunk = (end[0] + (inside_z - end[1]) / steepness, inside_z)
-    straight = [sunk, at_floor, front, foot, back, shoulder, start]
+    straight = [sunk, *_front(mount, stack, notch, inside_z), back, shoulder, start]
     edges = [Edge.make_line(_point(a), _point(b)) for a, b in pairwise(straight)]
     edges.append(Edge.make_three_point_arc(_point(start), _point(middle), _point(end)))
     edges.append(Edge.make_line(_point(end), _point(sunk)))
     return Wire(edges)
+
+
+def _front(mount: Mount, stack: Stack, notch: Box | None, inside_z_mm: float) -> list[Point]:
+    """The block's front, from the sheet inside the floor down to below the mount plane."""
+    to_sensor = mount_to_sensor(mount, stack)
+    foot = _yz(to_sensor, mount.block_front_w_mm, -BEYOND_MM)
+    if notch is None:
+        return [(foot[0], inside_z_mm)]
+    (low_y, low_z), (high_y, high_z) = _notch_end(mount, stack, notch)
+    rise = (high_y - low_y) / (high_z - low_z)
+    at_floor = (low_y + rise * (inside_z_mm - low_z), inside_z_mm)
+    front_h = _front_top_h(mount, to_sensor, (low_y, low_z))
+    return [at_floor, _yz(to_sensor, mount.block_front_w_mm, front_h), foot]
 
 
 def _front_top_h(mount: Mount, to_sensor: Matrix, notch_end: Point) -> float:

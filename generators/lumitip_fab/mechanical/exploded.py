@@ -20,7 +20,7 @@ from OCP.HLRBRep import HLRBRep_Algo, HLRBRep_HLRToShape
 
 from lumitip_fab.design import Finger, Outline, Part, Stack
 from lumitip_fab.mechanical import export
-from lumitip_fab.mechanical.bodies import Bodies
+from lumitip_fab.mechanical.bodies import Bodies, layers_of
 from lumitip_fab.mechanical.sheet import Points, Sheet
 
 AZIMUTH_DEG = 32.0  # of the viewer, from the gripper end towards +x
@@ -33,7 +33,13 @@ _CHORD_MM = 0.05
 _CRACK_MM = 0.01  # between triangles on the page, by rounding
 _STEPS = 24  # chords of a curve on the page
 _FACES = ((0, 1, 5, 4), (1, 3, 7, 5), (4, 5, 7, 6))  # of a box, towards the viewer
-_TINTS = {"backing": "#f3f4f5", "board": "#e3efe6", "silicone": "#eaf3f9", "film": "#dcdcde"}
+_TINTS = {
+    "interface": "#dfe2e6",
+    "backing": "#f3f4f5",
+    "board": "#e3efe6",
+    "silicone": "#eaf3f9",
+    "film": "#dcdcde",
+}
 _PART_TINTS = {"photodetector": "#fff", "led": "#fff", "multiplexer": "#b9bcc0",
                "resistor": "#d8d2c8"}  # fmt: skip
 
@@ -72,6 +78,8 @@ def exploded_view(bodies: Bodies, stack: Stack, outline: Outline) -> str:
             _draw_parts(sheet, finger, stack, layer.rise_mm)
         if above:
             starts = [corners[k] for k in guides] + (list(pins) if above.name == "board" else [])
+            if layer.name == "interface":
+                starts = list(_projected(_pad_corners(layer.solid)))
             sheet.lines([_upright(at, layer.rise_mm, above.rise_mm) for at in starts], "axis")
     with sheet.group("labels"):
         _label(sheet, layers, finger, stack)
@@ -84,19 +92,33 @@ def _layers(bodies: Bodies, stack: Stack, outline: Outline) -> list[Layer]:
     height = float(np.ptp(page[:, 1]))
     edge = flat[int(page[:, 0].argmax())] - (2.5, 0.0)
     corner = bodies.board.bounding_box().max
-    told = (
-        ("backing", bodies.backing, (f"Backing, {stack.plate_mm:g} mm", "printed, with coupling")),
-        ("board", bodies.board, (f"Board, {stack.pcb_mm:g} mm", "glued in, flush with the rim")),
-        ("silicone", bodies.silicone, (f"Silicone, {stack.silicone_mm:g} mm", "cast on the board")),
-        ("film", bodies.film, (f"Film, {stack.film_mm:g} mm", "mask printed on its inside")),
-    )  # fmt: skip
+    sunk = stack.sunk
+    words_of = {
+        "interface": ("Interface", "printed, glued to the backing"),
+        "backing": (f"Backing, {stack.plate_mm:g} mm",
+                    "printed, with coupling" if sunk else "printed, bends"),
+        "board": (f"Board, {stack.pcb_mm:g} mm",
+                  "glued in, flush with the rim" if sunk else "flexible, tied on"),
+        "silicone": (f"Silicone, {stack.silicone_mm:g} mm", "cast on the board"),
+        "film": (f"Film, {stack.film_mm:g} mm", "mask printed on its inside"),
+    }  # fmt: skip
     layers = []
-    for step, (name, solid, words) in enumerate(told):
+    for step, (name, solid) in enumerate(layers_of(bodies)):
+        words = words_of[name]
         rise = SPREAD * height * step
         place = (corner.X - 1.5, corner.Y - 1.5) if name == "board" else edge
-        point = _projected(np.array([*place, stack.rim_z_mm]), rise)
+        at = [*place, stack.rim_z_mm]
+        if name == "interface":
+            at = _pad_corners(solid)[1] - (0.7, 0.7, 0.0)
+        point = _projected(np.array(at), rise)
         layers.append(Layer(name, solid, rise, words, point))
     return layers
+
+
+def _pad_corners(interface: Solid) -> Points:
+    """Corners of the interface's front that are farthest from the gripper."""
+    far = interface.bounding_box().max
+    return np.array([(-far.X, far.Y, far.Z), (far.X, far.Y, far.Z)])
 
 
 def _axes() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -215,7 +237,8 @@ def _details(finger: Finger, stack: Stack) -> list[tuple[tuple[str, str], Any, s
     ways = len(finger.connector.pads)
     told.append(((f"{ways} wires", "soldered from the back"), (*pad, half), "board"))
     hole = min(finger.holes)
-    told.append((("Pins", "hold the board"), (*hole, half), "backing"))
+    words = ("Pins", "hold the board") if stack.sunk else ("Holes", "for thread")
+    told.append((words, (*hole, stack.face_z_mm), "backing"))
     notch = (finger.notch.x_min_mm + 2, finger.notch.y_min_mm + 4, stack.pocket_z_mm)
     told.append((("Wire notch", "opens to the gripper"), notch, "backing"))
     return told

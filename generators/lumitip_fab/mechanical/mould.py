@@ -19,7 +19,7 @@ from build123d import Face, Location, Solid, Vector, Wire
 
 from lumitip_fab.artefact import Artefact
 from lumitip_fab.derive.mould import LEDGE_MM
-from lumitip_fab.design import Box, Finger, Mould, Outline, Printing, Stack
+from lumitip_fab.design import Board, Box, Finger, Mould, Outline, Printing, Stack
 from lumitip_fab.errors import BuildError
 from lumitip_fab.frames import mould_bed_to_sensor
 from lumitip_fab.mechanical import export
@@ -47,7 +47,12 @@ BEYOND_MM = 1.0
 
 
 def mould_files(
-    finger: Finger, stack: Stack, outline: Outline, mould: Mould, printing: Printing
+    finger: Finger,
+    stack: Stack,
+    outline: Outline,
+    board: Board,
+    mould: Mould,
+    printing: Printing,
 ) -> tuple[Artefact, ...]:
     """The mould of one finger: STEP in the sensor frame, STL and 3MF on the bed, and the note
     for the person who pours."""
@@ -55,7 +60,7 @@ def mould_files(
     to_sensor = mould_bed_to_sensor(stack, mould)
     on_bed = placed(solid, np.asarray(np.linalg.inv(to_sensor), dtype=np.float64))
     name = f"{finger.name}_mould"
-    volume_ml = cast_volume_ml(finger, stack, outline, mould)
+    volume_ml = cast_volume_ml(finger, stack, outline, board, mould)
     note = casting_note(finger.name, volume_ml, stack, mould, printing)
     return (
         Artefact(f"mould/{name}.step", export.step(solid, name)),
@@ -65,9 +70,11 @@ def mould_files(
     )
 
 
-def cast_volume_ml(finger: Finger, stack: Stack, outline: Outline, mould: Mould) -> float:
+def cast_volume_ml(
+    finger: Finger, stack: Stack, outline: Outline, board: Board, mould: Mould
+) -> float:
     """Silicone that stays on a finger: the cavity to the rim less the parts that dip into it."""
-    cavity = float(silicone_solid(stack, outline, mould).volume)
+    cavity = float(silicone_solid(stack, outline, board, mould).volume)
     dipped = sum(
         part.size_x_mm * part.size_y_mm * part.height_mm
         for part in finger.parts
@@ -81,14 +88,14 @@ def mould_solid(finger: Finger, stack: Stack, outline: Outline, mould: Mould) ->
 
     Args:
         finger: for the wire notch, before which the mould is open, and for its letter.
-        stack: heights; the wall ends at the pocket's floor, so that the plate stands out.
+        stack: heights; the wall ends below the plate's back, so that the plate stands out.
         outline: of the plate.
         mould: the wall and the skin.
 
     Raises:
         BuildError: if the kernel does not make one valid solid of it.
     """
-    top_z = stack.pocket_z_mm
+    top_z = stack.face_z_mm - stack.guided_mm
     outside = wall_offset_mm(stack, mould, top_z) + mould.wall_mm
     weir_half = WEIR_FRACTION * finger.notch.x_max_mm
     catch_y = outline.end_y_mm - outside - LEDGE_MM
@@ -132,7 +139,7 @@ def _lip(stack: Stack, mould: Mould, catch: Box, outside_mm: float) -> Solid:
         catch.x_min_mm - mould.wall_mm, catch.x_max_mm + mould.wall_mm,
         catch.y_min_mm - mould.wall_mm, inside_y,
     )  # fmt: skip
-    lip = box_solid(outer, stack.rim_z_mm, bed_z, mould.wall_mm / 2)
+    lip = box_solid(outer, stack.face_z_mm, bed_z, mould.wall_mm / 2)
     on_bed = [edge for edge in lip.edges() if abs(edge.center().Z - bed_z) < 1e-6]
     return lip.chamfer(FOOT_CHAMFER_MM, None, on_bed)
 
@@ -141,7 +148,7 @@ def _weir(stack: Stack, outline: Outline, half_mm: float, outside_mm: float) -> 
     """The opening of the wall at the gripper end, down to the rim plane."""
     rise = stack.plate_mm
     wider = half_mm + rise * math.tan(math.radians(WEIR_DRAFT_DEG))
-    rim, over = stack.rim_z_mm, stack.rim_z_mm - rise
+    rim, over = stack.face_z_mm, stack.face_z_mm - rise
     start = outline.end_y_mm - outside_mm - BEYOND_MM
     length = outside_mm + 2 * BEYOND_MM
     corners = [(-half_mm, rim), (-wider, over), (wider, over), (half_mm, rim)]
@@ -151,7 +158,7 @@ def _weir(stack: Stack, outline: Outline, half_mm: float, outside_mm: float) -> 
 
 def _trough(stack: Stack, mould: Mould, catch: Box) -> Solid:
     """The basin for the surplus, over a floor half as thick as the mould's."""
-    rim, floor = stack.rim_z_mm, stack.silicone_z_mm + mould.wall_mm / 2
+    rim, floor = stack.face_z_mm, stack.silicone_z_mm + mould.wall_mm / 2
     slope = math.tan(math.radians(WEIR_DRAFT_DEG))
     over = LEDGE_MM  # above the rim, where there is nothing left to cut
     rings = [
@@ -164,7 +171,7 @@ def _trough(stack: Stack, mould: Mould, catch: Box) -> Solid:
 def _grip(stack: Stack, outline: Outline, outside_mm: float) -> Solid:
     """The gaps in both side walls, as one cutter across the mould."""
     centre_y = outline.end_y_mm + GRIP_AT * outline.length_mm
-    bottom, over = stack.rim_z_mm - GRIP_ABOVE_RIM_MM, stack.back_z_mm
+    bottom, over = stack.face_z_mm - GRIP_ABOVE_RIM_MM, stack.back_z_mm
     half = GRIP_MM / 2
     wider = half + (bottom - over) * math.tan(math.radians(GRIP_SLOPE_DEG))
     far = float(np.abs(outline.polygon()[:, 0]).max()) + outside_mm + BEYOND_MM

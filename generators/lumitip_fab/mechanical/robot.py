@@ -1,7 +1,6 @@
 """Both fingers as a robot's software wants them: URDF, xacro, meshes, masses."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 import trimesh
@@ -16,6 +15,7 @@ from lumitip_fab.design import (
     Closing,
     Densities,
     Finger,
+    Interface,
     Mould,
     Mount,
     Outline,
@@ -24,28 +24,17 @@ from lumitip_fab.design import (
 )
 from lumitip_fab.frames import Matrix, finger_to_gripper, gripper_to_base
 from lumitip_fab.mechanical import export, urdf
-from lumitip_fab.mechanical.backing import backing_solid
-from lumitip_fab.mechanical.bodies import board_solid, part_solid
-from lumitip_fab.mechanical.skin import film_solid, silicone_solid
+from lumitip_fab.mechanical.bodies import finger_bodies, layers_of, part_solid
 
 CHORD_MM = 0.05
 _MESHES = "meshes"
 _COLOURS = {
+    "interface": (0.62, 0.66, 0.72, 1.0),
     "backing": (0.82, 0.84, 0.86, 1.0),
     "board": (0.10, 0.38, 0.24, 1.0),
     "silicone": (0.75, 0.88, 0.95, 0.35),
     "film": (0.08, 0.08, 0.09, 0.55),
 }
-
-
-@dataclass(frozen=True, eq=False)
-class _Layers:
-    """The solids of one finger in its sensor frame."""
-
-    backing: Solid
-    board: Solid
-    silicone: Solid
-    film: Solid
 
 
 def robot_files(
@@ -59,24 +48,20 @@ def robot_files(
     closing: Closing,
     mould: Mould,
     densities: Densities,
+    interfaces: tuple[Interface, ...],
 ) -> tuple[Artefact, ...]:
     """URDF of the pair, a xacro macro for each finger, and the meshes that both name."""
-    silicone, film = silicone_solid(stack, outline, mould), film_solid(stack, outline, mould)
     to_base = gripper_to_base(stack, mount, closing)
     models, files = [], []
     for finger in (receiver, emitter):
-        layers = _Layers(
-            backing_solid(finger, stack, outline, tip, board, mount),
-            board_solid(finger, stack, board),
-            silicone,
-            film,
-        )
+        bodies = finger_bodies(finger, stack, outline, tip, board, mount, mould, interfaces)
+        layers = dict(layers_of(bodies))
         meshes = dict(_meshes(finger, layers, stack))
         models.append(
             urdf.FingerModel(
                 name=finger.name,
                 weight=_weight(finger, layers, stack, densities),
-                visuals=tuple((f"{finger.name}_{k}.stl", c) for k, c in _COLOURS.items()),
+                visuals=tuple((f"{finger.name}_{k}.stl", _COLOURS[k]) for k in layers),
                 collisions=tuple(name for name in meshes if "collision" in name),
                 to_base=to_base @ _closed(finger.name, mount, closing),
                 opening=_opening(finger.name, mount, closing),
@@ -96,10 +81,12 @@ def robot_files(
     )
 
 
-def _meshes(finger: Finger, layers: _Layers, stack: Stack) -> Iterator[tuple[str, export.Mesh]]:
+def _meshes(
+    finger: Finger, layers: dict[str, Solid], stack: Stack
+) -> Iterator[tuple[str, export.Mesh]]:
     """What is looked at, and the convex bodies that touch: the plate with its skin, and the block
     behind it."""
-    shown = {kind: export.mesh(getattr(layers, kind), CHORD_MM) for kind in _COLOURS}
+    shown = {kind: export.mesh(layer, CHORD_MM) for kind, layer in layers.items()}
     for kind, surface in shown.items():
         yield f"{finger.name}_{kind}.stl", surface
     backing = trimesh.Trimesh(shown["backing"].points_mm, shown["backing"].triangles)
@@ -107,7 +94,10 @@ def _meshes(finger: Finger, layers: _Layers, stack: Stack) -> Iterator[tuple[str
     plate = [backing.slice_plane(plane, (0, 0, 1)).vertices]
     plate += [shown[kind].points_mm for kind in ("silicone", "film")]
     yield f"{finger.name}_collision_plate.stl", _hull(np.concatenate(plate))
-    block = backing.slice_plane(plane, (0, 0, -1)).vertices
+    if "interface" in shown:
+        block = shown["interface"].points_mm
+    else:
+        block = backing.slice_plane(plane, (0, 0, -1)).vertices
     yield f"{finger.name}_collision_block.stl", _hull(block)
 
 
@@ -116,11 +106,13 @@ def _hull(points_mm: NDArray[np.float64]) -> export.Mesh:
     return export.Mesh(np.asarray(hull.vertices), np.asarray(hull.faces))
 
 
-def _weight(finger: Finger, layers: _Layers, stack: Stack, densities: Densities) -> urdf.Weight:
+def _weight(
+    finger: Finger, layers: dict[str, Solid], stack: Stack, densities: Densities
+) -> urdf.Weight:
     """Everything of a finger, each with its density; parts weigh like the board."""
     whole = GProp_GProps()
-    for kind in _COLOURS:
-        _add(whole, getattr(layers, kind), getattr(densities, f"{kind}_g_ml"))
+    for kind, layer in layers.items():
+        _add(whole, layer, getattr(densities, f"{kind}_g_ml"))
     for part in finger.parts:
         # The silicone is whole: where a part stands in it, there is the part instead.
         buried = densities.silicone_g_ml if part.side == "front" else 0.0

@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 from build123d import Edge, Face, Kind, Location, Plane, Solid, Vector, Wire
 
-from lumitip_fab.design import Box, Outline, Point
+from lumitip_fab.design import Box, Finger, Outline, Point
+from lumitip_fab.errors import BuildError
 from lumitip_fab.frames import Matrix
 
 
@@ -69,6 +70,26 @@ def side_prism(corners: list[Point], x_min_mm: float, x_max_mm: float) -> Solid:
     """A polygon in the (y, z) plane drawn out along x."""
     face = Face(Wire.make_polygon([(x_min_mm, y, z) for y, z in corners], close=True))
     return Solid.extrude(face, Vector(x_max_mm - x_min_mm, 0, 0))
+
+
+def one_solid(made: Any, finger: Finger, kind: str) -> Solid:
+    """What the kernel made, if it is one valid solid.
+
+    Args:
+        made: what it made.
+        finger: whose part it is.
+        kind: name of the part.
+
+    Raises:
+        BuildError: if it is none, or several.
+    """
+    solids = made.solids()
+    if len(solids) != 1 or not solids[0].is_valid:
+        raise BuildError(
+            f"{finger.name} {kind}: the CAD kernel made {len(solids)} solids of it, one valid "
+            "solid is needed; change the outline or the coupling a little"
+        )
+    return solids[0]
 
 
 def placed(shape: Any, matrix: Matrix) -> Any:

@@ -17,8 +17,8 @@ from build123d import Edge, Face, Plane, Solid, Vector, Wire
 from numpy.typing import NDArray
 
 from lumitip_fab.derive.outline import half_width_at
-from lumitip_fab.design import Box, Cubic, Mould, Outline, Point, Stack
-from lumitip_fab.mechanical.shapes import box_face
+from lumitip_fab.design import Board, Box, Cubic, Mould, Outline, Point, Stack
+from lumitip_fab.mechanical.shapes import box_face, box_solid
 
 FOOT_MM = 0.1  # a stop widens by this at the most
 TIP_LAND_MM = 0.3  # how far the tip line reaches under the plate; with the gap, one printed line
@@ -28,26 +28,29 @@ _BEYOND_MM = 1.0
 _FAR_MM = 400.0
 
 
-def silicone_solid(stack: Stack, outline: Outline, mould: Mould) -> Solid:
-    """The silicone of a finger, from the rim plane to its face, as the mould's stops leave it.
+def silicone_solid(stack: Stack, outline: Outline, board: Board, mould: Mould) -> Solid:
+    """The silicone of a finger, from the plate to its face, as the mould's stops leave it.
 
     The parts on the board are still to be taken out of it.
     """
-    body = drafted_prism(stack, outline, mould, stack.rim_z_mm, _above(stack))
+    body = drafted_prism(stack, outline, mould, stack.face_z_mm, _above(stack))
     body = body & side_solid(stack, outline, mould)
-    return (body - stops(stack, outline, mould)).solid()
+    taken = stops(stack, outline, mould)
+    if not stack.sunk:
+        taken.append(box_solid(board.box, stack.face_z_mm, stack.rim_z_mm))
+    return (body - taken).solid()
 
 
 def film_solid(stack: Stack, outline: Outline, mould: Mould) -> Solid:
     """The film on the face, the taper and the rounded end, without its apertures."""
-    body = drafted_prism(stack, outline, mould, stack.rim_z_mm, _above(stack))
+    body = drafted_prism(stack, outline, mould, stack.face_z_mm, _above(stack))
     body = body & side_solid(stack, outline, mould, stack.film_mm)
     return (body - side_solid(stack, outline, mould)).solid()
 
 
 def wall_offset_mm(stack: Stack, mould: Mould, z_mm: float) -> float:
     """Distance from the outline to the mould's wall at a height: it opens towards the back."""
-    return mould.wall_gap_mm + (stack.rim_z_mm - z_mm) * math.tan(math.radians(mould.draft_deg))
+    return mould.wall_gap_mm + (stack.face_z_mm - z_mm) * math.tan(math.radians(mould.draft_deg))
 
 
 def drafted_prism(
@@ -78,7 +81,7 @@ def side_solid(stack: Stack, outline: Outline, mould: Mould, shift_mm: float = 0
     """
     face_z = stack.silicone_z_mm + shift_mm
     tip_y, taper = outline.tip_y_mm, mould.taper_length_mm
-    slope = (stack.silicone_mm - mould.tip_silicone_mm) / taper
+    slope = (stack.cover_mm - mould.tip_silicone_mm) / taper
     out_y = tip_y + _BEYOND_MM
     out_z = face_z - slope * (taper + _BEYOND_MM)
     back_z = stack.back_z_mm - _FAR_MM
@@ -114,13 +117,13 @@ def stops(stack: Stack, outline: Outline, mould: Mould) -> list[Solid]:
 
 def _drafted(top: Face, stack: Stack, mould: Mould) -> Solid:
     """A stop with its top at the rim plane, wider towards the mould's floor and ending in it."""
-    depth = stack.silicone_mm + mould.wall_mm / 2
+    depth = stack.cover_mm + mould.wall_mm / 2
     # Deep silicone must not make feet that reach the board.
     wider = min(depth * math.tan(math.radians(mould.draft_deg)), FOOT_MM)
     ring = top.outer_wire()
     base = ring.offset_2d(wider) if wider > 0 else ring
-    rings = [ring.moved(Plane((0, 0, stack.rim_z_mm)).location),
-             base.moved(Plane((0, 0, stack.rim_z_mm + depth)).location)]  # fmt: skip
+    rings = [ring.moved(Plane((0, 0, stack.face_z_mm)).location),
+             base.moved(Plane((0, 0, stack.face_z_mm + depth)).location)]  # fmt: skip
     return Solid.make_loft(rings, ruled=True)
 
 

@@ -66,7 +66,7 @@ def made_things(
     made: Made, cabling: Cabling, slicing: Slicing, mould: Mould, mask: Mask, purchase: Purchase
 ) -> Iterator[Line]:
     """Filament, silicone, film and wire."""
-    for pattern in ("backing/*.stl", "mould/*.stl", "holder/*.stl", "fit/*.stl"):
+    for pattern in ("backing/*.stl", "interface/*.stl", "mould/*.stl", "holder/*.stl", "fit/*.stl"):
         for path in made.like(pattern):
             filament = slicing.of(path)
             kg = purchase.filament_kg[filament != slicing.backing]

@@ -1,7 +1,7 @@
 """Settings for PrusaSlicer, one file for each filament, and what is printed from which."""
 
 from lumitip_fab.artefact import Artefact
-from lumitip_fab.design import Printing, Title
+from lumitip_fab.design import Interface, Printing, Title
 from lumitip_fab.design.slicing import Filament, Slicing
 
 _BRIM_MM = 3.0  # a backing is tall and stands on little
@@ -15,16 +15,19 @@ _WIDTHS = (
 )  # fmt: skip
 
 
-def print_settings(title: Title, printing: Printing, slicing: Slicing) -> tuple[Artefact, ...]:
+def print_settings(
+    title: Title, printing: Printing, slicing: Slicing, interfaces: tuple[Interface, ...]
+) -> tuple[Artefact, ...]:
     """`print/*.ini` and `print/printing.md`.
 
     Args:
         title: of the design.
         printing: layers, lines and bed.
         slicing: filaments.
+        interfaces: what holds backings that bend; there are none of rigid ones.
     """
     made = {f.file: _settings(f, printing, slicing.nozzle_mm) for f in slicing.filaments}
-    made["print/printing.md"] = _note(title, printing, slicing)
+    made["print/printing.md"] = _note(title, printing, slicing, bool(interfaces))
     return tuple(Artefact(path, made[path].encode(), frame="") for path in sorted(made))
 
 
@@ -86,10 +89,13 @@ def _of_filament(filament: Filament) -> dict[str, object]:
     }
 
 
-def _note(title: Title, printing: Printing, slicing: Slicing) -> str:
-    rows = [
-        (f"backing/{finger}_backing.3mf", "on the mount face, tip up") for finger in _FINGERS
-    ] + [(f"mould/{finger}_mould.3mf", "open side up") for finger in _FINGERS]
+def _note(title: Title, printing: Printing, slicing: Slicing, bends: bool) -> str:
+    standing = "on the mount face, tip up"
+    lies = "on its front, groove up" if bends else standing
+    rows = [(f"backing/{finger}_backing.3mf", lies) for finger in _FINGERS]
+    if bends:
+        rows += [(f"interface/{finger}_interface.3mf", standing) for finger in _FINGERS]
+    rows += [(f"mould/{finger}_mould.3mf", "open side up") for finger in _FINGERS]
     listed = "\n".join(
         f"| `{path}` | `{slicing.of(path).file}` | {slicing.of(path).name} | {lies} | none |"
         for path, lies in rows
