@@ -17,5 +17,5 @@ class Artefact:
     to_sensor: Matrix = field(default_factory=lambda: np.eye(4))
     """From the file's own frame to its finger's sensor frame, or to `frame` (4x4, mm)."""
     frame: str = "sensor"
-    """Name of the frame that `to_sensor` leads to: `"sensor"`, `"gripper"`, `"carrier"` or `""`
-    for none."""
+    """Name of the frame that `to_sensor` leads to: `"sensor"`, `"gripper"`, `"carrier"`,
+    `"flange"` or `""` for none."""

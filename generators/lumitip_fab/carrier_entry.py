@@ -4,7 +4,7 @@ from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
-from lumitip_fab.entry import Entry, Length, Strict
+from lumitip_fab.entry import Entry, Length, Share, Strict
 
 Signal = Annotated[str, Field(pattern=r"^[A-Z0-9_]{1,12}$")]
 PinName = Annotated[str, Field(pattern=r"^[A-Z0-9]{1,6}$")]
@@ -31,6 +31,8 @@ class Strip(Entry):
     """Diameter of a hole."""
     height_mm: Length
     """Above the board."""
+    stroke_mm: float = Field(default=0, ge=0, le=10)
+    """How far spring contacts give; 0 of others."""
 
 
 class Plug(Strict):
@@ -91,6 +93,12 @@ class Regulator(Leaded):
     """Least and greatest input voltage."""
     output_a: float = Field(gt=0, le=20)
     """Largest continuous output current."""
+    switching_khz: float = Field(gt=0, le=1e5)
+    """Switching frequency."""
+    soft_start_ms: float = Field(gt=0, le=1000)
+    """Until its output stands."""
+    switch_ohm: tuple[Share, Share]
+    """Resistance of the switch to the input and of that to ground."""
 
     @model_validator(mode="after")
     def _has_its_leads(self) -> Self:

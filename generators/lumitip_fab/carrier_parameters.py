@@ -48,10 +48,18 @@ class Holder(Strict):
 
 
 class Flange(Strict):
-    """The board in the flange between robot and gripper: tool contacts, 5 V, cables."""
+    """The flange between robot and gripper, and its board: tool contacts, 5 V, cables."""
 
     enabled: bool
     """Whether it is made."""
+    coupling: Name
+    """What it stands on, in `parts/couplings.toml`."""
+    clearance_mm: float = Field(ge=0, le=1)
+    """Board to pocket, and both parts to coupling and gripper, each side (mm)."""
+    tail_mm: float = Field(ge=0, le=5)
+    """Room for solder tails under the board, to which they are cut (mm)."""
+    web_mm: float = Field(ge=0.8, le=10)
+    """Thickness of the upper part under the gripper (mm)."""
     contacts: Name
     """Spring contacts in `parts/strips.toml`, two rows."""
     signals: tuple[Signal, ...]

@@ -10,6 +10,7 @@ from typing import Literal, Self
 from pydantic import Field, model_validator
 
 from lumitip_fab.carrier_entry import Plug, Regulator, Strip, Transistor
+from lumitip_fab.coupling_entry import ToolCoupling
 from lumitip_fab.entry import Entry, Length, Name, Pin, Share, Strict
 from lumitip_fab.fab_entry import Fab
 from lumitip_fab.filament_entry import Filament
@@ -108,6 +109,8 @@ class Capacitor(Chip):
 
     capacitance_nf: float = Field(gt=0, le=1e6)
     """Capacitance."""
+    left: float = Field(default=1, gt=0, le=1)
+    """Share of it that is left at the voltage across it."""
 
 
 class Inductor(Chip):
@@ -271,6 +274,7 @@ class Catalogue(Strict):
     inductors: Mapping[Name, Inductor]
     fuses: Mapping[Name, Fuse]
     transistors: Mapping[Name, Transistor]
+    couplings: Mapping[Name, ToolCoupling]
     grippers: Mapping[Name, Gripper]
     silicones: Mapping[Name, Silicone]
     films: Mapping[Name, Film]

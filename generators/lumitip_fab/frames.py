@@ -2,6 +2,7 @@
 
 - Sensor frame of a finger: gripping face seen with the tip up; x right, y to the tip, z out.
 - Frame of a carrier: see `lumitip_fab.design.carriers`; a holder is printed standing on its end.
+- Frame of a flange: see `lumitip_fab.design.flange`; both parts are printed as they are mounted.
 - Mount frame: see `lumitip_fab.design.Mount`; what is bolted on is printed in it,
   standing on h = 0.
 - Bed of the mould: the sensor frame turned over about x, so that the open side is up.
@@ -21,7 +22,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from lumitip_fab.design import Closing, Holder, Mould, Mount, Point, Stack
+from lumitip_fab.design import Closing, Flange, Holder, Mould, Mount, Point, Stack
 
 Matrix = NDArray[np.float64]
 BOARD_ON_PAGE_MM = (150.0, 100.0)
@@ -84,6 +85,20 @@ def holder_bed_to_carrier(holder: Holder) -> Matrix:
     matrix = translation(0.0, holder.outer.y_min_mm, 0.0)
     matrix[:3, :3] = ((1, 0, 0), (0, 0, 1), (0, -1, 0))
     return matrix
+
+
+def flange_beds(flange: Flange) -> dict[str, Matrix]:
+    """From the print beds of a flange's lower and upper part to the frame of the flange: each
+    stands as it is mounted."""
+    return {
+        "lower": translation(0.0, 0.0, flange.seat_z_mm),
+        "upper": translation(0.0, 0.0, flange.split_z_mm),
+    }
+
+
+def carrier_to_flange(flange: Flange) -> Matrix:
+    """From the frame of the board in a flange to that of the flange."""
+    return translation(*flange.board_at, flange.board_z_mm)
 
 
 def finger_to_gripper(finger: str, mount: Mount, closing: Closing, opening_mm: float) -> Matrix:

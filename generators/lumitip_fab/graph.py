@@ -1,8 +1,8 @@
 """What is built from what: the steps, and the key that tells whether one must run again.
 
 A generator's arguments are its dependencies: each is named after a field of `Design`, but for
-`finger`, `carrier` and `holder`, which make the step run once for each of those. They are read
-from the source, because importing a generator of solids takes seconds.
+`finger`, `carrier`, `holder` and `flange`, which make the step run once for each of those. They
+are read from the source, because importing a generator of solids takes seconds.
 """
 
 import ast
@@ -38,9 +38,8 @@ _CAD = ("build123d", "cadquery-ocp", "cadquery-ocp-novtk", "lib3mf", "numpy", "t
 _INK = ("reportlab", "ezdxf", "numpy", "shapely")
 _COPPER = ("gerbonara", "matplotlib", "networkx", "numba", "numpy", "scipy", "shapely")
 _LISTED = (
-    "backing/*.stl", "interface/*.stl", "mould/*.stl", "holder/*.stl", "fit/*.stl",
-    "mould/*_casting.md",
-    "boards/*/order/generic_*_bom.csv",
+    "backing/*.stl", "interface/*.stl", "mould/*.stl", "holder/*.stl", "flange/*.stl",
+    "fit/*.stl", "mould/*_casting.md", "boards/*/order/generic_*_bom.csv",
 )  # fmt: skip
 _SHOWN = (
     "assembly/*_exploded.svg", "bom.csv", "boards/*/*_front.png", "mask/*_mask.svg",
@@ -55,18 +54,20 @@ STEPS = (
     Step("boards", "files", "board_files", True, _COPPER),
     Step("boards", "carrier", "carrier_files", True, _COPPER),
     Step("boards", "spice", "simulation", False, ()),
+    Step("boards", "spice_supply", "supply_simulation", False, ()),
     Step("mechanical", "assembly", "assembly", True, _CAD),
     Step("mechanical", "robot", "robot_files", True, _CAD),
     Step("mechanical", "mould", "mould_files", True, _CAD),
     Step("mechanical", "backing", "backing", True, _CAD),
     Step("mechanical", "holder", "holder_files", True, _CAD),
+    Step("mechanical", "flange", "flange_files", True, _CAD),
     Step("mechanical", "fit_plate", "fit_plate_files", True, _CAD),
     Step("parts_list", "files", "bill_of_materials", False, ("numpy",), _LISTED),
     Step("manual", "files", "manual_files", False, _SET, _SHOWN),
 )
 
 
-EACH = {"finger": "fingers", "carrier": "carriers", "holder": "holders"}
+EACH = {"finger": "fingers", "carrier": "carriers", "holder": "holders", "flange": "flanges"}
 """Arguments that a step takes one of at a time, and the field that has them all."""
 
 

@@ -27,6 +27,7 @@ NAMED = {
     "backing.material": "filaments",
     "controller.board": "controllers",
     "breakout.socket": "strips",
+    "flange.coupling": "couplings",
     "flange.contacts": "strips",
     "flange.header": "strips",
     "flange.regulator": "regulators",

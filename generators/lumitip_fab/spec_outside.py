@@ -1,9 +1,11 @@
 """Figures of what is outside the fingers, beside the published ones."""
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from lumitip_fab.design import Carrier, Design, Holder
+from lumitip_fab.design import Carrier, Design, Flange, Holder
+from lumitip_fab.design.electrical import Regulated
 
 
 @dataclass(frozen=True)
@@ -23,8 +25,12 @@ def outside(design: Design) -> Iterator[Row]:
             yield from _breakout(carrier)
         else:
             yield from _flange(carrier)
+    for supply in design.electrical.supplies:
+        yield from _regulated(supply)
     for holder in design.holders:
         yield from _holder(holder)
+    for flange in design.flanges:
+        yield from _stack(flange)
 
 
 def _breakout(carrier: Carrier) -> Iterator[Row]:
@@ -50,9 +56,40 @@ def _flange(carrier: Carrier) -> Iterator[Row]:
               "a MOSFET costs the LEDs no voltage, as a diode would")  # fmt: skip
 
 
+def _regulated(supply: Regulated) -> Iterator[Row]:
+    volts, least_a = f"{supply.output_v:g} V", supply.ripple_a / 2
+    yield Row(f"ripple of the {volts}", "not stated", f"{supply.ripple_mv:.1f} mV",
+              f"at {supply.load_a:g} A: {supply.ripple_a:.2f} A of ripple through "
+              f"{supply.inductance_uh:g} µH, {supply.capacitor_uf:g} µF left of each capacitor; "
+              f"below {least_a:.2f} A the regulator skips pulses, and it is more")  # fmt: skip
+    yield Row(f"start-up of the {volts}", "not stated", f"{supply.soft_start_ms:g} ms",
+              f"soft start; the capacitors then take {1000 * supply.charging_a:.0f} mA; ngspice: "
+              "boards/flange/flange.cir")  # fmt: skip
+
+
 def _holder(holder: Holder) -> Iterator[Row]:
     yield Row("cradle of the holder", "37.8 mm radius", f"{holder.cradle_mm:.1f} mm radius",
               f"round a body of {holder.body_mm:g} mm by holder.body_mm")  # fmt: skip
     yield Row("arms of the holder", "bolted with M4",
               f"clip round, to {holder.wrap_deg:g}° from the middle",
               "holder.wrap_deg beyond 90° holds without screws")  # fmt: skip
+
+
+def _stack(flange: Flange) -> Iterator[Row]:
+    yield Row("height that the flange adds", "7.5 mm", f"{flange.top_z_mm:.1f} mm",
+              "the highest part on its board, board, floor and lid; the published one has its "
+              "headers outside and a floor of 0.4 mm")  # fmt: skip
+    yield Row("its bolts and locating pin", "4 x M5 on 62.8 mm, 3.8 mm",
+              f"{len(flange.bolts)} x {flange.bolt} on {_circle_mm(flange):.1f} mm, "
+              f"{flange.pin_mm:g} mm",
+              f"of {flange.coupling} in parts/couplings.toml; the pin is bought, not "
+              "printed")  # fmt: skip
+    pressed = flange.contacts_mm - (flange.board_z_mm - flange.contacts_z_mm)
+    yield Row("its spring contacts", "not stated",
+              f"pressed by {pressed:.1f} of {flange.stroke_mm:g} mm",
+              "against contacts whose depth is inferred: measure your coupling")  # fmt: skip
+
+
+def _circle_mm(flange: Flange) -> float:
+    """Diameter of the circle that the bolts lie on."""
+    return 2 * max(math.hypot(*at) for at in flange.bolts)

@@ -1,9 +1,6 @@
 """ngspice against the closed forms of derive, from the nets of the boards."""
 
 import dataclasses
-import re
-import shutil
-import subprocess
 from pathlib import Path
 
 import pytest
@@ -13,28 +10,15 @@ from lumitip_fab.derive import derive
 from lumitip_fab.derive.electrical import string_current_ma
 from lumitip_fab.design import Design, Electrical, Wiring
 from lumitip_fab.load import load
+from spice_runs import needs_ngspice, simulated
 
 PRESETS = ("published", "asymmetric", "dense", "mux16")
-NGSPICE = shutil.which("ngspice")
-needs_ngspice = pytest.mark.skipif(NGSPICE is None, reason="ngspice is not installed")
 
 
 @pytest.fixture(scope="module")
 def presets(design_dir: Path) -> dict[str, Design]:
     """Every preset, derived."""
     return {name: derive(load(design_dir / "presets" / f"{name}.toml")) for name in PRESETS}
-
-
-def _simulated(netlist: str, folder: Path) -> dict[str, float]:
-    """What ngspice prints of a netlist."""
-    file = folder / "board.cir"
-    file.write_text(netlist, encoding="utf-8")
-    command = [NGSPICE or "", "-b", str(file)]
-    # Some versions end with 1 where a netlist plots nothing, though all went well.
-    done = subprocess.run(command, check=False, capture_output=True, text=True)
-    found = re.findall(r"^(\w+) = (\S+)$", done.stdout, re.MULTILINE)
-    assert found, done.stdout + done.stderr
-    return {k: float(v) for k, v in found}
 
 
 def _netlist(
@@ -58,7 +42,7 @@ def test_a_string_draws_its_nominal_current(
     presets: dict[str, Design], preset: str, tmp_path: Path
 ) -> None:
     design = presets[preset]
-    found = _simulated(_netlist(design, "emitter"), tmp_path)
+    found = simulated(_netlist(design, "emitter"), tmp_path)
     assert found["i_ma"] == pytest.approx(design.wiring.current_ma[0], rel=0.002)
 
 
@@ -76,7 +60,7 @@ def test_the_spread_over_tolerances_is_what_ngspice_finds(
         design.electrical, strings=dataclasses.replace(strings, forward_v=forward_v)
     )
     wiring = dataclasses.replace(design.wiring, supply_v=supply_v)
-    found = _simulated(_netlist(design, "emitter", wiring, off), tmp_path)
+    found = simulated(_netlist(design, "emitter", wiring, off), tmp_path)
     wanted = (strings.low_ma if sign < 0 else strings.high_ma)[0]
     assert found["i_ma"] == pytest.approx(wanted, rel=0.002)
 
@@ -87,7 +71,7 @@ def test_a_channel_reads_and_settles_as_computed(
     presets: dict[str, Design], preset: str, tmp_path: Path
 ) -> None:
     design = presets[preset]
-    found = _simulated(_netlist(design, "receiver"), tmp_path)
+    found = simulated(_netlist(design, "receiver"), tmp_path)
     channel = design.electrical.channel
     assert found["full_v"] == pytest.approx(channel.full_scale_v, abs=0.001)
     assert found["dark_v"] == pytest.approx(channel.dark_v, abs=0.001)
@@ -101,7 +85,7 @@ def test_a_detector_that_does_not_saturate_reads_by_its_light(
     design = presets["published"]
     channel = dataclasses.replace(design.electrical.channel, light_current_ua=20.0)
     dim = dataclasses.replace(design.electrical, channel=channel)
-    found = _simulated(_netlist(design, "receiver", electrical=dim), tmp_path)
+    found = simulated(_netlist(design, "receiver", electrical=dim), tmp_path)
     assert found["full_v"] == pytest.approx(3.3 - 20e-6 * 75e3, abs=0.001)
 
 

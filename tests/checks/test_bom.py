@@ -9,7 +9,7 @@ from damages import failing as failing_of
 from lumitip_fab.derive import derive
 from lumitip_fab.load import load
 
-_NEEDED = ("boards", "backing", "mould", "holder", "fit", "wiring")
+_NEEDED = ("boards", "backing", "mould", "holder", "flange", "fit", "wiring")
 
 
 @pytest.fixture(scope="module")

@@ -10,8 +10,8 @@ import pytest
 from damages import failing as failing_of
 
 _NEEDED = (
-    "assembly", "backing", "boards", "firmware", "fit", "holder", "manual", "mask", "mould",
-    "print", "wiring",
+    "assembly", "backing", "boards", "firmware", "fit", "flange", "holder", "manual", "mask",
+    "mould", "print", "wiring",
 )  # fmt: skip
 HTML, PDF = "manual/manual.html", "manual/manual.pdf"
 

@@ -77,6 +77,10 @@ CHANGES: dict[str, Any] = {
     "holder.strap_hole_mm": 4.1,
     "holder.strap_spacing_mm": 12.5,
     "flange.enabled": False,
+    "flange.coupling": "other",
+    "flange.clearance_mm": 0.25,
+    "flange.tail_mm": 0.9,
+    "flange.web_mm": 2.0,
     "flange.contacts": "other contacts",
     "flange.signals": (
         "SUPPLY",
@@ -158,6 +162,7 @@ def published(inputs: dict[str, Input]) -> Input:
         "leds": ("15406085BA300", {"exponent": 2.0}),
         "capacitors": ("100nF 0603", {"capacitance_nf": 220.0}),
         "films": ("TPU 100um", {"soften_c": 80.0}),
+        "couplings": ("Robotiq I/O", {"bolt_hole_mm": 5.5}),
         "grippers": ("robotiq_2f85", {"stroke_mm": 84.0}),
         "printers": ("fdm 0.4", {"layer_mm": 0.1}),
         "strips": ("socket 1x15", {"height_mm": 8.0}),
@@ -172,8 +177,11 @@ def published(inputs: dict[str, Input]) -> Input:
     }
     film = parts.films["TPU 100um"].model_copy(update={"thickness_mm": 0.15})
     tables["films"] = {**tables["films"], "thick": film}
-    for name, like in (("other contacts", "pogo 2x5"), ("other header", "box header 2x7")):
-        tables["strips"][name] = parts.strips[like].model_copy(update={"height_mm": 5.0})
+    for name, like, height_mm in (
+        ("other contacts", "pogo 2x5", 6.5),
+        ("other header", "box header 2x7", 8.0),
+    ):
+        tables["strips"][name] = parts.strips[like].model_copy(update={"height_mm": height_mm})
     return dataclasses.replace(given, catalogue=parts.model_copy(update=tables))
 
 

@@ -49,13 +49,19 @@ def test_waste_of_silicone_touches_the_mould_and_what_shares_its_figures(keys: K
 
 def test_pitch_touches_everything_of_the_fingers(keys: Keys) -> None:
     # What the slicer is told, what holds the controller, and wires know nothing of the cells.
-    outside = {"holder_files", "print_settings", "wiring_files"}
+    outside = {
+        "holder_files",
+        "flange_files",
+        "print_settings",
+        "supply_simulation",
+        "wiring_files",
+    }
     assert changed(keys(), keys("[grid]\npitch_mm = 6.1\n")) == EARLY - outside
 
 
 def test_what_is_outside_touches_no_finger(keys: Keys) -> None:
     after = keys("[breakout]\nhole_spacing_mm = 34.0\n")
-    assert changed(keys(), after) == {"carrier_files", "holder_files"}
+    assert changed(keys(), after) == {"carrier_files", "holder_files", "supply_simulation"}
     assert changed(keys(), keys("[holder]\nbody_mm = 76.0\n")) == {"holder_files"}
 
 

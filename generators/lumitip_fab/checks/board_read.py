@@ -145,6 +145,20 @@ def read_all(outputs: Path, design: Design) -> Iterator[tuple[str, Read | ReadCa
             yield subject, ReadCarrier(subject, board, design, of)
 
 
+def read_carrier(outputs: Path, design: Design, name: str) -> ReadCarrier:
+    """The board of a carrier.
+
+    Raises:
+        OutputError: if its file cannot be read.
+        LookupError: if the design has no such carrier.
+    """
+    carrier = next((carrier for carrier in design.carriers if carrier.name == name), None)
+    if carrier is None:
+        raise LookupError(f"no carrier {name!r}")
+    subject = f"boards/{name}/{name}.kicad_pcb"
+    return ReadCarrier(subject, read_board(outputs / subject), design, carrier)
+
+
 def ohm(value: str) -> float:
     """Resistance that a value tells, such as 150R or 4K99; NaN if it tells none."""
     told = _VALUE.fullmatch(value)

@@ -19,7 +19,7 @@ from lumitip_fab.errors import OutputError
 
 READS = (
     "bom.csv", "boards/*/order/*_bom.csv", "backing/*.stl", "interface/*.stl", "mould/*.stl",
-    "holder/*.stl", "fit/*.stl", "mould/*_casting.md", "wiring/cables.csv",
+    "holder/*.stl", "flange/*.stl", "fit/*.stl", "mould/*_casting.md", "wiring/cables.csv",
 )  # fmt: skip
 _FILE = "bom.csv"
 _PART_G = re.compile(r"^\| .*, part [AB] \| \*\*([\d.]+) g\*\* \|$", re.MULTILINE)
@@ -57,11 +57,20 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     yield _near("silicone", rows, "casting", cast, "g", "parts A and B of both casting notes")
     yield _near("film", rows, "mask", 2.0, "sheets", "one for each finger")
     yield _near("wire", rows, "wiring", metres, "m", "of every wire in the list of cables")
-    bolts = sum(r.quantity for r in rows if r.item.startswith(f"{design.mount.bolt} socket"))
-    wanted = float(2 * len(design.mount.bolt_u_mm))
-    yield Measurement("bom.bolts", _FILE, bolts, wanted, wanted, "bolts", "of both fingers")
+    yield from _bolts(rows, design)
     yield _count("prices", _wrong_prices(rows, design), "lines")
     yield _sum(rows, total, note, design)
+
+
+def _bolts(rows: tuple[Row, ...], design: Design) -> Iterator[Measurement]:
+    """Bolts of the fingers and of the flange, by thread."""
+    wanted = Counter({design.mount.bolt: 2 * len(design.mount.bolt_u_mm)})
+    for flange in design.flanges:
+        wanted[flange.bolt] += len(flange.bolts)
+    for thread, count in wanted.items():
+        told = sum(r.quantity for r in rows if r.item.startswith(f"{thread} socket"))
+        yield Measurement("bom.bolts", _FILE, told, count, count, "bolts",
+                          f"{thread}, of fingers and flange")  # fmt: skip
 
 
 def _read(path: Path) -> tuple[tuple[Row, ...], float, str]:
@@ -111,7 +120,7 @@ def _grams(outputs: Path, design: Design) -> dict[str, float]:
     found = {}
     for path in sorted(
         p
-        for k in ("backing", "interface", "mould", "holder", "fit")
+        for k in ("backing", "interface", "mould", "holder", "flange", "fit")
         for p in (outputs / k).glob("*.stl")
     ):
         corners = corners_mm(path).reshape(-1, 3, 3)

@@ -13,7 +13,7 @@ import numpy as np
 import shapely
 
 from lumitip_fab.checks import packages, solids
-from lumitip_fab.checks.board_read import ReadCarrier, read_all
+from lumitip_fab.checks.board_read import ReadCarrier, read_carrier
 from lumitip_fab.checks.printed import circles, farthest, holes_at
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.checks.walls import walls
@@ -55,13 +55,11 @@ class Clip:
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     """Every figure of the holder."""
-    boards = {of.carrier.name: of for _, of in read_all(outputs, design)
-              if isinstance(of, ReadCarrier)}  # fmt: skip
     for holder in design.holders:
         subject = f"holder/{holder.name}.stl"
         try:
             standing = solids.read_mesh(outputs / subject)
-            board = boards[holder.carrier]
+            board = read_carrier(outputs, design, holder.carrier)
         except (OutputError, LookupError) as error:
             yield unreadable("holder.readable", subject, f"{error}")
             continue

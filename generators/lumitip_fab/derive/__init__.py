@@ -11,6 +11,7 @@ from lumitip_fab.derive.electrical import derive_electrical
 from lumitip_fab.derive.faults import Faults
 from lumitip_fab.derive.fit_plate import derive_fit_plate
 from lumitip_fab.derive.flange import derive_flange
+from lumitip_fab.derive.flange_body import derive_flange_body
 from lumitip_fab.derive.flex import derive_interfaces
 from lumitip_fab.derive.holder import derive_holder
 from lumitip_fab.derive.packages import derive_fabs, derive_packages, derive_rules
@@ -53,6 +54,7 @@ def derive(given: Input) -> Design:
     breakout = derive_breakout(given, muxing, faults)
     holders = derive_holder(given, breakout, faults)
     flange = derive_flange(given, faults)
+    flanges = derive_flange_body(given, flange, faults)
     circuit, figures = wiring.joined(given, strings, muxing), derive_electrical(given, strings)
     joined = Boards(plan.emitter, plan.receiver, (*breakout, *flange))
     cabling = derive_cabling(given, joined, silhouette, coupling, circuit, figures, faults)
@@ -103,7 +105,8 @@ def derive(given: Input) -> Design:
             fabs=derive_fabs(given),
             carriers=(*breakout, *flange),
             holders=holders,
-            purchase=derive_purchase(given, coupling, holders, slicing),
+            flanges=flanges,
+            purchase=derive_purchase(given, coupling, holders, flanges, slicing),
             parameters_hash=_parameters_hash(given),
         )
     )

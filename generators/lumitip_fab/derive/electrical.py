@@ -4,6 +4,7 @@ import math
 
 from lumitip_fab.catalogue import Led
 from lumitip_fab.derive import wiring
+from lumitip_fab.derive.regulated import derive_regulated
 from lumitip_fab.design.electrical import Channel, Electrical, Strings
 from lumitip_fab.load import Input
 
@@ -19,6 +20,7 @@ def derive_electrical(given: Input, strings: wiring.Strings) -> Electrical:
         strings=_strings(given, strings),
         channel=_channel(given),
         heat_w=sum(strings.current_ma) * p.supply.voltage_v / 1000,
+        supplies=derive_regulated(given),
     )
 
 

@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 
 from lumitip_fab.derive.flex import stiff_mm
-from lumitip_fab.design import Holder, Mount
+from lumitip_fab.design import Flange, Holder, Mount
 from lumitip_fab.design.purchase import Bought, PartPrice, Purchase
 from lumitip_fab.design.slicing import Slicing
 from lumitip_fab.load import Input
@@ -15,7 +15,11 @@ _NUT_SHARE = 0.8  # height of a nut, of its thread's diameter
 
 
 def derive_purchase(
-    given: Input, mount: Mount, holders: tuple[Holder, ...], slicing: Slicing
+    given: Input,
+    mount: Mount,
+    holders: tuple[Holder, ...],
+    flanges: tuple[Flange, ...],
+    slicing: Slicing,
 ) -> Purchase:
     """Screws and controller, and the prices of everything else."""
     p, prices = given.parameters, given.catalogue.prices
@@ -24,6 +28,7 @@ def derive_purchase(
                prices.each.get(p.controller.board)),
         *_bolts(mount, prices),
         *(each for holder in holders for each in _screws(given, holder, prices)),
+        *(each for flange in flanges for each in _of_flange(given, flange, prices)),
     ]  # fmt: skip
     return Purchase(
         currency=prices.currency,
@@ -70,6 +75,27 @@ def _screws(given: Input, holder: Holder, prices: Prices) -> list[Bought]:
         Bought("fasteners", f"{thread} nut", "", "ISO 4032", where, count,
                prices.each.get(f"{thread} nut")),
     ]  # fmt: skip
+
+
+def _of_flange(given: Input, flange: Flange, prices: Prices) -> list[Bought]:
+    """Screws of its board, its locating pin, and the gripper's bolts, which must be longer."""
+    count = len(flange.screws)
+    through = flange.board_z_mm - flange.seat_z_mm + given.parameters.stack.pcb_mm
+    screw = f"M2 x {2 * math.ceil((through + _NUT_SHARE * 2) / 2)} countersunk screw"
+    pin = f"{flange.pin_mm:g} x {flange.pin_length_mm:g} parallel pin"
+    bolt = f"{flange.bolt} socket head screw"
+    where = "board of the flange"
+    told = (
+        (screw, "ISO 7046", where, count, "M2 screw"),
+        ("M2 nut", "ISO 4032", where, count, "M2 nut"),
+        (pin, "ISO 2338", "flange to coupling, glued in", 1, "parallel pin"),
+        (bolt, "ISO 4762", f"gripper to robot, {flange.top_z_mm:.1f} mm longer than its own",
+         len(flange.bolts), bolt),
+    )  # fmt: skip
+    return [
+        Bought("fasteners", item, "", part, at, n, prices.each.get(price))
+        for item, part, at, n, price in told
+    ]
 
 
 def _parts(given: Input, prices: Prices) -> tuple[PartPrice, ...]:

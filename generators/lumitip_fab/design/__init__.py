@@ -29,6 +29,7 @@ from lumitip_fab.design.cabling import Cable, Cabling, Terminal, Wire
 from lumitip_fab.design.carriers import Carrier, Device, Holder, Land, Note, Pattern
 from lumitip_fab.design.electrical import Electrical
 from lumitip_fab.design.fit_plate import FitPlate, Fits
+from lumitip_fab.design.flange import Flange
 from lumitip_fab.design.flex import Interface
 from lumitip_fab.design.gripper import Closing, Mount, Nose
 from lumitip_fab.design.making import Letter, Mask, Mould, Printing
@@ -60,6 +61,7 @@ __all__ = [
     "Finger",
     "FitPlate",
     "Fits",
+    "Flange",
     "Grid",
     "Holder",
     "Interface",
@@ -135,6 +137,8 @@ class Design:
     """Boards outside the fingers."""
     holders: tuple[Holder, ...]
     """What holds the breakout board on the gripper; none without that board."""
+    flanges: tuple[Flange, ...]
+    """Printed parts round the flange's board; none without that board."""
     purchase: Purchase
     parameters_hash: str
 

@@ -51,10 +51,35 @@ class Channel:
 
 
 @dataclass(frozen=True)
+class Regulated:
+    """A switching regulator in continuous conduction."""
+
+    input_v: float
+    output_v: float
+    switching_khz: float
+    soft_start_ms: float
+    switch_ohm: float
+    """Of both switches, each by its share of the time."""
+    inductance_uh: float
+    capacitor_uf: float
+    """What is left at its voltage of each output capacitor."""
+    load_a: float
+    """For which the figures are."""
+    ripple_a: float
+    """Of the coil's current, from low to high; below half of it the regulator skips pulses."""
+    ripple_mv: float
+    """Of the output, from low to high."""
+    charging_a: float
+    """Into the output capacitors during the soft start."""
+
+
+@dataclass(frozen=True)
 class Electrical:
-    """Figures of both boards."""
+    """Figures of the boards."""
 
     strings: Strings
     channel: Channel
     heat_w: float
     """LEDs and string resistors, nominal."""
+    supplies: tuple[Regulated, ...]
+    """The flange's regulator; none without it."""

@@ -6,6 +6,7 @@ from lumitip_fab.design import (
     Carrier,
     Controller,
     Electrical,
+    Flange,
     Holder,
     Interface,
     Mask,
@@ -25,7 +26,7 @@ def manual_files(
     made: Made, title: Title, printing: Printing, mould: Mould, mask: Mask, mount: Mount,
     wiring: Wiring, cabling: Cabling, controller: Controller, electrical: Electrical,
     carriers: tuple[Carrier, ...], holders: tuple[Holder, ...],
-    interfaces: tuple[Interface, ...],
+    interfaces: tuple[Interface, ...], flanges: tuple[Flange, ...],
 ) -> tuple[Artefact, ...]:  # fmt: skip
     """The manual twice: to read on a screen, and to print.
 
@@ -43,9 +44,10 @@ def manual_files(
         carriers: boards outside the fingers.
         holders: what holds the controller's board.
         interfaces: what holds backings that bend.
+        flanges: what holds the flange's board.
     """
     facts = Facts(title, printing, mould, mask, mount, wiring, cabling, controller, electrical,
-                  carriers, holders, interfaces)  # fmt: skip
+                  carriers, holders, interfaces, flanges)  # fmt: skip
     text = manual_text(facts, made)
     name = f"{title.name} {title.revision}: build manual"
     return (

@@ -10,6 +10,7 @@ from lumitip_fab.design import (
     Carrier,
     Controller,
     Electrical,
+    Flange,
     Holder,
     Interface,
     Mask,
@@ -44,6 +45,7 @@ class Facts:
     carriers: tuple[Carrier, ...]
     holders: tuple[Holder, ...]
     interfaces: tuple[Interface, ...]
+    flanges: tuple[Flange, ...]
 
 
 def manual_text(facts: Facts, made: Made) -> str:
@@ -176,11 +178,24 @@ def _mounted(facts: Facts) -> str:
         if facts.holders
         else ""
     )
+    flanged = "".join(map(_flanged, facts.flanges))
     return f"""## 7. Mount
 
 Screw each finger on ({len(facts.mount.bolt_u_mm)} x {facts.mount.bolt}); emitter and receiver
 face each other. Then join the cables of chapter 4 to their other ends.
-{holder}Open and close the gripper slowly once: no wire may be drawn taut."""
+{holder}{flanged}Open and close the gripper slowly once: no wire may be drawn taut."""
+
+
+def _flanged(flange: Flange) -> str:
+    return f"""
+Between robot and gripper: solder the spring contacts onto the back of the flange's board, cut every
+solder tail under it to {flange.tail_mm:g} mm, and screw it into `flange/flange_lower.3mf` from
+below, contacts towards the robot. Glue the locating pin in, lay `flange/flange_upper.3mf` on the
+peg, and put all of it between the coupling and the gripper, with {len(flange.bolts)} bolts
+{flange.bolt} that are {flange.top_z_mm:.1f} mm longer than before. Measure first which contact of
+the coupling carries what.
+
+"""
 
 
 def _run(facts: Facts) -> str:

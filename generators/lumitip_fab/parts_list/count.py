@@ -66,7 +66,8 @@ def made_things(
     made: Made, cabling: Cabling, slicing: Slicing, mould: Mould, mask: Mask, purchase: Purchase
 ) -> Iterator[Line]:
     """Filament, silicone, film and wire."""
-    for pattern in ("backing/*.stl", "interface/*.stl", "mould/*.stl", "holder/*.stl", "fit/*.stl"):
+    kinds = ("backing", "interface", "mould", "holder", "flange", "fit")
+    for pattern in (f"{kind}/*.stl" for kind in kinds):
         for path in made.like(pattern):
             filament = slicing.of(path)
             kg = purchase.filament_kg[filament != slicing.backing]

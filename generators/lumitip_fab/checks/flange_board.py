@@ -1,0 +1,132 @@
+"""The flange's board in its pocket: edge, seat, contacts, cables, screws, by the board's file."""
+
+import math
+from collections.abc import Iterator
+
+import manifold3d
+import numpy as np
+import shapely
+
+from lumitip_fab.checks import overlap, solids
+from lumitip_fab.checks.flange_read import CONTACTS, REACH_MM, Stacked, heights
+from lumitip_fab.checks.printed import circles, farthest, holes_at
+from lumitip_fab.checks.result import Measurement
+from lumitip_fab.design import Device
+
+SIZE_MM = 0.05
+HOLE_MM = 0.05
+LEAST_HEADROOM_MM = 0.1
+LEAST_AROUND_MM = 0.3  # from the spring contacts' body to the window's edge
+LEAST_SHARE, MOST_SHARE = 0.2, 0.9  # of the stroke that the springs are pressed by
+_NEAR_MM = 2.0
+
+
+def measure_pocket(of: Stacked) -> Iterator[Measurement]:
+    """The board's edge in its pocket, what it lies on, and room for its solder tails."""
+    flange, pcb_mm = of.flange, of.design.stack.pcb_mm
+    middle = flange.board_z_mm + pcb_mm / 2
+    rings = [shapely.Polygon(ring) for ring in holes_at(of.lower, middle)]
+    pocket = max(rings, key=lambda ring: ring.area)
+    wanted = of.board.carrier.box.x_min_mm + flange.board_at[0] - flange.pocket.x_min_mm
+    inside = pocket.contains(of.outline)
+    gap = pocket.exterior.distance(of.outline) if inside else math.nan
+    yield of.near("board_gap", gap, wanted, SIZE_MM, "board to pocket, at its nearest")
+    loose = shapely.hausdorff_distance(pocket.exterior, of.outline.exterior, densify=0.02)
+    yield of.near("board_play", loose, wanted, SIZE_MM, "board to pocket, at its farthest")
+    yield of.near("board_seat", of.board_z_mm, flange.board_z_mm, SIZE_MM, "height of the floor")
+    tails = np.concatenate([of.pads(ref) for ref in of.headers])
+    floor = heights(of.lower, tails)
+    room = float((of.board_z_mm - floor).min())
+    yield of.figure("tails", room, flange.tail_mm - SIZE_MM, math.inf,
+                    note=f"under {len(tails)} pads of headers")  # fmt: skip
+    left = float((floor - of.lower.bounds[0][2]).min())
+    yield of.figure("tail_floor", left, of.design.printing.min_wall_mm - SIZE_MM, math.inf,
+                    note="left under the solder tails")  # fmt: skip
+
+
+def measure_contacts(of: Stacked) -> Iterator[Measurement]:
+    """The spring contacts: through their window, and pressed by the coupling's contacts."""
+    flange, pads = of.flange, of.pads(CONTACTS)
+    seen = heights(of.lower, pads)
+    blocked = int(np.isfinite(seen).sum())
+    yield of.figure("window", blocked, 0, 0, "contacts", f"of {len(pads)} that do not come through")
+    rings = holes_at(of.lower, (flange.seat_z_mm + flange.board_z_mm) / 2)
+    middle = shapely.Point(*pads.mean(axis=0))
+    here = [shapely.Polygon(ring) for ring in rings if shapely.Polygon(ring).contains(middle)]
+    body = _footprint(of, _device(of, CONTACTS))
+    free = [ring.exterior.distance(body) for ring in here if ring.contains(body)]
+    yield of.figure("window_gap", free[0] if free else math.nan, LEAST_AROUND_MM, math.inf,
+                    note="round the body of the contacts")  # fmt: skip
+    pressed = flange.contacts_mm - (of.board_z_mm - flange.contacts_z_mm)
+    low, high = LEAST_SHARE * flange.stroke_mm, MOST_SHARE * flange.stroke_mm
+    yield of.figure("contact_press", pressed, low - SIZE_MM, high + SIZE_MM,
+                    note=f"of {flange.stroke_mm:g} mm of stroke")  # fmt: skip
+
+
+def measure_headers(of: Stacked) -> Iterator[Measurement]:
+    """The way out of each header's cable, and room over every part."""
+    front = of.board_z_mm + of.design.stack.pcb_mm
+    blocked = []
+    for ref in of.headers:
+        device = _device(of, ref)
+        body = _footprint(of, device)
+        x_min, y_min, x_max, y_max = body.bounds
+        outward = math.copysign(1.0, (y_min + y_max) / 2)
+        levels = np.linspace(front + 0.3, front + device.pattern.height_mm, 5)
+        across = np.linspace(x_min, x_max, 9)
+        start = np.array([(x, (y_min + y_max) / 2, z) for x in across for z in levels])
+        hit, _ = solids.cast(of.lower, start, np.array([0.0, outward, 0.0]), REACH_MM).first(
+            len(start)
+        )
+        blocked += [ref] if np.isfinite(hit).any() else []
+    yield of.figure("cables", len(blocked), 0, 0, "headers", "whose way out is blocked")
+    highest = max(d.pattern.height_mm for d in of.board.carrier.devices if d.ref != CONTACTS)
+    yield of.figure("headroom", of.split_mm - front - highest, LEAST_HEADROOM_MM, math.inf,
+                    note="over the highest part")  # fmt: skip
+
+
+def measure_screws(of: Stacked) -> Iterator[Measurement]:
+    """The screws' holes against those in the board's file, and their countersinks."""
+    flange = of.flange
+    places = of.places([hole.at for hole in of.board.holes])
+    at = tuple((float(x), float(y)) for x, y in places)
+    off, wide = circles(holes_at(of.lower, flange.board_z_mm - 0.2), at, _NEAR_MM)
+    yield of.near("screws", off, 0.0, HOLE_MM, "from the board's holes")
+    yield of.near("screw_width", wide, flange.screw_mm, HOLE_MM)
+    _, head = circles(holes_at(of.lower, flange.seat_z_mm + 0.1), at, _NEAR_MM)
+    worst = farthest(head, flange.screw_head_mm - 0.2)
+    yield of.near("screw_heads", worst + 0.2, flange.screw_head_mm, HOLE_MM, "countersink")
+
+
+def bodies(of: Stacked) -> dict[str, overlap.Solid]:
+    """The board and its parts as boxes: contacts below, everything else above it."""
+    thick = of.design.stack.pcb_mm
+    seat = of.board_z_mm + SIZE_MM / 2
+    ring = np.array(of.outline.exterior.coords)[:-1]
+    flat = manifold3d.CrossSection([ring], manifold3d.FillRule.EvenOdd)
+    found = {"the board": flat.extrude(thick).translate((0.0, 0.0, seat))}
+    for device in of.board.carrier.devices:
+        height = device.pattern.height_mm
+        if height:
+            low = seat - height if device.ref == CONTACTS else seat + thick
+            corners = np.array(_footprint(of, device).exterior.coords)[:-1]
+            box = manifold3d.CrossSection([corners], manifold3d.FillRule.EvenOdd)
+            found[device.ref] = box.extrude(height).translate((0.0, 0.0, low))
+    return found
+
+
+def _device(of: Stacked, ref: str) -> Device:
+    return next(d for d in of.board.carrier.devices if d.ref == ref)
+
+
+def _footprint(of: Stacked, device: Device) -> shapely.Polygon:
+    """A part's body where the board's file has the part."""
+    part, body = of.board.parts[device.ref], device.pattern.body
+    (at,) = of.places([part.at])
+    turn = math.radians(device.angle_deg)
+    corners = [(body.x_min_mm, body.y_min_mm), (body.x_max_mm, body.y_min_mm),
+               (body.x_max_mm, body.y_max_mm), (body.x_min_mm, body.y_max_mm)]  # fmt: skip
+    return shapely.Polygon([
+        (at[0] + x * math.cos(turn) - y * math.sin(turn),
+         at[1] + x * math.sin(turn) + y * math.cos(turn)) for x, y in corners
+    ])  # fmt: skip
