@@ -39,25 +39,8 @@ class ToolCoupling(Entry):
     """Middle of the contacts."""
     contacts_depth_mm: Length
     """From the face down to the contacts."""
-    height_mm: Length
-    """From the robot's tool flange to the face."""
-    iso_pitch_mm: Length
-    """Diameter of the circle of bolts in the robot's tool flange."""
-    iso_bolts: int = Field(ge=3, le=12)
-    """How many bolts that circle has."""
-    iso_bolt: Screw
-    """Thread of those."""
-    iso_face_mm: Length
-    """Diameter of the robot's tool flange."""
-    iso_pilot_mm: Length
-    """Diameter of the centring recess in it."""
-    iso_pin_mm: Length
-    """Diameter of the locating pin in it."""
-
-    @property
-    def iso(self) -> str:
-        """Its robot's side as ISO 9409-1 names it."""
-        return f"ISO 9409-1-{self.iso_pitch_mm:g}-{self.iso_bolts}-{self.iso_bolt}"
+    iso: str = Field(pattern=r"^\d+(\.\d+)?-\d+-M\d+$")
+    """Its robot's side by ISO 9409-1: circle of the bolts (mm), how many, their thread."""
 
     @model_validator(mode="after")
     def _recess_in_face(self) -> Self:

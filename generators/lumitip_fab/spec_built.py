@@ -1,11 +1,16 @@
-"""Figures of a design that only its built files tell: what the fingers weigh."""
+"""Figures of a design that only its built files tell: what fingers, flange and holder weigh."""
 
+from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
+
 from lumitip_fab import manifest
+from lumitip_fab.checks.stl import corners_mm
 from lumitip_fab.checks.urdf_read import read_urdf
 from lumitip_fab.design import Design
 from lumitip_fab.errors import OutputError
+from lumitip_fab.frames import flange_beds
 from lumitip_fab.spec_outside import Row
 
 
@@ -30,4 +35,33 @@ def built_rows(out: Path, design: Design) -> tuple[Row, ...]:
         for finger, link in zip(design.fingers, weighed, strict=True)
     ]
     payload = sum(link.mass_g for link in weighed)
-    return (*rows, Row("payload of both fingers", "not stated", f"{payload:.1f} g", why))
+    rows.append(Row("payload of both fingers", "not stated", f"{payload:.1f} g", why))
+    return (*rows, *_outside(out, design))
+
+
+def _outside(out: Path, design: Design) -> Iterator[Row]:
+    """What the robot carries besides: printed parts and boards between it and the gripper, and on
+    the gripper's body."""
+    carriers = {carrier.name: carrier for carrier in design.carriers}
+    told: list[tuple[str, str, tuple[str, ...]]] = [
+        (f"mass of the {h.name}", h.carrier, (f"holder/{h.name}.stl",)) for h in design.holders
+    ]
+    told += [
+        (f"mass of the {f.name}", f.carrier,
+         tuple(f"flange/{f.name}_{part}.stl" for part in flange_beds(f)))
+        for f in design.flanges
+    ]  # fmt: skip
+    for what, name, files in told:
+        box = carriers[name].box
+        board_ml = box.width_mm * box.length_mm * design.stack.pcb_mm / 1000
+        printed = [(_volume_ml(out / file), design.slicing.of(file)) for file in files]
+        grams = board_ml * design.densities.board_g_ml
+        grams += sum(volume * filament.density_g_ml for volume, filament in printed)
+        yield Row(what, "not stated", f"{grams:.1f} g",
+                  f"printed solid from {printed[0][1].name}, with its bare board; parts, screws "
+                  "and wires are not in it")  # fmt: skip
+
+
+def _volume_ml(path: Path) -> float:
+    a, b, c = corners_mm(path).reshape(-1, 3, 3).transpose(1, 0, 2)
+    return float(np.einsum("ij,ij->", a, np.cross(b, c))) / 6000

@@ -82,8 +82,8 @@ def _stack(flange: Flange) -> Iterator[Row]:
     yield Row("its bolts and locating pin", "4 x M5 on 62.8 mm, 3.8 mm",
               f"{len(flange.bolts)} x {flange.bolt} on {_circle_mm(flange):.1f} mm, "
               f"{flange.pin_mm:g} mm",
-              f"of {flange.coupling} in parts/couplings.toml; the pin is bought, not "
-              "printed")  # fmt: skip
+              f"of {flange.coupling} in parts/couplings.toml, which stands on ISO "
+              f"9409-1-{flange.iso}; the pin is bought, not printed")  # fmt: skip
     pressed = flange.contacts_mm - (flange.board_z_mm - flange.contacts_z_mm)
     yield Row("its spring contacts", "not stated",
               f"pressed by {pressed:.1f} of {flange.stroke_mm:g} mm",

@@ -1,5 +1,6 @@
-"""What the fingers weigh, told from the files that were built."""
+"""What fingers, flange and holder weigh, told from the files that were built."""
 
+import csv
 from pathlib import Path
 
 import pytest
@@ -21,6 +22,30 @@ def test_the_payload_is_both_fingers(outputs: Path) -> None:
     assert float(rows["payload of both fingers"].removesuffix(" g")) == pytest.approx(
         sum(told), abs=0.11
     )
+
+
+def test_flange_and_holder_weigh_what_their_filament_and_boards_do(outputs: Path) -> None:
+    rows = {
+        r.quantity: r.computed for r in built_rows(outputs, read_design(outputs / "design.json"))
+    }
+    with (outputs / "bom.csv").open(encoding="utf-8", newline="") as file:
+        printed = {
+            row["item"]: float(row["quantity"])
+            for row in csv.DictReader(file)
+            if row["group"] == "prints"
+        }
+    areas = {"flange": 30.8 * 54.0, "holder": 45.72 * 33.02}  # area, of 1.6 mm FR-4
+    for name, area_mm2 in areas.items():
+        solid = sum(grams for item, grams in printed.items() if item.startswith(f"{name}/"))
+        told = float(rows[f"mass of the {name}"].removesuffix(" g"))
+        assert told == pytest.approx(solid + area_mm2 * 1.6 * 1.85e-3, abs=0.2)
+
+
+def test_a_printed_part_that_is_missing_is_told(damaged: Path) -> None:
+    design = read_design(damaged / "design.json")
+    (damaged / "flange/flange_upper.stl").unlink()
+    with pytest.raises(OutputError):
+        built_rows(damaged, design)
 
 
 def test_files_of_another_design_are_refused(

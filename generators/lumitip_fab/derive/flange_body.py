@@ -46,6 +46,7 @@ def derive_flange_body(
         name="flange",
         carrier=carrier.name,
         coupling=p.coupling,
+        iso=coupling.iso,
         face_mm=coupling.face_mm,
         spigot_mm=coupling.recess_mm - 2 * p.clearance_mm,
         seat_z_mm=-coupling.recess_depth_mm,

@@ -30,6 +30,8 @@ class Flange:
     """Name of the board in it."""
     coupling: str
     """Name of the coupling in the catalogue."""
+    iso: str
+    """The coupling's robot's side by ISO 9409-1, such as `50-4-M6`."""
     face_mm: float
     """Diameter of both parts."""
     spigot_mm: float
