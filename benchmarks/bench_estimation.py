@@ -28,6 +28,8 @@ OFFSET_MM, ANGLE_DEG = 6.0, 34.0
 GROSS_MM, GROSS_DEG = 2.0, 10.0
 NOISE, GAINS = 1.5, 0.06
 PAIRS = 40  # of wrong fingers; each is used for several poses
+DRAWS = 3  # of wrong fingers and poses; the goals hold for each
+STATED = 300  # poses at which stated deviations are held against the misses
 GOALS = {("edge", "clean"): (0.08, 0.3, 1.0), ("cable", "clean"): (0.1, 0.3, 1.0),
          ("edge", "wrong"): (0.45, 1.5, 3.0), ("cable", "wrong"): (0.5, 1.6, 3.0)}  # fmt: skip
 Line = tuple[float, float]
@@ -161,11 +163,12 @@ def accuracy(layout: Layout, count: int, goals: Goals) -> None:
     """The tables, held against their goals."""
     estimator = PoseEstimator(layout)
     methods = {"published method": published(layout), "estimator": estimated(estimator)}
-    twins = {"clean": [Twin(layout)], "wrong": [wrong_twin(layout, n) for n in range(PAIRS)]}
-    for optics, pairs in twins.items():
+    for optics, draw in (("clean", 0), *(("wrong", draw) for draw in range(DRAWS))):
+        wrong = range(1000 * draw, 1000 * draw + PAIRS) if optics == "wrong" else ()
+        pairs = [wrong_twin(layout, seed) for seed in wrong] or [Twin(layout)]
         for kind in ("edge", "cable"):
-            trials = frames(pairs, kind, count, seed=11)
-            print(f"\n{kind}, {optics} optics, {count} poses, simulated")
+            trials = frames(pairs, kind, count, seed=11 + draw)
+            print(f"\n{kind}, {optics} optics, draw {draw}, {count} poses, simulated")
             print(f"  {'':<22}{'rms':>7}{'':>7}{'median':>9}{'':>7}{'worst':>9}{'':>6}  "
                   f"{'where':<18}{'gross':>6}")  # fmt: skip
             print(f"  {'':<22}{'mm':>7}{'deg':>7}{'mm':>9}{'deg':>7}{'mm':>9}{'deg':>6}  "
@@ -179,6 +182,22 @@ def accuracy(layout: Layout, count: int, goals: Goals) -> None:
             for unit, figure, most in zip(("mm rms", "° rms", "% gross"), told, goal, strict=True):
                 goals.at_most(f"{kind}, {optics} optics", figure, most, unit)
             print("  {:<22}{:>7.3f}{:>7.2f}{:>56.1f}".format("goal", *goal))
+            stated(estimator, trials[:: max(count // STATED, 1)], kind)
+
+
+def stated(estimator: PoseEstimator, trials: list[Trial], kind: str) -> None:
+    """Print how many misses lie within the deviations that the estimator states, and what it
+    flags."""
+    told = [estimator(trial.values, kind) for trial in trials]
+    missed = misses(estimated(estimator), trials, kind)
+    gross = (missed[:, 0] > GROSS_MM) | (missed[:, 1] > GROSS_DEG)
+    ratio = missed / np.array([(t.offset_sd_mm, t.angle_sd_deg) for t in told])
+    within = [100.0 * (ratio[~gross] < most).mean(axis=0) for most in (1.0, 2.0)]
+    flagged = np.array(["ambiguous" in t.flags for t in told])
+    print("  within one stated deviation {:.0f} % (offset), {:.0f} % (angle)".format(*within[0])
+          + ", within two {:.0f} %, {:.0f} %".format(*within[1])
+          + f"; {100.0 * flagged.mean():.1f} % ambiguous, of the others "
+          f"{100.0 * gross[~flagged].mean():.1f} % gross")  # fmt: skip
 
 
 def kinds(layout: Layout, count: int) -> None:

@@ -1,6 +1,7 @@
 """`Bank`: what the cells read at some 7,000 poses, compared with a frame in one product."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,19 +13,24 @@ POSES = 7000
 """Poses of a bank, about: steps of 2 degrees and of half a millimetre on the published
 grid, alike at the far cells."""
 _APART_DEG, _APART_MM = 3.0, 0.7
+_TINY = 1e-6
 _LEAST = 0.02  # of a cell's light, spread over all cells: templates below it show nothing
 
 
 @dataclass(frozen=True, eq=False)
 class Bank:
-    """Templates without their mean and of unit length."""
+    """What the cells read of many poses."""
 
     poses: Floats
     """Shape `(n, entries)`, without `light` and `taken`."""
+    shares: NDArray[np.float32]
+    """Of the light that each pose takes, shape `(n, cells)`."""
     templates: NDArray[np.float32]
-    """Shape `(n, cells)`."""
+    """The same without their mean and of unit length."""
     apart: Floats
     """One over how far poses must be apart to be told as different ones, of each entry."""
+    opaque: bool
+    """Whether the object takes all of the light."""
     signed: bool
     """Whether the negative of a template is the same line with the other side covered."""
 
@@ -45,34 +51,70 @@ class Bank:
         names = shape.names[: poses.shape[1]]
         apart = np.array([1.0 / np.radians(_APART_DEG) if n.endswith("_deg") else 1.0 / _APART_MM
                           for n in names])  # fmt: skip
-        signed = shape.kind == "edge"
-        return cls(poses[shown], templates.astype(np.float32), apart, signed)
+        opaque, signed = shape.kind == "cable", shape.kind == "edge"
+        shares, templates = shares[shown].astype(np.float32), templates.astype(np.float32)
+        return cls(poses[shown], shares, templates, apart, opaque, signed)
 
-    def best(self, light: Floats, weights: Floats, starts: int = 1) -> tuple[Floats, float]:
-        """The poses whose templates are most like a frame, the best first, shape `(k, entries)`,
-        and the share of the frame's variance that the best leaves.
+    def best(self, light: Floats, weights: Floats) -> tuple[Floats, float]:
+        """The pose whose template is most like a frame, shape `(entries,)`, and the share of the
+        frame's variance that it leaves.
 
         Args:
             light: shares of the empty grasp, shape `(cells,)`.
             weights: as for `of`.
-            starts: how many poses, no two of them neighbours.
         """
         centred = weights * (light - light @ weights / weights.sum())
         likeness = self.templates @ centred.astype(np.float32)
         score = np.abs(likeness) if self.signed else -likeness
         size = float(centred @ centred) or 1.0
-        left = 1.0 - float(score.max()) ** 2 / size
+        at = int(score.argmax())
+        return self._pose(at, likeness[at] > 0.0), 1.0 - float(score[at]) ** 2 / size
+
+    def closest(self, light: Floats, scale: Floats, starts: int) -> Floats:
+        """The poses that leave least of a frame, the best first and no two of them neighbours,
+        shape `(starts, entries)`.
+
+        Unlike `best` it weighs each cell by how well it is known: three products instead of one.
+
+        Args:
+            light: shares of the empty grasp, shape `(cells,)`.
+            scale: one over the standard deviation of each, shape `(cells,)`.
+            starts: how many poses.
+        """
+        weights = scale**2
+        whole, mean = float(weights.sum()), float(weights @ light)
+        taken, both, squares = (
+            of @ by.astype(np.float32)
+            for of, by in (
+                (self.shares, weights), (self.shares, weights * light), (self._squares, weights)
+            )
+        )  # fmt: skip
+        if self.opaque:  # light beside the object alone is free
+            turned = np.zeros(taken.size, bool)
+            score = (mean - both) ** 2 / np.maximum(whole - 2.0 * taken + squares, _TINY * whole)
+        else:
+            likeness = both - taken * (mean / whole)
+            turned = likeness > 0.0
+            score = likeness**2 / np.maximum(squares - taken**2 / whole, _TINY * whole)
+            if not self.signed:
+                score[turned] = 0.0
         found = []
         for _ in range(starts):
             at = int(score.argmax())
-            pose = self.poses[at].copy()
-            if self.signed and likeness[at] > 0.0:
-                pose[0] += np.pi
-                pose[1] *= -1.0
-            found.append(pose)
-            if len(found) < starts:
-                score[np.abs(self.poses - self.poses[at]) @ self.apart < 1.0] = -np.inf
-        return np.array(found), left
+            found.append(self._pose(at, turned[at]))
+            score[np.abs(self.poses - self.poses[at]) @ self.apart < 1.0] = -np.inf
+        return np.array(found)
+
+    @cached_property
+    def _squares(self) -> NDArray[np.float32]:
+        return self.shares**2
+
+    def _pose(self, at: int, turned: bool) -> Floats:
+        pose: Floats = self.poses[at].copy()
+        if self.signed and turned:
+            pose[0] += np.pi
+            pose[1] *= -1.0
+        return pose
 
 
 def lines(cells: Cells, beyond_mm: float = 1.0) -> Floats:

@@ -6,7 +6,7 @@ in between; the mean of the likelihood lies in the middle, and misses less.
 
 import numpy as np
 
-from lumitip.estimation.fit import Frame
+from lumitip.estimation.fit import Fit
 from lumitip.estimation.shapes import Shape
 from lumitip.grid import Floats
 
@@ -16,20 +16,20 @@ _POINTS = 13
 _MOST = np.array([np.radians(5.0), 1.2])  # rad, mm
 
 
-def likely(shape: Shape, pose: Floats, deviations: Floats, frame: Frame) -> Floats:
-    """The pose with angle and offset of the likelihood's mean; light and what is taken stay.
+def likely(shape: Shape, found: Fit, deviations: Floats) -> Floats:
+    """The pose with angle and offset of the likelihood's mean; all else stays.
 
     Args:
         shape: an edge.
-        pose: the best fit.
+        found: the best fit.
         deviations: of its angle (rad) and offset (mm).
-        frame: what was read.
     """
+    frame, pose = found.frame, found.pose
     reach = np.minimum(3.0 * deviations, _MOST)
     line = np.linspace(-1.0, 1.0, _POINTS)
     steps = np.stack(np.meshgrid(line, line), axis=-1).reshape(-1, 2) * reach
     poses = pose[:2] + steps
-    miss = (frame.light - pose[-2] + pose[-1] * shape.shares(poses)) * frame.scale
+    miss = (frame.light - pose[-2] + pose[-1] * shape.shares(poses, pose[2:-2])) * frame.scale
     miss[frame.full & (miss < 0.0)] = 0.0
     size = np.minimum(np.abs(miss), frame.huber)
     losses = (size * (2.0 * np.abs(miss) - size)).sum(axis=1)

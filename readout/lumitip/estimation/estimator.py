@@ -8,13 +8,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lumitip.errors import LumitipError
-from lumitip.estimation.bank import Bank, corners, lines
 from lumitip.estimation.blur import ANGLE_SD_DEG, OFFSET_SD_MM, likely
 from lumitip.estimation.estimate import KINDS, Estimate, without_contact
-from lumitip.estimation.fit import ROUNDS, Fit, Frame, fit
-from lumitip.estimation.lookup import Lookup
+from lumitip.estimation.fit import Fit, Frame, drifting
 from lumitip.estimation.report import MISFIT_COUNTS, covariance, report, rms_counts
-from lumitip.estimation.shapes import Cable, Cells, Corner, Edge, Shape
+from lumitip.estimation.search import ALPHA_SD, GAP_SD_MM, Search, doubtful
 from lumitip.grid import Floats
 from lumitip.layout import Layout, Optics
 from lumitip.processing.processor import COVERED_BELOW, MIN_CONTRAST, ValuesError
@@ -29,10 +27,6 @@ GAIN_ERROR = 0.01
 """Share by which a cell's light is expected to differ from its empty grasp."""
 HUBER = 3.0
 """Standard deviations beyond which the loss grows linearly."""
-_DOUBT = 1.3  # loss for each cell beyond which other starts are tried
-_STARTS, _GLANCE = 8, 6  # how many, and the rounds of each
-_LOOSE = 0.06  # share of a cell's light that is then taken to be uncertain
-_RIVAL, _ELSEWHERE = 1.35, 2.0  # losses that are nearly alike; poses that are not
 _HOPELESS = 2.5  # times what the best bank leaves of a frame: no fit makes up for more
 _BLURRED = np.array([np.radians(ANGLE_SD_DEG), OFFSET_SD_MM])
 _WORSE = 1.3  # times the misfit of the last search: then a tracker searches anew
@@ -60,6 +54,8 @@ class PoseEstimator:
         noise: float = NOISE,
         gain_error: float = GAIN_ERROR,
         huber: float = HUBER,
+        gap_sd_mm: float = GAP_SD_MM,
+        alpha_sd: float = ALPHA_SD,
     ) -> None:
         """Prepare tables for the optics of a design.
 
@@ -74,26 +70,26 @@ class PoseEstimator:
             noise: standard deviation of a value (counts of 255).
             gain_error: share by which the light of a cell may differ from its empty grasp.
             huber: standard deviations beyond which the loss grows linearly.
+            gap_sd_mm: standard deviation of the gap, 0 if it is known (mm).
+            alpha_sd: standard deviation of the scattered share, 0 if it is known.
 
         Raises:
-            EstimationError: if gains are not those of this layout.
+            EstimationError: if gains are not those of this layout, or a deviation is below 0.
         """
+        if not min(gap_sd_mm, alpha_sd) >= 0.0:
+            raise EstimationError(
+                f"gap_sd_mm {gap_sd_mm}, alpha_sd {alpha_sd} given: not below 0, 0 if it is known"
+            )
         self.layout = layout
         self.model = _model(layout, optics, gap_mm)
-        self._twin = Twin(layout, self.model)
+        twin = Twin(layout, self.model)
+        self._search = Search(twin, diameter_mm, gap_sd_mm, alpha_sd)
         self._gains = np.ones(len(layout)) if gains is None else _gains(layout, gains)
         self._noise, self._gain_error, self._huber = noise, gain_error, huber
         self._tracking = tracking
-        self._cells = Cells(layout.x_mm, layout.y_mm)
-        self._diameter_mm = diameter_mm
-        self._lines = lines(self._cells)
-        self._reach_mm = float(self._lines[:, 1].max())
-        self._edge_table = Lookup(self._twin.edge_table())
-        self._shapes: dict[str, Shape] = {}
-        self._banks: dict[str, Bank] = {}
         self._last: tuple[str, Floats, float] | None = None
-        steps = np.arange(0.0, FULL + 1.0)[:, None] * (self._twin.empty / FULL)
-        self._light = drive_of_values(steps, self.model) / self._twin.drive
+        steps = np.arange(0.0, FULL + 1.0)[:, None] * (twin.empty / FULL)
+        self._light = drive_of_values(steps, self.model) / twin.drive
         self._rise = np.gradient(self._light, axis=0)
 
     def __call__(self, values: ArrayLike, kind: str | None = None) -> Estimate:
@@ -124,12 +120,13 @@ class PoseEstimator:
             return without_contact("covered" if middle < COVERED_BELOW else "none")
         frame = self._frame(given, usable)
         name, found = self._found(frame, kind)
-        shape = self._shape(name)
+        shape = self._search.shape(name)
+        free = drifting(shape, found, self._search.drifts)
         if name == "edge":
-            deviations = np.sqrt(np.abs(np.diag(covariance(found, frame)))[:2])
+            deviations = np.sqrt(np.abs(np.diag(covariance(free)))[:2])
             if np.any(deviations > _BLURRED):
-                found = replace(found, pose=likely(shape, found.pose, deviations, frame))
-        estimate = report(shape, found, frame, self._reach_mm)
+                free = replace(free, pose=likely(shape, free, deviations))
+        estimate = report(shape, free, self._search.reach_mm)
         self._remember(name, found, estimate)
         return estimate
 
@@ -140,8 +137,8 @@ class PoseEstimator:
         misfit = self._last[2] if self._last else estimate.rms_counts
         self._last = (name, found.pose, misfit) if fine else None
 
-    def fitted(self, values: ArrayLike, kind: str) -> tuple[Frame, Fit]:
-        """The frame as the fit sees it, and where the fit of a kind ended.
+    def fitted(self, values: ArrayLike, kind: str) -> Fit:
+        """Where the fit of a kind ended with the expected optics, whatever the frame says of them.
 
         Args:
             values: of one frame, finite, shape `(cells,)`.
@@ -149,7 +146,7 @@ class PoseEstimator:
         """
         given: Floats = np.asarray(values, dtype=np.float64)
         frame = self._frame(given, np.isfinite(given))
-        return frame, self._searched(kind, self._start(kind, frame)[0], frame)
+        return self._search.expected(kind, self._search.best(kind, frame), frame)
 
     def with_gains(self, gains: ArrayLike) -> "PoseEstimator":
         """The same estimator with other gains of the cells; tables are shared."""
@@ -177,85 +174,33 @@ class PoseEstimator:
     def _found(self, frame: Frame, kind: str | None) -> tuple[str, Fit]:
         if self._last is not None and kind in (None, self._last[0]):
             name, pose, misfit = self._last
-            found = fit(self._shape(name), pose, frame)
-            if rms_counts(found, frame) < max(0.5 * MISFIT_COUNTS, _WORSE * misfit):
+            found = self._search.near(name, pose, frame)
+            if rms_counts(found) < max(0.5 * MISFIT_COUNTS, _WORSE * misfit):
                 return name, found
+            self._last = None
+            if kind is not None:
+                return kind, self._search.again(kind, found, frame)
         self._last = None
-        if kind is not None:
-            return kind, self._searched(kind, self._start(kind, frame)[0], frame)
-        starts = {"edge": self._start("edge", frame)}
-        plain = self._from("edge", starts["edge"][0][0], frame)
-        if not self._doubtful(plain, frame):
+        return (kind, self._search.best(kind, frame)) if kind else self._decided(frame)
+
+    def _decided(self, frame: Frame) -> tuple[str, Fit]:
+        """The kind that explains a frame, an edge if it does, and its fit."""
+        search = self._search
+        starts = {"edge": search.start("edge", frame)}
+        plain = search.plain("edge", starts["edge"][0], frame)
+        if not doubtful(plain):
             return "edge", plain
-        starts |= {name: self._start(name, frame) for name in KINDS[1:]}
+        starts |= {name: search.start(name, frame) for name in KINDS[1:]}
         most = _HOPELESS * min(left for _, left in starts.values())
         fits = {}
-        for name, (poses, left) in sorted(starts.items(), key=lambda item: item[1][1]):
+        for name, (pose, left) in sorted(starts.items(), key=lambda item: item[1][1]):
             if left <= most:
-                fits[name] = self._searched(name, poses, frame)
-                if name != "corner" and not self._doubtful(fits[name], frame):
-                    break
-        name = min(fits, key=lambda n: _SIMPLER[n] * (fits[n].cost + 3.0 * fits[n].pose.size))
+                fits[name] = search.best(name, frame, pose)
+                if name != "corner" and not doubtful(fits[name]):
+                    return name, fits[name]
+        loose = {name: search.loosely(name, found, frame) for name, found in fits.items()}
+        name = min(fits, key=lambda n: _SIMPLER[n] * (loose[n].cost + 3.0 * fits[n].pose.size))
         return name, fits[name]
-
-    def _doubtful(self, found: Fit, frame: Frame) -> bool:
-        return found.cost > _DOUBT * int(np.count_nonzero(frame.scale))
-
-    def _start(self, kind: str, frame: Frame, starts: int = 1) -> tuple[Floats, float]:
-        weights = (frame.scale > 0.0).astype(np.float64)
-        return self._bank(kind).best(frame.light, weights, starts)
-
-    def _searched(self, kind: str, starts: Floats, frame: Frame) -> Fit:
-        best = self._from(kind, starts[0], frame)
-        if not self._doubtful(best, frame):
-            return best
-        # Optics or cells are not as expected: which start is best is judged with that allowed for.
-        loose = frame.looser(_LOOSE)
-        starts, _ = self._start(kind, frame, _STARTS)
-        fits = sorted(
-            (self._from(kind, start, loose, _GLANCE) for start in starts), key=lambda f: f.cost
-        )
-        first, apart = fits[0], self._bank(kind).apart
-        near = [f for f in fits[1:] if f.cost < _RIVAL * first.cost]
-        rivals = [f for f in near if _between(kind, f.pose, first.pose) @ apart > _ELSEWHERE]
-        return replace(fit(self._shape(kind), first.pose, frame), ambiguous=bool(rivals))
-
-    def _from(self, kind: str, pose: Floats, frame: Frame, rounds: int = ROUNDS) -> Fit:
-        usable = frame.light[frame.scale > 0.0]
-        light = taken = float(usable.max())
-        if kind == "cable":
-            pose = np.append(pose, self._diameter_mm)
-        else:
-            taken -= float(usable.min())
-        return fit(self._shape(kind), np.append(pose, [light, taken]), frame, rounds)
-
-    def _shape(self, kind: str) -> Shape:
-        if kind not in self._shapes:
-            if kind == "edge":
-                self._shapes[kind] = Edge(self._cells, self._edge_table)
-            elif kind == "corner":
-                self._shapes[kind] = Corner(self._cells, self._edge_table)
-            else:
-                table = Lookup(self._twin.cable_table(self._diameter_mm))
-                self._shapes[kind] = Cable(self._cells, table, self._edge_table, self._diameter_mm)
-        return self._shapes[kind]
-
-    def _bank(self, kind: str) -> Bank:
-        if kind not in self._banks:
-            poses = corners(self._cells) if kind == "corner" else self._lines
-            self._banks[kind] = Bank.of(self._shape(kind), poses, np.ones(len(self.layout)))
-        return self._banks[kind]
-
-
-def _between(kind: str, one: Floats, two: Floats) -> Floats:
-    """How far two poses are from each other in each entry, without light and what is taken."""
-    away = (one - two)[: 4 if kind == "corner" else 2]
-    turn = np.pi if kind == "cable" else 2.0 * np.pi  # an edge turned round covers the other side
-    turns = np.round(away[0] / turn)
-    away[0] -= turns * turn
-    if kind == "cable" and turns % 2.0:
-        away[1] = one[1] + two[1]  # the same line the other way round
-    return np.abs(away)
 
 
 def _model(layout: Layout, optics: Optics | Model | None, gap_mm: float) -> Model:

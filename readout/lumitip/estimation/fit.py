@@ -10,6 +10,7 @@ from lumitip.grid import Floats
 
 ROUNDS = 12
 _FLOOR = 1e-6
+_WILD = 36.0  # loss of one cell
 _SETTLED = 1e-3  # loss that a last step may still promise
 
 
@@ -38,8 +39,11 @@ class Frame:
 class Fit:
     """Where the fit ended."""
 
+    frame: Frame
+    """What was fitted."""
     pose: Floats
-    """With `light` and `taken` at its end."""
+    """With `light` and `taken` at its end, and drifts of the optics before them if these were
+    free."""
     cost: float
     """Sum of Huber losses, in standard deviations squared."""
     normal: Floats
@@ -56,25 +60,21 @@ def fit(shape: Shape, start: Floats, frame: Frame, rounds: int = ROUNDS) -> Fit:
 
     Args:
         shape: the object.
-        start: pose with `light` and `taken` at its end.
+        start: pose with `light` and `taken` at its end; the optics are free if it has drifts.
         frame: what was read.
         rounds: most steps.
     """
-    means, deviations = shape.priors()
-    # Light beside the object is that of the empty grasp but for drift; sheets take what they will.
-    known = np.concatenate([means, [1.0, 0.0]])
-    strength = 1.0 / np.concatenate([deviations, [0.1, np.inf]]) ** 2
-    tied = 400.0 if shape.kind == "cable" else 1.0  # cables are opaque, sheets need not be
+    prior = _Prior.of(shape, len(start))
     pose = np.array(start, dtype=np.float64)
     damping, settled = 1e-3, False
-    now = _Point(shape, pose, frame, known, strength, tied)
+    now = _Point(shape, pose, frame, prior)
     for _ in range(rounds):
         matrix = now.normal.copy()
         # The floor keeps the matrix regular where a line has left every cell's sight.
         matrix.flat[:: pose.size + 1] += damping * now.normal.diagonal() + _FLOOR
         step = np.linalg.solve(matrix, now.slope)
         expected = float(step @ now.slope)
-        then = _Point(shape, pose + step, frame, known, strength, tied)
+        then = _Point(shape, pose + step, frame, prior)
         if then.cost <= now.cost:
             gained = now.cost - then.cost
             pose, now, damping = pose + step, then, damping * 0.1
@@ -86,7 +86,48 @@ def fit(shape: Shape, start: Floats, frame: Frame, rounds: int = ROUNDS) -> Fit:
                 settled = True
                 break
             damping = max(damping, 1e-4) * 20.0
-    return Fit(pose, now.cost, now.normal, now.model, settled)
+    return Fit(frame, pose, now.cost, now.normal, now.model, settled)
+
+
+def bounded(found: Fit) -> float:
+    """The loss of a fit with no cell counted for more than `_WILD`, by which fits compare: one
+    wild cell must not decide between poses."""
+    frame = found.frame
+    miss = (frame.light - found.model) * frame.scale
+    size = np.where(frame.full, np.maximum(miss, 0.0), np.abs(miss))
+    within = np.minimum(size, frame.huber)
+    return found.cost - float(np.maximum(within * (2.0 * size - within) - _WILD, 0.0).sum())
+
+
+def drifting(shape: Shape, found: Fit, drifts: int) -> Fit:
+    """The same fit with optics that could be off: its matrix has them, nothing has moved."""
+    names = len(shape.names)
+    if found.pose.size > names + 2 or not drifts:
+        return found
+    pose = np.concatenate([found.pose[:names], np.zeros(drifts), found.pose[names:]])
+    at = _Point(shape, pose, found.frame, _Prior.of(shape, pose.size))
+    return replace(found, pose=pose, normal=at.normal)
+
+
+@dataclass(frozen=True, eq=False)
+class _Prior:
+    """What is known of a pose beforehand."""
+
+    known: Floats
+    strength: Floats
+    tied: float
+    """Strength of the tie of what is taken to the light beside it."""
+
+    @classmethod
+    def of(cls, shape: Shape, size: int) -> "_Prior":
+        means, deviations = shape.priors()
+        drifts = size - means.size - 2
+        # Light beside the object is that of the empty grasp but for drift; sheets take what they
+        # will.
+        known = np.concatenate([means, np.zeros(drifts), [1.0, 0.0]])
+        strength = np.concatenate([deviations, np.ones(drifts), [0.1, np.inf]]) ** -2.0
+        # Cables are opaque, sheets need not be.
+        return cls(known, strength, 400.0 if shape.kind == "cable" else 1.0)
 
 
 class _Point:
@@ -94,9 +135,8 @@ class _Point:
 
     __slots__ = ("cost", "model", "normal", "slope")
 
-    def __init__(
-        self, shape: Shape, pose: Floats, frame: Frame, known: Floats, strength: Floats, tied: float
-    ) -> None:
+    def __init__(self, shape: Shape, pose: Floats, frame: Frame, prior: _Prior) -> None:
+        strength, tied = prior.strength, prior.tied
         share, slopes = shape.slopes(pose)
         taken = pose[-1]
         self.model = pose[-2] - taken * share
@@ -104,13 +144,14 @@ class _Point:
         miss[frame.full & (miss < 0.0)] = 0.0
         size = np.abs(miss)
         weight = frame.huber / np.maximum(size, frame.huber)
+        weight[frame.full & (size == 0.0)] = 0.0  # would read the same a little off
         by_pose = np.empty((pose.size, share.size))
         np.multiply(slopes, -taken, out=by_pose[:-2])
         by_pose[-2] = 1.0
         np.negative(share, out=by_pose[-1])
         by_pose *= frame.scale
         weighted = by_pose * weight
-        away, opaque = known - pose, pose[-2] - taken
+        away, opaque = prior.known - pose, pose[-2] - taken
         self.normal = weighted @ by_pose.T
         self.normal.flat[:: pose.size + 1] += strength
         self.slope = weighted @ miss + strength * away

@@ -90,10 +90,10 @@ def _gains(
     estimator = PoseEstimator(layout, model)
     for _ in range(_ROUNDS):
         fits = [estimator.fitted(row, kind) for row, kind in zip(rows, kinds, strict=True)]
-        light = np.stack([frame.light for frame, _ in fits]) * gains
-        shares = np.stack([found.model for _, found in fits])
-        full = np.stack([frame.full for frame, _ in fits])
-        left = float(np.median([rms_counts(found, frame) for frame, found in fits]))
+        light = np.stack([found.frame.light for found in fits]) * gains
+        shares = np.stack([found.model for found in fits])
+        full = np.stack([found.frame.full for found in fits])
+        left = float(np.median([rms_counts(found) for found in fits]))
         # A full cell tells nothing: it reads the same however bright it is.
         weights = ((shares > _LEAST_LIGHT) & ~full) * np.minimum(shares, 1.0) ** 2
         ratio = light / np.maximum(shares, _LEAST_LIGHT)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from lumitip.estimation.estimate import Estimate, half_turn
-from lumitip.estimation.fit import Fit, Frame
+from lumitip.estimation.fit import Fit
 from lumitip.estimation.shapes import Shape
 from lumitip.grid import Floats
 
@@ -13,31 +13,28 @@ MISFIT_COUNTS = 16.0
 """Root mean square misfit above which the shape does not explain the frame: real frames have 10
 to 16 counts of structure that the optical model lacks."""
 _WEAK_MM, _WEAK_DEG = 1.0, 6.0
-_STRUCTURE = 2.5
 
 
-def report(shape: Shape, found: Fit, frame: Frame, reach_mm: float) -> Estimate:
+def report(shape: Shape, found: Fit, reach_mm: float) -> Estimate:
     """The estimate of a fit.
 
     Args:
         shape: what was fitted.
         found: where the fit ended.
-        frame: what it was fitted to.
         reach_mm: distance from the origin beyond which no cell sees a line (mm).
     """
     pose, corner = found.pose, shape.kind == "corner"
     (angle, offset_mm), by_pose, names = _line(pose, shape.names)
     offset_mm, angle_deg, turned = half_turn(offset_mm, math.degrees(angle))
-    spread = by_pose @ covariance(found, frame) @ by_pose.T
+    spread = by_pose @ covariance(found) @ by_pose.T
     seen = dict(zip(names, np.sqrt(np.abs(np.diag(spread))), strict=True))
     weak = not (seen["offset_mm"] < _WEAK_MM and seen["angle_deg"] < _WEAK_DEG)
-    spread *= _alike(found, frame)
     if turned:
         at = names.index("offset_mm")
         spread[at] *= -1.0
         spread[:, at] *= -1.0
     light, taken = float(pose[-2]), float(pose[-1])
-    misfit = rms_counts(found, frame)
+    misfit = rms_counts(found)
     estimate = Estimate(
         kind=shape.kind,
         offset_mm=offset_mm,
@@ -46,7 +43,7 @@ def report(shape: Shape, found: Fit, frame: Frame, reach_mm: float) -> Estimate:
         transmittance=min(max(1.0 - taken / light, 0.0), 1.0) if light > 0.0 else math.nan,
         gain=light,
         covariance=spread,
-        quality=_quality(found, frame),
+        quality=_quality(found),
         rms_counts=misfit,
         dark_side="" if shape.kind == "cable" else "left" if turned else "right",
         vertex_mm=(float(pose[1]), float(pose[2])) if corner else None,
@@ -65,15 +62,17 @@ def report(shape: Shape, found: Fit, frame: Frame, reach_mm: float) -> Estimate:
     return estimate
 
 
-def rms_counts(found: Fit, frame: Frame) -> float:
+def rms_counts(found: Fit) -> float:
     """Root mean square misfit of the cells that count (counts of 255)."""
+    frame = found.frame
     miss = (frame.light - found.model) * frame.counts
     miss[frame.full & (miss < 0.0)] = 0.0
     usable = frame.scale > 0.0
     return math.sqrt(float(miss[usable] @ miss[usable]) / np.count_nonzero(usable))
 
 
-def _quality(found: Fit, frame: Frame) -> float:
+def _quality(found: Fit) -> float:
+    frame = found.frame
     usable = frame.scale > 0.0
     seen = frame.light[usable]
     model = np.where(frame.full, np.minimum(found.model, frame.light), found.model)[usable]
@@ -81,20 +80,12 @@ def _quality(found: Fit, frame: Frame) -> float:
     return 1.0 - float(np.sum((seen - model) ** 2)) / spread if spread else 0.0
 
 
-def covariance(found: Fit, frame: Frame) -> Floats:
+def covariance(found: Fit) -> Floats:
     """The inverse of the normal matrix, larger by what the misfit is larger than expected."""
-    spare = max(int(np.count_nonzero(frame.scale)) - found.pose.size, 1)
+    spare = max(int(np.count_nonzero(found.frame.scale)) - found.pose.size, 1)
     # What no cell sees stays unknown, by a metre or a turn, and not by infinity.
     regular = found.normal + 1e-6 * np.eye(found.pose.size)
     return np.asarray(np.linalg.inv(regular), dtype=np.float64) * max(found.cost / spare, 1.0)
-
-
-def _alike(found: Fit, frame: Frame) -> float:
-    """By how much larger variances are for what the model lacks: that is alike in all cells along
-    a line and does not average out as noise does. The factor makes about
-    two of three misses lie within one deviation also with wrong optics."""
-    excess = max(found.cost / np.count_nonzero(frame.scale) - 1.0, 0.0)
-    return 1.0 + _STRUCTURE * min(excess, 1.0)
 
 
 def _line(
@@ -104,7 +95,7 @@ def _line(
     the pose, and its names."""
     size = pose.size
     if len(names) < 4:
-        by_pose = np.eye(size)
+        by_pose = np.eye(size)[[*range(len(names)), -2, -1]]
         by_pose[0, 0] = math.degrees(1.0)
         return (float(pose[0]), float(pose[1])), by_pose, (*names, "light", "taken")
     angle, x_mm, y_mm, opening = (float(v) for v in pose[:4])

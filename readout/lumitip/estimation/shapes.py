@@ -1,9 +1,10 @@
 """What each kind of object does to the cells: shares of light and their derivatives by the pose.
 
 A pose is a vector that ends with `light` (beside the object, 1 is the empty grasp) and `taken`
-(of that, by the object): a cell gets `light − taken · share`. An edge covers what is right of its
-line. A corner is the product of its two edges, which is exact where a cell's light is spread
-alike in both directions and an approximation elsewhere.
+(of that, by the object): a cell gets `light − taken · share`. Between what the object is and these
+two a pose may tell how far the optics are off (`Lookup`); without, they are as expected. An edge
+covers what is right of its line. A corner is the product of its two edges, which is exact where a
+cell's light is spread alike in both directions and an approximation elsewhere.
 """
 
 from dataclasses import dataclass
@@ -15,6 +16,7 @@ from lumitip.estimation.lookup import Lookup
 from lumitip.grid import Floats
 
 _HALF_TURN = np.pi
+_EXPECTED = np.empty(0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,21 +43,23 @@ class Shape(Protocol):
     """A kind of object."""
 
     names: tuple[str, ...]
-    """Entries of a pose before `light` and `taken`; angles in rad."""
+    """Entries of a pose before drifts, `light` and `taken`; angles in rad."""
     kind: str
 
-    def shares(self, poses: Floats) -> Floats:
-        """Shares of light taken at many poses, shape `(n, cells)`."""
+    def shares(self, poses: Floats, drift: Floats = _EXPECTED) -> Floats:
+        """Shares of light taken at many poses `(n, entries)`, shape `(n, cells)`; the optics are
+        off by a drift, shape `(drifts,)`."""
 
     def slopes(self, pose: Floats) -> tuple[Floats, Floats]:
-        """Share at one pose, shape `(cells,)`, and its derivatives, shape `(entries, cells)`."""
+        """Share at one pose, shape `(cells,)`, and its derivatives by all but `light` and
+        `taken`, shape `(entries, cells)`."""
 
     def priors(self) -> tuple[Floats, Floats]:
-        """What is known beforehand of each entry of a pose: means and standard deviations."""
+        """What is known beforehand of each of `names`: means and standard deviations."""
 
 
 class Edge:
-    """A half-plane; pose (angle, offset_mm, light, taken)."""
+    """A half-plane; pose (angle, offset_mm, drifts, light, taken)."""
 
     kind = "edge"
     names: tuple[str, ...] = ("angle_deg", "offset_mm")
@@ -63,15 +67,18 @@ class Edge:
     def __init__(self, cells: Cells, table: Lookup) -> None:
         self._cells, self._table = cells, table
 
-    def shares(self, poses: Floats) -> Floats:
+    def shares(self, poses: Floats, drift: Floats = _EXPECTED) -> Floats:
         """See `Shape`."""
-        return self._table.shares(poses[:, 0], self._cells.beside(poses[:, 0], poses[:, 1]))
+        left = self._cells.beside(poses[:, 0], poses[:, 1])
+        return self._table.shares(poses[:, 0], left, drift)
 
     def slopes(self, pose: Floats) -> tuple[Floats, Floats]:
         """See `Shape`."""
         angle = pose[0]
-        share, by_left, by_angle = self._table(angle, self._cells.beside(angle, pose[1]))
-        return share, np.stack([by_angle - by_left * self._cells.ahead(angle), -by_left])
+        left = self._cells.beside(angle, pose[1])
+        share, by_left, by_angle, by_drift = self._table(angle, left, pose[2:-2])
+        turning = by_angle - by_left * self._cells.ahead(angle)
+        return share, np.array([turning, -by_left, *by_drift])
 
     def priors(self) -> tuple[Floats, Floats]:
         """See `Shape`."""
@@ -79,7 +86,7 @@ class Edge:
 
 
 class Cable:
-    """A round cable; pose (angle, offset_mm, width_mm, light, taken).
+    """A round cable; pose (angle, offset_mm, width_mm, drifts, light, taken).
 
     Its table is of the diameter that is expected; other widths differ from it by strips at its
     two borders.
@@ -94,24 +101,27 @@ class Cable:
         self._sides = np.array([1.0, -1.0, 1.0, -1.0])[:, None]
         self._signs = np.array([1.0, -1.0, -1.0, 1.0])[:, None]
 
-    def shares(self, poses: Floats) -> Floats:
+    def shares(self, poses: Floats, drift: Floats = _EXPECTED) -> Floats:
         """See `Shape`; for poses of the diameter that is expected."""
-        return self._table.shares(poses[:, 0], self._cells.beside(poses[:, 0], poses[:, 1]))
+        left = self._cells.beside(poses[:, 0], poses[:, 1])
+        return self._table.shares(poses[:, 0], left, drift)
 
     def slopes(self, pose: Floats) -> tuple[Floats, Floats]:
         """See `Shape`."""
         angle = pose[0]
         left = self._cells.beside(angle, pose[1])
-        share, by_left, by_angle = self._table(angle, left)
+        drift = pose[3:-2]
+        share, by_left, by_angle, by_drift = self._table(angle, left, drift)
         half = np.array([pose[2], pose[2], self._diameter_mm, self._diameter_mm])[:, None] / 2.0
-        strips = self._edge(np.full(4, angle), left - self._sides * half)
-        more, more_by_left, more_by_angle = (
-            np.add.reduce(self._signs * s, axis=0) for s in strips
+        strips = self._edge(np.full(4, angle), left - self._sides * half, drift)
+        more, more_by_left, more_by_angle, more_by_drift = (
+            np.add.reduce(self._signs * s, axis=-2) for s in strips
         )  # fmt: skip
         by_left, by_angle = by_left + more_by_left, by_angle + more_by_angle
         by_width = -0.5 * (strips[1][0] + strips[1][1])
         ahead = self._cells.ahead(angle)
-        return share + more, np.stack([by_angle - by_left * ahead, -by_left, by_width])
+        turning = by_angle - by_left * ahead
+        return share + more, np.array([turning, -by_left, by_width, *(by_drift + more_by_drift)])
 
     def priors(self) -> tuple[Floats, Floats]:
         """See `Shape`: the diameter within a tenth, more where the frame shows it."""
@@ -121,8 +131,8 @@ class Cable:
 
 
 class Corner:
-    """A corner of a sheet; pose (angle, x_mm, y_mm, opening, light, taken), the angle from the
-    vertex into the sheet."""
+    """A corner of a sheet; pose (angle, x_mm, y_mm, opening, drifts, light, taken), the angle from
+    the vertex into the sheet."""
 
     kind = "corner"
     names: tuple[str, ...] = ("angle_deg", "x_mm", "y_mm", "opening_deg")
@@ -130,11 +140,11 @@ class Corner:
     def __init__(self, cells: Cells, table: Lookup) -> None:
         self._cells, self._table = cells, table
 
-    def shares(self, poses: Floats) -> Floats:
+    def shares(self, poses: Floats, drift: Floats = _EXPECTED) -> Floats:
         """See `Shape`."""
         angles, offsets = self.borders(poses.T)
         one, two = (
-            self._table.shares(a, self._cells.beside(a, o))
+            self._table.shares(a, self._cells.beside(a, o), drift)
             for a, o in zip(angles, offsets, strict=True)
         )
         return one * two
@@ -142,7 +152,8 @@ class Corner:
     def slopes(self, pose: Floats) -> tuple[Floats, Floats]:
         """See `Shape`."""
         angles, offsets = self.borders(pose)
-        shares, by_left, by_angle = self._table(angles, self._cells.beside(angles, offsets))
+        left = self._cells.beside(angles, offsets)
+        shares, by_left, by_angle, by_drift = self._table(angles, left, pose[4:-2])
         share = shares[0] * shares[1]
         cos, sin = np.cos(angles)[:, None], np.sin(angles)[:, None]
         turning = by_angle - by_left * (
@@ -151,11 +162,12 @@ class Corner:
         one, two = shares[1], shares[0]
         first, second = one * by_left[0], two * by_left[1]
         by_first, by_second = one * turning[0], two * turning[1]
-        return share, np.stack([
+        return share, np.array([
             by_first + by_second,
             first * sin[0] + second * sin[1],
             -first * cos[0] - second * cos[1],
             0.5 * (by_first - by_second),
+            *(one * by_drift[:, 0] + two * by_drift[:, 1]),
         ])  # fmt: skip
 
     def borders(self, pose: Floats) -> tuple[Floats, Floats]:

@@ -83,12 +83,12 @@ def test_the_kind_is_decided(
 def test_a_cable_that_may_be_its_mirror_image_is_told(cells: Layout) -> None:
     """Beside a row of cells at 30 degrees; a line elsewhere explains the frame nearly as well.
 
-    Of frames from wrong fingers those that are flagged are few, and hold most gross errors.
+    Of frames from wrong fingers few are flagged, and of the others hardly one is a gross error.
     """
     missed, flagged = _cables_of_wrong_fingers(cells)
+    assert missed.mean() < 0.03
     assert 0.0 < flagged.mean() < 0.25
-    assert missed[~flagged].mean() < 0.02
-    assert missed[flagged].mean() > missed[~flagged].mean()
+    assert missed[~flagged].mean() < 0.01
 
 
 def test_a_clean_frame_is_not_ambiguous(cells: Layout) -> None:

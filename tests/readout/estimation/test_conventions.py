@@ -94,6 +94,8 @@ def test_what_cannot_be_asked_for_is_refused(estimator: PoseEstimator, cells: La
         estimator(np.zeros(31))
     with pytest.raises(EstimationError, match="allowed are edge, cable, corner"):
         estimator(np.zeros(32), "disc")
+    with pytest.raises(EstimationError, match="not below 0, 0 if it is known"):
+        PoseEstimator(cells, gap_sd_mm=-0.1)
     with pytest.raises(EstimationError, match="32 numbers above 0"):
         PoseEstimator(cells, gains=np.ones(31))
     with pytest.raises(EstimationError, match="move an object"):
@@ -130,6 +132,21 @@ def test_the_published_frame(cells: Layout) -> None:
         assert told.kind == "edge" and told.dark_side == "left"
         assert abs(told.offset_mm) < 0.6 and 1.0 < told.angle_deg < 7.0
         assert 5.0 < told.rms_counts < 16.0 and told.transmittance < 0.1
+
+
+def test_stated_errors_hold_what_is_not_known_of_the_gap(cells: Layout, twin: Twin) -> None:
+    """An edge whose offset the frame tells by its shadow alone: a known gap is worth something."""
+    values = twin.values(HalfPlane(offset_mm=2.0, angle_deg=25.0))
+    known, told = (PoseEstimator(cells, gap_sd_mm=g, alpha_sd=0.0) for g in (0.0, 0.4))
+    for name in ("offset_sd_mm", "angle_sd_deg"):
+        assert getattr(known(values, "edge"), name) < getattr(told(values, "edge"), name)
+
+
+def test_the_gap_that_is_told_hardly_matters_on_the_published_frame(cells: Layout) -> None:
+    values = np.array(CLOTH_EDGE, dtype=float)
+    near, far = (PoseEstimator(cells, gap_mm=gap_mm)(values, "edge") for gap_mm in (2.0, 5.0))
+    assert abs(near.angle_deg - far.angle_deg) < 1.5 * np.hypot(near.angle_sd_deg, far.angle_sd_deg)
+    assert abs(near.offset_mm - far.offset_mm) < 1.5 * np.hypot(near.offset_sd_mm, far.offset_sd_mm)
 
 
 def test_both_methods_agree_on_the_published_frame(cells: Layout) -> None:
