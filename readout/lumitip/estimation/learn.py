@@ -78,7 +78,9 @@ def learn(
         _gains(layout, base.changed(gap_mm=gap), rows, kinds)[1] for gap in gaps_mm
     ])  # fmt: skip
     gains, left = _gains(layout, base.changed(gap_mm=gap_mm), rows, kinds)
-    rms_before = float(np.median([estimate.rms_counts for _, estimate in told]))
+    rms_before = float(np.median([
+        rms_counts(before.fitted(row, kind)) for row, kind in zip(rows, kinds, strict=True)
+    ]))  # fmt: skip
     return Learned(gains, gap_mm, left, rms_before, len(rows))
 
 
