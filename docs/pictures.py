@@ -33,8 +33,13 @@ PLASTIC: Vector = (0.56, 0.66, 0.80)
 MOULD: Vector = (0.84, 0.76, 0.62)
 
 
-def main(out: Path) -> None:
-    """Draw everything that the README shows."""
+def main(out: Path, integrated: Path) -> None:
+    """Draw everything that the README shows.
+
+    Args:
+        out: outputs of the design to edit.
+        integrated: outputs of the preset whose controller is on the flange's board.
+    """
     IMAGES.mkdir(exist_ok=True)
     shots: tuple[tuple[str, str, Vector, Vector], ...] = (
         ("backing/emitter_backing.stl", "backing_back.png", (0.7, 1, 0.5), PLASTIC),
@@ -60,6 +65,8 @@ def main(out: Path) -> None:
             shutil.copy(board, IMAGES / f"board_{side}_{face}.png")
     for name in ("breakout", "flange"):
         shutil.copy(out / f"boards/{name}/{name}_front.png", IMAGES / f"board_{name}.png")
+    module = integrated / "boards/flange/flange_front.png"
+    shutil.copy(module, IMAGES / "board_flange_module.png")
     shutil.copy(out / "wiring/wiring.svg", IMAGES)
     _pages(pypdfium2.PdfDocument(out / "manual/manual.pdf"), (0, 5, 7))
     draw_glb(out / "assembly/assembly.glb", IMAGES / "assembly.png")
@@ -168,4 +175,4 @@ def _save(
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]))
+    main(Path(sys.argv[1]), Path(sys.argv[2]))

@@ -30,13 +30,19 @@ def part(
     return Component(ref, "", "", kind, footprint, *at, angle_deg, side, tuple(nets.items()))
 
 
-def board(*parts: Component, supply: tuple[str, ...] = ("GND",), width_mm: float = 20) -> Placement:
+def board(
+    *parts: Component,
+    supply: tuple[str, ...] = ("GND",),
+    width_mm: float = 20,
+    keep_outs: tuple[Box, ...] = (),
+) -> Placement:
     """A board of 10 mm by the width with a hole in its middle."""
     nets = sorted({net for p in parts for _, net in p.nets})
     return Placement(
         finger="receiver", name="small", revision="A", design_hash="",
         outline=Box(-width_mm / 2, width_mm / 2, -5, 5), corner_mm=0.5,
-        holes=((0.0, 0.0),), hole_mm=2.0, edge_clearance_mm=0.3, components=parts,
+        holes=((0.0, 0.0),), hole_mm=2.0, keep_outs=keep_outs, edge_clearance_mm=0.3,
+        components=parts,
         nets=tuple(Net(n, "supply" if n in supply else "signal") for n in nets),
         classes=CLASSES, ground="GND", silk=(), texts=(),
     )  # fmt: skip

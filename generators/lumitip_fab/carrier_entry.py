@@ -108,6 +108,23 @@ class Regulator(Leaded):
         return self
 
 
+class LinearRegulator(Leaded):
+    """A linear regulator with a fixed output: GND, OUT and IN."""
+
+    output_v: float = Field(gt=0, le=24)
+    """Output voltage."""
+    input_v: tuple[Annotated[float, Field(gt=0, le=100)], Annotated[float, Field(gt=0, le=100)]]
+    """Least and greatest input voltage."""
+    output_a: float = Field(gt=0, le=20)
+    """Largest continuous output current."""
+
+    @model_validator(mode="after")
+    def _has_its_leads(self) -> Self:
+        if set(self.names) != {"GND", "OUT", "IN"}:
+            raise ValueError(f"leads {', '.join(self.names)} given, GND, OUT and IN are needed")
+        return self
+
+
 class Transistor(Leaded):
     """A P-channel MOSFET: G, S and D."""
 

@@ -88,3 +88,18 @@ class Flange(Strict):
     """Package of the resistors at its gate in `parts/resistors.toml`."""
     gate_ohm: float = Field(ge=1e3, le=1e6)
     """Both resistors, which halve the supply for the gate (ohm)."""
+
+
+class Module(Strict):
+    """What a controller that is a module needs beside it on the flange's board."""
+
+    regulator: Name
+    """Of its supply, in `parts/linear_regulators.toml`."""
+    supply_capacitor: Name
+    """At the regulator's input and output and at the USB supply, in `parts/capacitors.toml`."""
+    capacitor: Name
+    """At the module's supply, in `parts/capacitors.toml`."""
+    crystal: Name
+    """Of 32.768 kHz, in `parts/crystals.toml`."""
+    crystal_capacitor: Name
+    """Two of them, in `parts/capacitors.toml`."""

@@ -9,9 +9,10 @@ from typing import Literal, Self
 
 from pydantic import Field, model_validator
 
-from lumitip_fab.carrier_entry import Plug, Regulator, Strip, Transistor
+from lumitip_fab.carrier_entry import LinearRegulator, Regulator, Strip, Transistor
+from lumitip_fab.controller_entry import Controller
 from lumitip_fab.coupling_entry import ToolCoupling
-from lumitip_fab.entry import Entry, Length, Name, Pin, Share, Strict
+from lumitip_fab.entry import Entry, Length, Name, Share, Strict
 from lumitip_fab.fab_entry import Fab
 from lumitip_fab.filament_entry import Filament
 from lumitip_fab.gripper_entry import Gripper
@@ -120,6 +121,13 @@ class Inductor(Chip):
     """Inductance."""
 
 
+class Crystal(Chip):
+    """A quartz crystal of 32.768 kHz."""
+
+    load_pf: float = Field(gt=0, le=100)
+    """Capacitance that it is made for, of its two capacitors in series with all else there is."""
+
+
 class Fuse(Chip):
     """A fuse."""
 
@@ -188,41 +196,6 @@ class Multiplexer(Bought):
         return self
 
 
-class Controller(Entry):
-    """A microcontroller board that reads the multiplexers."""
-
-    analog_pins: tuple[Pin, ...] = Field(min_length=1)
-    """Analog inputs in the order in which they are used."""
-    unlimited_analog_pins: bool = False
-    """Whether further inputs are invented as needed: for benchmarks only."""
-    select_pins: tuple[Pin, ...] = Field(min_length=1)
-    """Digital outputs for the select lines, least significant first."""
-    adc_bits: int = Field(ge=8, le=16)
-    """Resolution of the analog-to-digital converter."""
-    input_pf: float = Field(ge=0, le=1e4)
-    """Capacitance of an analog input with the wire to it."""
-    supply_v: float = Field(gt=0, le=5.5)
-    """Supply of its inputs, which is also the detectors' supply."""
-    draws_ma: float = Field(default=0.0, ge=0, le=2000)
-    """Largest current of the board itself; 0 where it is not known (mA)."""
-    plug: Plug | None = None
-    """How it stands on sockets, if it does."""
-
-    @model_validator(mode="after")
-    def _pins_differ(self) -> Self:
-        pins = (*self.analog_pins, *self.select_pins)
-        twice = sorted({pin for pin in pins if pins.count(pin) > 1})
-        if twice:
-            raise ValueError(f"{', '.join(twice)} given twice, each pin is used once")
-        if self.plug is not None:
-            there = {*self.plug.rows[0], *self.plug.rows[1]}
-            wanted = (*pins, self.plug.ground, self.plug.supply, self.plug.regulated)
-            lost = sorted(set(wanted) - there)
-            if lost:
-                raise ValueError(f"{', '.join(lost)} given, which no row of its plug has")
-        return self
-
-
 class Silicone(Entry):
     """A two-part casting silicone."""
 
@@ -271,6 +244,8 @@ class Catalogue(Strict):
     controllers: Mapping[Name, Controller]
     strips: Mapping[Name, Strip]
     regulators: Mapping[Name, Regulator]
+    linear_regulators: Mapping[Name, LinearRegulator]
+    crystals: Mapping[Name, Crystal]
     inductors: Mapping[Name, Inductor]
     fuses: Mapping[Name, Fuse]
     transistors: Mapping[Name, Transistor]

@@ -16,7 +16,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from lumitip_fab.carrier_parameters import Breakout, Flange, Holder
+from lumitip_fab.carrier_parameters import Breakout, Flange, Holder, Module
 from lumitip_fab.entry import Name, Strict
 from lumitip_fab.flex_parameters import Flex
 
@@ -175,7 +175,8 @@ class Controller(Strict):
     """The microcontroller that reads the receiver."""
 
     board: Name
-    """Name of a controller in `parts/controllers.toml`."""
+    """Name of a controller in `parts/controllers.toml`: a board that plugs into the breakout, or a
+    module on the flange's board."""
     name: DeviceName
     """Bluetooth name of the device; what one scan response carries."""
 
@@ -280,4 +281,5 @@ class Parameters(Strict):
     breakout: Breakout
     holder: Holder
     flange: Flange
+    module: Module
     printer: Printer

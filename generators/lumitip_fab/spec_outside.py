@@ -54,6 +54,10 @@ def _flange(carrier: Carrier) -> Iterator[Row]:
     yield Row("its fuse and reversed supply", "not stated",
               f"{values['F1']}, {values['Q1']}",
               "a MOSFET costs the LEDs no voltage, as a diode would")  # fmt: skip
+    if "U2" in values:
+        yield Row("controller on it", "none: an Arduino beside the gripper",
+                  f"{values['U2']}, {values['U3']}, {values['Y1']}",
+                  "what the publication names as future work; by controller.board")  # fmt: skip
 
 
 def _regulated(supply: Regulated) -> Iterator[Row]:

@@ -58,7 +58,7 @@ def unknown_name(given: str, allowed: Iterable[str], where: str) -> str:
     names = sorted(allowed)
     near = difflib.get_close_matches(given, names, n=1, cutoff=0.5)
     hint = f"did you mean {near[0]!r}? " if near else ""
-    listed = ", ".join(names[:20]) + (", …" if len(names) > 20 else "")
+    listed = ", ".join(names[:24]) + (", …" if len(names) > 24 else "")
     return f"{given!r:.80} given, {hint}{where} has {listed}"
 
 

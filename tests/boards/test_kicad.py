@@ -16,15 +16,15 @@ from lumitip_fab.checks.gerber_read import gerber_area
 from lumitip_fab.checks.kicad_board import read_board
 
 Boards = Callable[[str], Path]
-PRESETS = (
-    "small",
-    *(
-        pytest.param(preset, marks=pytest.mark.slow)
-        for preset in ("published", "asymmetric", "dense", "mux16")
-    ),
-)
+SLOW = ("published", "asymmetric", "dense", "mux16")
 BOARDS = ("emitter", "receiver", "breakout", "flange")
 CARRIERS = BOARDS[2:]
+MODULE = pytest.param("integrated", "flange", marks=pytest.mark.slow)  # controller on the flange
+EVERY = (
+    *(("small", name) for name in BOARDS),
+    *(pytest.param(preset, name, marks=pytest.mark.slow) for preset in SLOW for name in BOARDS),
+    MODULE,
+)
 ALLOWED: dict[str, str] = {}  # names of warnings, each with the reason why it may stand
 MISSING_SHARE = 0.01  # of KiCad's fill, that ours may leave out
 SYSTEM_PYTHON = Path("/usr/bin/python3")
@@ -56,8 +56,7 @@ def kicad(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., str]:
     return run
 
 
-@pytest.mark.parametrize("name", BOARDS)
-@pytest.mark.parametrize("preset", PRESETS)
+@pytest.mark.parametrize(("preset", "name"), EVERY)
 def test_kicad_finds_no_fault(
     boards: Boards, kicad: Callable[..., str], tmp_path: Path, preset: str, name: str
 ) -> None:
@@ -71,8 +70,7 @@ def test_kicad_finds_no_fault(
     assert {v["type"] for v in told["violations"]} <= set(ALLOWED), told["violations"][:3]
 
 
-@pytest.mark.parametrize("name", BOARDS)
-@pytest.mark.parametrize("preset", PRESETS)
+@pytest.mark.parametrize(("preset", "name"), EVERY)
 def test_gerbers_paint_what_kicad_plots(
     boards: Boards, kicad: Callable[..., str], tmp_path: Path, preset: str, name: str
 ) -> None:
@@ -105,8 +103,7 @@ os._exit(0)
 """
 
 
-@pytest.mark.parametrize("name", BOARDS)
-@pytest.mark.parametrize("preset", PRESETS)
+@pytest.mark.parametrize(("preset", "name"), EVERY)
 def test_the_written_fill_is_what_kicad_fills(
     boards: Boards, kicad: Callable[..., str], tmp_path: Path, preset: str, name: str
 ) -> None:
@@ -131,11 +128,11 @@ def test_the_written_fill_is_what_kicad_fills(
         assert (areas[1] - areas[0]).area < MISSING_SHARE * areas[1].area, layer
 
 
-@pytest.mark.parametrize("name", CARRIERS)
+@pytest.mark.parametrize(("preset", "name"), [*(("small", name) for name in CARRIERS), MODULE])
 def test_kicad_finds_no_fault_in_a_carriers_schematic(
-    boards: Boards, kicad: Callable[..., str], tmp_path: Path, name: str
+    boards: Boards, kicad: Callable[..., str], tmp_path: Path, preset: str, name: str
 ) -> None:
-    sheet = boards("small") / "boards" / name / f"{name}.kicad_sch"
+    sheet = boards(preset) / "boards" / name / f"{name}.kicad_sch"
     report = tmp_path / "erc.json"
     kicad("kicad-cli", "sch", "erc", "--severity-all", "--format", "json", "-o", report, sheet)
     told = json.loads(report.read_text())

@@ -10,9 +10,11 @@ import shapely
 
 import small_boards as small
 from lumitip_fab.boards.geometry import placed_pads
-from lumitip_fab.boards.model import BoardModel, Placement, Routing
+from lumitip_fab.boards.model import SIDES, BoardModel, Placement, Routing, Track
+from lumitip_fab.boards.pour import pour
 from lumitip_fab.boards.routing import route
 from lumitip_fab.boards.verify import summary, verify
+from lumitip_fab.design import Box
 from lumitip_fab.errors import BuildError
 
 
@@ -109,3 +111,20 @@ def test_presets_are_routed_without_fault(design_dir: Path, preset: str, finger:
     placement = small.preset(design_dir, preset, finger)
     faults = verify(BoardModel(placement, route(placement), ()))
     assert not faults, summary(faults)
+
+
+def test_copper_keeps_out_of_where_none_may_be() -> None:
+    area = Box(-3.0, 3.0, -4.0, 2.0)
+    placement = small.board(
+        small.part("R1", small.CHIP, (-6, -1), {"1": "GND", "2": "A"}),
+        small.part("R2", small.CHIP, (6, -1), {"1": "A", "2": "GND"}),
+        keep_outs=(area,),
+    )
+    routing, fills = pour(placement, route(placement))
+    assert not verify(BoardModel(placement, routing, fills))
+    kept = shapely.box(-3.0, -4.0, 3.0, 2.0)
+    assert all(fill.area.intersection(kept).area == 0 for fill in fills)
+    assert {side for side in SIDES for fill in fills if fill.side == side} == set(SIDES)
+    across = Track("A", "back", (-5.2, -1.0), (5.2, -1.0), 0.2)
+    faults = verify(BoardModel(placement, Routing((across,), (), 1), ()))
+    assert ("keep-out", ("A", "keep-out")) in {(f.rule, f.nets) for f in faults}

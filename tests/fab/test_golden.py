@@ -11,7 +11,8 @@ from lumitip_fab.load import load
 
 GOLDEN = Path(__file__).parents[1] / "golden"
 PRESETS = (
-    "published", "asymmetric", "dense", "mux16", "robotiq_2f140", "wsg50", "franka_hand", "flex"
+    "published", "asymmetric", "dense", "mux16", "integrated", "robotiq_2f140", "wsg50",
+    "franka_hand", "flex",
 )  # fmt: skip
 
 

@@ -61,6 +61,7 @@ def _placement(title: Title, reading: Reading, carrier: Carrier, rules: Rules) -
         corner_mm=carrier.corner_mm,
         holes=carrier.holes,
         hole_mm=carrier.hole_mm,
+        keep_outs=carrier.keep_outs,
         edge_clearance_mm=rules.edge_gap_mm,
         components=tuple(component(device, rules) for device in carrier.devices),
         nets=tuple(

@@ -59,6 +59,8 @@ def _silk(device: Device, rules: Rules) -> tuple[Stroke, ...]:
         return _socket(body, rules)
     if device.kind in ("regulator", "transistor"):
         return (_dot(lands[0], rules),)
+    if device.kind == "module":
+        return _module(body, lands, rules)
     return _sides(body, lands, rules) if device.kind not in ("wires", "fiducial") else ()
 
 
@@ -76,6 +78,20 @@ def _sides(body: Box, lands: tuple[Land, ...], rules: Rules) -> tuple[Stroke, ..
     if reach <= pen:
         return ()
     return tuple(Stroke(((-reach, side), (reach, side)), pen) for side in (y, -y))
+
+
+def _module(body: Box, lands: tuple[Land, ...], rules: Rules) -> tuple[Stroke, ...]:
+    """A line along both long sides, which end before the antenna's end at the board's edge, one
+    along the other end, and a dot beside pad 1."""
+    pen, away = rules.silk_line_mm, rules.silk_gap_mm + _BAR_MM
+    low, high = body.y_min_mm, body.y_max_mm - 2 * away
+    frame = body.grown(pen / 2)
+    left, right, bottom = frame.x_min_mm, frame.x_max_mm, low - pen / 2
+    dot = left - away, lands[0].y_mm
+    return (
+        Stroke(((left, high), (left, bottom), (right, bottom), (right, high)), pen),
+        Stroke((dot, (dot[0] + 0.02, dot[1])), _BAR_MM),
+    )
 
 
 def _socket(body: Box, rules: Rules) -> tuple[Stroke, ...]:

@@ -125,6 +125,8 @@ class Placement:
     holes: tuple[Point, ...]
     """Centres of the unplated locating holes."""
     hole_mm: float
+    keep_outs: tuple[Box, ...]
+    """Where no copper may be on either side."""
     edge_clearance_mm: float
     """Copper to the board's edge and to unplated holes."""
     components: tuple[Component, ...]

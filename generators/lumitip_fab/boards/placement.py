@@ -68,6 +68,7 @@ def place(
         corner_mm=CORNER_MM,
         holes=finger.holes,
         hole_mm=board.hole_mm,
+        keep_outs=(),
         edge_clearance_mm=rules.edge_gap_mm,
         components=tuple(parts.values()),
         nets=plan.nets,

@@ -25,7 +25,7 @@ class Fault:
     """Something that breaks a rule, and where."""
 
     rule: str
-    """`"clearance"`, `"short"`, `"open"`, `"edge"` or `"drill"`."""
+    """`"clearance"`, `"short"`, `"open"`, `"edge"`, `"keep-out"` or `"drill"`."""
     nets: tuple[str, str]
     """Of what is too near to each other; twice the same of a net in pieces."""
     x_mm: float
@@ -80,6 +80,7 @@ def verify(model: BoardModel) -> tuple[Fault, ...]:
         *_too_near(copper, cores, radii, gaps, first[~same], second[~same]),
         *_in_pieces(copper, cores, radii, first[same], second[same]),
         *_over_edge(model.placement, copper, cores, radii),
+        *_kept_out(model.placement, copper, cores, radii),
         *_drills(model),
     )
 
@@ -173,6 +174,22 @@ def _over_edge(
             apart = float(line.length - reach[i])
             nets = copper[i].net, what
             faults.append(Fault("edge", nets, x, y, apart, placement.edge_clearance_mm))
+    return faults
+
+
+def _kept_out(
+    placement: Placement,
+    copper: list[Copper],
+    cores: NDArray[np.object_],
+    radii: NDArray[np.float64],
+) -> list[Fault]:
+    """Copper where none may be."""
+    faults = []
+    for box in placement.keep_outs:
+        area = shapely.box(box.x_min_mm, box.y_min_mm, box.x_max_mm, box.y_max_mm)
+        for i in np.flatnonzero(shapely.dwithin(cores, area, radii - _NOISE_MM)):
+            apart = float(area.distance(cores[i]) - radii[i])
+            faults.append(Fault("keep-out", (copper[i].net, "keep-out"), *copper[i].at, apart, 0.0))
     return faults
 
 

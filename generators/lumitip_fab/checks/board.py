@@ -10,6 +10,7 @@ from lumitip_fab.checks.board_carrier import (
     measure_edge,
     measure_hot_loop,
     measure_joined,
+    measure_keep_outs,
     measure_lands,
     measure_names,
     measure_screws,
@@ -37,7 +38,7 @@ _OF_FINGERS: tuple[Callable[[Read], Iterator[Measurement]], ...] = (
 )  # fmt: skip
 _OF_CARRIERS: tuple[Callable[[ReadCarrier], Iterator[Measurement]], ...] = (
     measure_edge, measure_screws, measure_lands, measure_names, measure_copper, measure_nets,
-    measure_joined, measure_supplies, measure_hot_loop,
+    measure_joined, measure_supplies, measure_hot_loop, measure_keep_outs,
 )  # fmt: skip
 
 

@@ -12,7 +12,8 @@ import shapely
 from lumitip_fab.checks.board_read import ReadCarrier
 from lumitip_fab.checks.kicad_board import Part, Terminal
 from lumitip_fab.checks.result import Measurement
-from lumitip_fab.design import Device, Land, Point
+from lumitip_fab.design import Box, Device, Land, Point
+from lumitip_fab.frames import on_board_page
 
 LAND_MM = 0.001
 EDGE_MM = 0.002
@@ -21,6 +22,7 @@ HOT_LOOP_MM2 = 6.0
 """A loop of about 5 mm² is what a TSOT26 with an 0603 beside it can have."""
 HOT_TRACK_MM = 3.0
 GROUND_SHARE = 80.0  # of the loop, in percent
+ANTENNA_EDGE_MM = 0.5
 NAME_MM = 4.0  # from a pad to the name beside it, at most
 
 
@@ -100,13 +102,31 @@ def measure_hot_loop(read: ReadCarrier) -> Iterator[Measurement]:
     yield read.figure("hot_loop_input", reach, 0, HOT_TRACK_MM, note="of track to the capacitor")
 
 
+def measure_keep_outs(read: ReadCarrier) -> Iterator[Measurement]:
+    """Copper under an antenna, on whatever layer, and how far the antenna is from the edge."""
+    boxes = read.carrier.keep_outs
+    if not boxes:
+        return
+    areas = [_on_page(box) for box in boxes]
+    whole = shapely.union_all(areas)
+    pieces = [(piece, piece.area.intersection(whole).area) for piece in read.board.copper()]
+    inside = [f"{piece.kind} of {piece.net or 'no net'}" for piece, mm2 in pieces if mm2 > 0]
+    covered = sum(mm2 for _, mm2 in pieces)
+    yield read.figure("keep_out", covered, 0, 0, "mm²", "; ".join(inside[:4]) or "of copper")
+    ruled = shapely.union_all([area.buffer(LAND_MM) for area in read.board.keep_outs])
+    open_mm2 = whole.difference(ruled).area
+    yield read.figure("keep_out_rule", open_mm2, 0, 0, "mm²", "that KiCad may fill again")
+    gap = min(area.distance(read.outline.boundary) for area in areas)
+    yield read.figure("antenna_edge", gap, 0, ANTENNA_EDGE_MM, note="to the board's edge")
+
+
 def measure_names(read: ReadCarrier) -> Iterator[Measurement]:
     """The name beside each contact: of all that is printed but references, the nearest."""
     refs = {device.ref for device in read.carrier.devices}
     printed = [w for w in read.board.silk.words if w.front and w.text not in refs]
     places = read.sensor([word.at for word in printed])
     wrong = []
-    for device in read.carrier.devices:
+    for device in (d for d in read.carrier.devices if d.kind != "module"):
         for land, name in zip(device.pattern.lands, device.pins, strict=False):
             apart = np.hypot(*(places - np.array(_placed(device, land))).T)
             nearest = int(apart.argmin()) if apart.size else -1
@@ -145,6 +165,12 @@ def _copper_mm(read: ReadCarrier, ref: str, number: str, other: str, pad: str) -
                 way = nx.shortest_path(graph, start, goal)
                 best = min(best, sum(graph.nodes[n]["length"] for n in way))
     return best
+
+
+def _on_page(box: Box) -> shapely.Polygon:
+    left, low = on_board_page((box.x_min_mm, box.y_max_mm))
+    right, high = on_board_page((box.x_max_mm, box.y_min_mm))
+    return shapely.box(left, low, right, high)
 
 
 def _has_copper(part: Part) -> bool:

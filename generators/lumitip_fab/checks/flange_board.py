@@ -15,6 +15,7 @@ from lumitip_fab.design import Device
 
 SIZE_MM = 0.05
 HOLE_MM = 0.05
+WIRE_MM = 2.0  # room for wires over their pads
 LEAST_HEADROOM_MM = 0.1
 LEAST_AROUND_MM = 0.3  # from the spring contacts' body to the window's edge
 LEAST_SHARE, MOST_SHARE = 0.2, 0.9  # of the stroke that the springs are pressed by
@@ -72,7 +73,7 @@ def measure_headers(of: Stacked) -> Iterator[Measurement]:
         body = _footprint(of, device)
         x_min, y_min, x_max, y_max = body.bounds
         outward = math.copysign(1.0, (y_min + y_max) / 2)
-        levels = np.linspace(front + 0.3, front + device.pattern.height_mm, 5)
+        levels = np.linspace(front + 0.3, front + max(device.pattern.height_mm, WIRE_MM), 5)
         across = np.linspace(x_min, x_max, 9)
         start = np.array([(x, (y_min + y_max) / 2, z) for x in across for z in levels])
         hit, _ = solids.cast(of.lower, start, np.array([0.0, outward, 0.0]), REACH_MM).first(

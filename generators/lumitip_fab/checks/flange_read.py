@@ -66,9 +66,9 @@ class Stacked:
 
     @cached_property
     def headers(self) -> tuple[str, ...]:
-        """Headers for cables, on the board's front."""
+        """Headers and pads for cables, on the board's front."""
         return tuple(d.ref for d in self.board.carrier.devices
-                     if d.kind == "header" and d.ref != CONTACTS)  # fmt: skip
+                     if d.kind in ("header", "wires") and d.ref != CONTACTS)  # fmt: skip
 
     @cached_property
     def board_z_mm(self) -> float:

@@ -73,6 +73,8 @@ class KicadBoard:
     """Lines of the outline."""
     silk: Silk
     """What is printed."""
+    keep_outs: tuple[BaseGeometry, ...]
+    """Areas where a rule keeps tracks, vias and fills off every copper layer."""
 
     def copper(self) -> Iterator[Copper]:
         """Every piece of copper."""
@@ -114,7 +116,10 @@ class _Reader:
         parts = tuple(self.part(node) for node in children(self.root, "footprint", "module"))
         lines = children(self.root, "gr_line", "gr_arc", "gr_circle", "gr_rect", "gr_poly")
         edges = [shapes.outline(n) for n in lines if words(child(n, "layer")) == ["Edge.Cuts"]]
-        return KicadBoard(parts, tuple(loose), self.layers, tuple(edges), silk(self.root))
+        return KicadBoard(
+            parts, tuple(loose), self.layers, tuple(edges), silk(self.root),
+            tuple(self.keep_outs()),
+        )  # fmt: skip
 
     def net(self, node: Node) -> str:
         """Net of a pad, track, via or zone: by number until KiCad 9, then by name."""
@@ -166,6 +171,14 @@ class _Reader:
                 area = shapes.polygon(child(node, "pts") or []).buffer(pen / 2)
                 layers = self.on(node) or self.on(zone)
                 yield Copper("fill", self.net(zone), layers, area)
+
+    def keep_outs(self) -> Iterator[BaseGeometry]:
+        for zone in children(self.root, "zone"):
+            rules = child(zone, "keepout")
+            kept = ({tuple(words(child(rules, what))) for what in ("tracks", "vias", "copperpour")}
+                    if rules else set())  # fmt: skip
+            if kept == {("not_allowed",)} and self.on(zone) == frozenset(self.layers):
+                yield shapes.polygon(child(child(zone, "polygon") or [], "pts") or [])
 
     def drawings(self) -> Iterator[Copper]:
         for node in children(self.root, "gr_line", "gr_arc", "gr_circle", "gr_rect", "gr_poly"):

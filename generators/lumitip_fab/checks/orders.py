@@ -87,21 +87,34 @@ def _parts(path: str, read: Read | ReadCarrier, fab: Fab, files: _Files) -> Iter
     yield Measurement("orders.positions", path, float(off), 0, PLACE_MM, "mm")
     sides = [row["ref"] for row, part in known if row["side"] != fab.sides[not part.front]]
     yield _count("sides", path, sides, "parts")
-    turns = [_turned_by(row, part, fab) for row, part in known]
+    turns = [_turned_by(read, row, part, fab) for row, part in known]
     yield Measurement("orders.turns", path, max(turns), 0, TURN_DEG, "°")
 
 
-def _turned_by(row: dict[str, str], part: Part, fab: Fab) -> float:
-    """How far a part would be turned from its pads: from lead 1 along its row to the right."""
+def _turned_by(read: Read | ReadCarrier, row: dict[str, str], part: Part, fab: Fab) -> float:
+    """How far a part would be turned from its pads: from lead 1 along its row to the right; of a
+    module, as its land pattern lies."""
     pads = {t.number: t.at for t in part.terminals}
     last = str(max(2, len(pads) // 2))
     dx, dy = np.subtract(pads[last], pads["1"])
     seen = math.degrees(math.atan2(-dy, dx))  # counter-clockwise, from the front
+    if isinstance(read, ReadCarrier):
+        seen -= _lying_deg(read, part.ref, last)
     if not part.front:
         seen = 180 - seen if fab.back_from_behind else seen
     fits = [(start, turn) for start, turn in fab.rotations if part.footprint.startswith(start)]
     seen += max(fits, key=lambda fit: len(fit[0]))[1] if fits else 0.0
     return abs((float(row["angle_deg"]) - seen + 180) % 360 - 180)
+
+
+def _lying_deg(read: ReadCarrier, ref: str, last: str) -> float:
+    """Angle of the line from pad 1 to another one of a module that is not turned; 0 of the rest."""
+    modules = (d for d in read.carrier.devices if d.ref == ref and d.kind == "module")
+    for device in modules:
+        at = {land.number: (land.x_mm, land.y_mm) for land in device.pattern.lands}
+        dx, dy = np.subtract(at[last], at["1"])
+        return math.degrees(math.atan2(dy, dx))
+    return 0.0
 
 
 def _misled(read: Read, note: str) -> Iterator[str]:

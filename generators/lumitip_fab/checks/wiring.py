@@ -20,7 +20,10 @@ from lumitip_fab.frames import applied, board_page_to_sensor
 READS = ("wiring/*", "boards/*.kicad_pcb", "firmware/layout.h")
 _LIST, _NOTE, _DIAGRAM = "wiring/cables.csv", "wiring/cables.md", "wiring/wiring.svg"
 _HEADER = "firmware/layout.h"
-_CONNECTORS = {"emitter": ("J1",), "receiver": ("J1",), "breakout": ("J5", "J6", "J7")}
+_CONNECTORS = {
+    "emitter": ("J1",), "receiver": ("J1",), "breakout": ("J5", "J6", "J7"),
+    "flange": ("J4", "J5"),  # which are there if the controller is
+}  # fmt: skip
 _STEP_MM = 10.0
 _MOST_A_PER_MM2 = 3.0
 _MOST_DROP = 0.02
@@ -100,8 +103,8 @@ def _wrong_pins(
 
 
 def _arrives(row: Row, nets: Nets, design: Design) -> str:
-    """The controller's pin at the other end, as the firmware names it: straight, or through the
-    socket of the breakout."""
+    """The controller's pin at the other end, as the firmware names it: straight, through the socket
+    of the breakout, or at the pads of a module."""
     board, pad = row.end
     pin = pad
     for carrier in (c for c in design.carriers if c.name == board):
@@ -109,9 +112,9 @@ def _arrives(row: Row, nets: Nets, design: Design) -> str:
         pins = {
             name
             for device in carrier.devices
-            if device.kind == "socket"
-            for (number, _), name in zip(device.nets, device.pins, strict=True)
-            if nets[board].get(f"{device.ref}.{number}") == net
+            if device.kind in ("socket", "module")
+            for land, name in zip(device.pattern.lands, device.pins, strict=True)
+            if nets[board].get(f"{device.ref}.{land.number}") == net
         }
         pin = "+".join(sorted(pins))
     return re.sub(r"^D(?=\d+$)", "", pin)

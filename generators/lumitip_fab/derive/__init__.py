@@ -53,7 +53,7 @@ def derive(given: Input) -> Design:
     meeting = closing.derive_closing(silhouette, stack, coupling, casting, faults)
     breakout = derive_breakout(given, muxing, faults)
     holders = derive_holder(given, breakout, faults)
-    flange = derive_flange(given, faults)
+    flange = derive_flange(given, muxing, faults)
     flanges = derive_flange_body(given, flange, faults)
     circuit, figures = wiring.joined(given, strings, muxing), derive_electrical(given, strings)
     joined = Boards(plan.emitter, plan.receiver, (*breakout, *flange))

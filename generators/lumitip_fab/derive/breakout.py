@@ -16,7 +16,7 @@
 from dataclasses import dataclass
 
 from lumitip_fab.carrier_entry import Plug, Strip
-from lumitip_fab.derive import connectors, patterns
+from lumitip_fab.derive import connectors, devices, patterns
 from lumitip_fab.derive.faults import Faults
 from lumitip_fab.derive.wiring import Muxing
 from lumitip_fab.design import Box, Carrier, Device, Note
@@ -66,6 +66,7 @@ def derive_breakout(given: Input, muxing: Muxing, faults: Faults) -> tuple[Carri
             devices=_devices(given, plug, strip, muxing, rows),
             notes=(Note("USB", (1.5 - length / 2, 0.0), 1.2, 90.0),),
             supplies=tuple(dict.fromkeys(("GND", REGULATED, "3V3", *emitter[1:]))),
+            keep_outs=(),
             hot_loop=(),
         ),
     )
@@ -148,13 +149,7 @@ def _wires(
 ) -> Device:
     """Wire pads of a cable, in the order of the connector at its other end."""
     fits = connectors.half_width_mm(len(signals), wide=True) <= length_mm / 2 - EDGE_MM
-    pitch, pad, drill = connectors.WIDE if fits else connectors.NARROW
-    return Device(
-        ref=ref, kind="wires", value=f"{len(signals)} wires", part="", manufacturer="", lcsc="",
-        pattern=patterns.row("WirePads", len(signals), pitch, pad, drill),
-        x_mm=x_mm, y_mm=y_mm, angle_deg=0.0,
-        nets=tuple((str(i), signal) for i, signal in enumerate(signals, start=1)), pins=signals,
-    )  # fmt: skip
+    return devices.wires(ref, signals, (x_mm, y_mm), fits)
 
 
 def _refuse(

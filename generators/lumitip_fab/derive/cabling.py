@@ -50,8 +50,8 @@ def derive_cabling(
     fixed = _FIXED | {boards.emitter.connector.signals[1]: _SUPPLY}
     loads = _loads(given, boards.emitter, wiring, electrical)
     ends = _ends(given, boards, wiring)
-    breakout = _named(boards.carriers, "breakout")
-    to_supply_mm = told.controller_mm if breakout else told.supply_mm
+    breakout, host = _named(boards.carriers, "breakout"), _host(boards.carriers)
+    to_supply_mm = told.controller_mm if host else told.supply_mm
     ways = [
         (boards.emitter, loads.lit, travel_mm + to_supply_mm),
         (boards.receiver, loads.read, travel_mm + told.controller_mm),
@@ -99,11 +99,12 @@ def _loads(given: Input, emitter: Finger, wiring: Wiring, electrical: Electrical
 
 def _ends(given: Input, boards: Boards, wiring: Wiring) -> dict[str, dict[str, Terminal]]:
     """Where the signals of each finger go, by name."""
-    breakout = _named(boards.carriers, "breakout")
-    if breakout:
+    host = _host(boards.carriers)
+    if host:
+        carrier, *refs = host
         return {
-            finger: {t.name: t for t in _wires_of(breakout, ref)}
-            for finger, ref in (("emitter", "J6"), ("receiver", "J5"))
+            finger: {t.name: t for t in _wires_of(carrier, ref)}
+            for finger, ref in zip(("emitter", "receiver"), refs, strict=True)
         }
     selects = {f"S{i}": pin for i, pin in enumerate(wiring.select_pins)}
     plug = given.catalogue.controllers[given.parameters.controller.board].plug
@@ -118,6 +119,17 @@ def _ends(given: Input, boards: Boards, wiring: Wiring) -> dict[str, dict[str, T
         for place, signal in enumerate(boards.emitter.connector.signals, 1)
     }
     return {"emitter": supply, "receiver": controller}
+
+
+def _host(carriers: Iterable[Carrier]) -> tuple[Carrier, str, str] | None:
+    """The board where the fingers' cables end, with its wire pads for emitter and receiver: the
+    breakout, or the flange's board if the controller is on it."""
+    breakout, flange = _named(carriers, "breakout"), _named(carriers, "flange")
+    if breakout:
+        return breakout, "J6", "J5"
+    if flange and any(device.kind == "module" for device in flange.devices):
+        return flange, "J5", "J4"
+    return None
 
 
 def _pads(finger: Finger) -> tuple[Terminal, ...]:

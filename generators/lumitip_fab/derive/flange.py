@@ -9,13 +9,15 @@
 │   [ header J2, 2 rows ]  │
 ╰──────────────────────────╯
 ```
+
+With a module as its controller it is wider to the left: see `lumitip_fab.derive.module`.
 """
 
-from lumitip_fab import catalogue
-from lumitip_fab.carrier_entry import Leaded, Strip
-from lumitip_fab.derive import patterns
+from lumitip_fab.derive.devices import chip, fiducials, leaded, strip
 from lumitip_fab.derive.faults import Faults
-from lumitip_fab.design import Box, Carrier, Device, Pattern, Point
+from lumitip_fab.derive.module import Supplies, derive_module
+from lumitip_fab.derive.wiring import Muxing
+from lumitip_fab.design import Box, Carrier, Device, Point
 from lumitip_fab.load import Input
 from lumitip_fab.values import resistor_code
 
@@ -28,19 +30,26 @@ TITLE_AT: Point = (6.5, 11.5)
 HOLES_AT: tuple[Point, ...] = ((11.0, 19.5), (11.0, -19.5))
 HOLE_MM = 2.2
 """For M2 screws into the printed flange."""
-FIDUCIAL_MM = 1.0
 FIDUCIALS_AT: tuple[Point, ...] = ((-13.0, -13.5), (13.0, -15.5), (-13.0, 13.5))
 HEADROOM_V = 1.0
 """A step-down regulator's input above its output."""
-Nets = tuple[tuple[str, str], ...]
 
 
-def derive_flange(given: Input, faults: Faults) -> tuple[Carrier, ...]:
-    """The flange's board; none if it is not wanted."""
-    if not given.parameters.flange.enabled:
+def derive_flange(given: Input, muxing: Muxing, faults: Faults) -> tuple[Carrier, ...]:
+    """The flange's board, with the controller if that is a module; none if it is not wanted."""
+    p = given.parameters
+    module = given.catalogue.controllers[p.controller.board].module
+    if not p.flange.enabled:
+        faults.refuse_unless(
+            module is None,
+            "controller.board",
+            f"{p.controller.board!r} given, a module on the flange's board: flange.enabled = true, "
+            "or a controller that plugs into the breakout",
+        )
         return ()
     _refuse(given, faults)
     raw, supply, output = _supplies(given)
+    wing = derive_module(given, module, muxing, Supplies(supply, output), BOX, faults)
     names = given.catalogue.regulators[given.parameters.flange.regulator].names
 
     def lead(name: str) -> str:
@@ -51,13 +60,20 @@ def derive_flange(given: Input, faults: Faults) -> tuple[Carrier, ...]:
             name="flange",
             title="breakout flange",
             title_at=TITLE_AT,
-            box=BOX,
+            box=wing.box if wing else BOX,
             corner_mm=CORNER_MM,
             holes=HOLES_AT,
             hole_mm=HOLE_MM,
-            devices=(*_strips(given), *_input(given), *_regulator(given), *_fiducials()),
+            devices=(
+                *_strips(given),
+                *_input(given),
+                *_regulator(given),
+                *(wing.devices if wing else ()),
+                *fiducials(wing.fiducials if wing else FIDUCIALS_AT),
+            ),
             notes=(),
             supplies=tuple(dict.fromkeys(("GND", supply, raw, "FUSED", output, "SW"))),
+            keep_outs=wing.keep_outs if wing else (),
             hot_loop=(("U1", lead("VIN")), ("C1", "1"), ("C1", "2"), ("U1", lead("GND"))),
         ),
     )
@@ -77,12 +93,12 @@ def _strips(given: Input) -> tuple[Device, ...]:
     called = {"SUPPLY": supply, "REGULATED": output}
     nets = tuple(raw if signal == "SUPPLY" else signal for signal in p.signals)
     names = tuple(called.get(signal, signal) for signal in p.signals)
-    contacts = _strip("J1", p.contacts, known[p.contacts], CONTACTS_AT, nets, names)
+    contacts = strip("J1", p.contacts, known[p.contacts], CONTACTS_AT, nets, names)
     both = []
     for ref, at, signals in zip(("J2", "J3"), HEADERS_AT, p.headers, strict=True):
         there = tuple(called.get(signal, signal) for signal in signals)
         around = (*there, *reversed(there))
-        both.append(_strip(ref, p.header, known[p.header], at, around, around))
+        both.append(strip(ref, p.header, known[p.header], at, around, around))
     return contacts, *both
 
 
@@ -96,12 +112,12 @@ def _input(given: Input) -> tuple[Device, ...]:
     transistor = known.transistors[p.transistor]
     leads = {"G": "GATE", "S": supply, "D": "FUSED"}
     return (
-        _chip("F1", "fuse", p.fuse, known.fuses[p.fuse], "FUSC", (5.4, -7.0), 180.0,
+        chip("F1", "fuse", p.fuse, known.fuses[p.fuse], "FUSC", (5.4, -7.0), 180.0,
               (raw, "FUSED")),
-        _leaded("Q1", "transistor", p.transistor, transistor, (-1.0, -7.0), 270.0, leads),
-        _chip("R1", "resistor", code, resistor, "RESC", (-5.2, -7.0), 90.0, (supply, "GATE"),
+        leaded("Q1", "transistor", p.transistor, transistor, (-1.0, -7.0), 270.0, leads),
+        chip("R1", "resistor", code, resistor, "RESC", (-5.2, -7.0), 90.0, (supply, "GATE"),
               part),
-        _chip("R2", "resistor", code, resistor, "RESC", (-2.0, -3.8), 0.0, ("GATE", "GND"), part),
+        chip("R2", "resistor", code, resistor, "RESC", (-2.0, -3.8), 0.0, ("GATE", "GND"), part),
     )  # fmt: skip
 
 
@@ -112,78 +128,20 @@ def _regulator(given: Input) -> tuple[Device, ...]:
     leads = {"FB": output, "EN": supply, "VIN": supply, "GND": "GND", "SW": "SW", "BST": "BST"}
     caps = known.capacitors
     return (
-        _leaded("U1", "regulator", p.regulator, known.regulators[p.regulator], (-7.5, 0.0), 0.0,
+        leaded("U1", "regulator", p.regulator, known.regulators[p.regulator], (-7.5, 0.0), 0.0,
                 leads),
-        _chip("C1", "capacitor", p.input_capacitor.split()[0], caps[p.input_capacitor], "CAPC",
+        chip("C1", "capacitor", p.input_capacitor.split()[0], caps[p.input_capacitor], "CAPC",
               (-4.9, 0.0), 90.0, (supply, "GND")),
-        _chip("C4", "capacitor", p.boot_capacitor.split()[0], caps[p.boot_capacitor], "CAPC",
+        chip("C4", "capacitor", p.boot_capacitor.split()[0], caps[p.boot_capacitor], "CAPC",
               (-10.8, 2.1), 90.0, ("BST", "SW")),
-        _chip("L1", "inductor", p.inductor.split()[0], known.inductors[p.inductor], "INDC",
+        chip("L1", "inductor", p.inductor.split()[0], known.inductors[p.inductor], "INDC",
               (-7.5, 5.2), 90.0, ("SW", output)),
         *(
-            _chip(ref, "capacitor", p.output_capacitor.split()[0], caps[p.output_capacitor],
+            chip(ref, "capacitor", p.output_capacitor.split()[0], caps[p.output_capacitor],
                   "CAPC", (x, 5.8), 270.0, (output, "GND"))
             for ref, x in (("C2", -3.6), ("C3", -1.2))
         ),
     )  # fmt: skip
-
-
-def _fiducials() -> tuple[Device, ...]:
-    shape = patterns.fiducial(FIDUCIAL_MM)
-    return tuple(
-        Device(ref=f"FID{i}", kind="fiducial", value="Fiducial", part="", manufacturer="", lcsc="",
-               pattern=shape, x_mm=x, y_mm=y, angle_deg=0.0, nets=(), pins=())
-        for i, (x, y) in enumerate(FIDUCIALS_AT, start=1)
-    )  # fmt: skip
-
-
-def _strip(
-    ref: str, value: str, strip: Strip, at: Point, nets: tuple[str, ...], pins: tuple[str, ...]
-) -> Device:
-    return Device(
-        ref=ref, kind="header", value=value, part=strip.order_number,
-        manufacturer=strip.manufacturer, lcsc=strip.lcsc, pattern=patterns.rows("Header", strip),
-        x_mm=at[0], y_mm=at[1], angle_deg=0.0, nets=_numbered(nets), pins=pins,
-    )  # fmt: skip
-
-
-def _chip(
-    ref: str,
-    kind: str,
-    value: str,
-    entry: catalogue.Chip,
-    letters: str,
-    at: Point,
-    angle_deg: float,
-    nets: tuple[str, str],
-    part: str = "",
-) -> Device:
-    shape: Pattern = patterns.chip(letters, entry)
-    return Device(
-        ref=ref, kind=kind, value=value, part=part or entry.order_number,
-        manufacturer=entry.manufacturer, lcsc=entry.lcsc, pattern=shape, x_mm=at[0], y_mm=at[1],
-        angle_deg=angle_deg, nets=_numbered(nets), pins=(),
-    )  # fmt: skip
-
-
-def _leaded(
-    ref: str,
-    kind: str,
-    value: str,
-    entry: Leaded,
-    at: Point,
-    angle_deg: float,
-    nets: dict[str, str],
-) -> Device:
-    return Device(
-        ref=ref, kind=kind, value=value, part=entry.order_number, manufacturer=entry.manufacturer,
-        lcsc=entry.lcsc, pattern=patterns.leaded(entry), x_mm=at[0], y_mm=at[1],
-        angle_deg=angle_deg, nets=_numbered(tuple(nets[name] for name in entry.names)), pins=(),
-    )  # fmt: skip
-
-
-def _numbered(nets: tuple[str, ...]) -> Nets:
-    return tuple((str(i), net) for i, net in enumerate(nets, start=1))
 
 
 def _refuse(given: Input, faults: Faults) -> None:

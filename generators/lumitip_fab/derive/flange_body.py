@@ -32,7 +32,7 @@ def derive_flange_body(
     coupling, pogo = given.catalogue.couplings[p.coupling], given.catalogue.strips[p.contacts]
     contacts = next(device for device in carrier.devices if device.ref == CONTACTS)
     front = [device for device in carrier.devices if device.ref != CONTACTS]
-    headers = [device for device in front if device.kind == "header"]
+    headers = [device for device in front if device.kind in ("header", "wires")]
     board_at = (
         coupling.contacts_at_mm[0] - contacts.x_mm,
         coupling.contacts_at_mm[1] - contacts.y_mm,

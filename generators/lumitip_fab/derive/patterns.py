@@ -4,6 +4,7 @@ import dataclasses
 
 from lumitip_fab import catalogue
 from lumitip_fab.carrier_entry import Leaded, Strip
+from lumitip_fab.controller_entry import Module
 from lumitip_fab.design import Box, Land, Pattern
 
 
@@ -77,6 +78,17 @@ def leaded(entry: Leaded) -> Pattern:
     pitch, span = round(entry.lead_pitch_mm * 100), round(entry.lead_span_mm * 100)
     name = f"SOT{pitch}P{span}X{round(height * 100)}-{low + high}N"
     return Pattern(name, tuple(lands), body, height)
+
+
+def module(entry: Module) -> Pattern:
+    """A module with its antenna at the top."""
+    lands = tuple(
+        Land(str(i), x, y, width, height, 0.0, False)
+        for i, (x, y, width, height) in enumerate(entry.pads_mm, start=1)
+    )
+    width, length, height = entry.body_mm
+    body = Box(-width / 2, width / 2, -length / 2, length / 2)
+    return Pattern(f"Module_{entry.order_number}", lands, body, height)
 
 
 def fiducial(diameter_mm: float) -> Pattern:

@@ -24,8 +24,7 @@ def derive_purchase(
     """Screws and controller, and the prices of everything else."""
     p, prices = given.parameters, given.catalogue.prices
     pieces = [
-        Bought("electronics", p.controller.board, "", p.controller.board, "reads the receiver", 1,
-               prices.each.get(p.controller.board)),
+        *_controller(given, prices),
         *_bolts(mount, prices),
         *(each for holder in holders for each in _screws(given, holder, prices)),
         *(each for flange in flanges for each in _of_flange(given, flange, prices)),
@@ -48,6 +47,14 @@ def derive_purchase(
         film_sheet=prices.sheet.get(p.mask.film),
         wire_m=prices.wire_m,
     )
+
+
+def _controller(given: Input, prices: Prices) -> list[Bought]:
+    """A controller board; a module is a part of the flange's board."""
+    name = given.parameters.controller.board
+    if given.catalogue.controllers[name].module:
+        return []
+    return [Bought("electronics", name, "", name, "reads the receiver", 1, prices.each.get(name))]
 
 
 def _bolts(mount: Mount, prices: Prices) -> list[Bought]:
@@ -104,7 +111,7 @@ def _parts(given: Input, prices: Prices) -> tuple[PartPrice, ...]:
     for kind in type(given.catalogue).model_fields:
         entries = getattr(given.catalogue, kind)
         for name, entry in entries.items() if isinstance(entries, Mapping) else ():
-            order = getattr(entry, "order_number", None)
+            order = getattr(getattr(entry, "module", None) or entry, "order_number", None)
             if order is not None and name in prices.each:
                 told[order] = prices.each[name]
     return tuple(PartPrice(part, told[part]) for part in sorted(told))

@@ -56,7 +56,8 @@ class Device:
     nets: tuple[tuple[str, str], ...]
     """Net of each land, by number."""
     pins: tuple[str, ...]
-    """Name of each land, in the order of the lands; empty where a part has no names."""
+    """Name of each land, in the order of the lands; empty where a part has no names. They are
+    printed beside the lands, but of a module, which hides its own."""
 
 
 @dataclass(frozen=True)
@@ -90,6 +91,8 @@ class Carrier:
     notes: tuple[Note, ...]
     supplies: tuple[str, ...]
     """Nets that are routed wide; ground is one of them."""
+    keep_outs: tuple[Box, ...]
+    """Where no copper may be on either side: under an antenna."""
     hot_loop: tuple[tuple[str, str], ...]
     """Lands round which the current of a switching regulator jumps, by part and number of the
     land: from its input over the capacitor back to its ground; empty without a regulator."""

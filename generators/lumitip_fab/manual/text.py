@@ -201,7 +201,7 @@ the coupling carries what.
 def _run(facts: Facts) -> str:
     return f"""## 8. Firmware, warm-up and calibration
 
-1. Open `firmware/firmware.ino` in the Arduino IDE and upload it; `firmware/README.md` tells how.
+1. {_loading(facts)}
    The device then calls itself {facts.controller.name}.
 2. Switch the LEDs on and wait {WARM_UP_MIN} minutes: the readings drift while the finger warms.
 3. `lumitip scan` finds the device. `lumitip doctor` with its address names dead, swapped and
@@ -209,6 +209,17 @@ def _run(facts: Facts) -> str:
 4. Close the gripper on nothing, and run `lumitip tare`: it measures the empty grasp, against which
    everything else is read.
 5. `lumitip view` shows the cells. Lay a card between the fingers: its edge must run where it is."""
+
+
+def _loading(facts: Facts) -> str:
+    """The first step: a module has no bootloader yet."""
+    upload = "open `firmware/firmware.ino` in the Arduino IDE and upload it"
+    if any(device.kind == "module" for c in facts.carriers for device in c.devices):
+        return (
+            "Load the bootloader over J7 of the flange's board, solder a USB cable to J6, then\n"
+            f"   {upload}; `firmware/README.md` tells how."
+        )
+    return f"{upload[0].upper()}{upload[1:]}; `firmware/README.md` tells how."
 
 
 def _kept(facts: Facts) -> str:

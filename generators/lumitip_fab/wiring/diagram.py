@@ -7,8 +7,8 @@
     │ receiver ●──┤W2.1 BK├─────────────● J5         │
     └──────────┘                        └────────────┘
 
-Without a breakout, the fingers' cables end at the supply and at the controller's pins, which stand
-in the order of its edges.
+Without a breakout, the fingers' cables end at the flange if the controller is on its board, else at
+the supply and at the controller's pins, which stand in the order of its edges.
 """
 
 from collections.abc import Iterable, Iterator
@@ -96,13 +96,15 @@ def _boxes(runs: tuple[Run, ...], bottom: float) -> Iterator[str]:
     emitter, receiver, *further = runs
     for run in (emitter, receiver):
         yield _box(_LEFT, run.top, run.top + _height(run.cable), run.cable.start.board)
+    host = emitter.cable.end.board
+    if host == receiver.cable.end.board:
+        yield _box(_MIDDLE, _TOP, bottom, host)
     if further:
-        yield _box(_MIDDLE, _TOP, bottom, emitter.cable.end.board)
         middle = sum(_MIDDLE) / 2
         for i, words in enumerate(("the controller", "plugs into", "J1 and J2")):
             y = receiver.top + _HEAD + 8 + 5 * i
             yield _text(middle + 10, y, words, 3.2, _FAINT, _CENTRED)
-    else:
+    elif host != receiver.cable.end.board:
         for run in (emitter, receiver):
             yield _box(_MIDDLE, run.top, run.top + _height(run.cable), run.cable.end.board)
     for run in further:

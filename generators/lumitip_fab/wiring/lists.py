@@ -36,6 +36,10 @@ _ALONE = """\
 - The controller is fed over USB. Its ground and that of the LEDs' supply need not be joined:
   between the fingers there is only light."""
 
+_MODULE = """\
+- The controller is on the flange's board and fed by it. Solder the wires into the pads of that
+  board before it goes into the flange."""
+
 
 def cable_list(cabling: Cabling) -> str:
     """One line for each wire, in order of their numbers."""
@@ -57,12 +61,19 @@ def wiring_note(title: Title, cabling: Cabling) -> str:
     return _NOTE.format(
         title=f"{title.name} {title.revision}",
         tables="\n\n".join(map(_table, cabling.cables)),
-        power=_FED if fed(cabling) else _ALONE,
+        power=_power(cabling),
         travel_mm=cabling.travel_mm,
         controller_mm=cabling.controller_mm,
         supply_mm=cabling.supply_mm,
         slack_mm=cabling.slack_mm,
     )
+
+
+def _power(cabling: Cabling) -> str:
+    """How the controller comes by its supply."""
+    if cabling.cables[1].end.board == "flange":
+        return _MODULE
+    return _FED if fed(cabling) else _ALONE
 
 
 def fed(cabling: Cabling) -> bool:

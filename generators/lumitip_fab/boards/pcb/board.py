@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from lumitip_fab.boards.model import BoardModel, Placement
 from lumitip_fab.boards.openings import MASK_MM
-from lumitip_fab.boards.pcb.copper import tracks, vias, zones
+from lumitip_fab.boards.pcb.copper import keep_outs, tracks, vias, zones
 from lumitip_fab.boards.pcb.drawing import edges, silkscreen
 from lumitip_fab.boards.pcb.footprint import hole_footprint, placed_footprint
 from lumitip_fab.boards.pcb.sexpr import FORMAT, Node, Quoted, written
@@ -55,6 +55,7 @@ def _contents(model: BoardModel, thickness_mm: float) -> Iterator[Node]:
     yield from tracks(model, numbers)
     yield from vias(model, numbers)
     yield from zones(model, numbers)
+    yield from keep_outs(model)
 
 
 def _title(board: Placement) -> Node:

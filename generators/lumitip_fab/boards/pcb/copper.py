@@ -12,7 +12,7 @@ from lumitip_fab.boards.pour_rules import (
     THERMAL_GAP_MM,
     THERMAL_SPOKE_MM,
 )
-from lumitip_fab.design import Point
+from lumitip_fab.design import Box, Point
 from lumitip_fab.frames import on_board_page
 
 COPPER = {"front": "F.Cu", "back": "B.Cu"}
@@ -49,9 +49,6 @@ def zones(model: BoardModel, numbers: dict[str, int]) -> Iterator[Node]:
 
 def _zone(model: BoardModel, numbers: dict[str, int], side: Side) -> Node:
     board, layer = model.placement, ("layer", Quoted(COPPER[side]))
-    box = board.outline
-    corners = ((box.x_min_mm, box.y_min_mm), (box.x_max_mm, box.y_min_mm),
-               (box.x_max_mm, box.y_max_mm), (box.x_min_mm, box.y_max_mm))  # fmt: skip
     return (
         "zone", ("net", numbers[board.ground]), ("net_name", Quoted(board.ground)), layer,
         ("tstamp", stable_uuid(board.finger, "zone", side)), ("hatch", "edge", 0.5),
@@ -61,13 +58,35 @@ def _zone(model: BoardModel, numbers: dict[str, int], side: Side) -> Node:
             "fill", "yes", ("thermal_gap", THERMAL_GAP_MM),
             ("thermal_bridge_width", THERMAL_SPOKE_MM),
         ),
-        ("polygon", _points(corners)),
+        ("polygon", _points(_corners(board.outline))),
         *(
             ("filled_polygon", layer, _points(fractured(fill.area)))
             for fill in model.fills
             if fill.side == side
         ),
     )  # fmt: skip
+
+
+def keep_outs(model: BoardModel) -> Iterator[Node]:
+    """Areas of both sides that KiCad keeps free of copper."""
+    board = model.placement
+    for count, box in enumerate(board.keep_outs):
+        yield (
+            "zone", ("net", 0), ("net_name", Quoted("")),
+            ("layers", *(Quoted(COPPER[side]) for side in SIDES)),
+            ("tstamp", stable_uuid(board.finger, "keep-out", str(count))), ("hatch", "edge", 0.5),
+            ("connect_pads", ("clearance", 0)), ("min_thickness", MIN_WIDTH_MM),
+            ("keepout", ("tracks", "not_allowed"), ("vias", "not_allowed"), ("pads", "not_allowed"),
+             ("copperpour", "not_allowed"), ("footprints", "allowed")),
+            ("fill", ("thermal_gap", THERMAL_GAP_MM),
+             ("thermal_bridge_width", THERMAL_SPOKE_MM)),
+            ("polygon", _points(_corners(box))),
+        )  # fmt: skip
+
+
+def _corners(box: Box) -> tuple[Point, ...]:
+    return ((box.x_min_mm, box.y_min_mm), (box.x_max_mm, box.y_min_mm),
+            (box.x_max_mm, box.y_max_mm), (box.x_min_mm, box.y_max_mm))  # fmt: skip
 
 
 def _points(corners: tuple[Point, ...]) -> Node:

@@ -37,7 +37,7 @@ def room(placement: Placement, routing: Routing, side: Side) -> Geometry:
         if side in t.sides
     ]
     edge = placement.edge_clearance_mm + MARGIN_MM
-    free = shapely.difference(_board(placement, edge), shapely.union_all(taken))
+    free = shapely.difference(_board(placement, edge, MARGIN_MM), shapely.union_all(taken))
     return opened(free)
 
 
@@ -55,7 +55,7 @@ def via_room(placement: Placement, routing: Routing, via_mm: float, drill_mm: fl
     ]
     apart = drill_mm + DRILL_WALL_MM + MARGIN_MM
     taken += [shapely.Point(v.x_mm, v.y_mm).buffer(apart) for v in routing.vias]
-    board = _board(placement, placement.edge_clearance_mm + radius)
+    board = _board(placement, placement.edge_clearance_mm + radius, radius)
     return shapely.difference(board, shapely.union_all(taken))
 
 
@@ -89,15 +89,21 @@ def _things(placement: Placement, routing: Routing) -> Iterator[Thing]:
             yield Thing(at, via.diameter_mm / 2, SIDES, max(least, of_net[via.net]))
 
 
-def _board(placement: Placement, edge_mm: float) -> Geometry:
-    """The board without a rim along its edge and its holes."""
+def _board(placement: Placement, edge_mm: float, keep_out_mm: float) -> Geometry:
+    """The board without a rim along its edge, its holes and, of another width, its keep-outs."""
     box, corner = placement.outline, placement.corner_mm
     inner = shapely.box(
         box.x_min_mm + corner, box.y_min_mm + corner, box.x_max_mm - corner, box.y_max_mm - corner
     )
     whole = inner.buffer(corner - edge_mm, quad_segs=_ARC)
-    holes = [
+    left_out = [
         shapely.Point(at).buffer(placement.hole_mm / 2 + edge_mm, quad_segs=2 * _ARC)
         for at in placement.holes
     ]
-    return shapely.difference(whole, shapely.union_all(holes))
+    left_out += [
+        shapely.box(box.x_min_mm, box.y_min_mm, box.x_max_mm, box.y_max_mm).buffer(
+            keep_out_mm, join_style="mitre"
+        )
+        for box in placement.keep_outs
+    ]
+    return shapely.difference(whole, shapely.union_all(left_out))

@@ -31,6 +31,7 @@ class Obstacles:
         for c, kind in enumerate(rules.classes):
             for p, size in ((0, kind.track_mm), (1, kind.track_mm), (2, kind.via_mm)):
                 self._edge(placement, owner[c, p], size / 2)
+                self._keep_outs(placement, owner[c, p], size / 2)
             for pad in pads:
                 self._pad(pad, c, owner[c])
         return owner
@@ -50,6 +51,15 @@ class Obstacles:
             where = self.grid.near(*hole, reach)
             x, y = self.grid.offsets(where, *hole)
             owner[where][np.hypot(x, y) < reach] = BLOCKED
+
+    def _keep_outs(self, placement: Placement, owner: NDArray[np.int16], half_mm: float) -> None:
+        keep = half_mm + MARGIN_MM
+        for box in placement.keep_outs:
+            reach = max(box.width_mm, box.length_mm) / 2 + keep
+            where = self.grid.near(*box.centre_mm, reach)
+            x, y = self.grid.offsets(where, *box.centre_mm)
+            dx, dy = np.abs(x) - box.width_mm / 2, np.abs(y) - box.length_mm / 2
+            owner[where][(dx < keep) & (dy < keep)] = BLOCKED
 
     def _pad(self, pad: PlacedPad, c: int, owner: NDArray[np.int16]) -> None:
         own = self.number.get(pad.net, BLOCKED)

@@ -6,7 +6,7 @@ from lumitip_fab.boards.schematic import symbols
 from lumitip_fab.boards.schematic.files import sheet_files
 from lumitip_fab.boards.schematic.paper import MARGIN_MM, paper_for
 from lumitip_fab.boards.schematic.sheet import Drawn, Sheet
-from lumitip_fab.design import Carrier, Point
+from lumitip_fab.design import Carrier, Device, Point
 
 _PITCH_MM = 2.54  # from pin to pin
 _COLUMN_MM = 50.8
@@ -35,16 +35,25 @@ def carrier_sheet(board: Placement, carrier: Carrier) -> dict[str, bytes]:
         tall = _PLAIN_MM if plain else len(device.nets) * _PITCH_MM + _ABOVE_MM
         if y + tall > MARGIN_MM + _TALL_MM:
             x, y = x + _COLUMN_MM, MARGIN_MM
-        ways, part = len(device.nets), parts[device.ref]
+        part = parts[device.ref]
         if plain:
             shapes.setdefault(plain, hand[plain])
             _two(sheet, (x + 4 * _PITCH_MM, y + _PLAIN_MM / 2), plain, part)
         else:
-            shapes.setdefault(f"Strip{ways}", symbols.wires(ways, _PITCH_MM))
-            _row(sheet, (x + _PITCH_MM, y + _ABOVE_MM), part)
+            name, shape = _contacts(device)
+            shapes.setdefault(name, shape)
+            _row(sheet, (x + _PITCH_MM, y + _ABOVE_MM), part, name)
         y += tall
     paper, _ = paper_for(x + _COLUMN_MM - MARGIN_MM, _TALL_MM)
     return sheet_files(board, paper, sheet, shapes, parts)
+
+
+def _contacts(device: Device) -> tuple[str, Node]:
+    """Name and symbol of a row of contacts; of a module only the pads that are joined."""
+    numbers = [number for number, _ in device.nets]
+    if device.kind == "module":
+        return "Module", symbols.contacts(numbers, _PITCH_MM, "U")
+    return f"Strip{len(numbers)}", symbols.wires(len(numbers), _PITCH_MM)
 
 
 def _two(sheet: Sheet, at: Point, symbol: str, part: Component) -> None:
@@ -58,13 +67,13 @@ def _two(sheet: Sheet, at: Point, symbol: str, part: Component) -> None:
         sheet.flag(net, (x + _LABEL_MM, y + way * 7.62), 0)
 
 
-def _row(sheet: Sheet, at: Point, part: Component) -> None:
+def _row(sheet: Sheet, at: Point, part: Component, symbol: str) -> None:
     """A row of contacts, first at the top, each with the name of its net."""
     ways = len(part.nets)
     x, first = at
     middle = first + (ways - 1) / 2 * _PITCH_MM
     sheet.symbols.append(
-        Drawn(f"Strip{ways}", part.ref, part.value, x, middle,
+        Drawn(symbol, part.ref, part.value, x, middle,
               pins=tuple(pad for pad, _ in part.nets),
               ref_at=(0, -ways / 2 * _PITCH_MM - 1.27),
               value_at=(0, ways / 2 * _PITCH_MM + 1.27))

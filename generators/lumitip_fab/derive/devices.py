@@ -1,0 +1,83 @@
+"""Devices of carriers: catalogue entries in their places, with the nets of their lands."""
+
+from collections.abc import Iterable
+
+from lumitip_fab import catalogue
+from lumitip_fab.carrier_entry import Leaded, Strip
+from lumitip_fab.derive import connectors, patterns
+from lumitip_fab.design import Device, Point
+
+FIDUCIAL_MM = 1.0
+Nets = tuple[tuple[str, str], ...]
+
+
+def strip(
+    ref: str, value: str, entry: Strip, at: Point, nets: tuple[str, ...], pins: tuple[str, ...]
+) -> Device:
+    """Two rows of contacts."""
+    return Device(
+        ref=ref, kind="header", value=value, part=entry.order_number,
+        manufacturer=entry.manufacturer, lcsc=entry.lcsc, pattern=patterns.rows("Header", entry),
+        x_mm=at[0], y_mm=at[1], angle_deg=0.0, nets=numbered(nets), pins=pins,
+    )  # fmt: skip
+
+
+def wires(ref: str, signals: tuple[str, ...], at: Point, wide: bool) -> Device:
+    """Wire pads of a cable in a row, each called by its signal."""
+    pitch, pad, drill = connectors.WIDE if wide else connectors.NARROW
+    return Device(
+        ref=ref, kind="wires", value=f"{len(signals)} wires", part="", manufacturer="", lcsc="",
+        pattern=patterns.row("WirePads", len(signals), pitch, pad, drill),
+        x_mm=at[0], y_mm=at[1], angle_deg=0.0, nets=numbered(signals), pins=signals,
+    )  # fmt: skip
+
+
+def chip(
+    ref: str,
+    kind: str,
+    value: str,
+    entry: catalogue.Chip,
+    letters: str,
+    at: Point,
+    angle_deg: float,
+    nets: tuple[str, str],
+    part: str = "",
+) -> Device:
+    """A part with two terminals; `letters` begin the name of its land pattern."""
+    return Device(
+        ref=ref, kind=kind, value=value, part=part or entry.order_number,
+        manufacturer=entry.manufacturer, lcsc=entry.lcsc, pattern=patterns.chip(letters, entry),
+        x_mm=at[0], y_mm=at[1], angle_deg=angle_deg, nets=numbered(nets), pins=(),
+    )  # fmt: skip
+
+
+def leaded(
+    ref: str,
+    kind: str,
+    value: str,
+    entry: Leaded,
+    at: Point,
+    angle_deg: float,
+    nets: dict[str, str],
+) -> Device:
+    """A part with leads, whose nets are told by the leads' names."""
+    return Device(
+        ref=ref, kind=kind, value=value, part=entry.order_number, manufacturer=entry.manufacturer,
+        lcsc=entry.lcsc, pattern=patterns.leaded(entry), x_mm=at[0], y_mm=at[1],
+        angle_deg=angle_deg, nets=numbered(tuple(nets[name] for name in entry.names)), pins=(),
+    )  # fmt: skip
+
+
+def fiducials(places: Iterable[Point]) -> tuple[Device, ...]:
+    """Marks for the placing machine's camera."""
+    shape = patterns.fiducial(FIDUCIAL_MM)
+    return tuple(
+        Device(ref=f"FID{i}", kind="fiducial", value="Fiducial", part="", manufacturer="", lcsc="",
+               pattern=shape, x_mm=x, y_mm=y, angle_deg=0.0, nets=(), pins=())
+        for i, (x, y) in enumerate(places, start=1)
+    )  # fmt: skip
+
+
+def numbered(nets: tuple[str, ...]) -> Nets:
+    """Nets of lands that are numbered from 1."""
+    return tuple((str(i), net) for i, net in enumerate(nets, start=1))

@@ -1,0 +1,108 @@
+"""Damage the flange's board with the controller on it, and exactly the right checks fail."""
+
+import re
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from board_damages import moved_part, once, swapped_pads
+from lumitip_fab.checks import board
+from lumitip_fab.encoding import read_design
+
+Damage = Callable[[str], str]
+FLANGE = "boards/flange/flange.kicad_pcb"
+RULE = r'\n  \(zone\n    \(net 0\)\n    \(net_name ""\)'
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture
+def damaged_flange(built: Callable[[str], Path], tmp_path: Path) -> Path:
+    """A copy of the preset's board, to damage."""
+    folder = built("integrated")
+    shutil.copytree(folder / "boards/flange", tmp_path / "boards/flange")
+    shutil.copy(folder / "design.json", tmp_path / "design.json")
+    return tmp_path
+
+
+def _failing(folder: Path) -> set[str]:
+    """Checks of the flange's board that fail; the other boards are left out, for speed."""
+    found = board.measure(folder, read_design(folder / "design.json"))
+    return {m.check.removeprefix("board.") for m in found if m.subject == FLANGE and not m.passed}
+
+
+def _ground(text: str) -> str:
+    found = re.search(r'\(net (\d+) "GND"\)', text)
+    assert found
+    return found[1]
+
+
+def track_under_the_antenna(text: str) -> str:
+    track = "(segment (start 123.5 99) (end 125.0 99) (width 0.2) "
+    return text.rstrip()[:-1] + f'{track}(layer "B.Cu") (net {_ground(text)}))\n)\n'
+
+
+def via_under_the_antenna(text: str) -> str:
+    via = "(via (at 124.0 102) (size 0.6) (drill 0.3) "
+    return text.rstrip()[:-1] + f'{via}(layers "F.Cu" "B.Cu") (net {_ground(text)}))\n)\n'
+
+
+def rule_missing(text: str) -> str:
+    return once(text, RULE + r"(\n    .*)*\n  \)", "")
+
+
+def rule_lets_the_pour_in(text: str) -> str:
+    return once(text, r"\(copperpour not_allowed\)", "(copperpour allowed)")
+
+
+def rule_of_one_side(text: str) -> str:
+    return once(text, RULE + r'\n    \(layers "F.Cu" "B.Cu"\)',
+                '\n  (zone\n    (net 0)\n    (net_name "")\n    (layers "F.Cu")')  # fmt: skip
+
+
+def pads_exchanged(text: str) -> str:
+    """Pads of A0 and A1 with each other's number: their copper and its nets stay."""
+    return swapped_pads(text, "U2", "20", "21")
+
+
+def module_askew(text: str) -> str:
+    return moved_part(text, "U2", 0.02, 0.0)
+
+
+def edge_beyond_the_antenna(text: str) -> str:
+    """The board's left end a millimetre farther to the left."""
+    lines = text.split("\n")
+    return "\n".join(
+        re.sub(r"\((start|mid|end) (1[23]\S*) ", lambda m: f"({m[1]} {float(m[2]) - 1:g} ", line)
+        if '"Edge.Cuts"' in line else line
+        for line in lines
+    )  # fmt: skip
+
+
+DAMAGES: dict[Damage, set[str]] = {
+    track_under_the_antenna: {"keep_out"},
+    via_under_the_antenna: {"keep_out"},
+    rule_missing: {"keep_out_rule"},
+    rule_lets_the_pour_in: {"keep_out_rule"},
+    rule_of_one_side: {"keep_out_rule"},
+    pads_exchanged: {"lands", "joined", "apart"},
+    module_askew: {"lands", "clearance"},  # its tracks stay where they are
+    edge_beyond_the_antenna: {"outline", "antenna_edge"},
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGES, ids=lambda d: d.__name__)
+def test_a_damage_of_the_module(damage: Damage, damaged_flange: Path) -> None:
+    path = damaged_flange / FLANGE
+    before = path.read_text()
+    path.write_text(damage(before))
+    assert path.read_text() != before
+    assert _failing(damaged_flange) == DAMAGES[damage]
+
+
+def test_the_module_passes(damaged_flange: Path) -> None:
+    assert _failing(damaged_flange) == set()
+    found = board.measure(damaged_flange, read_design(damaged_flange / "design.json"))
+    names = {m.check for m in found if m.subject == FLANGE}
+    assert {"board.keep_out", "board.keep_out_rule", "board.antenna_edge"} <= names
