@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from goals import Goals
+from lumitip_fab.boards.fab.note import assembly_note
 from lumitip_fab.boards.fab.package import layers_of, order_files
 from lumitip_fab.boards.model import BoardModel
 from lumitip_fab.boards.pcb.files import project_files
@@ -50,7 +51,16 @@ board = "bench"
 
 [supply]
 max_ma = 5000
+{tracks}"""
+_FINE = """
+[board]               # as in the dense preset
+track_mm = 0.15
+copper_gap_mm = 0.15
+via_mm = 0.45
+via_drill_mm = 0.2
+channel_mm = 4.0
 """
+FINE_FROM = 256  # cells from which the lines between two rows of multiplexers ask for fine tracks
 _T = TypeVar("_T")
 
 
@@ -65,7 +75,9 @@ def design_of(cells: int) -> Design:
         published = (DESIGN / "presets" / "published.toml").read_text(encoding="utf-8")
         (presets / "published.toml").write_text(published, encoding="utf-8")
         file = presets / "bench.toml"
-        file.write_text(_FILE.format(cells=cells, columns=COLUMNS[cells]), encoding="utf-8")
+        tracks = _FINE if cells >= FINE_FROM else ""
+        text = _FILE.format(cells=cells, columns=COLUMNS[cells], tracks=tracks)
+        file.write_text(text, encoding="utf-8")
         return derive(load(file))
 
 
@@ -78,7 +90,8 @@ def files(design: Design, model: BoardModel) -> int:
         **picture_files(model),
     }
     for fab in design.fabs:
-        made |= order_files(model, layers, design.packages, fab, model.placement.finger)
+        note = assembly_note(model.placement, design.packages, fab)
+        made |= order_files(model, layers, note, fab, model.placement.finger)
     return sum(map(len, made.values()))
 
 
@@ -101,13 +114,15 @@ def measure(design: Design, finger: Finger, goals: Goals) -> str:
     model = BoardModel(placement, routing, fills)
     timed(lambda: files(design, model))
     busy = time.process_time() - busy
+    name, faults = f"{len(d.layout)} cells, {finger.name}", len(verify(model))
     if limit_s := LIMITS_S.get(len(d.layout)):
-        goals.at_most(f"{len(d.layout)} cells, {finger.name}", sum(seconds), limit_s, "s")
+        goals.at_most(name, sum(seconds), limit_s, "s")
+    goals.at_most(name, faults, 0, "faults")
     length = sum(math.dist(t.start, t.end) for t in routing.tracks)
     return (
         f"{len(design.layout):>6}{finger.name:>10}"
         + "".join(f"{s:>8.2f}" for s in (*seconds, sum(seconds), busy))
-        + f"{len(routing.vias):>7}{length:>9.0f}{routing.iterations:>8}{len(verify(model)):>8}"
+        + f"{len(routing.vias):>7}{length:>9.0f}{routing.iterations:>8}{faults:>8}"
     )
 
 

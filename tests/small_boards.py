@@ -63,9 +63,9 @@ def crossing() -> Placement:
     )
 
 
-def narrows() -> Placement:
-    """Five nets past the hole, where beside it each side has room for one track a layer."""
-    rows = {"A": 4.0, "B": 2.0, "C": 0.0, "D": -2.0, "E": -4.0}
+def narrows(nets: str = "ABCDE") -> Placement:
+    """Nets past the hole, where beside it each side has room for one track a layer."""
+    rows = {n: y for n, y in zip("ABCDE", (4.0, 2.0, 0.0, -2.0, -4.0), strict=True) if n in nets}
     left = [part(f"R{n}", CHIP, (-2.6, y), {"2": n}) for n, y in rows.items()]
     right = [part(f"Q{n}", CHIP, (2.6, y), {"1": n}) for n, y in rows.items()]
     wall = [

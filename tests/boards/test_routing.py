@@ -13,6 +13,7 @@ from lumitip_fab.boards.geometry import placed_pads
 from lumitip_fab.boards.model import SIDES, BoardModel, Placement, Routing, Track
 from lumitip_fab.boards.pour import pour
 from lumitip_fab.boards.routing import route
+from lumitip_fab.boards.routing.rules import Rules
 from lumitip_fab.boards.verify import summary, verify
 from lumitip_fab.design import Box
 from lumitip_fab.errors import BuildError
@@ -84,6 +85,21 @@ def test_supply_tracks_are_wide_away_from_narrow_pads(
 def test_what_cannot_be_routed_is_refused_with_nets_and_places() -> None:
     with pytest.raises(BuildError, match=r"rounds.*[A-E] at \(-?\d"):
         route(small.narrows())
+
+
+def test_tracks_lie_side_by_side_on_the_grid(crossing: tuple[Placement, Routing]) -> None:
+    rules = Rules.of(crossing[0])
+    assert rules.pitch_mm == 0.2  # tracks of 0.2 mm with gaps of 0.2 mm
+    fine = dataclasses.replace(rules.classes[0], track_mm=0.127, clearance_mm=0.15)
+    assert dataclasses.replace(rules, classes=(*rules.classes, fine)).pitch_mm == 0.139
+    wide = dataclasses.replace(rules.classes[0], track_mm=1.0)
+    assert dataclasses.replace(rules, classes=(wide,)).pitch_mm == 0.2  # small pads stay in reach
+
+
+def test_a_way_with_little_room_to_spare_is_found_on_a_finer_grid() -> None:
+    placement = small.narrows("AE")
+    faults = verify(BoardModel(placement, route(placement), ()))
+    assert not [f for f in faults if {"A", "E"} & set(f.nets)], summary(faults)
 
 
 def test_a_pad_that_is_walled_in_is_named() -> None:

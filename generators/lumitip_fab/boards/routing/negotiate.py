@@ -18,15 +18,15 @@ FIRST_PRICE = 0.6  # of a net in the way, in the first round
 PRICE_GROWTH = 1.35
 TOP_PRICE = 30.0
 HISTORY = 0.5  # more for each round that a node is fought for
-HISTORY_MM = 0.1  # round it
-SWEEP = 10  # rounds after which all nets are routed anew,
+HISTORY_REACH = 1  # nodes round it
+SWEEP = 20  # rounds after which all nets are routed anew,
 SWEEP_SHARE = 0.12  # while more than this share of them is in conflict
 WIDER_MM = 0.1  # wider searches with each round
 DEAR = 1e5  # price that no net pays when another way is left
 PATIENCE = 60  # rounds without progress, before a board is given up
 POLISHES = 2
 
-NEGOTIATION = Taste(FIRST_PRICE, via_mm=0.7)
+NEGOTIATION = Taste(FIRST_PRICE, margin_mm=2.5, via_mm=0.7)
 BEAUTY = Taste(DEAR, via_mm=2.0, bend_mm=0.5, across=1.2)
 
 
@@ -44,7 +44,6 @@ def negotiate(state: State, nets: list[Wanted]) -> tuple[int, dict[str, Ints]]:
     for net in nets:
         state.routed[net.name] = connect(state, net, [], NEGOTIATION)
         state.count(net, 1)
-    reach = round(HISTORY_MM / state.grid.pitch_mm)
     fewest = turn = best = 0
     while True:
         turn += 1
@@ -56,7 +55,9 @@ def negotiate(state: State, nets: list[Wanted]) -> tuple[int, dict[str, Ints]]:
             return turn, fought
         state.turn += 1
         for nodes in fought.values():
-            stamps.remember(nodes, state.history, state.marked[0], state.turn, HISTORY, reach)
+            stamps.remember(
+                nodes, state.history, state.marked[0], state.turn, HISTORY, HISTORY_REACH
+            )
         taste = dataclasses.replace(
             taste,
             price=min(taste.price * PRICE_GROWTH, TOP_PRICE),

@@ -11,11 +11,10 @@ from lumitip_fab.boards.routing.obstacles import Obstacles
 from lumitip_fab.boards.routing.paths import copper
 from lumitip_fab.boards.routing.rules import Rules
 from lumitip_fab.boards.routing.state import State
-from lumitip_fab.boards.routing.terminals import Wanted, wanted
+from lumitip_fab.boards.routing.terminals import TightError, Wanted, wanted
 from lumitip_fab.boards.routing.trees import Unreachable
 from lumitip_fab.errors import BuildError
 
-PITCH_MM = 0.1
 PLACES_NAMED = 5
 
 
@@ -26,14 +25,23 @@ def route(placement: Placement) -> Routing:
         placement: the board before it has copper.
 
     Returns:
-        Tracks and vias, the same for the same placement. Ground is routed like any other net;
-        with the thinnest tracks,
-        and `pour` then takes away what its filled areas, which carry the current, make needless.
+        Tracks and vias, the same for the same placement. Ground is routed like any other net,
+        with the thinnest tracks; `pour` then takes away what its filled areas, which carry the
+        current, make needless.
 
     Raises:
         BuildError: there is not enough room; names the nets and the places.
     """
-    grid, rules = Grid.over(placement.outline, PITCH_MM), Rules.of(placement)
+    rules = Rules.of(placement)
+    try:
+        return _routed(placement, rules, rules.pitch_mm)
+    except TightError:
+        return _routed(placement, rules, rules.fine_mm)
+
+
+def _routed(placement: Placement, rules: Rules, pitch_mm: float) -> Routing:
+    """Tracks and vias on one grid; `TightError` where that grid has no way for a net."""
+    grid = Grid.over(placement.outline, pitch_mm)
     pads = tuple(p for component in placement.components for p in placed_pads(component))
     by_net: dict[str, list[PlacedPad]] = defaultdict(list)
     for pad in pads:
@@ -43,7 +51,7 @@ def route(placement: Placement) -> Routing:
     fixed = Obstacles(grid, rules, number)
     state = State(grid, rules, fixed.owners(placement, pads))
     nets = [
-        wanted(name, by_net[name], fixed, state.owner, thin=name == placement.ground)
+        wanted(name, by_net[name], pads, fixed, state.owner, thin=name == placement.ground)
         for name in names
     ]
     nets.sort(
@@ -53,7 +61,7 @@ def route(placement: Placement) -> Routing:
         rounds, fought = negotiate(state, nets)
     except Unreachable as fault:
         a, b = (f"{e.pad.component.ref}.{e.pad.pad.number}" for e in fault.ends)
-        raise BuildError(
+        raise TightError(
             f"the {placement.finger} board cannot be routed: net {fault.net} finds no way from "
             f"{a} to {b} at ({fault.ends[1].pad.x_mm:.2f}, {fault.ends[1].pad.y_mm:.2f}) mm "
             "between pads, holes and edges; give the parts more room"
@@ -86,5 +94,5 @@ def _unfinished(placement: Placement, grid: Grid, fought: dict[str, Ints], round
     return (
         f"the {placement.finger} board is not routed after {rounds} rounds: nets still share room "
         f"(mm): {named}; give the tracks more room: a larger board.channel_mm or grid.pitch_mm, "
-        "or smaller parts"
+        "finer board.track_mm and board.copper_gap_mm, or smaller parts"
     )

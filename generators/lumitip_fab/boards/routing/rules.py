@@ -12,6 +12,7 @@ from lumitip_fab.boards.model import NetClass, Placement
 MARGIN_MM = 0.002  # kept beyond every rule by what is off the grid, so that rounding breaks none
 PAD_TO_VIA_MM = 0.1  # solder mask between a pad and a via of its own net
 HOLE_TO_HOLE_MM = 0.25  # wall between two drills
+COARSEST_MM = 0.2  # grid on which tracks still end near the middle of a pad of 0.4 mm
 
 
 @dataclass(frozen=True)
@@ -50,6 +51,20 @@ class Rules:
         return max(self.classes[a].clearance_mm, self.classes[b].clearance_mm)
 
     @property
+    def pitch_mm(self) -> float:
+        """Of the routing grid: half of what a thin track takes with its clearance.
+
+        Neighbouring tracks then pack without a gap, and a board has no more nodes than it needs.
+        """
+        thin = min(c.track_mm + c.clearance_mm for c in self.classes)
+        return min(_whole_um(thin / 2), COARSEST_MM)
+
+    @property
+    def fine_mm(self) -> float:
+        """Of the grid that also finds ways between pads with little room to spare."""
+        return _whole_um(self.pitch_mm / 2)
+
+    @property
     def drill_mm(self) -> float:
         """Of the widest via."""
         return max(c.via_drill_mm for c in self.classes)
@@ -75,6 +90,11 @@ class Rules:
                     square = (reach / pitch_mm) ** 2
                     radii[a, b, kind] = square, _round_end(square)
         return radii
+
+
+def _whole_um(length_mm: float) -> float:
+    """Rounded up, so that every node is at whole micrometres."""
+    return math.ceil(round(1000 * length_mm, 6)) / 1000
 
 
 def _round_end(square: float) -> float:

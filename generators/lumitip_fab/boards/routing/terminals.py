@@ -12,6 +12,11 @@ from lumitip_fab.boards.routing.obstacles import Obstacles
 from lumitip_fab.errors import BuildError
 
 NECK_MM = 0.6  # beyond a narrow pad, where tracks take its width
+CROWD_MM = 4.0  # how far beside and above a pad others crowd it
+
+
+class TightError(BuildError):
+    """What is fixed leaves no way; a finer grid may find one."""
 
 
 @dataclass(frozen=True)
@@ -25,7 +30,11 @@ class Terminal:
 
 @dataclass(frozen=True)
 class Wanted:
-    """A net to route."""
+    """A net to route, the terminal in the thickest crowd of pads first.
+
+    A search that starts in the crowd has paid for its detours when it reaches open ground, and
+    then heads for the other end; one that ends there floods the open ground before.
+    """
 
     name: str
     number: int
@@ -37,19 +46,26 @@ class Wanted:
 
 
 def wanted(
-    name: str, pads: list[PlacedPad], fixed: Obstacles, owner: NDArray[np.int16], *, thin: bool
+    name: str,
+    pads: list[PlacedPad],
+    all_pads: tuple[PlacedPad, ...],
+    fixed: Obstacles,
+    owner: NDArray[np.int16],
+    *,
+    thin: bool,
 ) -> Wanted:
     """What is to be connected.
 
     Args:
         name: of the net.
         pads: its pads.
+        all_pads: those of the whole board.
         fixed: what is in the way, and the rules.
         owner: its map.
         thin: whether all its tracks are thin, whatever its class.
 
     Raises:
-        BuildError: no track can end in a pad.
+        TightError: no track can end in a pad.
     """
     narrow = fixed.rules.narrow
     wide = narrow if thin else fixed.rules.of_net[name]
@@ -66,13 +82,21 @@ def wanted(
             neck[where][np.hypot(x, y) < reach] = 1
             nodes = _middle(pad, fixed, owner[narrow])
         if not nodes.size:
-            raise BuildError(
+            raise TightError(
                 f"net {name}: no track can end in pad {pad.component.ref}.{pad.pad.number} at "
                 f"({pad.x_mm:.2f}, {pad.y_mm:.2f}) mm, so near is it to other pads, a hole or "
                 "the edge; give the parts more room"
             )
         terminals.append(Terminal(pad, nodes))
+    places = np.array([(pad.x_mm, pad.y_mm) for pad in all_pads])
+    terminals.sort(key=lambda end: -_crowd(end.pad, places))
     return Wanted(name, fixed.number[name], wide, tuple(terminals), neck)
+
+
+def _crowd(pad: PlacedPad, places: NDArray[np.float64]) -> int:
+    """How many pads there are round one, itself included."""
+    off = np.abs(places - (pad.x_mm, pad.y_mm)).max(axis=1)
+    return int(np.count_nonzero(np.round(off, 6) < CROWD_MM))
 
 
 def _middle(pad: PlacedPad, fixed: Obstacles, owner: NDArray[np.int16]) -> Ints:
