@@ -47,7 +47,6 @@ def main(out: Path, integrated: Path) -> None:
         ("mould/receiver_mould.stl", "mould.png", (0.25, 1, 0.6), MOULD),
         ("holder/holder.stl", "holder.png", (0.5, -1, 0.9), PLASTIC),
         ("flange/flange_lower.stl", "flange_lower.png", (0.5, -0.8, 1.1), PLASTIC),
-        ("flange/flange_upper.stl", "flange_upper.png", (0.5, -0.8, 1.1), PLASTIC),
     )
     for part, picture, direction, colour in shots:
         draw([actor(out / part, colour)], IMAGES / picture, direction, (0, 0, 1))
