@@ -16,7 +16,7 @@ from lumitip_fab.checks.gerber_read import gerber_area
 from lumitip_fab.checks.kicad_board import read_board
 
 Boards = Callable[[str], Path]
-SLOW = ("published", "asymmetric", "dense", "mux16")
+SLOW = ("published", "asymmetric", "dense", "mux16", "flex")
 BOARDS = ("emitter", "receiver", "breakout", "flange")
 CARRIERS = BOARDS[2:]
 MODULE = pytest.param("integrated", "flange", marks=pytest.mark.slow)  # controller on the flange

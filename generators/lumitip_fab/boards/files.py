@@ -12,6 +12,7 @@ from lumitip_fab.boards.placement import place
 from lumitip_fab.boards.pour import pour
 from lumitip_fab.boards.routing import route
 from lumitip_fab.boards.schematic.files import schematic_files
+from lumitip_fab.boards.teardrops import with_teardrops
 from lumitip_fab.boards.verify import sound
 from lumitip_fab.design import (
     Board,
@@ -56,7 +57,10 @@ def board_files(
             its rules.
     """
     placement = place(title, reading, board, finger, wiring, packages, rules)
-    routing, fills = pour(placement, route(placement))
+    routing = route(placement)
+    if placement.flexible:
+        routing = with_teardrops(placement, routing)
+    routing, fills = pour(placement, routing)
     model = sound(BoardModel(placement, routing, fills))
     sheet = schematic_files(placement, wiring, packages)
     return model_files(

@@ -9,7 +9,7 @@ from typing import Literal
 
 from shapely import Polygon
 
-from lumitip_fab.design import Box, Point
+from lumitip_fab.design import Box, Flexible, Point
 
 Side = Literal["front", "back"]
 SIDES: tuple[Side, Side] = ("front", "back")
@@ -137,6 +137,8 @@ class Placement:
     silk: tuple[tuple[Side, Stroke], ...]
     texts: tuple[tuple[Side, Text], ...]
     """Silkscreen beyond the components' own."""
+    flexible: Flexible | None = None
+    """Of what it is made, where it bends."""
 
 
 @dataclass(frozen=True)

@@ -76,6 +76,7 @@ def place(
         ground=GROUND,
         silk=(),
         texts=(),
+        flexible=board.flexible,
     )
     marked = packages.led if finger.name == "emitter" else packages.photodetector
     return with_legend(bare, finger, reading.pitch_mm, marked.marked, rules)

@@ -18,6 +18,7 @@ from lumitip_fab.checks.board_carrier import (
 )
 from lumitip_fab.checks.board_circuit import measure_channels, measure_connector, measure_strings
 from lumitip_fab.checks.board_copper import measure_copper, measure_nets
+from lumitip_fab.checks.board_flex import measure_flexible
 from lumitip_fab.checks.board_place import (
     measure_cells,
     measure_heights,
@@ -34,7 +35,7 @@ READS = ("boards/*.kicad_pcb",)
 _Any = TypeVar("_Any", Read, ReadCarrier)
 _OF_FINGERS: tuple[Callable[[Read], Iterator[Measurement]], ...] = (
     measure_cells, measure_outline, measure_holes, measure_heights, measure_copper, measure_nets,
-    measure_connector, measure_silk, measure_targets,
+    measure_connector, measure_silk, measure_targets, measure_flexible,
 )  # fmt: skip
 _OF_CARRIERS: tuple[Callable[[ReadCarrier], Iterator[Measurement]], ...] = (
     measure_edge, measure_screws, measure_lands, measure_names, measure_copper, measure_nets,

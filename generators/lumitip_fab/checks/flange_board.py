@@ -24,7 +24,7 @@ _NEAR_MM = 2.0
 
 def measure_pocket(of: Stacked) -> Iterator[Measurement]:
     """The board's edge in its pocket, what it lies on, and room for its solder tails."""
-    flange, pcb_mm = of.flange, of.design.stack.pcb_mm
+    flange, pcb_mm = of.flange, of.design.stack.carrier_mm
     middle = flange.board_z_mm + pcb_mm / 2
     rings = [shapely.Polygon(ring) for ring in holes_at(of.lower, middle)]
     pocket = max(rings, key=lambda ring: ring.area)
@@ -66,7 +66,7 @@ def measure_contacts(of: Stacked) -> Iterator[Measurement]:
 
 def measure_headers(of: Stacked) -> Iterator[Measurement]:
     """The way out of each header's cable, and room over every part."""
-    front = of.board_z_mm + of.design.stack.pcb_mm
+    front = of.board_z_mm + of.design.stack.carrier_mm
     blocked = []
     for ref in of.headers:
         device = _device(of, ref)
@@ -101,7 +101,7 @@ def measure_screws(of: Stacked) -> Iterator[Measurement]:
 
 def bodies(of: Stacked) -> dict[str, overlap.Solid]:
     """The board and its parts as boxes: contacts below, everything else above it."""
-    thick = of.design.stack.pcb_mm
+    thick = of.design.stack.carrier_mm
     seat = of.board_z_mm + SIZE_MM / 2
     ring = np.array(of.outline.exterior.coords)[:-1]
     flat = manifold3d.CrossSection([ring], manifold3d.FillRule.EvenOdd)

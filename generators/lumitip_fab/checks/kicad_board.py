@@ -60,6 +60,15 @@ class Part:
     terminals: tuple[Terminal, ...]
 
 
+@dataclass(frozen=True)
+class Ply:
+    """A layer of the stack-up."""
+
+    kind: str
+    thickness_mm: float
+    material: str
+
+
 @dataclass(frozen=True, eq=False)
 class KicadBoard:
     """What a board file holds."""
@@ -75,6 +84,10 @@ class KicadBoard:
     """What is printed."""
     keep_outs: tuple[BaseGeometry, ...]
     """Areas where a rule keeps tracks, vias and fills off every copper layer."""
+    plies: tuple[Ply, ...]
+    """The stack-up, if the file tells it."""
+    regions: dict[str, BaseGeometry]
+    """Rectangle on each layer for a user's own use."""
 
     def copper(self) -> Iterator[Copper]:
         """Every piece of copper."""
@@ -114,12 +127,23 @@ class _Reader:
     def board(self) -> KicadBoard:
         loose = [*self.tracks(), *self.vias(), *self.fills(), *self.drawings()]
         parts = tuple(self.part(node) for node in children(self.root, "footprint", "module"))
-        lines = children(self.root, "gr_line", "gr_arc", "gr_circle", "gr_rect", "gr_poly")
+        drawn = children(self.root, "gr_line", "gr_arc", "gr_circle", "gr_rect", "gr_poly")
+        lines = list(drawn)
         edges = [shapes.outline(n) for n in lines if words(child(n, "layer")) == ["Edge.Cuts"]]
+        own = {words(child(n, "layer"))[0]: n for n in lines if child(n, "layer")}
+        regions = {w: shapes.outline(n).envelope for w, n in own.items() if w.startswith("User.")}
         return KicadBoard(
             parts, tuple(loose), self.layers, tuple(edges), silk(self.root),
-            tuple(self.keep_outs()),
+            tuple(self.keep_outs()), tuple(self.plies()), regions,
         )  # fmt: skip
+
+    def plies(self) -> Iterator[Ply]:
+        """The stack-up's layers, but for print and paste, which have no thickness."""
+        for node in children(child(child(self.root, "setup") or [], "stackup") or [], "layer"):
+            thickness = numbers(child(node, "thickness"))
+            if thickness:
+                kind, material = (words(child(node, n)) for n in ("type", "material"))
+                yield Ply("".join(kind), thickness[0], "".join(material))
 
     def net(self, node: Node) -> str:
         """Net of a pad, track, via or zone: by number until KiCad 9, then by name."""

@@ -15,7 +15,7 @@ from lumitip_fab.checks.board_read import Read, ReadCarrier, read_all
 from lumitip_fab.checks.kicad_board import Part
 from lumitip_fab.checks.order_layers import Painted, measure_layers
 from lumitip_fab.checks.result import Measurement, unreadable
-from lumitip_fab.design import Design, Fab
+from lumitip_fab.design import Design, Fab, Flexible
 
 READS = ("boards/*.kicad_pcb", "boards/*.zip", "boards/*.csv")
 PLACE_MM = 0.001
@@ -59,6 +59,9 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
                 note = files[f"{read.name}_assembly.txt"].decode()
                 wrong = _misled(read, note) if isinstance(read, Read) else _misplaced(read, note)
                 yield _count("note", path, list(wrong), "parts")
+                if isinstance(read, Read) and design.board.flexible:
+                    untold = _untold(note, design.board.flexible, design.stack.pcb_mm)
+                    yield _count("flexible", path, list(untold), "figures")
             except (OSError, KeyError, ValueError, SyntaxError, zipfile.BadZipFile) as error:
                 yield unreadable("orders.readable", path, f"cannot be read: {error!r:.200}")
 
@@ -136,6 +139,22 @@ def _misled(read: Read, note: str) -> Iterator[str]:
         given = [[float(row["x1"]), float(row["y1"])], [float(row["x2"]), float(row["y2"])]]
         if np.abs(wanted - given).max() > PLACE_MM:
             yield part.ref
+
+
+def _untold(note: str, flexible: Flexible, thickness_mm: float) -> Iterator[str]:
+    """What a flexible board is ordered by and the note tells otherwise, or not at all."""
+    stiff = flexible.stiffener
+    edges = (stiff.x_min_mm, stiff.x_max_mm, stiff.y_min_mm, stiff.y_max_mm)
+    wanted = {
+        "thickness": (r"FLEXIBLE BOARD, (\S+) mm thick", (thickness_mm,)),
+        "stiffener": (r"x (\S+) to (\S+), y (\S+) to (\S+);", edges),
+        "its thickness": (r"Stiffener of polyimide, (\S+) mm,", (flexible.stiffener_mm,)),
+        "bend": (r"where y is above (\S+):", (flexible.bend.y_min_mm,)),
+    }
+    for name, (row, values) in wanted.items():
+        told = re.search(row, note)
+        if told is None or not np.allclose([float(v) for v in told.groups()], values, atol=1e-3):
+            yield name
 
 
 def _misplaced(read: ReadCarrier, note: str) -> Iterator[str]:

@@ -21,6 +21,7 @@ from lumitip_fab.derive.cells import Cells
 from lumitip_fab.derive.faults import Faults
 from lumitip_fab.derive.fits import derive_fits
 from lumitip_fab.derive.flex import foot_half_mm, is_flex
+from lumitip_fab.derive.flex_board import flexible_board
 from lumitip_fab.derive.wiring import Muxing, Strings
 from lumitip_fab.design import Board, Box, Connector, Finger, Part, Point, Zone
 from lumitip_fab.load import Input
@@ -233,6 +234,7 @@ def _board(given: Input, frame: Frame) -> Board:
         pocket=frame.box.grown(fits.pocket_gap_mm),
         pocket_clearance_mm=fits.pocket_gap_mm,
         pin_mm=fits.pin_mm,
+        flexible=flexible_board(given, frame.box, frame.notch, frame.connector_y_mm),
     )
 
 

@@ -4,6 +4,7 @@ import math
 
 from lumitip_fab.coupling_entry import ToolCoupling
 from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.flex import stiff_mm
 from lumitip_fab.design import Box, Carrier, Device, Flange, Point
 from lumitip_fab.load import Input
 
@@ -28,7 +29,7 @@ def derive_flange_body(
     if not carriers:
         return ()
     (carrier,) = carriers
-    p, pcb_mm = given.parameters.flange, given.parameters.stack.pcb_mm
+    p, pcb_mm = given.parameters.flange, stiff_mm(given.parameters)
     coupling, pogo = given.catalogue.couplings[p.coupling], given.catalogue.strips[p.contacts]
     contacts = next(device for device in carrier.devices if device.ref == CONTACTS)
     front = [device for device in carrier.devices if device.ref != CONTACTS]

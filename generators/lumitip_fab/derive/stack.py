@@ -10,7 +10,7 @@ from lumitip_fab.parameters import Parameters
 
 LEAST_SILICONE_MM = 0.3
 STIFF_MM = (0.4, 3.2)  # boards that keep their shape
-FLEXIBLE_MM = (0.1, 0.2)  # boards of polyimide with two copper layers
+FLEXIBLE_MM = (0.11, 0.2)  # boards of polyimide with two copper layers
 MOULD_ROOM_MM = 2.0  # gaps and draft of a mould beyond its walls
 TROUGH_ROOM_MM = 5.0  # its trough at the gripper end
 

@@ -18,6 +18,22 @@ class Grid:
 
 
 @dataclass(frozen=True)
+class Flexible:
+    """A board of polyimide with copper on both sides, each under a coverlay."""
+
+    bend: Box
+    """Where it bends: there are no vias."""
+    stiffener: Box
+    """Where a stiffener is glued to its back."""
+    stiffener_mm: float
+    core_mm: float
+    copper_mm: float
+    """Of each side."""
+    coverlay_mm: float
+    """Of each side, with its adhesive."""
+
+
+@dataclass(frozen=True)
 class Board:
     """Outline shared by both boards, and the pocket that holds one."""
 
@@ -27,6 +43,8 @@ class Board:
     pocket_clearance_mm: float
     pin_mm: float
     """Diameter of the pocket's locating pins, which stand at the board's holes."""
+    flexible: Flexible | None
+    """Of what it is made, where it bends."""
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from lumitip_fab.boards.fab.lists import bom_rows, bought
 from lumitip_fab.boards.geometry import pad_at
 from lumitip_fab.boards.model import Placement
-from lumitip_fab.design import Chip, Fab, Packages
+from lumitip_fab.design import Chip, Fab, Flexible, Packages
 
 _OTHER = {"anode": "cathode", "cathode": "anode", "collector": "emitter", "emitter": "collector"}
 _POLAR = {"led": "LED", "photodetector": "photodetector"}
@@ -25,6 +25,7 @@ def assembly_note(board: Placement, packages: Packages, fab: Fab) -> bytes:
         f"{board.name}: {board.finger} board, revision {board.revision}, "
         f"design {board.design_hash[:8]}",
         "",
+        *(_flexible(board.flexible) if board.flexible else ()),
         *_polarity(board, chip, "led" if emitter else "photodetector"),
         *_others(board),
         *_ordering(board, fab),
@@ -50,6 +51,27 @@ def _polarity(board: Placement, chip: Chip, kind: str) -> Iterator[str]:
             f"its mark shows the {_OTHER[chip.marked]}, all {_POLAR[kind]}s are turned by 180 "
             "degrees against the placement list."
         )
+    yield ""
+
+
+def _flexible(flexible: Flexible) -> Iterator[str]:
+    """What must be ordered of a flexible board that no layer tells."""
+    bend, stiff = flexible.bend, flexible.stiffener
+    total = flexible.core_mm + 2 * (flexible.copper_mm + flexible.coverlay_mm)
+    yield (
+        f"FLEXIBLE BOARD, {total:.3g} mm thick in all: polyimide {flexible.core_mm:.3g} mm, copper "
+        f"{flexible.copper_mm:g} mm on both sides, each under a coverlay of "
+        f"{flexible.coverlay_mm:g} mm. The layers of solder mask are the coverlays' openings."
+    )
+    yield (
+        f"Stiffener of polyimide, {flexible.stiffener_mm:g} mm, on the back, in mm as in the "
+        f"Gerber files: x {stiff.x_min_mm:.3f} to {stiff.x_max_mm:.3f}, y {stiff.y_min_mm:.3f} to "
+        f"{stiff.y_max_mm:.3f}; with the board's plated holes in it, 0.3 mm wider."
+    )
+    yield (
+        f"It bends where y is above {bend.y_min_mm:.3f}: there are no vias, and nothing stiff may "
+        "be added."
+    )
     yield ""
 
 

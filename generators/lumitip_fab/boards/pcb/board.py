@@ -6,6 +6,7 @@ from lumitip_fab.boards.model import BoardModel, Placement
 from lumitip_fab.boards.openings import MASK_MM
 from lumitip_fab.boards.pcb.copper import keep_outs, tracks, vias, zones
 from lumitip_fab.boards.pcb.drawing import edges, silkscreen
+from lumitip_fab.boards.pcb.flexible import FLEX_LAYERS, regions, stack_up
 from lumitip_fab.boards.pcb.footprint import hole_footprint, placed_footprint
 from lumitip_fab.boards.pcb.sexpr import FORMAT, Node, Quoted, written
 from lumitip_fab.frames import BOARD_ON_PAGE_MM
@@ -40,9 +41,11 @@ def _contents(model: BoardModel, thickness_mm: float) -> Iterator[Node]:
     yield ("general", ("thickness", thickness_mm))
     yield ("paper", Quoted("A4"))
     yield _title(board)
-    yield ("layers", *(_layer(*layer) for layer in _LAYERS))
+    more = FLEX_LAYERS if board.flexible else ()
+    yield ("layers", *(_layer(*layer) for layer in (*_LAYERS, *more)))
     yield (
-        "setup", ("pad_to_mask_clearance", MASK_MM), ("aux_axis_origin", *BOARD_ON_PAGE_MM),
+        "setup", *([stack_up(board.flexible)] if board.flexible else []),
+        ("pad_to_mask_clearance", MASK_MM), ("aux_axis_origin", *BOARD_ON_PAGE_MM),
         ("grid_origin", *BOARD_ON_PAGE_MM),
     )  # fmt: skip
     yield ("net", 0, Quoted(""))
@@ -52,6 +55,8 @@ def _contents(model: BoardModel, thickness_mm: float) -> Iterator[Node]:
         yield hole_footprint(number, at, board.hole_mm, board.finger)
     yield from edges(board)
     yield from silkscreen(board)
+    if board.flexible:
+        yield from regions(board, board.flexible)
     yield from tracks(model, numbers)
     yield from vias(model, numbers)
     yield from zones(model, numbers)

@@ -53,6 +53,9 @@ def via_room(placement: Placement, routing: Routing, via_mm: float, drill_mm: fl
         for component in placement.components
         for pad in placed_pads(component)
     ]
+    if placement.flexible:
+        bend = placement.flexible.bend.grown(radius)
+        taken.append(shapely.box(bend.x_min_mm, bend.y_min_mm, bend.x_max_mm, bend.y_max_mm))
     apart = drill_mm + DRILL_WALL_MM + MARGIN_MM
     taken += [shapely.Point(v.x_mm, v.y_mm).buffer(apart) for v in routing.vias]
     board = _board(placement, placement.edge_clearance_mm + radius, radius)

@@ -11,6 +11,7 @@ from lumitip_fab.boards.openings import fiducial_margin_mm
 from lumitip_fab.boards.routing.grid import Grid
 from lumitip_fab.boards.routing.kernels import BLOCKED
 from lumitip_fab.boards.routing.rules import MARGIN_MM, PAD_TO_VIA_MM, Rules
+from lumitip_fab.design import Box
 
 Reals = NDArray[np.float64]
 
@@ -34,7 +35,15 @@ class Obstacles:
                 self._keep_outs(placement, owner[c, p], size / 2)
             for pad in pads:
                 self._pad(pad, c, owner[c])
+            if placement.flexible:
+                bend = placement.flexible.bend.grown(kind.via_mm / 2 + MARGIN_MM)
+                self._bend(bend, owner[c, 2])
         return owner
+
+    def _bend(self, bend: Box, owner: NDArray[np.int16]) -> None:
+        everywhere = slice(0, self.grid.height), slice(0, self.grid.width)
+        x, y = self.grid.offsets(everywhere, *bend.centre_mm)
+        owner[(np.abs(x) < bend.width_mm / 2) & (np.abs(y) < bend.length_mm / 2)] = BLOCKED
 
     def _edge(self, placement: Placement, owner: NDArray[np.int16], half_mm: float) -> None:
         keep = placement.edge_clearance_mm + half_mm + MARGIN_MM

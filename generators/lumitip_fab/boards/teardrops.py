@@ -1,0 +1,147 @@
+"""Teardrops: tracks that widen towards pads and vias, where flexible boards else tear.
+
+A track begins with short pieces, the first the widest. Ground has none: the pour, which comes
+later, joins its pads.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+import shapely
+
+from lumitip_fab.boards.geometry import PlacedPad, placed_pads
+from lumitip_fab.boards.model import SIDES, Placement, Routing, Side, Track
+
+BEYOND_MM = (0.15, 0.3, 0.45)  # the edge of pad or via: where each piece ends
+WIDER = (2.2, 1.8, 1.4)  # than the track, each piece; none is wider than the pad
+SLIMMER = (1.0, 0.87, 0.76)  # what is tried where there is less room
+_MARGIN_MM = 0.002  # beyond clearances
+
+
+@dataclass(frozen=True)
+class _Land:
+    """A pad or a via: where tracks end."""
+
+    area: shapely.Geometry
+    net: str
+    sides: tuple[Side, ...]
+    width_mm: float
+
+
+def with_teardrops(placement: Placement, routing: Routing) -> Routing:
+    """The routing with those teardrops that find room.
+
+    Args:
+        placement: the board.
+        routing: before the pour.
+    """
+    lands = list(_lands(placement, routing))
+    copper = _Copper(placement, routing, lands)
+    tracks: list[Track] = []
+    for track in routing.tracks:
+        if track.net == placement.ground:
+            tracks.append(track)
+            continue
+        first = _drop(track, lands, copper)
+        rest = replace(track, start=first[-1].end) if first else track
+        back = replace(rest, start=rest.end, end=rest.start)
+        last = _drop(back, lands, copper)
+        rest = replace(rest, end=last[-1].end) if last else rest
+        tracks += [*first, *([rest] if rest.start != rest.end else []), *last]
+    return replace(routing, tracks=tuple(tracks))
+
+
+def _lands(placement: Placement, routing: Routing) -> Iterator[_Land]:
+    for component in placement.components:
+        for pad in placed_pads(component):
+            yield _Land(pad.area, pad.net, pad.sides, _width_mm(pad))
+    for via in routing.vias:
+        area = shapely.Point(via.x_mm, via.y_mm).buffer(via.diameter_mm / 2)
+        yield _Land(area, via.net, SIDES, via.diameter_mm)
+
+
+def _width_mm(pad: PlacedPad) -> float:
+    return min(pad.pad.width_mm, pad.pad.height_mm)
+
+
+def _drop(track: Track, lands: list[_Land], copper: "_Copper") -> list[Track]:
+    """The pieces by which a track leaves the land that it begins in; none without room."""
+    at, line = shapely.Point(track.start), shapely.LineString([track.start, track.end])
+    for land in lands:
+        if land.net != track.net or track.side not in land.sides or not land.area.covers(at):
+            continue
+        outside = line.difference(land.area).length
+        if outside < BEYOND_MM[0]:
+            return []
+        for slimmer in SLIMMER:
+            pieces = list(_pieces(track, line, line.length - outside, land.width_mm, slimmer))
+            if pieces and all(map(copper.free, pieces)):
+                copper.add(pieces)
+                return pieces
+    return []
+
+
+def _pieces(
+    track: Track, line: shapely.LineString, inside_mm: float, most_mm: float, slimmer: float
+) -> Iterator[Track]:
+    """The beginning of a track in pieces, each less wide than the one before."""
+    start = track.start
+    for beyond, wider in zip(BEYOND_MM, WIDER, strict=True):
+        width = round(min(wider * slimmer * track.width_mm, most_mm), 3)
+        if inside_mm + beyond > line.length or width <= track.width_mm:
+            return
+        tip = line.interpolate(inside_mm + beyond)
+        end = (round(tip.x, 3), round(tip.y, 3))
+        yield replace(track, start=start, end=end, width_mm=width)
+        start = end
+
+
+class _Copper:
+    """What is on the board, to keep clear of."""
+
+    def __init__(self, placement: Placement, routing: Routing, lands: list[_Land]) -> None:
+        classes = {c.name: c.clearance_mm for c in placement.classes}
+        self.gaps = {n.name: classes[n.net_class] for n in placement.nets}
+        self.most = max(classes.values())
+        self.placement = placement
+        self.nets = [land.net for land in lands] + [t.net for t in routing.tracks]
+        self.sides = [land.sides for land in lands] + [(t.side,) for t in routing.tracks]
+        shapes = [land.area for land in lands] + [_area(t) for t in routing.tracks]
+        self.shapes = list(shapes)
+        self.edge = shapely.union_all(
+            [_board(placement), *(shapely.Point(h).buffer(placement.hole_mm / 2)
+                                  for h in placement.holes)]
+        )  # fmt: skip
+
+    def free(self, drop: Track) -> bool:
+        """Whether a track keeps its distance from all of other nets, from edge and holes."""
+        area = _area(drop)
+        if area.distance(self.edge) < self.placement.edge_clearance_mm + _MARGIN_MM:
+            return False
+        near = shapely.dwithin(np.array(self.shapes, dtype=object), area, self.most + _MARGIN_MM)
+        own = self.gaps[drop.net]
+        return not any(
+            self.nets[i] != drop.net
+            and drop.side in self.sides[i]
+            and self.shapes[i].distance(area)
+            < max(own, self.gaps.get(self.nets[i], self.most)) + _MARGIN_MM
+            for i in np.flatnonzero(near)
+        )
+
+    def add(self, pieces: list[Track]) -> None:
+        """Put pieces of track on the board."""
+        for piece in pieces:
+            self.shapes.append(_area(piece))
+            self.nets.append(piece.net)
+            self.sides.append((piece.side,))
+
+
+def _area(track: Track) -> shapely.Geometry:
+    line = shapely.LineString([track.start, track.end])
+    return line.buffer(track.width_mm / 2, quad_segs=16)
+
+
+def _board(placement: Placement) -> shapely.Geometry:
+    box = placement.outline
+    return shapely.box(box.x_min_mm, box.y_min_mm, box.x_max_mm, box.y_max_mm).exterior
