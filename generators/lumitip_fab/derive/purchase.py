@@ -87,7 +87,7 @@ def _screws(given: Input, holder: Holder, prices: Prices) -> list[Bought]:
 def _of_flange(given: Input, flange: Flange, prices: Prices) -> list[Bought]:
     """Screws of its board, its locating pin, and the gripper's bolts, which must be longer."""
     count = len(flange.screws)
-    through = flange.board_z_mm - flange.seat_z_mm + given.parameters.stack.pcb_mm
+    through = flange.board_z_mm - flange.seat_z_mm + stiff_mm(given.parameters)
     screw = f"M2 x {2 * math.ceil((through + _NUT_SHARE * 2) / 2)} countersunk screw"
     pin = f"{flange.pin_mm:g} x {flange.pin_length_mm:g} parallel pin"
     bolt = f"{flange.bolt} socket head screw"
