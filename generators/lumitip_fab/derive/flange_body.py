@@ -77,7 +77,7 @@ def derive_flange_body(
         contacts_z_mm=-coupling.contacts_depth_mm,
         contacts_mm=pogo.height_mm,
         stroke_mm=pogo.stroke_mm,
-        openings=tuple(_opening(header, board_at, coupling.face_mm / 2) for header in headers),
+        openings=_openings(headers, board_at, coupling.face_mm / 2),
         screws=tuple((x + board_at[0], y + board_at[1]) for x, y in carrier.holes),
         screw_mm=carrier.hole_mm + SCREW_PLAY_MM,
         screw_head_mm=SCREW_HEAD_MM,
@@ -99,12 +99,19 @@ def _room(device: Device, board_at: Point) -> Box:
     return _moved(device.pattern.body, at).grown(AROUND_MM)
 
 
-def _opening(header: Device, board_at: Point, radius_mm: float) -> Box:
-    """From the middle of a header out through the nearer wall."""
-    room, y = _room(header, board_at), header.y_mm + board_at[1]
-    if y > 0:
-        return Box(room.x_min_mm, room.x_max_mm, y, radius_mm)
-    return Box(room.x_min_mm, room.x_max_mm, -radius_mm, y)
+def _openings(headers: list[Device], board_at: Point, radius_mm: float) -> tuple[Box, ...]:
+    """One on each side: from the middles of its headers and wire pads out through the wall."""
+    openings = []
+    for side in (-1, 1):
+        here = [d for d in headers if side * (d.y_mm + board_at[1]) > 0]
+        rooms = [_room(header, board_at) for header in here]
+        if not here:
+            continue
+        start = min(side * (header.y_mm + board_at[1]) for header in here)
+        low, high = sorted((side * start, side * radius_mm))
+        left, right = min(r.x_min_mm for r in rooms), max(r.x_max_mm for r in rooms)
+        openings.append(Box(left, right, low, high))
+    return tuple(openings)
 
 
 def _refuse(given: Input, flange: Flange, faults: Faults) -> None:
