@@ -224,8 +224,6 @@ RECEIVER_DAMAGES: dict[Damage, set[str]] = {
         "open",
         "short",
         "clearance",
-        "channels",
-        "names",
         "silk_gap",
     },
     dot_lost: {"silk_marks"},
