@@ -1,8 +1,8 @@
 """What is built from what: the steps, and the key that tells whether one must run again.
 
 A generator's arguments are its dependencies: each is named after a field of `Design`, but for
-`finger`, `carrier`, `holder` and `flange`, which make the step run once for each of those. They
-are read from the source, because importing a generator of solids takes seconds.
+those in `EACH`, which make the step run once for each of several. They are read from the source,
+because importing a generator of solids takes seconds.
 """
 
 import ast
@@ -67,7 +67,10 @@ STEPS = (
 )
 
 
-EACH = {"finger": "fingers", "carrier": "carriers", "holder": "holders", "flange": "flanges"}
+EACH = {
+    "finger": "fingers", "carrier": "carriers", "regulated": "regulated", "holder": "holders",
+    "flange": "flanges",
+}  # fmt: skip
 """Arguments that a step takes one of at a time, and the field that has them all."""
 
 

@@ -1,6 +1,5 @@
 """ngspice against the closed forms of the flange's regulator, from the nets of its board."""
 
-import dataclasses
 import math
 from pathlib import Path
 
@@ -9,6 +8,7 @@ import pytest
 from lumitip_fab.boards.spice_supply import supply_simulation
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
+from lumitip_fab.graph import tasks
 from lumitip_fab.load import load
 from spice_runs import needs_ngspice, simulated
 
@@ -18,7 +18,7 @@ def _derived(design_dir: Path, preset: str) -> Design:
 
 
 def _netlist(design: Design) -> str:
-    carrier = next(c for c in design.carriers if c.hot_loop)
+    (carrier,) = design.regulated
     (made,) = supply_simulation(design.title, carrier, design.electrical)
     assert made.path == f"boards/{carrier.name}/{carrier.name}.cir"
     return made.data.decode()
@@ -58,7 +58,7 @@ def test_every_part_of_the_output_is_in_the_netlist(design_dir: Path) -> None:
 
 def test_a_board_without_a_regulator_has_no_netlist(design_dir: Path) -> None:
     design = _derived(design_dir, "published")
-    breakout = next(c for c in design.carriers if not c.hot_loop)
-    assert supply_simulation(design.title, breakout, design.electrical) == ()
-    without = dataclasses.replace(design.electrical, supplies=())
-    assert supply_simulation(design.title, breakout, without) == ()
+    (flange,) = design.regulated
+    assert [c.name for c in design.carriers if c != flange] == ["breakout"]
+    names = [task.name for task in tasks(design) if task.step.name == "supply_simulation"]
+    assert names == [f"supply_simulation.{flange.name}"]

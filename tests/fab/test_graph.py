@@ -61,7 +61,7 @@ def test_pitch_touches_everything_of_the_fingers(keys: Keys) -> None:
 
 def test_what_is_outside_touches_no_finger(keys: Keys) -> None:
     after = keys("[breakout]\nhole_spacing_mm = 34.0\n")
-    assert changed(keys(), after) == {"carrier_files", "holder_files", "supply_simulation"}
+    assert changed(keys(), after) == {"carrier_files", "holder_files"}
     assert changed(keys(), keys("[holder]\nbody_mm = 76.0\n")) == {"holder_files"}
 
 

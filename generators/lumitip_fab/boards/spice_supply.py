@@ -22,25 +22,23 @@ _DAMPING_OHM, _INTEGRAL_S = 0.6, 1e-4
 
 
 def supply_simulation(
-    title: Title, carrier: Carrier, electrical: Electrical
+    title: Title, regulated: Carrier, electrical: Electrical
 ) -> tuple[Artefact, ...]:
-    """The netlist of a carrier's regulator; nothing of a carrier without one.
+    """The netlist of a carrier's regulator.
 
     Args:
         title: of the design.
-        carrier: whose nets join coil, capacitors and regulator.
+        regulated: the carrier, whose nets join coil, capacitors and regulator.
         electrical: what they are.
     """
-    if not carrier.hot_loop:
-        return ()
     (told,) = electrical.supplies
     lines = (
-        f"* {title.name} {title.revision}, {carrier.name}: its regulator",
-        *_circuit(carrier, told),
-        *_measured(carrier, told),
+        f"* {title.name} {title.revision}, {regulated.name}: its regulator",
+        *_circuit(regulated, told),
+        *_measured(regulated, told),
         ".end",
     )
-    path = f"boards/{carrier.name}/{carrier.name}.cir"
+    path = f"boards/{regulated.name}/{regulated.name}.cir"
     return (Artefact(path, ("\n".join(lines) + "\n").encode(), frame=""),)
 
 

@@ -32,9 +32,10 @@ from lumitip_fab.frames import (
     plate_back_to_sensor,
 )
 
-READS = tuple(
-    f"{kind}/*.{ending}" for kind in ("backing", "interface") for ending in ("stl", "3mf", "step")
-)
+READS = (
+    "backing/*.stl", "backing/*.3mf", "backing/*.step",
+    "interface/*.stl", "interface/*.3mf", "interface/*.step",
+)  # fmt: skip
 
 PUBLISHED_OVERHANG_MM2 = 341.0  # of the published part, standing on its mount face
 FLAT_OVERHANG_MM2 = 0.5  # of a plate printed on its front: no support

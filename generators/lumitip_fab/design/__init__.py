@@ -150,6 +150,11 @@ class Design:
         return self.emitter, self.receiver
 
     @property
+    def regulated(self) -> tuple[Carrier, ...]:
+        """The carriers with a switching regulator."""
+        return tuple(carrier for carrier in self.carriers if carrier.hot_loop)
+
+    @property
     def layers(self) -> tuple[str, ...]:
         """The bodies of a finger, from the back."""
         return (*(("interface",) if self.interfaces else ()), "backing", "board", "silicone",

@@ -82,6 +82,7 @@ def search(  # noqa: PLR0912, PLR0915 - one loop; calls would hand on a score of
     window: Ints,
     neck: Bytes,
     near_via: Bytes,
+    via_reach: float,
     net: int,
     wide: int,
     narrow: int,
@@ -109,6 +110,7 @@ def search(  # noqa: PLR0912, PLR0915 - one loop; calls would hand on a score of
         window: where to search, in the same form.
         neck: `(H, W)`: 1 where the narrow class applies.
         near_via: `(H, W)`: 1 where a new via would be too near to one of this net.
+        via_reach: squared distance of two vias of a net that is enough, in steps of the grid.
         net: its number.
         wide: its class.
         narrow: its class beside pads narrower than its tracks.
@@ -201,6 +203,8 @@ def search(  # noqa: PLR0912, PLR0915 - one loop; calls would hand on a score of
         there = node + plane if layer == 0 else node - plane
         if holder not in (0, net) or (tree[there] and not target[there]):
             continue
+        if _via_behind(node, came, plane, width, via_reach):
+            continue
         cost = so_far + costs[0] * (1 + history[0, y, x] + history[1, y, x]) * (
             1 + crowded * taken[c, 2, y, x]
         )
@@ -212,6 +216,18 @@ def search(  # noqa: PLR0912, PLR0915 - one loop; calls would hand on a score of
     if end < 0:
         return np.empty(0, dtype=np.int32)
     return _walked(end, came, plane, width)
+
+
+@kernel
+def _via_behind(node: int, came: Bytes, plane: int, width: int, reach: float) -> bool:
+    """Whether the path to a node has a via nearer to it than the square root of `reach`."""
+    y, x = node % plane // width, node % width
+    while came[node] not in (SOURCE, VIA):
+        node = _before(node, came[node], plane, width)
+        dy, dx = node % plane // width - y, node % width - x
+        if dy * dy + dx * dx >= reach:
+            return False
+    return bool(came[node] == VIA)
 
 
 @kernel

@@ -160,11 +160,13 @@ def _path(
     near = _box(state.grid, [ends[0].nodes, *goal.nodes]) + margin * np.array([-1, 1, -1, 1])
     near = np.clip(near, 0, everywhere[[1, 1, 3, 3]]).astype(np.int32)
     starts = np.unique(np.concatenate(tree.nodes))
+    via_reach = (_via_reach_mm(state) / state.grid.pitch_mm) ** 2
     for window in (near, everywhere):
         state.turn += 1
         path = kernels.search(
             state.owner, state.taken, state.history, state.tree, starts, state.target,
-            box, window, net.neck, state.near_via, net.number, net.wide, state.rules.narrow,
+            box, window, net.neck, state.near_via, via_reach,
+            net.number, net.wide, state.rules.narrow,
             taste.price, taste.grain(), taste.costs(state.grid.pitch_mm),
             state.reached, state.came, state.seen, state.turn, state.keys, state.queue,
         )  # fmt: skip
@@ -186,10 +188,15 @@ def _grow(state: State, path: Ints) -> None:
         if way == VIA:
             state.tree[a] |= INSIDE_PAD
             state.tree[b] |= INSIDE_PAD
-            at, reach = grid.at(a), state.rules.drill_mm + HOLE_TO_HOLE_MM
+            at, reach = grid.at(a), _via_reach_mm(state)
             where = grid.near(*at, reach)
             x, y = grid.offsets(where, *at)
-            state.near_via[where][np.hypot(x, y) < reach - 1e-9] = 1
+            state.near_via[where][np.hypot(x, y) < reach] = 1
         else:
             state.tree[a] |= 1 << way
             state.tree[b] |= 1 << ((way + 4) & 7)
+
+
+def _via_reach_mm(state: State) -> float:
+    """Distance of two vias, a little less than the least that is allowed."""
+    return state.rules.drill_mm + HOLE_TO_HOLE_MM - 1e-9
