@@ -67,6 +67,7 @@ def main(out: Path, integrated: Path) -> None:
     module = integrated / "boards/flange/flange_front.png"
     shutil.copy(module, IMAGES / "board_flange_module.png")
     shutil.copy(out / "wiring/wiring.svg", IMAGES)
+    shutil.copy(out / "assembly/system.svg", IMAGES)
     _pages(pypdfium2.PdfDocument(out / "manual/manual.pdf"), (0, 5, 7))
     draw_glb(out / "assembly/assembly.glb", IMAGES / "assembly.png")
 

@@ -18,4 +18,4 @@ class Artefact:
     """From the file's own frame to its finger's sensor frame, or to `frame` (4x4, mm)."""
     frame: str = "sensor"
     """Name of the frame that `to_sensor` leads to: `"sensor"`, `"gripper"`, `"carrier"`,
-    `"flange"` or `""` for none."""
+    `"flange"`, `"tool"` (the robot's tool flange) or `""` for none."""

@@ -17,6 +17,10 @@ class ToolCoupling(Entry):
     """A coupling with the robot's tool flange on its one side, by ISO 9409-1, and a centring
     recess, a locating pin and contacts on its other."""
 
+    height_mm: Length
+    """From the robot's tool flange to the face that the gripper stands on."""
+    robot_mm: Length
+    """Outer diameter of the robot's tool flange by ISO 9409-1."""
     face_mm: Length
     """Diameter of the face that the gripper stands on."""
     recess_mm: Length
@@ -48,5 +52,10 @@ class ToolCoupling(Entry):
             raise ValueError(
                 f"recess_mm = {self.recess_mm:g} given, less than face_mm = {self.face_mm:g} is "
                 "allowed"
+            )
+        if self.recess_depth_mm >= self.height_mm:
+            raise ValueError(
+                f"recess_depth_mm = {self.recess_depth_mm:g} given, less than height_mm = "
+                f"{self.height_mm:g} is allowed"
             )
         return self

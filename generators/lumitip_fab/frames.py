@@ -11,6 +11,7 @@
 - Base of a robot's model: in the mount plane, midway between the fingers; x along the opening,
   from the receiver to the emitter, z to the tips. The tool centre point is the gripper frame's
   origin: between the middles of both grids.
+- Tool frame: see `lumitip_fab.design.system`; a holder's board looks along its -y.
 - Page of a board file: seen from the board's front with the tip up, y down, as KiCad has it;
   z = 0 is the board's front, and looks to the back so that the frame stays right-handed.
 - Page of a mask: seen from the film's inside, tip towards the top, so page x = -x of the
@@ -22,7 +23,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from lumitip_fab.design import Closing, Flange, Holder, Mould, Mount, Point, Stack
+from lumitip_fab.design import Closing, Flange, Holder, Mould, Mount, Point, Stack, System
 
 Matrix = NDArray[np.float64]
 BOARD_ON_PAGE_MM = (150.0, 100.0)
@@ -121,6 +122,26 @@ def gripper_to_base(stack: Stack, mount: Mount, closing: Closing) -> Matrix:
     plane = finger_to_gripper("receiver", mount, closing, 0.0) @ mount_to_sensor(mount, stack)
     turned = np.array([[0.0, 0, 1, 0], [1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
     return np.asarray(translation(0.0, 0.0, -float(plane[1, 3])) @ turned)
+
+
+def gripper_to_tool(stack: Stack, mount: Mount, closing: Closing, system: System) -> Matrix:
+    """From the gripper frame to that of the robot's tool flange; the tool centre point is its
+    origin."""
+    up = translation(0.0, 0.0, system.gripper_z_mm + system.reach_mm)
+    return np.asarray(up @ gripper_to_base(stack, mount, closing))
+
+
+def flange_to_tool(system: System) -> Matrix:
+    """From the frame of a flange to that of the robot's tool flange."""
+    return translation(0.0, 0.0, system.coupling_mm)
+
+
+def holder_to_tool(holder: Holder, system: System) -> Matrix:
+    """From the frame of the carrier in a holder to that of the robot's tool flange."""
+    middle = (holder.outer.y_min_mm + holder.outer.y_max_mm) / 2
+    matrix = translation(0.0, holder.axis_z_mm, system.holder_z_mm - middle)
+    matrix[:3, :3] = ((1, 0, 0), (0, 0, -1), (0, 1, 0))
+    return matrix
 
 
 def sensor_to_page(measured_ruler_mm: Point) -> Matrix:

@@ -37,6 +37,8 @@ class Step:
 _CAD = ("build123d", "cadquery-ocp", "cadquery-ocp-novtk", "lib3mf", "numpy", "trimesh")
 _INK = ("reportlab", "ezdxf", "numpy", "shapely")
 _COPPER = ("gerbonara", "matplotlib", "networkx", "numba", "numpy", "scipy", "shapely")
+_DRAWN = ("numpy", "shapely", "trimesh")
+_STACKED = ("assembly/assembly.glb", "flange/*.stl", "holder/*.stl")
 _LISTED = (
     "backing/*.stl", "interface/*.stl", "mould/*.stl", "holder/*.stl", "flange/*.stl",
     "fit/*.stl", "mould/*_casting.md", "boards/*/order/generic_*_bom.csv",
@@ -62,6 +64,7 @@ STEPS = (
     Step("mechanical", "holder", "holder_files", True, _CAD),
     Step("mechanical", "flange", "flange_files", True, _CAD),
     Step("mechanical", "fit_plate", "fit_plate_files", True, _CAD),
+    Step("mechanical", "system", "system_files", False, _DRAWN, _STACKED),
     Step("parts_list", "files", "bill_of_materials", False, ("numpy",), _LISTED),
     Step("manual", "files", "manual_files", False, _SET, _SHOWN),
 )

@@ -53,6 +53,34 @@ class Origin(Strict):
     """How far to trust it."""
 
 
+class Envelope(Entry):
+    """The body of a gripper as a block with round edges along its axis, from the face that stands
+    on the coupling, and how far its fingers' mount planes are from that face."""
+
+    width_mm: Length
+    """Along the opening."""
+    depth_mm: Length
+    """Across the opening."""
+    corner_mm: float = Field(ge=0, le=500)
+    """Radius of the edges along the axis; half of both sides makes a cylinder."""
+    length_mm: Length
+    """Along the axis."""
+    reach_mm: Length
+    """From that face to the plane that the fingertips stand on, with the gripper closed."""
+
+    @model_validator(mode="after")
+    def _fits_together(self) -> Self:
+        most = min(self.width_mm, self.depth_mm) / 2
+        if self.corner_mm > most:
+            raise ValueError(f"corner_mm = {self.corner_mm:g} given, at most {most:g} is allowed")
+        if self.length_mm > self.reach_mm:
+            raise ValueError(
+                f"length_mm = {self.length_mm:g} given, at most reach_mm = {self.reach_mm:g} is "
+                "allowed"
+            )
+        return self
+
+
 class Gripper(Entry):
     """Where a gripper holds a fingertip; distances w are behind the plate's rim plane. Its bolts
     run along the finger, into the gripper."""
@@ -87,6 +115,8 @@ class Gripper(Entry):
     """Its locating pins, if it has some."""
     nose: Nose | None = None
     """The tapered seat, if the gripper has one."""
+    envelope: Envelope
+    """Its body, with a source of its own."""
     origin: Mapping[str, Origin] = Field(default_factory=dict)
     """Of single figures: where they come from, if not from `source`."""
 
@@ -114,5 +144,7 @@ class Gripper(Entry):
 
 
 FIGURES = tuple(
-    name for name in Gripper.model_fields if name not in {"source", "confidence", "origin"}
+    name
+    for name in Gripper.model_fields
+    if name not in {"source", "confidence", "envelope", "origin"}
 )

@@ -8,7 +8,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from lumitip_fab.design import Design
-from lumitip_fab.frames import gripper_to_base
+from lumitip_fab.frames import gripper_to_base, gripper_to_tool
 from lumitip_fab.spec_outside import Row, outside
 
 
@@ -123,6 +123,8 @@ def _further(design: Design) -> tuple[Row, ...]:
     current, volts = sum(design.wiring.current_ma), design.wiring.supply_v
     slant = design.outline.tip_y_mm - tip.slant_start_y_mm
     tcp_mm = float(gripper_to_base(stack, design.mount, design.closing)[2, 3])
+    to_tool = gripper_to_tool(stack, design.mount, design.closing, design.system)
+    tool_mm = float(to_tool[2, 3])
     skin = (design.mount.stroke_mm - design.closing.max_opening_mm) / 2
     across = "diameter" if design.mask.hole_shape == "circle" else "across flats"
     return (
@@ -146,11 +148,22 @@ def _further(design: Design) -> tuple[Row, ...]:
             "which stands before the gripper's own pad"),
         Row("tool centre point", "not stated", f"{tcp_mm:.1f} mm",
             "from the mount plane, midway between the fingers: the middle of both grids"),
+        Row("... from the robot's flange", "not stated", f"{tool_mm:.1f} mm", _reached(design)),
         Row("aperture", "2.5 mm", f"{design.mask.hole_mm:g} mm",
             f"{across} of a {design.mask.hole_shape}, by mask.hole_mm; published: a hexagon"),
         Row("heat in the emitter", "not stated", f"{design.electrical.heat_w:.2f} W",
             f"{current:.1f} mA from {volts:g} V, all of it in LEDs and their resistors"),
     )  # fmt: skip
+
+
+def _reached(design: Design) -> str:
+    """What the way to the fingers' mount plane is made of."""
+    system = design.system
+    added = system.gripper_z_mm - system.coupling_mm
+    before = (f"coupling {system.coupling_mm:g}, flange {added:g}" if design.flanges
+              else "without a coupling: from the gripper's own face")  # fmt: skip
+    return (f"{before}, gripper {system.reach_mm:g} mm, closed ({system.confidence}, "
+            "parts/grippers.toml), and the row above")  # fmt: skip
 
 
 def _trusted(design: Design) -> str:

@@ -1,33 +1,19 @@
 """Damage the assembly's GLB file, and exactly the right checks fail."""
 
-import json
 import re
-import struct
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 
 from damages import failing
+from glb_damages import Told, move, node, opened, rewritten
 from lumitip_fab.checks import assembly, exploded
 
 GLB = "assembly/assembly.glb"
 SVG = "assembly/receiver_exploded.svg"
 EVERY = {name.removeprefix("assembly.") for name in assembly.NAMES}
-Told = dict[str, Any]
-
-
-def node(told: Told, name: str) -> Told:
-    return next(n for n in told["nodes"] if n["name"] == name)
-
-
-def move(told: Told, name: str, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> None:
-    """Move a body in its finger, mm."""
-    at = node(told, name)
-    before = at.get("translation", [0.0, 0.0, 0.0])
-    at["translation"] = [a + b / 1000 for a, b in zip(before, (x, y, z), strict=True)]
 
 
 def led_moved(told: Told) -> None:
@@ -121,17 +107,6 @@ SCENE = {
 }
 
 
-def rewritten(data: bytes, damage: Callable[[Told], None]) -> bytes:
-    """A GLB file with its tables changed."""
-    size = struct.unpack_from("<I", data, 12)[0]
-    told, rest = json.loads(data[20 : 20 + size]), data[20 + size :]
-    damage(told)
-    text = json.dumps(told).encode()
-    text += b" " * (-len(text) % 4)
-    head = struct.pack("<4sII", b"glTF", 2, 20 + len(text) + len(rest))
-    return head + struct.pack("<I4s", len(text), b"JSON") + text + rest
-
-
 @pytest.mark.parametrize("damage", SCENE, ids=lambda d: d.__name__)
 def test_a_damaged_scene(damage: Callable[[Told], None], damaged: Path) -> None:
     file = damaged / GLB
@@ -147,17 +122,11 @@ def foreign(_: bytes) -> bytes:
     return b"solid nothing"
 
 
-def mesh_opened(data: bytes) -> bytes:
-    """Make the first triangle of the emitter's film a corner."""
-    size = struct.unpack_from("<I", data, 12)[0]
-    told = json.loads(data[20 : 20 + size])
-    primitive = told["meshes"][node(told, "emitter.film")["mesh"]]["primitives"][0]
-    view = told["bufferViews"][told["accessors"][primitive["indices"]]["bufferView"]]
-    at = 28 + size + view["byteOffset"]
-    return data[:at] + data[at + 4 : at + 8] + data[at + 4 :]
+def film_opened(data: bytes) -> bytes:
+    return opened(data, "emitter.film")
 
 
-BYTES = {truncated: EVERY, foreign: EVERY, mesh_opened: {"interference"}}
+BYTES = {truncated: EVERY, foreign: EVERY, film_opened: {"interference"}}
 
 
 @pytest.mark.parametrize("damage", BYTES, ids=lambda d: d.__name__)

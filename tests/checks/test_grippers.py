@@ -35,6 +35,15 @@ land_mm = 4.0
 seat_width_mm = 24.0
 pins = { hole_mm = 3.1, spacing_mm = 6.0, depth_mm = 2.5 }
 nose = { front_width_mm = 14.0, front_w_mm = 3.5, half_angle_deg = 45.0, height_mm = 2.0 }
+
+[bench_jaw.envelope]
+source = "the same callipers"
+confidence = "measured"
+width_mm = 60.0
+depth_mm = 40.0
+corner_mm = 2.0
+length_mm = 70.0
+reach_mm = 85.0
 """
 File = Callable[..., Path]
 
@@ -137,6 +146,9 @@ REFUSED = {
         "whose block keeps 0.25 mm between bolts and pins",
     changed("pad_w_mm = 9.0", "pad_w_mm = 13.0"): "when it is closed",
     changed('bolt = "M3"', 'bolt = "3 mm"'): "bolt",
+    changed("length_mm = 70.0", "length_mm = 90.0"): "length_mm = 90 given, at most reach_mm = 85",
+    changed("corner_mm = 2.0\nlength", "corner_mm = 21.0\nlength"):
+        "corner_mm = 21 given, at most 20",
     NEW + '[bench_jaw.origin]\nbold_mm = { source = "x", confidence = "assumed" }\n':
         "origin of bold_mm given",
 }  # fmt: skip

@@ -17,7 +17,8 @@ from lumitip_fab.encoding import read_design
 
 MODULES = (
     "manifest", "layout", "firmware", "mask", "backing", "fit_plate", "mould", "assembly", "board",
-    "schematic", "orders", "printing", "holder", "flange", "robot", "wiring", "bom", "manual",
+    "schematic", "orders", "printing", "holder", "flange", "robot", "system", "wiring", "bom",
+    "manual",
 )  # fmt: skip
 _LONG = frozenset({"orders", "board"})
 """Modules that take longer than another process takes to start."""

@@ -18,6 +18,7 @@ from lumitip_fab.derive.packages import derive_fabs, derive_packages, derive_rul
 from lumitip_fab.derive.purchase import derive_purchase
 from lumitip_fab.derive.slicing import derive_slicing
 from lumitip_fab.derive.stack import derive_printing, derive_stack, derive_tip
+from lumitip_fab.derive.system import derive_system
 from lumitip_fab.derive.weights import derive_densities
 from lumitip_fab.design import Controller, Design, Grid, Title
 from lumitip_fab.encoding import canonical, settled
@@ -106,6 +107,7 @@ def derive(given: Input) -> Design:
             carriers=(*breakout, *flange),
             holders=holders,
             flanges=flanges,
+            system=derive_system(given, flanges, holders),
             purchase=derive_purchase(given, coupling, holders, flanges, slicing),
             parameters_hash=_parameters_hash(given),
         )

@@ -38,6 +38,7 @@ from lumitip_fab.design.ordering import Fab
 from lumitip_fab.design.purchase import Bought, PartPrice, Purchase
 from lumitip_fab.design.shape import Box, Cubic, Outline, Point, Stack, Tip
 from lumitip_fab.design.slicing import Filament, Slicing
+from lumitip_fab.design.system import System
 from lumitip_fab.design.weights import Densities
 
 __all__ = [
@@ -88,6 +89,7 @@ __all__ = [
     "Rules",
     "Slicing",
     "Stack",
+    "System",
     "Terminal",
     "Tip",
     "Title",
@@ -141,6 +143,7 @@ class Design:
     """What holds the breakout board on the gripper; none without that board."""
     flanges: tuple[Flange, ...]
     """Printed parts round the flange's board; none without that board."""
+    system: System
     purchase: Purchase
     parameters_hash: str
 

@@ -22,23 +22,14 @@ from lumitip_fab.frames import finger_to_gripper
 from lumitip_fab.mechanical import export
 from lumitip_fab.mechanical.bodies import Bodies, finger_bodies, layers_of
 from lumitip_fab.mechanical.exploded import exploded_view
-from lumitip_fab.mechanical.glb import Body, Colour, Group, glb
+from lumitip_fab.mechanical.glb import Body, Group, glb
 from lumitip_fab.mechanical.shapes import placed
+from lumitip_fab.mechanical.surface import Mesh
+from lumitip_fab.mechanical.tints import COLOURS
 
 OPENING_MM = 30.0
 CHORD_MM = 0.02
 _M_TO_MM = np.diag([1000.0, 1000.0, 1000.0, 1.0])
-_COLOURS: dict[str, Colour] = {
-    "interface": (0.62, 0.66, 0.72, 1.0),
-    "backing": (0.82, 0.84, 0.86, 1.0),
-    "board": (0.10, 0.38, 0.24, 1.0),
-    "silicone": (0.75, 0.88, 0.95, 0.35),
-    "film": (0.08, 0.08, 0.09, 0.55),
-    "led": (0.95, 0.80, 0.35, 1.0),
-    "photodetector": (0.22, 0.24, 0.30, 1.0),
-    "multiplexer": (0.12, 0.12, 0.13, 1.0),
-    "resistor": (0.25, 0.22, 0.20, 1.0),
-}
 
 
 def assembly(
@@ -96,7 +87,7 @@ def _coloured(bodies: Bodies) -> Compound:
 
 def _told(label: str, shape: Shape, kind: str) -> Shape:
     told = copy(shape)
-    told.label, told.color = label, Color(*_COLOURS[kind])
+    told.label, told.color = label, Color(*COLOURS[kind])
     return told
 
 
@@ -104,13 +95,13 @@ def _meshed(bodies: Bodies) -> Iterator[Body]:
     """A finger's bodies for a GLB: parts of one size share a box, centred on its footprint."""
     name = bodies.finger.name
     for kind, solid in layers_of(bodies):
-        yield Body(f"{name}.{kind}", export.mesh(solid, CHORD_MM), _COLOURS[kind])
-    boxes: dict[tuple[float, float, float], export.Mesh] = {}
+        yield Body(f"{name}.{kind}", export.mesh(solid, CHORD_MM), COLOURS[kind])
+    boxes: dict[tuple[float, float, float], Mesh] = {}
     for part, solid in zip(bodies.finger.parts, bodies.parts, strict=True):
         size = (part.size_x_mm, part.size_y_mm, part.height_mm)
         if size not in boxes:
             corner = np.array([-size[0] / 2, -size[1] / 2, 0.0])
             boxes[size] = export.mesh(Solid.make_box(*size))
-            boxes[size] = export.Mesh(boxes[size].points_mm + corner, boxes[size].triangles)
+            boxes[size] = Mesh(boxes[size].points_mm + corner, boxes[size].triangles)
         low = float(solid.bounding_box().min.Z)
-        yield Body(part.name, boxes[size], _COLOURS[part.kind], (part.x_mm, part.y_mm, low))
+        yield Body(part.name, boxes[size], COLOURS[part.kind], (part.x_mm, part.y_mm, low))

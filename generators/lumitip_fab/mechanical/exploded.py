@@ -28,7 +28,6 @@ ELEVATION_DEG = 32.0
 SPREAD = 0.9  # of a layer's height on the page, from layer to layer
 LABEL_MM = 10.0  # from the drawing to its labels
 WORDS_MM = 38.0  # width of the longest label
-LINE_MM = 9.0  # from label to label
 _CHORD_MM = 0.05
 _CRACK_MM = 0.01  # between triangles on the page, by rounding
 _STEPS = 24  # chords of a curve on the page
@@ -213,8 +212,8 @@ def _label(sheet: Sheet, layers: list[Layer], finger: Finger, stack: Stack) -> N
         rise = next(layer.rise_mm for layer in layers if layer.name == name)
         details.append((words, _projected(np.array(place), rise)))
     top = float(sheet.high[1]) + 2 * LABEL_MM
-    _leaders(sheet, names, right, "start")
-    _leaders(sheet, details, left, "end")
+    sheet.leaders(names, right, "start")
+    sheet.leaders(details, left, "end")
     sheet.words(left - WORDS_MM, top, f"{finger.name.capitalize()} finger, exploded", "title",
                 "start")  # fmt: skip
     sheet.cover(left - WORDS_MM, top + 2)
@@ -242,19 +241,3 @@ def _details(finger: Finger, stack: Stack) -> list[tuple[tuple[str, str], Any, s
     notch = (finger.notch.x_min_mm + 2, finger.notch.y_min_mm + 4, stack.pocket_z_mm)
     told.append((("Wire notch", "opens to the gripper"), notch, "backing"))
     return told
-
-
-def _leaders(
-    sheet: Sheet, told: list[tuple[tuple[str, str], Points]], x_mm: float, anchor: str
-) -> None:
-    """A column of labels with a line from each to its place; labels keep apart."""
-    gap = 1.5 if anchor == "start" else -1.5
-    bend = x_mm - 4 * gap
-    below = math.inf
-    for words, at in sorted(told, key=lambda label: -float(label[1][1])):
-        y = min(float(at[1]), below - LINE_MM)
-        below = y
-        sheet.lines([np.array([at, (bend, y), (x_mm, y)])], "leader")
-        sheet.dot(float(at[0]), float(at[1]))
-        sheet.words(x_mm + gap, y + 0.4, words[0], "name", anchor)
-        sheet.words(x_mm + gap, y - 3.2, words[1], "detail", anchor)

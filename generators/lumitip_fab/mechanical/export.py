@@ -6,19 +6,18 @@ library because every library puts random identifiers and today's date into it.
 
 import io
 import zipfile
-from dataclasses import dataclass
 from typing import Any
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
 from build123d import Shape, export_step
-from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
 from OCP.BRepMesh import BRepMesh_IncrementalMesh
 from OCP.TopAbs import TopAbs_REVERSED
 from OCP.TopLoc import TopLoc_Location
 
 from lumitip_fab.mechanical.step_text import canonical
+from lumitip_fab.mechanical.surface import Mesh
 
 CHORD_MM = 0.01
 ANGLE_RAD = 0.15
@@ -53,16 +52,6 @@ _MODEL = """<?xml version="1.0" encoding="UTF-8"?>
 <build><item objectid="1"/></build>
 </model>
 """
-
-
-@dataclass(frozen=True, eq=False)
-class Mesh:
-    """A closed surface of triangles."""
-
-    points_mm: NDArray[np.float64]
-    """Corners, shape `(n, 3)`, each once."""
-    triangles: NDArray[np.int64]
-    """Indices of the corners of each triangle, shape `(m, 3)`, counter-clockwise from outside."""
 
 
 def mesh(shape: Shape, chord_mm: float = CHORD_MM) -> Mesh:

@@ -6,10 +6,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from lumitip_fab.frames import Matrix
-from lumitip_fab.mechanical.export import Mesh
-
-Colour = tuple[float, float, float, float]
-"""Red, green, blue as seen on a screen (sRGB) and opacity, each 0 to 1."""
+from lumitip_fab.mechanical.surface import Mesh
+from lumitip_fab.mechanical.tints import Colour
 
 _MAGIC, _VERSION, _JSON, _BINARY = 0x46546C67, 2, 0x4E4F534A, 0x004E4942
 _FLOAT, _UNSIGNED, _VERTICES, _INDICES = 5126, 5125, 34962, 34963

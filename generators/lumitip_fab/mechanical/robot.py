@@ -25,16 +25,11 @@ from lumitip_fab.design import (
 from lumitip_fab.frames import Matrix, finger_to_gripper, gripper_to_base
 from lumitip_fab.mechanical import export, urdf
 from lumitip_fab.mechanical.bodies import finger_bodies, layers_of, part_solid
+from lumitip_fab.mechanical.surface import Mesh
+from lumitip_fab.mechanical.tints import COLOURS
 
 CHORD_MM = 0.05
 _MESHES = "meshes"
-_COLOURS = {
-    "interface": (0.62, 0.66, 0.72, 1.0),
-    "backing": (0.82, 0.84, 0.86, 1.0),
-    "board": (0.10, 0.38, 0.24, 1.0),
-    "silicone": (0.75, 0.88, 0.95, 0.35),
-    "film": (0.08, 0.08, 0.09, 0.55),
-}
 
 
 def robot_files(
@@ -61,7 +56,7 @@ def robot_files(
             urdf.FingerModel(
                 name=finger.name,
                 weight=_weight(finger, layers, stack, densities),
-                visuals=tuple((f"{finger.name}_{k}.stl", _COLOURS[k]) for k in layers),
+                visuals=tuple((f"{finger.name}_{k}.stl", COLOURS[k]) for k in layers),
                 collisions=tuple(name for name in meshes if "collision" in name),
                 to_base=to_base @ _closed(finger.name, mount, closing),
                 opening=_opening(finger.name, mount, closing),
@@ -81,9 +76,7 @@ def robot_files(
     )
 
 
-def _meshes(
-    finger: Finger, layers: dict[str, Solid], stack: Stack
-) -> Iterator[tuple[str, export.Mesh]]:
+def _meshes(finger: Finger, layers: dict[str, Solid], stack: Stack) -> Iterator[tuple[str, Mesh]]:
     """What is looked at, and the convex bodies that touch: the plate with its skin, and the block
     behind it."""
     shown = {kind: export.mesh(layer, CHORD_MM) for kind, layer in layers.items()}
@@ -101,9 +94,9 @@ def _meshes(
     yield f"{finger.name}_collision_block.stl", _hull(block)
 
 
-def _hull(points_mm: NDArray[np.float64]) -> export.Mesh:
+def _hull(points_mm: NDArray[np.float64]) -> Mesh:
     hull = trimesh.PointCloud(points_mm).convex_hull
-    return export.Mesh(np.asarray(hull.vertices), np.asarray(hull.faces))
+    return Mesh(np.asarray(hull.vertices), np.asarray(hull.faces))
 
 
 def _weight(

@@ -1,5 +1,6 @@
 """A line drawing on a page: collects lines, areas and words in mm, y up, and writes SVG."""
 
+import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -9,11 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 Points = NDArray[np.float64]
+LINE_MM = 9.0  # from label to label
 
 _INK, _FAINT = "#1a1a1a", "#5a6b7a"
 _ROUND = 'stroke-linecap="round" stroke-linejoin="round"'
 _STROKES = {
     "area": f'stroke="{_INK}" stroke-width=".5" {_ROUND}',
+    "body": f'stroke="{_INK}" stroke-width=".3" {_ROUND}',
     "part": f'stroke="{_INK}" stroke-width=".12" {_ROUND}',
     "line": f'fill="none" stroke="{_INK}" stroke-width=".22" {_ROUND}',
     "axis": f'fill="none" stroke="{_FAINT}" stroke-width=".18" stroke-dasharray="3 .8 .5 .8"',
@@ -70,6 +73,25 @@ class Sheet:
             f'<text {_WORDS[style]} x="{x_mm:.2f}" y="{0.0 - y_mm:.2f}" text-anchor="{anchor}">'
             f"{escape(text)}</text>"
         )
+
+    def leaders(self, told: list[tuple[tuple[str, str], Points]], x_mm: float, anchor: str) -> None:
+        """A column of labels with a line from each to its place; labels keep apart.
+
+        Args:
+            told: name and detail of each, and where it points at.
+            x_mm: where the words begin or end.
+            anchor: `"start"` or `"end"`.
+        """
+        gap = 1.5 if anchor == "start" else -1.5
+        bend = x_mm - 4 * gap
+        below = math.inf
+        for words, at in sorted(told, key=lambda label: -float(label[1][1])):
+            y = min(float(at[1]), below - LINE_MM)
+            below = y
+            self.lines([np.array([at, (bend, y), (x_mm, y)])], "leader")
+            self.dot(float(at[0]), float(at[1]))
+            self.words(x_mm + gap, y + 0.4, words[0], "name", anchor)
+            self.words(x_mm + gap, y - 3.2, words[1], "detail", anchor)
 
     def cover(self, x_mm: float, y_mm: float) -> None:
         """Make the page reach a point."""

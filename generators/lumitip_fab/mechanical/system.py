@@ -1,0 +1,164 @@
+"""Everything from the robot's tool flange to the fingertips, as bodies and as a drawing.
+
+Made from the meshes that other steps wrote, so that neither is any part built twice nor the CAD
+kernel needed. What is bought is drawn as a plain body.
+"""
+
+import io
+from collections.abc import Iterator
+
+import numpy as np
+import trimesh
+
+from lumitip_fab.artefact import Artefact
+from lumitip_fab.design import (
+    Carrier,
+    Closing,
+    Finger,
+    Flange,
+    Holder,
+    Mount,
+    Stack,
+    System,
+)
+from lumitip_fab.frames import (
+    Matrix,
+    carrier_to_flange,
+    flange_beds,
+    flange_to_tool,
+    gripper_to_tool,
+    holder_bed_to_carrier,
+    holder_to_tool,
+)
+from lumitip_fab.made import Made
+from lumitip_fab.mechanical.glb import Body, Group, glb
+from lumitip_fab.mechanical.plain import block, disc, socket
+from lumitip_fab.mechanical.surface import Mesh
+from lumitip_fab.mechanical.system_view import system_view
+from lumitip_fab.mechanical.tints import COLOURS
+
+ROBOT_MM = 6.0
+"""How thick the disc is that stands for the robot's tool flange."""
+_M_TO_MM = np.diag([1000.0, 1000.0, 1000.0, 1.0])
+_MM = 1000.0
+
+
+def system_files(
+    made: Made,
+    stack: Stack,
+    mount: Mount,
+    closing: Closing,
+    emitter: Finger,
+    receiver: Finger,
+    carriers: tuple[Carrier, ...],
+    holders: tuple[Holder, ...],
+    flanges: tuple[Flange, ...],
+    system: System,
+) -> tuple[Artefact, ...]:
+    """GLB in the tool frame, and an exploded drawing.
+
+    Args:
+        made: the printed parts and the assembly of the fingers.
+        stack, mount, closing: where the fingers are.
+        emitter, receiver: what their parts are.
+        carriers: boards in flange and holder.
+        holders, flanges: the printed parts.
+        system: where everything is.
+    """
+    boards = {carrier.name: carrier for carrier in carriers}
+    groups: list[Group] = []
+    for flange in flanges:
+        groups += _robot_side(made, flange, boards[flange.carrier], stack, system)
+    groups.append(Group("gripper", _raised(system.gripper_z_mm), (_envelope(system),)))
+    for holder in holders:
+        if holder.name in system.holders:
+            groups.append(_held(made, holder, boards[holder.carrier], stack, system))
+    to_tool = gripper_to_tool(stack, mount, closing, system)
+    scene = trimesh.load(io.BytesIO(made.read("assembly/assembly.glb")), file_type="glb")
+    opening = float(scene.metadata["opening_mm"])
+    groups += [_finger(scene, finger, to_tool) for finger in (emitter, receiver)]
+    told = {"opening_mm": opening, "tcp_mm": float(to_tool[2, 3])}
+    drawing = system_view(groups, flanges, mount, system, float(to_tool[2, 3]))
+    return (
+        Artefact("assembly/system.glb", glb("system", tuple(groups), told), _M_TO_MM, "tool"),
+        Artefact("assembly/system.svg", drawing.encode(), frame=""),
+    )
+
+
+def _robot_side(
+    made: Made, flange: Flange, carrier: Carrier, stack: Stack, system: System
+) -> Iterator[Group]:
+    """The robot's tool flange, the coupling, and the printed flange round its board."""
+    robot = disc(system.robot_mm, -ROBOT_MM, 0.0)
+    yield Group("robot", np.eye(4), (Body("robot.flange", robot, COLOURS["robot"]),))
+    coupling = socket(flange.face_mm, flange.recess_mm, system.coupling_mm, -flange.seat_z_mm)
+    yield Group("coupling", np.eye(4), (Body("coupling.body", coupling, COLOURS["coupling"]),))
+    to_tool, beds = flange_to_tool(system), flange_beds(flange)
+    parts = {
+        part: Body(
+            f"{flange.name}.{part}", _stl(made, f"flange/{flange.name}_{part}.stl"), COLOURS[part]
+        )
+        for part in beds
+    }
+    board = Body(f"{flange.name}.board", _board(carrier, stack), COLOURS["board"])
+    yield Group(f"{flange.name}_lower", to_tool @ beds["lower"], (parts["lower"],))
+    yield Group(f"{flange.name}_board", to_tool @ carrier_to_flange(flange), (board,))
+    yield Group(f"{flange.name}_upper", to_tool @ beds["upper"], (parts["upper"],))
+
+
+def _envelope(system: System) -> Body:
+    half = system.width_mm / 2, system.depth_mm / 2
+    return Body(
+        "gripper.envelope",
+        block((-half[0], half[0]), (-half[1], half[1]), system.corner_mm, 0.0, system.length_mm),
+        COLOURS["gripper"],
+    )
+
+
+def _held(made: Made, holder: Holder, carrier: Carrier, stack: Stack, system: System) -> Group:
+    """A holder with its board, in the board's frame."""
+    printed = _moved(_stl(made, f"holder/{holder.name}.stl"), holder_bed_to_carrier(holder))
+    bodies = (
+        Body(f"{holder.name}.tray", printed, COLOURS["holder"]),
+        Body(f"{holder.name}.board", _board(carrier, stack), COLOURS["board"]),
+    )
+    return Group(holder.name, holder_to_tool(holder, system), bodies)
+
+
+def _finger(scene: trimesh.Scene, finger: Finger, to_tool: Matrix) -> Group:
+    """A finger as the assembly has it, every body in the finger's frame."""
+    kinds = {part.name: part.kind for part in finger.parts}
+    placed = scene.graph.get(finger.name)[0].copy()
+    placed[:3, 3] *= _MM
+    bodies = []
+    for name in sorted(scene.graph.nodes_geometry):
+        if name not in kinds and not name.startswith(f"{finger.name}."):
+            continue
+        place, geometry = scene.graph.get(name, finger.name)
+        surface = scene.geometry[geometry]
+        points = (surface.vertices @ place[:3, :3].T + place[:3, 3]) * _MM
+        kind = kinds.get(name, name.rpartition(".")[2])
+        mesh = Mesh(np.asarray(points), np.asarray(surface.faces, dtype=np.int64))
+        bodies.append(Body(name, mesh, COLOURS[kind]))
+    return Group(finger.name, np.asarray(to_tool @ placed), tuple(bodies))
+
+
+def _board(carrier: Carrier, stack: Stack) -> Mesh:
+    box = carrier.box
+    across, along = (box.x_min_mm, box.x_max_mm), (box.y_min_mm, box.y_max_mm)
+    return block(across, along, carrier.corner_mm, 0.0, stack.carrier_mm)
+
+
+def _stl(made: Made, path: str) -> Mesh:
+    read = trimesh.load(io.BytesIO(made.read(path)), file_type="stl")
+    return Mesh(np.asarray(read.vertices), np.asarray(read.faces, dtype=np.int64))
+
+
+def _moved(mesh: Mesh, matrix: Matrix) -> Mesh:
+    return Mesh(mesh.points_mm @ matrix[:3, :3].T + matrix[:3, 3], mesh.triangles)
+
+
+def _raised(by_mm: float) -> Matrix:
+    matrix = np.eye(4)
+    matrix[2, 3] = by_mm
+    return matrix
