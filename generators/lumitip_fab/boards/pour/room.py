@@ -12,8 +12,8 @@ from lumitip_fab.boards.openings import fiducial_margin_mm
 from lumitip_fab.boards.pour_rules import CLEARANCE_MM, MIN_WIDTH_MM
 from lumitip_fab.boards.verify import DRILL_WALL_MM
 
-MARGIN_MM = 0.004  # beyond clearances: curves become polygons, places are rounded,
-DETAIL_MM = 0.002  # and corners that move an outline by less than this are left out
+MARGIN_MM = 0.003  # beyond clearances: curves become polygons, places are rounded,
+DETAIL_MM = 0.001  # and corners that move an outline by less than this are left out
 PAD_TO_VIA_MM = 0.1  # solder mask between a pad and a via
 _ARC = 24  # chords of a quarter circle
 
