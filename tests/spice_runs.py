@@ -1,21 +1,19 @@
 """Runs ngspice on a netlist."""
 
 import re
-import shutil
 import subprocess
 from pathlib import Path
 
-import pytest
+from programs import needs, program
 
-NGSPICE = shutil.which("ngspice")
-needs_ngspice = pytest.mark.skipif(NGSPICE is None, reason="ngspice is not installed")
+needs_ngspice = needs("ngspice")
 
 
 def simulated(netlist: str, folder: Path) -> dict[str, float]:
     """What ngspice prints of a netlist."""
     file = folder / "board.cir"
     file.write_text(netlist, encoding="utf-8")
-    command = [NGSPICE or "", "-b", str(file)]
+    command = [program("ngspice"), "-b", str(file)]
     # Some versions end with 1 where a netlist plots nothing, though all went well.
     done = subprocess.run(command, check=False, capture_output=True, text=True)
     found = re.findall(r"^(\w+) = (\S+)$", done.stdout, re.MULTILINE)

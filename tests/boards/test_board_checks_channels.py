@@ -2,7 +2,6 @@
 
 import json
 import re
-import shutil
 import subprocess
 from collections.abc import Callable
 from pathlib import Path
@@ -15,6 +14,7 @@ from lumitip_fab.checks.channel_map import ChannelMap, read_channels
 from lumitip_fab.cli import main
 from lumitip_fab.encoding import read_design
 from lumitip_fab.errors import OutputError
+from programs import program
 
 BOARD = "boards/receiver/receiver.kicad_pcb"
 
@@ -77,8 +77,7 @@ def test_formats(
 
 
 def test_the_format_of_kicad_9(written: str, wanted: ChannelMap, tmp_path: Path) -> None:
-    if shutil.which("kicad-cli") is None:
-        pytest.skip("KiCad is missing: install KiCad 9")
+    program("kicad-cli")  # whose Python module this is
     (tmp_path / "old.kicad_pcb").write_text(written)
     new = tmp_path / "new.kicad_pcb"
     code = "import sys, pcbnew; pcbnew.LoadBoard(sys.argv[1]).Save(sys.argv[2])"

@@ -14,6 +14,7 @@ import shapely
 
 from lumitip_fab.checks.gerber_read import gerber_area
 from lumitip_fab.checks.kicad_board import read_board
+from programs import needs
 
 Boards = Callable[[str], Path]
 SLOW = ("published", "asymmetric", "dense", "mux16", "flex")
@@ -31,9 +32,7 @@ SYSTEM_PYTHON = Path("/usr/bin/python3")
 LAYERS = ("F_Cu", "B_Cu", "F_Mask", "B_Mask", "F_Paste", "B_Paste", "F_Silkscreen",
           "B_Silkscreen", "Edge_Cuts")  # fmt: skip
 
-pytestmark = pytest.mark.skipif(
-    shutil.which("kicad-cli") is None, reason="kicad-cli is missing: install KiCad 9"
-)
+pytestmark = needs("kicad-cli")
 
 
 @pytest.fixture(scope="module")

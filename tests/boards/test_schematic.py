@@ -18,11 +18,11 @@ from lumitip_fab.boards.schematic import schematic_files
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
 from lumitip_fab.load import load
+from programs import needs, program
 
 PRESETS = ("published", "asymmetric", "dense", "mux16")
 BOARDS = [(preset, finger) for preset in PRESETS for finger in ("emitter", "receiver")]
-KICAD = shutil.which("kicad-cli")
-needs_kicad = pytest.mark.skipif(KICAD is None, reason="kicad-cli is not installed")
+needs_kicad = needs("kicad-cli")
 Drawn = dict[tuple[str, str], tuple[Design, Placement, Path]]
 
 
@@ -45,7 +45,7 @@ def drawn(design_dir: Path, tmp_path_factory: pytest.TempPathFactory) -> Drawn:
 
 
 def _kicad(*arguments: str | Path) -> None:
-    command = [KICAD or "", *map(str, arguments)]
+    command = [program("kicad-cli"), *map(str, arguments)]
     done = subprocess.run(command, check=False, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
 

@@ -134,19 +134,21 @@ FILES: dict[Callable[[Path], None], set[str]] = {
 }
 
 
+def carved(folder: Path, part: str, damage: Damage) -> None:
+    design = read_design(folder / "design.json")
+    frame = backing_bed_to_sensor if part == PLATE else mount_to_sensor
+    carve(folder / part, lambda solid: damage(solid, design), frame(design.mount, design.stack))
+
+
 @pytest.mark.parametrize("damage", ON_PLATE, ids=lambda d: d.__name__)
 def test_a_damaged_plate(damage: Damage, hurt: Path) -> None:
-    design = read_design(hurt / "design.json")
-    frame = backing_bed_to_sensor(design.mount, design.stack)
-    carve(hurt / PLATE, lambda part: damage(part, design), frame)
+    carved(hurt, PLATE, damage)
     assert failing(hurt, "backing") == ON_PLATE[damage]
 
 
 @pytest.mark.parametrize("damage", ON_INTERFACE, ids=lambda d: d.__name__)
 def test_a_damaged_interface(damage: Damage, hurt: Path) -> None:
-    design = read_design(hurt / "design.json")
-    frame = mount_to_sensor(design.mount, design.stack)
-    carve(hurt / INTERFACE, lambda part: damage(part, design), frame)
+    carved(hurt, INTERFACE, damage)
     assert failing(hurt, "backing") == ON_INTERFACE[damage]
 
 
@@ -157,11 +159,10 @@ def test_a_damaged_file(damage: Callable[[Path], None], hurt: Path) -> None:
 
 
 def test_a_plate_that_does_not_lie_flat_is_seen_in_the_mould(hurt: Path) -> None:
-    def bump(part: Manifold) -> Manifold:
+    def bump(part: Manifold, _: Design) -> Manifold:
         return part + box((-10, 0, -3.0), (10, 5, 0.5))
 
-    design = read_design(hurt / "design.json")
-    carve(hurt / PLATE, bump, backing_bed_to_sensor(design.mount, design.stack))
+    carved(hurt, PLATE, bump)
     assert failing(hurt, "mould") == {"seat"}
 
 

@@ -10,6 +10,7 @@ import pytest
 from lumitip_fab.cli import main
 from lumitip_fab.errors import BuildError
 from lumitip_fab.slicing import gcode
+from programs import program
 
 CODE = """
 ;TYPE:Custom
@@ -51,8 +52,7 @@ def test_layers_are_of_the_part_alone() -> None:
 def test_every_part_slices_without_support(
     outputs: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    if not shutil.which("prusa-slicer"):
-        pytest.skip("prusa-slicer is not installed")
+    program("prusa-slicer")
     assert main(["slice", "--out", str(outputs), "--gcode", str(tmp_path), "--json"]) == 0
     told = json.loads(capsys.readouterr().out)
     parts = {part["part"]: part for part in told["parts"]}

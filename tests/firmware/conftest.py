@@ -1,6 +1,5 @@
 """Sketch folders of designs, and programs compiled from them."""
 
-import shutil
 import subprocess
 from collections.abc import Callable
 from functools import cache
@@ -11,6 +10,7 @@ import pytest
 from lumitip_fab.derive import derive
 from lumitip_fab.firmware.files import firmware_files
 from lumitip_fab.load import load
+from programs import program
 
 HERE = Path(__file__).parent
 STRICT = ("-std=c++14", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Werror")
@@ -29,10 +29,7 @@ def run() -> Runner:
     def command(
         name: str, *arguments: str | Path, input: str | None = None
     ) -> subprocess.CompletedProcess[str]:
-        found = shutil.which(name)
-        if found is None:
-            pytest.skip(f"{name} is not installed")
-        told = [found, *map(str, arguments)]
+        told = [program(name), *map(str, arguments)]
         return subprocess.run(
             told, capture_output=True, text=True, timeout=60, check=False, input=input
         )

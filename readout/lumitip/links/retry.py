@@ -1,11 +1,13 @@
 """Making a link again when it is cut, ever less often."""
 
+import logging
 import threading
 from collections.abc import Callable, Iterator
 
 from lumitip.errors import LinkError, MissingExtra, MtuTooSmall, WrongDesign
 from lumitip.links.base import LinkEvent, Report
 
+_log = logging.getLogger(__name__)
 _FIRST_S, _LAST_S = 0.1, 5.0
 
 
@@ -53,6 +55,7 @@ def keep_connected(session: Session, report: Report, stopping: threading.Event) 
         except Exception as problem:  # noqa: BLE001 - a thread must not die without a word
             error = problem if isinstance(problem, LinkError) else UnexpectedError(problem)
             if stopping.is_set():
+                _log.debug("while stopping: %s", error)
                 return
             if not connected or isinstance(error, FATAL):
                 report(LinkEvent("failed", str(error), error))

@@ -1,11 +1,14 @@
 """The thread that a link runs on."""
 
+import logging
 import threading
 from abc import ABC, abstractmethod
 
 from lumitip.errors import LinkError, LumitipError
 from lumitip.links.base import Deliver, LinkEvent, Report
 from lumitip.links.retry import UnexpectedError
+
+_log = logging.getLogger(__name__)
 
 
 class ThreadedLink(ABC):
@@ -39,8 +42,10 @@ class ThreadedLink(ABC):
         try:
             self._run(deliver, report)
         except Exception as problem:  # noqa: BLE001 - a thread must not die without a word
-            if not self._stopping.is_set():
-                error = _as_link_error(problem)
+            error = _as_link_error(problem)
+            if self._stopping.is_set():
+                _log.debug("while stopping: %s", error)
+            else:
                 report(LinkEvent("failed", str(error), error))
 
 

@@ -121,6 +121,7 @@ class URArm:
             reason, detail = self._drive()
         except Exception as problem:  # noqa: BLE001 - whatever goes wrong must stop the arm
             reason, detail = "error", str(problem)
+            _log.debug("why the arm stops:", exc_info=True)
         self._stop = ArmStopped(reason, detail)
         _log.log(logging.INFO if reason == "closed" else logging.WARNING, "%s", self._stop)
         # Cut off from the arm, ur_rtde may wait for it for ever: then it is left behind.

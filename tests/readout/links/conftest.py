@@ -1,6 +1,5 @@
 """A Bluetooth adapter that is not there: bleak unmodified, `org.bluez` faked on a private bus."""
 
-import shutil
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -11,6 +10,7 @@ import pytest
 from lumitip import Layout
 from lumitip.protocol.packet import Packet, design_code, encode, needed_mtu
 from lumitip.protocol.status import Fault, Status
+from programs import program
 
 PERIOD_US = 2000
 
@@ -64,8 +64,7 @@ def until() -> Callable[..., None]:
 @pytest.fixture(scope="session")
 def bus(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     """A private D-Bus, taken for the system's by all that follows."""
-    if not shutil.which("dbus-daemon"):
-        pytest.skip("dbus-daemon is missing: apt-get install dbus-daemon")
+    program("dbus-daemon")
     from private_bus import private_bus
 
     with private_bus(tmp_path_factory.mktemp("bus")) as address, pytest.MonkeyPatch.context() as m:

@@ -5,7 +5,6 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from pathlib import Path
-from shutil import which
 
 import numpy as np
 import pytest
@@ -18,9 +17,9 @@ from lumitip.protocol.packet import Packet, design_code
 from lumitip.view.finger import Finger
 from lumitip.view.room import Room
 from lumitip.view.server import ViewServer
+from programs import program
 
 Serve = Callable[..., ViewServer]
-CHROMIUM = which("chromium")
 
 
 @pytest.fixture(autouse=True)
@@ -98,11 +97,10 @@ def still() -> Callable[..., Finger]:
 def browser() -> Iterator[Browser]:
     """Chromium, for one file: Playwright's event loop runs on while it is open, and no other
     test of this process could start one."""
-    if CHROMIUM is None:
-        pytest.skip("chromium is not installed: apt-get install chromium")
+    chromium = program("chromium")
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(
-            executable_path=CHROMIUM, args=["--no-sandbox", "--disable-gpu"]
+            executable_path=chromium, args=["--no-sandbox", "--disable-gpu"]
         )
         yield browser
         browser.close()
