@@ -58,7 +58,8 @@ bench: $(SETUP) ## measure speed and growth; every part runs, then it fails if a
 pictures: outputs ## draw the README's pictures from OUT
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[docs]'
 	$(BIN)/lumitip-fab build design/presets/integrated.toml --out $(OUT)/integrated --quiet
-	$(BIN)/python docs/pictures.py $(OUT) $(OUT)/integrated
+	$(BIN)/lumitip-fab build design/presets/flex.toml --out $(OUT)/flex --quiet
+	$(BIN)/python docs/pictures.py $(OUT) $(OUT)/integrated $(OUT)/flex
 	$(BIN)/python docs/view_picture.py
 	$(BIN)/python docs/contacts.py
 	$(BIN)/python docs/twin_figures.py

@@ -33,12 +33,13 @@ PLASTIC: Vector = (0.56, 0.66, 0.80)
 MOULD: Vector = (0.84, 0.76, 0.62)
 
 
-def main(out: Path, integrated: Path) -> None:
+def main(out: Path, integrated: Path, flex: Path) -> None:
     """Draw everything that the README shows.
 
     Args:
         out: outputs of the design to edit.
         integrated: outputs of the preset whose controller is on the flange's board.
+        flex: outputs of the preset with compliant fingers.
     """
     IMAGES.mkdir(exist_ok=True)
     shots: tuple[tuple[str, str, Vector, Vector], ...] = (
@@ -66,6 +67,8 @@ def main(out: Path, integrated: Path) -> None:
         shutil.copy(out / f"boards/{name}/{name}_front.png", IMAGES / f"board_{name}.png")
     module = integrated / "boards/flange/flange_front.png"
     shutil.copy(module, IMAGES / "board_flange_module.png")
+    shutil.copy(flex / "assembly/receiver_exploded.svg", IMAGES / "flex_exploded.svg")
+    shutil.copy(flex / "boards/receiver/receiver_front.png", IMAGES / "flex_board.png")
     shutil.copy(out / "wiring/wiring.svg", IMAGES)
     shutil.copy(out / "assembly/system.svg", IMAGES)
     _pages(pypdfium2.PdfDocument(out / "manual/manual.pdf"), (0, 5, 7))
@@ -175,4 +178,4 @@ def _save(
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), Path(sys.argv[2]))
+    main(*map(Path, sys.argv[1:]))
