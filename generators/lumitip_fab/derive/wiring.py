@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass
 
+import lap
 import numpy as np
 from numpy.typing import NDArray
 
@@ -150,10 +151,6 @@ def assign(given: Input, cells: Cells, places: tuple[Point, ...]) -> tuple[Integ
     Returns:
         Multiplexer and channel, each of shape `(cells,)`.
     """
-    # Imported here, and not scipy.optimize: that takes twice as long, and each build derives.
-    from scipy.sparse import csr_array
-    from scipy.sparse.csgraph import min_weight_full_bipartite_matching
-
     mux, channel = (np.zeros(len(cells), dtype=np.int64) for _ in range(2))
     leads = _input_leads(given)
     left_to_right = sorted(range(len(places)), key=lambda i: (places[i][0], -places[i][1]))
@@ -164,8 +161,7 @@ def assign(given: Input, cells: Cells, places: tuple[Point, ...]) -> tuple[Integ
         cost = np.round(np.linalg.norm(here[:, None] - at[None], axis=2), 6)
         # Among equally short wirings, the one in which channels follow the cells' order.
         cost += 1e-6 * np.outer(np.arange(group.size)[::-1], np.arange(len(leads)))
-        # A wiring of no length would be no wiring: one more for each.
-        taken, inputs = min_weight_full_bipartite_matching(csr_array(1.0 + cost))
+        taken, inputs = lap.lapjvx(cost, extend_cost=True, return_cost=False)
         mux[group[taken]], channel[group[taken]] = which, inputs
     return mux, channel
 

@@ -4,12 +4,13 @@ import io
 from collections.abc import Iterator
 from html import escape
 
+import PIL.Image
 from markdown_it.token import Token
 from reportlab import rl_config
 from reportlab.lib import colors
 from reportlab.lib.pagesizes import A4
 from reportlab.lib.styles import ParagraphStyle
-from reportlab.lib.units import mm
+from reportlab.lib.units import inch, mm
 from reportlab.pdfgen.canvas import Canvas
 from reportlab.platypus import (
     CondPageBreak,
@@ -32,6 +33,7 @@ rl_config.useA85 = 0  # streams as text take most of the time, and a quarter mor
 _MARGIN = 20 * mm
 _WIDTH = A4[0] - 2 * _MARGIN
 _MOST_HIGH = 100 * mm
+_DPI = 200
 _LEAST_LEFT = 110 * mm  # of a page, for a chapter to begin on it
 _BODY = ParagraphStyle("body", fontName="Helvetica", fontSize=9.5, leading=13, spaceAfter=5)
 _ITEM = ParagraphStyle("item", _BODY, leftIndent=16, spaceAfter=3)
@@ -130,7 +132,7 @@ def _paragraph(token: Token, made: Made) -> Iterator[Flowable]:
 
 
 def _picture(path: str, made: Made) -> Flowable:
-    """A drawing stays a drawing; a picture of points is shown as it is."""
+    """A drawing stays a drawing; a picture of points stays one."""
     if path.endswith(".svg"):
         drawing = svg2rlg(io.BytesIO(made.read(path)))
         scale = min(_WIDTH / drawing.width, _MOST_HIGH / drawing.height)
@@ -138,10 +140,17 @@ def _picture(path: str, made: Made) -> Flowable:
         drawing.width, drawing.height = drawing.width * scale, drawing.height * scale
         drawing.hAlign = "CENTER"
         return drawing
-    image = Image(io.BytesIO(made.read(path)))
-    scale = min(_WIDTH / image.imageWidth, _MOST_HIGH / image.imageHeight)
-    image.drawWidth, image.drawHeight = image.imageWidth * scale, image.imageHeight * scale
-    return image
+    seen = PIL.Image.open(io.BytesIO(made.read(path)))
+    scale = min(_WIDTH / seen.width, _MOST_HIGH / seen.height)
+    wide, high = seen.width * scale, seen.height * scale
+    # On the white of paper, and hardly finer than it is printed.
+    small = seen.convert("RGBA").reduce(max(1, round(inch / scale / _DPI)))
+    paper = PIL.Image.new("RGBA", small.size, "white")
+    paper.alpha_composite(small)
+    plain = io.BytesIO()
+    paper.convert("RGB").save(plain, "ppm")
+    plain.seek(0)
+    return Image(plain, wide, high)
 
 
 def _table(rows: list[list[Paragraph]]) -> Flowable:
