@@ -8,6 +8,9 @@ import sys
 
 from lumitip import AsyncFingertip
 
+if len(sys.argv) == 1:
+    sys.exit(__doc__)
+
 
 async def main(url: str, *layout: str) -> None:
     """Print frames until there were twenty."""

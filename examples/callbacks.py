@@ -8,6 +8,9 @@ import time
 
 from lumitip import Fingertip, Frame
 
+if len(sys.argv) == 1:
+    sys.exit(__doc__)
+
 
 def frame_came(frame: Frame) -> None:
     """Slow work is fine here: frames wait, and what had to make room is counted."""

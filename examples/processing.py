@@ -9,6 +9,9 @@ from itertools import islice
 from lumitip import Fingertip
 from lumitip.processing import Tracker
 
+if len(sys.argv) <= 2:
+    sys.exit(__doc__)
+
 url, count = sys.argv[1], int(sys.argv[2])
 with Fingertip.open(url, layout=sys.argv[3] if len(sys.argv) > 3 else None) as tip:
     track = Tracker(tip.layout)

@@ -10,6 +10,9 @@ import numpy as np
 from lumitip.processing import Processor
 from lumitip.recording import Reader
 
+if len(sys.argv) == 1:
+    sys.exit(__doc__)
+
 recording = Reader(sys.argv[1])
 values = np.array([recording.metadata.values(frame) for frame in recording])
 batch = Processor(recording.layout).batch(values)

@@ -8,6 +8,9 @@ import time
 
 from lumitip import Fingertip, LinkEvent, LumitipError
 
+if len(sys.argv) <= 2:
+    sys.exit(__doc__)
+
 
 def told(event: LinkEvent) -> None:
     """Called on the link's thread: connected, lost, connected again, …"""

@@ -9,6 +9,9 @@ from itertools import islice
 
 from lumitip import Fingertip
 
+if len(sys.argv) == 1:
+    sys.exit(__doc__)
+
 url, *layout = sys.argv[1:]
 with Fingertip.open(url, *layout) as tip:
     for frame in islice(tip.frames(timeout=5.0), 20):

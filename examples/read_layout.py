@@ -7,6 +7,9 @@ import sys
 
 from lumitip import Layout
 
+if len(sys.argv) == 1:
+    sys.exit(__doc__)
+
 layout = Layout.load(sys.argv[1])
 print(f"{len(layout)} cells {layout.pitch_mm} mm apart, design {layout.design_hash[:16]}")
 for cell in layout.cells:

@@ -7,6 +7,9 @@ import sys
 
 from lumitip import Fingertip
 
+if len(sys.argv) <= 2:
+    sys.exit(__doc__)
+
 with Fingertip.open(sys.argv[1], layout=sys.argv[2]) as tip:
     block = tip.get_data(num_samples=55)
     print(f"{len(block)} frames of {block.values.shape[1]} cells, {block.dropped} lost between")

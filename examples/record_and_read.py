@@ -8,6 +8,9 @@ import sys
 from lumitip import Fingertip
 from lumitip.recording import Reader, Writer
 
+if len(sys.argv) <= 2:
+    sys.exit(__doc__)
+
 url, path = sys.argv[1:3]
 with (
     Fingertip.open(url, layout=sys.argv[3] if len(sys.argv) > 3 else None) as tip,

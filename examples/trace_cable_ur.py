@@ -13,6 +13,9 @@ from lumitip.robots import ArmLimits, Mount, URArm
 from lumitip.tasks import Settings, Task
 from lumitip.tasks.live import LiveTask
 
+if len(sys.argv) <= 2:
+    sys.exit(__doc__)
+
 host, speed = sys.argv[1], float(sys.argv[2])
 layout = published_layout()
 world = LiveTask(Task(layout, Settings("cable", latency=0, lag_s=0.0)), "twin://trace-cable", 1)

@@ -11,6 +11,9 @@ from lumitip.links.twin import published_layout
 from lumitip.tasks import Settings, Task
 from lumitip.tasks.live import LiveTask
 
+if len(sys.argv) == 1:
+    sys.exit(__doc__)
+
 speed, port = float(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else None
 layout = published_layout()
 task = Task(layout, Settings("cloth", corner=True, latency=0))

@@ -10,6 +10,9 @@ import numpy as np
 from lumitip import Layout
 from lumitip.twin import Model, Twin
 
+if len(sys.argv) == 1:
+    sys.exit(__doc__)
+
 layout = Layout.load(sys.argv[1])
 way = np.linspace(-25.0, 25.0, 1001)
 for gap_mm in (2.0, 3.0, 6.0):

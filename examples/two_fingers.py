@@ -9,6 +9,9 @@ from itertools import islice
 
 from lumitip import FingertipGroup
 
+if len(sys.argv) <= 2:
+    sys.exit(__doc__)
+
 left, right, *layout = sys.argv[1:]
 with FingertipGroup.open({"left": left, "right": right}, *layout) as group:
     for moment in islice(group.moments(timeout=5.0), 20):
