@@ -43,10 +43,13 @@ def failing(folder: Path) -> set[str]:
     return {m.check.removeprefix("printing.") for m in measure(folder, design) if not m.passed}
 
 
-INI, NOTE = "petg.ini", "printing.md"
+INI, MOULD, NOTE = "petg.ini", "petg_mould.ini", "printing.md"
 EDITS = [
     (INI, "\nlayer_height = 0.2", "\nlayer_height = 0.3", {"settings"}),
     (INI, "first_layer_height = 0.2", "first_layer_height = 0.35", {"settings"}),
+    (MOULD, "\nlayer_height = 0.15", "\nlayer_height = 0.2", {"settings", "mould_layers"}),
+    (MOULD, "\nlayer_height = 0.15", "\nlayer_height = 0", {"settings", "mould_layers"}),
+    (MOULD, "\ntemperature = 240", "\ntemperature = 204", {"settings"}),
     (INI, "\nextrusion_width = 0.45", "\nextrusion_width = 0.6", {"settings"}),
     (INI, "external_perimeter_extrusion_width = 0.45",
      "external_perimeter_extrusion_width = 0", {"settings"}),
@@ -65,7 +68,8 @@ EDITS = [
     (INI, "max_fan_speed = 50", "max_fan_speed = 0", {"settings"}),
     (INI, "retract_length = 0.8", "retract_length = 8", {"settings"}),
     (NOTE, "| `mould/emitter_mould.3mf`", "| `mould/emitter_cast.3mf`", {"parts"}),
-    (NOTE, "petg.ini` | PETG | on", "pla.ini` | PLA | on", {"parts"}),
+    (NOTE, "petg.ini` | PETG | 0.2 mm | on", "pla.ini` | PLA | 0.2 mm | on", {"parts"}),
+    (NOTE, "`print/petg_mould.ini` | PETG | 0.15", "`print/petg.ini` | PETG | 0.2", {"parts"}),
     (NOTE, "| `backing/receiver_backing.3mf`", "`backing/receiver_backing.3mf`", {"parts"}),
 ]  # fmt: skip
 
@@ -92,6 +96,8 @@ def test_lost_files_are_told(settings: Path, tmp_path: Path) -> None:
     assert failing(damaged) == {"settings"}
     (damaged / "print" / NOTE).write_bytes(b"\xff\xfe")
     assert failing(damaged) == {"settings", "parts"}
+    (damaged / "print" / MOULD).unlink()
+    assert failing(damaged) == {"settings", "parts", "mould_layers"}
 
 
 def _with(given: Input, material: str, **filament: Any) -> Input:
@@ -114,14 +120,35 @@ def test_what_must_not_bend_is_printed_from_another_filament(given: Input, tmp_p
     out = _written(design, tmp_path / "out")
     assert failing(out) == set()
     assert sorted(p.name for p in (out / "print").iterdir()) == [
-        "petg.ini", "printing.md", "tpu_98a.ini",
+        "petg.ini", "petg_mould.ini", "printing.md", "tpu_98a.ini",
     ]  # fmt: skip
     note = (out / "print/printing.md").read_text(encoding="utf-8")
     assert re.search(r"emitter_backing.3mf` \| `print/tpu_98a.ini", note)
-    assert re.search(r"emitter_mould.3mf` \| `print/petg.ini", note)
+    assert re.search(r"emitter_mould.3mf` \| `print/petg_mould.ini", note)
 
 
 @pytest.mark.parametrize("other", ["TPU 98A", "wood"])
 def test_a_filament_for_rigid_parts_must_be_one(given: Input, other: str) -> None:
     with pytest.raises(InputError, match=f"rigid_parts '{other}' is no filament"):
         derive(_with(given, "TPU 98A", rigid_parts=other))
+
+
+def test_no_file_of_their_own_where_the_moulds_are_whole_layers(
+    given: Input, tmp_path: Path
+) -> None:
+    stack = given.parameters.stack.model_copy(update={"silicone_mm": 1.4})
+    parameters = given.parameters.model_copy(update={"stack": stack})
+    design = derive(dataclasses.replace(given, parameters=parameters))
+    assert design.slicing.mould == design.slicing.rigid
+    out = _written(design, tmp_path / "out")
+    assert failing(out) == set()
+    assert sorted(p.name for p in (out / "print").iterdir()) == ["petg.ini", "printing.md"]
+
+
+def test_heights_that_no_layer_divides_are_told(given: Input, tmp_path: Path) -> None:
+    stack = given.parameters.stack.model_copy(update={"silicone_mm": 1.53})
+    parameters = given.parameters.model_copy(update={"stack": stack})
+    design = derive(dataclasses.replace(given, parameters=parameters))
+    assert design.slicing.mould.layer_mm == 0.2
+    assert design.mould.off_layer_mm == pytest.approx(0.07)
+    assert failing(_written(design, tmp_path / "out")) == set()

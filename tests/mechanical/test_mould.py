@@ -10,6 +10,7 @@ import pytest
 import trimesh
 
 from lumitip_fab.derive import derive
+from lumitip_fab.derive.mould import whole_layers
 from lumitip_fab.design import Design
 from lumitip_fab.encoding import read_design
 from lumitip_fab.load import load
@@ -32,9 +33,7 @@ def design(design_dir: Path) -> Design:
 
 def test_the_same_design_gives_the_same_files_in_any_process(outputs: Path) -> None:
     built = read_design(outputs / "design.json")
-    made = mould.mould_files(
-        built.receiver, built.stack, built.outline, built.board, built.mould, built.printing
-    )
+    made = mould.mould_files(built.receiver, built.stack, built.outline, built.board, built.mould)
     assert {a.path for a in made} == {
         "mould/receiver_mould.step",
         "mould/receiver_mould.stl",
@@ -97,7 +96,7 @@ def test_the_film_lies_on_the_silicone(design: Design) -> None:
 
 def test_the_note_weighs_both_parts(design: Design) -> None:
     mixed = replace(design.mould, mix_ratio=(10.0, 1.0), density_g_ml=1.1, waste_fraction=0.5)
-    note = casting.casting_note("emitter", 4.0, design.stack, mixed, design.printing)
+    note = casting.casting_note("emitter", 4.0, design.stack, mixed)
     masses = [float(m) for m in re.findall(r"\*\*([0-9.]+) g\*\*", note)]
     assert masses == pytest.approx([6.0, 0.6])
     assert "6.00 mL" in note
@@ -105,13 +104,24 @@ def test_the_note_weighs_both_parts(design: Design) -> None:
 
 @pytest.mark.parametrize(
     ("usual", "heights", "wanted"),
-    [(0.2, (2.4, 3.9), 0.15), (0.2, (2.4, 4.0), 0.2), (0.3, (2.0, 3.5), 0.25),
-     (0.2, (2.411, 3.907), 0.2)],
+    [(0.2, (2.4, 3.9), (0.15, 0)), (0.2, (2.4, 4.0), (0.2, 0)), (0.3, (2.0, 3.5), (0.25, 0)),
+     (0.2, (2.411, 3.907), (0.2, 0.093))],
 )  # fmt: skip
 def test_layers_divide_the_heights_that_count(
-    usual: float, heights: tuple[float, float], wanted: float
+    usual: float, heights: tuple[float, float], wanted: tuple[float, float]
 ) -> None:
-    assert casting.layer_mm(usual, heights) == wanted
+    assert whole_layers(usual, heights) == pytest.approx(wanted)
+
+
+def test_the_note_says_what_the_slicer_rounds(design: Design) -> None:
+    rounded = replace(design.mould, layer_mm=0.2, off_layer_mm=0.093)
+    whole, told = (
+        " ".join(casting.casting_note("emitter", 4.0, design.stack, m).split())
+        for m in (design.mould, rounded)
+    )
+    assert "in layers of 0.15 mm. The floor at 2.4 mm and the stops at 3.9 mm" in whole
+    assert "are then whole layers" not in told
+    assert "by 0.09 mm" in told
 
 
 def test_each_finger_s_mould_has_its_letter(design: Design) -> None:

@@ -10,21 +10,46 @@ from lumitip_fab.design.slicing import Filament
 
 READS = ("print/*",)
 _NOTE = "print/printing.md"
+_ROUNDING_MM = 1e-4
 
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     """Read the settings as the slicer would."""
     for filament in design.slicing.filaments:
         yield _settings(outputs, design, filament)
+    yield _mould_layers(outputs, design)
     yield _parts(outputs, design)
+
+
+def _mould_layers(outputs: Path, design: Design) -> Measurement:
+    """Floor and stops of the moulds are whole layers of what the slicer is told: what it rounds
+    there is missing from, or added to, the silicone."""
+    file = design.slicing.mould.file
+    try:
+        layer_mm = float(_read(outputs / file)["layer_height"])
+        if layer_mm <= 0:
+            raise ValueError(f"layer_height = {layer_mm:g}")
+    except (OSError, KeyError, ValueError) as problem:
+        return unreadable("printing.mould_layers", file, str(problem))
+    floor_mm = design.mould.wall_mm
+    heights_mm = (floor_mm, floor_mm + design.stack.cover_mm)
+    off_mm = max(abs(h - round(h / layer_mm) * layer_mm) for h in heights_mm)
+    return Measurement(
+        "printing.mould_layers", file, off_mm, 0, design.mould.off_layer_mm + _ROUNDING_MM, "mm",
+        f"of floor and stops to a whole layer of {layer_mm:g} mm",
+    )  # fmt: skip
+
+
+def _read(path: Path) -> dict[str, str]:
+    lines = path.read_text(encoding="utf-8").splitlines()
+    return {key.strip(): value.strip() for key, _, value in (n.partition("=") for n in lines)}
 
 
 def _settings(outputs: Path, design: Design, filament: Filament) -> Measurement:
     try:
-        lines = (outputs / filament.file).read_text(encoding="utf-8").splitlines()
+        told = _read(outputs / filament.file)
     except (OSError, UnicodeDecodeError) as problem:
         return unreadable("printing.settings", filament.file, str(problem))
-    told = {key.strip(): value.strip() for key, _, value in (n.partition("=") for n in lines)}
     wrong = [key for key, value in _wanted(design, filament).items() if told.get(key) != value]
     return Measurement(
         "printing.settings", filament.file, float(len(wrong)), 0, 0, "settings",
@@ -37,8 +62,8 @@ def _wanted(design: Design, filament: Filament) -> dict[str, str]:
     x, y, z = (f"{value:g}" for value in printing.bed_mm)
     least, most = filament.fan_percent
     return {
-        "layer_height": f"{printing.layer_mm:g}",
-        "first_layer_height": f"{printing.layer_mm:g}",
+        "layer_height": f"{filament.layer_mm:g}",
+        "first_layer_height": f"{filament.layer_mm:g}",
         "extrusion_width": f"{printing.line_mm:g}",
         "external_perimeter_extrusion_width": f"{printing.line_mm:g}",
         "nozzle_diameter": f"{design.slicing.nozzle_mm:g}",

@@ -47,7 +47,7 @@ def derive(given: Input) -> Design:
     tip = derive_tip(p, silhouette, plan.board, stack, faults)
     casting = mould.derive_mould(given, silhouette, plan.board, stack, faults)
     printing = derive_printing(given, silhouette, faults)
-    slicing = derive_slicing(given, faults)
+    slicing = derive_slicing(given, casting, faults)
     plate = derive_fit_plate(given, plan, coupling, faults)
     sheet = mask.derive_mask(given, silhouette, plan, faults)
     rules = derive_rules(given, faults)

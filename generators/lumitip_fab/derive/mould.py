@@ -16,6 +16,8 @@ TROUGH_MM = 4.0  # along y
 LEDGE_MM = 0.5  # between weir and trough
 LETTER_OVER_BED_MM = 0.6  # clear of the chamfer at the foot
 LETTER_UNDER_RIM_MM = 0.5
+LEAST_LAYER_MM = 0.05
+WHOLE_MM = 1e-6
 
 
 def derive_mould(
@@ -54,6 +56,10 @@ def derive_mould(
             f"{depth * lean:.2f} mm; at most {allowed:.2f} mm is allowed: "
             f"{math.degrees(math.atan(allowed / depth)):.1f}° or less",
         )
+    layer_mm, off_mm = whole_layers(
+        given.catalogue.printers[p.printer.profile].layer_mm,
+        (p.mould.wall_mm, p.mould.wall_mm + stack.cover_mm),
+    )
     return Mould(
         taper_length_mm=p.mould.taper_length_mm,
         tip_silicone_mm=p.mould.tip_silicone_mm,
@@ -64,12 +70,30 @@ def derive_mould(
         pads=_pads(given, outline, board, faults),
         pad_mm=PAD_MM,
         letter=_letter(given, outline, stack, faults),
+        layer_mm=layer_mm,
+        off_layer_mm=off_mm,
         silicone=p.mould.silicone,
         density_g_ml=silicone.density_g_ml,
         mix_ratio=silicone.mix_ratio,
         cure_h=silicone.cure_h,
         waste_fraction=p.mould.waste_fraction,
     )
+
+
+def whole_layers(usual_mm: float, heights_mm: tuple[float, ...]) -> tuple[float, float]:
+    """The thickest layer, up to the printer's usual one, that divides all heights, and 0.
+
+    Layers are tried in steps of 0.01 mm down to 0.05 mm, which printers still lay. Where none
+    divides all, the usual one stays: with it, how far the worst height is from a whole layer.
+    """
+    for hundredths in range(round(usual_mm * 100), round(LEAST_LAYER_MM * 100) - 1, -1):
+        if _off_layer_mm(hundredths / 100, heights_mm) < WHOLE_MM:
+            return hundredths / 100, 0.0
+    return usual_mm, _off_layer_mm(usual_mm, heights_mm)
+
+
+def _off_layer_mm(layer_mm: float, heights_mm: tuple[float, ...]) -> float:
+    return max(abs(height - round(height / layer_mm) * layer_mm) for height in heights_mm)
 
 
 def _letter(given: Input, outline: Outline, stack: Stack, faults: Faults) -> Letter:

@@ -1,13 +1,16 @@
-"""Which filament each part is printed from."""
+"""Which filament each part is printed from, and in which layers."""
+
+from dataclasses import replace
 
 from lumitip_fab.derive.faults import Faults
+from lumitip_fab.design import Mould
 from lumitip_fab.design.slicing import Filament, Slicing
 from lumitip_fab.load import Input
 
 
-def derive_slicing(given: Input, faults: Faults) -> Slicing:
-    """Settings of the backing's filament, with the density of the spool at hand, and of the one
-    that everything else is printed from."""
+def derive_slicing(given: Input, mould: Mould, faults: Faults) -> Slicing:
+    """Settings of the backing's filament, with the density of the spool at hand, of the one that
+    everything else is printed from, and of that one in the mould's layers."""
     p, known = given.parameters, given.catalogue.filaments
     name = p.backing.material
     other = known[name].rigid_parts or name
@@ -20,10 +23,15 @@ def derive_slicing(given: Input, faults: Faults) -> Slicing:
     )
     rigid = other if good else name
     density = p.backing.density_g_ml
+    printer = given.catalogue.printers[p.printer.profile]
+    rest = _filament(given, rigid, density if rigid == name else known[rigid].density_g_ml)
     return Slicing(
-        given.catalogue.printers[p.printer.profile].nozzle_mm,
+        printer.nozzle_mm,
         _filament(given, name, density),
-        _filament(given, rigid, density if rigid == name else known[rigid].density_g_ml),
+        rest,
+        rest
+        if mould.layer_mm == printer.layer_mm
+        else replace(rest, layer_mm=mould.layer_mm, part="mould"),
     )
 
 
@@ -32,4 +40,5 @@ def _filament(given: Input, name: str, density_g_ml: float) -> Filament:
     return Filament(
         name, told.kind, density_g_ml, told.nozzle_c, told.bed_c, told.fan_percent,
         told.speed_mm_s, told.max_flow_mm3_s, told.retract_mm,
+        given.catalogue.printers[given.parameters.printer.profile].layer_mm,
     )  # fmt: skip

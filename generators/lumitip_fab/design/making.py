@@ -57,6 +57,11 @@ class Mould:
     pad_mm: float
     letter: Letter
     """On the outside of the trough's end, which is where it says."""
+    layer_mm: float
+    """Of its print: the thickest, up to the printer's own, of which floor and stops are whole
+    layers."""
+    off_layer_mm: float
+    """From the farther of floor and stops to a whole layer; 0 but where no layer divides both."""
     silicone: str
     density_g_ml: float
     mix_ratio: Point

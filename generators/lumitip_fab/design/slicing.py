@@ -17,11 +17,15 @@ class Filament:
     speed_mm_s: float
     max_flow_mm3_s: float
     retract_mm: float
+    layer_mm: float
+    part: str = ""
+    """What alone is printed in such layers; without a name everything that is of this filament."""
 
     @property
     def file(self) -> str:
         """Path of its settings below the output folder."""
-        return f"print/{re.sub(r'[^a-z0-9]+', '_', self.name.lower()).strip('_')}.ini"
+        name = f"{self.name} {self.part}".lower()
+        return f"print/{re.sub(r'[^a-z0-9]+', '_', name).strip('_')}.ini"
 
 
 @dataclass(frozen=True)
@@ -31,13 +35,16 @@ class Slicing:
     nozzle_mm: float
     backing: Filament
     rigid: Filament
-    """Of everything but the backings."""
+    """Of everything but backings and moulds."""
+    mould: Filament
+    """As `rigid`, in layers that the mould's heights are whole multiples of."""
 
     @property
     def filaments(self) -> tuple[Filament, ...]:
         """Each once."""
-        return tuple(dict.fromkeys((self.backing, self.rigid)))
+        return tuple(dict.fromkeys((self.backing, self.rigid, self.mould)))
 
     def of(self, path: str) -> Filament:
         """What a part is printed from, by its path below the output folder."""
-        return self.backing if path.startswith("backing/") else self.rigid
+        kinds = {"backing": self.backing, "mould": self.mould}
+        return kinds.get(path.partition("/")[0], self.rigid)

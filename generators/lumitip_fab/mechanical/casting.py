@@ -1,6 +1,6 @@
 """The note for the person who pours: how much of what, for how long, in which order."""
 
-from lumitip_fab.design import Mould, Printing, Stack
+from lumitip_fab.design import Mould, Stack
 
 _NOTE = """# Casting the {finger} finger
 
@@ -12,10 +12,10 @@ _NOTE = """# Casting the {finger} finger
 | {silicone}, part B | **{part_b_g:.2f} g** |
 | curing at room temperature | {cure_h:g} h |
 
-Print `{finger}_mould.3mf` open side up, without supports, in layers of {layer_mm:g} mm: the floor
-at {floor_mm:g} mm and the stops at {rim_mm:g} mm are then whole layers. The stops set the thickness
-of the silicone: cut off blobs, sand nothing. The mould has a {letter} in the end of its trough, and
-the backing that belongs to it a {letter} on {letter_on}.
+Print `{finger}_mould.3mf` with its own settings (`print/printing.md`): open side up, without
+supports, in layers of {layer_mm:g} mm. {layers}
+The stops set the thickness of the silicone: cut off blobs, sand nothing. The mould has an {letter}
+in the end of its trough, and the backing that belongs to it an {letter} on {letter_on}.
 
 {board}
 2. Degrease the board. Keep sulphur, latex gloves and fresh superglue away: they stop the cure.
@@ -36,20 +36,22 @@ _ON_PLATE = """\
 1. Glue the interface to the backing, its rim in the groove, with an adhesive that bends; let it
    cure. Lay the board on the backing's flat face and tie it on with thread through their holes,
    knots on the back. Close every window and hole on the back with tape."""
-_WHOLE = 1e-6
+_WHOLE = """\
+The floor at {floor_mm:g} mm and the stops at {rim_mm:g} mm are then whole layers."""
+_PART = """\
+The slicer rounds the floor at {floor_mm:g} mm and the stops at {rim_mm:g} mm to whole layers, one
+by {off_mm:.2f} mm, and the silicone is as much thicker or thinner: its thickness is kept by a
+`mould.wall_mm` and `stack.silicone_mm` that one layer of 0.05 mm or more divides."""
 
 
-def casting_note(
-    finger: str, volume_ml: float, stack: Stack, mould: Mould, printing: Printing
-) -> str:
+def casting_note(finger: str, volume_ml: float, stack: Stack, mould: Mould) -> str:
     """The note as Markdown.
 
     Args:
         finger: its name.
         volume_ml: silicone that stays on it.
         stack: for the height of the stops.
-        mould: the silicone, and how much is wasted.
-        printing: the printer's layers.
+        mould: its layers, the silicone, and how much is wasted.
     """
     mix_ml = volume_ml * (1 + mould.waste_fraction)
     a, b = mould.mix_ratio
@@ -67,19 +69,8 @@ def casting_note(
         part_a_g=mass_g * a / (a + b),
         part_b_g=mass_g * b / (a + b),
         cure_h=mould.cure_h,
-        layer_mm=layer_mm(printing.layer_mm, (mould.wall_mm, rim_mm)),
-        floor_mm=mould.wall_mm,
-        rim_mm=rim_mm,
+        layer_mm=mould.layer_mm,
+        layers=(_PART if mould.off_layer_mm else _WHOLE).format(
+            floor_mm=mould.wall_mm, rim_mm=rim_mm, off_mm=mould.off_layer_mm
+        ),
     )
-
-
-def layer_mm(usual_mm: float, heights_mm: tuple[float, ...]) -> float:
-    """The thickest layer, up to the printer's usual one, that divides all heights.
-
-    Layers are tried in steps of 0.01 mm; below 0.05 mm none is wanted, and the usual one stays.
-    """
-    for hundredths in range(round(usual_mm * 100), 4, -1):
-        layers = [height * 100 / hundredths for height in heights_mm]
-        if all(abs(count - round(count)) < _WHOLE for count in layers):
-            return hundredths / 100
-    return usual_mm

@@ -19,7 +19,7 @@ from build123d import Face, Location, Solid, Vector, Wire
 
 from lumitip_fab.artefact import Artefact
 from lumitip_fab.derive.mould import LEDGE_MM
-from lumitip_fab.design import Board, Box, Finger, Mould, Outline, Printing, Stack
+from lumitip_fab.design import Board, Box, Finger, Mould, Outline, Stack
 from lumitip_fab.errors import BuildError
 from lumitip_fab.frames import mould_bed_to_sensor
 from lumitip_fab.mechanical import export
@@ -52,7 +52,6 @@ def mould_files(
     outline: Outline,
     board: Board,
     mould: Mould,
-    printing: Printing,
 ) -> tuple[Artefact, ...]:
     """The mould of one finger: STEP in the sensor frame, STL and 3MF on the bed, and the note
     for the person who pours."""
@@ -61,7 +60,7 @@ def mould_files(
     on_bed = placed(solid, np.asarray(np.linalg.inv(to_sensor), dtype=np.float64))
     name = f"{finger.name}_mould"
     volume_ml = cast_volume_ml(finger, stack, outline, board, mould)
-    note = casting_note(finger.name, volume_ml, stack, mould, printing)
+    note = casting_note(finger.name, volume_ml, stack, mould)
     return (
         Artefact(f"mould/{name}.step", export.step(solid, name)),
         Artefact(f"mould/{name}.stl", export.stl(on_bed, CHORD_MM), to_sensor),

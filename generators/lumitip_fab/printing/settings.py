@@ -1,4 +1,4 @@
-"""Settings for PrusaSlicer, one file for each filament, and what is printed from which."""
+"""Settings for PrusaSlicer, one file for each filament and layer, and which part takes which."""
 
 from lumitip_fab.artefact import Artefact
 from lumitip_fab.design import Interface, Printing, Title
@@ -22,7 +22,7 @@ def print_settings(
 
     Args:
         title: of the design.
-        printing: layers, lines and bed.
+        printing: lines and bed.
         slicing: filaments.
         interfaces: what holds backings that bend; there are none of rigid ones.
     """
@@ -39,8 +39,8 @@ def _settings(filament: Filament, printing: Printing, nozzle_mm: float) -> str:
         "bed_shape": f"0x0,{x:g}x0,{x:g}x{y:g},0x{y:g}",
         "max_print_height": f"{z:g}",
         "nozzle_diameter": f"{nozzle_mm:g}",
-        "layer_height": f"{printing.layer_mm:g}",
-        "first_layer_height": f"{printing.layer_mm:g}",
+        "layer_height": f"{filament.layer_mm:g}",
+        "first_layer_height": f"{filament.layer_mm:g}",
         **dict.fromkeys(_WIDTHS, f"{printing.line_mm:g}"),
         # Walls of two lines, wedges of one: widths that follow the wall.
         "perimeter_generator": "arachne",
@@ -97,25 +97,28 @@ def _note(title: Title, printing: Printing, slicing: Slicing, bends: bool) -> st
         rows += [(f"interface/{finger}_interface.3mf", standing) for finger in _FINGERS]
     rows += [(f"mould/{finger}_mould.3mf", "open side up") for finger in _FINGERS]
     listed = "\n".join(
-        f"| `{path}` | `{slicing.of(path).file}` | {slicing.of(path).name} | {lies} | none |"
-        for path, lies in rows
+        f"| `{path}` | {_told(slicing.of(path))} | {lies} | none |" for path, lies in rows
     )
     return f"""# Printing {title.name} {title.revision}
 
 Every STL and 3MF of this folder lies on the bed as it prints: do not turn it.
 
-| file | settings | filament | lies | support |
-|---|---|---|---|---|
+| file | settings | filament | layers | lies | support |
+|---|---|---|---:|---|---|
 {listed}
-| any other `.3mf` | `{slicing.rigid.file}` | {slicing.rigid.name} | as it is | none |
+| any other `.3mf` | {_told(slicing.rigid)} | as it is | none |
 
-Solid, {printing.layer_mm:g} mm layers, {printing.line_mm:g} mm lines, brim of {_BRIM_MM:g} mm,
+Solid, {printing.line_mm:g} mm lines, brim of {_BRIM_MM:g} mm,
 nozzle of {slicing.nozzle_mm:g} mm. In PrusaSlicer: File, Import, Import Config, then the part. The
 settings have no start and end G-code but the slicer's own: choose your printer again where it
 needs some. Temperatures are starting points: trust the label of your spool.
 
 `lumitip-fab slice --out DIR` slices every part with them and tells time and mass.
 """
+
+
+def _told(filament: Filament) -> str:
+    return f"`{filament.file}` | {filament.name} | {filament.layer_mm:g} mm"
 
 
 _FINGERS = ("emitter", "receiver")
