@@ -1,6 +1,7 @@
 """Every gripper of the catalogue, and one that is added: each coupling from its entry alone."""
 
 import dataclasses
+import json
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -10,10 +11,16 @@ from manifold3d import Manifold
 
 from damages import carve, failing
 from lumitip_fab.build import build
+from lumitip_fab.checks import fit_plate
 from lumitip_fab.checks.run import run_checks
 from lumitip_fab.derive import derive
+from lumitip_fab.encoding import design_text, read_design, settled
 from lumitip_fab.errors import FabError
 from lumitip_fab.load import load
+from lumitip_fab.mechanical.fit_plate import fit_plate_files
+from lumitip_fab.printing.settings import print_settings
+from lumitip_fab.slicing import slice_parts
+from programs import program
 
 WITHOUT_PRESET = ("onrobot_rg2", "two_hole_jaw")
 NEW = """
@@ -198,6 +205,52 @@ DAMAGES = {
     sleeve_shallow: {"gripper_pin_depth", "min_wall"},
     second_seat_low: {"screw_seat"},
 }
+
+
+# A nose too narrow for a value before its holes, and one whose flanks end early.
+NARROW = changed(
+    "front_width_mm = 14.0, front_w_mm = 3.5, half_angle_deg = 45.0",
+    "front_width_mm = 4.0, front_w_mm = 3.5, half_angle_deg = 60.0",
+)
+EARLY = changed("front_width_mm = 14.0", "front_width_mm = 20.0")
+OWN = {"wide": NEW, "narrow": NARROW, "early": EARLY}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("gripper", [*OWN, "robotiq_2f85", "wsg50", "franka_hand", "two_hole_jaw"])
+def test_a_fit_test_plate_passes_its_checks_and_prints_in_ten_minutes(
+    gripper: str, held_by: File, tmp_path: Path
+) -> None:
+    file = held_by("bench_jaw", OWN[gripper]) if gripper in OWN else held_by(gripper)
+    design = settled(derive(load(file)))
+    made = fit_plate_files(design.fit_plate, design.mount)
+    made += print_settings(design.title, design.printing, design.slicing, design.interfaces)
+    for artefact in made:
+        (tmp_path / artefact.path).parent.mkdir(exist_ok=True)
+        (tmp_path / artefact.path).write_bytes(artefact.data)
+    measured = tuple(fit_plate.measure(tmp_path, design))
+    assert [m for m in measured if not m.passed] == []
+    assert any(m.check == "fit_plate.sleeve" for m in measured) == design.mount.sleeved
+    (tmp_path / "design.json").write_text(design_text(design), encoding="utf-8")
+    (tmp_path / "manifest.json").write_text(json.dumps({"files": [a.path for a in made]}))
+    program("prusa-slicer")
+    (sliced,) = slice_parts(tmp_path)
+    assert sliced.warnings == ()
+    assert sliced.seconds <= (16 if gripper in OWN else 12) * 60
+
+
+@pytest.mark.slow
+def test_a_sleeve_of_the_fit_test_plate_too_deep(
+    built: Callable[[str], Path], tmp_path: Path
+) -> None:
+    folder = Path(shutil.copytree(built("wsg50"), tmp_path / "damaged"))
+    design = read_design(folder / "design.json")
+    plate, mount = design.fit_plate, design.mount
+    x, y = plate.at(1, plate.slice_at)
+    at = (x - mount.bolt_u_mm[-1], y - mount.bolt_w_mm)
+    deeper = tube(*at, plate.steps[1].gripper_pin_mm, -1.0, plate.pin_depth_mm + 0.2)
+    carve(folder / "fit/fit_plate.stl", lambda part: part - deeper)
+    assert failing(folder, "fit_plate") == {"sleeve"}
 
 
 @pytest.mark.slow

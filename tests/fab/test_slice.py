@@ -66,6 +66,7 @@ def test_every_part_slices_without_support(
         assert part["first_layer_mm2"] > 150.0 and part["seconds"] > 600, name
         assert (tmp_path / f"{Path(name).stem}.gcode").stat().st_size > 10_000
     assert parts["backing/emitter_backing.3mf"]["layers"] == 273
+    assert parts["fit/fit_plate.3mf"]["seconds"] <= 12 * 60
     assert told["grams"] == pytest.approx(sum(p["grams"] for p in parts.values()), abs=0.01)
 
 

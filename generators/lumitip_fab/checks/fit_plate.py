@@ -1,4 +1,4 @@
-"""The fit test plate: every step really is as much looser than the backing as its value says."""
+"""The fit test plate: every coupon really is as much looser than the backing as its value says."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -64,7 +64,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     yield _figure("readable", "", float(len(mesh.faces)), 4, np.inf, "triangles")
     plate = _Plate(mesh, design)
     steps: tuple[Callable[[_Plate], Iterator[Measurement]], ...] = (
-        measure_body, measure_corners, measure_bolts, measure_pins, measure_seats, measure_noses,
+        measure_body, measure_corners, measure_bolts, measure_pins, measure_sleeves, measure_noses,
         measure_labels,
     )  # fmt: skip
     for measured in steps:
@@ -73,14 +73,18 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
         except (ArithmeticError, LookupError, ValueError, shapely.errors.ShapelyError) as error:
             name = measured.__name__.removeprefix("measure_")
             yield unreadable(f"fit_plate.{name}", _FILE, f"cannot be measured: {error!r:.200}")
-    yield from packages.measure_boxes("fit_plate", outputs, _FILE, mesh.bounds, mesh.bounds)
+    coupons = len(design.fit_plate.steps)
+    yield from packages.measure_boxes(
+        "fit_plate", outputs, _FILE, mesh.bounds, mesh.bounds, coupons
+    )
 
 
 def measure_body(plate: _Plate) -> Iterator[Measurement]:
-    """One closed body of the stated size and volume."""
+    """Closed bodies, one for each step, of the stated size and volume."""
     mesh, wanted = plate.mesh, plate.design.fit_plate
     yield _figure("watertight", "", solids.open_edges(mesh), 0, 0, "open edges")
-    yield _figure("bodies", "", solids.bodies(mesh), 1, 1, "bodies")
+    steps = len(wanted.steps)
+    yield _figure("bodies", "", solids.bodies(mesh), steps, steps, "bodies")
     off = mesh.bounds - np.array([(0.0, 0.0, 0.0), wanted.size_mm])
     yield _near("size", "", off.ravel(), 0.0, SIZE_MM)
     least, most = ((1 + side * VOLUME_FRACTION) * wanted.volume_ml for side in (-1, 1))
@@ -88,11 +92,12 @@ def measure_body(plate: _Plate) -> Iterator[Measurement]:
 
 
 def measure_corners(plate: _Plate) -> Iterator[Measurement]:
-    """On each tower: gaps from a board's edges to the walls, the pin, and the floor."""
+    """On each foot: gaps from a board's edges to the walls, the pin, and the floor."""
     wanted, board = plate.design.fit_plate, plate.design.board
-    for step, (name, floor) in enumerate(zip(plate.names(), wanted.floors_mm, strict=True)):
+    cut = section(plate.mesh, wanted.floor_mm + wanted.pocket_mm / 2)
+    rings = [p.exterior for p in shapely.get_parts(cut) if p.geom_type == "Polygon"]
+    for step, name in enumerate(plate.names()):
         looser = plate.looser_mm(step)
-        cut = section(plate.mesh, floor + wanted.pocket_mm / 2)
         x, y = wanted.at(step, wanted.corner)
         pin_x, pin_y = wanted.at(step, wanted.pin)
         free = np.array([0.25, 0.4])
@@ -100,19 +105,18 @@ def measure_corners(plate: _Plate) -> Iterator[Measurement]:
         behind = [(x + (pin_x - x) * f, y) for f in free]
         gaps = np.concatenate([_gaps(cut, beside, (-1.0, 0.0)), _gaps(cut, behind, (0.0, 1.0))])
         yield _near("pocket_gap", name, gaps, board.pocket_clearance_mm + looser, TIGHT_MM)
-        rings = [p.exterior for p in shapely.get_parts(cut) if p.geom_type == "Polygon"]
         off, wide = circles(rings, ((pin_x, pin_y),), board.hole_mm / 2)
         yield _near("pins", name, off, 0.0, PLACE_MM)
         yield _near("pin", name, wide, board.pin_mm - 2 * looser, TIGHT_MM)
         open_floor = np.array([(x + 0.3, pin_y), ((x + pin_x) / 2, pin_y)])
-        yield _near("floor", name, _height(plate, open_floor), floor, PLACE_MM)
+        yield _near("floor", name, _height(plate, open_floor), wanted.floor_mm, PLACE_MM)
 
 
 def measure_bolts(plate: _Plate) -> Iterator[Measurement]:
     """The bolt's hole in each slice: place and diameter."""
     wanted, mount = plate.design.fit_plate, plate.design.mount
     low = wanted.pin_depth_mm if mount.sleeved else 0.0
-    rings = holes_at(plate.mesh, (low + wanted.land_mm) / 2)
+    rings = holes_at(plate.mesh, (low + wanted.thickness_mm) / 2)
     for step, name in enumerate(plate.names()):
         bolts = plate.mounted(step, mount.bolt_u_mm)
         off, wide = circles(rings, bolts, mount.bolt_hole_mm / 2)
@@ -124,7 +128,7 @@ def measure_bolts(plate: _Plate) -> Iterator[Measurement]:
 def measure_pins(plate: _Plate) -> Iterator[Measurement]:
     """The holes for the gripper's pins in each slice: place and diameter."""
     wanted, mount = plate.design.fit_plate, plate.design.mount
-    rings = holes_at(plate.mesh, min(wanted.pin_depth_mm, wanted.land_mm) / 2)
+    rings = holes_at(plate.mesh, wanted.pin_depth_mm / 2)
     for step, name in enumerate(plate.names() if mount.pin_u_mm else ()):
         off, wide = circles(rings, plate.mounted(step, mount.pin_u_mm), mount.pin_mm / 2)
         yield _near("gripper_pins", name, off, 0.0, PLACE_MM)
@@ -132,18 +136,17 @@ def measure_pins(plate: _Plate) -> Iterator[Measurement]:
         yield _near("gripper_pin_hole", name, wide, hole, TIGHT_MM)
 
 
-def measure_seats(plate: _Plate) -> Iterator[Measurement]:
-    """What is left under each bolt's head, but for the holes beside it."""
+def measure_sleeves(plate: _Plate) -> Iterator[Measurement]:
+    """How deep the holes for sleeves round the bolts are, from below."""
     wanted, mount = plate.design.fit_plate, plate.design.mount
     turn = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
-    radius = (mount.bolt_hole_mm / 2 + 0.1 + mount.counterbore_mm / 2) / 2
+    radius = (mount.bolt_hole_mm + mount.pin_mm) / 4
     around = radius * np.column_stack([np.cos(turn), np.sin(turn)])
-    for step, name in enumerate(plate.names()):
+    for step, name in enumerate(plate.names() if mount.sleeved else ()):
         points = np.concatenate([around + at for at in plate.mounted(step, mount.bolt_u_mm)])
-        if not mount.sleeved:
-            for pin in plate.mounted(step, mount.pin_u_mm):
-                points = points[np.hypot(*(points - pin).T) > mount.pin_mm / 2 + 0.2]
-        yield _near("land", name, _height(plate, points), wanted.land_mm, PLACE_MM)
+        origins = np.column_stack([points, np.full(len(points), -1.0)])
+        rise, _ = cast(plate.mesh, origins, -_DOWN, wanted.size_mm[2] + 2).first(len(points))
+        yield _near("sleeve", name, rise - 1.0, wanted.pin_depth_mm, PLACE_MM)
 
 
 def measure_noses(plate: _Plate) -> Iterator[Measurement]:
@@ -152,8 +155,7 @@ def measure_noses(plate: _Plate) -> Iterator[Measurement]:
     if nose is None:
         return
     angle, box = np.radians(nose.half_angle_deg), wanted.slice
-    height = min(nose.height_mm, wanted.thickness_mm) / 2
-    cut = section(plate.mesh, height)
+    cut = section(plate.mesh, min(nose.height_mm, wanted.thickness_mm) / 2)
     rows = np.linspace(box.y_min_mm + 0.2, box.y_max_mm - 0.2, 12)
     for step, name in enumerate(plate.names()):
         x, y = wanted.at(step, wanted.slice_at)

@@ -27,7 +27,7 @@ def measure_files(outputs: Path, part: Printed) -> Iterator[Measurement]:
 
 
 def measure_boxes(
-    prefix: str, outputs: Path, stl: str, standing: Vectors, sensor: Vectors
+    prefix: str, outputs: Path, stl: str, standing: Vectors, sensor: Vectors, solids: int = 1
 ) -> Iterator[Measurement]:
     """How far the boxes round 3MF and STEP differ from the STL's, and what else they hold.
 
@@ -37,13 +37,15 @@ def measure_boxes(
         stl: the part's STL file in it; the others lie beside it.
         standing: bounds of the part in the printer, shape `(2, 3)`.
         sensor: its bounds in the sensor frame.
+        solids: how many the STEP file has to hold.
     """
     yield _measured(
         f"{prefix}.three_mf", outputs, stl.replace(".stl", ".3mf"), _three_mf, _from_box(standing)
     )
     yield _measured(
-        f"{prefix}.step", outputs, stl.replace(".stl", ".step"), _step, _from_box(sensor)
-    )
+        f"{prefix}.step", outputs, stl.replace(".stl", ".step"),
+        lambda path: _step(path, solids), _from_box(sensor),
+    )  # fmt: skip
 
 
 def measure_corners(
@@ -100,10 +102,10 @@ def _three_mf(path: Path) -> Vectors:
     return np.array([[float(v.attrib[axis]) for axis in "xyz"] for v in vertices])
 
 
-def _step(path: Path) -> Vectors:
+def _step(path: Path, solids: int = 1) -> Vectors:
     text = re.sub(r"\n\s*", "", path.read_text(encoding="ascii"))
-    solids = text.count("MANIFOLD_SOLID_BREP(")
-    if solids != 1 or "SI_UNIT(.MILLI.,.METRE.)" not in text:
-        raise ValueError(f"{solids} solids, one in mm is needed")
+    found = text.count("MANIFOLD_SOLID_BREP(")
+    if found != solids or "SI_UNIT(.MILLI.,.METRE.)" not in text:
+        raise ValueError(f"{found} solids, {solids} in mm needed")
     points = {n: (float(x), float(y), float(z)) for n, x, y, z in _POINT.findall(text)}
     return np.array([points[n] for n in _VERTEX.findall(text)])

@@ -30,58 +30,58 @@ class Fits:
 
 @dataclass(frozen=True)
 class FitPlate:
-    """The plate as it lies on the bed: x to the right, y away from the reader, z up.
+    """The coupons as they lie on the bed: x to the right, y away from the reader, z up.
 
-    Each step has a tower, with a corner of the pocket and a pin, and behind it a slice of the
-    coupling. Towers fall to the right, so that a board on one passes over all lower ones.
+    Each step is a coupon of its own, so that a board on one meets no other: in front the foot of a
+    corner of the pocket with a pin, behind it a slice of the coupling, all as thin as the layers
+    that a fit takes.
 
-        ┌────┐ ┌────┐
-        │ ◎  │ │ ◎  │    slices of the coupling, the nose away from the reader
-     ┌──┴────┴─┴────┴──┐
-     │▛▔▔ -10 ▛▔▔ -5 … │  towers: the corner at the left behind, the pin in it; values in 0.01 mm
-     └─────────────────┘
+      ╲ -10 ╱  ╲ -5  ╱
+       │ ◎ │    │ ◎ │    slices of the coupling, the nose away from the reader; values in 0.01 mm
+     ┌─┴───┴┐ ┌─┴───┴┐
+     │▛▀▀▀  │ │▛▀▀▀  │   corners: walls at the left and behind, the pin between them
+     └──────┘ └──────┘
     """
 
     steps: tuple[Fits, ...]
     """Tightest first, which is the leftmost."""
     pitch_mm: float
-    """From step to step along x; the first begins at x = 0."""
-    tower: Box
-    """Of the first step."""
+    """From coupon to coupon along x; the first begins at x = 0."""
+    foot: Box
+    """Of the first coupon's corner."""
     pin: Point
-    """Of the first step."""
+    """Of the first coupon."""
     corner: Point
-    """The corner of a board on the first tower: its left and its far edge."""
-    floors_mm: tuple[float, ...]
-    """Height of each tower's floor, on which the board lies."""
+    """The corner of a board on the first coupon: its left and its far edge."""
+    floor_mm: float
+    """Height of the foot, on which the board lies."""
     pocket_mm: float
-    """Height of walls and pin over that floor."""
+    """Height of walls and pin over it."""
     label: Box
-    """The value of the first step, of three characters."""
+    """The value of the first coupon, of three characters."""
     label_mm: float
     """Depth of the engraving."""
     slice: Box
     """Of the coupling, in the mount's axes u and w."""
     slice_at: Point
-    """Place of u = 0, w = 0 of the first step's slice; u runs against x, and w against y."""
+    """Place of u = 0, w = 0 of the first coupon's slice; u runs against x, and w against y."""
     thickness_mm: float
-    """Of slices and of the strip under the towers."""
-    land_mm: float
-    """Left under a bolt's head."""
+    """Of slices."""
     pin_depth_mm: float
     """Of the holes for the gripper's pins, from below: through, unless they are sleeves round
     the bolts."""
     volume_ml: float
-    """Estimated, from towers, strip and slices."""
+    """Of all coupons, estimated."""
 
     @property
     def size_mm(self) -> tuple[float, float, float]:
-        """Box round it, from the origin."""
+        """Box round all coupons, from the origin."""
+        width = (len(self.steps) - 1) * self.pitch_mm + max(self.foot.x_max_mm, self.slice.width_mm)
         depth = self.slice_at[1] - self.slice.y_min_mm
-        return len(self.steps) * self.pitch_mm, depth, max(self.floors_mm) + self.pocket_mm
+        return width, depth, max(self.thickness_mm, self.floor_mm + self.pocket_mm)
 
     def at(self, step: int, place: Point) -> Point:
-        """A place of the first step moved to another."""
+        """A place of the first coupon moved to another."""
         return place[0] + step * self.pitch_mm, place[1]
 
     def label_of(self, step: int) -> str:

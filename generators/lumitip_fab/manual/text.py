@@ -109,9 +109,9 @@ def _bought(made: Made) -> str:
 def _printed(made: Made) -> str:
     return f"""## 2. Print
 
-Print `fit/fit_plate.3mf` first: it takes minutes, and its reading is `printer.fit_mm`. Hold a
-board and the bolts against it, write the reading into the parameter file, build again, and print
-the rest.
+Print `fit/fit_plate.3mf` first: it takes some ten minutes, and its reading is `printer.fit_mm`.
+Hold a board and the bolts against it, write the reading into the parameter file, build again, and
+print the rest.
 
 {_included(made.text("print/printing.md"))}"""
 
