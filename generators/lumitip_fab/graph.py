@@ -36,7 +36,10 @@ class Step:
 
 _CAD = ("build123d", "cadquery-ocp", "cadquery-ocp-novtk", "lib3mf", "numpy", "trimesh")
 _INK = ("reportlab", "ezdxf", "numpy", "shapely")
-_COPPER = ("gerbonara", "matplotlib", "networkx", "numba", "numpy", "scipy", "shapely")
+_COPPER = (
+    "gerbonara", "kicad-skip", "matplotlib", "networkx", "numba", "numpy", "scipy", "sexpdata",
+    "shapely",
+)  # fmt: skip
 _DRAWN = ("numpy", "shapely", "trimesh")
 _STACKED = ("assembly/assembly.glb", "flange/*.stl", "holder/*.stl")
 _LISTED = (

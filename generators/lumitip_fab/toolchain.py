@@ -25,14 +25,19 @@ def code_hash(*parts: str) -> str:
         roots += [Path(lumitip.__file__).parent / "protocol", *firmware_sources()]
     if "explore" in parts:
         roots += [Path(lumitip.__file__).parent / name for name in ("twin", "estimation")]
-    return _hash(f for r in roots for f in (sorted(r.rglob("*.py")) if r.is_dir() else [r]))
+    return _hash(f for r in roots for f in (_sources(r) if r.is_dir() else [r]))
 
 
 @lru_cache
 def whole_code_hash() -> str:
     """Hash of all of both packages, and of the firmware."""
     roots = (PACKAGE, Path(lumitip.__file__).parent)
-    return _hash([*(f for r in roots for f in sorted(r.rglob("*.py"))), *firmware_sources()])
+    return _hash([*(f for r in roots for f in _sources(r)), *firmware_sources()])
+
+
+def _sources(folder: Path) -> list[Path]:
+    """Code, and the sheet that schematics grow from."""
+    return sorted(f for f in folder.rglob("*") if f.suffix in {".py", ".kicad_sch"})
 
 
 def _hash(files: Iterable[Path]) -> str:

@@ -5,6 +5,7 @@ import re
 import shutil
 import subprocess
 from collections import defaultdict
+from importlib.resources import files
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -35,9 +36,9 @@ def drawn(design_dir: Path, tmp_path_factory: pytest.TempPathFactory) -> Drawn:
         for finger in d.fingers:
             board = place(d.title, d.reading, d.board, finger, d.wiring, d.packages, d.rules)
             folder = tmp_path_factory.mktemp(f"{preset}-{finger.name}")
-            files = schematic_files(board, d.wiring, d.packages)
-            files |= project_files(BoardModel(board, Routing((), (), 0), ()), d.stack.pcb_mm)
-            for path, data in files.items():
+            made = schematic_files(board, d.wiring, d.packages)
+            made |= project_files(BoardModel(board, Routing((), (), 0), ()), d.stack.pcb_mm)
+            for path, data in made.items():
                 (folder / path).parent.mkdir(exist_ok=True)
                 (folder / path).write_bytes(data)
             found[preset, finger.name] = d, board, folder
@@ -55,6 +56,13 @@ def _report(folder: Path, kind: str, command: str, ending: str, *options: str) -
     sheet = next(folder.glob(f"*.{ending}"))
     _kicad(kind, command, "--severity-all", "--format", "json", *options, "-o", file, sheet)
     return json.loads(file.read_text(encoding="utf-8"))
+
+
+@needs_kicad
+def test_kicad_opens_what_the_sheets_grow_from(tmp_path: Path) -> None:
+    template = files("lumitip_fab.boards.schematic") / "template.kicad_sch"
+    _kicad("sch", "export", "svg", "-o", tmp_path, str(template))
+    assert "NET" in (tmp_path / "template.svg").read_text(encoding="utf-8")
 
 
 @needs_kicad

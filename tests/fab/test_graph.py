@@ -1,10 +1,12 @@
 """Which change makes which task run again."""
 
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
+from lumitip_fab import toolchain
 from lumitip_fab.derive import derive
 from lumitip_fab.graph import EACH, STEPS, argument_names, late_steps, late_task, tasks
 from lumitip_fab.load import load
@@ -67,6 +69,23 @@ def test_what_is_outside_touches_no_finger(keys: Keys) -> None:
 
 def test_lengths_of_wires_touch_the_wiring_alone(keys: Keys) -> None:
     assert changed(keys(), keys("[wiring]\nslack_mm = 60.0\n")) == {"wiring_files"}
+
+
+def test_the_sheet_that_schematics_grow_from_touches_the_boards(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    package = tmp_path / "package"
+    shutil.copytree(toolchain.PACKAGE, package, ignore=shutil.ignore_patterns("__pycache__"))
+    monkeypatch.setattr(toolchain, "PACKAGE", package)
+
+    def hashes() -> list[str]:
+        of, whole = toolchain.code_hash.__wrapped__, toolchain.whole_code_hash.__wrapped__
+        return [of("boards"), whole(), of("mask")]
+
+    before = hashes()
+    sheet = package / "boards/schematic/template.kicad_sch"
+    sheet.write_text(sheet.read_text(encoding="utf-8").replace("passive", "input"), "utf-8")
+    assert [a == b for a, b in zip(before, hashes(), strict=True)] == [False, False, True]
 
 
 def test_every_step_names_real_arguments(keys: Keys, design_dir: Path) -> None:
