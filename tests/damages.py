@@ -1,5 +1,6 @@
 """What the damage tests share: ways to hurt a built file, and the checks that then fail."""
 
+import shutil
 from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
@@ -28,6 +29,25 @@ def passing(folder: Path, module: str, told_of: Callable[[str], bool]) -> set[st
     found = list(import_module(f"lumitip_fab.checks.{module}").measure(folder, design))
     assert not [m for m in found if not m.passed]
     return {m.check.removeprefix(f"{module}.") for m in found if told_of(m.subject)}
+
+
+def excerpt(outputs: Path, folder: Path, *names: str) -> Path:
+    """A folder with the design and some of its outputs, by folder or file."""
+    for name in ("design.json", *names):
+        source, target = outputs / name, folder / name
+        target.parent.mkdir(parents=True, exist_ok=True)
+        if source.is_dir():
+            shutil.copytree(source, target)
+        else:
+            shutil.copy(source, target)
+    return folder
+
+
+def edit(path: Path, old: str, new: str) -> None:
+    """Replace a text where it first is in a file."""
+    text = path.read_text(encoding="utf-8")
+    assert old in text
+    path.write_text(text.replace(old, new, 1), encoding="utf-8")
 
 
 def carve(

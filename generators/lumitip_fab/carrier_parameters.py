@@ -54,7 +54,7 @@ class Flange(Strict):
     """Whether it is made."""
     coupling: Name
     """What it stands on, in `parts/couplings.toml`."""
-    clearance_mm: float = Field(ge=0, le=1)
+    clearance_mm: float = Field(ge=0.05, le=1)
     """Board to pocket, and both parts to coupling and gripper, each side (mm)."""
     tail_mm: float = Field(ge=0, le=5)
     """Room for solder tails under the board, to which they are cut (mm)."""
@@ -63,9 +63,9 @@ class Flange(Strict):
     contacts: Name
     """Spring contacts in `parts/strips.toml`, two rows."""
     signals: tuple[Signal, ...]
-    """Signal of each contact, counter-clockwise from the lower left: `SUPPLY`, `GND`, and names of
-    your own for lines that a header has too. Which contact carries what differs from coupling to
-    coupling."""
+    """Signal of each contact, counter-clockwise from the lower left, seen from the gripper:
+    `SUPPLY`, `GND`, and names of your own for lines that a header has too. Which contact carries
+    what differs from coupling to coupling."""
     header: Name
     """Headers for cables in `parts/strips.toml`, two rows."""
     headers: tuple[tuple[Signal, ...], tuple[Signal, ...]]

@@ -43,8 +43,8 @@ class Stack(Strict):
     floor_mm: float = Field(ge=0.4, le=10)
     """Floor of the pocket behind the board (mm)."""
     pcb_mm: float = Field(ge=0.1, le=3.2)
-    """Board, and so the depth of its pocket where it lies in one; a flexible one is 0.1 to 0.2
-    thick (mm)."""
+    """Board, and so the depth of its pocket where it lies in one; a flexible one is 0.11 to
+    0.2 thick (mm)."""
     silicone_mm: float = Field(ge=0.5, le=10)
     """Silicone over the board (mm)."""
     film_mm: float = Field(ge=0.02, le=1)

@@ -53,7 +53,7 @@ def _outside(out: Path, design: Design) -> Iterator[Row]:
     ]  # fmt: skip
     for what, name, files in told:
         box = carriers[name].box
-        board_ml = box.width_mm * box.length_mm * design.stack.pcb_mm / 1000
+        board_ml = box.width_mm * box.length_mm * design.stack.carrier_mm / 1000
         printed = [(_volume_ml(out / file), design.slicing.of(file)) for file in files]
         grams = board_ml * design.densities.board_g_ml
         grams += sum(volume * filament.density_g_ml for volume, filament in printed)

@@ -1,12 +1,13 @@
 """Damage the flange's board, and exactly the right checks fail."""
 
 import re
+import zipfile
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from board_damages import moved_part, once
+from board_damages import in_part, moved_part, once
 from damages import failing
 from lumitip_fab.checks import board
 from lumitip_fab.encoding import read_design
@@ -46,7 +47,13 @@ def way_to_the_capacitor_missing(text: str) -> str:
     return "\n".join(kept)
 
 
+def contacts_in_front(text: str) -> str:
+    """The spring contacts on the side where all else is, their pads in their places."""
+    return in_part(text, "J1", r'\(layer "B.Cu"\)', '(layer "F.Cu")')
+
+
 DAMAGES: dict[Damage, set[str]] = {
+    contacts_in_front: {"lands"},
     # Its pads lie in the ground pour.
     capacitor_far: {"lands", "hot_loop", "hot_loop_input", "open", "short", "apart", "joined"},
     supply_narrow: {"supply_width"},
@@ -71,3 +78,16 @@ def test_the_flange_passes(boards: Callable[[str], Path]) -> None:
     assert [m for m in found if not m.passed] == []
     layout = {m.check.removeprefix("board.") for m in found if "hot_loop" in m.check}
     assert layout == {"hot_loop", "hot_loop_ground", "hot_loop_input"}
+
+
+def test_a_note_that_has_the_contacts_on_the_wrong_side_is_seen(damaged_boards: Path) -> None:
+    package = damaged_boards / "boards/flange/order/generic_flange.zip"
+    with zipfile.ZipFile(package) as opened:
+        files = {name: opened.read(name) for name in opened.namelist()}
+    note = files["flange_assembly.txt"]
+    for hurt in (note.replace(b"BACK: J1.", b"BACK: J1, J2."), note.replace(b"ON THE BACK", b"X")):
+        assert hurt != note
+        with zipfile.ZipFile(package, "w") as opened:
+            for name, data in (files | {"flange_assembly.txt": hurt}).items():
+                opened.writestr(name, data)
+        assert failing(damaged_boards, "orders") == {"note"}

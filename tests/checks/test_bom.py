@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from damages import edit, excerpt
 from damages import failing as failing_of
 from lumitip_fab.derive import derive
 from lumitip_fab.load import load
@@ -12,21 +13,10 @@ from lumitip_fab.load import load
 _NEEDED = ("boards", "backing", "mould", "holder", "flange", "fit", "wiring")
 
 
-@pytest.fixture(scope="module")
-def billed(outputs: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The bill of the published design, and what it is counted from. Do not change it."""
-    folder = tmp_path_factory.mktemp("billed") / "out"
-    for part in _NEEDED:
-        shutil.copytree(outputs / part, folder / part)
-    for file in ("design.json", "bom.csv"):
-        shutil.copy(outputs / file, folder / file)
-    return folder
-
-
 @pytest.fixture
-def copied(billed: Path, tmp_path: Path) -> Path:
-    """A copy of it, to damage."""
-    return Path(shutil.copytree(billed, tmp_path / "copied"))
+def copied(outputs: Path, tmp_path: Path) -> Path:
+    """The bill of the published design and what it is counted from, to damage."""
+    return excerpt(outputs, tmp_path / "billed", "bom.csv", *_NEEDED)
 
 
 def failing(folder: Path) -> set[str]:
@@ -54,18 +44,15 @@ EDITS = [
 ]  # fmt: skip
 
 
-def test_nothing_fails_as_it_is_written(billed: Path) -> None:
-    assert failing(billed) == set()
+def test_nothing_fails_as_it_is_written(copied: Path) -> None:
+    assert failing(copied) == set()
 
 
 @pytest.mark.parametrize(("file", "old", "new", "expected"), EDITS)
 def test_a_damage_fails_its_check(
     copied: Path, file: str, old: str, new: str, expected: set[str]
 ) -> None:
-    path = copied / file
-    text = path.read_text(encoding="utf-8")
-    assert old in text
-    path.write_text(text.replace(old, new, 1), encoding="utf-8")
+    edit(copied / file, old, new)
     assert failing(copied) == expected
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from manifold3d import Manifold
 
-from board_damages import moved_part
+from board_damages import in_part, moved_part
 from damages import Body, box, carve, failing, flip_a_triangle, remove_packages
 from lumitip_fab.checks import flange as checks
 from lumitip_fab.encoding import read_design
@@ -261,6 +261,12 @@ def test_contacts_that_stand_elsewhere_do_not_come_through(damaged: Path) -> Non
     path = damaged / "boards/flange/flange.kicad_pcb"
     path.write_text(moved_part(path.read_text(), "J1", 0.0, 2.0))
     assert failing(damaged, "flange") == {"window", "window_gap", "interference"}
+
+
+def test_contacts_on_the_front_press_nothing(damaged: Path) -> None:
+    path = damaged / "boards/flange/flange.kicad_pcb"
+    path.write_text(in_part(path.read_text(), "J1", r'\(layer "B.Cu"\)', '(layer "F.Cu")'))
+    assert failing(damaged, "flange") == {"contact_press"}
 
 
 def test_a_board_that_is_too_wide_reaches_the_bolts(damaged: Path) -> None:

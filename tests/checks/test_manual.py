@@ -1,12 +1,12 @@
 """Damage the manual or what it shows, and exactly the right checks fail."""
 
 import re
-import shutil
 from pathlib import Path
 
 import pikepdf
 import pytest
 
+from damages import edit, excerpt
 from damages import failing as failing_of
 
 _NEEDED = (
@@ -16,21 +16,10 @@ _NEEDED = (
 HTML, PDF = "manual/manual.html", "manual/manual.pdf"
 
 
-@pytest.fixture(scope="module")
-def told(outputs: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The manual of the published design and all that it names. Do not change it."""
-    folder = tmp_path_factory.mktemp("told") / "out"
-    for part in _NEEDED:
-        shutil.copytree(outputs / part, folder / part)
-    for file in ("design.json", "bom.csv"):
-        shutil.copy(outputs / file, folder / file)
-    return folder
-
-
 @pytest.fixture
-def copied(told: Path, tmp_path: Path) -> Path:
-    """A copy of it, to damage."""
-    return Path(shutil.copytree(told, tmp_path / "copied"))
+def copied(outputs: Path, tmp_path: Path) -> Path:
+    """The manual of the published design and all that it names, to damage."""
+    return excerpt(outputs, tmp_path / "told", "bom.csv", *_NEEDED)
 
 
 def failing(folder: Path) -> set[str]:
@@ -53,16 +42,13 @@ EDITS = [
 ]
 
 
-def test_nothing_fails_as_it_is_written(told: Path) -> None:
-    assert failing(told) == set()
+def test_nothing_fails_as_it_is_written(copied: Path) -> None:
+    assert failing(copied) == set()
 
 
 @pytest.mark.parametrize(("old", "new", "expected"), EDITS)
 def test_a_damage_fails_its_check(copied: Path, old: str, new: str, expected: set[str]) -> None:
-    path = copied / HTML
-    text = path.read_text(encoding="utf-8")
-    assert old in text
-    path.write_text(text.replace(old, new, 1), encoding="utf-8")
+    edit(copied / HTML, old, new)
     assert failing(copied) == expected
 
 
@@ -89,10 +75,7 @@ def test_flaps_in_another_order_are_seen(copied: Path) -> None:
 def test_a_manual_of_another_build_is_seen(
     copied: Path, file: str, old: str, new: str, expected: set[str]
 ) -> None:
-    path = copied / file
-    text = path.read_text(encoding="utf-8")
-    assert old in text
-    path.write_text(text.replace(old, new, 1), encoding="utf-8")
+    edit(copied / file, old, new)
     assert failing(copied) == expected
 
 
@@ -111,7 +94,7 @@ def test_lost_files_are_told(copied: Path) -> None:
     assert failing(copied) == {"readable"}
 
 
-def test_the_pdf_tells_no_day(told: Path) -> None:
-    data = (told / PDF).read_bytes()
+def test_the_pdf_tells_no_day(outputs: Path) -> None:
+    data = (outputs / PDF).read_bytes()
     assert b"D:20000101000000" in data
     assert not re.search(rb"D:(?!20000101)\d{8}", data)

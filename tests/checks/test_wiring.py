@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from damages import excerpt
 from damages import failing as failing_of
 from lumitip_fab.derive import derive
 from lumitip_fab.errors import InputError
@@ -17,22 +18,10 @@ Edit = Callable[[str], str]
 LIST, NOTE, DIAGRAM = "cables.csv", "cables.md", "wiring.svg"
 
 
-@pytest.fixture(scope="module")
-def wired(outputs: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """What the check reads, of the published design. Do not change it."""
-    folder = tmp_path_factory.mktemp("wired") / "out"
-    for part in ("wiring", "boards"):
-        shutil.copytree(outputs / part, folder / part)
-    (folder / "firmware").mkdir()
-    for file in ("design.json", "firmware/layout.h"):
-        shutil.copy(outputs / file, folder / file)
-    return folder
-
-
 @pytest.fixture
-def copied(wired: Path, tmp_path: Path) -> Path:
-    """A copy of it, to damage."""
-    return Path(shutil.copytree(wired, tmp_path / "copied"))
+def copied(outputs: Path, tmp_path: Path) -> Path:
+    """What the check reads, of the published design, to damage."""
+    return excerpt(outputs, tmp_path / "wired", "wiring", "boards", "firmware/layout.h")
 
 
 def failing(folder: Path) -> set[str]:

@@ -1,6 +1,7 @@
 """What fingers, flange and holder weigh, told from the files that were built."""
 
 import csv
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -39,6 +40,18 @@ def test_flange_and_holder_weigh_what_their_filament_and_boards_do(outputs: Path
         solid = sum(grams for item, grams in printed.items() if item.startswith(f"{name}/"))
         told = float(rows[f"mass of the {name}"].removesuffix(" g"))
         assert told == pytest.approx(solid + area_mm2 * 1.6 * 1.85e-3, abs=0.2)
+
+
+@pytest.mark.slow
+def test_boards_outside_compliant_fingers_weigh_what_stiff_ones_do(
+    built: Callable[[str], Path], outputs: Path
+) -> None:
+    told = [
+        {r.quantity: r.computed for r in built_rows(out, read_design(out / "design.json"))}
+        for out in (outputs, built("flex"))
+    ]
+    rigid, flex = (float(rows["mass of the flange"].removesuffix(" g")) for rows in told)
+    assert flex == pytest.approx(rigid, abs=0.11)
 
 
 def test_a_printed_part_that_is_missing_is_told(damaged: Path) -> None:

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 from lumitip_fab.boards.clear import extent
 from lumitip_fab.boards.geometry import courtyard, placed_pads
-from lumitip_fab.boards.model import SIDES, Component, Placement, Text
+from lumitip_fab.boards.model import SIDES, Component, Placement, Side, Text
 from lumitip_fab.boards.page import Page
 from lumitip_fab.design import Box, Carrier, Device, Point, Rules
 
@@ -32,7 +32,8 @@ def with_legend(board: Placement, carrier: Carrier, rules: Rules) -> Placement:
     for ref, part in parts.items():
         if part.kind == "fiducial":
             continue
-        _put(page, ref, (part.x_mm, part.y_mm), [*_round(page, ref, courtyard(part))], _APART_MM)
+        places = [*_round(page, ref, courtyard(part))]
+        _put(page, ref, (part.x_mm, part.y_mm), places, _APART_MM, part.side)
     lines = ((board.name, 2.0), (carrier.title, 1.5),
              (f"rev {board.revision}  {board.design_hash[:8]}", 1.5))  # fmt: skip
     for side in SIDES:
@@ -42,12 +43,15 @@ def with_legend(board: Placement, carrier: Carrier, rules: Rules) -> Placement:
     return dataclasses.replace(board, silk=tuple(page.strokes), texts=tuple(page.texts))
 
 
-def _put(page: Page, told: str, at: Point, choices: list[Text], apart_mm: float = 0.0) -> None:
+def _put(
+    page: Page, told: str, at: Point, choices: list[Text], apart_mm: float = 0.0,
+    side: Side = "front",
+) -> None:  # fmt: skip
     """Print a text at the first place that is free, or note that there is none."""
-    free = page.sides["front"].free
-    found = next((t for t in choices if free(extent(t, "front").buffer(apart_mm))), None)
+    free = page.sides[side].free
+    found = next((t for t in choices if free(extent(t, side).buffer(apart_mm))), None)
     if found:
-        page.put("front", [found])
+        page.put(side, [found])
     else:
         page.miss(repr(told), choices[0].height_mm, page.length_mm(told), at)
 

@@ -11,7 +11,8 @@ def component(device: Device, rules: Rules) -> Component:
     return Component(
         ref=device.ref, value=device.value, part=device.part, kind=device.kind,
         footprint=_footprint(device, rules), x_mm=device.x_mm, y_mm=device.y_mm,
-        angle_deg=device.angle_deg, side="front", nets=device.nets,
+        angle_deg=device.angle_deg, side="back" if device.side == "back" else "front",
+        nets=device.nets,
         manufacturer=device.manufacturer, lcsc=device.lcsc,
     )  # fmt: skip
 

@@ -53,9 +53,9 @@ def _circuit(carrier: Carrier, told: Regulated) -> Iterator[str]:
     yield f"Rswitch drive {coil_in} {told.switch_ohm:.4g}"
     yield f"L1 {coil_in} {output} {told.inductance_uh:g}u"
     for device in carrier.devices:
-        nets = {net for _, net in device.nets}
-        if device.kind == "capacitor" and nets == {output, GROUND}:
-            yield f"{device.ref} {output} 0 {told.capacitor_uf:g}u"
+        if device.ref in told.capacitors:
+            high, low = (net if net != GROUND else "0" for _, net in device.nets)
+            yield f"{device.ref} {high} {low} {told.capacitor_uf:g}u"
     yield f"Rload {output} 0 {load_ohm:g}"
     high_ns = period_ns - 2 * edge_ns
     yield f"Vramp ramp 0 pulse(0 1 0 {high_ns:.3f}n {edge_ns:.3f}n {edge_ns:.3f}n {period_ns:.3f}n)"

@@ -180,7 +180,8 @@ def _has_copper(part: Part) -> bool:
 def _off_mm(read: ReadCarrier, device: Device, part: Part | None) -> float:
     """Worst place, size or hole of a part's pads; NaN if one is missing or there are more."""
     lands = device.pattern.lands
-    found = {t.number: t for t in part.terminals} if part and part.front else {}
+    there = part is not None and part.front == (device.side == "front")
+    found = {t.number: t for t in part.terminals} if part and there else {}
     if set(found) != {land.number for land in lands} or part is None:
         return math.nan
     if len(part.terminals) != len(lands):
@@ -207,5 +208,6 @@ def _pad_off_mm(read: ReadCarrier, device: Device, land: Land, pad: Terminal) ->
 def _placed(device: Device, land: Land) -> Point:
     turn = math.radians(device.angle_deg)
     c, s = math.cos(turn), math.sin(turn)
-    return (device.x_mm + land.x_mm * c - land.y_mm * s,
-            device.y_mm + land.x_mm * s + land.y_mm * c)  # fmt: skip
+    x = -land.x_mm if device.side == "back" else land.x_mm
+    return (device.x_mm + x * c - land.y_mm * s,
+            device.y_mm + x * s + land.y_mm * c)  # fmt: skip

@@ -58,7 +58,9 @@ def measure_contacts(of: Stacked) -> Iterator[Measurement]:
     free = [ring.exterior.distance(body) for ring in here if ring.contains(body)]
     yield of.figure("window_gap", free[0] if free else math.nan, LEAST_AROUND_MM, math.inf,
                     note="round the body of the contacts")  # fmt: skip
-    pressed = flange.contacts_mm - (of.board_z_mm - flange.contacts_z_mm)
+    behind = not of.board.parts[CONTACTS].front
+    stand = flange.contacts_mm if behind else math.nan
+    pressed = stand - (of.board_z_mm - flange.contacts_z_mm)
     low, high = LEAST_SHARE * flange.stroke_mm, MOST_SHARE * flange.stroke_mm
     yield of.figure("contact_press", pressed, low - SIZE_MM, high + SIZE_MM,
                     note=f"of {flange.stroke_mm:g} mm of stroke")  # fmt: skip
@@ -81,7 +83,7 @@ def measure_headers(of: Stacked) -> Iterator[Measurement]:
         )
         blocked += [ref] if np.isfinite(hit).any() else []
     yield of.figure("cables", len(blocked), 0, 0, "headers", "whose way out is blocked")
-    highest = max(d.pattern.height_mm for d in of.board.carrier.devices if d.ref != CONTACTS)
+    highest = max(d.pattern.height_mm for d in of.board.carrier.devices if _in_front(of, d))
     yield of.figure("headroom", of.split_mm - front - highest, LEAST_HEADROOM_MM, math.inf,
                     note="over the highest part")  # fmt: skip
 
@@ -100,7 +102,7 @@ def measure_screws(of: Stacked) -> Iterator[Measurement]:
 
 
 def bodies(of: Stacked) -> dict[str, overlap.Solid]:
-    """The board and its parts as boxes: contacts below, everything else above it."""
+    """The board and its parts as boxes, each on the side where the board's file has it."""
     thick = of.design.stack.carrier_mm
     seat = of.board_z_mm + SIZE_MM / 2
     ring = np.array(of.outline.exterior.coords)[:-1]
@@ -109,11 +111,15 @@ def bodies(of: Stacked) -> dict[str, overlap.Solid]:
     for device in of.board.carrier.devices:
         height = device.pattern.height_mm
         if height:
-            low = seat - height if device.ref == CONTACTS else seat + thick
+            low = seat + thick if _in_front(of, device) else seat - height
             corners = np.array(_footprint(of, device).exterior.coords)[:-1]
             box = manifold3d.CrossSection([corners], manifold3d.FillRule.EvenOdd)
             found[device.ref] = box.extrude(height).translate((0.0, 0.0, low))
     return found
+
+
+def _in_front(of: Stacked, device: Device) -> bool:
+    return of.board.parts[device.ref].front
 
 
 def _device(of: Stacked, ref: str) -> Device:
@@ -124,9 +130,10 @@ def _footprint(of: Stacked, device: Device) -> shapely.Polygon:
     """A part's body where the board's file has the part."""
     part, body = of.board.parts[device.ref], device.pattern.body
     (at,) = of.places([part.at])
-    turn = math.radians(device.angle_deg)
-    corners = [(body.x_min_mm, body.y_min_mm), (body.x_max_mm, body.y_min_mm),
-               (body.x_max_mm, body.y_max_mm), (body.x_min_mm, body.y_max_mm)]  # fmt: skip
+    turn, sign = math.radians(device.angle_deg), 1 if part.front else -1
+    left, right = sorted((sign * body.x_min_mm, sign * body.x_max_mm))
+    corners = [(left, body.y_min_mm), (right, body.y_min_mm),
+               (right, body.y_max_mm), (left, body.y_max_mm)]  # fmt: skip
     return shapely.Polygon([
         (at[0] + x * math.cos(turn) - y * math.sin(turn),
          at[1] + x * math.sin(turn) + y * math.cos(turn)) for x, y in corners

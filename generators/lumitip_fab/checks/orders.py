@@ -158,14 +158,18 @@ def _untold(note: str, flexible: Flexible, thickness_mm: float) -> Iterator[str]
 
 
 def _misplaced(read: ReadCarrier, note: str) -> Iterator[str]:
-    """Parts of a carrier whose first pad the assembly note tells elsewhere than the board has."""
+    """Parts of a carrier whose first pad or side the assembly note tells elsewhere than the board
+    has."""
+    behind = re.search(r"^ON THE BACK: (.+?)\. ", note, re.MULTILINE)
+    told_behind = set(behind[1].split(", ")) if behind else set()
     told = {m["ref"]: (float(m["x"]), float(m["y"])) for m in _FIRST_PADS.finditer(note)}
     for part in read.board.parts:
         if "exclude_from_bom" in part.attributes:
             continue
         first = next(t.at for t in part.terminals if t.number == "1")
         given = told.get(part.ref, (math.nan, math.nan))
-        if not np.abs(read.sensor([first])[0] - given).max() <= PLACE_MM:
+        there = np.abs(read.sensor([first])[0] - given).max() <= PLACE_MM
+        if not there or (part.ref in told_behind) == part.front:
             yield part.ref
 
 

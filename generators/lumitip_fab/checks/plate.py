@@ -159,8 +159,10 @@ def floor_points(part: Printed) -> Vectors:
         x, y = points.T
         free &= ~((taken.x_min_mm < x) & (x < taken.x_max_mm)
                   & (taken.y_min_mm < y) & (y < taken.y_max_mm))  # fmt: skip
+    holes = [interface.thread_hole_mm for interface in design.interfaces]
+    away = max(design.board.hole_mm, *(wide / 2 + 0.2 for wide in holes), 0.0)
     for hole in part.finger.holes:
-        free &= np.hypot(*(points - np.array(hole)).T) > design.board.hole_mm
+        free &= np.hypot(*(points - np.array(hole)).T) > away
     return points[free]
 
 

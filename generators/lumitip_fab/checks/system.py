@@ -114,7 +114,7 @@ def _stack(scene: Scene, design: Design) -> Iterator[Measurement]:
             "lower to upper part": upper[0] - (lower[1] - flange.peg_height_mm),
             "flange to gripper": gripper[0] - upper[1],
         }
-    worst = max(gaps, key=lambda joint: abs(gaps[joint]))
+    worst = max(gaps, key=lambda joint: np.nan_to_num(abs(gaps[joint]), nan=np.inf))
     yield Measurement("system.stack", _FILE, float(gaps[worst]), -PLACE_MM, PLACE_MM, "mm",
                       f"{worst}, the worst of {len(gaps)}")  # fmt: skip
 

@@ -42,7 +42,7 @@ def derive(given: Input) -> Design:
         faults.stop()  # without parts and nets there are no boards to place
     plan = boards.derive_plan(given, cells, strings, muxing, faults)
     silhouette = outline.derive_outline(p, plan.board, plan.receiver.notch, faults)
-    interfaces = derive_interfaces(given, silhouette, plan.receiver.notch, faults)
+    interfaces = derive_interfaces(given, silhouette, plan.receiver, plan.board.box, faults)
     coupling = mount.derive_mount(given, silhouette, plan, faults)
     tip = derive_tip(p, silhouette, plan.board, stack, faults)
     casting = mould.derive_mould(given, silhouette, plan.board, stack, faults)

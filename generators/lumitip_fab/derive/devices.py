@@ -1,6 +1,7 @@
 """Devices of carriers: catalogue entries in their places, with the nets of their lands."""
 
 from collections.abc import Iterable
+from dataclasses import replace
 
 from lumitip_fab import catalogue
 from lumitip_fab.carrier_entry import Leaded, Strip
@@ -14,12 +15,28 @@ Nets = tuple[tuple[str, str], ...]
 def strip(
     ref: str, value: str, entry: Strip, at: Point, nets: tuple[str, ...], pins: tuple[str, ...]
 ) -> Device:
-    """Two rows of contacts."""
+    """Two rows of contacts, counter-clockwise from the lower left."""
     return Device(
         ref=ref, kind="header", value=value, part=entry.order_number,
         manufacturer=entry.manufacturer, lcsc=entry.lcsc, pattern=patterns.rows("Header", entry),
         x_mm=at[0], y_mm=at[1], angle_deg=0.0, nets=numbered(nets), pins=pins,
     )  # fmt: skip
+
+
+def from_behind(device: Device) -> Device:
+    """Two rows of contacts in the same places, but with the body on the board's back, from where
+    they are counted then."""
+    half = len(device.pins) // 2
+    nets = tuple(net for _, net in device.nets)
+    return replace(
+        device, side="back", nets=numbered(_rows_turned(nets, half)),
+        pins=_rows_turned(device.pins, half),
+    )  # fmt: skip
+
+
+def _rows_turned(names: tuple[str, ...], half: int) -> tuple[str, ...]:
+    """Of two rows, each the other way round."""
+    return names[:half][::-1] + names[half:][::-1]
 
 
 def wires(ref: str, signals: tuple[str, ...], at: Point, wide: bool) -> Device:

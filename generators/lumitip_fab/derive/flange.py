@@ -13,7 +13,7 @@
 With a module as its controller it is wider to the left: see `lumitip_fab.derive.module`.
 """
 
-from lumitip_fab.derive.devices import chip, fiducials, leaded, strip
+from lumitip_fab.derive.devices import chip, fiducials, from_behind, leaded, strip
 from lumitip_fab.derive.faults import Faults
 from lumitip_fab.derive.module import Supplies, derive_module
 from lumitip_fab.derive.wiring import Muxing
@@ -93,7 +93,7 @@ def _strips(given: Input) -> tuple[Device, ...]:
     called = {"SUPPLY": supply, "REGULATED": output}
     nets = tuple(raw if signal == "SUPPLY" else signal for signal in p.signals)
     names = tuple(called.get(signal, signal) for signal in p.signals)
-    contacts = strip("J1", p.contacts, known[p.contacts], CONTACTS_AT, nets, names)
+    contacts = from_behind(strip("J1", p.contacts, known[p.contacts], CONTACTS_AT, nets, names))
     both = []
     for ref, at, signals in zip(("J2", "J3"), HEADERS_AT, p.headers, strict=True):
         there = tuple(called.get(signal, signal) for signal in signals)

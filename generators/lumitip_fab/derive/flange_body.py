@@ -8,8 +8,6 @@ from lumitip_fab.derive.flex import stiff_mm
 from lumitip_fab.design import Box, Carrier, Device, Flange, Point
 from lumitip_fab.load import Input
 
-CONTACTS = "J1"
-"""On the board's back, towards the robot; everything else is on its front."""
 HEADROOM_MM = 0.3  # over the highest part
 AROUND_MM = 0.5  # round headers, contacts and solder tails
 PIN_LENGTHS_MM = (12.0, 10.0, 8.0)
@@ -31,8 +29,9 @@ def derive_flange_body(
     (carrier,) = carriers
     p, pcb_mm = given.parameters.flange, stiff_mm(given.parameters)
     coupling, pogo = given.catalogue.couplings[p.coupling], given.catalogue.strips[p.contacts]
-    contacts = next(device for device in carrier.devices if device.ref == CONTACTS)
-    front = [device for device in carrier.devices if device.ref != CONTACTS]
+    # Towards the robot, and so on the board's back, are the contacts alone.
+    (contacts,) = (device for device in carrier.devices if device.side == "back")
+    front = [device for device in carrier.devices if device is not contacts]
     headers = [device for device in front if device.kind in ("header", "wires")]
     board_at = (
         coupling.contacts_at_mm[0] - contacts.x_mm,

@@ -4,14 +4,15 @@ import math
 
 from lumitip_fab.derive.faults import Faults
 from lumitip_fab.derive.letter import MOST_MM, letter_on
-from lumitip_fab.design import Box, Interface, Outline
+from lumitip_fab.design import Box, Finger, Interface, Outline
 from lumitip_fab.gripper_entry import Gripper
 from lumitip_fab.load import Input
 from lumitip_fab.parameters import Parameters
 
 LETTER_DEPTH_MM = 0.4
 CARRIER_MM = 1.6  # of boards that are not flexible, where those of the fingers are
-LETTER_GAP_MM = 1.5  # interface to the letter
+LETTER_GAP_MM = 1.5  # interface to the letter, and letter to the wedge
+COVERED_MM = 0.5  # board round a thread hole, which else lets silicone through
 FLARE_MM = 2.2  # of the interface beyond land and ramp: where the ramp flares into the pad
 
 
@@ -57,33 +58,36 @@ def foot_half_mm(given: Input, notch_half_mm: float) -> float:
 
 
 def derive_interfaces(
-    given: Input, outline: Outline, notch: Box, faults: Faults
+    given: Input, outline: Outline, finger: Finger, board: Box, faults: Faults
 ) -> tuple[Interface, ...]:
     """The interface of each finger; none of a rigid one.
 
     Args:
         given: the parameters.
         outline: of the plate.
-        notch: the wire notch, between the legs of the groove.
+        finger: either of them: its wire notch is between the legs of the groove.
+        board: its edge.
         faults: where to refuse.
     """
     p, flex = given.parameters, given.parameters.flex
     if not is_flex(p):
         return ()
     _refuse_heights(given, faults)
-    half = foot_half_mm(given, notch.x_max_mm)
+    _refuse_holes(given, finger, board, faults)
+    half = foot_half_mm(given, finger.notch.x_max_mm)
     end_y = outline.end_y_mm
     groove = Box(-half, half, end_y, end_y + flex.interface_mm)
     gripper = held_by(given)
     tilt = math.radians(45 - gripper.tilt_deg)
     ramp = (gripper.block_back_w_mm - behind_mm(p)) / math.tan(tilt)
     least = gripper.land_mm + ramp + FLARE_MM
-    most = outline.length_mm - p.tip.slant_start_mm
+    most = outline.length_mm - p.tip.slant_start_mm - 2 * LETTER_GAP_MM - MOST_MM
     faults.refuse_unless(
         least <= flex.interface_mm <= most,
         "flex.interface_mm",
         f"{flex.interface_mm:g} given, at least {least:.1f} is needed for the land and ramp of "
-        f"{p.coupling.gripper!r}, and at most {most:.1f} is allowed: there the wedge begins",
+        f"{p.coupling.gripper!r}, and at most {most:.1f} is allowed: then come the finger's "
+        "letter and the wedge",
     )
     low = groove.y_max_mm + LETTER_GAP_MM - end_y
     back = p.stack.pcb_mm + p.stack.floor_mm
@@ -94,6 +98,22 @@ def derive_interfaces(
             flex.thread_hole_mm, letter,
         ),
     )  # fmt: skip
+
+
+def _refuse_holes(given: Input, finger: Finger, board: Box, faults: Faults) -> None:
+    """Refuse holes for thread that the board does not cover."""
+    wide = given.parameters.flex.thread_hole_mm
+    to_edge = min(
+        min(x - board.x_min_mm, board.x_max_mm - x, y - board.y_min_mm, board.y_max_mm - y)
+        for x, y in finger.holes
+    )
+    most = 2 * (to_edge - COVERED_MM)
+    faults.refuse_unless(
+        wide <= most + 1e-9,
+        "flex.thread_hole_mm",
+        f"{wide:g} given, the board's edge is {to_edge:.2f} mm from the middle of such a hole: at "
+        f"most {most:.2f} is allowed, so that no silicone runs past the board",
+    )
 
 
 def _refuse_heights(given: Input, faults: Faults) -> None:

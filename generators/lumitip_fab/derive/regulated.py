@@ -5,7 +5,7 @@ from lumitip_fab.load import Input
 
 LOAD_SHARE = 0.25
 """Of the regulator's largest current: with less than half its ripple it would skip pulses."""
-OUTPUT_CAPACITORS = 2
+OUTPUT_CAPACITORS = ("C2", "C3")
 
 
 def derive_regulated(given: Input) -> tuple[Regulated, ...]:
@@ -24,7 +24,7 @@ def derive_regulated(given: Input) -> tuple[Regulated, ...]:
     hertz, volts = 1e3 * part.switching_khz, part.output_v
     duty = volts / p.supply.voltage_v
     each_uf = capacitor.capacitance_nf * capacitor.left / 1e3
-    farad = OUTPUT_CAPACITORS * each_uf * 1e-6
+    farad = len(OUTPUT_CAPACITORS) * each_uf * 1e-6
     ripple_a = volts * (1 - duty) / (inductor.inductance_uh * 1e-6 * hertz)
     high_ohm, low_ohm = part.switch_ohm
     return (
@@ -35,6 +35,7 @@ def derive_regulated(given: Input) -> tuple[Regulated, ...]:
             soft_start_ms=part.soft_start_ms,
             switch_ohm=duty * high_ohm + (1 - duty) * low_ohm,
             inductance_uh=inductor.inductance_uh,
+            capacitors=OUTPUT_CAPACITORS,
             capacitor_uf=each_uf,
             load_a=LOAD_SHARE * part.output_a,
             ripple_a=ripple_a,

@@ -37,7 +37,7 @@ class Pattern:
 
 @dataclass(frozen=True)
 class Device:
-    """A part, or bare copper, in its place on a carrier's front."""
+    """A part, or bare copper, in its place on a carrier."""
 
     ref: str
     kind: str
@@ -52,12 +52,14 @@ class Device:
     x_mm: float
     y_mm: float
     angle_deg: float
-    """Counter-clockwise."""
+    """Counter-clockwise, seen from the front."""
     nets: tuple[tuple[str, str], ...]
     """Net of each land, by number."""
     pins: tuple[str, ...]
     """Name of each land, in the order of the lands; empty where a part has no names. They are
     printed beside the lands, but of a module, which hides its own."""
+    side: str = "front"
+    """Where its body is: a part on the `"back"` is mirrored in x before it is turned."""
 
 
 @dataclass(frozen=True)

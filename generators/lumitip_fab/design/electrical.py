@@ -61,8 +61,11 @@ class Regulated:
     switch_ohm: float
     """Of both switches, each by its share of the time."""
     inductance_uh: float
+    capacitors: tuple[str, ...]
+    """The output capacitors beside the coil. What else is at the output, such as the input of a
+    linear regulator, is left out: with it there is less ripple."""
     capacitor_uf: float
-    """What is left at its voltage of each output capacitor."""
+    """What is left at its voltage of each of them."""
     load_a: float
     """For which the figures are."""
     ripple_a: float

@@ -95,12 +95,20 @@ def carrier_note(board: Placement, title: str, fab: Fab) -> bytes:
     lines = [
         f"{board.name}: {title}, revision {board.revision}, design {board.design_hash[:8]}",
         "",
+        *_behind(board),
         *_ordering(board, fab),
         "Pad 1 of each part, in mm as in the Gerber files, seen from the front:",
         *(f"{part.ref}  {x:.3f} {y:.3f}" for part in bought(board)
           for x, y in [pad_at(part, "1")]),
     ]  # fmt: skip
     return "".join(f"{line}\n" for line in lines).encode()
+
+
+def _behind(board: Placement) -> Iterator[str]:
+    behind = [part.ref for part in bought(board) if part.side == "back"]
+    if behind:
+        yield f"ON THE BACK: {', '.join(behind)}. Everything else is on the front."
+        yield ""
 
 
 def _ordering(board: Placement, fab: Fab) -> Iterator[str]:
