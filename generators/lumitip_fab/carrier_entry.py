@@ -118,6 +118,9 @@ class LinearRegulator(Leaded):
     output_a: float = Field(gt=0, le=20)
     """Largest continuous output current."""
 
+    stable_uf: tuple[Annotated[float, Field(gt=0, le=1e4)], Annotated[float, Field(gt=0, le=1e4)]]
+    """Least and greatest capacitance at its output (uF)."""
+
     @model_validator(mode="after")
     def _has_its_leads(self) -> Self:
         if set(self.names) != {"GND", "OUT", "IN"}:
@@ -132,6 +135,8 @@ class Transistor(Leaded):
     """Largest voltage from source to drain."""
     gate_v: float = Field(gt=0, le=100)
     """Largest voltage from source to gate."""
+    gate_on_v: float = Field(gt=0, le=100)
+    """Voltage from source to gate at which it is on for certain."""
 
     @model_validator(mode="after")
     def _has_its_leads(self) -> Self:

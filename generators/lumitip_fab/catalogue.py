@@ -110,6 +110,8 @@ class Capacitor(Chip):
 
     capacitance_nf: float = Field(gt=0, le=1e6)
     """Capacitance."""
+    rated_v: float = Field(gt=0, le=1e4)
+    """Largest voltage."""
     left: float = Field(default=1, gt=0, le=1)
     """Share of it that is left at the voltage across it."""
 

@@ -86,8 +86,8 @@ EDITS: list[tuple[str, Edit, set[str]]] = [
 ]
 
 
-def test_nothing_fails_as_it_is_written(wired: Path) -> None:
-    assert failing(wired) == set()
+def test_nothing_fails_as_it_is_written(copied: Path) -> None:
+    assert failing(copied) == set()
 
 
 @pytest.mark.parametrize(("file", "edit", "expected"), EDITS)

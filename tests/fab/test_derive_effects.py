@@ -90,8 +90,8 @@ CHANGES: dict[str, Any] = {
     ),
     "flange.regulator": "other",
     "flange.inductor": "other",
-    "flange.input_capacitor": "other",
-    "flange.output_capacitor": "other",
+    "flange.input_capacitor": "other 10uF",
+    "flange.output_capacitor": "other 22uF",
     "flange.boot_capacitor": "other",
     "flange.fuse": "other",
     "flange.transistor": "other",
@@ -101,7 +101,7 @@ CHANGES: dict[str, Any] = {
     "module.supply_capacitor": "22uF 0805",
     "module.capacitor": "other",
     "module.crystal": "other",
-    "module.crystal_capacitor": "other",
+    "module.crystal_capacitor": "other 18pF",
     "wiring.supply_mm": 310.0,
     "wiring.controller_mm": 160.0,
     "wiring.slack_mm": 50.0,
@@ -180,6 +180,9 @@ def published(inputs: dict[str, Input]) -> Input:
         ("other header", "box header 2x7", 8.0),
     ):
         tables["strips"][name] = parts.strips[like].model_copy(update={"height_mm": height_mm})
+    for like in ("10uF 0603", "22uF 0805", "18pF 0603"):
+        told = {"order_number": "other"}
+        tables["capacitors"][f"other {like[:4]}"] = parts.capacitors[like].model_copy(update=told)
     return dataclasses.replace(given, catalogue=parts.model_copy(update=tables))
 
 

@@ -4,6 +4,7 @@ import math
 
 from lumitip_fab.catalogue import Led
 from lumitip_fab.derive import wiring
+from lumitip_fab.derive.faults import Faults
 from lumitip_fab.derive.regulated import derive_regulated
 from lumitip_fab.design.electrical import Channel, Electrical, Strings
 from lumitip_fab.load import Input
@@ -13,14 +14,14 @@ SUPPLY_TOLERANCE = 0.05
 SHORTER = 0.75  # of a string's LEDs, to compare
 
 
-def derive_electrical(given: Input, strings: wiring.Strings) -> Electrical:
+def derive_electrical(given: Input, strings: wiring.Strings, faults: Faults) -> Electrical:
     """What follows from parts, strings and supply."""
     p = given.parameters
     return Electrical(
         strings=_strings(given, strings),
         channel=_channel(given),
         heat_w=sum(strings.current_ma) * p.supply.voltage_v / 1000,
-        supplies=derive_regulated(given),
+        supplies=derive_regulated(given, faults),
     )
 
 

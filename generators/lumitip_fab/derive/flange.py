@@ -15,8 +15,9 @@ With a module as its controller it is wider to the left: see `lumitip_fab.derive
 
 from lumitip_fab.derive.devices import chip, fiducials, from_behind, leaded, strip
 from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.flange_parts import least_supply_v, refuse_parts
 from lumitip_fab.derive.module import Supplies, derive_module
-from lumitip_fab.derive.wiring import Muxing
+from lumitip_fab.derive.wiring import Muxing, Strings
 from lumitip_fab.design import Box, Carrier, Device, Point
 from lumitip_fab.load import Input
 from lumitip_fab.values import resistor_code
@@ -35,7 +36,9 @@ HEADROOM_V = 1.0
 """A step-down regulator's input above its output."""
 
 
-def derive_flange(given: Input, muxing: Muxing, faults: Faults) -> tuple[Carrier, ...]:
+def derive_flange(
+    given: Input, strings: Strings, muxing: Muxing, faults: Faults
+) -> tuple[Carrier, ...]:
     """The flange's board, with the controller if that is a module; none if it is not wanted."""
     p = given.parameters
     module = given.catalogue.controllers[p.controller.board].module
@@ -48,8 +51,11 @@ def derive_flange(given: Input, muxing: Muxing, faults: Faults) -> tuple[Carrier
         )
         return ()
     _refuse(given, faults)
+    refuse_parts(given, strings, faults)
     raw, supply, output = _supplies(given)
     wing = derive_module(given, module, muxing, Supplies(supply, output), BOX, faults)
+    parts = (*_input(given), *_regulator(given), *(wing.devices if wing else ()))
+    _refuse_lines(given, parts, faults)
     names = given.catalogue.regulators[given.parameters.flange.regulator].names
 
     def lead(name: str) -> str:
@@ -66,9 +72,7 @@ def derive_flange(given: Input, muxing: Muxing, faults: Faults) -> tuple[Carrier
             hole_mm=HOLE_MM,
             devices=(
                 *_strips(given),
-                *_input(given),
-                *_regulator(given),
-                *(wing.devices if wing else ()),
+                *parts,
                 *fiducials(wing.fiducials if wing else FIDUCIALS_AT),
             ),
             notes=(),
@@ -176,10 +180,24 @@ def _refuse(given: Input, faults: Faults) -> None:
     least, most = known.regulators[p.regulator].input_v
     allowed = min(most, known.fuses[p.fuse].rated_v, known.transistors[p.transistor].rated_v,
                   2 * known.transistors[p.transistor].gate_v)  # fmt: skip
-    least = max(least, known.regulators[p.regulator].output_v + HEADROOM_V)
+    least = max(least, known.regulators[p.regulator].output_v + HEADROOM_V, least_supply_v(given))
     faults.refuse_unless(
         least <= volts <= allowed,
         "supply.voltage_v",
         f"{volts:g} given, the flange's regulator, fuse and transistor take {least:g} to "
         f"{allowed:g} V; other parts, or flange.enabled = false",
+    )
+
+
+def _refuse_lines(given: Input, parts: tuple[Device, ...], faults: Faults) -> None:
+    """Refuse lines from contact to cable that are called like a net of the board's own parts:
+    they would be joined."""
+    p = given.parameters.flange
+    own = {net for part in parts for _, net in part.nets} | set(_supplies(given))
+    lines = {*p.signals, *p.headers[0], *p.headers[1]} - {"SUPPLY", "GND", "REGULATED"}
+    taken = sorted(lines & own)
+    faults.refuse_unless(
+        not taken,
+        "flange.signals",
+        f"{', '.join(taken)} given, which the board's own parts are joined by: another name",
     )

@@ -130,7 +130,7 @@ def derive_muxing(given: Input, cells: Cells, faults: Faults) -> Muxing:
         f"{p.receiver.multiplexer!r} given, which needs {len(mux.select)} select lines; "
         f"{p.controller.board!r} has {len(controller.select_pins)}",
     )
-    sold = _sold(p.receiver.pull_up_ohm)
+    sold = sold_ohm(p.receiver.pull_up_ohm)
     faults.refuse_unless(
         math.isclose(sold, p.receiver.pull_up_ohm),
         "receiver.pull_up_ohm",
@@ -214,7 +214,7 @@ def e96(ohm: float) -> float:
     return _nearest(ohm, np.round(steps, 2))
 
 
-def _sold(ohm: float) -> float:
+def sold_ohm(ohm: float) -> float:
     """The nearest value of the E24 and E96 series, in both of which 1 % resistors are sold."""
     steps = np.array([e96(ohm), _nearest(ohm, np.array([*_E24, 10.0]))])
     return float(steps[np.abs(np.log(steps / ohm)).argmin()])
