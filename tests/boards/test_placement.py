@@ -174,6 +174,14 @@ def test_references_stand_at_the_cells_of_the_published_grid(
             assert all(p.ref_text for p in _parts(boards[preset, finger][2], kind))
 
 
+def test_references_stand_at_leds_nearer_each_other(design_dir: Path) -> None:
+    given = load(design_dir / "presets/published.toml")
+    grid = given.parameters.grid.model_copy(update={"pitch_mm": 4.5})
+    parameters = given.parameters.model_copy(update={"grid": grid})
+    design = derive(dataclasses.replace(given, parameters=parameters))
+    assert all(p.ref_text for p in _parts(_placed(design, design.emitter), "led"))
+
+
 def test_hexagons_surround_the_cells(board: Placed) -> None:
     design, finger, placement = board
     drawn = shapely.union_all(

@@ -130,7 +130,7 @@ def _place_of(page: Page, part: Component) -> Text | None:
     (x, y), r = yard.centre_mm, part.ref
     height = page.text(r, (x, y)).height_mm
     choices: list[Text] = []
-    for closer in (0.0, 0.1, 0.2, 0.3):
+    for closer in (0.0, 0.1, 0.2, 0.3, 0.4):
         off = height + page.rules.silk_gap_mm - closer
         up, aside = (size / 2 + off for size in (yard.length_mm, yard.width_mm))
         long = (yard.length_mm + height + page.length_mm(r)) / 2 - closer
@@ -143,8 +143,11 @@ def _place_of(page: Page, part: Component) -> Text | None:
     if part.kind == "multiplexer":
         choices.insert(0, page.text(r, (x, y), 1.2))
     side = page.sides[part.side]
-    room = (extent(text, part.side).buffer(_APART_MM) for text in choices)
-    return next((t for t, box in zip(choices, room, strict=True) if side.free(box)), None)
+    for apart in (_APART_MM, 0.0):
+        for text in choices:
+            if side.free(extent(text, part.side).buffer(apart)):
+                return text
+    return None
 
 
 def _printed(page: Page, part: Component, text: Text) -> Component:

@@ -19,10 +19,11 @@ from lumitip_fab.colours import INKS, codes_of
 from lumitip_fab.design import Cable, Cabling, Terminal, Title, Wire
 
 _ROW, _HEAD, _FOOT, _GAP, _TOP = 7.0, 17.0, 3.0, 12.0, 24.0
-_MARGIN, _LABEL = 8.0, 27.0
-_LEFT = (8.0, 50.0)  # edges of the boxes in each column
-_MIDDLE = (118.0, 176.0)
-_RIGHT = (242.0, 288.0)
+_MARGIN, _LABEL = 8.0, 30.0
+_LEFT = (8.0, 44.0)  # edges of the boxes in each column; near, for the manual's page shrinks all
+_MIDDLE = (106.0, 156.0)
+_RIGHT = (218.0, 256.0)
+_SMALL = 3.2  # height of the least letters
 _INK, _FAINT, _PAPER = "#1a1a1a", "#5a6b7a", "#f4f6f8"
 _BOLD = 'text-anchor="middle" font-weight="bold"'
 _CENTRED = 'text-anchor="middle"'
@@ -51,7 +52,7 @@ def diagram(title: Title, cabling: Cabling) -> str:
     runs = tuple(_runs(cabling))
     bottom = max(run.top + _height(run.cable) for run in runs)
     width = (_RIGHT if len(runs) > 2 else _MIDDLE)[1] + _MARGIN
-    height = bottom + 9 + _MARGIN
+    height = bottom + 13 + _MARGIN
     name = f"{title.name} {title.revision}: wiring"
     lines = [
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:g}mm" height="{height:g}mm" '
@@ -62,9 +63,9 @@ def diagram(title: Title, cabling: Cabling) -> str:
         *_boxes(runs, bottom),
         *(line for run in runs for wire in run.cable.wires for line in _wire(run, wire)),
         *(line for run in runs for line in _ends(run)),
-        _text(_LEFT[0], bottom + 8, "Stranded copper, colours by IEC 60757. "
-              "Pad 1 is square: on a finger's board the leftmost, seen from the front, tip up.", 3,
-              _FAINT),
+        _text(_LEFT[0], bottom + 8, "Stranded copper, colours by IEC 60757.", _SMALL, _FAINT),
+        _text(_LEFT[0], bottom + 12.5, "Pad 1 is square: on a finger's board the leftmost, seen "
+              "from the front, tip up.", _SMALL, _FAINT),
         "</svg>",
     ]  # fmt: skip
     return "\n".join(lines) + "\n"
@@ -103,7 +104,7 @@ def _boxes(runs: tuple[Run, ...], bottom: float) -> Iterator[str]:
         middle = sum(_MIDDLE) / 2
         for i, words in enumerate(("the controller", "plugs into", "J1 and J2")):
             y = receiver.top + _HEAD + 8 + 5 * i
-            yield _text(middle + 10, y, words, 3.2, _FAINT, _CENTRED)
+            yield _text(middle + 10, y, words, _SMALL, _FAINT, _CENTRED)
     elif host != receiver.cable.end.board:
         for run in (emitter, receiver):
             yield _box(_MIDDLE, run.top, run.top + _height(run.cable), run.cable.end.board)
@@ -136,7 +137,7 @@ def _wire(run: Run, wire: Wire) -> Iterator[str]:
         f'fill="#fff" stroke="{_INK}" stroke-width=".2"/>'
     )
     words = f"{wire.number} {wire.colour}{current}"
-    yield _text(label + _LABEL / 2, start + 1, words, 2.8, _INK, _CENTRED)
+    yield _text(label + _LABEL / 2, start + 1, words, _SMALL, _INK, _CENTRED)
     yield "</g>"
 
 
@@ -148,7 +149,7 @@ def _ends(run: Run) -> Iterator[str]:
         middle,
         run.top + 12.5,
         f"{cable.length_mm:g} mm, {cable.section_mm2:g} mm²",
-        2.8,
+        _SMALL,
         _FAINT,
         _CENTRED,
     )
@@ -156,7 +157,7 @@ def _ends(run: Run) -> Iterator[str]:
         (run.start_x, -1, [(w.start, run.start_y(w)) for w in cable.wires]),
         (run.end_x, 1, [(w.end, run.end_y(w)) for w in cable.wires]),
     ):
-        yield _text(x + side * 3, run.top + _HEAD - 1.5, pads[0][0].connector, 3.2, _FAINT,
+        yield _text(x + side * 3, run.top + _HEAD - 1.5, pads[0][0].connector, _SMALL, _FAINT,
                     f'text-anchor="{_anchor(side)}"')  # fmt: skip
         yield from (_pad(pad, x, y, side) for pad, y in pads)
 
