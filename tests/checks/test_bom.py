@@ -1,5 +1,6 @@
 """Damage the bill of materials or what it is counted from, and exactly the right checks fail."""
 
+import csv
 import shutil
 from pathlib import Path
 
@@ -46,6 +47,14 @@ EDITS = [
 
 def test_nothing_fails_as_it_is_written(copied: Path) -> None:
     assert failing(copied) == set()
+
+
+def test_parts_say_what_they_are(billed: Path) -> None:
+    with (billed / "bom.csv").open(encoding="utf-8", newline="") as file:
+        rows = [row for row in csv.DictReader(file) if row["group"] == "electronics"]
+    items = {row["item"] for row in rows}
+    assert {"resistor 150R", "capacitor 100nF", "LED 15406085BA300"} <= items
+    assert {"photodetector SML-H10TBT86", "transistor Si2309CDS"} <= items
 
 
 @pytest.mark.parametrize(("file", "old", "new", "expected"), EDITS)

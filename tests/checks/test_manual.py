@@ -79,6 +79,20 @@ def test_a_manual_of_another_build_is_seen(
     assert failing(copied) == expected
 
 
+def test_a_picture_of_another_board_is_seen(copied: Path) -> None:
+    shutil.copy(
+        copied / "boards/receiver/receiver_back.png", copied / "boards/emitter/emitter_back.png"
+    )
+    assert failing(copied) == {"drawings"}
+
+
+def test_the_back_of_the_emitter_is_shown_where_parts_are_there(copied: Path) -> None:
+    text = (copied / HTML).read_text(encoding="utf-8")
+    back = re.compile(r'<span class="pair"><img [^>]*emitter_back.png[^>]*>.*?</span>', re.DOTALL)
+    (copied / HTML).write_text(back.sub("", text, count=1), encoding="utf-8")
+    assert failing(copied) == {"drawings"}
+
+
 def test_a_page_that_is_lost_is_seen(copied: Path) -> None:
     with pikepdf.open(copied / PDF, allow_overwriting_input=True) as document:
         assert len(document.pages) > 6

@@ -11,7 +11,7 @@ from lumitip_fab.design import Design
 from lumitip_fab.errors import OutputError
 
 READS = (
-    "manual/*", "assembly/*_exploded.svg", "bom.csv", "boards/*/*_front.png", "mask/*",
+    "manual/*", "assembly/*_exploded.svg", "bom.csv", "boards/*/*.png", "mask/*",
     "mould/*_casting.md", "wiring/*", "print/*",
 )  # fmt: skip
 _HTML, _PDF = "manual/manual.html", "manual/manual.pdf"
@@ -54,6 +54,8 @@ def _wrong_drawings(outputs: Path, manual: Manual, design: Design) -> list[str]:
     wanted = {"assembly/receiver_exploded.svg", "wiring/wiring.svg"}
     wanted |= {f"mask/{name}_mask.svg" for name in names}
     wanted |= {f"boards/{name}/{name}_front.png" for name in boards}
+    if any(part.side == "back" for part in design.emitter.parts):
+        wanted.add("boards/emitter/emitter_back.png")
     shown = dict(manual.pictures)
     wrong = sorted(wanted ^ shown.keys())
     for name in sorted(wanted & shown.keys()):
@@ -116,8 +118,9 @@ def _billed(outputs: Path) -> list[tuple[str, ...]]:
     try:
         with (outputs / "bom.csv").open(encoding="utf-8", newline="") as file:
             rows = list(csv.DictReader(file))
+        units = {"piece": "", "sheet": " sheets", "g": " g", "m": " m"}
         told = [
-            (r["item"], r["for"], f"{r['quantity']} {r['unit']}", r["price"]) for r in rows[:-1]
+            (r["item"], r["for"], r["quantity"] + units[r["unit"]], r["price"]) for r in rows[:-1]
         ]
         return [*told, ("all together", "", "", rows[-1]["price"])]
     except (OSError, ValueError, LookupError, csv.Error) as error:

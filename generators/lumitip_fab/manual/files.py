@@ -6,6 +6,7 @@ from lumitip_fab.design import (
     Carrier,
     Controller,
     Electrical,
+    Finger,
     Flange,
     Holder,
     Interface,
@@ -27,6 +28,7 @@ def manual_files(
     wiring: Wiring, cabling: Cabling, controller: Controller, electrical: Electrical,
     carriers: tuple[Carrier, ...], holders: tuple[Holder, ...],
     interfaces: tuple[Interface, ...], flanges: tuple[Flange, ...],
+    emitter: Finger,
 ) -> tuple[Artefact, ...]:  # fmt: skip
     """The manual twice: to read on a screen, and to print.
 
@@ -45,9 +47,10 @@ def manual_files(
         holders: what holds the controller's board.
         interfaces: what holds backings that bend.
         flanges: what holds the flange's board.
+        emitter: for parts on the back of its board.
     """
     facts = Facts(title, printing, mould, mask, mount, wiring, cabling, controller, electrical,
-                  carriers, holders, interfaces, flanges)  # fmt: skip
+                  carriers, holders, interfaces, flanges, emitter)  # fmt: skip
     text = manual_text(facts, made)
     name = f"{title.name} {title.revision}: build manual"
     return (

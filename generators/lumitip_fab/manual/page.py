@@ -18,11 +18,14 @@ h2 { border-bottom: 2px solid #d9dee3; padding-bottom: .2rem; margin-top: 3rem; 
 table { border-collapse: collapse; margin: 1rem 0; font-size: .9rem; }
 th, td { border: 1px solid #cfd6dc; padding: .25rem .6rem; text-align: left; }
 th { background: #f4f6f8; }
-figure { margin: 1.5rem 0; text-align: center; }
-img { max-width: 100%; max-height: 34rem; }
-figcaption { color: #5a6b7a; font-size: .85rem; }
+.alone, .pair { text-align: center; vertical-align: bottom; }
+.alone { display: block; margin: 1.5rem 0; }
+.pair { display: inline-block; width: 49%; margin-bottom: 1rem; }
+img { max-width: 100%; max-height: 40rem; }
+.pair img { max-height: 24rem; }
+small { color: #5a6b7a; font-size: .85rem; }
 code { background: #f4f6f8; padding: 0 .2rem; font-size: .9em; }
-@media print { h2 { break-before: page; } figure, tr { break-inside: avoid; } }
+@media print { h2 { break-before: page; } .alone, .pair, tr { break-inside: avoid; } }
 """
 
 
@@ -45,10 +48,11 @@ def html_page(name: str, text: str, made: Made) -> str:
         path = str(tokens[at].attrs["src"])
         data = b64encode(made.read(path)).decode()
         caption = escape(tokens[at].content)
+        shown = "pair" if sum(token.type == "image" for token in tokens) > 1 else "alone"
         return (
-            f'<img alt="{caption}" data-file="{escape(path)}" '
+            f'<span class="{shown}"><img alt="{caption}" data-file="{escape(path)}" '
             f'src="data:{_KINDS[path.rpartition(".")[2]]};base64,{data}">'
-            f"<br><small>{caption}</small>"
+            f"<br><small>{caption}</small></span>"
         )
 
     reader.add_render_rule("image", image)

@@ -8,6 +8,7 @@ import PIL.Image
 from markdown_it.token import Token
 from reportlab import rl_config
 from reportlab.lib import colors
+from reportlab.lib.enums import TA_RIGHT
 from reportlab.lib.pagesizes import A4
 from reportlab.lib.styles import ParagraphStyle
 from reportlab.lib.units import inch, mm
@@ -21,6 +22,7 @@ from reportlab.platypus import (
     Paragraph,
     SimpleDocTemplate,
     Spacer,
+    Table,
     TableStyle,
 )
 from svglib.svglib import svg2rlg
@@ -32,12 +34,15 @@ rl_config.useA85 = 0  # streams as text take most of the time, and a quarter mor
 
 _MARGIN = 20 * mm
 _WIDTH = A4[0] - 2 * _MARGIN
-_MOST_HIGH = 100 * mm
+_MOST_HIGH = 220 * mm  # of a drawing, which is otherwise as large as it is told
+_GAP = 6 * mm  # between pictures beside each other
+_PAIR_HIGH = 85 * mm
 _DPI = 200
 _LEAST_LEFT = 110 * mm  # of a page, for a chapter to begin on it
 _BODY = ParagraphStyle("body", fontName="Helvetica", fontSize=9.5, leading=13, spaceAfter=5)
 _ITEM = ParagraphStyle("item", _BODY, leftIndent=16, spaceAfter=3)
 _CELL = ParagraphStyle("cell", _BODY, fontSize=8, leading=10, spaceAfter=0)
+_FIGURE = ParagraphStyle("figure", _CELL, alignment=TA_RIGHT)
 _GREY = colors.HexColor("#5a6b7a")
 _SMALL = ParagraphStyle("small", _BODY, fontSize=8, alignment=1, textColor=_GREY)
 _HEADS = {
@@ -51,6 +56,10 @@ _LINES = TableStyle([
     ("VALIGN", (0, 0), (-1, -1), "TOP"),
     ("TOPPADDING", (0, 0), (-1, -1), 2), ("BOTTOMPADDING", (0, 0), (-1, -1), 2),
 ])  # fmt: skip
+_LETTER, _PADDING = 4.2, 18.0  # width of a letter of a cell's text, and what is left beside it
+_BESIDE = TableStyle(
+    [("ALIGN", (0, 0), (-1, -1), "CENTER"), ("VALIGN", (0, 0), (-1, -1), "BOTTOM")]
+)
 _PLAIN = str.maketrans({"−": "-", "≥": ">=", "≤": "<=", "→": "->"})  # not in the fonts of every PDF
 
 
@@ -98,7 +107,8 @@ def _flowables(tokens: list[Token], made: Made) -> Iterator[Flowable]:
             before = tokens[at - 1]
             if before.type in ("th_open", "td_open"):
                 told = _inline(token)
-                rows[-1].append(Paragraph(f"<b>{told}</b>" if before.tag == "th" else told, _CELL))
+                style = _FIGURE if "right" in str(before.attrs.get("style", "")) else _CELL
+                rows[-1].append(Paragraph(f"<b>{told}</b>" if before.tag == "th" else told, style))
             elif before.type == "heading_open":
                 yield from _heading(int(before.tag[1]), token)
             elif numbers:
@@ -126,22 +136,33 @@ def _paragraph(token: Token, made: Made) -> Iterator[Flowable]:
     pictures = [child for child in children if child.type == "image"]
     if not pictures:
         yield Paragraph(_inline(token), _BODY)
-    for child in pictures:
-        caption = Paragraph(escape(child.content), _SMALL)
-        yield KeepTogether([_picture(str(child.attrs["src"]), made), caption, Spacer(0, 6)])
+    beside = len(pictures) > 1
+    width, high = ((_WIDTH - _GAP) / 2, _PAIR_HIGH) if beside else (_WIDTH, _MOST_HIGH)
+    shown = [
+        [
+            _picture(str(child.attrs["src"]), made, width, high),
+            Paragraph(escape(child.content), _SMALL),
+        ]
+        for child in pictures
+    ]
+    if beside:
+        pairs = [[*shown[i : i + 2], ""][:2] for i in range(0, len(shown), 2)]
+        yield Table(pairs, [_WIDTH / 2] * 2, style=_BESIDE)
+    for picture in [] if beside else shown:
+        yield KeepTogether([*picture, Spacer(0, 6)])
 
 
-def _picture(path: str, made: Made) -> Flowable:
-    """A drawing stays a drawing; a picture of points stays one."""
+def _picture(path: str, made: Made, width: float, high: float) -> Flowable:
+    """A drawing stays a drawing, no larger than it is told; a picture of points stays one."""
     if path.endswith(".svg"):
         drawing = svg2rlg(io.BytesIO(made.read(path)))
-        scale = min(_WIDTH / drawing.width, _MOST_HIGH / drawing.height)
+        scale = min(1.0, width / drawing.width, high / drawing.height)
         drawing.scale(scale, scale)
         drawing.width, drawing.height = drawing.width * scale, drawing.height * scale
         drawing.hAlign = "CENTER"
         return drawing
     seen = PIL.Image.open(io.BytesIO(made.read(path)))
-    scale = min(_WIDTH / seen.width, _MOST_HIGH / seen.height)
+    scale = min(width / seen.width, high / seen.height)
     wide, high = seen.width * scale, seen.height * scale
     # On the white of paper, and hardly finer than it is printed.
     small = seen.convert("RGBA").reduce(max(1, round(inch / scale / _DPI)))
@@ -154,15 +175,18 @@ def _picture(path: str, made: Made) -> Flowable:
 
 
 def _table(rows: list[list[Paragraph]]) -> Flowable:
-    """Columns as wide as their longest words ask, within the page."""
+    """Columns as wide as their text up to some words and their longest word, within the page."""
     asked = [
-        max(min(len(row[i].getPlainText()), 34) for row in rows if i < len(row)) + 3
-        for i in range(max(map(len, rows)))
+        max(_asked(row[i]) for row in rows if i < len(row)) for i in range(max(map(len, rows)))
     ]
-    share = min(_WIDTH / sum(asked), 5.0)
+    share = min(_WIDTH / sum(asked), 1.0)
     table = LongTable(rows, [share * a for a in asked], repeatRows=1, style=_LINES, hAlign="LEFT")
     table.spaceBefore = table.spaceAfter = 6
     return table
+
+
+def _asked(cell: Paragraph) -> float:
+    return float(max(cell.minWidth(), min(len(cell.getPlainText()), 34) * _LETTER)) + _PADDING
 
 
 def _inline(token: Token) -> str:

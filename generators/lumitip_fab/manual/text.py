@@ -10,6 +10,7 @@ from lumitip_fab.design import (
     Carrier,
     Controller,
     Electrical,
+    Finger,
     Flange,
     Holder,
     Interface,
@@ -46,6 +47,7 @@ class Facts:
     holders: tuple[Holder, ...]
     interfaces: tuple[Interface, ...]
     flanges: tuple[Flange, ...]
+    emitter: Finger
 
 
 def manual_text(facts: Facts, made: Made) -> str:
@@ -93,8 +95,7 @@ for each finger, both at once in their own moulds."""
 def _bought(made: Made) -> str:
     rows = list(csv.DictReader(io.StringIO(made.text("bom.csv"))))
     lines = "\n".join(
-        f"| {row['item']} | {row['for']} | {row['quantity']} {row['unit']} | {row['price']} |"
-        for row in rows[:-1]
+        f"| {row['item']} | {row['for']} | {_how_much(row)} | {row['price']} |" for row in rows[:-1]
     )
     return f"""## 1. Parts
 
@@ -104,6 +105,12 @@ def _bought(made: Made) -> str:
 |---|---|---:|---:|
 {lines}
 | all together | | | {rows[-1]["price"]} |"""
+
+
+def _how_much(row: dict[str, str]) -> str:
+    """Pieces are counted; the unit of anything else is told."""
+    unit = {"piece": "", "sheet": " sheets"}.get(row["unit"], f" {row['unit']}")
+    return row["quantity"] + unit
 
 
 def _printed(made: Made) -> str:
@@ -118,11 +125,14 @@ print the rest.
 
 def _boards(facts: Facts, made: Made) -> str:
     names = ("emitter", "receiver", *(carrier.name for carrier in facts.carriers))
-    pictures = "\n\n".join(
-        f"![The {name} board, front](boards/{name}/{name}_front.png)"
-        for name in names
-        if f"boards/{name}/{name}_front.png" in made.sha256
+    behind = any(part.side == "back" for part in facts.emitter.parts)
+    sides = [*((name, "front") for name in names), *([("emitter", "back")] if behind else [])]
+    pictures = "\n".join(
+        f"![The {name} board, {side}](boards/{name}/{name}_{side}.png)"
+        for name, side in sides
+        if f"boards/{name}/{name}_{side}.png" in made.sha256
     )
+    last = ", then the string resistors on the back of the emitter" if behind else ""
     zips = "\n".join(f"- `boards/{name}/order/`: {name}" for name in names)
     return f"""## 3. Boards
 
@@ -132,7 +142,7 @@ Each board has a zip for each board house, with Gerber and drill files, parts an
 
 1. Order the boards, or have them placed as well. Hold an LED and a photodetector against their
    leaflets first: the note in each zip tells which terminal is marked, and how sure that is.
-2. Solder what is left: parts on the front first, the string resistors on the back of the emitter.
+2. Solder what is left: parts on the front{last}.
 3. Before the wires go in, measure between ground and supply of each board: no short.
 
 {pictures}"""

@@ -16,6 +16,11 @@ _HEADER = 84  # of a binary STL: 80 bytes of text, and how many triangles follow
 _TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 _PART_G = re.compile(r"^\| .*, part [AB] \| \*\*([\d.]+) g\*\* \|$", re.MULTILINE)
 _GRAMS = 1000.0
+_KINDS = {
+    "C": "capacitor", "D": "LED", "F": "fuse", "J": "connector", "L": "inductor", "Q": "transistor",
+    "R": "resistor", "U": "circuit", "Y": "crystal",
+}  # fmt: skip
+"""What a part is, by the first letter of its references."""
 
 
 @dataclass(frozen=True)
@@ -44,12 +49,14 @@ def electronics(
     found: dict[tuple[str, str, str], dict[str, int]] = {}
     for path in made.like("boards/*/order/generic_*_bom.csv"):
         for row in csv.DictReader(io.StringIO(made.text(path))):
-            key = row["Value"], row["Manufacturer"], row["Part number"]
-            found.setdefault(key, {})[path.split("/")[1]] = int(row["Quantity"])
-    for (value, maker, part), where in sorted(found.items()):
+            host, letter = path.split("/")[1], row["References"][0]
+            kind = "photodetector" if (host, letter) == ("receiver", "Q") else _KINDS[letter]
+            key = f"{kind} {row['Value']}", row["Manufacturer"], row["Part number"]
+            found.setdefault(key, {})[host] = int(row["Quantity"])
+    for (item, maker, part), where in sorted(found.items()):
         each = next((price.each for price in purchase.parts if price.of(part)), None)
         told = ", ".join(f"{count} on {name}" for name, count in where.items())
-        yield Line("electronics", value, maker, part, told, sum(where.values()), "piece", each)
+        yield Line("electronics", item, maker, part, told, sum(where.values()), "piece", each)
     yield from _pieces(purchase, "electronics")
     boxes = {"emitter": board.box, "receiver": board.box, **{c.name: c.box for c in carriers}}
     for name, box in boxes.items():

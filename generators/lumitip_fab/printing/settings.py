@@ -96,17 +96,15 @@ def _note(title: Title, printing: Printing, slicing: Slicing, bends: bool) -> st
     if bends:
         rows += [(f"interface/{finger}_interface.3mf", standing) for finger in _FINGERS]
     rows += [(f"mould/{finger}_mould.3mf", "open side up") for finger in _FINGERS]
-    listed = "\n".join(
-        f"| `{path}` | {_told(slicing.of(path))} | {lies} | none |" for path, lies in rows
-    )
+    listed = "\n".join(f"| `{path}` | {_told(slicing.of(path))} | {lies} |" for path, lies in rows)
     return f"""# Printing {title.name} {title.revision}
 
-Every STL and 3MF of this folder lies on the bed as it prints: do not turn it.
+Every STL and 3MF of this folder lies on the bed as it prints: do not turn it. None needs support.
 
-| file | settings | filament | layers | lies | support |
-|---|---|---|---:|---|---|
+| file | settings | filament | layers | lies |
+|---|---|---|---:|---|
 {listed}
-| any other `.3mf` | {_told(slicing.rigid)} | as it is | none |
+| any other `.3mf` | {_told(slicing.rigid)} | as it is |
 
 Solid, {printing.line_mm:g} mm lines, brim of {_BRIM_MM:g} mm,
 nozzle of {slicing.nozzle_mm:g} mm. In PrusaSlicer: File, Import, Import Config, then the part. The
