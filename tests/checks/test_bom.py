@@ -49,8 +49,8 @@ def test_nothing_fails_as_it_is_written(copied: Path) -> None:
     assert failing(copied) == set()
 
 
-def test_parts_say_what_they_are(billed: Path) -> None:
-    with (billed / "bom.csv").open(encoding="utf-8", newline="") as file:
+def test_parts_say_what_they_are(outputs: Path) -> None:
+    with (outputs / "bom.csv").open(encoding="utf-8", newline="") as file:
         rows = [row for row in csv.DictReader(file) if row["group"] == "electronics"]
     items = {row["item"] for row in rows}
     assert {"resistor 150R", "capacitor 100nF", "LED 15406085BA300"} <= items

@@ -54,8 +54,9 @@ def _wrong_drawings(outputs: Path, manual: Manual, design: Design) -> list[str]:
     wanted = {"assembly/receiver_exploded.svg", "wiring/wiring.svg"}
     wanted |= {f"mask/{name}_mask.svg" for name in names}
     wanted |= {f"boards/{name}/{name}_front.png" for name in boards}
-    if any(part.side == "back" for part in design.emitter.parts):
-        wanted.add("boards/emitter/emitter_back.png")
+    behind = {f.name for f in design.fingers if any(p.side == "back" for p in f.parts)}
+    behind |= {c.name for c in design.carriers if any(d.side == "back" for d in c.devices)}
+    wanted |= {f"boards/{name}/{name}_back.png" for name in behind}
     shown = dict(manual.pictures)
     wrong = sorted(wanted ^ shown.keys())
     for name in sorted(wanted & shown.keys()):

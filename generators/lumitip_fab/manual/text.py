@@ -126,7 +126,9 @@ print the rest.
 def _boards(facts: Facts, made: Made) -> str:
     names = ("emitter", "receiver", *(carrier.name for carrier in facts.carriers))
     behind = any(part.side == "back" for part in facts.emitter.parts)
-    sides = [*((name, "front") for name in names), *([("emitter", "back")] if behind else [])]
+    backs = ["emitter"] if behind else []
+    backs += [c.name for c in facts.carriers if any(d.side == "back" for d in c.devices)]
+    sides = [*((name, "front") for name in names), *((name, "back") for name in backs)]
     pictures = "\n".join(
         f"![The {name} board, {side}](boards/{name}/{name}_{side}.png)"
         for name, side in sides
