@@ -71,7 +71,7 @@ def main(out: Path, integrated: Path, flex: Path) -> None:
     shutil.copy(flex / "boards/receiver/receiver_front.png", IMAGES / "flex_board.png")
     shutil.copy(out / "wiring/wiring.svg", IMAGES)
     shutil.copy(out / "assembly/system.svg", IMAGES)
-    _pages(pypdfium2.PdfDocument(out / "manual/manual.pdf"), (0, 5, 7))
+    _pages(pypdfium2.PdfDocument(out / "manual/manual.pdf"), (0, 4, 7))
     draw_glb(out / "assembly/assembly.glb", IMAGES / "assembly.png")
 
 
