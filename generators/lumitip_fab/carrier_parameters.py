@@ -1,13 +1,30 @@
 """Sections of the parameter file about what is outside the fingers."""
 
-from typing import Annotated
+from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import Field, ValidationError, ValidatorFunctionWrapHandler, WrapValidator
 
 from lumitip_fab.carrier_entry import Signal
 from lumitip_fab.entry import Name, Strict
 
 Size = Annotated[float, Field(ge=5, le=200)]
+LEAST_BODY_MM, MOST_BODY_MM = 20, 200
+
+
+def _body(given: Any, handler: ValidatorFunctionWrapHandler) -> Any:
+    try:
+        return handler(given)
+    except ValidationError:
+        raise ValueError(
+            f"{given!r:.80} given, 'gripper' or a number from {LEAST_BODY_MM} to {MOST_BODY_MM} is "
+            "allowed"
+        ) from None
+
+
+Body = Annotated[
+    Annotated[float, Field(ge=LEAST_BODY_MM, le=MOST_BODY_MM)] | Literal["gripper"],
+    WrapValidator(_body),
+]
 
 
 class Breakout(Strict):
@@ -28,8 +45,9 @@ class Breakout(Strict):
 class Holder(Strict):
     """The printed holder that clips the breakout board to the gripper."""
 
-    body_mm: float = Field(ge=20, le=200)
-    """Diameter of the gripper's round body (mm)."""
+    body_mm: Body
+    """Diameter of the gripper's round body (mm), or "gripper": that of its entry in
+    `parts/grippers.toml`, and where that is not round there is no holder."""
     clearance_mm: float = Field(ge=0, le=2)
     """Cradle to that body, and tray to the board, each side (mm)."""
     wall_mm: float = Field(ge=0.8, le=10)

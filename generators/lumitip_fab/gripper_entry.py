@@ -68,6 +68,12 @@ class Envelope(Entry):
     reach_mm: Length
     """From that face to the plane that the fingertips stand on, with the gripper closed."""
 
+    @property
+    def round_mm(self) -> float | None:
+        """Diameter of a body that is a cylinder; none of any other."""
+        sides = {self.width_mm, self.depth_mm, 2 * self.corner_mm}
+        return self.width_mm if len(sides) == 1 else None
+
     @model_validator(mode="after")
     def _fits_together(self) -> Self:
         most = min(self.width_mm, self.depth_mm) / 2

@@ -27,8 +27,8 @@ def outside(design: Design) -> Iterator[Row]:
             yield from _flange(carrier)
     for supply in design.electrical.supplies:
         yield from _regulated(supply)
-    for holder in design.holders:
-        yield from _holder(holder)
+    if any(carrier.name == "breakout" for carrier in design.carriers):
+        yield from _held(design)
     for flange in design.flanges:
         yield from _stack(flange)
 
@@ -71,9 +71,19 @@ def _regulated(supply: Regulated) -> Iterator[Row]:
               "boards/flange/flange.cir")  # fmt: skip
 
 
+def _held(design: Design) -> Iterator[Row]:
+    if not design.holders:
+        yield Row("holder of the breakout", "round the gripper's body", "none",
+                  f"the body of {design.mount.gripper} is not round: fix the board beside it, or "
+                  "give holder.body_mm")  # fmt: skip
+    for holder in design.holders:
+        yield from _holder(holder)
+
+
 def _holder(holder: Holder) -> Iterator[Row]:
-    yield Row("cradle of the holder", "37.8 mm radius", f"{holder.cradle_mm:.1f} mm radius",
-              f"round a body of {holder.body_mm:g} mm by holder.body_mm")  # fmt: skip
+    yield Row("cradle of the holder", "37.8 mm radius",
+              f"{holder.cradle_mm:.1f} mm radius, body {holder.body_mm:g} mm",
+              f"that body's diameter: {holder.body_from}")  # fmt: skip
     yield Row("arms of the holder", "bolted with M4",
               f"clip round, to {holder.wrap_deg:g}° from the middle",
               "holder.wrap_deg beyond 90° holds without screws")  # fmt: skip

@@ -1,5 +1,6 @@
 """Damage the holder's files, and exactly the right checks fail."""
 
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 
@@ -10,8 +11,11 @@ from manifold3d import Manifold
 from board_damages import moved_part
 from damages import Body, box, carve, failing, flip_a_triangle, remove_packages
 from lumitip_fab.checks import holder as checks
+from lumitip_fab.derive import derive
 from lumitip_fab.encoding import read_design
 from lumitip_fab.frames import holder_bed_to_carrier
+from lumitip_fab.load import load
+from lumitip_fab.spec_outside import outside
 
 Damage = Callable[[Body], Body]
 HOLDER = "holder/holder.stl"
@@ -147,3 +151,25 @@ def test_every_check_fails_for_some_damage(outputs: Path) -> None:
     assert [m for m in found if not m.passed] == []
     names = {m.check.removeprefix("holder.") for m in found}
     assert names == set().union(*DAMAGES.values(), FILES, {"readable", "watertight"})
+
+
+def test_a_holder_goes_round_a_round_body_alone(design_dir: Path, tmp_path: Path) -> None:
+    """By the gripper's entry, or by the figure that a user gives; the board comes without one."""
+    folder = Path(shutil.copytree(design_dir, tmp_path / "design"))
+    file, made = folder / "presets/mine.toml", {}
+    for gripper in load(folder / "presets/published.toml").catalogue.grippers:
+        file.write_text(f'extends = "published.toml"\n[coupling]\ngripper = "{gripper}"\n')
+        design = derive(load(file))
+        assert [carrier.name for carrier in design.carriers] == ["breakout", "flange"]
+        made[gripper] = [(holder.body_mm, holder.body_from) for holder in design.holders]
+        told = " ".join(f"{row.quantity} {row.reason}" for row in outside(design))
+        assert ("fix the board beside it" in told) == (not design.holders)
+    assert made == {
+        "robotiq_2f85": [(75.0, "robotiq_2f85, inferred")],
+        "robotiq_2f140": [(75.0, "robotiq_2f140, assumed")],
+        "wsg50": [], "onrobot_rg2": [], "franka_hand": [], "two_hole_jaw": [],
+    }  # fmt: skip
+    file.write_text(f"{file.read_text()}[holder]\nbody_mm = 80\n")
+    design = derive(load(file))
+    assert [holder.body_from for holder in design.holders] == ["holder.body_mm"]
+    assert design.system.holders == ()  # the body that is drawn is another

@@ -3,7 +3,7 @@
 import math
 
 from lumitip_fab.derive.faults import Faults
-from lumitip_fab.derive.flex import stiff_mm
+from lumitip_fab.derive.flex import held_by, stiff_mm
 from lumitip_fab.design import Box, Carrier, Holder
 from lumitip_fab.load import Input
 
@@ -18,15 +18,19 @@ LEAST_GRIP_MM = 0.3  # each arm's end inside the body's widest place
 def derive_holder(
     given: Input, carriers: tuple[Carrier, ...], faults: Faults
 ) -> tuple[Holder, ...]:
-    """The holder of the breakout board; none without that board."""
-    p = given.parameters
+    """The holder of the breakout board; none without that board, or without a round body."""
+    p, body = given.parameters, held_by(given).envelope
     of = next((carrier for carrier in carriers if carrier.name == "breakout"), None)
-    if of is None:
+    given_mm, body_from = p.holder.body_mm, "holder.body_mm"
+    if given_mm == "gripper":
+        body_from = f"{p.coupling.gripper}, {body.confidence}"
+    body_mm = body.round_mm if given_mm == "gripper" else given_mm
+    if of is None or body_mm is None:
         return ()
     wall, play = p.holder.wall_mm, p.holder.clearance_mm
     tray = Box(of.box.x_min_mm - play, of.box.x_max_mm + play, of.box.y_min_mm, of.box.y_max_mm)
     floor_z = -p.holder.standoff_mm
-    radius = p.holder.body_mm / 2 + play
+    radius = body_mm / 2 + play
     width = of.hole_mm + 2 * BOSS_RIM_MM
     spacing = p.holder.strap_spacing_mm / 2
     holder = Holder(
@@ -38,7 +42,8 @@ def derive_holder(
         floor_z_mm=floor_z,
         seat_z_mm=floor_z - wall,
         axis_z_mm=floor_z - wall - radius,
-        body_mm=p.holder.body_mm,
+        body_mm=body_mm,
+        body_from=body_from,
         cradle_mm=radius,
         wall_mm=wall,
         wrap_deg=p.holder.wrap_deg,
@@ -63,9 +68,12 @@ def _refuse(given: Input, of: Carrier, holder: Holder, faults: Faults) -> None:
     """Refuse a tray wider than its cradle, arms that break or do not hold, bosses under tails."""
     p, outer = given.parameters.holder, holder.cradle_mm + holder.wall_mm
     if holder.outer.x_max_mm > outer:
+        told = f"{holder.body_mm:g} given"
+        if p.body_mm == "gripper":
+            told = f"'gripper' given, whose entry has {holder.body_mm:g} mm"
         faults.refuse(
             "holder.body_mm",
-            f"{p.body_mm:g} given, the tray is {holder.outer.width_mm:.1f} mm wide: at least "
+            f"{told}, the tray is {holder.outer.width_mm:.1f} mm wide: at least "
             f"{2 * (holder.outer.x_max_mm - holder.wall_mm - p.clearance_mm):.1f} is needed",
         )
         return

@@ -140,6 +140,8 @@ class Holder:
     axis_z_mm: float
     body_mm: float
     """Diameter of the gripper's body."""
+    body_from: str
+    """Where that figure is from: `holder.body_mm`, or the gripper's entry and how sure that is."""
     cradle_mm: float
     """Radius of the cradle."""
     wall_mm: float

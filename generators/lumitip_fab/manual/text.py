@@ -185,17 +185,26 @@ the LEDs then draw about {sum(facts.wiring.current_ma):.1f} mA."""
 
 
 def _mounted(facts: Facts) -> str:
-    holder = (
-        "The controller's board goes into `holder/holder.3mf`, whose arms clip round the gripper.\n"
-        if facts.holders
-        else ""
-    )
     flanged = "".join(map(_flanged, facts.flanges))
     return f"""## 7. Mount
 
 Screw each finger on ({len(facts.mount.bolt_u_mm)} x {facts.mount.bolt}); emitter and receiver
 face each other. Then join the cables of chapter 4 to their other ends.
-{holder}{flanged}Open and close the gripper slowly once: no wire may be drawn taut."""
+{_held(facts)}{flanged}Open and close the gripper slowly once: no wire may be drawn taut."""
+
+
+def _held(facts: Facts) -> str:
+    if facts.holders:
+        return (
+            "The controller's board goes into `holder/holder.3mf`, whose arms clip round the "
+            "gripper.\n"
+        )
+    if any(carrier.name == "breakout" for carrier in facts.carriers):
+        return (
+            f"Fix the controller's board beside the gripper: the body of `{facts.mount.gripper}` "
+            "is not round, so there is no holder for it (`holder.body_mm`).\n"
+        )
+    return ""
 
 
 def _flanged(flange: Flange) -> str:
