@@ -137,16 +137,22 @@ class PoseEstimator:
         misfit = self._last[2] if self._last else estimate.rms_counts
         self._last = (name, found.pose, misfit) if fine else None
 
-    def fitted(self, values: ArrayLike, kind: str) -> Fit:
+    def fitted(self, values: ArrayLike, kind: str, free: bool = False) -> Fit:
         """Where the fit of a kind ended with the expected optics, whatever the frame says of them.
 
         Args:
             values: of one frame, finite, shape `(cells,)`.
             kind: `"edge"`, `"cable"` or `"corner"`.
+            free: whether gap and scattered share are fitted with the pose nevertheless.
         """
         given: Floats = np.asarray(values, dtype=np.float64)
         frame = self._frame(given, np.isfinite(given))
-        return self._search.expected(kind, self._search.best(kind, frame), frame)
+        found = self._search.best(kind, frame)
+        return (self._search.free if free else self._search.expected)(kind, found, frame)
+
+    def optics_at(self, drift: Floats) -> Model:
+        """The optics that a drift of a free fit stands for, shape `(drifts,)`."""
+        return self._search.optics_at(drift)
 
     def with_gains(self, gains: ArrayLike) -> "PoseEstimator":
         """The same estimator with other gains of the cells; tables are shared."""

@@ -51,6 +51,8 @@ class Fit:
     model: Floats
     """Shares that the pose gives, shape `(cells,)`."""
     settled: bool
+    drifts: int = 0
+    """How many drifts of the optics the pose has."""
     ambiguous: bool = False
     """Whether another line, elsewhere, explains the frame nearly as well."""
 
@@ -86,7 +88,8 @@ def fit(shape: Shape, start: Floats, frame: Frame, rounds: int = ROUNDS) -> Fit:
                 settled = True
                 break
             damping = max(damping, 1e-4) * 20.0
-    return Fit(frame, pose, now.cost, now.normal, now.model, settled)
+    drifts = pose.size - len(shape.names) - 2
+    return Fit(frame, pose, now.cost, now.normal, now.model, settled, drifts)
 
 
 def bounded(found: Fit) -> float:
@@ -106,7 +109,7 @@ def drifting(shape: Shape, found: Fit, drifts: int) -> Fit:
         return found
     pose = np.concatenate([found.pose[:names], np.zeros(drifts), found.pose[names:]])
     at = _Point(shape, pose, found.frame, _Prior.of(shape, pose.size))
-    return replace(found, pose=pose, normal=at.normal)
+    return replace(found, pose=pose, normal=at.normal, drifts=drifts)
 
 
 @dataclass(frozen=True, eq=False)

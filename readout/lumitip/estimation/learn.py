@@ -1,8 +1,9 @@
-"""What a minute of ordinary use tells about a fingertip: how bright each cell is, and the gap.
+"""What a minute of ordinary use tells about a fingertip: how bright each cell is, gap and scatter.
 
 Every frame is fitted as by `PoseEstimator`; a cell that is brighter than its fits say, frame after
-frame, has a gain above one, and of several gaps that one is right whose fits leave least. Poses
-must differ: cells that the object never uncovers, or never half covers, keep a gain of one.
+frame, has a gain above one. Gap and scattered share are free in a fit of each frame, and those of
+all frames together are told: each frame counts for as much as it shows of them. Poses must differ:
+cells that the object never uncovers, or never half covers, keep a gain of one.
 """
 
 from collections.abc import Sequence
@@ -12,14 +13,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lumitip.estimation.estimator import EstimationError, PoseEstimator
+from lumitip.estimation.fit import Fit
 from lumitip.estimation.report import rms_counts
 from lumitip.grid import Floats
 from lumitip.layout import Layout
 from lumitip.twin import Model
 
-GAPS_MM = (2.0, 2.5, 3.0, 3.5, 4.0)
-"""Gaps that are tried; the one told lies between them."""
-_ROUNDS = 3
+_ROUNDS = 4
 _LEAST_LIGHT = 0.15  # of the empty grasp: a darker cell tells little of its gain
 _LEAST_FRAMES = 20
 _DOUBT = 1.0  # frames in full light that a gain of one, the expected one, counts for
@@ -28,16 +28,16 @@ _SPREAD = 0.25  # gains beyond it are a broken cell or a bad fit
 
 @dataclass(frozen=True, eq=False)
 class Learned:
-    """What was learned; `estimator` uses it."""
+    """What was learned: `PoseEstimator(layout, learned.model, gains=learned.gains)` uses it."""
 
     gains: Floats
     """Light of each cell relative to its empty grasp, their mean is 1, shape `(cells,)`."""
-    gap_mm: float
-    """From skin to skin (mm)."""
+    model: Model
+    """The optics, with the gap and the scattered share that were learned."""
     rms_counts: float
     """Misfit that is left, the median frame's (counts of 255)."""
     rms_before_counts: float
-    """The same before, at the gap that was expected and with gains of one."""
+    """The same before, with the optics that were expected and gains of one."""
     frames: int
     """Frames that it was learned from."""
 
@@ -46,71 +46,78 @@ def learn(
     layout: Layout,
     values: ArrayLike,
     kind: str | None = None,
-    gaps_mm: Sequence[float] = GAPS_MM,
     model: Model | None = None,
     most_frames: int = 150,
 ) -> Learned:
-    """Learn gains and gap from frames.
+    """Learn gains, gap and scattered share from frames.
 
     Args:
         layout: where the cells are.
         values: calibrated values of many frames, shape `(n, cells)`, in any order.
         kind: what was between the fingers, as for `PoseEstimator`.
-        gaps_mm: gaps to try, at least three, in steps and rising (mm).
-        model: optics; those of the layout if not given. Its gap is the one that is expected.
+        model: optics that are expected; those of the layout if not given.
         most_frames: so many frames are used, evenly spread.
 
     Raises:
         EstimationError: if fewer than twenty frames show an edge, cable or corner.
     """
-    base = model or Model.from_layout(layout)
+    estimator = PoseEstimator(layout, model)
     rows: Floats = np.asarray(values, dtype=np.float64)
     rows = rows[np.unique(np.linspace(0, len(rows) - 1, most_frames).astype(np.int64))]
-    before = PoseEstimator(layout, base)
-    told = [(row, e) for row in rows if (e := before(row, kind)).trusted]
+    told = [(row, e) for row in rows if (e := estimator(row, kind)).trusted]
     if len(told) < _LEAST_FRAMES:
         raise EstimationError(
             f"{len(told)} frames with an edge, cable or corner given, at least {_LEAST_FRAMES} "
             "are needed: move an object between the fingers"
         )
     rows, kinds = np.array([row for row, _ in told]), [estimate.kind for _, estimate in told]
-    gap_mm = _least(gaps_mm, [
-        _gains(layout, base.changed(gap_mm=gap), rows, kinds)[1] for gap in gaps_mm
-    ])  # fmt: skip
-    gains, left = _gains(layout, base.changed(gap_mm=gap_mm), rows, kinds)
-    rms_before = float(np.median([
-        rms_counts(before.fitted(row, kind)) for row, kind in zip(rows, kinds, strict=True)
-    ]))  # fmt: skip
-    return Learned(gains, gap_mm, left, rms_before, len(rows))
-
-
-def _gains(
-    layout: Layout, model: Model, rows: Floats, kinds: Sequence[str]
-) -> tuple[Floats, float]:
-    """Gains at one gap, and the misfit (counts) that they leave."""
-    gains, left = np.ones(len(layout)), np.inf
-    estimator = PoseEstimator(layout, model)
+    gains, misfits = np.ones(len(layout)), []
     for _ in range(_ROUNDS):
-        fits = [estimator.fitted(row, kind) for row, kind in zip(rows, kinds, strict=True)]
-        light = np.stack([found.frame.light for found in fits]) * gains
-        shares = np.stack([found.model for found in fits])
-        full = np.stack([found.frame.full for found in fits])
-        left = float(np.median([rms_counts(found) for found in fits]))
-        # A full cell tells nothing: it reads the same however bright it is.
-        weights = ((shares > _LEAST_LIGHT) & ~full) * np.minimum(shares, 1.0) ** 2
-        ratio = light / np.maximum(shares, _LEAST_LIGHT)
-        gains = (weights * ratio).sum(axis=0) + _DOUBT
-        gains = np.clip(gains / (weights.sum(axis=0) + _DOUBT), 1 - _SPREAD, 1 + _SPREAD)
-        gains /= gains.mean()
-        estimator = estimator.with_gains(gains)
-    return gains, left
+        fits = _fitted(estimator, rows, kinds)
+        misfits.append(_misfit(fits))
+        gains = _gains(fits, gains)
+        free = _fitted(estimator.with_gains(gains), rows, kinds, free=True)
+        estimator = PoseEstimator(layout, estimator.optics_at(_drift(free)), gains=gains)
+    left = _misfit(_fitted(estimator, rows, kinds))
+    return Learned(gains, estimator.model, left, misfits[0], len(rows))
 
 
-def _least(gaps_mm: Sequence[float], misfits: Sequence[float]) -> float:
-    """Where the parabola through the least misfit and its neighbours is lowest."""
-    at = int(np.clip(int(np.argmin(misfits)), 1, len(gaps_mm) - 2))
-    below, here, above = (float(m) ** 2 for m in misfits[at - 1 : at + 2])
-    bend = below - 2.0 * here + above
-    step = 0.5 * (below - above) / bend if bend > 0.0 else 0.0
-    width_mm = (gaps_mm[at + 1] - gaps_mm[at - 1]) / 2.0
-    return float(gaps_mm[at] + np.clip(step, -1.0, 1.0) * width_mm)
+def _fitted(
+    estimator: PoseEstimator, rows: Floats, kinds: Sequence[str], free: bool = False
+) -> list[Fit]:
+    return [estimator.fitted(row, kind, free) for row, kind in zip(rows, kinds, strict=True)]
+
+
+def _misfit(fits: Sequence[Fit]) -> float:
+    return float(np.median([rms_counts(found) for found in fits]))
+
+
+def _gains(fits: Sequence[Fit], before: Floats) -> Floats:
+    """Gains that the fits leave, which were made with the gains before."""
+    light = np.stack([found.frame.light for found in fits]) * before
+    shares = np.stack([found.model for found in fits])
+    full = np.stack([found.frame.full for found in fits])
+    # A full cell tells nothing: it reads the same however bright it is.
+    weights = ((shares > _LEAST_LIGHT) & ~full) * np.minimum(shares, 1.0) ** 2
+    ratio = light / np.maximum(shares, _LEAST_LIGHT)
+    gains = (weights * ratio).sum(axis=0) + _DOUBT
+    gains = np.clip(gains / (weights.sum(axis=0) + _DOUBT), 1.0 - _SPREAD, 1.0 + _SPREAD)
+    return np.asarray(gains / gains.mean())
+
+
+def _drift(fits: Sequence[Fit]) -> Floats:
+    """How far the optics are off by all fits together, in standard deviations of each thing that
+    may be; what is known of them beforehand, which each fit has, counts once."""
+    size = fits[0].drifts
+    known, sums = np.eye(size), np.zeros(size)
+    for found in fits:
+        end = found.pose.size - 2
+        drift = np.arange(end - size, end)
+        rest = np.setdiff1d(np.arange(found.pose.size), drift)
+        across = found.normal[np.ix_(drift, rest)]
+        seen = found.normal[np.ix_(drift, drift)] - across @ np.linalg.solve(
+            found.normal[np.ix_(rest, rest)], across.T
+        )
+        known += seen - np.eye(size)
+        sums += seen @ found.pose[drift]
+    return np.asarray(np.linalg.solve(known, sums))

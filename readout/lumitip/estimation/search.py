@@ -23,6 +23,7 @@ GAP_SD_MM, ALPHA_SD = 0.4, 0.12
 hole as well, which widen shadows alike."""
 LOOSE = 0.06
 """Share of a cell's light that is uncertain on a fingertip that is not as expected."""
+_LEAST_GAP_MM = 0.5
 _DOUBT = 1.3  # loss for each cell beyond which the fingertip is not as expected
 _STARTS = 8  # how many are then tried
 _GLANCE, _LOOK, _BEHIND = 2, 5, 20.0  # rounds of each and of the best; loss of the others
@@ -134,6 +135,26 @@ class Search:
             return found
         names = len(self.shape(kind).names)
         return fit(self.shape(kind), np.append(found.pose[:names], found.pose[-2:]), frame)
+
+    def free(self, kind: str, found: Fit, frame: Frame) -> Fit:
+        """The same fit with free optics, and each cell counting as much as the frame says."""
+        names = len(self.shape(kind).names)
+        pose = found.pose
+        if pose.size == names + 2:
+            pose = np.insert(pose, [names] * self.drifts, 0.0)
+        return fit(self.shape(kind), pose, frame)
+
+    def optics_at(self, drift: Floats) -> Model:
+        """The optics that a drift stands for, shape `(drifts,)`."""
+        model = self._twin.model
+        steps = [
+            (other.model.gap_mm - model.gap_mm, other.model.alpha - model.alpha)
+            for other in self._drifted
+        ]
+        gap_mm, alpha = np.array([model.gap_mm, model.alpha]) + drift @ np.reshape(steps, (-1, 2))
+        return model.changed(
+            gap_mm=max(float(gap_mm), _LEAST_GAP_MM), alpha=min(max(float(alpha), 0.0), 1.0)
+        )
 
     def shape(self, kind: str) -> Shape:
         """What a kind does to the cells."""
