@@ -34,7 +34,9 @@ class Step:
     `made`."""
 
 
-_CAD = ("build123d", "cadquery-ocp", "cadquery-ocp-novtk", "lib3mf", "numpy", "trimesh")
+_CAD = (
+    "build123d", "cadquery-ocp", "cadquery-ocp-novtk", "lib3mf", "numpy", "shapely", "trimesh",
+)  # fmt: skip
 _INK = ("reportlab", "ezdxf", "numpy", "shapely")
 _COPPER = (
     "gerbonara", "kicad-skip", "matplotlib", "networkx", "numba", "numpy", "scipy", "sexpdata",

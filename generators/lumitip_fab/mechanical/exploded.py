@@ -5,14 +5,11 @@ each layer is an opaque silhouette with the lines that it does not hide itself. 
 board are boxes, painted one by one, for the kernel hides a hundred of them only slowly.
 """
 
-import math
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import shapely
 from build123d import Compound, Edge, GeomType, Solid
-from numpy.typing import NDArray
 from OCP.BRepLib import BRepLib
 from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
 from OCP.HLRAlgo import HLRAlgo_Projector
@@ -21,6 +18,7 @@ from OCP.HLRBRep import HLRBRep_Algo, HLRBRep_HLRToShape
 from lumitip_fab.design import Finger, Outline, Part, Stack
 from lumitip_fab.mechanical import export
 from lumitip_fab.mechanical.bodies import Bodies, layers_of
+from lumitip_fab.mechanical.hidden import View, silhouette, view
 from lumitip_fab.mechanical.sheet import Points, Sheet
 
 AZIMUTH_DEG = 32.0  # of the viewer, from the gripper end towards +x
@@ -29,7 +27,6 @@ SPREAD = 0.9  # of a layer's height on the page, from layer to layer
 LABEL_MM = 10.0  # from the drawing to its labels
 WORDS_MM = 38.0  # width of the longest label
 _CHORD_MM = 0.05
-_CRACK_MM = 0.01  # between triangles on the page, by rounding
 _STEPS = 24  # chords of a curve on the page
 _FACES = ((0, 1, 5, 4), (1, 3, 7, 5), (4, 5, 7, 6))  # of a box, towards the viewer
 _TINTS = {
@@ -120,18 +117,13 @@ def _pad_corners(interface: Solid) -> Points:
     return np.array([(-far.X, far.Y, far.Z), (far.X, far.Y, far.Z)])
 
 
-def _axes() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Direction to the viewer, and the page's x and y as rows."""
-    azimuth, elevation = math.radians(AZIMUTH_DEG), math.radians(ELEVATION_DEG)
-    level = math.cos(elevation)
-    viewer = np.array([math.sin(azimuth) * level, -math.cos(azimuth) * level, math.sin(elevation)])
-    right = np.array([math.cos(azimuth), math.sin(azimuth), 0.0])
-    return viewer, np.stack([right, np.cross(viewer, right)])
+def _eye() -> View:
+    return view(AZIMUTH_DEG, ELEVATION_DEG)
 
 
 def _projected(points: Points, rise_mm: float = 0.0) -> Points:
     """Points of the finger, shape `(..., 3)`, on the page."""
-    return np.asarray(points @ _axes()[1].T + (0.0, rise_mm))
+    return np.asarray(_eye().seen(points)[..., :2] + (0.0, rise_mm))
 
 
 def _at(points: Points, z_mm: float) -> Points:
@@ -144,20 +136,13 @@ def _upright(at: Points, from_mm: float, to_mm: float) -> Points:
 
 def _silhouette(layer: Layer) -> list[Points]:
     """The layer's outer and inner contours on the page."""
-    surface = export.mesh(layer.solid, _CHORD_MM)
-    flat = _projected(surface.points_mm, layer.rise_mm)[surface.triangles]
-    a, b = flat[:, 1] - flat[:, 0], flat[:, 2] - flat[:, 0]
-    faces_viewer = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0] > 1e-9
-    whole = shapely.union_all(shapely.polygons(flat[faces_viewer]))
-    whole = whole.buffer(_CRACK_MM, join_style="mitre").buffer(-_CRACK_MM, join_style="mitre")
-    whole = shapely.simplify(whole, 0.01)
-    return [np.array(ring.coords) for part in shapely.get_parts(whole)
-            for ring in (part.exterior, *part.interiors)]  # fmt: skip
+    rings = silhouette(export.mesh(layer.solid, _CHORD_MM), _eye())
+    return [np.add(ring, (0.0, layer.rise_mm)) for ring in rings]
 
 
 def _visible_lines(layer: Layer) -> list[Points]:
     """Sharp edges and contours that the layer does not hide itself."""
-    viewer, (right, _) = _axes()
+    right, _, viewer = _eye().axes
     view = gp_Ax2(gp_Pnt(0, 0, 0), gp_Dir(*viewer), gp_Dir(*right))
     hidden = HLRBRep_Algo()
     hidden.Add(layer.solid.wrapped)
@@ -181,7 +166,7 @@ def _chords(edge: Edge, rise_mm: float) -> Points:
 
 def _draw_parts(sheet: Sheet, finger: Finger, stack: Stack, rise_mm: float) -> None:
     """The parts on the board's front, the farthest first."""
-    viewer = _axes()[0]
+    viewer = _eye().axes[2]
     front = [part for part in finger.parts if part.side == "front"]
     front.sort(key=lambda part: float(viewer[0] * part.x_mm + viewer[1] * part.y_mm))
     for part in front:
