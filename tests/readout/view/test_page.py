@@ -173,6 +173,23 @@ def test_page_follows_light_and_dark(serve: Serve, page: Page, scheme: str) -> N
     assert (light > 128) == (scheme == "light")
 
 
+def test_words_at_the_edges_stand_clear_of_the_cells_on_a_narrow_page(
+    serve: Serve, page: Page, finger: Finger
+) -> None:
+    page.set_viewport_size({"width": 400, "height": 800})
+    opened(page, serve(finger))
+    highest, lowest, height = page.evaluate(
+        """() => {
+          const { centres, radius, canvas } = lumitip.panels.get(1).grid;
+          const half = (radius * Math.sqrt(3)) / 2;
+          const ys = centres.map(([, y]) => y);
+          return [Math.min(...ys) - half, Math.max(...ys) + half, canvas.clientHeight];
+        }"""
+    )
+    assert highest >= 12 + 12  # "↑ tip" begins 12 pixels below the edge
+    assert lowest <= height - 14.5 - 5 - 12  # the ruler's word stands on the ruler
+
+
 def test_several_fingers_side_by_side(serve: Serve, page: Page) -> None:
     opened(page, serve("twin://cable", "twin://edge"))
     expect(page.locator(".finger")).to_have_count(2)

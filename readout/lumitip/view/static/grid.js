@@ -7,6 +7,8 @@ import { drawContact } from "./overlay.js";
 const GAP = 0.955; // size of a hexagon, as a share of what would touch its neighbours
 const SIDE = 1 / Math.sqrt(3); // of a hexagon one pitch across its flats
 const LEAST_FOR_TEXT = 26; // CSS pixels of pitch
+const [ABOVE, BELOW] = [20, 30]; // CSS pixels for the words at the edges
+const BESIDE = 72; // CSS pixels, where they stand beside the cells instead
 
 export class Grid {
   constructor(canvas, layout) {
@@ -23,8 +25,13 @@ export class Grid {
     const margin = pitch_mm * 0.85;
     const [left, right] = [Math.min(...x_mm) - margin, Math.max(...x_mm) + margin];
     const [low, high] = [Math.min(...y_mm) - margin, Math.max(...y_mm) + margin];
-    this.scale = Math.min(width / (right - left), height / (high - low));
+    const across = width / (right - left);
+    this.scale = Math.min(across, height / (high - low));
     this.middle = [width / 2, height / 2];
+    if (width - (right - left) * this.scale < 2 * BESIDE) {
+      this.scale = Math.min(across, (height - ABOVE - BELOW) / (high - low));
+      this.middle[1] = (height + ABOVE - BELOW) / 2;
+    }
     this.origin = [(left + right) / 2, (low + high) / 2];
     this.rectangle = [
       ...this.at([left, high]), (right - left) * this.scale, (high - low) * this.scale,
