@@ -50,15 +50,17 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     except OutputError as error:
         yield unreadable("bom.readable", _FILE, str(error))
         return
-    yield _count("parts", _wrong_parts(rows, parts, design), "parts")
+    yield _count("parts", _wrong_parts(rows, parts, design), "wrong parts")
     boards = {f"{name} board" for name in _boards(design)} | {"placing and soldering"}
-    yield _count("boards", sorted({r.item for r in rows if r.group == "boards"} ^ boards), "boards")
+    yield _count(
+        "boards", sorted({r.item for r in rows if r.group == "boards"} ^ boards), "wrong boards"
+    )
     yield _prints(rows, grams)
     yield _near("silicone", rows, "casting", cast, "g", "parts A and B of both casting notes")
     yield _near("film", rows, "mask", 2.0, "sheets", "one for each finger")
     yield _near("wire", rows, "wiring", metres, "m", "of every wire in the list of cables")
     yield from _bolts(rows, design)
-    yield _count("prices", _wrong_prices(rows, design), "lines")
+    yield _count("prices", _wrong_prices(rows, design), "wrong lines")
     yield _sum(rows, total, note, design)
 
 

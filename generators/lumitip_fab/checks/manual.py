@@ -33,17 +33,17 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     except OutputError as error:
         yield unreadable("manual.readable", _HTML, str(error))
         return
-    yield _count("drawings", _HTML, _wrong_drawings(outputs, manual, design), "drawings")
-    yield _count("files", _HTML, _lost_files(outputs, manual), "files that are named")
-    yield _count("figures", _HTML, _wrong_figures(manual, design), "figures")
-    yield _count("units", _HTML, _wrong_units(manual, design), "figures with a unit")
+    yield _count("drawings", _HTML, _wrong_drawings(outputs, manual, design), "wrong drawings")
+    yield _count("files", _HTML, _lost_files(outputs, manual), "named files that are lost")
+    yield _count("figures", _HTML, _wrong_figures(manual, design), "wrong figures")
+    yield _count("units", _HTML, _wrong_units(manual, design), "wrong figures with a unit")
     for check, wanted in (
         ("flaps", _noted(outputs, "mask/{}_wrapping.md", _FLAP, design)),
         ("amounts", _noted(outputs, "mould/{}_casting.md", _AMOUNT, design)),
         ("wires", _noted(outputs, "wiring/cables.md", _WIRE, design)),
         ("parts", _billed(outputs)),
     ):
-        yield _count(check, _HTML, _differing(manual, wanted), "rows")
+        yield _count(check, _HTML, _differing(manual, wanted), "wrong rows")
     yield _pdf(outputs, manual)
 
 
@@ -149,7 +149,7 @@ def _pdf(outputs: Path, manual: Manual) -> Measurement:
     except OutputError as error:
         return unreadable("manual.pdf", _PDF, str(error))
     wrong = [text for text in _plain(manual.blocks) if text not in told]
-    return _count("pdf", _PDF, wrong, "paragraphs of the HTML")
+    return _count("pdf", _PDF, wrong, "lost paragraphs of the HTML")
 
 
 def _plain(texts: Iterable[str]) -> Iterator[str]:
