@@ -2,7 +2,7 @@
 
 import dataclasses
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from itertools import combinations, pairwise
 from pathlib import Path
 
@@ -10,6 +10,7 @@ import pytest
 import shapely
 from shapely import LineString
 
+from lumitip_fab.boards.carrier import carrier_files
 from lumitip_fab.boards.clear import extent
 from lumitip_fab.boards.geometry import courtyard, pad_at, placed_pads
 from lumitip_fab.boards.model import SIDES, Component, Placement
@@ -248,3 +249,17 @@ def test_labels_of_a_row_stand_apart(board: Placed) -> None:
                   if where == side and text.text in finger.connector.signals]  # fmt: skip
         assert len(labels) == len(finger.connector.signals)
         assert all(a.distance(b) >= 0.15 for a, b in combinations(labels, 2))
+
+
+def test_parts_of_a_carrier_that_overlap_are_refused(designs: Callable[[str], Design]) -> None:
+    d = designs("small")
+    flange = next(carrier for carrier in d.carriers if carrier.name == "flange")
+    (coil,) = (device for device in flange.devices if device.ref == "L1")
+    wide = dataclasses.replace(coil.pattern, body=Box(-4.0, 4.0, -4.0, 4.0))
+    devices = [
+        dataclasses.replace(device, pattern=wide) if device is coil else device
+        for device in flange.devices
+    ]
+    flange = dataclasses.replace(flange, devices=tuple(devices))
+    with pytest.raises(BuildError, match=r"flange: .*\bL1\b.* overlap"):
+        carrier_files(d.title, d.reading, d.stack, flange, d.rules, d.fabs)

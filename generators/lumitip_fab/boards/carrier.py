@@ -7,6 +7,7 @@ from lumitip_fab.boards.carrier_parts import component
 from lumitip_fab.boards.fab.note import carrier_note
 from lumitip_fab.boards.files import model_files
 from lumitip_fab.boards.model import BoardModel, Net, NetClass, Placement
+from lumitip_fab.boards.placement import refuse_overlaps
 from lumitip_fab.boards.pour import pour
 from lumitip_fab.boards.routing import route
 from lumitip_fab.boards.schematic.carrier import carrier_sheet
@@ -37,10 +38,12 @@ def carrier_files(
         fabs: where it may be ordered.
 
     Raises:
-        BuildError: if a net cannot be routed, a label has no room, or the finished copper breaks
-            its rules.
+        BuildError: if two parts overlap, a net cannot be routed, a label has no room, or the
+            finished copper breaks its rules.
     """
-    placement = with_legend(_placement(title, reading, carrier, rules), carrier, rules)
+    bare = _placement(title, reading, carrier, rules)
+    refuse_overlaps(carrier.name, bare.components)
+    placement = with_legend(bare, carrier, rules)
     routing, fills = pour(placement, route(placement))
     model = sound(BoardModel(placement, routing, fills))
     sheet = carrier_sheet(placement, carrier)

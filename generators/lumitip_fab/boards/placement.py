@@ -58,7 +58,8 @@ def place(
     corners = spots.fiducials(board, obstacles, mark, finger.holes, rules.edge_gap_mm)
     for ref, at in zip(("FID1", "FID2", "FID3"), corners, strict=True):
         parts[ref] = _at(parts[ref], at)
-    _refuse_overlaps(finger.name, tuple(parts.values()), board)
+    refuse_overlaps(finger.name, tuple(parts.values()))
+    _refuse_beyond(finger.name, tuple(parts.values()), board)
     bare = Placement(
         finger=finger.name,
         name=title.name,
@@ -152,21 +153,30 @@ def _connector(parts: dict[str, Component], finger: Finger, rules: Rules) -> Non
         parts[point.ref] = _at(point, (x, y + apart))
 
 
-def _refuse_overlaps(name: str, parts: tuple[Component, ...], board: Board) -> None:
-    """Courtyards keep clear of each other and of the board's edge."""
-    for side in ("front", "back"):
+def refuse_overlaps(name: str, parts: tuple[Component, ...]) -> None:
+    """Courtyards keep clear of each other.
+
+    Raises:
+        BuildError: if two do not; it names both.
+    """
+    for side in dict.fromkeys(part.side for part in parts):
         yards = [(part.ref, courtyard(part)) for part in parts if part.side == side]
         for (one, here), (other, there) in spots.overlaps(yards):
             raise BuildError(
                 f"{name}: {one} at {_told(here)} and {other} at {_told(there)} overlap: give them "
                 "more room in [board], or choose smaller parts"
             )
-        for ref, yard in yards:
-            if spots.beyond_mm(yard, board.box) > _NOISE_MM:
-                raise BuildError(
-                    f"{name}: {ref} at {_told(yard)} leaves the board at {_told(board.box)}: give "
-                    "it more room in [board], or choose smaller parts"
-                )
+
+
+def _refuse_beyond(name: str, parts: tuple[Component, ...], board: Board) -> None:
+    """Courtyards stay within the board's edge."""
+    for part in parts:
+        yard = courtyard(part)
+        if spots.beyond_mm(yard, board.box) > _NOISE_MM:
+            raise BuildError(
+                f"{name}: {part.ref} at {_told(yard)} leaves the board at {_told(board.box)}: give "
+                "it more room in [board], or choose smaller parts"
+            )
 
 
 def _told(box: Box) -> str:
