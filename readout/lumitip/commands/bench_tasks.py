@@ -11,7 +11,7 @@ def add(subparsers: Subparsers) -> None:
     """Say what the command takes."""
     told = (
         "Follow simulated cloth edges and cables with each controller, faster and faster: "
-        "a table, and plots where matplotlib is installed."
+        "a table, plots where matplotlib is installed, and goals (exit code 1 if one is missed)."
     )
     parser = subparsers.add_parser("bench-tasks", help=told, description=told)
     parser.add_argument(
@@ -31,12 +31,12 @@ def add(subparsers: Subparsers) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Carry it out."""
+    """Carry it out; the exit code is 1 if a goal was missed."""
     from lumitip.errors import LumitipError
     from lumitip.layout import Layout
     from lumitip.links.twin import published_layout
     from lumitip.tasks.bench import bench_tasks
-    from lumitip.tasks.report import write
+    from lumitip.tasks.report import goals, write
 
     if options.trials < 1:
         raise LumitipError(f"--trials {options.trials} given, one or more are needed")
@@ -50,4 +50,7 @@ def run(options: argparse.Namespace) -> int:
     results = bench_tasks(layout, options.trials, say=say, cores=options.cores)
     for path in write(results, options.out):
         print(path)
-    return 0
+    told = goals(results)
+    for met, goal in told:
+        print(f"{'met' if met else 'MISSED':<8}{goal}")
+    return 0 if all(met for met, _ in told) else 1

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 from lumitip.control.command import Command, ControlError, Limits
 from lumitip.control.laws import Law
+from lumitip.control.lead import Lead
 from lumitip.control.sight import Sight, sight_of
 from lumitip.estimation import Estimate
 from lumitip.processing import Contact
@@ -26,6 +27,7 @@ class Tracer:
         search_mm_s: float = 15.0,
         corner_at_mm: float | None = None,
         corner_frames: int = 2,
+        lead_s: float = 0.0,
     ) -> None:
         """A tracer that has seen nothing yet.
 
@@ -38,23 +40,27 @@ class Tracer:
             corner_at_mm: where the vertex of a corner is to be at the end, in x (mm); `None` goes
                 on past corners.
             corner_frames: frames in a row that make a corner.
+            lead_s: how much later a command takes effect than its frame was taken; the line's
+                angle is told ahead by so much (s).
 
         Raises:
             ControlError: if a time is below 0 or a count below 1.
         """
-        if min(slow_s, search_s, search_mm_s) < 0.0 or corner_frames < 1:
+        if min(slow_s, search_s, search_mm_s, lead_s) < 0.0 or corner_frames < 1:
             raise ControlError(
-                f"slow_s {slow_s}, search_s {search_s}, search_mm_s {search_mm_s}, corner_frames "
-                f"{corner_frames} given: not below 0, and one frame or more"
+                f"slow_s {slow_s}, search_s {search_s}, search_mm_s {search_mm_s}, lead_s {lead_s},"
+                f" corner_frames {corner_frames} given: not below 0, and one frame or more"
             )
         self.law, self.limits = law, limits or Limits()
         self.slow_s, self.search_s, self.search_mm_s = slow_s, search_s, search_mm_s
         self.corner_at_mm, self.corner_frames = corner_at_mm, corner_frames
+        self._lead = Lead(lead_s)
         self.reset()
 
     def reset(self) -> None:
         """Forget what was seen."""
         self._last = Command()
+        self._lead.reset()
         self._unseen_s = 0.0
         self._side = 1.0
         self._corners = 0
@@ -64,7 +70,7 @@ class Tracer:
         """The command that follows from what a frame says, `dt_s` after the one before (s)."""
         if self._ended:
             return Command(state="stop", reason=self._ended)
-        sight = sight_of(seen)
+        sight = self._lead(sight_of(seen), dt_s)
         self._corners = self._corners + 1 if sight.corner_mm is not None else 0
         command = self.law(sight)
         if command is None:

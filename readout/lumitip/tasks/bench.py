@@ -4,22 +4,26 @@ Tuning and tests run on different curves. Speeds rise until a controller loses m
 in ten; its highest speed at a loss is the last one before it loses more.
 """
 
-from collections.abc import Callable, Sequence
+import math
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
+from itertools import product
 
 from lumitip.cores import workers
 from lumitip.layout import Layout
 from lumitip.tasks.task import Settings, Task
 from lumitip.tasks.trial import CONTROLLERS, Bench, Summary, Team, Tuning, summary, tune
 
-SPEEDS_MM_S = (30.0, 40.0, 50.0, 60.0, 80.0, 120.0, 160.0, 200.0, 240.0, 280.0, 320.0)
-_FIRST_MM_S = {"centre": 0.0, "line": 160.0, "pose": 160.0}
-"""Slower speeds are not tried: they take longest, and a law that holds a fast one holds them."""
-GRID = tuple(Tuning(gain, turn) for gain in (4.0, 8.0, 12.0) for turn in (6.0, 10.0, 14.0))
-TUNING_SEEDS = tuple(range(10_000, 10_006))
-_TUNED_AT_MM_S = {"centre": 50.0, "line": 240.0, "pose": 240.0}
-"""Near where each begins to fail, where tuning matters."""
+_SLOW = tuple(float(v) for v in range(20, 200, 10))
+_FAST = (80.0, 160.0, *(float(v) for v in range(200, 401, 20)))
+SPEEDS_MM_S = {"centre": _SLOW, "line": _FAST, "pose": _FAST}
+"""Worth trying with each controller, up to the limit of the finger's own speed."""
+GRID = tuple(Tuning(*of) for of in product((8.0, 12.0, 16.0, 20.0, 24.0, 32.0), (6.0, 10.0, 14.0),
+                                           (0.0, 0.03, 0.06)))  # fmt: skip
+TUNING_SEEDS = tuple(range(10_000, 10_012))
+_TUNED_AT_MM_S = {"centre": 80.0, "line": 320.0, "pose": 320.0}
+"""Where each begins to fail, where tuning matters."""
 TASKS = {
     "cloth": Settings("cloth"), "cable": Settings("cable"),
     "corner": Settings("cloth", corner=True),
@@ -46,12 +50,46 @@ class Result:
         return kept
 
 
+@dataclass(frozen=True)
+class Advantage:
+    """How much faster a controller with the line's angle is than the published law."""
+
+    task: str
+    controller: str
+    loss_rate: float
+    """Share of the curves that either may lose."""
+    published_mm_s: float
+    """The published law's highest speed at that loss; NaN if it lost more at the slowest."""
+    speed_mm_s: float
+    """The controller's; NaN likewise."""
+
+    @property
+    def times(self) -> float:
+        """Of the published law's speed; NaN if either has none."""
+        return self.speed_mm_s / self.published_mm_s
+
+
+def advantages(results: Sequence[Result], loss_rate: float = 0.0) -> list[Advantage]:
+    """Every controller against the published law on the same task, at equal loss."""
+
+    def speed_mm_s(result: Result) -> float:
+        row = result.fastest(loss_rate)
+        return row.speed_mm_s if row else math.nan
+
+    published = {r.task: speed_mm_s(r) for r in results if r.controller == "centre"}
+    return [
+        Advantage(r.task, r.controller, loss_rate, published[r.task], speed_mm_s(r))
+        for r in results
+        if r.controller != "centre" and r.task in published
+    ]
+
+
 def bench_tasks(
     layout: Layout,
     trials: int,
     say: Callable[[str], object],
     controllers: Sequence[str] = CONTROLLERS,
-    speeds_mm_s: Sequence[float] | None = None,
+    speeds_mm_s: Mapping[str, Sequence[float]] = SPEEDS_MM_S,
     grid: Sequence[Tuning] = GRID,
     tuning_seeds: Sequence[int] = TUNING_SEEDS,
     cores: int = 1,
@@ -63,28 +101,32 @@ def bench_tasks(
         trials: curves at each speed.
         say: called with each line of the table as it is known.
         controllers: of `CONTROLLERS`.
-        speeds_mm_s: rising (mm/s); if not given, those at which a controller is worth trying.
-        grid: tunings to choose from.
+        speeds_mm_s: of each controller, rising (mm/s).
+        grid: tunings to choose from; a cloth is followed alike with and without a corner.
         tuning_seeds: curves to tune on, others than those of the test, which begin at 0.
         cores: processes that share the trials; the results are the same.
     """
     results = []
+    tunings: dict[tuple[str, str], Tuning] = {}
     with workers(cores) if cores > 1 else nullcontext() as pool:
         for name, settings in TASKS.items():
             bench = Team(pool, layout, settings) if pool else Bench(Task(layout, settings))
             for controller in controllers:
-                tuning = tune(bench, controller, _TUNED_AT_MM_S[controller],
-                              _distinct(grid, controller), tuning_seeds)  # fmt: skip
-                kept = f"K_p {tuning.gain_per_s:g}/s, K_θ {tuning.turn_per_s:g}/s"
-                say(f"{name}, {controller}: {kept}")
-                speeds = speeds_mm_s or [v for v in SPEEDS_MM_S if v >= _FIRST_MM_S[controller]]
+                known = settings.kind, controller
+                if known not in tunings:
+                    tunings[known] = tune(bench, controller, _TUNED_AT_MM_S[controller],
+                                          _distinct(grid, controller), tuning_seeds)  # fmt: skip
+                tuning = tunings[known]
+                say(f"{name}, {controller}: K_p {tuning.gain_per_s:g}/s, "
+                    f"K_θ {tuning.turn_per_s:g}/s, lead {tuning.lead_s:g} s")  # fmt: skip
+                speeds = speeds_mm_s[controller]
                 rows = _faster(bench, controller, tuning, speeds, trials, say)
                 results.append(Result(name, controller, tuning, rows))
     return results
 
 
 def _distinct(grid: Sequence[Tuning], controller: str) -> Sequence[Tuning]:
-    """Tunings that differ for a controller: the published law does not turn."""
+    """Tunings that differ for a controller: the published law has a gain alone."""
     if controller != "centre":
         return grid
     return list({tuning.gain_per_s: tuning for tuning in reversed(grid)}.values())[::-1]

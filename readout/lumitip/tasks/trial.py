@@ -28,6 +28,7 @@ class Tuning:
 
     gain_per_s: float = 8.0
     turn_per_s: float = 8.0
+    lead_s: float = 0.0
 
 
 class Bench:
@@ -56,7 +57,7 @@ class Bench:
         else:
             target_mm = self.task.settings.target_mm
             law = LineLaw(speed_mm_s, tuning.gain_per_s, tuning.turn_per_s, target_mm)
-        return Tracer(law, corner_at_mm=corner_at_mm)
+        return Tracer(law, corner_at_mm=corner_at_mm, lead_s=tuning.lead_s)
 
     def run(self, controller: str, speed_mm_s: float, tuning: Tuning, seed: int) -> Metrics:
         """One trial on the curve of a seed."""

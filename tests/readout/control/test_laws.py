@@ -15,6 +15,7 @@ from lumitip.control import (
     Tracer,
     sight_of,
 )
+from lumitip.control.lead import Lead
 from lumitip.estimation import Estimate, PoseEstimator
 from lumitip.links.twin import published_layout
 from lumitip.processing import Processor
@@ -125,3 +126,35 @@ def test_it_stops_at_a_corner_and_not_at_a_single_frame_of_one() -> None:
     stopped = tracer(corner(1.2), DT_S)
     assert (stopped.state, stopped.reason, stopped.forward_mm_s) == ("stop", "corner", 0.0)
     assert Tracer(LineLaw(80.0))(corner(0.0), DT_S).state == "trace"  # not asked to stop
+
+
+def test_a_lead_tells_the_angle_ahead_once_the_line_turns() -> None:
+    lead = Lead(0.05)
+    turning = [lead(Sight(height_mm=0.0, angle=0.02 * frame), DT_S).angle for frame in range(30)]
+    assert turning[0] == 0.0  # one frame shows no turning
+    rate = 0.02 / DT_S
+    assert turning[-1] - 0.02 * 29 == pytest.approx(0.05 * rate, rel=0.01)
+    assert 0.0 < turning[1] - 0.02 < 0.05 * rate  # smoothed
+
+
+def test_a_lead_begins_anew_without_a_line_and_is_none_at_zero() -> None:
+    lead = Lead(0.05)
+    for angle in (0.0, 0.3):
+        lead(Sight(height_mm=0.0, angle=angle), DT_S)
+    assert lead(Sight(centre_mm=1.0), DT_S) == Sight(centre_mm=1.0)
+    assert lead(Sight(height_mm=0.0, angle=0.3), DT_S).angle == 0.3
+    assert lead(Sight(height_mm=0.0, angle=0.4), 0.0).angle == 0.4  # no time, no turning
+    assert abs(lead(Sight(height_mm=0.0, angle=-1.3), DT_S).angle) < math.radians(80.0)
+    none = Lead(0.0)
+    assert [none(Sight(height_mm=0.0, angle=a), DT_S).angle for a in (0.0, 1.3)] == [0.0, 1.3]
+
+
+def test_a_tracer_turns_earlier_with_a_lead() -> None:
+    plain, ahead = Tracer(LineLaw(80.0)), Tracer(LineLaw(80.0), lead_s=0.05)
+    for angle_deg in (0.0, 2.0, 4.0):
+        commands = [t(_edge(0.0, angle_deg), DT_S) for t in (plain, ahead)]
+    assert commands[1].rotation_rad_s > commands[0].rotation_rad_s > 0.0
+    ahead.reset()
+    assert ahead(_edge(0.0, 4.0), DT_S) == plain.law(sight_of(_edge(0.0, 4.0)))
+    with pytest.raises(ControlError, match=r"lead_s -0\.1"):
+        Tracer(LineLaw(), lead_s=-0.1)

@@ -11,8 +11,8 @@ from lumitip.control import CentreLaw, Command, LineLaw, Tracer
 from lumitip.cores import workers
 from lumitip.links.twin import published_layout
 from lumitip.tasks import Bench, Curve, Settings, Summary, Task, TaskError, Tuning, summary, tune
-from lumitip.tasks.bench import Result, bench_tasks
-from lumitip.tasks.report import markdown, write
+from lumitip.tasks.bench import Result, advantages, bench_tasks
+from lumitip.tasks.report import goals, markdown, write
 from lumitip.tasks.trial import Team
 from lumitip.twin import Corner
 
@@ -117,15 +117,19 @@ def test_settings_are_checked() -> None:
 def test_the_bench_writes_table_figures_and_plots(tmp_path: Path) -> None:
     said: list[str] = []
     results = bench_tasks(
-        LAYOUT, 1, said.append, ("line",), (80.0, 5000.0), (TUNED,), tuning_seeds=(10_000,)
-    )
+        LAYOUT, 1, said.append, ("line",), {"line": (80.0, 5000.0)}, (TUNED,),
+        tuning_seeds=(10_000,),
+    )  # fmt: skip
     assert [r.task for r in results] == ["cloth", "cable", "corner"]
     for r in results:
         best = r.fastest()
         assert best is not None and best.speed_mm_s == 80.0 and len(r.rows) == 2
     written = {p.name: p for p in write(results, tmp_path)}
     assert "NaN" not in written["tasks.json"].read_text()
-    assert written["tasks.md"].read_text().count("| line angle | 8, 10 | 80 mm/s |") == 3
+    table = written["tasks.md"].read_text()
+    assert table.count("| line angle | 8/s | 10/s | 0 s |") == 3
+    assert table.count("| line angle | 80 mm/s | 0 of 1 | ") == 3
+    assert table.count("| line angle | 5000 mm/s | 1 of 1 | – | – | – |") == 3
     if "tasks.svg" in written:
         text = written["tasks.svg"].read_text()
         assert "edge of a cloth" in text and "curves lost" in text
@@ -146,7 +150,30 @@ def test_highest_speeds_count_only_up_to_the_first_failure() -> None:
     told = Result("cloth", "centre", TUNED, rows)
     assert [r.speed_mm_s if r else None for r in (told.fastest(), told.fastest(0.05))] == [20, 60]
     none = replace(told, rows=(replace(row, losses=100),))
-    assert none.fastest() is None and "| – | – | – | – | – |" in markdown([none])
+    assert none.fastest() is None and "| – | – | – | – |" in markdown([none])
+
+
+def test_controllers_are_held_against_the_published_law_at_equal_loss() -> None:
+    row = Summary(0.0, 100, 0, 0.5, 2.0, math.nan)
+
+    def result(controller: str, *rows: tuple[float, int]) -> Result:
+        made = tuple(replace(row, speed_mm_s=speed, losses=lost) for speed, lost in rows)
+        return Result("cloth", controller, TUNED, made)
+
+    centre = result("centre", (20.0, 0), (40.0, 0), (60.0, 4), (80.0, 6))
+    line = result("line", (120.0, 0), (160.0, 5), (200.0, 9))
+    pose = result("pose", (100.0, 0), (120.0, 1))
+    told = [centre, line, pose]
+    assert [a.times for a in advantages(told)] == [3.0, 2.5]
+    assert [a.times for a in advantages(told, 0.05)] == [160.0 / 60.0, 2.0]
+    ((met, goal),) = goals(told)
+    assert met and "3.0 (120 against 40 mm/s) times as fast" in goal
+    assert "at most 5 % loss: 2.7 (160 against 60 mm/s)" in goal
+    assert "| 120 mm/s | 3.0 | 160 mm/s | 2.7 |" in markdown(told)
+    slow, nothing = result("line", (110.0, 0)), result("line", (100.0, 8))
+    assert [met for met, _ in goals([centre, slow])] == [False]
+    assert [met for met, _ in goals([centre, nothing])] == [False]
+    assert advantages([line]) == []
 
 
 def test_centre_target_is_the_middle_of_the_dark(cloth: Bench) -> None:
