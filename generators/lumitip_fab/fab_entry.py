@@ -9,7 +9,7 @@ from lumitip_fab.entry import Entry, Length, Strict
 
 Layers = Literal[
     "front_copper", "back_copper", "front_mask", "back_mask", "front_paste", "back_paste",
-    "front_silk", "back_silk", "outline", "plated", "unplated",
+    "front_silk", "back_silk", "outline", "plated", "unplated", "stiffener",
 ]  # fmt: skip
 BomField = Literal[
     "item", "refs", "quantity", "manufacturer", "part", "value", "footprint", "lcsc",
@@ -34,7 +34,8 @@ class Fab(Entry):
     """A board house: what it calls files and columns, and how it counts angles."""
 
     layers: Mapping[Layers, Ending]
-    """What follows the board's name in the file of each layer."""
+    """What follows the board's name in the file of each layer; a stiffener is of flexible boards
+    alone."""
     bom: tuple[tuple[Heading, BomField], ...] = Field(min_length=1)
     """Heading and field of each column of the bill of materials."""
     positions: tuple[tuple[Heading, PositionField], ...] = Field(min_length=1)

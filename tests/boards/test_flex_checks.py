@@ -63,6 +63,7 @@ NOTES = {
     "stiffener": ("x -11.503", "x -12.503"),
     "its thickness": ("Stiffener of polyimide, 0.2", "Stiffener of polyimide, 0.3"),
     "bend": ("where y is above -6.850", "where y is above 6.850"),
+    "its drawing": ("receiver-User_1.gbr", "receiver-Edge_Cuts.gbr"),
 }
 
 
@@ -74,15 +75,32 @@ def test_a_damaged_board_file(name: str, hurt: Path) -> None:
     assert failing(hurt, "board") == wanted
 
 
+def edited(folder: Path, name: str, edit: Callable[[str], str]) -> None:
+    """Change one file of the zip."""
+    with zipfile.ZipFile(folder / ZIP) as package:
+        files = {entry: package.read(entry) for entry in package.namelist()}
+    files[name] = edit(files[name].decode()).encode()
+    with zipfile.ZipFile(folder / ZIP, "w") as package:
+        for entry, data in files.items():
+            package.writestr(entry, data)
+
+
 @pytest.mark.parametrize("name", NOTES)
 def test_a_note_that_orders_another_board(name: str, hurt: Path) -> None:
     before, after = NOTES[name]
-    with zipfile.ZipFile(hurt / ZIP) as package:
-        files = {entry: package.read(entry) for entry in package.namelist()}
-    note = files["receiver_assembly.txt"].decode()
-    assert before in note
-    files["receiver_assembly.txt"] = note.replace(before, after).encode()
-    with zipfile.ZipFile(hurt / ZIP, "w") as package:
-        for entry, data in files.items():
-            package.writestr(entry, data)
+    edited(hurt, "receiver_assembly.txt", lambda note: once(note, re.escape(before), after))
     assert failing(hurt, "orders") == {"flexible"}
+
+
+STIFFENERS: dict[str, tuple[Callable[[str], str], set[str]]] = {
+    "moved": (lambda t: re.sub(r"X-0011503000", "X-0011403000", t), {"stiffener", "same"}),
+    "open": (lambda t: once(t, r"X[-\d]+Y[-\d]+D01\*\n(?=M02)", ""), {"stiffener", "same"}),
+    "not a drawing": (lambda _: "", {"readable"}),
+}
+
+
+@pytest.mark.parametrize("name", STIFFENERS)
+def test_another_outline_of_the_stiffener(name: str, hurt: Path) -> None:
+    damage, wanted = STIFFENERS[name]
+    edited(hurt, "receiver-User_1.gbr", damage)
+    assert failing(hurt, "orders") == wanted

@@ -12,6 +12,7 @@ from lumitip_fab.checks.board_read import ReadBoard
 from lumitip_fab.checks.gerber_read import drilled, gerber_area
 from lumitip_fab.checks.kicad_silk import Word
 from lumitip_fab.checks.result import Measurement
+from lumitip_fab.design import Box
 
 AREA_SHARE = 0.001  # of the copper
 PLACE_MM = 0.001
@@ -46,6 +47,17 @@ def measure_layers(
         yield from _silk(f"{path}: {side}", read, side == "front", area(f"{side} silk"), bare)
     yield _edge(path, read, area("outline"))
     yield from _drills(path, read, layers)
+
+
+def measure_stiffener(path: str, layers: Mapping[str, bytes], wanted: Box) -> Measurement:
+    """How far the closed line that is drawn for a stiffener is from its edges, in its middle."""
+    drawn = gerber_area(layers["stiffener"].decode())
+    off = math.nan
+    if isinstance(drawn, shapely.Polygon) and len(drawn.interiors) == 1:
+        middle = np.add(drawn.exterior.bounds, drawn.interiors[0].bounds) / 2
+        edges = (wanted.x_min_mm, wanted.y_min_mm, wanted.x_max_mm, wanted.y_max_mm)
+        off = float(np.abs(middle - edges).max())
+    return Measurement("orders.stiffener", path, off, 0, PLACE_MM, "mm", "its outline")
 
 
 def _copper(

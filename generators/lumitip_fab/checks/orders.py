@@ -13,7 +13,7 @@ import numpy as np
 
 from lumitip_fab.checks.board_read import Read, ReadCarrier, read_all
 from lumitip_fab.checks.kicad_board import Part
-from lumitip_fab.checks.order_layers import Painted, measure_layers
+from lumitip_fab.checks.order_layers import Painted, measure_layers, measure_stiffener
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.design import Design, Fab, Flexible
 
@@ -46,11 +46,14 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
             path = f"boards/{read.name}/order/{name}"
             try:
                 files = _unzipped(folder / "order" / name)
-                layers = {key: files[read.name + end] for key, end in fab.layers}
+                ordered = _ordered(read, fab)
+                layers = {key: files[read.name + end] for key, end in ordered.items()}
                 yield _tables_twice(path, folder / "order", fab, read.name, files)
                 same = layers == first  # whose bytes would only be measured again
                 told = found if same else tuple(measure_layers("", read, layers, painted))
                 yield from (replace(m, subject=f"{path}{m.subject}") for m in told)
+                if isinstance(read, Read) and design.board.flexible:
+                    yield measure_stiffener(path, layers, design.board.flexible.stiffener)
                 if not first:
                     first, found = layers, told
                 other = [key for key in first if first[key] != layers[key]]
@@ -60,7 +63,8 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
                 wrong = _misled(read, note) if isinstance(read, Read) else _misplaced(read, note)
                 yield _count("note", path, list(wrong), "parts")
                 if isinstance(read, Read) and design.board.flexible:
-                    untold = _untold(note, design.board.flexible, design.stack.pcb_mm)
+                    drawn = read.name + ordered["stiffener"]
+                    untold = _untold(note, design.board.flexible, design.stack.pcb_mm, drawn)
                     yield _count("flexible", path, list(untold), "figures")
             except (OSError, KeyError, ValueError, SyntaxError, zipfile.BadZipFile) as error:
                 yield unreadable("orders.readable", path, f"cannot be read: {error!r:.200}")
@@ -141,7 +145,13 @@ def _misled(read: Read, note: str) -> Iterator[str]:
             yield part.ref
 
 
-def _untold(note: str, flexible: Flexible, thickness_mm: float) -> Iterator[str]:
+def _ordered(read: Read | ReadCarrier, fab: Fab) -> dict[str, str]:
+    """Layers that a board's zip is to have: a stiffener is drawn for flexible boards alone."""
+    bends = isinstance(read, Read) and read.design.board.flexible
+    return {key: end for key, end in fab.layers if key != "stiffener" or bends}
+
+
+def _untold(note: str, flexible: Flexible, thickness_mm: float, drawn: str) -> Iterator[str]:
     """What a flexible board is ordered by and the note tells otherwise, or not at all."""
     stiff = flexible.stiffener
     edges = (stiff.x_min_mm, stiff.x_max_mm, stiff.y_min_mm, stiff.y_max_mm)
@@ -155,6 +165,8 @@ def _untold(note: str, flexible: Flexible, thickness_mm: float) -> Iterator[str]
         told = re.search(row, note)
         if told is None or not np.allclose([float(v) for v in told.groups()], values, atol=1e-3):
             yield name
+    if f"Its outline is the drawing {drawn}," not in note:
+        yield "its drawing"
 
 
 def _misplaced(read: ReadCarrier, note: str) -> Iterator[str]:

@@ -25,7 +25,11 @@ def assembly_note(board: Placement, packages: Packages, fab: Fab) -> bytes:
         f"{board.name}: {board.finger} board, revision {board.revision}, "
         f"design {board.design_hash[:8]}",
         "",
-        *(_flexible(board.flexible) if board.flexible else ()),
+        *(
+            _flexible(board.flexible, board.finger + dict(fab.layers)["stiffener"])
+            if board.flexible
+            else ()
+        ),
         *_polarity(board, chip, "led" if emitter else "photodetector"),
         *_others(board),
         *_ordering(board, fab),
@@ -54,8 +58,8 @@ def _polarity(board: Placement, chip: Chip, kind: str) -> Iterator[str]:
     yield ""
 
 
-def _flexible(flexible: Flexible) -> Iterator[str]:
-    """What must be ordered of a flexible board that no layer tells."""
+def _flexible(flexible: Flexible, outline: str) -> Iterator[str]:
+    """What must be ordered of a flexible board, and the file with the stiffener's outline."""
     bend, stiff = flexible.bend, flexible.stiffener
     total = flexible.core_mm + 2 * (flexible.copper_mm + flexible.coverlay_mm)
     yield (
@@ -66,7 +70,8 @@ def _flexible(flexible: Flexible) -> Iterator[str]:
     yield (
         f"Stiffener of polyimide, {flexible.stiffener_mm:g} mm, on the back, in mm as in the "
         f"Gerber files: x {stiff.x_min_mm:.3f} to {stiff.x_max_mm:.3f}, y {stiff.y_min_mm:.3f} to "
-        f"{stiff.y_max_mm:.3f}; with the board's plated holes in it, 0.3 mm wider."
+        f"{stiff.y_max_mm:.3f}; with the board's plated holes in it, 0.3 mm wider. "
+        f"Its outline is the drawing {outline}, of no copper."
     )
     yield (
         f"It bends where y is above {bend.y_min_mm:.3f}: there are no vias, and nothing stiff may "

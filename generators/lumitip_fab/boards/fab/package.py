@@ -36,7 +36,7 @@ def order_files(
         f"{stem}_bom.csv": bill_of_materials(board, fab),
         f"{stem}_positions.csv": placement_list(board, fab),
     }
-    files = {stem + ending: layers[layer] for layer, ending in fab.layers}
+    files = {stem + ending: layers[layer] for layer, ending in fab.layers if layer in layers}
     files[f"{stem}_assembly.txt"] = note
     told = {f"{fab.name}_{name}": data for name, data in tables.items()}
     return {

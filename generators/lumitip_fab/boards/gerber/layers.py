@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 
 from gerbonara.apertures import CircleAperture
 from gerbonara.cam import FileSettings
@@ -15,6 +16,7 @@ from lumitip_fab.boards.gerber import objects
 from lumitip_fab.boards.model import SIDES, BoardModel, Placement, Side
 from lumitip_fab.boards.openings import MASK_MM, opening_mm
 from lumitip_fab.boards.silk import silkscreen
+from lumitip_fab.design import Box
 
 _FORMAT = (4, 6)  # digits before and after the point: to 1 nm
 
@@ -28,7 +30,7 @@ class Layer:
 
 
 def gerber_layers(model: BoardModel) -> Iterator[Layer]:
-    """Copper, mask, paste and silkscreen of both sides, and the outline."""
+    """Copper, mask, paste and silkscreen of both sides, the outline, and that of a stiffener."""
     board = model.placement
     pads = [pad for part in board.components for pad in placed_pads(part)]
     for side in SIDES:
@@ -39,6 +41,8 @@ def gerber_layers(model: BoardModel) -> Iterator[Layer]:
         yield _layer(f"{side} paste", _paste(here), "Paste", place)
         yield _layer(f"{side} silk", _silk(board, side), "Legend", place)
     yield _layer("outline", _outline(board), "Profile", "NP")
+    if board.flexible:
+        yield _layer("stiffener", _frame(board.flexible.stiffener), "Other", "Stiffener")
 
 
 def _copper(model: BoardModel, side: Side, pads: list[PlacedPad]) -> Iterator[GraphicObject]:
@@ -83,6 +87,13 @@ def _outline(board: Placement) -> Iterator[GraphicObject]:
             *bow.start, *bow.end, *centre, clockwise=False,
             aperture=CircleAperture(EDGE_MM, unit=MM), unit=MM, polarity_dark=True,
         )  # fmt: skip
+
+
+def _frame(box: Box) -> Iterator[GraphicObject]:
+    """The edges of a rectangle, on the middle of their lines."""
+    x, y = (box.x_min_mm, box.x_max_mm), (box.y_min_mm, box.y_max_mm)
+    around = [(x[0], y[0]), (x[1], y[0]), (x[1], y[1]), (x[0], y[1]), (x[0], y[0])]
+    yield from (objects.line(*ends, EDGE_MM) for ends in pairwise(around))
 
 
 def _layer(
