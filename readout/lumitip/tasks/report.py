@@ -145,7 +145,8 @@ def _plot(results: Sequence[Result], path: Path) -> Path:
         axes[1][column].set_xlabel("speed (mm/s)")
         for row in (0, 1):
             axes[row][column].grid(alpha=0.3)
-            axes[row][column].set_ylim(bottom=0.0)
+    axes[0][0].set_ylim(bottom=-1.0)  # all columns share it; whole dots at no loss
+    axes[1][0].set_ylim(bottom=0.0)
     axes[0][0].set_ylabel("curves lost (%)")
     axes[1][0].set_ylabel("lateral rms (mm)")
     handles, labels = axes[0][0].get_legend_handles_labels()
