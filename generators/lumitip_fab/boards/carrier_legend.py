@@ -58,7 +58,7 @@ def _put(
 
 def _names(page: Page, device: Device, part: Component, board: Box) -> None:
     """The name of each contact beside it: all along their row if they fit, else upright."""
-    if not device.pins or device.kind == "module":
+    if not (device.contacts and device.pins):
         return
     pads = placed_pads(part)
     apart = [abs(a.x_mm - b.x_mm) for a, b in pairwise(pads) if a.y_mm == b.y_mm]

@@ -126,7 +126,7 @@ def measure_names(read: ReadCarrier) -> Iterator[Measurement]:
     printed = [w for w in read.board.silk.words if w.front and w.text not in refs]
     places = read.sensor([word.at for word in printed])
     wrong = []
-    for device in (d for d in read.carrier.devices if d.kind != "module"):
+    for device in (d for d in read.carrier.devices if d.contacts):
         for land, name in zip(device.pattern.lands, device.pins, strict=False):
             apart = np.hypot(*(places - np.array(_placed(device, land))).T)
             nearest = int(apart.argmin()) if apart.size else -1

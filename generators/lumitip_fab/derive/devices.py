@@ -81,7 +81,8 @@ def leaded(
     return Device(
         ref=ref, kind=kind, value=value, part=entry.order_number, manufacturer=entry.manufacturer,
         lcsc=entry.lcsc, pattern=patterns.leaded(entry), x_mm=at[0], y_mm=at[1],
-        angle_deg=angle_deg, nets=numbered(tuple(nets[name] for name in entry.names)), pins=(),
+        angle_deg=angle_deg, nets=numbered(tuple(nets[name] for name in entry.names)),
+        pins=entry.names,
     )  # fmt: skip
 
 

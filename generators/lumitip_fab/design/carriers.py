@@ -56,10 +56,15 @@ class Device:
     nets: tuple[tuple[str, str], ...]
     """Net of each land, by number."""
     pins: tuple[str, ...]
-    """Name of each land, in the order of the lands; empty where a part has no names. They are
-    printed beside the lands, but of a module, which hides its own."""
+    """Name of each land, in the order of the lands; empty where a part has no names."""
     side: str = "front"
     """Where its body is: a part on the `"back"` is mirrored in x before it is turned."""
+
+    @property
+    def contacts(self) -> bool:
+        """Whether it is rows of contacts, where someone plugs or solders: their names are printed
+        beside them."""
+        return self.kind in ("socket", "header", "wires")
 
 
 @dataclass(frozen=True)

@@ -1,8 +1,10 @@
 """The sheet of a carrier: every part with the names of its nets at its pins."""
 
+import math
+
 from lumitip_fab.boards.model import Component, Placement
 from lumitip_fab.boards.pcb.sexpr import Node
-from lumitip_fab.boards.schematic import symbols
+from lumitip_fab.boards.schematic import carrier_symbols, symbols
 from lumitip_fab.boards.schematic.files import sheet_files
 from lumitip_fab.boards.schematic.paper import MARGIN_MM, paper_for
 from lumitip_fab.boards.schematic.sheet import Drawn, Sheet
@@ -12,8 +14,9 @@ _PITCH_MM = 2.54  # from pin to pin
 _COLUMN_MM = 50.8
 _ABOVE_MM = 12.7  # of a part, for its reference
 _TALL_MM = 150.0  # of a column of parts
-_PLAIN = {"resistor": "R", "capacitor": "C"}  # symbols of parts with two like terminals
-_PLAIN_MM = 25.4
+_UPRIGHT_MM = 25.4  # a part whose terminals are above and below
+_ROW_MM = {True: 2.54, False: 12.7}  # from a column's left: contacts, the box of a chip
+_LETTER_MM = 1.2
 _LABEL_MM = 5.08  # wire from a pin to its label
 
 
@@ -29,38 +32,75 @@ def carrier_sheet(board: Placement, carrier: Carrier) -> dict[str, bytes]:
     sheet = Sheet()
     x = y = MARGIN_MM
     sheet.texts.append((carrier.title, (x, y), 2.5))
-    hand = symbols.hand_drawn()
     for device in (d for d in carrier.devices if d.nets):
-        plain = _PLAIN.get(device.kind)
-        tall = _PLAIN_MM if plain else len(device.nets) * _PITCH_MM + _ABOVE_MM
+        part, two = parts[device.ref], carrier_symbols.upright(device.kind)
+        upright = two is not None or device.kind == "transistor"
+        tall = _UPRIGHT_MM if upright else len(device.nets) * _PITCH_MM + _ABOVE_MM
         if y + tall > MARGIN_MM + _TALL_MM:
             x, y = x + _COLUMN_MM, MARGIN_MM
-        part = parts[device.ref]
-        if plain:
-            shapes.setdefault(plain, hand[plain])
-            _two(sheet, (x + 4 * _PITCH_MM, y + _PLAIN_MM / 2), plain, part)
+        name, shape = two or _shape(device)
+        shapes.setdefault(name, shape)
+        if two:
+            _two(sheet, _middle(x, y), name, part)
+        elif upright:
+            _transistor(sheet, _middle(x, y), name, part, device)
         else:
-            name, shape = _contacts(device)
-            shapes.setdefault(name, shape)
-            _row(sheet, (x + _PITCH_MM, y + _ABOVE_MM), part, name)
+            _row(sheet, (x + _ROW_MM[device.contacts], y + _ABOVE_MM), part, name)
         y += tall
     paper, _ = paper_for(x + _COLUMN_MM - MARGIN_MM, _TALL_MM)
     return sheet_files(board, paper, sheet, shapes, parts)
 
 
-def _contacts(device: Device) -> tuple[str, Node]:
-    """Name and symbol of a row of contacts; of a module only the pads that are joined."""
-    numbers = [number for number, _ in device.nets]
-    if device.kind == "module":
-        return "Module", symbols.contacts(numbers, _PITCH_MM, "U")
-    return f"Strip{len(numbers)}", symbols.wires(len(numbers), _PITCH_MM)
+def _shape(device: Device) -> tuple[str, Node]:
+    """Name and symbol of contacts in a row, or of a part whose pins have names."""
+    if device.contacts:
+        ways = len(device.nets)
+        return f"Strip{ways}", symbols.wires(ways, _PITCH_MM)
+    name = f"{device.kind.capitalize()}_{device.ref}"
+    if device.kind == "transistor":
+        return name, carrier_symbols.transistor(device)
+    return name, carrier_symbols.chip(device, _PITCH_MM)
+
+
+def _middle(x: float, y: float) -> Point:
+    """Of an upright part below a place, on the grid."""
+    return (x + 4 * _PITCH_MM) // 1.27 * 1.27, (y + _UPRIGHT_MM / 2) // 1.27 * 1.27
+
+
+def _beside(told: str, edge_mm: float, y_mm: float) -> Point:
+    """Middle of a text that begins at an edge, or ends there on the left."""
+    return edge_mm + math.copysign(len(told) * _LETTER_MM / 2, edge_mm), y_mm
+
+
+def _transistor(sheet: Sheet, at: Point, symbol: str, part: Component, device: Device) -> None:
+    """Its source above, its drain below, its gate to the left."""
+    x, y = at
+    sheet.symbols.append(
+        Drawn(symbol, part.ref, part.value, x, y, pins=tuple(pad for pad, _ in part.nets),
+              ref_at=_beside(part.ref, 5.08, -1.27), value_at=_beside(part.value, 5.08, 1.27))
+    )  # fmt: skip
+    nets = dict(zip(device.pins, (net for _, net in part.nets), strict=True))
+    sheet.wire((x - _LABEL_MM, y), (x - 1.5 * _LABEL_MM, y))
+    sheet.flag(nets["G"], (x - 1.5 * _LABEL_MM, y), 180)
+    for name, way in (("S", -1), ("D", 1)):
+        beside = x + 2 * _LABEL_MM, y + way * 7.62
+        sheet.wire((x + 2.54, y + way * 5.08), (x + 2.54, beside[1]), beside)
+        sheet.flag(nets[name], beside, 0)
 
 
 def _two(sheet: Sheet, at: Point, symbol: str, part: Component) -> None:
     """A part with two terminals, upright, each with the name of its net."""
-    x, y = at[0] // 1.27 * 1.27, at[1] // 1.27 * 1.27
+    x, y = at
     sheet.symbols.append(
-        Drawn(symbol, part.ref, part.value, x, y, ref_at=(-5.08, -1.27), value_at=(-5.08, 1.27))
+        Drawn(
+            symbol,
+            part.ref,
+            part.value,
+            x,
+            y,
+            ref_at=_beside(part.ref, -2.54, -1.27),
+            value_at=_beside(part.value, -2.54, 1.27),
+        )
     )
     for (_, net), way in zip(part.nets, (-1, 1), strict=True):
         sheet.wire((x, y + way * 3.81), (x, y + way * 7.62), (x + _LABEL_MM, y + way * 7.62))

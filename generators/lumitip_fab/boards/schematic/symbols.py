@@ -20,26 +20,26 @@ HIDDEN: Node = ("effects", ("font", ("size", 1.27, 1.27)), "hide")
 def hand_drawn() -> dict[str, Node]:
     """The symbols that every board draws on, by name."""
     return {
-        "R": _symbol("R", [_box(-1.016, -2.54, 1.016, 2.54)],
-                     [_pin("1", 0, 3.81, 270, 1.27), _pin("2", 0, -3.81, 90, 1.27)]),
-        "C": _symbol("C", [_line((-2.032, 0.762), (2.032, 0.762)),
-                           _line((-2.032, -0.762), (2.032, -0.762))],
-                     [_pin("1", 0, 3.81, 270, 3.048), _pin("2", 0, -3.81, 90, 3.048)]),
-        "TestPoint": _symbol("TP", [_circle(0, 3.302, 0.762)], [_pin("1", 0, 0, 90, 2.54)]),
+        "R": symbol("R", [box(-1.016, -2.54, 1.016, 2.54)],
+                     [pin("1", 0, 3.81, 270, 1.27), pin("2", 0, -3.81, 90, 1.27)]),
+        "C": symbol("C", [line((-2.032, 0.762), (2.032, 0.762)),
+                           line((-2.032, -0.762), (2.032, -0.762))],
+                     [pin("1", 0, 3.81, 270, 3.048), pin("2", 0, -3.81, 90, 3.048)]),
+        "TestPoint": symbol("TP", [_circle(0, 3.302, 0.762)], [pin("1", 0, 0, 90, 2.54)]),
         "PWR_FLAG": _power("PWR_FLAG", [
-            _line((0, 0), (0, 1.27)),
-            _line((0, 1.27), (-1.016, 1.905), (0, 2.54), (1.016, 1.905), (0, 1.27))],
+            line((0, 0), (0, 1.27)),
+            line((0, 1.27), (-1.016, 1.905), (0, 2.54), (1.016, 1.905), (0, 1.27))],
             "power_out", 90),
         "GND": _power("GND", [
-            _line((0, 0), (0, -1.27)),
-            _line((-1.27, -1.27), (1.27, -1.27), (0, -2.54), (-1.27, -1.27))],
+            line((0, 0), (0, -1.27)),
+            line((-1.27, -1.27), (1.27, -1.27), (0, -2.54), (-1.27, -1.27))],
             "power_in", 270),
     }  # fmt: skip
 
 
 def supply(name: str) -> Node:
     """The symbol of a supply, which names its net."""
-    return _power(name, [_line((0, 0), (0, 2.54)), _line((-0.762, 1.27), (0, 2.54), (0.762, 1.27))],
+    return _power(name, [line((0, 0), (0, 2.54)), line((-0.762, 1.27), (0, 2.54), (0.762, 1.27))],
                   "power_in", 90)  # fmt: skip
 
 
@@ -47,12 +47,12 @@ def led(marked: str) -> Node:
     """An LED, its anode to the left."""
     anode, cathode = ("1", "2") if marked == "anode" else ("2", "1")
     body = [
-        _line((-1.27, 1.27), (-1.27, -1.27), (1.27, 0), (-1.27, 1.27)),
-        _line((1.27, 1.27), (1.27, -1.27)),
+        line((-1.27, 1.27), (-1.27, -1.27), (1.27, 0), (-1.27, 1.27)),
+        line((1.27, 1.27), (1.27, -1.27)),
         *_rays((-0.5, 1.6), away=True),
     ]
-    pins = [_pin(anode, -3.81, 0, 0, 2.54, "A"), _pin(cathode, 3.81, 0, 180, 2.54, "K")]
-    return _symbol("D", body, pins)
+    pins = [pin(anode, -3.81, 0, 0, 2.54, "A"), pin(cathode, 3.81, 0, 180, 2.54, "K")]
+    return symbol("D", body, pins)
 
 
 def phototransistor(marked: str) -> Node:
@@ -60,24 +60,24 @@ def phototransistor(marked: str) -> Node:
     collector, emitter = ("1", "2") if marked == "collector" else ("2", "1")
     body = [
         _circle(0, 0.635, 2.54),
-        _line((-1.27, 1.27), (1.27, 1.27)),
-        _line((0.635, 1.27), (1.905, 0), (2.54, 0)),
-        _line((-0.635, 1.27), (-1.905, 0), (-2.54, 0)),
-        _line((-1.27, 0.0), (-1.905, 0), (-1.905, 0.635)),
+        line((-1.27, 1.27), (1.27, 1.27)),
+        line((0.635, 1.27), (1.905, 0), (2.54, 0)),
+        line((-0.635, 1.27), (-1.905, 0), (-2.54, 0)),
+        line((-1.27, 0.0), (-1.905, 0), (-1.905, 0.635)),
         *_rays((-1.4, 4.9), away=False),
     ]
-    pins = [_pin(emitter, -5.08, 0, 0, 2.54, "E"), _pin(collector, 5.08, 0, 180, 2.54, "C")]
-    return _symbol("Q", body, pins)
+    pins = [pin(emitter, -5.08, 0, 0, 2.54, "E"), pin(collector, 5.08, 0, 180, 2.54, "C")]
+    return symbol("Q", body, pins)
 
 
 def multiplexer(mux: Multiplexer) -> Node:
     """A multiplexer: inputs to the left, output and select lines to the right."""
     pins = [
-        _pin(str(lead), *at, angle, PIN_MM, name, "input" if name[0] in "SE~" else kind)
+        pin(str(lead), *at, angle, PIN_MM, name, "input" if name[0] in "SE~" else kind)
         for name, lead, at, angle, kind in mux_pins(mux)
     ]
     top = mux_half_mm(mux)
-    return _symbol("U", [_box(-SIDE_MM, -top, SIDE_MM, top, fill="background")], pins, shown=True)
+    return symbol("U", [box(-SIDE_MM, -top, SIDE_MM, top, fill="background")], pins, shown=True)
 
 
 def mux_half_mm(mux: Multiplexer) -> float:
@@ -118,18 +118,18 @@ def contacts(numbers: Sequence[str], pitch_mm: float, prefix: str) -> Node:
     ways = len(numbers)
     first = (ways - 1) / 2 * pitch_mm
     pins = [
-        _pin(number, 5.08, first - i * pitch_mm, 180, PIN_MM, number)
+        pin(number, 5.08, first - i * pitch_mm, 180, PIN_MM, number)
         for i, number in enumerate(numbers)
     ]
     half = ways / 2 * pitch_mm
     dots = [_circle(1.27, first - i * pitch_mm, 0.762) for i in range(ways)]
-    return _symbol(prefix, [_box(-2.54, -half, 2.54, half, fill="background"), *dots], pins)
+    return symbol(prefix, [box(-2.54, -half, 2.54, half, fill="background"), *dots], pins)
 
 
-def named(name: str, symbol: Node, library: bool) -> Node:
+def named(name: str, shape: Node, library: bool) -> Node:
     """A symbol under its name: plain in a library file, with the library's name in a sheet."""
     whole = Quoted(name if library else f"{LIBRARY}:{name}")
-    return ("symbol", whole, *(_unit(name, v) for v in symbol[1:]))
+    return ("symbol", whole, *(_unit(name, v) for v in shape[1:]))
 
 
 def _unit(name: str, value: Value) -> Value:
@@ -139,7 +139,8 @@ def _unit(name: str, value: Value) -> Value:
     return value
 
 
-def _symbol(prefix: str, body: list[Node], pins: list[Node], shown: bool = False) -> Node:
+def symbol(prefix: str, body: list[Node], pins: list[Node], shown: bool = False) -> Node:
+    """A symbol without its name yet; `shown` are numbers and names of its pins."""
     hide = () if shown else (("pin_numbers", "hide"),)
     names: Node = (
         ("pin_names", ("offset", 1.016)) if shown else ("pin_names", ("offset", 0), "hide")
@@ -149,10 +150,10 @@ def _symbol(prefix: str, body: list[Node], pins: list[Node], shown: bool = False
 
 
 def _power(net: str, body: list[Node], kind: str, angle: int) -> Node:
-    pin = _pin("1", 0, 0, angle, 0, net, kind)
+    end = pin("1", 0, 0, angle, 0, net, kind)
     return (
         "symbol", ("power",), ("pin_numbers", "hide"), ("pin_names", ("offset", 0), "hide"),
-        *_frame("#PWR"), ("symbol", "0_1", *body), ("symbol", "1_1", pin),
+        *_frame("#PWR"), ("symbol", "0_1", *body), ("symbol", "1_1", end),
     )  # fmt: skip
 
 
@@ -165,7 +166,7 @@ def _frame(prefix: str) -> tuple[Node, ...]:
     )  # fmt: skip
 
 
-def _pin(
+def pin(
     number: str,
     x: float,
     y: float,
@@ -174,6 +175,7 @@ def _pin(
     name: str = "~",
     kind: str = "passive",
 ) -> Node:
+    """A pin whose outer end is at (x, y); it reaches `length` from there towards `angle`."""
     return ("pin", kind, "line", ("at", x, y, angle), ("length", length),
             ("name", Quoted(name), _FONT), ("number", Quoted(number), _FONT))  # fmt: skip
 
@@ -183,11 +185,13 @@ def _stroke(fill: str = "none") -> tuple[Node, Node]:
             ("fill", ("type", fill)))  # fmt: skip
 
 
-def _line(*points: Point) -> Node:
+def line(*points: Point) -> Node:
+    """A line along some points."""
     return ("polyline", ("pts", *(("xy", *p) for p in points)), *_stroke())
 
 
-def _box(x0: float, y0: float, x1: float, y1: float, fill: str = "none") -> Node:
+def box(x0: float, y0: float, x1: float, y1: float, fill: str = "none") -> Node:
+    """A rectangle between two corners."""
     return ("rectangle", ("start", x0, y0), ("end", x1, y1), *_stroke(fill))
 
 
@@ -203,8 +207,8 @@ def _rays(start: Point, away: bool) -> list[Node]:
     for shift in (0.0, 1.1):
         x, y = start[0] + shift, start[1]
         tip = (x + 1.6 * cos, y + 1.6 * sin)
-        found.append(_line((x, y), tip))
+        found.append(line((x, y), tip))
         for side in (150, -150):
             a = turn + math.radians(side)
-            found.append(_line(tip, (tip[0] + 0.6 * math.cos(a), tip[1] + 0.6 * math.sin(a))))
+            found.append(line(tip, (tip[0] + 0.6 * math.cos(a), tip[1] + 0.6 * math.sin(a))))
     return found
