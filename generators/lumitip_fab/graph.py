@@ -49,7 +49,7 @@ _LISTED = (
     "fit/*.stl", "mould/*_casting.md", "boards/*/order/generic_*_bom.csv",
 )  # fmt: skip
 _SHOWN = (
-    "assembly/*_exploded.svg", "bom.csv", "boards/*/*_front.png", "boards/*/*_back.png",
+    "assembly/*.svg", "bom.csv", "boards/*/*_front.png", "boards/*/*_back.png",
     "mask/*_mask.svg", "mask/*_wrapping.md", "mould/*_casting.md", "print/printing.md", "wiring/*",
 )  # fmt: skip
 _SET = ("lxml", "markdown-it-py", "pillow", "reportlab", "svglib")

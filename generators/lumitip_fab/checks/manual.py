@@ -11,7 +11,7 @@ from lumitip_fab.design import Design
 from lumitip_fab.errors import OutputError
 
 READS = (
-    "manual/*", "assembly/*_exploded.svg", "bom.csv", "boards/*/*.png", "mask/*",
+    "manual/*", "assembly/*.svg", "bom.csv", "boards/*/*.png", "mask/*",
     "mould/*_casting.md", "wiring/*", "print/*",
 )  # fmt: skip
 _HTML, _PDF = "manual/manual.html", "manual/manual.pdf"
@@ -51,7 +51,7 @@ def _wrong_drawings(outputs: Path, manual: Manual, design: Design) -> list[str]:
     """Pictures other than the file of their name, and those that are missing."""
     names = [finger.name for finger in design.fingers]
     boards = [*names, *(carrier.name for carrier in design.carriers)]
-    wanted = {"assembly/receiver_exploded.svg", "wiring/wiring.svg"}
+    wanted = {"assembly/receiver_exploded.svg", "assembly/system.svg", "wiring/wiring.svg"}
     wanted |= {f"mask/{name}_mask.svg" for name in names}
     wanted |= {f"boards/{name}/{name}_front.png" for name in boards}
     behind = {f.name for f in design.fingers if any(p.side == "back" for p in f.parts)}

@@ -4,7 +4,6 @@ from lumitip_fab.artefact import Artefact
 from lumitip_fab.design import (
     Cabling,
     Carrier,
-    Controller,
     Electrical,
     Finger,
     Flange,
@@ -25,7 +24,7 @@ from lumitip_fab.manual.text import Facts, manual_text
 
 def manual_files(
     made: Made, title: Title, printing: Printing, mould: Mould, mask: Mask, mount: Mount,
-    wiring: Wiring, cabling: Cabling, controller: Controller, electrical: Electrical,
+    wiring: Wiring, cabling: Cabling, electrical: Electrical,
     carriers: tuple[Carrier, ...], holders: tuple[Holder, ...],
     interfaces: tuple[Interface, ...], flanges: tuple[Flange, ...],
     emitter: Finger,
@@ -41,7 +40,6 @@ def manual_files(
         mount: bolts and gripper.
         wiring: supply of the LEDs.
         cabling: cables.
-        controller: its name.
         electrical: currents.
         carriers: boards outside the fingers.
         holders: what holds the controller's board.
@@ -49,7 +47,7 @@ def manual_files(
         flanges: what holds the flange's board.
         emitter: for parts on the back of its board.
     """
-    facts = Facts(title, printing, mould, mask, mount, wiring, cabling, controller, electrical,
+    facts = Facts(title, printing, mould, mask, mount, wiring, cabling, electrical,
                   carriers, holders, interfaces, flanges, emitter)  # fmt: skip
     text = manual_text(facts, made)
     name = f"{title.name} {title.revision}: build manual"

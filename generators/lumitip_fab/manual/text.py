@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from lumitip_fab.design import (
     Cabling,
     Carrier,
-    Controller,
     Electrical,
     Finger,
     Flange,
@@ -41,7 +40,6 @@ class Facts:
     mount: Mount
     wiring: Wiring
     cabling: Cabling
-    controller: Controller
     electrical: Electrical
     carriers: tuple[Carrier, ...]
     holders: tuple[Holder, ...]
@@ -190,7 +188,10 @@ def _mounted(facts: Facts) -> str:
 
 Screw each finger on ({len(facts.mount.bolt_u_mm)} x {facts.mount.bolt}); emitter and receiver
 face each other. Then join the cables of chapter 4 to their other ends.
-{_held(facts)}{flanged}Open and close the gripper slowly once: no wire may be drawn taut."""
+{_held(facts)}{flanged}
+![Robot, gripper and fingers, exploded](assembly/system.svg)
+
+Open and close the gripper slowly once: no wire may be drawn taut."""
 
 
 def _held(facts: Facts) -> str:
@@ -223,10 +224,9 @@ def _run(facts: Facts) -> str:
     return f"""## 8. Firmware, warm-up and calibration
 
 1. {_loading(facts)}
-   The device then calls itself {facts.controller.name}.
 2. Switch the LEDs on and wait {WARM_UP_MIN} minutes: the readings drift while the finger warms.
-3. `lumitip scan` finds the device. `lumitip doctor` with its address names dead, swapped and
-   saturated cells.
+3. `lumitip scan` finds the device by the `controller.name` of the parameter file. `lumitip doctor`
+   with its address names dead, swapped and saturated cells.
 4. Close the gripper on nothing, and run `lumitip tare`: it measures the empty grasp, against which
    everything else is read.
 5. `lumitip view` shows the cells. Lay a card between the fingers: its edge must run where it is."""
