@@ -46,8 +46,8 @@ UNREAD = (
     "boards/*/*-lib-table",
     "boards/*/lumitip.kicad_sym",
     "boards/*/lumitip.pretty/*.kicad_mod",
-    "boards/*/*_front.svg",  # pictures; the manual shows the fronts as PNG
-    "boards/*/*_back.*",
+    "boards/*/*_front.svg",  # pictures, which the manual shows as PNG
+    "boards/*/*_back.svg",
 )
 
 
