@@ -31,6 +31,9 @@ board = "bench"
 [supply]
 max_ma = 5000
 
+[flange]
+enabled = false
+
 [mask]
 hole_mm = 1.2
 
