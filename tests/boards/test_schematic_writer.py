@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from itertools import chain
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -64,15 +65,9 @@ def drawn(
     board = _placed(d, next(f for f in d.fingers if f.name == request.param))
     sheets: list[Sheet] = []
 
-    def told(
-        board: Placement,
-        paper: str,
-        sheet: Sheet,
-        shapes: dict[str, Node],
-        parts: dict[str, Component],
-    ) -> str:
-        sheets.append(sheet)
-        return sheet_text(board, paper, sheet, shapes, parts)
+    def told(*drawing: Any) -> str:
+        sheets.extend(given for given in drawing if isinstance(given, Sheet))
+        return sheet_text(*drawing)
 
     monkeypatch.setattr(files, "sheet_text", told)
     made = files.schematic_files(board, d.wiring, d.packages)

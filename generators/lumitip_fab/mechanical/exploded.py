@@ -143,10 +143,10 @@ def _silhouette(layer: Layer) -> list[Points]:
 def _visible_lines(layer: Layer) -> list[Points]:
     """Sharp edges and contours that the layer does not hide itself."""
     right, _, viewer = _eye().axes
-    view = gp_Ax2(gp_Pnt(0, 0, 0), gp_Dir(*viewer), gp_Dir(*right))
+    towards = gp_Ax2(gp_Pnt(0, 0, 0), gp_Dir(*viewer), gp_Dir(*right))
     hidden = HLRBRep_Algo()
     hidden.Add(layer.solid.wrapped)
-    hidden.Projector(HLRAlgo_Projector(view))
+    hidden.Projector(HLRAlgo_Projector(towards))
     hidden.Update()
     hidden.Hide()
     seen = HLRBRep_HLRToShape(hidden)

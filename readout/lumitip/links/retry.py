@@ -62,5 +62,7 @@ def keep_connected(session: Session, report: Report, stopping: threading.Event) 
                 return
             if up:
                 report(LinkEvent("lost", str(error), error))
+            else:
+                _log.debug("not connected again: %s", error)
             up = False
             stopping.wait(next(delays))
