@@ -28,7 +28,8 @@ def wall_of_the_next_step(part: Manifold, plate: FitPlate) -> Manifold:
     """The wall at the left of the middle corner where that of the next one would be."""
     x, y = plate.at(2, plate.corner)
     inner = x - plate.steps[2].pocket_gap_mm
-    return part - box((inner - NEXT_MM, 0.0, plate.floor_mm), (inner + 1, y, 3.0))
+    low = plate.floor_mm + 0.05  # clear of the floor, or slivers of it stay open
+    return part - box((inner - NEXT_MM, 0.0, low), (inner + 1, y, 3.0))
 
 
 def pin_replaced(

@@ -13,7 +13,7 @@ from lumitip_fab.design import Box, FitPlate, Fits, Mount, Point
 from lumitip_fab.load import Input
 
 STEPS_MM = (-0.1, -0.05, 0.0, 0.05, 0.1)
-LAYERS = 5  # of a foot, a slice and a pocket's wall: what a fit shows in, and no more to print
+LAYERS = 4  # of a foot, a slice and a pocket's wall: what a fit shows in, and no more to print
 SLEEVE_LAYERS = 4  # of a sleeve, and as many of the bolt's hole above it
 LINES = 2  # of walls
 SEAT_MM = 1.0  # of a foot round its pin
