@@ -7,6 +7,7 @@ from pydantic import BaseModel, ConfigDict, Field
 NAME = r"^[A-Za-z0-9][\w .+/\-]*$"
 Length = Annotated[float, Field(ge=0.01, le=500)]
 Share = Annotated[float, Field(ge=0.01, le=1000)]
+TITLE = r"^(\w[\w .,+/()µ\-]*)?$"
 PIN = r"^[A-Za-z][A-Za-z0-9_]{0,15}$"
 Pin = Annotated[str, Field(pattern=PIN)]
 Offset = Annotated[float, Field(ge=-500, le=500)]
@@ -26,10 +27,17 @@ class Strict(BaseModel):
     )
 
 
-class Entry(Strict):
-    """What every catalogue entry carries."""
+class Sourced(Strict):
+    """Figures that come from somewhere."""
 
     source: str = Field(min_length=1)
     """Where the figures come from."""
     confidence: Confidence
     """How far to trust them."""
+
+
+class Entry(Sourced):
+    """What every catalogue entry carries."""
+
+    title: str = Field(default="", max_length=64, pattern=TITLE)
+    """What people call it, in manual, bill and drawings; left out, the entry's own name."""

@@ -14,7 +14,7 @@ from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
-from lumitip_fab.entry import Confidence, Entry, Length, Offset, Strict
+from lumitip_fab.entry import Confidence, Entry, Length, Offset, Sourced, Strict
 
 Screw = Annotated[str, Field(pattern=r"^M\d{1,2}(\.\d)?$")]
 
@@ -53,7 +53,7 @@ class Origin(Strict):
     """How far to trust it."""
 
 
-class Envelope(Entry):
+class Envelope(Sourced):
     """The body of a gripper as a block with round edges along its axis, from the face that stands
     on the coupling, and how far its fingers' mount planes are from that face."""
 
@@ -152,5 +152,5 @@ class Gripper(Entry):
 FIGURES = tuple(
     name
     for name in Gripper.model_fields
-    if name not in {"source", "confidence", "envelope", "origin"}
+    if name not in {"source", "confidence", "title", "envelope", "origin"}
 )

@@ -68,6 +68,12 @@ class Input:
             found[field] = getattr(self.catalogue, kind)[name]
         return found
 
+    def title(self, field: str) -> str:
+        """What people call the entry that a field in `NAMED` names."""
+        section, key = field.split(".")
+        name: str = getattr(getattr(self.parameters, section), key)
+        return self.named_parts()[field].title or name
+
     def problem(self, field: str, message: str) -> Problem:
         """A fault of a field, placed in the file that set it."""
         source, own = _setting(self.sources, field), self.sources[0]

@@ -5,7 +5,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from lumitip_fab.entry import Entry, Strict
+from lumitip_fab.entry import Sourced, Strict
 
 Price = Annotated[float, Field(ge=0, le=1e6)]
 
@@ -26,7 +26,7 @@ class PlacingPrice(Strict):
     """Of one part."""
 
 
-class Prices(Entry):
+class Prices(Sourced):
     """What parts cost, in one currency."""
 
     currency: str = Field(pattern=r"^[A-Z]{3}$")

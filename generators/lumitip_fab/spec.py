@@ -67,7 +67,7 @@ def _electrical(design: Design) -> tuple[Row, ...]:
     wiring, controller, optics = design.wiring, design.controller, design.layout.optics
     return (
         Row("resolution", "8 bits", f"{controller.adc_bits} bits",
-            f"all bits of the ADC of {controller.board}; the published firmware keeps 8"),
+            f"all bits of the ADC of {controller.title}; the published firmware keeps 8"),
         Row("rate", "55 Hz", "set by the firmware",
             "no part of this design sets it: firmware and link do"),
         Row("current of the emitter", "38 mA", f"{sum(wiring.current_ma):.1f} mA",
@@ -135,7 +135,7 @@ def _further(design: Design) -> tuple[Row, ...]:
         Row("wedge at the tip", "12.2°", f"{tip.angle_deg:.1f}°",
             f"from {stack.plate_mm:g} to {tip.edge_mm:g} mm over {slant:g} mm; published: from 1.3 "
             "to 0 over 6, of the flexible part from 2 to 0 over 14.2"),
-        Row("gripper", "Robotiq 2F-85", f"{design.mount.gripper}, {design.mount.bolt}",
+        Row("gripper", "Robotiq 2F-85", f"{design.mount.title}, {design.mount.bolt}",
             _trusted(design)),
         Row("fit test plate", "none", f"{plate.volume_ml:.1f} cm³",
             "lumitip-fab slice tells how long it prints; its reading is printer.fit_mm, here "

@@ -74,7 +74,7 @@ def _regulated(supply: Regulated) -> Iterator[Row]:
 def _held(design: Design) -> Iterator[Row]:
     if not design.holders:
         yield Row("holder of the breakout", "round the gripper's body", "none",
-                  f"the body of {design.mount.gripper} is not round: fix the board beside it, or "
+                  f"the body of {design.mount.title} is not round: fix the board beside it, or "
                   "give holder.body_mm")  # fmt: skip
     for holder in design.holders:
         yield from _holder(holder)

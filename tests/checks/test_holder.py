@@ -165,8 +165,8 @@ def test_a_holder_goes_round_a_round_body_alone(design_dir: Path, tmp_path: Path
         told = " ".join(f"{row.quantity} {row.reason}" for row in outside(design))
         assert ("fix the board beside it" in told) == (not design.holders)
     assert made == {
-        "robotiq_2f85": [(75.0, "robotiq_2f85, inferred")],
-        "robotiq_2f140": [(75.0, "robotiq_2f140, assumed")],
+        "robotiq_2f85": [(75.0, "Robotiq 2F-85, inferred")],
+        "robotiq_2f140": [(75.0, "Robotiq 2F-140, assumed")],
         "wsg50": [], "onrobot_rg2": [], "franka_hand": [], "two_hole_jaw": [],
     }  # fmt: skip
     file.write_text(f"{file.read_text()}[holder]\nbody_mm = 80\n")

@@ -54,6 +54,25 @@ def test_every_entry_says_where_its_figures_come_from(parts: Catalogue) -> None:
             assert len(entry.source) > 20, name
 
 
+def test_what_people_call_a_part_is_told_and_else_its_name(inputs: dict[str, Input]) -> None:
+    published = inputs["published"]
+    assert published.title("coupling.gripper") == "Robotiq 2F-85"
+    assert published.title("controller.board") == "Arduino Nano 33 BLE"
+    assert published.title("mould.silicone") == "Solaris", "no title, but a name for people"
+
+
+def test_no_name_made_for_typing_is_all_there_is(parts: Catalogue) -> None:
+    for kind in set(Catalogue.model_fields) - {"prices"}:
+        for name, entry in getattr(parts, kind).items():
+            assert "_" not in (entry.title or name), f"{kind}: {name} needs a title"
+
+
+@pytest.mark.parametrize("title", ["two\nlines", "a | b", "`code`", "x" * 65, " "])
+def test_a_title_that_would_break_a_table_is_refused(parts: Catalogue, title: str) -> None:
+    with pytest.raises(ValidationError, match="title"):
+        Led.model_validate(_changed(parts.leds["15406085BA300"], title=title))
+
+
 def _changed(entry: Any, **values: Any) -> dict[str, Any]:
     return {**entry.model_dump(), **values}
 

@@ -147,7 +147,7 @@ def _wrong_parts(rows: tuple[Row, ...], parts: Counter[str], design: Design) -> 
         if row.group == "electronics":
             told[row.part] += round(row.quantity)
     soldered = any(d.kind == "module" for c in design.carriers for d in c.devices)
-    wanted = parts + Counter({} if soldered else {design.controller.board: 1})
+    wanted = parts + Counter({} if soldered else {design.controller.title: 1})
     return [f"{part}: {told[part]}, not {wanted[part]}" for part in sorted({*told, *wanted})
             if told[part] != wanted[part]]  # fmt: skip
 

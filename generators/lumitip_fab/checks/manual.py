@@ -83,7 +83,7 @@ def _wrong_figures(manual: Manual, design: Design) -> list[str]:
         "supply of the LEDs": f"{design.wiring.supply_v:g} V",
         "current of the LEDs, nominal": f"{sum(design.wiring.current_ma):.1f} mA",
         "wires": str(sum(len(cable.wires) for cable in design.cabling.cables)),
-        "gripper": design.mount.gripper,
+        "gripper": design.mount.title,
         "bolts for each finger": f"{len(design.mount.bolt_u_mm)} x {design.mount.bolt}",
         "warm-up": f"{_WARM_UP_MIN:g} min",
     }

@@ -100,7 +100,7 @@ def derive(given: Input) -> Design:
             fit_plate=plate,
             densities=derive_densities(given, slicing),
             controller=Controller(
-                p.controller.board,
+                given.title("controller.board"),
                 p.controller.name,
                 given.catalogue.controllers[p.controller.board].adc_bits,
             ),

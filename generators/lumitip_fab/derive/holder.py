@@ -23,7 +23,7 @@ def derive_holder(
     of = next((carrier for carrier in carriers if carrier.name == "breakout"), None)
     given_mm, body_from = p.holder.body_mm, "holder.body_mm"
     if given_mm == "gripper":
-        body_from = f"{p.coupling.gripper}, {body.confidence}"
+        body_from = f"{given.title('coupling.gripper')}, {body.confidence}"
     body_mm = body.round_mm if given_mm == "gripper" else given_mm
     if of is None or body_mm is None:
         return ()

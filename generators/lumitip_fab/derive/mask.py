@@ -59,7 +59,7 @@ def derive_mask(given: Input, outline: Outline, plan: Plan, faults: Faults) -> M
         hole_shape=p.mask.hole_shape,
         allowance_mm=p.mask.allowance_mm,
         flap_mm=p.mask.flap_mm,
-        film=p.mask.film,
+        film=given.title("mask.film"),
         soften_c=film.soften_c,
         measured_ruler_mm=p.mask.measured_ruler_mm,
         registration=tuple(

@@ -93,7 +93,7 @@ def _module(given: Input, module: Module, muxing: Muxing, at: Point) -> Device:
     nets |= {module.ports[pin]: pin for pin in muxing.adc_pins}
     nets |= {module.ports[pin]: f"S{i}" for i, pin in enumerate(muxing.select_pins)}
     return Device(
-        ref="U2", kind="module", value=given.parameters.controller.board, part=module.order_number,
+        ref="U2", kind="module", value=given.title("controller.board"), part=module.order_number,
         manufacturer=module.manufacturer, lcsc=module.lcsc, pattern=patterns.module(module),
         x_mm=at[0], y_mm=at[1], angle_deg=TURN_DEG,
         nets=tuple((str(i), nets[name]) for i, name in enumerate(module.names, 1) if name in nets),

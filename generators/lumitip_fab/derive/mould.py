@@ -72,7 +72,7 @@ def derive_mould(
         letter=_letter(given, outline, stack, faults),
         layer_mm=layer_mm,
         off_layer_mm=off_mm,
-        silicone=p.mould.silicone,
+        silicone=given.title("mould.silicone"),
         density_g_ml=silicone.density_g_ml,
         mix_ratio=silicone.mix_ratio,
         cure_h=silicone.cure_h,

@@ -37,6 +37,7 @@ def derive_mount(given: Input, outline: Outline, plan: Plan, faults: Faults) -> 
     pins = gripper.pins
     return Mount(
         gripper=p.coupling.gripper,
+        title=given.title("coupling.gripper"),
         origin_y_mm=outline.end_y_mm,
         tilt_deg=gripper.tilt_deg,
         block_width_mm=gripper.block_width_mm,

@@ -54,7 +54,8 @@ def _controller(given: Input, prices: Prices) -> list[Bought]:
     name = given.parameters.controller.board
     if given.catalogue.controllers[name].module:
         return []
-    return [Bought("electronics", name, "", name, "reads the receiver", 1, prices.each.get(name))]
+    title = given.title("controller.board")
+    return [Bought("electronics", title, "", title, "reads the receiver", 1, prices.each.get(name))]
 
 
 def _bolts(mount: Mount, prices: Prices) -> list[Bought]:

@@ -250,6 +250,8 @@ class Rules:
 class Controller:
     """The microcontroller board."""
 
-    board: str
+    title: str
+    """What people call it."""
     name: str
+    """What it calls itself over Bluetooth."""
     adc_bits: int

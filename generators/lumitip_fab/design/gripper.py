@@ -26,6 +26,9 @@ class Mount:
     """
 
     gripper: str
+    """Its name in `parts/grippers.toml`."""
+    title: str
+    """What people call it."""
     origin_y_mm: float
     """y of the mount frame's origin in the sensor frame; its z is the rim's."""
     tilt_deg: float

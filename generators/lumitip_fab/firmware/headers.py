@@ -25,7 +25,7 @@ def layout_header(
     lines = len(wiring.select_pins)
     line_pf = electrical.channel.line_pf + electrical.channel.detector_pf
     return f"""{_head(title)}
-// Pins of {json.dumps(controller.board)}: one analog input for each multiplexer, U1 first; select
+// Pins of {json.dumps(controller.title)}: one analog input for each multiplexer, U1 first; select
 // lines, lowest bit first.
 #define LUMITIP_ADC_PINS {", ".join(map(_pin, wiring.adc_pins))}
 #define LUMITIP_SELECT_PINS {", ".join(map(_pin, wiring.select_pins))}

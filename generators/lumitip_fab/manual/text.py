@@ -81,7 +81,7 @@ outputs. Read a chapter to its end before you begin with it.
 | supply of the LEDs | {facts.wiring.supply_v:g} V |
 | current of the LEDs, nominal | {lit_ma:.1f} mA |
 | wires | {sum(len(cable.wires) for cable in facts.cabling.cables)} |
-| gripper | {facts.mount.gripper} |
+| gripper | {facts.mount.title} |
 | bolts for each finger | {len(facts.mount.bolt_u_mm)} x {facts.mount.bolt} |
 | warm-up | {WARM_UP_MIN} min |
 
@@ -202,7 +202,7 @@ def _held(facts: Facts) -> str:
         )
     if any(carrier.name == "breakout" for carrier in facts.carriers):
         return (
-            f"Fix the controller's board beside the gripper: the body of `{facts.mount.gripper}` "
+            f"Fix the controller's board beside the gripper: the body of {facts.mount.title} "
             "is not round, so there is no holder for it (`holder.body_mm`).\n"
         )
     return ""

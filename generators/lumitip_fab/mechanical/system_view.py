@@ -161,7 +161,7 @@ def _label(
                      _leftmost(at[f"{flange.name}.board"])))  # fmt: skip
         left.append((("Flange, lower part", "printed"), _leftmost(at[f"{flange.name}.lower"])))
     mounted = climb(system.gripper_z_mm + system.reach_mm)
-    right.append(((f"Gripper {mount.gripper}, to its fingers", f"{mounted}, {system.confidence}"),
+    right.append(((f"Gripper {mount.title}, to its fingers", f"{mounted}, {system.confidence}"),
                   _rightmost(at["gripper.envelope"])))  # fmt: skip
     for name in system.holders:
         left.append((("Controller's board in its holder", "clips round the gripper"),
