@@ -252,7 +252,7 @@ class Printer(Strict):
     min_wall_mm: float = Field(ge=0.2, le=5)
     """Thinnest wall that prints well (mm)."""
     fit_mm: float = Field(ge=-0.1, le=0.1)
-    """Reading of the fit test plate: added to every gap between backing and board, bolts and
+    """Reading of the fit test plate: added to every gap between printed parts and boards, metal and
     gripper, on each side; above zero all sits looser (mm)."""
 
 

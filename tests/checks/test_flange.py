@@ -79,7 +79,7 @@ def socket_askew(body: Body) -> Body:
 
 
 def peg_thick(body: Body) -> Body:
-    return body + rod(-PIN[0], 0, SPLIT - 1, SPLIT + 1.2, 2.58)
+    return body + rod(-PIN[0], 0, SPLIT - 1, SPLIT + 1.2, 2.65)
 
 
 def peg_askew(body: Body) -> Body:

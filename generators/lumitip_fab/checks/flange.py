@@ -25,7 +25,9 @@ READS = ("flange/*.stl", "flange/*.3mf", "flange/*.step", "boards/flange/*.kicad
 
 SIZE_MM = 0.05
 HOLE_MM = 0.05
-LEAST_PLAY_MM, MOST_PLAY_MM = 0.1, 0.4  # of the peg in its hole
+PEG_PLAY_MM = (0.3, 0.7)  # in its hole, without the printer's fit, which is on both
+PIN_PLAY_MM = 0.1  # of a pin in the hole that it is glued into, without the fit
+SOCKET_PLAY_MM = 0.2  # of the gripper's pin in its holes, without the fit
 MOST_OVERHANG_MM2 = 30.0  # the roof of the pin's hole
 LEAST_BED_MM2 = 2000.0
 _NEAR_MM = 2.0
@@ -90,8 +92,8 @@ def measure_faces(of: Stacked) -> Iterator[Measurement]:
     """Spigot and recess, and what the flange adds between coupling and gripper."""
     flange = of.flange
     for check, mesh, z, wanted, hole in (
-        ("spigot", of.lower, flange.seat_z_mm / 2, flange.spigot_mm, False),
-        ("recess", of.upper, flange.top_z_mm - 0.5, flange.recess_mm, True),
+        ("spigot", of.lower, flange.seat_z_mm / 2, flange.centring_mm - 2 * of.gap_mm, False),
+        ("recess", of.upper, flange.top_z_mm - 0.5, flange.centring_mm + 2 * of.gap_mm, True),
     ):
         part = max(shapely.get_parts(solids.section(mesh, z)), key=shapely.area)
         rings = part.interiors if hole else [part.exterior]
@@ -130,10 +132,10 @@ def measure_bolts(of: Stacked) -> Iterator[Measurement]:
 
 def measure_pins(of: Stacked) -> Iterator[Measurement]:
     """Hole of the locating pin, holes for the gripper's, and the peg in its hole."""
-    flange = of.flange
+    flange, fit = of.flange, 2 * of.design.printing.fit_mm
     off, wide = circles(holes_at(of.lower, flange.seat_z_mm + 1.0), (flange.pin_at,), _NEAR_MM)
     yield of.near("pin", off, 0.0, HOLE_MM)
-    yield of.near("pin_width", wide, flange.pin_hole_mm, HOLE_MM)
+    yield of.near("pin_width", wide, flange.pin_mm + PIN_PLAY_MM + fit, HOLE_MM)
     below = np.array([(*flange.pin_at, flange.seat_z_mm - 1.0)])
     deep, _ = solids.cast(of.lower, below, np.array([0.0, 0.0, 1.0]), REACH_MM).first(1)
     yield of.near("pin_depth", deep - 1.0, flange.pin_depth_mm, SIZE_MM)
@@ -143,7 +145,7 @@ def measure_pins(of: Stacked) -> Iterator[Measurement]:
     found = [circles(holes_at(mesh, z), (flange.pin_at,), _NEAR_MM) for mesh, z in both]
     yield of.near("socket", np.concatenate([off for off, _ in found]), 0.0, HOLE_MM)
     wide = np.concatenate([wide for _, wide in found])
-    yield of.near("socket_width", wide, flange.socket_mm, HOLE_MM)
+    yield of.near("socket_width", wide, flange.pin_mm + SOCKET_PLAY_MM + fit, HOLE_MM)
     yield from _peg(of, flange)
 
 
@@ -154,7 +156,8 @@ def _peg(of: Stacked, flange: Flange) -> Iterator[Measurement]:
     middle = flange.split_z_mm + flange.web_mm / 2
     off, wide = circles(holes_at(of.upper, middle), (flange.peg_at,), _NEAR_MM)
     yield of.near("peg", np.concatenate([peg_off, off]), 0.0, HOLE_MM)
-    yield of.figure("peg_play", (wide - peg_wide)[0], LEAST_PLAY_MM, MOST_PLAY_MM)
+    least, most = (play + 4 * of.design.printing.fit_mm for play in PEG_PLAY_MM)
+    yield of.figure("peg_play", (wide - peg_wide)[0], least, most)
     stands = float(of.lower.bounds[1][2]) - of.split_mm
     yield of.figure("peg_height", stands, SIZE_MM, flange.web_mm)
 

@@ -28,7 +28,7 @@ def measure_pocket(of: Stacked) -> Iterator[Measurement]:
     middle = flange.board_z_mm + pcb_mm / 2
     rings = [shapely.Polygon(ring) for ring in holes_at(of.lower, middle)]
     pocket = max(rings, key=lambda ring: ring.area)
-    wanted = of.board.carrier.box.x_min_mm + flange.board_at[0] - flange.pocket.x_min_mm
+    wanted = of.gap_mm
     inside = pocket.contains(of.outline)
     gap = pocket.exterior.distance(of.outline) if inside else math.nan
     yield of.near("board_gap", gap, wanted, SIZE_MM, "board to pocket, at its nearest")

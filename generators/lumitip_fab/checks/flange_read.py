@@ -47,6 +47,11 @@ class Stacked:
         worst = farthest(np.atleast_1d(np.asarray(measured, dtype=np.float64)), wanted)
         return self.figure(check, worst, wanted - by, wanted + by, note=note)
 
+    @property
+    def gap_mm(self) -> float:
+        """Wanted from the printed parts to coupling, gripper and board, by the printer's fit."""
+        return self.flange.clearance_mm + self.design.printing.fit_mm
+
     def places(self, page: list[Point]) -> Vectors:
         """Places on the board's page, shape `(n, 2)`."""
         on_board = self.board.sensor(page)

@@ -107,7 +107,7 @@ def measure_tray(clip: Clip) -> Iterator[Measurement]:
         inside = np.column_stack([np.full_like(ys, x - way), ys, np.full_like(ys, z)])
         hit, _ = solids.cast(clip.mesh, inside, np.array([way, 0.0, 0.0]), 10.0).first(len(ys))
         gaps.append(hit - 1.0)
-    clearance = holder.tray.x_max_mm - clip.board.carrier.box.x_max_mm
+    clearance = holder.clearance_mm + clip.design.printing.fit_mm
     worst = farthest(np.concatenate(gaps), clearance)
     yield clip.figure("tray_gap", worst, clearance - SIZE_MM, clearance + SIZE_MM)
     rim = clip.mesh.bounds[1][2] - clip.design.stack.carrier_mm
@@ -162,13 +162,14 @@ def measure_cradle(clip: Clip) -> Iterator[Measurement]:
     y = holder.outer.y_max_mm / 2  # beside nuts and straps
     start = np.tile((0.0, y, holder.axis_z_mm), (len(turns), 1))
     hit, _ = solids.cast(clip.mesh, start, away, _REACH_MM).first(len(turns))
-    wanted = holder.cradle_mm
+    fit = clip.design.printing.fit_mm
+    wanted = holder.body_mm / 2 + holder.clearance_mm + fit
     yield clip.figure("cradle", farthest(hit, wanted), wanted - SIZE_MM, wanted + SIZE_MM)
     below = clip.mesh.vertices[clip.mesh.vertices[:, 2] < holder.axis_z_mm]
     inward = float(np.abs(below[:, 0]).min(initial=math.inf))
     grip = holder.body_mm / 2 - inward
-    yield clip.figure("grip", grip, LEAST_GRIP_MM, math.inf,
-                      note="each arm's end inside the body's widest place")  # fmt: skip
+    yield clip.figure("grip", grip, LEAST_GRIP_MM - fit, math.inf,
+                      note="each arm's end inside the body's widest place, as drawn")  # fmt: skip
 
 
 def measure_straps(clip: Clip) -> Iterator[Measurement]:

@@ -4,6 +4,7 @@ import math
 
 from lumitip_fab.coupling_entry import ToolCoupling
 from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.fits import Drawn, refuse_touching
 from lumitip_fab.derive.flex import stiff_mm
 from lumitip_fab.design import Box, Carrier, Device, Flange, Point
 from lumitip_fab.load import Input
@@ -14,7 +15,8 @@ PIN_LENGTHS_MM = (12.0, 10.0, 8.0)
 PIN_PLAY_MM = 0.1  # of a hole into which a pin is glued
 SOCKET_PLAY_MM = 0.2  # of the hole for the gripper's pin
 SOCKET_SPARE_MM = 0.5  # below the end of the gripper's pin
-PEG_MM, PEG_PLAY_MM = 5.0, 0.2
+PEG_MM = 5.0
+PEG_PLAY_MM = 0.5  # both are printed: at the tightest fit 0.1 is left
 PEG_SHARE = 0.75  # of the web's thickness
 SCREW_PLAY_MM = 0.2  # holes in the floor beyond the board's
 SCREW_HEAD_MM = 4.2  # countersunk M2, 3.8 by ISO 7046
@@ -28,6 +30,7 @@ def derive_flange_body(
         return ()
     (carrier,) = carriers
     p, pcb_mm = given.parameters.flange, stiff_mm(given.parameters)
+    drawn = Drawn(given.parameters.printer.fit_mm)
     coupling, pogo = given.catalogue.couplings[p.coupling], given.catalogue.strips[p.contacts]
     # Towards the robot, and so on the board's back, are the contacts alone.
     (contacts,) = (device for device in carrier.devices if device.side == "back")
@@ -48,28 +51,30 @@ def derive_flange_body(
         coupling=p.coupling,
         iso=coupling.iso,
         face_mm=coupling.face_mm,
-        spigot_mm=coupling.recess_mm - 2 * p.clearance_mm,
+        centring_mm=coupling.recess_mm,
+        clearance_mm=p.clearance_mm,
+        spigot_mm=drawn.peg_mm(coupling.recess_mm - 2 * p.clearance_mm),
         seat_z_mm=-coupling.recess_depth_mm,
-        recess_mm=coupling.recess_mm + 2 * p.clearance_mm,
+        recess_mm=drawn.hole_mm(coupling.recess_mm + 2 * p.clearance_mm),
         recess_depth_mm=coupling.recess_depth_mm,
         bolt=coupling.bolt,
         bolts=coupling.bolts_mm,
-        bolt_hole_mm=coupling.bolt_hole_mm,
+        bolt_hole_mm=drawn.hole_mm(coupling.bolt_hole_mm),
         pin_at=coupling.pin_at_mm,
         pin_mm=coupling.pin_mm,
-        pin_hole_mm=coupling.pin_mm + PIN_PLAY_MM,
+        pin_hole_mm=drawn.hole_mm(coupling.pin_mm + PIN_PLAY_MM),
         pin_length_mm=pin,
         pin_depth_mm=pin - coupling.pin_depth_mm,
-        socket_mm=coupling.pin_mm + SOCKET_PLAY_MM,
+        socket_mm=drawn.hole_mm(coupling.pin_mm + SOCKET_PLAY_MM),
         socket_z_mm=socket_z,
         peg_at=(-coupling.pin_at_mm[0], -coupling.pin_at_mm[1]),
-        peg_mm=PEG_MM,
-        peg_hole_mm=PEG_MM + PEG_PLAY_MM,
+        peg_mm=drawn.peg_mm(PEG_MM),
+        peg_hole_mm=drawn.hole_mm(PEG_MM + PEG_PLAY_MM),
         peg_height_mm=PEG_SHARE * p.web_mm,
         board_at=board_at,
         board_z_mm=board_z,
-        pocket=_moved(carrier.box, board_at).grown(p.clearance_mm),
-        pocket_corner_mm=carrier.corner_mm + p.clearance_mm,
+        pocket=_moved(carrier.box, board_at).grown(drawn.gap_mm(p.clearance_mm)),
+        pocket_corner_mm=carrier.corner_mm + drawn.gap_mm(p.clearance_mm),
         reliefs=tuple(_room(header, board_at) for header in headers),
         tail_mm=p.tail_mm,
         window=_room(contacts, board_at),
@@ -78,7 +83,7 @@ def derive_flange_body(
         stroke_mm=pogo.stroke_mm,
         openings=_openings(headers, board_at, coupling.face_mm / 2),
         screws=tuple((x + board_at[0], y + board_at[1]) for x, y in carrier.holes),
-        screw_mm=carrier.hole_mm + SCREW_PLAY_MM,
+        screw_mm=drawn.hole_mm(carrier.hole_mm + SCREW_PLAY_MM),
         screw_head_mm=SCREW_HEAD_MM,
         split_z_mm=split_z,
         web_mm=p.web_mm,
@@ -93,7 +98,7 @@ def _moved(box: Box, by: Point) -> Box:
 
 
 def _room(device: Device, board_at: Point) -> Box:
-    """Room round the body of a part."""
+    """Room round the body of a part, more than a fit of the printer is."""
     at = (device.x_mm + board_at[0], device.y_mm + board_at[1])
     return _moved(device.pattern.body, at).grown(AROUND_MM)
 
@@ -137,13 +142,22 @@ def _refuse(given: Input, flange: Flange, faults: Faults) -> None:
         f"{p.header!r} given, which makes the flange {flange.top_z_mm:.1f} mm high: its locating "
         f"pin finds {room:.1f} mm, {flange.pin_depth_mm:g} are needed: a higher header",
     )
-    _refuse_walls(flange, coupling, p.coupling, least, faults)
+    rim = (flange.face_mm - flange.recess_mm) / 2
+    faults.refuse_unless(
+        rim >= least - 1e-9,
+        "flange.coupling",
+        f"{p.coupling!r} given, which leaves {rim:.2f} mm of wall round the gripper's recess of "
+        f"{flange.recess_mm:g} mm; at least {least:g} is needed",
+    )
+    refuse_touching(given, "flange.clearance_mm", p.clearance_mm, faults)
+    _refuse_walls(given, flange, coupling, faults)
 
 
-def _refuse_walls(
-    flange: Flange, coupling: ToolCoupling, name: str, least_mm: float, faults: Faults
-) -> None:
+def _refuse_walls(given: Input, flange: Flange, coupling: ToolCoupling, faults: Faults) -> None:
     """Refuse holes that come near the board's pocket, and whatever reaches beyond the spigot."""
+    printer, name = given.parameters.printer, given.parameters.flange.coupling
+    least_mm = printer.min_wall_mm
+    fitted = f", with printer.fit_mm = {printer.fit_mm:g}" if printer.fit_mm else ""
     radius = min(flange.spigot_mm / 2, flange.face_mm / 2 - least_mm)
     for what, places, hole_mm in (
         ("a bolt", flange.bolts, flange.bolt_hole_mm),
@@ -156,7 +170,7 @@ def _refuse_walls(
             min(inside, outside) >= least_mm,
             "flange.coupling",
             f"{name!r} given, where {what} leaves {inside:.2f} mm of wall to the board's pocket "
-            f"and {outside:.2f} to the outside: at least {least_mm:g} is needed",
+            f"and {outside:.2f} to the outside{fitted}: at least {least_mm:g} is needed",
         )
     box, corner = flange.pocket, flange.pocket_corner_mm
     reach = max(
@@ -167,8 +181,8 @@ def _refuse_walls(
     faults.refuse_unless(
         reach <= radius - least_mm,
         "flange.coupling",
-        f"{name!r} given, whose recess of {coupling.recess_mm:g} mm is too small for the board: at "
-        f"least {2 * (reach + least_mm):.1f} is needed",
+        f"{name!r} given, whose recess of {coupling.recess_mm:g} mm is too small for the board"
+        f"{fitted}: at least {coupling.recess_mm + 2 * (reach + least_mm - radius):.1f} is needed",
     )
 
 

@@ -3,6 +3,7 @@
 import math
 
 from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.fits import Drawn, refuse_touching
 from lumitip_fab.derive.flex import held_by, stiff_mm
 from lumitip_fab.design import Box, Carrier, Holder
 from lumitip_fab.load import Input
@@ -27,11 +28,12 @@ def derive_holder(
     body_mm = body.round_mm if given_mm == "gripper" else given_mm
     if of is None or body_mm is None:
         return ()
-    wall, play = p.holder.wall_mm, p.holder.clearance_mm
+    drawn = Drawn(p.printer.fit_mm)
+    wall, play = p.holder.wall_mm, drawn.gap_mm(p.holder.clearance_mm)
     tray = Box(of.box.x_min_mm - play, of.box.x_max_mm + play, of.box.y_min_mm, of.box.y_max_mm)
     floor_z = -p.holder.standoff_mm
     radius = body_mm / 2 + play
-    width = of.hole_mm + 2 * BOSS_RIM_MM
+    width = drawn.hole_mm(of.hole_mm) + 2 * BOSS_RIM_MM
     spacing = p.holder.strap_spacing_mm / 2
     holder = Holder(
         name="holder",
@@ -44,12 +46,13 @@ def derive_holder(
         axis_z_mm=floor_z - wall - radius,
         body_mm=body_mm,
         body_from=body_from,
+        clearance_mm=p.holder.clearance_mm,
         cradle_mm=radius,
         wall_mm=wall,
         wrap_deg=p.holder.wrap_deg,
         holes=of.holes,
-        screw_mm=of.hole_mm + SCREW_PLAY_MM,
-        nut_mm=p.holder.nut_mm + NUT_PLAY_MM,
+        screw_mm=drawn.hole_mm(of.hole_mm + SCREW_PLAY_MM),
+        nut_mm=drawn.hole_mm(p.holder.nut_mm + NUT_PLAY_MM),
         boss_mm=(BOSS_LENGTH_MM, width, width + 2 * p.holder.standoff_mm),  # 45°, to print
         strap_deg=(p.holder.wrap_deg + _shoulder_deg(tray.x_max_mm + wall, radius + wall)) / 2,
         strap_y_mm=(-spacing, spacing),
@@ -67,17 +70,20 @@ def _shoulder_deg(x_mm: float, radius_mm: float) -> float:
 def _refuse(given: Input, of: Carrier, holder: Holder, faults: Faults) -> None:
     """Refuse a tray wider than its cradle, arms that break or do not hold, bosses under tails."""
     p, outer = given.parameters.holder, holder.cradle_mm + holder.wall_mm
-    if holder.outer.x_max_mm > outer:
+    beyond = holder.outer.x_max_mm - outer
+    if beyond > 0:
         told = f"{holder.body_mm:g} given"
         if p.body_mm == "gripper":
             told = f"'gripper' given, whose entry has {holder.body_mm:g} mm"
         faults.refuse(
             "holder.body_mm",
             f"{told}, the tray is {holder.outer.width_mm:.1f} mm wide: at least "
-            f"{2 * (holder.outer.x_max_mm - holder.wall_mm - p.clearance_mm):.1f} is needed",
+            f"{holder.body_mm + 2 * beyond:.1f} is needed",
         )
         return
-    grip = holder.body_mm / 2 - holder.cradle_mm * math.sin(math.radians(holder.wrap_deg))
+    refuse_touching(given, "holder.clearance_mm", p.clearance_mm, faults)
+    printed_mm = holder.cradle_mm - given.parameters.printer.fit_mm  # what is made of it
+    grip = holder.body_mm / 2 - printed_mm * math.sin(math.radians(holder.wrap_deg))
     faults.refuse_unless(
         grip >= LEAST_GRIP_MM,
         "holder.wrap_deg",

@@ -116,7 +116,8 @@ class Holder:
     """A printed tray for a carrier on a cradle that clips round the gripper's body.
 
     In the carrier's frame, z = 0 on the back of the board and out of its front: the body's axis
-    runs along y at `axis_z_mm`. It is printed standing on its end at the lowest y.
+    runs along y at `axis_z_mm`. It is printed standing on its end at the lowest y. Sizes are as
+    drawn: the printer's fit is in what board, body, screws and nuts go into.
 
     ```
        ┌┐              ┌┐   z = board's front
@@ -147,6 +148,8 @@ class Holder:
     """Diameter of the gripper's body."""
     body_from: str
     """Where that figure is from: `holder.body_mm`, or the gripper's entry and how sure that is."""
+    clearance_mm: float
+    """Wanted from the cradle to that body, and from the tray to the board, on each side."""
     cradle_mm: float
     """Radius of the cradle."""
     wall_mm: float

@@ -1,7 +1,7 @@
 """The printed flange between a robot's coupling and its gripper, round the board in it.
 
 Frame of the flange: origin on the axis, in the coupling's face; z towards the gripper, x to the
-locating pin. Every length is in mm.
+locating pin. Every length is in mm, and as drawn: the printer's fit is in what goes into something.
 
 ```
    ┌─┐                         ┌─┐   top_z: the gripper's face
@@ -34,6 +34,10 @@ class Flange:
     """The coupling's robot's side by ISO 9409-1, such as `50-4-M6`."""
     face_mm: float
     """Diameter of both parts."""
+    centring_mm: float
+    """Diameter of the coupling's recess, and of what the gripper has to stand in it."""
+    clearance_mm: float
+    """Wanted from the printed parts to coupling, gripper and board, on each side."""
     spigot_mm: float
     """Diameter of the lower part in the coupling's recess."""
     seat_z_mm: float

@@ -77,7 +77,7 @@ class Printing:
     density_g_ml: float
     min_wall_mm: float
     fit_mm: float
-    """Added to every gap of backing and coupling, on each side."""
+    """Added to every gap round board, metal and gripper, on each side."""
     line_mm: float
     layer_mm: float
     bed_mm: tuple[float, float, float]

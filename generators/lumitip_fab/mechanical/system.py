@@ -91,7 +91,7 @@ def _robot_side(
     """The robot's tool flange, the coupling, and the printed flange round its board."""
     robot = disc(system.robot_mm, -ROBOT_MM, 0.0)
     yield Group("robot", np.eye(4), (Body("robot.flange", robot, COLOURS["robot"]),))
-    coupling = socket(flange.face_mm, flange.recess_mm, system.coupling_mm, -flange.seat_z_mm)
+    coupling = socket(flange.face_mm, flange.centring_mm, system.coupling_mm, -flange.seat_z_mm)
     yield Group("coupling", np.eye(4), (Body("coupling.body", coupling, COLOURS["coupling"]),))
     to_tool, beds = flange_to_tool(system), flange_beds(flange)
     parts = {
