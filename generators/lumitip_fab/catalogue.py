@@ -16,6 +16,7 @@ from lumitip_fab.entry import Entry, Length, Name, Share, Strict
 from lumitip_fab.fab_entry import Fab
 from lumitip_fab.filament_entry import Filament
 from lumitip_fab.gripper_entry import Gripper
+from lumitip_fab.laminate_entry import Laminates
 from lumitip_fab.price_entry import Prices
 
 
@@ -258,4 +259,5 @@ class Catalogue(Strict):
     printers: Mapping[Name, Printer]
     filaments: Mapping[Name, Filament]
     fabs: Mapping[Name, Fab]
+    laminates: Laminates
     prices: Prices

@@ -27,8 +27,9 @@ def built_rows(out: Path, design: Design) -> tuple[Row, ...]:
     densities = design.densities
     why = (
         f"volumes of the solids, with {densities.backing_g_ml:g} g/mL for the backing, "
-        f"{densities.board_g_ml:g} for the board and its parts, {densities.silicone_g_ml:g} for "
-        f"the silicone and {densities.film_g_ml:g} for the film; screws and wires are not in it"
+        f"{densities.board_g_ml:.2f} for the board with its copper, {densities.part_g_ml:g} for "
+        f"its parts, {densities.silicone_g_ml:g} for the silicone and {densities.film_g_ml:g} for "
+        "the film; screws and wires are not in it"
     )
     rows = [
         Row(f"mass of the {finger.name} finger", "not stated", f"{link.mass_g:.1f} g", why)
@@ -55,7 +56,7 @@ def _outside(out: Path, design: Design) -> Iterator[Row]:
         box = carriers[name].box
         board_ml = box.width_mm * box.length_mm * design.stack.carrier_mm / 1000
         printed = [(_volume_ml(out / file), design.slicing.of(file)) for file in files]
-        grams = board_ml * design.densities.board_g_ml
+        grams = board_ml * design.densities.carrier_g_ml
         grams += sum(volume * filament.density_g_ml for volume, filament in printed)
         yield Row(what, "not stated", f"{grams:.1f} g",
                   f"printed solid from {printed[0][1].name}, with its bare board; parts, screws "

@@ -7,8 +7,10 @@ from pathlib import Path
 import pytest
 
 from lumitip_fab.cli import main
+from lumitip_fab.derive import derive
 from lumitip_fab.encoding import read_design
 from lumitip_fab.errors import OutputError
+from lumitip_fab.load import Input
 from lumitip_fab.spec_built import built_rows
 
 
@@ -35,11 +37,21 @@ def test_flange_and_holder_weigh_what_their_filament_and_boards_do(outputs: Path
             for row in csv.DictReader(file)
             if row["group"] == "prints"
         }
-    areas = {"flange": 30.8 * 54.0, "holder": 45.72 * 33.02}  # area, of 1.6 mm FR-4
+    areas = {"flange": 30.8 * 54.0, "holder": 45.72 * 33.02}
+    g_mm2 = 1.6 * 1.85e-3 + 0.7 * 2 * 0.035 * (8.96 - 1.85) * 1e-3  # FR-4, 70 % under copper
     for name, area_mm2 in areas.items():
         solid = sum(grams for item, grams in printed.items() if item.startswith(f"{name}/"))
         told = float(rows[f"mass of the {name}"].removesuffix(" g"))
-        assert told == pytest.approx(solid + area_mm2 * 1.6 * 1.85e-3, abs=0.2)
+        assert told == pytest.approx(solid + area_mm2 * g_mm2, abs=0.2)
+
+
+def test_boards_weigh_by_their_laminate_and_copper(inputs: dict[str, Input]) -> None:
+    """g/mL of 1.6 mm FR-4 under 35 µm, and of 0.2 mm polyimide under 18 µm on 70 % of each side."""
+    rigid, flex = (derive(inputs[name]).densities for name in ("published", "flex"))
+    fr4 = 1.85 + 0.7 * 0.07 / 1.6 * (8.96 - 1.85)
+    polyimide = 1.42 + 0.7 * 0.036 / 0.2 * (8.96 - 1.42)
+    assert (rigid.board_g_ml, rigid.carrier_g_ml) == pytest.approx((fr4, fr4), abs=1e-6)
+    assert (flex.board_g_ml, flex.carrier_g_ml) == pytest.approx((polyimide, fr4), abs=1e-6)
 
 
 @pytest.mark.slow

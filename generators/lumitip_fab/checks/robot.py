@@ -119,7 +119,7 @@ def _pieces(link: Link, finger: Finger, design: Design) -> Iterator[tuple[float,
         yield mesh.volume * getattr(densities, f"{kind}_g_ml") / 1000, mesh.center_mass
     for part in finger.parts:
         front = part.side == "front"
-        density = densities.board_g_ml - front * densities.silicone_g_ml
+        density = densities.part_g_ml - front * densities.silicone_g_ml
         volume = part.size_x_mm * part.size_y_mm * part.height_mm
         stack = design.stack
         z_mm = (

@@ -7,7 +7,6 @@ from lumitip_fab.derive.flex import is_flex
 from lumitip_fab.design import Box, Flexible
 from lumitip_fab.load import Input
 
-COPPER_MM = 0.018  # half an ounce
 COVERLAY_MM = 0.0275  # 12.5 um of polyimide on 15 um of adhesive
 STIFFENER_MM = 0.2
 STIFFENER_GAP_MM = 0.3  # to the sides of the wire notch
@@ -17,12 +16,12 @@ OVER_PADS_MM = 0.1
 def flexible_board(given: Input, box: Box, notch: Box, connector_y_mm: float) -> Flexible | None:
     """What a flexible board is made of; none of a stiff one.
 
-    Thicknesses of copper and coverlay are common ones of board houses (assumed: each has its own);
-    the core is what remains. The board bends beyond the rigid interface. The stiffener is behind
+    The coverlay is as thick as common ones of board houses (assumed: each has its own); the core is
+    what remains. The board bends beyond the rigid interface. The stiffener is behind
     the wires' pads, where the plate is open, so that it does not lift the board; it ends before
     the test points.
     """
-    p = given.parameters
+    p, copper_mm = given.parameters, given.catalogue.laminates.flexible.copper_mm
     if not is_flex(p):
         return None
     held_to = min(notch.y_min_mm + p.flex.interface_mm, box.y_max_mm)
@@ -32,7 +31,7 @@ def flexible_board(given: Input, box: Box, notch: Box, connector_y_mm: float) ->
         bend=replace(box, y_min_mm=held_to),
         stiffener=Box(-x, x, box.y_min_mm, top),
         stiffener_mm=STIFFENER_MM,
-        core_mm=p.stack.pcb_mm - 2 * (COPPER_MM + COVERLAY_MM),
-        copper_mm=COPPER_MM,
+        core_mm=p.stack.pcb_mm - 2 * (copper_mm + COVERLAY_MM),
+        copper_mm=copper_mm,
         coverlay_mm=COVERLAY_MM,
     )

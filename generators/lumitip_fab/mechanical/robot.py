@@ -102,14 +102,14 @@ def _hull(points_mm: NDArray[np.float64]) -> Mesh:
 def _weight(
     finger: Finger, layers: dict[str, Solid], stack: Stack, densities: Densities
 ) -> urdf.Weight:
-    """Everything of a finger, each with its density; parts weigh like the board."""
+    """Everything of a finger, each with its density."""
     whole = GProp_GProps()
     for kind, layer in layers.items():
         _add(whole, layer, getattr(densities, f"{kind}_g_ml"))
     for part in finger.parts:
         # The silicone is whole: where a part stands in it, there is the part instead.
         buried = densities.silicone_g_ml if part.side == "front" else 0.0
-        _add(whole, part_solid(part, stack), densities.board_g_ml - buried)
+        _add(whole, part_solid(part, stack), densities.part_g_ml - buried)
     inertia = whole.MatrixOfInertia()
     centre = whole.CentreOfMass()
     return urdf.Weight(
