@@ -37,7 +37,7 @@ class Step:
 _CAD = (
     "build123d", "cadquery-ocp", "cadquery-ocp-novtk", "lib3mf", "numpy", "shapely", "trimesh",
 )  # fmt: skip
-_INK = ("reportlab", "ezdxf", "numpy", "shapely")
+_INK = ("matplotlib", "reportlab", "ezdxf", "numpy", "shapely")
 _COPPER = (
     "gerbonara", "kicad-skip", "matplotlib", "networkx", "numba", "numpy", "scipy", "sexpdata",
     "shapely",
@@ -52,7 +52,7 @@ _SHOWN = (
     "assembly/*.svg", "bom.csv", "boards/*/*_front.png", "boards/*/*_back.png",
     "mask/*_mask.svg", "mask/*_wrapping.md", "mould/*_casting.md", "print/printing.md", "wiring/*",
 )  # fmt: skip
-_SET = ("lxml", "markdown-it-py", "pillow", "reportlab", "svglib")
+_SET = ("lxml", "markdown-it-py", "matplotlib", "pillow", "reportlab", "svglib")
 STEPS = (
     Step("mask", "files", "mask_files", False, _INK),
     Step("printing", "settings", "print_settings", False, ()),

@@ -12,7 +12,8 @@ from lumitip_fab.locate import firmware_sources
 
 PACKAGE = Path(__file__).parent
 # What design and layout are made of; a change in one of them may change every file.
-SHARED = ("artefact.py", "design", "encoding.py", "errors.py", "frames.py", "graph.py", "derive")
+SHARED = ("artefact.py", "design", "encoding.py", "errors.py", "frames.py", "graph.py", "derive",
+          "typeface.py")  # fmt: skip
 LAYOUT = ("errors.py", "grid.py", "layout.py")
 
 

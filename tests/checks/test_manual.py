@@ -101,9 +101,17 @@ def test_a_page_that_is_lost_is_seen(copied: Path) -> None:
     assert failing(copied) == {"pdf"}
 
 
+def test_a_font_that_is_left_out_is_seen(copied: Path) -> None:
+    with pikepdf.open(copied / PDF, allow_overwriting_input=True) as document:
+        font = next(iter(document.pages[0].resources.Font.values()))
+        del font["/FontDescriptor"]["/FontFile2"]
+        document.save(copied / PDF)
+    assert failing(copied) == {"fonts"}
+
+
 def test_lost_files_are_told(copied: Path) -> None:
     (copied / PDF).unlink()
-    assert failing(copied) == {"pdf"}
+    assert failing(copied) == {"pdf", "fonts"}
     (copied / HTML).write_bytes(b"\xff\xfe")
     assert failing(copied) == {"readable"}
 

@@ -13,7 +13,7 @@ from damages import cut_short, failing, passing
 from pages import Operation, page_damage, paths, registration, runs
 
 A4, LETTER = "mask/emitter_mask_a4.pdf", "mask/emitter_mask_letter.pdf"
-PAGE = {"page", "marks", "scale_x", "scale_y", "ruler", "mirrored"}
+PAGE = {"page", "marks", "scale_x", "scale_y", "ruler", "mirrored", "fonts"}
 BLACK = {"count", "position", "size", "shape", "web", "outline", "window", "clear"}
 FLAPS = {"flaps", "folds", "reach", "bands", "numbers"}
 DRAWN = {"svg", "dxf"}  # both are compared with the A4 page
@@ -205,6 +205,18 @@ def fingers_swapped(out: Path) -> None:
     shutil.copy(out / A4.replace("emitter", "receiver"), out / A4)
 
 
+def font_left_out(file: str) -> Callable[[Path], None]:
+    """The page names a font and does not bring it, as of a file that was made smaller."""
+
+    def change(out: Path) -> None:
+        with pikepdf.open(out / file, allow_overwriting_input=True) as pdf:
+            font = next(iter(pdf.pages[0].resources.Font.values()))
+            del font["/FontDescriptor"]
+            pdf.save(out / file)
+
+    return change
+
+
 SIXTH_OF_A_TURN = 3**0.5 / 2 + 0.5j  # half of one: 30°
 
 DAMAGES: dict[str, tuple[Callable[[Path], None], set[str]]] = {
@@ -257,6 +269,7 @@ DAMAGES: dict[str, tuple[Callable[[Path], None], set[str]]] = {
     "letter is A4": (papers_swapped, {"page"}),
     "other finger's": (fingers_swapped, {"window", "note", *DRAWN}),
     "page truncated": (truncated(A4), {*PAGE, *BLACK, *FLAPS, "note", "facing", *DRAWN}),
+    "font left out": (font_left_out(LETTER), {"fonts"}),
     "page missing": (lambda out: (out / LETTER).unlink(), {*PAGE, *BLACK, *FLAPS, "facing"}),
 }
 

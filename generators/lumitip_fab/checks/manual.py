@@ -2,10 +2,10 @@
 
 import csv
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
-from lumitip_fab.checks.manual_read import Chapter, Manual, pdf_words, read_html
+from lumitip_fab.checks.manual_read import Chapter, Manual, read_html, read_pdf
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.design import Design
 from lumitip_fab.errors import OutputError
@@ -23,7 +23,6 @@ _WIRE = re.compile(
     r"^\| (W\d+\.\d+) \| (.*?) \| (.*?) \| (.*?) \| (.*?) \| (.*?) \|$", re.MULTILINE
 )
 _FILE = re.compile(r"[\w*]+(?:/[\w*]+)+\.\w+")
-_PLAIN = str.maketrans({"−": "-", "≥": ">=", "≤": "<=", "→": "->"})  # as the PDF's letters have it
 
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
@@ -44,7 +43,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
         ("parts", _billed(outputs)),
     ):
         yield _count(check, _HTML, _differing(manual, wanted), "wrong rows")
-    yield _pdf(outputs, manual)
+    yield from _pdf(outputs, manual)
 
 
 def _wrong_drawings(outputs: Path, manual: Manual, design: Design) -> list[str]:
@@ -142,18 +141,17 @@ def _differing(manual: Manual, wanted: list[tuple[str, ...]]) -> list[str]:
     return wrong or ["another order, or more of them"]
 
 
-def _pdf(outputs: Path, manual: Manual) -> Measurement:
-    """Words of the HTML that are not in the PDF."""
+def _pdf(outputs: Path, manual: Manual) -> Iterator[Measurement]:
+    """Words of the HTML that are not in the PDF, and fonts that it does not bring."""
     try:
-        told = pdf_words(outputs / _PDF)
+        told, without = read_pdf(outputs / _PDF)
     except OutputError as error:
-        return unreadable("manual.pdf", _PDF, str(error))
-    wrong = [text for text in _plain(manual.blocks) if text not in told]
-    return _count("pdf", _PDF, wrong, "lost paragraphs of the HTML")
-
-
-def _plain(texts: Iterable[str]) -> Iterator[str]:
-    return (re.sub(r"\s", "", text.translate(_PLAIN)) for text in texts)
+        yield unreadable("manual.pdf", _PDF, str(error))
+        yield unreadable("manual.fonts", _PDF, str(error))
+        return
+    wrong = [text for text in manual.blocks if re.sub(r"\s", "", text) not in told]
+    yield _count("pdf", _PDF, wrong, "lost paragraphs of the HTML")
+    yield _count("fonts", _PDF, without, "fonts that are not embedded")
 
 
 def _count(check: str, subject: str, wrong: list[str], unit: str) -> Measurement:

@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pikepdf
 
+from lumitip_fab.checks.mask_page import MALFORMED
+from lumitip_fab.checks.pdf_faces import faces_of, lacking
 from lumitip_fab.errors import OutputError
 
 _FOOT = 2  # texts at the foot of each page, drawn first
@@ -90,22 +92,25 @@ def read_html(path: Path) -> Manual:
     return manual
 
 
-def pdf_words(path: Path) -> str:
-    """All that is written on the pages of a PDF whose text is in Latin letters, without spaces.
+def read_pdf(path: Path) -> tuple[str, list[str]]:
+    """All that is written on the pages of a PDF, without spaces, and the fonts that it lacks.
 
     Raises:
         OutputError: if it is missing or cannot be read.
     """
-    told = []
+    told, without = list[str](), set[str]()
     try:
         with pikepdf.open(path) as document:
             for page in document.pages:
-                drawn = [
-                    bytes(operands[0]).decode("cp1252")
-                    for operands, operator in pikepdf.parse_content_stream(page)
-                    if str(operator) == "Tj"
-                ]
+                faces = faces_of(page)
+                without |= set(lacking(faces))
+                drawn, face = list[str](), ""
+                for operands, operator in pikepdf.parse_content_stream(page):
+                    if str(operator) == "Tf":
+                        face = str(operands[0])
+                    elif str(operator) == "Tj":
+                        drawn.append(faces[face].text(bytes(operands[0])))
                 told += drawn[_FOOT:]
-    except (OSError, ValueError, pikepdf.PdfError, LookupError, TypeError) as error:
+    except (OSError, *MALFORMED, pikepdf.PdfError) as error:
         raise OutputError(f"{path}: cannot be read as a PDF: {error!r:.120}") from error
-    return re.sub(r"\s", "", "".join(told))
+    return re.sub(r"\s", "", "".join(told)), sorted(without)

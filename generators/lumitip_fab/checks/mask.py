@@ -27,7 +27,7 @@ from lumitip_fab.design import Design, Finger
 READS = ("mask/*.pdf", "mask/*.svg", "mask/*.dxf", "mask/*_wrapping.md")
 
 PAPERS_MM = {"a4": (210.0, 297.0), "letter": (215.9, 279.4)}
-_PAGE = ("page", "marks", "scale_x", "scale_y", "ruler", "mirrored")
+_PAGE = ("page", "marks", "scale_x", "scale_y", "ruler", "mirrored", "fonts")
 _BLACK = ("count", "position", "size", "shape", "web", "outline", "window", "clear")
 _FLAPS = ("flaps", "folds", "reach")
 _BANDS = ("bands", "numbers")

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 import pikepdf
 from numpy.typing import NDArray
-from reportlab.pdfbase.pdfmetrics import stringWidth
+
+from lumitip_fab.checks.pdf_faces import Face, faces_of, lacking
 
 Points = NDArray[np.float64]
 
@@ -68,6 +69,8 @@ class Page:
     """Corners of the boxes of all texts."""
     words: tuple[str, ...]
     """What they say."""
+    lacking: tuple[str, ...]
+    """Fonts that it does not bring."""
 
     @property
     def extent(self) -> tuple[float, float, float, float]:
@@ -92,7 +95,8 @@ def read_page(path: Path) -> Page:
                 raise PageError(f"{len(pdf.pages)} pages, one is needed")
             page = pdf.pages[0]
             left, low, right, high = (float(v) * MM for v in page.mediabox)
-            reader = _Reader(np.array([[MM, 0, -left], [0, MM, -low], [0, 0, 1]]), _fonts(page))
+            faces = faces_of(page)
+            reader = _Reader(np.array([[MM, 0, -left], [0, MM, -low], [0, 0, 1]]), faces)
             for instruction in pikepdf.parse_content_stream(page):
                 reader.take(str(instruction.operator), instruction.operands)
     except FileNotFoundError as error:
@@ -102,12 +106,8 @@ def read_page(path: Path) -> Page:
     if not reader.painted:
         raise PageError("nothing is painted on it")
     texts = np.array(reader.texts).reshape(-1, 2)
-    return Page((right - left, high - low), tuple(reader.painted), texts, tuple(reader.words))
-
-
-def _fonts(page: pikepdf.Page) -> dict[str, str]:
-    fonts: Any = page.resources.get("/Font", {})
-    return {str(name): str(fonts[name].BaseFont)[1:] for name in fonts.keys()}  # noqa: SIM118
+    words, without = tuple(reader.words), tuple(lacking(faces))
+    return Page((right - left, high - low), tuple(reader.painted), texts, words, without)
 
 
 @dataclass
@@ -115,9 +115,10 @@ class _Reader:
     """Follows the operators, with the graphics state that matters."""
 
     matrix: Points
-    fonts: dict[str, str]
+    faces: dict[str, Face]
     black: bool = True
     font: tuple[str, float] = ("", 0.0)
+    """Name and size."""
     text_matrix: Points = field(default_factory=lambda: _IDENTITY)
     saved: list[tuple[Points, bool]] = field(default_factory=list)
     runs: list[list[Any]] = field(default_factory=list)
@@ -185,11 +186,12 @@ class _Reader:
         elif operator == "Tm":
             self.text_matrix = _matrix(operands)
         elif operator == "Tf":
-            self.font = self.fonts[str(operands[0])], float(operands[1])
+            self.font = str(operands[0]), float(operands[1])
         elif operator == "Tj":
             name, size = self.font
-            self.words.append(bytes(operands[0]).decode("cp1252"))
-            width = stringWidth(self.words[-1], name, size)
+            codes, face = bytes(operands[0]), self.faces[name]
+            self.words.append(face.text(codes))
+            width = face.width_em(codes) * size
             matrix = self.matrix @ self.text_matrix
             box = np.array([(0, 0), (width, 0), (width, size), (0, size)])
             self.texts.append(box @ matrix[:2, :2].T + matrix[:2, 2])

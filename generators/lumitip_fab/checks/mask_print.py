@@ -30,7 +30,7 @@ _F_CORNERS = 10
 def measure_page(
     subject: str, page: Page, placed: Placed, paper_mm: tuple[float, float], mask: Mask
 ) -> Iterator[Measurement]:
-    """Paper, margins, registration, scale, rulers and the letter F."""
+    """Paper, margins, registration, scale, rulers, the letter F and fonts."""
     for side, got, wanted in zip(("width", "height"), page.size_mm, paper_mm, strict=True):
         yield Measurement("mask.page", f"{subject} {side}", got, wanted - PAPER_MM,
                           wanted + PAPER_MM, "mm")  # fmt: skip
@@ -46,6 +46,8 @@ def measure_page(
                           wanted * (1 + SCALE), "", f"a ruler measured {reading:g}")  # fmt: skip
     yield from _rulers(subject, page, placed)
     yield from _letter(subject, page, placed, mask.mark)
+    yield Measurement("mask.fonts", subject, len(page.lacking), 0, 0, "fonts",
+                      ", ".join(page.lacking) or "that are not embedded")  # fmt: skip
 
 
 def measure_black(

@@ -7,6 +7,7 @@ from html import escape
 import PIL.Image
 from markdown_it.token import Token
 from reportlab import rl_config
+from reportlab.graphics.shapes import Group, String
 from reportlab.lib import colors
 from reportlab.lib.enums import TA_RIGHT
 from reportlab.lib.pagesizes import A4
@@ -29,6 +30,7 @@ from svglib.svglib import svg2rlg
 
 from lumitip_fab.made import Made
 from lumitip_fab.manual.page import markdown
+from lumitip_fab.typeface import BOLD, CODE, OF_HELVETICA, PLAIN, load_typeface
 
 rl_config.useA85 = 0  # streams as text take most of the time, and a quarter more room
 
@@ -39,28 +41,32 @@ _GAP = 6 * mm  # between pictures beside each other
 _PAIR_HIGH = 85 * mm
 _DPI = 200
 _LEAST_LEFT = 110 * mm  # of a page, for a chapter to begin on it
-_BODY = ParagraphStyle("body", fontName="Helvetica", fontSize=9.5, leading=13, spaceAfter=5)
+_BODY = ParagraphStyle("body", fontName=PLAIN, fontSize=8.4, leading=12.5, spaceAfter=5,
+                       bulletFontName=PLAIN, bulletFontSize=8.4)  # fmt: skip
 _ITEM = ParagraphStyle("item", _BODY, leftIndent=16, spaceAfter=3)
-_CELL = ParagraphStyle("cell", _BODY, fontSize=8, leading=10, spaceAfter=0)
+_CELL = ParagraphStyle("cell", _BODY, fontSize=7.1, leading=10, spaceAfter=0)
 _FIGURE = ParagraphStyle("figure", _CELL, alignment=TA_RIGHT)
 _GREY = colors.HexColor("#5a6b7a")
-_SMALL = ParagraphStyle("small", _BODY, fontSize=8, alignment=1, textColor=_GREY)
+_SMALL = ParagraphStyle("small", _BODY, fontSize=7.1, alignment=1, textColor=_GREY)
 _HEADS = {
-    level: ParagraphStyle(f"h{level}", _BODY, fontName="Helvetica-Bold", fontSize=size,
+    level: ParagraphStyle(f"h{level}", _BODY, fontName=BOLD, fontSize=size,
                           leading=size * 1.25, spaceBefore=before, spaceAfter=6, keepWithNext=1)
-    for level, (size, before) in {1: (20, 0), 2: (15, 14), 3: (12, 10), 4: (10.5, 8)}.items()
+    for level, (size, before) in {1: (17, 0), 2: (13, 14), 3: (10.5, 10), 4: (9, 8)}.items()
 }  # fmt: skip
 _LINES = TableStyle([
     ("GRID", (0, 0), (-1, -1), 0.4, colors.HexColor("#cfd6dc")),
     ("BACKGROUND", (0, 0), (-1, 0), colors.HexColor("#f4f6f8")),
-    ("VALIGN", (0, 0), (-1, -1), "TOP"),
+    ("VALIGN", (0, 0), (-1, -1), "TOP"), ("FONTNAME", (0, 0), (-1, -1), PLAIN),
     ("TOPPADDING", (0, 0), (-1, -1), 2), ("BOTTOMPADDING", (0, 0), (-1, -1), 2),
 ])  # fmt: skip
-_LETTER, _PADDING = 4.2, 18.0  # width of a letter of a cell's text, and what is left beside it
+_LETTER, _PADDING = 4.6, 18.0  # width of a letter of a cell's text, and what is left beside it
 _BESIDE = TableStyle(
-    [("ALIGN", (0, 0), (-1, -1), "CENTER"), ("VALIGN", (0, 0), (-1, -1), "BOTTOM")]
+    [
+        ("ALIGN", (0, 0), (-1, -1), "CENTER"),
+        ("VALIGN", (0, 0), (-1, -1), "BOTTOM"),
+        ("FONTNAME", (0, 0), (-1, -1), PLAIN),
+    ]
 )
-_PLAIN = str.maketrans({"−": "-", "≥": ">=", "≤": "<=", "→": "->"})  # not in the fonts of every PDF
 
 
 def pdf_sheets(name: str, text: str, made: Made) -> bytes:
@@ -72,15 +78,17 @@ def pdf_sheets(name: str, text: str, made: Made) -> bytes:
         made: for the pictures.
     """
     buffer = io.BytesIO()
+    load_typeface()
     document = SimpleDocTemplate(
         buffer, pagesize=A4, leftMargin=_MARGIN, rightMargin=_MARGIN, topMargin=18 * mm,
         bottomMargin=18 * mm, title=name, author="lumitip-fab", creator="lumitip-fab", invariant=1,
+        initialFontName=PLAIN,
     )  # fmt: skip
 
     def foot(canvas: Canvas, _document: object) -> None:
-        canvas.setFont("Helvetica", 8)
+        canvas.setFont(PLAIN, 7.1)
         canvas.setFillGray(0.45)
-        canvas.drawString(_MARGIN, 10 * mm, name.translate(_PLAIN))
+        canvas.drawString(_MARGIN, 10 * mm, name)
         canvas.drawRightString(A4[0] - _MARGIN, 10 * mm, str(canvas.getPageNumber()))
 
     document.build(list(_flowables(markdown().parse(text), made)), onFirstPage=foot,
@@ -160,6 +168,8 @@ def _picture(path: str, made: Made, width: float, high: float) -> Flowable:
         drawing.scale(scale, scale)
         drawing.width, drawing.height = drawing.width * scale, drawing.height * scale
         drawing.hAlign = "CENTER"
+        drawing.initialFontName = PLAIN
+        _letter(drawing)
         return drawing
     seen = PIL.Image.open(io.BytesIO(made.read(path)))
     scale = min(width / seen.width, high / seen.height)
@@ -172,6 +182,16 @@ def _picture(path: str, made: Made, width: float, high: float) -> Flowable:
     paper.convert("RGB").save(plain, "ppm")
     plain.seek(0)
     return Image(plain, wide, high)
+
+
+def _letter(group: Group) -> None:
+    """Set a drawing's words in the faces of this document."""
+    for node in group.contents:
+        if isinstance(node, Group):
+            _letter(node)
+        elif isinstance(node, String):
+            node.fontName, share = OF_HELVETICA[node.fontName]
+            node.fontSize *= share
 
 
 def _table(rows: list[list[Paragraph]]) -> Flowable:
@@ -197,11 +217,11 @@ def _inline(token: Token) -> str:
             case "text":
                 told.append(escape(child.content))
             case "code_inline":
-                told.append(f'<font face="Courier">{escape(child.content)}</font>')
+                told.append(f'<font face="{CODE}">{escape(child.content)}</font>')
             case "softbreak" | "hardbreak":
                 told.append(" ")
             case "strong_open" | "em_open":
                 told.append("<b>" if child.tag == "strong" else "<i>")
             case "strong_close" | "em_close":
                 told.append("</b>" if child.tag == "strong" else "</i>")
-    return "".join(told).translate(_PLAIN)
+    return "".join(told)

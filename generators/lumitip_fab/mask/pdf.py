@@ -11,10 +11,11 @@ from lumitip_fab.design import Mask, Title
 from lumitip_fab.frames import Matrix, sensor_to_page, translation
 from lumitip_fab.mask.artwork import Artwork, Path
 from lumitip_fab.mask.paper import LINE_MM, PAPERS_MM, RULER_MM, arrange
+from lumitip_fab.typeface import BOLD, PLAIN, load_typeface
 
 HAIR_MM = 0.1
 GREY = 0.55  # of fold lines: visible on black, and light enough to tell from a cut
-TEXT_MM = 3.1
+TEXT_MM = 2.8
 NUMBER_MM = 1.8
 
 
@@ -30,7 +31,9 @@ def pdf_page(artwork: Artwork, mask: Mask, title: Title, paper: str) -> bytes:
     width, height = PAPERS_MM[paper]
     stretch = [100 / measured for measured in mask.measured_ruler_mm]
     buffer = io.BytesIO()
-    canvas = Canvas(buffer, pagesize=(width * mm, height * mm), invariant=1, pageCompression=0)
+    load_typeface()
+    canvas = Canvas(buffer, pagesize=(width * mm, height * mm), invariant=1, pageCompression=0,
+                    initialFontName=PLAIN)  # fmt: skip
     canvas.setTitle(f"{title.name} {title.revision}: {artwork.name.lower()} mask")
     canvas.setSubject("Print at 100 %, mirrored on purpose: the inside of the film")
     canvas.setAuthor("lumitip-fab")
@@ -67,9 +70,9 @@ def _artwork(canvas: Canvas, artwork: Artwork) -> None:
     bands = [Path(f.band[0], tuple((p,) for p in f.band[1:])) for f in artwork.flaps]
     _fill(canvas, tuple(bands), FILL_NON_ZERO)
     _fill(canvas, (artwork.mark,), FILL_NON_ZERO)
-    canvas.setFont("Helvetica-Bold", artwork.name_mm)
+    canvas.setFont(BOLD, artwork.name_mm)
     canvas.drawString(*artwork.name_at, artwork.name)
-    canvas.setFont("Helvetica", NUMBER_MM)
+    canvas.setFont(PLAIN, NUMBER_MM)
     for flap in artwork.flaps:
         x, y = flap.label
         canvas.drawCentredString(x, y - NUMBER_MM / 3, str(flap.number))
@@ -101,7 +104,7 @@ def _ruler(canvas: Canvas, start: tuple[float, float], upright: bool) -> None:
     canvas.setFillGray(0)
     canvas.setStrokeGray(0)
     canvas.setLineWidth(HAIR_MM)
-    canvas.setFont("Helvetica", 2.6)
+    canvas.setFont(PLAIN, 2.4)
     canvas.saveState()
     canvas.translate(*start)
     if upright:
@@ -123,11 +126,11 @@ def _texts(canvas: Canvas, artwork: Artwork, mask: Mask, title: Title, paper: st
     places = arrange(mask)
     across, up = mask.measured_ruler_mm
     name = "US Letter" if paper == "letter" else "A4"
-    canvas.setFont("Helvetica-Bold", 1.4 * TEXT_MM)
+    canvas.setFont(BOLD, 1.4 * TEXT_MM)
     x, y = places.heading
     heading = f"{title.name} {title.revision} – {artwork.name.lower()} mask"
     canvas.drawCentredString(x, y, heading)
-    canvas.setFont("Helvetica", TEXT_MM)
+    canvas.setFont(PLAIN, TEXT_MM)
     told = f"{name}, print at 100 % (actual size), on the inside of the film"
     canvas.drawCentredString(x, y - 1.2 * LINE_MM, told)
     notes = (
