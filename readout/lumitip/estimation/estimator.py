@@ -122,11 +122,12 @@ class PoseEstimator:
         name, found = self._found(frame, kind)
         shape = self._search.shape(name)
         free = drifting(shape, found, self._search.drifts)
+        uncertain = covariance(free)
         if name == "edge":
-            deviations = np.sqrt(np.abs(np.diag(covariance(free)))[:2])
+            deviations = np.sqrt(np.abs(np.diag(uncertain))[:2])
             if np.any(deviations > _BLURRED):
                 free = replace(free, pose=likely(shape, free, deviations))
-        estimate = report(shape, free, self._search.reach_mm)
+        estimate = report(shape, free, uncertain, self._search.reach_mm)
         self._remember(name, found, estimate)
         return estimate
 

@@ -117,20 +117,26 @@ class _Prior:
     """What is known of a pose beforehand."""
 
     known: Floats
-    strength: Floats
-    tied: float
-    """Strength of the tie of what is taken to the light beside it."""
+    normal: Floats
+    """What it adds to the normal equations, shape `(p, p)`."""
 
     @classmethod
     def of(cls, shape: Shape, size: int) -> "_Prior":
         means, deviations = shape.priors()
-        drifts = size - means.size - 2
-        # Light beside the object is that of the empty grasp but for drift; sheets take what they
-        # will.
-        known = np.concatenate([means, np.zeros(drifts), [1.0, 0.0]])
-        strength = np.concatenate([deviations, np.ones(drifts), [0.1, np.inf]]) ** -2.0
-        # Cables are opaque, sheets need not be.
-        return cls(known, strength, 400.0 if shape.kind == "cable" else 1.0)
+        # Light beside the object is that of the empty grasp but for drift.
+        strength = np.ones(size)
+        strength[: means.size] = deviations**-2.0
+        strength[-2:] = _LIGHT_SD**-2.0, 0.0
+        normal = np.diag(strength)
+        normal[-2:, -2:] += _TIED[shape.kind == "cable"]
+        known = np.zeros(size)
+        known[: means.size], known[-2:] = means, 1.0
+        return cls(known, normal)
+
+
+_LIGHT_SD = 0.1
+_TIE = np.array([[1.0, -1.0], [-1.0, 1.0]])  # of what is taken to the light beside it
+_TIED = _TIE, 400.0 * _TIE  # cables are opaque; sheets take what they will
 
 
 class _Point:
@@ -139,30 +145,22 @@ class _Point:
     __slots__ = ("cost", "model", "normal", "slope")
 
     def __init__(self, shape: Shape, pose: Floats, frame: Frame, prior: _Prior) -> None:
-        strength, tied = prior.strength, prior.tied
         share, slopes = shape.slopes(pose)
-        taken = pose[-1]
-        self.model = pose[-2] - taken * share
-        miss = (frame.light - self.model) * frame.scale
-        miss[frame.full & (miss < 0.0)] = 0.0
-        size = np.abs(miss)
-        weight = frame.huber / np.maximum(size, frame.huber)
-        weight[frame.full & (size == 0.0)] = 0.0  # would read the same a little off
-        by_pose = np.empty((pose.size, share.size))
-        np.multiply(slopes, -taken, out=by_pose[:-2])
-        by_pose[-2] = 1.0
-        np.negative(share, out=by_pose[-1])
-        by_pose *= frame.scale
-        weighted = by_pose * weight
-        away, opaque = prior.known - pose, pose[-2] - taken
-        self.normal = weighted @ by_pose.T
-        self.normal.flat[:: pose.size + 1] += strength
-        self.slope = weighted @ miss + strength * away
-        self.normal[-2:, -2:] += tied * _TIE
-        self.slope[-2] -= tied * opaque
-        self.slope[-1] += tied * opaque
-        loss = weight * size * (2.0 * size - weight * size)
-        self.cost = float(loss.sum() + strength @ away**2 + tied * opaque**2)
-
-
-_TIE = np.array([[1.0, -1.0], [-1.0, 1.0]])
+        size = pose.size
+        self.model = pose[-2] - pose[-1] * share
+        rows = np.empty((size + 1, share.size))  # by each entry of the pose, and the misses
+        np.multiply(slopes, -pose[-1], out=rows[: size - 2])
+        rows[size - 2] = 1.0
+        np.negative(share, out=rows[size - 1])
+        np.subtract(frame.light, self.model, out=rows[size])
+        rows *= frame.scale
+        miss = rows[size]
+        weight = frame.huber / np.maximum(np.abs(miss), frame.huber)
+        weight[frame.full & (miss <= 0.0)] = 0.0  # would read the same a little off
+        weighted = rows * weight
+        products = weighted[:size] @ rows.T
+        away = prior.known - pose
+        pull = prior.normal @ away
+        self.normal = products[:, :size] + prior.normal
+        self.slope = products[:, size] + pull
+        self.cost = float(weighted[size] @ (2.0 * miss - weighted[size]) + away @ pull)

@@ -25,12 +25,13 @@ class Lookup:
         """
         shares = table.shares
         cells, self._angles, self._distances = shares.shape
-        self._flat = _flat(shares)
-        self._drifts = np.empty((len(drifted), self._flat.size), np.float32)
-        for row, other in zip(self._drifts, drifted, strict=True):
-            np.subtract(_flat(_as_wide(other.shares, self._distances)), self._flat, out=row)
+        expected = _flat(shares)
+        self._tables = np.empty((1 + len(drifted), expected.size), np.float32)
+        self._tables[0] = expected
+        for row, other in zip(self._tables[1:], drifted, strict=True):
+            np.subtract(_flat(_as_wide(other.shares, self._distances)), expected, out=row)
         self._begin = np.arange(cells) * ((self._angles + 1) * self._distances)
-        self._corners = np.array([0, 1, self._distances, self._distances + 1])
+        self._corners = np.array([[0, 1], [self._distances, self._distances + 1]])
         self._middle = table.reach_mm / STEP_MM
         self._most = self._distances - 1.001
 
@@ -53,20 +54,18 @@ class Lookup:
         column = way.astype(np.int64)
         right = way - column
         at = self._begin + column + (first * self._distances)[..., None]
-        at = at + self._corners.reshape(4, *(1,) * at.ndim)
-        entries, by_drift = self._flat[at], np.empty((0, *left_mm.shape))
-        if drift.size:
-            more = self._drifts.take(at, axis=1)
-            if drift.any():
-                entries = entries + (drift @ more.reshape(drift.size, -1)).reshape(at.shape)
-            near = more[:, 0] + right * (more[:, 1] - more[:, 0])
-            by_drift = near + down * (more[:, 2] + right * (more[:, 3] - more[:, 2]) - near)
-        one, two, three, four = entries
-        upper, lower = two - one, four - three
-        near, far = one + right * upper, three + right * lower
-        share = near + down * (far - near)
-        slope = (upper + down * (lower - upper)) * (1.0 / STEP_MM)
-        return share, slope, (far - near) * (180.0 / np.pi / STEP_DEG), by_drift
+        at = at + self._corners.reshape(2, 2, *(1,) * at.ndim)
+        # By table, by direction, by distance; the drifts' tables are differences to the first.
+        entries = self._tables[: 1 + drift.size].take(at, axis=1)
+        if drift.any():
+            entries[0] += (drift @ entries[1:].reshape(drift.size, -1)).reshape(at.shape)
+        steps = entries[:, :, 1] - entries[:, :, 0]
+        rows = entries[:, :, 0] + right * steps
+        between = rows[:, 1] - rows[:, 0]
+        shares = rows[:, 0] + down * between
+        by_left, further = steps[0]
+        slope = (by_left + down * (further - by_left)) * (1.0 / STEP_MM)
+        return shares[0], slope, between[0] * (180.0 / np.pi / STEP_DEG), shares[1:]
 
     def shares(self, angle: Floats, left_mm: Floats, drift: Floats = _NONE) -> Floats:
         """The shares alone."""

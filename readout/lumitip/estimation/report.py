@@ -15,18 +15,19 @@ to 16 counts of structure that the optical model lacks."""
 _WEAK_MM, _WEAK_DEG = 1.0, 6.0
 
 
-def report(shape: Shape, found: Fit, reach_mm: float) -> Estimate:
+def report(shape: Shape, found: Fit, uncertain: Floats, reach_mm: float) -> Estimate:
     """The estimate of a fit.
 
     Args:
         shape: what was fitted.
         found: where the fit ended.
+        uncertain: its `covariance`.
         reach_mm: distance from the origin beyond which no cell sees a line (mm).
     """
     pose, corner = found.pose, shape.kind == "corner"
     (angle, offset_mm), by_pose, names = _line(pose, shape.names)
     offset_mm, angle_deg, turned = half_turn(offset_mm, math.degrees(angle))
-    spread = by_pose @ covariance(found) @ by_pose.T
+    spread = by_pose @ uncertain @ by_pose.T
     seen = dict(zip(names, np.sqrt(np.abs(np.diag(spread))), strict=True))
     weak = not (seen["offset_mm"] < _WEAK_MM and seen["angle_deg"] < _WEAK_DEG)
     if turned:
@@ -81,7 +82,8 @@ def _quality(found: Fit) -> float:
 
 
 def covariance(found: Fit) -> Floats:
-    """The inverse of the normal matrix, larger by what the misfit is larger than expected."""
+    """Of a pose: the inverse of the normal matrix, larger by what the misfit is larger than
+    expected."""
     spare = max(int(np.count_nonzero(found.frame.scale)) - found.pose.size, 1)
     # What no cell sees stays unknown, by a metre or a turn, and not by infinity.
     regular = found.normal + 1e-6 * np.eye(found.pose.size)

@@ -28,15 +28,15 @@ class Cells:
 
     def beside(self, angle: Floats, offset_mm: Floats) -> Floats:
         """Distance of the cells to the left of lines, shape `(..., cells)` (mm)."""
-        angle, offset_mm = np.asarray(angle)[..., None], np.asarray(offset_mm)[..., None]
-        left: Floats = self.y_mm * np.cos(angle) - self.x_mm * np.sin(angle) - offset_mm
-        return left
+        return self.about(angle, offset_mm)[0]
 
-    def ahead(self, angle: Floats) -> Floats:
-        """Distance of the cells along directions, shape `(..., cells)` (mm)."""
-        angle = np.asarray(angle)[..., None]
-        along: Floats = self.x_mm * np.cos(angle) + self.y_mm * np.sin(angle)
-        return along
+    def about(self, angle: Floats, offset_mm: Floats) -> tuple[Floats, Floats]:
+        """Distance of the cells to the left of lines, and along them from the point next to the
+        origin, each of shape `(..., cells)` (mm)."""
+        angle, offset_mm = np.asarray(angle)[..., None], np.asarray(offset_mm)[..., None]
+        cos, sin = np.cos(angle), np.sin(angle)
+        left = self.y_mm * cos - self.x_mm * sin - offset_mm
+        return left, self.x_mm * cos + self.y_mm * sin
 
 
 class Shape(Protocol):
@@ -75,9 +75,9 @@ class Edge:
     def slopes(self, pose: Floats) -> tuple[Floats, Floats]:
         """See `Shape`."""
         angle = pose[0]
-        left = self._cells.beside(angle, pose[1])
+        left, ahead = self._cells.about(angle, pose[1])
         share, by_left, by_angle, by_drift = self._table(angle, left, pose[2:-2])
-        turning = by_angle - by_left * self._cells.ahead(angle)
+        turning = by_angle - by_left * ahead
         return share, np.array([turning, -by_left, *by_drift])
 
     def priors(self) -> tuple[Floats, Floats]:
@@ -109,7 +109,7 @@ class Cable:
     def slopes(self, pose: Floats) -> tuple[Floats, Floats]:
         """See `Shape`."""
         angle = pose[0]
-        left = self._cells.beside(angle, pose[1])
+        left, ahead = self._cells.about(angle, pose[1])
         drift = pose[3:-2]
         share, by_left, by_angle, by_drift = self._table(angle, left, drift)
         half = np.array([pose[2], pose[2], self._diameter_mm, self._diameter_mm])[:, None] / 2.0
@@ -119,7 +119,6 @@ class Cable:
         )  # fmt: skip
         by_left, by_angle = by_left + more_by_left, by_angle + more_by_angle
         by_width = -0.5 * (strips[1][0] + strips[1][1])
-        ahead = self._cells.ahead(angle)
         turning = by_angle - by_left * ahead
         return share + more, np.array([turning, -by_left, by_width, *(by_drift + more_by_drift)])
 
