@@ -19,9 +19,8 @@ layout = published_layout()
 world = LiveTask(
     Task(layout, Settings("cable", latency=0)), "twin://trace-cable", 1, patience_s=0.5
 )
-estimator = PoseEstimator(layout, tracking=True)
+estimator = PoseEstimator(layout, tracking=True).prepare("cable")
 trace = Tracer(LineLaw(speed, gain_per_s=8.0, turn_per_s=10.0))
-estimator(world.first_values(), "cable")  # makes its tables before time runs
 with world.open() as tip, world.shown(tip, port):
     for frame in tip.frames(timeout=2.0):
         if frame is not tip.latest():

@@ -19,9 +19,8 @@ if len(sys.argv) <= 2:
 host, speed = sys.argv[1], float(sys.argv[2])
 layout = published_layout()
 world = LiveTask(Task(layout, Settings("cable", latency=0, lag_s=0.0)), "twin://trace-cable", 1)
-estimator = PoseEstimator(layout, tracking=True)
+estimator = PoseEstimator(layout, tracking=True).prepare("cable")
 trace = Tracer(LineLaw(speed, gain_per_s=4.0, turn_per_s=4.0))
-estimator(world.first_values(), "cable")  # makes its tables before anything moves
 mount = Mount(x=(1, 0, 0), y=(0, 0, 1), origin_mm=(0, 0, 20))  # the sensor in the tool frame
 limits = ArmLimits(speed_mm_s=1.5 * speed, travel_mm=600.0, stale_s=0.3, watchdog_hz=5.0)
 with URArm(host, mount, limits) as arm, world.open() as tip:  # or Fingertip.open("ble://Lumitip")

@@ -18,9 +18,8 @@ speed, port = float(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else Non
 layout = published_layout()
 task = Task(layout, Settings("cloth", corner=True, latency=0))
 world = LiveTask(task, "twin://trace-cloth", seed=1, patience_s=0.5)
-estimator = PoseEstimator(layout, tracking=True)
+estimator = PoseEstimator(layout, tracking=True).prepare()
 trace = Tracer(LineLaw(speed, gain_per_s=8.0, turn_per_s=10.0), corner_at_mm=0.0)
-estimator(world.first_values())  # makes its tables before time runs
 with world.open() as tip, world.shown(tip, port):
     for frame in tip.frames(timeout=2.0):
         if frame is not tip.latest():

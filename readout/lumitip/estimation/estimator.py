@@ -29,7 +29,7 @@ HUBER = 3.0
 """Standard deviations beyond which the loss grows linearly."""
 _HOPELESS = 2.5  # times what the best bank leaves of a frame: no fit makes up for more
 _BLURRED = np.array([np.radians(ANGLE_SD_DEG), OFFSET_SD_MM])
-_WORSE = 1.3  # times the misfit of the last search: then a tracker searches anew
+_WORSE = 1.3  # times the least misfit since the last search: then a tracker searches anew
 _SIMPLER = {"edge": 1.0, "cable": 1.1, "corner": 2.0}  # a corner fits an edge's frame as well
 
 
@@ -104,8 +104,8 @@ class PoseEstimator:
             ValuesError: if the shape is another.
             EstimationError: if there is no such kind.
         """
-        if kind is not None and kind not in KINDS:
-            raise EstimationError(f"kind: {kind!r} given, allowed are {', '.join(KINDS)} and None")
+        if kind is not None:
+            _known(kind)
         given: Floats = np.asarray(values, dtype=np.float64)
         if given.shape != (len(self.layout),):
             raise ValuesError(
@@ -131,11 +131,28 @@ class PoseEstimator:
         self._remember(name, found, estimate)
         return estimate
 
+    def prepare(self, *kinds: str) -> "PoseEstimator":
+        """Make the tables of kinds now, else the first frame that needs them waits: of a cable for
+        about a second, and `None` may need them all. Returns the estimator.
+
+        Args:
+            kinds: `"edge"`, `"cable"`, `"corner"`; all of them if none is named.
+
+        Raises:
+            EstimationError: if there is no such kind.
+        """
+        for kind in kinds:
+            _known(kind)
+        for kind in kinds or KINDS:
+            self._search.prepare(kind)
+        return self
+
     def _remember(self, name: str, found: Fit, estimate: Estimate) -> None:
         """Begin the next frame here, unless this one went wrong."""
         fine = self._tracking and {"misfit", "ambiguous"}.issuperset(estimate.flags)
-        # The misfit stays that of the last search, which later frames are held against.
-        misfit = self._last[2] if self._last else estimate.rms_counts
+        # Later frames are held against the least misfit since the last search: a line that is
+        # straight again must not let the next one off for having been bent.
+        misfit = min(self._last[2] if self._last else math.inf, estimate.rms_counts)
         self._last = (name, found.pose, misfit) if fine else None
 
     def fitted(self, values: ArrayLike, kind: str, free: bool = False) -> Fit:
@@ -208,6 +225,11 @@ class PoseEstimator:
         loose = {name: search.loosely(name, found, frame) for name, found in fits.items()}
         name = min(fits, key=lambda n: _SIMPLER[n] * (loose[n].cost + 3.0 * fits[n].pose.size))
         return name, fits[name]
+
+
+def _known(kind: str) -> None:
+    if kind not in KINDS:
+        raise EstimationError(f"kind: {kind!r} given, allowed are {', '.join(KINDS)} and None")
 
 
 def _model(layout: Layout, optics: Optics | Model | None, gap_mm: float) -> Model:

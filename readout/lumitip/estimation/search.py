@@ -27,7 +27,6 @@ _LEAST_GAP_MM = 0.5
 _DOUBT = 1.3  # loss for each cell beyond which the fingertip is not as expected
 _STARTS = 8  # how many are then tried
 _GLANCE, _LOOK, _BEHIND = 2, 5, 20.0  # rounds of each and of the best; loss of the others
-_BETTER = 0.7  # share of the misfit that another place must leave
 _RIVAL, _ELSEWHERE = 6.0, 2.0  # loss by which poses are nearly alike; poses that are not
 
 
@@ -54,6 +53,10 @@ class Search:
         self._edge_table = self._lookup(Twin.edge_table)
         self._shapes: dict[str, Shape] = {}
         self._banks: dict[str, Bank] = {}
+
+    def prepare(self, kind: str) -> None:
+        """Build shape and bank of a kind, which else its first frame waits for."""
+        self._bank(kind)
 
     def start(self, kind: str, frame: Frame) -> tuple[Floats, float]:
         """The best pose of the bank of a kind, and the share of the frame that it leaves: see
@@ -105,12 +108,12 @@ class Search:
     def again(self, kind: str, followed: Fit, frame: Frame) -> Fit:
         """The best fit where one that followed the line got worse.
 
-        If the bank knows nothing much better the line is where it was followed to, and bends.
+        If the bank knows nothing better the line is where it was followed to, and bends.
         """
         found = self.plain(kind, self.start(kind, frame)[0], frame)
         if not doubtful(found):
             return found
-        if rms_counts(found) > _BETTER * rms_counts(followed):
+        if rms_counts(found) >= rms_counts(followed):
             return followed
         return self._loose(kind, frame, found)
 

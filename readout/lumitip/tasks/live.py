@@ -24,7 +24,6 @@ from lumitip.calibration import Calibration
 from lumitip.control import Command
 from lumitip.fingertip import Fingertip
 from lumitip.frame import Values
-from lumitip.grid import Floats
 from lumitip.hub import Hub
 from lumitip.layout import Layout
 from lumitip.links.base import Arrival, Deliver, LinkEvent, Report
@@ -62,7 +61,7 @@ class LiveTask(ThreadedLink):
         self.calibration = Calibration(self.device_id, task.layout.design_hash, empty)
         """The twin's empty grasp, which every pick of an object begins with."""
         self._task = task
-        self._first = self._task.reset(seed)
+        self._task.reset(seed)
         self._command = Command()
         self._patience_s = patience_s
         self._commanded = threading.Event()
@@ -72,10 +71,6 @@ class LiveTask(ThreadedLink):
         hub = Hub(self, any_design=False, on_event=None)
         hub.start(timeout_s=10.0)
         return Fingertip(hub, _BUFFER, calibrated=True)
-
-    def first_values(self) -> Floats:
-        """Calibrated values before anything moves, shape `(cells,)`: to make tables ready."""
-        return self._first
 
     def command(self, command: Command) -> None:
         """What holds until the next command. From any thread."""

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 
 from estimation_frames import Frames, misses
 from lumitip import Layout
-from lumitip.estimation import PoseEstimator
+from lumitip.estimation import Estimate, EstimationError, PoseEstimator
 from lumitip.twin import Cable, HalfPlane, Model, Twin
 
 
@@ -70,6 +70,42 @@ def test_a_tracker_follows_as_well_and_finds_its_way_back(twin: Twin) -> None:
         assert told.kind == "edge"
         assert told.offset_mm == pytest.approx(offset_mm, abs=0.35)
         assert told.angle_deg == pytest.approx(angle_deg, abs=1.5)
+
+
+@pytest.mark.parametrize("bending", [(-0.9, -3.0), (-1.0, -6.0)])
+def test_a_tracker_forgives_no_misfit_for_having_once_been_worse(
+    twin: Twin, bending: tuple[float, float]
+) -> None:
+    """A bent cable misfits a straight model; when it was straight since, the next one that does
+    is searched anew and not kept where it was."""
+    tracker = PoseEstimator(twin.layout, tracking=True)
+
+    def told(offset_mm: float, angle_deg: float, radius_mm: float) -> Estimate:
+        cable = Cable(offset_mm=offset_mm, angle_deg=angle_deg, curvature_per_mm=1.0 / radius_mm)
+        return tracker(np.floor(twin.values(cable)), "cable")
+
+    assert told(4.0, 12.0, 45.0).rms_counts > 30.0
+    assert told(1.0, 8.0, 1e6).rms_counts < 5.0
+    last = told(*bending, -75.0)
+    assert last.offset_mm == pytest.approx(bending[0], abs=0.6)
+    assert last.angle_deg == pytest.approx(bending[1], abs=7.0)
+
+
+def test_a_kind_that_was_prepared_waits_for_no_table(
+    twin: Twin, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ready = PoseEstimator(twin.layout).prepare("cable")
+
+    def forbidden(*_: object) -> None:
+        raise AssertionError("a table is made while frames come")
+
+    monkeypatch.setattr(Twin, "cable_table", forbidden)
+    values = twin.values(Cable(offset_mm=1.0))
+    assert ready(values, "cable").offset_mm == pytest.approx(1.0, abs=0.1)
+    with pytest.raises(AssertionError, match="while frames come"):
+        PoseEstimator(twin.layout)(values, "cable")
+    with pytest.raises(EstimationError, match="'disc' given, allowed are edge, cable, corner"):
+        ready.prepare("edge", "disc")
 
 
 @pytest.mark.parametrize("kind", ["edge", "cable"])
