@@ -12,7 +12,7 @@ import numpy as np
 
 from lumitip.frame import Values
 from lumitip.layout import Layout
-from lumitip.swaps import LEAST_ORDER, Mask, enough_ways, order, swaps
+from lumitip.swaps import LEAST_ORDER, Mask, Pairs, enough_ways, order, swaps, ways_of
 
 Kind = Literal["dark", "saturated", "stuck", "noisy", "swapped", "astray"]
 
@@ -67,16 +67,17 @@ def examine(light: Values, layout: Layout) -> Report:
     findings = _single(light, noise)
     suspect = {cell for finding in findings for cell in finding.cells}
     moving = light.std(axis=0) > _MOVED
-    unseen = _unseen(moving, layout)
+    ways = ways_of(layout)
+    unseen = _unseen(moving, ways)
     if unseen is None:
         usable = moving & ~np.isin(np.arange(len(layout)), list(suspect))
-        findings += _misplaced(light, layout, usable)
+        findings += _misplaced(light, ways, usable)
     return Report(tuple(findings), noise, unseen)
 
 
-def _unseen(moving: Mask, layout: Layout) -> str | None:
-    if not enough_ways(layout):
-        return f"of {len(layout)} cells, too few lie alike for swapped ones to show"
+def _unseen(moving: Mask, ways: Pairs) -> str | None:
+    if not enough_ways(ways):
+        return f"of {len(ways)} cells, too few lie alike for swapped ones to show"
     share = float(moving.mean())
     if share < _MOVED_SHARE:
         return (
@@ -122,8 +123,8 @@ def _single(light: Values, noise: Values) -> list[Finding]:
     return findings
 
 
-def _misplaced(light: Values, layout: Layout, usable: Mask) -> list[Finding]:
-    ordered = order(light, layout, usable)
+def _misplaced(light: Values, ways: Pairs, usable: Mask) -> list[Finding]:
+    ordered = order(light, ways, usable)
     if ordered < LEAST_ORDER:
         told = (
             f"pairs that lie alike do not darken alike (order {ordered:.2f}, usual is "
@@ -141,5 +142,5 @@ def _misplaced(light: Values, layout: Layout, usable: Mask) -> list[Finding]:
                else "look again, longer, and move in all directions"),
             swap.sure,
         )
-        for swap in swaps(light, layout, usable)
+        for swap in swaps(light, ways, usable)
     ]  # fmt: skip

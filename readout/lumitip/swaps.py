@@ -28,6 +28,7 @@ _LEAST_PAIRS = 4  # that lie the same way, for their median to be worth somethin
 
 Mask = np.ndarray[tuple[int], np.dtype[np.bool_]]
 Pairs = np.ndarray[tuple[int, int], np.dtype[np.intp]]
+Cells = np.ndarray[tuple[int], np.dtype[np.intp]]
 PairMask = np.ndarray[tuple[int, int], np.dtype[np.bool_]]
 
 
@@ -42,15 +43,14 @@ class Swap:
     """Whether both halves of the recording say so, each by itself."""
 
 
-def swaps(light: Values, layout: Layout, usable: Mask) -> list[Swap]:
+def swaps(light: Values, ways: Pairs, usable: Mask) -> list[Swap]:
     """Cells that look swapped, the clearest first, at most eight pairs.
 
     Args:
         light: shape `(n, cells)`.
-        layout: the cells.
+        ways: number of the way that each pair lies, as of `ways_of`.
         usable: which cells to compare, shape `(cells,)`.
     """
-    ways = ways_of(layout)
     halves = [_alike(half) for half in (light[: len(light) // 2], light[len(light) // 2 :])]
     alike, free, found = _alike(light), usable.copy(), list[Swap]()
     for _ in range(_MOST):
@@ -59,7 +59,8 @@ def swaps(light: Values, layout: Layout, usable: Mask) -> list[Swap]:
         i, j = sorted(int(n) for n in np.unravel_index(int(gain.argmax()), gain.shape))
         if gain[i, j] < least:
             break
-        sure = all(own[i, j] >= most for own, most in (gains(h, ways, usable) for h in halves))
+        told = (gains(half, ways, usable, np.array([i, j])) for half in halves)
+        sure = all(own[0, 1] >= most for own, most in told)
         found.append(Swap((i, j), float(gain[i, j]), sure))
         free[[i, j]] = False
         for matrix in (alike, *halves):
@@ -68,44 +69,51 @@ def swaps(light: Values, layout: Layout, usable: Mask) -> list[Swap]:
     return found
 
 
-def order(light: Values, layout: Layout, usable: Mask) -> float:
+def order(light: Values, ways: Pairs, usable: Mask) -> float:
     """How far the cells lie as the layout says: the share of the variance of their correlations
     that the way from one to the other tells, 1 at most; about 0 for cells in no order.
 
     Arguments as of `swaps`.
     """
     alike = _alike(light)
-    usual, known = _usual(alike, ways_of(layout), _compared(usable))
+    usual, known = _usual(alike, ways, _compared(usable))
     values = alike[known]
     variance = float(values.var()) if values.size else 0.0
     return 1.0 - float(np.mean((values - usual[known]) ** 2)) / variance if variance else 0.0
 
 
-def gains(alike: Floats, ways: Pairs, usable: Mask) -> tuple[Floats, float]:
+def gains(
+    alike: Floats, ways: Pairs, usable: Mask, among: Cells | None = None
+) -> tuple[Floats, float]:
     """By how much swapping two cells would bring their correlations nearer to what is usual.
 
     Args:
         alike: correlations, shape `(cells, cells)`.
         ways: number of the way that each pair lies, as of `ways_of`.
         usable: which cells to compare.
+        among: the cells whose swaps are judged; all, if left out.
 
     Returns:
-        For each pair that is compared, shape `(cells, cells)`, -1 on the diagonal and for cells
-        that cannot be compared; and the gain from which on a swap is told.
+        For each pair of `among` that is compared, shape `(among, among)`, -1 on the diagonal and
+        for cells that cannot be compared; and the gain from which on a swap is told.
     """
     usual, known = _usual(alike, ways, _compared(usable))
-    weight = known.astype(np.float64)
-    spread = float(np.median(np.abs(alike - usual)[known])) if known.any() else 0.0
-    # astray[a, i]: how far cell a would be from what is usual at place i.
+    spread = float(np.median(np.abs(alike[known] - usual[known]))) if known.any() else 0.0
+    those = np.arange(len(alike)) if among is None else among
+    seen = alike if among is None else np.ascontiguousarray(alike[:, those])
+    # astray[a, i]: how far cell a would be from what is usual at place i. A pair's correlation is
+    # the same either way round, so that cells can be taken by rows, which lie together in memory.
     astray = np.stack(
-        [np.abs(alike[:, k] - usual[i, k]).sum(axis=1) for i, k in enumerate(known)], axis=1
+        [np.abs(seen[known[i]] - usual[i, known[i], None]).sum(axis=0) for i in those], axis=1
     )
+    alike, usual = alike[np.ix_(those, those)], usual[np.ix_(those, those)]
+    weight, others = known[np.ix_(those, those)].astype(np.float64), known[those].sum(axis=1)
     # The correlation of the two with each other is the same either way.
     own = np.diag(astray)[:, None] - weight * np.abs(alike - usual)
     other = astray.T - weight * np.abs(1.0 - usual)
-    pairs = weight.sum(axis=1)[:, None] + weight.sum(axis=1)[None, :] - 2.0 * weight
+    pairs = others[:, None] + others[None, :] - 2.0 * weight
     gain: Floats = np.where(pairs > 0, (own + own.T - other - other.T) / np.maximum(pairs, 1), -1.0)
-    gain[~usable] = gain[:, ~usable] = -1.0
+    gain[~usable[those]] = gain[:, ~usable[those]] = -1.0
     np.fill_diagonal(gain, -1.0)
     return gain, max(LEAST_GAIN, LEAST_TO_SPREAD * spread)
 
@@ -115,15 +123,16 @@ def ways_of(layout: Layout) -> Pairs:
     far apart to be compared, shape `(cells, cells)`."""
     # In hundredths of a mm, which tell ways apart and forgive rounded places.
     x, y = (np.rint(1e2 * (a[:, None] - a)).astype(np.int64) for a in (layout.x_mm, layout.y_mm))
-    whole = np.abs((x << 24) + y)
-    whole[np.hypot(x, y) > 1e2 * _REACH * layout.pitch_mm] = 0  # as a cell to itself
-    ways: Pairs = np.unique(whole, return_inverse=True)[1].reshape(whole.shape)
+    near = x * x + y * y <= (1e2 * _REACH * layout.pitch_mm) ** 2
+    np.fill_diagonal(near, False)
+    ways: Pairs = np.zeros(near.shape, np.intp)
+    ways[near] = 1 + np.unique(np.abs((x[near] << 24) + y[near]), return_inverse=True)[1]
     return ways
 
 
-def enough_ways(layout: Layout) -> bool:
-    """Whether enough pairs lie the same way for swaps to show."""
-    count = np.bincount(ways_of(layout)[np.triu_indices(len(layout), 1)], minlength=1)
+def enough_ways(ways: Pairs) -> bool:
+    """Whether enough pairs lie the same way for swaps to show, by the numbers of `ways_of`."""
+    count = np.bincount(np.triu(ways).ravel(), minlength=1)
     return bool((count[1:] >= _LEAST_PAIRS).any())
 
 
@@ -136,7 +145,7 @@ def _compared(usable: Mask) -> PairMask:
 def _usual(alike: Floats, ways: Pairs, compared: PairMask) -> tuple[Floats, PairMask]:
     """The median of the pairs that lie as each pair, and which pairs are compared with enough
     others."""
-    pair = np.triu(compared)
+    pair = np.triu(compared & (ways > 0))
     number, value = ways[pair], alike[pair]
     order = np.lexsort((value, number))
     number, value = number[order], value[order]
@@ -147,7 +156,7 @@ def _usual(alike: Floats, ways: Pairs, compared: PairMask) -> tuple[Floats, Pair
     low, high = (np.minimum(first + half, value.size - 1)
                  for half in (np.maximum(count - 1, 0) // 2, count // 2))  # fmt: skip
     median = (value[low] + value[high]) / 2.0
-    return median[ways], (count >= _LEAST_PAIRS)[ways] & (ways > 0) & compared
+    return median[ways], (count >= _LEAST_PAIRS)[ways] & compared
 
 
 def _alike(light: Values) -> Floats:

@@ -152,3 +152,12 @@ def test_the_gain_of_a_swap_is_what_swapping_gives(twin: Layout) -> None:
         assert got[i, j] == pytest.approx(gain)
         assert got[j, i] == pytest.approx(gain)
     assert (got[7] == -1.0).all() and (np.diag(got) == -1.0).all()
+
+
+def test_the_gain_of_some_cells_is_theirs_among_all(twin: Layout) -> None:
+    alike = np.corrcoef(np.random.default_rng(3).normal(size=(32, 60)))
+    ways, usable, some = ways_of(twin), np.arange(32) != 7, np.array([4, 7, 20, 9])
+    whole, least = gains(alike, ways, usable)
+    got, same = gains(alike, ways, usable, some)
+    assert got == pytest.approx(whole[np.ix_(some, some)])
+    assert same == least
