@@ -1,5 +1,6 @@
 """Settings for the slicer against the printer, the filaments and the parts in the folder."""
 
+import math
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -10,7 +11,13 @@ from lumitip_fab.design.slicing import Filament
 
 READS = ("print/*",)
 _NOTE = "print/printing.md"
+_LEAST_LAYER_MM = 0.01
 _ROUNDING_MM = 1e-4
+_WIDTHS = (
+    "extrusion_width", "first_layer_extrusion_width", "perimeter_extrusion_width",
+    "external_perimeter_extrusion_width", "infill_extrusion_width",
+    "solid_infill_extrusion_width", "top_infill_extrusion_width",
+)  # fmt: skip
 
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
@@ -27,7 +34,7 @@ def _mould_layers(outputs: Path, design: Design) -> Measurement:
     file = design.slicing.mould.file
     try:
         layer_mm = float(_read(outputs / file)["layer_height"])
-        if layer_mm <= 0:
+        if not _LEAST_LAYER_MM <= layer_mm < math.inf:
             raise ValueError(f"layer_height = {layer_mm:g}")
     except (OSError, KeyError, ValueError) as problem:
         return unreadable("printing.mould_layers", file, str(problem))
@@ -64,8 +71,8 @@ def _wanted(design: Design, filament: Filament) -> dict[str, str]:
     return {
         "layer_height": f"{filament.layer_mm:g}",
         "first_layer_height": f"{filament.layer_mm:g}",
-        "extrusion_width": f"{printing.line_mm:g}",
-        "external_perimeter_extrusion_width": f"{printing.line_mm:g}",
+        **dict.fromkeys(_WIDTHS, f"{printing.line_mm:g}"),
+        "perimeter_generator": "arachne",  # walls and wedges are as thin as one or two lines
         "nozzle_diameter": f"{design.slicing.nozzle_mm:g}",
         "bed_shape": f"0x0,{x}x0,{x}x{y},0x{y}",
         "max_print_height": z,
@@ -74,8 +81,11 @@ def _wanted(design: Design, filament: Filament) -> dict[str, str]:
         "filament_density": f"{filament.density_g_ml:g}",
         "filament_max_volumetric_speed": f"{filament.max_flow_mm3_s:g}",
         "filament_type": filament.kind,
+        "filament_diameter": "1.75",
         "temperature": str(filament.nozzle_c),
         "bed_temperature": str(filament.bed_c),
+        "first_layer_bed_temperature": str(filament.bed_c),
+        "perimeter_speed": f"{filament.speed_mm_s:g}",
         "min_fan_speed": str(least),
         "max_fan_speed": str(most),
         "retract_length": f"{filament.retract_mm:g}",
