@@ -11,9 +11,12 @@ import lumitip
 from lumitip_fab.locate import firmware_sources
 
 PACKAGE = Path(__file__).parent
-# What design and layout are made of; a change in one of them may change every file.
-SHARED = ("artefact.py", "design", "encoding.py", "errors.py", "frames.py", "graph.py", "derive",
-          "typeface.py")  # fmt: skip
+# What design and layout are made of, and what generators share; a change in one of them may change
+# every file.
+SHARED = (
+    "artefact.py", "colours.py", "derive", "design", "encoding.py", "errors.py", "frames.py",
+    "graph.py", "locate.py", "made.py", "typeface.py", "values.py",
+)  # fmt: skip
 LAYOUT = ("errors.py", "grid.py", "layout.py")
 
 

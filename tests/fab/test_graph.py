@@ -1,5 +1,6 @@
 """Which change makes which task run again."""
 
+import ast
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -12,8 +13,18 @@ from lumitip_fab.graph import EACH, STEPS, argument_names, late_steps, late_task
 from lumitip_fab.load import load
 from lumitip_fab.made import Made
 
+PACKAGE = toolchain.PACKAGE
 EARLY = {step.name for step in STEPS if not step.reads}
 Keys = Callable[..., dict[str, str]]
+
+
+@pytest.fixture
+def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A copy of the package's code, which `toolchain` takes for the package."""
+    copied = tmp_path / "package"
+    shutil.copytree(PACKAGE, copied, ignore=shutil.ignore_patterns("__pycache__"))
+    monkeypatch.setattr(toolchain, "PACKAGE", copied)
+    return copied
 
 
 @pytest.fixture
@@ -71,21 +82,56 @@ def test_lengths_of_wires_touch_the_wiring_alone(keys: Keys) -> None:
     assert changed(keys(), keys("[wiring]\nslack_mm = 60.0\n")) == {"wiring_files"}
 
 
-def test_the_sheet_that_schematics_grow_from_touches_the_boards(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    package = tmp_path / "package"
-    shutil.copytree(toolchain.PACKAGE, package, ignore=shutil.ignore_patterns("__pycache__"))
-    monkeypatch.setattr(toolchain, "PACKAGE", package)
-
+def test_the_sheet_that_schematics_grow_from_touches_the_boards(package: Path) -> None:
     def hashes() -> list[str]:
-        of, whole = toolchain.code_hash.__wrapped__, toolchain.whole_code_hash.__wrapped__
-        return [of("boards"), whole(), of("mask")]
+        whole = toolchain.whole_code_hash.__wrapped__()
+        return [code_hash("boards"), whole, code_hash("mask")]
 
     before = hashes()
     sheet = package / "boards/schematic/template.kicad_sch"
     sheet.write_text(sheet.read_text(encoding="utf-8").replace("passive", "input"), "utf-8")
     assert [a == b for a, b in zip(before, hashes(), strict=True)] == [False, False, True]
+
+
+def code_hash(folder: str) -> str:
+    """What is kept of a generator's code, read anew."""
+    return toolchain.code_hash.__wrapped__(folder)
+
+
+def imported(file: Path) -> set[Path]:
+    """The modules of the package that a module imports, itself and theirs too, but for what
+    `derive` imports: that reaches a generator as its arguments."""
+    found, ahead = set(), [file]
+    while ahead:
+        module = ahead.pop()
+        if module in found or not module.is_file():
+            continue
+        found.add(module)
+        if PACKAGE / "derive" in module.parents:
+            continue
+        for node in ast.walk(ast.parse(module.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("lumitip_fab"):
+                base = PACKAGE.joinpath(*str(node.module).split(".")[1:])
+                ahead += [base.with_suffix(".py"), base / "__init__.py"]
+                ahead += [base / f"{alias.name}.py" for alias in node.names]
+    return found
+
+
+def test_whatever_a_generator_imports_makes_it_run_again(package: Path) -> None:
+    steps = {step.folder: set[Path]() for step in STEPS}
+    for step in STEPS:
+        steps[step.folder] |= imported(PACKAGE / step.folder / f"{step.module}.py")
+    assert PACKAGE / "colours.py" in steps["wiring"]
+    unseen = []
+    for folder, files in steps.items():
+        before = code_hash(folder)
+        for file in files - {PACKAGE / "__init__.py"}:
+            copy = package / file.relative_to(PACKAGE)
+            code = copy.read_text(encoding="utf-8")
+            copy.write_text(code + "ANOTHER = 1\n", "utf-8")
+            unseen += [f"{folder}: {copy.name}"] if code_hash(folder) == before else []
+            copy.write_text(code, "utf-8")
+    assert unseen == []
 
 
 def test_every_step_names_real_arguments(keys: Keys, design_dir: Path) -> None:

@@ -105,7 +105,8 @@ def test_the_note_weighs_both_parts(design: Design) -> None:
 @pytest.mark.parametrize(
     ("usual", "heights", "wanted"),
     [(0.2, (2.4, 3.9), (0.15, 0)), (0.2, (2.4, 4.0), (0.2, 0)), (0.3, (2.0, 3.5), (0.25, 0)),
-     (0.2, (2.411, 3.907), (0.2, 0.093))],
+     (0.2, (2.411, 3.907), (0.2, 0.093)), (0.125, (2.5, 4.0), (0.125, 0)),
+     (0.075, (2.4, 4.0), (0.05, 0)), (0.04, (2.4, 4.1), (0.04, 0.02))],
 )  # fmt: skip
 def test_layers_divide_the_heights_that_count(
     usual: float, heights: tuple[float, float], wanted: tuple[float, float]

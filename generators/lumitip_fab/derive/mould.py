@@ -83,12 +83,13 @@ def derive_mould(
 def whole_layers(usual_mm: float, heights_mm: tuple[float, ...]) -> tuple[float, float]:
     """The thickest layer, up to the printer's usual one, that divides all heights, and 0.
 
-    Layers are tried in steps of 0.01 mm down to 0.05 mm, which printers still lay. Where none
-    divides all, the usual one stays: with it, how far the worst height is from a whole layer.
+    After the usual one steps of 0.01 mm are tried, down to 0.05 mm, which printers still lay. Where
+    none divides all, the usual one stays: with it, how far the worst height is from a whole layer.
     """
-    for hundredths in range(round(usual_mm * 100), round(LEAST_LAYER_MM * 100) - 1, -1):
-        if _off_layer_mm(hundredths / 100, heights_mm) < WHOLE_MM:
-            return hundredths / 100, 0.0
+    finest, finer = round(LEAST_LAYER_MM * 100), math.floor(usual_mm * 100 + WHOLE_MM)
+    for layer_mm in (usual_mm, *(h / 100 for h in range(finer, finest - 1, -1))):
+        if _off_layer_mm(layer_mm, heights_mm) < WHOLE_MM:
+            return layer_mm, 0.0
     return usual_mm, _off_layer_mm(usual_mm, heights_mm)
 
 
