@@ -115,6 +115,14 @@ def note_of_a_place(files: Files) -> None:
     edit(files, "assembly.txt", rb"(Q5  collector \S+ )\S+", rb"\g<1>1.000")
 
 
+def note_without_a_figure(files: Files) -> None:
+    edit(files, "assembly.txt", rb"(Q5  collector \S+ )\S+", rb"\g<1>nan")
+
+
+def layer_nobody_asked_for(files: Files) -> None:
+    files["receiver-In1_Cu.gbr"] = files["receiver-F_Cu.gbr"]
+
+
 def note_without_a_part(files: Files) -> None:
     edit(files, "assembly.txt", rb"Q5  .*\n", b"")
 
@@ -136,7 +144,9 @@ FIRST_DAMAGES: dict[Damage, set[str]] = {
     note_of_the_mark: {"note"},
     note_too_sure: {"note"},
     note_of_a_place: {"note"},
+    note_without_a_figure: {"note"},
     note_without_a_part: {"note"},
+    layer_nobody_asked_for: {"files"},
     layer_missing: {"readable"},
     not_gerber: {"readable"},
 }
@@ -173,9 +183,12 @@ TABLES = {
     "number lost": (BOM, rb"SML-H10TBT86,13", b",13", {"bom"}),
     "another resistor": (BOM, rb"RC0603FR-0775KL", b"RC0603FR-077K5L", {"bom"}),
     "row lost": (PLACES, rb"Q5,[^\n]*\n", b"", {"placed"}),
+    "row twice": (PLACES, rb"(Q5,[^\n]*\n)", rb"\g<1>\g<1>", {"placed"}),
+    "row cut short": (PLACES, rb"(Q5,[-\d.]+),[^\n]*\n", rb"\g<1>\r\n", {"readable"}),
     "place": (PLACES, rb"(Q5,[-\d]+\.\d)", rb"\g<1>7", {"positions"}),
     "side": (PLACES, rb"(Q5,.*?)Top", rb"\g<1>Bottom", {"sides"}),
     "turn": (PLACES, rb"(Q5,.*?,Top,)\d+", rb"\g<1>45", {"turns"}),
+    "turn by no figure": (PLACES, rb"(Q5,.*?,Top,)\d+", rb"\g<1>nan", {"turns"}),
 }
 
 
@@ -203,6 +216,22 @@ def zip_short(order: Path) -> None:
     cut_short(order / f"{SECOND}_receiver.zip")
 
 
+def zip_spoilt(order: Path) -> None:
+    """A file's packed bytes are others than were packed."""
+    path = order / f"{SECOND}_receiver.zip"
+    data = path.read_bytes()
+    with zipfile.ZipFile(path) as package:
+        at = package.infolist()[0].header_offset + 80
+    path.write_bytes(data[:at] + b"\xff" * 20 + data[at + 20 :])
+
+
+def zip_with_a_password(order: Path) -> None:
+    path = order / f"{SECOND}_receiver.zip"
+    data = path.read_bytes()
+    at = data.index(b"PK\x01\x02") + 8  # flags of its first file in the list at the end
+    path.write_bytes(data[:at] + b"\x01" + data[at + 1 :])
+
+
 def zips_swapped(order: Path) -> None:
     swap(order / f"{SECOND}_receiver.zip", order / f"{FIRST}_receiver.zip")
 
@@ -215,6 +244,8 @@ FOLDER_DAMAGES: dict[Callable[[Path], None], set[str]] = {
     table_beside: {"tables"},
     table_gone: {"readable"},
     zip_short: {"readable"},
+    zip_spoilt: {"readable"},
+    zip_with_a_password: {"readable"},
     zips_swapped: {"readable"},
     board_gone: {"board"},
 }

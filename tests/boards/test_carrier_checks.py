@@ -33,6 +33,10 @@ def hole_of_a_pad_wider(text: str) -> str:
     return in_part(text, "J5", r"\(drill 1\.2\)", "(drill 1.3)")
 
 
+def pad_without_copper(text: str) -> str:
+    return in_part(text, "J6", r'(pad "2".*?)"\*\.Cu" ', r"\g<1>")
+
+
 def wires_exchanged(text: str) -> str:
     """Two pads of a cable with each other's number: their copper and their nets stay."""
     return swapped_pads(text, "J5", "2", "3")
@@ -124,6 +128,7 @@ DAMAGES: dict[Damage, set[str]] = {
     part_added: {"other_parts"},
     part_missing: {"other_parts", "lands", "apart"},
     hole_of_a_pad_wider: {"lands"},
+    pad_without_copper: {"lands", "apart", "hole_count", "hole_width", "edge_clearance"},
     wires_exchanged: {"lands", "apart", "joined"},
     socket_pins_exchanged: {"open", "short"},
     names_exchanged: {"names"},

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from damages import edit, excerpt
+from damages import cut_short, edit, excerpt
 from damages import failing as failing_of
 from lumitip_fab.derive import derive
 from lumitip_fab.load import load
@@ -38,6 +38,8 @@ EDITS = [
     ("bom.csv", "thread\",2,piece", "thread\",4,piece", {"bolts", "prices"}),
     ("bom.csv", "EUR, 2026-11", "EUR", {"total"}),
     ("bom.csv", "\ntotal,", "\nsum,", {"readable"}),
+    ("bom.csv", "32,piece,0.3,9.60", "nan,piece,0.3,9.60", {"readable"}),
+    ("bom.csv", "32,piece,0.3,9.60", "32", {"readable"}),
     ("boards/receiver/order/generic_receiver_bom.csv", ',"74HC4051PW,118"', ',"74HC4067PW,118"',
      {"parts"}),
     ("mould/emitter_casting.md", "part A | **", "part A | **1", {"silicone"}),
@@ -68,6 +70,11 @@ def test_a_damage_fails_its_check(
 def test_a_part_of_another_size_is_seen(copied: Path) -> None:
     shutil.copy(copied / "mould/emitter_mould.stl", copied / "backing/emitter_backing.stl")
     assert failing(copied) == {"prints"}
+
+
+def test_a_list_for_a_board_house_that_is_cut_short_is_seen(copied: Path) -> None:
+    cut_short(copied / "boards/emitter/order/generic_emitter_bom.csv", 130)
+    assert failing(copied) == {"readable"}
 
 
 def test_lost_files_are_told(copied: Path) -> None:

@@ -139,6 +139,13 @@ def test_the_boards_holes_are_what_counts(damaged: Path) -> None:
     assert failing(damaged, "holder") == {"screws", "spacing"}
 
 
+def test_a_spoilt_package_is_told(damaged: Path) -> None:
+    path = (damaged / HOLDER).with_suffix(".3mf")
+    data = path.read_bytes()
+    path.write_bytes(data[:400] + b"\xff" * 200 + data[600:])
+    assert failing(damaged, "holder") == {"three_mf"}
+
+
 def test_missing_files_are_told(damaged: Path) -> None:
     remove_packages(damaged / HOLDER)
     assert failing(damaged, "holder") == FILES

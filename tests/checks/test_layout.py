@@ -11,7 +11,7 @@ import pytest
 from lumitip_fab.checks.run import run_checks
 
 ALL = {"layout.cells", "layout.order", "layout.neighbours", "layout.wiring", "layout.facing",
-       "layout.hash"}  # fmt: skip
+       "layout.hash", "layout.optics"}  # fmt: skip
 
 
 def moved(told: dict[str, Any]) -> None:
@@ -34,6 +34,18 @@ def pins_swapped(told: dict[str, Any]) -> None:
     told["adc_pin"] = ["A1" if p == "A0" else "A0" if p == "A1" else p for p in told["adc_pin"]]
 
 
+def another_pitch(told: dict[str, Any]) -> None:
+    told["pitch_mm"] = 6.1
+
+
+def a_die_elsewhere(told: dict[str, Any]) -> None:
+    told["optics"]["emitter_depth_mm"] += 0.1
+
+
+def another_aperture(told: dict[str, Any]) -> None:
+    told["optics"]["hole_shape"] = "circle"
+
+
 def a_cell_lost(told: dict[str, Any]) -> None:
     for name in ("x_mm", "y_mm", "column", "row", "mux", "channel", "adc_pin"):
         told[name].pop()
@@ -46,6 +58,9 @@ DAMAGES = {
     one_pair_lost: {"layout.neighbours"},
     two_detectors_on_one_input: {"layout.wiring", "layout.hash"},
     pins_swapped: {"layout.wiring", "layout.hash"},
+    another_pitch: {"layout.optics"},
+    a_die_elsewhere: {"layout.optics"},
+    another_aperture: {"layout.optics"},
     a_cell_lost: ALL,
 }
 

@@ -186,7 +186,7 @@ def _off_mm(read: ReadCarrier, device: Device, part: Part | None) -> float:
         return math.nan
     if len(part.terminals) != len(lands):
         return math.nan
-    return max(_pad_off_mm(read, device, land, found[land.number]) for land in lands)
+    return float(np.max([_pad_off_mm(read, device, land, found[land.number]) for land in lands]))
 
 
 def _pad_off_mm(read: ReadCarrier, device: Device, land: Land, pad: Terminal) -> float:

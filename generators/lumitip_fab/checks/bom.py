@@ -1,7 +1,6 @@
 """`bom.csv` against the boards' lists, the printed parts, the casting notes, the cables, and its
 own sums."""
 
-import csv
 import math
 import re
 from collections import Counter
@@ -14,6 +13,7 @@ import numpy as np
 from lumitip_fab.checks.cables import read_list
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.checks.stl import corners_mm
+from lumitip_fab.checks.tables import table
 from lumitip_fab.design import Design
 from lumitip_fab.errors import OutputError
 
@@ -77,22 +77,27 @@ def _bolts(rows: tuple[Row, ...], design: Design) -> Iterator[Measurement]:
 
 def _read(path: Path) -> tuple[tuple[Row, ...], float, str]:
     try:
-        with path.open(encoding="utf-8", newline="") as file:
-            told = list(csv.DictReader(file))
+        told = table(path.read_text(encoding="utf-8"))
         rows = tuple(
-            Row(r["group"], r["item"], r["part"], float(r["quantity"]), _price(r["unit_price"]),
+            Row(r["group"], r["item"], r["part"], _figure(r["quantity"]), _price(r["unit_price"]),
                 _price(r["price"]))
             for r in told[:-1]
         )  # fmt: skip
         if told[-1]["group"] != "total":
             raise ValueError("its last line is no total")
-        return rows, float(told[-1]["price"]), told[-1]["for"]
-    except (OSError, ValueError, KeyError, IndexError, TypeError, csv.Error) as error:
+        return rows, _figure(told[-1]["price"]), told[-1]["for"]
+    except (OSError, ValueError, KeyError, IndexError) as error:
         raise OutputError(f"{path}: cannot be read as a bill: {error!r:.120}") from error
 
 
+def _figure(text: str) -> float:
+    if not math.isfinite(figure := float(text)):
+        raise ValueError(f"{text} is no figure")
+    return figure
+
+
 def _price(text: str) -> float | None:
-    return float(text) if text else None
+    return _figure(text) if text else None
 
 
 def _boards(design: Design) -> tuple[str, ...]:
@@ -109,9 +114,8 @@ def _parts(outputs: Path, design: Design) -> Counter[str]:
     for name in _boards(design):
         path = outputs / f"boards/{name}/order/{fab.name}_{name}_bom.csv"
         try:
-            with path.open(encoding="utf-8", newline="") as file:
-                for row in csv.DictReader(file):
-                    found[row[heading["part"]]] += int(row[heading["quantity"]])
+            for row in table(path.read_text(encoding="utf-8")):
+                found[row[heading["part"]]] += int(row[heading["quantity"]])
         except (OSError, ValueError, KeyError) as error:
             raise OutputError(f"{path}: cannot be read: {error!r:.120}") from error
     return found

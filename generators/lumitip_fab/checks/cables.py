@@ -1,12 +1,12 @@
 """`cables.csv`, `cables.md` and `wiring.svg` as rows of wires."""
 
-import csv
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree
 
+from lumitip_fab.checks.tables import table
 from lumitip_fab.errors import OutputError
 
 _SVG = "{http://www.w3.org/2000/svg}"
@@ -44,17 +44,15 @@ def read_list(path: Path) -> tuple[Row, ...]:
         OutputError: if it is missing or is no such list.
     """
     try:
-        with path.open(encoding="utf-8", newline="") as file:
-            return tuple(
-                Row(
-                    each["wire"], each["signal"], (each["from_board"], each["from_pad"]),
-                    (each["to_board"], each["to_pad"]), each["colour"],
-                    float(each["section_mm2"]), float(each["length_mm"]),
-                    float(each["current_ma"]),
-                )
-                for each in csv.DictReader(file)
-            )  # fmt: skip
-    except (OSError, ValueError, KeyError, TypeError, csv.Error) as error:
+        return tuple(
+            Row(
+                each["wire"], each["signal"], (each["from_board"], each["from_pad"]),
+                (each["to_board"], each["to_pad"]), each["colour"],
+                float(each["section_mm2"]), float(each["length_mm"]), float(each["current_ma"]),
+            )
+            for each in table(path.read_text(encoding="utf-8"))
+        )  # fmt: skip
+    except (OSError, ValueError, KeyError) as error:
         raise OutputError(f"{path}: cannot be read as a list of cables: {error!r:.120}") from error
 
 

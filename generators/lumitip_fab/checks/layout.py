@@ -1,6 +1,8 @@
 """`layout.json` against the readout's own cell map, neighbours and wiring."""
 
+import math
 from collections.abc import Iterator
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +15,8 @@ from lumitip_fab.design import Design
 
 READS = ("layout.json",)
 _FILE = "layout.json"
-_NAMES = ("layout.cells", "layout.order", "layout.neighbours", "layout.wiring", "layout.facing")
+_NAMES = ("layout.cells", "layout.order", "layout.neighbours", "layout.wiring", "layout.facing",
+          "layout.optics")  # fmt: skip
 
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
@@ -38,8 +41,24 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     found = set(map(tuple, layout.neighbours.tolist()))
     yield Measurement("layout.neighbours", _FILE, float(len(wanted ^ found)), 0, 0, "pairs",
                       f"of {len(wanted)} that differ")  # fmt: skip
+    yield _optics(layout, design)
     yield _wiring(layout, design)
     yield _facing(layout, design)
+
+
+def _optics(layout: Layout, design: Design) -> Measurement:
+    """What the twin and the estimator reckon with: pitch, holes, depths, circuit."""
+    told = {**asdict(layout.optics), "pitch_mm": layout.pitch_mm}
+    wanted = {**asdict(design.layout.optics), "pitch_mm": design.grid.pitch_mm}
+    wrong = [name for name, value in wanted.items() if not _same(told[name], value)]
+    note = f"that differ: {', '.join(wrong) or 'none'}"
+    return Measurement("layout.optics", _FILE, float(len(wrong)), 0, 0, "figures", note)
+
+
+def _same(told: object, wanted: object) -> bool:
+    if isinstance(told, float) and isinstance(wanted, float):
+        return math.isclose(told, wanted, abs_tol=1e-5)
+    return told == wanted
 
 
 def _wiring(layout: Layout, design: Design) -> Measurement:

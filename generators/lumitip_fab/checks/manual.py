@@ -1,12 +1,12 @@
 """The build manual against the design, the notes and the drawings beside it; PDF against HTML."""
 
-import csv
 import re
 from collections.abc import Iterator
 from pathlib import Path
 
 from lumitip_fab.checks.manual_read import Chapter, Manual, read_html, read_pdf
 from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip_fab.checks.tables import table
 from lumitip_fab.design import Design
 from lumitip_fab.errors import OutputError
 
@@ -116,14 +116,13 @@ def _noted(outputs: Path, name: str, row: re.Pattern[str], design: Design) -> li
 
 def _billed(outputs: Path) -> list[tuple[str, ...]]:
     try:
-        with (outputs / "bom.csv").open(encoding="utf-8", newline="") as file:
-            rows = list(csv.DictReader(file))
+        rows = table((outputs / "bom.csv").read_text(encoding="utf-8"))
         units = {"piece": "", "sheet": " sheets", "g": " g", "m": " m"}
         told = [
             (r["item"], r["for"], r["quantity"] + units[r["unit"]], r["price"]) for r in rows[:-1]
         ]
         return [*told, ("all together", "", "", rows[-1]["price"])]
-    except (OSError, ValueError, LookupError, csv.Error) as error:
+    except (OSError, ValueError, LookupError) as error:
         return [(f"bom.csv cannot be read: {error!r:.80}",)]
 
 

@@ -1,10 +1,8 @@
 """What is sent to the board houses, against the board files: layers, parts, places, note."""
 
-import csv
-import io
 import math
 import re
-import zipfile
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -14,7 +12,9 @@ import numpy as np
 from lumitip_fab.checks.board_read import Read, ReadCarrier, read_all
 from lumitip_fab.checks.kicad_board import Part
 from lumitip_fab.checks.order_layers import Painted, measure_layers, measure_stiffener
+from lumitip_fab.checks.packed import unpacked
 from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip_fab.checks.tables import table
 from lumitip_fab.design import Design, Fab, Flexible
 
 READS = ("boards/*.kicad_pcb", "boards/*.zip", "boards/*.csv")
@@ -45,9 +45,10 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
             name = f"{fab.name}_{read.name}.zip"
             path = f"boards/{read.name}/order/{name}"
             try:
-                files = _unzipped(folder / "order" / name)
+                files = unpacked(folder / "order" / name)
                 ordered = _ordered(read, fab)
                 layers = {key: files[read.name + end] for key, end in ordered.items()}
+                yield _count("files", path, _unasked(read.name, ordered, files), "files")
                 yield _tables_twice(path, folder / "order", fab, read.name, files)
                 same = layers == first  # whose bytes would only be measured again
                 told = found if same else tuple(measure_layers("", read, layers, painted))
@@ -66,7 +67,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
                     drawn = read.name + ordered["stiffener"]
                     untold = _untold(note, design.board.flexible, design.stack.pcb_mm, drawn)
                     yield _count("flexible", path, list(untold), "figures")
-            except (OSError, KeyError, ValueError, SyntaxError, zipfile.BadZipFile) as error:
+            except (OSError, KeyError, ValueError, SyntaxError) as error:
                 yield unreadable("orders.readable", path, f"cannot be read: {error!r:.200}")
 
 
@@ -86,7 +87,8 @@ def _parts(path: str, read: Read | ReadCarrier, fab: Fab, files: _Files) -> Iter
     ]
     yield _count("bom", path, wrong, "parts")
     rows = _rows(files[f"{name}_positions.csv"], fab.positions)
-    lost = sorted(mounted ^ {row["ref"] for row in rows})
+    placed = Counter(row["ref"] for row in rows)
+    lost = sorted(mounted ^ placed.keys()) + [ref for ref, times in placed.items() if times > 1]
     yield _count("placed", path, lost, "parts")
     known = [(row, read.parts[row["ref"]]) for row in rows if row["ref"] in read.parts]
     told = np.array([(float(row["x_mm"]), float(row["y_mm"])) for row, _ in known])
@@ -95,7 +97,7 @@ def _parts(path: str, read: Read | ReadCarrier, fab: Fab, files: _Files) -> Iter
     sides = [row["ref"] for row, part in known if row["side"] != fab.sides[not part.front]]
     yield _count("sides", path, sides, "parts")
     turns = [_turned_by(read, row, part, fab) for row, part in known]
-    yield Measurement("orders.turns", path, max(turns), 0, TURN_DEG, "°")
+    yield Measurement("orders.turns", path, float(np.max(turns)), 0, TURN_DEG, "°")
 
 
 def _turned_by(read: Read | ReadCarrier, row: dict[str, str], part: Part, fab: Fab) -> float:
@@ -141,7 +143,7 @@ def _misled(read: Read, note: str) -> Iterator[str]:
             yield part.ref
             continue
         given = [[float(row["x1"]), float(row["y1"])], [float(row["x2"]), float(row["y2"])]]
-        if np.abs(wanted - given).max() > PLACE_MM:
+        if not np.abs(wanted - given).max() <= PLACE_MM:
             yield part.ref
 
 
@@ -149,6 +151,12 @@ def _ordered(read: Read | ReadCarrier, fab: Fab) -> dict[str, str]:
     """Layers that a board's zip is to have: a stiffener is drawn for flexible boards alone."""
     bends = isinstance(read, Read) and read.design.board.flexible
     return {key: end for key, end in fab.layers if key != "stiffener" or bends}
+
+
+def _unasked(name: str, ordered: dict[str, str], files: _Files) -> list[str]:
+    """Files that a zip has beside layers, tables and note: each would be taken for a layer."""
+    asked = {*ordered.values(), "_bom.csv", "_positions.csv", "_assembly.txt"}
+    return sorted(files.keys() - {name + end for end in asked})
 
 
 def _untold(note: str, flexible: Flexible, thickness_mm: float, drawn: str) -> Iterator[str]:
@@ -196,12 +204,6 @@ def _count(check: str, path: str, wrong: list[str], unit: str) -> Measurement:
     return Measurement(f"orders.{check}", path, len(wrong), 0, 0, unit, ", ".join(wrong[:4]))
 
 
-def _unzipped(path: Path) -> _Files:
-    with zipfile.ZipFile(path) as package:
-        return {name: package.read(name) for name in package.namelist()}
-
-
 def _rows(data: bytes, columns: tuple[tuple[str, str], ...]) -> list[dict[str, str]]:
     """The rows of a table by field."""
-    table = csv.DictReader(io.StringIO(data.decode()))
-    return [{field: row[heading] for heading, field in columns} for row in table]
+    return [{field: row[heading] for heading, field in columns} for row in table(data.decode())]

@@ -1,7 +1,6 @@
 """The same part in its other files: 3MF and STEP against the STL that was measured."""
 
 import re
-import zipfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from xml.etree import ElementTree
@@ -9,6 +8,7 @@ from xml.etree import ElementTree
 import numpy as np
 from scipy.spatial import cKDTree
 
+from lumitip_fab.checks.packed import unpacked
 from lumitip_fab.checks.printed import Printed
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.checks.solids import Vectors
@@ -88,14 +88,13 @@ def _measured(
 ) -> Measurement:
     try:
         points = read(outputs / path)
-    except (OSError, ValueError, LookupError, SyntaxError, zipfile.BadZipFile) as error:
+    except (OSError, ValueError, LookupError, SyntaxError) as error:
         return unreadable(check, path, f"cannot be read: {error!r:.200}")
     return Measurement(check, path, off_mm(points), 0.0, AGREE_MM, "mm")
 
 
 def _three_mf(path: Path) -> Vectors:
-    with zipfile.ZipFile(path) as package:
-        model = ElementTree.fromstring(package.read("3D/3dmodel.model"))
+    model = ElementTree.fromstring(unpacked(path)["3D/3dmodel.model"])
     if model.get("unit") != "millimeter":
         raise ValueError(f"unit {model.get('unit')!r}, millimeter is needed")
     vertices = model.iter(f"{_NAMESPACE}vertex")
