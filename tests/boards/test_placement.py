@@ -261,5 +261,5 @@ def test_parts_of_a_carrier_that_overlap_are_refused(designs: Callable[[str], De
         for device in flange.devices
     ]
     flange = dataclasses.replace(flange, devices=tuple(devices))
-    with pytest.raises(BuildError, match=r"flange: .*\bL1\b.* overlap"):
+    with pytest.raises(BuildError, match=r"flange: .*\bL1\b.* overlap: choose smaller"):
         carrier_files(d.title, d.reading, d.stack, flange, d.rules, d.fabs)

@@ -42,7 +42,7 @@ def carrier_files(
             finished copper breaks its rules.
     """
     bare = _placement(title, reading, carrier, rules)
-    refuse_overlaps(carrier.name, bare.components)
+    refuse_overlaps(carrier.name, bare.components, "choose smaller parts")
     placement = with_legend(bare, carrier, rules)
     routing, fills = pour(placement, route(placement))
     model = sound(BoardModel(placement, routing, fills))

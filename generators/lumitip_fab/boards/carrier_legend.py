@@ -3,7 +3,7 @@
 import dataclasses
 import math
 from collections.abc import Iterator
-from itertools import pairwise
+from itertools import pairwise, product
 
 from lumitip_fab.boards.clear import extent
 from lumitip_fab.boards.geometry import courtyard, placed_pads
@@ -11,8 +11,13 @@ from lumitip_fab.boards.model import SIDES, Component, Placement, Side, Text
 from lumitip_fab.boards.page import Page
 from lumitip_fab.design import Box, Carrier, Device, Point, Rules
 
+_REMEDY = (
+    "fewer digits in supply.voltage_v, shorter names of lines in [flange], or a larger "
+    "breakout.board_mm"
+)
 _REF_MM = 1.0
 _APART_MM = 0.2  # more than the least gap round references, so that they do not run together
+_ASIDE_MM = (0.3, -0.3, 0.6, -0.6, 0.9, -0.9)  # of a name that has no room at its pad's middle
 _AWAY_MM = 0.4  # from a pad to its name, and from a part to its reference
 
 
@@ -39,7 +44,7 @@ def with_legend(board: Placement, carrier: Carrier, rules: Rules) -> Placement:
     for side in SIDES:
         if page.block(side, lines, carrier.title_at) is None:
             page.miss(f"the title on its {side}", 1.0, page.length_mm(carrier.title), (0.0, 0.0))
-    page.refuse_losses()
+    page.refuse_losses(_REMEDY)
     return dataclasses.replace(board, silk=tuple(page.strokes), texts=tuple(page.texts))
 
 
@@ -53,11 +58,13 @@ def _put(
     if found:
         page.put(side, [found])
     else:
-        page.miss(repr(told), choices[0].height_mm, page.length_mm(told), at)
+        first = choices[0]
+        page.miss(repr(told), first.height_mm, page.length_mm(first.text, first.height_mm), at)
 
 
 def _names(page: Page, device: Device, part: Component, board: Box) -> None:
-    """The name of each contact beside it: all along their row if they fit, else upright."""
+    """The name of each contact beside it: all along their row if they fit, else upright; where
+    that finds no room, along the row and a little aside."""
     if not (device.contacts and device.pins):
         return
     pads = placed_pads(part)
@@ -68,15 +75,18 @@ def _names(page: Page, device: Device, part: Component, board: Box) -> None:
     drawn = part.footprint.body.y_max_mm if part.footprint.silk else 0.0
     for pad, name in zip(pads, device.pins, strict=True):
         way = math.copysign(1.0, pad.pad.y_mm) if pad.pad.y_mm else inward  # of two rows, outward
-        tall = page.rules.silk_text_mm if flat else page.length_mm(name)
-        edge = max(pad.pad.height_mm / 2, drawn - abs(pad.pad.y_mm))
-        reach = edge + tall / 2 + _AWAY_MM
-        at = pad.x_mm, pad.y_mm
-        places = [
-            page.text(name, (pad.x_mm, pad.y_mm + away * reach), angle_deg=0.0 if flat else 90.0)
+        edge = max(pad.pad.height_mm / 2, drawn - abs(pad.pad.y_mm)) + _AWAY_MM
+        low, tall = (edge + size / 2 for size in (page.rules.silk_text_mm, page.length_mm(name)))
+        lying = [
+            page.text(name, (pad.x_mm + aside, pad.y_mm + away * low))
+            for aside, away in product((0.0, *_ASIDE_MM), (way, -way))
+        ]
+        upright = [
+            page.text(name, (pad.x_mm, pad.y_mm + away * tall), angle_deg=90.0)
             for away in (way, -way)
         ]
-        _put(page, f"{device.ref} {name}", at, places)
+        places = lying if flat else [*upright, *lying]
+        _put(page, f"{device.ref} {name}", (pad.x_mm, pad.y_mm), places)
 
 
 def _round(page: Page, ref: str, yard: Box) -> Iterator[Text]:

@@ -47,7 +47,7 @@ def with_legend(
     arrows = [_along_the_edges(page), _back(page, finger, mark)]
     if not any(arrows):
         page.miss("the arrow to the tip", 3.0, 1.0, board.outline.centre_mm)
-    page.refuse_losses()
+    page.refuse_losses("give it wider margins in [board], or a shorter name")
     return dataclasses.replace(
         board, components=components, silk=tuple(page.strokes), texts=tuple(page.texts)
     )

@@ -124,8 +124,8 @@ class Page:
             f"({at[0]:.2f}, {at[1]:.2f}) mm"
         )
 
-    def refuse_losses(self) -> None:
-        """Raise for all that has found no room.
+    def refuse_losses(self, remedy: str) -> None:
+        """Raise for all that has found no room, and say what helps.
 
         Raises:
             BuildError: with what, its size, and where.
@@ -133,7 +133,7 @@ class Page:
         if self.lost:
             raise BuildError(
                 f"the {self.board.finger} board has no room on its silkscreen for "
-                f"{'; '.join(self.lost)}: give it wider margins in [board], or a shorter name"
+                f"{'; '.join(self.lost)}: {remedy}"
             )
 
     def _stack(self, lines: Sequence[tuple[str, float]], scale: float, angle: float) -> list[Text]:

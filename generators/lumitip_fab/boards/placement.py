@@ -58,7 +58,8 @@ def place(
     corners = spots.fiducials(board, obstacles, mark, finger.holes, rules.edge_gap_mm)
     for ref, at in zip(("FID1", "FID2", "FID3"), corners, strict=True):
         parts[ref] = _at(parts[ref], at)
-    refuse_overlaps(finger.name, tuple(parts.values()))
+    roomier = "give them more room in [board], or choose smaller parts"
+    refuse_overlaps(finger.name, tuple(parts.values()), roomier)
     _refuse_beyond(finger.name, tuple(parts.values()), board)
     bare = Placement(
         finger=finger.name,
@@ -153,8 +154,13 @@ def _connector(parts: dict[str, Component], finger: Finger, rules: Rules) -> Non
         parts[point.ref] = _at(point, (x, y + apart))
 
 
-def refuse_overlaps(name: str, parts: tuple[Component, ...]) -> None:
+def refuse_overlaps(name: str, parts: tuple[Component, ...], remedy: str) -> None:
     """Courtyards keep clear of each other.
+
+    Args:
+        name: of the board.
+        parts: all that are on it.
+        remedy: what helps if two do not.
 
     Raises:
         BuildError: if two do not; it names both.
@@ -163,8 +169,7 @@ def refuse_overlaps(name: str, parts: tuple[Component, ...]) -> None:
         yards = [(part.ref, courtyard(part)) for part in parts if part.side == side]
         for (one, here), (other, there) in spots.overlaps(yards):
             raise BuildError(
-                f"{name}: {one} at {_told(here)} and {other} at {_told(there)} overlap: give them "
-                "more room in [board], or choose smaller parts"
+                f"{name}: {one} at {_told(here)} and {other} at {_told(there)} overlap: {remedy}"
             )
 
 

@@ -1,0 +1,48 @@
+"""What is printed beside the pads of carriers."""
+
+import dataclasses
+from collections.abc import Callable
+
+import pytest
+
+from lumitip_fab.artefact import Artefact
+from lumitip_fab.boards.carrier import carrier_files
+from lumitip_fab.design import Design
+from lumitip_fab.errors import BuildError
+
+CARRIERS = ("breakout", "flange")
+
+
+def _made(design: Design, name: str, supply: str) -> tuple[int, tuple[Artefact, ...]]:
+    """A carrier whose supply of 12 V is called otherwise: its pads of that name, and its files."""
+    (carrier,) = (carrier for carrier in design.carriers if carrier.name == name)
+    devices = tuple(
+        dataclasses.replace(
+            device, pins=tuple(supply if pin == "12V" else pin for pin in device.pins)
+        )
+        for device in carrier.devices
+    )
+    renamed = dataclasses.replace(carrier, devices=devices)
+    files = carrier_files(
+        design.title, design.reading, design.stack, renamed, design.rules, design.fabs
+    )
+    return sum(device.pins.count(supply) for device in devices), files
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", CARRIERS)
+def test_a_supply_with_a_fraction_is_printed_beside_its_pads(
+    name: str, designs: Callable[[str], Design]
+) -> None:
+    """A little aside where there is no room at the pad's middle."""
+    pads, files = _made(designs("small"), name, "13.8V")
+    (board,) = (file for file in files if file.path.endswith(".kicad_pcb"))
+    assert board.data.decode().count('(gr_text "13.8V"') == pads > 0
+
+
+@pytest.mark.parametrize("name", CARRIERS)
+def test_what_helps_a_name_without_room_is_told(
+    name: str, designs: Callable[[str], Design]
+) -> None:
+    with pytest.raises(BuildError, match=r"'J\d 13\.8125V', .* fewer digits in supply\.voltage_v"):
+        _made(designs("small"), name, "13.8125V")
