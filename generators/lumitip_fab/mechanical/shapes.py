@@ -3,7 +3,7 @@
 from typing import Any
 
 import numpy as np
-from build123d import Edge, Face, Kind, Location, Plane, Solid, Vector, Wire
+from build123d import Edge, Face, Location, Plane, Solid, Vector, Wire
 
 from lumitip_fab.design import Box, Finger, Outline, Point
 from lumitip_fab.errors import BuildError
@@ -24,11 +24,6 @@ def outline_edges(outline: Outline) -> list[Edge]:
 def outline_face(outline: Outline) -> Face:
     """The silhouette at z = 0, facing +z."""
     return Face(Wire(outline_edges(outline)))
-
-
-def offset_face(outline: Outline, by_mm: float) -> Face:
-    """The silhouette grown by a distance, at z = 0; below zero it shrinks."""
-    return Face(outline_face(outline).outer_wire().offset_2d(by_mm, kind=Kind.ARC))
 
 
 def polygon_face(corners: list[Point]) -> Face:

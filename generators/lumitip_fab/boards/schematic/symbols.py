@@ -1,7 +1,6 @@
 """Symbols of the schematics, drawn here so that no library is needed. y up, in mm."""
 
 import math
-from collections.abc import Sequence
 
 from lumitip_fab.boards.pcb.sexpr import Node, Quoted, Value
 from lumitip_fab.design import Multiplexer, Point
@@ -109,21 +108,14 @@ def mux_pins(mux: Multiplexer) -> list[tuple[str, int, Point, int, str]]:
 
 
 def wires(ways: int, pitch_mm: float = ROW_MM) -> Node:
-    """A row of wire pads, first at the top."""
-    return contacts([str(i + 1) for i in range(ways)], pitch_mm, "J")
-
-
-def contacts(numbers: Sequence[str], pitch_mm: float, prefix: str) -> Node:
-    """A row of contacts with these numbers, first at the top."""
-    ways = len(numbers)
+    """A row of contacts, first at the top."""
     first = (ways - 1) / 2 * pitch_mm
     pins = [
-        pin(number, 5.08, first - i * pitch_mm, 180, PIN_MM, number)
-        for i, number in enumerate(numbers)
+        pin(str(i + 1), 5.08, first - i * pitch_mm, 180, PIN_MM, str(i + 1)) for i in range(ways)
     ]
     half = ways / 2 * pitch_mm
     dots = [_circle(1.27, first - i * pitch_mm, 0.762) for i in range(ways)]
-    return symbol(prefix, [box(-2.54, -half, 2.54, half, fill="background"), *dots], pins)
+    return symbol("J", [box(-2.54, -half, 2.54, half, fill="background"), *dots], pins)
 
 
 def named(name: str, shape: Node, library: bool) -> Node:
