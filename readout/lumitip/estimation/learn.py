@@ -17,6 +17,7 @@ from lumitip.estimation.fit import Fit
 from lumitip.estimation.report import rms_counts
 from lumitip.grid import Floats
 from lumitip.layout import Layout
+from lumitip.processing.processor import ValuesError
 from lumitip.twin import Model
 
 _ROUNDS = 4
@@ -59,11 +60,17 @@ def learn(
         most_frames: so many frames are used, evenly spread.
 
     Raises:
+        ValuesError: if the shape is another.
         EstimationError: if fewer than twenty frames show an edge, cable or corner.
     """
     estimator = PoseEstimator(layout, model)
     rows: Floats = np.asarray(values, dtype=np.float64)
-    rows = rows[np.unique(np.linspace(0, len(rows) - 1, most_frames).astype(np.int64))]
+    if rows.ndim != 2 or rows.shape[1] != len(layout):
+        raise ValuesError(
+            f"values of shape {rows.shape} given, frames of this layout have (n, {len(layout)})"
+        )
+    if len(rows):
+        rows = rows[np.unique(np.linspace(0, len(rows) - 1, most_frames).astype(np.int64))]
     told = [(row, e) for row in rows if (e := estimator(row, kind)).trusted]
     if len(told) < _LEAST_FRAMES:
         raise EstimationError(

@@ -100,6 +100,11 @@ def test_what_cannot_be_asked_for_is_refused(estimator: PoseEstimator, cells: La
         PoseEstimator(cells, gains=np.ones(31))
     with pytest.raises(EstimationError, match="move an object"):
         learn(cells, np.full((50, 32), 255.0))
+    with pytest.raises(EstimationError, match="0 frames"):
+        learn(cells, np.empty((0, 32)))
+    for shape in ((50, 31), (32,), ()):
+        with pytest.raises(ValuesError, match=r"frames of this layout have \(n, 32\)"):
+            learn(cells, np.zeros(shape))
 
 
 def test_optics_of_another_design_may_be_given(cells: Layout) -> None:
