@@ -203,7 +203,7 @@ class PoseEstimator:
                 return name, found
             self._last = None
             if kind is not None:
-                return kind, self._search.again(kind, found, frame)
+                return kind, self._search.again(kind, pose, found, frame)
         self._last = None
         return (kind, self._search.best(kind, frame)) if kind else self._decided(frame)
 

@@ -79,13 +79,14 @@ class Search:
         found = self.plain(kind, first, frame)
         return self._loose(kind, frame, found) if doubtful(found) else found
 
-    def _loose(self, kind: str, frame: Frame, plain: Fit) -> Fit:
+    def _loose(self, kind: str, frame: Frame, plain: Fit, before: Floats | None = None) -> Fit:
         """The best fit of a kind to a fingertip that is not as expected.
 
         Args:
             kind: what to fit.
             frame: what was read.
             plain: from the bank's best, which a wild cell misleads less than the closest poses.
+            before: pose of the frame before, which decides between poses that are nearly alike.
         """
         shape, loose = self.shape(kind), frame.looser(LOOSE)
         starts = self._bank(kind).closest(loose.light, loose.scale, _STARTS)
@@ -103,19 +104,27 @@ class Search:
             if loss < min(losses) + _RIVAL
             and _between(kind, f.pose, first.pose) @ apart > _ELSEWHERE
         ]
+        if before is not None:
+            first = min([first, *rivals], key=lambda f: _between(kind, f.pose, before) @ apart)
         return replace(fit(shape, first.pose, loose), ambiguous=bool(rivals))
 
-    def again(self, kind: str, followed: Fit, frame: Frame) -> Fit:
+    def again(self, kind: str, before: Floats, followed: Fit, frame: Frame) -> Fit:
         """The best fit where one that followed the line got worse.
 
         If the bank knows nothing better the line is where it was followed to, and bends.
+
+        Args:
+            kind: what to fit.
+            before: pose of the frame before.
+            followed: the fit from there.
+            frame: what was read.
         """
         found = self.plain(kind, self.start(kind, frame)[0], frame)
         if not doubtful(found):
             return found
         if rms_counts(found) >= rms_counts(followed):
             return followed
-        return self._loose(kind, frame, found)
+        return self._loose(kind, frame, found, before)
 
     def near(self, kind: str, pose: Floats, frame: Frame) -> Fit:
         """The fit from where another frame's fit ended, with the optics free if they were there."""
@@ -210,7 +219,8 @@ def _drifted(model: Model, gap_sd_mm: float, alpha_sd: float) -> list[Model]:
 
 def _between(kind: str, one: Floats, two: Floats) -> Floats:
     """How far two poses are from each other in each entry that a bank has."""
-    away = (one - two)[: 4 if kind == "corner" else 2]
+    entries = 4 if kind == "corner" else 2
+    away = one[:entries] - two[:entries]
     turn = np.pi if kind == "cable" else 2.0 * np.pi  # an edge turned round covers the other side
     turns = np.round(away[0] / turn)
     away[0] -= turns * turn

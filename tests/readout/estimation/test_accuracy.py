@@ -91,6 +91,19 @@ def test_a_tracker_forgives_no_misfit_for_having_once_been_worse(
     assert last.angle_deg == pytest.approx(bending[1], abs=7.0)
 
 
+@pytest.mark.parametrize(("offset_mm", "angle_deg"), [(-2.5, -24.0), (3.0, 24.0)])
+def test_the_frame_before_decides_between_a_cable_and_its_mirror_image(
+    cells: Layout, wrong_twins: list[Twin], offset_mm: float, angle_deg: float
+) -> None:
+    tracker, twin = PoseEstimator(cells, tracking=True), wrong_twins[7]
+    frames = [np.floor(twin.values(Cable(offset_mm + d, angle_deg))) for d in (1.5, 0.0)]
+    alone = PoseEstimator(cells)(frames[1], "cable")
+    assert abs(alone.angle_deg - angle_deg) > 10.0 and "ambiguous" in alone.flags
+    told = [tracker(frame, "cable") for frame in frames][1]
+    assert told.angle_deg == pytest.approx(angle_deg, abs=1.5) and "ambiguous" in told.flags
+    assert told.offset_mm == pytest.approx(offset_mm, abs=0.3)
+
+
 def test_a_kind_that_was_prepared_waits_for_no_table(
     twin: Twin, monkeypatch: pytest.MonkeyPatch
 ) -> None:
