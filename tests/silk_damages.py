@@ -40,6 +40,13 @@ def mark_lost(text: str) -> str:
     return text
 
 
+def cell_misnamed(text: str) -> str:
+    """The reference of an LED stands in the next cell."""
+    return in_part(
+        text, "D7", r'(\(fp_text reference "D7"\s+\(at )(\S+) (-?[\d.]+)', r"\g<1>\g<2> 9.0"
+    )
+
+
 def label_lost(text: str) -> str:
     return without(r'\(gr_text "12V"')(text)
 

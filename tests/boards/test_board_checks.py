@@ -13,6 +13,7 @@ from lumitip_fab.encoding import read_design
 from silk_damages import (
     arrow_bent,
     cell_lost,
+    cell_misnamed,
     fiducial_lost,
     fiducials_near,
     first_pad_unmarked,
@@ -80,6 +81,7 @@ EMITTER_DAMAGES: dict[Damage, set[str]] = {
     title_lost: {"silk_title"},
     arrow_bent: {"silk_arrow"},
     cell_lost: {"silk_cells"},
+    cell_misnamed: {"silk_cell_names"},
     mark_lost: {"silk_marks"},
     label_lost: {"silk_labels"},
     labels_swapped: {"silk_labels"},

@@ -175,6 +175,28 @@ def test_references_stand_at_the_cells_of_the_published_grid(
             assert all(p.ref_text for p in _parts(boards[preset, finger][2], kind))
 
 
+def test_references_stand_in_narrower_cells_whose_outlines_give_way(
+    boards: dict[tuple[str, str], Placed],
+) -> None:
+    design, _, placement = boards["asymmetric", "receiver"]
+    parts = _parts(placement, "photodetector")
+    assert design.grid.pitch_mm == 5.0
+    assert {p.ref_text.angle_deg % 180 for p in parts if p.ref_text} == {0.0}, "upright on parts"
+    assert all(p.ref_text for p in parts)
+
+
+def test_in_the_narrowest_cells_the_ends_of_the_columns_are_named(
+    boards: dict[tuple[str, str], Placed],
+) -> None:
+    for finger, kind in (("emitter", "led"), ("receiver", "photodetector")):
+        parts = _parts(boards["dense", finger][2], kind)
+        by_column = [[p for p in parts if abs(p.x_mm - x) < 0.1] for x in {q.x_mm for q in parts}]
+        ends = {p.ref for c in by_column for p in (c[0], c[-1])}
+        named = {p.ref for p in parts if p.ref_text}
+        assert named <= ends
+        assert len(named) > 0.8 * len(ends), "but where holes are"
+
+
 def test_references_stand_at_leds_nearer_each_other(design_dir: Path) -> None:
     given = load(design_dir / "presets/published.toml")
     grid = given.parameters.grid.model_copy(update={"pitch_mm": 4.5})

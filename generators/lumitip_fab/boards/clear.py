@@ -1,6 +1,6 @@
 """Where one side of a board is free for silkscreen."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -64,6 +64,10 @@ class Clear:
     def take(self, *shapes: BaseGeometry) -> None:
         """Take room."""
         self.taken += shapes
+
+    def taking(self, shapes: Iterable[BaseGeometry]) -> "Clear":
+        """The same side, with less room, to try what fits."""
+        return Clear(self.inside, self.gap_mm, self.line_mm, [*self.taken, *shapes])
 
     def clipped(self, lines: Sequence[LineString]) -> list[LineString]:
         """The free pieces of lines that are long enough to see."""

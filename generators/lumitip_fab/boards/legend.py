@@ -6,22 +6,18 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from lumitip_fab.boards.cells import cell_edges
-from lumitip_fab.boards.clear import extent
-from lumitip_fab.boards.geometry import courtyard
-from lumitip_fab.boards.model import Component, Placement, Side, Text
+from lumitip_fab.boards.model import Placement, Side, Text
 from lumitip_fab.boards.openings import MASK_MM
 from lumitip_fab.boards.page import Page
+from lumitip_fab.boards.references import with_references
 from lumitip_fab.design import Connector, Finger, Point, Rules
 
 _TITLE_MM = 1.0
-_APART_MM = 0.1  # more than the least gap round references, so that they do not run together
 _LABEL_GAP_MM = 0.3  # between words in a row, so that they are read apart
 _OUTWARD_MM = 0.25  # that the first and the last label of a row give way
 _STEP_MM = 0.25
 _SPARE_MM = 0.06  # letters do not stand quite in the middle of their text
 _BESIDE_MM = 5.0  # farthest place of the mark of pad 1 from the pad
-_SHOWN = ("multiplexer", "resistor", "capacitor")
-_AT_CELLS = ("led", "photodetector")
 
 
 def with_legend(
@@ -42,8 +38,7 @@ def with_legend(
     """
     page = Page(board, rules)
     _labels(page, finger.connector)
-    page.lines("front", page.sides["front"].clipped(cell_edges(finger.cells, pitch_mm)))
-    components = _references(page)
+    components = with_references(page, cell_edges(finger.cells, pitch_mm), pitch_mm)
     arrows = [_along_the_edges(page), _back(page, finger, mark)]
     if not any(arrows):
         page.miss("the arrow to the tip", 3.0, 1.0, board.outline.centre_mm)
@@ -109,58 +104,6 @@ def _beside(page: Page, signal: str, at: Point, half_mm: float) -> Iterator[Text
         yield page.text(signal, (x, y + sign * upright), angle_deg=90.0)
 
 
-def _references(page: Page) -> tuple[Component, ...]:
-    """Parts with their references where there is room: at the cells for all or for none."""
-    components = page.board.components
-    shown = {}
-    for part in components:
-        if part.kind in _SHOWN and (text := _place_of(page, part)):
-            shown[part.ref] = _printed(page, part, text)
-    cells = [part for part in components if part.kind in _AT_CELLS]
-    places = [_place_of(page, part) for part in cells]
-    if all(places):
-        shown |= {part.ref: _printed(page, part, text)
-                  for part, text in zip(cells, places, strict=True) if text}  # fmt: skip
-    return tuple(shown.get(part.ref, part) for part in components)
-
-
-def _place_of(page: Page, part: Component) -> Text | None:
-    """A free place for a part's reference, on the board."""
-    yard = courtyard(part)
-    (x, y), r = yard.centre_mm, part.ref
-    height = page.text(r, (x, y)).height_mm
-    choices: list[Text] = []
-    for closer in (0.0, 0.1, 0.2, 0.3, 0.4):
-        off = height + page.rules.silk_gap_mm - closer
-        up, aside = (size / 2 + off for size in (yard.length_mm, yard.width_mm))
-        long = (yard.length_mm + height + page.length_mm(r)) / 2 - closer
-        choices += [
-            page.text(r, (x, y + up)), page.text(r, (x, y - up)),
-            page.text(r, (x - aside, y), angle_deg=90.0),
-            page.text(r, (x + aside, y), angle_deg=90.0),
-            page.text(r, (x, y + long), angle_deg=90.0),
-        ]  # fmt: skip
-    if part.kind == "multiplexer":
-        choices.insert(0, page.text(r, (x, y), 1.2))
-    side = page.sides[part.side]
-    for apart in (_APART_MM, 0.0):
-        for text in choices:
-            if side.free(extent(text, part.side).buffer(apart)):
-                return text
-    return None
-
-
-def _printed(page: Page, part: Component, text: Text) -> Component:
-    """A part with its reference at a place on the board, told in its footprint's frame."""
-    page.sides[part.side].take(extent(text, part.side))
-    x, y = _in_footprint(part, (text.x_mm, text.y_mm))
-    angle = text.angle_deg - part.angle_deg
-    local = dataclasses.replace(
-        text, text="", x_mm=x, y_mm=y, angle_deg=angle if part.side == "front" else -angle
-    )
-    return dataclasses.replace(part, ref_text=local)
-
-
 def _along_the_edges(page: Page) -> bool:
     """Along the long edges of the front where there is room: arrow to the tip and name; finger,
     revision and design. Tells whether the arrow is there."""
@@ -199,11 +142,3 @@ def _back(page: Page, finger: Finger, mark: str) -> bool:
     x = room.centre_mm[0]
     below = [(x, room.y_min_mm - d) for d in np.arange(0.5, 10.0, _STEP_MM).tolist()]
     return page.arrow("back", [*below, *page.anywhere((x, y))])
-
-
-def _in_footprint(part: Component, at: Point) -> Point:
-    """A place on the board in the frame of a part's footprint."""
-    turn = np.radians(part.angle_deg)
-    dx, dy = at[0] - part.x_mm, at[1] - part.y_mm
-    x, y = dx * np.cos(turn) + dy * np.sin(turn), dy * np.cos(turn) - dx * np.sin(turn)
-    return (-float(x) if part.side == "back" else float(x)), float(y)

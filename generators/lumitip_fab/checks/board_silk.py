@@ -2,6 +2,7 @@
 
 import itertools
 import math
+import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 
@@ -33,6 +34,7 @@ def measure_silk(read: Read) -> Iterator[Measurement]:
     yield read.figure("silk_cells", share, CELL_SHARE, 1.0, "drawn", f"least of cell {cell}")
     yield read.count("silk_marks", [*_unmarked(read), *_first_pad(read)], "parts")
     yield read.count("silk_labels", list(_unlabelled(read)), "pads")
+    yield read.count("silk_cell_names", list(_misnamed(read)), "cells")
     letters = [word.height_mm for word in silk.words]
     yield read.figure("silk_letters", min(letters, default=math.nan), rules.silk_text_mm, math.inf)
     pens = [line.width_mm for line in silk.lines] + [word.stroke_mm for word in silk.words]
@@ -150,6 +152,17 @@ def _dotted(drawn: Sequence[Line], pads: dict[str, BaseGeometry]) -> set[str]:
     dots = [line.area for line in drawn if line.path.length < DOT_MM]
     return {min((dot.distance(area), number) for number, area in pads.items())[1]
             for dot in dots if pads}  # fmt: skip
+
+
+def _misnamed(read: Read) -> Iterator[str]:
+    """Names of cells' parts that stand nearer to another cell than to their own."""
+    middles = np.array([(cell.x_mm, cell.y_mm) for cell in read.design.cells])
+    middles = middles * (-1 if read.finger.name == "emitter" else 1, 1)
+    for word in read.board.silk.words:
+        if re.fullmatch(r"[DQ]\d+", word.ref) and word.text == word.ref and word.front:
+            nearest = int(np.hypot(*(middles - read.sensor([word.at])[0]).T).argmin()) + 1
+            if int(word.ref[1:]) != nearest:
+                yield f"{word.ref} stands at cell {nearest - 1}"
 
 
 def _first_pad(read: Read) -> Iterator[str]:
