@@ -28,6 +28,10 @@ class Filament(Entry):
     """What the nozzle melts."""
     retract_mm: float = Field(ge=0, le=10)
     """How far it is pulled back before a move."""
+    layer_mpa: float = Field(gt=0, le=500)
+    """Tensile strength from layer to layer."""
+    bearing_mpa: float = Field(gt=0, le=500)
+    """Compressive strength of a solid print."""
     rigid_parts: Name | None = None
     """For a filament that bends: the filament of parts that must not, such as moulds."""
 

@@ -55,7 +55,7 @@ class Origin(Strict):
 
 class Envelope(Sourced):
     """The body of a gripper as a block with round edges along its axis, from the face that stands
-    on the coupling, and how far its fingers' mount planes are from that face."""
+    on the coupling, how far its fingers' mount planes are from that face, and the load."""
 
     width_mm: Length
     """Along the opening."""
@@ -67,6 +67,10 @@ class Envelope(Sourced):
     """Along the axis."""
     reach_mm: Length
     """From that face to the plane that the fingertips stand on, with the gripper closed."""
+    mass_kg: float = Field(gt=0, le=50)
+    """Of the gripper."""
+    payload_kg: float = Field(gt=0, le=100)
+    """What it may hold."""
 
     @property
     def round_mm(self) -> float | None:

@@ -6,6 +6,8 @@ from pathlib import Path
 import numpy as np
 
 from lumitip_fab import manifest
+from lumitip_fab.checks import solids
+from lumitip_fab.checks.flange_strength import LEAST_SAFETY, strength
 from lumitip_fab.checks.stl import corners_mm
 from lumitip_fab.checks.urdf_read import read_urdf
 from lumitip_fab.design import Design
@@ -37,7 +39,7 @@ def built_rows(out: Path, design: Design) -> tuple[Row, ...]:
     ]
     payload = sum(link.mass_g for link in weighed)
     rows.append(Row("payload of both fingers", "not stated", f"{payload:.1f} g", why))
-    return (*rows, *_outside(out, design))
+    return (*rows, *_outside(out, design), *_strength(out, design))
 
 
 def _outside(out: Path, design: Design) -> Iterator[Row]:
@@ -61,6 +63,26 @@ def _outside(out: Path, design: Design) -> Iterator[Row]:
         yield Row(what, "not stated", f"{grams:.1f} g",
                   f"printed solid from {printed[0][1].name}, with its bare board; parts, screws "
                   "and wires are not in it")  # fmt: skip
+
+
+def _strength(out: Path, design: Design) -> Iterator[Row]:
+    """What the flange bears."""
+    for flange in design.flanges:
+        lower, upper = (
+            solids.moved(solids.read_mesh(out / f"flange/{flange.name}_{part}.stl"), bed)
+            for part, bed in flange_beds(flange).items()
+        )
+        found, filament = strength(lower, upper, design), design.slicing.of(f"flange/{flange.name}")
+        load = (
+            f"{design.system.load_kg:g} kg of gripper and payload, twice as heavy in a stop, "
+            f"{found.lever_mm:.0f} mm before the coupling; an estimate, not tested; at least "
+            f"{LEAST_SAFETY:g} is wanted"
+        )
+        yield Row("safety of the flange's layers", "not stated", f"{found.layers:.1f}",
+                  f"{filament.layer_mpa:g} MPa from layer to layer (assumed), the bolts left out: "
+                  + load)  # fmt: skip
+        yield Row("... right under its bolts' heads", "not stated", f"{found.bolts:.1f}",
+                  f"{filament.bearing_mpa:g} MPa when it is pressed (assumed): {load}")  # fmt: skip
 
 
 def _volume_ml(path: Path) -> float:

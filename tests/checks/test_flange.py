@@ -151,6 +151,18 @@ def countersink_missing(body: Body) -> Body:
     )
 
 
+def bolt_hole_bellied(body: Body) -> Body:
+    """A belly inside a bolt's hole, where its head's ring presses."""
+    for low, narrow, wide in ((1.0, 2.55, 3.75), (3.99, 3.75, 2.55)):
+        body = body - Manifold.cylinder(3.0, narrow, wide, 128).translate((-27, 16, low))
+    return body
+
+
+def sawn(body: Body) -> Body:
+    """A saw's cut round the board that leaves one side."""
+    return body - box((-40.0, -40.0, 0.05), (24.0, 40.0, 0.45))
+
+
 def wall_thin(body: Body) -> Body:
     """A slot that leaves 0.6 mm of the outside."""
     return body - box((-36.9, -4.0, 4.0), (-35.0, 4.0, SPLIT + 3))
@@ -218,6 +230,8 @@ LOWERS: dict[Damage, set[str]] = {
     screw_askew: {"screws"},
     screw_hole_wide: {"screw_width"},
     countersink_missing: {"screw_heads"},
+    bolt_hole_bellied: {"bolt_bearing"},
+    sawn: {"layers", "bolt_bearing", "overhang", "min_wall"},
     wall_thin: {"min_wall", "hole_wall"},
     foot_missing: {"bed_contact", "overhang", "seat", "screw_heads", "min_wall"},
     loose_piece: {"bodies"},

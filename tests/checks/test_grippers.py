@@ -51,6 +51,8 @@ depth_mm = 40.0
 corner_mm = 2.0
 length_mm = 70.0
 reach_mm = 85.0
+mass_kg = 0.9
+payload_kg = 2.0
 """
 File = Callable[..., Path]
 

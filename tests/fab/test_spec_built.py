@@ -45,6 +45,17 @@ def test_flange_and_holder_weigh_what_their_filament_and_boards_do(outputs: Path
         assert told == pytest.approx(solid + area_mm2 * g_mm2, abs=0.2)
 
 
+def test_the_flanges_safety_is_told_as_an_estimate(outputs: Path) -> None:
+    rows = {r.quantity: r for r in built_rows(outputs, read_design(outputs / "design.json"))}
+    layers, heads = (
+        rows[name] for name in ("safety of the flange's layers", "... right under its bolts' heads")
+    )
+    assert (float(layers.computed), float(heads.computed)) == pytest.approx((12.7, 3.4), abs=0.11)
+    for row in (layers, heads):
+        assert "5.9 kg of gripper and payload" in row.reason
+        assert "an estimate, not tested" in row.reason
+
+
 def test_boards_weigh_by_their_laminate_and_copper(inputs: dict[str, Input]) -> None:
     """g/mL of 1.6 mm FR-4 under 35 µm, and of 0.2 mm polyimide under 18 µm on 70 % of each side."""
     rigid, flex = (derive(inputs[name]).densities for name in ("published", "flex"))

@@ -14,6 +14,7 @@ import shapely
 from lumitip_fab.checks import flange_board, overlap, packages, solids
 from lumitip_fab.checks.board_read import read_carrier
 from lumitip_fab.checks.flange_read import REACH_MM, Stacked, heights, hole_walls
+from lumitip_fab.checks.flange_strength import measure_strength
 from lumitip_fab.checks.printed import circles, holes_at, islands_at
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.checks.walls import walls
@@ -76,7 +77,7 @@ def _measured(of: Stacked) -> Iterator[Measurement]:
     steps: tuple[Callable[[Stacked], Iterator[Measurement]], ...] = (
         measure_faces, measure_bolts, measure_pins, measure_overlap,
         flange_board.measure_pocket, flange_board.measure_contacts,
-        flange_board.measure_headers, flange_board.measure_screws,
+        flange_board.measure_headers, flange_board.measure_screws, measure_strength,
     )  # fmt: skip
     for step in steps:
         try:

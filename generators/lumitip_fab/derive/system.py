@@ -22,6 +22,7 @@ def derive_system(given: Input, flanges: tuple[Flange, ...], holders: tuple[Hold
         corner_mm=body.corner_mm,
         length_mm=body.length_mm,
         reach_mm=body.reach_mm,
+        load_kg=body.mass_kg + body.payload_kg,
         confidence=body.confidence,
         holders=tuple(
             holder.name

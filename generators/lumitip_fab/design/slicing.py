@@ -17,6 +17,10 @@ class Filament:
     speed_mm_s: float
     max_flow_mm3_s: float
     retract_mm: float
+    layer_mpa: float
+    """Tensile strength from layer to layer."""
+    bearing_mpa: float
+    """Compressive strength of a solid print."""
     layer_mm: float
     part: str = ""
     """What alone is printed in such layers; without a name everything that is of this filament."""

@@ -25,6 +25,8 @@ class System:
     length_mm: float
     reach_mm: float
     """From where the gripper stands to the mount plane of the fingers, closed."""
+    load_kg: float
+    """Of the gripper and what it may hold, taken to be at the tool centre point."""
     confidence: str
     """How far to trust the figures of the gripper's body."""
     holders: tuple[str, ...]
