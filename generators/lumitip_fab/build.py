@@ -74,9 +74,9 @@ def _build_anew(file: Path, told: str, out: Path, progress: Progress) -> Report:
             remember(out, told)
             return report
     except OSError as error:
-        raise OutputError(
-            f"{error.filename or out}: cannot be written: {error.strerror}"
-        ) from error
+        # Of two names the second is the file's own; the first is what it was written under.
+        at = error.filename2 or error.filename or out
+        raise OutputError(f"{at}: cannot be written: {error.strerror}") from error
 
 
 def _write(

@@ -78,6 +78,12 @@ def test_a_refused_input_writes_nothing(design_dir: Path, tmp_path: Path) -> Non
     assert not (tmp_path / "out").exists()
 
 
+def test_a_folder_where_a_file_belongs_is_named(design_dir: Path, tmp_path: Path) -> None:
+    (tmp_path / "out" / "layout.json").mkdir(parents=True)
+    with pytest.raises(OutputError, match=r"out/layout\.json: cannot be written: Is a directory"):
+        build(design_dir / "fingertip.toml", tmp_path / "out")
+
+
 def test_an_output_folder_that_is_a_file_is_refused(design_dir: Path, tmp_path: Path) -> None:
     (tmp_path / "out").write_text("here already")
     with pytest.raises(OutputError, match="cannot be written"):
