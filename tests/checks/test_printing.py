@@ -81,6 +81,8 @@ EDITS = [
     (NOTE, "| `mould/emitter_mould.3mf`", "| `mould/emitter_cast.3mf`", {"parts"}),
     (NOTE, "petg.ini` | PETG | 0.2 mm | on", "pla.ini` | PLA | 0.2 mm | on", {"parts"}),
     (NOTE, "`print/petg_mould.ini` | PETG | 0.15", "`print/petg.ini` | PETG | 0.2", {"parts"}),
+    (NOTE, "petg_mould.ini` | PETG | 0.15", "petg_mould.ini` | PETG | 0.2", {"parts"}),
+    (NOTE, "petg_mould.ini` | PETG | 0.15", "petg_mould.ini` | PLA | 0.15", {"parts"}),
     (NOTE, "| `backing/receiver_backing.3mf`", "`backing/receiver_backing.3mf`", {"parts"}),
 ]  # fmt: skip
 

@@ -13,7 +13,7 @@ FILM = "robot/meshes/emitter_film.stl"
 PLATE = "robot/meshes/receiver_collision_plate.stl"
 BLOCK = "robot/meshes/receiver_collision_block.stl"
 EVERY = {"tree", "facing", "tcp", "seat", "closed", "open", "mass", "centre", "reach", "bulk",
-         "macros"}  # fmt: skip
+         "macros", "slide"}  # fmt: skip
 Damage = Callable[[Path], None]
 
 
@@ -96,7 +96,8 @@ DAMAGES: tuple[tuple[str, Damage, set[str]], ...] = (
     ("one finger up", moved(RECEIVER, (0, 0, 0.0003)), {"tcp", "seat"}),
     ("tool centre point", moved(TCP, (0, 0, 0.0001)), {"tcp"}),
     ("without the lean", edited(URDF, 'rpy="1.59', 'rpy="1.57'), {"facing", "seat", "closed",
-                                                                  "open"}),
+                                                                  "open", "slide"}),
+    ("slides aside", edited(URDF, '<axis xyz="0 ', '<axis xyz="0.1 '), {"slide"}),
     ("short travel", edited(URDF, 'upper="0.039', 'upper="0.038', 2), {"open"}),
     ("mass in one file", edited(URDF, '<mass value="0.01', '<mass value="0.02'),
      {"mass", "macros"}),

@@ -93,16 +93,21 @@ def _wanted(design: Design, filament: Filament) -> dict[str, str]:
 
 
 def _parts(outputs: Path, design: Design) -> Measurement:
-    """Every printed part of a finger is listed with the settings of its filament, and none else."""
+    """Every printed part of a finger is listed with settings, filament and layers, none else."""
     try:
         text = (outputs / _NOTE).read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as problem:
         return unreadable("printing.parts", _NOTE, str(problem))
-    listed = set(re.findall(r"^\| `(\S+\.3mf)` \| `(\S+)` \|", text, re.MULTILINE))
+    row = r"^\| `(\S+\.3mf)` \| `(\S+)` \| (.+?) \| (\S+) mm \|"
+    listed = set(re.findall(row, text, re.MULTILINE))
     kinds = ("backing", *(["interface"] if design.interfaces else []), "mould")
     fingers = design.fingers
     paths = [f"{kind}/{finger.name}_{kind}.3mf" for kind in kinds for finger in fingers]
-    wrong = listed ^ {(path, design.slicing.of(path).file) for path in paths}
+    wanted = {
+        (path, of.file, of.name, f"{of.layer_mm:g}")
+        for path in paths for of in [design.slicing.of(path)]
+    }  # fmt: skip
+    wrong = listed ^ wanted
     return Measurement(
         "printing.parts", _NOTE, float(len(wrong)), 0, 0, "parts",
         f"listed wrongly or not at all, of {len(paths)}",

@@ -79,6 +79,18 @@ def _places(model: Model, design: Design) -> Iterator[Measurement]:
         gap = _gap(model, share)
         yield _figure(name, gap, wanted - GAP_MM, wanted + GAP_MM, "mm", "from skin to skin")
 
+    aside = [np.abs(_slid_mm(model, finger)[1:]).max() for finger in _FINGERS]
+    yield _figure(
+        "slide", np.max(aside), 0, PLACE_MM, "mm", "aside, on the way from closed to open"
+    )
+
+
+def _slid_mm(model: Model, finger: str) -> Vectors:
+    """How far a finger moves from closed to open, in the base's frame."""
+    link = f"lumitip_{finger}"
+    ends = [model.to_base(link, way) for way in (0.0, model.joints[f"{link}_joint"].upper_mm)]
+    return np.asarray(ends[1][:3, 3] - ends[0][:3, 3])
+
 
 def _gap(model: Model, share: float) -> float:
     """Along the opening, from the receiver to the emitter."""
