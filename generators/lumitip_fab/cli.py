@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 FAILED, REFUSED = 1, 2
-FLAGS = {"quiet": "print failures only", "json": "print the result as JSON"}
+FLAGS = {"quiet": "print failures only", "json": "print the result as JSON",
+         "verbose": "print all measurements, not the tightest of each check"}  # fmt: skip
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -52,7 +53,7 @@ def _parser() -> argparse.ArgumentParser:
     with_file(sub)
     with_out(sub)
     told = "Re-read the files in DIR and prove that they fit. Builds nothing."
-    sub = command("check", told, "quiet", "json")
+    sub = command("check", told, "quiet", "verbose", "json")
     with_out(sub)
     sub.add_argument("--junit", type=Path, metavar="XML", help="also write a JUnit file")
     sub.add_argument("--report", type=Path, metavar="JSON", help="also write a JSON file")

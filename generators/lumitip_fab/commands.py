@@ -15,6 +15,7 @@ from lumitip_fab.cli import FAILED, REFUSED
 from lumitip_fab.errors import BuildError, InputError, OutputError
 from lumitip_fab.locate import packaged_design
 
+_FEW = 20  # files that are named one by one
 WIDE = None if sys.stdout.isatty() else 200  # a file or a log has no edge to fold at
 OUT, ERR = Console(highlight=False, width=WIDE), Console(stderr=True, highlight=False)
 
@@ -72,13 +73,24 @@ def _build(options: argparse.Namespace) -> int:
         }
         print(json.dumps(told, indent=1))
     elif not options.quiet:
-        for path in report.written:
-            OUT.print(f"  wrote {options.out / path}", soft_wrap=True)
+        for line in shortened(report.written):
+            OUT.print(f"  wrote {options.out / line}", soft_wrap=True)
         for path in report.removed:
             OUT.print(f"  removed {options.out / path}", soft_wrap=True)
         OUT.print(f"{len(report.written)} files changed, {len(report.kept)} of "
                   f"{len(report.kept) + len(report.made)} steps were up to date")  # fmt: skip
     return 0
+
+
+def shortened(paths: tuple[str, ...]) -> list[str]:
+    """Files by name where they are few; else how many there are in each folder."""
+    if len(paths) <= _FEW:
+        return list(paths)
+    folders: dict[Path, list[str]] = {}
+    for path in paths:
+        folders.setdefault(Path(path).parent, []).append(path)
+    return [f"{folder}: {len(inside)} files" if len(inside) > 1 else inside[0]
+            for folder, inside in folders.items()]  # fmt: skip
 
 
 def _check(options: argparse.Namespace) -> int:
@@ -100,8 +112,12 @@ def _check(options: argparse.Namespace) -> int:
             raise OutputError(f"{path}: cannot be written: {error.strerror}") from error
     if options.json:
         print(told, end="")
-    elif not options.quiet or outcome.failed:
-        report.print_table(outcome, OUT, failed_only=options.quiet)
+    elif options.verbose:
+        report.print_measurements(outcome, OUT)
+    elif not options.quiet:
+        report.print_checks(outcome, OUT)
+    elif outcome.failed:
+        report.print_failures(outcome, OUT)
     return FAILED if outcome.failed else 0
 
 

@@ -9,6 +9,7 @@ from xml.etree import ElementTree
 
 import pytest
 
+from lumitip_fab import commands
 from lumitip_fab.cli import main
 from lumitip_fab.schema import schema_text
 
@@ -145,3 +146,10 @@ def test_every_field_of_the_schema_is_described() -> None:
         if "description" not in told
     ]
     assert missing == []
+
+
+def test_many_files_are_counted_by_folder_and_few_are_named() -> None:
+    few = tuple(f"mask/{i}.svg" for i in range(3))
+    many = (*(f"boards/order/{i}.csv" for i in range(30)), "bom.csv", "mask/a.pdf")
+    assert commands.shortened(few) == list(few)
+    assert commands.shortened(many) == ["boards/order: 30 files", "bom.csv", "mask/a.pdf"]

@@ -1,8 +1,10 @@
 """How the checks are told: a table for people, JUnit for machines."""
 
 import math
+from typing import Any
 from xml.etree import ElementTree
 
+from rich.box import Box
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
@@ -10,30 +12,77 @@ from rich.text import Text
 from lumitip_fab.checks.result import Measurement
 from lumitip_fab.checks.run import Outcome
 
+_NOTHING = 1e-9  # what rounding leaves of a difference
+SECTIONS = Box("    \n" * 8)
+"""A table without lines, but with an empty one between its sections."""
 
-def print_table(outcome: Outcome, console: Console, failed_only: bool = False) -> None:
-    """Every measurement with its limit and margin, and a line that counts them."""
-    table = Table(box=None, pad_edge=False, header_style="bold")
-    for heading, options in (
-        ("", {}),
-        ("check", {"no_wrap": True}),
-        ("file", {"overflow": "fold"}),
-        ("measured", {"justify": "right", "no_wrap": True}),
-        ("limit", {"no_wrap": True}),
-        ("margin", {"justify": "right", "no_wrap": True}),
-        ("note", {"overflow": "fold", "style": "dim"}),
-    ):
-        table.add_column(heading, **options)
+
+_COLUMNS: tuple[tuple[str, dict[str, Any]], ...] = (
+    ("", {}),
+    ("check", {"no_wrap": True}),
+    ("measured", {"justify": "right", "no_wrap": True}),
+    ("limit", {"no_wrap": True}),
+    ("margin", {"justify": "right", "no_wrap": True}),
+    ("of", {"justify": "right", "no_wrap": True}),
+    ("file", {"overflow": "fold"}),
+    ("note", {"overflow": "fold", "style": "dim"}),
+)
+
+
+def print_checks(outcome: Outcome, console: Console) -> None:
+    """A line for each check, that of its measurement with the least margin, by what it is of; then
+    every measurement that failed, and a line that counts them."""
+    checks: dict[str, list[Measurement]] = {}
     for m in outcome.measurements:
-        if failed_only and m.passed:
-            continue
-        mark = Text("ok", style="green") if m.passed else Text("FAIL", style="bold red")
-        unit = f" {m.unit}" if m.unit else ""
-        limit = "" if m.limit == "any" else m.limit
-        cells = (m.check, m.subject, f"{_figure(m.measured)}{unit}", limit, _figure(m.margin))
-        table.add_row(mark, *(Text(c) for c in cells), Text(m.note))
+        checks.setdefault(m.check, []).append(m)
+    table, group = _table(), ""
+    for name, measured in checks.items():
+        if group != (group := name.partition(".")[0]):
+            table.add_section()
+        _row(table, min(measured, key=_tightness), str(len(measured)))
     console.print(table)
-    console.print(summary(outcome))
+    print_failures(outcome, console)
+
+
+def print_measurements(outcome: Outcome, console: Console) -> None:
+    """Every measurement with its limit and margin; then as `print_checks`."""
+    table = _table()
+    for m in outcome.measurements:
+        _row(table, m, "")
+    console.print(table)
+    print_failures(outcome, console)
+
+
+def print_failures(outcome: Outcome, console: Console) -> None:
+    """Every measurement that failed, if any did, and a line that counts them."""
+    if outcome.failed:
+        console.rule(Text(f"{len(outcome.failed)} FAILED", style="bold red"), style="red")
+        table = _table()
+        for m in outcome.failed:
+            _row(table, m, "")
+        console.print(table)
+    console.print(summary(outcome), style="bold red" if outcome.failed else "bold green")
+
+
+def _table() -> Table:
+    table = Table(box=SECTIONS, pad_edge=False, header_style="bold", show_edge=False)
+    for heading, options in _COLUMNS:
+        table.add_column(heading, **options)
+    return table
+
+
+def _row(table: Table, m: Measurement, of: str) -> None:
+    mark = Text("ok", style="green") if m.passed else Text("FAIL", style="bold red")
+    unit = f" {m.unit}" if m.unit else ""
+    limit = "" if m.limit == "any" else m.limit
+    cells = (m.check, f"{_figure(m.measured)}{unit}", limit, _figure(m.margin), of, m.subject)
+    table.add_row(mark, *(Text(c) for c in cells), Text(m.note))
+
+
+def _tightness(m: Measurement) -> tuple[bool, bool, float]:
+    """What failed first, then the least margin; counts that are exact have none to lose."""
+    margin = -math.inf if math.isnan(m.margin) else m.margin
+    return m.passed, m.low == m.high, margin
 
 
 def summary(outcome: Outcome) -> str:
@@ -69,4 +118,6 @@ def _sentence(m: Measurement) -> str:
 def _figure(value: float) -> str:
     if math.isnan(value):
         return "none"
-    return "" if math.isinf(value) else f"{value:.4g}"
+    if math.isinf(value):
+        return ""
+    return f"{value:.4g}" if abs(value) >= _NOTHING else "0"
