@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from manifold3d import Manifold
 
-from damages import box, carve, failing, flip_a_triangle, remove_packages, swap
+from damages import box, carve, edit, failing, flip_a_triangle, remove_packages, swap
 from lumitip_fab.checks import mould
 
 STL = "mould/receiver_mould.stl"
@@ -162,6 +162,14 @@ def mass_edited(folder: Path) -> None:
     (folder / NOTE).write_text(changed, encoding="utf-8")
 
 
+def layers_edited(folder: Path) -> None:
+    edit(folder / NOTE, "in layers of 0.15 mm", "in layers of 0.2 mm")
+
+
+def hours_edited(folder: Path) -> None:
+    edit(folder / NOTE, "Leave it for 24 h", "Leave it for 2 h")
+
+
 def note_empty(folder: Path) -> None:
     (folder / NOTE).write_text("", encoding="utf-8")
 
@@ -184,8 +192,10 @@ FILES = {
     packages_swapped: {"three_mf", "step"},
     volume_edited: {"volume", "masses"},
     mass_edited: {"masses"},
-    note_empty: {"volume", "masses"},
-    note_missing: {"volume", "masses"},
+    layers_edited: {"note"},
+    hours_edited: {"note"},
+    note_empty: {"volume", "masses", "note"},
+    note_missing: {"volume", "masses", "note"},
     backing_missing: {"seat"},
 }
 

@@ -25,7 +25,7 @@ READS = ("mould/*", "backing/*_backing.stl")
 NAMES = (
     "mould.watertight", "mould.bodies", "mould.fits_bed", "mould.thickness", "mould.tip_thickness",
     "mould.stops", "mould.gap", "mould.draft", "mould.undercut", "mould.min_wall", "mould.three_mf",
-    "mould.step", "mould.volume", "mould.masses", "mould.seat", "mould.letter",
+    "mould.step", "mould.volume", "mould.masses", "mould.note", "mould.seat", "mould.letter",
 )  # fmt: skip
 THICKNESS_MM = 0.02
 STOPS_MM = 0.02
@@ -35,6 +35,12 @@ GRID_MM = 0.8
 _PAD_INNER, _PAD_OUTER = 0.95, 1.13  # of a pad's radius: on it, and beside its drafted foot
 _LINE_MM = 0.15  # how far under the plate the tip line is probed
 _PART = re.compile(r", part ([AB]) \| \*\*([0-9.]+) g\*\*")
+_HOW = (
+    r"layers of (\S+) mm",
+    r"floor at (\S+) mm",
+    r"stops\s+at (\S+) mm",
+    r"Leave it for (\S+) h",
+)
 _STATED = re.compile(r"stays on the finger \| \*\*([0-9.]+) mL\*\*")
 
 
@@ -56,6 +62,7 @@ def _measured(
     mesh: Any, file: str, outputs: Path, design: Design, finger: Finger
 ) -> Iterator[Measurement]:
     yield _masses(outputs, design, finger)
+    yield _note(outputs, design, finger)
     yield Measurement("mould.watertight", file, solids.open_edges(mesh), 0, 0, "edges")
     yield Measurement("mould.bodies", file, solids.bodies(mesh), 1, 1, "bodies")
     room = np.array(design.printing.bed_mm) - mesh.extents
@@ -205,6 +212,21 @@ def _masses(outputs: Path, design: Design, finger: Finger) -> Measurement:
     worst = max(abs(float(grams[p]) / w - 1) for p, w in zip("AB", wanted, strict=True))
     return Measurement("mould.masses", file, 100 * worst, 0, 100 * VOLUME_FRACTION, "%",
                        f"parts of {wanted[0]:.2f} g and {wanted[1]:.2f} g")  # fmt: skip
+
+
+def _note(outputs: Path, design: Design, finger: Finger) -> Measurement:
+    """Layers, heights and hours in the note against the design."""
+    file, mould = f"mould/{finger.name}_casting.md", design.mould
+    try:
+        text = (outputs / file).read_text(encoding="utf-8")
+    except (OSError, ValueError) as error:
+        return unreadable("mould.note", file, repr(error))
+    stops_mm = mould.wall_mm + design.stack.cover_mm
+    wanted = [f"{v:g}" for v in (mould.layer_mm, mould.wall_mm, stops_mm, mould.cure_h)]
+    told = [re.findall(pattern, text) for pattern in _HOW]
+    wrong = sum(found != [v] for found, v in zip(told, wanted, strict=True))
+    return Measurement("mould.note", file, float(wrong), 0, 0, "wrong figures",
+                       f"of layers, floor, stops and hours: {', '.join(wanted)}")  # fmt: skip
 
 
 def _cavity_mm3(body: overlap.Solid, design: Design) -> float:
