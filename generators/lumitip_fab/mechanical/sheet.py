@@ -23,9 +23,9 @@ _STROKES = {
     "leader": f'fill="none" stroke="{_FAINT}" stroke-width=".18"',
 }
 _WORDS = {
-    "title": f'font-size="6" font-weight="bold" fill="{_INK}"',
-    "name": f'font-size="3.6" font-weight="bold" fill="{_INK}"',
-    "detail": f'font-size="3" fill="{_FAINT}"',
+    "title": (6.0, f'font-weight="bold" fill="{_INK}"'),
+    "name": (3.6, f'font-weight="bold" fill="{_INK}"'),
+    "detail": (3.0, f'fill="{_FAINT}"'),
 }
 
 
@@ -34,6 +34,8 @@ class Sheet:
     """A page that grows with what is drawn on it."""
 
     margin_mm: float = 8.0
+    words_scale: float = 1.0
+    """Size of words against those of a single finger's drawing."""
     drawn: list[str] = field(default_factory=list)
     low: Points = field(default_factory=lambda: np.full(2, np.inf))
     high: Points = field(default_factory=lambda: np.full(2, -np.inf))
@@ -69,9 +71,10 @@ class Sheet:
             style: `"title"`, `"name"` or `"detail"`.
             anchor: `"start"` or `"end"`.
         """
+        size, look = _WORDS[style]
         self.drawn.append(
-            f'<text {_WORDS[style]} x="{x_mm:.2f}" y="{0.0 - y_mm:.2f}" text-anchor="{anchor}">'
-            f"{escape(text)}</text>"
+            f'<text font-size="{size * self.words_scale:g}" {look} x="{x_mm:.2f}" '
+            f'y="{0.0 - y_mm:.2f}" text-anchor="{anchor}">{escape(text)}</text>'
         )
 
     def leaders(self, told: list[tuple[tuple[str, str], Points]], x_mm: float, anchor: str) -> None:
@@ -83,15 +86,16 @@ class Sheet:
             anchor: `"start"` or `"end"`.
         """
         gap = 1.5 if anchor == "start" else -1.5
+        scale = self.words_scale
         bend = x_mm - 4 * gap
         below = math.inf
         for words, at in sorted(told, key=lambda label: -float(label[1][1])):
-            y = min(float(at[1]), below - LINE_MM)
+            y = min(float(at[1]), below - LINE_MM * scale)
             below = y
             self.lines([np.array([at, (bend, y), (x_mm, y)])], "leader")
             self.dot(float(at[0]), float(at[1]))
-            self.words(x_mm + gap, y + 0.4, words[0], "name", anchor)
-            self.words(x_mm + gap, y - 3.2, words[1], "detail", anchor)
+            self.words(x_mm + gap, y + 0.4 * scale, words[0], "name", anchor)
+            self.words(x_mm + gap, y - 3.2 * scale, words[1], "detail", anchor)
 
     def cover(self, x_mm: float, y_mm: float) -> None:
         """Make the page reach a point."""

@@ -14,7 +14,8 @@ AZIMUTH_DEG = 35.0
 ELEVATION_DEG = 24.0
 GAP_MM = 26.0  # by which the bodies are pulled apart along the axis
 ASIDE_MM = 115.0  # by which a holder is pulled off the gripper
-LABEL_MM, WORDS_MM = 12.0, 62.0
+WORDS_SCALE = 1.6  # of a drawing that is more than twice as large as a finger's
+LABEL_MM, WORDS_MM = 12.0, 104.0
 LAYERS = ("interface", "backing", "board", "silicone", "film")
 _TINTS = {
     "robot": "#d5d8dc", "coupling": "#c9ced4", "lower": "#e9edf3", "upper": "#e9edf3",
@@ -45,7 +46,7 @@ def system_view(
         system: for heights along the axis.
         tcp_mm: height of the tool centre point.
     """
-    sheet, eye = Sheet(), view(AZIMUTH_DEG, ELEVATION_DEG)
+    sheet, eye = Sheet(words_scale=WORDS_SCALE), view(AZIMUTH_DEG, ELEVATION_DEG)
     shifts = _shifts(groups, system)
     drawn = [
         Drawn(group.name, body.name, _pulled(body.mesh, group, shifts[group.name]))
