@@ -73,8 +73,8 @@ def _build(options: argparse.Namespace) -> int:
         }
         print(json.dumps(told, indent=1))
     elif not options.quiet:
-        for line in shortened(report.written):
-            OUT.print(f"  wrote {options.out / line}", soft_wrap=True)
+        for line in shortened(options.out, report.written):
+            OUT.print(f"  wrote {line}", soft_wrap=True)
         for path in report.removed:
             OUT.print(f"  removed {options.out / path}", soft_wrap=True)
         OUT.print(f"{len(report.written)} files changed, {len(report.kept)} of "
@@ -82,14 +82,15 @@ def _build(options: argparse.Namespace) -> int:
     return 0
 
 
-def shortened(paths: tuple[str, ...]) -> list[str]:
+def shortened(out: Path, written: tuple[str, ...]) -> list[str]:
     """Files by name where they are few; else how many there are in each folder."""
+    paths = [out / name for name in written]
     if len(paths) <= _FEW:
-        return list(paths)
-    folders: dict[Path, list[str]] = {}
+        return [str(path) for path in paths]
+    folders: dict[Path, list[Path]] = {}
     for path in paths:
-        folders.setdefault(Path(path).parent, []).append(path)
-    return [f"{folder}: {len(inside)} files" if len(inside) > 1 else inside[0]
+        folders.setdefault(path.parent, []).append(path)
+    return [f"{folder}: {len(inside)} files" if len(inside) > 1 else str(inside[0])
             for folder, inside in folders.items()]  # fmt: skip
 
 
