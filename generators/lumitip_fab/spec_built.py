@@ -79,10 +79,10 @@ def _strength(out: Path, design: Design) -> Iterator[Row]:
             f"{LEAST_SAFETY:g} is wanted"
         )
         yield Row("safety of the flange's layers", "not stated", f"{found.layers:.1f}",
-                  f"{filament.layer_mpa:g} MPa from layer to layer (assumed), the bolts left out: "
-                  + load)  # fmt: skip
+                  f"{filament.layer_mpa:g} MPa from layer to layer by the filament's entry, the "
+                  f"bolts left out: {load}")  # fmt: skip
         yield Row("... right under its bolts' heads", "not stated", f"{found.bolts:.1f}",
-                  f"{filament.bearing_mpa:g} MPa when it is pressed (assumed): {load}")  # fmt: skip
+                  f"{filament.bearing_mpa:g} MPa when it is pressed: {load}")  # fmt: skip
 
 
 def _volume_ml(path: Path) -> float:

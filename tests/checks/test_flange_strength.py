@@ -73,3 +73,10 @@ def test_safety_falls_with_the_load_and_rises_with_the_filament(design: Design) 
     slicing = dataclasses.replace(design.slicing, rigid=rigid)
     tough = strength(*parts, dataclasses.replace(design, slicing=slicing))
     assert (tough.layers, tough.bolts) == pytest.approx((2 * plain.layers, 2 * plain.bolts))
+
+
+def test_bolts_in_one_line_hold_nothing_that_tilts_about_it(design: Design) -> None:
+    (flange,) = design.flanges
+    row = dataclasses.replace(flange, bolts=((-27.0, 0.0), (0.0, 0.0), (27.0, 0.0)))
+    found = strength(*tubes(design), dataclasses.replace(design, flanges=(row,)))
+    assert found.bolts == 0.0 and found.layers > 2.0

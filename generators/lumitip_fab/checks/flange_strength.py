@@ -100,8 +100,12 @@ def _layer_mpa(cut: Any, force_n: float, moment_nmm: float) -> float:
 
 
 def _bolt_n(places_mm: Vectors, force_n: float, moment_nmm: float) -> float:
-    """Greatest tension of a bolt: moment about the group's middle, and its share of the force."""
+    """Greatest tension of a bolt: moment about the group's middle, and its share of the force.
+
+    Bolts in one line hold nothing that tilts about it."""
     away = places_mm - places_mm.mean(axis=0)
+    if np.linalg.matrix_rank(away) < 2:
+        return math.inf
     lean = np.linalg.norm(np.linalg.pinv(away.T @ away) @ away.T, axis=0).max()
     return float(moment_nmm * lean + force_n / len(places_mm))
 
