@@ -37,8 +37,10 @@ def _parser() -> argparse.ArgumentParser:
     def command(name: str, told: str, *flags: str) -> argparse.ArgumentParser:
         sub = commands.add_parser(name, help=told, description=told)
         sub.set_defaults(quiet=False, json=False)
+        amount = sub.add_mutually_exclusive_group()
         for flag in flags:
-            sub.add_argument(f"--{flag}", action="store_true", help=FLAGS[flag])
+            where = amount if flag in {"quiet", "verbose"} else sub
+            where.add_argument(f"--{flag}", action="store_true", help=FLAGS[flag])
         return sub
 
     def with_file(sub: argparse.ArgumentParser) -> None:

@@ -105,6 +105,14 @@ def test_a_failed_check_exits_1_and_says_which(
     assert ElementTree.parse(tmp_path / "x").find(".//failure") is not None
 
 
+def test_check_is_not_asked_for_all_lines_and_for_none(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit, match="2"):
+        main(["check", "--out", str(tmp_path), "--quiet", "--verbose"])
+    assert "--verbose: not allowed with argument --quiet" in capsys.readouterr().err
+
+
 def test_a_report_that_cannot_be_written_is_told(
     outputs: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
