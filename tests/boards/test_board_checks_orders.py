@@ -225,6 +225,17 @@ def zip_spoilt(order: Path) -> None:
     path.write_bytes(data[:at] + b"\xff" * 20 + data[at + 20 :])
 
 
+def file_twice_in_a_zip(order: Path) -> None:
+    """Another drill file of the same name before the right one, which is read as the last."""
+    path = order / f"{SECOND}_receiver.zip"
+    with zipfile.ZipFile(path) as package:
+        files = [(name, package.read(name)) for name in package.namelist()]
+    (drills,) = (name for name, _ in files if name.upper().endswith("-NPTH.DRL"))
+    with zipfile.ZipFile(path, "w") as package, pytest.warns(UserWarning, match="Duplicate"):
+        for name, data in [(drills, b"no drill file"), *files]:
+            package.writestr(name, data)
+
+
 def zip_with_a_password(order: Path) -> None:
     path = order / f"{SECOND}_receiver.zip"
     data = path.read_bytes()
@@ -245,6 +256,7 @@ FOLDER_DAMAGES: dict[Callable[[Path], None], set[str]] = {
     table_gone: {"readable"},
     zip_short: {"readable"},
     zip_spoilt: {"readable"},
+    file_twice_in_a_zip: {"readable"},
     zip_with_a_password: {"readable"},
     zips_swapped: {"readable"},
     board_gone: {"board"},
