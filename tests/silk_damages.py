@@ -47,6 +47,19 @@ def cell_misnamed(text: str) -> str:
     )
 
 
+def cell_names_lost(text: str) -> str:
+    """The references of all LEDs are on another layer, which is not printed."""
+    hurt, found = re.subn(
+        r'(\(fp_text reference "D\d+"\s+\(at [^)]*\)\s+\(layer )"F.SilkS"', r'\g<1>"F.Fab"', text
+    )
+    assert found > 1
+    return hurt
+
+
+def cell_name_hidden(text: str) -> str:
+    return in_part(text, "D7", r'(reference "D7"\s+\(at [^)]*\)\s+\(layer "F.SilkS"\))', r"\1 hide")
+
+
 def label_lost(text: str) -> str:
     return without(r'\(gr_text "12V"')(text)
 

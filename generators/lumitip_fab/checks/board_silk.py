@@ -22,6 +22,9 @@ LABEL_MM = 5.0  # from a label to its pad, at most
 ARROW_MM = 5.0  # from the word to its arrow, at most
 TURN_DEG = 1.0
 DOT_MM = 0.1  # longest line that is a dot
+NAMED_LETTERS = 6.25  # heights of letters from cell to cell, from which every name has room
+NAMED_FIGURES = 2  # in the longest name that has
+END_SHARE = 0.5  # least of the columns' ends that are named where not all cells are
 _NOISE_MM = 1e-4
 
 
@@ -34,7 +37,7 @@ def measure_silk(read: Read) -> Iterator[Measurement]:
     yield read.figure("silk_cells", share, CELL_SHARE, 1.0, "drawn", f"least of cell {cell}")
     yield read.count("silk_marks", [*_unmarked(read), *_first_pad(read)], "parts")
     yield read.count("silk_labels", list(_unlabelled(read)), "pads")
-    yield read.count("silk_cell_names", list(_misnamed(read)), "cells")
+    yield read.count("silk_cell_names", [*_misnamed(read), *_unnamed(read)], "cells")
     letters = [word.height_mm for word in silk.words]
     yield read.figure("silk_letters", min(letters, default=math.nan), rules.silk_text_mm, math.inf)
     pens = [line.width_mm for line in silk.lines] + [word.stroke_mm for word in silk.words]
@@ -158,11 +161,32 @@ def _misnamed(read: Read) -> Iterator[str]:
     """Names of cells' parts that stand nearer to another cell than to their own."""
     middles = np.array([(cell.x_mm, cell.y_mm) for cell in read.design.cells])
     middles = middles * (-1 if read.finger.name == "emitter" else 1, 1)
+    for number, word in _names(read):
+        nearest = int(np.hypot(*(middles - read.sensor([word.at])[0]).T).argmin()) + 1
+        if number != nearest:
+            yield f"{word.ref} stands at cell {nearest - 1}"
+
+
+def _unnamed(read: Read) -> Iterator[str]:
+    """Cells without a name. In narrow ones columns may be named at their ends alone, and at some
+    of these there may be no room: between a hole and the edge."""
+    cells, named = read.design.cells, {number for number, _ in _names(read)}
+    letter_mm, figures = read.design.rules.silk_text_mm, len(str(len(cells)))
+    narrow = read.design.grid.pitch_mm < NAMED_LETTERS * letter_mm - _NOISE_MM
+    lengths = read.design.grid.columns
+    last = {sum(lengths[: column + 1]) for column in range(len(lengths))}
+    ends = last | {end - length + 1 for end, length in zip(sorted(last), lengths, strict=True)}
+    wanted = set(range(1, len(cells) + 1))
+    if (narrow or figures > NAMED_FIGURES) and named <= ends:
+        wanted = ends if len(named) < END_SHARE * len(ends) else set()
+    yield from (f"cell {number - 1} has no name" for number in sorted(wanted - named))
+
+
+def _names(read: Read) -> Iterator[tuple[int, Word]]:
+    """The names of cells' parts that are printed on the front, each with its figure."""
     for word in read.board.silk.words:
         if re.fullmatch(r"[DQ]\d+", word.ref) and word.text == word.ref and word.front:
-            nearest = int(np.hypot(*(middles - read.sensor([word.at])[0]).T).argmin()) + 1
-            if int(word.ref[1:]) != nearest:
-                yield f"{word.ref} stands at cell {nearest - 1}"
+            yield int(word.ref[1:]), word
 
 
 def _first_pad(read: Read) -> Iterator[str]:
