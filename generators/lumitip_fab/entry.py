@@ -4,10 +4,13 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-NAME = r"^[A-Za-z0-9][\w .+/\-]*$"
+_LETTERS = "A-Za-zµÀ-ÖØ-öø-ÿ"
+"""Those of Latin-1: all are in the PDFs' typeface."""
+NAME = rf"^[A-Za-z0-9]([{_LETTERS}0-9 .+/\-]|_[A-Za-z0-9])*$"
+"""Stands in texts where there is no title: a `_` opens no emphasis that another one closes."""
 Length = Annotated[float, Field(ge=0.01, le=500)]
 Share = Annotated[float, Field(ge=0.01, le=1000)]
-TITLE = r"^(\w[\w .,+/()µ\-]*)?$"
+TITLE = rf"^([{_LETTERS}0-9][{_LETTERS}0-9 .,+/()\-]*)?$"
 PIN = r"^[A-Za-z][A-Za-z0-9_]{0,15}$"
 Pin = Annotated[str, Field(pattern=PIN)]
 Offset = Annotated[float, Field(ge=-500, le=500)]

@@ -10,7 +10,7 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
-from lumitip_fab.entry import NAME, PIN
+from lumitip_fab.entry import NAME, PIN, TITLE
 from lumitip_fab.errors import Problem
 from lumitip_fab.parameters import PRINTABLE, REVISION
 from lumitip_fab.source import Source
@@ -38,7 +38,10 @@ _BOUNDS = {
     "literal_error": "{expected} is allowed",
 }
 _PATTERNS = {
-    NAME: "letters, digits, spaces and any of . + - / _, beginning with a letter or digit,",
+    NAME: "letters of Latin-1, digits, spaces, any of . + - / and a _ before a letter or digit, "
+    "beginning with an ASCII letter or digit,",
+    TITLE: "letters of Latin-1, digits, spaces and any of . , + - / ( ), beginning with a letter "
+    "or digit,",
     PIN: "1 to 16 letters, digits or _, beginning with a letter,",
     PRINTABLE: "ASCII letters, digits, punctuation and spaces",
     REVISION: "1 to 8 letters, digits, dots or hyphens",

@@ -4,10 +4,12 @@ from typing import Any
 
 import pytest
 from pydantic import ValidationError
+from reportlab.pdfbase.pdfmetrics import getFont
 
 from lumitip_fab.catalogue import Catalogue, Controller, Led, Multiplexer
 from lumitip_fab.entry import Sourced
 from lumitip_fab.load import Input
+from lumitip_fab.typeface import BOLD, CODE, PLAIN, load_typeface
 
 
 @pytest.fixture(scope="module")
@@ -68,10 +70,30 @@ def test_no_name_made_for_typing_is_all_there_is(parts: Catalogue) -> None:
             assert "_" not in (entry.title or name), f"{kind}: {name} needs a title"
 
 
-@pytest.mark.parametrize("title", ["two\nlines", "a | b", "`code`", "x" * 65, " "])
+@pytest.mark.parametrize("title", ["two\nlines", "a | b", "x" * 65, " "])
 def test_a_title_that_would_break_a_table_is_refused(parts: Catalogue, title: str) -> None:
     with pytest.raises(ValidationError, match="title"):
         Led.model_validate(_changed(parts.leds["15406085BA300"], title=title))
+
+
+@pytest.mark.parametrize(
+    "title", ["聚氨酯", "LED 新", "Λ", "Gripper _new_ x", "a *b*", "`code`", "a [b]", "<b>", "a\\b"]
+)
+def test_a_title_that_would_not_be_printed_as_it_is_is_refused(
+    parts: Catalogue, title: str
+) -> None:
+    with pytest.raises(ValidationError, match="title"):
+        Led.model_validate(_changed(parts.leds["15406085BA300"], title=title))
+
+
+def test_a_title_of_any_letters_of_latin_1_is_in_every_typeface(parts: Catalogue) -> None:
+    letters = "µ" + "".join(chr(code) for code in range(0xC0, 0x100) if chr(code) not in "×÷")
+    for title in (letters, "Größe 2.5/1 (a-b), c+d"):
+        led = Led.model_validate(_changed(parts.leds["15406085BA300"], title=title))
+        assert led.title == title
+    load_typeface()
+    for face in (PLAIN, BOLD, CODE):
+        assert {ord(letter) for letter in letters} <= getFont(face).face.charToGlyph.keys()
 
 
 def _changed(entry: Any, **values: Any) -> dict[str, Any]:
