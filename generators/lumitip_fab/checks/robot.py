@@ -16,7 +16,9 @@ from lumitip_fab.errors import OutputError
 READS = ("robot/*", "robot/meshes/*")
 _FILE, _MACROS = "robot/lumitip.urdf", "robot/lumitip.xacro"
 _FINGERS = ("receiver", "emitter")
-_CHECKS = ("tree", "facing", "tcp", "seat", "closed", "open", "mass", "centre", "reach", "bulk")
+_CHECKS = (
+    "tree", "facing", "tcp", "seat", "closed", "open", "slide", "mass", "centre", "reach", "bulk",
+)  # fmt: skip
 PLACE_MM = 0.02
 GAP_MM = 0.1  # the meshes are coarser than the parts, and a film's taper ends in one edge
 MASS = 0.01
