@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -10,9 +9,6 @@ import pytest
 from board_damages import in_part, moved_part, once, swapped_pads
 from damages import cut_short, failing, swap
 from lumitip_fab.checks import board
-from lumitip_fab.checks.board_read import Read
-from lumitip_fab.checks.board_silk import measure_silk
-from lumitip_fab.checks.kicad_board import read_board
 from lumitip_fab.encoding import read_design
 from silk_damages import (
     arrow_bent,
@@ -261,35 +257,6 @@ def test_a_damage_of_the_emitter(damage: Damage, damaged_boards: Path) -> None:
 @pytest.mark.parametrize("damage", RECEIVER_DAMAGES, ids=lambda d: d.__name__)
 def test_a_damage_of_the_receiver(damage: Damage, damaged_boards: Path) -> None:
     assert hurt(damaged_boards, RECEIVER, damage) == RECEIVER_DAMAGES[damage]
-
-
-NARROW_MM = 4.9
-COLUMN_ENDS = {1, 3, 4, 5, 6, 8, 9, 10, 11, 13}
-
-
-@pytest.mark.parametrize(
-    ("pitch_mm", "named", "unnamed"),
-    [
-        (NARROW_MM, COLUMN_ENDS, 0),
-        (NARROW_MM, {1, 3, 4, 5, 6}, 0),
-        (NARROW_MM, {1, 3, 4, 5}, 6),
-        (NARROW_MM, set(), 10),
-        (NARROW_MM, set(range(1, 13)), 1),
-        (5.0, COLUMN_ENDS, 3),
-    ],
-)
-def test_narrow_cells_are_named_at_half_of_the_columns_ends_or_all(
-    pitch_mm: float, named: set[int], unnamed: int, boards: Callable[[str], Path]
-) -> None:
-    folder = boards("small")
-    design = read_design(folder / "design.json")
-    design = replace(design, grid=replace(design.grid, pitch_mm=pitch_mm))
-    read = Read(EMITTER, read_board(folder / EMITTER), design, design.fingers[0])
-    printed = read.board.silk
-    words = tuple(w for w in printed.words if w.ref[:1] != "D" or int(w.ref[1:]) in named)
-    read = replace(read, board=replace(read.board, silk=replace(printed, words=words)))
-    (found,) = (m for m in measure_silk(read) if m.check == "board.silk_cell_names")
-    assert found.measured == unnamed
 
 
 def gone(folder: Path) -> None:
