@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pikepdf
 
-from lumitip_fab.checks.mask_page import MALFORMED
 from lumitip_fab.checks.pdf_faces import faces_of, lacking
+from lumitip_fab.checks.result import MALFORMED
 from lumitip_fab.errors import OutputError
 
 _FOOT = 2  # texts at the foot of each page, drawn first

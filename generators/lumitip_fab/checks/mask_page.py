@@ -10,6 +10,7 @@ import pikepdf
 from numpy.typing import NDArray
 
 from lumitip_fab.checks.pdf_faces import Face, faces_of, lacking
+from lumitip_fab.checks.result import MALFORMED
 
 Points = NDArray[np.float64]
 
@@ -18,11 +19,6 @@ _BLACK = {"g": ((0.0,),), "rg": ((0.0, 0.0, 0.0),), "k": ((0.0, 0.0, 0.0, 1.0), 
 _FILLS = {"f": False, "F": False, "f*": True, "b": False, "b*": True, "B": False, "B*": True}
 _STROKES = ("S", "s", "b", "b*", "B", "B*")
 _HIDING = ("Do", "INLINE IMAGE", "W", "W*", "sh")
-# What readers raise on damaged files, beside their own exceptions.
-MALFORMED = (
-    ValueError, LookupError, TypeError, AttributeError, ArithmeticError, StopIteration,
-    RuntimeError,
-)  # fmt: skip
 _IDENTITY = np.eye(3)
 
 

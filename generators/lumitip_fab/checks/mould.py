@@ -61,8 +61,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
 def _measured(
     mesh: Any, file: str, outputs: Path, design: Design, finger: Finger
 ) -> Iterator[Measurement]:
-    yield _masses(outputs, design, finger)
-    yield _note(outputs, design, finger)
+    yield from _noted(outputs, design, finger)
     yield Measurement("mould.watertight", file, solids.open_edges(mesh), 0, 0, "edges")
     yield Measurement("mould.bodies", file, solids.bodies(mesh), 1, 1, "bodies")
     room = np.array(design.printing.bed_mm) - mesh.extents
@@ -197,13 +196,21 @@ def _volume(
                        "mL", f"{measured:.3f} mL in {file}")  # fmt: skip
 
 
-def _masses(outputs: Path, design: Design, finger: Finger) -> Measurement:
-    """Grams of parts A and B in the note against its own millilitres and the mixing ratio."""
-    file, mould = f"mould/{finger.name}_casting.md", design.mould
+def _noted(outputs: Path, design: Design, finger: Finger) -> Iterator[Measurement]:
+    """What the casting note tells: grams of both parts, layers, heights and hours."""
+    file = f"mould/{finger.name}_casting.md"
     try:
         text = (outputs / file).read_text(encoding="utf-8")
     except (OSError, ValueError) as error:
-        return unreadable("mould.masses", file, repr(error))
+        yield from (unreadable(f"mould.{name}", file, repr(error)) for name in ("masses", "note"))
+        return
+    yield _masses(text, file, design)
+    yield _figures(text, file, design)
+
+
+def _masses(text: str, file: str, design: Design) -> Measurement:
+    """Grams of parts A and B in the note against its own millilitres and the mixing ratio."""
+    mould = design.mould
     stated, grams = _STATED.search(text), dict(_PART.findall(text))
     if stated is None or grams.keys() != {"A", "B"}:
         return unreadable("mould.masses", file, "does not state the mass of parts A and B")
@@ -214,13 +221,9 @@ def _masses(outputs: Path, design: Design, finger: Finger) -> Measurement:
                        f"parts of {wanted[0]:.2f} g and {wanted[1]:.2f} g")  # fmt: skip
 
 
-def _note(outputs: Path, design: Design, finger: Finger) -> Measurement:
+def _figures(text: str, file: str, design: Design) -> Measurement:
     """Layers, heights and hours in the note against the design."""
-    file, mould = f"mould/{finger.name}_casting.md", design.mould
-    try:
-        text = (outputs / file).read_text(encoding="utf-8")
-    except (OSError, ValueError) as error:
-        return unreadable("mould.note", file, repr(error))
+    mould = design.mould
     stops_mm = mould.wall_mm + design.stack.cover_mm
     wanted = [f"{v:g}" for v in (mould.layer_mm, mould.wall_mm, stops_mm, mould.cure_h)]
     told = [re.findall(pattern, text) for pattern in _HOW]

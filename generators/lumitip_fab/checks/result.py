@@ -7,6 +7,11 @@ from pathlib import Path
 
 from lumitip_fab.design import Design
 
+# What readers raise on damaged files, beside their own exceptions.
+MALFORMED = (
+    ValueError, LookupError, TypeError, AttributeError, ArithmeticError, StopIteration,
+    RuntimeError,
+)  # fmt: skip
 NOISE = 1e-5  # of coordinates in files: STL keeps 24 bits, which is 4e-6 mm at 50 mm
 
 
