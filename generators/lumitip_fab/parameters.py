@@ -253,7 +253,8 @@ class Printer(Strict):
     """Thinnest wall that prints well (mm)."""
     fit_mm: float = Field(ge=-0.1, le=0.1)
     """Reading of the fit test plate: added to every gap between printed parts and boards, metal and
-    gripper, on each side; above zero all sits looser (mm)."""
+    gripper, and round the rim that a compliant finger is glued by, on each side; above zero all
+    sits looser (mm)."""
 
 
 class Parameters(Strict):

@@ -7,16 +7,28 @@ from pathlib import Path
 
 import pytest
 
-from lumitip_fab.checks import flange, holder
+from lumitip_fab.checks import backing, flange, holder
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
-from lumitip_fab.encoding import read_design
+from lumitip_fab.encoding import design_text, read_design
 from lumitip_fab.errors import FabError
 from lumitip_fab.load import load
+from lumitip_fab.mechanical.backing import backing as backing_files
 
 Derived = Callable[..., Design]
 ROUND_FLANGE = {"spigot", "recess", "pin_width", "socket_width", "peg_play"}
 ROUND_BOARD = {"board_gap", "board_play"}
+COMPLIANT = """
+[stack]
+floor_mm = 2.0
+pcb_mm = 0.2
+[backing]
+variant = "flex"
+material = "TPU 98A"
+density_g_ml = 1.22
+[tip]
+slant_start_mm = 14.2
+"""
 
 
 @pytest.fixture
@@ -85,3 +97,49 @@ def test_a_fit_that_leaves_too_little_wall_is_refused_with_the_numbers(fitted: D
     with pytest.raises(FabError) as refusal:
         fitted(0.1, "[flange]\nclearance_mm = 0.9")
     assert "with printer.fit_mm = 0.1: at least" in str(refusal.value)
+
+
+@pytest.mark.parametrize("fit_mm", [-0.1, -0.05, 0.05, 0.1])
+def test_the_rim_follows_the_fit_and_its_groove_does_not(fit_mm: float, fitted: Derived) -> None:
+    """The reading is of the rim's filament: its outer edge and the pad's go back, nothing else."""
+    (before,), (after,) = (fitted(fit, COMPLIANT).interfaces for fit in (0.0, fit_mm))
+    assert after.rim_mm - before.rim_mm == pytest.approx(-2 * fit_mm)
+    shrunk = dataclasses.astuple(before.box.grown(-fit_mm))
+    wanted = (*shrunk[:2], before.box.y_min_mm, shrunk[3])  # it ends where the plate does
+    assert dataclasses.astuple(after.box) == pytest.approx(wanted)
+    assert after.rim_height_mm == before.rim_height_mm
+    assert dataclasses.replace(after, gap_mm=before.gap_mm) == before
+
+
+@pytest.mark.parametrize(
+    ("fit_mm", "flex", "told"),
+    [
+        (-0.1, "glue_mm = 0.1", "leaves 0.00 mm of flex.glue_mm = 0.1, as drawn; at least -0.08"),
+        (0.1, "groove_mm = 1.3", "leaves a rim of 0.80 mm between gaps of 0.15 and printer.fit_mm "
+         "= 0.1; at least two printed lines of 0.45"),
+    ],
+)  # fmt: skip
+def test_a_fit_that_leaves_no_gap_or_rim_is_refused_with_the_numbers(
+    fit_mm: float, flex: str, told: str, fitted: Derived
+) -> None:
+    fitted(0.0, f"{COMPLIANT}[flex]\n{flex}")
+    with pytest.raises(FabError) as refusal:
+        fitted(fit_mm, f"{COMPLIANT}[flex]\n{flex}")
+    assert told in str(refusal.value)
+
+
+@pytest.mark.slow
+def test_a_rim_that_was_drawn_for_another_fit_is_told(fitted: Derived, tmp_path: Path) -> None:
+    """The gap is measured against glue and fit, not against what was drawn."""
+    design = fitted(0.1, COMPLIANT)
+    for finger in design.fingers:
+        for made in backing_files(finger, design.stack, design.outline, design.tip, design.board,
+                                  design.mount, design.interfaces):  # fmt: skip
+            (tmp_path / made.path).parent.mkdir(exist_ok=True)
+            (tmp_path / made.path).write_bytes(made.data)
+    (tmp_path / "design.json").write_text(design_text(design), encoding="utf-8")
+    for fit_mm, failing in ((0.1, set()), (0.0, {"backing.glue"})):
+        fitting = dataclasses.replace(design.printing, fit_mm=fit_mm)
+        other = dataclasses.replace(design, printing=fitting)
+        told = {m.check for m in backing.measure(tmp_path, other) if not m.passed}
+        assert told == failing

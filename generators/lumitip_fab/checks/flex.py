@@ -103,7 +103,8 @@ def measure_joint(plate: Printed, held: Printed) -> Iterator[Measurement]:
     # The rim's ends at the gripper and the slope under its upper bar stand farther off.
     beside = near[near < interface.groove_mm / 2]
     least = float(beside.min()) if len(beside) > len(near) / 2 else float("nan")
-    yield held.figure("glue", least, interface.glue_mm - GLUE_MM, interface.glue_mm + GLUE_MM)
+    wanted = interface.glue_mm + held.design.printing.fit_mm  # the rim's, not the groove's
+    yield held.figure("glue", least, wanted - GLUE_MM, wanted + GLUE_MM)
     top = float(held.sensor.bounds[1, 2])
     rise = np.array([top - stack.back_z_mm])
     yield held.near("rim_height", rise, interface.rim_height_mm, GLUE_MM)

@@ -12,8 +12,8 @@ from lumitip_fab.derive.faults import Faults
 from lumitip_fab.derive.fit_plate import derive_fit_plate
 from lumitip_fab.derive.flange import derive_flange
 from lumitip_fab.derive.flange_body import derive_flange_body
-from lumitip_fab.derive.flex import derive_interfaces
 from lumitip_fab.derive.holder import derive_holder
+from lumitip_fab.derive.interface import derive_interfaces
 from lumitip_fab.derive.packages import derive_fabs, derive_packages, derive_rules
 from lumitip_fab.derive.purchase import derive_purchase
 from lumitip_fab.derive.slicing import derive_slicing

@@ -1,7 +1,9 @@
 """What a fit of the printer changes: the one place where it is added to what is drawn.
 
 A printed surface that meets something goes back by the fit, square to itself: a gap to a board,
-to metal or to the gripper grows by it, and a gap between two printed parts by twice as much.
+to metal or to the gripper grows by it, and a gap between two printed parts by twice as much. Of
+two parts of two filaments only the one that the reading is of goes back: see
+`lumitip_fab.derive.interface`.
 """
 
 import math

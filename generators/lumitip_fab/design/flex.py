@@ -25,7 +25,9 @@ class Interface:
     groove_mm: float
     groove_depth_mm: float
     glue_mm: float
-    """Gap between rim and groove: on each side, and at the groove's floor."""
+    """Gap that is wanted between rim and groove: on each side, and at the groove's floor."""
+    gap_mm: float
+    """On each side as drawn: the printer's fit is in it, by which the rim is narrower."""
     pad_mm: float
     """Thickness of the pad."""
     thread_hole_mm: float
@@ -36,13 +38,13 @@ class Interface:
     @property
     def box(self) -> Box:
         """The pad, as wide as the rim's outer edge."""
-        g, glue = self.groove, self.glue_mm
-        return Box(g.x_min_mm + glue, g.x_max_mm - glue, g.y_min_mm, g.y_max_mm - glue)
+        g, gap = self.groove, self.gap_mm
+        return Box(g.x_min_mm + gap, g.x_max_mm - gap, g.y_min_mm, g.y_max_mm - gap)
 
     @property
     def rim_mm(self) -> float:
         """Width of the rim."""
-        return self.groove_mm - 2 * self.glue_mm
+        return self.groove_mm - 2 * self.gap_mm
 
     @property
     def rim_height_mm(self) -> float:

@@ -38,13 +38,15 @@ class Finished:
         return max(
             self.finger.notch.x_max_mm + NOTCH_GAP_MM,
             self.mount.block_width_mm / 2 + FOOT_MM,
-            *(i.box.x_max_mm + NOTCH_GAP_MM for i in self.interfaces),
+            *(i.groove.x_max_mm + NOTCH_GAP_MM for i in self.interfaces),
         )
 
     def kept_clear(self) -> tuple[shapely.Geometry, ...]:
-        """Coupling, notch and interface, with their gaps: no flap may lie there."""
+        """Coupling, notch and interface, with their gaps: no flap may lie there.
+
+        Of an interface it is the groove that counts, which no fit of the printer moves."""
         notch = self.finger.notch.grown(NOTCH_GAP_MM)
-        pads = [_area(i.box.grown(NOTCH_GAP_MM)) for i in self.interfaces]
+        pads = [_area(i.groove.grown(NOTCH_GAP_MM)) for i in self.interfaces]
         return _area(notch), _area(_coupling(self.mount, self.stack).grown(FOOT_MM)), *pads
 
     def better_clear(self) -> tuple[shapely.Geometry, ...]:
