@@ -22,7 +22,7 @@ from lumitip_fab.boards.ids import stable_uuid
 from lumitip_fab.boards.model import Fill, Routing, Text
 from lumitip_fab.boards.pcb.sexpr import Quoted, number, written
 from lumitip_fab.boards.strokes import text_strokes, upright
-from lumitip_fab.checks.kicad_text import read_nodes
+from lumitip_fab.checks.kicad_text import child, children, read_nodes, words
 from lumitip_fab.design import Design
 from lumitip_fab.errors import BuildError
 from lumitip_fab.frames import applied
@@ -77,6 +77,24 @@ def test_identifiers_are_used_once(boards: Callable[[str], Path], finger: str) -
     assert len(set(found)) == len(found)
 
 
+@pytest.mark.parametrize("board", ["emitter", "receiver", "breakout", "flange"])
+def test_footprints_have_the_fields_of_their_symbols(
+    boards: Callable[[str], Path], board: str
+) -> None:
+    file = boards("small") / f"boards/{board}/{board}.kicad_pcb"
+    parts = {
+        (words(child(part, "path"))[0], *words(field))
+        for part in children(read_nodes(file), "footprint")
+        for field in children(part, "property")
+    }
+    symbols = {
+        (f"/{words(child(symbol, 'uuid'))[0]}", *words(field))
+        for symbol in children(read_nodes(file.with_suffix(".kicad_sch")), "symbol")
+        for field in children(symbol, "property")
+    }
+    assert parts == {field for field in symbols if field[1] in ("Manufacturer", "MPN")} != set()
+
+
 def test_identifiers_never_change() -> None:
     assert stable_uuid("receiver", "symbol", "U1") == "a239dece-9245-5ca3-bacb-4514ff64d59e"
 
@@ -104,7 +122,7 @@ def test_one_line_goes_round_an_area_with_holes(holes: list[tuple[float, float, 
         line = np.array(fractured(area))
         following = np.roll(line, -1, axis=0)
         enclosed = (line[:, 0] * following[:, 1] - following[:, 0] * line[:, 1]).sum() / 2
-        assert enclosed == pytest.approx(area.area, abs=1e-3)
+        assert enclosed == pytest.approx(-area.area, abs=1e-3)  # clockwise, as KiCad 6 wants it
         assert shapely.Polygon(line).buffer(0).symmetric_difference(area).area < 1e-3
 
 

@@ -13,12 +13,12 @@ _NM = 6  # decimals: everything is rounded to 1 nm before it is cut, so that cut
 
 
 def fractured(area: Polygon) -> tuple[Point, ...]:
-    """The corners of one closed line round an area, the first not repeated.
+    """The corners of one closed line round an area, clockwise, the first not repeated.
 
     Each hole is joined by a cut of no width, along x, from its leftmost corner to what lies left
-    of it.
+    of it. In KiCad 6, a fill that winds the other way connects nothing.
     """
-    area = orient(area)
+    area = orient(area, -1.0)
     line = _corners(area.exterior)
     holes = [_from_leftmost(_corners(ring)) for ring in area.interiors]
     for hole in sorted(holes, key=lambda corners: tuple(corners[0])):

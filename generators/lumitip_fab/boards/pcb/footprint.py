@@ -96,7 +96,7 @@ class _Writer:
         x, y = on_board_page((part.x_mm, part.y_mm))
         return (
             "footprint", Quoted(f"{LIBRARY}:{shape.name}"), ("layer", Quoted(self.layer("Cu"))),
-            ("tstamp", self.own), ("at", x, y, self.angle),
+            ("tstamp", self.own), ("at", x, y, self.angle), *_ordering(part),
             *((("path", Quoted(self.path)),) if part.kind != "fiducial" else ()),
             *self.contents(),
         )  # fmt: skip
@@ -169,6 +169,14 @@ class _Writer:
             return "*.Cu", "*.Mask"
         paste = (self.layer("Paste"),) if pad.paste else ()
         return self.layer("Cu"), *paste, self.layer("Mask")
+
+
+def _ordering(part: Component) -> tuple[Node, ...]:
+    """What to order, in the words of the part's symbol: from 10 on, KiCad compares them."""
+    if not part.part:
+        return ()
+    told = {"Manufacturer": part.manufacturer, "MPN": part.part}
+    return tuple(("property", Quoted(name), Quoted(value)) for name, value in told.items())
 
 
 def _attributes(component: Component) -> tuple[str, ...]:
