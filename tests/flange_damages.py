@@ -198,7 +198,7 @@ def lid_sags(body: Body) -> Body:
 LOWERS: dict[Damage, set[str]] = {
     spigot_narrow: {"spigot", "min_wall"},
     spigot_short: {"seat", "overhang"},
-    bolt_askew: {"bolts"},
+    bolt_askew: {"bolts", "bolt_clearance"},
     bolt_hole_wide: {"bolt_width"},
     hole_near_another: {"hole_wall", "min_wall"},
     pin_hole_askew: {"pin"},
@@ -220,13 +220,20 @@ LOWERS: dict[Damage, set[str]] = {
     window_blocked: {"window", "window_gap", "interference"},
     window_narrow: {"window_gap"},
     way_out_blocked: {"cables"},
-    screw_askew: {"screws"},
+    screw_askew: {"screws", "screw_clearance"},
     screw_hole_wide: {"screw_width"},
-    countersink_missing: {"screw_heads"},
+    countersink_missing: {"screw_heads", "head_clearance"},
     bolt_hole_bellied: {"bolt_bearing"},
     sawn: {"layers", "bolt_bearing", "overhang", "min_wall"},
     wall_thin: {"min_wall", "hole_wall"},
-    foot_missing: {"bed_contact", "overhang", "seat", "screw_heads", "min_wall"},
+    foot_missing: {
+        "bed_contact",
+        "overhang",
+        "seat",
+        "screw_heads",
+        "head_clearance",
+        "min_wall",
+    },
     loose_piece: {"bodies"},
 }
 UPPERS: dict[Damage, set[str]] = {
@@ -234,6 +241,6 @@ UPPERS: dict[Damage, set[str]] = {
     recess_shallow: {"recess_depth"},
     face_narrow: {"face"},
     lid_high: {"added_height", "recess_depth"},
-    lid_bolt_askew: {"bolts"},
+    lid_bolt_askew: {"bolts", "bolt_clearance"},
     lid_sags: {"added_height", "interference"},
 }

@@ -57,8 +57,8 @@ class Holder(Strict):
     on (degrees)."""
     standoff_mm: float = Field(ge=2, le=20)
     """Room under the board for solder tails (mm)."""
-    nut_mm: float = Field(ge=2, le=12)
-    """Across flats of the nuts that hold the board's screws (mm)."""
+    screw: Name
+    """Thread of the board's screws, in `parts/fasteners.toml`; their nuts go into the holder."""
     strap_hole_mm: float = Field(ge=1, le=10)
     """Diameter of the two holes in each arm, for screws of the gripper or a cable tie (mm)."""
     strap_spacing_mm: float = Field(ge=3, le=100)

@@ -14,6 +14,7 @@ from lumitip_fab.controller_entry import Controller
 from lumitip_fab.coupling_entry import ToolCoupling
 from lumitip_fab.entry import Entry, Length, Name, Share, Strict
 from lumitip_fab.fab_entry import Fab
+from lumitip_fab.fastener_entry import Fastener
 from lumitip_fab.filament_entry import Filament
 from lumitip_fab.gripper_entry import Gripper
 from lumitip_fab.laminate_entry import Laminates
@@ -254,6 +255,7 @@ class Catalogue(Strict):
     transistors: Mapping[Name, Transistor]
     couplings: Mapping[Name, ToolCoupling]
     grippers: Mapping[Name, Gripper]
+    fasteners: Mapping[Name, Fastener]
     silicones: Mapping[Name, Silicone]
     films: Mapping[Name, Film]
     printers: Mapping[Name, Printer]

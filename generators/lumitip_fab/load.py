@@ -44,6 +44,7 @@ NAMED = {
     "module.crystal": "crystals",
     "module.crystal_capacitor": "capacitors",
     "coupling.gripper": "grippers",
+    "holder.screw": "fasteners",
     "mould.silicone": "silicones",
     "mask.film": "films",
     "printer.profile": "printers",

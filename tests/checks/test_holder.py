@@ -100,8 +100,8 @@ def loose_piece(body: Body) -> Body:
 
 
 DAMAGES: dict[Damage, set[str]] = {
-    screws_farther_apart: {"screws", "spacing"},
-    nut_pocket_round: {"nut_width"},
+    screws_farther_apart: {"screws", "spacing", "screw_clearance"},
+    nut_pocket_round: {"nut_width", "nut_clearance"},
     nuts_too_deep: {"nut_seat"},
     nut_pocket_askew: {"nuts", "nut_width"},
     screw_hole_wide: {"screw_width"},
@@ -136,7 +136,7 @@ def test_the_boards_holes_are_what_counts(damaged: Path) -> None:
     """The board's file is read too: one of its holes elsewhere does not meet the holder's."""
     path = damaged / "boards/breakout/breakout.kicad_pcb"
     path.write_text(moved_part(path.read_text(), "H2", 0.44, 0.0))
-    assert failing(damaged, "holder") == {"screws", "spacing"}
+    assert failing(damaged, "holder") == {"screws", "spacing", "screw_clearance"}
 
 
 def test_a_spoilt_package_is_told(damaged: Path) -> None:

@@ -13,9 +13,10 @@ import shapely
 
 from lumitip_fab.checks import flange_board, overlap, packages, solids
 from lumitip_fab.checks.board_read import read_carrier
+from lumitip_fab.checks.fasteners import round_thread
 from lumitip_fab.checks.flange_read import REACH_MM, Stacked, heights, hole_walls
 from lumitip_fab.checks.flange_strength import measure_strength
-from lumitip_fab.checks.printed import circles, holes_at, islands_at
+from lumitip_fab.checks.printed import circles, holes_at, islands_at, room
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.checks.walls import walls
 from lumitip_fab.design import Design, Flange
@@ -123,6 +124,9 @@ def measure_bolts(of: Stacked) -> Iterator[Measurement]:
     yield of.near("bolts", np.concatenate([off for off, _ in found]), 0.0, HOLE_MM)
     wide = np.concatenate([wide for _, wide in found])
     yield of.near("bolt_width", wide, flange.bolt_hole_mm, HOLE_MM)
+    through = np.concatenate([room(holes_at(mesh, z), flange.bolts) for mesh, z in levels])
+    bolt, fit_mm = of.design.fastener(flange.bolt), of.design.printing.fit_mm
+    yield of.clear("bolt_clearance", round_thread(through, bolt, fit_mm))
     least = min(hole_walls(mesh, z) for mesh, z in levels)
     yield of.figure("hole_wall", least, of.design.printing.min_wall_mm - SIZE_MM, math.inf)
     apart = [of.outline.distance(shapely.Point(at)) for at in flange.bolts]

@@ -8,8 +8,9 @@ import numpy as np
 import shapely
 
 from lumitip_fab.checks import overlap, solids
+from lumitip_fab.checks.fasteners import round_head, round_thread
 from lumitip_fab.checks.flange_read import CONTACTS, REACH_MM, Stacked, heights
-from lumitip_fab.checks.printed import circles, farthest, holes_at
+from lumitip_fab.checks.printed import circles, farthest, holes_at, room
 from lumitip_fab.checks.result import Measurement
 from lumitip_fab.design import Device
 
@@ -93,12 +94,18 @@ def measure_screws(of: Stacked) -> Iterator[Measurement]:
     flange = of.flange
     places = of.places([hole.at for hole in of.board.holes])
     at = tuple((float(x), float(y)) for x, y in places)
-    off, wide = circles(holes_at(of.lower, flange.board_z_mm - 0.2), at, _NEAR_MM)
+    holes = holes_at(of.lower, flange.board_z_mm - 0.2)
+    off, wide = circles(holes, at, _NEAR_MM)
     yield of.near("screws", off, 0.0, HOLE_MM, "from the board's holes")
     yield of.near("screw_width", wide, flange.screw_mm, HOLE_MM)
-    _, head = circles(holes_at(of.lower, flange.seat_z_mm + 0.1), at, _NEAR_MM)
+    screw = of.design.fastener(flange.screw)
+    through = round_thread(room(holes, at), screw, of.design.printing.fit_mm)
+    yield of.clear("screw_clearance", through)
+    sinks = holes_at(of.lower, flange.seat_z_mm + 0.1)
+    _, head = circles(sinks, at, _NEAR_MM)
     worst = farthest(head, flange.screw_head_mm - 0.2)
     yield of.near("screw_heads", worst + 0.2, flange.screw_head_mm, HOLE_MM, "countersink")
+    yield of.clear("head_clearance", round_head(room(sinks, at) + 0.2, screw))
 
 
 def bodies(of: Stacked) -> dict[str, overlap.Solid]:

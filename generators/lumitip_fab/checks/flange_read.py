@@ -10,6 +10,7 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from lumitip_fab.checks.board_read import ReadCarrier
+from lumitip_fab.checks.fasteners import Figures
 from lumitip_fab.checks.printed import farthest
 from lumitip_fab.checks.result import Measurement
 from lumitip_fab.checks.solids import Vectors, cast, section
@@ -46,6 +47,11 @@ class Stacked:
         """The value that strays farthest from what is wanted; NaN if one could not be taken."""
         worst = farthest(np.atleast_1d(np.asarray(measured, dtype=np.float64)), wanted)
         return self.figure(check, worst, wanted - by, wanted + by, note=note)
+
+    def clear(self, check: str, found: Figures) -> Measurement:
+        """Room round a fastener."""
+        measured, low, high, note = found
+        return self.figure(check, measured, low, high, note=note)
 
     @property
     def gap_mm(self) -> float:

@@ -32,8 +32,6 @@ LEAST_SAFETY = 2.0  # beyond that, of an estimate that no test stands behind
 RING_SHEAR = 2.0  # greatest shear over its mean, of a thin ring; of solid sections it is less
 STEP_MM = 0.25
 INSIDE_MM = 0.4  # half of the thinnest web
-HEADS_MM = {3.0: 5.5, 4.0: 7.0, 5.0: 8.5, 6.0: 10.0, 8.0: 13.0}  # ISO 4762
-HEAD_SHARE = 1.5  # of the thread, for other screws: less than any in ISO 4762
 G_N_KG = 9.81
 
 
@@ -62,8 +60,7 @@ def strength(lower: Any, upper: Any, design: Design) -> Strength:
     cuts += [(z, section(upper, z)) for z in _levels(split, web)]
     worst_mpa = max(_layer_mpa(cut, load_n, load_n * (lever_mm - z)) for z, cut in cuts)
     force_n = _bolt_n(np.array(flange.bolts), load_n, load_n * (lever_mm - seat))
-    thread = float(flange.bolt.removeprefix("M"))
-    head_mm = HEADS_MM.get(thread, HEAD_SHARE * thread)
+    head_mm = design.fastener(flange.bolt).cap_head_mm
     heads = [shapely.Point(at).buffer(head_mm / 2, 64) for at in flange.bolts]
     area_mm2 = min(cut.intersection(head).area for _, cut in cuts for head in heads)
     return Strength(

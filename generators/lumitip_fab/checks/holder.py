@@ -14,7 +14,8 @@ import shapely
 
 from lumitip_fab.checks import packages, solids
 from lumitip_fab.checks.board_read import ReadCarrier, read_carrier
-from lumitip_fab.checks.printed import circles, farthest, holes_at
+from lumitip_fab.checks.fasteners import Figures, round_nut, round_thread
+from lumitip_fab.checks.printed import circles, farthest, holes_at, room
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.checks.walls import walls
 from lumitip_fab.design import Design, Holder
@@ -51,6 +52,11 @@ class Clip:
     ) -> Measurement:
         """A measurement of this file."""
         return Measurement(f"holder.{check}", self.subject, float(measured), low, high, unit, note)
+
+    def clear(self, check: str, found: Figures) -> Measurement:
+        """Room round a fastener."""
+        measured, low, high, note = found
+        return self.figure(check, measured, low, high, note=note)
 
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
@@ -131,6 +137,8 @@ def measure_screws(clip: Clip) -> Iterator[Measurement]:
     yield clip.figure("screws", farthest(off, 0.0), 0, HOLE_MM, note="from the board's holes")
     width = clip.holder.screw_mm
     yield clip.figure("screw_width", farthest(wide, width), width - HOLE_MM, width + HOLE_MM)
+    screw, fit_mm = clip.design.fastener(clip.holder.screw), clip.design.printing.fit_mm
+    yield clip.clear("screw_clearance", round_thread(room(rings, at), screw, fit_mm))
     centres = np.array([shapely.Polygon(ring).centroid.coords[0] for ring in rings])
     spans = [np.ptp(places[:, 0]) if len(places) else math.nan for places in (board, centres)]
     yield clip.figure("spacing", spans[1] - spans[0], -SPACING_MM, SPACING_MM,
@@ -147,6 +155,8 @@ def measure_nuts(clip: Clip) -> Iterator[Measurement]:
     flats = wide * math.sqrt(math.pi / (2 * math.sqrt(3)))
     width = holder.nut_mm
     yield clip.figure("nut_width", farthest(flats, width), width - HOLE_MM, width + HOLE_MM)
+    nut, fit_mm = clip.design.fastener(holder.screw), clip.design.printing.fit_mm
+    yield clip.clear("nut_clearance", round_nut(room(rings, holder.holes), nut, fit_mm))
     beside = (holder.screw_mm + holder.nut_mm) / 4
     start = np.array([(x, y + beside, holder.axis_z_mm) for x, y in holder.holes])
     hit, _ = solids.cast(clip.mesh, start, _UP, _REACH_MM).first(len(start))

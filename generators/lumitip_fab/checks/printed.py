@@ -70,6 +70,18 @@ def circles(rings: list[Any], centres: tuple[Point, ...], reach_mm: float) -> tu
     return off, diameter
 
 
+def room(rings: list[Any], axes: tuple[Point, ...]) -> Vectors:
+    """Diameter of the widest rod along each axis that goes through the ring round it, or, of a
+    nut's pocket, width across flats of the nut; NaN without such a ring."""
+    polygons = [shapely.Polygon(ring) for ring in rings]
+    found = np.full(len(axes), np.nan)
+    for k, axis in enumerate(map(shapely.Point, axes)):
+        around = [p.exterior.distance(axis) for p in polygons if p.contains(axis)]
+        if around:
+            found[k] = 2 * min(around)
+    return found
+
+
 def holes_at(mesh: Any, z_mm: float) -> list[Any]:
     """Rings of the holes through a mesh's section."""
     parts = shapely.get_parts(section(mesh, z_mm))

@@ -8,6 +8,7 @@ from lumitip_fab.derive.breakout import derive_breakout
 from lumitip_fab.derive.cabling import Boards, derive_cabling
 from lumitip_fab.derive.cells import derive_cells
 from lumitip_fab.derive.electrical import derive_electrical
+from lumitip_fab.derive.fasteners import derive_fasteners
 from lumitip_fab.derive.faults import Faults
 from lumitip_fab.derive.fit_plate import derive_fit_plate
 from lumitip_fab.derive.flange import derive_flange
@@ -32,7 +33,7 @@ def derive(given: Input) -> Design:
         InputError: with every combination of values that is impossible, and the numbers.
     """
     p, faults = given.parameters, Faults(given)
-    stack = derive_stack(given, faults)
+    stack, fasteners = derive_stack(given, faults), derive_fasteners(given, faults)
     cells = derive_cells(p, faults)
     if not len(cells):
         faults.stop()  # without a grid nothing else can be judged
@@ -105,6 +106,7 @@ def derive(given: Input) -> Design:
                 given.catalogue.controllers[p.controller.board].adc_bits,
             ),
             fabs=derive_fabs(given),
+            fasteners=fasteners,
             carriers=(*breakout, *flange),
             holders=holders,
             flanges=flanges,

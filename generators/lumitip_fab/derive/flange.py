@@ -14,6 +14,7 @@ With a module as its controller it is wider to the left: see `lumitip_fab.derive
 """
 
 from lumitip_fab.derive.devices import chip, fiducials, from_behind, leaded, strip
+from lumitip_fab.derive.fasteners import BOARD_SCREW
 from lumitip_fab.derive.faults import Faults
 from lumitip_fab.derive.flange_parts import least_supply_v, refuse_parts
 from lumitip_fab.derive.module import Supplies, derive_module
@@ -29,8 +30,6 @@ CONTACTS_AT: Point = (7.46, 0.0)
 HEADERS_AT: tuple[Point, Point] = ((-3.5, -20.5), (-3.5, 20.5))
 TITLE_AT: Point = (6.5, 11.5)
 HOLES_AT: tuple[Point, ...] = ((11.0, 19.5), (11.0, -19.5))
-HOLE_MM = 2.2
-"""For M2 screws into the printed flange."""
 FIDUCIALS_AT: tuple[Point, ...] = ((-13.0, -13.5), (13.0, -15.5), (-13.0, 13.5))
 HEADROOM_V = 1.0
 """A step-down regulator's input above its output."""
@@ -69,7 +68,7 @@ def derive_flange(
             box=wing.box if wing else BOX,
             corner_mm=CORNER_MM,
             holes=HOLES_AT,
-            hole_mm=HOLE_MM,
+            hole_mm=given.catalogue.fasteners[BOARD_SCREW].hole_mm[0],
             devices=(
                 *_strips(given),
                 *parts,

@@ -3,6 +3,7 @@
 import math
 
 from lumitip_fab.coupling_entry import ToolCoupling
+from lumitip_fab.derive.fasteners import BOARD_SCREW
 from lumitip_fab.derive.faults import Faults
 from lumitip_fab.derive.fits import Drawn, refuse_touching
 from lumitip_fab.derive.flex import stiff_mm
@@ -19,7 +20,7 @@ PEG_MM = 5.0
 PEG_PLAY_MM = 0.5  # both are printed: at the tightest fit 0.1 is left
 PEG_SHARE = 0.75  # of the web's thickness
 SCREW_PLAY_MM = 0.2  # holes in the floor beyond the board's
-SCREW_HEAD_MM = 4.2  # countersunk M2, 3.8 by ISO 7046
+HEAD_PLAY_MM = 0.4  # of a countersunk head, which then lies below the face
 
 
 def derive_flange_body(
@@ -31,6 +32,7 @@ def derive_flange_body(
     (carrier,) = carriers
     p, pcb_mm = given.parameters.flange, stiff_mm(given.parameters)
     drawn = Drawn(given.parameters.printer.fit_mm)
+    screw = given.catalogue.fasteners[BOARD_SCREW]
     coupling, pogo = given.catalogue.couplings[p.coupling], given.catalogue.strips[p.contacts]
     # Towards the robot, and so on the board's back, are the contacts alone.
     (contacts,) = (device for device in carrier.devices if device.side == "back")
@@ -83,8 +85,9 @@ def derive_flange_body(
         stroke_mm=pogo.stroke_mm,
         openings=_openings(headers, board_at, coupling.face_mm / 2),
         screws=tuple((x + board_at[0], y + board_at[1]) for x, y in carrier.holes),
+        screw=BOARD_SCREW,
         screw_mm=drawn.hole_mm(carrier.hole_mm + SCREW_PLAY_MM),
-        screw_head_mm=SCREW_HEAD_MM,
+        screw_head_mm=screw.countersunk_mm + HEAD_PLAY_MM,
         split_z_mm=split_z,
         web_mm=p.web_mm,
     )

@@ -8,7 +8,6 @@ from lumitip_fab.derive.flex import held_by, stiff_mm
 from lumitip_fab.design import Box, Carrier, Holder
 from lumitip_fab.load import Input
 
-SCREW_PLAY_MM = 0.1  # screw holes beyond the board's, which a printer narrows
 NUT_PLAY_MM = 0.2  # nut pockets beyond the nuts
 BOSS_RIM_MM = 1.2  # of a boss round its screw
 BOSS_LENGTH_MM = 7.0
@@ -28,7 +27,7 @@ def derive_holder(
     body_mm = body.round_mm if given_mm == "gripper" else given_mm
     if of is None or body_mm is None:
         return ()
-    drawn = Drawn(p.printer.fit_mm)
+    drawn, screw = Drawn(p.printer.fit_mm), given.catalogue.fasteners[p.holder.screw]
     wall, play = p.holder.wall_mm, drawn.gap_mm(p.holder.clearance_mm)
     tray = Box(of.box.x_min_mm - play, of.box.x_max_mm + play, of.box.y_min_mm, of.box.y_max_mm)
     floor_z = -p.holder.standoff_mm
@@ -51,8 +50,9 @@ def derive_holder(
         wall_mm=wall,
         wrap_deg=p.holder.wrap_deg,
         holes=of.holes,
-        screw_mm=drawn.hole_mm(of.hole_mm + SCREW_PLAY_MM),
-        nut_mm=drawn.hole_mm(p.holder.nut_mm + NUT_PLAY_MM),
+        screw=p.holder.screw,
+        screw_mm=drawn.hole_mm(screw.hole_mm[0]),
+        nut_mm=drawn.hole_mm(screw.nut_mm + NUT_PLAY_MM),
         boss_mm=(BOSS_LENGTH_MM, width, width + 2 * p.holder.standoff_mm),  # 45°, to print
         strap_deg=(p.holder.wrap_deg + _shoulder_deg(tray.x_max_mm + wall, radius + wall)) / 2,
         strap_y_mm=(-spacing, spacing),

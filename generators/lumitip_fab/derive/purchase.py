@@ -10,7 +10,6 @@ from lumitip_fab.design.slicing import Slicing
 from lumitip_fab.load import Input
 from lumitip_fab.price_entry import Prices
 
-_METRIC = {4.0: "M2", 5.0: "M2.5", 5.5: "M3", 7.0: "M4"}  # by width of the nut, ISO 4032
 _NUT_SHARE = 0.8  # height of a nut, of its thread's diameter
 
 
@@ -68,14 +67,10 @@ def _bolts(mount: Mount, prices: Prices) -> list[Bought]:
 def _screws(given: Input, holder: Holder, prices: Prices) -> list[Bought]:
     """Screws through the breakout board into nuts under its holder."""
     p = given.parameters
-    thread = _METRIC.get(p.holder.nut_mm)
-    count = len(holder.holes)
-    if thread is None:
-        name = f"for nuts of {p.holder.nut_mm:g} mm across flats"
-        return [Bought("fasteners", f"screw and nut, {name}", "", "", "breakout on its holder",
-                       count, None)]  # fmt: skip
+    thread, count = holder.screw, len(holder.holes)
+    wide = given.catalogue.fasteners[thread].thread_mm
     through = stiff_mm(p) + p.holder.standoff_mm + holder.wall_mm
-    length = 2 * math.ceil((through + _NUT_SHARE * float(thread[1:])) / 2)
+    length = 2 * math.ceil((through + _NUT_SHARE * wide) / 2)
     where = "breakout on its holder"
     return [
         Bought("fasteners", f"{thread} x {length} screw", "", "ISO 4762", where, count,
@@ -89,13 +84,14 @@ def _of_flange(given: Input, flange: Flange, prices: Prices) -> list[Bought]:
     """Screws of its board, its locating pin, and the gripper's bolts, which must be longer."""
     count = len(flange.screws)
     through = flange.board_z_mm - flange.seat_z_mm + stiff_mm(given.parameters)
-    screw = f"M2 x {2 * math.ceil((through + _NUT_SHARE * 2) / 2)} countersunk screw"
+    wide = given.catalogue.fasteners[flange.screw].thread_mm
+    screw = f"{flange.screw} x {2 * math.ceil((through + _NUT_SHARE * wide) / 2)} countersunk screw"
     pin = f"{flange.pin_mm:g} x {flange.pin_length_mm:g} parallel pin"
     bolt = f"{flange.bolt} socket head screw"
     where = "board of the flange"
     told = (
-        (screw, "ISO 7046", where, count, "M2 screw"),
-        ("M2 nut", "ISO 4032", where, count, "M2 nut"),
+        (screw, "ISO 7046", where, count, f"{flange.screw} screw"),
+        (f"{flange.screw} nut", "ISO 4032", where, count, f"{flange.screw} nut"),
         (pin, "ISO 2338", "flange to coupling, glued in", 1, "parallel pin"),
         (bolt, "ISO 4762", f"gripper to robot, {flange.top_z_mm:.1f} mm longer than its own",
          len(flange.bolts), bolt),

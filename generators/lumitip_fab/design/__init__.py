@@ -29,6 +29,7 @@ from lumitip_fab.design.boards import (
 from lumitip_fab.design.cabling import Cable, Cabling, Terminal, Wire
 from lumitip_fab.design.carriers import Carrier, Device, Holder, Land, Note, Pattern
 from lumitip_fab.design.electrical import Electrical
+from lumitip_fab.design.fasteners import Fastener
 from lumitip_fab.design.fit_plate import FitPlate, Fits
 from lumitip_fab.design.flange import Flange
 from lumitip_fab.design.flex import Interface
@@ -59,6 +60,7 @@ __all__ = [
     "Device",
     "Electrical",
     "Fab",
+    "Fastener",
     "Filament",
     "Finger",
     "FitPlate",
@@ -137,6 +139,8 @@ class Design:
     densities: Densities
     controller: Controller
     fabs: tuple[Fab, ...]
+    fasteners: tuple[Fastener, ...]
+    """Every thread that holds something, once."""
     carriers: tuple[Carrier, ...]
     """Boards outside the fingers."""
     holders: tuple[Holder, ...]
@@ -151,6 +155,15 @@ class Design:
     def fingers(self) -> tuple[Finger, Finger]:
         """Both fingers, emitter first."""
         return self.emitter, self.receiver
+
+    def fastener(self, thread: str) -> Fastener:
+        """What the catalogue has of a thread.
+
+        Raises:
+            LookupError: if nothing is held by it.
+        """
+        found = {fastener.name: fastener for fastener in self.fasteners}
+        return found[thread]
 
     @property
     def regulated(self) -> tuple[Carrier, ...]:

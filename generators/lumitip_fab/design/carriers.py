@@ -157,9 +157,12 @@ class Holder:
     """Where the arms end, from the middle of the tray."""
     holes: tuple[Point, ...]
     """Screws of the board."""
+    screw: str
+    """Thread of those screws."""
     screw_mm: float
+    """Their holes."""
     nut_mm: float
-    """Across flats of the nuts' pockets."""
+    """Across flats of their nuts' pockets."""
     boss_mm: tuple[float, float, float]
     """Of a boss under the board: length along x, width along y on top and at the floor."""
     strap_deg: float

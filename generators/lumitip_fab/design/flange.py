@@ -89,8 +89,12 @@ class Flange:
     """Through the walls, for the headers and their cables, above the board's front."""
     screws: tuple[Point, ...]
     """Countersunk screws through floor and board."""
+    screw: str
+    """Their thread."""
     screw_mm: float
+    """Their holes."""
     screw_head_mm: float
+    """Countersinks for their heads."""
     split_z_mm: float
     """Where the parts meet."""
     web_mm: float

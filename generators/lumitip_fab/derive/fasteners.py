@@ -1,0 +1,75 @@
+"""Which threads the printed parts are held by, and what of that goes through which hole."""
+
+from lumitip_fab.derive.faults import Faults
+from lumitip_fab.design import Fastener
+from lumitip_fab.load import Input
+
+BOARD_SCREW = "M2"  # of the flange's board
+HEAD_PLAY_MM = 0.2  # of a bolt's head in its counterbore, at least
+DRILLED_MM = 0.1  # beyond a thread, of a board's holes, which are truer than printed ones
+RING_MM = 0.4  # of a board, at least, that a screw's head presses on
+
+
+def derive_fasteners(given: Input, faults: Faults) -> tuple[Fastener, ...]:
+    """Every thread that is used, once; refused, and nothing derived, where the catalogue does not
+    have one or where its bolts do not go through the holes that an entry has for them."""
+    p, known = given.parameters, given.catalogue.fasteners
+    gripper = given.catalogue.grippers[p.coupling.gripper]
+    coupling = given.catalogue.couplings[p.flange.coupling]
+    wanted = [("coupling.gripper", gripper.bolt)]
+    if p.flange.enabled:
+        wanted += [("flange.coupling", coupling.bolt), ("flange.enabled", BOARD_SCREW)]
+    if p.breakout.enabled:
+        wanted.append(("holder.screw", p.holder.screw))
+    for field, thread in wanted:
+        faults.refuse_unless(
+            thread in known,
+            field,
+            f"needs {thread} screws, which parts/fasteners.toml does not have: it has "
+            f"{', '.join(known)}; add an entry",
+        )
+    if not all(thread in known for _, thread in wanted):
+        faults.stop()
+    _refuse_hole(given, "coupling.gripper", gripper.bolt, gripper.bolt_hole_mm, faults)
+    head = known[gripper.bolt].cap_head_mm + HEAD_PLAY_MM
+    faults.refuse_unless(
+        gripper.counterbore_mm >= head - 1e-9,
+        "coupling.gripper",
+        f"{p.coupling.gripper!r} given, whose counterbore_mm = {gripper.counterbore_mm:g} is too "
+        f"narrow for the head of an {gripper.bolt}: at least {head:g} is needed",
+    )
+    if p.flange.enabled:
+        _refuse_hole(given, "flange.coupling", coupling.bolt, coupling.bolt_hole_mm, faults)
+    if p.breakout.enabled:
+        _refuse_board_hole(given, faults)
+    threads = sorted({thread for _, thread in wanted})
+    return tuple(
+        Fastener(name, e.thread_mm, e.hole_mm, e.cap_head_mm, e.countersunk_mm, e.nut_mm)
+        for name, e in ((thread, known[thread]) for thread in threads)
+    )
+
+
+def _refuse_hole(given: Input, field: str, thread: str, hole_mm: float, faults: Faults) -> None:
+    """Refuse a clearance hole of an entry that is none by ISO 273."""
+    section, key = field.split(".")
+    name = getattr(getattr(given.parameters, section), key)
+    fine, coarse = given.catalogue.fasteners[thread].hole_mm
+    faults.refuse_unless(
+        fine - 1e-9 <= hole_mm <= coarse + 1e-9,
+        field,
+        f"{name!r} given, whose bolt_hole_mm = {hole_mm:g} is no clearance hole of an {thread}: "
+        f"{fine:g} to {coarse:g} is allowed (ISO 273)",
+    )
+
+
+def _refuse_board_hole(given: Input, faults: Faults) -> None:
+    """Refuse holes of the breakout that its screws do not go through, or whose heads do."""
+    p = given.parameters
+    screw = given.catalogue.fasteners[p.holder.screw]
+    least, most = screw.thread_mm + DRILLED_MM, screw.cap_head_mm - 2 * RING_MM
+    faults.refuse_unless(
+        least - 1e-9 <= p.breakout.hole_mm <= most + 1e-9,
+        "breakout.hole_mm",
+        f"{p.breakout.hole_mm:g} given, {least:g} to {most:g} is allowed for an "
+        f"{p.holder.screw} (holder.screw) and its head of {screw.cap_head_mm:g} mm",
+    )

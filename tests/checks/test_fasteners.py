@@ -1,0 +1,82 @@
+"""Holes that a wrong derivation drew and a generator made alike are found by what goes through."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from damages import failing
+from lumitip_fab.artefact import Artefact
+from lumitip_fab.derive import derive, fits, flange_body, holder
+from lumitip_fab.design import Design
+from lumitip_fab.encoding import design_text
+from lumitip_fab.load import load
+from lumitip_fab.mechanical.flange import flange_files
+from lumitip_fab.mechanical.holder import holder_files
+
+Alter = Callable[[pytest.MonkeyPatch], None]
+
+
+def holes_narrow(patch: pytest.MonkeyPatch) -> None:
+    patch.setattr(fits.Drawn, "hole_mm", lambda _, wanted_mm: wanted_mm - 0.4)
+
+
+def holes_wide(patch: pytest.MonkeyPatch) -> None:
+    patch.setattr(fits.Drawn, "hole_mm", lambda _, wanted_mm: wanted_mm + 0.7)
+
+
+def heads_tight(patch: pytest.MonkeyPatch) -> None:
+    patch.setattr(flange_body, "HEAD_PLAY_MM", 0.0)
+
+
+def nuts_tight(patch: pytest.MonkeyPatch) -> None:
+    patch.setattr(holder, "NUT_PLAY_MM", 0.0)
+
+
+# Recess, pins and peg are measured against what they meet too.
+ROUND = {"recess", "pin_width", "socket_width", "peg_play"}
+FLANGE: dict[Alter, set[str]] = {
+    holes_narrow: {"bolt_clearance", "screw_clearance", *ROUND},
+    holes_wide: {"bolt_clearance", "screw_clearance", *ROUND},
+    heads_tight: {"head_clearance"},
+}
+HOLDER: dict[Alter, set[str]] = {
+    holes_narrow: {"screw_clearance", "nut_clearance"},
+    holes_wide: {"screw_clearance", "nut_clearance"},
+    nuts_tight: {"nut_clearance"},
+}
+
+
+@pytest.fixture
+def derived(design_dir: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[Alter], Design]:
+    """The published design by an altered derivation."""
+
+    def get(alter: Alter) -> Design:
+        alter(monkeypatch)
+        return derive(load(design_dir / "presets/published.toml"))
+
+    return get
+
+
+def _written(folder: Path, design: Design, files: tuple[Artefact, ...]) -> None:
+    (folder / "design.json").write_text(design_text(design), encoding="utf-8")
+    for made in files:
+        (folder / made.path).write_bytes(made.data)
+
+
+@pytest.mark.parametrize("alter", FLANGE, ids=lambda a: a.__name__)
+def test_a_wrong_derivation_of_the_flange(
+    alter: Alter, derived: Callable[[Alter], Design], damaged: Path
+) -> None:
+    design = derived(alter)
+    _written(damaged, design, flange_files(design.flanges[0], design.stack))
+    assert failing(damaged, "flange") == FLANGE[alter]
+
+
+@pytest.mark.parametrize("alter", HOLDER, ids=lambda a: a.__name__)
+def test_a_wrong_derivation_of_the_holder(
+    alter: Alter, derived: Callable[[Alter], Design], damaged: Path
+) -> None:
+    design = derived(alter)
+    _written(damaged, design, holder_files(design.holders[0]))
+    assert failing(damaged, "holder") == HOLDER[alter]
