@@ -15,7 +15,7 @@ PACKAGE = Path(__file__).parent
 # every file.
 SHARED = (
     "artefact.py", "colours.py", "derive", "design", "encoding.py", "errors.py", "frames.py",
-    "graph.py", "locate.py", "made.py", "typeface.py", "values.py",
+    "graph.py", "locate.py", "made.py", "markdown_text.py", "typeface.py", "values.py",
 )  # fmt: skip
 LAYOUT = ("errors.py", "grid.py", "layout.py")
 

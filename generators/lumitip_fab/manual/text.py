@@ -21,6 +21,7 @@ from lumitip_fab.design import (
     Wiring,
 )
 from lumitip_fab.made import Made
+from lumitip_fab.markdown_text import as_written
 
 WARM_UP_MIN = 5
 """Until the readings stand still: Table I of the published sensor (arXiv 2306.05902)."""
@@ -61,7 +62,7 @@ def _front(facts: Facts) -> str:
     mould, mask, printing = facts.mould, facts.mask, facts.printing
     lit_ma = sum(facts.wiring.current_ma)
     fixed = "tie the boards on" if facts.interfaces else "glue the boards in"
-    return f"""# {facts.title.name} {facts.title.revision}: build manual
+    return f"""# {as_written(facts.title.name)} {facts.title.revision}: build manual
 
 Made from the design, with the drawings of the files beside it. File names are below the folder of
 outputs. Read a chapter to its end before you begin with it.
@@ -93,11 +94,13 @@ for each finger, both at once in their own moulds."""
 def _bought(made: Made) -> str:
     rows = list(csv.DictReader(io.StringIO(made.text("bom.csv"))))
     lines = "\n".join(
-        f"| {row['item']} | {row['for']} | {_how_much(row)} | {row['price']} |" for row in rows[:-1]
+        f"| {as_written(row['item'])} | {as_written(row['for'])} | {_how_much(row)} "
+        f"| {row['price']} |"
+        for row in rows[:-1]
     )
     return f"""## 1. Parts
 
-`bom.csv` has makers and order numbers too. Prices in {rows[-1]["for"]}.
+`bom.csv` has makers and order numbers too. Prices in {as_written(rows[-1]["for"])}.
 
 | what | for | how much | price |
 |---|---|---:|---:|

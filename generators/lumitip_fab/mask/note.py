@@ -1,6 +1,7 @@
 """How to print a mask and wrap the finger with it, with this finger's own flaps."""
 
 from lumitip_fab.design import Mask, Stack, Title
+from lumitip_fab.markdown_text import as_written
 from lumitip_fab.mask.artwork import Artwork
 from lumitip_fab.mask.back import FOOT_MM
 from lumitip_fab.mask.flaps import BAND_MM, Flap
@@ -77,7 +78,7 @@ def wrapping_note(artwork: Artwork, mask: Mask, stack: Stack, title: Title) -> b
         else f"All flaps are {mask.flap_mm:g} mm long."
     )
     text = _TEXT.format(
-        title=f"{title.name} {title.revision}",
+        title=as_written(f"{title.name} {title.revision}"),
         name=artwork.name.lower(),
         NAME=artwork.name,
         film=mask.film,

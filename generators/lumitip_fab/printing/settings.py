@@ -3,6 +3,7 @@
 from lumitip_fab.artefact import Artefact
 from lumitip_fab.design import Interface, Printing, Title
 from lumitip_fab.design.slicing import Filament, Slicing
+from lumitip_fab.markdown_text import as_written
 
 _BRIM_MM = 3.0  # a backing is tall and stands on little
 _OUTER_SHARE = 0.6  # of the speed: outer walls are what board, gripper and silicone meet
@@ -97,7 +98,7 @@ def _note(title: Title, printing: Printing, slicing: Slicing, bends: bool) -> st
         rows += [(f"interface/{finger}_interface.3mf", standing) for finger in _FINGERS]
     rows += [(f"mould/{finger}_mould.3mf", "open side up") for finger in _FINGERS]
     listed = "\n".join(f"| `{path}` | {_told(slicing.of(path))} | {lies} |" for path, lies in rows)
-    return f"""# Printing {title.name} {title.revision}
+    return f"""# Printing {as_written(title.name)} {title.revision}
 
 Every STL and 3MF of this folder lies on the bed as it prints: do not turn it. None needs support.
 

@@ -5,6 +5,7 @@ import io
 
 from lumitip_fab.colours import named
 from lumitip_fab.design import Cable, Cabling, Title, Wire
+from lumitip_fab.markdown_text import as_written
 
 COLUMNS = (
     "wire", "signal", "from_board", "from_pad", "to_board", "to_pad", "colour", "section_mm2",
@@ -59,7 +60,7 @@ def cable_list(cabling: Cabling) -> str:
 def wiring_note(title: Title, cabling: Cabling) -> str:
     """The wires with what to mind, in Markdown."""
     return _NOTE.format(
-        title=f"{title.name} {title.revision}",
+        title=as_written(f"{title.name} {title.revision}"),
         tables="\n\n".join(map(_table, cabling.cables)),
         power=_power(cabling),
         travel_mm=cabling.travel_mm,

@@ -1,0 +1,77 @@
+"""Names of a parameter file are shown as they are written, in every page that prints them."""
+
+import dataclasses
+import re
+from html import unescape
+from pathlib import Path
+
+import pytest
+
+from lumitip_fab.artefact import Artefact
+from lumitip_fab.design import Design, Title
+from lumitip_fab.encoding import read_design
+from lumitip_fab.made import Made
+from lumitip_fab.manual.page import html_page, markdown
+from lumitip_fab.manual.text import Facts, manual_text
+from lumitip_fab.markdown_text import as_written
+from lumitip_fab.mask.files import mask_files
+from lumitip_fab.printing.settings import print_settings
+from lumitip_fab.wiring.files import wiring_files
+
+NAMES = [
+    "left_hand_2",
+    "_A_ and __B__, *c* **d**",
+    "[e](f) ![g](h) <i>j</i> `k`",
+    "a|b & &amp; ~~l~~ # ## \\_ \\",
+    "1. - + > \"q\" 'r' {s} ${t} %u @v",
+]
+
+
+def _headings(text: str) -> list[str]:
+    """Every heading as it is shown; nothing but plain text may be in it."""
+    tokens = markdown().enable("strikethrough").parse(text)
+    after = [tokens[at + 1] for at, token in enumerate(tokens) if token.type == "heading_open"]
+    parts = [child for token in after for child in token.children or ()]
+    assert {child.type for child in parts} <= {"text", "text_special", "code_inline"}
+    return ["".join(child.content for child in token.children or ()) for token in after]
+
+
+def _notes(design: Design) -> dict[str, str]:
+    d = design
+    made: list[Artefact] = [*print_settings(d.title, d.printing, d.slicing, d.interfaces)]
+    made += wiring_files(d.title, d.cabling)
+    made += mask_files(d.receiver, d.outline, d.stack, d.tip, d.mould, d.mount, d.interfaces,
+                       d.mask, d.title)  # fmt: skip
+    return {a.path: a.data.decode() for a in made if a.path.endswith(".md")}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_notes_show_a_name_as_it_is_written(name: str, designs: dict[str, Design]) -> None:
+    named = dataclasses.replace(designs["published"], title=Title(name, "A"))
+    notes = _notes(named)
+    assert sorted(notes) == [
+        "mask/receiver_wrapping.md", "print/printing.md", "wiring/cables.md",
+    ]  # fmt: skip
+    assert _headings(notes["print/printing.md"])[0] == f"Printing {name} A"
+    assert _headings(notes["wiring/cables.md"])[0] == f"Wiring {name} A"
+    told = f"{name} A: printing and wrapping the receiver mask"
+    assert _headings(notes["mask/receiver_wrapping.md"])[0] == told
+
+
+def test_a_name_with_an_underscore_stays_as_it_is_in_the_file_too() -> None:
+    assert as_written("left_hand_2") == "left_hand_2"
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_manual_shows_a_name_as_it_is_written(name: str, outputs: Path) -> None:
+    d = read_design(outputs / "design.json")
+    files = {f.relative_to(outputs).as_posix(): "" for f in outputs.rglob("*") if f.is_file()}
+    made = Made(outputs, files)
+    facts = Facts(Title(name, "A"), d.printing, d.mould, d.mask, d.mount, d.wiring, d.cabling,
+                  d.electrical, d.carriers, d.holders, d.interfaces, d.flanges,
+                  d.emitter)  # fmt: skip
+    text = manual_text(facts, made)
+    assert _headings(text)[0] == f"{name} A: build manual"
+    title = re.search("<title>(.*)</title>", html_page(name, text, made))
+    assert title is not None
+    assert unescape(title[1]) == name
