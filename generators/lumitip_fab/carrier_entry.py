@@ -4,7 +4,7 @@ from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
-from lumitip_fab.entry import Entry, Length, Share, Strict
+from lumitip_fab.entry import Capacitance, Entry, Length, Share, Strict
 
 Signal = Annotated[str, Field(pattern=r"^[A-Z0-9_]{1,12}$")]
 PinName = Annotated[str, Field(pattern=r"^[A-Z0-9]{1,6}$")]
@@ -97,6 +97,8 @@ class Regulator(Leaded):
     """Switching frequency."""
     soft_start_ms: float = Field(gt=0, le=1000)
     """Until its output stands."""
+    boot_nf: tuple[Capacitance, Capacitance]
+    """Least and greatest capacitance between SW and BST."""
     switch_ohm: tuple[Share, Share]
     """Resistance of the switch to the input and of that to ground."""
 
@@ -117,9 +119,8 @@ class LinearRegulator(Leaded):
     """Least and greatest input voltage."""
     output_a: float = Field(gt=0, le=20)
     """Largest continuous output current."""
-
-    stable_uf: tuple[Annotated[float, Field(gt=0, le=1e4)], Annotated[float, Field(gt=0, le=1e4)]]
-    """Least and greatest capacitance at its output (uF)."""
+    stable_nf: tuple[Capacitance, Capacitance]
+    """Least and greatest capacitance at its output."""
 
     @model_validator(mode="after")
     def _has_its_leads(self) -> Self:

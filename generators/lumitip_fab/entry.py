@@ -10,6 +10,7 @@ NAME = rf"^[A-Za-z0-9]([{_LETTERS}0-9 .+/\-]|_[A-Za-z0-9])*$"
 """Stands in texts where there is no title: a `_` opens no emphasis that another one closes."""
 Length = Annotated[float, Field(ge=0.01, le=500)]
 Share = Annotated[float, Field(ge=0.01, le=1000)]
+Capacitance = Annotated[float, Field(gt=0, le=1e7)]
 TITLE = rf"^([{_LETTERS}0-9][{_LETTERS}0-9 .,+/()\-]*)?$"
 PIN = r"^[A-Za-z][A-Za-z0-9_]{0,15}$"
 Pin = Annotated[str, Field(pattern=PIN)]

@@ -6,6 +6,7 @@ from lumitip.layout import Layout, Optics
 from lumitip_fab.derive import boards, closing, mask, mould, mount, outline, wiring
 from lumitip_fab.derive.breakout import derive_breakout
 from lumitip_fab.derive.cabling import Boards, derive_cabling
+from lumitip_fab.derive.capacitors import refuse_receiver_capacitor
 from lumitip_fab.derive.cells import derive_cells
 from lumitip_fab.derive.electrical import derive_electrical
 from lumitip_fab.derive.fasteners import derive_fasteners
@@ -52,6 +53,7 @@ def derive(given: Input) -> Design:
     plate = derive_fit_plate(given, plan, coupling, faults)
     sheet = mask.derive_mask(given, silhouette, plan, faults)
     rules = derive_rules(given, faults)
+    refuse_receiver_capacitor(given, faults)
     meeting = closing.derive_closing(silhouette, stack, coupling, casting, faults)
     breakout = derive_breakout(given, muxing, faults)
     holders = derive_holder(given, breakout, faults)

@@ -2,11 +2,11 @@
 
 import math
 
+from lumitip_fab.derive.capacitors import refuse_flange_capacitors
 from lumitip_fab.derive.faults import Faults
 from lumitip_fab.derive.wiring import MOST_RESISTOR_LOAD, Strings, sold_ohm
 from lumitip_fab.load import Input
 
-SUPPLY_TOLERANCE = 0.05
 FUSE_SHARE = 0.75  # of its rating that a fuse carries for years
 EFFICIENCY = 0.8  # of the regulator at a small load, assumed
 STRAY_PF = 7.0  # at each of the crystal's terminals: 4 of the nRF52840's pin, the rest tracks
@@ -23,9 +23,9 @@ def refuse_parts(given: Input, strings: Strings, faults: Faults) -> None:
     """Refuse parts that are overloaded, and values with which the circuit does not work."""
     _refuse_gate(given, faults)
     _refuse_fuse(given, strings, faults)
-    _refuse_voltages(given, faults)
+    refuse_flange_capacitors(given, faults)
     if given.catalogue.controllers[given.parameters.controller.board].module:
-        _refuse_module(given, faults)
+        _refuse_crystal(given, faults)
 
 
 def _refuse_gate(given: Input, faults: Faults) -> None:
@@ -62,31 +62,8 @@ def _refuse_fuse(given: Input, strings: Strings, faults: Faults) -> None:
     )
 
 
-def _refuse_voltages(given: Input, faults: Faults) -> None:
-    """Refuse capacitors at more than they are made for."""
-    p, known = given.parameters, given.catalogue
-    output_v = known.regulators[p.flange.regulator].output_v
-    at = {
-        "flange.input_capacitor": p.supply.voltage_v,
-        "flange.output_capacitor": output_v,
-        "flange.boot_capacitor": output_v,
-    }
-    controller = known.controllers[p.controller.board]
-    if controller.module:
-        at |= {"module.supply_capacitor": output_v, "module.capacitor": controller.supply_v}
-    for field, volts in at.items():
-        section, key = field.split(".")
-        name = getattr(getattr(p, section), key)
-        rated, needed = known.capacitors[name].rated_v, (1 + SUPPLY_TOLERANCE) * volts
-        faults.refuse_unless(
-            needed <= rated,
-            field,
-            f"{name!r} given, made for {rated:g} V; {needed:g} V are needed here",
-        )
-
-
-def _refuse_module(given: Input, faults: Faults) -> None:
-    """Refuse capacitors with which the crystal is off, or the linear regulator not stable."""
+def _refuse_crystal(given: Input, faults: Faults) -> None:
+    """Refuse capacitors with which the crystal is off."""
     p, known = given.parameters.module, given.catalogue
     crystal, each = known.crystals[p.crystal], known.capacitors[p.crystal_capacitor]
     load_pf = (1000 * each.capacitance_nf * each.left + STRAY_PF) / 2
@@ -96,14 +73,4 @@ def _refuse_module(given: Input, faults: Faults) -> None:
         f"{p.crystal_capacitor!r} given, two of which load the crystal with {load_pf:g} pF; "
         f"{p.crystal!r} is made for {crystal.load_pf:g} pF: capacitors of "
         f"{2 * crystal.load_pf - STRAY_PF:g} pF are needed",
-    )
-    regulator, beside = known.linear_regulators[p.regulator], known.capacitors[p.supply_capacitor]
-    least, most = regulator.stable_uf
-    there_uf = beside.capacitance_nf / 1000
-    faults.refuse_unless(
-        least <= there_uf * beside.left and there_uf <= most,
-        "module.supply_capacitor",
-        f"{p.supply_capacitor!r} given, {there_uf:g} uF, of which {there_uf * beside.left:g} are "
-        "sure to be left; "
-        f"{p.regulator!r} is stable with {least:g} to {most:g} uF",
     )
