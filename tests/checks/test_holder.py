@@ -180,3 +180,14 @@ def test_a_holder_goes_round_a_round_body_alone(design_dir: Path, tmp_path: Path
     design = derive(load(file))
     assert [holder.body_from for holder in design.holders] == ["holder.body_mm"]
     assert design.system.holders == ()  # the body that is drawn is another
+
+
+def test_screws_of_a_board_without_a_holder_are_the_makers_own(
+    design_dir: Path, tmp_path: Path
+) -> None:
+    folder = Path(shutil.copytree(design_dir, tmp_path / "design"))
+    file = folder / "presets/mine.toml"
+    file.write_text(
+        'extends = "published.toml"\n[coupling]\ngripper = "wsg50"\n[breakout]\nhole_mm = 3.2\n'
+    )
+    assert derive(load(file)).holders == ()

@@ -6,8 +6,6 @@ from lumitip_fab.load import Input
 
 BOARD_SCREW = "M2"  # of the flange's board
 HEAD_PLAY_MM = 0.2  # of a bolt's head in its counterbore, at least
-DRILLED_MM = 0.1  # beyond a thread, of a board's holes, which are truer than printed ones
-RING_MM = 0.4  # of a board, at least, that a screw's head presses on
 
 
 def derive_fasteners(given: Input, faults: Faults) -> tuple[Fastener, ...]:
@@ -40,8 +38,6 @@ def derive_fasteners(given: Input, faults: Faults) -> tuple[Fastener, ...]:
     )
     if p.flange.enabled:
         _refuse_hole(given, "flange.coupling", coupling.bolt, coupling.bolt_hole_mm, faults)
-    if p.breakout.enabled:
-        _refuse_board_hole(given, faults)
     threads = sorted({thread for _, thread in wanted})
     return tuple(
         Fastener(name, e.thread_mm, e.hole_mm, e.cap_head_mm, e.countersunk_mm, e.nut_mm)
@@ -59,17 +55,4 @@ def _refuse_hole(given: Input, field: str, thread: str, hole_mm: float, faults: 
         field,
         f"{name!r} given, whose bolt_hole_mm = {hole_mm:g} is no clearance hole of an {thread}: "
         f"{fine:g} to {coarse:g} is allowed (ISO 273)",
-    )
-
-
-def _refuse_board_hole(given: Input, faults: Faults) -> None:
-    """Refuse holes of the breakout that its screws do not go through, or whose heads do."""
-    p = given.parameters
-    screw = given.catalogue.fasteners[p.holder.screw]
-    least, most = screw.thread_mm + DRILLED_MM, screw.cap_head_mm - 2 * RING_MM
-    faults.refuse_unless(
-        least - 1e-9 <= p.breakout.hole_mm <= most + 1e-9,
-        "breakout.hole_mm",
-        f"{p.breakout.hole_mm:g} given, {least:g} to {most:g} is allowed for an "
-        f"{p.holder.screw} (holder.screw) and its head of {screw.cap_head_mm:g} mm",
     )

@@ -12,6 +12,8 @@ NUT_PLAY_MM = 0.2  # nut pockets beyond the nuts
 BOSS_RIM_MM = 1.2  # of a boss round its screw
 BOSS_LENGTH_MM = 7.0
 MOST_STRAIN = 0.01  # of the arms while they clip on; PETG yields at some 4 %
+DRILLED_MM = 0.1  # beyond a screw's thread, of the board's holes, truer than printed ones
+RING_MM = 0.4  # of the board, at least, that a screw's head presses on
 LEAST_GRIP_MM = 0.3  # each arm's end inside the body's widest place
 
 
@@ -58,6 +60,7 @@ def derive_holder(
         strap_y_mm=(-spacing, spacing),
         strap_hole_mm=p.holder.strap_hole_mm,
     )
+    _refuse_holes(given, of, faults)
     _refuse(given, of, holder, faults)
     return (holder,)
 
@@ -113,4 +116,17 @@ def _refuse(given: Input, of: Carrier, holder: Holder, faults: Faults) -> None:
         f"{p.standoff_mm:g} given, the bosses under the screws would be {2 * half_y:.1f} mm wide "
         f"and reach solder tails: at most {min(tails, default=0.0) - holder.boss_mm[1] / 2:.2f} is "
         "allowed",
+    )
+
+
+def _refuse_holes(given: Input, of: Carrier, faults: Faults) -> None:
+    """Refuse holes of the board that its screws do not go through, or whose heads do."""
+    thread = given.parameters.holder.screw
+    screw = given.catalogue.fasteners[thread]
+    least, most = screw.thread_mm + DRILLED_MM, screw.cap_head_mm - 2 * RING_MM
+    faults.refuse_unless(
+        least - 1e-9 <= of.hole_mm <= most + 1e-9,
+        "breakout.hole_mm",
+        f"{of.hole_mm:g} given, {least:g} to {most:g} is allowed for an {thread} (holder.screw) "
+        f"and its head of {screw.cap_head_mm:g} mm",
     )

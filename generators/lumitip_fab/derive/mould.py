@@ -106,7 +106,8 @@ def _letter(given: Input, outline: Outline, stack: Stack, faults: Faults) -> Let
         high - low >= LEAST_MM - 1e-9,
         "mould.wall_mm",
         f"{wall:g} given, which leaves {high - low:.2f} mm for the letter that tells the fingers' "
-        f"moulds apart; at least {wall + LEAST_MM - (high - low):.2f} is needed",
+        f"moulds apart, {LEAST_MM:g} mm high at least: a wall of "
+        f"{wall + LEAST_MM - (high - low):.2f} or more is needed",
     )
     trough_y = outline.end_y_mm - p.mould.wall_gap_mm - rise - wall - LEDGE_MM
     end_mm = wall + TROUGH_MM - trough_y
