@@ -10,7 +10,7 @@ from lumitip_fab.design import Fastener
 
 ROUND_MM = 0.05  # chords of a mesh, and an axis that is a little off
 HEAD_MM = (0.1, 0.8)  # round a countersunk head
-NUT_MM = (0.05, 0.4)  # round a nut, across flats: it goes in, and does not turn
+NUT_MM = (0.05, 0.45)  # round a nut, across flats: it goes in, and does not turn
 Figures = tuple[float, float, float, str]
 """Measured clearance, least, most (mm), and what it is of."""
 
@@ -18,7 +18,7 @@ Figures = tuple[float, float, float, str]
 def round_thread(found_mm: Vectors, of: Fastener, fit_mm: float) -> Figures:
     """Clearance of a thread, less the printer's fit on both sides."""
     fine, coarse = of.hole_mm
-    low, high = fine - of.thread_mm - ROUND_MM, coarse - of.thread_mm
+    low, high = fine - of.thread_mm - ROUND_MM, coarse - of.thread_mm + ROUND_MM
     clear = found_mm - of.thread_mm - 2 * fit_mm
     return farthest(clear, (low + high) / 2), low, high, f"round {of.name} of {of.thread_mm:g} mm"
 
