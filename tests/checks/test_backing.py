@@ -147,8 +147,8 @@ SENSOR_FRAME = {
     island_added: {"bodies"},
 }
 MOUNT_FRAME = {
-    bolt_moved: {"bolt", "screw_seat"},
-    bolt_hole_narrow: {"bolt_hole"},
+    bolt_moved: {"bolt", "bolt_clearance", "screw_seat"},
+    bolt_hole_narrow: {"bolt_hole", "bolt_clearance"},
     gripper_pins_apart: {"gripper_pins"},
     gripper_pin_hole_narrow: {"gripper_pin_hole"},
     gripper_pin_hole_shallow: {"gripper_pin_depth"},
@@ -240,9 +240,10 @@ def step_of_nothing(folder: Path) -> None:
 
 
 EVERY_LENGTH = {
-    "bed_contact", "bolt", "bolt_hole", "gripper_pin_depth", "gripper_pin_hole", "gripper_pins",
-    "letter", "min_wall", "nose", "notch", "outline", "pin_clearance", "pin_height", "pins",
-    "pocket_depth", "pocket_gap", "screw_seat", "size", "slant", "step", "three_mf", "tip_edge",
+    "bed_contact", "bolt", "bolt_clearance", "bolt_hole", "gripper_pin_depth", "gripper_pin_hole",
+    "gripper_pins", "letter", "min_wall", "nose", "notch", "outline", "pin_clearance",
+    "pin_height", "pins", "pocket_depth", "pocket_gap", "screw_seat", "size", "slant", "step",
+    "three_mf", "tip_edge",
 }  # fmt: skip
 FILES = {
     triangle_flipped: {"watertight"},

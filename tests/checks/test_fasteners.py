@@ -11,6 +11,7 @@ from lumitip_fab.derive import derive, fits, flange_body, holder
 from lumitip_fab.design import Design
 from lumitip_fab.encoding import design_text
 from lumitip_fab.load import load
+from lumitip_fab.mechanical.backing import backing
 from lumitip_fab.mechanical.flange import flange_files
 from lumitip_fab.mechanical.holder import holder_files
 
@@ -71,6 +72,18 @@ def test_a_wrong_derivation_of_the_flange(
     design = derived(alter)
     _written(damaged, design, flange_files(design.flanges[0], design.stack))
     assert failing(damaged, "flange") == FLANGE[alter]
+
+
+def test_a_wrong_derivation_of_the_coupling(
+    derived: Callable[[Alter], Design], damaged: Path
+) -> None:
+    """Of the gripper's pins nothing tells how wide they are: the bolts' holes alone are found."""
+    d = derived(holes_narrow)
+    made = (
+        backing(f, d.stack, d.outline, d.tip, d.board, d.mount, d.interfaces) for f in d.fingers
+    )
+    _written(damaged, d, tuple(artefact for files in made for artefact in files))
+    assert failing(damaged, "backing") == {"bolt_clearance"}
 
 
 @pytest.mark.parametrize("alter", HOLDER, ids=lambda a: a.__name__)

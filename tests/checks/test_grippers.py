@@ -201,8 +201,8 @@ def second_seat_low(part: Manifold) -> Manifold:
 
 
 DAMAGES = {
-    second_bolt_moved: {"bolt", "screw_seat"},
-    second_bolt_hole_narrow: {"bolt_hole"},
+    second_bolt_moved: {"bolt", "bolt_clearance", "screw_seat"},
+    second_bolt_hole_narrow: {"bolt_hole", "bolt_clearance"},
     sleeve_narrow: {"gripper_pin_hole"},
     sleeve_shallow: {"gripper_pin_depth", "min_wall"},
     second_seat_low: {"screw_seat"},

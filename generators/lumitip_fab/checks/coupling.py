@@ -5,7 +5,8 @@ from collections.abc import Iterator
 import numpy as np
 import shapely
 
-from lumitip_fab.checks.printed import Printed, circles, holes_at
+from lumitip_fab.checks.fasteners import round_thread
+from lumitip_fab.checks.printed import Printed, circles, holes_at, room
 from lumitip_fab.checks.result import Measurement
 from lumitip_fab.checks.solids import cast, section
 
@@ -16,13 +17,16 @@ _DOWN, _UP = np.array([0.0, 0.0, -1.0]), np.array([0.0, 0.0, 1.0])
 
 
 def measure_bolt(part: Printed) -> Iterator[Measurement]:
-    """Bolt holes, above the pins, and gripper pins: place and diameter."""
+    """Bolt holes, above the pins, and gripper pins: place, diameter, and room for the bolt."""
     mount = part.design.mount
     rings = holes_at(part.standing, (mount.land_mm + mount.pin_depth_mm) / 2)
     bolts = tuple((u, mount.bolt_w_mm) for u in mount.bolt_u_mm)
     off, wide = circles(rings, bolts, mount.bolt_hole_mm / 2)
     yield part.near("bolt", off, 0.0, POSITION_MM)
     yield part.near("bolt_hole", wide, mount.bolt_hole_mm, DIAMETER_MM)
+    bolt, fit_mm = part.design.fastener(mount.bolt), part.design.printing.fit_mm
+    clear, low, high, _ = round_thread(room(rings, bolts), bolt, fit_mm)
+    yield part.figure("bolt_clearance", clear, low, high)
     pins = tuple((u, mount.bolt_w_mm) for u in mount.pin_u_mm)
     if pins:
         rings = holes_at(part.standing, mount.pin_depth_mm / 2)
