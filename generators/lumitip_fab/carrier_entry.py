@@ -4,7 +4,7 @@ from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
-from lumitip_fab.entry import Capacitance, Entry, Length, Share, Strict
+from lumitip_fab.entry import Capacitances, Entry, Length, Share, Strict, Voltages
 
 Signal = Annotated[str, Field(pattern=r"^[A-Z0-9_]{1,12}$")]
 PinName = Annotated[str, Field(pattern=r"^[A-Z0-9]{1,6}$")]
@@ -89,7 +89,7 @@ class Regulator(Leaded):
 
     output_v: float = Field(gt=0, le=24)
     """Output voltage."""
-    input_v: tuple[Annotated[float, Field(gt=0, le=100)], Annotated[float, Field(gt=0, le=100)]]
+    input_v: Voltages
     """Least and greatest input voltage."""
     output_a: float = Field(gt=0, le=20)
     """Largest continuous output current."""
@@ -97,7 +97,7 @@ class Regulator(Leaded):
     """Switching frequency."""
     soft_start_ms: float = Field(gt=0, le=1000)
     """Until its output stands."""
-    boot_nf: tuple[Capacitance, Capacitance]
+    boot_nf: Capacitances
     """Least and greatest capacitance between SW and BST."""
     switch_ohm: tuple[Share, Share]
     """Resistance of the switch to the input and of that to ground."""
@@ -115,11 +115,11 @@ class LinearRegulator(Leaded):
 
     output_v: float = Field(gt=0, le=24)
     """Output voltage."""
-    input_v: tuple[Annotated[float, Field(gt=0, le=100)], Annotated[float, Field(gt=0, le=100)]]
+    input_v: Voltages
     """Least and greatest input voltage."""
     output_a: float = Field(gt=0, le=20)
     """Largest continuous output current."""
-    stable_nf: tuple[Capacitance, Capacitance]
+    stable_nf: Capacitances
     """Least and greatest capacitance at its output."""
 
     @model_validator(mode="after")

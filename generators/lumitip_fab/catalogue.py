@@ -12,7 +12,7 @@ from pydantic import Field, model_validator
 from lumitip_fab.carrier_entry import LinearRegulator, Regulator, Strip, Transistor
 from lumitip_fab.controller_entry import Controller
 from lumitip_fab.coupling_entry import ToolCoupling
-from lumitip_fab.entry import Capacitance, Entry, Length, Name, Share, Strict
+from lumitip_fab.entry import Capacitances, Entry, Length, Name, Share, Strict
 from lumitip_fab.fab_entry import Fab
 from lumitip_fab.fastener_entry import Fastener
 from lumitip_fab.filament_entry import Filament
@@ -174,7 +174,7 @@ class Multiplexer(Bought):
     """Largest resistance from an input to the common terminal at the detectors' supply."""
     common_pf: float = Field(ge=0, le=1e4)
     """Capacitance of the common terminal."""
-    bypass_nf: tuple[Capacitance, Capacitance]
+    bypass_nf: Capacitances
     """Least and greatest capacitance between its supply and ground."""
 
     @property

@@ -5,7 +5,7 @@ from typing import Annotated, Self
 from pydantic import Field, model_validator
 
 from lumitip_fab.carrier_entry import Plug
-from lumitip_fab.entry import Capacitance, Entry, Length, Offset, Pin, Strict
+from lumitip_fab.entry import Capacitances, Entry, Length, Offset, Pin, Strict
 
 ANALOG_PORTS = ("P0_02", "P0_03", "P0_04", "P0_05", "P0_28", "P0_29", "P0_30", "P0_31")
 """AIN0 to AIN7 of the nRF52840, by its product specification."""
@@ -27,7 +27,7 @@ class Module(Strict):
     """Number at the distributor LCSC; empty where it is not known."""
     body_mm: tuple[Length, Length, Length]
     """Body: across, along, height above the board."""
-    bypass_nf: tuple[Capacitance, Capacitance]
+    bypass_nf: Capacitances
     """Least and greatest capacitance beside its supply."""
     crystal: tuple[Pin, Pin]
     """Ports of the crystal of 32.768 kHz."""

@@ -2,7 +2,7 @@
 
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
 _LETTERS = "A-Za-zµÀ-ÖØ-öø-ÿ"
 """Those of Latin-1: all are in the PDFs' typeface."""
@@ -10,12 +10,24 @@ NAME = rf"^[A-Za-z0-9]([{_LETTERS}0-9 .+/\-]|_[A-Za-z0-9])*$"
 """Stands in texts where there is no title: a `_` opens no emphasis that another one closes."""
 Length = Annotated[float, Field(ge=0.01, le=500)]
 Share = Annotated[float, Field(ge=0.01, le=1000)]
-Capacitance = Annotated[float, Field(gt=0, le=1e7)]
 TITLE = rf"^([{_LETTERS}0-9][{_LETTERS}0-9 .,+/()\-]*)?$"
 PIN = r"^[A-Za-z][A-Za-z0-9_]{0,15}$"
 Pin = Annotated[str, Field(pattern=PIN)]
 Offset = Annotated[float, Field(ge=-500, le=500)]
 Name = Annotated[str, Field(min_length=1, max_length=64, pattern=NAME)]
+
+
+def _ascending(least_and_most: tuple[float, float]) -> tuple[float, float]:
+    least, most = least_and_most
+    if least > most:
+        raise ValueError(f"[{least:g}, {most:g}] given, the least is needed first")
+    return least_and_most
+
+
+_Capacitance = Annotated[float, Field(gt=0, le=1e7)]
+_Voltage = Annotated[float, Field(gt=0, le=100)]
+Capacitances = Annotated[tuple[_Capacitance, _Capacitance], AfterValidator(_ascending)]
+Voltages = Annotated[tuple[_Voltage, _Voltage], AfterValidator(_ascending)]
 Confidence = Literal["datasheet", "measured", "inferred", "assumed"]
 
 
