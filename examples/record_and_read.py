@@ -16,9 +16,9 @@ with (
     Fingertip.open(url, layout=sys.argv[3] if len(sys.argv) > 3 else None) as tip,
     Writer(path, tip.layout, device_id=tip.device_id, calibration=tip.calibration) as writer,
 ):
-    first = tip.read()
+    first = tip.read(timeout=5.0)
     writer.write(first)
-    while (frame := tip.read()).t < first.t + 2.0:
+    while (frame := tip.read(timeout=5.0)).t < first.t + 2.0:
         writer.write(frame)
 
 recording = Reader(path)

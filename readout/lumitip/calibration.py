@@ -19,6 +19,7 @@ from typing import Literal, get_args
 
 import numpy as np
 
+from lumitip import arguments
 from lumitip.errors import ArgumentError, CalibrationError, CalibrationMismatch
 from lumitip.frame import Values
 
@@ -54,6 +55,18 @@ class Calibration:
     """Light of each cell with nothing in the grasp, shape `(cells,)`, 255 is full light."""
     dark: Values | None = None
     """The same with all light shut off."""
+
+    def __post_init__(self) -> None:
+        for name in ("empty", "dark"):
+            told = getattr(self, name)
+            if told is None:
+                continue
+            values = arguments.numbers(told, name, CalibrationError).astype(np.float32)
+            if values.ndim != 1 or not np.isfinite(values).all():
+                raise CalibrationError(
+                    f"{name}: {told!r:.40} given, a finite number for each cell is needed"
+                )
+            object.__setattr__(self, name, values)
 
     def correction(self) -> Correction | None:
         """What calibrates values; `None` without any reference.
@@ -106,12 +119,18 @@ class Calibration:
                 )
         return made
 
-    def check(self, device_id: str, design_hash: str) -> None:
-        """Refuse to calibrate another fingertip.
+    def check(self, device_id: str, design_hash: str, cells: int | None = None) -> None:
+        """Refuse to calibrate another fingertip, of which the number of cells may be told too.
 
         Raises:
             CalibrationMismatch: naming both.
         """
+        sizes = {reference.size for reference in (self.empty, self.dark) if reference is not None}
+        if cells is not None and sizes - {cells}:
+            raise CalibrationMismatch(
+                f"a reference of {max(sizes - {cells})} cells given, the fingertip has {cells}: "
+                "tare this fingertip"
+            )
         if self.design_hash != design_hash:
             raise CalibrationMismatch(
                 f"this calibration is of design {self.design_hash[:16]}, the fingertip of "

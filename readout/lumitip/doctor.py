@@ -10,6 +10,8 @@ from typing import Literal
 
 import numpy as np
 
+from lumitip import arguments
+from lumitip.errors import ArgumentError
 from lumitip.frame import Values
 from lumitip.layout import Layout
 from lumitip.swaps import LEAST_ORDER, Mask, Pairs, enough_ways, order, swaps, ways_of
@@ -57,10 +59,13 @@ def examine(light: Values, layout: Layout) -> Report:
         layout: the cells.
 
     Raises:
-        ValueError: if there are fewer frames or other cells.
+        LayoutError: if it is no layout.
+        ArgumentError: if they are no numbers, or there are fewer frames or other cells.
     """
+    arguments.layout(layout)
+    light = arguments.numbers(light, "light").astype(np.float32, copy=False)
     if light.ndim != 2 or len(light) < 2 or light.shape[1] != len(layout):
-        raise ValueError(
+        raise ArgumentError(
             f"light of shape {light.shape} given, (2 or more, {len(layout)}) is needed"
         )
     noise = _noise(light)

@@ -167,6 +167,7 @@ class Fingertip:
     def subscribe(self, callback: Callable[[Frame], None]) -> Callable[[], None]:
         """Call `callback` with every frame from now on, on a thread of its own, until the returned
         function is called. From any thread. An exception in it is logged and ends it."""
+        arguments.function(callback, "callback")
         queue = self._hub.queue(self._buffer)
 
         def call() -> None:
@@ -220,7 +221,8 @@ class Fingertip:
 
     @calibration.setter
     def calibration(self, calibration: Calibration) -> None:
-        calibration.check(self.device_id, self.layout.design_hash)
+        arguments.instance(calibration, Calibration, "calibration", CalibrationError)
+        calibration.check(self.device_id, self.layout.design_hash, len(self.layout))
         self._calibration = calibration
         self._hub.intake.correction = calibration.correction()
 

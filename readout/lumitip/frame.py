@@ -7,7 +7,7 @@ from typing import Any, TypeVar, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from lumitip.errors import EndOfRecording, LinkTimeout
+from lumitip.errors import ArgumentError, EndOfRecording, LinkTimeout
 from lumitip.grid import Floats, Integers
 from lumitip.protocol.packet import Codes
 
@@ -76,10 +76,10 @@ class Block:
         """The block of one or more frames.
 
         Raises:
-            ValueError: if there are none.
+            ArgumentError: if there are none, or something else.
         """
-        if not frames:
-            raise ValueError("no frames given, a block needs at least one")
+        if not frames or not all(isinstance(frame, Frame) for frame in frames):
+            raise ArgumentError(f"{frames!r:.40} given, a block needs frames, at least one")
         seq = np.array([f.seq for f in frames], dtype=np.int64)
         raw: Codes = np.array([f.raw for f in frames])
         told = all(f.t_device is not None for f in frames)

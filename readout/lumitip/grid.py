@@ -18,6 +18,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from lumitip.errors import ArgumentError
+
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -49,18 +51,21 @@ def hexagonal_grid(columns: Sequence[int], pitch_mm: float) -> Grid:
         pitch_mm: distance between neighbouring cells (mm), above zero.
 
     Raises:
-        ValueError: if two neighbouring columns do not differ by exactly one cell, a column is
+        ArgumentError: if two neighbouring columns do not differ by exactly one cell, a column is
             empty, or the pitch is not above zero.
     """
-    counts = np.asarray(columns, dtype=np.int64)
+    try:
+        counts = np.asarray(columns, dtype=np.int64)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise ArgumentError(f"columns: {columns!r:.40} given, whole numbers are needed") from error
     if counts.ndim != 1 or counts.size == 0 or (counts < 1).any():
-        raise ValueError(f"columns: {list(columns)} given, every column needs at least one cell")
+        raise ArgumentError(f"columns: {list(columns)} given, every column needs at least one cell")
     if (np.abs(np.diff(counts)) != 1).any():
-        raise ValueError(
+        raise ArgumentError(
             f"columns: {list(columns)} given, neighbouring columns must differ by one cell"
         )
     if not pitch_mm > 0:
-        raise ValueError(f"pitch_mm: {pitch_mm} given, must be above 0")
+        raise ArgumentError(f"pitch_mm: {pitch_mm} given, must be above 0")
     column = np.repeat(np.arange(counts.size), counts)
     first = np.cumsum(counts) - counts
     row = np.arange(counts.sum()) - first[column]

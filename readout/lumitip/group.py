@@ -71,7 +71,7 @@ class FingertipGroup:
             options: for all, as of `Fingertip.open`.
 
         Raises:
-            ArgumentError: if no fingertip is named.
+            ArgumentError: if no fingertip is named, or a layout is of none of them.
             LumitipError: as `Fingertip.open`, for the first that fails; the others are closed.
         """
         if not isinstance(urls, Mapping) or not urls:
@@ -79,6 +79,8 @@ class FingertipGroup:
                 f"{urls!r:.40} given, names and addresses of at least one fingertip are needed: "
                 "{'left': 'ble://A1'}"
             )
+        if isinstance(layout, Mapping) and (astray := sorted(set(layout) - set(urls), key=str)):
+            raise ArgumentError(f"layout of {astray[0]!r:.40} given, there is {', '.join(urls)}")
         with ExitStack() as stack:
             tips = {}
             for name, url in urls.items():

@@ -6,6 +6,7 @@ import threading
 import time
 from collections.abc import Callable
 
+from lumitip import arguments
 from lumitip.arguments import seconds
 from lumitip.drift import Drift, DriftWatch
 from lumitip.errors import EndOfRecording, FingertipClosed, LinkError, LinkTimeout
@@ -30,6 +31,8 @@ class Hub:
     def __init__(self, link: Link, any_design: bool, on_event: Report | None) -> None:
         self.link = link
         self._counter = Counter()
+        if on_event is not None:
+            arguments.function(on_event, "on_event")
         self._on_event = on_event
         source = Source(link.layout, lambda: link.device_id, any_design)
         self.intake = Intake(source, self._counter, self._report)

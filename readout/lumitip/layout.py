@@ -143,8 +143,8 @@ class Layout:
         """
         try:
             text = Path(path).read_text(encoding="utf-8")
-        except (OSError, ValueError) as error:
-            raise LayoutError(f"{path}: cannot be read as a layout: {error}") from error
+        except (OSError, ValueError, TypeError) as error:
+            raise LayoutError(f"{path!s:.200}: cannot be read as a layout: {error}") from error
         return cls.from_json(text, source=str(path))
 
     @classmethod
@@ -160,7 +160,7 @@ class Layout:
         """
         try:
             told = json.loads(text)
-        except (ValueError, RecursionError) as error:
+        except (ValueError, TypeError, RecursionError) as error:
             raise LayoutError(f"{source}: is not JSON: {error}") from error
         try:
             return _read(told)

@@ -5,7 +5,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Sequence
 
-from lumitip.errors import LinkError
+from lumitip.errors import ArgumentError, LinkError
 from lumitip.frame import Frame
 
 PATIENCE_S = 5.0
@@ -22,7 +22,7 @@ class FrameQueue:
 
     def __init__(self, size: int, notify: Callable[[], None] | None = None) -> None:
         if size < 1:
-            raise ValueError(f"buffer: {size} frames given, at least 1 is needed")
+            raise ArgumentError(f"buffer: {size} frames given, at least 1 is needed")
         self._frames: deque[Frame] = deque(maxlen=size)
         self._changed = threading.Condition()
         self._notify = notify

@@ -39,7 +39,7 @@ def test_the_command_of_a_row_is_understood(command: str) -> None:
         assert re.search(rf"^{target}:", (ROOT / "Makefile").read_text(), re.MULTILINE)
         design = dict(pair.split("=") for pair in given).get("DESIGN")
         load(ROOT / (design or "design/fingertip.toml"))
-    for url in re.findall(r"twin://\S+", command):
+    for url in re.findall(r"twin://[^\s\"]+", command):
         with Fingertip.open(url) as tip:
             assert tip.read(5.0).values.size == len(tip.layout)
 

@@ -43,6 +43,10 @@ def run(options: argparse.Namespace) -> int:
     if options.cores < 1:
         raise LumitipError(f"--cores {options.cores} given, one or more are needed")
     layout = Layout.load(options.layout) if options.layout else published_layout()
+    try:  # now, and not when the trials are done
+        options.out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise LumitipError(f"--out {options.out}: cannot be made a folder: {error}") from error
 
     def say(line: str) -> None:
         print(line, flush=True)

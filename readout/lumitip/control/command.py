@@ -1,12 +1,13 @@
 """`Command`: how the finger should move, in its own sensor frame; and how fast it may."""
 
 from dataclasses import dataclass
+from typing import SupportsFloat
 
 from lumitip.errors import LumitipError
 
 
 class ControlError(LumitipError, ValueError):
-    """A controller that cannot be so."""
+    """A controller, or what it is given, that cannot be so."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,8 +35,9 @@ class Limits:
     rotation_rad_s: float = 8.0
 
     def __post_init__(self) -> None:
-        if not min(self.forward_mm_s, self.lateral_mm_s, self.rotation_rad_s) > 0.0:
-            raise ControlError(f"{self} given, every limit must be above 0")
+        given = (self.forward_mm_s, self.lateral_mm_s, self.rotation_rad_s)
+        if not all(isinstance(limit, SupportsFloat) and float(limit) > 0.0 for limit in given):
+            raise ControlError(f"{self} given, every limit must be a number above 0")
 
     def of(self, command: Command) -> Command:
         """The command within the limits."""

@@ -9,7 +9,8 @@ import math
 from dataclasses import dataclass
 from typing import Protocol
 
-from lumitip.control.command import Command
+from lumitip import arguments
+from lumitip.control.command import Command, ControlError
 from lumitip.control.sight import Sight
 
 
@@ -33,6 +34,9 @@ class CentreLaw:
     """Lateral velocity by the height that is missing (1/s)."""
     target_mm: float = 0.0
     """Height that the middle of the dark is held at (mm)."""
+
+    def __post_init__(self) -> None:
+        _check(self)
 
     def __call__(self, sight: Sight) -> Command | None:
         """See `Law`; needs a `Contact`."""
@@ -58,6 +62,9 @@ class LineLaw:
     target_mm: float = 0.0
     """Height that the line is held at (mm)."""
 
+    def __post_init__(self) -> None:
+        _check(self)
+
     def __call__(self, sight: Sight) -> Command | None:
         """See `Law`; needs a line."""
         if sight.height_mm is None:
@@ -67,3 +74,8 @@ class LineLaw:
         return Command(
             forward, lateral + forward * math.tan(sight.angle), self.turn_per_s * sight.angle
         )
+
+
+def _check(law: Law) -> None:
+    arguments.finite_fields(law, ControlError)
+    arguments.number(law.speed_mm_s, "speed_mm_s", 0.0, error=ControlError)

@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass
 
+from lumitip.control.command import ControlError
 from lumitip.estimation import KINDS, Estimate
 from lumitip.processing import Contact
 
@@ -31,9 +32,17 @@ def sight_of(seen: Contact | Estimate) -> Sight:
 
     A corner's border is followed like an edge's. An estimate that says itself that it is wrong
     shows no line.
+
+    Raises:
+        ControlError: if it is neither.
     """
     if isinstance(seen, Contact):
         return _of_contact(seen)
+    if not isinstance(seen, Estimate):
+        raise ControlError(
+            f"{seen!r:.40} given, a Contact or an Estimate is needed, such as "
+            "Processor(layout)(frame.values)"
+        )
     # A curved line misfits its straight model, and is a line all the same.
     if seen.kind not in KINDS or not _BEARABLE.issuperset(seen.flags):
         return Sight()

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+from lumitip import arguments
 from lumitip.control.command import Command, ControlError, Limits
 from lumitip.control.laws import Law
 from lumitip.control.lead import Lead
@@ -44,17 +45,26 @@ class Tracer:
                 angle is told ahead by so much (s).
 
         Raises:
-            ControlError: if a time is below 0 or a count below 1.
+            ControlError: if a time is below 0, a count below 1, or something is of another kind.
         """
-        if min(slow_s, search_s, search_mm_s, lead_s) < 0.0 or corner_frames < 1:
-            raise ControlError(
-                f"slow_s {slow_s}, search_s {search_s}, search_mm_s {search_mm_s}, lead_s {lead_s},"
-                f" corner_frames {corner_frames} given: not below 0, and one frame or more"
+        if not callable(law):
+            raise ControlError(f"law: {law!r:.40} given, a law like LineLaw(80.0) is needed")
+        self.law = law
+        self.limits = arguments.instance(
+            Limits() if limits is None else limits, Limits, "limits", ControlError
+        )
+        self.slow_s, self.search_s, self.search_mm_s, ahead_s = (
+            arguments.number(given, name, 0.0, error=ControlError)
+            for given, name in (
+                (slow_s, "slow_s"), (search_s, "search_s"), (search_mm_s, "search_mm_s"),
+                (lead_s, "lead_s"),
             )
-        self.law, self.limits = law, limits or Limits()
-        self.slow_s, self.search_s, self.search_mm_s = slow_s, search_s, search_mm_s
-        self.corner_at_mm, self.corner_frames = corner_at_mm, corner_frames
-        self._lead = Lead(lead_s)
+        )  # fmt: skip
+        if corner_at_mm is not None:
+            arguments.number(corner_at_mm, "corner_at_mm", error=ControlError)
+        self.corner_at_mm = corner_at_mm
+        self.corner_frames = arguments.count(corner_frames, "corner_frames", error=ControlError)
+        self._lead = Lead(ahead_s)
         self.reset()
 
     def reset(self) -> None:
@@ -67,7 +77,12 @@ class Tracer:
         self._ended = ""
 
     def __call__(self, seen: Contact | Estimate, dt_s: float) -> Command:
-        """The command that follows from what a frame says, `dt_s` after the one before (s)."""
+        """The command that follows from what a frame says, `dt_s` after the one before (s).
+
+        Raises:
+            ControlError: if that is no contact and no estimate, or the time is below 0.
+        """
+        arguments.number(dt_s, "dt_s", 0.0, error=ControlError)
         if self._ended:
             return Command(state="stop", reason=self._ended)
         sight = self._lead(sight_of(seen), dt_s)

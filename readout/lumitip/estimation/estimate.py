@@ -36,6 +36,9 @@ class Estimate:
     """Of `parameters`, shape `(p, p)`: what the misfit of the frame leaves uncertain."""
     quality: float
     """Share of the variance of the frame that the fit explains, at most 1."""
+    curvature_per_mm: float = 0.0
+    """One over the radius of a cable that a tracker found to bend, positive to the left of
+    `angle_deg`; 0 where a straight line explains the frame (1/mm)."""
     rms_counts: float = np.nan
     """Root mean square misfit (counts of 255)."""
     flags: tuple[str, ...] = ()

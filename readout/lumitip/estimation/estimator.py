@@ -7,20 +7,25 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from lumitip import arguments
 from lumitip.errors import LumitipError
 from lumitip.estimation.blur import ANGLE_SD_DEG, OFFSET_SD_MM, likely
 from lumitip.estimation.estimate import KINDS, Estimate, without_contact
 from lumitip.estimation.fit import Fit, Frame, drifting
 from lumitip.estimation.report import MISFIT_COUNTS, covariance, report, rms_counts
-from lumitip.estimation.search import ALPHA_SD, GAP_SD_MM, Search, doubtful
+from lumitip.estimation.search import ALPHA_SD, BENT, GAP_SD_MM, Search, doubtful
 from lumitip.grid import Floats
 from lumitip.layout import Layout, Optics
 from lumitip.processing.processor import COVERED_BELOW, MIN_CONTRAST, ValuesError
+from lumitip.processing.threshold import usable as counted
 from lumitip.twin import Model, Twin
 from lumitip.twin.optics import FULL, GAP_MM, drive_of_values
+from lumitip.twin.scene import MOST_DIAMETER_MM
 
 DIAMETER_MM = 3.0
 """Diameter of a cable where none is told (mm)."""
+LEAST_DIAMETER_MM = 0.3
+"""Thinner cables take too little light from any cell to be found (mm)."""
 NOISE = 1.5
 """Standard deviation of a value that is expected (counts of 255)."""
 GAIN_ERROR = 0.01
@@ -29,6 +34,7 @@ HUBER = 3.0
 """Standard deviations beyond which the loss grows linearly."""
 _HOPELESS = 2.5  # times what the best bank leaves of a frame: no fit makes up for more
 _BLURRED = np.array([np.radians(ANGLE_SD_DEG), OFFSET_SD_MM])
+_BEARABLE_COUNTS = dict.fromkeys(KINDS, 0.5 * MISFIT_COUNTS) | {BENT: 0.25 * MISFIT_COUNTS}
 _WORSE = 1.3  # times the least misfit since the last search: then a tracker searches anew
 _SIMPLER = {"edge": 1.0, "cable": 1.1, "corner": 2.0}  # a corner fits an edge's frame as well
 
@@ -74,18 +80,24 @@ class PoseEstimator:
             alpha_sd: standard deviation of the scattered share, 0 if it is known.
 
         Raises:
-            EstimationError: if gains are not those of this layout, or a deviation is below 0.
+            LayoutError: if it is no layout.
+            EstimationError: if gains are not those of this layout, or another argument is no
+                number in its range.
+            TwinError: if the optics cannot be so.
         """
-        if not min(gap_sd_mm, alpha_sd) >= 0.0:
-            raise EstimationError(
-                f"gap_sd_mm {gap_sd_mm}, alpha_sd {alpha_sd} given: not below 0, 0 if it is known"
-            )
-        self.layout = layout
+        self.layout = arguments.layout(layout)
         self.model = _model(layout, optics, gap_mm)
-        twin = Twin(layout, self.model)
-        self._search = Search(twin, diameter_mm, gap_sd_mm, alpha_sd)
+        self._noise = _number(noise, "noise", above=0.0)
+        self._gain_error = _number(gain_error, "gain_error")
+        self._huber = _number(huber, "huber", above=0.0)
+        told = (
+            _number(diameter_mm, "diameter_mm", LEAST_DIAMETER_MM, MOST_DIAMETER_MM),
+            _number(gap_sd_mm, "gap_sd_mm"),
+            _number(alpha_sd, "alpha_sd", most=1.0),
+        )
         self._gains = np.ones(len(layout)) if gains is None else _gains(layout, gains)
-        self._noise, self._gain_error, self._huber = noise, gain_error, huber
+        twin = Twin(layout, self.model)
+        self._search = Search(twin, *told)
         self._tracking = tracking
         self._last: tuple[str, Floats, float] | None = None
         steps = np.arange(0.0, FULL + 1.0)[:, None] * (twin.empty / FULL)
@@ -97,22 +109,17 @@ class PoseEstimator:
 
         Args:
             values: calibrated values, 255 is full light, shape `(cells,)`; cells whose value is
-                not finite are left out.
+                not finite, or beyond a billion, are left out.
             kind: `"edge"`, `"cable"` or `"corner"`; `None` decides.
 
         Raises:
-            ValuesError: if the shape is another.
+            ValuesError: if the shape is another, or they are no numbers.
             EstimationError: if there is no such kind.
         """
         if kind is not None:
             _known(kind)
-        given: Floats = np.asarray(values, dtype=np.float64)
-        if given.shape != (len(self.layout),):
-            raise ValuesError(
-                f"values of shape {given.shape} given, a frame of this layout has "
-                f"({len(self.layout)},)"
-            )
-        usable = np.isfinite(given)
+        given = self._given(values)
+        usable = counted(given)
         told = given[usable]
         if told.size < 4 or not np.ptp(told) >= MIN_CONTRAST:
             self._last = None
@@ -149,7 +156,9 @@ class PoseEstimator:
 
     def _remember(self, name: str, found: Fit, estimate: Estimate) -> None:
         """Begin the next frame here, unless this one went wrong."""
-        fine = self._tracking and {"misfit", "ambiguous"}.issuperset(estimate.flags)
+        # A bend settles over some frames; a straight line that does not settle is none.
+        bearable = {"misfit", "ambiguous", *(["unfinished"] if name == BENT else [])}
+        fine = self._tracking and bearable.issuperset(estimate.flags)
         # Later frames are held against the least misfit since the last search: a line that is
         # straight again must not let the next one off for having been bent.
         misfit = min(self._last[2] if self._last else math.inf, estimate.rms_counts)
@@ -162,9 +171,17 @@ class PoseEstimator:
             values: of one frame, finite, shape `(cells,)`.
             kind: `"edge"`, `"cable"` or `"corner"`.
             free: whether gap and scattered share are fitted with the pose nevertheless.
+
+        Raises:
+            ValuesError: if the shape is another, or a value is no finite number.
+            EstimationError: if there is no such kind.
         """
-        given: Floats = np.asarray(values, dtype=np.float64)
-        frame = self._frame(given, np.isfinite(given))
+        _known(kind)
+        given = self._given(values)
+        usable = counted(given)
+        if not usable.all():
+            raise ValuesError(f"cell {int(usable.argmin())} is not finite, all are needed")
+        frame = self._frame(given, usable)
         found = self._search.best(kind, frame)
         return (self._search.free if free else self._search.expected)(kind, found, frame)
 
@@ -183,6 +200,15 @@ class PoseEstimator:
         """Forget the frame before."""
         self._last = None
 
+    def _given(self, values: ArrayLike) -> Floats:
+        given = arguments.numbers(values, "values", ValuesError)
+        if given.shape != (len(self.layout),):
+            raise ValuesError(
+                f"values of shape {given.shape} given, a frame of this layout has "
+                f"({len(self.layout)},)"
+            )
+        return given
+
     def _frame(self, values: Floats, usable: np.ndarray) -> Frame:
         values = np.clip(np.where(usable, values, FULL), 0.0, FULL)
         whole = np.minimum(values.astype(np.int64), int(FULL) - 1)
@@ -196,14 +222,15 @@ class PoseEstimator:
         return Frame(light / self._gains, scale, self._gains / rise, full, self._huber)
 
     def _found(self, frame: Frame, kind: str | None) -> tuple[str, Fit]:
-        if self._last is not None and kind in (None, self._last[0]):
+        search = self._search
+        if self._last is not None and kind in (None, search.shape(self._last[0]).kind):
             name, pose, misfit = self._last
-            found = self._search.near(name, pose, frame)
-            if rms_counts(found) < max(0.5 * MISFIT_COUNTS, _WORSE * misfit):
-                return name, found
+            followed = search.near(name, pose, frame)
+            if rms_counts(followed) < max(_BEARABLE_COUNTS[name], _WORSE * misfit):
+                return name, followed
             self._last = None
             if kind is not None:
-                return kind, self._search.again(kind, pose, found, frame)
+                return search.again(name, pose, followed, frame)
         self._last = None
         return (kind, self._search.best(kind, frame)) if kind else self._decided(frame)
 
@@ -215,7 +242,8 @@ class PoseEstimator:
         if not doubtful(plain):
             return "edge", plain
         starts |= {name: search.start(name, frame) for name in KINDS[1:]}
-        most = _HOPELESS * min(left for _, left in starts.values())
+        # A template that is the frame itself leaves nothing, or by rounding less.
+        most = _HOPELESS * max(min(left for _, left in starts.values()), 0.0)
         fits = {}
         for name, (pose, left) in sorted(starts.items(), key=lambda item: item[1][1]):
             if left <= most:
@@ -232,14 +260,26 @@ def _known(kind: str) -> None:
         raise EstimationError(f"kind: {kind!r} given, allowed are {', '.join(KINDS)} and None")
 
 
+def _number(
+    given: object, name: str, least: float = 0.0, most: float = math.inf, above: float = -math.inf
+) -> float:
+    return arguments.number(given, name, least, most, above=above, error=EstimationError)
+
+
 def _model(layout: Layout, optics: Optics | Model | None, gap_mm: float) -> Model:
     if isinstance(optics, Model):
         return optics
+    if optics is not None and not isinstance(optics, Optics):
+        raise EstimationError(
+            f"optics: {optics!r:.40} given, a layout's optics or a Model is needed"
+        )
     return Model.from_layout(replace(layout, optics=optics) if optics else layout, gap_mm)
 
 
 def _gains(layout: Layout, gains: ArrayLike) -> Floats:
-    given = np.array(gains, dtype=np.float64)
-    if given.shape != (len(layout),) or not (given > 0.0).all():
-        raise EstimationError(f"gains: {len(layout)} numbers above 0 are needed")
-    return given
+    given = arguments.numbers(gains, "gains", EstimationError)
+    if given.shape != (len(layout),) or not (np.isfinite(given) & (given > 0.0)).all():
+        raise EstimationError(
+            f"gains: {gains!r:.40} given, {len(layout)} numbers above 0 are needed"
+        )
+    return given.copy()

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from lumitip import arguments
 from lumitip.estimation.estimator import EstimationError, PoseEstimator
 from lumitip.estimation.fit import Fit
 from lumitip.estimation.report import rms_counts
@@ -60,17 +61,20 @@ def learn(
         most_frames: so many frames are used, evenly spread.
 
     Raises:
-        ValuesError: if the shape is another.
-        EstimationError: if fewer than twenty frames show an edge, cable or corner.
+        LayoutError: if it is no layout.
+        ValuesError: if the shape is another, or they are no numbers.
+        EstimationError: if fewer than twenty frames show an edge, cable or corner, or there is no
+            such kind.
     """
     estimator = PoseEstimator(layout, model)
-    rows: Floats = np.asarray(values, dtype=np.float64)
+    most = arguments.count(most_frames, "most_frames", _LEAST_FRAMES)
+    rows = arguments.numbers(values, "values", ValuesError)
     if rows.ndim != 2 or rows.shape[1] != len(layout):
         raise ValuesError(
             f"values of shape {rows.shape} given, frames of this layout have (n, {len(layout)})"
         )
     if len(rows):
-        rows = rows[np.unique(np.linspace(0, len(rows) - 1, most_frames).astype(np.int64))]
+        rows = rows[np.unique(np.linspace(0, len(rows) - 1, most).astype(np.int64))]
     told = [(row, e) for row in rows if (e := estimator(row, kind)).trusted]
     if len(told) < _LEAST_FRAMES:
         raise EstimationError(

@@ -42,18 +42,19 @@ class Lookup:
         by each drift, shape `(drifts, ..., cells)`.
 
         Args:
-            angle: direction of each line, shape `(...)` (rad).
+            angle: direction of each line, shape `(..., 1)`, or beside each cell, `(..., cells)`
+                (rad).
             left_mm: distance of each cell, left of it, shape `(..., cells)` (mm).
             drift: how far the optics are off, in standard deviations of each thing that may be,
                 shape `(drifts,)`; empty for the optics that are expected, without slopes by them.
         """
         turn = np.asarray(angle) * (180.0 / np.pi / STEP_DEG) % self._angles
         first = turn.astype(np.int64)
-        down = (turn - first)[..., None]
+        down = turn - first
         way = np.minimum(np.maximum(left_mm * (1.0 / STEP_MM) + self._middle, 0.0), self._most)
         column = way.astype(np.int64)
         right = way - column
-        at = self._begin + column + (first * self._distances)[..., None]
+        at = self._begin + column + first * self._distances
         at = at + self._corners.reshape(2, 2, *(1,) * at.ndim)
         # By table, by direction, by distance; the drifts' tables are differences to the first.
         entries = self._tables[: 1 + drift.size].take(at, axis=1)

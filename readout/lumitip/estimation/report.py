@@ -12,6 +12,7 @@ from lumitip.grid import Floats
 MISFIT_COUNTS = 16.0
 """Root mean square misfit above which the shape does not explain the frame: real frames have 10
 to 16 counts of structure that the optical model lacks."""
+BEND = "curvature_per_mm"
 _WEAK_MM, _WEAK_DEG = 1.0, 6.0
 
 
@@ -31,9 +32,11 @@ def report(shape: Shape, found: Fit, uncertain: Floats, reach_mm: float) -> Esti
     seen = dict(zip(names, np.sqrt(np.abs(np.diag(spread))), strict=True))
     weak = not (seen["offset_mm"] < _WEAK_MM and seen["angle_deg"] < _WEAK_DEG)
     if turned:
-        at = names.index("offset_mm")
+        # The other way round left is right, where offsets and bends count from.
+        at = [names.index(name) for name in ("offset_mm", BEND) if name in names]
         spread[at] *= -1.0
         spread[:, at] *= -1.0
+    bend = float(pose[names.index(BEND)]) if BEND in names else 0.0
     light, taken = float(pose[-2]), float(pose[-1])
     misfit = rms_counts(found)
     estimate = Estimate(
@@ -45,6 +48,7 @@ def report(shape: Shape, found: Fit, uncertain: Floats, reach_mm: float) -> Esti
         gain=light,
         covariance=spread,
         quality=_quality(found),
+        curvature_per_mm=-bend if turned else bend,
         rms_counts=misfit,
         dark_side="" if shape.kind == "cable" else "left" if turned else "right",
         vertex_mm=(float(pose[1]), float(pose[2])) if corner else None,
@@ -96,7 +100,7 @@ def _line(
     """Angle (rad) and offset (mm) of the line that is told, the derivatives of what is told by
     the pose, and its names."""
     size = pose.size
-    if len(names) < 4:
+    if "opening_deg" not in names:
         by_pose = np.eye(size)[[*range(len(names)), -2, -1]]
         by_pose[0, 0] = math.degrees(1.0)
         return (float(pose[0]), float(pose[1])), by_pose, (*names, "light", "taken")

@@ -5,7 +5,7 @@ another than was expected: then the optics are free within what is known of them
 cell's light is taken to be uncertain, so that neither is mistaken for another pose.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -14,7 +14,7 @@ from lumitip.estimation.bank import Bank, corners, lines
 from lumitip.estimation.fit import Fit, Frame, bounded, fit
 from lumitip.estimation.lookup import Lookup
 from lumitip.estimation.report import rms_counts
-from lumitip.estimation.shapes import Cable, Cells, Corner, Edge, Shape
+from lumitip.estimation.shapes import Bent, Cable, Cells, Corner, Edge, Shape
 from lumitip.grid import Floats
 from lumitip.twin import LineTable, Model, Twin
 
@@ -23,7 +23,10 @@ GAP_SD_MM, ALPHA_SD = 0.4, 0.12
 hole as well, which widen shadows alike."""
 LOOSE = 0.06
 """Share of a cell's light that is uncertain on a fingertip that is not as expected."""
+BENT = "bent"
+"""A cable along an arc, which a tracker may find where a straight one was."""
 _LEAST_GAP_MM = 0.5
+_BENDS_PER_MM = (-1.0 / 60.0, 0.0, 1.0 / 60.0)  # where the fit of a bent cable begins
 _DOUBT = 1.3  # loss for each cell beyond which the fingertip is not as expected
 _STARTS = 8  # how many are then tried
 _GLANCE, _LOOK, _BEHIND = 2, 5, 20.0  # rounds of each and of the best; loss of the others
@@ -108,23 +111,48 @@ class Search:
             first = min([first, *rivals], key=lambda f: _between(kind, f.pose, before) @ apart)
         return replace(fit(shape, first.pose, loose), ambiguous=bool(rivals))
 
-    def again(self, kind: str, before: Floats, followed: Fit, frame: Frame) -> Fit:
-        """The best fit where one that followed the line got worse.
-
-        If the bank knows nothing better the line is where it was followed to, and bends.
+    def bent(self, starts: Sequence[tuple[str, Floats]], frame: Frame) -> Fit:
+        """The best fit of a cable that may bend, near one of several poses.
 
         Args:
-            kind: what to fit.
-            before: pose of the frame before.
+            starts: names, `"cable"` or `BENT`, and poses.
+            frame: what was read.
+        """
+        shape, loose, straight = self.shape(BENT), frame.looser(LOOSE), len(Cable.names)
+        seen = []
+        for name, pose in starts:
+            told = len(self.shape(name).names)
+            for bend in (*_BENDS_PER_MM, *pose[straight:told]):
+                start = np.concatenate([pose[:straight], [bend], pose[told:]])
+                seen.append(fit(shape, start, loose, _LOOK))  # which is led astray less
+        return self.near(BENT, min(seen, key=bounded).pose, frame)
+
+    def again(self, name: str, before: Floats, followed: Fit, frame: Frame) -> tuple[str, Fit]:
+        """The best fit where one that followed the line got worse, and what it is of.
+
+        If the bank knows nothing better the line is where it was followed to, and bends. Of a
+        cable the bend is found: a straight line elsewhere must explain the frame as well.
+
+        Args:
+            name: what was followed: a kind, or `BENT`.
+            before: its pose in the frame before.
             followed: the fit from there.
             frame: what was read.
         """
+        kind = self.shape(name).kind
         found = self.plain(kind, self.start(kind, frame)[0], frame)
         if not doubtful(found):
-            return found
-        if rms_counts(found) >= rms_counts(followed):
-            return followed
-        return self._loose(kind, frame, found, before)
+            return kind, found
+        if rms_counts(found) < rms_counts(followed):
+            other = kind, self._loose(kind, frame, found, before)
+        else:
+            other = name, followed
+        if kind != "cable":
+            return other
+        starts = [(name, before), (name, followed.pose), (kind, found.pose)]
+        bent = self.bent(starts, frame)
+        losses = [bounded(self.loosely(*of, frame)) for of in ((BENT, bent), other)]
+        return (BENT, bent) if losses[0] < losses[1] - _RIVAL else other
 
     def near(self, kind: str, pose: Floats, frame: Frame) -> Fit:
         """The fit from where another frame's fit ended, with the optics free if they were there."""
@@ -177,7 +205,8 @@ class Search:
                 self._shapes[kind] = Corner(self._cells, self._edge_table)
             else:
                 table = self._lookup(lambda twin: twin.cable_table(self._diameter_mm))
-                self._shapes[kind] = Cable(self._cells, table, self._edge_table, self._diameter_mm)
+                given = self._cells, table, self._edge_table, self._diameter_mm
+                self._shapes |= {"cable": Cable(*given), BENT: Bent(*given)}
         return self._shapes[kind]
 
     def _bank(self, kind: str) -> Bank:

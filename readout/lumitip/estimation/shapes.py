@@ -17,6 +17,8 @@ from lumitip.grid import Floats
 
 _HALF_TURN = np.pi
 _EXPECTED = np.empty(0)
+_BEND_SD_PER_MM = 0.02
+_NEAR = 0.05  # radii from the middle of a bend; nearer cells have no side
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,13 +72,13 @@ class Edge:
     def shares(self, poses: Floats, drift: Floats = _EXPECTED) -> Floats:
         """See `Shape`."""
         left = self._cells.beside(poses[:, 0], poses[:, 1])
-        return self._table.shares(poses[:, 0], left, drift)
+        return self._table.shares(poses[:, :1], left, drift)
 
     def slopes(self, pose: Floats) -> tuple[Floats, Floats]:
         """See `Shape`."""
         angle = pose[0]
         left, ahead = self._cells.about(angle, pose[1])
-        share, by_left, by_angle, by_drift = self._table(angle, left, pose[2:-2])
+        share, by_left, by_angle, by_drift = self._table(pose[:1], left, pose[2:-2])
         turning = by_angle - by_left * ahead
         return share, np.array([turning, -by_left, *by_drift])
 
@@ -104,29 +106,78 @@ class Cable:
     def shares(self, poses: Floats, drift: Floats = _EXPECTED) -> Floats:
         """See `Shape`; for poses of the diameter that is expected."""
         left = self._cells.beside(poses[:, 0], poses[:, 1])
-        return self._table.shares(poses[:, 0], left, drift)
+        return self._table.shares(poses[:, :1], left, drift)
 
     def slopes(self, pose: Floats) -> tuple[Floats, Floats]:
         """See `Shape`."""
-        angle = pose[0]
-        left, ahead = self._cells.about(angle, pose[1])
-        drift = pose[3:-2]
+        left, ahead = self._cells.about(pose[0], pose[1])
+        share, by_left, by_angle, by_width, by_drift = self._beside(pose, pose[:1], left)
+        turning = by_angle - by_left * ahead
+        return share, np.array([turning, -by_left, by_width, *by_drift])
+
+    def _beside(
+        self, pose: Floats, angle: Floats, left: Floats
+    ) -> tuple[Floats, Floats, Floats, Floats, Floats]:
+        """Share of cells beside an axis, and its derivatives by the distance from the axis, its
+        direction there, the width and each drift."""
+        drift = pose[len(self.names) : -2]
         share, by_left, by_angle, by_drift = self._table(angle, left, drift)
         half = np.array([pose[2], pose[2], self._diameter_mm, self._diameter_mm])[:, None] / 2.0
-        strips = self._edge(np.full(4, angle), left - self._sides * half, drift)
+        strips = self._edge(angle, left - self._sides * half, drift)
         more, more_by_left, more_by_angle, more_by_drift = (
             np.add.reduce(self._signs * s, axis=-2) for s in strips
         )  # fmt: skip
-        by_left, by_angle = by_left + more_by_left, by_angle + more_by_angle
         by_width = -0.5 * (strips[1][0] + strips[1][1])
-        turning = by_angle - by_left * ahead
-        return share + more, np.array([turning, -by_left, by_width, *(by_drift + more_by_drift)])
+        return (
+            share + more, by_left + more_by_left, by_angle + more_by_angle, by_width,
+            by_drift + more_by_drift,
+        )  # fmt: skip
 
     def priors(self) -> tuple[Floats, Floats]:
         """See `Shape`: the diameter within a tenth, more where the frame shows it."""
         return np.array([0.0, 0.0, self._diameter_mm]), np.array(
             [np.inf, np.inf, self._diameter_mm / 10.0]
         )
+
+
+class Bent(Cable):
+    """A round cable along an arc; pose (angle, offset_mm, width_mm, curvature_per_mm, drifts,
+    light, taken): the direction at its point next to the origin, one over its radius, positive
+    where it bends to the left.
+
+    Beside each cell it is taken as straight.
+    """
+
+    names: tuple[str, ...] = (*Cable.names, "curvature_per_mm")
+
+    def slopes(self, pose: Floats) -> tuple[Floats, Floats]:
+        """See `Shape`."""
+        bend = pose[3]
+        left, ahead = self._cells.about(pose[0], pose[1])
+        # From the middle of the circle, in radii: across the way, along it, and straight.
+        across, along = 1.0 - bend * left, bend * ahead
+        square = left * left + ahead * ahead
+        away = np.maximum(np.hypot(across, along), _NEAR)
+        # In this form the distance from the circle stays exact as the radius grows.
+        twice = 2.0 * left - bend * square
+        beside = twice / (1.0 + away)
+        share, by_left, by_angle, by_width, by_drift = self._beside(
+            pose, pose[0] + np.arctan2(along, across), beside
+        )
+        by_square = by_angle / (away * away)
+        left_by_bend = -(square + twice * (bend * square - left) / (away * (1.0 + away))) / (
+            1.0 + away
+        )
+        sideways = by_left * across / away + by_square * bend * along
+        forward = by_square * bend * across - by_left * along / away
+        turning = by_angle - sideways * ahead + forward * (left + pose[1])
+        bending = by_left * left_by_bend + by_square * ahead
+        return share, np.array([turning, -sideways, by_width, bending, *by_drift])
+
+    def priors(self) -> tuple[Floats, Floats]:
+        """See `Shape`: cables that are followed bend with a radius of some 50 mm and more."""
+        means, deviations = super().priors()
+        return np.append(means, 0.0), np.append(deviations, _BEND_SD_PER_MM)
 
 
 class Corner:
@@ -143,7 +194,7 @@ class Corner:
         """See `Shape`."""
         angles, offsets = self.borders(poses.T)
         one, two = (
-            self._table.shares(a, self._cells.beside(a, o), drift)
+            self._table.shares(a[:, None], self._cells.beside(a, o), drift)
             for a, o in zip(angles, offsets, strict=True)
         )
         return one * two
@@ -152,7 +203,7 @@ class Corner:
         """See `Shape`."""
         angles, offsets = self.borders(pose)
         left = self._cells.beside(angles, offsets)
-        shares, by_left, by_angle, by_drift = self._table(angles, left, pose[4:-2])
+        shares, by_left, by_angle, by_drift = self._table(angles[:, None], left, pose[4:-2])
         share = shares[0] * shares[1]
         cos, sin = np.cos(angles)[:, None], np.sin(angles)[:, None]
         turning = by_angle - by_left * (

@@ -5,6 +5,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lumitip import arguments
 from lumitip.errors import LumitipError
 from lumitip.grid import Floats, Integers
 from lumitip.layout import Layout
@@ -43,10 +44,14 @@ class Processor:
                 contact (counts of 255). Twenty lies above the noise of an empty grasp, and below
                 the 32 counts that a clear plastic bag takes away.
             covered_below: without contrast, a middle value below this is a covered finger.
+
+        Raises:
+            LayoutError: if it is no layout.
+            ArgumentError: if another argument is no number, or below 0.
         """
-        self.layout = layout
-        self.min_contrast = min_contrast
-        self.covered_below = covered_below
+        self.layout = arguments.layout(layout)
+        self.min_contrast = arguments.number(min_contrast, "min_contrast", 0.0)
+        self.covered_below = arguments.number(covered_below, "covered_below", 0.0)
         cells: Points = layout.x_mm + 1j * layout.y_mm
         begin, end = np.ascontiguousarray(layout.neighbours.T)
         self._grid = Grid(cells, begin, end, cells[end] - cells[begin])
@@ -70,7 +75,7 @@ class Processor:
         Raises:
             ValuesError: if the shape is another, or they are no numbers.
         """
-        given = _numbers(values)
+        given = arguments.numbers(values, "values", ValuesError)
         if given.shape != self._grid.cells.shape:
             raise ValuesError(
                 f"values of shape {given.shape} given, a frame of this layout has "
@@ -95,7 +100,7 @@ class Processor:
         Raises:
             ValuesError: if the shape is another, or they are no numbers.
         """
-        given = _numbers(values)
+        given = arguments.numbers(values, "values", ValuesError)
         if given.ndim != 2 or given.shape[1:] != self._grid.cells.shape:
             raise ValuesError(
                 f"values of shape {given.shape} given, frames of this layout have "
@@ -154,16 +159,6 @@ class Processor:
             corner=corner,
             cable=cable,
         )
-
-
-def _numbers(values: ArrayLike) -> Floats:
-    try:
-        given: Floats = np.asarray(values, dtype=np.float64)
-    except (TypeError, ValueError, OverflowError) as error:
-        raise ValuesError(
-            f"{values!r:.40} given, numbers of one shape are needed: {error}"
-        ) from error
-    return given
 
 
 def _rim(layout: Layout) -> Integers:

@@ -5,6 +5,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from lumitip import arguments
+from lumitip.errors import ArgumentError
 from lumitip.layout import Layout
 from lumitip.processing.contact import Contact
 from lumitip.processing.processor import COVERED_BELOW, MIN_CONTRAST, Processor
@@ -37,18 +39,17 @@ class Tracker:
             covered_below: as for `Processor`.
 
         Raises:
-            ValueError: if a parameter is out of its range.
+            LayoutError: if it is no layout.
+            ArgumentError: if another parameter is out of its range.
         """
-        if not release_contrast <= min_contrast:
-            raise ValueError(
+        self._processor = Processor(layout, release_contrast, covered_below)
+        self._min_contrast = arguments.number(min_contrast, "min_contrast", 0.0)
+        self._hold = arguments.count(hold, "hold")
+        if release_contrast > min_contrast:
+            raise ArgumentError(
                 f"release_contrast: {release_contrast} given, it must not be above "
                 f"min_contrast, {min_contrast}"
             )
-        if hold < 1:
-            raise ValueError(f"hold: {hold} given, must be at least 1")
-        self._processor = Processor(layout, release_contrast, covered_below)
-        self._min_contrast = min_contrast
-        self._hold = hold
         self.reset()
 
     def reset(self) -> None:

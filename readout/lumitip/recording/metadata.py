@@ -8,6 +8,7 @@ from importlib.metadata import version
 
 import numpy as np
 
+from lumitip import arguments
 from lumitip.calibration import Calibration
 from lumitip.errors import LayoutError
 from lumitip.frame import Values
@@ -67,9 +68,7 @@ class Metadata:
                     "the lumitip that made the recording"
                 )
             layout = Layout.from_json(texts["layout"])
-            start_wall = float(texts["start_wall"])
-            if not 0.0 <= start_wall < _YEAR_5000:
-                raise ValueError(f"start_wall: {start_wall} given")
+            start_wall = begun(float(texts["start_wall"]))
             versions = {str(k): str(v) for k, v in dict(json.loads(texts["versions"])).items()}
             device_id = texts["device_id"]
             calibration = _calibration(texts["calibration"], device_id, layout)
@@ -78,6 +77,15 @@ class Metadata:
         except (LayoutError, ValueError, TypeError, RecursionError, OverflowError) as error:
             raise RecordingError(f"the recording's metadata cannot be read: {error}") from error
         return cls(layout, device_id, calibration, start_wall, versions)
+
+
+def begun(start_wall: float) -> float:
+    """When a recording began, if it can have been then.
+
+    Raises:
+        RecordingError: if not.
+    """
+    return arguments.number(start_wall, "start_wall", 0.0, _YEAR_5000, error=RecordingError)
 
 
 def versions() -> dict[str, str]:

@@ -12,6 +12,7 @@ from mcap.records import Channel, Chunk, Footer, McapRecord, Message, Schema
 from mcap.records import Metadata as MetadataRecord
 from mcap.stream_reader import StreamReader, breakup_chunk
 
+from lumitip import arguments
 from lumitip.layout import Layout
 from lumitip.recording.errors import DamagedError, RecordingError
 from lumitip.recording.message import SCHEMA_NAME, RecordedFrame, decode
@@ -47,7 +48,7 @@ class Reader:
         Raises:
             RecordingError: if the file cannot be read or is no recording.
         """
-        self.path = Path(path)
+        self.path = arguments.path(path, RecordingError)
         self.tolerant = tolerant
         self.damage: tuple[str, ...] = ()
         """What was wrong in the last iteration, for people; filled as it goes on."""

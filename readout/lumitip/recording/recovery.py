@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from pathlib import Path
 
+from lumitip import arguments
 from lumitip.recording.errors import RecordingError
 from lumitip.recording.reader import Reader
 from lumitip.recording.writer import Writer
@@ -29,14 +30,14 @@ def recover(source: str | Path, target: str | Path) -> Recovered:
         RecordingError: if nothing can be read, or the target cannot be written; nothing is left
             of it then.
     """
-    reader = Reader(source, tolerant=True)
+    reader, path = Reader(source, tolerant=True), arguments.path(target, RecordingError)
     frames = iter(reader)
     first = next(frames, None)
     if first is None:
         raise RecordingError(f"{source}: holds no frame: {'; '.join(reader.damage) or 'empty'}")
     was = reader.metadata
     writer = Writer(
-        target,
+        path,
         was.layout,
         device_id=was.device_id,
         calibration=was.calibration,
@@ -51,4 +52,4 @@ def recover(source: str | Path, target: str | Path) -> Recovered:
     except BaseException:
         writer.path.unlink(missing_ok=True)  # half of it would be in the way of the next attempt
         raise
-    return Recovered(Path(target), writer.frames, reader.damage)
+    return Recovered(path, writer.frames, reader.damage)

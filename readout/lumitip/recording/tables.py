@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from lumitip import arguments
 from lumitip.errors import MissingExtra
 from lumitip.recording.errors import RecordingError
 from lumitip.recording.message import RecordedFrame
@@ -34,7 +35,7 @@ def export(source: str | Path, target: str | Path) -> int:
         RecordingError: if either file cannot be used; of a damaged recording no table is left.
         MissingExtra: if Parquet is asked for without pyarrow.
     """
-    path = Path(target)
+    path = arguments.path(target, RecordingError)
     writers: dict[str, Callable[[Reader, Path], int]] = {".csv": _csv, ".parquet": _parquet}
     if path.suffix not in writers:
         raise RecordingError(f"{target} given, tables end in {' or '.join(writers)}")

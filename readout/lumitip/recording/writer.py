@@ -8,11 +8,12 @@ from types import TracebackType
 
 from mcap.writer import Writer as McapWriter
 
+from lumitip import arguments
 from lumitip.calibration import Calibration
 from lumitip.layout import Layout
 from lumitip.recording.errors import RecordingError
 from lumitip.recording.message import SCHEMA_NAME, SCHEMA_TEXT, Recordable, encode, stamp_ns
-from lumitip.recording.metadata import NAME, Metadata, versions
+from lumitip.recording.metadata import NAME, Metadata, begun, versions
 
 CHUNK_BYTES = 2048
 FLUSH_S = 0.2
@@ -47,14 +48,19 @@ class Writer:
             made_with: versions to tell, of the software that runs.
 
         Raises:
-            RecordingError: if the file is there already or cannot be written.
+            LayoutError: if it is no layout.
+            RecordingError: if the file is there already or cannot be written, or another argument
+                cannot be so.
         """
-        self.path = Path(path)
+        self.path = arguments.path(path, RecordingError)
+        if calibration is not None:
+            arguments.instance(calibration, Calibration, "calibration", RecordingError)
+            calibration.check(calibration.device_id, layout.design_hash)
         self.metadata = Metadata(
-            layout,
-            device_id,
+            arguments.layout(layout),
+            arguments.instance(device_id, str, "device_id", RecordingError),
             calibration,
-            time.time() if start_wall is None else start_wall,
+            begun(time.time() if start_wall is None else start_wall),
             versions() if made_with is None else made_with,
         )
         self.frames = 0
@@ -87,9 +93,11 @@ class Writer:
         """Add a frame.
 
         Raises:
-            RecordingError: if the frame is of another number of cells, or the file is closed or
-                cannot be written; after the last it is closed as well as can be.
+            RecordingError: if it is no frame, or one of another number of cells, or the file is
+                closed or cannot be written; after the last it is closed as well as can be.
         """
+        if not hasattr(frame, "raw"):
+            raise RecordingError(f"{frame!r:.40} given, a frame is needed, such as tip.read()")
         if self._file.closed:
             raise RecordingError(f"{self.path} is closed")
         cells = len(self.metadata.layout)

@@ -1,6 +1,8 @@
 """`ArmLimits`: how fast, how hard and how far an arm may go with a fingertip."""
 
+import math
 from dataclasses import dataclass, fields
+from typing import SupportsFloat
 
 from lumitip.robots.errors import ArmError
 
@@ -46,7 +48,8 @@ class ArmLimits:
         for field in fields(self):
             least, most, why = _ALLOWED[field.name]
             given = getattr(self, field.name)
-            if not (least < given <= most or given == least > 0.0):
+            number = float(given) if isinstance(given, SupportsFloat) else math.nan
+            if not (least < number <= most or number == least > 0.0):
                 told = f"above 0 up to {most:g}" if least == 0.0 else f"{least:g} to {most:g}"
                 faults.append(f"{field.name}: {given!r} given, allowed is {told} ({why})")
         if faults:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lumitip import arguments
 from lumitip.control import Command
 from lumitip.grid import Floats
 from lumitip.robots.errors import ArmError
@@ -35,9 +36,14 @@ class Mount:
     """The middle of the sensor's cells, from the tool centre point."""
 
     def __post_init__(self) -> None:
-        told = np.array([self.x, self.y, self.origin_mm], float)
-        if told.shape != (3, 3) or not np.isfinite(told).all():
-            raise ArmError(f"{self} given: x, y and origin_mm are three numbers each")
+        told = np.full((3, 3), np.nan)
+        for row, name in enumerate(("x", "y", "origin_mm")):
+            given = arguments.numbers(getattr(self, name), name, ArmError)
+            if given.shape != (3,) or not np.isfinite(given).all():
+                raise ArmError(
+                    f"{name}: {getattr(self, name)!r:.40} given, three numbers are needed"
+                )
+            told[row] = given
         off = max(abs(math.hypot(*self.x) - 1), abs(math.hypot(*self.y) - 1))
         if max(off, abs(float(told[0] @ told[1]))) > _TOLERANCE:
             raise ArmError(

@@ -18,6 +18,7 @@ from typing import Any
 
 import numpy as np
 
+from lumitip import arguments
 from lumitip.control import Command
 from lumitip.errors import MissingExtra
 from lumitip.grid import Floats
@@ -37,6 +38,7 @@ _VARIABLES = [
 _STANDS = 1e-3  # m/s or rad/s
 _REFUSAL_STATES = 10
 _BRAKING_MORE_S = 0.5
+_LONGEST_S = 600.0
 _ENDING_S = 10.0  # braking takes 5 s where the limits are extreme
 _log = logging.getLogger(__name__)
 
@@ -61,10 +63,16 @@ class URArm:
 
         Raises:
             MissingExtra: if ur_rtde is not installed.
-            ArmError: if the controller does not answer or does not run the script.
+            ArmError: if the controller does not answer or does not run the script, or an argument
+                cannot be so.
         """
-        self.host, self.mount, self.limits = host, mount, limits or ArmLimits()
-        self._control, self._receive = _connected(host, timeout)
+        self.host = arguments.instance(host, str, "host", ArmError)
+        self.mount = arguments.instance(mount, Mount, "mount", ArmError)
+        self.limits = arguments.instance(
+            ArmLimits() if limits is None else limits, ArmLimits, "limits", ArmError
+        )
+        within_s = arguments.number(timeout, "timeout", most=_LONGEST_S, above=0.0, error=ArmError)
+        self._control, self._receive = _connected(host, within_s)
         self._asked: tuple[Command, float] | None = None
         self._stop: ArmStopped | None = None
         self._closing = threading.Event()
@@ -98,9 +106,8 @@ class URArm:
         """
         if self._stop:
             raise self._stop.with_traceback(None)
-        asked = (command.forward_mm_s, command.lateral_mm_s, command.rotation_rad_s, seen_s)
-        if not all(math.isfinite(value) for value in asked):
-            raise ArmError(f"{command}, seen at {seen_s} given: all must be numbers")
+        arguments.finite_fields(arguments.instance(command, Command, "command", ArmError), ArmError)
+        arguments.number(seen_s, "seen_s", error=ArmError)
         # A frame that claims to be of later would move the arm without any frame until then.
         self._asked = (command, min(seen_s, time.monotonic()))
         if command.state == "stop":

@@ -4,9 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lumitip import arguments
 from lumitip.grid import Floats
 
 STEP_MM = 0.25
+LONGEST_MM = 1e6
+"""Longest curve (mm)."""
 BEND_DEG = 30.0
 """Largest direction of a curve against its mean."""
 _WAVES, _SHORTEST_MM, _LONGEST_MM = 4, 150.0, 450.0
@@ -33,7 +36,13 @@ class Curve:
             seed: of its waves.
             straight_end_mm: length that is straight at its end, as a cloth is before its corner;
                 its beginning is straight for 30 mm (mm).
+
+        Raises:
+            ArgumentError: if a length or the seed cannot be so.
         """
+        length_mm = arguments.number(length_mm, "length_mm", most=LONGEST_MM, above=0.0)
+        seed = arguments.count(seed, "seed", 0)
+        straight_end_mm = arguments.number(straight_end_mm, "straight_end_mm", 0.0)
         chance = np.random.default_rng((7, seed))
         along = np.arange(0.0, length_mm + STEP_MM, STEP_MM)
         heading = np.zeros(along.size)

@@ -14,10 +14,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lumitip import arguments
 from lumitip.control import Command, Limits
 from lumitip.errors import MissingExtra
 from lumitip.layout import Layout
-from lumitip.tasks.task import Settings, Task
+from lumitip.tasks.task import Settings, Task, TaskError
 from lumitip.twin import Twin
 
 try:
@@ -51,9 +52,14 @@ class TraceEnv(gymnasium.Env[Observation, Observation]):
             limits: velocity that an action of 1 is.
             most_frames: an episode is cut off after so many.
             twin: what reads the object.
+
+        Raises:
+            LayoutError, TaskError: as `Task`, also of limits and `most_frames`.
         """
         self.task = Task(layout, settings, twin)
-        self._limits, self._most_frames, self._frames = limits, most_frames, 0
+        self._limits = arguments.instance(limits, Limits, "limits", TaskError)
+        self._most_frames = arguments.count(most_frames, "most_frames", error=TaskError)
+        self._frames = 0
         self.observation_space = gymnasium.spaces.Box(0.0, 255.0, (len(layout),), np.float32)
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (3,), np.float32)
 
@@ -67,8 +73,14 @@ class TraceEnv(gymnasium.Env[Observation, Observation]):
         return values.astype(np.float32), {}
 
     def step(self, action: Observation) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
-        """Go on for one frame."""
-        shares = np.clip(np.asarray(action, dtype=np.float64), -1.0, 1.0)
+        """Go on for one frame.
+
+        Raises:
+            TaskError: if the action is not of three finite numbers.
+        """
+        shares = np.clip(arguments.numbers(action, "action", TaskError), -1.0, 1.0)
+        if shares.shape != (3,) or not np.isfinite(shares).all():
+            raise TaskError(f"action: {action!r:.60} given, three numbers from -1 to 1 are needed")
         command = Command(
             float(shares[0]) * self._limits.forward_mm_s,
             float(shares[1]) * self._limits.lateral_mm_s,

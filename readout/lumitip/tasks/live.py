@@ -20,6 +20,7 @@ from pathlib import Path
 
 import numpy as np
 
+from lumitip import arguments
 from lumitip.calibration import Calibration
 from lumitip.control import Command
 from lumitip.fingertip import Fingertip
@@ -29,7 +30,7 @@ from lumitip.layout import Layout
 from lumitip.links.base import Arrival, Deliver, LinkEvent, Report
 from lumitip.links.thread import ThreadedLink
 from lumitip.protocol.packet import Packet, design_code
-from lumitip.tasks.task import Metrics, Task
+from lumitip.tasks.task import Metrics, Task, TaskError, checked
 
 _MOST_S = 120.0
 _BUFFER = 4096
@@ -50,9 +51,13 @@ class LiveTask(ThreadedLink):
             patience_s: how long time stands still for a command that is late (s). With none a
                 program that computes too long flies blind; with some, a busy computer slows the
                 world down.
+
+        Raises:
+            TaskError: if it is no task, or seed or patience cannot be so.
         """
         super().__init__()
-        self.layout: Layout = task.layout
+        self.layout: Layout = arguments.instance(task, Task, "task", TaskError).layout
+        self._patience_s = arguments.number(patience_s, "patience_s", 0.0, error=TaskError)
         self.device_id = url.replace("://", ":")
         self.url = url
         self.period_s = 1.0 / task.settings.rate_hz
@@ -63,7 +68,6 @@ class LiveTask(ThreadedLink):
         self._task = task
         self._task.reset(seed)
         self._command = Command()
-        self._patience_s = patience_s
         self._commanded = threading.Event()
 
     def open(self) -> Fingertip:
@@ -73,8 +77,12 @@ class LiveTask(ThreadedLink):
         return Fingertip(hub, _BUFFER, calibrated=True)
 
     def command(self, command: Command) -> None:
-        """What holds until the next command. From any thread."""
-        self._command = command
+        """What holds until the next command. From any thread.
+
+        Raises:
+            TaskError: if it is no command, or a velocity is no finite number.
+        """
+        self._command = checked(command)
         self._commanded.set()
 
     def metrics(self) -> Metrics:

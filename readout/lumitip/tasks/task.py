@@ -14,11 +14,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lumitip import arguments
 from lumitip.control import Command
 from lumitip.errors import LumitipError
 from lumitip.grid import Floats
 from lumitip.layout import Layout
-from lumitip.tasks.curve import STEP_MM, Curve
+from lumitip.tasks.curve import LONGEST_MM, STEP_MM, Curve
 from lumitip.twin import Cable, Corner, HalfPlane, Scene, Twin
 
 KINDS = ("cloth", "cable")
@@ -61,8 +62,22 @@ class Settings:
             raise TaskError(f"kind: {self.kind!r} given, allowed are {', '.join(KINDS)}")
         if self.corner and self.kind != "cloth":
             raise TaskError("corner: a cable has none")
-        if self.latency < 0 or not min(self.rate_hz, self.length_mm) > 0 or self.lag_s < 0:
-            raise TaskError(f"{self} given: rate and length above 0, latency and lag not below")
+        arguments.finite_fields(self, TaskError)
+        arguments.count(self.latency, "latency", 0, TaskError)
+        arguments.number(self.length_mm, "length_mm", most=LONGEST_MM, above=0.0, error=TaskError)
+        arguments.number(self.rate_hz, "rate_hz", above=0.0, error=TaskError)
+        for name in ("lag_s", "noise"):
+            arguments.number(getattr(self, name), name, 0.0, error=TaskError)
+
+
+def checked(command: Command) -> Command:
+    """A command that can be carried out.
+
+    Raises:
+        TaskError: if it is none, or a velocity is no finite number.
+    """
+    arguments.finite_fields(arguments.instance(command, Command, "command", TaskError), TaskError)
+    return command
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,13 +113,32 @@ class Task:
             layout: the cells.
             settings: what is followed and how late.
             twin: what reads the object; the layout's own if not given. Its noise is not used.
+
+        Raises:
+            LayoutError: if it is no layout.
+            TaskError: if the twin is of another layout, or one of them is none.
         """
-        self.layout, self.settings = layout, settings or Settings()
-        self.twin = twin or Twin(layout)
+        self.layout = arguments.layout(layout)
+        self.settings = arguments.instance(
+            Settings() if settings is None else settings, Settings, "settings", TaskError
+        )
+        self.twin = arguments.instance(
+            Twin(layout) if twin is None else twin, Twin, "twin", TaskError
+        )
+        if self.twin.layout != layout:
+            raise TaskError(
+                f"a twin of design {self.twin.layout.design_hash[:16]} given, the layout is of "
+                f"{layout.design_hash[:16]}: give a twin of this layout"
+            )
         self.reset()
 
     def reset(self, seed: int = 0) -> Floats:
-        """Begin a trial on the curve of a seed; returns the first values, shape `(cells,)`."""
+        """Begin a trial on the curve of a seed; returns the first values, shape `(cells,)`.
+
+        Raises:
+            TaskError: if the seed is no whole number from 0 on.
+        """
+        seed = arguments.count(seed, "seed", 0, TaskError)
         s = self.settings
         straight_mm = _STRAIGHT_MM if s.corner else 0.0
         self.curve = Curve.random(s.length_mm, seed, straight_mm)
@@ -128,7 +162,11 @@ class Task:
 
         Returns:
             The values that have arrived by then, shape `(cells,)`, and whether the trial ended.
+
+        Raises:
+            TaskError: if it is no command, or a velocity no finite number.
         """
+        checked(command)
         self._move(command)
         self._frames += 1
         self._at = self.curve.nearest(self.x_mm, self.y_mm, self._at)

@@ -12,7 +12,7 @@ from lumitip.estimation import Estimate, PoseEstimator
 from lumitip.grid import Floats
 from lumitip.layout import Layout
 from lumitip.processing import Contact, Processor
-from lumitip.tasks.task import Metrics, Settings, Task
+from lumitip.tasks.task import Metrics, Settings, Task, TaskError
 from lumitip.twin import Cable, HalfPlane, Twin
 
 Observer = Callable[[Floats], Contact | Estimate]
@@ -43,7 +43,15 @@ class Bench:
         self._centre_mm = centre_height_mm(task.twin, task.settings)
 
     def observer(self, controller: str) -> Observer:
-        """What turns values into what the controller sees."""
+        """What turns values into what the controller sees.
+
+        Raises:
+            TaskError: if there is no such controller.
+        """
+        if controller not in CONTROLLERS:
+            raise TaskError(
+                f"controller: {controller!r:.40} given, allowed are {', '.join(CONTROLLERS)}"
+            )
         if controller != "pose":
             return self._processor
         self._estimator.reset()

@@ -4,6 +4,7 @@ from lumitip.twin import Cable, Twin
 Twin(layout).values(Cable(angle_deg=30.0, diameter_mm=4.0))
 """
 
+from lumitip.twin.image import Image
 from lumitip.twin.optics import Model, TwinError
 from lumitip.twin.pairs import Misregistration
 from lumitip.twin.polygon import Polygon
@@ -12,7 +13,6 @@ from lumitip.twin.scene import (
     Corner,
     Disc,
     HalfPlane,
-    Image,
     Line,
     Scene,
     Shape,

@@ -10,9 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lumitip import arguments
 from lumitip.grid import Floats
 from lumitip.layout import Layout
-from lumitip.twin.optics import Model, values_of_drive
+from lumitip.twin.optics import Model, TwinError, values_of_drive
 from lumitip.twin.scene import HalfPlane
 from lumitip.twin.twin import Twin
 
@@ -57,7 +58,18 @@ def fit_edge(layout: Layout, values: Floats, offset_mm: float, angle_deg: float)
         offset_mm: roughly where the edge is: signed distance from the origin along its left
             normal, the cloth to the right of it (mm).
         angle_deg: roughly its direction.
+
+    Raises:
+        LayoutError: if it is no layout.
+        TwinError: if values are not those of a frame, or the start is no number.
     """
+    values = arguments.numbers(values, "values", TwinError)
+    if values.shape != (len(arguments.layout(layout)),) or not np.isfinite(values).all():
+        raise TwinError(
+            f"values of shape {values.shape} given, {len(layout)} finite numbers are needed"
+        )
+    offset_mm = arguments.number(offset_mm, "offset_mm", error=TwinError)
+    angle_deg = arguments.number(angle_deg, "angle_deg", error=TwinError)
     place = np.array([offset_mm, angle_deg, 0.0, 0.05, 2.5, 0.6, 0.9, 0.0, 0.0])
     error = read(layout, place) - values
     damping, settled = 1.0, 0
@@ -67,7 +79,15 @@ def fit_edge(layout: Layout, values: Floats, offset_mm: float, angle_deg: float)
         )
         normal = slopes.T @ slopes
         while damping < 1e6:
-            step = np.linalg.solve(normal + damping * np.diag(np.diag(normal)), -slopes.T @ error)
+            try:
+                step = np.linalg.solve(
+                    normal + damping * np.diag(np.diag(normal)), -slopes.T @ error
+                )
+            except np.linalg.LinAlgError:
+                raise TwinError(
+                    f"offset_mm {offset_mm:g}, angle_deg {angle_deg:g} given: no cell sees an edge "
+                    "there; start within some two degrees of it"
+                ) from None
             tried = np.clip(place + step, _LEAST, _MOST - _STEPS)
             new = read(layout, tried) - values
             if new @ new < error @ error:

@@ -11,12 +11,14 @@ reproduce its behaviour; the absolute radiometry of sibling datasheets is off by
 one lumped `gain` stands for all of it.
 """
 
-from dataclasses import dataclass, replace
+from collections.abc import Iterable
+from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
+from lumitip import arguments
 from lumitip.errors import LumitipError
 from lumitip.grid import Floats
 from lumitip.layout import Layout
@@ -72,9 +74,10 @@ class Model:
     """Refractive index of the silicone, already within the depths; kept for `changed_index`."""
 
     def __post_init__(self) -> None:
+        arguments.finite_fields(self, TwinError)
         for name in ("gap_mm", "hole_mm", "emitter_depth_mm", "detector_depth_mm", "knee_v",
                      "supply_v", "gain"):  # fmt: skip
-            if not 0.0 < getattr(self, name) < np.inf:
+            if not getattr(self, name) > 0.0:
                 raise TwinError(f"{name}: {getattr(self, name)} given, must be above 0")
         for name, most in _LIMITS.items():
             least = 1.0 if name == "silicone_index" else 0.0
@@ -99,10 +102,15 @@ class Model:
             changes: fields of `Model`; `silicone_index` also changes the depths.
 
         Raises:
-            TwinError: if a field cannot be so.
+            LayoutError: if it is no layout.
+            TwinError: if there is no such field, or it cannot be so.
         """
-        optics = layout.optics
-        index = float(changes.get("silicone_index", optics.silicone_index))
+        optics = arguments.layout(layout).optics
+        _known(changes)
+        index = arguments.number(
+            changes.get("silicone_index", optics.silicone_index), "silicone_index",
+            above=0.0, error=TwinError,
+        )  # fmt: skip
         told: dict[str, Any] = {
             "gap_mm": gap_mm,
             "led_exponent": optics.emitter_exponent,
@@ -117,7 +125,12 @@ class Model:
         return cls(**(told | changes))
 
     def changed(self, **changes: Any) -> "Model":
-        """The same with other fields; depths stay as they are."""
+        """The same with other fields; depths stay as they are.
+
+        Raises:
+            TwinError: if there is no such field, or it cannot be so.
+        """
+        _known(changes)
         return replace(self, **changes)
 
     def reversed(self) -> "Model":
@@ -129,6 +142,13 @@ class Model:
             emitter_depth_mm=self.detector_depth_mm,
             detector_depth_mm=self.emitter_depth_mm,
         )
+
+
+def _known(changes: Iterable[str]) -> None:
+    names = [field.name for field in fields(Model)]
+    for name in changes:
+        if name not in names:
+            raise TwinError(f"{name!r} given, a model has {', '.join(names)}")
 
 
 def values_of_drive(drive: Floats, model: Model) -> Floats:

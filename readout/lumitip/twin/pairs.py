@@ -5,6 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
+from lumitip import arguments
 from lumitip.grid import Floats, Integers
 from lumitip.layout import Layout
 from lumitip.twin.optics import Model, TwinError
@@ -26,6 +27,9 @@ class Misregistration:
     tilt_deg: float = 0.0
     """Turned about x: the gap grows towards the tip. Holes stay parallel in the model, which
     leaves out a cosine: 0.4 % at 5 degrees."""
+
+    def __post_init__(self) -> None:
+        arguments.finite_fields(self, TwinError)
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from lumitip import arguments
 from lumitip.grid import Floats, Integers
 from lumitip.twin.optics import TwinError
 from lumitip.twin.scene import Numbers, Shape
@@ -20,10 +21,12 @@ class Polygon(Shape):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        points = np.array(self.points_mm, dtype=np.float64)
+        points = arguments.numbers(self.points_mm, "points_mm", TwinError)
         if points.ndim != 2 or points.shape[1] != 2 or len(points) < 3:
             raise TwinError(f"points_mm of shape {points.shape} given, three or more (x, y) needed")
-        object.__setattr__(self, "points_mm", points)
+        if not np.isfinite(points).all():
+            raise TwinError("points_mm: a corner is not finite, (x, y) in mm are needed")
+        object.__setattr__(self, "points_mm", points.copy())
 
     @cached_property
     def simple(self) -> bool:

@@ -10,14 +10,14 @@ distance from the origin along its left normal (−sin, cos).
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
-from copy import copy
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lumitip import arguments
 from lumitip.twin.optics import TwinError
 
 Numbers = NDArray[np.floating[Any]]
@@ -25,6 +25,8 @@ Numbers = NDArray[np.floating[Any]]
 Singles = NDArray[np.float32]
 PIXEL_MM = 0.5
 """Pixel of the rasters on which objects are drawn (mm)."""
+MOST_DIAMETER_MM = 200.0
+"""Cables are no thicker: far above what covers a fingertip (mm)."""
 
 
 def covered(outside_mm: Numbers, pixel_mm: float = PIXEL_MM) -> Numbers:
@@ -48,6 +50,7 @@ class Thing(ABC):
     """Where in the gap: 0 on the receiver, 1 on the emitter."""
 
     def __post_init__(self) -> None:
+        arguments.finite_fields(self, TwinError)
         if not (self.clear >= 0.0 and self.diffuse >= 0.0 and self.clear + self.diffuse <= 1.0):
             raise TwinError(
                 f"clear {self.clear}, diffuse {self.diffuse} given: not below 0, together 1 at most"
@@ -70,6 +73,10 @@ class Shape(Thing):
 
     hem_mm: float = 0.0
     """Width of a hem along the border, where the material lies double (mm)."""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        arguments.number(self.hem_mm, "hem_mm", 0.0, error=TwinError)
 
     @abstractmethod
     def signed_distance_mm(self, x_mm: Numbers, y_mm: Numbers) -> Numbers:
@@ -147,8 +154,9 @@ class Cable(Line):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if not 0.0 < self.diameter_mm < np.inf:
-            raise TwinError(f"diameter_mm: {self.diameter_mm} given, must be above 0")
+        arguments.number(
+            self.diameter_mm, "diameter_mm", most=MOST_DIAMETER_MM, above=0.0, error=TwinError
+        )
 
     def signed_distance_mm(self, x_mm: Numbers, y_mm: Numbers) -> Numbers:
         """Distance from the cable seen from above; slanting rays need `shade`."""
@@ -175,6 +183,10 @@ class Corner(Shape):
     angle_deg: float = -90.0
     opening_deg: float = 90.0
 
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        arguments.number(self.opening_deg, "opening_deg", most=360.0, above=0.0, error=TwinError)
+
     def signed_distance_mm(self, x_mm: Numbers, y_mm: Numbers) -> Numbers:
         """See `Shape`; beyond the vertex the distance from the nearer edge's line."""
         angle, half = math.radians(self.angle_deg), math.radians(self.opening_deg) / 2.0
@@ -193,6 +205,10 @@ class Disc(Shape):
     y_mm: float = 0.0
     diameter_mm: float = 10.0
 
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        arguments.number(self.diameter_mm, "diameter_mm", above=0.0, error=TwinError)
+
     def signed_distance_mm(self, x_mm: Numbers, y_mm: Numbers) -> Numbers:
         """See `Shape`."""
         away: Numbers = np.hypot(x_mm - self.x_mm, y_mm - self.y_mm) - self.diameter_mm / 2.0
@@ -208,61 +224,22 @@ class Sheet(Shape):
         return np.full(np.broadcast_shapes(np.shape(x_mm), np.shape(y_mm)), -1e6)
 
 
-@dataclass(frozen=True, eq=False)
-class Image(Thing):
-    """A drawn object: coverage 0 to 1 in rows, the first nearest the tip, shape `(rows, columns)`;
-    its middle at `(x_mm, y_mm)`, turned by `angle_deg`. Outside of it nothing is covered."""
-
-    pixels: Numbers
-    pixel_mm: float = PIXEL_MM
-    x_mm: float = 0.0
-    y_mm: float = 0.0
-    angle_deg: float = 0.0
-    _framed: Singles = field(init=False, repr=False)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        pixels = np.asarray(self.pixels)
-        if pixels.ndim != 2 or not pixels.size or not (0.0 <= pixels.min() <= pixels.max() <= 1.0):
-            raise TwinError(
-                f"pixels of shape {pixels.shape} given, rows of coverage from 0 to 1 are needed"
-            )
-        if not self.pixel_mm > 0.0:
-            raise TwinError(f"pixel_mm: {self.pixel_mm} given, must be above 0")
-        # A frame of nothing around it, so that a place outside finds nothing without a test.
-        object.__setattr__(self, "_framed", np.pad(pixels.astype(np.float32), 1))
-
-    @classmethod
-    def of(cls, thing: Thing, size_mm: float = 80.0, pixel_mm: float = 0.1) -> "Image":
-        """An object drawn once, a square around the origin, so that it can be moved cheaply."""
-        half = int(np.ceil(size_mm / 2.0 / pixel_mm))
-        line = np.arange(-half, half + 1) * pixel_mm
-        pixels = thing.coverage(line[None, :], -line[:, None]).astype(np.float32)
-        return cls(pixels, pixel_mm, clear=thing.clear, diffuse=thing.diffuse, height=thing.height)
-
-    def coverage(self, x_mm: Numbers, y_mm: Numbers, pixel_mm: float = PIXEL_MM) -> Numbers:  # noqa: ARG002
-        """See `Thing`: the pixel that each place falls on."""
-        angle, scale = math.radians(self.angle_deg), 1.0 / self.pixel_mm
-        cos, sin = math.cos(angle) * scale, math.sin(angle) * scale
-        rows, columns = self._framed.shape
-        right = 0.5 * columns - self.x_mm * cos - self.y_mm * sin
-        down = 0.5 * rows + self.y_mm * cos - self.x_mm * sin
-        column = np.clip(x_mm * cos + y_mm * sin + right, 0.0, columns - 1.0).astype(np.int32)
-        row = np.clip(x_mm * sin - y_mm * cos + down, 0.0, rows - 1.0).astype(np.int32)
-        found: Numbers = self._framed.ravel()[row * np.int32(columns) + column]
-        return found
-
-    def at(self, x_mm: float, y_mm: float, angle_deg: float) -> "Image":
-        """The same elsewhere (mm, degrees), without a copy of the pixels."""
-        moved = copy(self)
-        for name, value in (("x_mm", x_mm), ("y_mm", y_mm), ("angle_deg", angle_deg)):
-            object.__setattr__(moved, name, value)
-        return moved
-
-
 Scene = Thing | Sequence[Thing]
 
 
 def things(scene: Scene) -> tuple[Thing, ...]:
-    """The objects of a scene."""
-    return (scene,) if isinstance(scene, Thing) else tuple(scene)
+    """The objects of a scene.
+
+    Raises:
+        TwinError: if it is none.
+    """
+    if isinstance(scene, Thing):
+        return (scene,)
+    found = tuple(scene) if isinstance(scene, Iterable) else (scene,)
+    for thing in found:
+        if not isinstance(thing, Thing):
+            raise TwinError(
+                f"scene: {scene!r:.40} given, an object like Cable(angle_deg=30.0), or several, "
+                "is needed; nothing is ()"
+            )
+    return found

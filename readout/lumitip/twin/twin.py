@@ -12,9 +12,11 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import ArrayLike
 
+from lumitip import arguments
 from lumitip.grid import Floats
 from lumitip.layout import Layout
 from lumitip.protocol.packet import BITS, Codes
+from lumitip.twin import given
 from lumitip.twin.mixed import Mixed
 from lumitip.twin.optics import FULL, Model, TwinError, values_of_drive
 from lumitip.twin.outline import Outline
@@ -59,20 +61,25 @@ class Twin:
             warm_up: share of light that the LEDs give too much when switched on.
 
         Raises:
-            TwinError: if one of them cannot be so.
+            LayoutError: if it is no layout.
+            TwinError: if another of them cannot be so.
         """
-        self.layout = layout
-        self.model = model or Model.from_layout(layout)
-        self.emitter = Emitter(self.model, misregistration or Misregistration())
-        self.gains: Floats = np.ones(len(layout)) if gains is None else np.array(gains, np.float64)
-        if self.gains.shape != (len(layout),) or not (self.gains >= 0.0).all():
-            raise TwinError(f"gains: {len(layout)} numbers not below 0 are needed")
+        self.layout = arguments.layout(layout)
+        self.model = (
+            Model.from_layout(layout) if model is None
+            else arguments.instance(model, Model, "model", TwinError)
+        )  # fmt: skip
+        astray = Misregistration() if misregistration is None else misregistration
+        arguments.instance(astray, Misregistration, "misregistration", TwinError)
+        self.emitter = Emitter(self.model, astray)
+        self.gains = given.gains(gains, len(layout))
         if bits not in BITS:
-            raise TwinError(f"bits: {bits} given, allowed are {', '.join(map(str, BITS))}")
-        if not (ambient >= 0.0 and noise >= 0.0 and warm_up >= 0.0):
-            raise TwinError("ambient, noise and warm_up must not be below 0")
-        self.ambient, self.noise, self.bits, self.seed = ambient, noise, bits, seed
-        self.warm_up = warm_up
+            raise TwinError(f"bits: {bits!r:.40} given, allowed are {', '.join(map(str, BITS))}")
+        self.bits, self.seed = bits, arguments.count(seed, "seed", 0, TwinError)
+        self.ambient, self.noise, self.warm_up = (
+            arguments.number(of, name, 0.0, error=TwinError)
+            for of, name in ((ambient, "ambient"), (noise, "noise"), (warm_up, "warm_up"))
+        )
         self._pairs = Pairs.of(layout, self.emitter)
         straight = Pairs.of(layout, Emitter(self.model)).full
         self.drive: Floats = self.model.gain * self._pairs.full / straight.max()
@@ -97,9 +104,16 @@ class Twin:
             scenes: scenes, or the coverage of an opaque object on `plane(height)`, shape
                 `(n, pixels)`.
             height: where in the gap that coverage lies.
+
+        Raises:
+            TwinError: if they are neither.
         """
         if isinstance(scenes, np.ndarray):
-            return self.calibrated(1.0 - self.plane(height)(scenes))
+            at = self.plane(height)
+            given.coverage(scenes, at.x_mm.size)
+            return self.calibrated(1.0 - at(scenes))
+        if isinstance(scenes, Thing | str) or not isinstance(scenes, Sequence):
+            raise TwinError(f"scenes: {scenes!r:.40} given, a list of scenes is needed")
         if not scenes:
             return np.empty((0, len(self.layout)))
         return self.calibrated(np.stack([self.light(scene) for scene in scenes]))
@@ -128,10 +142,13 @@ class Twin:
                 shape `(n,)`; what is right of it is covered.
             angle_deg: its direction, shape `(n,)`.
             clear: transmittance of each sheet, shape `(n,)` or one for all.
+
+        Raises:
+            TwinError: if they are no finite numbers of one shape, or a sheet gives light.
         """
-        offset, angle, through = np.broadcast_arrays(
-            *(np.atleast_1d(np.asarray(a, np.float64)) for a in (offset_mm, angle_deg, clear))
-        )
+        offset, angle, through = given.alike(offset_mm=offset_mm, angle_deg=angle_deg, clear=clear)
+        if not ((through >= 0.0) & (through <= 1.0)).all():
+            raise TwinError(f"clear: {clear!r:.40} given, from 0 to 1 is needed")
         turn = np.radians(angle)[:, None]
         left = self.layout.y_mm * np.cos(turn) - self.layout.x_mm * np.sin(turn) - offset[:, None]
         share = self.edge_table()(angle[:, None], left)
@@ -140,15 +157,16 @@ class Twin:
     def edge_table(self, height: float = 0.5) -> LineTable:
         """Share of its light that an opaque half-plane takes from each cell, by the direction and
         the signed distance of its edge."""
-        return self._edges(height)
+        return self._edges(given.height(height))
 
     def cable_table(self, diameter_mm: float = 3.0, height: float = 0.5) -> LineTable:
         """The same of an opaque round cable, by the distance from its axis."""
-        return self._cables(diameter_mm, height)
+        diameter_mm = Cable(diameter_mm=diameter_mm).diameter_mm
+        return self._cables(diameter_mm, given.height(height))
 
     def plane(self, height: float = 0.5) -> Plane:
         """The raster at a height in the gap: places of its pixels and what each gives."""
-        return self._direct(height)
+        return self._direct(given.height(height))
 
     def calibrated(self, light: Numbers) -> Floats:
         """Values of shares of light, both of shape `(..., cells)`, 255 is the empty grasp."""
@@ -167,7 +185,8 @@ class Twin:
             scene: what is between the fingers.
             t: time since switching on (s); the LEDs warm up by it.
         """
-        one: Codes = self.codes(self.light(scene)[None], np.array([t]))[0]
+        at_s = arguments.number(t, "t", 0.0, error=TwinError)
+        one: Codes = self.codes(self.light(scene)[None], np.array([at_s]))[0]
         return one
 
     def codes(self, light: Numbers, times_s: Floats) -> Codes:

@@ -86,7 +86,7 @@ def test_commands_stay_within_the_limits() -> None:
     assert (command.forward_mm_s, command.lateral_mm_s, command.rotation_rad_s) == (50, 10, 0.5)
     with pytest.raises(ControlError, match="above 0"):
         Limits(lateral_mm_s=0.0)
-    with pytest.raises(ControlError, match="corner_frames 0"):
+    with pytest.raises(ControlError, match="corner_frames: 0 given"):
         Tracer(LineLaw(), corner_frames=0)
 
 
@@ -156,5 +156,5 @@ def test_a_tracer_turns_earlier_with_a_lead() -> None:
     assert commands[1].rotation_rad_s > commands[0].rotation_rad_s > 0.0
     ahead.reset()
     assert ahead(_edge(0.0, 4.0), DT_S) == plain.law(sight_of(_edge(0.0, 4.0)))
-    with pytest.raises(ControlError, match=r"lead_s -0\.1"):
+    with pytest.raises(ControlError, match=r"lead_s: -0\.1"):
         Tracer(LineLaw(), lead_s=-0.1)

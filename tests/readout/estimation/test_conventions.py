@@ -94,7 +94,7 @@ def test_what_cannot_be_asked_for_is_refused(estimator: PoseEstimator, cells: La
         estimator(np.zeros(31))
     with pytest.raises(EstimationError, match="allowed are edge, cable, corner"):
         estimator(np.zeros(32), "disc")
-    with pytest.raises(EstimationError, match="not below 0, 0 if it is known"):
+    with pytest.raises(EstimationError, match=r"gap_sd_mm: -0\.1 given, a number from 0 on"):
         PoseEstimator(cells, gap_sd_mm=-0.1)
     with pytest.raises(EstimationError, match="32 numbers above 0"):
         PoseEstimator(cells, gains=np.ones(31))

@@ -168,7 +168,7 @@ def test_an_error_in_the_program_stops_it(peer: Peer) -> None:
 
 @patient
 def test_numbers_that_are_none_are_refused_and_stop_it(peer: Peer) -> None:
-    with pytest.raises(ArmError, match="numbers"), URArm(peer.host, MOUNT, CALM) as arm:
+    with pytest.raises(ArmError, match="finite number"), URArm(peer.host, MOUNT, CALM) as arm:
         arm.move(Command(forward_mm_s=math.nan), time.monotonic())
     assert arm.stopped == "closed"
 
