@@ -36,7 +36,7 @@ class Breakout(Strict):
     """Socket strip in `parts/strips.toml`; one for each row of the controller's pins."""
     board_mm: tuple[Size, Size]
     """Length, along the controller, and width (mm)."""
-    hole_mm: float = Field(ge=1, le=5)
+    hole_mm: float = Field(ge=1, le=9)
     """Diameter of its two screw holes (mm)."""
     hole_spacing_mm: float = Field(ge=5, le=180)
     """From hole to hole, of the board and of its holder alike (mm)."""

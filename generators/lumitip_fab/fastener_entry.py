@@ -20,6 +20,8 @@ class Fastener(Entry):
     """Diameter of the head of a countersunk screw, ISO 7046."""
     nut_mm: Length
     """Width of a nut across flats, ISO 4032."""
+    nut_height_mm: Length
+    """Height of a nut, ISO 4032."""
 
     @model_validator(mode="after")
     def _goes_through(self) -> Self:

@@ -27,11 +27,16 @@ def holes_wide(patch: pytest.MonkeyPatch) -> None:
 
 
 def heads_tight(patch: pytest.MonkeyPatch) -> None:
-    patch.setattr(flange_body, "HEAD_PLAY_MM", 0.0)
+    patch.setattr(flange_body, "SINK_PLAY_MM", 0.0)
 
 
 def nuts_tight(patch: pytest.MonkeyPatch) -> None:
     patch.setattr(holder, "NUT_PLAY_MM", 0.0)
+
+
+def screws_long(patch: pytest.MonkeyPatch) -> None:
+    patch.setattr(holder, "screw_length_mm", lambda *_: 14.0)
+    patch.setattr(holder, "_refuse_nuts", lambda *_: None)
 
 
 # Recess, pins and peg are measured against what they meet too.
@@ -45,6 +50,7 @@ HOLDER: dict[Alter, set[str]] = {
     holes_narrow: {"screw_clearance", "nut_clearance"},
     holes_wide: {"screw_clearance", "nut_clearance"},
     nuts_tight: {"nut_clearance"},
+    screws_long: {"nut_room"},
 }
 
 

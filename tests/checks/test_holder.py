@@ -49,6 +49,12 @@ def nuts_too_deep(body: Body) -> Body:
     return body - Manifold.cylinder(4.0, 2.0, circular_segments=64).translate((17.78, 0.0, -9.0))
 
 
+def nut_sits_lower(body: Body) -> Body:
+    """A floor in the pocket, 2.5 mm under the nut's seat."""
+    floor = Manifold.cylinder(2.5, 2.5) - Manifold.cylinder(2.5, 1.15, circular_segments=64)
+    return body + floor.translate((17.78, 0.0, -8.5))
+
+
 def tray_narrower(body: Body) -> Body:
     return body + box((22.95, -16.4, -2.9), (23.5, 16.4, 1.6))
 
@@ -103,6 +109,7 @@ DAMAGES: dict[Damage, set[str]] = {
     screws_farther_apart: {"screws", "spacing", "screw_clearance"},
     nut_pocket_round: {"nut_width", "nut_clearance"},
     nuts_too_deep: {"nut_seat"},
+    nut_sits_lower: {"nut_seat", "nut_room", "nut_width", "nut_clearance"},
     nut_pocket_askew: {"nuts", "nut_width"},
     screw_hole_wide: {"screw_width"},
     tray_narrower: {"tray_gap"},

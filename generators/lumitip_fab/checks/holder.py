@@ -18,7 +18,7 @@ from lumitip_fab.checks.fasteners import Figures, round_nut, round_thread
 from lumitip_fab.checks.printed import circles, farthest, holes_at, room
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.checks.walls import walls
-from lumitip_fab.design import Design, Holder
+from lumitip_fab.design import Design, Fastener, Holder
 from lumitip_fab.errors import OutputError
 from lumitip_fab.frames import holder_bed_to_carrier, rotation_y, translation
 
@@ -160,8 +160,24 @@ def measure_nuts(clip: Clip) -> Iterator[Measurement]:
     beside = (holder.screw_mm + holder.nut_mm) / 4
     start = np.array([(x, y + beside, holder.axis_z_mm) for x, y in holder.holes])
     hit, _ = solids.cast(clip.mesh, start, _UP, _REACH_MM).first(len(start))
-    seat = farthest(holder.axis_z_mm + hit, holder.seat_z_mm)
+    seats = holder.axis_z_mm + hit
+    seat = farthest(seats, holder.seat_z_mm)
     yield clip.figure("nut_seat", seat, holder.seat_z_mm - SIZE_MM, holder.seat_z_mm + SIZE_MM)
+    left = min((_left_mm(holder, nut, x, z) for (x, _), z in zip(holder.holes, seats, strict=True)))
+    yield clip.figure("nut_room", left, 0.0, math.inf, note="nuts and screws' ends to gripper")
+
+
+def _left_mm(holder: Holder, screw: Fastener, x_mm: float, seat_z_mm: float) -> float:
+    """What a nut that bears at a height, or its screw's end, leaves to the gripper's body."""
+    beyond = holder.screw_length_mm - (holder.top_z_mm - seat_z_mm)
+    radius, middle = holder.body_mm / 2, abs(x_mm)
+    return min(
+        seat_z_mm - reach - holder.axis_z_mm - math.sqrt(max(radius**2 - max(inner, 0.0) ** 2, 0.0))
+        for inner, reach in (
+            (middle - screw.nut_mm / math.sqrt(3), screw.nut_height_mm),
+            (middle - screw.thread_mm / 2, beyond),
+        )
+    )
 
 
 def measure_cradle(clip: Clip) -> Iterator[Measurement]:

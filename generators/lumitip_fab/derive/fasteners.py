@@ -1,11 +1,14 @@
 """Which threads the printed parts are held by, and what of that goes through which hole."""
 
+import math
+
 from lumitip_fab.derive.faults import Faults
 from lumitip_fab.design import Fastener
+from lumitip_fab.fastener_entry import Fastener as FastenerEntry
 from lumitip_fab.load import Input
 
 BOARD_SCREW = "M2"  # of the flange's board
-HEAD_PLAY_MM = 0.2  # of a bolt's head in its counterbore, at least
+HEAD_PLAY_MM = 0.3  # of a plain head in its counterbore, at least: a knurled one is 0.27 wider
 
 
 def derive_fasteners(given: Input, faults: Faults) -> tuple[Fastener, ...]:
@@ -23,8 +26,8 @@ def derive_fasteners(given: Input, faults: Faults) -> tuple[Fastener, ...]:
         faults.refuse_unless(
             thread in known,
             field,
-            f"needs {thread} screws, which parts/fasteners.toml does not have: it has "
-            f"{', '.join(known)}; add an entry",
+            f"{_shown(given, field)} given, which needs {thread} screws; parts/fasteners.toml has "
+            f"{', '.join(known)}: add an entry for {thread} to it",
         )
     if not all(thread in known for _, thread in wanted):
         faults.stop()
@@ -40,19 +43,32 @@ def derive_fasteners(given: Input, faults: Faults) -> tuple[Fastener, ...]:
         _refuse_hole(given, "flange.coupling", coupling.bolt, coupling.bolt_hole_mm, faults)
     threads = sorted({thread for _, thread in wanted})
     return tuple(
-        Fastener(name, e.thread_mm, e.hole_mm, e.cap_head_mm, e.countersunk_mm, e.nut_mm)
+        Fastener(
+            name, e.thread_mm, e.hole_mm, e.cap_head_mm, e.countersunk_mm, e.nut_mm,
+            e.nut_height_mm,
+        )
         for name, e in ((thread, known[thread]) for thread in threads)
-    )
+    )  # fmt: skip
+
+
+def screw_length_mm(through_mm: float, nut: FastenerEntry) -> float:
+    """The shortest even length that goes through what it holds and through its nut."""
+    return 2.0 * math.ceil((through_mm + nut.nut_height_mm) / 2)
 
 
 def _refuse_hole(given: Input, field: str, thread: str, hole_mm: float, faults: Faults) -> None:
     """Refuse a clearance hole of an entry that is none by ISO 273."""
-    section, key = field.split(".")
-    name = getattr(getattr(given.parameters, section), key)
     fine, coarse = given.catalogue.fasteners[thread].hole_mm
     faults.refuse_unless(
         fine - 1e-9 <= hole_mm <= coarse + 1e-9,
         field,
-        f"{name!r} given, whose bolt_hole_mm = {hole_mm:g} is no clearance hole of an {thread}: "
-        f"{fine:g} to {coarse:g} is allowed (ISO 273)",
+        f"{_shown(given, field)} given, whose bolt_hole_mm = {hole_mm:g} is no clearance hole of "
+        f"an {thread}: {fine:g} to {coarse:g} is allowed (ISO 273)",
     )
+
+
+def _shown(given: Input, field: str) -> str:
+    """A field's value as the parameter file has it."""
+    section, key = field.split(".")
+    value = getattr(getattr(given.parameters, section), key)
+    return "true" if value is True else repr(value)

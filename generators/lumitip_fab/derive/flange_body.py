@@ -20,7 +20,7 @@ PEG_MM = 5.0
 PEG_PLAY_MM = 0.5  # both are printed: at the tightest fit 0.1 is left
 PEG_SHARE = 0.75  # of the web's thickness
 SCREW_PLAY_MM = 0.2  # holes in the floor beyond the board's
-HEAD_PLAY_MM = 0.4  # of a countersunk head, which then lies below the face
+SINK_PLAY_MM = 0.4  # of a countersunk head, which then lies below the face
 
 
 def derive_flange_body(
@@ -87,7 +87,7 @@ def derive_flange_body(
         screws=tuple((x + board_at[0], y + board_at[1]) for x, y in carrier.holes),
         screw=BOARD_SCREW,
         screw_mm=drawn.hole_mm(carrier.hole_mm + SCREW_PLAY_MM),
-        screw_head_mm=screw.countersunk_mm + HEAD_PLAY_MM,
+        screw_head_mm=screw.countersunk_mm + SINK_PLAY_MM,
         split_z_mm=split_z,
         web_mm=p.web_mm,
     )

@@ -2,6 +2,7 @@
 
 import math
 
+from lumitip_fab.derive.fasteners import screw_length_mm
 from lumitip_fab.derive.faults import Faults
 from lumitip_fab.derive.fits import Drawn, refuse_touching
 from lumitip_fab.derive.flex import held_by, stiff_mm
@@ -34,7 +35,9 @@ def derive_holder(
     tray = Box(of.box.x_min_mm - play, of.box.x_max_mm + play, of.box.y_min_mm, of.box.y_max_mm)
     floor_z = -p.holder.standoff_mm
     radius = body_mm / 2 + play
-    width = drawn.hole_mm(of.hole_mm) + 2 * BOSS_RIM_MM
+    screw_mm = drawn.hole_mm(screw.hole_mm[0])
+    width = screw_mm + 2 * BOSS_RIM_MM
+    through = stiff_mm(p) - floor_z + wall
     spacing = p.holder.strap_spacing_mm / 2
     holder = Holder(
         name="holder",
@@ -53,7 +56,8 @@ def derive_holder(
         wrap_deg=p.holder.wrap_deg,
         holes=of.holes,
         screw=p.holder.screw,
-        screw_mm=drawn.hole_mm(screw.hole_mm[0]),
+        screw_mm=screw_mm,
+        screw_length_mm=screw_length_mm(through, screw),
         nut_mm=drawn.hole_mm(screw.nut_mm + NUT_PLAY_MM),
         boss_mm=(BOSS_LENGTH_MM, width, width + 2 * p.holder.standoff_mm),  # 45°, to print
         strap_deg=(p.holder.wrap_deg + _shoulder_deg(tray.x_max_mm + wall, radius + wall)) / 2,
@@ -62,6 +66,7 @@ def derive_holder(
     )
     _refuse_holes(given, of, faults)
     _refuse(given, of, holder, faults)
+    _refuse_nuts(given, holder, faults)
     return (holder,)
 
 
@@ -130,3 +135,22 @@ def _refuse_holes(given: Input, of: Carrier, faults: Faults) -> None:
         f"{of.hole_mm:g} given, {least:g} to {most:g} is allowed for an {thread} (holder.screw) "
         f"and its head of {screw.cap_head_mm:g} mm",
     )
+
+
+def _refuse_nuts(given: Input, holder: Holder, faults: Faults) -> None:
+    """Refuse screws that reach the gripper behind their seat, with their nuts or their ends."""
+    screw = given.catalogue.fasteners[holder.screw]
+    beyond = holder.screw_length_mm - (holder.top_z_mm - holder.seat_z_mm)
+    middle = min(abs(x) for x, _ in holder.holes)
+    for what, inner, needed in (
+        ("nuts", middle - screw.nut_mm / math.sqrt(3), screw.nut_height_mm),
+        (f"ends of {holder.screw_length_mm:g} mm", middle - screw.thread_mm / 2, beyond),
+    ):
+        body = math.sqrt(max((holder.body_mm / 2) ** 2 - max(inner, 0.0) ** 2, 0.0))
+        faults.refuse_unless(
+            holder.cradle_mm - body >= needed,
+            "holder.screw",
+            f"{holder.screw!r} given, whose {what} reach {needed:.2f} mm under their seat, where "
+            f"{holder.cradle_mm - body:.2f} are left to the gripper: thinner screws, or more "
+            "breakout.hole_spacing_mm",
+        )

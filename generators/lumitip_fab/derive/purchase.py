@@ -1,16 +1,14 @@
 """What is bought, with the prices of the catalogue; a price that is missing stays open."""
 
-import math
 from collections.abc import Mapping
 
+from lumitip_fab.derive.fasteners import screw_length_mm
 from lumitip_fab.derive.flex import stiff_mm
 from lumitip_fab.design import Flange, Holder, Mount
 from lumitip_fab.design.purchase import Bought, PartPrice, Purchase
 from lumitip_fab.design.slicing import Slicing
 from lumitip_fab.load import Input
 from lumitip_fab.price_entry import Prices
-
-_NUT_SHARE = 0.8  # height of a nut, of its thread's diameter
 
 
 def derive_purchase(
@@ -25,7 +23,7 @@ def derive_purchase(
     pieces = [
         *_controller(given, prices),
         *_bolts(mount, prices),
-        *(each for holder in holders for each in _screws(given, holder, prices)),
+        *(each for holder in holders for each in _screws(holder, prices)),
         *(each for flange in flanges for each in _of_flange(given, flange, prices)),
     ]  # fmt: skip
     return Purchase(
@@ -64,16 +62,13 @@ def _bolts(mount: Mount, prices: Prices) -> list[Bought]:
     return [Bought("fasteners", item, "", "ISO 4762", where, count, prices.each.get(item))]
 
 
-def _screws(given: Input, holder: Holder, prices: Prices) -> list[Bought]:
+def _screws(holder: Holder, prices: Prices) -> list[Bought]:
     """Screws through the breakout board into nuts under its holder."""
-    p = given.parameters
     thread, count = holder.screw, len(holder.holes)
-    wide = given.catalogue.fasteners[thread].thread_mm
-    through = stiff_mm(p) + p.holder.standoff_mm + holder.wall_mm
-    length = 2 * math.ceil((through + _NUT_SHARE * wide) / 2)
+    screw = f"{thread} x {holder.screw_length_mm:g} screw"
     where = "breakout on its holder"
     return [
-        Bought("fasteners", f"{thread} x {length} screw", "", "ISO 4762", where, count,
+        Bought("fasteners", screw, "", "ISO 4762", where, count,
                prices.each.get(f"{thread} screw")),
         Bought("fasteners", f"{thread} nut", "", "ISO 4032", where, count,
                prices.each.get(f"{thread} nut")),
@@ -84,8 +79,8 @@ def _of_flange(given: Input, flange: Flange, prices: Prices) -> list[Bought]:
     """Screws of its board, its locating pin, and the gripper's bolts, which must be longer."""
     count = len(flange.screws)
     through = flange.board_z_mm - flange.seat_z_mm + stiff_mm(given.parameters)
-    wide = given.catalogue.fasteners[flange.screw].thread_mm
-    screw = f"{flange.screw} x {2 * math.ceil((through + _NUT_SHARE * wide) / 2)} countersunk screw"
+    length = screw_length_mm(through, given.catalogue.fasteners[flange.screw])
+    screw = f"{flange.screw} x {length:g} countersunk screw"
     pin = f"{flange.pin_mm:g} x {flange.pin_length_mm:g} parallel pin"
     bolt = f"{flange.bolt} socket head screw"
     where = "board of the flange"

@@ -161,6 +161,8 @@ class Holder:
     """Thread of those screws."""
     screw_mm: float
     """Their holes."""
+    screw_length_mm: float
+    """Under their heads, which are on the board."""
     nut_mm: float
     """Across flats of their nuts' pockets."""
     boss_mm: tuple[float, float, float]

@@ -18,4 +18,5 @@ class Fastener:
     countersunk_mm: float
     """Diameter of the head of a countersunk screw."""
     nut_mm: float
-    """Across flats."""
+    """Of its nut, across flats."""
+    nut_height_mm: float
