@@ -12,9 +12,10 @@ from board_damages import moved_part
 from damages import Body, box, carve, failing, flip_a_triangle, remove_packages
 from lumitip_fab.checks import holder as checks
 from lumitip_fab.derive import derive
-from lumitip_fab.encoding import read_design
+from lumitip_fab.encoding import design_text, read_design
 from lumitip_fab.frames import holder_bed_to_carrier
 from lumitip_fab.load import load
+from lumitip_fab.mechanical.holder import holder_files
 from lumitip_fab.spec_outside import outside
 
 Damage = Callable[[Body], Body]
@@ -198,3 +199,21 @@ def test_screws_of_a_board_without_a_holder_are_the_makers_own(
         'extends = "published.toml"\n[coupling]\ngripper = "wsg50"\n[breakout]\nhole_mm = 3.2\n'
     )
     assert derive(load(file)).holders == ()
+
+
+@pytest.mark.parametrize(
+    "straps",
+    ["strap_hole_mm = 10.0\nstrap_spacing_mm = 18.0", "strap_spacing_mm = 27.0\nwall_mm = 2.0"],
+)
+def test_arms_with_other_holes_pass_every_check(
+    straps: str, design_dir: Path, damaged: Path, tmp_path: Path
+) -> None:
+    """Rays and limits keep clear of the holes wherever they are."""
+    folder = Path(shutil.copytree(design_dir, tmp_path / "design"))
+    file = folder / "presets/mine.toml"
+    file.write_text(f'extends = "published.toml"\n[holder]\n{straps}\n')
+    design = derive(load(file))
+    (damaged / "design.json").write_text(design_text(design), encoding="utf-8")
+    for made in holder_files(design.holders[0]):
+        (damaged / made.path).write_bytes(made.data)
+    assert failing(damaged, "holder") == set()

@@ -27,7 +27,7 @@ READS = ("holder/*.stl", "holder/*.3mf", "holder/*.step", "boards/*.kicad_pcb")
 SIZE_MM = 0.05
 HOLE_MM = 0.05
 SPACING_MM = 0.02  # from hole to hole, of the printed part against the board
-MOST_OVERHANG_MM2 = 100.0  # the roofs of its holes
+ROOFS = 1.1  # overhang, by that of the roofs of its holes
 LEAST_BED_MM2 = 300.0
 LEAST_GRIP_MM = 0.25  # each arm's end inside the body's widest place
 _UP, _DOWN = np.array([0.0, 0.0, 1.0]), np.array([0.0, 0.0, -1.0])
@@ -96,7 +96,7 @@ def measure_print(clip: Clip) -> Iterator[Measurement]:
     yield clip.figure("watertight", solids.open_edges(clip.standing), 0, 0, "open edges")
     yield clip.figure("bodies", solids.bodies(clip.standing), 1, 1, "bodies")
     hang, bed = solids.overhang_mm2(clip.standing), solids.bed_contact_mm2(clip.standing)
-    yield clip.figure("overhang", hang, 0, MOST_OVERHANG_MM2, "mm²")
+    yield clip.figure("overhang", hang, 0, ROOFS * _roofs_mm2(clip.holder), "mm²")
     yield clip.figure("bed_contact", bed, LEAST_BED_MM2, math.inf, "mm²")
     yield from walls("holder.min_wall", clip.subject, clip.standing, least, ())
 
@@ -185,7 +185,7 @@ def measure_cradle(clip: Clip) -> Iterator[Measurement]:
     holder = clip.holder
     turns = np.radians(np.linspace(-holder.wrap_deg + 2.0, holder.wrap_deg - 2.0, 61))
     away = np.column_stack([np.sin(turns), np.zeros_like(turns), np.cos(turns)])
-    y = holder.outer.y_max_mm / 2  # beside nuts and straps
+    y = _free_y_mm(holder)
     start = np.tile((0.0, y, holder.axis_z_mm), (len(turns), 1))
     hit, _ = solids.cast(clip.mesh, start, away, _REACH_MM).first(len(turns))
     fit = clip.design.printing.fit_mm
@@ -220,3 +220,20 @@ def _height(clip: Clip, points: solids.Vectors) -> solids.Vectors:
     above = np.column_stack([points, np.full(len(points), _REACH_MM / 2)])
     drop, _ = solids.cast(clip.mesh, above, _DOWN, 2 * _REACH_MM).first(len(points))
     return np.asarray(above[:, 2] - drop)
+
+
+def _roofs_mm2(holder: Holder) -> float:
+    """Of holes that lie as it prints: a quarter of the way round each, and a side of each nut."""
+    screws = math.pi / 4 * holder.screw_mm * -holder.seat_z_mm * len(holder.holes)
+    straps = math.pi / 4 * holder.strap_hole_mm * holder.wall_mm * 2 * len(holder.strap_y_mm)
+    deep = [holder.cradle_mm - math.sqrt(holder.cradle_mm**2 - x**2) for x, _ in holder.holes]
+    return screws + straps + holder.nut_mm / math.sqrt(3) * sum(deep)
+
+
+def _free_y_mm(holder: Holder) -> float:
+    """Where a section across the cradle is farthest from its ends, the nuts and the arms' holes."""
+    ys = np.linspace(0.0, holder.outer.y_max_mm, 200)
+    taken = [(0.0, holder.nut_mm / math.sqrt(3))]
+    taken += [(y, holder.strap_hole_mm / 2) for y in holder.strap_y_mm]
+    apart = np.min([np.abs(ys - y) - half for y, half in taken], axis=0)
+    return float(ys[np.minimum(apart, holder.outer.y_max_mm - ys).argmax()])

@@ -90,6 +90,7 @@ def _refuse(given: Input, of: Carrier, holder: Holder, faults: Faults) -> None:
         )
         return
     refuse_touching(given, "holder.clearance_mm", p.clearance_mm, faults)
+    _refuse_straps(given, holder, faults)
     printed_mm = holder.cradle_mm - given.parameters.printer.fit_mm  # what is made of it
     grip = holder.body_mm / 2 - printed_mm * math.sin(math.radians(holder.wrap_deg))
     faults.refuse_unless(
@@ -154,3 +155,24 @@ def _refuse_nuts(given: Input, holder: Holder, faults: Faults) -> None:
             f"{holder.cradle_mm - body:.2f} are left to the gripper: thinner screws, or more "
             "breakout.hole_spacing_mm",
         )
+
+
+def _refuse_straps(given: Input, holder: Holder, faults: Faults) -> None:
+    """Refuse holes through the arms that leave too little wall to each other or to an arm's end."""
+    p, wall = given.parameters.holder, given.parameters.printer.min_wall_mm
+    least = p.strap_hole_mm + wall
+    most = 2 * (holder.outer.y_max_mm - wall) - p.strap_hole_mm
+    room = f"{least:g} to {most:g} is allowed" if least <= most else "a narrower hole is needed"
+    faults.refuse_unless(
+        least - 1e-9 <= p.strap_spacing_mm <= most + 1e-9,
+        "holder.strap_spacing_mm",
+        f"{p.strap_spacing_mm:g} given, {room} for holes of {p.strap_hole_mm:g} mm in arms "
+        f"{holder.outer.length_mm:g} mm wide, with walls of {wall:g} mm beside them",
+    )
+    reach = math.radians(holder.wrap_deg - holder.strap_deg) * holder.cradle_mm
+    faults.refuse_unless(
+        reach - p.strap_hole_mm / 2 >= wall,
+        "holder.strap_hole_mm",
+        f"{p.strap_hole_mm:g} given, the arms end {reach:.1f} mm from the middle of their holes: "
+        f"at most {2 * (reach - wall):.1f} is allowed, or more holder.wrap_deg",
+    )
