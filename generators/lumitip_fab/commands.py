@@ -17,7 +17,9 @@ from lumitip_fab.locate import packaged_design
 
 _FEW = 20  # files that are named one by one
 WIDE = None if sys.stdout.isatty() else 200  # a file or a log has no edge to fold at
-OUT, ERR = Console(highlight=False, width=WIDE), Console(stderr=True, highlight=False)
+# Names of files and designs are told as they are, with brackets and colons in them.
+OUT = Console(highlight=False, markup=False, emoji=False, width=WIDE)
+ERR = Console(stderr=True, highlight=False, markup=False, emoji=False)
 
 
 def run(options: argparse.Namespace) -> int:

@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 from rich.console import Console
-from rich.markup import escape
 from rich.table import Table
 
 from lumitip_fab.design import Design
@@ -229,7 +228,5 @@ def print_table(told: tuple[Row, ...], console: Console) -> None:
     table.add_column("why they differ", style="dim", overflow="fold")
     for row in told:
         differs = row.published != row.computed
-        table.add_row(
-            row.quantity, row.published, row.computed, escape(row.reason) if differs else ""
-        )
+        table.add_row(row.quantity, row.published, row.computed, row.reason if differs else "")
     console.print(table)

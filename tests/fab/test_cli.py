@@ -55,8 +55,9 @@ def test_without_the_extra_one_line_names_it(fresh: Run, design_dir: Path) -> No
 def test_init_copies_the_design_folder_and_overwrites_nothing(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    target = tmp_path / "mine"
+    target = tmp_path / "[red]mine :smile:"
     assert main(["init", str(target)]) == 0
+    assert capsys.readouterr().out.startswith(f"{target}: edit fingertip.toml")
     assert (target / "fingertip.toml").is_file()
     assert (target / "parts" / "leds.toml").is_file()
     (target / "fingertip.toml").write_text("mine")

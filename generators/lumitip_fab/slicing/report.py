@@ -37,7 +37,7 @@ def print_table(parts: tuple[Sliced, ...], console: Console) -> None:
     console.print(table)
     for part in parts:
         for line in part.warnings:
-            console.print(f"{part.part}: {line}", markup=False)
+            console.print(f"{part.part}: {line}")
 
 
 def _time(seconds: int) -> str:
