@@ -5,7 +5,6 @@ import random
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -27,6 +26,7 @@ Record = Callable[..., Path]
 CUTS = 500
 
 # Records at 55 Hz until it is killed, and tells after each frame that it was given to the writer.
+# After a stall of the machine it does not catch up: that would be many frames at once.
 _WORKER = """
 import sys, time
 import numpy as np
@@ -35,29 +35,28 @@ from lumitip.recording import RecordedFrame, Writer
 
 layout = Layout.load(sys.argv[1])
 writer = Writer(sys.argv[2], layout, device_id="x")
-begun = time.monotonic()
 for seq in range(100_000):
-    time.sleep(max(begun + seq / 55.0 - time.monotonic(), 0.0))
+    time.sleep(1 / 55.0)
     raw = np.full(len(layout), seq % 256, np.uint8)
     writer.write(RecordedFrame(seq, seq / 55.0, time.monotonic(), time.time(), raw, 8, 0))
     print(seq, flush=True)
 """
 
 
-@pytest.mark.parametrize("alive_s", [1.1, 1.73])
+@pytest.mark.parametrize("told", [61, 95])
 def test_a_killed_process_loses_under_half_a_second(
-    tmp_path: Path, layout: Layout, alive_s: float
+    tmp_path: Path, layout: Layout, told: int
 ) -> None:
     (tmp_path / "layout.json").write_text(layout.to_json())
     path = tmp_path / "run.mcap"
     command = [sys.executable, "-c", _WORKER, str(tmp_path / "layout.json"), str(path)]
     worker = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
     assert worker.stdout is not None
-    worker.stdout.readline()
-    time.sleep(alive_s)
+    for _ in range(told):
+        worker.stdout.readline()
     worker.send_signal(signal.SIGKILL)
     rest, _ = worker.communicate(timeout=10)
-    written = int(rest.split()[-1]) + 1
+    written = told + len(rest.split())
 
     with pytest.raises(DamagedError, match=f"`lumitip recover {path}`"):
         list(Reader(path))
@@ -65,7 +64,6 @@ def test_a_killed_process_loses_under_half_a_second(
     assert found.damage
     lost_s = (written - found.frames) / 55.0
     assert lost_s < 0.5, f"{found.frames} of {written} frames were saved"
-    assert written > 40
 
     saved = list(Reader(tmp_path / "saved.mcap"))
     assert [f.seq for f in saved] == list(range(found.frames))
