@@ -38,7 +38,8 @@ class Estimate:
     """Share of the variance of the frame that the fit explains, at most 1."""
     curvature_per_mm: float = 0.0
     """One over the radius of a cable that a tracker found to bend, positive to the left of
-    `angle_deg`; 0 where a straight line explains the frame (1/mm)."""
+    `angle_deg` (1/mm). It is sought with `kind="cable"`, where a straight one was followed before;
+    else, and where a straight line explains the frame, 0."""
     rms_counts: float = np.nan
     """Root mean square misfit (counts of 255)."""
     flags: tuple[str, ...] = ()

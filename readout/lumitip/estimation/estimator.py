@@ -32,6 +32,7 @@ GAIN_ERROR = 0.01
 """Share by which a cell's light is expected to differ from its empty grasp."""
 HUBER = 3.0
 """Standard deviations beyond which the loss grows linearly."""
+_LEAST_CELLS = 4  # fewer say nothing of a line
 _HOPELESS = 2.5  # times what the best bank leaves of a frame: no fit makes up for more
 _BLURRED = np.array([np.radians(ANGLE_SD_DEG), OFFSET_SD_MM])
 _BEARABLE_COUNTS = dict.fromkeys(KINDS, 0.5 * MISFIT_COUNTS) | {BENT: 0.25 * MISFIT_COUNTS}
@@ -121,7 +122,7 @@ class PoseEstimator:
         given = self._given(values)
         usable = counted(given)
         told = given[usable]
-        if told.size < 4 or not np.ptp(told) >= MIN_CONTRAST:
+        if told.size < _LEAST_CELLS or not np.ptp(told) >= MIN_CONTRAST:
             self._last = None
             middle = float(np.median(told)) if told.size else math.inf
             return without_contact("covered" if middle < COVERED_BELOW else "none")
@@ -168,19 +169,23 @@ class PoseEstimator:
         """Where the fit of a kind ended with the expected optics, whatever the frame says of them.
 
         Args:
-            values: of one frame, finite, shape `(cells,)`.
+            values: of one frame, shape `(cells,)`; cells whose value is not finite, or beyond a
+                billion, are left out.
             kind: `"edge"`, `"cable"` or `"corner"`.
             free: whether gap and scattered share are fitted with the pose nevertheless.
 
         Raises:
-            ValuesError: if the shape is another, or a value is no finite number.
+            ValuesError: if the shape is another, they are no numbers, or fewer than four are left.
             EstimationError: if there is no such kind.
         """
         _known(kind)
         given = self._given(values)
         usable = counted(given)
-        if not usable.all():
-            raise ValuesError(f"cell {int(usable.argmin())} is not finite, all are needed")
+        if np.count_nonzero(usable) < _LEAST_CELLS:
+            raise ValuesError(
+                f"{np.count_nonzero(usable)} cells with finite values given, at least "
+                f"{_LEAST_CELLS} are needed"
+            )
         frame = self._frame(given, usable)
         found = self._search.best(kind, frame)
         return (self._search.free if free else self._search.expected)(kind, found, frame)

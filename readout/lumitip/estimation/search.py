@@ -31,6 +31,7 @@ _DOUBT = 1.3  # loss for each cell beyond which the fingertip is not as expected
 _STARTS = 8  # how many are then tried
 _GLANCE, _LOOK, _BEHIND = 2, 5, 20.0  # rounds of each and of the best; loss of the others
 _RIVAL, _ELSEWHERE = 6.0, 2.0  # loss by which poses are nearly alike; poses that are not
+_CLEARLY = 2.5  # times its loss that a bend must save: what no line explains looks bent a little
 
 
 class Search:
@@ -151,8 +152,9 @@ class Search:
             return other
         starts = [(name, before), (name, followed.pose), (kind, found.pose)]
         bent = self.bent(starts, frame)
-        losses = [bounded(self.loosely(*of, frame)) for of in ((BENT, bent), other)]
-        return (BENT, bent) if losses[0] < losses[1] - _RIVAL else other
+        bends, stays = (bounded(self.loosely(*of, frame)) for of in ((BENT, bent), other))
+        least = _RIVAL if other[0] == BENT else max(_RIVAL, _CLEARLY * bends)
+        return (BENT, bent) if stays - bends > least else other
 
     def near(self, kind: str, pose: Floats, frame: Frame) -> Fit:
         """The fit from where another frame's fit ended, with the optics free if they were there."""

@@ -131,6 +131,17 @@ def test_a_minute_of_use_teaches_gains_gap_and_scatter(
     assert np.corrcoef(learned.gains, twin.gains)[0, 1] > 0.7
 
 
+def test_a_dead_cell_teaches_nothing_and_spoils_nothing(cells: Layout, twin: Twin) -> None:
+    edges = [HalfPlane(offset_mm=0.2 * k - 3.0, angle_deg=12.0 * k) for k in range(30)]
+    rows = np.stack([np.floor(twin.values(edge)) for edge in edges])
+    rows[:, 5] = np.nan
+    learned = learn(cells, rows, "edge")
+    assert learned.frames == 30
+    assert learned.gains == pytest.approx(np.ones(len(cells)), abs=0.02)
+    with pytest.raises(ValuesError, match="3 cells with finite values given, at least 4"):
+        PoseEstimator(cells).fitted(np.where(np.arange(32) < 3, rows[0], np.nan), "edge")
+
+
 def test_the_published_frame(cells: Layout) -> None:
     """Measured on hardware, at a gap that is not published: near the drawn line at 5.8 degrees,
     with the misfit of structure that the model lacks. The sheet is on the side of the tip."""
