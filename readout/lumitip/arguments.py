@@ -7,17 +7,19 @@ from collections.abc import Callable
 from dataclasses import fields
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, SupportsFloat, SupportsIndex, TypeVar
+from typing import Any, SupportsIndex, TypeVar
 
 import numpy as np
 
 from lumitip.errors import ArgumentError, LayoutError, LumitipError
+from lumitip.given import as_float, shown
 from lumitip.grid import Floats
 from lumitip.layout import Layout
 
 Error = type[LumitipError]
 _Wanted = TypeVar("_Wanted")
-_NUMBERS = "biufO"  # kinds of arrays that may hold numbers; texts and dates never do
+_NUMBERS = "biufO"  # kinds of arrays that may hold numbers; of texts and of dates never do
+_PLAIN = {float, int, bool, np.float64}
 
 
 def seconds(given: object, name: str = "timeout") -> float | None:
@@ -28,10 +30,10 @@ def seconds(given: object, name: str = "timeout") -> float | None:
     """
     if given is None:
         return None
-    told = _float(given)
+    told = as_float(given)
     if not told >= 0.0:
         raise ArgumentError(
-            f"{name}: {given!r:.40} given, seconds from 0 on are needed, or None to wait as long "
+            f"{name}: {shown(given)} given, seconds from 0 on are needed, or None to wait as long "
             "as it takes"
         )
     return None if told == math.inf else told
@@ -48,7 +50,7 @@ def count(given: object, name: str, least: int = 1, error: Error = ArgumentError
     except TypeError:
         told = least - 1
     if told < least:
-        raise error(f"{name}: {given!r:.40} given, a whole number from {least} on is needed")
+        raise error(f"{name}: {shown(given)} given, a whole number from {least} on is needed")
     return told
 
 
@@ -66,9 +68,9 @@ def number(
     Raises:
         ArgumentError: or `error`, if it is none.
     """
-    told = _float(given)
+    told = as_float(given)
     if not (math.isfinite(told) and least <= told <= most and told > above):
-        raise error(f"{name}: {given!r:.40} given, {_needed(least, most, above)} is needed")
+        raise error(f"{name}: {shown(given)} given, {_needed(least, most, above)} is needed")
     return told
 
 
@@ -81,17 +83,20 @@ def numbers(given: object, name: str, error: Error = ArgumentError) -> Floats:
     why: Exception | None = None
     try:
         told = np.asarray(given)
-        if told.dtype.kind in _NUMBERS:
+        texts = told.dtype.kind == "O" and any(isinstance(one, str | bytes) for one in told.flat)
+        if told.dtype.kind in _NUMBERS and not texts:  # which would be read as numbers
             return told.astype(np.float64, copy=False)
     except (TypeError, ValueError, OverflowError) as caught:
         why = caught
     raise error(
-        f"{name}: {given!r:.40} given, numbers of one shape are needed, such as frame.values"
+        f"{name}: {shown(given)} given, numbers of one shape are needed, such as frame.values"
     ) from why
 
 
 def finite_fields(of: Any, error: Error) -> None:
     """Refuse a dataclass of which a field that is declared a float is no finite number.
+
+    Numbers of other libraries, which floats may not be added to, become floats.
 
     Raises:
         LumitipError: `error`, naming the first of them.
@@ -99,12 +104,15 @@ def finite_fields(of: Any, error: Error) -> None:
     names, values_of = _float_fields(of.__class__)
     values = values_of(of)
     try:
-        if math.isfinite(sum(values)):  # of all at once: scenes are made by the ten thousand
+        # Of all at once: scenes are made by the ten thousand.
+        if _PLAIN.issuperset(map(type, values)) and math.isfinite(sum(values)):
             return
-    except (TypeError, ValueError):
+    except OverflowError:
         pass
     for name, given in zip(names, values, strict=True):
-        number(given, name, error=error)
+        told = number(given, name, error=error)
+        if type(given) not in _PLAIN:
+            object.__setattr__(of, name, told)
 
 
 def layout(given: object) -> Layout:
@@ -115,7 +123,7 @@ def layout(given: object) -> Layout:
     """
     if not isinstance(given, Layout):
         raise LayoutError(
-            f"{given!r:.40} given, a Layout is needed: Layout.load('outputs/layout.json') or "
+            f"{shown(given)} given, a Layout is needed: Layout.load('outputs/layout.json') or "
             "tip.layout"
         )
     return given
@@ -130,7 +138,7 @@ def instance(
         ArgumentError: or `error`, if it is of another.
     """
     if not isinstance(given, wanted):
-        raise error(f"{name}: {given!r:.40} given, a {wanted.__name__} is needed")
+        raise error(f"{name}: {shown(given)} given, a {wanted.__name__} is needed")
     return given
 
 
@@ -141,7 +149,7 @@ def function(given: object, name: str) -> None:
         ArgumentError: if it cannot.
     """
     if not callable(given):
-        raise ArgumentError(f"{name}: {given!r:.40} given, a function is needed")
+        raise ArgumentError(f"{name}: {shown(given)} given, a function is needed")
 
 
 def path(given: object, error: Error = ArgumentError) -> Path:
@@ -151,17 +159,8 @@ def path(given: object, error: Error = ArgumentError) -> Path:
         ArgumentError: or `error`, if it is no text and no `Path`.
     """
     if not isinstance(given, str | os.PathLike):
-        raise error(f"{given!r:.40} given, the path of a file is needed")
+        raise error(f"{shown(given)} given, the path of a file is needed")
     return Path(given)
-
-
-def _float(given: object) -> float:
-    if type(given) is float:  # nearly always, and the protocol is slow to ask
-        return given
-    try:
-        return float(given) if isinstance(given, SupportsFloat) else math.nan
-    except (TypeError, ValueError, OverflowError):
-        return math.nan
 
 
 def _needed(least: float, most: float, above: float) -> str:

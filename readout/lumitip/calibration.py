@@ -22,6 +22,7 @@ import numpy as np
 from lumitip import arguments
 from lumitip.errors import ArgumentError, CalibrationError, CalibrationMismatch
 from lumitip.frame import Values
+from lumitip.given import shown
 
 _LEAST_SPAN = 25.5  # a tenth of full light: below it noise would be raised more than tenfold
 _LEAST_SHARE = 0.4  # of the median cell: LEDs and detectors spread less, objects cover more
@@ -64,7 +65,7 @@ class Calibration:
             values = arguments.numbers(told, name, CalibrationError).astype(np.float32)
             if values.ndim != 1 or not np.isfinite(values).all():
                 raise CalibrationError(
-                    f"{name}: {told!r:.40} given, a finite number for each cell is needed"
+                    f"{name}: {shown(told)} given, a finite number for each cell is needed"
                 )
             object.__setattr__(self, name, values)
 
@@ -230,9 +231,9 @@ def checked_kind(given: object) -> Kind:
         ArgumentError: if there is no such kind.
     """
     for kind in get_args(Kind):
-        if given == kind:
+        if isinstance(given, str) and given == kind:
             return kind  # type: ignore[no-any-return]
-    raise ArgumentError(f"kind: {given!r:.40} given, allowed are {', '.join(get_args(Kind))}")
+    raise ArgumentError(f"kind: {shown(given)} given, allowed are {', '.join(get_args(Kind))}")
 
 
 def user_folder() -> Path:

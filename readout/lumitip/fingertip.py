@@ -31,6 +31,7 @@ from lumitip.errors import (
     LinkError,
 )
 from lumitip.frame import Block, Frame, ended_early, too_late
+from lumitip.given import shown
 from lumitip.hub import Hub
 from lumitip.intake import complement
 from lumitip.layout import Layout
@@ -88,7 +89,7 @@ class Fingertip:
         if isinstance(layout, str | Path):
             layout = Layout.load(layout)
         elif layout is not None and not isinstance(layout, Layout):
-            raise LayoutError(f"{layout!r:.40} given, a Layout or the path of one is needed")
+            raise LayoutError(f"{shown(layout)} given, a Layout or the path of one is needed")
         hub = Hub(open_link(url, layout, any_design), any_design, on_event)
         hub.start(timeout)
         try:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumitip.errors import ArgumentError, EndOfRecording, LinkTimeout
+from lumitip.given import shown
 from lumitip.grid import Floats, Integers
 from lumitip.protocol.packet import Codes
 
@@ -78,18 +79,19 @@ class Block:
         Raises:
             ArgumentError: if there are none, or something else.
         """
-        if not frames or not all(isinstance(frame, Frame) for frame in frames):
-            raise ArgumentError(f"{frames!r:.40} given, a block needs frames, at least one")
+        told = isinstance(frames, Sequence) and all(isinstance(frame, Frame) for frame in frames)
+        if not told or not frames:
+            raise ArgumentError(f"{shown(frames)} given, a block needs frames, at least one")
         seq = np.array([f.seq for f in frames], dtype=np.int64)
         raw: Codes = np.array([f.raw for f in frames])
-        told = all(f.t_device is not None for f in frames)
+        counted = all(f.t_device is not None for f in frames)
         return cls(
             seq=seq,
             t=np.array([f.t for f in frames]),
             t_wall=np.array([f.t_wall for f in frames]),
             raw=raw,
             values=np.stack([f.values for f in frames]),
-            dropped=int(seq[-1] - seq[0]) + 1 - len(seq) if told else None,
+            dropped=int(seq[-1] - seq[0]) + 1 - len(seq) if counted else None,
         )
 
 

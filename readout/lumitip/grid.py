@@ -12,6 +12,7 @@ the cell centres. Cells are ordered column by column, leftmost first in the rece
 frame, row 0 nearest the tip.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -19,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumitip.errors import ArgumentError
+from lumitip.given import as_float, shown
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -48,24 +50,16 @@ def hexagonal_grid(columns: Sequence[int], pitch_mm: float) -> Grid:
 
     Args:
         columns: number of cells of each column; neighbouring columns differ by one.
-        pitch_mm: distance between neighbouring cells (mm), above zero.
+        pitch_mm: distance between neighbouring cells (mm), finite and above zero.
 
     Raises:
         ArgumentError: if two neighbouring columns do not differ by exactly one cell, a column is
-            empty, or the pitch is not above zero.
+            empty or no whole number, or the pitch is no such number.
     """
-    try:
-        counts = np.asarray(columns, dtype=np.int64)
-    except (TypeError, ValueError, OverflowError) as error:
-        raise ArgumentError(f"columns: {columns!r:.40} given, whole numbers are needed") from error
-    if counts.ndim != 1 or counts.size == 0 or (counts < 1).any():
-        raise ArgumentError(f"columns: {list(columns)} given, every column needs at least one cell")
-    if (np.abs(np.diff(counts)) != 1).any():
-        raise ArgumentError(
-            f"columns: {list(columns)} given, neighbouring columns must differ by one cell"
-        )
-    if not pitch_mm > 0:
-        raise ArgumentError(f"pitch_mm: {pitch_mm} given, must be above 0")
+    counts = _counts(columns)
+    if not 0.0 < as_float(pitch_mm) < math.inf:
+        raise ArgumentError(f"pitch_mm: {shown(pitch_mm)} given, a number above 0 is needed")
+    pitch_mm = float(pitch_mm)
     column = np.repeat(np.arange(counts.size), counts)
     first = np.cumsum(counts) - counts
     row = np.arange(counts.sum()) - first[column]
@@ -82,9 +76,12 @@ def hexagonal_neighbours(columns: Sequence[int]) -> Integers:
 
     Returns:
         Cell indices of shape `(pairs, 2)`, smaller index first, sorted.
+
+    Raises:
+        ArgumentError: as `hexagonal_grid`, of columns.
     """
     index: dict[tuple[int, int], int] = {}
-    for column, count in enumerate(columns):
+    for column, count in enumerate(_counts(columns).tolist()):
         for row in range(count):
             # Height in half pitches: an integer, so neighbours are found without tolerance.
             index[column, count - 1 - 2 * row] = len(index)
@@ -95,3 +92,22 @@ def hexagonal_neighbours(columns: Sequence[int]) -> Integers:
         if there in index
     ]
     return np.array(sorted(pairs), dtype=np.int64).reshape(-1, 2)
+
+
+def _counts(columns: Sequence[int]) -> Integers:
+    try:
+        told = np.asarray(columns)
+    except ValueError as error:  # rows of different lengths
+        raise _refused(columns, "whole numbers are needed") from error
+    if told.ndim != 1 or (told.size and told.dtype.kind not in "iu"):
+        raise _refused(columns, "whole numbers are needed")
+    counts = told.astype(np.int64)
+    if counts.size == 0 or (counts < 1).any():
+        raise _refused(columns, "every column needs at least one cell")
+    if (np.abs(np.diff(counts)) != 1).any():
+        raise _refused(columns, "neighbouring columns must differ by one cell")
+    return counts
+
+
+def _refused(columns: object, needed: str) -> ArgumentError:
+    return ArgumentError(f"columns: {shown(columns)} given, {needed}")

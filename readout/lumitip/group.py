@@ -19,6 +19,7 @@ from lumitip.arguments import seconds
 from lumitip.errors import ArgumentError, LinkTimeout
 from lumitip.fingertip import Fingertip
 from lumitip.frame import Frame
+from lumitip.given import shown
 from lumitip.layout import Layout
 
 
@@ -76,11 +77,12 @@ class FingertipGroup:
         """
         if not isinstance(urls, Mapping) or not urls:
             raise ArgumentError(
-                f"{urls!r:.40} given, names and addresses of at least one fingertip are needed: "
+                f"{shown(urls)} given, names and addresses of at least one fingertip are needed: "
                 "{'left': 'ble://A1'}"
             )
         if isinstance(layout, Mapping) and (astray := sorted(set(layout) - set(urls), key=str)):
-            raise ArgumentError(f"layout of {astray[0]!r:.40} given, there is {', '.join(urls)}")
+            there = ", ".join(map(str, urls))
+            raise ArgumentError(f"layout of {shown(astray[0])} given, there is {there}")
         with ExitStack() as stack:
             tips = {}
             for name, url in urls.items():

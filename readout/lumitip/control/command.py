@@ -1,8 +1,8 @@
 """`Command`: how the finger should move, in its own sensor frame; and how fast it may."""
 
 from dataclasses import dataclass
-from typing import SupportsFloat
 
+from lumitip import arguments
 from lumitip.errors import LumitipError
 
 
@@ -35,9 +35,9 @@ class Limits:
     rotation_rad_s: float = 8.0
 
     def __post_init__(self) -> None:
-        given = (self.forward_mm_s, self.lateral_mm_s, self.rotation_rad_s)
-        if not all(isinstance(limit, SupportsFloat) and float(limit) > 0.0 for limit in given):
-            raise ControlError(f"{self} given, every limit must be a number above 0")
+        arguments.finite_fields(self, ControlError)
+        for name in ("forward_mm_s", "lateral_mm_s", "rotation_rad_s"):
+            arguments.number(getattr(self, name), name, above=0.0, error=ControlError)
 
     def of(self, command: Command) -> Command:
         """The command within the limits."""

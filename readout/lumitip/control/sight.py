@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from lumitip.control.command import ControlError
 from lumitip.estimation import KINDS, Estimate
+from lumitip.given import shown
 from lumitip.processing import Contact
 
 _STEEPEST_DEG = 80.0  # a line across the way of the finger cannot be followed
@@ -40,7 +41,7 @@ def sight_of(seen: Contact | Estimate) -> Sight:
         return _of_contact(seen)
     if not isinstance(seen, Estimate):
         raise ControlError(
-            f"{seen!r:.40} given, a Contact or an Estimate is needed, such as "
+            f"{shown(seen)} given, a Contact or an Estimate is needed, such as "
             "Processor(layout)(frame.values)"
         )
     # A curved line misfits its straight model, and is a line all the same.

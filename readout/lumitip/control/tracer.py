@@ -8,6 +8,7 @@ from lumitip.control.laws import Law
 from lumitip.control.lead import Lead
 from lumitip.control.sight import Sight, sight_of
 from lumitip.estimation import Estimate
+from lumitip.given import shown
 from lumitip.processing import Contact
 
 
@@ -48,7 +49,7 @@ class Tracer:
             ControlError: if a time is below 0, a count below 1, or something is of another kind.
         """
         if not callable(law):
-            raise ControlError(f"law: {law!r:.40} given, a law like LineLaw(80.0) is needed")
+            raise ControlError(f"law: {shown(law)} given, a law like LineLaw(80.0) is needed")
         self.law = law
         self.limits = arguments.instance(
             Limits() if limits is None else limits, Limits, "limits", ControlError

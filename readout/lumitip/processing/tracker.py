@@ -42,10 +42,11 @@ class Tracker:
             LayoutError: if it is no layout.
             ArgumentError: if another parameter is out of its range.
         """
-        self._processor = Processor(layout, release_contrast, covered_below)
+        release_contrast = arguments.number(release_contrast, "release_contrast", 0.0)
         self._min_contrast = arguments.number(min_contrast, "min_contrast", 0.0)
+        self._processor = Processor(layout, release_contrast, covered_below)
         self._hold = arguments.count(hold, "hold")
-        if release_contrast > min_contrast:
+        if release_contrast > self._min_contrast:
             raise ArgumentError(
                 f"release_contrast: {release_contrast} given, it must not be above "
                 f"min_contrast, {min_contrast}"

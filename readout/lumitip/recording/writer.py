@@ -10,6 +10,7 @@ from mcap.writer import Writer as McapWriter
 
 from lumitip import arguments
 from lumitip.calibration import Calibration
+from lumitip.given import shown
 from lumitip.layout import Layout
 from lumitip.recording.errors import RecordingError
 from lumitip.recording.message import SCHEMA_NAME, SCHEMA_TEXT, Recordable, encode, stamp_ns
@@ -43,25 +44,30 @@ class Writer:
             path: of the file, which must not exist yet.
             layout: the cells that the frames are of.
             device_id: the device that they come from.
-            calibration: kept along; the frames are written raw.
+            calibration: of this device, kept along; the frames are written raw.
             start_wall: when the recording began, seconds since 1970 (UTC); now.
             made_with: versions to tell, of the software that runs.
 
         Raises:
             LayoutError: if it is no layout.
+            CalibrationMismatch: if the calibration is of another device, design or number of cells.
+            CalibrationError: if a cell of it reads no more with an empty grasp than in the dark.
             RecordingError: if the file is there already or cannot be written, or another argument
                 cannot be so.
         """
         self.path = arguments.path(path, RecordingError)
+        arguments.layout(layout)
+        arguments.instance(device_id, str, "device_id", RecordingError)
         if calibration is not None:
             arguments.instance(calibration, Calibration, "calibration", RecordingError)
-            calibration.check(calibration.device_id, layout.design_hash)
+            calibration.check(device_id, layout.design_hash, len(layout))
+            calibration.correction()
         self.metadata = Metadata(
-            arguments.layout(layout),
-            arguments.instance(device_id, str, "device_id", RecordingError),
+            layout,
+            device_id,
             calibration,
             begun(time.time() if start_wall is None else start_wall),
-            versions() if made_with is None else made_with,
+            versions() if made_with is None else _told(made_with),
         )
         self.frames = 0
         """Frames written so far."""
@@ -73,7 +79,7 @@ class Writer:
             raise RecordingError(f"{path}: cannot be written: {error}") from error
         try:
             self._begin()
-        except OSError as error:
+        except (OSError, ValueError) as error:  # also a device_id that no file can hold
             given_up = self._given_up(error)
             with suppress(OSError):
                 self.path.unlink()  # it holds nothing, and would be in the way
@@ -97,7 +103,7 @@ class Writer:
                 closed or cannot be written; after the last it is closed as well as can be.
         """
         if not hasattr(frame, "raw"):
-            raise RecordingError(f"{frame!r:.40} given, a frame is needed, such as tip.read()")
+            raise RecordingError(f"{shown(frame)} given, a frame is needed, such as tip.read()")
         if self._file.closed:
             raise RecordingError(f"{self.path} is closed")
         cells = len(self.metadata.layout)
@@ -129,7 +135,7 @@ class Writer:
         except OSError as error:
             raise self._given_up(error) from error
 
-    def _given_up(self, error: OSError) -> RecordingError:
+    def _given_up(self, error: Exception) -> RecordingError:
         with suppress(OSError):  # closing writes what waits once more
             self._file.close()
         return RecordingError(f"{self.path}: cannot be written: {error}")
@@ -144,3 +150,11 @@ class Writer:
         trace: TracebackType | None,
     ) -> None:
         self.close()
+
+
+def _told(made_with: object) -> dict[str, str]:
+    if not isinstance(made_with, Mapping):
+        raise RecordingError(
+            f"made_with: {shown(made_with)} given, versions by name are needed: {{'robot': '1.0'}}"
+        )
+    return {str(name): str(version) for name, version in made_with.items()}

@@ -1,9 +1,8 @@
 """`ArmLimits`: how fast, how hard and how far an arm may go with a fingertip."""
 
-import math
 from dataclasses import dataclass, fields
-from typing import SupportsFloat
 
+from lumitip.given import as_float, shown
 from lumitip.robots.errors import ArmError
 
 _ALLOWED: dict[str, tuple[float, float, str]] = {
@@ -48,10 +47,11 @@ class ArmLimits:
         for field in fields(self):
             least, most, why = _ALLOWED[field.name]
             given = getattr(self, field.name)
-            number = float(given) if isinstance(given, SupportsFloat) else math.nan
+            number = as_float(given)
             if not (least < number <= most or number == least > 0.0):
                 told = f"above 0 up to {most:g}" if least == 0.0 else f"{least:g} to {most:g}"
-                faults.append(f"{field.name}: {given!r} given, allowed is {told} ({why})")
+                faults.append(f"{field.name}: {shown(given)} given, allowed is {told} ({why})")
+            object.__setattr__(self, field.name, number)
         if faults:
             raise ArmError("; ".join(faults))
 

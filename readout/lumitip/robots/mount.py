@@ -13,6 +13,7 @@ import numpy as np
 
 from lumitip import arguments
 from lumitip.control import Command
+from lumitip.given import shown
 from lumitip.grid import Floats
 from lumitip.robots.errors import ArmError
 
@@ -41,7 +42,7 @@ class Mount:
             given = arguments.numbers(getattr(self, name), name, ArmError)
             if given.shape != (3,) or not np.isfinite(given).all():
                 raise ArmError(
-                    f"{name}: {getattr(self, name)!r:.40} given, three numbers are needed"
+                    f"{name}: {shown(getattr(self, name))} given, three numbers are needed"
                 )
             told[row] = given
         off = max(abs(math.hypot(*self.x) - 1), abs(math.hypot(*self.y) - 1))

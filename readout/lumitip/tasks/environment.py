@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from lumitip import arguments
 from lumitip.control import Command, Limits
 from lumitip.errors import MissingExtra
+from lumitip.given import shown
 from lumitip.layout import Layout
 from lumitip.tasks.task import Settings, Task, TaskError
 from lumitip.twin import Twin
@@ -78,9 +79,10 @@ class TraceEnv(gymnasium.Env[Observation, Observation]):
         Raises:
             TaskError: if the action is not of three finite numbers.
         """
-        shares = np.clip(arguments.numbers(action, "action", TaskError), -1.0, 1.0)
+        shares = arguments.numbers(action, "action", TaskError)
         if shares.shape != (3,) or not np.isfinite(shares).all():
-            raise TaskError(f"action: {action!r:.60} given, three numbers from -1 to 1 are needed")
+            raise TaskError(f"action: {shown(action, 60)} given, three finite numbers are needed")
+        shares = np.clip(shares, -1.0, 1.0)
         command = Command(
             float(shares[0]) * self._limits.forward_mm_s,
             float(shares[1]) * self._limits.lateral_mm_s,

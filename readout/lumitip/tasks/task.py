@@ -17,6 +17,7 @@ import numpy as np
 from lumitip import arguments
 from lumitip.control import Command
 from lumitip.errors import LumitipError
+from lumitip.given import shown
 from lumitip.grid import Floats
 from lumitip.layout import Layout
 from lumitip.tasks.curve import LONGEST_MM, STEP_MM, Curve
@@ -58,8 +59,8 @@ class Settings:
     """Height in the grid at which the line is to be held (mm)."""
 
     def __post_init__(self) -> None:
-        if self.kind not in KINDS:
-            raise TaskError(f"kind: {self.kind!r} given, allowed are {', '.join(KINDS)}")
+        if not isinstance(self.kind, str) or self.kind not in KINDS:
+            raise TaskError(f"kind: {shown(self.kind)} given, allowed are {', '.join(KINDS)}")
         if self.corner and self.kind != "cloth":
             raise TaskError("corner: a cable has none")
         arguments.finite_fields(self, TaskError)

@@ -9,6 +9,7 @@ import numpy as np
 
 from lumitip.control import CentreLaw, LineLaw, Tracer
 from lumitip.estimation import Estimate, PoseEstimator
+from lumitip.given import shown
 from lumitip.grid import Floats
 from lumitip.layout import Layout
 from lumitip.processing import Contact, Processor
@@ -48,9 +49,9 @@ class Bench:
         Raises:
             TaskError: if there is no such controller.
         """
-        if controller not in CONTROLLERS:
+        if not isinstance(controller, str) or controller not in CONTROLLERS:
             raise TaskError(
-                f"controller: {controller!r:.40} given, allowed are {', '.join(CONTROLLERS)}"
+                f"controller: {shown(controller)} given, allowed are {', '.join(CONTROLLERS)}"
             )
         if controller != "pose":
             return self._processor

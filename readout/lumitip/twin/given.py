@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lumitip import arguments
+from lumitip.given import shown
 from lumitip.grid import Floats
 from lumitip.twin.optics import TwinError
 from lumitip.twin.scene import Singles
@@ -17,7 +18,7 @@ def gains(told: ArrayLike | None, cells: int) -> Floats:
         return np.ones(cells)
     read = arguments.numbers(told, "gains", TwinError)
     if read.shape != (cells,) or not (np.isfinite(read) & (read >= 0.0)).all():
-        raise TwinError(f"gains: {told!r:.40} given, {cells} numbers from 0 on are needed")
+        raise TwinError(f"gains: {shown(told)} given, {cells} numbers from 0 on are needed")
     return read.copy()
 
 

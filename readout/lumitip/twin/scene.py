@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumitip import arguments
+from lumitip.given import shown
 from lumitip.twin.optics import TwinError
 
 Numbers = NDArray[np.floating[Any]]
@@ -239,7 +240,7 @@ def things(scene: Scene) -> tuple[Thing, ...]:
     for thing in found:
         if not isinstance(thing, Thing):
             raise TwinError(
-                f"scene: {scene!r:.40} given, an object like Cable(angle_deg=30.0), or several, "
+                f"scene: {shown(scene)} given, an object like Cable(angle_deg=30.0), or several, "
                 "is needed; nothing is ()"
             )
     return found

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lumitip import arguments
+from lumitip.given import shown
 from lumitip.grid import Floats
 from lumitip.layout import Layout
 from lumitip.protocol.packet import BITS, Codes
@@ -73,9 +74,10 @@ class Twin:
         arguments.instance(astray, Misregistration, "misregistration", TwinError)
         self.emitter = Emitter(self.model, astray)
         self.gains = given.gains(gains, len(layout))
-        if bits not in BITS:
-            raise TwinError(f"bits: {bits!r:.40} given, allowed are {', '.join(map(str, BITS))}")
-        self.bits, self.seed = bits, arguments.count(seed, "seed", 0, TwinError)
+        self.bits = arguments.count(bits, "bits", error=TwinError)
+        if self.bits not in BITS:
+            raise TwinError(f"bits: {shown(bits)} given, allowed are {', '.join(map(str, BITS))}")
+        self.seed = arguments.count(seed, "seed", 0, TwinError)
         self.ambient, self.noise, self.warm_up = (
             arguments.number(of, name, 0.0, error=TwinError)
             for of, name in ((ambient, "ambient"), (noise, "noise"), (warm_up, "warm_up"))
@@ -113,7 +115,7 @@ class Twin:
             given.coverage(scenes, at.x_mm.size)
             return self.calibrated(1.0 - at(scenes))
         if isinstance(scenes, Thing | str) or not isinstance(scenes, Sequence):
-            raise TwinError(f"scenes: {scenes!r:.40} given, a list of scenes is needed")
+            raise TwinError(f"scenes: {shown(scenes)} given, a list of scenes is needed")
         if not scenes:
             return np.empty((0, len(self.layout)))
         return self.calibrated(np.stack([self.light(scene) for scene in scenes]))
@@ -148,7 +150,7 @@ class Twin:
         """
         offset, angle, through = given.alike(offset_mm=offset_mm, angle_deg=angle_deg, clear=clear)
         if not ((through >= 0.0) & (through <= 1.0)).all():
-            raise TwinError(f"clear: {clear!r:.40} given, from 0 to 1 is needed")
+            raise TwinError(f"clear: {shown(clear)} given, from 0 to 1 is needed")
         turn = np.radians(angle)[:, None]
         left = self.layout.y_mm * np.cos(turn) - self.layout.x_mm * np.sin(turn) - offset[:, None]
         share = self.edge_table()(angle[:, None], left)

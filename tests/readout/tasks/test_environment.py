@@ -5,12 +5,13 @@ import subprocess
 import sys
 import warnings
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 from lumitip.links.twin import published_layout
-from lumitip.tasks import Settings
+from lumitip.tasks import Settings, TaskError
 
 ROOT = Path(__file__).parents[3]
 
@@ -46,6 +47,17 @@ def test_going_forward_is_rewarded_and_losing_the_line_is_not() -> None:
         if ended:
             break
     assert ended and info["reason"] == "lost" and reward < -90.0
+
+
+@pytest.mark.parametrize("action", [[np.inf, 0, 0], [0, np.nan, 0], [0, 0], ["1", 0, 0], None])
+def test_an_action_of_no_three_finite_numbers_is_refused(action: Any) -> None:
+    pytest.importorskip("gymnasium")
+    from lumitip.tasks.environment import TraceEnv
+
+    env = TraceEnv(published_layout(), Settings("cable"))
+    env.reset(seed=1)
+    with pytest.raises(TaskError, match=r"action: .* given, .*numbers .*needed"):
+        env.step(action)
 
 
 @pytest.mark.parametrize(
