@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 from lumitip import Calibration
-from lumitip.control import Command, Limits, LineLaw
+from lumitip.control import Command, Limits, LineLaw, Tracer
 from lumitip.estimation import PoseEstimator
 from lumitip.grid import hexagonal_grid
 from lumitip.links.twin import published_layout
 from lumitip.processing import Processor, Tracker
 from lumitip.robots import ArmLimits
-from lumitip.twin import Cable, HalfPlane, Twin
+from lumitip.twin import Cable, HalfPlane, Image, Twin
 
 CELLS = published_layout()
 
@@ -32,6 +32,10 @@ def test_every_kind_of_number_does_as_a_float(number: Any) -> None:
     assert Twin(CELLS).values(cable).tolist() == Twin(CELLS).values(same).tolist()
     limits = Limits(forward_mm_s=number, lateral_mm_s=number, rotation_rad_s=number)
     assert limits.of(Command(9.0, -9.0)) == Command(4.0, -4.0)
+    tracer = Tracer(LineLaw(), corner_at_mm=number)
+    contact = Processor(CELLS)(Twin(CELLS).values(HalfPlane()))
+    assert tracer(contact, number) == Tracer(LineLaw(), corner_at_mm=4.0)(contact, 4.0)
+    assert Image.of(Cable(), number, number).pixels.shape == (3, 3)
     assert ArmLimits(number).share(8.0, 0.0) == 0.5
     assert Processor(CELLS, number).min_contrast == LineLaw(number).speed_mm_s == 4.0
     assert Tracker(CELLS, number, number)(np.full(32, 255.0)).shape == "none"

@@ -36,6 +36,7 @@ from lumitip.twin import (
     TwinError,
 )  # fmt: skip
 from lumitip.twin.fit import fit_edge
+from lumitip.twin.materials import material
 
 Call = Callable[[Any], object]
 CELLS = published_layout()
@@ -181,6 +182,8 @@ def test_a_setting_that_is_no_number(
             {1: "twin://a"}, layout={"b": CELLS})),  # type: ignore[dict-item]
         (ArgumentError, lambda: checked_kind(np.array(["empty", "dark"]))),
         (TwinError, lambda: Twin(CELLS, bits=np.array([8, 10]))),  # type: ignore[arg-type]
+        (TwinError, lambda: Model(hole_shape=np.array(["hexagon", "circle"]))),  # type: ignore[arg-type]
+        (TwinError, lambda: material(np.array(["cloth", "paper"]))),  # type: ignore[arg-type]
         (TaskError, lambda: Settings(np.array(["cable", "cloth"]))),  # type: ignore[arg-type]
         (CalibrationError, lambda: Calibration("dev", "0", np.array(["a"]))),
         (CalibrationError, lambda: Calibration("dev", "0", np.zeros((8, 32), np.float32))),

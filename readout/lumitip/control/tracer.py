@@ -62,7 +62,7 @@ class Tracer:
             )
         )  # fmt: skip
         if corner_at_mm is not None:
-            arguments.number(corner_at_mm, "corner_at_mm", error=ControlError)
+            corner_at_mm = arguments.number(corner_at_mm, "corner_at_mm", error=ControlError)
         self.corner_at_mm = corner_at_mm
         self.corner_frames = arguments.count(corner_frames, "corner_frames", error=ControlError)
         self._lead = Lead(ahead_s)
@@ -83,7 +83,7 @@ class Tracer:
         Raises:
             ControlError: if that is no contact and no estimate, or the time is below 0.
         """
-        arguments.number(dt_s, "dt_s", 0.0, error=ControlError)
+        dt_s = arguments.number(dt_s, "dt_s", 0.0, error=ControlError)
         if self._ended:
             return Command(state="stop", reason=self._ended)
         sight = self._lead(sight_of(seen), dt_s)

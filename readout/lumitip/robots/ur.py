@@ -107,7 +107,7 @@ class URArm:
         if self._stop:
             raise self._stop.with_traceback(None)
         arguments.finite_fields(arguments.instance(command, Command, "command", ArmError), ArmError)
-        arguments.number(seen_s, "seen_s", error=ArmError)
+        seen_s = arguments.number(seen_s, "seen_s", error=ArmError)
         # A frame that claims to be of later would move the arm without any frame until then.
         self._asked = (command, min(seen_s, time.monotonic()))
         if command.state == "stop":

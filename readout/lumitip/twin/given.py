@@ -40,6 +40,6 @@ def alike(**told: ArrayLike) -> Sequence[Floats]:
     }
     shapes = {of.shape for of in read.values()} - {(1,)}
     if len(shapes) > 1 or any(of.ndim != 1 or not np.isfinite(of).all() for of in read.values()):
-        shown = ", ".join(f"{name} of shape {of.shape}" for name, of in read.items())
-        raise TwinError(f"{shown} given, as many finite numbers in each, or one, are needed")
+        shapes_told = ", ".join(f"{name} of shape {of.shape}" for name, of in read.items())
+        raise TwinError(f"{shapes_told} given, as many finite numbers in each, or one, are needed")
     return np.broadcast_arrays(*read.values())

@@ -38,8 +38,8 @@ class Image(Thing):
     @classmethod
     def of(cls, thing: Thing, size_mm: float = 80.0, pixel_mm: float = 0.1) -> "Image":
         """An object drawn once, a square around the origin, so that it can be moved cheaply."""
-        arguments.number(size_mm, "size_mm", above=0.0, error=TwinError)
-        arguments.number(pixel_mm, "pixel_mm", above=0.0, error=TwinError)
+        size_mm = arguments.number(size_mm, "size_mm", above=0.0, error=TwinError)
+        pixel_mm = arguments.number(pixel_mm, "pixel_mm", above=0.0, error=TwinError)
         half = int(np.ceil(size_mm / 2.0 / pixel_mm))
         line = np.arange(-half, half + 1) * pixel_mm
         pixels = thing.coverage(line[None, :], -line[:, None]).astype(np.float32)

@@ -6,6 +6,7 @@ twin adds is that the transmittances then serve at any gap, in any shape and for
 
 from dataclasses import dataclass
 
+from lumitip.given import shown
 from lumitip.twin.optics import TwinError
 from lumitip.twin.scene import Sheet
 
@@ -48,6 +49,8 @@ def material(key: str) -> Material:
         TwinError: if there is none.
     """
     for one in MATERIALS:
-        if one.key == key:
+        if isinstance(key, str) and one.key == key:
             return one
-    raise TwinError(f"material {key!r} given, allowed are {', '.join(m.key for m in MATERIALS)}")
+    raise TwinError(
+        f"material: {shown(key)} given, allowed are {', '.join(m.key for m in MATERIALS)}"
+    )

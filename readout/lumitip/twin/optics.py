@@ -20,6 +20,7 @@ import numpy as np
 
 from lumitip import arguments
 from lumitip.errors import LumitipError
+from lumitip.given import shown
 from lumitip.grid import Floats
 from lumitip.layout import Layout
 
@@ -85,9 +86,9 @@ class Model:
                 raise TwinError(
                     f"{name}: {getattr(self, name)} given, {least:g} to {most:g} is needed"
                 )
-        if self.hole_shape not in ("hexagon", "circle"):
+        if not isinstance(self.hole_shape, str) or self.hole_shape not in ("hexagon", "circle"):
             raise TwinError(
-                f'hole_shape: {self.hole_shape!r} given, allowed are "hexagon" and "circle"'
+                f'hole_shape: {shown(self.hole_shape)} given, allowed are "hexagon" and "circle"'
             )
 
     @classmethod
