@@ -9,8 +9,9 @@ import pytest
 
 from lumitip_fab.checks import memory as remembering
 from lumitip_fab.checks import run
-from lumitip_fab.checks.memory import Memory, reads
+from lumitip_fab.checks.memory import Memory, Watched, reads
 from lumitip_fab.checks.run import MODULES, run_checks
+from lumitip_fab.design import Design
 
 
 @pytest.fixture
@@ -123,3 +124,18 @@ def test_reports_written_among_the_outputs_do_not_count_as_changes(
 def test_what_a_module_reads_is_what_its_source_says() -> None:
     for name in MODULES:
         assert reads(name) == run._module(name).READS
+
+
+@pytest.mark.slow
+def test_every_check_is_remembered(outputs: Path, tmp_path: Path, measured: list[str]) -> None:
+    path = tmp_path / "checked.json"
+    first = run_checks(outputs, MODULES, Memory(path, outputs))
+    assert sorted(measured) == sorted(MODULES) and not first.failed
+    again = run_checks(outputs, MODULES, Memory(path, outputs))
+    assert len(measured) == len(MODULES) and again == first
+
+
+def test_a_check_that_would_read_unnoted_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Design, "thinnest", lambda self: self.stack, raising=False)
+    with pytest.raises(TypeError, match=r"Design\.thinnest is a method"):
+        _ = Watched(object.__new__(Design)).thinnest

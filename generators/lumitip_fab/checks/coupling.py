@@ -24,7 +24,7 @@ def measure_bolt(part: Printed) -> Iterator[Measurement]:
     off, wide = circles(rings, bolts, mount.bolt_hole_mm / 2)
     yield part.near("bolt", off, 0.0, POSITION_MM)
     yield part.near("bolt_hole", wide, mount.bolt_hole_mm, DIAMETER_MM)
-    bolt, fit_mm = part.design.fastener(mount.bolt), part.design.printing.fit_mm
+    bolt, fit_mm = part.design.threads[mount.bolt], part.design.printing.fit_mm
     clear, low, high, _ = round_thread(room(rings, bolts), bolt, fit_mm)
     yield part.figure("bolt_clearance", clear, low, high)
     pins = tuple((u, mount.bolt_w_mm) for u in mount.pin_u_mm)

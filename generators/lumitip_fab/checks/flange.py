@@ -125,7 +125,7 @@ def measure_bolts(of: Stacked) -> Iterator[Measurement]:
     wide = np.concatenate([wide for _, wide in found])
     yield of.near("bolt_width", wide, flange.bolt_hole_mm, HOLE_MM)
     through = np.concatenate([room(holes_at(mesh, z), flange.bolts) for mesh, z in levels])
-    bolt, fit_mm = of.design.fastener(flange.bolt), of.design.printing.fit_mm
+    bolt, fit_mm = of.design.threads[flange.bolt], of.design.printing.fit_mm
     yield of.clear("bolt_clearance", round_thread(through, bolt, fit_mm))
     least = min(hole_walls(mesh, z) for mesh, z in levels)
     yield of.figure("hole_wall", least, of.design.printing.min_wall_mm - SIZE_MM, math.inf)

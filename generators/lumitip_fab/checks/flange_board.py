@@ -98,7 +98,7 @@ def measure_screws(of: Stacked) -> Iterator[Measurement]:
     off, wide = circles(holes, at, _NEAR_MM)
     yield of.near("screws", off, 0.0, HOLE_MM, "from the board's holes")
     yield of.near("screw_width", wide, flange.screw_mm, HOLE_MM)
-    screw = of.design.fastener(flange.screw)
+    screw = of.design.threads[flange.screw]
     through = round_thread(room(holes, at), screw, of.design.printing.fit_mm)
     yield of.clear("screw_clearance", through)
     sinks = holes_at(of.lower, flange.seat_z_mm + 0.1)

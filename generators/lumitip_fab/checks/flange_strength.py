@@ -60,7 +60,7 @@ def strength(lower: Any, upper: Any, design: Design) -> Strength:
     cuts += [(z, section(upper, z)) for z in _levels(split, web)]
     worst_mpa = max(_layer_mpa(cut, load_n, load_n * (lever_mm - z)) for z, cut in cuts)
     force_n = _bolt_n(np.array(flange.bolts), load_n, load_n * (lever_mm - seat))
-    head_mm = design.fastener(flange.bolt).cap_head_mm
+    head_mm = design.threads[flange.bolt].cap_head_mm
     heads = [shapely.Point(at).buffer(head_mm / 2, 64) for at in flange.bolts]
     area_mm2 = min(cut.intersection(head).area for _, cut in cuts for head in heads)
     return Strength(

@@ -137,7 +137,7 @@ def measure_screws(clip: Clip) -> Iterator[Measurement]:
     yield clip.figure("screws", farthest(off, 0.0), 0, HOLE_MM, note="from the board's holes")
     width = clip.holder.screw_mm
     yield clip.figure("screw_width", farthest(wide, width), width - HOLE_MM, width + HOLE_MM)
-    screw, fit_mm = clip.design.fastener(clip.holder.screw), clip.design.printing.fit_mm
+    screw, fit_mm = clip.design.threads[clip.holder.screw], clip.design.printing.fit_mm
     yield clip.clear("screw_clearance", round_thread(room(rings, at), screw, fit_mm))
     centres = np.array([shapely.Polygon(ring).centroid.coords[0] for ring in rings])
     spans = [np.ptp(places[:, 0]) if len(places) else math.nan for places in (board, centres)]
@@ -155,7 +155,7 @@ def measure_nuts(clip: Clip) -> Iterator[Measurement]:
     flats = wide * math.sqrt(math.pi / (2 * math.sqrt(3)))
     width = holder.nut_mm
     yield clip.figure("nut_width", farthest(flats, width), width - HOLE_MM, width + HOLE_MM)
-    nut, fit_mm = clip.design.fastener(holder.screw), clip.design.printing.fit_mm
+    nut, fit_mm = clip.design.threads[holder.screw], clip.design.printing.fit_mm
     yield clip.clear("nut_clearance", round_nut(room(rings, holder.holes), nut, fit_mm))
     beside = (holder.screw_mm + holder.nut_mm) / 4
     start = np.array([(x, y + beside, holder.axis_z_mm) for x, y in holder.holes])

@@ -25,8 +25,11 @@ class Watched:
         self.read: set[str] = set()
 
     def __getattr__(self, name: str) -> Any:
+        told = getattr(self._design, name)
+        if callable(told):
+            raise TypeError(f"Design.{name} is a method: what it reads would not be noted")
         self.read.add(name)
-        return getattr(self._design, name)
+        return told
 
 
 class Memory:

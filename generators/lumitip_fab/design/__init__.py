@@ -156,14 +156,10 @@ class Design:
         """Both fingers, emitter first."""
         return self.emitter, self.receiver
 
-    def fastener(self, thread: str) -> Fastener:
-        """What the catalogue has of a thread.
-
-        Raises:
-            LookupError: if nothing is held by it.
-        """
-        found = {fastener.name: fastener for fastener in self.fasteners}
-        return found[thread]
+    @property
+    def threads(self) -> dict[str, Fastener]:
+        """What the catalogue has of each thread that is used."""
+        return {fastener.name: fastener for fastener in self.fasteners}
 
     @property
     def regulated(self) -> tuple[Carrier, ...]:
