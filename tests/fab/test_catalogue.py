@@ -1,9 +1,12 @@
 """The catalogue against datasheets and the published boards; entries that cannot be are refused."""
 
+import json
+import tomllib
+from pathlib import Path
 from typing import Any
 
 import pytest
-from pydantic import ValidationError
+from pydantic import TypeAdapter, ValidationError
 from reportlab.pdfbase.pdfmetrics import getFont
 
 from lumitip_fab.catalogue import Catalogue, Controller, Led, Multiplexer
@@ -33,6 +36,15 @@ def test_the_4067s_leads_are_those_of_the_datasheet(parts: Catalogue) -> None:
     assert (mux.select, mux.output, mux.leads) == ((10, 11, 14, 13), 1, 24)
     used = {*leads, *mux.select, mux.output}
     assert set(range(1, 25)) - used == {12, 15, 24}, "ground, enable and supply are left"
+
+
+def test_the_parts_of_the_benchmarks_are_entries_too(design_dir: Path) -> None:
+    files = sorted((design_dir.parent / "benchmarks" / "parts").glob("*.toml"))
+    for file in files:
+        kind: Any = Catalogue.model_fields[file.stem].annotation
+        text = json.dumps(tomllib.loads(file.read_text()))
+        assert TypeAdapter(kind).validate_json(text)
+    assert len(files) == 4
 
 
 def test_the_published_detector_is_345_mm_over_its_pads(parts: Catalogue) -> None:
