@@ -62,18 +62,18 @@ class Input:
 
     def named_parts(self) -> dict[str, Entry]:
         """The catalogue entry that each field in `NAMED` names, by field."""
-        found: dict[str, Entry] = {}
-        for field, kind in NAMED.items():
-            section, key = field.split(".")
-            name = getattr(getattr(self.parameters, section), key)
-            found[field] = getattr(self.catalogue, kind)[name]
-        return found
+        return {
+            field: getattr(self.catalogue, kind)[self.value(field)] for field, kind in NAMED.items()
+        }
 
     def title(self, field: str) -> str:
         """What people call the entry that a field in `NAMED` names."""
+        return self.named_parts()[field].title or str(self.value(field))
+
+    def value(self, field: str) -> Any:
+        """The value of a field, like `"grid.pitch_mm"`."""
         section, key = field.split(".")
-        name: str = getattr(getattr(self.parameters, section), key)
-        return self.named_parts()[field].title or name
+        return getattr(getattr(self.parameters, section), key)
 
     def problem(self, field: str, message: str) -> Problem:
         """A fault of a field, placed in the file that set it."""

@@ -23,13 +23,7 @@ import numpy as np
 from lumitip import arguments
 from lumitip.calibration import Calibration, Kind, checked_kind
 from lumitip.drift import Drift
-from lumitip.errors import (
-    CalibrationError,
-    EndOfRecording,
-    FingertipClosed,
-    LayoutError,
-    LinkError,
-)
+from lumitip.errors import CalibrationError, EndOfRecording, FingertipClosed, LayoutError, LinkError
 from lumitip.frame import Block, Frame, ended_early, too_late
 from lumitip.given import shown
 from lumitip.hub import Hub

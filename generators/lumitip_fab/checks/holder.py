@@ -163,7 +163,7 @@ def measure_nuts(clip: Clip) -> Iterator[Measurement]:
     seats = holder.axis_z_mm + hit
     seat = farthest(seats, holder.seat_z_mm)
     yield clip.figure("nut_seat", seat, holder.seat_z_mm - SIZE_MM, holder.seat_z_mm + SIZE_MM)
-    left = min((_left_mm(holder, nut, x, z) for (x, _), z in zip(holder.holes, seats, strict=True)))
+    left = min(_left_mm(holder, nut, x, z) for (x, _), z in zip(holder.holes, seats, strict=True))
     yield clip.figure("nut_room", left, 0.0, math.inf, note="nuts and screws' ends to gripper")
 
 

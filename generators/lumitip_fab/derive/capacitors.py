@@ -57,8 +57,7 @@ def refuse_flange_capacitors(given: Input, faults: Faults) -> None:
 
 def _refuse(given: Input, duties: Iterable[_Duty], faults: Faults) -> None:
     for duty in duties:
-        section, key = duty.field.split(".")
-        name = getattr(getattr(given.parameters, section), key)
+        name = given.value(duty.field)
         part = given.catalogue.capacitors[name]
         needed_v = (1 + SUPPLY_TOLERANCE) * duty.volts
         faults.refuse_unless(

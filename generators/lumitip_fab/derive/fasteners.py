@@ -69,6 +69,5 @@ def _refuse_hole(given: Input, field: str, thread: str, hole_mm: float, faults: 
 
 def _shown(given: Input, field: str) -> str:
     """A field's value as the parameter file has it."""
-    section, key = field.split(".")
-    value = getattr(getattr(given.parameters, section), key)
+    value = given.value(field)
     return "true" if value is True else repr(value)

@@ -101,9 +101,7 @@ def _check(given: Input, asked: Sequence[Axis], prices: Prices, keep_size: bool)
     parts = {field: part for field, part in NAMED.items() if part in _PRICED}
     names: set[str] = set()
     for field in parts:
-        section, key = field.split(".")
-        own = getattr(getattr(given.parameters, section), key)
-        names |= set(varied.get(field, (own,)))
+        names |= set(varied.get(field, (given.value(field),)))
     faults = unpriced(given, prices, names)
     if keep_size and "grid.columns" in varied:
         told = "given with --keep-size, which counts the columns itself; leave one of them out"
