@@ -59,13 +59,13 @@ def build(file: Path, out: Path, progress: Progress | None = None) -> Report:
 
 def _build_anew(file: Path, told: str, out: Path, progress: Progress) -> Report:
     # Imported here: to see that nothing changed, none of it is needed.
-    from lumitip_fab.derive import derive
+    from lumitip_fab.derive import resolve
     from lumitip_fab.documents import documents
     from lumitip_fab.load import load
     from lumitip_fab.workers import Batch
 
-    given = load(file)
-    design = derive(given)
+    resolved = resolve(load(file))
+    given, design = resolved.given, resolved.design
     origin = manifest.Origin(design.layout.design_hash, design.parameters_hash)
     ready: list[Batch] = [("documents", documents(given, design))]
     try:

@@ -65,6 +65,9 @@ def _parser() -> argparse.ArgumentParser:
     with_file(sub)
     told = "what FILE was built into: also tells what the fingers weigh"
     sub.add_argument("--out", type=Path, metavar="DIR", help=told)
+    told = "Change FILE so that it is accepted: the smallest changes that work, each tried."
+    sub = command("fix", told, "quiet", "json")
+    with_file(sub)
     told = "Print which detector each multiplexer input of a board reads, from its copper."
     sub = command("channel-map", told, "json")
     sub.add_argument("file", type=Path, metavar="FILE", help="a .kicad_pcb of KiCad 5 to 10")

@@ -27,15 +27,27 @@ def run(options: argparse.Namespace) -> int:
     try:
         return COMMANDS[options.command](options)
     except InputError as error:
-        if options.json:
-            print(json.dumps({"problems": [vars(p) for p in error.problems]}, indent=1))
-        print(error, file=sys.stderr)
-        return REFUSED
+        return _refuse(options, error)
     except (OutputError, BuildError) as error:
         if options.json:
             print(json.dumps({"error": str(error)}, indent=1))
         print(error, file=sys.stderr)
         return FAILED if isinstance(error, BuildError) else REFUSED
+
+
+def _refuse(options: argparse.Namespace, error: InputError) -> int:
+    """Print every fault, and the changes that mend those which the rules found."""
+    from lumitip_fab.derive.auto.remedies import remedy_lines
+    from lumitip_fab.derive.auto.resolve import RuleError
+
+    remedies = remedy_lines(error.verdict) if isinstance(error, RuleError) else []
+    if options.json:
+        problems = [vars(p) for p in error.problems]
+        print(json.dumps({"problems": problems, "remedies": remedies[1:]}, indent=1))
+    print(error, *remedies, sep="\n", file=sys.stderr)
+    if remedies:
+        print(f"lumitip-fab fix {options.file} writes them.", file=sys.stderr)
+    return REFUSED
 
 
 def _init(options: argparse.Namespace) -> int:
@@ -130,16 +142,35 @@ def _spec(options: argparse.Namespace) -> int:
     from lumitip_fab.load import load
 
     design = derive(load(options.file))
-    rows = spec.rows(design)
+    rows, choices = spec.rows(design), spec.choice_rows(design)
     if options.out:
         from lumitip_fab.spec_built import built_rows
 
         rows += built_rows(options.out, design)
     if options.json:
-        print(json.dumps([vars(row) for row in rows], indent=1))
+        print(json.dumps([vars(row) for row in (*rows, *choices)], indent=1))
     else:
         spec.print_table(rows, OUT)
+        spec.print_choices(choices, OUT)
     return 0
+
+
+def _fix(options: argparse.Namespace) -> int:
+    from lumitip_fab.derive.auto.fix import fix
+
+    plan = fix(options.file)
+    changes = [step.remedies[0] for step in plan.steps]
+    if options.json:
+        print(json.dumps({"written": plan.complete and bool(changes),
+                          "changes": [vars(change) for change in changes]}, indent=1))  # fmt: skip
+    elif not plan.complete:
+        print(f"{options.file}: not changed; no small changes were found that mend every fault",
+              file=sys.stderr)  # fmt: skip
+    elif not options.quiet:
+        OUT.print(f"{options.file}: accepted as it is" if not changes else str(options.file))
+        for change in changes:
+            OUT.print(f"  {change}")
+    return 0 if plan.complete else REFUSED
 
 
 def _watch(options: argparse.Namespace) -> int:
@@ -221,6 +252,7 @@ COMMANDS = {
     "init": _init,
     "build": _build,
     "check": _check,
+    "fix": _fix,
     "spec": _spec,
     "channel-map": _channel_map,
     "watch": _watch,

@@ -1,13 +1,14 @@
 """Read a parameter file with its base and its catalogue, and report every fault at once."""
 
 import os
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
+from lumitip_fab.automatic import filled
 from lumitip_fab.catalogue import Catalogue
 from lumitip_fab.entry import Entry
 from lumitip_fab.errors import InputError, Problem
@@ -59,6 +60,8 @@ class Input:
     catalogue: Catalogue
     sources: tuple[Source, ...]
     """The file itself, then its base if it has one."""
+    automatic: frozenset[str] = frozenset()
+    """Fields whose values are starts, from which the program chooses."""
 
     def named_parts(self) -> dict[str, Entry]:
         """The catalogue entry that each field in `NAMED` names, by field."""
@@ -74,6 +77,18 @@ class Input:
         """The value of a field, like `"grid.pitch_mm"`."""
         section, key = field.split(".")
         return getattr(getattr(self.parameters, section), key)
+
+    def with_values(self, values: Mapping[str, Any]) -> "Input":
+        """The same input with other values of some fields, as they would stand in the file.
+
+        Raises:
+            ValidationError: if a value is outside what its field allows.
+        """
+        table = self.parameters.model_dump()
+        for field, value in values.items():
+            section, key = field.split(".")
+            table[section][key] = value
+        return replace(self, parameters=Parameters.model_validate(table))
 
     def problem(self, field: str, message: str) -> Problem:
         """A fault of a field, placed in the file that set it."""
@@ -95,6 +110,7 @@ def load(path: Path) -> Input:
     merged: dict[str, Any] = {}
     for source in reversed(sources):
         merged = _merge(merged, {k: v for k, v in source.table.items() if k != "extends"})
+    merged, automatic = filled(merged)
     catalogue, broken = _catalogue(design_folder(path))
     faults += broken
     parameters = None
@@ -109,7 +125,7 @@ def load(path: Path) -> Input:
     faults = [fault for fault in faults if fault.field not in named] + unknown
     if faults or parameters is None:
         raise InputError(faults)
-    return Input(parameters, Catalogue.model_validate(catalogue), sources)
+    return Input(parameters, Catalogue.model_validate(catalogue), sources, automatic)
 
 
 def _setting(sources: tuple[Source, ...], field: str) -> Source:

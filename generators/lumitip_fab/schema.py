@@ -3,6 +3,7 @@
 import json
 from typing import Any
 
+from lumitip_fab.automatic import AUTO, FIELDS
 from lumitip_fab.parameters import Parameters
 
 
@@ -17,10 +18,23 @@ def schema_text() -> str:
         "description": "A complete parameter file, relative to this one, whose values this one "
         "overrides.",
     }
+    _allow_auto(schema)
     # What a file with `extends` leaves out comes from its base, so an editor must not ask for it.
     return (
         json.dumps(_without_required(schema), indent=1, sort_keys=True, ensure_ascii=False) + "\n"
     )
+
+
+def _allow_auto(schema: dict[str, Any]) -> None:
+    """Let the fields whose value the program can choose be `"auto"`, which is their default."""
+    for field, automatic in FIELDS.items():
+        section, key = field.split(".")
+        name = schema["properties"][section]["$ref"].rpartition("/")[2]
+        table = schema["$defs"][name]["properties"]
+        text = {k: table[key].pop(k) for k in ("title", "description") if k in table[key]}
+        start = json.dumps(automatic.start)
+        text["description"] += f' "auto": {start} by default; follows {automatic.follows}.'
+        table[key] = {**text, "anyOf": [{"const": AUTO}, table[key]], "default": AUTO}
 
 
 def _without_required(node: Any) -> Any:

@@ -19,6 +19,11 @@ def rows(design: Design) -> tuple[Row, ...]:
     )  # fmt: skip
 
 
+def choice_rows(design: Design) -> tuple[Row, ...]:
+    """Every automatic value with its reason."""
+    return tuple(Row(c.field, "", c.value, c.reason) for c in design.choices)
+
+
 def _table_1(design: Design) -> tuple[Row, ...]:
     return (*_sizes(design), *_electrical(design))
 
@@ -182,12 +187,13 @@ def _strings(design: Design) -> tuple[Row, ...]:
         Row("current of a string", "19 to 20 mA", _span(wiring.current_ma), "nominal"),
         Row("... over tolerances", "not stated", f"{low:.1f} to {high:.1f} mA",
             f"supply ±{100 * told.supply_tolerance:g} %, forward voltage "
-            f"±{told.forward_tolerance_v:g} V: {longest} LEDs leave {left_v:.2f} V of "
-            f"{wiring.supply_v:g} V to the resistor; with emitter.string_leds = {told.fewer_leds} "
-            f"it is {told.fewer_low_ma:.1f} to {told.fewer_high_ma:.1f} mA, on more strings"),
+            f"±{told.forward_tolerance_v:g} V, resistor ±{100 * told.resistor_tolerance:g} %: "
+            f"{longest} LEDs leave {left_v:.2f} V of {wiring.supply_v:g} V to the resistor; with "
+            f"emitter.string_leds = {told.fewer_leds} it is "
+            f"{told.fewer_low_ma:.1f} to {told.fewer_high_ma:.1f} mA, on more strings"),
         Row("load of a string resistor", "not stated", f"{1000 * told.resistor_w:.0f} mW",
-            f"nominal, at most 60 % of its rating; {1000 * told.resistor_high_w:.0f} mW at "
-            f"{high:.1f} mA"),
+            f"nominal; up to {1000 * told.resistor_high_w:.0f} mW at {high:.1f} mA, of "
+            f"{1000 * told.resistor_rated_w:.0f} mW rated"),
     )  # fmt: skip
 
 
@@ -229,4 +235,16 @@ def print_table(told: tuple[Row, ...], console: Console) -> None:
     for row in told:
         differs = row.published != row.computed
         table.add_row(row.quantity, row.published, row.computed, row.reason if differs else "")
+    console.print(table)
+
+
+def print_choices(choices: tuple[Row, ...], console: Console) -> None:
+    """The automatic values as a table, one line each."""
+    table = Table(box=None, pad_edge=False, header_style="bold")
+    for heading in ("automatic", "value"):
+        table.add_column(heading, no_wrap=True)
+    table.add_column("reason", style="dim", overflow="ellipsis", no_wrap=True)
+    for row in choices:
+        table.add_row(row.quantity, row.computed, row.reason)
+    console.print()
     console.print(table)

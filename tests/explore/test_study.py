@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from lumitip_fab.cli import main
-from lumitip_fab.derive import derive
+from lumitip_fab.derive import derive, resolve
 from lumitip_fab.errors import InputError, OutputError
 from lumitip_fab.explore import report
 from lumitip_fab.explore.accuracy import Sample, accuracy
@@ -172,12 +172,13 @@ def test_another_seed_or_price_is_evaluated_anew(given: Input) -> None:
 
 def test_figures_are_those_of_the_design(given: Input) -> None:
     prices, design = given.catalogue.prices, derive(given)
+    given = resolve(given).given
     told = evaluate(Job.of(given, (), prices, FEW))["figures"]
     assert (told["cells"], told["current_ma"]) == (32, pytest.approx(38.4, abs=1.0))
     needed = bill(given, design)
     assert needed["15406085BA300"] == needed["SML-H10TBT86"] == 32
     assert needed["74HC4051PW"] == needed["100nF 0603"] == 4
-    assert needed["0603"] == len(design.wiring.strings) + 4
+    assert (needed["1206"], needed["0603"]) == (len(design.wiring.strings), 4)
     free = prices.model_copy(update={"each": {**prices.each, "15406085BA300": 0.0}})
     led = prices.each["15406085BA300"]
     assert cost(given, design, prices) - cost(given, design, free) == pytest.approx(32 * led)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from lumitip.grid import hexagonal_grid, hexagonal_neighbours
-from lumitip_fab.derive import derive
+from lumitip_fab.derive import derive, resolve
 from lumitip_fab.design import Design
 from lumitip_fab.load import Input, load
 from lumitip_fab.parameters import Parameters
@@ -19,14 +19,14 @@ Vary = Callable[[Input, Mapping[str, Any]], Input]
 
 @pytest.fixture(scope="session")
 def inputs() -> dict[str, Input]:
-    """Every preset, read."""
-    return {file.stem: load(file) for file in sorted(PRESETS.glob("*.toml"))}
+    """Every preset, read, with its automatic values in place."""
+    return {file.stem: resolve(load(file)).given for file in sorted(PRESETS.glob("*.toml"))}
 
 
 @pytest.fixture(scope="session")
 def designs(inputs: dict[str, Input]) -> dict[str, Design]:
-    """Every preset, derived."""
-    return {name: derive(given) for name, given in inputs.items()}
+    """Every preset, derived from its file."""
+    return {name: derive(load(given.sources[0].path)) for name, given in inputs.items()}
 
 
 @pytest.fixture(scope="session")

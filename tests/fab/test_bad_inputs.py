@@ -11,7 +11,9 @@ import shutil
 from pathlib import Path
 
 import pytest
+import tomlkit
 
+from lumitip_fab.automatic import AUTO, FIELDS
 from lumitip_fab.derive import derive
 from lumitip_fab.errors import InputError
 from lumitip_fab.load import load
@@ -23,11 +25,25 @@ NAMES = sorted(f.stem for f in BAD.glob("*.toml"))
 
 @pytest.fixture
 def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A working folder with a copy of the design folder, and a file outside it."""
+    """A working folder with a copy of the design folder, and a file outside it. The presets leave
+    no value to the program, so that each rule is met."""
     shutil.copytree(ROOT / "design", tmp_path / "design")
+    for file in (tmp_path / "design").rglob("*.toml"):
+        if file.parent.name != "parts":
+            _write_out(file)
     shutil.copy(ROOT / "design" / "presets" / "published.toml", tmp_path / "outside.toml")
     monkeypatch.chdir(tmp_path)
     return tmp_path
+
+
+def _write_out(file: Path) -> None:
+    """Replace every `"auto"` by the value that it begins with."""
+    document = tomlkit.parse(file.read_text(encoding="utf-8"))
+    for field, automatic in FIELDS.items():
+        section, key = field.split(".")
+        if document.get(section, {}).get(key) == AUTO:
+            document[section][key] = automatic.start
+    file.write_text(tomlkit.dumps(document), encoding="utf-8")
 
 
 def _refusal(name: str, project: Path) -> InputError:

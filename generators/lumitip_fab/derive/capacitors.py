@@ -3,8 +3,8 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from lumitip_fab.derive.electrical import SUPPLY_TOLERANCE
 from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.led_strings import SUPPLY_TOLERANCE
 from lumitip_fab.load import Input
 
 

@@ -2,15 +2,13 @@
 
 import math
 
-from lumitip_fab.catalogue import Led
 from lumitip_fab.derive import wiring
 from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.led_strings import RESISTOR_TOLERANCE, SUPPLY_TOLERANCE, string_of
 from lumitip_fab.derive.regulated import derive_regulated
 from lumitip_fab.design.electrical import Channel, Electrical, Strings
 from lumitip_fab.load import Input
 
-THERMAL_V = 0.02585  # kT/q at 300 K
-SUPPLY_TOLERANCE = 0.05
 SHORTER = 0.75  # of a string's LEDs, to compare
 
 
@@ -25,75 +23,27 @@ def derive_electrical(given: Input, strings: wiring.Strings, faults: Faults) -> 
     )
 
 
-def string_current_ma(
-    supply_v: float, leds: int, ohm: float, forward_v: float, at_ma: float, ideality: float
-) -> float:
-    """Current of LEDs and a resistor in series, by Shockley's equation, found by bisection.
-
-    Args:
-        supply_v: over all of them.
-        leds: how many there are.
-        ohm: the resistor.
-        forward_v: of an LED at `at_ma`.
-        at_ma: current at which the forward voltage is given.
-        ideality: of the LEDs.
-    """
-    low, high = 0.0, 1000 * supply_v / ohm
-    while high - low > 1e-9:
-        middle = (low + high) / 2
-        drop = forward_v + ideality * THERMAL_V * math.log(max(middle / at_ma, 1e-12))
-        if leds * drop + middle * ohm / 1000 < supply_v:
-            low = middle
-        else:
-            high = middle
-    return (low + high) / 2
-
-
 def _strings(given: Input, strings: wiring.Strings) -> Strings:
     p = given.parameters
     led = given.catalogue.leds[p.emitter.led]
-    ends = [
-        _ends_ma(given, led, len(cells), ohm)
-        for cells, ohm in zip(strings.cells, strings.resistor_ohm, strict=True)
-    ]
     fewer = max(1, math.floor(SHORTER * max(len(cells) for cells in strings.cells)))
-    drop = p.supply.voltage_v - fewer * led.forward_voltage_v
-    shorter = _ends_ma(given, led, fewer, wiring.e96(1000 * drop / p.emitter.current_ma))
-    loads = [
-        (i * i * r * 1e-6, high * high * r * 1e-6)
-        for i, (_, high), r in zip(strings.current_ma, ends, strings.resistor_ohm, strict=True)
-    ]
+    shorter = string_of(given, fewer, p.emitter.current_ma)
     return Strings(
         forward_v=led.forward_voltage_v,
         forward_tolerance_v=led.forward_tolerance_v,
         ideality=led.ideality,
         target_ma=p.emitter.current_ma,
         supply_tolerance=SUPPLY_TOLERANCE,
-        low_ma=tuple(low for low, _ in ends),
-        high_ma=tuple(high for _, high in ends),
+        resistor_tolerance=RESISTOR_TOLERANCE,
+        low_ma=tuple(string.low_ma for string in strings.strings),
+        high_ma=tuple(string.high_ma for string in strings.strings),
         fewer_leds=fewer,
-        fewer_low_ma=shorter[0],
-        fewer_high_ma=shorter[1],
-        resistor_w=max(nominal for nominal, _ in loads),
-        resistor_high_w=max(high for _, high in loads),
+        fewer_low_ma=shorter.low_ma,
+        fewer_high_ma=shorter.high_ma,
+        resistor_w=max(string.load_w for string in strings.strings),
+        resistor_high_w=max(string.high_load_w for string in strings.strings),
+        resistor_rated_w=given.catalogue.resistors[p.emitter.resistor].power_w,
     )
-
-
-def _ends_ma(given: Input, led: Led, leds: int, ohm: float) -> tuple[float, float]:
-    """Lowest and highest current of a string over supply and forward voltage."""
-    p = given.parameters
-    low, high = (
-        string_current_ma(
-            p.supply.voltage_v * (1 + sign * SUPPLY_TOLERANCE),
-            leds,
-            ohm,
-            led.forward_voltage_v - sign * led.forward_tolerance_v,
-            p.emitter.current_ma,
-            led.ideality,
-        )
-        for sign in (-1, 1)
-    )
-    return low, high
 
 
 def _channel(given: Input) -> Channel:

@@ -10,6 +10,8 @@ class Faults:
     def __init__(self, given: Input) -> None:
         self._given = given
         self._found: list[Problem] = []
+        self.stage = 0
+        """How many times derivation could go on: later rules are only reached without faults."""
 
     def refuse(self, field: str, message: str) -> None:
         """Note a fault of a field; `message` has what was given and what is allowed."""
@@ -24,3 +26,4 @@ class Faults:
         """Raise `InputError` with all faults noted so far, if there are any."""
         if self._found:
             raise InputError(self._found)
+        self.stage += 1

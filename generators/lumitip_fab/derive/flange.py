@@ -16,7 +16,12 @@ With a module as its controller it is wider to the left: see `lumitip_fab.derive
 from lumitip_fab.derive.devices import chip, fiducials, from_behind, leaded, strip
 from lumitip_fab.derive.fasteners import BOARD_SCREW
 from lumitip_fab.derive.faults import Faults
-from lumitip_fab.derive.flange_parts import least_supply_v, refuse_parts
+from lumitip_fab.derive.flange_parts import (
+    halved,
+    is_regulated,
+    refuse_parts,
+    supply_range_v,
+)
 from lumitip_fab.derive.module import Supplies, derive_module
 from lumitip_fab.derive.wiring import Muxing, Strings
 from lumitip_fab.design import Box, Carrier, Device, Point
@@ -31,8 +36,6 @@ HEADERS_AT: tuple[Point, Point] = ((-3.5, -20.5), (-3.5, 20.5))
 TITLE_AT: Point = (6.5, 11.5)
 HOLES_AT: tuple[Point, ...] = ((11.0, 19.5), (11.0, -19.5))
 FIDUCIALS_AT: tuple[Point, ...] = ((-13.0, -13.5), (13.0, -15.5), (-13.0, 13.5))
-HEADROOM_V = 1.0
-"""A step-down regulator's input above its output."""
 
 
 def derive_flange(
@@ -55,11 +58,7 @@ def derive_flange(
     wing = derive_module(given, module, muxing, Supplies(supply, output), BOX, faults)
     parts = (*_input(given), *_regulator(given), *(wing.devices if wing else ()))
     _refuse_lines(given, parts, faults)
-    names = given.catalogue.regulators[given.parameters.flange.regulator].names
-
-    def lead(name: str) -> str:
-        return str(names.index(name) + 1)
-
+    switched = ("SW",) if is_regulated(given) else ()
     return (
         Carrier(
             name="flange",
@@ -75,11 +74,20 @@ def derive_flange(
                 *fiducials(wing.fiducials if wing else FIDUCIALS_AT),
             ),
             notes=(),
-            supplies=tuple(dict.fromkeys(("GND", supply, raw, "FUSED", output, "SW"))),
+            supplies=tuple(dict.fromkeys(("GND", supply, raw, "FUSED", output, *switched))),
             keep_outs=wing.keep_outs if wing else (),
-            hot_loop=(("U1", lead("VIN")), ("C1", "1"), ("C1", "2"), ("U1", lead("GND"))),
+            hot_loop=_hot_loop(given),
         ),
     )
+
+
+def _hot_loop(given: Input) -> tuple[tuple[str, str], ...]:
+    """The leads round which the regulator's input current switches; none without it."""
+    if not is_regulated(given):
+        return ()
+    names = given.catalogue.regulators[given.parameters.flange.regulator].names
+    vin, ground = (str(names.index(name) + 1) for name in ("VIN", "GND"))
+    return ("U1", vin), ("C1", "1"), ("C1", "2"), ("U1", ground)
 
 
 def _supplies(given: Input) -> tuple[str, str, str]:
@@ -106,7 +114,7 @@ def _strips(given: Input) -> tuple[Device, ...]:
 
 
 def _input(given: Input) -> tuple[Device, ...]:
-    """Fuse, and the MOSFET with half the supply at its gate."""
+    """Fuse, and the MOSFET with the supply, or half of a high one, at its gate."""
     p, known = given.parameters.flange, given.catalogue
     raw, supply, _ = _supplies(given)
     resistor = known.resistors[p.resistor]
@@ -118,15 +126,22 @@ def _input(given: Input) -> tuple[Device, ...]:
         chip("F1", "fuse", p.fuse, known.fuses[p.fuse], "FUSC", (5.4, -7.0), 180.0,
               (raw, "FUSED")),
         leaded("Q1", "transistor", p.transistor, transistor, (-1.0, -7.0), 270.0, leads),
-        chip("R1", "resistor", code, resistor, "RESC", (-5.2, -7.0), 90.0, (supply, "GATE"),
-              part),
+        *(
+            (chip("R1", "resistor", code, resistor, "RESC", (-5.2, -7.0), 90.0, (supply, "GATE"),
+                  part),)
+            if halved(given)
+            else ()
+        ),
         chip("R2", "resistor", code, resistor, "RESC", (-2.0, -3.8), 0.0, ("GATE", "GND"), part),
     )  # fmt: skip
 
 
 def _regulator(given: Input) -> tuple[Device, ...]:
-    """The regulator with its input capacitor across VIN and GND, and what hangs on SW."""
+    """The regulator with its input capacitor across VIN and GND, and what hangs on SW; nothing
+    where the supply is what it would make."""
     p, known = given.parameters.flange, given.catalogue
+    if not is_regulated(given):
+        return ()
     _, supply, output = _supplies(given)
     leads = {"FB": output, "EN": supply, "VIN": supply, "GND": "GND", "SW": "SW", "BST": "BST"}
     caps = known.capacitors
@@ -176,15 +191,13 @@ def _refuse(given: Input, faults: Faults) -> None:
         f"{', '.join(p.signals):.80} given, SUPPLY and GND are needed, and no REGULATED, which the "
         "board makes",
     )
-    least, most = known.regulators[p.regulator].input_v
-    allowed = min(most, known.fuses[p.fuse].rated_v, known.transistors[p.transistor].rated_v,
-                  2 * known.transistors[p.transistor].gate_v)  # fmt: skip
-    least = max(least, known.regulators[p.regulator].output_v + HEADROOM_V, least_supply_v(given))
+    least, most = supply_range_v(given)
     faults.refuse_unless(
-        least <= volts <= allowed,
+        not is_regulated(given) or least <= volts <= most,
         "supply.voltage_v",
         f"{volts:g} given, the flange's regulator, fuse and transistor take {least:g} to "
-        f"{allowed:g} V; other parts, or flange.enabled = false",
+        f"{most:g} V, or {known.regulators[p.regulator].output_v:g} V without a regulator; other "
+        "parts, or flange.enabled = false",
     )
 
 

@@ -1,6 +1,7 @@
 """What the flange's switching regulator gives, in closed form."""
 
 from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.flange_parts import is_regulated
 from lumitip_fab.design.electrical import Regulated
 from lumitip_fab.load import Input
 
@@ -11,14 +12,14 @@ OUTPUT_CAPACITORS = ("C2", "C3")
 
 
 def derive_regulated(given: Input, faults: Faults) -> tuple[Regulated, ...]:
-    """The flange's 5 V; none without the flange.
+    """The flange's 5 V; none without the flange, or where they are its supply.
 
     Ripple of a step-down regulator in continuous conduction: the current swings by
     V (1 - V / V_in) / (L f), and the capacitors take the half of it above the mean,
     which moves them by the swing / (8 f C). Their series resistance, some milliohms, is left out.
     """
     p, known = given.parameters, given.catalogue
-    if not p.flange.enabled:
+    if not p.flange.enabled or not is_regulated(given):
         return ()
     part = known.regulators[p.flange.regulator]
     inductor = known.inductors[p.flange.inductor]

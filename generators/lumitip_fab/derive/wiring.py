@@ -1,6 +1,7 @@
 """Which cells hang on which LED string, multiplexer, channel and pin."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import lap
@@ -10,14 +11,19 @@ from numpy.typing import NDArray
 from lumitip.grid import Integers
 from lumitip_fab.derive.cells import Cells
 from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.led_strings import (
+    LEAST_RESISTOR_SHARE,
+    MOST_RESISTOR_LOAD,
+    String,
+    lengths,
+    longest_string,
+    sold_ohm,
+    string_of,
+)
 from lumitip_fab.design import Point, Wiring
 from lumitip_fab.load import Input
 
-LEAST_RESISTOR_SHARE = 0.1  # of the supply: below it the current follows every millivolt
-MOST_RESISTOR_LOAD = 0.6  # of the package's rating
 MOST_CURRENT_SPREAD = 0.05  # between strings
-_E24 = (1.0, 1.1, 1.2, 1.3, 1.5, 1.6, 1.8, 2.0, 2.2, 2.4, 2.7, 3.0, 3.3, 3.6, 3.9, 4.3, 4.7, 5.1,
-        5.6, 6.2, 6.8, 7.5, 8.2, 9.1)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -25,8 +31,18 @@ class Strings:
     """Series strings of LEDs with their resistors."""
 
     cells: tuple[tuple[int, ...], ...]
-    resistor_ohm: tuple[float, ...]
-    current_ma: tuple[float, ...]
+    strings: tuple[String, ...]
+    """Resistor and currents of each."""
+
+    @property
+    def resistor_ohm(self) -> tuple[float, ...]:
+        """Resistor of each string."""
+        return tuple(string.ohm for string in self.strings)
+
+    @property
+    def current_ma(self) -> tuple[float, ...]:
+        """Nominal current of each string."""
+        return tuple(string.nominal_ma for string in self.strings)
 
 
 @dataclass(frozen=True)
@@ -42,58 +58,71 @@ def derive_strings(given: Input, cells: Cells, faults: Faults) -> Strings:
     """As few strings as the supply allows, differing by at most one LED."""
     p = given.parameters
     led, volts = given.catalogue.leds[p.emitter.led], p.supply.voltage_v
-    package = given.catalogue.resistors[p.emitter.resistor]
-    longest = int(volts * (1 - LEAST_RESISTOR_SHARE) / led.forward_voltage_v)
-    longest = min(longest, p.emitter.string_leds)
+    longest = min(longest_string(given), p.emitter.string_leds)
     if longest < 1:
         faults.refuse(
             "supply.voltage_v",
             f"{volts:g} given, one LED needs {led.forward_voltage_v:g} V and its resistor a tenth "
             f"of the supply: at least {led.forward_voltage_v / (1 - LEAST_RESISTOR_SHARE):.2f}",
         )
-        return Strings((), (), ())
-    faults.refuse_unless(
-        p.emitter.current_ma <= led.max_current_ma,
-        "emitter.current_ma",
-        f"{p.emitter.current_ma:g} given, {p.emitter.led!r} takes at most {led.max_current_ma:g}",
+        return Strings((), ())
+    groups = np.array_split(_winding(cells), len(lengths(len(cells), longest)))
+    current = p.emitter.current_ma
+    by_length = {n: string_of(given, n, current) for n in {group.size for group in groups}}
+    strings = Strings(
+        tuple(_from_the_gripper(cells, group) for group in groups),
+        tuple(by_length[group.size] for group in groups),
     )
-    groups = np.array_split(_winding(cells), math.ceil(len(cells) / longest))
-    strings = tuple(_from_the_gripper(cells, group) for group in groups)
-    drops = [volts - len(s) * led.forward_voltage_v for s in strings]
-    ohms = tuple(e96(1000 * drop / p.emitter.current_ma) for drop in drops)
-    amps_ma = tuple(1000 * drop / ohm for drop, ohm in zip(drops, ohms, strict=True))
-    load = max(i * i * r * 1e-6 for i, r in zip(amps_ma, ohms, strict=True))
+    for field, message in string_problems(given, strings.strings):
+        faults.refuse(field, message)
+    return strings
+
+
+def string_problems(given: Input, strings: tuple[String, ...]) -> Iterator[tuple[str, str]]:
+    """Field and message of every rule that strings break: ratings at the worst case, spread of
+    currents, supply and heat."""
+    p = given.parameters
+    led, volts = given.catalogue.leds[p.emitter.led], p.supply.voltage_v
+    package, current = given.catalogue.resistors[p.emitter.resistor], p.emitter.current_ma
+    highest = max(string.high_ma for string in strings)
+    if max(highest, current) > led.max_current_ma:
+        yield (
+            "emitter.current_ma",
+            f"{current:g} mA gives up to {highest:.1f} mA over the tolerances of supply, LEDs and "
+            f"resistor; {p.emitter.led!r} takes at most {led.max_current_ma:g} mA",
+        )
+    load = max(string.high_load_w for string in strings)
     allowed = MOST_RESISTOR_LOAD * package.power_w
-    faults.refuse_unless(
-        load <= allowed,
-        "emitter.current_ma",
-        f"{p.emitter.current_ma:g} given, a string's resistor would take {1000 * load:.0f} mW; a "
-        f"{p.emitter.resistor!r} may take {1000 * allowed:.0f} mW: at most "
-        f"{math.floor(1e4 * allowed / max(drops)) / 10:g} mA, a larger package, or a supply other "
-        f"than {volts:g} V, so that less than {max(drops):.2f} V is left for the resistor",
-    )
-    spread = max(amps_ma) / min(amps_ma) - 1
-    faults.refuse_unless(
-        spread <= MOST_CURRENT_SPREAD,
-        "emitter.current_ma",
-        f"{p.emitter.current_ma:g} given, strings would differ by {100 * spread:.1f} %; "
-        f"at most {100 * MOST_CURRENT_SPREAD:g} % is allowed",
-    )
-    faults.refuse_unless(
-        sum(amps_ma) <= p.supply.max_ma,
-        "supply.max_ma",
-        f"{p.supply.max_ma:g} given, {len(strings)} strings at {p.emitter.current_ma:g} mA draw "
-        f"{sum(amps_ma):.1f} mA: at least that, or less emitter.current_ma, is needed",
-    )
-    heat_w = sum(amps_ma) * volts / 1000
-    faults.refuse_unless(
-        heat_w <= p.emitter.max_heat_w,
-        "emitter.max_heat_w",
-        f"{p.emitter.max_heat_w:g} given, {len(strings)} strings at {p.emitter.current_ma:g} mA "
-        f"from {volts:g} V leave {heat_w:.2f} W in the finger: at least that, or less "
-        "emitter.current_ma, is needed",
-    )
-    return Strings(strings, ohms, amps_ma)
+    if load > allowed:
+        yield (
+            "emitter.resistor",
+            f"{p.emitter.resistor!r} takes at most {1000 * allowed:.0f} mW "
+            f"({100 * MOST_RESISTOR_LOAD:g} % of its rating); a string's resistor takes up to "
+            f"{1000 * load:.0f} mW at {current:g} mA nominal over the tolerances of supply, LEDs "
+            "and resistor",
+        )
+    nominal = [string.nominal_ma for string in strings]
+    spread = max(nominal) / min(nominal) - 1
+    if spread > MOST_CURRENT_SPREAD:
+        yield (
+            "emitter.current_ma",
+            f"{current:g} given, strings would differ by {100 * spread:.1f} %; "
+            f"at most {100 * MOST_CURRENT_SPREAD:g} % is allowed",
+        )
+    if sum(nominal) > p.supply.max_ma:
+        yield (
+            "supply.max_ma",
+            f"{p.supply.max_ma:g} given, {len(strings)} strings at {current:g} mA draw "
+            f"{sum(nominal):.1f} mA: at least that, or less emitter.current_ma, is needed",
+        )
+    heat_w = sum(nominal) * volts / 1000
+    if heat_w > p.emitter.max_heat_w:
+        yield (
+            "emitter.max_heat_w",
+            f"{p.emitter.max_heat_w:g} given, {len(strings)} strings at {current:g} mA "
+            f"from {volts:g} V leave {heat_w:.2f} W in the finger: at least that, or less "
+            "emitter.current_ma, is needed",
+        )
 
 
 def _winding(cells: Cells) -> Integers:
@@ -206,21 +235,3 @@ def _input_leads(given: Input) -> NDArray[np.float64]:
         side = -1 if lead <= row else 1
         places.append((along * mux.lead_pitch_mm, side * mux.lead_span_mm / 2))
     return np.array(places)
-
-
-def e96(ohm: float) -> float:
-    """The nearest value of the E96 series (IEC 60063: 96 steps a decade, three digits)."""
-    steps: NDArray[np.float64] = np.power(10.0, np.arange(97) / 96)
-    return _nearest(ohm, np.round(steps, 2))
-
-
-def sold_ohm(ohm: float) -> float:
-    """The nearest value of the E24 and E96 series, in both of which 1 % resistors are sold."""
-    steps = np.array([e96(ohm), _nearest(ohm, np.array([*_E24, 10.0]))])
-    return float(steps[np.abs(np.log(steps / ohm)).argmin()])
-
-
-def _nearest(ohm: float, mantissas: NDArray[np.float64]) -> float:
-    decade = 10.0 ** math.floor(math.log10(ohm))
-    nearest = mantissas[np.abs(np.log(mantissas * decade / ohm)).argmin()]
-    return round(float(nearest) * decade, 6)

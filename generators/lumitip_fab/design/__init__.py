@@ -28,6 +28,7 @@ from lumitip_fab.design.boards import (
 )
 from lumitip_fab.design.cabling import Cable, Cabling, Terminal, Wire
 from lumitip_fab.design.carriers import Carrier, Device, Holder, Land, Note, Pattern
+from lumitip_fab.design.choices import Choice
 from lumitip_fab.design.electrical import Electrical
 from lumitip_fab.design.fasteners import Fastener
 from lumitip_fab.design.fit_plate import FitPlate, Fits
@@ -51,6 +52,7 @@ __all__ = [
     "Carrier",
     "CellInput",
     "Chip",
+    "Choice",
     "Closing",
     "Connector",
     "Controller",
@@ -150,6 +152,8 @@ class Design:
     system: System
     purchase: Purchase
     parameters_hash: str
+    choices: tuple[Choice, ...]
+    """Automatic values of the parameter file, with their reasons."""
 
     @property
     def fingers(self) -> tuple[Finger, Finger]:

@@ -15,8 +15,10 @@ class Strings:
     target_ma: float
     supply_tolerance: float
     """Fraction by which the supply may be off, either way."""
+    resistor_tolerance: float
+    """Fraction by which a resistor may be off, either way."""
     low_ma: tuple[float, ...]
-    """Of each string with the lowest supply and the highest forward voltages."""
+    """Of each string with the lowest supply, the highest forward voltages and resistor."""
     high_ma: tuple[float, ...]
     fewer_leds: int
     """A shorter string, to compare: LEDs in it, and its currents."""
@@ -25,7 +27,9 @@ class Strings:
     resistor_w: float
     """Largest load of a string resistor, nominal."""
     resistor_high_w: float
-    """The same at the highest current."""
+    """The same at the worst case of all tolerances."""
+    resistor_rated_w: float
+    """Rated power of the resistor's package."""
 
 
 @dataclass(frozen=True)

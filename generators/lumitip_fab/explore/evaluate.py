@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from lumitip_fab.derive import derive
+from lumitip_fab.derive import resolve
 from lumitip_fab.encoding import canonical
 from lumitip_fab.errors import InputError
 from lumitip_fab.explore.accuracy import Sample, accuracy
@@ -55,15 +55,15 @@ class Job:
 def evaluate(job: Job) -> Record:
     """Judge a design; nothing is built."""
     try:
-        design = derive(job.given)
+        resolved = resolve(job.given)
     except InputError as error:
         return {"key": job.key, "refused": [f"{p.field}: {p.message}" for p in error.problems]}
-    layout = design.layout
+    design, layout = resolved.design, resolved.design.layout
     figures = {
         **accuracy(layout, job.sample),
         "cells": float(len(layout)),
         "grid_cm2": float(np.ptp(layout.x_mm) * np.ptp(layout.y_mm)) / 100.0,
-        "cost": cost(job.given, design, job.prices),
+        "cost": cost(resolved.given, design, job.prices),
         "current_ma": float(sum(design.wiring.current_ma)),
     }
     return {"key": job.key, "figures": {n: _rounded(figures[n]) for n in FIGURES}}

@@ -100,8 +100,9 @@ def _check(given: Input, asked: Sequence[Axis], prices: Prices, keep_size: bool)
     varied = {axis.field: axis.values for axis in asked}
     parts = {field: part for field, part in NAMED.items() if part in _PRICED}
     names: set[str] = set()
-    for field in parts:
-        names |= set(varied.get(field, (given.value(field),)))
+    for field, part in parts.items():
+        chosen = getattr(given.catalogue, part) if field in given.automatic else ()
+        names |= set(varied.get(field, chosen or (given.value(field),)))
     faults = unpriced(given, prices, names)
     if keep_size and "grid.columns" in varied:
         told = "given with --keep-size, which counts the columns itself; leave one of them out"

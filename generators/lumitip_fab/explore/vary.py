@@ -89,7 +89,8 @@ def changed(given: Input, changes: Changes, keep_size: bool = False) -> Input:
     if keep_size:
         grid = given.parameters.grid
         told["grid"]["columns"] = same_size(grid.columns, grid.pitch_mm, told["grid"]["pitch_mm"])
-    return replace(given, parameters=Parameters.model_validate(told))
+    automatic = given.automatic - {field for field, _ in changes}
+    return replace(given, parameters=Parameters.model_validate(told), automatic=automatic)
 
 
 def same_size(columns: Sequence[int], pitch_mm: float, new_mm: float) -> tuple[int, ...]:

@@ -1,0 +1,1 @@
+"""Choice of automatic values: computed starts, then the smallest changes that every rule passes."""

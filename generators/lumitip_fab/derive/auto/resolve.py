@@ -1,0 +1,84 @@
+"""Automatic values of a parameter file, and the design that follows."""
+
+from dataclasses import dataclass, field, replace
+
+from lumitip_fab.automatic import FIELDS, Value
+from lumitip_fab.derive.auto.judge import Verdict, judge
+from lumitip_fab.derive.auto.ladder import Change
+from lumitip_fab.derive.auto.search import search
+from lumitip_fab.derive.auto.starts import proposals
+from lumitip_fab.design import Design
+from lumitip_fab.design.choices import Choice
+from lumitip_fab.errors import InputError
+from lumitip_fab.load import Input
+from lumitip_fab.wording import brief
+
+
+@dataclass(frozen=True)
+class Resolved:
+    """A parameter file with a value in every field, and its design."""
+
+    given: Input
+    """With no field left to choose."""
+    design: Design
+
+
+class RuleError(InputError):
+    """Rules that no automatic value mends; `verdict` is where the search ended."""
+
+    def __init__(self, verdict: Verdict) -> None:
+        self.verdict = verdict
+        super().__init__(verdict.problems)
+
+
+@dataclass
+class _Reasons:
+    """Why each automatic field has its value."""
+
+    of: dict[str, str] = field(default_factory=dict)
+
+    def propose(self, name: str, reason: str) -> None:
+        self.of[name] = reason
+
+    def moved(self, change: Change, message: str) -> None:
+        self.of[change.field] = f"otherwise {message.partition('; set it in')[0]}"
+
+    def choices(self, given: Input) -> tuple[Choice, ...]:
+        """Every automatic field in the order of the file, with its value and reason."""
+        return tuple(
+            Choice(
+                name,
+                brief(given.value(name)),
+                self.of.get(name, f"default; follows {automatic.follows}"),
+            )
+            for name, automatic in FIELDS.items()
+            if name in given.automatic
+        )
+
+
+def resolve(given: Input) -> Resolved:
+    """Choose every automatic value, and derive.
+
+    Raises:
+        RuleError: if rules are broken that no automatic value mends.
+    """
+    reasons = _Reasons()
+    started = _started(given, reasons)
+    end = search(judge(started), given.automatic, reasons.moved)
+    if end.design is None:
+        raise RuleError(end)
+    choices = reasons.choices(end.given)
+    settled = replace(end.given, automatic=frozenset())
+    return Resolved(settled, replace(end.design, choices=choices))
+
+
+def _started(given: Input, reasons: _Reasons) -> Input:
+    """The input with every computed start in place."""
+    for formula in proposals():
+        values: dict[str, Value] = {}
+        for name, value, reason in formula(given):
+            if name in given.automatic:
+                values[name] = value
+                reasons.propose(name, reason)
+        given = given.with_values(values)
+    return given

@@ -1,0 +1,109 @@
+"""Automatic values that follow from others by a formula or from the catalogue.
+
+Each function yields `(field, value, reason)`; the search of `lumitip_fab.derive.auto.search` begins
+at these values.
+"""
+
+import math
+from collections.abc import Callable, Iterator
+
+from lumitip.grid import column_pitch_mm
+from lumitip_fab.automatic import FIELDS, Value
+from lumitip_fab.derive.auto.led_current import choose_strings
+from lumitip_fab.derive.led_strings import SUPPLY_TOLERANCE, sold_ohm
+from lumitip_fab.load import Input
+
+Proposal = tuple[str, Value, str]
+
+LINES_PER_WALL = 2  # an FDM wall of two lines bears and is tight
+FINE_MM = {"track": 0.15, "gap": 0.15, "via": 0.45, "drill": 0.2}
+"""Copper for dense boards, which common PCB fabs make without extra cost."""
+ROOMY_CHANNEL_MM = 4.0
+LANE_USE = 0.8  # share of the lane between two columns that tracks can fill
+
+
+def proposals() -> tuple[Callable[[Input], Iterator[Proposal]], ...]:
+    """The formulas, in the order in which they need each other."""
+    return _layers, _printer, choose_strings, _multiplexer, _copper, _channel, _flange
+
+
+def _layers(given: Input) -> Iterator[Proposal]:
+    p, parts = given.parameters, given.catalogue
+    film = parts.films[p.mask.film]
+    yield "stack.film_mm", film.thickness_mm, f"thickness of {p.mask.film}"
+    filament = parts.filaments[p.backing.material]
+    yield "backing.density_g_ml", filament.density_g_ml, f"density of {p.backing.material}"
+
+
+def _printer(given: Input) -> Iterator[Proposal]:
+    p = given.parameters
+    line = given.catalogue.printers[p.printer.profile].line_mm
+    wall = max(float(FIELDS["printer.min_wall_mm"].start), round(LINES_PER_WALL * line - 0.1, 2))
+    yield "printer.min_wall_mm", wall, f"two overlapping lines of {line:g} mm, at least 0.8 mm"
+    edge = max(float(FIELDS["tip.edge_mm"].start), line)
+    yield "tip.edge_mm", edge, f"one line of {line:g} mm, at least 0.45 mm"
+    wall = p.printer.min_wall_mm
+    floor = max(float(FIELDS["stack.floor_mm"].start), wall)
+    yield "stack.floor_mm", floor, f"at least printer.min_wall_mm = {wall:g}"
+    mould = max(float(FIELDS["mould.wall_mm"].start), round(2 * wall, 2))
+    yield "mould.wall_mm", mould, f"at least twice printer.min_wall_mm = {wall:g}"
+
+
+def _multiplexer(given: Input) -> Iterator[Proposal]:
+    """The published multiplexer where the controller has pins for it, else one with more inputs."""
+    p, parts = given.parameters, given.catalogue
+    cells, controller = sum(p.grid.columns), parts.controllers[p.controller.board]
+    start = str(FIELDS["receiver.multiplexer"].start)
+    known = sorted(
+        parts.multiplexers.items(), key=lambda item: (item[0] != start, item[1].channels)
+    )
+    for name, mux in known:
+        needed = math.ceil(cells / mux.channels)
+        pins = needed if controller.unlimited_analog_pins else len(controller.analog_pins)
+        if needed <= pins and len(mux.select) <= len(controller.select_pins):
+            reason = f"{needed} of them read {cells} cells; {p.controller.board} has pins for them"
+            yield "receiver.multiplexer", name, reason
+            return
+
+
+def _copper(given: Input) -> Iterator[Proposal]:
+    """Fine tracks where the lines of a column of detectors do not pass beside it otherwise."""
+    p, parts = given.parameters, given.catalogue
+    columns = p.grid.columns
+    detector = parts.photodetectors[p.receiver.photodetector]
+    lane = column_pitch_mm(p.grid.pitch_mm) - min(detector.over_pads_mm)
+    lines = max(columns)
+    needed = lines * (p.board.track_mm + p.board.copper_gap_mm)
+    if needed <= LANE_USE * lane or max(columns) <= 1:
+        return
+    reason = (
+        f"{lines} lines leave a column through a lane of {lane:.2f} mm: "
+        f"{needed:.2f} mm at 0.2 mm tracks and gaps"
+    )
+    yield "board.track_mm", FINE_MM["track"], reason
+    yield "board.copper_gap_mm", FINE_MM["gap"], reason
+    yield "board.via_mm", FINE_MM["via"], reason
+    yield "board.via_drill_mm", FINE_MM["drill"], reason
+
+
+def _channel(given: Input) -> Iterator[Proposal]:
+    p = given.parameters
+    channels = given.catalogue.multiplexers[p.receiver.multiplexer].channels
+    muxes = math.ceil(sum(p.grid.columns) / channels)
+    if muxes > 4 or p.board.track_mm < float(FIELDS["board.track_mm"].start):
+        reason = f"room to sort {sum(p.grid.columns)} lines before {muxes} multiplexers"
+        yield "board.channel_mm", ROOMY_CHANNEL_MM, reason
+
+
+def _flange(given: Input) -> Iterator[Proposal]:
+    """Parts of the flange's board that follow from supply and current."""
+    p, parts = given.parameters, given.catalogue
+    start = parts.capacitors[str(FIELDS["flange.input_capacitor"].start)]
+    needed_v = p.supply.voltage_v * (1 + SUPPLY_TOLERANCE)
+    for name, capacitor in parts.capacitors.items():
+        same = capacitor.capacitance_nf >= start.capacitance_nf
+        if start.rated_v < needed_v <= capacitor.rated_v and same:
+            yield "flange.input_capacitor", name, f"rated for {needed_v:g} V"
+            break
+    ohm = sold_ohm(float(FIELDS["flange.gate_ohm"].start))
+    yield "flange.gate_ohm", ohm, "as small a current as a gate needs"

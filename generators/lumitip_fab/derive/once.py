@@ -1,0 +1,151 @@
+"""Concrete parameters to `Design`: each quantity is derived once, here, and nowhere else."""
+
+import hashlib
+
+from lumitip.layout import Layout, Optics
+from lumitip_fab.derive import boards, closing, mask, mould, mount, outline, wiring
+from lumitip_fab.derive.breakout import derive_breakout
+from lumitip_fab.derive.cabling import Boards, derive_cabling
+from lumitip_fab.derive.capacitors import refuse_receiver_capacitor
+from lumitip_fab.derive.cells import derive_cells
+from lumitip_fab.derive.electrical import derive_electrical
+from lumitip_fab.derive.fasteners import derive_fasteners
+from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.fit_plate import derive_fit_plate
+from lumitip_fab.derive.flange import derive_flange
+from lumitip_fab.derive.flange_body import derive_flange_body
+from lumitip_fab.derive.holder import derive_holder
+from lumitip_fab.derive.interface import derive_interfaces
+from lumitip_fab.derive.packages import derive_fabs, derive_packages, derive_rules
+from lumitip_fab.derive.purchase import derive_purchase
+from lumitip_fab.derive.slicing import derive_slicing
+from lumitip_fab.derive.stack import derive_printing, derive_stack, derive_tip
+from lumitip_fab.derive.system import derive_system
+from lumitip_fab.derive.weights import derive_densities
+from lumitip_fab.design import Controller, Design, Grid, Title
+from lumitip_fab.encoding import canonical, settled
+from lumitip_fab.load import Input
+
+
+def derive_once(given: Input, faults: Faults) -> Design:
+    """Derive the whole sensor from values as they are.
+
+    Args:
+        given: the parameters, none of them automatic.
+        faults: collects every impossible combination of values.
+
+    Raises:
+        InputError: with all that was collected.
+    """
+    p = given.parameters
+    stack, fasteners = derive_stack(given, faults), derive_fasteners(given, faults)
+    cells = derive_cells(p, faults)
+    if not len(cells):
+        faults.stop()  # without a grid nothing else can be judged
+    strings = wiring.derive_strings(given, cells, faults)
+    muxing = wiring.derive_muxing(given, cells, faults)
+    if not strings.cells or len(muxing.adc_pins) < muxing.muxes:
+        faults.stop()  # without parts and nets there are no boards to place
+    plan = boards.derive_plan(given, cells, strings, muxing, faults)
+    silhouette = outline.derive_outline(p, plan.board, plan.receiver.notch, faults)
+    interfaces = derive_interfaces(given, silhouette, plan.receiver, plan.board.box, faults)
+    coupling = mount.derive_mount(given, silhouette, plan, faults)
+    tip = derive_tip(p, silhouette, plan.board, stack, faults)
+    casting = mould.derive_mould(given, silhouette, plan.board, stack, faults)
+    printing = derive_printing(given, silhouette, faults)
+    slicing = derive_slicing(given, casting, faults)
+    plate = derive_fit_plate(given, plan, coupling, faults)
+    sheet = mask.derive_mask(given, silhouette, plan, faults)
+    rules = derive_rules(given, faults)
+    refuse_receiver_capacitor(given, faults)
+    meeting = closing.derive_closing(silhouette, stack, coupling, casting, faults)
+    breakout = derive_breakout(given, muxing, faults)
+    holders = derive_holder(given, breakout, faults)
+    flange = derive_flange(given, strings, muxing, faults)
+    flanges = derive_flange_body(given, flange, faults)
+    circuit = wiring.joined(given, strings, muxing)
+    figures = derive_electrical(given, strings, faults)
+    joined = Boards(plan.emitter, plan.receiver, (*breakout, *flange))
+    cabling = derive_cabling(given, joined, silhouette, coupling, circuit, figures, faults)
+    faults.stop()
+    mux, channel = wiring.assign(given, cells, plan.muxes)
+    layout = Layout(
+        x_mm=cells.x_mm,
+        y_mm=cells.y_mm,
+        column=cells.column,
+        row=cells.row,
+        neighbours=cells.neighbours,
+        mux=mux,
+        channel=channel,
+        adc_pin=wiring.pins_of(mux, muxing.adc_pins),
+        pitch_mm=p.grid.pitch_mm,
+        optics=_optics(given),
+    )
+    return settled(
+        Design(
+            title=Title(p.name, p.revision),
+            grid=Grid(p.grid.columns, p.grid.pitch_mm),
+            layout=layout,
+            stack=stack,
+            outline=silhouette,
+            tip=tip,
+            board=plan.board,
+            emitter=plan.emitter,
+            receiver=plan.receiver,
+            interfaces=interfaces,
+            mount=coupling,
+            closing=meeting,
+            wiring=circuit,
+            cabling=cabling,
+            packages=derive_packages(given),
+            rules=rules,
+            electrical=figures,
+            mask=sheet,
+            mould=casting,
+            printing=printing,
+            slicing=slicing,
+            fit_plate=plate,
+            densities=derive_densities(given, slicing),
+            controller=Controller(
+                given.title("controller.board"),
+                p.controller.name,
+                given.catalogue.controllers[p.controller.board].adc_bits,
+            ),
+            fabs=derive_fabs(given),
+            fasteners=fasteners,
+            carriers=(*breakout, *flange),
+            holders=holders,
+            flanges=flanges,
+            system=derive_system(given, flanges, holders),
+            purchase=derive_purchase(given, coupling, holders, flanges, slicing),
+            parameters_hash=_parameters_hash(given),
+            choices=(),
+        )
+    )
+
+
+def _optics(given: Input) -> Optics:
+    p, parts = given.parameters, given.catalogue
+    led = parts.leds[p.emitter.led]
+    detector = parts.photodetectors[p.receiver.photodetector]
+    return Optics(
+        hole_mm=p.mask.hole_mm,
+        hole_shape=p.mask.hole_shape,
+        emitter_depth_mm=p.stack.silicone_mm - led.die_height_mm,
+        detector_depth_mm=p.stack.silicone_mm - detector.die_height_mm,
+        emitter_exponent=led.exponent,
+        detector_exponent=detector.exponent,
+        silicone_index=parts.silicones[p.mould.silicone].refractive_index,
+        film_mm=p.stack.film_mm,
+        pull_up_ohm=p.receiver.pull_up_ohm,
+        supply_v=parts.controllers[p.controller.board].supply_v,
+    )
+
+
+def _parameters_hash(given: Input) -> str:
+    """SHA-256 of every value in force: the parameters and the parts that they name."""
+    told = [
+        given.parameters.model_dump(),
+        {f: e.model_dump() for f, e in given.named_parts().items()},
+    ]
+    return hashlib.sha256(canonical(told).encode()).hexdigest()

@@ -1,0 +1,160 @@
+"""Automatic values: any grid derives, what a user wrote stays, ratings hold at the worst case."""
+
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from lumitip_fab.automatic import FIELDS
+from lumitip_fab.derive import derive, resolve
+from lumitip_fab.derive.auto.fix import fix
+from lumitip_fab.derive.auto.remedies import plan_of
+from lumitip_fab.derive.auto.resolve import RuleError
+from lumitip_fab.design import Design
+from lumitip_fab.load import Input, load
+
+BASE = 'extends = "presets/published.toml"\n'
+
+
+@pytest.fixture
+def file(design_dir: Path, tmp_path: Path) -> Any:
+    """`file(text)`: a parameter file with this text over the published preset."""
+    folder = tmp_path / "design"
+    (folder / "presets").mkdir(parents=True)
+    (folder / "parts").mkdir()
+    base = (design_dir / "presets" / "published.toml").read_bytes()
+    (folder / "presets" / "published.toml").write_bytes(base)
+
+    def write(text: str) -> Path:
+        path = folder / "mine.toml"
+        path.write_text(BASE + text, encoding="utf-8")
+        return path
+
+    return write
+
+
+def _columns(cells: int) -> list[int]:
+    """Alternating columns of a number of cells, as square as there are."""
+    found = [
+        (abs(rows - count), [rows - (i + first) % 2 for i in range(count)])
+        for rows in range(2, 40)
+        for count in range(2, 40)
+        for first in (0, 1)
+        if sum(rows - (i + first) % 2 for i in range(count)) == cells
+    ]
+    return min(found)[1]
+
+
+@pytest.mark.parametrize("cells", [3, 4, 5, 7, 9, 13, 17, 19, 23, 29, 31, 37, 41, 47, 53, 59, 63])
+def test_any_number_of_cells_derives_at_first_try(file: Any, cells: int) -> None:
+    design = derive(load(file(f"[grid]\ncolumns = {_columns(cells)}\n")))
+    assert len(design.layout) == cells
+    _assert_rated(design)
+
+
+@pytest.mark.parametrize("volts", [5, 9, 12, 24])
+@pytest.mark.parametrize("flange", ["true", "false"])
+def test_usual_supplies_derive_with_and_without_the_flange(
+    file: Any, volts: int, flange: str
+) -> None:
+    text = f"[supply]\nvoltage_v = {volts}.0\n[flange]\nenabled = {flange}\n"
+    design = derive(load(file(text)))
+    _assert_rated(design)
+    assert bool(design.electrical.supplies) == (flange == "true" and volts > 5)
+
+
+def _assert_rated(design: Design) -> None:
+    """Resistors within 80 % of their rating at the worst case, by a calculation of our own: the
+    current that the whole rest of the supply drives through the resistor alone, with every LED at
+    its lowest forward voltage, is above the current that flows."""
+    strings, wiring = design.electrical.strings, design.wiring
+    assert strings.resistor_high_w <= 0.8 * strings.resistor_rated_w + 1e-12
+    for ohm, cells, high in zip(wiring.resistor_ohm, wiring.strings, strings.high_ma, strict=True):
+        left = wiring.supply_v * 1.05 - len(cells) * (strings.forward_v - 0.1)
+        bound = 1000 * left / (0.99 * ohm)
+        assert wiring.current_ma[0] < high <= bound
+
+
+@pytest.mark.parametrize("pitch", [3.5, 4.0, 5.0, 7.0, 8.0, 10.0])
+def test_any_pitch_derives(file: Any, pitch: float) -> None:
+    design = derive(load(file(f"[grid]\npitch_mm = {pitch}\n[mask]\nhole_mm = {0.4 * pitch:g}\n")))
+    assert design.layout.pitch_mm == pitch
+
+
+def test_the_published_grid_keeps_the_published_values(inputs: dict[str, Input]) -> None:
+    given = inputs["published"]
+    moved = {f for f, a in FIELDS.items() if given.value(f) != a.start}
+    assert moved == set()
+
+
+def test_every_choice_has_a_value_and_a_reason_in_one_line(file: Any) -> None:
+    design = derive(load(file("[grid]\npitch_mm = 3.5\n[mask]\nhole_mm = 1.4\n")))
+    choices = {choice.field: choice for choice in design.choices}
+    assert set(choices) == set(FIELDS)
+    assert choices["receiver.photodetector"].value == "'generic 0603 phototransistor'"
+    assert "needs a pitch of at least 3.70 mm" in choices["receiver.photodetector"].reason
+    assert all(c.reason and "\n" not in c.reason for c in design.choices)
+
+
+def test_what_a_user_wrote_is_never_altered(file: Any) -> None:
+    text = '[emitter]\nresistor = "0603"\n[board]\ntip_margin_mm = 3.65\n'
+    resolved = resolve(load(file(text)))
+    assert resolved.given.value("emitter.resistor") == "0603"
+    assert "emitter.resistor" not in {c.field for c in resolved.design.choices}
+    assert resolved.design.electrical.strings.resistor_high_w <= 0.08
+
+
+REFUSED = {
+    "film": "[mask]\nhole_mm = 5.8\n",
+    "silicone": "[stack]\nsilicone_mm = 1.0\n",
+    "overload": '[emitter]\ncurrent_ma = 22.0\nresistor = "0603"\nstring_leds = 16\n',
+    "supply": "[supply]\nmax_ma = 20.0\n[emitter]\ncurrent_ma = 19.0\n",
+    "slant": "[tip]\nslant_start_mm = 9.0\n[outline]\ntip_margin_mm = 6.2\n",
+    "mux": "[grid]\ncolumns = [9, 8, 9, 8, 9, 8, 9, 8]\npitch_mm = 4.0\n[mask]\nhole_mm = 1.6\n"
+    '[receiver]\nmultiplexer = "74HC4051PW"\n',
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_each_remedy_that_is_named_mends_its_rule(file: Any, name: str) -> None:
+    with pytest.raises(RuleError) as caught:
+        resolve(load(file(REFUSED[name])))
+    plan = plan_of(caught.value.verdict)
+    assert plan.complete
+    for remedy in plan.steps[0].remedies:
+        given = load(file(REFUSED[name])).with_values({remedy.field: remedy.value})
+        try:
+            left = [p.message for p in ()] if resolve(given) else []
+        except RuleError as error:
+            left = [p.message for p in error.problems]
+        assert plan.steps[0].message not in left
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_fix_writes_a_file_that_is_accepted_and_keeps_its_comments(file: Any, name: str) -> None:
+    path = file("# mine\n" + REFUSED[name])
+    plan = fix(path)
+    assert plan.complete and plan.steps
+    derive(load(path))
+    assert "# mine" in path.read_text(encoding="utf-8")
+    assert fix(path).steps == ()
+
+
+def test_fix_leaves_a_file_that_it_cannot_mend_as_it_was(file: Any) -> None:
+    path = file("[grid]\ncolumns = [40, 41, 40]\npitch_mm = 10.0\n")
+    before = path.read_bytes()
+    plan = fix(path)
+    assert not plan.complete
+    assert path.read_bytes() == before
+
+
+def test_a_smaller_change_does_not_mend(file: Any) -> None:
+    with pytest.raises(RuleError) as caught:
+        resolve(load(file(REFUSED["silicone"])))
+    remedy = plan_of(caught.value.verdict).steps[0].remedies[0]
+    assert remedy.field == "stack.silicone_mm"
+    value = float(str(remedy.value))
+    assert math.isclose(value, 1.4)
+    with pytest.raises(RuleError):
+        resolve(load(file(f"[stack]\nsilicone_mm = {value - 0.05:g}\n")))
