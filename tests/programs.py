@@ -5,7 +5,11 @@ import shutil
 
 import pytest
 
-_PACKAGES = {"kicad-cli": "kicad (version 9)", "arm-none-eabi-g++": "gcc-arm-none-eabi"}
+_PACKAGES = {
+    "kicad-cli": "kicad (version 9)",
+    "arm-none-eabi-g++": "gcc-arm-none-eabi",
+    "xtensa-lx106-elf-g++": "gcc-xtensa-lx106 and picolibc-xtensa-lx106-elf",
+}
 """Debian's packages, where they are not called like the program."""
 
 

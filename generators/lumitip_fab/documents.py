@@ -8,7 +8,7 @@ from lumitip_fab.encoding import design_text, encoded
 from lumitip_fab.load import NAMED, Input
 
 _HEAD = """\
-# Every value in force: the parameter file with its base. Can itself be built.
+# Every value in force: the parameter file with its bases. Can itself be built.
 """
 _PARTS = """
 # The parts that are named above, as they stand in the catalogue.

@@ -35,12 +35,12 @@ def _stamp(out: Path, told: str) -> str:
 
 
 def input_hash(file: Path) -> str:
-    """SHA-256 over the parameter file, its base, the catalogue, the code and what is installed.
+    """SHA-256 over the parameter file, its bases, the catalogue, the code and what is installed.
 
     Empty where the input cannot be read; reading it properly then says why.
     """
     try:
-        files = [file, *_base(file)]
+        files = _with_bases(file)
         for folder in parts_folders(design_folder(file)):
             files += sorted(folder.glob("*.toml"))
         told = [f"{path.name}\0{hashlib.sha256(path.read_bytes()).hexdigest()}" for path in files]
@@ -50,6 +50,14 @@ def input_hash(file: Path) -> str:
     return hashlib.sha256("\n".join(told).encode()).hexdigest()
 
 
-def _base(file: Path) -> list[Path]:
-    name = tomllib.loads(file.read_text(encoding="utf-8")).get("extends")
-    return [file.resolve().parent / name] if isinstance(name, str) else []
+def _with_bases(file: Path) -> list[Path]:
+    """The file and all that it extends; a circle ends where it closes."""
+    files: list[Path] = []
+    name: object = file.resolve()
+    while isinstance(name, str | Path):
+        file = (file.resolve().parent / name).resolve()
+        if file in files:
+            break
+        files.append(file)
+        name = tomllib.loads(file.read_text(encoding="utf-8")).get("extends")
+    return files

@@ -1,4 +1,4 @@
-"""Read a parameter file with its base and its catalogue, and report every fault at once."""
+"""Read a parameter file with its bases and its catalogue, and report every fault at once."""
 
 import os
 from collections.abc import Callable, Mapping
@@ -59,7 +59,7 @@ class Input:
     parameters: Parameters
     catalogue: Catalogue
     sources: tuple[Source, ...]
-    """The file itself, then its base if it has one."""
+    """The file itself, then the file that it extends, and so on down to the complete one."""
     automatic: frozenset[str] = frozenset()
     """Fields whose values are starts, from which the program chooses."""
 
@@ -102,11 +102,11 @@ def load(path: Path) -> Input:
     """Read and validate a parameter file.
 
     Raises:
-        InputError: with every fault of the file, its base and the catalogue files it uses.
+        InputError: with every fault of the file, its bases and the catalogue files it uses.
     """
     own = read_toml(path, shown_path(path))
-    sources, faults = _with_base(own)
-    based = not faults  # without its base, what a file leaves out is no fault
+    sources, faults = _with_bases(own)
+    based = not faults  # without its bases, what a file leaves out is no fault
     merged: dict[str, Any] = {}
     for source in reversed(sources):
         merged = _merge(merged, {k: v for k, v in source.table.items() if k != "extends"})
@@ -138,15 +138,20 @@ def _setting(sources: tuple[Source, ...], field: str) -> Source:
     return sources[0]
 
 
-def _with_base(own: Source) -> tuple[tuple[Source, ...], list[Problem]]:
-    """The file and its base, if it has one, with the faults of a base that cannot be used."""
+def _with_bases(own: Source) -> tuple[tuple[Source, ...], list[Problem]]:
+    """The file and all that it extends, and the fault of the first base that cannot be used."""
+    chain = [own]
     try:
-        return ((own, _base(own)) if "extends" in own.table else (own,)), []
+        while "extends" in chain[-1].table:
+            chain.append(_base(chain))
     except InputError as error:
-        return (own,), list(error.problems)
+        return tuple(chain), list(error.problems)
+    return tuple(chain), []
 
 
-def _base(own: Source) -> Source:
+def _base(chain: list[Source]) -> Source:
+    """The file that the last of a chain extends; all lie in the first one's design folder."""
+    own = chain[-1]
     name = own.table["extends"]
 
     def refuse(message: str) -> InputError:
@@ -155,7 +160,7 @@ def _base(own: Source) -> Source:
 
     if not isinstance(name, str) or not name.endswith(".toml"):
         raise refuse(f"{brief(name)} given, the name of a .toml file is needed")
-    folder = design_folder(own.path)
+    folder = design_folder(chain[0].path)
     try:
         base = (own.path.resolve().parent / name).resolve()
         inside, exists = base.is_relative_to(folder.resolve()), base.is_file()
@@ -172,13 +177,16 @@ def _base(own: Source) -> Source:
         raise refuse(f"{name!r:.80} given, no such file; {_bases(folder, own.path)}")
     if base == own.path.resolve():
         raise refuse(f"{name!r:.80} given, a file cannot extend itself")
-    source = read_toml(base, shown_path(base))
-    if "extends" in source.table:
-        raise refuse(
-            f"{name!r:.80} given, which extends {brief(source.table['extends'])} itself; one level "
-            "is allowed: name a complete file"
-        )
-    return source
+    above = [source.path.resolve() for source in chain]
+    if base in above:
+        circle = _chain_text([*above[above.index(base) :], base])
+        raise refuse(f"{name!r:.80} given, which closes a circle: {circle}; name a complete file")
+    return read_toml(base, shown_path(base))
+
+
+def _chain_text(files: list[Path]) -> str:
+    shown = [shown_path(file) for file in files]
+    return " → ".join(shown if len(shown) <= 5 else [*shown[:3], "…", shown[-1]])
 
 
 def _bases(folder: Path, own: Path) -> str:

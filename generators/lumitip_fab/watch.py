@@ -1,4 +1,4 @@
-"""Build again whenever the parameter file, its base or the catalogue is saved."""
+"""Build again whenever the parameter file, a base or the catalogue is saved."""
 
 from collections.abc import Callable, Iterator
 from pathlib import Path

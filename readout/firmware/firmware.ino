@@ -1,11 +1,11 @@
-// Lumitip on an Arduino Nano 33 BLE: reads the receiver and sends packets over Bluetooth and USB.
+// Lumitip on an Arduino Nano: reads the receiver and sends packets over Bluetooth and USB.
 // Everything that differs between designs is in layout.h and protocol.h, made by lumitip-fab.
 
+#include "board.h"
 #include "device.h"
-#include "nano33ble.h"
 
-static lumitip::Nano33Ble nano;
-static lumitip::Device<lumitip::Nano33Ble> device(nano);
+static lumitip::Board nano;
+static lumitip::Device<lumitip::Board> device(nano);
 
 void setup() {
   const uint16_t faults = nano.begin();

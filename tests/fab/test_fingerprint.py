@@ -29,6 +29,23 @@ def test_each_file_that_is_read_counts(folder: Path, path: str) -> None:
     assert input_hash(file) != before
 
 
+def test_a_base_of_a_base_counts(folder: Path) -> None:
+    file = folder / "mine.toml"
+    file.write_text('extends = "presets/asymmetric.toml"\n')
+    before = input_hash(file)
+    assert before
+    published = folder / "presets" / "published.toml"
+    published.write_text(published.read_text() + "\n# a remark\n")
+    assert input_hash(file) != before
+
+
+def test_a_circle_of_bases_has_an_end(folder: Path) -> None:
+    file = folder / "mine.toml"
+    file.write_text('extends = "other.toml"\n')
+    (folder / "other.toml").write_text('extends = "mine.toml"\n')
+    assert input_hash(file)
+
+
 def test_another_preset_does_not_count(folder: Path) -> None:
     file = folder / "fingertip.toml"
     before = input_hash(file)

@@ -44,6 +44,47 @@ def test_what_a_file_says_wins_over_its_base_and_the_rest_is_the_bases(write: Wr
     assert [s.path.name for s in given.sources] == ["x.toml", "published.toml"]
 
 
+def test_a_preset_that_extends_another_can_be_extended(write: Write) -> None:
+    Path("design/mine.toml").write_text(
+        'extends = "presets/dense.toml"\nmask.hole_mm = 1.4\nemitter.current_ma = 9.0\n'
+    )
+    config = load(write('extends = "mine.toml"\nemitter.current_ma = 8.0\n'))
+    assert [s.path.name for s in config.sources] == [
+        "x.toml", "mine.toml", "dense.toml", "published.toml",
+    ]  # fmt: skip
+    values = config.parameters
+    assert (values.emitter.current_ma, values.mask.hole_mm) == (8.0, 1.4)
+    assert values.grid.pitch_mm == 3.0  # of the preset
+    assert values.stack.silicone_mm == 1.5  # of the preset's base
+
+
+def test_a_fault_of_a_rule_is_placed_in_the_level_that_set_the_value(write: Write) -> None:
+    Path("design/mine.toml").write_text('extends = "presets/dense.toml"\n\nmask.hole_mm = 2.9\n')
+    (fault,) = _problems(write('extends = "mine.toml"\n'))
+    assert (fault.file, fault.line, fault.field) == ("design/mine.toml", 3, "mask.hole_mm")
+    assert fault.message.endswith("set it in design/x.toml")
+
+
+def test_what_an_unreadable_base_would_have_said_is_not_called_missing(write: Write) -> None:
+    Path("design/mine.toml").write_text('extends = "none.toml"\n[mask]\nhole_mm = ""\n')
+    faults = _problems(write('extends = "mine.toml"\n[grid]\npich_mm = 5\n'))
+    assert [(fault.file, fault.field) for fault in faults] == [
+        ("design/mine.toml", "extends"),
+        ("design/mine.toml", "mask.hole_mm"),
+        ("design/x.toml", "grid.pich_mm"),
+    ]
+
+
+def test_a_long_circle_is_refused_in_one_short_line(write: Write) -> None:
+    for level in range(40):
+        Path(f"design/b{level}.toml").write_text(f'extends = "b{(level + 1) % 40}.toml"\n')
+    (fault,) = _problems(write('extends = "b0.toml"\n'))
+    assert (fault.file, fault.line) == ("design/b39.toml", 1)
+    assert "circle: design/b0.toml → design/b1.toml → design/b2.toml → … → design/b0.toml" in (
+        fault.message
+    )
+
+
 def test_lists_are_replaced_and_not_joined(write: Write) -> None:
     assert load(write(BASE + "[grid]\ncolumns = [2, 1]\n")).parameters.grid.columns == (2, 1)
 

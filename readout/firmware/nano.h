@@ -1,9 +1,11 @@
-// The Arduino Nano 33 BLE as a Board: pins, Bluetooth, serial over USB, watchdog, light.
+// An Arduino Nano as a Board: pins, Bluetooth, light. What differs from chip to chip is in Chip:
+//   startWatchdog() -> whether the one before bit; feedWatchdog()
+//   measure(pin) -> code of ADC_BITS bits, ends at the detectors' supply
+//   serialOpen(), serialWrite(data, size) -> bytes taken at once
 #pragma once
 
 #include <Arduino.h>
 #include <ArduinoBLE.h>
-#include <nrf.h>
 #include <utility/ATT.h>
 
 #include "blink.h"
@@ -12,12 +14,11 @@
 
 namespace lumitip {
 
-class Nano33Ble {
+template <class Chip>
+class Nano {
  public:
   // Returns what is wrong already.
   uint16_t begin() {
-    const bool bitten = (NRF_POWER->RESETREAS & POWER_RESETREAS_DOG_Msk) != 0;
-    NRF_POWER->RESETREAS = POWER_RESETREAS_DOG_Msk;  // writing a one clears it
     for (uint8_t line = 0; line < SELECT_LINES; ++line) {
       pinMode(SELECT_PINS[line], OUTPUT);
     }
@@ -29,13 +30,12 @@ class Nano33Ble {
     analogReadResolution(ADC_BITS);
     Serial.begin(115200);  // over USB: the rate means nothing
     beginBluetooth();
-    beginWatchdog();
-    return bitten ? WATCHDOG_RESET : 0;
+    return chip_.startWatchdog() ? WATCHDOG_RESET : 0;
   }
 
   // Between frames: serves the radio and tells the watchdog that all is well.
   void poll() {
-    NRF_WDT->RR[0] = WDT_RR_RR_Reload;
+    chip_.feedWatchdog();
     if (bluetooth_) {
       BLE.poll();
     }
@@ -48,14 +48,14 @@ class Nano33Ble {
       flashes = NO_BLUETOOTH;
     } else if (faults & MTU_TOO_SMALL) {
       flashes = TOO_SMALL_MTU;
-    } else if (!BLE.connected() && !serialOpen()) {
+    } else if (!BLE.connected() && !chip_.serialOpen()) {
       flashes = WAITING;
     }
     digitalWrite(LED_BUILTIN, lightOn(millis(), flashes) ? HIGH : LOW);
   }
 
-  // The radio has a thread of the same priority, which runs at once while this one sleeps. Sleeping
-  // for a millisecond takes up to two.
+  // The radio has a thread of its own, which runs at once while this one sleeps. Sleeping for a
+  // millisecond takes up to two.
   void rest(uint32_t idleUs) {
     if (idleUs > 2500) {
       delay(1);
@@ -63,7 +63,7 @@ class Nano33Ble {
   }
 
   void select(uint8_t line, bool high) { digitalWrite(SELECT_PINS[line], high ? HIGH : LOW); }
-  uint16_t read(uint16_t mux) { return static_cast<uint16_t>(analogRead(ADC_PINS[mux])); }
+  uint16_t read(uint16_t mux) { return chip_.measure(ADC_PINS[mux]); }
   void light(bool on) { digitalWrite(EMITTER_PIN, on ? HIGH : LOW); }
   void waitUs(uint32_t us) { delayMicroseconds(us); }
   uint32_t microseconds() { return micros(); }
@@ -92,14 +92,8 @@ class Nano33Ble {
     return fits && write(legacy_, data, size);
   }
 
-  // Not `if (Serial)`, which waits a millisecond on this board to let other threads run.
-  bool serialOpen() { return Serial.connected(); }
-
-  size_t serialWrite(const uint8_t* data, size_t size) {
-    uint32_t taken = 0;  // write() would wait for a computer that does not read
-    Serial.send_nb(const_cast<uint8_t*>(data), size, &taken);
-    return taken;
-  }
+  bool serialOpen() { return chip_.serialOpen(); }
+  size_t serialWrite(const uint8_t* data, size_t size) { return chip_.serialWrite(data, size); }
 
  private:
   static constexpr uint16_t MOST_HANDLES = 8;
@@ -128,16 +122,7 @@ class Nano33Ble {
     bluetooth_ = BLE.advertise() != 0;
   }
 
-  void beginWatchdog() {
-    if (LUMITIP_WATCHDOG_S == 0) {
-      return;
-    }
-    NRF_WDT->CONFIG = WDT_CONFIG_SLEEP_Run << WDT_CONFIG_SLEEP_Pos;
-    NRF_WDT->CRV = 32768u * LUMITIP_WATCHDOG_S - 1;
-    NRF_WDT->RREN = WDT_RREN_RR0_Msk;
-    NRF_WDT->TASKS_START = 1;
-  }
-
+  Chip chip_;
   const int ADC_PINS[MUXES] = {LUMITIP_ADC_PINS};
   const int SELECT_PINS[SELECT_LINES] = {LUMITIP_SELECT_PINS};
 
