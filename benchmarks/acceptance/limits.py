@@ -19,6 +19,7 @@ STEP_DOWN_V = 1.0
 MODULE_WIRES = 9
 SCREW_FROM_MIDDLE_MM, BODY_MM, SEAT_GAP_MM = 17.78, 75.0, 0.3
 EDGE_BELOW_PLATE_MM = 0.3
+THICKEST_FLEXIBLE_MM = 0.2
 BENCH = "bench"
 """The controller that cannot be bought: it stands for one of the user's own."""
 
@@ -190,6 +191,9 @@ def _nut(values: Values) -> Iterator[str]:
 
 
 def _bending(values: Values) -> Iterator[str]:
+    flex, board = values["backing.variant"] == "flex", values["stack.pcb_mm"]
+    if flex != (board <= THICKEST_FLEXIBLE_MM):
+        yield f"bending: a board of {board:g} mm, {values['backing.variant']}"
     if bends(values["backing.material"]) != (values["backing.variant"] == "flex"):
         yield f"bending: {values['backing.variant']} of {values['backing.material']}"
 
