@@ -35,7 +35,8 @@ def main() -> int:
         derived = list(zip(designs, pool.map(derive_file, files, chunksize=8), strict=True))
         _print_kinds(derived)
         refused = [(d, t) for d, t in derived if t.refusals]
-        verdicts = list(pool.map(_verdict, refused))
+        searched = (i < options.search for i in range(len(refused)))
+        verdicts = list(pool.map(confirm, *zip(*refused, strict=True), searched)) if refused else []
         _print_refused(refused, verdicts)
         chosen = _to_build(derived, options.build, options.seed)
         built = []
@@ -60,6 +61,7 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--count", type=int, default=500, help="designs to derive")
     parser.add_argument("--seed", type=int, default=1, help="another seed draws other designs")
     parser.add_argument("--build", type=int, default=60, help="accepted designs to build")
+    parser.add_argument("--search", type=int, default=20, help="refusals to look for a way out of")
     parser.add_argument("--jobs", type=int, default=2, help="processes")
     parser.add_argument("--keep", type=Path, help="folder for the files of designs that fail")
     return parser.parse_args()
@@ -69,10 +71,6 @@ def _write(folder: Path, drawn: Design) -> Path:
     file = folder / f"{drawn.name}.toml"
     file.write_text(drawn.text, encoding="utf-8")
     return file
-
-
-def _verdict(result: Result) -> Verdict:
-    return confirm(*result)
 
 
 def _to_build(derived: list[Result], count: int, seed: int) -> list[Design]:

@@ -40,10 +40,14 @@ class Trial:
 def design_folder() -> Iterator[Path]:
     """A folder as a user has it: presets, catalogue, and room for files that extend them."""
     with tempfile.TemporaryDirectory(prefix="acceptance") as name:
-        folder = Path(name)
-        for part in ("parts", "presets"):
-            shutil.copytree(DESIGN / part, folder / part)
-        yield folder
+        fill(Path(name))
+        yield Path(name)
+
+
+def fill(folder: Path) -> None:
+    """Copy presets and catalogue into a folder."""
+    for part in ("parts", "presets"):
+        shutil.copytree(DESIGN / part, folder / part)
 
 
 def derive_file(file: Path) -> Trial:
