@@ -61,7 +61,12 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--count", type=int, default=500, help="designs to derive")
     parser.add_argument("--seed", type=int, default=1, help="another seed draws other designs")
     parser.add_argument("--build", type=int, default=60, help="accepted designs to build")
-    parser.add_argument("--search", type=int, default=20, help="refusals to look for a way out of")
+    parser.add_argument(
+        "--search",
+        type=int,
+        default=4,
+        help="refusals without a physical reason to look for a way out of",
+    )
     parser.add_argument("--jobs", type=int, default=2, help="processes")
     parser.add_argument("--keep", type=Path, help="folder for the files of designs that fail")
     return parser.parse_args()

@@ -47,11 +47,12 @@ def confirm(design: Design, trial: Trial, search: bool = True) -> Verdict:
     Args:
         design: what was refused.
         trial: with its problems.
-        search: whether to look for values that would have been accepted, which takes a minute.
+        search: whether to look for values that would have been accepted where physics has no
+            reason, too; it takes some minutes. Where physics has one, the search may deny it.
     """
     known = reasons(Values(design.edits, design.base))
     unexplained = sorted({r.field for r in trial.refusals} - set(known))
-    way = way_out(design) if search else None
+    way = way_out(design) if search or not unexplained else None
     if way is not None:
         return Verdict(False, f"NOT CONFIRMED: accepted with {way}")
     if unexplained:
@@ -87,9 +88,9 @@ def lack_of_power(values: Values) -> str:
     if need_ma > led["max_current_ma"]:
         return f"power: {need_ma:.1f} mA needed, the LED takes {led['max_current_ma']:g} mA"
     drawn_ma = math.ceil(values.cells / longest) * need_ma
-    if drawn_ma > values["supply.max_ma"]:
-        return f"power: {drawn_ma:.0f} mA needed, {values['supply.max_ma']:g} mA there"
-    heat_w, most_w = drawn_ma * volts / 1000, values["emitter.max_heat_w"]
+    if drawn_ma > values.number("supply.max_ma"):
+        return f"power: {drawn_ma:.1f} mA needed, {values.number('supply.max_ma'):g} mA there"
+    heat_w, most_w = drawn_ma * volts / 1000, values.number("emitter.max_heat_w")
     if heat_w > most_w:
         return f"power: {heat_w:.2f} W needed, {most_w:g} W allowed in the finger"
     return ""
@@ -102,5 +103,5 @@ def least_current_ma(values: Values) -> float:
     """
     detector = entries("photodetectors")[values["receiver.photodetector"]]
     volts = entries("controllers")[values["controller.board"]]["supply_v"]
-    full_ua = 1e6 * (volts - detector["saturation_v"]) / values["receiver.pull_up_ohm"]
+    full_ua = 1e6 * (volts - detector["saturation_v"]) / values.number("receiver.pull_up_ohm")
     return float(PUBLISHED_MA * full_ua / detector["light_current_ua"])

@@ -9,7 +9,7 @@ from acceptance.limits import Values, crossed
 from acceptance.parts import BASE, Table, preset, presets
 
 COUNTS, COUNT_WEIGHTS = (1, 2, 3, 4, 5), (30, 30, 20, 12, 8)
-PRESET_SHARE = 0.06
+PRESET_SHARE = 0.04
 EDITS = {kind.name: kind for kind in KINDS}
 
 

@@ -20,6 +20,20 @@ MODULE_WIRES = 9
 SCREW_FROM_MIDDLE_MM, BODY_MM, SEAT_GAP_MM = 17.78, 75.0, 0.3
 EDGE_BELOW_PLATE_MM = 0.3
 THICKEST_FLEXIBLE_MM = 0.2
+PUBLISHED = {
+    "board.side_margin_mm": 5.8,
+    "board.tip_margin_mm": 3.65,
+    "outline.tip_margin_mm": 6.2,
+    "outline.end_margin_mm": 5.4,
+    "outline.shoulder_margin_mm": 7.5,
+    "mask.flap_mm": 13.0,
+    "mask.allowance_mm": 0.75,
+    "stack.floor_mm": 0.8,
+    "stack.pcb_mm": 1.6,
+    "receiver.pull_up_ohm": 75000.0,
+    "supply.max_ma": 500.0,
+    "emitter.max_heat_w": 2.0,
+}
 BENCH = "bench"
 """The controller that cannot be bought: it stands for one of the user's own."""
 
@@ -34,10 +48,10 @@ class Values:
     def __getitem__(self, field: str) -> Any:
         return self.edits.get(field, preset(self.base)[field])
 
-    def number(self, field: str, otherwise: float) -> float:
-        """A length; `otherwise` where the preset leaves it to follow from others."""
+    def number(self, field: str) -> float:
+        """A figure; the published one where the preset leaves it to follow from others."""
         value = self[field]
-        return float(value) if isinstance(value, int | float) else otherwise
+        return float(value) if isinstance(value, int | float) else PUBLISHED[field]
 
     def part(self, field: str, kind: str) -> Table | None:
         """The entry that a field names; none where the preset leaves it to follow from others."""
@@ -81,11 +95,11 @@ def finger_mm(values: Values) -> tuple[float, float]:
     pitch, columns = values["grid.pitch_mm"], values.columns
     wide = (len(columns) - 1) * pitch * math.sqrt(3) / 2
     tall = (max(columns) - 1) * pitch + (pitch / 2 if len(set(columns)) == 1 < len(columns) else 0)
-    side = values.number("board.side_margin_mm", 5.8) + values["outline.shoulder_margin_mm"]
-    ends = values.number("board.tip_margin_mm", 3.65) + values["outline.tip_margin_mm"]
-    ends += values["outline.end_margin_mm"] + END_MM + CONNECTOR_MM + 2 * CHANNEL_MM
+    side = values.number("board.side_margin_mm") + values.number("outline.shoulder_margin_mm")
+    ends = values.number("board.tip_margin_mm") + values.number("outline.tip_margin_mm")
+    ends += values.number("outline.end_margin_mm") + END_MM + CONNECTOR_MM + 2 * CHANNEL_MM
     mux = max(multiplexers(values), key=lambda m: len(m["inputs"]))
-    board = wide + 2 * values.number("board.side_margin_mm", 5.8)
+    board = wide + 2 * values.number("board.side_margin_mm")
     gripper = entries("grippers")[values["coupling.gripper"]]
     board = max(board, gripper["seat_width_mm"] + 18)
     row = max(int(board / (mux["body_mm"][0] + 1.45)), 1)
@@ -94,7 +108,7 @@ def finger_mm(values: Values) -> tuple[float, float]:
 
 
 def _page(values: Values) -> Iterator[str]:
-    around = 2 * (values["mask.flap_mm"] + values["mask.allowance_mm"])
+    around = 2 * (values.number("mask.flap_mm") + values.number("mask.allowance_mm"))
     for side, room, ruler in zip(
         finger_mm(values), PAGE_MM, values["mask.measured_ruler_mm"], strict=True
     ):
@@ -168,9 +182,9 @@ def _module(values: Values) -> Iterator[str]:
 
 def _plate(values: Values) -> Iterator[str]:
     edge = values.edits.get("tip.edge_mm")
-    plate = values["stack.floor_mm"] + values["stack.pcb_mm"] * (
-        values["backing.variant"] == "rigid"
-    )
+    plate = values.number("stack.floor_mm")
+    if values["backing.variant"] == "rigid":
+        plate += values.number("stack.pcb_mm")
     printer = values.part("printer.profile", "printers")
     line = printer["line_mm"] if printer else 0.0
     if edge is not None and not line <= edge <= plate - EDGE_BELOW_PLATE_MM:
@@ -186,13 +200,14 @@ def nut_has_room(screw: str) -> bool:
 
 
 def _nut(values: Values) -> Iterator[str]:
-    if not nut_has_room(values["holder.screw"]):
-        yield f"nut: no room for one of {values['holder.screw']}"
+    screw = values.edits.get("holder.screw")
+    if screw and not nut_has_room(screw):
+        yield f"nut: no room for one of {screw}"
 
 
 def _bending(values: Values) -> Iterator[str]:
     flex, board = values["backing.variant"] == "flex", values["stack.pcb_mm"]
-    if flex != (board <= THICKEST_FLEXIBLE_MM):
+    if not isinstance(board, str) and flex != (board <= THICKEST_FLEXIBLE_MM):
         yield f"bending: a board of {board:g} mm, {values['backing.variant']}"
     if bends(values["backing.material"]) != (values["backing.variant"] == "flex"):
         yield f"bending: {values['backing.variant']} of {values['backing.material']}"

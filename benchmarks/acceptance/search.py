@@ -12,7 +12,7 @@ from acceptance.generator import Design
 from acceptance.parts import Table, bypasses, entries
 from acceptance.trial import Trial, derive_file, design_folder
 
-TRIES = 400
+TRIES = 150
 CURRENTS_MA = (19.2, 18.0, 16.0, 14.0, 12.0, 10.0, 8.0, 6.0, 5.0, 4.0, 3.0, 2.0)
 
 
