@@ -38,7 +38,7 @@ def main() -> int:
         searched = (i < options.search for i in range(len(refused)))
         verdicts = list(pool.map(confirm, *zip(*refused, strict=True), searched)) if refused else []
         _print_refused(refused, verdicts)
-        chosen = _to_build(derived, options.build, options.seed)
+        chosen = choose(derived, options.build, options.seed)
         built = []
         for drawn, trial in zip(
             chosen, pool.map(build_file, [folder / f"{d.name}.toml" for d in chosen]), strict=True
@@ -46,13 +46,18 @@ def main() -> int:
             print(f"built {drawn.name} ({', '.join(drawn.kinds)}): {_told(trial)}", flush=True)
             built.append((drawn, trial))
     _print_crashed([*derived, *built])
-    _keep(options.keep, derived, built)
+    keep(options.keep, derived, built)
+    return judged([t for _, t in derived], verdicts, [t for _, t in built])
+
+
+def judged(derived: list[Trial], verdicts: list[Verdict], built: list[Trial]) -> int:
+    """Print the goals; the exit code, 0 if all are met."""
     goals = Goals()
-    accepted = sum(t.accepted for _, t in derived)
-    goals.at_least("designs accepted", accepted / options.count, LEAST_ACCEPTED)
+    share = sum(t.accepted for t in derived) / len(derived)
+    goals.at_least("designs accepted", share, LEAST_ACCEPTED)
     goals.at_most("refusals not confirmed", sum(not v.confirmed for v in verdicts), 0)
-    goals.at_most("crashes", sum(bool(t.crash) for _, t in (*derived, *built)), 0)
-    goals.at_most("built designs with a failed check", sum(bool(t.failed) for _, t in built), 0)
+    goals.at_most("crashes", sum(bool(t.crash) for t in (*derived, *built)), 0)
+    goals.at_most("built designs with a failed check", sum(bool(t.failed) for t in built), 0)
     return goals.told()
 
 
@@ -78,8 +83,8 @@ def _write(folder: Path, drawn: Design) -> Path:
     return file
 
 
-def _to_build(derived: list[Result], count: int, seed: int) -> list[Design]:
-    """Some of the accepted designs, every kind of edit among them where there are enough."""
+def choose(derived: list[Result], count: int, seed: int) -> list[Design]:
+    """Some of the accepted designs to build, of as many kinds of edit as there are."""
     left = [d for d, t in derived if t.accepted]
     Random(seed).shuffle(left)
     seen: Counter[str] = Counter()
@@ -121,7 +126,8 @@ def _print_crashed(results: list[Result]) -> None:
             print(f"\ncrashed {drawn.name} ({', '.join(drawn.kinds)})\n{trial.crash}")
 
 
-def _keep(folder: Path | None, derived: list[Result], built: list[Result]) -> None:
+def keep(folder: Path | None, derived: list[Result], built: list[Result]) -> None:
+    """Write the files of the designs that fail into a folder, if one is named."""
     failed = [d for d, t in derived if not t.accepted]
     failed += [d for d, t in built if t.failed or t.crash]
     if folder and failed:
