@@ -4,7 +4,7 @@ OUT ?= outputs
 PYTHON ?= python3
 BIN := .venv/bin
 SETUP := .venv/.lumitip-setup
-BENCHES = fab boards estimation learning real_frame processing protocol links twin view
+BENCHES = fab boards estimation learning real_frame processing protocol links twin view acceptance
 CHECK = $(BIN)/lumitip-fab check --out $(OUT) --junit $(OUT)/checks.xml --report $(OUT)/checks.json
 
 .DEFAULT_GOAL := help
