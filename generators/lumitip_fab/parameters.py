@@ -31,8 +31,8 @@ Column = Annotated[int, Field(ge=1, le=256)]
 class Grid(Strict):
     """The hexagonal grid of cells."""
 
-    columns: tuple[Column, ...] = Field(min_length=2, max_length=256)
-    """Cells of each column, leftmost first in the receiver's frame; neighbours differ by one."""
+    columns: tuple[Column, ...] = Field(min_length=1, max_length=256)
+    """Cells of each column, from the left in the receiver's frame: any lengths, 3 cells or more."""
     pitch_mm: float = Field(ge=1.5, le=30)
     """Distance of a cell to each of its neighbours (mm)."""
 

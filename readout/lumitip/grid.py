@@ -7,9 +7,15 @@ r"""The hexagonal grid of cells: the one place where positions and neighbours ar
                o       row 1
            o       o   row 2
 
-Columns are centred on y = 0 and stand `pitch_mm * sqrt(3) / 2` apart; the origin is the mean of
-the cell centres. Cells are ordered column by column, leftmost first in the receiver's sensor
-frame, row 0 nearest the tip.
+Columns may have any lengths. They stand `pitch_mm * sqrt(3) / 2` apart, and each column's lattice
+is offset by half a pitch from the one before it. Where the lattice allows it, every column is
+centred on y = 0: lengths of neighbouring columns then differ by 1, 3, 5 ... Otherwise every column
+is shifted by a quarter of the pitch, the smallest shift that suits all of them: columns of equal
+length alternate towards the tip and away from it, the leftmost towards the tip.
+
+x = 0 is the mean of the cell centres; y = 0 is the centre line of the columns, which is their mean
+too where every column is centred. Cells are ordered column by column, leftmost first in the
+receiver's sensor frame, row 0 nearest the tip.
 """
 
 import math
@@ -33,7 +39,7 @@ class Grid:
     x_mm: Floats
     """Distance from the mean of the cell centres, to the right in the receiver's frame."""
     y_mm: Floats
-    """Distance from the mean of the cell centres, towards the tip."""
+    """Distance from the centre line of the columns, towards the tip."""
     column: Integers
     """Column of each cell, 0 leftmost."""
     row: Integers
@@ -49,27 +55,24 @@ def hexagonal_grid(columns: Sequence[int], pitch_mm: float) -> Grid:
     """Cell centres of a hexagonal grid.
 
     Args:
-        columns: number of cells of each column; neighbouring columns differ by one.
+        columns: number of cells of each column, one or more.
         pitch_mm: distance between neighbouring cells (mm), finite and above zero.
 
     Raises:
-        ArgumentError: if two neighbouring columns do not differ by exactly one cell, a column is
-            empty or no whole number, or the pitch is no such number.
+        ArgumentError: if a column is empty or no whole number, or the pitch is no such number.
     """
     counts = _counts(columns)
     if not 0.0 < as_float(pitch_mm) < math.inf:
         raise ArgumentError(f"pitch_mm: {shown(pitch_mm)} given, a number above 0 is needed")
     pitch_mm = float(pitch_mm)
-    column = np.repeat(np.arange(counts.size), counts)
-    first = np.cumsum(counts) - counts
-    row = np.arange(counts.sum()) - first[column]
-    y_mm = ((counts[column] - 1) / 2.0 - row) * pitch_mm
+    column, row = _places(counts)
+    y_mm = _quarters(counts) / 4.0 * pitch_mm
     across = column - column.mean()
     return Grid(across * column_pitch_mm(pitch_mm), y_mm, column, row)
 
 
 def hexagonal_neighbours(columns: Sequence[int]) -> Integers:
-    """All pairs of neighbouring cells of a hexagonal grid, each pair once.
+    """All pairs of neighbouring cells of a hexagonal grid, those one pitch apart, each pair once.
 
     Args:
         columns: number of cells of each column, as for `hexagonal_grid`.
@@ -80,18 +83,42 @@ def hexagonal_neighbours(columns: Sequence[int]) -> Integers:
     Raises:
         ArgumentError: as `hexagonal_grid`, of columns.
     """
-    index: dict[tuple[int, int], int] = {}
-    for column, count in enumerate(_counts(columns).tolist()):
-        for row in range(count):
-            # Height in half pitches: an integer, so neighbours are found without tolerance.
-            index[column, count - 1 - 2 * row] = len(index)
+    counts = _counts(columns)
+    columns_of, heights = _places(counts)[0].tolist(), _quarters(counts).tolist()
+    index = {place: i for i, place in enumerate(zip(columns_of, heights, strict=True))}
     pairs = [
         (here, index[there])
         for (column, height), here in index.items()
-        for there in ((column, height - 2), (column + 1, height + 1), (column + 1, height - 1))
+        for there in ((column, height - 4), (column + 1, height + 2), (column + 1, height - 2))
         if there in index
     ]
     return np.array(sorted(pairs), dtype=np.int64).reshape(-1, 2)
+
+
+def collinear(x_mm: Floats, y_mm: Floats) -> bool:
+    """Whether all cells lie on one line, as in a single column: they cannot tell the direction of
+    a border that crosses it."""
+    places = np.stack([x_mm - x_mm[0], y_mm - y_mm[0]])
+    sizes = np.linalg.svd(places, compute_uv=False)
+    return bool(sizes[-1] <= 1e-6 * sizes[0])
+
+
+def _places(counts: Integers) -> tuple[Integers, Integers]:
+    """Column and row of each cell."""
+    column = np.repeat(np.arange(counts.size), counts)
+    first = np.cumsum(counts) - counts
+    return column, np.arange(counts.sum()) - first[column]
+
+
+def _quarters(counts: Integers) -> Integers:
+    """Height of each cell above y = 0 in quarters of the pitch: whole numbers, so that neighbours
+    are found without a tolerance."""
+    column, row = _places(counts)
+    # Columns of one class can be centred on the same lattice, and columns of the other class are
+    # half a pitch off it.
+    other_class = (counts - 1 - np.arange(counts.size)) % 2 != (counts[0] - 1) % 2
+    shifts = np.where(other_class, -1, 1) if other_class.any() else np.zeros_like(counts)
+    return np.asarray(2 * (counts[column] - 1) - 4 * row + shifts[column], dtype=np.int64)
 
 
 def _counts(columns: Sequence[int]) -> Integers:
@@ -104,8 +131,6 @@ def _counts(columns: Sequence[int]) -> Integers:
     counts = told.astype(np.int64)
     if counts.size == 0 or (counts < 1).any():
         raise _refused(columns, "every column needs at least one cell")
-    if (np.abs(np.diff(counts)) != 1).any():
-        raise _refused(columns, "neighbouring columns must differ by one cell")
     return counts
 
 

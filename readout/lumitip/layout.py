@@ -65,8 +65,9 @@ class Optics:
 class Layout:
     """Cells of a fingertip in frame order, in the receiver's sensor frame.
 
-    Sensor frame: gripping face seen with the tip up, origin at the mean of the cell centres on
-    the outer face of the film, x to the right, y towards the tip, z out of the face; mm.
+    Sensor frame: gripping face seen with the tip up, x to the right from the mean of the cell
+    centres, y towards the tip from the centre line of the columns, z out of the face from the outer
+    face of the film; mm.
     Two layouts are equal when their `design_hash` is. Arrays are read-only.
     """
 

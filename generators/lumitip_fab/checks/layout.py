@@ -1,14 +1,15 @@
-"""`layout.json` against the readout's own cell map, neighbours and wiring."""
+"""`layout.json` against cells and neighbours worked out anew, and against the wiring."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from lumitip.errors import LayoutError
-from lumitip.grid import hexagonal_grid, hexagonal_neighbours
 from lumitip.layout import Layout
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.design import Design
@@ -28,22 +29,43 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
         return
     same_hash = layout.design_hash == design.layout.design_hash
     yield Measurement("layout.hash", _FILE, float(same_hash), 1, 1, note="equals design.json's")
-    grid = hexagonal_grid(design.grid.columns, design.grid.pitch_mm)
-    if len(layout) != grid.x_mm.size:
-        reason = f"{len(layout)} cells, the grid has {grid.x_mm.size}"
+    cells = _cells(design.grid.columns, design.grid.pitch_mm)
+    if len(layout) != len(cells):
+        reason = f"{len(layout)} cells, the grid has {len(cells)}"
         yield from (unreadable(name, _FILE, reason) for name in _NAMES)
         return
-    apart = np.hypot(layout.x_mm - grid.x_mm, layout.y_mm - grid.y_mm).max()
+    column, row, x_mm, y_mm = np.array(cells).T
+    apart = np.hypot(layout.x_mm - x_mm, layout.y_mm - y_mm).max()
     yield Measurement("layout.cells", _FILE, float(apart), 0, 1e-5, "mm", "worst cell centre")
-    misplaced = (layout.column != grid.column) | (layout.row != grid.row)
+    misplaced = (layout.column != column) | (layout.row != row)
     yield Measurement("layout.order", _FILE, float(misplaced.sum()), 0, 0, "cells", "column, row")
-    wanted = set(map(tuple, hexagonal_neighbours(design.grid.columns).tolist()))
+    # Cells of a hexagonal lattice are one pitch apart, or 1.73 pitches and more.
+    near = cKDTree(np.stack([x_mm, y_mm], axis=1)).query_pairs(1.3 * design.grid.pitch_mm)
     found = set(map(tuple, layout.neighbours.tolist()))
-    yield Measurement("layout.neighbours", _FILE, float(len(wanted ^ found)), 0, 0, "pairs",
-                      f"of {len(wanted)} that differ")  # fmt: skip
+    yield Measurement("layout.neighbours", _FILE, float(len(near ^ found)), 0, 0, "pairs",
+                      f"of {len(near)} that differ")  # fmt: skip
     yield _optics(layout, design)
     yield _wiring(layout, design)
     yield _facing(layout, design)
+
+
+def _cells(columns: Sequence[int], pitch_mm: float) -> list[tuple[int, int, float, float]]:
+    """Column, row, x and y of each cell.
+
+    From one column to the next the lattice moves by half a pitch. Centred columns move so by
+    themselves where one length is odd and the other even; otherwise they are a quarter of the pitch
+    off, to opposite sides.
+    """
+    alike = [(a - b) % 2 == 0 for a, b in pairwise(columns)]
+    side = 1.0 if any(alike) else 0.0
+    middle = sum(c * n for c, n in enumerate(columns)) / sum(columns)
+    cells = []
+    for column, count in enumerate(columns):
+        side = -side if column and alike[column - 1] else side
+        top_mm = ((count - 1) / 2.0 + side / 4.0) * pitch_mm
+        x_mm = (column - middle) * pitch_mm * math.sin(math.pi / 3.0)
+        cells += [(column, row, x_mm, top_mm - row * pitch_mm) for row in range(count)]
+    return cells
 
 
 def _optics(layout: Layout, design: Design) -> Measurement:

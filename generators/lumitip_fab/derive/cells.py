@@ -1,16 +1,14 @@
-"""The cells: the grid of `lumitip.grid`, refused where it cannot be one."""
+"""The cells: the grid of `lumitip.grid`, refused where it has too few cells or too many."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
 from lumitip.grid import Floats, Integers, hexagonal_grid, hexagonal_neighbours
 from lumitip_fab.derive.faults import Faults
 from lumitip_fab.parameters import Parameters
-from lumitip_fab.wording import brief
 
+LEAST_CELLS = 3
 MOST_CELLS = 4096
 LEAST_WEB_MM = 0.4
 
@@ -31,20 +29,13 @@ class Cells:
 
 
 def derive_cells(p: Parameters, faults: Faults) -> Cells:
-    """The cells of the grid; none where its columns are refused."""
+    """The cells of the grid; none where there are too few or too many."""
     columns, pitch = p.grid.columns, p.grid.pitch_mm
-    uneven = _not_by_one(columns)
-    if uneven:
-        left, right = uneven
-        faults.refuse(
-            "grid.columns",
-            f"{brief(columns)} given, columns {left} and {right} (of 0 to {len(columns) - 1}) have "
-            f"{columns[left]} and {columns[right]} cells; neighbouring columns must differ by one",
-        )
-    if sum(columns) > MOST_CELLS:
-        faults.refuse(
-            "grid.columns", f"{sum(columns)} cells given, at most {MOST_CELLS} are allowed"
-        )
+    count = sum(columns)
+    if count < LEAST_CELLS:
+        faults.refuse("grid.columns", f"{count} cells given, at least {LEAST_CELLS} are needed")
+    if count > MOST_CELLS:
+        faults.refuse("grid.columns", f"{count} cells given, at most {MOST_CELLS} are allowed")
     web = pitch - p.mask.hole_mm
     if web < LEAST_WEB_MM:
         faults.refuse(
@@ -53,7 +44,7 @@ def derive_cells(p: Parameters, faults: Faults) -> Cells:
             f"{pitch:g} mm apart; at least {LEAST_WEB_MM} mm is needed: "
             f"at most {max(pitch - LEAST_WEB_MM, 0):.2f} is allowed",
         )
-    if uneven or sum(columns) > MOST_CELLS:
+    if not LEAST_CELLS <= count <= MOST_CELLS:
         nowhere, none = np.zeros(0), np.zeros(0, dtype=np.int64)
         return Cells(nowhere, nowhere, none, none, none.reshape(0, 2))
     grid = hexagonal_grid(columns, pitch)
@@ -61,8 +52,3 @@ def derive_cells(p: Parameters, faults: Faults) -> Cells:
     # To a nanometre, as in `layout.json`, so that every artefact has the very same positions.
     x_mm, y_mm = (np.round(v, 6) + 0.0 for v in (grid.x_mm, grid.y_mm))
     return Cells(x_mm, y_mm, grid.column, grid.row, neighbours)
-
-
-def _not_by_one(columns: Sequence[int]) -> tuple[int, int] | None:
-    steps = enumerate(pairwise(columns))
-    return next(((i, i + 1) for i, (a, b) in steps if abs(a - b) != 1), None)

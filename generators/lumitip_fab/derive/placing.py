@@ -98,7 +98,8 @@ def _per_row(given: Input, width_mm: float) -> int:
 def tip_holes(
     given: Input, cells: Cells, parts: tuple[Part, ...], box: Box, faults: Faults
 ) -> tuple[Point, ...]:
-    """Holes ahead of the first row: outermost and middle of the columns that leave room.
+    """Holes ahead of the first row: outermost and middle of the columns that leave room, or near
+    the long edges where fewer than two columns do.
 
     Args:
         given: the input.
@@ -110,17 +111,25 @@ def tip_holes(
     p = given.parameters
     y = box.y_max_mm - p.board.hole_edge_mm
     keep = p.board.hole_mm / 2 + HOLE_CLEARANCE_MM
+    apart = p.board.hole_mm + HOLES_APART_MM
+    farthest = box.x_max_mm - p.board.hole_mm / 2 - HOLE_WEB_MM
     boxes = np.array(
         [(b.x_min_mm, b.x_max_mm, b.y_min_mm, b.y_max_mm) for b in (q.box for q in parts)]
     )
-    room: list[float] = []
-    for x in sorted({round(float(v), 6) for v in cells.x_mm}):
-        dx = np.maximum(np.maximum(boxes[:, 0] - x, x - boxes[:, 1]), 0)
-        dy = np.maximum(np.maximum(boxes[:, 2] - y, y - boxes[:, 3]), 0)
-        inside = abs(x) + p.board.hole_mm / 2 + HOLE_WEB_MM <= box.x_max_mm + 1e-9
-        if inside and np.hypot(dx, dy).min() >= keep:
-            room.append(x)
-    if len(room) < 2:
+
+    def with_room(places: list[float]) -> list[float]:
+        x = np.array(places)
+        dx = np.maximum(np.maximum(boxes[:, :1] - x, x - boxes[:, 1:2]), 0)
+        dy = np.maximum(np.maximum(boxes[:, 2:3] - y, y - boxes[:, 3:]), 0)
+        free = (np.hypot(dx, dy).min(axis=0) >= keep) & (np.abs(x) <= farthest + 1e-9)
+        return [float(place) for place in x[free]]
+
+    columns = sorted({round(float(v), 6) for v in cells.x_mm})
+    room = with_room(columns)
+    if not _spans(room, apart):
+        edge = math.floor(farthest * 10) / 10
+        room = with_room(sorted({-edge, *columns, edge}))
+    if not _spans(room, apart):
         top = max(float(b[3]) for b in boxes)
         least = p.board.hole_edge_mm + keep + top - float(cells.y_mm.max())
         faults.refuse(
@@ -130,17 +139,15 @@ def tip_holes(
             f"{least:.2f} is always enough",
         )
         return ()
-    apart = p.board.hole_mm + HOLES_APART_MM
-    faults.refuse_unless(
-        room[-1] - room[0] >= apart,
-        "board.hole_mm",
-        f"{p.board.hole_mm:g} given, the outer holes at the tip are only {room[-1] - room[0]:.2f} "
-        f"mm apart: at most {room[-1] - room[0] - HOLES_APART_MM:.2f} is allowed, or a wider grid",
-    )
     middle = min(room, key=lambda x: abs(x - (room[0] + room[-1]) / 2))
     if min(middle - room[0], room[-1] - middle) < apart:
         middle = room[0]
     return tuple((x, y) for x in sorted({room[0], middle, room[-1]}))
+
+
+def _spans(room: list[float], apart_mm: float) -> bool:
+    """Whether two holes have room, one at each end of the places."""
+    return bool(room) and room[-1] - room[0] >= apart_mm
 
 
 def resistors(

@@ -1,8 +1,8 @@
 """`Design`: everything that is derived from the parameters, once. Types only.
 
 Every length is in mm and in the sensor frame of the finger it belongs to, unless it says
-otherwise: gripping face seen with the tip up, origin at the mean of the cell centres on the
-film's outer face, x to the right, y towards the tip, z out of the face.
+otherwise: gripping face seen with the tip up, x to the right from the mean of the cell centres, y
+towards the tip from the centre line of the columns, z out of the face from the film's outer face.
 """
 
 from dataclasses import dataclass

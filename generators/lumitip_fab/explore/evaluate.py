@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from lumitip.estimation import EstimationError
 from lumitip_fab.derive import resolve
 from lumitip_fab.encoding import canonical
 from lumitip_fab.errors import InputError
@@ -59,8 +60,12 @@ def evaluate(job: Job) -> Record:
     except InputError as error:
         return {"key": job.key, "refused": [f"{p.field}: {p.message}" for p in error.problems]}
     design, layout = resolved.design, resolved.design.layout
+    try:
+        accurate = accuracy(layout, job.sample)
+    except EstimationError as error:
+        return {"key": job.key, "refused": [f"grid.columns: {error}"]}
     figures = {
-        **accuracy(layout, job.sample),
+        **accurate,
         "cells": float(len(layout)),
         "grid_cm2": float(np.ptp(layout.x_mm) * np.ptp(layout.y_mm)) / 100.0,
         "cost": cost(resolved.given, design, job.prices),

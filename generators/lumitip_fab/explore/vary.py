@@ -13,6 +13,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+import numpy as np
 from pydantic import ValidationError
 
 from lumitip_fab.errors import InputError, Problem
@@ -96,13 +97,41 @@ def changed(given: Input, changes: Changes, keep_size: bool = False) -> Input:
 def same_size(columns: Sequence[int], pitch_mm: float, new_mm: float) -> tuple[int, ...]:
     """Columns of a grid of another pitch that is as wide and as long, to the nearest cell.
 
-    Long and short columns alternate, and the first is long or short as it was.
+    Where long and short columns alternate they do so still, and the first is long or short as it
+    was; of any other grid the lengths follow its silhouette, and columns that were centred stay so.
     """
     share = pitch_mm / new_mm
-    count = max(2, round((len(columns) - 1) * share) + 1)
-    longest = max(2, round((max(columns) - 1) * share) + 1)
-    short_first = columns[0] < columns[1]
-    return tuple(longest - (i + short_first) % 2 for i in range(count))
+    count = max(2, round((len(columns) - 1) * share) + 1) if len(columns) > 1 else 1
+    if len(columns) > 1 and _alternate(columns):
+        longest = max(2, round((max(columns) - 1) * share) + 1)
+        short_first = columns[0] < columns[1]
+        return tuple(longest - (i + short_first) % 2 for i in range(count))
+    at = np.linspace(0, len(columns) - 1, count)
+    lengths = (np.interp(at, np.arange(len(columns)), columns) - 1) * share + 1
+    if not _centred(columns):
+        return tuple(max(1, round(length)) for length in lengths)
+    made = [
+        [_nearest(length, (i + first) % 2) for i, length in enumerate(lengths)] for first in (0, 1)
+    ]
+    return tuple(min(made, key=lambda m: float(np.abs(np.array(m) - lengths).sum())))
+
+
+def _alternate(columns: Sequence[int]) -> bool:
+    """Whether long and short columns alternate, and differ by one cell."""
+    return abs(columns[0] - columns[1]) == 1 and all(
+        a == b for a, b in zip(columns, columns[2:], strict=False)
+    )
+
+
+def _centred(columns: Sequence[int]) -> bool:
+    """Whether the lattice allows every column to be centred: odd and even lengths alternate."""
+    return all((a - b) % 2 == 1 for a, b in itertools.pairwise(columns))
+
+
+def _nearest(length: float, parity: int) -> int:
+    """The nearest odd (1) or even (0) number of cells."""
+    least = 2 - parity
+    return max(least, 2 * round((length - parity) / 2) + parity)
 
 
 def _set(told: dict[str, Any], field: str, value: Any) -> None:

@@ -14,7 +14,7 @@ from lumitip.estimation.estimate import KINDS, Estimate, without_contact
 from lumitip.estimation.fit import Fit, Frame, drifting
 from lumitip.estimation.report import MISFIT_COUNTS, covariance, report, rms_counts
 from lumitip.estimation.search import ALPHA_SD, BENT, GAP_SD_MM, Search, doubtful
-from lumitip.grid import Floats
+from lumitip.grid import Floats, collinear
 from lumitip.layout import Layout, Optics
 from lumitip.processing.processor import COVERED_BELOW, MIN_CONTRAST, ValuesError
 from lumitip.processing.threshold import usable as counted
@@ -82,11 +82,17 @@ class PoseEstimator:
 
         Raises:
             LayoutError: if it is no layout.
-            EstimationError: if gains are not those of this layout, or another argument is no
-                number in its range.
+            EstimationError: if the layout has fewer than four cells, gains are not those of this
+                layout, or another argument is no number in its range.
             TwinError: if the optics cannot be so.
         """
         self.layout = arguments.layout(layout)
+        if len(layout) < _LEAST_CELLS:
+            raise EstimationError(
+                f"layout: {len(layout)} cells given, a pose needs at least {_LEAST_CELLS}; "
+                "`Processor` works with fewer"
+            )
+        self._mirrored = collinear(layout.x_mm, layout.y_mm)
         self.model = _model(layout, optics, gap_mm)
         self._noise = _number(noise, "noise", above=0.0)
         self._gain_error = _number(gain_error, "gain_error")
@@ -135,7 +141,7 @@ class PoseEstimator:
             deviations = np.sqrt(np.abs(np.diag(uncertain))[:2])
             if np.any(deviations > _BLURRED):
                 free = replace(free, pose=likely(shape, free, deviations))
-        estimate = report(shape, free, uncertain, self._search.reach_mm)
+        estimate = report(shape, free, uncertain, self._search.reach_mm, self._mirrored)
         self._remember(name, found, estimate)
         return estimate
 

@@ -16,7 +16,9 @@ BEND = "curvature_per_mm"
 _WEAK_MM, _WEAK_DEG = 1.0, 6.0
 
 
-def report(shape: Shape, found: Fit, uncertain: Floats, reach_mm: float) -> Estimate:
+def report(
+    shape: Shape, found: Fit, uncertain: Floats, reach_mm: float, mirrored: bool = False
+) -> Estimate:
     """The estimate of a fit.
 
     Args:
@@ -24,6 +26,8 @@ def report(shape: Shape, found: Fit, uncertain: Floats, reach_mm: float) -> Esti
         found: where the fit ended.
         uncertain: its `covariance`.
         reach_mm: distance from the origin beyond which no cell sees a line (mm).
+        mirrored: whether all cells lie on one line, so that they see a pose and its mirror image
+            alike.
     """
     pose, corner = found.pose, shape.kind == "corner"
     (angle, offset_mm), by_pose, names = _line(pose, shape.names)
@@ -61,7 +65,7 @@ def report(shape: Shape, found: Fit, uncertain: Floats, reach_mm: float) -> Esti
     astray = max(map(abs, pose[1:3] if corner else pose[1:2])) > reach_mm
     wrong = {
         "misfit": misfit > MISFIT_COUNTS, "weak": weak, "astray": astray,
-        "unfinished": not found.settled, "ambiguous": found.ambiguous,
+        "unfinished": not found.settled, "ambiguous": found.ambiguous or mirrored,
     }  # fmt: skip
     object.__setattr__(estimate, "flags", tuple(name for name, is_so in wrong.items() if is_so))
     return estimate

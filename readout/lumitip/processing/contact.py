@@ -68,7 +68,8 @@ class Contact:
     markers_mm: Floats | None = None
     """Where λ is crossed between neighbours, shape `(k, 2)`, read-only (mm)."""
     line: Line | None = None
-    """`None` with fewer than two markers, or when they favour no direction."""
+    """`None` with fewer than two markers, when they favour no direction, or when all cells lie on
+    one line."""
     corner: Corner | None = None
     """`None` unless two rays that meet describe the markers, see `lumitip.processing.shape`."""
     cable: Cable | None = None

@@ -7,10 +7,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from lumitip import arguments
 from lumitip.errors import LumitipError
-from lumitip.grid import Floats, Integers
+from lumitip.grid import Floats, Integers, collinear
 from lumitip.layout import Layout
 from lumitip.processing.batch import Batch, Grid, process
-from lumitip.processing.contact import Contact
+from lumitip.processing.contact import Cable, Contact, Corner, Line
 from lumitip.processing.fits import Border, Points, fit_line, point
 from lumitip.processing.shape import fit_others, shape_of
 from lumitip.processing.threshold import threshold
@@ -57,6 +57,7 @@ class Processor:
         self._grid = Grid(cells, begin, end, cells[end] - cells[begin])
         self._sum = complex(cells.sum())
         self._rim = _rim(layout)
+        self._collinear = collinear(layout.x_mm, layout.y_mm)
         self._reach_mm = (
             float(layout.x_mm.min()),
             float(layout.y_mm.min()),
@@ -117,6 +118,18 @@ class Processor:
         middle = float(np.median(values)) if values.size else math.inf
         return Contact("covered" if middle < self.covered_below else "none")
 
+    def _fits(
+        self, border: Border, is_dark: NDArray[np.bool_]
+    ) -> tuple[Line | None, Corner | None, Cable | None]:
+        """What describes the markers; nothing where all cells, and so all markers, lie on one
+        line whatever the direction of the border."""
+        if self._collinear:
+            return None, None, None
+        line = fit_line(border)
+        at_rim = is_dark[self._rim]
+        closed = not 0 < np.count_nonzero(at_rim) < at_rim.size
+        return line, *fit_others(border, line, closed, self.layout.pitch_mm, self._reach_mm)
+
     def _contact(
         self, values: Floats, usable: NDArray[np.bool_] | None, level: float, contrast: float
     ) -> Contact:
@@ -143,10 +156,7 @@ class Processor:
             dark=dark_mean,
             light=(everything - dark_sum) / (count - dark.size),
         )
-        line = fit_line(border)
-        at_rim = is_dark[self._rim]
-        closed = not 0 < np.count_nonzero(at_rim) < at_rim.size
-        corner, cable = fit_others(border, line, closed, self.layout.pitch_mm, self._reach_mm)
+        line, corner, cable = self._fits(border, is_dark)
         markers_mm = markers.view(np.float64).reshape(-1, 2)
         markers_mm.flags.writeable = False
         return Contact(

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lumitip import arguments
-from lumitip.grid import Floats
+from lumitip.grid import Floats, collinear
 from lumitip.layout import Layout
 from lumitip.twin.optics import Model, TwinError, values_of_drive
 from lumitip.twin.scene import HalfPlane
@@ -43,9 +43,13 @@ def read(layout: Layout, numbers: Floats) -> Floats:
     offset, angle, curvature, clear, gap, alpha, gain, slope_x, slope_y = map(float, numbers)
     twin = Twin(layout, Model.from_layout(layout, gap, alpha=alpha, gain=gain))
     light = twin.light(HalfPlane(offset, angle, curvature, clear=clear))
-    slope = 1.0 + slope_x * layout.x_mm / np.abs(layout.x_mm).max()
-    slope += slope_y * layout.y_mm / np.abs(layout.y_mm).max()
+    slope = 1.0 + slope_x * _of_half(layout.x_mm) + slope_y * _of_half(layout.y_mm)
     return values_of_drive(light * twin.drive * slope, twin.model)
+
+
+def _of_half(places_mm: Floats) -> Floats:
+    """Places as shares of half of the fingertip, 0 where it has no extent."""
+    return places_mm / (np.abs(places_mm).max() or 1.0)
 
 
 def fit_edge(layout: Layout, values: Floats, offset_mm: float, angle_deg: float) -> Fitted:
@@ -61,13 +65,16 @@ def fit_edge(layout: Layout, values: Floats, offset_mm: float, angle_deg: float)
 
     Raises:
         LayoutError: if it is no layout.
-        TwinError: if values are not those of a frame, or the start is no number.
+        TwinError: if values are not those of a frame, the start is no number, or all cells lie on
+            one line.
     """
     values = arguments.numbers(values, "values", TwinError)
     if values.shape != (len(arguments.layout(layout)),) or not np.isfinite(values).all():
         raise TwinError(
             f"values of shape {values.shape} given, {len(layout)} finite numbers are needed"
         )
+    if collinear(layout.x_mm, layout.y_mm):
+        raise TwinError("layout: cells in one line given, which do not show an edge's direction")
     offset_mm = arguments.number(offset_mm, "offset_mm", error=TwinError)
     angle_deg = arguments.number(angle_deg, "angle_deg", error=TwinError)
     place = np.array([offset_mm, angle_deg, 0.0, 0.05, 2.5, 0.6, 0.9, 0.0, 0.0])
