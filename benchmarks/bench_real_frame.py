@@ -1,4 +1,4 @@
-"""The one published frame of a cloth edge by both methods, and whether they agree.
+"""The published frame of a cloth edge by both methods, and whether they agree.
 
 The publication states no error of its method. It is taken from that method's own words: of all
 edges that it draws where it drew this one, the twin knows where they really lie, and that is how
@@ -10,9 +10,11 @@ and in angle, whatever gap the estimator was told.
 Run by `make bench`; exits 1 if they do not.
 """
 
+import json
 import os
 import sys
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -24,9 +26,7 @@ from lumitip.links.twin import published_layout
 from lumitip.twin import HalfPlane
 from poses import Line, Method, published, read, wrong_twin
 
-# The published frame (8-bit complements, column by column); its figure draws the line at 5.8 deg.
-REAL = (19, 11, 44, 228, 239, 7, 17, 196, 206, 13, 8, 84, 238, 226, 13, 22, 216, 232,
-        11, 13, 131, 244, 205, 13, 19, 234, 240, 8, 11, 196, 213, 239)  # fmt: skip
+REAL_FRAMES = Path(__file__).parents[1] / "tests/readout/published_frames.json"
 
 GAPS_MM = ((2.0, 0.4), (3.0, 0.4), (3.5, 1.0), (4.0, 0.4), (5.0, 0.4))
 """Gaps that are told to the estimator, with their standard deviations (mm)."""
@@ -78,7 +78,8 @@ def without_single_cells_deg(layout: Layout, gap_mm: float, values: Floats) -> f
 def main() -> int:
     """Both methods on the frame; the exit code."""
     layout, goals = published_layout(), Goals()
-    values, method = np.array(REAL, dtype=np.float64), published(layout)
+    columns = json.loads(REAL_FRAMES.read_text("utf-8"))["frames"]["cloth_edge"]["columns"]
+    values, method = np.concatenate(columns).astype(np.float64), published(layout)
     drawn = method(values, "edge")
     assert drawn is not None
     yardstick, many = stated_by(method, layout, drawn)

@@ -32,17 +32,17 @@ def published(values: list[int], layout: Layout, starts: int) -> Published:
     """One frame.
 
     Args:
-        values: complements, one per cell.
+        values: one per cell, 255 is full light.
         layout: where the cells are.
         starts: how many starts the fit of the corner gets.
     """
     level = _threshold(values)
     x_mm, y_mm = layout.x_mm.tolist(), layout.y_mm.tolist()
     dark = [i for i, value in enumerate(values) if value < level]
-    total = sum(values[i] for i in dark)
+    weights = [255 - values[i] for i in dark]
     centre = (
-        sum(values[i] * x_mm[i] for i in dark) / total,
-        sum(values[i] * y_mm[i] for i in dark) / total,
+        sum(w * x_mm[i] for w, i in zip(weights, dark, strict=True)) / sum(weights),
+        sum(w * y_mm[i] for w, i in zip(weights, dark, strict=True)) / sum(weights),
     )
     markers = []
     for a, b in layout.neighbours.tolist():

@@ -1,7 +1,6 @@
-"""Draw what the processing tells of three frames: `make pictures`, then look at it.
+"""Draw what the processing tells of the three published frames: `make pictures`, then look at it.
 
-The first frame is read from the publication's figure of a grasped cloth edge; the others are drawn
-shadows of a cable and of a corner, without optics.
+They are real: read from the publication's figures of a cloth edge, a cloth corner and a cable.
 """
 
 import json
@@ -22,32 +21,25 @@ from lumitip import Layout
 from lumitip.processing import Contact, Processor
 
 HERE = Path(__file__).parent
-MEASURED = HERE.parent / "tests" / "readout" / "processing" / "cloth_edge.json"
+REAL_FRAMES = HERE.parent / "tests" / "readout" / "published_frames.json"
+TITLES = {
+    "cloth_edge": "a real cloth edge",
+    "cloth_corner": "a real cloth corner",
+    "cable": "a real cable",
+}
 RED, BLUE, GREEN = "#d55e00", "#0072b2", "#009e73"  # told apart by colour-blind people too
 
 
 def main() -> None:
     """Draw the picture."""
     layout = Layout.load(str(files("lumitip.links") / "published_layout.json"))
-    columns = json.loads(MEASURED.read_text(encoding="utf-8"))
-    measured = np.concatenate([np.array(column, dtype=np.float64) for column in columns])
-    x, y = layout.x_mm, layout.y_mm
-    cable = np.abs(y * math.cos(0.35) - x * math.sin(0.35) + 1.0) - 3.5
-    corner = np.maximum(y - 2.0 - 0.3 * x, 0.9 * x - 0.5 * y - 2.0)
-    frames = {
-        "a real cloth edge": measured,
-        "a cable": _soft(cable),
-        "a corner": _soft(corner),
-    }
+    frames = json.loads(REAL_FRAMES.read_text(encoding="utf-8"))["frames"]
     figure, axes = plt.subplots(1, 3, figsize=(12.6, 3.9), dpi=100)
-    for axis, (name, values) in zip(axes, frames.items(), strict=True):
-        _draw(axis, layout, values, Processor(layout)(values), name)
+    for axis, (name, title) in zip(axes, TITLES.items(), strict=True):
+        values = np.concatenate(frames[name]["columns"]).astype(np.float64)
+        _draw(axis, layout, values, Processor(layout)(values), title)
     figure.tight_layout()
     figure.savefig(HERE / "images" / "contacts.png", metadata={"Software": None})
-
-
-def _soft(outside_mm: NDArray[np.float64]) -> NDArray[np.float64]:
-    return 127.5 + 115.0 * np.tanh(outside_mm / 1.5)
 
 
 def _draw(

@@ -20,7 +20,7 @@ from lumitip.twin.materials import MATERIALS, MEASURED_GAP_MM
 
 ROOT = Path(__file__).parents[1]
 IMAGES = ROOT / "docs/images"
-REAL_FRAME = ROOT / "tests/readout/processing/cloth_edge.json"
+REAL_FRAMES = ROOT / "tests/readout/published_frames.json"
 WIDTHS_MM = {2.0: 1.3, 3.0: 1.9, 6.0: 4.5}
 MEASURED, COMPUTED = "#c2571a", "#2a5d84"
 Values = NDArray[np.float64]
@@ -76,9 +76,9 @@ def edges(layout: Layout) -> None:
 
 
 def real_frame(layout: Layout) -> None:
-    """The published frame, the twin fitted to it, and what remains."""
-    columns = json.loads(REAL_FRAME.read_text(encoding="utf-8"))
-    real = np.array([v for column in columns for v in column], dtype=np.float64)
+    """The published cloth edge, the twin fitted to it, and what remains."""
+    frames = json.loads(REAL_FRAMES.read_text(encoding="utf-8"))["frames"]
+    real = np.concatenate(frames["cloth_edge"]["columns"]).astype(np.float64)
     fitted = fit_edge(layout, real, 0.0, 184.0)
     figure, parts = plt.subplots(1, 3, figsize=(8.4, 2.5), layout="constrained")
     hexagons(parts[0], layout, real, "published frame (hardware)")

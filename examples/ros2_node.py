@@ -3,7 +3,8 @@
     python examples/ros2_node.py --ros-args -p url:=ble://Lumitip -p layout:=outputs/layout.json
 
 ~/values (std_msgs/Float32MultiArray) is the light of every cell, 255 is full light; ~/centre
-(geometry_msgs/PointStamped) the centre of what is dark, in metres in the sensor frame.
+(geometry_msgs/PointStamped) the dark centre, in metres in the sensor frame: each dark cell is
+weighted with 255 - value, so the darkest weighs most.
 """
 
 import rclpy

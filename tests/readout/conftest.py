@@ -1,13 +1,18 @@
 """A layout as the published sensor's, wired in order."""
 
+import json
 from collections.abc import Callable
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from lumitip import Layout, Optics
 from lumitip.grid import hexagonal_grid, hexagonal_neighbours
 
+PUBLISHED_FRAMES = Path(__file__).with_name("published_frames.json")
 OPTICS = Optics(
     hole_mm=2.5,
     hole_shape="hexagon",
@@ -49,3 +54,22 @@ def make_layout() -> Callable[..., Layout]:
 def layout() -> Layout:
     """The published grid, wired in order."""
     return _layout()
+
+
+@pytest.fixture(scope="session")
+def published_frames() -> dict[str, dict[str, Any]]:
+    """The real frames of the publication by name, with what is known of each."""
+    frames: dict[str, dict[str, Any]] = json.loads(PUBLISHED_FRAMES.read_text("utf-8"))["frames"]
+    return frames
+
+
+@pytest.fixture(scope="session")
+def published_values(
+    published_frames: dict[str, dict[str, Any]],
+) -> Callable[[str], NDArray[np.uint8]]:
+    """`published_values("cable")`: values of a real frame in cell order, shape `(32,)`."""
+
+    def values(name: str) -> NDArray[np.uint8]:
+        return np.concatenate(published_frames[name]["columns"]).astype(np.uint8)
+
+    return values

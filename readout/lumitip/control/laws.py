@@ -27,13 +27,13 @@ class Law(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class CentreLaw:
-    """The published law: the middle of the dark is held at a height in the grid, in proportion."""
+    """The published law: the dark centre is held at a height in the grid, in proportion."""
 
     speed_mm_s: float = 20.0
     gain_per_s: float = 6.0
     """Lateral velocity by the height that is missing (1/s)."""
     target_mm: float = 0.0
-    """Height that the middle of the dark is held at (mm)."""
+    """Height that the dark centre is held at (mm)."""
 
     def __post_init__(self) -> None:
         _check(self)

@@ -23,7 +23,7 @@ class Sight:
     angle: float = 0.0
     """Direction of the line against x (rad)."""
     centre_mm: float | None = None
-    """Height of the middle of the dark (mm); told by a `Contact` alone."""
+    """Height of the dark centre (mm); told by a `Contact` alone."""
     corner_mm: float | None = None
     """How far ahead in x the vertex of a corner is (mm); `None` without a corner."""
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from lumitip.grid import Floats, Integers
 from lumitip.processing.fits import Points
+from lumitip.processing.threshold import darkness
 from lumitip.processing.threshold import usable as counted
 
 Flags = NDArray[np.bool_]
@@ -24,7 +25,7 @@ class Batch:
     thresholds: Floats
     """λ of each frame, shape `(n,)`."""
     centres_mm: Floats
-    """Weighted mean of the dark cells, shape `(n, 2)` (mm)."""
+    """Mean of the dark cells, weighted with 255 − value, shape `(n, 2)` (mm)."""
     markers_mm: Floats
     """Markers of each frame, then NaN, shape `(n, most, 2)` (mm)."""
     counts: Integers
@@ -100,10 +101,10 @@ def padded(points: Points, counts: Integers) -> Points:
 
 
 def _centres(values: Floats, is_dark: Flags, cells: Points) -> Points:
-    weights = np.where(is_dark, np.maximum(values, 0.0), 0.0)
-    unlit = ~weights.any(axis=1)
-    if unlit.any():
-        weights[unlit] = is_dark[unlit]
+    weights = np.where(is_dark, darkness(values), 0.0)
+    weightless = ~weights.any(axis=1)
+    if weightless.any():
+        weights[weightless] = is_dark[weightless]
     columns = np.stack((cells.real, cells.imag, np.ones(cells.size)), axis=1)
     x_mm, y_mm, total = (weights @ columns).T
     total[total == 0.0] = np.nan

@@ -60,11 +60,12 @@ class Contact:
     shape: str
     """One of `SHAPES`; the rule is told at `lumitip.processing.shape`."""
     threshold: float | None = None
-    """λ: cells below it are dark (8-bit complement, 255 is full light)."""
+    """λ: cells with a value below it are dark (255 is full light)."""
     contrast: float | None = None
     """Difference between the means of the light and the dark cluster (counts of 255)."""
     centre_mm: Point | None = None
-    """Mean of the dark cells' centres, weighted with their 8-bit complements (mm)."""
+    """Mean of the dark cells' centres, each weighted with 255 − value (mm): the darkest weighs
+    most."""
     markers_mm: Floats | None = None
     """Where λ is crossed between neighbours, shape `(k, 2)`, read-only (mm)."""
     line: Line | None = None

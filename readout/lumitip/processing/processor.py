@@ -13,7 +13,7 @@ from lumitip.processing.batch import Batch, Grid, process
 from lumitip.processing.contact import Cable, Contact, Corner, Line
 from lumitip.processing.fits import Border, Points, fit_line, point
 from lumitip.processing.shape import fit_others, shape_of
-from lumitip.processing.threshold import threshold
+from lumitip.processing.threshold import darkness, threshold
 from lumitip.processing.threshold import usable as counted
 
 MIN_CONTRAST = 20.0
@@ -69,7 +69,7 @@ class Processor:
         """What one frame says.
 
         Args:
-            values: complements on 0–255 (255 is full light), shape `(cells,)`, whole or not.
+            values: 0–255 (255 is full light), shape `(cells,)`, whole or not.
                 Cells whose value is not finite, or beyond a billion, are left out, together with
                 their markers.
 
@@ -96,7 +96,7 @@ class Processor:
         """Thresholds, centres and markers of many frames, each as for one frame.
 
         Args:
-            values: complements on 0–255, shape `(n, cells)`, whole or not.
+            values: 0–255 (255 is full light), shape `(n, cells)`, whole or not.
 
         Raises:
             ValuesError: if the shape is another, or they are no numbers.
@@ -142,7 +142,7 @@ class Processor:
             count = int(np.count_nonzero(usable))
         begins_dark = is_dark[grid.begin]
         crossed = begins_dark != is_dark[grid.end]
-        dark, weights = grid.cells[is_dark], values[is_dark]
+        dark = grid.cells[is_dark]
         dark_sum = complex(np.add.reduce(dark))
         dark_mean = dark_sum / dark.size
 
@@ -163,7 +163,7 @@ class Processor:
             shape=shape_of(corner, cable),
             threshold=level,
             contrast=contrast,
-            centre_mm=point(_centre(dark, weights, dark_mean)),
+            centre_mm=point(_centre(dark, values[is_dark], dark_mean)),
             markers_mm=markers_mm,
             line=line,
             corner=corner,
@@ -179,10 +179,7 @@ def _rim(layout: Layout) -> Integers:
 
 
 def _centre(dark: Points, values: Floats, mean: complex) -> complex:
-    """Weighted with the complements: what is lit more lies nearer to the border, and pulls more.
-
-    Without any light at all the weights are equal.
-    """
-    weights = np.maximum(values, 0.0)
+    """Mean of dark cells, each weighted with `darkness`; equal weights if all of them are 0."""
+    weights = darkness(values)
     total = float(np.add.reduce(weights))
     return complex(dark.dot(weights)) / total if total > 0.0 else mean

@@ -2,6 +2,7 @@
 
 import os
 import pty
+import re
 import subprocess
 import sys
 import threading
@@ -102,7 +103,8 @@ def test_ros2_node() -> None:
     told = _run("ros2_node.py", env={"PYTHONPATH": str(ROOT / "tests" / "ros_stand_ins")})
     assert "info twin:demo is " in told
     assert told.count("/lumitip/values 32 values") >= 5
-    assert told.count("/lumitip/centre point in fingertip, True") >= 5
+    points = re.findall(r"/lumitip/centre point in fingertip at ([-\d.]+) ([-\d.]+)", told)
+    assert len(points) >= 5 and all(abs(float(m)) < 0.02 for point in points for m in point)
     assert "destroyed" in told
 
 

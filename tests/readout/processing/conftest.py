@@ -1,10 +1,8 @@
-"""Objects of known pose over the cells of a layout, and the frame of the publication."""
+"""Objects of known pose over the cells of a layout, and the published cloth edge."""
 
-import json
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,15 +12,11 @@ from lumitip import Layout
 
 Floats = NDArray[np.float64]
 
-# A grasped cloth edge as the publication's figure shows it: 8-bit complements, column by column.
-CLOTH_EDGE = Path(__file__).with_name("cloth_edge.json")
-
 
 @pytest.fixture
-def cloth_edge() -> NDArray[np.uint8]:
-    """The published frame, shape `(32,)`."""
-    columns = json.loads(CLOTH_EDGE.read_text(encoding="utf-8"))
-    return np.array([v for column in columns for v in column], dtype=np.uint8)
+def cloth_edge(published_values: Callable[[str], NDArray[np.uint8]]) -> NDArray[np.uint8]:
+    """The published frame of a cloth edge, shape `(32,)`."""
+    return published_values("cloth_edge")
 
 
 @dataclass(frozen=True)

@@ -73,22 +73,6 @@ def test_one_cell_is_a_cluster(layout: Layout, dark: bool) -> None:
         assert contact.centre_mm == pytest.approx(tuple(centre))
 
 
-def test_dark_cells_without_any_light_weigh_the_same(layout: Layout) -> None:
-    values = np.full(32, 200.0)
-    values[[3, 4, 7]] = 0.0
-    centre = tuple(np.mean([layout.x_mm[[3, 4, 7]], layout.y_mm[[3, 4, 7]]], axis=1))
-    assert Processor(layout)(values).centre_mm == pytest.approx(centre)
-    assert Processor(layout).batch(values[None]).centres_mm[0] == pytest.approx(centre)
-
-
-def test_values_below_zero_weigh_nothing(layout: Layout) -> None:
-    values = np.full(32, 200.0)
-    values[[3, 4]] = -5.0, 10.0
-    centre = (layout.x_mm[4], layout.y_mm[4])
-    assert Processor(layout)(values).centre_mm == pytest.approx(centre)
-    assert Processor(layout).batch(values[None]).centres_mm[0] == pytest.approx(centre)
-
-
 @pytest.mark.parametrize("odd", [np.nan, np.inf, -np.inf])
 def test_cells_that_are_not_finite_are_left_out(layout: Layout, odd: float) -> None:
     """As if the grid had no such cell: the others give what a grid without it gives."""

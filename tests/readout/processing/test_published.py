@@ -1,4 +1,4 @@
-"""The published frame, and what the publication drew over it."""
+"""The published frame of a cloth edge, and the line that the publication drew over it."""
 
 from dataclasses import replace
 
@@ -59,19 +59,6 @@ def test_a_value_between_the_step_and_the_threshold_decides_by_the_threshold(
         ends = np.stack((layout.x_mm[pair], layout.y_mm[pair]), axis=1)
         lengths = [sum(np.hypot(*(ends - m).T)) for m in contact.markers_mm]
         assert min(lengths) == pytest.approx(layout.pitch_mm)
-
-
-def test_the_centre_weighs_dark_cells_with_their_complements(
-    layout: Layout, cloth_edge: Frame
-) -> None:
-    contact = Processor(layout)(cloth_edge)
-    total = x = y = 0.0
-    for cell in layout.cells:
-        value = float(cloth_edge[cell.index])
-        if value < 124.8:
-            total, x, y = total + value, x + value * cell.x_mm, y + value * cell.y_mm
-    assert contact.centre_mm == pytest.approx((x / total, y / total))
-    assert contact.centre_mm == pytest.approx((-3.818, 4.284), abs=1e-3)
 
 
 def test_markers_lie_where_the_threshold_is_crossed(layout: Layout, cloth_edge: Frame) -> None:

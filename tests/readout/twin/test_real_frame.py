@@ -1,7 +1,6 @@
-"""The one real frame that was published, against the twin fitted to it."""
+"""The published frame of a cloth edge, against the twin fitted to it."""
 
-import json
-from pathlib import Path
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -9,15 +8,13 @@ import pytest
 from lumitip.links.twin import published_layout
 from lumitip.twin.fit import NAMES, fit_edge, read
 
-FRAME = Path(__file__).parents[1] / "processing" / "cloth_edge.json"
 FOUND = (0.087, 182.36, -0.0014, 0.065, 2.5, 0.95, 0.850, 0.022, -0.114)
 """What `fit_edge` finds, in the order of `NAMES`."""
 
 
 @pytest.fixture
-def frame() -> np.ndarray:
-    columns = json.loads(FRAME.read_text(encoding="utf-8"))
-    return np.array([v for column in columns for v in column], dtype=np.float64)
+def frame(published_values: Callable[[str], np.ndarray]) -> np.ndarray:
+    return published_values("cloth_edge").astype(np.float64)
 
 
 def rms(frame: np.ndarray, **changed: float) -> float:

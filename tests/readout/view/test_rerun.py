@@ -19,6 +19,7 @@ from lumitip.view.rerun_sink import RerunSink, borders
 COMPONENTS = {
     "cells": "Points2D:positions",
     "markers": "Points2D:positions",
+    "centre": "Points2D:positions",
     "border": "LineStrips2D:strips",
     "mean": "Scalars:scalars",
     "shape": "TextLog:text",
@@ -65,6 +66,10 @@ def test_file_holds_what_the_view_shows(
     assert 55 <= len(rows["cells"]) <= 65
     np.testing.assert_allclose(
         rows["cells"][0], np.column_stack((layout.x_mm, -layout.y_mm)), atol=1e-5
+    )
+    assert contact.centre_mm is not None
+    np.testing.assert_allclose(
+        rows["centre"][0], [np.multiply(contact.centre_mm, [1, -1])], atol=1e-5
     )
     np.testing.assert_allclose(rows["markers"][0], contact.markers_mm * [1, -1], atol=1e-5)
     np.testing.assert_allclose(

@@ -34,4 +34,4 @@ class PointStamped(_Typed):
 
     def __repr__(self):
         assert 0 <= self.header.stamp.nanosec < 1_000_000_000
-        return f"point in {self.header.frame_id}, {abs(self.point.x) < 0.02}"
+        return f"point in {self.header.frame_id} at {self.point.x:.5f} {self.point.y:.5f}"

@@ -1,18 +1,20 @@
 """Stands in for `rclpy.node`."""
 
+import sys
 from types import SimpleNamespace
 
 import rclpy
 
 
 class Node:
-    """A node with the parameters' defaults."""
+    """A node; a parameter is its default, or what the command line says (`-p name:=value`)."""
 
     def __init__(self, name):
         self._name = name
 
-    def declare_parameter(self, _, default):
-        return SimpleNamespace(value=default)
+    def declare_parameter(self, name, default):
+        written = dict(text.split(":=", 1) for text in sys.argv if ":=" in text)
+        return SimpleNamespace(value=written.get(name, default))
 
     def create_publisher(self, kind, topic, _):
         def publish(message):

@@ -7,7 +7,7 @@ class Float32MultiArray:
     def __init__(self, data):
         assert type(data) is list
         assert all(type(number) is float for number in data)
-        self._cells = len(data)
+        self._data = data
 
     def __repr__(self):
-        return f"{self._cells} values"
+        return f"{len(self._data)} values, mean {sum(self._data) / len(self._data):.3f}"
