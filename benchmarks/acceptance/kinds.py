@@ -119,13 +119,17 @@ def _entry(field: str, kind: str) -> Callable[[Random, Table, str], Table]:
     return lambda random, _, _base: {field: random.choice(list(entries(kind)))}
 
 
+SMALL = ("0603", "0805", "1206")
+"""Packages of pull-ups, which stand with a capacitor beside a multiplexer of 7.3 mm."""
+
+
 def _passives(random: Random, _: Table, _base: str) -> Table:
     packages = list(entries("resistors"))
     return _some(
         random,
         {
             "emitter.resistor": lambda: random.choice(packages),
-            "receiver.resistor": lambda: random.choice(packages),
+            "receiver.resistor": lambda: random.choice(SMALL),
             "receiver.capacitor": lambda: random.choice(bypasses()),
         },
     )

@@ -38,6 +38,10 @@ BENCH = "bench"
 """The controller that cannot be bought: it stands for one of the user's own."""
 
 
+USUAL = {"emitter.led": "15406085BA300", "receiver.photodetector": "SML-H10TBT86"}
+"""Parts that are taken where the file leaves the choice."""
+
+
 @dataclass(frozen=True)
 class Values:
     """The fields in force of a user file: what it writes, over the preset."""
@@ -46,7 +50,8 @@ class Values:
     base: str
 
     def __getitem__(self, field: str) -> Any:
-        return self.edits.get(field, preset(self.base)[field])
+        value = self.edits.get(field, preset(self.base)[field])
+        return USUAL.get(field, value) if value == "auto" else value
 
     def number(self, field: str) -> float:
         """A figure; the published one where the preset leaves it to follow from others."""
