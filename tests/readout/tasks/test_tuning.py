@@ -6,7 +6,9 @@ from dataclasses import dataclass, field
 import pytest
 
 from lumitip.links.twin import published_layout
+from lumitip.processing import Processor
 from lumitip.tasks import Bench, Metrics, Settings, Task, Tuning, search
+from lumitip.tasks.curve import BEND_DEG
 from lumitip.tasks.tuning import (
     CENTRE_GRID,
     GRIDS,
@@ -16,6 +18,7 @@ from lumitip.tasks.tuning import (
     around,
     at_edge,
 )
+from lumitip.twin import HalfPlane, Twin
 
 GAINS = sorted({tuning.gain_per_s for tuning in CENTRE_GRID})
 HEIGHTS_MM = sorted({tuning.height_mm for tuning in CENTRE_GRID})
@@ -105,3 +108,17 @@ def test_tuning_keeps_off_tunings_that_lose_the_line() -> None:
     best = Tuning(8.0, 10.0)
     grids = {"line": (Tuning(-8.0, 4.0), best, Tuning(0.0, 0.0))}
     assert search(bench, "line", grids, (10_000, 10_001), {"line": 100.0}).tuning == best
+
+
+def test_the_dark_centre_lies_lower_under_a_turned_line_which_height_makes_up_for() -> None:
+    layout = published_layout()
+    twin, processor = Twin(layout), Processor(layout)
+
+    def centre_mm(angle_deg: float) -> float:
+        contact = processor(twin.values(HalfPlane(offset_mm=0.0, angle_deg=180.0 + angle_deg)))
+        assert contact.centre_mm is not None
+        return contact.centre_mm[1]
+
+    for angle_deg in (-BEND_DEG, BEND_DEG):
+        assert centre_mm(angle_deg) < centre_mm(0.0) - 1.5
+        assert min(HEIGHTS_MM) < centre_mm(angle_deg) - centre_mm(0.0)
