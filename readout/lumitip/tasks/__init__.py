@@ -7,7 +7,8 @@ values, ended = task.step(Command(forward_mm_s=80.0))
 
 from lumitip.tasks.curve import Curve
 from lumitip.tasks.task import Metrics, Settings, Task, TaskError
-from lumitip.tasks.trial import CONTROLLERS, Bench, Summary, Tuning, summary, tune
+from lumitip.tasks.trial import CONTROLLERS, Bench, Summary, Tuning, summary
+from lumitip.tasks.tuning import Tuned, search
 
 __all__ = [
     "CONTROLLERS",
@@ -18,7 +19,8 @@ __all__ = [
     "Summary",
     "Task",
     "TaskError",
+    "Tuned",
     "Tuning",
+    "search",
     "summary",
-    "tune",
 ]

@@ -1,29 +1,25 @@
-"""The bench of the tasks: every controller tuned on the same grid, then ever faster.
+"""The bench of the tasks: every controller tuned alike, then ever faster.
 
 Tuning and tests run on different curves. Speeds rise until a controller loses more than one curve
-in ten; its highest speed at a loss is the last one before it loses more.
+in ten; its highest speed at a loss is the last one before it loses more. The published law and the
+law of the line are tried at the same speeds.
 """
 
 import math
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
-from itertools import product
 
 from lumitip.cores import workers
 from lumitip.layout import Layout
 from lumitip.tasks.task import Settings, Task
-from lumitip.tasks.trial import CONTROLLERS, Bench, Summary, Team, Tuning, summary, tune
+from lumitip.tasks.trial import CONTROLLERS, Bench, Summary, Team, Tuning, summary
+from lumitip.tasks.tuning import GRIDS, SEEDS, Tuned, search
 
-_SLOW = tuple(float(v) for v in range(20, 200, 10))
-_FAST = (80.0, 160.0, *(float(v) for v in range(200, 401, 20)))
-SPEEDS_MM_S = {"centre": _SLOW, "line": _FAST, "pose": _FAST}
+_EVERY = tuple(float(v) for v in range(40, 401, 20))
+_FEW = (80.0, 160.0, *(float(v) for v in range(200, 401, 20)))
+SPEEDS_MM_S = {"centre": _EVERY, "line": _EVERY, "pose": _FEW}
 """Worth trying with each controller, up to the limit of the finger's own speed."""
-GRID = tuple(Tuning(*of) for of in product((8.0, 12.0, 16.0, 20.0, 24.0, 32.0), (6.0, 10.0, 14.0),
-                                           (0.0, 0.03, 0.06)))  # fmt: skip
-TUNING_SEEDS = tuple(range(10_000, 10_012))
-_TUNED_AT_MM_S = {"centre": 80.0, "line": 320.0, "pose": 320.0}
-"""Where each begins to fail, where tuning matters."""
 TASKS = {
     "cloth": Settings("cloth"), "cable": Settings("cable"),
     "corner": Settings("cloth", corner=True),
@@ -37,7 +33,7 @@ class Result:
 
     task: str
     controller: str
-    tuning: Tuning
+    tuned: Tuned
     rows: tuple[Summary, ...]
 
     def fastest(self, loss_rate: float = 0.0) -> Summary | None:
@@ -90,8 +86,8 @@ def bench_tasks(
     say: Callable[[str], object],
     controllers: Sequence[str] = CONTROLLERS,
     speeds_mm_s: Mapping[str, Sequence[float]] = SPEEDS_MM_S,
-    grid: Sequence[Tuning] = GRID,
-    tuning_seeds: Sequence[int] = TUNING_SEEDS,
+    grids: Mapping[str, Sequence[Tuning]] = GRIDS,
+    tuning_seeds: Sequence[int] = SEEDS,
     cores: int = 1,
 ) -> list[Result]:
     """Every controller on cloth, on cable, and on cloth up to its corner.
@@ -102,34 +98,37 @@ def bench_tasks(
         say: called with each line of the table as it is known.
         controllers: of `CONTROLLERS`.
         speeds_mm_s: of each controller, rising (mm/s).
-        grid: tunings to choose from; a cloth is followed alike with and without a corner.
+        grids: tunings to choose from; a cloth is followed alike with and without a corner.
         tuning_seeds: curves to tune on, others than those of the test, which begin at 0.
         cores: processes that share the trials; the results are the same.
     """
     results = []
-    tunings: dict[tuple[str, str], Tuning] = {}
+    tunings: dict[tuple[str, str], Tuned] = {}
     with workers(cores) if cores > 1 else nullcontext() as pool:
         for name, settings in TASKS.items():
             bench = Team(pool, layout, settings) if pool else Bench(Task(layout, settings))
             for controller in controllers:
                 known = settings.kind, controller
                 if known not in tunings:
-                    tunings[known] = tune(bench, controller, _TUNED_AT_MM_S[controller],
-                                          _distinct(grid, controller), tuning_seeds)  # fmt: skip
-                tuning = tunings[known]
-                say(f"{name}, {controller}: K_p {tuning.gain_per_s:g}/s, "
-                    f"K_θ {tuning.turn_per_s:g}/s, lead {tuning.lead_s:g} s")  # fmt: skip
+                    tunings[known] = search(bench, controller, grids, tuning_seeds)
+                tuned = tunings[known]
+                say(f"{name}, {controller}: {tuning_text(controller, tuned)}")
                 speeds = speeds_mm_s[controller]
-                rows = _faster(bench, controller, tuning, speeds, trials, say)
-                results.append(Result(name, controller, tuning, rows))
+                rows = _faster(bench, controller, tuned.tuning, speeds, trials, say)
+                results.append(Result(name, controller, tuned, rows))
     return results
 
 
-def _distinct(grid: Sequence[Tuning], controller: str) -> Sequence[Tuning]:
-    """Tunings that differ for a controller: the published law has a gain alone."""
-    if controller != "centre":
-        return grid
-    return list({tuning.gain_per_s: tuning for tuning in reversed(grid)}.values())[::-1]
+def tuning_text(controller: str, tuned: Tuned) -> str:
+    """A tuning as text, and what was tried to find it."""
+    tuning = tuned.tuning
+    text = f"K_p {tuning.gain_per_s:.3g}/s, "
+    if controller == "centre":
+        text += f"height {tuning.height_mm:+.2f} mm"
+    else:
+        text += f"K_θ {tuning.turn_per_s:g}/s, lead {tuning.lead_s:g} s"
+    edge = f", at the edge of what was tried: {', '.join(tuned.at_edge)}" if tuned.at_edge else ""
+    return f"{text} (best of {tuned.tried}, {tuned.losses} lost at {tuned.speed_mm_s:g} mm/s{edge})"
 
 
 def _faster(

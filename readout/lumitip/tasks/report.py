@@ -69,15 +69,20 @@ def _told(advantage: Advantage) -> str:
 
 
 def _tunings(results: Sequence[Result]) -> list[str]:
-    lines = ["| task | controller | K_p | K_θ | lead |", "|---|---|---|---|---|"]
+    lines = [
+        "| task | controller | K_p | K_θ | lead | height | tried | lost | best at the edge |",
+        "|---|---|---|---|---|---|---|---|---|",
+    ]
     for r in results:
-        kept = [
-            f"{r.tuning.gain_per_s:g}/s",
-            f"{r.tuning.turn_per_s:g}/s",
-            f"{r.tuning.lead_s:g} s",
-        ]
-        kept[1:] = ["–", "–"] if r.controller == "centre" else kept[1:]
-        lines.append("| " + " | ".join([_TITLES[r.task], _NAMES[r.controller], *kept]) + " |")
+        tuned, tuning = r.tuned, r.tuned.tuning
+        kept = (
+            ["–", "–", f"{tuning.height_mm:+.2f} mm"]
+            if r.controller == "centre"
+            else [f"{tuning.turn_per_s:g}/s", f"{tuning.lead_s:g} s", "–"]
+        )
+        tried = [str(tuned.tried), f"{tuned.losses} at {tuned.speed_mm_s:g} mm/s"]
+        cells = [_TITLES[r.task], _NAMES[r.controller], f"{tuning.gain_per_s:.3g}/s", *kept, *tried]
+        lines.append("| " + " | ".join([*cells, ", ".join(tuned.at_edge) or "–"]) + " |")
     return lines
 
 

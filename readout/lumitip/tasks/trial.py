@@ -30,6 +30,9 @@ class Tuning:
     gain_per_s: float = 8.0
     turn_per_s: float = 8.0
     lead_s: float = 0.0
+    height_mm: float = 0.0
+    """Of the published law alone: how much higher the dark centre is held than where it is when
+    the line lies straight in the middle. It lies lower under a line that is turned (mm)."""
 
 
 class Bench:
@@ -62,7 +65,8 @@ class Bench:
         """A controller that has seen nothing yet."""
         corner_at_mm = 0.0 if self.task.settings.corner else None
         if controller == "centre":
-            law: CentreLaw | LineLaw = CentreLaw(speed_mm_s, tuning.gain_per_s, self._centre_mm)
+            centre_mm = self._centre_mm + tuning.height_mm
+            law: CentreLaw | LineLaw = CentreLaw(speed_mm_s, tuning.gain_per_s, centre_mm)
         else:
             target_mm = self.task.settings.target_mm
             law = LineLaw(speed_mm_s, tuning.gain_per_s, tuning.turn_per_s, target_mm)
@@ -117,7 +121,7 @@ def _bench(layout: Layout, settings: Settings) -> Bench:
 
 
 def centre_height_mm(twin: Twin, settings: Settings) -> float:
-    """Height of the middle of the dark when the line is where it is to be held (mm)."""
+    """Height of the dark centre when the line is where it is to be held (mm)."""
     if settings.kind == "cable":
         values = twin.values(Cable(offset_mm=settings.target_mm))
     else:
@@ -159,22 +163,6 @@ def summary(
         _rms([m.lateral_rms_mm for m in kept]), _rms([m.angle_rms_deg for m in kept]),
         _rms(corners),
     )  # fmt: skip
-
-
-def tune(
-    bench: Bench | Team,
-    controller: str,
-    speed_mm_s: float,
-    grid: Sequence[Tuning],
-    seeds: Sequence[int],
-) -> Tuning:
-    """The tuning with fewest losses, among these of least lateral rms, on seeds for tuning."""
-
-    def badness(tuning: Tuning) -> tuple[int, float]:
-        told = summary(bench, controller, speed_mm_s, tuning, seeds)
-        return told.losses, told.lateral_rms_mm if told.losses < told.trials else np.inf
-
-    return min(grid, key=badness)
 
 
 def _rms(values: Sequence[float]) -> float:
