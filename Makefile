@@ -3,49 +3,58 @@ DESIGN ?= design/fingertip.toml
 OUT ?= outputs
 PYTHON ?= python3
 BIN := .venv/bin
-SETUP := .venv/.lumitip-setup
+FAB := .venv/.lumitip-fab
+READOUT := .venv/.lumitip-readout
+DEV := .venv/.lumitip-dev
+DOCS := .venv/.lumitip-docs
 BENCHES = fab boards estimation learning real_frame processing protocol links twin view acceptance
 CHECK = $(BIN)/lumitip-fab check --out $(OUT) --junit $(OUT)/checks.xml --report $(OUT)/checks.json
 
 .DEFAULT_GOAL := help
-.PHONY: help outputs check watch test lint fuzz bench pictures schema golden clean
+.PHONY: help outputs check readout watch test lint fuzz bench pictures schema golden clean
 
 help: ## show this list
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /  make \1\t/' | expand -t 18
 
-$(SETUP): pyproject.toml constraints.txt
-	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
-	  { echo "Lumitip needs Python 3.11 or newer: make PYTHON=python3.11"; exit 2; }
-	@$(PYTHON) -c 'import venv, ensurepip' || \
-	  { echo "Python's venv is missing; on Debian and Ubuntu: apt-get install python3-venv"; exit 2; }
-	test -x $(BIN)/python || $(PYTHON) -m venv .venv
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[fab,dev]'
-	@touch $@
+# What a target needs is installed when it is first asked for: outputs need nothing of the tests.
+$(FAB): pyproject.toml constraints.txt
+	@$(PYTHON) generators/setup_venv.py fab && touch $@
 
-outputs: $(SETUP) ## build DESIGN into OUT, then check it
-	$(BIN)/lumitip-fab build $(DESIGN) --out $(OUT)
-	$(CHECK) --memory $(OUT)/.checked.json
+$(READOUT): $(FAB)
+	@$(PYTHON) generators/setup_venv.py readout && touch $@
 
-check: $(SETUP) ## re-read every file in OUT and prove that they fit
+$(DEV): $(FAB)
+	@$(PYTHON) generators/setup_venv.py dev && touch $@
+
+$(DOCS): $(FAB)
+	@$(PYTHON) generators/setup_venv.py docs && touch $@
+
+outputs: $(FAB) ## build DESIGN into OUT, then check it; ends in a summary
+	@$(BIN)/lumitip-fab build $(DESIGN) --out $(OUT)
+	@$(CHECK) --memory $(OUT)/.checked.json
+
+check: $(FAB) ## re-read every file in OUT and prove that they fit
 	$(CHECK)
 
-watch: $(SETUP) ## build whenever DESIGN is saved
+readout: $(READOUT) ## add what reads a fingertip (live view, Bluetooth, serial line) to .venv
+
+watch: $(FAB) ## build whenever DESIGN is saved
 	$(BIN)/lumitip-fab watch $(DESIGN) --out $(OUT)
 
-test: $(SETUP) ## run the tests
+test: $(DEV) ## run the tests
 	$(BIN)/python -m pytest -n auto --dist loadfile
 
-lint: $(SETUP) ## format, lint, types, schema
+lint: $(DEV) ## format, lint, types, schema
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	@$(BIN)/lumitip-fab schema | diff -u design/schema.json - || \
 	  { echo "design/schema.json is stale: make schema"; exit 1; }
 
-fuzz: $(SETUP) ## feed a million damaged inputs to all that reads bytes from outside
+fuzz: $(DEV) ## feed a million damaged inputs to all that reads bytes from outside
 	$(BIN)/python -m fuzz
 
-bench: $(SETUP) ## measure speed and growth; every part runs, then it fails if a goal was missed
+bench: $(DEV) ## measure speed and growth; every part runs, then it fails if a goal was missed
 	@missed=; \
 	for part in $(BENCHES); do \
 	  echo "=== $$part"; \
@@ -55,8 +64,7 @@ bench: $(SETUP) ## measure speed and growth; every part runs, then it fails if a
 	$(BIN)/lumitip bench-tasks --trials 100 --out $(OUT)/bench-tasks || missed="$$missed tasks"; \
 	test -z "$$missed" || { echo "goals missed in:$$missed"; exit 1; }
 
-pictures: outputs ## draw the README's pictures from OUT
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[docs]'
+pictures: outputs $(DOCS) ## draw the README's pictures from OUT
 	$(BIN)/lumitip-fab build design/presets/integrated.toml --out $(OUT)/integrated --quiet
 	$(BIN)/lumitip-fab build design/presets/flex.toml --out $(OUT)/flex --quiet
 	$(BIN)/python docs/pictures.py $(OUT) $(OUT)/integrated $(OUT)/flex
@@ -64,10 +72,10 @@ pictures: outputs ## draw the README's pictures from OUT
 	$(BIN)/python docs/contacts.py
 	$(BIN)/python docs/twin_figures.py
 
-schema: $(SETUP) ## write design/schema.json anew
+schema: $(FAB) ## write design/schema.json anew
 	$(BIN)/lumitip-fab schema > design/schema.json
 
-golden: $(SETUP) ## write the tests' reference files anew; read the diff before committing
+golden: $(DEV) ## write the tests' reference files anew; read the diff before committing
 	LUMITIP_GOLDEN=1 $(BIN)/python -m pytest -q -m golden
 
 clean: ## remove what was generated, and .venv

@@ -5,14 +5,25 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from lumitip_fab.system_libraries import libraries_message, missing_libraries
+
 FAILED, REFUSED = 1, 2
-FLAGS = {"quiet": "print failures only", "json": "print the result as JSON",
-         "verbose": "print all measurements, not the tightest of each check"}  # fmt: skip
+MODELLING = frozenset({"build", "watch"})
+"""Commands that load the CAD kernel."""
+FLAGS = {
+    "quiet": "print failures only",
+    "json": "print the result as JSON",
+    "verbose": "print everything: all files, or all measurements with their margins",
+}
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command; returns 0, 1 if a check or a build failed, 2 if the input is refused."""
     options = _parser().parse_args(arguments)
+    missing = missing_libraries() if options.command in MODELLING else ()
+    if missing:
+        print(libraries_message(missing), file=sys.stderr)
+        return REFUSED
     try:
         from lumitip_fab import commands
 
@@ -20,7 +31,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except ModuleNotFoundError as error:
         if (error.name or "lumitip").startswith("lumitip"):
             raise
-        print(f"lumitip-fab needs {error.name}: pip install 'lumitip[fab]'", file=sys.stderr)
+        from lumitip.errors import how_to_install
+
+        print(f"lumitip-fab needs {error.name}: {how_to_install('fab')}", file=sys.stderr)
         return REFUSED
     except KeyboardInterrupt:
         return 130
@@ -37,9 +50,11 @@ def _parser() -> argparse.ArgumentParser:
     def command(name: str, told: str, *flags: str) -> argparse.ArgumentParser:
         sub = commands.add_parser(name, help=told, description=told)
         sub.set_defaults(quiet=False, json=False)
-        amount = sub.add_mutually_exclusive_group()
+        exclusive = [flag for flag in flags if flag in {"quiet", "verbose"}]
+        # argparse of Python 3.11 crashes on the usage line of an empty group.
+        group = sub.add_mutually_exclusive_group() if exclusive else sub
         for flag in flags:
-            where = amount if flag in {"quiet", "verbose"} else sub
+            where = group if flag in exclusive else sub
             where.add_argument(f"--{flag}", action="store_true", help=FLAGS[flag])
         return sub
 
@@ -51,7 +66,8 @@ def _parser() -> argparse.ArgumentParser:
 
     sub = command("init", "Copy the design folder (parameters, presets, parts) to DIR.", "quiet")
     sub.add_argument("directory", type=Path, metavar="DIR", help="a new or empty folder")
-    sub = command("build", "Build FILE into DIR; only what changed is made again.", "quiet", "json")
+    told = "Build FILE into DIR; only what changed is made again."
+    sub = command("build", told, "quiet", "verbose", "json")
     with_file(sub)
     with_out(sub)
     told = "Re-read the files in DIR and prove that they fit. Builds nothing."

@@ -87,10 +87,11 @@ def _build(options: argparse.Namespace) -> int:
         }
         print(json.dumps(told, indent=1))
     elif not options.quiet:
-        for line in shortened(options.out, report.written):
-            OUT.print(f"  wrote {line}", soft_wrap=True)
-        for path in report.removed:
-            OUT.print(f"  removed {options.out / path}", soft_wrap=True)
+        if options.verbose:
+            for line in shortened(options.out, report.written):
+                OUT.print(f"  wrote {line}", soft_wrap=True)
+            for path in report.removed:
+                OUT.print(f"  removed {options.out / path}", soft_wrap=True)
         OUT.print(f"{len(report.written)} files changed, {len(report.kept)} of "
                   f"{len(report.kept) + len(report.made)} steps were up to date")  # fmt: skip
     return 0
@@ -109,7 +110,7 @@ def shortened(out: Path, written: tuple[str, ...]) -> list[str]:
 
 
 def _check(options: argparse.Namespace) -> int:
-    from lumitip_fab.checks import report
+    from lumitip_fab.checks import report, summary
     from lumitip_fab.checks.memory import Memory
     from lumitip_fab.checks.run import MODULES, as_json, run_checks
     from lumitip_fab.manifest import write_file
@@ -130,7 +131,7 @@ def _check(options: argparse.Namespace) -> int:
     elif options.verbose:
         report.print_measurements(outcome, OUT)
     elif not options.quiet:
-        report.print_checks(outcome, OUT)
+        summary.print_summary(outcome, options.out, options.report, OUT)
     elif outcome.failed:
         report.print_failures(outcome, OUT)
     return FAILED if outcome.failed else 0

@@ -9,6 +9,14 @@ if TYPE_CHECKING:
     from lumitip.frame import Block
 
 
+def how_to_install(extras: str) -> str:
+    """The commands that install this package with some extras; it is on no package index."""
+    return (
+        f"pip install '.[{extras}]' in Lumitip's folder, or pip install 'FILE.whl[{extras}]' "
+        "with its wheel"
+    )
+
+
 class LumitipError(Exception):
     """Root of every error that `lumitip` raises on purpose."""
 
@@ -34,7 +42,7 @@ class MissingExtra(LinkError, ImportError):
     """A library that this link needs is not installed."""
 
     def __init__(self, extra: str, what: str) -> None:
-        super().__init__(f"{what} needs more than numpy: pip install 'lumitip[{extra}]'")
+        super().__init__(f"{what} needs more than numpy: {how_to_install(extra)}")
         self.extra = extra
         """The extra to install."""
 

@@ -1,4 +1,4 @@
-"""How the checks are told: a table for people, JUnit for machines."""
+"""All measurements: a table for people, JUnit for machines."""
 
 import math
 from typing import Any
@@ -23,32 +23,18 @@ _COLUMNS: tuple[tuple[str, dict[str, Any]], ...] = (
     ("measured", {"justify": "right", "no_wrap": True}),
     ("limit", {"no_wrap": True}),
     ("margin", {"justify": "right", "no_wrap": True}),
-    ("of", {"justify": "right", "no_wrap": True}),
     ("file", {"overflow": "fold"}),
     ("note", {"overflow": "fold", "style": "dim"}),
 )
 
 
-def print_checks(outcome: Outcome, console: Console) -> None:
-    """A line for each check, that of its measurement with the least margin, by what it is of; then
-    every measurement that failed, and a line that counts them."""
-    checks: dict[str, list[Measurement]] = {}
-    for m in outcome.measurements:
-        checks.setdefault(m.check, []).append(m)
-    table, group = _table(), ""
-    for name, measured in checks.items():
-        if group != (group := name.partition(".")[0]):
-            table.add_section()
-        _row(table, min(measured, key=_tightness), str(len(measured)))
-    console.print(table)
-    print_failures(outcome, console)
-
-
 def print_measurements(outcome: Outcome, console: Console) -> None:
-    """Every measurement with its limit and margin; then as `print_checks`."""
-    table = _table()
+    """Every measurement with its limit and margin, by what it is of; then as `print_failures`."""
+    table, group = _table(), ""
     for m in outcome.measurements:
-        _row(table, m, "")
+        if group != (group := m.check.partition(".")[0]):
+            table.add_section()
+        _row(table, m)
     console.print(table)
     print_failures(outcome, console)
 
@@ -59,7 +45,7 @@ def print_failures(outcome: Outcome, console: Console) -> None:
         console.rule(Text(f"{len(outcome.failed)} FAILED", style="bold red"), style="red")
         table = _table()
         for m in outcome.failed:
-            _row(table, m, "")
+            _row(table, m)
         console.print(table)
     console.print(summary(outcome), style="bold red" if outcome.failed else "bold green")
 
@@ -71,15 +57,15 @@ def _table() -> Table:
     return table
 
 
-def _row(table: Table, m: Measurement, of: str) -> None:
+def _row(table: Table, m: Measurement) -> None:
     mark = Text("ok", style="green") if m.passed else Text("FAIL", style="bold red")
     unit = f" {m.unit}" if m.unit else ""
     limit = "" if m.limit == "any" else m.limit
-    cells = (m.check, f"{_figure(m.measured)}{unit}", limit, _figure(m.margin), of, m.subject)
+    cells = (m.check, f"{figure(m.measured)}{unit}", limit, figure(m.margin), m.subject)
     table.add_row(mark, *(Text(c) for c in cells), Text(m.note))
 
 
-def _tightness(m: Measurement) -> tuple[bool, bool, float]:
+def tightness(m: Measurement) -> tuple[bool, bool, float]:
     """What failed first, then the least margin; counts that are exact have none to lose."""
     margin = -math.inf if math.isnan(m.margin) else m.margin
     return m.passed, m.low == m.high, margin
@@ -111,11 +97,12 @@ def junit(outcome: Outcome) -> bytes:
 
 
 def _sentence(m: Measurement) -> str:
-    told = f"measured {_figure(m.measured)} {m.unit}, limit {m.limit}, margin {_figure(m.margin)}"
+    told = f"measured {figure(m.measured)} {m.unit}, limit {m.limit}, margin {figure(m.margin)}"
     return f"{told}; {m.note}" if m.note else told
 
 
-def _figure(value: float) -> str:
+def figure(value: float) -> str:
+    """A figure with four digits; none if it could not be measured, empty if it has no bound."""
     if math.isnan(value):
         return "none"
     if math.isinf(value):

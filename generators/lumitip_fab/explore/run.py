@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from lumitip.cores import workers
+from lumitip.errors import how_to_install
 from lumitip_fab.errors import BuildError, InputError, OutputError, Problem
 from lumitip_fab.explore.accuracy import Sample
 from lumitip_fab.explore.evaluate import FIGURES, Job, Record, evaluate
@@ -141,7 +142,7 @@ def _on_cluster(jobs: list[Job], scheduler: str) -> Iterator[Record]:
         from distributed import as_completed as as_gathered
     except ModuleNotFoundError as error:
         raise OutputError(
-            f"--scheduler {scheduler}: needs Dask: pip install 'lumitip[fab,dask]'"
+            f"--scheduler {scheduler}: needs Dask: {how_to_install('fab,dask')}"
         ) from error
     try:
         client = Client(scheduler, timeout=10)

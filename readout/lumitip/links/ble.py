@@ -5,7 +5,7 @@ sensor.
 
 Without a name the only fingertip in sight is taken; `scan` is how long to look for it (s). bleak
 runs in a thread of its own and only queues there; packets are read on the link's thread. Needs
-bleak: `pip install 'lumitip[ble]'`.
+bleak: the extra `ble`.
 """
 
 import re

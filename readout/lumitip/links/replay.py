@@ -7,7 +7,7 @@ before somebody reads, and every reader is waited for, unless it takes nothing f
 their numbers and times, so `Frame.t` is of the clock that recorded. The layout and the calibration
 are those of the recording. `~` is the home folder. Gaps take as long as they took then, unlike in
 `lumitip replay` and the live view, which cut them to a second. Needs mcap:
-`pip install 'lumitip[record]'`.
+the extra `record`.
 """
 
 import time

@@ -3,7 +3,7 @@
     serial://PORT?baud=115200
 
 Without a port the only USB device that can be one is taken. A device with a USB serial number is
-found again under whatever port it comes back as. Needs pyserial: `pip install 'lumitip[serial]'`.
+found again under whatever port it comes back as. Needs pyserial: the extra `serial`.
 """
 
 import importlib.util

@@ -1,4 +1,4 @@
-"""`TraceEnv`: a task as a Gymnasium environment; needs `pip install 'lumitip[gym]'`.
+"""`TraceEnv`: a task as a Gymnasium environment; needs the extra `gym`.
 
 env = TraceEnv(layout, Settings("cable"))
 values, info = env.reset(seed=1)

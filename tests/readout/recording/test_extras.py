@@ -24,7 +24,7 @@ try:
 except LumitipError as error:
     print(error)
 """
-    assert "pip install 'lumitip[record]'" in _python(code)
+    assert "pip install '.[record]'" in _python(code)
 
 
 def test_without_pyarrow_parquet_names_the_extra() -> None:
@@ -43,7 +43,7 @@ assert main(["export", str(folder / "a.mcap"), str(folder / "a.csv")]) == 0
 sys.stderr = sys.stdout
 assert main(["export", str(folder / "a.mcap"), str(folder / "a.parquet")]) == 2
 """
-    assert "pip install 'lumitip[export]'" in _python(code)
+    assert "pip install '.[export]'" in _python(code)
 
 
 def test_processing_needs_numpy_alone_and_the_commands_load_nothing_heavy() -> None:

@@ -1,0 +1,96 @@
+"""The end of a run in about ten lines: files, checks, tightest margins, failures, price."""
+
+import csv
+from collections.abc import Iterator
+from pathlib import Path
+
+from rich.console import Console
+from rich.text import Text
+
+from lumitip_fab.checks.margins import tightest
+from lumitip_fab.checks.remedies import parameters_of
+from lumitip_fab.checks.report import figure, tightness
+from lumitip_fab.checks.result import Measurement
+from lumitip_fab.checks.run import Outcome
+
+TIGHTEST = 5
+MOST_FAILURES = 10
+MANUAL, BILL = "manual/manual.html", "bom.csv"
+
+
+def print_summary(outcome: Outcome, out: Path, report: Path | None, console: Console) -> None:
+    """Print what is in an output folder and how it stands.
+
+    Args:
+        outcome: what was measured.
+        out: the output folder.
+        report: the JSON file with every measurement, if one was written.
+        console: where to print.
+    """
+    failed = {m.check for m in outcome.failed}
+    console.print(_contents(out), soft_wrap=True)
+    counted = f"{len(outcome.names) - len(failed)} checks passed"
+    if failed:
+        _print(console, f"{counted}, {len(failed)} FAILED", "bold red")
+    else:
+        _print(console, counted, "bold green")
+    for line, style in _failures(outcome):
+        _print(console, line, style)
+    _print(console, "tightest margins, as a share of the limit or of half the tolerance:")
+    for share, m in tightest(outcome.measurements, TIGHTEST):
+        _print(console, f"{100 * share:6.1f} %  {_described(m)}")
+    console.print(_price(out), soft_wrap=True)
+    manual = out / MANUAL
+    look = [f"{manual} (how to build it)"] if manual.is_file() else []
+    look.append(f"{report} (every measurement)" if report else "check --verbose (all figures)")
+    console.print(f"look at: {', '.join(look)}", soft_wrap=True)
+
+
+def _contents(out: Path) -> str:
+    files = [f for f in out.rglob("*") if f.is_file() and not f.name.startswith(".")]
+    size_mb = sum(f.stat().st_size for f in files) * 1e-6
+    folders = len({f.parent for f in files})
+    return f"{out}: {len(files)} files in {folders} folders, {size_mb:.1f} MB"
+
+
+def _failures(outcome: Outcome) -> Iterator[tuple[str, str]]:
+    """Lines with their styles: the worst failure of each check, and the parameters that decide
+    it."""
+    by_check: dict[str, list[Measurement]] = {}
+    for m in outcome.failed:
+        by_check.setdefault(m.check, []).append(m)
+    for check, failed in list(by_check.items())[:MOST_FAILURES]:
+        worst = min(failed, key=tightness)
+        more = f" and {len(failed) - 1} more" if len(failed) > 1 else ""
+        yield f"  FAIL  {_described(worst)}{more}", "red"
+        if worst.note:
+            yield f"        {worst.note}", ""
+        if parameters_of(check):
+            yield f"        change {' or '.join(parameters_of(check))}", ""
+    if len(by_check) > MOST_FAILURES:
+        yield f"  and {len(by_check) - MOST_FAILURES} more checks: check --verbose", "red"
+    if not all(parameters_of(check) for check in by_check):
+        yield "  no parameter named: a file was altered, or it is a fault of Lumitip", ""
+
+
+def _described(m: Measurement) -> str:
+    unit = f" {m.unit}" if m.unit else ""
+    return f"{m.check}  {figure(m.measured)}{unit}, {m.limit}  {m.subject}"
+
+
+def _price(out: Path) -> str:
+    """The sum of the bill of materials, with the date and trust that it states."""
+    try:
+        with (out / BILL).open(encoding="utf-8", newline="") as file:
+            total = [row for row in csv.reader(file) if row and row[0] == "total"]
+        note, price = total[-1][4], float(total[-1][-1])
+    except (OSError, ValueError, IndexError, csv.Error):
+        return f"price: {out / BILL} has no total"
+    stated, _, _ = note.partition(":")
+    currency, _, trust = stated.partition(", ")
+    return f"price: {price:.2f} {currency} ({trust}), {out / BILL}"
+
+
+def _print(console: Console, line: str, style: str = "") -> None:
+    """One line, cut at the edge of a terminal."""
+    console.print(Text(line, style=style), no_wrap=True, overflow="ellipsis")
