@@ -59,5 +59,5 @@ def _patch(random: Random, cells: int, count: int) -> list[int]:
     columns = [max(1, round(wanted[0]))]
     for height in wanted[1:]:
         near = min(max(round(height), columns[-1] - MOST_STEP), columns[-1] + MOST_STEP)
-        columns.append(max(1, near))
+        columns.append(max(1, math.ceil(mean / 3), near))
     return columns

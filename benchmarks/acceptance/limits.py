@@ -96,9 +96,13 @@ def inputs(board: str, muxes: list[Table]) -> float:
 
 
 def finger_mm(values: Values) -> tuple[float, float]:
-    """Width and length of the finger, its margins those of the file or as published."""
+    """Width and length of the finger, its margins those of the file or as published.
+
+    It is as wide on both sides of the middle of its cells.
+    """
     pitch, columns = values["grid.pitch_mm"], values.columns
-    wide = (len(columns) - 1) * pitch * math.sqrt(3) / 2
+    middle = sum(i * count for i, count in enumerate(columns)) / sum(columns)
+    wide = 2 * max(middle, len(columns) - 1 - middle) * pitch * math.sqrt(3) / 2
     tall = (max(columns) - 1) * pitch + (pitch / 2 if len(set(columns)) == 1 < len(columns) else 0)
     side = values.number("board.side_margin_mm") + values.number("outline.shoulder_margin_mm")
     ends = values.number("board.tip_margin_mm") + values.number("outline.tip_margin_mm")

@@ -114,6 +114,7 @@ def test_no_design_crosses_a_physical_limit(designs: list[Design]) -> None:
         ({"stack.silicone_mm": 0.8}, "cover"),
         ({"supply.voltage_v": 5.0}, "step-down"),
         ({"grid.columns": [16] * 16, "grid.pitch_mm": 10.0}, "page"),
+        ({"grid.columns": [13, 12, 9, 6, *[1] * 15], "grid.pitch_mm": 6.0}, "page"),
         ({"grid.columns": [15] * 11}, "inputs"),
         ({"grid.pitch_mm": 3.6}, "land patterns"),
         ({"grid.pitch_mm": 3.8, "grid.columns": [14, 13, 14]}, "lines"),
