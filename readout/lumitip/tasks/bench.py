@@ -15,6 +15,7 @@ from lumitip.layout import Layout
 from lumitip.tasks.task import Settings, Task
 from lumitip.tasks.trial import CONTROLLERS, Bench, Summary, Team, Tuning, summary
 from lumitip.tasks.tuning import GRIDS, SEEDS, Tuned, search
+from lumitip.tasks.tuning import SPEEDS_MM_S as TUNED_AT_MM_S
 
 _EVERY = tuple(float(v) for v in range(40, 401, 20))
 _FEW = (80.0, 160.0, *(float(v) for v in range(200, 401, 20)))
@@ -110,7 +111,8 @@ def bench_tasks(
             for controller in controllers:
                 known = settings.kind, controller
                 if known not in tunings:
-                    tunings[known] = search(bench, controller, grids, tuning_seeds)
+                    speed_mm_s = TUNED_AT_MM_S[controller, settings.kind]
+                    tunings[known] = search(bench, controller, speed_mm_s, grids, tuning_seeds)
                 tuned = tunings[known]
                 say(f"{name}, {controller}: {tuning_text(controller, tuned)}")
                 speeds = speeds_mm_s[controller]

@@ -23,8 +23,12 @@ CENTRE_GRID = tuple(
 GRIDS = {"centre": CENTRE_GRID, "line": LINE_GRID, "pose": LINE_GRID}
 SEEDS = tuple(range(10_000, 10_012))
 """Curves to tune on, others than those of the test, which begin at 0."""
-SPEEDS_MM_S = {"centre": 200.0, "line": 320.0, "pose": 320.0}
-"""Where each begins to fail, where tuning matters."""
+SPEEDS_MM_S = {
+    ("centre", "cloth"): 200.0, ("centre", "cable"): 160.0,
+    ("line", "cloth"): 320.0, ("line", "cable"): 320.0,
+    ("pose", "cloth"): 320.0, ("pose", "cable"): 320.0,
+}  # fmt: skip
+"""Where each begins to fail, where tuning matters, by controller and kind of task."""
 _NAMES = {"gain_per_s": "K_p", "turn_per_s": "K_θ", "lead_s": "lead", "height_mm": "height"}
 
 
@@ -47,20 +51,20 @@ class Tuned:
 def search(
     bench: Bench | Team,
     controller: str,
+    speed_mm_s: float,
     grids: Mapping[str, Sequence[Tuning]] = GRIDS,
     seeds: Sequence[int] = SEEDS,
-    speeds_mm_s: Mapping[str, float] = SPEEDS_MM_S,
 ) -> Tuned:
     """The tuning with fewest losses, among these of least lateral rms, on curves for tuning.
 
     Args:
         bench: what runs the trials.
         controller: of `CONTROLLERS`.
+        speed_mm_s: on the curves for tuning (mm/s).
         grids: tunings to begin with; those of the published law are refined around the best.
         seeds: curves to tune on.
-        speeds_mm_s: speed of each controller on them (mm/s).
     """
-    speed_mm_s, tried = speeds_mm_s[controller], list(grids[controller])
+    tried = list(grids[controller])
     scores = {tuning: _score(bench, controller, speed_mm_s, tuning, seeds) for tuning in tried}
     if controller == "centre":
         for tuning in around(min(tried, key=scores.__getitem__)):

@@ -14,7 +14,6 @@ from lumitip.tasks.tuning import (
     GRIDS,
     LINE_GRID,
     SEEDS,
-    SPEEDS_MM_S,
     around,
     at_edge,
 )
@@ -50,10 +49,8 @@ def test_every_controller_gets_as_many_trials_on_the_same_curves() -> None:
     trials = {}
     for controller in GRIDS:
         recorder = Recorder(_bowl(33.0, 0.2))
-        tuned = search(recorder, controller)  # type: ignore[arg-type]
-        assert {(name, speed) for name, speed, _, _ in recorder.asked} == {
-            (controller, SPEEDS_MM_S[controller])
-        }
+        tuned = search(recorder, controller, 200.0)  # type: ignore[arg-type]
+        assert {asked[:2] for asked in recorder.asked} == {(controller, 200.0)}
         assert {seeds for *_, seeds in recorder.asked} == {SEEDS}
         assert tuned.tried == len({tuning for *_, tuning, _ in recorder.asked})
         trials[controller] = len(recorder.asked)
@@ -70,7 +67,7 @@ def test_the_gains_of_the_published_law_reach_beyond_sixty_four() -> None:
 @pytest.mark.parametrize(("gain_per_s", "height_mm"), [(37.0, -1.3), (12.5, 0.3), (70.0, -2.0)])
 def test_the_published_law_is_refined_around_its_best(gain_per_s: float, height_mm: float) -> None:
     recorder = Recorder(_bowl(gain_per_s, height_mm))
-    tuned = search(recorder, "centre")  # type: ignore[arg-type]
+    tuned = search(recorder, "centre", 200.0)  # type: ignore[arg-type]
     assert tuned.tuning.gain_per_s == pytest.approx(gain_per_s, rel=0.11)
     assert tuned.tuning.height_mm == pytest.approx(height_mm, abs=0.17)
     assert tuned.at_edge == () and tuned.losses == 0
@@ -90,7 +87,7 @@ def test_fewer_losses_count_before_less_distance() -> None:
     keeps, loses = Tuning(8.0, 6.0), Tuning(12.0, 6.0)
     rms_mm = {keeps: 4.9, loses: 5.1}
     recorder = Recorder(lambda tuning: rms_mm[tuning])
-    tuned = search(recorder, "line", {"line": (loses, keeps)})  # type: ignore[arg-type]
+    tuned = search(recorder, "line", 320.0, {"line": (loses, keeps)})  # type: ignore[arg-type]
     assert (tuned.tuning, tuned.losses, tuned.at_edge) == (keeps, 0, ("K_p",))
 
 
@@ -100,14 +97,14 @@ def test_a_best_at_the_edge_is_named() -> None:
     assert at_edge(Tuning(32.0, 6.0, 0.03), tried) == ("K_p",)
     assert at_edge(Tuning(8.0, 6.0, 0.06), tried) == ("K_p", "lead")
     low = Recorder(_bowl(3.0, 0.0))
-    assert search(low, "centre").at_edge == ("K_p",)  # type: ignore[arg-type]
+    assert search(low, "centre", 200.0).at_edge == ("K_p",)  # type: ignore[arg-type]
 
 
 def test_tuning_keeps_off_tunings_that_lose_the_line() -> None:
     bench = Bench(Task(published_layout(), Settings("cloth", length_mm=200.0)))
     best = Tuning(8.0, 10.0)
     grids = {"line": (Tuning(-8.0, 4.0), best, Tuning(0.0, 0.0))}
-    assert search(bench, "line", grids, (10_000, 10_001), {"line": 100.0}).tuning == best
+    assert search(bench, "line", 100.0, grids, (10_000, 10_001)).tuning == best
 
 
 def test_the_dark_centre_lies_lower_under_a_turned_line_which_height_makes_up_for() -> None:
