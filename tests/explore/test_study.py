@@ -170,6 +170,14 @@ def test_another_seed_or_price_is_evaluated_anew(given: Input) -> None:
     assert len({one.key, *(job.key for job in others)}) == 4
 
 
+def test_a_design_whose_cells_are_too_few_for_a_pose_is_refused(given: Input) -> None:
+    few = changed(given, (("grid.columns", (2, 1)), ("emitter.resistor", "1206"),
+                          ("emitter.resistor_side", "front"),
+                          ("emitter.current_ma", 6.0)))  # fmt: skip
+    (told,) = evaluate(Job.of(few, (), given.catalogue.prices, FEW))["refused"]
+    assert told.startswith("grid.columns: layout: 3 cells given, a pose needs at least 4")
+
+
 def test_figures_are_those_of_the_design(given: Input) -> None:
     prices, design = given.catalogue.prices, derive(given)
     given = resolve(given).given

@@ -78,3 +78,21 @@ def test_a_grid_keeps_its_size_with_another_pitch(columns: tuple[int, ...]) -> N
         assert abs((len(made) - 1) * new_mm - (len(columns) - 1) * 6.0) <= new_mm / 2.0 + 1e-9
         assert abs((max(made) - 1) * new_mm - (max(columns) - 1) * 6.0) <= new_mm / 2.0 + 1e-9
         assert (made[0] < made[1]) == (columns[0] < columns[1])
+
+
+@pytest.mark.parametrize(
+    ("columns", "new_mm", "wanted"),
+    [
+        ((7,), 3.0, (13,)),
+        ((4, 4, 4, 4), 3.0, (7, 7, 7, 7, 7, 7, 7)),
+        ((1, 2, 3, 2, 1), 3.0, (1, 2, 3, 4, 5, 4, 3, 2, 1)),
+        ((1, 2, 3, 2, 1), 12.0, (1, 2, 1)),
+        ((5, 2, 5), 3.0, (9, 6, 3, 6, 9)),
+        ((4, 5, 6, 5), 3.0, (7, 8, 9, 10, 11, 10, 9)),
+    ],
+)
+def test_any_grid_keeps_its_silhouette_with_another_pitch(
+    columns: tuple[int, ...], new_mm: float, wanted: tuple[int, ...]
+) -> None:
+    assert same_size(columns, 6.0, 6.0) == columns
+    assert same_size(columns, 6.0, new_mm) == wanted

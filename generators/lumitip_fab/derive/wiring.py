@@ -126,7 +126,8 @@ def string_problems(given: Input, strings: tuple[String, ...]) -> Iterator[tuple
 
 
 def _winding(cells: Cells) -> Integers:
-    """The cells along a path from neighbour to neighbour: up one column and down the next."""
+    """The cells along a path up one column and down the next: from neighbour to neighbour, but
+    for the step from a column to one of quite another length."""
     order = np.lexsort((np.where(cells.column % 2, cells.row, -cells.row), cells.column))
     return np.asarray(order, dtype=np.int64)
 
