@@ -5,7 +5,7 @@ otherwise: gripping face seen with the tip up, origin at the mean of the cell ce
 film's outer face, x to the right, y towards the tip, z out of the face.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from lumitip.layout import Cell, Layout
 from lumitip_fab.design.boards import (
@@ -34,6 +34,7 @@ from lumitip_fab.design.fit_plate import FitPlate, Fits
 from lumitip_fab.design.flange import Flange
 from lumitip_fab.design.flex import Interface
 from lumitip_fab.design.gripper import Closing, Mount, Nose
+from lumitip_fab.design.lettering import board_text, page_text
 from lumitip_fab.design.making import Letter, Mask, Mould, Printing
 from lumitip_fab.design.ordering import Fab
 from lumitip_fab.design.purchase import Bought, PartPrice, Purchase
@@ -107,6 +108,14 @@ class Title:
 
     name: str
     revision: str
+
+    def on_boards(self) -> "Title":
+        """As a silkscreen shows it."""
+        return replace(self, name=board_text(self.name))
+
+    def on_pages(self) -> "Title":
+        """As a drawing and a PDF show it."""
+        return replace(self, name=page_text(self.name))
 
 
 @dataclass(frozen=True)
