@@ -5,7 +5,7 @@ from typing import Annotated
 
 from pydantic import AfterValidator, Field
 
-from lumitip_fab.design.lettering import LONGEST, board_text
+from lumitip_fab.design.lettering import LONGEST, board_name
 
 DEVICE_BYTES = 29
 """Of a Bluetooth name: what one scan response carries."""
@@ -25,7 +25,7 @@ def _writable(text: str) -> str:
                 f"{text!r:.80} given, with U+{ord(character):04X} ({called}) in it; letters, "
                 "digits, punctuation and spaces of any script are allowed"
             )
-    if not board_text(text).strip():
+    if not board_name(text).strip():
         raise ValueError(f"{text!r:.80} given, of which nothing can be seen")
     return text
 

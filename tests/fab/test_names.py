@@ -3,6 +3,7 @@
 import io
 import unicodedata
 from collections.abc import Callable
+from pathlib import Path
 
 import pypdfium2
 import pytest
@@ -10,9 +11,11 @@ from pydantic import TypeAdapter, ValidationError
 from reportlab.pdfbase.pdfmetrics import getFont
 
 from lumitip_fab.boards.spice import simulation
+from lumitip_fab.checks import firmware
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
-from lumitip_fab.design.lettering import LONGEST, PAGE_LETTERS, board_text, page_text
+from lumitip_fab.design.lettering import LONGEST, PAGE_LETTERS, board_name, page_letters, page_name
+from lumitip_fab.firmware.files import firmware_files
 from lumitip_fab.load import Input
 from lumitip_fab.mask.files import mask_files
 from lumitip_fab.names import DEVICE_BYTES, DeviceName, Text
@@ -74,14 +77,14 @@ def test_every_letter_that_pages_keep_is_in_their_typefaces() -> None:
 
 @pytest.mark.parametrize("text", ["é", "e\u0301"])
 def test_both_ways_to_write_an_accent_look_alike(text: str) -> None:
-    assert (page_text(text), board_text(text)) == ("é", "e")
+    assert (page_name(text), board_name(text)) == ("é", "e")
 
 
 def test_a_long_name_is_cut_where_it_grows() -> None:
     name = "传" * LONGEST
     assert _TEXT.validate_python(name) == name
-    assert len(board_text(name)) <= LONGEST
-    assert board_text(name).startswith("ChuanChuan")
+    assert len(board_name(name)) <= LONGEST
+    assert board_name(name).startswith("ChuanChuan")
 
 
 @pytest.mark.parametrize(
@@ -112,3 +115,29 @@ def test_a_netlist_is_in_ascii(named: Design) -> None:
     (made,) = simulation(d.title, d.reading, d.emitter, d.wiring, d.packages, d.rules, d.electrical)
     assert made.data.isascii()
     assert made.data.decode().startswith(f"* {NAMES[d.title.name][1]}, emitter")
+
+
+@pytest.mark.parametrize("name", ["Палец левый", "指尖传感器", '😀 "7"? \\1'])
+def test_the_check_reads_a_bluetooth_name_as_a_compiler_does(
+    name: str, inputs: dict[str, Input], vary: Callable[..., Input], tmp_path: Path
+) -> None:
+    d = derive(vary(inputs["published"], {"controller.name": name}))
+    (tmp_path / "firmware").mkdir()
+    for made in firmware_files(d.layout, d.wiring, d.controller, d.electrical, d.title):
+        (tmp_path / made.path).write_bytes(made.data)
+
+    def passed() -> bool:
+        (found,) = (m for m in firmware.measure(tmp_path, d) if m.check == "firmware.name")
+        return bool(found.passed)
+
+    assert passed()
+    header = tmp_path / "firmware" / "protocol.h"
+    text = header.read_text(encoding="ascii")
+    header.write_text(text.replace('_NAME "', '_NAME "\\320'), encoding="ascii")
+    assert not passed()
+
+
+def test_a_page_keeps_all_other_letters_of_a_text() -> None:
+    text = "90 °C → 24 V ± 5 %, ≥ 3 µm, 1 Ω – “x” … × 2\nnext"
+    assert page_letters(text) == text
+    assert page_letters("指 ≥ 3\n") == "Zhi ≥ 3\n"

@@ -34,7 +34,7 @@ from lumitip_fab.design.fit_plate import FitPlate, Fits
 from lumitip_fab.design.flange import Flange
 from lumitip_fab.design.flex import Interface
 from lumitip_fab.design.gripper import Closing, Mount, Nose
-from lumitip_fab.design.lettering import board_text, page_text
+from lumitip_fab.design.lettering import board_name, page_name
 from lumitip_fab.design.making import Letter, Mask, Mould, Printing
 from lumitip_fab.design.ordering import Fab
 from lumitip_fab.design.purchase import Bought, PartPrice, Purchase
@@ -111,11 +111,11 @@ class Title:
 
     def on_boards(self) -> "Title":
         """As a silkscreen shows it."""
-        return replace(self, name=board_text(self.name))
+        return replace(self, name=board_name(self.name))
 
     def on_pages(self) -> "Title":
         """As a drawing and a PDF show it."""
-        return replace(self, name=page_text(self.name))
+        return replace(self, name=page_name(self.name))
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,5 @@
 """`manual/manual.html` and `manual.pdf`, which say the same."""
 
-from dataclasses import replace
-
 from lumitip_fab.artefact import Artefact
 from lumitip_fab.design import (
     Cabling,
@@ -51,12 +49,9 @@ def manual_files(
     """
     facts = Facts(title, printing, mould, mask, mount, wiring, cabling, electrical,
                   carriers, holders, interfaces, flanges, emitter)  # fmt: skip
-    printed = title.on_pages()
-    text, sheets = (manual_text(replace(facts, title=t), made) for t in (title, printed))
-    end = f"{title.revision}: build manual"
+    text = manual_text(facts, made)
+    name = f"{title.name} {title.revision}: build manual"
     return (
-        Artefact(
-            "manual/manual.html", html_page(f"{title.name} {end}", text, made).encode(), frame=""
-        ),
-        Artefact("manual/manual.pdf", pdf_sheets(f"{printed.name} {end}", sheets, made), frame=""),
+        Artefact("manual/manual.html", html_page(name, text, made).encode(), frame=""),
+        Artefact("manual/manual.pdf", pdf_sheets(name, text, made), frame=""),
     )
