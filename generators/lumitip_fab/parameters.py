@@ -19,12 +19,10 @@ from pydantic import Field
 from lumitip_fab.carrier_parameters import Breakout, Flange, Holder, Module
 from lumitip_fab.entry import Name, Strict
 from lumitip_fab.flex_parameters import Flex
+from lumitip_fab.names import DeviceName, Text
 
-PRINTABLE = r"^[\x20-\x7e]+$"
 REVISION = r"^[A-Za-z0-9.\-]{1,8}$"
 Gap = Annotated[float, Field(ge=0, le=20)]
-Text = Annotated[str, Field(min_length=1, max_length=32, pattern=PRINTABLE)]
-DeviceName = Annotated[str, Field(min_length=1, max_length=29, pattern=PRINTABLE)]
 Column = Annotated[int, Field(ge=1, le=256)]
 
 
@@ -178,7 +176,8 @@ class Controller(Strict):
     """Name of a controller in `parts/controllers.toml`: a board that plugs into the breakout, or a
     module on the flange's board."""
     name: DeviceName
-    """Bluetooth name of the device; what one scan response carries."""
+    """Bluetooth name of the device, in any script: at most 29 bytes of UTF-8, as one scan
+    response carries."""
 
 
 class Supply(Strict):
@@ -261,7 +260,8 @@ class Parameters(Strict):
     """A whole parameter file."""
 
     name: Text
-    """Name of the design, on boards and drawings."""
+    """Name of the design, in any script; transliterated where a board or a page lacks its
+    letters."""
     revision: Annotated[str, Field(pattern=REVISION)]
     """Revision of the design, on boards and drawings."""
     grid: Grid

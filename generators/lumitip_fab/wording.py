@@ -12,7 +12,7 @@ from pydantic import BaseModel, ValidationError
 
 from lumitip_fab.entry import NAME, PIN, TITLE
 from lumitip_fab.errors import Problem
-from lumitip_fab.parameters import PRINTABLE, REVISION
+from lumitip_fab.parameters import REVISION
 from lumitip_fab.source import Source
 
 _KINDS = {
@@ -43,7 +43,6 @@ _PATTERNS = {
     TITLE: "letters of Latin-1, digits, spaces and any of . , + - / ( ), beginning with a letter "
     "or digit,",
     PIN: "1 to 16 letters, digits or _, beginning with a letter,",
-    PRINTABLE: "ASCII letters, digits, punctuation and spaces",
     REVISION: "1 to 8 letters, digits, dots or hyphens",
 }
 

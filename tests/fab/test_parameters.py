@@ -83,6 +83,6 @@ def test_whole_numbers_are_numbers(inputs: dict[str, Input], vary: Any) -> None:
 
 def test_a_device_name_fits_one_scan_response(inputs: dict[str, Input], vary: Any) -> None:
     vary(inputs["published"], {"controller.name": "x" * 29})
-    for name in ("x" * 30, "", "Grüße", "a\nb"):
+    for name in ("x" * 30, "", "ü" * 15, "a\nb"):
         with pytest.raises(ValidationError):
             vary(inputs["published"], {"controller.name": name})

@@ -18,8 +18,8 @@ ARM, XTENSA = 40, 94  # as ELF numbers the machines
 CORES = {
     "nrf52840": (ARM, "arm-none-eabi-g++", "-mcpu=cortex-m4", "-mthumb"),
     "rp2040": (ARM, "arm-none-eabi-g++", "-mcpu=cortex-m0plus", "-mthumb"),
-    # Debian's only Xtensa compiler is that of the ESP8266: the same instruction set, an older core.
-    "esp32s3": (XTENSA, "xtensa-lx106-elf-g++", "-specs=picolibc.specs"),
+    # Debian has Xtensa compilers for the ESP8266 alone: the same instruction set, an older core.
+    "esp32s3": (XTENSA, "xtensa-lx106-elf-g++", "-isystem", "/usr/lib/xtensa-lx106-elf/include"),
 }
 STUBS = HERE / "stubs"
 RP2040 = ("-DARDUINO_ARCH_RP2040", "-I", HERE / "stubs_rp2040")

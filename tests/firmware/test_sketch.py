@@ -91,10 +91,13 @@ def test_settings_out_of_range_do_not_compile(
     assert name in verdict.stderr
 
 
+@pytest.mark.parametrize(
+    "given",
+    ["".join(map(chr, range(0x20, 0x7F))) + "??/ \\", "Größe 7", "Палец2", "指尖", "😀1"],
+)
 def test_any_name_comes_out_as_it_was_given(
-    design_dir: Path, tmp_path: Path, run: Callable[..., Any]
+    given: str, design_dir: Path, tmp_path: Path, run: Callable[..., Any]
 ) -> None:
-    given = "".join(map(chr, range(0x20, 0x7F))) + "??/ \\"
     design = derive(load(design_dir / "presets" / "published.toml"))
     header = protocol_header(
         design.layout, replace(design.controller, name=given), replace(design.title, name=given)

@@ -57,7 +57,7 @@ def carrier_files(
 def _placement(title: Title, reading: Reading, carrier: Carrier, rules: Rules) -> Placement:
     return Placement(
         finger=carrier.name,
-        name=title.name,
+        name=title.on_boards().name,
         revision=title.revision,
         design_hash=reading.design_hash,
         outline=carrier.box,

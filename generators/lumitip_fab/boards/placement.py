@@ -63,7 +63,7 @@ def place(
     _refuse_beyond(finger.name, tuple(parts.values()), board)
     bare = Placement(
         finger=finger.name,
-        name=title.name,
+        name=title.on_boards().name,
         revision=title.revision,
         design_hash=reading.design_hash,
         outline=board.box,

@@ -40,7 +40,7 @@ def simulation(
     parts = circuit(reading, finger, wiring, packages, rules).components
     body = _string if finger.name == "emitter" else _channel
     lines = (
-        f"* {title.name}, {finger.name}, design {reading.design_hash[:8]}",
+        f"* {title.on_boards().name}, {finger.name}, design {reading.design_hash[:8]}",
         *body(parts, wiring, packages, electrical),
         f".options temp={_TEMPERATURE_C} tnom={_TEMPERATURE_C} reltol=1e-5 vntol=1e-7",
         ".end",

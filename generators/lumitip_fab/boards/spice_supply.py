@@ -33,7 +33,7 @@ def supply_simulation(
     """
     (told,) = electrical.supplies
     lines = (
-        f"* {title.name} {title.revision}, {regulated.name}: its regulator",
+        f"* {title.on_boards().name} {title.revision}, {regulated.name}: its regulator",
         *_circuit(regulated, told),
         *_measured(regulated, told),
         ".end",

@@ -62,7 +62,7 @@ def measure_targets(read: Read) -> Iterator[Measurement]:
 
 def _untold(read: Read) -> Iterator[str]:
     """Lines of the title that neither side has: name, revision, design, and what marks mean."""
-    title, packages = read.design.title, read.design.packages
+    title, packages = read.design.title.on_boards(), read.design.packages
     chip = packages.led if read.finger.name == "emitter" else packages.photodetector
     printed = [word.text for word in read.board.silk.words if not word.ref]
     digest = read.design.reading.design_hash[:8]

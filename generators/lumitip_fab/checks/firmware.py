@@ -24,7 +24,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     yield _converter(wired, layout, design)
     yield _hash(wired, told, layout)
     name = re.search(r'#define LUMITIP_DEVICE_NAME "(.*)"$', told, re.MULTILINE)
-    same = name is not None and re.sub(r"\\(.)", r"\1", name[1]) == design.controller.name
+    same = name is not None and _read_string(name[1]) == design.controller.name.encode()
     yield _faults("firmware.name", _PROTOCOL, int(not same), "Bluetooth name")
     yield _complete(outputs)
 
@@ -101,6 +101,15 @@ def _text(file: Path) -> str:
         return file.read_text(encoding="utf-8")
     except (OSError, ValueError):
         return ""
+
+
+def _read_string(text: str) -> bytes:
+    """The bytes of a C++ string: an octal number, or a character of its own, after a backslash."""
+
+    def read(found: re.Match[str]) -> str:
+        return chr(int(found[1], 8)) if found[1] else found[2]
+
+    return re.sub(r"\\(?:([0-7]{3})|(.))", read, text).encode("latin-1", "replace")
 
 
 def _number(text: str, name: str) -> int | None:

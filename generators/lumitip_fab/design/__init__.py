@@ -5,7 +5,7 @@ otherwise: gripping face seen with the tip up, x to the right from the mean of t
 towards the tip from the centre line of the columns, z out of the face from the film's outer face.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from lumitip.layout import Cell, Layout
 from lumitip_fab.design.boards import (
@@ -35,6 +35,7 @@ from lumitip_fab.design.fit_plate import FitPlate, Fits
 from lumitip_fab.design.flange import Flange
 from lumitip_fab.design.flex import Interface
 from lumitip_fab.design.gripper import Closing, Mount, Nose
+from lumitip_fab.design.lettering import board_name, page_name
 from lumitip_fab.design.making import Letter, Mask, Mould, Printing
 from lumitip_fab.design.ordering import Fab
 from lumitip_fab.design.purchase import Bought, PartPrice, Purchase
@@ -109,6 +110,14 @@ class Title:
 
     name: str
     revision: str
+
+    def on_boards(self) -> "Title":
+        """As a silkscreen shows it."""
+        return replace(self, name=board_name(self.name))
+
+    def on_pages(self) -> "Title":
+        """As a drawing and a PDF show it."""
+        return replace(self, name=page_name(self.name))
 
 
 @dataclass(frozen=True)

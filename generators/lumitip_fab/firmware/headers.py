@@ -101,8 +101,17 @@ def _pin(name: str) -> str:
 
 
 def _text(text: str) -> str:
-    """A C++ string; question marks escaped, since three characters may stand for one."""
-    return json.dumps(text).replace("?", r"\?")
+    """A C++ string of the text's UTF-8."""
+    return '"' + "".join(map(_byte, text.encode())) + '"'
+
+
+def _byte(byte: int) -> str:
+    """One byte within a C++ string. Question marks are escaped, since three characters may stand
+    for one; an octal number ends after three digits, whatever follows."""
+    letter = chr(byte)
+    if letter in '"\\?':
+        return f"\\{letter}"
+    return letter if letter.isascii() else f"\\{byte:03o}"
 
 
 def _short(uuid: str) -> str:

@@ -28,6 +28,7 @@ from reportlab.platypus import (
 )
 from svglib.svglib import svg2rlg
 
+from lumitip_fab.design.lettering import page_letters
 from lumitip_fab.made import Made
 from lumitip_fab.manual.page import markdown
 from lumitip_fab.typeface import BOLD, CODE, OF_HELVETICA, PLAIN, load_typeface
@@ -88,12 +89,20 @@ def pdf_sheets(name: str, text: str, made: Made) -> bytes:
     def foot(canvas: Canvas, _document: object) -> None:
         canvas.setFont(PLAIN, 7.1)
         canvas.setFillGray(0.45)
-        canvas.drawString(_MARGIN, 10 * mm, name)
+        canvas.drawString(_MARGIN, 10 * mm, page_letters(name))
         canvas.drawRightString(A4[0] - _MARGIN, 10 * mm, str(canvas.getPageNumber()))
 
-    document.build(list(_flowables(markdown().parse(text), made)), onFirstPage=foot,
-                   onLaterPages=foot)  # fmt: skip
+    tokens = markdown().parse(text)
+    _set_letters(tokens)
+    document.build(list(_flowables(tokens, made)), onFirstPage=foot, onLaterPages=foot)
     return buffer.getvalue()
+
+
+def _set_letters(tokens: list[Token]) -> None:
+    """Leave in all texts only what the typeface has."""
+    for token in tokens:
+        token.content = page_letters(token.content)
+        _set_letters(token.children or [])
 
 
 def _flowables(tokens: list[Token], made: Made) -> Iterator[Flowable]:

@@ -128,7 +128,7 @@ def _texts(canvas: Canvas, artwork: Artwork, mask: Mask, title: Title, paper: st
     name = "US Letter" if paper == "letter" else "A4"
     canvas.setFont(BOLD, 1.4 * TEXT_MM)
     x, y = places.heading
-    heading = f"{title.name} {title.revision} – {artwork.name.lower()} mask"
+    heading = f"{title.on_pages().name} {title.revision} – {artwork.name.lower()} mask"
     canvas.drawCentredString(x, y, heading)
     canvas.setFont(PLAIN, TEXT_MM)
     told = f"{name}, print at 100 % (actual size), on the inside of the film"

@@ -53,13 +53,13 @@ def diagram(title: Title, cabling: Cabling) -> str:
     bottom = max(run.top + _height(run.cable) for run in runs)
     width = (_RIGHT if len(runs) > 2 else _MIDDLE)[1] + _MARGIN
     height = bottom + 13 + _MARGIN
-    name = f"{title.name} {title.revision}: wiring"
+    name, drawn = (f"{t.name} {t.revision}: wiring" for t in (title, title.on_pages()))
     lines = [
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:g}mm" height="{height:g}mm" '
         f'viewBox="0 0 {width:g} {height:g}" font-family="Helvetica, Arial, sans-serif">',
         f"<title>{escape(name)}</title>",
         f'<rect width="{width:g}" height="{height:g}" fill="#fff"/>',
-        _text(_LEFT[0], 14, name, 6, _INK, 'font-weight="bold"'),
+        _text(_LEFT[0], 14, drawn, 6, _INK, 'font-weight="bold"'),
         *_boxes(runs, bottom),
         *(line for run in runs for wire in run.cable.wires for line in _wire(run, wire)),
         *(line for run in runs for line in _ends(run)),
