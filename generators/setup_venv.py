@@ -19,11 +19,11 @@ ROOT = Path(__file__).resolve().parents[1]
 VENV = ROOT / ".venv"
 LOG = VENV / "setup.log"
 SIZES = {
-    "fab": "the CAD kernel, the board router and their libraries; 0.35 GB to download, "
-    "1.3 GB in .venv, 2 to 5 minutes",
+    "fab": "the CAD kernel, the board router and their libraries; 0.36 GB to download, "
+    "1.2 GB in .venv, 2 to 5 minutes",
     "readout": "live view, Bluetooth and serial line; 20 MB to download",
     "dev": "tests, linters and a second opinion on every format; 0.5 GB to download, "
-    "1.4 GB in .venv, 2 to 5 minutes",
+    "1.2 GB in .venv, 2 to 5 minutes",
     "docs": "VTK for the README's pictures; 0.1 GB to download",
 }
 LARGE_MB = 5
