@@ -15,6 +15,8 @@ import tomlkit
 
 from lumitip_fab.automatic import AUTO, FIELDS
 from lumitip_fab.derive import derive
+from lumitip_fab.derive.auto.judge import judge_with, rule_of
+from lumitip_fab.derive.auto.resolve import RuleError
 from lumitip_fab.errors import InputError
 from lumitip_fab.load import load
 
@@ -78,6 +80,26 @@ def test_expected_lines_name_a_file_and_a_field_once_each_and_in_order(name: str
         places.append((place[1], int(place[2] or 0)))
     assert places == sorted(places)
     assert len(set(lines)) == len(lines)
+
+
+ADVICE = re.compile(r"at (?:least|most) (-?[\d.]+\d) is (?:needed|allowed)")
+"""Figures that a message gives for its own field; those of other things have a unit."""
+
+
+@pytest.mark.parametrize("name", [n for n in NAMES if not (BAD / n).is_dir()])
+def test_a_figure_that_a_message_names_for_its_field_mends_the_rule(
+    name: str, project: Path
+) -> None:
+    error = _refusal(name, project)
+    if not isinstance(error, RuleError):
+        return  # schema faults: pydantic's own limits
+    given = error.verdict.given
+    for problem in error.problems:
+        figures = ADVICE.findall(problem.message) if "." in problem.field else ()
+        if len(figures) != 1 or not isinstance(given.value(problem.field), float):
+            continue
+        after = judge_with(given, {problem.field: float(figures[0])})
+        assert after is None or rule_of(problem) not in after.rules, problem
 
 
 def test_every_bad_file_has_its_expectation_and_no_expectation_is_left_over() -> None:

@@ -86,7 +86,7 @@ def _refuse(given: Input, of: Carrier, holder: Holder, faults: Faults) -> None:
         faults.refuse(
             "holder.body_mm",
             f"{told}, the tray is {holder.outer.width_mm:.1f} mm wide: at least "
-            f"{holder.body_mm + 2 * beyond:.1f} is needed",
+            f"{math.ceil((holder.body_mm + 2 * beyond) * 10) / 10:g} is needed",
         )
         return
     refuse_touching(given, "holder.clearance_mm", p.clearance_mm, faults)

@@ -46,17 +46,21 @@ def derive_interfaces(
     ramp = (gripper.block_back_w_mm - behind_mm(p)) / math.tan(tilt)
     least = gripper.land_mm + ramp + FLARE_MM
     most = outline.length_mm - p.tip.slant_start_mm - 2 * LETTER_GAP_MM - MOST_MM
-    room = f"at most {most:.1f} is allowed: then come the finger's letter and the wedge"
+    needed, room = math.ceil(least * 10) / 10, math.floor(most * 10) / 10
+    told = (
+        f"at least {needed:g} is needed for the land and ramp of {p.coupling.gripper!r}, and at "
+        f"most {room:g} is allowed: then come the finger's letter and the wedge"
+    )
     if most < least:
-        room = (
-            f"{max(most, 0.0):.1f} are there before the finger's letter and the wedge: a longer "
-            "finger, less tip.slant_start_mm or less flex.standoff_mm"
+        told = (
+            f"the land and ramp of {p.coupling.gripper!r} need {needed:g} mm, and before the "
+            f"finger's letter and the wedge are {max(room, 0.0):g} mm: a longer finger, less "
+            "tip.slant_start_mm or less flex.standoff_mm"
         )
     faults.refuse_unless(
         least <= flex.interface_mm <= most,
         "flex.interface_mm",
-        f"{flex.interface_mm:g} given, at least {least:.1f} is needed for the land and ramp of "
-        f"{p.coupling.gripper!r}, and {room}",
+        f"{flex.interface_mm:g} given, {told}",
     )
     low = groove.y_max_mm + LETTER_GAP_MM - end_y
     back = p.stack.pcb_mm + p.stack.floor_mm

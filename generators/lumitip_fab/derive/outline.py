@@ -69,7 +69,7 @@ def derive_outline(p: Parameters, board: Board, notch: Box, faults: Faults) -> O
         "outline.waist_margin_mm",
         f"{p.outline.waist_margin_mm:g} given, a board of {board.box.width_mm:.1f} x "
         f"{board.box.length_mm:.1f} mm does not fit the outline: {rim:.2f} mm of rim is left at "
-        f"({where[0]:.1f}, {where[1]:.1f}), at least {p.printer.min_wall_mm:g} is needed; "
+        f"({where[0]:.1f}, {where[1]:.1f}), {p.printer.min_wall_mm:g} mm of rim are needed; "
         "widen the outline's margins",
     )
     return outline

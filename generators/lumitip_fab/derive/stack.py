@@ -80,7 +80,7 @@ def derive_tip(p: Parameters, outline: Outline, board: Board, stack: Stack, faul
     )
     angle = math.degrees(math.atan2(plate - p.tip.edge_mm, outline.tip_y_mm - start_y))
     faults.refuse_unless(
-        angle <= 45,
+        angle <= 45 + 1e-9,
         "tip.slant_start_mm",
         f"{p.tip.slant_start_mm:g} given, which makes a wedge of {angle:.0f}° behind the tip; "
         f"at least {plate - p.tip.edge_mm:g} is needed for 45°",
