@@ -23,6 +23,7 @@ from lumitip_fab.checks.run import MODULES, Outcome, as_json, run_checks
 from lumitip_fab.cli import main
 from lumitip_fab.design import Design
 from lumitip_fab.encoding import read_design
+from lumitip_fab.frames import mount_to_sensor
 from pages import page_damage, runs
 
 Reports = tuple[Outcome, list[dict[str, Any]], ElementTree.Element]
@@ -131,16 +132,18 @@ def aperture_moved(folder: Path) -> None:
     page_damage("mask/receiver_mask_a4.pdf", change)(folder)
 
 
-def wall_thinned(folder: Path) -> None:
+def floor_thinned(folder: Path) -> None:
     design = read_design(folder / "design.json")
-    x, y = design.board.pocket.x_max_mm, 0.0
-    carve(folder / "backing/receiver_backing.stl",
-          lambda part: part - box((x + 0.3, y - 3, -3.0), (x + 20, y + 3, -1.0)))  # fmt: skip
+    carve(
+        folder / "backing/receiver_backing.stl",
+        lambda part: part - box((10, 0, -4.5), (13, 3, -3.8)),
+        mount_to_sensor(design.mount, design.stack),
+    )
 
 
 @pytest.mark.parametrize(
     ("damage", "failed"),
-    [(aperture_moved, "mask.position"), (wall_thinned, "backing.min_wall")],
+    [(aperture_moved, "mask.position"), (floor_thinned, "backing.min_wall")],
 )
 def test_a_damaged_file_is_reported_everywhere(
     damaged: Path,
@@ -221,11 +224,16 @@ def test_figures_become_python_floats() -> None:
 
 @pytest.mark.parametrize(
     ("values", "error"),
-    [(("x.y", "file", "0.5"), TypeError), (("x.y", "file", None), TypeError),
-     (("x.y", "file", 1j), TypeError), (("x.y", "file", np.array([1.0, 2.0])), TypeError),
-     (("x.y", Path("file"), 0.5), TypeError), (("x.y", "file", 0.5, math.nan), ValueError),
-     (("x.y", "file", 0.5, 0, np.nan), ValueError)],
-)  # fmt: skip
+    [
+        (("x.y", "file", "0.5"), TypeError),
+        (("x.y", "file", None), TypeError),
+        (("x.y", "file", 1j), TypeError),
+        (("x.y", "file", np.array([1.0, 2.0])), TypeError),
+        (("x.y", Path("file"), 0.5), TypeError),
+        (("x.y", "file", 0.5, math.nan), ValueError),
+        (("x.y", "file", 0.5, 0, np.nan), ValueError),
+    ],
+)
 def test_a_measurement_that_is_none_is_rejected(values: Any, error: type[Exception]) -> None:
     with pytest.raises(error, match=r"x\.y"):
         Measurement(*values)

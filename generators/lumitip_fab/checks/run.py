@@ -20,7 +20,7 @@ from lumitip_fab.encoding import read_design
 MODULES = (
     "manifest", "layout", "firmware", "mask", "backing", "fit_plate", "mould", "assembly", "board",
     "schematic", "orders", "printing", "holder", "flange", "robot", "system", "wiring", "bom",
-    "manual",
+    "manual", "heat",
 )  # fmt: skip
 _LONG = frozenset({"orders", "board"})
 """Modules that take longer than another process takes to start."""
