@@ -6,7 +6,9 @@ from pydantic import Field, model_validator
 
 from lumitip_fab.entry import Capacitances, Entry, Length, Share, Strict, Voltages
 
-Signal = Annotated[str, Field(pattern=r"^[A-Z0-9_]{1,12}$")]
+Signal = Annotated[str, Field(pattern=r"^[A-Za-z0-9_+\-]{1,12}$")]
+OPEN = "NC"
+"""Signal of a contact that is joined to nothing."""
 PinName = Annotated[str, Field(pattern=r"^[A-Z0-9]{1,6}$")]
 
 

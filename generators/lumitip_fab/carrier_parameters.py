@@ -81,13 +81,14 @@ class Flange(Strict):
     contacts: Name
     """Spring contacts in `parts/strips.toml`, two rows."""
     signals: tuple[Signal, ...]
-    """Signal of each contact, counter-clockwise from the lower left, seen from the gripper:
-    `SUPPLY`, `GND`, and names of your own for lines that a header has too. Which contact carries
-    what differs from coupling to coupling."""
+    """Signal of each contact of the coupling, in the order of their numbers: `SUPPLY`, `GND`, `NC`
+    of one that is left open, and names of your own for lines that a header has too. The entry in
+    `parts/couplings.toml` says what each contact carries."""
     header: Name
     """Headers for cables in `parts/strips.toml`, two rows."""
     headers: tuple[tuple[Signal, ...], tuple[Signal, ...]]
-    """Signals of both headers, left to right; `REGULATED` is the regulator's output."""
+    """Signals of both headers, the lower one first, left to right seen from the gripper;
+    `REGULATED` is the regulator's output."""
     regulator: Name
     """Switching regulator in `parts/regulators.toml`."""
     inductor: Name

@@ -212,7 +212,11 @@ class Silicone(Entry):
     refractive_index: float = Field(ge=1.0, le=2.0)
     """Refractive index when cured."""
     cure_h: float = Field(gt=0, le=200)
-    """Time to cure at room temperature (h)."""
+    """Time to cure at `cure_c` (h)."""
+    cure_c: float = Field(ge=5, le=200)
+    """Temperature to cure at, in the mould with backing and board (°C)."""
+    limit_c: float = Field(ge=20, le=400)
+    """Highest temperature that it bears when cured (°C)."""
 
 
 class Film(Entry):
@@ -223,7 +227,9 @@ class Film(Entry):
     density_g_ml: float = Field(gt=0.5, le=3)
     """Density (g/mL)."""
     soften_c: float = Field(gt=20, le=200)
-    """Temperature at which it wraps (°C)."""
+    """Temperature at which it can be creased (°C)."""
+    limit_c: float = Field(gt=20, le=300)
+    """Highest temperature that it bears without melting or shrinking (°C)."""
 
 
 class Printer(Entry):

@@ -12,6 +12,10 @@ class Laminate(Sourced):
     """Density without copper."""
     copper_mm: Length
     """Thickness of the copper on each side."""
+    limit_c: float = Field(ge=60, le=400)
+    """Highest temperature that it bears for hours: its glass transition, or its adhesive's (°C)."""
+    solder_c: float = Field(ge=100, le=400)
+    """Highest temperature that it bears for the seconds of soldering (°C)."""
 
 
 class Laminates(Strict):

@@ -30,7 +30,7 @@ def failing(folder: Path) -> set[str]:
 EDITS = [
     ("<td>24 h</td>", "<td>12 h</td>", {"figures", "units", "pdf"}),
     ("Leave it for 24 h", "Leave it for 2 h", {"units", "pdf"}),
-    ("goes limp at 90 °C", "goes limp at 190 °C", {"units", "pdf"}),
+    ("creased at 90 °C", "creased at 190 °C", {"units", "pdf"}),
     ("<td>24 V</td>", "<td>5 V</td>", {"figures"}),
     ("<td>1 x M5</td>", "<td>1 x M4</td>", {"figures", "pdf"}),
     ("<td>warm-up</td>", "<td>cool-down</td>", {"figures", "pdf"}),

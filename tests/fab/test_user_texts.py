@@ -44,7 +44,7 @@ def _notes(design: Design) -> dict[str, str]:
     made: list[Artefact] = [*print_settings(d.title, d.printing, d.slicing, d.interfaces)]
     made += wiring_files(d.title, d.cabling)
     made += mask_files(d.receiver, d.outline, d.stack, d.tip, d.mould, d.mount, d.interfaces,
-                       d.mask, d.title)  # fmt: skip
+                       d.mask, d.heat, d.title)  # fmt: skip
     return {a.path: a.data.decode() for a in made if a.path.endswith(".md")}
 
 
@@ -70,8 +70,8 @@ def test_the_manual_shows_a_name_as_it_is_written(name: str, outputs: Path) -> N
     d = read_design(outputs / "design.json")
     files = {f.relative_to(outputs).as_posix(): "" for f in outputs.rglob("*") if f.is_file()}
     made = Made(outputs, files)
-    facts = Facts(Title(name, "A"), d.printing, d.mould, d.mask, d.mount, d.wiring, d.cabling,
-                  d.electrical, d.carriers, d.holders, d.interfaces, d.flanges,
+    facts = Facts(Title(name, "A"), d.printing, d.mould, d.mask, d.heat, d.mount, d.wiring,
+                  d.cabling, d.electrical, d.carriers, d.holders, d.interfaces, d.flanges,
                   d.emitter)  # fmt: skip
     text = manual_text(facts, made)
     assert _headings(text)[0] == f"{name} A: build manual"

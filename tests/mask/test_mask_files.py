@@ -37,7 +37,16 @@ def made(design: Design) -> list[Artefact]:
         artefact
         for finger in d.fingers
         for artefact in mask_files(
-            finger, d.outline, d.stack, d.tip, d.mould, d.mount, d.interfaces, d.mask, d.title
+            finger,
+            d.outline,
+            d.stack,
+            d.tip,
+            d.mould,
+            d.mount,
+            d.interfaces,
+            d.mask,
+            d.heat,
+            d.title,
         )
     ]
 
@@ -154,7 +163,8 @@ def test_same_bytes_in_any_process(design_dir: Path) -> None:
         "from lumitip_fab.mask.files import mask_files\n"
         "d = derive(load(Path(sys.argv[1])))\n"
         "for f in d.fingers:\n"
-        "    shared = d.outline, d.stack, d.tip, d.mould, d.mount, d.interfaces, d.mask, d.title\n"
+        "    shared = (d.outline, d.stack, d.tip, d.mould, d.mount, d.interfaces, d.mask,\n"
+        "              d.heat, d.title)\n"
         "    for a in mask_files(f, *shared):\n"
         "        print(a.path, hashlib.sha256(a.data).hexdigest())\n"
     )

@@ -6,13 +6,14 @@ from lumitip_fab.boards.carrier_legend import with_legend
 from lumitip_fab.boards.carrier_parts import component
 from lumitip_fab.boards.fab.note import carrier_note
 from lumitip_fab.boards.files import model_files
-from lumitip_fab.boards.model import BoardModel, Net, NetClass, Placement
+from lumitip_fab.boards.geometry import pad_at
+from lumitip_fab.boards.model import BoardModel, Component, Net, NetClass, Placement
 from lumitip_fab.boards.placement import refuse_overlaps
 from lumitip_fab.boards.pour import pour
 from lumitip_fab.boards.routing import route
 from lumitip_fab.boards.schematic.carrier import carrier_sheet
 from lumitip_fab.boards.verify import sound
-from lumitip_fab.design import Carrier, Fab, Reading, Rules, Stack, Title
+from lumitip_fab.design import Box, Carrier, Fab, Reading, Rules, Stack, Title
 from lumitip_fab.frames import board_page_to_carrier
 
 GROUND = "GND"
@@ -54,7 +55,18 @@ def carrier_files(
     )  # fmt: skip
 
 
+def _hot_loop(carrier: Carrier, components: tuple[Component, ...]) -> tuple[Box, ...]:
+    """The box round the middles of the hot loop's pads; none without a regulator."""
+    parts = {part.ref: part for part in components}
+    places = [pad_at(parts[ref], number) for ref, number in carrier.hot_loop]
+    if not places:
+        return ()
+    xs, ys = zip(*places, strict=True)
+    return (Box(min(xs), max(xs), min(ys), max(ys)),)
+
+
 def _placement(title: Title, reading: Reading, carrier: Carrier, rules: Rules) -> Placement:
+    components = tuple(component(device, rules) for device in carrier.devices)
     return Placement(
         finger=carrier.name,
         name=title.on_boards().name,
@@ -66,7 +78,8 @@ def _placement(title: Title, reading: Reading, carrier: Carrier, rules: Rules) -
         hole_mm=carrier.hole_mm,
         keep_outs=carrier.keep_outs,
         edge_clearance_mm=rules.edge_gap_mm,
-        components=tuple(component(device, rules) for device in carrier.devices),
+        components=components,
+        ground_only=_hot_loop(carrier, components),
         nets=tuple(
             Net(name, SUPPLY if name in carrier.supplies else SIGNAL) for name in carrier.nets
         ),

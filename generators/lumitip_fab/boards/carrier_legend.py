@@ -74,7 +74,8 @@ def _names(page: Page, device: Device, part: Component, board: Box) -> None:
     inward = 1.0 if part.y_mm < board.centre_mm[1] else -1.0
     drawn = part.footprint.body.y_max_mm if part.footprint.silk else 0.0
     for pad, name in zip(pads, device.pins, strict=True):
-        way = math.copysign(1.0, pad.pad.y_mm) if pad.pad.y_mm else inward  # of two rows, outward
+        rise = pad.y_mm - part.y_mm
+        way = math.copysign(1.0, rise) if pad.pad.y_mm else inward  # of two rows, outward
         edge = max(pad.pad.height_mm / 2, drawn - abs(pad.pad.y_mm)) + _AWAY_MM
         low, tall = (edge + size / 2 for size in (page.rules.silk_text_mm, page.length_mm(name)))
         lying = [

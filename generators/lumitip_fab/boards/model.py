@@ -139,6 +139,8 @@ class Placement:
     """Silkscreen beyond the components' own."""
     flexible: Flexible | None = None
     """Of what it is made, where it bends."""
+    ground_only: tuple[Box, ...] = ()
+    """Where the back carries no net but ground: under a regulator's hot loop."""
 
 
 @dataclass(frozen=True)

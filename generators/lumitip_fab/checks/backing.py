@@ -1,5 +1,6 @@
 """The backings as files: printable, and everything that goes into or onto them fits."""
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
@@ -21,7 +22,7 @@ from lumitip_fab.checks.plate import (
 from lumitip_fab.checks.printed import Printed
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.checks.solids import Vectors
-from lumitip_fab.checks.walls import Exempt, Mask, walls
+from lumitip_fab.checks.walls import MESH_MM, Exempt, Mask, walls
 from lumitip_fab.design import Design, Finger, Letter
 from lumitip_fab.errors import OutputError
 from lumitip_fab.frames import (
@@ -156,8 +157,17 @@ def measure_walls(part: Printed) -> Iterator[Measurement]:
     letter, to_letter = _letter(part)
     about = letters.beside(letter, design.printing)
 
+    slant, floor_mm = math.radians(design.tip.angle_deg), design.stack.floor_mm
+    start_y = design.tip.slant_start_y_mm
+    tip_y = start_y + floor_mm * math.tan(slant) + MESH_MM
+
     def on_tip(points: Vectors) -> Mask:
-        return np.asarray(applied(part.to_sensor, points)[:, 1] > design.tip.slant_start_y_mm)
+        return np.asarray(applied(part.to_sensor, points)[:, 1] > tip_y)
+
+    def at_slant(points: Vectors) -> Mask:
+        """Where the slant may begin below the floor of the pocket, which is not the tip's."""
+        y = applied(part.to_sensor, points)[:, 1]
+        return np.asarray((y > start_y) & (y <= tip_y))
 
     def between(points: Vectors) -> Mask:
         far = max(*mount.pin_u_mm, *mount.bolt_u_mm) + max(mount.pin_mm, mount.bolt_hole_mm) / 2
@@ -167,7 +177,9 @@ def measure_walls(part: Printed) -> Iterator[Measurement]:
 
     exempt = [replace(about, holds=lambda points: about.holds(applied(to_letter, points)))]
     if part.kind == "backing":
+        leaning = min(design.printing.min_wall_mm, floor_mm * math.cos(slant))
         exempt.insert(0, Exempt("tip edge", design.tip.edge_mm, on_tip))
+        exempt.insert(1, Exempt("floor at the slant", leaning, at_slant))
     if part.kind == design.held and mount.pin_u_mm and not mount.sleeved:
         away = abs(max(mount.pin_u_mm) - max(mount.bolt_u_mm))
         apart = away - (mount.pin_mm + mount.bolt_hole_mm) / 2

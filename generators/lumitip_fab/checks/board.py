@@ -17,6 +17,7 @@ from lumitip_fab.checks.board_carrier import (
     measure_supplies,
 )
 from lumitip_fab.checks.board_circuit import measure_channels, measure_connector, measure_strings
+from lumitip_fab.checks.board_contacts import measure_contact_map
 from lumitip_fab.checks.board_copper import measure_copper, measure_nets
 from lumitip_fab.checks.board_flex import measure_flexible
 from lumitip_fab.checks.board_place import (
@@ -40,6 +41,7 @@ _OF_FINGERS: tuple[Callable[[Read], Iterator[Measurement]], ...] = (
 _OF_CARRIERS: tuple[Callable[[ReadCarrier], Iterator[Measurement]], ...] = (
     measure_edge, measure_screws, measure_lands, measure_names, measure_copper, measure_nets,
     measure_joined, measure_supplies, measure_hot_loop, measure_keep_outs,
+    measure_contact_map,
 )  # fmt: skip
 
 

@@ -11,6 +11,7 @@ import shapely
 
 from lumitip_fab.checks.board_read import ReadCarrier
 from lumitip_fab.checks.kicad_board import Part, Terminal
+from lumitip_fab.checks.kicad_silk import Word
 from lumitip_fab.checks.result import Measurement
 from lumitip_fab.design import Box, Device, Land, Point
 from lumitip_fab.frames import on_board_page
@@ -23,7 +24,8 @@ HOT_LOOP_MM2 = 6.0
 HOT_TRACK_MM = 3.0
 GROUND_SHARE = 80.0  # of the loop, in percent
 ANTENNA_EDGE_MM = 0.5
-NAME_MM = 4.0  # from a pad to the name beside it, at most
+NAME_MM = 3.0  # from a pad to the name beside it, at most
+LETTER = 0.6  # width of a letter at least, of its height
 
 
 def measure_edge(read: ReadCarrier) -> Iterator[Measurement]:
@@ -121,18 +123,26 @@ def measure_keep_outs(read: ReadCarrier) -> Iterator[Measurement]:
 
 
 def measure_names(read: ReadCarrier) -> Iterator[Measurement]:
-    """The name beside each contact: of all that is printed but references, the nearest."""
+    """The name beside each contact: of all that is printed but references, the nearest, by where
+    the word ends and not by its middle."""
     refs = {device.ref for device in read.carrier.devices}
     printed = [w for w in read.board.silk.words if w.front and w.text not in refs]
-    places = read.sensor([word.at for word in printed])
+    lines = [_line(read, word) for word in printed]
     wrong = []
     for device in (d for d in read.carrier.devices if d.contacts):
         for land, name in zip(device.pattern.lands, device.pins, strict=False):
-            apart = np.hypot(*(places - np.array(_placed(device, land))).T)
+            apart = shapely.distance(lines, shapely.Point(_placed(device, land)))
             nearest = int(apart.argmin()) if apart.size else -1
             if nearest < 0 or printed[nearest].text != name or apart[nearest] > NAME_MM:
                 wrong.append(f"{device.ref}.{land.number} is not called {name}")
     yield read.count("names", wrong, "contacts")
+
+
+def _line(read: ReadCarrier, word: Word) -> shapely.LineString:
+    """Along the middle of a word, from its first letter to its last."""
+    turn, half = math.radians(word.angle_deg), LETTER * word.height_mm * len(word.text) / 2
+    along = half * np.array([math.cos(turn), -math.sin(turn)])  # the page's y points down
+    return shapely.LineString(read.sensor([word.at - along, word.at + along]))
 
 
 def _terminal(read: ReadCarrier, ref: str, number: str) -> Terminal | None:

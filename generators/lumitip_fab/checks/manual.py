@@ -77,9 +77,9 @@ def _wrong_figures(manual: Manual, design: Design) -> list[str]:
         "layers of the backings": f"{design.printing.layer_mm:g} mm",
         "filament of the backings": design.printing.material,
         "silicone": design.mould.silicone,
-        "curing at room temperature": f"{design.mould.cure_h:g} h",
+        f"curing at {design.mould.cure_c:g} °C": f"{design.mould.cure_h:g} h",
         "film": design.mask.film,
-        "wrapping": f"{design.mask.soften_c:g} °C",
+        "creasing the film, off the finger": f"{design.mask.soften_c:g} °C",
         "supply of the LEDs": f"{design.wiring.supply_v:g} V",
         "current of the LEDs, nominal": f"{sum(design.wiring.current_ma):.1f} mA",
         "wires": str(sum(len(cable.wires) for cable in design.cabling.cables)),
@@ -95,7 +95,8 @@ def _wrong_figures(manual: Manual, design: Design) -> list[str]:
 def _wrong_units(manual: Manual, design: Design) -> list[str]:
     """Hours, degrees and volts anywhere in the text that are not the design's."""
     volts = {design.wiring.supply_v, 5.0, 0.0}  # the controller's supply, and ground
-    allowed = {"h": {design.mould.cure_h}, "°C": {design.mask.soften_c}, "V": volts}
+    heat = {figure for s in design.heat for figure in (s.temperature_c, s.limit_c)}
+    allowed = {"h": {design.mould.cure_h}, "°C": heat, "V": volts}
     told = re.findall(r"(?<![\w.])(\d+(?:\.\d+)?) (h|°C|V)\b", " ".join(manual.blocks))
     found = {(float(value), unit) for value, unit in told}
     wrong = [f"{value:g} {unit}" for value, unit in sorted(found) if value not in allowed[unit]]

@@ -3,6 +3,7 @@
 import ast
 import hashlib
 import json
+import math
 from collections.abc import Iterable
 from dataclasses import asdict
 from fnmatch import fnmatch
@@ -15,6 +16,8 @@ from lumitip_fab.design import Design
 from lumitip_fab.encoding import canonical
 from lumitip_fab.manifest import sha256_of, write_file
 from lumitip_fab.toolchain import PACKAGE, installed_hash, whole_code_hash
+
+_FIGURES = ("measured", "low", "high")
 
 
 class Watched:
@@ -59,7 +62,7 @@ class Memory:
         told = self._told.get(module)
         if told is None or told["key"] != self._key(module, design, told["fields"]):
             return None
-        return tuple(Measurement(**m) for m in told["measurements"])
+        return tuple(map(_measurement, told["measurements"]))
 
     def keep(
         self,
@@ -73,9 +76,9 @@ class Memory:
         self._told[module] = {
             "key": self._key(module, design, names),
             "fields": names,
-            "measurements": [asdict(m) for m in measurements],
+            "measurements": [_entry(m) for m in measurements],
         }
-        write_file(self._path, json.dumps(self._told).encode())
+        write_file(self._path, json.dumps(self._told, allow_nan=False).encode())
 
     def _key(self, module: str, design: Design, names: list[str]) -> str:
         told = [
@@ -104,11 +107,21 @@ def reads(module: str) -> tuple[str, ...]:
     raise LookupError(f"lumitip_fab.checks.{module} does not say what it READS")
 
 
+def _entry(m: Measurement) -> dict[str, Any]:
+    """A measurement as JSON has it: a figure that is not finite is a word, like `"inf"`."""
+    figures = {name: getattr(m, name) for name in _FIGURES}
+    return asdict(m) | {n: v if math.isfinite(v) else str(v) for n, v in figures.items()}
+
+
+def _measurement(entry: dict[str, Any]) -> Measurement:
+    return Measurement(**entry | {name: float(entry[name]) for name in _FIGURES})
+
+
 def _read(path: Path) -> dict[str, Any]:
     try:
         told = json.loads(path.read_text(encoding="utf-8"))
         for entry in told.values():
-            tuple(Measurement(**m) for m in entry["measurements"])
+            tuple(map(_measurement, entry["measurements"]))
             "".join(entry["fields"])  # names, or a TypeError
     except (OSError, ValueError, TypeError, AttributeError, KeyError):
         return {}

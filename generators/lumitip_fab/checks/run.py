@@ -1,8 +1,10 @@
 """Run the checks over an output folder; reads only."""
 
 import importlib
+import logging
 import math
 import multiprocessing
+import traceback
 from collections.abc import Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
@@ -18,12 +20,15 @@ from lumitip_fab.encoding import read_design
 MODULES = (
     "manifest", "layout", "firmware", "mask", "backing", "fit_plate", "mould", "assembly", "board",
     "schematic", "orders", "printing", "holder", "flange", "robot", "system", "wiring", "bom",
-    "manual",
+    "manual", "heat",
 )  # fmt: skip
 _LONG = frozenset({"orders", "board"})
 """Modules that take longer than another process takes to start."""
 _Told = tuple[tuple[Measurement, ...], list[str]]
 """What a module measured, and the fields of the design that it read."""
+logger = logging.getLogger(__name__)
+CRASH = "crash"
+"""Second part of the name of the check that fails where a module stops with an exception."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +67,7 @@ def run_checks(
     anew = [name for name, known in told.items() if known is None]
     for name, (measured, fields) in _measured(out, design, anew, cores):
         told[name] = measured
-        if memory:
+        if memory and not any(m.check == f"{name}.{CRASH}" for m in measured):
             memory.keep(name, measured, design, fields)
     return Outcome(tuple(m for measured in told.values() for m in measured or ()))
 
@@ -87,8 +92,32 @@ def _measured(
 
 
 def _measure(name: str, out: Path, design: Design) -> _Told:
-    watched = Watched(design)
-    return tuple(_module(name).measure(out, watched)), sorted(watched.read)
+    watched, module = Watched(design), _module(name)
+    found: list[Measurement] = []
+    try:
+        for measurement in module.measure(out, watched):
+            found.append(measurement)  # what was measured before an exception counts
+    except Exception as error:
+        logger.exception("lumitip_fab.checks.%s stopped", name)
+        found.append(_crash(name, error))
+    return tuple(found), sorted(watched.read)
+
+
+def _crash(name: str, error: Exception) -> Measurement:
+    """The failed measurement of a module that stopped with an exception: where, and why."""
+    frames = [f for f in traceback.extract_tb(error.__traceback__) if _is_check(f.filename)]
+    frame = (frames or traceback.extract_tb(error.__traceback__))[-1]
+    place = f"{Path(frame.filename).name}:{frame.lineno} {frame.name}"
+    reason = f"{type(error).__name__}: {error!s:.200}"
+    note = (
+        f"{reason}; the rest of checks.{name} has not run. This is a fault of the check: report it"
+    )
+    return Measurement(f"{name}.{CRASH}", place, math.nan, 0.0, 0.0, note=note)
+
+
+def _is_check(filename: str) -> bool:
+    path = Path(filename)
+    return path.parent == Path(__file__).parent and path != Path(__file__)
 
 
 def modules_reading(paths: Iterable[str]) -> Iterator[str]:

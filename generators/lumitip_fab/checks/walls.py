@@ -49,7 +49,7 @@ def walls(
     check: str, subject: str, mesh: Any, least_mm: float, exempt: Sequence[Exempt]
 ) -> Iterator[Measurement]:
     """The thinnest wall, and the thinnest in each exempt region with its own limit."""
-    reach_mm = 2 * least_mm
+    reach_mm = 2 * max((least_mm, *(region.least_mm for region in exempt)))
     points, thickness = thicknesses(mesh, reach_mm)
     free = np.ones(len(points), dtype=np.bool_)
     for region in exempt:

@@ -63,7 +63,7 @@ def derive_cabling(
     ]  # fmt: skip
     if breakout:
         fed = _wires_of(breakout, "J7")
-        supply = {t.name: _feeding(boards.carriers, t) for t in fed}
+        supply = _feeding(boards.carriers, fed)
         cables.append(
             _cable(
                 "W3",
@@ -144,14 +144,21 @@ def _wires_of(carrier: Carrier, ref: str) -> tuple[Terminal, ...]:
     return tuple(Terminal(carrier.name, ref, pad, net, place) for place, (pad, net) in pads)
 
 
-def _feeding(carriers: Iterable[Carrier], pad: Terminal) -> Terminal:
-    """What feeds a pad of the breakout: a contact of the flange's header, or any supply."""
+def _feeding(carriers: Iterable[Carrier], pads: tuple[Terminal, ...]) -> dict[str, Terminal]:
+    """What feeds each pad of the breakout: contacts of the flange's header that has most of its
+    nets, or any supply."""
+    supply = {pad.name: Terminal("supply", "", pad.name, pad.name, pad.order) for pad in pads}
     flange = _named(carriers, "flange")
-    header = next((d for d in flange.devices if d.ref == "J2"), None) if flange else None
-    for contact, net in header.nets if header else ():
-        if net == pad.name:
-            return Terminal("flange", "J2", contact, net, int(contact))
-    return Terminal("supply", "", pad.name, pad.name, pad.order)
+    headers = [d for d in flange.devices if d.ref in ("J2", "J3")] if flange else []
+    if not headers:
+        return supply
+    header = max(headers, key=lambda d: len(supply.keys() & {net for _, net in d.nets}))
+    first = {net: contact for contact, net in reversed(header.nets)}
+    return supply | {
+        net: Terminal("flange", header.ref, contact, net, int(contact))
+        for net, contact in first.items()
+        if net in supply
+    }
 
 
 def _named(carriers: Iterable[Carrier], name: str) -> Carrier | None:

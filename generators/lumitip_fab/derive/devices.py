@@ -1,10 +1,10 @@
 """Devices of carriers: catalogue entries in their places, with the nets of their lands."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 from lumitip_fab import catalogue
-from lumitip_fab.carrier_entry import Leaded, Strip
+from lumitip_fab.carrier_entry import OPEN, Leaded, Strip
 from lumitip_fab.derive import connectors, patterns
 from lumitip_fab.design import Device, Point
 
@@ -23,20 +23,26 @@ def strip(
     )  # fmt: skip
 
 
-def from_behind(device: Device) -> Device:
-    """Two rows of contacts in the same places, but with the body on the board's back, from where
-    they are counted then."""
-    half = len(device.pins) // 2
-    nets = tuple(net for _, net in device.nets)
+def from_behind(device: Device, places: Sequence[Point]) -> Device:
+    """The same rows of contacts with the body on the board's back, each contact in its place.
+
+    Args:
+        device: the rows, its lands in any order.
+        places: of contact 1, 2 ..., from the middle of the device, seen from the board's front.
+    """
+    size = device.pattern.lands[0]
+    lands = tuple(
+        replace(size, number=str(number), x_mm=x, y_mm=-y, round=number > 1)
+        for number, (x, y) in enumerate(places, start=1)
+    )
+    name = device.pattern.name.replace("Header", "SpringContacts")
+    # Mirrored in x and turned by half: contact 1 is at the lower left in the device's own frame.
     return replace(
-        device, side="back", nets=numbered(_rows_turned(nets, half)),
-        pins=_rows_turned(device.pins, half),
-    )  # fmt: skip
-
-
-def _rows_turned(names: tuple[str, ...], half: int) -> tuple[str, ...]:
-    """Of two rows, each the other way round."""
-    return names[:half][::-1] + names[half:][::-1]
+        device,
+        side="back",
+        angle_deg=180.0,
+        pattern=replace(device.pattern, name=name, lands=lands),
+    )
 
 
 def wires(ref: str, signals: tuple[str, ...], at: Point, wide: bool) -> Device:
@@ -97,5 +103,5 @@ def fiducials(places: Iterable[Point]) -> tuple[Device, ...]:
 
 
 def numbered(nets: tuple[str, ...]) -> Nets:
-    """Nets of lands that are numbered from 1."""
-    return tuple((str(i), net) for i, net in enumerate(nets, start=1))
+    """Nets of lands that are numbered from 1; one that is left open has none."""
+    return tuple((str(i), net) for i, net in enumerate(nets, start=1) if net != OPEN)

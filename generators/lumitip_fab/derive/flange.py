@@ -13,9 +13,11 @@
 With a module as its controller it is wider to the left: see `lumitip_fab.derive.module`.
 """
 
+from lumitip_fab.carrier_entry import OPEN
 from lumitip_fab.derive.devices import chip, fiducials, from_behind, leaded, strip
 from lumitip_fab.derive.fasteners import BOARD_SCREW
 from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.flange_map import refuse_map
 from lumitip_fab.derive.flange_parts import (
     halved,
     is_regulated,
@@ -32,7 +34,7 @@ BOX = Box(-15.4, 15.4, -27.0, 27.0)
 CORNER_MM = 8.0
 """Inside the spigot of 70.7 mm of the published flange, whose board reaches as far."""
 CONTACTS_AT: Point = (7.46, 0.0)
-HEADERS_AT: tuple[Point, Point] = ((-3.5, -20.5), (-3.5, 20.5))
+HEADERS_AT: tuple[Point, Point] = ((-3.5, -19.05), (-3.5, 19.05))
 TITLE_AT: Point = (6.5, 11.5)
 HOLES_AT: tuple[Point, ...] = ((11.0, 19.5), (11.0, -19.5))
 FIDUCIALS_AT: tuple[Point, ...] = ((-13.0, -13.5), (13.0, -15.5), (-13.0, 13.5))
@@ -53,6 +55,7 @@ def derive_flange(
         )
         return ()
     _refuse(given, faults)
+    refuse_map(given, faults)
     refuse_parts(given, strings, faults)
     raw, supply, output = _supplies(given)
     wing = derive_module(given, module, muxing, Supplies(supply, output), BOX, faults)
@@ -104,7 +107,11 @@ def _strips(given: Input) -> tuple[Device, ...]:
     called = {"SUPPLY": supply, "REGULATED": output}
     nets = tuple(raw if signal == "SUPPLY" else signal for signal in p.signals)
     names = tuple(called.get(signal, signal) for signal in p.signals)
-    contacts = from_behind(strip("J1", p.contacts, known[p.contacts], CONTACTS_AT, nets, names))
+    coupling = given.catalogue.couplings[p.coupling]
+    x, y = coupling.contacts_at_mm
+    places = [(contact.at_mm[0] - x, contact.at_mm[1] - y) for contact in coupling.contacts]
+    rows = strip("J1", p.contacts, known[p.contacts], CONTACTS_AT, nets, names)
+    contacts = from_behind(rows, places)
     both = []
     for ref, at, signals in zip(("J2", "J3"), HEADERS_AT, p.headers, strict=True):
         there = tuple(called.get(signal, signal) for signal in signals)
@@ -163,22 +170,18 @@ def _regulator(given: Input) -> tuple[Device, ...]:
 
 
 def _refuse(given: Input, faults: Faults) -> None:
-    """Refuse strips of another size, signals that lead nowhere, and voltages beyond the parts'."""
+    """Refuse headers of another size, signals that lead nowhere, and voltages beyond the parts'."""
     p, known, volts = given.parameters.flange, given.catalogue, given.parameters.supply.voltage_v
-    for field, name, told in (
-        ("flange.signals", p.contacts, (p.signals,)),
-        ("flange.headers", p.header, p.headers),
-    ):
-        strip = known.strips[name]
-        wanted = strip.ways * (2 if field == "flange.signals" else 1)
-        faults.refuse_unless(
-            strip.rows == 2 and all(len(signals) == wanted for signals in told),
-            field,
-            f"{' and '.join(str(len(s)) for s in told)} signals given, {name!r} has "
-            f"{strip.rows} x {strip.ways} contacts: {wanted} are needed, in two rows",
-        )
+    strip = known.strips[p.header]
+    counts = [len(signals) for signals in p.headers]
+    faults.refuse_unless(
+        strip.rows == 2 and all(count == strip.ways for count in counts),
+        "flange.headers",
+        f"{' and '.join(map(str, counts))} signals given, {p.header!r} has {strip.rows} x "
+        f"{strip.ways} contacts: {strip.ways} are needed, in two rows",
+    )
     cables = {*p.headers[0], *p.headers[1]}
-    lost = sorted((set(p.signals) ^ cables) - {"SUPPLY", "GND", "REGULATED"})
+    lost = sorted((set(p.signals) ^ cables) - {"SUPPLY", "GND", "REGULATED", OPEN})
     faults.refuse_unless(
         not lost,
         "flange.signals",
@@ -206,7 +209,7 @@ def _refuse_lines(given: Input, parts: tuple[Device, ...], faults: Faults) -> No
     they would be joined."""
     p = given.parameters.flange
     own = {net for part in parts for _, net in part.nets} | set(_supplies(given))
-    lines = {*p.signals, *p.headers[0], *p.headers[1]} - {"SUPPLY", "GND", "REGULATED"}
+    lines = {*p.signals, *p.headers[0], *p.headers[1]} - {"SUPPLY", "GND", "REGULATED", OPEN}
     taken = sorted(lines & own)
     faults.refuse_unless(
         not taken,

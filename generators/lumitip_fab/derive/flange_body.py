@@ -7,7 +7,7 @@ from lumitip_fab.derive.fasteners import BOARD_SCREW
 from lumitip_fab.derive.faults import Faults
 from lumitip_fab.derive.fits import Drawn, refuse_touching
 from lumitip_fab.derive.flex import stiff_mm
-from lumitip_fab.design import Box, Carrier, Device, Flange, Point
+from lumitip_fab.design import Box, Carrier, Device, Flange, Point, ToolContact
 from lumitip_fab.load import Input
 
 HEADROOM_MM = 0.3  # over the highest part
@@ -80,6 +80,10 @@ def derive_flange_body(
         reliefs=tuple(_room(header, board_at) for header in headers),
         tail_mm=p.tail_mm,
         window=_room(contacts, board_at),
+        contacts=tuple(
+            ToolContact(str(number), contact.at_mm, contact.carries, contact.kind)
+            for number, contact in enumerate(coupling.contacts, start=1)
+        ),
         contacts_z_mm=-coupling.contacts_depth_mm,
         contacts_mm=pogo.height_mm,
         stroke_mm=pogo.stroke_mm,

@@ -76,6 +76,7 @@ def derive_mould(
         density_g_ml=silicone.density_g_ml,
         mix_ratio=silicone.mix_ratio,
         cure_h=silicone.cure_h,
+        cure_c=silicone.cure_c,
         waste_fraction=p.mould.waste_fraction,
     )
 

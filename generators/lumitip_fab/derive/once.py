@@ -14,6 +14,7 @@ from lumitip_fab.derive.faults import Faults
 from lumitip_fab.derive.fit_plate import derive_fit_plate
 from lumitip_fab.derive.flange import derive_flange
 from lumitip_fab.derive.flange_body import derive_flange_body
+from lumitip_fab.derive.heat import derive_heat
 from lumitip_fab.derive.holder import derive_holder
 from lumitip_fab.derive.interface import derive_interfaces
 from lumitip_fab.derive.packages import derive_fabs, derive_packages, derive_rules
@@ -54,6 +55,7 @@ def derive_once(given: Input, faults: Faults) -> Design:
     casting = mould.derive_mould(given, silhouette, plan.board, stack, faults)
     printing = derive_printing(given, silhouette, faults)
     slicing = derive_slicing(given, casting, faults)
+    heat = derive_heat(given, slicing, faults)
     plate = derive_fit_plate(given, plan, coupling, faults)
     sheet = mask.derive_mask(given, silhouette, plan, faults)
     rules = derive_rules(given, faults)
@@ -103,6 +105,7 @@ def derive_once(given: Input, faults: Faults) -> Design:
             mask=sheet,
             mould=casting,
             printing=printing,
+            heat=heat,
             slicing=slicing,
             fit_plate=plate,
             densities=derive_densities(given, slicing),

@@ -32,9 +32,10 @@ from lumitip_fab.design.choices import Choice
 from lumitip_fab.design.electrical import Electrical
 from lumitip_fab.design.fasteners import Fastener
 from lumitip_fab.design.fit_plate import FitPlate, Fits
-from lumitip_fab.design.flange import Flange
+from lumitip_fab.design.flange import Flange, ToolContact
 from lumitip_fab.design.flex import Interface
 from lumitip_fab.design.gripper import Closing, Mount, Nose
+from lumitip_fab.design.heat import HeatedPart, HeatStep
 from lumitip_fab.design.lettering import board_name, page_name
 from lumitip_fab.design.making import Letter, Mask, Mould, Printing
 from lumitip_fab.design.ordering import Fab
@@ -71,6 +72,8 @@ __all__ = [
     "Flange",
     "Flexible",
     "Grid",
+    "HeatStep",
+    "HeatedPart",
     "Holder",
     "Interface",
     "Land",
@@ -98,6 +101,7 @@ __all__ = [
     "Terminal",
     "Tip",
     "Title",
+    "ToolContact",
     "Wire",
     "Wiring",
     "Zone",
@@ -145,6 +149,8 @@ class Design:
     mask: Mask
     mould: Mould
     printing: Printing
+    heat: tuple[HeatStep, ...]
+    """Every step that heats something, in the order of work."""
     slicing: Slicing
     fit_plate: FitPlate
     densities: Densities
@@ -178,6 +184,11 @@ class Design:
     def regulated(self) -> tuple[Carrier, ...]:
         """The carriers with a switching regulator."""
         return tuple(carrier for carrier in self.carriers if carrier.hot_loop)
+
+    @property
+    def heat_steps(self) -> dict[str, HeatStep]:
+        """The steps that heat something, by name."""
+        return {step.name: step for step in self.heat}
 
     @property
     def layers(self) -> tuple[str, ...]:

@@ -22,6 +22,19 @@ from lumitip_fab.design.shape import Box, Point
 
 
 @dataclass(frozen=True)
+class ToolContact:
+    """A contact of the coupling, by the map of its entry in the catalogue."""
+
+    number: str
+    at: Point
+    """Its place, seen from the gripper."""
+    carries: str
+    """Name of its signal on the robot's side."""
+    kind: str
+    """`"supply"`, `"ground"`, `"open"`, or another kind of signal."""
+
+
+@dataclass(frozen=True)
 class Flange:
     """Both printed parts of the flange: lower and upper."""
 
@@ -79,6 +92,8 @@ class Flange:
     """Depth of those."""
     window: Box
     """Through the floor, for the spring contacts on the board's back."""
+    contacts: tuple[ToolContact, ...]
+    """The coupling's contacts."""
     contacts_z_mm: float
     """Where the coupling's contacts are."""
     contacts_mm: float

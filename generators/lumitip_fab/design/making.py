@@ -66,6 +66,8 @@ class Mould:
     density_g_ml: float
     mix_ratio: Point
     cure_h: float
+    cure_c: float
+    """Temperature to cure at (°C)."""
     waste_fraction: float
 
 

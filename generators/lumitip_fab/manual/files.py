@@ -7,6 +7,7 @@ from lumitip_fab.design import (
     Electrical,
     Finger,
     Flange,
+    HeatStep,
     Holder,
     Interface,
     Mask,
@@ -23,7 +24,8 @@ from lumitip_fab.manual.text import Facts, manual_text
 
 
 def manual_files(
-    made: Made, title: Title, printing: Printing, mould: Mould, mask: Mask, mount: Mount,
+    made: Made, title: Title, printing: Printing, mould: Mould, mask: Mask,
+    heat: tuple[HeatStep, ...], mount: Mount,
     wiring: Wiring, cabling: Cabling, electrical: Electrical,
     carriers: tuple[Carrier, ...], holders: tuple[Holder, ...],
     interfaces: tuple[Interface, ...], flanges: tuple[Flange, ...],
@@ -37,6 +39,7 @@ def manual_files(
         printing: layers.
         mould: silicone.
         mask: film.
+        heat: the steps that heat something.
         mount: bolts and gripper.
         wiring: supply of the LEDs.
         cabling: cables.
@@ -47,7 +50,7 @@ def manual_files(
         flanges: what holds the flange's board.
         emitter: for parts on the back of its board.
     """
-    facts = Facts(title, printing, mould, mask, mount, wiring, cabling, electrical,
+    facts = Facts(title, printing, mould, mask, heat, mount, wiring, cabling, electrical,
                   carriers, holders, interfaces, flanges, emitter)  # fmt: skip
     text = manual_text(facts, made)
     name = f"{title.name} {title.revision}: build manual"

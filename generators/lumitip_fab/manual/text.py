@@ -11,6 +11,7 @@ from lumitip_fab.design import (
     Electrical,
     Finger,
     Flange,
+    HeatStep,
     Holder,
     Interface,
     Mask,
@@ -38,6 +39,7 @@ class Facts:
     printing: Printing
     mould: Mould
     mask: Mask
+    heat: tuple[HeatStep, ...]
     mount: Mount
     wiring: Wiring
     cabling: Cabling
@@ -53,7 +55,7 @@ def manual_text(facts: Facts, made: Made) -> str:
     """The whole manual. An image stands alone in its paragraph; its path is below the outputs."""
     chapters = (
         _front(facts), _bought(made), _printed(made), _boards(facts, made), _wired(facts, made),
-        _cast(made), _wrapped(facts, made), _mounted(facts), _run(facts), _kept(facts),
+        _cast(made), _wrapped(facts, made), _mounted(facts), _run(facts), _kept(),
     )  # fmt: skip
     return "\n\n".join(chapter.strip() for chapter in chapters) + "\n"
 
@@ -76,9 +78,9 @@ outputs. Read a chapter to its end before you begin with it.
 | layers of the backings | {printing.layer_mm:g} mm |
 | filament of the backings | {printing.material} |
 | silicone | {mould.silicone} |
-| curing at room temperature | {mould.cure_h:g} h |
+| curing at {mould.cure_c:g} °C | {mould.cure_h:g} h |
 | film | {mask.film} |
-| wrapping | {mask.soften_c:g} °C |
+| creasing the film, off the finger | {mask.soften_c:g} °C |
 | supply of the LEDs | {facts.wiring.supply_v:g} V |
 | current of the LEDs, nominal | {lit_ma:.1f} mA |
 | wires | {sum(len(cable.wires) for cable in facts.cabling.cables)} |
@@ -87,8 +89,25 @@ outputs. Read a chapter to its end before you begin with it.
 | warm-up | {WARM_UP_MIN} min |
 
 The order of work: print, order and solder boards, solder the wires on, {fixed}, cast,
-print the film, wrap, mount, load the firmware, calibrate. Casting takes longest: {mould.cure_h:g} h
-for each finger, both at once in their own moulds."""
+print the film, crease it, wrap, mount, load the firmware, calibrate. Casting takes longest:
+{mould.cure_h:g} h for each finger, both at once in their own moulds.
+
+## Heat
+
+These steps heat something, and no other does. Temperatures are the highest that a part reaches, and
+below what each of them bears.
+
+| step | what is heated | temperature | lowest limit |
+|---|---|---:|---:|
+{chr(10).join(map(_heated, facts.heat))}"""
+
+
+def _heated(step: HeatStep) -> str:
+    weakest = min(step.parts, key=lambda part: part.limit_c)
+    return (
+        f"| {step.name} | {step.place} | {step.temperature_c:g} °C "
+        f"| {weakest.limit_c:g} °C ({weakest.name}: {as_written(weakest.material)}) |"
+    )
 
 
 def _bought(made: Made) -> str:
@@ -168,8 +187,8 @@ def _wrapped(facts: Facts, made: Made) -> str:
     )
     return f"""## 6. Print the film and wrap it
 
-The film goes limp at {facts.mask.soften_c:g} °C. Wrap each finger in the order of the
-flaps' numbers.
+The film is creased at {facts.mask.soften_c:g} °C, away from the finger, and wrapped cold, each
+flap in the order of its number.
 
 {notes}"""
 
@@ -217,8 +236,8 @@ Between robot and gripper: solder the spring contacts onto the back of the flang
 solder tail under it to {flange.tail_mm:g} mm, and screw it into `flange/flange_lower.3mf` from
 below, contacts towards the robot. Glue the locating pin in, lay `flange/flange_upper.3mf` on the
 peg, and put all of it between the coupling and the gripper, with {len(flange.bolts)} bolts
-{flange.bolt} that are {flange.top_z_mm:.1f} mm longer than before. Measure first which contact of
-the coupling carries what.
+{flange.bolt} that are {flange.top_z_mm:.1f} mm longer than before. Confirm first with the robot's
+manual, or with a meter, that the coupling's contacts carry what the board's names say.
 
 """
 
@@ -246,13 +265,13 @@ def _loading(facts: Facts) -> str:
     return f"{upload[0].upper()}{upload[1:]}; `firmware/README.md` tells how."
 
 
-def _kept(facts: Facts) -> str:
+def _kept() -> str:
     return f"""## 9. What wears
 
 - The silicone above the LEDs: the published sensor's wore within about {WEAR_GRASPS} grasps. Run
   `lumitip doctor` now and then; cast the emitter anew when its light falls.
-- The film: where ink is rubbed off, light leaks in. Print and wrap a new one, it takes an hour and
-  {facts.mask.soften_c:g} °C.
+- The film: where ink is rubbed off, light leaks in. Print and wrap a new one, as in chapter 6: it
+  takes an hour.
 - The wires at the fingers, which bend with each grasp.
 - After each of these, tare again."""
 

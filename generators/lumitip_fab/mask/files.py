@@ -1,7 +1,18 @@
 """Every file of one finger's mask."""
 
 from lumitip_fab.artefact import Artefact
-from lumitip_fab.design import Finger, Interface, Mask, Mould, Mount, Outline, Stack, Tip, Title
+from lumitip_fab.design import (
+    Finger,
+    HeatStep,
+    Interface,
+    Mask,
+    Mould,
+    Mount,
+    Outline,
+    Stack,
+    Tip,
+    Title,
+)
 from lumitip_fab.mask.artwork import make_artwork
 from lumitip_fab.mask.back import Finished
 from lumitip_fab.mask.dxf import dxf_drawing, dxf_to_sensor
@@ -20,6 +31,7 @@ def mask_files(
     mount: Mount,
     interfaces: tuple[Interface, ...],
     mask: Mask,
+    heat: tuple[HeatStep, ...],
     title: Title,
 ) -> tuple[Artefact, ...]:
     """The mask on paper, as a drawing and for a cutter, and the note on wrapping.
@@ -33,6 +45,7 @@ def mask_files(
         mount: coupling, which the flaps keep clear of.
         interfaces: what holds a bendable plate, which they keep clear of too.
         mask: apertures, allowance, flaps, rulers.
+        heat: how hot the film gets to fold, and what film and finger bear.
         title: of the design.
     """
     artwork = make_artwork(Finished(finger, outline, stack, tip, mould, mount, interfaces), mask)
@@ -51,7 +64,7 @@ def mask_files(
         Artefact(f"{stem}.dxf", dxf_drawing(artwork, mask), dxf_to_sensor()),
         Artefact(
             f"mask/{finger.name}_wrapping.md",
-            wrapping_note(artwork, mask, stack, title),
+            wrapping_note(artwork, mask, stack, heat, title),
             frame="",
         ),
     )

@@ -1,6 +1,6 @@
 """How to print a mask and wrap the finger with it, with this finger's own flaps."""
 
-from lumitip_fab.design import Mask, Stack, Title
+from lumitip_fab.design import HeatStep, Mask, Stack, Title
 from lumitip_fab.markdown_text import as_written
 from lumitip_fab.mask.artwork import Artwork
 from lumitip_fab.mask.back import FOOT_MM
@@ -26,8 +26,8 @@ mirror image on purpose: turn off "fit to page", "scale" and "mirror" in the pri
 2. Tape a piece of film over the print, its inside up, so that it reaches beyond all four
    registration marks; tape its leading edge over the full width so that it lies flat.
 3. Feed the carrier again by the same tray and the same way round, in the setting for heavy film.
-   A laser printer's fuser is hotter than the film's softening point ({soften_c:g} °C): use the
-   setting with the least heat, or an inkjet with pigment ink, and try a scrap first.
+   Use an inkjet with pigment ink. A laser printer's fuser is hotter than this film bears: use
+   one only with a film that its maker sells for laser printers.
 4. Hold the print against a lamp. Print a second time over it if the black is not dense.
 5. From the unprinted side the letter F on the tip flap and the name {NAME} must read right.
 
@@ -35,15 +35,26 @@ mirror image on purpose: turn off "fit to page", "scale" and "mirror" in the pri
 Cut along the solid line and cut out the connector's window. The {count} apertures are clear film:
 leave them. For a plotter, `{name}_mask.dxf` has the layers `CUT`, `WINDOW` and `FOLD`.
 
-## 4. Wrap
+## 4. Crease the folds
+The folds are made off the finger, with local heat: its {weakest} keeps its shape only
+up to {finger_c:g} °C.
+1. Lay the film on a metal bar or a steel ruler, printed side down, a fold along its straight edge
+   and the flap beyond it.
+2. Bring that line alone to {soften_c:g} °C, with a narrow nozzle of hot air or an iron with its
+   temperature set, until it goes limp.
+3. Press the flap down over the edge and hold it until it is cold. Go on to the next fold, in the
+   order of the flaps' numbers.
+
+## 5. Wrap
+Nothing is heated from here on.
 1. Lay the film on the silicone, print inward, tip to tip; sight through the outer apertures to the
    parts below.
-2. Warm it to {soften_c:g} °C (hot air or an oven) until it goes limp.
-3. Fold each flap over the edge and flat onto the back, in the order of its number, and hold it
-   until it is cold. The tip is 1, the gripper end 2 and 3, then opposite sides in turn from wide to
-   narrow, 4 to {last}: the film is first taut lengthwise, then across, and the narrow flaps of the
-   corners lap over their neighbours.
-4. Bond the clear ends of the flaps with a thin film of silicone adhesive or double-sided tape.
+2. Fold each flap over the edge and flat onto the back, in the order of its number. The tip is 1,
+   the gripper end 2 and 3, then opposite sides in turn from wide to narrow, 4 to {last}: the film
+   is first taut lengthwise, then across, and the narrow flaps of the corners lap over their
+   neighbours.
+3. Bond the clear ends of the flaps with a thin film of silicone adhesive or double-sided tape,
+   and hold each until the bond carries it.
 
 The flaps are black where they cover the side of the finger ({side_mm:.1f} mm of silicone and
 plate) and, where they are long enough, {band_mm:g} mm beyond, so that no stray light comes in
@@ -60,15 +71,20 @@ coupling, and none lies over the wire notch or, where there is room, over a wind
 """
 
 
-def wrapping_note(artwork: Artwork, mask: Mask, stack: Stack, title: Title) -> bytes:
+def wrapping_note(
+    artwork: Artwork, mask: Mask, stack: Stack, heat: tuple[HeatStep, ...], title: Title
+) -> bytes:
     """The bytes of the note, in Markdown.
 
     Args:
         artwork: of this finger, for its flaps.
         mask: film and rulers.
         stack: for the height of the finger's side.
+        heat: what the film and the finger bear.
         title: of the design.
     """
+    steps = {step.name: step for step in heat}
+    weakest = min(steps["cure"].parts, key=lambda part: part.limit_c)
     flaps = sorted(artwork.flaps, key=lambda flap: flap.number)
     across, up = mask.measured_ruler_mm
     shortened = [str(f.number) for f in flaps if f.length_mm < mask.flap_mm]
@@ -83,7 +99,9 @@ def wrapping_note(artwork: Artwork, mask: Mask, stack: Stack, title: Title) -> b
         NAME=artwork.name,
         film=mask.film,
         film_mm=stack.film_mm,
-        soften_c=mask.soften_c,
+        soften_c=steps["crease"].temperature_c,
+        weakest=f"{weakest.name} of {weakest.material}",
+        finger_c=weakest.limit_c,
         across=across,
         up=up,
         count=len(artwork.apertures),

@@ -10,7 +10,7 @@ _NOTE = """# Casting the {finger} finger
 | to mix, with {waste:.0%} for the cup and the weir | {mix_ml:.2f} mL |
 | {silicone}, part A | **{part_a_g:.2f} g** |
 | {silicone}, part B | **{part_b_g:.2f} g** |
-| curing at room temperature | {cure_h:g} h |
+| curing at {cure_c:g} °C | {cure_h:g} h |
 
 Print `{finger}_mould.3mf` with its own settings (`print/printing.md`): open side up, without
 supports, in layers of {layer_mm:g} mm. {layers}
@@ -69,6 +69,7 @@ def casting_note(finger: str, volume_ml: float, stack: Stack, mould: Mould) -> s
         part_a_g=mass_g * a / (a + b),
         part_b_g=mass_g * b / (a + b),
         cure_h=mould.cure_h,
+        cure_c=mould.cure_c,
         layer_mm=mould.layer_mm,
         layers=(_PART if mould.off_layer_mm else _WHOLE).format(
             floor_mm=mould.wall_mm, rim_mm=rim_mm, off_mm=mould.off_layer_mm

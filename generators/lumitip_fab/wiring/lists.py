@@ -17,7 +17,7 @@ _NOTE = """\
 Stranded copper, colours by IEC 60757; `wiring.svg` shows the same as a drawing. Pads are counted
 from the square one: on a finger's board that is the leftmost, seen from the front with the tip up.
 Put the wires of a finger in from the back of its board, solder them on the front, and cut the
-joints short.
+joints short. Solder every board before it goes into a printed part, which an iron would melt.
 
 {tables}
 
@@ -31,8 +31,10 @@ supply {supply_mm:g} mm; and {slack_mm:g} mm each for bends and stripping.
 - Twist the two wires of the emitter. Leave a loop at each finger, so that it opens without pulling.
 """
 _FED = """\
-- The wire of 5 V feeds the controller. Leave it away where it is fed over USB.
-- At a flange the wires end in a socket for its header J2, whose contact 1 has the square pad."""
+- The wire of 5 V feeds the controller. Leave it away where it is fed over USB."""
+_AT_FLANGE = """
+- At the flange the wires end in a socket for its header {header}, whose contact 1 has the square
+  pad."""
 _ALONE = """\
 - The controller is fed over USB. Its ground and that of the LEDs' supply need not be joined:
   between the fingers there is only light."""
@@ -74,7 +76,10 @@ def _power(cabling: Cabling) -> str:
     """How the controller comes by its supply."""
     if cabling.cables[1].end.board == "flange":
         return _MODULE
-    return _FED if fed(cabling) else _ALONE
+    if not fed(cabling):
+        return _ALONE
+    headers = {w.end.connector for w in cabling.cables[2].wires if w.end.board == "flange"}
+    return _FED + "".join(_AT_FLANGE.format(header=header) for header in sorted(headers))
 
 
 def fed(cabling: Cabling) -> bool:

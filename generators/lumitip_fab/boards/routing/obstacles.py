@@ -33,6 +33,7 @@ class Obstacles:
             for p, size in ((0, kind.track_mm), (1, kind.track_mm), (2, kind.via_mm)):
                 self._edge(placement, owner[c, p], size / 2)
                 self._keep_outs(placement, owner[c, p], size / 2)
+            self._ground_only(placement, c, owner[c])
             for pad in pads:
                 self._pad(pad, c, owner[c])
             if placement.flexible:
@@ -69,6 +70,18 @@ class Obstacles:
             x, y = self.grid.offsets(where, *box.centre_mm)
             dx, dy = np.abs(x) - box.width_mm / 2, np.abs(y) - box.length_mm / 2
             owner[where][(dx < keep) & (dy < keep)] = BLOCKED
+
+    def _ground_only(self, placement: Placement, c: int, owner: NDArray[np.int16]) -> None:
+        kind, ground = self.rules.classes[c], self.number.get(placement.ground, BLOCKED)
+        for box in placement.ground_only:
+            for p, size in ((SIDES.index("back"), kind.track_mm), (2, kind.via_mm)):
+                keep = size / 2 + kind.clearance_mm + MARGIN_MM
+                where = self.grid.near(*box.centre_mm, max(box.width_mm, box.length_mm) / 2 + keep)
+                x, y = self.grid.offsets(where, *box.centre_mm)
+                wide, long = box.width_mm / 2 + keep, box.length_mm / 2 + keep
+                inside = (np.abs(x) < wide) & (np.abs(y) < long)
+                view = owner[p][where]
+                view[inside & (view == 0)] = ground
 
     def _pad(self, pad: PlacedPad, c: int, owner: NDArray[np.int16]) -> None:
         own = self.number.get(pad.net, BLOCKED)

@@ -46,16 +46,26 @@ def carrier_sheet(board: Placement, carrier: Carrier) -> dict[str, bytes]:
             _transistor(sheet, _middle(x, y), name, part, device)
         else:
             _row(sheet, (x + _ROW_MM[device.contacts], y + _ABOVE_MM), part, name)
+        if open_ := _left_open(device):
+            sheet.texts.append((f"open: {', '.join(open_)}", (x, y + tall - _PITCH_MM), 1.27))
         y += tall
     paper, _ = paper_for(x + _COLUMN_MM - MARGIN_MM, _TALL_MM)
     return sheet_files(board, paper, sheet, shapes, parts)
 
 
+def _left_open(device: Device) -> list[str]:
+    """Contacts that are joined to nothing."""
+    joined = {number for number, _ in device.nets}
+    return [n.number for n in device.pattern.lands if device.contacts and n.number not in joined]
+
+
 def _shape(device: Device) -> tuple[str, Node]:
     """Name and symbol of contacts in a row, or of a part whose pins have names."""
     if device.contacts:
-        ways = len(device.nets)
-        return f"Strip{ways}", symbols.wires(ways, _PITCH_MM)
+        numbers = tuple(number for number, _ in device.nets)
+        whole = len(numbers) == len(device.pattern.lands)
+        name = f"Strip{len(numbers)}" if whole else f"Strip_{device.ref}"
+        return name, symbols.contacts(numbers, _PITCH_MM)
     name = f"{device.kind.capitalize()}_{device.ref}"
     if device.kind == "transistor":
         return name, carrier_symbols.transistor(device)

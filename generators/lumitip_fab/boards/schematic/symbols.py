@@ -108,10 +108,17 @@ def mux_pins(mux: Multiplexer) -> list[tuple[str, int, Point, int, str]]:
 
 
 def wires(ways: int, pitch_mm: float = ROW_MM) -> Node:
-    """A row of contacts, first at the top."""
+    """A row of contacts numbered from 1, first at the top."""
+    return contacts(tuple(str(i + 1) for i in range(ways)), pitch_mm)
+
+
+def contacts(numbers: tuple[str, ...], pitch_mm: float) -> Node:
+    """A row of contacts with these numbers, first at the top."""
+    ways = len(numbers)
     first = (ways - 1) / 2 * pitch_mm
     pins = [
-        pin(str(i + 1), 5.08, first - i * pitch_mm, 180, PIN_MM, str(i + 1)) for i in range(ways)
+        pin(number, 5.08, first - i * pitch_mm, 180, PIN_MM, number)
+        for i, number in enumerate(numbers)
     ]
     half = ways / 2 * pitch_mm
     dots = [_circle(1.27, first - i * pitch_mm, 0.762) for i in range(ways)]
