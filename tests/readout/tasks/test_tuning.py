@@ -7,7 +7,7 @@ import pytest
 
 from lumitip.links.twin import published_layout
 from lumitip.processing import Processor
-from lumitip.tasks import Bench, Metrics, Settings, Task, Tuning, search
+from lumitip.tasks import Bench, Metrics, Settings, Task, Tuning, search, summary
 from lumitip.tasks.curve import BEND_DEG
 from lumitip.tasks.tuning import (
     CENTRE_GRID,
@@ -119,3 +119,10 @@ def test_the_dark_centre_lies_lower_under_a_turned_line_which_height_makes_up_fo
     for angle_deg in (-BEND_DEG, BEND_DEG):
         assert centre_mm(angle_deg) < centre_mm(0.0) - 1.5
         assert min(HEIGHTS_MM) < centre_mm(angle_deg) - centre_mm(0.0)
+
+
+def test_without_the_height_the_published_law_loses_curves_at_any_gain() -> None:
+    bench = Bench(Task(published_layout(), Settings("cloth")))
+    for gain_per_s in (16.0, 64.0):
+        assert summary(bench, "centre", 60.0, Tuning(gain_per_s), SEEDS).losses >= 4
+    assert summary(bench, "centre", 60.0, Tuning(64.0, height_mm=-5.0 / 3.0), SEEDS).losses == 0
