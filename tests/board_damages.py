@@ -34,3 +34,13 @@ def swapped_pads(text: str, ref: str, one: str, other: str) -> str:
     text = in_part(text, ref, rf'\(pad "{one}" ', '(pad "?" ')
     text = in_part(text, ref, rf'\(pad "{other}" ', f'(pad "{one}" ')
     return in_part(text, ref, r'\(pad "\?" ', f'(pad "{other}" ')
+
+
+def resistor_smaller(text: str) -> str:
+    """Another value of a string's resistor."""
+    return in_part(text, "R1", r'value "\d+R"', 'value "100R"')
+
+
+def resistor_of_an_unknown_package(text: str) -> str:
+    """A string's resistor in a package without a known rating."""
+    return in_part(text, "R1", r"RESC\d{4}X", "RESC9999X")

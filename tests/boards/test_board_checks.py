@@ -6,7 +6,14 @@ from pathlib import Path
 
 import pytest
 
-from board_damages import in_part, moved_part, once, swapped_pads
+from board_damages import (
+    in_part,
+    moved_part,
+    once,
+    resistor_of_an_unknown_package,
+    resistor_smaller,
+    swapped_pads,
+)
 from damages import cut_short, failing, swap
 from lumitip_fab.checks import board
 from lumitip_fab.encoding import read_design
@@ -51,10 +58,6 @@ def led_reversed(text: str) -> str:
     return swapped_pads(text, "D7", "1", "2")
 
 
-def resistor_smaller(text: str) -> str:
-    return in_part(text, "R1", r'value "\d+R"', 'value "100R"')
-
-
 def led_bridged(text: str) -> str:
     return in_part(text, "D7", r'(\(pad "1".*\(size )\S+ \S+\)', r"\g<1>2.0 1)")
 
@@ -76,9 +79,10 @@ EMITTER_DAMAGES: dict[Damage, set[str]] = {
     led_on_the_back: {"cells", "room_behind", "silk_marks"},
     led_added: {"cell_count", "silk_marks"},
     led_reversed: {"polarity", "silk_marks"},
-    led_bridged: {"short", "strings", "current", "silk_gap"},
+    led_bridged: {"short", "strings", "current", "silk_gap", "resistor_load"},
     led_taller: {"height_front"},
-    resistor_smaller: {"current"},
+    resistor_smaller: {"current", "resistor_load"},
+    resistor_of_an_unknown_package: {"resistor_load"},
     resistor_taller: {"room_behind"},
     title_lost: {"silk_title"},
     arrow_bent: {"silk_arrow"},

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from lumitip_fab.checks.board_power import measure_loads
 from lumitip_fab.checks.board_read import Read, ohm
 from lumitip_fab.checks.channel_map import channels
 from lumitip_fab.checks.kicad_board import Part
@@ -55,8 +56,10 @@ def measure_strings(read: Read) -> Iterator[Measurement]:
     wrong: list[str] = []
     turned: list[str] = []
     shares = []
+    lit = []
     for i, cells in enumerate(wiring.strings):
         chain, ends = _chain(read, f"R{i + 1}", supply, anode)
+        lit.append(len(chain))
         told = [f"D{cell + 1}" for cell in cells]
         turned += [ref.removeprefix("-") for ref in chain if ref.startswith("-")]
         if [ref.removeprefix("-") for ref in chain] != told or not ends:
@@ -71,6 +74,7 @@ def measure_strings(read: Read) -> Iterator[Measurement]:
     off = np.array(shares) - 1
     worst = off[np.abs(np.nan_to_num(off, nan=math.inf)).argmax()]
     yield read.figure("current", 1 + worst, 1 - CURRENT_SHARE, 1 + CURRENT_SHARE, "of nominal")
+    yield from measure_loads(read, tuple(lit))
 
 
 def _chain(read: Read, resistor: str, supply: str, anode: str) -> tuple[list[str], bool]:

@@ -53,6 +53,7 @@ PARAMETERS: dict[str, tuple[str, ...]] = {
     "board.supply_width": ("board.supply_track_mm",),
     "board.open": ("board.channel_mm", "board.track_mm"),
     "board.current": ("emitter.current_ma", "supply.max_ma"),
+    "board.resistor_load": ("emitter.resistor", "emitter.current_ma"),
     "holder.overhang": ("holder.wrap_deg", "holder.wall_mm"),
     "holder.min_wall": ("holder.wall_mm",),
     "holder.tray_gap": ("holder.clearance_mm",),
