@@ -67,7 +67,8 @@ def test_the_manual_shows_a_name_as_it_is_written(name: str, outputs: Path) -> N
     d = read_design(outputs / "design.json")
     files = {f.relative_to(outputs).as_posix(): "" for f in outputs.rglob("*") if f.is_file()}
     made = Made(outputs, files)
-    facts = Facts(Title(name, "A"), d.printing, d.mould, d.mask, d.heat, d.mount, d.wiring, d.cabling,
+    facts = Facts(Title(name, "A"), d.printing, d.mould, d.mask, d.heat, d.mount, d.wiring,
+                  d.cabling,
                   d.electrical, d.carriers, d.holders, d.interfaces, d.flanges,
                   d.emitter)  # fmt: skip
     text = manual_text(facts, made)
