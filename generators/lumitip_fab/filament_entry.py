@@ -33,8 +33,8 @@ class Filament(Entry):
     bearing_mpa: float = Field(gt=0, le=500)
     """Compressive strength of a solid print."""
     limit_c: float = Field(ge=30, le=300)
-    """Highest temperature at which a printed part keeps its shape (°C): the lower end of what
-    makers give as its heat deflection temperature."""
+    """Highest temperature at which a printed part keeps its shape (°C): the lower end of its
+    heat deflection temperature."""
     rigid_parts: Name | None = None
     """For a filament that bends: the filament of parts that must not, such as moulds."""
 

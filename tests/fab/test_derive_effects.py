@@ -83,16 +83,7 @@ CHANGES: dict[str, Any] = {
     "flange.web_mm": 2.0,
     "flange.contacts": "other contacts",
     "flange.signals": (
-        "GND",
-        "GND",
-        "SUPPLY",
-        "NC",
-        "CASING",
-        "Von",
-        "485-",
-        "485+",
-        "3V3_out",
-        "485GND",
+        *("GND", "GND", "SUPPLY", "NC", "CASING", "Von", "485-", "485+", "3V3_out", "485GND"),
     ),
     "flange.header": "other header",
     "flange.headers": (

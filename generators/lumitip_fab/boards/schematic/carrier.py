@@ -47,7 +47,7 @@ def carrier_sheet(board: Placement, carrier: Carrier) -> dict[str, bytes]:
         else:
             _row(sheet, (x + _ROW_MM[device.contacts], y + _ABOVE_MM), part, name)
         if open_ := _left_open(device):
-            sheet.texts.append((f"open: {', '.join(open_)}", (x, y + tall - _PITCH_MM), 1.27))
+            sheet.texts.append((f"open: {', '.join(open_)}", (x, y + tall + _PITCH_MM), 1.27))
         y += tall
     paper, _ = paper_for(x + _COLUMN_MM - MARGIN_MM, _TALL_MM)
     return sheet_files(board, paper, sheet, shapes, parts)
