@@ -11,7 +11,7 @@ from lumitip_fab.design import Finger, Letter, Printing
 
 RELIEF_MM = 0.08
 _START_MM = 2.0  # of the rays, before the wall
-_BESIDE_MM = 0.7  # walls between the letter and the end of its wall
+_BESIDE_MM = 0.7  # or the thinnest wall: walls between the letter and the end of its wall
 _ASPECT = 0.7
 # Places in parts of the letter's height, from its lower left corner: sunk, and left standing.
 _SUNK = {
@@ -48,7 +48,7 @@ def measure_letter(
 
 def beside(letter: Letter, printing: Printing) -> Exempt:
     """What stands between the letter's strokes and round it, which one printed line makes."""
-    box = letter.box.grown(_BESIDE_MM)
+    box = letter.box.grown(max(_BESIDE_MM, printing.min_wall_mm))
 
     def holds(points: Vectors) -> Mask:
         across, out, up = points.T

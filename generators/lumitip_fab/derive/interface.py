@@ -11,7 +11,7 @@ import math
 from lumitip_fab.derive.faults import Faults
 from lumitip_fab.derive.fits import Drawn, refuse_touching
 from lumitip_fab.derive.flex import behind_mm, foot_half_mm, held_by, is_flex
-from lumitip_fab.derive.letter import MOST_MM, letter_on
+from lumitip_fab.derive.letter import letter_on, most_letter_mm
 from lumitip_fab.design import Box, Finger, Interface, Outline
 from lumitip_fab.load import Input
 
@@ -45,7 +45,9 @@ def derive_interfaces(
     tilt = math.radians(45 - gripper.tilt_deg)
     ramp = (gripper.block_back_w_mm - behind_mm(p)) / math.tan(tilt)
     least = gripper.land_mm + ramp + FLARE_MM
-    most = outline.length_mm - p.tip.slant_start_mm - 2 * LETTER_GAP_MM - MOST_MM
+    line_mm = given.catalogue.printers[p.printer.profile].line_mm
+    letter_mm = most_letter_mm(line_mm)
+    most = outline.length_mm - p.tip.slant_start_mm - 2 * LETTER_GAP_MM - letter_mm
     needed, room = math.ceil(least * 10) / 10, math.floor(most * 10) / 10
     told = (
         f"at least {needed:g} is needed for the land and ramp of {p.coupling.gripper!r}, and at "
@@ -64,7 +66,7 @@ def derive_interfaces(
     )
     low = groove.y_max_mm + LETTER_GAP_MM - end_y
     back = p.stack.pcb_mm + p.stack.floor_mm
-    letter = letter_on(low, low + MOST_MM, LETTER_DEPTH_MM, back)
+    letter = letter_on(low, low + letter_mm, LETTER_DEPTH_MM, back, line_mm)
     return (
         Interface(
             groove, flex.groove_mm, flex.groove_depth_mm, flex.glue_mm,

@@ -3,7 +3,7 @@
 import math
 
 from lumitip_fab.derive.faults import Faults
-from lumitip_fab.derive.letter import DEPTH_MM, LEAST_MM, letter_on
+from lumitip_fab.derive.letter import DEPTH_MM, least_letter_mm, letter_on
 from lumitip_fab.derive.outline import half_width_at
 from lumitip_fab.design import Board, Letter, Mould, Outline, Point, Stack
 from lumitip_fab.load import Input
@@ -14,8 +14,8 @@ PAD_MARGIN_MM = 0.1
 END_ROUND = 2 / 3  # of the silicone's thickness
 TROUGH_MM = 4.0  # along y
 LEDGE_MM = 0.5  # between weir and trough
-LETTER_OVER_BED_MM = 0.6  # clear of the chamfer at the foot
-LETTER_UNDER_RIM_MM = 0.5
+LETTER_OVER_BED_MM = 0.6  # or a printed line, which is clear of the chamfer at the foot
+LETTER_UNDER_RIM_MM = 0.5  # or a printed line
 LEAST_LAYER_MM = 0.05
 WHOLE_MM = 1e-6
 
@@ -102,17 +102,20 @@ def _letter(given: Input, outline: Outline, stack: Stack, faults: Faults) -> Let
     """On the outside of the trough's end, whose wall is as high as the cavity and its floor."""
     p = given.parameters
     wall, rise = p.mould.wall_mm, stack.guided_mm * math.tan(math.radians(p.mould.draft_deg))
-    low, high = LETTER_OVER_BED_MM, wall + stack.cover_mm - LETTER_UNDER_RIM_MM
+    line_mm = given.catalogue.printers[p.printer.profile].line_mm
+    least = least_letter_mm(line_mm)
+    low = max(LETTER_OVER_BED_MM, line_mm)
+    high = wall + stack.cover_mm - max(LETTER_UNDER_RIM_MM, line_mm)
     faults.refuse_unless(
-        high - low >= LEAST_MM - 1e-9,
+        high - low >= least - 1e-9,
         "mould.wall_mm",
         f"{wall:g} given, which leaves {high - low:.2f} mm for the letter that tells the fingers' "
-        f"moulds apart, {LEAST_MM:g} mm high at least: a wall of "
-        f"{wall + LEAST_MM - (high - low):.2f} or more is needed",
+        f"moulds apart, {least:g} mm high at least: a wall of "
+        f"{wall + least - (high - low):.2f} or more is needed",
     )
     trough_y = outline.end_y_mm - p.mould.wall_gap_mm - rise - wall - LEDGE_MM
     end_mm = wall + TROUGH_MM - trough_y
-    return letter_on(low, high, min(DEPTH_MM, wall - p.printer.min_wall_mm), end_mm)
+    return letter_on(low, high, min(DEPTH_MM, wall - p.printer.min_wall_mm), end_mm, line_mm)
 
 
 def _pads(given: Input, outline: Outline, board: Board, faults: Faults) -> tuple[Point, ...]:

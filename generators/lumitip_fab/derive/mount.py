@@ -6,13 +6,13 @@ from lumitip_fab.derive.boards import HOLE_TO_EDGE_MM, Plan
 from lumitip_fab.derive.faults import Faults
 from lumitip_fab.derive.fits import derive_fits
 from lumitip_fab.derive.flex import behind_mm, held_by, is_flex
-from lumitip_fab.derive.letter import DEPTH_MM, LEAST_DEPTH_MM, LEAST_MM, WIDTH, letter_on
+from lumitip_fab.derive.letter import DEPTH_MM, LEAST_DEPTH_MM, WIDTH, least_letter_mm, letter_on
 from lumitip_fab.derive.outline import half_width_at
 from lumitip_fab.design import Letter, Mount, Outline
 from lumitip_fab.gripper_entry import Gripper
 from lumitip_fab.load import Input
 
-LETTER_MARGIN_MM = 0.6  # to the bed, and to where the ramp begins
+LETTER_MARGIN_MM = 0.6  # or a printed line, to the bed, and to where the ramp begins
 
 
 def derive_mount(given: Input, outline: Outline, plan: Plan, faults: Faults) -> Mount:
@@ -147,15 +147,18 @@ def _letter(given: Input, gripper: Gripper, faults: Faults) -> Letter:
     behind = gripper.block_back_w_mm - gripper.bolt_w_mm - hole / 2 - p.printer.fit_mm
     deep = behind - p.printer.min_wall_mm
     wide = gripper.block_width_mm - 2 * gripper.block_corner_mm
-    low, high = LETTER_MARGIN_MM, gripper.land_mm - LETTER_MARGIN_MM
+    line_mm = given.catalogue.printers[p.printer.profile].line_mm
+    least, margin = least_letter_mm(line_mm), max(LETTER_MARGIN_MM, line_mm)
+    low, high = margin, gripper.land_mm - margin
     faults.refuse_unless(
-        min(high - low, wide / WIDTH) >= LEAST_MM and deep >= LEAST_DEPTH_MM,
+        min(high - low, wide / WIDTH) >= least and deep >= LEAST_DEPTH_MM,
         "coupling.gripper",
         f"{p.coupling.gripper!r} given, whose block has no room on its back for the letter that "
         f"tells the fingers apart: {wide:.1f} mm between its corners, {gripper.land_mm:g} mm of "
-        f"land and {behind:.1f} mm of wall behind the bolt; at least {WIDTH * LEAST_MM:.1f}, "
-        f"{LEAST_MM + 2 * LETTER_MARGIN_MM:g} and {p.printer.min_wall_mm + LEAST_DEPTH_MM:g} "
+        f"land and {behind:.1f} mm of wall behind the bolt; at least {WIDTH * least:.1f}, "
+        f"{least + 2 * margin:g} and {p.printer.min_wall_mm + LEAST_DEPTH_MM:g} "
         "are needed",
     )
     middle, half = (low + high) / 2, min(high - low, wide / WIDTH) / 2
-    return letter_on(middle - half, middle + half, min(deep, DEPTH_MM), gripper.block_back_w_mm)
+    depth, back = min(deep, DEPTH_MM), gripper.block_back_w_mm
+    return letter_on(middle - half, middle + half, depth, back, line_mm)

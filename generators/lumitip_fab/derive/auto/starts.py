@@ -15,7 +15,7 @@ from lumitip_fab.load import Input
 
 Proposal = tuple[str, Value, str]
 
-LINES_PER_WALL = 2  # an FDM wall of two lines bears and is tight
+LINES_PER_WALL = 1.2  # slicers print a wall from there on with lines of variable width
 FINE_MM = {"track": 0.15, "gap": 0.15, "via": 0.45, "drill": 0.2}
 """Copper for dense boards, which common PCB fabs make without extra cost."""
 ROOMY_CHANNEL_MM = 4.0
@@ -38,8 +38,8 @@ def _layers(given: Input) -> Iterator[Proposal]:
 def _printer(given: Input) -> Iterator[Proposal]:
     p = given.parameters
     line = given.catalogue.printers[p.printer.profile].line_mm
-    wall = max(float(FIELDS["printer.min_wall_mm"].start), round(LINES_PER_WALL * line - 0.1, 2))
-    yield "printer.min_wall_mm", wall, f"two overlapping lines of {line:g} mm, at least 0.8 mm"
+    wall = max(float(FIELDS["printer.min_wall_mm"].start), round(LINES_PER_WALL * line, 2))
+    yield "printer.min_wall_mm", wall, f"{LINES_PER_WALL:g} lines of {line:g} mm, at least 0.8 mm"
     edge = max(float(FIELDS["tip.edge_mm"].start), line)
     yield "tip.edge_mm", edge, f"one line of {line:g} mm, at least 0.45 mm"
     wall = p.printer.min_wall_mm
