@@ -60,9 +60,10 @@ def _allow_auto(schema: dict[str, Any]) -> None:
         table = schema["$defs"][name]["properties"]
         text = {k: table[key].pop(k) for k in ("title", "description")}
         table[key].pop("default")
+        ways = table[key].get("anyOf", [table[key]])
         start = json.dumps(automatic.start)
         text["description"] += f' "auto": {start} by default; follows {automatic.follows}.'
-        table[key] = {**text, "anyOf": [{"const": AUTO}, table[key]], "default": AUTO}
+        table[key] = {**text, "anyOf": [{"const": AUTO}, *ways], "default": AUTO}
 
 
 def field_title(field: str) -> str:
