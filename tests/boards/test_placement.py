@@ -256,7 +256,7 @@ def test_a_title_without_room_is_refused_with_the_numbers(
 
 def test_a_long_title_is_printed_smaller(boards: dict[tuple[str, str], Placed]) -> None:
     design, finger, _ = boards["asymmetric", "emitter"]
-    title = dataclasses.replace(design.title, name="Lumitip with the longest of names")
+    title = dataclasses.replace(design.title, name="Lumitip with the longest of name")
     placement = _placed(dataclasses.replace(design, title=title), finger)
     heights = [text.height_mm for _, text in placement.texts if title.name in text.text]
     assert heights
