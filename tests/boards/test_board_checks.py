@@ -10,9 +10,9 @@ from board_damages import (
     in_part,
     moved_part,
     once,
-    resistor_of_an_unknown_package,
     resistor_smaller,
     swapped_pads,
+    unrated_resistor,
 )
 from damages import cut_short, failing, swap
 from lumitip_fab.checks import board
@@ -82,7 +82,7 @@ EMITTER_DAMAGES: dict[Damage, set[str]] = {
     led_bridged: {"short", "strings", "current", "silk_gap", "resistor_load"},
     led_taller: {"height_front"},
     resistor_smaller: {"current", "resistor_load"},
-    resistor_of_an_unknown_package: {"resistor_load"},
+    unrated_resistor: {"resistor_load"},
     resistor_taller: {"room_behind"},
     title_lost: {"silk_title"},
     arrow_bent: {"silk_arrow"},
