@@ -41,6 +41,6 @@ def resistor_smaller(text: str) -> str:
     return in_part(text, "R1", r'value "\d+R"', 'value "100R"')
 
 
-def unrated_resistor(text: str) -> str:
+def unrated(text: str) -> str:
     """A string's resistor in a package without a known rating."""
     return in_part(text, "R1", r"RESC\d{4}X", "RESC9999X")

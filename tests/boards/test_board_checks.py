@@ -6,14 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from board_damages import (
-    in_part,
-    moved_part,
-    once,
-    resistor_smaller,
-    swapped_pads,
-    unrated_resistor,
-)
+from board_damages import in_part, moved_part, once, resistor_smaller, swapped_pads, unrated
 from damages import cut_short, failing, swap
 from lumitip_fab.checks import board
 from lumitip_fab.encoding import read_design
@@ -82,7 +75,7 @@ EMITTER_DAMAGES: dict[Damage, set[str]] = {
     led_bridged: {"short", "strings", "current", "silk_gap", "resistor_load"},
     led_taller: {"height_front"},
     resistor_smaller: {"current", "resistor_load"},
-    unrated_resistor: {"resistor_load"},
+    unrated: {"resistor_load"},
     resistor_taller: {"room_behind"},
     title_lost: {"silk_title"},
     arrow_bent: {"silk_arrow"},
