@@ -27,7 +27,9 @@ SIZES = {
     "docs": "VTK for the README's pictures; 0.1 GB to download",
 }
 LARGE_MB = 5
-_FETCHED = re.compile(r"\s*(?:Downloading|Using cached|Processing) (\S+\.whl)(?: \((.*?)\))?")
+# What pip says of a wheel differs between its versions and sources; the size is not always there.
+_FETCHED = re.compile(r"\s*(?:Downloading|Using cached|Processing) (\S+\.whl)")
+_SIZE = re.compile(r"\((\d+(?:\.\d+)?) (bytes|kB|MB|GB)\)")
 _UNITS_MB = {"bytes": 1e-6, "kB": 1e-3, "MB": 1.0, "GB": 1e3}
 _FAILED, _REFUSED = 1, 2
 
@@ -140,7 +142,8 @@ def _install(extras: str, progress: Progress) -> str | None:
             lines.append(line.rstrip())
             fetched = _FETCHED.match(line)
             if fetched:
-                package, size_mb = Path(fetched[1]).name.split("-")[0], _megabytes(fetched)
+                package = Path(fetched[1]).name.split("-")[0]
+                size_mb = _megabytes(line, Path(fetched[1]))
                 packages, total_mb = packages + 1, total_mb + size_mb
                 progress.status(f"{packages} packages, {total_mb:.0f} MB: {package}")
                 if size_mb >= LARGE_MB:
@@ -154,12 +157,12 @@ def _install(extras: str, progress: Progress) -> str | None:
     return "\n".join(dict.fromkeys(errors or lines[-10:]))
 
 
-def _megabytes(fetched: "re.Match[str]") -> float:
-    """Size of a wheel, from what pip says of a download or from the file on this computer."""
-    if fetched[2]:
-        figure, _, unit = fetched[2].partition(" ")
-        return float(figure) * _UNITS_MB.get(unit, 0.0)
-    file = Path(fetched[1])
+def _megabytes(line: str, file: Path) -> float:
+    """Size of a wheel: what pip's line says of it, else that of the file on this computer, else
+    0."""
+    said = _SIZE.search(line)
+    if said:
+        return float(said[1]) * _UNITS_MB[said[2]]
     return file.stat().st_size * 1e-6 if file.is_file() else 0.0
 
 

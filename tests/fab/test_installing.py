@@ -108,8 +108,10 @@ def test_progress_begins_before_pip_and_names_large_downloads(
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].startswith("Setting up .venv for fab: ")
     assert "  big (67 MB)" in lines
+    assert not any("far (" in line for line in lines), "its size is not said"
     assert not any("WARNING" in line or "small" in line for line in lines)
-    assert "  unpacking 2 packages" in lines
+    assert "  unpacking 4 packages" in lines
+    assert any(line.startswith("  stored (6 MB)") for line in lines), "read from the file"
     assert "WARNING" in (tmp_path / ".venv" / "setup.log").read_text()
 
 
@@ -129,12 +131,16 @@ def _installs(setup: ModuleType, folder: Path, monkeypatch: pytest.MonkeyPatch, 
     """Run the setup with a `python` that prints what pip prints."""
     python = folder / ".venv" / "bin" / "python"
     python.parent.mkdir(parents=True)
+    stored = folder / "stored-1.0-py3-none-any.whl"
+    stored.write_bytes(bytes(6_000_000))
     python.write_text(
         "#!/bin/sh\n"
         "echo \"WARNING: Location 'file:///x' is ignored\"\n"
         "echo '  Downloading small-1.0-py3-none-any.whl (20 kB)'\n"
         "echo '  Downloading big-2.0-cp311-cp311-linux_x86_64.whl (66.6 MB)'\n"
-        "echo 'Installing collected packages: small, big'\n" + last + "\n"
+        "echo '  Downloading https://x.invalid/far-1.0-py3-none-any.whl (from y (z))'\n"
+        f"echo 'Processing {stored} (from lumitip==1.0)'\n"
+        "echo 'Installing collected packages: small, big, far, stored'\n" + last + "\n"
     )
     python.chmod(0o755)
     monkeypatch.setattr(setup, "ROOT", folder)
