@@ -14,20 +14,19 @@ from pathlib import Path
 from typing import TypeVar
 
 from goals import Goals
-from lumitip_fab.boards.fab.note import assembly_note
-from lumitip_fab.boards.fab.package import layers_of, order_files
+from lumitip_fab.boards.fab.order import assembly_note, layers_of, order_files
+from lumitip_fab.boards.fab.picture import picture_files
+from lumitip_fab.boards.kicad.project import project_files
+from lumitip_fab.boards.kicad.schematic.files import schematic_files
 from lumitip_fab.boards.model import BoardModel
-from lumitip_fab.boards.pcb.files import project_files
-from lumitip_fab.boards.picture.files import picture_files
 from lumitip_fab.boards.placement import place
 from lumitip_fab.boards.pour import pour
-from lumitip_fab.boards.routing import route
-from lumitip_fab.boards.schematic.files import schematic_files
+from lumitip_fab.boards.route import route
 from lumitip_fab.boards.verify import verify
+from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Design, Finger
 from lumitip_fab.errors import FabError
-from lumitip_fab.load import load
 
 DESIGN = Path(__file__).parents[1] / "design"
 LIMITS_S = {32: 15.0, 128: 120.0, 257: 400.0}

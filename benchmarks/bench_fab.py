@@ -79,11 +79,11 @@ def one_stage(stage: str, cells: int) -> None:
     """Run one stage in this process and print cells, seconds and peak memory (MiB)."""
     from lumitip_fab.checks import layout as layout_check
     from lumitip_fab.checks import mask as mask_check
+    from lumitip_fab.config.load import load
     from lumitip_fab.derive import derive
-    from lumitip_fab.documents import documents
-    from lumitip_fab.graph import tasks
-    from lumitip_fab.load import load
     from lumitip_fab.mask.files import mask_files
+    from lumitip_fab.pipeline.documents import documents
+    from lumitip_fab.pipeline.graph import tasks
 
     with tempfile.TemporaryDirectory() as name:
         out = Path(name) / "out"

@@ -10,7 +10,7 @@ import trimesh
 from manifold3d import Manifold, Mesh
 from numpy.typing import NDArray
 
-from lumitip_fab.encoding import read_design
+from lumitip_fab.design.encoding import read_design
 
 Corner = tuple[float, float, float]
 Body = Manifold

@@ -4,9 +4,9 @@ from pathlib import Path
 
 from lumitip_fab.boards.model import Component, Footprint, Net, NetClass, Pad, Placement, Side
 from lumitip_fab.boards.placement import place
+from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Box, Point
-from lumitip_fab.load import load
 
 CLASSES = (NetClass("signal", 0.2, 0.2, 0.6, 0.3), NetClass("supply", 0.5, 0.2, 0.6, 0.3))
 

@@ -52,9 +52,9 @@ def fill(folder: Path) -> None:
 
 def derive_file(file: Path) -> Trial:
     """Derive a user file."""
+    from lumitip_fab.config.load import load
     from lumitip_fab.derive import derive
     from lumitip_fab.errors import InputError
-    from lumitip_fab.load import load
 
     try:
         derive(load(file))
@@ -68,8 +68,8 @@ def derive_file(file: Path) -> Trial:
 
 def build_file(file: Path) -> Trial:
     """Build a user file and check what was built."""
-    from lumitip_fab.build import build
     from lumitip_fab.checks.run import run_checks
+    from lumitip_fab.pipeline.build import build
 
     with tempfile.TemporaryDirectory(prefix="acceptance") as out:
         try:

@@ -8,11 +8,11 @@ import pytest
 
 from lumitip_fab.boards.carrier import carrier_files
 from lumitip_fab.boards.files import board_files
+from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
-from lumitip_fab.encoding import design_text
-from lumitip_fab.graph import tasks
-from lumitip_fab.load import load
+from lumitip_fab.design.encoding import design_text
+from lumitip_fab.pipeline.graph import tasks
 
 Boards = Callable[[str], Path]
 

@@ -9,7 +9,7 @@ import pytest
 from board_damages import in_part, moved_part, once, resistor_smaller, swapped_pads, unrated
 from damages import cut_short, failing, swap
 from lumitip_fab.checks import board
-from lumitip_fab.encoding import read_design
+from lumitip_fab.design.encoding import read_design
 from silk_damages import (
     arrow_bent,
     cell_lost,

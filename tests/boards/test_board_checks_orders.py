@@ -9,7 +9,7 @@ import pytest
 
 from damages import cut_short, failing, swap
 from lumitip_fab.checks import orders
-from lumitip_fab.encoding import read_design
+from lumitip_fab.design.encoding import read_design
 
 Files = dict[str, bytes]
 Damage = Callable[[Files], None]

@@ -9,7 +9,7 @@ import pytest
 from board_damages import in_part, moved_part, once, swapped_pads
 from damages import failing
 from lumitip_fab.checks import board
-from lumitip_fab.encoding import read_design
+from lumitip_fab.design.encoding import read_design
 
 Damage = Callable[[str], str]
 BREAKOUT = "boards/breakout/breakout.kicad_pcb"

@@ -5,10 +5,10 @@ from collections.abc import Callable
 
 import pytest
 
-from lumitip_fab.artefact import Artefact
 from lumitip_fab.boards.carrier import carrier_files
 from lumitip_fab.design import Design
 from lumitip_fab.errors import BuildError
+from lumitip_fab.pipeline.artefact import Artefact
 
 CARRIERS = ("breakout", "flange")
 

@@ -8,8 +8,8 @@ import pytest
 
 from lumitip_fab.checks.board_read import Read
 from lumitip_fab.checks.board_silk import measure_silk
-from lumitip_fab.checks.kicad_board import read_board
-from lumitip_fab.encoding import read_design
+from lumitip_fab.checks.readers.kicad_board import read_board
+from lumitip_fab.design.encoding import read_design
 
 EMITTER = "boards/emitter/emitter.kicad_pcb"
 NARROW_MM = 4.9

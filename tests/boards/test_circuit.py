@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from lumitip_fab.boards.circuit import Circuit, circuit, resistor_code
+from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
-from lumitip_fab.load import load
 
 PRESETS = ("published", "asymmetric", "dense", "mux16")
 # Leads of the 74HC4051 by its data sheet.

@@ -16,17 +16,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lumitip_fab.boards import files
-from lumitip_fab.boards.contours import fractured
 from lumitip_fab.boards.files import board_files
-from lumitip_fab.boards.ids import stable_uuid
-from lumitip_fab.boards.model import Fill, Routing, Text
-from lumitip_fab.boards.pcb.sexpr import Quoted, number, written
-from lumitip_fab.boards.strokes import text_strokes, upright
-from lumitip_fab.checks.kicad_text import child, children, read_nodes, words
+from lumitip_fab.boards.kicad.sexpr import Quoted, number, written
+from lumitip_fab.boards.model import Fill, Routing, Text, stable_uuid
+from lumitip_fab.boards.outline import fractured
+from lumitip_fab.boards.silk.strokes import text_strokes, upright
+from lumitip_fab.checks.readers.kicad_shapes import child, children, read_nodes, words
 from lumitip_fab.design import Design
+from lumitip_fab.design.frames import applied
 from lumitip_fab.errors import BuildError
-from lumitip_fab.frames import applied
-from lumitip_fab.graph import tasks
+from lumitip_fab.pipeline.graph import tasks
 
 Designs = Callable[[str], Design]
 AGAIN = """

@@ -13,11 +13,11 @@ import pytest
 import shapely
 from gerbonara.layers import LayerStack
 
-from lumitip_fab.boards.fab.lists import angle_at
-from lumitip_fab.boards.geometry import placed_pads
-from lumitip_fab.boards.gerber import objects
+from lumitip_fab.boards.fab import gerber_objects as objects
+from lumitip_fab.boards.fab.order import angle_at
+from lumitip_fab.boards.footprints import placed_pads
 from lumitip_fab.boards.model import Component, Footprint, Pad
-from lumitip_fab.checks.gerber_read import drilled, gerber_area
+from lumitip_fab.checks.readers.gerber import drilled, gerber_area
 from lumitip_fab.design import Box, Fab
 
 BOX = Box(-1, 1, -1, 1)

@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 import shapely
 
-from lumitip_fab.checks.gerber_read import gerber_area
-from lumitip_fab.checks.kicad_board import read_board
+from lumitip_fab.checks.readers.gerber import gerber_area
+from lumitip_fab.checks.readers.kicad_board import read_board
 from programs import needs
 
 Boards = Callable[[str], Path]

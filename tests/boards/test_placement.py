@@ -11,16 +11,15 @@ import shapely
 from shapely import LineString
 
 from lumitip_fab.boards.carrier import carrier_files
-from lumitip_fab.boards.clear import extent
-from lumitip_fab.boards.geometry import courtyard, pad_at, placed_pads
-from lumitip_fab.boards.model import SIDES, Component, Placement
-from lumitip_fab.boards.openings import opening_mm
+from lumitip_fab.boards.footprints import courtyard, pad_at, placed_pads
+from lumitip_fab.boards.model import SIDES, Component, Placement, opening_mm
 from lumitip_fab.boards.placement import place
-from lumitip_fab.boards.silk import silkscreen
+from lumitip_fab.boards.silk.page import extent
+from lumitip_fab.boards.silk.strokes import silkscreen
+from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Box, Design, Finger
 from lumitip_fab.errors import BuildError
-from lumitip_fab.load import load
 
 PRESETS = ("published", "asymmetric", "dense", "mux16")
 FINGERS = ("emitter", "receiver")

@@ -7,11 +7,20 @@ import pytest
 import shapely
 
 import small_boards as small
-from lumitip_fab.boards.geometry import placed_pads
-from lumitip_fab.boards.model import SIDES, BoardModel, Fill, Placement, Routing, Track
+from lumitip_fab.boards.footprints import placed_pads
+from lumitip_fab.boards.model import (
+    MIN_WIDTH_MM,
+    SIDES,
+    THERMAL_GAP_MM,
+    THERMAL_SPOKE_MM,
+    BoardModel,
+    Fill,
+    Placement,
+    Routing,
+    Track,
+)
 from lumitip_fab.boards.pour import pour
-from lumitip_fab.boards.pour_rules import MIN_WIDTH_MM, THERMAL_GAP_MM, THERMAL_SPOKE_MM
-from lumitip_fab.boards.routing import route
+from lumitip_fab.boards.route import route
 from lumitip_fab.boards.verify import summary, verify
 from lumitip_fab.errors import BuildError
 

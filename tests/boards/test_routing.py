@@ -9,11 +9,11 @@ import pytest
 import shapely
 
 import small_boards as small
-from lumitip_fab.boards.geometry import placed_pads
+from lumitip_fab.boards.footprints import placed_pads
 from lumitip_fab.boards.model import SIDES, BoardModel, Placement, Routing, Track
 from lumitip_fab.boards.pour import pour
-from lumitip_fab.boards.routing import route
-from lumitip_fab.boards.routing.rules import Rules
+from lumitip_fab.boards.route import route
+from lumitip_fab.boards.route.rules import Rules
 from lumitip_fab.boards.verify import summary, verify
 from lumitip_fab.design import Box
 from lumitip_fab.errors import BuildError

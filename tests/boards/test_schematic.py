@@ -12,13 +12,13 @@ from xml.etree import ElementTree
 
 import pytest
 
+from lumitip_fab.boards.kicad.project import project_files
+from lumitip_fab.boards.kicad.schematic import schematic_files
 from lumitip_fab.boards.model import BoardModel, Placement, Routing
-from lumitip_fab.boards.pcb.files import project_files
 from lumitip_fab.boards.placement import place
-from lumitip_fab.boards.schematic import schematic_files
+from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
-from lumitip_fab.load import load
 from programs import needs, program
 
 PRESETS = ("published", "asymmetric", "dense", "mux16")
@@ -60,7 +60,7 @@ def _report(folder: Path, kind: str, command: str, ending: str, *options: str) -
 
 @needs_kicad
 def test_kicad_opens_what_the_sheets_grow_from(tmp_path: Path) -> None:
-    template = files("lumitip_fab.boards.schematic") / "template.kicad_sch"
+    template = files("lumitip_fab.boards.kicad.schematic") / "template.kicad_sch"
     _kicad("sch", "export", "svg", "-o", tmp_path, str(template))
     assert "NET" in (tmp_path / "template.svg").read_text(encoding="utf-8")
 

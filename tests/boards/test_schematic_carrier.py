@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from lumitip_fab.checks.kicad_text import Node, child, children, read_nodes, words
+from lumitip_fab.checks.readers.kicad_shapes import Node, child, children, read_nodes, words
 from lumitip_fab.design import Design
 
 

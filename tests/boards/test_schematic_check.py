@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from lumitip_fab.checks import schematic
-from lumitip_fab.encoding import read_design
+from lumitip_fab.design.encoding import read_design
 
 
 def _failed(out: Path) -> dict[str, str]:

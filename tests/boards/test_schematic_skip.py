@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 from skip import Schematic
 
+from lumitip_fab.boards.kicad.schematic import schematic_files
 from lumitip_fab.boards.placement import place
-from lumitip_fab.boards.schematic import schematic_files
 from lumitip_fab.design import Design
 from programs import needs, program
 

@@ -12,13 +12,20 @@ from typing import Any
 
 import pytest
 
+from lumitip_fab.boards.kicad.schematic import files, symbols
+from lumitip_fab.boards.kicad.schematic.sheet import Drawn, Sheet
+from lumitip_fab.boards.kicad.schematic.writer import sheet_text
+from lumitip_fab.boards.kicad.sexpr import FORMAT
 from lumitip_fab.boards.model import Component, Placement
-from lumitip_fab.boards.pcb.sexpr import FORMAT
 from lumitip_fab.boards.placement import place
-from lumitip_fab.boards.schematic import files, symbols
-from lumitip_fab.boards.schematic.sheet import Drawn, Sheet
-from lumitip_fab.boards.schematic.writer import sheet_text
-from lumitip_fab.checks.kicad_text import Node, child, children, numbers, read_nodes, words
+from lumitip_fab.checks.readers.kicad_shapes import (
+    Node,
+    child,
+    children,
+    numbers,
+    read_nodes,
+    words,
+)
 from lumitip_fab.design import Design, Finger, Point
 
 WORDS = (
@@ -106,7 +113,7 @@ def test_nothing_is_said_meanwhile() -> None:
         "import logging, sys, warnings; warnings.simplefilter('error')\n"
         "import lumitip_fab.boards.carrier, lumitip_fab.boards.files\n"
         "assert 'skip' not in sys.modules\n"
-        "from lumitip_fab.boards.schematic.template import Template\n"
+        "from lumitip_fab.boards.kicad.schematic.template import Template\n"
         "logging.basicConfig(level=logging.INFO)\n"
         "page = Template()\n"
         "for kind in ('junction', 'wire', 'text', 'global_label', 'symbol', 'path'):\n"

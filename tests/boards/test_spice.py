@@ -6,10 +6,10 @@ from pathlib import Path
 import pytest
 
 from lumitip_fab.boards.spice import simulation
+from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
-from lumitip_fab.derive.led_strings import string_current_ma
+from lumitip_fab.derive.wiring.ratings import string_current_ma
 from lumitip_fab.design import Design, Electrical, Wiring
-from lumitip_fab.load import load
 from spice_runs import needs_ngspice, simulated
 
 PRESETS = ("published", "asymmetric", "dense", "mux16")

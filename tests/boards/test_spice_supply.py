@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from lumitip_fab.boards.spice_supply import supply_simulation
+from lumitip_fab.boards.spice import supply_simulation
+from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
-from lumitip_fab.graph import tasks
-from lumitip_fab.load import load
+from lumitip_fab.pipeline.graph import tasks
 from spice_runs import needs_ngspice, simulated
 
 

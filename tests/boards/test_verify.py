@@ -9,7 +9,7 @@ import shapely
 
 import small_boards as small
 from lumitip_fab.boards.model import BoardModel, Fill, Placement, Routing, Track, Via
-from lumitip_fab.boards.routing import route
+from lumitip_fab.boards.route import route
 from lumitip_fab.boards.verify import Fault, sound, summary, verify
 from lumitip_fab.errors import BuildError
 

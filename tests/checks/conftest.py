@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
+from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
-from lumitip_fab.encoding import design_text
-from lumitip_fab.load import load
+from lumitip_fab.design.encoding import design_text
 from lumitip_fab.mask.files import mask_files
 
 

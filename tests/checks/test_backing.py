@@ -13,8 +13,8 @@ from manifold3d import Manifold
 from damages import box, carve, cut_short, failing, flip_a_triangle, remove_packages, swap
 from lumitip_fab.checks import backing
 from lumitip_fab.design import Design
-from lumitip_fab.encoding import read_design
-from lumitip_fab.frames import mount_to_sensor
+from lumitip_fab.design.encoding import read_design
+from lumitip_fab.design.frames import mount_to_sensor
 
 STL = "backing/receiver_backing.stl"
 EMITTER_STL = "backing/emitter_backing.stl"

@@ -8,8 +8,8 @@ import pytest
 
 from damages import cut_short, edit, excerpt
 from damages import failing as failing_of
+from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
-from lumitip_fab.load import load
 
 _NEEDED = ("boards", "backing", "mould", "holder", "flange", "fit", "wiring")
 

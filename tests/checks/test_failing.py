@@ -22,8 +22,8 @@ from lumitip_fab.checks.result import Measurement
 from lumitip_fab.checks.run import MODULES, Outcome, as_json, run_checks
 from lumitip_fab.cli import main
 from lumitip_fab.design import Design
-from lumitip_fab.encoding import read_design
-from lumitip_fab.frames import mount_to_sensor
+from lumitip_fab.design.encoding import read_design
+from lumitip_fab.design.frames import mount_to_sensor
 from pages import page_damage, runs
 
 Reports = tuple[Outcome, list[dict[str, Any]], ElementTree.Element]

@@ -6,14 +6,16 @@ from pathlib import Path
 import pytest
 
 from damages import failing
-from lumitip_fab.artefact import Artefact
-from lumitip_fab.derive import derive, fits, flange_body, holder
+from lumitip_fab.config.load import load
+from lumitip_fab.derive import derive
+from lumitip_fab.derive.making import fits
+from lumitip_fab.derive.mount import flange_body, holder
 from lumitip_fab.design import Design
-from lumitip_fab.encoding import design_text
-from lumitip_fab.load import load
-from lumitip_fab.mechanical.backing import backing
-from lumitip_fab.mechanical.flange import flange_files
-from lumitip_fab.mechanical.holder import holder_files
+from lumitip_fab.design.encoding import design_text
+from lumitip_fab.parts.backing import backing
+from lumitip_fab.parts.flange import flange_files
+from lumitip_fab.parts.holder import holder_files
+from lumitip_fab.pipeline.artefact import Artefact
 
 Alter = Callable[[pytest.MonkeyPatch], None]
 

@@ -7,10 +7,10 @@ import pytest
 
 from lumitip_fab.checks.firmware import measure
 from lumitip_fab.checks.run import run_checks
+from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
-from lumitip_fab.encoding import design_text, read_design
+from lumitip_fab.design.encoding import design_text, read_design
 from lumitip_fab.firmware.files import firmware_files
-from lumitip_fab.load import load
 
 PRESETS = sorted(f.stem for f in (Path(__file__).parents[2] / "design/presets").glob("*.toml"))
 ALL = {"channels", "pins", "converter", "hash", "name", "complete"}

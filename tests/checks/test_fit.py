@@ -8,12 +8,12 @@ from pathlib import Path
 import pytest
 
 from lumitip_fab.checks import backing, flange, holder
+from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
-from lumitip_fab.encoding import design_text, read_design
+from lumitip_fab.design.encoding import design_text, read_design
 from lumitip_fab.errors import FabError
-from lumitip_fab.load import load
-from lumitip_fab.mechanical.backing import backing as backing_files
+from lumitip_fab.parts.backing import backing as backing_files
 
 Derived = Callable[..., Design]
 ROUND_FLANGE = {"spigot", "recess", "pin_width", "socket_width", "peg_play"}

@@ -11,10 +11,10 @@ from manifold3d import Manifold
 from damages import box, carve, cut_short, failing, flip_a_triangle, remove_packages
 from lumitip_fab.checks import fit_plate
 from lumitip_fab.checks.run import run_checks
+from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from lumitip_fab.design import FitPlate, Point
-from lumitip_fab.encoding import read_design
-from lumitip_fab.load import load
+from lumitip_fab.design.encoding import read_design
 
 STL = "fit/fit_plate.stl"
 NEXT_MM = 0.05  # from a step to the next

@@ -8,8 +8,8 @@ from board_damages import in_part, moved_part
 from damages import carve, failing, flip_a_triangle, remove_packages
 from flange_damages import LOWERS, UPPERS, Damage
 from lumitip_fab.checks import flange as checks
-from lumitip_fab.encoding import read_design
-from lumitip_fab.frames import flange_beds
+from lumitip_fab.design.encoding import read_design
+from lumitip_fab.design.frames import flange_beds
 
 LOWER, UPPER = "flange/flange_lower.stl", "flange/flange_upper.stl"
 WIDE_BOARD = {"board_gap", "board_play", "bolt_board", "interference"}

@@ -8,9 +8,9 @@ from typing import Any
 import pytest
 import trimesh
 
-from lumitip_fab.checks.flange_strength import strength
+from lumitip_fab.checks.flange_read import strength
 from lumitip_fab.design import Design
-from lumitip_fab.encoding import read_design
+from lumitip_fab.design.encoding import read_design
 
 FACE_MM, HEAD_MM = 75.0, 8.5
 LOAD_N = 2 * 9.81 * 5.9

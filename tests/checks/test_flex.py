@@ -10,8 +10,8 @@ from manifold3d import Manifold
 from damages import box, carve, failing, swap
 from lumitip_fab.checks import backing
 from lumitip_fab.design import Design
-from lumitip_fab.encoding import read_design
-from lumitip_fab.frames import backing_bed_to_sensor, mount_to_sensor
+from lumitip_fab.design.encoding import read_design
+from lumitip_fab.design.frames import backing_bed_to_sensor, mount_to_sensor
 
 pytestmark = pytest.mark.slow
 PLATE = "backing/receiver_backing.stl"

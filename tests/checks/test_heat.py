@@ -10,9 +10,9 @@ import pytest
 
 from damages import edit, excerpt
 from damages import failing as failing_of
+from lumitip_fab.config.load import Input, load
 from lumitip_fab.derive import derive
 from lumitip_fab.errors import InputError
-from lumitip_fab.load import Input, load
 
 NOTE = "mask/receiver_wrapping.md"
 

@@ -11,12 +11,12 @@ from manifold3d import Manifold
 from board_damages import moved_part
 from damages import Body, box, carve, failing, flip_a_triangle, remove_packages
 from lumitip_fab.checks import holder as checks
+from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
-from lumitip_fab.encoding import design_text, read_design
-from lumitip_fab.frames import holder_bed_to_carrier
-from lumitip_fab.load import load
-from lumitip_fab.mechanical.holder import holder_files
-from lumitip_fab.spec_outside import outside
+from lumitip_fab.design.encoding import design_text, read_design
+from lumitip_fab.design.frames import holder_bed_to_carrier
+from lumitip_fab.docs.outside import outside
+from lumitip_fab.parts.holder import holder_files
 
 Damage = Callable[[Body], Body]
 HOLDER = "holder/holder.stl"

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from lumitip_fab.build import build
 from lumitip_fab.checks.run import run_checks
+from lumitip_fab.pipeline.build import build
 
 _FILE = """\
 extends = "published.toml"

@@ -9,12 +9,12 @@ from typing import Any
 import pytest
 
 from lumitip_fab.checks.printing import measure
+from lumitip_fab.config.load import Input, load
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
-from lumitip_fab.encoding import design_text, read_design
+from lumitip_fab.design.encoding import design_text, read_design
 from lumitip_fab.errors import InputError
-from lumitip_fab.load import Input, load
-from lumitip_fab.printing.settings import print_settings
+from lumitip_fab.parts.settings import print_settings
 
 
 def _written(design: Design, out: Path) -> Path:

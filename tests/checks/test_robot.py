@@ -123,7 +123,7 @@ def test_damage(
 
 
 def test_every_check_fails_for_some_damage(outputs: Path) -> None:
-    from lumitip_fab.encoding import read_design
+    from lumitip_fab.design.encoding import read_design
 
     told = {m.check for m in robot.measure(outputs, read_design(outputs / "design.json"))}
     assert told == {f"robot.{name}" for name in EVERY}

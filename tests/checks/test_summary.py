@@ -7,12 +7,17 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from lumitip_fab.checks.margins import DRAWN_AT_THE_LIMIT, relative_margin, tightest
-from lumitip_fab.checks.remedies import PARAMETERS, parameters_of
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.checks.run import MODULES, Outcome, run_checks
-from lumitip_fab.checks.summary import print_summary
-from lumitip_fab.parameters import Parameters
+from lumitip_fab.checks.summary import (
+    DRAWN_AT_THE_LIMIT,
+    PARAMETERS,
+    parameters_of,
+    print_summary,
+    relative_margin,
+    tightest,
+)
+from lumitip_fab.config.parameters import Parameters
 
 WEB = Measurement("mask.web", "a.pdf", 0.5, 0.4, math.inf, "mm")
 DRAFT = Measurement("mould.draft", "m.stl", 3.0, 2.0, 4.0, "°")

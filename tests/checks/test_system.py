@@ -9,8 +9,8 @@ import pytest
 from damages import failing
 from glb_damages import Told, move, node, opened, rewritten, shift
 from lumitip_fab.checks import system
-from lumitip_fab.encoding import read_design
-from lumitip_fab.spec import rows
+from lumitip_fab.design.encoding import read_design
+from lumitip_fab.docs.spec import rows
 
 GLB, SVG = "assembly/system.glb", "assembly/system.svg"
 SCENE = {"bodies", "stack", "place", "fingers", "tcp", "interference", "heights"}
@@ -207,8 +207,8 @@ def test_the_figure_that_spec_tells_is_that_of_the_scene(outputs: Path) -> None:
 
 
 def test_without_a_coupling_it_begins_at_the_gripper(design_dir: Path, tmp_path: Path) -> None:
+    from lumitip_fab.config.load import load
     from lumitip_fab.derive import derive
-    from lumitip_fab.load import load
 
     (tmp_path / "presets").mkdir()
     (tmp_path / "parts").mkdir()
@@ -221,8 +221,8 @@ def test_without_a_coupling_it_begins_at_the_gripper(design_dir: Path, tmp_path:
 
 
 def test_a_holder_is_shown_only_on_a_body_that_it_goes_round(design_dir: Path) -> None:
+    from lumitip_fab.config.load import load
     from lumitip_fab.derive import derive
-    from lumitip_fab.load import load
 
     shown = {name: derive(load(design_dir / f"presets/{name}.toml")).system.holders
              for name in ("published", "integrated", "wsg50")}  # fmt: skip

@@ -9,13 +9,13 @@ import trimesh
 
 from damages import box, carve
 from lumitip_fab.checks import backing as checks
-from lumitip_fab.checks.walls import Exempt, walls
+from lumitip_fab.checks.readers.solids import Exempt, walls
+from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
-from lumitip_fab.encoding import design_text
-from lumitip_fab.frames import mount_to_sensor
-from lumitip_fab.load import load
-from lumitip_fab.mechanical.backing import backing
+from lumitip_fab.design.encoding import design_text
+from lumitip_fab.design.frames import mount_to_sensor
+from lumitip_fab.parts.backing import backing
 
 STL = "backing/receiver_backing.stl"
 

@@ -9,10 +9,10 @@ import pytest
 
 from damages import excerpt
 from damages import failing as failing_of
+from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
+from lumitip_fab.docs.wiring import wiring_files
 from lumitip_fab.errors import InputError
-from lumitip_fab.load import load
-from lumitip_fab.wiring.files import wiring_files
 
 Edit = Callable[[str], str]
 LIST, NOTE, DIAGRAM = "cables.csv", "cables.md", "wiring.svg"

@@ -13,16 +13,14 @@ from pathlib import Path
 import pytest
 
 from lumitip_fab.cli import main
+from lumitip_fab.config.load import Input, load
 from lumitip_fab.derive import derive, resolve
 from lumitip_fab.errors import InputError, OutputError
 from lumitip_fab.explore import report
 from lumitip_fab.explore.accuracy import Sample, accuracy
-from lumitip_fab.explore.evaluate import Job, evaluate
-from lumitip_fab.explore.journal import NAME, Journal
-from lumitip_fab.explore.prices import bill, cost
+from lumitip_fab.explore.evaluate import NAME, Job, Journal, bill, cost, evaluate
 from lumitip_fab.explore.run import Found, Study, explore
 from lumitip_fab.explore.vary import changed
-from lumitip_fab.load import Input, load
 
 FEW = Sample(fingers=1, poses=3)
 # The third hole leaves no web between apertures, so two of the six are refused.

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
+from lumitip_fab.config.load import Input, load
 from lumitip_fab.errors import InputError
 from lumitip_fab.explore.vary import axes, changed, combinations, same_size
-from lumitip_fab.load import Input, load
 
 
 @pytest.fixture(scope="module")

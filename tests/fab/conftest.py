@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from lumitip.grid import hexagonal_grid, hexagonal_neighbours
+from lumitip_fab.config.load import Input, load
+from lumitip_fab.config.parameters import Parameters
 from lumitip_fab.derive import derive, resolve
 from lumitip_fab.design import Design
-from lumitip_fab.load import Input, load
-from lumitip_fab.parameters import Parameters
 
 PRESETS = Path(__file__).parents[2] / "design" / "presets"
 Vary = Callable[[Input, Mapping[str, Any]], Input]

@@ -6,13 +6,13 @@ from typing import Any
 
 import pytest
 
-from lumitip_fab.automatic import FIELDS
+from lumitip_fab.cli.fix import fix
+from lumitip_fab.config.automatic import FIELDS
+from lumitip_fab.config.load import Input, load
 from lumitip_fab.derive import derive, resolve
-from lumitip_fab.derive.auto.fix import fix
 from lumitip_fab.derive.auto.remedies import plan_of
 from lumitip_fab.derive.auto.resolve import RuleError
 from lumitip_fab.design import Design
-from lumitip_fab.load import Input, load
 
 BASE = 'extends = "presets/published.toml"\n'
 

@@ -13,12 +13,12 @@ from pathlib import Path
 import pytest
 import tomlkit
 
-from lumitip_fab.automatic import AUTO, FIELDS
+from lumitip_fab.config.automatic import AUTO, FIELDS
+from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
-from lumitip_fab.derive.auto.judge import judge_with, rule_of
 from lumitip_fab.derive.auto.resolve import RuleError
+from lumitip_fab.derive.auto.search import judge_with, rule_of
 from lumitip_fab.errors import InputError
-from lumitip_fab.load import load
 
 ROOT = Path(__file__).parents[2]
 BAD = ROOT / "tests" / "bad_inputs"

@@ -11,10 +11,9 @@ import numpy as np
 import pytest
 
 from lumitip import Layout
-from lumitip_fab import manifest
-from lumitip_fab.build import build
 from lumitip_fab.errors import InputError, OutputError
-from lumitip_fab.lock import locked
+from lumitip_fab.pipeline import manifest
+from lumitip_fab.pipeline.build import build, locked
 
 PUBLISHED = "presets/published.toml"
 
@@ -135,9 +134,9 @@ def test_layout_is_read_with_the_designs_hash(outputs: Path) -> None:
 
 def test_resolved_values_build_the_same_design(outputs: Path, tmp_path: Path) -> None:
     shutil.copy(outputs / "resolved.toml", tmp_path / "again.toml")
+    from lumitip_fab.config.load import load
     from lumitip_fab.derive import derive
-    from lumitip_fab.encoding import design_text
-    from lumitip_fab.load import load
+    from lumitip_fab.design.encoding import design_text
 
     again = design_text(derive(load(tmp_path / "again.toml")))
     assert again == (outputs / "design.json").read_text()

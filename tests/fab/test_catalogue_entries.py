@@ -8,9 +8,9 @@ from typing import Any
 
 import pytest
 
+from lumitip_fab.config.load import NAMED, Input
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
-from lumitip_fab.load import NAMED, Input
 
 PARTS = Path(__file__).parents[2] / "design" / "parts"
 FIELDS = ("emitter.led", "receiver.photodetector", "mask.film", "mould.silicone",

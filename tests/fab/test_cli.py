@@ -9,9 +9,8 @@ from xml.etree import ElementTree
 
 import pytest
 
-from lumitip_fab import commands
-from lumitip_fab.cli import main
-from lumitip_fab.schema import schema_text
+from lumitip_fab.cli import commands, main
+from lumitip_fab.config.schema import schema_text
 
 Run = Callable[..., subprocess.CompletedProcess[str]]
 

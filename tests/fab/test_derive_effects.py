@@ -5,11 +5,11 @@ from typing import Any
 
 import pytest
 
+from lumitip_fab.config.load import Input, load
+from lumitip_fab.config.parameters import Parameters
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
-from lumitip_fab.encoding import design_text
-from lumitip_fab.load import Input, load
-from lumitip_fab.parameters import Parameters
+from lumitip_fab.design.encoding import design_text
 
 # Another valid value of every field.
 CHANGES: dict[str, Any] = {

@@ -14,9 +14,9 @@ import numpy as np
 import pytest
 
 from lumitip.grid import hexagonal_grid
-from lumitip_fab.derive.outline import half_width_at
+from lumitip_fab.derive.finger.outline import half_width_at
 from lumitip_fab.design import Design
-from lumitip_fab.encoding import design_text
+from lumitip_fab.design.encoding import design_text
 
 TIP_OF_BOARD_Y_MM = 15.65
 PRESETS = Path(__file__).parents[2] / "design" / "presets"
@@ -160,8 +160,8 @@ def test_every_process_derives_the_same_text() -> None:
     code = (
         "import sys; from pathlib import Path\n"
         "from lumitip_fab.derive import derive\n"
-        "from lumitip_fab.encoding import design_text\n"
-        "from lumitip_fab.load import load\n"
+        "from lumitip_fab.design.encoding import design_text\n"
+        "from lumitip_fab.config.load import load\n"
         "for f in sorted(Path(sys.argv[1]).glob('*.toml')): print(design_text(derive(load(f))))"
     )
 
@@ -181,8 +181,8 @@ def test_every_process_derives_the_same_text() -> None:
 def test_this_process_derives_the_same_text_twice(
     inputs: dict[str, object], designs: dict[str, Design]
 ) -> None:
+    from lumitip_fab.config.load import load
     from lumitip_fab.derive import derive
-    from lumitip_fab.load import load
 
     for name in inputs:
         assert design_text(derive(load(PRESETS / f"{name}.toml"))) == design_text(designs[name])

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from lumitip_fab.design import Box, Design, Nose
-from lumitip_fab.encoding import canonical, design_text, encoded, read_design, settled
+from lumitip_fab.design.encoding import canonical, design_text, encoded, read_design, settled
 from lumitip_fab.errors import FabError, OutputError
 
 PRESETS = ("asymmetric", "dense", "mux16", "published")

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from lumitip_fab import fingerprint
-from lumitip_fab.build import build
-from lumitip_fab.fingerprint import input_hash
+from lumitip_fab.pipeline import fingerprint
+from lumitip_fab.pipeline.build import build
+from lumitip_fab.pipeline.fingerprint import input_hash
 
 
 @pytest.fixture

@@ -6,9 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lumitip_fab import frames
-from lumitip_fab.design import Design
-from lumitip_fab.frames import applied
+from lumitip_fab.design import Design, frames
+from lumitip_fab.design.frames import applied
 
 PRESETS = ("asymmetric", "dense", "mux16", "published")
 

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from lumitip_fab import toolchain
+from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
-from lumitip_fab.graph import EACH, STEPS, argument_names, late_steps, late_task, tasks
-from lumitip_fab.load import load
-from lumitip_fab.made import Made
+from lumitip_fab.pipeline import fingerprint as toolchain
+from lumitip_fab.pipeline.artefact import Made
+from lumitip_fab.pipeline.graph import EACH, STEPS, argument_names, late_steps, late_task, tasks
 
 PACKAGE = toolchain.PACKAGE
 EARLY = {step.name for step in STEPS if not step.reads}

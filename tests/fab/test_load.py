@@ -8,9 +8,9 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from lumitip_fab.config.load import NAMED, Input, load
 from lumitip_fab.derive import derive
 from lumitip_fab.errors import InputError, Problem
-from lumitip_fab.load import NAMED, Input, load
 
 DESIGN = Path(__file__).parents[2] / "design"
 BASE = 'extends = "presets/published.toml"\n'

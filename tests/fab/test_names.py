@@ -12,15 +12,15 @@ from reportlab.pdfbase.pdfmetrics import getFont
 
 from lumitip_fab.boards.spice import simulation
 from lumitip_fab.checks import firmware
+from lumitip_fab.config.load import Input
+from lumitip_fab.config.names import DEVICE_BYTES, DeviceName, Text
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
-from lumitip_fab.design.lettering import LONGEST, PAGE_LETTERS, board_name, page_letters, page_name
+from lumitip_fab.docs.wiring import wiring_files
 from lumitip_fab.firmware.files import firmware_files
-from lumitip_fab.load import Input
 from lumitip_fab.mask.files import mask_files
-from lumitip_fab.names import DEVICE_BYTES, DeviceName, Text
+from lumitip_fab.text import LONGEST, PAGE_LETTERS, board_name, page_letters, page_name
 from lumitip_fab.typeface import BOLD, PLAIN, load_typeface
-from lumitip_fab.wiring.files import wiring_files
 
 NAMES = {
     "Палец левый": ("Палец левый", "Palets levyy"),

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
-from lumitip_fab.derive.letter import BETWEEN, LEAST_MM, least_letter_mm
+from lumitip_fab.derive.finger.outline import BETWEEN, LEAST_MM, least_letter_mm
 from lumitip_fab.errors import InputError
-from lumitip_fab.load import load
 
 PRINTERS = tomllib.loads(
     (Path(__file__).parents[2] / "design/parts/printers.toml").read_text(encoding="utf-8")

@@ -9,7 +9,7 @@ import pytest
 from lumitip import Fingertip
 from lumitip import cli as readout
 from lumitip_fab import cli as fab
-from lumitip_fab.load import load
+from lumitip_fab.config.load import load
 
 ROOT = Path(__file__).parents[2]
 HEADING = "## Against the publication"

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from lumitip_fab.checks.readers import gcode
 from lumitip_fab.cli import main
 from lumitip_fab.errors import BuildError
-from lumitip_fab.slicing import gcode
 from programs import program
 
 CODE = """

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from lumitip_fab.config.source import DEEPEST, LARGEST_FILE_BYTES, flat, read_toml
 from lumitip_fab.errors import InputError
-from lumitip_fab.source import DEEPEST, LARGEST_FILE_BYTES, flat, read_toml
 
 TEXT = '''\
 # a comment with key = 1

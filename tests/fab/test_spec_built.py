@@ -7,11 +7,11 @@ from pathlib import Path
 import pytest
 
 from lumitip_fab.cli import main
+from lumitip_fab.cli.built import built_rows
+from lumitip_fab.config.load import Input
 from lumitip_fab.derive import derive
-from lumitip_fab.encoding import read_design
+from lumitip_fab.design.encoding import read_design
 from lumitip_fab.errors import OutputError
-from lumitip_fab.load import Input
-from lumitip_fab.spec_built import built_rows
 
 
 def test_the_payload_is_both_fingers(outputs: Path) -> None:

@@ -7,16 +7,15 @@ from pathlib import Path
 
 import pytest
 
-from lumitip_fab.artefact import Artefact
 from lumitip_fab.design import Design, Title
-from lumitip_fab.encoding import read_design
-from lumitip_fab.made import Made
-from lumitip_fab.manual.page import html_page, markdown
-from lumitip_fab.manual.text import Facts, manual_text
-from lumitip_fab.markdown_text import as_written
+from lumitip_fab.design.encoding import read_design
+from lumitip_fab.docs.chapters import Facts, manual_text
+from lumitip_fab.docs.sheet import html_page, markdown
+from lumitip_fab.docs.wiring import wiring_files
 from lumitip_fab.mask.files import mask_files
-from lumitip_fab.printing.settings import print_settings
-from lumitip_fab.wiring.files import wiring_files
+from lumitip_fab.parts.settings import print_settings
+from lumitip_fab.pipeline.artefact import Artefact, Made
+from lumitip_fab.text import as_written
 
 NAMES = [
     "left_hand_2",

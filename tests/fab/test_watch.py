@@ -8,7 +8,7 @@ import time
 from pathlib import Path
 
 from lumitip_fab.cli import main
-from lumitip_fab.watch import differences
+from lumitip_fab.cli.watch import differences
 
 
 def test_differences_name_what_changed() -> None:

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from lumitip_fab.firmware.files import firmware_files
-from lumitip_fab.load import load
 from programs import program
 
 HERE = Path(__file__).parent

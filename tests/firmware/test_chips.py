@@ -7,10 +7,10 @@ from typing import Any
 
 import pytest
 
-from lumitip_fab.controller_entry import Controller
+from lumitip_fab.catalogue.controllers import Controller
+from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from lumitip_fab.firmware.files import firmware_files
-from lumitip_fab.load import load
 
 HERE = Path(__file__).parent
 STRICT = ("-std=c++14", "-Wall", "-Wextra", "-Werror")

@@ -9,10 +9,10 @@ from typing import Any
 
 import pytest
 
-from lumitip_fab import toolchain
+from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
-from lumitip_fab.firmware.headers import protocol_header, wiring_sum
-from lumitip_fab.load import load
+from lumitip_fab.firmware.files import protocol_header, wiring_sum
+from lumitip_fab.pipeline import fingerprint as toolchain
 
 STUBS = Path(__file__).parent / "stubs"
 PRESETS = sorted(f.stem for f in (Path(__file__).parents[2] / "design/presets").glob("*.toml"))

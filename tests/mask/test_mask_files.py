@@ -12,16 +12,15 @@ import numpy as np
 import pikepdf
 import pytest
 
-from lumitip_fab.artefact import Artefact
 from lumitip_fab.checks import mask as mask_check
-from lumitip_fab.checks.mask_holes import black_of
-from lumitip_fab.checks.mask_page import read_page
-from lumitip_fab.checks.mask_place import place, registration_of
+from lumitip_fab.checks.mask_holes import black_of, place, registration_of
+from lumitip_fab.checks.readers.mask_page import read_page
+from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
-from lumitip_fab.frames import applied
-from lumitip_fab.load import load
+from lumitip_fab.design.frames import applied
 from lumitip_fab.mask.files import mask_files
+from lumitip_fab.pipeline.artefact import Artefact
 
 PRESETS = ("published", "asymmetric", "dense")
 
@@ -159,7 +158,7 @@ def test_same_bytes_in_any_process(design_dir: Path) -> None:
         "import hashlib, sys\n"
         "from pathlib import Path\n"
         "from lumitip_fab.derive import derive\n"
-        "from lumitip_fab.load import load\n"
+        "from lumitip_fab.config.load import load\n"
         "from lumitip_fab.mask.files import mask_files\n"
         "d = derive(load(Path(sys.argv[1])))\n"
         "for f in d.fingers:\n"

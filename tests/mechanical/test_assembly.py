@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 import trimesh
 
-from lumitip_fab.encoding import read_design
-from lumitip_fab.mechanical import assembly
+from lumitip_fab.design.encoding import read_design
+from lumitip_fab.scenes import assembly
 
 PRESETS = ("published", "asymmetric", "dense")
 

@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
-from lumitip_fab.frames import applied
-from lumitip_fab.load import load
-from lumitip_fab.mechanical.backing import backing, backing_solid
+from lumitip_fab.design.frames import applied
+from lumitip_fab.parts.backing import backing, backing_solid
 
 
 def solid_of(design: Design, which: int = 1) -> object:

@@ -10,7 +10,7 @@ import pytest
 import trimesh
 from build123d import Box, Color, Compound, Cylinder, Pos, Solid
 
-from lumitip_fab.mechanical import export
+from lumitip_fab.parts import export
 
 MAKE = """
 import hashlib, os

@@ -5,9 +5,9 @@ import pytest
 import shapely
 import trimesh
 
-from lumitip_fab.mechanical.hidden import silhouette, view, visible_lines
-from lumitip_fab.mechanical.plain import SECTIONS, block, disc, socket
-from lumitip_fab.mechanical.surface import Mesh
+from lumitip_fab.parts.surface import Mesh
+from lumitip_fab.scenes.drawing import silhouette, view, visible_lines
+from lumitip_fab.scenes.system import SECTIONS, block, disc, socket
 
 CIRCLE = SECTIONS / 2 * np.sin(2 * np.pi / SECTIONS)  # area of a ring of chords, of radius² 1
 

@@ -9,12 +9,13 @@ import numpy as np
 import pytest
 import trimesh
 
+from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
-from lumitip_fab.derive.mould import whole_layers
+from lumitip_fab.derive.making.mould import whole_layers
 from lumitip_fab.design import Design
-from lumitip_fab.encoding import read_design
-from lumitip_fab.load import load
-from lumitip_fab.mechanical import casting, mould, skin
+from lumitip_fab.design.encoding import read_design
+from lumitip_fab.parts import mould, skin
+from lumitip_fab.parts import mould as casting
 
 PRESETS = ("published", "asymmetric", "dense")
 

@@ -9,7 +9,7 @@ import pytest
 import xacro
 import yourdfpy
 
-from lumitip_fab.encoding import read_design
+from lumitip_fab.design.encoding import read_design
 
 FINGERS = ("receiver", "emitter")
 

@@ -1,6 +1,6 @@
 """STEP text does not depend on what the process did before."""
 
-from lumitip_fab.mechanical.step_text import canonical
+from lumitip_fab.parts.export import canonical
 
 HEAD = "#1 = PRODUCT('a','a','',(#2));\n"
 USE = "#5 = NEXT_ASSEMBLY_USAGE_OCCURRENCE({},$);\n"

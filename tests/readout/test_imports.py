@@ -86,4 +86,4 @@ def test_the_scan_of_imports_sees_every_form(tmp_path: Path) -> None:
     seen.parent.mkdir(parents=True)
     seen.write_text(text, encoding="utf-8")
     names = set(_imported(seen, tmp_path))
-    assert {"lumitip_fab.mask", "lumitip_fab.mechanical", "lumitip_fab.boards"} <= names
+    assert {"lumitip_fab.mask", "lumitip_fab.parts", "lumitip_fab.boards"} <= names

@@ -1,20 +1,141 @@
-"""Every file of a carrier: its design has all parts in their places, so that only copper is left
-to find."""
+"""Every file of a board outside the fingers. Its design has all parts in their places, so that
+only the copper is left to do."""
 
-from lumitip_fab.artefact import Artefact
-from lumitip_fab.boards.carrier_legend import with_legend
-from lumitip_fab.boards.carrier_parts import component
-from lumitip_fab.boards.fab.note import carrier_note
+from lumitip_fab.boards.fab.order import carrier_note
 from lumitip_fab.boards.files import model_files
-from lumitip_fab.boards.geometry import pad_at
-from lumitip_fab.boards.model import BoardModel, Component, Net, NetClass, Placement
+from lumitip_fab.boards.footprints import pad_at
+from lumitip_fab.boards.kicad.schematic.carrier import carrier_sheet
+from lumitip_fab.boards.model import (
+    BoardModel,
+    Component,
+    Footprint,
+    Net,
+    NetClass,
+    Pad,
+    Placement,
+    Stroke,
+)
 from lumitip_fab.boards.placement import refuse_overlaps
 from lumitip_fab.boards.pour import pour
-from lumitip_fab.boards.routing import route
-from lumitip_fab.boards.schematic.carrier import carrier_sheet
+from lumitip_fab.boards.route import route
+from lumitip_fab.boards.silk.carrier import with_legend
 from lumitip_fab.boards.verify import sound
-from lumitip_fab.design import Box, Carrier, Fab, Reading, Rules, Stack, Title
-from lumitip_fab.frames import board_page_to_carrier
+from lumitip_fab.design import (
+    Box,
+    Carrier,
+    Device,
+    Fab,
+    Land,
+    Pattern,
+    Reading,
+    Rules,
+    Stack,
+    Title,
+)
+from lumitip_fab.design.frames import board_page_to_carrier
+from lumitip_fab.pipeline.artefact import Artefact
+
+_BAR_MM = 0.3  # at the first contact
+
+
+def component(device: Device, rules: Rules) -> Component:
+    """A device in its place, as board files have parts."""
+    return Component(
+        ref=device.ref, value=device.value, part=device.part, kind=device.kind,
+        footprint=_footprint(device, rules), x_mm=device.x_mm, y_mm=device.y_mm,
+        angle_deg=device.angle_deg, side="back" if device.side == "back" else "front",
+        nets=device.nets,
+        manufacturer=device.manufacturer, lcsc=device.lcsc,
+    )  # fmt: skip
+
+
+def _footprint(device: Device, rules: Rules) -> Footprint:
+    pattern = device.pattern
+    pads = tuple(
+        Pad(
+            land.number, land.x_mm, land.y_mm, land.width_mm, land.height_mm,
+            "circle" if land.round else "rect", land.drill_mm,
+            paste=not land.drill_mm and device.kind != "fiducial",
+        )
+        for land in pattern.lands
+    )  # fmt: skip
+    return Footprint(
+        name=pattern.name,
+        pads=pads,
+        body=pattern.body,
+        courtyard=_courtyard(pattern, rules),
+        height_mm=pattern.height_mm,
+        silk=_silk(device, rules),
+    )
+
+
+def _courtyard(pattern: Pattern, rules: Rules) -> Box:
+    """Body and pads with half the gap that parts keep; bare pads for wires have no body."""
+    lands = pattern.lands
+    pads = Box(
+        min(p.x_mm - p.width_mm / 2 for p in lands), max(p.x_mm + p.width_mm / 2 for p in lands),
+        min(p.y_mm - p.height_mm / 2 for p in lands), max(p.y_mm + p.height_mm / 2 for p in lands),
+    )  # fmt: skip
+    if not pattern.height_mm:
+        return pads.grown(rules.part_gap_mm / 2)
+    body = pattern.body
+    whole = Box(
+        min(pads.x_min_mm, body.x_min_mm), max(pads.x_max_mm, body.x_max_mm),
+        min(pads.y_min_mm, body.y_min_mm), max(pads.y_max_mm, body.y_max_mm),
+    )  # fmt: skip
+    return whole.grown(rules.part_gap_mm / 2)
+
+
+def _silk(device: Device, rules: Rules) -> tuple[Stroke, ...]:
+    body, lands = device.pattern.body, device.pattern.lands
+    if device.kind in ("socket", "header"):
+        return _socket(body, rules)
+    if device.kind in ("regulator", "transistor"):
+        return (_dot(lands[0], rules),)
+    if device.kind == "module":
+        return _module(body, lands, rules)
+    return _sides(body, lands, rules) if device.kind not in ("wires", "fiducial") else ()
+
+
+def _dot(first: Land, rules: Rules) -> Stroke:
+    """A dot beyond lead 1, away from the body."""
+    at = first.x_mm, first.y_mm - first.height_mm / 2 - rules.silk_gap_mm - _BAR_MM
+    return Stroke((at, (at[0] + 0.02, at[1])), _BAR_MM)
+
+
+def _sides(body: Box, lands: tuple[Land, ...], rules: Rules) -> tuple[Stroke, ...]:
+    """A line along each side of the body, between the pads where they are as wide as it."""
+    pen, first = rules.silk_line_mm, lands[0]
+    reach = -first.x_mm - first.width_mm / 2 - rules.silk_gap_mm - pen
+    y = body.y_max_mm + pen / 2
+    if reach <= pen:
+        return ()
+    return tuple(Stroke(((-reach, side), (reach, side)), pen) for side in (y, -y))
+
+
+def _module(body: Box, lands: tuple[Land, ...], rules: Rules) -> tuple[Stroke, ...]:
+    """A line along both long sides, which end before the antenna's end at the board's edge, one
+    along the other end, and a dot beside pad 1."""
+    pen, away = rules.silk_line_mm, rules.silk_gap_mm + _BAR_MM
+    low, high = body.y_min_mm, body.y_max_mm - 2 * away
+    frame = body.grown(pen / 2)
+    left, right, bottom = frame.x_min_mm, frame.x_max_mm, low - pen / 2
+    dot = left - away, lands[0].y_mm
+    return (
+        Stroke(((left, high), (left, bottom), (right, bottom), (right, high)), pen),
+        Stroke((dot, (dot[0] + 0.02, dot[1])), _BAR_MM),
+    )
+
+
+def _socket(body: Box, rules: Rules) -> tuple[Stroke, ...]:
+    """The body's outline, and a bar at its first contact."""
+    pen = rules.silk_line_mm
+    inner = body.grown(-pen / 2)
+    left, right, low, high = inner.x_min_mm, inner.x_max_mm, inner.y_min_mm, inner.y_max_mm
+    around = ((left, low), (right, low), (right, high), (left, high), (left, low))
+    bar = body.x_min_mm - rules.silk_gap_mm - _BAR_MM / 2
+    return Stroke(around, pen), Stroke(((bar, low / 2), (bar, high / 2)), _BAR_MM)
+
 
 GROUND = "GND"
 SIGNAL, SUPPLY = "signal", "supply"

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from lumitip_fab.boards import footprints
 from lumitip_fab.boards.model import Component, Footprint, Net, NetClass, Side
 from lumitip_fab.design import Chip, Finger, Packages, Reading, Rules, Wiring
-from lumitip_fab.values import resistor_code
+from lumitip_fab.text import resistor_code
 
 GROUND = "GND"
 SIGNAL, SUPPLY = "signal", "supply"

@@ -2,30 +2,19 @@
 
 from collections.abc import Callable
 
-from lumitip_fab.artefact import Artefact
-from lumitip_fab.boards.fab.note import assembly_note
-from lumitip_fab.boards.fab.package import layers_of, order_files
+from lumitip_fab.boards.fab.order import assembly_note, layers_of, order_files
+from lumitip_fab.boards.fab.picture import picture_files
+from lumitip_fab.boards.kicad.project import project_files
+from lumitip_fab.boards.kicad.schematic.files import schematic_files
 from lumitip_fab.boards.model import BoardModel
-from lumitip_fab.boards.pcb.files import project_files
-from lumitip_fab.boards.picture.files import picture_files
 from lumitip_fab.boards.placement import place
 from lumitip_fab.boards.pour import pour
-from lumitip_fab.boards.routing import route
-from lumitip_fab.boards.schematic.files import schematic_files
+from lumitip_fab.boards.route import route
 from lumitip_fab.boards.teardrops import with_teardrops
 from lumitip_fab.boards.verify import sound
-from lumitip_fab.design import (
-    Board,
-    Fab,
-    Finger,
-    Packages,
-    Reading,
-    Rules,
-    Stack,
-    Title,
-    Wiring,
-)
-from lumitip_fab.frames import Matrix, board_page_to_sensor
+from lumitip_fab.design import Board, Fab, Finger, Packages, Reading, Rules, Stack, Title, Wiring
+from lumitip_fab.design.frames import Matrix, board_page_to_sensor
+from lumitip_fab.pipeline.artefact import Artefact
 
 
 def board_files(

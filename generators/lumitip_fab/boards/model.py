@@ -1,9 +1,6 @@
-"""What a board is, between its circuit and its files. Types only.
+"""`Board` and what it consists of, between its circuit and its files."""
 
-Lengths are in mm. Places are in the finger's own sensor frame, seen from the front with y up,
-whatever side a part is on; only the writers of files turn the page (`lumitip_fab.frames`).
-"""
-
+import uuid
 from dataclasses import dataclass
 from typing import Literal
 
@@ -190,3 +187,39 @@ class BoardModel:
     placement: Placement
     routing: Routing
     fills: tuple[Fill, ...]
+
+
+_NAMESPACE = uuid.UUID("408b861d-d571-5373-9831-97c1aafb6016")
+
+
+def stable_uuid(*parts: str) -> str:
+    """The UUID of a thing by its name, such as `stable_uuid("receiver", "symbol", "U1")`."""
+    return str(uuid.uuid5(_NAMESPACE, "/".join(parts)))
+
+
+THERMAL_GAP_MM = 0.25
+"""Pour to a pad of its own net."""
+THERMAL_SPOKE_MM = 0.3
+"""Width of the bridges that join such a pad to the pour."""
+MIN_WIDTH_MM = 0.2
+"""The narrowest piece of pour."""
+CLEARANCE_MM = 0.2
+"""Pour to copper of other nets; more where a net class asks for more."""
+LEAST_SPOKES = 1
+"""Bridges that such a pad has at least: 0.3 mm of copper carry far more than any pad here needs."""
+
+
+MASK_MM = 0.05
+"""Opening round a pad, each side; vias are covered."""
+
+
+def fiducial_margin_mm(component: Component) -> float:
+    """Clear ring round a fiducial, for cameras: half its diameter more; 0 of other parts."""
+    if component.kind != "fiducial":
+        return 0.0
+    return component.footprint.pads[0].width_mm / 2
+
+
+def opening_mm(component: Component) -> float:
+    """How far the mask stays from a part's pads."""
+    return fiducial_margin_mm(component) or MASK_MM

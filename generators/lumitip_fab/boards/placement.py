@@ -1,13 +1,14 @@
-"""Where the parts of a board are: at the places that the design gives, and beside them."""
+"""Where the parts of a board are, and which way round each LED of a string lies."""
 
 import dataclasses
+import math
+from collections.abc import Sequence
 
 from lumitip_fab.boards import spots
 from lumitip_fab.boards.circuit import GROUND, circuit
-from lumitip_fab.boards.geometry import courtyard, pad_at
-from lumitip_fab.boards.legend import with_legend
+from lumitip_fab.boards.footprints import courtyard, pad_at
 from lumitip_fab.boards.model import Component, Placement, Side
-from lumitip_fab.boards.polarity import string_angles
+from lumitip_fab.boards.silk.legend import with_legend
 from lumitip_fab.design import (
     Board,
     Box,
@@ -22,6 +23,34 @@ from lumitip_fab.design import (
     Wiring,
 )
 from lumitip_fab.errors import BuildError
+
+
+def string_angles(
+    chain: Sequence[Component], start: Point, anode: str, choices: Sequence[float]
+) -> tuple[float, ...]:
+    """The angles with the shortest links in all, found place by place along the string.
+
+    Args:
+        chain: LEDs in the order in which the current passes them.
+        start: pad that the first LED is linked to.
+        anode: number of the pad that the current enters by.
+        choices: angles that each LED may have (degrees).
+    """
+    cathode = "1" if anode == "2" else "2"
+    best: dict[Point, tuple[float, tuple[float, ...]]] = {start: (0.0, ())}
+    for led in chain:
+        reached: dict[Point, tuple[float, tuple[float, ...]]] = {}
+        for angle in choices:
+            turned = dataclasses.replace(led, angle_deg=angle)
+            into = pad_at(turned, anode)
+            length, angles = min(
+                (round(so_far + math.dist(left, into), 6), told)
+                for left, (so_far, told) in best.items()
+            )
+            reached[pad_at(turned, cathode)] = length, (*angles, angle)
+        best = reached
+    return min(best.values())[1]
+
 
 CORNER_MM = 0.5
 PASSIVE_GAP_MM = 0.6

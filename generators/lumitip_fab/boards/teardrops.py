@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import shapely
 
-from lumitip_fab.boards.geometry import PlacedPad, placed_pads
+from lumitip_fab.boards.footprints import PlacedPad, placed_pads
 from lumitip_fab.boards.model import SIDES, Placement, Routing, Side, Track
 
 BEYOND_MM = (0.15, 0.3, 0.45)  # the edge of pad or via: where each piece ends

@@ -10,7 +10,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from lumitip_fab.boards.geometry import PlacedPad, placed_pads
+from lumitip_fab.boards.footprints import PlacedPad, placed_pads
 from lumitip_fab.boards.model import SIDES, BoardModel, Placement, Side
 from lumitip_fab.design import Point
 from lumitip_fab.errors import BuildError

@@ -11,12 +11,12 @@ from pathlib import Path
 import numpy as np
 
 from lumitip_fab.checks import exploded, overlap
+from lumitip_fab.checks.readers.scene import Node, Scene, read_scene
+from lumitip_fab.checks.readers.solids import Vectors
 from lumitip_fab.checks.result import Measurement, unreadable
-from lumitip_fab.checks.scene import Node, Scene, read_scene
-from lumitip_fab.checks.solids import Vectors
 from lumitip_fab.design import Design, Finger
+from lumitip_fab.design.frames import applied, mount_to_sensor, translation
 from lumitip_fab.errors import OutputError
-from lumitip_fab.frames import applied, mount_to_sensor, translation
 
 READS = (
     "assembly/assembly.glb", "assembly/assembly.step", "assembly/*_exploded.svg",

@@ -7,10 +7,10 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from lumitip_fab.checks.board_read import Read
-from lumitip_fab.checks.kicad_board import Copper
+from lumitip_fab.checks.readers.kicad_board import Copper
 from lumitip_fab.checks.result import Measurement
 from lumitip_fab.design import Box, Flexible
-from lumitip_fab.frames import on_board_page
+from lumitip_fab.design.frames import on_board_page
 
 PLY_MM = 0.001
 PLACE_MM = 0.01

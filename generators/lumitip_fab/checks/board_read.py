@@ -13,12 +13,12 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
-from lumitip_fab.checks.copper import Clusters
-from lumitip_fab.checks.kicad_board import KicadBoard, Part, Terminal, read_board
+from lumitip_fab.checks.readers.copper import Clusters
+from lumitip_fab.checks.readers.kicad_board import KicadBoard, Part, Terminal, read_board
 from lumitip_fab.checks.result import Measurement
 from lumitip_fab.design import Carrier, Design, Finger, Point
+from lumitip_fab.design.frames import applied, board_page_to_sensor
 from lumitip_fab.errors import OutputError
-from lumitip_fab.frames import applied, board_page_to_sensor
 
 _VALUE = re.compile(r"(\d+)([RKM])(\d*)")
 _CLOSED_MM = 1e-5  # ends of lines nearer than this meet

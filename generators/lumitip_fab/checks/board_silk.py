@@ -11,8 +11,8 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from lumitip_fab.checks.board_read import Read
-from lumitip_fab.checks.kicad_board import Part
-from lumitip_fab.checks.kicad_silk import Line, Word
+from lumitip_fab.checks.readers.kicad_board import Part
+from lumitip_fab.checks.readers.kicad_silk import Line, Word
 from lumitip_fab.checks.result import Measurement
 
 CELL_SHARE = 0.3  # least of a cell's outline that is drawn: pads, parts and holes interrupt it

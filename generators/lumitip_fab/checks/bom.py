@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 
 from lumitip_fab.checks.cables import read_list
+from lumitip_fab.checks.readers.stl import corners_mm
+from lumitip_fab.checks.readers.tables import table
 from lumitip_fab.checks.result import Measurement, unreadable
-from lumitip_fab.checks.stl import corners_mm
-from lumitip_fab.checks.tables import table
 from lumitip_fab.design import Design
 from lumitip_fab.errors import OutputError
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree
 
-from lumitip_fab.checks.tables import table
+from lumitip_fab.checks.readers.tables import table
 from lumitip_fab.errors import OutputError
 
 _SVG = "{http://www.w3.org/2000/svg}"

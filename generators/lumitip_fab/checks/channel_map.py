@@ -10,8 +10,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from lumitip_fab.checks.copper import Clusters
-from lumitip_fab.checks.kicad_board import KicadBoard, Part, Terminal, read_board
+from lumitip_fab.checks.readers.copper import Clusters
+from lumitip_fab.checks.readers.kicad_board import KicadBoard, Part, Terminal, read_board
 from lumitip_fab.errors import OutputError
 
 ChannelMap = dict[str, dict[str, str]]

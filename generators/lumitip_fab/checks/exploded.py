@@ -7,13 +7,13 @@ from xml.etree import ElementTree as XmlTree
 
 import numpy as np
 
-from lumitip_fab.checks import solids
-from lumitip_fab.checks.drawing import Drawing, margin_mm, read_drawing
+from lumitip_fab.checks.readers import solids
+from lumitip_fab.checks.readers.drawing import Drawing, margin_mm, read_drawing
+from lumitip_fab.checks.readers.solids import Vectors
 from lumitip_fab.checks.result import Measurement, unreadable
-from lumitip_fab.checks.solids import Vectors
 from lumitip_fab.design import Box, Design, Finger
+from lumitip_fab.design.frames import backing_bed_to_sensor, mount_to_sensor
 from lumitip_fab.errors import OutputError
-from lumitip_fab.frames import backing_bed_to_sensor, mount_to_sensor
 
 NAMES = ("assembly.drawing", "assembly.drawing_page", "assembly.drawing_labels")
 SIZE_MM = 0.1

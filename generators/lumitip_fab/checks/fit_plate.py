@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 import shapely
 
-from lumitip_fab.checks import packages, solids
+from lumitip_fab.checks import packages
 from lumitip_fab.checks.printed import circles, farthest, holes_at
+from lumitip_fab.checks.readers import solids
+from lumitip_fab.checks.readers.solids import Vectors, cast, section
 from lumitip_fab.checks.result import Measurement, unreadable
-from lumitip_fab.checks.solids import Vectors, cast, section
 from lumitip_fab.design import Design, Point
 from lumitip_fab.errors import OutputError
 

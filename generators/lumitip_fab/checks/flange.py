@@ -11,17 +11,16 @@ from typing import Any
 import numpy as np
 import shapely
 
-from lumitip_fab.checks import flange_board, overlap, packages, solids
+from lumitip_fab.checks import flange_board, overlap, packages
 from lumitip_fab.checks.board_read import read_carrier
-from lumitip_fab.checks.fasteners import round_thread
-from lumitip_fab.checks.flange_read import REACH_MM, Stacked, heights, hole_walls
-from lumitip_fab.checks.flange_strength import measure_strength
-from lumitip_fab.checks.printed import circles, holes_at, islands_at, room
+from lumitip_fab.checks.flange_read import REACH_MM, Stacked, heights, hole_walls, measure_strength
+from lumitip_fab.checks.printed import circles, holes_at, islands_at, room, round_thread
+from lumitip_fab.checks.readers import solids
+from lumitip_fab.checks.readers.solids import walls
 from lumitip_fab.checks.result import Measurement, unreadable
-from lumitip_fab.checks.walls import walls
 from lumitip_fab.design import Design, Flange
+from lumitip_fab.design.frames import flange_beds
 from lumitip_fab.errors import OutputError
-from lumitip_fab.frames import flange_beds
 
 READS = ("flange/*.stl", "flange/*.3mf", "flange/*.step", "boards/flange/*.kicad_pcb")
 

@@ -7,10 +7,10 @@ import manifold3d
 import numpy as np
 import shapely
 
-from lumitip_fab.checks import overlap, solids
-from lumitip_fab.checks.fasteners import round_head, round_thread
+from lumitip_fab.checks import overlap
 from lumitip_fab.checks.flange_read import CONTACTS, REACH_MM, Stacked, heights
-from lumitip_fab.checks.printed import circles, farthest, holes_at, room
+from lumitip_fab.checks.printed import circles, farthest, holes_at, room, round_head, round_thread
+from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.result import Measurement
 from lumitip_fab.design import Device
 

@@ -9,10 +9,10 @@ import shapely
 from lumitip_fab.checks import overlap
 from lumitip_fab.checks.plate import DEPTH_MM, floor_points, front_z
 from lumitip_fab.checks.printed import Printed, circles, holes_at
+from lumitip_fab.checks.readers.solids import Vectors, cast, section
 from lumitip_fab.checks.result import Measurement
-from lumitip_fab.checks.solids import Vectors, cast, section
 from lumitip_fab.design import Interface
-from lumitip_fab.frames import applied, mount_to_sensor
+from lumitip_fab.design.frames import applied, mount_to_sensor
 
 HOLE_MM = 0.05
 GLUE_MM = 0.05

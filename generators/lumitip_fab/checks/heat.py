@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-from lumitip_fab.checks.manual_read import read_html
+from lumitip_fab.checks.readers.manual import read_html
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.design import Design
 from lumitip_fab.errors import OutputError

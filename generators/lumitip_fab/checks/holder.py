@@ -12,15 +12,23 @@ from typing import Any
 import numpy as np
 import shapely
 
-from lumitip_fab.checks import packages, solids
+from lumitip_fab.checks import packages
 from lumitip_fab.checks.board_read import ReadCarrier, read_carrier
-from lumitip_fab.checks.fasteners import Figures, round_nut, round_thread
-from lumitip_fab.checks.printed import circles, farthest, holes_at, room
+from lumitip_fab.checks.printed import (
+    Figures,
+    circles,
+    farthest,
+    holes_at,
+    room,
+    round_nut,
+    round_thread,
+)
+from lumitip_fab.checks.readers import solids
+from lumitip_fab.checks.readers.solids import walls
 from lumitip_fab.checks.result import Measurement, unreadable
-from lumitip_fab.checks.walls import walls
 from lumitip_fab.design import Design, Fastener, Holder
+from lumitip_fab.design.frames import holder_bed_to_carrier, rotation_y, translation
 from lumitip_fab.errors import OutputError
-from lumitip_fab.frames import holder_bed_to_carrier, rotation_y, translation
 
 READS = ("holder/*.stl", "holder/*.3mf", "holder/*.step", "boards/*.kicad_pcb")
 

@@ -6,12 +6,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from lumitip_fab import manifest
+from lumitip_fab.checks.readers.stl import corners_mm
 from lumitip_fab.checks.result import Measurement, unreadable
-from lumitip_fab.checks.stl import corners_mm
 from lumitip_fab.design import Design
+from lumitip_fab.design.frames import Matrix, applied
 from lumitip_fab.errors import OutputError
-from lumitip_fab.frames import Matrix, applied
+from lumitip_fab.pipeline import manifest
 
 Vector = NDArray[np.float64]
 

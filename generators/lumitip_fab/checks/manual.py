@@ -4,12 +4,12 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-from lumitip_fab.checks.manual_read import Chapter, Manual, read_html, read_pdf
+from lumitip_fab.checks.readers.manual import Chapter, Manual, read_html, read_pdf
+from lumitip_fab.checks.readers.tables import table
 from lumitip_fab.checks.result import Measurement, unreadable
-from lumitip_fab.checks.tables import table
 from lumitip_fab.design import Design
-from lumitip_fab.design.lettering import page_letters
 from lumitip_fab.errors import OutputError
+from lumitip_fab.text import page_letters
 
 READS = (
     "manual/*", "assembly/*.svg", "bom.csv", "boards/*/*.png", "mask/*",

@@ -7,8 +7,8 @@ import numpy as np
 import shapely
 
 from lumitip_fab.checks.mask_flaps import Flap, side_mm
-from lumitip_fab.checks.mask_page import Page, PageError, Points
-from lumitip_fab.checks.mask_place import Placed
+from lumitip_fab.checks.mask_holes import Placed
+from lumitip_fab.checks.readers.mask_page import Page, PageError, Points
 from lumitip_fab.checks.result import Measurement
 from lumitip_fab.design import Design
 

@@ -11,7 +11,7 @@ import ezdxf
 import numpy as np
 from ezdxf import units
 
-from lumitip_fab.checks.mask_page import PageError, Points, Subpath
+from lumitip_fab.checks.readers.mask_page import PageError, Points, Subpath
 from lumitip_fab.checks.result import MALFORMED
 
 _SVG = "{http://www.w3.org/2000/svg}"

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from lumitip_fab.checks.mask_page import PageError, Points
+from lumitip_fab.checks.readers.mask_page import PageError, Points
 from lumitip_fab.checks.result import Measurement
 from lumitip_fab.design import Box, Design, Finger
 

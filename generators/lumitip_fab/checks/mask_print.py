@@ -7,9 +7,8 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from lumitip_fab.checks.mask_holes import Black, apart, edges_apart
-from lumitip_fab.checks.mask_page import Page, Painted, Points
-from lumitip_fab.checks.mask_place import Placed
+from lumitip_fab.checks.mask_holes import Black, Placed, apart, edges_apart
+from lumitip_fab.checks.readers.mask_page import Page, Painted, Points
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.design import Box, Design, Finger, Mask
 

@@ -13,9 +13,9 @@ from typing import Any
 
 from lumitip_fab.checks.result import Measurement
 from lumitip_fab.design import Design
-from lumitip_fab.encoding import canonical
-from lumitip_fab.manifest import sha256_of, write_file
-from lumitip_fab.toolchain import PACKAGE, installed_hash, whole_code_hash
+from lumitip_fab.design.encoding import canonical
+from lumitip_fab.pipeline.fingerprint import PACKAGE, installed_hash, whole_code_hash
+from lumitip_fab.pipeline.manifest import sha256_of, write_file
 
 _FIGURES = ("measured", "low", "high")
 

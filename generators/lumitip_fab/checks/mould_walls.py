@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import shapely
 
-from lumitip_fab.checks import solids
+from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.result import Measurement
 from lumitip_fab.design import Box, Design
 

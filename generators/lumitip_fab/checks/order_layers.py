@@ -9,8 +9,8 @@ from shapely import affinity, box
 from shapely.geometry.base import BaseGeometry
 
 from lumitip_fab.checks.board_read import ReadBoard
-from lumitip_fab.checks.gerber_read import drilled, gerber_area
-from lumitip_fab.checks.kicad_silk import Word
+from lumitip_fab.checks.readers.gerber import drilled, gerber_area
+from lumitip_fab.checks.readers.kicad_silk import Word
 from lumitip_fab.checks.result import Measurement
 from lumitip_fab.design import Box
 

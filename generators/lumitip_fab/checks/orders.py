@@ -10,11 +10,10 @@ from pathlib import Path
 import numpy as np
 
 from lumitip_fab.checks.board_read import Read, ReadCarrier, read_all
-from lumitip_fab.checks.kicad_board import Part
 from lumitip_fab.checks.order_layers import Painted, measure_layers, measure_stiffener
-from lumitip_fab.checks.packed import unpacked
+from lumitip_fab.checks.readers.kicad_board import Part
+from lumitip_fab.checks.readers.tables import table, unpacked
 from lumitip_fab.checks.result import Measurement, unreadable
-from lumitip_fab.checks.tables import table
 from lumitip_fab.design import Design, Fab, Flexible
 
 READS = ("boards/*.kicad_pcb", "boards/*.zip", "boards/*.csv")

@@ -5,8 +5,8 @@ from typing import Any
 import manifold3d
 import numpy as np
 
+from lumitip_fab.design.frames import Matrix
 from lumitip_fab.errors import OutputError
-from lumitip_fab.frames import Matrix
 
 Solid = Any  # manifold3d.Manifold
 

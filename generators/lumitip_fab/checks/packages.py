@@ -8,10 +8,10 @@ from xml.etree import ElementTree
 import numpy as np
 from scipy.spatial import cKDTree
 
-from lumitip_fab.checks.packed import unpacked
 from lumitip_fab.checks.printed import Printed
+from lumitip_fab.checks.readers.solids import Vectors
+from lumitip_fab.checks.readers.tables import unpacked
 from lumitip_fab.checks.result import Measurement, unreadable
-from lumitip_fab.checks.solids import Vectors
 
 AGREE_MM = 0.02
 _NAMESPACE = "{http://schemas.microsoft.com/3dmanufacturing/core/2015/02}"

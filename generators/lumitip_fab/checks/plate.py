@@ -7,10 +7,10 @@ import numpy as np
 import shapely
 
 from lumitip_fab.checks.printed import Printed, circles, farthest, islands_at
+from lumitip_fab.checks.readers.solids import Vectors, cast, inside, section
 from lumitip_fab.checks.result import Measurement
-from lumitip_fab.checks.solids import Vectors, cast, inside, section
 from lumitip_fab.design import Box
-from lumitip_fab.frames import applied, mount_to_sensor
+from lumitip_fab.design.frames import applied, mount_to_sensor
 
 GAP_MM = (0.10, 0.30)
 OUTLINE_MM = 0.05

@@ -1,4 +1,4 @@
-"""`Printed`: a backing's mesh in both of its frames, with what it should be."""
+"""`Printed`: a printed part's mesh in both of its frames, and the room round its fasteners."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 import shapely
 
+from lumitip_fab.checks.readers.solids import Vectors, section
 from lumitip_fab.checks.result import Measurement
-from lumitip_fab.checks.solids import Vectors, section
-from lumitip_fab.design import Design, Finger, Point
-from lumitip_fab.frames import Matrix
+from lumitip_fab.design import Design, Fastener, Finger, Point
+from lumitip_fab.design.frames import Matrix
 
 _LEAST_MM2 = 1e-6  # smaller rings of a section are where it grazes an edge
 
@@ -92,3 +92,30 @@ def islands_at(mesh: Any, z_mm: float, area_mm2: float) -> list[Any]:
     """Outlines of the small pieces of a mesh's section."""
     parts = shapely.get_parts(section(mesh, z_mm))
     return [p.exterior for p in parts if p.geom_type == "Polygon" and p.area < area_mm2]
+
+
+ROUND_MM = 0.05  # chords of a mesh, and an axis that is a little off
+HEAD_MM = (0.1, 0.8)  # round a countersunk head
+NUT_MM = (0.05, 0.45)  # round a nut, across flats: it goes in, and does not turn
+Figures = tuple[float, float, float, str]
+"""Measured clearance, least, most (mm), and what it is of."""
+
+
+def round_thread(found_mm: Vectors, of: Fastener, fit_mm: float) -> Figures:
+    """Clearance of a thread, less the printer's fit on both sides."""
+    fine, coarse = of.hole_mm
+    low, high = fine - of.thread_mm - ROUND_MM, coarse - of.thread_mm + ROUND_MM
+    clear = found_mm - of.thread_mm - 2 * fit_mm
+    return farthest(clear, (low + high) / 2), low, high, f"round {of.name} of {of.thread_mm:g} mm"
+
+
+def round_head(found_mm: Vectors, of: Fastener) -> Figures:
+    """Clearance of a countersunk head, whose countersink no fit changes."""
+    clear = farthest(found_mm - of.countersunk_mm, sum(HEAD_MM) / 2)
+    return clear, *HEAD_MM, f"round heads of {of.countersunk_mm:g} mm, {of.name}"
+
+
+def round_nut(found_mm: Vectors, of: Fastener, fit_mm: float) -> Figures:
+    """Clearance of a nut across flats, less the printer's fit on both sides."""
+    clear = farthest(found_mm - of.nut_mm - 2 * fit_mm, sum(NUT_MM) / 2)
+    return clear, *NUT_MM, f"round nuts of {of.nut_mm:g} mm across flats, {of.name}"

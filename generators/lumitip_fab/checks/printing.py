@@ -7,7 +7,7 @@ from pathlib import Path
 
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.design import Design
-from lumitip_fab.design.slicing import Filament
+from lumitip_fab.design.making import Filament
 
 READS = ("print/*",)
 _NOTE = "print/printing.md"

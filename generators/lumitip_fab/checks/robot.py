@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import trimesh
 
+from lumitip_fab.checks.readers.solids import Vectors, moved
+from lumitip_fab.checks.readers.urdf import Link, Model, read_macros, read_urdf
 from lumitip_fab.checks.result import Measurement, unreadable
-from lumitip_fab.checks.solids import Vectors, moved
-from lumitip_fab.checks.urdf_read import Link, Model, read_macros, read_urdf
 from lumitip_fab.design import Design, Finger
 from lumitip_fab.errors import OutputError
 

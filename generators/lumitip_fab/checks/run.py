@@ -15,7 +15,7 @@ from types import ModuleType
 from lumitip_fab.checks.memory import Memory, Watched, reads
 from lumitip_fab.checks.result import Measurement
 from lumitip_fab.design import Design
-from lumitip_fab.encoding import read_design
+from lumitip_fab.design.encoding import read_design
 
 MODULES = (
     "manifest", "layout", "firmware", "mask", "backing", "fit_plate", "mould", "assembly", "board",

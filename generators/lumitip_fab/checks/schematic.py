@@ -4,8 +4,8 @@ from collections import defaultdict
 from collections.abc import Iterator
 from pathlib import Path
 
-from lumitip_fab.checks.kicad_board import KicadBoard, read_board
-from lumitip_fab.checks.kicad_sheet import Sheet, read_sheet
+from lumitip_fab.checks.readers.kicad_board import KicadBoard, read_board
+from lumitip_fab.checks.readers.kicad_sheet import Sheet, read_sheet
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.design import Design
 from lumitip_fab.errors import OutputError

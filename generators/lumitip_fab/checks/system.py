@@ -12,14 +12,14 @@ from xml.etree import ElementTree as XmlTree
 
 import numpy as np
 
-from lumitip_fab.checks import overlap, solids
-from lumitip_fab.checks.drawing import Drawing, margin_mm, read_drawing
+from lumitip_fab.checks import overlap
+from lumitip_fab.checks.readers import solids
+from lumitip_fab.checks.readers.drawing import Drawing, margin_mm, read_drawing
+from lumitip_fab.checks.readers.scene import Scene, read_scene
+from lumitip_fab.checks.readers.solids import Vectors
 from lumitip_fab.checks.result import Measurement, unreadable
-from lumitip_fab.checks.scene import Scene, read_scene
-from lumitip_fab.checks.solids import Vectors
 from lumitip_fab.design import Carrier, Design
-from lumitip_fab.errors import OutputError
-from lumitip_fab.frames import (
+from lumitip_fab.design.frames import (
     Matrix,
     applied,
     carrier_to_flange,
@@ -29,6 +29,7 @@ from lumitip_fab.frames import (
     holder_bed_to_carrier,
     holder_to_tool,
 )
+from lumitip_fab.errors import OutputError
 
 READS = ("assembly/system.*", "assembly/assembly.glb", "flange/*.stl", "holder/*.stl")
 _FILE, _DRAWING = "assembly/system.glb", "assembly/system.svg"

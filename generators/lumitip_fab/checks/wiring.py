@@ -10,12 +10,12 @@ import numpy as np
 
 from lumitip_fab.checks.cables import Row, note_row, read_diagram, read_list, read_note
 from lumitip_fab.checks.channel_map import PINOUTS
-from lumitip_fab.checks.kicad_board import KicadBoard, read_board
+from lumitip_fab.checks.readers.kicad_board import KicadBoard, read_board
 from lumitip_fab.checks.result import Measurement, unreadable
-from lumitip_fab.colours import INKS, codes_of
 from lumitip_fab.design import Design
+from lumitip_fab.design.cabling import INKS, codes_of
+from lumitip_fab.design.frames import applied, board_page_to_sensor
 from lumitip_fab.errors import OutputError
-from lumitip_fab.frames import applied, board_page_to_sensor
 
 READS = ("wiring/*", "boards/*.kicad_pcb", "firmware/layout.h")
 _LIST, _NOTE, _DIAGRAM = "wiring/cables.csv", "wiring/cables.md", "wiring/wiring.svg"

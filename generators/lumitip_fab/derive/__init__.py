@@ -1,8 +1,8 @@
 """Parameters to `Design`: automatic values are chosen, then each quantity is derived once."""
 
+from lumitip_fab.config.load import Input
 from lumitip_fab.derive.auto.resolve import Resolved, resolve
 from lumitip_fab.design import Design
-from lumitip_fab.load import Input
 
 
 def derive(given: Input) -> Design:

@@ -1,7 +1,7 @@
 """Collects everything that is impossible together, so that all of it is reported at once."""
 
+from lumitip_fab.config.load import Input
 from lumitip_fab.errors import InputError, Problem
-from lumitip_fab.load import Input
 
 
 class Faults:

@@ -3,29 +3,35 @@
 import hashlib
 
 from lumitip.layout import Layout, Optics
-from lumitip_fab.derive import boards, closing, mask, mould, mount, outline, wiring
-from lumitip_fab.derive.breakout import derive_breakout
-from lumitip_fab.derive.cabling import Boards, derive_cabling
-from lumitip_fab.derive.capacitors import refuse_receiver_capacitor
-from lumitip_fab.derive.cells import derive_cells
-from lumitip_fab.derive.electrical import derive_electrical
-from lumitip_fab.derive.fasteners import derive_fasteners
+from lumitip_fab.config.load import Input
+from lumitip_fab.derive.boards import boards
+from lumitip_fab.derive.boards.breakout import derive_breakout
+from lumitip_fab.derive.boards.flange import derive_flange
+from lumitip_fab.derive.boards.packages import derive_fabs, derive_packages, derive_rules
 from lumitip_fab.derive.faults import Faults
-from lumitip_fab.derive.fit_plate import derive_fit_plate
-from lumitip_fab.derive.flange import derive_flange
-from lumitip_fab.derive.flange_body import derive_flange_body
-from lumitip_fab.derive.heat import derive_heat
-from lumitip_fab.derive.holder import derive_holder
-from lumitip_fab.derive.interface import derive_interfaces
-from lumitip_fab.derive.packages import derive_fabs, derive_packages, derive_rules
-from lumitip_fab.derive.purchase import derive_purchase
-from lumitip_fab.derive.slicing import derive_slicing
-from lumitip_fab.derive.stack import derive_printing, derive_stack, derive_tip
-from lumitip_fab.derive.system import derive_system
-from lumitip_fab.derive.weights import derive_densities
+from lumitip_fab.derive.finger import outline
+from lumitip_fab.derive.finger.cells import derive_cells
+from lumitip_fab.derive.finger.interface import derive_interfaces
+from lumitip_fab.derive.finger.stack import (
+    derive_densities,
+    derive_printing,
+    derive_stack,
+    derive_tip,
+)
+from lumitip_fab.derive.making import mask, mould
+from lumitip_fab.derive.making.fit_plate import derive_fit_plate
+from lumitip_fab.derive.making.printing import derive_heat, derive_slicing
+from lumitip_fab.derive.making.purchase import derive_purchase
+from lumitip_fab.derive.mount import mount
+from lumitip_fab.derive.mount.fasteners import derive_fasteners
+from lumitip_fab.derive.mount.flange_body import derive_flange_body, derive_system
+from lumitip_fab.derive.mount.holder import derive_holder
+from lumitip_fab.derive.wiring import wiring
+from lumitip_fab.derive.wiring.cabling import Boards, derive_cabling
+from lumitip_fab.derive.wiring.electrical import derive_electrical
+from lumitip_fab.derive.wiring.ratings import refuse_receiver_capacitor
 from lumitip_fab.design import Controller, Design, Grid, Title
-from lumitip_fab.encoding import canonical, settled
-from lumitip_fab.load import Input
+from lumitip_fab.design.encoding import canonical, settled
 
 
 def derive_once(given: Input, faults: Faults) -> Design:
@@ -60,7 +66,7 @@ def derive_once(given: Input, faults: Faults) -> Design:
     sheet = mask.derive_mask(given, silhouette, plan, faults)
     rules = derive_rules(given, faults)
     refuse_receiver_capacitor(given, faults)
-    meeting = closing.derive_closing(silhouette, stack, coupling, casting, faults)
+    meeting = mount.derive_closing(silhouette, stack, coupling, casting, faults)
     breakout = derive_breakout(given, muxing, faults)
     holders = derive_holder(given, breakout, faults)
     flange = derive_flange(given, strings, muxing, faults)

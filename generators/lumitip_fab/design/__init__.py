@@ -30,20 +30,23 @@ from lumitip_fab.design.cabling import Cable, Cabling, Terminal, Wire
 from lumitip_fab.design.carriers import Carrier, Device, Holder, Land, Note, Pattern
 from lumitip_fab.design.choices import Choice
 from lumitip_fab.design.electrical import Electrical
-from lumitip_fab.design.fasteners import Fastener
 from lumitip_fab.design.fit_plate import FitPlate, Fits
-from lumitip_fab.design.flange import Flange, ToolContact
-from lumitip_fab.design.flex import Interface
-from lumitip_fab.design.gripper import Closing, Mount, Nose
-from lumitip_fab.design.heat import HeatedPart, HeatStep
-from lumitip_fab.design.lettering import board_name, page_name
-from lumitip_fab.design.making import Letter, Mask, Mould, Printing
-from lumitip_fab.design.ordering import Fab
-from lumitip_fab.design.purchase import Bought, PartPrice, Purchase
+from lumitip_fab.design.making import (
+    Densities,
+    Filament,
+    HeatedPart,
+    HeatStep,
+    Interface,
+    Letter,
+    Mask,
+    Mould,
+    Printing,
+    Slicing,
+)
+from lumitip_fab.design.mount import Closing, Fastener, Flange, Mount, Nose, System, ToolContact
+from lumitip_fab.design.ordering import Bought, Fab, PartPrice, Purchase
 from lumitip_fab.design.shape import Box, Cubic, Outline, Point, Stack, Tip
-from lumitip_fab.design.slicing import Filament, Slicing
-from lumitip_fab.design.system import System
-from lumitip_fab.design.weights import Densities
+from lumitip_fab.text import board_name, page_name
 
 __all__ = [
     "Board",

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 
-from lumitip_fab.design.gripper import Mount, Nose
+from lumitip_fab.design.mount import Mount, Nose
 from lumitip_fab.design.shape import Box, Point
 
 

@@ -1,9 +1,6 @@
-"""What is printed, cast and wrapped, and with what.
+"""How the parts are made: printed, cast, wrapped and heated, with their materials and masses."""
 
-Every length is in mm and in the sensor frame of the finger it belongs to, unless it says
-otherwise.
-"""
-
+import re
 from dataclasses import dataclass
 
 from lumitip_fab.design.shape import Box, Point
@@ -83,3 +80,146 @@ class Printing:
     line_mm: float
     layer_mm: float
     bed_mm: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Interface:
+    """The rigid part between a bendable plate and the gripper, glued to the plate's back.
+
+    Its front is a pad on the plate's back, with a rim that stands in a groove of the plate. Seen
+    from the front, rim and groove are a U that is open at the gripper end:
+
+        ╭───────────╮  groove.y_max
+        │ ╭───────╮ │
+        │ │  pad  │ │
+        │ │       │ │
+          notch       gripper end
+    """
+
+    groove: Box
+    """Outer edge of the groove, from the gripper end."""
+    groove_mm: float
+    groove_depth_mm: float
+    glue_mm: float
+    """Gap that is wanted between rim and groove: on each side, and at the groove's floor."""
+    gap_mm: float
+    """On each side as drawn: the printer's fit is in it, by which the rim is narrower."""
+    pad_mm: float
+    """Thickness of the pad."""
+    thread_hole_mm: float
+    """Holes through the plate, behind those of the board, through which it is tied on."""
+    letter: Letter
+    """On the plate's back: the frame is the mount's, without its tilt."""
+
+    @property
+    def box(self) -> Box:
+        """The pad, as wide as the rim's outer edge."""
+        g, gap = self.groove, self.gap_mm
+        return Box(g.x_min_mm + gap, g.x_max_mm - gap, g.y_min_mm, g.y_max_mm - gap)
+
+    @property
+    def rim_mm(self) -> float:
+        """Width of the rim."""
+        return self.groove_mm - 2 * self.gap_mm
+
+    @property
+    def rim_height_mm(self) -> float:
+        """How far the rim stands out of the pad."""
+        return self.groove_depth_mm - self.glue_mm
+
+
+@dataclass(frozen=True)
+class HeatedPart:
+    """A part that a step heats."""
+
+    name: str
+    """`"backing"`, `"board"`, `"film"`, `"interface"`, `"mould"` or `"silicone"`."""
+    material: str
+    limit_c: float
+    """Highest temperature that its material bears in this step (°C)."""
+
+
+@dataclass(frozen=True)
+class HeatStep:
+    """A step that heats parts, all of them to one temperature."""
+
+    name: str
+    """`"solder"`, `"cure"` or `"crease"`."""
+    place: str
+    """What is heated, in words for the person who does it."""
+    temperature_c: float
+    """Highest temperature that a part reaches (°C)."""
+    parts: tuple[HeatedPart, ...]
+
+    @property
+    def limit_c(self) -> float:
+        """The lowest limit of its parts (°C)."""
+        return min(part.limit_c for part in self.parts)
+
+
+@dataclass(frozen=True)
+class Filament:
+    """A filament, as it is printed."""
+
+    name: str
+    kind: str
+    density_g_ml: float
+    nozzle_c: int
+    bed_c: int
+    fan_percent: tuple[int, int]
+    speed_mm_s: float
+    max_flow_mm3_s: float
+    retract_mm: float
+    layer_mpa: float
+    """Tensile strength from layer to layer."""
+    bearing_mpa: float
+    """Compressive strength of a solid print."""
+    layer_mm: float
+    part: str = ""
+    """What alone is printed in such layers; without a name everything that is of this filament."""
+
+    @property
+    def file(self) -> str:
+        """Path of its settings below the output folder."""
+        name = f"{self.name} {self.part}".lower()
+        return f"print/{re.sub(r'[^a-z0-9]+', '_', name).strip('_')}.ini"
+
+
+@dataclass(frozen=True)
+class Slicing:
+    """What is printed from what, and the nozzle."""
+
+    nozzle_mm: float
+    backing: Filament
+    rigid: Filament
+    """Of everything but backings and moulds."""
+    mould: Filament
+    """As `rigid`, in layers that the mould's heights are whole multiples of."""
+
+    @property
+    def filaments(self) -> tuple[Filament, ...]:
+        """Each once."""
+        return tuple(dict.fromkeys((self.backing, self.rigid, self.mould)))
+
+    def of(self, path: str) -> Filament:
+        """What a part is printed from, by its path below the output folder."""
+        kinds = {"backing": self.backing, "mould": self.mould}
+        return kinds.get(path.partition("/")[0], self.rigid)
+
+
+@dataclass(frozen=True)
+class Densities:
+    """Densities of a finger's layers and parts, and of the boards."""
+
+    backing_g_ml: float
+    interface_g_ml: float
+    """Of what holds a bendable backing."""
+    board_g_ml: float
+    """Of the fingers' boards, copper included."""
+    carrier_g_ml: float
+    """Of the boards outside the fingers."""
+    part_g_ml: float
+    """Of the small parts on the fingers' boards: moulded or ceramic, as heavy as the laminate of
+    a rigid one for their size (assumed)."""
+    silicone_g_ml: float
+    film_g_ml: float

@@ -1,4 +1,4 @@
-"""Where boards are ordered, and what each board house calls things."""
+"""Where boards are ordered, what is bought, and what everything costs."""
 
 from dataclasses import dataclass
 
@@ -25,3 +25,58 @@ class Fab:
     """What is added to the angle (degrees) of footprints whose name begins so."""
     remark: str
     """What to mind when ordering there; may be empty."""
+
+
+@dataclass(frozen=True)
+class Bought:
+    """Something that is bought by the piece."""
+
+    group: str
+    """Such as `"fasteners"`."""
+    item: str
+    manufacturer: str
+    part: str
+    """What to order."""
+    where: str
+    """What it is for."""
+    quantity: int
+    each: float | None
+    """Price of one; none where it is not known."""
+
+
+@dataclass(frozen=True)
+class PartPrice:
+    """Price of a part that is soldered to a board."""
+
+    part: str
+    """What to order; of resistors, `{code}` stands for the value."""
+    each: float
+
+    def of(self, part: str) -> bool:
+        """Whether it is the price of this part."""
+        start, code, end = self.part.partition("{code}")
+        return part.startswith(start) and part.endswith(end) if code else part == self.part
+
+
+@dataclass(frozen=True)
+class Purchase:
+    """Everything that the bill of materials needs beyond the built files."""
+
+    currency: str
+    dated: str
+    """Year and month of the prices."""
+    source: str
+    confidence: str
+    pieces: tuple[Bought, ...]
+    parts: tuple[PartPrice, ...]
+    board_each: float
+    """A bare board, whatever its size."""
+    board_per_cm2: float
+    placing_each: float
+    """Placing and soldering a part on a board."""
+    filament_kg: tuple[float | None, float | None]
+    """Of the backings' filament, and of the one for everything else."""
+    silicone_kg: float | None
+    film_sheet: float | None
+    """Of A4."""
+    wire_m: float

@@ -1,21 +1,71 @@
-"""One design of a study: what it is good for, or why it cannot be; in any process, anywhere."""
+"""One design of a study, in any process: accuracy, price, or why it cannot be; and the journal."""
 
 import hashlib
+import json
+import os
+from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
 from typing import Any
 
 import numpy as np
 
 from lumitip.estimation import EstimationError
+from lumitip_fab.catalogue.ordering import Prices
+from lumitip_fab.config.load import Input
+from lumitip_fab.config.messages import shown_path
 from lumitip_fab.derive import resolve
-from lumitip_fab.encoding import canonical
-from lumitip_fab.errors import InputError
+from lumitip_fab.design import Design
+from lumitip_fab.design.encoding import canonical
+from lumitip_fab.errors import InputError, OutputError, Problem
 from lumitip_fab.explore.accuracy import Sample, accuracy
-from lumitip_fab.explore.prices import cost
 from lumitip_fab.explore.vary import Changes
-from lumitip_fab.load import Input
-from lumitip_fab.price_entry import Prices
-from lumitip_fab.toolchain import code_hash
+from lumitip_fab.paths import design_folder, parts_file
+from lumitip_fab.pipeline.fingerprint import code_hash
+
+
+def unpriced(given: Input, prices: Prices, names: set[str]) -> list[Problem]:
+    """A fault for each part that has no price."""
+    path = parts_file(design_folder(given.sources[0].path), "prices")
+    return [
+        Problem(shown_path(path), 0, "each", f"has no price of {name!r}: add a line for it")
+        for name in sorted(names - set(prices.each))
+    ]
+
+
+def bill(given: Input, design: Design) -> dict[str, int]:
+    """How many of each part the two boards and the controller need."""
+    p, wiring = given.parameters, design.wiring
+    counts = (
+        (p.emitter.led, len(design.layout)),
+        (p.emitter.resistor, len(wiring.strings)),
+        (p.receiver.photodetector, len(design.layout)),
+        (p.receiver.multiplexer, wiring.muxes),
+        (p.receiver.resistor, wiring.muxes),
+        (p.receiver.capacitor, wiring.muxes),
+        (p.controller.board, 1),
+    )
+    needed: dict[str, int] = {}
+    for name, count in counts:
+        needed[name] = needed.get(name, 0) + count
+    return needed
+
+
+def cost(given: Input, design: Design, prices: Prices) -> float:
+    """Parts of both boards, the boards, placing, and the controller.
+
+    Prints, silicone, film and work are not counted.
+    """
+    needed = bill(given, design)
+    placed = sum(needed.values()) - 1  # the controller lies beside the robot
+    board_cm2 = design.board.box.width_mm * design.board.box.length_mm / 100.0
+    return (
+        sum(count * prices.each[name] for name, count in needed.items())
+        + 2 * (prices.board.each + board_cm2 * prices.board.per_cm2)
+        + placed * prices.placing.each
+    )
+
 
 _DIGITS = 5  # of every figure: the same on any machine
 
@@ -76,3 +126,56 @@ def evaluate(job: Job) -> Record:
 
 def _rounded(value: float) -> float:
     return float(f"{value:.{_DIGITS}g}")
+
+
+NAME = "evaluated.jsonl"
+
+
+class Journal:
+    """The journal of a folder, a context manager; `known` is what is in it, by key."""
+
+    def __init__(self, folder: Path) -> None:
+        """Read what there is, and be ready to add to it.
+
+        Raises:
+            OutputError: if it cannot be read or written.
+        """
+        self._path = folder / NAME
+        try:
+            self._file = self._path.open("a+b")
+            self._file.seek(0)
+            whole = self._file.read()
+            self._file.truncate(whole.rfind(b"\n") + 1)
+        except OSError as error:
+            raise OutputError(f"{self._path}: cannot be used: {error.strerror}") from error
+        self.known: Mapping[str, Record] = {
+            record["key"]: record for record in map(_record, whole.split(b"\n")[:-1]) if record
+        }
+
+    def add(self, record: Record) -> None:
+        """Keep a record, on the disk before this returns."""
+        line = json.dumps(record, sort_keys=True, ensure_ascii=False) + "\n"
+        self._file.write(line.encode())
+        self._file.flush()
+        os.fsync(self._file.fileno())
+
+    def __enter__(self) -> "Journal":
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._file.close()
+
+
+def _record(line: bytes) -> Record | None:
+    """A record, `None` of a line that is none: then its design is evaluated again."""
+    try:
+        told = json.loads(line)
+    except ValueError:
+        return None
+    usable = isinstance(told, dict) and isinstance(told.get("key"), str)
+    return told if usable and ("figures" in told or "refused" in told) else None

@@ -8,15 +8,13 @@ from pathlib import Path
 
 from lumitip.cores import workers
 from lumitip.errors import how_to_install
+from lumitip_fab.catalogue.ordering import Prices
+from lumitip_fab.config.load import NAMED, Input, load
 from lumitip_fab.errors import BuildError, InputError, OutputError, Problem
 from lumitip_fab.explore.accuracy import Sample
-from lumitip_fab.explore.evaluate import FIGURES, Job, Record, evaluate
-from lumitip_fab.explore.journal import Journal
-from lumitip_fab.explore.prices import unpriced
+from lumitip_fab.explore.evaluate import FIGURES, Job, Journal, Record, evaluate, unpriced
 from lumitip_fab.explore.vary import Axis, Changes, axes, changed, combinations
-from lumitip_fab.load import NAMED, Input, load
-from lumitip_fab.lock import locked
-from lumitip_fab.price_entry import Prices
+from lumitip_fab.pipeline.build import locked
 
 _PRICED = ("leds", "resistors", "photodetectors", "multiplexers", "capacitors", "controllers")
 

@@ -16,11 +16,11 @@ from typing import Any
 import numpy as np
 from pydantic import ValidationError
 
+from lumitip_fab.config.load import NAMED, Input
+from lumitip_fab.config.messages import problems_of, unknown_name
+from lumitip_fab.config.parameters import Parameters
+from lumitip_fab.config.source import Source, flat
 from lumitip_fab.errors import InputError, Problem
-from lumitip_fab.load import NAMED, Input
-from lumitip_fab.parameters import Parameters
-from lumitip_fab.source import Source, flat
-from lumitip_fab.wording import problems_of, unknown_name
 
 MOST_DESIGNS = 10_000
 _DECIMALS = 6  # a nanometre

@@ -1,4 +1,4 @@
-"""The artwork of one finger's mask, in the finger's sensor frame: what all files are drawn from."""
+"""The artwork of one finger's mask in its sensor frame, and where it stands on a page."""
 
 import math
 from dataclasses import dataclass
@@ -6,9 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from lumitip_fab.design import Box, Mask, Point
-from lumitip_fab.mask.back import Finished
 from lumitip_fab.mask.flaps import Flap, make_flaps
-from lumitip_fab.mask.outline import grown
+from lumitip_fab.mask.outline import Finished, grown
 
 Segment = tuple[Point, ...]
 """A straight line to one point, or a cubic over two control points to a third."""
@@ -126,4 +125,44 @@ def _circle(centre: Point, diameter_mm: float) -> Path:
             (at(-r, -handle), at(-handle, -r), at(0, -r)),
             (at(handle, -r), at(r, -handle), at(r, 0)),
         ),
+    )
+
+
+PAPERS_MM = {"a4": (210.0, 297.0), "letter": (215.9, 279.4)}
+RULER_MM = 100.0
+HEADING_MM = 13.0  # above the artwork: two lines
+FOOT_MM = 37.0  # below it: level ruler and notes
+LEVEL_GAP_MM = 10.0  # artwork to level ruler
+UPRIGHT_GAP_MM = 7.0  # artwork to upright ruler
+NOTES_GAP_MM = 11.0  # level ruler to first note
+LINE_MM = 4.4
+
+
+@dataclass(frozen=True)
+class Places:
+    """Origins of the parts of a page."""
+
+    artwork: Point
+    """The sensor frame's origin; x is mirrored about it."""
+    heading: Point
+    level_ruler: Point
+    """Its left end."""
+    upright_ruler: Point
+    """Its lower end."""
+    notes: Point
+    """Middle of the first line."""
+
+
+def arrange(mask: Mask) -> Places:
+    """Centre artwork, rulers and texts on the page, as compact as the rulers allow."""
+    xs, ys = zip(*mask.registration, strict=True)
+    half_height = max(max(ys) - min(ys), RULER_MM + 10.0) / 2
+    middle = (FOOT_MM - HEADING_MM) / 2
+    level = middle - half_height - LEVEL_GAP_MM
+    return Places(
+        artwork=(0.0, middle - (max(ys) + min(ys)) / 2),
+        heading=(0.0, middle + half_height + HEADING_MM - LINE_MM),
+        level_ruler=(-RULER_MM / 2, level),
+        upright_ruler=(min(xs) - UPRIGHT_GAP_MM, middle - RULER_MM / 2),
+        notes=(0.0, level - NOTES_GAP_MM),
     )

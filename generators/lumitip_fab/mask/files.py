@@ -1,6 +1,5 @@
 """Every file of one finger's mask."""
 
-from lumitip_fab.artefact import Artefact
 from lumitip_fab.design import (
     Finger,
     HeatStep,
@@ -13,13 +12,12 @@ from lumitip_fab.design import (
     Tip,
     Title,
 )
-from lumitip_fab.mask.artwork import make_artwork
-from lumitip_fab.mask.back import Finished
-from lumitip_fab.mask.dxf import dxf_drawing, dxf_to_sensor
+from lumitip_fab.mask.artwork import PAPERS_MM, make_artwork
+from lumitip_fab.mask.drawings import dxf_drawing, dxf_to_sensor, svg_drawing, svg_to_sensor
 from lumitip_fab.mask.note import wrapping_note
-from lumitip_fab.mask.paper import PAPERS_MM
+from lumitip_fab.mask.outline import Finished
 from lumitip_fab.mask.pdf import pdf_page, pdf_to_sensor
-from lumitip_fab.mask.svg import svg_drawing, svg_to_sensor
+from lumitip_fab.pipeline.artefact import Artefact
 
 
 def mask_files(

@@ -9,8 +9,7 @@ import numpy as np
 import shapely
 
 from lumitip_fab.design import Mask, Point
-from lumitip_fab.mask.back import Finished, folded
-from lumitip_fab.mask.outline import Points, fold_corners
+from lumitip_fab.mask.outline import Finished, Points, fold_corners, folded
 
 TAPER_DEG = 10.0
 WIDEST_TAPER = 0.2  # of the fold, on each side, so that narrow flaps keep a useful end

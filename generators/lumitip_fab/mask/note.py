@@ -1,10 +1,10 @@
 """How to print a mask and wrap the finger with it, with this finger's own flaps."""
 
 from lumitip_fab.design import HeatStep, Mask, Stack, Title
-from lumitip_fab.markdown_text import as_written
 from lumitip_fab.mask.artwork import Artwork
-from lumitip_fab.mask.back import FOOT_MM
 from lumitip_fab.mask.flaps import BAND_MM, Flap
+from lumitip_fab.mask.outline import FOOT_MM
+from lumitip_fab.text import as_written
 
 _TEXT = """\
 # {title}: printing and wrapping the {name} mask

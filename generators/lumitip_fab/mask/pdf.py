@@ -8,9 +8,8 @@ from reportlab.pdfgen.canvas import FILL_EVEN_ODD, FILL_NON_ZERO, Canvas
 from reportlab.pdfgen.pathobject import PDFPathObject
 
 from lumitip_fab.design import Mask, Title
-from lumitip_fab.frames import Matrix, sensor_to_page, translation
-from lumitip_fab.mask.artwork import Artwork, Path
-from lumitip_fab.mask.paper import LINE_MM, PAPERS_MM, RULER_MM, arrange
+from lumitip_fab.design.frames import Matrix, sensor_to_page, translation
+from lumitip_fab.mask.artwork import LINE_MM, PAPERS_MM, RULER_MM, Artwork, Path, arrange
 from lumitip_fab.typeface import BOLD, PLAIN, load_typeface
 
 HAIR_MM = 0.1

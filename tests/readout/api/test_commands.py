@@ -81,8 +81,8 @@ def test_a_layout_built_here_is_found(
 
 
 def test_the_twins_own_layout_is_the_published_design() -> None:
+    from lumitip_fab.config.load import load
     from lumitip_fab.derive import derive
-    from lumitip_fab.load import load
 
     published = Path(__file__).parents[3] / "design" / "presets" / "published.toml"
     assert published_layout() == derive(load(published)).layout

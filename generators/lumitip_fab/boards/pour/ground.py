@@ -11,9 +11,9 @@ import numpy as np
 import shapely
 from networkx.algorithms.approximation import steiner_tree
 
-from lumitip_fab.boards.geometry import PlacedPad
+from lumitip_fab.boards.footprints import PlacedPad
 from lumitip_fab.boards.model import SIDES, Routing, Side, Track, Via
-from lumitip_fab.boards.pour.thermals import Sheet
+from lumitip_fab.boards.pour.room import Sheet
 from lumitip_fab.design import Point
 from lumitip_fab.errors import BuildError
 

@@ -4,13 +4,19 @@ named."""
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from lumitip_fab.automatic import FIELDS
-from lumitip_fab.derive.auto.judge import Rule, Verdict
-from lumitip_fab.derive.auto.ladder import Change, catalogue_names, first_of, smallest_number
-from lumitip_fab.derive.auto.mends import menders
-from lumitip_fab.derive.auto.search import change_of
-from lumitip_fab.load import NAMED
-from lumitip_fab.wording import brief
+from lumitip_fab.config.automatic import FIELDS
+from lumitip_fab.config.load import NAMED
+from lumitip_fab.config.messages import brief
+from lumitip_fab.derive.auto.search import (
+    Change,
+    Rule,
+    Verdict,
+    catalogue_names,
+    change_of,
+    first_of,
+    menders,
+    smallest_number,
+)
 
 MOST_STEPS = 12
 STEPS = {"_mm": 0.05, "_deg": 0.5, "_ma": 0.5, "_w": 0.05, "_v": 0.5}

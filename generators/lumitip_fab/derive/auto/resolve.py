@@ -2,16 +2,14 @@
 
 from dataclasses import dataclass, field, replace
 
-from lumitip_fab.automatic import FIELDS, Value
-from lumitip_fab.derive.auto.judge import Verdict, judge
-from lumitip_fab.derive.auto.ladder import Change
-from lumitip_fab.derive.auto.search import search
+from lumitip_fab.config.automatic import FIELDS, Value
+from lumitip_fab.config.load import Input
+from lumitip_fab.config.messages import brief
+from lumitip_fab.derive.auto.search import Change, Verdict, judge, search
 from lumitip_fab.derive.auto.starts import proposals
 from lumitip_fab.design import Design
 from lumitip_fab.design.choices import Choice
 from lumitip_fab.errors import InputError
-from lumitip_fab.load import Input
-from lumitip_fab.wording import brief
 
 
 @dataclass(frozen=True)

@@ -1,11 +1,217 @@
-"""Mend broken rules one by one, each by the smallest change of one of the fields that may move."""
+"""Search for the smallest changes that mend every broken rule."""
 
-from collections.abc import Callable, Iterable
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
 
-from lumitip_fab.automatic import FIELDS
-from lumitip_fab.derive.auto.judge import Rule, Verdict
-from lumitip_fab.derive.auto.ladder import Change, catalogue_names, first_of, smallest_number
-from lumitip_fab.derive.auto.mends import menders
+from annotated_types import Ge, Gt, Le, Lt
+from pydantic import ValidationError
+
+from lumitip_fab.config.automatic import FIELDS
+from lumitip_fab.config.load import Input
+from lumitip_fab.config.parameters import Parameters
+from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.once import derive_once
+from lumitip_fab.design import Design
+from lumitip_fab.errors import InputError, Problem
+
+_NUMBER = re.compile(r"-?\d+(\.\d+)?(e-?\d+)?")
+
+Rule = tuple[str, str]
+"""A field and the message of its rule without numbers: the same at other values."""
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What derivation says of an input."""
+
+    given: Input
+    design: Design | None
+    stage: int
+    """How far derivation went; later rules are only reached without faults before them."""
+    problems: tuple[Problem, ...]
+
+    @property
+    def rules(self) -> dict[Rule, Problem]:
+        """Every rule that is broken."""
+        return {rule_of(problem): problem for problem in self.problems}
+
+    def mends(self, rule: Rule, before: "Verdict") -> bool:
+        """Whether a rule holds that was broken before, and no other one is broken instead."""
+        mine = set(self.rules)
+        further = self.stage > before.stage
+        return rule not in mine and (further or (self.stage == before.stage and
+                                                 mine <= set(before.rules)))  # fmt: skip
+
+
+def rule_of(problem: Problem) -> Rule:
+    """The rule that a problem is about."""
+    return problem.field, _NUMBER.sub("#", problem.message)
+
+
+def judge(given: Input) -> Verdict:
+    """Derive, and keep what is wrong."""
+    faults = Faults(given)
+    try:
+        design = derive_once(given, faults)
+    except InputError as error:
+        return Verdict(given, None, faults.stage, error.problems)
+    return Verdict(given, design, faults.stage, ())
+
+
+def judge_with(given: Input, values: dict[str, Any]) -> Verdict | None:
+    """Judge other values of some fields; none where a field does not allow its value."""
+    try:
+        return judge(given.with_values(values))
+    except ValidationError:
+        return None
+
+
+DECIMALS = 4
+
+
+@dataclass(frozen=True)
+class Change:
+    """Another value of a field, and what derivation then says."""
+
+    field: str
+    value: Any
+    verdict: Verdict
+
+
+def smallest_number(before: Verdict, rule: Rule, field: str, step: float) -> Change | None:
+    """The number nearest to a field's value, on multiples of a step from it, that mends a rule."""
+    found = [
+        change
+        for sign in (1, -1)
+        if (change := _along(before, rule, field, sign * step)) is not None
+    ]
+    start = before.given.value(field)
+    return min(found, key=lambda change: abs(change.value - start), default=None)
+
+
+def first_of(before: Verdict, rule: Rule, field: str, values: Iterator[Any]) -> Change | None:
+    """The first of some values that mends a rule."""
+    for value in values:
+        verdict = judge_with(before.given, {field: value})
+        if verdict and verdict.mends(rule, before):
+            return Change(field, value, verdict)
+    return None
+
+
+def _along(before: Verdict, rule: Rule, field: str, step: float) -> Change | None:
+    start, whole = before.given.value(field), isinstance(before.given.value(field), int)
+    low, high = bounds(field)
+
+    def tried(steps: int) -> Change | None:
+        value = start + steps * step if whole else round(start + steps * step, DECIMALS)
+        verdict = judge_with(before.given, {field: value})
+        mended = verdict is not None and verdict.mends(rule, before)
+        return Change(field, value, verdict) if mended and verdict else None
+
+    steps, failed = 1, 0
+    while low <= start + steps * step <= high:
+        change = tried(steps)
+        if change:
+            return _bisected(change, failed, steps, tried)
+        steps, failed = 2 * steps, steps
+    return None
+
+
+def _bisected(change: Change, failed: int, worked: int, tried: Any) -> Change:
+    while worked - failed > 1:
+        middle = (failed + worked) // 2
+        better = tried(middle)
+        if better:
+            change, worked = better, middle
+        else:
+            failed = middle
+    return change
+
+
+def bounds(field: str) -> tuple[float, float]:
+    """Least and greatest value that a numeric field allows."""
+    section, key = field.split(".")
+    table = Parameters.model_fields[section].annotation
+    metadata = table.model_fields[key].metadata  # type: ignore[union-attr]
+    low = max((float(m.ge if isinstance(m, Ge) else m.gt)  # type: ignore[arg-type]
+               for m in metadata if isinstance(m, Ge | Gt)), default=float("-inf"))  # fmt: skip
+    high = min((float(m.le if isinstance(m, Le) else m.lt)  # type: ignore[arg-type]
+                for m in metadata if isinstance(m, Le | Lt)), default=float("inf"))  # fmt: skip
+    return low, high
+
+
+def catalogue_names(before: Verdict, kind: str, field: str) -> Iterator[str]:
+    """Other entries of a catalogue file."""
+    entries: Mapping[str, Any] = getattr(before.given.catalogue, kind)
+    yield from (name for name in entries if name != before.given.value(field))
+
+
+_ROOM = ("board.channel_mm", "board.side_margin_mm")
+_FINGER = ("outline.waist_margin_mm", "outline.end_margin_mm", "board.channel_mm",
+           "board.tip_margin_mm", "outline.tip_margin_mm", "tip.slant_start_mm")  # fmt: skip
+_CURRENT = ("emitter.current_ma", "emitter.string_leds", "emitter.resistor")
+
+MENDS: dict[str, tuple[str, ...]] = {
+    "grid.columns": ("receiver.multiplexer",),
+    "stack.silicone_mm": ("emitter.resistor_side",),
+    "stack.floor_mm": ("backing.tail_mm",),
+    "outline.tip_fraction": ("outline.shoulder_margin_mm",),
+    "outline.waist_margin_mm": ("outline.shoulder_margin_mm", "outline.end_corner_mm",
+                                "outline.shoulder_at_mm", "outline.tip_margin_mm"),
+    "outline.waist_at": ("outline.end_corner_mm", "outline.shoulder_at_mm"),
+    "outline.shoulder_margin_mm": ("outline.waist_margin_mm",),
+    "backing.tail_mm": ("stack.floor_mm",),
+    "tip.slant_start_mm": ("outline.tip_margin_mm",),
+    "coupling.gripper": (*_FINGER, "mould.taper_length_mm"),
+    "board.side_margin_mm": (),
+    "board.tip_margin_mm": ("board.hole_edge_mm", "board.hole_mm"),
+    "board.hole_mm": ("board.tip_margin_mm", "board.side_margin_mm"),
+    "board.end_margin_mm": ("board.hole_mm",),
+    "board.channel_mm": ("board.hole_mm",),
+    "board.copper_gap_mm": ("receiver.multiplexer",),
+    "board.supply_track_mm": (),
+    "emitter.led": ("board.clearance_mm", "emitter.current_ma"),
+    "emitter.current_ma": _CURRENT,
+    "emitter.max_heat_w": _CURRENT,
+    "emitter.resistor": ("emitter.resistor_side", "board.channel_mm", *_CURRENT,
+                         "board.side_margin_mm", "backing.relief_clearance_mm"),
+    "supply.max_ma": _CURRENT,
+    "supply.voltage_v": ("emitter.string_leds", "flange.gate_ohm"),
+    "receiver.photodetector": ("board.clearance_mm",),
+    "receiver.resistor": ("receiver.capacitor", "board.clearance_mm"),
+    "receiver.multiplexer": _ROOM,
+    "mask.hole_mm": ("board.channel_mm",),
+    "mask.flap_mm": ("mask.allowance_mm",),
+    "mould.draft_deg": ("mould.tip_silicone_mm",),
+    "mould.wall_mm": (),
+    "mould.taper_length_mm": ("outline.tip_margin_mm",),
+    "mould.tip_silicone_mm": (),
+    "flex.standoff_mm": ("flex.groove_depth_mm",),
+    "flex.interface_mm": ("flex.standoff_mm", "board.channel_mm", "tip.slant_start_mm",
+                          "outline.end_margin_mm", "board.tip_margin_mm",
+                          "outline.tip_margin_mm"),
+    "flex.thread_hole_mm": ("board.hole_edge_mm", "board.end_margin_mm", "board.side_margin_mm"),
+    "breakout.board_mm": ("breakout.hole_spacing_mm",),
+    "breakout.hole_mm": ("breakout.hole_spacing_mm",),
+    "breakout.hole_spacing_mm": ("breakout.hole_mm",),
+    "holder.body_mm": ("holder.wall_mm",),
+    "holder.wrap_deg": ("holder.wall_mm", "holder.strap_hole_mm"),
+    "holder.standoff_mm": ("breakout.hole_spacing_mm",),
+    "holder.screw": ("breakout.hole_spacing_mm", "holder.wall_mm"),
+    "holder.strap_hole_mm": ("holder.wrap_deg",),
+    "holder.strap_spacing_mm": ("holder.strap_hole_mm",),
+    "printer.profile": (),
+    "flange.fuse": ("emitter.current_ma",),
+    "flange.gate_ohm": (),
+}  # fmt: skip
+
+
+def menders(field: str) -> tuple[str, ...]:
+    """Fields to try for a rule about a field, in order, each once."""
+    return tuple(dict.fromkeys((field, *MENDS.get(field, ()))))
+
 
 MOST_CHANGES = 40
 

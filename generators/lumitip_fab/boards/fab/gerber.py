@@ -1,0 +1,152 @@
+"""The Gerber layers of a board, and its Excellon drill files: plated and unplated holes apart."""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+
+from gerbonara.apertures import CircleAperture, ExcellonTool
+from gerbonara.cam import FileSettings
+from gerbonara.excellon import ExcellonFile
+from gerbonara.graphic_objects import Arc, Flash, GraphicObject
+from gerbonara.rs274x import GerberFile
+from gerbonara.utils import MM
+
+from lumitip_fab.boards.fab import gerber_objects as objects
+from lumitip_fab.boards.footprints import PlacedPad, placed_pads
+from lumitip_fab.boards.model import MASK_MM, SIDES, BoardModel, Placement, Side, opening_mm
+from lumitip_fab.boards.outline import EDGE_MM, corners, straight_edges
+from lumitip_fab.boards.silk.strokes import silkscreen
+from lumitip_fab.design import Box, Point
+
+_LAYER_FORMAT = (4, 6)  # digits before and after the point: to 1 nm
+
+
+@dataclass(frozen=True)
+class Layer:
+    """A layer by its key in the table of fabs, such as `front copper`, and its file."""
+
+    key: str
+    data: bytes
+
+
+def gerber_layers(model: BoardModel) -> Iterator[Layer]:
+    """Copper, mask, paste and silkscreen of both sides, the outline, and that of a stiffener."""
+    board = model.placement
+    pads = [pad for part in board.components for pad in placed_pads(part)]
+    for side in SIDES:
+        number, place = ("L1", "Top") if side == "front" else ("L2", "Bot")
+        here = [pad for pad in pads if side in pad.sides]
+        yield _layer(f"{side} copper", _copper(model, side, here), "Copper", number, place)
+        yield _layer(f"{side} mask", _mask(board, here), "Soldermask", place, polarity="Negative")
+        yield _layer(f"{side} paste", _paste(here), "Paste", place)
+        yield _layer(f"{side} silk", _silk(board, side), "Legend", place)
+    yield _layer("outline", _outline(board), "Profile", "NP")
+    if board.flexible:
+        yield _layer("stiffener", _frame(board.flexible.stiffener), "Other", "Stiffener")
+
+
+def _copper(model: BoardModel, side: Side, pads: list[PlacedPad]) -> Iterator[GraphicObject]:
+    for fill in model.fills:
+        if fill.side == side:
+            yield objects.net(fill.net)
+            yield objects.region(fill.area)
+    for track in model.routing.tracks:
+        if track.side == side:
+            yield objects.net(track.net)
+            yield objects.line(track.start, track.end, track.width_mm)
+    for via in model.routing.vias:
+        yield objects.net(via.net)
+        yield objects.dot((via.x_mm, via.y_mm), via.diameter_mm)
+    for pad in pads:
+        yield objects.pad_of(pad)
+        yield objects.pad(pad)
+
+
+def _mask(board: Placement, pads: list[PlacedPad]) -> Iterator[GraphicObject]:
+    """What the mask leaves open: a negative layer draws its openings."""
+    yield from (objects.pad(pad, opening_mm(pad.component)) for pad in pads)
+    yield from (objects.dot(hole, board.hole_mm + 2 * MASK_MM) for hole in board.holes)
+
+
+def _paste(pads: list[PlacedPad]) -> Iterator[GraphicObject]:
+    yield from (objects.pad(p) for p in pads if p.pad.paste and not p.pad.drill_mm)
+
+
+def _silk(board: Placement, side: Side) -> Iterator[GraphicObject]:
+    for where, stroke in silkscreen(board):
+        if where == side:
+            yield from objects.lines(stroke)
+
+
+def _outline(board: Placement) -> Iterator[GraphicObject]:
+    for start, end in straight_edges(board):
+        yield objects.line(start, end, EDGE_MM)
+    for bow in corners(board):
+        centre = bow.centre[0] - bow.start[0], bow.centre[1] - bow.start[1]
+        yield Arc(
+            *bow.start, *bow.end, *centre, clockwise=False,
+            aperture=CircleAperture(EDGE_MM, unit=MM), unit=MM, polarity_dark=True,
+        )  # fmt: skip
+
+
+def _frame(box: Box) -> Iterator[GraphicObject]:
+    """The edges of a rectangle, on the middle of their lines."""
+    x, y = (box.x_min_mm, box.x_max_mm), (box.y_min_mm, box.y_max_mm)
+    around = [(x[0], y[0]), (x[1], y[0]), (x[1], y[1]), (x[0], y[1]), (x[0], y[0])]
+    yield from (objects.line(*ends, EDGE_MM) for ends in pairwise(around))
+
+
+def _layer(
+    key: str, drawn: Iterable[GraphicObject], *function: str, polarity: str = "Positive"
+) -> Layer:
+    attributes = {
+        ".GenerationSoftware": ("Lumitip", "lumitip-fab"),
+        ".SameCoordinates": ("Sensor",),
+        ".FileFunction": function,
+        ".FilePolarity": (polarity,),
+    }
+    if key == "outline":
+        del attributes[".FilePolarity"]  # the profile has none
+    made = GerberFile(objects=list(drawn), file_attrs=attributes)
+    settings = FileSettings(unit=MM, notation="absolute", number_format=_LAYER_FORMAT)
+    return Layer(key, _mended(made.write_to_bytes(settings)))
+
+
+def _mended(data: bytes) -> bytes:
+    """Gerbonara 1.5 leaves out one end of a command and writes another twice."""
+    return data.replace(b"\nG75\n", b"\nG75*\n").replace(b"G01**", b"G01*") + b"\n"
+
+
+_DRILL_FORMAT = (3, 4)  # digits before and after the point, which is written
+Hole = tuple[Point, float]
+"""Middle and finished diameter (mm)."""
+
+
+def plated_drills(model: BoardModel) -> bytes:
+    """Vias and the connector's holes."""
+    vias = [((via.x_mm, via.y_mm), via.drill_mm) for via in model.routing.vias]
+    pads = [
+        ((pad.x_mm, pad.y_mm), pad.pad.drill_mm)
+        for part in model.placement.components
+        for pad in placed_pads(part)
+        if pad.pad.drill_mm
+    ]
+    return _excellon([*vias, *pads], "Plated,1,2,PTH", plated=True)
+
+
+def unplated_drills(model: BoardModel) -> bytes:
+    """The holes for the locating pins."""
+    board = model.placement
+    holes = [(at, board.hole_mm) for at in board.holes]
+    return _excellon(holes, "NonPlated,1,2,NPTH", plated=False)
+
+
+def _excellon(holes: Iterable[Hole], function: str, plated: bool) -> bytes:
+    """The holes by size, then from left to right."""
+    drilled = [
+        Flash(*at, ExcellonTool(size, plated, unit=MM), unit=MM, polarity_dark=True)
+        for at, size in sorted(holes, key=lambda hole: (hole[1], hole[0]))
+    ]
+    settings = FileSettings(unit=MM, notation="absolute", number_format=_DRILL_FORMAT)
+    data: bytes = ExcellonFile(objects=drilled).write_to_bytes(settings)
+    return data.replace(b"M48\n", f"M48\n; #@! TF.FileFunction,{function}\n".encode(), 1) + b"\n"

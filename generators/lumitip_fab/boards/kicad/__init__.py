@@ -1,0 +1,1 @@
+"""A board as a KiCad project: board file, footprints, schematic and rules."""

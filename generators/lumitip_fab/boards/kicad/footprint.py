@@ -1,0 +1,233 @@
+"""Parts and unplated holes as footprints, on a board or in a library."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from lumitip_fab.boards.kicad.sexpr import FORMAT, Node, Quoted, written
+from lumitip_fab.boards.model import (
+    Component,
+    Footprint,
+    Pad,
+    Stroke,
+    Text,
+    fiducial_margin_mm,
+    stable_uuid,
+)
+from lumitip_fab.boards.silk.strokes import angle_on_board_deg
+from lumitip_fab.design import Box, Point
+from lumitip_fab.design.frames import on_board_page
+
+
+def effects(text: Text, mirrored: bool) -> Node:
+    """How a text is drawn: by its height, its stroke, and whether it is read from behind."""
+    size = ("size", text.height_mm, text.height_mm)
+    mirror = (("justify", "mirror"),) if mirrored else ()
+    return ("effects", ("font", size, ("thickness", text.width_mm)), *mirror)
+
+
+LIBRARY = "lumitip"
+HOLE = "MountingHole"
+_FAB_MM, _COURTYARD_MM = 0.1, 0.05
+
+
+def placed_footprint(component: Component, numbers: dict[str, int], finger: str) -> Node:
+    """A part on its board.
+
+    Args:
+        component: the part.
+        numbers: number of each net.
+        finger: whose board it is on.
+    """
+    return _Writer(component, numbers, finger).node()
+
+
+def hole_footprint(number: int, at: Point, hole_mm: float, finger: str) -> Node:
+    """An unplated hole; `number` counts from 1."""
+    ref = f"H{number}"
+    own = stable_uuid(finger, "footprint", ref)
+    x, y = on_board_page(at)
+    head = (
+        Quoted(f"{LIBRARY}:{hole_name(hole_mm)}"), ("layer", Quoted("F.Cu")),
+        ("tstamp", own), ("at", x, y),
+    )  # fmt: skip
+    return ("footprint", *head, *_hole(ref, hole_mm, own, "board_only"))
+
+
+def library_file(component: Component) -> bytes:
+    """The `.kicad_mod` of a part's footprint."""
+    shape = component.footprint
+    plain = replace(
+        component, ref="REF**", value=shape.name, x_mm=0.0, y_mm=0.0, angle_deg=0.0,
+        side="front", nets=(), ref_text=None,
+    )  # fmt: skip
+    return _library(shape.name, _Writer(plain, {}, LIBRARY).contents())
+
+
+def hole_library_file(hole_mm: float) -> bytes:
+    """The `.kicad_mod` of an unplated hole."""
+    own = stable_uuid(LIBRARY, "footprint", HOLE)
+    return _library(hole_name(hole_mm), iter(_hole("REF**", hole_mm, own)))
+
+
+def hole_name(hole_mm: float) -> str:
+    """Name of an unplated hole's footprint."""
+    return f"{HOLE}_{hole_mm:g}mm"
+
+
+def _library(name: str, contents: Iterator[Node]) -> bytes:
+    head = ("version", FORMAT), ("generator", "lumitip"), ("layer", Quoted("F.Cu"))
+    return written(("footprint", Quoted(name), *head, *contents)).encode()
+
+
+def _hole(ref: str, hole_mm: float, own: str, *attributes: str) -> tuple[Node, ...]:
+    return (
+        ("attr", *attributes, "exclude_from_pos_files", "exclude_from_bom"),
+        _text("reference", ref, Text("", 0.0, 0.0), 0.0, "F.SilkS", f"{own}/reference", hide=True),
+        _text("value", HOLE, Text("", 0.0, 0.0), 0.0, "F.Fab", f"{own}/value", hide=True),
+        (
+            "pad", Quoted(""), "np_thru_hole", "circle", ("at", 0, 0), ("size", hole_mm, hole_mm),
+            ("drill", hole_mm), ("layers", Quoted("*.Cu"), Quoted("*.Mask")),
+            ("tstamp", stable_uuid(own, "pad")),
+        ),
+    )  # fmt: skip
+
+
+class _Writer:
+    """Writes one part; the parts of its footprint turn and flip with it."""
+
+    def __init__(self, component: Component, numbers: dict[str, int], finger: str) -> None:
+        self.component, self.numbers = component, numbers
+        self.front = component.side == "front"
+        self.own = stable_uuid(finger, "footprint", component.ref)
+        self.path = "/" + stable_uuid(finger, "symbol", component.ref)
+        # KiCad turns a part over about x, the model about y: half a turn apart.
+        self.angle = (component.angle_deg + (0 if self.front else 180)) % 360
+
+    def node(self) -> Node:
+        """The whole footprint."""
+        part, shape = self.component, self.component.footprint
+        x, y = on_board_page((part.x_mm, part.y_mm))
+        return (
+            "footprint", Quoted(f"{LIBRARY}:{shape.name}"), ("layer", Quoted(self.layer("Cu"))),
+            ("tstamp", self.own), ("at", x, y, self.angle), *_ordering(part),
+            *((("path", Quoted(self.path)),) if part.kind != "fiducial" else ()),
+            *self.contents(),
+        )  # fmt: skip
+
+    def contents(self) -> Iterator[Node]:
+        """What a footprint has wherever it lies."""
+        yield ("attr", *_attributes(self.component))
+        yield from self.texts()
+        yield from self.lines()
+        yield from (self.pad(i, p) for i, p in enumerate(self.component.footprint.pads))
+
+    def layer(self, kind: str) -> str:
+        """A layer of the part's own side."""
+        return f"{'F' if self.front else 'B'}.{kind}"
+
+    def at(self, x_mm: float, y_mm: float) -> Point:
+        """A point of the footprint's frame in the frame of the file's footprint, y down."""
+        return (x_mm, -y_mm) if self.front else (x_mm, y_mm)
+
+    def texts(self) -> Iterator[Node]:
+        """Reference and value, and the reference once more where assembly drawings have it."""
+        part = self.component
+        shown = part.ref_text or Text("", 0.0, 0.0)
+        for kind, told, text, layer in (
+            ("reference", part.ref, shown, "SilkS"),
+            ("value", part.value, Text("", 0.0, 0.0), "Fab"),
+            ("user", "${REFERENCE}", _on_body(part.footprint), "Fab"),
+        ):
+            hide = kind == "value" or (kind == "reference" and part.ref_text is None)
+            yield _text(
+                kind, told, text, angle_on_board_deg(part, text), self.layer(layer),
+                f"{self.own}/{kind}", at=self.at(text.x_mm, text.y_mm), hide=hide,
+                mirrored=not self.front,
+            )  # fmt: skip
+
+    def lines(self) -> Iterator[Node]:
+        """Silkscreen, body and courtyard."""
+        shape = self.component.footprint
+        drawn = [("SilkS", stroke) for stroke in shape.silk]
+        drawn.append(("Fab", _round(shape.body, _FAB_MM)))
+        drawn.append(("CrtYd", _round(shape.courtyard, _COURTYARD_MM)))
+        count = 0
+        for layer, stroke in drawn:
+            for start, end in zip(stroke.points, stroke.points[1:], strict=False):
+                count += 1
+                yield (
+                    "fp_line", ("start", *self.at(*start)), ("end", *self.at(*end)),
+                    ("layer", Quoted(self.layer(layer))), ("width", stroke.width_mm),
+                    ("tstamp", stable_uuid(self.own, "line", str(count))),
+                )  # fmt: skip
+
+    def pad(self, index: int, pad: Pad) -> Node:
+        """A pad with its net."""
+        net = dict(self.component.nets).get(pad.number, "")
+        margin = fiducial_margin_mm(self.component)
+        return (
+            "pad", Quoted(pad.number), "thru_hole" if pad.drill_mm else "smd", pad.shape,
+            ("at", *self.at(pad.x_mm, pad.y_mm), self.angle),
+            ("size", pad.width_mm, pad.height_mm),
+            *((("drill", pad.drill_mm),) if pad.drill_mm else ()),
+            ("layers", *map(Quoted, self.pad_layers(pad))),
+            *((("net", self.numbers[net], Quoted(net)),) if net else ()),
+            *((("solder_mask_margin", margin), ("clearance", margin)) if margin else ()),
+            ("tstamp", stable_uuid(self.own, "pad", str(index))),
+        )  # fmt: skip
+
+    def pad_layers(self, pad: Pad) -> tuple[str, ...]:
+        """Copper, mask and paste of a pad."""
+        if pad.drill_mm:
+            return "*.Cu", "*.Mask"
+        paste = (self.layer("Paste"),) if pad.paste else ()
+        return self.layer("Cu"), *paste, self.layer("Mask")
+
+
+def _ordering(part: Component) -> tuple[Node, ...]:
+    """What to order, in the words of the part's symbol: from 10 on, KiCad compares them."""
+    if not part.part:
+        return ()
+    told = {"Manufacturer": part.manufacturer, "MPN": part.part}
+    return tuple(("property", Quoted(name), Quoted(value)) for name, value in told.items())
+
+
+def _attributes(component: Component) -> tuple[str, ...]:
+    told = ["through_hole" if any(p.drill_mm for p in component.footprint.pads) else "smd"]
+    if not component.part:
+        told += ["exclude_from_pos_files", "exclude_from_bom"]
+    if component.kind == "fiducial":
+        told.append("board_only")
+    return tuple(told)
+
+
+def _on_body(shape: Footprint) -> Text:
+    """The reference on the body, as large as it allows."""
+    body = shape.body
+    height = min(0.8, body.width_mm / 4, body.length_mm / 1.5)
+    return Text("", *body.centre_mm, height_mm=height, width_mm=0.15 * height)
+
+
+def _round(box: Box, width_mm: float) -> Stroke:
+    """A rectangle as a closed polyline."""
+    left, right, low, high = box.x_min_mm, box.x_max_mm, box.y_min_mm, box.y_max_mm
+    corners = (left, low), (right, low), (right, high), (left, high), (left, low)
+    return Stroke(corners, width_mm)
+
+
+def _text(
+    kind: str,
+    told: str,
+    text: Text,
+    angle_deg: float,
+    layer: str,
+    own: str,
+    at: Point = (0.0, 0.0),
+    hide: bool = False,
+    mirrored: bool = False,
+) -> Node:
+    return (
+        "fp_text", kind, Quoted(told), ("at", *at, angle_deg, "unlocked"), ("layer", Quoted(layer)),
+        *(("hide",) if hide else ()),
+        effects(text, mirrored), ("tstamp", stable_uuid(own)),
+    )  # fmt: skip

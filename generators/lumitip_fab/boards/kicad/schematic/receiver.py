@@ -1,0 +1,105 @@
+"""The receiver's sheet: a block for each multiplexer, with its detectors on the left."""
+
+from lumitip_fab.boards.circuit import GROUND
+from lumitip_fab.boards.kicad.schematic.sheet import Drawn, Sheet
+from lumitip_fab.boards.kicad.schematic.symbols import ROW_MM, mux_half_mm, mux_pins
+from lumitip_fab.boards.model import Component
+from lumitip_fab.design import Multiplexer, Point
+
+_MUX_X_MM = 53.34
+_ABOVE_MM, _BELOW_MM = 20.32, 15.24
+WIDTH_MM = 101.6
+
+
+def height_mm(mux: Multiplexer) -> float:
+    """Height of a block."""
+    return 2 * mux_half_mm(mux) + _ABOVE_MM + _BELOW_MM
+
+
+def draw_block(
+    sheet: Sheet,
+    at: Point,
+    number: int,
+    mux: Multiplexer,
+    parts: dict[str, Component],
+    supply: str,
+) -> None:
+    """A multiplexer with its detectors, its pull-up and its capacitor."""
+    ref = f"U{number}"
+    nets = dict(parts[ref].nets)
+    x, y = at[0] + _MUX_X_MM, at[1] + _ABOVE_MM + mux_half_mm(mux)
+    pins = {name: (x + px, y - py) for name, _, (px, py), _, _ in mux_pins(mux)}
+    leads = {name: str(lead) for name, lead, *_ in mux_pins(mux)}
+    sheet.texts.append((f"{ref} to {nets[str(mux.output)]}", (at[0] + 2.54, at[1] + 5.08), 2.5))
+    top = mux_half_mm(mux)
+    sheet.symbols.append(
+        Drawn("Multiplexer", ref, parts[ref].value, x, y, pins=tuple(nets),
+              ref_at=(-7.62, -top - 1.27), value_at=(0, 0))
+    )  # fmt: skip
+    _detectors(sheet, at[0], pins, leads, nets, parts)
+    _output(sheet, pins["Z"], nets[leads["Z"]], parts[f"R{number}"], supply)
+    for name in (name for name in pins if name[0] == "S"):
+        px, py = pins[name]
+        sheet.wire((px, py), (px + 5.08, py))
+        sheet.flag(nets[leads[name]], (px + 5.08, py), 0)
+    sheet.power(supply, pins["VCC"])
+    grounds = sorted(at_ for name, at_ in pins.items() if name in ("GND", "VEE", "~{E}"))
+    low = grounds[0][1] + 2.54
+    for ground in grounds:
+        sheet.wire(ground, (ground[0], low))
+    sheet.wire(*((gx, low) for gx, _ in grounds))
+    sheet.junctions += [(gx, low) for gx, _ in grounds[1:-1]]
+    sheet.power(GROUND, (grounds[0][0], low))
+    if len(grounds) > 1:
+        sheet.junctions.append((grounds[0][0], low))
+    capacitor = parts[f"C{number}"]
+    cx, cy = x + 25.4, y + top - 7.62
+    sheet.symbols.append(
+        Drawn("C", capacitor.ref, capacitor.value, cx, cy,
+              ref_at=(5.08, -1.27), value_at=(6.35, 1.27))
+    )  # fmt: skip
+    sheet.power(supply, (cx, cy - 3.81))
+    sheet.power(GROUND, (cx, cy + 3.81))
+
+
+def _detectors(
+    sheet: Sheet,
+    left_mm: float,
+    pins: dict[str, Point],
+    leads: dict[str, str],
+    nets: dict[str, str],
+    parts: dict[str, Component],
+) -> None:
+    """A detector for each input in use, their emitters on one wire to ground."""
+    bus, middle = left_mm + 7.62, left_mm + 17.78
+    rows = []
+    for name in (name for name in pins if name[0] == "Y"):
+        x, y = pins[name]
+        net = nets[leads[name]]
+        if net == GROUND:
+            sheet.wire((x, y), (x - 5.08, y))
+            sheet.power(GROUND, (x - 5.08, y))
+            continue
+        sheet.symbols.append(
+            Drawn("Phototransistor", net, parts[net].value, middle, y, ref_at=(-5.08, -2.54))
+        )
+        sheet.wire((bus, y), (middle - 5.08, y))
+        sheet.wire((middle + 5.08, y), (x, y))
+        sheet.flag(net, (middle + 8.89, y), 90)
+        rows.append(y)
+    sheet.wire((bus, rows[0]), *((bus, y) for y in rows[1:]), (bus, rows[-1] + ROW_MM / 2))
+    sheet.junctions += [(bus, y) for y in rows[1:]]
+    sheet.power(GROUND, (bus, rows[-1] + ROW_MM / 2))
+
+
+def _output(sheet: Sheet, at: Point, net: str, resistor: Component, supply: str) -> None:
+    """The analog line with its pull-up."""
+    x, y = at
+    sheet.wire((x, y), (x + 8.89, y), (x + 17.78, y))
+    sheet.junctions.append((x + 8.89, y))
+    sheet.flag(net, (x + 17.78, y), 0)
+    sheet.symbols.append(
+        Drawn("R", resistor.ref, resistor.value, x + 8.89, y - 3.81,
+              ref_at=(3.81, -1.27), value_at=(3.81, 1.27))
+    )  # fmt: skip
+    sheet.power(supply, (x + 8.89, y - 7.62))

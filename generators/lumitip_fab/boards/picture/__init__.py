@@ -1,1 +1,0 @@
-"""Pictures of a finished board, as it comes from the board house."""

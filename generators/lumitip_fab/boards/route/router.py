@@ -1,0 +1,207 @@
+"""Routing of a placed board by negotiated congestion, to tracks and vias."""
+
+import dataclasses
+from collections import defaultdict
+
+from lumitip_fab.boards.footprints import PlacedPad, placed_pads
+from lumitip_fab.boards.model import SIDES, Placement, Routing, Track, Via
+from lumitip_fab.boards.route import stamps
+from lumitip_fab.boards.route.kernels import Ints
+from lumitip_fab.boards.route.obstacles import Obstacles, TightError, Wanted, wanted
+from lumitip_fab.boards.route.rules import Grid, Rules
+from lumitip_fab.boards.route.state import State
+from lumitip_fab.boards.route.trees import Taste, Unreachable, connect, supported
+from lumitip_fab.errors import BuildError
+
+
+def copper(grid: Grid, rules: Rules, net: Wanted, paths: Ints) -> tuple[list[Track], list[Via]]:
+    """Tracks and vias of a net, straight pieces as one."""
+    tracks: list[Track] = []
+    vias: dict[tuple[float, float], Via] = {}
+    nodes = paths.tolist()
+    i = 0
+    while i + 1 < len(nodes):
+        a, b = nodes[i], nodes[i + 1]
+        if a < 0 or b < 0:
+            i += 1
+        elif abs(b - a) == grid.plane:
+            kind = rules.classes[rules.narrow if _necked(net, grid, a) else net.wide]
+            at = grid.at(a)
+            vias[at] = Via(net.name, *at, kind.via_mm, kind.via_drill_mm)
+            i += 1
+        else:
+            j, thin = i + 1, _necked(net, grid, a, b)
+            while (
+                j + 1 < len(nodes)
+                and nodes[j + 1] >= 0
+                and nodes[j + 1] - nodes[j] == b - a
+                and _necked(net, grid, nodes[j], nodes[j + 1]) == thin
+            ):
+                j += 1
+            width = rules.classes[rules.narrow if thin else net.wide].track_mm
+            side = SIDES[a // grid.plane]
+            tracks.append(Track(net.name, side, grid.at(a), grid.at(nodes[j]), width))
+            i = j
+    return tracks, list(vias.values())
+
+
+def _necked(net: Wanted, grid: Grid, *nodes: int) -> bool:
+    return any(net.neck[divmod(node % grid.plane, grid.width)] for node in nodes)
+
+
+FIRST_PRICE = 0.6  # of a net in the way, in the first round
+PRICE_GROWTH = 1.35
+TOP_PRICE = 30.0
+HISTORY = 0.5  # more for each round that a node is fought for
+HISTORY_REACH = 1  # nodes round it
+SWEEP = 20  # rounds after which all nets are routed anew,
+SWEEP_SHARE = 0.12  # while more than this share of them is in conflict
+WIDER_MM = 0.1  # wider searches with each round
+DEAR = 1e5  # price that no net pays when another way is left
+PATIENCE = 60  # rounds without progress, before a board is given up
+POLISHES = 2
+
+NEGOTIATION = Taste(FIRST_PRICE, margin_mm=2.5, via_mm=0.7)
+BEAUTY = Taste(DEAR, via_mm=2.0, bend_mm=0.5, across=1.2)
+
+
+def negotiate(state: State, nets: list[Wanted]) -> tuple[int, dict[str, Ints]]:
+    """Route all nets; given up when many rounds have brought nothing.
+
+    Args:
+        state: the maps; `state.routed` has the result.
+        nets: what to connect, in the order of the first round.
+
+    Returns:
+        Number of rounds, and the nodes that are still fought for, by net: empty on success.
+    """
+    taste = NEGOTIATION
+    for net in nets:
+        state.routed[net.name] = connect(state, net, [], NEGOTIATION)
+        state.count(net, 1)
+    fewest = turn = best = 0
+    while True:
+        turn += 1
+        fought = {n.name: f for n in nets if (f := state.fought_for(n)).size}
+        count = sum(f.size for f in fought.values())
+        if turn == 1 or count < fewest:
+            fewest, best = count, turn
+        if not fought or turn - best > PATIENCE:
+            return turn, fought
+        state.turn += 1
+        for nodes in fought.values():
+            stamps.remember(
+                nodes, state.history, state.marked[0], state.turn, HISTORY, HISTORY_REACH
+            )
+        taste = dataclasses.replace(
+            taste,
+            price=min(taste.price * PRICE_GROWTH, TOP_PRICE),
+            margin_mm=taste.margin_mm + WIDER_MM,
+        )
+        sweep = turn % SWEEP == 0 and len(fought) > SWEEP_SHARE * len(nets)
+        for net in (n for n in nets if sweep or n.name in fought):
+            if not (sweep or state.fought_for(net).size):
+                continue  # another net has given way in this round
+            paths = [] if sweep else state.routed[net.name]
+            free = [path for path in paths if not state.fought_for(net, path).size]
+            state.count(net, -1)
+            state.routed[net.name] = connect(state, net, supported(net, free), taste)
+            state.count(net, 1)
+
+
+def polish(state: State, nets: list[Wanted]) -> None:
+    """Route every net anew through the room that the others leave, for looks alone."""
+    state.history[:] = 0
+    for _ in range(POLISHES):
+        for net in nets:
+            before = state.routed[net.name]
+            state.count(net, -1)
+            state.routed[net.name] = connect(state, net, [], BEAUTY)
+            state.count(net, 1)
+            if state.fought_for(net).size:
+                state.count(net, -1)
+                state.routed[net.name] = before
+                state.count(net, 1)
+
+
+PLACES_NAMED = 5
+
+
+def route(placement: Placement) -> Routing:
+    """Connect all pads of each net.
+
+    Args:
+        placement: the board before it has copper.
+
+    Returns:
+        Tracks and vias, the same for the same placement. Ground is routed like any other net,
+        with the thinnest tracks; `pour` then takes away what its filled areas, which carry the
+        current, make needless.
+
+    Raises:
+        BuildError: there is not enough room; names the nets and the places.
+    """
+    rules = Rules.of(placement)
+    try:
+        return _routed(placement, rules, rules.pitch_mm)
+    except TightError:
+        return _routed(placement, rules, rules.fine_mm)
+
+
+def _routed(placement: Placement, rules: Rules, pitch_mm: float) -> Routing:
+    """Tracks and vias on one grid; `TightError` where that grid has no way for a net."""
+    grid = Grid.over(placement.outline, pitch_mm)
+    pads = tuple(p for component in placement.components for p in placed_pads(component))
+    by_net: dict[str, list[PlacedPad]] = defaultdict(list)
+    for pad in pads:
+        by_net[pad.net].append(pad)
+    names = [n.name for n in placement.nets if len(by_net[n.name]) > 1]
+    number = {n.name: i for i, n in enumerate(placement.nets, start=1)}
+    fixed = Obstacles(grid, rules, number)
+    state = State(grid, rules, fixed.owners(placement, pads))
+    nets = [
+        wanted(name, by_net[name], pads, fixed, state.owner, thin=name == placement.ground)
+        for name in names
+    ]
+    nets.sort(
+        key=lambda net: (net.wide == rules.narrow, net.name == placement.ground, _extent_mm(net))
+    )
+    try:
+        rounds, fought = negotiate(state, nets)
+    except Unreachable as fault:
+        a, b = (f"{e.pad.component.ref}.{e.pad.pad.number}" for e in fault.ends)
+        raise TightError(
+            f"the {placement.finger} board cannot be routed: net {fault.net} finds no way from "
+            f"{a} to {b} at ({fault.ends[1].pad.x_mm:.2f}, {fault.ends[1].pad.y_mm:.2f}) mm "
+            "between pads, holes and edges; give the parts more room"
+        ) from None
+    if fought:
+        raise BuildError(_unfinished(placement, grid, fought, rounds))
+    polish(state, nets)
+    tracks, vias = [], []
+    for net in nets:
+        some_tracks, some_vias = copper(grid, rules, net, state.paths(net))
+        tracks += some_tracks
+        vias += some_vias
+    return Routing(tuple(tracks), tuple(vias), rounds)
+
+
+def _extent_mm(net: Wanted) -> float:
+    x = [t.pad.x_mm for t in net.terminals]
+    y = [t.pad.y_mm for t in net.terminals]
+    return round(max(x) - min(x) + max(y) - min(y), 6)
+
+
+def _unfinished(placement: Placement, grid: Grid, fought: dict[str, Ints], rounds: int) -> str:
+    places = [
+        f"{name} at ({x:.1f}, {y:.1f})"
+        for name, nodes in fought.items()
+        for x, y in [grid.at(int(nodes[len(nodes) // 2]))]
+    ]
+    more = len(places) - PLACES_NAMED
+    named = ", ".join(places[:PLACES_NAMED]) + (f" and {more} more" if more > 0 else "")
+    return (
+        f"the {placement.finger} board is not routed after {rounds} rounds: nets still share room "
+        f"(mm): {named}; give the tracks more room: a larger board.channel_mm or grid.pitch_mm, "
+        "finer board.track_mm and board.copper_gap_mm, or smaller parts"
+    )

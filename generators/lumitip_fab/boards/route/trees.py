@@ -1,0 +1,201 @@
+"""One net: from pads, and paths that may stay, to a tree that connects them all."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumitip_fab.boards.route import kernels, stamps
+from lumitip_fab.boards.route.kernels import INSIDE_PAD, VIA, Ints
+from lumitip_fab.boards.route.obstacles import Terminal, Wanted
+from lumitip_fab.boards.route.rules import HOLE_TO_HOLE_MM, Grid
+from lumitip_fab.boards.route.state import State
+
+
+class Unreachable(Exception):  # noqa: N818 - not a fault of its own: `route` says what to do
+    """There is no way to a pad, whatever else gives way."""
+
+    def __init__(self, net: str, ends: tuple[Terminal, Terminal]) -> None:
+        super().__init__(net)
+        self.net = net
+        self.ends = ends
+
+
+@dataclass(frozen=True)
+class Taste:
+    """What paths cost, as lengths of track (mm)."""
+
+    price: float
+    """More for each net in the way, as a factor."""
+    margin_mm: float = 4.0
+    """How far beyond its two ends a path is searched before it is searched everywhere."""
+    via_mm: float = 1.0
+    bend_mm: float = 0.3
+    """A bend of 45 degrees,"""
+    corner_mm: float = 2.0
+    """one of 90 degrees,"""
+    sharp_mm: float = 20.0
+    """and one of 135 degrees, a last resort."""
+    across: float = 1.0
+    """On the back, across: tracks to the connector run along the board there. A factor."""
+
+    def costs(self, pitch_mm: float) -> NDArray[np.float64]:
+        """Of a via and of the bends, in steps."""
+        return np.array([self.via_mm, self.bend_mm, self.corner_mm, self.sharp_mm]) / pitch_mm
+
+    def grain(self) -> NDArray[np.float64]:
+        """Length of a step in each direction on each layer."""
+        grain = np.tile(kernels.STEP, (2, 1))
+        grain[1, ::4] *= self.across
+        return grain
+
+
+@dataclass
+class Piece:
+    """A connected part of a net."""
+
+    terminals: list[Terminal]
+    nodes: list[Ints]
+
+
+def connect(state: State, net: Wanted, kept: list[Ints], taste: Taste) -> list[Ints]:
+    """Paths that connect all pads of a net, each time from the tree to what is nearest.
+
+    Args:
+        state: the maps, without this net.
+        net: the net.
+        kept: paths that stay.
+        taste: what paths cost.
+
+    Raises:
+        Unreachable: a pad is walled in by what is fixed.
+    """
+    for terminal in net.terminals:
+        state.tree[terminal.nodes] |= INSIDE_PAD
+    for path in kept:
+        _grow(state, path)
+    paths = list(kept)
+    tree, *rest = _pieces(net, kept)
+    nearest = {i: _nearest(tree.terminals, piece) for i, piece in enumerate(rest)}
+    while nearest:
+        which = min(nearest, key=lambda i: nearest[i][0])
+        _, near, far = nearest.pop(which)
+        goal = rest[which]
+        path = _path(state, net, tree, goal, (near, far), taste)
+        paths.append(path)
+        _grow(state, path)
+        tree.terminals += goal.terminals
+        tree.nodes += [path, *goal.nodes]
+        for i, found in nearest.items():
+            nearest[i] = min(found, _nearest(goal.terminals, rest[i]), key=lambda f: f[0])
+    for nodes in tree.nodes:
+        state.tree[nodes] = 0
+    state.near_via[:] = 0
+    return paths
+
+
+def supported(net: Wanted, paths: list[Ints]) -> list[Ints]:
+    """Those paths of a net whose both ends are in a pad or at another such path."""
+    pads = {n for t in net.terminals for n in t.nodes.tolist()}
+    while True:
+        ends = [(int(p[0]), int(p[-1])) for p in paths]
+        nodes = [set(p.tolist()) for p in paths]
+        firm = [
+            i
+            for i in range(len(paths))
+            if all(
+                end in pads or any(end in nodes[j] for j in range(len(paths)) if j != i)
+                for end in ends[i]
+            )
+        ]
+        if len(firm) == len(paths):
+            return paths
+        paths = [paths[i] for i in firm]
+
+
+def _pieces(net: Wanted, kept: list[Ints]) -> list[Piece]:
+    """Connected parts of a net, the largest first."""
+    pieces = [Piece([t], [t.nodes]) for t in net.terminals]
+    of: dict[int, Piece] = {int(n): p for p in pieces for nodes in p.nodes for n in nodes}
+    for path in kept:
+        met = {id(p): p for p in (of.get(n) for n in path.tolist()) if p is not None}
+        one = Piece([], [path])
+        for piece in met.values():
+            one.terminals += piece.terminals
+            one.nodes += piece.nodes
+        for nodes in one.nodes:
+            of.update((n, one) for n in nodes.tolist())
+        pieces = [p for p in pieces if id(p) not in met] + [one]
+    return sorted(pieces, key=lambda p: -len(p.terminals))
+
+
+def _apart(a: Terminal, b: Terminal) -> float:
+    return round(math.hypot(a.pad.x_mm - b.pad.x_mm, a.pad.y_mm - b.pad.y_mm), 6)
+
+
+def _nearest(terminals: list[Terminal], piece: Piece) -> tuple[float, Terminal, Terminal]:
+    found = ((_apart(a, b), a, b) for a in terminals for b in piece.terminals)
+    return min(found, key=lambda f: f[0])
+
+
+def _box(grid: Grid, nodes: list[Ints]) -> Ints:
+    """First and last y, first and last x."""
+    y, x = np.divmod(np.concatenate(nodes) % grid.plane, grid.width)
+    return np.array([y.min(), y.max(), x.min(), x.max()], dtype=np.int32)
+
+
+def _path(
+    state: State, net: Wanted, tree: Piece, goal: Piece, ends: tuple[Terminal, Terminal],
+    taste: Taste,
+) -> Ints:  # fmt: skip
+    """The cheapest path from the tree to another piece: near the two, or else anywhere."""
+    for nodes in goal.nodes:
+        state.target[nodes] = 1
+    box = _box(state.grid, goal.nodes)
+    height, width = state.grid.height, state.grid.width
+    everywhere = np.array([0, height - 1, 0, width - 1], dtype=np.int32)
+    margin = round((taste.margin_mm + 0.2 * _apart(*ends)) / state.grid.pitch_mm)
+    near = _box(state.grid, [ends[0].nodes, *goal.nodes]) + margin * np.array([-1, 1, -1, 1])
+    near = np.clip(near, 0, everywhere[[1, 1, 3, 3]]).astype(np.int32)
+    starts = np.unique(np.concatenate(tree.nodes))
+    via_reach = (_via_reach_mm(state) / state.grid.pitch_mm) ** 2
+    for window in (near, everywhere):
+        state.turn += 1
+        path = kernels.search(
+            state.owner, state.taken, state.history, state.tree, starts, state.target,
+            box, window, net.neck, state.near_via, via_reach,
+            net.number, net.wide, state.rules.narrow,
+            taste.price, taste.grain(), taste.costs(state.grid.pitch_mm),
+            state.reached, state.came, state.seen, state.turn, state.keys, state.queue,
+        )  # fmt: skip
+        if path.size:
+            break
+    for nodes in goal.nodes:
+        state.target[nodes] = 0
+    if not path.size:
+        raise Unreachable(net.name, ends)
+    return path
+
+
+def _grow(state: State, path: Ints) -> None:
+    """Mark a path of the net at hand."""
+    grid = state.grid
+    for a, b in zip(path[:-1].tolist(), path[1:].tolist(), strict=True):
+        (ay, ax), (by, bx) = (divmod(n % grid.plane, grid.width) for n in (a, b))
+        way = stamps.way_of(by - ay, bx - ax)
+        if way == VIA:
+            state.tree[a] |= INSIDE_PAD
+            state.tree[b] |= INSIDE_PAD
+            at, reach = grid.at(a), _via_reach_mm(state)
+            where = grid.near(*at, reach)
+            x, y = grid.offsets(where, *at)
+            state.near_via[where][np.hypot(x, y) < reach] = 1
+        else:
+            state.tree[a] |= 1 << way
+            state.tree[b] |= 1 << ((way + 4) & 7)
+
+
+def _via_reach_mm(state: State) -> float:
+    """Distance of two vias, a little less than the least that is allowed."""
+    return state.rules.drill_mm + HOLE_TO_HOLE_MM - 1e-9

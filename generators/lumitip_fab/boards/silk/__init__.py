@@ -1,0 +1,1 @@
+"""The silkscreen of a board."""

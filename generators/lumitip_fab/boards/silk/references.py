@@ -1,0 +1,172 @@
+"""References of parts on the silkscreen, and the outlines of the cells that they stand in.
+
+At the cells there are all of them, for which the outlines give way if need be, or, where that is
+too narrow, those at the ends of each column: cells are counted from the tip.
+"""
+
+import dataclasses
+import math
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+import shapely
+from shapely import LineString
+
+from lumitip_fab.boards.footprints import courtyard
+from lumitip_fab.boards.model import Component, Side, Text
+from lumitip_fab.boards.silk.page import Clear, Page, extent
+from lumitip_fab.design import Point
+
+_APART_MM = 0.1  # more than the least gap round references, so that they do not run together
+_STEP_MM = 0.1
+_BEYOND_MM = 2.5  # farthest end of a column's reference from the column
+_SHOWN = ("multiplexer", "resistor", "capacitor")
+_AT_CELLS = ("led", "photodetector")
+_Places = dict[str, Text]
+
+
+def with_references(
+    page: Page, edges: Sequence[LineString], pitch_mm: float
+) -> tuple[Component, ...]:
+    """Print the outlines of the cells; parts with their references where there is room.
+
+    Args:
+        page: with all that comes before them.
+        edges: of all cells.
+        pitch_mm: of the cells.
+    """
+    front, components = page.sides["front"], page.board.components
+    lines = front.clipped(edges)
+    half = page.rules.silk_line_mm / 2
+    rooms: dict[Side, Clear] = {
+        "front": front.taking([line.buffer(half) for line in lines]),
+        "back": page.sides["back"].taking([]),
+    }
+    shown: _Places = {}
+    for part in components:
+        room = rooms[part.side]
+        if part.kind in _SHOWN and (text := _place_of(page, part, room)):
+            shown[part.ref] = text
+            room.take(extent(text, part.side))
+    cells = [part for part in components if part.kind in _AT_CELLS]
+    at_cells, cut = _at_cells(page, cells, rooms["front"]), False
+    if not at_cells:
+        bare = front.taking(
+            extent(shown[p.ref], "front") for p in components
+            if p.ref in shown and p.side == "front"
+        )  # fmt: skip
+        at_cells = _through_outlines(page, cells, bare, pitch_mm)
+        cut = bool(at_cells)
+    shown |= at_cells or _at_ends(page, cells, rooms["front"], pitch_mm)
+    named = tuple(
+        _printed(page, part, shown[part.ref]) if part.ref in shown else part for part in components
+    )
+    page.lines("front", front.clipped(edges) if cut else lines)
+    return named
+
+
+def _at_cells(page: Page, cells: Sequence[Component], room: Clear) -> _Places:
+    """All of them, or none."""
+    found = {part.ref: _place_of(page, part, room) for part in cells}
+    return {ref: text for ref, text in found.items() if text} if all(found.values()) else {}
+
+
+def _through_outlines(
+    page: Page, cells: Sequence[Component], room: Clear, pitch_mm: float
+) -> _Places:
+    """All of them, upright beside their parts and within their cells, or none; all at one side
+    where that is possible."""
+    found: _Places = {}
+    angles = np.radians(60 * np.arange(6))
+    corners = pitch_mm / np.sqrt(3) * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    for part in cells:
+        hexagon = shapely.Polygon([(part.x_mm + dx, part.y_mm + dy) for dx, dy in corners])
+        cell = hexagon.buffer(page.rules.silk_gap_mm)
+        places = (
+            page.text(part.ref, (part.x_mm + sign * off, part.y_mm), angle_deg=90.0)
+            for sign in (-1, 1)
+            for off in np.arange(0.0, pitch_mm / 2, _STEP_MM / 4).tolist()
+        )
+        free = (t for t in places
+                if cell.contains(extent(t, "front")) and room.free(extent(t, "front")))  # fmt: skip
+        text = next(free, None)
+        if text is None:
+            return {}
+        found[part.ref] = text
+        room.take(extent(text, "front"))
+    return found
+
+
+def _at_ends(page: Page, cells: Sequence[Component], room: Clear, pitch_mm: float) -> _Places:
+    """Of the first and the last cell of each column, beyond it, where there is room."""
+    columns: dict[float, list[Component]] = defaultdict(list)
+    for part in cells:
+        columns[round(part.x_mm, 3)].append(part)
+    found: _Places = {}
+    for column in columns.values():
+        ordered = sorted(column, key=lambda part: part.y_mm)
+        for part, sign in ((ordered[-1], 1), (ordered[0], -1)):
+            if part.ref in found:
+                continue
+            for text in _beyond(page, part, sign * pitch_mm / 2, sign):
+                at = text.x_mm, text.y_mm
+                own = min(cells, key=lambda cell: math.dist((cell.x_mm, cell.y_mm), at)) is part
+                if own and room.free(extent(text, "front")):
+                    found[part.ref] = text
+                    room.take(extent(text, "front"))
+                    break
+    return found
+
+
+def _beyond(page: Page, part: Component, start_mm: float, sign: int) -> Iterator[Text]:
+    """Places beyond a part that stands at the end of its column: upright, then level."""
+    for angle in (90.0, 0.0):
+        size = page.length_mm(part.ref) if angle else page.text("", (0.0, 0.0)).height_mm
+        for off in np.arange(0.0, _BEYOND_MM, _STEP_MM).tolist():
+            y = part.y_mm + start_mm + sign * (size / 2 + off)
+            yield page.text(part.ref, (part.x_mm, y), angle_deg=angle)
+
+
+def _place_of(page: Page, part: Component, room: Clear) -> Text | None:
+    """A free place for a part's reference, on the board."""
+    yard = courtyard(part)
+    (x, y), r = yard.centre_mm, part.ref
+    height = page.text(r, (x, y)).height_mm
+    choices: list[Text] = []
+    for closer in (0.0, 0.1, 0.2, 0.3, 0.4):
+        off = height + page.rules.silk_gap_mm - closer
+        up, aside = (size / 2 + off for size in (yard.length_mm, yard.width_mm))
+        long = (yard.length_mm + height + page.length_mm(r)) / 2 - closer
+        choices += [
+            page.text(r, (x, y + up)), page.text(r, (x, y - up)),
+            page.text(r, (x - aside, y), angle_deg=90.0),
+            page.text(r, (x + aside, y), angle_deg=90.0),
+            page.text(r, (x, y + long), angle_deg=90.0),
+        ]  # fmt: skip
+    if part.kind == "multiplexer":
+        choices.insert(0, page.text(r, (x, y), 1.2))
+    for apart in (_APART_MM, 0.0):
+        for text in choices:
+            if room.free(extent(text, part.side).buffer(apart)):
+                return text
+    return None
+
+
+def _printed(page: Page, part: Component, text: Text) -> Component:
+    """A part with its reference at a place on the board, told in its footprint's frame."""
+    page.sides[part.side].take(extent(text, part.side))
+    x, y = _in_footprint(part, (text.x_mm, text.y_mm))
+    angle = text.angle_deg - part.angle_deg
+    local = dataclasses.replace(
+        text, text="", x_mm=x, y_mm=y, angle_deg=angle if part.side == "front" else -angle
+    )
+    return dataclasses.replace(part, ref_text=local)
+
+
+def _in_footprint(part: Component, at: Point) -> Point:
+    """A place on the board in the frame of a part's footprint."""
+    turn = np.radians(part.angle_deg)
+    dx, dy = at[0] - part.x_mm, at[1] - part.y_mm
+    x, y = dx * np.cos(turn) + dy * np.sin(turn), dy * np.cos(turn) - dx * np.sin(turn)
+    return (-float(x) if part.side == "back" else float(x)), float(y)

@@ -1,0 +1,262 @@
+"""Catalogue entries of controllers, and of what boards outside the fingers carry: sockets,
+regulators, transistors."""
+
+from typing import Annotated, Self
+
+from pydantic import Field, model_validator
+
+from lumitip_fab.catalogue.record import (
+    Capacitances,
+    Entry,
+    Length,
+    Offset,
+    Pin,
+    Share,
+    Strict,
+    Voltages,
+)
+
+Signal = Annotated[str, Field(pattern=r"^[A-Za-z0-9_+\-]{1,12}$")]
+OPEN = "NC"
+"""Signal of a contact that is joined to nothing."""
+PinName = Annotated[str, Field(pattern=r"^[A-Z0-9]{1,6}$")]
+
+
+class Strip(Entry):
+    """One or two rows of contacts in plated holes."""
+
+    manufacturer: str = Field(min_length=1, max_length=64)
+    """Who makes it, for the bill of materials; "any" where it does not matter."""
+    order_number: str = Field(min_length=1, max_length=64)
+    """What to order."""
+    lcsc: str = Field(default="", pattern=r"^(C[1-9]\d*)?$")
+    """Number at the distributor LCSC; empty where it is not known."""
+    ways: int = Field(ge=1, le=64)
+    """Contacts in a row."""
+    rows: int = Field(default=1, ge=1, le=2)
+    """Rows, as far apart as contacts."""
+    pitch_mm: Length
+    """From contact to contact."""
+    pad_mm: Length
+    """Diameter of the copper round a hole."""
+    drill_mm: Length
+    """Diameter of a hole."""
+    height_mm: Length
+    """Above the board."""
+    stroke_mm: float = Field(default=0, ge=0, le=10)
+    """How far spring contacts give; 0 of others."""
+
+
+class Plug(Strict):
+    """How a controller board stands on two socket strips, its USB plug to the left.
+
+    ```
+         rows[1][0] … rows[1][-1]
+    USB ▐                        ▌
+         rows[0][0] … rows[0][-1]
+    ```
+    """
+
+    rows: tuple[
+        Annotated[tuple[PinName, ...], Field(min_length=2, max_length=64)],
+        Annotated[tuple[PinName, ...], Field(min_length=2, max_length=64)],
+    ]
+    """Names of the pins of both rows from left to right, the lower row first."""
+    spacing_mm: Length
+    """From row to row."""
+    body_mm: tuple[Length, Length]
+    """Length and width of the controller board."""
+    ground: PinName
+    """Its ground pins."""
+    supply: PinName
+    """Pin that takes the regulated supply."""
+    regulated: PinName
+    """Pin that feeds the receiver."""
+
+
+class Leaded(Entry):
+    """A small part with gull-wing leads in two rows, lead 1 at the lower left."""
+
+    manufacturer: str = Field(min_length=1, max_length=64)
+    """Who makes it, for the bill of materials."""
+    order_number: str = Field(min_length=1, max_length=64)
+    """What to order."""
+    lcsc: str = Field(default="", pattern=r"^(C[1-9]\d*)?$")
+    """Number at the distributor LCSC; empty where it is not known."""
+    body_mm: tuple[Length, Length, Length]
+    """Body: along the rows of leads, across them, height above the board."""
+    lead_span_mm: Length
+    """Outer ends of the pads of the two rows."""
+    lead_pitch_mm: Length
+    """Distance between neighbouring leads of the lower row."""
+    lead_pad_mm: tuple[Length, Length]
+    """Pad of one lead: along the lead, across it."""
+    names: tuple[PinName, ...] = Field(min_length=3, max_length=16)
+    """Name of each lead, counter-clockwise from lead 1; of an odd number the upper row has one
+    less, in its middle."""
+
+
+class Regulator(Leaded):
+    """A step-down switching regulator with a fixed output: FB, EN, VIN, GND, SW and BST."""
+
+    output_v: float = Field(gt=0, le=24)
+    """Output voltage."""
+    input_v: Voltages
+    """Least and greatest input voltage."""
+    output_a: float = Field(gt=0, le=20)
+    """Largest continuous output current."""
+    switching_khz: float = Field(gt=0, le=1e5)
+    """Switching frequency."""
+    soft_start_ms: float = Field(gt=0, le=1000)
+    """Until its output stands."""
+    boot_nf: Capacitances
+    """Least and greatest capacitance between SW and BST."""
+    switch_ohm: tuple[Share, Share]
+    """Resistance of the switch to the input and of that to ground."""
+
+    @model_validator(mode="after")
+    def _has_its_leads(self) -> Self:
+        if set(self.names) != {"FB", "EN", "VIN", "GND", "SW", "BST"}:
+            raise ValueError(f"leads {', '.join(self.names)} given, FB, EN, VIN, GND, SW and BST "
+                             "are needed")  # fmt: skip
+        return self
+
+
+class LinearRegulator(Leaded):
+    """A linear regulator with a fixed output: GND, OUT and IN."""
+
+    output_v: float = Field(gt=0, le=24)
+    """Output voltage."""
+    input_v: Voltages
+    """Least and greatest input voltage."""
+    output_a: float = Field(gt=0, le=20)
+    """Largest continuous output current."""
+    stable_nf: Capacitances
+    """Least and greatest capacitance at its output."""
+
+    @model_validator(mode="after")
+    def _has_its_leads(self) -> Self:
+        if set(self.names) != {"GND", "OUT", "IN"}:
+            raise ValueError(f"leads {', '.join(self.names)} given, GND, OUT and IN are needed")
+        return self
+
+
+class Transistor(Leaded):
+    """A P-channel MOSFET: G, S and D."""
+
+    rated_v: float = Field(gt=0, le=1000)
+    """Largest voltage from source to drain."""
+    gate_v: float = Field(gt=0, le=100)
+    """Largest voltage from source to gate."""
+    gate_on_v: float = Field(gt=0, le=100)
+    """Voltage from source to gate at which it is on for certain."""
+
+    @model_validator(mode="after")
+    def _has_its_leads(self) -> Self:
+        if set(self.names) != {"G", "S", "D"}:
+            raise ValueError(f"leads {', '.join(self.names)} given, G, S and D are needed")
+        return self
+
+
+ANALOG_PORTS = ("P0_02", "P0_03", "P0_04", "P0_05", "P0_28", "P0_29", "P0_30", "P0_31")
+"""AIN0 to AIN7 of the nRF52840, by its product specification."""
+_SINGLE = ("VDD", "VDDH", "VBUS", "USB_DM", "USB_DP", "SWDIO", "SWDCLK", "P0_18")
+"""Pads that are joined by their names; P0.18 is the reset."""
+
+
+class Module(Strict):
+    """A module with Nordic's nRF52840 and an antenna, soldered to the flange's board.
+
+    Places are in mm from the middle of its body, seen from above with the antenna at the top.
+    """
+
+    manufacturer: str = Field(min_length=1, max_length=64)
+    """Who makes it, for the bill of materials."""
+    order_number: str = Field(min_length=1, max_length=64)
+    """What to order."""
+    lcsc: str = Field(default="", pattern=r"^(C[1-9]\d*)?$")
+    """Number at the distributor LCSC; empty where it is not known."""
+    body_mm: tuple[Length, Length, Length]
+    """Body: across, along, height above the board."""
+    bypass_nf: Capacitances
+    """Least and greatest capacitance beside its supply."""
+    crystal: tuple[Pin, Pin]
+    """Ports of the crystal of 32.768 kHz."""
+    keep_out_mm: tuple[tuple[Offset, Offset, Offset, Offset], ...]
+    """Rectangles under the antenna without copper on either side: left, low, right, high."""
+    names: Annotated[tuple[Pin, ...], Field(min_length=8, max_length=128)]
+    """Name of each pad from pad 1: ports such as `P0_04`, `GND`, `VDD`, `VDDH`, `VBUS`, `USB_DM`,
+    `USB_DP`, `SWDIO`, `SWDCLK`."""
+    pads_mm: tuple[tuple[Offset, Offset, Length, Length], ...]
+    """Of each pad its middle, width and height."""
+    ports: dict[Pin, Pin]
+    """Port of each pin that the firmware's board definition has: `A0 = "P0_04"`."""
+
+    def measures(self, pin: str) -> bool:
+        """Whether a pin is an analog input."""
+        return self.ports[pin] in ANALOG_PORTS
+
+    @model_validator(mode="after")
+    def _pads_exist(self) -> Self:
+        if len(self.names) != len(self.pads_mm):
+            raise ValueError(
+                f"{len(self.names)} names and {len(self.pads_mm)} places of pads given, each pad "
+                "needs both"
+            )
+        ports = (*self.crystal, *self.ports.values())
+        for name in (*_SINGLE, *ports):
+            if self.names.count(name) != 1:
+                raise ValueError(f"{self.names.count(name)} pads named {name} given, 1 is needed")
+        twice = sorted({port for port in ports if ports.count(port) > 1})
+        if twice:
+            raise ValueError(f"{', '.join(twice)} given twice, each port is used once")
+        if "GND" not in self.names:
+            raise ValueError("no pad named GND given, at least one is needed")
+        return self
+
+
+class Controller(Entry):
+    """A microcontroller that reads the multiplexers: a board, or a module on the flange's board."""
+
+    analog_pins: tuple[Pin, ...] = Field(min_length=1)
+    """Analog inputs in the order in which they are used."""
+    unlimited_analog_pins: bool = False
+    """Whether further inputs are invented as needed: for benchmarks only."""
+    select_pins: tuple[Pin, ...] = Field(min_length=1)
+    """Digital outputs for the select lines, least significant first."""
+    adc_bits: int = Field(ge=8, le=16)
+    """Resolution of the analog-to-digital converter."""
+    input_pf: float = Field(ge=0, le=1e4)
+    """Capacitance of an analog input with the wire to it."""
+    supply_v: float = Field(gt=0, le=5.5)
+    """Supply of its inputs, which is also the detectors' supply."""
+    draws_ma: float = Field(default=0.0, ge=0, le=2000)
+    """Largest current of the board itself; 0 where it is not known (mA)."""
+    plug: Plug | None = None
+    """How it stands on sockets, if it does."""
+    module: Module | None = None
+    """How it is soldered to the flange's board, if it is."""
+
+    @model_validator(mode="after")
+    def _pins_differ(self) -> Self:
+        pins = (*self.analog_pins, *self.select_pins)
+        twice = sorted({pin for pin in pins if pins.count(pin) > 1})
+        if twice:
+            raise ValueError(f"{', '.join(twice)} given twice, each pin is used once")
+        if self.plug is not None:
+            there = {*self.plug.rows[0], *self.plug.rows[1]}
+            wanted = (*pins, self.plug.ground, self.plug.supply, self.plug.regulated)
+            lost = sorted(set(wanted) - there)
+            if lost:
+                raise ValueError(f"{', '.join(lost)} given, which no row of its plug has")
+        if self.module is not None:
+            lost = sorted(set(pins) - set(self.module.ports))
+            if lost:
+                raise ValueError(f"{', '.join(lost)} given, for which its module has no port")
+            deaf = sorted(set(self.analog_pins) - {*filter(self.module.measures, self.analog_pins)})
+            if deaf:
+                raise ValueError(
+                    f"{', '.join(deaf)} given as analog, only the ports {', '.join(ANALOG_PORTS)} "
+                    "measure voltages"
+                )
+        return self

@@ -1,0 +1,274 @@
+"""The catalogue of parts in `design/parts/*.toml`: what a parameter file names by name.
+
+Every entry says where its figures come from (`source`) and how far to trust them
+(`confidence`). Adding a part needs no Python.
+"""
+
+from collections.abc import Mapping
+from typing import Literal, Self
+
+from pydantic import Field, model_validator
+
+from lumitip_fab.catalogue.controllers import (
+    Controller,
+    LinearRegulator,
+    Regulator,
+    Strip,
+    Transistor,
+)
+from lumitip_fab.catalogue.grippers import Gripper, ToolCoupling
+from lumitip_fab.catalogue.materials import Fastener, Filament, Laminates
+from lumitip_fab.catalogue.ordering import Fab, Prices
+from lumitip_fab.catalogue.record import Capacitances, Entry, Length, Name, Share, Strict
+
+
+class Bought(Entry):
+    """What every part that is soldered to a board carries."""
+
+    manufacturer: str = Field(min_length=1, max_length=64)
+    """Who makes it, for the bill of materials; "any" where it does not matter."""
+    order_number: str = Field(min_length=1, max_length=64)
+    """What to order; of resistors, `{code}` stands for the value, such as 75K or 4K99."""
+    lcsc: str = Field(default="", pattern=r"^(C[1-9]\d*)?$")
+    """Number at the distributor LCSC, by which JLCPCB finds a part; empty where it is not known,
+    and of resistors, whose number depends on the value."""
+
+
+class Chip(Bought):
+    """A two-terminal part soldered flat on its board."""
+
+    body_mm: tuple[Length, Length, Length]
+    """Body: along its terminals, across them, height above the board."""
+    pad_mm: tuple[Length, Length]
+    """One solder pad: along the terminals, across them."""
+    pad_pitch_mm: Length
+    """Distance between the centres of the two pads."""
+
+    @property
+    def over_pads_mm(self) -> tuple[float, float]:
+        """Length and width of the land pattern, body included."""
+        along = max(self.pad_pitch_mm + self.pad_mm[0], self.body_mm[0])
+        return along, max(self.pad_mm[1], self.body_mm[1])
+
+
+class Optical(Chip):
+    """A chip that shines or sees through its top."""
+
+    die_height_mm: Length
+    """Height of the light-emitting or light-sensitive surface above the board."""
+
+    @model_validator(mode="after")
+    def _die_in_body(self) -> Self:
+        if self.die_height_mm > self.body_mm[2]:
+            raise ValueError(
+                f"die_height_mm = {self.die_height_mm:g} given, at most the body's height of "
+                f"{self.body_mm[2]:g} is allowed"
+            )
+        return self
+
+
+class Led(Optical):
+    """An infrared light-emitting diode."""
+
+    forward_voltage_v: float = Field(ge=0.1, le=10)
+    """Forward voltage at the working current."""
+    forward_tolerance_v: float = Field(ge=0, le=2)
+    """How far the forward voltage of one part may be off, either way."""
+    ideality: float = Field(ge=1, le=5)
+    """Ideality factor n: how its voltage grows with the logarithm of its current."""
+    marked: Literal["anode", "cathode"]
+    """Terminal that the part's mark shows; the board's mark is beside it."""
+    max_current_ma: float = Field(ge=0.1, le=1000)
+    """Largest continuous current."""
+    exponent: float = Field(ge=0, le=50)
+    """Exponent m of the radiant intensity cos(angle) ** m; 1 is Lambertian."""
+
+
+class Photodetector(Optical):
+    """A phototransistor or photodiode."""
+
+    exponent: float = Field(ge=0, le=50)
+    """Exponent n of the sensitivity cos(angle) ** n."""
+    marked: Literal["collector", "emitter"]
+    """Terminal that the part's mark shows; the board's mark is beside it."""
+    dark_current_na: float = Field(ge=0, le=1e6)
+    """Largest collector current without light."""
+    light_current_ua: float = Field(gt=0, le=1e6)
+    """Collector current under a bare LED, nothing between the fingers."""
+    saturation_v: float = Field(ge=0, le=2)
+    """Collector to emitter voltage when the light asks for more current than there is."""
+    capacitance_pf: float = Field(ge=0, le=1e4)
+    """Capacitance of the collector."""
+
+
+class Resistor(Chip):
+    """A resistor package."""
+
+    power_w: float = Field(gt=0, le=10)
+    """Rated power at 70 °C."""
+
+
+class Capacitor(Chip):
+    """A ceramic capacitor."""
+
+    capacitance_nf: float = Field(gt=0, le=1e6)
+    """Capacitance."""
+    rated_v: float = Field(gt=0, le=1e4)
+    """Largest voltage."""
+    left: float = Field(default=1, gt=0, le=1)
+    """Share of it that is left at the voltage across it."""
+
+
+class Inductor(Chip):
+    """A power inductor."""
+
+    inductance_uh: float = Field(gt=0, le=1e5)
+    """Inductance."""
+
+
+class Crystal(Chip):
+    """A quartz crystal of 32.768 kHz."""
+
+    load_pf: float = Field(gt=0, le=100)
+    """Capacitance that it is made for, of its two capacitors in series with all else there is."""
+
+
+class Fuse(Chip):
+    """A fuse."""
+
+    rated_a: float = Field(gt=0, le=100)
+    """Current that it carries."""
+    rated_v: float = Field(gt=0, le=1000)
+    """Voltage that it breaks."""
+
+
+class Multiplexer(Bought):
+    """An analog multiplexer with its leads in two rows."""
+
+    body_mm: tuple[Length, Length, Length]
+    """Body: along the rows of leads, across them, height above the board."""
+    lead_span_mm: Length
+    """Outer ends of the pads of the two rows."""
+    lead_tips_mm: Length
+    """Outer ends of the leads of the two rows."""
+    lead_pad_mm: tuple[Length, Length]
+    """Pad of one lead: along the lead, across it."""
+    lead_pitch_mm: Length
+    """Distance between neighbouring leads."""
+    leads: int = Field(ge=8, le=128)
+    """Number of leads, both rows together."""
+    inputs: dict[str, int]
+    """Lead number of each input, by channel: `0 = 13` means Y0 is lead 13."""
+    select: tuple[int, ...] = Field(min_length=1, max_length=8)
+    """Lead numbers of the select lines, least significant first."""
+    output: int = Field(ge=1)
+    """Lead number of the common terminal."""
+    supply: int = Field(ge=1)
+    """Lead number of the supply."""
+    ground: int = Field(ge=1)
+    """Lead number of the ground."""
+    enable: int = Field(ge=1)
+    """Lead number of the enable input, active low: tied to ground."""
+    negative: int | None = None
+    """Lead number of the negative supply, if there is one: tied to ground."""
+    on_resistance_ohm: float = Field(gt=0, le=1e4)
+    """Largest resistance from an input to the common terminal at the detectors' supply."""
+    common_pf: float = Field(ge=0, le=1e4)
+    """Capacitance of the common terminal."""
+    bypass_nf: Capacitances
+    """Least and greatest capacitance between its supply and ground."""
+
+    @property
+    def channels(self) -> int:
+        """Number of inputs."""
+        return len(self.inputs)
+
+    @model_validator(mode="after")
+    def _leads_exist(self) -> Self:
+        single = (self.output, self.supply, self.ground, self.enable, self.negative)
+        used = (*self.inputs.values(), *self.select, *(lead for lead in single if lead is not None))
+        if set(self.inputs) != {str(i) for i in range(len(self.inputs))} or not self.inputs:
+            given = ", ".join(self.inputs) or "none"
+            raise ValueError(f"inputs {given} given, the channels 0, 1, 2 … are needed, no gap")
+        if self.channels > 2 ** len(self.select):
+            raise ValueError(
+                f"{self.channels} inputs given, {len(self.select)} select lines reach at most "
+                f"{2 ** len(self.select)}"
+            )
+        if len(set(used)) != len(used) or not all(1 <= lead <= self.leads for lead in used):
+            raise ValueError(
+                f"inputs, select, output, supply, ground, enable and negative on leads "
+                f"{sorted(used)} given, each needs a lead of its own from 1 to leads = {self.leads}"
+            )
+        return self
+
+
+class Silicone(Entry):
+    """A two-part casting silicone."""
+
+    density_g_ml: float = Field(gt=0.5, le=3)
+    """Density of the mixture."""
+    mix_ratio: tuple[Share, Share]
+    """Parts A and B by mass."""
+    refractive_index: float = Field(ge=1.0, le=2.0)
+    """Refractive index when cured."""
+    cure_h: float = Field(gt=0, le=200)
+    """Time to cure at `cure_c` (h)."""
+    cure_c: float = Field(ge=5, le=200)
+    """Temperature to cure at, in the mould with backing and board (°C)."""
+    limit_c: float = Field(ge=20, le=400)
+    """Highest temperature that it bears when cured (°C)."""
+
+
+class Film(Entry):
+    """A printable film for the mask."""
+
+    thickness_mm: Length
+    """Thickness."""
+    density_g_ml: float = Field(gt=0.5, le=3)
+    """Density (g/mL)."""
+    soften_c: float = Field(gt=20, le=200)
+    """Temperature at which it can be creased (°C)."""
+    limit_c: float = Field(gt=20, le=300)
+    """Highest temperature that it bears without melting or shrinking (°C)."""
+
+
+class Printer(Entry):
+    """A 3D printer with its nozzle: what the walls can be."""
+
+    nozzle_mm: Length
+    """Bore of the nozzle."""
+    line_mm: Length
+    """Width of one extruded line."""
+    layer_mm: Length
+    """Height of one layer."""
+    bed_mm: tuple[Length, Length, Length]
+    """Print volume."""
+
+
+class Catalogue(Strict):
+    """All parts by kind and name."""
+
+    leds: Mapping[Name, Led]
+    photodetectors: Mapping[Name, Photodetector]
+    resistors: Mapping[Name, Resistor]
+    capacitors: Mapping[Name, Capacitor]
+    multiplexers: Mapping[Name, Multiplexer]
+    controllers: Mapping[Name, Controller]
+    strips: Mapping[Name, Strip]
+    regulators: Mapping[Name, Regulator]
+    linear_regulators: Mapping[Name, LinearRegulator]
+    crystals: Mapping[Name, Crystal]
+    inductors: Mapping[Name, Inductor]
+    fuses: Mapping[Name, Fuse]
+    transistors: Mapping[Name, Transistor]
+    couplings: Mapping[Name, ToolCoupling]
+    grippers: Mapping[Name, Gripper]
+    fasteners: Mapping[Name, Fastener]
+    silicones: Mapping[Name, Silicone]
+    films: Mapping[Name, Film]
+    printers: Mapping[Name, Printer]
+    filaments: Mapping[Name, Filament]
+    fabs: Mapping[Name, Fab]
+    laminates: Laminates
+    prices: Prices

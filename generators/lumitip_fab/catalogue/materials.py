@@ -1,0 +1,98 @@
+"""Catalogue entries of materials and fasteners: laminates, filaments, screws and nuts."""
+
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from lumitip_fab.catalogue.record import Entry, Length, Name, Sourced, Strict
+
+
+class Laminate(Sourced):
+    """Core and copper of a board with two layers."""
+
+    density_g_ml: float = Field(ge=0.5, le=5)
+    """Density without copper."""
+    copper_mm: Length
+    """Thickness of the copper on each side."""
+    limit_c: float = Field(ge=60, le=400)
+    """Highest temperature that it bears for hours: its glass transition, or its adhesive's (°C)."""
+    solder_c: float = Field(ge=100, le=400)
+    """Highest temperature that it bears for the seconds of soldering (°C)."""
+
+
+class Laminates(Strict):
+    """One for each kind of board."""
+
+    rigid: Laminate
+    flexible: Laminate
+
+
+_Percent = Annotated[int, Field(ge=0, le=100)]
+
+
+class Filament(Entry):
+    """A filament of 1.75 mm."""
+
+    kind: Literal["ABS", "ASA", "FLEX", "PA", "PC", "PET", "PLA", "PP"]
+    """What PrusaSlicer calls its kind."""
+    density_g_ml: float = Field(ge=0.5, le=3)
+    """Density."""
+    nozzle_c: int = Field(ge=150, le=450)
+    """Temperature of the nozzle (°C)."""
+    bed_c: int = Field(ge=0, le=150)
+    """Temperature of the bed (°C)."""
+    fan_percent: tuple[_Percent, _Percent]
+    """Least and most that the fan blows."""
+    speed_mm_s: float = Field(ge=5, le=300)
+    """Speed of perimeters; outer ones and the first layer go slower."""
+    max_flow_mm3_s: float = Field(ge=0.5, le=50)
+    """What the nozzle melts."""
+    retract_mm: float = Field(ge=0, le=10)
+    """How far it is pulled back before a move."""
+    layer_mpa: float = Field(gt=0, le=500)
+    """Tensile strength from layer to layer."""
+    bearing_mpa: float = Field(gt=0, le=500)
+    """Compressive strength of a solid print."""
+    limit_c: float = Field(ge=30, le=300)
+    """Highest temperature at which a printed part keeps its shape (°C): the lower end of its
+    heat deflection temperature."""
+    rigid_parts: Name | None = None
+    """For a filament that bends: the filament of parts that must not, such as moulds."""
+
+    @model_validator(mode="after")
+    def _fan_in_order(self) -> Self:
+        if self.fan_percent[0] > self.fan_percent[1]:
+            raise ValueError(f"fan_percent {self.fan_percent} given, the least comes first")
+        return self
+
+
+class Fastener(Entry):
+    """A metric thread with the heads and the nut that go with it."""
+
+    thread_mm: Length
+    """Outer diameter of the thread."""
+    hole_mm: tuple[Length, Length]
+    """Clearance holes by ISO 273: fine and coarse."""
+    cap_head_mm: Length
+    """Diameter of the head of a socket head cap screw, ISO 4762."""
+    countersunk_mm: Length
+    """Diameter of the head of a countersunk screw, ISO 7046."""
+    nut_mm: Length
+    """Width of a nut across flats, ISO 4032."""
+    nut_height_mm: Length
+    """Height of a nut, ISO 4032."""
+
+    @model_validator(mode="after")
+    def _goes_through(self) -> Self:
+        fine, coarse = self.hole_mm
+        if not self.thread_mm < fine <= coarse:
+            raise ValueError(
+                f"hole_mm = [{fine:g}, {coarse:g}] given, more than thread_mm = "
+                f"{self.thread_mm:g} is needed, the finer first"
+            )
+        if min(self.cap_head_mm, self.countersunk_mm, self.nut_mm) <= coarse:
+            raise ValueError(
+                f"cap_head_mm = {self.cap_head_mm:g}, countersunk_mm = {self.countersunk_mm:g} and "
+                f"nut_mm = {self.nut_mm:g} given, more than the coarse hole's {coarse:g} is needed"
+            )
+        return self

@@ -1,0 +1,99 @@
+"""Catalogue entries for ordering: PCB manufacturers and prices."""
+
+from collections.abc import Mapping
+from typing import Annotated, Literal, Self, get_args
+
+from pydantic import Field, model_validator
+
+from lumitip_fab.catalogue.record import Entry, Length, Sourced, Strict
+
+Layers = Literal[
+    "front_copper", "back_copper", "front_mask", "back_mask", "front_paste", "back_paste",
+    "front_silk", "back_silk", "outline", "plated", "unplated", "stiffener",
+]  # fmt: skip
+BomField = Literal[
+    "item", "refs", "quantity", "manufacturer", "part", "value", "footprint", "lcsc",
+]  # fmt: skip
+PositionField = Literal["ref", "value", "footprint", "part", "x_mm", "y_mm", "angle_deg", "side"]
+Heading = Annotated[str, Field(min_length=1, max_length=40)]
+Ending = Annotated[str, Field(pattern=r"^[A-Za-z0-9_.\-]{2,30}$")]
+
+
+class Silk(Strict):
+    """What a board house prints legibly."""
+
+    text_mm: Length
+    """Height of the smallest letters."""
+    line_mm: Length
+    """Width of the thinnest lines."""
+    gap_mm: Length
+    """Least distance between silkscreen and pads."""
+
+
+class Fab(Entry):
+    """A board house: what it calls files and columns, and how it counts angles."""
+
+    layers: Mapping[Layers, Ending]
+    """What follows the board's name in the file of each layer; a stiffener is of flexible boards
+    alone."""
+    bom: tuple[tuple[Heading, BomField], ...] = Field(min_length=1)
+    """Heading and field of each column of the bill of materials."""
+    positions: tuple[tuple[Heading, PositionField], ...] = Field(min_length=1)
+    """Heading and field of each column of the placement list."""
+    silk: Silk
+    """What its silkscreen shows."""
+    remark: str = Field(default="", max_length=300)
+    """What to mind when ordering there, for the note in its zip."""
+    sides: tuple[Heading, Heading]
+    """What it calls front and back."""
+    back_angle: Literal["from behind", "as KiCad"]
+    """How the angle of a part on the back is counted."""
+    rotations: Mapping[str, float]
+    """What is added to the angle (degrees) of footprints whose name begins so."""
+
+    @model_validator(mode="after")
+    def _layers_whole(self) -> Self:
+        missing = sorted(set(get_args(Layers)) - set(self.layers))
+        if missing:
+            raise ValueError(f"layers without {', '.join(missing)} given, each is needed")
+        if len(set(self.layers.values())) < len(self.layers):
+            raise ValueError("layers with the same ending given, each needs its own")
+        return self
+
+
+Price = Annotated[float, Field(ge=0, le=1e6)]
+
+
+class BoardPrice(Strict):
+    """One bare board."""
+
+    each: Price
+    """Whatever its size."""
+    per_cm2: Price
+    """By its area."""
+
+
+class PlacingPrice(Strict):
+    """Placing and soldering."""
+
+    each: Price
+    """Of one part."""
+
+
+class Prices(Sourced):
+    """What parts cost, in one currency."""
+
+    currency: str = Field(pattern=r"^[A-Z]{3}$")
+    """Three letters, such as EUR."""
+    dated: str = Field(pattern=r"^\d{4}-\d{2}$")
+    """Year and month of the prices."""
+    each: Mapping[str, Price]
+    """One piece, by name of the entry in another file of `parts/`."""
+    board: BoardPrice
+    placing: PlacingPrice
+    kg: Mapping[str, Price]
+    """A kilogram of a filament or a silicone, by its name in the catalogue."""
+    sheet: Mapping[str, Price]
+    """A sheet of A4 of a film, by its name in the catalogue."""
+    wire_m: Price
+    """A metre of stranded wire."""

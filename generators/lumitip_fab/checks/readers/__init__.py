@@ -1,0 +1,1 @@
+"""Readers of the files in an output folder, one for each format."""

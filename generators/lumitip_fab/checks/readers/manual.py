@@ -1,0 +1,173 @@
+"""The manual as its reader has it: words, pictures and typefaces of HTML and PDF."""
+
+import re
+from base64 import b64decode
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import pikepdf
+
+from lumitip_fab.checks.result import MALFORMED
+from lumitip_fab.errors import OutputError
+
+_LETTER = re.compile(rb"<([0-9A-Fa-f]{2})>\s*<([0-9A-Fa-f]{4})>")
+_FILES = ("/FontFile", "/FontFile2", "/FontFile3")
+_USUAL_EM = 0.6  # of a letter whose width the file does not tell
+
+
+@dataclass(frozen=True)
+class Face:
+    """A font with a letter for each byte."""
+
+    name: str
+    embedded: bool
+    """Whether its outlines are in the file; else every printer takes its own."""
+    letters: Mapping[int, str]
+    """What each code says; of others Windows' Latin letters."""
+    widths_em: Mapping[int, float]
+
+    def text(self, codes: bytes) -> str:
+        """What they say."""
+        return "".join(self.letters.get(c) or bytes([c]).decode("cp1252") for c in codes)
+
+    def width_em(self, codes: bytes) -> float:
+        """How wide they are, in font sizes."""
+        return sum(self.widths_em.get(code, _USUAL_EM) for code in codes)
+
+
+def faces_of(page: pikepdf.Page) -> dict[str, Face]:
+    """The fonts of a page, by the names that its operators use.
+
+    Raises:
+        ValueError: if one has more than a byte for each letter.
+    """
+    fonts: Any = page.resources.get("/Font", {})
+    return {str(name): _face(fonts[name]) for name in fonts.keys()}  # noqa: SIM118
+
+
+def _face(font: Any) -> Face:
+    if str(font.Subtype) not in ("/TrueType", "/Type1"):
+        raise ValueError(f"a font of kind {font.Subtype}, one byte for each letter is needed")
+    outlines = font.get("/FontDescriptor", {})
+    table = font.ToUnicode.read_bytes() if "/ToUnicode" in font else b""
+    letters = {int(code, 16): chr(int(point, 16)) for code, point in _LETTER.findall(table)}
+    widths = [float(width) / 1000 for width in font.get("/Widths", [])]
+    first = int(font.get("/FirstChar", 0))
+    return Face(
+        name=str(font.BaseFont)[1:],
+        embedded=any(kind in outlines for kind in _FILES),
+        letters={code: letter for code, letter in letters.items() if letter != "\0"},
+        widths_em=dict(enumerate(widths, first)),
+    )
+
+
+def lacking(faces: Mapping[str, Face]) -> list[str]:
+    """Names of the fonts that are not embedded."""
+    return sorted({face.name for face in faces.values() if not face.embedded})
+
+
+_FOOT = 2  # texts at the foot of each page, drawn first
+_BLOCKS = {"h1", "h2", "h3", "h4", "h5", "p", "li", "td", "th", "tr", "table"}
+
+
+@dataclass(frozen=True)
+class Chapter:
+    """Everything below a heading, down to the next one."""
+
+    heading: str
+    tables: list[list[list[str]]] = field(default_factory=list)
+    """Rows of cells, the heading row first."""
+
+
+class Manual(HTMLParser):
+    """The manual's HTML."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.blocks = [""]
+        """Words of each paragraph, item, heading and cell."""
+        self.chapters = [Chapter("")]
+        self.pictures: list[tuple[str, bytes]] = []
+        """Of which file each is, and its bytes."""
+        self.codes: list[str] = []
+        """What stands in the type of a program: file names among it."""
+        self._open = ""
+        self._told = ""
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        """Opens a heading, a table, a row, a cell, or shows a picture."""
+        if tag in _BLOCKS:
+            self.blocks.append("")
+        if tag == "img":
+            told = dict(attrs)
+            data = (told.get("src") or "").partition("base64,")[2]
+            self.pictures.append((told.get("data-file") or "", b64decode(data, validate=True)))
+        elif tag == "table":
+            self.chapters[-1].tables.append([])
+        elif tag == "tr":
+            self.chapters[-1].tables[-1].append([])
+        if tag in ("br", "small"):
+            self.blocks.append("")
+        if tag in ("td", "th", "code", "h1", "h2", "h3", "h4", "h5", "title", "style"):
+            self._open, self._told = tag, ""
+
+    def handle_endtag(self, tag: str) -> None:
+        """Keeps what stood in it."""
+        if tag in ("td", "th"):
+            self.chapters[-1].tables[-1][-1].append(self._told)
+        elif tag == "code":
+            self.codes.append(self._told)
+        elif re.fullmatch(r"h\d", tag):
+            self.chapters.append(Chapter(self._told))
+        if tag in ("title", "style"):
+            self._open = ""
+        if tag in _BLOCKS:
+            self.blocks.append("")
+
+    def handle_data(self, data: str) -> None:
+        """Words."""
+        if self._open not in ("title", "style"):
+            self.blocks[-1] += data
+            self._told += data
+
+
+def read_html(path: Path) -> Manual:
+    """The manual's HTML.
+
+    Raises:
+        OutputError: if it is missing or cannot be read.
+    """
+    manual = Manual()
+    try:
+        manual.feed(path.read_text(encoding="utf-8"))
+        manual.close()
+    except (OSError, ValueError, LookupError) as error:
+        raise OutputError(f"{path}: cannot be read as a manual: {error!r:.120}") from error
+    return manual
+
+
+def read_pdf(path: Path) -> tuple[str, list[str]]:
+    """All that is written on the pages of a PDF, without spaces, and the fonts that it lacks.
+
+    Raises:
+        OutputError: if it is missing or cannot be read.
+    """
+    told, without = list[str](), set[str]()
+    try:
+        with pikepdf.open(path) as document:
+            for page in document.pages:
+                faces = faces_of(page)
+                without |= set(lacking(faces))
+                drawn, face = list[str](), ""
+                for operands, operator in pikepdf.parse_content_stream(page):
+                    if str(operator) == "Tf":
+                        face = str(operands[0])
+                    elif str(operator) == "Tj":
+                        drawn.append(faces[face].text(bytes(operands[0])))
+                told += drawn[_FOOT:]
+    except (OSError, *MALFORMED, pikepdf.PdfError) as error:
+        raise OutputError(f"{path}: cannot be read as a PDF: {error!r:.120}") from error
+    return re.sub(r"\s", "", "".join(told)), sorted(without)

@@ -1,0 +1,110 @@
+"""Read the named bodies of a GLB file."""
+
+import json
+import struct
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import trimesh
+from numpy.typing import NDArray
+
+from lumitip_fab.checks.readers.solids import Vectors
+from lumitip_fab.design.frames import Matrix, applied, translation
+from lumitip_fab.errors import OutputError
+
+_M_TO_MM = 1000.0
+_CHUNK = 8
+_START = 12
+_TYPES = {5126: np.dtype("<f4"), 5125: np.dtype("<u4")}
+_WIDTH = {"VEC3": 3, "SCALAR": 1}
+
+
+@dataclass(frozen=True, eq=False)
+class Node:
+    """A body in the frame of its group, mm."""
+
+    group: str
+    points_mm: Vectors
+    triangles: NDArray[np.int64]
+    to_scene: Matrix
+    """From the group's frame to the scene, mm."""
+
+    @property
+    def mesh(self) -> Any:
+        """The body in its group's frame."""
+        return trimesh.Trimesh(self.points_mm, self.triangles, process=False)
+
+    @property
+    def in_scene_mm(self) -> Vectors:
+        """The body's corners in the scene."""
+        return applied(self.to_scene, self.points_mm)
+
+    @property
+    def centre_mm(self) -> Vectors:
+        """Middle of its bounding box, in the scene."""
+        middle = (self.points_mm.min(axis=0) + self.points_mm.max(axis=0)) / 2
+        return np.asarray(applied(self.to_scene, middle[None])[0])
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """What a GLB file holds."""
+
+    nodes: dict[str, Node]
+    extras: dict[str, float]
+
+
+def read_scene(path: Path) -> Scene:
+    """Groups of named bodies, two levels deep.
+
+    Raises:
+        OutputError: if the file is missing, cut short, or not such a scene.
+    """
+    try:
+        return _scene(path.read_bytes())
+    except FileNotFoundError as error:
+        raise OutputError("no such file") from error
+    except (OSError, ValueError, KeyError, IndexError, TypeError, struct.error) as error:
+        raise OutputError(f"cannot be read: {error!r:.200}") from error
+
+
+def _scene(data: bytes) -> Scene:
+    magic, _, length = struct.unpack_from("<4sII", data)
+    if magic != b"glTF" or length != len(data):
+        raise ValueError(f"{len(data)} bytes where the file says {length}")
+    size = struct.unpack_from("<I", data, _START)[0]
+    told = json.loads(data[_START + _CHUNK : _START + _CHUNK + size])
+    binary = data[_START + 2 * _CHUNK + size :]
+    nodes: dict[str, Node] = {}
+    scene = told["scenes"][told["scene"]]
+    for root in scene["nodes"]:
+        group = told["nodes"][root]
+        to_scene = np.array(group["matrix"], dtype=np.float64).reshape(4, 4).T
+        to_scene[:3, 3] *= _M_TO_MM
+        for child in group["children"]:
+            body = told["nodes"][child]
+            nodes[body["name"]] = _node(told, binary, group["name"], body, to_scene)
+    return Scene(nodes, scene.get("extras", {}))
+
+
+def _node(
+    told: dict[str, Any], binary: bytes, group: str, body: dict[str, Any], to_scene: Matrix
+) -> Node:
+    primitive = told["meshes"][body["mesh"]]["primitives"][0]
+    points = _values(told, binary, primitive["attributes"]["POSITION"]).astype(np.float64)
+    corners = _values(told, binary, primitive["indices"]).reshape(-1, 3).astype(np.int64)
+    if not np.isfinite(points).all() or corners.max(initial=-1) >= len(points):
+        raise ValueError(f"{body['name']} is not a mesh")
+    x, y, z = (value * _M_TO_MM for value in body.get("translation", (0.0, 0.0, 0.0)))
+    return Node(group, applied(translation(x, y, z), points * _M_TO_MM), corners, to_scene)
+
+
+def _values(told: dict[str, Any], binary: bytes, which: int) -> NDArray[Any]:
+    accessor = told["accessors"][which]
+    view = told["bufferViews"][accessor["bufferView"]]
+    width = _WIDTH[accessor["type"]]
+    kind = _TYPES[accessor["componentType"]]
+    values = np.frombuffer(binary, kind, accessor["count"] * width, view["byteOffset"])
+    return values.reshape(-1, width)

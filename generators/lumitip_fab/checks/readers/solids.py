@@ -1,0 +1,210 @@
+"""A printed part's mesh, and measures of it: edges, rays, sections, overhang, walls."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import reduce
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import shapely
+import trimesh
+from numpy.typing import NDArray
+from shapely.geometry.base import BaseGeometry
+
+from lumitip_fab.checks.result import Measurement
+from lumitip_fab.design.frames import Matrix
+from lumitip_fab.errors import OutputError
+
+Vectors = NDArray[np.float64]
+
+_TOUCH_MM = 1e-6
+_PLANE_MM = 1e-5  # a section is taken this far above the plane asked for, off every corner
+_STEEPEST = -np.cos(np.radians(44.0))  # 45° with a degree for the mesh
+
+
+@dataclass(frozen=True, eq=False)
+class Hits:
+    """Where rays cross a mesh: one entry for each crossing, sorted by ray, then distance."""
+
+    ray: NDArray[np.int64]
+    distance_mm: Vectors
+    triangle: NDArray[np.int64]
+
+    def first(self, rays: int) -> tuple[Vectors, NDArray[np.int64]]:
+        """Distance and triangle of each ray's first crossing; infinity and -1 without one."""
+        which, at = np.unique(self.ray, return_index=True)
+        distance, triangle = np.full(rays, np.inf), np.full(rays, -1)
+        distance[which], triangle[which] = self.distance_mm[at], self.triangle[at]
+        return distance, triangle
+
+
+def read_mesh(path: Path) -> Any:
+    """A mesh file with equal corners joined.
+
+    Raises:
+        OutputError: if it is missing or holds no mesh.
+    """
+    if not path.is_file():
+        raise OutputError("no such file")
+    try:
+        mesh = trimesh.load(path, force="mesh")
+        usable = len(mesh.faces) > 0 and bool(np.isfinite(mesh.vertices).all())
+    except Exception as error:  # readers raise whatever they stumble over
+        raise OutputError(f"cannot be read: {error!r:.200}") from error
+    if not usable:
+        raise OutputError("holds no mesh")
+    return mesh
+
+
+def moved(mesh: Any, matrix: Matrix) -> Any:
+    """A copy of a mesh in another frame."""
+    return mesh.copy().apply_transform(matrix)
+
+
+def open_edges(mesh: Any) -> int:
+    """Edges that do not join exactly two triangles of the same sense."""
+    edges = mesh.edges.astype(np.int64)
+    size = len(mesh.vertices)
+    forward, times = np.unique(edges[:, 0] * size + edges[:, 1], return_counts=True)
+    backward = edges[:, 1] * size + edges[:, 0]
+    return int((times > 1).sum() + (~np.isin(backward, forward)).sum())
+
+
+def bodies(mesh: Any) -> int:
+    """Pieces that share no edge with each other."""
+    return int(mesh.body_count)
+
+
+def cast(mesh: Any, origins: Vectors, directions: Vectors, reach_mm: float) -> Hits:
+    """Every crossing of rays with a mesh.
+
+    Args:
+        mesh: the mesh.
+        origins: starts, shape `(n, 3)`.
+        directions: unit vectors, shape `(n, 3)` or `(3,)`.
+        reach_mm: length of the rays.
+    """
+    directions = np.broadcast_to(directions, origins.shape)
+    ends = origins + directions * reach_mm
+    corners = np.asarray(mesh.triangles)
+    ray, triangle = _near(corners, np.minimum(origins, ends), np.maximum(origins, ends))
+    a, b, c = (corners[triangle, k] for k in range(3))
+    heading, start = directions[ray], origins[ray]
+    across = np.cross(heading, c - a)
+    scale = np.einsum("ij,ij->i", b - a, across)
+    kept = np.abs(scale) > 1e-12
+    inverse = 1.0 / np.where(kept, scale, 1.0)
+    offset = start - a
+    u = np.einsum("ij,ij->i", offset, across) * inverse
+    over = np.cross(offset, b - a)
+    v = np.einsum("ij,ij->i", heading, over) * inverse
+    distance = np.einsum("ij,ij->i", c - a, over) * inverse
+    kept &= (u >= 0) & (v >= 0) & (u + v <= 1) & (distance > _TOUCH_MM) & (distance <= reach_mm)
+    ray, distance, triangle = ray[kept], distance[kept], triangle[kept]
+    order = np.lexsort((distance, ray))
+    return Hits(ray[order], distance[order], triangle[order])
+
+
+def _near(corners: Vectors, low: Vectors, high: Vectors) -> tuple[Any, Any]:
+    """Pairs of ray and triangle whose bounding boxes meet."""
+    least, most = corners.min(axis=1), corners.max(axis=1)
+    lowest, highest = low.min(axis=0, initial=np.inf), high.max(axis=0, initial=-np.inf)
+    local = np.flatnonzero(((most >= lowest) & (least <= highest)).all(axis=1))
+    least, most = least[local], most[local]
+    spread = (high - low).max(axis=0, initial=0.0)
+    i, j, k = np.argsort(spread)  # a tree over the two axes along which the rays are shortest
+    tree = shapely.STRtree(shapely.box(least[:, i], least[:, j], most[:, i], most[:, j]))
+    boxes = shapely.box(low[:, i], low[:, j], high[:, i], high[:, j])
+    ray, triangle = tree.query(boxes)
+    meet = (low[ray, k] <= most[triangle, k]) & (high[ray, k] >= least[triangle, k])
+    return ray[meet], local[triangle[meet]]
+
+
+def inside(mesh: Any, points: Vectors) -> NDArray[np.bool_]:
+    """Whether points lie in the material, by the crossings above them."""
+    reach = float(np.ptp(mesh.bounds[:, 2])) + 1.0
+    hits = cast(mesh, points, np.array([0.0, 0.0, 1.0]), reach)
+    return np.asarray(np.bincount(hits.ray, minlength=len(points)) % 2 == 1)
+
+
+def section(mesh: Any, z_mm: float) -> BaseGeometry:
+    """The material cut at a height, as polygons in x and y."""
+    plane = np.array([0.0, 0.0, z_mm + _PLANE_MM])
+    cut = trimesh.intersections.mesh_plane(mesh, np.array([0.0, 0.0, 1.0]), plane)
+    if not len(cut):
+        return shapely.Polygon()
+    lines = shapely.linestrings(np.round(cut[:, :, :2], 5))
+    lines = lines[shapely.length(lines) > 0]
+    merged = shapely.get_parts(shapely.line_merge(shapely.multilinestrings(lines)))
+    rings = [shapely.Polygon(line.coords) for line in merged if line.is_closed]
+    nothing: BaseGeometry = shapely.Polygon()
+    return reduce(shapely.symmetric_difference, map(shapely.make_valid, rings), nothing)
+
+
+def overhang_mm2(mesh: Any) -> float:
+    """Area that a printer must lay over air: steeper than 45°, standing on z = 0."""
+    hangs = (mesh.face_normals[:, 2] < _STEEPEST) & (mesh.triangles[:, :, 2].max(axis=1) > 0.01)
+    return float(mesh.area_faces[hangs].sum())
+
+
+def bed_contact_mm2(mesh: Any) -> float:
+    """Area that lies on the bed, z = 0."""
+    on_bed = np.abs(mesh.triangles[:, :, 2]).max(axis=1) < 0.01
+    return float(mesh.area_faces[on_bed].sum())
+
+
+Mask = NDArray[np.bool_]
+
+SAMPLES = 3000
+MESH_MM = 0.02  # two chord errors: a wall of exactly the limit must pass
+_FACING = -np.cos(np.radians(30.0))  # less than that is an edge, not a wall
+_SEED = 1
+
+
+@dataclass(frozen=True)
+class Exempt:
+    """A region that may be thinner than other walls, for a reason."""
+
+    name: str
+    least_mm: float
+    holds: Callable[[Vectors], Mask]
+    """Which points of shape `(n, 3)` lie in it."""
+
+
+def thicknesses(mesh: Any, reach_mm: float) -> tuple[Vectors, Vectors]:
+    """Points on the surface with a wall behind them, and its thickness.
+
+    A wall is two faces within 30° of facing away from each other, nearer than `reach_mm`.
+    """
+    spread, on = trimesh.sample.sample_surface(mesh, SAMPLES, seed=_SEED)
+    points = np.concatenate([spread, mesh.triangles_center])
+    owner = np.concatenate([on, np.arange(len(mesh.faces))])
+    inward = -mesh.face_normals[owner]
+    distance, far = cast(mesh, points + inward * 1e-4, inward, reach_mm).first(len(points))
+    found = far >= 0
+    facing = np.einsum("ij,ij->i", mesh.face_normals[far], mesh.face_normals[owner]) < _FACING
+    wall = found & facing
+    return points[wall], distance[wall] + 1e-4
+
+
+def walls(
+    check: str, subject: str, mesh: Any, least_mm: float, exempt: Sequence[Exempt]
+) -> Iterator[Measurement]:
+    """The thinnest wall, and the thinnest in each exempt region with its own limit."""
+    reach_mm = 2 * max((least_mm, *(region.least_mm for region in exempt)))
+    points, thickness = thicknesses(mesh, reach_mm)
+    free = np.ones(len(points), dtype=np.bool_)
+    for region in exempt:
+        held = region.holds(points)
+        free &= ~held
+        thin = float(thickness[held].min(initial=reach_mm))
+        yield Measurement(
+            check, f"{subject}: {region.name}", thin, region.least_mm - MESH_MM, unit="mm"
+        )
+    thin, note = reach_mm, ""
+    if free.any():
+        at = int(np.flatnonzero(free)[thickness[free].argmin()])
+        thin, (x, y, z) = float(thickness[at]), points[at]
+        note = f"at ({x:.1f}, {y:.1f}, {z:.1f}) of the file's frame"
+    yield Measurement(check, subject, thin, least_mm - MESH_MM, unit="mm", note=note)

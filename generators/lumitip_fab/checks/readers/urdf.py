@@ -1,0 +1,160 @@
+"""`Model`: links, joints and meshes of a URDF file, read without any library of robots."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+from xml.etree.ElementTree import Element
+
+import numpy as np
+
+from lumitip_fab.checks.readers.solids import Vectors, read_mesh
+from lumitip_fab.errors import OutputError
+
+M_TO_MM = 1000.0
+
+
+@dataclass(frozen=True, eq=False)
+class Link:
+    """A rigid body. Meshes are in the link's frame, in mm."""
+
+    name: str
+    mass_g: float
+    centre_mm: Vectors
+    visuals: dict[str, Any]
+    collisions: dict[str, Any]
+    text: str
+    """Its XML, names without their prefix and files without their folder."""
+
+
+@dataclass(frozen=True, eq=False)
+class Joint:
+    """How a link hangs on another."""
+
+    kind: str
+    parent: str
+    child: str
+    place: Vectors
+    """4x4, from the child's frame at zero to the parent's, mm."""
+    axis: Vectors
+    upper_mm: float
+    mimics: str
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """All of a file, by name."""
+
+    links: dict[str, Link]
+    joints: dict[str, Joint]
+
+    def to_base(self, link: str, opened_mm: float = 0.0) -> Vectors:
+        """From a link's frame to its parent's, its joint moved by so much."""
+        joint = next(j for j in self.joints.values() if j.child == link)
+        moved = np.eye(4)
+        moved[:3, 3] = joint.axis * opened_mm
+        return np.asarray(joint.place @ moved)
+
+
+def read_urdf(path: Path) -> Model:
+    """Read a URDF file and the meshes that it names.
+
+    Raises:
+        OutputError: if the file or a mesh is missing or cannot be read.
+    """
+    try:
+        root = ElementTree.fromstring(path.read_bytes())
+        links = [_link(e, path.parent) for e in root.findall("link")]
+        joints = {e.get("name", ""): _joint(e) for e in root.findall("joint")}
+    except OSError as error:
+        raise OutputError(f"cannot be read: {error.strerror}") from error
+    except (ElementTree.ParseError, ValueError, KeyError, AttributeError) as error:
+        raise OutputError(f"is no URDF: {error!r:.200}") from error
+    return Model({link.name: link for link in links}, joints)
+
+
+def read_macros(path: Path) -> dict[str, str]:
+    """The link of each macro of a xacro file, told as `Link.text`, by the link's name.
+
+    Raises:
+        OutputError: if the file cannot be read.
+    """
+    try:
+        root = ElementTree.fromstring(path.read_bytes())
+    except (OSError, ElementTree.ParseError) as error:
+        raise OutputError(f"cannot be read: {error}") from error
+    links = root.findall(".//link")
+    return {str(e.get("name")).replace("${prefix}", "lumitip_"): _text(e) for e in links}
+
+
+def _link(element: Element, folder: Path) -> Link:
+    inertial = element.find("inertial")
+    weighed = inertial is not None
+    return Link(
+        name=element.attrib["name"],
+        mass_g=M_TO_MM * float(_attribute(inertial, "mass", "value")) if weighed else 0.0,
+        centre_mm=M_TO_MM * _three(_attribute(inertial, "origin", "xyz") if weighed else "0 0 0"),
+        visuals=dict(_meshes(element, "visual", folder)),
+        collisions=dict(_meshes(element, "collision", folder)),
+        text=_text(element),
+    )
+
+
+def _meshes(element: Element, kind: str, folder: Path) -> Any:
+    for body in element.findall(kind):
+        told = body.find("geometry/mesh")
+        if told is None:
+            raise ValueError(f"{kind} {body.get('name')} has no mesh")
+        name = told.attrib["filename"]
+        try:
+            mesh = read_mesh(folder / name)
+        except OutputError as error:
+            raise OutputError(f"{name}: {error}") from error
+        yield str(body.get("name")), mesh.apply_scale(_three(told.attrib["scale"]) * M_TO_MM)
+
+
+def _joint(element: Element) -> Joint:
+    place = np.eye(4)
+    place[:3, :3] = _turn(*_three(_attribute(element, "origin", "rpy")))
+    place[:3, 3] = M_TO_MM * _three(_attribute(element, "origin", "xyz"))
+    slides = element.get("type") == "prismatic"
+    mimic = element.find("mimic")
+    return Joint(
+        kind=element.attrib["type"],
+        parent=_attribute(element, "parent", "link"),
+        child=_attribute(element, "child", "link"),
+        place=place,
+        axis=_three(_attribute(element, "axis", "xyz") if slides else "0 0 0"),
+        upper_mm=M_TO_MM * float(_attribute(element, "limit", "upper")) if slides else 0.0,
+        mimics="" if mimic is None else mimic.attrib["joint"],
+    )
+
+
+def _turn(roll: float, pitch: float, yaw: float) -> Vectors:
+    """Turns about the fixed axes x, then y, then z (rad)."""
+    (a, b, c), (p, q, r) = np.cos([roll, pitch, yaw]), np.sin([roll, pitch, yaw])
+    about_x = np.array([[1, 0, 0], [0, a, -p], [0, p, a]])
+    about_y = np.array([[b, 0, q], [0, 1, 0], [-q, 0, b]])
+    about_z = np.array([[c, -r, 0], [r, c, 0], [0, 0, 1]])
+    return np.asarray(about_z @ about_y @ about_x)
+
+
+def _three(text: str) -> Vectors:
+    numbers = np.array([float(word) for word in text.split()])
+    if numbers.shape != (3,) or not np.isfinite(numbers).all():
+        raise ValueError(f"{text!r} is not three numbers")
+    return numbers
+
+
+def _attribute(element: Element | None, path: str, name: str) -> str:
+    found = None if element is None else element.find(path)
+    if found is None or name not in found.attrib:
+        raise ValueError(f"no {path} with {name}")
+    return found.attrib[name]
+
+
+def _text(element: Element) -> str:
+    told = ElementTree.canonicalize(ElementTree.tostring(element), strip_text=True)
+    for own in ("${prefix}", "lumitip_", "${meshes}/", "meshes/"):
+        told = told.replace(own, "")
+    return told

@@ -1,0 +1,122 @@
+"""The command `lumitip-fab`. Everything heavy is imported by the command that needs it."""
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from lumitip_fab.system_libraries import libraries_message, missing_libraries
+
+FAILED, REFUSED = 1, 2
+MODELLING = frozenset({"build", "watch"})
+"""Commands that load the CAD kernel."""
+FLAGS = {
+    "quiet": "print failures only",
+    "json": "print the result as JSON",
+    "verbose": "print everything: all files, or all measurements with their margins",
+}
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run a command; returns 0, 1 if a check or a build failed, 2 if the input is refused."""
+    options = _parser().parse_args(arguments)
+    missing = missing_libraries() if options.command in MODELLING else ()
+    if missing:
+        print(libraries_message(missing), file=sys.stderr)
+        return REFUSED
+    try:
+        from lumitip_fab.cli import commands
+
+        return commands.run(options)
+    except ModuleNotFoundError as error:
+        if (error.name or "lumitip").startswith("lumitip"):
+            raise
+        from lumitip.errors import how_to_install
+
+        print(f"lumitip-fab needs {error.name}: {how_to_install('fab')}", file=sys.stderr)
+        return REFUSED
+    except KeyboardInterrupt:
+        return 130
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="lumitip-fab",
+        description="From one parameter file to every part of an optical fingertip, and the "
+        "proof that they fit.",
+    )
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+
+    def command(name: str, told: str, *flags: str) -> argparse.ArgumentParser:
+        sub = commands.add_parser(name, help=told, description=told)
+        sub.set_defaults(quiet=False, json=False)
+        exclusive = [flag for flag in flags if flag in {"quiet", "verbose"}]
+        # argparse of Python 3.11 crashes on the usage line of an empty group.
+        group = sub.add_mutually_exclusive_group() if exclusive else sub
+        for flag in flags:
+            where = group if flag in exclusive else sub
+            where.add_argument(f"--{flag}", action="store_true", help=FLAGS[flag])
+        return sub
+
+    def with_file(sub: argparse.ArgumentParser) -> None:
+        sub.add_argument("file", type=Path, metavar="FILE", help="the parameter file")
+
+    def with_out(sub: argparse.ArgumentParser) -> None:
+        sub.add_argument("--out", type=Path, required=True, metavar="DIR", help="output folder")
+
+    sub = command("init", "Copy the design folder (parameters, presets, parts) to DIR.", "quiet")
+    sub.add_argument("directory", type=Path, metavar="DIR", help="a new or empty folder")
+    told = "Build FILE into DIR; only what changed is made again."
+    sub = command("build", told, "quiet", "verbose", "json")
+    with_file(sub)
+    with_out(sub)
+    told = "Re-read the files in DIR and prove that they fit. Builds nothing."
+    sub = command("check", told, "quiet", "verbose", "json")
+    with_out(sub)
+    sub.add_argument("--junit", type=Path, metavar="XML", help="also write a JUnit file")
+    sub.add_argument("--report", type=Path, metavar="JSON", help="also write a JSON file")
+    told = "tell again what an earlier run with this file measured where nothing changed since"
+    sub.add_argument("--memory", type=Path, metavar="FILE", help=told)
+    sub = command("spec", "Print the published Table I beside the figures of FILE.", "json")
+    with_file(sub)
+    told = "what FILE was built into: also tells what the fingers weigh"
+    sub.add_argument("--out", type=Path, metavar="DIR", help=told)
+    told = "Change FILE so that it is accepted: the smallest changes that work, each tried."
+    sub = command("fix", told, "quiet", "json")
+    with_file(sub)
+    told = "Print which detector each multiplexer input of a board reads, from its copper."
+    sub = command("channel-map", told, "json")
+    sub.add_argument("file", type=Path, metavar="FILE", help="a .kicad_pcb of KiCad 5 to 10")
+    sub = command("watch", "Build FILE into DIR whenever it is saved, and say what changed.")
+    with_file(sub)
+    with_out(sub)
+    told = "Judge designs before any is built: accuracy, cells, cost and LED current, simulated."
+    sub = command("explore", told, "quiet", "json")
+    with_file(sub)
+    with_out(sub)
+    _study_options(sub)
+    told = "Slice every printed part in DIR with PrusaSlicer: time, filament and overhangs."
+    sub = command("slice", told, "quiet", "json")
+    with_out(sub)
+    told = "keep the G-code there; without it only the figures are kept"
+    sub.add_argument("--gcode", type=Path, metavar="FOLDER", help=told)
+    sub = command("schema", "Print the JSON Schema of parameter files, for editors.")
+    return parser
+
+
+def _study_options(sub: argparse.ArgumentParser) -> None:
+    """What a design study varies, and where it is computed."""
+    told = "A:B, A:B:STEP, A,B,C or a TOML list [A, B]; give it again for further fields"
+    sub.add_argument("--vary", action="append", required=True, metavar="FIELD=SPEC", help=told)
+    told = "values of a range A:B (6)"
+    sub.add_argument("--points", type=int, default=6, metavar="N", help=told)
+    told = "count columns and rows anew for each pitch, so that the grid keeps its size"
+    sub.add_argument("--keep-size", action="store_true", help=told)
+    told = "of the poses and faults that are drawn for every design (0)"
+    sub.add_argument("--seed", type=int, default=0, metavar="N", help=told)
+    told = "evaluate on this Dask cluster (tcp://…) instead of on all cores of this machine"
+    sub.add_argument("--scheduler", metavar="ADDRESS", help=told)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

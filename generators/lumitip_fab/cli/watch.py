@@ -1,0 +1,65 @@
+"""Build again whenever the parameter file, a base or the catalogue is saved."""
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from watchfiles import watch as changes
+
+from lumitip_fab.config.load import load
+from lumitip_fab.config.source import flat
+from lumitip_fab.design.encoding import encoded
+from lumitip_fab.errors import FabError
+from lumitip_fab.paths import design_folder
+from lumitip_fab.pipeline.build import build
+
+
+def watch(file: Path, out: Path, console: Console) -> None:
+    """Build now and after each change, until interrupted; a refused input is told and waited out.
+
+    Args:
+        file: the parameter file.
+        out: the output folder.
+        console: where to tell what changed and what was rebuilt.
+    """
+    known = _rebuilt(file, out, {}, console)
+    console.print(f"watching {design_folder(file)}; stop with Ctrl-C")
+    folder = design_folder(file)
+    for _ in changes(folder, raise_interrupt=False, watch_filter=_input_files(out)):
+        known = _rebuilt(file, out, known, console)
+
+
+def _input_files(out: Path) -> Callable[[Any, str], bool]:
+    """TOML files, but for those that a build writes, should the outputs lie among the inputs."""
+    return lambda _, path: path.endswith(".toml") and not Path(path).is_relative_to(out.resolve())
+
+
+def _rebuilt(file: Path, out: Path, known: dict[str, Any], console: Console) -> dict[str, Any]:
+    try:
+        values = _values(file)
+        for line in differences(known, values) if known else ():
+            console.print(line)
+        report = build(file, out)
+    except FabError as error:
+        console.print(str(error), style="red")
+        return known
+    for path in report.written:
+        console.print(f"  wrote {out / path}", soft_wrap=True)
+    console.print(f"{len(report.written)} files changed")
+    return values
+
+
+def _values(file: Path) -> dict[str, Any]:
+    given = load(file)
+    told = {"parameters": encoded(given.parameters.model_dump())}
+    told["parts"] = {f: encoded(e.model_dump()) for f, e in given.named_parts().items()}
+    return dict(flat(told))
+
+
+def differences(before: dict[str, Any], after: dict[str, Any]) -> Iterator[str]:
+    """One line for each value that changed, appeared or went."""
+    for name in sorted(before.keys() | after.keys()):
+        old, new = before.get(name), after.get(name)
+        if old != new:
+            yield f"{name.removeprefix('parameters.')}: {old} → {new}"

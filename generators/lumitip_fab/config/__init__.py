@@ -1,0 +1,1 @@
+"""The parameter file: its fields, how it is read, and how its faults are reported."""

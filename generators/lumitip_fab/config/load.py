@@ -1,0 +1,251 @@
+"""Read a parameter file with its bases and its catalogue, and report every fault at once."""
+
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from pydantic import TypeAdapter, ValidationError
+
+from lumitip_fab.catalogue.electronics import Catalogue
+from lumitip_fab.catalogue.record import Entry
+from lumitip_fab.config.automatic import filled
+from lumitip_fab.config.messages import brief, problems_of, shown_path, unknown_name
+from lumitip_fab.config.parameters import Parameters
+from lumitip_fab.config.source import Source, read_toml
+from lumitip_fab.errors import InputError, Problem
+from lumitip_fab.paths import design_folder, parts_file
+
+# Which fields name an entry of which catalogue file.
+NAMED = {
+    "emitter.led": "leds",
+    "emitter.resistor": "resistors",
+    "receiver.photodetector": "photodetectors",
+    "receiver.resistor": "resistors",
+    "receiver.capacitor": "capacitors",
+    "receiver.multiplexer": "multiplexers",
+    "backing.material": "filaments",
+    "controller.board": "controllers",
+    "breakout.socket": "strips",
+    "flange.coupling": "couplings",
+    "flange.contacts": "strips",
+    "flange.header": "strips",
+    "flange.regulator": "regulators",
+    "flange.inductor": "inductors",
+    "flange.input_capacitor": "capacitors",
+    "flange.output_capacitor": "capacitors",
+    "flange.boot_capacitor": "capacitors",
+    "flange.fuse": "fuses",
+    "flange.transistor": "transistors",
+    "flange.resistor": "resistors",
+    "module.regulator": "linear_regulators",
+    "module.supply_capacitor": "capacitors",
+    "module.capacitor": "capacitors",
+    "module.crystal": "crystals",
+    "module.crystal_capacitor": "capacitors",
+    "coupling.gripper": "grippers",
+    "holder.screw": "fasteners",
+    "mould.silicone": "silicones",
+    "mask.film": "films",
+    "printer.profile": "printers",
+}
+
+
+@dataclass(frozen=True)
+class Input:
+    """A valid parameter file: its values, the catalogue, and where each value was written."""
+
+    parameters: Parameters
+    catalogue: Catalogue
+    sources: tuple[Source, ...]
+    """The file itself, then the file that it extends, and so on down to the complete one."""
+    automatic: frozenset[str] = frozenset()
+    """Fields whose values are starts, from which the program chooses."""
+
+    def named_parts(self) -> dict[str, Entry]:
+        """The catalogue entry that each field in `NAMED` names, by field."""
+        return {
+            field: getattr(self.catalogue, kind)[self.value(field)] for field, kind in NAMED.items()
+        }
+
+    def title(self, field: str) -> str:
+        """What people call the entry that a field in `NAMED` names."""
+        return self.named_parts()[field].title or str(self.value(field))
+
+    def value(self, field: str) -> Any:
+        """The value of a field, like `"grid.pitch_mm"`."""
+        section, key = field.split(".")
+        return getattr(getattr(self.parameters, section), key)
+
+    def with_values(self, values: Mapping[str, Any]) -> "Input":
+        """The same input with other values of some fields, as they would stand in the file.
+
+        Raises:
+            ValidationError: if a value is outside what its field allows.
+        """
+        table = self.parameters.model_dump()
+        for field, value in values.items():
+            section, key = field.split(".")
+            table[section][key] = value
+        return replace(self, parameters=Parameters.model_validate(table))
+
+    def problem(self, field: str, message: str) -> Problem:
+        """A fault of a field, placed in the file that set it."""
+        source, own = _setting(self.sources, field), self.sources[0]
+        if source is not own:  # the base may be good for others
+            message += f"; set it in {shown_path(own.path)}"
+        return Problem(shown_path(source.path), source.line(field), field, message)
+
+
+def load(path: Path) -> Input:
+    """Read and validate a parameter file.
+
+    Raises:
+        InputError: with every fault of the file, its bases and the catalogue files it uses.
+    """
+    own = read_toml(path, shown_path(path))
+    sources, faults = _with_bases(own)
+    based = not faults  # without its bases, what a file leaves out is no fault
+    merged: dict[str, Any] = {}
+    for source in reversed(sources):
+        merged = _merge(merged, {k: v for k, v in source.table.items() if k != "extends"})
+    merged, automatic = filled(merged)
+    catalogue, broken = _catalogue(design_folder(path))
+    faults += broken
+    parameters = None
+    try:
+        parameters = Parameters.model_validate(_tuples(merged))
+    except ValidationError as error:
+        faults += problems_of(
+            error, Parameters, lambda field: _setting(sources, field), missing=based
+        )
+    unknown = _unknown_parts(merged, catalogue, sources)
+    named = {fault.field for fault in unknown}
+    faults = [fault for fault in faults if fault.field not in named] + unknown
+    if faults or parameters is None:
+        raise InputError(faults)
+    return Input(parameters, Catalogue.model_validate(catalogue), sources, automatic)
+
+
+def _setting(sources: tuple[Source, ...], field: str) -> Source:
+    """The file that wrote a field; of a field that none wrote, the one that wrote its table."""
+    while field:
+        for source in sources:
+            if source.sets(field):
+                return source
+        field = field.rpartition(".")[0]
+    return sources[0]
+
+
+def _with_bases(own: Source) -> tuple[tuple[Source, ...], list[Problem]]:
+    """The file and all that it extends, and the fault of the first base that cannot be used."""
+    chain = [own]
+    try:
+        while "extends" in chain[-1].table:
+            chain.append(_base(chain))
+    except InputError as error:
+        return tuple(chain), list(error.problems)
+    return tuple(chain), []
+
+
+def _base(chain: list[Source]) -> Source:
+    """The file that the last of a chain extends; all lie in the first one's design folder."""
+    own = chain[-1]
+    name = own.table["extends"]
+
+    def refuse(message: str) -> InputError:
+        file = shown_path(own.path)
+        return InputError([Problem(file, own.line("extends"), "extends", message)])
+
+    if not isinstance(name, str) or not name.endswith(".toml"):
+        raise refuse(f"{brief(name)} given, the name of a .toml file is needed")
+    folder = design_folder(chain[0].path)
+    try:
+        base = (own.path.resolve().parent / name).resolve()
+        inside, exists = base.is_relative_to(folder.resolve()), base.is_file()
+    except (OSError, ValueError, RuntimeError) as error:
+        raise refuse(f"{name!r:.80} given, which is no usable file name") from error
+    if not inside:
+        raise refuse(
+            f"{name!r:.80} given, which is outside the design folder {shown_path(folder)!r}; "
+            "copy the base into it"
+        )
+    if base.is_dir():
+        raise refuse(f"{name!r:.80} given, which is a folder; {_bases(folder, own.path)}")
+    if not exists:
+        raise refuse(f"{name!r:.80} given, no such file; {_bases(folder, own.path)}")
+    if base == own.path.resolve():
+        raise refuse(f"{name!r:.80} given, a file cannot extend itself")
+    above = [source.path.resolve() for source in chain]
+    if base in above:
+        circle = _chain_text([*above[above.index(base) :], base])
+        raise refuse(f"{name!r:.80} given, which closes a circle: {circle}; name a complete file")
+    return read_toml(base, shown_path(base))
+
+
+def _chain_text(files: list[Path]) -> str:
+    shown = [shown_path(file) for file in files]
+    return " → ".join(shown if len(shown) <= 5 else [*shown[:3], "…", shown[-1]])
+
+
+def _bases(folder: Path, own: Path) -> str:
+    """The files of the design folder that a file may extend, as it would name them."""
+    here = own.resolve().parent
+    found = [*folder.glob("*.toml"), *folder.glob("presets/*.toml")]
+    others = (p for p in found if p.is_file() and p.resolve() != own.resolve())
+    names = sorted(os.path.relpath(p, here) for p in others)
+    listed = ", ".join(names[:20]) + (", …" if len(names) > 20 else "")
+    return f"there are {listed}" if names else "there is no other"
+
+
+def _merge(base: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]:
+    merged = dict(base)
+    for key, value in over.items():
+        below = merged.get(key)
+        both = isinstance(below, dict) and isinstance(value, dict)
+        merged[key] = _merge(below, value) if both else value  # type: ignore[arg-type]
+    return merged
+
+
+def _tuples(value: Any) -> Any:
+    """TOML has arrays only; the strict models hold tuples."""
+    if isinstance(value, dict):
+        return {k: _tuples(v) for k, v in value.items()}
+    return tuple(map(_tuples, value)) if isinstance(value, list) else value
+
+
+def _catalogue(folder: Path) -> tuple[dict[str, Any], list[Problem]]:
+    tables: dict[str, Any] = {}
+    faults: list[Problem] = []
+    for kind, field in Catalogue.model_fields.items():
+        path = parts_file(folder, kind)
+        tables[kind] = {}
+        try:
+            source = read_toml(path, shown_path(path))
+            model: Any = field.annotation
+            tables[kind] = TypeAdapter[Any](model).validate_python(_tuples(source.table))
+        except InputError as error:
+            faults += error.problems
+        except ValidationError as error:
+            faults += problems_of(error, field.annotation, _always(source))
+    return tables, faults
+
+
+def _always(source: Source) -> Callable[[str], Source]:
+    return lambda _: source
+
+
+def _unknown_parts(
+    merged: dict[str, Any], catalogue: dict[str, Any], sources: tuple[Source, ...]
+) -> list[Problem]:
+    faults = []
+    for field, kind in NAMED.items():
+        section, key = field.split(".")
+        table = merged.get(section)
+        name = table.get(key) if isinstance(table, dict) else None
+        if isinstance(name, str) and catalogue[kind] and name not in catalogue[kind]:
+            source = _setting(sources, field)
+            message = unknown_name(name, list(catalogue[kind]), f"parts/{kind}.toml")
+            faults.append(Problem(shown_path(source.path), source.line(field), field, message))
+    return faults

@@ -1,0 +1,171 @@
+"""How faults are worded: what was given, what is allowed, and the nearest valid name."""
+
+import datetime
+import difflib
+import types
+import typing
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel, ValidationError
+
+from lumitip_fab.catalogue.record import NAME, PIN, TITLE
+from lumitip_fab.config.parameters import REVISION
+from lumitip_fab.config.source import Source
+from lumitip_fab.errors import Problem
+
+_KINDS = {
+    "float_type": "a number",
+    "finite_number": "a finite number",
+    "int_type": "a whole number",
+    "int_from_float": "a whole number",
+    "string_type": "text in quotes",
+    "bool_type": "true or false",
+    "tuple_type": "a list in brackets",
+    "dict_type": "a table",
+    "mapping_type": "a table",
+    "model_type": "a table",
+    "model_attributes_type": "a table",
+}
+_BOUNDS = {
+    "greater_than": "more than {gt:g} is needed",
+    "greater_than_equal": "at least {ge:g} is needed",
+    "less_than": "less than {lt:g} is allowed",
+    "less_than_equal": "at most {le:g} is allowed",
+    "string_too_short": "text of {min_length} or more characters is needed",
+    "string_too_long": "text of at most {max_length} characters is allowed",
+    "literal_error": "{expected} is allowed",
+}
+_PATTERNS = {
+    NAME: "letters of Latin-1, digits, spaces, any of . + - / and a _ before a letter or digit, "
+    "beginning with an ASCII letter or digit,",
+    TITLE: "letters of Latin-1, digits, spaces and any of . , + - / ( ), beginning with a letter "
+    "or digit,",
+    PIN: "1 to 16 letters, digits or _, beginning with a letter,",
+    REVISION: "1 to 8 letters, digits, dots or hyphens",
+}
+
+
+def shown_path(path: Path) -> str:
+    """A file's name in messages: relative to the working folder where it lies below it."""
+    try:
+        return str(path.resolve().relative_to(Path.cwd()))
+    except ValueError:
+        return str(path)
+
+
+def unknown_name(given: str, allowed: Iterable[str], where: str) -> str:
+    """The message for a name that is not among those allowed."""
+    names = sorted(allowed)
+    near = difflib.get_close_matches(given, names, n=1, cutoff=0.5)
+    hint = f"did you mean {near[0]!r}? " if near else ""
+    listed = ", ".join(names[:24]) + (", …" if len(names) > 24 else "")
+    return f"{given!r:.80} given, {hint}{where} has {listed}"
+
+
+def brief(value: Any) -> str:
+    """A value as it was written in TOML, shortened."""
+    text = _written(value)
+    return text if len(text) <= 80 else text[:79] + "…"
+
+
+def problems_of(
+    error: ValidationError, model: Any, setting: Callable[[str], Source], missing: bool = True
+) -> list[Problem]:
+    """One problem for each fault that pydantic found.
+
+    Args:
+        error: what pydantic raised.
+        model: the model or annotation that was validated, for the valid names.
+        setting: gives the file that wrote a field.
+        missing: whether to report fields that are not there.
+    """
+    problems = []
+    faults = error.errors(include_url=False)
+    within = {fault["loc"][:-1] for fault in faults}
+    for fault in faults:
+        if fault["type"] == "too_short" and fault["loc"] in within:
+            continue  # pydantic counts only the values that are valid themselves
+        if fault["type"] == "missing" and not missing:
+            continue
+        location = tuple(part for part in fault["loc"] if part != "[key]")
+        field = ".".join(map(str, location))
+        source = setting(field)
+        message = _message(fault, model, location)
+        problems.append(Problem(shown_path(source.path), source.line(field), field, message))
+    return problems
+
+
+def _message(fault: Any, model: Any, location: tuple[Any, ...]) -> str:
+    kind, given, told = fault["type"], fault["input"], fault.get("ctx", {})
+    if kind == "missing":
+        return "is missing; " + _described(model, location)
+    if kind == "extra_forbidden":
+        return unknown_name(str(location[-1]), _names(model, location[:-1]), "this table")
+    if kind in ("too_long", "too_short"):
+        bound, count = (
+            ("at most {} are allowed", told["max_length"])
+            if kind == "too_long"
+            else ("at least {} are needed", told["min_length"])
+        )
+        return f"{brief(given)} given, a list of {len(given)}; {bound.format(count)}"
+    if kind in _KINDS:
+        return f"{brief(given)} given, {_KINDS[kind]} is needed"
+    if kind in _BOUNDS:
+        return f"{brief(given)} given, {_BOUNDS[kind].format(**told)}"
+    if kind == "string_pattern_mismatch":
+        pattern = told["pattern"]
+        return f"{brief(given)} given, {_PATTERNS.get(pattern, pattern)} are allowed"
+    if kind == "value_error":
+        return str(told["error"])
+    return f"{brief(given)} given: {fault['msg']}"
+
+
+def _written(value: Any) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, tuple | list):
+        return f"[{', '.join(map(_written, value))}]"
+    if isinstance(value, dict):
+        return f"{{ {', '.join(f'{k} = {_written(v)}' for k, v in value.items())} }}"
+    if isinstance(value, datetime.date | datetime.time):
+        return str(value)
+    try:
+        return repr(value)
+    except ValueError:  # Python prints no number of more than 4300 digits
+        return "a number of thousands of digits"
+
+
+def _names(model: Any, location: tuple[Any, ...]) -> list[str]:
+    found = _model_at(model, location)
+    return list(found.model_fields) if found else []
+
+
+def _described(model: Any, location: tuple[Any, ...]) -> str:
+    around = _model_at(model, location[:-1])
+    field = around.model_fields.get(str(location[-1])) if around else None
+    if field is None:
+        return "it is needed"
+    if field.description:
+        return "it is needed: " + " ".join(field.description.split())
+    inner = _model_at(field.annotation, ())
+    return f"the table [{'.'.join(map(str, location))}] is needed" if inner else "it is needed"
+
+
+def _model_at(annotation: Any, location: tuple[Any, ...]) -> type[BaseModel] | None:
+    """The model that stands at a location of an annotation, if one does."""
+    origin, arguments = typing.get_origin(annotation), typing.get_args(annotation)
+    if origin is typing.Annotated:
+        return _model_at(arguments[0], location)
+    if origin in (typing.Union, types.UnionType):
+        found = (_model_at(a, location) for a in arguments)
+        return next((m for m in found if m is not None), None)
+    if origin is not None and issubclass(origin, Mapping):
+        return _model_at(arguments[1], location[1:]) if location else None
+    if not (isinstance(annotation, type) and issubclass(annotation, BaseModel)):
+        return None
+    if not location:
+        return annotation
+    field = annotation.model_fields.get(str(location[0]))
+    return _model_at(field.annotation, location[1:]) if field else None

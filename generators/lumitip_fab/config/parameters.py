@@ -1,0 +1,285 @@
+"""`Parameters`: everything a parameter file may say. Field docstrings become `schema.json`.
+
+         x = 0
+    ______|______        tip edge
+   /      |      \
+  |  .----|----.  |      shoulder (widest)
+  |  | o  o  o |  |
+  |  |  o   o  |  |      board, cells
+  |  | o  o  o |  |
+   | | parts   ||        waist (narrowest)
+   | |.connect.||
+   |_|__notch__|_|       gripper end
+"""
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from lumitip_fab.catalogue.record import Name, Strict
+from lumitip_fab.config.names import DeviceName, Text
+from lumitip_fab.config.sections import Breakout, Flange, Flex, Holder, Module
+
+REVISION = r"^[A-Za-z0-9.\-]{1,8}$"
+Gap = Annotated[float, Field(ge=0, le=20)]
+Column = Annotated[int, Field(ge=1, le=256)]
+
+
+class Grid(Strict):
+    """The hexagonal grid of cells."""
+
+    columns: tuple[Column, ...] = Field(min_length=1, max_length=256)
+    """Cells of each column, from the left in the receiver's frame: any lengths, 3 cells or more."""
+    pitch_mm: float = Field(ge=1.5, le=30)
+    """Distance of a cell to each of its neighbours (mm)."""
+
+
+class Stack(Strict):
+    """Thickness of each layer of a finger, back to front."""
+
+    floor_mm: float = Field(ge=0.4, le=10)
+    """Floor of the pocket behind the board (mm)."""
+    pcb_mm: float = Field(ge=0.1, le=3.2)
+    """Board, and so the depth of its pocket where it lies in one; a flexible one is 0.11 to
+    0.2 thick (mm)."""
+    silicone_mm: float = Field(ge=0.5, le=10)
+    """Silicone over the board (mm)."""
+    film_mm: float = Field(ge=0.02, le=1)
+    """Mask film; the catalogue's film must have this thickness (mm)."""
+
+
+class Outline(Strict):
+    """The silhouette of the gripping face: a smooth curve round the board."""
+
+    tip_fraction: float = Field(ge=0.1, le=0.95)
+    """Straight edge at the tip, as a fraction of the widest width."""
+    tip_margin_mm: float = Field(ge=1, le=50)
+    """Tip edge to the board (mm)."""
+    shoulder_margin_mm: float = Field(ge=0, le=50)
+    """Board edge to the outline at its widest point, on each side (mm)."""
+    shoulder_at_mm: float = Field(ge=1, le=100)
+    """Distance of the widest point from the tip edge (mm)."""
+    waist_margin_mm: float = Field(ge=0, le=50)
+    """Board edge to the outline at its narrowest point, on each side (mm)."""
+    waist_at: float = Field(gt=0.3, lt=0.95)
+    """Place of the narrowest point, as a fraction of the length from the tip."""
+    end_margin_mm: float = Field(ge=1, le=50)
+    """Board to the gripper end (mm)."""
+    end_corner_mm: float = Field(ge=0.5, le=50)
+    """Rounding at the corners of the gripper end; less where the wire notch needs the room (mm)."""
+
+
+class Backing(Strict):
+    """The printed part that carries the board."""
+
+    variant: Literal["rigid", "flex"]
+    """Rigid with a pocket for the board, or bendable: a plate, tied to a flexible board, with a
+    rigid interface glued to its back (`flex`)."""
+    material: Name
+    """Name of a filament in `parts/filaments.toml`."""
+    density_g_ml: float = Field(ge=0.5, le=3)
+    """Density of that filament (g/mL)."""
+    pocket_clearance_mm: float = Field(ge=0.10, le=0.30)
+    """Gap between board and pocket on each side (mm)."""
+    pin_clearance_mm: float = Field(ge=0.05, le=0.5)
+    """Gap between a locating pin and its hole in the board, all round (mm)."""
+    relief_clearance_mm: float = Field(ge=0.2, le=3)
+    """Gap between a part on the back of the board and its relief, on each side (mm)."""
+    tail_mm: float = Field(ge=0.5, le=5)
+    """Room behind the board for solder tails and wires (mm)."""
+
+
+class Tip(Strict):
+    """The wedge on the back of the tip that slides under cloth."""
+
+    slant_start_mm: float = Field(ge=1, le=50)
+    """Distance from the tip edge at which the back begins to slant (mm)."""
+    edge_mm: float = Field(ge=0.2, le=5)
+    """Thickness left at the tip edge (mm)."""
+
+
+class Coupling(Strict):
+    """How the finger is held."""
+
+    gripper: Name
+    """Name of a gripper in `parts/grippers.toml`."""
+
+
+class Board(Strict):
+    """Margins and zones of the two boards, which share one outline."""
+
+    side_margin_mm: float = Field(ge=1, le=50)
+    """Outermost cell centres to the board's long edges (mm)."""
+    tip_margin_mm: float = Field(ge=1, le=50)
+    """First row of cell centres to the board's tip edge (mm)."""
+    end_margin_mm: float = Field(ge=1, le=20)
+    """Connector row to the board's gripper edge (mm)."""
+    hole_mm: float = Field(ge=1, le=5)
+    """Diameter of the holes for the locating pins (mm)."""
+    hole_edge_mm: float = Field(ge=1, le=20)
+    """Centre of the holes at the tip to the board's tip edge (mm)."""
+    clearance_mm: float = Field(ge=0.1, le=2)
+    """Smallest gap between land patterns of neighbouring parts (mm)."""
+    channel_mm: float = Field(ge=0.5, le=20)
+    """Routing channel after the cells and after each row of multiplexers (mm)."""
+    track_mm: float = Field(ge=0.1, le=1)
+    """Width of signal tracks (mm)."""
+    supply_track_mm: float = Field(ge=0.1, le=3)
+    """Width of the tracks of a supply (mm)."""
+    copper_gap_mm: float = Field(ge=0.1, le=1)
+    """Smallest gap between copper of different nets (mm)."""
+    via_mm: float = Field(ge=0.3, le=2)
+    """Diameter of vias (mm)."""
+    via_drill_mm: float = Field(ge=0.15, le=1)
+    """Hole of vias (mm)."""
+    connector_side: Literal["gripper"]
+    """Edge of the board with the connector."""
+
+
+class Emitter(Strict):
+    """The finger that shines."""
+
+    led: Name
+    """Name of an LED in `parts/leds.toml`."""
+    current_ma: float = Field(ge=0.1, le=1000)
+    """Target current of each string of LEDs (mA)."""
+    string_leds: int = Field(ge=1, le=64)
+    """Most LEDs in a string; fewer make its current depend less on supply and LEDs."""
+    max_heat_w: float = Field(ge=0.05, le=20)
+    """Most heat that LEDs and resistors may leave in the finger (W)."""
+    resistor: Name
+    """Package of the string resistors in `parts/resistors.toml`."""
+    resistor_side: Literal["front", "back"]
+    """Side of the board that carries the string resistors."""
+
+
+class Receiver(Strict):
+    """The finger that sees."""
+
+    photodetector: Name
+    """Name of a photodetector in `parts/photodetectors.toml`."""
+    multiplexer: Name
+    """Name of a multiplexer in `parts/multiplexers.toml`."""
+    pull_up_ohm: float = Field(ge=1e3, le=1e7)
+    """Pull-up resistor of each analog line (ohm)."""
+    resistor: Name
+    """Package of the pull-ups in `parts/resistors.toml`."""
+    capacitor: Name
+    """Name of the capacitor at each multiplexer's supply in `parts/capacitors.toml`."""
+
+
+class Controller(Strict):
+    """The microcontroller that reads the receiver."""
+
+    board: Name
+    """Name of a controller in `parts/controllers.toml`: a board that plugs into the breakout, or a
+    module on the flange's board."""
+    name: DeviceName
+    """Bluetooth name of the device, in any script: at most 29 bytes of UTF-8, as one scan
+    response carries."""
+
+
+class Supply(Strict):
+    """What the robot feeds the emitter with."""
+
+    voltage_v: float = Field(gt=2, le=48)
+    """Supply voltage (V)."""
+    max_ma: float = Field(ge=0.1, le=5000)
+    """Largest current that may be drawn for the LEDs (mA)."""
+
+
+class Cables(Strict):
+    """The wires from the fingers to supply and controller."""
+
+    supply_mm: float = Field(ge=20, le=10000)
+    """To the flange or a supply: from the controller's breakout, or from the fingers' gripper end
+    where there is none (mm)."""
+    controller_mm: float = Field(ge=20, le=2000)
+    """Along the gripper, from the fingers' gripper end to the controller or its breakout (mm)."""
+    slack_mm: float = Field(ge=0, le=1000)
+    """Added to every wire for bends, stripping and strain relief (mm)."""
+    section_mm2: float = Field(ge=0.01, le=2)
+    """Copper of each wire, at least; what carries more current is thicker. 0.08 is AWG 28 (mm²)."""
+
+
+class Mask(Strict):
+    """The black print on the inside of the film."""
+
+    film: Name
+    """Name of a film in `parts/films.toml`."""
+    hole_mm: float = Field(ge=0.3, le=20)
+    """Aperture above each cell: across flats of a hexagon, diameter of a circle (mm)."""
+    hole_shape: Literal["hexagon", "circle"]
+    """Shape of the apertures; flats of hexagons face the tip."""
+    measured_ruler_mm: tuple[
+        Annotated[float, Field(ge=90, le=110)], Annotated[float, Field(ge=90, le=110)]
+    ]
+    """Length of the printed 100 mm rulers, horizontal and vertical, as your printer drew them on
+    a page made with `[100.0, 100.0]` (mm); the next page is scaled to come out true."""
+    allowance_mm: Gap
+    """Finger outline to the first fold, for the film's bend (mm)."""
+    flap_mm: float = Field(ge=3, le=40)
+    """Length of the fold flaps, where coupling and notch leave room (mm)."""
+
+
+class Mould(Strict):
+    """The mould in which the silicone is cast on a finger."""
+
+    silicone: Name
+    """Name of a silicone in `parts/silicones.toml`."""
+    taper_length_mm: float = Field(ge=0.5, le=3.9)
+    """Distance from the tip edge over which the silicone thins; the fingers touch first where it
+    ends, at most 4 mm from the tip (mm)."""
+    tip_silicone_mm: float = Field(ge=0.05, le=5)
+    """Silicone left at the tip edge (mm)."""
+    wall_gap_mm: float = Field(ge=0.12, le=0.28)
+    """Gap between the plate's rim and the mould's wall (mm)."""
+    draft_deg: float = Field(ge=2, le=20)
+    """Opening of the wall above the rim (degrees from the pull direction)."""
+    wall_mm: float = Field(ge=1, le=20)
+    """Wall and floor of the mould (mm)."""
+    waste_fraction: float = Field(ge=0, le=2)
+    """Silicone to mix beyond what the mould takes, as a fraction."""
+
+
+class Printer(Strict):
+    """The printer that makes the parts."""
+
+    profile: Name
+    """Name of a printer in `parts/printers.toml`."""
+    min_wall_mm: float = Field(ge=0.2, le=5)
+    """Thinnest wall that prints well (mm)."""
+    fit_mm: float = Field(ge=-0.1, le=0.1)
+    """Reading of the fit test plate: added to every gap between printed parts and boards, metal and
+    gripper, and round the rim that a compliant finger is glued by, on each side; above zero all
+    sits looser (mm)."""
+
+
+class Parameters(Strict):
+    """A whole parameter file."""
+
+    name: Text
+    """Name of the design, in any script; transliterated where a board or a page lacks its
+    letters."""
+    revision: Annotated[str, Field(pattern=REVISION)]
+    """Revision of the design, on boards and drawings."""
+    grid: Grid
+    stack: Stack
+    outline: Outline
+    backing: Backing
+    flex: Flex
+    tip: Tip
+    coupling: Coupling
+    board: Board
+    emitter: Emitter
+    receiver: Receiver
+    controller: Controller
+    supply: Supply
+    wiring: Cables
+    mask: Mask
+    mould: Mould
+    breakout: Breakout
+    holder: Holder
+    flange: Flange
+    module: Module
+    printer: Printer

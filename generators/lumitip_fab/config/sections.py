@@ -1,0 +1,145 @@
+"""Sections of the parameter file about what is outside the fingers, and about compliant fingers."""
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, ValidationError, ValidatorFunctionWrapHandler, WrapValidator
+
+from lumitip_fab.catalogue.controllers import Signal
+from lumitip_fab.catalogue.record import Name, Strict
+
+Size = Annotated[float, Field(ge=5, le=200)]
+LEAST_BODY_MM, MOST_BODY_MM = 20, 200
+
+
+def _body(given: Any, handler: ValidatorFunctionWrapHandler) -> Any:
+    try:
+        return handler(given)
+    except ValidationError:
+        raise ValueError(
+            f"{given!r:.80} given, 'gripper' or a number from {LEAST_BODY_MM} to {MOST_BODY_MM} is "
+            "allowed"
+        ) from None
+
+
+Body = Annotated[
+    Annotated[float, Field(ge=LEAST_BODY_MM, le=MOST_BODY_MM)] | Literal["gripper"],
+    WrapValidator(_body),
+]
+
+
+class Breakout(Strict):
+    """The board that the controller plugs into, and where the cables end."""
+
+    enabled: bool
+    """Whether it is made, with its holder."""
+    socket: Name
+    """Socket strip in `parts/strips.toml`; one for each row of the controller's pins."""
+    board_mm: tuple[Size, Size]
+    """Length, along the controller, and width (mm)."""
+    hole_mm: float = Field(ge=1, le=9)
+    """Diameter of its two screw holes (mm)."""
+    hole_spacing_mm: float = Field(ge=5, le=180)
+    """From hole to hole, of the board and of its holder alike (mm)."""
+
+
+class Holder(Strict):
+    """The printed holder that clips the breakout board to the gripper."""
+
+    body_mm: Body
+    """Diameter of the gripper's round body (mm), or "gripper": that of its entry in
+    `parts/grippers.toml`, and where that is not round there is no holder."""
+    clearance_mm: float = Field(ge=0, le=2)
+    """Cradle to that body, and tray to the board, each side (mm)."""
+    wall_mm: float = Field(ge=0.8, le=10)
+    """Arms and floor of the tray (mm)."""
+    wrap_deg: float = Field(ge=91, le=130)
+    """How far each arm reaches round the body, from the middle of the tray: beyond 90° it clips
+    on (degrees)."""
+    standoff_mm: float = Field(ge=2, le=20)
+    """Room under the board for solder tails (mm)."""
+    screw: Name
+    """Thread of the board's screws, in `parts/fasteners.toml`; their nuts go into the holder."""
+    strap_hole_mm: float = Field(ge=1, le=10)
+    """Diameter of the two holes in each arm, for screws of the gripper or a cable tie (mm)."""
+    strap_spacing_mm: float = Field(ge=3, le=100)
+    """From hole to hole (mm)."""
+
+
+class Flange(Strict):
+    """The flange between robot and gripper, and its board: tool contacts, 5 V, cables."""
+
+    enabled: bool
+    """Whether it is made."""
+    coupling: Name
+    """What it stands on, in `parts/couplings.toml`."""
+    clearance_mm: float = Field(ge=0.05, le=1)
+    """Board to pocket, and both parts to coupling and gripper, each side (mm)."""
+    tail_mm: float = Field(ge=0, le=5)
+    """Room for solder tails under the board, to which they are cut (mm)."""
+    web_mm: float = Field(ge=0.8, le=10)
+    """Thickness of the upper part under the gripper (mm)."""
+    contacts: Name
+    """Spring contacts in `parts/strips.toml`, two rows."""
+    signals: tuple[Signal, ...]
+    """Signal of each contact of the coupling, in the order of their numbers: `SUPPLY`, `GND`, `NC`
+    of one that is left open, and names of your own for lines that a header has too. The entry in
+    `parts/couplings.toml` says what each contact carries."""
+    header: Name
+    """Headers for cables in `parts/strips.toml`, two rows."""
+    headers: tuple[tuple[Signal, ...], tuple[Signal, ...]]
+    """Signals of both headers, the lower one first, left to right seen from the gripper;
+    `REGULATED` is the regulator's output."""
+    regulator: Name
+    """Switching regulator in `parts/regulators.toml`."""
+    inductor: Name
+    """In `parts/inductors.toml`."""
+    input_capacitor: Name
+    """In `parts/capacitors.toml`."""
+    output_capacitor: Name
+    """In `parts/capacitors.toml`; two of them."""
+    boot_capacitor: Name
+    """In `parts/capacitors.toml`."""
+    fuse: Name
+    """In `parts/fuses.toml`."""
+    transistor: Name
+    """P-channel MOSFET against reversed supplies in `parts/transistors.toml`."""
+    resistor: Name
+    """Package of the resistors at its gate in `parts/resistors.toml`."""
+    gate_ohm: float = Field(ge=1e3, le=1e6)
+    """Both resistors, which halve the supply for the gate (ohm)."""
+
+
+class Module(Strict):
+    """What a controller that is a module needs beside it on the flange's board."""
+
+    regulator: Name
+    """Of its supply, in `parts/linear_regulators.toml`."""
+    supply_capacitor: Name
+    """At the regulator's input and output and at the USB supply, in `parts/capacitors.toml`."""
+    capacitor: Name
+    """At the module's supply, in `parts/capacitors.toml`."""
+    crystal: Name
+    """Of 32.768 kHz, in `parts/crystals.toml`."""
+    crystal_capacitor: Name
+    """Two of them, in `parts/capacitors.toml`."""
+
+
+class Flex(Strict):
+    """A compliant finger; used where `backing.variant` is `flex`."""
+
+    thread_hole_mm: float = Field(ge=1, le=5)
+    """Diameter of the holes through which the board is tied to the plate (mm)."""
+    interface_mm: float = Field(ge=5, le=100)
+    """Length of the rigid interface along the finger, from the gripper end (mm)."""
+    pad_mm: float = Field(ge=0.4, le=10)
+    """Thickness of the interface's pad, which is glued to the plate (mm)."""
+    standoff_mm: float = Field(ge=0, le=10)
+    """How much farther the bolts are from the board than with a rigid finger (mm)."""
+    groove_mm: float = Field(ge=0.8, le=5)
+    """Width of the plate's groove for the interface's rim (mm)."""
+    groove_depth_mm: float = Field(ge=0.3, le=5)
+    """Depth of that groove (mm)."""
+    glue_mm: float = Field(ge=0.05, le=0.5)
+    """Gap between rim and groove, for glue (mm)."""
+    lean_deg: float = Field(ge=0, le=5)
+    """Added to the gripper's tilt, because the finger gives way when it grasps (degrees)."""

@@ -1,0 +1,1 @@
+"""The boards: outlines, parts, devices and their circuits."""

@@ -1,0 +1,276 @@
+"""Outline, holes, zones and parts of the two boards.
+
+y_max ┌──────────────────┐
+      │   ·    ·    ·    │  holes for the pins, clear of the first row
+      │  o o o o o o o   │
+      │  o o o o o o o   │  zone "cells"
+      │                  │  channel
+      │   [U1][U2][U3]   │  zone "parts": multiplexers (receiver), resistors (emitter)
+      │                  │  channel
+      │ ·  ▫▫▫▫▫▫▫▫▫   · │  zone "connector", two more holes
+y_min └──────────────────┘
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from lumitip_fab.config.load import Input
+from lumitip_fab.config.parameters import Parameters
+from lumitip_fab.derive.boards import connectors, placing
+from lumitip_fab.derive.boards.flex_board import flexible_board
+from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.finger import chips
+from lumitip_fab.derive.finger.cells import Cells
+from lumitip_fab.derive.finger.flex import foot_half_mm, is_flex
+from lumitip_fab.derive.making.fits import derive_fits
+from lumitip_fab.derive.wiring.wiring import Muxing, Strings
+from lumitip_fab.design import Board, Box, Connector, Finger, Part, Point, Zone
+
+NOTCH_BEFORE_PADS_MM = 0.6
+NOTCH_BESIDE_MM = 0.5
+SEAT_CLEARANCE_MM = 1.8  # a wire of 1.5 mm passes on each side of the coupling
+WINDOW_MARGIN_MM = 2.0
+HOLE_TO_EDGE_MM = 1.0
+PAD_TO_EDGE_MM = 0.3
+LEAST_PIN_MM = 1.0
+LEAST_CLEARANCE_MM = 0.02  # of a pin as drawn
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Both boards, and where the multiplexers are."""
+
+    board: Board
+    emitter: Finger
+    receiver: Finger
+    muxes: tuple[Point, ...]
+    """Centre of each multiplexer, U1 first, in the receiver's frame."""
+
+
+@dataclass(frozen=True)
+class Frame:
+    """What the boards share: extents and rows, before parts are placed."""
+
+    box: Box
+    cells: Box
+    parts: Box
+    connector_y_mm: float
+    wide: bool
+    notch: Box
+    pin_mm: float
+    rear_hole_x_mm: float
+    foot_half_mm: float
+
+
+def derive_plan(
+    given: Input, cells: Cells, strings: Strings, muxing: Muxing, faults: Faults
+) -> Plan:
+    """Lay out both boards."""
+    p, parts = given.parameters, given.catalogue
+    led = parts.leds[p.emitter.led]
+    detector = parts.photodetectors[p.receiver.photodetector]
+    led_turned = chips.derive_turned(p, "emitter.led", p.emitter.led, led, faults)
+    detector_turned = chips.derive_turned(
+        p, "receiver.photodetector", p.receiver.photodetector, detector, faults
+    )
+    leds = placing.at_cells("D", "led", led, led_turned, _mirrored(cells))
+    detectors = placing.at_cells("Q", "photodetector", detector, detector_turned, _plain(cells))
+    frame = _frame(given, cells, muxing, (*leds, *detectors), faults)
+    board = _board(given, frame)
+    muxes = placing.multiplexers(given, muxing, frame.parts)
+    tip_holes = placing.tip_holes(given, cells, (*detectors, *_flipped(leds)), frame.box, faults)
+    rear = ((-frame.rear_hole_x_mm, frame.connector_y_mm),
+            (frame.rear_hole_x_mm, frame.connector_y_mm))  # fmt: skip
+    room = _resistor_room(given, frame)
+    resistors, reliefs = placing.resistors(given, strings, room, frame.foot_half_mm, faults)
+    wires = connectors.place(connectors.emitter_signals(given), True, frame.connector_y_mm)
+    emitter = Finger(
+        name="emitter",
+        cells=_mirrored(cells),
+        turned=led_turned,
+        holes=(*((-x, y) for x, y in tip_holes), *rear),
+        connector=wires,
+        parts=(*leds, *resistors),
+        zones=_zones(frame),
+        reliefs=reliefs,
+        notch=frame.notch,
+        window=_window(wires),
+    )
+    wires = connectors.place(connectors.receiver_signals(muxing), frame.wide, frame.connector_y_mm)
+    receiver = Finger(
+        name="receiver",
+        cells=_plain(cells),
+        turned=detector_turned,
+        holes=(*tip_holes, *rear),
+        connector=wires,
+        parts=(*detectors, *muxes),
+        zones=_zones(frame),
+        reliefs=(),
+        notch=frame.notch,
+        window=_window(wires),
+    )
+    return Plan(board, emitter, receiver, tuple((m.x_mm, m.y_mm) for m in muxes))
+
+
+def _frame(
+    given: Input, cells: Cells, muxing: Muxing, chips_: tuple[Part, ...], faults: Faults
+) -> Frame:
+    p = given.parameters
+    gripper = given.catalogue.grippers[p.coupling.gripper]
+    ways = len(connectors.receiver_signals(muxing))
+    pin_mm = p.board.hole_mm - 2 * p.backing.pin_clearance_mm
+    printed_mm = derive_fits(given, p.printer.fit_mm).pin_mm
+    faults.refuse_unless(
+        printed_mm >= LEAST_PIN_MM,
+        "backing.pin_clearance_mm",
+        f"{p.backing.pin_clearance_mm:g} given, which leaves pins of {printed_mm:.2f} mm in holes "
+        f"of {p.board.hole_mm:g} mm; at least {LEAST_PIN_MM:g} mm is needed",
+    )
+    faults.refuse_unless(
+        p.backing.pin_clearance_mm + p.printer.fit_mm >= LEAST_CLEARANCE_MM,
+        "printer.fit_mm",
+        f"{p.printer.fit_mm:g} given, which with backing.pin_clearance_mm = "
+        f"{p.backing.pin_clearance_mm:g} leaves pins that are drawn as wide as their holes; at "
+        f"least {LEAST_CLEARANCE_MM - p.backing.pin_clearance_mm:.2f} is needed",
+    )
+    half = float(np.abs(cells.x_mm).max()) + p.board.side_margin_mm
+    rim = p.board.hole_mm / 2 + HOLE_TO_EDGE_MM
+    fits = half - rim - p.board.hole_mm / 2 - NOTCH_BESIDE_MM
+    wide = ways <= connectors.MOST_WIDE_WAYS and connectors.half_width_mm(ways, True) <= fits
+    wires_half = connectors.half_width_mm(ways, wide)
+    notch_half = max(wires_half + NOTCH_BESIDE_MM, gripper.seat_width_mm / 2 + SEAT_CLEARANCE_MM)
+    foot_half = foot_half_mm(given, notch_half)
+    least_hole_x = notch_half + p.printer.min_wall_mm + pin_mm / 2
+    if is_flex(p):
+        least_hole_x = foot_half + p.printer.min_wall_mm + p.flex.thread_hole_mm / 2
+    half = _up(max(half, least_hole_x + rim, placing.least_half_width_mm(given, foot_half)))
+    hole_x = min(max(float(np.abs(cells.x_mm).max()), least_hole_x), half - rim)
+    top, bottom = float(cells.y_mm.max()), float(cells.y_mm.min())
+    reach = max(part.size_y_mm for part in chips_) / 2
+    side = max(part.size_x_mm for part in chips_) / 2
+    parts_top = bottom - reach - p.board.channel_mm
+    depth = placing.parts_zone_depth_mm(given, muxing, 2 * half, faults)
+    pad = connectors.WIDE[1]  # the emitter's two pads are wide whatever the receiver's are
+    connector_y = parts_top - depth - pad / 2
+    y_max = top + p.board.tip_margin_mm
+    y_min = y_max - 2 * _up((y_max - (connector_y - p.board.end_margin_mm)) / 2)
+    _refuse_holes(p, pad, faults)
+    for field, margin, taken in (
+        ("board.tip_margin_mm", p.board.tip_margin_mm, reach),
+        ("board.side_margin_mm", p.board.side_margin_mm, side),
+    ):
+        faults.refuse_unless(
+            margin >= taken + p.board.clearance_mm,
+            field,
+            f"{margin:g} given, parts reach {taken:g} mm beyond their cells: at least "
+            f"{taken + p.board.clearance_mm:.2f} is needed",
+        )
+    x_min, x_max = float(cells.x_mm.min()), float(cells.x_mm.max())
+    widest = max(-x_min, x_max) + side
+    end = y_min - p.outline.end_margin_mm
+    # Behind the plate the block rises at 45° from the notch; the solder tails are to stay clear.
+    before_pads = max(NOTCH_BEFORE_PADS_MM, p.backing.tail_mm - p.stack.floor_mm)
+    notch = Box(-notch_half, notch_half, end, connector_y + pad / 2 + before_pads)
+    return Frame(
+        box=Box(-half, half, y_min, y_max),
+        cells=Box(-widest, widest, bottom - reach, top + reach),
+        parts=Box(
+            -half + placing.ZONE_MARGIN_MM,
+            half - placing.ZONE_MARGIN_MM,
+            parts_top - depth + p.board.channel_mm,
+            parts_top,
+        ),
+        connector_y_mm=connector_y,
+        wide=wide,
+        notch=notch,
+        pin_mm=pin_mm,
+        rear_hole_x_mm=hole_x,
+        foot_half_mm=foot_half,
+    )
+
+
+def _refuse_holes(p: Parameters, pad_mm: float, faults: Faults) -> None:
+    """Refuse holes and pads that break out of the board or into the parts."""
+    radius = p.board.hole_mm / 2
+    for_hole, for_pad = radius + placing.HOLE_WEB_MM, pad_mm / 2 + PAD_TO_EDGE_MM
+    what = f"holes of {p.board.hole_mm:g} mm"
+    faults.refuse_unless(
+        p.board.end_margin_mm >= max(for_hole, for_pad) - 1e-9,
+        "board.end_margin_mm",
+        f"{p.board.end_margin_mm:g} given, {what} and pads of {pad_mm:g} mm in the connector's "
+        f"row need at least {max(for_hole, for_pad):.2f}",
+    )
+    faults.refuse_unless(
+        p.board.hole_edge_mm >= for_hole - 1e-9,
+        "board.hole_edge_mm",
+        f"{p.board.hole_edge_mm:g} given, {what} need at least {for_hole:.2f}",
+    )
+    least = radius + placing.HOLE_CLEARANCE_MM - pad_mm / 2
+    faults.refuse_unless(
+        p.board.channel_mm >= least - 1e-9,
+        "board.channel_mm",
+        f"{p.board.channel_mm:g} given, {what} beside the connector would reach the parts: at "
+        f"least {least:.2f} is needed",
+    )
+
+
+def _resistor_room(given: Input, frame: Frame) -> Box:
+    """The zone for parts; on the back without what lies so near notch and pins that too little
+    floor would be left between them and the resistors' relief."""
+    p, zone = given.parameters, frame.parts
+    if p.emitter.resistor_side == "front":
+        return zone
+    solid = max(frame.notch.y_max_mm, frame.connector_y_mm + frame.pin_mm / 2)
+    lowest = solid + p.printer.min_wall_mm + p.backing.relief_clearance_mm
+    return Box(zone.x_min_mm, zone.x_max_mm, max(zone.y_min_mm, lowest), zone.y_max_mm)
+
+
+def _board(given: Input, frame: Frame) -> Board:
+    fits = derive_fits(given, given.parameters.printer.fit_mm)
+    return Board(
+        box=frame.box,
+        hole_mm=given.parameters.board.hole_mm,
+        pocket=frame.box.grown(fits.pocket_gap_mm),
+        pocket_clearance_mm=fits.pocket_gap_mm,
+        pin_mm=fits.pin_mm,
+        flexible=flexible_board(given, frame.box, frame.notch, frame.connector_y_mm),
+    )
+
+
+def _zones(frame: Frame) -> tuple[Zone, ...]:
+    half = connectors.WIDE[1] / 2
+    wires = Box(
+        frame.notch.x_min_mm, frame.notch.x_max_mm,
+        frame.connector_y_mm - half, frame.connector_y_mm + half,
+    )  # fmt: skip
+    return Zone("cells", frame.cells), Zone("parts", frame.parts), Zone("connector", wires)
+
+
+def _window(wires: Connector) -> Box:
+    half = wires.pad_mm / 2 + WINDOW_MARGIN_MM
+    (first, y), (last, _) = wires.pads[0], wires.pads[-1]
+    return Box(first - half, last + half, y - half, y + half)
+
+
+def _plain(cells: Cells) -> tuple[Point, ...]:
+    return tuple(zip(cells.x_mm.tolist(), cells.y_mm.tolist(), strict=True))
+
+
+def _mirrored(cells: Cells) -> tuple[Point, ...]:
+    """Facing rule: in the emitter's own frame, LED i is at (-x_i, y_i)."""
+    return tuple((-x + 0.0, y) for x, y in _plain(cells))
+
+
+def _flipped(parts: tuple[Part, ...]) -> tuple[Part, ...]:
+    """Parts of the emitter as they face the receiver's frame."""
+    return tuple(
+        Part(q.name, q.kind, -q.x_mm, q.y_mm, q.size_x_mm, q.size_y_mm, q.height_mm, q.side)
+        for q in parts
+    )
+
+
+def _up(value_mm: float) -> float:
+    """Rounded up so that twice the value is a whole tenth of a millimetre."""
+    return math.ceil(round(value_mm * 20, 6)) / 20

@@ -1,0 +1,194 @@
+"""The board that the controller plugs into.
+
+```
+┌────────────────────────────────┐
+│   [24V GND]      [24V 5V GND]  │  wires to the emitter and from the flange
+│  ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ │  a pad for each pin of the controller
+│  □ ■ ■ ■ ■ ■ ■ ■ ■ ■ ■ ■ ■ ■ ■ │  socket
+│   ·                        ·   │  screw holes
+│  □ ■ ■ ■ ■ ■ ■ ■ ■ ■ ■ ■ ■ ■ ■ │
+│  ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ │
+│   [GND 3V3 S0 S1 S2 A0 A1 …]   │  wires to the receiver, in its own order
+└────────────────────────────────┘
+```
+"""
+
+from dataclasses import dataclass
+
+from lumitip_fab.catalogue.controllers import Plug, Strip
+from lumitip_fab.config.load import Input
+from lumitip_fab.derive.boards import connectors, devices, patterns
+from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.wiring.wiring import Muxing
+from lumitip_fab.design import Box, Carrier, Device, Note
+
+REGULATED = "5V"
+"""Supply of the controller, from the flange's regulator."""
+CORNER_MM = 1.0
+PAD_MM, DRILL_MM = 1.7, 1.0  # of the pads beside the sockets
+EDGE_MM = 1.0  # wire pads to the board's edge
+BETWEEN_MM = (
+    0.4  # least gap between rows of copper, for their labels' sake more where there is room
+)
+HOLE_WEB_MM = 1.0  # board and tracks between a screw hole and a socket's row
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Heights of the rows of pads, above and below the middle."""
+
+    socket_mm: float
+    beside_mm: float
+    wires_mm: float
+
+
+def derive_breakout(given: Input, muxing: Muxing, faults: Faults) -> tuple[Carrier, ...]:
+    """The breakout board; none if it is not wanted, or if the controller has no pins to plug."""
+    p = given.parameters
+    plug = given.catalogue.controllers[p.controller.board].plug
+    if not p.breakout.enabled or plug is None:
+        return ()
+    strip = given.catalogue.strips[p.breakout.socket]
+    length, width = p.breakout.board_mm
+    rows = _rows(plug, strip, width)
+    _refuse(given, plug, strip, muxing, rows, faults)
+    half = p.breakout.hole_spacing_mm / 2
+    emitter = connectors.emitter_signals(given)
+    return (
+        Carrier(
+            name="breakout",
+            title="controller breakout",
+            title_at=(0.0, 0.0),
+            box=Box(-length / 2, length / 2, -width / 2, width / 2),
+            corner_mm=CORNER_MM,
+            holes=((-half, 0.0), (half, 0.0)),
+            hole_mm=p.breakout.hole_mm,
+            devices=_devices(given, plug, strip, muxing, rows),
+            notes=(Note("USB", (1.5 - length / 2, 0.0), 1.2, 90.0),),
+            supplies=tuple(dict.fromkeys(("GND", REGULATED, "3V3", *emitter[1:]))),
+            keep_outs=(),
+            hot_loop=(),
+        ),
+    )
+
+
+def supply_signals(given: Input) -> tuple[str, ...]:
+    """Signals of the cable from the flange, which feeds emitter and controller."""
+    return tuple(dict.fromkeys((*connectors.emitter_signals(given), REGULATED)))
+
+
+def _rows(plug: Plug, strip: Strip, width_mm: float) -> Rows:
+    socket = plug.spacing_mm / 2
+    return Rows(
+        socket_mm=socket,
+        beside_mm=socket + strip.pitch_mm,
+        wires_mm=width_mm / 2 - EDGE_MM - connectors.WIDE[1] / 2,
+    )
+
+
+def _devices(
+    given: Input, plug: Plug, strip: Strip, muxing: Muxing, rows: Rows
+) -> tuple[Device, ...]:
+    nets = _net_of(plug, muxing)
+    sockets, beside = [], []
+    for number, (names, side) in enumerate(zip(plug.rows, (-1, 1), strict=True), start=1):
+        on = tuple((str(i), nets.get(name, name)) for i, name in enumerate(names, start=1))
+        sockets.append(_socket(given, strip, f"J{number}", names, on, side * rows.socket_mm))
+        beside.append(_pads(f"J{number + 2}", on, strip.pitch_mm, 0.0, side * rows.beside_mm))
+    length = given.parameters.breakout.board_mm[0]
+    receiver = connectors.receiver_signals(muxing)
+    emitter, supply = connectors.emitter_signals(given), supply_signals(given)
+    edge = length / 2 - 2 * EDGE_MM
+    left = -edge + connectors.half_width_mm(len(emitter), wide=True)
+    right = edge - connectors.half_width_mm(len(supply), wide=True)
+    return (
+        *sockets,
+        *beside,
+        _wires("J5", receiver, 0.0, -rows.wires_mm, length),
+        _wires("J6", emitter, left, rows.wires_mm, length),
+        _wires("J7", supply, right, rows.wires_mm, length),
+    )
+
+
+def _net_of(plug: Plug, muxing: Muxing) -> dict[str, str]:
+    """Net of each pin that has one by another name than its own."""
+    nets = {pin: f"S{i}" for i, pin in enumerate(muxing.select_pins)}
+    return nets | {plug.ground: "GND", plug.supply: REGULATED, plug.regulated: "3V3"}
+
+
+def _socket(
+    given: Input,
+    strip: Strip,
+    ref: str,
+    names: tuple[str, ...],
+    nets: tuple[tuple[str, str], ...],
+    y_mm: float,
+) -> Device:
+    shape = patterns.row("PinSocket", strip.ways, strip.pitch_mm, strip.pad_mm, strip.drill_mm)
+    return Device(
+        ref=ref, kind="socket", value=given.parameters.breakout.socket, part=strip.order_number,
+        manufacturer=strip.manufacturer, lcsc=strip.lcsc,
+        pattern=patterns.raised(shape, strip.height_mm),
+        x_mm=0.0, y_mm=y_mm, angle_deg=0.0, nets=nets, pins=names,
+    )  # fmt: skip
+
+
+def _pads(
+    ref: str, nets: tuple[tuple[str, str], ...], pitch_mm: float, x_mm: float, y_mm: float
+) -> Device:
+    """Bare pads for wires, one for each net."""
+    shape = patterns.row("WirePads", len(nets), pitch_mm, PAD_MM, DRILL_MM)
+    return Device(
+        ref=ref, kind="wires", value=f"{len(nets)} wires", part="", manufacturer="", lcsc="",
+        pattern=shape, x_mm=x_mm, y_mm=y_mm, angle_deg=0.0, nets=nets, pins=(),
+    )  # fmt: skip
+
+
+def _wires(
+    ref: str, signals: tuple[str, ...], x_mm: float, y_mm: float, length_mm: float
+) -> Device:
+    """Wire pads of a cable, in the order of the connector at its other end."""
+    fits = connectors.half_width_mm(len(signals), wide=True) <= length_mm / 2 - EDGE_MM
+    return devices.wires(ref, signals, (x_mm, y_mm), fits)
+
+
+def _refuse(
+    given: Input, plug: Plug, strip: Strip, muxing: Muxing, rows: Rows, faults: Faults
+) -> None:
+    """Refuse what does not fit onto the board."""
+    p = given.parameters.breakout
+    length, width = p.board_mm
+    ways = {len(names) for names in plug.rows}
+    faults.refuse_unless(
+        ways == {strip.ways},
+        "breakout.socket",
+        f"{p.socket!r} given, which has {strip.ways} contacts; the rows of "
+        f"{given.parameters.controller.board!r} have {' and '.join(map(str, sorted(ways)))}",
+    )
+    cable = connectors.half_width_mm(len(connectors.receiver_signals(muxing)), wide=False)
+    least_length = max(
+        strip.ways * strip.pitch_mm + 2 * EDGE_MM, p.hole_spacing_mm + p.hole_mm + 2 * EDGE_MM,
+        2 * (cable + EDGE_MM),
+    )  # fmt: skip
+    reach = connectors.WIDE[1] / 2 + BETWEEN_MM + PAD_MM / 2
+    least_width = 2 * (rows.beside_mm + reach + connectors.WIDE[1] / 2 + EDGE_MM)
+    for given_mm, least, what in (
+        (length, least_length, "long"), (width, least_width, "wide"),
+    ):  # fmt: skip
+        faults.refuse_unless(
+            given_mm >= least - 1e-9,
+            "breakout.board_mm",
+            f"{given_mm:g} mm {what} given, sockets, holes and wires need at least {least:.2f}",
+        )
+    faults.refuse_unless(
+        p.hole_spacing_mm >= p.hole_mm + HOLE_WEB_MM,
+        "breakout.hole_spacing_mm",
+        f"{p.hole_spacing_mm:g} given, holes of {p.hole_mm:g} mm need at least "
+        f"{p.hole_mm + HOLE_WEB_MM:g}",
+    )
+    most = plug.spacing_mm - strip.pad_mm - 2 * HOLE_WEB_MM
+    faults.refuse_unless(
+        p.hole_mm <= most,
+        "breakout.hole_mm",
+        f"{p.hole_mm:g} given, at most {most:.2f} fits between the sockets",
+    )

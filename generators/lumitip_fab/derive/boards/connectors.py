@@ -1,0 +1,34 @@
+"""The row of wire pads at the gripper end of each board."""
+
+from lumitip_fab.config.load import Input
+from lumitip_fab.derive.wiring.wiring import Muxing
+from lumitip_fab.design import Connector
+
+MOST_WIDE_WAYS = 9
+WIDE = (2.54, 2.286, 1.2)  # pitch, pad, drill: as published
+NARROW = (1.27, 1.0, 0.6)
+
+
+def receiver_signals(muxing: Muxing) -> tuple[str, ...]:
+    """Signals of the receiver's connector, in the published order."""
+    selects = tuple(f"S{i}" for i in range(len(muxing.select_pins)))
+    return ("GND", "3V3", *selects, *muxing.adc_pins)
+
+
+def emitter_signals(given: Input) -> tuple[str, ...]:
+    """Signals of the emitter's connector."""
+    return ("GND", f"{given.parameters.supply.voltage_v:g}V")
+
+
+def half_width_mm(ways: int, wide: bool) -> float:
+    """Half the width of a connector over its pads."""
+    pitch, pad, _ = WIDE if wide else NARROW
+    return (ways - 1) / 2 * pitch + pad / 2
+
+
+def place(signals: tuple[str, ...], wide: bool, y_mm: float) -> Connector:
+    """A connector centred on x = 0."""
+    pitch, pad, drill = WIDE if wide else NARROW
+    first = -(len(signals) - 1) / 2 * pitch
+    pads = tuple((first + i * pitch, y_mm) for i in range(len(signals)))
+    return Connector(signals, pads, pitch, pad, drill)

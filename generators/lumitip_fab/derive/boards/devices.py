@@ -1,0 +1,107 @@
+"""Devices of carriers: catalogue entries in their places, with the nets of their lands."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+
+from lumitip_fab.catalogue import electronics
+from lumitip_fab.catalogue.controllers import OPEN, Leaded, Strip
+from lumitip_fab.derive.boards import connectors, patterns
+from lumitip_fab.design import Device, Point
+
+FIDUCIAL_MM = 1.0
+Nets = tuple[tuple[str, str], ...]
+
+
+def strip(
+    ref: str, value: str, entry: Strip, at: Point, nets: tuple[str, ...], pins: tuple[str, ...]
+) -> Device:
+    """Two rows of contacts, counter-clockwise from the lower left."""
+    return Device(
+        ref=ref, kind="header", value=value, part=entry.order_number,
+        manufacturer=entry.manufacturer, lcsc=entry.lcsc, pattern=patterns.rows("Header", entry),
+        x_mm=at[0], y_mm=at[1], angle_deg=0.0, nets=numbered(nets), pins=pins,
+    )  # fmt: skip
+
+
+def from_behind(device: Device, places: Sequence[Point]) -> Device:
+    """The same rows of contacts with the body on the board's back, each contact in its place.
+
+    Args:
+        device: the rows, its lands in any order.
+        places: of contact 1, 2 ..., from the middle of the device, seen from the board's front.
+    """
+    size = device.pattern.lands[0]
+    lands = tuple(
+        replace(size, number=str(number), x_mm=x, y_mm=-y, round=number > 1)
+        for number, (x, y) in enumerate(places, start=1)
+    )
+    name = device.pattern.name.replace("Header", "SpringContacts")
+    # Mirrored in x and turned by half: contact 1 is at the lower left in the device's own frame.
+    return replace(
+        device,
+        side="back",
+        angle_deg=180.0,
+        pattern=replace(device.pattern, name=name, lands=lands),
+    )
+
+
+def wires(ref: str, signals: tuple[str, ...], at: Point, wide: bool) -> Device:
+    """Wire pads of a cable in a row, each called by its signal."""
+    pitch, pad, drill = connectors.WIDE if wide else connectors.NARROW
+    return Device(
+        ref=ref, kind="wires", value=f"{len(signals)} wires", part="", manufacturer="", lcsc="",
+        pattern=patterns.row("WirePads", len(signals), pitch, pad, drill),
+        x_mm=at[0], y_mm=at[1], angle_deg=0.0, nets=numbered(signals), pins=signals,
+    )  # fmt: skip
+
+
+def chip(
+    ref: str,
+    kind: str,
+    value: str,
+    entry: electronics.Chip,
+    letters: str,
+    at: Point,
+    angle_deg: float,
+    nets: tuple[str, str],
+    part: str = "",
+) -> Device:
+    """A part with two terminals; `letters` begin the name of its land pattern."""
+    return Device(
+        ref=ref, kind=kind, value=value, part=part or entry.order_number,
+        manufacturer=entry.manufacturer, lcsc=entry.lcsc, pattern=patterns.chip(letters, entry),
+        x_mm=at[0], y_mm=at[1], angle_deg=angle_deg, nets=numbered(nets), pins=(),
+    )  # fmt: skip
+
+
+def leaded(
+    ref: str,
+    kind: str,
+    value: str,
+    entry: Leaded,
+    at: Point,
+    angle_deg: float,
+    nets: dict[str, str],
+) -> Device:
+    """A part with leads, whose nets are told by the leads' names."""
+    return Device(
+        ref=ref, kind=kind, value=value, part=entry.order_number, manufacturer=entry.manufacturer,
+        lcsc=entry.lcsc, pattern=patterns.leaded(entry), x_mm=at[0], y_mm=at[1],
+        angle_deg=angle_deg, nets=numbered(tuple(nets[name] for name in entry.names)),
+        pins=entry.names,
+    )  # fmt: skip
+
+
+def fiducials(places: Iterable[Point]) -> tuple[Device, ...]:
+    """Marks for the placing machine's camera."""
+    shape = patterns.fiducial(FIDUCIAL_MM)
+    return tuple(
+        Device(ref=f"FID{i}", kind="fiducial", value="Fiducial", part="", manufacturer="", lcsc="",
+               pattern=shape, x_mm=x, y_mm=y, angle_deg=0.0, nets=(), pins=())
+        for i, (x, y) in enumerate(places, start=1)
+    )  # fmt: skip
+
+
+def numbered(nets: tuple[str, ...]) -> Nets:
+    """Nets of lands that are numbered from 1; one that is left open has none."""
+    return tuple((str(i), net) for i, net in enumerate(nets, start=1) if net != OPEN)

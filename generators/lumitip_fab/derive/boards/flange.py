@@ -1,0 +1,218 @@
+"""The board in the flange: from the robot's contacts over fuse, MOSFET and regulator to cables.
+
+```
+╭──────────────────────────╮
+│   [ header J3, 2 rows ]  │
+│  C4  L1  C2 C3           │   SW ─ L1 ─ 5V; C2, C3 beside L1's output
+│  U1 C1        [contacts] │   C1 at VIN and GND of U1: the hot loop
+│  R1 Q1 R2  F1  J1        │   24V_IN ─ F1 ─ 24V_F ─ Q1 ─ 24V
+│   [ header J2, 2 rows ]  │
+╰──────────────────────────╯
+```
+
+With a module as its controller it is wider to the left: see `lumitip_fab.derive.boards.module`.
+"""
+
+from lumitip_fab.catalogue.controllers import OPEN
+from lumitip_fab.config.load import Input
+from lumitip_fab.derive.boards.devices import chip, fiducials, from_behind, leaded, strip
+from lumitip_fab.derive.boards.flange_circuit import (
+    halved,
+    is_regulated,
+    refuse_map,
+    refuse_parts,
+    supply_range_v,
+)
+from lumitip_fab.derive.boards.module import Supplies, derive_module
+from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.mount.fasteners import BOARD_SCREW
+from lumitip_fab.derive.wiring.wiring import Muxing, Strings
+from lumitip_fab.design import Box, Carrier, Device, Point
+from lumitip_fab.text import resistor_code
+
+BOX = Box(-15.4, 15.4, -27.0, 27.0)
+CORNER_MM = 8.0
+"""Inside the spigot of 70.7 mm of the published flange, whose board reaches as far."""
+CONTACTS_AT: Point = (7.46, 0.0)
+HEADERS_AT: tuple[Point, Point] = ((-3.5, -19.05), (-3.5, 19.05))
+TITLE_AT: Point = (6.5, 11.5)
+HOLES_AT: tuple[Point, ...] = ((11.0, 19.5), (11.0, -19.5))
+FIDUCIALS_AT: tuple[Point, ...] = ((-13.0, -13.5), (13.0, -15.5), (-13.0, 13.5))
+
+
+def derive_flange(
+    given: Input, strings: Strings, muxing: Muxing, faults: Faults
+) -> tuple[Carrier, ...]:
+    """The flange's board, with the controller if that is a module; none if it is not wanted."""
+    p = given.parameters
+    module = given.catalogue.controllers[p.controller.board].module
+    if not p.flange.enabled:
+        faults.refuse_unless(
+            module is None,
+            "controller.board",
+            f"{p.controller.board!r} given, a module on the flange's board: flange.enabled = true, "
+            "or a controller that plugs into the breakout",
+        )
+        return ()
+    _refuse(given, faults)
+    refuse_map(given, faults)
+    refuse_parts(given, strings, faults)
+    raw, supply, output = _supplies(given)
+    wing = derive_module(given, module, muxing, Supplies(supply, output), BOX, faults)
+    parts = (*_input(given), *_regulator(given), *(wing.devices if wing else ()))
+    _refuse_lines(given, parts, faults)
+    switched = ("SW",) if is_regulated(given) else ()
+    return (
+        Carrier(
+            name="flange",
+            title="breakout flange",
+            title_at=TITLE_AT,
+            box=wing.box if wing else BOX,
+            corner_mm=CORNER_MM,
+            holes=HOLES_AT,
+            hole_mm=given.catalogue.fasteners[BOARD_SCREW].hole_mm[0],
+            devices=(
+                *_strips(given),
+                *parts,
+                *fiducials(wing.fiducials if wing else FIDUCIALS_AT),
+            ),
+            notes=(),
+            supplies=tuple(dict.fromkeys(("GND", supply, raw, "FUSED", output, *switched))),
+            keep_outs=wing.keep_outs if wing else (),
+            hot_loop=_hot_loop(given),
+        ),
+    )
+
+
+def _hot_loop(given: Input) -> tuple[tuple[str, str], ...]:
+    """The leads round which the regulator's input current switches; none without it."""
+    if not is_regulated(given):
+        return ()
+    names = given.catalogue.regulators[given.parameters.flange.regulator].names
+    vin, ground = (str(names.index(name) + 1) for name in ("VIN", "GND"))
+    return ("U1", vin), ("C1", "1"), ("C1", "2"), ("U1", ground)
+
+
+def _supplies(given: Input) -> tuple[str, str, str]:
+    """Nets of the contacts' supply, of the same after the MOSFET, and of the regulator."""
+    volts = f"{given.parameters.supply.voltage_v:g}V"
+    regulator = given.catalogue.regulators[given.parameters.flange.regulator]
+    return f"{volts}_IN", volts, f"{regulator.output_v:g}V"
+
+
+def _strips(given: Input) -> tuple[Device, ...]:
+    """Contacts and headers."""
+    p, known = given.parameters.flange, given.catalogue.strips
+    raw, supply, output = _supplies(given)
+    called = {"SUPPLY": supply, "REGULATED": output}
+    nets = tuple(raw if signal == "SUPPLY" else signal for signal in p.signals)
+    names = tuple(called.get(signal, signal) for signal in p.signals)
+    coupling = given.catalogue.couplings[p.coupling]
+    x, y = coupling.contacts_at_mm
+    places = [(contact.at_mm[0] - x, contact.at_mm[1] - y) for contact in coupling.contacts]
+    rows = strip("J1", p.contacts, known[p.contacts], CONTACTS_AT, nets, names)
+    contacts = from_behind(rows, places)
+    both = []
+    for ref, at, signals in zip(("J2", "J3"), HEADERS_AT, p.headers, strict=True):
+        there = tuple(called.get(signal, signal) for signal in signals)
+        around = (*there, *reversed(there))
+        both.append(strip(ref, p.header, known[p.header], at, around, around))
+    return contacts, *both
+
+
+def _input(given: Input) -> tuple[Device, ...]:
+    """Fuse, and the MOSFET with the supply, or half of a high one, at its gate."""
+    p, known = given.parameters.flange, given.catalogue
+    raw, supply, _ = _supplies(given)
+    resistor = known.resistors[p.resistor]
+    code = resistor_code(p.gate_ohm)
+    part = resistor.order_number.replace("{code}", code)
+    transistor = known.transistors[p.transistor]
+    leads = {"G": "GATE", "S": supply, "D": "FUSED"}
+    return (
+        chip("F1", "fuse", p.fuse, known.fuses[p.fuse], "FUSC", (5.4, -7.0), 180.0,
+              (raw, "FUSED")),
+        leaded("Q1", "transistor", p.transistor, transistor, (-1.0, -7.0), 270.0, leads),
+        *(
+            (chip("R1", "resistor", code, resistor, "RESC", (-5.2, -7.0), 90.0, (supply, "GATE"),
+                  part),)
+            if halved(given)
+            else ()
+        ),
+        chip("R2", "resistor", code, resistor, "RESC", (-2.0, -3.8), 0.0, ("GATE", "GND"), part),
+    )  # fmt: skip
+
+
+def _regulator(given: Input) -> tuple[Device, ...]:
+    """The regulator with its input capacitor across VIN and GND, and what hangs on SW; nothing
+    where the supply is what it would make."""
+    p, known = given.parameters.flange, given.catalogue
+    if not is_regulated(given):
+        return ()
+    _, supply, output = _supplies(given)
+    leads = {"FB": output, "EN": supply, "VIN": supply, "GND": "GND", "SW": "SW", "BST": "BST"}
+    caps = known.capacitors
+    return (
+        leaded("U1", "regulator", p.regulator, known.regulators[p.regulator], (-7.5, 0.0), 0.0,
+                leads),
+        chip("C1", "capacitor", p.input_capacitor.split()[0], caps[p.input_capacitor], "CAPC",
+              (-4.9, 0.0), 90.0, (supply, "GND")),
+        chip("C4", "capacitor", p.boot_capacitor.split()[0], caps[p.boot_capacitor], "CAPC",
+              (-10.8, 2.1), 90.0, ("BST", "SW")),
+        chip("L1", "inductor", p.inductor.split()[0], known.inductors[p.inductor], "INDC",
+              (-7.5, 5.2), 90.0, ("SW", output)),
+        *(
+            chip(ref, "capacitor", p.output_capacitor.split()[0], caps[p.output_capacitor],
+                  "CAPC", (x, 5.8), 270.0, (output, "GND"))
+            for ref, x in (("C2", -3.6), ("C3", -1.2))
+        ),
+    )  # fmt: skip
+
+
+def _refuse(given: Input, faults: Faults) -> None:
+    """Refuse headers of another size, signals that lead nowhere, and voltages beyond the parts'."""
+    p, known, volts = given.parameters.flange, given.catalogue, given.parameters.supply.voltage_v
+    strip = known.strips[p.header]
+    counts = [len(signals) for signals in p.headers]
+    faults.refuse_unless(
+        strip.rows == 2 and all(count == strip.ways for count in counts),
+        "flange.headers",
+        f"{' and '.join(map(str, counts))} signals given, {p.header!r} has {strip.rows} x "
+        f"{strip.ways} contacts: {strip.ways} are needed, in two rows",
+    )
+    cables = {*p.headers[0], *p.headers[1]}
+    lost = sorted((set(p.signals) ^ cables) - {"SUPPLY", "GND", "REGULATED", OPEN})
+    faults.refuse_unless(
+        not lost,
+        "flange.signals",
+        f"{', '.join(lost)} given at one end only: a line of the contacts ends in a header",
+    )
+    absent = sorted({"SUPPLY", "GND"} - set(p.signals))
+    faults.refuse_unless(
+        not absent and "REGULATED" not in p.signals,
+        "flange.signals",
+        f"{', '.join(p.signals):.80} given, SUPPLY and GND are needed, and no REGULATED, which the "
+        "board makes",
+    )
+    least, most = supply_range_v(given)
+    faults.refuse_unless(
+        not is_regulated(given) or least <= volts <= most,
+        "supply.voltage_v",
+        f"{volts:g} given, the flange's regulator, fuse and transistor take {least:g} to "
+        f"{most:g} V, or {known.regulators[p.regulator].output_v:g} V without a regulator; other "
+        "parts, or flange.enabled = false",
+    )
+
+
+def _refuse_lines(given: Input, parts: tuple[Device, ...], faults: Faults) -> None:
+    """Refuse lines from contact to cable that are called like a net of the board's own parts:
+    they would be joined."""
+    p = given.parameters.flange
+    own = {net for part in parts for _, net in part.nets} | set(_supplies(given))
+    lines = {*p.signals, *p.headers[0], *p.headers[1]} - {"SUPPLY", "GND", "REGULATED", OPEN}
+    taken = sorted(lines & own)
+    faults.refuse_unless(
+        not taken,
+        "flange.signals",
+        f"{', '.join(taken)} given, which the board's own parts are joined by: another name",
+    )

@@ -1,0 +1,248 @@
+"""The circuit of the flange's board: contact map, ratings of its parts, and its regulator."""
+
+import json
+import math
+
+from lumitip_fab.catalogue.controllers import OPEN, Strip
+from lumitip_fab.catalogue.grippers import Contact, ToolCoupling
+from lumitip_fab.config.load import Input
+from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.wiring.ratings import (
+    MOST_RESISTOR_LOAD,
+    RESISTOR_TOLERANCE,
+    SUPPLY_TOLERANCE,
+    refuse_flange_capacitors,
+    sold_ohm,
+)
+from lumitip_fab.derive.wiring.wiring import Strings
+from lumitip_fab.design.electrical import Regulated
+
+PLACE_MM = 0.05
+_FOR = {"supply": "SUPPLY", "ground": "GND"}
+"""Signal that belongs on a contact of a kind, and on no other."""
+
+
+def refuse_map(given: Input, faults: Faults) -> None:
+    """Refuse contacts where the coupling has none, and nets that join what must stay apart."""
+    p = given.parameters.flange
+    coupling = given.catalogue.couplings[p.coupling]
+    strip = given.catalogue.strips[p.contacts]
+    if not _meets(strip, coupling):
+        faults.refuse(
+            "flange.contacts",
+            f"{p.contacts!r} given, {strip.rows} x {strip.ways} contacts {strip.pitch_mm:g} mm "
+            f"apart, which do not meet the {len(coupling.contacts)} contacts of {p.coupling!r}. "
+            "Take another strip or flange.coupling",
+        )
+        return
+    if len(p.signals) != len(coupling.contacts):
+        faults.refuse(
+            "flange.signals",
+            f"{len(p.signals)} signals given, {p.coupling!r} has {len(coupling.contacts)} "
+            f"contacts: one for each is needed. Take {_own(coupling)}",
+        )
+        return
+    for signal in dict.fromkeys(p.signals):
+        on = [
+            (number, contact)
+            for number, contact in enumerate(coupling.contacts, start=1)
+            if p.signals[number - 1] == signal
+        ]
+        if signal != OPEN and (wrong := _wrong(signal, on)):
+            faults.refuse(
+                "flange.signals",
+                f"{wrong}, by the map of {p.coupling!r} in parts/couplings.toml. Take "
+                f"{_own(coupling)}, or an entry with the map that you have measured",
+            )
+
+
+def _meets(strip: Strip, coupling: ToolCoupling) -> bool:
+    """Whether every contact of a strip stands on one of the coupling, and none is left."""
+    x, y = coupling.contacts_at_mm
+    wanted = [(contact.at_mm[0] - x, contact.at_mm[1] - y) for contact in coupling.contacts]
+    offsets = [place - (strip.ways - 1) / 2 for place in range(strip.ways)]
+    rows = [place - (strip.rows - 1) / 2 for place in range(strip.rows)]
+    there = [(place * strip.pitch_mm, row * strip.pitch_mm) for row in rows for place in offsets]
+    near = [min(math.dist(one, other) for other in there) <= PLACE_MM for one in wanted]
+    return all(near) and len(wanted) == len(there)
+
+
+def _wrong(signal: str, on: list[tuple[int, Contact]]) -> str:
+    """What is wrong with a net on these contacts; empty if nothing is."""
+    where = " and ".join(f"{number} ({contact.carries})" for number, contact in on)
+    if len({contact.carries for _, contact in on}) > 1:
+        return f"{signal} stands on contacts {where}, which carry different signals"
+    where = f"contact{'s' if len(on) > 1 else ''} {where}"
+    _, contact = on[0]
+    belongs = _FOR.get(contact.kind)
+    if contact.kind == "open":
+        return f"{signal} stands on {where}: {OPEN} is needed there"
+    if belongs and signal != belongs:
+        return f"{signal} stands on {where}, of kind {contact.kind}: {belongs} is needed there"
+    if not belongs and signal in (*_FOR.values(), "REGULATED"):
+        return (
+            f"{signal} stands on {where}, of kind {contact.kind}: a line of its own is needed there"
+        )
+    return ""
+
+
+def _own(coupling: ToolCoupling) -> str:
+    """The signals that the coupling's map asks for, as TOML."""
+    return json.dumps([_FOR.get(contact.kind, contact.carries) for contact in coupling.contacts])
+
+
+FUSE_SHARE = 0.75  # of its rating that a fuse carries for years
+GATE_SHARE = 0.8  # of what the MOSFET's gate bears, at the highest supply
+HEADROOM_V = 1.0  # a step-down regulator's input above its output
+EFFICIENCY = 0.8  # of the regulator at a small load, assumed
+STRAY_PF = 7.0  # at each of the crystal's terminals: 4 of the nRF52840's pin, the rest tracks
+MOST_OFF_PF = 1.5  # some 15 ppm of a crystal of 32.768 kHz
+
+
+def is_regulated(given: Input) -> bool:
+    """Whether the flange makes its output from a higher supply; else they are one net."""
+    p = given.parameters
+    return p.supply.voltage_v != given.catalogue.regulators[p.flange.regulator].output_v
+
+
+def halved(given: Input) -> bool:
+    """Whether a divider halves the supply for the MOSFET's gate, which bears no high supply."""
+    p = given.parameters
+    high_v = p.supply.voltage_v * (1 + SUPPLY_TOLERANCE)
+    return high_v > GATE_SHARE * given.catalogue.transistors[p.flange.transistor].gate_v
+
+
+def supply_range_v(given: Input) -> tuple[float, float]:
+    """Least and greatest supply that regulator, fuse and transistor take."""
+    p, known = given.parameters.flange, given.catalogue
+    part, transistor = known.regulators[p.regulator], known.transistors[p.transistor]
+    gates = 2 if halved(given) else 1
+    least = max(
+        part.input_v[0],
+        part.output_v + HEADROOM_V,
+        gates * transistor.gate_on_v / (1 - SUPPLY_TOLERANCE),
+    )
+    rated = (part.input_v[1], known.fuses[p.fuse].rated_v, transistor.rated_v)
+    return least, min(*rated, gates * transistor.gate_v)
+
+
+def refuse_parts(given: Input, strings: Strings, faults: Faults) -> None:
+    """Refuse parts that are overloaded, and values with which the circuit does not work."""
+    _refuse_gate(given, faults)
+    _refuse_fuse(given, strings, faults)
+    refuse_flange_capacitors(given, faults)
+    if given.catalogue.controllers[given.parameters.controller.board].module:
+        _refuse_crystal(given, faults)
+
+
+def _refuse_gate(given: Input, faults: Faults) -> None:
+    p = given.parameters
+    ohm, volts = p.flange.gate_ohm, p.supply.voltage_v / (2 if halved(given) else 1)
+    package = given.catalogue.resistors[p.flange.resistor]
+    sold, allowed_w = sold_ohm(ohm), MOST_RESISTOR_LOAD * package.power_w
+    faults.refuse_unless(
+        math.isclose(sold, ohm),
+        "flange.gate_ohm",
+        f"{ohm:g} given, which is not sold: a value of the E24 or E96 series is needed, such as "
+        f"{sold:g}",
+    )
+    load_w = (volts * (1 + SUPPLY_TOLERANCE)) ** 2 / (ohm * (1 - RESISTOR_TOLERANCE))
+    faults.refuse_unless(
+        load_w <= allowed_w,
+        "flange.gate_ohm",
+        f"{ohm:g} takes up to {1000 * load_w:.0f} mW at {volts:g} V; a {p.flange.resistor!r} takes "
+        f"at most {1000 * allowed_w:.0f} mW: at least {ohm * load_w / allowed_w:.0f} is needed",
+    )
+
+
+def _refuse_fuse(given: Input, strings: Strings, faults: Faults) -> None:
+    p, known = given.parameters, given.catalogue
+    fed_ma = known.controllers[p.controller.board].draws_ma / EFFICIENCY
+    output_v = known.regulators[p.flange.regulator].output_v
+    drawn_ma = sum(strings.current_ma) + fed_ma * output_v / p.supply.voltage_v
+    allowed_ma = 1000 * FUSE_SHARE * known.fuses[p.flange.fuse].rated_a
+    faults.refuse_unless(
+        drawn_ma <= allowed_ma,
+        "flange.fuse",
+        f"{p.flange.fuse!r} given, which carries {allowed_ma:.0f} mA for years; LEDs and "
+        f"controller draw {drawn_ma:.0f} mA: a larger one, or less emitter.current_ma",
+    )
+
+
+def _refuse_crystal(given: Input, faults: Faults) -> None:
+    """Refuse capacitors with which the crystal is off."""
+    p, known = given.parameters.module, given.catalogue
+    crystal, each = known.crystals[p.crystal], known.capacitors[p.crystal_capacitor]
+    load_pf = (1000 * each.capacitance_nf * each.left + STRAY_PF) / 2
+    faults.refuse_unless(
+        abs(load_pf - crystal.load_pf) <= MOST_OFF_PF,
+        "module.crystal_capacitor",
+        f"{p.crystal_capacitor!r} given, two of which load the crystal with {load_pf:g} pF; "
+        f"{p.crystal!r} is made for {crystal.load_pf:g} pF: capacitors of "
+        f"{2 * crystal.load_pf - STRAY_PF:g} pF are needed",
+    )
+
+
+LOAD_SHARE = 0.25
+"""Of the regulator's largest current: with less than half its ripple it would skip pulses."""
+MOST_RIPPLE = 0.01  # of the output, and of the supply at the input
+OUTPUT_CAPACITORS = ("C2", "C3")
+
+
+def derive_regulated(given: Input, faults: Faults) -> tuple[Regulated, ...]:
+    """The flange's 5 V; none without the flange, or where they are its supply.
+
+    Ripple of a step-down regulator in continuous conduction: the current swings by
+    V (1 - V / V_in) / (L f), and the capacitors take the half of it above the mean,
+    which moves them by the swing / (8 f C). Their series resistance, some milliohms, is left out.
+    """
+    p, known = given.parameters, given.catalogue
+    if not p.flange.enabled or not is_regulated(given):
+        return ()
+    part = known.regulators[p.flange.regulator]
+    inductor = known.inductors[p.flange.inductor]
+    capacitor = known.capacitors[p.flange.output_capacitor]
+    hertz, volts = 1e3 * part.switching_khz, part.output_v
+    duty = volts / p.supply.voltage_v
+    each_uf = capacitor.capacitance_nf * capacitor.left / 1e3
+    farad = len(OUTPUT_CAPACITORS) * each_uf * 1e-6
+    ripple_a = volts * (1 - duty) / (inductor.inductance_uh * 1e-6 * hertz)
+    ripple_mv = 1e3 * ripple_a / (8 * hertz * farad)
+    faults.refuse_unless(
+        ripple_mv <= 1e3 * MOST_RIPPLE * volts,
+        "flange.output_capacitor",
+        f"{p.flange.output_capacitor!r} given, with which {volts:g} V ripple by {ripple_mv:.0f} "
+        f"mV; at most {1e3 * MOST_RIPPLE * volts:g} mV are allowed: more capacitance",
+    )
+    _refuse_input(given, LOAD_SHARE * part.output_a * duty * (1 - duty) / hertz, faults)
+    high_ohm, low_ohm = part.switch_ohm
+    return (
+        Regulated(
+            input_v=p.supply.voltage_v,
+            output_v=volts,
+            switching_khz=part.switching_khz,
+            soft_start_ms=part.soft_start_ms,
+            switch_ohm=duty * high_ohm + (1 - duty) * low_ohm,
+            inductance_uh=inductor.inductance_uh,
+            capacitors=OUTPUT_CAPACITORS,
+            capacitor_uf=each_uf,
+            load_a=LOAD_SHARE * part.output_a,
+            ripple_a=ripple_a,
+            ripple_mv=ripple_mv,
+            charging_a=farad * volts / (part.soft_start_ms * 1e-3),
+        ),
+    )
+
+
+def _refuse_input(given: Input, coulomb: float, faults: Faults) -> None:
+    """Refuse an input capacitor that does not hold the supply while the switch takes a charge."""
+    p = given.parameters
+    capacitor = given.catalogue.capacitors[p.flange.input_capacitor]
+    moved_v = coulomb / (1e-9 * capacitor.capacitance_nf * capacitor.left)
+    most_v = MOST_RIPPLE * p.supply.voltage_v
+    faults.refuse_unless(
+        moved_v <= most_v,
+        "flange.input_capacitor",
+        f"{p.flange.input_capacitor!r} given, with which {p.supply.voltage_v:g} V ripple by "
+        f"{1000 * moved_v:.0f} mV; at most {1000 * most_v:g} mV are allowed: more capacitance",
+    )

@@ -1,0 +1,164 @@
+"""A module as the controller, on a wing of the flange's board to the left of all else.
+
+```
+╭───────────────────╮
+│  J6 USB           │   the module's antenna is at the edge
+│  J7 SWD   C5 U3 C6│   5V ─ U3 ─ 3V3
+│▒▒┌──────────────┐C10   of VBUS
+│▒▒│      U2      │C7    of VDD
+│▒▒└──────────────┘C9
+│           J5      │Y1 C8
+│  J4               │   wires to the receiver, and (J5) to the emitter
+╰───────────────────╯
+```
+
+▒ is the keep-out. What is on the wing follows the module's body and the pads of its four sides.
+"""
+
+from dataclasses import dataclass
+
+from lumitip_fab.catalogue.controllers import Module
+from lumitip_fab.config.load import Input
+from lumitip_fab.derive.boards import connectors, patterns
+from lumitip_fab.derive.boards.devices import chip, leaded, wires
+from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.wiring.wiring import Muxing
+from lumitip_fab.design import Box, Device, Point
+
+WING_MM = 12.6
+"""Beyond the board without a module. No more: the published flange has its bolts beside it."""
+TURN_DEG = 90.0  # the antenna, at the top of the module's own frame, to the left
+MOST_WIRES = 9
+"""In the row to the receiver, between the board's round corner and the header."""
+CONTROLLER = "3V3"
+FIDUCIALS_AT: tuple[Point, ...] = ((-25.6, 8.4), (13.0, -15.5), (-25.6, -8.4))
+_NAMED = {"GND": "GND", "VDD": CONTROLLER, "VDDH": CONTROLLER, "VBUS": "VUSB", "USB_DM": "D-",
+          "USB_DP": "D+", "SWDIO": "DIO", "SWDCLK": "CLK", "P0_18": "RST"}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Supplies:
+    """Nets that the flange's board has: the LEDs' supply, and the controller's."""
+
+    leds: str
+    regulated: str
+
+
+@dataclass(frozen=True)
+class Wing:
+    """What a module adds to the flange's board, and the board's box with it."""
+
+    box: Box
+    devices: tuple[Device, ...]
+    fiducials: tuple[Point, ...]
+    keep_outs: tuple[Box, ...]
+
+
+def derive_module(
+    given: Input, module: Module | None, muxing: Muxing, supplies: Supplies, box: Box,
+    faults: Faults,
+) -> Wing | None:  # fmt: skip
+    """The module with what it needs; none where the controller is not one."""
+    if module is None:
+        return None
+    _refuse(given, muxing, faults)
+    left = box.x_min_mm - WING_MM
+    at = left + module.body_mm[1] / 2, 0.0
+    receiver = connectors.receiver_signals(muxing)
+    devices = (
+        _module(given, module, muxing, at),
+        *_beside(given),
+        *_supply(given, supplies),
+        wires("J4", receiver, (left + 7.9, -22.6), wide=False),
+        wires("J5", ("GND", supplies.leds), (-16.9, -14.0), wide=True),
+        wires("J6", ("VUSB", "D-", "D+", "GND"), (-20.4, 22.6), wide=True),
+        wires("J7", (CONTROLLER, "DIO", "CLK", "RST", "GND"), (-20.6, 16.2), wide=True),
+    )
+    return Wing(
+        box=Box(left, box.x_max_mm, box.y_min_mm, box.y_max_mm),
+        devices=devices,
+        fiducials=FIDUCIALS_AT,
+        keep_outs=tuple(
+            # Turned by a quarter: (x, y) becomes (-y, x).
+            Box(at[0] - high, at[0] - low, at[1] + x_min, at[1] + x_max)
+            for x_min, low, x_max, high in module.keep_out_mm
+        ),
+    )
+
+
+def _module(given: Input, module: Module, muxing: Muxing, at: Point) -> Device:
+    """The module; a pin of the sketch names its pad, any other pad is called by its port."""
+    pins = {port: pin for pin, port in module.ports.items()}
+    nets = _NAMED | dict(zip(module.crystal, ("XL1", "XL2"), strict=True))
+    nets |= {module.ports[pin]: pin for pin in muxing.adc_pins}
+    nets |= {module.ports[pin]: f"S{i}" for i, pin in enumerate(muxing.select_pins)}
+    return Device(
+        ref="U2", kind="module", value=given.title("controller.board"), part=module.order_number,
+        manufacturer=module.manufacturer, lcsc=module.lcsc, pattern=patterns.module(module),
+        x_mm=at[0], y_mm=at[1], angle_deg=TURN_DEG,
+        nets=tuple((str(i), nets[name]) for i, name in enumerate(module.names, 1) if name in nets),
+        pins=tuple(pins.get(name, name) for name in module.names),
+    )  # fmt: skip
+
+
+def _supply(given: Input, supplies: Supplies) -> tuple[Device, ...]:
+    """The linear regulator with a capacitor before and after it."""
+    p, known = given.parameters.module, given.catalogue
+    cap, value = known.capacitors[p.supply_capacitor], p.supply_capacitor.split()[0]
+    leads = {"IN": supplies.regulated, "OUT": CONTROLLER, "GND": "GND"}
+    return (
+        leaded("U3", "regulator", p.regulator, known.linear_regulators[p.regulator],
+               (-17.5, 9.2), 0.0, leads),
+        chip("C5", "capacitor", value, cap, "CAPC", (-14.4, 10.2), 0.0,
+             (supplies.regulated, "GND")),
+        chip("C6", "capacitor", value, cap, "CAPC", (-14.4, 7.8), 0.0, (CONTROLLER, "GND")),
+    )  # fmt: skip
+
+
+def _beside(given: Input) -> tuple[Device, ...]:
+    """What is near the module's pads: capacitors of its supplies, and the crystal."""
+    p, known = given.parameters.module, given.catalogue.capacitors
+    value = p.crystal_capacitor.split()[0]
+    crystal = given.catalogue.crystals[p.crystal]
+    return (
+        chip("C7", "capacitor", p.capacitor.split()[0], known[p.capacitor], "CAPC",
+             (-11.2, 5.2), 90.0, (CONTROLLER, "GND")),
+        chip("C10", "capacitor", p.supply_capacitor.split()[0], known[p.supply_capacitor], "CAPC",
+             (-11.2, 10.2), 90.0, ("VUSB", "GND")),
+        chip("Y1", "crystal", p.crystal.split()[0], crystal, "XTAL", (-11.3, -7.2), 90.0,
+             ("XL1", "XL2")),
+        chip("C8", "capacitor", value, known[p.crystal_capacitor], "CAPC", (-11.3, -11.4), 270.0,
+             ("XL1", "GND")),
+        chip("C9", "capacitor", value, known[p.crystal_capacitor], "CAPC", (-11.4, -3.2), 270.0,
+             ("XL2", "GND")),
+    )  # fmt: skip
+
+
+def _refuse(given: Input, muxing: Muxing, faults: Faults) -> None:
+    """Refuse a regulator that does not go between the supplies, and more wires than have room."""
+    p, known = given.parameters, given.catalogue
+    regulator = known.linear_regulators[p.module.regulator]
+    controller = known.controllers[p.controller.board]
+    fed_v = known.regulators[p.flange.regulator].output_v
+    least, most = regulator.input_v
+    faults.refuse_unless(
+        least <= fed_v <= most and regulator.output_v == controller.supply_v,
+        "module.regulator",
+        f"{p.module.regulator!r} given, which makes {regulator.output_v:g} V of {least:g} to "
+        f"{most:g} V; {controller.supply_v:g} V of the {fed_v:g} V of flange.regulator are needed",
+    )
+    needed_a = controller.draws_ma / 1000
+    faults.refuse_unless(
+        needed_a <= regulator.output_a,
+        "module.regulator",
+        f"{p.module.regulator!r} given, which carries {1000 * regulator.output_a:g} mA; "
+        f"{p.controller.board!r} draws {controller.draws_ma:g} mA",
+    )
+    wires_needed = len(connectors.receiver_signals(muxing))
+    faults.refuse_unless(
+        wires_needed <= MOST_WIRES,
+        "controller.board",
+        f"{p.controller.board!r} given, whose board has room for {MOST_WIRES} wires to the "
+        f"receiver; it needs {wires_needed}: less multiplexers with more inputs, less cells, or a "
+        "controller that plugs into the breakout",
+    )

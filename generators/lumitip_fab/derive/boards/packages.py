@@ -1,0 +1,113 @@
+"""The parts that the boards carry, and the rules that their copper keeps."""
+
+from lumitip_fab.catalogue import electronics
+from lumitip_fab.catalogue.ordering import Silk
+from lumitip_fab.config.load import Input
+from lumitip_fab.derive.boards import placing
+from lumitip_fab.derive.faults import Faults
+from lumitip_fab.design import Chip, Fab, Multiplexer, Packages, Rules
+
+LEAST_RING_MM = 0.1  # copper round the hole of a via
+COMMON_SILK = Silk(text_mm=0.8, line_mm=0.15, gap_mm=0.15)  # where the catalogue has no house
+
+
+def derive_packages(given: Input) -> Packages:
+    """The parts that are named in the parameter file, as the boards need them."""
+    p, parts = given.parameters, given.catalogue
+    led, detector = parts.leds[p.emitter.led], parts.photodetectors[p.receiver.photodetector]
+    capacitor = parts.capacitors[p.receiver.capacitor]
+    mux = parts.multiplexers[p.receiver.multiplexer]
+    return Packages(
+        led=_chip(led, p.emitter.led, led.marked),
+        string_resistor=_chip(parts.resistors[p.emitter.resistor]),
+        photodetector=_chip(detector, p.receiver.photodetector, detector.marked),
+        pull_up=_chip(parts.resistors[p.receiver.resistor]),
+        capacitor=_chip(capacitor, f"{capacitor.capacitance_nf:g}nF"),
+        multiplexer=Multiplexer(
+            part=mux.order_number,
+            manufacturer=mux.manufacturer,
+            value=p.receiver.multiplexer,
+            body_mm=mux.body_mm,
+            lead_span_mm=mux.lead_span_mm,
+            lead_tips_mm=mux.lead_tips_mm,
+            lead_pitch_mm=mux.lead_pitch_mm,
+            lead_pad_mm=mux.lead_pad_mm,
+            leads=mux.leads,
+            inputs=tuple(mux.inputs[str(channel)] for channel in range(mux.channels)),
+            select=mux.select,
+            output=mux.output,
+            supply=mux.supply,
+            ground=mux.ground,
+            enable=mux.enable,
+            negative=mux.negative,
+            lcsc=mux.lcsc,
+        ),
+    )
+
+
+def _chip(entry: electronics.Chip, value: str = "", marked: str = "") -> Chip:
+    return Chip(
+        part=entry.order_number,
+        manufacturer=entry.manufacturer,
+        value=value,
+        body_mm=entry.body_mm,
+        pad_mm=entry.pad_mm,
+        pad_pitch_mm=entry.pad_pitch_mm,
+        marked=marked,
+        confidence=entry.confidence,
+        lcsc=entry.lcsc,
+    )
+
+
+def derive_rules(given: Input, faults: Faults) -> Rules:
+    """Rules of the copper; refused where a via has no ring or a track does not leave a lead."""
+    p = given.parameters
+    board, mux = p.board, given.catalogue.multiplexers[p.receiver.multiplexer]
+    least = board.via_drill_mm + 2 * LEAST_RING_MM
+    faults.refuse_unless(
+        board.via_mm >= least - 1e-9,
+        "board.via_mm",
+        f"{board.via_mm:g} given, a hole of {board.via_drill_mm:g} mm needs at least {least:g}",
+    )
+    between = mux.lead_pitch_mm - mux.lead_pad_mm[1]
+    faults.refuse_unless(
+        board.copper_gap_mm <= between + 1e-9,
+        "board.copper_gap_mm",
+        f"{board.copper_gap_mm:g} given, the leads of {p.receiver.multiplexer!r} are only "
+        f"{between:.2f} mm apart: at most that is allowed",
+    )
+    faults.refuse_unless(
+        board.track_mm <= board.supply_track_mm,
+        "board.supply_track_mm",
+        f"{board.supply_track_mm:g} given, at least board.track_mm = {board.track_mm:g} is needed",
+    )
+    silks = [fab.silk for fab in given.catalogue.fabs.values()] or [COMMON_SILK]
+    return Rules(
+        part_gap_mm=board.clearance_mm,
+        track_mm=board.track_mm,
+        supply_track_mm=board.supply_track_mm,
+        copper_gap_mm=board.copper_gap_mm,
+        via_mm=board.via_mm,
+        via_drill_mm=board.via_drill_mm,
+        edge_gap_mm=placing.HOLE_CLEARANCE_MM,
+        silk_text_mm=max(silk.text_mm for silk in silks),
+        silk_line_mm=max(silk.line_mm for silk in silks),
+        silk_gap_mm=max(silk.gap_mm for silk in silks),
+    )
+
+
+def derive_fabs(given: Input) -> tuple[Fab, ...]:
+    """Every board house of the catalogue."""
+    return tuple(
+        Fab(
+            name=name,
+            layers=tuple((layer.replace("_", " "), end) for layer, end in fab.layers.items()),
+            bom=fab.bom,
+            positions=fab.positions,
+            sides=fab.sides,
+            back_from_behind=fab.back_angle == "from behind",
+            rotations=tuple(fab.rotations.items()),
+            remark=fab.remark,
+        )
+        for name, fab in given.catalogue.fabs.items()
+    )

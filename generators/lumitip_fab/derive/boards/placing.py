@@ -1,0 +1,226 @@
+"""Where the parts of a board go: at the cells, in the zone for parts, and the locating holes."""
+
+import math
+
+import numpy as np
+
+from lumitip_fab.catalogue.electronics import Chip
+from lumitip_fab.config.load import Input
+from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.finger.cells import Cells
+from lumitip_fab.derive.finger.flex import is_flex
+from lumitip_fab.derive.wiring.wiring import Muxing, Strings
+from lumitip_fab.design import Box, Part, Point, Relief
+
+HOLE_CLEARANCE_MM = 0.25
+HOLE_WEB_MM = 0.5  # board left between a hole and its edge
+HOLES_APART_MM = 0.4  # board left between two holes
+RELIEF_DEPTH_MM = 0.2  # below the part
+RESISTOR_GAP_MM = 0.6
+ZONE_MARGIN_MM = 1.0  # zone for parts to the board's long edges
+COUPLING_GAP_MM = 2.0  # mounting block to a relief
+
+
+def at_cells(
+    letter: str, kind: str, chip: Chip, turned: bool, cells: tuple[Point, ...]
+) -> tuple[Part, ...]:
+    """One part at each cell, named in frame order: D1 or Q1 is cell 0."""
+    along, across = chip.over_pads_mm
+    size = (across, along) if turned else (along, across)
+    return tuple(
+        Part(f"{letter}{i}", kind, x, y, *size, chip.body_mm[2], "front")
+        for i, (x, y) in enumerate(cells, start=1)
+    )
+
+
+def parts_zone_depth_mm(given: Input, muxing: Muxing, width_mm: float, faults: Faults) -> float:
+    """Depth of the zone for parts with a channel after each row of multiplexers."""
+    p = given.parameters
+    mux = given.catalogue.multiplexers[p.receiver.multiplexer]
+    per_row = _per_row(given, width_mm)
+    beside = sum(chip.over_pads_mm[0] for chip in _passives(given)) + p.board.clearance_mm
+    faults.refuse_unless(
+        beside <= mux.lead_span_mm,
+        "receiver.resistor",
+        f"{p.receiver.resistor!r} given, which takes {beside:.2f} mm beside a multiplexer, with "
+        f"{p.receiver.capacitor!r}; {mux.lead_span_mm:g} mm is there: use a smaller package",
+    )
+    if per_row < 1:
+        faults.refuse(
+            "board.side_margin_mm",
+            f"{p.board.side_margin_mm:g} given, which makes boards {width_mm:.1f} mm wide; a "
+            f"{p.receiver.multiplexer!r} with its capacitor needs {_slot_mm(given) + 2:.1f} mm",
+        )
+        per_row = 1
+    rows = math.ceil(muxing.muxes / per_row)
+    return rows * (mux.lead_span_mm + p.board.channel_mm)
+
+
+def multiplexers(given: Input, muxing: Muxing, zone: Box) -> tuple[Part, ...]:
+    """Multiplexers in rows across the zone, evenly spread, U1 at the upper left.
+
+    Capacitor and pull-up stand to the left of each, where supply and output leads are.
+    """
+    p = given.parameters
+    mux = given.catalogue.multiplexers[p.receiver.multiplexer]
+    passives = (_slot_mm(given) - mux.body_mm[0]) - p.board.clearance_mm
+    per_row = max(_per_row(given, zone.width_mm + 2), 1)
+    rows = np.array_split(np.arange(muxing.muxes), math.ceil(muxing.muxes / per_row))
+    parts = []
+    for r, row in enumerate(rows):
+        y = zone.y_max_mm - mux.lead_span_mm / 2 - r * (mux.lead_span_mm + p.board.channel_mm)
+        for k, which in enumerate(row):
+            slot = zone.width_mm / row.size
+            x = zone.x_min_mm + slot * (k + 0.5)
+            x += max(0.0, round(passives - (slot - mux.body_mm[0]) / 2, 9))
+            name = f"U{which + 1}"
+            size = (mux.body_mm[0], mux.lead_span_mm)
+            parts.append(Part(name, "multiplexer", x, y, *size, mux.body_mm[2], "front"))
+    return tuple(parts)
+
+
+def _slot_mm(given: Input) -> float:
+    p = given.parameters
+    body = given.catalogue.multiplexers[p.receiver.multiplexer].body_mm[0]
+    return body + max(chip.over_pads_mm[1] for chip in _passives(given)) + 2 * p.board.clearance_mm
+
+
+def _passives(given: Input) -> tuple[Chip, Chip]:
+    """Capacitor and pull-up, which stand upright beside each multiplexer."""
+    p, parts = given.parameters, given.catalogue
+    return parts.capacitors[p.receiver.capacitor], parts.resistors[p.receiver.resistor]
+
+
+def _per_row(given: Input, width_mm: float) -> int:
+    return int((width_mm - 2) / _slot_mm(given) + 1e-9)
+
+
+def tip_holes(
+    given: Input, cells: Cells, parts: tuple[Part, ...], box: Box, faults: Faults
+) -> tuple[Point, ...]:
+    """Holes ahead of the first row: outermost and middle of the columns that leave room, or near
+    the long edges where fewer than two columns do.
+
+    Args:
+        given: the input.
+        cells: the cells.
+        parts: parts at the cells of both fingers, in the receiver's frame.
+        box: the board.
+        faults: where to refuse.
+    """
+    p = given.parameters
+    y = box.y_max_mm - p.board.hole_edge_mm
+    keep = p.board.hole_mm / 2 + HOLE_CLEARANCE_MM
+    apart = p.board.hole_mm + HOLES_APART_MM
+    farthest = box.x_max_mm - p.board.hole_mm / 2 - HOLE_WEB_MM
+    boxes = np.array(
+        [(b.x_min_mm, b.x_max_mm, b.y_min_mm, b.y_max_mm) for b in (q.box for q in parts)]
+    )
+
+    def with_room(places: list[float]) -> list[float]:
+        x = np.array(places)
+        dx = np.maximum(np.maximum(boxes[:, :1] - x, x - boxes[:, 1:2]), 0)
+        dy = np.maximum(np.maximum(boxes[:, 2:3] - y, y - boxes[:, 3:]), 0)
+        free = (np.hypot(dx, dy).min(axis=0) >= keep) & (np.abs(x) <= farthest + 1e-9)
+        return [float(place) for place in x[free]]
+
+    columns = sorted({round(float(v), 6) for v in cells.x_mm})
+    room = with_room(columns)
+    if not _spans(room, apart):
+        edge = math.floor(farthest * 10) / 10
+        room = with_room(sorted({-edge, *columns, edge}))
+    if not _spans(room, apart):
+        top = max(float(b[3]) for b in boxes)
+        least = p.board.hole_edge_mm + keep + top - float(cells.y_mm.max())
+        faults.refuse(
+            "board.tip_margin_mm",
+            f"{p.board.tip_margin_mm:g} given, holes of {p.board.hole_mm:g} mm at "
+            f"{p.board.hole_edge_mm:g} mm from the edge meet the first row of parts; "
+            f"{least:.2f} is always enough",
+        )
+        return ()
+    middle = min(room, key=lambda x: abs(x - (room[0] + room[-1]) / 2))
+    if min(middle - room[0], room[-1] - middle) < apart:
+        middle = room[0]
+    return tuple((x, y) for x in sorted({room[0], middle, room[-1]}))
+
+
+def _spans(room: list[float], apart_mm: float) -> bool:
+    """Whether two holes have room, one at each end of the places."""
+    return bool(room) and room[-1] - room[0] >= apart_mm
+
+
+def resistors(
+    given: Input, strings: Strings, zone: Box, foot_half_mm: float, faults: Faults
+) -> tuple[tuple[Part, ...], tuple[Relief, ...]]:
+    """String resistors in two banks beside the coupling, and the reliefs behind them.
+
+    R1 is rightmost, because the strings begin with column 0, which is on the emitter's right.
+    """
+    p = given.parameters
+    chip = given.catalogue.resistors[p.emitter.resistor]
+    along, across = chip.over_pads_mm
+    inner = _inner_mm(given, foot_half_mm)
+    outer = zone.x_max_mm - p.backing.relief_clearance_mm
+    step_x, step_y = across + RESISTOR_GAP_MM, along + RESISTOR_GAP_MM
+    across_bank = int((outer - inner + RESISTOR_GAP_MM) / step_x + 1e-9)
+    count = len(strings.cells)
+    rows = math.ceil(math.ceil(count / 2) / max(across_bank, 1))
+    if across_bank < 1 or rows * step_y > zone.length_mm:
+        faults.refuse(
+            "emitter.resistor",
+            f"{p.emitter.resistor!r} given, {count} string resistors do not fit into two "
+            f"banks of {outer - inner:.1f} x {zone.length_mm:.1f} mm"
+            + (" beside the coupling" if p.emitter.resistor_side == "back" else "")
+            + ": use a smaller package, the other emitter.resistor_side, or more board.channel_mm",
+        )
+        return (), ()
+    parts: list[Part] = []
+    reliefs: list[Relief] = []
+    for side, in_bank in ((1, math.ceil(count / 2)), (-1, count // 2)):
+        bank = [
+            Part(
+                name=f"R{len(parts) + place + 1}",
+                kind="resistor",
+                x_mm=side * (inner + outer) / 2 - (k - (row.size - 1) / 2) * step_x,
+                y_mm=zone.centre_mm[1] + ((rows - 1) / 2 - r) * step_y,
+                size_x_mm=across,
+                size_y_mm=along,
+                height_mm=chip.body_mm[2],
+                side=p.emitter.resistor_side,
+            )
+            for r, row in enumerate(np.array_split(np.arange(in_bank), rows))
+            for k, place in enumerate(row.tolist())
+        ]
+        parts += bank
+        if bank and p.emitter.resistor_side == "back":
+            reliefs.append(_relief(given, bank, chip.body_mm[2]))
+    return tuple(parts), tuple(reliefs)
+
+
+def least_half_width_mm(given: Input, foot_half_mm: float) -> float:
+    """Half the board's width that takes one string resistor on each side of the coupling."""
+    p = given.parameters
+    _, across = given.catalogue.resistors[p.emitter.resistor].over_pads_mm
+    return _inner_mm(given, foot_half_mm) + across + p.backing.relief_clearance_mm + ZONE_MARGIN_MM
+
+
+def _inner_mm(given: Input, foot_half_mm: float) -> float:
+    """Where the banks of string resistors begin: behind the board, beside the coupling."""
+    p = given.parameters
+    if p.emitter.resistor_side == "front":
+        return RESISTOR_GAP_MM / 2
+    return foot_half_mm + COUPLING_GAP_MM + p.backing.relief_clearance_mm
+
+
+def _relief(given: Input, bank: list[Part], height_mm: float) -> Relief:
+    p = given.parameters
+    boxes = [part.box for part in bank]
+    box = Box(
+        min(b.x_min_mm for b in boxes), max(b.x_max_mm for b in boxes),
+        min(b.y_min_mm for b in boxes), max(b.y_max_mm for b in boxes),
+    ).grown(p.backing.relief_clearance_mm)  # fmt: skip
+    depth = height_mm + RELIEF_DEPTH_MM
+    # A plate that is printed face down must not hang over.
+    through = is_flex(p) or p.stack.floor_mm - depth < p.printer.min_wall_mm
+    return Relief(box, p.stack.floor_mm if through else depth, through)

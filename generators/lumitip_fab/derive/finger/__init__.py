@@ -1,0 +1,1 @@
+"""The finger: cells, layers, outline."""

@@ -1,0 +1,127 @@
+"""How the interface of a compliant finger lies on the plate, and its rim in the plate's groove.
+
+Of rim and groove the rim alone follows the printer's fit. The fit test plate is printed of the
+rigid filament, as the interface is, and its reading is of that filament: the rim goes back by it on
+each side. The groove is in a plate of a filament that bends, of which there is no reading: it is
+drawn as wide as it is wanted.
+"""
+
+import math
+
+from lumitip_fab.config.load import Input
+from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.finger.flex import behind_mm, foot_half_mm, held_by, is_flex
+from lumitip_fab.derive.finger.outline import letter_on, most_letter_mm
+from lumitip_fab.derive.making.fits import Drawn, refuse_touching
+from lumitip_fab.design import Box, Finger, Interface, Outline
+
+LETTER_DEPTH_MM = 0.4
+LETTER_GAP_MM = 1.5  # interface to the letter, and letter to the wedge
+COVERED_MM = 0.5  # board round a thread hole, which else lets silicone through
+FLARE_MM = 2.2  # of the interface beyond land and ramp: where the ramp flares into the pad
+
+
+def derive_interfaces(
+    given: Input, outline: Outline, finger: Finger, board: Box, faults: Faults
+) -> tuple[Interface, ...]:
+    """The interface of each finger; none of a rigid one.
+
+    Args:
+        given: the parameters.
+        outline: of the plate.
+        finger: either of them: its wire notch is between the legs of the groove.
+        board: its edge.
+        faults: where to refuse.
+    """
+    p, flex = given.parameters, given.parameters.flex
+    if not is_flex(p):
+        return ()
+    _refuse_heights(given, faults)
+    _refuse_holes(given, finger, board, faults)
+    half = foot_half_mm(given, finger.notch.x_max_mm)
+    end_y = outline.end_y_mm
+    groove = Box(-half, half, end_y, end_y + flex.interface_mm)
+    gripper = held_by(given)
+    tilt = math.radians(45 - gripper.tilt_deg)
+    ramp = (gripper.block_back_w_mm - behind_mm(p)) / math.tan(tilt)
+    least = gripper.land_mm + ramp + FLARE_MM
+    line_mm = given.catalogue.printers[p.printer.profile].line_mm
+    letter_mm = most_letter_mm(line_mm)
+    most = outline.length_mm - p.tip.slant_start_mm - 2 * LETTER_GAP_MM - letter_mm
+    needed, room = math.ceil(least * 10) / 10, math.floor(most * 10) / 10
+    told = (
+        f"at least {needed:g} is needed for the land and ramp of {p.coupling.gripper!r}, and at "
+        f"most {room:g} is allowed: then come the finger's letter and the wedge"
+    )
+    if most < least:
+        told = (
+            f"the land and ramp of {p.coupling.gripper!r} need {needed:g} mm, and before the "
+            f"finger's letter and the wedge are {max(room, 0.0):g} mm: a longer finger, less "
+            "tip.slant_start_mm or less flex.standoff_mm"
+        )
+    faults.refuse_unless(
+        least <= flex.interface_mm <= most,
+        "flex.interface_mm",
+        f"{flex.interface_mm:g} given, {told}",
+    )
+    low = groove.y_max_mm + LETTER_GAP_MM - end_y
+    back = p.stack.pcb_mm + p.stack.floor_mm
+    letter = letter_on(low, low + letter_mm, LETTER_DEPTH_MM, back, line_mm)
+    return (
+        Interface(
+            groove, flex.groove_mm, flex.groove_depth_mm, flex.glue_mm,
+            Drawn(p.printer.fit_mm).gap_mm(flex.glue_mm), flex.pad_mm, flex.thread_hole_mm, letter,
+        ),
+    )  # fmt: skip
+
+
+def _refuse_holes(given: Input, finger: Finger, board: Box, faults: Faults) -> None:
+    """Refuse holes for thread that the board does not cover."""
+    wide = given.parameters.flex.thread_hole_mm
+    to_edge = min(
+        min(x - board.x_min_mm, board.x_max_mm - x, y - board.y_min_mm, board.y_max_mm - y)
+        for x, y in finger.holes
+    )
+    most = 2 * (to_edge - COVERED_MM)
+    faults.refuse_unless(
+        wide <= most + 1e-9,
+        "flex.thread_hole_mm",
+        f"{wide:g} given, the board's edge is {to_edge:.2f} mm from the middle of such a hole: at "
+        f"most {most:.2f} is allowed, so that no silicone runs past the board",
+    )
+
+
+def _refuse_heights(given: Input, faults: Faults) -> None:
+    """Refuse what does not go into plate, pad and groove."""
+    p, flex = given.parameters, given.parameters.flex
+    line_mm = given.catalogue.printers[p.printer.profile].line_mm
+    nose = given.catalogue.grippers[p.coupling.gripper].nose
+    left = p.stack.floor_mm - flex.groove_depth_mm
+    gap, fit_mm = Drawn(p.printer.fit_mm).gap_mm(flex.glue_mm), p.printer.fit_mm
+    rim = flex.groove_mm - 2 * gap
+    fitted = f" and printer.fit_mm = {fit_mm:g}" if fit_mm else ""
+    refuse_touching(given, "flex.glue_mm", flex.glue_mm, faults)
+    reach = behind_mm(p) - flex.standoff_mm
+    for holds, field, message in (
+        (left >= p.printer.min_wall_mm - 1e-9, "flex.groove_depth_mm",
+         f"{flex.groove_depth_mm:g} given, which leaves {left:.2f} mm of plate before the groove; "
+         f"at least {p.printer.min_wall_mm:g} is needed"),
+        (rim >= 2 * line_mm - 1e-9, "flex.groove_mm",
+         f"{flex.groove_mm:g} given, which leaves a rim of {rim:.2f} mm between gaps of "
+         f"{flex.glue_mm:g}{fitted}; at least two printed lines of {line_mm:g} are needed"),
+        (flex.groove_depth_mm - flex.glue_mm >= 2 * line_mm / 3, "flex.groove_depth_mm",
+         f"{flex.groove_depth_mm:g} given, which leaves a rim "
+         f"{flex.groove_depth_mm - flex.glue_mm:.2f} mm high; at least {2 * line_mm / 3:g} is "
+         "needed"),
+        (flex.pad_mm >= p.printer.min_wall_mm - 1e-9, "flex.pad_mm",
+         f"{flex.pad_mm:g} given, at least printer.min_wall_mm = {p.printer.min_wall_mm:g} is "
+         "needed"),
+        (p.backing.tail_mm <= p.stack.floor_mm, "backing.tail_mm",
+         f"{p.backing.tail_mm:g} given, at most stack.floor_mm = {p.stack.floor_mm:g} is allowed: "
+         "behind a bendable plate lies the interface"),
+        (nose is None or reach <= nose.front_w_mm + 1e-9, "flex.standoff_mm",
+         f"{flex.standoff_mm:g} given, at least "
+         f"{behind_mm(p) - (nose.front_w_mm if nose else 0.0):g} is needed: board, plate and pad "
+         f"must end before the nose of {p.coupling.gripper!r}"),
+    ):  # fmt: skip
+        faults.refuse_unless(holds, field, message)

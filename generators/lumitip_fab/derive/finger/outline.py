@@ -1,0 +1,168 @@
+"""The outline of the gripping face, and the letter sunk into a finger's printed parts."""
+
+import math
+
+import numpy as np
+
+from lumitip_fab.config.parameters import Parameters
+from lumitip_fab.derive.faults import Faults
+from lumitip_fab.design import Board, Box, Cubic, Letter, Outline, Point
+
+_ROUND = 4 / 3 * (math.sqrt(2) - 1)  # handle of a cubic that follows a quarter ellipse
+
+
+LEAST_LEG_MM = 2.0  # plate beside the wire notch at the gripper end
+LEAST_CORNER_MM = 0.5
+
+
+def derive_outline(p: Parameters, board: Board, notch: Box, faults: Faults) -> Outline:
+    """The outline, refused where it is no smooth curve round the board.
+
+    Args:
+        p: the parameters.
+        board: the board, with its pocket.
+        notch: the wire notch, which leaves two legs at the gripper end.
+        faults: where to refuse.
+    """
+    tip_y = board.box.y_max_mm + p.outline.tip_margin_mm
+    end_y = board.box.y_min_mm - p.outline.end_margin_mm
+    length, half_board = tip_y - end_y, board.box.x_max_mm
+    shoulder = (half_board + p.outline.shoulder_margin_mm, tip_y - p.outline.shoulder_at_mm)
+    waist = (half_board + p.outline.waist_margin_mm, tip_y - p.outline.waist_at * length)
+    tip_half = p.outline.tip_fraction * shoulder[0]
+    room = waist[0] - notch.x_max_mm - LEAST_LEG_MM
+    corner = min(p.outline.end_corner_mm, max(room, LEAST_CORNER_MM))
+    end_half = waist[0] - corner
+    for holds, field, message in (
+        (shoulder[0] >= waist[0], "outline.shoulder_margin_mm",
+         f"{p.outline.shoulder_margin_mm:g} given, at least waist_margin_mm = "
+         f"{p.outline.waist_margin_mm:g} is needed"),
+        (shoulder[1] > waist[1] + 1, "outline.waist_at",
+         f"{p.outline.waist_at:g} given, more than "
+         f"{(p.outline.shoulder_at_mm + 1) / length:.3f} is needed: there is the widest point"),
+        (waist[1] > end_y + corner, "outline.waist_at",
+         f"{p.outline.waist_at:g} given, at most {1 - corner / length:.3f} is allowed: there the "
+         f"corner of {corner:g} mm begins"),
+        (room >= LEAST_CORNER_MM, "outline.waist_margin_mm",
+         f"{p.outline.waist_margin_mm:g} given, which leaves {room + LEAST_LEG_MM:.2f} mm of plate "
+         f"beside the wire notch of {notch.width_mm:.1f} mm at the gripper end; at least "
+         f"{LEAST_LEG_MM + LEAST_CORNER_MM:g} is needed"),
+    ):  # fmt: skip
+        faults.refuse_unless(holds, field, message)
+    right = [
+        _line((-end_half, end_y), (end_half, end_y)),
+        _quarter((end_half, end_y), (waist[0], end_y + corner), level_first=True),
+        _line((waist[0], end_y + corner), waist),
+        _sweep(waist, shoulder, shoulder[0] - tip_half, tip_y - shoulder[1]),
+        _quarter(shoulder, (tip_half, tip_y), level_first=False),
+        _line((tip_half, tip_y), (-tip_half, tip_y)),
+    ]
+    left = [_mirrored(piece) for piece in reversed(right[1:-1])]
+    outline = Outline((*right, *left), tip_y, end_y, 2 * tip_half, 2 * end_half)
+    rim, where = _least_rim(outline, board)
+    faults.refuse_unless(
+        rim >= p.printer.min_wall_mm,
+        "outline.waist_margin_mm",
+        f"{p.outline.waist_margin_mm:g} given, a board of {board.box.width_mm:.1f} x "
+        f"{board.box.length_mm:.1f} mm does not fit the outline: {rim:.2f} mm of rim is left at "
+        f"({where[0]:.1f}, {where[1]:.1f}), {p.printer.min_wall_mm:g} mm of rim are needed; "
+        "widen the outline's margins",
+    )
+    return outline
+
+
+def half_width_at(outline: Outline, y_mm: float) -> float:
+    """Half the outline's width at a height y."""
+    corners = outline.polygon()
+    right = corners[corners[:, 0] >= 0]
+    order = np.argsort(right[:, 1], kind="stable")
+    return float(np.interp(y_mm, right[order, 1], right[order, 0]))
+
+
+def _line(a: Point, b: Point) -> Cubic:
+    dx, dy = (b[0] - a[0]) / 3, (b[1] - a[1]) / 3
+    return a, (a[0] + dx, a[1] + dy), (b[0] - dx, b[1] - dy), b
+
+
+def _quarter(a: Point, b: Point, level_first: bool) -> Cubic:
+    """A quarter ellipse that starts level (along x) or upright (along y)."""
+    dx, dy = (b[0] - a[0]) * _ROUND, (b[1] - a[1]) * _ROUND
+    if level_first:
+        return a, (a[0] + dx, a[1]), (b[0], b[1] - dy), b
+    return a, (a[0], a[1] + dy), (b[0] - dx, b[1]), b
+
+
+def _sweep(waist: Point, shoulder: Point, ellipse_a: float, ellipse_b: float) -> Cubic:
+    """From waist to shoulder, upright at both; at the shoulder with the ellipse's curvature.
+
+    A cubic with end handle c and the other handle's point d aside has curvature 2d / (3c²)
+    there; the ellipse has a / b².
+    """
+    length, aside = shoulder[1] - waist[1], shoulder[0] - waist[0]
+    handle = ellipse_b * math.sqrt(max(2 * aside / (3 * max(ellipse_a, 1e-6)), 0))
+    handle = min(max(handle, 0.1 * length), 0.5 * length)
+    return (
+        waist,
+        (waist[0], waist[1] + 0.5 * length),
+        (shoulder[0], shoulder[1] - handle),
+        shoulder,
+    )
+
+
+def _mirrored(piece: Cubic) -> Cubic:
+    a, b, c, d = ((-x, y) for x, y in reversed(piece))
+    return a, b, c, d
+
+
+def _least_rim(outline: Outline, board: Board) -> tuple[float, Point]:
+    """Least distance from the pocket to the outline, below zero where it crosses it."""
+    from shapely import Polygon, box
+
+    pocket = board.pocket
+    hole = box(pocket.x_min_mm, pocket.y_min_mm, pocket.x_max_mm, pocket.y_max_mm)
+    skin = Polygon(outline.polygon())
+    corners = np.array(skin.exterior.coords)
+    dx = np.maximum(np.abs(corners[:, 0]) - pocket.x_max_mm, 0)
+    above, below = corners[:, 1] - pocket.y_max_mm, pocket.y_min_mm - corners[:, 1]
+    distance = np.hypot(dx, np.maximum(np.maximum(above, below), 0))
+    nearest = int(distance.argmin())
+    where = (float(corners[nearest, 0]), float(corners[nearest, 1]))
+    if not skin.contains(hole):
+        return -float(hole.difference(skin).area / hole.length), where
+    return float(skin.exterior.distance(hole)), where
+
+
+WIDTH = 0.7  # of its height
+MOST_MM = 4.0
+LEAST_MM = 1.85
+BETWEEN = 0.245  # of its height: the least wall between two strokes
+DEPTH_MM = 0.5
+LEAST_DEPTH_MM = 0.4
+
+
+def least_letter_mm(line_mm: float) -> float:
+    """The least height of a letter: one printed line stands between two strokes."""
+    return max(LEAST_MM, math.ceil(100 * line_mm / BETWEEN) / 100)
+
+
+def most_letter_mm(line_mm: float) -> float:
+    """The greatest height of a letter, where there is room."""
+    return max(MOST_MM, least_letter_mm(line_mm))
+
+
+def letter_on(
+    low_mm: float, high_mm: float, depth_mm: float, wall_mm: float, line_mm: float
+) -> Letter:
+    """A letter in the middle of a wall, as high as there is room.
+
+    Args:
+        low_mm: lower end of the room over the bed.
+        high_mm: its upper end.
+        depth_mm: how deep it is sunk.
+        wall_mm: where the wall stands on its axis.
+        line_mm: width of a printed line.
+    """
+    height, middle = min(high_mm - low_mm, most_letter_mm(line_mm)), (low_mm + high_mm) / 2
+    half = WIDTH * height / 2
+    box = Box(-half, half, middle - height / 2, middle + height / 2)
+    return Letter(box, wall_mm, depth_mm)

@@ -1,0 +1,147 @@
+"""Layers of a finger, the wedge at its tip, what the printer can make, and what the layers
+weigh."""
+
+import math
+
+from lumitip_fab.catalogue.materials import Laminate
+from lumitip_fab.config.load import Input
+from lumitip_fab.config.parameters import Parameters
+from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.finger.flex import is_flex, stiff_mm
+from lumitip_fab.design import Board, Densities, Outline, Printing, Slicing, Stack, Tip
+
+LEAST_SILICONE_MM = 0.3
+STIFF_MM = (0.4, 3.2)  # boards that keep their shape
+FLEXIBLE_MM = (0.11, 0.2)  # boards of polyimide with two copper layers
+MOULD_ROOM_MM = 2.0  # gaps and draft of a mould beyond its walls
+TROUGH_ROOM_MM = 5.0  # its trough at the gripper end
+
+
+def derive_stack(given: Input, faults: Faults) -> Stack:
+    """The layers, refused where a part would stick out of the silicone or a floor is too thin."""
+    p, parts = given.parameters, given.catalogue
+    film = parts.films[p.mask.film]
+    faults.refuse_unless(
+        math.isclose(p.stack.film_mm, film.thickness_mm),
+        "stack.film_mm",
+        f"{p.stack.film_mm:g} given, but {p.mask.film!r} is {film.thickness_mm:g} mm thick: "
+        "change one of them",
+    )
+    faults.refuse_unless(
+        p.stack.floor_mm >= p.printer.min_wall_mm,
+        "stack.floor_mm",
+        f"{p.stack.floor_mm:g} given, at least printer.min_wall_mm = "
+        f"{p.printer.min_wall_mm:g} is needed behind a pocket {p.stack.pcb_mm:g} mm deep",
+    )
+    least, most = FLEXIBLE_MM if is_flex(p) else STIFF_MM
+    faults.refuse_unless(
+        least <= p.stack.pcb_mm <= most,
+        "stack.pcb_mm",
+        f"{p.stack.pcb_mm:g} given, for backing.variant = {p.backing.variant!r} {least:g} to "
+        f"{most:g} is allowed",
+    )
+    heights = {
+        "emitter.led": parts.leds[p.emitter.led].body_mm[2],
+        "receiver.photodetector": parts.photodetectors[p.receiver.photodetector].body_mm[2],
+        "receiver.multiplexer": parts.multiplexers[p.receiver.multiplexer].body_mm[2],
+    }
+    if p.emitter.resistor_side == "front":
+        heights["emitter.resistor"] = parts.resistors[p.emitter.resistor].body_mm[2]
+    for field, height in heights.items():
+        left = p.stack.silicone_mm - height
+        faults.refuse_unless(
+            left >= LEAST_SILICONE_MM - 1e-9,
+            "stack.silicone_mm",
+            f"{p.stack.silicone_mm:g} given, which leaves {left:.2f} mm over {field}, "
+            f"{height:g} mm high; at least {height + LEAST_SILICONE_MM:.2f} is needed",
+        )
+    return Stack(
+        p.stack.floor_mm, p.stack.pcb_mm, p.stack.silicone_mm, p.stack.film_mm,
+        sunk=not is_flex(p), carrier_mm=stiff_mm(p),
+    )  # fmt: skip
+
+
+def derive_tip(p: Parameters, outline: Outline, board: Board, stack: Stack, faults: Faults) -> Tip:
+    """The wedge, refused where it would cut into the pocket's floor."""
+    plate = stack.plate_mm
+    fit = p.printer.fit_mm
+    to_pocket = outline.tip_y_mm - board.pocket.y_max_mm + fit
+    # Where the fit widens the pocket, the wedge begins that much later.
+    later = min(max(p.tip.slant_start_mm - (to_pocket - fit), 0.0), max(fit, 0.0)) * stack.sunk
+    start_y = outline.tip_y_mm - p.tip.slant_start_mm + later
+    faults.refuse_unless(
+        not stack.sunk or p.tip.slant_start_mm <= to_pocket + 1e-6,
+        "tip.slant_start_mm",
+        f"{p.tip.slant_start_mm:g} given, at most {to_pocket:.3f} is allowed: there the pocket "
+        f"begins, whose floor is only {p.stack.floor_mm:g} mm thick",
+    )
+    faults.refuse_unless(
+        p.tip.edge_mm < plate,
+        "tip.edge_mm",
+        f"{p.tip.edge_mm:g} given, less than the plate's {plate:g} mm is allowed",
+    )
+    angle = math.degrees(math.atan2(plate - p.tip.edge_mm, outline.tip_y_mm - start_y))
+    faults.refuse_unless(
+        angle <= 45 + 1e-9,
+        "tip.slant_start_mm",
+        f"{p.tip.slant_start_mm:g} given, which makes a wedge of {angle:.0f}° behind the tip; "
+        f"at least {plate - p.tip.edge_mm:g} is needed for 45°",
+    )
+    return Tip(start_y, p.tip.edge_mm, angle)
+
+
+def derive_printing(given: Input, outline: Outline, faults: Faults) -> Printing:
+    """Material and limits, refused where a part is larger than the bed."""
+    p = given.parameters
+    printer = given.catalogue.printers[p.printer.profile]
+    faults.refuse_unless(
+        p.tip.edge_mm >= printer.line_mm - 1e-9,
+        "tip.edge_mm",
+        f"{p.tip.edge_mm:g} given, at least one printed line of {printer.line_mm:g} is needed",
+    )
+    faults.refuse_unless(
+        p.printer.min_wall_mm >= printer.line_mm,
+        "printer.min_wall_mm",
+        f"{p.printer.min_wall_mm:g} given, at least one printed line of {printer.line_mm:g} "
+        "is needed",
+    )
+    width = float(abs(outline.polygon()[:, 0]).max()) * 2 + 2 * p.mould.wall_mm + MOULD_ROOM_MM
+    length = outline.length_mm + 3 * p.mould.wall_mm + MOULD_ROOM_MM + TROUGH_ROOM_MM
+    bed = printer.bed_mm
+    faults.refuse_unless(
+        width <= bed[0] and length <= min(bed[1], bed[2]),
+        "printer.profile",
+        f"{p.printer.profile!r} given, its {bed[0]:g} x {bed[1]:g} x {bed[2]:g} mm cannot take "
+        f"a mould of {width:.0f} x {length:.0f} mm or a finger {length:.0f} mm tall",
+    )
+    return Printing(
+        p.backing.material, p.backing.density_g_ml, p.printer.min_wall_mm,
+        p.printer.fit_mm, printer.line_mm, printer.layer_mm, printer.bed_mm,
+    )  # fmt: skip
+
+
+COPPER_G_ML = 8.96  # the element's, at 20 °C
+POURED = 0.7
+"""Share of both sides that copper covers: of the published receiver's board file, where the ground
+pour alone covers 69 %."""
+
+
+def derive_densities(given: Input, slicing: Slicing) -> Densities:
+    """Densities of backing, interface, boards, the parts on them, silicone and film."""
+    p, parts = given.parameters, given.catalogue
+    rigid, flexible = parts.laminates.rigid, parts.laminates.flexible
+    return Densities(
+        backing_g_ml=p.backing.density_g_ml,
+        interface_g_ml=slicing.rigid.density_g_ml,
+        board_g_ml=_clad_g_ml(flexible if is_flex(p) else rigid, p.stack.pcb_mm),
+        carrier_g_ml=_clad_g_ml(rigid, stiff_mm(p)),
+        part_g_ml=rigid.density_g_ml,
+        silicone_g_ml=parts.silicones[p.mould.silicone].density_g_ml,
+        film_g_ml=parts.films[p.mask.film].density_g_ml,
+    )
+
+
+def _clad_g_ml(laminate: Laminate, thick_mm: float) -> float:
+    """Of a board with copper on both sides, by its thickness in all."""
+    share = POURED * 2 * laminate.copper_mm / thick_mm
+    return (1 - share) * laminate.density_g_ml + share * COPPER_G_ML

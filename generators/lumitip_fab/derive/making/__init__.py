@@ -1,0 +1,1 @@
+"""How the parts are made: printed, cast, wrapped and bought."""

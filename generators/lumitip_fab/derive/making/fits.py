@@ -1,0 +1,80 @@
+"""What a fit of the printer changes: the one place where it is added to what is drawn.
+
+A printed surface that meets something goes back by the fit, square to itself: a gap to a board,
+to metal or to the gripper grows by it, and a gap between two printed parts by twice as much. Of
+two parts of two filaments only the one that the reading is of goes back: see
+`lumitip_fab.derive.finger.interface`.
+"""
+
+import math
+from dataclasses import dataclass
+
+from lumitip_fab.catalogue.grippers import Gripper
+from lumitip_fab.config.load import Input
+from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.finger.flex import held_by
+from lumitip_fab.design import Fits, Nose
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """Sizes as they are drawn for a printer, from those that are wanted."""
+
+    fit_mm: float
+
+    def gap_mm(self, wanted_mm: float) -> float:
+        """From a printed surface to something that is not printed."""
+        return wanted_mm + self.fit_mm
+
+    def hole_mm(self, wanted_mm: float) -> float:
+        """Diameter or width of what something goes into or through."""
+        return wanted_mm + 2 * self.fit_mm
+
+    def peg_mm(self, wanted_mm: float) -> float:
+        """Diameter or width of what goes into something."""
+        return wanted_mm - 2 * self.fit_mm
+
+
+LEAST_GAP_MM = 0.02  # as drawn: no print goes into itself
+
+
+def refuse_touching(given: Input, field: str, clearance_mm: float, faults: Faults) -> None:
+    """Refuse a fit so tight that nothing is left of a clearance, as drawn."""
+    fit_mm = given.parameters.printer.fit_mm
+    left_mm = Drawn(fit_mm).gap_mm(clearance_mm)
+    faults.refuse_unless(
+        fit_mm >= 0 or left_mm >= LEAST_GAP_MM - 1e-9,
+        "printer.fit_mm",
+        f"{fit_mm:g} given, which leaves {left_mm:.2f} mm of {field} = {clearance_mm:g}, as drawn; "
+        f"at least {min(LEAST_GAP_MM - clearance_mm, 0.0):.2f} is needed, or more clearance",
+    )
+
+
+def derive_fits(given: Input, fit_mm: float) -> Fits:
+    """Gaps, pins and holes with a fit added to every gap on each side.
+
+    Args:
+        given: the clearances and the gripper.
+        fit_mm: above zero everything sits looser.
+    """
+    p = given.parameters
+    gripper, drawn = held_by(given), Drawn(fit_mm)
+    return Fits(
+        fit_mm=fit_mm,
+        pocket_gap_mm=drawn.gap_mm(p.backing.pocket_clearance_mm),
+        pin_mm=drawn.peg_mm(p.board.hole_mm - 2 * p.backing.pin_clearance_mm),
+        bolt_hole_mm=drawn.hole_mm(gripper.bolt_hole_mm),
+        gripper_pin_mm=drawn.hole_mm(gripper.pins.hole_mm) if gripper.pins else 0.0,
+        nose=_nose(gripper, fit_mm),
+    )
+
+
+def _nose(gripper: Gripper, fit_mm: float) -> Nose | None:
+    """The nose as it is drawn: each flank moved in by the fit, square to itself."""
+    nose = gripper.nose
+    if nose is None:
+        return None
+    along = Drawn(fit_mm / math.cos(math.radians(nose.half_angle_deg)))
+    return Nose(
+        along.peg_mm(nose.front_width_mm), nose.front_w_mm, nose.half_angle_deg, nose.height_mm
+    )

@@ -1,0 +1,134 @@
+"""The silicone mould: where its stops stand and what is poured into it."""
+
+import math
+
+from lumitip_fab.config.load import Input
+from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.finger.outline import DEPTH_MM, half_width_at, least_letter_mm, letter_on
+from lumitip_fab.design import Board, Letter, Mould, Outline, Point, Stack
+
+PAD_MM = 2.0
+LEAST_FLOOR_RIM_MM = 0.5
+PAD_MARGIN_MM = 0.1
+END_ROUND = 2 / 3  # of the silicone's thickness
+TROUGH_MM = 4.0  # along y
+LEDGE_MM = 0.5  # between weir and trough
+LETTER_OVER_BED_MM = 0.6  # or a printed line, which is clear of the chamfer at the foot
+LETTER_UNDER_RIM_MM = 0.5  # or a printed line
+LEAST_LAYER_MM = 0.05
+WHOLE_MM = 1e-6
+
+
+def derive_mould(
+    given: Input, outline: Outline, board: Board, stack: Stack, faults: Faults
+) -> Mould:
+    """The mould, refused where the silicone cannot be shaped as asked."""
+    p = given.parameters
+    silicone = given.catalogue.silicones[p.mould.silicone]
+    faults.refuse_unless(
+        p.mould.taper_length_mm <= p.outline.tip_margin_mm,
+        "mould.taper_length_mm",
+        f"{p.mould.taper_length_mm:g} given, at most outline.tip_margin_mm = "
+        f"{p.outline.tip_margin_mm:g} is allowed: the silicone keeps its thickness over the board",
+    )
+    faults.refuse_unless(
+        p.mould.tip_silicone_mm < p.stack.silicone_mm,
+        "mould.tip_silicone_mm",
+        f"{p.mould.tip_silicone_mm:g} given, less than stack.silicone_mm = "
+        f"{p.stack.silicone_mm:g} is allowed",
+    )
+    faults.refuse_unless(
+        p.mould.wall_mm >= 2 * p.printer.min_wall_mm,
+        "mould.wall_mm",
+        f"{p.mould.wall_mm:g} given, at least {2 * p.printer.min_wall_mm:g} is needed: the trough "
+        "is half as deep as the floor, and printer.min_wall_mm must remain",
+    )
+    lean = math.tan(math.radians(p.mould.draft_deg))
+    for depth, allowed, what in (
+        (stack.cover_mm, LEAST_FLOOR_RIM_MM, "leans the skin in under the rim"),
+        (p.mould.tip_silicone_mm, p.mould.wall_gap_mm - 0.02, "reaches under the tip edge"),
+    ):
+        faults.refuse_unless(
+            depth * lean <= allowed + 1e-9,
+            "mould.draft_deg",
+            f"{p.mould.draft_deg:g} given, which over {depth:g} mm of silicone {what} by "
+            f"{depth * lean:.2f} mm; at most {allowed:.2f} mm is allowed: "
+            f"{math.degrees(math.atan(allowed / depth)):.1f}° or less",
+        )
+    layer_mm, off_mm = whole_layers(
+        given.catalogue.printers[p.printer.profile].layer_mm,
+        (p.mould.wall_mm, p.mould.wall_mm + stack.cover_mm),
+    )
+    return Mould(
+        taper_length_mm=p.mould.taper_length_mm,
+        tip_silicone_mm=p.mould.tip_silicone_mm,
+        end_round_mm=END_ROUND * p.stack.silicone_mm,
+        wall_gap_mm=p.mould.wall_gap_mm,
+        draft_deg=p.mould.draft_deg,
+        wall_mm=p.mould.wall_mm,
+        pads=_pads(given, outline, board, faults),
+        pad_mm=PAD_MM,
+        letter=_letter(given, outline, stack, faults),
+        layer_mm=layer_mm,
+        off_layer_mm=off_mm,
+        silicone=given.title("mould.silicone"),
+        density_g_ml=silicone.density_g_ml,
+        mix_ratio=silicone.mix_ratio,
+        cure_h=silicone.cure_h,
+        cure_c=silicone.cure_c,
+        waste_fraction=p.mould.waste_fraction,
+    )
+
+
+def whole_layers(usual_mm: float, heights_mm: tuple[float, ...]) -> tuple[float, float]:
+    """The thickest layer, up to the printer's usual one, that divides all heights, and 0.
+
+    After the usual one steps of 0.01 mm are tried, down to 0.05 mm, which printers still lay. Where
+    none divides all, the usual one stays: with it, how far the worst height is from a whole layer.
+    """
+    finest, finer = round(LEAST_LAYER_MM * 100), math.floor(usual_mm * 100 + WHOLE_MM)
+    for layer_mm in (usual_mm, *(h / 100 for h in range(finer, finest - 1, -1))):
+        if _off_layer_mm(layer_mm, heights_mm) < WHOLE_MM:
+            return layer_mm, 0.0
+    return usual_mm, _off_layer_mm(usual_mm, heights_mm)
+
+
+def _off_layer_mm(layer_mm: float, heights_mm: tuple[float, ...]) -> float:
+    return max(abs(height - round(height / layer_mm) * layer_mm) for height in heights_mm)
+
+
+def _letter(given: Input, outline: Outline, stack: Stack, faults: Faults) -> Letter:
+    """On the outside of the trough's end, whose wall is as high as the cavity and its floor."""
+    p = given.parameters
+    wall, rise = p.mould.wall_mm, stack.guided_mm * math.tan(math.radians(p.mould.draft_deg))
+    line_mm = given.catalogue.printers[p.printer.profile].line_mm
+    least = least_letter_mm(line_mm)
+    low = max(LETTER_OVER_BED_MM, line_mm)
+    high = wall + stack.cover_mm - max(LETTER_UNDER_RIM_MM, line_mm)
+    faults.refuse_unless(
+        high - low >= least - 1e-9,
+        "mould.wall_mm",
+        f"{wall:g} given, which leaves {high - low:.2f} mm for the letter that tells the fingers' "
+        f"moulds apart, {least:g} mm high at least: a wall of "
+        f"{wall + least - (high - low):.2f} or more is needed",
+    )
+    trough_y = outline.end_y_mm - p.mould.wall_gap_mm - rise - wall - LEDGE_MM
+    end_mm = wall + TROUGH_MM - trough_y
+    return letter_on(low, high, min(DEPTH_MM, wall - p.printer.min_wall_mm), end_mm, line_mm)
+
+
+def _pads(given: Input, outline: Outline, board: Board, faults: Faults) -> tuple[Point, ...]:
+    """Stops on the rim beside the board, as near the gripper end as the rim takes them: the
+    finger's weight is in its coupling and must lie between them and the tip."""
+    y = max(board.pocket.y_min_mm, outline.end_y_mm + given.parameters.outline.end_corner_mm)
+    y += PAD_MM / 2 + PAD_MARGIN_MM
+    inner, outer = board.pocket.x_max_mm, half_width_at(outline, y)
+    needed = PAD_MM + 2 * PAD_MARGIN_MM
+    faults.refuse_unless(
+        outer - inner >= needed - 1e-6,
+        "outline.waist_margin_mm",
+        f"{given.parameters.outline.waist_margin_mm:g} given, which leaves a rim of "
+        f"{outer - inner:.2f} mm beside the board; the mould's stops need {needed:.2f} mm",
+    )
+    x = (inner + outer) / 2
+    return (-x, y), (x, y)

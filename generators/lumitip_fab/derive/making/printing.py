@@ -1,0 +1,112 @@
+"""Filaments and layers of the printed parts, and the steps that heat something."""
+
+from dataclasses import replace
+
+from lumitip_fab.config.load import Input
+from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.finger.flex import is_flex
+from lumitip_fab.design import HeatedPart, HeatStep, Mould, Slicing
+from lumitip_fab.design.making import Filament, Slicing
+
+
+def derive_slicing(given: Input, mould: Mould, faults: Faults) -> Slicing:
+    """Settings of the backing's filament, with the density of the spool at hand, of the one that
+    everything else is printed from, and of that one in the mould's layers."""
+    p, known = given.parameters, given.catalogue.filaments
+    name = p.backing.material
+    other = known[name].rigid_parts or name
+    good = other in known and known[other].rigid_parts is None
+    faults.refuse_unless(
+        good,
+        "backing.material",
+        f"{name!r} given, whose rigid_parts {other!r} is no filament of parts/filaments.toml "
+        "that does without rigid_parts",
+    )
+    rigid = other if good else name
+    density = p.backing.density_g_ml
+    printer = given.catalogue.printers[p.printer.profile]
+    rest = _filament(given, rigid, density if rigid == name else known[rigid].density_g_ml)
+    return Slicing(
+        printer.nozzle_mm,
+        _filament(given, name, density),
+        rest,
+        rest
+        if mould.layer_mm == printer.layer_mm
+        else replace(rest, layer_mm=mould.layer_mm, part="mould"),
+    )
+
+
+def _filament(given: Input, name: str, density_g_ml: float) -> Filament:
+    told = given.catalogue.filaments[name]
+    return Filament(
+        name, told.kind, density_g_ml, told.nozzle_c, told.bed_c, told.fan_percent,
+        told.speed_mm_s, told.max_flow_mm3_s, told.retract_mm, told.layer_mpa, told.bearing_mpa,
+        given.catalogue.printers[given.parameters.printer.profile].layer_mm,
+    )  # fmt: skip
+
+
+JOINT_C = 250.0
+"""A joint of lead-free solder, under an iron or in reflow. SAC305 melts at 217 to 220 °C."""
+_REMEDY = {
+    "solder": ("stack.pcb_mm", "a laminate in parts/laminates.toml that bears soldering"),
+    "cure": (
+        "mould.silicone",
+        "a silicone that cures cooler, or parts of a filament that bears it",
+    ),
+    "crease": ("mask.film", "another film in parts/films.toml"),
+}
+"""Field to refuse, and what to change, of each step."""
+
+
+def derive_heat(given: Input, slicing: Slicing, faults: Faults) -> tuple[HeatStep, ...]:
+    """Soldering, curing and creasing, in the order of work.
+
+    Printing is none of them: it melts a filament, and heats no part that is already made.
+    """
+    p, known = given.parameters, given.catalogue
+    film, silicone = known.films[p.mask.film], known.silicones[p.mould.silicone]
+    laminate = known.laminates.flexible if is_flex(p) else known.laminates.rigid
+    kind = "polyimide" if is_flex(p) else "FR-4"
+    printed = [("backing", slicing.backing.name), ("mould", slicing.mould.name)]
+    if is_flex(p):
+        printed.insert(1, ("interface", slicing.rigid.name))
+    steps = (
+        HeatStep(
+            "solder",
+            "boards and wires, before a board goes into a printed part",
+            JOINT_C,
+            (HeatedPart("board", kind, laminate.solder_c),),
+        ),
+        HeatStep(
+            "cure",
+            "the finger in its mould",
+            silicone.cure_c,
+            (
+                HeatedPart("silicone", given.title("mould.silicone"), silicone.limit_c),
+                *(HeatedPart(part, name, known.filaments[name].limit_c) for part, name in printed),
+                HeatedPart("board", kind, laminate.limit_c),
+            ),
+        ),
+        HeatStep(
+            "crease",
+            "the film alone, over a metal edge",
+            film.soften_c,
+            (HeatedPart("film", given.title("mask.film"), film.limit_c),),
+        ),
+    )
+    for step in steps:
+        _refuse(step, given, faults)
+    return steps
+
+
+def _refuse(step: HeatStep, given: Input, faults: Faults) -> None:
+    """Refuse a step that heats a part beyond the limit of its material."""
+    field, remedy = _REMEDY[step.name]
+    for part in step.parts:
+        faults.refuse_unless(
+            step.temperature_c <= part.limit_c,
+            field,
+            f"{given.value(field)!r} given; step {step.name!r} heats {step.place} to "
+            f"{step.temperature_c:g} °C; the {part.name} of {part.material} bears at most "
+            f"{part.limit_c:g} °C. Take {remedy}",
+        )

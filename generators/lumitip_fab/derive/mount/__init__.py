@@ -1,0 +1,1 @@
+"""How fingers, gripper, robot and boards are held together."""

@@ -1,0 +1,230 @@
+"""The printed parts of the flange round its board, and heights from the robot to the fingers."""
+
+import math
+
+from lumitip_fab.catalogue.grippers import ToolCoupling
+from lumitip_fab.config.load import Input
+from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.finger.flex import held_by, stiff_mm
+from lumitip_fab.derive.making.fits import Drawn, refuse_touching
+from lumitip_fab.derive.mount.fasteners import BOARD_SCREW
+from lumitip_fab.design import Box, Carrier, Device, Flange, Holder, Point, System, ToolContact
+
+HEADROOM_MM = 0.3  # over the highest part
+AROUND_MM = 0.5  # round headers, contacts and solder tails
+PIN_LENGTHS_MM = (12.0, 10.0, 8.0)
+PIN_PLAY_MM = 0.1  # of a hole into which a pin is glued
+SOCKET_PLAY_MM = 0.2  # of the hole for the gripper's pin
+SOCKET_SPARE_MM = 0.5  # below the end of the gripper's pin
+PEG_MM = 5.0
+PEG_PLAY_MM = 0.5  # both are printed: at the tightest fit 0.1 is left
+PEG_SHARE = 0.75  # of the web's thickness
+SCREW_PLAY_MM = 0.2  # holes in the floor beyond the board's
+SINK_PLAY_MM = 0.4  # of a countersunk head, which then lies below the face
+
+
+def derive_flange_body(
+    given: Input, carriers: tuple[Carrier, ...], faults: Faults
+) -> tuple[Flange, ...]:
+    """Both printed parts; none without the flange's board."""
+    if not carriers:
+        return ()
+    (carrier,) = carriers
+    p, pcb_mm = given.parameters.flange, stiff_mm(given.parameters)
+    drawn = Drawn(given.parameters.printer.fit_mm)
+    screw = given.catalogue.fasteners[BOARD_SCREW]
+    coupling, pogo = given.catalogue.couplings[p.coupling], given.catalogue.strips[p.contacts]
+    # Towards the robot, and so on the board's back, are the contacts alone.
+    (contacts,) = (device for device in carrier.devices if device.side == "back")
+    front = [device for device in carrier.devices if device is not contacts]
+    headers = [device for device in front if device.kind in ("header", "wires")]
+    board_at = (
+        coupling.contacts_at_mm[0] - contacts.x_mm,
+        coupling.contacts_at_mm[1] - contacts.y_mm,
+    )
+    board_z = pogo.height_mm - pogo.stroke_mm / 2 - coupling.contacts_depth_mm
+    split_z = board_z + pcb_mm + max(d.pattern.height_mm for d in front) + HEADROOM_MM
+    socket_z = min(split_z, split_z + p.web_mm - coupling.pin_depth_mm - SOCKET_SPARE_MM)
+    room = socket_z - given.parameters.printer.min_wall_mm + coupling.recess_depth_mm
+    pin = next((n for n in PIN_LENGTHS_MM if n - coupling.pin_depth_mm <= room), PIN_LENGTHS_MM[-1])
+    flange = Flange(
+        name="flange",
+        carrier=carrier.name,
+        coupling=p.coupling,
+        iso=coupling.iso,
+        face_mm=coupling.face_mm,
+        centring_mm=coupling.recess_mm,
+        clearance_mm=p.clearance_mm,
+        spigot_mm=drawn.peg_mm(coupling.recess_mm - 2 * p.clearance_mm),
+        seat_z_mm=-coupling.recess_depth_mm,
+        recess_mm=drawn.hole_mm(coupling.recess_mm + 2 * p.clearance_mm),
+        recess_depth_mm=coupling.recess_depth_mm,
+        bolt=coupling.bolt,
+        bolts=coupling.bolts_mm,
+        bolt_hole_mm=drawn.hole_mm(coupling.bolt_hole_mm),
+        pin_at=coupling.pin_at_mm,
+        pin_mm=coupling.pin_mm,
+        pin_hole_mm=drawn.hole_mm(coupling.pin_mm + PIN_PLAY_MM),
+        pin_length_mm=pin,
+        pin_depth_mm=pin - coupling.pin_depth_mm,
+        socket_mm=drawn.hole_mm(coupling.pin_mm + SOCKET_PLAY_MM),
+        socket_z_mm=socket_z,
+        peg_at=(-coupling.pin_at_mm[0], -coupling.pin_at_mm[1]),
+        peg_mm=drawn.peg_mm(PEG_MM),
+        peg_hole_mm=drawn.hole_mm(PEG_MM + PEG_PLAY_MM),
+        peg_height_mm=PEG_SHARE * p.web_mm,
+        board_at=board_at,
+        board_z_mm=board_z,
+        pocket=_moved(carrier.box, board_at).grown(drawn.gap_mm(p.clearance_mm)),
+        pocket_corner_mm=carrier.corner_mm + drawn.gap_mm(p.clearance_mm),
+        reliefs=tuple(_room(header, board_at) for header in headers),
+        tail_mm=p.tail_mm,
+        window=_room(contacts, board_at),
+        contacts=tuple(
+            ToolContact(str(number), contact.at_mm, contact.carries, contact.kind)
+            for number, contact in enumerate(coupling.contacts, start=1)
+        ),
+        contacts_z_mm=-coupling.contacts_depth_mm,
+        contacts_mm=pogo.height_mm,
+        stroke_mm=pogo.stroke_mm,
+        openings=_openings(headers, board_at, coupling.face_mm / 2),
+        screws=tuple((x + board_at[0], y + board_at[1]) for x, y in carrier.holes),
+        screw=BOARD_SCREW,
+        screw_mm=drawn.hole_mm(carrier.hole_mm + SCREW_PLAY_MM),
+        screw_head_mm=screw.countersunk_mm + SINK_PLAY_MM,
+        split_z_mm=split_z,
+        web_mm=p.web_mm,
+    )
+    _refuse(given, flange, faults)
+    return (flange,)
+
+
+def _moved(box: Box, by: Point) -> Box:
+    return Box(box.x_min_mm + by[0], box.x_max_mm + by[0],
+               box.y_min_mm + by[1], box.y_max_mm + by[1])  # fmt: skip
+
+
+def _room(device: Device, board_at: Point) -> Box:
+    """Room round the body of a part, more than a fit of the printer is."""
+    at = (device.x_mm + board_at[0], device.y_mm + board_at[1])
+    return _moved(device.pattern.body, at).grown(AROUND_MM)
+
+
+def _openings(headers: list[Device], board_at: Point, radius_mm: float) -> tuple[Box, ...]:
+    """One on each side: from the middles of its headers and wire pads out through the wall."""
+    openings = []
+    for side in (-1, 1):
+        here = [d for d in headers if side * (d.y_mm + board_at[1]) > 0]
+        rooms = [_room(header, board_at) for header in here]
+        if not here:
+            continue
+        start = min(side * (header.y_mm + board_at[1]) for header in here)
+        low, high = sorted((side * start, side * radius_mm))
+        left, right = min(r.x_min_mm for r in rooms), max(r.x_max_mm for r in rooms)
+        openings.append(Box(left, right, low, high))
+    return tuple(openings)
+
+
+def _refuse(given: Input, flange: Flange, faults: Faults) -> None:
+    """Refuse floors and walls thinner than the printer's, and what does not fit the coupling."""
+    p, least = given.parameters.flange, given.parameters.printer.min_wall_mm
+    coupling = given.catalogue.couplings[p.coupling]
+    floor = flange.board_z_mm - flange.tail_mm - flange.seat_z_mm
+    faults.refuse_unless(
+        floor >= least - 1e-9,
+        "flange.contacts",
+        f"{p.contacts!r} given, {flange.contacts_mm:g} mm high, which leaves {floor:.2f} mm of "
+        f"floor under the solder tails; at least {least:g} is needed: longer contacts, or less "
+        "flange.tail_mm",
+    )
+    faults.refuse_unless(
+        p.web_mm >= least,
+        "flange.web_mm",
+        f"{p.web_mm:g} given, printer.min_wall_mm is {least:g}: at least that is needed",
+    )
+    room = flange.socket_z_mm - least - flange.seat_z_mm
+    faults.refuse_unless(
+        flange.pin_depth_mm <= room + 1e-9,
+        "flange.header",
+        f"{p.header!r} given, which makes the flange {flange.top_z_mm:.1f} mm high: its locating "
+        f"pin finds {room:.1f} mm, {flange.pin_depth_mm:g} are needed: a higher header",
+    )
+    rim = (flange.face_mm - flange.recess_mm) / 2
+    faults.refuse_unless(
+        rim >= least - 1e-9,
+        "flange.coupling",
+        f"{p.coupling!r} given, which leaves {rim:.2f} mm of wall round the gripper's recess of "
+        f"{flange.recess_mm:g} mm; at least {least:g} is needed",
+    )
+    refuse_touching(given, "flange.clearance_mm", p.clearance_mm, faults)
+    _refuse_walls(given, flange, coupling, faults)
+
+
+def _refuse_walls(given: Input, flange: Flange, coupling: ToolCoupling, faults: Faults) -> None:
+    """Refuse holes that come near the board's pocket, and whatever reaches beyond the spigot."""
+    printer, name = given.parameters.printer, given.parameters.flange.coupling
+    least_mm = printer.min_wall_mm
+    fitted = f", with printer.fit_mm = {printer.fit_mm:g}" if printer.fit_mm else ""
+    radius = min(flange.spigot_mm / 2, flange.face_mm / 2 - least_mm)
+    for what, places, hole_mm in (
+        ("a bolt", flange.bolts, flange.bolt_hole_mm),
+        ("the locating pin", (flange.pin_at,), flange.socket_mm),
+        ("the peg", (flange.peg_at,), flange.peg_hole_mm),
+    ):
+        inside = min(_to_pocket(flange, at) for at in places) - hole_mm / 2
+        outside = radius - max(math.hypot(*at) for at in places) - hole_mm / 2
+        faults.refuse_unless(
+            min(inside, outside) >= least_mm,
+            "flange.coupling",
+            f"{name!r} given, where {what} leaves {inside:.2f} mm of wall to the board's pocket "
+            f"and {outside:.2f} to the outside{fitted}: at least {least_mm:g} is needed",
+        )
+    box, corner = flange.pocket, flange.pocket_corner_mm
+    reach = max(
+        math.hypot(abs(x) - corner, abs(y) - corner) + corner
+        for x in (box.x_min_mm, box.x_max_mm)
+        for y in (box.y_min_mm, box.y_max_mm)
+    )
+    faults.refuse_unless(
+        reach <= radius - least_mm,
+        "flange.coupling",
+        f"{name!r} given, whose recess of {coupling.recess_mm:g} mm is too small for the board"
+        f"{fitted}: at least {coupling.recess_mm + 2 * (reach + least_mm - radius):.1f} is needed",
+    )
+
+
+def _to_pocket(flange: Flange, at: Point) -> float:
+    """Distance of a point from the pocket, a rectangle with round corners."""
+    box, corner = flange.pocket, flange.pocket_corner_mm
+    across = max(box.x_min_mm + corner - at[0], at[0] - box.x_max_mm + corner, 0.0)
+    along = max(box.y_min_mm + corner - at[1], at[1] - box.y_max_mm + corner, 0.0)
+    return math.hypot(across, along) - corner
+
+
+ROUND_MM = 2.0  # of a body's sides from the diameter that a holder is made for
+
+
+def derive_system(given: Input, flanges: tuple[Flange, ...], holders: tuple[Holder, ...]) -> System:
+    """The stack; without the printed flange it begins at the gripper."""
+    body = held_by(given).envelope
+    couplings = [given.catalogue.couplings[flange.coupling] for flange in flanges]
+    gripper_z = sum(c.height_mm + f.top_z_mm for c, f in zip(couplings, flanges, strict=True))
+    sides = (body.width_mm, body.depth_mm, 2 * body.corner_mm)
+    return System(
+        robot_mm=sum(coupling.robot_mm for coupling in couplings),
+        coupling_mm=sum(coupling.height_mm for coupling in couplings),
+        gripper_z_mm=gripper_z,
+        width_mm=body.width_mm,
+        depth_mm=body.depth_mm,
+        corner_mm=body.corner_mm,
+        length_mm=body.length_mm,
+        reach_mm=body.reach_mm,
+        load_kg=body.mass_kg + body.payload_kg,
+        confidence=body.confidence,
+        holders=tuple(
+            holder.name
+            for holder in holders
+            if all(abs(side - holder.body_mm) <= ROUND_MM for side in sides)
+        ),
+        holder_z_mm=gripper_z + body.length_mm / 2,
+    )

@@ -1,0 +1,229 @@
+"""Which wire goes where, in which colour, how long, and whether it carries its current."""
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from itertools import permutations
+
+from lumitip_fab.config.load import Input
+from lumitip_fab.derive.faults import Faults
+from lumitip_fab.design import Carrier, Device, Electrical, Finger, Mount, Outline, Wiring
+from lumitip_fab.design.cabling import Cable, Cabling, Terminal, Wire
+
+MOST_A_PER_MM2 = 3.0  # in a bundle; a common figure for thin wires without cooling
+MOST_DROP = 0.02  # of the LEDs' supply, both ways
+STRANDED = 1.15  # diameter of strands over that of solid copper of the same section
+DRILL_ROOM_MM = 0.1
+STEP_MM = 10.0  # lengths are multiples of it
+COPPER_OHM_MM2_PER_M = 0.0178
+SOLD_MM2 = (0.05, 0.08, 0.14, 0.25, 0.34, 0.5, 0.75, 1.0, 1.5, 2.5, 4.0)
+_FIXED = {"GND": "BK", "3V3": "OG", "5V": "PK"}
+_SUPPLY = "RD"  # of the LEDs, whatever its voltage
+_PLAIN = ("BN", "YE", "GN", "BU", "VT", "GY", "WH", "TQ")
+_STRIPED = tuple("".join(pair) for pair in permutations(_PLAIN, 2))
+
+
+@dataclass(frozen=True)
+class Boards:
+    """What the cables join."""
+
+    emitter: Finger
+    receiver: Finger
+    carriers: tuple[Carrier, ...]
+
+
+@dataclass(frozen=True)
+class Loads:
+    """Largest current of each net that carries one, by cable."""
+
+    lit: dict[str, float]
+    read: dict[str, float]
+    all: dict[str, float]
+
+
+def derive_cabling(
+    given: Input, boards: Boards, outline: Outline, mount: Mount, wiring: Wiring,
+    electrical: Electrical, faults: Faults,
+) -> Cabling:  # fmt: skip
+    """All cables, from the signals of the connectors that they join."""
+    told, travel_mm = given.parameters.wiring, mount.stroke_mm / 2
+    fixed = _FIXED | {boards.emitter.connector.signals[1]: _SUPPLY}
+    loads = _loads(given, boards.emitter, wiring, electrical)
+    ends = _ends(given, boards, wiring)
+    breakout, host = _named(boards.carriers, "breakout"), _host(boards.carriers)
+    to_supply_mm = told.controller_mm if host else told.supply_mm
+    ways = [
+        (boards.emitter, loads.lit, travel_mm + to_supply_mm),
+        (boards.receiver, loads.read, travel_mm + told.controller_mm),
+    ]
+    cables = [
+        _cable(f"W{i}", _pads(finger), ends[finger.name], load, fixed,
+               told.section_mm2, reach_mm(finger, outline) + way_mm + told.slack_mm)
+        for i, (finger, load, way_mm) in enumerate(ways, 1)
+    ]  # fmt: skip
+    if breakout:
+        fed = _wires_of(breakout, "J7")
+        supply = _feeding(boards.carriers, fed)
+        cables.append(
+            _cable(
+                "W3",
+                fed,
+                supply,
+                loads.all,
+                fixed,
+                told.section_mm2,
+                told.supply_mm + told.slack_mm,
+            )
+        )
+    thick = tuple(_thick_enough(given, cable, cables) for cable in cables)
+    for cable in thick:
+        _refuse_thick(given, cable, boards, faults)
+    return Cabling(thick, travel_mm, told.supply_mm, told.controller_mm, told.slack_mm)
+
+
+def reach_mm(finger: Finger, outline: Outline) -> float:
+    """From the farthest pad of a connector to the middle of the finger's gripper end."""
+    return max(abs(x) + y - outline.end_y_mm for x, y in finger.connector.pads)
+
+
+def _loads(given: Input, emitter: Finger, wiring: Wiring, electrical: Electrical) -> Loads:
+    lit_ma = sum(electrical.strings.high_ma)
+    read_ma = 1000 * wiring.muxes * electrical.channel.supply_v / wiring.pull_up_ohm
+    own_ma = given.catalogue.controllers[given.parameters.controller.board].draws_ma + read_ma
+    supply = emitter.connector.signals[1]
+    together = {supply: lit_ma, "5V": own_ma, "GND": lit_ma + own_ma}
+    if supply == "5V":
+        together["5V"] = lit_ma + own_ma
+    return Loads({supply: lit_ma, "GND": lit_ma}, {"3V3": read_ma, "GND": read_ma}, together)
+
+
+def _ends(given: Input, boards: Boards, wiring: Wiring) -> dict[str, dict[str, Terminal]]:
+    """Where the signals of each finger go, by name."""
+    host = _host(boards.carriers)
+    if host:
+        carrier, *refs = host
+        return {
+            finger: {t.name: t for t in _wires_of(carrier, ref)}
+            for finger, ref in zip(("emitter", "receiver"), refs, strict=True)
+        }
+    selects = {f"S{i}": pin for i, pin in enumerate(wiring.select_pins)}
+    plug = given.catalogue.controllers[given.parameters.controller.board].plug
+    order = (*plug.rows[0], *plug.rows[1]) if plug else ()
+    controller = {}
+    for place, signal in enumerate(boards.receiver.connector.signals, 1):
+        pin = selects.get(signal, signal)
+        at = order.index(pin) + 1 if pin in order else place
+        controller[signal] = Terminal("controller", "", pin, pin, at)
+    supply = {
+        signal: Terminal("supply", "", signal, signal, place)
+        for place, signal in enumerate(boards.emitter.connector.signals, 1)
+    }
+    return {"emitter": supply, "receiver": controller}
+
+
+def _host(carriers: Iterable[Carrier]) -> tuple[Carrier, str, str] | None:
+    """The board where the fingers' cables end, with its wire pads for emitter and receiver: the
+    breakout, or the flange's board if the controller is on it."""
+    breakout, flange = _named(carriers, "breakout"), _named(carriers, "flange")
+    if breakout:
+        return breakout, "J6", "J5"
+    if flange and any(device.kind == "module" for device in flange.devices):
+        return flange, "J5", "J4"
+    return None
+
+
+def _pads(finger: Finger) -> tuple[Terminal, ...]:
+    signals = enumerate(finger.connector.signals, 1)
+    return tuple(Terminal(finger.name, "J1", str(pad), name, pad) for pad, name in signals)
+
+
+def _wires_of(carrier: Carrier, ref: str) -> tuple[Terminal, ...]:
+    """The wire pads of a carrier that are named so, in their order."""
+    device: Device = next(d for d in carrier.devices if d.ref == ref)
+    pads = enumerate(device.nets, 1)
+    return tuple(Terminal(carrier.name, ref, pad, net, place) for place, (pad, net) in pads)
+
+
+def _feeding(carriers: Iterable[Carrier], pads: tuple[Terminal, ...]) -> dict[str, Terminal]:
+    """What feeds each pad of the breakout: contacts of the flange's header that has most of its
+    nets, or any supply."""
+    supply = {pad.name: Terminal("supply", "", pad.name, pad.name, pad.order) for pad in pads}
+    flange = _named(carriers, "flange")
+    headers = [d for d in flange.devices if d.ref in ("J2", "J3")] if flange else []
+    if not headers:
+        return supply
+    header = max(headers, key=lambda d: len(supply.keys() & {net for _, net in d.nets}))
+    first = {net: contact for contact, net in reversed(header.nets)}
+    return supply | {
+        net: Terminal("flange", header.ref, contact, net, int(contact))
+        for net, contact in first.items()
+        if net in supply
+    }
+
+
+def _named(carriers: Iterable[Carrier], name: str) -> Carrier | None:
+    return next((carrier for carrier in carriers if carrier.name == name), None)
+
+
+def _cable(
+    name: str, starts: tuple[Terminal, ...], ends: dict[str, Terminal], load_ma: dict[str, float],
+    fixed: dict[str, str], section_mm2: float, least_mm: float,
+) -> Cable:  # fmt: skip
+    """A wire for each pad, to where its signal goes."""
+    free = [s.name for s in starts if s.name not in fixed]
+    palette = (*_PLAIN, *_STRIPED)
+    colours = fixed | {signal: palette[i % len(palette)] for i, signal in enumerate(free)}
+    wires = tuple(
+        Wire(
+            f"{name}.{place}", start.name, start, ends[start.name],
+            colours[start.name], load_ma.get(start.name, 0.0),
+        )
+        for place, start in enumerate(starts, 1)
+    )  # fmt: skip
+    length_mm = STEP_MM * math.ceil(round(least_mm / STEP_MM, 6))
+    return Cable(name, least_mm, length_mm, section_mm2, wires)
+
+
+def _thick_enough(given: Input, cable: Cable, cables: list[Cable]) -> Cable:
+    """The cable with wires of the section asked for, or the next one that is sold and carries its
+    current over the whole way to the supply."""
+    supply_v, asked = given.parameters.supply.voltage_v, given.parameters.wiring.section_mm2
+    amps = max(wire.current_ma for wire in cable.wires) / 1000
+    way_mm = sum(c.length_mm for c in cables if c.start.board != "receiver")
+    for_drop = 2 * way_mm / 1000 * amps * COPPER_OHM_MM2_PER_M / (MOST_DROP * supply_v)
+    least = max(amps / MOST_A_PER_MM2, for_drop)
+    if asked >= least:
+        return cable
+    return replace(cable, section_mm2=next((s for s in SOLD_MM2 if s >= least), least))
+
+
+def _refuse_thick(given: Input, cable: Cable, boards: Boards, faults: Faults) -> None:
+    """Refuse wires that do not go into the holes at their ends."""
+    asked, section = given.parameters.wiring.section_mm2, cable.section_mm2
+    drill_mm = min(_drill_mm(end, boards) for end in (cable.start, cable.end))
+    most = math.pi / 4 * ((drill_mm - DRILL_ROOM_MM) / STRANDED) ** 2
+    amps_ma = max(wire.current_ma for wire in cable.wires)
+    why = f", {section:g} mm² is needed for {amps_ma:.0f} mA" if section > asked else ""
+    faults.refuse_unless(
+        section <= most,
+        "wiring.section_mm2",
+        f"{asked:g} given{why}; strands of at most {math.floor(1000 * most) / 1000:g} mm² go into "
+        f"the holes of {drill_mm:g} mm at the ends of {cable.name}, {cable.start.board} to "
+        f"{cable.end.board}" + (": less emitter.current_ma is needed" if why else ""),
+    )
+
+
+def _drill_mm(end: Terminal, boards: Boards) -> float:
+    """Hole of a wire pad; no limit where there is none."""
+    for finger in (boards.emitter, boards.receiver):
+        if end.board == finger.name:
+            return finger.connector.drill_mm
+    carrier = _named(boards.carriers, end.board)
+    devices = carrier.devices if carrier else ()
+    lands = [land for d in _bare(devices, end) for land in d.pattern.lands]
+    return min((land.drill_mm for land in lands), default=math.inf)
+
+
+def _bare(devices: Iterable[Device], end: Terminal) -> list[Device]:
+    """The wire pads at an end: into a header goes a socket, not a wire."""
+    return [d for d in devices if d.ref == end.connector and d.kind == "wires"]

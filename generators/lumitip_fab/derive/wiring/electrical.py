@@ -1,0 +1,79 @@
+"""Currents, voltages and times of the circuit, in closed form."""
+
+import math
+
+from lumitip_fab.config.load import Input
+from lumitip_fab.derive.boards.flange_circuit import derive_regulated
+from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.wiring import wiring
+from lumitip_fab.derive.wiring.ratings import RESISTOR_TOLERANCE, SUPPLY_TOLERANCE, string_of
+from lumitip_fab.design.electrical import Channel, Electrical, Strings
+
+SHORTER = 0.75  # of a string's LEDs, to compare
+
+
+def derive_electrical(given: Input, strings: wiring.Strings, faults: Faults) -> Electrical:
+    """What follows from parts, strings and supply."""
+    p = given.parameters
+    return Electrical(
+        strings=_strings(given, strings),
+        channel=_channel(given),
+        heat_w=sum(strings.current_ma) * p.supply.voltage_v / 1000,
+        supplies=derive_regulated(given, faults),
+    )
+
+
+def _strings(given: Input, strings: wiring.Strings) -> Strings:
+    p = given.parameters
+    led = given.catalogue.leds[p.emitter.led]
+    fewer = max(1, math.floor(SHORTER * max(len(cells) for cells in strings.cells)))
+    shorter = string_of(given, fewer, p.emitter.current_ma)
+    return Strings(
+        forward_v=led.forward_voltage_v,
+        forward_tolerance_v=led.forward_tolerance_v,
+        ideality=led.ideality,
+        target_ma=p.emitter.current_ma,
+        supply_tolerance=SUPPLY_TOLERANCE,
+        resistor_tolerance=RESISTOR_TOLERANCE,
+        low_ma=tuple(string.low_ma for string in strings.strings),
+        high_ma=tuple(string.high_ma for string in strings.strings),
+        fewer_leds=fewer,
+        fewer_low_ma=shorter.low_ma,
+        fewer_high_ma=shorter.high_ma,
+        resistor_w=max(string.load_w for string in strings.strings),
+        resistor_high_w=max(string.high_load_w for string in strings.strings),
+        resistor_rated_w=given.catalogue.resistors[p.emitter.resistor].power_w,
+    )
+
+
+def _channel(given: Input) -> Channel:
+    """The line is pulled up, and a detector under light pulls it down.
+
+    supply ── pull-up ──┬── line (C) ── ADC
+                        └── on-resistance ── detector ── ground
+    """
+    p, parts = given.parameters, given.catalogue
+    detector = parts.photodetectors[p.receiver.photodetector]
+    mux = parts.multiplexers[p.receiver.multiplexer]
+    controller = parts.controllers[p.controller.board]
+    supply, pull_up = controller.supply_v, p.receiver.pull_up_ohm
+    dark_v = supply - pull_up * detector.dark_current_na * 1e-9
+    # Under full light the detector either saturates or takes what the light lets it take.
+    saturated = (supply - detector.saturation_v) / (pull_up + mux.on_resistance_ohm)
+    full_v = supply - pull_up * min(saturated, detector.light_current_ua * 1e-6)
+    line_pf = mux.common_pf + controller.input_pf
+    seconds = (pull_up * (line_pf + detector.capacitance_pf)) * 1e-12
+    step_v = supply / 2**controller.adc_bits
+    return Channel(
+        supply_v=supply,
+        light_current_ua=detector.light_current_ua,
+        dark_current_na=detector.dark_current_na,
+        saturation_v=detector.saturation_v,
+        on_resistance_ohm=mux.on_resistance_ohm,
+        detector_pf=detector.capacitance_pf,
+        line_pf=line_pf,
+        step_v=step_v,
+        full_scale_v=full_v,
+        dark_v=dark_v,
+        settle_us=1e6 * seconds * math.log(max((dark_v - full_v) / (step_v / 2), 1.0)),
+    )

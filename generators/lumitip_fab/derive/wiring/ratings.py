@@ -1,0 +1,192 @@
+"""Loads at the worst case: LED strings with their resistors, and capacitors at their voltage."""
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumitip_fab.catalogue.electronics import Led
+from lumitip_fab.config.load import Input
+from lumitip_fab.derive.faults import Faults
+
+THERMAL_V = 0.02585  # kT/q at 300 K
+SUPPLY_TOLERANCE = 0.05
+RESISTOR_TOLERANCE = 0.01
+MOST_RESISTOR_LOAD = 0.8
+"""Share of the rated power at the worst case. The rating of thick-film chips holds to 70 °C and
+falls linearly to 0 at 155 °C (Yageo RC_L series): 0.8 is what is left at 87 °C."""
+LEAST_RESISTOR_SHARE = 0.1
+"""Share of the supply across a resistor: below it the current follows every millivolt."""
+_E24 = (1.0, 1.1, 1.2, 1.3, 1.5, 1.6, 1.8, 2.0, 2.2, 2.4, 2.7, 3.0, 3.3, 3.6, 3.9, 4.3, 4.7, 5.1,
+        5.6, 6.2, 6.8, 7.5, 8.2, 9.1)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class String:
+    """One string: LEDs, its resistor, and what flows."""
+
+    leds: int
+    ohm: float
+    nominal_ma: float
+    low_ma: float
+    """With the lowest supply, the highest forward voltages and the highest resistor."""
+    high_ma: float
+
+    @property
+    def load_w(self) -> float:
+        """Load of the resistor, nominal."""
+        return self.nominal_ma**2 * self.ohm * 1e-6
+
+    @property
+    def high_load_w(self) -> float:
+        """Load of the resistor at the worst case."""
+        return self.high_ma**2 * self.ohm * (1 - RESISTOR_TOLERANCE) * 1e-6
+
+
+def string_of(given: Input, leds: int, current_ma: float) -> String:
+    """A string of LEDs for a current: its resistor is the nearest E96 value."""
+    led, volts = (
+        given.catalogue.leds[given.parameters.emitter.led],
+        given.parameters.supply.voltage_v,
+    )
+    drop = volts - leds * led.forward_voltage_v
+    ohm = e96(1000 * drop / current_ma)
+    low, high = (_extreme_ma(led, volts, leds, ohm, current_ma, sign) for sign in (-1, 1))
+    return String(leds, ohm, 1000 * drop / ohm, low, high)
+
+
+def longest_string(given: Input) -> int:
+    """Most LEDs in a string that leave its resistor a tenth of the supply; 0 if not even one."""
+    led, volts = (
+        given.catalogue.leds[given.parameters.emitter.led],
+        given.parameters.supply.voltage_v,
+    )
+    return int(volts * (1 - LEAST_RESISTOR_SHARE) / led.forward_voltage_v)
+
+
+def lengths(cells: int, longest: int) -> tuple[int, ...]:
+    """LEDs of each string: as few strings as possible, which differ by at most one LED."""
+    count = math.ceil(cells / longest)
+    return tuple(cells // count + (i < cells % count) for i in range(count))
+
+
+def _extreme_ma(led: Led, volts: float, leds: int, ohm: float, at_ma: float, sign: int) -> float:
+    """Current at one end of all tolerances: the highest with `sign` 1, the lowest with -1."""
+    return string_current_ma(
+        volts * (1 + sign * SUPPLY_TOLERANCE),
+        leds,
+        ohm * (1 - sign * RESISTOR_TOLERANCE),
+        led.forward_voltage_v - sign * led.forward_tolerance_v,
+        at_ma,
+        led.ideality,
+    )
+
+
+def string_current_ma(
+    supply_v: float, leds: int, ohm: float, forward_v: float, at_ma: float, ideality: float
+) -> float:
+    """Current of LEDs and a resistor in series, by Shockley's equation, found by bisection.
+
+    Args:
+        supply_v: over all of them.
+        leds: how many there are.
+        ohm: the resistor.
+        forward_v: of an LED at `at_ma`.
+        at_ma: current at which the forward voltage is given.
+        ideality: of the LEDs.
+    """
+    low, high = 0.0, 1000 * supply_v / ohm
+    while high - low > 1e-9:
+        middle = (low + high) / 2
+        drop = forward_v + ideality * THERMAL_V * math.log(max(middle / at_ma, 1e-12))
+        if leds * drop + middle * ohm / 1000 < supply_v:
+            low = middle
+        else:
+            high = middle
+    return (low + high) / 2
+
+
+def e96(ohm: float) -> float:
+    """The nearest value of the E96 series (IEC 60063: 96 steps a decade, three digits)."""
+    steps: NDArray[np.float64] = np.power(10.0, np.arange(97) / 96)
+    return _nearest(ohm, np.round(steps, 2))
+
+
+def sold_ohm(ohm: float) -> float:
+    """The nearest value of the E24 and E96 series, in both of which 1 % resistors are sold."""
+    steps = np.array([e96(ohm), _nearest(ohm, np.array([*_E24, 10.0]))])
+    return float(steps[np.abs(np.log(steps / ohm)).argmin()])
+
+
+def _nearest(ohm: float, mantissas: NDArray[np.float64]) -> float:
+    decade = 10.0 ** math.floor(math.log10(ohm))
+    nearest = mantissas[np.abs(np.log(mantissas * decade / ohm)).argmin()]
+    return round(float(nearest) * decade, 6)
+
+
+@dataclass(frozen=True)
+class _Duty:
+    """What a capacitor of the parameter file is for."""
+
+    field: str
+    volts: float
+    beside: str = ""
+    """The part that asks for a capacitance, by its name in the catalogue."""
+    asked_nf: tuple[float, float] = (0.0, float("inf"))
+    """The least that must be left at its voltage, and the most there may be without any."""
+
+
+def refuse_receiver_capacitor(given: Input, faults: Faults) -> None:
+    """Refuse a capacitor with which the multiplexers' supply dips as they switch."""
+    p, known = given.parameters, given.catalogue
+    supply_v = known.controllers[p.controller.board].supply_v
+    mux = p.receiver.multiplexer
+    duty = _Duty("receiver.capacitor", supply_v, mux, known.multiplexers[mux].bypass_nf)
+    _refuse(given, [duty], faults)
+
+
+def refuse_flange_capacitors(given: Input, faults: Faults) -> None:
+    """Refuse capacitors of the flange's board that break, or with which its parts do not work."""
+    p, known = given.parameters, given.catalogue
+    switching = known.regulators[p.flange.regulator]
+    duties = [
+        _Duty("flange.input_capacitor", p.supply.voltage_v),
+        _Duty("flange.output_capacitor", switching.output_v),
+        _Duty(
+            "flange.boot_capacitor", switching.output_v, p.flange.regulator, switching.boot_nf
+        ),
+    ]  # fmt: skip
+    controller = known.controllers[p.controller.board]
+    if controller.module:
+        linear = known.linear_regulators[p.module.regulator]
+        duties += [
+            _Duty(
+                "module.supply_capacitor", switching.output_v, p.module.regulator, linear.stable_nf
+            ),
+            _Duty(
+                "module.capacitor", controller.supply_v, p.controller.board,
+                controller.module.bypass_nf,
+            ),
+        ]  # fmt: skip
+    _refuse(given, duties, faults)
+
+
+def _refuse(given: Input, duties: Iterable[_Duty], faults: Faults) -> None:
+    for duty in duties:
+        name = given.value(duty.field)
+        part = given.catalogue.capacitors[name]
+        needed_v = (1 + SUPPLY_TOLERANCE) * duty.volts
+        faults.refuse_unless(
+            needed_v <= part.rated_v,
+            duty.field,
+            f"{name!r} given, made for {part.rated_v:g} V; {needed_v:g} V are needed here",
+        )
+        there_nf, (least, most) = part.capacitance_nf, duty.asked_nf
+        faults.refuse_unless(
+            least <= there_nf * part.left and there_nf <= most,
+            duty.field,
+            f"{name!r} given, {there_nf:g} nF, of which {there_nf * part.left:g} are sure to be "
+            f"left; {duty.beside!r} needs {least:g} to {most:g} nF",
+        )

@@ -1,0 +1,238 @@
+"""Which cells hang on which LED string, multiplexer, channel and pin."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import lap
+import numpy as np
+from numpy.typing import NDArray
+
+from lumitip.grid import Integers
+from lumitip_fab.config.load import Input
+from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.finger.cells import Cells
+from lumitip_fab.derive.wiring.ratings import (
+    LEAST_RESISTOR_SHARE,
+    MOST_RESISTOR_LOAD,
+    String,
+    lengths,
+    longest_string,
+    sold_ohm,
+    string_of,
+)
+from lumitip_fab.design import Point, Wiring
+
+MOST_CURRENT_SPREAD = 0.05  # between strings
+
+
+@dataclass(frozen=True)
+class Strings:
+    """Series strings of LEDs with their resistors."""
+
+    cells: tuple[tuple[int, ...], ...]
+    strings: tuple[String, ...]
+    """Resistor and currents of each."""
+
+    @property
+    def resistor_ohm(self) -> tuple[float, ...]:
+        """Resistor of each string."""
+        return tuple(string.ohm for string in self.strings)
+
+    @property
+    def current_ma(self) -> tuple[float, ...]:
+        """Nominal current of each string."""
+        return tuple(string.nominal_ma for string in self.strings)
+
+
+@dataclass(frozen=True)
+class Muxing:
+    """How many multiplexers there are and which pins they use."""
+
+    muxes: int
+    adc_pins: tuple[str, ...]
+    select_pins: tuple[str, ...]
+
+
+def derive_strings(given: Input, cells: Cells, faults: Faults) -> Strings:
+    """As few strings as the supply allows, differing by at most one LED."""
+    p = given.parameters
+    led, volts = given.catalogue.leds[p.emitter.led], p.supply.voltage_v
+    longest = min(longest_string(given), p.emitter.string_leds)
+    if longest < 1:
+        faults.refuse(
+            "supply.voltage_v",
+            f"{volts:g} given, one LED needs {led.forward_voltage_v:g} V and its resistor a tenth "
+            f"of the supply: at least {led.forward_voltage_v / (1 - LEAST_RESISTOR_SHARE):.2f}",
+        )
+        return Strings((), ())
+    groups = np.array_split(_winding(cells), len(lengths(len(cells), longest)))
+    current = p.emitter.current_ma
+    by_length = {n: string_of(given, n, current) for n in {group.size for group in groups}}
+    strings = Strings(
+        tuple(_from_the_gripper(cells, group) for group in groups),
+        tuple(by_length[group.size] for group in groups),
+    )
+    for field, message in string_problems(given, strings.strings):
+        faults.refuse(field, message)
+    return strings
+
+
+def string_problems(given: Input, strings: tuple[String, ...]) -> Iterator[tuple[str, str]]:
+    """Field and message of every rule that strings break: ratings at the worst case, spread of
+    currents, supply and heat."""
+    p = given.parameters
+    led, volts = given.catalogue.leds[p.emitter.led], p.supply.voltage_v
+    package, current = given.catalogue.resistors[p.emitter.resistor], p.emitter.current_ma
+    highest = max(string.high_ma for string in strings)
+    if max(highest, current) > led.max_current_ma:
+        yield (
+            "emitter.current_ma",
+            f"{current:g} mA gives up to {highest:.1f} mA over the tolerances of supply, LEDs and "
+            f"resistor; {p.emitter.led!r} takes at most {led.max_current_ma:g} mA",
+        )
+    load = max(string.high_load_w for string in strings)
+    allowed = MOST_RESISTOR_LOAD * package.power_w
+    if load > allowed:
+        yield (
+            "emitter.resistor",
+            f"{p.emitter.resistor!r} takes at most {1000 * allowed:.0f} mW "
+            f"({100 * MOST_RESISTOR_LOAD:g} % of its rating); a string's resistor takes up to "
+            f"{1000 * load:.0f} mW at {current:g} mA nominal over the tolerances of supply, LEDs "
+            "and resistor",
+        )
+    nominal = [string.nominal_ma for string in strings]
+    spread = max(nominal) / min(nominal) - 1
+    if spread > MOST_CURRENT_SPREAD:
+        yield (
+            "emitter.current_ma",
+            f"{current:g} given, strings would differ by {100 * spread:.1f} %; "
+            f"at most {100 * MOST_CURRENT_SPREAD:g} % is allowed",
+        )
+    if sum(nominal) > p.supply.max_ma:
+        yield (
+            "supply.max_ma",
+            f"{p.supply.max_ma:g} given, {len(strings)} strings at {current:g} mA draw "
+            f"{sum(nominal):.1f} mA: at least that, or less emitter.current_ma, is needed",
+        )
+    heat_w = sum(nominal) * volts / 1000
+    if heat_w > p.emitter.max_heat_w:
+        yield (
+            "emitter.max_heat_w",
+            f"{p.emitter.max_heat_w:g} given, {len(strings)} strings at {current:g} mA "
+            f"from {volts:g} V leave {heat_w:.2f} W in the finger: at least that, or less "
+            "emitter.current_ma, is needed",
+        )
+
+
+def _winding(cells: Cells) -> Integers:
+    """The cells along a path up one column and down the next: from neighbour to neighbour, but
+    for the step from a column to one of quite another length."""
+    order = np.lexsort((np.where(cells.column % 2, cells.row, -cells.row), cells.column))
+    return np.asarray(order, dtype=np.int64)
+
+
+def _from_the_gripper(cells: Cells, string: Integers) -> tuple[int, ...]:
+    """A string that begins at its end nearer to the gripper, where its resistor is."""
+    first, last = cells.y_mm[string[[0, -1]]]
+    return tuple(string[:: -1 if last < first else 1].tolist())
+
+
+def derive_muxing(given: Input, cells: Cells, faults: Faults) -> Muxing:
+    """As few multiplexers as hold all detectors, each on an analog pin of its own."""
+    p = given.parameters
+    mux = given.catalogue.multiplexers[p.receiver.multiplexer]
+    controller = given.catalogue.controllers[p.controller.board]
+    muxes = math.ceil(len(cells) / mux.channels)
+    pins = controller.analog_pins
+    if controller.unlimited_analog_pins:
+        pins = tuple(f"A{i}" for i in range(muxes))
+    faults.refuse_unless(
+        muxes <= len(pins),
+        "grid.columns",
+        f"{len(cells)} cells given, which need {muxes} of {p.receiver.multiplexer!r} "
+        f"({mux.channels} inputs each); {p.controller.board!r} has {len(pins)} analog pins: at "
+        f"most {mux.channels * len(pins)} cells, or a multiplexer with more inputs",
+    )
+    faults.refuse_unless(
+        len(mux.select) <= len(controller.select_pins),
+        "receiver.multiplexer",
+        f"{p.receiver.multiplexer!r} given, which needs {len(mux.select)} select lines; "
+        f"{p.controller.board!r} has {len(controller.select_pins)}",
+    )
+    sold = sold_ohm(p.receiver.pull_up_ohm)
+    faults.refuse_unless(
+        math.isclose(sold, p.receiver.pull_up_ohm),
+        "receiver.pull_up_ohm",
+        f"{p.receiver.pull_up_ohm:.10g} given, which is not sold: a value of the E24 or E96 series "
+        f"is needed, such as {sold:g}",
+    )
+    return Muxing(muxes, pins[:muxes], controller.select_pins[: len(mux.select)])
+
+
+def assign(given: Input, cells: Cells, places: tuple[Point, ...]) -> tuple[Integers, Integers]:
+    """Multiplexer and channel of each cell, by nearness so that tracks are short.
+
+    Args:
+        given: the input.
+        cells: the cells.
+        places: centre of each multiplexer, U1 first.
+
+    Returns:
+        Multiplexer and channel, each of shape `(cells,)`.
+    """
+    mux, channel = (np.zeros(len(cells), dtype=np.int64) for _ in range(2))
+    leads = _input_leads(given)
+    left_to_right = sorted(range(len(places)), key=lambda i: (places[i][0], -places[i][1]))
+    groups = np.array_split(np.arange(len(cells)), len(places))
+    for which, group in zip(left_to_right, groups, strict=True):
+        at = np.array(places[which]) + leads
+        here = np.stack([cells.x_mm[group], cells.y_mm[group]], axis=1)
+        cost = np.round(np.linalg.norm(here[:, None] - at[None], axis=2), 6)
+        # Among equally short wirings, the one in which channels follow the cells' order.
+        cost += 1e-6 * np.outer(np.arange(group.size)[::-1], np.arange(len(leads)))
+        taken, inputs = lap.lapjvx(cost, extend_cost=True, return_cost=False)
+        mux[group[taken]], channel[group[taken]] = which, inputs
+    return mux, channel
+
+
+def pins_of(mux: Integers, adc_pins: tuple[str, ...]) -> NDArray[np.str_]:
+    """The analog pin that reads each cell, shape `(cells,)`."""
+    return np.array(adc_pins)[mux]
+
+
+def joined(given: Input, strings: Strings, muxing: Muxing) -> Wiring:
+    """All wiring beyond the layout."""
+    p = given.parameters
+    return Wiring(
+        multiplexer=p.receiver.multiplexer,
+        muxes=muxing.muxes,
+        select_pins=muxing.select_pins,
+        adc_pins=muxing.adc_pins,
+        strings=strings.cells,
+        resistor=p.emitter.resistor,
+        resistor_ohm=strings.resistor_ohm,
+        current_ma=strings.current_ma,
+        supply_v=p.supply.voltage_v,
+        pull_up_ohm=p.receiver.pull_up_ohm,
+    )
+
+
+def _input_leads(given: Input) -> NDArray[np.float64]:
+    """Place of each input's lead about the multiplexer's centre, by channel, shape `(n, 2)`.
+
+    The package lies with its rows of leads facing the cells and the connector:
+
+        16 15 14 … 9      towards the cells
+        |O           |
+         1  2  3 … 8      towards the connector
+    """
+    mux = given.catalogue.multiplexers[given.parameters.receiver.multiplexer]
+    row = mux.leads // 2
+    places = []
+    for channel in range(mux.channels):
+        lead = mux.inputs[str(channel)]
+        along = (lead - 1 if lead <= row else mux.leads - lead) - (row - 1) / 2
+        side = -1 if lead <= row else 1
+        places.append((along * mux.lead_pitch_mm, side * mux.lead_span_mm / 2))
+    return np.array(places)

@@ -1,0 +1,221 @@
+"""How a finger is held, how two of them meet, and the printed flange between robot and gripper."""
+
+from dataclasses import dataclass
+
+from lumitip_fab.design.making import Letter
+from lumitip_fab.design.shape import Box, Point
+
+
+@dataclass(frozen=True)
+class Nose:
+    """The tapered end of the mounting block; see `Mount` for the frame."""
+
+    front_width_mm: float
+    front_w_mm: float
+    half_angle_deg: float
+    height_mm: float
+
+
+@dataclass(frozen=True)
+class Mount:
+    """The gripper coupling, in its own frame.
+
+    Mount frame: origin where the mount plane meets the plate's rim plane in x = 0, axes u to
+    the right (= x), w back from the gripping face along the mount plane, h along the bolt
+    towards the tip. It is the sensor frame turned by `tilt_deg` about x, so that the tip leans
+    towards the other finger; the part stands on h = 0 in the printer.
+    """
+
+    gripper: str
+    """Its name in `parts/grippers.toml`."""
+    title: str
+    """What people call it."""
+    origin_y_mm: float
+    """y of the mount frame's origin in the sensor frame; its z is the rim's."""
+    tilt_deg: float
+    block_width_mm: float
+    block_corner_mm: float
+    block_front_w_mm: float
+    """Front of the block where the plate is open: leaves room for solder tails."""
+    block_back_w_mm: float
+    bolt: str
+    """Thread of the bolts, like M5."""
+    bolt_u_mm: tuple[float, ...]
+    bolt_w_mm: float
+    bolt_hole_mm: float
+    counterbore_mm: float
+    land_mm: float
+    pin_mm: float
+    pin_u_mm: tuple[float, ...]
+    pin_depth_mm: float
+    seat_width_mm: float
+    nose: Nose | None
+    stroke_mm: float
+    pad_w_mm: float
+    letter: Letter
+    """On the back of the block, beside the bolt's land."""
+    unsure: tuple[str, ...]
+    """Figures of the gripper that neither a datasheet nor a measurement gives."""
+
+    @property
+    def sleeved(self) -> bool:
+        """Whether the pins are sleeves round the bolts."""
+        return self.pin_u_mm == self.bolt_u_mm
+
+
+@dataclass(frozen=True)
+class Closing:
+    """How the two fingers meet, in the gripper frame."""
+
+    contact_y_mm: float
+    """y, in the sensor frame, of the line that touches first."""
+    contact_z_mm: float
+    """How far that line stands out beyond the sensor frame's origin, after the lean."""
+    max_opening_mm: float
+    """Skin to skin, with the gripper open."""
+
+
+@dataclass(frozen=True)
+class Fastener:
+    """A metric thread with its heads and nut, as the catalogue has them."""
+
+    name: str
+    """Of the thread, like M5."""
+    thread_mm: float
+    """Outer diameter."""
+    hole_mm: tuple[float, float]
+    """Clearance holes, fine and coarse."""
+    cap_head_mm: float
+    """Diameter of the head of a socket head cap screw."""
+    countersunk_mm: float
+    """Diameter of the head of a countersunk screw."""
+    nut_mm: float
+    """Of its nut, across flats."""
+    nut_height_mm: float
+
+
+@dataclass(frozen=True)
+class System:
+    """Where everything is on that axis, and what the gripper looks like from outside."""
+
+    robot_mm: float
+    """Diameter of the robot's tool flange; 0 without a coupling."""
+    coupling_mm: float
+    """From there to the coupling's face; 0 without one."""
+    gripper_z_mm: float
+    """Where the gripper stands."""
+    width_mm: float
+    """Of the gripper's body, along the opening."""
+    depth_mm: float
+    corner_mm: float
+    length_mm: float
+    reach_mm: float
+    """From where the gripper stands to the mount plane of the fingers, closed."""
+    load_kg: float
+    """Of the gripper and what it may hold, taken to be at the tool centre point."""
+    confidence: str
+    """How far to trust the figures of the gripper's body."""
+    holders: tuple[str, ...]
+    """Names of the holders that go round that body."""
+    holder_z_mm: float
+    """Middle of those."""
+
+
+@dataclass(frozen=True)
+class ToolContact:
+    """A contact of the coupling, by the map of its entry in the catalogue."""
+
+    number: str
+    at: Point
+    """Its place, seen from the gripper."""
+    carries: str
+    """Name of its signal on the robot's side."""
+    kind: str
+    """`"supply"`, `"ground"`, `"open"`, or another kind of signal."""
+
+
+@dataclass(frozen=True)
+class Flange:
+    """Both printed parts of the flange: lower and upper."""
+
+    name: str
+    carrier: str
+    """Name of the board in it."""
+    coupling: str
+    """Name of the coupling in the catalogue."""
+    iso: str
+    """The coupling's robot's side by ISO 9409-1, such as `50-4-M6`."""
+    face_mm: float
+    """Diameter of both parts."""
+    centring_mm: float
+    """Diameter of the coupling's recess, and of what the gripper has to stand in it."""
+    clearance_mm: float
+    """Wanted from the printed parts to coupling, gripper and board, on each side."""
+    spigot_mm: float
+    """Diameter of the lower part in the coupling's recess."""
+    seat_z_mm: float
+    """Where the lower part rests: the floor of that recess."""
+    recess_mm: float
+    """Diameter of the gripper's recess in the upper part."""
+    recess_depth_mm: float
+    bolt: str
+    bolts: tuple[Point, ...]
+    """Axes of the bolts that go through both parts."""
+    bolt_hole_mm: float
+    pin_at: Point
+    """Axis of the coupling's locating pin, and of the gripper's."""
+    pin_mm: float
+    """Diameter of a bought pin that is glued into the lower part."""
+    pin_hole_mm: float
+    pin_length_mm: float
+    pin_depth_mm: float
+    """How deep it stands in the lower part."""
+    socket_mm: float
+    """Diameter of the hole for the gripper's pin."""
+    socket_z_mm: float
+    """Where that hole ends, in the lower part."""
+    peg_at: Point
+    """Axis of a peg of the lower part, which finds a hole in the upper one."""
+    peg_mm: float
+    peg_hole_mm: float
+    peg_height_mm: float
+    board_at: Point
+    """Where the board's own origin is."""
+    board_z_mm: float
+    """Its back."""
+    pocket: Box
+    """Room of the board."""
+    pocket_corner_mm: float
+    reliefs: tuple[Box, ...]
+    """Below the board, where solder tails stand out of its back."""
+    tail_mm: float
+    """Depth of those."""
+    window: Box
+    """Through the floor, for the spring contacts on the board's back."""
+    contacts: tuple[ToolContact, ...]
+    """The coupling's contacts."""
+    contacts_z_mm: float
+    """Where the coupling's contacts are."""
+    contacts_mm: float
+    """Height of the free spring contacts above the board's back."""
+    stroke_mm: float
+    """How far they give."""
+    openings: tuple[Box, ...]
+    """Through the walls, for the headers and their cables, above the board's front."""
+    screws: tuple[Point, ...]
+    """Countersunk screws through floor and board."""
+    screw: str
+    """Their thread."""
+    screw_mm: float
+    """Their holes."""
+    screw_head_mm: float
+    """Countersinks for their heads."""
+    split_z_mm: float
+    """Where the parts meet."""
+    web_mm: float
+    """Thickness of the upper part under the gripper's recess."""
+
+    @property
+    def top_z_mm(self) -> float:
+        """What the flange adds between coupling and gripper."""
+        return self.split_z_mm + self.web_mm + self.recess_depth_mm

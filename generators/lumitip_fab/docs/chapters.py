@@ -1,0 +1,281 @@
+"""What the manual says, in Markdown: its own chapters, and the notes that lie beside the parts."""
+
+import csv
+import io
+import re
+from dataclasses import dataclass
+
+from lumitip_fab.design import (
+    Cabling,
+    Carrier,
+    Electrical,
+    Finger,
+    Flange,
+    HeatStep,
+    Holder,
+    Interface,
+    Mask,
+    Mould,
+    Mount,
+    Printing,
+    Title,
+    Wiring,
+)
+from lumitip_fab.pipeline.artefact import Made
+from lumitip_fab.text import as_written
+
+WARM_UP_MIN = 5
+"""Until the readings stand still: Table I of the published sensor (arXiv 2306.05902)."""
+WEAR_GRASPS = 100
+"""After about so many grasps the published sensor's silicone had worn above the LEDs."""
+_HEADING = re.compile(r"^(#+) ", re.MULTILINE)
+
+
+@dataclass(frozen=True)
+class Facts:
+    """Of the design, what the manual's own chapters tell."""
+
+    title: Title
+    printing: Printing
+    mould: Mould
+    mask: Mask
+    heat: tuple[HeatStep, ...]
+    mount: Mount
+    wiring: Wiring
+    cabling: Cabling
+    electrical: Electrical
+    carriers: tuple[Carrier, ...]
+    holders: tuple[Holder, ...]
+    interfaces: tuple[Interface, ...]
+    flanges: tuple[Flange, ...]
+    emitter: Finger
+
+
+def manual_text(facts: Facts, made: Made) -> str:
+    """The whole manual. An image stands alone in its paragraph; its path is below the outputs."""
+    chapters = (
+        _front(facts), _bought(made), _printed(made), _boards(facts, made), _wired(facts, made),
+        _cast(made), _wrapped(facts, made), _mounted(facts), _run(facts), _kept(),
+    )  # fmt: skip
+    return "\n\n".join(chapter.strip() for chapter in chapters) + "\n"
+
+
+def _front(facts: Facts) -> str:
+    mould, mask, printing = facts.mould, facts.mask, facts.printing
+    lit_ma = sum(facts.wiring.current_ma)
+    fixed = "tie the boards on" if facts.interfaces else "glue the boards in"
+    return f"""# {as_written(facts.title.name)} {facts.title.revision}: build manual
+
+Made from the design, with the drawings of the files beside it. File names are below the folder of
+outputs. Read a chapter to its end before you begin with it.
+
+![The receiver, exploded: what lies upon what](assembly/receiver_exploded.svg)
+
+## At a glance
+
+| figure | value |
+|---|---|
+| layers of the backings | {printing.layer_mm:g} mm |
+| filament of the backings | {printing.material} |
+| silicone | {mould.silicone} |
+| curing at {mould.cure_c:g} °C | {mould.cure_h:g} h |
+| film | {mask.film} |
+| creasing the film, off the finger | {mask.soften_c:g} °C |
+| supply of the LEDs | {facts.wiring.supply_v:g} V |
+| current of the LEDs, nominal | {lit_ma:.1f} mA |
+| wires | {sum(len(cable.wires) for cable in facts.cabling.cables)} |
+| gripper | {facts.mount.title} |
+| bolts for each finger | {len(facts.mount.bolt_u_mm)} x {facts.mount.bolt} |
+| warm-up | {WARM_UP_MIN} min |
+
+The order of work: print, order and solder boards, solder the wires on, {fixed}, cast,
+print the film, crease it, wrap, mount, load the firmware, calibrate. Casting takes longest:
+{mould.cure_h:g} h for each finger, both at once in their own moulds.
+
+## Heat
+
+These steps heat something, and no other does. Temperatures are the highest that a part reaches, and
+below what each of them bears.
+
+| step | what is heated | temperature | lowest limit |
+|---|---|---:|---:|
+{chr(10).join(map(_heated, facts.heat))}"""
+
+
+def _heated(step: HeatStep) -> str:
+    weakest = min(step.parts, key=lambda part: part.limit_c)
+    return (
+        f"| {step.name} | {step.place} | {step.temperature_c:g} °C "
+        f"| {weakest.limit_c:g} °C ({weakest.name}: {as_written(weakest.material)}) |"
+    )
+
+
+def _bought(made: Made) -> str:
+    rows = list(csv.DictReader(io.StringIO(made.text("bom.csv"))))
+    lines = "\n".join(
+        f"| {as_written(row['item'])} | {as_written(row['for'])} | {_how_much(row)} "
+        f"| {row['price']} |"
+        for row in rows[:-1]
+    )
+    return f"""## 1. Parts
+
+`bom.csv` has makers and order numbers too. Prices in {as_written(rows[-1]["for"])}.
+
+| what | for | how much | price |
+|---|---|---:|---:|
+{lines}
+| all together | | | {rows[-1]["price"]} |"""
+
+
+def _how_much(row: dict[str, str]) -> str:
+    """Pieces are counted; the unit of anything else is told."""
+    unit = {"piece": "", "sheet": " sheets"}.get(row["unit"], f" {row['unit']}")
+    return row["quantity"] + unit
+
+
+def _printed(made: Made) -> str:
+    return f"""## 2. Print
+
+Print `fit/fit_plate.3mf` first: it takes some ten minutes, and its reading is `printer.fit_mm`.
+Hold a board and the bolts against it, write the reading into the parameter file, build again, and
+print the rest.
+
+{_included(made.text("print/printing.md"))}"""
+
+
+def _boards(facts: Facts, made: Made) -> str:
+    names = ("emitter", "receiver", *(carrier.name for carrier in facts.carriers))
+    behind = any(part.side == "back" for part in facts.emitter.parts)
+    backs = ["emitter"] if behind else []
+    backs += [c.name for c in facts.carriers if any(d.side == "back" for d in c.devices)]
+    sides = [*((name, "front") for name in names), *((name, "back") for name in backs)]
+    pictures = "\n".join(
+        f"![The {name} board, {side}](boards/{name}/{name}_{side}.png)"
+        for name, side in sides
+        if f"boards/{name}/{name}_{side}.png" in made.sha256
+    )
+    last = ", then the string resistors on the back of the emitter" if behind else ""
+    zips = "\n".join(f"- `boards/{name}/order/`: {name}" for name in names)
+    return f"""## 3. Boards
+
+Each board has a zip for each board house, with Gerber and drill files, parts and places:
+
+{zips}
+
+1. Order the boards, or have them placed as well. Hold an LED and a photodetector against their
+   leaflets first: the note in each zip tells which terminal is marked, and how sure that is.
+2. Solder what is left: parts on the front{last}.
+3. Before the wires go in, measure between ground and supply of each board: no short.
+
+{pictures}"""
+
+
+def _cast(made: Made) -> str:
+    notes = "\n\n".join(_included(made.text(p)) for p in made.like("mould/*_casting.md"))
+    return f"""## 5. Cast
+
+The wires of chapter 4 are soldered before: they lie over the weir while the silicone cures.
+
+{notes}"""
+
+
+def _wrapped(facts: Facts, made: Made) -> str:
+    notes = "\n\n".join(
+        f"![The {name} mask, as it is printed](mask/{name}_mask.svg)\n\n"
+        + _included(made.text(f"mask/{name}_wrapping.md"))
+        for name in ("emitter", "receiver")
+    )
+    return f"""## 6. Print the film and wrap it
+
+The film is creased at {facts.mask.soften_c:g} °C, away from the finger, and wrapped cold, each
+flap in the order of its number.
+
+{notes}"""
+
+
+def _wired(facts: Facts, made: Made) -> str:
+    return f"""## 4. Wire
+
+![Wiring](wiring/wiring.svg)
+
+{_included(made.text("wiring/cables.md"))}
+
+Measure {facts.wiring.supply_v:g} V and its polarity at the supply before the emitter is connected;
+the LEDs then draw about {sum(facts.wiring.current_ma):.1f} mA."""
+
+
+def _mounted(facts: Facts) -> str:
+    flanged = "".join(map(_flanged, facts.flanges))
+    return f"""## 7. Mount
+
+Screw each finger on ({len(facts.mount.bolt_u_mm)} x {facts.mount.bolt}); emitter and receiver
+face each other. Then join the cables of chapter 4 to their other ends.
+{_held(facts)}{flanged}
+![Robot, gripper and fingers, exploded](assembly/system.svg)
+
+Open and close the gripper slowly once: no wire may be drawn taut."""
+
+
+def _held(facts: Facts) -> str:
+    if facts.holders:
+        return (
+            "The controller's board goes into `holder/holder.3mf`, whose arms clip round the "
+            "gripper.\n"
+        )
+    if any(carrier.name == "breakout" for carrier in facts.carriers):
+        return (
+            f"Fix the controller's board beside the gripper: the body of {facts.mount.title} "
+            "is not round, so there is no holder for it (`holder.body_mm`).\n"
+        )
+    return ""
+
+
+def _flanged(flange: Flange) -> str:
+    return f"""
+Between robot and gripper: solder the spring contacts onto the back of the flange's board, cut every
+solder tail under it to {flange.tail_mm:g} mm, and screw it into `flange/flange_lower.3mf` from
+below, contacts towards the robot. Glue the locating pin in, lay `flange/flange_upper.3mf` on the
+peg, and put all of it between the coupling and the gripper, with {len(flange.bolts)} bolts
+{flange.bolt} that are {flange.top_z_mm:.1f} mm longer than before. Confirm first with the robot's
+manual, or with a meter, that the coupling's contacts carry what the board's names say.
+
+"""
+
+
+def _run(facts: Facts) -> str:
+    return f"""## 8. Firmware, warm-up and calibration
+
+1. {_loading(facts)}
+2. Switch the LEDs on and wait {WARM_UP_MIN} minutes: the readings drift while the finger warms.
+3. `lumitip scan` finds the device by the `controller.name` of the parameter file. `lumitip doctor`
+   with its address names dead, swapped and saturated cells.
+4. Close the gripper on nothing, and run `lumitip tare`: it measures the empty grasp, against which
+   everything else is read.
+5. `lumitip view` shows the cells. Lay a card between the fingers: its edge must run where it is."""
+
+
+def _loading(facts: Facts) -> str:
+    """The first step: a module has no bootloader yet."""
+    upload = "open `firmware/firmware.ino` in the Arduino IDE and upload it"
+    if any(device.kind == "module" for c in facts.carriers for device in c.devices):
+        return (
+            "Load the bootloader over J7 of the flange's board, solder a USB cable to J6, then\n"
+            f"   {upload}; `firmware/README.md` tells how."
+        )
+    return f"{upload[0].upper()}{upload[1:]}; `firmware/README.md` tells how."
+
+
+def _kept() -> str:
+    return f"""## 9. What wears
+
+- The silicone above the LEDs: the published sensor's wore within about {WEAR_GRASPS} grasps. Run
+  `lumitip doctor` now and then; cast the emitter anew when its light falls.
+- The film: where ink is rubbed off, light leaks in. Print and wrap a new one, as in chapter 6: it
+  takes an hour.
+- The wires at the fingers, which bend with each grasp.
+- After each of these, tare again."""
+
+
+def _included(note: str) -> str:
+    """A note as a part of a chapter: its headings two levels lower."""
+    return _HEADING.sub(lambda found: f"{found[1]}## ", note).strip()

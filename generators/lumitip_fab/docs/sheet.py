@@ -1,0 +1,291 @@
+"""The manual as one HTML file, and as a PDF on A4 set by reportlab: the same text."""
+
+import io
+from base64 import b64encode
+from collections.abc import Iterator, Sequence
+from html import escape
+
+import PIL.Image
+from markdown_it import MarkdownIt
+from markdown_it.token import Token
+from reportlab import rl_config
+from reportlab.graphics.shapes import Group, String
+from reportlab.lib import colors
+from reportlab.lib.enums import TA_RIGHT
+from reportlab.lib.pagesizes import A4
+from reportlab.lib.styles import ParagraphStyle
+from reportlab.lib.units import inch, mm
+from reportlab.pdfgen.canvas import Canvas
+from reportlab.platypus import (
+    CondPageBreak,
+    Flowable,
+    Image,
+    KeepTogether,
+    LongTable,
+    Paragraph,
+    SimpleDocTemplate,
+    Spacer,
+    Table,
+    TableStyle,
+)
+from svglib.svglib import svg2rlg
+
+from lumitip_fab.pipeline.artefact import Made
+from lumitip_fab.text import page_letters
+from lumitip_fab.typeface import BOLD, CODE, OF_HELVETICA, PLAIN, load_typeface
+
+_KINDS = {"svg": "image/svg+xml", "png": "image/png"}
+_STYLE = """\
+body { font: 16px/1.5 Helvetica, Arial, sans-serif; color: #1a1a1a; max-width: 50rem;
+  margin: 2rem auto; padding: 0 1rem; }
+h1, h2 { line-height: 1.2; }
+h2 { border-bottom: 2px solid #d9dee3; padding-bottom: .2rem; margin-top: 3rem; }
+table { border-collapse: collapse; margin: 1rem 0; font-size: .9rem; }
+th, td { border: 1px solid #cfd6dc; padding: .25rem .6rem; text-align: left; }
+th { background: #f4f6f8; }
+.alone, .pair { text-align: center; vertical-align: bottom; }
+.alone { display: block; margin: 1.5rem 0; }
+.pair { display: inline-block; width: 49%; margin-bottom: 1rem; }
+img { max-width: 100%; max-height: 40rem; }
+.pair img { max-height: 24rem; }
+small { color: #5a6b7a; font-size: .85rem; }
+code { background: #f4f6f8; padding: 0 .2rem; font-size: .9em; }
+@media print { h2 { break-before: page; } .alone, .pair, tr { break-inside: avoid; } }
+"""
+
+
+def markdown() -> MarkdownIt:
+    """The reader of the manual's text: CommonMark with tables."""
+    return MarkdownIt("commonmark", {"html": False}).enable("table")
+
+
+def html_page(name: str, text: str, made: Made) -> str:
+    """The whole page.
+
+    Args:
+        name: its title.
+        text: in Markdown.
+        made: for the pictures.
+    """
+    reader = markdown()
+
+    def image(_self: object, tokens: Sequence[Token], at: int, *_: object) -> str:
+        path = str(tokens[at].attrs["src"])
+        data = b64encode(made.read(path)).decode()
+        caption = escape(tokens[at].content)
+        shown = "pair" if sum(token.type == "image" for token in tokens) > 1 else "alone"
+        return (
+            f'<span class="{shown}"><img alt="{caption}" data-file="{escape(path)}" '
+            f'src="data:{_KINDS[path.rpartition(".")[2]]};base64,{data}">'
+            f"<br><small>{caption}</small></span>"
+        )
+
+    reader.add_render_rule("image", image)
+    return (
+        f'<!doctype html>\n<html lang="en">\n<head><meta charset="utf-8"><title>{escape(name)}'
+        f'</title>\n<meta name="viewport" content="width=device-width">\n<style>\n{_STYLE}</style>'
+        f"</head>\n<body>\n{reader.render(text)}</body>\n</html>\n"
+    )
+
+
+rl_config.useA85 = 0  # streams as text take most of the time, and a quarter more room
+
+_MARGIN = 20 * mm
+_WIDTH = A4[0] - 2 * _MARGIN
+_MOST_HIGH = 220 * mm  # of a drawing, which is otherwise as large as it is told
+_GAP = 6 * mm  # between pictures beside each other
+_PAIR_HIGH = 85 * mm
+_DPI = 200
+_LEAST_LEFT = 110 * mm  # of a page, for a chapter to begin on it
+_BODY = ParagraphStyle("body", fontName=PLAIN, fontSize=8.4, leading=12.5, spaceAfter=5,
+                       bulletFontName=PLAIN, bulletFontSize=8.4)  # fmt: skip
+_ITEM = ParagraphStyle("item", _BODY, leftIndent=16, spaceAfter=3)
+_CELL = ParagraphStyle("cell", _BODY, fontSize=7.1, leading=10, spaceAfter=0)
+_FIGURE = ParagraphStyle("figure", _CELL, alignment=TA_RIGHT)
+_GREY = colors.HexColor("#5a6b7a")
+_SMALL = ParagraphStyle("small", _BODY, fontSize=7.1, alignment=1, textColor=_GREY)
+_HEADS = {
+    level: ParagraphStyle(f"h{level}", _BODY, fontName=BOLD, fontSize=size,
+                          leading=size * 1.25, spaceBefore=before, spaceAfter=6, keepWithNext=1)
+    for level, (size, before) in {1: (17, 0), 2: (13, 14), 3: (10.5, 10), 4: (9, 8)}.items()
+}  # fmt: skip
+_LINES = TableStyle([
+    ("GRID", (0, 0), (-1, -1), 0.4, colors.HexColor("#cfd6dc")),
+    ("BACKGROUND", (0, 0), (-1, 0), colors.HexColor("#f4f6f8")),
+    ("VALIGN", (0, 0), (-1, -1), "TOP"), ("FONTNAME", (0, 0), (-1, -1), PLAIN),
+    ("TOPPADDING", (0, 0), (-1, -1), 2), ("BOTTOMPADDING", (0, 0), (-1, -1), 2),
+])  # fmt: skip
+_LETTER, _PADDING = 4.6, 18.0  # width of a letter of a cell's text, and what is left beside it
+_BESIDE = TableStyle(
+    [
+        ("ALIGN", (0, 0), (-1, -1), "CENTER"),
+        ("VALIGN", (0, 0), (-1, -1), "BOTTOM"),
+        ("FONTNAME", (0, 0), (-1, -1), PLAIN),
+    ]
+)
+
+
+def pdf_sheets(name: str, text: str, made: Made) -> bytes:
+    """The bytes of the PDF; the same text gives the same.
+
+    Args:
+        name: its title.
+        text: in Markdown.
+        made: for the pictures.
+    """
+    buffer = io.BytesIO()
+    load_typeface()
+    document = SimpleDocTemplate(
+        buffer, pagesize=A4, leftMargin=_MARGIN, rightMargin=_MARGIN, topMargin=18 * mm,
+        bottomMargin=18 * mm, title=name, author="lumitip-fab", creator="lumitip-fab", invariant=1,
+        initialFontName=PLAIN,
+    )  # fmt: skip
+
+    def foot(canvas: Canvas, _document: object) -> None:
+        canvas.setFont(PLAIN, 7.1)
+        canvas.setFillGray(0.45)
+        canvas.drawString(_MARGIN, 10 * mm, page_letters(name))
+        canvas.drawRightString(A4[0] - _MARGIN, 10 * mm, str(canvas.getPageNumber()))
+
+    tokens = markdown().parse(text)
+    _set_letters(tokens)
+    document.build(list(_flowables(tokens, made)), onFirstPage=foot, onLaterPages=foot)
+    return buffer.getvalue()
+
+
+def _set_letters(tokens: list[Token]) -> None:
+    """Leave in all texts only what the typeface has."""
+    for token in tokens:
+        token.content = page_letters(token.content)
+        _set_letters(token.children or [])
+
+
+def _flowables(tokens: list[Token], made: Made) -> Iterator[Flowable]:
+    """The blocks of the text, one after the other."""
+    numbers: list[int | None] = []
+    rows: list[list[Paragraph]] = []
+    for at, token in enumerate(tokens):
+        if token.type in ("bullet_list_open", "ordered_list_open"):
+            numbers.append(int(token.attrs.get("start", 1)) if token.tag == "ol" else None)
+        elif token.type in ("bullet_list_close", "ordered_list_close"):
+            numbers.pop()
+        elif token.type == "table_open":
+            rows = []
+        elif token.type == "tr_open":
+            rows.append([])
+        elif token.type == "table_close":
+            yield _table(rows)
+        elif token.type == "inline":
+            before = tokens[at - 1]
+            if before.type in ("th_open", "td_open"):
+                told = _inline(token)
+                style = _FIGURE if "right" in str(before.attrs.get("style", "")) else _CELL
+                rows[-1].append(Paragraph(f"<b>{told}</b>" if before.tag == "th" else told, style))
+            elif before.type == "heading_open":
+                yield from _heading(int(before.tag[1]), token)
+            elif numbers:
+                yield Paragraph(_inline(token), _ITEM, bulletText=_bullet(numbers))
+            else:
+                yield from _paragraph(token, made)
+
+
+def _bullet(numbers: list[int | None]) -> str:
+    number = numbers[-1]
+    if number is None:
+        return "\u2022"
+    numbers[-1] = number + 1
+    return f"{number}."
+
+
+def _heading(level: int, token: Token) -> Iterator[Flowable]:
+    if level == 2:
+        yield CondPageBreak(_LEAST_LEFT)
+    yield Paragraph(_inline(token), _HEADS[min(level, 4)])
+
+
+def _paragraph(token: Token, made: Made) -> Iterator[Flowable]:
+    children = token.children or []
+    pictures = [child for child in children if child.type == "image"]
+    if not pictures:
+        yield Paragraph(_inline(token), _BODY)
+    beside = len(pictures) > 1
+    width, high = ((_WIDTH - _GAP) / 2, _PAIR_HIGH) if beside else (_WIDTH, _MOST_HIGH)
+    shown = [
+        [
+            _picture(str(child.attrs["src"]), made, width, high),
+            Paragraph(escape(child.content), _SMALL),
+        ]
+        for child in pictures
+    ]
+    if beside:
+        pairs = [[*shown[i : i + 2], ""][:2] for i in range(0, len(shown), 2)]
+        yield Table(pairs, [_WIDTH / 2] * 2, style=_BESIDE)
+    for picture in [] if beside else shown:
+        yield KeepTogether([*picture, Spacer(0, 6)])
+
+
+def _picture(path: str, made: Made, width: float, high: float) -> Flowable:
+    """A drawing stays a drawing, no larger than it is told; a picture of points stays one."""
+    if path.endswith(".svg"):
+        drawing = svg2rlg(io.BytesIO(made.read(path)))
+        scale = min(1.0, width / drawing.width, high / drawing.height)
+        drawing.scale(scale, scale)
+        drawing.width, drawing.height = drawing.width * scale, drawing.height * scale
+        drawing.hAlign = "CENTER"
+        drawing.initialFontName = PLAIN
+        _letter(drawing)
+        return drawing
+    seen = PIL.Image.open(io.BytesIO(made.read(path)))
+    scale = min(width / seen.width, high / seen.height)
+    wide, high = seen.width * scale, seen.height * scale
+    # On the white of paper, and hardly finer than it is printed.
+    small = seen.convert("RGBA").reduce(max(1, round(inch / scale / _DPI)))
+    paper = PIL.Image.new("RGBA", small.size, "white")
+    paper.alpha_composite(small)
+    plain = io.BytesIO()
+    paper.convert("RGB").save(plain, "ppm")
+    plain.seek(0)
+    return Image(plain, wide, high)
+
+
+def _letter(group: Group) -> None:
+    """Set a drawing's words in the faces of this document."""
+    for node in group.contents:
+        if isinstance(node, Group):
+            _letter(node)
+        elif isinstance(node, String):
+            node.fontName, share = OF_HELVETICA[node.fontName]
+            node.fontSize *= share
+
+
+def _table(rows: list[list[Paragraph]]) -> Flowable:
+    """Columns as wide as their text up to some words and their longest word, within the page."""
+    asked = [
+        max(_asked(row[i]) for row in rows if i < len(row)) for i in range(max(map(len, rows)))
+    ]
+    share = min(_WIDTH / sum(asked), 1.0)
+    table = LongTable(rows, [share * a for a in asked], repeatRows=1, style=_LINES, hAlign="LEFT")
+    table.spaceBefore = table.spaceAfter = 6
+    return table
+
+
+def _asked(cell: Paragraph) -> float:
+    return float(max(cell.minWidth(), min(len(cell.getPlainText()), 34) * _LETTER)) + _PADDING
+
+
+def _inline(token: Token) -> str:
+    """Text in reportlab's own mark-up."""
+    told = []
+    for child in token.children or []:
+        match child.type:
+            case "text":
+                told.append(escape(child.content))
+            case "code_inline":
+                told.append(f'<font face="{CODE}">{escape(child.content)}</font>')
+            case "softbreak" | "hardbreak":
+                told.append(" ")
+            case "strong_open" | "em_open":
+                told.append("<b>" if child.tag == "strong" else "<i>")
+            case "strong_close" | "em_close":
+                told.append("</b>" if child.tag == "strong" else "</i>")
+    return "".join(told)

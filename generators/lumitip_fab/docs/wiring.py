@@ -1,0 +1,122 @@
+"""`wiring/*`: the list of cables as a table and as a note, and the diagram."""
+
+import csv
+import io
+
+from lumitip_fab.design import Cable, Cabling, Title, Wire
+from lumitip_fab.design.cabling import named
+from lumitip_fab.docs.diagram import diagram
+from lumitip_fab.pipeline.artefact import Artefact
+from lumitip_fab.text import as_written
+
+COLUMNS = (
+    "wire", "signal", "from_board", "from_pad", "to_board", "to_pad", "colour", "section_mm2",
+    "length_mm", "current_ma",
+)  # fmt: skip
+_NOTE = """\
+# Wiring {title}
+
+Stranded copper, colours by IEC 60757; `wiring.svg` shows the same as a drawing. Pads are counted
+from the square one: on a finger's board that is the leftmost, seen from the front with the tip up.
+Put the wires of a finger in from the back of its board, solder them on the front, and cut the
+joints short. Solder every board before it goes into a printed part, which an iron would melt.
+
+{tables}
+
+Lengths are for each wire, rounded up to whole centimetres. From a finger: its reach on the finger,
+{travel_mm:g} mm for half the gripper's stroke and {controller_mm:g} mm along the gripper; to the
+supply {supply_mm:g} mm; and {slack_mm:g} mm each for bends and stripping.
+
+{power}
+- Measure a supply before it is connected: makers' colours differ from these. On the tool connector
+  of Universal Robots' arms red is 0 V, and grey carries the voltage.
+- Twist the two wires of the emitter. Leave a loop at each finger, so that it opens without pulling.
+"""
+_FED = """\
+- The wire of 5 V feeds the controller. Leave it away where it is fed over USB."""
+_AT_FLANGE = """
+- At the flange the wires end in a socket for its header {header}, whose contact 1 has the square
+  pad."""
+_ALONE = """\
+- The controller is fed over USB. Its ground and that of the LEDs' supply need not be joined:
+  between the fingers there is only light."""
+
+_MODULE = """\
+- The controller is on the flange's board and fed by it. Solder the wires into the pads of that
+  board before it goes into the flange."""
+
+
+def cable_list(cabling: Cabling) -> str:
+    """One line for each wire, in order of their numbers."""
+    file = io.StringIO()
+    writer = csv.writer(file, lineterminator="\n")
+    writer.writerow(COLUMNS)
+    for cable in cabling.cables:
+        for wire in cable.wires:
+            writer.writerow((
+                wire.number, wire.signal, wire.start.board, wire.start.label, wire.end.board,
+                wire.end.label, wire.colour, f"{cable.section_mm2:g}",
+                f"{cable.length_mm:g}", f"{wire.current_ma:.2f}",
+            ))  # fmt: skip
+    return file.getvalue()
+
+
+def wiring_note(title: Title, cabling: Cabling) -> str:
+    """The wires with what to mind, in Markdown."""
+    return _NOTE.format(
+        title=as_written(f"{title.name} {title.revision}"),
+        tables="\n\n".join(map(_table, cabling.cables)),
+        power=_power(cabling),
+        travel_mm=cabling.travel_mm,
+        controller_mm=cabling.controller_mm,
+        supply_mm=cabling.supply_mm,
+        slack_mm=cabling.slack_mm,
+    )
+
+
+def _power(cabling: Cabling) -> str:
+    """How the controller comes by its supply."""
+    if cabling.cables[1].end.board == "flange":
+        return _MODULE
+    if not fed(cabling):
+        return _ALONE
+    headers = {w.end.connector for w in cabling.cables[2].wires if w.end.board == "flange"}
+    return _FED + "".join(_AT_FLANGE.format(header=header) for header in sorted(headers))
+
+
+def fed(cabling: Cabling) -> bool:
+    """Whether a wire feeds the controller."""
+    return any(wire.signal == "5V" for cable in cabling.cables[2:] for wire in cable.wires)
+
+
+def _table(cable: Cable) -> str:
+    start, end = cable.start.board, cable.end.board
+    head = f"""\
+## {cable.name}: {start} to {end}, {cable.length_mm:g} mm of {cable.section_mm2:g} mm²
+
+| wire | colour | {start} | signal | {end} | at most (mA) |
+|---|---|---|---|---|---:|
+"""
+    return head + "\n".join(map(_row, cable.wires))
+
+
+def _row(wire: Wire) -> str:
+    current = f"{wire.current_ma:.2f}" if wire.current_ma else "–"
+    return (
+        f"| {wire.number} | {wire.colour} {named(wire.colour)} | {wire.start.label} "
+        f"| {wire.signal} | {wire.end.label} | {current} |"
+    )
+
+
+def wiring_files(title: Title, cabling: Cabling) -> tuple[Artefact, ...]:
+    """Everything that tells how to wire the fingers.
+
+    Args:
+        title: of the design.
+        cabling: every wire.
+    """
+    return (
+        Artefact("wiring/cables.csv", cable_list(cabling).encode(), frame=""),
+        Artefact("wiring/cables.md", wiring_note(title, cabling).encode(), frame=""),
+        Artefact("wiring/wiring.svg", diagram(title, cabling).encode(), frame=""),
+    )

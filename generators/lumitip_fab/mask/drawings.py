@@ -1,0 +1,200 @@
+"""The mask as drawings in mm, the page's view (mirrored) without its stretch: SVG, and DXF for a
+cutter."""
+
+import io
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from xml.sax.saxutils import escape
+
+import ezdxf
+import numpy as np
+from ezdxf import units
+from ezdxf.enums import TextEntityAlignment
+from ezdxf.layouts import Modelspace
+
+from lumitip_fab.design import Mask, Point, Title
+from lumitip_fab.design.frames import Matrix
+from lumitip_fab.mask.artwork import Artwork, Path
+
+MARGIN_MM = 6.0
+_LINE = 'fill="none" stroke="{}" stroke-width="0.1"'
+
+
+def svg_drawing(artwork: Artwork, mask: Mask, title: Title) -> bytes:
+    """The bytes of the SVG.
+
+    Args:
+        artwork: what to draw.
+        mask: for the registration marks, which give the sheet's size.
+        title: of the design.
+    """
+    shift = _shift(mask)
+    width, height = (f"{2 * shift[0]:g}", f"{_height(mask):g}")
+    bands = (Path(f.band[0], tuple((p,) for p in f.band[1:])) for f in artwork.flaps)
+    folds = (Path(f.fold[0], ((f.fold[1],),)) for f in artwork.flaps)
+    holes = (artwork.black, artwork.window, *artwork.apertures)
+    line = _LINE.format("#000")
+    lines = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}mm" height="{height}mm"'
+        f' viewBox="0 0 {width} {height}">',
+        f"<title>{escape(title.name)} {escape(title.revision)}: {artwork.name.lower()} mask, "
+        "inside of the film</title>",
+        f'<path id="black" fill-rule="evenodd" d="{_d(holes, shift)}"/>',
+        f'<path id="bands" d="{_d(bands, shift)}"/>',
+        f'<path id="mark" d="{_d((artwork.mark,), shift)}"/>',
+        f'<path id="cut" {line} d="{_d((artwork.cut,), shift)}"/>',
+        f'<path id="fold" {_LINE.format("#8c8c8c")} stroke-dasharray="1 0.8" '
+        f'd="{_d(folds, shift)}"/>',
+        f'<g id="registration" {line}>',
+        *(_registration(p, shift) for p in mask.registration),
+        "</g>",
+        '<g id="text" font-family="Helvetica, Arial, sans-serif">',
+        _text(artwork.name, artwork.name_at, shift, artwork.name_mm, 'font-weight="bold"'),
+        *(
+            _text(str(f.number), (f.label[0], f.label[1] - 0.6), shift, 1.8,
+                  'text-anchor="middle"')
+            for f in artwork.flaps
+        ),
+        "</g>",
+        "</svg>",
+    ]  # fmt: skip
+    return ("\n".join(lines) + "\n").encode()
+
+
+def svg_to_sensor(mask: Mask) -> Matrix:
+    """From the drawing (mm, y down) to the sensor frame."""
+    x, y = _shift(mask)
+    matrix = np.diag([-1.0, -1.0, 1.0, 1.0])
+    matrix[:2, 3] = x, y
+    return matrix
+
+
+def _shift(mask: Mask) -> Point:
+    """The sensor frame's origin in the drawing."""
+    xs, ys = zip(*mask.registration, strict=True)
+    return max(xs) + MARGIN_MM, max(ys) + MARGIN_MM
+
+
+def _height(mask: Mask) -> float:
+    ys = [y for _, y in mask.registration]
+    return max(ys) - min(ys) + 2 * MARGIN_MM
+
+
+def _at(point: Point, shift: Point) -> str:
+    return f"{shift[0] - point[0]:.5f},{shift[1] - point[1]:.5f}"
+
+
+def _d(paths: Iterable[Path], shift: Point) -> str:
+    """Path data; one sub-path in each line."""
+    told = []
+    for path in paths:
+        words = [f"M{_at(path.start, shift)}"]
+        for segment in path.segments:
+            letter = "L" if len(segment) == 1 else "C"
+            words.append(letter + " ".join(_at(point, shift) for point in segment))
+        told.append("".join(words) + "Z")
+    return "\n".join(told)
+
+
+def _registration(point: Point, shift: Point) -> str:
+    x, y = shift[0] - point[0], shift[1] - point[1]
+    return (
+        f'<circle cx="{x:.5f}" cy="{y:.5f}" r="1.2"/>'
+        f'<path d="M{x - 2:.5f},{y:.5f}h4M{x:.5f},{y - 2:.5f}v4"/>'
+    )
+
+
+def _text(text: str, point: Point, shift: Point, size_mm: float, style: str) -> str:
+    return (
+        f'<text transform="translate({_at(point, shift)}) scale(-1,1)" '
+        f'font-size="{size_mm:.3f}" {style}>{escape(text)}</text>'
+    )
+
+
+# Layer and its colour by AutoCAD's index.
+LAYERS = {"CUT": 1, "FOLD": 5, "BLACK": 7, "APERTURES": 3, "WINDOW": 4, "BANDS": 8, "MARKS": 6}
+MIRRORED_TEXT = 2  # flag of group 71
+
+
+def dxf_drawing(artwork: Artwork, mask: Mask) -> bytes:
+    """The bytes of the DXF.
+
+    Args:
+        artwork: what to draw.
+        mask: for the apertures' form and the registration marks.
+    """
+    with _fixed_metadata():
+        document = ezdxf.new("R2010", units=units.MM)
+        for name, colour in LAYERS.items():
+            document.layers.add(name, color=colour)
+        space = document.modelspace()
+        _film(space, artwork)
+        _apertures(space, artwork, mask)
+        _marks(space, artwork, mask)
+        # ezdxf lists the classes in use in the order of a set of strings.
+        document.classes.add_required_classes(document.dxfversion)
+        document.classes.classes = dict(sorted(document.classes.classes.items()))
+        stream = io.StringIO()
+        document.write(stream)
+    return stream.getvalue().encode()
+
+
+def dxf_to_sensor() -> Matrix:
+    """From the drawing to the sensor frame."""
+    return np.diag([-1.0, 1.0, 1.0, 1.0])
+
+
+@contextmanager
+def _fixed_metadata() -> Iterator[None]:
+    """Have ezdxf write no time and no random identifier."""
+    before = ezdxf.options.write_fixed_meta_data_for_testing
+    ezdxf.options.write_fixed_meta_data_for_testing = True
+    try:
+        yield
+    finally:
+        ezdxf.options.write_fixed_meta_data_for_testing = before
+
+
+def _film(space: Modelspace, artwork: Artwork) -> None:
+    _closed(space, artwork.cut.corners, "CUT")
+    for flap in artwork.flaps:
+        start, end = (_placed_at(point) for point in flap.fold)
+        space.add_line(start, end, dxfattribs={"layer": "FOLD"})
+        _closed(space, flap.band, "BANDS")
+    _closed(space, artwork.black.corners, "BLACK")
+    _closed(space, artwork.window.corners, "WINDOW")
+
+
+def _apertures(space: Modelspace, artwork: Artwork, mask: Mask) -> None:
+    attributes = {"layer": "APERTURES"}
+    for path in artwork.apertures:
+        if mask.hole_shape == "circle":
+            centre = tuple(np.mean(path.corners, axis=0).tolist())
+            space.add_circle(_placed_at(centre), mask.hole_mm / 2, dxfattribs=attributes)
+        else:
+            _closed(space, path.corners, "APERTURES")
+
+
+def _marks(space: Modelspace, artwork: Artwork, mask: Mask) -> None:
+    attributes = {"layer": "MARKS"}
+    for x, y in mask.registration:
+        space.add_circle((x, y), 1.2, dxfattribs=attributes)
+        space.add_line((x - 2, y), (x + 2, y), dxfattribs=attributes)
+        space.add_line((x, y - 2), (x, y + 2), dxfattribs=attributes)
+    _closed(space, artwork.mark.corners, "MARKS")
+    texts = [(artwork.name, artwork.name_at, 0.7 * artwork.name_mm, TextEntityAlignment.LEFT)]
+    texts += [(str(f.number), f.label, 1.5, TextEntityAlignment.MIDDLE) for f in artwork.flaps]
+    for text, point, height, align in texts:
+        style = {**attributes, "text_generation_flag": MIRRORED_TEXT}
+        space.add_text(text, height=height, dxfattribs=style).set_placement(
+            _placed_at(point), align=align
+        )
+
+
+def _closed(space: Modelspace, corners: tuple[Point, ...], layer: str) -> None:
+    space.add_lwpolyline([_placed_at(p) for p in corners], close=True, dxfattribs={"layer": layer})
+
+
+def _placed_at(point: Point) -> Point:
+    """Mirrored as on the page, to a nanometre."""
+    return round(-point[0], 6) + 0.0, round(point[1], 6)

@@ -1,1 +1,0 @@
-"""Printed parts, in build123d. Its import takes seconds: only workers import these modules."""

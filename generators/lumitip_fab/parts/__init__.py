@@ -1,0 +1,1 @@
+"""Printed parts, in build123d. Its import takes seconds: only workers import these."""

@@ -1,0 +1,220 @@
+"""The printed finger: backing with the board's pocket and the coupling, or plate and interface of
+a compliant one."""
+
+from dataclasses import replace
+
+import numpy as np
+from build123d import Solid
+
+from lumitip_fab.design import Board, Box, Finger, Interface, Mount, Outline, Point, Stack, Tip
+from lumitip_fab.design.frames import (
+    Matrix,
+    backing_bed_to_sensor,
+    mount_to_sensor,
+    plate_back_to_sensor,
+)
+from lumitip_fab.parts import coupling, export
+from lumitip_fab.parts.letters import letter_cutter
+from lumitip_fab.parts.shapes import (
+    box_solid,
+    cylinder,
+    one_solid,
+    outline_face,
+    placed,
+    prism,
+    side_prism,
+)
+from lumitip_fab.pipeline.artefact import Artefact
+
+BEYOND_MM = 1.0  # how far a cutter reaches past what it cuts
+
+
+def sheet(plate: Solid, finger: Finger, stack: Stack, mount: Mount, interface: Interface) -> Solid:
+    """The bendable plate in the sensor frame: with holes for thread, windows behind parts on the
+    board's back, wire notch and groove. Every opening goes straight through, or is in the back.
+
+    Args:
+        plate: the whole plate, thinner towards its tip.
+        finger: for holes, windows and letter.
+        stack: its heights.
+        mount: for the plane in which it ends.
+        interface: for groove and holes.
+    """
+    low, high = stack.back_z_mm - BEYOND_MM, stack.face_z_mm + BEYOND_MM
+    notch = finger.notch
+    end_y = notch.y_min_mm - 2 * BEYOND_MM
+    opening = Box(notch.x_min_mm, notch.x_max_mm, end_y, notch.y_max_mm)
+    deep = stack.back_z_mm + interface.groove_depth_mm
+    island = _within(interface.groove, interface.groove_mm, end_y)
+    groove = box_solid(_from(interface.groove, end_y), low, deep)
+    taken = [
+        coupling.beyond_mount_plane(mount, stack),
+        box_solid(opening, low, high),
+        groove - box_solid(island, low - BEYOND_MM, high),
+        letter_cutter(finger.name, interface.letter, plate_back_to_sensor(mount, stack)),
+        *(cylinder(at, interface.thread_hole_mm, low, high) for at in finger.holes),
+        *(box_solid(relief.box, low, high) for relief in finger.reliefs),
+    ]
+    return (plate - taken).clean()
+
+
+def interface_solid(finger: Finger, stack: Stack, mount: Mount, interface: Interface) -> Solid:
+    """The rigid part behind the plate, in the sensor frame: pad with rim, and the coupling.
+
+    Raises:
+        BuildError: if the kernel does not make one valid solid of it.
+    """
+    back_z, pad = stack.back_z_mm, interface.pad_mm
+    end_y = interface.box.y_min_mm - BEYOND_MM
+    # To the coupling the pad is the plate, and all before it the depth of a pocket.
+    behind = replace(stack, floor_mm=pad, pcb_mm=stack.rim_z_mm - back_z, sunk=True)
+    far = replace(interface.box, x_min_mm=-_FAR_MM, x_max_mm=_FAR_MM, y_min_mm=-_FAR_MM)
+    held = coupling.coupling_solid(mount, behind, None) & box_solid(far, -_FAR_MM, _FAR_MM)
+    whole = box_solid(_from(interface.box, end_y), back_z - pad, back_z) + held
+    taken = [
+        coupling.beyond_mount_plane(mount, behind),
+        *coupling.coupling_holes(mount, behind),
+        letter_cutter(finger.name, mount.letter, mount_to_sensor(mount, behind)),
+    ]
+    whole = whole + _rim(stack, interface, end_y)
+    return one_solid((whole - taken).clean(), finger, "interface")
+
+
+def _rim(stack: Stack, interface: Interface, end_y: float) -> Solid:
+    """The rim on the pad. Below its upper bar it rises at 45° as printed, so nothing hangs over."""
+    low, high = stack.back_z_mm - interface.pad_mm / 2, stack.back_z_mm + interface.rim_height_mm
+    inner = _within(interface.box, interface.rim_mm, end_y - BEYOND_MM)
+    slope = interface.rim_height_mm
+    corners = [
+        (inner.y_min_mm, stack.back_z_mm),
+        (inner.y_max_mm, stack.back_z_mm),
+        (inner.y_max_mm + slope + BEYOND_MM, high + BEYOND_MM),
+        (inner.y_min_mm, high + BEYOND_MM),
+    ]
+    hollow = side_prism(corners, inner.x_min_mm, inner.x_max_mm)
+    return box_solid(_from(interface.box, end_y), low, high) - hollow
+
+
+def _from(box: Box, y_mm: float) -> Box:
+    return replace(box, y_min_mm=y_mm)
+
+
+def _within(box: Box, by_mm: float, y_mm: float) -> Box:
+    """A box narrower by a width on three sides, which begins at a y."""
+    return Box(box.x_min_mm + by_mm, box.x_max_mm - by_mm, y_mm, box.y_max_mm - by_mm)
+
+
+_FAR_MM = 100.0
+
+
+PIN_LEAD_MM = 0.25  # chamfer that leads the board onto a pin
+
+
+def backing(
+    finger: Finger,
+    stack: Stack,
+    outline: Outline,
+    tip: Tip,
+    board: Board,
+    mount: Mount,
+    interfaces: tuple[Interface, ...],
+) -> tuple[Artefact, ...]:
+    """The backing of one finger and, where it bends, the interface behind it: STEP in the sensor
+    frame, STL and 3MF as they lie on the bed."""
+    solid = backing_solid(finger, stack, outline, tip, board, mount, interfaces)
+    files = _files("backing", finger, solid, backing_bed_to_sensor(mount, stack))
+    for interface in interfaces:
+        solid = interface_solid(finger, stack, mount, interface)
+        files += _files("interface", finger, solid, mount_to_sensor(mount, stack))
+    return files
+
+
+def _files(kind: str, finger: Finger, solid: Solid, to_sensor: Matrix) -> tuple[Artefact, ...]:
+    printed = placed(solid, np.asarray(np.linalg.inv(to_sensor), dtype=np.float64))
+    name = f"{finger.name}_{kind}"
+    return (
+        Artefact(f"{kind}/{name}.step", export.step(solid, name)),
+        Artefact(f"{kind}/{name}.stl", export.stl(printed), to_sensor),
+        Artefact(f"{kind}/{name}.3mf", export.three_mf(printed, name), to_sensor),
+    )
+
+
+def backing_solid(
+    finger: Finger,
+    stack: Stack,
+    outline: Outline,
+    tip: Tip,
+    board: Board,
+    mount: Mount,
+    interfaces: tuple[Interface, ...],
+) -> Solid:
+    """The backing in the finger's sensor frame: with its coupling, or as a plate that bends.
+
+    Raises:
+        BuildError: if the kernel does not make one valid solid of it.
+    """
+    plate = _plate(stack, outline) - _tip_cutter(stack, outline, tip)
+    for interface in interfaces:
+        return one_solid(sheet(plate, finger, stack, mount, interface), finger, "backing")
+    plate = plate - box_solid(board.pocket, stack.pocket_z_mm, stack.rim_z_mm + BEYOND_MM)
+    plate = plate - coupling.notch_cutter(stack, mount, finger.notch)
+    whole = plate + coupling.coupling_solid(mount, stack, finger.notch)
+    foot = stack.pocket_z_mm - stack.floor_mm / 2
+    whole = whole + [
+        pin_solid(hole, board.pin_mm, foot, stack.rim_z_mm, stack.pcb_mm) for hole in finger.holes
+    ]
+    taken = [
+        coupling.beyond_mount_plane(mount, stack),
+        *coupling.coupling_holes(mount, stack),
+        letter_cutter(finger.name, mount.letter, mount_to_sensor(mount, stack)),
+        *(_relief(r.box, r.depth_mm, r.through, stack) for r in finger.reliefs),
+    ]
+    return one_solid((whole - taken).clean(), finger, "backing")
+
+
+def pin_solid(
+    centre: Point, pin_mm: float, foot_mm: float, top_mm: float, pocket_mm: float
+) -> Solid:
+    """A locating pin, upright.
+
+    Args:
+        centre: its axis.
+        pin_mm: its diameter.
+        foot_mm: where it begins, inside the floor.
+        top_mm: its top, which is chamfered.
+        pocket_mm: how far it stands out of the floor.
+    """
+    lead = min(PIN_LEAD_MM, pin_mm / 4, pocket_mm / 4)
+    pin = cylinder(centre, pin_mm, foot_mm, top_mm)
+    top = max(pin.edges(), key=lambda edge: edge.center().Z)
+    return pin.chamfer(lead, None, [top])
+
+
+def _plate(stack: Stack, outline: Outline) -> Solid:
+    """The plate, reaching past the gripper end so that the tilted mount plane cuts it all."""
+    half = outline.end_width_mm / 2
+    foot = Box(-half, half, outline.end_y_mm - BEYOND_MM, outline.end_y_mm)
+    plate = prism(outline_face(outline), stack.back_z_mm, stack.face_z_mm)
+    return plate + box_solid(foot, stack.back_z_mm, stack.face_z_mm)
+
+
+def _tip_cutter(stack: Stack, outline: Outline, tip: Tip) -> Solid:
+    """What the wedge takes from the back of the plate."""
+    edge_z = stack.face_z_mm - tip.edge_mm
+    rise = (edge_z - stack.back_z_mm) / (outline.tip_y_mm - tip.slant_start_y_mm)
+    end_y, far_z = outline.tip_y_mm + BEYOND_MM, stack.back_z_mm - BEYOND_MM
+    start_y = tip.slant_start_y_mm
+    half = float(np.abs(outline.polygon()[:, 0]).max()) + BEYOND_MM
+    corners = [
+        (start_y, stack.back_z_mm),
+        (end_y, edge_z + rise * BEYOND_MM),
+        (end_y, far_z),
+        (start_y, far_z),
+    ]
+    return side_prism(corners, -half, half)
+
+
+def _relief(box: Box, depth_mm: float, through: bool, stack: Stack) -> Solid:
+    """Room behind the board, from inside the pocket to its depth or through the plate."""
+    bottom = stack.back_z_mm - BEYOND_MM if through else stack.pocket_z_mm - depth_mm
+    return box_solid(box, bottom, stack.pocket_z_mm + stack.pcb_mm / 2)

@@ -1,0 +1,245 @@
+"""The silicone mould of a finger, printed open side up, and the note for the person who pours."""
+
+import math
+
+import numpy as np
+from build123d import Face, Location, Solid, Vector, Wire
+
+from lumitip_fab.derive.making.mould import LEDGE_MM
+from lumitip_fab.design import Board, Box, Finger, Mould, Outline, Stack
+from lumitip_fab.design.frames import mould_bed_to_sensor
+from lumitip_fab.errors import BuildError
+from lumitip_fab.parts import export
+from lumitip_fab.parts.letters import letter_cutter
+from lumitip_fab.parts.shapes import box_face, box_solid, placed, side_prism
+from lumitip_fab.parts.skin import (
+    drafted_prism,
+    offset_wire,
+    side_solid,
+    silicone_solid,
+    stops,
+    wall_offset_mm,
+)
+from lumitip_fab.pipeline.artefact import Artefact
+
+_NOTE = """# Casting the {finger} finger
+
+| what | how much |
+|---|---|
+| silicone that stays on the finger | **{volume_ml:.2f} mL** |
+| to mix, with {waste:.0%} for the cup and the weir | {mix_ml:.2f} mL |
+| {silicone}, part A | **{part_a_g:.2f} g** |
+| {silicone}, part B | **{part_b_g:.2f} g** |
+| curing at {cure_c:g} °C | {cure_h:g} h |
+
+Print `{finger}_mould.3mf` with its own settings (`print/printing.md`): open side up, without
+supports, in layers of {layer_mm:g} mm. {layers}
+The stops set the thickness of the silicone: cut off blobs, sand nothing. The mould has an {letter}
+in the end of its trough, and the backing that belongs to it an {letter} on {letter_on}.
+
+{board}
+2. Degrease the board. Keep sulphur, latex gloves and fresh superglue away: they stop the cure.
+3. Weigh A and B, stir for three minutes, and degas until no bubbles rise.
+4. Wet the parts of the board with a drop from a brush, so that no air stays between them.
+5. Put the mould level on paper. Fill it from one corner until the silicone bulges over the rim.
+6. Set the tip on its stop at the closed end, the coupling towards the weir, and lower the finger
+   slowly about the tip: air and surplus leave through the wire notch and over the weir.
+7. Press on the plate, not on the coupling, until it rests on the tip line and both pads; lay the
+   wires out over the weir. The silicone must stand at the rim in the wire notch, not above it.
+8. Leave it for {cure_h:g} h. Take the plate between two fingers in the gaps of the wall, hold the
+   coupling with the other hand and pull straight out. Cut the flash along the rim.
+"""
+_IN_POCKET = """\
+1. Glue the board into the backing, flush with its rim. Close every window on the back with tape,
+   and fill the slit round the board with a thin line of silicone; let it cure."""
+_ON_PLATE = """\
+1. Glue the interface to the backing, its rim in the groove, with an adhesive that bends; let it
+   cure. Lay the board on the backing's flat face and tie it on with thread through their holes,
+   knots on the back. Close every window and hole on the back with tape."""
+_WHOLE = """\
+The floor at {floor_mm:g} mm and the stops at {rim_mm:g} mm are then whole layers."""
+_PART = """\
+The slicer rounds the floor at {floor_mm:g} mm and the stops at {rim_mm:g} mm to whole layers, one
+by {off_mm:.2f} mm, and the silicone is as much thicker or thinner: its thickness is kept by a
+`mould.wall_mm` and `stack.silicone_mm` that one layer of 0.05 mm or more divides."""
+
+
+def casting_note(finger: str, volume_ml: float, stack: Stack, mould: Mould) -> str:
+    """The note as Markdown.
+
+    Args:
+        finger: its name.
+        volume_ml: silicone that stays on it.
+        stack: for the height of the stops.
+        mould: its layers, the silicone, and how much is wasted.
+    """
+    mix_ml = volume_ml * (1 + mould.waste_fraction)
+    a, b = mould.mix_ratio
+    mass_g = mix_ml * mould.density_g_ml
+    rim_mm = mould.wall_mm + stack.cover_mm
+    return _NOTE.format(
+        finger=finger,
+        letter=finger[0].upper(),
+        letter_on="the back of its block" if stack.sunk else "its back",
+        board=_IN_POCKET if stack.sunk else _ON_PLATE,
+        volume_ml=volume_ml,
+        waste=mould.waste_fraction,
+        mix_ml=mix_ml,
+        silicone=mould.silicone,
+        part_a_g=mass_g * a / (a + b),
+        part_b_g=mass_g * b / (a + b),
+        cure_h=mould.cure_h,
+        cure_c=mould.cure_c,
+        layer_mm=mould.layer_mm,
+        layers=(_PART if mould.off_layer_mm else _WHOLE).format(
+            floor_mm=mould.wall_mm, rim_mm=rim_mm, off_mm=mould.off_layer_mm
+        ),
+    )
+
+
+CHORD_MM = 0.002  # finer than other parts: the draft is measured on walls 1.6 mm high
+FOOT_CHAMFER_MM = 0.4  # the first layer spreads
+WEIR_FRACTION = 0.8  # of the wire notch, through which wires and surplus leave
+WEIR_DRAFT_DEG = 15.0
+GRIP_MM = 14.0  # gap in both walls to take the plate between two fingers
+GRIP_ABOVE_RIM_MM = 0.4
+GRIP_SLOPE_DEG = 45.0
+GRIP_AT = 0.4  # of the finger's length from the gripper end
+BEYOND_MM = 1.0
+
+
+def mould_files(
+    finger: Finger,
+    stack: Stack,
+    outline: Outline,
+    board: Board,
+    mould: Mould,
+) -> tuple[Artefact, ...]:
+    """The mould of one finger: STEP in the sensor frame, STL and 3MF on the bed, and the note
+    for the person who pours."""
+    solid = mould_solid(finger, stack, outline, mould)
+    to_sensor = mould_bed_to_sensor(stack, mould)
+    on_bed = placed(solid, np.asarray(np.linalg.inv(to_sensor), dtype=np.float64))
+    name = f"{finger.name}_mould"
+    volume_ml = cast_volume_ml(finger, stack, outline, board, mould)
+    note = casting_note(finger.name, volume_ml, stack, mould)
+    return (
+        Artefact(f"mould/{name}.step", export.step(solid, name)),
+        Artefact(f"mould/{name}.stl", export.stl(on_bed, CHORD_MM), to_sensor),
+        Artefact(f"mould/{name}.3mf", export.three_mf(on_bed, name, CHORD_MM), to_sensor),
+        Artefact(f"mould/{finger.name}_casting.md", note.encode(), frame=""),
+    )
+
+
+def cast_volume_ml(
+    finger: Finger, stack: Stack, outline: Outline, board: Board, mould: Mould
+) -> float:
+    """Silicone that stays on a finger: the cavity to the rim less the parts that dip into it."""
+    cavity = float(silicone_solid(stack, outline, board, mould).volume)
+    dipped = sum(
+        part.size_x_mm * part.size_y_mm * part.height_mm
+        for part in finger.parts
+        if part.side == "front"
+    )
+    return (cavity - dipped) / 1000
+
+
+def mould_solid(finger: Finger, stack: Stack, outline: Outline, mould: Mould) -> Solid:
+    """The mould in the finger's sensor frame, where its open side looks to -z.
+
+    Args:
+        finger: for the wire notch, before which the mould is open, and for its letter.
+        stack: heights; the wall ends below the plate's back, so that the plate stands out.
+        outline: of the plate.
+        mould: the wall and the skin.
+
+    Raises:
+        BuildError: if the kernel does not make one valid solid of it.
+    """
+    top_z = stack.face_z_mm - stack.guided_mm
+    outside = wall_offset_mm(stack, mould, top_z) + mould.wall_mm
+    weir_half = WEIR_FRACTION * finger.notch.x_max_mm
+    catch_y = outline.end_y_mm - outside - LEDGE_MM
+    end_y = mould.wall_mm - mould.letter.wall_mm
+    catch = Box(-weir_half - LEDGE_MM, weir_half + LEDGE_MM, end_y, catch_y)
+    block = _footed(stack, outline, mould, top_z, outside) + _lip(stack, mould, catch, outside)
+    cavity = drafted_prism(stack, outline, mould, top_z - BEYOND_MM, BEYOND_MM)
+    taken = [
+        cavity & side_solid(stack, outline, mould),
+        _weir(stack, outline, weir_half, outside),
+        _trough(stack, mould, catch),
+        _grip(stack, outline, outside),
+        letter_cutter(finger.name, mould.letter, mould_bed_to_sensor(stack, mould)),
+    ]
+    whole = (block - taken) + stops(stack, outline, mould)
+    solids = whole.solids()
+    if len(solids) != 1 or not solids[0].is_valid:
+        raise BuildError(
+            f"mould: the CAD kernel made {len(solids)} solids of it, one valid solid is needed; "
+            "change mould.wall_mm or the outline a little"
+        )
+    return solids[0]
+
+
+def _footed(
+    stack: Stack, outline: Outline, mould: Mould, top_z_mm: float, outside_mm: float
+) -> Solid:
+    """The outer body, chamfered where it stands on the bed."""
+    bed_z = stack.silicone_z_mm + mould.wall_mm
+    shoulder_z = bed_z - FOOT_CHAMFER_MM
+    top, shoulder = (offset_wire(outline, outside_mm, z) for z in (top_z_mm, shoulder_z))
+    foot = offset_wire(outline, outside_mm - FOOT_CHAMFER_MM, bed_z)
+    return Solid.make_loft([top, shoulder, foot], ruled=True)
+
+
+def _lip(stack: Stack, mould: Mould, catch: Box, outside_mm: float) -> Solid:
+    """The block that holds the trough, joined to the body."""
+    bed_z = stack.silicone_z_mm + mould.wall_mm
+    inside_y = catch.y_max_mm + LEDGE_MM + outside_mm / 2
+    outer = Box(
+        catch.x_min_mm - mould.wall_mm, catch.x_max_mm + mould.wall_mm,
+        catch.y_min_mm - mould.wall_mm, inside_y,
+    )  # fmt: skip
+    lip = box_solid(outer, stack.face_z_mm, bed_z, mould.wall_mm / 2)
+    on_bed = [edge for edge in lip.edges() if abs(edge.center().Z - bed_z) < 1e-6]
+    return lip.chamfer(FOOT_CHAMFER_MM, None, on_bed)
+
+
+def _weir(stack: Stack, outline: Outline, half_mm: float, outside_mm: float) -> Solid:
+    """The opening of the wall at the gripper end, down to the rim plane."""
+    rise = stack.plate_mm
+    wider = half_mm + rise * math.tan(math.radians(WEIR_DRAFT_DEG))
+    rim, over = stack.face_z_mm, stack.face_z_mm - rise
+    start = outline.end_y_mm - outside_mm - BEYOND_MM
+    length = outside_mm + 2 * BEYOND_MM
+    corners = [(-half_mm, rim), (-wider, over), (wider, over), (half_mm, rim)]
+    face = Face(Wire.make_polygon([(x, start, z) for x, z in corners], close=True))
+    return Solid.extrude(face, Vector(0, length, 0))
+
+
+def _trough(stack: Stack, mould: Mould, catch: Box) -> Solid:
+    """The basin for the surplus, over a floor half as thick as the mould's."""
+    rim, floor = stack.face_z_mm, stack.silicone_z_mm + mould.wall_mm / 2
+    slope = math.tan(math.radians(WEIR_DRAFT_DEG))
+    over = LEDGE_MM  # above the rim, where there is nothing left to cut
+    rings = [
+        box_face(catch.grown(slope * over)).outer_wire().moved(_height(rim - over)),
+        box_face(catch.grown(-slope * (floor - rim))).outer_wire().moved(_height(floor)),
+    ]
+    return Solid.make_loft(rings, ruled=True)
+
+
+def _grip(stack: Stack, outline: Outline, outside_mm: float) -> Solid:
+    """The gaps in both side walls, as one cutter across the mould."""
+    centre_y = outline.end_y_mm + GRIP_AT * outline.length_mm
+    bottom, over = stack.face_z_mm - GRIP_ABOVE_RIM_MM, stack.back_z_mm
+    half = GRIP_MM / 2
+    wider = half + (bottom - over) * math.tan(math.radians(GRIP_SLOPE_DEG))
+    far = float(np.abs(outline.polygon()[:, 0]).max()) + outside_mm + BEYOND_MM
+    corners = [(centre_y - half, bottom), (centre_y - wider, over),
+               (centre_y + wider, over), (centre_y + half, bottom)]  # fmt: skip
+    return side_prism(corners, -far, far)
+
+
+def _height(z_mm: float) -> Location:
+    return Location((0, 0, z_mm))

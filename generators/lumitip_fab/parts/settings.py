@@ -1,0 +1,123 @@
+"""Settings for PrusaSlicer, one file for each filament and layer, and which part takes which."""
+
+from lumitip_fab.design import Interface, Printing, Title
+from lumitip_fab.design.making import Filament, Slicing
+from lumitip_fab.pipeline.artefact import Artefact
+from lumitip_fab.text import as_written
+
+_BRIM_MM = 3.0  # a backing is tall and stands on little
+_OUTER_SHARE = 0.6  # of the speed: outer walls are what board, gripper and silicone meet
+_FIRST_LAYER_MM_S = 20.0
+_FIRST_LAYER_C = 5
+_WIDTHS = (
+    "extrusion_width", "first_layer_extrusion_width", "perimeter_extrusion_width",
+    "external_perimeter_extrusion_width", "infill_extrusion_width",
+    "solid_infill_extrusion_width", "top_infill_extrusion_width",
+)  # fmt: skip
+
+
+def print_settings(
+    title: Title, printing: Printing, slicing: Slicing, interfaces: tuple[Interface, ...]
+) -> tuple[Artefact, ...]:
+    """`print/*.ini` and `print/printing.md`.
+
+    Args:
+        title: of the design.
+        printing: lines and bed.
+        slicing: filaments.
+        interfaces: what holds backings that bend; there are none of rigid ones.
+    """
+    made = {f.file: _settings(f, printing, slicing.nozzle_mm) for f in slicing.filaments}
+    made["print/printing.md"] = _note(title, printing, slicing, bool(interfaces))
+    return tuple(Artefact(path, made[path].encode(), frame="") for path in sorted(made))
+
+
+def _settings(filament: Filament, printing: Printing, nozzle_mm: float) -> str:
+    x, y, z = printing.bed_mm
+    told: dict[str, object] = {
+        "printer_technology": "FFF",
+        "gcode_flavor": "marlin",
+        "bed_shape": f"0x0,{x:g}x0,{x:g}x{y:g},0x{y:g}",
+        "max_print_height": f"{z:g}",
+        "nozzle_diameter": f"{nozzle_mm:g}",
+        "layer_height": f"{filament.layer_mm:g}",
+        "first_layer_height": f"{filament.layer_mm:g}",
+        **dict.fromkeys(_WIDTHS, f"{printing.line_mm:g}"),
+        # Walls of two lines, wedges of one: widths that follow the wall.
+        "perimeter_generator": "arachne",
+        "perimeters": 3,
+        "top_solid_layers": 5,
+        "bottom_solid_layers": 5,
+        "fill_density": "100%",
+        "fill_pattern": "rectilinear",
+        "support_material": 0,
+        "brim_type": "outer_only",
+        "brim_width": f"{_BRIM_MM:g}",
+        "skirts": 0,
+        "seam_position": "rear",
+        "elefant_foot_compensation": "0.1",
+        "avoid_crossing_perimeters": 1,
+        **_of_filament(filament),
+    }
+    return "".join(f"{key} = {told[key]}\n" for key in sorted(told))
+
+
+def _of_filament(filament: Filament) -> dict[str, object]:
+    speed = filament.speed_mm_s
+    least, most = filament.fan_percent
+    return {
+        "filament_settings_id": filament.name,
+        "filament_type": filament.kind,
+        "filament_diameter": "1.75",
+        "filament_density": f"{filament.density_g_ml:g}",
+        "filament_max_volumetric_speed": f"{filament.max_flow_mm3_s:g}",
+        "temperature": filament.nozzle_c,
+        "first_layer_temperature": filament.nozzle_c + _FIRST_LAYER_C,
+        "bed_temperature": filament.bed_c,
+        "first_layer_bed_temperature": filament.bed_c,
+        "min_fan_speed": least,
+        "max_fan_speed": most,
+        "bridge_fan_speed": most,
+        "fan_always_on": int(least > 0),
+        "retract_length": f"{filament.retract_mm:g}",
+        "perimeter_speed": f"{speed:g}",
+        "external_perimeter_speed": f"{_OUTER_SHARE * speed:g}",
+        "infill_speed": f"{speed:g}",
+        "solid_infill_speed": f"{speed:g}",
+        "top_solid_infill_speed": f"{_OUTER_SHARE * speed:g}",
+        "bridge_speed": f"{_OUTER_SHARE * speed:g}",
+        "first_layer_speed": f"{min(_FIRST_LAYER_MM_S, speed):g}",
+    }
+
+
+def _note(title: Title, printing: Printing, slicing: Slicing, bends: bool) -> str:
+    standing = "on the mount face, tip up"
+    lies = "on its front, groove up" if bends else standing
+    rows = [(f"backing/{finger}_backing.3mf", lies) for finger in _FINGERS]
+    if bends:
+        rows += [(f"interface/{finger}_interface.3mf", standing) for finger in _FINGERS]
+    rows += [(f"mould/{finger}_mould.3mf", "open side up") for finger in _FINGERS]
+    listed = "\n".join(f"| `{path}` | {_told(slicing.of(path))} | {lies} |" for path, lies in rows)
+    return f"""# Printing {as_written(title.name)} {title.revision}
+
+Every STL and 3MF of this folder lies on the bed as it prints: do not turn it. None needs support.
+
+| file | settings | filament | layers | lies |
+|---|---|---|---:|---|
+{listed}
+| any other `.3mf` | {_told(slicing.rigid)} | as it is |
+
+Solid, {printing.line_mm:g} mm lines, brim of {_BRIM_MM:g} mm,
+nozzle of {slicing.nozzle_mm:g} mm. In PrusaSlicer: File, Import, Import Config, then the part. The
+settings have no start and end G-code but the slicer's own: choose your printer again where it
+needs some. Temperatures are starting points: trust the label of your spool.
+
+`lumitip-fab slice --out DIR` slices every part with them and tells time and mass.
+"""
+
+
+def _told(filament: Filament) -> str:
+    return f"`{filament.file}` | {filament.name} | {filament.layer_mm:g} mm"
+
+
+_FINGERS = ("emitter", "receiver")

@@ -1,0 +1,35 @@
+"""The files that say what was built: `layout.json`, `design.json` and `resolved.toml`."""
+
+import tomli_w
+
+from lumitip_fab.config.load import NAMED, Input
+from lumitip_fab.design import Design
+from lumitip_fab.design.encoding import design_text, encoded
+from lumitip_fab.pipeline.artefact import Artefact
+
+_HEAD = """\
+# Every value in force: the parameter file with its bases. Can itself be built.
+"""
+_PARTS = """
+# The parts that are named above, as they stand in the catalogue.
+"""
+
+
+def documents(given: Input, design: Design) -> tuple[Artefact, ...]:
+    """The documents of a design."""
+    return (
+        Artefact("layout.json", design.layout.to_json().encode()),
+        Artefact("design.json", design_text(design).encode()),
+        Artefact("resolved.toml", _resolved(given).encode(), frame=""),
+    )
+
+
+def _resolved(given: Input) -> str:
+    parts = {field: encoded(e.model_dump()) for field, e in given.named_parts().items()}
+    told = {f"{NAMED[field]} for {field}": _without_none(entry) for field, entry in parts.items()}
+    listed = "".join(f"# {line}".rstrip() + "\n" for line in tomli_w.dumps(told).splitlines())
+    return _HEAD + tomli_w.dumps(encoded(given.parameters.model_dump())) + _PARTS + listed
+
+
+def _without_none(table: dict[str, object]) -> dict[str, object]:
+    return {key: value for key, value in table.items() if value is not None}

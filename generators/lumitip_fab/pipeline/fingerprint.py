@@ -1,0 +1,122 @@
+"""Hashes of everything that a result depends on: input files, code and installed tools."""
+
+import hashlib
+import sys
+import tomllib
+from collections.abc import Iterable
+from functools import lru_cache
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+import lumitip
+from lumitip_fab.paths import design_folder, firmware_sources, parts_folders
+from lumitip_fab.pipeline import manifest
+
+PACKAGE = Path(__file__).parents[1]
+# What design and layout are made of, and what generators share; a change in one of them may change
+# every file.
+SHARED = (
+    "artefact.py", "colours.py", "derive", "design", "encoding.py", "errors.py", "frames.py",
+    "graph.py", "locate.py", "made.py", "markdown_text.py", "typeface.py", "values.py",
+)  # fmt: skip
+LAYOUT = ("errors.py", "grid.py", "layout.py")
+
+
+@lru_cache
+def code_hash(*parts: str) -> str:
+    """Hash of some modules and folders of this package and of those that all share."""
+    roots = [PACKAGE / name for name in (*parts, *SHARED)]
+    roots += [Path(lumitip.__file__).parent / name for name in LAYOUT]
+    if "firmware" in parts:
+        roots += [Path(lumitip.__file__).parent / "protocol", *firmware_sources()]
+    if "explore" in parts:
+        roots += [Path(lumitip.__file__).parent / name for name in ("twin", "estimation")]
+    return _hash(f for r in roots for f in (_sources(r) if r.is_dir() else [r]))
+
+
+@lru_cache
+def whole_code_hash() -> str:
+    """Hash of all of both packages, and of the firmware."""
+    roots = (PACKAGE, Path(lumitip.__file__).parent)
+    return _hash([*(f for r in roots for f in _sources(r)), *firmware_sources()])
+
+
+def _sources(folder: Path) -> list[Path]:
+    """Code, and the sheet that schematics grow from."""
+    return sorted(f for f in folder.rglob("*") if f.suffix in {".py", ".kicad_sch"})
+
+
+def _hash(files: Iterable[Path]) -> str:
+    digest = hashlib.sha256()
+    for file in files:
+        digest.update(file.name.encode() + b"\0" + file.read_bytes() + b"\0")
+    return digest.hexdigest()
+
+
+@lru_cache
+def tool_version(distribution: str) -> str:
+    """A distribution with its version; Python itself goes with every one."""
+    python = f"{sys.version_info.major}.{sys.version_info.minor}"
+    try:
+        return f"{distribution} {version(distribution)} on Python {python}"
+    except PackageNotFoundError:  # one of two distributions of the same kernel
+        return f"no {distribution}"
+
+
+@lru_cache
+def installed_hash() -> str:
+    """Hash of the name and version of every installed distribution, and of Python's."""
+    folders = (Path(entry) for entry in sys.path if entry)
+    names = sorted(d.name for f in folders if f.is_dir() for d in f.glob("*.dist-info"))
+    return hashlib.sha256("\n".join([sys.version, *names]).encode()).hexdigest()
+
+
+STAMP = ".built"
+
+
+def unchanged(out: Path, told: str) -> manifest.Manifest | None:
+    """The manifest of a folder that this input gave, if nobody has changed a file since."""
+    try:
+        stamp = (out / STAMP).read_text(encoding="utf-8")
+    except (OSError, ValueError):
+        return None
+    before = manifest.read(out)
+    return before if told and stamp == _stamp(out, told) and before.intact(out) else None
+
+
+def remember(out: Path, told: str) -> None:
+    """Keep what a folder has just been built from."""
+    manifest.write_file(out / STAMP, _stamp(out, told).encode())
+
+
+def _stamp(out: Path, told: str) -> str:
+    return f"{told} {manifest.sha256_of(out / manifest.NAME)}\n"
+
+
+def input_hash(file: Path) -> str:
+    """SHA-256 over the parameter file, its bases, the catalogue, the code and what is installed.
+
+    Empty where the input cannot be read; reading it properly then says why.
+    """
+    try:
+        files = _with_bases(file)
+        for folder in parts_folders(design_folder(file)):
+            files += sorted(folder.glob("*.toml"))
+        told = [f"{path.name}\0{hashlib.sha256(path.read_bytes()).hexdigest()}" for path in files]
+    except (OSError, ValueError, RecursionError):
+        return ""
+    told += [whole_code_hash(), installed_hash()]
+    return hashlib.sha256("\n".join(told).encode()).hexdigest()
+
+
+def _with_bases(file: Path) -> list[Path]:
+    """The file and all that it extends; a circle ends where it closes."""
+    files: list[Path] = []
+    name: object = file.resolve()
+    while isinstance(name, str | Path):
+        file = (file.resolve().parent / name).resolve()
+        if file in files:
+            break
+        files.append(file)
+        name = tomllib.loads(file.read_text(encoding="utf-8")).get("extends")
+    return files

@@ -1,0 +1,1 @@
+"""Several parts together: assembly, whole system, exploded drawings, robot description."""

@@ -1,0 +1,250 @@
+"""Line drawings of meshes: visible lines by a buffer of depths, on a page in mm, y up."""
+
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from xml.sax.saxutils import escape
+
+import numpy as np
+import shapely
+import trimesh
+from numpy.typing import NDArray
+
+from lumitip_fab.parts.surface import Mesh
+
+Points = NDArray[np.float64]
+LINE_MM = 9.0  # from label to label
+
+_INK, _FAINT = "#1a1a1a", "#5a6b7a"
+_ROUND = 'stroke-linecap="round" stroke-linejoin="round"'
+_STROKES = {
+    "area": f'stroke="{_INK}" stroke-width=".5" {_ROUND}',
+    "body": f'stroke="{_INK}" stroke-width=".3" {_ROUND}',
+    "part": f'stroke="{_INK}" stroke-width=".12" {_ROUND}',
+    "line": f'fill="none" stroke="{_INK}" stroke-width=".22" {_ROUND}',
+    "axis": f'fill="none" stroke="{_FAINT}" stroke-width=".18" stroke-dasharray="3 .8 .5 .8"',
+    "leader": f'fill="none" stroke="{_FAINT}" stroke-width=".18"',
+}
+_WORDS = {
+    "title": (6.0, f'font-weight="bold" fill="{_INK}"'),
+    "name": (3.6, f'font-weight="bold" fill="{_INK}"'),
+    "detail": (3.0, f'fill="{_FAINT}"'),
+}
+
+
+@dataclass
+class Sheet:
+    """A page that grows with what is drawn on it."""
+
+    margin_mm: float = 8.0
+    words_scale: float = 1.0
+    """Size of words against those of a single finger's drawing."""
+    drawn: list[str] = field(default_factory=list)
+    low: Points = field(default_factory=lambda: np.full(2, np.inf))
+    high: Points = field(default_factory=lambda: np.full(2, -np.inf))
+
+    @contextmanager
+    def group(self, name: str) -> Iterator[None]:
+        """Everything drawn meanwhile is one element, with this id."""
+        self.drawn.append(f'<g id="{name}">')
+        yield
+        self.drawn.append("</g>")
+
+    def area(self, rings: Iterable[Points], style: str, fill: str) -> None:
+        """A filled area; rings inside others are holes."""
+        path = "".join(f"M{self._joined(ring)}Z" for ring in rings)
+        self.drawn.append(f'<path {_STROKES[style]} fill="{fill}" fill-rule="evenodd" d="{path}"/>')
+
+    def lines(self, lines: Sequence[Points], style: str) -> None:
+        """Open lines."""
+        if lines:
+            path = "".join(f"M{self._joined(line)}" for line in lines)
+            self.drawn.append(f'<path {_STROKES[style]} d="{path}"/>')
+
+    def dot(self, x_mm: float, y_mm: float) -> None:
+        """Where a leader points at."""
+        self.drawn.append(f'<circle fill="{_FAINT}" cx="{x_mm:.2f}" cy="{0.0 - y_mm:.2f}" r=".6"/>')
+
+    def words(self, x_mm: float, y_mm: float, text: str, style: str, anchor: str) -> None:
+        """A line of text on its baseline.
+
+        Args:
+            x_mm, y_mm: where it is anchored.
+            text: what it says.
+            style: `"title"`, `"name"` or `"detail"`.
+            anchor: `"start"` or `"end"`.
+        """
+        size, look = _WORDS[style]
+        self.drawn.append(
+            f'<text font-size="{size * self.words_scale:g}" {look} x="{x_mm:.2f}" '
+            f'y="{0.0 - y_mm:.2f}" text-anchor="{anchor}">{escape(text)}</text>'
+        )
+
+    def leaders(self, told: list[tuple[tuple[str, str], Points]], x_mm: float, anchor: str) -> None:
+        """A column of labels with a line from each to its place; labels keep apart.
+
+        Args:
+            told: name and detail of each, and where it points at.
+            x_mm: where the words begin or end.
+            anchor: `"start"` or `"end"`.
+        """
+        gap = 1.5 if anchor == "start" else -1.5
+        scale = self.words_scale
+        bend = x_mm - 4 * gap
+        below = math.inf
+        for words, at in sorted(told, key=lambda label: -float(label[1][1])):
+            y = min(float(at[1]), below - LINE_MM * scale)
+            below = y
+            self.lines([np.array([at, (bend, y), (x_mm, y)])], "leader")
+            self.dot(float(at[0]), float(at[1]))
+            self.words(x_mm + gap, y + 0.4 * scale, words[0], "name", anchor)
+            self.words(x_mm + gap, y - 3.2 * scale, words[1], "detail", anchor)
+
+    def cover(self, x_mm: float, y_mm: float) -> None:
+        """Make the page reach a point."""
+        self._joined(np.array([[x_mm, y_mm]]))
+
+    def svg(self, told: Mapping[str, float]) -> str:
+        """The page, cut to what is on it.
+
+        Args:
+            told: figures that go with it, for programs; their names begin with `data-`.
+        """
+        left, bottom = self.low - self.margin_mm
+        right, top = self.high + self.margin_mm
+        width, height = right - left, top - bottom
+        return "\n".join(
+            [
+                f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:.2f}mm" '
+                f'height="{height:.2f}mm" viewBox="{left:.2f} {-top:.2f} {width:.2f} {height:.2f}" '
+                'font-family="Helvetica, Arial, sans-serif"'
+                + "".join(f' {name}="{value:g}"' for name, value in told.items())
+                + ">",
+                f'<rect x="{left:.2f}" y="{-top:.2f}" width="{width:.2f}" height="{height:.2f}" '
+                'fill="#fff"/>',
+                *self.drawn,
+                "</svg>\n",
+            ]
+        )
+
+    def _joined(self, points: Points) -> str:
+        self.low = np.minimum(self.low, points.min(axis=0))
+        self.high = np.maximum(self.high, points.max(axis=0))
+        return "L".join(f"{x:.2f},{0.0 - y:.2f}" for x, y in points.tolist())
+
+
+PIXEL_MM = 0.25
+PIECE_MM = 0.6  # of an edge that is seen or not as a whole
+BEHIND_MM = 0.4  # by which a line may lie behind what is nearest: the buffer's own error
+SHARP_DEG = 25.0  # between two faces, to be drawn as an edge
+_NEAR_MM = 0.02  # of a simplified line from what it stands for
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """A direction of view; the page's x and y and the way to the viewer, as rows."""
+
+    axes: Points
+
+    def seen(self, points_mm: Points) -> Points:
+        """Points as x and y on the page and height above it, shape `(n, 3)`."""
+        return np.asarray(points_mm @ self.axes.T)
+
+
+def view(azimuth_deg: float, elevation_deg: float) -> View:
+    """A viewer at some angle from -y towards +x, and above the plane z = 0."""
+    turn, lift = math.radians(azimuth_deg), math.radians(elevation_deg)
+    right = np.array([math.cos(turn), math.sin(turn), 0.0])
+    viewer = np.array([math.sin(turn) * math.cos(lift), -math.cos(turn) * math.cos(lift),
+                       math.sin(lift)])  # fmt: skip
+    return View(np.stack([right, np.cross(viewer, right), viewer]))
+
+
+def silhouette(mesh: Mesh, seen_by: View) -> list[Points]:
+    """Outer and inner contours of a body on the page."""
+    flat = seen_by.seen(mesh.points_mm)[:, :2][mesh.triangles]
+    a, b = flat[:, 1] - flat[:, 0], flat[:, 2] - flat[:, 0]
+    front = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0] > 1e-6
+    whole = shapely.union_all(shapely.polygons(flat[front]), grid_size=0.001)
+    whole = whole.buffer(0.01, join_style="mitre").buffer(-0.01, join_style="mitre")
+    whole = shapely.simplify(whole, _NEAR_MM)
+    return [np.array(ring.coords) for part in shapely.get_parts(whole)
+            for ring in (part.exterior, *part.interiors)]  # fmt: skip
+
+
+def visible_lines(meshes: list[Mesh], seen_by: View) -> list[list[Points]]:
+    """Of each body the sharp edges and contours that no body hides, on the page."""
+    seen = [seen_by.seen(mesh.points_mm) for mesh in meshes]
+    low = np.min([points[:, :2].min(axis=0) for points in seen], axis=0) - 2 * PIXEL_MM
+    high = np.max([points[:, :2].max(axis=0) for points in seen], axis=0) + 2 * PIXEL_MM
+    depths = _depths(meshes, seen, low, high)
+    return [_lines(mesh, points, depths, low) for mesh, points in zip(meshes, seen, strict=True)]
+
+
+def _depths(meshes: list[Mesh], seen: list[Points], low: Points, high: Points) -> Points:
+    """The greatest height above the page in each pixel."""
+    width, height = np.ceil((high - low) / PIXEL_MM).astype(int) + 1
+    depths = np.full((int(height), int(width)), -np.inf)
+    for mesh, points in zip(meshes, seen, strict=True):
+        corners = points[mesh.triangles]
+        corners[:, :, :2] = (corners[:, :, :2] - low) / PIXEL_MM
+        for corner in corners:
+            _fill(depths, corner)
+    return depths
+
+
+def _fill(depths: Points, corner: Points) -> None:
+    """Raise a buffer to a triangle that looks to the viewer."""
+    (x0, y0, z0), (x1, y1, z1), (x2, y2, z2) = corner.tolist()
+    area = (x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0)
+    if area <= 1e-9:
+        return
+    left, right = math.ceil(min(x0, x1, x2)), math.floor(max(x0, x1, x2))
+    bottom, top = math.ceil(min(y0, y1, y2)), math.floor(max(y0, y1, y2))
+    if left > right or bottom > top:
+        return
+    x = np.arange(left, right + 1)[None, :]
+    y = np.arange(bottom, top + 1)[:, None]
+    one = ((x - x0) * (y2 - y0) - (y - y0) * (x2 - x0)) / area
+    two = ((x1 - x0) * (y - y0) - (y1 - y0) * (x - x0)) / area
+    within = (one >= -1e-9) & (two >= -1e-9) & (one + two <= 1 + 1e-9)
+    z = np.where(within, z0 + one * (z1 - z0) + two * (z2 - z0), -np.inf)
+    window = depths[bottom : top + 1, left : right + 1]
+    np.maximum(window, z, out=window)
+
+
+def _lines(mesh: Mesh, seen: Points, depths: Points, low: Points) -> list[Points]:
+    """The pieces of a body's edges that are seen, joined."""
+    starts, ends = _edges(mesh, seen)
+    lengths = np.linalg.norm(ends - starts, axis=1)
+    counts = np.maximum(np.ceil(lengths / PIECE_MM).astype(int), 1)
+    edge = np.repeat(np.arange(len(counts)), counts)
+    step = np.arange(len(edge)) - np.repeat(np.cumsum(counts) - counts, counts)
+    share = counts[edge][:, None]
+    way = ends[edge] - starts[edge]
+    first = starts[edge] + way * (step[:, None] / share)
+    last = starts[edge] + way * ((step[:, None] + 1) / share)
+    middle = (first + last) / 2
+    column, row = np.round((middle[:, :2] - low) / PIXEL_MM).astype(int).T
+    # The lowest of the neighbours: a contour's own pixel may be that of what is before it.
+    around = [depths[row + i, column + j] for i in (-1, 0, 1) for j in (-1, 0, 1)]
+    shown = middle[:, 2] >= np.min(around, axis=0) - BEHIND_MM
+    pieces = np.round(np.stack([first, last], axis=1)[shown][:, :, :2], 4)
+    pieces = pieces[np.abs(pieces[:, 0] - pieces[:, 1]).max(axis=1) > 1e-3]
+    joined = shapely.line_merge(shapely.union_all(shapely.linestrings(pieces), grid_size=0.001))
+    return [np.array(line.coords)
+            for line in shapely.get_parts(shapely.simplify(joined, _NEAR_MM))]  # fmt: skip
+
+
+def _edges(mesh: Mesh, seen: Points) -> tuple[Points, Points]:
+    """Both ends of each edge that is sharp, or where the body turns away from the viewer."""
+    solid = trimesh.Trimesh(mesh.points_mm, mesh.triangles, process=False)
+    corners = seen[mesh.triangles]
+    a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    front = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0] > 1e-9
+    pairs = front[solid.face_adjacency]
+    sharp = np.degrees(solid.face_adjacency_angles) > SHARP_DEG
+    drawn = (sharp & pairs.any(axis=1)) | (pairs[:, 0] != pairs[:, 1])
+    ends = solid.face_adjacency_edges[drawn]
+    return seen[ends[:, 0]], seen[ends[:, 1]]

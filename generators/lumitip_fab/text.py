@@ -1,0 +1,57 @@
+"""Text in the letters and signs that each medium has: PDF pages, silkscreen, Markdown, part
+values."""
+
+import re
+import unicodedata
+
+from anyascii import anyascii
+
+LONGEST = 32
+"""Most characters of a name, and of what it becomes."""
+PAGE_LETTERS = (
+    (0x20, 0x7E), (0xA1, 0xAC), (0xAE, 0x24F), (0x384, 0x3FF), (0x400, 0x525),
+    (0x1E00, 0x1EFB), (0x1F00, 0x1FFF), (0x2010, 0x2027), (0x2030, 0x205E), (0x20A0, 0x20B5),
+    (0x2122, 0x2122), (0x2126, 0x2126), (0x2190, 0x21FF), (0x2200, 0x22FF),
+)  # fmt: skip
+"""Latin, Greek, Cyrillic, punctuation, arrows and mathematics, all of them in the typeface of the
+PDFs, which sets letters from left to right and joins none."""
+
+
+def page_letters(text: str) -> str:
+    """The text with each character that the PDFs' typeface lacks transliterated."""
+    whole = unicodedata.normalize("NFC", text)
+    return "".join(c if _on_pages(c) else anyascii(c) for c in whole)
+
+
+def page_name(text: str) -> str:
+    """A name in the letters of the PDFs, where there is room for one line."""
+    return _shortened(page_letters(text))
+
+
+def board_name(text: str) -> str:
+    """A name in ASCII, the only letters of a silkscreen."""
+    return _shortened(anyascii(unicodedata.normalize("NFC", text)))
+
+
+def _on_pages(character: str) -> bool:
+    return character == "\n" or any(first <= ord(character) <= last for first, last in PAGE_LETTERS)
+
+
+def _shortened(text: str) -> str:
+    return text if len(text) <= LONGEST else text[:LONGEST].rstrip()
+
+
+_SIGNS = re.compile(r"[\\`*\[\]<>&|#~!]|(?<![A-Za-z0-9])_|_(?![A-Za-z0-9])")
+"""What Markdown reads within a line; of a `_` only one that is not between letters or digits."""
+
+
+def as_written(text: str) -> str:
+    """A text for a heading, a sentence or a cell of a table, not for the beginning of a line."""
+    return _SIGNS.sub(r"\\\g<0>", text)
+
+
+def resistor_code(ohm: float) -> str:
+    """The value as printed on drawings and in order numbers: 150R, 4K99, 75K, 1M."""
+    power, letter = next((p, c) for p, c in ((6, "M"), (3, "K"), (0, "R")) if ohm >= 10**p or not p)
+    digits = f"{ohm / 10**power:.4g}"
+    return digits.replace(".", letter) if "." in digits else digits + letter

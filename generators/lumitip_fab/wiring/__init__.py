@@ -1,1 +1,0 @@
-"""How the fingers are wired: list of cables, note and diagram."""
