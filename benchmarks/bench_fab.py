@@ -20,7 +20,7 @@ STAGES = ("layout", "mask", "checks")
 def lumitip_fab(*arguments: str) -> float:
     """Run the command in a fresh process; returns its wall time (s)."""
     begun = time.perf_counter()
-    command = [sys.executable, "-m", "lumitip_fab.cli", *arguments]
+    command = [sys.executable, "-m", "lumitip_fab", *arguments]
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
     return time.perf_counter() - begun
 
@@ -79,10 +79,11 @@ def one_stage(stage: str, cells: int) -> None:
     """Run one stage in this process and print cells, seconds and peak memory (MiB)."""
     from lumitip_fab.checks import layout as layout_check
     from lumitip_fab.checks import mask as mask_check
+    from lumitip_fab.cli.documents import documents
+    from lumitip_fab.cli.steps import STEPS
     from lumitip_fab.config.load import load
     from lumitip_fab.derive import derive
     from lumitip_fab.mask.files import mask_files
-    from lumitip_fab.pipeline.documents import documents
     from lumitip_fab.pipeline.graph import tasks
 
     with tempfile.TemporaryDirectory() as name:
@@ -95,7 +96,7 @@ def one_stage(stage: str, cells: int) -> None:
         seconds = time.perf_counter() - begun
         if stage != "layout":
             begun = time.perf_counter()
-            masks = (t for t in tasks(design) if t.step.name == "mask_files")
+            masks = (t for t in tasks(STEPS, design) if t.step.name == "mask_files")
             made = [a for t in masks for a in mask_files(**t.arguments)]
             seconds = time.perf_counter() - begun
             for artefact in (*made, *documents(given, design)):

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from lumitip_fab.checks.run import modules_reading, run_checks
-from lumitip_fab.pipeline.build import build
+from lumitip_fab.cli.build import build
 
 DESIGN = Path(__file__).parents[1] / "design"
 Once = Callable[[str, Callable[[Path], object]], Path]

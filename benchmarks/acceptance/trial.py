@@ -69,7 +69,7 @@ def derive_file(file: Path) -> Trial:
 def build_file(file: Path) -> Trial:
     """Build a user file and check what was built."""
     from lumitip_fab.checks.run import run_checks
-    from lumitip_fab.pipeline.build import build
+    from lumitip_fab.cli.build import build
 
     with tempfile.TemporaryDirectory(prefix="acceptance") as out:
         try:

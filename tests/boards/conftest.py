@@ -8,6 +8,7 @@ import pytest
 
 from lumitip_fab.boards.carrier import carrier_files
 from lumitip_fab.boards.files import board_files
+from lumitip_fab.cli.steps import STEPS
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
@@ -56,7 +57,7 @@ def boards(
 
 def _write(design: Design, out: Path) -> None:
     (out / "design.json").write_text(design_text(design), encoding="utf-8")
-    for task in tasks(design):
+    for task in tasks(STEPS, design):
         make = {"board_files": board_files, "carrier_files": carrier_files}.get(task.step.name)
         for artefact in make(**task.arguments) if make else ():
             path = out / artefact.path

@@ -22,6 +22,7 @@ from lumitip_fab.boards.model import Fill, Routing, Text, stable_uuid
 from lumitip_fab.boards.outline import fractured
 from lumitip_fab.boards.silk.strokes import text_strokes, upright
 from lumitip_fab.checks.readers.kicad_shapes import child, children, read_nodes, words
+from lumitip_fab.cli.steps import STEPS
 from lumitip_fab.design import Design
 from lumitip_fab.design.frames import applied
 from lumitip_fab.errors import BuildError
@@ -32,9 +33,10 @@ AGAIN = """
 import hashlib, sys
 from pathlib import Path
 from lumitip_fab.boards.files import board_files
-from lumitip_fab.encoding import read_design
-from lumitip_fab.graph import tasks
-for task in tasks(read_design(Path(sys.argv[1]))):
+from lumitip_fab.design.encoding import read_design
+from lumitip_fab.cli.steps import STEPS
+from lumitip_fab.pipeline.graph import tasks
+for task in tasks(STEPS, read_design(Path(sys.argv[1]))):
     if task.name == "board_files.emitter":
         for made in board_files(**task.arguments):
             print(hashlib.sha256(made.data).hexdigest(), made.path)
@@ -57,7 +59,7 @@ def test_the_same_design_gives_the_same_bytes(boards: Callable[[str], Path]) -> 
 
 def test_a_board_file_is_moved_into_the_sensor_frame(designs: Designs) -> None:
     design = designs("small")
-    task = next(t for t in tasks(design) if t.name == "board_files.emitter")
+    task = next(t for t in tasks(STEPS, design) if t.name == "board_files.emitter")
     made = {a.path.rpartition("/")[2]: a for a in board_files(**task.arguments)}
     board = made["emitter.kicad_pcb"]
     at = re.search(rb"\(at (\S+) (\S+) \S+\)(?=[^@]{0,300}?reference \"D1\")", board.data)
@@ -141,7 +143,7 @@ def test_text_is_read_from_its_own_side() -> None:
 def test_a_board_that_lost_a_track_is_never_written(
     designs: Designs, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    (task,) = (t for t in tasks(designs("small")) if t.name == "board_files.emitter")
+    (task,) = (t for t in tasks(STEPS, designs("small")) if t.name == "board_files.emitter")
     pour = files.pour
 
     def losing(*given: Any) -> tuple[Routing, tuple[Fill, ...]]:

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from lumitip_fab.boards.spice import supply_simulation
+from lumitip_fab.cli.steps import STEPS
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
@@ -71,5 +72,5 @@ def test_a_board_without_a_regulator_has_no_netlist(design_dir: Path) -> None:
     design = _derived(design_dir, "published")
     (flange,) = design.regulated
     assert [c.name for c in design.carriers if c != flange] == ["breakout"]
-    names = [task.name for task in tasks(design) if task.step.name == "supply_simulation"]
+    names = [task.name for task in tasks(STEPS, design) if task.step.name == "supply_simulation"]
     assert names == [f"supply_simulation.{flange.name}"]

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from lumitip_fab.checks.run import run_checks
-from lumitip_fab.pipeline.build import build
+from lumitip_fab.cli.build import build
 
 _FILE = """\
 extends = "published.toml"

@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 from lumitip_fab.checks.run import run_checks
+from lumitip_fab.cli.build import build
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from lumitip_fab.errors import FabError
-from lumitip_fab.pipeline.build import build
 
 Changes = dict[str, object]
 

@@ -11,9 +11,10 @@ import numpy as np
 import pytest
 
 from lumitip import Layout
+from lumitip_fab.cli.build import build
 from lumitip_fab.errors import InputError, OutputError
 from lumitip_fab.pipeline import manifest
-from lumitip_fab.pipeline.build import build, locked
+from lumitip_fab.pipeline.build import locked
 
 PUBLISHED = "presets/published.toml"
 
@@ -106,7 +107,7 @@ def test_same_bytes_in_another_folder_process_and_hash_seed(
     folder = Path(shutil.copytree(design_dir, tmp_path / "elsewhere"))
     out = tmp_path / "deeper" / "out"
     subprocess.run(
-        [sys.executable, "-m", "lumitip_fab.cli", "build", str(folder / PUBLISHED), "--out",
+        [sys.executable, "-m", "lumitip_fab", "build", str(folder / PUBLISHED), "--out",
          str(out), "--quiet"],
         check=True, env={**os.environ, "PYTHONHASHSEED": "4711"}, cwd=tmp_path,
     )  # fmt: skip

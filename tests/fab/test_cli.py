@@ -9,7 +9,8 @@ from xml.etree import ElementTree
 
 import pytest
 
-from lumitip_fab.cli import commands, main
+from lumitip_fab.cli import main
+from lumitip_fab.cli.build import shortened
 from lumitip_fab.config.schema import schema_text
 
 Run = Callable[..., subprocess.CompletedProcess[str]]
@@ -160,7 +161,7 @@ def test_every_field_of_the_schema_is_described() -> None:
 
 def test_many_files_are_counted_by_folder_and_few_are_named() -> None:
     few = tuple(f"mask/{i}.svg" for i in range(3))
-    assert commands.shortened(Path("out"), few) == [f"out/{name}" for name in few]
+    assert shortened(Path("out"), few) == [f"out/{name}" for name in few]
     many = (*(f"boards/order/{i}.csv" for i in range(30)), "a.csv", "b.csv", "mask/a.pdf")
     told = ["out/boards/order: 30 files", "out: 2 files", "out/mask/a.pdf"]
-    assert commands.shortened(Path("out"), many) == told
+    assert shortened(Path("out"), many) == told

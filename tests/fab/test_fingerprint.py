@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
+from lumitip_fab.cli.build import build
 from lumitip_fab.pipeline import fingerprint
-from lumitip_fab.pipeline.build import build
 from lumitip_fab.pipeline.fingerprint import input_hash
 
 

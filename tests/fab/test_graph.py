@@ -7,11 +7,12 @@ from pathlib import Path
 
 import pytest
 
+from lumitip_fab.cli.steps import STEPS
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from lumitip_fab.pipeline import fingerprint as toolchain
 from lumitip_fab.pipeline.artefact import Made
-from lumitip_fab.pipeline.graph import EACH, STEPS, argument_names, late_steps, late_task, tasks
+from lumitip_fab.pipeline.graph import EACH, argument_names, late_steps, late_task, tasks
 
 PACKAGE = toolchain.PACKAGE
 EARLY = {step.name for step in STEPS if not step.reads}
@@ -38,7 +39,7 @@ def keys(design_dir: Path, tmp_path: Path) -> Keys:
         (file.parent / "published.toml").write_bytes(published.read_bytes())
         (tmp_path / "parts").mkdir(exist_ok=True)
         file.write_text('extends = "published.toml"\n' + text)
-        return {task.name: task.key for task in tasks(derive(load(file)))}
+        return {task.name: task.key for task in tasks(STEPS, derive(load(file)))}
 
     return of
 
@@ -149,7 +150,7 @@ def test_what_reads_others_files_runs_again_when_those_change(design_dir: Path) 
 
     def late(files: dict[str, str]) -> dict[str, str]:
         made = Made(Path(), files)
-        return {step.name: late_task(step, design, made).key for step in late_steps()}
+        return {step.name: late_task(step, design, made).key for step in late_steps(STEPS)}
 
     before = late({"backing/emitter_backing.stl": "1", "mask/emitter_mask.svg": "1"})
     assert "bill_of_materials" in before

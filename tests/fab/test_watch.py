@@ -24,7 +24,7 @@ def test_saving_rebuilds_and_a_fault_is_waited_out(outputs: Path, tmp_path: Path
     subprocess.run(["cp", "-r", outputs, out], check=True)
     log = tmp_path / "log"
     with log.open("w") as told:
-        command = [sys.executable, "-m", "lumitip_fab.cli", "watch", str(file), "--out", str(out)]
+        command = [sys.executable, "-m", "lumitip_fab", "watch", str(file), "--out", str(out)]
         running = subprocess.Popen(
             command, stdout=told, stderr=told, env={**os.environ, "PYTHONUNBUFFERED": "1"}
         )

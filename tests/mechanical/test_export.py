@@ -15,7 +15,7 @@ from lumitip_fab.parts import export
 MAKE = """
 import hashlib, os
 from build123d import Box, Color, Compound, Cylinder, Pos
-from lumitip_fab.mechanical import export
+from lumitip_fab.parts import export
 part = Box(10, 8, 4) - Cylinder(2, 10)
 lid = Pos(0, 0, 5) * Box(10, 8, 1)
 part.label, lid.label, lid.color = "part", "lid", Color("red")

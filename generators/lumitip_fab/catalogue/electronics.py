@@ -1,25 +1,10 @@
-"""The catalogue of parts in `design/parts/*.toml`: what a parameter file names by name.
+"""Catalogue entries of what is soldered to the fingers' boards."""
 
-Every entry says where its figures come from (`source`) and how far to trust them
-(`confidence`). Adding a part needs no Python.
-"""
-
-from collections.abc import Mapping
 from typing import Literal, Self
 
 from pydantic import Field, model_validator
 
-from lumitip_fab.catalogue.controllers import (
-    Controller,
-    LinearRegulator,
-    Regulator,
-    Strip,
-    Transistor,
-)
-from lumitip_fab.catalogue.grippers import Gripper, ToolCoupling
-from lumitip_fab.catalogue.materials import Fastener, Filament, Laminates
-from lumitip_fab.catalogue.ordering import Fab, Prices
-from lumitip_fab.catalogue.record import Capacitances, Entry, Length, Name, Share, Strict
+from lumitip_fab.catalogue.record import Capacitances, Entry, Length
 
 
 class Bought(Entry):
@@ -201,74 +186,3 @@ class Multiplexer(Bought):
                 f"{sorted(used)} given, each needs a lead of its own from 1 to leads = {self.leads}"
             )
         return self
-
-
-class Silicone(Entry):
-    """A two-part casting silicone."""
-
-    density_g_ml: float = Field(gt=0.5, le=3)
-    """Density of the mixture."""
-    mix_ratio: tuple[Share, Share]
-    """Parts A and B by mass."""
-    refractive_index: float = Field(ge=1.0, le=2.0)
-    """Refractive index when cured."""
-    cure_h: float = Field(gt=0, le=200)
-    """Time to cure at `cure_c` (h)."""
-    cure_c: float = Field(ge=5, le=200)
-    """Temperature to cure at, in the mould with backing and board (°C)."""
-    limit_c: float = Field(ge=20, le=400)
-    """Highest temperature that it bears when cured (°C)."""
-
-
-class Film(Entry):
-    """A printable film for the mask."""
-
-    thickness_mm: Length
-    """Thickness."""
-    density_g_ml: float = Field(gt=0.5, le=3)
-    """Density (g/mL)."""
-    soften_c: float = Field(gt=20, le=200)
-    """Temperature at which it can be creased (°C)."""
-    limit_c: float = Field(gt=20, le=300)
-    """Highest temperature that it bears without melting or shrinking (°C)."""
-
-
-class Printer(Entry):
-    """A 3D printer with its nozzle: what the walls can be."""
-
-    nozzle_mm: Length
-    """Bore of the nozzle."""
-    line_mm: Length
-    """Width of one extruded line."""
-    layer_mm: Length
-    """Height of one layer."""
-    bed_mm: tuple[Length, Length, Length]
-    """Print volume."""
-
-
-class Catalogue(Strict):
-    """All parts by kind and name."""
-
-    leds: Mapping[Name, Led]
-    photodetectors: Mapping[Name, Photodetector]
-    resistors: Mapping[Name, Resistor]
-    capacitors: Mapping[Name, Capacitor]
-    multiplexers: Mapping[Name, Multiplexer]
-    controllers: Mapping[Name, Controller]
-    strips: Mapping[Name, Strip]
-    regulators: Mapping[Name, Regulator]
-    linear_regulators: Mapping[Name, LinearRegulator]
-    crystals: Mapping[Name, Crystal]
-    inductors: Mapping[Name, Inductor]
-    fuses: Mapping[Name, Fuse]
-    transistors: Mapping[Name, Transistor]
-    couplings: Mapping[Name, ToolCoupling]
-    grippers: Mapping[Name, Gripper]
-    fasteners: Mapping[Name, Fastener]
-    silicones: Mapping[Name, Silicone]
-    films: Mapping[Name, Film]
-    printers: Mapping[Name, Printer]
-    filaments: Mapping[Name, Filament]
-    fabs: Mapping[Name, Fab]
-    laminates: Laminates
-    prices: Prices

@@ -1,10 +1,10 @@
-"""Catalogue entries of materials and fasteners: laminates, filaments, screws and nuts."""
+"""Catalogue entries of materials, of printers, and of screws and nuts."""
 
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from lumitip_fab.catalogue.record import Entry, Length, Name, Sourced, Strict
+from lumitip_fab.catalogue.record import Entry, Length, Name, Share, Sourced, Strict
 
 
 class Laminate(Sourced):
@@ -96,3 +96,46 @@ class Fastener(Entry):
                 f"nut_mm = {self.nut_mm:g} given, more than the coarse hole's {coarse:g} is needed"
             )
         return self
+
+
+class Silicone(Entry):
+    """A two-part casting silicone."""
+
+    density_g_ml: float = Field(gt=0.5, le=3)
+    """Density of the mixture."""
+    mix_ratio: tuple[Share, Share]
+    """Parts A and B by mass."""
+    refractive_index: float = Field(ge=1.0, le=2.0)
+    """Refractive index when cured."""
+    cure_h: float = Field(gt=0, le=200)
+    """Time to cure at `cure_c` (h)."""
+    cure_c: float = Field(ge=5, le=200)
+    """Temperature to cure at, in the mould with backing and board (°C)."""
+    limit_c: float = Field(ge=20, le=400)
+    """Highest temperature that it bears when cured (°C)."""
+
+
+class Film(Entry):
+    """A printable film for the mask."""
+
+    thickness_mm: Length
+    """Thickness."""
+    density_g_ml: float = Field(gt=0.5, le=3)
+    """Density (g/mL)."""
+    soften_c: float = Field(gt=20, le=200)
+    """Temperature at which it can be creased (°C)."""
+    limit_c: float = Field(gt=20, le=300)
+    """Highest temperature that it bears without melting or shrinking (°C)."""
+
+
+class Printer(Entry):
+    """A 3D printer with its nozzle: what the walls can be."""
+
+    nozzle_mm: Length
+    """Bore of the nozzle."""
+    line_mm: Length
+    """Width of one extruded line."""
+    layer_mm: Length
+    """Height of one layer."""
+    bed_mm: tuple[Length, Length, Length]
+    """Print volume."""

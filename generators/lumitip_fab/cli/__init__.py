@@ -1,13 +1,19 @@
 """The command `lumitip-fab`. Everything heavy is imported by the command that needs it."""
 
 import argparse
+import json
 import sys
 from collections.abc import Sequence
+from importlib import import_module
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from lumitip_fab.system_libraries import libraries_message, missing_libraries
 
-FAILED, REFUSED = 1, 2
+if TYPE_CHECKING:
+    from lumitip_fab.errors import InputError
+
+_REFUSED = 2
 MODELLING = frozenset({"build", "watch"})
 """Commands that load the CAD kernel."""
 FLAGS = {
@@ -23,20 +29,49 @@ def main(arguments: Sequence[str] | None = None) -> int:
     missing = missing_libraries() if options.command in MODELLING else ()
     if missing:
         print(libraries_message(missing), file=sys.stderr)
-        return REFUSED
+        return _REFUSED
     try:
-        from lumitip_fab.cli import commands
-
-        return commands.run(options)
+        return _run(options)
     except ModuleNotFoundError as error:
         if (error.name or "lumitip").startswith("lumitip"):
             raise
         from lumitip.errors import how_to_install
 
         print(f"lumitip-fab needs {error.name}: {how_to_install('fab')}", file=sys.stderr)
-        return REFUSED
+        return _REFUSED
     except KeyboardInterrupt:
         return 130
+
+
+def _run(options: argparse.Namespace) -> int:
+    from lumitip_fab.cli.screen import FAILED, REFUSED
+    from lumitip_fab.errors import BuildError, InputError, OutputError
+
+    command = import_module(f"lumitip_fab.cli.{options.command.replace('-', '_')}")
+    try:
+        return int(command.run(options))
+    except InputError as error:
+        _print_refusal(options, error)
+        return REFUSED
+    except (OutputError, BuildError) as error:
+        if options.json:
+            print(json.dumps({"error": str(error)}, indent=1))
+        print(error, file=sys.stderr)
+        return FAILED if isinstance(error, BuildError) else REFUSED
+
+
+def _print_refusal(options: argparse.Namespace, error: "InputError") -> None:
+    """Print every fault, and the changes that mend those which the rules found."""
+    from lumitip_fab.derive.auto.remedies import remedy_lines
+    from lumitip_fab.derive.auto.resolve import RuleError
+
+    remedies = remedy_lines(error.verdict) if isinstance(error, RuleError) else []
+    if options.json:
+        problems = [vars(p) for p in error.problems]
+        print(json.dumps({"problems": problems, "remedies": remedies[1:]}, indent=1))
+    print(error, *remedies, sep="\n", file=sys.stderr)
+    if remedies:
+        print(f"lumitip-fab fix {options.file} writes them.", file=sys.stderr)
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -117,6 +152,3 @@ def _study_options(sub: argparse.ArgumentParser) -> None:
     told = "evaluate on this Dask cluster (tcp://…) instead of on all cores of this machine"
     sub.add_argument("--scheduler", metavar="ADDRESS", help=told)
 
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -1,15 +1,37 @@
-"""Write the first remedies into a parameter file; comments and layout of the file stay."""
+"""`lumitip-fab fix`: write the first remedies into a parameter file; its comments and layout
+stay."""
 
+import argparse
+import json
+import sys
 from pathlib import Path
 
 import tomlkit
 from tomlkit.items import Table
 
+from lumitip_fab.cli.screen import OUT, REFUSED
 from lumitip_fab.config.load import load
 from lumitip_fab.derive.auto.remedies import Plan, Remedy, plan_of
 from lumitip_fab.derive.auto.resolve import RuleError, resolve
 from lumitip_fab.errors import OutputError
 from lumitip_fab.pipeline.manifest import write_file
+
+
+def run(options: argparse.Namespace) -> int:
+    """Change the file, and print what was changed."""
+    plan = fix(options.file)
+    changes = [step.remedies[0] for step in plan.steps]
+    if options.json:
+        print(json.dumps({"written": plan.complete and bool(changes),
+                          "changes": [vars(change) for change in changes]}, indent=1))  # fmt: skip
+    elif not plan.complete:
+        print(f"{options.file}: not changed; no small changes were found that mend every fault",
+              file=sys.stderr)  # fmt: skip
+    elif not options.quiet:
+        OUT.print(f"{options.file}: accepted as it is" if not changes else str(options.file))
+        for change in changes:
+            OUT.print(f"  {change}")
+    return 0 if plan.complete else REFUSED
 
 
 def fix(file: Path) -> Plan:

@@ -1,5 +1,6 @@
-"""Build again whenever the parameter file, a base or the catalogue is saved."""
+"""`lumitip-fab watch`: build again when the parameter file, a base or the catalogue is saved."""
 
+import argparse
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -7,12 +8,19 @@ from typing import Any
 from rich.console import Console
 from watchfiles import watch as changes
 
+from lumitip_fab.cli.build import build
+from lumitip_fab.cli.screen import OUT
 from lumitip_fab.config.load import load
 from lumitip_fab.config.source import flat
 from lumitip_fab.design.encoding import encoded
 from lumitip_fab.errors import FabError
 from lumitip_fab.paths import design_folder
-from lumitip_fab.pipeline.build import build
+
+
+def run(options: argparse.Namespace) -> int:
+    """Watch the file."""
+    watch(options.file, options.out, OUT)
+    return 0
 
 
 def watch(file: Path, out: Path, console: Console) -> None:

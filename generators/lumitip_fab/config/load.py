@@ -8,7 +8,7 @@ from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
-from lumitip_fab.catalogue.electronics import Catalogue
+from lumitip_fab.catalogue import Catalogue
 from lumitip_fab.catalogue.record import Entry
 from lumitip_fab.config.automatic import filled
 from lumitip_fab.config.messages import brief, problems_of, shown_path, unknown_name

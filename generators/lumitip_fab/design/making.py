@@ -5,6 +5,9 @@ from dataclasses import dataclass
 
 from lumitip_fab.design.shape import Box, Point
 
+LEDGE_MM = 0.5
+"""Between the weir and the trough of a mould."""
+
 
 @dataclass(frozen=True)
 class Mask:

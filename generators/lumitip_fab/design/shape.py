@@ -152,6 +152,13 @@ class Outline:
             corners.append(sum(w * q for w, q in zip(b, p, strict=True)))
         return np.concatenate(corners)
 
+    def half_width_at(self, y_mm: float) -> float:
+        """Half the outline's width at a height y."""
+        corners = self.polygon()
+        right = corners[corners[:, 0] >= 0]
+        order = np.argsort(right[:, 1], kind="stable")
+        return float(np.interp(y_mm, right[order, 1], right[order, 0]))
+
 
 @dataclass(frozen=True)
 class Tip:

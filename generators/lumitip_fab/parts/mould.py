@@ -5,9 +5,9 @@ import math
 import numpy as np
 from build123d import Face, Location, Solid, Vector, Wire
 
-from lumitip_fab.derive.making.mould import LEDGE_MM
 from lumitip_fab.design import Board, Box, Finger, Mould, Outline, Stack
 from lumitip_fab.design.frames import mould_bed_to_sensor
+from lumitip_fab.design.making import LEDGE_MM
 from lumitip_fab.errors import BuildError
 from lumitip_fab.parts import export
 from lumitip_fab.parts.letters import letter_cutter

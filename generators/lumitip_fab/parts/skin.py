@@ -16,7 +16,6 @@ import numpy as np
 from build123d import Edge, Face, Plane, Solid, Vector, Wire
 from numpy.typing import NDArray
 
-from lumitip_fab.derive.finger.outline import half_width_at
 from lumitip_fab.design import Board, Box, Cubic, Mould, Outline, Point, Stack
 from lumitip_fab.parts.shapes import box_face, box_solid
 
@@ -110,7 +109,7 @@ def stops(stack: Stack, outline: Outline, mould: Mould) -> list[Solid]:
     line = Box(-tip_half, tip_half, tip_y - TIP_LAND_MM, tip_y + inside)
     solids = [_drafted(box_face(line), stack, mould)]
     for x, y in mould.pads:
-        side, reach = math.copysign(1.0, x), half_width_at(outline, y) + inside
+        side, reach = math.copysign(1.0, x), outline.half_width_at(y) + inside
         solids.append(_drafted(_pad(x, side * reach, y, mould.pad_mm / 2), stack, mould))
     return solids
 

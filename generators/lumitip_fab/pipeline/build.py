@@ -1,4 +1,4 @@
-"""Parameter file to output folder: only what changed is made again, on all cores."""
+"""Design to output folder: only what changed is made again, on all cores."""
 
 import os
 from collections.abc import Callable, Iterator
@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING
 
 from lumitip_fab.errors import OutputError
 from lumitip_fab.pipeline import manifest
-from lumitip_fab.pipeline.fingerprint import input_hash, remember, unchanged
+from lumitip_fab.pipeline.fingerprint import remember, unchanged
 
 if TYPE_CHECKING:
     from lumitip_fab.design import Design
     from lumitip_fab.pipeline.artefact import Artefact
-    from lumitip_fab.pipeline.graph import Task
+    from lumitip_fab.pipeline.graph import Step, Task
     from lumitip_fab.pipeline.workers import Batch
 
 
@@ -51,6 +51,8 @@ def locked(folder: Path) -> Iterator[None]:
 
 Progress = Callable[[str, int, int], None]
 """Called with the name of what was just made, how many are done, and how many there are."""
+Resolve = Callable[[], "tuple[Design, tuple[Artefact, ...]]"]
+"""Gives a design and its documents."""
 
 
 @dataclass(frozen=True)
@@ -69,12 +71,20 @@ class Report:
     """Tasks whose files were up to date."""
 
 
-def build(file: Path, out: Path, progress: Progress | None = None) -> Report:
-    """Build a parameter file into an output folder.
+def build(
+    origin_hash: str,
+    resolved: Resolve,
+    out: Path,
+    steps: "tuple[Step, ...]",
+    progress: Progress | None = None,
+) -> Report:
+    """Build a design into an output folder.
 
     Args:
-        file: the parameter file.
+        origin_hash: of everything that the design follows from; empty if it is not known.
+        resolved: gives the design and its documents; not called if the folder is up to date.
         out: the folder; made if missing.
+        steps: all steps, in their order.
         progress: told of each task that ends.
 
     Raises:
@@ -82,28 +92,17 @@ def build(file: Path, out: Path, progress: Progress | None = None) -> Report:
         BuildError: if an artefact could not be made.
         OutputError: if the folder cannot be written.
     """
-    told = input_hash(file)
-    before = unchanged(out, told)
+    before = unchanged(out, origin_hash)
     if before:
         return Report(before.origin, (), (), (), tuple(before.keys))
-    return _build_anew(file, told, out, progress or _untold)
-
-
-def _build_anew(file: Path, told: str, out: Path, progress: Progress) -> Report:
-    # Imported here: to see that nothing changed, none of it is needed.
-    from lumitip_fab.config.load import load
-    from lumitip_fab.derive import resolve
-    from lumitip_fab.pipeline.documents import documents
-    from lumitip_fab.pipeline.workers import Batch
-
-    resolved = resolve(load(file))
-    given, design = resolved.given, resolved.design
+    design, documents = resolved()
     origin = manifest.Origin(design.layout.design_hash, design.parameters_hash)
-    ready: list[Batch] = [("documents", documents(given, design))]
     try:
         with locked(out):
-            report = _write(out, origin, ready, design, progress)
-            remember(out, told)
+            report = _write(
+                out, origin, [("documents", documents)], design, steps, progress or _untold
+            )
+            remember(out, origin_hash)
             return report
     except OSError as error:
         # Of two names the second is the file's own; the first is what it was written under.
@@ -112,14 +111,20 @@ def _build_anew(file: Path, told: str, out: Path, progress: Progress) -> Report:
 
 
 def _write(
-    out: Path, origin: manifest.Origin, ready: "list[Batch]", design: "Design", progress: Progress
+    out: Path,
+    origin: manifest.Origin,
+    ready: "list[Batch]",
+    design: "Design",
+    steps: "tuple[Step, ...]",
+    progress: Progress,
 ) -> Report:
+    # Imported here: to see that nothing changed, none of it is needed.
     from lumitip_fab.pipeline.artefact import Made
     from lumitip_fab.pipeline.graph import late_steps, late_task, tasks
 
     run = _Run(out, manifest.read(out), progress)
-    run.make(ready, tuple(tasks(design)))
-    for step in late_steps():
+    run.make(ready, tuple(tasks(steps, design)))
+    for step in late_steps(steps):
         made = Made(out, {path: entry.sha256 for path, entry in run.files.items()})
         run.make([], (late_task(step, design, made),))
     removed = _remove(out, set(run.before.files) - set(run.files))

@@ -16,9 +16,18 @@ PACKAGE = Path(__file__).parents[1]
 # What design and layout are made of, and what generators share; a change in one of them may change
 # every file.
 SHARED = (
-    "artefact.py", "colours.py", "derive", "design", "encoding.py", "errors.py", "frames.py",
-    "graph.py", "locate.py", "made.py", "markdown_text.py", "typeface.py", "values.py",
-)  # fmt: skip
+    "catalogue",
+    "derive",
+    "design",
+    "errors.py",
+    "paths.py",
+    "pipeline/artefact.py",
+    "pipeline/fingerprint.py",
+    "pipeline/graph.py",
+    "pipeline/manifest.py",
+    "text.py",
+    "typeface.py",
+)
 LAYOUT = ("errors.py", "grid.py", "layout.py")
 
 
@@ -27,6 +36,8 @@ def code_hash(*parts: str) -> str:
     """Hash of some modules and folders of this package and of those that all share."""
     roots = [PACKAGE / name for name in (*parts, *SHARED)]
     roots += [Path(lumitip.__file__).parent / name for name in LAYOUT]
+    if "scenes" in parts:
+        roots.append(PACKAGE / "parts")
     if "firmware" in parts:
         roots += [Path(lumitip.__file__).parent / "protocol", *firmware_sources()]
     if "explore" in parts:

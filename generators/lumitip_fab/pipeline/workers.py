@@ -11,7 +11,7 @@ from typing import Any
 
 from lumitip_fab.errors import BuildError
 from lumitip_fab.pipeline.artefact import Artefact
-from lumitip_fab.pipeline.graph import STEPS, Step, Task
+from lumitip_fab.pipeline.graph import Step, Task
 
 Batch = tuple[str, tuple[Artefact, ...]]
 """What a task made, with its name."""
@@ -29,11 +29,11 @@ def made(stale: list[Task]) -> Iterator[Batch]:
     heavy = [task for task in stale if task.step.heavy]
     if not heavy:
         return
-    context = _workers_context()
+    context = _workers_context({task.step for task in heavy})
     workers = min(len(heavy), os.cpu_count() or 1)
     with ProcessPoolExecutor(workers, mp_context=context) as pool:
         running: dict[Future[tuple[Artefact, ...]], str] = {
-            pool.submit(_make, task): task.name for task in _slowest_first(heavy)
+            pool.submit(_make, task): task.name for task in heavy
         }
         for future in as_completed(running):
             try:
@@ -45,18 +45,14 @@ def made(stale: list[Task]) -> Iterator[Batch]:
                 ) from error
 
 
-def _workers_context() -> BaseContext:
+def _workers_context(steps: set[Step]) -> BaseContext:
     """Workers forked from a server that has imported the kernel once and never used it: a process
     in which the kernel has run cannot be forked safely."""
     if "forkserver" not in multiprocessing.get_all_start_methods():
         return multiprocessing.get_context()
     context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload([_module(step) for step in STEPS if step.heavy])
+    context.set_forkserver_preload(sorted(_module(step) for step in steps))
     return context
-
-
-def _slowest_first(heavy: list[Task]) -> list[Task]:
-    return sorted(heavy, key=lambda task: STEPS.index(task.step))
 
 
 def _make(task: Task) -> tuple[Artefact, ...]:
@@ -73,4 +69,4 @@ def _function(step: Step) -> Callable[..., Any]:
 
 
 def _module(step: Step) -> str:
-    return f"lumitip_fab.{step.folder}.{step.module}"
+    return f"lumitip_fab.{step.room}.{step.module}"

@@ -71,14 +71,6 @@ def derive_outline(p: Parameters, board: Board, notch: Box, faults: Faults) -> O
     return outline
 
 
-def half_width_at(outline: Outline, y_mm: float) -> float:
-    """Half the outline's width at a height y."""
-    corners = outline.polygon()
-    right = corners[corners[:, 0] >= 0]
-    order = np.argsort(right[:, 1], kind="stable")
-    return float(np.interp(y_mm, right[order, 1], right[order, 0]))
-
-
 def _line(a: Point, b: Point) -> Cubic:
     dx, dy = (b[0] - a[0]) / 3, (b[1] - a[1]) / 3
     return a, (a[0] + dx, a[1] + dy), (b[0] - dx, b[1] - dy), b

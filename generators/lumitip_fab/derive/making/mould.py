@@ -4,15 +4,15 @@ import math
 
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.faults import Faults
-from lumitip_fab.derive.finger.outline import DEPTH_MM, half_width_at, least_letter_mm, letter_on
+from lumitip_fab.derive.finger.outline import DEPTH_MM, least_letter_mm, letter_on
 from lumitip_fab.design import Board, Letter, Mould, Outline, Point, Stack
+from lumitip_fab.design.making import LEDGE_MM
 
 PAD_MM = 2.0
 LEAST_FLOOR_RIM_MM = 0.5
 PAD_MARGIN_MM = 0.1
 END_ROUND = 2 / 3  # of the silicone's thickness
 TROUGH_MM = 4.0  # along y
-LEDGE_MM = 0.5  # between weir and trough
 LETTER_OVER_BED_MM = 0.6  # or a printed line, which is clear of the chamfer at the foot
 LETTER_UNDER_RIM_MM = 0.5  # or a printed line
 LEAST_LAYER_MM = 0.05
@@ -122,7 +122,7 @@ def _pads(given: Input, outline: Outline, board: Board, faults: Faults) -> tuple
     finger's weight is in its coupling and must lie between them and the tip."""
     y = max(board.pocket.y_min_mm, outline.end_y_mm + given.parameters.outline.end_corner_mm)
     y += PAD_MM / 2 + PAD_MARGIN_MM
-    inner, outer = board.pocket.x_max_mm, half_width_at(outline, y)
+    inner, outer = board.pocket.x_max_mm, outline.half_width_at(y)
     needed = PAD_MM + 2 * PAD_MARGIN_MM
     faults.refuse_unless(
         outer - inner >= needed - 1e-6,

@@ -6,7 +6,7 @@ from lumitip_fab.config.load import Input
 from lumitip_fab.derive.faults import Faults
 from lumitip_fab.derive.finger.flex import is_flex
 from lumitip_fab.design import HeatedPart, HeatStep, Mould, Slicing
-from lumitip_fab.design.making import Filament, Slicing
+from lumitip_fab.design.making import Filament
 
 
 def derive_slicing(given: Input, mould: Mould, faults: Faults) -> Slicing:

@@ -11,7 +11,6 @@ from lumitip_fab.derive.finger.outline import (
     DEPTH_MM,
     LEAST_DEPTH_MM,
     WIDTH,
-    half_width_at,
     least_letter_mm,
     letter_on,
 )
@@ -87,7 +86,7 @@ def _refuse_place(
         f"{p.coupling.gripper!r} given, its block and 45° ramp need {length:.1f} mm of finger "
         f"beyond a wire notch of {opening:.1f} mm; the finger is {outline.length_mm:.1f} mm long",
     )
-    waist = half_width_at(outline, outline.end_y_mm + length)
+    waist = outline.half_width_at(outline.end_y_mm + length)
     faults.refuse_unless(
         waist >= gripper.block_width_mm / 2 + HOLE_TO_EDGE_MM,
         "coupling.gripper",

@@ -1,0 +1,34 @@
+"""`lumitip-fab explore`: judge designs before any is built."""
+
+import argparse
+
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+from lumitip_fab.cli.screen import ERR, OUT
+from lumitip_fab.explore import report
+from lumitip_fab.explore.accuracy import Sample
+from lumitip_fab.explore.run import explore
+
+
+def run(options: argparse.Namespace) -> int:
+    """Run a study, with progress."""
+    columns = (TextColumn("designs"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    silent = options.quiet or options.json
+    with Progress(*columns, console=ERR, disable=silent, transient=True) as bar:
+        shown = bar.add_task("designs", total=None)
+
+        def progress(done: int, total: int) -> None:
+            bar.update(shown, completed=done, total=total)
+
+        study = explore(
+            options.file, options.vary, options.out, options.points, options.keep_size,
+            Sample(seed=options.seed), options.scheduler, progress,
+        )  # fmt: skip
+    written = report.write(study, options.out)
+    if options.json:
+        print((options.out / "designs.json").read_text(encoding="utf-8"), end="")
+    elif not options.quiet:
+        report.print_table(study, OUT)
+        OUT.print(f"{study.evaluated} of {len(study.designs)} designs evaluated now, the others "
+                  "were known; wrote " + ", ".join(map(str, written)), soft_wrap=True)  # fmt: skip
+    return 0
