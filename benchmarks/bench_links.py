@@ -21,9 +21,8 @@ from fake_bluez import FakeBluez  # noqa: E402
 from goals import Goals  # noqa: E402
 from lumitip.fingertip import Fingertip  # noqa: E402
 from lumitip.links.twin import Scene, packet_at, published_layout  # noqa: E402
+from lumitip.protocol.bluetooth import FRAMES, SERVICE, STATUS, Fault, Status  # noqa: E402
 from lumitip.protocol.packet import encode, needed_mtu  # noqa: E402
-from lumitip.protocol.status import Fault, Status  # noqa: E402
-from lumitip.protocol.uuids import FRAMES, SERVICE, STATUS  # noqa: E402
 from private_bus import private_bus  # noqa: E402
 
 RATE_HZ, SECONDS = 500, 20

@@ -12,9 +12,8 @@ from fuzz.mutate import BINARY, TEXT
 from fuzz.recordings import read_recording, recordings
 from lumitip.errors import LayoutError
 from lumitip.protocol import cobs
-from lumitip.protocol.legacy import decode_legacy
+from lumitip.protocol.bluetooth import Fault, Status, decode_legacy
 from lumitip.protocol.packet import Packet, PacketError, decode, encode
-from lumitip.protocol.status import Fault, Status
 from lumitip.protocol.stream import StreamDecoder
 from lumitip.recording import RecordingError
 

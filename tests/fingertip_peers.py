@@ -2,7 +2,7 @@
 
 from bluetooth_peers import ScriptedPeer
 from fake_bluez import FakeBluez
-from lumitip.protocol.uuids import FRAMES, SERVICE, STATUS
+from lumitip.protocol.bluetooth import FRAMES, SERVICE, STATUS
 
 HERE, THERE = "C0:FF:EE:00:00:01", "C0:FF:EE:00:00:02"
 V2 = {SERVICE: {FRAMES: ["notify"], STATUS: ["read", "notify"]}}

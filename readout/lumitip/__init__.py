@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from lumitip.frame import Block, Frame
     from lumitip.group import FingertipGroup
     from lumitip.links.base import LinkEvent
-    from lumitip.stats import Stats
+    from lumitip.session.stats import Stats
 
 __all__ = [
     "AsyncFingertip",
@@ -42,7 +42,7 @@ _LATER = {
     "FingertipGroup": "group",
     "Frame": "frame",
     "LinkEvent": "links.base",
-    "Stats": "stats",
+    "Stats": "session.stats",
 }
 
 

@@ -12,9 +12,9 @@ from typing import Any, SupportsIndex, TypeVar
 import numpy as np
 
 from lumitip.errors import ArgumentError, LayoutError, LumitipError
-from lumitip.given import as_float, shown
 from lumitip.grid import Floats
 from lumitip.layout import Layout
+from lumitip.values import as_float, shown
 
 Error = type[LumitipError]
 _Wanted = TypeVar("_Wanted")

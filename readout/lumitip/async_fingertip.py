@@ -16,7 +16,7 @@ from lumitip.calibration import Calibration, Kind
 from lumitip.errors import EndOfRecording, FingertipClosed
 from lumitip.fingertip import Fingertip
 from lumitip.frame import Block, Frame, ended_early, too_late
-from lumitip.hub import Hub
+from lumitip.session.hub import Hub
 
 
 class AsyncFingertip:

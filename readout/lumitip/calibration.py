@@ -22,7 +22,7 @@ import numpy as np
 from lumitip import arguments
 from lumitip.errors import ArgumentError, CalibrationError, CalibrationMismatch
 from lumitip.frame import Values
-from lumitip.given import shown
+from lumitip.values import shown
 
 _LEAST_SPAN = 25.5  # a tenth of full light: below it noise would be raised more than tenfold
 _LEAST_SHARE = 0.4  # of the median cell: LEDs and detectors spread less, objects cover more

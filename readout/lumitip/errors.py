@@ -3,10 +3,7 @@
 # ruff: noqa: N818
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from lumitip.frame import Block
+from typing import Any
 
 
 def how_to_install(extras: str) -> str:
@@ -50,8 +47,8 @@ class MissingExtra(LinkError, ImportError):
 class LinkTimeout(LinkError, TimeoutError):
     """Nothing came in the time that was given."""
 
-    block: "Block | None" = None
-    """Of `get_data`: the frames that did come, `None` if there were none."""
+    block: Any = None
+    """Of `get_data`: a `Block` of the frames that did come, `None` if there were none."""
 
 
 class NotConnected(LinkError, ConnectionError):
@@ -65,8 +62,9 @@ class FingertipClosed(NotConnected):
 class EndOfRecording(NotConnected):
     """A replay has given its last frame."""
 
-    block: "Block | None" = None
-    """Of `get_data`: the frames that were left, fewer than asked for, `None` if there were none."""
+    block: Any = None
+    """Of `get_data`: a `Block` of the frames that were left, fewer than asked for, `None` if there
+    were none."""
 
 
 class DeviceNotFound(LinkError):
@@ -123,3 +121,7 @@ class CalibrationError(LumitipError, ValueError):
 
 class CalibrationMismatch(CalibrationError):
     """A calibration of another design or device."""
+
+
+class ViewError(LumitipError):
+    """Something that the live view cannot do."""

@@ -22,17 +22,16 @@ import numpy as np
 
 from lumitip import arguments
 from lumitip.calibration import Calibration, Kind, checked_kind
-from lumitip.drift import Drift
 from lumitip.errors import CalibrationError, EndOfRecording, FingertipClosed, LayoutError, LinkError
-from lumitip.frame import Block, Frame, ended_early, too_late
-from lumitip.given import shown
-from lumitip.hub import Hub
-from lumitip.intake import complement
+from lumitip.frame import Block, Frame, complement, ended_early, too_late
 from lumitip.layout import Layout
 from lumitip.links import open_link
 from lumitip.links.base import Calibrated, LinkEvent
-from lumitip.queues import FrameQueue
-from lumitip.stats import Stats
+from lumitip.session.drift import Drift
+from lumitip.session.hub import Hub
+from lumitip.session.queues import FrameQueue
+from lumitip.session.stats import Stats
+from lumitip.values import shown
 
 _log = logging.getLogger(__name__)
 

@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumitip.errors import ArgumentError, EndOfRecording, LinkTimeout
-from lumitip.given import shown
 from lumitip.grid import Floats, Integers
-from lumitip.protocol.packet import Codes
+from lumitip.values import shown
 
+Codes = NDArray[np.uint8] | NDArray[np.uint16]
+"""Raw values of cells, dark is high."""
 Values = NDArray[np.float32]
 _Array = TypeVar("_Array", bound=NDArray[Any])
 
@@ -109,3 +110,9 @@ def ended_early(frames: Sequence[Frame], wanted: int, end: EndOfRecording) -> En
     error = EndOfRecording(f"{end}: {len(frames)} of {wanted} frames were left, in `block`")
     error.block = Block.of(frames) if frames else None
     return error
+
+
+def complement(raw: Codes, bits: int) -> Values:
+    """Light of codes that are high in the dark: 255 is full light, whatever the bits."""
+    light: Values = np.float32(255.0) - raw * np.float32(255.0 / ((1 << bits) - 1))
+    return light

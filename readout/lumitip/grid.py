@@ -26,7 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumitip.errors import ArgumentError
-from lumitip.given import as_float, shown
+from lumitip.values import as_float, shown
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]

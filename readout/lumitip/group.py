@@ -19,8 +19,8 @@ from lumitip.arguments import seconds
 from lumitip.errors import ArgumentError, LinkTimeout
 from lumitip.fingertip import Fingertip
 from lumitip.frame import Frame
-from lumitip.given import shown
 from lumitip.layout import Layout
+from lumitip.values import shown
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,7 @@ import trimesh
 
 from damages import box, carve
 from lumitip_fab.checks import backing as checks
-from lumitip_fab.checks.readers.solids import Exempt, walls
+from lumitip_fab.checks.walls import Exempt, walls
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Design

@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 
 from lumitip.layout import Layout
-from lumitip.protocol import uuids
-from lumitip.protocol.legacy import decode_legacy
+from lumitip.protocol import bluetooth as uuids
+from lumitip.protocol.bluetooth import Fault, Status, decode_legacy
 from lumitip.protocol.packet import decode
-from lumitip.protocol.status import Fault, Status
 from lumitip.protocol.stream import StreamDecoder
 
 STUBS = f"-I{Path(__file__).parent / 'stubs'}"

@@ -10,9 +10,8 @@ import numpy as np
 import pytest
 
 from lumitip.layout import Layout
-from lumitip.protocol.legacy import decode_legacy
+from lumitip.protocol.bluetooth import Fault, Status, decode_legacy
 from lumitip.protocol.packet import Packet, decode, design_code, largest_batch, needed_mtu
-from lumitip.protocol.status import Fault, Status
 from lumitip.protocol.stream import StreamDecoder
 
 ADC_BITS = 12

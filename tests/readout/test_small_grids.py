@@ -11,8 +11,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from lumitip import Layout
-from lumitip.doctor import examine
 from lumitip.estimation import EstimationError, PoseEstimator
+from lumitip.health.doctor import examine
 from lumitip.processing import Processor
 from lumitip.twin import Cable, Corner, Disc, HalfPlane, Twin
 from lumitip.twin.fit import fit_edge, read

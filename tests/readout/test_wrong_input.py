@@ -13,11 +13,10 @@ from lumitip import Block, Calibration, FingertipGroup, Layout, LayoutError, Lum
 from lumitip.calibration import checked_kind
 from lumitip.cli import main
 from lumitip.control import CentreLaw, Command, ControlError, Limits, LineLaw, Tracer, sight_of
-from lumitip.doctor import examine
 from lumitip.errors import ArgumentError, CalibrationError
 from lumitip.estimation import EstimationError, PoseEstimator, learn
-from lumitip.given import shown
 from lumitip.grid import hexagonal_grid, hexagonal_neighbours
+from lumitip.health.doctor import examine
 from lumitip.links.twin import published_layout
 from lumitip.processing import Processor, Tracker, ValuesError
 from lumitip.robots import ArmError, ArmLimits, Mount, URArm
@@ -34,9 +33,10 @@ from lumitip.twin import (
     Polygon,
     Twin,
     TwinError,
-)  # fmt: skip
+)
 from lumitip.twin.fit import fit_edge
 from lumitip.twin.materials import material
+from lumitip.values import shown
 
 Call = Callable[[Any], object]
 CELLS = published_layout()

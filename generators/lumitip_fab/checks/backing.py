@@ -20,8 +20,9 @@ from lumitip_fab.checks.plate import (
 )
 from lumitip_fab.checks.printed import Printed, circles, holes_at, room, round_thread
 from lumitip_fab.checks.readers import solids
-from lumitip_fab.checks.readers.solids import MESH_MM, Exempt, Mask, Vectors, cast, section, walls
+from lumitip_fab.checks.readers.solids import Vectors, cast, section
 from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip_fab.checks.walls import MESH_MM, Exempt, Mask, walls
 from lumitip_fab.design import Design, Finger, Letter
 from lumitip_fab.design.frames import (
     Matrix,

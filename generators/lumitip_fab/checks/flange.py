@@ -16,8 +16,8 @@ from lumitip_fab.checks.board_read import read_carrier
 from lumitip_fab.checks.flange_read import REACH_MM, Stacked, heights, hole_walls, measure_strength
 from lumitip_fab.checks.printed import circles, holes_at, islands_at, room, round_thread
 from lumitip_fab.checks.readers import solids
-from lumitip_fab.checks.readers.solids import walls
 from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip_fab.checks.walls import walls
 from lumitip_fab.design import Design, Flange
 from lumitip_fab.design.frames import flange_beds
 from lumitip_fab.errors import OutputError

@@ -24,8 +24,8 @@ from lumitip_fab.checks.printed import (
     round_thread,
 )
 from lumitip_fab.checks.readers import solids
-from lumitip_fab.checks.readers.solids import walls
 from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip_fab.checks.walls import walls
 from lumitip_fab.design import Design, Fastener, Holder
 from lumitip_fab.design.frames import holder_bed_to_carrier, rotation_y, translation
 from lumitip_fab.errors import OutputError

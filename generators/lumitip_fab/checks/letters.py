@@ -4,8 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from lumitip_fab.checks.readers.solids import Exempt, Mask, Vectors, cast
+from lumitip_fab.checks.readers.solids import Vectors, cast
 from lumitip_fab.checks.result import Measurement
+from lumitip_fab.checks.walls import Exempt, Mask
 from lumitip_fab.design import Finger, Letter, Printing
 
 RELIEF_MM = 0.08

@@ -11,8 +11,8 @@ import ezdxf
 import numpy as np
 from ezdxf import units
 
+from lumitip_fab.checks.readers import MALFORMED
 from lumitip_fab.checks.readers.mask_page import PageError, Points, Subpath
-from lumitip_fab.checks.result import MALFORMED
 
 _SVG = "{http://www.w3.org/2000/svg}"
 _NONE = np.zeros((0, 2))

@@ -16,8 +16,8 @@ from shapely.errors import GEOSException
 from lumitip_fab.checks import letters, mould_walls, overlap
 from lumitip_fab.checks.packages import measure_boxes
 from lumitip_fab.checks.readers import solids
-from lumitip_fab.checks.readers.solids import walls
 from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip_fab.checks.walls import walls
 from lumitip_fab.design import Design, Finger
 from lumitip_fab.design.frames import applied, backing_bed_to_sensor, mould_bed_to_sensor
 from lumitip_fab.errors import OutputError

@@ -11,11 +11,6 @@ import numpy as np
 
 from lumitip_fab.design import Design
 
-# What readers raise on damaged files, beside their own exceptions.
-MALFORMED = (
-    ValueError, LookupError, TypeError, AttributeError, ArithmeticError, StopIteration,
-    RuntimeError,
-)  # fmt: skip
 _UNPRINTABLE = frozenset({"Cc", "Cs", "Cn"})  # control, half of a surrogate pair, unassigned
 NOISE = 1e-5  # of coordinates in files: STL keeps 24 bits, which is 4e-6 mm at 50 mm
 

@@ -151,4 +151,3 @@ def _study_options(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--seed", type=int, default=0, metavar="N", help=told)
     told = "evaluate on this Dask cluster (tcp://…) instead of on all cores of this machine"
     sub.add_argument("--scheduler", metavar="ADDRESS", help=told)
-

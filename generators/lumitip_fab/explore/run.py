@@ -6,8 +6,8 @@ from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from pathlib import Path
 
-from lumitip.cores import workers
 from lumitip.errors import how_to_install
+from lumitip.tasks.bench import workers
 from lumitip_fab.catalogue.ordering import Prices
 from lumitip_fab.config.load import NAMED, Input, load
 from lumitip_fab.errors import BuildError, InputError, OutputError, Problem

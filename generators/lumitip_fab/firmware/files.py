@@ -7,7 +7,9 @@ from binascii import crc_hqx
 from collections.abc import Iterable
 
 from lumitip.layout import Layout
-from lumitip.protocol import legacy, packet, uuids
+from lumitip.protocol import bluetooth as legacy
+from lumitip.protocol import bluetooth as uuids
+from lumitip.protocol import packet
 from lumitip_fab.design import Controller, Title, Wiring
 from lumitip_fab.design.electrical import Electrical
 from lumitip_fab.paths import firmware_sources

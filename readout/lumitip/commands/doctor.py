@@ -31,9 +31,9 @@ def run(options: argparse.Namespace) -> int:
     """Carry it out."""
     import numpy as np
 
-    from lumitip.doctor import examine
-    from lumitip.drift import WARM_UP_S
-    from lumitip.intake import complement
+    from lumitip.frame import complement
+    from lumitip.health.doctor import examine
+    from lumitip.session.drift import WARM_UP_S
 
     with open_fingertip(options, calibrated=False) as tip:
         print(f"{tip.device_id}: {len(tip.layout)} cells, looking for {options.seconds:g} s; move "

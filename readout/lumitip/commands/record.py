@@ -10,13 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from lumitip.commands.common import (
-    Subparsers,
-    add_fingertip,
-    open_fingertip,
-    some,
-    some_seconds,
-)
+from lumitip.commands.common import Subparsers, add_fingertip, open_fingertip, some, some_seconds
 
 if TYPE_CHECKING:
     from lumitip.fingertip import Fingertip

@@ -21,7 +21,7 @@ def add(subparsers: Subparsers) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Carry it out."""
-    from lumitip.scan import scan
+    from lumitip.links.scan import scan
 
     result = scan(options.seconds, options.only)
     names = Counter(found.name for found in result.found if found.sure)

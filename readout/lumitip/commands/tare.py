@@ -17,7 +17,7 @@ def add(subparsers: Subparsers) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Carry it out."""
-    from lumitip.drift import WARM_UP_S
+    from lumitip.session.drift import WARM_UP_S
 
     with open_fingertip(options, calibrated=not options.forget) as tip:
         if options.forget:

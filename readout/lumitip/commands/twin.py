@@ -37,7 +37,7 @@ def run(options: argparse.Namespace) -> int:
     from lumitip.errors import UrlError
     from lumitip.layout import Layout
     from lumitip.links import open_link
-    from lumitip.twin.serve import SerialDevice
+    from lumitip.links.serve import SerialDevice
 
     if not options.url.startswith("twin://"):
         raise UrlError(f"{options.url!r} given, an address like twin://demo is needed")

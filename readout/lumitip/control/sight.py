@@ -1,12 +1,12 @@
-"""`Sight`: the little that control needs of a `Contact` or an `Estimate`."""
+"""What the controller sees: the contact in the gripper frame, and where it will be."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from lumitip.control.command import ControlError
 from lumitip.estimation import KINDS, Estimate
-from lumitip.given import shown
 from lumitip.processing import Contact
+from lumitip.values import shown
 
 _STEEPEST_DEG = 80.0  # a line across the way of the finger cannot be followed
 _CORNER_DEG = 30.0  # a corner opens by a right angle within this; what is flatter is a curve
@@ -86,3 +86,38 @@ def _line(
 
 def _ahead(vertex_mm: float) -> float | None:
     return vertex_mm if abs(vertex_mm) <= _CORNER_MM else None
+
+
+SMOOTHING_S = 0.04
+"""Time constant over which the turning of the line is averaged: two frames or so (s)."""
+_MOST = math.radians(70.0)
+
+
+class Lead:
+    """`sight = lead(sight, dt_s)`: its angle goes on turning as it did, for `lead_s`."""
+
+    def __init__(self, lead_s: float) -> None:
+        """A lead that has seen nothing yet.
+
+        Args:
+            lead_s: how much later commands take effect; 0 leaves all as it is seen (s).
+        """
+        self.lead_s = lead_s
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget what was seen."""
+        self._angle: float | None = None
+        self._rate = 0.0
+
+    def __call__(self, sight: Sight, dt_s: float) -> Sight:
+        """What will be seen of what is seen now, `dt_s` after the one before (s)."""
+        if not self.lead_s or sight.height_mm is None:
+            self.reset()
+            return sight
+        if self._angle is not None and dt_s > 0.0:
+            fresh = 1.0 - math.exp(-dt_s / SMOOTHING_S)
+            self._rate += fresh * ((sight.angle - self._angle) / dt_s - self._rate)
+        self._angle = sight.angle
+        ahead = sight.angle + self.lead_s * self._rate
+        return replace(sight, angle=min(max(ahead, -_MOST), _MOST))

@@ -5,11 +5,10 @@ from dataclasses import replace
 from lumitip import arguments
 from lumitip.control.command import Command, ControlError, Limits
 from lumitip.control.laws import Law
-from lumitip.control.lead import Lead
-from lumitip.control.sight import Sight, sight_of
+from lumitip.control.sight import Lead, Sight, sight_of
 from lumitip.estimation import Estimate
-from lumitip.given import shown
 from lumitip.processing import Contact
+from lumitip.values import shown
 
 
 class Tracer:

@@ -9,9 +9,8 @@ from numpy.typing import ArrayLike
 
 from lumitip import arguments
 from lumitip.errors import LumitipError
-from lumitip.estimation.blur import ANGLE_SD_DEG, OFFSET_SD_MM, likely
 from lumitip.estimation.estimate import KINDS, Estimate, without_contact
-from lumitip.estimation.fit import Fit, Frame, drifting
+from lumitip.estimation.fit import ANGLE_SD_DEG, OFFSET_SD_MM, Fit, Frame, drifting, likely
 from lumitip.estimation.report import MISFIT_COUNTS, covariance, report, rms_counts
 from lumitip.estimation.search import ALPHA_SD, BENT, GAP_SD_MM, Search, doubtful
 from lumitip.grid import Floats, collinear

@@ -6,8 +6,9 @@ from typing import Literal, Protocol, runtime_checkable
 
 from lumitip.calibration import Calibration
 from lumitip.errors import LinkError
+from lumitip.frame import Codes
 from lumitip.layout import Layout
-from lumitip.protocol.packet import Codes, ForeignPacketError, Packet
+from lumitip.protocol.packet import ForeignPacketError, Packet
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,36 +16,22 @@ from dataclasses import dataclass
 from queue import SimpleQueue
 from typing import Any, TypeVar
 
-from lumitip.errors import (
-    LinkError,
-    LinkTimeout,
-    MissingExtra,
-    MtuTooSmall,
-    NotConnected,
-    UrlError,
-)
+from lumitip.errors import LinkError, LinkTimeout, MissingExtra, MtuTooSmall, NotConnected, UrlError
+from lumitip.frame import Codes
 from lumitip.layout import Layout
 from lumitip.links.base import Arrival, Cause, Deliver, Fault, Report
 from lumitip.links.ble_loop import shared_loop
 from lumitip.links.retry import keep_connected
 from lumitip.links.thread import ThreadedLink
 from lumitip.links.url import Url
-from lumitip.protocol.legacy import decode_legacy
-from lumitip.protocol.packet import (
-    ATT_BYTES,
-    Codes,
-    ForeignPacketError,
-    Packet,
-    PacketError,
-    decode,
-)
+from lumitip.protocol.bluetooth import decode_legacy
+from lumitip.protocol.packet import ATT_BYTES, ForeignPacketError, Packet, PacketError, decode
 
 try:
     from bleak import BleakClient
     from bleak.exc import BleakError
 
-    from lumitip.links.ble_find import Sighting, find, is_fingertip, look
-    from lumitip.links.ble_gatt import Service, begin
+    from lumitip.links.ble_device import Service, Sighting, begin, find, is_fingertip, look
 except ModuleNotFoundError as missing:
     raise MissingExtra("ble", "ble://") from missing
 

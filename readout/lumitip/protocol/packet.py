@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumitip.errors import LumitipError
+from lumitip.frame import Codes
 from lumitip.grid import Integers
 
 MAGIC = 0x4C
@@ -28,7 +29,6 @@ _CRC = struct.Struct("<H")
 HEADER_BYTES = _HEADER.size
 CRC_BYTES = _CRC.size
 
-Codes = NDArray[np.uint8] | NDArray[np.uint16]
 Words = NDArray[np.uint16]
 
 

@@ -18,8 +18,7 @@ except ModuleNotFoundError as error:
     if (error.name or "").partition(".")[0] not in ("mcap", "zstandard"):
         raise
     raise MissingExtra("record", "recording") from error
-from lumitip.recording.errors import DamagedError, RecordingError
-from lumitip.recording.message import LONGEST_GAP_S, RecordedFrame
+from lumitip.recording.message import LONGEST_GAP_S, DamagedError, RecordedFrame, RecordingError
 from lumitip.recording.metadata import Metadata
 
 __all__ = [

@@ -1,8 +1,4 @@
-"""The message of a frame: its ROS 2 definition, and its bytes as ROS 2 encodes them (CDR).
-
-Little-endian; every field stands at a multiple of its own size, counted from after the four bytes
-that name the encoding.
-"""
+"""The messages of an MCAP recording, and the errors of this room."""
 
 import math
 import struct
@@ -12,8 +8,17 @@ from typing import Protocol
 
 import numpy as np
 
-from lumitip.protocol.packet import Codes
-from lumitip.recording.errors import RecordingError
+from lumitip.errors import LumitipError
+from lumitip.frame import Codes
+
+
+class RecordingError(LumitipError):
+    """A file that cannot be written, or is no recording that this version reads."""
+
+
+class DamagedError(RecordingError):
+    """A recording that ends too early or has holes; `lumitip recover` saves the rest."""
+
 
 LONGEST_GAP_S = 1.0
 """Of a gap in a recording, no more is waited for where people look on (s)."""

@@ -11,11 +11,9 @@ import numpy as np
 from lumitip import arguments
 from lumitip.calibration import Calibration
 from lumitip.errors import LayoutError
-from lumitip.frame import Values
-from lumitip.intake import complement
+from lumitip.frame import Values, complement
 from lumitip.layout import Layout
-from lumitip.recording.errors import RecordingError
-from lumitip.recording.message import RecordedFrame
+from lumitip.recording.message import RecordedFrame, RecordingError
 
 NAME = "lumitip"
 FORMAT = "1"

@@ -14,8 +14,13 @@ from mcap.stream_reader import StreamReader, breakup_chunk
 
 from lumitip import arguments
 from lumitip.layout import Layout
-from lumitip.recording.errors import DamagedError, RecordingError
-from lumitip.recording.message import SCHEMA_NAME, RecordedFrame, decode
+from lumitip.recording.message import (
+    SCHEMA_NAME,
+    DamagedError,
+    RecordedFrame,
+    RecordingError,
+    decode,
+)
 from lumitip.recording.metadata import NAME, Metadata
 
 _MOST_BYTES = 64 * 2**20  # of one record: far above any that `Writer` makes

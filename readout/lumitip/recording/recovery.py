@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from lumitip import arguments
-from lumitip.recording.errors import RecordingError
+from lumitip.recording.message import RecordingError
 from lumitip.recording.reader import Reader
 from lumitip.recording.writer import Writer
 

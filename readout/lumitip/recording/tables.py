@@ -16,8 +16,7 @@ import numpy as np
 
 from lumitip import arguments
 from lumitip.errors import MissingExtra
-from lumitip.recording.errors import RecordingError
-from lumitip.recording.message import RecordedFrame
+from lumitip.recording.message import RecordedFrame, RecordingError
 from lumitip.recording.reader import Reader
 
 _BLOCK = 4096

@@ -10,11 +10,17 @@ from mcap.writer import Writer as McapWriter
 
 from lumitip import arguments
 from lumitip.calibration import Calibration
-from lumitip.given import shown
 from lumitip.layout import Layout
-from lumitip.recording.errors import RecordingError
-from lumitip.recording.message import SCHEMA_NAME, SCHEMA_TEXT, Recordable, encode, stamp_ns
+from lumitip.recording.message import (
+    SCHEMA_NAME,
+    SCHEMA_TEXT,
+    Recordable,
+    RecordingError,
+    encode,
+    stamp_ns,
+)
 from lumitip.recording.metadata import NAME, Metadata, begun, versions
+from lumitip.values import shown
 
 CHUNK_BYTES = 2048
 FLUSH_S = 0.2

@@ -1,9 +1,46 @@
-"""`ArmLimits`: how fast, how hard and how far an arm may go with a fingertip."""
+"""Limits of a robot's motion, and the errors of this room."""
 
 from dataclasses import dataclass, fields
 
-from lumitip.given import as_float, shown
-from lumitip.robots.errors import ArmError
+from lumitip.errors import LumitipError
+from lumitip.values import as_float, shown
+
+# ruff: noqa: N818 - named by what happened, as in `lumitip.errors`
+
+
+WHY = {
+    "closed": "the program closed it",
+    "connection": "the connection to the arm stands still or is cut",
+    "corner": "the tracer came to a corner",
+    "emergency": "the emergency stop is pressed",
+    "error": "sending to the arm failed",
+    "force": "the force on the tool changed by more than `force_n`",
+    "lost": "the tracer lost the line",
+    "program": "the control program no longer runs on the arm's controller",
+    "protective": "the arm is in a protective stop",
+    "speed": "the arm is faster than it was told",
+    "stale": "no fresh frame came within `stale_s`",
+    "travel": "the fingertip is further than `travel_mm` from where it began",
+    "turn": "the fingertip has turned by more than `turn_deg`",
+}
+"""Every reason for which an arm is stopped."""
+
+
+class ArmError(LumitipError):
+    """An arm that cannot be reached, or limits or a mount that cannot be so."""
+
+
+class ArmStopped(ArmError):
+    """The arm was stopped and takes no more commands: open it anew."""
+
+    def __init__(self, reason: str, detail: str = "") -> None:
+        more = f" ({detail})" if detail else ""
+        super().__init__(
+            f"the arm was stopped: {WHY.get(reason, reason)}{more}; look at it, then open it anew"
+        )
+        self.reason = reason
+        """A key of `WHY`."""
+
 
 _ALLOWED: dict[str, tuple[float, float, str]] = {
     "speed_mm_s": (0.0, 250.0, "the reduced speed of ISO 10218-1"),

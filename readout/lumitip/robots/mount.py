@@ -13,9 +13,9 @@ import numpy as np
 
 from lumitip import arguments
 from lumitip.control import Command
-from lumitip.given import shown
 from lumitip.grid import Floats
-from lumitip.robots.errors import ArmError
+from lumitip.robots.limits import ArmError
+from lumitip.values import shown
 
 Vector = tuple[float, float, float]
 _TOLERANCE = 1e-3

@@ -22,9 +22,8 @@ from lumitip import arguments
 from lumitip.control import Command
 from lumitip.errors import MissingExtra
 from lumitip.grid import Floats
-from lumitip.robots.errors import ArmError, ArmStopped
 from lumitip.robots.guard import ArmState, Guard
-from lumitip.robots.limits import ArmLimits
+from lumitip.robots.limits import ArmError, ArmLimits, ArmStopped
 from lumitip.robots.mount import Mount, in_base, in_tool
 
 RATE_HZ = 125.0

@@ -7,8 +7,7 @@ values, ended = task.step(Command(forward_mm_s=80.0))
 
 from lumitip.tasks.curve import Curve
 from lumitip.tasks.task import Metrics, Settings, Task, TaskError
-from lumitip.tasks.trial import CONTROLLERS, Bench, Summary, Tuning, summary
-from lumitip.tasks.tuning import Tuned, search
+from lumitip.tasks.trial import CONTROLLERS, Bench, Summary, Tuned, Tuning, search, summary
 
 __all__ = [
     "CONTROLLERS",

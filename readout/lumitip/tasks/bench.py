@@ -1,21 +1,62 @@
-"""The bench of the tasks: every controller tuned alike, then ever faster.
-
-Tuning and tests run on different curves. Speeds rise until a controller loses more than one curve
-in ten; its highest speed at a loss is the last one before it loses more. The published law and the
-law of the line are tried at the same speeds.
-"""
+"""All tasks with all laws, on all cores."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import nullcontext
+import multiprocessing
+import os
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
 
-from lumitip.cores import workers
 from lumitip.layout import Layout
 from lumitip.tasks.task import Settings, Task
-from lumitip.tasks.trial import CONTROLLERS, Bench, Summary, Team, Tuning, summary
-from lumitip.tasks.tuning import GRIDS, SEEDS, Tuned, search
-from lumitip.tasks.tuning import SPEEDS_MM_S as TUNED_AT_MM_S
+from lumitip.tasks.trial import (
+    CONTROLLERS,
+    GRIDS,
+    SEEDS,
+    Bench,
+    Summary,
+    Team,
+    Tuned,
+    Tuning,
+    search,
+    summary,
+)
+from lumitip.tasks.trial import SPEEDS_MM_S as TUNED_AT_MM_S
+
+_THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
+
+
+@contextmanager
+def workers(most: int) -> Iterator[ProcessPoolExecutor]:
+    """Fresh processes, one for each core but no more than `most`; what is left undone at the end
+    is dropped.
+
+    Linear algebra asks for no further threads in them: as many as there are cores would wait for
+    each other. A program that calls this needs `if __name__ == "__main__"`.
+    """
+    context = multiprocessing.get_context("spawn")
+    with _single_threaded():
+        pool = ProcessPoolExecutor(min(most, os.cpu_count() or 1), mp_context=context)
+        try:
+            yield pool
+        finally:
+            pool.shutdown(cancel_futures=True)
+
+
+@contextmanager
+def _single_threaded() -> Iterator[None]:
+    before = {name: os.environ.get(name) for name in _THREADS}
+    os.environ.update(dict.fromkeys(_THREADS, "1"))
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
+
 
 _EVERY = tuple(float(v) for v in range(40, 401, 20))
 _FEW = (80.0, 160.0, *(float(v) for v in range(200, 401, 20)))

@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 from lumitip import arguments
 from lumitip.control import Command, Limits
 from lumitip.errors import MissingExtra
-from lumitip.given import shown
 from lumitip.layout import Layout
 from lumitip.tasks.task import Settings, Task, TaskError
 from lumitip.twin import Twin
+from lumitip.values import shown
 
 try:
     import gymnasium

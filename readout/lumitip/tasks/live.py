@@ -25,11 +25,11 @@ from lumitip.calibration import Calibration
 from lumitip.control import Command
 from lumitip.fingertip import Fingertip
 from lumitip.frame import Values
-from lumitip.hub import Hub
 from lumitip.layout import Layout
 from lumitip.links.base import Arrival, Deliver, LinkEvent, Report
 from lumitip.links.thread import ThreadedLink
 from lumitip.protocol.packet import Packet, design_code
+from lumitip.session.hub import Hub
 from lumitip.tasks.task import Metrics, Task, TaskError, checked
 
 _MOST_S = 120.0

@@ -17,11 +17,11 @@ import numpy as np
 from lumitip import arguments
 from lumitip.control import Command
 from lumitip.errors import LumitipError
-from lumitip.given import shown
 from lumitip.grid import Floats
 from lumitip.layout import Layout
 from lumitip.tasks.curve import LONGEST_MM, STEP_MM, Curve
 from lumitip.twin import Cable, Corner, HalfPlane, Scene, Twin
+from lumitip.values import shown
 
 KINDS = ("cloth", "cable")
 RATE_HZ = 55.0

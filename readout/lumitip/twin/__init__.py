@@ -8,17 +8,7 @@ from lumitip.twin.image import Image
 from lumitip.twin.optics import Model, TwinError
 from lumitip.twin.pairs import Misregistration
 from lumitip.twin.polygon import Polygon
-from lumitip.twin.scene import (
-    Cable,
-    Corner,
-    Disc,
-    HalfPlane,
-    Line,
-    Scene,
-    Shape,
-    Sheet,
-    Thing,
-)
+from lumitip.twin.scene import Cable, Corner, Disc, HalfPlane, Line, Scene, Shape, Sheet, Thing
 from lumitip.twin.tables import LineTable
 from lumitip.twin.twin import Twin
 

@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lumitip import arguments
-from lumitip.given import shown
 from lumitip.grid import Floats
 from lumitip.twin.optics import TwinError
 from lumitip.twin.scene import Singles
+from lumitip.values import shown
 
 
 def gains(told: ArrayLike | None, cells: int) -> Floats:

@@ -6,9 +6,9 @@ twin adds is that the transmittances then serve at any gap, in any shape and for
 
 from dataclasses import dataclass
 
-from lumitip.given import shown
 from lumitip.twin.optics import TwinError
 from lumitip.twin.scene import Sheet
+from lumitip.values import shown
 
 MEASURED_GAP_MM = 6.0
 """Gap at which the publication measured its materials (mm)."""

@@ -20,9 +20,9 @@ import numpy as np
 
 from lumitip import arguments
 from lumitip.errors import LumitipError
-from lumitip.given import shown
 from lumitip.grid import Floats
 from lumitip.layout import Layout
+from lumitip.values import shown
 
 FULL = 255.0
 """Value of full light."""

@@ -18,8 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumitip import arguments
-from lumitip.given import shown
 from lumitip.twin.optics import TwinError
+from lumitip.values import shown
 
 Numbers = NDArray[np.floating[Any]]
 """Floating-point numbers of any precision: rasters are single, tables double."""

@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lumitip import arguments
-from lumitip.given import shown
+from lumitip.frame import Codes
 from lumitip.grid import Floats
 from lumitip.layout import Layout
-from lumitip.protocol.packet import BITS, Codes
+from lumitip.protocol.packet import BITS
 from lumitip.twin import given
 from lumitip.twin.mixed import Mixed
 from lumitip.twin.optics import FULL, Model, TwinError, values_of_drive
@@ -26,6 +26,7 @@ from lumitip.twin.polygon import Polygon
 from lumitip.twin.raster import Plane, blended, direct_plane, scattered_plane
 from lumitip.twin.scene import Cable, Line, Numbers, Scene, Singles, Thing, things
 from lumitip.twin.tables import LineTable, cable_table, edge_table
+from lumitip.values import shown
 
 WARM_UP_S = 100.0
 """Time in which the LEDs come down to a third of what they give too much when switched on."""

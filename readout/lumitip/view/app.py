@@ -15,8 +15,7 @@ from starlette.routing import Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
 from starlette.websockets import WebSocket
 
-from lumitip.errors import LumitipError
-from lumitip.view.errors import ViewError
+from lumitip.errors import LumitipError, ViewError
 from lumitip.view.finger import Finger
 from lumitip.view.room import Room
 from lumitip.view.session import Session

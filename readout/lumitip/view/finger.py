@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any, Protocol
 from lumitip.errors import LinkError
 from lumitip.fingertip import Fingertip
 from lumitip.frame import Frame
-from lumitip.hub import Hub
 from lumitip.layout import Layout
 from lumitip.links.base import LinkEvent
 from lumitip.processing import Contact, Processor
+from lumitip.session.hub import Hub
 from lumitip.view.recorder import Recorder
 
 if TYPE_CHECKING:

@@ -12,11 +12,11 @@ from typing import Any
 
 import numpy as np
 
+from lumitip.errors import ViewError
 from lumitip.layout import Layout
 from lumitip.links.base import Arrival, Deliver, LinkEvent, Recorded, Report
 from lumitip.links.url import Url
 from lumitip.recording import LONGEST_GAP_S, Reader, RecordedFrame
-from lumitip.view.errors import ViewError
 
 MOST_BYTES = 1 << 29
 SLOWEST, FASTEST = 0.1, 16.0

@@ -5,10 +5,9 @@ import threading
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from lumitip.errors import LumitipError
+from lumitip.errors import LumitipError, ViewError
 from lumitip.fingertip import Fingertip
 from lumitip.frame import Frame
-from lumitip.view.errors import ViewError
 
 if TYPE_CHECKING:
     from lumitip.recording import Writer

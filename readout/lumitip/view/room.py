@@ -8,7 +8,7 @@ from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import Any
 
-from lumitip.view.errors import ViewError
+from lumitip.errors import ViewError
 from lumitip.view.finger import Finger
 
 _SUFFIX = ".mcap"

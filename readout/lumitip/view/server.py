@@ -9,8 +9,8 @@ from urllib.parse import urlencode
 
 import uvicorn
 
+from lumitip.errors import ViewError
 from lumitip.view.app import make_app
-from lumitip.view.errors import ViewError
 from lumitip.view.guard import Guard
 from lumitip.view.room import Room
 

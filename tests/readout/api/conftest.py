@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from lumitip import Fingertip, Layout, LinkEvent
-from lumitip.hub import Hub
 from lumitip.links.base import Arrival, Deliver, Fault, Report
 from lumitip.protocol.packet import Packet, design_code
+from lumitip.session.hub import Hub
 
 PERIOD_US = 10_000
 

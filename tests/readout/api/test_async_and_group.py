@@ -7,7 +7,7 @@ import pytest
 
 from lumitip import AsyncFingertip, FingertipGroup
 from lumitip.errors import FingertipClosed, LinkTimeout, UrlError
-from lumitip.hub import Hub
+from lumitip.session.hub import Hub
 
 FAST = "twin://disc?rate=1000"
 

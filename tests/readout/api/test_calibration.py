@@ -7,8 +7,8 @@ import pytest
 
 from lumitip import Calibration, Fingertip
 from lumitip.calibration import user_folder
-from lumitip.drift import DriftWatch
 from lumitip.errors import CalibrationError, CalibrationMismatch
+from lumitip.session.drift import DriftWatch
 
 HASH = "ab" * 32
 

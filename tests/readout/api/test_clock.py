@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lumitip.clock import DeviceClock
+from lumitip.session.timing import DeviceClock
 
 
 def _arrivals(skew_ppm: float, seconds: float, rate_hz: float = 97.0) -> np.ndarray:

@@ -113,7 +113,8 @@ def test_importing_takes_numpy_alone_and_names_come_when_they_are_used() -> None
     code = (
         "import sys, lumitip; before = set(sys.modules); lumitip.Fingertip; lumitip.AsyncFingertip;"
         "lumitip.FingertipGroup; assert all(getattr(lumitip, n) for n in lumitip.__all__);"
-        "print(*sorted({m.partition('.')[0] for m in before}), '|', 'lumitip.hub' in before,"
+        "print(*sorted({m.partition('.')[0] for m in before}), '|',"
+        "'lumitip.session.hub' in before,"
         "*sorted({m.partition('.')[0] for m in sys.modules} & {'bleak', 'serial', 'mcap'}))"
     )
     done = subprocess.run(

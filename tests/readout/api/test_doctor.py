@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from lumitip import Layout
-from lumitip.doctor import examine
-from lumitip.intake import complement
+from lumitip.frame import complement
+from lumitip.health.doctor import examine
+from lumitip.health.swaps import gains, ways_of
 from lumitip.links.shapes import Matter
 from lumitip.links.twin import Scene, packet_at, published_layout
-from lumitip.swaps import gains, ways_of
 
 
 @pytest.fixture(scope="module")

@@ -7,13 +7,7 @@ import numpy as np
 import pytest
 
 from lumitip import Block, Frame, LinkEvent
-from lumitip.errors import (
-    EndOfRecording,
-    FingertipClosed,
-    LinkTimeout,
-    NotConnected,
-    WrongDesign,
-)
+from lumitip.errors import EndOfRecording, FingertipClosed, LinkTimeout, NotConnected, WrongDesign
 
 
 def test_read_gives_frames_in_order(open_feed) -> None:

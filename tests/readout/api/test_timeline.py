@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lumitip.protocol.packet import Packet
-from lumitip.timeline import Place, Timeline
+from lumitip.session.timing import Place, Timeline
 
 PERIOD_US = 2000
 VALUES = np.zeros((4, 3), np.uint8)

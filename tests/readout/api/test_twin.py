@@ -80,8 +80,8 @@ def test_what_a_twin_shows_is_always_the_same(layout: Layout) -> None:
 
 
 def test_a_fingertip_of_one_cell_is_shown_and_examined(make_layout) -> None:
-    from lumitip.doctor import examine
-    from lumitip.intake import complement
+    from lumitip.frame import complement
+    from lumitip.health.doctor import examine
     from lumitip.links.shapes import SHAPES
     from lumitip.links.twin import Scene, packet_at
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from lumitip import Layout
+from lumitip.protocol.bluetooth import Fault, Status
 from lumitip.protocol.packet import Packet, design_code, encode, needed_mtu
-from lumitip.protocol.status import Fault, Status
 from programs import program
 
 PERIOD_US = 2000
@@ -77,7 +77,7 @@ def bluez(bus: str, monkeypatch: pytest.MonkeyPatch) -> Iterator["object"]:
     """A fake `org.bluez` without devices; bleak is as installed."""
     from fake_bluez import FakeBluez
 
-    monkeypatch.setattr("lumitip.links.ble_find.SETTLE_S", 0.1)
+    monkeypatch.setattr("lumitip.links.ble_device.SETTLE_S", 0.1)
     service = FakeBluez(bus)
     yield service
     service.stop()

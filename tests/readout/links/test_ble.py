@@ -8,15 +8,8 @@ from bluetooth_peers import ScriptedPeer
 from fake_bluez import FakeBluez
 from fingertip_peers import HERE, THERE, add_fingertip, send
 from lumitip import Fingertip, FingertipGroup
-from lumitip.errors import (
-    AmbiguousDevice,
-    DeviceNotFound,
-    LinkTimeout,
-    MtuTooSmall,
-    WrongDesign,
-)
-from lumitip.protocol.legacy import LEGACY_FRAMES, LEGACY_SERVICE
-from lumitip.protocol.uuids import FRAMES, STATUS
+from lumitip.errors import AmbiguousDevice, DeviceNotFound, LinkTimeout, MtuTooSmall, WrongDesign
+from lumitip.protocol.bluetooth import FRAMES, LEGACY_FRAMES, LEGACY_SERVICE, STATUS
 
 V1 = {LEGACY_SERVICE: {LEGACY_FRAMES: ["read", "notify"]}}
 

@@ -12,11 +12,7 @@ import pytest
 from fake_bluez import FakeBluez
 from fingertip_peers import HERE, THERE, add_fingertip, send
 from lumitip import Fingertip, LinkEvent
-from lumitip.errors import (
-    FingertipClosed,
-    LinkTimeout,
-    NotConnected,
-)
+from lumitip.errors import FingertipClosed, LinkTimeout, NotConnected
 
 Until = Callable[..., None]
 

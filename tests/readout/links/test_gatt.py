@@ -8,9 +8,8 @@ from bumble_peer import BumblePeer
 from fake_bluez import FakeBluez
 from lumitip import Fingertip
 from lumitip.errors import MtuTooSmall
-from lumitip.protocol.legacy import LEGACY_FRAMES, LEGACY_SERVICE
+from lumitip.protocol.bluetooth import FRAMES, LEGACY_FRAMES, LEGACY_SERVICE, SERVICE, STATUS
 from lumitip.protocol.packet import largest_batch
-from lumitip.protocol.uuids import FRAMES, SERVICE, STATUS
 
 HERE = "C0:FF:EE:00:00:09"
 Until = Callable[..., None]

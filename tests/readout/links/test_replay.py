@@ -96,7 +96,7 @@ def test_a_slow_reader_that_leaves_holds_nobody_up(record) -> None:
 def test_a_reader_that_never_comes_back_is_not_waited_for(
     record, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("lumitip.queues.PATIENCE_S", 0.1)
+    monkeypatch.setattr("lumitip.session.queues.PATIENCE_S", 0.1)
     with Fingertip.open(f"replay://{record(500)}?speed=0", buffer=16) as tip:
         tip.read(5.0)  # and never again
         assert [frame.seq for frame in tip.frames()][-1] == 502

@@ -6,9 +6,8 @@ from serial.tools import list_ports, list_ports_common
 from bluetooth_peers import ScriptedPeer
 from fake_bluez import FakeBluez
 from lumitip.cli import main
-from lumitip.protocol.legacy import LEGACY_SERVICE
-from lumitip.protocol.uuids import SERVICE
-from lumitip.scan import scan
+from lumitip.links.scan import scan
+from lumitip.protocol.bluetooth import LEGACY_SERVICE, SERVICE
 
 ONE, TWO, THREE = (f"C0:FF:EE:00:00:0{n}" for n in (1, 2, 3))
 

@@ -8,9 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lumitip.protocol.legacy import decode_legacy, legacy_mtu
+from lumitip.protocol.bluetooth import STATUS_BYTES, Fault, Status, decode_legacy, legacy_mtu
 from lumitip.protocol.packet import PacketError
-from lumitip.protocol.status import STATUS_BYTES, Fault, Status
 
 KNOWN = Status((1, 2, 3), "0123456789abcdef", 32, 23, 51, Fault.MTU_TOO_SMALL | Fault.WATCHDOG)
 

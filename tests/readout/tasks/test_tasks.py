@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 
 from lumitip.control import CentreLaw, Command, LineLaw, Tracer
-from lumitip.cores import workers
 from lumitip.links.twin import published_layout
 from lumitip.tasks import Bench, Curve, Settings, Summary, Task, TaskError, Tuned, Tuning, summary
-from lumitip.tasks.bench import Result, advantages, bench_tasks
+from lumitip.tasks.bench import Result, advantages, bench_tasks, workers
 from lumitip.tasks.report import goals, markdown, write
 from lumitip.tasks.trial import Team
 from lumitip.twin import Corner

@@ -9,14 +9,7 @@ from lumitip.links.twin import published_layout
 from lumitip.processing import Processor
 from lumitip.tasks import Bench, Metrics, Settings, Task, Tuning, search, summary
 from lumitip.tasks.curve import BEND_DEG
-from lumitip.tasks.tuning import (
-    CENTRE_GRID,
-    GRIDS,
-    LINE_GRID,
-    SEEDS,
-    around,
-    at_edge,
-)
+from lumitip.tasks.trial import CENTRE_GRID, GRIDS, LINE_GRID, SEEDS, around, at_edge
 from lumitip.twin import HalfPlane, Twin
 
 GAINS = sorted({tuning.gain_per_s for tuning in CENTRE_GRID})

@@ -5,7 +5,7 @@ import pytest
 
 from lumitip import Fingertip
 from lumitip.errors import UrlError
-from lumitip.intake import complement
+from lumitip.frame import complement
 from lumitip.links import open_link
 from lumitip.links.shapes import SHAPES, Matter, shown
 from lumitip.links.twin import Scene, packet_at, published_layout

@@ -10,8 +10,8 @@ import pytest
 from lumitip import Fingertip
 from lumitip.cli import main
 from lumitip.errors import LinkError
+from lumitip.links.serve import SerialDevice
 from lumitip.links.twin import Scene, packet_at, published_layout
-from lumitip.twin.serve import SerialDevice
 
 
 def test_the_serial_link_reads_the_twin(tmp_path: Path) -> None:

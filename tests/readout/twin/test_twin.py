@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lumitip import Layout
-from lumitip.intake import complement
+from lumitip.frame import complement
 from lumitip.twin import (
     Cable,
     Corner,

@@ -11,9 +11,9 @@ import pytest
 from playwright.sync_api import Browser, ConsoleMessage, Page, sync_playwright
 
 from lumitip import Fingertip, Layout
-from lumitip.hub import Hub
 from lumitip.links.base import Arrival, Deliver, LinkEvent, Report
 from lumitip.protocol.packet import Packet, design_code
+from lumitip.session.hub import Hub
 from lumitip.view.finger import Finger
 from lumitip.view.room import Room
 from lumitip.view.server import ViewServer

@@ -10,7 +10,7 @@ import pytest
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
-from lumitip.view.errors import ViewError
+from lumitip.errors import ViewError
 from lumitip.view.server import ViewServer
 
 Serve = Callable[..., ViewServer]

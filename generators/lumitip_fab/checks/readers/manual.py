@@ -10,7 +10,7 @@ from typing import Any
 
 import pikepdf
 
-from lumitip_fab.checks.result import MALFORMED
+from lumitip_fab.checks.readers import MALFORMED
 from lumitip_fab.errors import OutputError
 
 _LETTER = re.compile(rb"<([0-9A-Fa-f]{2})>\s*<([0-9A-Fa-f]{4})>")

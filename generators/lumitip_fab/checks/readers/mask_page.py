@@ -9,8 +9,8 @@ import numpy as np
 import pikepdf
 from numpy.typing import NDArray
 
+from lumitip_fab.checks.readers import MALFORMED
 from lumitip_fab.checks.readers.manual import Face, faces_of, lacking
-from lumitip_fab.checks.result import MALFORMED
 
 Points = NDArray[np.float64]
 

@@ -1,4 +1,4 @@
-"""What was given, of whatever kind: told in one line, and read as a number."""
+"""A value of any kind: as one line of text, and as a number."""
 
 import math
 from typing import SupportsFloat

@@ -8,13 +8,13 @@ from collections.abc import Callable
 
 from lumitip import arguments
 from lumitip.arguments import seconds
-from lumitip.drift import Drift, DriftWatch
 from lumitip.errors import EndOfRecording, FingertipClosed, LinkError, LinkTimeout
 from lumitip.frame import Frame
-from lumitip.intake import Intake, Source
 from lumitip.links.base import Arrival, Link, LinkEvent, Prepares, Report
-from lumitip.queues import FrameQueue
-from lumitip.stats import Counter, Stats
+from lumitip.session.drift import Drift, DriftWatch
+from lumitip.session.intake import Intake, Source
+from lumitip.session.queues import FrameQueue
+from lumitip.session.stats import Counter, Stats
 
 _log = logging.getLogger(__name__)
 

@@ -1,8 +1,8 @@
 """What is wrong with the cells of a fingertip, told from a recording of a few seconds.
 
 Dead, stuck, saturated and noisy cells show themselves by their own values. Swapped cells show
-themselves while an object moves over them all, however thin: see `lumitip.swaps`. That is evidence
-of wrong wiring or of another `layout.json`, and says how good it is.
+themselves while an object moves over them all, however thin: see `lumitip.health.swaps`. That is
+evidence of wrong wiring or of another `layout.json`, and says how good it is.
 """
 
 from dataclasses import dataclass
@@ -13,8 +13,8 @@ import numpy as np
 from lumitip import arguments
 from lumitip.errors import ArgumentError
 from lumitip.frame import Values
+from lumitip.health.swaps import LEAST_ORDER, Mask, Pairs, enough_ways, order, swaps, ways_of
 from lumitip.layout import Layout
-from lumitip.swaps import LEAST_ORDER, Mask, Pairs, enough_ways, order, swaps, ways_of
 
 Kind = Literal["dark", "saturated", "stuck", "noisy", "swapped", "astray"]
 

@@ -1,14 +1,49 @@
-"""What a device says of itself: 20 bytes, which fit into a notification at every MTU.
-
-Little-endian: protocol version u8, firmware version 3 x u8, first 8 bytes of the design hash,
-cells u16, MTU u16, needed MTU u16, faults u16. Later versions may append to it.
-"""
+"""Bluetooth: UUIDs, the status characteristic, and the frames of the published firmware."""
 
 import struct
 from dataclasses import dataclass
 from enum import IntFlag
 
-from lumitip.protocol.packet import VERSION, PacketError
+import numpy as np
+from numpy.typing import NDArray
+
+from lumitip.protocol.packet import ATT_BYTES, VERSION, PacketError
+
+SERVICE = "7d1c0001-6c75-4d69-9469-700000000000"
+FRAMES = "7d1c0002-6c75-4d69-9469-700000000000"
+"""Notifies packets: `lumitip.protocol.packet`."""
+STATUS = "7d1c0003-6c75-4d69-9469-700000000000"
+"""Read and notified: `lumitip.protocol.bluetooth`."""
+
+
+LEGACY_SERVICE = "0000ecbc-0000-1000-8000-00805f9b34fb"
+LEGACY_FRAMES = "0000c134-0000-1000-8000-00805f9b34fb"
+"""Read and notified."""
+
+
+def legacy_mtu(cells: int) -> int:
+    """The smallest ATT MTU at which a notification takes a frame."""
+    return ATT_BYTES + cells
+
+
+def decode_legacy(data: bytes, cells: int) -> NDArray[np.uint8]:
+    """The frame that a notification of version 1 is.
+
+    Returns:
+        Pull-up voltage of each cell, 8 bits, dark is high, shape `(cells,)`, read-only.
+
+    Raises:
+        PacketError: of reason `"length"`, if there is not one byte for each cell: at a small MTU
+            the rest of the value never comes, and no layer says so.
+    """
+    if len(data) != cells:
+        raise PacketError(
+            "length",
+            f"{len(data)} bytes given, {cells} cells have {cells}: if there are fewer, an ATT MTU "
+            f"of at least {legacy_mtu(cells)} is needed",
+        )
+    return np.frombuffer(bytes(data), np.uint8)
+
 
 _STATUS = struct.Struct("<BBBB8sHHHH")
 STATUS_BYTES = _STATUS.size

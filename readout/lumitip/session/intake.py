@@ -7,20 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from lumitip.calibration import Correction
-from lumitip.clock import DeviceClock
 from lumitip.errors import WrongDesign
-from lumitip.frame import Frame, Values, frozen
+from lumitip.frame import Codes, Frame, Values, complement, frozen
 from lumitip.layout import Layout
 from lumitip.links.base import Arrival, Fault, LinkEvent, Recorded, Report
-from lumitip.protocol.packet import Codes, ForeignPacketError, Packet, design_code
-from lumitip.stats import Counter
-from lumitip.timeline import Timeline
-
-
-def complement(raw: Codes, bits: int) -> Values:
-    """Light of codes that are high in the dark: 255 is full light, whatever the bits."""
-    light: Values = np.float32(255.0) - raw * np.float32(255.0 / ((1 << bits) - 1))
-    return light
+from lumitip.protocol.packet import ForeignPacketError, Packet, design_code
+from lumitip.session.stats import Counter
+from lumitip.session.timing import DeviceClock, Timeline
 
 
 @dataclass(frozen=True)

@@ -8,9 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lumitip.frame import Values
-from lumitip.intake import complement
-from lumitip.protocol.packet import Codes
+from lumitip.frame import Codes, Values, complement
 
 WARM_UP_S = 300.0
 _SMOOTH_S = 0.5

@@ -1,0 +1,1 @@
+"""Judgement of a fingertip from its frames: cells without signal, noise, swapped wires."""

@@ -1,0 +1,1 @@
+"""One open fingertip: what arrives, in order and on time, to all who read it."""
