@@ -25,8 +25,12 @@ from poses import NOISE, Trial, estimated, frames, gross, misses, published, sce
 PAIRS = 40  # of wrong fingers; each is used for several poses
 DRAWS = 3  # of wrong fingers and poses; the goals hold for each
 STATED = 300  # poses at which stated deviations are held against the misses
-GOALS = {("edge", "clean"): (0.08, 0.3, 1.0), ("cable", "clean"): (0.1, 0.3, 1.0),
-         ("edge", "wrong"): (0.45, 1.5, 3.0), ("cable", "wrong"): (0.5, 1.6, 3.0)}  # fmt: skip
+GOALS = {
+    ("edge", "clean"): (0.08, 0.3, 1.0),
+    ("cable", "clean"): (0.1, 0.3, 1.0),
+    ("edge", "wrong"): (0.45, 1.5, 3.0),
+    ("cable", "wrong"): (0.5, 1.6, 3.0),
+}
 RUNS = 25  # of each frame, by which its time is told
 
 
@@ -39,8 +43,10 @@ def row(name: str, missed: Floats, trials: list[Trial]) -> tuple[float, float, f
     worst = int(np.argmax(np.where(wild, -1.0, missed[:, 0] + missed[:, 1] / 5.0)))
     share = 100.0 * float(wild.mean())
     at = "({:+.1f} mm, {:+.0f}°)".format(*trials[worst].pose)
-    print(f"  {name:<22}{rms[0]:>7.3f}{rms[1]:>7.2f}{middle[0]:>9.3f}{middle[1]:>7.2f}"
-          f"{missed[worst, 0]:>9.2f}{missed[worst, 1]:>6.1f}  {at:<18}{share:>6.1f}")  # fmt: skip
+    print(
+        f"  {name:<22}{rms[0]:>7.3f}{rms[1]:>7.2f}{middle[0]:>9.3f}{middle[1]:>7.2f}"
+        f"{missed[worst, 0]:>9.2f}{missed[worst, 1]:>6.1f}  {at:<18}{share:>6.1f}"
+    )
     return float(rms[0]), float(rms[1]), share
 
 
@@ -53,12 +59,19 @@ def bound(twin: Twin, kind: str, trials: list[Trial]) -> tuple[float, float]:
         offset, angle = trial.pose
         light = twin.values(scene(kind, trial.pose))
         slopes = [
-            (twin.values(scene(kind, (offset + 0.05, angle)))
-             - twin.values(scene(kind, (offset - 0.05, angle)))) / 0.1,
-            (twin.values(scene(kind, (offset, angle + 0.3)))
-             - twin.values(scene(kind, (offset, angle - 0.3)))) / 0.6,
-            light, 255.0 - light,
-        ]  # fmt: skip
+            (
+                twin.values(scene(kind, (offset + 0.05, angle)))
+                - twin.values(scene(kind, (offset - 0.05, angle)))
+            )
+            / 0.1,
+            (
+                twin.values(scene(kind, (offset, angle + 0.3)))
+                - twin.values(scene(kind, (offset, angle - 0.3)))
+            )
+            / 0.6,
+            light,
+            255.0 - light,
+        ]
         jacobian = np.stack(slopes, axis=1) / noise
         known = np.diag([1.0, 1.0 / 5.0**2, 100.0, 1.0])
         rows.append(np.diag(np.linalg.inv(jacobian.T @ jacobian + known))[:2])
@@ -76,13 +89,20 @@ def accuracy(layout: Layout, count: int, goals: Goals) -> None:
         for kind in ("edge", "cable"):
             trials = frames(pairs, kind, count, seed=11 + draw)
             print(f"\n{kind}, {optics} optics, draw {draw}, {count} poses, simulated")
-            print(f"  {'':<22}{'rms':>7}{'':>7}{'median':>9}{'':>7}{'worst':>9}{'':>6}  "
-                  f"{'where':<18}{'gross':>6}")  # fmt: skip
-            print(f"  {'':<22}{'mm':>7}{'deg':>7}{'mm':>9}{'deg':>7}{'mm':>9}{'deg':>6}  "
-                  f"{'':<18}{'%':>6}")  # fmt: skip
+            print(
+                f"  {'':<22}{'rms':>7}{'':>7}{'median':>9}{'':>7}{'worst':>9}{'':>6}  "
+                f"{'where':<18}{'gross':>6}"
+            )
+            print(
+                f"  {'':<22}{'mm':>7}{'deg':>7}{'mm':>9}{'deg':>7}{'mm':>9}{'deg':>6}  "
+                f"{'':<18}{'%':>6}"
+            )
             if optics == "clean":
-                print("  {:<22}{:>7.3f}{:>7.2f}".format("Cramér–Rao bound", *bound(
-                    pairs[0], kind, trials)))  # fmt: skip
+                print(
+                    "  {:<22}{:>7.3f}{:>7.2f}".format(
+                        "Cramér–Rao bound", *bound(pairs[0], kind, trials)
+                    )
+                )
             for name, method in methods.items():
                 told = row(name, misses(method, trials, kind), trials)
             goal = GOALS[kind, optics]
@@ -101,18 +121,22 @@ def stated(estimator: PoseEstimator, trials: list[Trial], kind: str) -> None:
     ratio = missed / np.array([(t.offset_sd_mm, t.angle_sd_deg) for t in told])
     within = [100.0 * (ratio[~wild] < most).mean(axis=0) for most in (1.0, 2.0)]
     flagged = np.array(["ambiguous" in t.flags for t in told])
-    print("  within one stated deviation {:.0f} % (offset), {:.0f} % (angle)".format(*within[0])
-          + ", within two {:.0f} %, {:.0f} %".format(*within[1])
-          + f"; {100.0 * flagged.mean():.1f} % ambiguous, of the others "
-          f"{100.0 * wild[~flagged].mean():.1f} % gross")  # fmt: skip
+    print(
+        "  within one stated deviation {:.0f} % (offset), {:.0f} % (angle)".format(*within[0])
+        + ", within two {:.0f} %, {:.0f} %".format(*within[1])
+        + f"; {100.0 * flagged.mean():.1f} % ambiguous, of the others "
+        f"{100.0 * wild[~flagged].mean():.1f} % gross"
+    )
 
 
 def kinds(layout: Layout, count: int) -> None:
     """How often the estimator decides right when it is not told the kind."""
     estimator = PoseEstimator(layout)
     print(f"\nkind decided by the estimator, of {count} frames each")
-    for optics, pairs in (("clean", [Twin(layout)]),
-                          ("wrong", [wrong_twin(layout, n) for n in range(8)])):  # fmt: skip
+    for optics, pairs in (
+        ("clean", [Twin(layout)]),
+        ("wrong", [wrong_twin(layout, n) for n in range(8)]),
+    ):
         for kind in ("edge", "cable"):
             told = [estimator(t.values).kind for t in frames(pairs, kind, count, seed=5)]
             print(f"  {optics} {kind:<8}{100.0 * told.count(kind) / count:>6.1f} % right")
@@ -127,11 +151,22 @@ def speed(goals: Goals, count: int = 300) -> None:
         columns = columns_for(cells)
         grid = hexagonal_grid(columns, 6.0 * float(np.sqrt(32.0 / cells)))
         index = np.arange(grid.x_mm.size)
-        layout = base if cells == 32 else Layout(
-            grid.x_mm, grid.y_mm, grid.column, grid.row, hexagonal_neighbours(columns),
-            index // 8, index % 8, np.array([f"A{i}" for i in index // 8]), 6.0,
-            base.optics,
-        )  # fmt: skip
+        layout = (
+            base
+            if cells == 32
+            else Layout(
+                grid.x_mm,
+                grid.y_mm,
+                grid.column,
+                grid.row,
+                hexagonal_neighbours(columns),
+                index // 8,
+                index % 8,
+                np.array([f"A{i}" for i in index // 8]),
+                6.0,
+                base.optics,
+            )
+        )
         twin, estimator = Twin(layout), PoseEstimator(layout)
         edges = [t.values for t in frames([twin], "edge", count, seed=3)]
         cables = [t.values for t in frames([twin], "cable", count, seed=3)]
@@ -140,15 +175,25 @@ def speed(goals: Goals, count: int = 300) -> None:
         moving = [twin.values(HalfPlane(offset_mm=o, angle_deg=3.0 * o)) for o in steps]
         spent = [
             [_ms(lambda v, k=k, e=e: e(v, k), v) for v in rows]
-            for e, k, rows in ((estimator, "edge", edges), (estimator, "cable", cables),
-                               (follower, None, moving), (estimator, None, edges))
-        ]  # fmt: skip
+            for e, k, rows in (
+                (estimator, "edge", edges),
+                (estimator, "cable", cables),
+                (follower, None, moving),
+                (estimator, None, edges),
+            )
+        ]
         middle = [float(np.median(s[5:])) for s in spent]
-        print(f"{cells:>6}{middle[0]:>14.2f}{np.percentile(spent[0], 90):>7.2f}{middle[1]:>8.2f}"
-              f"{middle[2]:>11.2f}{middle[3]:>12.2f}")  # fmt: skip
+        print(
+            f"{cells:>6}{middle[0]:>14.2f}{np.percentile(spent[0], 90):>7.2f}{middle[1]:>8.2f}"
+            f"{middle[2]:>11.2f}{middle[3]:>12.2f}"
+        )
         if cells == 32:
-            runs = np.array([[_ms(lambda v: estimator(v, "edge"), v) for v in edges]  # noqa: B023
-                             for _ in range(RUNS)])  # fmt: skip
+            runs = np.array(
+                [
+                    [_ms(lambda v: estimator(v, "edge"), v) for v in edges]  # noqa: B023
+                    for _ in range(RUNS)
+                ]
+            )
             name = "an edge at 32 cells"
             goals.at_most(f"{name}, all single runs", float(np.median(runs)), 1.0, "ms median")
             best = float(np.median(runs.min(axis=0)))

@@ -27,11 +27,19 @@ LEFT, WORST = 0.75, 1.0  # share of the rms offset that may be left: of all fing
 def ordinary_use(twin: Twin, seed: int) -> Floats:
     """Edges in any direction, shape `(n, cells)`."""
     chance = np.random.default_rng(seed)
-    return np.array([
-        read(twin, HalfPlane(offset_mm=chance.uniform(-OFFSET_MM, OFFSET_MM),
-                             angle_deg=chance.uniform(-180.0, 180.0)), chance)
-        for _ in range(SEEN)
-    ])  # fmt: skip
+    return np.array(
+        [
+            read(
+                twin,
+                HalfPlane(
+                    offset_mm=chance.uniform(-OFFSET_MM, OFFSET_MM),
+                    angle_deg=chance.uniform(-180.0, 180.0),
+                ),
+                chance,
+            )
+            for _ in range(SEEN)
+        ]
+    )
 
 
 def rms(estimator: PoseEstimator, twin: Twin, kind: str, poses: int, seed: int) -> Floats:
@@ -53,8 +61,9 @@ def finger(layout: Layout, number: int, poses: int) -> Floats:
           f"misfit {learned.rms_before_counts:.1f} counts, then {learned.rms_counts:.1f}")
     # fmt: on
     before, after = PoseEstimator(layout), PoseEstimator(layout, found, gains=learned.gains)
-    told = np.array([[rms(e, twin, kind, poses, 200 + number) for e in (before, after)]
-                     for kind in KINDS])  # fmt: skip
+    told = np.array(
+        [[rms(e, twin, kind, poses, 200 + number) for e in (before, after)] for kind in KINDS]
+    )
     for kind, both in zip(KINDS, told, strict=True):
         _line(kind, both)
     return told
@@ -68,18 +77,26 @@ def _line(kind: str, both: Floats) -> None:
 def main(poses: int) -> int:
     """Print everything; the exit code."""
     layout, goals = published_layout(), Goals()
-    print(f"wrong optics before and after self-calibration from {SEEN} frames of edges, "
-          f"{poses} other poses of each finger and kind, simulated")  # fmt: skip
+    print(
+        f"wrong optics before and after self-calibration from {SEEN} frames of edges, "
+        f"{poses} other poses of each finger and kind, simulated"
+    )
     every = np.array([finger(layout, number, poses) for number in range(FINGERS)])
     whole = np.sqrt((every**2).mean(axis=0))
     whole[..., 2] = every[..., 2].mean(axis=0)
     print("\nall fingers")
     for kind, both, single in zip(KINDS, whole, every.swapaxes(0, 1), strict=True):
         _line(kind, both)
-        goals.at_most(f"{kind}, offset after against before, all fingers",
-                      float(both[1, 0] / both[0, 0]), LEFT)  # fmt: skip
-        goals.at_most(f"{kind}, offset after against before, worst finger",
-                      float((single[:, 1, 0] / single[:, 0, 0]).max()), WORST)  # fmt: skip
+        goals.at_most(
+            f"{kind}, offset after against before, all fingers",
+            float(both[1, 0] / both[0, 0]),
+            LEFT,
+        )
+        goals.at_most(
+            f"{kind}, offset after against before, worst finger",
+            float((single[:, 1, 0] / single[:, 0, 0]).max()),
+            WORST,
+        )
         goals.at_most(f"{kind}, gross errors after", float(both[1, 2]), float(both[0, 2]), "%")
     return goals.told()
 

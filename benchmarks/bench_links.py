@@ -36,8 +36,9 @@ def serve(address: str, batch: int) -> None:
     scene = Scene("disc", 12.0, 1.5, RATE_HZ, 8, 0)
     numbers = range(0, RATE_HZ * SECONDS, batch)
     packets = [encode(packet_at(layout, scene, n, batch)) for n in numbers]
-    peer = ScriptedPeer("Bench", "C0:FF:EE:00:00:01",
-                        {SERVICE: {FRAMES: ["notify"], STATUS: ["read", "notify"]}})  # fmt: skip
+    peer = ScriptedPeer(
+        "Bench", "C0:FF:EE:00:00:01", {SERVICE: {FRAMES: ["notify"], STATUS: ["read", "notify"]}}
+    )
     peer.values[STATUS] = Status(
         (1, 0, 0), layout.design_hash[:16], len(layout), 247, needed_mtu(len(layout), 8), Fault(0)
     ).encode()
@@ -83,30 +84,41 @@ def measure(batch: int) -> int:
                 stats = tip.stats
             device.stdin.close()
     lost, share = wanted - stats.received, cpu_s / wall_s
-    print(f"{batch:>12}{stats.received:>11}{lost:>7}{wanted / wall_s:>10.0f}"
-          f"{share:>12.2f}{stats.jitter_ms or 0:>12.2f}")  # fmt: skip
+    print(
+        f"{batch:>12}{stats.received:>11}{lost:>7}{wanted / wall_s:>10.0f}"
+        f"{share:>12.2f}{stats.jitter_ms or 0:>12.2f}"
+    )
     goals = Goals()
     counted = sum((stats.dropped or {}).values())
     goals.at_most(f"lost, {batch} in a notification", max(lost, counted), 0, "frames")
-    goals.at_most(f"reading {RATE_HZ} frames/s, {batch} in a notification", share, LIMIT_SHARE,
-                  "of a core")  # fmt: skip
+    goals.at_most(
+        f"reading {RATE_HZ} frames/s, {batch} in a notification", share, LIMIT_SHARE, "of a core"
+    )
     return goals.told()
 
 
 def imported() -> int:
     """Print what `import lumitip` takes, numpy and the interpreter's start apart, in processor
     time of the quickest of five starts; the exit code."""
-    code = ("from time import process_time as now; a = now(); import numpy; b = now(); "
-            "import lumitip; c = now(); import lumitip.fingertip; "
-            "print(b - a, c - b, now() - c)")  # fmt: skip
+    code = (
+        "from time import process_time as now; a = now(); import numpy; b = now(); "
+        "import lumitip; c = now(); import lumitip.fingertip; "
+        "print(b - a, c - b, now() - c)"
+    )
     told = [
-        [float(t) for t in subprocess.run([sys.executable, "-I", "-c", code], capture_output=True,
-                                          text=True, check=True).stdout.split()]
+        [
+            float(t)
+            for t in subprocess.run(
+                [sys.executable, "-I", "-c", code], capture_output=True, text=True, check=True
+            ).stdout.split()
+        ]
         for _ in range(5)
-    ]  # fmt: skip
+    ]
     numpy_s, lumitip_s, fingertip_s = min(told, key=sum)
-    print(f"import: numpy {numpy_s:.3f} s, lumitip {lumitip_s:.3f} s more, "
-          f"Fingertip {fingertip_s:.3f} s more")  # fmt: skip
+    print(
+        f"import: numpy {numpy_s:.3f} s, lumitip {lumitip_s:.3f} s more, "
+        f"Fingertip {fingertip_s:.3f} s more"
+    )
     goals = Goals()
     goals.at_most("import of lumitip with numpy", numpy_s + lumitip_s, LIMIT_IMPORT_S, "s")
     return goals.told()
@@ -121,8 +133,11 @@ def main() -> int:
         return measure(int(sys.argv[1]))
     codes = [imported()]
     print(f"\nlinks: {SECONDS} s at {RATE_HZ} frames/s over fake BlueZ")
-    print(f"{'frames/value':>12}{'received':>11}{'lost':>7}{'rate/Hz':>10}{'core share':>12}"
-          f"{'jitter/ms':>12}", flush=True)  # fmt: skip
+    print(
+        f"{'frames/value':>12}{'received':>11}{'lost':>7}{'rate/Hz':>10}{'core share':>12}"
+        f"{'jitter/ms':>12}",
+        flush=True,
+    )
     # A process for each, since bleak keeps to the bus that it first saw.
     codes += [subprocess.call([sys.executable, __file__, str(batch)]) for batch in BATCHES]
     return max(codes)

@@ -38,10 +38,17 @@ def layout_of(columns: Sequence[int], pitch_mm: float) -> Layout:
     grid = hexagonal_grid(columns, pitch_mm)
     index = np.arange(grid.x_mm.size)
     return Layout(
-        grid.x_mm, grid.y_mm, grid.column, grid.row, hexagonal_neighbours(columns),
-        index // 8, index % 8, np.array([f"A{i}" for i in index // 8]), pitch_mm,
+        grid.x_mm,
+        grid.y_mm,
+        grid.column,
+        grid.row,
+        hexagonal_neighbours(columns),
+        index // 8,
+        index % 8,
+        np.array([f"A{i}" for i in index // 8]),
+        pitch_mm,
         Optics(2.5, "hexagon", 0.9, 0.9, 1.0, 2.0, 1.41, 0.1, 75e3, 3.3),
-    )  # fmt: skip
+    )
 
 
 def frames_of(layout: Layout, shape: str, count: int) -> tuple[Frames, list[Pose]]:

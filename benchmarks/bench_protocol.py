@@ -39,8 +39,10 @@ def packets() -> None:
             reading = seconds(lambda data=data: decode(data, CELLS))
             writing = seconds(lambda packet=packet: encode(packet))
             crc = seconds(lambda data=data: crc_hqx(data, 0xFFFF))
-            print(f"  {bits:2} bits, {frames} frames      {1e6 * reading:8.1f}       "
-                  f"{1e6 * writing:8.1f}       {reading / crc:8.1f} x")  # fmt: skip
+            print(
+                f"  {bits:2} bits, {frames} frames      {1e6 * reading:8.1f}       "
+                f"{1e6 * writing:8.1f}       {reading / crc:8.1f} x"
+            )
 
 
 def stream() -> float:

@@ -88,16 +88,24 @@ def main() -> int:
     print(f"  {many} simulated edges that it draws there lie at {yardstick}")
     for gap_mm, gap_sd_mm in GAPS_MM:
         told = PoseEstimator(layout, gap_mm=gap_mm, gap_sd_mm=gap_sd_mm)(values, "edge")
-        estimate = Stated(np.array([told.offset_mm, told.angle_deg]),
-                          np.array([told.offset_sd_mm, told.angle_sd_deg]))  # fmt: skip
+        estimate = Stated(
+            np.array([told.offset_mm, told.angle_deg]),
+            np.array([told.offset_sd_mm, told.angle_sd_deg]),
+        )
         apart = estimate.apart(yardstick)
-        print(f"  estimator, gap {gap_mm:g} ± {gap_sd_mm:g} mm: {estimate} "
-              f"(± {without_single_cells_deg(layout, gap_mm, values):.1f}° by jackknife), "
-              f"misfit {told.rms_counts:.1f} counts; published method {yardstick}: "
-              f"{apart:.1f} combined deviations apart, "
-              f"they {'agree' if apart <= AGREE else 'do not agree'}")  # fmt: skip
-        goals.at_most(f"both methods, gap {gap_mm:g} ± {gap_sd_mm:g} mm", apart, AGREE,
-                      "combined deviations apart")  # fmt: skip
+        print(
+            f"  estimator, gap {gap_mm:g} ± {gap_sd_mm:g} mm: {estimate} "
+            f"(± {without_single_cells_deg(layout, gap_mm, values):.1f}° by jackknife), "
+            f"misfit {told.rms_counts:.1f} counts; published method {yardstick}: "
+            f"{apart:.1f} combined deviations apart, "
+            f"they {'agree' if apart <= AGREE else 'do not agree'}"
+        )
+        goals.at_most(
+            f"both methods, gap {gap_mm:g} ± {gap_sd_mm:g} mm",
+            apart,
+            AGREE,
+            "combined deviations apart",
+        )
     return goals.told()
 
 

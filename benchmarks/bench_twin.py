@@ -23,8 +23,13 @@ CELLS = (32, 128, 512)
 GOAL_SCENES, GOAL_BATCH = 10_000.0, 50_000.0
 BATCH = 256
 THREADS = "OPENBLAS_NUM_THREADS"
-STAR = [(9.0 * (1.0 - 0.5 * (i % 2)) * np.cos(i * np.pi / 5), 9.0 * (1.0 - 0.5 * (i % 2))
-         * np.sin(i * np.pi / 5)) for i in range(10)]  # fmt: skip
+STAR = [
+    (
+        9.0 * (1.0 - 0.5 * (i % 2)) * np.cos(i * np.pi / 5),
+        9.0 * (1.0 - 0.5 * (i % 2)) * np.sin(i * np.pi / 5),
+    )
+    for i in range(10)
+]
 
 
 def layout_of(columns: tuple[int, ...]) -> Layout:
@@ -32,10 +37,17 @@ def layout_of(columns: tuple[int, ...]) -> Layout:
     grid = hexagonal_grid(columns, 6.0)
     index = np.arange(grid.x_mm.size)
     return Layout(
-        grid.x_mm, grid.y_mm, grid.column, grid.row, hexagonal_neighbours(columns),
-        index // 8, index % 8, np.array([f"A{i}" for i in index // 8]), 6.0,
+        grid.x_mm,
+        grid.y_mm,
+        grid.column,
+        grid.row,
+        hexagonal_neighbours(columns),
+        index // 8,
+        index % 8,
+        np.array([f"A{i}" for i in index // 8]),
+        6.0,
         Optics(2.5, "hexagon", 0.9, 0.9, 1.0, 2.0, 1.41, 0.1, 75e3, 3.3),
-    )  # fmt: skip
+    )
 
 
 def each_s(work: Callable[[int], object], seconds: float = 0.4) -> float:
@@ -84,11 +96,19 @@ def scenes(twin: Twin) -> tuple[float, float]:
     told("cable on cloth, ray by ray", 1, each_s(mixed), cells)
     at = twin.plane()
     coverage = np.random.default_rng(0).random((BATCH, at.x_mm.size), dtype=np.float32)
-    batch = told(f"batch of {BATCH} coverages of {at.x_mm.size} pixels", BATCH,
-                 each_s(lambda _: twin.batch(coverage)), cells)  # fmt: skip
+    batch = told(
+        f"batch of {BATCH} coverages of {at.x_mm.size} pixels",
+        BATCH,
+        each_s(lambda _: twin.batch(coverage)),
+        cells,
+    )
     offset, angle = np.array(poses * (BATCH // 64)).T
-    told(f"batch of {BATCH} edges, by their table", BATCH,
-         each_s(lambda _: twin.edges(offset, angle)), cells)  # fmt: skip
+    told(
+        f"batch of {BATCH} edges, by their table",
+        BATCH,
+        each_s(lambda _: twin.edges(offset, angle)),
+        cells,
+    )
     return min(moving), batch
 
 

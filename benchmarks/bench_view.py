@@ -54,8 +54,10 @@ def usage(pids: list[int]) -> tuple[float, float]:
 def measure(page: Page, fingers: list[Finger], seconds: float) -> tuple[list[float], int]:
     """Print a row for each interval; returns the p99 of all but the first (ms), and how many frames
     were lost."""
-    print(f"{'after':>7}{'age p50':>9}{'p99':>8}{'pictures':>10}{'skipped':>9}{'lost':>6}"
-          f"{'server':>9}{'':>8}{'browser':>9}{'':>8}{'heap':>8}{'load':>6}")  # fmt: skip
+    print(
+        f"{'after':>7}{'age p50':>9}{'p99':>8}{'pictures':>10}{'skipped':>9}{'lost':>6}"
+        f"{'server':>9}{'':>8}{'browser':>9}{'':>8}{'heap':>8}{'load':>6}"
+    )
     p99_ms, begun = [], time.monotonic()
     cpu_before = usage([os.getpid()])[0], usage(offspring(os.getpid()))[0]
     for interval in range(1, max(2, round(seconds / INTERVAL_S)) + 1):
@@ -105,8 +107,12 @@ def main(seconds: float) -> int:
             browser.close()
         told = f"{len(urls)} × 200 Hz"
         quietest = f"{min(p99_ms):.0f} ms in the best interval, load {os.getloadavg()[0]:.1f}"
-        goals.at_most(f"{told}: median p99 of the ages after {INTERVAL_S:.0f} s ({quietest})",
-                      statistics.median(p99_ms), GOAL_MS, "ms")  # fmt: skip
+        goals.at_most(
+            f"{told}: median p99 of the ages after {INTERVAL_S:.0f} s ({quietest})",
+            statistics.median(p99_ms),
+            GOAL_MS,
+            "ms",
+        )
         goals.at_most(f"{told}: lost on the way to the server", lost, 0, "frames")
     return goals.told()
 

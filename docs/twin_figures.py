@@ -28,8 +28,12 @@ Values = NDArray[np.float64]
 
 def main() -> None:
     """Draw all of them."""
-    mpl.rcParams |= {"font.size": 9, "axes.spines.top": False, "axes.spines.right": False,
-                     "svg.hashsalt": "lumitip"}  # fmt: skip
+    mpl.rcParams |= {
+        "font.size": 9,
+        "axes.spines.top": False,
+        "axes.spines.right": False,
+        "svg.hashsalt": "lumitip",
+    }
     layout = published_layout()
     materials(layout)
     edges(layout)
@@ -43,11 +47,24 @@ def materials(layout: Layout) -> None:
     figure, axes = plt.subplots(figsize=(6.4, 3.0), layout="constrained")
     for i, material in enumerate(MATERIALS):
         values = twin.values(material.sheet())
-        axes.errorbar(i - 0.12, material.published_mean, material.published_bar, fmt="o",
-                      color=MEASURED, capsize=4,
-                      label=None if i else "published, hardware")  # fmt: skip
-        axes.errorbar(i + 0.12, values.mean(), values.std(), fmt="s", color=COMPUTED, capsize=4,
-                      label=None if i else "twin, one transmittance fitted to each")  # fmt: skip
+        axes.errorbar(
+            i - 0.12,
+            material.published_mean,
+            material.published_bar,
+            fmt="o",
+            color=MEASURED,
+            capsize=4,
+            label=None if i else "published, hardware",
+        )
+        axes.errorbar(
+            i + 0.12,
+            values.mean(),
+            values.std(),
+            fmt="s",
+            color=COMPUTED,
+            capsize=4,
+            label=None if i else "twin, one transmittance fitted to each",
+        )
     axes.set_xticks(range(len(MATERIALS)), [m.name.replace(", ", ",\n") for m in MATERIALS])
     axes.set_ylim(0, 255)
     axes.set_ylabel("mean value of all cells")
@@ -105,13 +122,19 @@ def scenes(layout: Layout) -> None:
 
 
 def hexagons(
-    axes: Axes, layout: Layout, values: Values, title: str, colours: str = "cividis",
+    axes: Axes,
+    layout: Layout,
+    values: Values,
+    title: str,
+    colours: str = "cividis",
     limits: tuple[float, float] = (0, 255),
-) -> None:  # fmt: skip
+) -> None:
     """Cells as hexagons whose flats face the tip, each with its value."""
     radius = layout.pitch_mm / math.sqrt(3.0) * 0.97
-    cells = [RegularPolygon((x, y), 6, radius=radius, orientation=math.pi / 6)
-             for x, y in zip(layout.x_mm, layout.y_mm, strict=True)]  # fmt: skip
+    cells = [
+        RegularPolygon((x, y), 6, radius=radius, orientation=math.pi / 6)
+        for x, y in zip(layout.x_mm, layout.y_mm, strict=True)
+    ]
     drawn = PatchCollection(cells, cmap=colours, edgecolor="none")
     drawn.set_array(values)
     drawn.set_clim(*limits)
@@ -120,8 +143,15 @@ def hexagons(
     for x, y, value in zip(layout.x_mm, layout.y_mm, values, strict=True):
         red, green, blue, _ = plt.get_cmap(colours)((value - low) / (high - low))
         bright = 0.3 * red + 0.6 * green + 0.1 * blue > 0.5
-        axes.text(x, y, f"{round(value)}", ha="center", va="center", fontsize=6.5,
-                  color="black" if bright else "white")  # fmt: skip
+        axes.text(
+            x,
+            y,
+            f"{round(value)}",
+            ha="center",
+            va="center",
+            fontsize=6.5,
+            color="black" if bright else "white",
+        )
     axes.set_xlim(-20, 20)
     axes.set_ylim(-15.5, 15.5)
     axes.set_aspect("equal")

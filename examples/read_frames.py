@@ -16,6 +16,8 @@ url, *layout = sys.argv[1:]
 with Fingertip.open(url, *layout) as tip:
     for frame in islice(tip.frames(timeout=5.0), 20):
         darkest = int(frame.values.argmin())
-        print(f"{frame.seq:6} at {frame.t:.4f} s, cell {darkest} is darkest with "
-              f"{frame.values[darkest]:.0f} of 255")  # fmt: skip
+        print(
+            f"{frame.seq:6} at {frame.t:.4f} s, cell {darkest} is darkest with "
+            f"{frame.values[darkest]:.0f} of 255"
+        )
     print(tip.device_id, tip.stats)

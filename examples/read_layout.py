@@ -13,6 +13,8 @@ if len(sys.argv) == 1:
 layout = Layout.load(sys.argv[1])
 print(f"{len(layout)} cells {layout.pitch_mm} mm apart, design {layout.design_hash[:16]}")
 for cell in layout.cells:
-    print(f"{cell.index:4} x {cell.x_mm:8.3f} y {cell.y_mm:8.3f}  U{cell.mux + 1} input "
-          f"{cell.channel:2} on {cell.adc_pin}")  # fmt: skip
+    print(
+        f"{cell.index:4} x {cell.x_mm:8.3f} y {cell.y_mm:8.3f}  U{cell.mux + 1} input "
+        f"{cell.channel:2} on {cell.adc_pin}"
+    )
 print(f"{len(layout.neighbours)} pairs of neighbours, apertures of {layout.optics.hole_mm} mm")

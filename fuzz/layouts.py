@@ -18,8 +18,18 @@ def layouts() -> tuple[bytes, ...]:
         index = np.arange(grid.x_mm.size)
         pins = np.array([f"A{i}" for i in index // 4])
         pairs = hexagonal_neighbours(columns)
-        layout = Layout(grid.x_mm, grid.y_mm, grid.column, grid.row, pairs, index // 4, index % 4,
-                        pins, 6.0, optics)  # fmt: skip
+        layout = Layout(
+            grid.x_mm,
+            grid.y_mm,
+            grid.column,
+            grid.row,
+            pairs,
+            index // 4,
+            index % 4,
+            pins,
+            6.0,
+            optics,
+        )
         made.append(layout.to_json().encode())
     return tuple(made)
 

@@ -8,9 +8,28 @@ Mutation = Callable[[Random, bytearray], None]
 
 _NASTY_BYTES = (0x00, 0x01, 0x7F, 0x80, 0xFE, 0xFF)
 _NASTY_WORDS = (
-    b"null", b"true", b"-1", b"0", b"1e999", b"-0.0", b"NaN", b"Infinity", b'""', b"[]", b"{}",
-    b"2147483648", b"1" * 400, b"[[[[", b"]]", b"\\ud800", b"\xff\xfe", b"1.5", b'"A0"', b",", b":",
-)  # fmt: skip
+    b"null",
+    b"true",
+    b"-1",
+    b"0",
+    b"1e999",
+    b"-0.0",
+    b"NaN",
+    b"Infinity",
+    b'""',
+    b"[]",
+    b"{}",
+    b"2147483648",
+    b"1" * 400,
+    b"[[[[",
+    b"]]",
+    b"\\ud800",
+    b"\xff\xfe",
+    b"1.5",
+    b'"A0"',
+    b",",
+    b":",
+)
 
 
 def flip(rng: Random, data: bytearray) -> None:

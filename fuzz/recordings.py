@@ -26,10 +26,17 @@ def recordings() -> tuple[bytes, ...]:
     """A few frames of a small fingertip."""
     layout = Layout.from_json(layouts()[0].decode())
     frames = [
-        RecordedFrame(number, 0.1 * number, 5.0 + number, 1e9 + number,
-                      np.full(len(layout), number, np.uint8), 8, None if number else 0)
+        RecordedFrame(
+            number,
+            0.1 * number,
+            5.0 + number,
+            1e9 + number,
+            np.full(len(layout), number, np.uint8),
+            8,
+            None if number else 0,
+        )
         for number in range(4)
-    ]  # fmt: skip
+    ]
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "run.mcap"
         with Writer(path, layout, device_id="AA:BB", start_wall=1e9, made_with={}) as writer:

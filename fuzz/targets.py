@@ -86,10 +86,16 @@ def read_legacy(data: bytes) -> None:
 TARGETS = (
     Target("packet", 0.35, packets, read_packet, (PacketError,), BINARY, sealed),
     Target("stream", 0.15, lines, read_line, (), BINARY),
-    Target("cobs", 0.15, lambda: [cobs.encode(p) for p in packets()], read_cobs,
-           (cobs.CobsError,), BINARY),
+    Target(
+        "cobs",
+        0.15,
+        lambda: [cobs.encode(p) for p in packets()],
+        read_cobs,
+        (cobs.CobsError,),
+        BINARY,
+    ),
     Target("status", 0.05, statuses, read_status, (PacketError,), BINARY),
     Target("legacy", 0.05, lambda: [bytes(range(CELLS))], read_legacy, (PacketError,), BINARY),
     Target("layout", 0.15, layouts, read_layout, (LayoutError,), TEXT),
     Target("recording", 0.1, recordings, read_recording, (RecordingError,), BINARY),
-)  # fmt: skip
+)

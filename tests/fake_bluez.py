@@ -187,14 +187,27 @@ class FakeBluez:
         services, mtu = await peer.connect(notify, lambda: self._lost(path))
         for uuid, characteristics in services.items():
             service = f"{path}/service{next(handles):04x}"
-            self._show(service, "org.bluez.GattService1", {
-                "UUID": Variant("s", uuid), "Device": Variant("o", path),
-                "Primary": Variant("b", True)})  # fmt: skip
+            self._show(
+                service,
+                "org.bluez.GattService1",
+                {
+                    "UUID": Variant("s", uuid),
+                    "Device": Variant("o", path),
+                    "Primary": Variant("b", True),
+                },
+            )
             for inner, flags in characteristics.items():
                 places[inner] = f"{service}/char{next(handles):04x}"
-                self._show(places[inner], "org.bluez.GattCharacteristic1", {
-                    "UUID": Variant("s", inner), "Service": Variant("o", service),
-                    "Flags": Variant("as", flags), "MTU": Variant("q", mtu)})  # fmt: skip
+                self._show(
+                    places[inner],
+                    "org.bluez.GattCharacteristic1",
+                    {
+                        "UUID": Variant("s", inner),
+                        "Service": Variant("o", service),
+                        "Flags": Variant("as", flags),
+                        "MTU": Variant("q", mtu),
+                    },
+                )
         self._change(path, "org.bluez.Device1", Connected=Variant("b", True))
         self._change(path, "org.bluez.Device1", ServicesResolved=Variant("b", True))
 
@@ -213,18 +226,33 @@ class FakeBluez:
 
     def _show(self, path: str, interface: str, properties: dict[str, Variant]) -> None:
         self._objects[path] = {interface: properties}
-        self._signal("/", "org.freedesktop.DBus.ObjectManager", "InterfacesAdded",
-                     "oa{sa{sv}}", [path, self._objects[path]])  # fmt: skip
+        self._signal(
+            "/",
+            "org.freedesktop.DBus.ObjectManager",
+            "InterfacesAdded",
+            "oa{sa{sv}}",
+            [path, self._objects[path]],
+        )
 
     def _hide(self, path: str) -> None:
         interfaces = list(self._objects.pop(path))
-        self._signal("/", "org.freedesktop.DBus.ObjectManager", "InterfacesRemoved",
-                     "oas", [path, interfaces])  # fmt: skip
+        self._signal(
+            "/",
+            "org.freedesktop.DBus.ObjectManager",
+            "InterfacesRemoved",
+            "oas",
+            [path, interfaces],
+        )
 
     def _change(self, path: str, interface: str, **changed: Variant) -> None:
         self._objects[path][interface] |= changed
-        self._signal(path, "org.freedesktop.DBus.Properties", "PropertiesChanged",
-                     "sa{sv}as", [interface, changed, []])  # fmt: skip
+        self._signal(
+            path,
+            "org.freedesktop.DBus.Properties",
+            "PropertiesChanged",
+            "sa{sv}as",
+            [interface, changed, []],
+        )
 
     def _signal(self, path: str, interface: str, member: str, kind: str, body: list[Any]) -> None:
         self._bus.send(Message.new_signal(path, interface, member, kind, body))

@@ -15,10 +15,12 @@ def edited(file: Path, change: Callable[[list[Operation]], list[Operation]]) -> 
     with pikepdf.open(file, allow_overwriting_input=True) as pdf:
         page = pdf.pages[0]
         before = [
-            ([Decimal(str(v)) if isinstance(v, int | Decimal) else v for v in i.operands],
-             str(i.operator))
+            (
+                [Decimal(str(v)) if isinstance(v, int | Decimal) else v for v in i.operands],
+                str(i.operator),
+            )
             for i in pikepdf.parse_content_stream(page)
-        ]  # fmt: skip
+        ]
         after = [(o, pikepdf.Operator(name)) for o, name in change(before)]
         page.Contents = pdf.make_stream(pikepdf.unparse_content_stream(after))
         pdf.save(file)

@@ -22,9 +22,13 @@ FINE = _footprint(*(Pad(str(i), 0.65 * i, 0, 0.3, 1.4) for i in range(4)))
 
 
 def part(
-    ref: str, footprint: Footprint, at: Point, nets: dict[str, str],
-    angle_deg: float = 0, side: Side = "front",
-) -> Component:  # fmt: skip
+    ref: str,
+    footprint: Footprint,
+    at: Point,
+    nets: dict[str, str],
+    angle_deg: float = 0,
+    side: Side = "front",
+) -> Component:
     """A part in its place."""
     kind = "connector" if footprint is PIN else "resistor"
     return Component(ref, "", "", kind, footprint, *at, angle_deg, side, tuple(nets.items()))
@@ -39,13 +43,23 @@ def board(
     """A board of 10 mm by the width with a hole in its middle."""
     nets = sorted({net for p in parts for _, net in p.nets})
     return Placement(
-        finger="receiver", name="small", revision="A", design_hash="",
-        outline=Box(-width_mm / 2, width_mm / 2, -5, 5), corner_mm=0.5,
-        holes=((0.0, 0.0),), hole_mm=2.0, keep_outs=keep_outs, edge_clearance_mm=0.3,
+        finger="receiver",
+        name="small",
+        revision="A",
+        design_hash="",
+        outline=Box(-width_mm / 2, width_mm / 2, -5, 5),
+        corner_mm=0.5,
+        holes=((0.0, 0.0),),
+        hole_mm=2.0,
+        keep_outs=keep_outs,
+        edge_clearance_mm=0.3,
         components=parts,
         nets=tuple(Net(n, "supply" if n in supply else "signal") for n in nets),
-        classes=CLASSES, ground="GND", silk=(), texts=(),
-    )  # fmt: skip
+        classes=CLASSES,
+        ground="GND",
+        silk=(),
+        texts=(),
+    )
 
 
 def crossing() -> Placement:
@@ -79,6 +93,11 @@ def preset(design_dir: Path, name: str, finger: str) -> Placement:
     design = derive(load(design_dir / "presets" / f"{name}.toml"))
     which = next(f for f in design.fingers if f.name == finger)
     return place(
-        design.title, design.reading, design.board, which,
-        design.wiring, design.packages, design.rules,
-    )  # fmt: skip
+        design.title,
+        design.reading,
+        design.board,
+        which,
+        design.wiring,
+        design.packages,
+        design.rules,
+    )

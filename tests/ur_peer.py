@@ -28,8 +28,10 @@ class Peer:
         self.host = f"127.{pid >> 8 & 255}.{pid & 255}.{next(_numbers) % 250 + 2}"
         self._process = subprocess.Popen(
             [sys.executable, str(STAND_IN), self.host],
-            stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
-        )  # fmt: skip
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+        )
         self.events: list[dict[str, Any]] = []
         self._told = threading.Condition()
         self._reader = threading.Thread(target=self._read, daemon=True)

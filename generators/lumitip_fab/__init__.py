@@ -1,8 +1,8 @@
 """Lumitip on the maker's side: one parameter file to every part, and the proof that they fit.
 
-    design = lumitip_fab.derived(Path("design/fingertip.toml"))
-    lumitip_fab.build(Path("design/fingertip.toml"), Path("outputs"))
-    outcome = lumitip_fab.check(Path("outputs"))
+design = lumitip_fab.derived(Path("design/fingertip.toml"))
+lumitip_fab.build(Path("design/fingertip.toml"), Path("outputs"))
+outcome = lumitip_fab.check(Path("outputs"))
 """
 
 from pathlib import Path

@@ -178,9 +178,11 @@ class Calibration:
             if told["format"] != _FORMAT:
                 raise ValueError(f"format {told['format']} given, this version reads {_FORMAT}")
             found = cls(
-                str(told["device_id"]), str(told["design_hash"]),
-                _array(told["empty"]), _array(told["dark"]),
-            )  # fmt: skip
+                str(told["device_id"]),
+                str(told["design_hash"]),
+                _array(told["empty"]),
+                _array(told["dark"]),
+            )
             found.correction()
             return found
         except (OSError, ValueError, KeyError, TypeError) as error:

@@ -12,9 +12,18 @@ from importlib import import_module
 from lumitip.errors import LumitipError
 
 COMMANDS = (
-    "bench-tasks", "doctor", "export", "info", "record", "recover", "replay", "scan", "tare",
-    "twin", "view",
-)  # fmt: skip
+    "bench-tasks",
+    "doctor",
+    "export",
+    "info",
+    "record",
+    "recover",
+    "replay",
+    "scan",
+    "tare",
+    "twin",
+    "view",
+)
 REFUSED = 2
 
 

@@ -244,9 +244,10 @@ def _whole(
         isinstance(values, list)
         and (shape[0] is None or len(rows) == shape[0])
         and all(type(v) is int and 0 <= v < below for v in flat)
-        and all(isinstance(r, list) and len(r) == 2 if len(shape) == 2 else type(r) is int
-                for r in rows)
-    )  # fmt: skip
+        and all(
+            isinstance(r, list) and len(r) == 2 if len(shape) == 2 else type(r) is int for r in rows
+        )
+    )
     if not fits:
         what = "pairs of cell indices" if len(shape) == 2 else f"{shape[0]} whole numbers"
         raise LayoutError(f"{name}: a list of {what} from 0 to {below - 1} is needed")

@@ -54,8 +54,11 @@ def socket_pins_exchanged(text: str) -> str:
 def names_exchanged(text: str) -> str:
     """The emitter's wires called by each other's name."""
     y = 100 - 14.367
-    near = [m for m in re.finditer(r'\(gr_text "(GND|12V)" \(at (\S+) (\S+) ', text)
-            if abs(float(m[3]) - y) < 3 and float(m[2]) < 140]  # fmt: skip
+    near = [
+        m
+        for m in re.finditer(r'\(gr_text "(GND|12V)" \(at (\S+) (\S+) ', text)
+        if abs(float(m[3]) - y) < 3 and float(m[2]) < 140
+    ]
     assert len(near) == 2
     for m, other in zip(near, ("12V", "GND"), strict=True):
         text = text[: m.start()] + m[0].replace(m[1], other) + text[m.end() :]

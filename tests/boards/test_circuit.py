@@ -87,8 +87,16 @@ def test_the_4051_is_wired_as_its_data_sheet_says(designs: dict[str, Design]) ->
     plan = _circuit(designs["published"], "receiver")
     nets = dict(next(part for part in plan.components if part.ref == "U2").nets)
     told = {name: nets[lead] for name, lead in HC4051.items()}
-    assert told == {"VCC": "3V3", "GND": "GND", "VEE": "GND", "E": "GND", "Z": "A1",
-                    "S0": "S0", "S1": "S1", "S2": "S2"}  # fmt: skip
+    assert told == {
+        "VCC": "3V3",
+        "GND": "GND",
+        "VEE": "GND",
+        "E": "GND",
+        "Z": "A1",
+        "S0": "S0",
+        "S1": "S1",
+        "S2": "S2",
+    }
     layout = designs["published"].layout
     for channel, lead in enumerate(HC4051_INPUTS):
         (cell,) = np.flatnonzero((layout.mux == 1) & (layout.channel == channel))
@@ -97,9 +105,12 @@ def test_the_4051_is_wired_as_its_data_sheet_says(designs: dict[str, Design]) ->
 
 def test_the_published_parts_are_ordered_by_their_numbers(designs: dict[str, Design]) -> None:
     design = designs["published"]
-    parts = {p.ref: (p.value, p.part, p.footprint.name)
-             for name in ("emitter", "receiver")
-             for p in _circuit(design, name).components if p.part}  # fmt: skip
+    parts = {
+        p.ref: (p.value, p.part, p.footprint.name)
+        for name in ("emitter", "receiver")
+        for p in _circuit(design, name).components
+        if p.part
+    }
     assert parts["D1"] == ("15406085BA300", "15406085BA300", "LEDC1608X60N")
     assert parts["Q32"] == ("SML-H10TBT86", "SML-H10TBT86", "PTRC2012X80N")
     assert parts["U4"] == ("74HC4051PW", "74HC4051PW,118", "SOP65P640X110-16N")
@@ -135,8 +146,11 @@ def test_every_signal_has_a_test_point_and_a_class(
     classes = {net.name: net.net_class for net in plan.nets}
     assert len(classes) == len(plan.nets)
     assert {n for n, kind in classes.items() if kind == "supply"} == signals & {
-        "GND", "3V3", "24V", "12V"
-    }  # fmt: skip
+        "GND",
+        "3V3",
+        "24V",
+        "12V",
+    }
     assert set(classes) == {net for part in plan.components for _, net in part.nets}
     assert sum(part.kind == "fiducial" for part in plan.components) == 3
 

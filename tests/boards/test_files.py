@@ -109,8 +109,10 @@ def test_text_comes_back_as_it_was_written(tmp_path: Path) -> None:
     node = ("a", Quoted('with "quotes" and \\ and (brackets)'), ("b", 1.5, Quoted("")))
     (tmp_path / "a").write_text(written(node))
     assert read_nodes(tmp_path / "a") == [
-        "a", 'with "quotes" and \\ and (brackets)', ["b", "1.5", ""],
-    ]  # fmt: skip
+        "a",
+        'with "quotes" and \\ and (brackets)',
+        ["b", "1.5", ""],
+    ]
 
 
 discs = st.tuples(st.floats(2, 18), st.floats(2, 18), st.floats(0.2, 3))

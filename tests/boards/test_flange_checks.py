@@ -28,8 +28,9 @@ def supply_narrow(text: str) -> str:
 def ground_under_the_regulator_missing(text: str) -> str:
     """The pour of the back, which is of no net any more."""
     zone = text.index("(zone", text.index("(zone") + 1)
-    return text[:zone] + re.sub(r'\(net \d+\)\s+\(net_name "GND"\)', '(net 0) (net_name "")',
-                                text[zone:], count=1)  # fmt: skip
+    return text[:zone] + re.sub(
+        r'\(net \d+\)\s+\(net_name "GND"\)', '(net 0) (net_name "")', text[zone:], count=1
+    )
 
 
 def way_to_the_capacitor_missing(text: str) -> str:
@@ -73,8 +74,9 @@ def test_a_damage_of_the_flange(damage: Damage, damaged_boards: Path) -> None:
 
 def test_the_flange_passes(boards: Callable[[str], Path]) -> None:
     folder = boards("small")
-    found = [m for m in board.measure(folder, read_design(folder / "design.json"))
-             if m.subject == FLANGE]  # fmt: skip
+    found = [
+        m for m in board.measure(folder, read_design(folder / "design.json")) if m.subject == FLANGE
+    ]
     assert [m for m in found if not m.passed] == []
     layout = {m.check.removeprefix("board.") for m in found if "hot_loop" in m.check}
     assert layout == {"hot_loop", "hot_loop_ground", "hot_loop_input"}

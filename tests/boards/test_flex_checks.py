@@ -45,19 +45,38 @@ def without_teardrops(text: str) -> str:
 
 TEXTS: dict[str, tuple[Callable[[str], str], set[str]]] = {
     "thick core": (lambda t: once(t, r"\(thickness 0.109\)", "(thickness 0.2)"), {"stack_up"}),
-    "FR-4": (lambda t: once(t, r"\(thickness 0.109\) \(material \"Polyimide\"\)",
-                            '(thickness 0.109) (material "FR4")'), {"stack_up"}),
+    "FR-4": (
+        lambda t: once(
+            t,
+            r"\(thickness 0.109\) \(material \"Polyimide\"\)",
+            '(thickness 0.109) (material "FR4")',
+        ),
+        {"stack_up"},
+    ),
     "no stack-up": (lambda t: once(t, r"\(stackup", "(other"), {"stack_up"}),
-    "bend moved": (lambda t: once(t, r'(\(gr_rect \(start \S+ )(\S+\))(.* \(layer "User.2"\))',
-                                  lambda m: f"{m[1]}90){m[3]}"), {"regions"}),
+    "bend moved": (
+        lambda t: once(
+            t,
+            r'(\(gr_rect \(start \S+ )(\S+\))(.* \(layer "User.2"\))',
+            lambda m: f"{m[1]}90){m[3]}",
+        ),
+        {"regions"},
+    ),
     "stiffener too wide": (
-        lambda t: once(t, r'\(gr_rect \(start \S+( \S+\).* \(layer "User.1"\))',
-                       lambda m: f"(gr_rect (start 138.3{m[1]}"), {"regions", "stiffener_room"}),
-    "no stiffener": (lambda t: once(t, r'\(layer "User.1"\)', '(layer "User.3")'),
-                     {"regions", "stiffener_room"}),
+        lambda t: once(
+            t,
+            r'\(gr_rect \(start \S+( \S+\).* \(layer "User.1"\))',
+            lambda m: f"(gr_rect (start 138.3{m[1]}",
+        ),
+        {"regions", "stiffener_room"},
+    ),
+    "no stiffener": (
+        lambda t: once(t, r'\(layer "User.1"\)', '(layer "User.3")'),
+        {"regions", "stiffener_room"},
+    ),
     "via in the bend": (via_in_the_bend, {"bend"}),
     "no teardrops": (without_teardrops, {"teardrops"}),
-}  # fmt: skip
+}
 NOTES = {
     "thickness": ("0.2 mm thick", "1.6 mm thick"),
     "stiffener": ("x -11.503", "x -12.503"),

@@ -100,13 +100,18 @@ def test_every_layer_says_what_it_is(boards: Callable[[str], Path]) -> None:
     }
     functions = {name: match[1].decode() for name, match in told.items() if match}
     assert functions == {
-        "F_Cu.gbr": "Copper,L1,Top", "B_Cu.gbr": "Copper,L2,Bot",
-        "F_Mask.gbr": "Soldermask,Top", "B_Mask.gbr": "Soldermask,Bot",
-        "F_Paste.gbr": "Paste,Top", "B_Paste.gbr": "Paste,Bot",
-        "F_Silkscreen.gbr": "Legend,Top", "B_Silkscreen.gbr": "Legend,Bot",
+        "F_Cu.gbr": "Copper,L1,Top",
+        "B_Cu.gbr": "Copper,L2,Bot",
+        "F_Mask.gbr": "Soldermask,Top",
+        "B_Mask.gbr": "Soldermask,Bot",
+        "F_Paste.gbr": "Paste,Top",
+        "B_Paste.gbr": "Paste,Bot",
+        "F_Silkscreen.gbr": "Legend,Top",
+        "B_Silkscreen.gbr": "Legend,Bot",
         "Edge_Cuts.gbr": "Profile,NP",
-        "PTH.drl": "Plated,1,2,PTH", "NPTH.drl": "NonPlated,1,2,NPTH",
-    }  # fmt: skip
+        "PTH.drl": "Plated,1,2,PTH",
+        "NPTH.drl": "NonPlated,1,2,NPTH",
+    }
 
 
 def test_every_command_of_a_gerber_is_whole(boards: Callable[[str], Path]) -> None:

@@ -29,8 +29,17 @@ EVERY = (
 ALLOWED: dict[str, str] = {}  # names of warnings, each with the reason why it may stand
 MISSING_SHARE = 0.01  # of KiCad's fill, that ours may leave out
 SYSTEM_PYTHON = Path("/usr/bin/python3")
-LAYERS = ("F_Cu", "B_Cu", "F_Mask", "B_Mask", "F_Paste", "B_Paste", "F_Silkscreen",
-          "B_Silkscreen", "Edge_Cuts")  # fmt: skip
+LAYERS = (
+    "F_Cu",
+    "B_Cu",
+    "F_Mask",
+    "B_Mask",
+    "F_Paste",
+    "B_Paste",
+    "F_Silkscreen",
+    "B_Silkscreen",
+    "Edge_Cuts",
+)
 
 pytestmark = needs("kicad-cli")
 
@@ -44,9 +53,12 @@ def kicad(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., str]:
         environment = {**os.environ, "HOME": str(home), "XDG_CONFIG_HOME": str(home)}
         for _ in range(3):  # KiCad's own crashes are rare and come at random: a fault of ours stays
             done = subprocess.run(
-                [str(word) for word in command], env=environment, capture_output=True, text=True,
+                [str(word) for word in command],
+                env=environment,
+                capture_output=True,
+                text=True,
                 check=False,
-            )  # fmt: skip
+            )
             if done.returncode != -signal.SIGSEGV:
                 break
         assert done.returncode == 0, done.stdout + done.stderr
@@ -61,8 +73,18 @@ def test_kicad_finds_no_fault(
 ) -> None:
     board = boards(preset) / "boards" / name / f"{name}.kicad_pcb"
     report = tmp_path / "drc.json"
-    kicad("kicad-cli", "pcb", "drc", "--severity-all", "--schematic-parity", "--format", "json",
-          "-o", report, board)  # fmt: skip
+    kicad(
+        "kicad-cli",
+        "pcb",
+        "drc",
+        "--severity-all",
+        "--schematic-parity",
+        "--format",
+        "json",
+        "-o",
+        report,
+        board,
+    )
     told = json.loads(report.read_text())
     assert told["unconnected_items"] == []
     assert told["schematic_parity"] == []
@@ -74,10 +96,21 @@ def test_gerbers_paint_what_kicad_plots(
     boards: Boards, kicad: Callable[..., str], tmp_path: Path, preset: str, name: str
 ) -> None:
     folder = boards(preset) / "boards" / name
-    kicad("kicad-cli", "pcb", "export", "gerbers", "--layers",
-          "F.Cu,B.Cu,F.Mask,B.Mask,F.Paste,B.Paste,F.SilkS,B.SilkS,Edge.Cuts",
-          "--use-drill-file-origin", "--precision", "6", "--no-protel-ext",
-          "-o", f"{tmp_path}/", folder / f"{name}.kicad_pcb")  # fmt: skip
+    kicad(
+        "kicad-cli",
+        "pcb",
+        "export",
+        "gerbers",
+        "--layers",
+        "F.Cu,B.Cu,F.Mask,B.Mask,F.Paste,B.Paste,F.SilkS,B.SilkS,Edge.Cuts",
+        "--use-drill-file-origin",
+        "--precision",
+        "6",
+        "--no-protel-ext",
+        "-o",
+        f"{tmp_path}/",
+        folder / f"{name}.kicad_pcb",
+    )
     package = zipfile.ZipFile(folder / "order" / f"generic_{name}.zip")
     ours = {n: gerber_area(package.read(f"{name}-{n}.gbr").decode()) for n in LAYERS}
     plotted = {n: gerber_area((tmp_path / f"{name}-{n}.gbr").read_text()) for n in LAYERS}
@@ -113,10 +146,14 @@ def test_the_written_fill_is_what_kicad_fills(
     kicad(SYSTEM_PYTHON, "-c", REFILL, tmp_path / "again.kicad_pcb", refilled)
     ours, theirs = read_board(written), read_board(refilled)
     for layer in ours.layers:
-        pads = shapely.union_all([
-            t.copper.area for part in ours.parts for t in part.terminals
-            if t.copper is not None and layer in t.copper.layers
-        ])  # fmt: skip
+        pads = shapely.union_all(
+            [
+                t.copper.area
+                for part in ours.parts
+                for t in part.terminals
+                if t.copper is not None and layer in t.copper.layers
+            ]
+        )
         areas = [
             shapely.union_all([p.area for p in b.loose if p.kind == "fill" and layer in p.layers])
             - pads  # which KiCad's bridges cross from end to end

@@ -57,8 +57,11 @@ def rule_lets_the_pour_in(text: str) -> str:
 
 
 def rule_of_one_side(text: str) -> str:
-    return once(text, RULE + r'\n    \(layers "F.Cu" "B.Cu"\)',
-                '\n  (zone\n    (net 0)\n    (net_name "")\n    (layers "F.Cu")')  # fmt: skip
+    return once(
+        text,
+        RULE + r'\n    \(layers "F.Cu" "B.Cu"\)',
+        '\n  (zone\n    (net 0)\n    (net_name "")\n    (layers "F.Cu")',
+    )
 
 
 def pads_exchanged(text: str) -> str:
@@ -75,9 +78,10 @@ def edge_beyond_the_antenna(text: str) -> str:
     lines = text.split("\n")
     return "\n".join(
         re.sub(r"\((start|mid|end) (1[23]\S*) ", lambda m: f"({m[1]} {float(m[2]) - 1:g} ", line)
-        if '"Edge.Cuts"' in line else line
+        if '"Edge.Cuts"' in line
+        else line
         for line in lines
-    )  # fmt: skip
+    )
 
 
 DAMAGES: dict[Damage, set[str]] = {

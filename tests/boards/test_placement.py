@@ -266,8 +266,11 @@ def test_labels_of_a_row_stand_apart(board: Placed) -> None:
     """Signals at the wire pads read apart: no two of them touch."""
     _, finger, placement = board
     for side in SIDES:
-        labels = [extent(text, side) for where, text in placement.texts
-                  if where == side and text.text in finger.connector.signals]  # fmt: skip
+        labels = [
+            extent(text, side)
+            for where, text in placement.texts
+            if where == side and text.text in finger.connector.signals
+        ]
         assert len(labels) == len(finger.connector.signals)
         assert all(a.distance(b) >= 0.15 for a, b in combinations(labels, 2))
 

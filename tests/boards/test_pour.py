@@ -125,9 +125,12 @@ def test_a_board_that_is_not_routed_is_refused() -> None:
     wall = small.board(
         small.part("R1", small.CHIP, (-6, 0), {"2": "GND"}),
         small.part("R2", small.CHIP, (6, 0), {"2": "GND"}, side="back"),
-        *(small.part(f"W{k}{s}", small.CHIP, (0, y), {"1": "A", "2": "A"}, side=s)
-          for s in SIDES for k, y in enumerate((-4, -3, -2, 2, 3, 4))),
-    )  # fmt: skip
+        *(
+            small.part(f"W{k}{s}", small.CHIP, (0, y), {"1": "A", "2": "A"}, side=s)
+            for s in SIDES
+            for k, y in enumerate((-4, -3, -2, 2, 3, 4))
+        ),
+    )
     tracks = tuple(Track("A", s, (-0.8, -4.9), (-0.8, 4.9), 2.0) for s in SIDES)
     with pytest.raises(BuildError, match=r"R2\.2 .* is not joined to net GND"):
         pour(wall, Routing(tracks, (), 1))

@@ -77,8 +77,16 @@ def test_kicads_rules_find_nothing(drawn: Drawn, board: tuple[str, str]) -> None
 def test_kicad_reads_the_nets_of_the_circuit(drawn: Drawn, board: tuple[str, str]) -> None:
     _, placement, folder = drawn[board]
     file = folder / "netlist.xml"
-    _kicad("sch", "export", "netlist", "--format", "kicadxml", "-o", file,
-           folder / f"{placement.finger}.kicad_sch")  # fmt: skip
+    _kicad(
+        "sch",
+        "export",
+        "netlist",
+        "--format",
+        "kicadxml",
+        "-o",
+        file,
+        folder / f"{placement.finger}.kicad_sch",
+    )
     told = ElementTree.parse(file)
     read = {
         net.attrib["name"]: {(n.attrib["ref"], n.attrib["pin"]) for n in net.iter("node")}

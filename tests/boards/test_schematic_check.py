@@ -32,7 +32,7 @@ def test_schematics_and_boards_agree(boards: Callable[[str], Path], preset: str)
         ("receiver", '"lumitip:RESC1608X50N" (id', '"lumitip:RESC2012X50N" (id', "parts"),
         ("receiver", "(kicad_sch", "(kicad_pcb", "readable"),
     ],
-)  # fmt: skip
+)
 def test_a_damaged_schematic_fails(
     damaged_boards: Path, finger: str, old: str, new: str, check: str
 ) -> None:

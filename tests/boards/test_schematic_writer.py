@@ -29,8 +29,17 @@ from lumitip_fab.checks.readers.kicad_shapes import (
 from lumitip_fab.design import Design, Finger, Point
 
 WORDS = (
-    'a "quoted" \\ back', "75 Ω", "", "100", "1e5", "007", "nil", "t", "yes", "(x) ; #1 'y' [z]",
-)  # fmt: skip
+    'a "quoted" \\ back',
+    "75 Ω",
+    "",
+    "100",
+    "1e5",
+    "007",
+    "nil",
+    "t",
+    "yes",
+    "(x) ; #1 'y' [z]",
+)
 Written = tuple[Placement, Sheet, dict[str, Component], Path]
 
 
@@ -179,10 +188,15 @@ def _symbol(node: Node) -> Drawn:
     assert shown.keys() <= {"Reference", "Value"}
     return Drawn(
         words(child(node, "lib_id"))[0].removeprefix("lumitip:"),
-        words(fields["Reference"])[1], words(fields["Value"])[1], x, y, _angle(node),
+        words(fields["Reference"])[1],
+        words(fields["Value"])[1],
+        x,
+        y,
+        _angle(node),
         tuple(words(pin)[0] for pin in children(node, "pin")),
-        shown.get("Reference"), shown.get("Value"),
-    )  # fmt: skip
+        shown.get("Reference"),
+        shown.get("Value"),
+    )
 
 
 def _at(node: Node) -> Point:
@@ -207,8 +221,11 @@ def _rounded(sheet: Sheet) -> Sheet:
     return Sheet(
         [
             replace(
-                s, x_mm=round(s.x_mm, 5), y_mm=round(s.y_mm, 5),
-                ref_at=s.ref_at and near(s.ref_at), value_at=s.value_at and near(s.value_at),
+                s,
+                x_mm=round(s.x_mm, 5),
+                y_mm=round(s.y_mm, 5),
+                ref_at=s.ref_at and near(s.ref_at),
+                value_at=s.value_at and near(s.value_at),
             )
             for s in sheet.symbols
         ],
@@ -216,4 +233,4 @@ def _rounded(sheet: Sheet) -> Sheet:
         [near(at) for at in sheet.junctions],
         [(net, near(at), angle) for net, at, angle in sheet.labels],
         [(told, near(at), height) for told, at, height in sheet.texts],
-    )  # fmt: skip
+    )

@@ -29,9 +29,14 @@ def _netlist(
 ) -> str:
     d, finger = design, getattr(design, name)
     (made,) = simulation(
-        d.title, d.reading, finger, wiring or d.wiring, d.packages, d.rules,
+        d.title,
+        d.reading,
+        finger,
+        wiring or d.wiring,
+        d.packages,
+        d.rules,
         electrical or d.electrical,
-    )  # fmt: skip
+    )
     assert made.path == f"boards/{name}/{name}.cir"
     return made.data.decode()
 

@@ -64,8 +64,9 @@ def test_what_else_is_at_the_output_is_no_output_capacitor(design_dir: Path) -> 
     assert there == {"C2", "C3", "C5"}, "C5 is of another kind, at the linear regulator's input"
     lines = _netlist(design).splitlines()
     assert [line for line in lines if line.startswith("C") and " 5V " in line] == [
-        "C2 5V 0 11u", "C3 5V 0 11u",
-    ]  # fmt: skip
+        "C2 5V 0 11u",
+        "C3 5V 0 11u",
+    ]
 
 
 def test_a_board_without_a_regulator_has_no_netlist(design_dir: Path) -> None:

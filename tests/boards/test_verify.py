@@ -33,9 +33,13 @@ def bare() -> Placement:
 
 
 def _faults(
-    placement: Placement, routing: Routing, *, tracks: Iterable[Track] | None = None,
-    vias: Iterable[Via] | None = None, fills: tuple[Fill, ...] = (),
-) -> tuple[Fault, ...]:  # fmt: skip
+    placement: Placement,
+    routing: Routing,
+    *,
+    tracks: Iterable[Track] | None = None,
+    vias: Iterable[Via] | None = None,
+    fills: tuple[Fill, ...] = (),
+) -> tuple[Fault, ...]:
     tracks = routing.tracks if tracks is None else tuple(tracks)
     vias = routing.vias if vias is None else tuple(vias)
     return verify(BoardModel(placement, Routing(tracks, vias, 1), fills))

@@ -240,11 +240,30 @@ def step_of_nothing(folder: Path) -> None:
 
 
 EVERY_LENGTH = {
-    "bed_contact", "bolt", "bolt_clearance", "bolt_hole", "gripper_pin_depth", "gripper_pin_hole",
-    "gripper_pins", "letter", "min_wall", "nose", "notch", "outline", "pin_clearance",
-    "pin_height", "pins", "pocket_depth", "pocket_gap", "screw_seat", "size", "slant", "step",
-    "three_mf", "tip_edge",
-}  # fmt: skip
+    "bed_contact",
+    "bolt",
+    "bolt_clearance",
+    "bolt_hole",
+    "gripper_pin_depth",
+    "gripper_pin_hole",
+    "gripper_pins",
+    "letter",
+    "min_wall",
+    "nose",
+    "notch",
+    "outline",
+    "pin_clearance",
+    "pin_height",
+    "pins",
+    "pocket_depth",
+    "pocket_gap",
+    "screw_seat",
+    "size",
+    "slant",
+    "step",
+    "three_mf",
+    "tip_edge",
+}
 FILES = {
     triangle_flipped: {"watertight"},
     triangle_lost: {"watertight"},

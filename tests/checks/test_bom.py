@@ -26,25 +26,37 @@ def failing(folder: Path) -> set[str]:
 
 # File, what is replaced in it, by what, and the checks that then fail.
 EDITS = [
-    ("bom.csv", "32 on emitter,32,piece,0.3,9.60", "31 on emitter,31,piece,0.3,9.30",
-     {"parts", "total"}),
+    (
+        "bom.csv",
+        "32 on emitter,32,piece,0.3,9.60",
+        "31 on emitter,31,piece,0.3,9.30",
+        {"parts", "total"},
+    ),
     ("bom.csv", "32,piece,0.3,9.60", "32,piece,0.2,6.40", {"prices", "total"}),
     ("bom.csv", "32,piece,0.3,9.60", "32,piece,0.3,6.90", {"prices", "total"}),
     ("bom.csv", "Elektronik,15406085BA300,", "Elektronik,15406085BA200,", {"parts", "prices"}),
     ("bom.csv", "emitter board", "emitting board", {"boards"}),
     ("bom.csv", "backing/emitter_backing.stl", "backing/emitter_back.stl", {"prints"}),
-    ("bom.csv", "a sheet for each finger,2,sheet,2,4.00",
-     "a sheet for each finger,1,sheet,2,2.00", {"film", "total"}),
-    ("bom.csv", "thread\",2,piece", "thread\",4,piece", {"bolts", "prices"}),
+    (
+        "bom.csv",
+        "a sheet for each finger,2,sheet,2,4.00",
+        "a sheet for each finger,1,sheet,2,2.00",
+        {"film", "total"},
+    ),
+    ("bom.csv", 'thread",2,piece', 'thread",4,piece', {"bolts", "prices"}),
     ("bom.csv", "EUR, 2026-11", "EUR", {"total"}),
     ("bom.csv", "\ntotal,", "\nsum,", {"readable"}),
     ("bom.csv", "32,piece,0.3,9.60", "nan,piece,0.3,9.60", {"readable"}),
     ("bom.csv", "32,piece,0.3,9.60", "32", {"readable"}),
-    ("boards/receiver/order/generic_receiver_bom.csv", ',"74HC4051PW,118"', ',"74HC4067PW,118"',
-     {"parts"}),
+    (
+        "boards/receiver/order/generic_receiver_bom.csv",
+        ',"74HC4051PW,118"',
+        ',"74HC4067PW,118"',
+        {"parts"},
+    ),
     ("mould/emitter_casting.md", "part A | **", "part A | **1", {"silicone"}),
     ("wiring/cables.csv", "BK,0.08,250", "BK,0.08,950", {"wire"}),
-]  # fmt: skip
+]
 
 
 def test_nothing_fails_as_it_is_written(copied: Path) -> None:

@@ -55,9 +55,16 @@ def test_flange_and_holder_follow_the_fit(fit_mm: float, fitted: Derived) -> Non
     """Holes and pockets are wider, what stands in something narrower; nothing else moves."""
     snug, loose = fitted(0.0), fitted(fit_mm)
     wider = {
-        "recess_mm": 2, "bolt_hole_mm": 2, "pin_hole_mm": 2, "socket_mm": 2, "screw_mm": 2,
-        "peg_hole_mm": 2, "spigot_mm": -2, "peg_mm": -2, "pocket_corner_mm": 1,
-    }  # fmt: skip
+        "recess_mm": 2,
+        "bolt_hole_mm": 2,
+        "pin_hole_mm": 2,
+        "socket_mm": 2,
+        "screw_mm": 2,
+        "peg_hole_mm": 2,
+        "spigot_mm": -2,
+        "peg_mm": -2,
+        "pocket_corner_mm": 1,
+    }
     (before,), (after,) = snug.flanges, loose.flanges
     for name, times in wider.items():
         assert getattr(after, name) - getattr(before, name) == pytest.approx(times * fit_mm), name
@@ -119,10 +126,14 @@ def test_the_rim_follows_the_fit_and_its_groove_does_not(fit_mm: float, fitted: 
     ("fit_mm", "flex", "told"),
     [
         (-0.1, "glue_mm = 0.1", "leaves 0.00 mm of flex.glue_mm = 0.1, as drawn; at least -0.08"),
-        (0.1, "groove_mm = 1.3", "leaves a rim of 0.80 mm between gaps of 0.15 and printer.fit_mm "
-         "= 0.1; at least two printed lines of 0.45"),
+        (
+            0.1,
+            "groove_mm = 1.3",
+            "leaves a rim of 0.80 mm between gaps of 0.15 and printer.fit_mm "
+            "= 0.1; at least two printed lines of 0.45",
+        ),
     ],
-)  # fmt: skip
+)
 def test_a_fit_that_leaves_no_gap_or_rim_is_refused_with_the_numbers(
     fit_mm: float, flex: str, told: str, fitted: Derived
 ) -> None:
@@ -137,8 +148,15 @@ def test_a_rim_that_was_drawn_for_another_fit_is_told(fitted: Derived, tmp_path:
     """The gap is measured against glue and fit, not against what was drawn."""
     design = fitted(0.1, COMPLIANT)
     for finger in design.fingers:
-        for made in backing_files(finger, design.stack, design.outline, design.tip, design.board,
-                                  design.mount, design.interfaces):  # fmt: skip
+        for made in backing_files(
+            finger,
+            design.stack,
+            design.outline,
+            design.tip,
+            design.board,
+            design.mount,
+            design.interfaces,
+        ):
             (tmp_path / made.path).parent.mkdir(exist_ok=True)
             (tmp_path / made.path).write_bytes(made.data)
     (tmp_path / "design.json").write_text(design_text(design), encoding="utf-8")

@@ -122,9 +122,17 @@ def joined(part: Manifold, plate: FitPlate) -> Manifold:
 
 
 PLACED = {
-    "bolt", "bolt_hole", "gripper_pins", "gripper_pin_hole", "nose", "pocket_gap", "pins",
-    "pin", "floor", "label",
-}  # fmt: skip
+    "bolt",
+    "bolt_hole",
+    "gripper_pins",
+    "gripper_pin_hole",
+    "nose",
+    "pocket_gap",
+    "pins",
+    "pin",
+    "floor",
+    "label",
+}
 DAMAGES = {
     wall_of_the_next_step: {"pocket_gap"},
     pin_of_the_next_step: {"pin"},

@@ -122,8 +122,10 @@ def test_the_fit_is_added_to_every_gap_and_moves_nothing_else(held_by: File) -> 
     narrower = snug.mount.nose.front_width_mm - loose.mount.nose.front_width_mm
     assert narrower == pytest.approx(2 * 0.05 / 0.866, abs=1e-3)
     assert (loose.board.box, loose.receiver, loose.emitter) == (
-        snug.board.box, snug.receiver, snug.emitter,
-    )  # fmt: skip
+        snug.board.box,
+        snug.receiver,
+        snug.emitter,
+    )
     assert (loose.outline, loose.layout) == (snug.outline, snug.layout)
 
 
@@ -140,27 +142,33 @@ def changed(before: str, after: str) -> str:
 
 
 REFUSED = {
-    changed("bolt_spacing_mm = 15.0", "bolt_spacing_mm = 7.0"):
-        "whose block keeps 0.60 mm between its counterbores",
-    changed("bolt_spacing_mm = 15.0", "bolt_spacing_mm = 19.0"):
-        "whose block keeps 0.30 mm beside its counterbores",
-    changed("block_back_w_mm = 16.0", "block_back_w_mm = 13.5"):
-        "whose block keeps 0.30 mm behind its counterbores",
-    changed("block_corner_mm = 2.0", "block_corner_mm = 11.0"):
-        "whose block keeps 0.37 mm at its corners",
-    changed("counterbore_mm = 6.4", "counterbore_mm = 4.0"):
-        "whose block keeps 0.30 mm round the bolts under their heads",
+    changed(
+        "bolt_spacing_mm = 15.0", "bolt_spacing_mm = 7.0"
+    ): "whose block keeps 0.60 mm between its counterbores",
+    changed(
+        "bolt_spacing_mm = 15.0", "bolt_spacing_mm = 19.0"
+    ): "whose block keeps 0.30 mm beside its counterbores",
+    changed(
+        "block_back_w_mm = 16.0", "block_back_w_mm = 13.5"
+    ): "whose block keeps 0.30 mm behind its counterbores",
+    changed(
+        "block_corner_mm = 2.0", "block_corner_mm = 11.0"
+    ): "whose block keeps 0.37 mm at its corners",
+    changed(
+        "counterbore_mm = 6.4", "counterbore_mm = 4.0"
+    ): "whose block keeps 0.30 mm round the bolts under their heads",
     changed("depth_mm = 2.5", "depth_mm = 3.5"): "whose block keeps 0.50 mm over the pins",
-    changed("hole_mm = 3.1", "hole_mm = 5.1"):
-        "whose block keeps 0.25 mm between bolts and pins",
+    changed("hole_mm = 3.1", "hole_mm = 5.1"): "whose block keeps 0.25 mm between bolts and pins",
     changed("pad_w_mm = 9.0", "pad_w_mm = 13.0"): "when it is closed",
     changed('bolt = "M3"', 'bolt = "3 mm"'): "bolt",
     changed("length_mm = 70.0", "length_mm = 90.0"): "length_mm = 90 given, at most reach_mm = 85",
-    changed("corner_mm = 2.0\nlength", "corner_mm = 21.0\nlength"):
-        "corner_mm = 21 given, at most 20",
-    NEW + '[bench_jaw.origin]\nbold_mm = { source = "x", confidence = "assumed" }\n':
-        "origin of bold_mm given",
-}  # fmt: skip
+    changed(
+        "corner_mm = 2.0\nlength", "corner_mm = 21.0\nlength"
+    ): "corner_mm = 21 given, at most 20",
+    NEW
+    + "[bench_jaw.origin]\n"
+    + 'bold_mm = { source = "x", confidence = "assumed" }\n': "origin of bold_mm given",
+}
 
 
 @pytest.mark.parametrize("entry", REFUSED, ids=REFUSED.get)

@@ -182,8 +182,11 @@ def test_a_holder_goes_round_a_round_body_alone(design_dir: Path, tmp_path: Path
     assert made == {
         "robotiq_2f85": [(75.0, "Robotiq 2F-85, inferred")],
         "robotiq_2f140": [(75.0, "Robotiq 2F-140, assumed")],
-        "wsg50": [], "onrobot_rg2": [], "franka_hand": [], "two_hole_jaw": [],
-    }  # fmt: skip
+        "wsg50": [],
+        "onrobot_rg2": [],
+        "franka_hand": [],
+        "two_hole_jaw": [],
+    }
     file.write_text(f"{file.read_text()}[holder]\nbody_mm = 80\n")
     design = derive(load(file))
     assert [holder.body_from for holder in design.holders] == ["holder.body_mm"]

@@ -10,8 +10,15 @@ import pytest
 
 from lumitip_fab.checks.run import run_checks
 
-ALL = {"layout.cells", "layout.order", "layout.neighbours", "layout.wiring", "layout.facing",
-       "layout.hash", "layout.optics"}  # fmt: skip
+ALL = {
+    "layout.cells",
+    "layout.order",
+    "layout.neighbours",
+    "layout.wiring",
+    "layout.facing",
+    "layout.hash",
+    "layout.optics",
+}
 
 
 def moved(told: dict[str, Any]) -> None:
@@ -92,7 +99,8 @@ def test_every_layout_check_is_failed_by_some_damage(outputs: Path) -> None:
 
 def _rehashed(told: dict[str, Any]) -> str:
     """The text of a damaged layout whose hash fits again, as a careless writer would leave it."""
-    hashed = {name: told[name] for name in
-              ("adc_pin", "channel", "column", "mux", "row", "x_mm", "y_mm")}  # fmt: skip
+    hashed = {
+        name: told[name] for name in ("adc_pin", "channel", "column", "mux", "row", "x_mm", "y_mm")
+    }
     text = json.dumps(hashed, sort_keys=True, separators=(",", ":"))
     return json.dumps(told | {"design_hash": hashlib.sha256(text.encode()).hexdigest()})

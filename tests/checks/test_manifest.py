@@ -14,8 +14,9 @@ def failing(folder: Path) -> set[str]:
     return {m.check for m in run_checks(folder, ["manifest"]).failed}
 
 
-@pytest.mark.parametrize("path", ["resolved.toml", "assembly/receiver_exploded.svg",
-                                  "mask/emitter_wrapping.md"])  # fmt: skip
+@pytest.mark.parametrize(
+    "path", ["resolved.toml", "assembly/receiver_exploded.svg", "mask/emitter_wrapping.md"]
+)
 @pytest.mark.parametrize("damage", [Path.unlink, lambda f: f.write_text("edited")])
 def test_a_file_lost_or_edited_behind_its_back(
     damaged: Path, path: str, damage: Callable[[Path], Any]

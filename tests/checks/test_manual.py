@@ -10,9 +10,19 @@ from damages import edit, excerpt
 from damages import failing as failing_of
 
 _NEEDED = (
-    "assembly", "backing", "boards", "firmware", "fit", "flange", "holder", "manual", "mask",
-    "mould", "print", "wiring",
-)  # fmt: skip
+    "assembly",
+    "backing",
+    "boards",
+    "firmware",
+    "fit",
+    "flange",
+    "holder",
+    "manual",
+    "mask",
+    "mould",
+    "print",
+    "wiring",
+)
 HTML, PDF = "manual/manual.html", "manual/manual.pdf"
 
 

@@ -128,8 +128,11 @@ def ruler_shortened(operations: list[Operation]) -> list[Operation]:
 
 
 def bands(operations: list[Operation]) -> tuple[int, int]:
-    return next((a, b) for a, b in paths(operations) if [n for _, n in operations[a:b]].count("m")
-                > 5 and operations[b][1] == "f")  # fmt: skip
+    return next(
+        (a, b)
+        for a, b in paths(operations)
+        if [n for _, n in operations[a:b]].count("m") > 5 and operations[b][1] == "f"
+    )
 
 
 def bands_removed(operations: list[Operation]) -> list[Operation]:

@@ -62,13 +62,21 @@ def test_a_changed_file_is_measured_again_and_no_other(
 
 @pytest.mark.parametrize(
     ("field", "value", "again"),
-    [("controller", {"name": "Other"}, []), ("optics", {"film_mm": 0.2}, ["layout"]),
-     ("mask", {"hole_mm": 2.4}, ["mask"]), ("stack", {"film_mm": 0.2}, ["mask"])],
-)  # fmt: skip
+    [
+        ("controller", {"name": "Other"}, []),
+        ("optics", {"film_mm": 0.2}, ["layout"]),
+        ("mask", {"hole_mm": 2.4}, ["mask"]),
+        ("stack", {"film_mm": 0.2}, ["mask"]),
+    ],
+)
 def test_the_design_counts_where_it_was_read(
-    damaged: Path, kept: Path, measured: list[str], field: str, value: dict[str, Any],
+    damaged: Path,
+    kept: Path,
+    measured: list[str],
+    field: str,
+    value: dict[str, Any],
     again: list[str],
-) -> None:  # fmt: skip
+) -> None:
     file = damaged / "design.json"
     told = json.loads(file.read_text())
     (told["layout"][field] if field == "optics" else told[field]).update(value)

@@ -46,7 +46,7 @@ DAMAGES: list[tuple[str, Edit, str, set[str]]] = [
     (LIST, replaced("flange,J5.2,", "supply,1,"), "wiring", {"ends", "note", "diagram"}),
     (BILL, replaced("MDBT50Q-1MV2", "MDBT50Q-P1MV2"), "bom", {"parts", "prices"}),
     (BILL, replaced("\nboards,", f"\n{BOUGHT_TOO}\nboards,"), "bom", {"parts"}),
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize(("file", "edit", "module", "expected"), DAMAGES)

@@ -53,8 +53,12 @@ EDITS = [
     (MOULD, "\nlayer_height = 0.15", "\nlayer_height = 1e-310", {"settings", "mould_layers"}),
     (MOULD, "\ntemperature = 240", "\ntemperature = 204", {"settings"}),
     (INI, "\nextrusion_width = 0.45", "\nextrusion_width = 0.6", {"settings"}),
-    (INI, "external_perimeter_extrusion_width = 0.45",
-     "external_perimeter_extrusion_width = 0", {"settings"}),
+    (
+        INI,
+        "external_perimeter_extrusion_width = 0.45",
+        "external_perimeter_extrusion_width = 0",
+        {"settings"},
+    ),
     (INI, "first_layer_extrusion_width = 0.45", "first_layer_extrusion_width = 0.9", {"settings"}),
     (INI, "\nperimeter_extrusion_width = 0.45", "\nperimeter_extrusion_width = 0", {"settings"}),
     (INI, "\ninfill_extrusion_width = 0.45", "\ninfill_extrusion_width = 0.9", {"settings"}),
@@ -71,8 +75,7 @@ EDITS = [
     (INI, "max_print_height = 210", "max_print_height = 21", {"settings"}),
     (INI, "filament_density = 1.27", "filament_density = 1.72", {"settings"}),
     (INI, "filament_type = PET", "filament_type = PLA", {"settings"}),
-    (INI, "filament_max_volumetric_speed = 8", "filament_max_volumetric_speed = 80",
-     {"settings"}),
+    (INI, "filament_max_volumetric_speed = 8", "filament_max_volumetric_speed = 80", {"settings"}),
     (INI, "\ntemperature = 240", "\ntemperature = 204", {"settings"}),
     (INI, "\nbed_temperature = 85\n", "\n", {"settings"}),
     (INI, "min_fan_speed = 30", "min_fan_speed = 100", {"settings"}),
@@ -84,7 +87,7 @@ EDITS = [
     (NOTE, "petg_mould.ini` | PETG | 0.15", "petg_mould.ini` | PETG | 0.2", {"parts"}),
     (NOTE, "petg_mould.ini` | PETG | 0.15", "petg_mould.ini` | PLA | 0.15", {"parts"}),
     (NOTE, "| `backing/receiver_backing.3mf`", "`backing/receiver_backing.3mf`", {"parts"}),
-]  # fmt: skip
+]
 
 
 def test_nothing_fails_as_it_is_written(settings: Path) -> None:
@@ -133,8 +136,11 @@ def test_what_must_not_bend_is_printed_from_another_filament(given: Input, tmp_p
     out = _written(design, tmp_path / "out")
     assert failing(out) == set()
     assert sorted(p.name for p in (out / "print").iterdir()) == [
-        "petg.ini", "petg_mould.ini", "printing.md", "tpu_98a.ini",
-    ]  # fmt: skip
+        "petg.ini",
+        "petg_mould.ini",
+        "printing.md",
+        "tpu_98a.ini",
+    ]
     note = (out / "print/printing.md").read_text(encoding="utf-8")
     assert re.search(r"emitter_backing.3mf` \| `print/tpu_98a.ini", note)
     assert re.search(r"emitter_mould.3mf` \| `print/petg_mould.ini", note)

@@ -12,8 +12,20 @@ URDF, MACROS = "robot/lumitip.urdf", "robot/lumitip.xacro"
 FILM = "robot/meshes/emitter_film.stl"
 PLATE = "robot/meshes/receiver_collision_plate.stl"
 BLOCK = "robot/meshes/receiver_collision_block.stl"
-EVERY = {"tree", "facing", "tcp", "seat", "closed", "open", "mass", "centre", "reach", "bulk",
-         "macros", "slide"}  # fmt: skip
+EVERY = {
+    "tree",
+    "facing",
+    "tcp",
+    "seat",
+    "closed",
+    "open",
+    "mass",
+    "centre",
+    "reach",
+    "bulk",
+    "macros",
+    "slide",
+}
 Damage = Callable[[Path], None]
 
 
@@ -95,21 +107,26 @@ DAMAGES: tuple[tuple[str, Damage, set[str]], ...] = (
     ("one finger towards the other", moved(RECEIVER, (0.001, 0, 0)), {"tcp", "closed", "open"}),
     ("one finger up", moved(RECEIVER, (0, 0, 0.0003)), {"tcp", "seat"}),
     ("tool centre point", moved(TCP, (0, 0, 0.0001)), {"tcp"}),
-    ("without the lean", edited(URDF, 'rpy="1.59', 'rpy="1.57'), {"facing", "seat", "closed",
-                                                                  "open", "slide"}),
+    (
+        "without the lean",
+        edited(URDF, 'rpy="1.59', 'rpy="1.57'),
+        {"facing", "seat", "closed", "open", "slide"},
+    ),
     ("slides aside", edited(URDF, '<axis xyz="0 ', '<axis xyz="0.1 '), {"slide"}),
     ("short travel", edited(URDF, 'upper="0.039', 'upper="0.038', 2), {"open"}),
-    ("mass in one file", edited(URDF, '<mass value="0.01', '<mass value="0.02'),
-     {"mass", "macros"}),
+    (
+        "mass in one file",
+        edited(URDF, '<mass value="0.01', '<mass value="0.02'),
+        {"mass", "macros"},
+    ),
     ("ten times the mass", heavier, {"mass"}),
-    ("centre of mass", moved('link name="lumitip_receiver"', (0, 0.001, 0)),
-     {"centre", "macros"}),
+    ("centre of mass", moved('link name="lumitip_receiver"', (0, 0.001, 0)), {"centre", "macros"}),
     ("a macro's mesh", edited(MACROS, "receiver_film.stl", "emitter_film.stl"), {"macros"}),
     ("film too large", scaled(FILM, 1.02), {"reach"}),
     ("film too high", raised(FILM, 0.3), {"closed", "open", "reach"}),
     ("too small to touch", scaled(PLATE, 0.98), {"reach"}),
     ("touches far out", scaled(BLOCK, 3.0), {"bulk", "reach"}),
-)  # fmt: skip
+)
 
 
 @pytest.mark.parametrize(

@@ -201,8 +201,9 @@ def test_every_check_fails_alone_or_among_few(outputs: Path) -> None:
 def test_the_figure_that_spec_tells_is_that_of_the_scene(outputs: Path) -> None:
     design = read_design(outputs / "design.json")
     (told,) = [row for row in rows(design) if row.quantity == "... from the robot's flange"]
-    (measured,) = [m for m in system.measure(outputs, design)
-                   if m.check == "system.tcp" and m.subject == GLB]  # fmt: skip
+    (measured,) = [
+        m for m in system.measure(outputs, design) if m.check == "system.tcp" and m.subject == GLB
+    ]
     assert told.computed == f"{measured.measured:.1f} mm"
 
 
@@ -224,6 +225,8 @@ def test_a_holder_is_shown_only_on_a_body_that_it_goes_round(design_dir: Path) -
     from lumitip_fab.config.load import load
     from lumitip_fab.derive import derive
 
-    shown = {name: derive(load(design_dir / f"presets/{name}.toml")).system.holders
-             for name in ("published", "integrated", "wsg50")}  # fmt: skip
+    shown = {
+        name: derive(load(design_dir / f"presets/{name}.toml")).system.holders
+        for name in ("published", "integrated", "wsg50")
+    }
     assert shown == {"published": ("holder",), "integrated": (), "wsg50": ()}

@@ -15,16 +15,26 @@ from lumitip_fab.errors import FabError
 Changes = dict[str, object]
 
 THICK: Changes = {
-    "stack.pcb_mm": 3.2, "stack.silicone_mm": 6.0, "mould.draft_deg": 4.7, "mould.wall_mm": 1.6,
-    "mould.tip_silicone_mm": 1.5, "mask.flap_mm": 25.0,
-}  # fmt: skip
+    "stack.pcb_mm": 3.2,
+    "stack.silicone_mm": 6.0,
+    "mould.draft_deg": 4.7,
+    "mould.wall_mm": 1.6,
+    "mould.tip_silicone_mm": 1.5,
+    "mask.flap_mm": 25.0,
+}
 WIDE: Changes = {"grid.pitch_mm": 10.0, "stack.floor_mm": 2.5}
 UPRIGHT: Changes = {
-    "coupling.gripper": "upright", "printer.profile": "small", "mask.hole_shape": "circle",
-    "stack.floor_mm": 2.4, "stack.silicone_mm": 3.0, "backing.tail_mm": 4.0,
-    "backing.pocket_clearance_mm": 0.3, "tip.slant_start_mm": 5.9, "mould.wall_gap_mm": 0.28,
+    "coupling.gripper": "upright",
+    "printer.profile": "small",
+    "mask.hole_shape": "circle",
+    "stack.floor_mm": 2.4,
+    "stack.silicone_mm": 3.0,
+    "backing.tail_mm": 4.0,
+    "backing.pocket_clearance_mm": 0.3,
+    "tip.slant_start_mm": 5.9,
+    "mould.wall_gap_mm": 0.28,
     "mould.taper_length_mm": 3.9,
-}  # fmt: skip
+}
 
 
 @pytest.fixture
@@ -85,10 +95,12 @@ def test_an_unusual_design_passes_every_check(
         ({"mould.wall_gap_mm": 0.4}, "at most 0.28 is allowed"),
         ({"backing.pocket_clearance_mm": 0.3}, "at most 5.900 is allowed: there the pocket"),
         ({"printer.profile": "tiny"}, "60 x 60 x 60 mm cannot take a mould of 65 x 69 mm"),
-        (THICK | {"stack.silicone_mm": 1.1, "mould.tip_silicone_mm": 0.2, "mask.flap_mm": 13.0},
-         "which leaves 1.60 mm for the letter"),
+        (
+            THICK | {"stack.silicone_mm": 1.1, "mould.tip_silicone_mm": 0.2, "mask.flap_mm": 13.0},
+            "which leaves 1.60 mm for the letter",
+        ),
     ],
-)  # fmt: skip
+)
 def test_what_cannot_be_made_is_refused_with_the_numbers(
     changes: Changes, told: str, changed: Callable[[Changes], Path]
 ) -> None:

@@ -134,9 +134,16 @@ def test_without_a_breakout_the_wires_go_to_the_pins(design_dir: Path, tmp_path:
     emitter, receiver = design.cabling.cables
     assert [w.end.label for w in emitter.wires] == ["GND", "24V"]
     assert {w.signal: w.end.label for w in receiver.wires} == {
-        "GND": "GND", "3V3": "3V3", "S0": "D6", "S1": "D7", "S2": "D8",
-        "A0": "A0", "A1": "A1", "A2": "A2", "A3": "A3",
-    }  # fmt: skip
+        "GND": "GND",
+        "3V3": "3V3",
+        "S0": "D6",
+        "S1": "D7",
+        "S2": "D8",
+        "A0": "A0",
+        "A1": "A1",
+        "A2": "A2",
+        "A3": "A3",
+    }
     assert emitter.length_mm > receiver.length_mm
     svg = wiring_files(design.title, design.cabling)[2].data.decode()
     assert svg.count('class="wire"') == 11

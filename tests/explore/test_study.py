@@ -131,9 +131,13 @@ def cluster() -> Iterator[str]:
     """A Dask scheduler with two worker processes; its address."""
     distributed = pytest.importorskip("distributed")
     with distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None,
-        host="127.0.0.1", protocol="tcp",
-    ) as running:  # fmt: skip
+        n_workers=2,
+        threads_per_worker=1,
+        processes=True,
+        dashboard_address=None,
+        host="127.0.0.1",
+        protocol="tcp",
+    ) as running:
         yield str(running.scheduler_address)
 
 
@@ -162,16 +166,23 @@ def test_another_seed_or_price_is_evaluated_anew(given: Input) -> None:
     dearer = prices.model_copy(update={"each": {**prices.each, "0603": 9.0}})
     wider = changed(given, (("mask.hole_mm", 3.0),))
     others = [
-        Job.of(given, (), prices, Sample(1, 3, seed=1)), Job.of(given, (), dearer, FEW),
+        Job.of(given, (), prices, Sample(1, 3, seed=1)),
+        Job.of(given, (), dearer, FEW),
         Job.of(wider, (), prices, FEW),
-    ]  # fmt: skip
+    ]
     assert len({one.key, *(job.key for job in others)}) == 4
 
 
 def test_a_design_whose_cells_are_too_few_for_a_pose_is_refused(given: Input) -> None:
-    few = changed(given, (("grid.columns", (2, 1)), ("emitter.resistor", "1206"),
-                          ("emitter.resistor_side", "front"),
-                          ("emitter.current_ma", 6.0)))  # fmt: skip
+    few = changed(
+        given,
+        (
+            ("grid.columns", (2, 1)),
+            ("emitter.resistor", "1206"),
+            ("emitter.resistor_side", "front"),
+            ("emitter.current_ma", 6.0),
+        ),
+    )
     (told,) = evaluate(Job.of(few, (), given.catalogue.prices, FEW))["refused"]
     assert told.startswith("grid.columns: layout: 3 cells given, a pose needs at least 4")
 
@@ -203,14 +214,23 @@ def test_a_finer_grid_sees_better(given: Input) -> None:
 
 def test_the_front_has_what_nothing_is_better_than() -> None:
     def found(error: float, cells: float, size: float = 1.0) -> Found:
-        figures = {"error_mm": error, "cells": cells, "cost": 1.0, "current_ma": 1.0,
-                   "grid_cm2": size}  # fmt: skip
+        figures = {
+            "error_mm": error,
+            "cells": cells,
+            "cost": 1.0,
+            "current_ma": 1.0,
+            "grid_cm2": size,
+        }
         return Found((), (), figures, ())
 
     designs = [
-        found(1.0, 30.0), found(0.5, 60.0), found(1.1, 30.0), found(1.1, 30.0, 2.0),
-        Found((), (), {}, ("refused",)), found(0.5, 60.0),
-    ]  # fmt: skip
+        found(1.0, 30.0),
+        found(0.5, 60.0),
+        found(1.1, 30.0),
+        found(1.1, 30.0, 2.0),
+        Found((), (), {}, ("refused",)),
+        found(0.5, 60.0),
+    ]
     assert report.front(designs) == {0, 1, 3, 5}
 
 
@@ -246,9 +266,17 @@ def test_a_part_without_a_price_and_a_doubled_grid_are_refused(
 def test_the_command_refuses_with_every_fault(
     design_dir: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    told = main([
-        "explore", str(design_dir / "fingertip.toml"), "--out", str(tmp_path / "out"),
-        "--vary", "grid.pitch=3:8", "--vary", "mask.hole_mm=8:1",
-    ])  # fmt: skip
+    told = main(
+        [
+            "explore",
+            str(design_dir / "fingertip.toml"),
+            "--out",
+            str(tmp_path / "out"),
+            "--vary",
+            "grid.pitch=3:8",
+            "--vary",
+            "mask.hole_mm=8:1",
+        ]
+    )
     assert told == 2
     assert capsys.readouterr().err.count("--vary: ") == 2

@@ -45,19 +45,35 @@ def test_the_last_field_varies_fastest(given: Input) -> None:
 
 def test_every_fault_of_every_text_is_told_at_once(given: Input) -> None:
     texts = [
-        "grid.pich_mm=3:8", "mask.hole_mm", "mask.hole_mm=4:1", "mask.flap_mm=5:x",
-        "stack.film_mm=0.1:0.2:0", "grid.columns=[[5, 4", "emitter.led=none", "tip.edge_mm=9",
-        "tip.edge_mm=0.5", "grid.columns=[]", "mould.draft_deg=inf:3",
-    ]  # fmt: skip
+        "grid.pich_mm=3:8",
+        "mask.hole_mm",
+        "mask.hole_mm=4:1",
+        "mask.flap_mm=5:x",
+        "stack.film_mm=0.1:0.2:0",
+        "grid.columns=[[5, 4",
+        "emitter.led=none",
+        "tip.edge_mm=9",
+        "tip.edge_mm=0.5",
+        "grid.columns=[]",
+        "mould.draft_deg=inf:3",
+    ]
     with pytest.raises(InputError) as caught:
         axes(given, texts, points=6)
     told = str(caught.value)
     for part in (
-        "did you mean 'grid.pitch_mm'?", "FIELD=FROM:TO",
-        "FROM must be below TO", "'5:x' given", "a step of 0 given", "no TOML list",
-        "'none' given", "parts/leds.toml has", "9 given, at most 5 is allowed",
-        "tip.edge_mm: given twice", "an empty list given", "'inf:3' given",
-    ):  # fmt: skip
+        "did you mean 'grid.pitch_mm'?",
+        "FIELD=FROM:TO",
+        "FROM must be below TO",
+        "'5:x' given",
+        "a step of 0 given",
+        "no TOML list",
+        "'none' given",
+        "parts/leds.toml has",
+        "9 given, at most 5 is allowed",
+        "tip.edge_mm: given twice",
+        "an empty list given",
+        "'inf:3' given",
+    ):
         assert part in told, part
     assert all(problem.file == "--vary" for problem in caught.value.problems)
 

@@ -107,10 +107,20 @@ def test_same_bytes_in_another_folder_process_and_hash_seed(
     folder = Path(shutil.copytree(design_dir, tmp_path / "elsewhere"))
     out = tmp_path / "deeper" / "out"
     subprocess.run(
-        [sys.executable, "-m", "lumitip_fab", "build", str(folder / PUBLISHED), "--out",
-         str(out), "--quiet"],
-        check=True, env={**os.environ, "PYTHONHASHSEED": "4711"}, cwd=tmp_path,
-    )  # fmt: skip
+        [
+            sys.executable,
+            "-m",
+            "lumitip_fab",
+            "build",
+            str(folder / PUBLISHED),
+            "--out",
+            str(out),
+            "--quiet",
+        ],
+        check=True,
+        env={**os.environ, "PYTHONHASHSEED": "4711"},
+        cwd=tmp_path,
+    )
     here, there = contents(outputs), contents(out)
     assert here.keys() == there.keys()
     assert [path for path in here if here[path] != there[path]] == []

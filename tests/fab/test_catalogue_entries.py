@@ -13,8 +13,14 @@ from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
 
 PARTS = Path(__file__).parents[2] / "design" / "parts"
-FIELDS = ("emitter.led", "receiver.photodetector", "mask.film", "mould.silicone",
-          "printer.profile", "controller.board")  # fmt: skip
+FIELDS = (
+    "emitter.led",
+    "receiver.photodetector",
+    "mask.film",
+    "mould.silicone",
+    "printer.profile",
+    "controller.board",
+)
 LEAST = {"leds": 4, "photodetectors": 4, "films": 2, "silicones": 2, "printers": 4}
 OWN_PINS = {"arduino_nano_33_ble", "arduino_nano_rp2040_connect", "arduino_nano_esp32"}
 COOL = {"emitter.current_ma": 10.0, "emitter.resistor": "1206"}

@@ -70,8 +70,15 @@ def test_the_outline_follows_the_published_silhouette(design: Design) -> None:
     assert 2 * widths.max() == pytest.approx(57.91, abs=0.2)
     assert outline.tip_width_mm == pytest.approx(28.1, abs=0.1)
     # half the width at distances from the tip edge
-    for v_mm, half_mm in ((5, 27.61), (10, 28.94), (15, 28.11), (20, 26.35), (30, 24.05),
-                          (35, 23.88), (45, 23.96)):  # fmt: skip
+    for v_mm, half_mm in (
+        (5, 27.61),
+        (10, 28.94),
+        (15, 28.11),
+        (20, 26.35),
+        (30, 24.05),
+        (35, 23.88),
+        (45, 23.96),
+    ):
         assert half_width_at(outline, outline.tip_y_mm - v_mm) == pytest.approx(half_mm, abs=0.8)
 
 
@@ -169,8 +176,12 @@ def test_every_process_derives_the_same_text() -> None:
         environment = {**os.environ, "PYTHONHASHSEED": seed}
         done = subprocess.run(
             [sys.executable, "-c", code, str(PRESETS)],
-            env=environment, capture_output=True, text=True, check=True, cwd="/",
-        )  # fmt: skip
+            env=environment,
+            capture_output=True,
+            text=True,
+            check=True,
+            cwd="/",
+        )
         return done.stdout
 
     first = text("1")

@@ -70,9 +70,12 @@ def _of_parts(design: Design, finger: Finger) -> Iterator[str]:
     sides = {side: [q for q in finger.parts if q.side == side] for side in ("front", "back")}
     for parts in sides.values():
         boxes = shapely.box(
-            *np.array([(q.box.x_min_mm, q.box.y_min_mm, q.box.x_max_mm, q.box.y_max_mm)
-                       for q in parts]).reshape(-1, 4).T
-        )  # fmt: skip
+            *np.array(
+                [(q.box.x_min_mm, q.box.y_min_mm, q.box.x_max_mm, q.box.y_max_mm) for q in parts]
+            )
+            .reshape(-1, 4)
+            .T
+        )
         near = shapely.STRtree(boxes).query(boxes, predicate="dwithin", distance=0.1 - NOISE_MM)
         for i, j in near.T.tolist():
             if i < j:
@@ -139,9 +142,9 @@ def _of_connector(design: Design, finger: Finger) -> Iterator[str]:
             yield f"pad {pad} is not over the notch"
         if _inside_mm(box, finger.window) < 1.0:
             yield f"pad {pad} is not in the window"
-    if any(b - a < finger.connector.pad_mm + 0.2 for (a, _), (b, _) in pairwise(
-        finger.connector.pads
-    )):  # fmt: skip
+    if any(
+        b - a < finger.connector.pad_mm + 0.2 for (a, _), (b, _) in pairwise(finger.connector.pads)
+    ):
         yield "pads touch"
     lowest = min(y for _, y in finger.cells) - design.mask.hole_mm / 2
     if lowest - finger.window.y_max_mm < 0.4 - NOISE_MM:

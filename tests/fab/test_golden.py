@@ -11,9 +11,16 @@ from lumitip_fab.design.encoding import design_text
 
 GOLDEN = Path(__file__).parents[1] / "golden"
 PRESETS = (
-    "published", "asymmetric", "dense", "mux16", "integrated", "robotiq_2f140", "wsg50",
-    "franka_hand", "flex",
-)  # fmt: skip
+    "published",
+    "asymmetric",
+    "dense",
+    "mux16",
+    "integrated",
+    "robotiq_2f140",
+    "wsg50",
+    "franka_hand",
+    "flex",
+)
 
 
 @pytest.mark.golden

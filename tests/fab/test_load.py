@@ -50,8 +50,11 @@ def test_a_preset_that_extends_another_can_be_extended(write: Write) -> None:
     )
     config = load(write('extends = "mine.toml"\nemitter.current_ma = 8.0\n'))
     assert [s.path.name for s in config.sources] == [
-        "x.toml", "mine.toml", "dense.toml", "published.toml",
-    ]  # fmt: skip
+        "x.toml",
+        "mine.toml",
+        "dense.toml",
+        "published.toml",
+    ]
     values = config.parameters
     assert (values.emitter.current_ma, values.mask.hole_mm) == (8.0, 1.4)
     assert values.grid.pitch_mm == 3.0  # of the preset
@@ -131,8 +134,10 @@ def test_a_bad_base_does_not_hide_the_files_own_faults(write: Write) -> None:
 def test_faults_of_different_kinds_are_told_together(write: Write) -> None:
     text = BASE + "[grid]\ncolumns = [5, 7]\n[stack]\nfloor_mm = 0.5\n[mask]\nhole_mm = 5.9\n"
     assert [p.field for p in _problems(write(text))] == [
-        "grid.columns", "stack.floor_mm", "mask.hole_mm",
-    ]  # fmt: skip
+        "grid.columns",
+        "stack.floor_mm",
+        "mask.hole_mm",
+    ]
 
 
 def test_problems_are_sorted_told_once_and_read_as_file_line_field_message() -> None:
@@ -151,12 +156,28 @@ def test_random_values_for_random_fields_are_derived_or_refused(write: Write) ->
         st.integers(-(10**20), 10**20).map(str),
         st.floats(0.1, 100).map(repr),
         st.sampled_from(
-            ["true", '""', '"x"', "[]", "[5, 4, 5]", "[[1]]", "{}", "{ a = 1 }", "2020-01-01",
-             "12:00:00", "[100.0, nan]", '"\\u0000"', "0xffff", "1e400", "[1, 2, 3, 2, 1]"]
+            [
+                "true",
+                '""',
+                '"x"',
+                "[]",
+                "[5, 4, 5]",
+                "[[1]]",
+                "{}",
+                "{ a = 1 }",
+                "2020-01-01",
+                "12:00:00",
+                "[100.0, nan]",
+                '"\\u0000"',
+                "0xffff",
+                "1e400",
+                "[1, 2, 3, 2, 1]",
+            ]
         ),
-    )  # fmt: skip
-    lines = st.dictionaries(st.sampled_from([*fields, "name", "grid", "extra", "mask.x"]), value,
-                            min_size=1, max_size=4)  # fmt: skip
+    )
+    lines = st.dictionaries(
+        st.sampled_from([*fields, "name", "grid", "extra", "mask.x"]), value, min_size=1, max_size=4
+    )
 
     @settings(
         max_examples=60,

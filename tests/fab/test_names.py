@@ -50,8 +50,9 @@ def test_a_name_of_any_script_is_kept_and_has_a_form_for_every_medium(named: Des
 
 def test_drawings_of_the_mask_and_the_cables_show_it(named: Design) -> None:
     d = named
-    made = mask_files(d.receiver, d.outline, d.stack, d.tip, d.mould, d.mount, d.interfaces,
-                      d.mask, d.title)  # fmt: skip
+    made = mask_files(
+        d.receiver, d.outline, d.stack, d.tip, d.mould, d.mount, d.interfaces, d.mask, d.title
+    )
     pdf = next(a for a in made if a.path.endswith(".pdf"))
     page = pypdfium2.PdfDocument(io.BytesIO(pdf.data))[0]
     assert f"{NAMES[d.title.name][0]} A" in page.get_textpage().get_text_range()
@@ -88,9 +89,20 @@ def test_a_long_name_is_cut_where_it_grows() -> None:
 
 
 @pytest.mark.parametrize(
-    "text", ["a\tb", "a\x7fb", "\u202eb", "a\u2066b", "a\u200bb", "\ufeffb", "a\u2028b", "\ue000",
-             "\U000e0041", "a\x85b"],
-)  # fmt: skip
+    "text",
+    [
+        "a\tb",
+        "a\x7fb",
+        "\u202eb",
+        "a\u2066b",
+        "a\u200bb",
+        "\ufeffb",
+        "a\u2028b",
+        "\ue000",
+        "\U000e0041",
+        "a\x85b",
+    ],
+)
 def test_what_cannot_be_seen_is_refused_with_its_number(text: str) -> None:
     hidden = next(c for c in text if c not in "ab")
     for kind in (_TEXT, _DEVICE):

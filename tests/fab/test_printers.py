@@ -17,8 +17,11 @@ PRINTERS = tomllib.loads(
 THINNER = "min_wall_mm = 0.8\n"
 """The couplings and the flange's contacts leave walls of 0.8 mm, less than two lines of 0.65 mm."""
 GROOVE = "[flex]\ngroove_mm = 1.6\n"
-NEEDED = {("published", "fdm 0.6"): THINNER, ("wsg50", "fdm 0.6"): THINNER,
-          ("flex", "fdm 0.6"): THINNER + GROOVE}  # fmt: skip
+NEEDED = {
+    ("published", "fdm 0.6"): THINNER,
+    ("wsg50", "fdm 0.6"): THINNER,
+    ("flex", "fdm 0.6"): THINNER + GROOVE,
+}
 
 
 @pytest.fixture

@@ -19,8 +19,11 @@ DESIGN = ROOT / "design"
 FILES = [DESIGN / "fingertip.toml", *sorted(DESIGN.glob("presets/*.toml"))]
 EXAMPLES = [*FILES, *sorted((ROOT / "examples").rglob("*.toml"))]
 DOCUMENTS = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
-FIELDS = [f"{s}.{f}" for s, m in Parameters.model_fields.items()
-          for f in getattr(m.annotation, "model_fields", ())]  # fmt: skip
+FIELDS = [
+    f"{s}.{f}"
+    for s, m in Parameters.model_fields.items()
+    for f in getattr(m.annotation, "model_fields", ())
+]
 
 
 @pytest.fixture(scope="module")

@@ -59,9 +59,13 @@ FLEX = {"backing/emitter_backing.3mf": 10, "interface/emitter_interface.3mf": 13
     ids=["published", "flex"],
 )
 def test_every_part_slices_without_support(
-    preset: str, layers: dict[str, int], filament: str, built: Callable[[str], Path],
-    tmp_path: Path, capsys: pytest.CaptureFixture[str],
-) -> None:  # fmt: skip
+    preset: str,
+    layers: dict[str, int],
+    filament: str,
+    built: Callable[[str], Path],
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     program("prusa-slicer")
     outputs = built(preset)
     assert main(["slice", "--out", str(outputs), "--gcode", str(tmp_path), "--json"]) == 0

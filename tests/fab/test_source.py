@@ -129,11 +129,39 @@ def test_random_bytes_are_read_or_refused_and_nothing_else(tmp_path: Path) -> No
     path = tmp_path / "x.toml"
     toml = st.lists(
         st.sampled_from(
-            ["[", "]", "[[", "]]", "=", ".", ",", "{", "}", "\n", '"', "'", '"""', "#", " ", "a",
-             "grid", "1", "-", "_", "e9", "nan", "true", "0x", "\\", "\r\n", "é", "2020-01-01"]
+            [
+                "[",
+                "]",
+                "[[",
+                "]]",
+                "=",
+                ".",
+                ",",
+                "{",
+                "}",
+                "\n",
+                '"',
+                "'",
+                '"""',
+                "#",
+                " ",
+                "a",
+                "grid",
+                "1",
+                "-",
+                "_",
+                "e9",
+                "nan",
+                "true",
+                "0x",
+                "\\",
+                "\r\n",
+                "é",
+                "2020-01-01",
+            ]
         ),
         max_size=40,
-    ).map(lambda parts: "".join(parts).encode())  # fmt: skip
+    ).map(lambda parts: "".join(parts).encode())
 
     @settings(
         max_examples=250,

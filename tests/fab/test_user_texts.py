@@ -10,7 +10,7 @@ import pytest
 from lumitip_fab.design import Design, Title
 from lumitip_fab.design.encoding import read_design
 from lumitip_fab.docs.chapters import Facts, manual_text
-from lumitip_fab.docs.sheet import html_page, markdown
+from lumitip_fab.docs.page import html_page, markdown
 from lumitip_fab.docs.wiring import wiring_files
 from lumitip_fab.mask.files import mask_files
 from lumitip_fab.parts.settings import print_settings
@@ -42,8 +42,18 @@ def _notes(design: Design) -> dict[str, str]:
     d = design
     made: list[Artefact] = [*print_settings(d.title, d.printing, d.slicing, d.interfaces)]
     made += wiring_files(d.title, d.cabling)
-    made += mask_files(d.receiver, d.outline, d.stack, d.tip, d.mould, d.mount, d.interfaces,
-                       d.mask, d.heat, d.title)  # fmt: skip
+    made += mask_files(
+        d.receiver,
+        d.outline,
+        d.stack,
+        d.tip,
+        d.mould,
+        d.mount,
+        d.interfaces,
+        d.mask,
+        d.heat,
+        d.title,
+    )
     return {a.path: a.data.decode() for a in made if a.path.endswith(".md")}
 
 
@@ -52,8 +62,10 @@ def test_notes_show_a_name_as_it_is_written(name: str, designs: dict[str, Design
     named = dataclasses.replace(designs["published"], title=Title(name, "A"))
     notes = _notes(named)
     assert sorted(notes) == [
-        "mask/receiver_wrapping.md", "print/printing.md", "wiring/cables.md",
-    ]  # fmt: skip
+        "mask/receiver_wrapping.md",
+        "print/printing.md",
+        "wiring/cables.md",
+    ]
     assert _headings(notes["print/printing.md"])[0] == f"Printing {name} A"
     assert _headings(notes["wiring/cables.md"])[0] == f"Wiring {name} A"
     told = f"{name} A: printing and wrapping the receiver mask"
@@ -69,9 +81,22 @@ def test_the_manual_shows_a_name_as_it_is_written(name: str, outputs: Path) -> N
     d = read_design(outputs / "design.json")
     files = {f.relative_to(outputs).as_posix(): "" for f in outputs.rglob("*") if f.is_file()}
     made = Made(outputs, files)
-    facts = Facts(Title(name, "A"), d.printing, d.mould, d.mask, d.heat, d.mount, d.wiring,
-                  d.cabling, d.electrical, d.carriers, d.holders, d.interfaces, d.flanges,
-                  d.emitter)  # fmt: skip
+    facts = Facts(
+        Title(name, "A"),
+        d.printing,
+        d.mould,
+        d.mask,
+        d.heat,
+        d.mount,
+        d.wiring,
+        d.cabling,
+        d.electrical,
+        d.carriers,
+        d.holders,
+        d.interfaces,
+        d.flanges,
+        d.emitter,
+    )
     text = manual_text(facts, made)
     assert _headings(text)[0] == f"{name} A: build manual"
     title = re.search("<title>(.*)</title>", html_page(name, text, made))

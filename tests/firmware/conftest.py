@@ -16,8 +16,18 @@ HERE = Path(__file__).parent
 STRICT = ("-std=c++14", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Werror")
 SANITIZED = ("-O1", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 CORTEX_M4 = ("-mcpu=cortex-m4", "-mthumb", "-O2", "-fno-exceptions", "-specs=rdimon.specs")
-QEMU = ("-M", "mps2-an386", "-nographic", "-monitor", "none", "-serial", "none",
-        "-semihosting-config", "enable=on,target=native", "-kernel")  # fmt: skip
+QEMU = (
+    "-M",
+    "mps2-an386",
+    "-nographic",
+    "-monitor",
+    "none",
+    "-serial",
+    "none",
+    "-semihosting-config",
+    "enable=on,target=native",
+    "-kernel",
+)
 
 Runner = Callable[..., subprocess.CompletedProcess[str]]
 
@@ -70,8 +80,17 @@ def host_program(
     @cache
     def build(name: str, preset: str, *defines: str) -> Path:
         program = tmp_path_factory.mktemp("host") / name
-        done = run("g++", *STRICT, *SANITIZED, *defines, "-I", sketch(preset),
-                   HERE / "host" / f"{name}.cpp", "-o", program)  # fmt: skip
+        done = run(
+            "g++",
+            *STRICT,
+            *SANITIZED,
+            *defines,
+            "-I",
+            sketch(preset),
+            HERE / "host" / f"{name}.cpp",
+            "-o",
+            program,
+        )
         assert done.returncode == 0, done.stderr
         return program
 
@@ -87,9 +106,20 @@ def arm_output(
     def build(name: str, preset: str, *defines: str) -> str:
         program = tmp_path_factory.mktemp("arm") / f"{name}.elf"
         sources = (HERE / "arm" / "vectors.cpp", HERE / "host" / f"{name}.cpp")
-        done = run("arm-none-eabi-g++", *STRICT[:3], "-Werror", *CORTEX_M4, *defines,
-                   "-I", sketch(preset), "-T", HERE / "arm" / "mps2.ld", *sources,
-                   "-o", program)  # fmt: skip
+        done = run(
+            "arm-none-eabi-g++",
+            *STRICT[:3],
+            "-Werror",
+            *CORTEX_M4,
+            *defines,
+            "-I",
+            sketch(preset),
+            "-T",
+            HERE / "arm" / "mps2.ld",
+            *sources,
+            "-o",
+            program,
+        )
         assert done.returncode == 0, done.stderr
         done = run("qemu-system-arm", *QEMU, program)
         assert done.returncode == 0, done.stderr

@@ -62,8 +62,20 @@ def test_the_core_compiles_for_the_chip(
 ) -> None:
     machine, compiler, *options = CORES[chip]
     out = tmp_path / "core.o"
-    done = run(compiler, *STRICT, *options, "-Os", "-fno-exceptions", "-fno-rtti",
-               "-I", sketch(preset), "-c", HERE / "host" / "core.cpp", "-o", out)  # fmt: skip
+    done = run(
+        compiler,
+        *STRICT,
+        *options,
+        "-Os",
+        "-fno-exceptions",
+        "-fno-rtti",
+        "-I",
+        sketch(preset),
+        "-c",
+        HERE / "host" / "core.cpp",
+        "-o",
+        out,
+    )
     assert done.returncode == 0, done.stderr
     assert struct.unpack_from("<H", out.read_bytes(), 18) == (machine,)
 
@@ -76,8 +88,19 @@ def test_the_sketch_fits_the_boards_interfaces(
     run: Callable[..., Any],
 ) -> None:
     folder = sketch_for(board)
-    done = run("g++", *STRICT, "-fsyntax-only", *options, "-I", STUBS, "-I", folder,
-               "-x", "c++", folder / "firmware.ino")  # fmt: skip
+    done = run(
+        "g++",
+        *STRICT,
+        "-fsyntax-only",
+        *options,
+        "-I",
+        STUBS,
+        "-I",
+        folder,
+        "-x",
+        "c++",
+        folder / "firmware.ino",
+    )
     assert done.returncode == 0, done.stderr
 
 
@@ -86,8 +109,19 @@ def test_a_board_does_not_ask_for_another_chips_registers(
     options: tuple[Any, ...], foreign: str, sketch: Callable[[str], Path], run: Callable[..., Any]
 ) -> None:
     folder = sketch("published")
-    done = run("g++", "-std=c++14", "-E", *options, "-I", STUBS, "-I", folder,
-               "-x", "c++", folder / "firmware.ino")  # fmt: skip
+    done = run(
+        "g++",
+        "-std=c++14",
+        "-E",
+        *options,
+        "-I",
+        STUBS,
+        "-I",
+        folder,
+        "-x",
+        "c++",
+        folder / "firmware.ino",
+    )
     assert done.returncode == 0, done.stderr
     assert foreign not in done.stdout
 

@@ -265,9 +265,19 @@ def test_nothing_is_allocated(
     tmp_path: Path, run: Callable[..., Any], sketch: Callable[[str], Path]
 ) -> None:
     """Not even behind the scenes: what the compiled core calls is `memcmp` and its like."""
-    made = run("arm-none-eabi-g++", "-std=c++14", "-O2", "-mcpu=cortex-m4", "-mthumb", "-c",
-               "-I", sketch("published"), Path(__file__).parent / "host" / "scenario.cpp",
-               "-o", tmp_path / "scenario.o")  # fmt: skip
+    made = run(
+        "arm-none-eabi-g++",
+        "-std=c++14",
+        "-O2",
+        "-mcpu=cortex-m4",
+        "-mthumb",
+        "-c",
+        "-I",
+        sketch("published"),
+        Path(__file__).parent / "host" / "scenario.cpp",
+        "-o",
+        tmp_path / "scenario.o",
+    )
     assert made.returncode == 0, made.stderr
     listed = run("arm-none-eabi-nm", "--undefined-only", tmp_path / "scenario.o").stdout.split()
     called = {name for name in listed if len(name) > 1 and not name.startswith("__aeabi_")}

@@ -24,8 +24,21 @@ def compiled(run: Callable[..., Any]) -> Compile:
     """`compiled(folder)`: the compiler's verdict on the sketch in a folder."""
 
     def check(folder: Path, compiler: str = "g++") -> Any:
-        return run(compiler, "-std=c++14", "-Wall", "-Wextra", "-Werror", "-fsyntax-only",
-                   "-I", STUBS, "-I", folder, "-x", "c++", folder / "firmware.ino")  # fmt: skip
+        return run(
+            compiler,
+            "-std=c++14",
+            "-Wall",
+            "-Wextra",
+            "-Werror",
+            "-fsyntax-only",
+            "-I",
+            STUBS,
+            "-I",
+            folder,
+            "-x",
+            "c++",
+            folder / "firmware.ino",
+        )
 
     return check
 
@@ -84,8 +97,11 @@ def test_settings_out_of_range_do_not_compile(
     defined: str, copied: Path, compiled: Compile
 ) -> None:
     name, value = defined.split("=")
-    edit(copied / "settings.h", f"#ifndef LUMITIP_{name}\n",
-         f"#define LUMITIP_{name} {value}\n#ifndef LUMITIP_{name}\n")  # fmt: skip
+    edit(
+        copied / "settings.h",
+        f"#ifndef LUMITIP_{name}\n",
+        f"#define LUMITIP_{name} {value}\n#ifndef LUMITIP_{name}\n",
+    )
     verdict = compiled(copied)
     assert "static assertion failed" in verdict.stderr
     assert name in verdict.stderr
@@ -107,8 +123,16 @@ def test_any_name_comes_out_as_it_was_given(
         '#include <stdio.h>\n#include "protocol.h"\nint main() { puts(LUMITIP_DEVICE_NAME); }\n'
     )
     (tmp_path / "name.cpp").write_text(program)
-    made = run("g++", "-std=c++14", "-Wall", "-Wextra", "-Werror", tmp_path / "name.cpp",
-               "-o", tmp_path / "name")  # fmt: skip
+    made = run(
+        "g++",
+        "-std=c++14",
+        "-Wall",
+        "-Wextra",
+        "-Werror",
+        tmp_path / "name.cpp",
+        "-o",
+        tmp_path / "name",
+    )
     assert made.returncode == 0, made.stderr
     assert run(str(tmp_path / "name")).stdout == given + "\n"
 

@@ -60,8 +60,11 @@ def written(design: Design, out: Path) -> list[Artefact]:
 
 
 def failures(design: Design, out: Path) -> list[str]:
-    return [f"{m.check} {m.subject}: {m.measured:g}, {m.limit}"
-            for m in mask_check.measure(out, design) if not m.passed]  # fmt: skip
+    return [
+        f"{m.check} {m.subject}: {m.measured:g}, {m.limit}"
+        for m in mask_check.measure(out, design)
+        if not m.passed
+    ]
 
 
 @pytest.mark.parametrize("name", PRESETS)
@@ -170,11 +173,14 @@ def test_same_bytes_in_any_process(design_dir: Path) -> None:
     file = design_dir / "presets" / "asymmetric.toml"
     told = [
         subprocess.run(
-            [sys.executable, "-c", script, str(file)], env={**os.environ, "PYTHONHASHSEED": seed},
-            check=True, capture_output=True, text=True,
+            [sys.executable, "-c", script, str(file)],
+            env={**os.environ, "PYTHONHASHSEED": seed},
+            check=True,
+            capture_output=True,
+            text=True,
         ).stdout
         for seed in ("0", "1", "4", "77")
-    ]  # fmt: skip
+    ]
     design = derive(load(file))
     here = "".join(f"{a.path} {hashlib.sha256(a.data).hexdigest()}\n" for a in made(design))
     assert set(told) == {here}

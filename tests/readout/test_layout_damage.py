@@ -55,9 +55,21 @@ def test_a_damaged_value_is_refused_with_its_name(
 
 @pytest.mark.parametrize(
     "key",
-    ["schema_version", "x_mm", "y_mm", "column", "row", "neighbours", "mux", "channel", "adc_pin",
-     "pitch_mm", "optics", "design_hash"],
-)  # fmt: skip
+    [
+        "schema_version",
+        "x_mm",
+        "y_mm",
+        "column",
+        "row",
+        "neighbours",
+        "mux",
+        "channel",
+        "adc_pin",
+        "pitch_mm",
+        "optics",
+        "design_hash",
+    ],
+)
 def test_a_missing_value_is_refused_with_its_name(layout: Layout, key: str) -> None:
     told = json.loads(layout.to_json())
     assert len(told) == 12

@@ -22,10 +22,18 @@ CELLS = published_layout()
 
 @pytest.mark.parametrize(
     "number",
-    [np.float64(4.0), np.float32(4.0), np.int64(4), np.uint8(4), np.array(4.0), 4, Decimal(4),
-     Fraction(4)],
+    [
+        np.float64(4.0),
+        np.float32(4.0),
+        np.int64(4),
+        np.uint8(4),
+        np.array(4.0),
+        4,
+        Decimal(4),
+        Fraction(4),
+    ],
     ids=lambda number: type(number).__name__,
-)  # fmt: skip
+)
 def test_every_kind_of_number_does_as_a_float(number: Any) -> None:
     cable, same = Cable(0.0, 30.0, diameter_mm=number), Cable(0.0, 30.0, diameter_mm=4.0)
     assert cable == same and hash(cable) == hash(same)

@@ -40,9 +40,19 @@ from lumitip.values import shown
 
 Call = Callable[[Any], object]
 CELLS = published_layout()
-NO_VALUES = [["a"] * 32, [[1.0], [2.0, 3.0]], [1j] * 32, [10**400] * 32, ["3"] * 32, {}, None,
-             np.full(32, np.datetime64("2020-01-01")), b"x" * 32, [None, "3"] + [200.0] * 30,
-             [None, b"3"] + [200.0] * 30]  # fmt: skip
+NO_VALUES = [
+    ["a"] * 32,
+    [[1.0], [2.0, 3.0]],
+    [1j] * 32,
+    [10**400] * 32,
+    ["3"] * 32,
+    {},
+    None,
+    np.full(32, np.datetime64("2020-01-01")),
+    b"x" * 32,
+    [None, "3"] + [200.0] * 30,
+    [None, b"3"] + [200.0] * 30,
+]
 NO_NUMBERS = ["3", math.nan, None, [1.0], 1j, 10**400, 10**5000, np.array([1.0, 2.0])]
 COUNTS = ["hold", "seed", "corner_frames", "latency"]
 NO_NAMES = [3, None, ["a"], math.nan]
@@ -109,10 +119,16 @@ def test_what_is_no_layout(layout: Any, tmp_path: Path) -> None:
     ("error", "call", "names"),
     [
         (ArgumentError, lambda **of: Processor(CELLS, **of), ["min_contrast", "covered_below"]),
-        (ArgumentError, lambda **of: Tracker(CELLS, **of),
-         ["min_contrast", "release_contrast", "hold"]),
-        (EstimationError, lambda **of: PoseEstimator(CELLS, **of),
-         ["diameter_mm", "noise", "gain_error", "huber", "gap_sd_mm", "alpha_sd"]),
+        (
+            ArgumentError,
+            lambda **of: Tracker(CELLS, **of),
+            ["min_contrast", "release_contrast", "hold"],
+        ),
+        (
+            EstimationError,
+            lambda **of: PoseEstimator(CELLS, **of),
+            ["diameter_mm", "noise", "gain_error", "huber", "gap_sd_mm", "alpha_sd"],
+        ),
         (TwinError, lambda **of: PoseEstimator(CELLS, **of), ["gap_mm"]),
         (TwinError, lambda **of: Twin(CELLS, **of), ["ambient", "noise", "bits", "seed"]),
         (TwinError, Model, ["gap_mm", "alpha", "knee_v", "silicone_index"]),
@@ -129,7 +145,7 @@ def test_what_is_no_layout(layout: Any, tmp_path: Path) -> None:
         (ArmError, ArmLimits, ["speed_mm_s", "stale_s"]),
         (ArmError, lambda **of: URArm("127.0.0.1", Mount((1, 0, 0), (0, 0, 1)), **of), ["timeout"]),
     ],
-)  # fmt: skip
+)
 def test_a_setting_that_is_no_number(
     error: type[LumitipError], call: Callable[..., object], names: list[str], given: Any
 ) -> None:
@@ -178,8 +194,7 @@ def test_a_setting_that_is_no_number(
         (ArgumentError, lambda: Block.of([])),
         (ArgumentError, lambda: Block.of(np.zeros((3, 32)))),  # type: ignore[arg-type]
         (ArgumentError, lambda: Block.of(None)),  # type: ignore[arg-type]
-        (ArgumentError, lambda: FingertipGroup.open(
-            {1: "twin://a"}, layout={"b": CELLS})),  # type: ignore[dict-item]
+        (ArgumentError, lambda: FingertipGroup.open({1: "twin://a"}, layout={"b": CELLS})),  # type: ignore[dict-item]
         (ArgumentError, lambda: checked_kind(np.array(["empty", "dark"]))),
         (TwinError, lambda: Twin(CELLS, bits=np.array([8, 10]))),  # type: ignore[arg-type]
         (TwinError, lambda: Model(hole_shape=np.array(["hexagon", "circle"]))),  # type: ignore[arg-type]
@@ -188,7 +203,7 @@ def test_a_setting_that_is_no_number(
         (CalibrationError, lambda: Calibration("dev", "0", np.array(["a"]))),
         (CalibrationError, lambda: Calibration("dev", "0", np.zeros((8, 32), np.float32))),
     ],
-)  # fmt: skip
+)
 def test_what_cannot_be_so(error: type[LumitipError], call: Callable[[], object]) -> None:
     with pytest.raises(error, match=r"given|needed|not finite") as told:
         call()
@@ -221,8 +236,11 @@ def test_a_path_that_is_none(given: Any, tmp_path: Path) -> None:
     for call in calls:
         with pytest.raises(RecordingError, match=r"given, .* needed"):
             call(given)
-    for error, load in ((LayoutError, Layout.load), (LayoutError, Layout.from_json),
-                        (CalibrationError, Calibration.load)):  # fmt: skip
+    for error, load in (
+        (LayoutError, Layout.load),
+        (LayoutError, Layout.from_json),
+        (CalibrationError, Calibration.load),
+    ):
         with pytest.raises(error):
             load(given)
     assert not list(tmp_path.iterdir())
@@ -238,13 +256,20 @@ def test_a_folder_that_is_a_file_is_told_before_the_trials(
 
 def test_scenes_and_places_of_a_twin(twin: Twin) -> None:
     calls: list[Callable[[], object]] = [
-        lambda: twin.values("edge"), lambda: twin.values([1, 2]), lambda: twin.values(Cable),
-        lambda: twin.batch(Cable()), lambda: twin.batch(np.zeros((3, 5), np.float32)),
-        lambda: twin.edges([1.0, 2.0, 3.0], [1.0, 2.0]), lambda: twin.edges(math.nan, 0.0),
-        lambda: twin.edges(0.0, 0.0, 2.0), lambda: twin.frame((), -1.0),
-        lambda: twin.plane(2.0), lambda: twin.edge_table(math.nan),
-        lambda: twin.cable_table(0.0), lambda: fit_edge(CELLS, np.zeros(32), math.nan, 0.0),
-    ]  # type: ignore[arg-type,list-item]  # fmt: skip
+        lambda: twin.values("edge"),
+        lambda: twin.values([1, 2]),
+        lambda: twin.values(Cable),
+        lambda: twin.batch(Cable()),
+        lambda: twin.batch(np.zeros((3, 5), np.float32)),
+        lambda: twin.edges([1.0, 2.0, 3.0], [1.0, 2.0]),
+        lambda: twin.edges(math.nan, 0.0),
+        lambda: twin.edges(0.0, 0.0, 2.0),
+        lambda: twin.frame((), -1.0),
+        lambda: twin.plane(2.0),
+        lambda: twin.edge_table(math.nan),
+        lambda: twin.cable_table(0.0),
+        lambda: fit_edge(CELLS, np.zeros(32), math.nan, 0.0),
+    ]  # type: ignore[arg-type,list-item]
     for call in calls:
         with pytest.raises(TwinError, match=r"given|needed"):
             call()

@@ -41,24 +41,36 @@ _BAR_MM = 0.3  # at the first contact
 def component(device: Device, rules: Rules) -> Component:
     """A device in its place, as board files have parts."""
     return Component(
-        ref=device.ref, value=device.value, part=device.part, kind=device.kind,
-        footprint=_footprint(device, rules), x_mm=device.x_mm, y_mm=device.y_mm,
-        angle_deg=device.angle_deg, side="back" if device.side == "back" else "front",
+        ref=device.ref,
+        value=device.value,
+        part=device.part,
+        kind=device.kind,
+        footprint=_footprint(device, rules),
+        x_mm=device.x_mm,
+        y_mm=device.y_mm,
+        angle_deg=device.angle_deg,
+        side="back" if device.side == "back" else "front",
         nets=device.nets,
-        manufacturer=device.manufacturer, lcsc=device.lcsc,
-    )  # fmt: skip
+        manufacturer=device.manufacturer,
+        lcsc=device.lcsc,
+    )
 
 
 def _footprint(device: Device, rules: Rules) -> Footprint:
     pattern = device.pattern
     pads = tuple(
         Pad(
-            land.number, land.x_mm, land.y_mm, land.width_mm, land.height_mm,
-            "circle" if land.round else "rect", land.drill_mm,
+            land.number,
+            land.x_mm,
+            land.y_mm,
+            land.width_mm,
+            land.height_mm,
+            "circle" if land.round else "rect",
+            land.drill_mm,
             paste=not land.drill_mm and device.kind != "fiducial",
         )
         for land in pattern.lands
-    )  # fmt: skip
+    )
     return Footprint(
         name=pattern.name,
         pads=pads,
@@ -73,16 +85,20 @@ def _courtyard(pattern: Pattern, rules: Rules) -> Box:
     """Body and pads with half the gap that parts keep; bare pads for wires have no body."""
     lands = pattern.lands
     pads = Box(
-        min(p.x_mm - p.width_mm / 2 for p in lands), max(p.x_mm + p.width_mm / 2 for p in lands),
-        min(p.y_mm - p.height_mm / 2 for p in lands), max(p.y_mm + p.height_mm / 2 for p in lands),
-    )  # fmt: skip
+        min(p.x_mm - p.width_mm / 2 for p in lands),
+        max(p.x_mm + p.width_mm / 2 for p in lands),
+        min(p.y_mm - p.height_mm / 2 for p in lands),
+        max(p.y_mm + p.height_mm / 2 for p in lands),
+    )
     if not pattern.height_mm:
         return pads.grown(rules.part_gap_mm / 2)
     body = pattern.body
     whole = Box(
-        min(pads.x_min_mm, body.x_min_mm), max(pads.x_max_mm, body.x_max_mm),
-        min(pads.y_min_mm, body.y_min_mm), max(pads.y_max_mm, body.y_max_mm),
-    )  # fmt: skip
+        min(pads.x_min_mm, body.x_min_mm),
+        max(pads.x_max_mm, body.x_max_mm),
+        min(pads.y_min_mm, body.y_min_mm),
+        max(pads.y_max_mm, body.y_max_mm),
+    )
     return whole.grown(rules.part_gap_mm / 2)
 
 
@@ -170,10 +186,14 @@ def carrier_files(
     model = sound(BoardModel(placement, routing, fills))
     sheet = carrier_sheet(placement, carrier)
     return model_files(
-        model, sheet, lambda fab: carrier_note(model.placement, carrier.title, fab),
-        stack.carrier_mm, fabs,
-        board_page_to_carrier(stack), "carrier",
-    )  # fmt: skip
+        model,
+        sheet,
+        lambda fab: carrier_note(model.placement, carrier.title, fab),
+        stack.carrier_mm,
+        fabs,
+        board_page_to_carrier(stack),
+        "carrier",
+    )
 
 
 def _hot_loop(carrier: Carrier, components: tuple[Component, ...]) -> tuple[Box, ...]:

@@ -44,9 +44,11 @@ def circuit(
     return Circuit(
         components=parts,
         nets=tuple(Net(n, SUPPLY if n in (GROUND, supply) else SIGNAL) for n in names),
-        classes=(_net_class(SIGNAL, rules.track_mm, rules),
-                 _net_class(SUPPLY, rules.supply_track_mm, rules)),
-    )  # fmt: skip
+        classes=(
+            _net_class(SIGNAL, rules.track_mm, rules),
+            _net_class(SUPPLY, rules.supply_track_mm, rules),
+        ),
+    )
 
 
 def _emitter(
@@ -90,8 +92,20 @@ def _receiver(
         # An input without a detector is tied to ground, so that nothing floats.
         leads |= {str(lead): GROUND for lead in mux.inputs if str(lead) not in leads}
         told = tuple(sorted(leads.items(), key=lambda item: int(item[0])))
-        yield Component(f"U{which + 1}", mux.value, mux.part, "multiplexer", shape, 0.0, 0.0, 0.0,
-                        "front", told, manufacturer=mux.manufacturer, lcsc=mux.lcsc)  # fmt: skip
+        yield Component(
+            f"U{which + 1}",
+            mux.value,
+            mux.part,
+            "multiplexer",
+            shape,
+            0.0,
+            0.0,
+            0.0,
+            "front",
+            told,
+            manufacturer=mux.manufacturer,
+            lcsc=mux.lcsc,
+        )
     pull_up = footprints.chip(packages.pull_up, "RESC", rules)
     bypass = footprints.chip(packages.capacitor, "CAPC", rules)
     for which, pin in enumerate(wiring.adc_pins, start=1):
@@ -119,8 +133,19 @@ def _resistor(
     ref: str, ohm: float, chip: Chip, shape: Footprint, nets: tuple[tuple[str, str], ...]
 ) -> Component:
     code = resistor_code(ohm)
-    return Component(ref, code, chip.part.replace("{code}", code), "resistor", shape, 0.0, 0.0, 0.0,
-                     "front", nets, manufacturer=chip.manufacturer)  # fmt: skip
+    return Component(
+        ref,
+        code,
+        chip.part.replace("{code}", code),
+        "resistor",
+        shape,
+        0.0,
+        0.0,
+        0.0,
+        "front",
+        nets,
+        manufacturer=chip.manufacturer,
+    )
 
 
 def _part(
@@ -131,8 +156,20 @@ def _part(
     shape: Footprint,
     nets: tuple[tuple[str, str], ...],
 ) -> Component:
-    return Component(ref, value, chip.part, kind, shape, 0.0, 0.0, 0.0, "front", nets,
-                     manufacturer=chip.manufacturer, lcsc=chip.lcsc)  # fmt: skip
+    return Component(
+        ref,
+        value,
+        chip.part,
+        kind,
+        shape,
+        0.0,
+        0.0,
+        0.0,
+        "front",
+        nets,
+        manufacturer=chip.manufacturer,
+        lcsc=chip.lcsc,
+    )
 
 
 def _copper(

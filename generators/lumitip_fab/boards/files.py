@@ -53,9 +53,14 @@ def board_files(
     model = sound(BoardModel(placement, routing, fills))
     sheet = schematic_files(placement, wiring, packages)
     return model_files(
-        model, sheet, lambda fab: assembly_note(model.placement, packages, fab),
-        stack.pcb_mm, fabs, board_page_to_sensor(stack), "sensor",
-    )  # fmt: skip
+        model,
+        sheet,
+        lambda fab: assembly_note(model.placement, packages, fab),
+        stack.pcb_mm,
+        fabs,
+        board_page_to_sensor(stack),
+        "sensor",
+    )
 
 
 def model_files(

@@ -153,8 +153,17 @@ def _mux_silk(first: Pad, body: Box, inner_mm: float, rules: Rules) -> tuple[Str
     gap, line = rules.silk_gap_mm, rules.silk_line_mm
     y = min(inner_mm - gap - line / 2, body.y_max_mm)
     notch = 0.4
-    outline = ((left, notch), (left, y), (right, y), (right, -y), (left, -y), (left, -notch),
-               (left + notch, -notch), (left + notch, notch), (left, notch))  # fmt: skip
+    outline = (
+        (left, notch),
+        (left, y),
+        (right, y),
+        (right, -y),
+        (left, -y),
+        (left, -notch),
+        (left + notch, -notch),
+        (left + notch, notch),
+        (left, notch),
+    )
     dot = first.x_mm, first.y_mm - first.height_mm / 2 - gap - 0.15
     return Stroke(outline, line), Stroke((dot, (dot[0] + 0.02, dot[1])), 0.3)
 
@@ -164,11 +173,17 @@ def wire_pads(connector: Connector, rules: Rules) -> Footprint:
     ways, pad = len(connector.pads), connector.pad_mm
     pads = tuple(
         Pad(
-            str(i + 1), (i - (ways - 1) / 2) * connector.pitch_mm, 0.0, pad, pad,
-            "circle" if i else "rect", connector.drill_mm, paste=False,
+            str(i + 1),
+            (i - (ways - 1) / 2) * connector.pitch_mm,
+            0.0,
+            pad,
+            pad,
+            "circle" if i else "rect",
+            connector.drill_mm,
+            paste=False,
         )
         for i in range(ways)
-    )  # fmt: skip
+    )
     body = Box(pads[0].x_mm - pad / 2, pads[-1].x_mm + pad / 2, -pad / 2, pad / 2)
     name = f"WirePads_1x{ways:02d}_P{connector.pitch_mm:.2f}mm_D{connector.drill_mm:.1f}mm"
     return Footprint(name, pads, body, _courtyard(body, pads, rules), height_mm=0.0)

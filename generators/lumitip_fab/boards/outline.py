@@ -33,9 +33,11 @@ def straight_edges(board: Placement) -> tuple[tuple[Point, Point], ...]:
     left, right = outline.x_min_mm, outline.x_max_mm
     low, high = outline.y_min_mm, outline.y_max_mm
     return (
-        ((left + r, low), (right - r, low)), ((right, low + r), (right, high - r)),
-        ((right - r, high), (left + r, high)), ((left, high - r), (left, low + r)),
-    )  # fmt: skip
+        ((left + r, low), (right - r, low)),
+        ((right, low + r), (right, high - r)),
+        ((right - r, high), (left + r, high)),
+        ((left, high - r), (left, low + r)),
+    )
 
 
 def corners(board: Placement) -> tuple[Corner, ...]:

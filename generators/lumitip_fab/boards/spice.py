@@ -195,8 +195,12 @@ def _measured(carrier: Carrier, told: Regulated) -> Iterator[str]:
 
 def _nets(carrier: Carrier) -> tuple[str, str, str]:
     """Nets of the regulator's input, and of its coil's two ends."""
-    (input_net,) = (net for device in carrier.devices for number, net in device.nets
-                    if (device.ref, number) == carrier.hot_loop[0])  # fmt: skip
+    (input_net,) = (
+        net
+        for device in carrier.devices
+        for number, net in device.nets
+        if (device.ref, number) == carrier.hot_loop[0]
+    )
     (coil,) = (device for device in carrier.devices if device.kind == "inductor")
     (_, near), (_, far) = coil.nets
     return input_net, near, far

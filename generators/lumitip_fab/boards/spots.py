@@ -55,8 +55,10 @@ def fiducials(
     found: list[Point] = []
     for x_side, y_side in ((-1, 1), (1, 1), (-1, -1)):
         steps = np.arange(0.0, _REACH_MM, _STEP_MM)
-        corner = (inside.x_min_mm if x_side < 0 else inside.x_max_mm,
-                  inside.y_min_mm if y_side < 0 else inside.y_max_mm)  # fmt: skip
+        corner = (
+            inside.x_min_mm if x_side < 0 else inside.x_max_mm,
+            inside.y_min_mm if y_side < 0 else inside.y_max_mm,
+        )
         in_x, in_y = (axis.ravel() for axis in np.meshgrid(steps, steps))
         order = np.lexsort((in_x, np.round(np.hypot(in_x, in_y), 6)))
         at = np.stack([corner[0] - x_side * in_x, corner[1] - y_side * in_y], axis=1)[order]

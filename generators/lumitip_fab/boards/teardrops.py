@@ -110,9 +110,11 @@ class _Copper:
         shapes = [land.area for land in lands] + [_area(t) for t in routing.tracks]
         self.shapes = list(shapes)
         self.edge = shapely.union_all(
-            [_board(placement), *(shapely.Point(h).buffer(placement.hole_mm / 2)
-                                  for h in placement.holes)]
-        )  # fmt: skip
+            [
+                _board(placement),
+                *(shapely.Point(h).buffer(placement.hole_mm / 2) for h in placement.holes),
+            ]
+        )
 
     def free(self, drop: Track) -> bool:
         """Whether a track keeps its distance from all of other nets, from edge and holes."""

@@ -117,8 +117,9 @@ class Regulator(Leaded):
     @model_validator(mode="after")
     def _has_its_leads(self) -> Self:
         if set(self.names) != {"FB", "EN", "VIN", "GND", "SW", "BST"}:
-            raise ValueError(f"leads {', '.join(self.names)} given, FB, EN, VIN, GND, SW and BST "
-                             "are needed")  # fmt: skip
+            raise ValueError(
+                f"leads {', '.join(self.names)} given, FB, EN, VIN, GND, SW and BST are needed"
+            )
         return self
 
 

@@ -8,12 +8,29 @@ from pydantic import Field, model_validator
 from lumitip_fab.catalogue.record import Entry, Length, Sourced, Strict
 
 Layers = Literal[
-    "front_copper", "back_copper", "front_mask", "back_mask", "front_paste", "back_paste",
-    "front_silk", "back_silk", "outline", "plated", "unplated", "stiffener",
-]  # fmt: skip
+    "front_copper",
+    "back_copper",
+    "front_mask",
+    "back_mask",
+    "front_paste",
+    "back_paste",
+    "front_silk",
+    "back_silk",
+    "outline",
+    "plated",
+    "unplated",
+    "stiffener",
+]
 BomField = Literal[
-    "item", "refs", "quantity", "manufacturer", "part", "value", "footprint", "lcsc",
-]  # fmt: skip
+    "item",
+    "refs",
+    "quantity",
+    "manufacturer",
+    "part",
+    "value",
+    "footprint",
+    "lcsc",
+]
 PositionField = Literal["ref", "value", "footprint", "part", "x_mm", "y_mm", "angle_deg", "side"]
 Heading = Annotated[str, Field(min_length=1, max_length=40)]
 Ending = Annotated[str, Field(pattern=r"^[A-Za-z0-9_.\-]{2,30}$")]

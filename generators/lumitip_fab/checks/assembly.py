@@ -19,14 +19,23 @@ from lumitip_fab.design.frames import applied, mount_to_sensor, translation
 from lumitip_fab.errors import OutputError
 
 READS = (
-    "assembly/assembly.glb", "assembly/assembly.step", "assembly/*_exploded.svg",
-    "backing/*_backing.stl", "interface/*_interface.stl",
-)  # fmt: skip
+    "assembly/assembly.glb",
+    "assembly/assembly.step",
+    "assembly/*_exploded.svg",
+    "backing/*_backing.stl",
+    "interface/*_interface.stl",
+)
 NAMES = (  # measured in the GLB
-    "assembly.bodies", "assembly.facing", "assembly.lean", "assembly.skew",
-    "assembly.first_contact", "assembly.opening", "assembly.stroke", "assembly.closes",
+    "assembly.bodies",
+    "assembly.facing",
+    "assembly.lean",
+    "assembly.skew",
+    "assembly.first_contact",
+    "assembly.opening",
+    "assembly.stroke",
+    "assembly.closes",
     "assembly.interference",
-)  # fmt: skip
+)
 FACING_MM = 0.05
 LEAN_DEG = 0.02
 CONTACT_MM = 4.0
@@ -92,8 +101,15 @@ def _facing(scene: Scene, design: Design) -> Measurement:
     seen = np.array([scene.nodes[f"Q{i}"].centre_mm for i in numbers])
     apart = np.hypot(*(lit - seen)[:, :2].T)
     worst = int(apart.argmax())
-    return Measurement("assembly.facing", _FILE, float(apart[worst]), 0, FACING_MM, "mm",
-                       f"D{worst + 1} to Q{worst + 1}, the worst of {len(apart)}")  # fmt: skip
+    return Measurement(
+        "assembly.facing",
+        _FILE,
+        float(apart[worst]),
+        0,
+        FACING_MM,
+        "mm",
+        f"D{worst + 1} to Q{worst + 1}, the worst of {len(apart)}",
+    )
 
 
 def _leans(scene: Scene, design: Design) -> Iterator[Measurement]:
@@ -101,11 +117,24 @@ def _leans(scene: Scene, design: Design) -> Iterator[Measurement]:
     tilt = design.mount.tilt_deg
     leans = [_lean_deg(scene.nodes[f"{finger.name}.film"]) for finger in design.fingers]
     for finger, lean in zip(design.fingers, leans, strict=True):
-        yield Measurement("assembly.lean", f"{_FILE}: {finger.name}", lean, tilt - LEAN_DEG,
-                          tilt + LEAN_DEG, "deg", "tip inward")  # fmt: skip
-    yield Measurement("assembly.skew", _FILE, sum(leans), 2 * (tilt - LEAN_DEG),
-                      2 * (tilt + LEAN_DEG), "deg",
-                      "between the axes of LED and photodetector")  # fmt: skip
+        yield Measurement(
+            "assembly.lean",
+            f"{_FILE}: {finger.name}",
+            lean,
+            tilt - LEAN_DEG,
+            tilt + LEAN_DEG,
+            "deg",
+            "tip inward",
+        )
+    yield Measurement(
+        "assembly.skew",
+        _FILE,
+        sum(leans),
+        2 * (tilt - LEAN_DEG),
+        2 * (tilt + LEAN_DEG),
+        "deg",
+        "between the axes of LED and photodetector",
+    )
 
 
 def _lean_deg(film: Node) -> float:
@@ -125,9 +154,15 @@ def _contacts(scene: Scene, design: Design) -> Iterator[Measurement]:
         reach = _reach_mm(film, finger)
         touching = film.points_mm[reach > reach.max() - _TOUCH_MM]
         place = touching[touching[:, 1].argmax()]  # of a whole line or face, where it begins
-        yield Measurement("assembly.first_contact", f"{_FILE}: {finger.name}",
-                          float(design.outline.tip_y_mm - place[1]), 0, CONTACT_MM, "mm",
-                          "from the tip edge")  # fmt: skip
+        yield Measurement(
+            "assembly.first_contact",
+            f"{_FILE}: {finger.name}",
+            float(design.outline.tip_y_mm - place[1]),
+            0,
+            CONTACT_MM,
+            "mm",
+            "from the tip edge",
+        )
 
 
 def _reach_mm(node: Node, finger: Finger) -> Vectors:
@@ -143,16 +178,30 @@ def _openings(scene: Scene, design: Design) -> Iterator[Measurement]:
     """Skin to skin as it is and as the file says, with the gripper open, and closed."""
     stated = scene.extras.get("opening_mm", math.nan)
     opening = _opening_mm(scene, design)
-    yield Measurement("assembly.opening", _FILE, opening, stated - OPENING_MM, stated + OPENING_MM,
-                      "mm", "skin to skin")  # fmt: skip
+    yield Measurement(
+        "assembly.opening",
+        _FILE,
+        opening,
+        stated - OPENING_MM,
+        stated + OPENING_MM,
+        "mm",
+        "skin to skin",
+    )
     widest = design.mount.stroke_mm
     for finger in design.fingers:
         skin = _reach_mm(scene.nodes[f"{finger.name}.film"], finger).max()
         bolt = _bolt_z_mm(scene.nodes[f"{finger.name}.{design.held}"], design) * _inward(finger)
         widest += design.mount.pad_w_mm - (skin - bolt)
     wanted = design.closing.max_opening_mm
-    yield Measurement("assembly.stroke", _FILE, float(widest), wanted - STROKE_MM,
-                      wanted + STROKE_MM, "mm", "skin to skin in the open gripper")  # fmt: skip
+    yield Measurement(
+        "assembly.stroke",
+        _FILE,
+        float(widest),
+        wanted - STROKE_MM,
+        wanted + STROKE_MM,
+        "mm",
+        "skin to skin in the open gripper",
+    )
     yield Measurement(
         "assembly.closes",
         _FILE,
@@ -202,10 +251,14 @@ def _interference(scene: Scene, design: Design) -> Iterator[Measurement]:
         to_scene = scene.nodes[f"{finger.name}.film"].to_scene
         shut = translation(0.0, 0.0, _inward(finger) * opening / 2) @ to_scene
         closed.append({name: overlap.placed(body, shut) for name, body in bodies.items()})
-    yield _worst(f"{_FILE}: closed", {
-        f"{a} and {b}": overlap.shared_mm3(closed[0][a], closed[1][b])
-        for a in closed[0] for b in closed[1]
-    })  # fmt: skip
+    yield _worst(
+        f"{_FILE}: closed",
+        {
+            f"{a} and {b}": overlap.shared_mm3(closed[0][a], closed[1][b])
+            for a in closed[0]
+            for b in closed[1]
+        },
+    )
 
 
 def _bodies(scene: Scene, finger: Finger, layers: tuple[str, ...]) -> dict[str, overlap.Solid]:
@@ -221,5 +274,12 @@ def _bodies(scene: Scene, finger: Finger, layers: tuple[str, ...]) -> dict[str, 
 
 def _worst(subject: str, shared: dict[str, float]) -> Measurement:
     which = max(shared, key=lambda pair: shared[pair])
-    return Measurement("assembly.interference", subject, shared[which], 0, SHARED_MM3, "mm³",
-                       f"{which}, the worst of {len(shared)} pairs")  # fmt: skip
+    return Measurement(
+        "assembly.interference",
+        subject,
+        shared[which],
+        0,
+        SHARED_MM3,
+        "mm³",
+        f"{which}, the worst of {len(shared)} pairs",
+    )

@@ -103,9 +103,13 @@ def measure_nose(part: Printed) -> Iterator[Measurement]:
 
 
 READS = (
-    "backing/*.stl", "backing/*.3mf", "backing/*.step",
-    "interface/*.stl", "interface/*.3mf", "interface/*.step",
-)  # fmt: skip
+    "backing/*.stl",
+    "backing/*.3mf",
+    "backing/*.step",
+    "interface/*.stl",
+    "interface/*.3mf",
+    "interface/*.step",
+)
 
 PUBLISHED_OVERHANG_MM2 = 341.0  # of the published part, standing on its mount face
 FLAT_OVERHANG_MM2 = 0.5  # of a plate printed on its front: no support
@@ -155,9 +159,12 @@ def _measured(part: Printed) -> Iterator[Measurement]:
         steps += (measure_size, measure_pocket, measure_pins, *_PLATE, *_HELD)
     elif part.kind == "backing":
         steps += (
-            flex.measure_sheet_size, flex.measure_face, flex.measure_ties, flex.measure_groove,
+            flex.measure_sheet_size,
+            flex.measure_face,
+            flex.measure_ties,
+            flex.measure_groove,
             *_PLATE,
-        )  # fmt: skip
+        )
     else:
         steps += (flex.measure_interface_size, *_HELD)
     for step in steps:
@@ -168,8 +175,12 @@ def _told(step: Step, part: Printed, name: str) -> Iterator[Measurement]:
     try:
         yield from step(part)
     except (
-        ArithmeticError, LookupError, ValueError, OutputError, shapely.errors.ShapelyError,
-    ) as error:  # fmt: skip
+        ArithmeticError,
+        LookupError,
+        ValueError,
+        OutputError,
+        shapely.errors.ShapelyError,
+    ) as error:
         yield unreadable(f"backing.{name}", part.subject, f"cannot be measured: {error!r:.200}")
 
 

@@ -56,8 +56,12 @@ def measure_outline(read: Read) -> Iterator[Measurement]:
     (x_min, y_max), (x_max, y_min) = read.sensor([(left, low), (right, high)])
     off = [x_min - box.x_min_mm, x_max - box.x_max_mm, y_min - box.y_min_mm, y_max - box.y_max_mm]
     yield read.figure("outline", np.abs(off).max(), 0, EDGE_MM)
-    gaps = [x_min - pocket.x_min_mm, pocket.x_max_mm - x_max, y_min - pocket.y_min_mm,
-            pocket.y_max_mm - y_max]  # fmt: skip
+    gaps = [
+        x_min - pocket.x_min_mm,
+        pocket.x_max_mm - x_max,
+        y_min - pocket.y_min_mm,
+        pocket.y_max_mm - y_max,
+    ]
     clearance = read.design.board.pocket_clearance_mm
     worst = max(gaps, key=lambda gap: abs(gap - clearance))
     yield read.figure("pocket_gap", worst, clearance - EDGE_MM, clearance + EDGE_MM)
@@ -84,8 +88,11 @@ def measure_heights(read: Read) -> Iterator[Measurement]:
     front = [tall[p.ref] for p in read.board.parts if p.terminals and p.front]
     highest = max(front, key=lambda h: math.inf if math.isnan(h) else h, default=math.nan)
     yield read.figure("height_front", highest, 0, read.design.stack.silicone_mm)
-    spare = [_spare_mm(read, part, tall[part.ref]) for part in read.board.parts
-             if part.terminals and not part.front and tall[part.ref] != 0]  # fmt: skip
+    spare = [
+        _spare_mm(read, part, tall[part.ref])
+        for part in read.board.parts
+        if part.terminals and not part.front and tall[part.ref] != 0
+    ]
     if spare or read.finger.reliefs:
         least = min(spare, key=lambda s: -math.inf if math.isnan(s) else s, default=math.nan)
         yield read.figure("room_behind", least, 0, math.inf, note="left round parts on the back")
@@ -105,10 +112,15 @@ def _spare_mm(read: Read, part: Part, height_mm: float) -> float:
     left, low, right, high = shapely.union_all(copper).bounds
     (x_min, y_max), (x_max, y_min) = read.sensor([(left, low), (right, high)])
     spares = [
-        min(x_min - r.box.x_min_mm, r.box.x_max_mm - x_max, y_min - r.box.y_min_mm,
-            r.box.y_max_mm - y_max, r.depth_mm - height_mm)
+        min(
+            x_min - r.box.x_min_mm,
+            r.box.x_max_mm - x_max,
+            y_min - r.box.y_min_mm,
+            r.box.y_max_mm - y_max,
+            r.depth_mm - height_mm,
+        )
         for r in read.finger.reliefs
-    ]  # fmt: skip
+    ]
     return float(max(spares, default=math.nan))
 
 
@@ -174,14 +186,30 @@ READS = ("boards/*.kicad_pcb",)
 
 _Any = TypeVar("_Any", Read, ReadCarrier)
 _OF_FINGERS: tuple[Callable[[Read], Iterator[Measurement]], ...] = (
-    measure_cells, measure_outline, measure_holes, measure_heights, measure_copper, measure_nets,
-    measure_connector, measure_silk, measure_targets, measure_flexible,
-)  # fmt: skip
+    measure_cells,
+    measure_outline,
+    measure_holes,
+    measure_heights,
+    measure_copper,
+    measure_nets,
+    measure_connector,
+    measure_silk,
+    measure_targets,
+    measure_flexible,
+)
 _OF_CARRIERS: tuple[Callable[[ReadCarrier], Iterator[Measurement]], ...] = (
-    measure_edge, measure_screws, measure_lands, measure_names, measure_copper, measure_nets,
-    measure_joined, measure_supplies, measure_hot_loop, measure_keep_outs,
+    measure_edge,
+    measure_screws,
+    measure_lands,
+    measure_names,
+    measure_copper,
+    measure_nets,
+    measure_joined,
+    measure_supplies,
+    measure_hot_loop,
+    measure_keep_outs,
     measure_contact_map,
-)  # fmt: skip
+)
 
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:

@@ -129,8 +129,11 @@ def measure_joined(read: ReadCarrier) -> Iterator[Measurement]:
             pads[net][group].append(f"{device.ref}.{number}")
             if group is not None:
                 owners[group].add(net)
-    apart = [f"{net}: {min(groups.values(), key=len)[0]} is apart"
-             for net, groups in pads.items() if len(groups) > 1 or None in groups]  # fmt: skip
+    apart = [
+        f"{net}: {min(groups.values(), key=len)[0]} is apart"
+        for net, groups in pads.items()
+        if len(groups) > 1 or None in groups
+    ]
     yield read.count("apart", apart, "nets")
     both = [" and ".join(sorted(nets)) for nets in owners.values() if len(nets) > 1]
     yield read.count("joined", both, "places")
@@ -156,8 +159,9 @@ def measure_hot_loop(read: ReadCarrier) -> Iterator[Measurement]:
     loop = shapely.MultiPoint(corners).convex_hull
     yield read.figure("hot_loop", loop.area, 0, HOT_LOOP_MM2, "mm²", "between its pads' middles")
     back = read.board.layers[-1]
-    ground = [c.area for c in read.board.loose
-              if c.kind == "fill" and c.net == "GND" and back in c.layers]  # fmt: skip
+    ground = [
+        c.area for c in read.board.loose if c.kind == "fill" and c.net == "GND" and back in c.layers
+    ]
     share = shapely.union_all(ground).intersection(loop).area / loop.area
     yield read.figure("hot_loop_ground", 100 * share, GROUND_SHARE, 100, "%", "of it, on the back")
     reach = _copper_mm(read, *read.carrier.hot_loop[0], *read.carrier.hot_loop[1])
@@ -279,5 +283,4 @@ def _placed(device: Device, land: Land) -> Point:
     turn = math.radians(device.angle_deg)
     c, s = math.cos(turn), math.sin(turn)
     x = -land.x_mm if device.side == "back" else land.x_mm
-    return (device.x_mm + x * c - land.y_mm * s,
-            device.y_mm + x * s + land.y_mm * c)  # fmt: skip
+    return (device.x_mm + x * c - land.y_mm * s, device.y_mm + x * s + land.y_mm * c)

@@ -87,8 +87,11 @@ def measure_channels(read: Read) -> Iterator[Measurement]:
         for channel, ref in inputs.items()
         if found.by_copper.get(mux, {}).get(channel) != ref
     ]
-    spare = [f"{mux} reads more" for mux, inputs in found.by_copper.items()
-             if set(inputs) - set(wanted.get(mux, ()))]  # fmt: skip
+    spare = [
+        f"{mux} reads more"
+        for mux, inputs in found.by_copper.items()
+        if set(inputs) - set(wanted.get(mux, ()))
+    ]
     yield read.count("channels", wrong + spare, "channels")
     yield read.count("names", list(found.doubts), "channels")
     yield read.count("service", list(_unserved(read)), "leads")
@@ -134,8 +137,11 @@ def _chain(read: Read, resistor: str, supply: str, anode: str) -> tuple[list[str
         return [], False
     at, ground = ends[1 - ends.index(source)], read.wire(GROUND)
     cathode = "1" if anode == "2" else "2"
-    leds = {ref: (read.group(ref, anode), read.group(ref, cathode))
-            for ref in read.parts if ref.startswith("D")}  # fmt: skip
+    leds = {
+        ref: (read.group(ref, anode), read.group(ref, cathode))
+        for ref in read.parts
+        if ref.startswith("D")
+    }
     chain: list[str] = []
     while at != ground:
         after = [ref for ref, pads in leds.items() if at in pads]
@@ -166,8 +172,11 @@ def _bypasses(read: Read) -> Iterator[Measurement]:
     """From each multiplexer's supply and ground leads to the pads of a capacitor of its own."""
     leads, supply = read.design.packages.multiplexer, read.finger.connector.signals[1]
     rails = read.wire(supply), read.wire(GROUND)
-    free = {ref: part for ref, part in read.parts.items()
-            if ref.startswith("C") and _ends(read, ref) == set(rails)}  # fmt: skip
+    free = {
+        ref: part
+        for ref, part in read.parts.items()
+        if ref.startswith("C") and _ends(read, ref) == set(rails)
+    }
     far: list[tuple[float, float]] = []
     for which in range(1, read.design.wiring.muxes + 1):
         mux = read.parts.get(f"U{which}")

@@ -106,10 +106,12 @@ class Read(ReadBoard):
         packages, part = self.design.packages, self.parts.get(ref)
         emitter = self.finger.name == "emitter"
         numbers = {
-            "D": packages.led.part, "Q": packages.photodetector.part,
-            "U": packages.multiplexer.part, "C": packages.capacitor.part,
+            "D": packages.led.part,
+            "Q": packages.photodetector.part,
+            "U": packages.multiplexer.part,
+            "C": packages.capacitor.part,
             "R": (packages.string_resistor if emitter else packages.pull_up).part,
-        }  # fmt: skip
+        }
         return numbers.get(ref[:1], "").replace("{code}", part.value if part else "?")
 
 

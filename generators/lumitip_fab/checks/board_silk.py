@@ -88,8 +88,11 @@ def _turn_deg(read: Read, tip: Word) -> float:
     Its head is where three lines meet; it points there from their other ends.
     """
     spot = shapely.Point(tip.at)
-    near = [line.path for line in read.board.silk.lines if line.front == tip.front
-            and not line.ref and line.path.distance(spot) < ARROW_MM]  # fmt: skip
+    near = [
+        line.path
+        for line in read.board.silk.lines
+        if line.front == tip.front and not line.ref and line.path.distance(spot) < ARROW_MM
+    ]
     ends = [[(round(x, 3), round(y, 3)) for x, y in shapely.get_coordinates(p)] for p in near]
     met = Counter(end for line in ends for end in (line[0], line[-1]))
     heads = [end for end, count in met.items() if count == 3]
@@ -153,8 +156,11 @@ def _leans(drawn: Sequence[Line], pads: dict[str, BaseGeometry]) -> bool:
 def _dotted(drawn: Sequence[Line], pads: dict[str, BaseGeometry]) -> set[str]:
     """Leads that a dot stands at."""
     dots = [line.area for line in drawn if line.path.length < DOT_MM]
-    return {min((dot.distance(area), number) for number, area in pads.items())[1]
-            for dot in dots if pads}  # fmt: skip
+    return {
+        min((dot.distance(area), number) for number, area in pads.items())[1]
+        for dot in dots
+        if pads
+    }
 
 
 def _misnamed(read: Read) -> Iterator[str]:
@@ -226,8 +232,12 @@ def _gap(read: Read) -> float:
     worst = math.inf
     for front, layer in ((True, read.board.layers[0]), (False, read.board.layers[-1])):
         lines = [line.area for line in read.board.silk.lines if line.front == front]
-        pads = [t.copper.area for part in read.board.parts for t in part.terminals
-                if t.copper is not None and layer in t.copper.layers]  # fmt: skip
+        pads = [
+            t.copper.area
+            for part in read.board.parts
+            for t in part.terminals
+            if t.copper is not None and layer in t.copper.layers
+        ]
         if lines and pads:
             tree = shapely.STRtree(pads)
             near = tree.query_nearest(lines, return_distance=True, all_matches=False)[1]

@@ -18,9 +18,17 @@ from lumitip_fab.design import Design
 from lumitip_fab.errors import OutputError
 
 READS = (
-    "bom.csv", "boards/*/order/*_bom.csv", "backing/*.stl", "interface/*.stl", "mould/*.stl",
-    "holder/*.stl", "flange/*.stl", "fit/*.stl", "mould/*_casting.md", "wiring/cables.csv",
-)  # fmt: skip
+    "bom.csv",
+    "boards/*/order/*_bom.csv",
+    "backing/*.stl",
+    "interface/*.stl",
+    "mould/*.stl",
+    "holder/*.stl",
+    "flange/*.stl",
+    "fit/*.stl",
+    "mould/*_casting.md",
+    "wiring/cables.csv",
+)
 _FILE = "bom.csv"
 _PART_G = re.compile(r"^\| .*, part [AB] \| \*\*([\d.]+) g\*\* \|$", re.MULTILINE)
 _CENT = 0.0051
@@ -71,18 +79,25 @@ def _bolts(rows: tuple[Row, ...], design: Design) -> Iterator[Measurement]:
         wanted[flange.bolt] += len(flange.bolts)
     for thread, count in wanted.items():
         told = sum(r.quantity for r in rows if r.item.startswith(f"{thread} socket"))
-        yield Measurement("bom.bolts", _FILE, told, count, count, "bolts",
-                          f"{thread}, of fingers and flange")  # fmt: skip
+        yield Measurement(
+            "bom.bolts", _FILE, told, count, count, "bolts", f"{thread}, of fingers and flange"
+        )
 
 
 def _read(path: Path) -> tuple[tuple[Row, ...], float, str]:
     try:
         told = table(path.read_text(encoding="utf-8"))
         rows = tuple(
-            Row(r["group"], r["item"], r["part"], _figure(r["quantity"]), _price(r["unit_price"]),
-                _price(r["price"]))
+            Row(
+                r["group"],
+                r["item"],
+                r["part"],
+                _figure(r["quantity"]),
+                _price(r["unit_price"]),
+                _price(r["price"]),
+            )
             for r in told[:-1]
-        )  # fmt: skip
+        )
         if told[-1]["group"] != "total":
             raise ValueError("its last line is no total")
         return rows, _figure(told[-1]["price"]), told[-1]["for"]
@@ -152,8 +167,11 @@ def _wrong_parts(rows: tuple[Row, ...], parts: Counter[str], design: Design) -> 
             told[row.part] += round(row.quantity)
     soldered = any(d.kind == "module" for c in design.carriers for d in c.devices)
     wanted = parts + Counter({} if soldered else {design.controller.title: 1})
-    return [f"{part}: {told[part]}, not {wanted[part]}" for part in sorted({*told, *wanted})
-            if told[part] != wanted[part]]  # fmt: skip
+    return [
+        f"{part}: {told[part]}, not {wanted[part]}"
+        for part in sorted({*told, *wanted})
+        if told[part] != wanted[part]
+    ]
 
 
 def _prints(rows: tuple[Row, ...], grams: dict[str, float]) -> Measurement:
@@ -163,8 +181,15 @@ def _prints(rows: tuple[Row, ...], grams: dict[str, float]) -> Measurement:
         return unreadable("bom.prints", _FILE, f"lists other parts: {', '.join(wrong[:3])}")
     off = {name: abs(told[name] / grams[name] - 1) for name in grams}
     worst = max(off, key=lambda name: off[name])
-    return Measurement("bom.prints", _FILE, 100 * off[worst], 0, 100 * _FRACTION, "%",
-                       f"mass against volume and density, worst at {worst}")  # fmt: skip
+    return Measurement(
+        "bom.prints",
+        _FILE,
+        100 * off[worst],
+        0,
+        100 * _FRACTION,
+        "%",
+        f"mass against volume and density, worst at {worst}",
+    )
 
 
 def _near(

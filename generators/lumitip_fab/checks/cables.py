@@ -46,12 +46,17 @@ def read_list(path: Path) -> tuple[Row, ...]:
     try:
         return tuple(
             Row(
-                each["wire"], each["signal"], (each["from_board"], each["from_pad"]),
-                (each["to_board"], each["to_pad"]), each["colour"],
-                float(each["section_mm2"]), float(each["length_mm"]), float(each["current_ma"]),
+                each["wire"],
+                each["signal"],
+                (each["from_board"], each["from_pad"]),
+                (each["to_board"], each["to_pad"]),
+                each["colour"],
+                float(each["section_mm2"]),
+                float(each["length_mm"]),
+                float(each["current_ma"]),
             )
             for each in table(path.read_text(encoding="utf-8"))
-        )  # fmt: skip
+        )
     except (OSError, ValueError, KeyError) as error:
         raise OutputError(f"{path}: cannot be read as a list of cables: {error!r:.120}") from error
 

@@ -95,28 +95,60 @@ def _bodies(
         if name not in missing:
             drawn, flat = drawing.groups[name], corners @ drawing.view.T
             off[name] = float(np.abs(np.ptp(drawn, axis=0) - np.ptp(flat, axis=0)).max()) / within
-            shifts[name] = (drawn.min(axis=0) + drawn.max(axis=0)
-                            - flat.min(axis=0) - flat.max(axis=0)) / 2  # fmt: skip
+            shifts[name] = (
+                drawn.min(axis=0) + drawn.max(axis=0) - flat.min(axis=0) - flat.max(axis=0)
+            ) / 2
     worst = max(off, key=lambda name: off[name])
-    yield Measurement("assembly.drawing", f"{file} size", off[worst] * wanted[worst][1], 0,
-                      wanted[worst][1], "mm", f"of {worst}, against its size at 1:1")  # fmt: skip
+    yield Measurement(
+        "assembly.drawing",
+        f"{file} size",
+        off[worst] * wanted[worst][1],
+        0,
+        wanted[worst][1],
+        "mm",
+        f"of {worst}, against its size at 1:1",
+    )
     if not all(name in shifts for name in layers):
         yield unreadable("assembly.drawing", f"{file} order", "a layer is missing")
         return
     rise = float(np.diff([shifts[name][1] for name in layers]).min())
-    yield Measurement("assembly.drawing", f"{file} order", rise, ORDER_MM, math.inf, "mm",
-                      "least rise from layer to layer")  # fmt: skip
-    astray = {name: float(np.abs(shift - shifts["board"]).max())
-              for name, shift in shifts.items() if name not in layers}  # fmt: skip
+    yield Measurement(
+        "assembly.drawing",
+        f"{file} order",
+        rise,
+        ORDER_MM,
+        math.inf,
+        "mm",
+        "least rise from layer to layer",
+    )
+    astray = {
+        name: float(np.abs(shift - shifts["board"]).max())
+        for name, shift in shifts.items()
+        if name not in layers
+    }
     loose = max(astray, key=lambda name: astray[name])
-    yield Measurement("assembly.drawing", f"{file} place", astray[loose], 0, SIZE_MM, "mm",
-                      f"of {loose}, on its board")  # fmt: skip
+    yield Measurement(
+        "assembly.drawing",
+        f"{file} place",
+        astray[loose],
+        0,
+        SIZE_MM,
+        "mm",
+        f"of {loose}, on its board",
+    )
 
 
 def _page(file: str, drawing: Drawing) -> Measurement:
     """Least distance of anything drawn or written from the page's edge."""
-    return Measurement("assembly.drawing_page", file, margin_mm(drawing), MARGIN_MM, math.inf, "mm",
-                       "to the page's edge")  # fmt: skip
+    return Measurement(
+        "assembly.drawing_page",
+        file,
+        margin_mm(drawing),
+        MARGIN_MM,
+        math.inf,
+        "mm",
+        "to the page's edge",
+    )
 
 
 def _labels(file: str, drawing: Drawing, design: Design, finger: Finger) -> Iterator[Measurement]:
@@ -125,12 +157,15 @@ def _labels(file: str, drawing: Drawing, design: Design, finger: Finger) -> Iter
     kinds = [part.kind for part in finger.parts if part.side == "front"]
     plural = {"led": "LEDs"}
     wanted = [
-        f"Backing, {stack.plate_mm:g} mm", f"Board, {stack.pcb_mm:g} mm",
-        f"Silicone, {stack.silicone_mm:g} mm", f"Film, {stack.film_mm:g} mm",
+        f"Backing, {stack.plate_mm:g} mm",
+        f"Board, {stack.pcb_mm:g} mm",
+        f"Silicone, {stack.silicone_mm:g} mm",
+        f"Film, {stack.film_mm:g} mm",
         *(["Interface"] if design.interfaces else []),
-        f"{len(finger.connector.pads)} wires", f"{finger.name.capitalize()} finger, exploded",
+        f"{len(finger.connector.pads)} wires",
+        f"{finger.name.capitalize()} finger, exploded",
         *(f"{kinds.count(k)} {plural.get(k, k + 's')}" for k in dict.fromkeys(kinds)),
-    ]  # fmt: skip
+    ]
     told = [word for word, _ in drawing.words]
     missing = [word for word in wanted if word not in told]
     note = f"of {len(wanted)}" + (f", first {missing[0]!r}" if missing else "")
@@ -139,8 +174,15 @@ def _labels(file: str, drawing: Drawing, design: Design, finger: Finger) -> Iter
     for text in (extent for _, extent in drawing.words):
         columns.setdefault(round(float(text[0, 0]), 1), []).append(float(text[0, 1]))
     gap = min(float(np.diff(sorted(c)).min(initial=math.inf)) for c in columns.values())
-    yield Measurement("assembly.drawing_labels", f"{file} lines", gap, COLUMN_MM, math.inf, "mm",
-                      "from a line of words to the next")  # fmt: skip
+    yield Measurement(
+        "assembly.drawing_labels",
+        f"{file} lines",
+        gap,
+        COLUMN_MM,
+        math.inf,
+        "mm",
+        "from a line of words to the next",
+    )
 
 
 def _block(box: Box, low_mm: float, high_mm: float) -> Vectors:

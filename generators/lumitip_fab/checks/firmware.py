@@ -37,8 +37,15 @@ def _channels(text: str, layout: Layout) -> Measurement:
         return unreadable("firmware.channels", _LAYOUT, reason)
     pairs = zip(mux, channel, layout.mux.tolist(), layout.channel.tolist(), strict=True)
     wrong = sum((m, c) != (wanted_m, wanted_c) for m, c, wanted_m, wanted_c in pairs)
-    return Measurement("firmware.channels", _LAYOUT, float(wrong), 0, 0, "cells",
-                       f"of {len(layout)} on another input than in the layout")  # fmt: skip
+    return Measurement(
+        "firmware.channels",
+        _LAYOUT,
+        float(wrong),
+        0,
+        0,
+        "cells",
+        f"of {len(layout)} on another input than in the layout",
+    )
 
 
 def _pins(text: str, layout: Layout, design: Design) -> Measurement:

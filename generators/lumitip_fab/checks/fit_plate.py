@@ -25,9 +25,16 @@ _FILE = "fit/fit_plate.stl"
 _DOWN = np.array([0.0, 0.0, -1.0])
 # Places in parts of a character's height from its lower left corner, and which of them are sunk.
 _PLACES = {
-    "a": (0.3, 0.915), "b": (0.515, 0.71), "c": (0.515, 0.29), "d": (0.3, 0.085),
-    "e": (0.085, 0.29), "f": (0.085, 0.71), "g": (0.3, 0.5), "p": (0.3, 0.68), "q": (0.3, 0.25),
-}  # fmt: skip
+    "a": (0.3, 0.915),
+    "b": (0.515, 0.71),
+    "c": (0.515, 0.29),
+    "d": (0.3, 0.085),
+    "e": (0.085, 0.29),
+    "f": (0.085, 0.71),
+    "g": (0.3, 0.5),
+    "p": (0.3, 0.68),
+    "q": (0.3, 0.25),
+}
 _SUNK = {"0": "abcdef", "1": "adgpq", "5": "acdfg", "-": "g", "+": "gpq", " ": ""}
 _CHARACTERS, _CHARACTER_PITCH = 3, 0.85
 
@@ -65,9 +72,14 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     yield _figure("readable", "", float(len(mesh.faces)), 4, np.inf, "triangles")
     plate = _Plate(mesh, design)
     steps: tuple[Callable[[_Plate], Iterator[Measurement]], ...] = (
-        measure_body, measure_corners, measure_bolts, measure_pins, measure_sleeves, measure_noses,
+        measure_body,
+        measure_corners,
+        measure_bolts,
+        measure_pins,
+        measure_sleeves,
+        measure_noses,
         measure_labels,
-    )  # fmt: skip
+    )
     for measured in steps:
         try:
             yield from measured(plate)

@@ -75,18 +75,30 @@ def _printed(subject: str, lying: Any, design: Design) -> Iterator[Measurement]:
 
 def _measured(of: Stacked) -> Iterator[Measurement]:
     steps: tuple[Callable[[Stacked], Iterator[Measurement]], ...] = (
-        measure_faces, measure_bolts, measure_pins, measure_overlap,
-        flange_board.measure_pocket, flange_board.measure_contacts,
-        flange_board.measure_headers, flange_board.measure_screws, measure_strength,
-    )  # fmt: skip
+        measure_faces,
+        measure_bolts,
+        measure_pins,
+        measure_overlap,
+        flange_board.measure_pocket,
+        flange_board.measure_contacts,
+        flange_board.measure_headers,
+        flange_board.measure_screws,
+        measure_strength,
+    )
     for step in steps:
         try:
             yield from step(of)
-        except (ArithmeticError, LookupError, ValueError, OutputError,
-                shapely.errors.ShapelyError) as error:  # fmt: skip
+        except (
+            ArithmeticError,
+            LookupError,
+            ValueError,
+            OutputError,
+            shapely.errors.ShapelyError,
+        ) as error:
             name = step.__name__.removeprefix("measure_")
-            yield unreadable(f"flange.{name}", "flange/*.stl",
-                             f"cannot be measured: {error!r:.200}")  # fmt: skip
+            yield unreadable(
+                f"flange.{name}", "flange/*.stl", f"cannot be measured: {error!r:.200}"
+            )
 
 
 def measure_faces(of: Stacked) -> Iterator[Measurement]:
@@ -117,8 +129,11 @@ def measure_faces(of: Stacked) -> Iterator[Measurement]:
 def measure_bolts(of: Stacked) -> Iterator[Measurement]:
     """The bolts' holes through both parts; walls beside every hole; the board out of their way."""
     flange = of.flange
-    levels = ((of.lower, flange.seat_z_mm / 2), (of.lower, flange.split_z_mm - 1.0),
-              (of.upper, flange.split_z_mm + flange.web_mm / 2))  # fmt: skip
+    levels = (
+        (of.lower, flange.seat_z_mm / 2),
+        (of.lower, flange.split_z_mm - 1.0),
+        (of.upper, flange.split_z_mm + flange.web_mm / 2),
+    )
     found = [circles(holes_at(mesh, z), flange.bolts, _NEAR_MM) for mesh, z in levels]
     yield of.near("bolts", np.concatenate([off for off, _ in found]), 0.0, HOLE_MM)
     wide = np.concatenate([wide for _, wide in found])
@@ -130,8 +145,13 @@ def measure_bolts(of: Stacked) -> Iterator[Measurement]:
     yield of.figure("hole_wall", least, of.design.printing.min_wall_mm - SIZE_MM, math.inf)
     apart = [of.outline.distance(shapely.Point(at)) for at in flange.bolts]
     clear = min(apart) - flange.bolt_hole_mm / 2
-    yield of.figure("bolt_board", clear, of.design.printing.min_wall_mm, math.inf,
-                    note="from a bolt's hole to the board's edge")  # fmt: skip
+    yield of.figure(
+        "bolt_board",
+        clear,
+        of.design.printing.min_wall_mm,
+        math.inf,
+        note="from a bolt's hole to the board's edge",
+    )
 
 
 def measure_pins(of: Stacked) -> Iterator[Measurement]:
@@ -175,5 +195,6 @@ def measure_overlap(of: Stacked) -> Iterator[Measurement]:
         shared[f"lower and {name}"] = overlap.shared_mm3(lower, body)
         shared[f"upper and {name}"] = overlap.shared_mm3(upper, body)
     which = max(shared, key=lambda pair: shared[pair])
-    yield of.figure("interference", shared[which], 0, 0.05, "mm³",
-                    f"{which}, the worst of {len(shared)} pairs")  # fmt: skip
+    yield of.figure(
+        "interference", shared[which], 0, 0.05, "mm³", f"{which}, the worst of {len(shared)} pairs"
+    )

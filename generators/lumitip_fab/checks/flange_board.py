@@ -39,11 +39,21 @@ def measure_pocket(of: Stacked) -> Iterator[Measurement]:
     tails = np.concatenate([of.pads(ref) for ref in of.headers])
     floor = heights(of.lower, tails)
     room = float((of.board_z_mm - floor).min())
-    yield of.figure("tails", room, flange.tail_mm - SIZE_MM, math.inf,
-                    note=f"under {len(tails)} pads of headers")  # fmt: skip
+    yield of.figure(
+        "tails",
+        room,
+        flange.tail_mm - SIZE_MM,
+        math.inf,
+        note=f"under {len(tails)} pads of headers",
+    )
     left = float((floor - of.lower.bounds[0][2]).min())
-    yield of.figure("tail_floor", left, of.design.printing.min_wall_mm - SIZE_MM, math.inf,
-                    note="left under the solder tails")  # fmt: skip
+    yield of.figure(
+        "tail_floor",
+        left,
+        of.design.printing.min_wall_mm - SIZE_MM,
+        math.inf,
+        note="left under the solder tails",
+    )
 
 
 def measure_contacts(of: Stacked) -> Iterator[Measurement]:
@@ -57,14 +67,24 @@ def measure_contacts(of: Stacked) -> Iterator[Measurement]:
     here = [shapely.Polygon(ring) for ring in rings if shapely.Polygon(ring).contains(middle)]
     body = _footprint(of, _device(of, CONTACTS))
     free = [ring.exterior.distance(body) for ring in here if ring.contains(body)]
-    yield of.figure("window_gap", free[0] if free else math.nan, LEAST_AROUND_MM, math.inf,
-                    note="round the body of the contacts")  # fmt: skip
+    yield of.figure(
+        "window_gap",
+        free[0] if free else math.nan,
+        LEAST_AROUND_MM,
+        math.inf,
+        note="round the body of the contacts",
+    )
     behind = not of.board.parts[CONTACTS].front
     stand = flange.contacts_mm if behind else math.nan
     pressed = stand - (of.board_z_mm - flange.contacts_z_mm)
     low, high = LEAST_SHARE * flange.stroke_mm, MOST_SHARE * flange.stroke_mm
-    yield of.figure("contact_press", pressed, low - SIZE_MM, high + SIZE_MM,
-                    note=f"of {flange.stroke_mm:g} mm of stroke")  # fmt: skip
+    yield of.figure(
+        "contact_press",
+        pressed,
+        low - SIZE_MM,
+        high + SIZE_MM,
+        note=f"of {flange.stroke_mm:g} mm of stroke",
+    )
 
 
 def measure_headers(of: Stacked) -> Iterator[Measurement]:
@@ -85,8 +105,13 @@ def measure_headers(of: Stacked) -> Iterator[Measurement]:
         blocked += [ref] if np.isfinite(hit).any() else []
     yield of.figure("cables", len(blocked), 0, 0, "headers", "whose way out is blocked")
     highest = max(d.pattern.height_mm for d in of.board.carrier.devices if _in_front(of, d))
-    yield of.figure("headroom", of.split_mm - front - highest, LEAST_HEADROOM_MM, math.inf,
-                    note="over the highest part")  # fmt: skip
+    yield of.figure(
+        "headroom",
+        of.split_mm - front - highest,
+        LEAST_HEADROOM_MM,
+        math.inf,
+        note="over the highest part",
+    )
 
 
 def measure_screws(of: Stacked) -> Iterator[Measurement]:
@@ -139,9 +164,18 @@ def _footprint(of: Stacked, device: Device) -> shapely.Polygon:
     (at,) = of.places([part.at])
     turn, sign = math.radians(device.angle_deg), 1 if part.front else -1
     left, right = sorted((sign * body.x_min_mm, sign * body.x_max_mm))
-    corners = [(left, body.y_min_mm), (right, body.y_min_mm),
-               (right, body.y_max_mm), (left, body.y_max_mm)]  # fmt: skip
-    return shapely.Polygon([
-        (at[0] + x * math.cos(turn) - y * math.sin(turn),
-         at[1] + x * math.sin(turn) + y * math.cos(turn)) for x, y in corners
-    ])  # fmt: skip
+    corners = [
+        (left, body.y_min_mm),
+        (right, body.y_min_mm),
+        (right, body.y_max_mm),
+        (left, body.y_max_mm),
+    ]
+    return shapely.Polygon(
+        [
+            (
+                at[0] + x * math.cos(turn) - y * math.sin(turn),
+                at[1] + x * math.sin(turn) + y * math.cos(turn),
+            )
+            for x, y in corners
+        ]
+    )

@@ -78,23 +78,32 @@ class Stacked:
     @cached_property
     def headers(self) -> tuple[str, ...]:
         """Headers and pads for cables, on the board's front."""
-        return tuple(d.ref for d in self.board.carrier.devices
-                     if d.kind in ("header", "wires") and d.ref != CONTACTS)  # fmt: skip
+        return tuple(
+            d.ref
+            for d in self.board.carrier.devices
+            if d.kind in ("header", "wires") and d.ref != CONTACTS
+        )
 
     @cached_property
     def board_z_mm(self) -> float:
         """What carries the board, round its screws."""
         ring = 0.5 * self.flange.screw_mm + 0.6
-        around = [(x + dx, y + dy) for x, y in self.flange.screws
-                  for dx, dy in ((ring, 0), (-ring, 0), (0, ring), (0, -ring))]  # fmt: skip
+        around = [
+            (x + dx, y + dy)
+            for x, y in self.flange.screws
+            for dx, dy in ((ring, 0), (-ring, 0), (0, ring), (0, -ring))
+        ]
         return farthest(heights(self.lower, np.array(around)), self.flange.board_z_mm)
 
     @cached_property
     def split_mm(self) -> float:
         """Where the upper part lies on the lower one, round the bolts."""
         ring = 0.5 * self.flange.bolt_hole_mm + 0.5
-        around = [(x + dx, y + dy) for x, y in self.flange.bolts
-                  for dx, dy in ((ring, 0), (-ring, 0), (0, ring), (0, -ring))]  # fmt: skip
+        around = [
+            (x + dx, y + dy)
+            for x, y in self.flange.bolts
+            for dx, dy in ((ring, 0), (-ring, 0), (0, ring), (0, -ring))
+        ]
         return farthest(heights(self.lower, np.array(around)), self.flange.split_z_mm)
 
 

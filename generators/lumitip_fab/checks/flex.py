@@ -71,8 +71,9 @@ def measure_sheet_size(part: Printed) -> Iterator[Measurement]:
     stack, mount = design.stack, design.mount
     # The plate ends in the mount plane, which leans: on its front or on its back it is longer.
     lean = np.tan(np.radians(mount.tilt_deg))
-    ends = [mount.origin_y_mm - (stack.rim_z_mm - z) * lean
-            for z in (stack.face_z_mm, stack.back_z_mm)]  # fmt: skip
+    ends = [
+        mount.origin_y_mm - (stack.rim_z_mm - z) * lean for z in (stack.face_z_mm, stack.back_z_mm)
+    ]
     wanted = np.array([[-half, -design.outline.tip_y_mm, 0.0], [half, -min(ends), stack.plate_mm]])
     yield part.near("size", (part.standing.bounds - wanted).ravel(), 0.0, SIZE_MM)
 

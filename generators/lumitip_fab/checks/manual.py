@@ -12,9 +12,15 @@ from lumitip_fab.errors import OutputError
 from lumitip_fab.text import page_letters
 
 READS = (
-    "manual/*", "assembly/*.svg", "bom.csv", "boards/*/*.png", "mask/*",
-    "mould/*_casting.md", "wiring/*", "print/*",
-)  # fmt: skip
+    "manual/*",
+    "assembly/*.svg",
+    "bom.csv",
+    "boards/*/*.png",
+    "mask/*",
+    "mould/*_casting.md",
+    "wiring/*",
+    "print/*",
+)
 _HTML, _PDF = "manual/manual.html", "manual/manual.pdf"
 _GLANCE = "At a glance"
 _WARM_UP_MIN = 5.0  # Table I of the published sensor

@@ -64,20 +64,34 @@ def measure_note(
         raise PageError("does not state flaps, apertures, height of the side or readings")
     odd = len(set(numbers) ^ rows.keys())
     yield Measurement("mask.note", f"{subject} rows", odd, 0, 0, "flaps", "missing or too many")
-    off = np.array([
-        np.abs(np.array(rows[n]) - _figures(flap, design))
-        for n, flap in zip(numbers, flaps, strict=True) if n in rows
-    ]).reshape(-1, 3)  # fmt: skip
-    for name, column, limit in (("width", 0, ROUNDED_MM), ("length", 1, ROUNDED_MM),
-                                ("reach", 2, TENTH_MM)):  # fmt: skip
+    off = np.array(
+        [
+            np.abs(np.array(rows[n]) - _figures(flap, design))
+            for n, flap in zip(numbers, flaps, strict=True)
+            if n in rows
+        ]
+    ).reshape(-1, 3)
+    for name, column, limit in (
+        ("width", 0, ROUNDED_MM),
+        ("length", 1, ROUNDED_MM),
+        ("reach", 2, TENTH_MM),
+    ):
         worst = float(off[:, column].max()) if len(off) else np.nan
-        yield Measurement("mask.note", f"{subject} {name}", worst, 0, limit, "mm",
-                          "worst row against the A4 page")  # fmt: skip
+        yield Measurement(
+            "mask.note", f"{subject} {name}", worst, 0, limit, "mm", "worst row against the A4 page"
+        )
     whole = design.stack.plate_mm + design.stack.cover_mm
     told = np.array([float(v) for v in (count[1], side[1], *readings.groups())])
     wanted = np.array([len(finger.cells), whole, *design.mask.measured_ruler_mm])
-    yield Measurement("mask.note", f"{subject} figures", float(np.abs(told - wanted).max()), 0,
-                      ROUNDED_MM, "", "apertures, height of the side, readings")  # fmt: skip
+    yield Measurement(
+        "mask.note",
+        f"{subject} figures",
+        float(np.abs(told - wanted).max()),
+        0,
+        ROUNDED_MM,
+        "",
+        "apertures, height of the side, readings",
+    )
 
 
 def _figures(flap: Flap, design: Design) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
@@ -241,8 +255,15 @@ def _same_flaps(
     ):
         same = len(drawn) == len(other) and len(drawn) > 0
         worst = apart(placed.points(np.concatenate(drawn)), np.concatenate(other)) if same else None
-        yield Measurement(f"mask.{name}", f"{subject} {what}", math.inf if worst is None else worst,
-                          0, SAME_MM, "mm", f"{len(drawn)} against {len(other)} on A4")  # fmt: skip
+        yield Measurement(
+            f"mask.{name}",
+            f"{subject} {what}",
+            math.inf if worst is None else worst,
+            0,
+            SAME_MM,
+            "mm",
+            f"{len(drawn)} against {len(other)} on A4",
+        )
 
 
 def _windows_apart(a: Points, b: Points) -> float:

@@ -32,13 +32,15 @@ def folds_of(page: Page, placed: Placed, registration: Points) -> tuple[Points, 
     lines = [
         placed.points(p.subpaths[0].corners)
         for p in page.painted
-        if p.stroked and not p.filled and len(p.subpaths) == 1
-        and len(p.subpaths[0].corners) == 2 and not len(p.subpaths[0].controls)
-    ]  # fmt: skip
+        if p.stroked
+        and not p.filled
+        and len(p.subpaths) == 1
+        and len(p.subpaths[0].corners) == 2
+        and not len(p.subpaths[0].controls)
+    ]
     return tuple(
-        line for line in lines
-        if np.hypot(*(registration - line.mean(axis=0)).T).min() > _CROSS_MM
-    )  # fmt: skip
+        line for line in lines if np.hypot(*(registration - line.mean(axis=0)).T).min() > _CROSS_MM
+    )
 
 
 def bands_of(page: Page, placed: Placed) -> tuple[Points, ...]:
@@ -50,9 +52,11 @@ def bands_of(page: Page, placed: Placed) -> tuple[Points, ...]:
     fills = [
         p.subpaths
         for p in page.painted
-        if p.filled and p.black and not p.even_odd
+        if p.filled
+        and p.black
+        and not p.even_odd
         and all(len(s.corners) == 4 and not len(s.controls) for s in p.subpaths)
-    ]  # fmt: skip
+    ]
     if not fills:
         raise PageError("no black bands on the flaps")
     return tuple(placed.points(s.corners) for s in max(fills, key=len))
@@ -76,15 +80,25 @@ def measure_bands(
     yield Measurement("mask.bands", f"{subject} light", max(clear), 0, LEAK_MM2, "mm²", note)
     whole = shapely.union_all([shapely.Polygon(ring) for ring in bands])
     ends = [_end_mm(flap, whole) for flap in flaps]
-    yield Measurement("mask.bands", f"{subject} glue", min(ends), GLUE_MM, math.inf, "mm",
-                      "clear film at the end of a flap")  # fmt: skip
+    yield Measurement(
+        "mask.bands",
+        f"{subject} glue",
+        min(ends),
+        GLUE_MM,
+        math.inf,
+        "mm",
+        "clear film at the end of a flap",
+    )
 
 
 def numbers_of(page: Page, placed: Placed, flaps: tuple[Flap, ...]) -> tuple[int, ...]:
     """The number printed on each flap; 0 where there is not exactly one."""
     middles = placed.points(page.texts.reshape(-1, 4, 2).mean(axis=1))
-    told = [(int(word), shapely.Point(at)) for word, at in zip(page.words, middles, strict=True)
-            if word.isdecimal()]  # fmt: skip
+    told = [
+        (int(word), shapely.Point(at))
+        for word, at in zip(page.words, middles, strict=True)
+        if word.isdecimal()
+    ]
     found = []
     for flap in flaps:
         area = shapely.Polygon(flap.corners)

@@ -83,10 +83,24 @@ def measure_flaps(
         design: for the heights of its sides and the coupling.
     """
     odd = abs(3 * len(flaps) + 1 - corners)
-    yield Measurement("mask.folds", f"{subject} count", odd, 0, 0, "corners",
-                      f"of the cut more or less than {len(flaps)} flaps have")  # fmt: skip
-    yield Measurement("mask.flaps", subject, _overlap(flaps), 0, OVERLAP_MM2, "mm²",
-                      f"of {len(flaps)} flaps laid flat")  # fmt: skip
+    yield Measurement(
+        "mask.folds",
+        f"{subject} count",
+        odd,
+        0,
+        0,
+        "corners",
+        f"of the cut more or less than {len(flaps)} flaps have",
+    )
+    yield Measurement(
+        "mask.flaps",
+        subject,
+        _overlap(flaps),
+        0,
+        OVERLAP_MM2,
+        "mm²",
+        f"of {len(flaps)} flaps laid flat",
+    )
     sagitta = max(_sagitta(flap.fold, edge) for flap in flaps)
     yield Measurement("mask.folds", subject, sagitta, 0, SAGITTA_MM, "mm", "chord to black's edge")
     sides = [float(side_mm(flap.fold, design).min()) for flap in flaps]
@@ -97,17 +111,30 @@ def measure_flaps(
     keep += [("interface", interface.box, NOTCH_MM) for interface in design.interfaces]
     for name, box, least in keep:
         apart = float(shapely.distance(back, _area(box)))
-        yield Measurement("mask.folds", f"{subject} {name}", apart, least, math.inf, "mm",
-                          f"folded flaps to the {name}")  # fmt: skip
+        yield Measurement(
+            "mask.folds",
+            f"{subject} {name}",
+            apart,
+            least,
+            math.inf,
+            "mm",
+            f"folded flaps to the {name}",
+        )
     for relief in finger.reliefs:
         apart = float(shapely.distance(back, _area(relief.box)))
-        yield Measurement("mask.folds", f"{subject} window", apart, unit="mm",
-                          note="flaps to a window behind parts; for information")  # fmt: skip
+        yield Measurement(
+            "mask.folds",
+            f"{subject} window",
+            apart,
+            unit="mm",
+            note="flaps to a window behind parts; for information",
+        )
     reaches = [
         f.length_mm + design.mask.allowance_mm - side for f, side in zip(flaps, sides, strict=True)
     ]
-    yield Measurement("mask.reach", subject, min(reaches), REACH_MM, math.inf, "mm",
-                      "shortest flap onto the back")  # fmt: skip
+    yield Measurement(
+        "mask.reach", subject, min(reaches), REACH_MM, math.inf, "mm", "shortest flap onto the back"
+    )
 
 
 def _overlap(flaps: tuple[Flap, ...]) -> float:

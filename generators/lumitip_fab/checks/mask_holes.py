@@ -38,9 +38,12 @@ def registration_of(page: Page) -> Points:
     rings = [
         p.subpaths[0].corners.mean(axis=0)
         for p in page.painted
-        if p.stroked and not p.filled and len(p.subpaths) == 1
-        and len(p.subpaths[0].corners) == 4 and len(p.subpaths[0].controls) == 8
-    ]  # fmt: skip
+        if p.stroked
+        and not p.filled
+        and len(p.subpaths) == 1
+        and len(p.subpaths[0].corners) == 4
+        and len(p.subpaths[0].controls) == 8
+    ]
     return np.array(rings).reshape(-1, 2)
 
 
@@ -119,9 +122,12 @@ def cut_of(page: Page, placed: Placed) -> Points:
     lines = [
         p.subpaths[0].corners
         for p in page.painted
-        if p.stroked and not p.filled and len(p.subpaths) == 1
-        and p.subpaths[0].closed and not len(p.subpaths[0].controls)
-    ]  # fmt: skip
+        if p.stroked
+        and not p.filled
+        and len(p.subpaths) == 1
+        and p.subpaths[0].closed
+        and not len(p.subpaths[0].controls)
+    ]
     if not lines or len(max(lines, key=len)) < 3:
         raise PageError("no line to cut along")
     return placed.points(max(lines, key=len))

@@ -31,22 +31,51 @@ def measure_page(
 ) -> Iterator[Measurement]:
     """Paper, margins, registration, scale, rulers, the letter F and fonts."""
     for side, got, wanted in zip(("width", "height"), page.size_mm, paper_mm, strict=True):
-        yield Measurement("mask.page", f"{subject} {side}", got, wanted - PAPER_MM,
-                          wanted + PAPER_MM, "mm")  # fmt: skip
+        yield Measurement(
+            "mask.page", f"{subject} {side}", got, wanted - PAPER_MM, wanted + PAPER_MM, "mm"
+        )
     left, low, right, high = page.extent
     margin = min(left, low, page.size_mm[0] - right, page.size_mm[1] - high)
-    yield Measurement("mask.page", f"{subject} margin", margin, PRINTABLE_MM, math.inf, "mm",
-                      "to the nearest edge")  # fmt: skip
-    yield Measurement("mask.marks", subject, placed.residual_mm, 0, PLACE_MM, "mm",
-                      "worst of four registration marks")  # fmt: skip
+    yield Measurement(
+        "mask.page",
+        f"{subject} margin",
+        margin,
+        PRINTABLE_MM,
+        math.inf,
+        "mm",
+        "to the nearest edge",
+    )
+    yield Measurement(
+        "mask.marks",
+        subject,
+        placed.residual_mm,
+        0,
+        PLACE_MM,
+        "mm",
+        "worst of four registration marks",
+    )
     for axis, got, reading in zip("xy", placed.scale, mask.measured_ruler_mm, strict=True):
         wanted = 100 / reading
-        yield Measurement(f"mask.scale_{axis}", subject, got, wanted * (1 - SCALE),
-                          wanted * (1 + SCALE), "", f"a ruler measured {reading:g}")  # fmt: skip
+        yield Measurement(
+            f"mask.scale_{axis}",
+            subject,
+            got,
+            wanted * (1 - SCALE),
+            wanted * (1 + SCALE),
+            "",
+            f"a ruler measured {reading:g}",
+        )
     yield from _rulers(subject, page, placed)
     yield from _letter(subject, page, placed, mask.mark)
-    yield Measurement("mask.fonts", subject, len(page.lacking), 0, 0, "fonts",
-                      ", ".join(page.lacking) or "that are not embedded")  # fmt: skip
+    yield Measurement(
+        "mask.fonts",
+        subject,
+        len(page.lacking),
+        0,
+        0,
+        "fonts",
+        ", ".join(page.lacking) or "that are not embedded",
+    )
 
 
 def measure_black(
@@ -68,15 +97,29 @@ def measure_black(
     yield Measurement("mask.web", subject, web, WEB_MM, math.inf, "mm", "least between openings")
     outline = shapely.Polygon(design.outline.polygon(96)).buffer(mask.allowance_mm, 64)
     edge = edges_apart(black.edge, np.array(outline.exterior.coords)[:-1])
-    yield Measurement("mask.outline", subject, edge, 0, EDGE_MM, "mm",
-                      f"off the finger's outline grown by {mask.allowance_mm:g}")  # fmt: skip
+    yield Measurement(
+        "mask.outline",
+        subject,
+        edge,
+        0,
+        EDGE_MM,
+        "mm",
+        f"off the finger's outline grown by {mask.allowance_mm:g}",
+    )
     if len(black.window):
         window = apart(black.window, _corners(finger.window))
         yield Measurement("mask.window", subject, window, 0, PLACE_MM, "mm", "worst corner")
     else:
         yield unreadable("mask.window", subject, "the black has no window for the connector")
-    yield Measurement("mask.clear", subject, _nearest_other(page, placed, shapes), 0.1, math.inf,
-                      "mm", "other print to the nearest aperture")  # fmt: skip
+    yield Measurement(
+        "mask.clear",
+        subject,
+        _nearest_other(page, placed, shapes),
+        0.1,
+        math.inf,
+        "mm",
+        "other print to the nearest aperture",
+    )
 
 
 def _rulers(subject: str, page: Page, placed: Placed) -> Iterator[Measurement]:
@@ -90,8 +133,15 @@ def _rulers(subject: str, page: Page, placed: Placed) -> Iterator[Measurement]:
         lengths[int(spans.argmax())] = float(spans.max())
     for axis, name in enumerate(("horizontal", "vertical")):
         if axis in lengths:
-            yield Measurement("mask.ruler", f"{subject} {name}", lengths[axis], 100 - RULER_MM,
-                              100 + RULER_MM, "mm", "by the marks' scale")  # fmt: skip
+            yield Measurement(
+                "mask.ruler",
+                f"{subject} {name}",
+                lengths[axis],
+                100 - RULER_MM,
+                100 + RULER_MM,
+                "mm",
+                "by the marks' scale",
+            )
         else:
             yield unreadable("mask.ruler", f"{subject} {name}", "no such ruler")
 
@@ -114,8 +164,15 @@ def _letter(subject: str, page: Page, placed: Placed, box: Box) -> Iterator[Meas
     middle = shapely.Polygon(letter).centroid
     left, up = extent.mean(axis=0) - (middle.x, middle.y)
     for name, share in (("stem", left / box.width_mm), ("arms", -up / box.length_mm)):
-        yield Measurement("mask.mirrored", f"{subject} {name}", float(share), 0.03, 0.5, "",
-                          f"the F's {name} by its centre of area")  # fmt: skip
+        yield Measurement(
+            "mask.mirrored",
+            f"{subject} {name}",
+            float(share),
+            0.03,
+            0.5,
+            "",
+            f"the F's {name} by its centre of area",
+        )
 
 
 def _web(black: Black, shapes: Shapes, within_mm: float) -> float:
@@ -152,5 +209,6 @@ def _geometry(corners: Points, painted: Painted) -> shapely.Geometry:
 
 
 def _corners(box: Box) -> Points:
-    return np.array([(x, y) for x in (box.x_min_mm, box.x_max_mm)
-                     for y in (box.y_min_mm, box.y_max_mm)])  # fmt: skip
+    return np.array(
+        [(x, y) for x in (box.x_min_mm, box.x_max_mm) for y in (box.y_min_mm, box.y_max_mm)]
+    )

@@ -3,7 +3,6 @@
 Everything is in the mould's own frame: it stands on z = 0, open side up.
 """
 
-import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -14,6 +13,7 @@ import shapely
 from shapely.errors import GEOSException
 
 from lumitip_fab.checks import letters, mould_walls, overlap
+from lumitip_fab.checks.mould_note import STATED, VOLUME_FRACTION, measure_note
 from lumitip_fab.checks.packages import measure_boxes
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.result import Measurement, unreadable
@@ -24,25 +24,30 @@ from lumitip_fab.errors import OutputError
 
 READS = ("mould/*", "backing/*_backing.stl")
 NAMES = (
-    "mould.watertight", "mould.bodies", "mould.fits_bed", "mould.thickness", "mould.tip_thickness",
-    "mould.stops", "mould.gap", "mould.draft", "mould.undercut", "mould.min_wall", "mould.three_mf",
-    "mould.step", "mould.volume", "mould.masses", "mould.note", "mould.seat", "mould.letter",
-)  # fmt: skip
+    "mould.watertight",
+    "mould.bodies",
+    "mould.fits_bed",
+    "mould.thickness",
+    "mould.tip_thickness",
+    "mould.stops",
+    "mould.gap",
+    "mould.draft",
+    "mould.undercut",
+    "mould.min_wall",
+    "mould.three_mf",
+    "mould.step",
+    "mould.volume",
+    "mould.masses",
+    "mould.note",
+    "mould.seat",
+    "mould.letter",
+)
 THICKNESS_MM = 0.02
 STOPS_MM = 0.02
-VOLUME_FRACTION = 0.02
 SHARED_MM3 = 0.05
 GRID_MM = 0.8
 _PAD_INNER, _PAD_OUTER = 0.95, 1.13  # of a pad's radius: on it, and beside its drafted foot
 _LINE_MM = 0.15  # how far under the plate the tip line is probed
-_PART = re.compile(r", part ([AB]) \| \*\*([0-9.]+) g\*\*")
-_HOW = (
-    r"layers of (\S+) mm",
-    r"floor at (\S+) mm",
-    r"stops\s+at (\S+) mm",
-    r"Leave it for (\S+) h",
-)
-_STATED = re.compile(r"stays on the finger \| \*\*([0-9.]+) mL\*\*")
 
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
@@ -62,13 +67,20 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
 def _measured(
     mesh: Any, file: str, outputs: Path, design: Design, finger: Finger
 ) -> Iterator[Measurement]:
-    yield from _noted(outputs, design, finger)
+    yield from measure_note(outputs, design, finger)
     yield Measurement("mould.watertight", file, solids.open_edges(mesh), 0, 0, "edges")
     yield Measurement("mould.bodies", file, solids.bodies(mesh), 1, 1, "bodies")
     room = np.array(design.printing.bed_mm) - mesh.extents
     yield Measurement("mould.fits_bed", file, float(room.min()), 0, unit="mm", note="room left")
-    yield Measurement("mould.fits_bed", f"{file}: foot", float(mesh.bounds[0, 2]), -0.001, 0.001,
-                      "mm", "height over the bed")  # fmt: skip
+    yield Measurement(
+        "mould.fits_bed",
+        f"{file}: foot",
+        float(mesh.bounds[0, 2]),
+        -0.001,
+        0.001,
+        "mm",
+        "height over the bed",
+    )
     probe = Probe(mesh, design)
     yield _thickness(probe, file)
     yield _tip_thickness(probe, file)
@@ -120,8 +132,9 @@ def _thickness(probe: Probe, file: str) -> Measurement:
     )
     worst = float(depth[np.abs(depth - wanted).argmax()])
     note = f"farthest from {wanted:g} at {len(depth)} places over the board, from the pads' tops"
-    return Measurement("mould.thickness", file, worst, wanted - THICKNESS_MM,
-                       wanted + THICKNESS_MM, "mm", note)  # fmt: skip
+    return Measurement(
+        "mould.thickness", file, worst, wanted - THICKNESS_MM, wanted + THICKNESS_MM, "mm", note
+    )
 
 
 def _tip_thickness(probe: Probe, file: str) -> Measurement:
@@ -131,8 +144,15 @@ def _tip_thickness(probe: Probe, file: str) -> Measurement:
     x = np.concatenate([np.linspace(-0.95, -0.5, 10), np.linspace(0.5, 0.95, 10)]) * half
     depth = probe.depths_mm(np.column_stack([x, np.full(len(x), outline.tip_y_mm)]))
     worst = float(depth[np.abs(depth - wanted).argmax()])
-    return Measurement("mould.tip_thickness", file, worst, wanted - THICKNESS_MM,
-                       wanted + THICKNESS_MM, "mm", "at the tip edge, beside the stop")  # fmt: skip
+    return Measurement(
+        "mould.tip_thickness",
+        file,
+        worst,
+        wanted - THICKNESS_MM,
+        wanted + THICKNESS_MM,
+        "mm",
+        "at the tip edge, beside the stop",
+    )
 
 
 def _stops(probe: Probe, file: str) -> Iterator[Measurement]:
@@ -146,12 +166,26 @@ def _stops(probe: Probe, file: str) -> Iterator[Measurement]:
         tops = probe.depths_mm(ring * _PAD_INNER + (x, y))
         feet = probe.depths_mm(free * _PAD_OUTER + (x, y)) - probe.design.stack.cover_mm
         worst = float(max(np.abs(tops).max(), np.abs(feet).max()))
-        yield Measurement("mould.stops", f"{file}: pad {number}", worst, 0, STOPS_MM, "mm",
-                          "top against the rim plane, and floor around it")  # fmt: skip
+        yield Measurement(
+            "mould.stops",
+            f"{file}: pad {number}",
+            worst,
+            0,
+            STOPS_MM,
+            "mm",
+            "top against the rim plane, and floor around it",
+        )
     along = np.linspace(-1, 1, 9) * outline.tip_width_mm / 8
     line = probe.depths_mm(np.column_stack([along, np.full(9, outline.tip_y_mm - _LINE_MM)]))
-    yield Measurement("mould.stops", f"{file}: tip line", float(np.abs(line).max()), 0, STOPS_MM,
-                      "mm", "top against the rim plane")  # fmt: skip
+    yield Measurement(
+        "mould.stops",
+        f"{file}: tip line",
+        float(np.abs(line).max()),
+        0,
+        STOPS_MM,
+        "mm",
+        "top against the rim plane",
+    )
 
 
 def _seat(
@@ -165,8 +199,15 @@ def _seat(
         return unreadable("mould.seat", part, str(error))
     to_bed = np.linalg.inv(mould_bed_to_sensor(design.stack, design.mould))
     seated = overlap.placed(backing, to_bed @ backing_bed_to_sensor(design.mount, design.stack))
-    return Measurement("mould.seat", file, overlap.shared_mm3(body, seated), 0, SHARED_MM3, "mm³",
-                       f"shared with {part} when it lies on the stops")  # fmt: skip
+    return Measurement(
+        "mould.seat",
+        file,
+        overlap.shared_mm3(body, seated),
+        0,
+        SHARED_MM3,
+        "mm³",
+        f"shared with {part} when it lies on the stops",
+    )
 
 
 def _volume(
@@ -175,7 +216,7 @@ def _volume(
     """Millilitres in the note against the cavity below the rim, less the parts that dip in."""
     note_file = f"mould/{finger.name}_casting.md"
     try:
-        stated = _STATED.search((outputs / note_file).read_text(encoding="utf-8"))
+        stated = STATED.search((outputs / note_file).read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         return unreadable("mould.volume", note_file, repr(error))
     if stated is None:
@@ -191,46 +232,15 @@ def _volume(
     measured = (_cavity_mm3(body, design) - dipped) / 1000
     if not measured > 0:
         return unreadable("mould.volume", file, "has no cavity that could be measured")
-    return Measurement("mould.volume", note_file, float(stated[1]),
-                       round(measured * (1 - VOLUME_FRACTION), 4),
-                       round(measured * (1 + VOLUME_FRACTION), 4),
-                       "mL", f"{measured:.3f} mL in {file}")  # fmt: skip
-
-
-def _noted(outputs: Path, design: Design, finger: Finger) -> Iterator[Measurement]:
-    """What the casting note tells: grams of both parts, layers, heights and hours."""
-    file = f"mould/{finger.name}_casting.md"
-    try:
-        text = (outputs / file).read_text(encoding="utf-8")
-    except (OSError, ValueError) as error:
-        yield from (unreadable(f"mould.{name}", file, repr(error)) for name in ("masses", "note"))
-        return
-    yield _masses(text, file, design)
-    yield _figures(text, file, design)
-
-
-def _masses(text: str, file: str, design: Design) -> Measurement:
-    """Grams of parts A and B in the note against its own millilitres and the mixing ratio."""
-    mould = design.mould
-    stated, grams = _STATED.search(text), dict(_PART.findall(text))
-    if stated is None or grams.keys() != {"A", "B"}:
-        return unreadable("mould.masses", file, "does not state the mass of parts A and B")
-    whole = float(stated[1]) * (1 + mould.waste_fraction) * mould.density_g_ml
-    wanted = [whole * part / sum(mould.mix_ratio) for part in mould.mix_ratio]
-    worst = max(abs(float(grams[p]) / w - 1) for p, w in zip("AB", wanted, strict=True))
-    return Measurement("mould.masses", file, 100 * worst, 0, 100 * VOLUME_FRACTION, "%",
-                       f"parts of {wanted[0]:.2f} g and {wanted[1]:.2f} g")  # fmt: skip
-
-
-def _figures(text: str, file: str, design: Design) -> Measurement:
-    """Layers, heights and hours in the note against the design."""
-    mould = design.mould
-    stops_mm = mould.wall_mm + design.stack.cover_mm
-    wanted = [f"{v:g}" for v in (mould.layer_mm, mould.wall_mm, stops_mm, mould.cure_h)]
-    told = [re.findall(pattern, text) for pattern in _HOW]
-    wrong = sum(found != [v] for found, v in zip(told, wanted, strict=True))
-    return Measurement("mould.note", file, float(wrong), 0, 0, "wrong figures",
-                       f"of layers, floor, stops and hours: {', '.join(wanted)}")  # fmt: skip
+    return Measurement(
+        "mould.volume",
+        note_file,
+        float(stated[1]),
+        round(measured * (1 - VOLUME_FRACTION), 4),
+        round(measured * (1 + VOLUME_FRACTION), 4),
+        "mL",
+        f"{measured:.3f} mL in {file}",
+    )
 
 
 def _cavity_mm3(body: overlap.Solid, design: Design) -> float:

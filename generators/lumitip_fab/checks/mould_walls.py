@@ -35,16 +35,35 @@ def measured(mesh: Any, file: str, design: Design, notch: Box) -> Iterator[Measu
     places = _along(silhouette, design, notch)
     near = _distances(mesh, rim_mm + _ABOVE_MM, places)
     yield Measurement("mould.gap", file, float(near.min()), *GAP_MM, "mm", "least at the rim")
-    yield Measurement("mould.gap", f"{file}: widest", float(near.max()), *GAP_MM, "mm",
-                      "but for the weir at the gripper end")  # fmt: skip
+    yield Measurement(
+        "mould.gap",
+        f"{file}: widest",
+        float(near.max()),
+        *GAP_MM,
+        "mm",
+        "but for the weir at the gripper end",
+    )
     rise = stack.plate_mm / 2  # the wall guides at least half the plate
     far = _distances(mesh, rim_mm + _ABOVE_MM + rise, places)
     draft = float(np.degrees(np.arctan2(far - near, rise)).min())
     least = min(LEAST_DRAFT_DEG, mould.draft_deg) - DRAFT_MESH_DEG
-    yield Measurement("mould.draft", file, draft, least, unit="deg",
-                      note=f"least above the rim; designed {mould.draft_deg:g}")  # fmt: skip
-    yield Measurement("mould.undercut", file, _undercut_mm2(mesh, silhouette, design), 0, 0.01,
-                      "mm²", "that hangs over, seen along the pull")  # fmt: skip
+    yield Measurement(
+        "mould.draft",
+        file,
+        draft,
+        least,
+        unit="deg",
+        note=f"least above the rim; designed {mould.draft_deg:g}",
+    )
+    yield Measurement(
+        "mould.undercut",
+        file,
+        _undercut_mm2(mesh, silhouette, design),
+        0,
+        0.01,
+        "mm²",
+        "that hangs over, seen along the pull",
+    )
 
 
 def _along(silhouette: Any, design: Design, notch: Box) -> Any:

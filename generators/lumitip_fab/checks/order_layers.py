@@ -41,8 +41,15 @@ def measure_layers(
         yield from _mask(f"{path}: {side}", read, layer, area(f"{side} mask"))
         soldered = _in_sensor(read, _soldered(read, layer))
         off = area(f"{side} paste").symmetric_difference(soldered).area
-        yield Measurement("orders.paste", f"{path}: {side}", off, 0, PLACE_MM, "mm²",
-                          "differs from the pads of mounted parts")  # fmt: skip
+        yield Measurement(
+            "orders.paste",
+            f"{path}: {side}",
+            off,
+            0,
+            PLACE_MM,
+            "mm²",
+            "differs from the pads of mounted parts",
+        )
         bare = shapely.union(area(f"{side} mask"), shapely.difference(_all(outline), outline))
         yield from _silk(f"{path}: {side}", read, side == "front", area(f"{side} silk"), bare)
     yield _edge(path, read, area("outline"))
@@ -70,14 +77,20 @@ def _copper(
 
 
 def _mask(subject: str, read: ReadBoard, layer: str, open_: BaseGeometry) -> Iterator[Measurement]:
-    pads = [t.copper.area for part in read.board.parts for t in part.terminals
-            if t.copper is not None and layer in t.copper.layers]  # fmt: skip
+    pads = [
+        t.copper.area
+        for part in read.board.parts
+        for t in part.terminals
+        if t.copper is not None and layer in t.copper.layers
+    ]
     covered = _in_sensor(read, shapely.union_all(pads)) - open_
-    yield Measurement("orders.mask", subject, covered.area, 0, PLACE_MM, "mm²",
-                      "of pads under the mask")  # fmt: skip
+    yield Measurement(
+        "orders.mask", subject, covered.area, 0, PLACE_MM, "mm²", "of pads under the mask"
+    )
     bare = open_ - _in_sensor(read, _openable(read, layer))
-    yield Measurement("orders.exposed", subject, bare.area, 0, PLACE_MM, "mm²",
-                      "open away from pads and holes")  # fmt: skip
+    yield Measurement(
+        "orders.exposed", subject, bare.area, 0, PLACE_MM, "mm²", "open away from pads and holes"
+    )
 
 
 def _silk(
@@ -91,14 +104,29 @@ def _silk(
     rooms = [_in_sensor(read, _room(word)) for word in silk.words if word.front == front]
     lost = shapely.difference(lines, printed).area
     more = shapely.difference(printed, shapely.union_all([lines, *rooms]).buffer(PLACE_MM)).area
-    yield Measurement("orders.silk", subject, lost + more, 0, _ROUND_MM2, "mm²",
-                      "differs from the board's lines and words")  # fmt: skip
+    yield Measurement(
+        "orders.silk",
+        subject,
+        lost + more,
+        0,
+        _ROUND_MM2,
+        "mm²",
+        "differs from the board's lines and words",
+    )
     inked = [_inside(printed, room) / room.area for room in rooms]
-    yield Measurement("orders.words", subject, min(inked, default=math.nan), INK_SHARE, 1.0,
-                      "of a word's room", "the least that has ink")  # fmt: skip
+    yield Measurement(
+        "orders.words",
+        subject,
+        min(inked, default=math.nan),
+        INK_SHARE,
+        1.0,
+        "of a word's room",
+        "the least that has ink",
+    )
     off = shapely.intersection(printed, bare).area
-    yield Measurement("orders.silk_clear", subject, off, 0, PLACE_MM, "mm²",
-                      "printed on pads or off the board")  # fmt: skip
+    yield Measurement(
+        "orders.silk_clear", subject, off, 0, PLACE_MM, "mm²", "printed on pads or off the board"
+    )
 
 
 def _inside(printed: BaseGeometry, room: BaseGeometry) -> float:
@@ -121,10 +149,17 @@ def _edge(path: str, read: ReadBoard, drawn: BaseGeometry) -> Measurement:
 
 
 def _drills(path: str, read: ReadBoard, layers: Mapping[str, bytes]) -> Iterator[Measurement]:
-    plated = [(t.at, t.drill_mm) for part in read.board.parts for t in part.terminals
-              if t.copper is not None and t.drill_mm]  # fmt: skip
-    vias = [((p.area.centroid.x, p.area.centroid.y), p.drill_mm)
-            for p in read.board.loose if p.kind == "via"]  # fmt: skip
+    plated = [
+        (t.at, t.drill_mm)
+        for part in read.board.parts
+        for t in part.terminals
+        if t.copper is not None and t.drill_mm
+    ]
+    vias = [
+        ((p.area.centroid.x, p.area.centroid.y), p.drill_mm)
+        for p in read.board.loose
+        if p.kind == "via"
+    ]
     holes = [(t.at, t.drill_mm) for t in read.holes]
     for key, told in (("plated", plated + vias), ("unplated", holes)):
         off = _apart(read, drilled(layers[key].decode()), told)
@@ -148,17 +183,22 @@ def _openable(read: ReadBoard, layer: str) -> BaseGeometry:
 
 def _soldered(read: ReadBoard, layer: str) -> BaseGeometry:
     """Pads on a layer of the parts that are mounted on it."""
-    return shapely.union_all([
-        t.copper.area for part in read.board.parts if "exclude_from_bom" not in part.attributes
-        for t in part.terminals
-        if t.copper is not None and not t.drill_mm and layer in t.copper.layers
-    ])  # fmt: skip
+    return shapely.union_all(
+        [
+            t.copper.area
+            for part in read.board.parts
+            if "exclude_from_bom" not in part.attributes
+            for t in part.terminals
+            if t.copper is not None and not t.drill_mm and layer in t.copper.layers
+        ]
+    )
 
 
 def _apart(
-    read: ReadBoard, found: list[tuple[float, float, float]],
+    read: ReadBoard,
+    found: list[tuple[float, float, float]],
     wanted: list[tuple[tuple[float, float], float]],
-) -> float:  # fmt: skip
+) -> float:
     """Worst place or diameter of a hole; NaN if there are more or fewer."""
     if len(found) != len(wanted) or not found:
         return math.nan

@@ -77,8 +77,11 @@ def _parts(path: str, read: Read | ReadCarrier, fab: Fab, files: _Files) -> Iter
     mounted = {p.ref for p in read.board.parts if "exclude_from_bom" not in p.attributes}
     refs = [ref for row in bom for ref in row["refs"].split(",")]
     wrong = sorted(mounted ^ set(refs)) + [ref for ref in set(refs) if refs.count(ref) > 1]
-    wrong += [row["part"] for row in bom if "quantity" in row
-              and int(row["quantity"]) != len(row["refs"].split(","))]  # fmt: skip
+    wrong += [
+        row["part"]
+        for row in bom
+        if "quantity" in row and int(row["quantity"]) != len(row["refs"].split(","))
+    ]
     wrong += [
         f"{row['refs']:.20} is {row['part'] or 'without a number'}"
         for row in bom
@@ -128,8 +131,11 @@ def _lying_deg(read: ReadCarrier, ref: str, last: str) -> float:
 def _misled(read: Read, note: str) -> Iterator[str]:
     """Parts with polarity of which the assembly note tells another place of a terminal than the
     board has, or another terminal at the mark than the catalogue."""
-    chip = read.design.packages.led if read.finger.name == "emitter" else (
-        read.design.packages.photodetector)  # fmt: skip
+    chip = (
+        read.design.packages.led
+        if read.finger.name == "emitter"
+        else (read.design.packages.photodetector)
+    )
     told = {m["ref"]: m for m in _TERMINALS.finditer(note)}
     if f"pad 1 is the {chip.marked}" not in note or (
         chip.confidence != "datasheet" and f"{chip.marked} is {chip.confidence}" not in note

@@ -43,9 +43,12 @@ def measure_boxes(
         f"{prefix}.three_mf", outputs, stl.replace(".stl", ".3mf"), _three_mf, _from_box(standing)
     )
     yield _measured(
-        f"{prefix}.step", outputs, stl.replace(".stl", ".step"),
-        lambda path: _step(path, solids), _from_box(sensor),
-    )  # fmt: skip
+        f"{prefix}.step",
+        outputs,
+        stl.replace(".stl", ".step"),
+        lambda path: _step(path, solids),
+        _from_box(sensor),
+    )
 
 
 def measure_corners(

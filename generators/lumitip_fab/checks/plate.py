@@ -85,8 +85,10 @@ def measure_reliefs(part: Printed) -> Iterator[Measurement]:
             (f"pad {place}", Box(x - solder, x + solder, y - solder, y + solder), FILLET_MM)
         )
         rooms.append((f"tail {place}", Box(x - wire, x + wire, y - wire, y + wire), tail))
-    volumes = [_filled(part, _lattice(box, stack.pocket_z_mm - deep, stack.pocket_z_mm))
-               for _, box, deep in rooms]  # fmt: skip
+    volumes = [
+        _filled(part, _lattice(box, stack.pocket_z_mm - deep, stack.pocket_z_mm))
+        for _, box, deep in rooms
+    ]
     worst = int(np.argmax(volumes))
     yield part.figure("reliefs", volumes[worst], 0.0, 0.0, "%", at=rooms[worst][0])
 
@@ -157,8 +159,12 @@ def floor_points(part: Printed) -> Vectors:
         *(r.box.grown(0.2) for r in part.finger.reliefs),
     ):
         x, y = points.T
-        free &= ~((taken.x_min_mm < x) & (x < taken.x_max_mm)
-                  & (taken.y_min_mm < y) & (y < taken.y_max_mm))  # fmt: skip
+        free &= ~(
+            (taken.x_min_mm < x)
+            & (x < taken.x_max_mm)
+            & (taken.y_min_mm < y)
+            & (y < taken.y_max_mm)
+        )
     holes = [interface.thread_hole_mm for interface in design.interfaces]
     away = max(design.board.hole_mm, *(wide / 2 + 0.2 for wide in holes), 0.0)
     for hole in part.finger.holes:
@@ -171,9 +177,11 @@ def _lattice(box: Box, z_min_mm: float, z_max_mm: float, steps: int = 6) -> Vect
     along = [
         np.linspace(low + 0.0107, high - 0.0113, steps)
         for low, high in (
-            (box.x_min_mm, box.x_max_mm), (box.y_min_mm, box.y_max_mm), (z_min_mm, z_max_mm),
+            (box.x_min_mm, box.x_max_mm),
+            (box.y_min_mm, box.y_max_mm),
+            (z_min_mm, z_max_mm),
         )
-    ]  # fmt: skip
+    ]
     return np.column_stack([axis.ravel() for axis in np.meshgrid(*along)])
 
 

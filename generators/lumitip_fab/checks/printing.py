@@ -14,10 +14,14 @@ _NOTE = "print/printing.md"
 _LEAST_LAYER_MM = 0.01
 _ROUNDING_MM = 1e-4
 _WIDTHS = (
-    "extrusion_width", "first_layer_extrusion_width", "perimeter_extrusion_width",
-    "external_perimeter_extrusion_width", "infill_extrusion_width",
-    "solid_infill_extrusion_width", "top_infill_extrusion_width",
-)  # fmt: skip
+    "extrusion_width",
+    "first_layer_extrusion_width",
+    "perimeter_extrusion_width",
+    "external_perimeter_extrusion_width",
+    "infill_extrusion_width",
+    "solid_infill_extrusion_width",
+    "top_infill_extrusion_width",
+)
 
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
@@ -42,9 +46,14 @@ def _mould_layers(outputs: Path, design: Design) -> Measurement:
     heights_mm = (floor_mm, floor_mm + design.stack.cover_mm)
     off_mm = max(abs(h - round(h / layer_mm) * layer_mm) for h in heights_mm)
     return Measurement(
-        "printing.mould_layers", file, off_mm, 0, design.mould.off_layer_mm + _ROUNDING_MM, "mm",
+        "printing.mould_layers",
+        file,
+        off_mm,
+        0,
+        design.mould.off_layer_mm + _ROUNDING_MM,
+        "mm",
         f"of floor and stops to a whole layer of {layer_mm:g} mm",
-    )  # fmt: skip
+    )
 
 
 def _read(path: Path) -> dict[str, str]:
@@ -59,9 +68,14 @@ def _settings(outputs: Path, design: Design, filament: Filament) -> Measurement:
         return unreadable("printing.settings", filament.file, str(problem))
     wrong = [key for key, value in _wanted(design, filament).items() if told.get(key) != value]
     return Measurement(
-        "printing.settings", filament.file, float(len(wrong)), 0, 0, "settings",
+        "printing.settings",
+        filament.file,
+        float(len(wrong)),
+        0,
+        0,
+        "settings",
         f"other than printer and filament say: {', '.join(wrong) or 'none'}",
-    )  # fmt: skip
+    )
 
 
 def _wanted(design: Design, filament: Filament) -> dict[str, str]:
@@ -105,10 +119,16 @@ def _parts(outputs: Path, design: Design) -> Measurement:
     paths = [f"{kind}/{finger.name}_{kind}.3mf" for kind in kinds for finger in fingers]
     wanted = {
         (path, of.file, of.name, f"{of.layer_mm:g}")
-        for path in paths for of in [design.slicing.of(path)]
-    }  # fmt: skip
+        for path in paths
+        for of in [design.slicing.of(path)]
+    }
     wrong = listed ^ wanted
     return Measurement(
-        "printing.parts", _NOTE, float(len(wrong)), 0, 0, "parts",
+        "printing.parts",
+        _NOTE,
+        float(len(wrong)),
+        0,
+        0,
+        "parts",
         f"listed wrongly or not at all, of {len(paths)}",
-    )  # fmt: skip
+    )

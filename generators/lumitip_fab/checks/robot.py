@@ -17,8 +17,18 @@ READS = ("robot/*", "robot/meshes/*")
 _FILE, _MACROS = "robot/lumitip.urdf", "robot/lumitip.xacro"
 _FINGERS = ("receiver", "emitter")
 _CHECKS = (
-    "tree", "facing", "tcp", "seat", "closed", "open", "slide", "mass", "centre", "reach", "bulk",
-)  # fmt: skip
+    "tree",
+    "facing",
+    "tcp",
+    "seat",
+    "closed",
+    "open",
+    "slide",
+    "mass",
+    "centre",
+    "reach",
+    "bulk",
+)
 PLACE_MM = 0.02
 GAP_MM = 0.1  # the meshes are coarser than the parts, and a film's taper ends in one edge
 MASS = 0.01
@@ -119,8 +129,14 @@ def _body(link: Link, finger: Finger, design: Design) -> Iterator[Measurement]:
     hulls = [mesh.convex_hull for mesh in link.collisions.values()]
     seen = np.concatenate([mesh.vertices for mesh in link.visuals.values()])
     outside = np.min([_outside(hull, seen) for hull in hulls], axis=0).max() if hulls else np.inf
-    yield _figure("reach", float(outside), -np.inf, REACH_MM, "mm",
-                  f"{told}: farthest that anything stands out of what touches")  # fmt: skip
+    yield _figure(
+        "reach",
+        float(outside),
+        -np.inf,
+        REACH_MM,
+        "mm",
+        f"{told}: farthest that anything stands out of what touches",
+    )
     bulk = sum(h.volume for h in hulls) / sum(abs(m.volume) for m in link.visuals.values())
     yield _figure("bulk", bulk, 0, BULK, "times what is seen", told)
 
@@ -154,13 +170,14 @@ def _macros(outputs: Path) -> Measurement:
         model = read_urdf(outputs / _FILE)
     except OutputError as error:
         return unreadable("robot.macros", _MACROS, str(error))
-    wanted = {f"lumitip_{f}": model.links[f"lumitip_{f}"].text for f in _FINGERS
-              if f"lumitip_{f}" in model.links}  # fmt: skip
+    wanted = {
+        f"lumitip_{f}": model.links[f"lumitip_{f}"].text
+        for f in _FINGERS
+        if f"lumitip_{f}" in model.links
+    }
     apart = sorted(name for name in {*wanted, *told} if wanted.get(name) != told.get(name))
     note = ", ".join(apart) or f"{len(wanted)} macros"
-    return Measurement(
-        "robot.macros", _MACROS, len(apart), 0, 0, "links unlike the URDF's", note
-    )  # fmt: skip
+    return Measurement("robot.macros", _MACROS, len(apart), 0, 0, "links unlike the URDF's", note)
 
 
 def _about_x(angle_deg: float) -> Vectors:

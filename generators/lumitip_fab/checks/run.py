@@ -18,10 +18,27 @@ from lumitip_fab.design import Design
 from lumitip_fab.design.encoding import read_design
 
 MODULES = (
-    "manifest", "layout", "firmware", "mask", "backing", "fit_plate", "mould", "assembly", "board",
-    "schematic", "orders", "printing", "holder", "flange", "robot", "system", "wiring", "bom",
-    "manual", "heat",
-)  # fmt: skip
+    "manifest",
+    "layout",
+    "firmware",
+    "mask",
+    "backing",
+    "fit_plate",
+    "mould",
+    "assembly",
+    "board",
+    "schematic",
+    "orders",
+    "printing",
+    "holder",
+    "flange",
+    "robot",
+    "system",
+    "wiring",
+    "bom",
+    "manual",
+    "heat",
+)
 _LONG = frozenset({"orders", "board"})
 """Modules that take longer than another process takes to start."""
 _Told = tuple[tuple[Measurement, ...], list[str]]

@@ -75,10 +75,15 @@ def slice_parts(
             said = _run(program, out / filament.file, out / part, code)
             done.append(
                 _read(
-                    out / part, part, code.read_text(encoding="utf-8"), said,
-                    (filament.file, filament.name), filament.density_g_ml, design.printing.line_mm,
+                    out / part,
+                    part,
+                    code.read_text(encoding="utf-8"),
+                    said,
+                    (filament.file, filament.name),
+                    filament.density_g_ml,
+                    design.printing.line_mm,
                 )
-            )  # fmt: skip
+            )
     return tuple(done)
 
 
@@ -104,9 +109,7 @@ def _run(program: str, settings: Path, part: Path, code: Path) -> tuple[str, ...
     """Slice one part; returns the lines that say that something is wrong."""
     command = [program, "--export-gcode", "--load", str(settings), "--output", str(code), str(part)]
     try:
-        done = subprocess.run(
-            command, capture_output=True, text=True, timeout=_MOST_S, check=False
-        )  # fmt: skip
+        done = subprocess.run(command, capture_output=True, text=True, timeout=_MOST_S, check=False)
     except (OSError, subprocess.TimeoutExpired) as problem:
         raise BuildError(f"{part}: the slicer does not run: {problem}") from problem
     said = f"{done.stdout}\n{done.stderr}".splitlines()
@@ -131,9 +134,17 @@ def _read(
     mesh = trimesh.load(file, force="mesh")
     first = told[0].length_mm * line_mm
     return Sliced(
-        part, *printed_from, gcode.seconds(text), gcode.grams(text),
-        float(mesh.volume) / 1000 * density_g_ml, len(told), first, reach, at_mm, warnings,
-    )  # fmt: skip
+        part,
+        *printed_from,
+        gcode.seconds(text),
+        gcode.grams(text),
+        float(mesh.volume) / 1000 * density_g_ml,
+        len(told),
+        first,
+        reach,
+        at_mm,
+        warnings,
+    )
 
 
 def as_json(parts: tuple[Sliced, ...]) -> str:
@@ -155,9 +166,15 @@ def print_table(parts: tuple[Sliced, ...], console: Console) -> None:
         table.add_column(heading, justify="right", no_wrap=True)
     for p in parts:
         table.add_row(
-            p.part, p.filament, _time(p.seconds), f"{p.grams:.1f} g", f"{p.solid_g:.1f} g",
-            str(p.layers), f"{p.reach_mm:.1f} mm", f"{p.reach_at_mm:.1f} mm",
-        )  # fmt: skip
+            p.part,
+            p.filament,
+            _time(p.seconds),
+            f"{p.grams:.1f} g",
+            f"{p.solid_g:.1f} g",
+            str(p.layers),
+            f"{p.reach_mm:.1f} mm",
+            f"{p.reach_at_mm:.1f} mm",
+        )
     total_g = sum(p.grams for p in parts)
     table.add_row("all", "", _time(sum(p.seconds for p in parts)), f"{total_g:.1f} g")
     console.print(table)

@@ -4,20 +4,18 @@ Measured from the bodies of the GLB file, in the tool frame. Bodies that stand f
 are plain: only printed parts, boards and fingers are held against each other.
 """
 
-import re
 from collections.abc import Iterator
 from itertools import combinations
 from pathlib import Path
-from xml.etree import ElementTree as XmlTree
 
 import numpy as np
 
 from lumitip_fab.checks import overlap
 from lumitip_fab.checks.readers import solids
-from lumitip_fab.checks.readers.drawing import Drawing, margin_mm, read_drawing
 from lumitip_fab.checks.readers.scene import Scene, read_scene
 from lumitip_fab.checks.readers.solids import Vectors
 from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip_fab.checks.system_drawing import PLACE_MM, measure_drawing, real_bodies, wanted_bodies
 from lumitip_fab.design import Carrier, Design
 from lumitip_fab.design.frames import (
     Matrix,
@@ -32,32 +30,27 @@ from lumitip_fab.design.frames import (
 from lumitip_fab.errors import OutputError
 
 READS = ("assembly/system.*", "assembly/assembly.glb", "flange/*.stl", "holder/*.stl")
-_FILE, _DRAWING = "assembly/system.glb", "assembly/system.svg"
+_FILE = "assembly/system.glb"
 _ASSEMBLY = "assembly/assembly.glb"
 _BODIES = ("bodies", "stack", "place", "fingers", "tcp", "interference", "heights")
-_DRAWN = ("drawing", "drawing_page", "heights")
-PLACE_MM = 0.02
 SHARED_MM3 = 0.05
-RISE_MM = 10.0  # from body to body, on the page
-MARGIN_MM = 2.0
-_CLIMB = re.compile(r"^\+ ([\d.]+) = ([\d.]+) mm")
 
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     """Hold the scene against the design and its files, and the drawing against the scene."""
     try:
         scene = read_scene(outputs / _FILE)
-        missing = [name for name in _wanted(design) if name not in scene.nodes]
+        missing = [name for name in wanted_bodies(design) if name not in scene.nodes]
     except OutputError as error:
         yield from (unreadable(f"system.{name}", _FILE, str(error)) for name in _BODIES)
-        yield from _drawing(outputs, design, ())
+        yield from measure_drawing(outputs, design, ())
         return
     note = f"of {len(scene.nodes)}" + (f", first {missing[0]}" if missing else "")
     yield Measurement("system.bodies", _FILE, len(missing), 0, 0, "missing", note)
     if missing:
         told = f"{missing[0]} is missing"
         yield from (unreadable(f"system.{name}", _FILE, told) for name in _BODIES[1:])
-        yield from _drawing(outputs, design, ())
+        yield from measure_drawing(outputs, design, ())
         return
     yield from _stack(scene, design)
     yield _placed("place", scene, _files(outputs, design), "file or outline")
@@ -65,27 +58,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     tcp = _tcp(scene, design)
     yield from _centre(tcp, scene, design)
     yield _interference(scene, design)
-    yield from _drawing(outputs, design, _heights(scene, design, float(tcp[2])))
-
-
-def _real(design: Design) -> Iterator[str]:
-    """Names of the bodies whose shape is that of the thing itself."""
-    for flange in design.flanges:
-        yield from (f"{flange.name}.{part}" for part in ("lower", "board", "upper"))
-    for holder in design.system.holders:
-        yield from (f"{holder}.{part}" for part in ("tray", "board"))
-    for finger in design.fingers:
-        yield f"{finger.name}.{design.held}"
-
-
-def _wanted(design: Design) -> Iterator[str]:
-    if design.flanges:
-        yield from ("robot.flange", "coupling.body")
-    yield "gripper.envelope"
-    yield from _real(design)
-    for finger in design.fingers:
-        yield from (f"{finger.name}.{layer}" for layer in design.layers)
-        yield from (part.name for part in finger.parts)
+    yield from measure_drawing(outputs, design, _heights(scene, design, float(tcp[2])))
 
 
 def _bounds(scene: Scene, name: str) -> Vectors:
@@ -116,8 +89,15 @@ def _stack(scene: Scene, design: Design) -> Iterator[Measurement]:
             "flange to gripper": gripper[0] - upper[1],
         }
     worst = max(gaps, key=lambda joint: np.nan_to_num(abs(gaps[joint]), nan=np.inf))
-    yield Measurement("system.stack", _FILE, float(gaps[worst]), -PLACE_MM, PLACE_MM, "mm",
-                      f"{worst}, the worst of {len(gaps)}")  # fmt: skip
+    yield Measurement(
+        "system.stack",
+        _FILE,
+        float(gaps[worst]),
+        -PLACE_MM,
+        PLACE_MM,
+        "mm",
+        f"{worst}, the worst of {len(gaps)}",
+    )
 
 
 def _recess_z_mm(scene: Scene) -> float:
@@ -151,9 +131,14 @@ def _files(outputs: Path, design: Design) -> Iterator[tuple[str, Vectors]]:
 
 def _corners(carrier: Carrier, design: Design) -> Vectors:
     box = carrier.box
-    return np.array([(x, y, z) for x in (box.x_min_mm, box.x_max_mm)
-                     for y in (box.y_min_mm, box.y_max_mm)
-                     for z in (0.0, design.stack.carrier_mm)])  # fmt: skip
+    return np.array(
+        [
+            (x, y, z)
+            for x in (box.x_min_mm, box.x_max_mm)
+            for y in (box.y_min_mm, box.y_max_mm)
+            for z in (0.0, design.stack.carrier_mm)
+        ]
+    )
 
 
 def _fingers(outputs: Path, design: Design) -> Iterator[tuple[str, Vectors]]:
@@ -179,8 +164,15 @@ def _placed(
     except (OutputError, KeyError) as error:
         return unreadable(f"system.{check}", _FILE, str(error))
     worst = max(off, key=lambda name: off[name], default="")
-    return Measurement(f"system.{check}", _FILE, off.get(worst, 0.0), 0, PLACE_MM, "mm",
-                       f"{worst} from {by}, the worst of {len(off)}")  # fmt: skip
+    return Measurement(
+        f"system.{check}",
+        _FILE,
+        off.get(worst, 0.0),
+        0,
+        PLACE_MM,
+        "mm",
+        f"{worst} from {by}, the worst of {len(off)}",
+    )
 
 
 def _tcp(scene: Scene, design: Design) -> Vectors:
@@ -197,8 +189,14 @@ def _tcp(scene: Scene, design: Design) -> Vectors:
 def _centre(tcp: Vectors, scene: Scene, design: Design) -> Iterator[Measurement]:
     wanted = float(_to_tool(design)[2, 3])
     limits = wanted - PLACE_MM, wanted + PLACE_MM
-    yield Measurement("system.tcp", _FILE, float(tcp[2]), *limits, "mm",
-                      "between the cells, from the robot's tool flange")  # fmt: skip
+    yield Measurement(
+        "system.tcp",
+        _FILE,
+        float(tcp[2]),
+        *limits,
+        "mm",
+        "between the cells, from the robot's tool flange",
+    )
     aside = float(np.hypot(*tcp[:2]))
     yield Measurement("system.tcp", f"{_FILE} aside", aside, 0, PLACE_MM, "mm", "off the axis")
     stated = scene.extras.get("tcp_mm", np.nan)
@@ -209,17 +207,26 @@ def _interference(scene: Scene, design: Design) -> Measurement:
     """The greatest volume that two bodies share whose shapes are real."""
     try:
         bodies = {
-            name: overlap.placed(overlap.solid(scene.nodes[name].mesh, name),
-                                 scene.nodes[name].to_scene)
-            for name in _real(design)
-        }  # fmt: skip
+            name: overlap.placed(
+                overlap.solid(scene.nodes[name].mesh, name), scene.nodes[name].to_scene
+            )
+            for name in real_bodies(design)
+        }
     except OutputError as error:
         return unreadable("system.interference", _FILE, str(error))
-    shared = {f"{a} and {b}": overlap.shared_mm3(bodies[a], bodies[b])
-              for a, b in combinations(bodies, 2)}  # fmt: skip
+    shared = {
+        f"{a} and {b}": overlap.shared_mm3(bodies[a], bodies[b]) for a, b in combinations(bodies, 2)
+    }
     worst = max(shared, key=lambda pair: shared[pair])
-    return Measurement("system.interference", _FILE, shared[worst], 0, SHARED_MM3, "mm³",
-                       f"{worst}, the worst of {len(shared)} pairs")  # fmt: skip
+    return Measurement(
+        "system.interference",
+        _FILE,
+        shared[worst],
+        0,
+        SHARED_MM3,
+        "mm³",
+        f"{worst}, the worst of {len(shared)} pairs",
+    )
 
 
 def _heights(scene: Scene, design: Design, tcp_mm: float) -> tuple[float, ...]:
@@ -230,50 +237,3 @@ def _heights(scene: Scene, design: Design, tcp_mm: float) -> tuple[float, ...]:
         told.append(_bounds(scene, f"{flange.name}.upper")[1, 2])
     told.append(_bounds(scene, f"emitter.{design.held}")[0, 2])
     return (*(float(height) for height in told), tcp_mm)
-
-
-def _drawing(outputs: Path, design: Design, heights: tuple[float, ...]) -> Iterator[Measurement]:
-    """Every body on the page, in its order; heights that add up to those of the scene."""
-    try:
-        drawing = read_drawing(outputs / _DRAWING)
-    except (OSError, XmlTree.ParseError, LookupError, ValueError) as error:
-        names = _DRAWN if heights else _DRAWN[:-1]
-        reason = f"cannot be read: {error!r:.200}"
-        yield from (unreadable(f"system.{name}", _DRAWING, reason) for name in names)
-        return
-    yield from _on_page(drawing, design)
-    yield Measurement("system.drawing_page", _DRAWING, margin_mm(drawing), MARGIN_MM, np.inf, "mm",
-                      "to the page's edge")  # fmt: skip
-    if heights:
-        yield _labels(drawing, heights)
-
-
-def _on_page(drawing: Drawing, design: Design) -> Iterator[Measurement]:
-    layers = [f"{f.name}.{layer}" for f in design.fingers for layer in design.layers]
-    stacked = [name for name in _wanted(design) if name.partition(".")[0] in
-               ("robot", "coupling", "gripper", *(f.name for f in design.flanges))]  # fmt: skip
-    held = [f"{name}.{part}" for name in design.system.holders for part in ("tray", "board")]
-    wanted = [*stacked, *held, *layers]
-    missing = [name for name in wanted if not len(drawing.groups.get(name, ()))]
-    note = f"of {len(wanted)}" + (f", first {missing[0]}" if missing else "")
-    yield Measurement("system.drawing", _DRAWING, len(missing), 0, 0, "missing", note)
-    order = ["robot.flange", "coupling.body",
-             *(f"{f.name}.{part}" for f in design.flanges for part in ("lower", "board", "upper")),
-             "gripper.envelope", "emitter.backing"]  # fmt: skip
-    middles = [drawing.groups[name][:, 1].mean() for name in order
-               if len(drawing.groups.get(name, ()))]  # fmt: skip
-    rise = float(np.diff(middles).min(initial=np.inf))
-    yield Measurement("system.drawing", f"{_DRAWING} order", rise, RISE_MM, np.inf, "mm",
-                      "least rise from body to body")  # fmt: skip
-
-
-def _labels(drawing: Drawing, heights: tuple[float, ...]) -> Measurement:
-    """Steps and heights as they are written, against the bodies."""
-    told = [match.groups() for words, _ in drawing.words if (match := _CLIMB.match(words))]
-    climbed = sorted((float(height), float(step)) for step, height in told)
-    if len(climbed) != len(heights):
-        return unreadable("system.heights", _DRAWING, f"{len(climbed)} of {len(heights)} heights")
-    wanted = np.column_stack([heights, np.diff((0.0, *heights))])
-    off = float(np.abs(np.array(climbed) - wanted).max())
-    return Measurement("system.heights", _DRAWING, off, 0, PLACE_MM, "mm",
-                       f"of {len(heights)} heights and steps, the worst")  # fmt: skip

@@ -21,9 +21,11 @@ READS = ("wiring/*", "boards/*.kicad_pcb", "firmware/layout.h")
 _LIST, _NOTE, _DIAGRAM = "wiring/cables.csv", "wiring/cables.md", "wiring/wiring.svg"
 _HEADER = "firmware/layout.h"
 _CONNECTORS = {
-    "emitter": ("J1",), "receiver": ("J1",), "breakout": ("J5", "J6", "J7"),
+    "emitter": ("J1",),
+    "receiver": ("J1",),
+    "breakout": ("J5", "J6", "J7"),
     "flange": ("J4", "J5"),  # which are there if the controller is
-}  # fmt: skip
+}
 _STEP_MM = 10.0
 _MOST_A_PER_MM2 = 3.0
 _MOST_DROP = 0.02
@@ -97,8 +99,11 @@ def _wrong_pins(
         net = {t.number: t.net for t in mux.terminals}
         wanted = {net[pinout.output]: analog[int(mux.ref[1:]) - 1 :][:1]}
         wanted |= {net[lead]: [pin] for lead, pin in zip(pinout.select, select, strict=False)}
-        wrong += [f"{mux.ref}: {arrives.get(name)}, not {pins}" for name, pins in wanted.items()
-                  if [arrives.get(name)] != pins]  # fmt: skip
+        wrong += [
+            f"{mux.ref}: {arrives.get(name)}, not {pins}"
+            for name, pins in wanted.items()
+            if [arrives.get(name)] != pins
+        ]
     return wrong
 
 
@@ -172,8 +177,15 @@ def _currents(rows: tuple[Row, ...], design: Design) -> Iterator[Measurement]:
     lit_ma = sum(design.electrical.strings.high_ma)
     feeding = [row for row in rows if row.signal == supply]
     least = min((row.current_ma for row in feeding), default=math.nan)
-    yield Measurement("wiring.current", _LIST, least, lit_ma - 0.01, math.inf, "mA",
-                      "least told of the LEDs' supply")  # fmt: skip
+    yield Measurement(
+        "wiring.current",
+        _LIST,
+        least,
+        lit_ma - 0.01,
+        math.inf,
+        "mA",
+        "least told of the LEDs' supply",
+    )
     dense = max((r.current_ma / 1000 / r.section_mm2 for r in rows), default=math.nan)
     yield Measurement("wiring.density", _LIST, dense, 0, _MOST_A_PER_MM2, "A/mm²")
     drop = sum(

@@ -47,8 +47,12 @@ def build(file: Path, out: Path, progress: pipeline.Progress | None = None) -> p
 
 def run(options: argparse.Namespace) -> int:
     """Build, with progress."""
-    columns = (TextColumn("{task.description:<24}"), BarColumn(), MofNCompleteColumn(),
-               TimeElapsedColumn())  # fmt: skip
+    columns = (
+        TextColumn("{task.description:<24}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+    )
     silent = options.quiet or options.json
     with Progress(*columns, console=ERR, disable=silent, transient=True) as bar:
         shown = bar.add_task("reading", total=None)
@@ -70,8 +74,10 @@ def run(options: argparse.Namespace) -> int:
                 OUT.print(f"  wrote {line}", soft_wrap=True)
             for path in report.removed:
                 OUT.print(f"  removed {options.out / path}", soft_wrap=True)
-        OUT.print(f"{len(report.written)} files changed, {len(report.kept)} of "
-                  f"{len(report.kept) + len(report.made)} steps were up to date")  # fmt: skip
+        OUT.print(
+            f"{len(report.written)} files changed, {len(report.kept)} of "
+            f"{len(report.kept) + len(report.made)} steps were up to date"
+        )
     return 0
 
 
@@ -83,5 +89,7 @@ def shortened(out: Path, written: tuple[str, ...]) -> list[str]:
     folders: dict[Path, list[Path]] = {}
     for path in paths:
         folders.setdefault(path.parent, []).append(path)
-    return [f"{folder}: {len(inside)} files" if len(inside) > 1 else str(inside[0])
-            for folder, inside in folders.items()]  # fmt: skip
+    return [
+        f"{folder}: {len(inside)} files" if len(inside) > 1 else str(inside[0])
+        for folder, inside in folders.items()
+    ]

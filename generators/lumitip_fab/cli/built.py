@@ -50,19 +50,26 @@ def _outside(out: Path, design: Design) -> Iterator[Row]:
         (f"mass of the {h.name}", h.carrier, (f"holder/{h.name}.stl",)) for h in design.holders
     ]
     told += [
-        (f"mass of the {f.name}", f.carrier,
-         tuple(f"flange/{f.name}_{part}.stl" for part in flange_beds(f)))
+        (
+            f"mass of the {f.name}",
+            f.carrier,
+            tuple(f"flange/{f.name}_{part}.stl" for part in flange_beds(f)),
+        )
         for f in design.flanges
-    ]  # fmt: skip
+    ]
     for what, name, files in told:
         box = carriers[name].box
         board_ml = box.width_mm * box.length_mm * design.stack.carrier_mm / 1000
         printed = [(_volume_ml(out / file), design.slicing.of(file)) for file in files]
         grams = board_ml * design.densities.carrier_g_ml
         grams += sum(volume * filament.density_g_ml for volume, filament in printed)
-        yield Row(what, "not stated", f"{grams:.1f} g",
-                  f"printed solid from {printed[0][1].name}, with its bare board; parts, screws "
-                  "and wires are not in it")  # fmt: skip
+        yield Row(
+            what,
+            "not stated",
+            f"{grams:.1f} g",
+            f"printed solid from {printed[0][1].name}, with its bare board; parts, screws "
+            "and wires are not in it",
+        )
 
 
 def _strength(out: Path, design: Design) -> Iterator[Row]:
@@ -78,11 +85,19 @@ def _strength(out: Path, design: Design) -> Iterator[Row]:
             f"{found.lever_mm:.0f} mm before the coupling; an estimate, not tested; at least "
             f"{LEAST_SAFETY:g} is wanted"
         )
-        yield Row("safety of the flange's layers", "not stated", f"{found.layers:.1f}",
-                  f"{filament.layer_mpa:g} MPa from layer to layer by the filament's entry, the "
-                  f"bolts left out: {load}")  # fmt: skip
-        yield Row("... right under its bolts' heads", "not stated", f"{found.bolts:.1f}",
-                  f"{filament.bearing_mpa:g} MPa when it is pressed: {load}")  # fmt: skip
+        yield Row(
+            "safety of the flange's layers",
+            "not stated",
+            f"{found.layers:.1f}",
+            f"{filament.layer_mpa:g} MPa from layer to layer by the filament's entry, the "
+            f"bolts left out: {load}",
+        )
+        yield Row(
+            "... right under its bolts' heads",
+            "not stated",
+            f"{found.bolts:.1f}",
+            f"{filament.bearing_mpa:g} MPa when it is pressed: {load}",
+        )
 
 
 def _volume_ml(path: Path) -> float:

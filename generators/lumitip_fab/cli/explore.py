@@ -21,14 +21,23 @@ def run(options: argparse.Namespace) -> int:
             bar.update(shown, completed=done, total=total)
 
         study = explore(
-            options.file, options.vary, options.out, options.points, options.keep_size,
-            Sample(seed=options.seed), options.scheduler, progress,
-        )  # fmt: skip
+            options.file,
+            options.vary,
+            options.out,
+            options.points,
+            options.keep_size,
+            Sample(seed=options.seed),
+            options.scheduler,
+            progress,
+        )
     written = report.write(study, options.out)
     if options.json:
         print((options.out / "designs.json").read_text(encoding="utf-8"), end="")
     elif not options.quiet:
         report.print_table(study, OUT)
-        OUT.print(f"{study.evaluated} of {len(study.designs)} designs evaluated now, the others "
-                  "were known; wrote " + ", ".join(map(str, written)), soft_wrap=True)  # fmt: skip
+        OUT.print(
+            f"{study.evaluated} of {len(study.designs)} designs evaluated now, the others "
+            "were known; wrote " + ", ".join(map(str, written)),
+            soft_wrap=True,
+        )
     return 0

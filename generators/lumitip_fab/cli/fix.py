@@ -22,11 +22,20 @@ def run(options: argparse.Namespace) -> int:
     plan = fix(options.file)
     changes = [step.remedies[0] for step in plan.steps]
     if options.json:
-        print(json.dumps({"written": plan.complete and bool(changes),
-                          "changes": [vars(change) for change in changes]}, indent=1))  # fmt: skip
+        print(
+            json.dumps(
+                {
+                    "written": plan.complete and bool(changes),
+                    "changes": [vars(change) for change in changes],
+                },
+                indent=1,
+            )
+        )
     elif not plan.complete:
-        print(f"{options.file}: not changed; no small changes were found that mend every fault",
-              file=sys.stderr)  # fmt: skip
+        print(
+            f"{options.file}: not changed; no small changes were found that mend every fault",
+            file=sys.stderr,
+        )
     elif not options.quiet:
         OUT.print(f"{options.file}: accepted as it is" if not changes else str(options.file))
         for change in changes:

@@ -21,6 +21,8 @@ def run(options: argparse.Namespace) -> int:
         print(f"{target}: cannot be written: {error}", file=sys.stderr)
         return REFUSED
     if not options.quiet:
-        OUT.print(f"{target}: edit fingertip.toml, then: lumitip-fab build "
-                  f"{target / 'fingertip.toml'} --out outputs")  # fmt: skip
+        OUT.print(
+            f"{target}: edit fingertip.toml, then: lumitip-fab build "
+            f"{target / 'fingertip.toml'} --out outputs"
+        )
     return 0

@@ -2,8 +2,15 @@
 
 import argparse
 import json
+from typing import TYPE_CHECKING
+
+from rich.console import Console
+from rich.table import Table
 
 from lumitip_fab.cli.screen import OUT
+
+if TYPE_CHECKING:
+    from lumitip_fab.docs.outside import Row
 
 
 def run(options: argparse.Namespace) -> int:
@@ -21,6 +28,30 @@ def run(options: argparse.Namespace) -> int:
     if options.json:
         print(json.dumps([vars(row) for row in (*rows, *choices)], indent=1))
     else:
-        spec.print_table(rows, OUT)
-        spec.print_choices(choices, OUT)
+        _print_table(rows, OUT)
+        _print_choices(choices, OUT)
     return 0
+
+
+def _print_table(told: "tuple[Row, ...]", console: Console) -> None:
+    """The rows as a table."""
+    table = Table(box=None, pad_edge=False, header_style="bold")
+    for heading in ("", "published", "this design"):
+        table.add_column(heading, no_wrap=True)
+    table.add_column("why they differ", style="dim", overflow="fold")
+    for row in told:
+        differs = row.published != row.computed
+        table.add_row(row.quantity, row.published, row.computed, row.reason if differs else "")
+    console.print(table)
+
+
+def _print_choices(choices: "tuple[Row, ...]", console: Console) -> None:
+    """The automatic values as a table, one line each."""
+    table = Table(box=None, pad_edge=False, header_style="bold")
+    for heading in ("automatic", "value"):
+        table.add_column(heading, no_wrap=True)
+    table.add_column("reason", style="dim", overflow="ellipsis", no_wrap=True)
+    for row in choices:
+        table.add_row(row.quantity, row.computed, row.reason)
+    console.print()
+    console.print(table)

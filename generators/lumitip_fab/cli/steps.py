@@ -3,23 +3,49 @@
 from lumitip_fab.pipeline.graph import Step
 
 _CAD = (
-    "build123d", "cadquery-ocp", "cadquery-ocp-novtk", "lib3mf", "numpy", "shapely", "trimesh",
-)  # fmt: skip
+    "build123d",
+    "cadquery-ocp",
+    "cadquery-ocp-novtk",
+    "lib3mf",
+    "numpy",
+    "shapely",
+    "trimesh",
+)
 _INK = ("matplotlib", "reportlab", "ezdxf", "numpy", "shapely")
 _COPPER = (
-    "gerbonara", "kicad-skip", "matplotlib", "networkx", "numba", "numpy", "scipy", "sexpdata",
+    "gerbonara",
+    "kicad-skip",
+    "matplotlib",
+    "networkx",
+    "numba",
+    "numpy",
+    "scipy",
+    "sexpdata",
     "shapely",
-)  # fmt: skip
+)
 _DRAWN = ("numpy", "shapely", "trimesh")
 _STACKED = ("assembly/assembly.glb", "flange/*.stl", "holder/*.stl")
 _LISTED = (
-    "backing/*.stl", "interface/*.stl", "mould/*.stl", "holder/*.stl", "flange/*.stl",
-    "fit/*.stl", "mould/*_casting.md", "boards/*/order/generic_*_bom.csv",
-)  # fmt: skip
+    "backing/*.stl",
+    "interface/*.stl",
+    "mould/*.stl",
+    "holder/*.stl",
+    "flange/*.stl",
+    "fit/*.stl",
+    "mould/*_casting.md",
+    "boards/*/order/generic_*_bom.csv",
+)
 _SHOWN = (
-    "assembly/*.svg", "bom.csv", "boards/*/*_front.png", "boards/*/*_back.png",
-    "mask/*_mask.svg", "mask/*_wrapping.md", "mould/*_casting.md", "print/printing.md", "wiring/*",
-)  # fmt: skip
+    "assembly/*.svg",
+    "bom.csv",
+    "boards/*/*_front.png",
+    "boards/*/*_back.png",
+    "mask/*_mask.svg",
+    "mask/*_wrapping.md",
+    "mould/*_casting.md",
+    "print/printing.md",
+    "wiring/*",
+)
 _SET = ("lxml", "markdown-it-py", "matplotlib", "pillow", "reportlab", "svglib")
 STEPS = (
     Step("mask", "files", "mask_files", False, _INK),

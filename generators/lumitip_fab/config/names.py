@@ -42,6 +42,8 @@ def _short_enough(text: str) -> str:
 
 Text = Annotated[str, Field(min_length=1, max_length=LONGEST), AfterValidator(_writable)]
 DeviceName = Annotated[
-    str, Field(min_length=1, max_length=DEVICE_BYTES), AfterValidator(_writable),
+    str,
+    Field(min_length=1, max_length=DEVICE_BYTES),
+    AfterValidator(_writable),
     AfterValidator(_short_enough),
-]  # fmt: skip
+]

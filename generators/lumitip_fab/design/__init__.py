@@ -196,8 +196,13 @@ class Design:
     @property
     def layers(self) -> tuple[str, ...]:
         """The bodies of a finger, from the back."""
-        return (*(("interface",) if self.interfaces else ()), "backing", "board", "silicone",
-                "film")  # fmt: skip
+        return (
+            *(("interface",) if self.interfaces else ()),
+            "backing",
+            "board",
+            "silicone",
+            "film",
+        )
 
     @property
     def held(self) -> str:

@@ -41,9 +41,11 @@ class Box:
     def grown(self, by_mm: float) -> "Box":
         """The rectangle with every side moved out."""
         return Box(
-            self.x_min_mm - by_mm, self.x_max_mm + by_mm,
-            self.y_min_mm - by_mm, self.y_max_mm + by_mm,
-        )  # fmt: skip
+            self.x_min_mm - by_mm,
+            self.x_max_mm + by_mm,
+            self.y_min_mm - by_mm,
+            self.y_max_mm + by_mm,
+        )
 
     def mirrored(self) -> "Box":
         """The rectangle with x negated."""

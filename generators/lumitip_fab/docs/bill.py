@@ -18,9 +18,16 @@ _TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attrib
 _PART_G = re.compile(r"^\| .*, part [AB] \| \*\*([\d.]+) g\*\* \|$", re.MULTILINE)
 _GRAMS = 1000.0
 _KINDS = {
-    "C": "capacitor", "D": "LED", "F": "fuse", "J": "connector", "L": "inductor", "Q": "transistor",
-    "R": "resistor", "U": "circuit", "Y": "crystal",
-}  # fmt: skip
+    "C": "capacitor",
+    "D": "LED",
+    "F": "fuse",
+    "J": "connector",
+    "L": "inductor",
+    "Q": "transistor",
+    "R": "resistor",
+    "U": "circuit",
+    "Y": "crystal",
+}
 """What a part is, by the first letter of its references."""
 
 
@@ -66,8 +73,16 @@ def electronics(
         size = f"{box.width_mm:g} x {box.length_mm:g} mm"
         yield Line("boards", f"{name} board", "", size, "bare", 1, "piece", each)
     placed = sum(sum(where.values()) for where in found.values())
-    yield Line("boards", "placing and soldering", "", "", "parts on all boards", placed, "piece",
-               purchase.placing_each)  # fmt: skip
+    yield Line(
+        "boards",
+        "placing and soldering",
+        "",
+        "",
+        "parts on all boards",
+        placed,
+        "piece",
+        purchase.placing_each,
+    )
 
 
 def made_things(
@@ -80,23 +95,47 @@ def made_things(
             filament = slicing.of(path)
             kg = purchase.filament_kg[filament != slicing.backing]
             grams = round(volume_ml(made.read(path)) * filament.density_g_ml, 2)
-            yield Line("prints", path, "", filament.name, "solid, brim left out", grams, "g",
-                       None if kg is None else kg / _GRAMS)  # fmt: skip
+            yield Line(
+                "prints",
+                path,
+                "",
+                filament.name,
+                "solid, brim left out",
+                grams,
+                "g",
+                None if kg is None else kg / _GRAMS,
+            )
     notes = [made.text(path) for path in made.like("mould/*_casting.md")]
     grams = sum(float(part) for note in notes for part in _PART_G.findall(note))
     kg = purchase.silicone_kg
-    yield Line("casting", mould.silicone, "", "", "both fingers, with what stays in the cup",
-               round(grams, 2), "g", None if kg is None else kg / _GRAMS)  # fmt: skip
-    yield Line("mask", mask.film, "", "A4", "a sheet for each finger", 2, "sheet",
-               purchase.film_sheet)  # fmt: skip
+    yield Line(
+        "casting",
+        mould.silicone,
+        "",
+        "",
+        "both fingers, with what stays in the cup",
+        round(grams, 2),
+        "g",
+        None if kg is None else kg / _GRAMS,
+    )
+    yield Line(
+        "mask", mask.film, "", "A4", "a sheet for each finger", 2, "sheet", purchase.film_sheet
+    )
     metres: dict[float, float] = {}
     for cable in cabling.cables:
         length = cable.length_mm * len(cable.wires) / 1000
         metres[cable.section_mm2] = metres.get(cable.section_mm2, 0.0) + length
     for section, length in sorted(metres.items()):
-        yield Line("wiring", f"stranded wire, {section:g} mm²", "", "",
-                   "colours and lengths in wiring/cables.csv", round(length, 2), "m",
-                   purchase.wire_m)  # fmt: skip
+        yield Line(
+            "wiring",
+            f"stranded wire, {section:g} mm²",
+            "",
+            "",
+            "colours and lengths in wiring/cables.csv",
+            round(length, 2),
+            "m",
+            purchase.wire_m,
+        )
 
 
 def fasteners(purchase: Purchase) -> Iterator[Line]:
@@ -114,19 +153,41 @@ def volume_ml(stl: bytes) -> float:
 def _pieces(purchase: Purchase, group: str) -> Iterator[Line]:
     for piece in purchase.pieces:
         if piece.group == group:
-            yield Line(group, piece.item, piece.manufacturer, piece.part, piece.where,
-                       piece.quantity, "piece", piece.each)  # fmt: skip
+            yield Line(
+                group,
+                piece.item,
+                piece.manufacturer,
+                piece.part,
+                piece.where,
+                piece.quantity,
+                "piece",
+                piece.each,
+            )
 
 
 COLUMNS = (
-    "group", "item", "manufacturer", "part", "for", "quantity", "unit", "unit_price", "price",
-)  # fmt: skip
+    "group",
+    "item",
+    "manufacturer",
+    "part",
+    "for",
+    "quantity",
+    "unit",
+    "unit_price",
+    "price",
+)
 
 
 def bill_of_materials(
-    made: Made, board: Board, carriers: tuple[Carrier, ...], cabling: Cabling, slicing: Slicing,
-    mould: Mould, mask: Mask, purchase: Purchase,
-) -> tuple[Artefact, ...]:  # fmt: skip
+    made: Made,
+    board: Board,
+    carriers: tuple[Carrier, ...],
+    cabling: Cabling,
+    slicing: Slicing,
+    mould: Mould,
+    mask: Mask,
+    purchase: Purchase,
+) -> tuple[Artefact, ...]:
     """One line for each thing, and the sum of those whose price is known.
 
     Args:
@@ -152,11 +213,19 @@ def _table(lines: list[Line], purchase: Purchase) -> str:
     writer = csv.writer(file, lineterminator="\n")
     writer.writerow(COLUMNS)
     for line in lines:
-        writer.writerow((
-            line.group, line.item, line.manufacturer, line.part, line.where,
-            f"{line.quantity:g}", line.unit, "" if line.each is None else f"{line.each:.4g}",
-            "" if line.price is None else f"{line.price:.2f}",
-        ))  # fmt: skip
+        writer.writerow(
+            (
+                line.group,
+                line.item,
+                line.manufacturer,
+                line.part,
+                line.where,
+                f"{line.quantity:g}",
+                line.unit,
+                "" if line.each is None else f"{line.each:.4g}",
+                "" if line.price is None else f"{line.price:.2f}",
+            )
+        )
     known = [line.price for line in lines if line.price is not None]
     note = f"{purchase.currency}, {purchase.dated}, {purchase.confidence}: {purchase.source}"
     note += "; what is used, not packs"

@@ -54,9 +54,17 @@ class Facts:
 def manual_text(facts: Facts, made: Made) -> str:
     """The whole manual. An image stands alone in its paragraph; its path is below the outputs."""
     chapters = (
-        _front(facts), _bought(made), _printed(made), _boards(facts, made), _wired(facts, made),
-        _cast(made), _wrapped(facts, made), _mounted(facts), _run(facts), _kept(),
-    )  # fmt: skip
+        _front(facts),
+        _bought(made),
+        _printed(made),
+        _boards(facts, made),
+        _wired(facts, made),
+        _cast(made),
+        _wrapped(facts, made),
+        _mounted(facts),
+        _run(facts),
+        _kept(),
+    )
     return "\n\n".join(chapter.strip() for chapter in chapters) + "\n"
 
 

@@ -64,10 +64,15 @@ def diagram(title: Title, cabling: Cabling) -> str:
         *(line for run in runs for wire in run.cable.wires for line in _wire(run, wire)),
         *(line for run in runs for line in _ends(run)),
         _text(_LEFT[0], bottom + 8, "Stranded copper, colours by IEC 60757.", _SMALL, _FAINT),
-        _text(_LEFT[0], bottom + 12.5, "Pad 1 is square: on a finger's board the leftmost, seen "
-              "from the front, tip up.", _SMALL, _FAINT),
+        _text(
+            _LEFT[0],
+            bottom + 12.5,
+            "Pad 1 is square: on a finger's board the leftmost, seen from the front, tip up.",
+            _SMALL,
+            _FAINT,
+        ),
         "</svg>",
-    ]  # fmt: skip
+    ]
     return "\n".join(lines) + "\n"
 
 
@@ -157,8 +162,14 @@ def _ends(run: Run) -> Iterator[str]:
         (run.start_x, -1, [(w.start, run.start_y(w)) for w in cable.wires]),
         (run.end_x, 1, [(w.end, run.end_y(w)) for w in cable.wires]),
     ):
-        yield _text(x + side * 3, run.top + _HEAD - 1.5, pads[0][0].connector, _SMALL, _FAINT,
-                    f'text-anchor="{_anchor(side)}"')  # fmt: skip
+        yield _text(
+            x + side * 3,
+            run.top + _HEAD - 1.5,
+            pads[0][0].connector,
+            _SMALL,
+            _FAINT,
+            f'text-anchor="{_anchor(side)}"',
+        )
         yield from (_pad(pad, x, y, side) for pad, y in pads)
 
 

@@ -17,18 +17,28 @@ from lumitip_fab.design import (
     Wiring,
 )
 from lumitip_fab.docs.chapters import Facts, manual_text
-from lumitip_fab.docs.sheet import html_page, pdf_sheets
+from lumitip_fab.docs.page import html_page
+from lumitip_fab.docs.sheet import pdf_sheets
 from lumitip_fab.pipeline.artefact import Artefact, Made
 
 
 def manual_files(
-    made: Made, title: Title, printing: Printing, mould: Mould, mask: Mask,
-    heat: tuple[HeatStep, ...], mount: Mount,
-    wiring: Wiring, cabling: Cabling, electrical: Electrical,
-    carriers: tuple[Carrier, ...], holders: tuple[Holder, ...],
-    interfaces: tuple[Interface, ...], flanges: tuple[Flange, ...],
+    made: Made,
+    title: Title,
+    printing: Printing,
+    mould: Mould,
+    mask: Mask,
+    heat: tuple[HeatStep, ...],
+    mount: Mount,
+    wiring: Wiring,
+    cabling: Cabling,
+    electrical: Electrical,
+    carriers: tuple[Carrier, ...],
+    holders: tuple[Holder, ...],
+    interfaces: tuple[Interface, ...],
+    flanges: tuple[Flange, ...],
     emitter: Finger,
-) -> tuple[Artefact, ...]:  # fmt: skip
+) -> tuple[Artefact, ...]:
     """The manual twice: to read on a screen, and to print.
 
     Args:
@@ -48,8 +58,22 @@ def manual_files(
         flanges: what holds the flange's board.
         emitter: for parts on the back of its board.
     """
-    facts = Facts(title, printing, mould, mask, heat, mount, wiring, cabling, electrical,
-                  carriers, holders, interfaces, flanges, emitter)  # fmt: skip
+    facts = Facts(
+        title,
+        printing,
+        mould,
+        mask,
+        heat,
+        mount,
+        wiring,
+        cabling,
+        electrical,
+        carriers,
+        holders,
+        interfaces,
+        flanges,
+        emitter,
+    )
     text = manual_text(facts, made)
     name = f"{title.name} {title.revision}: build manual"
     return (

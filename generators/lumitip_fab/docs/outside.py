@@ -36,72 +36,119 @@ def outside(design: Design) -> Iterator[Row]:
 def _breakout(carrier: Carrier) -> Iterator[Row]:
     box = carrier.box
     spacing = carrier.holes[1][0] - carrier.holes[0][0]
-    yield Row("controller breakout", "45.7 x 33.0 mm",
-              f"{box.width_mm:.1f} x {box.length_mm:.1f} mm", "by breakout.board_mm")  # fmt: skip
-    yield Row("its screw holes", "35.56 mm apart, in the holder 36.00", f"{spacing:.2f} mm apart",
-              "one figure for board and holder, breakout.hole_spacing_mm")  # fmt: skip
+    yield Row(
+        "controller breakout",
+        "45.7 x 33.0 mm",
+        f"{box.width_mm:.1f} x {box.length_mm:.1f} mm",
+        "by breakout.board_mm",
+    )
+    yield Row(
+        "its screw holes",
+        "35.56 mm apart, in the holder 36.00",
+        f"{spacing:.2f} mm apart",
+        "one figure for board and holder, breakout.hole_spacing_mm",
+    )
 
 
 def _flange(carrier: Carrier) -> Iterator[Row]:
     box = carrier.box
-    yield Row("board of the flange", "32.8 x 63.5 mm",
-              f"{box.width_mm:.1f} x {box.length_mm:.1f} mm",
-              "a rectangle with round corners; published: one side is an arc")  # fmt: skip
+    yield Row(
+        "board of the flange",
+        "32.8 x 63.5 mm",
+        f"{box.width_mm:.1f} x {box.length_mm:.1f} mm",
+        "a rectangle with round corners; published: one side is an arc",
+    )
     values = {device.ref: device.value for device in carrier.devices}
-    yield Row("its supply", "AP63205, 4.7 uH, 10 uF, 2 x 22 uF",
-              f"{values['U1']}, {values['L1']}, {values['C1']}, 2 x {values['C2']}",
-              "parts of [flange]")  # fmt: skip
-    yield Row("its fuse and reversed supply", "not stated",
-              f"{values['F1']}, {values['Q1']}",
-              "a MOSFET costs the LEDs no voltage, as a diode would")  # fmt: skip
+    yield Row(
+        "its supply",
+        "AP63205, 4.7 uH, 10 uF, 2 x 22 uF",
+        f"{values['U1']}, {values['L1']}, {values['C1']}, 2 x {values['C2']}",
+        "parts of [flange]",
+    )
+    yield Row(
+        "its fuse and reversed supply",
+        "not stated",
+        f"{values['F1']}, {values['Q1']}",
+        "a MOSFET costs the LEDs no voltage, as a diode would",
+    )
     if "U2" in values:
-        yield Row("controller on it", "none: an Arduino beside the gripper",
-                  f"{values['U2']}, {values['U3']}, {values['Y1']}",
-                  "what the publication names as future work; by controller.board")  # fmt: skip
+        yield Row(
+            "controller on it",
+            "none: an Arduino beside the gripper",
+            f"{values['U2']}, {values['U3']}, {values['Y1']}",
+            "what the publication names as future work; by controller.board",
+        )
 
 
 def _regulated(supply: Regulated) -> Iterator[Row]:
     volts, least_a = f"{supply.output_v:g} V", supply.ripple_a / 2
-    yield Row(f"ripple of the {volts}", "not stated", f"{supply.ripple_mv:.1f} mV",
-              f"at {supply.load_a:g} A: {supply.ripple_a:.2f} A of ripple through "
-              f"{supply.inductance_uh:g} µH, {supply.capacitor_uf:g} µF left of each capacitor; "
-              f"below {least_a:.2f} A the regulator skips pulses, and it is more")  # fmt: skip
-    yield Row(f"start-up of the {volts}", "not stated", f"{supply.soft_start_ms:g} ms",
-              f"soft start; the capacitors then take {1000 * supply.charging_a:.0f} mA; ngspice: "
-              "boards/flange/flange.cir")  # fmt: skip
+    yield Row(
+        f"ripple of the {volts}",
+        "not stated",
+        f"{supply.ripple_mv:.1f} mV",
+        f"at {supply.load_a:g} A: {supply.ripple_a:.2f} A of ripple through "
+        f"{supply.inductance_uh:g} µH, {supply.capacitor_uf:g} µF left of each capacitor; "
+        f"below {least_a:.2f} A the regulator skips pulses, and it is more",
+    )
+    yield Row(
+        f"start-up of the {volts}",
+        "not stated",
+        f"{supply.soft_start_ms:g} ms",
+        f"soft start; the capacitors then take {1000 * supply.charging_a:.0f} mA; ngspice: "
+        "boards/flange/flange.cir",
+    )
 
 
 def _held(design: Design) -> Iterator[Row]:
     if not design.holders:
-        yield Row("holder of the breakout", "round the gripper's body", "none",
-                  f"the body of {design.mount.title} is not round: fix the board beside it, or "
-                  "give holder.body_mm")  # fmt: skip
+        yield Row(
+            "holder of the breakout",
+            "round the gripper's body",
+            "none",
+            f"the body of {design.mount.title} is not round: fix the board beside it, or "
+            "give holder.body_mm",
+        )
     for holder in design.holders:
         yield from _holder(holder)
 
 
 def _holder(holder: Holder) -> Iterator[Row]:
-    yield Row("cradle of the holder", "37.8 mm radius",
-              f"{holder.cradle_mm:.1f} mm radius, body {holder.body_mm:g} mm",
-              f"that body's diameter: {holder.body_from}")  # fmt: skip
-    yield Row("arms of the holder", "bolted with M4",
-              f"clip round, to {holder.wrap_deg:g}° from the middle",
-              "holder.wrap_deg beyond 90° holds without screws")  # fmt: skip
+    yield Row(
+        "cradle of the holder",
+        "37.8 mm radius",
+        f"{holder.cradle_mm:.1f} mm radius, body {holder.body_mm:g} mm",
+        f"that body's diameter: {holder.body_from}",
+    )
+    yield Row(
+        "arms of the holder",
+        "bolted with M4",
+        f"clip round, to {holder.wrap_deg:g}° from the middle",
+        "holder.wrap_deg beyond 90° holds without screws",
+    )
 
 
 def _stack(flange: Flange) -> Iterator[Row]:
-    yield Row("height that the flange adds", "7.5 mm", f"{flange.top_z_mm:.1f} mm",
-              "the highest part on its board, board, floor and lid; the published one has its "
-              "headers outside and a floor of 0.4 mm")  # fmt: skip
-    yield Row("its bolts and locating pin", "4 x M5 on 62.8 mm, 3.8 mm",
-              f"{len(flange.bolts)} x {flange.bolt} on {_circle_mm(flange):.1f} mm, "
-              f"{flange.pin_mm:g} mm",
-              f"of {flange.coupling} in parts/couplings.toml, which stands on ISO "
-              f"9409-1-{flange.iso}; the pin is bought, not printed")  # fmt: skip
+    yield Row(
+        "height that the flange adds",
+        "7.5 mm",
+        f"{flange.top_z_mm:.1f} mm",
+        "the highest part on its board, board, floor and lid; the published one has its "
+        "headers outside and a floor of 0.4 mm",
+    )
+    yield Row(
+        "its bolts and locating pin",
+        "4 x M5 on 62.8 mm, 3.8 mm",
+        f"{len(flange.bolts)} x {flange.bolt} on {_circle_mm(flange):.1f} mm, {flange.pin_mm:g} mm",
+        f"of {flange.coupling} in parts/couplings.toml, which stands on ISO "
+        f"9409-1-{flange.iso}; the pin is bought, not printed",
+    )
     pressed = flange.contacts_mm - (flange.board_z_mm - flange.contacts_z_mm)
-    yield Row("its spring contacts", "not stated",
-              f"pressed by {pressed:.1f} of {flange.stroke_mm:g} mm",
-              "against contacts whose depth is inferred: measure your coupling")  # fmt: skip
+    yield Row(
+        "its spring contacts",
+        "not stated",
+        f"pressed by {pressed:.1f} of {flange.stroke_mm:g} mm",
+        "against contacts whose depth is inferred: measure your coupling",
+    )
 
 
 def _circle_mm(flange: Flange) -> float:

@@ -1,12 +1,10 @@
-"""The manual as one HTML file, and as a PDF on A4 set by reportlab: the same text."""
+"""The manual as a PDF on A4 set by reportlab: the same text."""
 
 import io
-from base64 import b64encode
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from html import escape
 
 import PIL.Image
-from markdown_it import MarkdownIt
 from markdown_it.token import Token
 from reportlab import rl_config
 from reportlab.graphics.shapes import Group, String
@@ -30,63 +28,10 @@ from reportlab.platypus import (
 )
 from svglib.svglib import svg2rlg
 
+from lumitip_fab.docs.page import markdown
 from lumitip_fab.pipeline.artefact import Made
 from lumitip_fab.text import page_letters
 from lumitip_fab.typeface import BOLD, CODE, OF_HELVETICA, PLAIN, load_typeface
-
-_KINDS = {"svg": "image/svg+xml", "png": "image/png"}
-_STYLE = """\
-body { font: 16px/1.5 Helvetica, Arial, sans-serif; color: #1a1a1a; max-width: 50rem;
-  margin: 2rem auto; padding: 0 1rem; }
-h1, h2 { line-height: 1.2; }
-h2 { border-bottom: 2px solid #d9dee3; padding-bottom: .2rem; margin-top: 3rem; }
-table { border-collapse: collapse; margin: 1rem 0; font-size: .9rem; }
-th, td { border: 1px solid #cfd6dc; padding: .25rem .6rem; text-align: left; }
-th { background: #f4f6f8; }
-.alone, .pair { text-align: center; vertical-align: bottom; }
-.alone { display: block; margin: 1.5rem 0; }
-.pair { display: inline-block; width: 49%; margin-bottom: 1rem; }
-img { max-width: 100%; max-height: 40rem; }
-.pair img { max-height: 24rem; }
-small { color: #5a6b7a; font-size: .85rem; }
-code { background: #f4f6f8; padding: 0 .2rem; font-size: .9em; }
-@media print { h2 { break-before: page; } .alone, .pair, tr { break-inside: avoid; } }
-"""
-
-
-def markdown() -> MarkdownIt:
-    """The reader of the manual's text: CommonMark with tables."""
-    return MarkdownIt("commonmark", {"html": False}).enable("table")
-
-
-def html_page(name: str, text: str, made: Made) -> str:
-    """The whole page.
-
-    Args:
-        name: its title.
-        text: in Markdown.
-        made: for the pictures.
-    """
-    reader = markdown()
-
-    def image(_self: object, tokens: Sequence[Token], at: int, *_: object) -> str:
-        path = str(tokens[at].attrs["src"])
-        data = b64encode(made.read(path)).decode()
-        caption = escape(tokens[at].content)
-        shown = "pair" if sum(token.type == "image" for token in tokens) > 1 else "alone"
-        return (
-            f'<span class="{shown}"><img alt="{caption}" data-file="{escape(path)}" '
-            f'src="data:{_KINDS[path.rpartition(".")[2]]};base64,{data}">'
-            f"<br><small>{caption}</small></span>"
-        )
-
-    reader.add_render_rule("image", image)
-    return (
-        f'<!doctype html>\n<html lang="en">\n<head><meta charset="utf-8"><title>{escape(name)}'
-        f'</title>\n<meta name="viewport" content="width=device-width">\n<style>\n{_STYLE}</style>'
-        f"</head>\n<body>\n{reader.render(text)}</body>\n</html>\n"
-    )
-
 
 rl_config.useA85 = 0  # streams as text take most of the time, and a quarter more room
 
@@ -97,24 +42,43 @@ _GAP = 6 * mm  # between pictures beside each other
 _PAIR_HIGH = 85 * mm
 _DPI = 200
 _LEAST_LEFT = 110 * mm  # of a page, for a chapter to begin on it
-_BODY = ParagraphStyle("body", fontName=PLAIN, fontSize=8.4, leading=12.5, spaceAfter=5,
-                       bulletFontName=PLAIN, bulletFontSize=8.4)  # fmt: skip
+_BODY = ParagraphStyle(
+    "body",
+    fontName=PLAIN,
+    fontSize=8.4,
+    leading=12.5,
+    spaceAfter=5,
+    bulletFontName=PLAIN,
+    bulletFontSize=8.4,
+)
 _ITEM = ParagraphStyle("item", _BODY, leftIndent=16, spaceAfter=3)
 _CELL = ParagraphStyle("cell", _BODY, fontSize=7.1, leading=10, spaceAfter=0)
 _FIGURE = ParagraphStyle("figure", _CELL, alignment=TA_RIGHT)
 _GREY = colors.HexColor("#5a6b7a")
 _SMALL = ParagraphStyle("small", _BODY, fontSize=7.1, alignment=1, textColor=_GREY)
 _HEADS = {
-    level: ParagraphStyle(f"h{level}", _BODY, fontName=BOLD, fontSize=size,
-                          leading=size * 1.25, spaceBefore=before, spaceAfter=6, keepWithNext=1)
+    level: ParagraphStyle(
+        f"h{level}",
+        _BODY,
+        fontName=BOLD,
+        fontSize=size,
+        leading=size * 1.25,
+        spaceBefore=before,
+        spaceAfter=6,
+        keepWithNext=1,
+    )
     for level, (size, before) in {1: (17, 0), 2: (13, 14), 3: (10.5, 10), 4: (9, 8)}.items()
-}  # fmt: skip
-_LINES = TableStyle([
-    ("GRID", (0, 0), (-1, -1), 0.4, colors.HexColor("#cfd6dc")),
-    ("BACKGROUND", (0, 0), (-1, 0), colors.HexColor("#f4f6f8")),
-    ("VALIGN", (0, 0), (-1, -1), "TOP"), ("FONTNAME", (0, 0), (-1, -1), PLAIN),
-    ("TOPPADDING", (0, 0), (-1, -1), 2), ("BOTTOMPADDING", (0, 0), (-1, -1), 2),
-])  # fmt: skip
+}
+_LINES = TableStyle(
+    [
+        ("GRID", (0, 0), (-1, -1), 0.4, colors.HexColor("#cfd6dc")),
+        ("BACKGROUND", (0, 0), (-1, 0), colors.HexColor("#f4f6f8")),
+        ("VALIGN", (0, 0), (-1, -1), "TOP"),
+        ("FONTNAME", (0, 0), (-1, -1), PLAIN),
+        ("TOPPADDING", (0, 0), (-1, -1), 2),
+        ("BOTTOMPADDING", (0, 0), (-1, -1), 2),
+    ]
+)
 _LETTER, _PADDING = 4.6, 18.0  # width of a letter of a cell's text, and what is left beside it
 _BESIDE = TableStyle(
     [
@@ -136,10 +100,18 @@ def pdf_sheets(name: str, text: str, made: Made) -> bytes:
     buffer = io.BytesIO()
     load_typeface()
     document = SimpleDocTemplate(
-        buffer, pagesize=A4, leftMargin=_MARGIN, rightMargin=_MARGIN, topMargin=18 * mm,
-        bottomMargin=18 * mm, title=name, author="lumitip-fab", creator="lumitip-fab", invariant=1,
+        buffer,
+        pagesize=A4,
+        leftMargin=_MARGIN,
+        rightMargin=_MARGIN,
+        topMargin=18 * mm,
+        bottomMargin=18 * mm,
+        title=name,
+        author="lumitip-fab",
+        creator="lumitip-fab",
+        invariant=1,
         initialFontName=PLAIN,
-    )  # fmt: skip
+    )
 
     def foot(canvas: Canvas, _document: object) -> None:
         canvas.setFont(PLAIN, 7.1)

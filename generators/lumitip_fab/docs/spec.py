@@ -3,20 +3,22 @@
 import math
 
 import numpy as np
-from rich.console import Console
-from rich.table import Table
 
 from lumitip_fab.design import Design
 from lumitip_fab.design.frames import gripper_to_base, gripper_to_tool
 from lumitip_fab.docs.outside import Row, outside
+from lumitip_fab.docs.spec_circuit import channel_rows, electrical_rows, string_rows
 
 
 def rows(design: Design) -> tuple[Row, ...]:
     """Table I of the publication, then the figures that it does not have."""
     return (
-        *_table_1(design), *_further(design), *_strings(design), *_channel(design),
+        *_table_1(design),
+        *_further(design),
+        *string_rows(design),
+        *channel_rows(design),
         *outside(design),
-    )  # fmt: skip
+    )
 
 
 def choice_rows(design: Design) -> tuple[Row, ...]:
@@ -25,7 +27,7 @@ def choice_rows(design: Design) -> tuple[Row, ...]:
 
 
 def _table_1(design: Design) -> tuple[Row, ...]:
-    return (*_sizes(design), *_electrical(design))
+    return (*_sizes(design), *electrical_rows(design))
 
 
 def _sizes(design: Design) -> tuple[Row, ...]:
@@ -41,60 +43,81 @@ def _sizes(design: Design) -> tuple[Row, ...]:
     cell = pitch**2 * math.sqrt(3) / 2
     columns = ", ".join(str(n) for n in design.grid.columns)
     return (
-        Row("width", "58 mm", f"{width:.1f} mm",
+        Row(
+            "width",
+            "58 mm",
+            f"{width:.1f} mm",
             f"board of {box.width_mm:.1f} mm and {(width - box.width_mm) / 2:.1f} mm on each side "
-            "to the widest point of an own curve; the published part measures 57.9"),
-        Row("height", "54 mm", f"{outline.length_mm:.1f} mm",
+            "to the widest point of an own curve; the published part measures 57.9",
+        ),
+        Row(
+            "height",
+            "54 mm",
+            f"{outline.length_mm:.1f} mm",
             f"board of {box.length_mm:.1f} mm, {before:.1f} before and {behind:.1f} behind it; "
-            "the published part measures 54.7"),
-        Row("depth", "21 mm", f"{depth:.1f} mm",
+            "the published part measures 54.7",
+        ),
+        Row(
+            "depth",
+            "21 mm",
+            f"{depth:.1f} mm",
             f"silicone {stack.silicone_mm:g} and film {stack.film_mm:g} before the rim, coupling "
-            f"{mount.block_back_w_mm:g} behind it; Table I gives whole mm"),
-        Row("board", "42.8 x 43.1 mm", f"{box.width_mm:.1f} x {box.length_mm:.1f} mm",
+            f"{mount.block_back_w_mm:g} behind it; Table I gives whole mm",
+        ),
+        Row(
+            "board",
+            "42.8 x 43.1 mm",
+            f"{box.width_mm:.1f} x {box.length_mm:.1f} mm",
             f"cells over {span[0]:.1f} x {span[1]:.1f} mm; {(box.width_mm - span[0]) / 2:.2f} to "
-            f"each side, {to_tip:.2f} to the tip, the rest takes parts and connector"),
-        Row("sensorised area", "38.0 x 30.0 mm",
+            f"each side, {to_tip:.2f} to the tip, the rest takes parts and connector",
+        ),
+        Row(
+            "sensorised area",
+            "38.0 x 30.0 mm",
             f"{span[0] + corners:.1f} x {span[1] + pitch:.1f} mm",
             f"cells over {span[0]:.2f} x {span[1]:.1f} mm and one hexagon more, {corners:.2f} from "
-            f"corner to corner and {pitch:g} across flats"),
-        Row("thickness without coupling", "4.0 mm", f"{stack.thickness_mm:.1f} mm",
+            f"corner to corner and {pitch:g} across flats",
+        ),
+        Row(
+            "thickness without coupling",
+            "4.0 mm",
+            f"{stack.thickness_mm:.1f} mm",
             f"floor {stack.floor_mm:g}, board {stack.pcb_mm:g}, silicone {stack.silicone_mm:g}, "
-            f"film {stack.film_mm:g} mm"),
-        Row("density", "3.21 per cm²", f"{100 / cell:.2f} per cm²",
-            f"one cell in {cell:.1f} mm², at a pitch of {pitch:g} mm instead of 6"),
-        Row("cells", "32", str(len(design.layout)),
-            f"columns of {columns}; published: 5, 4, 5, 4, 5, 4, 5"),
-    )  # fmt: skip
-
-
-def _electrical(design: Design) -> tuple[Row, ...]:
-    wiring, controller, optics = design.wiring, design.controller, design.layout.optics
-    return (
-        Row("resolution", "8 bits", f"{controller.adc_bits} bits",
-            f"all bits of the ADC of {controller.title}; the published firmware keeps 8"),
-        Row("rate", "55 Hz", "set by the firmware",
-            "no part of this design sets it: firmware and link do"),
-        Row("current of the emitter", "38 mA", f"{sum(wiring.current_ma):.1f} mA",
-            f"nominal: {len(wiring.strings)} strings through {_ohms(wiring.resistor_ohm)} from "
-            f"{wiring.supply_v:g} V; Table I gives whole mA"),
-        Row("current of the receiver", "1 mA", f"{_pull_up_ma(design):.2f} mA",
-            f"{wiring.muxes} pull-ups of {optics.pull_up_ohm:g} Ω at {optics.supply_v:g} V and "
-            "full light; multiplexers take microamperes, Table I gives whole mA"),
-        Row("warm-up", "5 min", "not computed",
-            "heat flows into gripper and grasped things: measure it on your sensor"),
-    )  # fmt: skip
+            f"film {stack.film_mm:g} mm",
+        ),
+        Row(
+            "density",
+            "3.21 per cm²",
+            f"{100 / cell:.2f} per cm²",
+            f"one cell in {cell:.1f} mm², at a pitch of {pitch:g} mm instead of 6",
+        ),
+        Row(
+            "cells",
+            "32",
+            str(len(design.layout)),
+            f"columns of {columns}; published: 5, 4, 5, 4, 5, 4, 5",
+        ),
+    )
 
 
 def _of_rigid(design: Design) -> tuple[Row, ...]:
     stack, printing = design.stack, design.printing
     return (
-        Row("pocket depth", "0.8 mm", f"{stack.pcb_mm:g} mm",
+        Row(
+            "pocket depth",
+            "0.8 mm",
+            f"{stack.pcb_mm:g} mm",
             f"as deep as the board is thick, so that it is flush with the rim; the published board "
-            f"stands {stack.pcb_mm - 0.8:.1f} mm proud"),
-        Row("floor behind the board", "0.5 mm", f"{stack.floor_mm:g} mm",
+            f"stands {stack.pcb_mm - 0.8:.1f} mm proud",
+        ),
+        Row(
+            "floor behind the board",
+            "0.5 mm",
+            f"{stack.floor_mm:g} mm",
             f"at least printer.min_wall_mm = {printing.min_wall_mm:g}; 0.5 mm is little more than "
-            f"one line of {printing.line_mm:g}"),
-    )  # fmt: skip
+            f"one line of {printing.line_mm:g}",
+        ),
+    )
 
 
 def _of_flex(design: Design) -> tuple[Row, ...]:
@@ -102,16 +125,28 @@ def _of_flex(design: Design) -> tuple[Row, ...]:
     stack, (interface,) = design.stack, design.interfaces
     rows = len({y for _, y in design.receiver.holes})
     return (
-        Row("bendable plate", "2.0 mm", f"{stack.floor_mm:g} mm",
-            f"of {design.printing.material}, with the board on its flat front"),
-        Row("holes for thread", "2.2 mm", f"{interface.thread_hole_mm:g} mm",
+        Row(
+            "bendable plate",
+            "2.0 mm",
+            f"{stack.floor_mm:g} mm",
+            f"of {design.printing.material}, with the board on its flat front",
+        ),
+        Row(
+            "holes for thread",
+            "2.2 mm",
+            f"{interface.thread_hole_mm:g} mm",
             f"{len(design.receiver.holes)} in {rows} rows, behind those of the board; the "
-            "published part has them 1 mm farther from the tip than its own board"),
-        Row("interface", "26 mm", f"{interface.box.length_mm:.1f} mm",
+            "published part has them 1 mm farther from the tip than its own board",
+        ),
+        Row(
+            "interface",
+            "26 mm",
+            f"{interface.box.length_mm:.1f} mm",
             f"rim of {interface.rim_mm:g} x {interface.rim_height_mm:g} mm in a groove of "
             f"{interface.groove_mm:g} x {interface.groove_depth_mm:g}; published: 1.1 x 0.65 in "
-            "1.5 x 0.75"),
-    )  # fmt: skip
+            "1.5 x 0.75",
+        ),
+    )
 
 
 def _further(design: Design) -> tuple[Row, ...]:
@@ -119,11 +154,15 @@ def _further(design: Design) -> tuple[Row, ...]:
     plate = design.fit_plate
     kinds = {part.kind: part for finger in design.fingers for part in finger.parts}
     over = [
-        Row(f"silicone over the {kind}", "not stated",
+        Row(
+            f"silicone over the {kind}",
+            "not stated",
             f"{stack.silicone_mm - part.height_mm:.2f} mm",
-            f"{stack.silicone_mm:g} mm of silicone, part {part.height_mm:g} mm high")
-        for kind, part in sorted(kinds.items()) if part.side == "front"
-    ]  # fmt: skip
+            f"{stack.silicone_mm:g} mm of silicone, part {part.height_mm:g} mm high",
+        )
+        for kind, part in sorted(kinds.items())
+        if part.side == "front"
+    ]
     current, volts = sum(design.wiring.current_ma), design.wiring.supply_v
     slant = design.outline.tip_y_mm - tip.slant_start_y_mm
     tcp_mm = float(gripper_to_base(stack, design.mount, design.closing)[2, 3])
@@ -134,117 +173,88 @@ def _further(design: Design) -> tuple[Row, ...]:
     return (
         *over,
         *(_of_flex(design) if design.interfaces else _of_rigid(design)),
-        Row("tip edge", "0 mm", f"{tip.edge_mm:g} mm",
-            f"one printed line is {printing.line_mm:g} mm wide: a knife edge cannot be printed"),
-        Row("wedge at the tip", "12.2°", f"{tip.angle_deg:.1f}°",
+        Row(
+            "tip edge",
+            "0 mm",
+            f"{tip.edge_mm:g} mm",
+            f"one printed line is {printing.line_mm:g} mm wide: a knife edge cannot be printed",
+        ),
+        Row(
+            "wedge at the tip",
+            "12.2°",
+            f"{tip.angle_deg:.1f}°",
             f"from {stack.plate_mm:g} to {tip.edge_mm:g} mm over {slant:g} mm; published: from 1.3 "
-            "to 0 over 6, of the flexible part from 2 to 0 over 14.2"),
-        Row("gripper", "Robotiq 2F-85", f"{design.mount.title}, {design.mount.bolt}",
-            _trusted(design)),
-        Row("fit test plate", "none", f"{plate.volume_ml:.1f} cm³",
+            "to 0 over 6, of the flexible part from 2 to 0 over 14.2",
+        ),
+        Row(
+            "gripper",
+            "Robotiq 2F-85",
+            f"{design.mount.title}, {design.mount.bolt}",
+            _trusted(design),
+        ),
+        Row(
+            "fit test plate",
+            "none",
+            f"{plate.volume_ml:.1f} cm³",
             "lumitip-fab slice tells how long it prints; its reading is printer.fit_mm, here "
-            f"{printing.fit_mm:g} mm (docs/making.md)"),
-        Row("lean of each finger", "1.5°", f"{design.mount.tilt_deg:g}°",
+            f"{printing.fit_mm:g} mm (docs/making.md)",
+        ),
+        Row(
+            "lean of each finger",
+            "1.5°",
+            f"{design.mount.tilt_deg:g}°",
             f"of {design.mount.gripper} in parts/grippers.toml"
-            + (" and flex.lean_deg" if design.interfaces else "")),
-        Row("largest opening", "not stated", f"{design.closing.max_opening_mm:.1f} mm",
+            + (" and flex.lean_deg" if design.interfaces else ""),
+        ),
+        Row(
+            "largest opening",
+            "not stated",
+            f"{design.closing.max_opening_mm:.1f} mm",
             f"stroke of {design.mount.stroke_mm:g} mm less {skin:.1f} for each finger's skin, "
-            "which stands before the gripper's own pad"),
-        Row("tool centre point", "not stated", f"{tcp_mm:.1f} mm",
-            "from the mount plane, midway between the fingers: the middle of both grids"),
+            "which stands before the gripper's own pad",
+        ),
+        Row(
+            "tool centre point",
+            "not stated",
+            f"{tcp_mm:.1f} mm",
+            "from the mount plane, midway between the fingers: the middle of both grids",
+        ),
         Row("... from the robot's flange", "not stated", f"{tool_mm:.1f} mm", _reached(design)),
-        Row("aperture", "2.5 mm", f"{design.mask.hole_mm:g} mm",
-            f"{across} of a {design.mask.hole_shape}, by mask.hole_mm; published: a hexagon"),
-        Row("heat in the emitter", "not stated", f"{design.electrical.heat_w:.2f} W",
-            f"{current:.1f} mA from {volts:g} V, all of it in LEDs and their resistors"),
-    )  # fmt: skip
+        Row(
+            "aperture",
+            "2.5 mm",
+            f"{design.mask.hole_mm:g} mm",
+            f"{across} of a {design.mask.hole_shape}, by mask.hole_mm; published: a hexagon",
+        ),
+        Row(
+            "heat in the emitter",
+            "not stated",
+            f"{design.electrical.heat_w:.2f} W",
+            f"{current:.1f} mA from {volts:g} V, all of it in LEDs and their resistors",
+        ),
+    )
 
 
 def _reached(design: Design) -> str:
     """What the way to the fingers' mount plane is made of."""
     system = design.system
     added = system.gripper_z_mm - system.coupling_mm
-    before = (f"coupling {system.coupling_mm:g}, flange {added:g}" if design.flanges
-              else "without a coupling: from the gripper's own face")  # fmt: skip
-    return (f"{before}, gripper {system.reach_mm:g} mm, closed ({system.confidence}, "
-            "parts/grippers.toml), and the row above")  # fmt: skip
+    before = (
+        f"coupling {system.coupling_mm:g}, flange {added:g}"
+        if design.flanges
+        else "without a coupling: from the gripper's own face"
+    )
+    return (
+        f"{before}, gripper {system.reach_mm:g} mm, closed ({system.confidence}, "
+        "parts/grippers.toml), and the row above"
+    )
 
 
 def _trusted(design: Design) -> str:
     """How far the gripper's figures go, and what to do about those that go not far enough."""
     if not design.mount.unsure:
         return "every figure from a datasheet or a measurement: parts/grippers.toml"
-    return (f"neither datasheet nor measurement gives {', '.join(design.mount.unsure)}: print the "
-            "coupling alone and try it first (docs/making.md)")  # fmt: skip
-
-
-def _strings(design: Design) -> tuple[Row, ...]:
-    told, wiring = design.electrical.strings, design.wiring
-    low, high = min(told.low_ma), max(told.high_ma)
-    longest = max(len(string) for string in wiring.strings)
-    left_v = wiring.supply_v - longest * told.forward_v
     return (
-        Row("current of a string", "19 to 20 mA", _span(wiring.current_ma), "nominal"),
-        Row("... over tolerances", "not stated", f"{low:.1f} to {high:.1f} mA",
-            f"supply ±{100 * told.supply_tolerance:g} %, forward voltage "
-            f"±{told.forward_tolerance_v:g} V, resistor ±{100 * told.resistor_tolerance:g} %: "
-            f"{longest} LEDs leave {left_v:.2f} V of {wiring.supply_v:g} V to the resistor; with "
-            f"emitter.string_leds = {told.fewer_leds} it is "
-            f"{told.fewer_low_ma:.1f} to {told.fewer_high_ma:.1f} mA, on more strings"),
-        Row("load of a string resistor", "not stated", f"{1000 * told.resistor_w:.0f} mW",
-            f"nominal; up to {1000 * told.resistor_high_w:.0f} mW at {high:.1f} mA, of "
-            f"{1000 * told.resistor_rated_w:.0f} mW rated"),
-    )  # fmt: skip
-
-
-def _channel(design: Design) -> tuple[Row, ...]:
-    told, optics = design.electrical.channel, design.layout.optics
-    line_pf = told.line_pf + told.detector_pf
-    return (
-        Row("signal at full light", "not stated", f"{told.full_scale_v:.2f} V",
-            f"of {optics.supply_v:g} V: the detector saturates at {told.saturation_v:g} V or takes "
-            f"{told.light_current_ua:g} µA, whichever is less"),
-        Row("signal in the dark", "not stated", f"{told.dark_v:.2f} V",
-            f"{told.dark_current_na:g} nA through {optics.pull_up_ohm:g} Ω"),
-        Row("settling of a channel", "not stated", f"{told.settle_us:.0f} µs",
-            f"{line_pf:g} pF through {optics.pull_up_ohm:g} Ω, from full light to dark within half "
-            f"a step of {design.controller.adc_bits} bits"),
-    )  # fmt: skip
-
-
-def _span(values: tuple[float, ...]) -> str:
-    low, high = f"{min(values):.1f}", f"{max(values):.1f}"
-    return f"{low} mA" if low == high else f"{low} to {high} mA"
-
-
-def _ohms(values: tuple[float, ...]) -> str:
-    return ", ".join(f"{values.count(v)} x {v:g} Ω" for v in sorted(set(values)))
-
-
-def _pull_up_ma(design: Design) -> float:
-    optics = design.layout.optics
-    return 1000 * design.wiring.muxes * optics.supply_v / optics.pull_up_ohm
-
-
-def print_table(told: tuple[Row, ...], console: Console) -> None:
-    """The rows as a table."""
-    table = Table(box=None, pad_edge=False, header_style="bold")
-    for heading in ("", "published", "this design"):
-        table.add_column(heading, no_wrap=True)
-    table.add_column("why they differ", style="dim", overflow="fold")
-    for row in told:
-        differs = row.published != row.computed
-        table.add_row(row.quantity, row.published, row.computed, row.reason if differs else "")
-    console.print(table)
-
-
-def print_choices(choices: tuple[Row, ...], console: Console) -> None:
-    """The automatic values as a table, one line each."""
-    table = Table(box=None, pad_edge=False, header_style="bold")
-    for heading in ("automatic", "value"):
-        table.add_column(heading, no_wrap=True)
-    table.add_column("reason", style="dim", overflow="ellipsis", no_wrap=True)
-    for row in choices:
-        table.add_row(row.quantity, row.computed, row.reason)
-    console.print()
-    console.print(table)
+        f"neither datasheet nor measurement gives {', '.join(design.mount.unsure)}: print the "
+        "coupling alone and try it first (docs/making.md)"
+    )

@@ -10,9 +10,17 @@ from lumitip_fab.pipeline.artefact import Artefact
 from lumitip_fab.text import as_written
 
 COLUMNS = (
-    "wire", "signal", "from_board", "from_pad", "to_board", "to_pad", "colour", "section_mm2",
-    "length_mm", "current_ma",
-)  # fmt: skip
+    "wire",
+    "signal",
+    "from_board",
+    "from_pad",
+    "to_board",
+    "to_pad",
+    "colour",
+    "section_mm2",
+    "length_mm",
+    "current_ma",
+)
 _NOTE = """\
 # Wiring {title}
 
@@ -53,11 +61,20 @@ def cable_list(cabling: Cabling) -> str:
     writer.writerow(COLUMNS)
     for cable in cabling.cables:
         for wire in cable.wires:
-            writer.writerow((
-                wire.number, wire.signal, wire.start.board, wire.start.label, wire.end.board,
-                wire.end.label, wire.colour, f"{cable.section_mm2:g}",
-                f"{cable.length_mm:g}", f"{wire.current_ma:.2f}",
-            ))  # fmt: skip
+            writer.writerow(
+                (
+                    wire.number,
+                    wire.signal,
+                    wire.start.board,
+                    wire.start.label,
+                    wire.end.board,
+                    wire.end.label,
+                    wire.colour,
+                    f"{cable.section_mm2:g}",
+                    f"{cable.length_mm:g}",
+                    f"{wire.current_ma:.2f}",
+                )
+            )
     return file.getvalue()
 
 

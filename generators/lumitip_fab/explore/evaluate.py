@@ -70,9 +70,17 @@ def cost(given: Input, design: Design, prices: Prices) -> float:
 _DIGITS = 5  # of every figure: the same on any machine
 
 FIGURES = (
-    "error_mm", "error_deg", "edge_mm", "cable_mm", "gross_percent", "bound_mm", "cells",
-    "grid_cm2", "cost", "current_ma",
-)  # fmt: skip
+    "error_mm",
+    "error_deg",
+    "edge_mm",
+    "cable_mm",
+    "gross_percent",
+    "bound_mm",
+    "cells",
+    "grid_cm2",
+    "cost",
+    "current_ma",
+)
 """What is told of a design, in this order."""
 
 Record = dict[str, Any]
@@ -97,8 +105,11 @@ class Job:
         told = [
             given.parameters.model_dump(),
             {field: part.model_dump() for field, part in given.named_parts().items()},
-            prices.model_dump(), sample, code_hash("explore"), np.__version__,
-        ]  # fmt: skip
+            prices.model_dump(),
+            sample,
+            code_hash("explore"),
+            np.__version__,
+        ]
         key = hashlib.sha256(canonical(told).encode()).hexdigest()
         return cls(given, changes, prices, sample, key)
 

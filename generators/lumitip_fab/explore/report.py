@@ -31,9 +31,11 @@ def plot(study: Study, best: Collection[int]) -> dict[str, bytes]:
     axes = figure.subplots(1, 4, sharey=True)
     label, marks = _coloured_by(study, [found for found, _ in shown])
     headings = {
-        "cells": "cells", "cost": f"parts and boards ({study.currency})",
-        "current_ma": "LED current (mA)", "grid_cm2": "grid (cm²), more is better",
-    }  # fmt: skip
+        "cells": "cells",
+        "cost": f"parts and boards ({study.currency})",
+        "current_ma": "LED current (mA)",
+        "grid_cm2": "grid (cm²), more is better",
+    }
     for axis, (name, heading) in zip(axes, headings.items(), strict=True):
         _panel(axis, name, shown, marks)
         axis.set_xlabel(heading)
@@ -64,9 +66,13 @@ def _panel(
     axis.scatter(x, y, c=marks, cmap="viridis", s=34, zorder=3, label="design")
     ring = [(a, b) for a, b, (_, is_best) in zip(x, y, shown, strict=True) if is_best]
     axis.scatter(
-        *zip(*ring, strict=True), s=90, facecolors="none", edgecolors="#c0392b", zorder=4,
+        *zip(*ring, strict=True),
+        s=90,
+        facecolors="none",
+        edgecolors="#c0392b",
+        zorder=4,
         label="on the front of all five objectives",
-    )  # fmt: skip
+    )
     if name != "grid_cm2":
         _steps(axis, x, y)
 
@@ -77,9 +83,12 @@ def _steps(axis: Any, x: Sequence[float], y: Sequence[float]) -> None:
         if not steps or b < steps[-1][1]:
             steps.append((a, b))
     axis.plot(
-        *zip(*steps, strict=True), drawstyle="steps-post", color="#888888", lw=1.2,
+        *zip(*steps, strict=True),
+        drawstyle="steps-post",
+        color="#888888",
+        lw=1.2,
         label="least error up to here",
-    )  # fmt: skip
+    )
 
 
 def _coloured_by(study: Study, shown: Sequence[Found]) -> tuple[str, list[float]]:
@@ -132,18 +141,32 @@ def print_table(study: Study, console: Console) -> None:
     best = sorted(front(study.designs))
     names = [axis.field for axis in study.axes]
     table = Table(title="designs that no other one is better than in every way, simulated")
-    for heading in (*names, "error mm", "error °", "gross %", "bound mm", "cells", "grid cm²",
-                    f"cost {study.currency}", "LEDs mA"):  # fmt: skip
+    for heading in (
+        *names,
+        "error mm",
+        "error °",
+        "gross %",
+        "bound mm",
+        "cells",
+        "grid cm²",
+        f"cost {study.currency}",
+        "LEDs mA",
+    ):
         table.add_column(heading, justify="right")
     for number in best:
         found = study.designs[number]
         f = found.figures
         table.add_row(
-            *(_shown(value) for _, value in found.changes), f"{f['error_mm']:.3f}",
-            f"{f['error_deg']:.2f}", f"{f['gross_percent']:.1f}", f"{f['bound_mm']:.3f}",
-            f"{f['cells']:.0f}", f"{f['grid_cm2']:.1f}", f"{f['cost']:.2f}",
+            *(_shown(value) for _, value in found.changes),
+            f"{f['error_mm']:.3f}",
+            f"{f['error_deg']:.2f}",
+            f"{f['gross_percent']:.1f}",
+            f"{f['bound_mm']:.3f}",
+            f"{f['cells']:.0f}",
+            f"{f['grid_cm2']:.1f}",
+            f"{f['cost']:.2f}",
             f"{f['current_ma']:.1f}",
-        )  # fmt: skip
+        )
     console.print(table)
     _print_refused(study, console)
 

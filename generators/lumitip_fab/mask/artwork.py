@@ -18,9 +18,17 @@ _ROUND = 4 / 3 * (math.sqrt(2) - 1)  # handle of a cubic that follows a quarter 
 # The letter F in a box of 0.7 x 1, counter-clockwise from its foot: the simplest shape that is
 # its own image under no mirror and no turn.
 _F = (
-    (0.0, 0.0), (0.22, 0.0), (0.22, 0.4), (0.56, 0.4), (0.56, 0.6),
-    (0.22, 0.6), (0.22, 0.8), (0.7, 0.8), (0.7, 1.0), (0.0, 1.0),
-)  # fmt: skip
+    (0.0, 0.0),
+    (0.22, 0.0),
+    (0.22, 0.4),
+    (0.56, 0.4),
+    (0.56, 0.6),
+    (0.22, 0.6),
+    (0.22, 0.8),
+    (0.7, 0.8),
+    (0.7, 1.0),
+    (0.0, 1.0),
+)
 
 
 @dataclass(frozen=True)
@@ -83,8 +91,11 @@ def make_artwork(finished: Finished, mask: Mask) -> Artwork:
 
 
 def _polygon(corners: list[Point]) -> Path:
-    kept = [p for p, before in zip(corners, corners[-1:] + corners[:-1], strict=True)
-            if math.dist(p, before) > 1e-9]  # fmt: skip
+    kept = [
+        p
+        for p, before in zip(corners, corners[-1:] + corners[:-1], strict=True)
+        if math.dist(p, before) > 1e-9
+    ]
     return Path(kept[0], tuple((p,) for p in kept[1:]))
 
 

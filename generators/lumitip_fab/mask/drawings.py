@@ -51,13 +51,12 @@ def svg_drawing(artwork: Artwork, mask: Mask, title: Title) -> bytes:
         '<g id="text" font-family="Helvetica, Arial, sans-serif">',
         _text(artwork.name, artwork.name_at, shift, artwork.name_mm, 'font-weight="bold"'),
         *(
-            _text(str(f.number), (f.label[0], f.label[1] - 0.6), shift, 1.8,
-                  'text-anchor="middle"')
+            _text(str(f.number), (f.label[0], f.label[1] - 0.6), shift, 1.8, 'text-anchor="middle"')
             for f in artwork.flaps
         ),
         "</g>",
         "</svg>",
-    ]  # fmt: skip
+    ]
     return ("\n".join(lines) + "\n").encode()
 
 

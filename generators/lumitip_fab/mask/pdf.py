@@ -31,8 +31,13 @@ def pdf_page(artwork: Artwork, mask: Mask, title: Title, paper: str) -> bytes:
     stretch = [100 / measured for measured in mask.measured_ruler_mm]
     buffer = io.BytesIO()
     load_typeface()
-    canvas = Canvas(buffer, pagesize=(width * mm, height * mm), invariant=1, pageCompression=0,
-                    initialFontName=PLAIN)  # fmt: skip
+    canvas = Canvas(
+        buffer,
+        pagesize=(width * mm, height * mm),
+        invariant=1,
+        pageCompression=0,
+        initialFontName=PLAIN,
+    )
     canvas.setTitle(f"{title.name} {title.revision}: {artwork.name.lower()} mask")
     canvas.setSubject("Print at 100 %, mirrored on purpose: the inside of the film")
     canvas.setAuthor("lumitip-fab")

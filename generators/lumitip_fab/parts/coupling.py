@@ -71,8 +71,9 @@ def coupling_holes(mount: Mount, stack: Stack) -> list[Solid]:
 
 def beyond_mount_plane(mount: Mount, stack: Stack) -> Solid:
     """Everything on the gripper's side of the mount plane, in the sensor frame."""
-    square = polygon_face([(-_FAR_MM, -_FAR_MM), (_FAR_MM, -_FAR_MM),
-                           (_FAR_MM, _FAR_MM), (-_FAR_MM, _FAR_MM)])  # fmt: skip
+    square = polygon_face(
+        [(-_FAR_MM, -_FAR_MM), (_FAR_MM, -_FAR_MM), (_FAR_MM, _FAR_MM), (-_FAR_MM, _FAR_MM)]
+    )
     return placed(prism(square, -_FAR_MM, 0.0), mount_to_sensor(mount, stack))
 
 
@@ -111,8 +112,12 @@ def beside_nose(mount: Mount) -> list[Solid]:
         outward = Vector(side * cosine, -sine, 0)
         along = Vector(side * sine, cosine, 0)
         corner = Vector(side * nose.front_width_mm / 2, nose.front_w_mm, 0) - along * reach
-        section = [(0.0, -2 * BEYOND_MM), (reach, -2 * BEYOND_MM),
-                   (reach, nose.height_mm + reach), (0.0, nose.height_mm)]  # fmt: skip
+        section = [
+            (0.0, -2 * BEYOND_MM),
+            (reach, -2 * BEYOND_MM),
+            (reach, nose.height_mm + reach),
+            (0.0, nose.height_mm),
+        ]
         points = [corner + outward * d + Vector(0, 0, h) for d, h in section]
         face = Face(Wire.make_polygon(points, close=True))
         sides.append(Solid.extrude(face, along * (3 * reach)))

@@ -58,8 +58,9 @@ def lower_solid(flange: Flange, stack: Stack) -> Solid:
     taken.append(_cut(flange.window, seat - BEYOND_MM, above))
     taken += [_screw(flange, at) for at in flange.screws]
     taken += _bolts(flange, seat, split)
-    taken.append(cylinder(flange.pin_at, flange.pin_hole_mm, seat - BEYOND_MM,
-                          seat + flange.pin_depth_mm))  # fmt: skip
+    taken.append(
+        cylinder(flange.pin_at, flange.pin_hole_mm, seat - BEYOND_MM, seat + flange.pin_depth_mm)
+    )
     taken.append(cylinder(flange.pin_at, flange.socket_mm, flange.socket_z_mm, above))
     return _one(whole - taken, "lower")
 
@@ -91,14 +92,17 @@ def _cut(box: Box, low_mm: float, high_mm: float, outward: bool = False) -> Soli
 def _screw(flange: Flange, at: Point) -> Solid:
     """A hole through the floor, countersunk from below."""
     seat, lean = flange.seat_z_mm, (flange.screw_head_mm - flange.screw_mm) / 2
-    head = Solid.make_cone(flange.screw_head_mm / 2, flange.screw_mm / 2, lean,
-                           Plane((at[0], at[1], seat)))  # fmt: skip
+    head = Solid.make_cone(
+        flange.screw_head_mm / 2, flange.screw_mm / 2, lean, Plane((at[0], at[1], seat))
+    )
     return cylinder(at, flange.screw_mm, seat - BEYOND_MM, flange.board_z_mm + BEYOND_MM) + head
 
 
 def _bolts(flange: Flange, low_mm: float, high_mm: float) -> list[Solid]:
-    return [cylinder(at, flange.bolt_hole_mm, low_mm - BEYOND_MM, high_mm + BEYOND_MM)
-            for at in flange.bolts]  # fmt: skip
+    return [
+        cylinder(at, flange.bolt_hole_mm, low_mm - BEYOND_MM, high_mm + BEYOND_MM)
+        for at in flange.bolts
+    ]
 
 
 def _one(made: Solid, part: str) -> Solid:

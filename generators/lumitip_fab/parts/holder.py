@@ -57,9 +57,11 @@ def _tray(holder: Holder) -> Solid:
     low = holder.axis_z_mm + math.sqrt(across**2 - outer.x_max_mm**2)
     block = box_solid(outer, low, holder.top_z_mm)
     inside = Box(
-        holder.tray.x_min_mm, holder.tray.x_max_mm,
-        holder.tray.y_min_mm - BEYOND_MM, holder.tray.y_max_mm + BEYOND_MM,
-    )  # fmt: skip
+        holder.tray.x_min_mm,
+        holder.tray.x_max_mm,
+        holder.tray.y_min_mm - BEYOND_MM,
+        holder.tray.y_max_mm + BEYOND_MM,
+    )
     return block - box_solid(inside, holder.floor_z_mm, holder.top_z_mm + BEYOND_MM)
 
 
@@ -98,8 +100,14 @@ def _boss(holder: Holder, at: Point) -> Solid:
     """A block under a screw, its sides along y at 45° so that it prints standing."""
     length, top, foot = (size / 2 for size in holder.boss_mm)
     below = holder.floor_z_mm - holder.wall_mm / 2
-    corners = [(-foot, below), (foot, below), (foot, holder.floor_z_mm), (top, 0.0), (-top, 0.0),
-               (-foot, holder.floor_z_mm)]  # fmt: skip
+    corners = [
+        (-foot, below),
+        (foot, below),
+        (foot, holder.floor_z_mm),
+        (top, 0.0),
+        (-top, 0.0),
+        (-foot, holder.floor_z_mm),
+    ]
     profile = prism(polygon_face(corners), -length, length)
     along_x = np.array([[0, 0, 1.0, at[0]], [1.0, 0, 0, at[1]], [0, 1.0, 0, 0], [0, 0, 0, 1.0]])
     return placed(profile, along_x)
@@ -111,10 +119,12 @@ def _screw(holder: Holder, at: Point) -> tuple[Solid, Solid]:
     hole = cylinder(at, holder.screw_mm, far, BEYOND_MM)
     radius = holder.nut_mm / math.sqrt(3)
     corners = [
-        (at[0] + radius * math.cos(math.radians(60 * k)),
-         at[1] + radius * math.sin(math.radians(60 * k)))
+        (
+            at[0] + radius * math.cos(math.radians(60 * k)),
+            at[1] + radius * math.sin(math.radians(60 * k)),
+        )
         for k in range(6)
-    ]  # fmt: skip
+    ]
     return hole, prism(polygon_face(corners), far, holder.seat_z_mm)
 
 

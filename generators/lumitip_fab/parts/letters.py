@@ -9,13 +9,32 @@ from lumitip_fab.parts.shapes import box_solid, placed
 
 BEYOND_MM = 0.5  # how far the cutter stands out of the wall
 _E = (
-    (0.0, 0.0), (0.7, 0.0), (0.7, 0.17), (0.17, 0.17), (0.17, 0.415), (0.6, 0.415),
-    (0.6, 0.585), (0.17, 0.585), (0.17, 0.83), (0.7, 0.83), (0.7, 1.0), (0.0, 1.0),
-)  # fmt: skip
+    (0.0, 0.0),
+    (0.7, 0.0),
+    (0.7, 0.17),
+    (0.17, 0.17),
+    (0.17, 0.415),
+    (0.6, 0.415),
+    (0.6, 0.585),
+    (0.17, 0.585),
+    (0.17, 0.83),
+    (0.7, 0.83),
+    (0.7, 1.0),
+    (0.0, 1.0),
+)
 _R = (
-    (0.0, 0.0), (0.17, 0.0), (0.17, 0.415), (0.42, 0.415), (0.53, 0.0), (0.7, 0.0),
-    (0.58, 0.44), (0.7, 0.56), (0.7, 0.88), (0.6, 1.0), (0.0, 1.0),
-)  # fmt: skip
+    (0.0, 0.0),
+    (0.17, 0.0),
+    (0.17, 0.415),
+    (0.42, 0.415),
+    (0.53, 0.0),
+    (0.7, 0.0),
+    (0.58, 0.44),
+    (0.7, 0.56),
+    (0.7, 0.88),
+    (0.6, 1.0),
+    (0.0, 1.0),
+)
 _R_BOWL = ((0.17, 0.585), (0.53, 0.585), (0.53, 0.83), (0.17, 0.83))
 _STROKES = {"E": (_E,), "R": (_R, _R_BOWL)}
 
@@ -45,9 +64,19 @@ def _ring(corners: tuple[Point, ...], letter: Letter) -> Wire:
 STROKE = 0.17  # of the height
 WIDTH, PITCH = 0.6, 0.85
 _DIGIT_STROKES = {
-    "0": "abcdef", "1": "!", "2": "abged", "3": "abgcd", "4": "fgbc", "5": "afgcd",
-    "6": "afgecd", "7": "abc", "8": "abcdefg", "9": "abcdfg", "-": "g", "+": "g|",
-}  # fmt: skip
+    "0": "abcdef",
+    "1": "!",
+    "2": "abged",
+    "3": "abgcd",
+    "4": "fgbc",
+    "5": "afgcd",
+    "6": "afgecd",
+    "7": "abc",
+    "8": "abcdefg",
+    "9": "abcdfg",
+    "-": "g",
+    "+": "g|",
+}
 
 
 def value_cutters(text: str, label: Box, face_mm: float, depth_mm: float) -> list[Solid]:
@@ -66,9 +95,11 @@ def value_cutters(text: str, label: Box, face_mm: float, depth_mm: float) -> lis
         for stroke in _DIGIT_STROKES[character]:
             x_min, x_max, y_min, y_max = _place(stroke)
             box = Box(
-                left + x_min * high, left + x_max * high,
-                label.y_min_mm + y_min * high, label.y_min_mm + y_max * high,
-            )  # fmt: skip
+                left + x_min * high,
+                left + x_max * high,
+                label.y_min_mm + y_min * high,
+                label.y_min_mm + y_max * high,
+            )
             solids.append(box_solid(box, face_mm - depth_mm, face_mm + BEYOND_MM))
     return solids
 

@@ -197,9 +197,11 @@ def _lip(stack: Stack, mould: Mould, catch: Box, outside_mm: float) -> Solid:
     bed_z = stack.silicone_z_mm + mould.wall_mm
     inside_y = catch.y_max_mm + LEDGE_MM + outside_mm / 2
     outer = Box(
-        catch.x_min_mm - mould.wall_mm, catch.x_max_mm + mould.wall_mm,
-        catch.y_min_mm - mould.wall_mm, inside_y,
-    )  # fmt: skip
+        catch.x_min_mm - mould.wall_mm,
+        catch.x_max_mm + mould.wall_mm,
+        catch.y_min_mm - mould.wall_mm,
+        inside_y,
+    )
     lip = box_solid(outer, stack.face_z_mm, bed_z, mould.wall_mm / 2)
     on_bed = [edge for edge in lip.edges() if abs(edge.center().Z - bed_z) < 1e-6]
     return lip.chamfer(FOOT_CHAMFER_MM, None, on_bed)
@@ -236,8 +238,12 @@ def _grip(stack: Stack, outline: Outline, outside_mm: float) -> Solid:
     half = GRIP_MM / 2
     wider = half + (bottom - over) * math.tan(math.radians(GRIP_SLOPE_DEG))
     far = float(np.abs(outline.polygon()[:, 0]).max()) + outside_mm + BEYOND_MM
-    corners = [(centre_y - half, bottom), (centre_y - wider, over),
-               (centre_y + wider, over), (centre_y + half, bottom)]  # fmt: skip
+    corners = [
+        (centre_y - half, bottom),
+        (centre_y - wider, over),
+        (centre_y + wider, over),
+        (centre_y + half, bottom),
+    ]
     return side_prism(corners, -far, far)
 
 

@@ -10,10 +10,14 @@ _OUTER_SHARE = 0.6  # of the speed: outer walls are what board, gripper and sili
 _FIRST_LAYER_MM_S = 20.0
 _FIRST_LAYER_C = 5
 _WIDTHS = (
-    "extrusion_width", "first_layer_extrusion_width", "perimeter_extrusion_width",
-    "external_perimeter_extrusion_width", "infill_extrusion_width",
-    "solid_infill_extrusion_width", "top_infill_extrusion_width",
-)  # fmt: skip
+    "extrusion_width",
+    "first_layer_extrusion_width",
+    "perimeter_extrusion_width",
+    "external_perimeter_extrusion_width",
+    "infill_extrusion_width",
+    "solid_infill_extrusion_width",
+    "top_infill_extrusion_width",
+)
 
 
 def print_settings(

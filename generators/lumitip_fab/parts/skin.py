@@ -91,8 +91,14 @@ def side_solid(stack: Stack, outline: Outline, mould: Mould, shift_mm: float = 0
     end_y, diagonal = wall_y + radius, radius * math.sqrt(0.5)
     start, finish = (wall_y, face_z - radius), (end_y, face_z)
     middle = (end_y - diagonal, face_z - radius + diagonal)
-    corners = [finish, (tip_y - taper, face_z), (out_y, out_z), (out_y, back_z),
-               (wall_y - _FAR_MM, back_z), start]  # fmt: skip
+    corners = [
+        finish,
+        (tip_y - taper, face_z),
+        (out_y, out_z),
+        (out_y, back_z),
+        (wall_y - _FAR_MM, back_z),
+        start,
+    ]
     edges = [Edge.make_line(_yz(a), _yz(b)) for a, b in pairwise(corners)]
     edges.append(Edge.make_three_point_arc(_yz(start), _yz(middle), _yz(finish)))
     return Solid.extrude(Face(Wire(edges)), Vector(2 * _FAR_MM, 0, 0))
@@ -121,8 +127,10 @@ def _drafted(top: Face, stack: Stack, mould: Mould) -> Solid:
     wider = min(depth * math.tan(math.radians(mould.draft_deg)), FOOT_MM)
     ring = top.outer_wire()
     base = ring.offset_2d(wider) if wider > 0 else ring
-    rings = [ring.moved(Plane((0, 0, stack.face_z_mm)).location),
-             base.moved(Plane((0, 0, stack.face_z_mm + depth)).location)]  # fmt: skip
+    rings = [
+        ring.moved(Plane((0, 0, stack.face_z_mm)).location),
+        base.moved(Plane((0, 0, stack.face_z_mm + depth)).location),
+    ]
     return Solid.make_loft(rings, ruled=True)
 
 

@@ -35,9 +35,12 @@ class Step:
 
 
 EACH = {
-    "finger": "fingers", "carrier": "carriers", "regulated": "regulated", "holder": "holders",
+    "finger": "fingers",
+    "carrier": "carriers",
+    "regulated": "regulated",
+    "holder": "holders",
     "flange": "flanges",
-}  # fmt: skip
+}
 """Arguments that a step takes one of at a time, and the field that has them all."""
 
 

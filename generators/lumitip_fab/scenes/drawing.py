@@ -156,8 +156,9 @@ def view(azimuth_deg: float, elevation_deg: float) -> View:
     """A viewer at some angle from -y towards +x, and above the plane z = 0."""
     turn, lift = math.radians(azimuth_deg), math.radians(elevation_deg)
     right = np.array([math.cos(turn), math.sin(turn), 0.0])
-    viewer = np.array([math.sin(turn) * math.cos(lift), -math.cos(turn) * math.cos(lift),
-                       math.sin(lift)])  # fmt: skip
+    viewer = np.array(
+        [math.sin(turn) * math.cos(lift), -math.cos(turn) * math.cos(lift), math.sin(lift)]
+    )
     return View(np.stack([right, np.cross(viewer, right), viewer]))
 
 
@@ -169,8 +170,11 @@ def silhouette(mesh: Mesh, seen_by: View) -> list[Points]:
     whole = shapely.union_all(shapely.polygons(flat[front]), grid_size=0.001)
     whole = whole.buffer(0.01, join_style="mitre").buffer(-0.01, join_style="mitre")
     whole = shapely.simplify(whole, _NEAR_MM)
-    return [np.array(ring.coords) for part in shapely.get_parts(whole)
-            for ring in (part.exterior, *part.interiors)]  # fmt: skip
+    return [
+        np.array(ring.coords)
+        for part in shapely.get_parts(whole)
+        for ring in (part.exterior, *part.interiors)
+    ]
 
 
 def visible_lines(meshes: list[Mesh], seen_by: View) -> list[list[Points]]:
@@ -233,8 +237,7 @@ def _lines(mesh: Mesh, seen: Points, depths: Points, low: Points) -> list[Points
     pieces = np.round(np.stack([first, last], axis=1)[shown][:, :, :2], 4)
     pieces = pieces[np.abs(pieces[:, 0] - pieces[:, 1]).max(axis=1) > 1e-3]
     joined = shapely.line_merge(shapely.union_all(shapely.linestrings(pieces), grid_size=0.001))
-    return [np.array(line.coords)
-            for line in shapely.get_parts(shapely.simplify(joined, _NEAR_MM))]  # fmt: skip
+    return [np.array(line.coords) for line in shapely.get_parts(shapely.simplify(joined, _NEAR_MM))]
 
 
 def _edges(mesh: Mesh, seen: Points) -> tuple[Points, Points]:

@@ -35,8 +35,12 @@ _TINTS = {
     "silicone": "#eaf3f9",
     "film": "#dcdcde",
 }
-_PART_TINTS = {"photodetector": "#fff", "led": "#fff", "multiplexer": "#b9bcc0",
-               "resistor": "#d8d2c8"}  # fmt: skip
+_PART_TINTS = {
+    "photodetector": "#fff",
+    "led": "#fff",
+    "multiplexer": "#b9bcc0",
+    "resistor": "#d8d2c8",
+}
 
 
 @dataclass(frozen=True)
@@ -90,13 +94,17 @@ def _layers(bodies: Bodies, stack: Stack, outline: Outline) -> list[Layer]:
     sunk = stack.sunk
     words_of = {
         "interface": ("Interface", "printed, glued to the backing"),
-        "backing": (f"Backing, {stack.plate_mm:g} mm",
-                    "printed, with coupling" if sunk else "printed, bends"),
-        "board": (f"Board, {stack.pcb_mm:g} mm",
-                  "glued in, flush with the rim" if sunk else "flexible, tied on"),
+        "backing": (
+            f"Backing, {stack.plate_mm:g} mm",
+            "printed, with coupling" if sunk else "printed, bends",
+        ),
+        "board": (
+            f"Board, {stack.pcb_mm:g} mm",
+            "glued in, flush with the rim" if sunk else "flexible, tied on",
+        ),
         "silicone": (f"Silicone, {stack.silicone_mm:g} mm", "cast on the board"),
         "film": (f"Film, {stack.film_mm:g} mm", "mask printed on its inside"),
-    }  # fmt: skip
+    }
     layers = []
     for step, (name, solid) in enumerate(layers_of(bodies)):
         words = words_of[name]
@@ -198,8 +206,9 @@ def _label(sheet: Sheet, layers: list[Layer], finger: Finger, stack: Stack) -> N
     top = float(sheet.high[1]) + 2 * LABEL_MM
     sheet.leaders(names, right, "start")
     sheet.leaders(details, left, "end")
-    sheet.words(left - WORDS_MM, top, f"{finger.name.capitalize()} finger, exploded", "title",
-                "start")  # fmt: skip
+    sheet.words(
+        left - WORDS_MM, top, f"{finger.name.capitalize()} finger, exploded", "title", "start"
+    )
     sheet.cover(left - WORDS_MM, top + 2)
     sheet.cover(right + WORDS_MM, top)
 
@@ -208,14 +217,23 @@ def _details(finger: Finger, stack: Stack) -> list[tuple[tuple[str, str], Any, s
     """What is pointed at from the left: words, place in the finger, layer."""
     half = stack.rim_z_mm
     told: list[tuple[tuple[str, str], Any, str]] = []
-    for kind, plural in (("photodetector", "photodetectors"), ("led", "LEDs"),
-                         ("multiplexer", "multiplexers"), ("resistor", "resistors")):  # fmt: skip
+    for kind, plural in (
+        ("photodetector", "photodetectors"),
+        ("led", "LEDs"),
+        ("multiplexer", "multiplexers"),
+        ("resistor", "resistors"),
+    ):
         alike = [part for part in finger.parts if part.kind == kind and part.side == "front"]
         if alike:
             at = min(alike, key=lambda part: part.x_mm)
             names = f"{alike[0].name} … {alike[-1].name}"
-            told.append(((f"{len(alike)} {plural}", names),
-                         (at.x_mm, at.y_mm, half + at.height_mm), "board"))  # fmt: skip
+            told.append(
+                (
+                    (f"{len(alike)} {plural}", names),
+                    (at.x_mm, at.y_mm, half + at.height_mm),
+                    "board",
+                )
+            )
     pad = finger.connector.pads[0]
     ways = len(finger.connector.pads)
     told.append(((f"{ways} wires", "soldered from the back"), (*pad, half), "board"))

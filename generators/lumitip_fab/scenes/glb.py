@@ -107,8 +107,11 @@ class _Store:
         if key not in self.meshes:
             points, corners = self._primitive(body.mesh)
             material = self.materials.setdefault(body.colour, len(self.materials))
-            primitive = {"attributes": {"POSITION": points}, "indices": corners,
-                         "material": material}  # fmt: skip
+            primitive = {
+                "attributes": {"POSITION": points},
+                "indices": corners,
+                "material": material,
+            }
             self.meshes[key] = len(self.named)
             self.named.append({"name": body.name, "primitives": [primitive]})
         return self.meshes[key]
@@ -143,8 +146,15 @@ class _Store:
         self.chunks.append(data)
         view = {"buffer": 0, "byteOffset": offset, "byteLength": len(data), "target": target}
         self.views.append(view)
-        self.accessors.append({"bufferView": len(self.views) - 1, "componentType": kind,
-                               "count": count, "type": shape, **extent})  # fmt: skip
+        self.accessors.append(
+            {
+                "bufferView": len(self.views) - 1,
+                "componentType": kind,
+                "count": count,
+                "type": shape,
+                **extent,
+            }
+        )
         return len(self.accessors) - 1
 
 

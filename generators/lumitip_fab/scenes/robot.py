@@ -77,17 +77,21 @@ def pair_urdf(
     """
     robot = Element("robot", name="lumitip")
     # For MuJoCo, which otherwise forgets folders and what is only looked at.
-    SubElement(
-        SubElement(robot, "mujoco"), "compiler", strippath="false", discardvisual="false"
-    )  # fmt: skip
+    SubElement(SubElement(robot, "mujoco"), "compiler", strippath="false", discardvisual="false")
     robot.append(Element("link", name="lumitip_base"))
     for model in fingers:
         robot.append(_link(model, "lumitip_", meshes))
         joint = _joint(f"lumitip_{model.name}_joint", "prismatic", f"lumitip_{model.name}")
         joint.append(_origin(model.to_base))
         SubElement(joint, "axis", xyz=_told(model.opening))
-        SubElement(joint, "limit", lower="0", upper=_told([travel_mm * MM]),
-                   effort=_told([EFFORT_N]), velocity=_told([SPEED_M_S]))  # fmt: skip
+        SubElement(
+            joint,
+            "limit",
+            lower="0",
+            upper=_told([travel_mm * MM]),
+            effort=_told([EFFORT_N]),
+            velocity=_told([SPEED_M_S]),
+        )
         if model is not fingers[0]:
             SubElement(joint, "mimic", joint=f"lumitip_{fingers[0].name}_joint")
         robot.append(joint)
@@ -104,12 +108,15 @@ def pair_xacro(fingers: tuple[FingerModel, ...], meshes: str) -> bytes:
     robot = Element("robot", name="lumitip")
     for model in fingers:
         macro = SubElement(
-            robot, f"{{{_NAMESPACE}}}macro", name=f"lumitip_{model.name}",
+            robot,
+            f"{{{_NAMESPACE}}}macro",
+            name=f"lumitip_{model.name}",
             params=f"parent prefix:=lumitip_ meshes:={meshes} *origin",
-        )  # fmt: skip
+        )
         macro.append(_link(model, "${prefix}", "${meshes}"))
-        joint = _joint(f"${{prefix}}{model.name}_mount", "fixed", f"${{prefix}}{model.name}",
-                       "${parent}")  # fmt: skip
+        joint = _joint(
+            f"${{prefix}}{model.name}_mount", "fixed", f"${{prefix}}{model.name}", "${parent}"
+        )
         SubElement(joint, f"{{{_NAMESPACE}}}insert_block", name="origin")
         macro.append(joint)
     return _bytes(robot)
@@ -122,8 +129,12 @@ def _link(model: FingerModel, prefix: str, meshes: str) -> Element:
     SubElement(inertial, "origin", xyz=_told(weight.centre_mm * MM), rpy="0 0 0")
     SubElement(inertial, "mass", value=_told([weight.mass_g * MM]))
     told = weight.inertia_g_mm2 * MM**3
-    axes = {f"i{a}{b}": _told([told[i, j]]) for i, a in enumerate("xyz")
-            for j, b in enumerate("xyz") if j >= i}  # fmt: skip
+    axes = {
+        f"i{a}{b}": _told([told[i, j]])
+        for i, a in enumerate("xyz")
+        for j, b in enumerate("xyz")
+        if j >= i
+    }
     SubElement(inertial, "inertia", axes)
     for file, colour in model.visuals:
         visual = SubElement(link, "visual", name=file.removesuffix(".stl"))

@@ -46,8 +46,9 @@ def block(
         centre = (x_mm[right] + corner_mm * (1 - 2 * right), y_mm[top] + corner_mm * (1 - 2 * top))
         for step in range(quarter + 1 if corner_mm else 1):
             turn = math.pi / 2 * (k + step / quarter)
-            outline.append((centre[0] + corner_mm * math.cos(turn),
-                            centre[1] + corner_mm * math.sin(turn)))  # fmt: skip
+            outline.append(
+                (centre[0] + corner_mm * math.cos(turn), centre[1] + corner_mm * math.sin(turn))
+            )
     rounded = np.round(np.array(outline), 9)
     distinct = np.abs(rounded - np.roll(rounded, 1, axis=0)).max(axis=1) > 1e-6
     return _prism(rounded[distinct], low_mm, high_mm)
@@ -89,8 +90,9 @@ def _fan(first: int, n: int) -> NDArray[np.int64]:
 def _band(low: int, high: int, n: int) -> list[tuple[int, int, int]]:
     """Triangles between two rings of corners, from the outside if the second is above."""
     corners = [(k, (k + 1) % n) for k in range(n)]
-    return [t for a, b in corners
-            for t in ((low + a, low + b, high + b), (low + a, high + b, high + a))]  # fmt: skip
+    return [
+        t for a, b in corners for t in ((low + a, low + b, high + b), (low + a, high + b, high + a))
+    ]
 
 
 ROBOT_MM = 6.0

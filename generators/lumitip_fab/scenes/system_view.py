@@ -17,10 +17,18 @@ WORDS_SCALE = 1.6  # of a drawing that is more than twice as large as a finger's
 LABEL_MM, WORDS_MM = 12.0, 104.0
 LAYERS = ("interface", "backing", "board", "silicone", "film")
 _TINTS = {
-    "robot": "#d5d8dc", "coupling": "#c9ced4", "lower": "#e9edf3", "upper": "#e9edf3",
-    "board": "#e3efe6", "gripper": "#f0efec", "holder": "#e9edf3", "interface": "#dfe2e6",
-    "backing": "#f3f4f5", "silicone": "#eaf3f9", "film": "#dcdcde",
-}  # fmt: skip
+    "robot": "#d5d8dc",
+    "coupling": "#c9ced4",
+    "lower": "#e9edf3",
+    "upper": "#e9edf3",
+    "board": "#e3efe6",
+    "gripper": "#f0efec",
+    "holder": "#e9edf3",
+    "interface": "#dfe2e6",
+    "backing": "#f3f4f5",
+    "silicone": "#eaf3f9",
+    "film": "#dcdcde",
+}
 Words = tuple[str, str]
 
 
@@ -151,23 +159,45 @@ def _label(
         return told
 
     for flange in flanges:
-        right.append(((f"Robot's tool flange, ISO 9409-1-{flange.iso}", "0.00 mm"),
-                      _rightmost(at["robot.flange"])))  # fmt: skip
-        right.append(((f"Coupling {flange.coupling}", climb(system.coupling_mm)),
-                      _rightmost(at["coupling.body"])))  # fmt: skip
-        right.append((("Flange, upper and lower part", climb(system.gripper_z_mm)),
-                      _rightmost(at[f"{flange.name}.upper"])))  # fmt: skip
-        left.append((("Flange's board", "contacts, 5 V, cables"),
-                     _leftmost(at[f"{flange.name}.board"])))  # fmt: skip
+        right.append(
+            (
+                (f"Robot's tool flange, ISO 9409-1-{flange.iso}", "0.00 mm"),
+                _rightmost(at["robot.flange"]),
+            )
+        )
+        right.append(
+            (
+                (f"Coupling {flange.coupling}", climb(system.coupling_mm)),
+                _rightmost(at["coupling.body"]),
+            )
+        )
+        right.append(
+            (
+                ("Flange, upper and lower part", climb(system.gripper_z_mm)),
+                _rightmost(at[f"{flange.name}.upper"]),
+            )
+        )
+        left.append(
+            (("Flange's board", "contacts, 5 V, cables"), _leftmost(at[f"{flange.name}.board"]))
+        )
         left.append((("Flange, lower part", "printed"), _leftmost(at[f"{flange.name}.lower"])))
     mounted = climb(system.gripper_z_mm + system.reach_mm)
-    right.append(((f"Gripper {mount.title}, to its fingers", f"{mounted}, {system.confidence}"),
-                  _rightmost(at["gripper.envelope"])))  # fmt: skip
+    right.append(
+        (
+            (f"Gripper {mount.title}, to its fingers", f"{mounted}, {system.confidence}"),
+            _rightmost(at["gripper.envelope"]),
+        )
+    )
     for name in system.holders:
-        left.append((("Controller's board in its holder", "clips round the gripper"),
-                     _leftmost(at[f"{name}.tray"])))  # fmt: skip
-    right.append((("Fingers, to the tool centre point", climb(tcp_mm)),
-                  _rightmost(at["emitter.backing"])))  # fmt: skip
+        left.append(
+            (
+                ("Controller's board in its holder", "clips round the gripper"),
+                _leftmost(at[f"{name}.tray"]),
+            )
+        )
+    right.append(
+        (("Fingers, to the tool centre point", climb(tcp_mm)), _rightmost(at["emitter.backing"]))
+    )
     left.append((("Receiver", "its face to the emitter's"), _leftmost(at["receiver.backing"])))
     x_low, x_high = float(sheet.low[0]) - LABEL_MM, float(sheet.high[0]) + LABEL_MM
     top = float(sheet.high[1]) + LABEL_MM

@@ -21,13 +21,19 @@ def add(subparsers: Subparsers) -> None:
         "--trials", type=int, default=100, metavar="N", help="curves at each speed (100)"
     )
     parser.add_argument(
-        "--cores", type=int, default=os.cpu_count() or 1, metavar="N",
+        "--cores",
+        type=int,
+        default=os.cpu_count() or 1,
+        metavar="N",
         help="processes that share the trials (all cores)",
-    )  # fmt: skip
+    )
     parser.add_argument(
-        "--out", type=Path, default=Path("bench-tasks"), metavar="FOLDER",
+        "--out",
+        type=Path,
+        default=Path("bench-tasks"),
+        metavar="FOLDER",
         help="where tasks.md, tasks.json and tasks.svg go (bench-tasks)",
-    )  # fmt: skip
+    )
 
 
 def run(options: argparse.Namespace) -> int:

@@ -45,13 +45,18 @@ def add_fingertip(parser: argparse.ArgumentParser, several: bool = False) -> Non
     else:
         parser.add_argument("url", metavar="URL", help=told)
     parser.add_argument(
-        "--layout", type=Path, metavar="FILE",
+        "--layout",
+        type=Path,
+        metavar="FILE",
         help=f"layout.json that the firmware was built from ({BUILT_LAYOUT} if it is there)",
-    )  # fmt: skip
+    )
     parser.add_argument(
-        "--timeout", type=some_seconds, default=10.0, metavar="S",
+        "--timeout",
+        type=some_seconds,
+        default=10.0,
+        metavar="S",
         help="seconds that connecting may take (10)",
-    )  # fmt: skip
+    )
     parser.add_argument(
         "--any-design", action="store_true", help="read a device of another design all the same"
     )

@@ -18,9 +18,11 @@ def add(subparsers: Subparsers) -> None:
     """Say what the command takes."""
     told = "Find dead, saturated, noisy and swapped-looking cells."
     parser = subparsers.add_parser(
-        "doctor", help=told, description=f"{told} Move an object over all cells meanwhile, "
-        "in all directions: only then do swapped cells show. Exits 1 if something is found."
-    )  # fmt: skip
+        "doctor",
+        help=told,
+        description=f"{told} Move an object over all cells meanwhile, "
+        "in all directions: only then do swapped cells show. Exits 1 if something is found.",
+    )
     add_fingertip(parser)
     parser.add_argument(
         "--seconds", type=some_seconds, default=15.0, metavar="S", help="how long to look (15)"
@@ -36,8 +38,10 @@ def run(options: argparse.Namespace) -> int:
     from lumitip.session.drift import WARM_UP_S
 
     with open_fingertip(options, calibrated=False) as tip:
-        print(f"{tip.device_id}: {len(tip.layout)} cells, looking for {options.seconds:g} s; move "
-              "an object over all of them")  # fmt: skip
+        print(
+            f"{tip.device_id}: {len(tip.layout)} cells, looking for {options.seconds:g} s; move "
+            "an object over all of them"
+        )
         frames = _frames(tip, options.seconds, options.timeout)
         first = frames[0]
         stats = tip.stats
@@ -51,8 +55,10 @@ def run(options: argparse.Namespace) -> int:
         f"{number} lost by {cause}" for cause, number in (stats.dropped or {}).items() if number
     ]
     lost = "none lost" if stats.dropped is not None else "it cannot tell what is lost"
-    print(f"{len(frames)} frames, {stats.rate_hz or 0:.0f} a second, {', '.join(causes) or lost}; "
-          f"noise of {np.median(report.noise):.2f} of 255")  # fmt: skip
+    print(
+        f"{len(frames)} frames, {stats.rate_hz or 0:.0f} a second, {', '.join(causes) or lost}; "
+        f"noise of {np.median(report.noise):.2f} of 255"
+    )
     if first.t_device is not None and first.t_device < WARM_UP_S:
         print(f"switched on {first.t_device:.0f} s ago: cells drift for the first five minutes")
     if report.unseen:

@@ -21,9 +21,12 @@ def add(subparsers: Subparsers) -> None:
     parser = subparsers.add_parser("replay", help=told, description=f"{told} {more}")
     parser.add_argument("file", type=Path, metavar="FILE", help="to read")
     parser.add_argument(
-        "--speed", type=float, default=1.0, metavar="N",
+        "--speed",
+        type=float,
+        default=1.0,
+        metavar="N",
         help="N times as fast (1); 0 is as fast as possible",
-    )  # fmt: skip
+    )
 
 
 def run(options: argparse.Namespace) -> int:

@@ -29,8 +29,10 @@ def run(options: argparse.Namespace) -> int:
         made = tip.tare("dark" if options.dark else "empty")
         reference = made.dark if options.dark else made.empty
         assert reference is not None
-        print(f"{tip.device_id}: cells read {reference.min():.1f} to {reference.max():.1f} of 255 "
-              f"{'in the dark' if options.dark else 'with an empty grasp'}; kept")  # fmt: skip
+        print(
+            f"{tip.device_id}: cells read {reference.min():.1f} to {reference.max():.1f} of 255 "
+            f"{'in the dark' if options.dark else 'with an empty grasp'}; kept"
+        )
         last = tip.latest()
         if last and (last.t_device or WARM_UP_S) < WARM_UP_S:
             print("still warming up: tare again five minutes after switching on")

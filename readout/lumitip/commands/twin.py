@@ -10,25 +10,34 @@ def add(subparsers: Subparsers) -> None:
     """Say what the command takes."""
     told = "Offer the optical twin as a serial device."
     parser = subparsers.add_parser(
-        "twin", help=told, description=f"{told} It sends the bytes that firmware sends, so that "
+        "twin",
+        help=told,
+        description=f"{told} It sends the bytes that firmware sends, so that "
         "every program that reads a fingertip reads the twin too. Without a device of its own: "
-        "give twin://SHAPE to the other commands."
-    )  # fmt: skip
+        "give twin://SHAPE to the other commands.",
+    )
     parser.add_argument(
-        "url", metavar="URL", nargs="?", default="twin://demo",
+        "url",
+        metavar="URL",
+        nargs="?",
+        default="twin://demo",
         help="twin://SHAPE with its options (twin://demo)",
-    )  # fmt: skip
+    )
     parser.add_argument(
-        "--serve-serial", action="store_true", required=True,
+        "--serve-serial",
+        action="store_true",
+        required=True,
         help="send to a new pseudo-terminal, whose name is printed, until Ctrl-C",
-    )  # fmt: skip
+    )
     parser.add_argument(
         "--link", type=Path, metavar="PATH", help="also reach the pseudo-terminal by this name"
     )
     parser.add_argument(
-        "--layout", type=Path, metavar="FILE",
+        "--layout",
+        type=Path,
+        metavar="FILE",
         help="layout.json of the design (outputs/layout.json if it is there)",
-    )  # fmt: skip
+    )
     parser.add_argument("--seconds", type=some_seconds, metavar="S", help="stop after so long")
 
 

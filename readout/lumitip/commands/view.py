@@ -12,9 +12,11 @@ def add(subparsers: Subparsers) -> None:
     parser = subparsers.add_parser("view", help=told, description=told)
     add_fingertip(parser, several=True)
     parser.add_argument(
-        "--host", default="127.0.0.1", metavar="ADDRESS",
+        "--host",
+        default="127.0.0.1",
+        metavar="ADDRESS",
         help="address to listen at (127.0.0.1); any other computer then needs the token",
-    )  # fmt: skip
+    )
     parser.add_argument(
         "--port", type=int, default=8642, metavar="N", help="port (8642); 0 takes a free one"
     )
@@ -22,13 +24,19 @@ def add(subparsers: Subparsers) -> None:
         "--token", metavar="TEXT", help="what browsers must show; made up where one is needed"
     )
     parser.add_argument(
-        "--folder", type=Path, default=Path("recordings"), metavar="DIR",
+        "--folder",
+        type=Path,
+        default=Path("recordings"),
+        metavar="DIR",
         help="where recordings are written and replayed from (recordings)",
-    )  # fmt: skip
+    )
     parser.add_argument(
-        "--rerun", nargs="?", const="", metavar="FILE.rrd",
+        "--rerun",
+        nargs="?",
+        const="",
+        metavar="FILE.rrd",
         help="show everything in the Rerun viewer too, or write it to a file for it",
-    )  # fmt: skip
+    )
     parser.add_argument("--open", action="store_true", help="open the browser too")
 
 

@@ -56,10 +56,12 @@ class Tracer:
         self.slow_s, self.search_s, self.search_mm_s, ahead_s = (
             arguments.number(given, name, 0.0, error=ControlError)
             for given, name in (
-                (slow_s, "slow_s"), (search_s, "search_s"), (search_mm_s, "search_mm_s"),
+                (slow_s, "slow_s"),
+                (search_s, "search_s"),
+                (search_mm_s, "search_mm_s"),
                 (lead_s, "lead_s"),
             )
-        )  # fmt: skip
+        )
         if corner_at_mm is not None:
             corner_at_mm = arguments.number(corner_at_mm, "corner_at_mm", error=ControlError)
         self.corner_at_mm = corner_at_mm
@@ -122,9 +124,11 @@ class Tracer:
             share = 1.0 - self._unseen_s / self.slow_s if self.slow_s else 0.0
             last = self._last
             return Command(
-                last.forward_mm_s * share, last.lateral_mm_s * share,
-                last.rotation_rad_s * share, "slow",
-            )  # fmt: skip
+                last.forward_mm_s * share,
+                last.lateral_mm_s * share,
+                last.rotation_rad_s * share,
+                "slow",
+            )
         searching_s = self._unseen_s - self.slow_s
         if searching_s <= self.search_s:
             # A third of the time on the side where the line went, the rest past the other side.

@@ -49,8 +49,9 @@ class Bank:
         shown = sizes > _LEAST * np.sqrt(weights.sum())
         templates = centred[shown] / sizes[shown, None]
         names = shape.names[: poses.shape[1]]
-        apart = np.array([1.0 / np.radians(_APART_DEG) if n.endswith("_deg") else 1.0 / _APART_MM
-                          for n in names])  # fmt: skip
+        apart = np.array(
+            [1.0 / np.radians(_APART_DEG) if n.endswith("_deg") else 1.0 / _APART_MM for n in names]
+        )
         opaque, signed = shape.kind == "cable", shape.kind == "edge"
         shares, templates = shares[shown].astype(np.float32), templates.astype(np.float32)
         return cls(poses[shown], shares, templates, apart, opaque, signed)
@@ -86,9 +87,11 @@ class Bank:
         taken, both, squares = (
             of @ by.astype(np.float32)
             for of, by in (
-                (self.shares, weights), (self.shares, weights * light), (self._squares, weights)
+                (self.shares, weights),
+                (self.shares, weights * light),
+                (self._squares, weights),
             )
-        )  # fmt: skip
+        )
         if self.opaque:  # light beside the object alone is free
             turned = np.zeros(taken.size, bool)
             score = (mean - both) ** 2 / np.maximum(whole - 2.0 * taken + squares, _TINY * whole)

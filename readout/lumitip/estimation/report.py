@@ -64,9 +64,12 @@ def report(
     )
     astray = max(map(abs, pose[1:3] if corner else pose[1:2])) > reach_mm
     wrong = {
-        "misfit": misfit > MISFIT_COUNTS, "weak": weak, "astray": astray,
-        "unfinished": not found.settled, "ambiguous": found.ambiguous or mirrored,
-    }  # fmt: skip
+        "misfit": misfit > MISFIT_COUNTS,
+        "weak": weak,
+        "astray": astray,
+        "unfinished": not found.settled,
+        "ambiguous": found.ambiguous or mirrored,
+    }
     object.__setattr__(estimate, "flags", tuple(name for name, is_so in wrong.items() if is_so))
     return estimate
 

@@ -126,12 +126,15 @@ class Cable:
         strips = self._edge(angle, left - self._sides * half, drift)
         more, more_by_left, more_by_angle, more_by_drift = (
             np.add.reduce(self._signs * s, axis=-2) for s in strips
-        )  # fmt: skip
+        )
         by_width = -0.5 * (strips[1][0] + strips[1][1])
         return (
-            share + more, by_left + more_by_left, by_angle + more_by_angle, by_width,
+            share + more,
+            by_left + more_by_left,
+            by_angle + more_by_angle,
+            by_width,
             by_drift + more_by_drift,
-        )  # fmt: skip
+        )
 
     def priors(self) -> tuple[Floats, Floats]:
         """See `Shape`: the diameter within a tenth, more where the frame shows it."""
@@ -212,13 +215,15 @@ class Corner:
         one, two = shares[1], shares[0]
         first, second = one * by_left[0], two * by_left[1]
         by_first, by_second = one * turning[0], two * turning[1]
-        return share, np.array([
-            by_first + by_second,
-            first * sin[0] + second * sin[1],
-            -first * cos[0] - second * cos[1],
-            0.5 * (by_first - by_second),
-            *(one * by_drift[:, 0] + two * by_drift[:, 1]),
-        ])  # fmt: skip
+        return share, np.array(
+            [
+                by_first + by_second,
+                first * sin[0] + second * sin[1],
+                -first * cos[0] - second * cos[1],
+                0.5 * (by_first - by_second),
+                *(one * by_drift[:, 0] + two * by_drift[:, 1]),
+            ]
+        )
 
     def borders(self, pose: Floats) -> tuple[Floats, Floats]:
         """Directions (rad) and offsets (mm) of both borders, the sheet to the right of each,

@@ -112,19 +112,42 @@ def _single(light: Values, noise: Values) -> list[Finding]:
     for cell in range(light.shape[1]):
         low, high = float(least[cell]), float(most[cell])
         if high <= _DARK:
-            findings.append(Finding("dark", (cell,), f"never above {high:.0f} of 255: covered "
-                                    "all the time, or its LED, detector or wiring is "
-                                    "dead"))  # fmt: skip
+            findings.append(
+                Finding(
+                    "dark",
+                    (cell,),
+                    f"never above {high:.0f} of 255: covered "
+                    "all the time, or its LED, detector or wiring is "
+                    "dead",
+                )
+            )
         elif low >= _FULL:
-            findings.append(Finding("saturated", (cell,), f"never below {low:.0f} of 255: the "
-                                    "detector is shorted, or its LED is too bright"))  # fmt: skip
+            findings.append(
+                Finding(
+                    "saturated",
+                    (cell,),
+                    f"never below {low:.0f} of 255: the "
+                    "detector is shorted, or its LED is too bright",
+                )
+            )
         elif low == high and lively:
-            findings.append(Finding("stuck", (cell,), f"always {low:.0f} of 255, without noise: "
-                                    "the channel is not connected"))  # fmt: skip
+            findings.append(
+                Finding(
+                    "stuck",
+                    (cell,),
+                    f"always {low:.0f} of 255, without noise: the channel is not connected",
+                )
+            )
         elif noise[cell] > max(_LEAST_NOISE, _NOISE_RATIO * usual):
-            findings.append(Finding("noisy", (cell,), f"noise of {noise[cell]:.1f} of 255, "
-                                    f"{usual:.1f} is usual here: a loose joint or ambient "
-                                    "light"))  # fmt: skip
+            findings.append(
+                Finding(
+                    "noisy",
+                    (cell,),
+                    f"noise of {noise[cell]:.1f} of 255, "
+                    f"{usual:.1f} is usual here: a loose joint or ambient "
+                    "light",
+                )
+            )
     return findings
 
 
@@ -139,13 +162,17 @@ def _misplaced(light: Values, ways: Pairs, usable: Mask) -> list[Finding]:
         return [Finding("astray", (), told)]
     return [
         Finding(
-            "swapped", swap.cells,
+            "swapped",
+            swap.cells,
             f"each goes with the other's surroundings, in "
             f"{'both halves' if swap.sure else 'a part'} of the recording "
             f"(nearer by {swap.gain:.2f} of correlation): "
-            + ("is the layout.json that of this board, is the wiring as it says?" if swap.sure
-               else "look again, longer, and move in all directions"),
+            + (
+                "is the layout.json that of this board, is the wiring as it says?"
+                if swap.sure
+                else "look again, longer, and move in all directions"
+            ),
             swap.sure,
         )
         for swap in swaps(light, ways, usable)
-    ]  # fmt: skip
+    ]

@@ -153,8 +153,10 @@ def _usual(alike: Floats, ways: Pairs, compared: PairMask) -> tuple[Floats, Pair
     first = np.cumsum(count) - count
     if not value.size:
         return np.zeros_like(alike), np.zeros_like(compared)
-    low, high = (np.minimum(first + half, value.size - 1)
-                 for half in (np.maximum(count - 1, 0) // 2, count // 2))  # fmt: skip
+    low, high = (
+        np.minimum(first + half, value.size - 1)
+        for half in (np.maximum(count - 1, 0) // 2, count // 2)
+    )
     median = (value[low] + value[high]) / 2.0
     return median[ways], (count >= _LEAST_PAIRS)[ways] & compared
 

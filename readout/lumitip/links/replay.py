@@ -71,5 +71,12 @@ def make(url: Url, layout: Layout | None, any_design: bool) -> ReplayLink:
 
 
 def _recorded(frame: RecordedFrame) -> Recorded:
-    return Recorded(frame.seq, frame.t_device, frame.t_host, frame.t_wall, frame.raw, frame.bits,
-                    frame.dropped_before)  # fmt: skip
+    return Recorded(
+        frame.seq,
+        frame.t_device,
+        frame.t_host,
+        frame.t_wall,
+        frame.raw,
+        frame.bits,
+        frame.dropped_before,
+    )

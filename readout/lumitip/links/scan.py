@@ -56,17 +56,25 @@ def _serial() -> list[Found]:
     from lumitip.links.serial import usb_ports
 
     return [
-        Found(f"serial://{port.device}", port.product or port.description,
-              f"USB {port.vid:04x}:{port.pid:04x}, serial number {port.serial_number}", sure=False)
+        Found(
+            f"serial://{port.device}",
+            port.product or port.description,
+            f"USB {port.vid:04x}:{port.pid:04x}, serial number {port.serial_number}",
+            sure=False,
+        )
         for port in sorted(usb_ports(), key=lambda port: str(port.device))
-    ]  # fmt: skip
+    ]
 
 
 def _ble(seconds: float) -> list[Found]:
     from lumitip.links.ble import sightings
 
     return [
-        Found(f"ble://{device.address}", told.local_name or device.name or "",
-              f"{told.rssi} dBm", sure=True)
+        Found(
+            f"ble://{device.address}",
+            told.local_name or device.name or "",
+            f"{told.rssi} dBm",
+            sure=True,
+        )
         for device, told in sightings(seconds)
-    ]  # fmt: skip
+    ]

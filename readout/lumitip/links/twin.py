@@ -96,8 +96,14 @@ class TwinLink(ThreadedLink):
 def packet_at(layout: Layout, scene: Scene, number: int, frames: int) -> Packet:
     """The packet of `frames` frames from frame `number` on: always the same for the same scene."""
     times_s = (number + np.arange(frames)) / scene.rate_hz
-    twin = _twin(layout, Model.from_layout(layout, scene.gap_mm), scene.noise, scene.bits,
-                 scene.seed, scene.warm_up)  # fmt: skip
+    twin = _twin(
+        layout,
+        Model.from_layout(layout, scene.gap_mm),
+        scene.noise,
+        scene.bits,
+        scene.seed,
+        scene.warm_up,
+    )
     scenes = [shown(scene.shape, layout, t * scene.speed_mm_s, scene.matter) for t in times_s]
     return Packet(
         design=design_code(layout.design_hash),

@@ -88,8 +88,15 @@ class Status:
         """
         try:
             code = int(self.design_hash, 16).to_bytes(8, "big")
-            return _STATUS.pack(self.protocol, *self.firmware, code, self.cells, self.mtu,
-                                self.needed_mtu, self.faults)  # fmt: skip
+            return _STATUS.pack(
+                self.protocol,
+                *self.firmware,
+                code,
+                self.cells,
+                self.mtu,
+                self.needed_mtu,
+                self.faults,
+            )
         except (struct.error, ValueError, OverflowError) as error:
             raise PacketError("field", f"{self}: cannot be sent: {error}") from error
 

@@ -109,8 +109,16 @@ def encode(packet: Packet) -> bytes:
     """
     values = packet.values
     _check(packet, values)
-    head = _HEADER.pack(MAGIC, VERSION, packet.design, packet.sequence, len(values), packet.bits,
-                        packet.time_us, packet.period_us)  # fmt: skip
+    head = _HEADER.pack(
+        MAGIC,
+        VERSION,
+        packet.design,
+        packet.sequence,
+        len(values),
+        packet.bits,
+        packet.time_us,
+        packet.period_us,
+    )
     body = head + _packed(values.ravel(), packet.bits)
     return body + _CRC.pack(crc_hqx(body, 0xFFFF))
 
@@ -171,11 +179,17 @@ def _check(packet: Packet, values: Codes) -> None:
         if not 0 <= given < 1 << width:
             raise PacketError("field", f"{name}: {given} given, at most {(1 << width) - 1}")
     if values.ndim != 2 or values.dtype.kind not in "ui":
-        raise PacketError("field", f"values: whole numbers of shape (frames, cells) are needed, "
-                          f"{values.dtype} of shape {values.shape} given")  # fmt: skip
+        raise PacketError(
+            "field",
+            f"values: whole numbers of shape (frames, cells) are needed, "
+            f"{values.dtype} of shape {values.shape} given",
+        )
     if not 1 <= len(values) <= MOST_FRAMES or not values.shape[1]:
-        raise PacketError("length", f"{len(values)} frames of {values.shape[1]} cells given, a "
-                          f"packet has 1 to {MOST_FRAMES} frames of at least a cell")  # fmt: skip
+        raise PacketError(
+            "length",
+            f"{len(values)} frames of {values.shape[1]} cells given, a "
+            f"packet has 1 to {MOST_FRAMES} frames of at least a cell",
+        )
     if int(values.min()) < 0 or int(values.max()) >> packet.bits:
         raise PacketError(
             "bits",

@@ -115,8 +115,13 @@ def encode(frame: Recordable, device_id: str) -> bytes:
         codes.size,
     )
     parts: Sequence[bytes] = (
-        _CDR_LITTLE, _TIME.pack(sec, nanosec), text, bytes(padding), numbers, codes.tobytes()
-    )  # fmt: skip
+        _CDR_LITTLE,
+        _TIME.pack(sec, nanosec),
+        text,
+        bytes(padding),
+        numbers,
+        codes.tobytes(),
+    )
     return b"".join(parts)
 
 

@@ -27,9 +27,19 @@ _MOST_BYTES = 64 * 2**20  # of one record: far above any that `Writer` makes
 # All that damaged bytes make the libraries raise, MemoryError by lengths that are nonsense; and
 # OSError of a disk that fails or was taken away.
 _FAULTS = (
-    McapError, ValueError, struct.error, zstandard.ZstdError, RuntimeError, EOFError,
-    OverflowError, MemoryError, KeyError, IndexError, TypeError, OSError,
-)  # fmt: skip
+    McapError,
+    ValueError,
+    struct.error,
+    zstandard.ZstdError,
+    RuntimeError,
+    EOFError,
+    OverflowError,
+    MemoryError,
+    KeyError,
+    IndexError,
+    TypeError,
+    OSError,
+)
 
 
 class Fault(NamedTuple):

@@ -77,9 +77,7 @@ def _parquet(reader: Reader, path: Path) -> int:
     except ModuleNotFoundError as error:
         raise MissingExtra("export", "Parquet") from error
     cells = len(reader.layout)
-    kinds = (
-        pyarrow.int64(), *[pyarrow.float64()] * 3, pyarrow.int32(), pyarrow.uint8()
-    )  # fmt: skip
+    kinds = (pyarrow.int64(), *[pyarrow.float64()] * 3, pyarrow.int32(), pyarrow.uint8())
     fields = [pyarrow.field(n, k) for n, k in zip(_TIMES, kinds, strict=True)]
     fields += [pyarrow.field(n, pyarrow.uint16()) for n in _names("raw", cells)]
     fields += [pyarrow.field(n, pyarrow.float32()) for n in _names("value", cells)]

@@ -31,9 +31,13 @@ RATE_HZ = 125.0
 _PORT = 30004
 _PLAYING = 2  # of RTDE's runtime_state; ur_rtde does not hand its names to Python
 _VARIABLES = [
-    "timestamp", "actual_TCP_pose", "actual_TCP_speed", "actual_TCP_force", "runtime_state",
+    "timestamp",
+    "actual_TCP_pose",
+    "actual_TCP_speed",
+    "actual_TCP_force",
+    "runtime_state",
     "safety_status_bits",
-]  # fmt: skip
+]
 _STANDS = 1e-3  # m/s or rad/s
 _REFUSAL_STATES = 10
 _BRAKING_MORE_S = 0.5

@@ -92,23 +92,52 @@ class Intake:
         values = self._values(raw, packet.bits)
         device_id = self._source.device_id()
         return [
-            Frame(place.seq + i, float(t_device[i]), t_host, t[i], t[i] + self._wall_s, raw[i],
-                  packet.bits, values[i], 0 if i else place.lost, device_id)
+            Frame(
+                place.seq + i,
+                float(t_device[i]),
+                t_host,
+                t[i],
+                t[i] + self._wall_s,
+                raw[i],
+                packet.bits,
+                values[i],
+                0 if i else place.lost,
+                device_id,
+            )
             for i in range(len(raw))
-        ]  # fmt: skip
+        ]
 
     def _legacy(self, raw: Codes, t_host: float) -> Frame:
         seq = self._legacy_frames
         self._legacy_frames += 1
         raw = frozen(raw)
-        return Frame(seq, None, t_host, t_host, t_host + self._wall_s, raw, 8,
-                     self._values(raw, 8), None, self._source.device_id())  # fmt: skip
+        return Frame(
+            seq,
+            None,
+            t_host,
+            t_host,
+            t_host + self._wall_s,
+            raw,
+            8,
+            self._values(raw, 8),
+            None,
+            self._source.device_id(),
+        )
 
     def _recorded(self, was: Recorded) -> Frame:
         self._counter.lost("link", was.dropped_before or 0)
-        return Frame(was.seq, was.t_device, was.t_host, was.t_wall - self._recorded_wall_s(was),
-                     was.t_wall, frozen(was.raw), was.bits, self._values(was.raw, was.bits),
-                     was.dropped_before, self._source.device_id())  # fmt: skip
+        return Frame(
+            was.seq,
+            was.t_device,
+            was.t_host,
+            was.t_wall - self._recorded_wall_s(was),
+            was.t_wall,
+            frozen(was.raw),
+            was.bits,
+            self._values(was.raw, was.bits),
+            was.dropped_before,
+            self._source.device_id(),
+        )
 
     def _recorded_wall_s(self, was: Recorded) -> float:
         # The computer that recorded had another wall time to its monotonic clock.

@@ -63,9 +63,10 @@ _FEW = (80.0, 160.0, *(float(v) for v in range(200, 401, 20)))
 SPEEDS_MM_S = {"centre": _EVERY, "line": _EVERY, "pose": _FEW}
 """Worth trying with each controller, up to the limit of the finger's own speed."""
 TASKS = {
-    "cloth": Settings("cloth"), "cable": Settings("cable"),
+    "cloth": Settings("cloth"),
+    "cable": Settings("cable"),
     "corner": Settings("cloth", corner=True),
-}  # fmt: skip
+}
 _ENOUGH = 0.1  # share of lost curves above which faster ones are not tried
 
 

@@ -13,8 +13,10 @@ FASTER = 3.0
 FEW = 0.05
 """Share of lost curves at which speeds are compared as well."""
 _NAMES = {
-    "centre": "dark centre (published)", "line": "line angle", "pose": "line angle, pose estimator"
-}  # fmt: skip
+    "centre": "dark centre (published)",
+    "line": "line angle",
+    "pose": "line angle, pose estimator",
+}
 _TITLES = {"cloth": "edge of a cloth", "cable": "cable", "corner": "cloth up to its corner"}
 
 
@@ -54,11 +56,15 @@ def goals(results: Sequence[Result]) -> list[tuple[bool, str]]:
     """
     few = {(a.task, a.controller): a for a in advantages(results, FEW)}
     return [
-        (a.times >= FASTER, f"{_TITLES[a.task]}: line angle {_told(a)} times as fast as the "
-         f"published law at no loss (goal: at least {FASTER:g}); at most {100.0 * FEW:g} % loss: "
-         f"{_told(few[a.task, a.controller])} times")
-        for a in advantages(results) if a.controller == "line"
-    ]  # fmt: skip
+        (
+            a.times >= FASTER,
+            f"{_TITLES[a.task]}: line angle {_told(a)} times as fast as the "
+            f"published law at no loss (goal: at least {FASTER:g}); at most {100.0 * FEW:g} % "
+            f"loss: {_told(few[a.task, a.controller])} times",
+        )
+        for a in advantages(results)
+        if a.controller == "line"
+    ]
 
 
 def _told(advantage: Advantage) -> str:
@@ -92,8 +98,11 @@ def _speeds(results: Sequence[Result]) -> list[str]:
         f"| task | controller | no loss up to | times | {few} | times |",
         "|---|---|---|---|---|---|",
     ]
-    times = {(a.task, a.controller, a.loss_rate): a.times
-             for rate in (0.0, FEW) for a in advantages(results, rate)}  # fmt: skip
+    times = {
+        (a.task, a.controller, a.loss_rate): a.times
+        for rate in (0.0, FEW)
+        for a in advantages(results, rate)
+    }
     for r in results:
         cells = [_TITLES[r.task], _NAMES[r.controller]]
         for rate in (0.0, FEW):
@@ -106,8 +115,10 @@ def _speeds(results: Sequence[Result]) -> list[str]:
 
 
 def _rows(results: Sequence[Result]) -> list[str]:
-    lines = ["| task | controller | speed | lost | lateral rms | angle rms | corner rms |",
-             "|---|---|---|---|---|---|---|"]  # fmt: skip
+    lines = [
+        "| task | controller | speed | lost | lateral rms | angle rms | corner rms |",
+        "|---|---|---|---|---|---|---|",
+    ]
     for r in results:
         for row in r.rows:
             cells = [_TITLES[r.task], _NAMES[r.controller], f"{row.speed_mm_s:.0f} mm/s"]
@@ -142,9 +153,12 @@ def _plot(results: Sequence[Result], path: Path) -> Path:
         for r in (r for r in results if r.task == task):
             speeds = [row.speed_mm_s for row in r.rows]
             axes[0][column].plot(
-                speeds, [100.0 * row.loss_rate for row in r.rows], "o-", ms=3,
+                speeds,
+                [100.0 * row.loss_rate for row in r.rows],
+                "o-",
+                ms=3,
                 label=_NAMES[r.controller],
-            )  # fmt: skip
+            )
             axes[1][column].plot(speeds, [row.lateral_rms_mm for row in r.rows], "o-", ms=3)
         axes[0][column].set_title(_TITLES[task])
         axes[1][column].set_xlabel("speed (mm/s)")

@@ -161,33 +161,42 @@ def summary(
     kept = [m for m in done if not m.lost]
     corners = [m.corner_error_mm for m in kept if not np.isnan(m.corner_error_mm)]
     return Summary(
-        speed_mm_s, len(done), len(done) - len(kept),
-        _rms([m.lateral_rms_mm for m in kept]), _rms([m.angle_rms_deg for m in kept]),
+        speed_mm_s,
+        len(done),
+        len(done) - len(kept),
+        _rms([m.lateral_rms_mm for m in kept]),
+        _rms([m.angle_rms_deg for m in kept]),
         _rms(corners),
-    )  # fmt: skip
+    )
 
 
 def _rms(values: Sequence[float]) -> float:
     return float(np.sqrt(np.mean(np.square(values)))) if values else float("nan")
 
 
-LINE_GRID = tuple(Tuning(*of) for of in product((8.0, 12.0, 16.0, 20.0, 24.0, 32.0),
-                                                (6.0, 10.0, 14.0), (0.0, 0.03, 0.06)))  # fmt: skip
+LINE_GRID = tuple(
+    Tuning(*of)
+    for of in product((8.0, 12.0, 16.0, 20.0, 24.0, 32.0), (6.0, 10.0, 14.0), (0.0, 0.03, 0.06))
+)
 _CENTRE_RATIO = 1.75
 """About this much apart are the gains of `CENTRE_GRID`."""
 CENTRE_GRID = tuple(
     Tuning(gain_per_s, height_mm=height_mm)
-    for gain_per_s, height_mm in product((6.0, 10.0, 18.0, 32.0, 56.0, 96.0),
-                                         (1.0, 0.0, -1.0, -2.0, -3.0))
-)  # fmt: skip
+    for gain_per_s, height_mm in product(
+        (6.0, 10.0, 18.0, 32.0, 56.0, 96.0), (1.0, 0.0, -1.0, -2.0, -3.0)
+    )
+)
 GRIDS = {"centre": CENTRE_GRID, "line": LINE_GRID, "pose": LINE_GRID}
 SEEDS = tuple(range(10_000, 10_012))
 """Curves to tune on, others than those of the test, which begin at 0."""
 SPEEDS_MM_S = {
-    ("centre", "cloth"): 200.0, ("centre", "cable"): 160.0,
-    ("line", "cloth"): 320.0, ("line", "cable"): 320.0,
-    ("pose", "cloth"): 320.0, ("pose", "cable"): 320.0,
-}  # fmt: skip
+    ("centre", "cloth"): 200.0,
+    ("centre", "cable"): 160.0,
+    ("line", "cloth"): 320.0,
+    ("line", "cable"): 320.0,
+    ("pose", "cloth"): 320.0,
+    ("pose", "cable"): 320.0,
+}
 """Where each begins to fail, where tuning matters, by controller and kind of task."""
 _NAMES = {"gain_per_s": "K_p", "turn_per_s": "K_θ", "lead_s": "lead", "height_mm": "height"}
 

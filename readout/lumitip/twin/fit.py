@@ -17,8 +17,17 @@ from lumitip.twin.optics import Model, TwinError, values_of_drive
 from lumitip.twin.scene import HalfPlane
 from lumitip.twin.twin import Twin
 
-NAMES = ("offset_mm", "angle_deg", "curvature_per_mm", "clear", "gap_mm", "alpha", "gain",
-         "slope_x", "slope_y")  # fmt: skip
+NAMES = (
+    "offset_mm",
+    "angle_deg",
+    "curvature_per_mm",
+    "clear",
+    "gap_mm",
+    "alpha",
+    "gain",
+    "slope_x",
+    "slope_y",
+)
 # Least, most and step of differentiation of each; the steps of gap and alpha make new tables.
 _LEAST = np.array([-30.0, -360.0, -0.05, 0.0, 1.0, 0.0, 0.3, -0.5, -0.5])
 _MOST = np.array([30.0, 360.0, 0.05, 0.5, 8.0, 1.0, 1.5, 0.5, 0.5])

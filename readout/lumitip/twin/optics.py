@@ -31,9 +31,7 @@ GAP_MM = 3.0
 
 
 _TABLED, _ENTRIES = 4.0, 8192  # drives below this one, in so many steps
-_LIMITS = {
-    "alpha": 1.0, "silicone_index": 3.0, "led_exponent": 100.0, "detector_exponent": 100.0
-}  # fmt: skip
+_LIMITS = {"alpha": 1.0, "silicone_index": 3.0, "led_exponent": 100.0, "detector_exponent": 100.0}
 
 
 class TwinError(LumitipError, ValueError):
@@ -76,8 +74,15 @@ class Model:
 
     def __post_init__(self) -> None:
         arguments.finite_fields(self, TwinError)
-        for name in ("gap_mm", "hole_mm", "emitter_depth_mm", "detector_depth_mm", "knee_v",
-                     "supply_v", "gain"):  # fmt: skip
+        for name in (
+            "gap_mm",
+            "hole_mm",
+            "emitter_depth_mm",
+            "detector_depth_mm",
+            "knee_v",
+            "supply_v",
+            "gain",
+        ):
             if not getattr(self, name) > 0.0:
                 raise TwinError(f"{name}: {getattr(self, name)} given, must be above 0")
         for name, most in _LIMITS.items():
@@ -109,9 +114,11 @@ class Model:
         optics = arguments.layout(layout).optics
         _known(changes)
         index = arguments.number(
-            changes.get("silicone_index", optics.silicone_index), "silicone_index",
-            above=0.0, error=TwinError,
-        )  # fmt: skip
+            changes.get("silicone_index", optics.silicone_index),
+            "silicone_index",
+            above=0.0,
+            error=TwinError,
+        )
         told: dict[str, Any] = {
             "gap_mm": gap_mm,
             "led_exponent": optics.emitter_exponent,
@@ -185,8 +192,9 @@ def drive_of_values(values: Floats, model: Model) -> Floats:
 def _curve(knee: float) -> tuple[Floats, Floats]:
     # The drive is an explicit function of the voltage, so the curve is tabulated that way round,
     # closer where it bends.
-    voltage = np.concatenate([np.geomspace(1e-4 * knee, knee, 1500)[:-1],
-                              np.linspace(knee, 1.0, 3000)])[::-1]  # fmt: skip
+    voltage = np.concatenate(
+        [np.geomspace(1e-4 * knee, knee, 1500)[:-1], np.linspace(knee, 1.0, 3000)]
+    )[::-1]
     drive = (1.0 - voltage) / -np.expm1(-voltage / knee)
     return drive, FULL * (1.0 - voltage)
 

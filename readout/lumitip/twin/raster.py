@@ -125,8 +125,9 @@ class _Grid:
         # Small holes see finer than the usual pixel.
         pixel_mm = min(PIXEL_MM, model.hole_mm / 5.0)
         margin = REACH_MM / 2.0 + _PATCH_MM / 2.0
-        half = [int(np.ceil((np.abs(a).max() + margin) / pixel_mm))
-                for a in (layout.x_mm, layout.y_mm)]  # fmt: skip
+        half = [
+            int(np.ceil((np.abs(a).max() + margin) / pixel_mm)) for a in (layout.x_mm, layout.y_mm)
+        ]
         return cls(-half[0], -half[1], 2 * half[0], 2 * half[1], pixel_mm)
 
     @property
@@ -190,9 +191,12 @@ class _Scattered:
     def row(self, cell: int) -> Floats:
         """Of one cell, shape `(pixels,)`, on the scale of the bundles."""
         index, light = self._patch(
-            self._layout.x_mm[cell], self._layout.y_mm[cell], self._height * self._gap_mm[cell],
-            self._model.detector_depth_mm, self._model.detector_exponent,
-        )  # fmt: skip
+            self._layout.x_mm[cell],
+            self._layout.y_mm[cell],
+            self._height * self._gap_mm[cell],
+            self._model.detector_depth_mm,
+            self._model.detector_exponent,
+        )
         made = np.zeros(self._grid.pixels)
         made[index] = self._irradiance[index] * light * (self._grid.pixel_mm**2 / np.pi)
         return made

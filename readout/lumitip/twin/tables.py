@@ -99,10 +99,13 @@ def cable_table(pairs: Pairs, diameter_mm: float, height: float = 0.5) -> LineTa
     rays = [pairs.bundle(kind) for kind in kinds]
     places = [rays[k].at(height * pairs.kinds[k][0].gap_mm) for k in kinds]
     far = max(
-        float((np.hypot(*places[k]) + diameter_mm / 2.0
-               * np.sqrt(1.0 + r.across**2 + r.along**2)).max())
+        float(
+            (
+                np.hypot(*places[k]) + diameter_mm / 2.0 * np.sqrt(1.0 + r.across**2 + r.along**2)
+            ).max()
+        )
         for k, r in enumerate(rays)
-    )  # fmt: skip
+    )
     reach_mm = _reach(far)
 
     def taken(kind: int, cos: float, sin: float) -> Floats:

@@ -68,9 +68,10 @@ class Twin:
         """
         self.layout = arguments.layout(layout)
         self.model = (
-            Model.from_layout(layout) if model is None
+            Model.from_layout(layout)
+            if model is None
             else arguments.instance(model, Model, "model", TwinError)
-        )  # fmt: skip
+        )
         astray = Misregistration() if misregistration is None else misregistration
         arguments.instance(astray, Misregistration, "misregistration", TwinError)
         self.emitter = Emitter(self.model, astray)

@@ -47,14 +47,16 @@ def encode(
     head = HEADER.pack(FRAMES, finger, len(frames), cells, len(markers), number, skipped)
     values = np.rint(np.stack([f.values for f in frames]) * np.float32(256.0))
     codes = np.where(np.isfinite(values), values, _NOT_A_NUMBER).astype("<u2")
-    return b"".join((
-        head,
-        np.array([f.t - since for f in frames], "<f8").tobytes(),
-        np.array(_contact(contact), "<f4").tobytes(),
-        markers.astype("<f4").tobytes(),
-        np.array([f.seq % 2**32 for f in frames], "<u4").tobytes(),
-        codes.tobytes(),
-    ))  # fmt: skip
+    return b"".join(
+        (
+            head,
+            np.array([f.t - since for f in frames], "<f8").tobytes(),
+            np.array(_contact(contact), "<f4").tobytes(),
+            markers.astype("<f4").tobytes(),
+            np.array([f.seq % 2**32 for f in frames], "<u4").tobytes(),
+            codes.tobytes(),
+        )
+    )
 
 
 def _contact(contact: Contact) -> list[float]:

@@ -92,11 +92,17 @@ def test_another_designs_or_devices_calibration_is_refused(open_feed, tmp_path: 
 
 @pytest.mark.parametrize(
     "text",
-    ["", "{}", "[]", '{"format": 2}', '{"format": 1, "device_id": "dev"}',
-     '{"format": 1, "device_id": "dev", "design_hash": "HASH", "empty": ["x"], "dark": null}',
-     '{"format": 1, "device_id": "dev", "design_hash": "HASH", "empty": [NaN], "dark": null}',
-     '{"format": 1, "device_id": "dev", "design_hash": "HASH", "empty": [1], "dark": null}'],
-)  # fmt: skip
+    [
+        "",
+        "{}",
+        "[]",
+        '{"format": 2}',
+        '{"format": 1, "device_id": "dev"}',
+        '{"format": 1, "device_id": "dev", "design_hash": "HASH", "empty": ["x"], "dark": null}',
+        '{"format": 1, "device_id": "dev", "design_hash": "HASH", "empty": [NaN], "dark": null}',
+        '{"format": 1, "device_id": "dev", "design_hash": "HASH", "empty": [1], "dark": null}',
+    ],
+)
 def test_a_damaged_file_is_told(tmp_path: Path, text: str) -> None:
     path = _measured().save(tmp_path)
     path.write_text(text.replace("HASH", HASH), encoding="utf-8")

@@ -69,9 +69,11 @@ def test_refusals_are_one_line(capsys: pytest.CaptureFixture[str], tmp_path: Pat
 
 
 def test_a_layout_built_here_is_found(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str], make_layout,
-) -> None:  # fmt: skip
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    make_layout,
+) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "outputs").mkdir()
     text = make_layout((4, 5, 4), 5.0).to_json()
@@ -133,9 +135,10 @@ def test_an_unknown_name_is_no_attribute() -> None:
         _ = lumitip.Fingertips
 
 
-@pytest.mark.parametrize(("url", "module", "extra"), [
-    ("ble://Lumitip", "bleak", "ble"), ("serial:///dev/ttyACM0", "serial", "serial")
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("url", "module", "extra"),
+    [("ble://Lumitip", "bleak", "ble"), ("serial:///dev/ttyACM0", "serial", "serial")],
+)
 def test_a_missing_library_is_told_by_its_extra(
     layout: Layout, monkeypatch: pytest.MonkeyPatch, url: str, module: str, extra: str
 ) -> None:

@@ -136,8 +136,10 @@ def test_the_gain_of_a_swap_is_what_swapping_gives(twin: Layout) -> None:
     others = {(a, b) for a in range(32) for b in range(32) if a != b} - {
         (a, b) for a in range(32) for b in range(32) if 7 in (a, b)
     }
-    same = {way: [alike[a, b] for a, b in others if a < b and ways[a, b] == way]
-            for way in set(ways.ravel())}  # fmt: skip
+    same = {
+        way: [alike[a, b] for a, b in others if a < b and ways[a, b] == way]
+        for way in set(ways.ravel())
+    }
     usual = {way: np.median(values) for way, values in same.items() if len(values) >= 4}
     assert ways[0, 1] == ways[1, 0] == ways[30, 31] != ways[0, 2]
     for i, j in [(0, 1), (3, 8), (0, 31), (12, 20)]:
@@ -145,10 +147,12 @@ def test_the_gain_of_a_swap_is_what_swapping_gives(twin: Layout) -> None:
         pairs += [(j, k) for k in range(32) if (j, k) in others and k != i]
         pairs = [(a, k) for a, k in pairs if ways[a, k] in usual]
         swapped = {i: j, j: i}
-        gain = np.mean([
-            abs(alike[a, k] - usual[ways[a, k]]) - abs(alike[swapped[a], k] - usual[ways[a, k]])
-            for a, k in pairs
-        ])  # fmt: skip
+        gain = np.mean(
+            [
+                abs(alike[a, k] - usual[ways[a, k]]) - abs(alike[swapped[a], k] - usual[ways[a, k]])
+                for a, k in pairs
+            ]
+        )
         assert got[i, j] == pytest.approx(gain)
         assert got[j, i] == pytest.approx(gain)
     assert (got[7] == -1.0).all() and (np.diag(got) == -1.0).all()

@@ -28,8 +28,9 @@ def test_read_gives_frames_in_order(open_feed) -> None:
 
 def test_values_are_the_complement_whatever_the_bits(open_feed) -> None:
     tip, feed = open_feed()
-    for n, (bits, code, value) in enumerate([(8, 0, 255.0), (8, 55, 200.0), (10, 1023, 0.0),
-                                             (12, 4095, 0.0), (12, 819, 204.0)]):  # fmt: skip
+    for n, (bits, code, value) in enumerate(
+        [(8, 0, 255.0), (8, 55, 200.0), (10, 1023, 0.0), (12, 4095, 0.0), (12, 819, 204.0)]
+    ):
         feed.packet(n, bits=bits, value=code)
         frame = tip.latest()
         assert frame.bits == bits
@@ -38,9 +39,14 @@ def test_values_are_the_complement_whatever_the_bits(open_feed) -> None:
         assert frame.raw.dtype == (np.uint8 if bits == 8 else np.uint16)
 
 
-@pytest.mark.parametrize("send", [
-    lambda feed: feed.packet(0), lambda feed: feed.packet(0, bits=12), lambda feed: feed.legacy(3)
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "send",
+    [
+        lambda feed: feed.packet(0),
+        lambda feed: feed.packet(0, bits=12),
+        lambda feed: feed.legacy(3),
+    ],
+)
 def test_frames_cannot_be_changed(open_feed, send) -> None:
     tip, feed = open_feed()
     send(feed)

@@ -27,18 +27,23 @@ def _place(packets: Sequence[tuple[float, Packet]]) -> list[Place]:
 def test_packets_follow_each_other() -> None:
     places = _place([(0.0, _packet(100)), (0.008, _packet(104)), (0.016, _packet(108))])
     assert [(p.seq, p.repeated, p.lost, p.restarted) for p in places] == [
-        (0, 0, 0, False), (4, 0, 0, False), (8, 0, 0, False)]  # fmt: skip
+        (0, 0, 0, False),
+        (4, 0, 0, False),
+        (8, 0, 0, False),
+    ]
     assert [p.time_us for p in places] == [200_000, 208_000, 216_000]
 
 
 def test_number_and_time_wrap() -> None:
     first = 2**16 * 40 - 4
     near_wrap = 2**32 - 5000
-    places = _place([
-        (0.0, _packet(first, near_wrap)),
-        (0.008, _packet(first + 4, near_wrap + 8000)),
-        (0.016, _packet(first + 8, near_wrap + 16000)),
-    ])  # fmt: skip
+    places = _place(
+        [
+            (0.0, _packet(first, near_wrap)),
+            (0.008, _packet(first + 4, near_wrap + 8000)),
+            (0.016, _packet(first + 8, near_wrap + 16000)),
+        ]
+    )
     assert [p.seq for p in places] == [0, 4, 8]
     assert places[2].time_us - places[0].time_us == 16000
     assert not any(p.restarted or p.lost or p.repeated for p in places)
@@ -62,15 +67,23 @@ def test_a_link_cut_for_hours_counts_beyond_the_wrap_of_the_time() -> None:
 
 
 def test_a_packet_that_comes_again_is_left_out() -> None:
-    places = _place([(0.0, _packet(0)), (0.008, _packet(4)), (0.009, _packet(4)),
-                     (0.010, _packet(0)), (0.016, _packet(8))])  # fmt: skip
+    places = _place(
+        [
+            (0.0, _packet(0)),
+            (0.008, _packet(4)),
+            (0.009, _packet(4)),
+            (0.010, _packet(0)),
+            (0.016, _packet(8)),
+        ]
+    )
     assert [p.repeated for p in places] == [0, 0, 4, 4, 0]
     assert (places[4].seq, places[4].lost) == (8, 0)
 
 
 def test_a_late_packet_is_left_out_and_stays_counted_as_lost() -> None:
-    places = _place([(0.0, _packet(0)), (0.016, _packet(8)), (0.017, _packet(4)),
-                     (0.024, _packet(12))])  # fmt: skip
+    places = _place(
+        [(0.0, _packet(0)), (0.016, _packet(8)), (0.017, _packet(4)), (0.024, _packet(12))]
+    )
     assert [p.lost for p in places] == [0, 4, 0, 0]
     assert [p.repeated for p in places] == [0, 0, 4, 0]
     assert places[3].seq == 12
@@ -85,8 +98,13 @@ def test_only_the_new_part_of_an_overlapping_packet_counts() -> None:
 @pytest.mark.parametrize("ran_s", [3.0, 40.0, 131.072, 1800.0, 4200.0])
 def test_a_restart_goes_on_counting(ran_s: float) -> None:
     ran = int(ran_s * 1e6 / PERIOD_US)
-    places = _place([(ran_s, _packet(ran)), (ran_s + 2.0, _packet(0, 900_000)),
-                     (ran_s + 2.008, _packet(4, 908_000))])  # fmt: skip
+    places = _place(
+        [
+            (ran_s, _packet(ran)),
+            (ran_s + 2.0, _packet(0, 900_000)),
+            (ran_s + 2.008, _packet(4, 908_000)),
+        ]
+    )
     assert places[1].restarted
     assert (places[1].seq, places[1].lost, places[1].time_us) == (4, None, 900_000)
     assert (places[2].seq, places[2].lost, places[2].restarted) == (8, 0, False)

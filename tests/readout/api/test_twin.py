@@ -38,8 +38,17 @@ def test_an_address_is_checked_before_anything_is_opened() -> None:
 
 
 @pytest.mark.parametrize("odd", ["%00", "%0A", "a%1B[31m", "~%00", "\x7f", "\ud800"])
-@pytest.mark.parametrize("place", ["ble://{}", "serial://{}", "replay://{}", "twin://{}",
-                                   "serial:///dev/ttyACM0?baud={}", "ble://a?{}=1"])  # fmt: skip
+@pytest.mark.parametrize(
+    "place",
+    [
+        "ble://{}",
+        "serial://{}",
+        "replay://{}",
+        "twin://{}",
+        "serial:///dev/ttyACM0?baud={}",
+        "ble://a?{}=1",
+    ],
+)
 def test_characters_that_no_name_has_are_refused(place: str, odd: str) -> None:
     with pytest.raises(UrlError, match=r"in it, which no name, port or file has") as caught:
         Fingertip.open(place.format(odd), published_layout())

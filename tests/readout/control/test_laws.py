@@ -43,8 +43,9 @@ def test_the_published_law_holds_the_dark_centre() -> None:
     assert law(Sight(height_mm=2.0)) is None
 
 
-@pytest.mark.parametrize("scene", [HalfPlane(offset_mm=-2.0, angle_deg=160.0),
-                                   Cable(offset_mm=2.0, angle_deg=-20.0)])  # fmt: skip
+@pytest.mark.parametrize(
+    "scene", [HalfPlane(offset_mm=-2.0, angle_deg=160.0), Cable(offset_mm=2.0, angle_deg=-20.0)]
+)
 def test_both_ways_of_seeing_agree(scene: HalfPlane | Cable) -> None:
     layout = published_layout()
     values = Twin(layout).values(scene)

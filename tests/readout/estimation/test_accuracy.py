@@ -42,9 +42,13 @@ def test_with_wrong_optics_and_gains(
 @pytest.mark.parametrize("kind", ["edge", "cable"])
 @pytest.mark.parametrize("optics", ["right", "wrong"])
 def test_stated_deviations_are_about_as_large_as_the_misses(
-    estimator: PoseEstimator, twin: Twin, wrong_twins: list[Twin], frames: Frames,
-    kind: str, optics: str,
-) -> None:  # fmt: skip
+    estimator: PoseEstimator,
+    twin: Twin,
+    wrong_twins: list[Twin],
+    frames: Frames,
+    kind: str,
+    optics: str,
+) -> None:
     ratios = []
     for (offset_mm, angle_deg), values in frames(
         kind, [twin] if optics == "right" else wrong_twins, 80

@@ -10,8 +10,40 @@ from lumitip.estimation import EstimationError, PoseEstimator, learn
 from lumitip.processing import Processor, ValuesError
 from lumitip.twin import Cable, Corner, HalfPlane, Polygon, Sheet, Twin
 
-CLOTH_EDGE = (19, 11, 44, 228, 239, 7, 17, 196, 206, 13, 8, 84, 238, 226, 13, 22, 216, 232,
-              11, 13, 131, 244, 205, 13, 19, 234, 240, 8, 11, 196, 213, 239)  # fmt: skip
+CLOTH_EDGE = (
+    19,
+    11,
+    44,
+    228,
+    239,
+    7,
+    17,
+    196,
+    206,
+    13,
+    8,
+    84,
+    238,
+    226,
+    13,
+    22,
+    216,
+    232,
+    11,
+    13,
+    131,
+    244,
+    205,
+    13,
+    19,
+    234,
+    240,
+    8,
+    11,
+    196,
+    213,
+    239,
+)
 
 
 @pytest.mark.parametrize("angle_deg", [-170.0, -89.0, -20.0, 10.0, 89.0, 90.0, 130.0])

@@ -30,16 +30,18 @@ class Device:
 
     def status(self) -> bytes:
         needed = needed_mtu(len(self.layout), 8)
-        return Status((1, 0, 0), self.design[:16], len(self.layout), self.mtu, needed, Fault(0)
-                      ).encode()  # fmt: skip
+        return Status(
+            (1, 0, 0), self.design[:16], len(self.layout), self.mtu, needed, Fault(0)
+        ).encode()
 
     def packet(self, sequence: int, frames: int = 1, time_us: int | None = None) -> bytes:
         """Frames whose values are their number modulo 251."""
         numbers = ((sequence + np.arange(frames)) % 251).astype(np.uint8)
         values = np.repeat(numbers[:, None], len(self.layout), axis=1)
         at = sequence * PERIOD_US if time_us is None else time_us
-        return encode(Packet(design_code(self.design), sequence % 2**16, 8, at % 2**32,
-                             PERIOD_US, values))  # fmt: skip
+        return encode(
+            Packet(design_code(self.design), sequence % 2**16, 8, at % 2**32, PERIOD_US, values)
+        )
 
 
 @pytest.fixture

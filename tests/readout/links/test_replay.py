@@ -21,8 +21,18 @@ def _frames(layout: Layout, number: int) -> Iterator[Frame]:
         lost = 3 if n == 5 else 0
         seq = n + (3 if n >= 5 else 0)
         raw = np.full(len(layout), seq % 251, np.uint8)
-        yield Frame(seq, 7.0 + seq * PERIOD_S, 500.0 + seq * PERIOD_S, 0.0, START + seq * PERIOD_S,
-                    raw, 8, raw.astype(np.float32), lost, "dev")  # fmt: skip
+        yield Frame(
+            seq,
+            7.0 + seq * PERIOD_S,
+            500.0 + seq * PERIOD_S,
+            0.0,
+            START + seq * PERIOD_S,
+            raw,
+            8,
+            raw.astype(np.float32),
+            lost,
+            "dev",
+        )
 
 
 @pytest.fixture

@@ -23,14 +23,21 @@ def _one_port(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_fingertips_and_usb_ports_are_listed(
     bluez: FakeBluez, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    for name, address, service in [("Lumitip", ONE, SERVICE), ("Old", TWO, LEGACY_SERVICE),
-                                   ("Lumitip", THREE, SERVICE)]:  # fmt: skip
+    for name, address, service in [
+        ("Lumitip", ONE, SERVICE),
+        ("Old", TWO, LEGACY_SERVICE),
+        ("Lumitip", THREE, SERVICE),
+    ]:
         bluez.add(ScriptedPeer(name, address, {service: {}}))
     bluez.add(ScriptedPeer("Kettle", "C0:FF:EE:00:00:09", {SERVICE.replace("7d1c", "0000"): {}}))
     assert main(["scan", "--seconds", "0.3"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert [line.split()[0] for line in lines] == [
-        "serial:///dev/ttyACM3", f"ble://{ONE}", f"ble://{TWO}", f"ble://{THREE}"]  # fmt: skip
+        "serial:///dev/ttyACM3",
+        f"ble://{ONE}",
+        f"ble://{TWO}",
+        f"ble://{THREE}",
+    ]
     assert "Nano 33 BLE" in lines[0]
     assert "may be a fingertip" in lines[0]
     assert "dBm, open it by this address" in lines[1]

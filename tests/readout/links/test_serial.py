@@ -93,8 +93,14 @@ def test_damage_is_counted_by_its_kind_within_one_chunk(line: Line, device, unti
     bad = bytearray(device.packet(2, 2))
     bad[20] ^= 0x40
     with Fingertip.open(f"serial://{line.path}", device.layout) as tip:
-        line.send(device.packet(0, 2), bytes(bad), device.packet(4, 2), device.packet(6, 2)[:-5],
-                  device.packet(8, 2), device.packet(12, 2))  # fmt: skip
+        line.send(
+            device.packet(0, 2),
+            bytes(bad),
+            device.packet(4, 2),
+            device.packet(6, 2)[:-5],
+            device.packet(8, 2),
+            device.packet(12, 2),
+        )
         until(lambda: tip.stats.received == 8)
         assert tip.stats.dropped == {"link": 2, "queue": 0, "crc": 2, "length": 2}
         assert tip.stats.unreadable == 2

@@ -73,13 +73,21 @@ def test_the_dark_centre_of_a_real_frame_lies_next_to_the_drawn_dot(
 
 @pytest.mark.parametrize(
     ("name", "shape", "figure_deg", "most_deg"),
-    [("cloth_edge", "edge", 5.8, 1.0), ("cloth_corner", "corner", 93.0, 0.5),
-     ("cable", "cable", 31.9, 0.6)],
-)  # fmt: skip
+    [
+        ("cloth_edge", "edge", 5.8, 1.0),
+        ("cloth_corner", "corner", 93.0, 0.5),
+        ("cable", "cable", 31.9, 0.6),
+    ],
+)
 def test_a_real_frame_has_the_shape_and_the_angle_that_its_figure_draws(
-    layout: Layout, published_frames: Frames, published_values: Values,
-    name: str, shape: str, figure_deg: float, most_deg: float,
-) -> None:  # fmt: skip
+    layout: Layout,
+    published_frames: Frames,
+    published_values: Values,
+    name: str,
+    shape: str,
+    figure_deg: float,
+    most_deg: float,
+) -> None:
     contact, frame = Processor(layout)(published_values(name)), published_frames[name]
     assert frame.get("drawn_line_deg", frame.get("drawn_opening_deg")) == figure_deg
     assert contact.shape == shape

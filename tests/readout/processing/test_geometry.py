@@ -57,8 +57,11 @@ def _rms(errors: list[float]) -> float:
 
 
 LINE_LIMITS = {
-    "published": (3.3, 0.65), "asymmetric": (4.5, 0.6), "dense": (0.8, 0.2), "uneven": (1.6, 0.3)
-}  # fmt: skip
+    "published": (3.3, 0.65),
+    "asymmetric": (4.5, 0.6),
+    "dense": (0.8, 0.2),
+    "uneven": (1.6, 0.3),
+}
 
 
 def test_edges(grid: tuple[str, Layout], scene: Any) -> None:
@@ -77,9 +80,11 @@ def test_edges(grid: tuple[str, Layout], scene: Any) -> None:
 
 
 CABLE_LIMITS = {
-    "published": (3.0, 0.5, 1.8), "asymmetric": (2.6, 0.3, 1.6), "dense": (0.5, 0.1, 1.0),
+    "published": (3.0, 0.5, 1.8),
+    "asymmetric": (2.6, 0.3, 1.6),
+    "dense": (0.5, 0.1, 1.0),
     "uneven": (1.6, 0.2, 1.4),
-}  # fmt: skip
+}
 
 
 def test_cables(grid: tuple[str, Layout], scene: Any) -> None:

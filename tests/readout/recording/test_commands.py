@@ -71,9 +71,11 @@ def test_record_refuses_what_no_other_program_would_open(
 
 
 def test_info_tells_what_a_recording_holds(
-    make_frames: Make, record: Record, calibration: Calibration,
+    make_frames: Make,
+    record: Record,
+    calibration: Calibration,
     capsys: pytest.CaptureFixture[str],
-) -> None:  # fmt: skip
+) -> None:
     path = record(make_frames(111), calibration=calibration)
     assert main(["info", str(path)]) == 0
     said = dict(line.split(None, 1) for line in capsys.readouterr().out.splitlines())
@@ -125,9 +127,11 @@ def test_replay_keeps_the_times_of_the_recording(
 
 
 def test_replay_cuts_gaps_to_a_second(
-    make_frames: Make, record: Record, monkeypatch: pytest.MonkeyPatch,
+    make_frames: Make,
+    record: Record,
+    monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
-) -> None:  # fmt: skip
+) -> None:
     given = make_frames(5)
     given[3:] = [replace(f, t_wall=f.t_wall + 36_000.0) for f in given[3:]]
     path = record(given)
@@ -139,10 +143,19 @@ def test_replay_cuts_gaps_to_a_second(
     assert capsys.readouterr().out.splitlines()[3].split()[0] == "36000.055"
 
 
-@pytest.mark.parametrize("given", [
-    ("--seconds", "nan"), ("--seconds", "-1"), ("--seconds", "0"), ("--seconds", "x"),
-    ("--frames", "-3"), ("--frames", "0"), ("--frames", "1.5"), ("--timeout", "nan"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "given",
+    [
+        ("--seconds", "nan"),
+        ("--seconds", "-1"),
+        ("--seconds", "0"),
+        ("--seconds", "x"),
+        ("--frames", "-3"),
+        ("--frames", "0"),
+        ("--frames", "1.5"),
+        ("--timeout", "nan"),
+    ],
+)
 def test_record_refuses_times_and_numbers_that_are_none(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], given: tuple[str, str]
 ) -> None:
@@ -189,9 +202,12 @@ def test_export_to_parquet(
 
 @pytest.mark.parametrize("suffix", [".csv", ".parquet"])
 def test_export_leaves_no_half_table(
-    make_frames: Make, record: Record, tmp_path: Path, suffix: str,
+    make_frames: Make,
+    record: Record,
+    tmp_path: Path,
+    suffix: str,
     capsys: pytest.CaptureFixture[str],
-) -> None:  # fmt: skip
+) -> None:
     path, table = record(make_frames(200)), tmp_path / f"run{suffix}"
     path.write_bytes(path.read_bytes()[:9000])
     assert main(["export", str(path), str(table)]) == 2

@@ -37,13 +37,19 @@ def test_a_recording_of_what_is_no_frame(tmp_path: Path) -> None:
     [
         (CalibrationMismatch, Calibration("dev", "0"), "of design"),
         (CalibrationMismatch, Calibration("other", CELLS.design_hash), "of 'other'"),
-        (CalibrationMismatch, Calibration("dev", CELLS.design_hash, np.ones(5, np.float32)),
-         "of 5 cells"),
-        (CalibrationError, Calibration("dev", CELLS.design_hash, np.zeros(32, np.float32)),
-         "no more with an empty grasp"),
+        (
+            CalibrationMismatch,
+            Calibration("dev", CELLS.design_hash, np.ones(5, np.float32)),
+            "of 5 cells",
+        ),
+        (
+            CalibrationError,
+            Calibration("dev", CELLS.design_hash, np.zeros(32, np.float32)),
+            "no more with an empty grasp",
+        ),
     ],
     ids=["design", "device", "cells", "dark"],
-)  # fmt: skip
+)
 def test_a_recording_with_a_calibration_that_its_reader_would_refuse(
     error: type[LumitipError], calibration: Calibration, match: str, tmp_path: Path
 ) -> None:

@@ -85,12 +85,27 @@ def test_exported_tables_keep_codes_and_values_apart(recorded: Expected, tmp_pat
 def test_the_ros_example_publishes_values_and_the_dark_centre(recorded: Expected) -> None:
     path, values, centre_mm = recorded
     done = subprocess.run(
-        [sys.executable, "-W", "error", "examples/ros2_node.py",
-         "--ros-args", "-p", f"url:=replay://{path}"],
-        env={**os.environ, "PYTHONPATH": os.pathsep.join(
-            [str(ROOT / "tests" / "ros_stand_ins"), os.environ.get("PYTHONPATH", "")])},
-        capture_output=True, text=True, timeout=60, cwd=ROOT, check=False,
-    )  # fmt: skip
+        [
+            sys.executable,
+            "-W",
+            "error",
+            "examples/ros2_node.py",
+            "--ros-args",
+            "-p",
+            f"url:=replay://{path}",
+        ],
+        env={
+            **os.environ,
+            "PYTHONPATH": os.pathsep.join(
+                [str(ROOT / "tests" / "ros_stand_ins"), os.environ.get("PYTHONPATH", "")]
+            ),
+        },
+        capture_output=True,
+        text=True,
+        timeout=60,
+        cwd=ROOT,
+        check=False,
+    )
     assert done.returncode == 0, done.stderr
     points = re.findall(r"/lumitip/centre point in fingertip at ([-\d.]+) ([-\d.]+)", done.stdout)
     assert len(points) >= 5

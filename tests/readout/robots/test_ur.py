@@ -65,8 +65,11 @@ def test_a_turn_leaves_the_fingertip_where_it_is(peer: Peer) -> None:
     spin = (turned.inv() * turn).as_rotvec()
     assert spin[1] < -0.3 and abs(spin[0]) + abs(spin[2]) < 0.01  # the sensor's z is the tool's -y
     assert np.linalg.norm(end - begin) < 3.0  # the tool itself went about 80 mm times the angle
-    assert np.linalg.norm(np.subtract(*(peer.wait(e)["pose"][:3] for e in ("speedl", "stands")))) \
-        * 1000.0 > 20.0  # fmt: skip
+    assert (
+        np.linalg.norm(np.subtract(*(peer.wait(e)["pose"][:3] for e in ("speedl", "stands"))))
+        * 1000.0
+        > 20.0
+    )
 
 
 @patient
@@ -185,9 +188,9 @@ with URArm(sys.argv[1], Mount((1, 0, 0), (0, 0, 1)), ArmLimits(stale_s=0.5, watc
 
 
 @pytest.mark.parametrize(
-    ("by", "why"), [(signal.SIGINT, "script"), (signal.SIGTERM, "watchdog"),
-                    (signal.SIGKILL, "watchdog")]
-)  # fmt: skip
+    ("by", "why"),
+    [(signal.SIGINT, "script"), (signal.SIGTERM, "watchdog"), (signal.SIGKILL, "watchdog")],
+)
 @patient
 def test_it_stops_when_the_program_is_interrupted_or_killed(
     peer: Peer, by: signal.Signals, why: str
@@ -219,8 +222,12 @@ def test_without_ur_rtde_it_tells_what_to_install(monkeypatch: pytest.MonkeyPatc
 def test_the_example_traces_a_simulated_cable_with_the_arm(peer: Peer) -> None:
     done = subprocess.run(
         [sys.executable, "-W", "error", "examples/trace_cable_ur.py", peer.host, "40"],
-        capture_output=True, text=True, timeout=100, cwd=ROOT, check=False,
-    )  # fmt: skip
+        capture_output=True,
+        text=True,
+        timeout=100,
+        cwd=ROOT,
+        check=False,
+    )
     assert done.returncode == 0 and done.stderr == "", done.stderr
     assert done.stdout.startswith("end after ") and "arm: closed" in done.stdout, done.stdout
     told = re.search(r"lateral ([\d.]+) mm rms", done.stdout)

@@ -66,8 +66,12 @@ def test_an_action_of_no_three_finite_numbers_is_refused(action: Any) -> None:
 def test_examples_follow_in_real_time(name: str, word: str) -> None:
     done = subprocess.run(
         [sys.executable, "-W", "error", f"examples/{name}", "60"],
-        capture_output=True, text=True, timeout=100, cwd=ROOT, check=False,
-    )  # fmt: skip
+        capture_output=True,
+        text=True,
+        timeout=100,
+        cwd=ROOT,
+        check=False,
+    )
     assert done.returncode == 0 and done.stderr == "", done.stderr
     assert done.stdout.startswith(f"{word} after "), done.stdout
     told = re.search(r"lateral ([\d.]+) mm rms", done.stdout)

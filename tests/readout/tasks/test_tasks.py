@@ -112,9 +112,14 @@ def test_settings_are_checked() -> None:
 def test_the_bench_writes_table_figures_and_plots(tmp_path: Path) -> None:
     said: list[str] = []
     results = bench_tasks(
-        LAYOUT, 1, said.append, ("line",), {"line": (80.0, 5000.0)}, {"line": (TUNED,)},
+        LAYOUT,
+        1,
+        said.append,
+        ("line",),
+        {"line": (80.0, 5000.0)},
+        {"line": (TUNED,)},
         tuning_seeds=(10_000,),
-    )  # fmt: skip
+    )
     assert [r.task for r in results] == ["cloth", "cable", "corner"]
     for r in results:
         best = r.fastest()

@@ -11,8 +11,11 @@ LAYOUT = ROOT / "readout/lumitip/links/published_layout.json"
 def _run(name: str) -> str:
     done = subprocess.run(
         [sys.executable, "-W", "error", ROOT / "examples" / name, LAYOUT],
-        capture_output=True, text=True, check=True, timeout=60,
-    )  # fmt: skip
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=60,
+    )
     return done.stdout
 
 

@@ -14,8 +14,20 @@ from lumitip.twin import Twin
 
 
 def _light(shape: str = "edge", **changed: object) -> np.ndarray:
-    scene = Scene(**({"shape": shape, "speed_mm_s": 40.0, "noise": 0.0, "rate_hz": 50.0, "bits": 12,
-                      "seed": 0, "warm_up": 0.0} | changed))  # type: ignore[arg-type]  # fmt: skip
+    scene = Scene(
+        **(
+            {
+                "shape": shape,
+                "speed_mm_s": 40.0,
+                "noise": 0.0,
+                "rate_hz": 50.0,
+                "bits": 12,
+                "seed": 0,
+                "warm_up": 0.0,
+            }
+            | changed
+        )
+    )  # type: ignore[arg-type]
     return complement(packet_at(published_layout(), scene, 100, 5).values, 12)
 
 

@@ -9,10 +9,15 @@ from lumitip.links.twin import published_layout
 from lumitip.twin import HalfPlane, Polygon, Sheet, Twin
 from lumitip.twin.outline import Outline
 
-STAR = np.array([
-    (9.0 * (1.0 - 0.5 * (i % 2)) * np.cos(i * np.pi / 5.0),
-     9.0 * (1.0 - 0.5 * (i % 2)) * np.sin(i * np.pi / 5.0)) for i in range(10)
-])  # fmt: skip
+STAR = np.array(
+    [
+        (
+            9.0 * (1.0 - 0.5 * (i % 2)) * np.cos(i * np.pi / 5.0),
+            9.0 * (1.0 - 0.5 * (i % 2)) * np.sin(i * np.pi / 5.0),
+        )
+        for i in range(10)
+    ]
+)
 BOW = [(-6.0, -6.0), (6.0, 6.0), (6.0, -6.0), (-6.0, 6.0)]
 
 
@@ -105,9 +110,17 @@ def test_many_cells_are_drawn_as_before() -> None:
     grid = hexagonal_grid(columns, 4.0)
     index = np.arange(grid.x_mm.size)
     layout = Layout(
-        grid.x_mm, grid.y_mm, grid.column, grid.row, hexagonal_neighbours(columns), index // 8,
-        index % 8, np.array([f"A{i}" for i in index // 8]), 4.0, published_layout().optics,
-    )  # fmt: skip
+        grid.x_mm,
+        grid.y_mm,
+        grid.column,
+        grid.row,
+        hexagonal_neighbours(columns),
+        index // 8,
+        index % 8,
+        np.array([f"A{i}" for i in index // 8]),
+        4.0,
+        published_layout().optics,
+    )
     twin = Twin(layout)
     assert not Outline.fits(twin.plane())
     for diffuse in (0.0, 0.3):

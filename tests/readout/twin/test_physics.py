@@ -94,10 +94,17 @@ def test_a_symmetric_layout_is_lit_symmetrically(twin: Twin) -> None:
         assert twin.drive == pytest.approx(twin.drive[twins], rel=1e-4)
         corner = Corner(1.0, 2.0, -60.0, 70.0)
         turned = Corner(
-            mirror[0], 2.0 * mirror[1],
-            float(np.degrees(np.arctan2(mirror[1] * np.sin(np.radians(-60.0)),
-                                        mirror[0] * np.cos(np.radians(-60.0))))), 70.0,
-        )  # fmt: skip
+            mirror[0],
+            2.0 * mirror[1],
+            float(
+                np.degrees(
+                    np.arctan2(
+                        mirror[1] * np.sin(np.radians(-60.0)), mirror[0] * np.cos(np.radians(-60.0))
+                    )
+                )
+            ),
+            70.0,
+        )
         assert twin.values(turned)[twins] == pytest.approx(twin.values(corner), abs=0.5)
 
 
@@ -146,12 +153,17 @@ def test_light_of_neighbours_grows_with_the_gap(twin: Twin) -> None:
 @pytest.mark.parametrize(
     "wrong",
     [
-        lambda: Model(gap_mm=0.0), lambda: Model(alpha=1.2), lambda: Model(hole_shape="square"),
-        lambda: HalfPlane(clear=0.6, diffuse=0.6), lambda: HalfPlane(height=1.5),
-        lambda: Cable(diameter_mm=0.0), lambda: Polygon([(0, 0), (1, 1)]),
-        lambda: Image(np.full((2, 2), 3.0)), lambda: Image(np.zeros((2, 2)), pixel_mm=0.0),
+        lambda: Model(gap_mm=0.0),
+        lambda: Model(alpha=1.2),
+        lambda: Model(hole_shape="square"),
+        lambda: HalfPlane(clear=0.6, diffuse=0.6),
+        lambda: HalfPlane(height=1.5),
+        lambda: Cable(diameter_mm=0.0),
+        lambda: Polygon([(0, 0), (1, 1)]),
+        lambda: Image(np.full((2, 2), 3.0)),
+        lambda: Image(np.zeros((2, 2)), pixel_mm=0.0),
     ],
-)  # fmt: skip
+)
 def test_what_cannot_be_is_refused(wrong: Callable[[], object]) -> None:
     with pytest.raises(TwinError, match="given"):
         wrong()

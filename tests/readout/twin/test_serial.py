@@ -16,8 +16,16 @@ from lumitip.links.twin import Scene, packet_at, published_layout
 
 def test_the_serial_link_reads_the_twin(tmp_path: Path) -> None:
     port = tmp_path / "tty"
-    command = [sys.executable, "-m", "lumitip.cli", "twin", "twin://cable?rate=400&bits=10&speed=0",
-               "--serve-serial", "--link", str(port)]  # fmt: skip
+    command = [
+        sys.executable,
+        "-m",
+        "lumitip.cli",
+        "twin",
+        "twin://cable?rate=400&bits=10&speed=0",
+        "--serve-serial",
+        "--link",
+        str(port),
+    ]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, cwd=tmp_path) as device:
         try:
             assert device.stdout

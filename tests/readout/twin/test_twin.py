@@ -88,8 +88,9 @@ def test_drawn_objects_read_as_those_they_were_drawn_from(twin: Twin) -> None:
     drawn = Image.of(Polygon(shape))
     assert rms(twin.values(drawn), twin.values(Polygon(shape))) < 1.2
     angle = np.radians(25.0)
-    turned = np.array(shape) @ np.array([[np.cos(angle), np.sin(angle)],
-                                         [-np.sin(angle), np.cos(angle)]])  # fmt: skip
+    turned = np.array(shape) @ np.array(
+        [[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]]
+    )
     moved = drawn.at(2.0, -3.0, 25.0)
     assert rms(twin.values(moved), twin.values(Polygon(turned + np.array([2.0, -3.0])))) < 1.2
     corner = Corner(0.0, 0.0, -90.0, 90.0)
@@ -126,8 +127,11 @@ def test_gains_show_and_the_empty_grasp_does_not_hide_them(twin: Twin) -> None:
 
 
 def test_misregistration_is_part_of_the_empty_grasp_and_moves_edges(twin: Twin) -> None:
-    for astray in (Misregistration(x_mm=1.0, y_mm=0.5), Misregistration(angle_deg=3.0),
-                   Misregistration(tilt_deg=4.0)):  # fmt: skip
+    for astray in (
+        Misregistration(x_mm=1.0, y_mm=0.5),
+        Misregistration(angle_deg=3.0),
+        Misregistration(tilt_deg=4.0),
+    ):
         bent = Twin(twin.layout, twin.model, misregistration=astray)
         assert bent.values() == pytest.approx(255.0)
         assert rms(bent.values(HalfPlane()), twin.values(HalfPlane())) > 0.8

@@ -150,9 +150,18 @@ def test_a_browser_that_left_before_its_last_words_are_read_leaves_quietly(
 
 
 NONSENSE = (
-    "", "[]", "7", "{", '{"drawn": 3}', '{"drawn": {"x": 1}}', '{"drawn": {"1": null}}',
-    '{"drawn": {"9": 1}}', '{"drawn": {"1": -5}}', '{"drawn": {"1": 1e999}}', "[" * 5000,
-)  # fmt: skip
+    "",
+    "[]",
+    "7",
+    "{",
+    '{"drawn": 3}',
+    '{"drawn": {"x": 1}}',
+    '{"drawn": {"1": null}}',
+    '{"drawn": {"9": 1}}',
+    '{"drawn": {"1": -5}}',
+    '{"drawn": {"1": 1e999}}',
+    "[" * 5000,
+)
 
 
 def test_nonsense_from_a_browser_changes_nothing(serve: Serve) -> None:

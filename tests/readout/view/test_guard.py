@@ -57,9 +57,16 @@ def test_page_of_this_server_may_post_and_stream(serve: Serve) -> None:
 
 @pytest.mark.parametrize(
     "origin",
-    [None, "null", "http://example.org", "https://127.0.0.1:{port}", "http://127.0.0.1",
-     "http://127.0.0.1:{port}.example.org", "http://localhost:{port}"],
-)  # fmt: skip
+    [
+        None,
+        "null",
+        "http://example.org",
+        "https://127.0.0.1:{port}",
+        "http://127.0.0.1",
+        "http://127.0.0.1:{port}.example.org",
+        "http://localhost:{port}",
+    ],
+)
 def test_another_origin_may_neither_post_nor_stream(serve: Serve, origin: str | None) -> None:
     server = serve("twin://disc")
     told = {"origin": origin.format(port=server.port)} if origin else {}

@@ -84,9 +84,14 @@ def _outline(board: Placement) -> Iterator[GraphicObject]:
     for bow in corners(board):
         centre = bow.centre[0] - bow.start[0], bow.centre[1] - bow.start[1]
         yield Arc(
-            *bow.start, *bow.end, *centre, clockwise=False,
-            aperture=CircleAperture(EDGE_MM, unit=MM), unit=MM, polarity_dark=True,
-        )  # fmt: skip
+            *bow.start,
+            *bow.end,
+            *centre,
+            clockwise=False,
+            aperture=CircleAperture(EDGE_MM, unit=MM),
+            unit=MM,
+            polarity_dark=True,
+        )
 
 
 def _frame(box: Box) -> Iterator[GraphicObject]:

@@ -37,10 +37,15 @@ def bom_rows(board: Placement) -> Iterator[Row]:
         kinds.setdefault(key, []).append(part.ref)
     for item, ((manufacturer, number, value, footprint, lcsc), refs) in enumerate(kinds.items(), 1):
         yield {
-            "item": str(item), "refs": ",".join(refs), "quantity": str(len(refs)),
-            "manufacturer": manufacturer, "part": number, "value": value, "footprint": footprint,
+            "item": str(item),
+            "refs": ",".join(refs),
+            "quantity": str(len(refs)),
+            "manufacturer": manufacturer,
+            "part": number,
+            "value": value,
+            "footprint": footprint,
             "lcsc": lcsc,
-        }  # fmt: skip
+        }
 
 
 def angle_at(part: Component, fab: Fab) -> float:
@@ -56,11 +61,15 @@ def angle_at(part: Component, fab: Fab) -> float:
 
 def _placed(part: Component, fab: Fab) -> Row:
     return {
-        "ref": part.ref, "value": part.value, "part": part.part, "footprint": part.footprint.name,
-        "x_mm": f"{part.x_mm:.4f}", "y_mm": f"{part.y_mm:.4f}",
+        "ref": part.ref,
+        "value": part.value,
+        "part": part.part,
+        "footprint": part.footprint.name,
+        "x_mm": f"{part.x_mm:.4f}",
+        "y_mm": f"{part.y_mm:.4f}",
         "angle_deg": f"{angle_at(part, fab):g}",
         "side": fab.sides[part.side == "back"],
-    }  # fmt: skip
+    }
 
 
 def _table(columns: Iterable[tuple[str, str]], rows: Iterable[Row]) -> bytes:
@@ -120,8 +129,10 @@ def _zipped(files: dict[str, bytes]) -> bytes:
         for name in sorted(files):
             entry = zipfile.ZipInfo(name, _EPOCH)
             entry.compress_type, entry.external_attr, entry.create_system = (
-                zipfile.ZIP_DEFLATED, _MODE, 3,
-            )  # fmt: skip
+                zipfile.ZIP_DEFLATED,
+                _MODE,
+                3,
+            )
             package.writestr(entry, files[name])
     return packed.getvalue()
 
@@ -222,9 +233,8 @@ def carrier_note(board: Placement, title: str, fab: Fab) -> bytes:
         *_behind(board),
         *_ordering(board, fab),
         "Pad 1 of each part, in mm as in the Gerber files, seen from the front:",
-        *(f"{part.ref}  {x:.3f} {y:.3f}" for part in bought(board)
-          for x, y in [pad_at(part, "1")]),
-    ]  # fmt: skip
+        *(f"{part.ref}  {x:.3f} {y:.3f}" for part in bought(board) for x, y in [pad_at(part, "1")]),
+    ]
     return "".join(f"{line}\n" for line in lines).encode()
 
 

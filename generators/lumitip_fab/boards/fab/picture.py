@@ -17,8 +17,13 @@ from lumitip_fab.boards.outline import outline_area
 from lumitip_fab.boards.silk.strokes import silkscreen
 
 LAMINATE, MASK, COVERED, PLATED, SILK, SHADE = (
-    "#b9a878", "#0c4a34", "#17654a", "#d8b465", "#f3f2ea", "#8f7434",
-)  # fmt: skip
+    "#b9a878",
+    "#0c4a34",
+    "#17654a",
+    "#d8b465",
+    "#f3f2ea",
+    "#8f7434",
+)
 _ARC = 8  # chords of a quarter circle
 _RIM_MM = 0.06  # darker edge of plated holes
 

@@ -47,9 +47,11 @@ def hole_footprint(number: int, at: Point, hole_mm: float, finger: str) -> Node:
     own = stable_uuid(finger, "footprint", ref)
     x, y = on_board_page(at)
     head = (
-        Quoted(f"{LIBRARY}:{hole_name(hole_mm)}"), ("layer", Quoted("F.Cu")),
-        ("tstamp", own), ("at", x, y),
-    )  # fmt: skip
+        Quoted(f"{LIBRARY}:{hole_name(hole_mm)}"),
+        ("layer", Quoted("F.Cu")),
+        ("tstamp", own),
+        ("at", x, y),
+    )
     return ("footprint", *head, *_hole(ref, hole_mm, own, "board_only"))
 
 
@@ -57,9 +59,16 @@ def library_file(component: Component) -> bytes:
     """The `.kicad_mod` of a part's footprint."""
     shape = component.footprint
     plain = replace(
-        component, ref="REF**", value=shape.name, x_mm=0.0, y_mm=0.0, angle_deg=0.0,
-        side="front", nets=(), ref_text=None,
-    )  # fmt: skip
+        component,
+        ref="REF**",
+        value=shape.name,
+        x_mm=0.0,
+        y_mm=0.0,
+        angle_deg=0.0,
+        side="front",
+        nets=(),
+        ref_text=None,
+    )
     return _library(shape.name, _Writer(plain, {}, LIBRARY).contents())
 
 
@@ -85,11 +94,17 @@ def _hole(ref: str, hole_mm: float, own: str, *attributes: str) -> tuple[Node, .
         _text("reference", ref, Text("", 0.0, 0.0), 0.0, "F.SilkS", f"{own}/reference", hide=True),
         _text("value", HOLE, Text("", 0.0, 0.0), 0.0, "F.Fab", f"{own}/value", hide=True),
         (
-            "pad", Quoted(""), "np_thru_hole", "circle", ("at", 0, 0), ("size", hole_mm, hole_mm),
-            ("drill", hole_mm), ("layers", Quoted("*.Cu"), Quoted("*.Mask")),
+            "pad",
+            Quoted(""),
+            "np_thru_hole",
+            "circle",
+            ("at", 0, 0),
+            ("size", hole_mm, hole_mm),
+            ("drill", hole_mm),
+            ("layers", Quoted("*.Cu"), Quoted("*.Mask")),
             ("tstamp", stable_uuid(own, "pad")),
         ),
-    )  # fmt: skip
+    )
 
 
 class _Writer:
@@ -108,11 +123,15 @@ class _Writer:
         part, shape = self.component, self.component.footprint
         x, y = on_board_page((part.x_mm, part.y_mm))
         return (
-            "footprint", Quoted(f"{LIBRARY}:{shape.name}"), ("layer", Quoted(self.layer("Cu"))),
-            ("tstamp", self.own), ("at", x, y, self.angle), *_ordering(part),
+            "footprint",
+            Quoted(f"{LIBRARY}:{shape.name}"),
+            ("layer", Quoted(self.layer("Cu"))),
+            ("tstamp", self.own),
+            ("at", x, y, self.angle),
+            *_ordering(part),
             *((("path", Quoted(self.path)),) if part.kind != "fiducial" else ()),
             *self.contents(),
-        )  # fmt: skip
+        )
 
     def contents(self) -> Iterator[Node]:
         """What a footprint has wherever it lies."""
@@ -140,10 +159,16 @@ class _Writer:
         ):
             hide = kind == "value" or (kind == "reference" and part.ref_text is None)
             yield _text(
-                kind, told, text, angle_on_board_deg(part, text), self.layer(layer),
-                f"{self.own}/{kind}", at=self.at(text.x_mm, text.y_mm), hide=hide,
+                kind,
+                told,
+                text,
+                angle_on_board_deg(part, text),
+                self.layer(layer),
+                f"{self.own}/{kind}",
+                at=self.at(text.x_mm, text.y_mm),
+                hide=hide,
                 mirrored=not self.front,
-            )  # fmt: skip
+            )
 
     def lines(self) -> Iterator[Node]:
         """Silkscreen, body and courtyard."""
@@ -156,17 +181,23 @@ class _Writer:
             for start, end in zip(stroke.points, stroke.points[1:], strict=False):
                 count += 1
                 yield (
-                    "fp_line", ("start", *self.at(*start)), ("end", *self.at(*end)),
-                    ("layer", Quoted(self.layer(layer))), ("width", stroke.width_mm),
+                    "fp_line",
+                    ("start", *self.at(*start)),
+                    ("end", *self.at(*end)),
+                    ("layer", Quoted(self.layer(layer))),
+                    ("width", stroke.width_mm),
                     ("tstamp", stable_uuid(self.own, "line", str(count))),
-                )  # fmt: skip
+                )
 
     def pad(self, index: int, pad: Pad) -> Node:
         """A pad with its net."""
         net = dict(self.component.nets).get(pad.number, "")
         margin = fiducial_margin_mm(self.component)
         return (
-            "pad", Quoted(pad.number), "thru_hole" if pad.drill_mm else "smd", pad.shape,
+            "pad",
+            Quoted(pad.number),
+            "thru_hole" if pad.drill_mm else "smd",
+            pad.shape,
             ("at", *self.at(pad.x_mm, pad.y_mm), self.angle),
             ("size", pad.width_mm, pad.height_mm),
             *((("drill", pad.drill_mm),) if pad.drill_mm else ()),
@@ -174,7 +205,7 @@ class _Writer:
             *((("net", self.numbers[net], Quoted(net)),) if net else ()),
             *((("solder_mask_margin", margin), ("clearance", margin)) if margin else ()),
             ("tstamp", stable_uuid(self.own, "pad", str(index))),
-        )  # fmt: skip
+        )
 
     def pad_layers(self, pad: Pad) -> tuple[str, ...]:
         """Copper, mask and paste of a pad."""
@@ -227,7 +258,12 @@ def _text(
     mirrored: bool = False,
 ) -> Node:
     return (
-        "fp_text", kind, Quoted(told), ("at", *at, angle_deg, "unlocked"), ("layer", Quoted(layer)),
+        "fp_text",
+        kind,
+        Quoted(told),
+        ("at", *at, angle_deg, "unlocked"),
+        ("layer", Quoted(layer)),
         *(("hide",) if hide else ()),
-        effects(text, mirrored), ("tstamp", stable_uuid(own)),
-    )  # fmt: skip
+        effects(text, mirrored),
+        ("tstamp", stable_uuid(own)),
+    )

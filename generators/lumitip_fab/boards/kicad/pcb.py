@@ -3,6 +3,7 @@ boards."""
 
 from collections.abc import Iterator
 
+from lumitip_fab.boards.kicad.flexible import FLEX_LAYERS, regions, stack_up
 from lumitip_fab.boards.kicad.footprint import effects, hole_footprint, placed_footprint
 from lumitip_fab.boards.kicad.sexpr import FORMAT, Node, Quoted, written
 from lumitip_fab.boards.model import (
@@ -19,7 +20,7 @@ from lumitip_fab.boards.model import (
 )
 from lumitip_fab.boards.outline import EDGE_MM, corners, fractured, straight_edges
 from lumitip_fab.boards.silk.strokes import upright
-from lumitip_fab.design import Box, Flexible, Point
+from lumitip_fab.design import Box, Point
 from lumitip_fab.design.frames import BOARD_ON_PAGE_MM, on_board_page
 
 COPPER = {"front": "F.Cu", "back": "B.Cu"}
@@ -29,22 +30,28 @@ def tracks(model: BoardModel, numbers: dict[str, int]) -> Iterator[Node]:
     """Every piece of track."""
     for count, track in enumerate(model.routing.tracks):
         yield (
-            "segment", ("start", *on_board_page(track.start)), ("end", *on_board_page(track.end)),
-            ("width", track.width_mm), ("layer", Quoted(COPPER[track.side])),
+            "segment",
+            ("start", *on_board_page(track.start)),
+            ("end", *on_board_page(track.end)),
+            ("width", track.width_mm),
+            ("layer", Quoted(COPPER[track.side])),
             ("net", numbers[track.net]),
             ("tstamp", stable_uuid(model.placement.finger, "track", str(count))),
-        )  # fmt: skip
+        )
 
 
 def vias(model: BoardModel, numbers: dict[str, int]) -> Iterator[Node]:
     """Every via."""
     for count, via in enumerate(model.routing.vias):
         yield (
-            "via", ("at", *on_board_page((via.x_mm, via.y_mm))), ("size", via.diameter_mm),
-            ("drill", via.drill_mm), ("layers", Quoted("F.Cu"), Quoted("B.Cu")),
+            "via",
+            ("at", *on_board_page((via.x_mm, via.y_mm))),
+            ("size", via.diameter_mm),
+            ("drill", via.drill_mm),
+            ("layers", Quoted("F.Cu"), Quoted("B.Cu")),
             ("net", numbers[via.net]),
             ("tstamp", stable_uuid(model.placement.finger, "via", str(count))),
-        )  # fmt: skip
+        )
 
 
 def zones(model: BoardModel, numbers: dict[str, int]) -> Iterator[Node]:
@@ -57,12 +64,19 @@ def zones(model: BoardModel, numbers: dict[str, int]) -> Iterator[Node]:
 def _zone(model: BoardModel, numbers: dict[str, int], side: Side) -> Node:
     board, layer = model.placement, ("layer", Quoted(COPPER[side]))
     return (
-        "zone", ("net", numbers[board.ground]), ("net_name", Quoted(board.ground)), layer,
-        ("tstamp", stable_uuid(board.finger, "zone", side)), ("hatch", "edge", 0.5),
-        ("connect_pads", ("clearance", CLEARANCE_MM)), ("min_thickness", MIN_WIDTH_MM),
+        "zone",
+        ("net", numbers[board.ground]),
+        ("net_name", Quoted(board.ground)),
+        layer,
+        ("tstamp", stable_uuid(board.finger, "zone", side)),
+        ("hatch", "edge", 0.5),
+        ("connect_pads", ("clearance", CLEARANCE_MM)),
+        ("min_thickness", MIN_WIDTH_MM),
         ("filled_areas_thickness", "no"),
         (
-            "fill", "yes", ("thermal_gap", THERMAL_GAP_MM),
+            "fill",
+            "yes",
+            ("thermal_gap", THERMAL_GAP_MM),
             ("thermal_bridge_width", THERMAL_SPOKE_MM),
         ),
         ("polygon", _points(_corners(board.outline))),
@@ -71,7 +85,7 @@ def _zone(model: BoardModel, numbers: dict[str, int], side: Side) -> Node:
             for fill in model.fills
             if fill.side == side
         ),
-    )  # fmt: skip
+    )
 
 
 def keep_outs(model: BoardModel) -> Iterator[Node]:
@@ -79,21 +93,34 @@ def keep_outs(model: BoardModel) -> Iterator[Node]:
     board = model.placement
     for count, box in enumerate(board.keep_outs):
         yield (
-            "zone", ("net", 0), ("net_name", Quoted("")),
+            "zone",
+            ("net", 0),
+            ("net_name", Quoted("")),
             ("layers", *(Quoted(COPPER[side]) for side in SIDES)),
-            ("tstamp", stable_uuid(board.finger, "keep-out", str(count))), ("hatch", "edge", 0.5),
-            ("connect_pads", ("clearance", 0)), ("min_thickness", MIN_WIDTH_MM),
-            ("keepout", ("tracks", "not_allowed"), ("vias", "not_allowed"), ("pads", "not_allowed"),
-             ("copperpour", "not_allowed"), ("footprints", "allowed")),
-            ("fill", ("thermal_gap", THERMAL_GAP_MM),
-             ("thermal_bridge_width", THERMAL_SPOKE_MM)),
+            ("tstamp", stable_uuid(board.finger, "keep-out", str(count))),
+            ("hatch", "edge", 0.5),
+            ("connect_pads", ("clearance", 0)),
+            ("min_thickness", MIN_WIDTH_MM),
+            (
+                "keepout",
+                ("tracks", "not_allowed"),
+                ("vias", "not_allowed"),
+                ("pads", "not_allowed"),
+                ("copperpour", "not_allowed"),
+                ("footprints", "allowed"),
+            ),
+            ("fill", ("thermal_gap", THERMAL_GAP_MM), ("thermal_bridge_width", THERMAL_SPOKE_MM)),
             ("polygon", _points(_corners(box))),
-        )  # fmt: skip
+        )
 
 
 def _corners(box: Box) -> tuple[Point, ...]:
-    return ((box.x_min_mm, box.y_min_mm), (box.x_max_mm, box.y_min_mm),
-            (box.x_max_mm, box.y_max_mm), (box.x_min_mm, box.y_max_mm))  # fmt: skip
+    return (
+        (box.x_min_mm, box.y_min_mm),
+        (box.x_max_mm, box.y_min_mm),
+        (box.x_max_mm, box.y_max_mm),
+        (box.x_min_mm, box.y_max_mm),
+    )
 
 
 def _points(corners: tuple[Point, ...]) -> Node:
@@ -119,81 +146,53 @@ def silkscreen(board: Placement) -> Iterator[Node]:
         for start, end in zip(stroke.points, stroke.points[1:], strict=False):
             count += 1
             yield (
-                "gr_line", ("start", *on_board_page(start)), ("end", *on_board_page(end)),
-                ("layer", Quoted(_SILK[side])), ("width", stroke.width_mm),
+                "gr_line",
+                ("start", *on_board_page(start)),
+                ("end", *on_board_page(end)),
+                ("layer", Quoted(_SILK[side])),
+                ("width", stroke.width_mm),
                 ("tstamp", stable_uuid(board.finger, "silk", str(count))),
-            )  # fmt: skip
+            )
     for number, (side, text) in enumerate(board.texts):
         at = on_board_page((text.x_mm, text.y_mm))
         yield (
-            "gr_text", Quoted(text.text), ("at", *at, upright(text.angle_deg, side)),
+            "gr_text",
+            Quoted(text.text),
+            ("at", *at, upright(text.angle_deg, side)),
             ("layer", Quoted(_SILK[side])),
             ("tstamp", stable_uuid(board.finger, "text", str(number))),
             effects(text, side == "back"),
-        )  # fmt: skip
+        )
 
 
 def _edge(board: Placement, name: str, keyword: str, *points: tuple[str, Point]) -> Node:
     return (
-        keyword, *((where, *on_board_page(at)) for where, at in points),
-        ("layer", Quoted("Edge.Cuts")), ("width", EDGE_MM),
+        keyword,
+        *((where, *on_board_page(at)) for where, at in points),
+        ("layer", Quoted("Edge.Cuts")),
+        ("width", EDGE_MM),
         ("tstamp", stable_uuid(board.finger, "edge", name)),
-    )  # fmt: skip
-
-
-FLEX_LAYERS = ((50, "User.1", "user", "Stiffener"), (51, "User.2", "user", "Bend"))
-LINE_MM = 0.1
-_POLYIMIDE = ("material", Quoted("Polyimide"))
-
-
-def stack_up(flexible: Flexible) -> Node:
-    """The layers from front to back, each with its thickness."""
-
-    def ply(name: str, kind: str, *more: Node) -> Node:
-        return ("layer", Quoted(name), ("type", Quoted(kind)), *more)
-
-    def coverlay(name: str, kind: str) -> Node:
-        return ply(name, kind, ("thickness", round(flexible.coverlay_mm, 6)), _POLYIMIDE)
-
-    copper = ("thickness", round(flexible.copper_mm, 6))
-    return (
-        "stackup",
-        ply("F.SilkS", "Top Silk Screen"),
-        coverlay("F.Mask", "Top Solder Mask"),
-        ply("F.Cu", "copper", copper),
-        ply("dielectric 1", "core", ("thickness", round(flexible.core_mm, 6)), _POLYIMIDE,
-            ("epsilon_r", 3.2), ("loss_tangent", 0.004)),
-        ply("B.Cu", "copper", copper),
-        coverlay("B.Mask", "Bottom Solder Mask"),
-        ply("B.SilkS", "Bottom Silk Screen"),
-        ("copper_finish", Quoted("ENIG")),
-        ("dielectric_constraints", "no"),
-    )  # fmt: skip
-
-
-def regions(board: Placement, flexible: Flexible) -> Iterator[Node]:
-    """Stiffener and bend as rectangles on layers of their own."""
-    for (_, layer, _, name), box in zip(
-        FLEX_LAYERS, (flexible.stiffener, flexible.bend), strict=True
-    ):
-        yield (
-            "gr_rect", ("start", *on_board_page((box.x_min_mm, box.y_max_mm))),
-            ("end", *on_board_page((box.x_max_mm, box.y_min_mm))),
-            ("layer", Quoted(layer)), ("width", LINE_MM), ("fill", "none"),
-            ("tstamp", stable_uuid(board.finger, "region", name)),
-        )  # fmt: skip
+    )
 
 
 _LAYERS = (
-    (0, "F.Cu", "signal", ""), (31, "B.Cu", "signal", ""),
-    (32, "B.Adhes", "user", "B.Adhesive"), (33, "F.Adhes", "user", "F.Adhesive"),
-    (34, "B.Paste", "user", ""), (35, "F.Paste", "user", ""),
-    (36, "B.SilkS", "user", "B.Silkscreen"), (37, "F.SilkS", "user", "F.Silkscreen"),
-    (38, "B.Mask", "user", ""), (39, "F.Mask", "user", ""),
-    (44, "Edge.Cuts", "user", ""), (45, "Margin", "user", ""),
-    (46, "B.CrtYd", "user", "B.Courtyard"), (47, "F.CrtYd", "user", "F.Courtyard"),
-    (48, "B.Fab", "user", ""), (49, "F.Fab", "user", ""),
-)  # fmt: skip
+    (0, "F.Cu", "signal", ""),
+    (31, "B.Cu", "signal", ""),
+    (32, "B.Adhes", "user", "B.Adhesive"),
+    (33, "F.Adhes", "user", "F.Adhesive"),
+    (34, "B.Paste", "user", ""),
+    (35, "F.Paste", "user", ""),
+    (36, "B.SilkS", "user", "B.Silkscreen"),
+    (37, "F.SilkS", "user", "F.Silkscreen"),
+    (38, "B.Mask", "user", ""),
+    (39, "F.Mask", "user", ""),
+    (44, "Edge.Cuts", "user", ""),
+    (45, "Margin", "user", ""),
+    (46, "B.CrtYd", "user", "B.Courtyard"),
+    (47, "F.CrtYd", "user", "F.Courtyard"),
+    (48, "B.Fab", "user", ""),
+    (49, "F.Fab", "user", ""),
+)
 
 
 def board_file(model: BoardModel, thickness_mm: float) -> bytes:
@@ -217,10 +216,12 @@ def _contents(model: BoardModel, thickness_mm: float) -> Iterator[Node]:
     more = FLEX_LAYERS if board.flexible else ()
     yield ("layers", *(_layer(*layer) for layer in (*_LAYERS, *more)))
     yield (
-        "setup", *([stack_up(board.flexible)] if board.flexible else []),
-        ("pad_to_mask_clearance", MASK_MM), ("aux_axis_origin", *BOARD_ON_PAGE_MM),
+        "setup",
+        *([stack_up(board.flexible)] if board.flexible else []),
+        ("pad_to_mask_clearance", MASK_MM),
+        ("aux_axis_origin", *BOARD_ON_PAGE_MM),
         ("grid_origin", *BOARD_ON_PAGE_MM),
-    )  # fmt: skip
+    )
     yield ("net", 0, Quoted(""))
     yield from (("net", number, Quoted(name)) for name, number in numbers.items())
     yield from (placed_footprint(c, numbers, board.finger) for c in board.components)
@@ -238,10 +239,12 @@ def _contents(model: BoardModel, thickness_mm: float) -> Iterator[Node]:
 
 def _title(board: Placement) -> Node:
     return (
-        "title_block", ("title", Quoted(board.name)), ("rev", Quoted(board.revision)),
+        "title_block",
+        ("title", Quoted(board.name)),
+        ("rev", Quoted(board.revision)),
         ("comment", 1, Quoted(f"Design {board.design_hash}")),
         ("comment", 2, Quoted(f"{board.finger} board, seen from its front with the tip up")),
-    )  # fmt: skip
+    )
 
 
 def _layer(number: int, name: str, kind: str, shown: str) -> Node:

@@ -38,9 +38,13 @@ def library_table() -> bytes:
     """The `fp-lib-table` that finds the board's footprints beside it."""
     folder = Quoted("${KIPRJMOD}/" + f"{LIBRARY}.pretty")
     entry = (
-        "lib", ("name", Quoted(LIBRARY)), ("type", Quoted("KiCad")), ("uri", folder),
-        ("options", Quoted("")), ("descr", Quoted("Footprints of this board")),
-    )  # fmt: skip
+        "lib",
+        ("name", Quoted(LIBRARY)),
+        ("type", Quoted("KiCad")),
+        ("uri", folder),
+        ("options", Quoted("")),
+        ("descr", Quoted("Footprints of this board")),
+    )
     return written(("fp_lib_table", entry)).encode()
 
 

@@ -35,9 +35,16 @@ def _disc(taken: Shorts, marked: Ints, turn: int, add: int, y: int, x: int, radi
 
 @kernel
 def _capsule(
-    taken: Shorts, marked: Ints, turn: int, add: int,
-    y0: int, x0: int, y1: int, x1: int, radius: Radii,
-) -> None:  # fmt: skip
+    taken: Shorts,
+    marked: Ints,
+    turn: int,
+    add: int,
+    y0: int,
+    x0: int,
+    y1: int,
+    x1: int,
+    radius: Radii,
+) -> None:
     reach = int(np.ceil(np.sqrt(radius.max())))
     dy, dx = y1 - y0, x1 - x0
     square = dy * dy + dx * dx
@@ -68,9 +75,17 @@ def _capsule(
 
 @kernel
 def stamp(
-    net: Ints, taken: Shorts, marked: Ints, turn: int, add: int,
-    neck: Bytes, wide: int, narrow: int, tracks: Radii, vias: Radii,
-) -> None:  # fmt: skip
+    net: Ints,
+    taken: Shorts,
+    marked: Ints,
+    turn: int,
+    add: int,
+    neck: Bytes,
+    wide: int,
+    narrow: int,
+    tracks: Radii,
+    vias: Radii,
+) -> None:
     """Count a net in all nodes where it is too near for other nets, or (add = -1) no longer.
 
     Args:
@@ -114,9 +129,16 @@ def stamp(
         for c in range(taken.shape[0]):
             for p, kind in ((layer, 0), (2, 1)):
                 _capsule(
-                    taken[c, p], marked[c, p], turn, add,
-                    y0, x0, rest // width, rest % width, tracks[own, c, kind],
-                )  # fmt: skip
+                    taken[c, p],
+                    marked[c, p],
+                    turn,
+                    add,
+                    y0,
+                    x0,
+                    rest // width,
+                    rest % width,
+                    tracks[own, c, kind],
+                )
         i = j
 
 

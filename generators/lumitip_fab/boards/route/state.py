@@ -51,9 +51,17 @@ class State:
         """Put a net's copper on the map, or take it off."""
         self.turn += 1
         stamps.stamp(
-            self.paths(net), self.taken, self.marked, self.turn, add,
-            net.neck, net.wide, self.rules.narrow, self.tracks, self.vias,
-        )  # fmt: skip
+            self.paths(net),
+            self.taken,
+            self.marked,
+            self.turn,
+            add,
+            net.neck,
+            net.wide,
+            self.rules.narrow,
+            self.tracks,
+            self.vias,
+        )
 
     def fought_for(self, net: Wanted, path: Ints | None = None) -> Ints:
         """Nodes of a net, or of one of its paths, in the room of another net."""

@@ -146,9 +146,13 @@ def _box(grid: Grid, nodes: list[Ints]) -> Ints:
 
 
 def _path(
-    state: State, net: Wanted, tree: Piece, goal: Piece, ends: tuple[Terminal, Terminal],
+    state: State,
+    net: Wanted,
+    tree: Piece,
+    goal: Piece,
+    ends: tuple[Terminal, Terminal],
     taste: Taste,
-) -> Ints:  # fmt: skip
+) -> Ints:
     """The cheapest path from the tree to another piece: near the two, or else anywhere."""
     for nodes in goal.nodes:
         state.target[nodes] = 1
@@ -163,12 +167,30 @@ def _path(
     for window in (near, everywhere):
         state.turn += 1
         path = kernels.search(
-            state.owner, state.taken, state.history, state.tree, starts, state.target,
-            box, window, net.neck, state.near_via, via_reach,
-            net.number, net.wide, state.rules.narrow,
-            taste.price, taste.grain(), taste.costs(state.grid.pitch_mm),
-            state.reached, state.came, state.seen, state.turn, state.keys, state.queue,
-        )  # fmt: skip
+            state.owner,
+            state.taken,
+            state.history,
+            state.tree,
+            starts,
+            state.target,
+            box,
+            window,
+            net.neck,
+            state.near_via,
+            via_reach,
+            net.number,
+            net.wide,
+            state.rules.narrow,
+            taste.price,
+            taste.grain(),
+            taste.costs(state.grid.pitch_mm),
+            state.reached,
+            state.came,
+            state.seen,
+            state.turn,
+            state.keys,
+            state.queue,
+        )
         if path.size:
             break
     for nodes in goal.nodes:

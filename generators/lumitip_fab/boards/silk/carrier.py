@@ -38,8 +38,11 @@ def with_legend(board: Placement, carrier: Carrier, rules: Rules) -> Placement:
             continue
         places = [*_round(page, ref, courtyard(part))]
         _put(page, ref, (part.x_mm, part.y_mm), places, _APART_MM, part.side)
-    lines = ((board.name, 2.0), (carrier.title, 1.5),
-             (f"rev {board.revision}  {board.design_hash[:8]}", 1.5))  # fmt: skip
+    lines = (
+        (board.name, 2.0),
+        (carrier.title, 1.5),
+        (f"rev {board.revision}  {board.design_hash[:8]}", 1.5),
+    )
     for side in SIDES:
         if page.block(side, lines, carrier.title_at) is None:
             page.miss(f"the title on its {side}", 1.0, page.length_mm(carrier.title), (0.0, 0.0))
@@ -48,9 +51,13 @@ def with_legend(board: Placement, carrier: Carrier, rules: Rules) -> Placement:
 
 
 def _put(
-    page: Page, told: str, at: Point, choices: list[Text], apart_mm: float = 0.0,
+    page: Page,
+    told: str,
+    at: Point,
+    choices: list[Text],
+    apart_mm: float = 0.0,
     side: Side = "front",
-) -> None:  # fmt: skip
+) -> None:
     """Print a text at the first place that is free, or note that there is none."""
     free = page.sides[side].free
     found = next((t for t in choices if free(extent(t, side).buffer(apart_mm))), None)

@@ -17,10 +17,12 @@ from lumitip_fab.design import Connector, Finger, Point, Rules
 def cell_edges(cells: Sequence[Point], pitch_mm: float) -> list[LineString]:
     """Every edge of the hexagons once, in the order of the cells."""
     around = [
-        (pitch_mm / math.sqrt(3) * math.cos(math.radians(60 * k)),
-         pitch_mm / math.sqrt(3) * math.sin(math.radians(60 * k)))
+        (
+            pitch_mm / math.sqrt(3) * math.cos(math.radians(60 * k)),
+            pitch_mm / math.sqrt(3) * math.sin(math.radians(60 * k)),
+        )
         for k in range(6)
-    ]  # fmt: skip
+    ]
     found: dict[Point, LineString] = {}
     for x, y in cells:
         corners = [(x + dx, y + dy) for dx, dy in around]
@@ -77,16 +79,21 @@ def _labels(page: Page, wires: Connector) -> None:
     out = half + np.arange(0.6, _BESIDE_MM, _STEP_MM)
     places = [*((x - d, y) for d in out), *((x, y + s * d) for d in out for s in (-1, 1))]
     if not page.first_free("front", (page.text("1", at) for at in places)):
-        page.miss("the mark '1' of the first wire pad", page.text("1", (x, y)).height_mm,
-                  page.length_mm("1"), (x, y))  # fmt: skip
+        page.miss(
+            "the mark '1' of the first wire pad",
+            page.text("1", (x, y)).height_mm,
+            page.length_mm("1"),
+            (x, y),
+        )
     points = [part for part in page.board.components if part.kind == "test point"]
     for side in ("front", "back"):
         here = sorted((p for p in points if p.side == side), key=lambda p: (p.y_mm, p.x_mm))
         if here:
             at = tuple((part.x_mm, part.y_mm) for part in here)
             half = here[0].footprint.body.length_mm / 2
-            _row(page, "front" if side == "front" else "back",
-                 tuple(p.value for p in here), at, half)  # fmt: skip
+            _row(
+                page, "front" if side == "front" else "back", tuple(p.value for p in here), at, half
+            )
 
 
 def _row(
@@ -131,8 +138,9 @@ def _along_the_edges(page: Page) -> bool:
     board, box = page.board, page.board.outline
     ys = np.arange(box.y_max_mm - 2.0, box.y_min_mm, -_STEP_MM).tolist()
     inwards = np.arange(_TITLE_MM, 4.0, _STEP_MM).tolist()
-    left, right = ([edge + sign * d for d in inwards]
-                   for edge, sign in ((box.x_min_mm, 1), (box.x_max_mm, -1)))  # fmt: skip
+    left, right = (
+        [edge + sign * d for d in inwards] for edge, sign in ((box.x_min_mm, 1), (box.x_max_mm, -1))
+    )
     arrow = page.arrow("front", ((x, y) for x in left for y in ys))
     told = f"{board.finger} rev {board.revision}  {board.design_hash[:8]}"
     for xs, line in ((left, board.name), (right, told)):
@@ -150,15 +158,21 @@ def _back(page: Page, finger: Finger, mark: str) -> bool:
     board = page.board
     zone = next(zone.box for zone in finger.zones if zone.name == "cells")
     lines = (
-        (board.name, 2.0), (f"{board.finger} board  rev {board.revision}", 1.5),
-        (f"design {board.design_hash[:8]}", 1.5), (f"bracket: {mark}", 1.2),
-    )  # fmt: skip
+        (board.name, 2.0),
+        (f"{board.finger} board  rev {board.revision}", 1.5),
+        (f"design {board.design_hash[:8]}", 1.5),
+        (f"bracket: {mark}", 1.2),
+    )
     x, y = zone.centre_mm
     room = page.block("back", lines, (x, y))
     if room is None:
         longest = max(page.length_mm(told) for told, _ in lines)
-        page.miss("the title on the back", page.text("", (x, y)).height_mm * 1.8 * len(lines),
-                  longest, (x, y))  # fmt: skip
+        page.miss(
+            "the title on the back",
+            page.text("", (x, y)).height_mm * 1.8 * len(lines),
+            longest,
+            (x, y),
+        )
         return False
     x = room.centre_mm[0]
     below = [(x, room.y_min_mm - d) for d in np.arange(0.5, 10.0, _STEP_MM).tolist()]

@@ -53,9 +53,10 @@ def with_references(
     at_cells, cut = _at_cells(page, cells, rooms["front"]), False
     if not at_cells:
         bare = front.taking(
-            extent(shown[p.ref], "front") for p in components
+            extent(shown[p.ref], "front")
+            for p in components
             if p.ref in shown and p.side == "front"
-        )  # fmt: skip
+        )
         at_cells = _through_outlines(page, cells, bare, pitch_mm)
         cut = bool(at_cells)
     shown |= at_cells or _at_ends(page, cells, rooms["front"], pitch_mm)
@@ -88,8 +89,9 @@ def _through_outlines(
             for sign in (-1, 1)
             for off in np.arange(0.0, pitch_mm / 2, _STEP_MM / 4).tolist()
         )
-        free = (t for t in places
-                if cell.contains(extent(t, "front")) and room.free(extent(t, "front")))  # fmt: skip
+        free = (
+            t for t in places if cell.contains(extent(t, "front")) and room.free(extent(t, "front"))
+        )
         text = next(free, None)
         if text is None:
             return {}
@@ -139,11 +141,12 @@ def _place_of(page: Page, part: Component, room: Clear) -> Text | None:
         up, aside = (size / 2 + off for size in (yard.length_mm, yard.width_mm))
         long = (yard.length_mm + height + page.length_mm(r)) / 2 - closer
         choices += [
-            page.text(r, (x, y + up)), page.text(r, (x, y - up)),
+            page.text(r, (x, y + up)),
+            page.text(r, (x, y - up)),
             page.text(r, (x - aside, y), angle_deg=90.0),
             page.text(r, (x + aside, y), angle_deg=90.0),
             page.text(r, (x, y + long), angle_deg=90.0),
-        ]  # fmt: skip
+        ]
     if part.kind == "multiplexer":
         choices.insert(0, page.text(r, (x, y), 1.2))
     for apart in (_APART_MM, 0.0):

@@ -140,9 +140,15 @@ class _Reader:
         own = {words(child(n, "layer"))[0]: n for n in lines if child(n, "layer")}
         regions = {w: shapes.outline(n).envelope for w, n in own.items() if w.startswith("User.")}
         return KicadBoard(
-            parts, tuple(loose), self.layers, tuple(edges), silk(self.root),
-            tuple(self.keep_outs()), tuple(self.plies()), regions,
-        )  # fmt: skip
+            parts,
+            tuple(loose),
+            self.layers,
+            tuple(edges),
+            silk(self.root),
+            tuple(self.keep_outs()),
+            tuple(self.plies()),
+            regions,
+        )
 
     def plies(self) -> Iterator[Ply]:
         """The stack-up's layers, but for print and paste, which have no thickness."""
@@ -206,8 +212,11 @@ class _Reader:
     def keep_outs(self) -> Iterator[BaseGeometry]:
         for zone in children(self.root, "zone"):
             rules = child(zone, "keepout")
-            kept = ({tuple(words(child(rules, what))) for what in ("tracks", "vias", "copperpour")}
-                    if rules else set())  # fmt: skip
+            kept = (
+                {tuple(words(child(rules, what))) for what in ("tracks", "vias", "copperpour")}
+                if rules
+                else set()
+            )
             if kept == {("not_allowed",)} and self.on(zone) == frozenset(self.layers):
                 yield shapes.polygon(child(child(zone, "polygon") or [], "pts") or [])
 

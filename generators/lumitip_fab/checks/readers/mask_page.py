@@ -161,10 +161,13 @@ class _Reader:
             closing = operator in ("s", "b", "b*") or filled
             self.painted.append(
                 Painted(
-                    tuple(self._subpaths(closing)), filled, self.black and filled,
-                    _FILLS.get(operator, False), operator in _STROKES,
+                    tuple(self._subpaths(closing)),
+                    filled,
+                    self.black and filled,
+                    _FILLS.get(operator, False),
+                    operator in _STROKES,
                 )
-            )  # fmt: skip
+            )
         self.runs = []
 
     def _subpaths(self, closing: bool) -> Iterator[Subpath]:

@@ -41,8 +41,9 @@ class Verdict:
         """Whether a rule holds that was broken before, and no other one is broken instead."""
         mine = set(self.rules)
         further = self.stage > before.stage
-        return rule not in mine and (further or (self.stage == before.stage and
-                                                 mine <= set(before.rules)))  # fmt: skip
+        return rule not in mine and (
+            further or (self.stage == before.stage and mine <= set(before.rules))
+        )
 
 
 def rule_of(problem: Problem) -> Rule:
@@ -135,10 +136,22 @@ def bounds(field: str) -> tuple[float, float]:
     section, key = field.split(".")
     table = Parameters.model_fields[section].annotation
     metadata = table.model_fields[key].metadata  # type: ignore[union-attr]
-    low = max((float(m.ge if isinstance(m, Ge) else m.gt)  # type: ignore[arg-type]
-               for m in metadata if isinstance(m, Ge | Gt)), default=float("-inf"))  # fmt: skip
-    high = min((float(m.le if isinstance(m, Le) else m.lt)  # type: ignore[arg-type]
-                for m in metadata if isinstance(m, Le | Lt)), default=float("inf"))  # fmt: skip
+    low = max(
+        (
+            float(m.ge if isinstance(m, Ge) else m.gt)  # type: ignore[arg-type]
+            for m in metadata
+            if isinstance(m, Ge | Gt)
+        ),
+        default=float("-inf"),
+    )
+    high = min(
+        (
+            float(m.le if isinstance(m, Le) else m.lt)  # type: ignore[arg-type]
+            for m in metadata
+            if isinstance(m, Le | Lt)
+        ),
+        default=float("inf"),
+    )
     return low, high
 
 
@@ -149,8 +162,14 @@ def catalogue_names(before: Verdict, kind: str, field: str) -> Iterator[str]:
 
 
 _ROOM = ("board.channel_mm", "board.side_margin_mm")
-_FINGER = ("outline.waist_margin_mm", "outline.end_margin_mm", "board.channel_mm",
-           "board.tip_margin_mm", "outline.tip_margin_mm", "tip.slant_start_mm")  # fmt: skip
+_FINGER = (
+    "outline.waist_margin_mm",
+    "outline.end_margin_mm",
+    "board.channel_mm",
+    "board.tip_margin_mm",
+    "outline.tip_margin_mm",
+    "tip.slant_start_mm",
+)
 _CURRENT = ("emitter.current_ma", "emitter.string_leds", "emitter.resistor")
 
 MENDS: dict[str, tuple[str, ...]] = {
@@ -158,8 +177,12 @@ MENDS: dict[str, tuple[str, ...]] = {
     "stack.silicone_mm": ("emitter.resistor_side",),
     "stack.floor_mm": ("backing.tail_mm",),
     "outline.tip_fraction": ("outline.shoulder_margin_mm",),
-    "outline.waist_margin_mm": ("outline.shoulder_margin_mm", "outline.end_corner_mm",
-                                "outline.shoulder_at_mm", "outline.tip_margin_mm"),
+    "outline.waist_margin_mm": (
+        "outline.shoulder_margin_mm",
+        "outline.end_corner_mm",
+        "outline.shoulder_at_mm",
+        "outline.tip_margin_mm",
+    ),
     "outline.waist_at": ("outline.end_corner_mm", "outline.shoulder_at_mm"),
     "outline.shoulder_margin_mm": ("outline.waist_margin_mm",),
     "backing.tail_mm": ("stack.floor_mm",),
@@ -175,8 +198,13 @@ MENDS: dict[str, tuple[str, ...]] = {
     "emitter.led": ("board.clearance_mm", "emitter.current_ma"),
     "emitter.current_ma": _CURRENT,
     "emitter.max_heat_w": _CURRENT,
-    "emitter.resistor": ("emitter.resistor_side", "board.channel_mm", *_CURRENT,
-                         "board.side_margin_mm", "backing.relief_clearance_mm"),
+    "emitter.resistor": (
+        "emitter.resistor_side",
+        "board.channel_mm",
+        *_CURRENT,
+        "board.side_margin_mm",
+        "backing.relief_clearance_mm",
+    ),
     "supply.max_ma": _CURRENT,
     "supply.voltage_v": ("emitter.string_leds", "flange.gate_ohm"),
     "receiver.photodetector": ("board.clearance_mm",),
@@ -189,9 +217,14 @@ MENDS: dict[str, tuple[str, ...]] = {
     "mould.taper_length_mm": ("outline.tip_margin_mm",),
     "mould.tip_silicone_mm": (),
     "flex.standoff_mm": ("flex.groove_depth_mm",),
-    "flex.interface_mm": ("flex.standoff_mm", "board.channel_mm", "tip.slant_start_mm",
-                          "outline.end_margin_mm", "board.tip_margin_mm",
-                          "outline.tip_margin_mm"),
+    "flex.interface_mm": (
+        "flex.standoff_mm",
+        "board.channel_mm",
+        "tip.slant_start_mm",
+        "outline.end_margin_mm",
+        "board.tip_margin_mm",
+        "outline.tip_margin_mm",
+    ),
     "flex.thread_hole_mm": ("board.hole_edge_mm", "board.end_margin_mm", "board.side_margin_mm"),
     "breakout.board_mm": ("breakout.hole_spacing_mm",),
     "breakout.hole_mm": ("breakout.hole_spacing_mm",),
@@ -205,7 +238,7 @@ MENDS: dict[str, tuple[str, ...]] = {
     "printer.profile": (),
     "flange.fuse": ("emitter.current_ma",),
     "flange.gate_ohm": (),
-}  # fmt: skip
+}
 
 
 def menders(field: str) -> tuple[str, ...]:

@@ -57,13 +57,15 @@ def _proposals(given: Input, longest: int) -> Iterator[tuple[str, Value, str]]:
         )
     yield "emitter.current_ma", p.emitter.current_ma, reason
     yield (
-        "emitter.string_leds", max(lengths(sum(p.grid.columns), longest)),
+        "emitter.string_leds",
+        max(lengths(sum(p.grid.columns), longest)),
         f"{len(strings)} strings: as few as {volts:g} V and the resistors allow",
-    )  # fmt: skip
+    )
     yield (
-        "emitter.resistor", p.emitter.resistor,
+        "emitter.resistor",
+        p.emitter.resistor,
         f"takes up to {1000 * load:.0f} mW over all tolerances, rated {1000 * package.power_w:.0f}",
-    )  # fmt: skip
+    )
     start = float(FIELDS["receiver.pull_up_ohm"].start)
     factor = min(_least_ma(given, start) / p.emitter.current_ma, MOST_PULL_UP)
     ohm = start if factor <= 1 else sold_ohm(start * factor)

@@ -81,8 +81,10 @@ def derive_plan(
     board = _board(given, frame)
     muxes = placing.multiplexers(given, muxing, frame.parts)
     tip_holes = placing.tip_holes(given, cells, (*detectors, *_flipped(leds)), frame.box, faults)
-    rear = ((-frame.rear_hole_x_mm, frame.connector_y_mm),
-            (frame.rear_hole_x_mm, frame.connector_y_mm))  # fmt: skip
+    rear = (
+        (-frame.rear_hole_x_mm, frame.connector_y_mm),
+        (frame.rear_hole_x_mm, frame.connector_y_mm),
+    )
     room = _resistor_room(given, frame)
     resistors, reliefs = placing.resistors(given, strings, room, frame.foot_half_mm, faults)
     wires = connectors.place(connectors.emitter_signals(given), True, frame.connector_y_mm)
@@ -242,9 +244,11 @@ def _board(given: Input, frame: Frame) -> Board:
 def _zones(frame: Frame) -> tuple[Zone, ...]:
     half = connectors.WIDE[1] / 2
     wires = Box(
-        frame.notch.x_min_mm, frame.notch.x_max_mm,
-        frame.connector_y_mm - half, frame.connector_y_mm + half,
-    )  # fmt: skip
+        frame.notch.x_min_mm,
+        frame.notch.x_max_mm,
+        frame.connector_y_mm - half,
+        frame.connector_y_mm + half,
+    )
     return Zone("cells", frame.cells), Zone("parts", frame.parts), Zone("connector", wires)
 
 

@@ -126,11 +126,19 @@ def _socket(
 ) -> Device:
     shape = patterns.row("PinSocket", strip.ways, strip.pitch_mm, strip.pad_mm, strip.drill_mm)
     return Device(
-        ref=ref, kind="socket", value=given.parameters.breakout.socket, part=strip.order_number,
-        manufacturer=strip.manufacturer, lcsc=strip.lcsc,
+        ref=ref,
+        kind="socket",
+        value=given.parameters.breakout.socket,
+        part=strip.order_number,
+        manufacturer=strip.manufacturer,
+        lcsc=strip.lcsc,
         pattern=patterns.raised(shape, strip.height_mm),
-        x_mm=0.0, y_mm=y_mm, angle_deg=0.0, nets=nets, pins=names,
-    )  # fmt: skip
+        x_mm=0.0,
+        y_mm=y_mm,
+        angle_deg=0.0,
+        nets=nets,
+        pins=names,
+    )
 
 
 def _pads(
@@ -139,9 +147,19 @@ def _pads(
     """Bare pads for wires, one for each net."""
     shape = patterns.row("WirePads", len(nets), pitch_mm, PAD_MM, DRILL_MM)
     return Device(
-        ref=ref, kind="wires", value=f"{len(nets)} wires", part="", manufacturer="", lcsc="",
-        pattern=shape, x_mm=x_mm, y_mm=y_mm, angle_deg=0.0, nets=nets, pins=(),
-    )  # fmt: skip
+        ref=ref,
+        kind="wires",
+        value=f"{len(nets)} wires",
+        part="",
+        manufacturer="",
+        lcsc="",
+        pattern=shape,
+        x_mm=x_mm,
+        y_mm=y_mm,
+        angle_deg=0.0,
+        nets=nets,
+        pins=(),
+    )
 
 
 def _wires(
@@ -167,14 +185,16 @@ def _refuse(
     )
     cable = connectors.half_width_mm(len(connectors.receiver_signals(muxing)), wide=False)
     least_length = max(
-        strip.ways * strip.pitch_mm + 2 * EDGE_MM, p.hole_spacing_mm + p.hole_mm + 2 * EDGE_MM,
+        strip.ways * strip.pitch_mm + 2 * EDGE_MM,
+        p.hole_spacing_mm + p.hole_mm + 2 * EDGE_MM,
         2 * (cable + EDGE_MM),
-    )  # fmt: skip
+    )
     reach = connectors.WIDE[1] / 2 + BETWEEN_MM + PAD_MM / 2
     least_width = 2 * (rows.beside_mm + reach + connectors.WIDE[1] / 2 + EDGE_MM)
     for given_mm, least, what in (
-        (length, least_length, "long"), (width, least_width, "wide"),
-    ):  # fmt: skip
+        (length, least_length, "long"),
+        (width, least_width, "wide"),
+    ):
         faults.refuse_unless(
             given_mm >= least - 1e-9,
             "breakout.board_mm",

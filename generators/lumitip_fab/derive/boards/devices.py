@@ -17,10 +17,19 @@ def strip(
 ) -> Device:
     """Two rows of contacts, counter-clockwise from the lower left."""
     return Device(
-        ref=ref, kind="header", value=value, part=entry.order_number,
-        manufacturer=entry.manufacturer, lcsc=entry.lcsc, pattern=patterns.rows("Header", entry),
-        x_mm=at[0], y_mm=at[1], angle_deg=0.0, nets=numbered(nets), pins=pins,
-    )  # fmt: skip
+        ref=ref,
+        kind="header",
+        value=value,
+        part=entry.order_number,
+        manufacturer=entry.manufacturer,
+        lcsc=entry.lcsc,
+        pattern=patterns.rows("Header", entry),
+        x_mm=at[0],
+        y_mm=at[1],
+        angle_deg=0.0,
+        nets=numbered(nets),
+        pins=pins,
+    )
 
 
 def from_behind(device: Device, places: Sequence[Point]) -> Device:
@@ -49,10 +58,19 @@ def wires(ref: str, signals: tuple[str, ...], at: Point, wide: bool) -> Device:
     """Wire pads of a cable in a row, each called by its signal."""
     pitch, pad, drill = connectors.WIDE if wide else connectors.NARROW
     return Device(
-        ref=ref, kind="wires", value=f"{len(signals)} wires", part="", manufacturer="", lcsc="",
+        ref=ref,
+        kind="wires",
+        value=f"{len(signals)} wires",
+        part="",
+        manufacturer="",
+        lcsc="",
         pattern=patterns.row("WirePads", len(signals), pitch, pad, drill),
-        x_mm=at[0], y_mm=at[1], angle_deg=0.0, nets=numbered(signals), pins=signals,
-    )  # fmt: skip
+        x_mm=at[0],
+        y_mm=at[1],
+        angle_deg=0.0,
+        nets=numbered(signals),
+        pins=signals,
+    )
 
 
 def chip(
@@ -68,10 +86,19 @@ def chip(
 ) -> Device:
     """A part with two terminals; `letters` begin the name of its land pattern."""
     return Device(
-        ref=ref, kind=kind, value=value, part=part or entry.order_number,
-        manufacturer=entry.manufacturer, lcsc=entry.lcsc, pattern=patterns.chip(letters, entry),
-        x_mm=at[0], y_mm=at[1], angle_deg=angle_deg, nets=numbered(nets), pins=(),
-    )  # fmt: skip
+        ref=ref,
+        kind=kind,
+        value=value,
+        part=part or entry.order_number,
+        manufacturer=entry.manufacturer,
+        lcsc=entry.lcsc,
+        pattern=patterns.chip(letters, entry),
+        x_mm=at[0],
+        y_mm=at[1],
+        angle_deg=angle_deg,
+        nets=numbered(nets),
+        pins=(),
+    )
 
 
 def leaded(
@@ -85,21 +112,41 @@ def leaded(
 ) -> Device:
     """A part with leads, whose nets are told by the leads' names."""
     return Device(
-        ref=ref, kind=kind, value=value, part=entry.order_number, manufacturer=entry.manufacturer,
-        lcsc=entry.lcsc, pattern=patterns.leaded(entry), x_mm=at[0], y_mm=at[1],
-        angle_deg=angle_deg, nets=numbered(tuple(nets[name] for name in entry.names)),
+        ref=ref,
+        kind=kind,
+        value=value,
+        part=entry.order_number,
+        manufacturer=entry.manufacturer,
+        lcsc=entry.lcsc,
+        pattern=patterns.leaded(entry),
+        x_mm=at[0],
+        y_mm=at[1],
+        angle_deg=angle_deg,
+        nets=numbered(tuple(nets[name] for name in entry.names)),
         pins=entry.names,
-    )  # fmt: skip
+    )
 
 
 def fiducials(places: Iterable[Point]) -> tuple[Device, ...]:
     """Marks for the placing machine's camera."""
     shape = patterns.fiducial(FIDUCIAL_MM)
     return tuple(
-        Device(ref=f"FID{i}", kind="fiducial", value="Fiducial", part="", manufacturer="", lcsc="",
-               pattern=shape, x_mm=x, y_mm=y, angle_deg=0.0, nets=(), pins=())
+        Device(
+            ref=f"FID{i}",
+            kind="fiducial",
+            value="Fiducial",
+            part="",
+            manufacturer="",
+            lcsc="",
+            pattern=shape,
+            x_mm=x,
+            y_mm=y,
+            angle_deg=0.0,
+            nets=(),
+            pins=(),
+        )
         for i, (x, y) in enumerate(places, start=1)
-    )  # fmt: skip
+    )
 
 
 def numbered(nets: tuple[str, ...]) -> Nets:

@@ -130,17 +130,27 @@ def _input(given: Input) -> tuple[Device, ...]:
     transistor = known.transistors[p.transistor]
     leads = {"G": "GATE", "S": supply, "D": "FUSED"}
     return (
-        chip("F1", "fuse", p.fuse, known.fuses[p.fuse], "FUSC", (5.4, -7.0), 180.0,
-              (raw, "FUSED")),
+        chip("F1", "fuse", p.fuse, known.fuses[p.fuse], "FUSC", (5.4, -7.0), 180.0, (raw, "FUSED")),
         leaded("Q1", "transistor", p.transistor, transistor, (-1.0, -7.0), 270.0, leads),
         *(
-            (chip("R1", "resistor", code, resistor, "RESC", (-5.2, -7.0), 90.0, (supply, "GATE"),
-                  part),)
+            (
+                chip(
+                    "R1",
+                    "resistor",
+                    code,
+                    resistor,
+                    "RESC",
+                    (-5.2, -7.0),
+                    90.0,
+                    (supply, "GATE"),
+                    part,
+                ),
+            )
             if halved(given)
             else ()
         ),
         chip("R2", "resistor", code, resistor, "RESC", (-2.0, -3.8), 0.0, ("GATE", "GND"), part),
-    )  # fmt: skip
+    )
 
 
 def _regulator(given: Input) -> tuple[Device, ...]:
@@ -153,20 +163,53 @@ def _regulator(given: Input) -> tuple[Device, ...]:
     leads = {"FB": output, "EN": supply, "VIN": supply, "GND": "GND", "SW": "SW", "BST": "BST"}
     caps = known.capacitors
     return (
-        leaded("U1", "regulator", p.regulator, known.regulators[p.regulator], (-7.5, 0.0), 0.0,
-                leads),
-        chip("C1", "capacitor", p.input_capacitor.split()[0], caps[p.input_capacitor], "CAPC",
-              (-4.9, 0.0), 90.0, (supply, "GND")),
-        chip("C4", "capacitor", p.boot_capacitor.split()[0], caps[p.boot_capacitor], "CAPC",
-              (-10.8, 2.1), 90.0, ("BST", "SW")),
-        chip("L1", "inductor", p.inductor.split()[0], known.inductors[p.inductor], "INDC",
-              (-7.5, 5.2), 90.0, ("SW", output)),
+        leaded(
+            "U1", "regulator", p.regulator, known.regulators[p.regulator], (-7.5, 0.0), 0.0, leads
+        ),
+        chip(
+            "C1",
+            "capacitor",
+            p.input_capacitor.split()[0],
+            caps[p.input_capacitor],
+            "CAPC",
+            (-4.9, 0.0),
+            90.0,
+            (supply, "GND"),
+        ),
+        chip(
+            "C4",
+            "capacitor",
+            p.boot_capacitor.split()[0],
+            caps[p.boot_capacitor],
+            "CAPC",
+            (-10.8, 2.1),
+            90.0,
+            ("BST", "SW"),
+        ),
+        chip(
+            "L1",
+            "inductor",
+            p.inductor.split()[0],
+            known.inductors[p.inductor],
+            "INDC",
+            (-7.5, 5.2),
+            90.0,
+            ("SW", output),
+        ),
         *(
-            chip(ref, "capacitor", p.output_capacitor.split()[0], caps[p.output_capacitor],
-                  "CAPC", (x, 5.8), 270.0, (output, "GND"))
+            chip(
+                ref,
+                "capacitor",
+                p.output_capacitor.split()[0],
+                caps[p.output_capacitor],
+                "CAPC",
+                (x, 5.8),
+                270.0,
+                (output, "GND"),
+            )
             for ref, x in (("C2", -3.6), ("C3", -1.2))
         ),
-    )  # fmt: skip
+    )
 
 
 def _refuse(given: Input, faults: Faults) -> None:

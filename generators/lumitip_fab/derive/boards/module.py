@@ -32,8 +32,17 @@ MOST_WIRES = 9
 """In the row to the receiver, between the board's round corner and the header."""
 CONTROLLER = "3V3"
 FIDUCIALS_AT: tuple[Point, ...] = ((-25.6, 8.4), (13.0, -15.5), (-25.6, -8.4))
-_NAMED = {"GND": "GND", "VDD": CONTROLLER, "VDDH": CONTROLLER, "VBUS": "VUSB", "USB_DM": "D-",
-          "USB_DP": "D+", "SWDIO": "DIO", "SWDCLK": "CLK", "P0_18": "RST"}  # fmt: skip
+_NAMED = {
+    "GND": "GND",
+    "VDD": CONTROLLER,
+    "VDDH": CONTROLLER,
+    "VBUS": "VUSB",
+    "USB_DM": "D-",
+    "USB_DP": "D+",
+    "SWDIO": "DIO",
+    "SWDCLK": "CLK",
+    "P0_18": "RST",
+}
 
 
 @dataclass(frozen=True)
@@ -55,9 +64,13 @@ class Wing:
 
 
 def derive_module(
-    given: Input, module: Module | None, muxing: Muxing, supplies: Supplies, box: Box,
+    given: Input,
+    module: Module | None,
+    muxing: Muxing,
+    supplies: Supplies,
+    box: Box,
     faults: Faults,
-) -> Wing | None:  # fmt: skip
+) -> Wing | None:
     """The module with what it needs; none where the controller is not one."""
     if module is None:
         return None
@@ -93,12 +106,19 @@ def _module(given: Input, module: Module, muxing: Muxing, at: Point) -> Device:
     nets |= {module.ports[pin]: pin for pin in muxing.adc_pins}
     nets |= {module.ports[pin]: f"S{i}" for i, pin in enumerate(muxing.select_pins)}
     return Device(
-        ref="U2", kind="module", value=given.title("controller.board"), part=module.order_number,
-        manufacturer=module.manufacturer, lcsc=module.lcsc, pattern=patterns.module(module),
-        x_mm=at[0], y_mm=at[1], angle_deg=TURN_DEG,
+        ref="U2",
+        kind="module",
+        value=given.title("controller.board"),
+        part=module.order_number,
+        manufacturer=module.manufacturer,
+        lcsc=module.lcsc,
+        pattern=patterns.module(module),
+        x_mm=at[0],
+        y_mm=at[1],
+        angle_deg=TURN_DEG,
         nets=tuple((str(i), nets[name]) for i, name in enumerate(module.names, 1) if name in nets),
         pins=tuple(pins.get(name, name) for name in module.names),
-    )  # fmt: skip
+    )
 
 
 def _supply(given: Input, supplies: Supplies) -> tuple[Device, ...]:
@@ -107,12 +127,20 @@ def _supply(given: Input, supplies: Supplies) -> tuple[Device, ...]:
     cap, value = known.capacitors[p.supply_capacitor], p.supply_capacitor.split()[0]
     leads = {"IN": supplies.regulated, "OUT": CONTROLLER, "GND": "GND"}
     return (
-        leaded("U3", "regulator", p.regulator, known.linear_regulators[p.regulator],
-               (-17.5, 9.2), 0.0, leads),
-        chip("C5", "capacitor", value, cap, "CAPC", (-14.4, 10.2), 0.0,
-             (supplies.regulated, "GND")),
+        leaded(
+            "U3",
+            "regulator",
+            p.regulator,
+            known.linear_regulators[p.regulator],
+            (-17.5, 9.2),
+            0.0,
+            leads,
+        ),
+        chip(
+            "C5", "capacitor", value, cap, "CAPC", (-14.4, 10.2), 0.0, (supplies.regulated, "GND")
+        ),
         chip("C6", "capacitor", value, cap, "CAPC", (-14.4, 7.8), 0.0, (CONTROLLER, "GND")),
-    )  # fmt: skip
+    )
 
 
 def _beside(given: Input) -> tuple[Device, ...]:
@@ -121,17 +149,57 @@ def _beside(given: Input) -> tuple[Device, ...]:
     value = p.crystal_capacitor.split()[0]
     crystal = given.catalogue.crystals[p.crystal]
     return (
-        chip("C7", "capacitor", p.capacitor.split()[0], known[p.capacitor], "CAPC",
-             (-11.2, 5.2), 90.0, (CONTROLLER, "GND")),
-        chip("C10", "capacitor", p.supply_capacitor.split()[0], known[p.supply_capacitor], "CAPC",
-             (-11.2, 10.2), 90.0, ("VUSB", "GND")),
-        chip("Y1", "crystal", p.crystal.split()[0], crystal, "XTAL", (-11.3, -7.2), 90.0,
-             ("XL1", "XL2")),
-        chip("C8", "capacitor", value, known[p.crystal_capacitor], "CAPC", (-11.3, -11.4), 270.0,
-             ("XL1", "GND")),
-        chip("C9", "capacitor", value, known[p.crystal_capacitor], "CAPC", (-11.4, -3.2), 270.0,
-             ("XL2", "GND")),
-    )  # fmt: skip
+        chip(
+            "C7",
+            "capacitor",
+            p.capacitor.split()[0],
+            known[p.capacitor],
+            "CAPC",
+            (-11.2, 5.2),
+            90.0,
+            (CONTROLLER, "GND"),
+        ),
+        chip(
+            "C10",
+            "capacitor",
+            p.supply_capacitor.split()[0],
+            known[p.supply_capacitor],
+            "CAPC",
+            (-11.2, 10.2),
+            90.0,
+            ("VUSB", "GND"),
+        ),
+        chip(
+            "Y1",
+            "crystal",
+            p.crystal.split()[0],
+            crystal,
+            "XTAL",
+            (-11.3, -7.2),
+            90.0,
+            ("XL1", "XL2"),
+        ),
+        chip(
+            "C8",
+            "capacitor",
+            value,
+            known[p.crystal_capacitor],
+            "CAPC",
+            (-11.3, -11.4),
+            270.0,
+            ("XL1", "GND"),
+        ),
+        chip(
+            "C9",
+            "capacitor",
+            value,
+            known[p.crystal_capacitor],
+            "CAPC",
+            (-11.4, -3.2),
+            270.0,
+            ("XL2", "GND"),
+        ),
+    )
 
 
 def _refuse(given: Input, muxing: Muxing, faults: Faults) -> None:

@@ -217,9 +217,11 @@ def _relief(given: Input, bank: list[Part], height_mm: float) -> Relief:
     p = given.parameters
     boxes = [part.box for part in bank]
     box = Box(
-        min(b.x_min_mm for b in boxes), max(b.x_max_mm for b in boxes),
-        min(b.y_min_mm for b in boxes), max(b.y_max_mm for b in boxes),
-    ).grown(p.backing.relief_clearance_mm)  # fmt: skip
+        min(b.x_min_mm for b in boxes),
+        max(b.x_max_mm for b in boxes),
+        min(b.y_min_mm for b in boxes),
+        max(b.y_max_mm for b in boxes),
+    ).grown(p.backing.relief_clearance_mm)
     depth = height_mm + RELIEF_DEPTH_MM
     # A plate that is printed face down must not hang over.
     through = is_flex(p) or p.stack.floor_mm - depth < p.printer.min_wall_mm

@@ -69,10 +69,16 @@ def derive_interfaces(
     letter = letter_on(low, low + letter_mm, LETTER_DEPTH_MM, back, line_mm)
     return (
         Interface(
-            groove, flex.groove_mm, flex.groove_depth_mm, flex.glue_mm,
-            Drawn(p.printer.fit_mm).gap_mm(flex.glue_mm), flex.pad_mm, flex.thread_hole_mm, letter,
+            groove,
+            flex.groove_mm,
+            flex.groove_depth_mm,
+            flex.glue_mm,
+            Drawn(p.printer.fit_mm).gap_mm(flex.glue_mm),
+            flex.pad_mm,
+            flex.thread_hole_mm,
+            letter,
         ),
-    )  # fmt: skip
+    )
 
 
 def _refuse_holes(given: Input, finger: Finger, board: Box, faults: Faults) -> None:
@@ -103,25 +109,43 @@ def _refuse_heights(given: Input, faults: Faults) -> None:
     refuse_touching(given, "flex.glue_mm", flex.glue_mm, faults)
     reach = behind_mm(p) - flex.standoff_mm
     for holds, field, message in (
-        (left >= p.printer.min_wall_mm - 1e-9, "flex.groove_depth_mm",
-         f"{flex.groove_depth_mm:g} given, which leaves {left:.2f} mm of plate before the groove; "
-         f"at least {p.printer.min_wall_mm:g} is needed"),
-        (rim >= 2 * line_mm - 1e-9, "flex.groove_mm",
-         f"{flex.groove_mm:g} given, which leaves a rim of {rim:.2f} mm between gaps of "
-         f"{flex.glue_mm:g}{fitted}; at least two printed lines of {line_mm:g} are needed"),
-        (flex.groove_depth_mm - flex.glue_mm >= 2 * line_mm / 3, "flex.groove_depth_mm",
-         f"{flex.groove_depth_mm:g} given, which leaves a rim "
-         f"{flex.groove_depth_mm - flex.glue_mm:.2f} mm high; at least {2 * line_mm / 3:g} is "
-         "needed"),
-        (flex.pad_mm >= p.printer.min_wall_mm - 1e-9, "flex.pad_mm",
-         f"{flex.pad_mm:g} given, at least printer.min_wall_mm = {p.printer.min_wall_mm:g} is "
-         "needed"),
-        (p.backing.tail_mm <= p.stack.floor_mm, "backing.tail_mm",
-         f"{p.backing.tail_mm:g} given, at most stack.floor_mm = {p.stack.floor_mm:g} is allowed: "
-         "behind a bendable plate lies the interface"),
-        (nose is None or reach <= nose.front_w_mm + 1e-9, "flex.standoff_mm",
-         f"{flex.standoff_mm:g} given, at least "
-         f"{behind_mm(p) - (nose.front_w_mm if nose else 0.0):g} is needed: board, plate and pad "
-         f"must end before the nose of {p.coupling.gripper!r}"),
-    ):  # fmt: skip
+        (
+            left >= p.printer.min_wall_mm - 1e-9,
+            "flex.groove_depth_mm",
+            f"{flex.groove_depth_mm:g} given, which leaves {left:.2f} mm of plate before the "
+            f"groove; at least {p.printer.min_wall_mm:g} is needed",
+        ),
+        (
+            rim >= 2 * line_mm - 1e-9,
+            "flex.groove_mm",
+            f"{flex.groove_mm:g} given, which leaves a rim of {rim:.2f} mm between gaps of "
+            f"{flex.glue_mm:g}{fitted}; at least two printed lines of {line_mm:g} are needed",
+        ),
+        (
+            flex.groove_depth_mm - flex.glue_mm >= 2 * line_mm / 3,
+            "flex.groove_depth_mm",
+            f"{flex.groove_depth_mm:g} given, which leaves a rim "
+            f"{flex.groove_depth_mm - flex.glue_mm:.2f} mm high; at least {2 * line_mm / 3:g} is "
+            "needed",
+        ),
+        (
+            flex.pad_mm >= p.printer.min_wall_mm - 1e-9,
+            "flex.pad_mm",
+            f"{flex.pad_mm:g} given, at least printer.min_wall_mm = {p.printer.min_wall_mm:g} is "
+            "needed",
+        ),
+        (
+            p.backing.tail_mm <= p.stack.floor_mm,
+            "backing.tail_mm",
+            f"{p.backing.tail_mm:g} given, at most stack.floor_mm = {p.stack.floor_mm:g} is "
+            "allowed: behind a bendable plate lies the interface",
+        ),
+        (
+            nose is None or reach <= nose.front_w_mm + 1e-9,
+            "flex.standoff_mm",
+            f"{flex.standoff_mm:g} given, at least "
+            f"{behind_mm(p) - (nose.front_w_mm if nose else 0.0):g} is needed: board, plate and "
+            f"pad must end before the nose of {p.coupling.gripper!r}",
+        ),
+    ):
         faults.refuse_unless(holds, field, message)

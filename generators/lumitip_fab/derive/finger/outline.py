@@ -34,20 +34,32 @@ def derive_outline(p: Parameters, board: Board, notch: Box, faults: Faults) -> O
     corner = min(p.outline.end_corner_mm, max(room, LEAST_CORNER_MM))
     end_half = waist[0] - corner
     for holds, field, message in (
-        (shoulder[0] >= waist[0], "outline.shoulder_margin_mm",
-         f"{p.outline.shoulder_margin_mm:g} given, at least waist_margin_mm = "
-         f"{p.outline.waist_margin_mm:g} is needed"),
-        (shoulder[1] > waist[1] + 1, "outline.waist_at",
-         f"{p.outline.waist_at:g} given, more than "
-         f"{(p.outline.shoulder_at_mm + 1) / length:.3f} is needed: there is the widest point"),
-        (waist[1] > end_y + corner, "outline.waist_at",
-         f"{p.outline.waist_at:g} given, at most {1 - corner / length:.3f} is allowed: there the "
-         f"corner of {corner:g} mm begins"),
-        (room >= LEAST_CORNER_MM, "outline.waist_margin_mm",
-         f"{p.outline.waist_margin_mm:g} given, which leaves {room + LEAST_LEG_MM:.2f} mm of plate "
-         f"beside the wire notch of {notch.width_mm:.1f} mm at the gripper end; at least "
-         f"{LEAST_LEG_MM + LEAST_CORNER_MM:g} is needed"),
-    ):  # fmt: skip
+        (
+            shoulder[0] >= waist[0],
+            "outline.shoulder_margin_mm",
+            f"{p.outline.shoulder_margin_mm:g} given, at least waist_margin_mm = "
+            f"{p.outline.waist_margin_mm:g} is needed",
+        ),
+        (
+            shoulder[1] > waist[1] + 1,
+            "outline.waist_at",
+            f"{p.outline.waist_at:g} given, more than "
+            f"{(p.outline.shoulder_at_mm + 1) / length:.3f} is needed: there is the widest point",
+        ),
+        (
+            waist[1] > end_y + corner,
+            "outline.waist_at",
+            f"{p.outline.waist_at:g} given, at most {1 - corner / length:.3f} is allowed: there "
+            f"the corner of {corner:g} mm begins",
+        ),
+        (
+            room >= LEAST_CORNER_MM,
+            "outline.waist_margin_mm",
+            f"{p.outline.waist_margin_mm:g} given, which leaves {room + LEAST_LEG_MM:.2f} mm of "
+            f"plate beside the wire notch of {notch.width_mm:.1f} mm at the gripper end; at least "
+            f"{LEAST_LEG_MM + LEAST_CORNER_MM:g} is needed",
+        ),
+    ):
         faults.refuse_unless(holds, field, message)
     right = [
         _line((-end_half, end_y), (end_half, end_y)),

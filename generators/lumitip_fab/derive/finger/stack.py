@@ -56,9 +56,13 @@ def derive_stack(given: Input, faults: Faults) -> Stack:
             f"{height:g} mm high; at least {height + LEAST_SILICONE_MM:.2f} is needed",
         )
     return Stack(
-        p.stack.floor_mm, p.stack.pcb_mm, p.stack.silicone_mm, p.stack.film_mm,
-        sunk=not is_flex(p), carrier_mm=stiff_mm(p),
-    )  # fmt: skip
+        p.stack.floor_mm,
+        p.stack.pcb_mm,
+        p.stack.silicone_mm,
+        p.stack.film_mm,
+        sunk=not is_flex(p),
+        carrier_mm=stiff_mm(p),
+    )
 
 
 def derive_tip(p: Parameters, outline: Outline, board: Board, stack: Stack, faults: Faults) -> Tip:
@@ -115,9 +119,14 @@ def derive_printing(given: Input, outline: Outline, faults: Faults) -> Printing:
         f"a mould of {width:.0f} x {length:.0f} mm or a finger {length:.0f} mm tall",
     )
     return Printing(
-        p.backing.material, p.backing.density_g_ml, p.printer.min_wall_mm,
-        p.printer.fit_mm, printer.line_mm, printer.layer_mm, printer.bed_mm,
-    )  # fmt: skip
+        p.backing.material,
+        p.backing.density_g_ml,
+        p.printer.min_wall_mm,
+        p.printer.fit_mm,
+        printer.line_mm,
+        printer.layer_mm,
+        printer.bed_mm,
+    )
 
 
 COPPER_G_ML = 8.96  # the element's, at 20 °C

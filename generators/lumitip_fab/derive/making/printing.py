@@ -39,10 +39,19 @@ def derive_slicing(given: Input, mould: Mould, faults: Faults) -> Slicing:
 def _filament(given: Input, name: str, density_g_ml: float) -> Filament:
     told = given.catalogue.filaments[name]
     return Filament(
-        name, told.kind, density_g_ml, told.nozzle_c, told.bed_c, told.fan_percent,
-        told.speed_mm_s, told.max_flow_mm3_s, told.retract_mm, told.layer_mpa, told.bearing_mpa,
+        name,
+        told.kind,
+        density_g_ml,
+        told.nozzle_c,
+        told.bed_c,
+        told.fan_percent,
+        told.speed_mm_s,
+        told.max_flow_mm3_s,
+        told.retract_mm,
+        told.layer_mpa,
+        told.bearing_mpa,
         given.catalogue.printers[given.parameters.printer.profile].layer_mm,
-    )  # fmt: skip
+    )
 
 
 JOINT_C = 250.0

@@ -25,7 +25,7 @@ def derive_purchase(
         *_bolts(mount, prices),
         *(each for holder in holders for each in _screws(holder, prices)),
         *(each for flange in flanges for each in _of_flange(given, flange, prices)),
-    ]  # fmt: skip
+    ]
     return Purchase(
         currency=prices.currency,
         dated=prices.dated,
@@ -68,11 +68,19 @@ def _screws(holder: Holder, prices: Prices) -> list[Bought]:
     screw = f"{thread} x {holder.screw_length_mm:g} screw"
     where = "breakout on its holder"
     return [
-        Bought("fasteners", screw, "", "ISO 4762", where, count,
-               prices.each.get(f"{thread} screw")),
-        Bought("fasteners", f"{thread} nut", "", "ISO 4032", where, count,
-               prices.each.get(f"{thread} nut")),
-    ]  # fmt: skip
+        Bought(
+            "fasteners", screw, "", "ISO 4762", where, count, prices.each.get(f"{thread} screw")
+        ),
+        Bought(
+            "fasteners",
+            f"{thread} nut",
+            "",
+            "ISO 4032",
+            where,
+            count,
+            prices.each.get(f"{thread} nut"),
+        ),
+    ]
 
 
 def _of_flange(given: Input, flange: Flange, prices: Prices) -> list[Bought]:
@@ -88,9 +96,14 @@ def _of_flange(given: Input, flange: Flange, prices: Prices) -> list[Bought]:
         (screw, "ISO 7046", where, count, f"{flange.screw} screw"),
         (f"{flange.screw} nut", "ISO 4032", where, count, f"{flange.screw} nut"),
         (pin, "ISO 2338", "flange to coupling, glued in", 1, "parallel pin"),
-        (bolt, "ISO 4762", f"gripper to robot, {flange.top_z_mm:.1f} mm longer than its own",
-         len(flange.bolts), bolt),
-    )  # fmt: skip
+        (
+            bolt,
+            "ISO 4762",
+            f"gripper to robot, {flange.top_z_mm:.1f} mm longer than its own",
+            len(flange.bolts),
+            bolt,
+        ),
+    )
     return [
         Bought("fasteners", item, "", part, at, n, prices.each.get(price))
         for item, part, at, n, price in told

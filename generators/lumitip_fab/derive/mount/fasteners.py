@@ -44,11 +44,16 @@ def derive_fasteners(given: Input, faults: Faults) -> tuple[Fastener, ...]:
     threads = sorted({thread for _, thread in wanted})
     return tuple(
         Fastener(
-            name, e.thread_mm, e.hole_mm, e.cap_head_mm, e.countersunk_mm, e.nut_mm,
+            name,
+            e.thread_mm,
+            e.hole_mm,
+            e.cap_head_mm,
+            e.countersunk_mm,
+            e.nut_mm,
             e.nut_height_mm,
         )
         for name, e in ((thread, known[thread]) for thread in threads)
-    )  # fmt: skip
+    )
 
 
 def screw_length_mm(through_mm: float, nut: FastenerEntry) -> float:

@@ -100,8 +100,9 @@ def derive_flange_body(
 
 
 def _moved(box: Box, by: Point) -> Box:
-    return Box(box.x_min_mm + by[0], box.x_max_mm + by[0],
-               box.y_min_mm + by[1], box.y_max_mm + by[1])  # fmt: skip
+    return Box(
+        box.x_min_mm + by[0], box.x_max_mm + by[0], box.y_min_mm + by[1], box.y_max_mm + by[1]
+    )
 
 
 def _room(device: Device, board_at: Point) -> Box:

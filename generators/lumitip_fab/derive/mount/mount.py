@@ -109,14 +109,13 @@ def _refuse_holes(given: Input, gripper: Gripper, faults: Faults) -> None:
     line_mm = given.catalogue.printers[p.printer.profile].line_mm
     walls = (
         ("behind its counterbores", gripper.block_back_w_mm - gripper.bolt_w_mm - head, None),
-        ("beside its counterbores",
-         gripper.block_width_mm / 2 - (apart or 0.0) / 2 - head, None),
+        ("beside its counterbores", gripper.block_width_mm / 2 - (apart or 0.0) / 2 - head, None),
         ("between its counterbores", apart - 2 * head if apart else math.inf, None),
         ("at its corners", _corner_wall_mm(gripper, head), None),
         ("round the bolts under their heads", head - hole, line_mm),
         ("over the pins", gripper.land_mm - (pins.depth_mm if pins else 0.0), None),
         ("between bolts and pins", _to_pins_mm(gripper, p.printer.fit_mm), line_mm),
-    )  # fmt: skip
+    )
     for place, wall, printed in walls:
         least = p.printer.min_wall_mm if printed is None else printed
         faults.refuse_unless(

@@ -42,9 +42,14 @@ class Loads:
 
 
 def derive_cabling(
-    given: Input, boards: Boards, outline: Outline, mount: Mount, wiring: Wiring,
-    electrical: Electrical, faults: Faults,
-) -> Cabling:  # fmt: skip
+    given: Input,
+    boards: Boards,
+    outline: Outline,
+    mount: Mount,
+    wiring: Wiring,
+    electrical: Electrical,
+    faults: Faults,
+) -> Cabling:
     """All cables, from the signals of the connectors that they join."""
     told, travel_mm = given.parameters.wiring, mount.stroke_mm / 2
     fixed = _FIXED | {boards.emitter.connector.signals[1]: _SUPPLY}
@@ -57,10 +62,17 @@ def derive_cabling(
         (boards.receiver, loads.read, travel_mm + told.controller_mm),
     ]
     cables = [
-        _cable(f"W{i}", _pads(finger), ends[finger.name], load, fixed,
-               told.section_mm2, reach_mm(finger, outline) + way_mm + told.slack_mm)
+        _cable(
+            f"W{i}",
+            _pads(finger),
+            ends[finger.name],
+            load,
+            fixed,
+            told.section_mm2,
+            reach_mm(finger, outline) + way_mm + told.slack_mm,
+        )
         for i, (finger, load, way_mm) in enumerate(ways, 1)
-    ]  # fmt: skip
+    ]
     if breakout:
         fed = _wires_of(breakout, "J7")
         supply = _feeding(boards.carriers, fed)
@@ -166,20 +178,29 @@ def _named(carriers: Iterable[Carrier], name: str) -> Carrier | None:
 
 
 def _cable(
-    name: str, starts: tuple[Terminal, ...], ends: dict[str, Terminal], load_ma: dict[str, float],
-    fixed: dict[str, str], section_mm2: float, least_mm: float,
-) -> Cable:  # fmt: skip
+    name: str,
+    starts: tuple[Terminal, ...],
+    ends: dict[str, Terminal],
+    load_ma: dict[str, float],
+    fixed: dict[str, str],
+    section_mm2: float,
+    least_mm: float,
+) -> Cable:
     """A wire for each pad, to where its signal goes."""
     free = [s.name for s in starts if s.name not in fixed]
     palette = (*_PLAIN, *_STRIPED)
     colours = fixed | {signal: palette[i % len(palette)] for i, signal in enumerate(free)}
     wires = tuple(
         Wire(
-            f"{name}.{place}", start.name, start, ends[start.name],
-            colours[start.name], load_ma.get(start.name, 0.0),
+            f"{name}.{place}",
+            start.name,
+            start,
+            ends[start.name],
+            colours[start.name],
+            load_ma.get(start.name, 0.0),
         )
         for place, start in enumerate(starts, 1)
-    )  # fmt: skip
+    )
     length_mm = STEP_MM * math.ceil(round(least_mm / STEP_MM, 6))
     return Cable(name, least_mm, length_mm, section_mm2, wires)
 

@@ -19,8 +19,32 @@ MOST_RESISTOR_LOAD = 0.8
 falls linearly to 0 at 155 °C (Yageo RC_L series): 0.8 is what is left at 87 °C."""
 LEAST_RESISTOR_SHARE = 0.1
 """Share of the supply across a resistor: below it the current follows every millivolt."""
-_E24 = (1.0, 1.1, 1.2, 1.3, 1.5, 1.6, 1.8, 2.0, 2.2, 2.4, 2.7, 3.0, 3.3, 3.6, 3.9, 4.3, 4.7, 5.1,
-        5.6, 6.2, 6.8, 7.5, 8.2, 9.1)  # fmt: skip
+_E24 = (
+    1.0,
+    1.1,
+    1.2,
+    1.3,
+    1.5,
+    1.6,
+    1.8,
+    2.0,
+    2.2,
+    2.4,
+    2.7,
+    3.0,
+    3.3,
+    3.6,
+    3.9,
+    4.3,
+    4.7,
+    5.1,
+    5.6,
+    6.2,
+    6.8,
+    7.5,
+    8.2,
+    9.1,
+)
 
 
 @dataclass(frozen=True)
@@ -154,10 +178,8 @@ def refuse_flange_capacitors(given: Input, faults: Faults) -> None:
     duties = [
         _Duty("flange.input_capacitor", p.supply.voltage_v),
         _Duty("flange.output_capacitor", switching.output_v),
-        _Duty(
-            "flange.boot_capacitor", switching.output_v, p.flange.regulator, switching.boot_nf
-        ),
-    ]  # fmt: skip
+        _Duty("flange.boot_capacitor", switching.output_v, p.flange.regulator, switching.boot_nf),
+    ]
     controller = known.controllers[p.controller.board]
     if controller.module:
         linear = known.linear_regulators[p.module.regulator]
@@ -166,10 +188,12 @@ def refuse_flange_capacitors(given: Input, faults: Faults) -> None:
                 "module.supply_capacitor", switching.output_v, p.module.regulator, linear.stable_nf
             ),
             _Duty(
-                "module.capacitor", controller.supply_v, p.controller.board,
+                "module.capacitor",
+                controller.supply_v,
+                p.controller.board,
                 controller.module.bypass_nf,
             ),
-        ]  # fmt: skip
+        ]
     _refuse(given, duties, faults)
 
 

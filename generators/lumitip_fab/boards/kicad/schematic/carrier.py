@@ -85,9 +85,17 @@ def _transistor(sheet: Sheet, at: Point, symbol: str, part: Component, device: D
     """Its source above, its drain below, its gate to the left."""
     x, y = at
     sheet.symbols.append(
-        Drawn(symbol, part.ref, part.value, x, y, pins=tuple(pad for pad, _ in part.nets),
-              ref_at=_beside(part.ref, 5.08, -1.27), value_at=_beside(part.value, 5.08, 1.27))
-    )  # fmt: skip
+        Drawn(
+            symbol,
+            part.ref,
+            part.value,
+            x,
+            y,
+            pins=tuple(pad for pad, _ in part.nets),
+            ref_at=_beside(part.ref, 5.08, -1.27),
+            value_at=_beside(part.value, 5.08, 1.27),
+        )
+    )
     nets = dict(zip(device.pins, (net for _, net in part.nets), strict=True))
     sheet.wire((x - _LABEL_MM, y), (x - 1.5 * _LABEL_MM, y))
     sheet.flag(nets["G"], (x - 1.5 * _LABEL_MM, y), 180)
@@ -122,11 +130,17 @@ def _row(sheet: Sheet, at: Point, part: Component, symbol: str) -> None:
     x, first = at
     middle = first + (ways - 1) / 2 * _PITCH_MM
     sheet.symbols.append(
-        Drawn(symbol, part.ref, part.value, x, middle,
-              pins=tuple(pad for pad, _ in part.nets),
-              ref_at=(0, -ways / 2 * _PITCH_MM - 1.27),
-              value_at=(0, ways / 2 * _PITCH_MM + 1.27))
-    )  # fmt: skip
+        Drawn(
+            symbol,
+            part.ref,
+            part.value,
+            x,
+            middle,
+            pins=tuple(pad for pad, _ in part.nets),
+            ref_at=(0, -ways / 2 * _PITCH_MM - 1.27),
+            value_at=(0, ways / 2 * _PITCH_MM + 1.27),
+        )
+    )
     for i, (_, net) in enumerate(part.nets):
         y = first + i * _PITCH_MM
         sheet.wire((x + _LABEL_MM, y), (x + 2 * _LABEL_MM, y))

@@ -32,28 +32,31 @@ def upright(kind: str) -> tuple[str, Node] | None:
 def transistor(device: Device) -> Node:
     """A P-channel MOSFET: gate to the left, source above, drain below, its diode to the right."""
     number = {name: land for (land, _), name in zip(device.nets, device.pins, strict=True)}
-    return symbol("Q", [
-        line((-2.54, 0), (-0.508, 0)), line((-0.508, 1.905), (-0.508, -1.905)),
-        *(line((0.127, y + 0.508), (0.127, y - 0.508)) for y in (1.524, 0, -1.524)),
-        line((0.127, 1.524), (2.54, 1.524), (2.54, 2.54)),
-        line((0.127, -1.524), (2.54, -1.524), (2.54, -2.54)),
-        line((0.127, 0), (1.524, 0), (1.524, 1.524)),  # the body is at the source
-        line((0.635, 0.381), (1.27, 0), (0.635, -0.381), (0.635, 0.381)),
-        line((2.54, 1.524), (3.556, 1.524), (3.556, -1.524), (2.54, -1.524)),
-        line((3.048, 0.381), (4.064, 0.381)),
-        line((3.556, 0.381), (3.048, -0.381), (4.064, -0.381), (3.556, 0.381)),
-    ], [
-        pin(number["G"], -5.08, 0, 0, PIN_MM, "G"),
-        pin(number["S"], 2.54, 5.08, 270, PIN_MM, "S"),
-        pin(number["D"], 2.54, -5.08, 90, PIN_MM, "D"),
-    ])  # fmt: skip
+    return symbol(
+        "Q",
+        [
+            line((-2.54, 0), (-0.508, 0)),
+            line((-0.508, 1.905), (-0.508, -1.905)),
+            *(line((0.127, y + 0.508), (0.127, y - 0.508)) for y in (1.524, 0, -1.524)),
+            line((0.127, 1.524), (2.54, 1.524), (2.54, 2.54)),
+            line((0.127, -1.524), (2.54, -1.524), (2.54, -2.54)),
+            line((0.127, 0), (1.524, 0), (1.524, 1.524)),  # the body is at the source
+            line((0.635, 0.381), (1.27, 0), (0.635, -0.381), (0.635, 0.381)),
+            line((2.54, 1.524), (3.556, 1.524), (3.556, -1.524), (2.54, -1.524)),
+            line((3.048, 0.381), (4.064, 0.381)),
+            line((3.556, 0.381), (3.048, -0.381), (4.064, -0.381), (3.556, 0.381)),
+        ],
+        [
+            pin(number["G"], -5.08, 0, 0, PIN_MM, "G"),
+            pin(number["S"], 2.54, 5.08, 270, PIN_MM, "S"),
+            pin(number["D"], 2.54, -5.08, 90, PIN_MM, "D"),
+        ],
+    )
 
 
 def chip(device: Device, pitch_mm: float) -> Node:
     """A box with the names of those pins that are joined, first at the top."""
-    names = dict(
-        zip((land.number for land in device.pattern.lands), device.pins, strict=True)
-    )  # fmt: skip
+    names = dict(zip((land.number for land in device.pattern.lands), device.pins, strict=True))
     half = len(device.nets) / 2 * pitch_mm
     pins = [
         pin(number, 5.08, half - (i + 0.5) * pitch_mm, 180, PIN_MM, names[number])
@@ -72,7 +75,10 @@ def _coil() -> Node:
     """Half circles, one below the other."""
     radius = 2.54 / _TURNS
     angles = [math.radians(step * 15) for step in range(13)]
-    return line(*(
-        (radius * math.sin(a), 2.54 - (2 * turn + 1) * radius + radius * math.cos(a))
-        for turn in range(_TURNS) for a in angles
-    ))  # fmt: skip
+    return line(
+        *(
+            (radius * math.sin(a), 2.54 - (2 * turn + 1) * radius + radius * math.cos(a))
+            for turn in range(_TURNS)
+            for a in angles
+        )
+    )

@@ -26,9 +26,16 @@ def draw_wires(sheet: Sheet, at: Point, parts: dict[str, Component], supply: str
     sheet.texts.append((told, (at[0] + 2.54, below), 1.5))
     middle = first + (ways - 1) / 2 * ROW_MM
     sheet.symbols.append(
-        Drawn("Wires", "J1", wires.value, x, middle, pins=tuple(pad for pad, _ in wires.nets),
-              ref_at=(0, -ways / 2 * ROW_MM - 1.27))
-    )  # fmt: skip
+        Drawn(
+            "Wires",
+            "J1",
+            wires.value,
+            x,
+            middle,
+            pins=tuple(pad for pad, _ in wires.nets),
+            ref_at=(0, -ways / 2 * ROW_MM - 1.27),
+        )
+    )
     for i, (_, net) in enumerate(wires.nets):
         y = first + i * ROW_MM
         probe, end = x + 12.7, x + 25.4

@@ -28,9 +28,17 @@ def draw_strings(
         resistor = parts[f"R{number}"]
         sheet.wire((x + 5.08, y), (x + 8.89, y))
         sheet.symbols.append(
-            Drawn("R", resistor.ref, resistor.value, x + 12.7, y, 90,
-                  ref_at=(0, -2.54), value_at=(0, 2.54))
-        )  # fmt: skip
+            Drawn(
+                "R",
+                resistor.ref,
+                resistor.value,
+                x + 12.7,
+                y,
+                90,
+                ref_at=(0, -2.54),
+                value_at=(0, 2.54),
+            )
+        )
         end = x + 16.51
         for place, cell in enumerate(string):
             middle = x + _BEFORE_MM + place * LED_MM

@@ -37,8 +37,12 @@ def sheet_files(
         shapes: symbols by name.
         parts: the board's parts by reference.
     """
-    library: Node = ("kicad_symbol_lib", ("version", FORMAT), ("generator", "lumitip"),
-               *(symbols.named(name, shape, True) for name, shape in shapes.items()))  # fmt: skip
+    library: Node = (
+        "kicad_symbol_lib",
+        ("version", FORMAT),
+        ("generator", "lumitip"),
+        *(symbols.named(name, shape, True) for name, shape in shapes.items()),
+    )
     return {
         f"{board.finger}.kicad_sch": sheet_text(board, paper, sheet, shapes, parts).encode(),
         f"{symbols.LIBRARY}.kicad_sym": written(library).encode(),
@@ -107,8 +111,11 @@ def _places(blocks: int, tall_mm: float) -> tuple[str, Iterator[Point]]:
 
 def _table() -> Node:
     entry = (
-        "lib", ("name", Quoted(symbols.LIBRARY)), ("type", Quoted("KiCad")),
+        "lib",
+        ("name", Quoted(symbols.LIBRARY)),
+        ("type", Quoted("KiCad")),
         ("uri", Quoted("${KIPRJMOD}/" + f"{symbols.LIBRARY}.kicad_sym")),
-        ("options", Quoted("")), ("descr", Quoted("Symbols of this board")),
-    )  # fmt: skip
+        ("options", Quoted("")),
+        ("descr", Quoted("Symbols of this board")),
+    )
     return ("sym_lib_table", entry)

@@ -33,9 +33,17 @@ def draw_block(
     sheet.texts.append((f"{ref} to {nets[str(mux.output)]}", (at[0] + 2.54, at[1] + 5.08), 2.5))
     top = mux_half_mm(mux)
     sheet.symbols.append(
-        Drawn("Multiplexer", ref, parts[ref].value, x, y, pins=tuple(nets),
-              ref_at=(-7.62, -top - 1.27), value_at=(0, 0))
-    )  # fmt: skip
+        Drawn(
+            "Multiplexer",
+            ref,
+            parts[ref].value,
+            x,
+            y,
+            pins=tuple(nets),
+            ref_at=(-7.62, -top - 1.27),
+            value_at=(0, 0),
+        )
+    )
     _detectors(sheet, at[0], pins, leads, nets, parts)
     _output(sheet, pins["Z"], nets[leads["Z"]], parts[f"R{number}"], supply)
     for name in (name for name in pins if name[0] == "S"):
@@ -55,9 +63,10 @@ def draw_block(
     capacitor = parts[f"C{number}"]
     cx, cy = x + 25.4, y + top - 7.62
     sheet.symbols.append(
-        Drawn("C", capacitor.ref, capacitor.value, cx, cy,
-              ref_at=(5.08, -1.27), value_at=(6.35, 1.27))
-    )  # fmt: skip
+        Drawn(
+            "C", capacitor.ref, capacitor.value, cx, cy, ref_at=(5.08, -1.27), value_at=(6.35, 1.27)
+        )
+    )
     sheet.power(supply, (cx, cy - 3.81))
     sheet.power(GROUND, (cx, cy + 3.81))
 
@@ -99,7 +108,14 @@ def _output(sheet: Sheet, at: Point, net: str, resistor: Component, supply: str)
     sheet.junctions.append((x + 8.89, y))
     sheet.flag(net, (x + 17.78, y), 0)
     sheet.symbols.append(
-        Drawn("R", resistor.ref, resistor.value, x + 8.89, y - 3.81,
-              ref_at=(3.81, -1.27), value_at=(3.81, 1.27))
-    )  # fmt: skip
+        Drawn(
+            "R",
+            resistor.ref,
+            resistor.value,
+            x + 8.89,
+            y - 3.81,
+            ref_at=(3.81, -1.27),
+            value_at=(3.81, 1.27),
+        )
+    )
     sheet.power(supply, (x + 8.89, y - 7.62))

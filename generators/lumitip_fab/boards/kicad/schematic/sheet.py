@@ -41,8 +41,9 @@ class Sheet:
         self.powers += 1
         beyond = (0.0, 4.572) if net == "GND" else (0.0, -3.81)
         shown = beyond if net != "PWR_FLAG" else None
-        self.symbols.append(Drawn(net, f"#PWR{self.powers:03d}", net, *at, angle_deg, ("1",),
-                                  value_at=shown))  # fmt: skip
+        self.symbols.append(
+            Drawn(net, f"#PWR{self.powers:03d}", net, *at, angle_deg, ("1",), value_at=shown)
+        )
 
     def wire(self, *points: Point) -> None:
         """A wire along some corners."""

@@ -19,27 +19,46 @@ HIDDEN: Node = ("effects", ("font", ("size", 1.27, 1.27)), "hide")
 def hand_drawn() -> dict[str, Node]:
     """The symbols that every board draws on, by name."""
     return {
-        "R": symbol("R", [box(-1.016, -2.54, 1.016, 2.54)],
-                     [pin("1", 0, 3.81, 270, 1.27), pin("2", 0, -3.81, 90, 1.27)]),
-        "C": symbol("C", [line((-2.032, 0.762), (2.032, 0.762)),
-                           line((-2.032, -0.762), (2.032, -0.762))],
-                     [pin("1", 0, 3.81, 270, 3.048), pin("2", 0, -3.81, 90, 3.048)]),
+        "R": symbol(
+            "R",
+            [box(-1.016, -2.54, 1.016, 2.54)],
+            [pin("1", 0, 3.81, 270, 1.27), pin("2", 0, -3.81, 90, 1.27)],
+        ),
+        "C": symbol(
+            "C",
+            [line((-2.032, 0.762), (2.032, 0.762)), line((-2.032, -0.762), (2.032, -0.762))],
+            [pin("1", 0, 3.81, 270, 3.048), pin("2", 0, -3.81, 90, 3.048)],
+        ),
         "TestPoint": symbol("TP", [_circle(0, 3.302, 0.762)], [pin("1", 0, 0, 90, 2.54)]),
-        "PWR_FLAG": _power("PWR_FLAG", [
-            line((0, 0), (0, 1.27)),
-            line((0, 1.27), (-1.016, 1.905), (0, 2.54), (1.016, 1.905), (0, 1.27))],
-            "power_out", 90),
-        "GND": _power("GND", [
-            line((0, 0), (0, -1.27)),
-            line((-1.27, -1.27), (1.27, -1.27), (0, -2.54), (-1.27, -1.27))],
-            "power_in", 270),
-    }  # fmt: skip
+        "PWR_FLAG": _power(
+            "PWR_FLAG",
+            [
+                line((0, 0), (0, 1.27)),
+                line((0, 1.27), (-1.016, 1.905), (0, 2.54), (1.016, 1.905), (0, 1.27)),
+            ],
+            "power_out",
+            90,
+        ),
+        "GND": _power(
+            "GND",
+            [
+                line((0, 0), (0, -1.27)),
+                line((-1.27, -1.27), (1.27, -1.27), (0, -2.54), (-1.27, -1.27)),
+            ],
+            "power_in",
+            270,
+        ),
+    }
 
 
 def supply(name: str) -> Node:
     """The symbol of a supply, which names its net."""
-    return _power(name, [line((0, 0), (0, 2.54)), line((-0.762, 1.27), (0, 2.54), (0.762, 1.27))],
-                  "power_in", 90)  # fmt: skip
+    return _power(
+        name,
+        [line((0, 0), (0, 2.54)), line((-0.762, 1.27), (0, 2.54), (0.762, 1.27))],
+        "power_in",
+        90,
+    )
 
 
 def led(marked: str) -> Node:
@@ -144,25 +163,46 @@ def symbol(prefix: str, body: list[Node], pins: list[Node], shown: bool = False)
     names: Node = (
         ("pin_names", ("offset", 1.016)) if shown else ("pin_names", ("offset", 0), "hide")
     )
-    return ("symbol", *hide, names, *_frame(prefix), ("symbol", "0_1", *body),
-            ("symbol", "1_1", *pins))  # fmt: skip
+    return (
+        "symbol",
+        *hide,
+        names,
+        *_frame(prefix),
+        ("symbol", "0_1", *body),
+        ("symbol", "1_1", *pins),
+    )
 
 
 def _power(net: str, body: list[Node], kind: str, angle: int) -> Node:
     end = pin("1", 0, 0, angle, 0, net, kind)
     return (
-        "symbol", ("power",), ("pin_numbers", "hide"), ("pin_names", ("offset", 0), "hide"),
-        *_frame("#PWR"), ("symbol", "0_1", *body), ("symbol", "1_1", end),
-    )  # fmt: skip
+        "symbol",
+        ("power",),
+        ("pin_numbers", "hide"),
+        ("pin_names", ("offset", 0), "hide"),
+        *_frame("#PWR"),
+        ("symbol", "0_1", *body),
+        ("symbol", "1_1", end),
+    )
 
 
 def _frame(prefix: str) -> tuple[Node, ...]:
     told = (("Reference", prefix), ("Value", ""), ("Footprint", ""), ("Datasheet", ""))
     return (
-        ("in_bom", "yes"), ("on_board", "yes"),
-        *(("property", Quoted(key), Quoted(value), ("id", i), ("at", 0, 0, 0),
-           HIDDEN if i else _FONT) for i, (key, value) in enumerate(told)),
-    )  # fmt: skip
+        ("in_bom", "yes"),
+        ("on_board", "yes"),
+        *(
+            (
+                "property",
+                Quoted(key),
+                Quoted(value),
+                ("id", i),
+                ("at", 0, 0, 0),
+                HIDDEN if i else _FONT,
+            )
+            for i, (key, value) in enumerate(told)
+        ),
+    )
 
 
 def pin(
@@ -175,13 +215,22 @@ def pin(
     kind: str = "passive",
 ) -> Node:
     """A pin whose outer end is at (x, y); it reaches `length` from there towards `angle`."""
-    return ("pin", kind, "line", ("at", x, y, angle), ("length", length),
-            ("name", Quoted(name), _FONT), ("number", Quoted(number), _FONT))  # fmt: skip
+    return (
+        "pin",
+        kind,
+        "line",
+        ("at", x, y, angle),
+        ("length", length),
+        ("name", Quoted(name), _FONT),
+        ("number", Quoted(number), _FONT),
+    )
 
 
 def _stroke(fill: str = "none") -> tuple[Node, Node]:
-    return (("stroke", ("width", 0.2), ("type", "default"), ("color", 0, 0, 0, 0)),
-            ("fill", ("type", fill)))  # fmt: skip
+    return (
+        ("stroke", ("width", 0.2), ("type", "default"), ("color", 0, 0, 0, 0)),
+        ("fill", ("type", fill)),
+    )
 
 
 def line(*points: Point) -> Node:

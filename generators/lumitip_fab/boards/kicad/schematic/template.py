@@ -50,10 +50,13 @@ class Template:
             pattern.delete()
         things = [thing for thing in self.sheet.tree[1:] if thing is not None]
         things.sort(key=lambda thing: self._order[thing[0]])  # copies stand at the end
-        return ("kicad_sch", *(
-            (*_node(thing), *library) if thing[0].value() == "lib_symbols" else _node(thing)
-            for thing in things
-        ))  # fmt: skip
+        return (
+            "kicad_sch",
+            *(
+                (*_node(thing), *library) if thing[0].value() == "lib_symbols" else _node(thing)
+                for thing in things
+            ),
+        )
 
 
 def _node(tree: list[Any]) -> Node:

@@ -106,9 +106,11 @@ def _told(drawn: Drawn, part: Component | None) -> dict[str, tuple[str, Point | 
     """What each field of a symbol tells, and where beside it; hidden where it has no place."""
     footprint = f"{symbols.LIBRARY}:{part.footprint.name}" if part else ""
     told = {
-        "Reference": (drawn.ref, drawn.ref_at), "Value": (drawn.value, drawn.value_at),
-        "Footprint": (footprint, None), "Datasheet": ("", None),
-    }  # fmt: skip
+        "Reference": (drawn.ref, drawn.ref_at),
+        "Value": (drawn.value, drawn.value_at),
+        "Footprint": (footprint, None),
+        "Datasheet": ("", None),
+    }
     if part and part.part:
         told |= {"Manufacturer": (part.manufacturer, None), "MPN": (part.part, None)}
     return told

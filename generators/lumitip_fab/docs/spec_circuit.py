@@ -1,0 +1,110 @@
+"""Electrical figures of a design beside the published ones."""
+
+from lumitip_fab.design import Design
+from lumitip_fab.docs.outside import Row
+
+
+def electrical_rows(design: Design) -> tuple[Row, ...]:
+    wiring, controller, optics = design.wiring, design.controller, design.layout.optics
+    return (
+        Row(
+            "resolution",
+            "8 bits",
+            f"{controller.adc_bits} bits",
+            f"all bits of the ADC of {controller.title}; the published firmware keeps 8",
+        ),
+        Row(
+            "rate",
+            "55 Hz",
+            "set by the firmware",
+            "no part of this design sets it: firmware and link do",
+        ),
+        Row(
+            "current of the emitter",
+            "38 mA",
+            f"{sum(wiring.current_ma):.1f} mA",
+            f"nominal: {len(wiring.strings)} strings through {_ohms(wiring.resistor_ohm)} from "
+            f"{wiring.supply_v:g} V; Table I gives whole mA",
+        ),
+        Row(
+            "current of the receiver",
+            "1 mA",
+            f"{_pull_up_ma(design):.2f} mA",
+            f"{wiring.muxes} pull-ups of {optics.pull_up_ohm:g} Ω at {optics.supply_v:g} V and "
+            "full light; multiplexers take microamperes, Table I gives whole mA",
+        ),
+        Row(
+            "warm-up",
+            "5 min",
+            "not computed",
+            "heat flows into gripper and grasped things: measure it on your sensor",
+        ),
+    )
+
+
+def string_rows(design: Design) -> tuple[Row, ...]:
+    told, wiring = design.electrical.strings, design.wiring
+    low, high = min(told.low_ma), max(told.high_ma)
+    longest = max(len(string) for string in wiring.strings)
+    left_v = wiring.supply_v - longest * told.forward_v
+    return (
+        Row("current of a string", "19 to 20 mA", _span(wiring.current_ma), "nominal"),
+        Row(
+            "... over tolerances",
+            "not stated",
+            f"{low:.1f} to {high:.1f} mA",
+            f"supply ±{100 * told.supply_tolerance:g} %, forward voltage "
+            f"±{told.forward_tolerance_v:g} V, resistor ±{100 * told.resistor_tolerance:g} %: "
+            f"{longest} LEDs leave {left_v:.2f} V of {wiring.supply_v:g} V to the resistor; with "
+            f"emitter.string_leds = {told.fewer_leds} it is "
+            f"{told.fewer_low_ma:.1f} to {told.fewer_high_ma:.1f} mA, on more strings",
+        ),
+        Row(
+            "load of a string resistor",
+            "not stated",
+            f"{1000 * told.resistor_w:.0f} mW",
+            f"nominal; up to {1000 * told.resistor_high_w:.0f} mW at {high:.1f} mA, of "
+            f"{1000 * told.resistor_rated_w:.0f} mW rated",
+        ),
+    )
+
+
+def channel_rows(design: Design) -> tuple[Row, ...]:
+    told, optics = design.electrical.channel, design.layout.optics
+    line_pf = told.line_pf + told.detector_pf
+    return (
+        Row(
+            "signal at full light",
+            "not stated",
+            f"{told.full_scale_v:.2f} V",
+            f"of {optics.supply_v:g} V: the detector saturates at {told.saturation_v:g} V or takes "
+            f"{told.light_current_ua:g} µA, whichever is less",
+        ),
+        Row(
+            "signal in the dark",
+            "not stated",
+            f"{told.dark_v:.2f} V",
+            f"{told.dark_current_na:g} nA through {optics.pull_up_ohm:g} Ω",
+        ),
+        Row(
+            "settling of a channel",
+            "not stated",
+            f"{told.settle_us:.0f} µs",
+            f"{line_pf:g} pF through {optics.pull_up_ohm:g} Ω, from full light to dark within half "
+            f"a step of {design.controller.adc_bits} bits",
+        ),
+    )
+
+
+def _span(values: tuple[float, ...]) -> str:
+    low, high = f"{min(values):.1f}", f"{max(values):.1f}"
+    return f"{low} mA" if low == high else f"{low} to {high} mA"
+
+
+def _ohms(values: tuple[float, ...]) -> str:
+    return ", ".join(f"{values.count(v)} x {v:g} Ω" for v in sorted(set(values)))
+
+
+def _pull_up_ma(design: Design) -> float:
+    optics = design.layout.optics
+    return 1000 * design.wiring.muxes * optics.supply_v / optics.pull_up_ohm
