@@ -89,7 +89,7 @@ def test_the_sheet_that_schematics_grow_from_touches_the_boards(package: Path) -
         return [code_hash("boards"), whole, code_hash("mask")]
 
     before = hashes()
-    sheet = package / "boards/schematic/template.kicad_sch"
+    sheet = package / "boards/kicad/schematic/template.kicad_sch"
     sheet.write_text(sheet.read_text(encoding="utf-8").replace("passive", "input"), "utf-8")
     assert [a == b for a, b in zip(before, hashes(), strict=True)] == [False, False, True]
 
@@ -119,10 +119,10 @@ def imported(file: Path) -> set[Path]:
 
 
 def test_whatever_a_generator_imports_makes_it_run_again(package: Path) -> None:
-    steps = {step.folder: set[Path]() for step in STEPS}
+    steps = {step.room: set[Path]() for step in STEPS}
     for step in STEPS:
-        steps[step.folder] |= imported(PACKAGE / step.folder / f"{step.module}.py")
-    assert PACKAGE / "colours.py" in steps["wiring"]
+        steps[step.room] |= imported(PACKAGE / step.room / f"{step.module}.py")
+    assert PACKAGE / "text.py" in steps["docs"]
     unseen = []
     for folder, files in steps.items():
         before = code_hash(folder)
