@@ -51,7 +51,16 @@ def test_a_name_of_any_script_is_kept_and_has_a_form_for_every_medium(named: Des
 def test_drawings_of_the_mask_and_the_cables_show_it(named: Design) -> None:
     d = named
     made = mask_files(
-        d.receiver, d.outline, d.stack, d.tip, d.mould, d.mount, d.interfaces, d.mask, d.title
+        d.receiver,
+        d.outline,
+        d.stack,
+        d.tip,
+        d.mould,
+        d.mount,
+        d.interfaces,
+        d.mask,
+        d.heat,
+        d.title,
     )
     pdf = next(a for a in made if a.path.endswith(".pdf"))
     page = pypdfium2.PdfDocument(io.BytesIO(pdf.data))[0]
