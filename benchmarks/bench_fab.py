@@ -91,15 +91,15 @@ def one_stage(stage: str, cells: int) -> None:
         file = write_design(cells, PRESETS / "published.toml", Path(name) / "design")
         derive(load(file))  # imports are not what is measured
         begun = time.perf_counter()
-        given = load(file)
-        design = derive(given)
+        config = load(file)
+        design = derive(config)
         seconds = time.perf_counter() - begun
         if stage != "layout":
             begun = time.perf_counter()
             masks = (t for t in tasks(STEPS, design) if t.step.name == "mask_files")
             made = [a for t in masks for a in mask_files(**t.arguments)]
             seconds = time.perf_counter() - begun
-            for artefact in (*made, *documents(given, design)):
+            for artefact in (*made, *documents(config, design)):
                 path = out / artefact.path
                 path.parent.mkdir(parents=True, exist_ok=True)
                 path.write_bytes(artefact.data)

@@ -197,10 +197,10 @@ def test_in_the_narrowest_cells_the_ends_of_the_columns_are_named(
 
 
 def test_references_stand_at_leds_nearer_each_other(design_dir: Path) -> None:
-    given = load(design_dir / "presets/published.toml")
-    grid = given.parameters.grid.model_copy(update={"pitch_mm": 4.5})
-    parameters = given.parameters.model_copy(update={"grid": grid})
-    design = derive(dataclasses.replace(given, parameters=parameters))
+    config = load(design_dir / "presets/published.toml")
+    grid = config.parameters.grid.model_copy(update={"pitch_mm": 4.5})
+    parameters = config.parameters.model_copy(update={"grid": grid})
+    design = derive(dataclasses.replace(config, parameters=parameters))
     assert all(p.ref_text for p in _parts(_placed(design, design.emitter), "led"))
 
 

@@ -94,10 +94,10 @@ def test_a_new_gripper_needs_nothing_but_its_entry(held_by: File, tmp_path: Path
 
 
 def test_every_gripper_of_the_catalogue_holds_the_published_sensor(design_dir: Path) -> None:
-    given = load(design_dir / "presets/published.toml")
+    config = load(design_dir / "presets/published.toml")
     tested = {*WITHOUT_PRESET, "robotiq_2f85"}
     tested |= {p.stem for p in (design_dir / "presets").glob("*.toml")}
-    assert set(given.catalogue.grippers) <= tested
+    assert set(config.catalogue.grippers) <= tested
 
 
 @pytest.mark.slow

@@ -83,11 +83,11 @@ def published(design_dir: Path) -> Input:
     return load(design_dir / "presets" / "published.toml")
 
 
-def with_entry(given: Input, kind: str, name: str, **values: Any) -> Input:
-    table = getattr(given.catalogue, kind)
+def with_entry(config: Input, kind: str, name: str, **values: Any) -> Input:
+    table = getattr(config.catalogue, kind)
     entry = table[name].model_copy(update=values)
-    parts = given.catalogue.model_copy(update={kind: {**table, name: entry}})
-    return replace(given, catalogue=parts)
+    parts = config.catalogue.model_copy(update={kind: {**table, name: entry}})
+    return replace(config, catalogue=parts)
 
 
 @pytest.mark.parametrize(

@@ -33,9 +33,9 @@ def given(design_dir: Path) -> Input:
 
 
 @pytest.fixture(scope="module")
-def settings(given: Input, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def settings(config: Input, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Settings of the published design and `design.json`. Do not change them."""
-    return _written(derive(given), tmp_path_factory.mktemp("settings") / "out")
+    return _written(derive(config), tmp_path_factory.mktemp("settings") / "out")
 
 
 def failing(folder: Path) -> set[str]:
@@ -116,23 +116,23 @@ def test_lost_files_are_told(settings: Path, tmp_path: Path) -> None:
     assert failing(damaged) == {"settings", "parts", "mould_layers"}
 
 
-def _with(given: Input, material: str, **filament: Any) -> Input:
-    backing = given.parameters.backing.model_copy(update={"material": material})
-    known = dict(given.catalogue.filaments)
+def _with(config: Input, material: str, **filament: Any) -> Input:
+    backing = config.parameters.backing.model_copy(update={"material": material})
+    known = dict(config.catalogue.filaments)
     known[material] = known[material].model_copy(update=filament)
     return dataclasses.replace(
-        given,
-        parameters=given.parameters.model_copy(update={"backing": backing}),
-        catalogue=given.catalogue.model_copy(update={"filaments": known}),
+        config,
+        parameters=config.parameters.model_copy(update={"backing": backing}),
+        catalogue=config.catalogue.model_copy(update={"filaments": known}),
     )
 
 
-def test_what_must_not_bend_is_printed_from_another_filament(given: Input, tmp_path: Path) -> None:
-    design = derive(_with(given, "TPU 98A"))
+def test_what_must_not_bend_is_printed_from_another_filament(config: Input, tmp_path: Path) -> None:
+    design = derive(_with(config, "TPU 98A"))
     told = design.slicing
     assert (told.backing.name, told.rigid.name) == ("TPU 98A", "PETG")
     # The spool at hand is the backing's; the other's density is the catalogue's.
-    assert told.backing.density_g_ml == given.parameters.backing.density_g_ml
+    assert told.backing.density_g_ml == config.parameters.backing.density_g_ml
     out = _written(design, tmp_path / "out")
     assert failing(out) == set()
     assert sorted(p.name for p in (out / "print").iterdir()) == [
@@ -147,27 +147,27 @@ def test_what_must_not_bend_is_printed_from_another_filament(given: Input, tmp_p
 
 
 @pytest.mark.parametrize("other", ["TPU 98A", "wood"])
-def test_a_filament_for_rigid_parts_must_be_one(given: Input, other: str) -> None:
+def test_a_filament_for_rigid_parts_must_be_one(config: Input, other: str) -> None:
     with pytest.raises(InputError, match=f"rigid_parts '{other}' is no filament"):
-        derive(_with(given, "TPU 98A", rigid_parts=other))
+        derive(_with(config, "TPU 98A", rigid_parts=other))
 
 
 def test_no_file_of_their_own_where_the_moulds_are_whole_layers(
-    given: Input, tmp_path: Path
+    config: Input, tmp_path: Path
 ) -> None:
-    stack = given.parameters.stack.model_copy(update={"silicone_mm": 1.4})
-    parameters = given.parameters.model_copy(update={"stack": stack})
-    design = derive(dataclasses.replace(given, parameters=parameters))
+    stack = config.parameters.stack.model_copy(update={"silicone_mm": 1.4})
+    parameters = config.parameters.model_copy(update={"stack": stack})
+    design = derive(dataclasses.replace(config, parameters=parameters))
     assert design.slicing.mould == design.slicing.rigid
     out = _written(design, tmp_path / "out")
     assert failing(out) == set()
     assert sorted(p.name for p in (out / "print").iterdir()) == ["petg.ini", "printing.md"]
 
 
-def test_heights_that_no_layer_divides_are_told(given: Input, tmp_path: Path) -> None:
-    stack = given.parameters.stack.model_copy(update={"silicone_mm": 1.53})
-    parameters = given.parameters.model_copy(update={"stack": stack})
-    design = derive(dataclasses.replace(given, parameters=parameters))
+def test_heights_that_no_layer_divides_are_told(config: Input, tmp_path: Path) -> None:
+    stack = config.parameters.stack.model_copy(update={"silicone_mm": 1.53})
+    parameters = config.parameters.model_copy(update={"stack": stack})
+    design = derive(dataclasses.replace(config, parameters=parameters))
     assert design.slicing.mould.layer_mm == 0.2
     assert design.mould.off_layer_mm == pytest.approx(0.07)
     assert failing(_written(design, tmp_path / "out")) == set()

@@ -38,9 +38,11 @@ def with_edge(design_dir: Path, tmp_path: Path) -> Callable[[float], tuple[Path,
     that thick, and the design."""
 
     def make(edge_mm: float) -> tuple[Path, Design]:
-        given = load(design_dir / "presets" / "published.toml")
-        tip = given.parameters.tip.model_copy(update={"edge_mm": edge_mm})
-        design = derive(replace(given, parameters=given.parameters.model_copy(update={"tip": tip})))
+        config = load(design_dir / "presets" / "published.toml")
+        tip = config.parameters.tip.model_copy(update={"edge_mm": edge_mm})
+        design = derive(
+            replace(config, parameters=config.parameters.model_copy(update={"tip": tip}))
+        )
         for made in backing(
             design.receiver,
             design.stack,

@@ -159,23 +159,23 @@ def test_a_scheduler_that_does_not_answer_is_told(explored: Explored, tmp_path: 
         explored(tmp_path, "nonsense://127.0.0.1:1")
 
 
-def test_another_seed_or_price_is_evaluated_anew(given: Input) -> None:
-    prices = given.catalogue.prices
-    one = Job.of(given, (), prices, FEW)
-    assert one.key == Job.of(given, (), prices, FEW).key
+def test_another_seed_or_price_is_evaluated_anew(config: Input) -> None:
+    prices = config.catalogue.prices
+    one = Job.of(config, (), prices, FEW)
+    assert one.key == Job.of(config, (), prices, FEW).key
     dearer = prices.model_copy(update={"each": {**prices.each, "0603": 9.0}})
-    wider = changed(given, (("mask.hole_mm", 3.0),))
+    wider = changed(config, (("mask.hole_mm", 3.0),))
     others = [
-        Job.of(given, (), prices, Sample(1, 3, seed=1)),
-        Job.of(given, (), dearer, FEW),
+        Job.of(config, (), prices, Sample(1, 3, seed=1)),
+        Job.of(config, (), dearer, FEW),
         Job.of(wider, (), prices, FEW),
     ]
     assert len({one.key, *(job.key for job in others)}) == 4
 
 
-def test_a_design_whose_cells_are_too_few_for_a_pose_is_refused(given: Input) -> None:
+def test_a_design_whose_cells_are_too_few_for_a_pose_is_refused(config: Input) -> None:
     few = changed(
-        given,
+        config,
         (
             ("grid.columns", (2, 1)),
             ("emitter.resistor", "1206"),
@@ -183,28 +183,28 @@ def test_a_design_whose_cells_are_too_few_for_a_pose_is_refused(given: Input) ->
             ("emitter.current_ma", 6.0),
         ),
     )
-    (told,) = evaluate(Job.of(few, (), given.catalogue.prices, FEW))["refused"]
+    (told,) = evaluate(Job.of(few, (), config.catalogue.prices, FEW))["refused"]
     assert told.startswith("grid.columns: layout: 3 cells given, a pose needs at least 4")
 
 
-def test_figures_are_those_of_the_design(given: Input) -> None:
-    prices, design = given.catalogue.prices, derive(given)
-    given = resolve(given).given
-    told = evaluate(Job.of(given, (), prices, FEW))["figures"]
+def test_figures_are_those_of_the_design(config: Input) -> None:
+    prices, design = config.catalogue.prices, derive(config)
+    config = resolve(config).config
+    told = evaluate(Job.of(config, (), prices, FEW))["figures"]
     assert (told["cells"], told["current_ma"]) == (32, pytest.approx(38.4, abs=1.0))
-    needed = bill(given, design)
+    needed = bill(config, design)
     assert needed["15406085BA300"] == needed["SML-H10TBT86"] == 32
     assert needed["74HC4051PW"] == needed["100nF 0603"] == 4
     assert (needed["1206"], needed["0603"]) == (len(design.wiring.strings), 4)
     free = prices.model_copy(update={"each": {**prices.each, "15406085BA300": 0.0}})
     led = prices.each["15406085BA300"]
-    assert cost(given, design, prices) - cost(given, design, free) == pytest.approx(32 * led)
+    assert cost(config, design, prices) - cost(config, design, free) == pytest.approx(32 * led)
 
 
 @pytest.mark.slow
-def test_a_finer_grid_sees_better(given: Input) -> None:
+def test_a_finer_grid_sees_better(config: Input) -> None:
     errors = [
-        accuracy(derive(changed(given, (("grid.pitch_mm", pitch),))).layout, Sample(2, 15))
+        accuracy(derive(changed(config, (("grid.pitch_mm", pitch),))).layout, Sample(2, 15))
         for pitch in (5.0, 8.0)
     ]
     assert errors[0]["error_mm"] < errors[1]["error_mm"]

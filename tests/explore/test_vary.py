@@ -28,22 +28,22 @@ def given(design_dir: Path) -> Input:
         ('mask.hole_shape="circle"', ("circle",)),
     ],
 )
-def test_values_of_a_field(given: Input, text: str, values: tuple[object, ...]) -> None:
-    (axis,) = axes(given, [text], points=5)
+def test_values_of_a_field(config: Input, text: str, values: tuple[object, ...]) -> None:
+    (axis,) = axes(config, [text], points=5)
     assert axis.values == values
     assert [type(v) for v in axis.values] == [type(v) for v in values]
 
 
-def test_the_last_field_varies_fastest(given: Input) -> None:
-    asked = axes(given, ["grid.pitch_mm=5,6", "mask.hole_mm=2,3"], points=2)
+def test_the_last_field_varies_fastest(config: Input) -> None:
+    asked = axes(config, ["grid.pitch_mm=5,6", "mask.hole_mm=2,3"], points=2)
     made = [tuple(value for _, value in changes) for changes in combinations(asked)]
     assert made == [(5, 2), (5, 3), (6, 2), (6, 3)]
-    parameters = changed(given, (("grid.pitch_mm", 5), ("mask.hole_mm", 2))).parameters
+    parameters = changed(config, (("grid.pitch_mm", 5), ("mask.hole_mm", 2))).parameters
     assert (parameters.grid.pitch_mm, parameters.mask.hole_mm) == (5, 2)
-    assert parameters.grid.columns == given.parameters.grid.columns
+    assert parameters.grid.columns == config.parameters.grid.columns
 
 
-def test_every_fault_of_every_text_is_told_at_once(given: Input) -> None:
+def test_every_fault_of_every_text_is_told_at_once(config: Input) -> None:
     texts = [
         "grid.pich_mm=3:8",
         "mask.hole_mm",
@@ -58,7 +58,7 @@ def test_every_fault_of_every_text_is_told_at_once(given: Input) -> None:
         "mould.draft_deg=inf:3",
     ]
     with pytest.raises(InputError) as caught:
-        axes(given, texts, points=6)
+        axes(config, texts, points=6)
     told = str(caught.value)
     for part in (
         "did you mean 'grid.pitch_mm'?",
@@ -78,11 +78,11 @@ def test_every_fault_of_every_text_is_told_at_once(given: Input) -> None:
     assert all(problem.file == "--vary" for problem in caught.value.problems)
 
 
-def test_no_more_designs_than_can_be_evaluated(given: Input) -> None:
+def test_no_more_designs_than_can_be_evaluated(config: Input) -> None:
     with pytest.raises(InputError, match="40000 designs given, at most 10000"):
-        axes(given, ["grid.pitch_mm=3:8", "mask.hole_mm=1:4"], points=200)
+        axes(config, ["grid.pitch_mm=3:8", "mask.hole_mm=1:4"], points=200)
     with pytest.raises(InputError, match="1 points given, a range needs at least 2"):
-        axes(given, ["grid.pitch_mm=3:8"], points=1)
+        axes(config, ["grid.pitch_mm=3:8"], points=1)
 
 
 @pytest.mark.parametrize("columns", [(5, 4, 5, 4, 5, 4, 5), (4, 5, 4), (4, 5, 6, 5)])

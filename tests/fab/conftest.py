@@ -20,7 +20,7 @@ Vary = Callable[[Input, Mapping[str, Any]], Input]
 @pytest.fixture(scope="session")
 def inputs() -> dict[str, Input]:
     """Every preset, read, with its automatic values in place."""
-    return {file.stem: resolve(load(file)).given for file in sorted(PRESETS.glob("*.toml"))}
+    return {file.stem: resolve(load(file)).config for file in sorted(PRESETS.glob("*.toml"))}
 
 
 @pytest.fixture(scope="session")
@@ -33,8 +33,8 @@ def designs(inputs: dict[str, Input]) -> dict[str, Design]:
 def vary() -> Vary:
     """`vary(given, {"grid.pitch_mm": 5.0})`: the same file with some fields changed."""
 
-    def varied(given: Input, values: Mapping[str, Any]) -> Input:
-        told = given.parameters.model_dump()
+    def varied(config: Input, values: Mapping[str, Any]) -> Input:
+        told = config.parameters.model_dump()
         for field, value in values.items():
             table = told
             *sections, key = field.split(".")
@@ -42,7 +42,7 @@ def vary() -> Vary:
                 table = table[section]
             assert key in table, field
             table[key] = value
-        return Input(Parameters.model_validate(told), given.catalogue, given.sources)
+        return Input(Parameters.model_validate(told), config.catalogue, config.sources)
 
     return varied
 

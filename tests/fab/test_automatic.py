@@ -100,7 +100,7 @@ def test_every_choice_has_a_value_and_a_reason_in_one_line(file: Any) -> None:
 def test_what_a_user_wrote_is_never_altered(file: Any) -> None:
     text = '[emitter]\nresistor = "0603"\n[board]\ntip_margin_mm = 3.65\n'
     resolved = resolve(load(file(text)))
-    assert resolved.given.value("emitter.resistor") == "0603"
+    assert resolved.config.value("emitter.resistor") == "0603"
     assert "emitter.resistor" not in {c.field for c in resolved.design.choices}
     assert resolved.design.electrical.strings.resistor_high_w <= 0.08
 
@@ -123,9 +123,9 @@ def test_each_remedy_that_is_named_mends_its_rule(file: Any, name: str) -> None:
     plan = plan_of(caught.value.verdict)
     assert plan.complete
     for remedy in plan.steps[0].remedies:
-        given = load(file(REFUSED[name])).with_values({remedy.field: remedy.value})
+        config = load(file(REFUSED[name])).with_values({remedy.field: remedy.value})
         try:
-            left = [p.message for p in ()] if resolve(given) else []
+            left = [p.message for p in ()] if resolve(config) else []
         except RuleError as error:
             left = [p.message for p in error.problems]
         assert plan.steps[0].message not in left

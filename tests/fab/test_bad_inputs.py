@@ -93,7 +93,7 @@ def test_a_figure_that_a_message_names_for_its_field_mends_the_rule(
     error = _refusal(name, project)
     if not isinstance(error, RuleError):
         return  # schema faults: pydantic's own limits
-    given = error.verdict.given
+    given = error.verdict.config
     for problem in error.problems:
         figures = ADVICE.findall(problem.message) if "." in problem.field else ()
         if len(figures) != 1 or not isinstance(given.value(problem.field), float):

@@ -270,8 +270,8 @@ def test_cells_and_wires_change_the_design_hash(
 
 def test_fewer_leds_make_a_string(published: Input, vary: Any) -> None:
     def lengths(most: int) -> list[int]:
-        given = vary(published, {"emitter.current_ma": 5.0, "emitter.string_leds": most})
-        return [len(string) for string in derive(given).wiring.strings]
+        config = vary(published, {"emitter.current_ma": 5.0, "emitter.string_leds": most})
+        return [len(string) for string in derive(config).wiring.strings]
 
     assert lengths(16) == [16, 16]
     assert lengths(12) == [11, 11, 10]

@@ -38,10 +38,10 @@ def _problems(path: Path) -> tuple[Problem, ...]:
 
 
 def test_what_a_file_says_wins_over_its_base_and_the_rest_is_the_bases(write: Write) -> None:
-    given = load(write(BASE + "[grid]\npitch_mm = 5.0\n"))
-    assert given.parameters.grid.pitch_mm == 5.0
-    assert given.parameters.grid.columns == (5, 4, 5, 4, 5, 4, 5)
-    assert [s.path.name for s in given.sources] == ["x.toml", "published.toml"]
+    config = load(write(BASE + "[grid]\npitch_mm = 5.0\n"))
+    assert config.parameters.grid.pitch_mm == 5.0
+    assert config.parameters.grid.columns == (5, 4, 5, 4, 5, 4, 5)
+    assert [s.path.name for s in config.sources] == ["x.toml", "published.toml"]
 
 
 def test_a_preset_that_extends_another_can_be_extended(write: Write) -> None:
@@ -112,15 +112,15 @@ def test_a_part_of_ones_own_needs_no_python(write: Write) -> None:
     text = leds.read_text(encoding="utf-8")
     entry = text[text.index("[") :].replace("15406085BA300", "my own LED")
     leds.write_text(text + "\n" + entry.split("\n\n")[0] + "\n", encoding="utf-8")
-    given = load(write(BASE + '[emitter]\nled = "my own LED"\n'))
-    assert given.named_parts()["emitter.led"].source
-    assert set(given.named_parts()) == set(NAMED)
+    config = load(write(BASE + '[emitter]\nled = "my own LED"\n'))
+    assert config.named_parts()["emitter.led"].source
+    assert set(config.named_parts()) == set(NAMED)
 
 
 def test_a_fault_is_placed_in_the_file_that_set_the_value(write: Write) -> None:
-    given = load(write(BASE + "grid.pitch_mm = 5.0\n"))
-    assert given.problem("grid.pitch_mm", "m") == Problem("design/x.toml", 2, "grid.pitch_mm", "m")
-    inherited = given.problem("mask.hole_mm", "m")
+    config = load(write(BASE + "grid.pitch_mm = 5.0\n"))
+    assert config.problem("grid.pitch_mm", "m") == Problem("design/x.toml", 2, "grid.pitch_mm", "m")
+    inherited = config.problem("mask.hole_mm", "m")
     assert inherited.file == "design/presets/published.toml"
     line = Path(inherited.file).read_text(encoding="utf-8").splitlines()[inherited.line - 1]
     assert line.startswith("hole_mm")

@@ -77,8 +77,8 @@ def test_parameters_are_frozen_and_strict(inputs: dict[str, Input]) -> None:
 
 
 def test_whole_numbers_are_numbers(inputs: dict[str, Input], vary: Any) -> None:
-    given = vary(inputs["published"], {"grid.pitch_mm": 6})
-    assert given.parameters.grid.pitch_mm == 6.0
+    config = vary(inputs["published"], {"grid.pitch_mm": 6})
+    assert config.parameters.grid.pitch_mm == 6.0
 
 
 def test_a_device_name_fits_one_scan_response(inputs: dict[str, Input], vary: Any) -> None:

@@ -74,13 +74,13 @@ def place(
     """
     plan = circuit(reading, finger, wiring, packages, rules)
     parts = {part.ref: part for part in plan.components}
-    given = {part.name: part for part in finger.parts}
-    for ref, part in given.items():
+    named = {part.name: part for part in finger.parts}
+    for ref, part in named.items():
         parts[ref] = _at(parts[ref], (part.x_mm, part.y_mm), side=_side(part))
     if finger.name == "emitter":
         _emitter(parts, finger, wiring, packages)
     else:
-        _receiver(parts, given, finger, wiring, packages, rules)
+        _receiver(parts, named, finger, wiring, packages, rules)
     _connector(parts, finger, rules)
     obstacles = [courtyard(part) for ref, part in parts.items() if not ref.startswith("FID")]
     mark = parts["FID1"].footprint
@@ -132,7 +132,7 @@ def _emitter(
 
 def _receiver(
     parts: dict[str, Component],
-    given: dict[str, Part],
+    named: dict[str, Part],
     finger: Finger,
     wiring: Wiring,
     packages: Packages,
@@ -145,7 +145,7 @@ def _receiver(
     for ref in [ref for ref in parts if ref.startswith("Q")]:
         parts[ref] = dataclasses.replace(parts[ref], angle_deg=towards)
     zone = next(zone.box for zone in finger.zones if zone.name == "parts")
-    muxes = [given[f"U{i + 1}"] for i in range(wiring.muxes)]
+    muxes = [named[f"U{i + 1}"] for i in range(wiring.muxes)]
     for mux in muxes:
         before = [u.box.x_max_mm for u in muxes if u.y_mm == mux.y_mm and u.x_mm < mux.x_mm]
         left = max(before, default=zone.x_min_mm - rules.part_gap_mm)

@@ -173,8 +173,8 @@ class Multiplexer(Bought):
         single = (self.output, self.supply, self.ground, self.enable, self.negative)
         used = (*self.inputs.values(), *self.select, *(lead for lead in single if lead is not None))
         if set(self.inputs) != {str(i) for i in range(len(self.inputs))} or not self.inputs:
-            given = ", ".join(self.inputs) or "none"
-            raise ValueError(f"inputs {given} given, the channels 0, 1, 2 … are needed, no gap")
+            inputs = ", ".join(self.inputs) or "none"
+            raise ValueError(f"inputs {inputs} given, the channels 0, 1, 2 … are needed, no gap")
         if self.channels > 2 ** len(self.select):
             raise ValueError(
                 f"{self.channels} inputs given, {len(self.select)} select lines reach at most "

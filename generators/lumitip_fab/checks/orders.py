@@ -147,8 +147,8 @@ def _misled(read: Read, note: str) -> Iterator[str]:
         if row is None or row["one"] != chip.marked or row["other"] == chip.marked:
             yield part.ref
             continue
-        given = [[float(row["x1"]), float(row["y1"])], [float(row["x2"]), float(row["y2"])]]
-        if not np.abs(wanted - given).max() <= PLACE_MM:
+        ends = [[float(row["x1"]), float(row["y1"])], [float(row["x2"]), float(row["y2"])]]
+        if not np.abs(wanted - ends).max() <= PLACE_MM:
             yield part.ref
 
 
@@ -192,8 +192,8 @@ def _misplaced(read: ReadCarrier, note: str) -> Iterator[str]:
         if "exclude_from_bom" in part.attributes:
             continue
         first = next(t.at for t in part.terminals if t.number == "1")
-        given = told.get(part.ref, (math.nan, math.nan))
-        there = np.abs(read.sensor([first])[0] - given).max() <= PLACE_MM
+        place = told.get(part.ref, (math.nan, math.nan))
+        there = np.abs(read.sensor([first])[0] - place).max() <= PLACE_MM
         if not there or (part.ref in told_behind) == part.front:
             yield part.ref
 

@@ -40,7 +40,7 @@ def build(file: Path, out: Path, progress: pipeline.Progress | None = None) -> p
         from lumitip_fab.derive import resolve
 
         found = resolve(load(file))
-        return found.design, documents(found.given, found.design)
+        return found.design, documents(found.config, found.design)
 
     return pipeline.build(input_hash(file), resolved, out, STEPS, progress)
 

@@ -15,20 +15,20 @@ _PARTS = """
 """
 
 
-def documents(given: Input, design: Design) -> tuple[Artefact, ...]:
+def documents(config: Input, design: Design) -> tuple[Artefact, ...]:
     """The documents of a design."""
     return (
         Artefact("layout.json", design.layout.to_json().encode()),
         Artefact("design.json", design_text(design).encode()),
-        Artefact("resolved.toml", _resolved(given).encode(), frame=""),
+        Artefact("resolved.toml", _resolved(config).encode(), frame=""),
     )
 
 
-def _resolved(given: Input) -> str:
-    parts = {field: encoded(e.model_dump()) for field, e in given.named_parts().items()}
+def _resolved(config: Input) -> str:
+    parts = {field: encoded(e.model_dump()) for field, e in config.named_parts().items()}
     told = {f"{NAMED[field]} for {field}": _without_none(entry) for field, entry in parts.items()}
     listed = "".join(f"# {line}".rstrip() + "\n" for line in tomli_w.dumps(told).splitlines())
-    return _HEAD + tomli_w.dumps(encoded(given.parameters.model_dump())) + _PARTS + listed
+    return _HEAD + tomli_w.dumps(encoded(config.parameters.model_dump())) + _PARTS + listed
 
 
 def _without_none(table: dict[str, object]) -> dict[str, object]:

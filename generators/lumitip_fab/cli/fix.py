@@ -54,9 +54,9 @@ def fix(file: Path) -> Plan:
         InputError: if the file cannot be read as parameters.
         OutputError: if it cannot be written.
     """
-    given = load(file)
+    config = load(file)
     try:
-        resolve(given)
+        resolve(config)
     except RuleError as error:
         plan = plan_of(error.verdict)
     else:

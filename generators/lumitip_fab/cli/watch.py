@@ -59,9 +59,9 @@ def _rebuilt(file: Path, out: Path, known: dict[str, Any], console: Console) -> 
 
 
 def _values(file: Path) -> dict[str, Any]:
-    given = load(file)
-    told = {"parameters": encoded(given.parameters.model_dump())}
-    told["parts"] = {f: encoded(e.model_dump()) for f, e in given.named_parts().items()}
+    config = load(file)
+    told = {"parameters": encoded(config.parameters.model_dump())}
+    told["parts"] = {f: encoded(e.model_dump()) for f, e in config.named_parts().items()}
     return dict(flat(told))
 
 

@@ -55,13 +55,13 @@ def shown_path(path: Path) -> str:
         return str(path)
 
 
-def unknown_name(given: str, allowed: Iterable[str], where: str) -> str:
+def unknown_name(name: str, allowed: Iterable[str], where: str) -> str:
     """The message for a name that is not among those allowed."""
     names = sorted(allowed)
-    near = difflib.get_close_matches(given, names, n=1, cutoff=0.5)
+    near = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
     hint = f"did you mean {near[0]!r}? " if near else ""
     listed = ", ".join(names[:24]) + (", …" if len(names) > 24 else "")
-    return f"{given!r:.80} given, {hint}{where} has {listed}"
+    return f"{name!r:.80} given, {hint}{where} has {listed}"
 
 
 def brief(value: Any) -> str:
@@ -98,28 +98,28 @@ def problems_of(
 
 
 def _message(fault: Any, model: Any, location: tuple[Any, ...]) -> str:
-    kind, given, told = fault["type"], fault["input"], fault.get("ctx", {})
+    kind, value, context = fault["type"], fault["input"], fault.get("ctx", {})
     if kind == "missing":
         return "is missing; " + _described(model, location)
     if kind == "extra_forbidden":
         return unknown_name(str(location[-1]), _names(model, location[:-1]), "this table")
     if kind in ("too_long", "too_short"):
         bound, count = (
-            ("at most {} are allowed", told["max_length"])
+            ("at most {} are allowed", context["max_length"])
             if kind == "too_long"
-            else ("at least {} are needed", told["min_length"])
+            else ("at least {} are needed", context["min_length"])
         )
-        return f"{brief(given)} given, a list of {len(given)}; {bound.format(count)}"
+        return f"{brief(value)} given, a list of {len(value)}; {bound.format(count)}"
     if kind in _KINDS:
-        return f"{brief(given)} given, {_KINDS[kind]} is needed"
+        return f"{brief(value)} given, {_KINDS[kind]} is needed"
     if kind in _BOUNDS:
-        return f"{brief(given)} given, {_BOUNDS[kind].format(**told)}"
+        return f"{brief(value)} given, {_BOUNDS[kind].format(**context)}"
     if kind == "string_pattern_mismatch":
-        pattern = told["pattern"]
-        return f"{brief(given)} given, {_PATTERNS.get(pattern, pattern)} are allowed"
+        pattern = context["pattern"]
+        return f"{brief(value)} given, {_PATTERNS.get(pattern, pattern)} are allowed"
     if kind == "value_error":
-        return str(told["error"])
-    return f"{brief(given)} given: {fault['msg']}"
+        return str(context["error"])
+    return f"{brief(value)} given: {fault['msg']}"
 
 
 def _written(value: Any) -> str:

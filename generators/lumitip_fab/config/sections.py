@@ -11,12 +11,12 @@ Size = Annotated[float, Field(ge=5, le=200)]
 LEAST_BODY_MM, MOST_BODY_MM = 20, 200
 
 
-def _body(given: Any, handler: ValidatorFunctionWrapHandler) -> Any:
+def _body(value: Any, handler: ValidatorFunctionWrapHandler) -> Any:
     try:
-        return handler(given)
+        return handler(value)
     except ValidationError:
         raise ValueError(
-            f"{given!r:.80} given, 'gripper' or a number from {LEAST_BODY_MM} to {MOST_BODY_MM} is "
+            f"{value!r:.80} given, 'gripper' or a number from {LEAST_BODY_MM} to {MOST_BODY_MM} is "
             "allowed"
         ) from None
 

@@ -96,15 +96,15 @@ def read_toml(path: Path, shown: str) -> Source:
 
 def _syntax_fault(text: str, error: tomllib.TOMLDecodeError) -> tuple[int, str]:
     """Line and wording of what the TOML reader found wrong."""
-    told = _SYNTAX.match(str(error))
+    match = _SYNTAX.match(str(error))
     lines = text.rstrip().split("\n")
-    line = int(told["line"]) if told and told["line"] else len(lines)
-    what = told["what"] if told else str(error)
+    line = int(match["line"]) if match and match["line"] else len(lines)
+    what = match["what"] if match else str(error)
     if what.startswith(("Cannot overwrite", "Cannot declare")):
         return line, "is not TOML: this key or table is given twice; keep one of them"
-    given = lines[min(line, len(lines)) - 1].strip()
+    written = lines[min(line, len(lines)) - 1].strip()
     hint = next((h for start, h in _HINTS.items() if what.startswith(start)), "")
-    return line, f"is not TOML: {given!r:.80} given: {what[:1].lower()}{what[1:]}{hint}"
+    return line, f"is not TOML: {written!r:.80} given: {what[:1].lower()}{what[1:]}{hint}"
 
 
 _TOO_DEEP = f"tables or lists nested deeper than {DEEPEST} levels given; three are needed at most"

@@ -5,14 +5,14 @@ from lumitip_fab.derive.auto.resolve import Resolved, resolve
 from lumitip_fab.design import Design
 
 
-def derive(given: Input) -> Design:
+def derive(config: Input) -> Design:
     """Derive the whole sensor.
 
     Raises:
         InputError: with every combination of values that is impossible, and the smallest changes
             that work.
     """
-    return resolve(given).design
+    return resolve(config).design
 
 
 __all__ = ["Resolved", "derive", "resolve"]

@@ -7,8 +7,8 @@ from lumitip_fab.errors import InputError, Problem
 class Faults:
     """The faults found so far in one parameter file."""
 
-    def __init__(self, given: Input) -> None:
-        self._given = given
+    def __init__(self, config: Input) -> None:
+        self._given = config
         self._found: list[Problem] = []
         self.stage = 0
         """How many times derivation could go on: later rules are only reached without faults."""

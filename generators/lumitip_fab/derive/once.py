@@ -34,49 +34,49 @@ from lumitip_fab.design import Controller, Design, Grid, Title
 from lumitip_fab.design.encoding import canonical, settled
 
 
-def derive_once(given: Input, faults: Faults) -> Design:
+def derive_once(config: Input, faults: Faults) -> Design:
     """Derive the whole sensor from values as they are.
 
     Args:
-        given: the parameters, none of them automatic.
+        config: the parameters, none of them automatic.
         faults: collects every impossible combination of values.
 
     Raises:
         InputError: with all that was collected.
     """
-    p = given.parameters
-    stack, fasteners = derive_stack(given, faults), derive_fasteners(given, faults)
+    p = config.parameters
+    stack, fasteners = derive_stack(config, faults), derive_fasteners(config, faults)
     cells = derive_cells(p, faults)
     if not len(cells):
         faults.stop()  # without a grid nothing else can be judged
-    strings = wiring.derive_strings(given, cells, faults)
-    muxing = wiring.derive_muxing(given, cells, faults)
+    strings = wiring.derive_strings(config, cells, faults)
+    muxing = wiring.derive_muxing(config, cells, faults)
     if not strings.cells or len(muxing.adc_pins) < muxing.muxes:
         faults.stop()  # without parts and nets there are no boards to place
-    plan = boards.derive_plan(given, cells, strings, muxing, faults)
+    plan = boards.derive_plan(config, cells, strings, muxing, faults)
     silhouette = outline.derive_outline(p, plan.board, plan.receiver.notch, faults)
-    interfaces = derive_interfaces(given, silhouette, plan.receiver, plan.board.box, faults)
-    coupling = mount.derive_mount(given, silhouette, plan, faults)
+    interfaces = derive_interfaces(config, silhouette, plan.receiver, plan.board.box, faults)
+    coupling = mount.derive_mount(config, silhouette, plan, faults)
     tip = derive_tip(p, silhouette, plan.board, stack, faults)
-    casting = mould.derive_mould(given, silhouette, plan.board, stack, faults)
-    printing = derive_printing(given, silhouette, faults)
-    slicing = derive_slicing(given, casting, faults)
-    heat = derive_heat(given, slicing, faults)
-    plate = derive_fit_plate(given, plan, coupling, faults)
-    sheet = mask.derive_mask(given, silhouette, plan, faults)
-    rules = derive_rules(given, faults)
-    refuse_receiver_capacitor(given, faults)
+    casting = mould.derive_mould(config, silhouette, plan.board, stack, faults)
+    printing = derive_printing(config, silhouette, faults)
+    slicing = derive_slicing(config, casting, faults)
+    heat = derive_heat(config, slicing, faults)
+    plate = derive_fit_plate(config, plan, coupling, faults)
+    sheet = mask.derive_mask(config, silhouette, plan, faults)
+    rules = derive_rules(config, faults)
+    refuse_receiver_capacitor(config, faults)
     meeting = mount.derive_closing(silhouette, stack, coupling, casting, faults)
-    breakout = derive_breakout(given, muxing, faults)
-    holders = derive_holder(given, breakout, faults)
-    flange = derive_flange(given, strings, muxing, faults)
-    flanges = derive_flange_body(given, flange, faults)
-    circuit = wiring.joined(given, strings, muxing)
-    figures = derive_electrical(given, strings, faults)
+    breakout = derive_breakout(config, muxing, faults)
+    holders = derive_holder(config, breakout, faults)
+    flange = derive_flange(config, strings, muxing, faults)
+    flanges = derive_flange_body(config, flange, faults)
+    circuit = wiring.joined(config, strings, muxing)
+    figures = derive_electrical(config, strings, faults)
     joined = Boards(plan.emitter, plan.receiver, (*breakout, *flange))
-    cabling = derive_cabling(given, joined, silhouette, coupling, circuit, figures, faults)
+    cabling = derive_cabling(config, joined, silhouette, coupling, circuit, figures, faults)
     faults.stop()
-    mux, channel = wiring.assign(given, cells, plan.muxes)
+    mux, channel = wiring.assign(config, cells, plan.muxes)
     layout = Layout(
         x_mm=cells.x_mm,
         y_mm=cells.y_mm,
@@ -87,7 +87,7 @@ def derive_once(given: Input, faults: Faults) -> Design:
         channel=channel,
         adc_pin=wiring.pins_of(mux, muxing.adc_pins),
         pitch_mm=p.grid.pitch_mm,
-        optics=_optics(given),
+        optics=_optics(config),
     )
     return settled(
         Design(
@@ -105,7 +105,7 @@ def derive_once(given: Input, faults: Faults) -> Design:
             closing=meeting,
             wiring=circuit,
             cabling=cabling,
-            packages=derive_packages(given),
+            packages=derive_packages(config),
             rules=rules,
             electrical=figures,
             mask=sheet,
@@ -114,27 +114,27 @@ def derive_once(given: Input, faults: Faults) -> Design:
             heat=heat,
             slicing=slicing,
             fit_plate=plate,
-            densities=derive_densities(given, slicing),
+            densities=derive_densities(config, slicing),
             controller=Controller(
-                given.title("controller.board"),
+                config.title("controller.board"),
                 p.controller.name,
-                given.catalogue.controllers[p.controller.board].adc_bits,
+                config.catalogue.controllers[p.controller.board].adc_bits,
             ),
-            fabs=derive_fabs(given),
+            fabs=derive_fabs(config),
             fasteners=fasteners,
             carriers=(*breakout, *flange),
             holders=holders,
             flanges=flanges,
-            system=derive_system(given, flanges, holders),
-            purchase=derive_purchase(given, coupling, holders, flanges, slicing),
-            parameters_hash=_parameters_hash(given),
+            system=derive_system(config, flanges, holders),
+            purchase=derive_purchase(config, coupling, holders, flanges, slicing),
+            parameters_hash=_parameters_hash(config),
             choices=(),
         )
     )
 
 
-def _optics(given: Input) -> Optics:
-    p, parts = given.parameters, given.catalogue
+def _optics(config: Input) -> Optics:
+    p, parts = config.parameters, config.catalogue
     led = parts.leds[p.emitter.led]
     detector = parts.photodetectors[p.receiver.photodetector]
     return Optics(
@@ -151,10 +151,10 @@ def _optics(given: Input) -> Optics:
     )
 
 
-def _parameters_hash(given: Input) -> str:
+def _parameters_hash(config: Input) -> str:
     """SHA-256 of every value in force: the parameters and the parts that they name."""
     told = [
-        given.parameters.model_dump(),
-        {f: e.model_dump() for f, e in given.named_parts().items()},
+        config.parameters.model_dump(),
+        {f: e.model_dump() for f, e in config.named_parts().items()},
     ]
     return hashlib.sha256(canonical(told).encode()).hexdigest()

@@ -25,18 +25,18 @@ from lumitip_fab.paths import design_folder, parts_file
 from lumitip_fab.pipeline.fingerprint import code_hash
 
 
-def unpriced(given: Input, prices: Prices, names: set[str]) -> list[Problem]:
+def unpriced(config: Input, prices: Prices, names: set[str]) -> list[Problem]:
     """A fault for each part that has no price."""
-    path = parts_file(design_folder(given.sources[0].path), "prices")
+    path = parts_file(design_folder(config.sources[0].path), "prices")
     return [
         Problem(shown_path(path), 0, "each", f"has no price of {name!r}: add a line for it")
         for name in sorted(names - set(prices.each))
     ]
 
 
-def bill(given: Input, design: Design) -> dict[str, int]:
+def bill(config: Input, design: Design) -> dict[str, int]:
     """How many of each part the two boards and the controller need."""
-    p, wiring = given.parameters, design.wiring
+    p, wiring = config.parameters, design.wiring
     counts = (
         (p.emitter.led, len(design.layout)),
         (p.emitter.resistor, len(wiring.strings)),
@@ -52,12 +52,12 @@ def bill(given: Input, design: Design) -> dict[str, int]:
     return needed
 
 
-def cost(given: Input, design: Design, prices: Prices) -> float:
+def cost(config: Input, design: Design, prices: Prices) -> float:
     """Parts of both boards, the boards, placing, and the controller.
 
     Prints, silicone, film and work are not counted.
     """
-    needed = bill(given, design)
+    needed = bill(config, design)
     placed = sum(needed.values()) - 1  # the controller lies beside the robot
     board_cm2 = design.board.box.width_mm * design.board.box.length_mm / 100.0
     return (
@@ -91,7 +91,7 @@ Record = dict[str, Any]
 class Job:
     """All that one evaluation needs, on whatever machine."""
 
-    given: Input
+    config: Input
     """The parameter file with its changes."""
     changes: Changes
     prices: Prices
@@ -100,24 +100,24 @@ class Job:
     """SHA-256 of everything that the result depends on."""
 
     @classmethod
-    def of(cls, given: Input, changes: Changes, prices: Prices, sample: Sample) -> "Job":
+    def of(cls, config: Input, changes: Changes, prices: Prices, sample: Sample) -> "Job":
         """A job with its key."""
         told = [
-            given.parameters.model_dump(),
-            {field: part.model_dump() for field, part in given.named_parts().items()},
+            config.parameters.model_dump(),
+            {field: part.model_dump() for field, part in config.named_parts().items()},
             prices.model_dump(),
             sample,
             code_hash("explore"),
             np.__version__,
         ]
         key = hashlib.sha256(canonical(told).encode()).hexdigest()
-        return cls(given, changes, prices, sample, key)
+        return cls(config, changes, prices, sample, key)
 
 
 def evaluate(job: Job) -> Record:
     """Judge a design; nothing is built."""
     try:
-        resolved = resolve(job.given)
+        resolved = resolve(job.config)
     except InputError as error:
         return {"key": job.key, "refused": [f"{p.field}: {p.message}" for p in error.problems]}
     design, layout = resolved.design, resolved.design.layout
@@ -129,7 +129,7 @@ def evaluate(job: Job) -> Record:
         **accurate,
         "cells": float(len(layout)),
         "grid_cm2": float(np.ptp(layout.x_mm) * np.ptp(layout.y_mm)) / 100.0,
-        "cost": cost(resolved.given, design, job.prices),
+        "cost": cost(resolved.config, design, job.prices),
         "current_ma": float(sum(design.wiring.current_ma)),
     }
     return {"key": job.key, "figures": {n: _rounded(figures[n]) for n in FIGURES}}

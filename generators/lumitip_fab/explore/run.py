@@ -72,12 +72,12 @@ def explore(
         OutputError: if the folder cannot be used.
         BuildError: if workers fail.
     """
-    given = load(file)
-    prices = given.catalogue.prices
-    asked = axes(given, texts, points)
-    _check(given, asked, prices, keep_size)
+    config = load(file)
+    prices = config.catalogue.prices
+    asked = axes(config, texts, points)
+    _check(config, asked, prices, keep_size)
     jobs = [
-        Job.of(changed(given, changes, keep_size), changes, prices, sample)
+        Job.of(changed(config, changes, keep_size), changes, prices, sample)
         for changes in combinations(asked)
     ]
     keys = [job.key for job in jobs]
@@ -94,15 +94,15 @@ def explore(
     return Study(asked, designs, prices.currency, len(missing))
 
 
-def _check(given: Input, asked: Sequence[Axis], prices: Prices, keep_size: bool) -> None:
+def _check(config: Input, asked: Sequence[Axis], prices: Prices, keep_size: bool) -> None:
     """Refuse what no design could be judged by."""
     varied = {axis.field: axis.values for axis in asked}
     parts = {field: part for field, part in NAMED.items() if part in _PRICED}
     names: set[str] = set()
     for field, part in parts.items():
-        chosen = getattr(given.catalogue, part) if field in given.automatic else ()
-        names |= set(varied.get(field, chosen or (given.value(field),)))
-    faults = unpriced(given, prices, names)
+        chosen = getattr(config.catalogue, part) if field in config.automatic else ()
+        names |= set(varied.get(field, chosen or (config.value(field),)))
+    faults = unpriced(config, prices, names)
     if keep_size and "grid.columns" in varied:
         told = "given with --keep-size, which counts the columns itself; leave one of them out"
         faults.append(Problem("--vary", 0, "grid.columns", told))
@@ -113,7 +113,7 @@ def _check(given: Input, asked: Sequence[Axis], prices: Prices, keep_size: bool)
 def _found(job: Job, record: Record) -> Found:
     told = record.get("figures")
     figures = {name: told[name] for name in FIGURES} if told else {}
-    columns = job.given.parameters.grid.columns
+    columns = job.config.parameters.grid.columns
     return Found(job.changes, columns, figures, tuple(record.get("refused", ())))
 
 

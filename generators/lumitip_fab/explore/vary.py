@@ -37,11 +37,11 @@ class Axis:
 Changes = tuple[tuple[str, Any], ...]
 
 
-def axes(given: Input, texts: Sequence[str], points: int) -> tuple[Axis, ...]:
+def axes(config: Input, texts: Sequence[str], points: int) -> tuple[Axis, ...]:
     """What the texts of `--vary` ask for.
 
     Args:
-        given: the parameter file that is varied.
+        config: the parameter file that is varied.
         texts: `FIELD=SPEC`, each.
         points: values of a range that has no step.
 
@@ -52,14 +52,14 @@ def axes(given: Input, texts: Sequence[str], points: int) -> tuple[Axis, ...]:
     faults: list[Problem] = []
     for text in texts:
         try:
-            read.append(_axis(given, text, points))
+            read.append(_axis(config, text, points))
         except InputError as error:
             faults += error.problems
     fields = [axis.field for axis in read]
     for field in sorted({f for f in fields if fields.count(f) > 1}):
         faults.append(_fault(field, "given twice; give all of its values in one"))
     for axis in read:
-        faults += _not_allowed(given, axis)
+        faults += _not_allowed(config, axis)
     designs = math.prod(len(axis.values) for axis in read)
     if not faults and designs > MOST_DESIGNS:
         faults.append(_fault("", f"{designs} designs given, at most {MOST_DESIGNS} are evaluated"))
@@ -75,23 +75,23 @@ def combinations(asked: Sequence[Axis]) -> Iterator[Changes]:
         yield tuple(zip(fields, values, strict=True))
 
 
-def changed(given: Input, changes: Changes, keep_size: bool = False) -> Input:
+def changed(config: Input, changes: Changes, keep_size: bool = False) -> Input:
     """The parameter file with some fields changed.
 
     Args:
-        given: the file.
+        config: the file.
         changes: fields and their values.
         keep_size: whether the grid gets as many columns and rows as keep its size when its pitch
             changes.
     """
-    told = given.parameters.model_dump()
+    told = config.parameters.model_dump()
     for field, value in changes:
         _set(told, field, value)
     if keep_size:
-        grid = given.parameters.grid
+        grid = config.parameters.grid
         told["grid"]["columns"] = same_size(grid.columns, grid.pitch_mm, told["grid"]["pitch_mm"])
-    automatic = given.automatic - {field for field, _ in changes}
-    return replace(given, parameters=Parameters.model_validate(told), automatic=automatic)
+    automatic = config.automatic - {field for field, _ in changes}
+    return replace(config, parameters=Parameters.model_validate(told), automatic=automatic)
 
 
 def same_size(columns: Sequence[int], pitch_mm: float, new_mm: float) -> tuple[int, ...]:
@@ -141,9 +141,9 @@ def _set(told: dict[str, Any], field: str, value: Any) -> None:
     told[key] = value
 
 
-def _axis(given: Input, text: str, points: int) -> Axis:
+def _axis(config: Input, text: str, points: int) -> Axis:
     field, equals, spec = (part.strip() for part in text.partition("="))
-    known = given.parameters.model_dump()
+    known = config.parameters.model_dump()
     fields = [name for name, _ in flat(known)]
     if not equals or not spec:
         raise _refusal(text, "given, FIELD=FROM:TO, FIELD=FROM:TO:STEP or FIELD=A,B,C is needed")
@@ -206,23 +206,23 @@ def _tuple(value: Any) -> Any:
     return tuple(map(_tuple, value)) if isinstance(value, list) else value
 
 
-def _not_allowed(given: Input, axis: Axis) -> list[Problem]:
+def _not_allowed(config: Input, axis: Axis) -> list[Problem]:
     """What no design may have, whatever the rest of it."""
     faults = []
     kind = NAMED.get(axis.field)
 
     def source(_: str) -> Source:
-        return given.sources[0]
+        return config.sources[0]
 
     for value in axis.values:
         if kind is not None:
-            names = getattr(given.catalogue, kind)
+            names = getattr(config.catalogue, kind)
             if value not in names:
                 message = unknown_name(str(value), list(names), f"parts/{kind}.toml")
                 faults.append(_fault(axis.field, message))
             continue
         try:
-            changed(given, ((axis.field, value),))
+            changed(config, ((axis.field, value),))
         except ValidationError as error:
             found = problems_of(error, Parameters, source)
             faults += [_fault(axis.field, problem.message) for problem in found]

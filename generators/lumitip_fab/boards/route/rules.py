@@ -30,21 +30,23 @@ class Rules:
     @classmethod
     def of(cls, placement: Placement) -> "Rules":
         """The rules of a board."""
-        given = placement.classes
+        classes = placement.classes
         thin = dataclasses.replace(
-            given[0],
+            classes[0],
             name="narrow",
-            track_mm=min(c.track_mm for c in given),
-            clearance_mm=max(c.clearance_mm for c in given),
-            via_mm=max(c.via_mm for c in given),
-            via_drill_mm=max(c.via_drill_mm for c in given),
+            track_mm=min(c.track_mm for c in classes),
+            clearance_mm=max(c.clearance_mm for c in classes),
+            via_mm=max(c.via_mm for c in classes),
+            via_drill_mm=max(c.via_drill_mm for c in classes),
         )
-        like_thin = [i for i, c in enumerate(given) if dataclasses.replace(thin, name=c.name) == c]
-        names = {c.name: i for i, c in enumerate(given)}
+        like_thin = [
+            i for i, c in enumerate(classes) if dataclasses.replace(thin, name=c.name) == c
+        ]
+        names = {c.name: i for i, c in enumerate(classes)}
         return cls(
-            classes=given if like_thin else (*given, thin),
+            classes=classes if like_thin else (*classes, thin),
             of_net={n.name: names[n.net_class] for n in placement.nets},
-            narrow=like_thin[0] if like_thin else len(given),
+            narrow=like_thin[0] if like_thin else len(classes),
         )
 
     def clearance_mm(self, a: int, b: int) -> float:

@@ -71,7 +71,7 @@ def _mended(now: Verdict) -> Iterator[tuple[Step, Verdict]]:
         changes = list(_changes(now, rule, problem.field))
         if changes:
             remedies = tuple(
-                Remedy(change.field, change.value, now.given.value(change.field))
+                Remedy(change.field, change.value, now.config.value(change.field))
                 for change in changes
             )
             yield Step(problem.message, remedies), changes[0].verdict
@@ -91,9 +91,9 @@ def _change(now: Verdict, rule: Rule, field: str) -> Change | None:
     if field in NAMED:
         return first_of(now, rule, field, catalogue_names(now, NAMED[field], field))
     if field in SWITCHES:
-        return first_of(now, rule, field, iter([not now.given.value(field)]))
+        return first_of(now, rule, field, iter([not now.config.value(field)]))
     step = next((step for unit, step in STEPS.items() if field.endswith(unit)), None)
-    if step is None or not isinstance(now.given.value(field), int | float):
+    if step is None or not isinstance(now.config.value(field), int | float):
         return None
     return smallest_number(now, rule, field, step)
 

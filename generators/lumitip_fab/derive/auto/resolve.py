@@ -16,7 +16,7 @@ from lumitip_fab.errors import InputError
 class Resolved:
     """A parameter file with a value in every field, and its design."""
 
-    given: Input
+    config: Input
     """With no field left to choose."""
     design: Design
 
@@ -41,42 +41,42 @@ class _Reasons:
     def moved(self, change: Change, message: str) -> None:
         self.of[change.field] = f"otherwise {message.partition('; set it in')[0]}"
 
-    def choices(self, given: Input) -> tuple[Choice, ...]:
+    def choices(self, config: Input) -> tuple[Choice, ...]:
         """Every automatic field in the order of the file, with its value and reason."""
         return tuple(
             Choice(
                 name,
-                brief(given.value(name)),
+                brief(config.value(name)),
                 self.of.get(name, f"default; follows {automatic.follows}"),
             )
             for name, automatic in FIELDS.items()
-            if name in given.automatic
+            if name in config.automatic
         )
 
 
-def resolve(given: Input) -> Resolved:
+def resolve(config: Input) -> Resolved:
     """Choose every automatic value, and derive.
 
     Raises:
         RuleError: if rules are broken that no automatic value mends.
     """
     reasons = _Reasons()
-    started = _started(given, reasons)
-    end = search(judge(started), given.automatic, reasons.moved)
+    started = _started(config, reasons)
+    end = search(judge(started), config.automatic, reasons.moved)
     if end.design is None:
         raise RuleError(end)
-    choices = reasons.choices(end.given)
-    settled = replace(end.given, automatic=frozenset())
+    choices = reasons.choices(end.config)
+    settled = replace(end.config, automatic=frozenset())
     return Resolved(settled, replace(end.design, choices=choices))
 
 
-def _started(given: Input, reasons: _Reasons) -> Input:
+def _started(config: Input, reasons: _Reasons) -> Input:
     """The input with every computed start in place."""
     for formula in proposals():
         values: dict[str, Value] = {}
-        for name, value, reason in formula(given):
-            if name in given.automatic:
+        for name, value, reason in formula(config):
+            if name in config.automatic:
                 values[name] = value
                 reasons.propose(name, reason)
-        given = given.with_values(values)
-    return given
+        config = config.with_values(values)
+    return config

@@ -26,7 +26,7 @@ Rule = tuple[str, str]
 class Verdict:
     """What derivation says of an input."""
 
-    given: Input
+    config: Input
     design: Design | None
     stage: int
     """How far derivation went; later rules are only reached without faults before them."""
@@ -51,20 +51,20 @@ def rule_of(problem: Problem) -> Rule:
     return problem.field, _NUMBER.sub("#", problem.message)
 
 
-def judge(given: Input) -> Verdict:
+def judge(config: Input) -> Verdict:
     """Derive, and keep what is wrong."""
-    faults = Faults(given)
+    faults = Faults(config)
     try:
-        design = derive_once(given, faults)
+        design = derive_once(config, faults)
     except InputError as error:
-        return Verdict(given, None, faults.stage, error.problems)
-    return Verdict(given, design, faults.stage, ())
+        return Verdict(config, None, faults.stage, error.problems)
+    return Verdict(config, design, faults.stage, ())
 
 
-def judge_with(given: Input, values: dict[str, Any]) -> Verdict | None:
+def judge_with(config: Input, values: dict[str, Any]) -> Verdict | None:
     """Judge other values of some fields; none where a field does not allow its value."""
     try:
-        return judge(given.with_values(values))
+        return judge(config.with_values(values))
     except ValidationError:
         return None
 
@@ -88,26 +88,26 @@ def smallest_number(before: Verdict, rule: Rule, field: str, step: float) -> Cha
         for sign in (1, -1)
         if (change := _along(before, rule, field, sign * step)) is not None
     ]
-    start = before.given.value(field)
+    start = before.config.value(field)
     return min(found, key=lambda change: abs(change.value - start), default=None)
 
 
 def first_of(before: Verdict, rule: Rule, field: str, values: Iterator[Any]) -> Change | None:
     """The first of some values that mends a rule."""
     for value in values:
-        verdict = judge_with(before.given, {field: value})
+        verdict = judge_with(before.config, {field: value})
         if verdict and verdict.mends(rule, before):
             return Change(field, value, verdict)
     return None
 
 
 def _along(before: Verdict, rule: Rule, field: str, step: float) -> Change | None:
-    start, whole = before.given.value(field), isinstance(before.given.value(field), int)
+    start, whole = before.config.value(field), isinstance(before.config.value(field), int)
     low, high = bounds(field)
 
     def tried(steps: int) -> Change | None:
         value = start + steps * step if whole else round(start + steps * step, DECIMALS)
-        verdict = judge_with(before.given, {field: value})
+        verdict = judge_with(before.config, {field: value})
         mended = verdict is not None and verdict.mends(rule, before)
         return Change(field, value, verdict) if mended and verdict else None
 
@@ -157,8 +157,8 @@ def bounds(field: str) -> tuple[float, float]:
 
 def catalogue_names(before: Verdict, kind: str, field: str) -> Iterator[str]:
     """Other entries of a catalogue file."""
-    entries: Mapping[str, Any] = getattr(before.given.catalogue, kind)
-    yield from (name for name in entries if name != before.given.value(field))
+    entries: Mapping[str, Any] = getattr(before.config.catalogue, kind)
+    yield from (name for name in entries if name != before.config.value(field))
 
 
 _ROOM = ("board.channel_mm", "board.side_margin_mm")
@@ -294,4 +294,4 @@ def change_of(now: Verdict, rule: Rule, field: str) -> Change | None:
 
 
 def _others(values: Iterable[str], now: Verdict, field: str) -> list[str]:
-    return [value for value in values if value != now.given.value(field)]
+    return [value for value in values if value != now.config.value(field)]

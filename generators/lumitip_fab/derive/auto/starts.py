@@ -22,13 +22,13 @@ SATURATION_MARGIN = 1.5  # light current at a bare cell, times what saturates it
 MOST_PULL_UP = 2.0  # times the published one; a channel settles that much slower
 
 
-def choose_strings(given: Input) -> Iterator[tuple[str, Value, str]]:
+def choose_strings(config: Input) -> Iterator[tuple[str, Value, str]]:
     """Automatic values among current, LEDs of a string, resistor and pull-up; none where nothing
     passes: then the rules say why."""
-    for current in _currents(given):
-        for resistor in _resistors(given):
-            for longest in _lengths(given):
-                tried = given.with_values(
+    for current in _currents(config):
+        for resistor in _resistors(config):
+            for longest in _lengths(config):
+                tried = config.with_values(
                     {"emitter.current_ma": current, "emitter.resistor": resistor}
                 )
                 found = _strings(tried, longest)
@@ -37,16 +37,16 @@ def choose_strings(given: Input) -> Iterator[tuple[str, Value, str]]:
                     return
 
 
-def _strings(given: Input, longest: int) -> tuple[String, ...]:
-    cells, current = sum(given.parameters.grid.columns), given.parameters.emitter.current_ma
-    by_length = {n: string_of(given, n, current) for n in set(lengths(cells, longest))}
+def _strings(config: Input, longest: int) -> tuple[String, ...]:
+    cells, current = sum(config.parameters.grid.columns), config.parameters.emitter.current_ma
+    by_length = {n: string_of(config, n, current) for n in set(lengths(cells, longest))}
     return tuple(by_length[n] for n in lengths(cells, longest))
 
 
-def _proposals(given: Input, longest: int) -> Iterator[tuple[str, Value, str]]:
-    p = given.parameters
-    strings = _strings(given, longest)
-    package = given.catalogue.resistors[p.emitter.resistor]
+def _proposals(config: Input, longest: int) -> Iterator[tuple[str, Value, str]]:
+    p = config.parameters
+    strings = _strings(config, longest)
+    package = config.catalogue.resistors[p.emitter.resistor]
     load, volts = max(s.high_load_w for s in strings), p.supply.voltage_v
     full = float(FIELDS["emitter.current_ma"].start)
     reason = "current of the published sensor"
@@ -67,39 +67,39 @@ def _proposals(given: Input, longest: int) -> Iterator[tuple[str, Value, str]]:
         f"takes up to {1000 * load:.0f} mW over all tolerances, rated {1000 * package.power_w:.0f}",
     )
     start = float(FIELDS["receiver.pull_up_ohm"].start)
-    factor = min(_least_ma(given, start) / p.emitter.current_ma, MOST_PULL_UP)
+    factor = min(_least_ma(config, start) / p.emitter.current_ma, MOST_PULL_UP)
     ohm = start if factor <= 1 else sold_ohm(start * factor)
     yield "receiver.pull_up_ohm", ohm, f"a bare cell saturates it at {p.emitter.current_ma:g} mA"
 
 
-def _currents(given: Input) -> Iterator[float]:
+def _currents(config: Input) -> Iterator[float]:
     """From the published current, or the LED's largest, down to what the detectors need."""
-    p = given.parameters
-    if "emitter.current_ma" not in given.automatic:
+    p = config.parameters
+    if "emitter.current_ma" not in config.automatic:
         yield p.emitter.current_ma
         return
     full = float(FIELDS["emitter.current_ma"].start)
-    least = least_current_ma(given)
+    least = least_current_ma(config)
     current = full
     while current >= least:
         yield round(current, 1)
         current *= CURRENT_STEP
 
 
-def least_current_ma(given: Input) -> float:
+def least_current_ma(config: Input) -> float:
     """LED current with which a bare cell still saturates, with a margin."""
-    ohm = given.parameters.receiver.pull_up_ohm
+    ohm = config.parameters.receiver.pull_up_ohm
     return _least_ma(
-        given, ohm * (MOST_PULL_UP if "receiver.pull_up_ohm" in given.automatic else 1)
+        config, ohm * (MOST_PULL_UP if "receiver.pull_up_ohm" in config.automatic else 1)
     )
 
 
-def _least_ma(given: Input, ohm: float) -> float:
+def _least_ma(config: Input, ohm: float) -> float:
     """LED current with which a bare cell saturates a pull-up, with a margin.
 
     The catalogue's `light_current_ua` is for the published current.
     """
-    p, parts = given.parameters, given.catalogue
+    p, parts = config.parameters, config.catalogue
     detector = parts.photodetectors[p.receiver.photodetector]
     supply_v = parts.controllers[p.controller.board].supply_v
     saturated_ua = 1e6 * (supply_v - detector.saturation_v) / ohm
@@ -107,24 +107,24 @@ def _least_ma(given: Input, ohm: float) -> float:
     return full * SATURATION_MARGIN * saturated_ua / detector.light_current_ua
 
 
-def _resistors(given: Input) -> Iterator[str]:
+def _resistors(config: Input) -> Iterator[str]:
     """Packages from small to large."""
-    if "emitter.resistor" not in given.automatic:
-        yield given.parameters.emitter.resistor
+    if "emitter.resistor" not in config.automatic:
+        yield config.parameters.emitter.resistor
         return
-    known = given.catalogue.resistors
+    known = config.catalogue.resistors
     yield from sorted(known, key=lambda name: math.prod(known[name].body_mm[:2]))
 
 
-def _lengths(given: Input) -> Iterator[int]:
+def _lengths(config: Input) -> Iterator[int]:
     """Most LEDs in a string, fewer and fewer."""
-    longest = longest_string(given)
-    if "emitter.string_leds" not in given.automatic:
-        longest = min(longest, given.parameters.emitter.string_leds)
+    longest = longest_string(config)
+    if "emitter.string_leds" not in config.automatic:
+        longest = min(longest, config.parameters.emitter.string_leds)
         if longest:
             yield longest
         return
-    cells, before = sum(given.parameters.grid.columns), 0
+    cells, before = sum(config.parameters.grid.columns), 0
     for most in range(longest, 0, -1):
         count = math.ceil(cells / most)
         if count != before:
@@ -146,17 +146,17 @@ def proposals() -> tuple[Callable[[Input], Iterator[Proposal]], ...]:
     return _layers, _printer, choose_strings, _multiplexer, _copper, _channel, _flange
 
 
-def _layers(given: Input) -> Iterator[Proposal]:
-    p, parts = given.parameters, given.catalogue
+def _layers(config: Input) -> Iterator[Proposal]:
+    p, parts = config.parameters, config.catalogue
     film = parts.films[p.mask.film]
     yield "stack.film_mm", film.thickness_mm, f"thickness of {p.mask.film}"
     filament = parts.filaments[p.backing.material]
     yield "backing.density_g_ml", filament.density_g_ml, f"density of {p.backing.material}"
 
 
-def _printer(given: Input) -> Iterator[Proposal]:
-    p = given.parameters
-    line = given.catalogue.printers[p.printer.profile].line_mm
+def _printer(config: Input) -> Iterator[Proposal]:
+    p = config.parameters
+    line = config.catalogue.printers[p.printer.profile].line_mm
     wall = max(float(FIELDS["printer.min_wall_mm"].start), round(LINES_PER_WALL * line, 2))
     yield "printer.min_wall_mm", wall, f"{LINES_PER_WALL:g} lines of {line:g} mm, at least 0.8 mm"
     edge = max(float(FIELDS["tip.edge_mm"].start), line)
@@ -168,9 +168,9 @@ def _printer(given: Input) -> Iterator[Proposal]:
     yield "mould.wall_mm", mould, f"at least twice printer.min_wall_mm = {wall:g}"
 
 
-def _multiplexer(given: Input) -> Iterator[Proposal]:
+def _multiplexer(config: Input) -> Iterator[Proposal]:
     """The published multiplexer where the controller has pins for it, else one with more inputs."""
-    p, parts = given.parameters, given.catalogue
+    p, parts = config.parameters, config.catalogue
     cells, controller = sum(p.grid.columns), parts.controllers[p.controller.board]
     start = str(FIELDS["receiver.multiplexer"].start)
     known = sorted(
@@ -185,9 +185,9 @@ def _multiplexer(given: Input) -> Iterator[Proposal]:
             return
 
 
-def _copper(given: Input) -> Iterator[Proposal]:
+def _copper(config: Input) -> Iterator[Proposal]:
     """Fine tracks where the lines of a column of detectors do not pass beside it otherwise."""
-    p, parts = given.parameters, given.catalogue
+    p, parts = config.parameters, config.catalogue
     columns = p.grid.columns
     detector = parts.photodetectors[p.receiver.photodetector]
     lane = column_pitch_mm(p.grid.pitch_mm) - min(detector.over_pads_mm)
@@ -205,18 +205,18 @@ def _copper(given: Input) -> Iterator[Proposal]:
     yield "board.via_drill_mm", FINE_MM["drill"], reason
 
 
-def _channel(given: Input) -> Iterator[Proposal]:
-    p = given.parameters
-    channels = given.catalogue.multiplexers[p.receiver.multiplexer].channels
+def _channel(config: Input) -> Iterator[Proposal]:
+    p = config.parameters
+    channels = config.catalogue.multiplexers[p.receiver.multiplexer].channels
     muxes = math.ceil(sum(p.grid.columns) / channels)
     if muxes > 4 or p.board.track_mm < float(FIELDS["board.track_mm"].start):
         reason = f"room to sort {sum(p.grid.columns)} lines before {muxes} multiplexers"
         yield "board.channel_mm", ROOMY_CHANNEL_MM, reason
 
 
-def _flange(given: Input) -> Iterator[Proposal]:
+def _flange(config: Input) -> Iterator[Proposal]:
     """Parts of the flange's board that follow from supply and current."""
-    p, parts = given.parameters, given.catalogue
+    p, parts = config.parameters, config.catalogue
     start = parts.capacitors[str(FIELDS["flange.input_capacitor"].start)]
     needed_v = p.supply.voltage_v * (1 + SUPPLY_TOLERANCE)
     for name, capacitor in parts.capacitors.items():

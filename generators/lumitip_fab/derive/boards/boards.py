@@ -65,10 +65,10 @@ class Frame:
 
 
 def derive_plan(
-    given: Input, cells: Cells, strings: Strings, muxing: Muxing, faults: Faults
+    config: Input, cells: Cells, strings: Strings, muxing: Muxing, faults: Faults
 ) -> Plan:
     """Lay out both boards."""
-    p, parts = given.parameters, given.catalogue
+    p, parts = config.parameters, config.catalogue
     led = parts.leds[p.emitter.led]
     detector = parts.photodetectors[p.receiver.photodetector]
     led_turned = chips.derive_turned(p, "emitter.led", p.emitter.led, led, faults)
@@ -77,17 +77,17 @@ def derive_plan(
     )
     leds = placing.at_cells("D", "led", led, led_turned, _mirrored(cells))
     detectors = placing.at_cells("Q", "photodetector", detector, detector_turned, _plain(cells))
-    frame = _frame(given, cells, muxing, (*leds, *detectors), faults)
-    board = _board(given, frame)
-    muxes = placing.multiplexers(given, muxing, frame.parts)
-    tip_holes = placing.tip_holes(given, cells, (*detectors, *_flipped(leds)), frame.box, faults)
+    frame = _frame(config, cells, muxing, (*leds, *detectors), faults)
+    board = _board(config, frame)
+    muxes = placing.multiplexers(config, muxing, frame.parts)
+    tip_holes = placing.tip_holes(config, cells, (*detectors, *_flipped(leds)), frame.box, faults)
     rear = (
         (-frame.rear_hole_x_mm, frame.connector_y_mm),
         (frame.rear_hole_x_mm, frame.connector_y_mm),
     )
-    room = _resistor_room(given, frame)
-    resistors, reliefs = placing.resistors(given, strings, room, frame.foot_half_mm, faults)
-    wires = connectors.place(connectors.emitter_signals(given), True, frame.connector_y_mm)
+    room = _resistor_room(config, frame)
+    resistors, reliefs = placing.resistors(config, strings, room, frame.foot_half_mm, faults)
+    wires = connectors.place(connectors.emitter_signals(config), True, frame.connector_y_mm)
     emitter = Finger(
         name="emitter",
         cells=_mirrored(cells),
@@ -117,13 +117,13 @@ def derive_plan(
 
 
 def _frame(
-    given: Input, cells: Cells, muxing: Muxing, chips_: tuple[Part, ...], faults: Faults
+    config: Input, cells: Cells, muxing: Muxing, chips_: tuple[Part, ...], faults: Faults
 ) -> Frame:
-    p = given.parameters
-    gripper = given.catalogue.grippers[p.coupling.gripper]
+    p = config.parameters
+    gripper = config.catalogue.grippers[p.coupling.gripper]
     ways = len(connectors.receiver_signals(muxing))
     pin_mm = p.board.hole_mm - 2 * p.backing.pin_clearance_mm
-    printed_mm = derive_fits(given, p.printer.fit_mm).pin_mm
+    printed_mm = derive_fits(config, p.printer.fit_mm).pin_mm
     faults.refuse_unless(
         printed_mm >= LEAST_PIN_MM,
         "backing.pin_clearance_mm",
@@ -143,17 +143,17 @@ def _frame(
     wide = ways <= connectors.MOST_WIDE_WAYS and connectors.half_width_mm(ways, True) <= fits
     wires_half = connectors.half_width_mm(ways, wide)
     notch_half = max(wires_half + NOTCH_BESIDE_MM, gripper.seat_width_mm / 2 + SEAT_CLEARANCE_MM)
-    foot_half = foot_half_mm(given, notch_half)
+    foot_half = foot_half_mm(config, notch_half)
     least_hole_x = notch_half + p.printer.min_wall_mm + pin_mm / 2
     if is_flex(p):
         least_hole_x = foot_half + p.printer.min_wall_mm + p.flex.thread_hole_mm / 2
-    half = _up(max(half, least_hole_x + rim, placing.least_half_width_mm(given, foot_half)))
+    half = _up(max(half, least_hole_x + rim, placing.least_half_width_mm(config, foot_half)))
     hole_x = min(max(float(np.abs(cells.x_mm).max()), least_hole_x), half - rim)
     top, bottom = float(cells.y_mm.max()), float(cells.y_mm.min())
     reach = max(part.size_y_mm for part in chips_) / 2
     side = max(part.size_x_mm for part in chips_) / 2
     parts_top = bottom - reach - p.board.channel_mm
-    depth = placing.parts_zone_depth_mm(given, muxing, 2 * half, faults)
+    depth = placing.parts_zone_depth_mm(config, muxing, 2 * half, faults)
     pad = connectors.WIDE[1]  # the emitter's two pads are wide whatever the receiver's are
     connector_y = parts_top - depth - pad / 2
     y_max = top + p.board.tip_margin_mm
@@ -218,10 +218,10 @@ def _refuse_holes(p: Parameters, pad_mm: float, faults: Faults) -> None:
     )
 
 
-def _resistor_room(given: Input, frame: Frame) -> Box:
+def _resistor_room(config: Input, frame: Frame) -> Box:
     """The zone for parts; on the back without what lies so near notch and pins that too little
     floor would be left between them and the resistors' relief."""
-    p, zone = given.parameters, frame.parts
+    p, zone = config.parameters, frame.parts
     if p.emitter.resistor_side == "front":
         return zone
     solid = max(frame.notch.y_max_mm, frame.connector_y_mm + frame.pin_mm / 2)
@@ -229,15 +229,15 @@ def _resistor_room(given: Input, frame: Frame) -> Box:
     return Box(zone.x_min_mm, zone.x_max_mm, max(zone.y_min_mm, lowest), zone.y_max_mm)
 
 
-def _board(given: Input, frame: Frame) -> Board:
-    fits = derive_fits(given, given.parameters.printer.fit_mm)
+def _board(config: Input, frame: Frame) -> Board:
+    fits = derive_fits(config, config.parameters.printer.fit_mm)
     return Board(
         box=frame.box,
-        hole_mm=given.parameters.board.hole_mm,
+        hole_mm=config.parameters.board.hole_mm,
         pocket=frame.box.grown(fits.pocket_gap_mm),
         pocket_clearance_mm=fits.pocket_gap_mm,
         pin_mm=fits.pin_mm,
-        flexible=flexible_board(given, frame.box, frame.notch, frame.connector_y_mm),
+        flexible=flexible_board(config, frame.box, frame.notch, frame.connector_y_mm),
     )
 
 

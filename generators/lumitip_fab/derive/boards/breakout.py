@@ -42,18 +42,18 @@ class Rows:
     wires_mm: float
 
 
-def derive_breakout(given: Input, muxing: Muxing, faults: Faults) -> tuple[Carrier, ...]:
+def derive_breakout(config: Input, muxing: Muxing, faults: Faults) -> tuple[Carrier, ...]:
     """The breakout board; none if it is not wanted, or if the controller has no pins to plug."""
-    p = given.parameters
-    plug = given.catalogue.controllers[p.controller.board].plug
+    p = config.parameters
+    plug = config.catalogue.controllers[p.controller.board].plug
     if not p.breakout.enabled or plug is None:
         return ()
-    strip = given.catalogue.strips[p.breakout.socket]
+    strip = config.catalogue.strips[p.breakout.socket]
     length, width = p.breakout.board_mm
     rows = _rows(plug, strip, width)
-    _refuse(given, plug, strip, muxing, rows, faults)
+    _refuse(config, plug, strip, muxing, rows, faults)
     half = p.breakout.hole_spacing_mm / 2
-    emitter = connectors.emitter_signals(given)
+    emitter = connectors.emitter_signals(config)
     return (
         Carrier(
             name="breakout",
@@ -63,7 +63,7 @@ def derive_breakout(given: Input, muxing: Muxing, faults: Faults) -> tuple[Carri
             corner_mm=CORNER_MM,
             holes=((-half, 0.0), (half, 0.0)),
             hole_mm=p.breakout.hole_mm,
-            devices=_devices(given, plug, strip, muxing, rows),
+            devices=_devices(config, plug, strip, muxing, rows),
             notes=(Note("USB", (1.5 - length / 2, 0.0), 1.2, 90.0),),
             supplies=tuple(dict.fromkeys(("GND", REGULATED, "3V3", *emitter[1:]))),
             keep_outs=(),
@@ -72,9 +72,9 @@ def derive_breakout(given: Input, muxing: Muxing, faults: Faults) -> tuple[Carri
     )
 
 
-def supply_signals(given: Input) -> tuple[str, ...]:
+def supply_signals(config: Input) -> tuple[str, ...]:
     """Signals of the cable from the flange, which feeds emitter and controller."""
-    return tuple(dict.fromkeys((*connectors.emitter_signals(given), REGULATED)))
+    return tuple(dict.fromkeys((*connectors.emitter_signals(config), REGULATED)))
 
 
 def _rows(plug: Plug, strip: Strip, width_mm: float) -> Rows:
@@ -87,17 +87,17 @@ def _rows(plug: Plug, strip: Strip, width_mm: float) -> Rows:
 
 
 def _devices(
-    given: Input, plug: Plug, strip: Strip, muxing: Muxing, rows: Rows
+    config: Input, plug: Plug, strip: Strip, muxing: Muxing, rows: Rows
 ) -> tuple[Device, ...]:
     nets = _net_of(plug, muxing)
     sockets, beside = [], []
     for number, (names, side) in enumerate(zip(plug.rows, (-1, 1), strict=True), start=1):
         on = tuple((str(i), nets.get(name, name)) for i, name in enumerate(names, start=1))
-        sockets.append(_socket(given, strip, f"J{number}", names, on, side * rows.socket_mm))
+        sockets.append(_socket(config, strip, f"J{number}", names, on, side * rows.socket_mm))
         beside.append(_pads(f"J{number + 2}", on, strip.pitch_mm, 0.0, side * rows.beside_mm))
-    length = given.parameters.breakout.board_mm[0]
+    length = config.parameters.breakout.board_mm[0]
     receiver = connectors.receiver_signals(muxing)
-    emitter, supply = connectors.emitter_signals(given), supply_signals(given)
+    emitter, supply = connectors.emitter_signals(config), supply_signals(config)
     edge = length / 2 - 2 * EDGE_MM
     left = -edge + connectors.half_width_mm(len(emitter), wide=True)
     right = edge - connectors.half_width_mm(len(supply), wide=True)
@@ -117,7 +117,7 @@ def _net_of(plug: Plug, muxing: Muxing) -> dict[str, str]:
 
 
 def _socket(
-    given: Input,
+    config: Input,
     strip: Strip,
     ref: str,
     names: tuple[str, ...],
@@ -128,7 +128,7 @@ def _socket(
     return Device(
         ref=ref,
         kind="socket",
-        value=given.parameters.breakout.socket,
+        value=config.parameters.breakout.socket,
         part=strip.order_number,
         manufacturer=strip.manufacturer,
         lcsc=strip.lcsc,
@@ -171,17 +171,17 @@ def _wires(
 
 
 def _refuse(
-    given: Input, plug: Plug, strip: Strip, muxing: Muxing, rows: Rows, faults: Faults
+    config: Input, plug: Plug, strip: Strip, muxing: Muxing, rows: Rows, faults: Faults
 ) -> None:
     """Refuse what does not fit onto the board."""
-    p = given.parameters.breakout
+    p = config.parameters.breakout
     length, width = p.board_mm
     ways = {len(names) for names in plug.rows}
     faults.refuse_unless(
         ways == {strip.ways},
         "breakout.socket",
         f"{p.socket!r} given, which has {strip.ways} contacts; the rows of "
-        f"{given.parameters.controller.board!r} have {' and '.join(map(str, sorted(ways)))}",
+        f"{config.parameters.controller.board!r} have {' and '.join(map(str, sorted(ways)))}",
     )
     cable = connectors.half_width_mm(len(connectors.receiver_signals(muxing)), wide=False)
     least_length = max(

@@ -15,9 +15,9 @@ def receiver_signals(muxing: Muxing) -> tuple[str, ...]:
     return ("GND", "3V3", *selects, *muxing.adc_pins)
 
 
-def emitter_signals(given: Input) -> tuple[str, ...]:
+def emitter_signals(config: Input) -> tuple[str, ...]:
     """Signals of the emitter's connector."""
-    return ("GND", f"{given.parameters.supply.voltage_v:g}V")
+    return ("GND", f"{config.parameters.supply.voltage_v:g}V")
 
 
 def half_width_mm(ways: int, wide: bool) -> float:

@@ -41,11 +41,11 @@ FIDUCIALS_AT: tuple[Point, ...] = ((-13.0, -13.5), (13.0, -15.5), (-13.0, 13.5))
 
 
 def derive_flange(
-    given: Input, strings: Strings, muxing: Muxing, faults: Faults
+    config: Input, strings: Strings, muxing: Muxing, faults: Faults
 ) -> tuple[Carrier, ...]:
     """The flange's board, with the controller if that is a module; none if it is not wanted."""
-    p = given.parameters
-    module = given.catalogue.controllers[p.controller.board].module
+    p = config.parameters
+    module = config.catalogue.controllers[p.controller.board].module
     if not p.flange.enabled:
         faults.refuse_unless(
             module is None,
@@ -54,14 +54,14 @@ def derive_flange(
             "or a controller that plugs into the breakout",
         )
         return ()
-    _refuse(given, faults)
-    refuse_map(given, faults)
-    refuse_parts(given, strings, faults)
-    raw, supply, output = _supplies(given)
-    wing = derive_module(given, module, muxing, Supplies(supply, output), BOX, faults)
-    parts = (*_input(given), *_regulator(given), *(wing.devices if wing else ()))
-    _refuse_lines(given, parts, faults)
-    switched = ("SW",) if is_regulated(given) else ()
+    _refuse(config, faults)
+    refuse_map(config, faults)
+    refuse_parts(config, strings, faults)
+    raw, supply, output = _supplies(config)
+    wing = derive_module(config, module, muxing, Supplies(supply, output), BOX, faults)
+    parts = (*_input(config), *_regulator(config), *(wing.devices if wing else ()))
+    _refuse_lines(config, parts, faults)
+    switched = ("SW",) if is_regulated(config) else ()
     return (
         Carrier(
             name="flange",
@@ -70,44 +70,44 @@ def derive_flange(
             box=wing.box if wing else BOX,
             corner_mm=CORNER_MM,
             holes=HOLES_AT,
-            hole_mm=given.catalogue.fasteners[BOARD_SCREW].hole_mm[0],
+            hole_mm=config.catalogue.fasteners[BOARD_SCREW].hole_mm[0],
             devices=(
-                *_strips(given),
+                *_strips(config),
                 *parts,
                 *fiducials(wing.fiducials if wing else FIDUCIALS_AT),
             ),
             notes=(),
             supplies=tuple(dict.fromkeys(("GND", supply, raw, "FUSED", output, *switched))),
             keep_outs=wing.keep_outs if wing else (),
-            hot_loop=_hot_loop(given),
+            hot_loop=_hot_loop(config),
         ),
     )
 
 
-def _hot_loop(given: Input) -> tuple[tuple[str, str], ...]:
+def _hot_loop(config: Input) -> tuple[tuple[str, str], ...]:
     """The leads round which the regulator's input current switches; none without it."""
-    if not is_regulated(given):
+    if not is_regulated(config):
         return ()
-    names = given.catalogue.regulators[given.parameters.flange.regulator].names
+    names = config.catalogue.regulators[config.parameters.flange.regulator].names
     vin, ground = (str(names.index(name) + 1) for name in ("VIN", "GND"))
     return ("U1", vin), ("C1", "1"), ("C1", "2"), ("U1", ground)
 
 
-def _supplies(given: Input) -> tuple[str, str, str]:
+def _supplies(config: Input) -> tuple[str, str, str]:
     """Nets of the contacts' supply, of the same after the MOSFET, and of the regulator."""
-    volts = f"{given.parameters.supply.voltage_v:g}V"
-    regulator = given.catalogue.regulators[given.parameters.flange.regulator]
+    volts = f"{config.parameters.supply.voltage_v:g}V"
+    regulator = config.catalogue.regulators[config.parameters.flange.regulator]
     return f"{volts}_IN", volts, f"{regulator.output_v:g}V"
 
 
-def _strips(given: Input) -> tuple[Device, ...]:
+def _strips(config: Input) -> tuple[Device, ...]:
     """Contacts and headers."""
-    p, known = given.parameters.flange, given.catalogue.strips
-    raw, supply, output = _supplies(given)
+    p, known = config.parameters.flange, config.catalogue.strips
+    raw, supply, output = _supplies(config)
     called = {"SUPPLY": supply, "REGULATED": output}
     nets = tuple(raw if signal == "SUPPLY" else signal for signal in p.signals)
     names = tuple(called.get(signal, signal) for signal in p.signals)
-    coupling = given.catalogue.couplings[p.coupling]
+    coupling = config.catalogue.couplings[p.coupling]
     x, y = coupling.contacts_at_mm
     places = [(contact.at_mm[0] - x, contact.at_mm[1] - y) for contact in coupling.contacts]
     rows = strip("J1", p.contacts, known[p.contacts], CONTACTS_AT, nets, names)
@@ -120,10 +120,10 @@ def _strips(given: Input) -> tuple[Device, ...]:
     return contacts, *both
 
 
-def _input(given: Input) -> tuple[Device, ...]:
+def _input(config: Input) -> tuple[Device, ...]:
     """Fuse, and the MOSFET with the supply, or half of a high one, at its gate."""
-    p, known = given.parameters.flange, given.catalogue
-    raw, supply, _ = _supplies(given)
+    p, known = config.parameters.flange, config.catalogue
+    raw, supply, _ = _supplies(config)
     resistor = known.resistors[p.resistor]
     code = resistor_code(p.gate_ohm)
     part = resistor.order_number.replace("{code}", code)
@@ -146,20 +146,20 @@ def _input(given: Input) -> tuple[Device, ...]:
                     part,
                 ),
             )
-            if halved(given)
+            if halved(config)
             else ()
         ),
         chip("R2", "resistor", code, resistor, "RESC", (-2.0, -3.8), 0.0, ("GATE", "GND"), part),
     )
 
 
-def _regulator(given: Input) -> tuple[Device, ...]:
+def _regulator(config: Input) -> tuple[Device, ...]:
     """The regulator with its input capacitor across VIN and GND, and what hangs on SW; nothing
     where the supply is what it would make."""
-    p, known = given.parameters.flange, given.catalogue
-    if not is_regulated(given):
+    p, known = config.parameters.flange, config.catalogue
+    if not is_regulated(config):
         return ()
-    _, supply, output = _supplies(given)
+    _, supply, output = _supplies(config)
     leads = {"FB": output, "EN": supply, "VIN": supply, "GND": "GND", "SW": "SW", "BST": "BST"}
     caps = known.capacitors
     return (
@@ -212,9 +212,9 @@ def _regulator(given: Input) -> tuple[Device, ...]:
     )
 
 
-def _refuse(given: Input, faults: Faults) -> None:
+def _refuse(config: Input, faults: Faults) -> None:
     """Refuse headers of another size, signals that lead nowhere, and voltages beyond the parts'."""
-    p, known, volts = given.parameters.flange, given.catalogue, given.parameters.supply.voltage_v
+    p, known, volts = config.parameters.flange, config.catalogue, config.parameters.supply.voltage_v
     strip = known.strips[p.header]
     counts = [len(signals) for signals in p.headers]
     faults.refuse_unless(
@@ -237,9 +237,9 @@ def _refuse(given: Input, faults: Faults) -> None:
         f"{', '.join(p.signals):.80} given, SUPPLY and GND are needed, and no REGULATED, which the "
         "board makes",
     )
-    least, most = supply_range_v(given)
+    least, most = supply_range_v(config)
     faults.refuse_unless(
-        not is_regulated(given) or least <= volts <= most,
+        not is_regulated(config) or least <= volts <= most,
         "supply.voltage_v",
         f"{volts:g} given, the flange's regulator, fuse and transistor take {least:g} to "
         f"{most:g} V, or {known.regulators[p.regulator].output_v:g} V without a regulator; other "
@@ -247,11 +247,11 @@ def _refuse(given: Input, faults: Faults) -> None:
     )
 
 
-def _refuse_lines(given: Input, parts: tuple[Device, ...], faults: Faults) -> None:
+def _refuse_lines(config: Input, parts: tuple[Device, ...], faults: Faults) -> None:
     """Refuse lines from contact to cable that are called like a net of the board's own parts:
     they would be joined."""
-    p = given.parameters.flange
-    own = {net for part in parts for _, net in part.nets} | set(_supplies(given))
+    p = config.parameters.flange
+    own = {net for part in parts for _, net in part.nets} | set(_supplies(config))
     lines = {*p.signals, *p.headers[0], *p.headers[1]} - {"SUPPLY", "GND", "REGULATED", OPEN}
     taken = sorted(lines & own)
     faults.refuse_unless(

@@ -22,11 +22,11 @@ _FOR = {"supply": "SUPPLY", "ground": "GND"}
 """Signal that belongs on a contact of a kind, and on no other."""
 
 
-def refuse_map(given: Input, faults: Faults) -> None:
+def refuse_map(config: Input, faults: Faults) -> None:
     """Refuse contacts where the coupling has none, and nets that join what must stay apart."""
-    p = given.parameters.flange
-    coupling = given.catalogue.couplings[p.coupling]
-    strip = given.catalogue.strips[p.contacts]
+    p = config.parameters.flange
+    coupling = config.catalogue.couplings[p.coupling]
+    strip = config.catalogue.strips[p.contacts]
     if not _meets(strip, coupling):
         faults.refuse(
             "flange.contacts",
@@ -99,24 +99,24 @@ STRAY_PF = 7.0  # at each of the crystal's terminals: 4 of the nRF52840's pin, t
 MOST_OFF_PF = 1.5  # some 15 ppm of a crystal of 32.768 kHz
 
 
-def is_regulated(given: Input) -> bool:
+def is_regulated(config: Input) -> bool:
     """Whether the flange makes its output from a higher supply; else they are one net."""
-    p = given.parameters
-    return p.supply.voltage_v != given.catalogue.regulators[p.flange.regulator].output_v
+    p = config.parameters
+    return p.supply.voltage_v != config.catalogue.regulators[p.flange.regulator].output_v
 
 
-def halved(given: Input) -> bool:
+def halved(config: Input) -> bool:
     """Whether a divider halves the supply for the MOSFET's gate, which bears no high supply."""
-    p = given.parameters
+    p = config.parameters
     high_v = p.supply.voltage_v * (1 + SUPPLY_TOLERANCE)
-    return high_v > GATE_SHARE * given.catalogue.transistors[p.flange.transistor].gate_v
+    return high_v > GATE_SHARE * config.catalogue.transistors[p.flange.transistor].gate_v
 
 
-def supply_range_v(given: Input) -> tuple[float, float]:
+def supply_range_v(config: Input) -> tuple[float, float]:
     """Least and greatest supply that regulator, fuse and transistor take."""
-    p, known = given.parameters.flange, given.catalogue
+    p, known = config.parameters.flange, config.catalogue
     part, transistor = known.regulators[p.regulator], known.transistors[p.transistor]
-    gates = 2 if halved(given) else 1
+    gates = 2 if halved(config) else 1
     least = max(
         part.input_v[0],
         part.output_v + HEADROOM_V,
@@ -126,19 +126,19 @@ def supply_range_v(given: Input) -> tuple[float, float]:
     return least, min(*rated, gates * transistor.gate_v)
 
 
-def refuse_parts(given: Input, strings: Strings, faults: Faults) -> None:
+def refuse_parts(config: Input, strings: Strings, faults: Faults) -> None:
     """Refuse parts that are overloaded, and values with which the circuit does not work."""
-    _refuse_gate(given, faults)
-    _refuse_fuse(given, strings, faults)
-    refuse_flange_capacitors(given, faults)
-    if given.catalogue.controllers[given.parameters.controller.board].module:
-        _refuse_crystal(given, faults)
+    _refuse_gate(config, faults)
+    _refuse_fuse(config, strings, faults)
+    refuse_flange_capacitors(config, faults)
+    if config.catalogue.controllers[config.parameters.controller.board].module:
+        _refuse_crystal(config, faults)
 
 
-def _refuse_gate(given: Input, faults: Faults) -> None:
-    p = given.parameters
-    ohm, volts = p.flange.gate_ohm, p.supply.voltage_v / (2 if halved(given) else 1)
-    package = given.catalogue.resistors[p.flange.resistor]
+def _refuse_gate(config: Input, faults: Faults) -> None:
+    p = config.parameters
+    ohm, volts = p.flange.gate_ohm, p.supply.voltage_v / (2 if halved(config) else 1)
+    package = config.catalogue.resistors[p.flange.resistor]
     sold, allowed_w = sold_ohm(ohm), MOST_RESISTOR_LOAD * package.power_w
     faults.refuse_unless(
         math.isclose(sold, ohm),
@@ -155,8 +155,8 @@ def _refuse_gate(given: Input, faults: Faults) -> None:
     )
 
 
-def _refuse_fuse(given: Input, strings: Strings, faults: Faults) -> None:
-    p, known = given.parameters, given.catalogue
+def _refuse_fuse(config: Input, strings: Strings, faults: Faults) -> None:
+    p, known = config.parameters, config.catalogue
     fed_ma = known.controllers[p.controller.board].draws_ma / EFFICIENCY
     output_v = known.regulators[p.flange.regulator].output_v
     drawn_ma = sum(strings.current_ma) + fed_ma * output_v / p.supply.voltage_v
@@ -169,9 +169,9 @@ def _refuse_fuse(given: Input, strings: Strings, faults: Faults) -> None:
     )
 
 
-def _refuse_crystal(given: Input, faults: Faults) -> None:
+def _refuse_crystal(config: Input, faults: Faults) -> None:
     """Refuse capacitors with which the crystal is off."""
-    p, known = given.parameters.module, given.catalogue
+    p, known = config.parameters.module, config.catalogue
     crystal, each = known.crystals[p.crystal], known.capacitors[p.crystal_capacitor]
     load_pf = (1000 * each.capacitance_nf * each.left + STRAY_PF) / 2
     faults.refuse_unless(
@@ -189,15 +189,15 @@ MOST_RIPPLE = 0.01  # of the output, and of the supply at the input
 OUTPUT_CAPACITORS = ("C2", "C3")
 
 
-def derive_regulated(given: Input, faults: Faults) -> tuple[Regulated, ...]:
+def derive_regulated(config: Input, faults: Faults) -> tuple[Regulated, ...]:
     """The flange's 5 V; none without the flange, or where they are its supply.
 
     Ripple of a step-down regulator in continuous conduction: the current swings by
     V (1 - V / V_in) / (L f), and the capacitors take the half of it above the mean,
     which moves them by the swing / (8 f C). Their series resistance, some milliohms, is left out.
     """
-    p, known = given.parameters, given.catalogue
-    if not p.flange.enabled or not is_regulated(given):
+    p, known = config.parameters, config.catalogue
+    if not p.flange.enabled or not is_regulated(config):
         return ()
     part = known.regulators[p.flange.regulator]
     inductor = known.inductors[p.flange.inductor]
@@ -214,7 +214,7 @@ def derive_regulated(given: Input, faults: Faults) -> tuple[Regulated, ...]:
         f"{p.flange.output_capacitor!r} given, with which {volts:g} V ripple by {ripple_mv:.0f} "
         f"mV; at most {1e3 * MOST_RIPPLE * volts:g} mV are allowed: more capacitance",
     )
-    _refuse_input(given, LOAD_SHARE * part.output_a * duty * (1 - duty) / hertz, faults)
+    _refuse_input(config, LOAD_SHARE * part.output_a * duty * (1 - duty) / hertz, faults)
     high_ohm, low_ohm = part.switch_ohm
     return (
         Regulated(
@@ -234,10 +234,10 @@ def derive_regulated(given: Input, faults: Faults) -> tuple[Regulated, ...]:
     )
 
 
-def _refuse_input(given: Input, coulomb: float, faults: Faults) -> None:
+def _refuse_input(config: Input, coulomb: float, faults: Faults) -> None:
     """Refuse an input capacitor that does not hold the supply while the switch takes a charge."""
-    p = given.parameters
-    capacitor = given.catalogue.capacitors[p.flange.input_capacitor]
+    p = config.parameters
+    capacitor = config.catalogue.capacitors[p.flange.input_capacitor]
     moved_v = coulomb / (1e-9 * capacitor.capacitance_nf * capacitor.left)
     most_v = MOST_RIPPLE * p.supply.voltage_v
     faults.refuse_unless(

@@ -13,7 +13,7 @@ STIFFENER_GAP_MM = 0.3  # to the sides of the wire notch
 OVER_PADS_MM = 0.1
 
 
-def flexible_board(given: Input, box: Box, notch: Box, connector_y_mm: float) -> Flexible | None:
+def flexible_board(config: Input, box: Box, notch: Box, connector_y_mm: float) -> Flexible | None:
     """What a flexible board is made of; none of a stiff one.
 
     The coverlay is as thick as common ones of board houses (assumed: each has its own); the core is
@@ -21,7 +21,7 @@ def flexible_board(given: Input, box: Box, notch: Box, connector_y_mm: float) ->
     the wires' pads, where the plate is open, so that it does not lift the board; it ends before
     the test points.
     """
-    p, copper_mm = given.parameters, given.catalogue.laminates.flexible.copper_mm
+    p, copper_mm = config.parameters, config.catalogue.laminates.flexible.copper_mm
     if not is_flex(p):
         return None
     held_to = min(notch.y_min_mm + p.flex.interface_mm, box.y_max_mm)

@@ -64,7 +64,7 @@ class Wing:
 
 
 def derive_module(
-    given: Input,
+    config: Input,
     module: Module | None,
     muxing: Muxing,
     supplies: Supplies,
@@ -74,14 +74,14 @@ def derive_module(
     """The module with what it needs; none where the controller is not one."""
     if module is None:
         return None
-    _refuse(given, muxing, faults)
+    _refuse(config, muxing, faults)
     left = box.x_min_mm - WING_MM
     at = left + module.body_mm[1] / 2, 0.0
     receiver = connectors.receiver_signals(muxing)
     devices = (
-        _module(given, module, muxing, at),
-        *_beside(given),
-        *_supply(given, supplies),
+        _module(config, module, muxing, at),
+        *_beside(config),
+        *_supply(config, supplies),
         wires("J4", receiver, (left + 7.9, -22.6), wide=False),
         wires("J5", ("GND", supplies.leds), (-16.9, -14.0), wide=True),
         wires("J6", ("VUSB", "D-", "D+", "GND"), (-20.4, 22.6), wide=True),
@@ -99,7 +99,7 @@ def derive_module(
     )
 
 
-def _module(given: Input, module: Module, muxing: Muxing, at: Point) -> Device:
+def _module(config: Input, module: Module, muxing: Muxing, at: Point) -> Device:
     """The module; a pin of the sketch names its pad, any other pad is called by its port."""
     pins = {port: pin for pin, port in module.ports.items()}
     nets = _NAMED | dict(zip(module.crystal, ("XL1", "XL2"), strict=True))
@@ -108,7 +108,7 @@ def _module(given: Input, module: Module, muxing: Muxing, at: Point) -> Device:
     return Device(
         ref="U2",
         kind="module",
-        value=given.title("controller.board"),
+        value=config.title("controller.board"),
         part=module.order_number,
         manufacturer=module.manufacturer,
         lcsc=module.lcsc,
@@ -121,9 +121,9 @@ def _module(given: Input, module: Module, muxing: Muxing, at: Point) -> Device:
     )
 
 
-def _supply(given: Input, supplies: Supplies) -> tuple[Device, ...]:
+def _supply(config: Input, supplies: Supplies) -> tuple[Device, ...]:
     """The linear regulator with a capacitor before and after it."""
-    p, known = given.parameters.module, given.catalogue
+    p, known = config.parameters.module, config.catalogue
     cap, value = known.capacitors[p.supply_capacitor], p.supply_capacitor.split()[0]
     leads = {"IN": supplies.regulated, "OUT": CONTROLLER, "GND": "GND"}
     return (
@@ -143,11 +143,11 @@ def _supply(given: Input, supplies: Supplies) -> tuple[Device, ...]:
     )
 
 
-def _beside(given: Input) -> tuple[Device, ...]:
+def _beside(config: Input) -> tuple[Device, ...]:
     """What is near the module's pads: capacitors of its supplies, and the crystal."""
-    p, known = given.parameters.module, given.catalogue.capacitors
+    p, known = config.parameters.module, config.catalogue.capacitors
     value = p.crystal_capacitor.split()[0]
-    crystal = given.catalogue.crystals[p.crystal]
+    crystal = config.catalogue.crystals[p.crystal]
     return (
         chip(
             "C7",
@@ -202,9 +202,9 @@ def _beside(given: Input) -> tuple[Device, ...]:
     )
 
 
-def _refuse(given: Input, muxing: Muxing, faults: Faults) -> None:
+def _refuse(config: Input, muxing: Muxing, faults: Faults) -> None:
     """Refuse a regulator that does not go between the supplies, and more wires than have room."""
-    p, known = given.parameters, given.catalogue
+    p, known = config.parameters, config.catalogue
     regulator = known.linear_regulators[p.module.regulator]
     controller = known.controllers[p.controller.board]
     fed_v = known.regulators[p.flange.regulator].output_v

@@ -11,9 +11,9 @@ LEAST_RING_MM = 0.1  # copper round the hole of a via
 COMMON_SILK = Silk(text_mm=0.8, line_mm=0.15, gap_mm=0.15)  # where the catalogue has no house
 
 
-def derive_packages(given: Input) -> Packages:
+def derive_packages(config: Input) -> Packages:
     """The parts that are named in the parameter file, as the boards need them."""
-    p, parts = given.parameters, given.catalogue
+    p, parts = config.parameters, config.catalogue
     led, detector = parts.leds[p.emitter.led], parts.photodetectors[p.receiver.photodetector]
     capacitor = parts.capacitors[p.receiver.capacitor]
     mux = parts.multiplexers[p.receiver.multiplexer]
@@ -59,10 +59,10 @@ def _chip(entry: electronics.Chip, value: str = "", marked: str = "") -> Chip:
     )
 
 
-def derive_rules(given: Input, faults: Faults) -> Rules:
+def derive_rules(config: Input, faults: Faults) -> Rules:
     """Rules of the copper; refused where a via has no ring or a track does not leave a lead."""
-    p = given.parameters
-    board, mux = p.board, given.catalogue.multiplexers[p.receiver.multiplexer]
+    p = config.parameters
+    board, mux = p.board, config.catalogue.multiplexers[p.receiver.multiplexer]
     least = board.via_drill_mm + 2 * LEAST_RING_MM
     faults.refuse_unless(
         board.via_mm >= least - 1e-9,
@@ -81,7 +81,7 @@ def derive_rules(given: Input, faults: Faults) -> Rules:
         "board.supply_track_mm",
         f"{board.supply_track_mm:g} given, at least board.track_mm = {board.track_mm:g} is needed",
     )
-    silks = [fab.silk for fab in given.catalogue.fabs.values()] or [COMMON_SILK]
+    silks = [fab.silk for fab in config.catalogue.fabs.values()] or [COMMON_SILK]
     return Rules(
         part_gap_mm=board.clearance_mm,
         track_mm=board.track_mm,
@@ -96,7 +96,7 @@ def derive_rules(given: Input, faults: Faults) -> Rules:
     )
 
 
-def derive_fabs(given: Input) -> tuple[Fab, ...]:
+def derive_fabs(config: Input) -> tuple[Fab, ...]:
     """Every board house of the catalogue."""
     return tuple(
         Fab(
@@ -109,5 +109,5 @@ def derive_fabs(given: Input) -> tuple[Fab, ...]:
             rotations=tuple(fab.rotations.items()),
             remark=fab.remark,
         )
-        for name, fab in given.catalogue.fabs.items()
+        for name, fab in config.catalogue.fabs.items()
     )

@@ -33,12 +33,12 @@ def at_cells(
     )
 
 
-def parts_zone_depth_mm(given: Input, muxing: Muxing, width_mm: float, faults: Faults) -> float:
+def parts_zone_depth_mm(config: Input, muxing: Muxing, width_mm: float, faults: Faults) -> float:
     """Depth of the zone for parts with a channel after each row of multiplexers."""
-    p = given.parameters
-    mux = given.catalogue.multiplexers[p.receiver.multiplexer]
-    per_row = _per_row(given, width_mm)
-    beside = sum(chip.over_pads_mm[0] for chip in _passives(given)) + p.board.clearance_mm
+    p = config.parameters
+    mux = config.catalogue.multiplexers[p.receiver.multiplexer]
+    per_row = _per_row(config, width_mm)
+    beside = sum(chip.over_pads_mm[0] for chip in _passives(config)) + p.board.clearance_mm
     faults.refuse_unless(
         beside <= mux.lead_span_mm,
         "receiver.resistor",
@@ -49,22 +49,22 @@ def parts_zone_depth_mm(given: Input, muxing: Muxing, width_mm: float, faults: F
         faults.refuse(
             "board.side_margin_mm",
             f"{p.board.side_margin_mm:g} given, which makes boards {width_mm:.1f} mm wide; a "
-            f"{p.receiver.multiplexer!r} with its capacitor needs {_slot_mm(given) + 2:.1f} mm",
+            f"{p.receiver.multiplexer!r} with its capacitor needs {_slot_mm(config) + 2:.1f} mm",
         )
         per_row = 1
     rows = math.ceil(muxing.muxes / per_row)
     return rows * (mux.lead_span_mm + p.board.channel_mm)
 
 
-def multiplexers(given: Input, muxing: Muxing, zone: Box) -> tuple[Part, ...]:
+def multiplexers(config: Input, muxing: Muxing, zone: Box) -> tuple[Part, ...]:
     """Multiplexers in rows across the zone, evenly spread, U1 at the upper left.
 
     Capacitor and pull-up stand to the left of each, where supply and output leads are.
     """
-    p = given.parameters
-    mux = given.catalogue.multiplexers[p.receiver.multiplexer]
-    passives = (_slot_mm(given) - mux.body_mm[0]) - p.board.clearance_mm
-    per_row = max(_per_row(given, zone.width_mm + 2), 1)
+    p = config.parameters
+    mux = config.catalogue.multiplexers[p.receiver.multiplexer]
+    passives = (_slot_mm(config) - mux.body_mm[0]) - p.board.clearance_mm
+    per_row = max(_per_row(config, zone.width_mm + 2), 1)
     rows = np.array_split(np.arange(muxing.muxes), math.ceil(muxing.muxes / per_row))
     parts = []
     for r, row in enumerate(rows):
@@ -79,36 +79,36 @@ def multiplexers(given: Input, muxing: Muxing, zone: Box) -> tuple[Part, ...]:
     return tuple(parts)
 
 
-def _slot_mm(given: Input) -> float:
-    p = given.parameters
-    body = given.catalogue.multiplexers[p.receiver.multiplexer].body_mm[0]
-    return body + max(chip.over_pads_mm[1] for chip in _passives(given)) + 2 * p.board.clearance_mm
+def _slot_mm(config: Input) -> float:
+    p = config.parameters
+    body = config.catalogue.multiplexers[p.receiver.multiplexer].body_mm[0]
+    return body + max(chip.over_pads_mm[1] for chip in _passives(config)) + 2 * p.board.clearance_mm
 
 
-def _passives(given: Input) -> tuple[Chip, Chip]:
+def _passives(config: Input) -> tuple[Chip, Chip]:
     """Capacitor and pull-up, which stand upright beside each multiplexer."""
-    p, parts = given.parameters, given.catalogue
+    p, parts = config.parameters, config.catalogue
     return parts.capacitors[p.receiver.capacitor], parts.resistors[p.receiver.resistor]
 
 
-def _per_row(given: Input, width_mm: float) -> int:
-    return int((width_mm - 2) / _slot_mm(given) + 1e-9)
+def _per_row(config: Input, width_mm: float) -> int:
+    return int((width_mm - 2) / _slot_mm(config) + 1e-9)
 
 
 def tip_holes(
-    given: Input, cells: Cells, parts: tuple[Part, ...], box: Box, faults: Faults
+    config: Input, cells: Cells, parts: tuple[Part, ...], box: Box, faults: Faults
 ) -> tuple[Point, ...]:
     """Holes ahead of the first row: outermost and middle of the columns that leave room, or near
     the long edges where fewer than two columns do.
 
     Args:
-        given: the input.
+        config: the input.
         cells: the cells.
         parts: parts at the cells of both fingers, in the receiver's frame.
         box: the board.
         faults: where to refuse.
     """
-    p = given.parameters
+    p = config.parameters
     y = box.y_max_mm - p.board.hole_edge_mm
     keep = p.board.hole_mm / 2 + HOLE_CLEARANCE_MM
     apart = p.board.hole_mm + HOLES_APART_MM
@@ -151,16 +151,16 @@ def _spans(room: list[float], apart_mm: float) -> bool:
 
 
 def resistors(
-    given: Input, strings: Strings, zone: Box, foot_half_mm: float, faults: Faults
+    config: Input, strings: Strings, zone: Box, foot_half_mm: float, faults: Faults
 ) -> tuple[tuple[Part, ...], tuple[Relief, ...]]:
     """String resistors in two banks beside the coupling, and the reliefs behind them.
 
     R1 is rightmost, because the strings begin with column 0, which is on the emitter's right.
     """
-    p = given.parameters
-    chip = given.catalogue.resistors[p.emitter.resistor]
+    p = config.parameters
+    chip = config.catalogue.resistors[p.emitter.resistor]
     along, across = chip.over_pads_mm
-    inner = _inner_mm(given, foot_half_mm)
+    inner = _inner_mm(config, foot_half_mm)
     outer = zone.x_max_mm - p.backing.relief_clearance_mm
     step_x, step_y = across + RESISTOR_GAP_MM, along + RESISTOR_GAP_MM
     across_bank = int((outer - inner + RESISTOR_GAP_MM) / step_x + 1e-9)
@@ -194,27 +194,27 @@ def resistors(
         ]
         parts += bank
         if bank and p.emitter.resistor_side == "back":
-            reliefs.append(_relief(given, bank, chip.body_mm[2]))
+            reliefs.append(_relief(config, bank, chip.body_mm[2]))
     return tuple(parts), tuple(reliefs)
 
 
-def least_half_width_mm(given: Input, foot_half_mm: float) -> float:
+def least_half_width_mm(config: Input, foot_half_mm: float) -> float:
     """Half the board's width that takes one string resistor on each side of the coupling."""
-    p = given.parameters
-    _, across = given.catalogue.resistors[p.emitter.resistor].over_pads_mm
-    return _inner_mm(given, foot_half_mm) + across + p.backing.relief_clearance_mm + ZONE_MARGIN_MM
+    p = config.parameters
+    _, across = config.catalogue.resistors[p.emitter.resistor].over_pads_mm
+    return _inner_mm(config, foot_half_mm) + across + p.backing.relief_clearance_mm + ZONE_MARGIN_MM
 
 
-def _inner_mm(given: Input, foot_half_mm: float) -> float:
+def _inner_mm(config: Input, foot_half_mm: float) -> float:
     """Where the banks of string resistors begin: behind the board, beside the coupling."""
-    p = given.parameters
+    p = config.parameters
     if p.emitter.resistor_side == "front":
         return RESISTOR_GAP_MM / 2
     return foot_half_mm + COUPLING_GAP_MM + p.backing.relief_clearance_mm
 
 
-def _relief(given: Input, bank: list[Part], height_mm: float) -> Relief:
-    p = given.parameters
+def _relief(config: Input, bank: list[Part], height_mm: float) -> Relief:
+    p = config.parameters
     boxes = [part.box for part in bank]
     box = Box(
         min(b.x_min_mm for b in boxes),

@@ -12,11 +12,11 @@ def is_flex(p: Parameters) -> bool:
     return p.backing.variant == "flex"
 
 
-def held_by(given: Input) -> Gripper:
+def held_by(config: Input) -> Gripper:
     """The gripper as this finger meets it: a compliant one leans farther in, and is farther from
     the bolts, because the interface's pad lies behind its plate."""
-    p = given.parameters
-    gripper = given.catalogue.grippers[p.coupling.gripper]
+    p = config.parameters
+    gripper = config.catalogue.grippers[p.coupling.gripper]
     if not is_flex(p):
         return gripper
     back, nose = p.flex.standoff_mm, gripper.nose
@@ -39,10 +39,10 @@ def stiff_mm(p: Parameters) -> float:
     return CARRIER_MM if is_flex(p) else p.stack.pcb_mm
 
 
-def foot_half_mm(given: Input, notch_half_mm: float) -> float:
+def foot_half_mm(config: Input, notch_half_mm: float) -> float:
     """Half the width of what stands on the plate's back: the groove of an interface, whose legs
     run beside the notch, or else the coupling's block."""
-    p = given.parameters
+    p = config.parameters
     if is_flex(p):
         return notch_half_mm + p.printer.min_wall_mm + p.flex.groove_mm
-    return given.catalogue.grippers[p.coupling.gripper].block_width_mm / 2
+    return config.catalogue.grippers[p.coupling.gripper].block_width_mm / 2

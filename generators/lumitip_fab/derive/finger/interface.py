@@ -22,30 +22,30 @@ FLARE_MM = 2.2  # of the interface beyond land and ramp: where the ramp flares i
 
 
 def derive_interfaces(
-    given: Input, outline: Outline, finger: Finger, board: Box, faults: Faults
+    config: Input, outline: Outline, finger: Finger, board: Box, faults: Faults
 ) -> tuple[Interface, ...]:
     """The interface of each finger; none of a rigid one.
 
     Args:
-        given: the parameters.
+        config: the parameters.
         outline: of the plate.
         finger: either of them: its wire notch is between the legs of the groove.
         board: its edge.
         faults: where to refuse.
     """
-    p, flex = given.parameters, given.parameters.flex
+    p, flex = config.parameters, config.parameters.flex
     if not is_flex(p):
         return ()
-    _refuse_heights(given, faults)
-    _refuse_holes(given, finger, board, faults)
-    half = foot_half_mm(given, finger.notch.x_max_mm)
+    _refuse_heights(config, faults)
+    _refuse_holes(config, finger, board, faults)
+    half = foot_half_mm(config, finger.notch.x_max_mm)
     end_y = outline.end_y_mm
     groove = Box(-half, half, end_y, end_y + flex.interface_mm)
-    gripper = held_by(given)
+    gripper = held_by(config)
     tilt = math.radians(45 - gripper.tilt_deg)
     ramp = (gripper.block_back_w_mm - behind_mm(p)) / math.tan(tilt)
     least = gripper.land_mm + ramp + FLARE_MM
-    line_mm = given.catalogue.printers[p.printer.profile].line_mm
+    line_mm = config.catalogue.printers[p.printer.profile].line_mm
     letter_mm = most_letter_mm(line_mm)
     most = outline.length_mm - p.tip.slant_start_mm - 2 * LETTER_GAP_MM - letter_mm
     needed, room = math.ceil(least * 10) / 10, math.floor(most * 10) / 10
@@ -81,9 +81,9 @@ def derive_interfaces(
     )
 
 
-def _refuse_holes(given: Input, finger: Finger, board: Box, faults: Faults) -> None:
+def _refuse_holes(config: Input, finger: Finger, board: Box, faults: Faults) -> None:
     """Refuse holes for thread that the board does not cover."""
-    wide = given.parameters.flex.thread_hole_mm
+    wide = config.parameters.flex.thread_hole_mm
     to_edge = min(
         min(x - board.x_min_mm, board.x_max_mm - x, y - board.y_min_mm, board.y_max_mm - y)
         for x, y in finger.holes
@@ -97,16 +97,16 @@ def _refuse_holes(given: Input, finger: Finger, board: Box, faults: Faults) -> N
     )
 
 
-def _refuse_heights(given: Input, faults: Faults) -> None:
+def _refuse_heights(config: Input, faults: Faults) -> None:
     """Refuse what does not go into plate, pad and groove."""
-    p, flex = given.parameters, given.parameters.flex
-    line_mm = given.catalogue.printers[p.printer.profile].line_mm
-    nose = given.catalogue.grippers[p.coupling.gripper].nose
+    p, flex = config.parameters, config.parameters.flex
+    line_mm = config.catalogue.printers[p.printer.profile].line_mm
+    nose = config.catalogue.grippers[p.coupling.gripper].nose
     left = p.stack.floor_mm - flex.groove_depth_mm
     gap, fit_mm = Drawn(p.printer.fit_mm).gap_mm(flex.glue_mm), p.printer.fit_mm
     rim = flex.groove_mm - 2 * gap
     fitted = f" and printer.fit_mm = {fit_mm:g}" if fit_mm else ""
-    refuse_touching(given, "flex.glue_mm", flex.glue_mm, faults)
+    refuse_touching(config, "flex.glue_mm", flex.glue_mm, faults)
     reach = behind_mm(p) - flex.standoff_mm
     for holds, field, message in (
         (

@@ -17,9 +17,9 @@ MOULD_ROOM_MM = 2.0  # gaps and draft of a mould beyond its walls
 TROUGH_ROOM_MM = 5.0  # its trough at the gripper end
 
 
-def derive_stack(given: Input, faults: Faults) -> Stack:
+def derive_stack(config: Input, faults: Faults) -> Stack:
     """The layers, refused where a part would stick out of the silicone or a floor is too thin."""
-    p, parts = given.parameters, given.catalogue
+    p, parts = config.parameters, config.catalogue
     film = parts.films[p.mask.film]
     faults.refuse_unless(
         math.isclose(p.stack.film_mm, film.thickness_mm),
@@ -94,10 +94,10 @@ def derive_tip(p: Parameters, outline: Outline, board: Board, stack: Stack, faul
     return Tip(start_y, p.tip.edge_mm, angle)
 
 
-def derive_printing(given: Input, outline: Outline, faults: Faults) -> Printing:
+def derive_printing(config: Input, outline: Outline, faults: Faults) -> Printing:
     """Material and limits, refused where a part is larger than the bed."""
-    p = given.parameters
-    printer = given.catalogue.printers[p.printer.profile]
+    p = config.parameters
+    printer = config.catalogue.printers[p.printer.profile]
     faults.refuse_unless(
         p.tip.edge_mm >= printer.line_mm - 1e-9,
         "tip.edge_mm",
@@ -135,9 +135,9 @@ POURED = 0.7
 pour alone covers 69 %."""
 
 
-def derive_densities(given: Input, slicing: Slicing) -> Densities:
+def derive_densities(config: Input, slicing: Slicing) -> Densities:
     """Densities of backing, interface, boards, the parts on them, silicone and film."""
-    p, parts = given.parameters, given.catalogue
+    p, parts = config.parameters, config.catalogue
     rigid, flexible = parts.laminates.rigid, parts.laminates.flexible
     return Densities(
         backing_g_ml=p.backing.density_g_ml,

@@ -29,13 +29,13 @@ ROW_MM = LABEL_MM + 2 * MARGIN_MM
 APART_MM = 0.8  # between coupons
 
 
-def derive_fit_plate(given: Input, plan: Plan, mount: Mount, faults: Faults) -> FitPlate:
+def derive_fit_plate(config: Input, plan: Plan, mount: Mount, faults: Faults) -> FitPlate:
     """The plate, refused where it does not fit the bed."""
-    p = given.parameters
-    printer = given.catalogue.printers[p.printer.profile]
+    p = config.parameters
+    printer = config.catalogue.printers[p.printer.profile]
     wall, layers_mm = LINES * printer.line_mm, LAYERS * printer.layer_mm
     sleeve_mm = SLEEVE_LAYERS * printer.layer_mm
-    steps = tuple(derive_fits(given, step) for step in STEPS_MM)
+    steps = tuple(derive_fits(config, step) for step in STEPS_MM)
     to_edges = _hole_to_edges(plan)
     gap, reach = steps[-1].pocket_gap_mm, steps[0].pin_mm / 2 + SEAT_MM
     corner = (wall + gap, reach + to_edges[1])

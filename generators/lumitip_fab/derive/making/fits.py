@@ -38,9 +38,9 @@ class Drawn:
 LEAST_GAP_MM = 0.02  # as drawn: no print goes into itself
 
 
-def refuse_touching(given: Input, field: str, clearance_mm: float, faults: Faults) -> None:
+def refuse_touching(config: Input, field: str, clearance_mm: float, faults: Faults) -> None:
     """Refuse a fit so tight that nothing is left of a clearance, as drawn."""
-    fit_mm = given.parameters.printer.fit_mm
+    fit_mm = config.parameters.printer.fit_mm
     left_mm = Drawn(fit_mm).gap_mm(clearance_mm)
     faults.refuse_unless(
         fit_mm >= 0 or left_mm >= LEAST_GAP_MM - 1e-9,
@@ -50,15 +50,15 @@ def refuse_touching(given: Input, field: str, clearance_mm: float, faults: Fault
     )
 
 
-def derive_fits(given: Input, fit_mm: float) -> Fits:
+def derive_fits(config: Input, fit_mm: float) -> Fits:
     """Gaps, pins and holes with a fit added to every gap on each side.
 
     Args:
-        given: the clearances and the gripper.
+        config: the clearances and the gripper.
         fit_mm: above zero everything sits looser.
     """
-    p = given.parameters
-    gripper, drawn = held_by(given), Drawn(fit_mm)
+    p = config.parameters
+    gripper, drawn = held_by(config), Drawn(fit_mm)
     return Fits(
         fit_mm=fit_mm,
         pocket_gap_mm=drawn.gap_mm(p.backing.pocket_clearance_mm),

@@ -18,10 +18,10 @@ MARK_INSET_MM = 0.5  # from the tip flap's side
 FLAP_TAPER = 0.18  # of the tip flap's side: a little over 10°
 
 
-def derive_mask(given: Input, outline: Outline, plan: Plan, faults: Faults) -> Mask:
+def derive_mask(config: Input, outline: Outline, plan: Plan, faults: Faults) -> Mask:
     """The mask, refused where apertures meet the connector's window or the page is too small."""
-    p = given.parameters
-    film = given.catalogue.films[p.mask.film]
+    p = config.parameters
+    film = config.catalogue.films[p.mask.film]
     lowest = min(y for _, y in plan.receiver.cells) - p.mask.hole_mm / 2
     window = max(plan.receiver.window.y_max_mm, plan.emitter.window.y_max_mm)
     faults.refuse_unless(
@@ -59,7 +59,7 @@ def derive_mask(given: Input, outline: Outline, plan: Plan, faults: Faults) -> M
         hole_shape=p.mask.hole_shape,
         allowance_mm=p.mask.allowance_mm,
         flap_mm=p.mask.flap_mm,
-        film=given.title("mask.film"),
+        film=config.title("mask.film"),
         soften_c=film.soften_c,
         measured_ruler_mm=p.mask.measured_ruler_mm,
         registration=tuple(

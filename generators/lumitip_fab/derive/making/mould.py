@@ -20,11 +20,11 @@ WHOLE_MM = 1e-6
 
 
 def derive_mould(
-    given: Input, outline: Outline, board: Board, stack: Stack, faults: Faults
+    config: Input, outline: Outline, board: Board, stack: Stack, faults: Faults
 ) -> Mould:
     """The mould, refused where the silicone cannot be shaped as asked."""
-    p = given.parameters
-    silicone = given.catalogue.silicones[p.mould.silicone]
+    p = config.parameters
+    silicone = config.catalogue.silicones[p.mould.silicone]
     faults.refuse_unless(
         p.mould.taper_length_mm <= p.outline.tip_margin_mm,
         "mould.taper_length_mm",
@@ -56,7 +56,7 @@ def derive_mould(
             f"{math.degrees(math.atan(allowed / depth)):.1f}° or less",
         )
     layer_mm, off_mm = whole_layers(
-        given.catalogue.printers[p.printer.profile].layer_mm,
+        config.catalogue.printers[p.printer.profile].layer_mm,
         (p.mould.wall_mm, p.mould.wall_mm + stack.cover_mm),
     )
     return Mould(
@@ -66,12 +66,12 @@ def derive_mould(
         wall_gap_mm=p.mould.wall_gap_mm,
         draft_deg=p.mould.draft_deg,
         wall_mm=p.mould.wall_mm,
-        pads=_pads(given, outline, board, faults),
+        pads=_pads(config, outline, board, faults),
         pad_mm=PAD_MM,
-        letter=_letter(given, outline, stack, faults),
+        letter=_letter(config, outline, stack, faults),
         layer_mm=layer_mm,
         off_layer_mm=off_mm,
-        silicone=given.title("mould.silicone"),
+        silicone=config.title("mould.silicone"),
         density_g_ml=silicone.density_g_ml,
         mix_ratio=silicone.mix_ratio,
         cure_h=silicone.cure_h,
@@ -97,11 +97,11 @@ def _off_layer_mm(layer_mm: float, heights_mm: tuple[float, ...]) -> float:
     return max(abs(height - round(height / layer_mm) * layer_mm) for height in heights_mm)
 
 
-def _letter(given: Input, outline: Outline, stack: Stack, faults: Faults) -> Letter:
+def _letter(config: Input, outline: Outline, stack: Stack, faults: Faults) -> Letter:
     """On the outside of the trough's end, whose wall is as high as the cavity and its floor."""
-    p = given.parameters
+    p = config.parameters
     wall, rise = p.mould.wall_mm, stack.guided_mm * math.tan(math.radians(p.mould.draft_deg))
-    line_mm = given.catalogue.printers[p.printer.profile].line_mm
+    line_mm = config.catalogue.printers[p.printer.profile].line_mm
     least = least_letter_mm(line_mm)
     low = max(LETTER_OVER_BED_MM, line_mm)
     high = wall + stack.cover_mm - max(LETTER_UNDER_RIM_MM, line_mm)
@@ -117,17 +117,17 @@ def _letter(given: Input, outline: Outline, stack: Stack, faults: Faults) -> Let
     return letter_on(low, high, min(DEPTH_MM, wall - p.printer.min_wall_mm), end_mm, line_mm)
 
 
-def _pads(given: Input, outline: Outline, board: Board, faults: Faults) -> tuple[Point, ...]:
+def _pads(config: Input, outline: Outline, board: Board, faults: Faults) -> tuple[Point, ...]:
     """Stops on the rim beside the board, as near the gripper end as the rim takes them: the
     finger's weight is in its coupling and must lie between them and the tip."""
-    y = max(board.pocket.y_min_mm, outline.end_y_mm + given.parameters.outline.end_corner_mm)
+    y = max(board.pocket.y_min_mm, outline.end_y_mm + config.parameters.outline.end_corner_mm)
     y += PAD_MM / 2 + PAD_MARGIN_MM
     inner, outer = board.pocket.x_max_mm, outline.half_width_at(y)
     needed = PAD_MM + 2 * PAD_MARGIN_MM
     faults.refuse_unless(
         outer - inner >= needed - 1e-6,
         "outline.waist_margin_mm",
-        f"{given.parameters.outline.waist_margin_mm:g} given, which leaves a rim of "
+        f"{config.parameters.outline.waist_margin_mm:g} given, which leaves a rim of "
         f"{outer - inner:.2f} mm beside the board; the mould's stops need {needed:.2f} mm",
     )
     x = (inner + outer) / 2

@@ -9,10 +9,10 @@ from lumitip_fab.design import HeatedPart, HeatStep, Mould, Slicing
 from lumitip_fab.design.making import Filament
 
 
-def derive_slicing(given: Input, mould: Mould, faults: Faults) -> Slicing:
+def derive_slicing(config: Input, mould: Mould, faults: Faults) -> Slicing:
     """Settings of the backing's filament, with the density of the spool at hand, of the one that
     everything else is printed from, and of that one in the mould's layers."""
-    p, known = given.parameters, given.catalogue.filaments
+    p, known = config.parameters, config.catalogue.filaments
     name = p.backing.material
     other = known[name].rigid_parts or name
     good = other in known and known[other].rigid_parts is None
@@ -24,11 +24,11 @@ def derive_slicing(given: Input, mould: Mould, faults: Faults) -> Slicing:
     )
     rigid = other if good else name
     density = p.backing.density_g_ml
-    printer = given.catalogue.printers[p.printer.profile]
-    rest = _filament(given, rigid, density if rigid == name else known[rigid].density_g_ml)
+    printer = config.catalogue.printers[p.printer.profile]
+    rest = _filament(config, rigid, density if rigid == name else known[rigid].density_g_ml)
     return Slicing(
         printer.nozzle_mm,
-        _filament(given, name, density),
+        _filament(config, name, density),
         rest,
         rest
         if mould.layer_mm == printer.layer_mm
@@ -36,8 +36,8 @@ def derive_slicing(given: Input, mould: Mould, faults: Faults) -> Slicing:
     )
 
 
-def _filament(given: Input, name: str, density_g_ml: float) -> Filament:
-    told = given.catalogue.filaments[name]
+def _filament(config: Input, name: str, density_g_ml: float) -> Filament:
+    told = config.catalogue.filaments[name]
     return Filament(
         name,
         told.kind,
@@ -50,7 +50,7 @@ def _filament(given: Input, name: str, density_g_ml: float) -> Filament:
         told.retract_mm,
         told.layer_mpa,
         told.bearing_mpa,
-        given.catalogue.printers[given.parameters.printer.profile].layer_mm,
+        config.catalogue.printers[config.parameters.printer.profile].layer_mm,
     )
 
 
@@ -67,12 +67,12 @@ _REMEDY = {
 """Field to refuse, and what to change, of each step."""
 
 
-def derive_heat(given: Input, slicing: Slicing, faults: Faults) -> tuple[HeatStep, ...]:
+def derive_heat(config: Input, slicing: Slicing, faults: Faults) -> tuple[HeatStep, ...]:
     """Soldering, curing and creasing, in the order of work.
 
     Printing is none of them: it melts a filament, and heats no part that is already made.
     """
-    p, known = given.parameters, given.catalogue
+    p, known = config.parameters, config.catalogue
     film, silicone = known.films[p.mask.film], known.silicones[p.mould.silicone]
     laminate = known.laminates.flexible if is_flex(p) else known.laminates.rigid
     kind = "polyimide" if is_flex(p) else "FR-4"
@@ -91,7 +91,7 @@ def derive_heat(given: Input, slicing: Slicing, faults: Faults) -> tuple[HeatSte
             "the finger in its mould",
             silicone.cure_c,
             (
-                HeatedPart("silicone", given.title("mould.silicone"), silicone.limit_c),
+                HeatedPart("silicone", config.title("mould.silicone"), silicone.limit_c),
                 *(HeatedPart(part, name, known.filaments[name].limit_c) for part, name in printed),
                 HeatedPart("board", kind, laminate.limit_c),
             ),
@@ -100,22 +100,22 @@ def derive_heat(given: Input, slicing: Slicing, faults: Faults) -> tuple[HeatSte
             "crease",
             "the film alone, over a metal edge",
             film.soften_c,
-            (HeatedPart("film", given.title("mask.film"), film.limit_c),),
+            (HeatedPart("film", config.title("mask.film"), film.limit_c),),
         ),
     )
     for step in steps:
-        _refuse(step, given, faults)
+        _refuse(step, config, faults)
     return steps
 
 
-def _refuse(step: HeatStep, given: Input, faults: Faults) -> None:
+def _refuse(step: HeatStep, config: Input, faults: Faults) -> None:
     """Refuse a step that heats a part beyond the limit of its material."""
     field, remedy = _REMEDY[step.name]
     for part in step.parts:
         faults.refuse_unless(
             step.temperature_c <= part.limit_c,
             field,
-            f"{given.value(field)!r} given; step {step.name!r} heats {step.place} to "
+            f"{config.value(field)!r} given; step {step.name!r} heats {step.place} to "
             f"{step.temperature_c:g} °C; the {part.name} of {part.material} bears at most "
             f"{part.limit_c:g} °C. Take {remedy}",
         )

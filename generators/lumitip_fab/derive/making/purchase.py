@@ -12,19 +12,19 @@ from lumitip_fab.design.ordering import Bought, PartPrice, Purchase
 
 
 def derive_purchase(
-    given: Input,
+    config: Input,
     mount: Mount,
     holders: tuple[Holder, ...],
     flanges: tuple[Flange, ...],
     slicing: Slicing,
 ) -> Purchase:
     """Screws and controller, and the prices of everything else."""
-    p, prices = given.parameters, given.catalogue.prices
+    p, prices = config.parameters, config.catalogue.prices
     pieces = [
-        *_controller(given, prices),
+        *_controller(config, prices),
         *_bolts(mount, prices),
         *(each for holder in holders for each in _screws(holder, prices)),
-        *(each for flange in flanges for each in _of_flange(given, flange, prices)),
+        *(each for flange in flanges for each in _of_flange(config, flange, prices)),
     ]
     return Purchase(
         currency=prices.currency,
@@ -32,7 +32,7 @@ def derive_purchase(
         source=prices.source,
         confidence=prices.confidence,
         pieces=tuple(pieces),
-        parts=_parts(given, prices),
+        parts=_parts(config, prices),
         board_each=prices.board.each,
         board_per_cm2=prices.board.per_cm2,
         placing_each=prices.placing.each,
@@ -46,12 +46,12 @@ def derive_purchase(
     )
 
 
-def _controller(given: Input, prices: Prices) -> list[Bought]:
+def _controller(config: Input, prices: Prices) -> list[Bought]:
     """A controller board; a module is a part of the flange's board."""
-    name = given.parameters.controller.board
-    if given.catalogue.controllers[name].module:
+    name = config.parameters.controller.board
+    if config.catalogue.controllers[name].module:
         return []
-    title = given.title("controller.board")
+    title = config.title("controller.board")
     return [Bought("electronics", title, "", title, "reads the receiver", 1, prices.each.get(name))]
 
 
@@ -83,11 +83,11 @@ def _screws(holder: Holder, prices: Prices) -> list[Bought]:
     ]
 
 
-def _of_flange(given: Input, flange: Flange, prices: Prices) -> list[Bought]:
+def _of_flange(config: Input, flange: Flange, prices: Prices) -> list[Bought]:
     """Screws of its board, its locating pin, and the gripper's bolts, which must be longer."""
     count = len(flange.screws)
-    through = flange.board_z_mm - flange.seat_z_mm + stiff_mm(given.parameters)
-    length = screw_length_mm(through, given.catalogue.fasteners[flange.screw])
+    through = flange.board_z_mm - flange.seat_z_mm + stiff_mm(config.parameters)
+    length = screw_length_mm(through, config.catalogue.fasteners[flange.screw])
     screw = f"{flange.screw} x {length:g} countersunk screw"
     pin = f"{flange.pin_mm:g} x {flange.pin_length_mm:g} parallel pin"
     bolt = f"{flange.bolt} socket head screw"
@@ -110,11 +110,11 @@ def _of_flange(given: Input, flange: Flange, prices: Prices) -> list[Bought]:
     ]
 
 
-def _parts(given: Input, prices: Prices) -> tuple[PartPrice, ...]:
+def _parts(config: Input, prices: Prices) -> tuple[PartPrice, ...]:
     """Everything in the catalogue that has an order number and a price."""
     told: dict[str, float] = {}
-    for kind in type(given.catalogue).model_fields:
-        entries = getattr(given.catalogue, kind)
+    for kind in type(config.catalogue).model_fields:
+        entries = getattr(config.catalogue, kind)
         for name, entry in entries.items() if isinstance(entries, Mapping) else ():
             order = getattr(getattr(entry, "module", None) or entry, "order_number", None)
             if order is not None and name in prices.each:

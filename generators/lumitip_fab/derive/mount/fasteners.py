@@ -11,12 +11,12 @@ BOARD_SCREW = "M2"  # of the flange's board
 HEAD_PLAY_MM = 0.3  # of a plain head in its counterbore, at least: a knurled one is 0.27 wider
 
 
-def derive_fasteners(given: Input, faults: Faults) -> tuple[Fastener, ...]:
+def derive_fasteners(config: Input, faults: Faults) -> tuple[Fastener, ...]:
     """Every thread that is used, once; refused, and nothing derived, where the catalogue does not
     have one or where its bolts do not go through the holes that an entry has for them."""
-    p, known = given.parameters, given.catalogue.fasteners
-    gripper = given.catalogue.grippers[p.coupling.gripper]
-    coupling = given.catalogue.couplings[p.flange.coupling]
+    p, known = config.parameters, config.catalogue.fasteners
+    gripper = config.catalogue.grippers[p.coupling.gripper]
+    coupling = config.catalogue.couplings[p.flange.coupling]
     wanted = [("coupling.gripper", gripper.bolt)]
     if p.flange.enabled:
         wanted += [("flange.coupling", coupling.bolt), ("flange.enabled", BOARD_SCREW)]
@@ -26,12 +26,12 @@ def derive_fasteners(given: Input, faults: Faults) -> tuple[Fastener, ...]:
         faults.refuse_unless(
             thread in known,
             field,
-            f"{_shown(given, field)} given, which needs {thread} screws; parts/fasteners.toml has "
+            f"{_shown(config, field)} given, which needs {thread} screws; parts/fasteners.toml has "
             f"{', '.join(known)}: add an entry for {thread} to it",
         )
     if not all(thread in known for _, thread in wanted):
         faults.stop()
-    _refuse_hole(given, "coupling.gripper", gripper.bolt, gripper.bolt_hole_mm, faults)
+    _refuse_hole(config, "coupling.gripper", gripper.bolt, gripper.bolt_hole_mm, faults)
     head = known[gripper.bolt].cap_head_mm + HEAD_PLAY_MM
     faults.refuse_unless(
         gripper.counterbore_mm >= head - 1e-9,
@@ -40,7 +40,7 @@ def derive_fasteners(given: Input, faults: Faults) -> tuple[Fastener, ...]:
         f"narrow for the head of an {gripper.bolt}: at least {head:g} is needed",
     )
     if p.flange.enabled:
-        _refuse_hole(given, "flange.coupling", coupling.bolt, coupling.bolt_hole_mm, faults)
+        _refuse_hole(config, "flange.coupling", coupling.bolt, coupling.bolt_hole_mm, faults)
     threads = sorted({thread for _, thread in wanted})
     return tuple(
         Fastener(
@@ -61,18 +61,18 @@ def screw_length_mm(through_mm: float, nut: FastenerEntry) -> float:
     return 2.0 * math.ceil((through_mm + nut.nut_height_mm) / 2)
 
 
-def _refuse_hole(given: Input, field: str, thread: str, hole_mm: float, faults: Faults) -> None:
+def _refuse_hole(config: Input, field: str, thread: str, hole_mm: float, faults: Faults) -> None:
     """Refuse a clearance hole of an entry that is none by ISO 273."""
-    fine, coarse = given.catalogue.fasteners[thread].hole_mm
+    fine, coarse = config.catalogue.fasteners[thread].hole_mm
     faults.refuse_unless(
         fine - 1e-9 <= hole_mm <= coarse + 1e-9,
         field,
-        f"{_shown(given, field)} given, whose bolt_hole_mm = {hole_mm:g} is no clearance hole of "
+        f"{_shown(config, field)} given, whose bolt_hole_mm = {hole_mm:g} is no clearance hole of "
         f"an {thread}: {fine:g} to {coarse:g} is allowed (ISO 273)",
     )
 
 
-def _shown(given: Input, field: str) -> str:
+def _shown(config: Input, field: str) -> str:
     """A field's value as the parameter file has it."""
-    value = given.value(field)
+    value = config.value(field)
     return "true" if value is True else repr(value)

@@ -24,16 +24,16 @@ SINK_PLAY_MM = 0.4  # of a countersunk head, which then lies below the face
 
 
 def derive_flange_body(
-    given: Input, carriers: tuple[Carrier, ...], faults: Faults
+    config: Input, carriers: tuple[Carrier, ...], faults: Faults
 ) -> tuple[Flange, ...]:
     """Both printed parts; none without the flange's board."""
     if not carriers:
         return ()
     (carrier,) = carriers
-    p, pcb_mm = given.parameters.flange, stiff_mm(given.parameters)
-    drawn = Drawn(given.parameters.printer.fit_mm)
-    screw = given.catalogue.fasteners[BOARD_SCREW]
-    coupling, pogo = given.catalogue.couplings[p.coupling], given.catalogue.strips[p.contacts]
+    p, pcb_mm = config.parameters.flange, stiff_mm(config.parameters)
+    drawn = Drawn(config.parameters.printer.fit_mm)
+    screw = config.catalogue.fasteners[BOARD_SCREW]
+    coupling, pogo = config.catalogue.couplings[p.coupling], config.catalogue.strips[p.contacts]
     # Towards the robot, and so on the board's back, are the contacts alone.
     (contacts,) = (device for device in carrier.devices if device.side == "back")
     front = [device for device in carrier.devices if device is not contacts]
@@ -45,7 +45,7 @@ def derive_flange_body(
     board_z = pogo.height_mm - pogo.stroke_mm / 2 - coupling.contacts_depth_mm
     split_z = board_z + pcb_mm + max(d.pattern.height_mm for d in front) + HEADROOM_MM
     socket_z = min(split_z, split_z + p.web_mm - coupling.pin_depth_mm - SOCKET_SPARE_MM)
-    room = socket_z - given.parameters.printer.min_wall_mm + coupling.recess_depth_mm
+    room = socket_z - config.parameters.printer.min_wall_mm + coupling.recess_depth_mm
     pin = next((n for n in PIN_LENGTHS_MM if n - coupling.pin_depth_mm <= room), PIN_LENGTHS_MM[-1])
     flange = Flange(
         name="flange",
@@ -95,7 +95,7 @@ def derive_flange_body(
         split_z_mm=split_z,
         web_mm=p.web_mm,
     )
-    _refuse(given, flange, faults)
+    _refuse(config, flange, faults)
     return (flange,)
 
 
@@ -126,10 +126,10 @@ def _openings(headers: list[Device], board_at: Point, radius_mm: float) -> tuple
     return tuple(openings)
 
 
-def _refuse(given: Input, flange: Flange, faults: Faults) -> None:
+def _refuse(config: Input, flange: Flange, faults: Faults) -> None:
     """Refuse floors and walls thinner than the printer's, and what does not fit the coupling."""
-    p, least = given.parameters.flange, given.parameters.printer.min_wall_mm
-    coupling = given.catalogue.couplings[p.coupling]
+    p, least = config.parameters.flange, config.parameters.printer.min_wall_mm
+    coupling = config.catalogue.couplings[p.coupling]
     floor = flange.board_z_mm - flange.tail_mm - flange.seat_z_mm
     faults.refuse_unless(
         floor >= least - 1e-9,
@@ -157,13 +157,13 @@ def _refuse(given: Input, flange: Flange, faults: Faults) -> None:
         f"{p.coupling!r} given, which leaves {rim:.2f} mm of wall round the gripper's recess of "
         f"{flange.recess_mm:g} mm; at least {least:g} is needed",
     )
-    refuse_touching(given, "flange.clearance_mm", p.clearance_mm, faults)
-    _refuse_walls(given, flange, coupling, faults)
+    refuse_touching(config, "flange.clearance_mm", p.clearance_mm, faults)
+    _refuse_walls(config, flange, coupling, faults)
 
 
-def _refuse_walls(given: Input, flange: Flange, coupling: ToolCoupling, faults: Faults) -> None:
+def _refuse_walls(config: Input, flange: Flange, coupling: ToolCoupling, faults: Faults) -> None:
     """Refuse holes that come near the board's pocket, and whatever reaches beyond the spigot."""
-    printer, name = given.parameters.printer, given.parameters.flange.coupling
+    printer, name = config.parameters.printer, config.parameters.flange.coupling
     least_mm = printer.min_wall_mm
     fitted = f", with printer.fit_mm = {printer.fit_mm:g}" if printer.fit_mm else ""
     radius = min(flange.spigot_mm / 2, flange.face_mm / 2 - least_mm)
@@ -205,10 +205,12 @@ def _to_pocket(flange: Flange, at: Point) -> float:
 ROUND_MM = 2.0  # of a body's sides from the diameter that a holder is made for
 
 
-def derive_system(given: Input, flanges: tuple[Flange, ...], holders: tuple[Holder, ...]) -> System:
+def derive_system(
+    config: Input, flanges: tuple[Flange, ...], holders: tuple[Holder, ...]
+) -> System:
     """The stack; without the printed flange it begins at the gripper."""
-    body = held_by(given).envelope
-    couplings = [given.catalogue.couplings[flange.coupling] for flange in flanges]
+    body = held_by(config).envelope
+    couplings = [config.catalogue.couplings[flange.coupling] for flange in flanges]
     gripper_z = sum(c.height_mm + f.top_z_mm for c, f in zip(couplings, flanges, strict=True))
     sides = (body.width_mm, body.depth_mm, 2 * body.corner_mm)
     return System(

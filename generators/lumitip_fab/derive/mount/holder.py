@@ -19,18 +19,18 @@ LEAST_GRIP_MM = 0.3  # each arm's end inside the body's widest place
 
 
 def derive_holder(
-    given: Input, carriers: tuple[Carrier, ...], faults: Faults
+    config: Input, carriers: tuple[Carrier, ...], faults: Faults
 ) -> tuple[Holder, ...]:
     """The holder of the breakout board; none without that board, or without a round body."""
-    p, body = given.parameters, held_by(given).envelope
+    p, body = config.parameters, held_by(config).envelope
     of = next((carrier for carrier in carriers if carrier.name == "breakout"), None)
     given_mm, body_from = p.holder.body_mm, "holder.body_mm"
     if given_mm == "gripper":
-        body_from = f"{given.title('coupling.gripper')}, {body.confidence}"
+        body_from = f"{config.title('coupling.gripper')}, {body.confidence}"
     body_mm = body.round_mm if given_mm == "gripper" else given_mm
     if of is None or body_mm is None:
         return ()
-    drawn, screw = Drawn(p.printer.fit_mm), given.catalogue.fasteners[p.holder.screw]
+    drawn, screw = Drawn(p.printer.fit_mm), config.catalogue.fasteners[p.holder.screw]
     wall, play = p.holder.wall_mm, drawn.gap_mm(p.holder.clearance_mm)
     tray = Box(of.box.x_min_mm - play, of.box.x_max_mm + play, of.box.y_min_mm, of.box.y_max_mm)
     floor_z = -p.holder.standoff_mm
@@ -64,9 +64,9 @@ def derive_holder(
         strap_y_mm=(-spacing, spacing),
         strap_hole_mm=p.holder.strap_hole_mm,
     )
-    _refuse_holes(given, of, faults)
-    _refuse(given, of, holder, faults)
-    _refuse_nuts(given, holder, faults)
+    _refuse_holes(config, of, faults)
+    _refuse(config, of, holder, faults)
+    _refuse_nuts(config, holder, faults)
     return (holder,)
 
 
@@ -75,9 +75,9 @@ def _shoulder_deg(x_mm: float, radius_mm: float) -> float:
     return math.degrees(math.asin(min(x_mm / radius_mm, 1.0)))
 
 
-def _refuse(given: Input, of: Carrier, holder: Holder, faults: Faults) -> None:
+def _refuse(config: Input, of: Carrier, holder: Holder, faults: Faults) -> None:
     """Refuse a tray wider than its cradle, arms that break or do not hold, bosses under tails."""
-    p, outer = given.parameters.holder, holder.cradle_mm + holder.wall_mm
+    p, outer = config.parameters.holder, holder.cradle_mm + holder.wall_mm
     beyond = holder.outer.x_max_mm - outer
     if beyond > 0:
         told = f"{holder.body_mm:g} given"
@@ -89,9 +89,9 @@ def _refuse(given: Input, of: Carrier, holder: Holder, faults: Faults) -> None:
             f"{math.ceil((holder.body_mm + 2 * beyond) * 10) / 10:g} is needed",
         )
         return
-    refuse_touching(given, "holder.clearance_mm", p.clearance_mm, faults)
-    _refuse_straps(given, holder, faults)
-    printed_mm = holder.cradle_mm - given.parameters.printer.fit_mm  # what is made of it
+    refuse_touching(config, "holder.clearance_mm", p.clearance_mm, faults)
+    _refuse_straps(config, holder, faults)
+    printed_mm = holder.cradle_mm - config.parameters.printer.fit_mm  # what is made of it
     grip = holder.body_mm / 2 - printed_mm * math.sin(math.radians(holder.wrap_deg))
     faults.refuse_unless(
         grip >= LEAST_GRIP_MM,
@@ -125,10 +125,10 @@ def _refuse(given: Input, of: Carrier, holder: Holder, faults: Faults) -> None:
     )
 
 
-def _refuse_holes(given: Input, of: Carrier, faults: Faults) -> None:
+def _refuse_holes(config: Input, of: Carrier, faults: Faults) -> None:
     """Refuse holes of the board that its screws do not go through, or whose heads do."""
-    thread = given.parameters.holder.screw
-    screw = given.catalogue.fasteners[thread]
+    thread = config.parameters.holder.screw
+    screw = config.catalogue.fasteners[thread]
     least, most = screw.thread_mm + DRILLED_MM, screw.cap_head_mm - 2 * RING_MM
     faults.refuse_unless(
         least - 1e-9 <= of.hole_mm <= most + 1e-9,
@@ -138,9 +138,9 @@ def _refuse_holes(given: Input, of: Carrier, faults: Faults) -> None:
     )
 
 
-def _refuse_nuts(given: Input, holder: Holder, faults: Faults) -> None:
+def _refuse_nuts(config: Input, holder: Holder, faults: Faults) -> None:
     """Refuse screws that reach the gripper behind their seat, with their nuts or their ends."""
-    screw = given.catalogue.fasteners[holder.screw]
+    screw = config.catalogue.fasteners[holder.screw]
     beyond = holder.screw_length_mm - (holder.top_z_mm - holder.seat_z_mm)
     middle = min(abs(x) for x, _ in holder.holes)
     for what, inner, needed in (
@@ -157,9 +157,9 @@ def _refuse_nuts(given: Input, holder: Holder, faults: Faults) -> None:
         )
 
 
-def _refuse_straps(given: Input, holder: Holder, faults: Faults) -> None:
+def _refuse_straps(config: Input, holder: Holder, faults: Faults) -> None:
     """Refuse holes through the arms that leave too little wall to each other or to an arm's end."""
-    p, wall = given.parameters.holder, given.parameters.printer.min_wall_mm
+    p, wall = config.parameters.holder, config.parameters.printer.min_wall_mm
     least = p.strap_hole_mm + wall
     most = 2 * (holder.outer.y_max_mm - wall) - p.strap_hole_mm
     room = f"{least:g} to {most:g} is allowed" if least <= most else "a narrower hole is needed"

@@ -20,13 +20,13 @@ from lumitip_fab.design import Closing, Letter, Mould, Mount, Outline, Stack
 LETTER_MARGIN_MM = 0.6  # or a printed line, to the bed, and to where the ramp begins
 
 
-def derive_mount(given: Input, outline: Outline, plan: Plan, faults: Faults) -> Mount:
+def derive_mount(config: Input, outline: Outline, plan: Plan, faults: Faults) -> Mount:
     """The coupling, refused where finger and gripper do not go together."""
-    p = given.parameters
-    gripper = held_by(given)
-    _refuse_place(given, gripper, outline, plan, faults)
-    _refuse_holes(given, gripper, faults)
-    nose, fits = gripper.nose, derive_fits(given, p.printer.fit_mm)
+    p = config.parameters
+    gripper = held_by(config)
+    _refuse_place(config, gripper, outline, plan, faults)
+    _refuse_holes(config, gripper, faults)
+    nose, fits = gripper.nose, derive_fits(config, p.printer.fit_mm)
     field, value = "backing.tail_mm", p.backing.tail_mm
     if is_flex(p):
         field, value = "flex.pad_mm", p.flex.pad_mm
@@ -42,7 +42,7 @@ def derive_mount(given: Input, outline: Outline, plan: Plan, faults: Faults) -> 
     pins = gripper.pins
     return Mount(
         gripper=p.coupling.gripper,
-        title=given.title("coupling.gripper"),
+        title=config.title("coupling.gripper"),
         origin_y_mm=outline.end_y_mm,
         tilt_deg=gripper.tilt_deg,
         block_width_mm=gripper.block_width_mm,
@@ -62,7 +62,7 @@ def derive_mount(given: Input, outline: Outline, plan: Plan, faults: Faults) -> 
         nose=fits.nose,
         stroke_mm=gripper.stroke_mm,
         pad_w_mm=gripper.pad_w_mm,
-        letter=_letter(given, gripper, faults),
+        letter=_letter(config, gripper, faults),
         unsure=gripper.unsure,
     )
 
@@ -72,10 +72,10 @@ def _side_by_side(spacing_mm: float | None) -> tuple[float, ...]:
 
 
 def _refuse_place(
-    given: Input, gripper: Gripper, outline: Outline, plan: Plan, faults: Faults
+    config: Input, gripper: Gripper, outline: Outline, plan: Plan, faults: Faults
 ) -> None:
     """Refuse a block that does not stand on this finger's back."""
-    p = given.parameters
+    p = config.parameters
     plate = behind_mm(p)
     ramp = gripper.block_back_w_mm - plate
     opening = plan.receiver.notch.y_max_mm - outline.end_y_mm
@@ -101,12 +101,12 @@ def _refuse_place(
     )
 
 
-def _refuse_holes(given: Input, gripper: Gripper, faults: Faults) -> None:
+def _refuse_holes(config: Input, gripper: Gripper, faults: Faults) -> None:
     """Refuse holes that leave too little of the block between them and round them."""
-    p, pins = given.parameters, gripper.pins
+    p, pins = config.parameters, gripper.pins
     head, hole = gripper.counterbore_mm / 2, gripper.bolt_hole_mm / 2 + p.printer.fit_mm
     apart = gripper.bolt_spacing_mm
-    line_mm = given.catalogue.printers[p.printer.profile].line_mm
+    line_mm = config.catalogue.printers[p.printer.profile].line_mm
     walls = (
         ("behind its counterbores", gripper.block_back_w_mm - gripper.bolt_w_mm - head, None),
         ("beside its counterbores", gripper.block_width_mm / 2 - (apart or 0.0) / 2 - head, None),
@@ -144,14 +144,14 @@ def _corner_wall_mm(gripper: Gripper, head_mm: float) -> float:
     return radius - math.hypot(across, back) - head_mm
 
 
-def _letter(given: Input, gripper: Gripper, faults: Faults) -> Letter:
+def _letter(config: Input, gripper: Gripper, faults: Faults) -> Letter:
     """On the back of the block, between its rounded corners and below the ramp."""
-    p = given.parameters
+    p = config.parameters
     hole = max(gripper.bolt_hole_mm, gripper.pins.hole_mm if gripper.pins else 0.0)
     behind = gripper.block_back_w_mm - gripper.bolt_w_mm - hole / 2 - p.printer.fit_mm
     deep = behind - p.printer.min_wall_mm
     wide = gripper.block_width_mm - 2 * gripper.block_corner_mm
-    line_mm = given.catalogue.printers[p.printer.profile].line_mm
+    line_mm = config.catalogue.printers[p.printer.profile].line_mm
     least, margin = least_letter_mm(line_mm), max(LETTER_MARGIN_MM, line_mm)
     low, high = margin, gripper.land_mm - margin
     faults.refuse_unless(

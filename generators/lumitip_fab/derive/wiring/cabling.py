@@ -42,7 +42,7 @@ class Loads:
 
 
 def derive_cabling(
-    given: Input,
+    config: Input,
     boards: Boards,
     outline: Outline,
     mount: Mount,
@@ -51,10 +51,10 @@ def derive_cabling(
     faults: Faults,
 ) -> Cabling:
     """All cables, from the signals of the connectors that they join."""
-    told, travel_mm = given.parameters.wiring, mount.stroke_mm / 2
+    told, travel_mm = config.parameters.wiring, mount.stroke_mm / 2
     fixed = _FIXED | {boards.emitter.connector.signals[1]: _SUPPLY}
-    loads = _loads(given, boards.emitter, wiring, electrical)
-    ends = _ends(given, boards, wiring)
+    loads = _loads(config, boards.emitter, wiring, electrical)
+    ends = _ends(config, boards, wiring)
     breakout, host = _named(boards.carriers, "breakout"), _host(boards.carriers)
     to_supply_mm = told.controller_mm if host else told.supply_mm
     ways = [
@@ -87,9 +87,9 @@ def derive_cabling(
                 told.supply_mm + told.slack_mm,
             )
         )
-    thick = tuple(_thick_enough(given, cable, cables) for cable in cables)
+    thick = tuple(_thick_enough(config, cable, cables) for cable in cables)
     for cable in thick:
-        _refuse_thick(given, cable, boards, faults)
+        _refuse_thick(config, cable, boards, faults)
     return Cabling(thick, travel_mm, told.supply_mm, told.controller_mm, told.slack_mm)
 
 
@@ -98,10 +98,10 @@ def reach_mm(finger: Finger, outline: Outline) -> float:
     return max(abs(x) + y - outline.end_y_mm for x, y in finger.connector.pads)
 
 
-def _loads(given: Input, emitter: Finger, wiring: Wiring, electrical: Electrical) -> Loads:
+def _loads(config: Input, emitter: Finger, wiring: Wiring, electrical: Electrical) -> Loads:
     lit_ma = sum(electrical.strings.high_ma)
     read_ma = 1000 * wiring.muxes * electrical.channel.supply_v / wiring.pull_up_ohm
-    own_ma = given.catalogue.controllers[given.parameters.controller.board].draws_ma + read_ma
+    own_ma = config.catalogue.controllers[config.parameters.controller.board].draws_ma + read_ma
     supply = emitter.connector.signals[1]
     together = {supply: lit_ma, "5V": own_ma, "GND": lit_ma + own_ma}
     if supply == "5V":
@@ -109,7 +109,7 @@ def _loads(given: Input, emitter: Finger, wiring: Wiring, electrical: Electrical
     return Loads({supply: lit_ma, "GND": lit_ma}, {"3V3": read_ma, "GND": read_ma}, together)
 
 
-def _ends(given: Input, boards: Boards, wiring: Wiring) -> dict[str, dict[str, Terminal]]:
+def _ends(config: Input, boards: Boards, wiring: Wiring) -> dict[str, dict[str, Terminal]]:
     """Where the signals of each finger go, by name."""
     host = _host(boards.carriers)
     if host:
@@ -119,7 +119,7 @@ def _ends(given: Input, boards: Boards, wiring: Wiring) -> dict[str, dict[str, T
             for finger, ref in zip(("emitter", "receiver"), refs, strict=True)
         }
     selects = {f"S{i}": pin for i, pin in enumerate(wiring.select_pins)}
-    plug = given.catalogue.controllers[given.parameters.controller.board].plug
+    plug = config.catalogue.controllers[config.parameters.controller.board].plug
     order = (*plug.rows[0], *plug.rows[1]) if plug else ()
     controller = {}
     for place, signal in enumerate(boards.receiver.connector.signals, 1):
@@ -205,10 +205,10 @@ def _cable(
     return Cable(name, least_mm, length_mm, section_mm2, wires)
 
 
-def _thick_enough(given: Input, cable: Cable, cables: list[Cable]) -> Cable:
+def _thick_enough(config: Input, cable: Cable, cables: list[Cable]) -> Cable:
     """The cable with wires of the section asked for, or the next one that is sold and carries its
     current over the whole way to the supply."""
-    supply_v, asked = given.parameters.supply.voltage_v, given.parameters.wiring.section_mm2
+    supply_v, asked = config.parameters.supply.voltage_v, config.parameters.wiring.section_mm2
     amps = max(wire.current_ma for wire in cable.wires) / 1000
     way_mm = sum(c.length_mm for c in cables if c.start.board != "receiver")
     for_drop = 2 * way_mm / 1000 * amps * COPPER_OHM_MM2_PER_M / (MOST_DROP * supply_v)
@@ -218,9 +218,9 @@ def _thick_enough(given: Input, cable: Cable, cables: list[Cable]) -> Cable:
     return replace(cable, section_mm2=next((s for s in SOLD_MM2 if s >= least), least))
 
 
-def _refuse_thick(given: Input, cable: Cable, boards: Boards, faults: Faults) -> None:
+def _refuse_thick(config: Input, cable: Cable, boards: Boards, faults: Faults) -> None:
     """Refuse wires that do not go into the holes at their ends."""
-    asked, section = given.parameters.wiring.section_mm2, cable.section_mm2
+    asked, section = config.parameters.wiring.section_mm2, cable.section_mm2
     drill_mm = min(_drill_mm(end, boards) for end in (cable.start, cable.end))
     most = math.pi / 4 * ((drill_mm - DRILL_ROOM_MM) / STRANDED) ** 2
     amps_ma = max(wire.current_ma for wire in cable.wires)

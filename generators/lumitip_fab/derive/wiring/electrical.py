@@ -12,22 +12,22 @@ from lumitip_fab.design.electrical import Channel, Electrical, Strings
 SHORTER = 0.75  # of a string's LEDs, to compare
 
 
-def derive_electrical(given: Input, strings: wiring.Strings, faults: Faults) -> Electrical:
+def derive_electrical(config: Input, strings: wiring.Strings, faults: Faults) -> Electrical:
     """What follows from parts, strings and supply."""
-    p = given.parameters
+    p = config.parameters
     return Electrical(
-        strings=_strings(given, strings),
-        channel=_channel(given),
+        strings=_strings(config, strings),
+        channel=_channel(config),
         heat_w=sum(strings.current_ma) * p.supply.voltage_v / 1000,
-        supplies=derive_regulated(given, faults),
+        supplies=derive_regulated(config, faults),
     )
 
 
-def _strings(given: Input, strings: wiring.Strings) -> Strings:
-    p = given.parameters
-    led = given.catalogue.leds[p.emitter.led]
+def _strings(config: Input, strings: wiring.Strings) -> Strings:
+    p = config.parameters
+    led = config.catalogue.leds[p.emitter.led]
     fewer = max(1, math.floor(SHORTER * max(len(cells) for cells in strings.cells)))
-    shorter = string_of(given, fewer, p.emitter.current_ma)
+    shorter = string_of(config, fewer, p.emitter.current_ma)
     return Strings(
         forward_v=led.forward_voltage_v,
         forward_tolerance_v=led.forward_tolerance_v,
@@ -42,17 +42,17 @@ def _strings(given: Input, strings: wiring.Strings) -> Strings:
         fewer_high_ma=shorter.high_ma,
         resistor_w=max(string.load_w for string in strings.strings),
         resistor_high_w=max(string.high_load_w for string in strings.strings),
-        resistor_rated_w=given.catalogue.resistors[p.emitter.resistor].power_w,
+        resistor_rated_w=config.catalogue.resistors[p.emitter.resistor].power_w,
     )
 
 
-def _channel(given: Input) -> Channel:
+def _channel(config: Input) -> Channel:
     """The line is pulled up, and a detector under light pulls it down.
 
     supply ── pull-up ──┬── line (C) ── ADC
                         └── on-resistance ── detector ── ground
     """
-    p, parts = given.parameters, given.catalogue
+    p, parts = config.parameters, config.catalogue
     detector = parts.photodetectors[p.receiver.photodetector]
     mux = parts.multiplexers[p.receiver.multiplexer]
     controller = parts.controllers[p.controller.board]

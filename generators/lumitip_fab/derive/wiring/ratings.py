@@ -69,11 +69,11 @@ class String:
         return self.high_ma**2 * self.ohm * (1 - RESISTOR_TOLERANCE) * 1e-6
 
 
-def string_of(given: Input, leds: int, current_ma: float) -> String:
+def string_of(config: Input, leds: int, current_ma: float) -> String:
     """A string of LEDs for a current: its resistor is the nearest E96 value."""
     led, volts = (
-        given.catalogue.leds[given.parameters.emitter.led],
-        given.parameters.supply.voltage_v,
+        config.catalogue.leds[config.parameters.emitter.led],
+        config.parameters.supply.voltage_v,
     )
     drop = volts - leds * led.forward_voltage_v
     ohm = e96(1000 * drop / current_ma)
@@ -81,11 +81,11 @@ def string_of(given: Input, leds: int, current_ma: float) -> String:
     return String(leds, ohm, 1000 * drop / ohm, low, high)
 
 
-def longest_string(given: Input) -> int:
+def longest_string(config: Input) -> int:
     """Most LEDs in a string that leave its resistor a tenth of the supply; 0 if not even one."""
     led, volts = (
-        given.catalogue.leds[given.parameters.emitter.led],
-        given.parameters.supply.voltage_v,
+        config.catalogue.leds[config.parameters.emitter.led],
+        config.parameters.supply.voltage_v,
     )
     return int(volts * (1 - LEAST_RESISTOR_SHARE) / led.forward_voltage_v)
 
@@ -162,18 +162,18 @@ class _Duty:
     """The least that must be left at its voltage, and the most there may be without any."""
 
 
-def refuse_receiver_capacitor(given: Input, faults: Faults) -> None:
+def refuse_receiver_capacitor(config: Input, faults: Faults) -> None:
     """Refuse a capacitor with which the multiplexers' supply dips as they switch."""
-    p, known = given.parameters, given.catalogue
+    p, known = config.parameters, config.catalogue
     supply_v = known.controllers[p.controller.board].supply_v
     mux = p.receiver.multiplexer
     duty = _Duty("receiver.capacitor", supply_v, mux, known.multiplexers[mux].bypass_nf)
-    _refuse(given, [duty], faults)
+    _refuse(config, [duty], faults)
 
 
-def refuse_flange_capacitors(given: Input, faults: Faults) -> None:
+def refuse_flange_capacitors(config: Input, faults: Faults) -> None:
     """Refuse capacitors of the flange's board that break, or with which its parts do not work."""
-    p, known = given.parameters, given.catalogue
+    p, known = config.parameters, config.catalogue
     switching = known.regulators[p.flange.regulator]
     duties = [
         _Duty("flange.input_capacitor", p.supply.voltage_v),
@@ -194,13 +194,13 @@ def refuse_flange_capacitors(given: Input, faults: Faults) -> None:
                 controller.module.bypass_nf,
             ),
         ]
-    _refuse(given, duties, faults)
+    _refuse(config, duties, faults)
 
 
-def _refuse(given: Input, duties: Iterable[_Duty], faults: Faults) -> None:
+def _refuse(config: Input, duties: Iterable[_Duty], faults: Faults) -> None:
     for duty in duties:
-        name = given.value(duty.field)
-        part = given.catalogue.capacitors[name]
+        name = config.value(duty.field)
+        part = config.catalogue.capacitors[name]
         needed_v = (1 + SUPPLY_TOLERANCE) * duty.volts
         faults.refuse_unless(
             needed_v <= part.rated_v,

@@ -54,11 +54,11 @@ class Muxing:
     select_pins: tuple[str, ...]
 
 
-def derive_strings(given: Input, cells: Cells, faults: Faults) -> Strings:
+def derive_strings(config: Input, cells: Cells, faults: Faults) -> Strings:
     """As few strings as the supply allows, differing by at most one LED."""
-    p = given.parameters
-    led, volts = given.catalogue.leds[p.emitter.led], p.supply.voltage_v
-    longest = min(longest_string(given), p.emitter.string_leds)
+    p = config.parameters
+    led, volts = config.catalogue.leds[p.emitter.led], p.supply.voltage_v
+    longest = min(longest_string(config), p.emitter.string_leds)
     if longest < 1:
         faults.refuse(
             "supply.voltage_v",
@@ -68,22 +68,22 @@ def derive_strings(given: Input, cells: Cells, faults: Faults) -> Strings:
         return Strings((), ())
     groups = np.array_split(_winding(cells), len(lengths(len(cells), longest)))
     current = p.emitter.current_ma
-    by_length = {n: string_of(given, n, current) for n in {group.size for group in groups}}
+    by_length = {n: string_of(config, n, current) for n in {group.size for group in groups}}
     strings = Strings(
         tuple(_from_the_gripper(cells, group) for group in groups),
         tuple(by_length[group.size] for group in groups),
     )
-    for field, message in string_problems(given, strings.strings):
+    for field, message in string_problems(config, strings.strings):
         faults.refuse(field, message)
     return strings
 
 
-def string_problems(given: Input, strings: tuple[String, ...]) -> Iterator[tuple[str, str]]:
+def string_problems(config: Input, strings: tuple[String, ...]) -> Iterator[tuple[str, str]]:
     """Field and message of every rule that strings break: ratings at the worst case, spread of
     currents, supply and heat."""
-    p = given.parameters
-    led, volts = given.catalogue.leds[p.emitter.led], p.supply.voltage_v
-    package, current = given.catalogue.resistors[p.emitter.resistor], p.emitter.current_ma
+    p = config.parameters
+    led, volts = config.catalogue.leds[p.emitter.led], p.supply.voltage_v
+    package, current = config.catalogue.resistors[p.emitter.resistor], p.emitter.current_ma
     highest = max(string.high_ma for string in strings)
     if max(highest, current) > led.max_current_ma:
         yield (
@@ -138,11 +138,11 @@ def _from_the_gripper(cells: Cells, string: Integers) -> tuple[int, ...]:
     return tuple(string[:: -1 if last < first else 1].tolist())
 
 
-def derive_muxing(given: Input, cells: Cells, faults: Faults) -> Muxing:
+def derive_muxing(config: Input, cells: Cells, faults: Faults) -> Muxing:
     """As few multiplexers as hold all detectors, each on an analog pin of its own."""
-    p = given.parameters
-    mux = given.catalogue.multiplexers[p.receiver.multiplexer]
-    controller = given.catalogue.controllers[p.controller.board]
+    p = config.parameters
+    mux = config.catalogue.multiplexers[p.receiver.multiplexer]
+    controller = config.catalogue.controllers[p.controller.board]
     muxes = math.ceil(len(cells) / mux.channels)
     pins = controller.analog_pins
     if controller.unlimited_analog_pins:
@@ -170,11 +170,11 @@ def derive_muxing(given: Input, cells: Cells, faults: Faults) -> Muxing:
     return Muxing(muxes, pins[:muxes], controller.select_pins[: len(mux.select)])
 
 
-def assign(given: Input, cells: Cells, places: tuple[Point, ...]) -> tuple[Integers, Integers]:
+def assign(config: Input, cells: Cells, places: tuple[Point, ...]) -> tuple[Integers, Integers]:
     """Multiplexer and channel of each cell, by nearness so that tracks are short.
 
     Args:
-        given: the input.
+        config: the input.
         cells: the cells.
         places: centre of each multiplexer, U1 first.
 
@@ -182,7 +182,7 @@ def assign(given: Input, cells: Cells, places: tuple[Point, ...]) -> tuple[Integ
         Multiplexer and channel, each of shape `(cells,)`.
     """
     mux, channel = (np.zeros(len(cells), dtype=np.int64) for _ in range(2))
-    leads = _input_leads(given)
+    leads = _input_leads(config)
     left_to_right = sorted(range(len(places)), key=lambda i: (places[i][0], -places[i][1]))
     groups = np.array_split(np.arange(len(cells)), len(places))
     for which, group in zip(left_to_right, groups, strict=True):
@@ -201,9 +201,9 @@ def pins_of(mux: Integers, adc_pins: tuple[str, ...]) -> NDArray[np.str_]:
     return np.array(adc_pins)[mux]
 
 
-def joined(given: Input, strings: Strings, muxing: Muxing) -> Wiring:
+def joined(config: Input, strings: Strings, muxing: Muxing) -> Wiring:
     """All wiring beyond the layout."""
-    p = given.parameters
+    p = config.parameters
     return Wiring(
         multiplexer=p.receiver.multiplexer,
         muxes=muxing.muxes,
@@ -218,7 +218,7 @@ def joined(given: Input, strings: Strings, muxing: Muxing) -> Wiring:
     )
 
 
-def _input_leads(given: Input) -> NDArray[np.float64]:
+def _input_leads(config: Input) -> NDArray[np.float64]:
     """Place of each input's lead about the multiplexer's centre, by channel, shape `(n, 2)`.
 
     The package lies with its rows of leads facing the cells and the connector:
@@ -227,7 +227,7 @@ def _input_leads(given: Input) -> NDArray[np.float64]:
         |O           |
          1  2  3 … 8      towards the connector
     """
-    mux = given.catalogue.multiplexers[given.parameters.receiver.multiplexer]
+    mux = config.catalogue.multiplexers[config.parameters.receiver.multiplexer]
     row = mux.leads // 2
     places = []
     for channel in range(mux.channels):
