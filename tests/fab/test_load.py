@@ -132,7 +132,7 @@ def test_a_bad_base_does_not_hide_the_files_own_faults(write: Write) -> None:
 
 
 def test_faults_of_different_kinds_are_told_together(write: Write) -> None:
-    text = BASE + "[grid]\ncolumns = [5, 7]\n[stack]\nfloor_mm = 0.5\n[mask]\nhole_mm = 5.9\n"
+    text = BASE + "[grid]\ncolumns = [1, 1]\n[stack]\nfloor_mm = 0.5\n[mask]\nhole_mm = 5.9\n"
     assert [p.field for p in _problems(write(text))] == [
         "grid.columns",
         "stack.floor_mm",
