@@ -1,7 +1,6 @@
 """Automatic values: any grid derives, what a user wrote stays, ratings hold at the worst case."""
 
 import math
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -13,25 +12,6 @@ from lumitip_fab.derive.auto.remedies import plan_of
 from lumitip_fab.derive.auto.resolve import RuleError
 from lumitip_fab.design import Design
 from lumitip_fab.load import Input, load
-
-BASE = 'extends = "presets/published.toml"\n'
-
-
-@pytest.fixture
-def file(design_dir: Path, tmp_path: Path) -> Any:
-    """`file(text)`: a parameter file with this text over the published preset."""
-    folder = tmp_path / "design"
-    (folder / "presets").mkdir(parents=True)
-    (folder / "parts").mkdir()
-    base = (design_dir / "presets" / "published.toml").read_bytes()
-    (folder / "presets" / "published.toml").write_bytes(base)
-
-    def write(text: str) -> Path:
-        path = folder / "mine.toml"
-        path.write_text(BASE + text, encoding="utf-8")
-        return path
-
-    return write
 
 
 def _columns(cells: int) -> list[int]:
