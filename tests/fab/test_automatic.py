@@ -178,3 +178,9 @@ def test_a_pull_up_that_is_not_saturated_is_not_said_to_be(file: Any) -> None:
         choices = derive(load(file(f"[emitter]\ncurrent_ma = {current}\n"))).choices
         (reason,) = [c.reason for c in choices if c.field == "receiver.pull_up_ohm"]
         assert ("does not saturate" not in reason) == saturated, reason
+
+
+def test_a_thick_plate_slants_from_farther_back(file: Any) -> None:
+    design = derive(load(file("[stack]\nfloor_mm = 5.0\n")))
+    assert design.tip.angle_deg <= 45 + 1e-9
+    assert design.board.pocket.y_max_mm <= design.tip.slant_start_y_mm + 1e-6

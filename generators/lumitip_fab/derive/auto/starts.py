@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator
 from lumitip.grid import column_pitch_mm
 from lumitip_fab.automatic import FIELDS, Value
 from lumitip_fab.derive.auto.led_current import choose_strings
+from lumitip_fab.derive.flex import is_flex
 from lumitip_fab.derive.led_strings import SUPPLY_TOLERANCE, sold_ohm
 from lumitip_fab.derive.packages import LEAST_RING_MM
 from lumitip_fab.load import Input
@@ -45,6 +46,10 @@ def _printer(given: Input) -> Iterator[Proposal]:
     edge = max(float(FIELDS["tip.edge_mm"].start), line)
     yield "tip.edge_mm", edge, f"one line of {line:g} mm, at least 0.45 mm"
     wall = p.printer.min_wall_mm
+    plate = p.stack.floor_mm + p.stack.pcb_mm * (not is_flex(p))
+    slant = math.ceil(10 * (plate - p.tip.edge_mm) - 1e-6) / 10
+    if slant > float(FIELDS["tip.slant_start_mm"].start):
+        yield "tip.slant_start_mm", slant, f"a plate of {plate:g} mm at 45°"
     floor = max(float(FIELDS["stack.floor_mm"].start), wall)
     yield "stack.floor_mm", floor, f"at least printer.min_wall_mm = {wall:g}"
     mould = max(float(FIELDS["mould.wall_mm"].start), round(2 * wall, 2))
