@@ -6,9 +6,11 @@ import pytest
 
 from lumitip_fab.derive import resolve
 from lumitip_fab.derive.auto.ladder import bounds
-from lumitip_fab.derive.auto.remedies import Plan, plan_of
+from lumitip_fab.derive.auto.remedies import Plan, plan_of, remedy_lines
 from lumitip_fab.derive.auto.resolve import RuleError
 from lumitip_fab.load import load
+
+CROSSED = "[outline]\nshoulder_margin_mm = 2.0\ntip_margin_mm = 1.0\nend_margin_mm = 1.0\n"
 
 
 @pytest.fixture
@@ -77,12 +79,27 @@ def test_values_are_named_as_the_file_has_them(plan: Any) -> None:
         ("[stack]\nfilm_mm = 0.2\n", "stack.film_mm", 0.1),
         ('[controller]\nboard = "nrf52840_module"\n[flange]\nenabled = false\n',
          "flange.enabled", True),
+        ("[tip]\nslant_start_mm = 20.0\nedge_mm = 0.3\n", "tip.edge_mm", 0.45),
+        ("[wiring]\nsection_mm2 = 1.0\n", "wiring.section_mm2", 0.71),
     ],
 )  # fmt: skip
 def test_what_a_message_asks_for_is_named(plan: Any, text: str, field: str, value: object) -> None:
     found = plan(text)
     assert found.complete
     assert (field, value) in [(r.field, r.value) for r in found.steps[0].remedies]
+
+
+def test_an_outline_that_crosses_itself_is_refused(file: Any) -> None:
+    with pytest.raises(RuleError, match="shoulder_margin_mm: 2 given, at least waist_margin_mm"):
+        resolve(load(file(CROSSED)))
+
+
+def test_several_changes_are_said_to_work_together(file: Any) -> None:
+    with pytest.raises(RuleError) as caught:
+        resolve(load(file("[mask]\nhole_mm = 5.8\n[stack]\nfloor_mm = 0.5\n")))
+    first, *changes = remedy_lines(caught.value.verdict)
+    assert first == "Smallest changes that together work, each tried:"
+    assert changes == ["  mask.hole_mm = 5.6 (now 5.8)", "  stack.floor_mm = 0.8 (now 0.5)"]
 
 
 def test_more_supply_is_asked_for_than_the_least_current_needs_and_no_more(plan: Any) -> None:

@@ -12,9 +12,9 @@ from lumitip_fab.derive.auto.led_current import lowest_ma
 from lumitip_fab.parameters import Parameters
 
 DECIMALS = 4
-COARSE, FINE = 1, 4
-"""Each number of steps is greater than the last by this part of it: values that work may lie close
-together, such as the thicknesses of a flexible board."""
+COARSE, FINE = 1, 2
+"""Each number of steps is greater than the last by one part in so many of it: values that work may
+lie close together, such as holes for a screw."""
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ from lumitip_fab.load import NAMED
 from lumitip_fab.wording import brief
 
 MOST_STEPS = 12
-STEPS = {"_mm": 0.05, "_deg": 0.5, "_ma": 0.5, "_w": 0.05, "_v": 0.5}
+STEPS = {"_mm": 0.05, "_mm2": 0.01, "_deg": 0.5, "_ma": 0.5, "_w": 0.05, "_v": 0.5}
 """Resolution of a search, by the unit of the field."""
 SWITCHES = ("flange.enabled", "breakout.enabled")
 
@@ -77,20 +77,25 @@ def plan_of(verdict: Verdict) -> Plan:
 def _each_enough(verdict: Verdict, steps: list[Step]) -> Iterator[Remedy]:
     """One change of each field with which alone the file is accepted; boards that would not be
     made last."""
+    broken = {problem.field for problem in verdict.rules.values()}
+    common = set.intersection(*(set(menders(field)) for field in broken))
     found = (remedy for step in steps for remedy in step.remedies)
-    seen: set[str] = set()
     for remedy in sorted(found, key=lambda remedy: remedy.field in SWITCHES):
-        if remedy.field not in seen and _accepted(verdict, [remedy]):
-            seen.add(remedy.field)
+        if remedy.field in common and _accepted(verdict, [remedy]):
+            common.remove(remedy.field)
             yield remedy
 
 
 def _needed(verdict: Verdict, steps: list[Step]) -> tuple[Step, ...]:
-    """The steps without those that a later one makes needless."""
+    """The steps without those that another one makes needless: it changes a field that would have
+    mended their rule too."""
     kept = list(steps)
     for step in steps[:-1]:
         others = [other for other in kept if other is not step]
-        if _accepted(verdict, [other.remedies[0] for other in others]):
+        fields = {other.remedies[0].field for other in others}
+        if fields & {r.field for r in step.remedies} and _accepted(
+            verdict, [other.remedies[0] for other in others]
+        ):
             kept = others
     return tuple(kept)
 
@@ -120,8 +125,10 @@ def _changes(now: Verdict, rule: Rule, about: str) -> Iterator[Change]:
 
 def _change(now: Verdict, rule: Rule, field: str, fineness: int) -> Change | None:
     if field in FIELDS:
-        return change_of(now, rule, field, fineness)
-    if field in NAMED:
+        change = change_of(now, rule, field, fineness)
+        if change:
+            return change
+    elif field in NAMED:
         return first_of(now, rule, field, catalogue_names(now, NAMED[field], field))
     if field in SWITCHES:
         return first_of(now, rule, field, iter([not now.given.value(field)]))
@@ -136,7 +143,8 @@ def remedy_lines(verdict: Verdict) -> list[str]:
     plan = plan_of(verdict)
     if not plan.steps:
         return []
-    lines = ["Smallest changes that work, each tried:"]
+    together = "together " * (plan.complete and len(plan.steps) > 1)
+    lines = [f"Smallest changes that {together}work, each tried:"]
     for step in plan.steps:
         first, *others = map(str, step.remedies)
         lines.append(f"  {first}")
