@@ -18,8 +18,8 @@ MOST_PULL_UP = 2.0  # times the published one; a channel settles that much slowe
 
 
 def choose_strings(given: Input) -> Iterator[tuple[str, Value, str]]:
-    """Automatic values among current, LEDs of a string, resistor and pull-up; none where nothing
-    passes: then the rules say why."""
+    """Automatic values among current, LEDs of a string, resistor and pull-up. Where nothing passes,
+    those that ask least of supply, heat and ratings: then the rules say what is missing."""
     for current in _currents(given):
         for resistor in _resistors(given):
             for longest in _lengths(given):
@@ -30,6 +30,18 @@ def choose_strings(given: Input) -> Iterator[tuple[str, Value, str]]:
                 if not any(string_problems(tried, found)):
                     yield from _proposals(tried, longest)
                     return
+    least = min(_currents(given), default=given.parameters.emitter.current_ma)
+    candidates = [
+        (given.with_values({"emitter.current_ma": least, "emitter.resistor": resistor}), longest)
+        for resistor in _resistors(given)
+        for longest in _lengths(given)
+    ]
+    if candidates:
+        yield from _proposals(*min(candidates, key=_broken))
+
+
+def _broken(candidate: tuple[Input, int]) -> int:
+    return len(list(string_problems(candidate[0], _strings(*candidate))))
 
 
 def _strings(given: Input, longest: int) -> tuple[String, ...]:
@@ -62,7 +74,13 @@ def _proposals(given: Input, longest: int) -> Iterator[tuple[str, Value, str]]:
     start = float(FIELDS["receiver.pull_up_ohm"].start)
     factor = min(_least_ma(given, start) / p.emitter.current_ma, MOST_PULL_UP)
     ohm = start if factor <= 1 else sold_ohm(start * factor)
-    yield "receiver.pull_up_ohm", ohm, f"a bare cell saturates it at {p.emitter.current_ma:g} mA"
+    reason = f"a bare cell saturates it at {p.emitter.current_ma:g} mA"
+    if p.emitter.current_ma * SATURATION_MARGIN < _least_ma(given, ohm):
+        reason = (
+            f"{MOST_PULL_UP:g} times the published {start:g}, with more a channel settles too "
+            f"slowly; at {p.emitter.current_ma:g} mA a bare cell does not saturate it"
+        )
+    yield "receiver.pull_up_ohm", ohm, reason
 
 
 def _currents(given: Input) -> Iterator[float]:
@@ -85,6 +103,13 @@ def least_current_ma(given: Input) -> float:
     return _least_ma(
         given, ohm * (MOST_PULL_UP if "receiver.pull_up_ohm" in given.automatic else 1)
     )
+
+
+def lowest_ma(given: Input) -> float:
+    """Current below which a search does not go that chooses it; 0 where the user wrote it."""
+    if "emitter.current_ma" not in given.automatic:
+        return 0.0
+    return _least_ma(given, given.parameters.receiver.pull_up_ohm)
 
 
 def _least_ma(given: Input, ohm: float) -> float:

@@ -1,6 +1,7 @@
-"""Which automatic fields can mend a broken rule, the least intrusive first; by the rule's field.
+"""Which fields can mend a broken rule, the least intrusive first; by the rule's field.
 
-A rule whose field is automatic itself is mended there first.
+The rule's own field comes first. The program itself changes automatic fields only; the others are
+named to the user.
 """
 
 _ROOM = ("board.channel_mm", "board.side_margin_mm")
@@ -26,14 +27,16 @@ MENDS: dict[str, tuple[str, ...]] = {
     "board.end_margin_mm": ("board.hole_mm",),
     "board.channel_mm": ("board.hole_mm",),
     "board.copper_gap_mm": ("receiver.multiplexer",),
-    "board.supply_track_mm": (),
+    "board.supply_track_mm": ("board.track_mm",),
+    "board.via_mm": ("board.via_drill_mm",),
     "emitter.led": ("board.clearance_mm", "emitter.current_ma"),
     "emitter.current_ma": _CURRENT,
     "emitter.max_heat_w": _CURRENT,
     "emitter.resistor": ("emitter.resistor_side", "board.channel_mm", *_CURRENT,
                          "board.side_margin_mm", "backing.relief_clearance_mm"),
     "supply.max_ma": _CURRENT,
-    "supply.voltage_v": ("emitter.string_leds", "flange.gate_ohm"),
+    "supply.voltage_v": ("emitter.string_leds", "flange.gate_ohm", "flange.enabled"),
+    "controller.board": ("receiver.multiplexer", "flange.enabled"),
     "receiver.photodetector": ("board.clearance_mm",),
     "receiver.resistor": ("receiver.capacitor", "board.clearance_mm"),
     "receiver.multiplexer": _ROOM,
@@ -43,6 +46,7 @@ MENDS: dict[str, tuple[str, ...]] = {
     "mould.wall_mm": (),
     "mould.taper_length_mm": ("outline.tip_margin_mm",),
     "mould.tip_silicone_mm": (),
+    "flex.groove_depth_mm": ("stack.floor_mm",),
     "flex.standoff_mm": ("flex.groove_depth_mm",),
     "flex.interface_mm": ("flex.standoff_mm", "board.channel_mm", "tip.slant_start_mm",
                           "outline.end_margin_mm", "board.tip_margin_mm",
@@ -51,14 +55,18 @@ MENDS: dict[str, tuple[str, ...]] = {
     "breakout.board_mm": ("breakout.hole_spacing_mm",),
     "breakout.hole_mm": ("breakout.hole_spacing_mm",),
     "breakout.hole_spacing_mm": ("breakout.hole_mm",),
-    "holder.body_mm": ("holder.wall_mm",),
+    "holder.body_mm": ("holder.wall_mm", "breakout.enabled"),
     "holder.wrap_deg": ("holder.wall_mm", "holder.strap_hole_mm"),
     "holder.standoff_mm": ("breakout.hole_spacing_mm",),
     "holder.screw": ("breakout.hole_spacing_mm", "holder.wall_mm"),
     "holder.strap_hole_mm": ("holder.wrap_deg",),
     "holder.strap_spacing_mm": ("holder.strap_hole_mm",),
     "printer.profile": (),
-    "flange.fuse": ("emitter.current_ma",),
+    "flange.fuse": ("emitter.current_ma", "flange.enabled"),
+    "flange.input_capacitor": ("supply.voltage_v", "flange.enabled"),
+    "flange.coupling": ("flange.enabled",),
+    "flange.web_mm": ("flange.enabled",),
+    "flange.contacts": ("flange.tail_mm", "flange.enabled"),
     "flange.gate_ohm": (),
 }  # fmt: skip
 

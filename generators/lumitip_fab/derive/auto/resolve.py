@@ -1,6 +1,8 @@
 """Automatic values of a parameter file, and the design that follows."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 from lumitip_fab.automatic import FIELDS, Value
 from lumitip_fab.derive.auto.judge import Verdict, judge
@@ -70,6 +72,23 @@ def resolve(given: Input) -> Resolved:
     choices = reasons.choices(end.given)
     settled = replace(end.given, automatic=frozenset())
     return Resolved(settled, replace(end.design, choices=choices))
+
+
+def accepted_with(given: Input, values: Mapping[str, Any]) -> bool:
+    """Whether the file would be accepted with other values of some fields: every automatic value
+    is then chosen anew.
+
+    Args:
+        given: the file's values, the automatic ones as some search left them.
+        values: of fields, as they would be written.
+    """
+    free = given.automatic - values.keys()
+    begun = {field: FIELDS[field].start for field in free}
+    try:
+        resolve(replace(given, automatic=free).with_values({**begun, **values}))
+    except InputError:
+        return False
+    return True
 
 
 def _started(given: Input, reasons: _Reasons) -> Input:

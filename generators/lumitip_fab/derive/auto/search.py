@@ -4,8 +4,15 @@ from collections.abc import Callable, Iterable
 
 from lumitip_fab.automatic import FIELDS
 from lumitip_fab.derive.auto.judge import Rule, Verdict
-from lumitip_fab.derive.auto.ladder import Change, catalogue_names, first_of, smallest_number
+from lumitip_fab.derive.auto.ladder import (
+    COARSE,
+    Change,
+    catalogue_names,
+    first_of,
+    smallest_number,
+)
 from lumitip_fab.derive.auto.mends import menders
+from lumitip_fab.derive.led_strings import sold_ohm
 
 MOST_CHANGES = 40
 
@@ -42,15 +49,20 @@ def _next(now: Verdict, free: frozenset[str]) -> tuple[Change, str] | None:
     return None
 
 
-def change_of(now: Verdict, rule: Rule, field: str) -> Change | None:
+def change_of(now: Verdict, rule: Rule, field: str, fineness: int = COARSE) -> Change | None:
     """The smallest change of an automatic field that mends a rule; none where none does."""
     automatic = FIELDS[field]
     if automatic.names:
         return first_of(now, rule, field, catalogue_names(now, automatic.names, field))
     if field == "emitter.resistor_side":
         return first_of(now, rule, field, iter(_others(("back", "front"), now, field)))
+    if field.endswith("_ohm"):
+        return first_of(now, rule, field, iter([sold_ohm(now.given.value(field))]))
+    if field == "stack.film_mm":
+        film = now.given.catalogue.films[now.given.parameters.mask.film]
+        return first_of(now, rule, field, iter([film.thickness_mm]))
     if automatic.step:
-        return smallest_number(now, rule, field, automatic.step)
+        return smallest_number(now, rule, field, automatic.step, fineness)
     return None
 
 

@@ -10,7 +10,9 @@ from collections.abc import Callable, Iterator
 from lumitip.grid import column_pitch_mm
 from lumitip_fab.automatic import FIELDS, Value
 from lumitip_fab.derive.auto.led_current import choose_strings
+from lumitip_fab.derive.flex import is_flex
 from lumitip_fab.derive.led_strings import SUPPLY_TOLERANCE, sold_ohm
+from lumitip_fab.derive.packages import LEAST_RING_MM
 from lumitip_fab.load import Input
 
 Proposal = tuple[str, Value, str]
@@ -18,13 +20,14 @@ Proposal = tuple[str, Value, str]
 LINES_PER_WALL = 1.2  # slicers print a wall from there on with lines of variable width
 FINE_MM = {"track": 0.15, "gap": 0.15, "via": 0.45, "drill": 0.2}
 """Copper for dense boards, which common PCB fabs make without extra cost."""
+LEAST_DRILL_MM = 0.15  # what `board.via_drill_mm` allows
 ROOMY_CHANNEL_MM = 4.0
 LANE_USE = 0.8  # share of the lane between two columns that tracks can fill
 
 
 def proposals() -> tuple[Callable[[Input], Iterator[Proposal]], ...]:
     """The formulas, in the order in which they need each other."""
-    return _layers, _printer, choose_strings, _multiplexer, _copper, _channel, _flange
+    return _layers, _printer, choose_strings, _multiplexer, _copper, _vias, _channel, _flange
 
 
 def _layers(given: Input) -> Iterator[Proposal]:
@@ -43,6 +46,10 @@ def _printer(given: Input) -> Iterator[Proposal]:
     edge = max(float(FIELDS["tip.edge_mm"].start), line)
     yield "tip.edge_mm", edge, f"one line of {line:g} mm, at least 0.45 mm"
     wall = p.printer.min_wall_mm
+    plate = p.stack.floor_mm + p.stack.pcb_mm * (not is_flex(p))
+    slant = math.ceil(10 * (plate - p.tip.edge_mm) - 1e-6) / 10
+    if slant > float(FIELDS["tip.slant_start_mm"].start):
+        yield "tip.slant_start_mm", slant, f"a plate of {plate:g} mm at 45°"
     floor = max(float(FIELDS["stack.floor_mm"].start), wall)
     yield "stack.floor_mm", floor, f"at least printer.min_wall_mm = {wall:g}"
     mould = max(float(FIELDS["mould.wall_mm"].start), round(2 * wall, 2))
@@ -50,7 +57,8 @@ def _printer(given: Input) -> Iterator[Proposal]:
 
 
 def _multiplexer(given: Input) -> Iterator[Proposal]:
-    """The published multiplexer where the controller has pins for it, else one with more inputs."""
+    """The published multiplexer where the controller has pins for it, else one with more inputs;
+    the one with most where it has pins for none."""
     p, parts = given.parameters, given.catalogue
     cells, controller = sum(p.grid.columns), parts.controllers[p.controller.board]
     start = str(FIELDS["receiver.multiplexer"].start)
@@ -64,6 +72,8 @@ def _multiplexer(given: Input) -> Iterator[Proposal]:
             reason = f"{needed} of them read {cells} cells; {p.controller.board} has pins for them"
             yield "receiver.multiplexer", name, reason
             return
+    name, mux = known[-1]
+    yield "receiver.multiplexer", name, f"its {mux.channels} inputs are the most"
 
 
 def _copper(given: Input) -> Iterator[Proposal]:
@@ -78,12 +88,31 @@ def _copper(given: Input) -> Iterator[Proposal]:
         return
     reason = (
         f"{lines} lines leave a column through a lane of {lane:.2f} mm: "
-        f"{needed:.2f} mm at 0.2 mm tracks and gaps"
+        f"{needed:.2f} mm at tracks of {p.board.track_mm:g} and gaps of {p.board.copper_gap_mm:g} "
+        f"mm, {100 * LANE_USE:g} % of it can be used"
     )
     yield "board.track_mm", FINE_MM["track"], reason
     yield "board.copper_gap_mm", FINE_MM["gap"], reason
     yield "board.via_mm", FINE_MM["via"], reason
     yield "board.via_drill_mm", FINE_MM["drill"], reason
+
+
+def _vias(given: Input) -> Iterator[Proposal]:
+    """Vias round the hole that a user wrote, or the hole in them, and supplies' tracks as wide as
+    signals'."""
+    board = given.parameters.board
+    ring = 2 * LEAST_RING_MM
+    if board.via_mm < board.via_drill_mm + ring:
+        reason = f"copper of {LEAST_RING_MM:g} mm all round a hole"
+        yield "board.via_mm", round(board.via_drill_mm + ring, 3), reason
+        if "board.via_mm" not in given.automatic and board.via_mm - ring >= LEAST_DRILL_MM:
+            yield "board.via_drill_mm", round(board.via_mm - ring, 3), reason
+    if board.supply_track_mm < board.track_mm:
+        yield (
+            "board.supply_track_mm",
+            board.track_mm,
+            f"at least board.track_mm = {board.track_mm:g}",
+        )
 
 
 def _channel(given: Input) -> Iterator[Proposal]:
