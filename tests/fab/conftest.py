@@ -83,3 +83,20 @@ def _of_wiring(design: Design) -> Iterator[str]:
     signals = design.receiver.connector.signals
     if len(set(signals)) != len(signals) or not set(wiring.adc_pins) < set(signals):
         yield "the connector lacks a signal"
+
+
+@pytest.fixture
+def file(design_dir: Path, tmp_path: Path) -> Any:
+    """`file(text)`: a parameter file with this text over the published preset."""
+    folder = tmp_path / "design"
+    (folder / "presets").mkdir(parents=True)
+    (folder / "parts").mkdir()
+    base = (design_dir / "presets" / "published.toml").read_bytes()
+    (folder / "presets" / "published.toml").write_bytes(base)
+
+    def write(text: str) -> Path:
+        path = folder / "mine.toml"
+        path.write_text('extends = "presets/published.toml"\n' + text, encoding="utf-8")
+        return path
+
+    return write

@@ -1,7 +1,6 @@
 """Automatic values: any grid derives, what a user wrote stays, ratings hold at the worst case."""
 
 import math
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -13,25 +12,6 @@ from lumitip_fab.derive import derive, resolve
 from lumitip_fab.derive.auto.remedies import plan_of
 from lumitip_fab.derive.auto.resolve import RuleError
 from lumitip_fab.design import Design
-
-BASE = 'extends = "presets/published.toml"\n'
-
-
-@pytest.fixture
-def file(design_dir: Path, tmp_path: Path) -> Any:
-    """`file(text)`: a parameter file with this text over the published preset."""
-    folder = tmp_path / "design"
-    (folder / "presets").mkdir(parents=True)
-    (folder / "parts").mkdir()
-    base = (design_dir / "presets" / "published.toml").read_bytes()
-    (folder / "presets" / "published.toml").write_bytes(base)
-
-    def write(text: str) -> Path:
-        path = folder / "mine.toml"
-        path.write_text(BASE + text, encoding="utf-8")
-        return path
-
-    return write
 
 
 def _columns(cells: int) -> list[int]:
@@ -158,3 +138,49 @@ def test_a_smaller_change_does_not_mend(file: Any) -> None:
     assert math.isclose(value, 1.4)
     with pytest.raises(RuleError):
         resolve(load(file(f"[stack]\nsilicone_mm = {value - 0.05:g}\n")))
+
+
+def test_copper_follows_what_is_written_of_it(file: Any) -> None:
+    for text, field, least in (
+        ("track_mm = 0.8", "board.supply_track_mm", 0.8),
+        ("via_drill_mm = 0.5", "board.via_mm", 0.7),
+        ("via_mm = 0.45", "board.via_mm", 0.45),
+    ):
+        given = resolve(load(file(f"[board]\n{text}\n"))).given
+        assert given.value(field) == least
+        assert given.value("board.via_mm") - given.value("board.via_drill_mm") >= 0.2 - 1e-9
+
+
+def test_a_module_reads_as_many_cells_as_its_wires_allow(file: Any) -> None:
+    text = '[controller]\nboard = "nrf52840_module"\n[grid]\ncolumns = [8, 8, 8, 8, 8, 8]\n'
+    design = derive(load(file(text)))
+    assert len(design.layout) == 48
+    assert design.wiring.multiplexer == "74HC4067PW"
+
+
+def test_too_many_cells_are_compared_with_the_largest_multiplexer(file: Any) -> None:
+    with pytest.raises(RuleError, match="at most 128 cells"):
+        resolve(load(file("[grid]\ncolumns = [16, 17, 16, 17, 16, 17, 16, 17]\npitch_mm = 4.0\n"
+                          "[mask]\nhole_mm = 1.6\n")))  # fmt: skip
+
+
+def test_light_is_never_given_up_for_supply_or_heat(file: Any) -> None:
+    """19.2 mA gives 300 µA of light current; 3.1 V over twice 75 kΩ take 20.7 µA, 1.3 mA."""
+    for text in ("[supply]\nmax_ma = 5.0\n", "[emitter]\nmax_heat_w = 0.12\n"):
+        design = derive(load(file(text)))
+        assert 300 * min(design.wiring.current_ma) / 19.2 > 3.1e6 / design.wiring.pull_up_ohm
+    with pytest.raises(RuleError):
+        resolve(load(file("[emitter]\nmax_heat_w = 0.05\n")))
+
+
+def test_a_pull_up_that_is_not_saturated_is_not_said_to_be(file: Any) -> None:
+    for current, saturated in ((1.0, False), (2.0, True), (10.0, True)):
+        choices = derive(load(file(f"[emitter]\ncurrent_ma = {current}\n"))).choices
+        (reason,) = [c.reason for c in choices if c.field == "receiver.pull_up_ohm"]
+        assert ("does not saturate" not in reason) == saturated, reason
+
+
+def test_a_thick_plate_slants_from_farther_back(file: Any) -> None:
+    design = derive(load(file("[stack]\nfloor_mm = 5.0\n")))
+    assert design.tip.angle_deg <= 45 + 1e-9
+    assert design.board.pocket.y_max_mm <= design.tip.slant_start_y_mm + 1e-6

@@ -3,11 +3,12 @@ stay."""
 
 import argparse
 import json
+import stat
 import sys
+from collections.abc import MutableMapping
 from pathlib import Path
 
 import tomlkit
-from tomlkit.items import Table
 
 from lumitip_fab.cli.screen import OUT, REFUSED
 from lumitip_fab.config.load import load
@@ -15,6 +16,8 @@ from lumitip_fab.derive.auto.remedies import Plan, Remedy, plan_of
 from lumitip_fab.derive.auto.resolve import RuleError, resolve
 from lumitip_fab.errors import OutputError
 from lumitip_fab.pipeline.manifest import write_file
+
+_MARK = "\ufeff"  # with which some editors begin a file
 
 
 def run(options: argparse.Namespace) -> int:
@@ -62,20 +65,31 @@ def fix(file: Path) -> Plan:
     else:
         return Plan((), True)
     if plan.complete:
-        text = changed_text(file.read_text(encoding="utf-8"), plan)
         try:
-            write_file(file, text.encode())
+            _rewrite(file.resolve(), plan)  # where a link leads
         except OSError as error:
             raise OutputError(f"{file}: cannot be written: {error.strerror}") from error
     return plan
 
 
+def _rewrite(file: Path, plan: Plan) -> None:
+    mode = stat.S_IMODE(file.stat().st_mode)
+    if not mode & (stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH):
+        raise OutputError(f"{file}: cannot be written: it is read-only")
+    text = changed_text(file.read_bytes().decode(), plan)
+    write_file(file, text.encode(), mode)
+
+
 def changed_text(text: str, plan: Plan) -> str:
     """The text of a parameter file with the first remedy of each step."""
-    document = tomlkit.parse(text)
+    mark = _MARK if text.startswith(_MARK) else ""
+    document = tomlkit.parse(text.removeprefix(_MARK))
     for step in plan.steps:
         _set(document, step.remedies[0])
-    return tomlkit.dumps(document)
+    changed = tomlkit.dumps(document)
+    if 0 < text.count("\n") == text.count("\r\n"):  # the same in lines that were added
+        changed = changed.replace("\r\n", "\n").replace("\n", "\r\n")
+    return mark + changed
 
 
 def _set(document: tomlkit.TOMLDocument, remedy: Remedy) -> None:
@@ -83,5 +97,5 @@ def _set(document: tomlkit.TOMLDocument, remedy: Remedy) -> None:
     if section not in document:
         document[section] = tomlkit.table()
     table = document[section]
-    assert isinstance(table, Table)
+    assert isinstance(table, MutableMapping)  # as the file was read before
     table[key] = remedy.value

@@ -7,10 +7,12 @@ from dataclasses import dataclass
 from lumitip_fab.config.automatic import FIELDS
 from lumitip_fab.config.load import NAMED
 from lumitip_fab.config.messages import brief
+from lumitip_fab.derive.auto.judge import Rule, Verdict
+from lumitip_fab.derive.auto.resolve import accepted_with
 from lumitip_fab.derive.auto.search import (
+    COARSE,
+    FINE,
     Change,
-    Rule,
-    Verdict,
     catalogue_names,
     change_of,
     first_of,
@@ -19,7 +21,7 @@ from lumitip_fab.derive.auto.search import (
 )
 
 MOST_STEPS = 12
-STEPS = {"_mm": 0.05, "_deg": 0.5, "_ma": 0.5, "_w": 0.05, "_v": 0.5}
+STEPS = {"_mm": 0.05, "_mm2": 0.01, "_deg": 0.5, "_ma": 0.5, "_w": 0.05, "_v": 0.5}
 """Resolution of a search, by the unit of the field."""
 SWITCHES = ("flange.enabled", "breakout.enabled")
 
@@ -51,27 +53,63 @@ class Plan:
 
     steps: tuple[Step, ...]
     complete: bool
-    """Whether all first remedies together make a design."""
+    """Whether the file is accepted with all first remedies."""
 
 
 def plan_of(verdict: Verdict) -> Plan:
-    """Changes that mend every broken rule, one after the other."""
+    """Changes that mend every broken rule: alternatives of one change where one is enough."""
     now, steps = verdict, []
     for _ in range(MOST_STEPS):
-        found = next(_mended(now), None)
+        found = next(_mended(now, verdict), None)
         if found is None:
             break
         step, now = found
         steps.append(step)
-    return Plan(tuple(steps), now.design is not None)
+    if len(steps) > 1 or now.design is None:
+        enough = list(_each_enough(verdict, steps))
+        if enough:
+            return Plan((Step(steps[0].message, tuple(enough)),), True)
+    if not _accepted(verdict, [step.remedies[0] for step in steps]):
+        return Plan(tuple(steps), False)
+    return Plan(_needed(verdict, steps), True)
 
 
-def _mended(now: Verdict) -> Iterator[tuple[Step, Verdict]]:
+def _each_enough(verdict: Verdict, steps: list[Step]) -> Iterator[Remedy]:
+    """One change of each field with which alone the file is accepted; boards that would not be
+    made last."""
+    broken = {problem.field for problem in verdict.rules.values()}
+    common = set.intersection(*(set(menders(field)) for field in broken))
+    found = (remedy for step in steps for remedy in step.remedies)
+    for remedy in sorted(found, key=lambda remedy: remedy.field in SWITCHES):
+        if remedy.field in common and _accepted(verdict, [remedy]):
+            common.remove(remedy.field)
+            yield remedy
+
+
+def _needed(verdict: Verdict, steps: list[Step]) -> tuple[Step, ...]:
+    """The steps without those that another one makes needless: it changes a field that would have
+    mended their rule too."""
+    kept = list(steps)
+    for step in steps[:-1]:
+        others = [other for other in kept if other is not step]
+        fields = {other.remedies[0].field for other in others}
+        if fields & {r.field for r in step.remedies} and _accepted(
+            verdict, [other.remedies[0] for other in others]
+        ):
+            kept = others
+    return tuple(kept)
+
+
+def _accepted(verdict: Verdict, remedies: list[Remedy]) -> bool:
+    return accepted_with(verdict.config, {r.field: r.value for r in remedies})
+
+
+def _mended(now: Verdict, first: Verdict) -> Iterator[tuple[Step, Verdict]]:
     for rule, problem in now.rules.items():
         changes = list(_changes(now, rule, problem.field))
         if changes:
             remedies = tuple(
-                Remedy(change.field, change.value, now.config.value(change.field))
+                Remedy(change.field, change.value, first.config.value(change.field))
                 for change in changes
             )
             yield Step(problem.message, remedies), changes[0].verdict
@@ -80,22 +118,24 @@ def _mended(now: Verdict) -> Iterator[tuple[Step, Verdict]]:
 def _changes(now: Verdict, rule: Rule, about: str) -> Iterator[Change]:
     """One change of each field that can mend a rule, the field of the rule first."""
     for field in menders(about):
-        change = _change(now, rule, field)
+        change = _change(now, rule, field, FINE if field == about else COARSE)
         if change:
             yield change
 
 
-def _change(now: Verdict, rule: Rule, field: str) -> Change | None:
+def _change(now: Verdict, rule: Rule, field: str, fineness: int) -> Change | None:
     if field in FIELDS:
-        return change_of(now, rule, field)
-    if field in NAMED:
+        change = change_of(now, rule, field, fineness)
+        if change:
+            return change
+    elif field in NAMED:
         return first_of(now, rule, field, catalogue_names(now, NAMED[field], field))
     if field in SWITCHES:
         return first_of(now, rule, field, iter([not now.config.value(field)]))
     step = next((step for unit, step in STEPS.items() if field.endswith(unit)), None)
     if step is None or not isinstance(now.config.value(field), int | float):
         return None
-    return smallest_number(now, rule, field, step)
+    return smallest_number(now, rule, field, step, fineness)
 
 
 def remedy_lines(verdict: Verdict) -> list[str]:
@@ -103,7 +143,8 @@ def remedy_lines(verdict: Verdict) -> list[str]:
     plan = plan_of(verdict)
     if not plan.steps:
         return []
-    lines = ["Smallest changes that work, each tried:"]
+    together = "together " * (plan.complete and len(plan.steps) > 1)
+    lines = [f"Smallest changes that {together}work, each tried:"]
     for step in plan.steps:
         first, *others = map(str, step.remedies)
         lines.append(f"  {first}")

@@ -1,11 +1,14 @@
 """Automatic values of a parameter file, and the design that follows."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 from lumitip_fab.config.automatic import FIELDS, Value
 from lumitip_fab.config.load import Input
 from lumitip_fab.config.messages import brief
-from lumitip_fab.derive.auto.search import Change, Verdict, judge, search
+from lumitip_fab.derive.auto.judge import Verdict, judge
+from lumitip_fab.derive.auto.search import Change, search
 from lumitip_fab.derive.auto.starts import proposals
 from lumitip_fab.design import Design
 from lumitip_fab.design.choices import Choice
@@ -68,6 +71,23 @@ def resolve(config: Input) -> Resolved:
     choices = reasons.choices(end.config)
     settled = replace(end.config, automatic=frozenset())
     return Resolved(settled, replace(end.design, choices=choices))
+
+
+def accepted_with(config: Input, values: Mapping[str, Any]) -> bool:
+    """Whether the file would be accepted with other values of some fields: every automatic value
+    is then chosen anew.
+
+    Args:
+        given: the file's values, the automatic ones as some search left them.
+        values: of fields, as they would be written.
+    """
+    free = config.automatic - values.keys()
+    begun = {field: FIELDS[field].start for field in free}
+    try:
+        resolve(replace(config, automatic=free).with_values({**begun, **values}))
+    except InputError:
+        return False
+    return True
 
 
 def _started(config: Input, reasons: _Reasons) -> Input:

@@ -1,75 +1,22 @@
 """Search for the smallest changes that mend every broken rule."""
 
-import re
+import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, get_args
 
 from annotated_types import Ge, Gt, Le, Lt
-from pydantic import ValidationError
 
 from lumitip_fab.config.automatic import FIELDS
-from lumitip_fab.config.load import Input
 from lumitip_fab.config.parameters import Parameters
-from lumitip_fab.derive.faults import Faults
-from lumitip_fab.derive.once import derive_once
-from lumitip_fab.design import Design
-from lumitip_fab.errors import InputError, Problem
-
-_NUMBER = re.compile(r"-?\d+(\.\d+)?(e-?\d+)?")
-
-Rule = tuple[str, str]
-"""A field and the message of its rule without numbers: the same at other values."""
-
-
-@dataclass(frozen=True)
-class Verdict:
-    """What derivation says of an input."""
-
-    config: Input
-    design: Design | None
-    stage: int
-    """How far derivation went; later rules are only reached without faults before them."""
-    problems: tuple[Problem, ...]
-
-    @property
-    def rules(self) -> dict[Rule, Problem]:
-        """Every rule that is broken."""
-        return {rule_of(problem): problem for problem in self.problems}
-
-    def mends(self, rule: Rule, before: "Verdict") -> bool:
-        """Whether a rule holds that was broken before, and no other one is broken instead."""
-        mine = set(self.rules)
-        further = self.stage > before.stage
-        return rule not in mine and (
-            further or (self.stage == before.stage and mine <= set(before.rules))
-        )
-
-
-def rule_of(problem: Problem) -> Rule:
-    """The rule that a problem is about."""
-    return problem.field, _NUMBER.sub("#", problem.message)
-
-
-def judge(config: Input) -> Verdict:
-    """Derive, and keep what is wrong."""
-    faults = Faults(config)
-    try:
-        design = derive_once(config, faults)
-    except InputError as error:
-        return Verdict(config, None, faults.stage, error.problems)
-    return Verdict(config, design, faults.stage, ())
-
-
-def judge_with(config: Input, values: dict[str, Any]) -> Verdict | None:
-    """Judge other values of some fields; none where a field does not allow its value."""
-    try:
-        return judge(config.with_values(values))
-    except ValidationError:
-        return None
-
+from lumitip_fab.derive.auto.judge import Rule, Verdict, judge_with
+from lumitip_fab.derive.auto.starts import lowest_ma
+from lumitip_fab.derive.wiring.ratings import sold_ohm
 
 DECIMALS = 4
+COARSE, FINE = 1, 2
+"""Each number of steps is greater than the last by one part in so many of it: values that work may
+lie close together, such as holes for a screw."""
 
 
 @dataclass(frozen=True)
@@ -81,12 +28,14 @@ class Change:
     verdict: Verdict
 
 
-def smallest_number(before: Verdict, rule: Rule, field: str, step: float) -> Change | None:
+def smallest_number(
+    before: Verdict, rule: Rule, field: str, step: float, fineness: int = COARSE
+) -> Change | None:
     """The number nearest to a field's value, on multiples of a step from it, that mends a rule."""
     found = [
         change
         for sign in (1, -1)
-        if (change := _along(before, rule, field, sign * step)) is not None
+        if (change := _along(before, rule, field, sign * step, fineness)) is not None
     ]
     start = before.config.value(field)
     return min(found, key=lambda change: abs(change.value - start), default=None)
@@ -101,9 +50,11 @@ def first_of(before: Verdict, rule: Rule, field: str, values: Iterator[Any]) -> 
     return None
 
 
-def _along(before: Verdict, rule: Rule, field: str, step: float) -> Change | None:
+def _along(before: Verdict, rule: Rule, field: str, step: float, fineness: int) -> Change | None:
     start, whole = before.config.value(field), isinstance(before.config.value(field), int)
     low, high = bounds(field)
+    if field == "emitter.current_ma":
+        low = max(low, lowest_ma(before.config))
 
     def tried(steps: int) -> Change | None:
         value = start + steps * step if whole else round(start + steps * step, DECIMALS)
@@ -111,13 +62,23 @@ def _along(before: Verdict, rule: Rule, field: str, step: float) -> Change | Non
         mended = verdict is not None and verdict.mends(rule, before)
         return Change(field, value, verdict) if mended and verdict else None
 
-    steps, failed = 1, 0
-    while low <= start + steps * step <= high:
+    failed = 0
+    for steps in _growing(((low if step < 0 else high) - start) / step, fineness):
         change = tried(steps)
         if change:
             return _bisected(change, failed, steps, tried)
-        steps, failed = 2 * steps, steps
+        failed = steps
     return None
+
+
+def _growing(room: float, fineness: int) -> Iterator[int]:
+    """Numbers of steps that grow, up to the last one that is within a field's bounds."""
+    last, steps = math.floor(room + 1e-9), 1
+    while steps < last:
+        yield steps
+        steps += max(1, steps // fineness)
+    if last > 0:
+        yield last
 
 
 def _bisected(change: Change, failed: int, worked: int, tried: Any) -> Change:
@@ -135,24 +96,26 @@ def bounds(field: str) -> tuple[float, float]:
     """Least and greatest value that a numeric field allows."""
     section, key = field.split(".")
     table = Parameters.model_fields[section].annotation
-    metadata = table.model_fields[key].metadata  # type: ignore[union-attr]
+    metadata = list(_metadata(table.model_fields[key]))  # type: ignore[union-attr]
     low = max(
-        (
-            float(m.ge if isinstance(m, Ge) else m.gt)  # type: ignore[arg-type]
-            for m in metadata
-            if isinstance(m, Ge | Gt)
-        ),
-        default=float("-inf"),
+        float(m.ge if isinstance(m, Ge) else m.gt)  # type: ignore[arg-type]
+        for m in metadata
+        if isinstance(m, Ge | Gt)
     )
     high = min(
-        (
-            float(m.le if isinstance(m, Le) else m.lt)  # type: ignore[arg-type]
-            for m in metadata
-            if isinstance(m, Le | Lt)
-        ),
-        default=float("inf"),
+        float(m.le if isinstance(m, Le) else m.lt)  # type: ignore[arg-type]
+        for m in metadata
+        if isinstance(m, Le | Lt)
     )
     return low, high
+
+
+def _metadata(of: Any) -> Iterator[Any]:
+    """What limits the values of a field, also of one that may be a number or a word."""
+    yield of
+    for inner in (*getattr(of, "metadata", ()), getattr(of, "annotation", None), *get_args(of)):
+        if inner is not None:
+            yield from _metadata(inner)
 
 
 def catalogue_names(before: Verdict, kind: str, field: str) -> Iterator[str]:
@@ -194,7 +157,8 @@ MENDS: dict[str, tuple[str, ...]] = {
     "board.end_margin_mm": ("board.hole_mm",),
     "board.channel_mm": ("board.hole_mm",),
     "board.copper_gap_mm": ("receiver.multiplexer",),
-    "board.supply_track_mm": (),
+    "board.supply_track_mm": ("board.track_mm",),
+    "board.via_mm": ("board.via_drill_mm",),
     "emitter.led": ("board.clearance_mm", "emitter.current_ma"),
     "emitter.current_ma": _CURRENT,
     "emitter.max_heat_w": _CURRENT,
@@ -206,7 +170,8 @@ MENDS: dict[str, tuple[str, ...]] = {
         "backing.relief_clearance_mm",
     ),
     "supply.max_ma": _CURRENT,
-    "supply.voltage_v": ("emitter.string_leds", "flange.gate_ohm"),
+    "supply.voltage_v": ("emitter.string_leds", "flange.gate_ohm", "flange.enabled"),
+    "controller.board": ("receiver.multiplexer", "flange.enabled"),
     "receiver.photodetector": ("board.clearance_mm",),
     "receiver.resistor": ("receiver.capacitor", "board.clearance_mm"),
     "receiver.multiplexer": _ROOM,
@@ -216,6 +181,7 @@ MENDS: dict[str, tuple[str, ...]] = {
     "mould.wall_mm": (),
     "mould.taper_length_mm": ("outline.tip_margin_mm",),
     "mould.tip_silicone_mm": (),
+    "flex.groove_depth_mm": ("stack.floor_mm",),
     "flex.standoff_mm": ("flex.groove_depth_mm",),
     "flex.interface_mm": (
         "flex.standoff_mm",
@@ -229,14 +195,18 @@ MENDS: dict[str, tuple[str, ...]] = {
     "breakout.board_mm": ("breakout.hole_spacing_mm",),
     "breakout.hole_mm": ("breakout.hole_spacing_mm",),
     "breakout.hole_spacing_mm": ("breakout.hole_mm",),
-    "holder.body_mm": ("holder.wall_mm",),
+    "holder.body_mm": ("holder.wall_mm", "breakout.enabled"),
     "holder.wrap_deg": ("holder.wall_mm", "holder.strap_hole_mm"),
     "holder.standoff_mm": ("breakout.hole_spacing_mm",),
     "holder.screw": ("breakout.hole_spacing_mm", "holder.wall_mm"),
     "holder.strap_hole_mm": ("holder.wrap_deg",),
     "holder.strap_spacing_mm": ("holder.strap_hole_mm",),
     "printer.profile": (),
-    "flange.fuse": ("emitter.current_ma",),
+    "flange.fuse": ("emitter.current_ma", "flange.enabled"),
+    "flange.input_capacitor": ("supply.voltage_v", "flange.enabled"),
+    "flange.coupling": ("flange.enabled",),
+    "flange.web_mm": ("flange.enabled",),
+    "flange.contacts": ("flange.tail_mm", "flange.enabled"),
     "flange.gate_ohm": (),
 }
 
@@ -281,15 +251,20 @@ def _next(now: Verdict, free: frozenset[str]) -> tuple[Change, str] | None:
     return None
 
 
-def change_of(now: Verdict, rule: Rule, field: str) -> Change | None:
+def change_of(now: Verdict, rule: Rule, field: str, fineness: int = COARSE) -> Change | None:
     """The smallest change of an automatic field that mends a rule; none where none does."""
     automatic = FIELDS[field]
     if automatic.names:
         return first_of(now, rule, field, catalogue_names(now, automatic.names, field))
     if field == "emitter.resistor_side":
         return first_of(now, rule, field, iter(_others(("back", "front"), now, field)))
+    if field.endswith("_ohm"):
+        return first_of(now, rule, field, iter([sold_ohm(now.config.value(field))]))
+    if field == "stack.film_mm":
+        film = now.config.catalogue.films[now.config.parameters.mask.film]
+        return first_of(now, rule, field, iter([film.thickness_mm]))
     if automatic.step:
-        return smallest_number(now, rule, field, automatic.step)
+        return smallest_number(now, rule, field, automatic.step, fineness)
     return None
 
 

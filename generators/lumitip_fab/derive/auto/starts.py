@@ -7,6 +7,8 @@ from collections.abc import Callable, Iterator
 from lumitip.grid import column_pitch_mm
 from lumitip_fab.config.automatic import FIELDS, Value
 from lumitip_fab.config.load import Input
+from lumitip_fab.derive.boards.packages import LEAST_RING_MM
+from lumitip_fab.derive.finger.flex import is_flex
 from lumitip_fab.derive.wiring.ratings import (
     SUPPLY_TOLERANCE,
     String,
@@ -23,8 +25,8 @@ MOST_PULL_UP = 2.0  # times the published one; a channel settles that much slowe
 
 
 def choose_strings(config: Input) -> Iterator[tuple[str, Value, str]]:
-    """Automatic values among current, LEDs of a string, resistor and pull-up; none where nothing
-    passes: then the rules say why."""
+    """Automatic values among current, LEDs of a string, resistor and pull-up. Where nothing passes,
+    those that ask least of supply, heat and ratings: then the rules say what is missing."""
     for current in _currents(config):
         for resistor in _resistors(config):
             for longest in _lengths(config):
@@ -35,6 +37,18 @@ def choose_strings(config: Input) -> Iterator[tuple[str, Value, str]]:
                 if not any(string_problems(tried, found)):
                     yield from _proposals(tried, longest)
                     return
+    least = min(_currents(config), default=config.parameters.emitter.current_ma)
+    candidates = [
+        (config.with_values({"emitter.current_ma": least, "emitter.resistor": resistor}), longest)
+        for resistor in _resistors(config)
+        for longest in _lengths(config)
+    ]
+    if candidates:
+        yield from _proposals(*min(candidates, key=_broken))
+
+
+def _broken(candidate: tuple[Input, int]) -> int:
+    return len(list(string_problems(candidate[0], _strings(*candidate))))
 
 
 def _strings(config: Input, longest: int) -> tuple[String, ...]:
@@ -69,7 +83,13 @@ def _proposals(config: Input, longest: int) -> Iterator[tuple[str, Value, str]]:
     start = float(FIELDS["receiver.pull_up_ohm"].start)
     factor = min(_least_ma(config, start) / p.emitter.current_ma, MOST_PULL_UP)
     ohm = start if factor <= 1 else sold_ohm(start * factor)
-    yield "receiver.pull_up_ohm", ohm, f"a bare cell saturates it at {p.emitter.current_ma:g} mA"
+    reason = f"a bare cell saturates it at {p.emitter.current_ma:g} mA"
+    if p.emitter.current_ma * SATURATION_MARGIN < _least_ma(config, ohm):
+        reason = (
+            f"{MOST_PULL_UP:g} times the published {start:g}, with more a channel settles too "
+            f"slowly; at {p.emitter.current_ma:g} mA a bare cell does not saturate it"
+        )
+    yield "receiver.pull_up_ohm", ohm, reason
 
 
 def _currents(config: Input) -> Iterator[float]:
@@ -92,6 +112,13 @@ def least_current_ma(config: Input) -> float:
     return _least_ma(
         config, ohm * (MOST_PULL_UP if "receiver.pull_up_ohm" in config.automatic else 1)
     )
+
+
+def lowest_ma(config: Input) -> float:
+    """Current below which a search does not go that chooses it; 0 where the user wrote it."""
+    if "emitter.current_ma" not in config.automatic:
+        return 0.0
+    return _least_ma(config, config.parameters.receiver.pull_up_ohm)
 
 
 def _least_ma(config: Input, ohm: float) -> float:
@@ -137,13 +164,14 @@ Proposal = tuple[str, Value, str]
 LINES_PER_WALL = 1.2  # slicers print a wall from there on with lines of variable width
 FINE_MM = {"track": 0.15, "gap": 0.15, "via": 0.45, "drill": 0.2}
 """Copper for dense boards, which common PCB fabs make without extra cost."""
+LEAST_DRILL_MM = 0.15  # what `board.via_drill_mm` allows
 ROOMY_CHANNEL_MM = 4.0
 LANE_USE = 0.8  # share of the lane between two columns that tracks can fill
 
 
 def proposals() -> tuple[Callable[[Input], Iterator[Proposal]], ...]:
     """The formulas, in the order in which they need each other."""
-    return _layers, _printer, choose_strings, _multiplexer, _copper, _channel, _flange
+    return _layers, _printer, choose_strings, _multiplexer, _copper, _vias, _channel, _flange
 
 
 def _layers(config: Input) -> Iterator[Proposal]:
@@ -162,6 +190,10 @@ def _printer(config: Input) -> Iterator[Proposal]:
     edge = max(float(FIELDS["tip.edge_mm"].start), line)
     yield "tip.edge_mm", edge, f"one line of {line:g} mm, at least 0.45 mm"
     wall = p.printer.min_wall_mm
+    plate = p.stack.floor_mm + p.stack.pcb_mm * (not is_flex(p))
+    slant = math.ceil(10 * (plate - p.tip.edge_mm) - 1e-6) / 10
+    if slant > float(FIELDS["tip.slant_start_mm"].start):
+        yield "tip.slant_start_mm", slant, f"a plate of {plate:g} mm at 45°"
     floor = max(float(FIELDS["stack.floor_mm"].start), wall)
     yield "stack.floor_mm", floor, f"at least printer.min_wall_mm = {wall:g}"
     mould = max(float(FIELDS["mould.wall_mm"].start), round(2 * wall, 2))
@@ -169,7 +201,8 @@ def _printer(config: Input) -> Iterator[Proposal]:
 
 
 def _multiplexer(config: Input) -> Iterator[Proposal]:
-    """The published multiplexer where the controller has pins for it, else one with more inputs."""
+    """The published multiplexer where the controller has pins for it, else one with more inputs;
+    the one with most where it has pins for none."""
     p, parts = config.parameters, config.catalogue
     cells, controller = sum(p.grid.columns), parts.controllers[p.controller.board]
     start = str(FIELDS["receiver.multiplexer"].start)
@@ -183,6 +216,8 @@ def _multiplexer(config: Input) -> Iterator[Proposal]:
             reason = f"{needed} of them read {cells} cells; {p.controller.board} has pins for them"
             yield "receiver.multiplexer", name, reason
             return
+    name, mux = known[-1]
+    yield "receiver.multiplexer", name, f"its {mux.channels} inputs are the most"
 
 
 def _copper(config: Input) -> Iterator[Proposal]:
@@ -197,12 +232,31 @@ def _copper(config: Input) -> Iterator[Proposal]:
         return
     reason = (
         f"{lines} lines leave a column through a lane of {lane:.2f} mm: "
-        f"{needed:.2f} mm at 0.2 mm tracks and gaps"
+        f"{needed:.2f} mm at tracks of {p.board.track_mm:g} and gaps of {p.board.copper_gap_mm:g} "
+        f"mm, {100 * LANE_USE:g} % of it can be used"
     )
     yield "board.track_mm", FINE_MM["track"], reason
     yield "board.copper_gap_mm", FINE_MM["gap"], reason
     yield "board.via_mm", FINE_MM["via"], reason
     yield "board.via_drill_mm", FINE_MM["drill"], reason
+
+
+def _vias(config: Input) -> Iterator[Proposal]:
+    """Vias round the hole that a user wrote, or the hole in them, and supplies' tracks as wide as
+    signals'."""
+    board = config.parameters.board
+    ring = 2 * LEAST_RING_MM
+    if board.via_mm < board.via_drill_mm + ring:
+        reason = f"copper of {LEAST_RING_MM:g} mm all round a hole"
+        yield "board.via_mm", round(board.via_drill_mm + ring, 3), reason
+        if "board.via_mm" not in config.automatic and board.via_mm - ring >= LEAST_DRILL_MM:
+            yield "board.via_drill_mm", round(board.via_mm - ring, 3), reason
+    if board.supply_track_mm < board.track_mm:
+        yield (
+            "board.supply_track_mm",
+            board.track_mm,
+            f"at least board.track_mm = {board.track_mm:g}",
+        )
 
 
 def _channel(config: Input) -> Iterator[Proposal]:

@@ -120,7 +120,7 @@ def _mirrored(piece: Cubic) -> Cubic:
 
 def _least_rim(outline: Outline, board: Board) -> tuple[float, Point]:
     """Least distance from the pocket to the outline, below zero where it crosses it."""
-    from shapely import Polygon, box
+    from shapely import Polygon, box, make_valid
 
     pocket = board.pocket
     hole = box(pocket.x_min_mm, pocket.y_min_mm, pocket.x_max_mm, pocket.y_max_mm)
@@ -131,6 +131,8 @@ def _least_rim(outline: Outline, board: Board) -> tuple[float, Point]:
     distance = np.hypot(dx, np.maximum(np.maximum(above, below), 0))
     nearest = int(distance.argmin())
     where = (float(corners[nearest, 0]), float(corners[nearest, 1]))
+    if not skin.is_valid:  # it crosses itself
+        return -float(hole.difference(make_valid(skin)).area / hole.length), where
     if not skin.contains(hole):
         return -float(hole.difference(skin).area / hole.length), where
     return float(skin.exterior.distance(hole)), where
