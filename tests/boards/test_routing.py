@@ -13,7 +13,8 @@ from lumitip_fab.boards.footprints import placed_pads
 from lumitip_fab.boards.model import SIDES, BoardModel, Placement, Routing, Track
 from lumitip_fab.boards.pour import pour
 from lumitip_fab.boards.route import route
-from lumitip_fab.boards.route.rules import Rules
+from lumitip_fab.boards.route.obstacles import Obstacles
+from lumitip_fab.boards.route.rules import Grid, Rules
 from lumitip_fab.boards.verify import summary, verify
 from lumitip_fab.design import Box
 from lumitip_fab.errors import BuildError
@@ -144,3 +145,20 @@ def test_copper_keeps_out_of_where_none_may_be() -> None:
     across = Track("A", "back", (-5.2, -1.0), (5.2, -1.0), 0.2)
     faults = verify(BoardModel(placement, Routing((across,), (), 1), ()))
     assert ("keep-out", ("A", "keep-out")) in {(f.rule, f.nets) for f in faults}
+
+
+def test_a_track_wider_than_its_via_keeps_its_distance_where_the_via_ends() -> None:
+    """The track's round end stands out of the via, on the side to which the via leads."""
+    placement = small.crossing()
+    classes = tuple(dataclasses.replace(c, track_mm=c.via_mm + 0.2) for c in placement.classes)
+    rules = Rules.of(dataclasses.replace(placement, classes=classes))
+    grid = Grid.over(placement.outline, 0.15)
+    number = {n.name: i for i, n in enumerate(placement.nets, start=1)}
+    pads = tuple(p for component in placement.components for p in placed_pads(component))
+    owner = Obstacles(grid, rules, number).owners(placement, pads)
+    for c, kind in enumerate(rules.classes):
+        via = owner[c, 2]
+        for side in (0, 1):
+            track = owner[c, side]
+            lands = (via == 0) & (track != 0)
+            assert not lands.any() or kind.track_mm < kind.via_mm

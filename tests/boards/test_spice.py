@@ -64,7 +64,8 @@ def test_the_spread_over_tolerances_is_what_ngspice_finds(
     off = dataclasses.replace(
         design.electrical, strings=dataclasses.replace(strings, forward_v=forward_v)
     )
-    wiring = dataclasses.replace(design.wiring, supply_v=supply_v)
+    ohm = tuple(r * (1 - sign * strings.resistor_tolerance) for r in design.wiring.resistor_ohm)
+    wiring = dataclasses.replace(design.wiring, supply_v=supply_v, resistor_ohm=ohm)
     found = simulated(_netlist(design, "emitter", wiring, off), tmp_path)
     wanted = (strings.low_ma if sign < 0 else strings.high_ma)[0]
     assert found["i_ma"] == pytest.approx(wanted, rel=0.002)

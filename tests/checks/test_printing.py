@@ -131,8 +131,8 @@ def test_what_must_not_bend_is_printed_from_another_filament(config: Input, tmp_
     design = derive(_with(config, "TPU 98A"))
     told = design.slicing
     assert (told.backing.name, told.rigid.name) == ("TPU 98A", "PETG")
-    # The spool at hand is the backing's; the other's density is the catalogue's.
-    assert told.backing.density_g_ml == config.parameters.backing.density_g_ml
+    tpu = config.catalogue.filaments["TPU 98A"]
+    assert told.backing.density_g_ml == tpu.density_g_ml
     out = _written(design, tmp_path / "out")
     assert failing(out) == set()
     assert sorted(p.name for p in (out / "print").iterdir()) == [

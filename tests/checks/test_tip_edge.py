@@ -11,7 +11,7 @@ from damages import box, carve
 from lumitip_fab.checks import backing as checks
 from lumitip_fab.checks.walls import Exempt, walls
 from lumitip_fab.config.load import load
-from lumitip_fab.derive import derive
+from lumitip_fab.derive import derive, resolve
 from lumitip_fab.design import Design
 from lumitip_fab.design.encoding import design_text
 from lumitip_fab.design.frames import mount_to_sensor
@@ -38,7 +38,7 @@ def with_edge(design_dir: Path, tmp_path: Path) -> Callable[[float], tuple[Path,
     that thick, and the design."""
 
     def make(edge_mm: float) -> tuple[Path, Design]:
-        config = load(design_dir / "presets" / "published.toml")
+        config = resolve(load(design_dir / "presets" / "published.toml")).config
         tip = config.parameters.tip.model_copy(update={"edge_mm": edge_mm})
         design = derive(
             replace(config, parameters=config.parameters.model_copy(update={"tip": tip}))

@@ -50,7 +50,9 @@ def changed(design_dir: Path, tmp_path: Path) -> Callable[[Changes], Path]:
         entry = entry.replace("robotiq_2f85", "upright")
         grippers.write_text(text + entry.replace("tilt_deg = 1.5", "tilt_deg = 0.0"), "utf-8")
         text = printers.read_text(encoding="utf-8")
-        entry = text[text.index('["fdm 0.4"]') :].replace("250.0, 210.0, 210.0", "90.0, 90.0, 90.0")
+        entry = text[text.index('["fdm 0.4"]') : text.index('["fdm 0.25"]')].replace(
+            "250.0, 210.0, 210.0", "90.0, 90.0, 90.0"
+        )
         small, tiny = (entry.replace("fdm 0.4", name) for name in ("small", "tiny"))
         printers.write_text(text + small + tiny.replace("90.0", "60.0"), "utf-8")
         return _edited(folder / "presets/published.toml", changes)

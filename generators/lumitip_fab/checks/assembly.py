@@ -176,17 +176,19 @@ def _inward(finger: Finger) -> float:
 
 def _openings(scene: Scene, design: Design) -> Iterator[Measurement]:
     """Skin to skin as it is and as the file says, with the gripper open, and closed."""
-    stated = scene.extras.get("opening_mm", math.nan)
-    opening = _opening_mm(scene, design)
-    yield Measurement(
-        "assembly.opening",
-        _FILE,
-        opening,
-        stated - OPENING_MM,
-        stated + OPENING_MM,
-        "mm",
-        "skin to skin",
-    )
+    stated = scene.extras.get("opening_mm")
+    if stated is None:
+        yield unreadable("assembly.opening", _FILE, "states no opening_mm")
+    else:
+        yield Measurement(
+            "assembly.opening",
+            _FILE,
+            _opening_mm(scene, design),
+            stated - OPENING_MM,
+            stated + OPENING_MM,
+            "mm",
+            "skin to skin",
+        )
     widest = design.mount.stroke_mm
     for finger in design.fingers:
         skin = _reach_mm(scene.nodes[f"{finger.name}.film"], finger).max()

@@ -150,7 +150,7 @@ def test_a_missing_library_is_told_by_its_extra(
     monkeypatch.setitem(sys.modules, module, None)
     for name in ("ble", "ble_find", "ble_gatt", "serial"):
         monkeypatch.delitem(sys.modules, f"lumitip.links.{name}", raising=False)
-    with pytest.raises(MissingExtra, match=rf"pip install 'lumitip\[{extra}\]'") as caught:
+    with pytest.raises(MissingExtra, match=rf"pip install '\.\[{extra}\]'") as caught:
         Fingertip.open(url, layout)
     assert caught.value.extra == extra
 

@@ -213,7 +213,7 @@ def test_no_arm_is_told_in_time() -> None:
 
 def test_without_ur_rtde_it_tells_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "rtde_control", None)
-    with pytest.raises(MissingExtra, match=r"lumitip\[ur\]"):
+    with pytest.raises(MissingExtra, match=r"'\.\[ur\]'"):
         URArm("127.0.0.77", MOUNT)
 
 

@@ -128,5 +128,5 @@ def test_without_rerun_it_is_said_what_to_install(monkeypatch: pytest.MonkeyPatc
         return real(name, *rest, **more)
 
     monkeypatch.setattr(builtins, "__import__", without)
-    with pytest.raises(MissingExtra, match=r"lumitip\[rerun\]"):
+    with pytest.raises(MissingExtra, match=r"'\.\[rerun\]'"):
         RerunSink()

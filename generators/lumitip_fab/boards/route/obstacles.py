@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from lumitip_fab.boards.footprints import PlacedPad
 from lumitip_fab.boards.model import SIDES, Placement, fiducial_margin_mm
 from lumitip_fab.boards.route.kernels import BLOCKED, Bytes, Ints
-from lumitip_fab.boards.route.rules import MARGIN_MM, PAD_TO_VIA_MM, Grid, Rules
+from lumitip_fab.boards.route.rules import MARGIN_MM, PAD_TO_VIA_MM, Grid, Rules, round_via_mm
 from lumitip_fab.design import Box
 from lumitip_fab.errors import BuildError
 
@@ -29,7 +29,7 @@ class Obstacles:
         grid, rules = self.grid, self.rules
         owner = np.zeros((len(rules.classes), 3, grid.height, grid.width), dtype=np.int16)
         for c, kind in enumerate(rules.classes):
-            for p, size in ((0, kind.track_mm), (1, kind.track_mm), (2, kind.via_mm)):
+            for p, size in ((0, kind.track_mm), (1, kind.track_mm), (2, round_via_mm(kind))):
                 self._edge(placement, owner[c, p], size / 2)
                 self._keep_outs(placement, owner[c, p], size / 2)
             self._ground_only(placement, c, owner[c])
@@ -73,7 +73,7 @@ class Obstacles:
     def _ground_only(self, placement: Placement, c: int, owner: NDArray[np.int16]) -> None:
         kind, ground = self.rules.classes[c], self.number.get(placement.ground, BLOCKED)
         for box in placement.ground_only:
-            for p, size in ((SIDES.index("back"), kind.track_mm), (2, kind.via_mm)):
+            for p, size in ((SIDES.index("back"), kind.track_mm), (2, round_via_mm(kind))):
                 keep = size / 2 + kind.clearance_mm + MARGIN_MM
                 where = self.grid.near(*box.centre_mm, max(box.width_mm, box.length_mm) / 2 + keep)
                 x, y = self.grid.offsets(where, *box.centre_mm)
@@ -89,7 +89,7 @@ class Obstacles:
         clearance = max(clearance, fiducial_margin_mm(pad.component)) + MARGIN_MM
         layers = [SIDES.index(side) for side in pad.sides]
         for p in (*layers, 2):
-            size = (kind.via_mm if p == 2 else kind.track_mm) / 2
+            size = (round_via_mm(kind) if p == 2 else kind.track_mm) / 2
             self._claim(owner[p], pad, size + clearance, own)
         self._claim(owner[2], pad, kind.via_mm / 2 + PAD_TO_VIA_MM, BLOCKED)
 

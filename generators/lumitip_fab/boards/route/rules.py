@@ -88,11 +88,16 @@ class Rules:
         for a, own in enumerate(self.classes):
             for b, other in enumerate(self.classes):
                 for kind, width in enumerate((other.track_mm, other.via_mm)):
-                    size = own.via_mm if via else own.track_mm
+                    size = round_via_mm(own) if via else own.track_mm
                     reach = (size + width) / 2 + self.clearance_mm(a, b)
                     square = (reach / pitch_mm) ** 2
                     radii[a, b, kind] = square, _round_end(square)
         return radii
+
+
+def round_via_mm(kind: NetClass) -> float:
+    """Diameter of the copper round a via of a net class: its own, or the end of a wider track."""
+    return max(kind.via_mm, kind.track_mm)
 
 
 def _whole_um(length_mm: float) -> float:
