@@ -28,7 +28,7 @@ def _written(design: Design, out: Path) -> Path:
 
 
 @pytest.fixture(scope="module")
-def given(design_dir: Path) -> Input:
+def config(design_dir: Path) -> Input:
     return load(design_dir / "presets" / "published.toml")
 
 

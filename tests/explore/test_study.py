@@ -33,7 +33,7 @@ def silent(*_: int) -> None:
 
 
 @pytest.fixture(scope="module")
-def given(design_dir: Path) -> Input:
+def config(design_dir: Path) -> Input:
     return load(design_dir / "fingertip.toml")
 
 

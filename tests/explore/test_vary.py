@@ -11,7 +11,7 @@ from lumitip_fab.explore.vary import axes, changed, combinations, same_size
 
 
 @pytest.fixture(scope="module")
-def given(design_dir: Path) -> Input:
+def config(design_dir: Path) -> Input:
     return load(design_dir / "fingertip.toml")
 
 
