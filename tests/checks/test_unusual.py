@@ -95,7 +95,10 @@ def test_an_unusual_design_passes_every_check(
         ({"mould.tip_silicone_mm": 4.0}, "less than stack.silicone_mm = 1.5 is allowed"),
         ({"mould.taper_length_mm": 6.0}, "at most 3.9 is allowed"),
         ({"mould.wall_gap_mm": 0.4}, "at most 0.28 is allowed"),
-        ({"backing.pocket_clearance_mm": 0.3}, "at most 5.900 is allowed: there the pocket"),
+        (
+            {"backing.pocket_clearance_mm": 0.3, "tip.slant_start_mm": 6.0},
+            "at most 5.900 is allowed: there the pocket",
+        ),
         ({"printer.profile": "tiny"}, "60 x 60 x 60 mm cannot take a mould of 65 x 69 mm"),
         (
             THICK | {"stack.silicone_mm": 1.1, "mould.tip_silicone_mm": 0.2, "mask.flap_mm": 13.0},
