@@ -96,7 +96,11 @@ def test_an_unusual_design_passes_every_check(
         ({"mould.taper_length_mm": 6.0}, "at most 3.9 is allowed"),
         ({"mould.wall_gap_mm": 0.4}, "at most 0.28 is allowed"),
         (
-            {"backing.pocket_clearance_mm": 0.3, "tip.slant_start_mm": 6.0},
+            {
+                "backing.pocket_clearance_mm": 0.3,
+                "tip.slant_start_mm": 6.0,
+                "outline.tip_margin_mm": 6.2,
+            },
             "at most 5.900 is allowed: there the pocket",
         ),
         ({"printer.profile": "tiny"}, "60 x 60 x 60 mm cannot take a mould of 65 x 69 mm"),
