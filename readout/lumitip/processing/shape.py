@@ -27,6 +27,7 @@ _OTHER_RMS = 0.5
 _ROUND = 0.2
 _OPENING_DEG = (15.0, 165.0)
 _PARALLEL_DEG = 25.0
+_TIE = 1e-9  # relative, and mm: two exact fits differ by less, by chance
 
 
 def fit_others(
@@ -56,7 +57,9 @@ def fit_others(
 def shape_of(corner: Corner | None, cable: Cable | None) -> str:
     """`"edge"`, `"corner"` or `"cable"`, from the fits that apply."""
     if cable is not None and (
-        corner is None or cable.rms_mm <= corner.rms_mm or corner.opening_deg < _PARALLEL_DEG
+        corner is None
+        or cable.rms_mm <= corner.rms_mm * (1 + _TIE) + _TIE
+        or corner.opening_deg < _PARALLEL_DEG
     ):
         return "cable"
     return "edge" if corner is None else "corner"
