@@ -146,9 +146,9 @@ def test_copper_follows_what_is_written_of_it(file: Any) -> None:
         ("via_drill_mm = 0.5", "board.via_mm", 0.7),
         ("via_mm = 0.45", "board.via_mm", 0.45),
     ):
-        given = resolve(load(file(f"[board]\n{text}\n"))).given
-        assert given.value(field) == least
-        assert given.value("board.via_mm") - given.value("board.via_drill_mm") >= 0.2 - 1e-9
+        config = resolve(load(file(f"[board]\n{text}\n"))).config
+        assert config.value(field) == least
+        assert config.value("board.via_mm") - config.value("board.via_drill_mm") >= 0.2 - 1e-9
 
 
 def test_a_module_reads_as_many_cells_as_its_wires_allow(file: Any) -> None:
@@ -160,8 +160,14 @@ def test_a_module_reads_as_many_cells_as_its_wires_allow(file: Any) -> None:
 
 def test_too_many_cells_are_compared_with_the_largest_multiplexer(file: Any) -> None:
     with pytest.raises(RuleError, match="at most 128 cells"):
-        resolve(load(file("[grid]\ncolumns = [16, 17, 16, 17, 16, 17, 16, 17]\npitch_mm = 4.0\n"
-                          "[mask]\nhole_mm = 1.6\n")))  # fmt: skip
+        resolve(
+            load(
+                file(
+                    "[grid]\ncolumns = [16, 17, 16, 17, 16, 17, 16, 17]\npitch_mm = 4.0\n"
+                    "[mask]\nhole_mm = 1.6\n"
+                )
+            )
+        )
 
 
 def test_light_is_never_given_up_for_supply_or_heat(file: Any) -> None:
