@@ -5,6 +5,8 @@ added here and there, or not at all.
 """
 
 import ast
+import subprocess
+import sys
 from collections.abc import Iterator
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
@@ -149,6 +151,26 @@ def test_the_robots_side_never_imports_the_makers() -> None:
     for name, file in modules("lumitip").items():
         for found in imports(name, file, {}):
             assert found.partition(".")[0] not in {"lumitip_fab", "build123d", "pydantic", "pcbnew"}
+
+
+def test_the_robots_side_needs_numpy_alone() -> None:
+    code = (
+        "import sys; before = set(sys.modules); import lumitip, lumitip.layout, lumitip.grid; "
+        "print(*sorted({m.partition('.')[0] for m in set(sys.modules) - before}))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-I", "-c", code], capture_output=True, text=True, check=True
+    )
+    loaded = set(done.stdout.split())
+    assert loaded - sys.stdlib_module_names == {"lumitip", "numpy"}
+
+
+@pytest.mark.parametrize("place", ["derive", "mask", "boards", "firmware", "docs"])
+def test_what_needs_no_solids_never_imports_the_cad_kernel(place: str) -> None:
+    for name, file in modules("lumitip_fab").items():
+        if room(name) == place:
+            names = {found.partition(".")[0] for found in imports(name, file, {})}
+            assert not names & {"build123d", "OCP"}, name
 
 
 def test_an_arrow_that_may_not_be_is_found() -> None:

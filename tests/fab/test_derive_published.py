@@ -14,7 +14,6 @@ import numpy as np
 import pytest
 
 from lumitip.grid import hexagonal_grid
-from lumitip_fab.derive.finger.outline import half_width_at
 from lumitip_fab.design import Design
 from lumitip_fab.design.encoding import design_text
 
@@ -79,7 +78,7 @@ def test_the_outline_follows_the_published_silhouette(design: Design) -> None:
         (35, 23.88),
         (45, 23.96),
     ):
-        assert half_width_at(outline, outline.tip_y_mm - v_mm) == pytest.approx(half_mm, abs=0.8)
+        assert outline.half_width_at(outline.tip_y_mm - v_mm) == pytest.approx(half_mm, abs=0.8)
 
 
 def test_the_coupling_is_the_published_one(design: Design) -> None:
