@@ -24,7 +24,7 @@ FLAGS = {
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run a command; returns 0, 1 if a check or a build failed, 2 if the input is refused."""
+    """Run a command; returns 0, 1 if a check or a build failed, 2 if the input is rejected."""
     options = _parser().parse_args(arguments)
     missing = missing_libraries() if options.command in MODELLING else ()
     if missing:
@@ -51,7 +51,7 @@ def _run(options: argparse.Namespace) -> int:
     try:
         return int(command.run(options))
     except InputError as error:
-        _print_refusal(options, error)
+        _print_rejection(options, error)
         return REFUSED
     except (OutputError, BuildError) as error:
         if options.json:
@@ -60,8 +60,8 @@ def _run(options: argparse.Namespace) -> int:
         return FAILED if isinstance(error, BuildError) else REFUSED
 
 
-def _print_refusal(options: argparse.Namespace, error: "InputError") -> None:
-    """Print every fault, and the changes that mend those which the rules found."""
+def _print_rejection(options: argparse.Namespace, error: "InputError") -> None:
+    """Print every problem, and the changes that solve those which the rules found."""
     from lumitip_fab.derive.auto.remedies import remedy_lines
     from lumitip_fab.derive.auto.resolve import RuleError
 
@@ -82,8 +82,8 @@ def _parser() -> argparse.ArgumentParser:
     )
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
 
-    def command(name: str, told: str, *flags: str) -> argparse.ArgumentParser:
-        sub = commands.add_parser(name, help=told, description=told)
+    def command(name: str, summary: str, *flags: str) -> argparse.ArgumentParser:
+        sub = commands.add_parser(name, help=summary, description=summary)
         sub.set_defaults(quiet=False, json=False)
         exclusive = [flag for flag in flags if flag in {"quiet", "verbose"}]
         # argparse of Python 3.11 crashes on the usage line of an empty group.
@@ -93,61 +93,60 @@ def _parser() -> argparse.ArgumentParser:
             where.add_argument(f"--{flag}", action="store_true", help=FLAGS[flag])
         return sub
 
-    def with_file(sub: argparse.ArgumentParser) -> None:
+    def add_file(sub: argparse.ArgumentParser) -> None:
         sub.add_argument("file", type=Path, metavar="FILE", help="the parameter file")
 
-    def with_out(sub: argparse.ArgumentParser) -> None:
+    def add_out(sub: argparse.ArgumentParser) -> None:
         sub.add_argument("--out", type=Path, required=True, metavar="DIR", help="output folder")
 
     sub = command("init", "Copy the design folder (parameters, presets, parts) to DIR.", "quiet")
     sub.add_argument("directory", type=Path, metavar="DIR", help="a new or empty folder")
-    told = "Build FILE into DIR; only what changed is made again."
-    sub = command("build", told, "quiet", "verbose", "json")
-    with_file(sub)
-    with_out(sub)
-    told = "Re-read the files in DIR and prove that they fit. Builds nothing."
-    sub = command("check", told, "quiet", "verbose", "json")
-    with_out(sub)
+    summary = "Build FILE into DIR; only what changed is built again."
+    sub = command("build", summary, "quiet", "verbose", "json")
+    add_file(sub)
+    add_out(sub)
+    summary = "Re-read the files in DIR and prove that they fit. Builds nothing."
+    sub = command("check", summary, "quiet", "verbose", "json")
+    add_out(sub)
     sub.add_argument("--junit", type=Path, metavar="XML", help="also write a JUnit file")
     sub.add_argument("--report", type=Path, metavar="JSON", help="also write a JSON file")
-    told = "tell again what an earlier run with this file measured where nothing changed since"
-    sub.add_argument("--memory", type=Path, metavar="FILE", help=told)
+    text = "reuse the results that this file holds for unchanged files, and keep new ones in it"
+    sub.add_argument("--memory", type=Path, metavar="FILE", help=text)
     sub = command("spec", "Print the published Table I beside the figures of FILE.", "json")
-    with_file(sub)
-    told = "what FILE was built into: also tells what the fingers weigh"
-    sub.add_argument("--out", type=Path, metavar="DIR", help=told)
-    told = "Change FILE so that it is accepted: the smallest changes that work, each tried."
-    sub = command("fix", told, "quiet", "json")
-    with_file(sub)
-    told = "Print which detector each multiplexer input of a board reads, from its copper."
-    sub = command("channel-map", told, "json")
+    add_file(sub)
+    text = "the folder that FILE was built into: adds the masses of the printed parts"
+    sub.add_argument("--out", type=Path, metavar="DIR", help=text)
+    summary = "Change FILE so that it is accepted: the smallest changes that work, each tried."
+    sub = command("fix", summary, "quiet", "json")
+    add_file(sub)
+    summary = "Print which detector each multiplexer input of a board reads, from its copper."
+    sub = command("channel-map", summary, "json")
     sub.add_argument("file", type=Path, metavar="FILE", help="a .kicad_pcb of KiCad 5 to 10")
-    sub = command("watch", "Build FILE into DIR whenever it is saved, and say what changed.")
-    with_file(sub)
-    with_out(sub)
-    told = "Judge designs before any is built: accuracy, cells, cost and LED current, simulated."
-    sub = command("explore", told, "quiet", "json")
-    with_file(sub)
-    with_out(sub)
-    _study_options(sub)
-    told = "Slice every printed part in DIR with PrusaSlicer: time, filament and overhangs."
-    sub = command("slice", told, "quiet", "json")
-    with_out(sub)
-    told = "keep the G-code there; without it only the figures are kept"
-    sub.add_argument("--gcode", type=Path, metavar="FOLDER", help=told)
-    sub = command("schema", "Print the JSON Schema of parameter files, for editors.")
+    sub = command("watch", "Build FILE into DIR whenever it is saved, and print what changed.")
+    add_file(sub)
+    add_out(sub)
+    summary = "Compare designs before one is built: simulated accuracy, cells, cost, LED current."
+    sub = command("explore", summary, "quiet", "json")
+    add_file(sub)
+    add_out(sub)
+    _add_study_options(sub)
+    summary = "Slice every printed part in DIR with PrusaSlicer: time, filament and overhangs."
+    sub = command("slice", summary, "quiet", "json")
+    add_out(sub)
+    text = "write the G-code there; without this option only the figures are printed"
+    sub.add_argument("--gcode", type=Path, metavar="FOLDER", help=text)
+    command("schema", "Print the JSON Schema of parameter files, for editors.")
     return parser
 
 
-def _study_options(sub: argparse.ArgumentParser) -> None:
-    """What a design study varies, and where it is computed."""
-    told = "A:B, A:B:STEP, A,B,C or a TOML list [A, B]; give it again for further fields"
-    sub.add_argument("--vary", action="append", required=True, metavar="FIELD=SPEC", help=told)
-    told = "values of a range A:B (6)"
-    sub.add_argument("--points", type=int, default=6, metavar="N", help=told)
-    told = "count columns and rows anew for each pitch, so that the grid keeps its size"
-    sub.add_argument("--keep-size", action="store_true", help=told)
-    told = "of the poses and faults that are drawn for every design (0)"
-    sub.add_argument("--seed", type=int, default=0, metavar="N", help=told)
-    told = "evaluate on this Dask cluster (tcp://…) instead of on all cores of this machine"
-    sub.add_argument("--scheduler", metavar="ADDRESS", help=told)
+def _add_study_options(sub: argparse.ArgumentParser) -> None:
+    text = "A:B, A:B:STEP, A,B,C or a TOML list [A, B]; repeat the option for further fields"
+    sub.add_argument("--vary", action="append", required=True, metavar="FIELD=SPEC", help=text)
+    text = "number of values of a range A:B (default 6)"
+    sub.add_argument("--points", type=int, default=6, metavar="N", help=text)
+    text = "choose columns and rows for each pitch so that the grid keeps its size"
+    sub.add_argument("--keep-size", action="store_true", help=text)
+    text = "seed of the random poses and faults, the same for every design (default 0)"
+    sub.add_argument("--seed", type=int, default=0, metavar="N", help=text)
+    text = "run on this Dask cluster (tcp://…) instead of on the cores of this machine"
+    sub.add_argument("--scheduler", metavar="ADDRESS", help=text)

@@ -25,10 +25,10 @@ def build(file: Path, out: Path, progress: pipeline.Progress | None = None) -> p
     Args:
         file: the parameter file.
         out: the folder; made if missing.
-        progress: told of each task that ends.
+        progress: called at the end of each task.
 
     Raises:
-        InputError: if the input is refused; then nothing is written.
+        InputError: if the file is rejected; then nothing is written.
         BuildError: if an artefact could not be made.
         OutputError: if the folder cannot be written.
     """
@@ -62,12 +62,12 @@ def run(options: argparse.Namespace) -> int:
 
         report = build(options.file, options.out, progress)
     if options.json:
-        told = {
+        summary = {
             "design_hash": report.origin.design_hash,
             "parameters_hash": report.origin.parameters_hash,
             **{name: getattr(report, name) for name in ("written", "removed", "made", "kept")},
         }
-        print(json.dumps(told, indent=1))
+        print(json.dumps(summary, indent=1))
     elif not options.quiet:
         if options.verbose:
             for line in shortened(options.out, report.written):

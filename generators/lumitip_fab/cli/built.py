@@ -1,4 +1,4 @@
-"""Figures of a design that only its built files tell: what fingers, flange and holder weigh."""
+"""Masses of fingers, flange and holder, and the flange's strength, from the built files."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -43,13 +43,12 @@ def built_rows(out: Path, design: Design) -> tuple[Row, ...]:
 
 
 def _outside(out: Path, design: Design) -> Iterator[Row]:
-    """What the robot carries besides: printed parts and boards between it and the gripper, and on
-    the gripper's body."""
+    """Masses of the printed parts and boards beside the fingers: flange and holder."""
     carriers = {carrier.name: carrier for carrier in design.carriers}
-    told: list[tuple[str, str, tuple[str, ...]]] = [
+    parts: list[tuple[str, str, tuple[str, ...]]] = [
         (f"mass of the {h.name}", h.carrier, (f"holder/{h.name}.stl",)) for h in design.holders
     ]
-    told += [
+    parts += [
         (
             f"mass of the {f.name}",
             f.carrier,
@@ -57,7 +56,7 @@ def _outside(out: Path, design: Design) -> Iterator[Row]:
         )
         for f in design.flanges
     ]
-    for what, name, files in told:
+    for what, name, files in parts:
         box = carriers[name].box
         board_ml = box.width_mm * box.length_mm * design.stack.carrier_mm / 1000
         printed = [(_volume_ml(out / file), design.slicing.of(file)) for file in files]
@@ -73,7 +72,7 @@ def _outside(out: Path, design: Design) -> Iterator[Row]:
 
 
 def _strength(out: Path, design: Design) -> Iterator[Row]:
-    """What the flange bears."""
+    """Safety factors of the flange."""
     for flange in design.flanges:
         lower, upper = (
             solids.moved(solids.read_mesh(out / f"flange/{flange.name}_{part}.stl"), bed)

@@ -1,4 +1,4 @@
-"""`lumitip-fab channel-map`: which detector each multiplexer input of a board reads."""
+"""`lumitip-fab channel-map`: the detector of each multiplexer input, read from copper."""
 
 import argparse
 import json

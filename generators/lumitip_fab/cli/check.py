@@ -19,15 +19,15 @@ def run(options: argparse.Namespace) -> int:
         reports = [path for path in (options.junit, options.report) if path]
         memory = Memory(options.memory, options.out, reports) if options.memory else None
         outcome = run_checks(options.out, MODULES, memory, os.cpu_count() or 1)
-    told = json.dumps(as_json(outcome), indent=1) + "\n"
-    for path, data in ((options.junit, report.junit(outcome)), (options.report, told.encode())):
+    text = json.dumps(as_json(outcome), indent=1) + "\n"
+    for path, data in ((options.junit, report.junit(outcome)), (options.report, text.encode())):
         try:
             if path:
                 write_file(path, data)
         except OSError as error:
             raise OutputError(f"{path}: cannot be written: {error.strerror}") from error
     if options.json:
-        print(told, end="")
+        print(text, end="")
     elif options.verbose:
         report.print_measurements(outcome, OUT)
     elif not options.quiet:

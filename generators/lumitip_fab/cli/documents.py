@@ -1,4 +1,4 @@
-"""The files that say what was built: `layout.json`, `design.json` and `resolved.toml`."""
+"""The files that describe the design: `layout.json`, `design.json` and `resolved.toml`."""
 
 import tomli_w
 
@@ -26,8 +26,8 @@ def documents(config: Input, design: Design) -> tuple[Artefact, ...]:
 
 def _resolved(config: Input) -> str:
     parts = {field: encoded(e.model_dump()) for field, e in config.named_parts().items()}
-    told = {f"{NAMED[field]} for {field}": _without_none(entry) for field, entry in parts.items()}
-    listed = "".join(f"# {line}".rstrip() + "\n" for line in tomli_w.dumps(told).splitlines())
+    tables = {f"{NAMED[field]} for {field}": _without_none(entry) for field, entry in parts.items()}
+    listed = "".join(f"# {line}".rstrip() + "\n" for line in tomli_w.dumps(tables).splitlines())
     return _HEAD + tomli_w.dumps(encoded(config.parameters.model_dump())) + _PARTS + listed
 
 

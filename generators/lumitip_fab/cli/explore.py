@@ -1,4 +1,4 @@
-"""`lumitip-fab explore`: judge designs before any is built."""
+"""`lumitip-fab explore`: compare designs before one is built."""
 
 import argparse
 

@@ -47,11 +47,11 @@ def run(options: argparse.Namespace) -> int:
 
 
 def fix(file: Path) -> Plan:
-    """Change a refused parameter file so that it is accepted.
+    """Change a rejected parameter file so that it is accepted.
 
     Returns:
-        What was changed; no steps if the file was accepted as it was. A plan that is not complete
-        is not written.
+        The changes; none if the file was accepted as it was. A plan that is not complete is not
+        written.
 
     Raises:
         InputError: if the file cannot be read as parameters.

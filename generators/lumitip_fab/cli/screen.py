@@ -1,4 +1,4 @@
-"""Where commands print, and what they return."""
+"""Consoles and exit codes of the commands."""
 
 import sys
 

@@ -33,13 +33,13 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-def _print_table(told: "tuple[Row, ...]", console: Console) -> None:
+def _print_table(rows: "tuple[Row, ...]", console: Console) -> None:
     """The rows as a table."""
     table = Table(box=None, pad_edge=False, header_style="bold")
     for heading in ("", "published", "this design"):
         table.add_column(heading, no_wrap=True)
     table.add_column("why they differ", style="dim", overflow="fold")
-    for row in told:
+    for row in rows:
         differs = row.published != row.computed
         table.add_row(row.quantity, row.published, row.computed, row.reason if differs else "")
     console.print(table)

@@ -24,12 +24,13 @@ def run(options: argparse.Namespace) -> int:
 
 
 def watch(file: Path, out: Path, console: Console) -> None:
-    """Build now and after each change, until interrupted; a refused input is told and waited out.
+    """Build now and after each change, until interrupted. After a rejected file, wait for the next
+    change.
 
     Args:
         file: the parameter file.
         out: the output folder.
-        console: where to tell what changed and what was rebuilt.
+        console: prints the changed values and files.
     """
     known = _rebuilt(file, out, {}, console)
     console.print(f"watching {design_folder(file)}; stop with Ctrl-C")
@@ -60,9 +61,9 @@ def _rebuilt(file: Path, out: Path, known: dict[str, Any], console: Console) -> 
 
 def _values(file: Path) -> dict[str, Any]:
     config = load(file)
-    told = {"parameters": encoded(config.parameters.model_dump())}
-    told["parts"] = {f: encoded(e.model_dump()) for f, e in config.named_parts().items()}
-    return dict(flat(told))
+    parts = {f: encoded(e.model_dump()) for f, e in config.named_parts().items()}
+    parameters = encoded(config.parameters.model_dump())
+    return dict(flat({"parameters": parameters, "parts": parts}))
 
 
 def differences(before: dict[str, Any], after: dict[str, Any]) -> Iterator[str]:
