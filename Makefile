@@ -11,6 +11,8 @@ BENCHES = fab boards estimation learning real_frame processing protocol links tw
 CHECK = $(BIN)/lumitip-fab check --out $(OUT) --junit $(OUT)/checks.xml --report $(OUT)/checks.json
 
 .DEFAULT_GOAL := help
+# Where this is set, as in many containers, every process would compile all that it imports.
+unexport PYTHONDONTWRITEBYTECODE
 .PHONY: help outputs check readout watch test lint fuzz bench pictures schema golden clean
 
 help: ## show this list
