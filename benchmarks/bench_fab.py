@@ -80,11 +80,9 @@ def one_stage(stage: str, cells: int) -> None:
     from lumitip_fab.checks import layout as layout_check
     from lumitip_fab.checks import mask as mask_check
     from lumitip_fab.cli.documents import documents
-    from lumitip_fab.cli.steps import STEPS
     from lumitip_fab.config.load import load
     from lumitip_fab.derive import derive
     from lumitip_fab.mask.files import mask_files
-    from lumitip_fab.pipeline.graph import tasks
 
     with tempfile.TemporaryDirectory() as name:
         out = Path(name) / "out"
@@ -96,8 +94,7 @@ def one_stage(stage: str, cells: int) -> None:
         seconds = time.perf_counter() - begun
         if stage != "layout":
             begun = time.perf_counter()
-            masks = (t for t in tasks(STEPS, design) if t.step.name == "mask_files")
-            made = [a for t in masks for a in mask_files(**t.arguments)]
+            made = [a for finger in design.fingers for a in mask_files(design, finger)]
             seconds = time.perf_counter() - begun
             for artefact in (*made, *documents(config, design)):
                 path = out / artefact.path

@@ -58,8 +58,8 @@ def boards(
 def _write(design: Design, out: Path) -> None:
     (out / "design.json").write_text(design_text(design), encoding="utf-8")
     for task in tasks(STEPS, design):
-        make = {"board_files": board_files, "carrier_files": carrier_files}.get(task.step.name)
-        for artefact in make(**task.arguments) if make else ():
+        make = {"finger_board": board_files, "other_board": carrier_files}.get(task.step.name)
+        for artefact in make(design, *task.item) if make else ():
             path = out / artefact.path
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_bytes(artefact.data)

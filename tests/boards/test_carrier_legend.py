@@ -23,9 +23,7 @@ def _made(design: Design, name: str, supply: str) -> tuple[int, tuple[Artefact, 
         for device in carrier.devices
     )
     renamed = dataclasses.replace(carrier, devices=devices)
-    files = carrier_files(
-        design.title, design.reading, design.stack, renamed, design.rules, design.fabs
-    )
+    files = carrier_files(design, renamed)
     return sum(device.pins.count(supply) for device in devices), files
 
 

@@ -37,8 +37,8 @@ from lumitip_fab.design.encoding import read_design
 from lumitip_fab.cli.steps import STEPS
 from lumitip_fab.pipeline.graph import tasks
 for task in tasks(STEPS, read_design(Path(sys.argv[1]))):
-    if task.name == "board_files.emitter":
-        for made in board_files(**task.arguments):
+    if task.name == "finger_board.emitter":
+        for made in board_files(task.design, *task.item):
             print(hashlib.sha256(made.data).hexdigest(), made.path)
 """
 
@@ -59,8 +59,8 @@ def test_the_same_design_gives_the_same_bytes(boards: Callable[[str], Path]) -> 
 
 def test_a_board_file_is_moved_into_the_sensor_frame(designs: Designs) -> None:
     design = designs("small")
-    task = next(t for t in tasks(STEPS, design) if t.name == "board_files.emitter")
-    made = {a.path.rpartition("/")[2]: a for a in board_files(**task.arguments)}
+    task = next(t for t in tasks(STEPS, design) if t.name == "finger_board.emitter")
+    made = {a.path.rpartition("/")[2]: a for a in board_files(task.design, *task.item)}
     board = made["emitter.kicad_pcb"]
     at = re.search(rb"\(at (\S+) (\S+) \S+\)(?=[^@]{0,300}?reference \"D1\")", board.data)
     assert at
@@ -145,7 +145,7 @@ def test_text_is_read_from_its_own_side() -> None:
 def test_a_board_that_lost_a_track_is_never_written(
     designs: Designs, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    (task,) = (t for t in tasks(STEPS, designs("small")) if t.name == "board_files.emitter")
+    (task,) = (t for t in tasks(STEPS, designs("small")) if t.name == "finger_board.emitter")
     pour = files.pour
 
     def losing(*given: Any) -> tuple[Routing, tuple[Fill, ...]]:
@@ -156,4 +156,4 @@ def test_a_board_that_lost_a_track_is_never_written(
 
     monkeypatch.setattr(files, "pour", losing)
     with pytest.raises(BuildError, match=r"emitter board breaks its rules:\nnet S1_1 is in pieces"):
-        board_files(**task.arguments)
+        board_files(task.design, *task.item)

@@ -286,4 +286,4 @@ def test_parts_of_a_carrier_that_overlap_are_refused(designs: Callable[[str], De
     ]
     flange = dataclasses.replace(flange, devices=tuple(devices))
     with pytest.raises(BuildError, match=r"flange: .*\bL1\b.* overlap: choose smaller"):
-        carrier_files(d.title, d.reading, d.stack, flange, d.rules, d.fabs)
+        carrier_files(d, flange)

@@ -29,13 +29,8 @@ def _netlist(
 ) -> str:
     d, finger = design, getattr(design, name)
     (made,) = simulation(
-        d.title,
-        d.reading,
+        dataclasses.replace(d, wiring=wiring or d.wiring, electrical=electrical or d.electrical),
         finger,
-        wiring or d.wiring,
-        d.packages,
-        d.rules,
-        electrical or d.electrical,
     )
     assert made.path == f"boards/{name}/{name}.cir"
     return made.data.decode()

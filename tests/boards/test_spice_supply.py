@@ -73,5 +73,5 @@ def test_a_board_without_a_regulator_has_no_netlist(design_dir: Path) -> None:
     design = _derived(design_dir, "published")
     (flange,) = design.regulated
     assert [c.name for c in design.carriers if c != flange] == ["breakout"]
-    names = [task.name for task in tasks(STEPS, design) if task.step.name == "supply_simulation"]
+    names = [task.name for task in tasks(STEPS, design) if task.step.name == "supply_spice"]
     assert names == [f"supply_simulation.{flange.name}"]

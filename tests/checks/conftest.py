@@ -19,18 +19,7 @@ def masks(tmp_path_factory: pytest.TempPathFactory, design_dir: Path) -> Path:
     (out / "mask").mkdir()
     (out / "design.json").write_text(design_text(d), encoding="utf-8")
     for finger in d.fingers:
-        made = mask_files(
-            finger,
-            d.outline,
-            d.stack,
-            d.tip,
-            d.mould,
-            d.mount,
-            d.interfaces,
-            d.mask,
-            d.heat,
-            d.title,
-        )
+        made = mask_files(d, finger)
         for artefact in made:
             (out / artefact.path).write_bytes(artefact.data)
     return out

@@ -78,7 +78,7 @@ def test_a_wrong_derivation_of_the_flange(
     alter: Alter, derived: Callable[[Alter], Design], damaged: Path
 ) -> None:
     design = derived(alter)
-    _written(damaged, design, flange_files(design.flanges[0], design.stack))
+    _written(damaged, design, flange_files(design, design.flanges[0]))
     assert failing(damaged, "flange") == FLANGE[alter]
 
 
@@ -87,9 +87,7 @@ def test_a_wrong_derivation_of_the_coupling(
 ) -> None:
     """Of the gripper's pins nothing tells how wide they are: the bolts' holes alone are found."""
     d = derived(holes_narrow)
-    made = (
-        backing(f, d.stack, d.outline, d.tip, d.board, d.mount, d.interfaces) for f in d.fingers
-    )
+    made = (backing(d, f) for f in d.fingers)
     _written(damaged, d, tuple(artefact for files in made for artefact in files))
     assert failing(damaged, "backing") == {"bolt_clearance"}
 
@@ -99,5 +97,5 @@ def test_a_wrong_derivation_of_the_holder(
     alter: Alter, derived: Callable[[Alter], Design], damaged: Path
 ) -> None:
     design = derived(alter)
-    _written(damaged, design, holder_files(design.holders[0]))
+    _written(damaged, design, holder_files(design, design.holders[0]))
     assert failing(damaged, "holder") == HOLDER[alter]

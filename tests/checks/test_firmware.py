@@ -23,7 +23,7 @@ def sketches(tmp_path_factory: pytest.TempPathFactory, design_dir: Path) -> Path
     d = derive(load(design_dir / "presets" / "published.toml"))
     (out / "firmware").mkdir()
     (out / "design.json").write_text(design_text(d), encoding="utf-8")
-    for artefact in firmware_files(d.layout, d.wiring, d.controller, d.electrical, d.title):
+    for artefact in firmware_files(d):
         (out / artefact.path).write_bytes(artefact.data)
     return out
 
@@ -98,7 +98,7 @@ def test_a_missing_file_fails_exactly_these_checks(
 
 def test_a_sketch_of_another_design_fails(damaged_sketch: Path, design_dir: Path) -> None:
     d = derive(load(design_dir / "presets" / "asymmetric.toml"))
-    for artefact in firmware_files(d.layout, d.wiring, d.controller, d.electrical, d.title):
+    for artefact in firmware_files(d):
         (damaged_sketch / artefact.path).write_bytes(artefact.data)
     assert failing(damaged_sketch) == {"channels", "pins", "converter", "hash", "name"}
 
@@ -112,6 +112,6 @@ def test_every_firmware_check_is_failed_by_some_damage(sketches: Path) -> None:
 def test_every_preset_passes(preset: str, tmp_path: Path, design_dir: Path) -> None:
     d = derive(load(design_dir / "presets" / f"{preset}.toml"))
     (tmp_path / "firmware").mkdir()
-    for artefact in firmware_files(d.layout, d.wiring, d.controller, d.electrical, d.title):
+    for artefact in firmware_files(d):
         (tmp_path / artefact.path).write_bytes(artefact.data)
     assert [m for m in measure(tmp_path, d) if not m.passed] == []

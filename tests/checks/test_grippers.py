@@ -233,8 +233,8 @@ def test_a_fit_test_plate_passes_its_checks_and_prints_in_ten_minutes(
 ) -> None:
     file = held_by("bench_jaw", OWN[gripper]) if gripper in OWN else held_by(gripper)
     design = settled(derive(load(file)))
-    made = fit_plate_files(design.fit_plate, design.mount)
-    made += print_settings(design.title, design.printing, design.slicing, design.interfaces)
+    made = fit_plate_files(design)
+    made += print_settings(design)
     for artefact in made:
         (tmp_path / artefact.path).parent.mkdir(exist_ok=True)
         (tmp_path / artefact.path).write_bytes(artefact.data)

@@ -217,6 +217,6 @@ def test_arms_with_other_holes_pass_every_check(
     file.write_text(f'extends = "published.toml"\n[holder]\n{straps}\n')
     design = derive(load(file))
     (damaged / "design.json").write_text(design_text(design), encoding="utf-8")
-    for made in holder_files(design.holders[0]):
+    for made in holder_files(design, design.holders[0]):
         (damaged / made.path).write_bytes(made.data)
     assert failing(damaged, "holder") == set()

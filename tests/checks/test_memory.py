@@ -9,9 +9,10 @@ import pytest
 
 from lumitip_fab.checks import memory as remembering
 from lumitip_fab.checks import run
-from lumitip_fab.checks.memory import Memory, Watched, reads
+from lumitip_fab.checks.memory import Memory, reads
 from lumitip_fab.checks.run import MODULES, run_checks
 from lumitip_fab.design import Design
+from lumitip_fab.pipeline.dependencies import RecordedDesign
 
 
 @pytest.fixture
@@ -146,4 +147,4 @@ def test_every_check_is_remembered(outputs: Path, tmp_path: Path, measured: list
 def test_a_check_that_would_read_unnoted_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Design, "thinnest", lambda self: self.stack, raising=False)
     with pytest.raises(TypeError, match=r"Design\.thinnest is a method"):
-        _ = Watched(object.__new__(Design)).thinnest
+        _ = RecordedDesign(object.__new__(Design)).thinnest

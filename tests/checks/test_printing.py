@@ -20,9 +20,7 @@ from lumitip_fab.parts.settings import print_settings
 def _written(design: Design, out: Path) -> Path:
     (out / "print").mkdir(parents=True)
     (out / "design.json").write_text(design_text(design), encoding="utf-8")
-    for artefact in print_settings(
-        design.title, design.printing, design.slicing, design.interfaces
-    ):
+    for artefact in print_settings(design):
         (out / artefact.path).write_bytes(artefact.data)
     return out
 

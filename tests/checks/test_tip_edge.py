@@ -43,15 +43,7 @@ def with_edge(design_dir: Path, tmp_path: Path) -> Callable[[float], tuple[Path,
         design = derive(
             replace(config, parameters=config.parameters.model_copy(update={"tip": tip}))
         )
-        for made in backing(
-            design.receiver,
-            design.stack,
-            design.outline,
-            design.tip,
-            design.board,
-            design.mount,
-            design.interfaces,
-        ):
+        for made in backing(design, design.receiver):
             path = tmp_path / made.path
             path.parent.mkdir(exist_ok=True)
             path.write_bytes(made.data)

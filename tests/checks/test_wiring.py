@@ -145,7 +145,7 @@ def test_without_a_breakout_the_wires_go_to_the_pins(design_dir: Path, tmp_path:
         "A3": "A3",
     }
     assert emitter.length_mm > receiver.length_mm
-    svg = wiring_files(design.title, design.cabling)[2].data.decode()
+    svg = wiring_files(design)[2].data.decode()
     assert svg.count('class="wire"') == 11
 
 

@@ -40,11 +40,11 @@ def test_a_lost_or_edited_file_is_made_again(design_dir: Path, damaged: Path, lo
     else:
         victim.write_bytes(victim.read_bytes() + b"<!-- mine -->")
     report = build(design_dir / PUBLISHED, damaged)
-    assert report.made == ("mask_files.receiver",)
+    assert report.made == ("mask.receiver",)
     assert contents(damaged) == before
 
 
-@pytest.mark.parametrize("text", ["", "[]", '{"schema_version": 1, "files": 7, "keys": {}}'])
+@pytest.mark.parametrize("text", ["", "[]", '{"schema_version": 1, "files": 7, "tasks": {}}'])
 def test_a_spoilt_manifest_counts_as_none(tmp_path: Path, text: str) -> None:
     (tmp_path / "manifest.json").write_text(text)
     assert manifest.read(tmp_path) == manifest.Manifest({}, {})
@@ -60,7 +60,7 @@ def test_files_that_a_design_no_longer_has_are_removed(design_dir: Path, damaged
     files = {**before.files, "mask/old.pdf": entry, "../outside.txt": entry}
     outside = damaged.parent / "outside.txt"
     outside.write_text("not ours")
-    manifest.write(damaged, manifest.Manifest(files, before.keys))
+    manifest.write(damaged, manifest.Manifest(files, before.tasks))
     # Both strays count as a task's files, so that task is remade and then does not have them.
     report = build(design_dir / PUBLISHED, damaged)
     assert report.removed == ("mask/old.pdf",)

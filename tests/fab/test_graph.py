@@ -1,21 +1,28 @@
 """Which change makes which task run again."""
 
 import ast
+import json
 import shutil
 from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
 
 import pytest
 
+from lumitip_fab.cli.build import build
 from lumitip_fab.cli.steps import STEPS
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
+from lumitip_fab.errors import OutputError
 from lumitip_fab.pipeline import fingerprint as toolchain
-from lumitip_fab.pipeline.artefact import Made
-from lumitip_fab.pipeline.graph import EACH, argument_names, late_steps, late_task, tasks
+from lumitip_fab.pipeline import manifest
+from lumitip_fab.pipeline.artefact import Files, Made
+from lumitip_fab.pipeline.dependencies import Dependencies, FieldHashes, RecordedDesign
+from lumitip_fab.pipeline.graph import tasks
 
 PACKAGE = toolchain.PACKAGE
-EARLY = {step.name for step in STEPS if not step.reads}
+EARLY = tuple(step for step in STEPS if not step.late)
+LATE = tuple(step for step in STEPS if step.late)
 Keys = Callable[..., dict[str, str]]
 
 
@@ -29,8 +36,10 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.fixture
-def keys(design_dir: Path, tmp_path: Path) -> Keys:
-    """Key of every task of the published design with some lines added."""
+def keys(outputs: Path, design_dir: Path, tmp_path: Path) -> Keys:
+    """Key of every early task of the published design with some lines added, with what that task
+    read when the design was built."""
+    ran = manifest.read(outputs).tasks
 
     def of(text: str = "") -> dict[str, str]:
         file = tmp_path / "presets" / "changed.toml"
@@ -39,7 +48,12 @@ def keys(design_dir: Path, tmp_path: Path) -> Keys:
         (file.parent / "published.toml").write_bytes(published.read_bytes())
         (tmp_path / "parts").mkdir(exist_ok=True)
         file.write_text('extends = "published.toml"\n' + text)
-        return {task.name: task.key for task in tasks(STEPS, derive(load(file)))}
+        design = derive(load(file))
+        hashes = FieldHashes(design)
+        return {
+            task.name: ran[task.name].dependencies.key(hashes, {}, *task.fixed())
+            for task in tasks(EARLY, design)
+        }
 
     return of
 
@@ -50,11 +64,11 @@ def changed(before: dict[str, str], after: dict[str, str]) -> set[str]:
 
 
 def test_controller_name_touches_the_firmware_alone(keys: Keys) -> None:
-    assert changed(keys(), keys('[controller]\nname = "Other"\n')) == {"firmware_files"}
+    assert changed(keys(), keys('[controller]\nname = "Other"\n')) == {"firmware"}
 
 
 def test_mask_hole_touches_the_mask_and_what_reads_the_layout(keys: Keys) -> None:
-    assert changed(keys(), keys("[mask]\nhole_mm = 2.0\n")) == {"mask_files", "firmware_files"}
+    assert changed(keys(), keys("[mask]\nhole_mm = 2.0\n")) == {"mask", "firmware"}
 
 
 def test_waste_of_silicone_touches_the_mould_and_what_shares_its_figures(keys: Keys) -> None:
@@ -64,23 +78,25 @@ def test_waste_of_silicone_touches_the_mould_and_what_shares_its_figures(keys: K
 def test_pitch_touches_everything_of_the_fingers(keys: Keys) -> None:
     # What the slicer is told, what holds the controller, and wires know nothing of the cells.
     outside = {
-        "holder_files",
-        "flange_files",
-        "print_settings",
-        "supply_simulation",
-        "wiring_files",
+        "holder",
+        "flange",
+        "slicer",
+        "supply_spice",
+        "wiring",
     }
-    assert changed(keys(), keys("[grid]\npitch_mm = 6.1\n")) == EARLY - outside
+    assert (
+        changed(keys(), keys("[grid]\npitch_mm = 6.1\n")) == {step.name for step in EARLY} - outside
+    )
 
 
 def test_what_is_outside_touches_no_finger(keys: Keys) -> None:
     after = keys("[breakout]\nhole_spacing_mm = 34.0\n")
-    assert changed(keys(), after) == {"carrier_files", "holder_files"}
-    assert changed(keys(), keys("[holder]\nbody_mm = 76.0\n")) == {"holder_files"}
+    assert changed(keys(), after) == {"other_board", "holder"}
+    assert changed(keys(), keys("[holder]\nbody_mm = 76.0\n")) == {"holder"}
 
 
 def test_lengths_of_wires_touch_the_wiring_alone(keys: Keys) -> None:
-    assert changed(keys(), keys("[wiring]\nslack_mm = 60.0\n")) == {"wiring_files"}
+    assert changed(keys(), keys("[wiring]\nslack_mm = 60.0\n")) == {"wiring"}
 
 
 def test_the_sheet_that_schematics_grow_from_touches_the_boards(package: Path) -> None:
@@ -101,7 +117,7 @@ def code_hash(folder: str) -> str:
 
 def imported(file: Path) -> set[Path]:
     """The modules of the package that a module imports, itself and theirs too, but for what
-    `derive` imports: that reaches a generator as its arguments."""
+    `derive` imports: that reaches a generator in the design."""
     found, ahead = set(), [file]
     while ahead:
         module = ahead.pop()
@@ -121,7 +137,9 @@ def imported(file: Path) -> set[Path]:
 def test_whatever_a_generator_imports_makes_it_run_again(package: Path) -> None:
     steps = {step.room: set[Path]() for step in STEPS}
     for step in STEPS:
-        steps[step.room] |= imported(PACKAGE / step.room / f"{step.module}.py")
+        steps[step.room] |= imported(
+            PACKAGE.joinpath(*step.module.split(".")[1:]).with_suffix(".py")
+        )
     assert PACKAGE / "text.py" in steps["docs"]
     unseen = []
     for folder, files in steps.items():
@@ -135,34 +153,98 @@ def test_whatever_a_generator_imports_makes_it_run_again(package: Path) -> None:
     assert unseen == []
 
 
-def test_every_step_names_real_arguments(keys: Keys, design_dir: Path) -> None:
-    assert all(argument_names(step) for step in STEPS)
+def test_every_step_has_its_function_and_a_task_for_each_item(keys: Keys, design_dir: Path) -> None:
     design = derive(load(design_dir / "presets" / "published.toml"))
-    runs = 0
-    for step in (step for step in STEPS if not step.reads):
-        each = next((name for name in argument_names(step) if name in EACH), None)
-        runs += len(getattr(design, EACH[each])) if each else 1
-    assert len(keys()) == runs
+    for step in STEPS:
+        assert callable(getattr(import_module(step.module), step.function.split(".")[-1]))
+    items = [len(getattr(design, step.each)) if step.each else 1 for step in EARLY]
+    assert len(keys()) == sum(items)
+    assert len({step.name for step in STEPS}) == len(STEPS)
 
 
-def test_what_reads_others_files_runs_again_when_those_change(design_dir: Path) -> None:
-    design = derive(load(design_dir / "presets" / "published.toml"))
+def test_what_uses_files_of_others_runs_again_when_those_or_their_facts_change(
+    outputs: Path,
+) -> None:
+    built = manifest.read(outputs)
+    design = derive(load(outputs / "resolved.toml"))
+    hashes = FieldHashes(design)
+    late = {task.name: task for task in tasks(LATE, design)}
 
-    def late(files: dict[str, str]) -> dict[str, str]:
-        made = Made(Path(), files)
-        return {step.name: late_task(step, design, made).key for step in late_steps(STEPS)}
+    def all_keys(versions: dict[str, str]) -> dict[str, str]:
+        return {
+            name: built.tasks[name].dependencies.key(hashes, versions, *task.fixed())
+            for name, task in late.items()
+        }
 
-    before = late({"backing/emitter_backing.stl": "1", "mask/emitter_mask.svg": "1"})
-    assert "bill_of_materials" in before
-    other = late({"backing/emitter_backing.stl": "2", "mask/emitter_mask.svg": "1"})
-    assert changed(before, other) >= {"bill_of_materials"}
-    unread = late({"backing/emitter_backing.stl": "1", "mask/emitter_mask.svg": "2"})
-    assert before["bill_of_materials"] == unread["bill_of_materials"]
+    versions = {path: entry.version for path, entry in built.files.items()}
+    before = all_keys(versions)
+    assert changed(before, all_keys(versions | {"backing/emitter_backing.stl": "x"})) == {"bom"}
+    assert changed(before, all_keys(versions | {"flange/another.stl": "x"})) == {"bom"}
+    assert changed(before, all_keys(versions | {"assembly/assembly.glb": "x"})) == {"system"}
+    assert changed(before, all_keys(versions | {"mask/emitter_mask.svg": "x"})) == {"manual"}
+    entry = built.files["backing/emitter_backing.stl"]
+    heavier = manifest.Entry(**vars(entry) | {"facts": {"volume_mm3": 1.0}})
+    assert heavier.version != entry.version
 
 
-def test_a_step_reads_no_more_than_it_says(tmp_path: Path) -> None:
+def test_what_a_step_uses_of_others_is_recorded(tmp_path: Path) -> None:
     (tmp_path / "a.txt").write_text("a", encoding="utf-8")
-    made = Made(tmp_path, {"a.txt": "1", "b.csv": "2"}).only(("*.txt",))
-    assert made.text("a.txt") == "a"
-    with pytest.raises(LookupError, match=r"b.csv: was not made"):
-        made.read("b.csv")
+    made = {"a.txt": Made("1", {"count": 3}), "b.csv": Made("2", {})}
+    files = Files(tmp_path, made)
+    assert files.text("a.txt") == "a"
+    assert files.facts("a.txt") == {"count": 3}
+    assert files.like("*.csv") == ("b.csv",)
+    assert files.used == {"a.txt", "*.csv"}
+    with pytest.raises(LookupError, match=r"c.txt: no earlier step made it"):
+        files.read("c.txt")
+    assert Files.of(files).used == set()
+
+
+def test_what_is_read_of_a_design_is_recorded(design_dir: Path) -> None:
+    design = derive(load(design_dir / "presets" / "published.toml"))
+    seen = RecordedDesign(design)
+    assert seen.stack == design.stack
+    assert seen.fingers == design.fingers
+    assert seen.fields == {"stack", "fingers"}
+
+
+def test_a_key_follows_what_was_read_and_nothing_else(design_dir: Path) -> None:
+    design = derive(load(design_dir / "presets" / "published.toml"))
+    hashes, needs = FieldHashes(design), Dependencies(("stack",), ("a/*",))
+    before = needs.key(hashes, {"a/b": "1", "c": "1"}, "code")
+    assert needs.key(hashes, {"a/b": "1", "c": "2"}, "code") == before
+    assert needs.key(hashes, {"a/b": "2", "c": "1"}, "code") != before
+    assert needs.key(hashes, {"a/b": "1", "a/d": "1", "c": "1"}, "code") != before
+    assert needs.key(hashes, {"a/b": "1", "c": "1"}, "other code") != before
+    assert Dependencies(("tip",), ("a/*",)).key(hashes, {"a/b": "1", "c": "1"}, "code") != before
+
+
+def test_only_the_steps_asked_for_run(design_dir: Path, damaged: Path) -> None:
+    before = manifest.read(damaged)
+    file = design_dir / "presets" / "dense.toml"
+    masks = {"mask.emitter", "mask.receiver"}
+    report = build(file, damaged, only=["mask", "bom"])
+    assert set(report.made) == masks | {"bom"} and report.kept == ()
+    again = build(file, damaged, only=["mask"])
+    assert again.made == () and set(again.kept) == masks
+    after = manifest.read(damaged)
+    assert after.tasks.keys() == before.tasks.keys()
+    same = {path for path in before.files if after.files[path].sha256 == before.files[path].sha256}
+    assert before.files.keys() - same == {
+        *(path for path in before.files if path.startswith(("mask/", "bom"))),
+        *("design.json", "layout.json", "resolved.toml"),
+    }
+    assert after.origin == manifest.Origin()  # it is no whole build of either design
+    whole = json.loads((damaged / "design.json").read_text(encoding="utf-8"))
+    assert whole["title"]["name"] != "Lumitip published"
+    whole_again = build(design_dir / "presets" / "published.toml", damaged)
+    assert set(whole_again.made) == masks | {"bom"}
+    assert manifest.read(damaged) == before
+
+
+def test_a_step_that_is_not_there_is_named_with_those_that_are(
+    design_dir: Path, tmp_path: Path
+) -> None:
+    with pytest.raises(OutputError, match=r"no step is called colour; the steps are mask, slicer"):
+        build(design_dir / "fingertip.toml", tmp_path / "out", only=["mask", "colour"])
+    assert not (tmp_path / "out").exists()

@@ -50,24 +50,13 @@ def test_a_name_of_any_script_is_kept_and_has_a_form_for_every_medium(named: Des
 
 def test_drawings_of_the_mask_and_the_cables_show_it(named: Design) -> None:
     d = named
-    made = mask_files(
-        d.receiver,
-        d.outline,
-        d.stack,
-        d.tip,
-        d.mould,
-        d.mount,
-        d.interfaces,
-        d.mask,
-        d.heat,
-        d.title,
-    )
+    made = mask_files(d, d.receiver)
     pdf = next(a for a in made if a.path.endswith(".pdf"))
     page = pypdfium2.PdfDocument(io.BytesIO(pdf.data))[0]
     assert f"{NAMES[d.title.name][0]} A" in page.get_textpage().get_text_range()
     svg = next(a for a in made if a.path.endswith(".svg")).data.decode()
     assert f"<title>{d.title.name} A" in svg
-    wiring = {a.path: a.data.decode() for a in wiring_files(d.title, d.cabling)}
+    wiring = {a.path: a.data.decode() for a in wiring_files(d)}
     assert f"<title>{d.title.name} A: wiring</title>" in wiring["wiring/wiring.svg"]
     assert f">{NAMES[d.title.name][0]} A: wiring</text>" in wiring["wiring/wiring.svg"]
 
@@ -133,7 +122,7 @@ def test_a_bluetooth_name_is_measured_in_bytes() -> None:
 
 def test_a_netlist_is_in_ascii(named: Design) -> None:
     d = named
-    (made,) = simulation(d.title, d.reading, d.emitter, d.wiring, d.packages, d.rules, d.electrical)
+    (made,) = simulation(d, d.emitter)
     assert made.data.isascii()
     assert made.data.decode().startswith(f"* {NAMES[d.title.name][1]}, emitter")
 
@@ -144,7 +133,7 @@ def test_the_check_reads_a_bluetooth_name_as_a_compiler_does(
 ) -> None:
     d = derive(vary(inputs["published"], {"controller.name": name}))
     (tmp_path / "firmware").mkdir()
-    for made in firmware_files(d.layout, d.wiring, d.controller, d.electrical, d.title):
+    for made in firmware_files(d):
         (tmp_path / made.path).write_bytes(made.data)
 
     def passed() -> bool:

@@ -9,12 +9,13 @@ import pytest
 
 from lumitip_fab.design import Design, Title
 from lumitip_fab.design.encoding import read_design
-from lumitip_fab.docs.chapters import Facts, manual_text
+from lumitip_fab.docs.chapters import manual_text
 from lumitip_fab.docs.page import html_page, markdown
 from lumitip_fab.docs.wiring import wiring_files
 from lumitip_fab.mask.files import mask_files
 from lumitip_fab.parts.settings import print_settings
-from lumitip_fab.pipeline.artefact import Artefact, Made
+from lumitip_fab.pipeline import manifest
+from lumitip_fab.pipeline.artefact import Artefact, Files, Made
 from lumitip_fab.text import as_written
 
 NAMES = [
@@ -40,20 +41,9 @@ def _headings(text: str) -> list[str]:
 
 def _notes(design: Design) -> dict[str, str]:
     d = design
-    made: list[Artefact] = [*print_settings(d.title, d.printing, d.slicing, d.interfaces)]
-    made += wiring_files(d.title, d.cabling)
-    made += mask_files(
-        d.receiver,
-        d.outline,
-        d.stack,
-        d.tip,
-        d.mould,
-        d.mount,
-        d.interfaces,
-        d.mask,
-        d.heat,
-        d.title,
-    )
+    made: list[Artefact] = [*print_settings(d)]
+    made += wiring_files(d)
+    made += mask_files(d, d.receiver)
     return {a.path: a.data.decode() for a in made if a.path.endswith(".md")}
 
 
@@ -78,27 +68,11 @@ def test_a_name_with_an_underscore_stays_as_it_is_in_the_file_too() -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_the_manual_shows_a_name_as_it_is_written(name: str, outputs: Path) -> None:
-    d = read_design(outputs / "design.json")
-    files = {f.relative_to(outputs).as_posix(): "" for f in outputs.rglob("*") if f.is_file()}
-    made = Made(outputs, files)
-    facts = Facts(
-        Title(name, "A"),
-        d.printing,
-        d.mould,
-        d.mask,
-        d.heat,
-        d.mount,
-        d.wiring,
-        d.cabling,
-        d.electrical,
-        d.carriers,
-        d.holders,
-        d.interfaces,
-        d.flanges,
-        d.emitter,
-    )
-    text = manual_text(facts, made)
+    design = read_design(outputs / "design.json")
+    entries = manifest.read(outputs).files
+    files = Files(outputs, {p: Made(e.sha256, e.facts) for p, e in entries.items()})
+    text = manual_text(dataclasses.replace(design, title=Title(name, "A")), files)
     assert _headings(text)[0] == f"{name} A: build manual"
-    title = re.search("<title>(.*)</title>", html_page(name, text, made))
+    title = re.search("<title>(.*)</title>", html_page(name, text, files))
     assert title is not None
     assert unescape(title[1]) == name

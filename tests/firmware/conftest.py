@@ -58,9 +58,7 @@ def sketch(tmp_path_factory: pytest.TempPathFactory, design_dir: Path) -> Callab
             design = derive(load(design_dir / "presets" / f"{preset}.toml"))
             out = tmp_path_factory.mktemp(preset)
             (out / "firmware").mkdir()
-            made = firmware_files(
-                design.layout, design.wiring, design.controller, design.electrical, design.title
-            )
+            made = firmware_files(design)
             for artefact in made:
                 (out / artefact.path).write_bytes(artefact.data)
             (out / "layout.json").write_text(design.layout.to_json(), encoding="utf-8")

@@ -42,9 +42,7 @@ def sketch_for(design_dir: Path, tmp_path: Path) -> Callable[[str], Path]:
         file.write_text(base.replace("arduino_nano_33_ble", board), encoding="utf-8")
         design = derive(load(file))
         (tmp_path / "firmware").mkdir()
-        for artefact in firmware_files(
-            design.layout, design.wiring, design.controller, design.electrical, design.title
-        ):
+        for artefact in firmware_files(design):
             (tmp_path / artefact.path).write_bytes(artefact.data)
         return tmp_path / "firmware"
 

@@ -32,22 +32,7 @@ def preset(design_dir: Path) -> Callable[[str], Design]:
 
 def made(design: Design) -> list[Artefact]:
     d = design
-    return [
-        artefact
-        for finger in d.fingers
-        for artefact in mask_files(
-            finger,
-            d.outline,
-            d.stack,
-            d.tip,
-            d.mould,
-            d.mount,
-            d.interfaces,
-            d.mask,
-            d.heat,
-            d.title,
-        )
-    ]
+    return [artefact for finger in d.fingers for artefact in mask_files(d, finger)]
 
 
 def written(design: Design, out: Path) -> list[Artefact]:
@@ -165,9 +150,7 @@ def test_same_bytes_in_any_process(design_dir: Path) -> None:
         "from lumitip_fab.mask.files import mask_files\n"
         "d = derive(load(Path(sys.argv[1])))\n"
         "for f in d.fingers:\n"
-        "    shared = (d.outline, d.stack, d.tip, d.mould, d.mount, d.interfaces, d.mask,\n"
-        "              d.heat, d.title)\n"
-        "    for a in mask_files(f, *shared):\n"
+        "    for a in mask_files(d, f):\n"
         "        print(a.path, hashlib.sha256(a.data).hexdigest())\n"
     )
     file = design_dir / "presets" / "asymmetric.toml"

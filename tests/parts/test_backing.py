@@ -51,9 +51,7 @@ def test_other_designs_make_one_valid_solid(changed: Callable[[str], Design], te
 
 def test_files_carry_the_way_back_to_the_sensor_frame(design_dir: Path) -> None:
     design = derive(load(design_dir / "presets" / "published.toml"))
-    made = backing(
-        design.receiver, design.stack, design.outline, design.tip, design.board, design.mount, ()
-    )
+    made = backing(design, design.receiver)
     assert [a.path for a in made] == [
         f"backing/receiver_backing.{e}" for e in ("step", "stl", "3mf")
     ]

@@ -6,6 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 import trimesh
 from build123d import Box, Color, Compound, Cylinder, Pos, Solid
@@ -14,14 +15,15 @@ from lumitip_fab.parts import export
 
 MAKE = """
 import hashlib, os
+import numpy as np
 from build123d import Box, Color, Compound, Cylinder, Pos
 from lumitip_fab.parts import export
 part = Box(10, 8, 4) - Cylinder(2, 10)
 lid = Pos(0, 0, 5) * Box(10, 8, 1)
 part.label, lid.label, lid.color = "part", "lid", Color("red")
 both = Compound(label="both", children=[part, lid])
-for data in (export.stl(part), export.three_mf(part, "part"), export.step(part, "part"),
-             export.step(both, "both"), export.step(both, "both")):
+files = export.part_files("a/part", part, np.eye(4))
+for data in (*(file.data for file in files), export.step(both, "both"), export.step(both, "both")):
     print(hashlib.sha256(data).hexdigest())
 """
 
@@ -58,16 +60,18 @@ def test_an_assembly_written_twice_is_the_same() -> None:
 
 
 def test_the_stl_is_closed_and_close_to_the_shape(part: Solid) -> None:
-    mesh = trimesh.load(io.BytesIO(export.stl(part)), file_type="stl")
+    _, stl, _ = export.part_files("a/part", part, np.eye(4))
+    mesh = trimesh.load(io.BytesIO(stl.data), file_type="stl")
     assert mesh.is_watertight
     assert mesh.volume == pytest.approx(part.volume, rel=1e-3)
+    assert stl.facts["volume_mm3"] == pytest.approx(mesh.volume, rel=1e-6)
 
 
 def test_the_package_opens_in_the_library_that_slicers_use(part: Solid, tmp_path: Path) -> None:
     from lib3mf import Lib3MF
 
     path = tmp_path / "part.3mf"
-    path.write_bytes(export.three_mf(part, 'a "part" & more'))
+    path.write_bytes(export.three_mf(export.mesh(part), 'a "part" & more'))
     wrapper = Lib3MF.Wrapper(str(Path(Lib3MF.__file__).parent / "lib3mf"))
     model = wrapper.CreateModel()
     reader = model.QueryReader("3mf")

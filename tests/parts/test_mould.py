@@ -34,7 +34,7 @@ def design(design_dir: Path) -> Design:
 
 def test_the_same_design_gives_the_same_files_in_any_process(outputs: Path) -> None:
     built = read_design(outputs / "design.json")
-    made = mould.mould_files(built.receiver, built.stack, built.outline, built.board, built.mould)
+    made = mould.mould_files(built, built.receiver)
     assert {a.path for a in made} == {
         "mould/receiver_mould.step",
         "mould/receiver_mould.stl",
@@ -97,7 +97,7 @@ def test_the_film_lies_on_the_silicone(design: Design) -> None:
 
 def test_the_note_weighs_both_parts(design: Design) -> None:
     mixed = replace(design.mould, mix_ratio=(10.0, 1.0), density_g_ml=1.1, waste_fraction=0.5)
-    note = casting.casting_note("emitter", 4.0, design.stack, mixed)
+    note = casting.casting_note("emitter", casting.silicone_mix(4.0, mixed), design.stack, mixed)
     masses = [float(m) for m in re.findall(r"\*\*([0-9.]+) g\*\*", note)]
     assert masses == pytest.approx([6.0, 0.6])
     assert "6.00 mL" in note
@@ -124,7 +124,9 @@ def test_layers_divide_the_heights_that_count(
 def test_the_note_says_what_the_slicer_rounds(design: Design) -> None:
     rounded = replace(design.mould, layer_mm=0.2, off_layer_mm=0.093)
     whole, told = (
-        " ".join(casting.casting_note("emitter", 4.0, design.stack, m).split())
+        " ".join(
+            casting.casting_note("emitter", casting.silicone_mix(4.0, m), design.stack, m).split()
+        )
         for m in (design.mould, rounded)
     )
     assert "in layers of 0.15 mm. The floor at 2.4 mm and the stops at 3.9 mm" in whole

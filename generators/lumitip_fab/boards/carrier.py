@@ -23,13 +23,12 @@ from lumitip_fab.boards.verify import sound
 from lumitip_fab.design import (
     Box,
     Carrier,
+    Design,
     Device,
-    Fab,
     Land,
     Pattern,
     Reading,
     Rules,
-    Stack,
     Title,
 )
 from lumitip_fab.design.frames import board_page_to_carrier
@@ -157,31 +156,16 @@ GROUND = "GND"
 SIGNAL, SUPPLY = "signal", "supply"
 
 
-def carrier_files(
-    title: Title,
-    reading: Reading,
-    stack: Stack,
-    carrier: Carrier,
-    rules: Rules,
-    fabs: tuple[Fab, ...],
-) -> tuple[Artefact, ...]:
-    """The KiCad project, pictures of both sides, and a zip for each board house.
-
-    Args:
-        title: of the design.
-        reading: for the identity that the board carries.
-        stack: for the board's thickness.
-        carrier: what is on it, and where.
-        rules: what copper keeps.
-        fabs: where it may be ordered.
+def carrier_files(design: Design, carrier: Carrier) -> tuple[Artefact, ...]:
+    """Every file of a board outside the fingers: KiCad project, pictures of both sides, orders.
 
     Raises:
         BuildError: if two parts overlap, a net cannot be routed, a label has no room, or the
             finished copper breaks its rules.
     """
-    bare = _placement(title, reading, carrier, rules)
+    bare = _placement(design.title, design.reading, carrier, design.rules)
     refuse_overlaps(carrier.name, bare.components, "choose smaller parts")
-    placement = with_legend(bare, carrier, rules)
+    placement = with_legend(bare, carrier, design.rules)
     routing, fills = pour(placement, route(placement))
     model = sound(BoardModel(placement, routing, fills))
     sheet = carrier_sheet(placement, carrier)
@@ -189,9 +173,9 @@ def carrier_files(
         model,
         sheet,
         lambda fab: carrier_note(model.placement, carrier.title, fab),
-        stack.carrier_mm,
-        fabs,
-        board_page_to_carrier(stack),
+        design.stack.carrier_mm,
+        design.fabs,
+        board_page_to_carrier(design.stack),
         "carrier",
     )
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from lumitip_fab.boards.fab.order import assembly_note, layers_of, order_files
+from lumitip_fab.boards.fab.order import assembly_note, bom_rows, layers_of, order_files
 from lumitip_fab.boards.fab.picture import picture_files
 from lumitip_fab.boards.kicad.project import project_files
 from lumitip_fab.boards.kicad.schematic.files import schematic_files
@@ -12,40 +12,22 @@ from lumitip_fab.boards.pour import pour
 from lumitip_fab.boards.route import route
 from lumitip_fab.boards.teardrops import with_teardrops
 from lumitip_fab.boards.verify import sound
-from lumitip_fab.design import Board, Fab, Finger, Packages, Reading, Rules, Stack, Title, Wiring
+from lumitip_fab.design import Design, Fab, Finger
 from lumitip_fab.design.frames import Matrix, board_page_to_sensor
 from lumitip_fab.pipeline.artefact import Artefact
 
 
-def board_files(
-    title: Title,
-    reading: Reading,
-    stack: Stack,
-    board: Board,
-    finger: Finger,
-    wiring: Wiring,
-    packages: Packages,
-    rules: Rules,
-    fabs: tuple[Fab, ...],
-) -> tuple[Artefact, ...]:
-    """The KiCad project, pictures of both sides, and a zip for each board house.
-
-    Args:
-        title: of the design.
-        reading: which input reads each cell.
-        stack: for the board's thickness.
-        board: outline and holes.
-        finger: whose board it is.
-        wiring: strings and lines.
-        packages: the parts.
-        rules: what copper keeps.
-        fabs: where it may be ordered.
+def board_files(design: Design, finger: Finger) -> tuple[Artefact, ...]:
+    """Every file of a finger's board: KiCad project, pictures of both sides, orders.
 
     Raises:
         BuildError: if a part has no room, a net cannot be routed, or the finished copper breaks
             its rules.
     """
-    placement = place(title, reading, board, finger, wiring, packages, rules)
+    wiring, packages = design.wiring, design.packages
+    placement = place(
+        design.title, design.reading, design.board, finger, wiring, packages, design.rules
+    )
     routing = route(placement)
     if placement.flexible:
         routing = with_teardrops(placement, routing)
@@ -56,9 +38,9 @@ def board_files(
         model,
         sheet,
         lambda fab: assembly_note(model.placement, packages, fab),
-        stack.pcb_mm,
-        fabs,
-        board_page_to_sensor(stack),
+        design.stack.pcb_mm,
+        design.fabs,
+        board_page_to_sensor(design.stack),
         "sensor",
     )
 
@@ -95,8 +77,9 @@ def model_files(
         **picture_files(model),
         **orders,
     }
+    facts = {"parts": list(bom_rows(model.placement))}
     return tuple(
-        Artefact(f"boards/{name}/{path}", data, page, frame)
+        Artefact(f"boards/{name}/{path}", data, page, frame, facts)
         if path.endswith(".kicad_pcb")
         else Artefact(f"boards/{name}/{path}", data, frame="")
         for path, data in files.items()

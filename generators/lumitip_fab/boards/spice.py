@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from lumitip_fab.boards.circuit import GROUND, circuit
 from lumitip_fab.boards.model import Component
-from lumitip_fab.design import Carrier, Electrical, Finger, Packages, Reading, Rules, Title, Wiring
+from lumitip_fab.design import Carrier, Design, Electrical, Finger, Packages, Wiring
 from lumitip_fab.design.electrical import Regulated
 from lumitip_fab.pipeline.artefact import Artefact
 
@@ -15,31 +15,16 @@ _BEFORE_US, _CONSTANTS = 200, 25  # time before the change of channel; time cons
 Parts = tuple[Component, ...]
 
 
-def simulation(
-    title: Title,
-    reading: Reading,
-    finger: Finger,
-    wiring: Wiring,
-    packages: Packages,
-    rules: Rules,
-    electrical: Electrical,
-) -> tuple[Artefact, ...]:
-    """The netlist of a board: its first string, or its first multiplexer with two detectors.
-
-    Args:
-        title: of the design.
-        reading: which input reads each cell.
-        finger: whose board it is.
-        wiring: for the resistors' values.
-        packages: for the multiplexer's leads and the LED's terminals.
-        rules: of the circuit's copper.
-        electrical: what LEDs, detectors and line are.
-    """
-    parts = circuit(reading, finger, wiring, packages, rules).components
+def simulation(design: Design, finger: Finger) -> tuple[Artefact, ...]:
+    """The netlist of a finger's board: its first string, or its first multiplexer with two
+    detectors."""
+    wiring, packages = design.wiring, design.packages
+    parts = circuit(design.reading, finger, wiring, packages, design.rules).components
     body = _string if finger.name == "emitter" else _channel
+    title = design.title.on_boards().name
     lines = (
-        f"* {title.on_boards().name}, {finger.name}, design {reading.design_hash[:8]}",
-        *body(parts, wiring, packages, electrical),
+        f"* {title}, {finger.name}, design {design.reading.design_hash[:8]}",
+        *body(parts, wiring, packages, design.electrical),
         f".options temp={_TEMPERATURE_C} tnom={_TEMPERATURE_C} reltol=1e-5 vntol=1e-7",
         ".end",
     )
@@ -118,21 +103,14 @@ _SHARPNESS = 60  # of the comparator; its edges take about 1/60 of a period
 _DAMPING_OHM, _INTEGRAL_S = 0.6, 1e-4
 
 
-def supply_simulation(
-    title: Title, regulated: Carrier, electrical: Electrical
-) -> tuple[Artefact, ...]:
-    """The netlist of a carrier's regulator.
-
-    Args:
-        title: of the design.
-        regulated: the carrier, whose nets join coil, capacitors and regulator.
-        electrical: what they are.
-    """
-    (told,) = electrical.supplies
+def supply_simulation(design: Design, regulated: Carrier) -> tuple[Artefact, ...]:
+    """The netlist of a board's switching regulator."""
+    (supply,) = design.electrical.supplies
+    title = design.title.on_boards()
     lines = (
-        f"* {title.on_boards().name} {title.revision}, {regulated.name}: its regulator",
-        *_circuit(regulated, told),
-        *_measured(regulated, told),
+        f"* {title.name} {title.revision}, {regulated.name}: its regulator",
+        *_circuit(regulated, supply),
+        *_measured(regulated, supply),
         ".end",
     )
     path = f"boards/{regulated.name}/{regulated.name}.cir"

@@ -12,10 +12,11 @@ from fnmatch import fnmatch
 from pathlib import Path
 from types import ModuleType
 
-from lumitip_fab.checks.memory import Memory, Watched, reads
+from lumitip_fab.checks.memory import Memory, reads
 from lumitip_fab.checks.result import Measurement
 from lumitip_fab.design import Design
 from lumitip_fab.design.encoding import read_design
+from lumitip_fab.pipeline.dependencies import RecordedDesign
 
 MODULES = (
     "manifest",
@@ -41,8 +42,8 @@ MODULES = (
 )
 _LONG = frozenset({"orders", "board"})
 """Modules that take longer than another process takes to start."""
-_Told = tuple[tuple[Measurement, ...], list[str]]
-"""What a module measured, and the fields of the design that it read."""
+_Run = tuple[tuple[Measurement, ...], list[str]]
+"""Measurements of a module, and the fields of the design that it read."""
 logger = logging.getLogger(__name__)
 CRASH = "crash"
 """Second part of the name of the check that fails where a module stops with an exception."""
@@ -73,25 +74,25 @@ def run_checks(
     Args:
         out: the output folder.
         modules: the check modules to run.
-        memory: measurements of earlier runs, told again where nothing changed.
+        memory: measurements of earlier runs, used again where nothing changed.
         cores: how many modules measure at a time.
 
     Raises:
         OutputError: if there is no usable `design.json`.
     """
     design = read_design(out / "design.json")
-    told = {name: memory.recalled(name, design) if memory else None for name in modules}
-    anew = [name for name, known in told.items() if known is None]
+    found = {name: memory.recalled(name, design) if memory else None for name in modules}
+    anew = [name for name, known in found.items() if known is None]
     for name, (measured, fields) in _measured(out, design, anew, cores):
-        told[name] = measured
+        found[name] = measured
         if memory and not any(m.check == f"{name}.{CRASH}" for m in measured):
             memory.keep(name, measured, design, fields)
-    return Outcome(tuple(m for measured in told.values() for m in measured or ()))
+    return Outcome(tuple(m for measured in found.values() for m in measured or ()))
 
 
 def _measured(
     out: Path, design: Design, names: list[str], cores: int
-) -> Iterator[tuple[str, _Told]]:
+) -> Iterator[tuple[str, _Run]]:
     """Run modules, the long ones first; in one process if it would be done before others start."""
     if cores == 1 or len(_LONG & set(names)) < 2:
         yield from ((name, _measure(name, out, design)) for name in names)
@@ -108,16 +109,16 @@ def _measured(
             yield running[future], future.result()
 
 
-def _measure(name: str, out: Path, design: Design) -> _Told:
-    watched, module = Watched(design), _module(name)
+def _measure(name: str, out: Path, design: Design) -> _Run:
+    seen, module = RecordedDesign(design), _module(name)
     found: list[Measurement] = []
     try:
-        for measurement in module.measure(out, watched):
+        for measurement in module.measure(out, seen):
             found.append(measurement)  # what was measured before an exception counts
     except Exception as error:
         logger.exception("lumitip_fab.checks.%s stopped", name)
         found.append(_crash(name, error))
-    return tuple(found), sorted(watched.read)
+    return tuple(found), sorted(seen.fields)
 
 
 def _crash(name: str, error: Exception) -> Measurement:

@@ -22,6 +22,45 @@ FLAGS = {
     "verbose": "print everything: all files, or all measurements with their margins",
 }
 
+COMMANDS = {
+    "init": ("Copy the design folder (parameters, presets, parts) to DIR.", "quiet"),
+    "build": (
+        "Build FILE into DIR; only what changed is built again.",
+        "quiet",
+        "verbose",
+        "json",
+    ),
+    "check": (
+        "Re-read the files in DIR and prove that they fit. Builds nothing.",
+        "quiet",
+        "verbose",
+        "json",
+    ),
+    "spec": ("Print the published Table I beside the figures of FILE.", "json"),
+    "fix": (
+        "Change FILE so that it is accepted: the smallest changes that work, each tried.",
+        "quiet",
+        "json",
+    ),
+    "channel-map": (
+        "Print which detector each multiplexer input of a board reads, from its copper.",
+        "json",
+    ),
+    "watch": ("Build FILE into DIR whenever it is saved, and print what changed.",),
+    "explore": (
+        "Compare designs before one is built: simulated accuracy, cells, cost, LED current.",
+        "quiet",
+        "json",
+    ),
+    "slice": (
+        "Slice every printed part in DIR with PrusaSlicer: time, filament and overhangs.",
+        "quiet",
+        "json",
+    ),
+    "schema": ("Print the JSON Schema of parameter files, for editors.",),
+}
+"""Summary and flags of each command."""
+
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command; returns 0, 1 if a check or a build failed, 2 if the input is rejected."""
@@ -80,63 +119,50 @@ def _parser() -> argparse.ArgumentParser:
         description="From one parameter file to every part of an optical fingertip, and the "
         "proof that they fit.",
     )
-    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-
-    def command(name: str, summary: str, *flags: str) -> argparse.ArgumentParser:
-        sub = commands.add_parser(name, help=summary, description=summary)
-        sub.set_defaults(quiet=False, json=False)
-        exclusive = [flag for flag in flags if flag in {"quiet", "verbose"}]
-        # argparse of Python 3.11 crashes on the usage line of an empty group.
-        group = sub.add_mutually_exclusive_group() if exclusive else sub
-        for flag in flags:
-            where = group if flag in exclusive else sub
-            where.add_argument(f"--{flag}", action="store_true", help=FLAGS[flag])
-        return sub
-
-    def add_file(sub: argparse.ArgumentParser) -> None:
-        sub.add_argument("file", type=Path, metavar="FILE", help="the parameter file")
-
-    def add_out(sub: argparse.ArgumentParser) -> None:
-        sub.add_argument("--out", type=Path, required=True, metavar="DIR", help="output folder")
-
-    sub = command("init", "Copy the design folder (parameters, presets, parts) to DIR.", "quiet")
-    sub.add_argument("directory", type=Path, metavar="DIR", help="a new or empty folder")
-    summary = "Build FILE into DIR; only what changed is built again."
-    sub = command("build", summary, "quiet", "verbose", "json")
-    add_file(sub)
-    add_out(sub)
-    summary = "Re-read the files in DIR and prove that they fit. Builds nothing."
-    sub = command("check", summary, "quiet", "verbose", "json")
-    add_out(sub)
-    sub.add_argument("--junit", type=Path, metavar="XML", help="also write a JUnit file")
-    sub.add_argument("--report", type=Path, metavar="JSON", help="also write a JSON file")
-    text = "reuse the results that this file holds for unchanged files, and keep new ones in it"
-    sub.add_argument("--memory", type=Path, metavar="FILE", help=text)
-    sub = command("spec", "Print the published Table I beside the figures of FILE.", "json")
-    add_file(sub)
-    text = "the folder that FILE was built into: adds the masses of the printed parts"
-    sub.add_argument("--out", type=Path, metavar="DIR", help=text)
-    summary = "Change FILE so that it is accepted: the smallest changes that work, each tried."
-    sub = command("fix", summary, "quiet", "json")
-    add_file(sub)
-    summary = "Print which detector each multiplexer input of a board reads, from its copper."
-    sub = command("channel-map", summary, "json")
-    sub.add_argument("file", type=Path, metavar="FILE", help="a .kicad_pcb of KiCad 5 to 10")
-    sub = command("watch", "Build FILE into DIR whenever it is saved, and print what changed.")
-    add_file(sub)
-    add_out(sub)
-    summary = "Compare designs before one is built: simulated accuracy, cells, cost, LED current."
-    sub = command("explore", summary, "quiet", "json")
-    add_file(sub)
-    add_out(sub)
-    _add_study_options(sub)
-    summary = "Slice every printed part in DIR with PrusaSlicer: time, filament and overhangs."
-    sub = command("slice", summary, "quiet", "json")
-    add_out(sub)
-    text = "write the G-code there; without this option only the figures are printed"
-    sub.add_argument("--gcode", type=Path, metavar="FOLDER", help=text)
-    command("schema", "Print the JSON Schema of parameter files, for editors.")
+    group = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    commands = {
+        name: _command(group.add_parser(name, help=summary, description=summary), flags)
+        for name, (summary, *flags) in COMMANDS.items()
+    }
+    for name in ("build", "spec", "fix", "watch", "explore"):
+        commands[name].add_argument("file", type=Path, metavar="FILE", help="the parameter file")
+    for name in ("build", "check", "watch", "explore", "slice"):
+        commands[name].add_argument(
+            "--out", type=Path, required=True, metavar="DIR", help="output folder"
+        )
+    _add_options(commands)
+    _add_study_options(commands["explore"])
     return parser
+
+
+def _command(parser: argparse.ArgumentParser, flags: list[str]) -> argparse.ArgumentParser:
+    parser.set_defaults(quiet=False, json=False)
+    exclusive = [flag for flag in flags if flag in {"quiet", "verbose"}]
+    # argparse of Python 3.11 crashes on the usage line of an empty group.
+    group = parser.add_mutually_exclusive_group() if exclusive else parser
+    for flag in flags:
+        where = group if flag in exclusive else parser
+        where.add_argument(f"--{flag}", action="store_true", help=FLAGS[flag])
+    return parser
+
+
+def _add_options(commands: dict[str, argparse.ArgumentParser]) -> None:
+    add = commands["init"].add_argument
+    add("directory", type=Path, metavar="DIR", help="a new or empty folder")
+    add = commands["build"].add_argument
+    text = "build this step alone, such as backing; repeat the option for further steps"
+    add("--only", action="append", default=[], metavar="STEP", help=text)
+    add = commands["check"].add_argument
+    add("--junit", type=Path, metavar="XML", help="also write a JUnit file")
+    add("--report", type=Path, metavar="JSON", help="also write a JSON file")
+    text = "reuse the results that this file holds for unchanged files, and keep new ones in it"
+    add("--memory", type=Path, metavar="FILE", help=text)
+    text = "the folder that FILE was built into: adds the masses of the printed parts"
+    commands["spec"].add_argument("--out", type=Path, metavar="DIR", help=text)
+    text = "a .kicad_pcb of KiCad 5 to 10"
+    commands["channel-map"].add_argument("file", type=Path, metavar="FILE", help=text)
+    text = "write the G-code there; without this option only the figures are printed"
+    commands["slice"].add_argument("--gcode", type=Path, metavar="FOLDER", help=text)
 
 
 def _add_study_options(sub: argparse.ArgumentParser) -> None:

@@ -2,6 +2,7 @@
 
 import argparse
 import json
+from collections.abc import Collection
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,13 +20,19 @@ if TYPE_CHECKING:
 _FEW = 20  # files that are named one by one
 
 
-def build(file: Path, out: Path, progress: pipeline.Progress | None = None) -> pipeline.Report:
+def build(
+    file: Path,
+    out: Path,
+    progress: pipeline.Progress | None = None,
+    only: Collection[str] = (),
+) -> pipeline.Report:
     """Build a parameter file into an output folder.
 
     Args:
         file: the parameter file.
         out: the folder; made if missing.
         progress: called at the end of each task.
+        only: names of the steps to run; empty for all.
 
     Raises:
         InputError: if the file is rejected; then nothing is written.
@@ -42,7 +49,7 @@ def build(file: Path, out: Path, progress: pipeline.Progress | None = None) -> p
         found = resolve(load(file))
         return found.design, documents(found.config, found.design)
 
-    return pipeline.build(input_hash(file), resolved, out, STEPS, progress)
+    return pipeline.build(input_hash(file), resolved, out, STEPS, progress, only)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -60,7 +67,7 @@ def run(options: argparse.Namespace) -> int:
         def progress(name: str, done: int, total: int) -> None:
             bar.update(shown, description=name, completed=done, total=total)
 
-        report = build(options.file, options.out, progress)
+        report = build(options.file, options.out, progress, options.only)
     if options.json:
         summary = {
             "design_hash": report.origin.design_hash,

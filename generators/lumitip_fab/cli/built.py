@@ -3,29 +3,26 @@
 from collections.abc import Iterator
 from pathlib import Path
 
-import numpy as np
-
 from lumitip_fab.checks.flange_read import LEAST_SAFETY, strength
 from lumitip_fab.checks.readers import solids
-from lumitip_fab.checks.readers.stl import corners_mm
-from lumitip_fab.checks.readers.urdf import read_urdf
 from lumitip_fab.design import Design
 from lumitip_fab.design.frames import flange_beds
 from lumitip_fab.docs.outside import Row
 from lumitip_fab.errors import OutputError
 from lumitip_fab.pipeline import manifest
+from lumitip_fab.pipeline.manifest import Manifest
 
 
 def built_rows(out: Path, design: Design) -> tuple[Row, ...]:
-    """Masses from the robot's model in an output folder.
+    """Masses of what an output folder was built from.
 
     Raises:
-        OutputError: if the folder was built from other values, or the model cannot be read.
+        OutputError: if the folder was built from other values.
     """
-    if manifest.read(out).origin.parameters_hash != design.parameters_hash:
+    built = manifest.read(out)
+    if built.origin.parameters_hash != design.parameters_hash:
         raise OutputError(f"{out}: not built from these values: run lumitip-fab build first")
-    links = read_urdf(out / "robot/lumitip.urdf").links
-    weighed = [links[f"lumitip_{finger.name}"] for finger in design.fingers]
+    masses_g = built.files["robot/lumitip.urdf"].facts
     densities = design.densities
     why = (
         f"volumes of the solids, with {densities.backing_g_ml:g} g/mL for the backing, "
@@ -34,15 +31,15 @@ def built_rows(out: Path, design: Design) -> tuple[Row, ...]:
         "the film; screws and wires are not in it"
     )
     rows = [
-        Row(f"mass of the {finger.name} finger", "not stated", f"{link.mass_g:.1f} g", why)
-        for finger, link in zip(design.fingers, weighed, strict=True)
+        Row(f"mass of the {f.name} finger", "not stated", f"{masses_g[f'{f.name}_g']:.1f} g", why)
+        for f in design.fingers
     ]
-    payload = sum(link.mass_g for link in weighed)
+    payload = sum(masses_g[f"{f.name}_g"] for f in design.fingers)
     rows.append(Row("payload of both fingers", "not stated", f"{payload:.1f} g", why))
-    return (*rows, *_outside(out, design), *_strength(out, design))
+    return (*rows, *_outside(built, design), *_strength(out, design))
 
 
-def _outside(out: Path, design: Design) -> Iterator[Row]:
+def _outside(built: Manifest, design: Design) -> Iterator[Row]:
     """Masses of the printed parts and boards beside the fingers: flange and holder."""
     carriers = {carrier.name: carrier for carrier in design.carriers}
     parts: list[tuple[str, str, tuple[str, ...]]] = [
@@ -59,7 +56,7 @@ def _outside(out: Path, design: Design) -> Iterator[Row]:
     for what, name, files in parts:
         box = carriers[name].box
         board_ml = box.width_mm * box.length_mm * design.stack.carrier_mm / 1000
-        printed = [(_volume_ml(out / file), design.slicing.of(file)) for file in files]
+        printed = [(_volume_ml(built, file), design.slicing.of(file)) for file in files]
         grams = board_ml * design.densities.carrier_g_ml
         grams += sum(volume * filament.density_g_ml for volume, filament in printed)
         yield Row(
@@ -99,6 +96,5 @@ def _strength(out: Path, design: Design) -> Iterator[Row]:
         )
 
 
-def _volume_ml(path: Path) -> float:
-    a, b, c = corners_mm(path).reshape(-1, 3, 3).transpose(1, 0, 2)
-    return float(np.einsum("ij,ij->", a, np.cross(b, c))) / 6000
+def _volume_ml(built: Manifest, file: str) -> float:
+    return float(built.files[file].facts["volume_mm3"]) / 1000

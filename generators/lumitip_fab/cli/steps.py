@@ -1,4 +1,4 @@
-"""The steps of a build: every generator, what it is made with, and what it reads."""
+"""The steps of a build: every generator, and the tools that it is made with."""
 
 from lumitip_fab.pipeline.graph import Step
 
@@ -24,46 +24,25 @@ _COPPER = (
     "shapely",
 )
 _DRAWN = ("numpy", "shapely", "trimesh")
-_STACKED = ("assembly/assembly.glb", "flange/*.stl", "holder/*.stl")
-_LISTED = (
-    "backing/*.stl",
-    "interface/*.stl",
-    "mould/*.stl",
-    "holder/*.stl",
-    "flange/*.stl",
-    "fit/*.stl",
-    "mould/*_casting.md",
-    "boards/*/order/generic_*_bom.csv",
-)
-_SHOWN = (
-    "assembly/*.svg",
-    "bom.csv",
-    "boards/*/*_front.png",
-    "boards/*/*_back.png",
-    "mask/*_mask.svg",
-    "mask/*_wrapping.md",
-    "mould/*_casting.md",
-    "print/printing.md",
-    "wiring/*",
-)
 _SET = ("lxml", "markdown-it-py", "matplotlib", "pillow", "reportlab", "svglib")
 STEPS = (
-    Step("mask", "files", "mask_files", False, _INK),
-    Step("parts", "settings", "print_settings", False, ()),
-    Step("docs", "wiring", "wiring_files", False, ()),
-    Step("firmware", "files", "firmware_files", False, ("numpy",)),
-    Step("boards", "files", "board_files", True, _COPPER),
-    Step("boards", "carrier", "carrier_files", True, _COPPER),
-    Step("boards", "spice", "simulation", False, ()),
-    Step("boards", "spice", "supply_simulation", False, ()),
-    Step("scenes", "assembly", "assembly", True, _CAD),
-    Step("scenes", "robot", "robot_files", True, _CAD),
-    Step("parts", "mould", "mould_files", True, _CAD),
-    Step("parts", "backing", "backing", True, _CAD),
-    Step("parts", "holder", "holder_files", True, _CAD),
-    Step("parts", "flange", "flange_files", True, _CAD),
-    Step("parts", "fit_plate", "fit_plate_files", True, _CAD),
-    Step("scenes", "system", "system_files", False, _DRAWN, _STACKED),
-    Step("docs", "bill", "bill_of_materials", False, ("numpy",), _LISTED),
-    Step("docs", "manual", "manual_files", False, _SET, _SHOWN),
+    Step("mask", "mask.files.mask_files", "fingers", tools=_INK),
+    Step("slicer", "parts.settings.print_settings"),
+    Step("wiring", "docs.wiring.wiring_files"),
+    Step("firmware", "firmware.files.firmware_files", tools=("numpy",)),
+    Step("finger_board", "boards.files.board_files", "fingers", heavy=True, tools=_COPPER),
+    Step("other_board", "boards.carrier.carrier_files", "carriers", heavy=True, tools=_COPPER),
+    Step("finger_spice", "boards.spice.simulation", "fingers"),
+    Step("supply_spice", "boards.spice.supply_simulation", "regulated"),
+    Step("assembly", "scenes.assembly.assembly", heavy=True, tools=_CAD),
+    Step("robot", "scenes.robot.robot_files", heavy=True, tools=_CAD),
+    Step("mould", "parts.mould.mould_files", "fingers", heavy=True, tools=_CAD),
+    Step("backing", "parts.backing.backing", "fingers", heavy=True, tools=_CAD),
+    Step("holder", "parts.holder.holder_files", "holders", heavy=True, tools=_CAD),
+    Step("flange", "parts.flange.flange_files", "flanges", heavy=True, tools=_CAD),
+    Step("fit_plate", "parts.fit_plate.fit_plate_files", heavy=True, tools=_CAD),
+    Step("system", "scenes.system.system_files", late=True, tools=_DRAWN),
+    Step("bom", "docs.bill.bill_of_materials", late=True, tools=("numpy",)),
+    Step("manual", "docs.manual.manual_files", late=True, tools=_SET),
 )
+"""In this order. `tools`: distributions whose version may change the step's bytes."""

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from lumitip_fab.design.shape import Box
+
 Pairs = tuple[tuple[str, str], ...]
 
 
@@ -80,3 +82,12 @@ class Purchase:
     film_sheet: float | None
     """Of A4."""
     wire_m: float
+
+    def part_each(self, part: str) -> float | None:
+        """Price of a part by its order number; none if it is not known."""
+        return next((price.each for price in self.parts if price.of(part)), None)
+
+    def bare_board_each(self, box: Box) -> float:
+        """Price of a bare board of this size, to the cent."""
+        cm2 = box.width_mm * box.length_mm / 100
+        return round(self.board_each + cm2 * self.board_per_cm2, 2)

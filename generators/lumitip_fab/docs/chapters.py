@@ -1,27 +1,11 @@
 """What the manual says, in Markdown: its own chapters, and the notes that lie beside the parts."""
 
-import csv
-import io
 import re
-from dataclasses import dataclass
+from typing import Any
 
-from lumitip_fab.design import (
-    Cabling,
-    Carrier,
-    Electrical,
-    Finger,
-    Flange,
-    HeatStep,
-    Holder,
-    Interface,
-    Mask,
-    Mould,
-    Mount,
-    Printing,
-    Title,
-    Wiring,
-)
-from lumitip_fab.pipeline.artefact import Made
+from lumitip_fab.design import Design, Flange, HeatStep
+from lumitip_fab.docs.bill import amount, money
+from lumitip_fab.pipeline.artefact import Files
 from lumitip_fab.text import as_written
 
 WARM_UP_MIN = 5
@@ -31,48 +15,28 @@ WEAR_GRASPS = 100
 _HEADING = re.compile(r"^(#+) ", re.MULTILINE)
 
 
-@dataclass(frozen=True)
-class Facts:
-    """Of the design, what the manual's own chapters tell."""
-
-    title: Title
-    printing: Printing
-    mould: Mould
-    mask: Mask
-    heat: tuple[HeatStep, ...]
-    mount: Mount
-    wiring: Wiring
-    cabling: Cabling
-    electrical: Electrical
-    carriers: tuple[Carrier, ...]
-    holders: tuple[Holder, ...]
-    interfaces: tuple[Interface, ...]
-    flanges: tuple[Flange, ...]
-    emitter: Finger
-
-
-def manual_text(facts: Facts, made: Made) -> str:
+def manual_text(design: Design, files: Files) -> str:
     """The whole manual. An image stands alone in its paragraph; its path is below the outputs."""
     chapters = (
-        _front(facts),
-        _bought(made),
-        _printed(made),
-        _boards(facts, made),
-        _wired(facts, made),
-        _cast(made),
-        _wrapped(facts, made),
-        _mounted(facts),
-        _run(facts),
+        _front(design),
+        _bought(files),
+        _printed(files),
+        _boards(design, files),
+        _wired(design, files),
+        _cast(files),
+        _wrapped(design, files),
+        _mounted(design),
+        _run(design),
         _kept(),
     )
     return "\n\n".join(chapter.strip() for chapter in chapters) + "\n"
 
 
-def _front(facts: Facts) -> str:
-    mould, mask, printing = facts.mould, facts.mask, facts.printing
-    lit_ma = sum(facts.wiring.current_ma)
-    fixed = "tie the boards on" if facts.interfaces else "glue the boards in"
-    return f"""# {as_written(facts.title.name)} {facts.title.revision}: build manual
+def _front(design: Design) -> str:
+    mould, mask, printing = design.mould, design.mask, design.printing
+    lit_ma = sum(design.wiring.current_ma)
+    fixed = "tie the boards on" if design.interfaces else "glue the boards in"
+    return f"""# {as_written(design.title.name)} {design.title.revision}: build manual
 
 Made from the design, with the drawings of the files beside it. File names are below the folder of
 outputs. Read a chapter to its end before you begin with it.
@@ -89,11 +53,11 @@ outputs. Read a chapter to its end before you begin with it.
 | curing at {mould.cure_c:g} °C | {mould.cure_h:g} h |
 | film | {mask.film} |
 | creasing the film, off the finger | {mask.soften_c:g} °C |
-| supply of the LEDs | {facts.wiring.supply_v:g} V |
+| supply of the LEDs | {design.wiring.supply_v:g} V |
 | current of the LEDs, nominal | {lit_ma:.1f} mA |
-| wires | {sum(len(cable.wires) for cable in facts.cabling.cables)} |
-| gripper | {facts.mount.title} |
-| bolts for each finger | {len(facts.mount.bolt_u_mm)} x {facts.mount.bolt} |
+| wires | {sum(len(cable.wires) for cable in design.cabling.cables)} |
+| gripper | {design.mount.title} |
+| bolts for each finger | {len(design.mount.bolt_u_mm)} x {design.mount.bolt} |
 | warm-up | {WARM_UP_MIN} min |
 
 The order of work: print, order and solder boards, solder the wires on, {fixed}, cast,
@@ -107,7 +71,7 @@ below what each of them bears.
 
 | step | what is heated | temperature | lowest limit |
 |---|---|---:|---:|
-{chr(10).join(map(_heated, facts.heat))}"""
+{chr(10).join(map(_heated, design.heat))}"""
 
 
 def _heated(step: HeatStep) -> str:
@@ -118,49 +82,49 @@ def _heated(step: HeatStep) -> str:
     )
 
 
-def _bought(made: Made) -> str:
-    rows = list(csv.DictReader(io.StringIO(made.text("bom.csv"))))
+def _bought(files: Files) -> str:
+    bill = files.facts("bom.csv")
     lines = "\n".join(
-        f"| {as_written(row['item'])} | {as_written(row['for'])} | {_how_much(row)} "
-        f"| {row['price']} |"
-        for row in rows[:-1]
+        f"| {as_written(line['item'])} | {as_written(line['where'])} | {_how_much(line)} "
+        f"| {money(line['price'])} |"
+        for line in bill["lines"]
     )
     return f"""## 1. Parts
 
-`bom.csv` has makers and order numbers too. Prices in {as_written(rows[-1]["for"])}.
+`bom.csv` has makers and order numbers too. Prices in {as_written(bill["prices"])}.
 
 | what | for | how much | price |
 |---|---|---:|---:|
 {lines}
-| all together | | | {rows[-1]["price"]} |"""
+| all together | | | {money(bill["total"])} |"""
 
 
-def _how_much(row: dict[str, str]) -> str:
-    """Pieces are counted; the unit of anything else is told."""
-    unit = {"piece": "", "sheet": " sheets"}.get(row["unit"], f" {row['unit']}")
-    return row["quantity"] + unit
+def _how_much(line: dict[str, Any]) -> str:
+    """Pieces are counted; anything else has its unit."""
+    unit = {"piece": "", "sheet": " sheets"}.get(line["unit"], f" {line['unit']}")
+    return amount(line["quantity"]) + unit
 
 
-def _printed(made: Made) -> str:
+def _printed(files: Files) -> str:
     return f"""## 2. Print
 
 Print `fit/fit_plate.3mf` first: it takes some ten minutes, and its reading is `printer.fit_mm`.
 Hold a board and the bolts against it, write the reading into the parameter file, build again, and
 print the rest.
 
-{_included(made.text("print/printing.md"))}"""
+{_included(files.text("print/printing.md"))}"""
 
 
-def _boards(facts: Facts, made: Made) -> str:
-    names = ("emitter", "receiver", *(carrier.name for carrier in facts.carriers))
-    behind = any(part.side == "back" for part in facts.emitter.parts)
+def _boards(design: Design, files: Files) -> str:
+    names = ("emitter", "receiver", *(carrier.name for carrier in design.carriers))
+    behind = any(part.side == "back" for part in design.emitter.parts)
     backs = ["emitter"] if behind else []
-    backs += [c.name for c in facts.carriers if any(d.side == "back" for d in c.devices)]
+    backs += [c.name for c in design.carriers if any(d.side == "back" for d in c.devices)]
     sides = [*((name, "front") for name in names), *((name, "back") for name in backs)]
     pictures = "\n".join(
         f"![The {name} board, {side}](boards/{name}/{name}_{side}.png)"
         for name, side in sides
-        if f"boards/{name}/{name}_{side}.png" in made.sha256
+        if files.like(f"boards/{name}/{name}_{side}.png")
     )
     last = ", then the string resistors on the back of the emitter" if behind else ""
     zips = "\n".join(f"- `boards/{name}/order/`: {name}" for name in names)
@@ -178,8 +142,8 @@ Each board has a zip for each board house, with Gerber and drill files, parts an
 {pictures}"""
 
 
-def _cast(made: Made) -> str:
-    notes = "\n\n".join(_included(made.text(p)) for p in made.like("mould/*_casting.md"))
+def _cast(files: Files) -> str:
+    notes = "\n\n".join(_included(files.text(p)) for p in files.like("mould/*_casting.md"))
     return f"""## 5. Cast
 
 The wires of chapter 4 are soldered before: they lie over the weir while the silicone cures.
@@ -187,52 +151,52 @@ The wires of chapter 4 are soldered before: they lie over the weir while the sil
 {notes}"""
 
 
-def _wrapped(facts: Facts, made: Made) -> str:
+def _wrapped(design: Design, files: Files) -> str:
     notes = "\n\n".join(
         f"![The {name} mask, as it is printed](mask/{name}_mask.svg)\n\n"
-        + _included(made.text(f"mask/{name}_wrapping.md"))
+        + _included(files.text(f"mask/{name}_wrapping.md"))
         for name in ("emitter", "receiver")
     )
     return f"""## 6. Print the film and wrap it
 
-The film is creased at {facts.mask.soften_c:g} °C, away from the finger, and wrapped cold, each
+The film is creased at {design.mask.soften_c:g} °C, away from the finger, and wrapped cold, each
 flap in the order of its number.
 
 {notes}"""
 
 
-def _wired(facts: Facts, made: Made) -> str:
+def _wired(design: Design, files: Files) -> str:
     return f"""## 4. Wire
 
 ![Wiring](wiring/wiring.svg)
 
-{_included(made.text("wiring/cables.md"))}
+{_included(files.text("wiring/cables.md"))}
 
-Measure {facts.wiring.supply_v:g} V and its polarity at the supply before the emitter is connected;
-the LEDs then draw about {sum(facts.wiring.current_ma):.1f} mA."""
+Measure {design.wiring.supply_v:g} V and its polarity at the supply before the emitter is connected;
+the LEDs then draw about {sum(design.wiring.current_ma):.1f} mA."""
 
 
-def _mounted(facts: Facts) -> str:
-    flanged = "".join(map(_flanged, facts.flanges))
+def _mounted(design: Design) -> str:
+    flanged = "".join(map(_flanged, design.flanges))
     return f"""## 7. Mount
 
-Screw each finger on ({len(facts.mount.bolt_u_mm)} x {facts.mount.bolt}); emitter and receiver
+Screw each finger on ({len(design.mount.bolt_u_mm)} x {design.mount.bolt}); emitter and receiver
 face each other. Then join the cables of chapter 4 to their other ends.
-{_held(facts)}{flanged}
+{_held(design)}{flanged}
 ![Robot, gripper and fingers, exploded](assembly/system.svg)
 
 Open and close the gripper slowly once: no wire may be drawn taut."""
 
 
-def _held(facts: Facts) -> str:
-    if facts.holders:
+def _held(design: Design) -> str:
+    if design.holders:
         return (
             "The controller's board goes into `holder/holder.3mf`, whose arms clip round the "
             "gripper.\n"
         )
-    if any(carrier.name == "breakout" for carrier in facts.carriers):
+    if any(carrier.name == "breakout" for carrier in design.carriers):
         return (
-            f"Fix the controller's board beside the gripper: the body of {facts.mount.title} "
+            f"Fix the controller's board beside the gripper: the body of {design.mount.title} "
             "is not round, so there is no holder for it (`holder.body_mm`).\n"
         )
     return ""
@@ -250,10 +214,10 @@ manual, or with a meter, that the coupling's contacts carry what the board's nam
 """
 
 
-def _run(facts: Facts) -> str:
+def _run(design: Design) -> str:
     return f"""## 8. Firmware, warm-up and calibration
 
-1. {_loading(facts)}
+1. {_loading(design)}
 2. Switch the LEDs on and wait {WARM_UP_MIN} minutes: the readings drift while the finger warms.
 3. `lumitip scan` finds the device by the `controller.name` of the parameter file. `lumitip doctor`
    with its address names dead, swapped and saturated cells.
@@ -262,10 +226,10 @@ def _run(facts: Facts) -> str:
 5. `lumitip view` shows the cells. Lay a card between the fingers: its edge must run where it is."""
 
 
-def _loading(facts: Facts) -> str:
+def _loading(design: Design) -> str:
     """The first step: a module has no bootloader yet."""
     upload = "open `firmware/firmware.ino` in the Arduino IDE and upload it"
-    if any(device.kind == "module" for c in facts.carriers for device in c.devices):
+    if any(device.kind == "module" for c in design.carriers for device in c.devices):
         return (
             "Load the bootloader over J7 of the flange's board, solder a USB cable to J6, then\n"
             f"   {upload}; `firmware/README.md` tells how."

@@ -7,7 +7,7 @@ from html import escape
 from markdown_it import MarkdownIt
 from markdown_it.token import Token
 
-from lumitip_fab.pipeline.artefact import Made
+from lumitip_fab.pipeline.artefact import Files
 
 _KINDS = {"svg": "image/svg+xml", "png": "image/png"}
 _STYLE = """\
@@ -34,19 +34,19 @@ def markdown() -> MarkdownIt:
     return MarkdownIt("commonmark", {"html": False}).enable("table")
 
 
-def html_page(name: str, text: str, made: Made) -> str:
+def html_page(name: str, text: str, files: Files) -> str:
     """The whole page.
 
     Args:
         name: its title.
         text: in Markdown.
-        made: for the pictures.
+        files: for the pictures.
     """
     reader = markdown()
 
     def image(_self: object, tokens: Sequence[Token], at: int, *_: object) -> str:
         path = str(tokens[at].attrs["src"])
-        data = b64encode(made.read(path)).decode()
+        data = b64encode(files.read(path)).decode()
         caption = escape(tokens[at].content)
         shown = "pair" if sum(token.type == "image" for token in tokens) > 1 else "alone"
         return (

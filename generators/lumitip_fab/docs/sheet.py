@@ -29,7 +29,7 @@ from reportlab.platypus import (
 from svglib.svglib import svg2rlg
 
 from lumitip_fab.docs.page import markdown
-from lumitip_fab.pipeline.artefact import Made
+from lumitip_fab.pipeline.artefact import Files
 from lumitip_fab.text import page_letters
 from lumitip_fab.typeface import BOLD, CODE, OF_HELVETICA, PLAIN, load_typeface
 
@@ -89,13 +89,13 @@ _BESIDE = TableStyle(
 )
 
 
-def pdf_sheets(name: str, text: str, made: Made) -> bytes:
+def pdf_sheets(name: str, text: str, files: Files) -> bytes:
     """The bytes of the PDF; the same text gives the same.
 
     Args:
         name: its title.
         text: in Markdown.
-        made: for the pictures.
+        files: for the pictures.
     """
     buffer = io.BytesIO()
     load_typeface()
@@ -121,7 +121,7 @@ def pdf_sheets(name: str, text: str, made: Made) -> bytes:
 
     tokens = markdown().parse(text)
     _set_letters(tokens)
-    document.build(list(_flowables(tokens, made)), onFirstPage=foot, onLaterPages=foot)
+    document.build(list(_flowables(tokens, files)), onFirstPage=foot, onLaterPages=foot)
     return buffer.getvalue()
 
 
@@ -132,7 +132,7 @@ def _set_letters(tokens: list[Token]) -> None:
         _set_letters(token.children or [])
 
 
-def _flowables(tokens: list[Token], made: Made) -> Iterator[Flowable]:
+def _flowables(tokens: list[Token], files: Files) -> Iterator[Flowable]:
     """The blocks of the text, one after the other."""
     numbers: list[int | None] = []
     rows: list[list[Paragraph]] = []
@@ -158,7 +158,7 @@ def _flowables(tokens: list[Token], made: Made) -> Iterator[Flowable]:
             elif numbers:
                 yield Paragraph(_inline(token), _ITEM, bulletText=_bullet(numbers))
             else:
-                yield from _paragraph(token, made)
+                yield from _paragraph(token, files)
 
 
 def _bullet(numbers: list[int | None]) -> str:
@@ -175,7 +175,7 @@ def _heading(level: int, token: Token) -> Iterator[Flowable]:
     yield Paragraph(_inline(token), _HEADS[min(level, 4)])
 
 
-def _paragraph(token: Token, made: Made) -> Iterator[Flowable]:
+def _paragraph(token: Token, files: Files) -> Iterator[Flowable]:
     children = token.children or []
     pictures = [child for child in children if child.type == "image"]
     if not pictures:
@@ -184,7 +184,7 @@ def _paragraph(token: Token, made: Made) -> Iterator[Flowable]:
     width, high = ((_WIDTH - _GAP) / 2, _PAIR_HIGH) if beside else (_WIDTH, _MOST_HIGH)
     shown = [
         [
-            _picture(str(child.attrs["src"]), made, width, high),
+            _picture(str(child.attrs["src"]), files, width, high),
             Paragraph(escape(child.content), _SMALL),
         ]
         for child in pictures
@@ -196,10 +196,10 @@ def _paragraph(token: Token, made: Made) -> Iterator[Flowable]:
         yield KeepTogether([*picture, Spacer(0, 6)])
 
 
-def _picture(path: str, made: Made, width: float, high: float) -> Flowable:
+def _picture(path: str, files: Files, width: float, high: float) -> Flowable:
     """A drawing stays a drawing, no larger than it is told; a picture of points stays one."""
     if path.endswith(".svg"):
-        drawing = svg2rlg(io.BytesIO(made.read(path)))
+        drawing = svg2rlg(io.BytesIO(files.read(path)))
         scale = min(1.0, width / drawing.width, high / drawing.height)
         drawing.scale(scale, scale)
         drawing.width, drawing.height = drawing.width * scale, drawing.height * scale
@@ -207,7 +207,7 @@ def _picture(path: str, made: Made, width: float, high: float) -> Flowable:
         drawing.initialFontName = PLAIN
         _letter(drawing)
         return drawing
-    seen = PIL.Image.open(io.BytesIO(made.read(path)))
+    seen = PIL.Image.open(io.BytesIO(files.read(path)))
     scale = min(width / seen.width, high / seen.height)
     wide, high = seen.width * scale, seen.height * scale
     # On the white of paper, and hardly finer than it is printed.

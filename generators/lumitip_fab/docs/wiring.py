@@ -3,7 +3,7 @@
 import csv
 import io
 
-from lumitip_fab.design import Cable, Cabling, Title, Wire
+from lumitip_fab.design import Cable, Cabling, Design, Title, Wire
 from lumitip_fab.design.cabling import named
 from lumitip_fab.docs.diagram import diagram
 from lumitip_fab.pipeline.artefact import Artefact
@@ -125,13 +125,9 @@ def _row(wire: Wire) -> str:
     )
 
 
-def wiring_files(title: Title, cabling: Cabling) -> tuple[Artefact, ...]:
-    """Everything that tells how to wire the fingers.
-
-    Args:
-        title: of the design.
-        cabling: every wire.
-    """
+def wiring_files(design: Design) -> tuple[Artefact, ...]:
+    """The list of cables as a table and as a note, and the diagram."""
+    title, cabling = design.title, design.cabling
     return (
         Artefact("wiring/cables.csv", cable_list(cabling).encode(), frame=""),
         Artefact("wiring/cables.md", wiring_note(title, cabling).encode(), frame=""),

@@ -10,7 +10,7 @@ from lumitip.layout import Layout
 from lumitip.protocol import bluetooth as legacy
 from lumitip.protocol import bluetooth as uuids
 from lumitip.protocol import packet
-from lumitip_fab.design import Controller, Title, Wiring
+from lumitip_fab.design import Controller, Design, Title, Wiring
 from lumitip_fab.design.electrical import Electrical
 from lumitip_fab.paths import firmware_sources
 from lumitip_fab.pipeline.artefact import Artefact
@@ -129,21 +129,13 @@ def _table(values: Iterable[int]) -> str:
     return "\n".join("    " + " ".join(told[i : i + 16]) for i in range(0, len(told), 16))
 
 
-def firmware_files(
-    layout: Layout, wiring: Wiring, controller: Controller, electrical: Electrical, title: Title
-) -> tuple[Artefact, ...]:
-    """The sketch folder, whose name and that of the sketch are the same, as Arduino asks.
-
-    Args:
-        layout: which cell hangs on which multiplexer and input.
-        wiring: pins of the controller.
-        controller: its name on the air, and its converter.
-        electrical: capacitance of the lines, which sets how long each input settles.
-        title: of the design.
-    """
-    made = {
-        "layout.h": layout_header(layout, wiring, controller, electrical, title).encode("ascii"),
+def firmware_files(design: Design) -> tuple[Artefact, ...]:
+    """The sketch folder, whose name and that of the sketch are the same, as Arduino asks."""
+    layout, controller, title = design.layout, design.controller, design.title
+    header = layout_header(layout, design.wiring, controller, design.electrical, title)
+    files = {
+        "layout.h": header.encode("ascii"),
         "protocol.h": protocol_header(layout, controller, title).encode("ascii"),
     }
-    made |= {source.name: source.read_bytes() for source in firmware_sources()}
-    return tuple(Artefact(f"firmware/{name}", made[name], frame="") for name in sorted(made))
+    files |= {source.name: source.read_bytes() for source in firmware_sources()}
+    return tuple(Artefact(f"firmware/{name}", files[name], frame="") for name in sorted(files))

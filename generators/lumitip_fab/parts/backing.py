@@ -6,9 +6,19 @@ from dataclasses import replace
 import numpy as np
 from build123d import Solid
 
-from lumitip_fab.design import Board, Box, Finger, Interface, Mount, Outline, Point, Stack, Tip
+from lumitip_fab.design import (
+    Board,
+    Box,
+    Design,
+    Finger,
+    Interface,
+    Mount,
+    Outline,
+    Point,
+    Stack,
+    Tip,
+)
 from lumitip_fab.design.frames import (
-    Matrix,
     backing_bed_to_sensor,
     mount_to_sensor,
     plate_back_to_sensor,
@@ -20,7 +30,6 @@ from lumitip_fab.parts.shapes import (
     cylinder,
     one_solid,
     outline_face,
-    placed,
     prism,
     side_prism,
 )
@@ -110,33 +119,19 @@ _FAR_MM = 100.0
 PIN_LEAD_MM = 0.25  # chamfer that leads the board onto a pin
 
 
-def backing(
-    finger: Finger,
-    stack: Stack,
-    outline: Outline,
-    tip: Tip,
-    board: Board,
-    mount: Mount,
-    interfaces: tuple[Interface, ...],
-) -> tuple[Artefact, ...]:
-    """The backing of one finger and, where it bends, the interface behind it: STEP in the sensor
-    frame, STL and 3MF as they lie on the bed."""
-    solid = backing_solid(finger, stack, outline, tip, board, mount, interfaces)
-    files = _files("backing", finger, solid, backing_bed_to_sensor(mount, stack))
-    for interface in interfaces:
-        solid = interface_solid(finger, stack, mount, interface)
-        files += _files("interface", finger, solid, mount_to_sensor(mount, stack))
-    return files
-
-
-def _files(kind: str, finger: Finger, solid: Solid, to_sensor: Matrix) -> tuple[Artefact, ...]:
-    printed = placed(solid, np.asarray(np.linalg.inv(to_sensor), dtype=np.float64))
-    name = f"{finger.name}_{kind}"
-    return (
-        Artefact(f"{kind}/{name}.step", export.step(solid, name)),
-        Artefact(f"{kind}/{name}.stl", export.stl(printed), to_sensor),
-        Artefact(f"{kind}/{name}.3mf", export.three_mf(printed, name), to_sensor),
+def backing(design: Design, finger: Finger) -> tuple[Artefact, ...]:
+    """The backing of one finger and, where it bends, the interface behind it."""
+    stack, mount = design.stack, design.mount
+    solid = backing_solid(
+        finger, stack, design.outline, design.tip, design.board, mount, design.interfaces
     )
+    path, bed = f"backing/{finger.name}_backing", backing_bed_to_sensor(mount, stack)
+    files = export.part_files(path, solid, bed)
+    for interface in design.interfaces:
+        solid = interface_solid(finger, stack, mount, interface)
+        path, bed = f"interface/{finger.name}_interface", mount_to_sensor(mount, stack)
+        files += export.part_files(path, solid, bed)
+    return files
 
 
 def backing_solid(

@@ -9,13 +9,17 @@ from typing import Any
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
+import trimesh
 from build123d import Shape, export_step
 from OCP.BRep import BRep_Tool
 from OCP.BRepMesh import BRepMesh_IncrementalMesh
 from OCP.TopAbs import TopAbs_REVERSED
 from OCP.TopLoc import TopLoc_Location
 
+from lumitip_fab.design.frames import Matrix
+from lumitip_fab.parts.shapes import placed
 from lumitip_fab.parts.surface import Mesh
+from lumitip_fab.pipeline.artefact import Artefact
 
 _USAGE = re.compile(r"NEXT_ASSEMBLY_USAGE_OCCURRENCE\('[^']*'([^;]*);")
 _BREAK = re.compile(r"\n\s*")
@@ -151,9 +155,37 @@ def mesh(shape: Shape, chord_mm: float = CHORD_MM) -> Mesh:
     return Mesh(welded, joined[distinct])
 
 
-def stl(shape: Shape, chord_mm: float = CHORD_MM) -> bytes:
-    """A binary STL of a shape."""
-    return mesh_stl(mesh(shape, chord_mm))
+def part_files(
+    path: str,
+    solid: Shape,
+    bed_to_frame: Matrix,
+    frame: str = "sensor",
+    chord_mm: float = CHORD_MM,
+) -> tuple[Artefact, ...]:
+    """STEP of a printed part in a frame, STL and 3MF as it lies on the bed, with its volume.
+
+    Args:
+        path: of the files, without their ending.
+        solid: the part in its frame.
+        bed_to_frame: from the bed to that frame (4x4, mm).
+        frame: name of the frame.
+        chord_mm: how far a triangle may lie off a curved face.
+    """
+    name = path.rpartition("/")[2]
+    in_frame = Artefact(f"{path}.step", step(solid, name), frame=frame)
+    surface = mesh(placed(solid, np.asarray(np.linalg.inv(bed_to_frame), np.float64)), chord_mm)
+    facts = {"volume_mm3": volume_mm3(surface)}
+    return (
+        in_frame,
+        Artefact(f"{path}.stl", mesh_stl(surface), bed_to_frame, frame, facts),
+        Artefact(f"{path}.3mf", three_mf(surface, name), bed_to_frame, frame),
+    )
+
+
+def volume_mm3(surface: Mesh) -> float:
+    """Volume inside a closed surface."""
+    solid = trimesh.Trimesh(surface.points_mm, surface.triangles, process=False)
+    return float(solid.volume)
 
 
 def mesh_stl(surface: Mesh) -> bytes:
@@ -168,15 +200,13 @@ def mesh_stl(surface: Mesh) -> bytes:
     return header + np.uint32(len(records)).tobytes() + records.tobytes()
 
 
-def three_mf(shape: Shape, name: str, chord_mm: float = CHORD_MM) -> bytes:
+def three_mf(surface: Mesh, name: str) -> bytes:
     """A 3MF package with one object.
 
     Args:
-        shape: what to print, in print orientation on z = 0.
+        surface: what to print, in print orientation on z = 0.
         name: what slicers call it.
-        chord_mm: how far a triangle may lie off a curved face.
     """
-    surface = mesh(shape, chord_mm)
     vertices = "\n".join(
         f'<vertex x="{x:.5f}" y="{y:.5f}" z="{z:.5f}"/>' for x, y, z in surface.points_mm.tolist()
     )

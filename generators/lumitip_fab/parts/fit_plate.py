@@ -3,7 +3,7 @@
 import numpy as np
 from build123d import Compound, Solid
 
-from lumitip_fab.design import Box, FitPlate, Fits, Mount
+from lumitip_fab.design import Box, Design, FitPlate, Fits, Mount
 from lumitip_fab.design.frames import translation
 from lumitip_fab.errors import BuildError
 from lumitip_fab.parts import export
@@ -16,14 +16,10 @@ from lumitip_fab.pipeline.artefact import Artefact
 NAME = "fit_plate"
 
 
-def fit_plate_files(fit_plate: FitPlate, mount: Mount) -> tuple[Artefact, ...]:
-    """STEP, STL and 3MF of the coupons, all as they lie on the bed."""
-    coupons = fit_plate_solids(fit_plate, mount)
-    return (
-        Artefact(f"fit/{NAME}.step", export.step(coupons, NAME), frame=""),
-        Artefact(f"fit/{NAME}.stl", export.stl(coupons), frame=""),
-        Artefact(f"fit/{NAME}.3mf", export.three_mf(coupons, NAME), frame=""),
-    )
+def fit_plate_files(design: Design) -> tuple[Artefact, ...]:
+    """The coupons as they lie on the bed."""
+    coupons = fit_plate_solids(design.fit_plate, design.mount)
+    return export.part_files(f"fit/{NAME}", coupons, np.eye(4), frame="")
 
 
 def fit_plate_solids(plate: FitPlate, mount: Mount) -> Compound:

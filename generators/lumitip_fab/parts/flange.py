@@ -1,37 +1,28 @@
 """The printed flange between coupling and gripper: a tray for its board, and a lid."""
 
-import numpy as np
 from build123d import Plane, Solid
 
-from lumitip_fab.design import Box, Flange, Point, Stack
-from lumitip_fab.design.frames import Matrix, flange_beds
+from lumitip_fab.design import Box, Design, Flange, Point, Stack
+from lumitip_fab.design.frames import flange_beds
 from lumitip_fab.errors import BuildError
 from lumitip_fab.parts import export
-from lumitip_fab.parts.shapes import box_solid, cylinder, placed
+from lumitip_fab.parts.shapes import box_solid, cylinder
 from lumitip_fab.pipeline.artefact import Artefact
 
 BEYOND_MM = 1.0  # how far a cutter reaches past what it cuts
 CORNER_MM = 0.5  # of windows, reliefs and openings
 
 
-def flange_files(flange: Flange, stack: Stack) -> tuple[Artefact, ...]:
-    """STEP in the frame of the flange; STL and 3MF on the bed."""
-    solids = {"lower": lower_solid(flange, stack), "upper": upper_solid(flange)}
+def flange_files(design: Design, flange: Flange) -> tuple[Artefact, ...]:
+    """Both parts of the flange."""
+    solids = {"lower": lower_solid(flange, design.stack), "upper": upper_solid(flange)}
     beds = flange_beds(flange)
     return tuple(
         artefact
         for part, solid in solids.items()
-        for artefact in _files(f"{flange.name}_{part}", solid, beds[part])
-    )
-
-
-def _files(name: str, solid: Solid, bed: Matrix) -> tuple[Artefact, ...]:
-    lying = placed(solid, np.asarray(np.linalg.inv(bed), dtype=np.float64))
-    path = f"flange/{name}"
-    return (
-        Artefact(f"{path}.step", export.step(solid, name), frame="flange"),
-        Artefact(f"{path}.stl", export.stl(lying), bed, "flange"),
-        Artefact(f"{path}.3mf", export.three_mf(lying, name), bed, "flange"),
+        for artefact in export.part_files(
+            f"flange/{flange.name}_{part}", solid, beds[part], "flange"
+        )
     )
 
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 from build123d import Edge, Face, Plane, Solid, Wire
 
-from lumitip_fab.design import Box, Holder, Point
+from lumitip_fab.design import Box, Design, Holder, Point
 from lumitip_fab.design.frames import Matrix, holder_bed_to_carrier
 from lumitip_fab.errors import BuildError
 from lumitip_fab.parts import export
@@ -17,17 +17,10 @@ _ALONG_Y = np.array([[1.0, 0, 0, 0], [0, 0, -1.0, 0], [0, 1.0, 0, 0], [0, 0, 0, 
 """From a section's frame (x, z, -y) to the carrier's."""
 
 
-def holder_files(holder: Holder) -> tuple[Artefact, ...]:
-    """STEP in its carrier's frame; STL and 3MF standing on the bed."""
-    solid = holder_solid(holder)
-    to_carrier = holder_bed_to_carrier(holder)
-    standing = placed(solid, np.asarray(np.linalg.inv(to_carrier), dtype=np.float64))
-    path = f"holder/{holder.name}"
-    return (
-        Artefact(f"{path}.step", export.step(solid, holder.name), frame="carrier"),
-        Artefact(f"{path}.stl", export.stl(standing), to_carrier, "carrier"),
-        Artefact(f"{path}.3mf", export.three_mf(standing, holder.name), to_carrier, "carrier"),
-    )
+def holder_files(_design: Design, holder: Holder) -> tuple[Artefact, ...]:
+    """The holder: STEP in its board's frame, STL and 3MF standing on the bed."""
+    solid, bed = holder_solid(holder), holder_bed_to_carrier(holder)
+    return export.part_files(f"holder/{holder.name}", solid, bed, "carrier")
 
 
 def holder_solid(holder: Holder) -> Solid:

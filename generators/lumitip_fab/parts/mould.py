@@ -1,17 +1,18 @@
 """The silicone mould of a finger, printed open side up, and the note for the person who pours."""
 
 import math
+from collections.abc import Mapping
 
 import numpy as np
 from build123d import Face, Location, Solid, Vector, Wire
 
-from lumitip_fab.design import Board, Box, Finger, Mould, Outline, Stack
+from lumitip_fab.design import Board, Box, Design, Finger, Mould, Outline, Stack
 from lumitip_fab.design.frames import mould_bed_to_sensor
 from lumitip_fab.design.making import LEDGE_MM
 from lumitip_fab.errors import BuildError
 from lumitip_fab.parts import export
 from lumitip_fab.parts.letters import letter_cutter
-from lumitip_fab.parts.shapes import box_face, box_solid, placed, side_prism
+from lumitip_fab.parts.shapes import box_face, box_solid, side_prism
 from lumitip_fab.parts.skin import (
     drafted_prism,
     offset_wire,
@@ -64,30 +65,37 @@ by {off_mm:.2f} mm, and the silicone is as much thicker or thinner: its thicknes
 `mould.wall_mm` and `stack.silicone_mm` that one layer of 0.05 mm or more divides."""
 
 
-def casting_note(finger: str, volume_ml: float, stack: Stack, mould: Mould) -> str:
+def silicone_mix(volume_ml: float, mould: Mould) -> dict[str, float]:
+    """How much silicone to mix for a finger, with what stays in the cup; masses as weighed."""
+    mix_ml = volume_ml * (1 + mould.waste_fraction)
+    a, b = mould.mix_ratio
+    mass_g = mix_ml * mould.density_g_ml
+    return {
+        "volume_ml": volume_ml,
+        "mix_ml": mix_ml,
+        "part_a_g": round(mass_g * a / (a + b), 2),
+        "part_b_g": round(mass_g * b / (a + b), 2),
+    }
+
+
+def casting_note(finger: str, mix: Mapping[str, float], stack: Stack, mould: Mould) -> str:
     """The note as Markdown.
 
     Args:
         finger: its name.
-        volume_ml: silicone that stays on it.
+        mix: silicone that stays on it, and what to mix.
         stack: for the height of the stops.
         mould: its layers, the silicone, and how much is wasted.
     """
-    mix_ml = volume_ml * (1 + mould.waste_fraction)
-    a, b = mould.mix_ratio
-    mass_g = mix_ml * mould.density_g_ml
     rim_mm = mould.wall_mm + stack.cover_mm
     return _NOTE.format(
         finger=finger,
         letter=finger[0].upper(),
         letter_on="the back of its block" if stack.sunk else "its back",
         board=_IN_POCKET if stack.sunk else _ON_PLATE,
-        volume_ml=volume_ml,
         waste=mould.waste_fraction,
-        mix_ml=mix_ml,
         silicone=mould.silicone,
-        part_a_g=mass_g * a / (a + b),
-        part_b_g=mass_g * b / (a + b),
+        **mix,
         cure_h=mould.cure_h,
         cure_c=mould.cure_c,
         layer_mm=mould.layer_mm,
@@ -108,26 +116,21 @@ GRIP_AT = 0.4  # of the finger's length from the gripper end
 BEYOND_MM = 1.0
 
 
-def mould_files(
-    finger: Finger,
-    stack: Stack,
-    outline: Outline,
-    board: Board,
-    mould: Mould,
-) -> tuple[Artefact, ...]:
-    """The mould of one finger: STEP in the sensor frame, STL and 3MF on the bed, and the note
-    for the person who pours."""
+def mould_files(design: Design, finger: Finger) -> tuple[Artefact, ...]:
+    """The mould of one finger, and the note for the person who pours."""
+    stack, outline, mould = design.stack, design.outline, design.mould
     solid = mould_solid(finger, stack, outline, mould)
-    to_sensor = mould_bed_to_sensor(stack, mould)
-    on_bed = placed(solid, np.asarray(np.linalg.inv(to_sensor), dtype=np.float64))
-    name = f"{finger.name}_mould"
-    volume_ml = cast_volume_ml(finger, stack, outline, board, mould)
-    note = casting_note(finger.name, volume_ml, stack, mould)
+    volume_ml = cast_volume_ml(finger, stack, outline, design.board, mould)
+    mix = silicone_mix(volume_ml, mould)
+    note = casting_note(finger.name, mix, stack, mould)
     return (
-        Artefact(f"mould/{name}.step", export.step(solid, name)),
-        Artefact(f"mould/{name}.stl", export.stl(on_bed, CHORD_MM), to_sensor),
-        Artefact(f"mould/{name}.3mf", export.three_mf(on_bed, name, CHORD_MM), to_sensor),
-        Artefact(f"mould/{finger.name}_casting.md", note.encode(), frame=""),
+        *export.part_files(
+            f"mould/{finger.name}_mould",
+            solid,
+            mould_bed_to_sensor(stack, mould),
+            chord_mm=CHORD_MM,
+        ),
+        Artefact(f"mould/{finger.name}_casting.md", note.encode(), frame="", facts=mix),
     )
 
 

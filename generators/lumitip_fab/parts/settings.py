@@ -1,6 +1,6 @@
 """Settings for PrusaSlicer, one file for each filament and layer, and which part takes which."""
 
-from lumitip_fab.design import Interface, Printing, Title
+from lumitip_fab.design import Design, Printing, Title
 from lumitip_fab.design.making import Filament, Slicing
 from lumitip_fab.pipeline.artefact import Artefact
 from lumitip_fab.text import as_written
@@ -20,20 +20,12 @@ _WIDTHS = (
 )
 
 
-def print_settings(
-    title: Title, printing: Printing, slicing: Slicing, interfaces: tuple[Interface, ...]
-) -> tuple[Artefact, ...]:
-    """`print/*.ini` and `print/printing.md`.
-
-    Args:
-        title: of the design.
-        printing: lines and bed.
-        slicing: filaments.
-        interfaces: what holds backings that bend; there are none of rigid ones.
-    """
-    made = {f.file: _settings(f, printing, slicing.nozzle_mm) for f in slicing.filaments}
-    made["print/printing.md"] = _note(title, printing, slicing, bool(interfaces))
-    return tuple(Artefact(path, made[path].encode(), frame="") for path in sorted(made))
+def print_settings(design: Design) -> tuple[Artefact, ...]:
+    """`print/*.ini` and `print/printing.md`."""
+    printing, slicing = design.printing, design.slicing
+    texts = {f.file: _settings(f, printing, slicing.nozzle_mm) for f in slicing.filaments}
+    texts["print/printing.md"] = _note(design.title, printing, slicing, bool(design.interfaces))
+    return tuple(Artefact(path, texts[path].encode(), frame="") for path in sorted(texts))
 
 
 def _settings(filament: Filament, printing: Printing, nozzle_mm: float) -> str:

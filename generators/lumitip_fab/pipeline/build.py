@@ -1,10 +1,9 @@
-"""Design to output folder: only what changed is made again, on all cores."""
+"""Design to output folder: only what changed is built again, on all cores."""
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
-from itertools import chain
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,9 +13,8 @@ from lumitip_fab.pipeline.fingerprint import remember, unchanged
 
 if TYPE_CHECKING:
     from lumitip_fab.design import Design
-    from lumitip_fab.pipeline.artefact import Artefact
+    from lumitip_fab.pipeline.artefact import Artefact, Files
     from lumitip_fab.pipeline.graph import Step, Task
-    from lumitip_fab.pipeline.workers import Batch
 
 
 try:
@@ -50,14 +48,14 @@ def locked(folder: Path) -> Iterator[None]:
 
 
 Progress = Callable[[str, int, int], None]
-"""Called with the name of what was just made, how many are done, and how many there are."""
+"""Called at the end of a task with its name, how many are done, and how many there are."""
 Resolve = Callable[[], "tuple[Design, tuple[Artefact, ...]]"]
 """Gives a design and its documents."""
 
 
 @dataclass(frozen=True)
 class Report:
-    """What a build did."""
+    """What a build changed."""
 
     origin: manifest.Origin
     """What was built."""
@@ -77,6 +75,7 @@ def build(
     out: Path,
     steps: "tuple[Step, ...]",
     progress: Progress | None = None,
+    only: Collection[str] = (),
 ) -> Report:
     """Build a design into an output folder.
 
@@ -85,24 +84,25 @@ def build(
         resolved: gives the design and its documents; not called if the folder is up to date.
         out: the folder; made if missing.
         steps: all steps, in their order.
-        progress: told of each task that ends.
+        progress: called at the end of each task.
+        only: names of the steps to run; files of the others stay as they are. Empty for all.
 
     Raises:
-        InputError: if the input is refused; then nothing is written.
+        InputError: if the input is rejected; then nothing is written.
         BuildError: if an artefact could not be made.
-        OutputError: if the folder cannot be written.
+        OutputError: if the folder cannot be written, or `only` names no step.
     """
+    _require_known(only, steps)
     before = unchanged(out, origin_hash)
     if before:
-        return Report(before.origin, (), (), (), tuple(before.keys))
+        return Report(before.origin, (), (), (), tuple(before.tasks))
     design, documents = resolved()
-    origin = manifest.Origin(design.layout.design_hash, design.parameters_hash)
     try:
         with locked(out):
-            report = _write(
-                out, origin, [("documents", documents)], design, steps, progress or _untold
-            )
-            remember(out, origin_hash)
+            run = _Run(out, design, progress or _silent)
+            report = run.all(documents, steps, only)
+            if not only:
+                remember(out, origin_hash)
             return report
     except OSError as error:
         # Of two names the second is the file's own; the first is what it was written under.
@@ -110,59 +110,97 @@ def build(
         raise OutputError(f"{at}: cannot be written: {error.strerror}") from error
 
 
-def _write(
-    out: Path,
-    origin: manifest.Origin,
-    ready: "list[Batch]",
-    design: "Design",
-    steps: "tuple[Step, ...]",
-    progress: Progress,
-) -> Report:
-    # Imported here: to see that nothing changed, none of it is needed.
-    from lumitip_fab.pipeline.artefact import Made
-    from lumitip_fab.pipeline.graph import late_steps, late_task, tasks
-
-    run = _Run(out, manifest.read(out), progress)
-    run.make(ready, tuple(tasks(steps, design)))
-    for step in late_steps(steps):
-        made = Made(out, {path: entry.sha256 for path, entry in run.files.items()})
-        run.make([], (late_task(step, design, made),))
-    removed = _remove(out, set(run.before.files) - set(run.files))
-    manifest.write(out, manifest.Manifest(run.files, run.keys, origin))
-    return Report(origin, tuple(sorted(run.written)), removed, tuple(run.ran), tuple(run.kept))
+def _require_known(only: Collection[str], steps: "tuple[Step, ...]") -> None:
+    names = [step.name for step in steps]
+    unknown = sorted(set(only) - set(names))
+    if unknown:
+        raise OutputError(
+            f"--only: no step is called {', '.join(unknown)}; the steps are {', '.join(names)}"
+        )
 
 
-@dataclass
 class _Run:
     """One build: what it has made so far."""
 
-    out: Path
-    before: manifest.Manifest
-    progress: Progress
-    files: dict[str, manifest.Entry] = field(default_factory=dict)
-    keys: dict[str, str] = field(default_factory=dict)
-    written: list[str] = field(default_factory=list)
-    ran: list[str] = field(default_factory=list)
-    kept: list[str] = field(default_factory=list)
-    done: int = 0
+    def __init__(self, out: Path, design: "Design", progress: Progress) -> None:
+        from lumitip_fab.pipeline.dependencies import FieldHashes
 
-    def make(self, ready: "list[Batch]", wanted: "tuple[Task, ...]") -> None:
-        """Run those tasks whose files are not there already, and write what is ready."""
-        from lumitip_fab.pipeline.workers import made
+        self.out, self.design, self.progress = out, design, progress
+        self.before = manifest.read(out)
+        self.hashes = FieldHashes(design)
+        self.files: dict[str, manifest.Entry] = {}
+        self.tasks: dict[str, manifest.Ran] = {}
+        self.written: list[str] = []
+        self.ran: list[str] = []
+        self.kept: list[str] = []
 
-        keys = {task.name: task.key for task in wanted}
-        kept = [name for name, key in keys.items() if self.before.whole(self.out, name, key)]
-        stale = [task for task in wanted if task.name not in kept]
-        self.files |= {path: e for path, e in self.before.files.items() if e.task in kept}
-        total = self.done + len(stale) + len(ready)
-        for name, artefacts in chain(ready, made(stale)):
-            for artefact in artefacts:
-                self._write(name, artefact)
-            self.done += 1
-            self.progress(name, self.done, total)
-        self.keys |= keys
-        self.kept += kept
-        self.ran += [task.name for task in stale]
+    def all(
+        self, documents: "tuple[Artefact, ...]", steps: "tuple[Step, ...]", only: Collection[str]
+    ) -> Report:
+        """Write the documents and what the steps make; remove what no step makes any more."""
+        # Imported here: to see that nothing changed, none of it is needed.
+        from lumitip_fab.pipeline.graph import tasks
+
+        asked = tuple(step for step in steps if not only or step.name in only)
+        if only:
+            self._keep_others({task.name for task in tasks(asked, self.design)})
+        for artefact in documents:
+            self._write("documents", artefact)
+        early = tuple(step for step in asked if not step.late)
+        self._make(tuple(tasks(early, self.design)))
+        for step in (step for step in asked if step.late):
+            self._make(tuple(tasks((step,), self.design)))
+        removed = _remove(self.out, set(self.before.files) - set(self.files))
+        origin = manifest.Origin()  # of files of several designs, none is the origin
+        if not only:
+            origin = manifest.Origin(self.design.layout.design_hash, self.design.parameters_hash)
+        manifest.write(self.out, manifest.Manifest(self.files, self.tasks, origin))
+        return Report(
+            origin, tuple(sorted(self.written)), removed, tuple(self.ran), tuple(self.kept)
+        )
+
+    def _keep_others(self, asked: set[str]) -> None:
+        """Files of tasks that are not asked for stay, with the keys that they were made by."""
+        others = self.before.tasks.keys() - asked
+        self.tasks |= {name: self.before.tasks[name] for name in sorted(others)}
+        self.files |= {p: e for p, e in self.before.files.items() if e.task in others}
+
+    def _make(self, wanted: "tuple[Task, ...]") -> None:
+        """Run those tasks whose files are not there already."""
+        from lumitip_fab.pipeline.workers import run_tasks
+
+        files = self._available()
+        versions = {path: entry.version for path, entry in self.files.items()}
+        stale = [task for task in wanted if not self._is_current(task, versions)]
+        for task in wanted:
+            if task not in stale:
+                self.kept.append(task.name)
+                self.tasks[task.name] = self.before.tasks[task.name]
+                mine = {p: e for p, e in self.before.files.items() if e.task == task.name}
+                self.files |= mine
+        fixed = {task.name: task.fixed() for task in stale}
+        total = len(self.ran) + len(stale)
+        for result in run_tasks(stale, files):
+            for artefact in result.artefacts:
+                self._write(result.task, artefact)
+            needs = result.dependencies
+            key = needs.key(self.hashes, versions, *fixed[result.task])
+            self.tasks[result.task] = manifest.Ran(key, needs.fields, needs.files)
+            self.ran.append(result.task)
+            self.progress(result.task, len(self.ran), total)
+
+    def _is_current(self, task: "Task", versions: dict[str, str]) -> bool:
+        """Whether a task's files are there and nothing that it read has changed."""
+        known = self.before.tasks.get(task.name)
+        if known is None or not self.before.whole(self.out, task.name):
+            return False
+        key = known.dependencies.key(self.hashes, versions, *task.fixed())
+        return key == known.key
+
+    def _available(self) -> "Files":
+        from lumitip_fab.pipeline.artefact import Files, Made
+
+        return Files(self.out, {path: Made(e.sha256, e.facts) for path, e in self.files.items()})
 
     def _write(self, task: str, artefact: "Artefact") -> None:
         entry = self.files[artefact.path] = manifest.entry(artefact, task)
@@ -171,8 +209,8 @@ class _Run:
             manifest.write_file(self.out / artefact.path, artefact.data)
 
 
-def _untold(_name: str, _done: int, _total: int) -> None:
-    """Progress that nobody asked for."""
+def _silent(_name: str, _done: int, _total: int) -> None:
+    """No progress is shown."""
 
 
 def _remove(out: Path, paths: set[str]) -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""`manifest.json`: which files there are, their hashes, frames, and the keys they were made by."""
+"""`manifest.json`: the files with hashes, frames and facts, and what each task depends on."""
 
 import hashlib
 import json
@@ -7,11 +7,12 @@ import tempfile
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 
-from lumitip_fab.design.encoding import encoded
-from lumitip_fab.pipeline.artefact import Artefact
+from lumitip_fab.design.encoding import canonical, encoded
+from lumitip_fab.pipeline.artefact import Artefact, Facts
+from lumitip_fab.pipeline.dependencies import Dependencies
 
 NAME = "manifest.json"
-SCHEMA_VERSION = 2
+SCHEMA_VERSION = 3
 
 
 @dataclass(frozen=True)
@@ -25,6 +26,29 @@ class Entry:
     """Frame that `to_sensor` leads to; empty where the file has none."""
     to_sensor: list[list[float]]
     """4x4 matrix from the file's own frame, mm."""
+    facts: Facts
+    """Figures that other steps use."""
+
+    @property
+    def version(self) -> str:
+        """Changes when the file or its facts do."""
+        return f"{self.sha256} {canonical(self.facts)}"
+
+
+@dataclass(frozen=True)
+class Ran:
+    """A task that ran: what it depends on, and the key of that."""
+
+    key: str
+    fields: tuple[str, ...]
+    """Fields of the design that it read."""
+    reads: tuple[str, ...]
+    """Files of other steps that it used, as paths and patterns."""
+
+    @property
+    def dependencies(self) -> Dependencies:
+        """What it depends on."""
+        return Dependencies(self.fields, self.reads)
 
 
 @dataclass(frozen=True)
@@ -37,10 +61,10 @@ class Origin:
 
 @dataclass(frozen=True)
 class Manifest:
-    """All files of an output folder and the key of each task that made them."""
+    """All files of an output folder and the tasks that made them."""
 
     files: dict[str, Entry]
-    keys: dict[str, str]
+    tasks: dict[str, Ran]
     origin: Origin = Origin()
 
     def intact(self, out: Path) -> bool:
@@ -49,45 +73,46 @@ class Manifest:
             sha256_of(out / path) == entry.sha256 for path, entry in self.files.items()
         )
 
-    def whole(self, out: Path, task: str, key: str) -> bool:
-        """Whether a task's files are all there, unedited, and made by this key."""
+    def whole(self, out: Path, task: str) -> bool:
+        """Whether a task's files are all there and unedited."""
         mine = [path for path, entry in self.files.items() if entry.task == task]
-        return (
-            self.keys.get(task) == key
-            and bool(mine)
-            and all(sha256_of(out / path) == self.files[path].sha256 for path in mine)
-        )
+        return bool(mine) and all(sha256_of(out / path) == self.files[path].sha256 for path in mine)
 
 
 def entry(artefact: Artefact, task: str) -> Entry:
     """The manifest's entry for a file just made."""
     digest = hashlib.sha256(artefact.data).hexdigest()
     matrix = encoded(artefact.to_sensor.tolist())
-    return Entry(digest, len(artefact.data), task, artefact.frame, matrix)
+    facts = encoded(dict(artefact.facts))
+    return Entry(digest, len(artefact.data), task, artefact.frame, matrix, facts)
 
 
 def read(out: Path) -> Manifest:
     """The manifest of an output folder; an empty one where there is none that can be used."""
     try:
-        told = json.loads((out / NAME).read_text(encoding="utf-8"))
-        if told["schema_version"] != SCHEMA_VERSION:
+        record = json.loads((out / NAME).read_text(encoding="utf-8"))
+        if record["schema_version"] != SCHEMA_VERSION:
             return Manifest({}, {})
-        files = {path: Entry(**values) for path, values in told["files"].items()}
-        origin = Origin(**{f.name: str(told[f.name]) for f in fields(Origin)})
-        return Manifest(files, dict(told["keys"]), origin)
+        files = {path: Entry(**values) for path, values in record["files"].items()}
+        tasks = {
+            name: Ran(str(task["key"]), tuple(task["fields"]), tuple(task["reads"]))
+            for name, task in record["tasks"].items()
+        }
+        origin = Origin(**{f.name: str(record[f.name]) for f in fields(Origin)})
+        return Manifest(files, tasks, origin)
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return Manifest({}, {})
 
 
 def write(out: Path, manifest: Manifest) -> None:
     """Write the manifest."""
-    told = {
+    record = {
         "schema_version": SCHEMA_VERSION,
         **asdict(manifest.origin),
         "files": {path: asdict(e) for path, e in sorted(manifest.files.items())},
-        "keys": manifest.keys,
+        "tasks": {name: asdict(task) for name, task in manifest.tasks.items()},
     }
-    write_file(out / NAME, (json.dumps(told, indent=1, sort_keys=True) + "\n").encode())
+    write_file(out / NAME, (json.dumps(record, indent=1, sort_keys=True) + "\n").encode())
 
 
 def write_file(path: Path, data: bytes, mode: int = 0o644) -> None:

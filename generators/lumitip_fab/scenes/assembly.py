@@ -6,7 +6,7 @@ from copy import copy
 import numpy as np
 from build123d import Color, Compound, Shape, Solid
 
-from lumitip_fab.design import Board, Closing, Finger, Interface, Mould, Mount, Outline, Stack, Tip
+from lumitip_fab.design import Design
 from lumitip_fab.design.frames import finger_to_gripper
 from lumitip_fab.parts import export
 from lumitip_fab.parts.shapes import placed
@@ -21,26 +21,13 @@ CHORD_MM = 0.02
 _M_TO_MM = np.diag([1000.0, 1000.0, 1000.0, 1.0])
 
 
-def assembly(
-    stack: Stack,
-    outline: Outline,
-    tip: Tip,
-    board: Board,
-    emitter: Finger,
-    receiver: Finger,
-    mount: Mount,
-    closing: Closing,
-    mould: Mould,
-    interfaces: tuple[Interface, ...],
-) -> tuple[Artefact, ...]:
+def assembly(design: Design) -> tuple[Artefact, ...]:
     """STEP and GLB of the fingers in an open gripper, and an exploded drawing of each."""
-    both = [
-        finger_bodies(finger, stack, outline, tip, board, mount, mould, interfaces)
-        for finger in (emitter, receiver)
-    ]
+    closing = design.closing
+    both = [finger_bodies(design, finger) for finger in design.fingers]
     opening = min(OPENING_MM, closing.max_opening_mm)
     places = {
-        f.name: finger_to_gripper(f.name, mount, closing, opening) for f in (emitter, receiver)
+        f.name: finger_to_gripper(f.name, design.mount, closing, opening) for f in design.fingers
     }
     tree = Compound(children=[placed(_coloured(b), places[b.finger.name]) for b in both])
     groups = tuple(Group(b.finger.name, places[b.finger.name], tuple(_meshed(b))) for b in both)
@@ -48,7 +35,7 @@ def assembly(
     drawings = [
         Artefact(
             f"assembly/{bodies.finger.name}_exploded.svg",
-            exploded_view(bodies, stack, outline).encode(),
+            exploded_view(bodies, design.stack, design.outline).encode(),
             frame="",
         )
         for bodies in both

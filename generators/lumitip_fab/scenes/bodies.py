@@ -5,18 +5,7 @@ from dataclasses import dataclass
 
 from build123d import Face, Location, Plane, Solid, Vector, Wire
 
-from lumitip_fab.design import (
-    Board,
-    Finger,
-    Interface,
-    Mould,
-    Mount,
-    Outline,
-    Part,
-    Point,
-    Stack,
-    Tip,
-)
+from lumitip_fab.design import Board, Design, Finger, Part, Point, Stack
 from lumitip_fab.parts import backing as printed
 from lumitip_fab.parts.backing import backing_solid
 from lumitip_fab.parts.shapes import box_face
@@ -50,17 +39,10 @@ def layers_of(bodies: Bodies) -> Iterator[tuple[str, Solid]]:
         yield kind, getattr(bodies, kind)
 
 
-def finger_bodies(
-    finger: Finger,
-    stack: Stack,
-    outline: Outline,
-    tip: Tip,
-    board: Board,
-    mount: Mount,
-    mould: Mould,
-    interfaces: tuple[Interface, ...],
-) -> Bodies:
+def finger_bodies(design: Design, finger: Finger) -> Bodies:
     """Every body of a finger."""
+    stack, outline, tip, board = design.stack, design.outline, design.tip, design.board
+    mount, mould, interfaces = design.mount, design.mould, design.interfaces
     held = [printed.interface_solid(finger, stack, mount, interface) for interface in interfaces]
     return Bodies(
         finger=finger,

@@ -12,18 +12,7 @@ from numpy.typing import NDArray
 from OCP.BRepGProp import BRepGProp
 from OCP.GProp import GProp_GProps
 
-from lumitip_fab.design import (
-    Board,
-    Closing,
-    Densities,
-    Finger,
-    Interface,
-    Mould,
-    Mount,
-    Outline,
-    Stack,
-    Tip,
-)
+from lumitip_fab.design import Closing, Densities, Design, Finger, Mount, Stack
 from lumitip_fab.design.frames import Matrix, finger_to_gripper, gripper_to_base
 from lumitip_fab.parts import export
 from lumitip_fab.parts.surface import Mesh
@@ -185,30 +174,18 @@ CHORD_MM = 0.05
 _MESHES = "meshes"
 
 
-def robot_files(
-    stack: Stack,
-    outline: Outline,
-    tip: Tip,
-    board: Board,
-    emitter: Finger,
-    receiver: Finger,
-    mount: Mount,
-    closing: Closing,
-    mould: Mould,
-    densities: Densities,
-    interfaces: tuple[Interface, ...],
-) -> tuple[Artefact, ...]:
+def robot_files(design: Design) -> tuple[Artefact, ...]:
     """URDF of the pair, a xacro macro for each finger, and the meshes that both name."""
+    stack, mount, closing = design.stack, design.mount, design.closing
     to_base = gripper_to_base(stack, mount, closing)
     models, files = [], []
-    for finger in (receiver, emitter):
-        bodies = finger_bodies(finger, stack, outline, tip, board, mount, mould, interfaces)
-        layers = dict(layers_of(bodies))
+    for finger in (design.receiver, design.emitter):
+        layers = dict(layers_of(finger_bodies(design, finger)))
         meshes = dict(_meshes(finger, layers, stack))
         models.append(
             FingerModel(
                 name=finger.name,
-                weight=_weight(finger, layers, stack, densities),
+                weight=_weight(finger, layers, stack, design.densities),
                 visuals=tuple((f"{finger.name}_{k}.stl", COLOURS[k]) for k in layers),
                 collisions=tuple(name for name in meshes if "collision" in name),
                 to_base=to_base @ _closed(finger.name, mount, closing),
@@ -217,13 +194,10 @@ def robot_files(
         )
         files += [Artefact(f"robot/{_MESHES}/{n}", export.mesh_stl(m)) for n, m in meshes.items()]
     pair = tuple(models)
-    travel_mm = closing.max_opening_mm / 2
+    urdf = pair_urdf(pair, float(to_base[2, 3]), closing.max_opening_mm / 2, _MESHES)
+    masses = {f"{model.name}_g": model.weight.mass_g for model in pair}
     return (
-        Artefact(
-            "robot/lumitip.urdf",
-            pair_urdf(pair, float(to_base[2, 3]), travel_mm, _MESHES),
-            frame="",
-        ),
+        Artefact("robot/lumitip.urdf", urdf, frame="", facts=masses),
         Artefact("robot/lumitip.xacro", pair_xacro(pair, _MESHES), frame=""),
         *files,
     )

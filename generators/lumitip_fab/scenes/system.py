@@ -8,7 +8,7 @@ import numpy as np
 import trimesh
 from numpy.typing import NDArray
 
-from lumitip_fab.design import Carrier, Closing, Finger, Flange, Holder, Mount, Stack, System
+from lumitip_fab.design import Carrier, Design, Finger, Flange, Holder, Stack, System
 from lumitip_fab.design.frames import (
     Matrix,
     carrier_to_flange,
@@ -19,7 +19,7 @@ from lumitip_fab.design.frames import (
     holder_to_tool,
 )
 from lumitip_fab.parts.surface import Mesh
-from lumitip_fab.pipeline.artefact import Artefact, Made
+from lumitip_fab.pipeline.artefact import Artefact, Files
 from lumitip_fab.scenes.glb import COLOURS, Body, Group, glb
 from lumitip_fab.scenes.system_view import system_view
 
@@ -101,50 +101,32 @@ _M_TO_MM = np.diag([1000.0, 1000.0, 1000.0, 1.0])
 _MM = 1000.0
 
 
-def system_files(
-    made: Made,
-    stack: Stack,
-    mount: Mount,
-    closing: Closing,
-    emitter: Finger,
-    receiver: Finger,
-    carriers: tuple[Carrier, ...],
-    holders: tuple[Holder, ...],
-    flanges: tuple[Flange, ...],
-    system: System,
-) -> tuple[Artefact, ...]:
-    """GLB in the tool frame, and an exploded drawing.
-
-    Args:
-        made: the printed parts and the assembly of the fingers.
-        stack, mount, closing: where the fingers are.
-        emitter, receiver: what their parts are.
-        carriers: boards in flange and holder.
-        holders, flanges: the printed parts.
-        system: where everything is.
-    """
-    boards = {carrier.name: carrier for carrier in carriers}
+def system_files(design: Design, files: Files) -> tuple[Artefact, ...]:
+    """Printed parts, boards and the assembly of the fingers: GLB in the tool frame, and an
+    exploded drawing."""
+    stack, mount, system = design.stack, design.mount, design.system
+    boards = {carrier.name: carrier for carrier in design.carriers}
     groups: list[Group] = []
-    for flange in flanges:
-        groups += _robot_side(made, flange, boards[flange.carrier], stack, system)
+    for flange in design.flanges:
+        groups += _robot_side(files, flange, boards[flange.carrier], stack, system)
     groups.append(Group("gripper", _raised(system.gripper_z_mm), (_envelope(system),)))
-    for holder in holders:
+    for holder in design.holders:
         if holder.name in system.holders:
-            groups.append(_held(made, holder, boards[holder.carrier], stack, system))
-    to_tool = gripper_to_tool(stack, mount, closing, system)
-    scene = trimesh.load(io.BytesIO(made.read("assembly/assembly.glb")), file_type="glb")
-    opening = float(scene.metadata["opening_mm"])
-    groups += [_finger(scene, finger, to_tool) for finger in (emitter, receiver)]
-    told = {"opening_mm": opening, "tcp_mm": float(to_tool[2, 3])}
-    drawing = system_view(groups, flanges, mount, system, float(to_tool[2, 3]))
+            groups.append(_held(files, holder, boards[holder.carrier], stack, system))
+    to_tool = gripper_to_tool(stack, mount, design.closing, system)
+    scene = trimesh.load(io.BytesIO(files.read("assembly/assembly.glb")), file_type="glb")
+    groups += [_finger(scene, finger, to_tool) for finger in design.fingers]
+    tcp_mm = float(to_tool[2, 3])
+    extras = {"opening_mm": float(scene.metadata["opening_mm"]), "tcp_mm": tcp_mm}
+    drawing = system_view(groups, design.flanges, mount, system, tcp_mm)
     return (
-        Artefact("assembly/system.glb", glb("system", tuple(groups), told), _M_TO_MM, "tool"),
+        Artefact("assembly/system.glb", glb("system", tuple(groups), extras), _M_TO_MM, "tool"),
         Artefact("assembly/system.svg", drawing.encode(), frame=""),
     )
 
 
 def _robot_side(
-    made: Made, flange: Flange, carrier: Carrier, stack: Stack, system: System
+    files: Files, flange: Flange, carrier: Carrier, stack: Stack, system: System
 ) -> Iterator[Group]:
     """The robot's tool flange, the coupling, and the printed flange round its board."""
     robot = disc(system.robot_mm, -ROBOT_MM, 0.0)
@@ -154,7 +136,7 @@ def _robot_side(
     to_tool, beds = flange_to_tool(system), flange_beds(flange)
     parts = {
         part: Body(
-            f"{flange.name}.{part}", _stl(made, f"flange/{flange.name}_{part}.stl"), COLOURS[part]
+            f"{flange.name}.{part}", _stl(files, f"flange/{flange.name}_{part}.stl"), COLOURS[part]
         )
         for part in beds
     }
@@ -173,9 +155,9 @@ def _envelope(system: System) -> Body:
     )
 
 
-def _held(made: Made, holder: Holder, carrier: Carrier, stack: Stack, system: System) -> Group:
+def _held(files: Files, holder: Holder, carrier: Carrier, stack: Stack, system: System) -> Group:
     """A holder with its board, in the board's frame."""
-    printed = _moved(_stl(made, f"holder/{holder.name}.stl"), holder_bed_to_carrier(holder))
+    printed = _moved(_stl(files, f"holder/{holder.name}.stl"), holder_bed_to_carrier(holder))
     bodies = (
         Body(f"{holder.name}.tray", printed, COLOURS["holder"]),
         Body(f"{holder.name}.board", _board(carrier, stack), COLOURS["board"]),
@@ -207,8 +189,8 @@ def _board(carrier: Carrier, stack: Stack) -> Mesh:
     return block(across, along, carrier.corner_mm, 0.0, stack.carrier_mm)
 
 
-def _stl(made: Made, path: str) -> Mesh:
-    read = trimesh.load(io.BytesIO(made.read(path)), file_type="stl")
+def _stl(files: Files, path: str) -> Mesh:
+    read = trimesh.load(io.BytesIO(files.read(path)), file_type="stl")
     return Mesh(np.asarray(read.vertices), np.asarray(read.faces, dtype=np.int64))
 
 
