@@ -118,7 +118,7 @@ class Regulator(Leaded):
     def _has_its_leads(self) -> Self:
         if set(self.names) != {"FB", "EN", "VIN", "GND", "SW", "BST"}:
             raise ValueError(
-                f"leads {', '.join(self.names)} given, FB, EN, VIN, GND, SW and BST are needed"
+                f"names are {', '.join(self.names)}; FB, EN, VIN, GND, SW and BST are needed"
             )
         return self
 
@@ -138,7 +138,7 @@ class LinearRegulator(Leaded):
     @model_validator(mode="after")
     def _has_its_leads(self) -> Self:
         if set(self.names) != {"GND", "OUT", "IN"}:
-            raise ValueError(f"leads {', '.join(self.names)} given, GND, OUT and IN are needed")
+            raise ValueError(f"names are {', '.join(self.names)}; GND, OUT and IN are needed")
         return self
 
 
@@ -155,7 +155,7 @@ class Transistor(Leaded):
     @model_validator(mode="after")
     def _has_its_leads(self) -> Self:
         if set(self.names) != {"G", "S", "D"}:
-            raise ValueError(f"leads {', '.join(self.names)} given, G, S and D are needed")
+            raise ValueError(f"names are {', '.join(self.names)}; G, S and D are needed")
         return self
 
 
@@ -201,18 +201,18 @@ class Module(Strict):
     def _pads_exist(self) -> Self:
         if len(self.names) != len(self.pads_mm):
             raise ValueError(
-                f"{len(self.names)} names and {len(self.pads_mm)} places of pads given, each pad "
+                f"has {len(self.names)} names and {len(self.pads_mm)} places of pads; each pad "
                 "needs both"
             )
         ports = (*self.crystal, *self.ports.values())
         for name in (*_SINGLE, *ports):
             if self.names.count(name) != 1:
-                raise ValueError(f"{self.names.count(name)} pads named {name} given, 1 is needed")
+                raise ValueError(f"has {self.names.count(name)} pads named {name}; 1 is needed")
         twice = sorted({port for port in ports if ports.count(port) > 1})
         if twice:
-            raise ValueError(f"{', '.join(twice)} given twice, each port is used once")
+            raise ValueError(f"has {', '.join(twice)} twice; each port is used once")
         if "GND" not in self.names:
-            raise ValueError("no pad named GND given, at least one is needed")
+            raise ValueError("has no pad named GND; at least one is needed")
         return self
 
 
@@ -243,21 +243,21 @@ class Controller(Entry):
         pins = (*self.analog_pins, *self.select_pins)
         twice = sorted({pin for pin in pins if pins.count(pin) > 1})
         if twice:
-            raise ValueError(f"{', '.join(twice)} given twice, each pin is used once")
+            raise ValueError(f"has {', '.join(twice)} twice; each pin is used once")
         if self.plug is not None:
             there = {*self.plug.rows[0], *self.plug.rows[1]}
             wanted = (*pins, self.plug.ground, self.plug.supply, self.plug.regulated)
             lost = sorted(set(wanted) - there)
             if lost:
-                raise ValueError(f"{', '.join(lost)} given, which no row of its plug has")
+                raise ValueError(f"has {', '.join(lost)}, missing in the rows of its plug")
         if self.module is not None:
             lost = sorted(set(pins) - set(self.module.ports))
             if lost:
-                raise ValueError(f"{', '.join(lost)} given, for which its module has no port")
+                raise ValueError(f"has {', '.join(lost)}, missing in the ports of its module")
             deaf = sorted(set(self.analog_pins) - {*filter(self.module.measures, self.analog_pins)})
             if deaf:
                 raise ValueError(
-                    f"{', '.join(deaf)} given as analog, only the ports {', '.join(ANALOG_PORTS)} "
-                    "measure voltages"
+                    f"has {', '.join(deaf)} in analog_pins; analog inputs are only the ports "
+                    f"{', '.join(ANALOG_PORTS)}"
                 )
         return self

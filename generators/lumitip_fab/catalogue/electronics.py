@@ -46,7 +46,7 @@ class Optical(Chip):
     def _die_in_body(self) -> Self:
         if self.die_height_mm > self.body_mm[2]:
             raise ValueError(
-                f"die_height_mm = {self.die_height_mm:g} given, at most the body's height of "
+                f"die_height_mm is {self.die_height_mm:g}; at most the body's height of "
                 f"{self.body_mm[2]:g} is allowed"
             )
         return self
@@ -174,15 +174,17 @@ class Multiplexer(Bought):
         used = (*self.inputs.values(), *self.select, *(lead for lead in single if lead is not None))
         if set(self.inputs) != {str(i) for i in range(len(self.inputs))} or not self.inputs:
             inputs = ", ".join(self.inputs) or "none"
-            raise ValueError(f"inputs {inputs} given, the channels 0, 1, 2 … are needed, no gap")
+            raise ValueError(
+                f"inputs are {inputs}; the channels 0, 1, 2 … without a gap are needed"
+            )
         if self.channels > 2 ** len(self.select):
             raise ValueError(
-                f"{self.channels} inputs given, {len(self.select)} select lines reach at most "
+                f"has {self.channels} inputs; {len(self.select)} select lines reach at most "
                 f"{2 ** len(self.select)}"
             )
         if len(set(used)) != len(used) or not all(1 <= lead <= self.leads for lead in used):
             raise ValueError(
-                f"inputs, select, output, supply, ground, enable and negative on leads "
-                f"{sorted(used)} given, each needs a lead of its own from 1 to leads = {self.leads}"
+                f"inputs, select, output, supply, ground, enable and negative are on leads "
+                f"{sorted(used)}; each needs a lead of its own from 1 to leads = {self.leads}"
             )
         return self

@@ -74,11 +74,10 @@ class Envelope(Sourced):
     def _fits_together(self) -> Self:
         most = min(self.width_mm, self.depth_mm) / 2
         if self.corner_mm > most:
-            raise ValueError(f"corner_mm = {self.corner_mm:g} given, at most {most:g} is allowed")
+            raise ValueError(f"corner_mm is {self.corner_mm:g}; at most {most:g} is allowed")
         if self.length_mm > self.reach_mm:
             raise ValueError(
-                f"length_mm = {self.length_mm:g} given, at most reach_mm = {self.reach_mm:g} is "
-                "allowed"
+                f"length_mm is {self.length_mm:g}; at most reach_mm = {self.reach_mm:g} is allowed"
             )
         return self
 
@@ -139,8 +138,8 @@ class Gripper(Entry):
         unknown = sorted(set(self.origin) - set(FIGURES))
         if unknown:
             raise ValueError(
-                f"origin of {', '.join(unknown)} given, figures of a gripper are "
-                f"{', '.join(FIGURES)}"
+                f"origin has {', '.join(unknown)}, which is not a figure of a gripper; the figures "
+                f"are {', '.join(FIGURES)}"
             )
         return self
 
@@ -173,8 +172,8 @@ class Contact(Strict):
     def _open_is_nc(self) -> Self:
         if (self.kind == "open") != (self.carries == OPEN):
             raise ValueError(
-                f"carries = {self.carries!r} with kind = {self.kind!r} given: {OPEN} and open "
-                "belong together"
+                f"carries is {self.carries!r} and kind is {self.kind!r}; {OPEN!r} and 'open' need "
+                "each other"
             )
         return self
 
@@ -223,12 +222,11 @@ class ToolCoupling(Entry):
     def _recess_in_face(self) -> Self:
         if self.recess_mm >= self.face_mm:
             raise ValueError(
-                f"recess_mm = {self.recess_mm:g} given, less than face_mm = {self.face_mm:g} is "
-                "allowed"
+                f"recess_mm is {self.recess_mm:g}; less than face_mm = {self.face_mm:g} is allowed"
             )
         if self.recess_depth_mm >= self.height_mm:
             raise ValueError(
-                f"recess_depth_mm = {self.recess_depth_mm:g} given, less than height_mm = "
+                f"recess_depth_mm is {self.recess_depth_mm:g}; less than height_mm = "
                 f"{self.height_mm:g} is allowed"
             )
         return self

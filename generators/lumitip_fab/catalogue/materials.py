@@ -62,7 +62,7 @@ class Filament(Entry):
     @model_validator(mode="after")
     def _fan_in_order(self) -> Self:
         if self.fan_percent[0] > self.fan_percent[1]:
-            raise ValueError(f"fan_percent {self.fan_percent} given, the least comes first")
+            raise ValueError(f"fan_percent is {self.fan_percent}; the smaller value comes first")
         return self
 
 
@@ -87,13 +87,13 @@ class Fastener(Entry):
         fine, coarse = self.hole_mm
         if not self.thread_mm < fine <= coarse:
             raise ValueError(
-                f"hole_mm = [{fine:g}, {coarse:g}] given, more than thread_mm = "
-                f"{self.thread_mm:g} is needed, the finer first"
+                f"hole_mm is [{fine:g}, {coarse:g}]; both must be more than thread_mm = "
+                f"{self.thread_mm:g}, the smaller first"
             )
         if min(self.cap_head_mm, self.countersunk_mm, self.nut_mm) <= coarse:
             raise ValueError(
-                f"cap_head_mm = {self.cap_head_mm:g}, countersunk_mm = {self.countersunk_mm:g} and "
-                f"nut_mm = {self.nut_mm:g} given, more than the coarse hole's {coarse:g} is needed"
+                f"cap_head_mm is {self.cap_head_mm:g}, countersunk_mm is {self.countersunk_mm:g}, "
+                f"nut_mm is {self.nut_mm:g}; each must be more than the coarse hole of {coarse:g}"
             )
         return self
 

@@ -72,9 +72,9 @@ class Fab(Entry):
     def _layers_whole(self) -> Self:
         missing = sorted(set(get_args(Layers)) - set(self.layers))
         if missing:
-            raise ValueError(f"layers without {', '.join(missing)} given, each is needed")
+            raise ValueError(f"layers has no {', '.join(missing)}; each is needed")
         if len(set(self.layers.values())) < len(self.layers):
-            raise ValueError("layers with the same ending given, each needs its own")
+            raise ValueError("layers has the same ending twice; each layer needs its own")
         return self
 
 

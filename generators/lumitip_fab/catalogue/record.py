@@ -20,7 +20,7 @@ Name = Annotated[str, Field(min_length=1, max_length=64, pattern=NAME)]
 def _ascending(least_and_most: tuple[float, float]) -> tuple[float, float]:
     least, most = least_and_most
     if least > most:
-        raise ValueError(f"[{least:g}, {most:g}] given, the least is needed first")
+        raise ValueError(f"is [{least:g}, {most:g}]; the smaller value comes first")
     return least_and_most
 
 

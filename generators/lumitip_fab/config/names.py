@@ -22,11 +22,11 @@ def _writable(text: str) -> str:
                 continue
             called = unicodedata.name(character, "a control character")
             raise ValueError(
-                f"{text!r:.80} given, with U+{ord(character):04X} ({called}) in it; letters, "
+                f"is {text!r:.80}, which contains U+{ord(character):04X} ({called}); letters, "
                 "digits, punctuation and spaces of any script are allowed"
             )
     if not board_name(text).strip():
-        raise ValueError(f"{text!r:.80} given, of which nothing can be seen")
+        raise ValueError(f"is {text!r:.80}, which has no visible character")
     return text
 
 
@@ -34,8 +34,7 @@ def _short_enough(text: str) -> str:
     size = len(text.encode())
     if size > DEVICE_BYTES:
         raise ValueError(
-            f"{text!r:.80} given, {size} bytes of UTF-8; a Bluetooth name has at most "
-            f"{DEVICE_BYTES}"
+            f"is {text!r:.80}, {size} bytes of UTF-8; a Bluetooth name has at most {DEVICE_BYTES}"
         )
     return text
 

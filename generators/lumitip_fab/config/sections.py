@@ -16,7 +16,7 @@ def _body(value: Any, handler: ValidatorFunctionWrapHandler) -> Any:
         return handler(value)
     except ValidationError:
         raise ValueError(
-            f"{value!r:.80} given, 'gripper' or a number from {LEAST_BODY_MM} to {MOST_BODY_MM} is "
+            f"is {value!r:.80}; 'gripper' or a number from {LEAST_BODY_MM} to {MOST_BODY_MM} is "
             "allowed"
         ) from None
 

@@ -42,7 +42,9 @@ class _Reasons:
         self.of[name] = reason
 
     def moved(self, change: Change, message: str) -> None:
-        self.of[change.field] = f"otherwise {message.partition('; set it in')[0]}"
+        self.of[change.field] = (
+            f"otherwise it {message.partition('. Override it in')[0].removesuffix('.')}"
+        )
 
     def choices(self, config: Input) -> tuple[Choice, ...]:
         """Every automatic field in the order of the file, with its value and reason."""
@@ -78,7 +80,7 @@ def accepted_with(config: Input, values: Mapping[str, Any]) -> bool:
     is then chosen anew.
 
     Args:
-        given: the file's values, the automatic ones as some search left them.
+        config: the file's values, the automatic ones as some search left them.
         values: of fields, as they would be written.
     """
     free = config.automatic - values.keys()

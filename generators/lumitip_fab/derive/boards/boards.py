@@ -127,14 +127,14 @@ def _frame(
     faults.refuse_unless(
         printed_mm >= LEAST_PIN_MM,
         "backing.pin_clearance_mm",
-        f"{p.backing.pin_clearance_mm:g} given, which leaves pins of {printed_mm:.2f} mm in holes "
+        f"is {p.backing.pin_clearance_mm:g}, which leaves pins of {printed_mm:.2f} mm in holes "
         f"of {p.board.hole_mm:g} mm; at least {LEAST_PIN_MM:g} mm is needed",
     )
     faults.refuse_unless(
         p.backing.pin_clearance_mm + p.printer.fit_mm >= LEAST_CLEARANCE_MM,
         "printer.fit_mm",
-        f"{p.printer.fit_mm:g} given, which with backing.pin_clearance_mm = "
-        f"{p.backing.pin_clearance_mm:g} leaves pins that are drawn as wide as their holes; at "
+        f"is {p.printer.fit_mm:g}, with backing.pin_clearance_mm = "
+        f"{p.backing.pin_clearance_mm:g} the pins are drawn as wide as their holes; at "
         f"least {LEAST_CLEARANCE_MM - p.backing.pin_clearance_mm:.2f} is needed",
     )
     half = float(np.abs(cells.x_mm).max()) + p.board.side_margin_mm
@@ -166,7 +166,7 @@ def _frame(
         faults.refuse_unless(
             margin >= taken + p.board.clearance_mm,
             field,
-            f"{margin:g} given, parts reach {taken:g} mm beyond their cells: at least "
+            f"is {margin:g}; parts reach {taken:g} mm beyond their cells; at least "
             f"{taken + p.board.clearance_mm:.2f} is needed",
         )
     x_min, x_max = float(cells.x_mm.min()), float(cells.x_mm.max())
@@ -201,19 +201,19 @@ def _refuse_holes(p: Parameters, pad_mm: float, faults: Faults) -> None:
     faults.refuse_unless(
         p.board.end_margin_mm >= max(for_hole, for_pad) - 1e-9,
         "board.end_margin_mm",
-        f"{p.board.end_margin_mm:g} given, {what} and pads of {pad_mm:g} mm in the connector's "
-        f"row need at least {max(for_hole, for_pad):.2f}",
+        f"is {p.board.end_margin_mm:g}; {what} and pads of {pad_mm:g} mm in the connector's "
+        f"row need at least {max(for_hole, for_pad):.2f} mm",
     )
     faults.refuse_unless(
         p.board.hole_edge_mm >= for_hole - 1e-9,
         "board.hole_edge_mm",
-        f"{p.board.hole_edge_mm:g} given, {what} need at least {for_hole:.2f}",
+        f"is {p.board.hole_edge_mm:g}; {what} need at least {for_hole:.2f} mm",
     )
     least = radius + placing.HOLE_CLEARANCE_MM - pad_mm / 2
     faults.refuse_unless(
         p.board.channel_mm >= least - 1e-9,
         "board.channel_mm",
-        f"{p.board.channel_mm:g} given, {what} beside the connector would reach the parts: at "
+        f"is {p.board.channel_mm:g}; {what} beside the connector would reach the parts; at "
         f"least {least:.2f} is needed",
     )
 

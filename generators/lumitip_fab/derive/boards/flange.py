@@ -50,8 +50,8 @@ def derive_flange(
         faults.refuse_unless(
             module is None,
             "controller.board",
-            f"{p.controller.board!r} given, a module on the flange's board: flange.enabled = true, "
-            "or a controller that plugs into the breakout",
+            f"is {p.controller.board!r}, a module on the flange's board. Set flange.enabled = true "
+            "or choose a controller that plugs into the breakout.",
         )
         return ()
     _refuse(config, faults)
@@ -220,30 +220,30 @@ def _refuse(config: Input, faults: Faults) -> None:
     faults.refuse_unless(
         strip.rows == 2 and all(count == strip.ways for count in counts),
         "flange.headers",
-        f"{' and '.join(map(str, counts))} signals given, {p.header!r} has {strip.rows} x "
-        f"{strip.ways} contacts: {strip.ways} are needed, in two rows",
+        f"has {' and '.join(map(str, counts))} signals; {p.header!r} has {strip.rows} x "
+        f"{strip.ways} contacts: {strip.ways} signals for each of two rows are needed",
     )
     cables = {*p.headers[0], *p.headers[1]}
     lost = sorted((set(p.signals) ^ cables) - {"SUPPLY", "GND", "REGULATED", OPEN})
     faults.refuse_unless(
         not lost,
         "flange.signals",
-        f"{', '.join(lost)} given at one end only: a line of the contacts ends in a header",
+        f"has {', '.join(lost)} at one end only; each signal must be on a contact and on a header",
     )
     absent = sorted({"SUPPLY", "GND"} - set(p.signals))
     faults.refuse_unless(
         not absent and "REGULATED" not in p.signals,
         "flange.signals",
-        f"{', '.join(p.signals):.80} given, SUPPLY and GND are needed, and no REGULATED, which the "
-        "board makes",
+        f"has {', '.join(p.signals):.80}; SUPPLY and GND are needed, and REGULATED, which the "
+        "board generates, is not allowed",
     )
     least, most = supply_range_v(config)
     faults.refuse_unless(
         not is_regulated(config) or least <= volts <= most,
         "supply.voltage_v",
-        f"{volts:g} given, the flange's regulator, fuse and transistor take {least:g} to "
-        f"{most:g} V, or {known.regulators[p.regulator].output_v:g} V without a regulator; other "
-        "parts, or flange.enabled = false",
+        f"is {volts:g}; the flange's regulator, fuse and transistor need {least:g} to {most:g} V, "
+        f"or {known.regulators[p.regulator].output_v:g} V without the regulator. Choose other "
+        "parts or set flange.enabled = false.",
     )
 
 
@@ -257,5 +257,6 @@ def _refuse_lines(config: Input, parts: tuple[Device, ...], faults: Faults) -> N
     faults.refuse_unless(
         not taken,
         "flange.signals",
-        f"{', '.join(taken)} given, which the board's own parts are joined by: another name",
+        f"has {', '.join(taken)}; nets of the board's own parts have these names. Choose other "
+        "names.",
     )

@@ -30,16 +30,16 @@ def refuse_map(config: Input, faults: Faults) -> None:
     if not _meets(strip, coupling):
         faults.refuse(
             "flange.contacts",
-            f"{p.contacts!r} given, {strip.rows} x {strip.ways} contacts {strip.pitch_mm:g} mm "
-            f"apart, which do not meet the {len(coupling.contacts)} contacts of {p.coupling!r}. "
-            "Take another strip or flange.coupling",
+            f"is {p.contacts!r}, {strip.rows} x {strip.ways} contacts with a pitch of "
+            f"{strip.pitch_mm:g} mm, which do not match the {len(coupling.contacts)} contacts of "
+            f"{p.coupling!r}. Choose another strip or flange.coupling.",
         )
         return
     if len(p.signals) != len(coupling.contacts):
         faults.refuse(
             "flange.signals",
-            f"{len(p.signals)} signals given, {p.coupling!r} has {len(coupling.contacts)} "
-            f"contacts: one for each is needed. Take {_own(coupling)}",
+            f"has {len(p.signals)} signals; {p.coupling!r} has {len(coupling.contacts)} contacts: "
+            f"one signal for each is needed. Use {_own(coupling)}.",
         )
         return
     for signal in dict.fromkeys(p.signals):
@@ -51,8 +51,8 @@ def refuse_map(config: Input, faults: Faults) -> None:
         if signal != OPEN and (wrong := _wrong(signal, on)):
             faults.refuse(
                 "flange.signals",
-                f"{wrong}, by the map of {p.coupling!r} in parts/couplings.toml. Take "
-                f"{_own(coupling)}, or an entry with the map that you have measured",
+                f"has {wrong}, by the contact map of {p.coupling!r} in parts/couplings.toml. Use "
+                f"{_own(coupling)}, or an entry with the contact map that you measured.",
             )
 
 
@@ -71,18 +71,16 @@ def _wrong(signal: str, on: list[tuple[int, Contact]]) -> str:
     """What is wrong with a net on these contacts; empty if nothing is."""
     where = " and ".join(f"{number} ({contact.carries})" for number, contact in on)
     if len({contact.carries for _, contact in on}) > 1:
-        return f"{signal} stands on contacts {where}, which carry different signals"
+        return f"{signal} on contacts {where}, which carry different signals"
     where = f"contact{'s' if len(on) > 1 else ''} {where}"
     _, contact = on[0]
     belongs = _FOR.get(contact.kind)
     if contact.kind == "open":
-        return f"{signal} stands on {where}: {OPEN} is needed there"
+        return f"{signal} on {where}; {OPEN} is needed there"
     if belongs and signal != belongs:
-        return f"{signal} stands on {where}, of kind {contact.kind}: {belongs} is needed there"
+        return f"{signal} on {where}, of kind {contact.kind}; {belongs} is needed there"
     if not belongs and signal in (*_FOR.values(), "REGULATED"):
-        return (
-            f"{signal} stands on {where}, of kind {contact.kind}: a line of its own is needed there"
-        )
+        return f"{signal} on {where}, of kind {contact.kind}; a separate signal is needed there"
     return ""
 
 
@@ -143,15 +141,15 @@ def _refuse_gate(config: Input, faults: Faults) -> None:
     faults.refuse_unless(
         math.isclose(sold, ohm),
         "flange.gate_ohm",
-        f"{ohm:g} given, which is not sold: a value of the E24 or E96 series is needed, such as "
-        f"{sold:g}",
+        f"is {ohm:g}, which is in neither the E24 nor the E96 series. Use {sold:g}.",
     )
     load_w = (volts * (1 + SUPPLY_TOLERANCE)) ** 2 / (ohm * (1 - RESISTOR_TOLERANCE))
     faults.refuse_unless(
         load_w <= allowed_w,
         "flange.gate_ohm",
-        f"{ohm:g} takes up to {1000 * load_w:.0f} mW at {volts:g} V; a {p.flange.resistor!r} takes "
-        f"at most {1000 * allowed_w:.0f} mW: at least {ohm * load_w / allowed_w:.0f} is needed",
+        f"is {ohm:g}, with a power of up to {1000 * load_w:.0f} mW at {volts:g} V; the limit of a "
+        f"{p.flange.resistor!r} is {1000 * allowed_w:.0f} mW: at least "
+        f"{ohm * load_w / allowed_w:.0f} is needed",
     )
 
 
@@ -164,8 +162,9 @@ def _refuse_fuse(config: Input, strings: Strings, faults: Faults) -> None:
     faults.refuse_unless(
         drawn_ma <= allowed_ma,
         "flange.fuse",
-        f"{p.flange.fuse!r} given, which carries {allowed_ma:.0f} mA for years; LEDs and "
-        f"controller draw {drawn_ma:.0f} mA: a larger one, or less emitter.current_ma",
+        f"is {p.flange.fuse!r}, with a limit of {allowed_ma:.0f} mA ({100 * FUSE_SHARE:g} % of its "
+        f"rating); LEDs and controller draw {drawn_ma:.0f} mA. Choose a larger fuse or reduce "
+        "emitter.current_ma.",
     )
 
 
@@ -177,9 +176,9 @@ def _refuse_crystal(config: Input, faults: Faults) -> None:
     faults.refuse_unless(
         abs(load_pf - crystal.load_pf) <= MOST_OFF_PF,
         "module.crystal_capacitor",
-        f"{p.crystal_capacitor!r} given, two of which load the crystal with {load_pf:g} pF; "
-        f"{p.crystal!r} is made for {crystal.load_pf:g} pF: capacitors of "
-        f"{2 * crystal.load_pf - STRAY_PF:g} pF are needed",
+        f"is {p.crystal_capacitor!r}; two of them make a load capacitance of {load_pf:g} pF; "
+        f"{p.crystal!r} needs C_L = {crystal.load_pf:g} pF. Use capacitors of "
+        f"{2 * crystal.load_pf - STRAY_PF:g} pF.",
     )
 
 
@@ -211,8 +210,8 @@ def derive_regulated(config: Input, faults: Faults) -> tuple[Regulated, ...]:
     faults.refuse_unless(
         ripple_mv <= 1e3 * MOST_RIPPLE * volts,
         "flange.output_capacitor",
-        f"{p.flange.output_capacitor!r} given, with which {volts:g} V ripple by {ripple_mv:.0f} "
-        f"mV; at most {1e3 * MOST_RIPPLE * volts:g} mV are allowed: more capacitance",
+        f"is {p.flange.output_capacitor!r}, with a ripple of {ripple_mv:.0f} mV on {volts:g} V; at "
+        f"most {1e3 * MOST_RIPPLE * volts:g} mV is allowed. Choose a larger capacitance.",
     )
     _refuse_input(config, LOAD_SHARE * part.output_a * duty * (1 - duty) / hertz, faults)
     high_ohm, low_ohm = part.switch_ohm
@@ -243,6 +242,7 @@ def _refuse_input(config: Input, coulomb: float, faults: Faults) -> None:
     faults.refuse_unless(
         moved_v <= most_v,
         "flange.input_capacitor",
-        f"{p.flange.input_capacitor!r} given, with which {p.supply.voltage_v:g} V ripple by "
-        f"{1000 * moved_v:.0f} mV; at most {1000 * most_v:g} mV are allowed: more capacitance",
+        f"is {p.flange.input_capacitor!r}, with a ripple of {1000 * moved_v:.0f} mV on "
+        f"{p.supply.voltage_v:g} V; at most {1000 * most_v:g} mV is allowed. Choose a larger "
+        "capacitance.",
     )

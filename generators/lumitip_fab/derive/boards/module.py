@@ -212,21 +212,22 @@ def _refuse(config: Input, muxing: Muxing, faults: Faults) -> None:
     faults.refuse_unless(
         least <= fed_v <= most and regulator.output_v == controller.supply_v,
         "module.regulator",
-        f"{p.module.regulator!r} given, which makes {regulator.output_v:g} V of {least:g} to "
-        f"{most:g} V; {controller.supply_v:g} V of the {fed_v:g} V of flange.regulator are needed",
+        f"is {p.module.regulator!r}, with {regulator.output_v:g} V output and {least:g} to "
+        f"{most:g} V input; {controller.supply_v:g} V output and {fed_v:g} V input, from "
+        "flange.regulator, are needed",
     )
     needed_a = controller.draws_ma / 1000
     faults.refuse_unless(
         needed_a <= regulator.output_a,
         "module.regulator",
-        f"{p.module.regulator!r} given, which carries {1000 * regulator.output_a:g} mA; "
+        f"is {p.module.regulator!r}, which supplies {1000 * regulator.output_a:g} mA; "
         f"{p.controller.board!r} draws {controller.draws_ma:g} mA",
     )
     wires_needed = len(connectors.receiver_signals(muxing))
     faults.refuse_unless(
         wires_needed <= MOST_WIRES,
         "controller.board",
-        f"{p.controller.board!r} given, whose board has room for {MOST_WIRES} wires to the "
-        f"receiver; it needs {wires_needed}: less multiplexers with more inputs, less cells, or a "
-        "controller that plugs into the breakout",
+        f"is {p.controller.board!r}, whose board has room for {MOST_WIRES} wires to the "
+        f"receiver; {wires_needed} are needed. Choose a multiplexer with more inputs, fewer cells, "
+        "or a controller that plugs into the breakout.",
     )

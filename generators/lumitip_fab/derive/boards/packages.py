@@ -67,19 +67,19 @@ def derive_rules(config: Input, faults: Faults) -> Rules:
     faults.refuse_unless(
         board.via_mm >= least - 1e-9,
         "board.via_mm",
-        f"{board.via_mm:g} given, a hole of {board.via_drill_mm:g} mm needs at least {least:g}",
+        f"is {board.via_mm:g}; a hole of {board.via_drill_mm:g} mm needs at least {least:g} mm",
     )
     between = mux.lead_pitch_mm - mux.lead_pad_mm[1]
     faults.refuse_unless(
         board.copper_gap_mm <= between + 1e-9,
         "board.copper_gap_mm",
-        f"{board.copper_gap_mm:g} given, the leads of {p.receiver.multiplexer!r} are only "
-        f"{between:.2f} mm apart: at most that is allowed",
+        f"is {board.copper_gap_mm:g}; at most {between:.2f} is allowed, the gap between the leads "
+        f"of {p.receiver.multiplexer!r}",
     )
     faults.refuse_unless(
         board.track_mm <= board.supply_track_mm,
         "board.supply_track_mm",
-        f"{board.supply_track_mm:g} given, at least board.track_mm = {board.track_mm:g} is needed",
+        f"is {board.supply_track_mm:g}; at least board.track_mm = {board.track_mm:g} is needed",
     )
     silks = [fab.silk for fab in config.catalogue.fabs.values()] or [COMMON_SILK]
     return Rules(

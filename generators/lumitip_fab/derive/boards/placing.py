@@ -42,13 +42,13 @@ def parts_zone_depth_mm(config: Input, muxing: Muxing, width_mm: float, faults: 
     faults.refuse_unless(
         beside <= mux.lead_span_mm,
         "receiver.resistor",
-        f"{p.receiver.resistor!r} given, which takes {beside:.2f} mm beside a multiplexer, with "
-        f"{p.receiver.capacitor!r}; {mux.lead_span_mm:g} mm is there: use a smaller package",
+        f"is {p.receiver.resistor!r}, which takes {beside:.2f} mm beside a multiplexer, with "
+        f"{p.receiver.capacitor!r}; {mux.lead_span_mm:g} mm is available. Use a smaller package.",
     )
     if per_row < 1:
         faults.refuse(
             "board.side_margin_mm",
-            f"{p.board.side_margin_mm:g} given, which makes boards {width_mm:.1f} mm wide; a "
+            f"is {p.board.side_margin_mm:g}, which makes the boards {width_mm:.1f} mm wide; "
             f"{p.receiver.multiplexer!r} with its capacitor needs {_slot_mm(config) + 2:.1f} mm",
         )
         per_row = 1
@@ -134,9 +134,9 @@ def tip_holes(
         least = p.board.hole_edge_mm + keep + top - float(cells.y_mm.max())
         faults.refuse(
             "board.tip_margin_mm",
-            f"{p.board.tip_margin_mm:g} given, holes of {p.board.hole_mm:g} mm at "
-            f"{p.board.hole_edge_mm:g} mm from the edge meet the first row of parts; "
-            f"{least:.2f} is always enough",
+            f"is {p.board.tip_margin_mm:g}; holes of {p.board.hole_mm:g} mm at "
+            f"{p.board.hole_edge_mm:g} mm from the edge collide with the first row of parts. "
+            f"{least:.2f} is always enough.",
         )
         return ()
     middle = min(room, key=lambda x: abs(x - (room[0] + room[-1]) / 2))
@@ -169,10 +169,11 @@ def resistors(
     if across_bank < 1 or rows * step_y > zone.length_mm:
         faults.refuse(
             "emitter.resistor",
-            f"{p.emitter.resistor!r} given, {count} string resistors do not fit into two "
+            f"is {p.emitter.resistor!r}; {count} string resistors do not fit into two "
             f"banks of {outer - inner:.1f} x {zone.length_mm:.1f} mm"
             + (" beside the coupling" if p.emitter.resistor_side == "back" else "")
-            + ": use a smaller package, the other emitter.resistor_side, or more board.channel_mm",
+            + ". Use a smaller package, the other emitter.resistor_side, or a larger "
+            "board.channel_mm.",
         )
         return (), ()
     parts: list[Part] = []

@@ -33,16 +33,16 @@ def derive_cells(p: Parameters, faults: Faults) -> Cells:
     columns, pitch = p.grid.columns, p.grid.pitch_mm
     count = sum(columns)
     if count < LEAST_CELLS:
-        faults.refuse("grid.columns", f"{count} cells given, at least {LEAST_CELLS} are needed")
+        faults.refuse("grid.columns", f"has {count} cells; at least {LEAST_CELLS} are needed")
     if count > MOST_CELLS:
-        faults.refuse("grid.columns", f"{count} cells given, at most {MOST_CELLS} are allowed")
+        faults.refuse("grid.columns", f"has {count} cells; at most {MOST_CELLS} are allowed")
     web = pitch - p.mask.hole_mm
     if web < LEAST_WEB_MM:
         faults.refuse(
             "mask.hole_mm",
-            f"{p.mask.hole_mm:g} given, which leaves {web:.2f} mm of web between apertures "
-            f"{pitch:g} mm apart; at least {LEAST_WEB_MM} mm is needed: "
-            f"at most {max(pitch - LEAST_WEB_MM, 0):.2f} is allowed",
+            f"is {p.mask.hole_mm:g}, which leaves {web:.2f} mm between apertures "
+            f"{pitch:g} mm apart; at least {LEAST_WEB_MM} mm is needed, "
+            f"so at most {max(pitch - LEAST_WEB_MM, 0):.2f} is allowed",
         )
     if not LEAST_CELLS <= count <= MOST_CELLS:
         nowhere, none = np.zeros(0), np.zeros(0, dtype=np.int64)

@@ -22,8 +22,8 @@ def derive_turned(p: Parameters, field: str, name: str, chip: Chip, faults: Faul
         least = max(along + gap, (across + gap) * pitch / columns)
         faults.refuse(
             field,
-            f"{name!r} given, {along:g} mm over its pads and {across:g} mm wide; with "
-            f"{gap:g} mm of clearance it needs a pitch of at least {least:.2f} mm, and "
+            f"is {name!r}, {along:g} mm over its pads and {across:g} mm wide; with "
+            f"{gap:g} mm of clearance it needs a pitch of at least {least:.2f} mm, but "
             f"grid.pitch_mm is {pitch:g}",
         )
     roomy = columns >= along + TRACK_SPACE_MM

@@ -49,20 +49,20 @@ def derive_interfaces(
     letter_mm = most_letter_mm(line_mm)
     most = outline.length_mm - p.tip.slant_start_mm - 2 * LETTER_GAP_MM - letter_mm
     needed, room = math.ceil(least * 10) / 10, math.floor(most * 10) / 10
-    told = (
+    limits = (
         f"at least {needed:g} is needed for the land and ramp of {p.coupling.gripper!r}, and at "
-        f"most {room:g} is allowed: then come the finger's letter and the wedge"
+        f"most {room:g} is allowed before the finger's letter and the wedge"
     )
     if most < least:
-        told = (
-            f"the land and ramp of {p.coupling.gripper!r} need {needed:g} mm, and before the "
-            f"finger's letter and the wedge are {max(room, 0.0):g} mm: a longer finger, less "
-            "tip.slant_start_mm or less flex.standoff_mm"
+        limits = (
+            f"the land and ramp of {p.coupling.gripper!r} need {needed:g} mm, but only "
+            f"{max(room, 0.0):g} mm is available before the finger's letter and the wedge. Make "
+            "the finger longer, or reduce tip.slant_start_mm or flex.standoff_mm."
         )
     faults.refuse_unless(
         least <= flex.interface_mm <= most,
         "flex.interface_mm",
-        f"{flex.interface_mm:g} given, {told}",
+        f"is {flex.interface_mm:g}; {limits}",
     )
     low = groove.y_max_mm + LETTER_GAP_MM - end_y
     back = p.stack.pcb_mm + p.stack.floor_mm
@@ -92,8 +92,8 @@ def _refuse_holes(config: Input, finger: Finger, board: Box, faults: Faults) -> 
     faults.refuse_unless(
         wide <= most + 1e-9,
         "flex.thread_hole_mm",
-        f"{wide:g} given, the board's edge is {to_edge:.2f} mm from the middle of such a hole: at "
-        f"most {most:.2f} is allowed, so that no silicone runs past the board",
+        f"is {wide:g}; at most {most:.2f} is allowed, because the board ends {to_edge:.2f} mm from "
+        "the centre of the hole and must cover it against silicone",
     )
 
 
@@ -112,40 +112,40 @@ def _refuse_heights(config: Input, faults: Faults) -> None:
         (
             left >= p.printer.min_wall_mm - 1e-9,
             "flex.groove_depth_mm",
-            f"{flex.groove_depth_mm:g} given, which leaves {left:.2f} mm of plate before the "
+            f"is {flex.groove_depth_mm:g}, which leaves {left:.2f} mm of plate before the "
             f"groove; at least {p.printer.min_wall_mm:g} is needed",
         ),
         (
             rim >= 2 * line_mm - 1e-9,
             "flex.groove_mm",
-            f"{flex.groove_mm:g} given, which leaves a rim of {rim:.2f} mm between gaps of "
+            f"is {flex.groove_mm:g}, which leaves a rim of {rim:.2f} mm between gaps of "
             f"{flex.glue_mm:g}{fitted}; at least two printed lines of {line_mm:g} are needed",
         ),
         (
             flex.groove_depth_mm - flex.glue_mm >= 2 * line_mm / 3,
             "flex.groove_depth_mm",
-            f"{flex.groove_depth_mm:g} given, which leaves a rim "
+            f"is {flex.groove_depth_mm:g}, which leaves a rim "
             f"{flex.groove_depth_mm - flex.glue_mm:.2f} mm high; at least {2 * line_mm / 3:g} is "
             "needed",
         ),
         (
             flex.pad_mm >= p.printer.min_wall_mm - 1e-9,
             "flex.pad_mm",
-            f"{flex.pad_mm:g} given, at least printer.min_wall_mm = {p.printer.min_wall_mm:g} is "
+            f"is {flex.pad_mm:g}; at least printer.min_wall_mm = {p.printer.min_wall_mm:g} is "
             "needed",
         ),
         (
             p.backing.tail_mm <= p.stack.floor_mm,
             "backing.tail_mm",
-            f"{p.backing.tail_mm:g} given, at most stack.floor_mm = {p.stack.floor_mm:g} is "
-            "allowed: behind a bendable plate lies the interface",
+            f"is {p.backing.tail_mm:g}; at most stack.floor_mm = {p.stack.floor_mm:g} is "
+            "allowed, because the interface lies behind the plate",
         ),
         (
             nose is None or reach <= nose.front_w_mm + 1e-9,
             "flex.standoff_mm",
-            f"{flex.standoff_mm:g} given, at least "
-            f"{behind_mm(p) - (nose.front_w_mm if nose else 0.0):g} is needed: board, plate and "
-            f"pad must end before the nose of {p.coupling.gripper!r}",
+            f"is {flex.standoff_mm:g}; at least "
+            f"{behind_mm(p) - (nose.front_w_mm if nose else 0.0):g} is needed, so that "
+            f"board, plate and pad end before the nose of {p.coupling.gripper!r}",
         ),
     ):
         faults.refuse_unless(holds, field, message)

@@ -24,20 +24,20 @@ def derive_stack(config: Input, faults: Faults) -> Stack:
     faults.refuse_unless(
         math.isclose(p.stack.film_mm, film.thickness_mm),
         "stack.film_mm",
-        f"{p.stack.film_mm:g} given, but {p.mask.film!r} is {film.thickness_mm:g} mm thick: "
-        "change one of them",
+        f"is {p.stack.film_mm:g}; {p.mask.film!r} is {film.thickness_mm:g} mm thick. Change one of "
+        "them.",
     )
     faults.refuse_unless(
         p.stack.floor_mm >= p.printer.min_wall_mm,
         "stack.floor_mm",
-        f"{p.stack.floor_mm:g} given, at least printer.min_wall_mm = "
+        f"is {p.stack.floor_mm:g}; at least printer.min_wall_mm = "
         f"{p.printer.min_wall_mm:g} is needed behind a pocket {p.stack.pcb_mm:g} mm deep",
     )
     least, most = FLEXIBLE_MM if is_flex(p) else STIFF_MM
     faults.refuse_unless(
         least <= p.stack.pcb_mm <= most,
         "stack.pcb_mm",
-        f"{p.stack.pcb_mm:g} given, for backing.variant = {p.backing.variant!r} {least:g} to "
+        f"is {p.stack.pcb_mm:g}; with backing.variant = {p.backing.variant!r}, {least:g} to "
         f"{most:g} is allowed",
     )
     heights = {
@@ -52,7 +52,7 @@ def derive_stack(config: Input, faults: Faults) -> Stack:
         faults.refuse_unless(
             left >= LEAST_SILICONE_MM - 1e-9,
             "stack.silicone_mm",
-            f"{p.stack.silicone_mm:g} given, which leaves {left:.2f} mm over {field}, "
+            f"is {p.stack.silicone_mm:g}, which leaves {left:.2f} mm over {field}, "
             f"{height:g} mm high; at least {height + LEAST_SILICONE_MM:.2f} is needed",
         )
     return Stack(
@@ -76,19 +76,19 @@ def derive_tip(p: Parameters, outline: Outline, board: Board, stack: Stack, faul
     faults.refuse_unless(
         not stack.sunk or p.tip.slant_start_mm <= to_pocket + 1e-6,
         "tip.slant_start_mm",
-        f"{p.tip.slant_start_mm:g} given, at most {to_pocket:.3f} is allowed: there the pocket "
-        f"begins, whose floor is only {p.stack.floor_mm:g} mm thick",
+        f"is {p.tip.slant_start_mm:g}; at most {to_pocket:.3f} is allowed, up to the "
+        f"pocket, whose floor is only {p.stack.floor_mm:g} mm thick",
     )
     faults.refuse_unless(
         p.tip.edge_mm < plate,
         "tip.edge_mm",
-        f"{p.tip.edge_mm:g} given, less than the plate's {plate:g} mm is allowed",
+        f"is {p.tip.edge_mm:g}; less than the plate's {plate:g} mm is allowed",
     )
     angle = math.degrees(math.atan2(plate - p.tip.edge_mm, outline.tip_y_mm - start_y))
     faults.refuse_unless(
         angle <= 45 + 1e-9,
         "tip.slant_start_mm",
-        f"{p.tip.slant_start_mm:g} given, which makes a wedge of {angle:.0f}° behind the tip; "
+        f"is {p.tip.slant_start_mm:g}, which makes a wedge of {angle:.0f}° behind the tip; "
         f"at least {plate - p.tip.edge_mm:g} is needed for 45°",
     )
     return Tip(start_y, p.tip.edge_mm, angle)
@@ -101,13 +101,12 @@ def derive_printing(config: Input, outline: Outline, faults: Faults) -> Printing
     faults.refuse_unless(
         p.tip.edge_mm >= printer.line_mm - 1e-9,
         "tip.edge_mm",
-        f"{p.tip.edge_mm:g} given, at least one printed line of {printer.line_mm:g} is needed",
+        f"is {p.tip.edge_mm:g}; at least one printed line of {printer.line_mm:g} is needed",
     )
     faults.refuse_unless(
         p.printer.min_wall_mm >= printer.line_mm,
         "printer.min_wall_mm",
-        f"{p.printer.min_wall_mm:g} given, at least one printed line of {printer.line_mm:g} "
-        "is needed",
+        f"is {p.printer.min_wall_mm:g}; at least one printed line of {printer.line_mm:g} is needed",
     )
     width = float(abs(outline.polygon()[:, 0]).max()) * 2 + 2 * p.mould.wall_mm + MOULD_ROOM_MM
     length = outline.length_mm + 3 * p.mould.wall_mm + MOULD_ROOM_MM + TROUGH_ROOM_MM
@@ -115,8 +114,8 @@ def derive_printing(config: Input, outline: Outline, faults: Faults) -> Printing
     faults.refuse_unless(
         width <= bed[0] and length <= min(bed[1], bed[2]),
         "printer.profile",
-        f"{p.printer.profile!r} given, its {bed[0]:g} x {bed[1]:g} x {bed[2]:g} mm cannot take "
-        f"a mould of {width:.0f} x {length:.0f} mm or a finger {length:.0f} mm tall",
+        f"is {p.printer.profile!r}, with a volume of {bed[0]:g} x {bed[1]:g} x {bed[2]:g} mm; "
+        f"a mould of {width:.0f} x {length:.0f} mm or a finger {length:.0f} mm tall does not fit",
     )
     return Printing(
         p.backing.material,

@@ -65,8 +65,8 @@ def derive_fit_plate(config: Input, plan: Plan, mount: Mount, faults: Faults) ->
     faults.refuse_unless(
         width <= bed[0] and depth <= bed[1],
         "printer.profile",
-        f"{p.printer.profile!r} given, its bed of {bed[0]:g} x {bed[1]:g} mm cannot take a fit "
-        f"test plate of {width:.0f} x {depth:.0f} mm",
+        f"is {p.printer.profile!r}, with a bed of {bed[0]:g} x {bed[1]:g} mm; a fit test plate of "
+        f"{width:.0f} x {depth:.0f} mm does not fit",
     )
     return replace(plate, volume_ml=_volume_mm3(plate, mount) / 1000)
 

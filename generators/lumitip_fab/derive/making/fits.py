@@ -45,8 +45,8 @@ def refuse_touching(config: Input, field: str, clearance_mm: float, faults: Faul
     faults.refuse_unless(
         fit_mm >= 0 or left_mm >= LEAST_GAP_MM - 1e-9,
         "printer.fit_mm",
-        f"{fit_mm:g} given, which leaves {left_mm:.2f} mm of {field} = {clearance_mm:g}, as drawn; "
-        f"at least {min(LEAST_GAP_MM - clearance_mm, 0.0):.2f} is needed, or more clearance",
+        f"is {fit_mm:g}, which leaves {left_mm:.2f} mm of {field} = {clearance_mm:g}, as drawn; "
+        f"at least {min(LEAST_GAP_MM - clearance_mm, 0.0):.2f} is needed, or a larger clearance",
     )
 
 

@@ -19,8 +19,8 @@ def derive_slicing(config: Input, mould: Mould, faults: Faults) -> Slicing:
     faults.refuse_unless(
         good,
         "backing.material",
-        f"{name!r} given, whose rigid_parts {other!r} is no filament of parts/filaments.toml "
-        "that does without rigid_parts",
+        f"is {name!r}, whose rigid_parts is {other!r}; the name of a filament without "
+        "rigid_parts in parts/filaments.toml is needed",
     )
     rigid = other if good else name
     density = p.backing.density_g_ml
@@ -57,10 +57,10 @@ def _filament(config: Input, name: str, density_g_ml: float) -> Filament:
 JOINT_C = 250.0
 """A joint of lead-free solder, under an iron or in reflow. SAC305 melts at 217 to 220 °C."""
 _REMEDY = {
-    "solder": ("stack.pcb_mm", "a laminate in parts/laminates.toml that bears soldering"),
+    "solder": ("stack.pcb_mm", "a laminate in parts/laminates.toml that withstands soldering"),
     "cure": (
         "mould.silicone",
-        "a silicone that cures cooler, or parts of a filament that bears it",
+        "a silicone that cures at a lower temperature, or a filament that withstands it",
     ),
     "crease": ("mask.film", "another film in parts/films.toml"),
 }
@@ -115,7 +115,7 @@ def _refuse(step: HeatStep, config: Input, faults: Faults) -> None:
         faults.refuse_unless(
             step.temperature_c <= part.limit_c,
             field,
-            f"{config.value(field)!r} given; step {step.name!r} heats {step.place} to "
-            f"{step.temperature_c:g} °C; the {part.name} of {part.material} bears at most "
-            f"{part.limit_c:g} °C. Take {remedy}",
+            f"is {config.value(field)!r}; step {step.name!r} heats {step.place} to "
+            f"{step.temperature_c:g} °C; the {part.name} of {part.material} withstands "
+            f"{part.limit_c:g} °C. Choose {remedy}.",
         )

@@ -26,8 +26,8 @@ def derive_fasteners(config: Input, faults: Faults) -> tuple[Fastener, ...]:
         faults.refuse_unless(
             thread in known,
             field,
-            f"{_shown(config, field)} given, which needs {thread} screws; parts/fasteners.toml has "
-            f"{', '.join(known)}: add an entry for {thread} to it",
+            f"is {_shown(config, field)}, which needs {thread} screws; parts/fasteners.toml has "
+            f"{', '.join(known)}. Add an entry for {thread}.",
         )
     if not all(thread in known for _, thread in wanted):
         faults.stop()
@@ -36,8 +36,8 @@ def derive_fasteners(config: Input, faults: Faults) -> tuple[Fastener, ...]:
     faults.refuse_unless(
         gripper.counterbore_mm >= head - 1e-9,
         "coupling.gripper",
-        f"{p.coupling.gripper!r} given, whose counterbore_mm = {gripper.counterbore_mm:g} is too "
-        f"narrow for the head of an {gripper.bolt}: at least {head:g} is needed",
+        f"is {p.coupling.gripper!r}, whose counterbore_mm = {gripper.counterbore_mm:g} is too "
+        f"small for the head of an {gripper.bolt}; at least {head:g} is needed",
     )
     if p.flange.enabled:
         _refuse_hole(config, "flange.coupling", coupling.bolt, coupling.bolt_hole_mm, faults)
@@ -67,8 +67,8 @@ def _refuse_hole(config: Input, field: str, thread: str, hole_mm: float, faults:
     faults.refuse_unless(
         fine - 1e-9 <= hole_mm <= coarse + 1e-9,
         field,
-        f"{_shown(config, field)} given, whose bolt_hole_mm = {hole_mm:g} is no clearance hole of "
-        f"an {thread}: {fine:g} to {coarse:g} is allowed (ISO 273)",
+        f"is {_shown(config, field)}, whose bolt_hole_mm = {hole_mm:g} is not a clearance hole "
+        f"for an {thread}; {fine:g} to {coarse:g} is allowed (ISO 273)",
     )
 
 

@@ -134,28 +134,29 @@ def _refuse(config: Input, flange: Flange, faults: Faults) -> None:
     faults.refuse_unless(
         floor >= least - 1e-9,
         "flange.contacts",
-        f"{p.contacts!r} given, {flange.contacts_mm:g} mm high, which leaves {floor:.2f} mm of "
-        f"floor under the solder tails; at least {least:g} is needed: longer contacts, or less "
-        "flange.tail_mm",
+        f"is {p.contacts!r}, {flange.contacts_mm:g} mm high, which leaves {floor:.2f} mm of floor "
+        f"under the solder tails; at least {least:g} mm is needed. Use longer contacts or reduce "
+        "flange.tail_mm.",
     )
     faults.refuse_unless(
         p.web_mm >= least,
         "flange.web_mm",
-        f"{p.web_mm:g} given, printer.min_wall_mm is {least:g}: at least that is needed",
+        f"is {p.web_mm:g}; at least printer.min_wall_mm = {least:g} is needed",
     )
     room = flange.socket_z_mm - least - flange.seat_z_mm
     faults.refuse_unless(
         flange.pin_depth_mm <= room + 1e-9,
         "flange.header",
-        f"{p.header!r} given, which makes the flange {flange.top_z_mm:.1f} mm high: its locating "
-        f"pin finds {room:.1f} mm, {flange.pin_depth_mm:g} are needed: a higher header",
+        f"is {p.header!r}, which makes the flange {flange.top_z_mm:.1f} mm high, with "
+        f"{room:.1f} mm for its locating pin; {flange.pin_depth_mm:g} mm is needed. Choose a "
+        "taller header.",
     )
     rim = (flange.face_mm - flange.recess_mm) / 2
     faults.refuse_unless(
         rim >= least - 1e-9,
         "flange.coupling",
-        f"{p.coupling!r} given, which leaves {rim:.2f} mm of wall round the gripper's recess of "
-        f"{flange.recess_mm:g} mm; at least {least:g} is needed",
+        f"is {p.coupling!r}, which leaves {rim:.2f} mm of wall round the gripper's recess of "
+        f"{flange.recess_mm:g} mm; at least {least:g} mm is needed",
     )
     refuse_touching(config, "flange.clearance_mm", p.clearance_mm, faults)
     _refuse_walls(config, flange, coupling, faults)
@@ -177,8 +178,8 @@ def _refuse_walls(config: Input, flange: Flange, coupling: ToolCoupling, faults:
         faults.refuse_unless(
             min(inside, outside) >= least_mm,
             "flange.coupling",
-            f"{name!r} given, where {what} leaves {inside:.2f} mm of wall to the board's pocket "
-            f"and {outside:.2f} to the outside{fitted}: at least {least_mm:g} is needed",
+            f"is {name!r}, where {what} leaves {inside:.2f} mm of wall to the board's pocket "
+            f"and {outside:.2f} mm to the outside{fitted}; at least {least_mm:g} mm is needed",
         )
     box, corner = flange.pocket, flange.pocket_corner_mm
     reach = max(
@@ -189,8 +190,8 @@ def _refuse_walls(config: Input, flange: Flange, coupling: ToolCoupling, faults:
     faults.refuse_unless(
         reach <= radius - least_mm,
         "flange.coupling",
-        f"{name!r} given, whose recess of {coupling.recess_mm:g} mm is too small for the board"
-        f"{fitted}: at least {coupling.recess_mm + 2 * (reach + least_mm - radius):.1f} is needed",
+        f"is {name!r}, whose recess of {coupling.recess_mm:g} mm is too small for the board"
+        f"{fitted}; at least {coupling.recess_mm + 2 * (reach + least_mm - radius):.1f} is needed",
     )
 
 

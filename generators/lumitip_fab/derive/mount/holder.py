@@ -24,10 +24,10 @@ def derive_holder(
     """The holder of the breakout board; none without that board, or without a round body."""
     p, body = config.parameters, held_by(config).envelope
     of = next((carrier for carrier in carriers if carrier.name == "breakout"), None)
-    given_mm, body_from = p.holder.body_mm, "holder.body_mm"
-    if given_mm == "gripper":
+    source, body_from = p.holder.body_mm, "holder.body_mm"
+    if source == "gripper":
         body_from = f"{config.title('coupling.gripper')}, {body.confidence}"
-    body_mm = body.round_mm if given_mm == "gripper" else given_mm
+    body_mm = body.round_mm if source == "gripper" else source
     if of is None or body_mm is None:
         return ()
     drawn, screw = Drawn(p.printer.fit_mm), config.catalogue.fasteners[p.holder.screw]
@@ -80,12 +80,12 @@ def _refuse(config: Input, of: Carrier, holder: Holder, faults: Faults) -> None:
     p, outer = config.parameters.holder, holder.cradle_mm + holder.wall_mm
     beyond = holder.outer.x_max_mm - outer
     if beyond > 0:
-        told = f"{holder.body_mm:g} given"
+        value = f"{holder.body_mm:g}"
         if p.body_mm == "gripper":
-            told = f"'gripper' given, whose entry has {holder.body_mm:g} mm"
+            value = f"'gripper', whose entry has {value} mm"
         faults.refuse(
             "holder.body_mm",
-            f"{told}, the tray is {holder.outer.width_mm:.1f} mm wide: at least "
+            f"is {value}; the tray is {holder.outer.width_mm:.1f} mm wide: at least "
             f"{math.ceil((holder.body_mm + 2 * beyond) * 10) / 10:g} is needed",
         )
         return
@@ -96,8 +96,8 @@ def _refuse(config: Input, of: Carrier, holder: Holder, faults: Faults) -> None:
     faults.refuse_unless(
         grip >= LEAST_GRIP_MM,
         "holder.wrap_deg",
-        f"{p.wrap_deg:g} given, which leaves the arms' ends {grip:.2f} mm inside the body's widest "
-        f"place; at least {LEAST_GRIP_MM:g} holds: wrap farther, or less holder.clearance_mm",
+        f"is {p.wrap_deg:g}, with the arms' ends {grip:.2f} mm inside the body's widest place; at "
+        f"least {LEAST_GRIP_MM:g} mm is needed. Increase it or reduce holder.clearance_mm.",
     )
     free_deg = holder.wrap_deg - _shoulder_deg(holder.outer.x_max_mm, outer)
     length = outer * math.radians(free_deg)
@@ -105,8 +105,8 @@ def _refuse(config: Input, of: Carrier, holder: Holder, faults: Faults) -> None:
     faults.refuse_unless(
         strain <= MOST_STRAIN,
         "holder.wrap_deg",
-        f"{p.wrap_deg:g} given, clipping on would stretch the arms by {100 * strain:.1f} %; at "
-        f"most {100 * MOST_STRAIN:g} % is allowed: wrap less, or thinner holder.wall_mm",
+        f"is {p.wrap_deg:g}; clipping on strains the arms by {100 * strain:.1f} %; at most "
+        f"{100 * MOST_STRAIN:g} % is allowed. Reduce it or holder.wall_mm.",
     )
     half_x, half_y = holder.boss_mm[0] / 2, holder.boss_mm[2] / 2
     tails = [
@@ -119,8 +119,8 @@ def _refuse(config: Input, of: Carrier, holder: Holder, faults: Faults) -> None:
     faults.refuse_unless(
         min(tails, default=math.inf) >= half_y,
         "holder.standoff_mm",
-        f"{p.standoff_mm:g} given, the bosses under the screws would be {2 * half_y:.1f} mm wide "
-        f"and reach solder tails: at most {min(tails, default=0.0) - holder.boss_mm[1] / 2:.2f} is "
+        f"is {p.standoff_mm:g}; the bosses under the screws would be {2 * half_y:.1f} mm wide "
+        f"and reach solder tails; at most {min(tails, default=0.0) - holder.boss_mm[1] / 2:.2f} is "
         "allowed",
     )
 
@@ -133,7 +133,7 @@ def _refuse_holes(config: Input, of: Carrier, faults: Faults) -> None:
     faults.refuse_unless(
         least - 1e-9 <= of.hole_mm <= most + 1e-9,
         "breakout.hole_mm",
-        f"{of.hole_mm:g} given, {least:g} to {most:g} is allowed for an {thread} (holder.screw) "
+        f"is {of.hole_mm:g}; {least:g} to {most:g} is allowed for an {thread} (holder.screw) "
         f"and its head of {screw.cap_head_mm:g} mm",
     )
 
@@ -151,9 +151,9 @@ def _refuse_nuts(config: Input, holder: Holder, faults: Faults) -> None:
         faults.refuse_unless(
             holder.cradle_mm - body >= needed,
             "holder.screw",
-            f"{holder.screw!r} given, whose {what} reach {needed:.2f} mm under their seat, where "
-            f"{holder.cradle_mm - body:.2f} are left to the gripper: thinner screws, or more "
-            "breakout.hole_spacing_mm",
+            f"is {holder.screw!r}, whose {what} reach {needed:.2f} mm under their seat; the "
+            f"gripper is {holder.cradle_mm - body:.2f} mm away. Choose thinner screws or increase "
+            "breakout.hole_spacing_mm.",
         )
 
 
@@ -166,13 +166,13 @@ def _refuse_straps(config: Input, holder: Holder, faults: Faults) -> None:
     faults.refuse_unless(
         least - 1e-9 <= p.strap_spacing_mm <= most + 1e-9,
         "holder.strap_spacing_mm",
-        f"{p.strap_spacing_mm:g} given, {room} for holes of {p.strap_hole_mm:g} mm in arms "
+        f"is {p.strap_spacing_mm:g}; {room} for holes of {p.strap_hole_mm:g} mm in arms "
         f"{holder.outer.length_mm:g} mm wide, with walls of {wall:g} mm beside them",
     )
     reach = math.radians(holder.wrap_deg - holder.strap_deg) * holder.cradle_mm
     faults.refuse_unless(
         reach - p.strap_hole_mm / 2 >= wall,
         "holder.strap_hole_mm",
-        f"{p.strap_hole_mm:g} given, the arms end {reach:.1f} mm from the middle of their holes: "
-        f"at most {2 * (reach - wall):.1f} is allowed, or more holder.wrap_deg",
+        f"is {p.strap_hole_mm:g}; the arms end {reach:.1f} mm from the centre of their holes; at "
+        f"most {2 * (reach - wall):.1f} is allowed. Reduce it or increase holder.wrap_deg.",
     )

@@ -36,7 +36,7 @@ def derive_mount(config: Input, outline: Outline, plan: Plan, faults: Faults) ->
     faults.refuse_unless(
         front <= most,
         field,
-        f"{value:g} given, which leaves no wall before the bolt's counterbore; at "
+        f"is {value:g}, which leaves no wall before the counterbore of the bolt; at "
         f"most {most - before:.2f} is allowed",
     )
     pins = gripper.pins
@@ -83,20 +83,20 @@ def _refuse_place(
     faults.refuse_unless(
         length <= outline.length_mm - p.tip.slant_start_mm and opening < length,
         "coupling.gripper",
-        f"{p.coupling.gripper!r} given, its block and 45° ramp need {length:.1f} mm of finger "
+        f"is {p.coupling.gripper!r}; its block and 45° ramp need {length:.1f} mm of finger "
         f"beyond a wire notch of {opening:.1f} mm; the finger is {outline.length_mm:.1f} mm long",
     )
     waist = outline.half_width_at(outline.end_y_mm + length)
     faults.refuse_unless(
         waist >= gripper.block_width_mm / 2 + HOLE_TO_EDGE_MM,
         "coupling.gripper",
-        f"{p.coupling.gripper!r} given, its block is {gripper.block_width_mm:g} mm wide and the "
-        f"finger {2 * waist:.1f} mm",
+        f"is {p.coupling.gripper!r}; its block is {gripper.block_width_mm:g} mm wide, the finger "
+        f"only {2 * waist:.1f} mm; {HOLE_TO_EDGE_MM:g} mm on each side is needed",
     )
     faults.refuse_unless(
         ramp > 0,
         "stack.floor_mm",
-        f"{p.stack.floor_mm:g} given, which makes a plate of {plate:g} mm; less than the "
+        f"is {p.stack.floor_mm:g}, which makes a plate of {plate:g} mm; less than the "
         f"{gripper.block_back_w_mm:g} mm of the block of {p.coupling.gripper!r} is allowed",
     )
 
@@ -121,8 +121,8 @@ def _refuse_holes(config: Input, gripper: Gripper, faults: Faults) -> None:
         faults.refuse_unless(
             wall >= least - 1e-9,
             "coupling.gripper",
-            f"{p.coupling.gripper!r} given, whose block keeps {wall:.2f} mm {place}; at least "
-            f"{least:g} is needed",
+            f"is {p.coupling.gripper!r}, whose block has {wall:.2f} mm of wall {place}; at "
+            f"least {least:g} mm is needed",
         )
 
 
@@ -157,8 +157,8 @@ def _letter(config: Input, gripper: Gripper, faults: Faults) -> Letter:
     faults.refuse_unless(
         min(high - low, wide / WIDTH) >= least and deep >= LEAST_DEPTH_MM,
         "coupling.gripper",
-        f"{p.coupling.gripper!r} given, whose block has no room on its back for the letter that "
-        f"tells the fingers apart: {wide:.1f} mm between its corners, {gripper.land_mm:g} mm of "
+        f"is {p.coupling.gripper!r}, whose block has no room on its back for the letter that "
+        f"marks the finger: {wide:.1f} mm between its corners, {gripper.land_mm:g} mm of "
         f"land and {behind:.1f} mm of wall behind the bolt; at least {WIDTH * least:.1f}, "
         f"{least + 2 * margin:g} and {p.printer.min_wall_mm + LEAST_DEPTH_MM:g} "
         "are needed",
@@ -192,20 +192,20 @@ def derive_closing(
     faults.refuse_unless(
         outline.tip_y_mm - y <= CONTACT_MM,
         "coupling.gripper",
-        f"{mount.gripper!r} given, whose tilt of {mount.tilt_deg:g}° lets the fingers touch first "
-        f"{outline.tip_y_mm - y:.1f} mm from the tip; at most {CONTACT_MM:g} mm is allowed: a tilt "
-        "of 0 or more",
+        f"is {mount.gripper!r}, whose tilt of {mount.tilt_deg:g}° makes the fingers touch first "
+        f"{outline.tip_y_mm - y:.1f} mm from the tip; at most {CONTACT_MM:g} mm is allowed. Use a "
+        "tilt of 0° or more.",
     )
     faults.refuse_unless(
         opening >= 10,
         "coupling.gripper",
-        f"{mount.gripper!r} given, these fingers open to {opening:.1f} mm in it; at least 10 mm "
+        f"is {mount.gripper!r}, in which these fingers open to {opening:.1f} mm; at least 10 mm "
         "is needed",
     )
     faults.refuse_unless(
         opening <= mount.stroke_mm,
         "coupling.gripper",
-        f"{mount.gripper!r} given, in which these fingers stay {opening - mount.stroke_mm:.1f} mm "
-        "apart when it is closed: its bolt_w_mm less its pad_w_mm must grow by half of that",
+        f"is {mount.gripper!r}, in which these fingers stay {opening - mount.stroke_mm:.1f} mm "
+        "apart when it is closed. Increase bolt_w_mm - pad_w_mm of its entry by half of that.",
     )
     return Closing(y, reach, opening)

@@ -224,13 +224,14 @@ def _refuse_thick(config: Input, cable: Cable, boards: Boards, faults: Faults) -
     drill_mm = min(_drill_mm(end, boards) for end in (cable.start, cable.end))
     most = math.pi / 4 * ((drill_mm - DRILL_ROOM_MM) / STRANDED) ** 2
     amps_ma = max(wire.current_ma for wire in cable.wires)
-    why = f", {section:g} mm² is needed for {amps_ma:.0f} mA" if section > asked else ""
+    need = f"{section:g} mm² is needed for {amps_ma:.0f} mA, but " if section > asked else ""
     faults.refuse_unless(
         section <= most,
         "wiring.section_mm2",
-        f"{asked:g} given{why}; strands of at most {math.floor(1000 * most) / 1000:g} mm² go into "
-        f"the holes of {drill_mm:g} mm at the ends of {cable.name}, {cable.start.board} to "
-        f"{cable.end.board}" + (": less emitter.current_ma is needed" if why else ""),
+        f"is {asked:g}; {need}the holes of {drill_mm:g} mm at the ends of {cable.name} "
+        f"({cable.start.board} to {cable.end.board}) take strands of at most "
+        f"{math.floor(1000 * most) / 1000:g} mm²"
+        + (". Reduce emitter.current_ma." if need else ""),
     )
 
 

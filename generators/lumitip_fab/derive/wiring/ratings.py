@@ -118,7 +118,7 @@ def string_current_ma(
         leds: how many there are.
         ohm: the resistor.
         forward_v: of an LED at `at_ma`.
-        at_ma: current at which the forward voltage is given.
+        at_ma: current at which the forward voltage is measured.
         ideality: of the LEDs.
     """
     low, high = 0.0, 1000 * supply_v / ohm
@@ -205,12 +205,12 @@ def _refuse(config: Input, duties: Iterable[_Duty], faults: Faults) -> None:
         faults.refuse_unless(
             needed_v <= part.rated_v,
             duty.field,
-            f"{name!r} given, made for {part.rated_v:g} V; {needed_v:g} V are needed here",
+            f"is {name!r}, rated {part.rated_v:g} V; a rating of {needed_v:g} V is needed",
         )
         there_nf, (least, most) = part.capacitance_nf, duty.asked_nf
         faults.refuse_unless(
             least <= there_nf * part.left and there_nf <= most,
             duty.field,
-            f"{name!r} given, {there_nf:g} nF, of which {there_nf * part.left:g} are sure to be "
-            f"left; {duty.beside!r} needs {least:g} to {most:g} nF",
+            f"is {name!r}, {there_nf:g} nF ({there_nf * part.left:g} nF after DC-bias derating); "
+            f"{duty.beside!r} needs {least:g} to {most:g} nF",
         )
