@@ -16,7 +16,7 @@ from lumitip_fab.checks.slicing import slice_parts
 from lumitip_fab.cli.build import build
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
-from lumitip_fab.design.encoding import design_text, read_design, settled
+from lumitip_fab.design.encoding import design_text, read_design, round_trip
 from lumitip_fab.errors import FabError
 from lumitip_fab.parts.fit_plate import fit_plate_files
 from lumitip_fab.parts.settings import print_settings
@@ -232,7 +232,7 @@ def test_a_fit_test_plate_passes_its_checks_and_prints_in_ten_minutes(
     gripper: str, held_by: File, tmp_path: Path
 ) -> None:
     file = held_by("bench_jaw", OWN[gripper]) if gripper in OWN else held_by(gripper)
-    design = settled(derive(load(file)))
+    design = round_trip(derive(load(file)))
     made = fit_plate_files(design.fit_plate, design.mount)
     made += print_settings(design.title, design.printing, design.slicing, design.interfaces)
     for artefact in made:

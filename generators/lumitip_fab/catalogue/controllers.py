@@ -26,9 +26,9 @@ class Strip(Entry):
     """One or two rows of contacts in plated holes."""
 
     manufacturer: str = Field(min_length=1, max_length=64)
-    """Who makes it, for the bill of materials; "any" where it does not matter."""
+    """Manufacturer, for the bill of materials; "any" where it does not matter."""
     order_number: str = Field(min_length=1, max_length=64)
-    """What to order."""
+    """Order number."""
     lcsc: str = Field(default="", pattern=r"^(C[1-9]\d*)?$")
     """Number at the distributor LCSC; empty where it is not known."""
     ways: int = Field(ge=1, le=64)
@@ -44,11 +44,11 @@ class Strip(Entry):
     height_mm: Length
     """Above the board."""
     stroke_mm: float = Field(default=0, ge=0, le=10)
-    """How far spring contacts give; 0 of others."""
+    """Travel of spring contacts; 0 for others."""
 
 
 class Plug(Strict):
-    """How a controller board stands on two socket strips, its USB plug to the left.
+    """A controller board on two socket strips, its USB plug to the left.
 
     ```
          rows[1][0] … rows[1][-1]
@@ -78,9 +78,9 @@ class Leaded(Entry):
     """A small part with gull-wing leads in two rows, lead 1 at the lower left."""
 
     manufacturer: str = Field(min_length=1, max_length=64)
-    """Who makes it, for the bill of materials."""
+    """Manufacturer, for the bill of materials."""
     order_number: str = Field(min_length=1, max_length=64)
-    """What to order."""
+    """Order number."""
     lcsc: str = Field(default="", pattern=r"^(C[1-9]\d*)?$")
     """Number at the distributor LCSC; empty where it is not known."""
     body_mm: tuple[Length, Length, Length]
@@ -172,9 +172,9 @@ class Module(Strict):
     """
 
     manufacturer: str = Field(min_length=1, max_length=64)
-    """Who makes it, for the bill of materials."""
+    """Manufacturer, for the bill of materials."""
     order_number: str = Field(min_length=1, max_length=64)
-    """What to order."""
+    """Order number."""
     lcsc: str = Field(default="", pattern=r"^(C[1-9]\d*)?$")
     """Number at the distributor LCSC; empty where it is not known."""
     body_mm: tuple[Length, Length, Length]
@@ -234,9 +234,9 @@ class Controller(Entry):
     draws_ma: float = Field(default=0.0, ge=0, le=2000)
     """Largest current of the board itself; 0 where it is not known (mA)."""
     plug: Plug | None = None
-    """How it stands on sockets, if it does."""
+    """Its pins, if it plugs into sockets."""
     module: Module | None = None
-    """How it is soldered to the flange's board, if it is."""
+    """Its pads, if it is soldered to the flange's board."""
 
     @model_validator(mode="after")
     def _pins_differ(self) -> Self:
@@ -246,8 +246,8 @@ class Controller(Entry):
             raise ValueError(f"has {', '.join(twice)} twice; each pin is used once")
         if self.plug is not None:
             there = {*self.plug.rows[0], *self.plug.rows[1]}
-            wanted = (*pins, self.plug.ground, self.plug.supply, self.plug.regulated)
-            lost = sorted(set(wanted) - there)
+            needed = (*pins, self.plug.ground, self.plug.supply, self.plug.regulated)
+            lost = sorted(set(needed) - there)
             if lost:
                 raise ValueError(f"has {', '.join(lost)}, missing in the rows of its plug")
         if self.module is not None:

@@ -8,12 +8,12 @@ from lumitip_fab.catalogue.record import Capacitances, Entry, Length
 
 
 class Bought(Entry):
-    """What every part that is soldered to a board carries."""
+    """Fields of every part that is soldered to a board."""
 
     manufacturer: str = Field(min_length=1, max_length=64)
-    """Who makes it, for the bill of materials; "any" where it does not matter."""
+    """Manufacturer, for the bill of materials; "any" where it does not matter."""
     order_number: str = Field(min_length=1, max_length=64)
-    """What to order; of resistors, `{code}` stands for the value, such as 75K or 4K99."""
+    """Order number; for resistors, `{code}` stands for the value, such as 75K or 4K99."""
     lcsc: str = Field(default="", pattern=r"^(C[1-9]\d*)?$")
     """Number at the distributor LCSC, by which JLCPCB finds a part; empty where it is not known,
     and of resistors, whose number depends on the value."""
@@ -37,7 +37,7 @@ class Chip(Bought):
 
 
 class Optical(Chip):
-    """A chip that shines or sees through its top."""
+    """A chip that emits or detects light through its top."""
 
     die_height_mm: Length
     """Height of the light-emitting or light-sensitive surface above the board."""
@@ -58,7 +58,7 @@ class Led(Optical):
     forward_voltage_v: float = Field(ge=0.1, le=10)
     """Forward voltage at the working current."""
     forward_tolerance_v: float = Field(ge=0, le=2)
-    """How far the forward voltage of one part may be off, either way."""
+    """Tolerance of the forward voltage, either way."""
     ideality: float = Field(ge=1, le=5)
     """Ideality factor n: how its voltage grows with the logarithm of its current."""
     marked: Literal["anode", "cathode"]
@@ -99,9 +99,9 @@ class Capacitor(Chip):
     capacitance_nf: float = Field(gt=0, le=1e6)
     """Capacitance."""
     rated_v: float = Field(gt=0, le=1e4)
-    """Largest voltage."""
+    """Rated voltage."""
     left: float = Field(default=1, gt=0, le=1)
-    """Share of it that is left at the voltage across it."""
+    """DC-bias derating: fraction of the capacitance at the working voltage."""
 
 
 class Inductor(Chip):
@@ -115,16 +115,16 @@ class Crystal(Chip):
     """A quartz crystal of 32.768 kHz."""
 
     load_pf: float = Field(gt=0, le=100)
-    """Capacitance that it is made for, of its two capacitors in series with all else there is."""
+    """Load capacitance C_L: its two capacitors in series, with strays."""
 
 
 class Fuse(Chip):
     """A fuse."""
 
     rated_a: float = Field(gt=0, le=100)
-    """Current that it carries."""
+    """Rated current."""
     rated_v: float = Field(gt=0, le=1000)
-    """Voltage that it breaks."""
+    """Rated breaking voltage."""
 
 
 class Multiplexer(Bought):

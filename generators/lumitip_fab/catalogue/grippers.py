@@ -37,12 +37,12 @@ class Pins(Strict):
 
 
 class Origin(Strict):
-    """Where a figure comes from that the entry's `source` does not give."""
+    """Source of a figure that the entry's `source` does not cover."""
 
     source: str = Field(min_length=1)
-    """Where it comes from."""
+    """Source of the figure."""
     confidence: Confidence
-    """How far to trust it."""
+    """Confidence in it."""
 
 
 class Envelope(Sourced):
@@ -62,7 +62,7 @@ class Envelope(Sourced):
     mass_kg: float = Field(gt=0, le=50)
     """Of the gripper."""
     payload_kg: float = Field(gt=0, le=100)
-    """What it may hold."""
+    """Its payload."""
 
     @property
     def round_mm(self) -> float | None:
@@ -83,7 +83,7 @@ class Envelope(Sourced):
 
 
 class Gripper(Entry):
-    """Where a gripper holds a fingertip; distances w are behind the plate's rim plane. Its bolts
+    """Mounting geometry of a gripper; distances w are behind the plate's rim plane. Its bolts
     run along the finger, into the gripper."""
 
     stroke_mm: Length
@@ -124,11 +124,11 @@ class Gripper(Entry):
     @property
     def unsure(self) -> tuple[str, ...]:
         """Names of the figures that neither a datasheet nor a measurement gives."""
-        told = [name for name in FIGURES if getattr(self, name) is not None]
+        known = [name for name in FIGURES if getattr(self, name) is not None]
         trusted = ("datasheet", "measured")
         return tuple(
             name
-            for name in told
+            for name in known
             if (self.origin[name].confidence if name in self.origin else self.confidence)
             not in trusted
         )
@@ -165,8 +165,8 @@ class Contact(Strict):
     carries: Signal
     """Name of its signal; `NC` of a contact to leave open."""
     kind: Kind
-    """What that signal is: `SUPPLY` goes to a supply alone, `GND` to a ground alone, and nothing
-    to a contact that is open."""
+    """Kind of that signal: only `SUPPLY` may be on a supply, only `GND` on a ground, and nothing
+    on an open contact."""
 
     @model_validator(mode="after")
     def _open_is_nc(self) -> Self:
@@ -203,7 +203,7 @@ class ToolCoupling(Entry):
     pin_at_mm: tuple[Place, Place]
     """Axis of the locating pin."""
     pin_depth_mm: Length
-    """How deep it stands in the coupling, below the floor of the recess."""
+    """Depth in the coupling, below the floor of the recess."""
     contacts: tuple[Contact, ...] = Field(min_length=1, max_length=64)
     """Every contact, in the order of their numbers from 1."""
     contacts_depth_mm: Length

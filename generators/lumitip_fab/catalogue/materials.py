@@ -34,7 +34,7 @@ class Filament(Entry):
     """A filament of 1.75 mm."""
 
     kind: Literal["ABS", "ASA", "FLEX", "PA", "PC", "PET", "PLA", "PP"]
-    """What PrusaSlicer calls its kind."""
+    """Its kind in PrusaSlicer."""
     density_g_ml: float = Field(ge=0.5, le=3)
     """Density."""
     nozzle_c: int = Field(ge=150, le=450)
@@ -46,9 +46,9 @@ class Filament(Entry):
     speed_mm_s: float = Field(ge=5, le=300)
     """Speed of perimeters; outer ones and the first layer go slower."""
     max_flow_mm3_s: float = Field(ge=0.5, le=50)
-    """What the nozzle melts."""
+    """Largest volume that the nozzle melts each second."""
     retract_mm: float = Field(ge=0, le=10)
-    """How far it is pulled back before a move."""
+    """Retraction before a move."""
     layer_mpa: float = Field(gt=0, le=500)
     """Tensile strength from layer to layer."""
     bearing_mpa: float = Field(gt=0, le=500)

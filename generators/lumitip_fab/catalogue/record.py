@@ -1,4 +1,4 @@
-"""What every record of the catalogue has in common, and the kinds of values in them."""
+"""Base classes of catalogue records, and the types of their values."""
 
 from typing import Annotated, Literal
 
@@ -32,7 +32,7 @@ Confidence = Literal["datasheet", "measured", "inferred", "assumed"]
 
 
 class Strict(BaseModel):
-    """What every record read from a user's file has in common."""
+    """Base of every record that is read from a user's file."""
 
     model_config = ConfigDict(
         strict=True,
@@ -44,16 +44,16 @@ class Strict(BaseModel):
 
 
 class Sourced(Strict):
-    """Figures that come from somewhere."""
+    """Figures with a source."""
 
     source: str = Field(min_length=1)
-    """Where the figures come from."""
+    """Source of the figures."""
     confidence: Confidence
-    """How far to trust them."""
+    """Confidence in the figures."""
 
 
 class Entry(Sourced):
-    """What every catalogue entry carries."""
+    """Base of every catalogue entry."""
 
     title: str = Field(default="", max_length=64, pattern=TITLE)
-    """What people call it, in manual, bill and drawings; left out, the entry's own name."""
+    """Title in manual, bill and drawings; by default the entry's own name."""

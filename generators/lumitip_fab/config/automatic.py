@@ -14,12 +14,12 @@ Value = float | int | str
 
 @dataclass(frozen=True)
 class Automatic:
-    """How the value of a field is chosen."""
+    """Choice of the value of a field."""
 
     start: Value
     """The value that is kept where it works."""
     follows: str
-    """What the value depends on, in a few words."""
+    """Quantities that the value depends on, in a few words."""
     step: float = 0.0
     """Resolution of a numeric search; 0 where the value is computed or taken from a list."""
     names: str = ""

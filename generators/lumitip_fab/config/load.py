@@ -70,7 +70,7 @@ class Input:
         }
 
     def title(self, field: str) -> str:
-        """What people call the entry that a field in `NAMED` names."""
+        """Title of the entry that a field in `NAMED` names."""
         return self.named_parts()[field].title or str(self.value(field))
 
     def value(self, field: str) -> Any:

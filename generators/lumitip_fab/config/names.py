@@ -1,4 +1,4 @@
-"""What a user may call a design and its device: text of any script."""
+"""Names of a design and its device: text of any script."""
 
 import unicodedata
 from typing import Annotated

@@ -99,7 +99,7 @@ class Tip(Strict):
 
 
 class Coupling(Strict):
-    """How the finger is held."""
+    """Coupling of finger and gripper."""
 
     gripper: Name
     """Name of a gripper in `parts/grippers.toml`."""
@@ -180,7 +180,7 @@ class Controller(Strict):
 
 
 class Supply(Strict):
-    """What the robot feeds the emitter with."""
+    """Supply of the emitter, from the robot."""
 
     voltage_v: float = Field(gt=2, le=48)
     """Supply voltage (V)."""

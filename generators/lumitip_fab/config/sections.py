@@ -71,7 +71,7 @@ class Flange(Strict):
     enabled: bool
     """Whether it is made."""
     coupling: Name
-    """What it stands on, in `parts/couplings.toml`."""
+    """Coupling below the flange, in `parts/couplings.toml`."""
     clearance_mm: float = Field(ge=0.05, le=1)
     """Board to pocket, and both parts to coupling and gripper, each side (mm)."""
     tail_mm: float = Field(ge=0, le=5)
@@ -110,7 +110,7 @@ class Flange(Strict):
 
 
 class Module(Strict):
-    """What a controller that is a module needs beside it on the flange's board."""
+    """Parts beside a controller module on the flange's board."""
 
     regulator: Name
     """Of its supply, in `parts/linear_regulators.toml`."""

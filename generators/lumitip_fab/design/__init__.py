@@ -113,7 +113,7 @@ __all__ = [
 
 @dataclass(frozen=True)
 class Title:
-    """What goes on drawings and boards."""
+    """Title block of drawings and boards."""
 
     name: str
     revision: str
@@ -164,7 +164,7 @@ class Design:
     carriers: tuple[Carrier, ...]
     """Boards outside the fingers."""
     holders: tuple[Holder, ...]
-    """What holds the breakout board on the gripper; none without that board."""
+    """Holders of the breakout board; none without that board."""
     flanges: tuple[Flange, ...]
     """Printed parts round the flange's board; none without that board."""
     system: System
@@ -180,7 +180,7 @@ class Design:
 
     @property
     def threads(self) -> dict[str, Fastener]:
-        """What the catalogue has of each thread that is used."""
+        """Catalogue data of each used thread."""
         return {fastener.name: fastener for fastener in self.fasteners}
 
     @property
@@ -211,12 +211,11 @@ class Design:
 
     @property
     def cells(self) -> tuple[Cell, ...]:
-        """Where each cell is and what reads it: the layout without its optics, which change
-        oftener."""
+        """Positions and inputs of the cells: the layout without its optics."""
         return self.layout.cells
 
     @property
     def reading(self) -> Reading:
-        """Which input reads each cell."""
+        """Input of each cell."""
         cells = tuple(CellInput(c.index, c.mux, c.channel) for c in self.layout.cells)
         return Reading(self.layout.design_hash, self.layout.pitch_mm, cells)

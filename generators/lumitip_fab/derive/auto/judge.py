@@ -1,4 +1,4 @@
-"""How good a set of values is: how far derivation goes with it, and which rules it breaks."""
+"""Verdict on a set of values: stages of derivation without faults, and broken rules."""
 
 import re
 from dataclasses import dataclass
@@ -19,12 +19,12 @@ Rule = tuple[str, str]
 
 @dataclass(frozen=True)
 class Verdict:
-    """What derivation says of an input."""
+    """Result of derivation for an input."""
 
     config: Input
     design: Design | None
     stage: int
-    """How far derivation went; later rules are only reached without faults before them."""
+    """Number of stages without faults; a later rule is only tested after these."""
     problems: tuple[Problem, ...]
 
     @property

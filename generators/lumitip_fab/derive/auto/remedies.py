@@ -49,7 +49,7 @@ class Step:
 
 @dataclass(frozen=True)
 class Plan:
-    """What to change."""
+    """The changes to make."""
 
     steps: tuple[Step, ...]
     complete: bool

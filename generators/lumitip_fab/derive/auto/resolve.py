@@ -71,8 +71,8 @@ def resolve(config: Input) -> Resolved:
     if end.design is None:
         raise RuleError(end)
     choices = reasons.choices(end.config)
-    settled = replace(end.config, automatic=frozenset())
-    return Resolved(settled, replace(end.design, choices=choices))
+    config = replace(end.config, automatic=frozenset())
+    return Resolved(config, replace(end.design, choices=choices))
 
 
 def accepted_with(config: Input, values: Mapping[str, Any]) -> bool:

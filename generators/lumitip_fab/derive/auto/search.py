@@ -111,7 +111,7 @@ def bounds(field: str) -> tuple[float, float]:
 
 
 def _metadata(of: Any) -> Iterator[Any]:
-    """What limits the values of a field, also of one that may be a number or a word."""
+    """Limits on the values of a field, including a field that may be a number or a word."""
     yield of
     for inner in (*getattr(of, "metadata", ()), getattr(of, "annotation", None), *get_args(of)):
         if inner is not None:
@@ -219,7 +219,7 @@ def menders(field: str) -> tuple[str, ...]:
 MOST_CHANGES = 40
 
 Moved = Callable[[Change, str], None]
-"""Called with a change that was made and the message of the rule that it mended."""
+"""Called with each change and the message of the rule that it mended."""
 
 
 def search(start: Verdict, free: frozenset[str], moved: Moved) -> Verdict:
@@ -228,7 +228,7 @@ def search(start: Verdict, free: frozenset[str], moved: Moved) -> Verdict:
     Args:
         start: where to begin.
         free: fields that may change.
-        moved: told of each change.
+        moved: called with each change.
     """
     now = start
     for _ in range(MOST_CHANGES):

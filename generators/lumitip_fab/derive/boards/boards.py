@@ -51,7 +51,7 @@ class Plan:
 
 @dataclass(frozen=True)
 class Frame:
-    """What the boards share: extents and rows, before parts are placed."""
+    """Common extents and rows of both boards, before parts are placed."""
 
     box: Box
     cells: Box

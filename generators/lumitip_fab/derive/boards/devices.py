@@ -110,7 +110,7 @@ def leaded(
     angle_deg: float,
     nets: dict[str, str],
 ) -> Device:
-    """A part with leads, whose nets are told by the leads' names."""
+    """A part with leads; its nets are given by the names of the leads."""
     return Device(
         ref=ref,
         kind=kind,

@@ -57,18 +57,18 @@ def refuse_map(config: Input, faults: Faults) -> None:
 
 
 def _meets(strip: Strip, coupling: ToolCoupling) -> bool:
-    """Whether every contact of a strip stands on one of the coupling, and none is left."""
+    """Whether the contacts of strip and coupling match one to one."""
     x, y = coupling.contacts_at_mm
-    wanted = [(contact.at_mm[0] - x, contact.at_mm[1] - y) for contact in coupling.contacts]
+    needed = [(contact.at_mm[0] - x, contact.at_mm[1] - y) for contact in coupling.contacts]
     offsets = [place - (strip.ways - 1) / 2 for place in range(strip.ways)]
     rows = [place - (strip.rows - 1) / 2 for place in range(strip.rows)]
     there = [(place * strip.pitch_mm, row * strip.pitch_mm) for row in rows for place in offsets]
-    near = [min(math.dist(one, other) for other in there) <= PLACE_MM for one in wanted]
-    return all(near) and len(wanted) == len(there)
+    near = [min(math.dist(one, other) for other in there) <= PLACE_MM for one in needed]
+    return all(near) and len(needed) == len(there)
 
 
 def _wrong(signal: str, on: list[tuple[int, Contact]]) -> str:
-    """What is wrong with a net on these contacts; empty if nothing is."""
+    """Fault of a net on these contacts; empty without one."""
     where = " and ".join(f"{number} ({contact.carries})" for number, contact in on)
     if len({contact.carries for _, contact in on}) > 1:
         return f"{signal} on contacts {where}, which carry different signals"
@@ -98,13 +98,13 @@ MOST_OFF_PF = 1.5  # some 15 ppm of a crystal of 32.768 kHz
 
 
 def is_regulated(config: Input) -> bool:
-    """Whether the flange makes its output from a higher supply; else they are one net."""
+    """Whether the flange regulates its output from a higher supply; else they are one net."""
     p = config.parameters
     return p.supply.voltage_v != config.catalogue.regulators[p.flange.regulator].output_v
 
 
 def halved(config: Input) -> bool:
-    """Whether a divider halves the supply for the MOSFET's gate, which bears no high supply."""
+    """Whether a divider halves a high supply for the MOSFET's gate."""
     p = config.parameters
     high_v = p.supply.voltage_v * (1 + SUPPLY_TOLERANCE)
     return high_v > GATE_SHARE * config.catalogue.transistors[p.flange.transistor].gate_v

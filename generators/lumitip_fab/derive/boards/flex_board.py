@@ -14,7 +14,7 @@ OVER_PADS_MM = 0.1
 
 
 def flexible_board(config: Input, box: Box, notch: Box, connector_y_mm: float) -> Flexible | None:
-    """What a flexible board is made of; none of a stiff one.
+    """Layers and zones of a flexible board; none for a rigid one.
 
     The coverlay is as thick as common ones of board houses (assumed: each has its own); the core is
     what remains. The board bends beyond the rigid interface. The stiffener is behind

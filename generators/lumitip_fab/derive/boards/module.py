@@ -55,7 +55,7 @@ class Supplies:
 
 @dataclass(frozen=True)
 class Wing:
-    """What a module adds to the flange's board, and the board's box with it."""
+    """Additions of a module to the flange's board, and the board's box with them."""
 
     box: Box
     devices: tuple[Device, ...]
@@ -144,7 +144,7 @@ def _supply(config: Input, supplies: Supplies) -> tuple[Device, ...]:
 
 
 def _beside(config: Input) -> tuple[Device, ...]:
-    """What is near the module's pads: capacitors of its supplies, and the crystal."""
+    """Parts near the module's pads: capacitors of its supplies, and the crystal."""
     p, known = config.parameters.module, config.catalogue.capacitors
     value = p.crystal_capacitor.split()[0]
     crystal = config.catalogue.crystals[p.crystal]

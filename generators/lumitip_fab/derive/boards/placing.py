@@ -1,4 +1,4 @@
-"""Where the parts of a board go: at the cells, in the zone for parts, and the locating holes."""
+"""Placement of parts at the cells and in the zone for parts, and of the locating holes."""
 
 import math
 
@@ -207,7 +207,7 @@ def least_half_width_mm(config: Input, foot_half_mm: float) -> float:
 
 
 def _inner_mm(config: Input, foot_half_mm: float) -> float:
-    """Where the banks of string resistors begin: behind the board, beside the coupling."""
+    """Inner end of the banks of string resistors: behind the board, beside the coupling."""
     p = config.parameters
     if p.emitter.resistor_side == "front":
         return RESISTOR_GAP_MM / 2

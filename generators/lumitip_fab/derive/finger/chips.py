@@ -1,4 +1,4 @@
-"""How LEDs and photodetectors lie at their cells: along x, or turned along y."""
+"""Orientation of LEDs and photodetectors at their cells: along x, or turned along y."""
 
 from lumitip.grid import column_pitch_mm
 from lumitip_fab.catalogue.electronics import Chip

@@ -1,9 +1,9 @@
-"""How the interface of a compliant finger lies on the plate, and its rim in the plate's groove.
+"""Interface of a compliant finger on its plate, with its rim in the plate's groove.
 
 Of rim and groove the rim alone follows the printer's fit. The fit test plate is printed of the
 rigid filament, as the interface is, and its reading is of that filament: the rim goes back by it on
 each side. The groove is in a plate of a filament that bends, of which there is no reading: it is
-drawn as wide as it is wanted.
+drawn at its nominal width.
 """
 
 import math

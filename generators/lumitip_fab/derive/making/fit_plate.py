@@ -1,4 +1,4 @@
-"""Where everything is on the fit test plate."""
+"""Layout of the fit test plate."""
 
 import math
 from dataclasses import replace
@@ -100,7 +100,7 @@ def _slice(mount: Mount, loosest: Fits, wall_mm: float) -> tuple[Box, float]:
 
 
 def _flanks_end_w(mount: Mount) -> float:
-    """Where the nose is as wide as the block."""
+    """The w at which the nose is as wide as the block."""
     if mount.nose is None:
         return math.inf
     wider = mount.block_width_mm - mount.nose.front_width_mm

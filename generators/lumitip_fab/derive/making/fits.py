@@ -1,4 +1,4 @@
-"""What a fit of the printer changes: the one place where it is added to what is drawn.
+"""The printer's fit: the only place where it is added to drawn sizes.
 
 A printed surface that meets something goes back by the fit, square to itself: a gap to a board,
 to metal or to the gripper grows by it, and a gap between two printed parts by twice as much. Of
@@ -18,21 +18,21 @@ from lumitip_fab.design import Fits, Nose
 
 @dataclass(frozen=True)
 class Drawn:
-    """Sizes as they are drawn for a printer, from those that are wanted."""
+    """Drawn sizes for a printer, from nominal ones."""
 
     fit_mm: float
 
-    def gap_mm(self, wanted_mm: float) -> float:
+    def gap_mm(self, nominal_mm: float) -> float:
         """From a printed surface to something that is not printed."""
-        return wanted_mm + self.fit_mm
+        return nominal_mm + self.fit_mm
 
-    def hole_mm(self, wanted_mm: float) -> float:
+    def hole_mm(self, nominal_mm: float) -> float:
         """Diameter or width of what something goes into or through."""
-        return wanted_mm + 2 * self.fit_mm
+        return nominal_mm + 2 * self.fit_mm
 
-    def peg_mm(self, wanted_mm: float) -> float:
+    def peg_mm(self, nominal_mm: float) -> float:
         """Diameter or width of what goes into something."""
-        return wanted_mm - 2 * self.fit_mm
+        return nominal_mm - 2 * self.fit_mm
 
 
 LEAST_GAP_MM = 0.02  # as drawn: no print goes into itself

@@ -37,19 +37,19 @@ def derive_slicing(config: Input, mould: Mould, faults: Faults) -> Slicing:
 
 
 def _filament(config: Input, name: str, density_g_ml: float) -> Filament:
-    told = config.catalogue.filaments[name]
+    entry = config.catalogue.filaments[name]
     return Filament(
         name,
-        told.kind,
+        entry.kind,
         density_g_ml,
-        told.nozzle_c,
-        told.bed_c,
-        told.fan_percent,
-        told.speed_mm_s,
-        told.max_flow_mm3_s,
-        told.retract_mm,
-        told.layer_mpa,
-        told.bearing_mpa,
+        entry.nozzle_c,
+        entry.bed_c,
+        entry.fan_percent,
+        entry.speed_mm_s,
+        entry.max_flow_mm3_s,
+        entry.retract_mm,
+        entry.layer_mpa,
+        entry.bearing_mpa,
         config.catalogue.printers[config.parameters.printer.profile].layer_mm,
     )
 

@@ -1,4 +1,4 @@
-"""Which threads the printed parts are held by, and what of that goes through which hole."""
+"""Threads that hold the printed parts, and their clearance holes."""
 
 import math
 
@@ -17,19 +17,19 @@ def derive_fasteners(config: Input, faults: Faults) -> tuple[Fastener, ...]:
     p, known = config.parameters, config.catalogue.fasteners
     gripper = config.catalogue.grippers[p.coupling.gripper]
     coupling = config.catalogue.couplings[p.flange.coupling]
-    wanted = [("coupling.gripper", gripper.bolt)]
+    threads = [("coupling.gripper", gripper.bolt)]
     if p.flange.enabled:
-        wanted += [("flange.coupling", coupling.bolt), ("flange.enabled", BOARD_SCREW)]
+        threads += [("flange.coupling", coupling.bolt), ("flange.enabled", BOARD_SCREW)]
     if p.breakout.enabled:
-        wanted.append(("holder.screw", p.holder.screw))
-    for field, thread in wanted:
+        threads.append(("holder.screw", p.holder.screw))
+    for field, thread in threads:
         faults.refuse_unless(
             thread in known,
             field,
             f"is {_shown(config, field)}, which needs {thread} screws; parts/fasteners.toml has "
             f"{', '.join(known)}. Add an entry for {thread}.",
         )
-    if not all(thread in known for _, thread in wanted):
+    if not all(thread in known for _, thread in threads):
         faults.stop()
     _refuse_hole(config, "coupling.gripper", gripper.bolt, gripper.bolt_hole_mm, faults)
     head = known[gripper.bolt].cap_head_mm + HEAD_PLAY_MM
@@ -41,7 +41,7 @@ def derive_fasteners(config: Input, faults: Faults) -> tuple[Fastener, ...]:
     )
     if p.flange.enabled:
         _refuse_hole(config, "flange.coupling", coupling.bolt, coupling.bolt_hole_mm, faults)
-    threads = sorted({thread for _, thread in wanted})
+    used = sorted({thread for _, thread in threads})
     return tuple(
         Fastener(
             name,
@@ -52,7 +52,7 @@ def derive_fasteners(config: Input, faults: Faults) -> tuple[Fastener, ...]:
             e.nut_mm,
             e.nut_height_mm,
         )
-        for name, e in ((thread, known[thread]) for thread in threads)
+        for name, e in ((thread, known[thread]) for thread in used)
     )
 
 

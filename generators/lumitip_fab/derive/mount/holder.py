@@ -71,7 +71,7 @@ def derive_holder(
 
 
 def _shoulder_deg(x_mm: float, radius_mm: float) -> float:
-    """Where the tray's side meets the arm, from the middle of the tray."""
+    """Angle at which the tray's side meets the arm, from the middle of the tray."""
     return math.degrees(math.asin(min(x_mm / radius_mm, 1.0)))
 
 

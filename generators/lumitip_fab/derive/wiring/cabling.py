@@ -1,4 +1,4 @@
-"""Which wire goes where, in which colour, how long, and whether it carries its current."""
+"""Cables: ends, colours, lengths and sections of the wires."""
 
 import math
 from collections.abc import Iterable
@@ -25,7 +25,7 @@ _STRIPED = tuple("".join(pair) for pair in permutations(_PLAIN, 2))
 
 @dataclass(frozen=True)
 class Boards:
-    """What the cables join."""
+    """The boards that the cables connect."""
 
     emitter: Finger
     receiver: Finger
@@ -51,15 +51,15 @@ def derive_cabling(
     faults: Faults,
 ) -> Cabling:
     """All cables, from the signals of the connectors that they join."""
-    told, travel_mm = config.parameters.wiring, mount.stroke_mm / 2
+    p, travel_mm = config.parameters.wiring, mount.stroke_mm / 2
     fixed = _FIXED | {boards.emitter.connector.signals[1]: _SUPPLY}
     loads = _loads(config, boards.emitter, wiring, electrical)
     ends = _ends(config, boards, wiring)
     breakout, host = _named(boards.carriers, "breakout"), _host(boards.carriers)
-    to_supply_mm = told.controller_mm if host else told.supply_mm
+    to_supply_mm = p.controller_mm if host else p.supply_mm
     ways = [
         (boards.emitter, loads.lit, travel_mm + to_supply_mm),
-        (boards.receiver, loads.read, travel_mm + told.controller_mm),
+        (boards.receiver, loads.read, travel_mm + p.controller_mm),
     ]
     cables = [
         _cable(
@@ -68,8 +68,8 @@ def derive_cabling(
             ends[finger.name],
             load,
             fixed,
-            told.section_mm2,
-            reach_mm(finger, outline) + way_mm + told.slack_mm,
+            p.section_mm2,
+            reach_mm(finger, outline) + way_mm + p.slack_mm,
         )
         for i, (finger, load, way_mm) in enumerate(ways, 1)
     ]
@@ -83,14 +83,14 @@ def derive_cabling(
                 supply,
                 loads.all,
                 fixed,
-                told.section_mm2,
-                told.supply_mm + told.slack_mm,
+                p.section_mm2,
+                p.supply_mm + p.slack_mm,
             )
         )
     thick = tuple(_thick_enough(config, cable, cables) for cable in cables)
     for cable in thick:
         _refuse_thick(config, cable, boards, faults)
-    return Cabling(thick, travel_mm, told.supply_mm, told.controller_mm, told.slack_mm)
+    return Cabling(thick, travel_mm, p.supply_mm, p.controller_mm, p.slack_mm)
 
 
 def reach_mm(finger: Finger, outline: Outline) -> float:
@@ -110,7 +110,7 @@ def _loads(config: Input, emitter: Finger, wiring: Wiring, electrical: Electrica
 
 
 def _ends(config: Input, boards: Boards, wiring: Wiring) -> dict[str, dict[str, Terminal]]:
-    """Where the signals of each finger go, by name."""
+    """Far end of each signal of each finger, by name."""
     host = _host(boards.carriers)
     if host:
         carrier, *refs = host
@@ -157,8 +157,8 @@ def _wires_of(carrier: Carrier, ref: str) -> tuple[Terminal, ...]:
 
 
 def _feeding(carriers: Iterable[Carrier], pads: tuple[Terminal, ...]) -> dict[str, Terminal]:
-    """What feeds each pad of the breakout: contacts of the flange's header that has most of its
-    nets, or any supply."""
+    """Source of each pad of the breakout: contacts of the flange's header that has most of its
+    nets, or a supply."""
     supply = {pad.name: Terminal("supply", "", pad.name, pad.name, pad.order) for pad in pads}
     flange = _named(carriers, "flange")
     headers = [d for d in flange.devices if d.ref in ("J2", "J3")] if flange else []

@@ -13,7 +13,7 @@ SHORTER = 0.75  # of a string's LEDs, to compare
 
 
 def derive_electrical(config: Input, strings: wiring.Strings, faults: Faults) -> Electrical:
-    """What follows from parts, strings and supply."""
+    """Electrical figures from parts, strings and supply."""
     p = config.parameters
     return Electrical(
         strings=_strings(config, strings),

@@ -152,14 +152,14 @@ def _nearest(ohm: float, mantissas: NDArray[np.float64]) -> float:
 
 @dataclass(frozen=True)
 class _Duty:
-    """What a capacitor of the parameter file is for."""
+    """Requirements on a capacitor of the parameter file."""
 
     field: str
     volts: float
     beside: str = ""
     """The part that asks for a capacitance, by its name in the catalogue."""
     asked_nf: tuple[float, float] = (0.0, float("inf"))
-    """The least that must be left at its voltage, and the most there may be without any."""
+    """Least capacitance after DC-bias derating, and largest nominal capacitance."""
 
 
 def refuse_receiver_capacitor(config: Input, faults: Faults) -> None:

@@ -1,4 +1,4 @@
-"""Which cells hang on which LED string, multiplexer, channel and pin."""
+"""LED strings, multiplexers, channels and pins of the cells."""
 
 import math
 from collections.abc import Iterator
@@ -47,7 +47,7 @@ class Strings:
 
 @dataclass(frozen=True)
 class Muxing:
-    """How many multiplexers there are and which pins they use."""
+    """Number of multiplexers, and their pins."""
 
     muxes: int
     adc_pins: tuple[str, ...]
@@ -201,7 +201,7 @@ def pins_of(mux: Integers, adc_pins: tuple[str, ...]) -> NDArray[np.str_]:
     return np.array(adc_pins)[mux]
 
 
-def joined(config: Input, strings: Strings, muxing: Muxing) -> Wiring:
+def build_wiring(config: Input, strings: Strings, muxing: Muxing) -> Wiring:
     """All wiring beyond the layout."""
     p = config.parameters
     return Wiring(
