@@ -10,6 +10,7 @@ from lumitip_fab.catalogue.record import (
     Entry,
     Length,
     Offset,
+    Ordered,
     Pin,
     Share,
     Strict,
@@ -22,15 +23,9 @@ OPEN = "NC"
 PinName = Annotated[str, Field(pattern=r"^[A-Z0-9]{1,6}$")]
 
 
-class Strip(Entry):
+class Strip(Entry, Ordered):
     """One or two rows of contacts in plated holes."""
 
-    manufacturer: str = Field(min_length=1, max_length=64)
-    """Manufacturer, for the bill of materials; "any" where it does not matter."""
-    order_number: str = Field(min_length=1, max_length=64)
-    """Order number."""
-    lcsc: str = Field(default="", pattern=r"^(C[1-9]\d*)?$")
-    """Number at the distributor LCSC; empty where it is not known."""
     ways: int = Field(ge=1, le=64)
     """Contacts in a row."""
     rows: int = Field(default=1, ge=1, le=2)
@@ -74,15 +69,9 @@ class Plug(Strict):
     """Pin that feeds the receiver."""
 
 
-class Leaded(Entry):
+class Leaded(Entry, Ordered):
     """A small part with gull-wing leads in two rows, lead 1 at the lower left."""
 
-    manufacturer: str = Field(min_length=1, max_length=64)
-    """Manufacturer, for the bill of materials."""
-    order_number: str = Field(min_length=1, max_length=64)
-    """Order number."""
-    lcsc: str = Field(default="", pattern=r"^(C[1-9]\d*)?$")
-    """Number at the distributor LCSC; empty where it is not known."""
     body_mm: tuple[Length, Length, Length]
     """Body: along the rows of leads, across them, height above the board."""
     lead_span_mm: Length
@@ -165,18 +154,12 @@ _SINGLE = ("VDD", "VDDH", "VBUS", "USB_DM", "USB_DP", "SWDIO", "SWDCLK", "P0_18"
 """Pads that are joined by their names; P0.18 is the reset."""
 
 
-class Module(Strict):
+class Module(Ordered):
     """A module with Nordic's nRF52840 and an antenna, soldered to the flange's board.
 
     Places are in mm from the middle of its body, seen from above with the antenna at the top.
     """
 
-    manufacturer: str = Field(min_length=1, max_length=64)
-    """Manufacturer, for the bill of materials."""
-    order_number: str = Field(min_length=1, max_length=64)
-    """Order number."""
-    lcsc: str = Field(default="", pattern=r"^(C[1-9]\d*)?$")
-    """Number at the distributor LCSC; empty where it is not known."""
     body_mm: tuple[Length, Length, Length]
     """Body: across, along, height above the board."""
     bypass_nf: Capacitances

@@ -4,22 +4,10 @@ from typing import Literal, Self
 
 from pydantic import Field, model_validator
 
-from lumitip_fab.catalogue.record import Capacitances, Entry, Length
+from lumitip_fab.catalogue.record import Capacitances, Entry, Length, Ordered
 
 
-class Bought(Entry):
-    """Fields of every part that is soldered to a board."""
-
-    manufacturer: str = Field(min_length=1, max_length=64)
-    """Manufacturer, for the bill of materials; "any" where it does not matter."""
-    order_number: str = Field(min_length=1, max_length=64)
-    """Order number; for resistors, `{code}` stands for the value, such as 75K or 4K99."""
-    lcsc: str = Field(default="", pattern=r"^(C[1-9]\d*)?$")
-    """Number at the distributor LCSC, by which JLCPCB finds a part; empty where it is not known,
-    and of resistors, whose number depends on the value."""
-
-
-class Chip(Bought):
+class Chip(Entry, Ordered):
     """A two-terminal part soldered flat on its board."""
 
     body_mm: tuple[Length, Length, Length]
@@ -127,7 +115,7 @@ class Fuse(Chip):
     """Rated breaking voltage."""
 
 
-class Multiplexer(Bought):
+class Multiplexer(Entry, Ordered):
     """An analog multiplexer with its leads in two rows."""
 
     body_mm: tuple[Length, Length, Length]

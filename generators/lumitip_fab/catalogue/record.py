@@ -57,3 +57,15 @@ class Entry(Sourced):
 
     title: str = Field(default="", max_length=64, pattern=TITLE)
     """Title in manual, bill and drawings; by default the entry's own name."""
+
+
+class Ordered(Strict):
+    """Ordering data of a part that is soldered to a board."""
+
+    manufacturer: str = Field(min_length=1, max_length=64)
+    """Manufacturer, for the bill of materials; "any" where it does not matter."""
+    order_number: str = Field(min_length=1, max_length=64)
+    """Order number; for resistors, `{code}` stands for the value, such as 75K or 4K99."""
+    lcsc: str = Field(default="", pattern=r"^(C[1-9]\d*)?$")
+    """Number at the distributor LCSC, which JLCPCB uses; empty where it is not known, and for
+    resistors, whose number depends on the value."""

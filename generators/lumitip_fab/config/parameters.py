@@ -17,8 +17,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from lumitip_fab.catalogue.record import Name, Strict
-from lumitip_fab.config.names import DeviceName, Text
-from lumitip_fab.config.sections import Breakout, Flange, Flex, Holder, Module
+from lumitip_fab.config.sections import Breakout, DeviceName, Flange, Flex, Holder, Module, Text
 
 REVISION = r"^[A-Za-z0-9.\-]{1,8}$"
 Gap = Annotated[float, Field(ge=0, le=20)]

@@ -8,7 +8,7 @@ from lumitip_fab.derive.boards import boards
 from lumitip_fab.derive.boards.breakout import derive_breakout
 from lumitip_fab.derive.boards.flange import derive_flange
 from lumitip_fab.derive.boards.packages import derive_fabs, derive_packages, derive_rules
-from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger import outline
 from lumitip_fab.derive.finger.cells import derive_cells
 from lumitip_fab.derive.finger.interface import derive_interfaces
@@ -34,7 +34,7 @@ from lumitip_fab.design import Controller, Design, Grid, Title
 from lumitip_fab.design.encoding import canonical, round_trip
 
 
-def derive_once(config: Input, faults: Faults) -> Design:
+def derive_once(config: Input, faults: Diagnostics) -> Design:
     """Derive the whole sensor from values as they are.
 
     Args:

@@ -28,7 +28,6 @@ from lumitip_fab.design.boards import (
 )
 from lumitip_fab.design.cabling import Cable, Cabling, Terminal, Wire
 from lumitip_fab.design.carriers import Carrier, Device, Holder, Land, Note, Pattern
-from lumitip_fab.design.choices import Choice
 from lumitip_fab.design.electrical import Electrical
 from lumitip_fab.design.fit_plate import FitPlate, Fits
 from lumitip_fab.design.making import (
@@ -125,6 +124,17 @@ class Title:
     def on_pages(self) -> "Title":
         """As a drawing and a PDF show it."""
         return replace(self, name=page_name(self.name))
+
+
+@dataclass(frozen=True)
+class Choice:
+    """The value of an automatic field."""
+
+    field: str
+    value: str
+    """As it would be written in a parameter file."""
+    reason: str
+    """In one line."""
 
 
 @dataclass(frozen=True)

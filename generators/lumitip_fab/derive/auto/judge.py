@@ -7,7 +7,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.once import derive_once
 from lumitip_fab.design import Design
 from lumitip_fab.errors import InputError, Problem
@@ -48,7 +48,7 @@ def rule_of(problem: Problem) -> Rule:
 
 def judge(config: Input) -> Verdict:
     """Derive, and keep what is wrong."""
-    faults = Faults(config)
+    faults = Diagnostics(config)
     try:
         design = derive_once(config, faults)
     except InputError as error:

@@ -10,8 +10,7 @@ from lumitip_fab.config.messages import brief
 from lumitip_fab.derive.auto.judge import Verdict, judge
 from lumitip_fab.derive.auto.search import Change, search
 from lumitip_fab.derive.auto.starts import proposals
-from lumitip_fab.design import Design
-from lumitip_fab.design.choices import Choice
+from lumitip_fab.design import Choice, Design
 from lumitip_fab.errors import InputError
 
 

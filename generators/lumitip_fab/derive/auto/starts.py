@@ -8,7 +8,7 @@ from lumitip.grid import column_pitch_mm
 from lumitip_fab.config.automatic import FIELDS, Value
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards.packages import LEAST_RING_MM
-from lumitip_fab.derive.finger.flex import is_flex
+from lumitip_fab.derive.finger.stack import is_flex
 from lumitip_fab.derive.wiring.ratings import (
     SUPPLY_TOLERANCE,
     String,

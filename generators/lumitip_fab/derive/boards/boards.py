@@ -19,11 +19,10 @@ import numpy as np
 from lumitip_fab.config.load import Input
 from lumitip_fab.config.parameters import Parameters
 from lumitip_fab.derive.boards import connectors, placing
-from lumitip_fab.derive.boards.flex_board import flexible_board
-from lumitip_fab.derive.faults import Faults
-from lumitip_fab.derive.finger import chips
-from lumitip_fab.derive.finger.cells import Cells
-from lumitip_fab.derive.finger.flex import foot_half_mm, is_flex
+from lumitip_fab.derive.boards.packages import flexible_board
+from lumitip_fab.derive.diagnostics import Diagnostics
+from lumitip_fab.derive.finger.cells import Cells, derive_turned
+from lumitip_fab.derive.finger.stack import foot_half_mm, is_flex
 from lumitip_fab.derive.making.fits import derive_fits
 from lumitip_fab.derive.wiring.wiring import Muxing, Strings
 from lumitip_fab.design import Board, Box, Connector, Finger, Part, Point, Zone
@@ -65,14 +64,14 @@ class Frame:
 
 
 def derive_plan(
-    config: Input, cells: Cells, strings: Strings, muxing: Muxing, faults: Faults
+    config: Input, cells: Cells, strings: Strings, muxing: Muxing, faults: Diagnostics
 ) -> Plan:
     """Lay out both boards."""
     p, parts = config.parameters, config.catalogue
     led = parts.leds[p.emitter.led]
     detector = parts.photodetectors[p.receiver.photodetector]
-    led_turned = chips.derive_turned(p, "emitter.led", p.emitter.led, led, faults)
-    detector_turned = chips.derive_turned(
+    led_turned = derive_turned(p, "emitter.led", p.emitter.led, led, faults)
+    detector_turned = derive_turned(
         p, "receiver.photodetector", p.receiver.photodetector, detector, faults
     )
     leds = placing.at_cells("D", "led", led, led_turned, _mirrored(cells))
@@ -117,7 +116,7 @@ def derive_plan(
 
 
 def _frame(
-    config: Input, cells: Cells, muxing: Muxing, chips_: tuple[Part, ...], faults: Faults
+    config: Input, cells: Cells, muxing: Muxing, chips_: tuple[Part, ...], faults: Diagnostics
 ) -> Frame:
     p = config.parameters
     gripper = config.catalogue.grippers[p.coupling.gripper]
@@ -193,7 +192,7 @@ def _frame(
     )
 
 
-def _refuse_holes(p: Parameters, pad_mm: float, faults: Faults) -> None:
+def _refuse_holes(p: Parameters, pad_mm: float, faults: Diagnostics) -> None:
     """Refuse holes and pads that break out of the board or into the parts."""
     radius = p.board.hole_mm / 2
     for_hole, for_pad = radius + placing.HOLE_WEB_MM, pad_mm / 2 + PAD_TO_EDGE_MM

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from lumitip_fab.catalogue.controllers import Plug, Strip
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards import connectors, devices, patterns
-from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.wiring.wiring import Muxing
 from lumitip_fab.design import Box, Carrier, Device, Note
 
@@ -42,7 +42,7 @@ class Rows:
     wires_mm: float
 
 
-def derive_breakout(config: Input, muxing: Muxing, faults: Faults) -> tuple[Carrier, ...]:
+def derive_breakout(config: Input, muxing: Muxing, faults: Diagnostics) -> tuple[Carrier, ...]:
     """The breakout board; none if it is not wanted, or if the controller has no pins to plug."""
     p = config.parameters
     plug = config.catalogue.controllers[p.controller.board].plug
@@ -171,7 +171,7 @@ def _wires(
 
 
 def _refuse(
-    config: Input, plug: Plug, strip: Strip, muxing: Muxing, rows: Rows, faults: Faults
+    config: Input, plug: Plug, strip: Strip, muxing: Muxing, rows: Rows, faults: Diagnostics
 ) -> None:
     """Refuse what does not fit onto the board."""
     p = config.parameters.breakout

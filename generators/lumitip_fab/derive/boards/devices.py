@@ -5,6 +5,7 @@ from dataclasses import replace
 
 from lumitip_fab.catalogue import electronics
 from lumitip_fab.catalogue.controllers import OPEN, Leaded, Strip
+from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards import connectors, patterns
 from lumitip_fab.design import Device, Point
 
@@ -99,6 +100,14 @@ def chip(
         nets=numbered(nets),
         pins=(),
     )
+
+
+def capacitor(
+    config: Input, ref: str, name: str, at: Point, angle_deg: float, nets: tuple[str, str]
+) -> Device:
+    """A capacitor by its name in the catalogue."""
+    entry = config.catalogue.capacitors[name]
+    return chip(ref, "capacitor", name.split(maxsplit=1)[0], entry, "CAPC", at, angle_deg, nets)
 
 
 def leaded(

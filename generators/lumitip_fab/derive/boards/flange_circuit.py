@@ -6,7 +6,7 @@ import math
 from lumitip_fab.catalogue.controllers import OPEN, Strip
 from lumitip_fab.catalogue.grippers import Contact, ToolCoupling
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.wiring.ratings import (
     MOST_RESISTOR_LOAD,
     RESISTOR_TOLERANCE,
@@ -22,7 +22,7 @@ _FOR = {"supply": "SUPPLY", "ground": "GND"}
 """Signal that belongs on a contact of a kind, and on no other."""
 
 
-def refuse_map(config: Input, faults: Faults) -> None:
+def refuse_map(config: Input, faults: Diagnostics) -> None:
     """Refuse contacts where the coupling has none, and nets that join what must stay apart."""
     p = config.parameters.flange
     coupling = config.catalogue.couplings[p.coupling]
@@ -124,7 +124,7 @@ def supply_range_v(config: Input) -> tuple[float, float]:
     return least, min(*rated, gates * transistor.gate_v)
 
 
-def refuse_parts(config: Input, strings: Strings, faults: Faults) -> None:
+def refuse_parts(config: Input, strings: Strings, faults: Diagnostics) -> None:
     """Refuse parts that are overloaded, and values with which the circuit does not work."""
     _refuse_gate(config, faults)
     _refuse_fuse(config, strings, faults)
@@ -133,7 +133,7 @@ def refuse_parts(config: Input, strings: Strings, faults: Faults) -> None:
         _refuse_crystal(config, faults)
 
 
-def _refuse_gate(config: Input, faults: Faults) -> None:
+def _refuse_gate(config: Input, faults: Diagnostics) -> None:
     p = config.parameters
     ohm, volts = p.flange.gate_ohm, p.supply.voltage_v / (2 if halved(config) else 1)
     package = config.catalogue.resistors[p.flange.resistor]
@@ -153,7 +153,7 @@ def _refuse_gate(config: Input, faults: Faults) -> None:
     )
 
 
-def _refuse_fuse(config: Input, strings: Strings, faults: Faults) -> None:
+def _refuse_fuse(config: Input, strings: Strings, faults: Diagnostics) -> None:
     p, known = config.parameters, config.catalogue
     fed_ma = known.controllers[p.controller.board].draws_ma / EFFICIENCY
     output_v = known.regulators[p.flange.regulator].output_v
@@ -168,7 +168,7 @@ def _refuse_fuse(config: Input, strings: Strings, faults: Faults) -> None:
     )
 
 
-def _refuse_crystal(config: Input, faults: Faults) -> None:
+def _refuse_crystal(config: Input, faults: Diagnostics) -> None:
     """Refuse capacitors with which the crystal is off."""
     p, known = config.parameters.module, config.catalogue
     crystal, each = known.crystals[p.crystal], known.capacitors[p.crystal_capacitor]
@@ -188,7 +188,7 @@ MOST_RIPPLE = 0.01  # of the output, and of the supply at the input
 OUTPUT_CAPACITORS = ("C2", "C3")
 
 
-def derive_regulated(config: Input, faults: Faults) -> tuple[Regulated, ...]:
+def derive_regulated(config: Input, faults: Diagnostics) -> tuple[Regulated, ...]:
     """The flange's 5 V; none without the flange, or where they are its supply.
 
     Ripple of a step-down regulator in continuous conduction: the current swings by
@@ -233,7 +233,7 @@ def derive_regulated(config: Input, faults: Faults) -> tuple[Regulated, ...]:
     )
 
 
-def _refuse_input(config: Input, coulomb: float, faults: Faults) -> None:
+def _refuse_input(config: Input, coulomb: float, faults: Diagnostics) -> None:
     """Refuse an input capacitor that does not hold the supply while the switch takes a charge."""
     p = config.parameters
     capacitor = config.catalogue.capacitors[p.flange.input_capacitor]

@@ -20,8 +20,8 @@ from dataclasses import dataclass
 from lumitip_fab.catalogue.controllers import Module
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards import connectors, patterns
-from lumitip_fab.derive.boards.devices import chip, leaded, wires
-from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.boards.devices import capacitor, chip, leaded, wires
+from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.wiring.wiring import Muxing
 from lumitip_fab.design import Box, Device, Point
 
@@ -69,7 +69,7 @@ def derive_module(
     muxing: Muxing,
     supplies: Supplies,
     box: Box,
-    faults: Faults,
+    faults: Diagnostics,
 ) -> Wing | None:
     """The module with what it needs; none where the controller is not one."""
     if module is None:
@@ -123,86 +123,30 @@ def _module(config: Input, module: Module, muxing: Muxing, at: Point) -> Device:
 
 def _supply(config: Input, supplies: Supplies) -> tuple[Device, ...]:
     """The linear regulator with a capacitor before and after it."""
-    p, known = config.parameters.module, config.catalogue
-    cap, value = known.capacitors[p.supply_capacitor], p.supply_capacitor.split()[0]
-    leads = {"IN": supplies.regulated, "OUT": CONTROLLER, "GND": "GND"}
+    p, fed = config.parameters.module, supplies.regulated
+    entry = config.catalogue.linear_regulators[p.regulator]
+    leads = {"IN": fed, "OUT": CONTROLLER, "GND": "GND"}
     return (
-        leaded(
-            "U3",
-            "regulator",
-            p.regulator,
-            known.linear_regulators[p.regulator],
-            (-17.5, 9.2),
-            0.0,
-            leads,
-        ),
-        chip(
-            "C5", "capacitor", value, cap, "CAPC", (-14.4, 10.2), 0.0, (supplies.regulated, "GND")
-        ),
-        chip("C6", "capacitor", value, cap, "CAPC", (-14.4, 7.8), 0.0, (CONTROLLER, "GND")),
+        leaded("U3", "regulator", p.regulator, entry, (-17.5, 9.2), 0.0, leads),
+        capacitor(config, "C5", p.supply_capacitor, (-14.4, 10.2), 0.0, (fed, "GND")),
+        capacitor(config, "C6", p.supply_capacitor, (-14.4, 7.8), 0.0, (CONTROLLER, "GND")),
     )
 
 
 def _beside(config: Input) -> tuple[Device, ...]:
     """Parts near the module's pads: capacitors of its supplies, and the crystal."""
-    p, known = config.parameters.module, config.catalogue.capacitors
-    value = p.crystal_capacitor.split()[0]
-    crystal = config.catalogue.crystals[p.crystal]
+    p = config.parameters.module
+    entry, value = config.catalogue.crystals[p.crystal], p.crystal.split()[0]
     return (
-        chip(
-            "C7",
-            "capacitor",
-            p.capacitor.split()[0],
-            known[p.capacitor],
-            "CAPC",
-            (-11.2, 5.2),
-            90.0,
-            (CONTROLLER, "GND"),
-        ),
-        chip(
-            "C10",
-            "capacitor",
-            p.supply_capacitor.split()[0],
-            known[p.supply_capacitor],
-            "CAPC",
-            (-11.2, 10.2),
-            90.0,
-            ("VUSB", "GND"),
-        ),
-        chip(
-            "Y1",
-            "crystal",
-            p.crystal.split()[0],
-            crystal,
-            "XTAL",
-            (-11.3, -7.2),
-            90.0,
-            ("XL1", "XL2"),
-        ),
-        chip(
-            "C8",
-            "capacitor",
-            value,
-            known[p.crystal_capacitor],
-            "CAPC",
-            (-11.3, -11.4),
-            270.0,
-            ("XL1", "GND"),
-        ),
-        chip(
-            "C9",
-            "capacitor",
-            value,
-            known[p.crystal_capacitor],
-            "CAPC",
-            (-11.4, -3.2),
-            270.0,
-            ("XL2", "GND"),
-        ),
+        capacitor(config, "C7", p.capacitor, (-11.2, 5.2), 90.0, (CONTROLLER, "GND")),
+        capacitor(config, "C10", p.supply_capacitor, (-11.2, 10.2), 90.0, ("VUSB", "GND")),
+        chip("Y1", "crystal", value, entry, "XTAL", (-11.3, -7.2), 90.0, ("XL1", "XL2")),
+        capacitor(config, "C8", p.crystal_capacitor, (-11.3, -11.4), 270.0, ("XL1", "GND")),
+        capacitor(config, "C9", p.crystal_capacitor, (-11.4, -3.2), 270.0, ("XL2", "GND")),
     )
 
 
-def _refuse(config: Input, muxing: Muxing, faults: Faults) -> None:
+def _refuse(config: Input, muxing: Muxing, faults: Diagnostics) -> None:
     """Refuse a regulator that does not go between the supplies, and more wires than have room."""
     p, known = config.parameters, config.catalogue
     regulator = known.linear_regulators[p.module.regulator]

@@ -6,9 +6,9 @@ import numpy as np
 
 from lumitip_fab.catalogue.electronics import Chip
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.cells import Cells
-from lumitip_fab.derive.finger.flex import is_flex
+from lumitip_fab.derive.finger.stack import is_flex
 from lumitip_fab.derive.wiring.wiring import Muxing, Strings
 from lumitip_fab.design import Box, Part, Point, Relief
 
@@ -33,7 +33,9 @@ def at_cells(
     )
 
 
-def parts_zone_depth_mm(config: Input, muxing: Muxing, width_mm: float, faults: Faults) -> float:
+def parts_zone_depth_mm(
+    config: Input, muxing: Muxing, width_mm: float, faults: Diagnostics
+) -> float:
     """Depth of the zone for parts with a channel after each row of multiplexers."""
     p = config.parameters
     mux = config.catalogue.multiplexers[p.receiver.multiplexer]
@@ -96,7 +98,7 @@ def _per_row(config: Input, width_mm: float) -> int:
 
 
 def tip_holes(
-    config: Input, cells: Cells, parts: tuple[Part, ...], box: Box, faults: Faults
+    config: Input, cells: Cells, parts: tuple[Part, ...], box: Box, faults: Diagnostics
 ) -> tuple[Point, ...]:
     """Holes ahead of the first row: outermost and middle of the columns that leave room, or near
     the long edges where fewer than two columns do.
@@ -151,7 +153,7 @@ def _spans(room: list[float], apart_mm: float) -> bool:
 
 
 def resistors(
-    config: Input, strings: Strings, zone: Box, foot_half_mm: float, faults: Faults
+    config: Input, strings: Strings, zone: Box, foot_half_mm: float, faults: Diagnostics
 ) -> tuple[tuple[Part, ...], tuple[Relief, ...]]:
     """String resistors in two banks beside the coupling, and the reliefs behind them.
 

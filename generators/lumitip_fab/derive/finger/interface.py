@@ -9,9 +9,9 @@ drawn at its nominal width.
 import math
 
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.faults import Faults
-from lumitip_fab.derive.finger.flex import behind_mm, foot_half_mm, held_by, is_flex
+from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.outline import letter_on, most_letter_mm
+from lumitip_fab.derive.finger.stack import behind_mm, foot_half_mm, held_by, is_flex
 from lumitip_fab.derive.making.fits import Drawn, refuse_touching
 from lumitip_fab.design import Box, Finger, Interface, Outline
 
@@ -22,7 +22,7 @@ FLARE_MM = 2.2  # of the interface beyond land and ramp: where the ramp flares i
 
 
 def derive_interfaces(
-    config: Input, outline: Outline, finger: Finger, board: Box, faults: Faults
+    config: Input, outline: Outline, finger: Finger, board: Box, faults: Diagnostics
 ) -> tuple[Interface, ...]:
     """The interface of each finger; none of a rigid one.
 
@@ -81,7 +81,7 @@ def derive_interfaces(
     )
 
 
-def _refuse_holes(config: Input, finger: Finger, board: Box, faults: Faults) -> None:
+def _refuse_holes(config: Input, finger: Finger, board: Box, faults: Diagnostics) -> None:
     """Refuse holes for thread that the board does not cover."""
     wide = config.parameters.flex.thread_hole_mm
     to_edge = min(
@@ -97,7 +97,7 @@ def _refuse_holes(config: Input, finger: Finger, board: Box, faults: Faults) -> 
     )
 
 
-def _refuse_heights(config: Input, faults: Faults) -> None:
+def _refuse_heights(config: Input, faults: Diagnostics) -> None:
     """Refuse what does not go into plate, pad and groove."""
     p, flex = config.parameters, config.parameters.flex
     line_mm = config.catalogue.printers[p.printer.profile].line_mm

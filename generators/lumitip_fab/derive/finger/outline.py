@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from lumitip_fab.config.parameters import Parameters
-from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.design import Board, Box, Cubic, Letter, Outline, Point
 
 _ROUND = 4 / 3 * (math.sqrt(2) - 1)  # handle of a cubic that follows a quarter ellipse
@@ -15,7 +15,7 @@ LEAST_LEG_MM = 2.0  # plate beside the wire notch at the gripper end
 LEAST_CORNER_MM = 0.5
 
 
-def derive_outline(p: Parameters, board: Board, notch: Box, faults: Faults) -> Outline:
+def derive_outline(p: Parameters, board: Board, notch: Box, faults: Diagnostics) -> Outline:
     """The outline, refused where it is no smooth curve round the board.
 
     Args:

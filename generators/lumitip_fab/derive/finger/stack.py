@@ -1,14 +1,57 @@
-"""Layers of a finger, the wedge at its tip, what the printer can make, and what the layers
-weigh."""
+"""Layers of a finger, rigid or compliant: thicknesses, tip wedge, printer limits, densities."""
 
 import math
 
+from lumitip_fab.catalogue.grippers import Gripper
 from lumitip_fab.catalogue.materials import Laminate
 from lumitip_fab.config.load import Input
 from lumitip_fab.config.parameters import Parameters
-from lumitip_fab.derive.faults import Faults
-from lumitip_fab.derive.finger.flex import is_flex, stiff_mm
+from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.design import Board, Densities, Outline, Printing, Slicing, Stack, Tip
+
+CARRIER_MM = 1.6  # of boards that are not flexible, where those of the fingers are
+
+
+def is_flex(p: Parameters) -> bool:
+    """Whether the plate bends."""
+    return p.backing.variant == "flex"
+
+
+def held_by(config: Input) -> Gripper:
+    """The gripper with the offsets of this finger: a compliant finger leans farther in, and the
+    pad of its interface moves it away from the bolts."""
+    p = config.parameters
+    gripper = config.catalogue.grippers[p.coupling.gripper]
+    if not is_flex(p):
+        return gripper
+    back, nose = p.flex.standoff_mm, gripper.nose
+    moved = {
+        "tilt_deg": gripper.tilt_deg + p.flex.lean_deg,
+        "bolt_w_mm": gripper.bolt_w_mm + back,
+        "block_back_w_mm": gripper.block_back_w_mm + back,
+        "nose": nose and nose.model_copy(update={"front_w_mm": nose.front_w_mm + back}),
+    }
+    return gripper.model_copy(update=moved)
+
+
+def behind_mm(p: Parameters) -> float:
+    """From the board's front to where the coupling's block begins."""
+    return p.stack.pcb_mm + p.stack.floor_mm + (p.flex.pad_mm if is_flex(p) else 0.0)
+
+
+def stiff_mm(p: Parameters) -> float:
+    """Thickness of the boards outside the fingers."""
+    return CARRIER_MM if is_flex(p) else p.stack.pcb_mm
+
+
+def foot_half_mm(config: Input, notch_half_mm: float) -> float:
+    """Half the width of what stands on the plate's back: the groove of an interface, whose legs
+    run beside the notch, or else the coupling's block."""
+    p = config.parameters
+    if is_flex(p):
+        return notch_half_mm + p.printer.min_wall_mm + p.flex.groove_mm
+    return config.catalogue.grippers[p.coupling.gripper].block_width_mm / 2
+
 
 LEAST_SILICONE_MM = 0.3
 STIFF_MM = (0.4, 3.2)  # boards that keep their shape
@@ -17,7 +60,7 @@ MOULD_ROOM_MM = 2.0  # gaps and draft of a mould beyond its walls
 TROUGH_ROOM_MM = 5.0  # its trough at the gripper end
 
 
-def derive_stack(config: Input, faults: Faults) -> Stack:
+def derive_stack(config: Input, faults: Diagnostics) -> Stack:
     """The layers, refused where a part would stick out of the silicone or a floor is too thin."""
     p, parts = config.parameters, config.catalogue
     film = parts.films[p.mask.film]
@@ -65,7 +108,9 @@ def derive_stack(config: Input, faults: Faults) -> Stack:
     )
 
 
-def derive_tip(p: Parameters, outline: Outline, board: Board, stack: Stack, faults: Faults) -> Tip:
+def derive_tip(
+    p: Parameters, outline: Outline, board: Board, stack: Stack, faults: Diagnostics
+) -> Tip:
     """The wedge, refused where it would cut into the pocket's floor."""
     plate = stack.plate_mm
     fit = p.printer.fit_mm
@@ -94,7 +139,7 @@ def derive_tip(p: Parameters, outline: Outline, board: Board, stack: Stack, faul
     return Tip(start_y, p.tip.edge_mm, angle)
 
 
-def derive_printing(config: Input, outline: Outline, faults: Faults) -> Printing:
+def derive_printing(config: Input, outline: Outline, faults: Diagnostics) -> Printing:
     """Material and limits, refused where a part is larger than the bed."""
     p = config.parameters
     printer = config.catalogue.printers[p.printer.profile]

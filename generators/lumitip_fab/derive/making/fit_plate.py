@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards.boards import Plan
-from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.making.fits import derive_fits
 from lumitip_fab.design import Box, FitPlate, Fits, Mount, Point
 
@@ -29,7 +29,7 @@ ROW_MM = LABEL_MM + 2 * MARGIN_MM
 APART_MM = 0.8  # between coupons
 
 
-def derive_fit_plate(config: Input, plan: Plan, mount: Mount, faults: Faults) -> FitPlate:
+def derive_fit_plate(config: Input, plan: Plan, mount: Mount, faults: Diagnostics) -> FitPlate:
     """The plate, refused where it does not fit the bed."""
     p = config.parameters
     printer = config.catalogue.printers[p.printer.profile]

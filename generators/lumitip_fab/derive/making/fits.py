@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 from lumitip_fab.catalogue.grippers import Gripper
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.faults import Faults
-from lumitip_fab.derive.finger.flex import held_by
+from lumitip_fab.derive.diagnostics import Diagnostics
+from lumitip_fab.derive.finger.stack import held_by
 from lumitip_fab.design import Fits, Nose
 
 
@@ -38,7 +38,7 @@ class Drawn:
 LEAST_GAP_MM = 0.02  # as drawn: no print goes into itself
 
 
-def refuse_touching(config: Input, field: str, clearance_mm: float, faults: Faults) -> None:
+def refuse_touching(config: Input, field: str, clearance_mm: float, faults: Diagnostics) -> None:
     """Refuse a fit so tight that nothing is left of a clearance, as drawn."""
     fit_mm = config.parameters.printer.fit_mm
     left_mm = Drawn(fit_mm).gap_mm(clearance_mm)

@@ -2,7 +2,7 @@
 
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards.boards import Plan
-from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.cells import LEAST_WEB_MM
 from lumitip_fab.design import Box, Mask, Outline
 
@@ -18,7 +18,7 @@ MARK_INSET_MM = 0.5  # from the tip flap's side
 FLAP_TAPER = 0.18  # of the tip flap's side: a little over 10°
 
 
-def derive_mask(config: Input, outline: Outline, plan: Plan, faults: Faults) -> Mask:
+def derive_mask(config: Input, outline: Outline, plan: Plan, faults: Diagnostics) -> Mask:
     """The mask, refused where apertures meet the connector's window or the page is too small."""
     p = config.parameters
     film = config.catalogue.films[p.mask.film]

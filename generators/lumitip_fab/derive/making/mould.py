@@ -3,7 +3,7 @@
 import math
 
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.outline import DEPTH_MM, least_letter_mm, letter_on
 from lumitip_fab.design import Board, Letter, Mould, Outline, Point, Stack
 from lumitip_fab.design.making import LEDGE_MM
@@ -20,7 +20,7 @@ WHOLE_MM = 1e-6
 
 
 def derive_mould(
-    config: Input, outline: Outline, board: Board, stack: Stack, faults: Faults
+    config: Input, outline: Outline, board: Board, stack: Stack, faults: Diagnostics
 ) -> Mould:
     """The mould, refused where the silicone cannot be shaped as asked."""
     p = config.parameters
@@ -98,7 +98,7 @@ def _off_layer_mm(layer_mm: float, heights_mm: tuple[float, ...]) -> float:
     return max(abs(height - round(height / layer_mm) * layer_mm) for height in heights_mm)
 
 
-def _letter(config: Input, outline: Outline, stack: Stack, faults: Faults) -> Letter:
+def _letter(config: Input, outline: Outline, stack: Stack, faults: Diagnostics) -> Letter:
     """On the outside of the trough's end, whose wall is as high as the cavity and its floor."""
     p = config.parameters
     wall, rise = p.mould.wall_mm, stack.guided_mm * math.tan(math.radians(p.mould.draft_deg))
@@ -117,7 +117,7 @@ def _letter(config: Input, outline: Outline, stack: Stack, faults: Faults) -> Le
     return letter_on(low, high, min(DEPTH_MM, wall - p.printer.min_wall_mm), end_mm, line_mm)
 
 
-def _pads(config: Input, outline: Outline, board: Board, faults: Faults) -> tuple[Point, ...]:
+def _pads(config: Input, outline: Outline, board: Board, faults: Diagnostics) -> tuple[Point, ...]:
     """Stops on the rim beside the board, as near the gripper end as the rim takes them: the
     finger's weight is in its coupling and must lie between them and the tip."""
     y = max(board.pocket.y_min_mm, outline.end_y_mm + config.parameters.outline.end_corner_mm)

@@ -3,13 +3,13 @@
 from dataclasses import replace
 
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.faults import Faults
-from lumitip_fab.derive.finger.flex import is_flex
+from lumitip_fab.derive.diagnostics import Diagnostics
+from lumitip_fab.derive.finger.stack import is_flex
 from lumitip_fab.design import HeatedPart, HeatStep, Mould, Slicing
 from lumitip_fab.design.making import Filament
 
 
-def derive_slicing(config: Input, mould: Mould, faults: Faults) -> Slicing:
+def derive_slicing(config: Input, mould: Mould, faults: Diagnostics) -> Slicing:
     """Settings of the backing's filament, with the density of the spool at hand, of the one that
     everything else is printed from, and of that one in the mould's layers."""
     p, known = config.parameters, config.catalogue.filaments
@@ -67,7 +67,7 @@ _REMEDY = {
 """Field to refuse, and what to change, of each step."""
 
 
-def derive_heat(config: Input, slicing: Slicing, faults: Faults) -> tuple[HeatStep, ...]:
+def derive_heat(config: Input, slicing: Slicing, faults: Diagnostics) -> tuple[HeatStep, ...]:
     """Soldering, curing and creasing, in the order of work.
 
     Printing is none of them: it melts a filament, and heats no part that is already made.
@@ -108,7 +108,7 @@ def derive_heat(config: Input, slicing: Slicing, faults: Faults) -> tuple[HeatSt
     return steps
 
 
-def _refuse(step: HeatStep, config: Input, faults: Faults) -> None:
+def _refuse(step: HeatStep, config: Input, faults: Diagnostics) -> None:
     """Refuse a step that heats a part beyond the limit of its material."""
     field, remedy = _REMEDY[step.name]
     for part in step.parts:

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from lumitip_fab.catalogue.ordering import Prices
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.finger.flex import stiff_mm
+from lumitip_fab.derive.finger.stack import stiff_mm
 from lumitip_fab.derive.mount.fasteners import screw_length_mm
 from lumitip_fab.design import Flange, Holder, Mount
 from lumitip_fab.design.making import Slicing

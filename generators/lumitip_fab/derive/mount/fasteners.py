@@ -4,14 +4,14 @@ import math
 
 from lumitip_fab.catalogue.materials import Fastener as FastenerEntry
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.design import Fastener
 
 BOARD_SCREW = "M2"  # of the flange's board
 HEAD_PLAY_MM = 0.3  # of a plain head in its counterbore, at least: a knurled one is 0.27 wider
 
 
-def derive_fasteners(config: Input, faults: Faults) -> tuple[Fastener, ...]:
+def derive_fasteners(config: Input, faults: Diagnostics) -> tuple[Fastener, ...]:
     """Every thread that is used, once; refused, and nothing derived, where the catalogue does not
     have one or where its bolts do not go through the holes that an entry has for them."""
     p, known = config.parameters, config.catalogue.fasteners
@@ -61,7 +61,9 @@ def screw_length_mm(through_mm: float, nut: FastenerEntry) -> float:
     return 2.0 * math.ceil((through_mm + nut.nut_height_mm) / 2)
 
 
-def _refuse_hole(config: Input, field: str, thread: str, hole_mm: float, faults: Faults) -> None:
+def _refuse_hole(
+    config: Input, field: str, thread: str, hole_mm: float, faults: Diagnostics
+) -> None:
     """Refuse a clearance hole of an entry that is none by ISO 273."""
     fine, coarse = config.catalogue.fasteners[thread].hole_mm
     faults.refuse_unless(

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from itertools import permutations
 
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.design import Carrier, Device, Electrical, Finger, Mount, Outline, Wiring
 from lumitip_fab.design.cabling import Cable, Cabling, Terminal, Wire
 
@@ -48,7 +48,7 @@ def derive_cabling(
     mount: Mount,
     wiring: Wiring,
     electrical: Electrical,
-    faults: Faults,
+    faults: Diagnostics,
 ) -> Cabling:
     """All cables, from the signals of the connectors that they join."""
     p, travel_mm = config.parameters.wiring, mount.stroke_mm / 2
@@ -218,7 +218,7 @@ def _thick_enough(config: Input, cable: Cable, cables: list[Cable]) -> Cable:
     return replace(cable, section_mm2=next((s for s in SOLD_MM2 if s >= least), least))
 
 
-def _refuse_thick(config: Input, cable: Cable, boards: Boards, faults: Faults) -> None:
+def _refuse_thick(config: Input, cable: Cable, boards: Boards, faults: Diagnostics) -> None:
     """Refuse wires that do not go into the holes at their ends."""
     asked, section = config.parameters.wiring.section_mm2, cable.section_mm2
     drill_mm = min(_drill_mm(end, boards) for end in (cable.start, cable.end))

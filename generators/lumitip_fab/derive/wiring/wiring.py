@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from lumitip.grid import Integers
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.cells import Cells
 from lumitip_fab.derive.wiring.ratings import (
     LEAST_RESISTOR_SHARE,
@@ -54,7 +54,7 @@ class Muxing:
     select_pins: tuple[str, ...]
 
 
-def derive_strings(config: Input, cells: Cells, faults: Faults) -> Strings:
+def derive_strings(config: Input, cells: Cells, faults: Diagnostics) -> Strings:
     """As few strings as the supply allows, differing by at most one LED."""
     p = config.parameters
     led, volts = config.catalogue.leds[p.emitter.led], p.supply.voltage_v
@@ -138,7 +138,7 @@ def _from_the_gripper(cells: Cells, string: Integers) -> tuple[int, ...]:
     return tuple(string[:: -1 if last < first else 1].tolist())
 
 
-def derive_muxing(config: Input, cells: Cells, faults: Faults) -> Muxing:
+def derive_muxing(config: Input, cells: Cells, faults: Diagnostics) -> Muxing:
     """As few multiplexers as hold all detectors, each on an analog pin of its own."""
     p = config.parameters
     mux = config.catalogue.multiplexers[p.receiver.multiplexer]

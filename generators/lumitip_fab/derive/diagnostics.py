@@ -4,7 +4,7 @@ from lumitip_fab.config.load import Input
 from lumitip_fab.errors import InputError, Problem
 
 
-class Faults:
+class Diagnostics:
     """The faults found so far in one parameter file."""
 
     def __init__(self, config: Input) -> None:
