@@ -19,7 +19,7 @@ from lumitip_fab.catalogue.record import (
 
 Signal = Annotated[str, Field(pattern=r"^[A-Za-z0-9_+\-]{1,12}$")]
 OPEN = "NC"
-"""Signal of a contact that is joined to nothing."""
+"""Signal of an open contact."""
 PinName = Annotated[str, Field(pattern=r"^[A-Z0-9]{1,6}$")]
 
 
@@ -151,7 +151,7 @@ class Transistor(Leaded):
 ANALOG_PORTS = ("P0_02", "P0_03", "P0_04", "P0_05", "P0_28", "P0_29", "P0_30", "P0_31")
 """AIN0 to AIN7 of the nRF52840, by its product specification."""
 _SINGLE = ("VDD", "VDDH", "VBUS", "USB_DM", "USB_DP", "SWDIO", "SWDCLK", "P0_18")
-"""Pads that are joined by their names; P0.18 is the reset."""
+"""Pads that are wired by name; P0.18 is the reset."""
 
 
 class Module(Ordered):
@@ -205,7 +205,7 @@ class Controller(Entry):
     analog_pins: tuple[Pin, ...] = Field(min_length=1)
     """Analog inputs in the order in which they are used."""
     unlimited_analog_pins: bool = False
-    """Whether further inputs are invented as needed: for benchmarks only."""
+    """Whether there are as many inputs as needed: for benchmarks only."""
     select_pins: tuple[Pin, ...] = Field(min_length=1)
     """Digital outputs for the select lines, least significant first."""
     adc_bits: int = Field(ge=8, le=16)

@@ -57,7 +57,7 @@ class Filament(Entry):
     """Highest temperature at which a printed part keeps its shape (°C): the lower end of its
     heat deflection temperature."""
     rigid_parts: Name | None = None
-    """For a filament that bends: the filament of parts that must not, such as moulds."""
+    """For a flexible filament: the filament of rigid parts, such as moulds."""
 
     @model_validator(mode="after")
     def _fan_in_order(self) -> Self:
@@ -112,7 +112,7 @@ class Silicone(Entry):
     cure_c: float = Field(ge=5, le=200)
     """Temperature to cure at, in the mould with backing and board (°C)."""
     limit_c: float = Field(ge=20, le=400)
-    """Highest temperature that it bears when cured (°C)."""
+    """Highest temperature that it withstands when cured (°C)."""
 
 
 class Film(Entry):

@@ -7,7 +7,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 _LETTERS = "A-Za-zµÀ-ÖØ-öø-ÿ"
 """Those of Latin-1: all are in the PDFs' typeface."""
 NAME = rf"^[A-Za-z0-9]([{_LETTERS}0-9 .+/\-]|_[A-Za-z0-9])*$"
-"""Stands in texts where there is no title: a `_` opens no emphasis that another one closes."""
+"""Used in texts where there is no title; two `_` must not form Markdown emphasis."""
 Length = Annotated[float, Field(ge=0.01, le=500)]
 Share = Annotated[float, Field(ge=0.01, le=1000)]
 TITLE = rf"^([{_LETTERS}0-9][{_LETTERS}0-9 .,+/()\-]*)?$"

@@ -61,7 +61,7 @@ class Input:
     sources: tuple[Source, ...]
     """The file itself, then the file that it extends, and so on down to the complete one."""
     automatic: frozenset[str] = frozenset()
-    """Fields whose values are starts, from which the program chooses."""
+    """Fields that the program chooses; their values are start values."""
 
     def named_parts(self) -> dict[str, Entry]:
         """The catalogue entry that each field in `NAMED` names, by field."""
@@ -79,7 +79,7 @@ class Input:
         return getattr(getattr(self.parameters, section), key)
 
     def with_values(self, values: Mapping[str, Any]) -> "Input":
-        """The same input with other values of some fields, as they would stand in the file.
+        """The same input with other values of some fields, as written in a file.
 
         Raises:
             ValidationError: if a value is outside what its field allows.

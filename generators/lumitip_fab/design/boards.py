@@ -239,7 +239,7 @@ class Rules:
     edge_gap_mm: float
     """Copper to the board's edge and to unplated holes."""
     silk_text_mm: float
-    """Height of the smallest letters that every board house prints legibly."""
+    """Height of the smallest letters that every PCB fab prints legibly."""
     silk_line_mm: float
     """Width of the thinnest lines."""
     silk_gap_mm: float

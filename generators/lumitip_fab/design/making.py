@@ -104,7 +104,7 @@ class Interface:
     groove_mm: float
     groove_depth_mm: float
     glue_mm: float
-    """Gap that is wanted between rim and groove: on each side, and at the groove's floor."""
+    """Nominal gap between rim and groove: on each side, and at the groove's floor."""
     gap_mm: float
     """On each side as drawn: the printer's fit is in it, by which the rim is narrower."""
     pad_mm: float

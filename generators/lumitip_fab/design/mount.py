@@ -112,7 +112,7 @@ class System:
     reach_mm: float
     """From where the gripper stands to the mount plane of the fingers, closed."""
     load_kg: float
-    """Of the gripper and what it may hold, taken to be at the tool centre point."""
+    """Gripper and payload, taken to be at the tool centre point."""
     confidence: str
     """Confidence in the figures of the gripper's body."""
     holders: tuple[str, ...]
@@ -150,7 +150,7 @@ class Flange:
     centring_mm: float
     """Diameter of the coupling's recess, and of what the gripper has to stand in it."""
     clearance_mm: float
-    """Wanted from the printed parts to coupling, gripper and board, on each side."""
+    """Nominal gap from the printed parts to coupling, gripper and board, on each side."""
     spigot_mm: float
     """Diameter of the lower part in the coupling's recess."""
     seat_z_mm: float

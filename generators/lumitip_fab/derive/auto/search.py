@@ -15,8 +15,8 @@ from lumitip_fab.derive.wiring.ratings import sold_ohm
 
 DECIMALS = 4
 COARSE, FINE = 1, 2
-"""Each number of steps is greater than the last by one part in so many of it: values that work may
-lie close together, such as holes for a screw."""
+"""Each trial takes more steps than the last by this fraction of them: all, or one half. A valid
+range may be narrow, such as that of holes for a screw."""
 
 
 @dataclass(frozen=True)

@@ -218,8 +218,8 @@ def _refuse_holes(p: Parameters, pad_mm: float, faults: Diagnostics) -> None:
 
 
 def _resistor_room(config: Input, frame: Frame) -> Box:
-    """The zone for parts; on the back without what lies so near notch and pins that too little
-    floor would be left between them and the resistors' relief."""
+    """The zone for string resistors; on the back it keeps the printer's least wall between their
+    relief and the notch and pins."""
     p, zone = config.parameters, frame.parts
     if p.emitter.resistor_side == "front":
         return zone

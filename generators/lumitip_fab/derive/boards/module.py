@@ -12,7 +12,7 @@
 ╰───────────────────╯
 ```
 
-▒ is the keep-out. What is on the wing follows the module's body and the pads of its four sides.
+▒ is the keep-out. The other parts are placed round the module's body.
 """
 
 from dataclasses import dataclass
@@ -26,7 +26,7 @@ from lumitip_fab.derive.wiring.wiring import Muxing
 from lumitip_fab.design import Box, Device, Point
 
 WING_MM = 12.6
-"""Beyond the board without a module. No more: the published flange has its bolts beside it."""
+"""Width beyond the board without a module; the bolts of the published flange limit it."""
 TURN_DEG = 90.0  # the antenna, at the top of the module's own frame, to the left
 MOST_WIRES = 9
 """In the row to the receiver, between the board's round corner and the header."""

@@ -11,7 +11,7 @@ from lumitip_fab.derive.finger.stack import is_flex
 from lumitip_fab.design import Box, Chip, Fab, Flexible, Multiplexer, Packages, Rules
 
 LEAST_RING_MM = 0.1  # copper round the hole of a via
-COMMON_SILK = Silk(text_mm=0.8, line_mm=0.15, gap_mm=0.15)  # where the catalogue has no house
+COMMON_SILK = Silk(text_mm=0.8, line_mm=0.15, gap_mm=0.15)  # where the catalogue has no PCB fab
 
 
 def derive_packages(config: Input) -> Packages:
@@ -100,7 +100,7 @@ def derive_rules(config: Input, faults: Diagnostics) -> Rules:
 
 
 def derive_fabs(config: Input) -> tuple[Fab, ...]:
-    """Every board house of the catalogue."""
+    """Every PCB fab of the catalogue."""
     return tuple(
         Fab(
             name=name,
@@ -125,8 +125,8 @@ OVER_PADS_MM = 0.1
 def flexible_board(config: Input, box: Box, notch: Box, connector_y_mm: float) -> Flexible | None:
     """Layers and zones of a flexible board; none for a rigid one.
 
-    The coverlay is as thick as common ones of board houses (assumed: each has its own); the core is
-    what remains. The board bends beyond the rigid interface. The stiffener is behind
+    The coverlay has the common thickness of PCB fabs (assumed: each has its own); the core is the
+    rest. The board bends beyond the rigid interface. The stiffener is behind
     the wires' pads, where the plate is open, so that it does not lift the board; it ends before
     the test points.
     """

@@ -1,9 +1,8 @@
 """Interface of a compliant finger on its plate, with its rim in the plate's groove.
 
-Of rim and groove the rim alone follows the printer's fit. The fit test plate is printed of the
-rigid filament, as the interface is, and its reading is of that filament: the rim goes back by it on
-each side. The groove is in a plate of a filament that bends, of which there is no reading: it is
-drawn at its nominal width.
+The printer's fit offsets the rim alone, on each side. It is measured on the fit test plate, which
+is printed of the rigid filament, as the interface is. The groove is in a plate of flexible
+filament, for which there is no measurement: it is drawn at its nominal width.
 """
 
 import math

@@ -9,7 +9,7 @@ from lumitip_fab.config.parameters import Parameters
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.design import Board, Densities, Outline, Printing, Slicing, Stack, Tip
 
-CARRIER_MM = 1.6  # of boards that are not flexible, where those of the fingers are
+CARRIER_MM = 1.6  # of the boards outside compliant fingers
 
 
 def is_flex(p: Parameters) -> bool:
@@ -35,7 +35,7 @@ def held_by(config: Input) -> Gripper:
 
 
 def behind_mm(p: Parameters) -> float:
-    """From the board's front to where the coupling's block begins."""
+    """From the board's front to the coupling's block."""
     return p.stack.pcb_mm + p.stack.floor_mm + (p.flex.pad_mm if is_flex(p) else 0.0)
 
 
@@ -45,8 +45,8 @@ def stiff_mm(p: Parameters) -> float:
 
 
 def foot_half_mm(config: Input, notch_half_mm: float) -> float:
-    """Half the width of what stands on the plate's back: the groove of an interface, whose legs
-    run beside the notch, or else the coupling's block."""
+    """Half the width of the part on the plate's back: the groove of an interface, whose legs run
+    beside the notch, or the coupling's block."""
     p = config.parameters
     if is_flex(p):
         return notch_half_mm + p.printer.min_wall_mm + p.flex.groove_mm

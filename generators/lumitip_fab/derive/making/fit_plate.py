@@ -13,7 +13,7 @@ from lumitip_fab.derive.making.fits import derive_fits
 from lumitip_fab.design import Box, FitPlate, Fits, Mount, Point
 
 STEPS_MM = (-0.1, -0.05, 0.0, 0.05, 0.1)
-LAYERS = 4  # of a foot, a slice and a pocket's wall: what a fit shows in, and no more to print
+LAYERS = 4  # height of a foot, a slice and a pocket's wall
 SLEEVE_LAYERS = 4  # of a sleeve, and as many of the bolt's hole above it
 LINES = 2  # of walls
 SEAT_MM = 1.0  # of a foot round its pin
@@ -30,7 +30,7 @@ APART_MM = 0.8  # between coupons
 
 
 def derive_fit_plate(config: Input, plan: Plan, mount: Mount, faults: Diagnostics) -> FitPlate:
-    """The plate, refused where it does not fit the bed."""
+    """The plate; refused where it is larger than the bed."""
     p = config.parameters
     printer = config.catalogue.printers[p.printer.profile]
     wall, layers_mm = LINES * printer.line_mm, LAYERS * printer.layer_mm

@@ -1,8 +1,8 @@
 """The printer's fit: the only place where it is added to drawn sizes.
 
-A printed surface that meets something goes back by the fit, square to itself: a gap to a board,
-to metal or to the gripper grows by it, and a gap between two printed parts by twice as much. Of
-two parts of two filaments only the one that the reading is of goes back: see
+A printed surface that meets another part is offset by the fit: a gap to a board, to metal or to
+the gripper grows by the fit, a gap between two printed parts by twice the fit. Between parts of
+two filaments only the part of the measured filament is offset: see
 `lumitip_fab.derive.finger.interface`.
 """
 
@@ -23,23 +23,23 @@ class Drawn:
     fit_mm: float
 
     def gap_mm(self, nominal_mm: float) -> float:
-        """From a printed surface to something that is not printed."""
+        """Gap between a printed surface and a part that is not printed."""
         return nominal_mm + self.fit_mm
 
     def hole_mm(self, nominal_mm: float) -> float:
-        """Diameter or width of what something goes into or through."""
+        """Diameter or width of a hole."""
         return nominal_mm + 2 * self.fit_mm
 
     def peg_mm(self, nominal_mm: float) -> float:
-        """Diameter or width of what goes into something."""
+        """Diameter or width of a peg."""
         return nominal_mm - 2 * self.fit_mm
 
 
-LEAST_GAP_MM = 0.02  # as drawn: no print goes into itself
+LEAST_GAP_MM = 0.02  # as drawn
 
 
 def refuse_touching(config: Input, field: str, clearance_mm: float, faults: Diagnostics) -> None:
-    """Refuse a fit so tight that nothing is left of a clearance, as drawn."""
+    """Refuse a fit that removes a clearance."""
     fit_mm = config.parameters.printer.fit_mm
     left_mm = Drawn(fit_mm).gap_mm(clearance_mm)
     faults.refuse_unless(

@@ -150,7 +150,7 @@ def _pads(finger: Finger) -> tuple[Terminal, ...]:
 
 
 def _wires_of(carrier: Carrier, ref: str) -> tuple[Terminal, ...]:
-    """The wire pads of a carrier that are named so, in their order."""
+    """The wire pads of a connector of a carrier, in their order."""
     device: Device = next(d for d in carrier.devices if d.ref == ref)
     pads = enumerate(device.nets, 1)
     return tuple(Terminal(carrier.name, ref, pad, net, place) for place, (pad, net) in pads)
@@ -206,8 +206,8 @@ def _cable(
 
 
 def _thick_enough(config: Input, cable: Cable, cables: list[Cable]) -> Cable:
-    """The cable with wires of the section asked for, or the next one that is sold and carries its
-    current over the whole way to the supply."""
+    """The cable with the configured section or, where that is too thin, the smallest sold one that
+    carries its current to the supply."""
     supply_v, asked = config.parameters.supply.voltage_v, config.parameters.wiring.section_mm2
     amps = max(wire.current_ma for wire in cable.wires) / 1000
     way_mm = sum(c.length_mm for c in cables if c.start.board != "receiver")
@@ -247,5 +247,5 @@ def _drill_mm(end: Terminal, boards: Boards) -> float:
 
 
 def _bare(devices: Iterable[Device], end: Terminal) -> list[Device]:
-    """The wire pads at an end: into a header goes a socket, not a wire."""
+    """Wire pads at an end; a header takes a socket, not a wire."""
     return [d for d in devices if d.ref == end.connector and d.kind == "wires"]

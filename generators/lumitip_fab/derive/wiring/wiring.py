@@ -55,7 +55,7 @@ class Muxing:
 
 
 def derive_strings(config: Input, cells: Cells, faults: Diagnostics) -> Strings:
-    """As few strings as the supply allows, differing by at most one LED."""
+    """The fewest strings that the supply allows, differing by at most one LED."""
     p = config.parameters
     led, volts = config.catalogue.leds[p.emitter.led], p.supply.voltage_v
     longest = min(longest_string(config), p.emitter.string_leds)
@@ -126,20 +126,19 @@ def string_problems(config: Input, strings: tuple[String, ...]) -> Iterator[tupl
 
 
 def _winding(cells: Cells) -> Integers:
-    """The cells along a path up one column and down the next: from neighbour to neighbour, but
-    for the step from a column to one of quite another length."""
+    """The cells up one column and down the next, so that successive cells are near each other."""
     order = np.lexsort((np.where(cells.column % 2, cells.row, -cells.row), cells.column))
     return np.asarray(order, dtype=np.int64)
 
 
 def _from_the_gripper(cells: Cells, string: Integers) -> tuple[int, ...]:
-    """A string that begins at its end nearer to the gripper, where its resistor is."""
+    """A string from its end nearer to the gripper, where its resistor is."""
     first, last = cells.y_mm[string[[0, -1]]]
     return tuple(string[:: -1 if last < first else 1].tolist())
 
 
 def derive_muxing(config: Input, cells: Cells, faults: Diagnostics) -> Muxing:
-    """As few multiplexers as hold all detectors, each on an analog pin of its own."""
+    """The fewest multiplexers for all detectors, each on its own analog pin."""
     p = config.parameters
     mux = config.catalogue.multiplexers[p.receiver.multiplexer]
     controller = config.catalogue.controllers[p.controller.board]
