@@ -23,7 +23,7 @@ OPEN = "NC"
 PinName = Annotated[str, Field(pattern=r"^[A-Z0-9]{1,6}$")]
 
 
-class Strip(Entry, Ordered):
+class Strip(Ordered, Entry):
     """One or two rows of contacts in plated holes."""
 
     ways: int = Field(ge=1, le=64)
@@ -69,7 +69,7 @@ class Plug(Strict):
     """Pin that feeds the receiver."""
 
 
-class Leaded(Entry, Ordered):
+class Leaded(Ordered, Entry):
     """A small part with gull-wing leads in two rows, lead 1 at the lower left."""
 
     body_mm: tuple[Length, Length, Length]

@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 from lumitip_fab.catalogue.record import Capacitances, Entry, Length, Ordered
 
 
-class Chip(Entry, Ordered):
+class Chip(Ordered, Entry):
     """A two-terminal part soldered flat on its board."""
 
     body_mm: tuple[Length, Length, Length]
@@ -115,7 +115,7 @@ class Fuse(Chip):
     """Rated breaking voltage."""
 
 
-class Multiplexer(Entry, Ordered):
+class Multiplexer(Ordered, Entry):
     """An analog multiplexer with its leads in two rows."""
 
     body_mm: tuple[Length, Length, Length]

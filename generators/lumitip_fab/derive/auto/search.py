@@ -151,7 +151,6 @@ MENDS: dict[str, tuple[str, ...]] = {
     "backing.tail_mm": ("stack.floor_mm",),
     "tip.slant_start_mm": ("outline.tip_margin_mm",),
     "coupling.gripper": (*_FINGER, "mould.taper_length_mm"),
-    "board.side_margin_mm": (),
     "board.tip_margin_mm": ("board.hole_edge_mm", "board.hole_mm"),
     "board.hole_mm": ("board.tip_margin_mm", "board.side_margin_mm"),
     "board.end_margin_mm": ("board.hole_mm",),
@@ -178,9 +177,7 @@ MENDS: dict[str, tuple[str, ...]] = {
     "mask.hole_mm": ("board.channel_mm",),
     "mask.flap_mm": ("mask.allowance_mm",),
     "mould.draft_deg": ("mould.tip_silicone_mm",),
-    "mould.wall_mm": (),
     "mould.taper_length_mm": ("outline.tip_margin_mm",),
-    "mould.tip_silicone_mm": (),
     "flex.groove_depth_mm": ("stack.floor_mm",),
     "flex.standoff_mm": ("flex.groove_depth_mm",),
     "flex.interface_mm": (
@@ -201,13 +198,11 @@ MENDS: dict[str, tuple[str, ...]] = {
     "holder.screw": ("breakout.hole_spacing_mm", "holder.wall_mm"),
     "holder.strap_hole_mm": ("holder.wrap_deg",),
     "holder.strap_spacing_mm": ("holder.strap_hole_mm",),
-    "printer.profile": (),
     "flange.fuse": ("emitter.current_ma", "flange.enabled"),
     "flange.input_capacitor": ("supply.voltage_v", "flange.enabled"),
     "flange.coupling": ("flange.enabled",),
     "flange.web_mm": ("flange.enabled",),
     "flange.contacts": ("flange.tail_mm", "flange.enabled"),
-    "flange.gate_ohm": (),
 }
 
 
