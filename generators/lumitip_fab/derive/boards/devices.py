@@ -119,7 +119,7 @@ def leaded(
     angle_deg: float,
     nets: dict[str, str],
 ) -> Device:
-    """A part with leads; its nets are given by the names of the leads."""
+    """A part with leads; `nets` has the net of each lead by its name."""
     return Device(
         ref=ref,
         kind=kind,
