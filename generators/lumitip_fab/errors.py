@@ -10,7 +10,10 @@ class FabError(Exception):
 
 @dataclass(frozen=True, order=True)
 class Problem:
-    """One fault of the input: where it is, what was given, and what is allowed."""
+    """One fault of the input: its place, the value, and the limit.
+
+    A message that begins with `is` or `has` continues the field's name.
+    """
 
     file: str
     line: int
@@ -19,9 +22,15 @@ class Problem:
 
     def __str__(self) -> str:
         place = f"{self.file}:{self.line}" if self.line else self.file
-        return (
-            f"{place}: {self.field}: {self.message}" if self.field else f"{place}: {self.message}"
-        )
+        return f"{place}: {self.text}"
+
+    @property
+    def text(self) -> str:
+        """The field with the message, without the place."""
+        if not self.field:
+            return self.message
+        joint = " " if self.message.startswith(("is ", "has ")) else ": "
+        return f"{self.field}{joint}{self.message}"
 
 
 class InputError(FabError):

@@ -21,11 +21,11 @@ Alter = Callable[[pytest.MonkeyPatch], None]
 
 
 def holes_narrow(patch: pytest.MonkeyPatch) -> None:
-    patch.setattr(fits.Drawn, "hole_mm", lambda _, wanted_mm: wanted_mm - 0.4)
+    patch.setattr(fits.Drawn, "hole_mm", lambda _, nominal_mm: nominal_mm - 0.4)
 
 
 def holes_wide(patch: pytest.MonkeyPatch) -> None:
-    patch.setattr(fits.Drawn, "hole_mm", lambda _, wanted_mm: wanted_mm + 0.7)
+    patch.setattr(fits.Drawn, "hole_mm", lambda _, nominal_mm: nominal_mm + 0.7)
 
 
 def heads_tight(patch: pytest.MonkeyPatch) -> None:

@@ -107,7 +107,7 @@ def test_a_fit_that_leaves_no_gap_is_refused_with_the_numbers(fitted: Derived) -
 def test_a_fit_that_leaves_too_little_wall_is_refused_with_the_numbers(fitted: Derived) -> None:
     with pytest.raises(FabError) as refusal:
         fitted(0.1, "[flange]\nclearance_mm = 0.9")
-    assert "with printer.fit_mm = 0.1: at least" in str(refusal.value)
+    assert "with printer.fit_mm = 0.1; at least" in str(refusal.value)
 
 
 @pytest.mark.parametrize("fit_mm", [-0.1, -0.05, 0.05, 0.1])

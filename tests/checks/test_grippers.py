@@ -16,7 +16,7 @@ from lumitip_fab.checks.slicing import slice_parts
 from lumitip_fab.cli.build import build
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
-from lumitip_fab.design.encoding import design_text, read_design, settled
+from lumitip_fab.design.encoding import design_text, read_design, round_trip
 from lumitip_fab.errors import FabError
 from lumitip_fab.parts.fit_plate import fit_plate_files
 from lumitip_fab.parts.settings import print_settings
@@ -144,30 +144,30 @@ def changed(before: str, after: str) -> str:
 REFUSED = {
     changed(
         "bolt_spacing_mm = 15.0", "bolt_spacing_mm = 7.0"
-    ): "whose block keeps 0.60 mm between its counterbores",
+    ): "whose block has 0.60 mm of wall between its counterbores",
     changed(
         "bolt_spacing_mm = 15.0", "bolt_spacing_mm = 19.0"
-    ): "whose block keeps 0.30 mm beside its counterbores",
+    ): "whose block has 0.30 mm of wall beside its counterbores",
     changed(
         "block_back_w_mm = 16.0", "block_back_w_mm = 13.5"
-    ): "whose block keeps 0.30 mm behind its counterbores",
+    ): "whose block has 0.30 mm of wall behind its counterbores",
     changed(
         "block_corner_mm = 2.0", "block_corner_mm = 11.0"
-    ): "whose block keeps 0.37 mm at its corners",
+    ): "whose block has 0.37 mm of wall at its corners",
     changed(
         "counterbore_mm = 6.4", "counterbore_mm = 4.0"
-    ): "whose block keeps 0.30 mm round the bolts under their heads",
-    changed("depth_mm = 2.5", "depth_mm = 3.5"): "whose block keeps 0.50 mm over the pins",
-    changed("hole_mm = 3.1", "hole_mm = 5.1"): "whose block keeps 0.25 mm between bolts and pins",
+    ): "whose block has 0.30 mm of wall round the bolts under their heads",
+    changed("depth_mm = 2.5", "depth_mm = 3.5"): "whose block has 0.50 mm of wall over the pins",
+    changed(
+        "hole_mm = 3.1", "hole_mm = 5.1"
+    ): "whose block has 0.25 mm of wall between bolts and pins",
     changed("pad_w_mm = 9.0", "pad_w_mm = 13.0"): "when it is closed",
     changed('bolt = "M3"', 'bolt = "3 mm"'): "bolt",
-    changed("length_mm = 70.0", "length_mm = 90.0"): "length_mm = 90 given, at most reach_mm = 85",
-    changed(
-        "corner_mm = 2.0\nlength", "corner_mm = 21.0\nlength"
-    ): "corner_mm = 21 given, at most 20",
+    changed("length_mm = 70.0", "length_mm = 90.0"): "length_mm is 90; at most reach_mm = 85",
+    changed("corner_mm = 2.0\nlength", "corner_mm = 21.0\nlength"): "corner_mm is 21; at most 20",
     NEW
     + "[bench_jaw.origin]\n"
-    + 'bold_mm = { source = "x", confidence = "assumed" }\n': "origin of bold_mm given",
+    + 'bold_mm = { source = "x", confidence = "assumed" }\n': "origin has bold_mm",
 }
 
 
@@ -232,7 +232,7 @@ def test_a_fit_test_plate_passes_its_checks_and_prints_in_ten_minutes(
     gripper: str, held_by: File, tmp_path: Path
 ) -> None:
     file = held_by("bench_jaw", OWN[gripper]) if gripper in OWN else held_by(gripper)
-    design = settled(derive(load(file)))
+    design = round_trip(derive(load(file)))
     made = fit_plate_files(design)
     made += print_settings(design)
     for artefact in made:

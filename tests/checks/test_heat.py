@@ -98,14 +98,14 @@ def with_entry(config: Input, kind: str, name: str, **values: Any) -> Input:
             "mould.silicone",
             (
                 "80 °C",
-                "the backing of PETG bears at most 65 °C",
-                "Take a silicone that cures cooler",
+                "the backing of PETG withstands 65 °C",
+                "Choose a silicone that cures at a lower temperature",
             ),
         ),
         (
             lambda given: with_entry(given, "films", "TPU 100um", soften_c=125.0),
             "mask.film",
-            ("125 °C", "bears at most 120 °C", "Take another film"),
+            ("125 °C", "withstands 120 °C", "Choose another film"),
         ),
     ],
 )

@@ -90,7 +90,7 @@ def test_an_unusual_design_passes_every_check(
 @pytest.mark.parametrize(
     ("changes", "told"),
     [
-        ({"mould.draft_deg": 20.0}, "0.50 mm is allowed: 18.4° or less"),
+        ({"mould.draft_deg": 20.0}, "0.50 mm is allowed. Use 18.4° or less"),
         ({"mould.wall_mm": 1.0}, "at least 1.6 is needed"),
         ({"mould.tip_silicone_mm": 4.0}, "less than stack.silicone_mm = 1.5 is allowed"),
         ({"mould.taper_length_mm": 6.0}, "at most 3.9 is allowed"),
@@ -101,9 +101,9 @@ def test_an_unusual_design_passes_every_check(
                 "tip.slant_start_mm": 6.0,
                 "outline.tip_margin_mm": 6.2,
             },
-            "at most 5.900 is allowed: there the pocket",
+            "at most 5.900 is allowed, up to the pocket",
         ),
-        ({"printer.profile": "tiny"}, "60 x 60 x 60 mm cannot take a mould of 65 x 69 mm"),
+        ({"printer.profile": "tiny"}, "60 x 60 x 60 mm; a mould of 65 x 69 mm"),
         (
             THICK | {"stack.silicone_mm": 1.1, "mould.tip_silicone_mm": 0.2, "mask.flap_mm": 13.0},
             "which leaves 1.60 mm for the letter",

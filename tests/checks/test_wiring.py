@@ -160,12 +160,12 @@ def test_what_carries_more_current_is_thicker(design_dir: Path, tmp_path: Path) 
     [
         (
             "[wiring]\nsection_mm2 = 1.0\n",
-            "1 given; strands of at most 0.718 mm² go into the holes of 1.2",
+            "is 1; the holes of 1.2 mm .* strands of at most 0.718 mm²",
         ),
         (
             "[wiring]\nsupply_mm = 1e4\n[emitter]\nstring_leds = 1\n"
             "[supply]\nvoltage_v = 2.5\nmax_ma = 5e3\n",
-            "0.08 given, .* is needed for .*: less emitter.current_ma is needed",
+            "is 0.08; .* is needed for .* Reduce emitter.current_ma.",
         ),
     ],
 )

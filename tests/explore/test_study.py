@@ -67,7 +67,7 @@ def test_every_design_has_figures_or_the_reasons_why_it_is_refused(
 ) -> None:
     out, study = studied
     assert [bool(found.refused) for found in study.designs] == [False, False, True] * 2
-    assert study.designs[2].refused[0].startswith("mask.hole_mm: 5.9 given")
+    assert study.designs[2].refused[0].startswith("mask.hole_mm is 5.9")
     assert study.evaluated == 6
     rows = list(csv.DictReader((out / "designs.csv").read_text(encoding="utf-8").splitlines()))
     told = json.loads((out / "designs.json").read_text(encoding="utf-8"))

@@ -61,15 +61,15 @@ def test_every_fault_of_every_text_is_told_at_once(config: Input) -> None:
         axes(config, texts, points=6)
     told = str(caught.value)
     for part in (
-        "did you mean 'grid.pitch_mm'?",
+        "Did you mean 'grid.pitch_mm'?",
         "FIELD=FROM:TO",
         "FROM must be below TO",
         "'5:x' given",
         "a step of 0 given",
         "no TOML list",
-        "'none' given",
-        "parts/leds.toml has",
-        "9 given, at most 5 is allowed",
+        "is 'none', which does not exist",
+        "Names in parts/leds.toml:",
+        "is 9; at most 5 is allowed",
         "tip.edge_mm: given twice",
         "an empty list given",
         "'inf:3' given",

@@ -159,7 +159,7 @@ def test_a_module_reads_as_many_cells_as_its_wires_allow(file: Any) -> None:
 
 
 def test_too_many_cells_are_compared_with_the_largest_multiplexer(file: Any) -> None:
-    with pytest.raises(RuleError, match="at most 128 cells"):
+    with pytest.raises(RuleError, match="Use 128 cells or fewer"):
         resolve(
             load(
                 file(

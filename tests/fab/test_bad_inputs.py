@@ -61,11 +61,11 @@ def _refusal(name: str, project: Path) -> InputError:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_bad_file_is_refused_with_exactly_the_expected_lines(name: str, project: Path) -> None:
-    told = str(_refusal(name, project)) + "\n"
+    message = str(_refusal(name, project)) + "\n"
     expected = BAD / f"{name}.expected"
     if os.environ.get("LUMITIP_GOLDEN"):
-        expected.write_text(told, encoding="utf-8")
-    assert told == expected.read_text(encoding="utf-8")
+        expected.write_text(message, encoding="utf-8")
+    assert message == expected.read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("name", NAMES)

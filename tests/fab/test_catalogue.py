@@ -117,9 +117,9 @@ def _changed(entry: Any, **values: Any) -> dict[str, Any]:
     [
         ({"output": 13}, "each needs a lead of its own"),
         ({"leads": 14}, "each needs a lead of its own from 1 to leads = 14"),
-        ({"select": (11, 10)}, "8 inputs given, 2 select lines reach at most 4"),
-        ({"inputs": {"1": 13}}, "inputs 1 given, the channels 0, 1, 2"),
-        ({"inputs": {}}, "inputs none given"),
+        ({"select": (11, 10)}, "has 8 inputs; 2 select lines reach at most 4"),
+        ({"inputs": {"1": 13}}, "inputs are 1; the channels 0, 1, 2"),
+        ({"inputs": {}}, "inputs are none"),
     ],
 )
 def test_a_multiplexer_that_cannot_be_wired_is_refused(
@@ -130,13 +130,13 @@ def test_a_multiplexer_that_cannot_be_wired_is_refused(
 
 
 def test_a_die_above_its_body_is_refused(parts: Catalogue) -> None:
-    with pytest.raises(ValidationError, match=r"die_height_mm = 0\.7 given, at most the body's"):
+    with pytest.raises(ValidationError, match=r"die_height_mm is 0\.7; at most the body's"):
         Led.model_validate(_changed(parts.leds["15406085BA300"], die_height_mm=0.7))
 
 
 def test_a_controller_uses_each_pin_once(parts: Catalogue) -> None:
     board = parts.controllers["arduino_nano_33_ble"]
-    with pytest.raises(ValidationError, match="A0 given twice"):
+    with pytest.raises(ValidationError, match="has A0 twice"):
         Controller.model_validate(_changed(board, select_pins=("A0",)))
     with pytest.raises(ValidationError, match="analog_pins"):
         Controller.model_validate(_changed(board, analog_pins=()))

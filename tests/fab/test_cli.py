@@ -74,7 +74,7 @@ def test_a_refused_input_is_told_with_exit_code_2(
     file.write_text(file.read_text().replace("pitch_mm", "pich_mm"))
     assert main(["build", str(file), "--out", str(tmp_path / "out")]) == 2
     told = capsys.readouterr()
-    assert "grid.pich_mm: 'pich_mm' given, did you mean 'pitch_mm'?" in told.err
+    assert "grid.pich_mm is not a known key. Did you mean 'pitch_mm'?" in told.err
     assert not (tmp_path / "out").exists()
     assert main(["build", str(file), "--out", str(tmp_path / "out"), "--json"]) == 2
     problems = json.loads(capsys.readouterr().out)["problems"]

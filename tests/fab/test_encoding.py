@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from lumitip_fab.design import Box, Design, Nose
-from lumitip_fab.design.encoding import canonical, design_text, encoded, read_design, settled
+from lumitip_fab.design.encoding import canonical, design_text, encoded, read_design, round_trip
 from lumitip_fab.errors import FabError, OutputError
 
 PRESETS = ("asymmetric", "dense", "mux16", "published")
@@ -42,11 +42,11 @@ def test_a_design_reads_back_as_the_very_same_design(
 
 def test_what_is_built_is_what_is_read_back(designs: dict[str, Design]) -> None:
     design = designs["published"]
-    assert settled(design) == design
+    assert round_trip(design) == design
     noisy = dataclasses.replace(
         design, stack=dataclasses.replace(design.stack, floor_mm=0.8 + 1e-13)
     )
-    assert settled(noisy) == design
+    assert round_trip(noisy) == design
 
 
 def test_the_text_is_sorted_json_of_one_line_a_slice(designs: dict[str, Design]) -> None:

@@ -65,7 +65,7 @@ def test_a_fault_of_a_rule_is_placed_in_the_level_that_set_the_value(write: Writ
     Path("design/mine.toml").write_text('extends = "presets/dense.toml"\n\nmask.hole_mm = 2.9\n')
     (fault,) = _problems(write('extends = "mine.toml"\n'))
     assert (fault.file, fault.line, fault.field) == ("design/mine.toml", 3, "mask.hole_mm")
-    assert fault.message.endswith("set it in design/x.toml")
+    assert fault.message.endswith("Override it in design/x.toml.")
 
 
 def test_what_an_unreadable_base_would_have_said_is_not_called_missing(write: Write) -> None:

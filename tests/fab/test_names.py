@@ -13,7 +13,7 @@ from reportlab.pdfbase.pdfmetrics import getFont
 from lumitip_fab.boards.spice import simulation
 from lumitip_fab.checks import firmware
 from lumitip_fab.config.load import Input
-from lumitip_fab.config.names import DEVICE_BYTES, DeviceName, Text
+from lumitip_fab.config.sections import DEVICE_BYTES, DeviceName, Text
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
 from lumitip_fab.docs.wiring import wiring_files

@@ -59,15 +59,15 @@ def test_the_mould_s_wall_grows_for_the_letters_of_a_wide_line(copied_design: Pa
     design = derive(load(file))
     assert design.mould.wall_mm == 2.5
     (choice,) = [choice for choice in design.choices if choice.field == "mould.wall_mm"]
-    assert "2.66 mm high at least" in choice.reason
+    assert "2.66 mm is needed" in choice.reason
 
 
 def test_a_wall_without_room_for_the_letter_is_refused(copied_design: Path) -> None:
     more = f'profile = "fdm 0.6"\n{THINNER}[mould]\nwall_mm = 2.4\n'
     with pytest.raises(InputError) as refusal:
         derive(load(_file(copied_design, "published", more)))
-    assert "mould.wall_mm: 2.4 given, which leaves 2.60 mm" in str(refusal.value)
-    assert "a wall of 2.46 or more is needed" in str(refusal.value)
+    assert "mould.wall_mm is 2.4, which leaves 2.60 mm" in str(refusal.value)
+    assert "Use a wall of 2.46 mm or more." in str(refusal.value)
 
 
 @pytest.mark.parametrize("line_mm", [0.28, 0.42, 0.45])

@@ -93,7 +93,7 @@ def test_what_a_message_asks_for_is_named(plan: Any, text: str, field: str, valu
 
 
 def test_an_outline_that_crosses_itself_is_refused(file: Any) -> None:
-    with pytest.raises(RuleError, match="shoulder_margin_mm: 2 given, at least waist_margin_mm"):
+    with pytest.raises(RuleError, match="shoulder_margin_mm is 2; at least waist_margin_mm"):
         resolve(load(file(CROSSED)))
 
 

@@ -102,14 +102,14 @@ def _refused(path: Path) -> str:
 def test_files_that_cannot_be_read_are_refused_with_the_reason(tmp_path: Path) -> None:
     assert _refused(tmp_path / "none.toml") == "x.toml: cannot be read: No such file or directory"
     assert "cannot be read: Is a directory" in _refused(tmp_path)
-    assert "is no usable file name" in _refused(Path("a\0b.toml"))
+    assert "is not a valid file name" in _refused(Path("a\0b.toml"))
 
 
 def test_a_file_too_large_is_not_parsed(tmp_path: Path) -> None:
     path = tmp_path / "x.toml"
     path.write_text("#" + "x" * LARGEST_FILE_BYTES, encoding="utf-8")
     assert _refused(path) == (
-        f"x.toml: {LARGEST_FILE_BYTES + 1} bytes given, at most {LARGEST_FILE_BYTES} are read"
+        f"x.toml: has {LARGEST_FILE_BYTES + 1} bytes; at most {LARGEST_FILE_BYTES} are allowed"
     )
     path.write_text("#" + "x" * (LARGEST_FILE_BYTES - 1), encoding="utf-8")
     assert read_toml(path, "x.toml").table == {}

@@ -32,7 +32,7 @@ def test_saving_rebuilds_and_a_fault_is_waited_out(outputs: Path, tmp_path: Path
             _wait_for(log, "watching")
             text = file.read_text()
             file.write_text(text.replace('name = "Lumitip"  ', "name = 7  "))
-            _wait_for(log, "controller.name: 7 given")
+            _wait_for(log, "controller.name is 7")
             file.write_text(text.replace('name = "Lumitip"  ', 'name = "Other"  '))
             _wait_for(log, "controller.name: Lumitip → Other")
             _wait_for(log, "design.json")

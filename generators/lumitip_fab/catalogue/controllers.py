@@ -10,6 +10,7 @@ from lumitip_fab.catalogue.record import (
     Entry,
     Length,
     Offset,
+    Ordered,
     Pin,
     Share,
     Strict,
@@ -18,19 +19,13 @@ from lumitip_fab.catalogue.record import (
 
 Signal = Annotated[str, Field(pattern=r"^[A-Za-z0-9_+\-]{1,12}$")]
 OPEN = "NC"
-"""Signal of a contact that is joined to nothing."""
+"""Signal of an open contact."""
 PinName = Annotated[str, Field(pattern=r"^[A-Z0-9]{1,6}$")]
 
 
-class Strip(Entry):
+class Strip(Ordered, Entry):
     """One or two rows of contacts in plated holes."""
 
-    manufacturer: str = Field(min_length=1, max_length=64)
-    """Who makes it, for the bill of materials; "any" where it does not matter."""
-    order_number: str = Field(min_length=1, max_length=64)
-    """What to order."""
-    lcsc: str = Field(default="", pattern=r"^(C[1-9]\d*)?$")
-    """Number at the distributor LCSC; empty where it is not known."""
     ways: int = Field(ge=1, le=64)
     """Contacts in a row."""
     rows: int = Field(default=1, ge=1, le=2)
@@ -44,11 +39,11 @@ class Strip(Entry):
     height_mm: Length
     """Above the board."""
     stroke_mm: float = Field(default=0, ge=0, le=10)
-    """How far spring contacts give; 0 of others."""
+    """Travel of spring contacts; 0 for others."""
 
 
 class Plug(Strict):
-    """How a controller board stands on two socket strips, its USB plug to the left.
+    """A controller board on two socket strips, its USB plug to the left.
 
     ```
          rows[1][0] … rows[1][-1]
@@ -74,15 +69,9 @@ class Plug(Strict):
     """Pin that feeds the receiver."""
 
 
-class Leaded(Entry):
+class Leaded(Ordered, Entry):
     """A small part with gull-wing leads in two rows, lead 1 at the lower left."""
 
-    manufacturer: str = Field(min_length=1, max_length=64)
-    """Who makes it, for the bill of materials."""
-    order_number: str = Field(min_length=1, max_length=64)
-    """What to order."""
-    lcsc: str = Field(default="", pattern=r"^(C[1-9]\d*)?$")
-    """Number at the distributor LCSC; empty where it is not known."""
     body_mm: tuple[Length, Length, Length]
     """Body: along the rows of leads, across them, height above the board."""
     lead_span_mm: Length
@@ -118,7 +107,7 @@ class Regulator(Leaded):
     def _has_its_leads(self) -> Self:
         if set(self.names) != {"FB", "EN", "VIN", "GND", "SW", "BST"}:
             raise ValueError(
-                f"leads {', '.join(self.names)} given, FB, EN, VIN, GND, SW and BST are needed"
+                f"names are {', '.join(self.names)}; FB, EN, VIN, GND, SW and BST are needed"
             )
         return self
 
@@ -138,7 +127,7 @@ class LinearRegulator(Leaded):
     @model_validator(mode="after")
     def _has_its_leads(self) -> Self:
         if set(self.names) != {"GND", "OUT", "IN"}:
-            raise ValueError(f"leads {', '.join(self.names)} given, GND, OUT and IN are needed")
+            raise ValueError(f"names are {', '.join(self.names)}; GND, OUT and IN are needed")
         return self
 
 
@@ -155,28 +144,22 @@ class Transistor(Leaded):
     @model_validator(mode="after")
     def _has_its_leads(self) -> Self:
         if set(self.names) != {"G", "S", "D"}:
-            raise ValueError(f"leads {', '.join(self.names)} given, G, S and D are needed")
+            raise ValueError(f"names are {', '.join(self.names)}; G, S and D are needed")
         return self
 
 
 ANALOG_PORTS = ("P0_02", "P0_03", "P0_04", "P0_05", "P0_28", "P0_29", "P0_30", "P0_31")
 """AIN0 to AIN7 of the nRF52840, by its product specification."""
 _SINGLE = ("VDD", "VDDH", "VBUS", "USB_DM", "USB_DP", "SWDIO", "SWDCLK", "P0_18")
-"""Pads that are joined by their names; P0.18 is the reset."""
+"""Pads that are wired by name; P0.18 is the reset."""
 
 
-class Module(Strict):
+class Module(Ordered):
     """A module with Nordic's nRF52840 and an antenna, soldered to the flange's board.
 
     Places are in mm from the middle of its body, seen from above with the antenna at the top.
     """
 
-    manufacturer: str = Field(min_length=1, max_length=64)
-    """Who makes it, for the bill of materials."""
-    order_number: str = Field(min_length=1, max_length=64)
-    """What to order."""
-    lcsc: str = Field(default="", pattern=r"^(C[1-9]\d*)?$")
-    """Number at the distributor LCSC; empty where it is not known."""
     body_mm: tuple[Length, Length, Length]
     """Body: across, along, height above the board."""
     bypass_nf: Capacitances
@@ -201,18 +184,18 @@ class Module(Strict):
     def _pads_exist(self) -> Self:
         if len(self.names) != len(self.pads_mm):
             raise ValueError(
-                f"{len(self.names)} names and {len(self.pads_mm)} places of pads given, each pad "
+                f"has {len(self.names)} names and {len(self.pads_mm)} places of pads; each pad "
                 "needs both"
             )
         ports = (*self.crystal, *self.ports.values())
         for name in (*_SINGLE, *ports):
             if self.names.count(name) != 1:
-                raise ValueError(f"{self.names.count(name)} pads named {name} given, 1 is needed")
+                raise ValueError(f"has {self.names.count(name)} pads named {name}; 1 is needed")
         twice = sorted({port for port in ports if ports.count(port) > 1})
         if twice:
-            raise ValueError(f"{', '.join(twice)} given twice, each port is used once")
+            raise ValueError(f"has {', '.join(twice)} twice; each port is used once")
         if "GND" not in self.names:
-            raise ValueError("no pad named GND given, at least one is needed")
+            raise ValueError("has no pad named GND; at least one is needed")
         return self
 
 
@@ -222,7 +205,7 @@ class Controller(Entry):
     analog_pins: tuple[Pin, ...] = Field(min_length=1)
     """Analog inputs in the order in which they are used."""
     unlimited_analog_pins: bool = False
-    """Whether further inputs are invented as needed: for benchmarks only."""
+    """Whether there are as many inputs as needed: for benchmarks only."""
     select_pins: tuple[Pin, ...] = Field(min_length=1)
     """Digital outputs for the select lines, least significant first."""
     adc_bits: int = Field(ge=8, le=16)
@@ -234,30 +217,30 @@ class Controller(Entry):
     draws_ma: float = Field(default=0.0, ge=0, le=2000)
     """Largest current of the board itself; 0 where it is not known (mA)."""
     plug: Plug | None = None
-    """How it stands on sockets, if it does."""
+    """Its pins, if it plugs into sockets."""
     module: Module | None = None
-    """How it is soldered to the flange's board, if it is."""
+    """Its pads, if it is soldered to the flange's board."""
 
     @model_validator(mode="after")
     def _pins_differ(self) -> Self:
         pins = (*self.analog_pins, *self.select_pins)
         twice = sorted({pin for pin in pins if pins.count(pin) > 1})
         if twice:
-            raise ValueError(f"{', '.join(twice)} given twice, each pin is used once")
+            raise ValueError(f"has {', '.join(twice)} twice; each pin is used once")
         if self.plug is not None:
             there = {*self.plug.rows[0], *self.plug.rows[1]}
-            wanted = (*pins, self.plug.ground, self.plug.supply, self.plug.regulated)
-            lost = sorted(set(wanted) - there)
+            needed = (*pins, self.plug.ground, self.plug.supply, self.plug.regulated)
+            lost = sorted(set(needed) - there)
             if lost:
-                raise ValueError(f"{', '.join(lost)} given, which no row of its plug has")
+                raise ValueError(f"has {', '.join(lost)}, missing in the rows of its plug")
         if self.module is not None:
             lost = sorted(set(pins) - set(self.module.ports))
             if lost:
-                raise ValueError(f"{', '.join(lost)} given, for which its module has no port")
+                raise ValueError(f"has {', '.join(lost)}, missing in the ports of its module")
             deaf = sorted(set(self.analog_pins) - {*filter(self.module.measures, self.analog_pins)})
             if deaf:
                 raise ValueError(
-                    f"{', '.join(deaf)} given as analog, only the ports {', '.join(ANALOG_PORTS)} "
-                    "measure voltages"
+                    f"has {', '.join(deaf)} in analog_pins; analog inputs are only the ports "
+                    f"{', '.join(ANALOG_PORTS)}"
                 )
         return self

@@ -4,22 +4,10 @@ from typing import Literal, Self
 
 from pydantic import Field, model_validator
 
-from lumitip_fab.catalogue.record import Capacitances, Entry, Length
+from lumitip_fab.catalogue.record import Capacitances, Entry, Length, Ordered
 
 
-class Bought(Entry):
-    """What every part that is soldered to a board carries."""
-
-    manufacturer: str = Field(min_length=1, max_length=64)
-    """Who makes it, for the bill of materials; "any" where it does not matter."""
-    order_number: str = Field(min_length=1, max_length=64)
-    """What to order; of resistors, `{code}` stands for the value, such as 75K or 4K99."""
-    lcsc: str = Field(default="", pattern=r"^(C[1-9]\d*)?$")
-    """Number at the distributor LCSC, by which JLCPCB finds a part; empty where it is not known,
-    and of resistors, whose number depends on the value."""
-
-
-class Chip(Bought):
+class Chip(Ordered, Entry):
     """A two-terminal part soldered flat on its board."""
 
     body_mm: tuple[Length, Length, Length]
@@ -37,7 +25,7 @@ class Chip(Bought):
 
 
 class Optical(Chip):
-    """A chip that shines or sees through its top."""
+    """A chip that emits or detects light through its top."""
 
     die_height_mm: Length
     """Height of the light-emitting or light-sensitive surface above the board."""
@@ -46,7 +34,7 @@ class Optical(Chip):
     def _die_in_body(self) -> Self:
         if self.die_height_mm > self.body_mm[2]:
             raise ValueError(
-                f"die_height_mm = {self.die_height_mm:g} given, at most the body's height of "
+                f"die_height_mm is {self.die_height_mm:g}; at most the body's height of "
                 f"{self.body_mm[2]:g} is allowed"
             )
         return self
@@ -58,7 +46,7 @@ class Led(Optical):
     forward_voltage_v: float = Field(ge=0.1, le=10)
     """Forward voltage at the working current."""
     forward_tolerance_v: float = Field(ge=0, le=2)
-    """How far the forward voltage of one part may be off, either way."""
+    """Tolerance of the forward voltage, either way."""
     ideality: float = Field(ge=1, le=5)
     """Ideality factor n: how its voltage grows with the logarithm of its current."""
     marked: Literal["anode", "cathode"]
@@ -99,9 +87,9 @@ class Capacitor(Chip):
     capacitance_nf: float = Field(gt=0, le=1e6)
     """Capacitance."""
     rated_v: float = Field(gt=0, le=1e4)
-    """Largest voltage."""
+    """Rated voltage."""
     left: float = Field(default=1, gt=0, le=1)
-    """Share of it that is left at the voltage across it."""
+    """DC-bias derating: fraction of the capacitance at the working voltage."""
 
 
 class Inductor(Chip):
@@ -115,19 +103,19 @@ class Crystal(Chip):
     """A quartz crystal of 32.768 kHz."""
 
     load_pf: float = Field(gt=0, le=100)
-    """Capacitance that it is made for, of its two capacitors in series with all else there is."""
+    """Load capacitance C_L: its two capacitors in series, with strays."""
 
 
 class Fuse(Chip):
     """A fuse."""
 
     rated_a: float = Field(gt=0, le=100)
-    """Current that it carries."""
+    """Rated current."""
     rated_v: float = Field(gt=0, le=1000)
-    """Voltage that it breaks."""
+    """Rated breaking voltage."""
 
 
-class Multiplexer(Bought):
+class Multiplexer(Ordered, Entry):
     """An analog multiplexer with its leads in two rows."""
 
     body_mm: tuple[Length, Length, Length]
@@ -174,15 +162,17 @@ class Multiplexer(Bought):
         used = (*self.inputs.values(), *self.select, *(lead for lead in single if lead is not None))
         if set(self.inputs) != {str(i) for i in range(len(self.inputs))} or not self.inputs:
             inputs = ", ".join(self.inputs) or "none"
-            raise ValueError(f"inputs {inputs} given, the channels 0, 1, 2 … are needed, no gap")
+            raise ValueError(
+                f"inputs are {inputs}; the channels 0, 1, 2 … without a gap are needed"
+            )
         if self.channels > 2 ** len(self.select):
             raise ValueError(
-                f"{self.channels} inputs given, {len(self.select)} select lines reach at most "
+                f"has {self.channels} inputs; {len(self.select)} select lines reach at most "
                 f"{2 ** len(self.select)}"
             )
         if len(set(used)) != len(used) or not all(1 <= lead <= self.leads for lead in used):
             raise ValueError(
-                f"inputs, select, output, supply, ground, enable and negative on leads "
-                f"{sorted(used)} given, each needs a lead of its own from 1 to leads = {self.leads}"
+                f"inputs, select, output, supply, ground, enable and negative are on leads "
+                f"{sorted(used)}; each needs a lead of its own from 1 to leads = {self.leads}"
             )
         return self

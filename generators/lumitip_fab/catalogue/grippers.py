@@ -37,12 +37,12 @@ class Pins(Strict):
 
 
 class Origin(Strict):
-    """Where a figure comes from that the entry's `source` does not give."""
+    """Source of a figure that the entry's `source` does not cover."""
 
     source: str = Field(min_length=1)
-    """Where it comes from."""
+    """Source of the figure."""
     confidence: Confidence
-    """How far to trust it."""
+    """Confidence in it."""
 
 
 class Envelope(Sourced):
@@ -62,7 +62,7 @@ class Envelope(Sourced):
     mass_kg: float = Field(gt=0, le=50)
     """Of the gripper."""
     payload_kg: float = Field(gt=0, le=100)
-    """What it may hold."""
+    """Its payload."""
 
     @property
     def round_mm(self) -> float | None:
@@ -74,17 +74,16 @@ class Envelope(Sourced):
     def _fits_together(self) -> Self:
         most = min(self.width_mm, self.depth_mm) / 2
         if self.corner_mm > most:
-            raise ValueError(f"corner_mm = {self.corner_mm:g} given, at most {most:g} is allowed")
+            raise ValueError(f"corner_mm is {self.corner_mm:g}; at most {most:g} is allowed")
         if self.length_mm > self.reach_mm:
             raise ValueError(
-                f"length_mm = {self.length_mm:g} given, at most reach_mm = {self.reach_mm:g} is "
-                "allowed"
+                f"length_mm is {self.length_mm:g}; at most reach_mm = {self.reach_mm:g} is allowed"
             )
         return self
 
 
 class Gripper(Entry):
-    """Where a gripper holds a fingertip; distances w are behind the plate's rim plane. Its bolts
+    """Mounting geometry of a gripper; distances w are behind the plate's rim plane. Its bolts
     run along the finger, into the gripper."""
 
     stroke_mm: Length
@@ -125,11 +124,11 @@ class Gripper(Entry):
     @property
     def unsure(self) -> tuple[str, ...]:
         """Names of the figures that neither a datasheet nor a measurement gives."""
-        told = [name for name in FIGURES if getattr(self, name) is not None]
+        known = [name for name in FIGURES if getattr(self, name) is not None]
         trusted = ("datasheet", "measured")
         return tuple(
             name
-            for name in told
+            for name in known
             if (self.origin[name].confidence if name in self.origin else self.confidence)
             not in trusted
         )
@@ -139,8 +138,8 @@ class Gripper(Entry):
         unknown = sorted(set(self.origin) - set(FIGURES))
         if unknown:
             raise ValueError(
-                f"origin of {', '.join(unknown)} given, figures of a gripper are "
-                f"{', '.join(FIGURES)}"
+                f"origin has {', '.join(unknown)}, which is not a figure of a gripper; the figures "
+                f"are {', '.join(FIGURES)}"
             )
         return self
 
@@ -166,15 +165,15 @@ class Contact(Strict):
     carries: Signal
     """Name of its signal; `NC` of a contact to leave open."""
     kind: Kind
-    """What that signal is: `SUPPLY` goes to a supply alone, `GND` to a ground alone, and nothing
-    to a contact that is open."""
+    """Kind of that signal: only `SUPPLY` may be on a supply, only `GND` on a ground, and nothing
+    on an open contact."""
 
     @model_validator(mode="after")
     def _open_is_nc(self) -> Self:
         if (self.kind == "open") != (self.carries == OPEN):
             raise ValueError(
-                f"carries = {self.carries!r} with kind = {self.kind!r} given: {OPEN} and open "
-                "belong together"
+                f"carries is {self.carries!r} and kind is {self.kind!r}; {OPEN!r} and 'open' need "
+                "each other"
             )
         return self
 
@@ -204,7 +203,7 @@ class ToolCoupling(Entry):
     pin_at_mm: tuple[Place, Place]
     """Axis of the locating pin."""
     pin_depth_mm: Length
-    """How deep it stands in the coupling, below the floor of the recess."""
+    """Depth in the coupling, below the floor of the recess."""
     contacts: tuple[Contact, ...] = Field(min_length=1, max_length=64)
     """Every contact, in the order of their numbers from 1."""
     contacts_depth_mm: Length
@@ -223,12 +222,11 @@ class ToolCoupling(Entry):
     def _recess_in_face(self) -> Self:
         if self.recess_mm >= self.face_mm:
             raise ValueError(
-                f"recess_mm = {self.recess_mm:g} given, less than face_mm = {self.face_mm:g} is "
-                "allowed"
+                f"recess_mm is {self.recess_mm:g}; less than face_mm = {self.face_mm:g} is allowed"
             )
         if self.recess_depth_mm >= self.height_mm:
             raise ValueError(
-                f"recess_depth_mm = {self.recess_depth_mm:g} given, less than height_mm = "
+                f"recess_depth_mm is {self.recess_depth_mm:g}; less than height_mm = "
                 f"{self.height_mm:g} is allowed"
             )
         return self

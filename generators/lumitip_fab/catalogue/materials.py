@@ -34,7 +34,7 @@ class Filament(Entry):
     """A filament of 1.75 mm."""
 
     kind: Literal["ABS", "ASA", "FLEX", "PA", "PC", "PET", "PLA", "PP"]
-    """What PrusaSlicer calls its kind."""
+    """Its kind in PrusaSlicer."""
     density_g_ml: float = Field(ge=0.5, le=3)
     """Density."""
     nozzle_c: int = Field(ge=150, le=450)
@@ -46,9 +46,9 @@ class Filament(Entry):
     speed_mm_s: float = Field(ge=5, le=300)
     """Speed of perimeters; outer ones and the first layer go slower."""
     max_flow_mm3_s: float = Field(ge=0.5, le=50)
-    """What the nozzle melts."""
+    """Largest volume that the nozzle melts each second."""
     retract_mm: float = Field(ge=0, le=10)
-    """How far it is pulled back before a move."""
+    """Retraction before a move."""
     layer_mpa: float = Field(gt=0, le=500)
     """Tensile strength from layer to layer."""
     bearing_mpa: float = Field(gt=0, le=500)
@@ -57,12 +57,12 @@ class Filament(Entry):
     """Highest temperature at which a printed part keeps its shape (°C): the lower end of its
     heat deflection temperature."""
     rigid_parts: Name | None = None
-    """For a filament that bends: the filament of parts that must not, such as moulds."""
+    """For a flexible filament: the filament of rigid parts, such as moulds."""
 
     @model_validator(mode="after")
     def _fan_in_order(self) -> Self:
         if self.fan_percent[0] > self.fan_percent[1]:
-            raise ValueError(f"fan_percent {self.fan_percent} given, the least comes first")
+            raise ValueError(f"fan_percent is {self.fan_percent}; the smaller value comes first")
         return self
 
 
@@ -87,13 +87,13 @@ class Fastener(Entry):
         fine, coarse = self.hole_mm
         if not self.thread_mm < fine <= coarse:
             raise ValueError(
-                f"hole_mm = [{fine:g}, {coarse:g}] given, more than thread_mm = "
-                f"{self.thread_mm:g} is needed, the finer first"
+                f"hole_mm is [{fine:g}, {coarse:g}]; both must be more than thread_mm = "
+                f"{self.thread_mm:g}, the smaller first"
             )
         if min(self.cap_head_mm, self.countersunk_mm, self.nut_mm) <= coarse:
             raise ValueError(
-                f"cap_head_mm = {self.cap_head_mm:g}, countersunk_mm = {self.countersunk_mm:g} and "
-                f"nut_mm = {self.nut_mm:g} given, more than the coarse hole's {coarse:g} is needed"
+                f"cap_head_mm is {self.cap_head_mm:g}, countersunk_mm is {self.countersunk_mm:g}, "
+                f"nut_mm is {self.nut_mm:g}; each must be more than the coarse hole of {coarse:g}"
             )
         return self
 
@@ -112,7 +112,7 @@ class Silicone(Entry):
     cure_c: float = Field(ge=5, le=200)
     """Temperature to cure at, in the mould with backing and board (°C)."""
     limit_c: float = Field(ge=20, le=400)
-    """Highest temperature that it bears when cured (°C)."""
+    """Highest temperature that it withstands when cured (°C)."""
 
 
 class Film(Entry):

@@ -37,7 +37,7 @@ Ending = Annotated[str, Field(pattern=r"^[A-Za-z0-9_.\-]{2,30}$")]
 
 
 class Silk(Strict):
-    """What a board house prints legibly."""
+    """Smallest legible silkscreen of a PCB fab."""
 
     text_mm: Length
     """Height of the smallest letters."""
@@ -48,33 +48,33 @@ class Silk(Strict):
 
 
 class Fab(Entry):
-    """A board house: what it calls files and columns, and how it counts angles."""
+    """A PCB fab: its names of files and columns, and its angles."""
 
     layers: Mapping[Layers, Ending]
-    """What follows the board's name in the file of each layer; a stiffener is of flexible boards
+    """End of the file name of each layer, after the board's name; a stiffener is of flexible boards
     alone."""
     bom: tuple[tuple[Heading, BomField], ...] = Field(min_length=1)
     """Heading and field of each column of the bill of materials."""
     positions: tuple[tuple[Heading, PositionField], ...] = Field(min_length=1)
     """Heading and field of each column of the placement list."""
     silk: Silk
-    """What its silkscreen shows."""
+    """Limits of its silkscreen."""
     remark: str = Field(default="", max_length=300)
-    """What to mind when ordering there, for the note in its zip."""
+    """Remark on ordering there, for the note in its zip."""
     sides: tuple[Heading, Heading]
-    """What it calls front and back."""
+    """Its names of front and back."""
     back_angle: Literal["from behind", "as KiCad"]
-    """How the angle of a part on the back is counted."""
+    """Direction in which the angle of a part on the back is counted."""
     rotations: Mapping[str, float]
-    """What is added to the angle (degrees) of footprints whose name begins so."""
+    """Offset of the angle (degrees) of footprints, by the beginning of their name."""
 
     @model_validator(mode="after")
     def _layers_whole(self) -> Self:
         missing = sorted(set(get_args(Layers)) - set(self.layers))
         if missing:
-            raise ValueError(f"layers without {', '.join(missing)} given, each is needed")
+            raise ValueError(f"layers has no {', '.join(missing)}; each is needed")
         if len(set(self.layers.values())) < len(self.layers):
-            raise ValueError("layers with the same ending given, each needs its own")
+            raise ValueError("layers has the same ending twice; each layer needs its own")
         return self
 
 
@@ -98,7 +98,7 @@ class PlacingPrice(Strict):
 
 
 class Prices(Sourced):
-    """What parts cost, in one currency."""
+    """Prices of parts, in one currency."""
 
     currency: str = Field(pattern=r"^[A-Z]{3}$")
     """Three letters, such as EUR."""

@@ -1,4 +1,4 @@
-"""What every record of the catalogue has in common, and the kinds of values in them."""
+"""Base classes of catalogue records, and the types of their values."""
 
 from typing import Annotated, Literal
 
@@ -7,7 +7,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 _LETTERS = "A-Za-zµÀ-ÖØ-öø-ÿ"
 """Those of Latin-1: all are in the PDFs' typeface."""
 NAME = rf"^[A-Za-z0-9]([{_LETTERS}0-9 .+/\-]|_[A-Za-z0-9])*$"
-"""Stands in texts where there is no title: a `_` opens no emphasis that another one closes."""
+"""Used in texts where there is no title; two `_` must not form Markdown emphasis."""
 Length = Annotated[float, Field(ge=0.01, le=500)]
 Share = Annotated[float, Field(ge=0.01, le=1000)]
 TITLE = rf"^([{_LETTERS}0-9][{_LETTERS}0-9 .,+/()\-]*)?$"
@@ -20,7 +20,7 @@ Name = Annotated[str, Field(min_length=1, max_length=64, pattern=NAME)]
 def _ascending(least_and_most: tuple[float, float]) -> tuple[float, float]:
     least, most = least_and_most
     if least > most:
-        raise ValueError(f"[{least:g}, {most:g}] given, the least is needed first")
+        raise ValueError(f"is [{least:g}, {most:g}]; the smaller value comes first")
     return least_and_most
 
 
@@ -32,7 +32,7 @@ Confidence = Literal["datasheet", "measured", "inferred", "assumed"]
 
 
 class Strict(BaseModel):
-    """What every record read from a user's file has in common."""
+    """Base of every record that is read from a user's file."""
 
     model_config = ConfigDict(
         strict=True,
@@ -44,16 +44,28 @@ class Strict(BaseModel):
 
 
 class Sourced(Strict):
-    """Figures that come from somewhere."""
+    """Figures with a source."""
 
     source: str = Field(min_length=1)
-    """Where the figures come from."""
+    """Source of the figures."""
     confidence: Confidence
-    """How far to trust them."""
+    """Confidence in the figures."""
 
 
 class Entry(Sourced):
-    """What every catalogue entry carries."""
+    """Base of every catalogue entry."""
 
     title: str = Field(default="", max_length=64, pattern=TITLE)
-    """What people call it, in manual, bill and drawings; left out, the entry's own name."""
+    """Title in manual, bill and drawings; by default the entry's own name."""
+
+
+class Ordered(Strict):
+    """Ordering data of a part that is soldered to a board."""
+
+    manufacturer: str = Field(min_length=1, max_length=64)
+    """Manufacturer, for the bill of materials; "any" where it does not matter."""
+    order_number: str = Field(min_length=1, max_length=64)
+    """Order number; for resistors, `{code}` stands for the value, such as 75K or 4K99."""
+    lcsc: str = Field(default="", pattern=r"^(C[1-9]\d*)?$")
+    """Number at the distributor LCSC, which JLCPCB uses; empty where it is not known, and for
+    resistors, whose number depends on the value."""

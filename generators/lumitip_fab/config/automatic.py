@@ -1,4 +1,4 @@
-"""The fields that may be `"auto"`: where the choice of their value begins, and what it follows.
+"""The fields that may be `"auto"`: their start values and dependencies.
 
 A field that is left out of a file and of its base is `"auto"` too. `lumitip_fab.derive.auto` makes
 the choices. The values here are those of the published sensor.
@@ -14,16 +14,16 @@ Value = float | int | str
 
 @dataclass(frozen=True)
 class Automatic:
-    """How the value of a field is chosen."""
+    """Choice of the value of a field."""
 
     start: Value
-    """The value that is kept where it works."""
+    """First value; it is kept where every rule passes."""
     follows: str
-    """What the value depends on, in a few words."""
+    """Quantities that the value depends on, in a few words."""
     step: float = 0.0
-    """Resolution of a numeric search; 0 where the value is computed or taken from a list."""
+    """Resolution of a numeric search; 0 for values that are computed or from a list."""
     names: str = ""
-    """Catalogue file whose entries are tried, of a field that names a part."""
+    """Catalogue file whose entries are tried, for a field that names a part."""
 
 
 _BOARD = "room of holes, parts and connector"

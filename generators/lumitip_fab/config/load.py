@@ -61,7 +61,7 @@ class Input:
     sources: tuple[Source, ...]
     """The file itself, then the file that it extends, and so on down to the complete one."""
     automatic: frozenset[str] = frozenset()
-    """Fields whose values are starts, from which the program chooses."""
+    """Fields that the program chooses; their values are start values."""
 
     def named_parts(self) -> dict[str, Entry]:
         """The catalogue entry that each field in `NAMED` names, by field."""
@@ -70,7 +70,7 @@ class Input:
         }
 
     def title(self, field: str) -> str:
-        """What people call the entry that a field in `NAMED` names."""
+        """Title of the entry that a field in `NAMED` names."""
         return self.named_parts()[field].title or str(self.value(field))
 
     def value(self, field: str) -> Any:
@@ -79,7 +79,7 @@ class Input:
         return getattr(getattr(self.parameters, section), key)
 
     def with_values(self, values: Mapping[str, Any]) -> "Input":
-        """The same input with other values of some fields, as they would stand in the file.
+        """The same input with other values of some fields, as written in a file.
 
         Raises:
             ValidationError: if a value is outside what its field allows.
@@ -94,7 +94,7 @@ class Input:
         """A fault of a field, placed in the file that set it."""
         source, own = _setting(self.sources, field), self.sources[0]
         if source is not own:  # the base may be good for others
-            message += f"; set it in {shown_path(own.path)}"
+            message = f"{message.removesuffix('.')}. Override it in {shown_path(own.path)}."
         return Problem(shown_path(source.path), source.line(field), field, message)
 
 
@@ -159,28 +159,28 @@ def _base(chain: list[Source]) -> Source:
         return InputError([Problem(file, own.line("extends"), "extends", message)])
 
     if not isinstance(name, str) or not name.endswith(".toml"):
-        raise refuse(f"{brief(name)} given, the name of a .toml file is needed")
+        raise refuse(f"is {brief(name)}; the name of a .toml file is needed")
     folder = design_folder(chain[0].path)
     try:
         base = (own.path.resolve().parent / name).resolve()
         inside, exists = base.is_relative_to(folder.resolve()), base.is_file()
     except (OSError, ValueError, RuntimeError) as error:
-        raise refuse(f"{name!r:.80} given, which is no usable file name") from error
+        raise refuse(f"is {name!r:.80}, which is not a valid file name") from error
     if not inside:
         raise refuse(
-            f"{name!r:.80} given, which is outside the design folder {shown_path(folder)!r}; "
-            "copy the base into it"
+            f"is {name!r:.80}, which is outside the design folder {shown_path(folder)!r}. "
+            "Copy the base into that folder."
         )
     if base.is_dir():
-        raise refuse(f"{name!r:.80} given, which is a folder; {_bases(folder, own.path)}")
+        raise refuse(f"is {name!r:.80}, which is a folder. {_bases(folder, own.path)}")
     if not exists:
-        raise refuse(f"{name!r:.80} given, no such file; {_bases(folder, own.path)}")
+        raise refuse(f"is {name!r:.80}, which does not exist. {_bases(folder, own.path)}")
     if base == own.path.resolve():
-        raise refuse(f"{name!r:.80} given, a file cannot extend itself")
+        raise refuse(f"is {name!r:.80}, the file itself. Name another file.")
     above = [source.path.resolve() for source in chain]
     if base in above:
         circle = _chain_text([*above[above.index(base) :], base])
-        raise refuse(f"{name!r:.80} given, which closes a circle: {circle}; name a complete file")
+        raise refuse(f"is {name!r:.80}, which closes a circle: {circle}. Name a complete file.")
     return read_toml(base, shown_path(base))
 
 
@@ -196,7 +196,7 @@ def _bases(folder: Path, own: Path) -> str:
     others = (p for p in found if p.is_file() and p.resolve() != own.resolve())
     names = sorted(os.path.relpath(p, here) for p in others)
     listed = ", ".join(names[:20]) + (", …" if len(names) > 20 else "")
-    return f"there are {listed}" if names else "there is no other"
+    return f"Available files: {listed}" if names else "There is no other file."
 
 
 def _merge(base: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""How faults are worded: what was given, what is allowed, and the nearest valid name."""
+"""Texts of faults: the value, the limit, and the nearest valid name."""
 
 import datetime
 import difflib
@@ -56,12 +56,18 @@ def shown_path(path: Path) -> str:
 
 
 def unknown_name(name: str, allowed: Iterable[str], where: str) -> str:
-    """The message for a name that is not among those allowed."""
+    """The message for a name that does not exist.
+
+    Args:
+        name: the name in the file.
+        allowed: the names that exist.
+        where: where they exist, such as a catalogue file.
+    """
     names = sorted(allowed)
     near = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
-    hint = f"did you mean {near[0]!r}? " if near else ""
+    hint = f"Did you mean {near[0]!r}? " if near else ""
     listed = ", ".join(names[:24]) + (", …" if len(names) > 24 else "")
-    return f"{name!r:.80} given, {hint}{where} has {listed}"
+    return f"is {name!r:.80}, which does not exist. {hint}Names in {where}: {listed}"
 
 
 def brief(value: Any) -> str:
@@ -102,24 +108,25 @@ def _message(fault: Any, model: Any, location: tuple[Any, ...]) -> str:
     if kind == "missing":
         return "is missing; " + _described(model, location)
     if kind == "extra_forbidden":
-        return unknown_name(str(location[-1]), _names(model, location[:-1]), "this table")
+        message = unknown_name(str(location[-1]), _names(model, location[:-1]), "this table")
+        return "is not a known key" + message[message.index(". ") :]
     if kind in ("too_long", "too_short"):
         bound, count = (
             ("at most {} are allowed", context["max_length"])
             if kind == "too_long"
             else ("at least {} are needed", context["min_length"])
         )
-        return f"{brief(value)} given, a list of {len(value)}; {bound.format(count)}"
+        return f"is {brief(value)}, a list of {len(value)}; {bound.format(count)}"
     if kind in _KINDS:
-        return f"{brief(value)} given, {_KINDS[kind]} is needed"
+        return f"is {brief(value)}; {_KINDS[kind]} is needed"
     if kind in _BOUNDS:
-        return f"{brief(value)} given, {_BOUNDS[kind].format(**context)}"
+        return f"is {brief(value)}; {_BOUNDS[kind].format(**context)}"
     if kind == "string_pattern_mismatch":
         pattern = context["pattern"]
-        return f"{brief(value)} given, {_PATTERNS.get(pattern, pattern)} are allowed"
+        return f"is {brief(value)}; {_PATTERNS.get(pattern, pattern)} are allowed"
     if kind == "value_error":
         return str(context["error"])
-    return f"{brief(value)} given: {fault['msg']}"
+    return f"is {brief(value)}: {fault['msg']}"
 
 
 def _written(value: Any) -> str:

@@ -17,8 +17,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from lumitip_fab.catalogue.record import Name, Strict
-from lumitip_fab.config.names import DeviceName, Text
-from lumitip_fab.config.sections import Breakout, Flange, Flex, Holder, Module
+from lumitip_fab.config.sections import Breakout, DeviceName, Flange, Flex, Holder, Module, Text
 
 REVISION = r"^[A-Za-z0-9.\-]{1,8}$"
 Gap = Annotated[float, Field(ge=0, le=20)]
@@ -99,7 +98,7 @@ class Tip(Strict):
 
 
 class Coupling(Strict):
-    """How the finger is held."""
+    """Coupling of finger and gripper."""
 
     gripper: Name
     """Name of a gripper in `parts/grippers.toml`."""
@@ -180,7 +179,7 @@ class Controller(Strict):
 
 
 class Supply(Strict):
-    """What the robot feeds the emitter with."""
+    """Supply of the emitter, from the robot."""
 
     voltage_v: float = Field(gt=2, le=48)
     """Supply voltage (V)."""

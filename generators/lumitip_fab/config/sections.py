@@ -1,11 +1,59 @@
-"""Sections of the parameter file about what is outside the fingers, and about compliant fingers."""
+"""Types of names, and the sections on breakout, holder, flange, module and compliant fingers."""
 
+import unicodedata
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, ValidationError, ValidatorFunctionWrapHandler, WrapValidator
+from pydantic import (
+    AfterValidator,
+    Field,
+    ValidationError,
+    ValidatorFunctionWrapHandler,
+    WrapValidator,
+)
 
 from lumitip_fab.catalogue.controllers import Signal
 from lumitip_fab.catalogue.record import Name, Strict
+from lumitip_fab.text import LONGEST, board_name
+
+DEVICE_BYTES = 29
+"""Of a Bluetooth name: what one scan response carries."""
+_JOINERS = "\u200c\u200d"
+"""Invisible, but part of how some scripts and emoji are written."""
+
+
+def _writable(text: str) -> str:
+    """The text itself, if every character is visible and keeps the direction of writing."""
+    for character in text:
+        category = unicodedata.category(character)
+        if category[0] == "C" or category in ("Zl", "Zp"):
+            if character in _JOINERS:
+                continue
+            called = unicodedata.name(character, "a control character")
+            raise ValueError(
+                f"is {text!r:.80}, which contains U+{ord(character):04X} ({called}); letters, "
+                "digits, punctuation and spaces of any script are allowed"
+            )
+    if not board_name(text).strip():
+        raise ValueError(f"is {text!r:.80}, which has no visible character")
+    return text
+
+
+def _short_enough(text: str) -> str:
+    size = len(text.encode())
+    if size > DEVICE_BYTES:
+        raise ValueError(
+            f"is {text!r:.80}, {size} bytes of UTF-8; a Bluetooth name has at most {DEVICE_BYTES}"
+        )
+    return text
+
+
+Text = Annotated[str, Field(min_length=1, max_length=LONGEST), AfterValidator(_writable)]
+DeviceName = Annotated[
+    str,
+    Field(min_length=1, max_length=DEVICE_BYTES),
+    AfterValidator(_writable),
+    AfterValidator(_short_enough),
+]
 
 Size = Annotated[float, Field(ge=5, le=200)]
 LEAST_BODY_MM, MOST_BODY_MM = 20, 200
@@ -16,7 +64,7 @@ def _body(value: Any, handler: ValidatorFunctionWrapHandler) -> Any:
         return handler(value)
     except ValidationError:
         raise ValueError(
-            f"{value!r:.80} given, 'gripper' or a number from {LEAST_BODY_MM} to {MOST_BODY_MM} is "
+            f"is {value!r:.80}; 'gripper' or a number from {LEAST_BODY_MM} to {MOST_BODY_MM} is "
             "allowed"
         ) from None
 
@@ -71,7 +119,7 @@ class Flange(Strict):
     enabled: bool
     """Whether it is made."""
     coupling: Name
-    """What it stands on, in `parts/couplings.toml`."""
+    """Coupling below the flange, in `parts/couplings.toml`."""
     clearance_mm: float = Field(ge=0.05, le=1)
     """Board to pocket, and both parts to coupling and gripper, each side (mm)."""
     tail_mm: float = Field(ge=0, le=5)
@@ -110,7 +158,7 @@ class Flange(Strict):
 
 
 class Module(Strict):
-    """What a controller that is a module needs beside it on the flange's board."""
+    """Parts beside a controller module on the flange's board."""
 
     regulator: Name
     """Of its supply, in `parts/linear_regulators.toml`."""

@@ -13,10 +13,10 @@ _HEADER = re.compile(r"\s*\[{1,2}\s*([^\[\]]+?)\s*\]{1,2}\s*(#.*)?$")
 _KEY = re.compile(r"\s*([A-Za-z0-9_\-.\"' ]+?)\s*=")
 _SYNTAX = re.compile(r"(?P<what>.*) \(at (?:line (?P<line>\d+), column \d+|end of document)\)")
 _HINTS = {
-    "Invalid value": "; text needs quotes, and a number a decimal point",
-    "Expected newline": "; one value is needed on each line, and a number has a decimal point",
-    "Illegal character": "; text ends with the quotes that began it",
-    "Unclosed": "; every bracket needs its partner",
+    "Invalid value": ". Put text in quotes, and write numbers with a decimal point.",
+    "Expected newline": ". Write one value on each line, and numbers with a decimal point.",
+    "Illegal character": ". End text with the same quotes as at its start.",
+    "Unclosed": ". Close every bracket.",
 }
 LARGEST_FILE_BYTES = 200_000
 DEEPEST = 12  # tables and lists within each other; a parameter file needs three
@@ -66,18 +66,18 @@ def read_toml(path: Path, shown: str) -> Source:
     try:
         if path.stat().st_size > LARGEST_FILE_BYTES:
             size = path.stat().st_size
-            raise _refusal(shown, 0, f"{size} bytes given, at most {LARGEST_FILE_BYTES} are read")
+            raise _refusal(shown, 0, f"has {size} bytes; at most {LARGEST_FILE_BYTES} are allowed")
         data = path.read_bytes()
         # Some editors begin a file with a byte-order mark, or end lines with two characters.
         text = data.decode("utf-8-sig").replace("\r\n", "\n")
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
-        given = f"the byte 0x{data[error.start]:02x} given"
-        raise _refusal(shown, line, f"{given}, only UTF-8 text is read: save as UTF-8") from error
+        message = f"has the byte 0x{data[error.start]:02x}, which is not UTF-8. Save it as UTF-8."
+        raise _refusal(shown, line, message) from error
     except OSError as error:
         raise _refusal(shown, 0, f"cannot be read: {error.strerror}") from error
     except ValueError as error:
-        raise _refusal(shown, 0, f"is no usable file name: {error}") from error
+        raise _refusal(shown, 0, f"is not a valid file name: {error}") from error
     try:
         table = tomllib.loads(text)
     except RecursionError as error:
@@ -87,8 +87,8 @@ def read_toml(path: Path, shown: str) -> Source:
     except ValueError as error:
         digits = _LONGEST_NUMBER.search(text)
         line = text.count("\n", 0, digits.start()) + 1 if digits else 0
-        given = "a number of more than 4300 digits given"
-        raise _refusal(shown, line, f"is not TOML: {given}") from error
+        message = "is not TOML: it has a number of more than 4300 digits"
+        raise _refusal(shown, line, message) from error
     if _too_deep(table):
         raise _refusal(shown, 0, _TOO_DEEP)
     return Source(path, table, _lines_of(text))
@@ -101,13 +101,13 @@ def _syntax_fault(text: str, error: tomllib.TOMLDecodeError) -> tuple[int, str]:
     line = int(match["line"]) if match and match["line"] else len(lines)
     what = match["what"] if match else str(error)
     if what.startswith(("Cannot overwrite", "Cannot declare")):
-        return line, "is not TOML: this key or table is given twice; keep one of them"
+        return line, "is not TOML: this key or table appears twice. Keep one of them."
     written = lines[min(line, len(lines)) - 1].strip()
     hint = next((h for start, h in _HINTS.items() if what.startswith(start)), "")
-    return line, f"is not TOML: {written!r:.80} given: {what[:1].lower()}{what[1:]}{hint}"
+    return line, f"is not TOML at {written!r:.80}: {what[:1].lower()}{what[1:]}{hint}"
 
 
-_TOO_DEEP = f"tables or lists nested deeper than {DEEPEST} levels given; three are needed at most"
+_TOO_DEEP = f"has tables or lists nested deeper than {DEEPEST} levels; a parameter file needs three"
 
 
 def _too_deep(table: Table) -> bool:

@@ -8,7 +8,7 @@ from lumitip_fab.derive.boards import boards
 from lumitip_fab.derive.boards.breakout import derive_breakout
 from lumitip_fab.derive.boards.flange import derive_flange
 from lumitip_fab.derive.boards.packages import derive_fabs, derive_packages, derive_rules
-from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger import outline
 from lumitip_fab.derive.finger.cells import derive_cells
 from lumitip_fab.derive.finger.interface import derive_interfaces
@@ -31,10 +31,10 @@ from lumitip_fab.derive.wiring.cabling import Boards, derive_cabling
 from lumitip_fab.derive.wiring.electrical import derive_electrical
 from lumitip_fab.derive.wiring.ratings import refuse_receiver_capacitor
 from lumitip_fab.design import Controller, Design, Grid, Title
-from lumitip_fab.design.encoding import canonical, settled
+from lumitip_fab.design.encoding import canonical, round_trip
 
 
-def derive_once(config: Input, faults: Faults) -> Design:
+def derive_once(config: Input, faults: Diagnostics) -> Design:
     """Derive the whole sensor from values as they are.
 
     Args:
@@ -71,10 +71,10 @@ def derive_once(config: Input, faults: Faults) -> Design:
     holders = derive_holder(config, breakout, faults)
     flange = derive_flange(config, strings, muxing, faults)
     flanges = derive_flange_body(config, flange, faults)
-    circuit = wiring.joined(config, strings, muxing)
+    circuit = wiring.build_wiring(config, strings, muxing)
     figures = derive_electrical(config, strings, faults)
-    joined = Boards(plan.emitter, plan.receiver, (*breakout, *flange))
-    cabling = derive_cabling(config, joined, silhouette, coupling, circuit, figures, faults)
+    joints = Boards(plan.emitter, plan.receiver, (*breakout, *flange))
+    cabling = derive_cabling(config, joints, silhouette, coupling, circuit, figures, faults)
     faults.stop()
     mux, channel = wiring.assign(config, cells, plan.muxes)
     layout = Layout(
@@ -89,7 +89,7 @@ def derive_once(config: Input, faults: Faults) -> Design:
         pitch_mm=p.grid.pitch_mm,
         optics=_optics(config),
     )
-    return settled(
+    return round_trip(
         Design(
             title=Title(p.name, p.revision),
             grid=Grid(p.grid.columns, p.grid.pitch_mm),
@@ -153,8 +153,8 @@ def _optics(config: Input) -> Optics:
 
 def _parameters_hash(config: Input) -> str:
     """SHA-256 of every value in force: the parameters and the parts that they name."""
-    told = [
+    values = [
         config.parameters.model_dump(),
         {f: e.model_dump() for f, e in config.named_parts().items()},
     ]
-    return hashlib.sha256(canonical(told).encode()).hexdigest()
+    return hashlib.sha256(canonical(values).encode()).hexdigest()

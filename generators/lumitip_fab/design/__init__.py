@@ -28,7 +28,6 @@ from lumitip_fab.design.boards import (
 )
 from lumitip_fab.design.cabling import Cable, Cabling, Terminal, Wire
 from lumitip_fab.design.carriers import Carrier, Device, Holder, Land, Note, Pattern
-from lumitip_fab.design.choices import Choice
 from lumitip_fab.design.electrical import Electrical
 from lumitip_fab.design.fit_plate import FitPlate, Fits
 from lumitip_fab.design.making import (
@@ -113,7 +112,7 @@ __all__ = [
 
 @dataclass(frozen=True)
 class Title:
-    """What goes on drawings and boards."""
+    """Title block of drawings and boards."""
 
     name: str
     revision: str
@@ -125,6 +124,17 @@ class Title:
     def on_pages(self) -> "Title":
         """As a drawing and a PDF show it."""
         return replace(self, name=page_name(self.name))
+
+
+@dataclass(frozen=True)
+class Choice:
+    """The value of an automatic field."""
+
+    field: str
+    value: str
+    """As it would be written in a parameter file."""
+    reason: str
+    """In one line."""
 
 
 @dataclass(frozen=True)
@@ -164,7 +174,7 @@ class Design:
     carriers: tuple[Carrier, ...]
     """Boards outside the fingers."""
     holders: tuple[Holder, ...]
-    """What holds the breakout board on the gripper; none without that board."""
+    """Holders of the breakout board; none without that board."""
     flanges: tuple[Flange, ...]
     """Printed parts round the flange's board; none without that board."""
     system: System
@@ -180,7 +190,7 @@ class Design:
 
     @property
     def threads(self) -> dict[str, Fastener]:
-        """What the catalogue has of each thread that is used."""
+        """Catalogue data of each used thread."""
         return {fastener.name: fastener for fastener in self.fasteners}
 
     @property
@@ -211,12 +221,11 @@ class Design:
 
     @property
     def cells(self) -> tuple[Cell, ...]:
-        """Where each cell is and what reads it: the layout without its optics, which change
-        oftener."""
+        """Positions and inputs of the cells: the layout without its optics."""
         return self.layout.cells
 
     @property
     def reading(self) -> Reading:
-        """Which input reads each cell."""
+        """Input of each cell."""
         cells = tuple(CellInput(c.index, c.mux, c.channel) for c in self.layout.cells)
         return Reading(self.layout.design_hash, self.layout.pitch_mm, cells)

@@ -1,4 +1,4 @@
-"""The boards, what is on them, and what is connected to what.
+"""Boards of the fingers, their parts and connections.
 
 Every length is in mm and in the sensor frame of the finger it belongs to, unless it says
 otherwise.
@@ -11,7 +11,7 @@ from lumitip_fab.design.shape import Box, Point
 
 @dataclass(frozen=True)
 class Grid:
-    """The grid as it was asked for; the cells are in `Design.layout`."""
+    """The grid of the parameter file; the cells are in `Design.layout`."""
 
     columns: tuple[int, ...]
     pitch_mm: float
@@ -44,7 +44,7 @@ class Board:
     pin_mm: float
     """Diameter of the pocket's locating pins, which stand at the board's holes."""
     flexible: Flexible | None
-    """Of what it is made, where it bends."""
+    """Layers and bend of a flexible board; none for a rigid one."""
 
 
 @dataclass(frozen=True)
@@ -101,7 +101,7 @@ class Relief:
 
 @dataclass(frozen=True)
 class Finger:
-    """What differs between the two fingers, in the finger's own sensor frame."""
+    """One finger, in its own sensor frame."""
 
     name: str
     """`"emitter"` or `"receiver"`."""
@@ -133,7 +133,7 @@ class CellInput:
 
 @dataclass(frozen=True)
 class Reading:
-    """What of the layout a board needs: its optics, which change oftener, are not in it."""
+    """Inputs of the cells: the layout without positions and optics."""
 
     design_hash: str
     pitch_mm: float
@@ -142,7 +142,7 @@ class Reading:
 
 @dataclass(frozen=True)
 class Wiring:
-    """What is connected to what, beyond the layout."""
+    """Connections beyond the layout."""
 
     multiplexer: str
     muxes: int
@@ -165,10 +165,10 @@ class Chip:
     """A two-terminal part: what to order, and its size with its pads."""
 
     part: str
-    """What to order; of resistors, `{code}` stands for the value."""
+    """Order number; for resistors, `{code}` stands for the value."""
     manufacturer: str
     value: str
-    """What a drawing says of it; empty of resistors, whose value is in `Wiring`."""
+    """Value on drawings; empty for resistors, whose value is in `Wiring`."""
     body_mm: tuple[float, float, float]
     """Body: along its terminals, across them, height above the board."""
     pad_mm: tuple[float, float]
@@ -177,7 +177,7 @@ class Chip:
     marked: str
     """Terminal that the part's mark shows, which is pad 1; empty of parts without polarity."""
     confidence: str
-    """How far to trust the catalogue's figures of it: "datasheet", "measured", "inferred" or
+    """Confidence in the catalogue's figures of it: "datasheet", "measured", "inferred" or
     "assumed"."""
     lcsc: str
     """Number at the distributor LCSC; empty where it is not known."""
@@ -227,7 +227,7 @@ class Packages:
 
 @dataclass(frozen=True)
 class Rules:
-    """What tracks, vias and gaps between parts must keep."""
+    """Design rules of tracks, vias and gaps."""
 
     part_gap_mm: float
     """Between land patterns."""
@@ -239,7 +239,7 @@ class Rules:
     edge_gap_mm: float
     """Copper to the board's edge and to unplated holes."""
     silk_text_mm: float
-    """Height of the smallest letters that every board house prints legibly."""
+    """Height of the smallest letters that every PCB fab prints legibly."""
     silk_line_mm: float
     """Width of the thinnest lines."""
     silk_gap_mm: float
@@ -251,7 +251,7 @@ class Controller:
     """The microcontroller board."""
 
     title: str
-    """What people call it."""
+    """Title for documents."""
     name: str
-    """What it calls itself over Bluetooth."""
+    """Its Bluetooth name."""
     adc_bits: int

@@ -45,7 +45,7 @@ def named(colour: str) -> str:
 
 @dataclass(frozen=True)
 class Terminal:
-    """Where a wire ends."""
+    """End of a wire."""
 
     board: str
     """`"emitter"`, `"receiver"`, a carrier such as `"breakout"`, `"controller"` or `"supply"`."""
@@ -54,7 +54,7 @@ class Terminal:
     pin: str
     """Number of the pad, or name of the pin."""
     name: str
-    """What is printed there."""
+    """Text printed there."""
     order: int
     """Its place among the pins of that connector, from 1."""
 
@@ -86,7 +86,7 @@ class Cable:
 
     name: str
     least_mm: float
-    """What its way and the slack make together."""
+    """Least length: its path and the slack."""
     length_mm: float
     """To cut each wire to."""
     section_mm2: float
@@ -106,7 +106,7 @@ class Cable:
 
 @dataclass(frozen=True)
 class Cabling:
-    """All cables, and what their lengths are made of."""
+    """All cables, and the parts of their lengths."""
 
     cables: tuple[Cable, ...]
     travel_mm: float

@@ -44,7 +44,7 @@ class Device:
     """`"socket"`, `"wires"`, `"capacitor"` …, by which its symbol is chosen."""
     value: str
     part: str
-    """What to order; empty of bare copper."""
+    """Order number; empty for bare copper."""
     manufacturer: str
     lcsc: str
     """Number at the distributor LCSC; empty where it is not known."""
@@ -58,7 +58,7 @@ class Device:
     pins: tuple[str, ...]
     """Name of each land, in the order of the lands; empty where a part has no names."""
     side: str = "front"
-    """Where its body is: a part on the `"back"` is mirrored in x before it is turned."""
+    """Side of its body: a part on the `"back"` is mirrored in x before it is turned."""
 
     @property
     def contacts(self) -> bool:
@@ -85,7 +85,7 @@ class Carrier:
     name: str
     """Of its folder and its files."""
     title: str
-    """What it says of itself."""
+    """Title on its silkscreen."""
     title_at: Point
     """Near which its title stands."""
     box: Box
@@ -99,7 +99,7 @@ class Carrier:
     supplies: tuple[str, ...]
     """Nets that are routed wide; ground is one of them."""
     keep_outs: tuple[Box, ...]
-    """Where no copper may be on either side: under an antenna."""
+    """Areas without copper on either side, under an antenna."""
     hot_loop: tuple[tuple[str, str], ...]
     """Lands round which the current of a switching regulator jumps, by part and number of the
     land: from its input over the capacitor back to its ground; empty without a regulator."""
@@ -107,8 +107,8 @@ class Carrier:
     @property
     def nets(self) -> tuple[str, ...]:
         """Every net once, ground first."""
-        told = (net for device in self.devices for _, net in device.nets)
-        return tuple(dict.fromkeys((*self.supplies, *told)))
+        used = (net for device in self.devices for _, net in device.nets)
+        return tuple(dict.fromkeys((*self.supplies, *used)))
 
 
 @dataclass(frozen=True)
@@ -142,14 +142,14 @@ class Holder:
     floor_z_mm: float
     """Floor of the tray."""
     seat_z_mm: float
-    """Where the nuts bear, below the floor."""
+    """Seat of the nuts, below the floor."""
     axis_z_mm: float
     body_mm: float
     """Diameter of the gripper's body."""
     body_from: str
-    """Where that figure is from: `holder.body_mm`, or the gripper's entry and how sure that is."""
+    """Source of that figure: `holder.body_mm`, or the gripper's entry and how sure that is."""
     clearance_mm: float
-    """Wanted from the cradle to that body, and from the tray to the board, on each side."""
+    """Nominal gap from the cradle to that body, and from the tray to the board, on each side."""
     cradle_mm: float
     """Radius of the cradle."""
     wall_mm: float

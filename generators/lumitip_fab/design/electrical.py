@@ -1,4 +1,4 @@
-"""What the circuit does: figures in closed form, which the tests hold against a simulation."""
+"""Figures of the circuit in closed form; tests compare them with a simulation."""
 
 from dataclasses import dataclass
 
@@ -34,7 +34,7 @@ class Strings:
 
 @dataclass(frozen=True)
 class Channel:
-    """What the controller sees of a detector."""
+    """Channel from a detector to the controller."""
 
     supply_v: float
     """Of the detectors, which is also the reference of the ADC."""
@@ -69,7 +69,7 @@ class Regulated:
     """The output capacitors beside the coil. What else is at the output, such as the input of a
     linear regulator, is left out: with it there is less ripple."""
     capacitor_uf: float
-    """What is left at its voltage of each of them."""
+    """Capacitance of each after DC-bias derating."""
     load_a: float
     """For which the figures are."""
     ripple_a: float

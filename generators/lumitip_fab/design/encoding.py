@@ -36,16 +36,15 @@ def encoded(value: Any) -> Any:
     return value
 
 
-def settled(design: Design) -> Design:
-    """The design with its lengths rounded as `design.json` holds them, so that what is built
-    and what is read back are the very same."""
+def round_trip(design: Design) -> Design:
+    """The design with its lengths rounded as in `design.json`: equal to the design read back."""
     return _decoded(encoded(design), Design)
 
 
 def design_text(design: Design) -> str:
     """The text of `design.json`."""
-    told = encoded(design)
-    lines = (f"{json.dumps(k)}: {json.dumps(told[k], sort_keys=True)}" for k in sorted(told))
+    record = encoded(design)
+    lines = (f"{json.dumps(k)}: {json.dumps(record[k], sort_keys=True)}" for k in sorted(record))
     return "{\n " + ",\n ".join(lines) + "\n}\n"
 
 
@@ -63,23 +62,23 @@ def read_design(path: Path) -> Design:
         raise OutputError(f"{path}: is not a design of this version: {error!r}") from error
 
 
-def _decoded(told: Any, wanted: type[T]) -> T:
-    if wanted is Layout:
-        return typing.cast(T, Layout.from_json(json.dumps(told)))
-    if is_dataclass(wanted):
-        hints = typing.get_type_hints(wanted)
-        values = {f.name: _decoded(told[f.name], hints[f.name]) for f in fields(wanted)}
-        return typing.cast(T, wanted(**values))
-    arguments = typing.get_args(wanted)
-    if isinstance(wanted, types.UnionType):
+def _decoded(value: Any, kind: type[T]) -> T:
+    if kind is Layout:
+        return typing.cast(T, Layout.from_json(json.dumps(value)))
+    if is_dataclass(kind):
+        hints = typing.get_type_hints(kind)
+        values = {f.name: _decoded(value[f.name], hints[f.name]) for f in fields(kind)}
+        return typing.cast(T, kind(**values))
+    arguments = typing.get_args(kind)
+    if isinstance(kind, types.UnionType):
         inner = next(a for a in arguments if a is not type(None))
-        return typing.cast(T, None if told is None else _decoded(told, inner))
-    if typing.get_origin(wanted) is tuple:
+        return typing.cast(T, None if value is None else _decoded(value, inner))
+    if typing.get_origin(kind) is tuple:
         if arguments[-1] is Ellipsis:
-            return typing.cast(T, tuple(_decoded(v, arguments[0]) for v in told))
-        return typing.cast(T, tuple(_decoded(v, a) for v, a in zip(told, arguments, strict=True)))
-    if wanted is float and isinstance(told, int | float):
-        return typing.cast(T, float(told))
-    if not isinstance(told, wanted):
-        raise TypeError(f"{told!r:.80} is not {wanted.__name__}")
-    return told
+            return typing.cast(T, tuple(_decoded(v, arguments[0]) for v in value))
+        return typing.cast(T, tuple(_decoded(v, a) for v, a in zip(value, arguments, strict=True)))
+    if kind is float and isinstance(value, int | float):
+        return typing.cast(T, float(value))
+    if not isinstance(value, kind):
+        raise TypeError(f"{value!r:.80} is not {kind.__name__}")
+    return value

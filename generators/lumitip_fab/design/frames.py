@@ -71,7 +71,7 @@ def backing_bed_to_sensor(mount: Mount, stack: Stack) -> Matrix:
 
 
 def plate_back_to_sensor(mount: Mount, stack: Stack) -> Matrix:
-    """From the mount frame as it were without tilt, whose w runs square through the plate."""
+    """From the mount frame without its tilt: w is normal to the plate."""
     return mount_to_sensor(replace(mount, tilt_deg=0.0), stack)
 
 

@@ -104,7 +104,7 @@ class Interface:
     groove_mm: float
     groove_depth_mm: float
     glue_mm: float
-    """Gap that is wanted between rim and groove: on each side, and at the groove's floor."""
+    """Nominal gap between rim and groove: on each side, and at the groove's floor."""
     gap_mm: float
     """On each side as drawn: the printer's fit is in it, by which the rim is narrower."""
     pad_mm: float
@@ -127,7 +127,7 @@ class Interface:
 
     @property
     def rim_height_mm(self) -> float:
-        """How far the rim stands out of the pad."""
+        """Height of the rim over the pad."""
         return self.groove_depth_mm - self.glue_mm
 
 
@@ -149,7 +149,7 @@ class HeatStep:
     name: str
     """`"solder"`, `"cure"` or `"crease"`."""
     place: str
-    """What is heated, in words for the person who does it."""
+    """Description of the heated object, for the manual."""
     temperature_c: float
     """Highest temperature that a part reaches (°C)."""
     parts: tuple[HeatedPart, ...]
@@ -179,7 +179,7 @@ class Filament:
     """Compressive strength of a solid print."""
     layer_mm: float
     part: str = ""
-    """What alone is printed in such layers; without a name everything that is of this filament."""
+    """The only part printed in such layers; empty for everything of this filament."""
 
     @property
     def file(self) -> str:
@@ -190,7 +190,7 @@ class Filament:
 
 @dataclass(frozen=True)
 class Slicing:
-    """What is printed from what, and the nozzle."""
+    """Filament of each printed part, and the nozzle."""
 
     nozzle_mm: float
     backing: Filament
@@ -205,7 +205,7 @@ class Slicing:
         return tuple(dict.fromkeys((self.backing, self.rigid, self.mould)))
 
     def of(self, path: str) -> Filament:
-        """What a part is printed from, by its path below the output folder."""
+        """Filament of a part, by its path below the output folder."""
         kinds = {"backing": self.backing, "mould": self.mould}
         return kinds.get(path.partition("/")[0], self.rigid)
 

@@ -1,4 +1,4 @@
-"""How a finger is held, how two of them meet, and the printed flange between robot and gripper."""
+"""Gripper coupling, closing of the fingers, and the printed flange between robot and gripper."""
 
 from dataclasses import dataclass
 
@@ -29,7 +29,7 @@ class Mount:
     gripper: str
     """Its name in `parts/grippers.toml`."""
     title: str
-    """What people call it."""
+    """Title for documents."""
     origin_y_mm: float
     """y of the mount frame's origin in the sensor frame; its z is the rim's."""
     tilt_deg: float
@@ -65,7 +65,7 @@ class Mount:
 
 @dataclass(frozen=True)
 class Closing:
-    """How the two fingers meet, in the gripper frame."""
+    """Contact of the two fingers, in the gripper frame."""
 
     contact_y_mm: float
     """y, in the sensor frame, of the line that touches first."""
@@ -96,14 +96,14 @@ class Fastener:
 
 @dataclass(frozen=True)
 class System:
-    """Where everything is on that axis, and what the gripper looks like from outside."""
+    """Heights along the tool axis, and the body of the gripper."""
 
     robot_mm: float
     """Diameter of the robot's tool flange; 0 without a coupling."""
     coupling_mm: float
     """From there to the coupling's face; 0 without one."""
     gripper_z_mm: float
-    """Where the gripper stands."""
+    """Plane that the gripper stands on."""
     width_mm: float
     """Of the gripper's body, along the opening."""
     depth_mm: float
@@ -112,9 +112,9 @@ class System:
     reach_mm: float
     """From where the gripper stands to the mount plane of the fingers, closed."""
     load_kg: float
-    """Of the gripper and what it may hold, taken to be at the tool centre point."""
+    """Gripper and payload, taken to be at the tool centre point."""
     confidence: str
-    """How far to trust the figures of the gripper's body."""
+    """Confidence in the figures of the gripper's body."""
     holders: tuple[str, ...]
     """Names of the holders that go round that body."""
     holder_z_mm: float
@@ -150,7 +150,7 @@ class Flange:
     centring_mm: float
     """Diameter of the coupling's recess, and of what the gripper has to stand in it."""
     clearance_mm: float
-    """Wanted from the printed parts to coupling, gripper and board, on each side."""
+    """Nominal gap from the printed parts to coupling, gripper and board, on each side."""
     spigot_mm: float
     """Diameter of the lower part in the coupling's recess."""
     seat_z_mm: float
@@ -199,7 +199,7 @@ class Flange:
     contacts_mm: float
     """Height of the free spring contacts above the board's back."""
     stroke_mm: float
-    """How far they give."""
+    """Travel of the spring contacts."""
     openings: tuple[Box, ...]
     """Through the walls, for the headers and their cables, above the board's front."""
     screws: tuple[Point, ...]
@@ -217,5 +217,5 @@ class Flange:
 
     @property
     def top_z_mm(self) -> float:
-        """What the flange adds between coupling and gripper."""
+        """Height of the flange between coupling and gripper."""
         return self.split_z_mm + self.web_mm + self.recess_depth_mm

@@ -1,4 +1,4 @@
-"""Where boards are ordered, what is bought, and what everything costs."""
+"""PCB fabs, parts to buy, and prices."""
 
 from dataclasses import dataclass
 
@@ -9,24 +9,24 @@ Pairs = tuple[tuple[str, str], ...]
 
 @dataclass(frozen=True)
 class Fab:
-    """A board house."""
+    """A PCB fab."""
 
     name: str
     layers: Pairs
-    """What follows the board's name in the file of each layer: `(("front copper", ".GTL"), …)`."""
+    """End of the file name of each layer: `(("front copper", ".GTL"), …)`."""
     bom: Pairs
     """Heading and field of each column of the bill of materials."""
     positions: Pairs
     """Heading and field of each column of the placement list."""
     sides: tuple[str, str]
-    """What it calls front and back."""
+    """Its names of front and back."""
     back_from_behind: bool
-    """Whether angles of parts on the back count counter-clockwise as seen from there; else they
-    are told as KiCad tells them."""
+    """Whether angles of parts on the back count counter-clockwise as seen from there; else as
+    in KiCad."""
     rotations: tuple[tuple[str, float], ...]
-    """What is added to the angle (degrees) of footprints whose name begins so."""
+    """Offset of the angle (degrees) of footprints, by the beginning of their name."""
     remark: str
-    """What to mind when ordering there; may be empty."""
+    """Remark on ordering there; may be empty."""
 
 
 @dataclass(frozen=True)
@@ -38,9 +38,9 @@ class Bought:
     item: str
     manufacturer: str
     part: str
-    """What to order."""
+    """Order number."""
     where: str
-    """What it is for."""
+    """Its use."""
     quantity: int
     each: float | None
     """Price of one; none where it is not known."""
@@ -51,7 +51,7 @@ class PartPrice:
     """Price of a part that is soldered to a board."""
 
     part: str
-    """What to order; of resistors, `{code}` stands for the value."""
+    """Order number; for resistors, `{code}` stands for the value."""
     each: float
 
     def of(self, part: str) -> bool:

@@ -119,7 +119,7 @@ def evaluate(job: Job) -> Record:
     try:
         resolved = resolve(job.config)
     except InputError as error:
-        return {"key": job.key, "refused": [f"{p.field}: {p.message}" for p in error.problems]}
+        return {"key": job.key, "refused": [p.text for p in error.problems]}
     design, layout = resolved.design, resolved.design.layout
     try:
         accurate = accuracy(layout, job.sample)

@@ -1,4 +1,4 @@
-"""How good a set of values is: how far derivation goes with it, and which rules it breaks."""
+"""Verdict on a set of values: stages of derivation without faults, and broken rules."""
 
 import re
 from dataclasses import dataclass
@@ -7,7 +7,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.once import derive_once
 from lumitip_fab.design import Design
 from lumitip_fab.errors import InputError, Problem
@@ -19,12 +19,12 @@ Rule = tuple[str, str]
 
 @dataclass(frozen=True)
 class Verdict:
-    """What derivation says of an input."""
+    """Result of derivation for an input."""
 
     config: Input
     design: Design | None
     stage: int
-    """How far derivation went; later rules are only reached without faults before them."""
+    """Number of stages without faults; a later rule is only tested after these."""
     problems: tuple[Problem, ...]
 
     @property
@@ -48,7 +48,7 @@ def rule_of(problem: Problem) -> Rule:
 
 def judge(config: Input) -> Verdict:
     """Derive, and keep what is wrong."""
-    faults = Faults(config)
+    faults = Diagnostics(config)
     try:
         design = derive_once(config, faults)
     except InputError as error:

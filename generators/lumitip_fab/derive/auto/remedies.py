@@ -49,7 +49,7 @@ class Step:
 
 @dataclass(frozen=True)
 class Plan:
-    """What to change."""
+    """The changes to make."""
 
     steps: tuple[Step, ...]
     complete: bool
@@ -75,8 +75,7 @@ def plan_of(verdict: Verdict) -> Plan:
 
 
 def _each_enough(verdict: Verdict, steps: list[Step]) -> Iterator[Remedy]:
-    """One change of each field with which alone the file is accepted; boards that would not be
-    made last."""
+    """Single changes that are sufficient, one for each field; switches of boards come last."""
     broken = {problem.field for problem in verdict.rules.values()}
     common = set.intersection(*(set(menders(field)) for field in broken))
     found = (remedy for step in steps for remedy in step.remedies)
@@ -87,8 +86,7 @@ def _each_enough(verdict: Verdict, steps: list[Step]) -> Iterator[Remedy]:
 
 
 def _needed(verdict: Verdict, steps: list[Step]) -> tuple[Step, ...]:
-    """The steps without those that another one makes needless: it changes a field that would have
-    mended their rule too."""
+    """The steps without redundant ones, whose rule another step fixes too."""
     kept = list(steps)
     for step in steps[:-1]:
         others = [other for other in kept if other is not step]

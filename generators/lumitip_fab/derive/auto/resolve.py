@@ -10,8 +10,7 @@ from lumitip_fab.config.messages import brief
 from lumitip_fab.derive.auto.judge import Verdict, judge
 from lumitip_fab.derive.auto.search import Change, search
 from lumitip_fab.derive.auto.starts import proposals
-from lumitip_fab.design import Design
-from lumitip_fab.design.choices import Choice
+from lumitip_fab.design import Choice, Design
 from lumitip_fab.errors import InputError
 
 
@@ -42,7 +41,9 @@ class _Reasons:
         self.of[name] = reason
 
     def moved(self, change: Change, message: str) -> None:
-        self.of[change.field] = f"otherwise {message.partition('; set it in')[0]}"
+        self.of[change.field] = (
+            f"otherwise it {message.partition('. Override it in')[0].removesuffix('.')}"
+        )
 
     def choices(self, config: Input) -> tuple[Choice, ...]:
         """Every automatic field in the order of the file, with its value and reason."""
@@ -69,8 +70,8 @@ def resolve(config: Input) -> Resolved:
     if end.design is None:
         raise RuleError(end)
     choices = reasons.choices(end.config)
-    settled = replace(end.config, automatic=frozenset())
-    return Resolved(settled, replace(end.design, choices=choices))
+    config = replace(end.config, automatic=frozenset())
+    return Resolved(config, replace(end.design, choices=choices))
 
 
 def accepted_with(config: Input, values: Mapping[str, Any]) -> bool:
@@ -78,7 +79,7 @@ def accepted_with(config: Input, values: Mapping[str, Any]) -> bool:
     is then chosen anew.
 
     Args:
-        given: the file's values, the automatic ones as some search left them.
+        config: the file's values, the automatic ones as some search left them.
         values: of fields, as they would be written.
     """
     free = config.automatic - values.keys()

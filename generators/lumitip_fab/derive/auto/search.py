@@ -15,8 +15,8 @@ from lumitip_fab.derive.wiring.ratings import sold_ohm
 
 DECIMALS = 4
 COARSE, FINE = 1, 2
-"""Each number of steps is greater than the last by one part in so many of it: values that work may
-lie close together, such as holes for a screw."""
+"""Each trial takes more steps than the last by this fraction of them: all, or one half. A valid
+range may be narrow, such as that of holes for a screw."""
 
 
 @dataclass(frozen=True)
@@ -111,7 +111,7 @@ def bounds(field: str) -> tuple[float, float]:
 
 
 def _metadata(of: Any) -> Iterator[Any]:
-    """What limits the values of a field, also of one that may be a number or a word."""
+    """Limits on the values of a field, including a field that may be a number or a word."""
     yield of
     for inner in (*getattr(of, "metadata", ()), getattr(of, "annotation", None), *get_args(of)):
         if inner is not None:
@@ -151,7 +151,6 @@ MENDS: dict[str, tuple[str, ...]] = {
     "backing.tail_mm": ("stack.floor_mm",),
     "tip.slant_start_mm": ("outline.tip_margin_mm",),
     "coupling.gripper": (*_FINGER, "mould.taper_length_mm"),
-    "board.side_margin_mm": (),
     "board.tip_margin_mm": ("board.hole_edge_mm", "board.hole_mm"),
     "board.hole_mm": ("board.tip_margin_mm", "board.side_margin_mm"),
     "board.end_margin_mm": ("board.hole_mm",),
@@ -178,9 +177,7 @@ MENDS: dict[str, tuple[str, ...]] = {
     "mask.hole_mm": ("board.channel_mm",),
     "mask.flap_mm": ("mask.allowance_mm",),
     "mould.draft_deg": ("mould.tip_silicone_mm",),
-    "mould.wall_mm": (),
     "mould.taper_length_mm": ("outline.tip_margin_mm",),
-    "mould.tip_silicone_mm": (),
     "flex.groove_depth_mm": ("stack.floor_mm",),
     "flex.standoff_mm": ("flex.groove_depth_mm",),
     "flex.interface_mm": (
@@ -201,13 +198,11 @@ MENDS: dict[str, tuple[str, ...]] = {
     "holder.screw": ("breakout.hole_spacing_mm", "holder.wall_mm"),
     "holder.strap_hole_mm": ("holder.wrap_deg",),
     "holder.strap_spacing_mm": ("holder.strap_hole_mm",),
-    "printer.profile": (),
     "flange.fuse": ("emitter.current_ma", "flange.enabled"),
     "flange.input_capacitor": ("supply.voltage_v", "flange.enabled"),
     "flange.coupling": ("flange.enabled",),
     "flange.web_mm": ("flange.enabled",),
     "flange.contacts": ("flange.tail_mm", "flange.enabled"),
-    "flange.gate_ohm": (),
 }
 
 
@@ -219,7 +214,7 @@ def menders(field: str) -> tuple[str, ...]:
 MOST_CHANGES = 40
 
 Moved = Callable[[Change, str], None]
-"""Called with a change that was made and the message of the rule that it mended."""
+"""Called with each change and the message of the rule that it mended."""
 
 
 def search(start: Verdict, free: frozenset[str], moved: Moved) -> Verdict:
@@ -228,7 +223,7 @@ def search(start: Verdict, free: frozenset[str], moved: Moved) -> Verdict:
     Args:
         start: where to begin.
         free: fields that may change.
-        moved: told of each change.
+        moved: called with each change.
     """
     now = start
     for _ in range(MOST_CHANGES):

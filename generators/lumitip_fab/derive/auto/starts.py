@@ -8,7 +8,7 @@ from lumitip.grid import column_pitch_mm
 from lumitip_fab.config.automatic import FIELDS, Value
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards.packages import LEAST_RING_MM
-from lumitip_fab.derive.finger.flex import is_flex
+from lumitip_fab.derive.finger.stack import is_flex
 from lumitip_fab.derive.wiring.ratings import (
     SUPPLY_TOLERANCE,
     String,
@@ -25,8 +25,8 @@ MOST_PULL_UP = 2.0  # times the published one; a channel settles that much slowe
 
 
 def choose_strings(config: Input) -> Iterator[tuple[str, Value, str]]:
-    """Automatic values among current, LEDs of a string, resistor and pull-up. Where nothing passes,
-    those that ask least of supply, heat and ratings: then the rules say what is missing."""
+    """Automatic values of current, LEDs of a string, resistor and pull-up. Where no combination
+    passes, the one that breaks the fewest rules."""
     for current in _currents(config):
         for resistor in _resistors(config):
             for longest in _lengths(config):
@@ -115,7 +115,7 @@ def least_current_ma(config: Input) -> float:
 
 
 def lowest_ma(config: Input) -> float:
-    """Current below which a search does not go that chooses it; 0 where the user wrote it."""
+    """Lowest current that a search may choose; 0 where the file sets the current."""
     if "emitter.current_ma" not in config.automatic:
         return 0.0
     return _least_ma(config, config.parameters.receiver.pull_up_ohm)
@@ -144,7 +144,7 @@ def _resistors(config: Input) -> Iterator[str]:
 
 
 def _lengths(config: Input) -> Iterator[int]:
-    """Most LEDs in a string, fewer and fewer."""
+    """Lengths of the longest string to try, in descending order."""
     longest = longest_string(config)
     if "emitter.string_leds" not in config.automatic:
         longest = min(longest, config.parameters.emitter.string_leds)
@@ -170,7 +170,7 @@ LANE_USE = 0.8  # share of the lane between two columns that tracks can fill
 
 
 def proposals() -> tuple[Callable[[Input], Iterator[Proposal]], ...]:
-    """The formulas, in the order in which they need each other."""
+    """The formulas, in the order of their dependencies."""
     return _layers, _printer, choose_strings, _multiplexer, _copper, _vias, _channel, _flange
 
 
@@ -221,7 +221,7 @@ def _multiplexer(config: Input) -> Iterator[Proposal]:
 
 
 def _copper(config: Input) -> Iterator[Proposal]:
-    """Fine tracks where the lines of a column of detectors do not pass beside it otherwise."""
+    """Fine tracks where the signals of a column do not fit beside it with normal tracks."""
     p, parts = config.parameters, config.catalogue
     columns = p.grid.columns
     detector = parts.photodetectors[p.receiver.photodetector]
@@ -242,8 +242,8 @@ def _copper(config: Input) -> Iterator[Proposal]:
 
 
 def _vias(config: Input) -> Iterator[Proposal]:
-    """Vias round the hole that a user wrote, or the hole in them, and supplies' tracks as wide as
-    signals'."""
+    """Via diameter for the drill in the file, or drill for the diameter, and supply tracks at
+    least as wide as signal tracks."""
     board = config.parameters.board
     ring = 2 * LEAST_RING_MM
     if board.via_mm < board.via_drill_mm + ring:

@@ -19,11 +19,10 @@ import numpy as np
 from lumitip_fab.config.load import Input
 from lumitip_fab.config.parameters import Parameters
 from lumitip_fab.derive.boards import connectors, placing
-from lumitip_fab.derive.boards.flex_board import flexible_board
-from lumitip_fab.derive.faults import Faults
-from lumitip_fab.derive.finger import chips
-from lumitip_fab.derive.finger.cells import Cells
-from lumitip_fab.derive.finger.flex import foot_half_mm, is_flex
+from lumitip_fab.derive.boards.packages import flexible_board
+from lumitip_fab.derive.diagnostics import Diagnostics
+from lumitip_fab.derive.finger.cells import Cells, derive_turned
+from lumitip_fab.derive.finger.stack import foot_half_mm, is_flex
 from lumitip_fab.derive.making.fits import derive_fits
 from lumitip_fab.derive.wiring.wiring import Muxing, Strings
 from lumitip_fab.design import Board, Box, Connector, Finger, Part, Point, Zone
@@ -51,7 +50,7 @@ class Plan:
 
 @dataclass(frozen=True)
 class Frame:
-    """What the boards share: extents and rows, before parts are placed."""
+    """Common extents and rows of both boards, before parts are placed."""
 
     box: Box
     cells: Box
@@ -65,14 +64,14 @@ class Frame:
 
 
 def derive_plan(
-    config: Input, cells: Cells, strings: Strings, muxing: Muxing, faults: Faults
+    config: Input, cells: Cells, strings: Strings, muxing: Muxing, faults: Diagnostics
 ) -> Plan:
     """Lay out both boards."""
     p, parts = config.parameters, config.catalogue
     led = parts.leds[p.emitter.led]
     detector = parts.photodetectors[p.receiver.photodetector]
-    led_turned = chips.derive_turned(p, "emitter.led", p.emitter.led, led, faults)
-    detector_turned = chips.derive_turned(
+    led_turned = derive_turned(p, "emitter.led", p.emitter.led, led, faults)
+    detector_turned = derive_turned(
         p, "receiver.photodetector", p.receiver.photodetector, detector, faults
     )
     leds = placing.at_cells("D", "led", led, led_turned, _mirrored(cells))
@@ -117,7 +116,7 @@ def derive_plan(
 
 
 def _frame(
-    config: Input, cells: Cells, muxing: Muxing, chips_: tuple[Part, ...], faults: Faults
+    config: Input, cells: Cells, muxing: Muxing, chips_: tuple[Part, ...], faults: Diagnostics
 ) -> Frame:
     p = config.parameters
     gripper = config.catalogue.grippers[p.coupling.gripper]
@@ -127,14 +126,14 @@ def _frame(
     faults.refuse_unless(
         printed_mm >= LEAST_PIN_MM,
         "backing.pin_clearance_mm",
-        f"{p.backing.pin_clearance_mm:g} given, which leaves pins of {printed_mm:.2f} mm in holes "
+        f"is {p.backing.pin_clearance_mm:g}, which leaves pins of {printed_mm:.2f} mm in holes "
         f"of {p.board.hole_mm:g} mm; at least {LEAST_PIN_MM:g} mm is needed",
     )
     faults.refuse_unless(
         p.backing.pin_clearance_mm + p.printer.fit_mm >= LEAST_CLEARANCE_MM,
         "printer.fit_mm",
-        f"{p.printer.fit_mm:g} given, which with backing.pin_clearance_mm = "
-        f"{p.backing.pin_clearance_mm:g} leaves pins that are drawn as wide as their holes; at "
+        f"is {p.printer.fit_mm:g}, with backing.pin_clearance_mm = "
+        f"{p.backing.pin_clearance_mm:g} the pins are drawn as wide as their holes; at "
         f"least {LEAST_CLEARANCE_MM - p.backing.pin_clearance_mm:.2f} is needed",
     )
     half = float(np.abs(cells.x_mm).max()) + p.board.side_margin_mm
@@ -166,7 +165,7 @@ def _frame(
         faults.refuse_unless(
             margin >= taken + p.board.clearance_mm,
             field,
-            f"{margin:g} given, parts reach {taken:g} mm beyond their cells: at least "
+            f"is {margin:g}; parts reach {taken:g} mm beyond their cells; at least "
             f"{taken + p.board.clearance_mm:.2f} is needed",
         )
     x_min, x_max = float(cells.x_mm.min()), float(cells.x_mm.max())
@@ -193,7 +192,7 @@ def _frame(
     )
 
 
-def _refuse_holes(p: Parameters, pad_mm: float, faults: Faults) -> None:
+def _refuse_holes(p: Parameters, pad_mm: float, faults: Diagnostics) -> None:
     """Refuse holes and pads that break out of the board or into the parts."""
     radius = p.board.hole_mm / 2
     for_hole, for_pad = radius + placing.HOLE_WEB_MM, pad_mm / 2 + PAD_TO_EDGE_MM
@@ -201,26 +200,26 @@ def _refuse_holes(p: Parameters, pad_mm: float, faults: Faults) -> None:
     faults.refuse_unless(
         p.board.end_margin_mm >= max(for_hole, for_pad) - 1e-9,
         "board.end_margin_mm",
-        f"{p.board.end_margin_mm:g} given, {what} and pads of {pad_mm:g} mm in the connector's "
-        f"row need at least {max(for_hole, for_pad):.2f}",
+        f"is {p.board.end_margin_mm:g}; {what} and pads of {pad_mm:g} mm in the connector's "
+        f"row need at least {max(for_hole, for_pad):.2f} mm",
     )
     faults.refuse_unless(
         p.board.hole_edge_mm >= for_hole - 1e-9,
         "board.hole_edge_mm",
-        f"{p.board.hole_edge_mm:g} given, {what} need at least {for_hole:.2f}",
+        f"is {p.board.hole_edge_mm:g}; {what} need at least {for_hole:.2f} mm",
     )
     least = radius + placing.HOLE_CLEARANCE_MM - pad_mm / 2
     faults.refuse_unless(
         p.board.channel_mm >= least - 1e-9,
         "board.channel_mm",
-        f"{p.board.channel_mm:g} given, {what} beside the connector would reach the parts: at "
+        f"is {p.board.channel_mm:g}; {what} beside the connector would reach the parts; at "
         f"least {least:.2f} is needed",
     )
 
 
 def _resistor_room(config: Input, frame: Frame) -> Box:
-    """The zone for parts; on the back without what lies so near notch and pins that too little
-    floor would be left between them and the resistors' relief."""
+    """The zone for string resistors; on the back it keeps the printer's least wall between their
+    relief and the notch and pins."""
     p, zone = config.parameters, frame.parts
     if p.emitter.resistor_side == "front":
         return zone

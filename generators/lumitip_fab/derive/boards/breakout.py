@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from lumitip_fab.catalogue.controllers import Plug, Strip
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards import connectors, devices, patterns
-from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.wiring.wiring import Muxing
 from lumitip_fab.design import Box, Carrier, Device, Note
 
@@ -42,7 +42,7 @@ class Rows:
     wires_mm: float
 
 
-def derive_breakout(config: Input, muxing: Muxing, faults: Faults) -> tuple[Carrier, ...]:
+def derive_breakout(config: Input, muxing: Muxing, faults: Diagnostics) -> tuple[Carrier, ...]:
     """The breakout board; none if it is not wanted, or if the controller has no pins to plug."""
     p = config.parameters
     plug = config.catalogue.controllers[p.controller.board].plug
@@ -171,7 +171,7 @@ def _wires(
 
 
 def _refuse(
-    config: Input, plug: Plug, strip: Strip, muxing: Muxing, rows: Rows, faults: Faults
+    config: Input, plug: Plug, strip: Strip, muxing: Muxing, rows: Rows, faults: Diagnostics
 ) -> None:
     """Refuse what does not fit onto the board."""
     p = config.parameters.breakout
@@ -180,7 +180,7 @@ def _refuse(
     faults.refuse_unless(
         ways == {strip.ways},
         "breakout.socket",
-        f"{p.socket!r} given, which has {strip.ways} contacts; the rows of "
+        f"is {p.socket!r}, which has {strip.ways} contacts; the rows of "
         f"{config.parameters.controller.board!r} have {' and '.join(map(str, sorted(ways)))}",
     )
     cable = connectors.half_width_mm(len(connectors.receiver_signals(muxing)), wide=False)
@@ -191,24 +191,24 @@ def _refuse(
     )
     reach = connectors.WIDE[1] / 2 + BETWEEN_MM + PAD_MM / 2
     least_width = 2 * (rows.beside_mm + reach + connectors.WIDE[1] / 2 + EDGE_MM)
-    for given_mm, least, what in (
+    for size_mm, least, what in (
         (length, least_length, "long"),
         (width, least_width, "wide"),
     ):
         faults.refuse_unless(
-            given_mm >= least - 1e-9,
+            size_mm >= least - 1e-9,
             "breakout.board_mm",
-            f"{given_mm:g} mm {what} given, sockets, holes and wires need at least {least:.2f}",
+            f"is {size_mm:g} mm {what}; sockets, holes and wires need at least {least:.2f} mm",
         )
     faults.refuse_unless(
         p.hole_spacing_mm >= p.hole_mm + HOLE_WEB_MM,
         "breakout.hole_spacing_mm",
-        f"{p.hole_spacing_mm:g} given, holes of {p.hole_mm:g} mm need at least "
-        f"{p.hole_mm + HOLE_WEB_MM:g}",
+        f"is {p.hole_spacing_mm:g}; holes of {p.hole_mm:g} mm need at least "
+        f"{p.hole_mm + HOLE_WEB_MM:g} mm",
     )
     most = plug.spacing_mm - strip.pad_mm - 2 * HOLE_WEB_MM
     faults.refuse_unless(
         p.hole_mm <= most,
         "breakout.hole_mm",
-        f"{p.hole_mm:g} given, at most {most:.2f} fits between the sockets",
+        f"is {p.hole_mm:g}; at most {most:.2f} mm fits between the sockets",
     )

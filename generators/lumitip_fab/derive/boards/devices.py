@@ -5,6 +5,7 @@ from dataclasses import replace
 
 from lumitip_fab.catalogue import electronics
 from lumitip_fab.catalogue.controllers import OPEN, Leaded, Strip
+from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards import connectors, patterns
 from lumitip_fab.design import Device, Point
 
@@ -101,6 +102,14 @@ def chip(
     )
 
 
+def capacitor(
+    config: Input, ref: str, name: str, at: Point, angle_deg: float, nets: tuple[str, str]
+) -> Device:
+    """A capacitor by its name in the catalogue."""
+    entry = config.catalogue.capacitors[name]
+    return chip(ref, "capacitor", name.split(maxsplit=1)[0], entry, "CAPC", at, angle_deg, nets)
+
+
 def leaded(
     ref: str,
     kind: str,
@@ -110,7 +119,7 @@ def leaded(
     angle_deg: float,
     nets: dict[str, str],
 ) -> Device:
-    """A part with leads, whose nets are told by the leads' names."""
+    """A part with leads; `nets` has the net of each lead by its name."""
     return Device(
         ref=ref,
         kind=kind,

@@ -15,7 +15,7 @@ With a module as its controller it is wider to the left: see `lumitip_fab.derive
 
 from lumitip_fab.catalogue.controllers import OPEN
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.boards.devices import chip, fiducials, from_behind, leaded, strip
+from lumitip_fab.derive.boards.devices import capacitor, chip, fiducials, from_behind, leaded, strip
 from lumitip_fab.derive.boards.flange_circuit import (
     halved,
     is_regulated,
@@ -24,7 +24,7 @@ from lumitip_fab.derive.boards.flange_circuit import (
     supply_range_v,
 )
 from lumitip_fab.derive.boards.module import Supplies, derive_module
-from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.mount.fasteners import BOARD_SCREW
 from lumitip_fab.derive.wiring.wiring import Muxing, Strings
 from lumitip_fab.design import Box, Carrier, Device, Point
@@ -41,7 +41,7 @@ FIDUCIALS_AT: tuple[Point, ...] = ((-13.0, -13.5), (13.0, -15.5), (-13.0, 13.5))
 
 
 def derive_flange(
-    config: Input, strings: Strings, muxing: Muxing, faults: Faults
+    config: Input, strings: Strings, muxing: Muxing, faults: Diagnostics
 ) -> tuple[Carrier, ...]:
     """The flange's board, with the controller if that is a module; none if it is not wanted."""
     p = config.parameters
@@ -50,8 +50,8 @@ def derive_flange(
         faults.refuse_unless(
             module is None,
             "controller.board",
-            f"{p.controller.board!r} given, a module on the flange's board: flange.enabled = true, "
-            "or a controller that plugs into the breakout",
+            f"is {p.controller.board!r}, a module on the flange's board. Set flange.enabled = true "
+            "or choose a controller that plugs into the breakout.",
         )
         return ()
     _refuse(config, faults)
@@ -129,26 +129,13 @@ def _input(config: Input) -> tuple[Device, ...]:
     part = resistor.order_number.replace("{code}", code)
     transistor = known.transistors[p.transistor]
     leads = {"G": "GATE", "S": supply, "D": "FUSED"}
+    upper = chip(
+        "R1", "resistor", code, resistor, "RESC", (-5.2, -7.0), 90.0, (supply, "GATE"), part
+    )
     return (
         chip("F1", "fuse", p.fuse, known.fuses[p.fuse], "FUSC", (5.4, -7.0), 180.0, (raw, "FUSED")),
         leaded("Q1", "transistor", p.transistor, transistor, (-1.0, -7.0), 270.0, leads),
-        *(
-            (
-                chip(
-                    "R1",
-                    "resistor",
-                    code,
-                    resistor,
-                    "RESC",
-                    (-5.2, -7.0),
-                    90.0,
-                    (supply, "GATE"),
-                    part,
-                ),
-            )
-            if halved(config)
-            else ()
-        ),
+        *((upper,) if halved(config) else ()),
         chip("R2", "resistor", code, resistor, "RESC", (-2.0, -3.8), 0.0, ("GATE", "GND"), part),
     )
 
@@ -161,31 +148,12 @@ def _regulator(config: Input) -> tuple[Device, ...]:
         return ()
     _, supply, output = _supplies(config)
     leads = {"FB": output, "EN": supply, "VIN": supply, "GND": "GND", "SW": "SW", "BST": "BST"}
-    caps = known.capacitors
     return (
         leaded(
             "U1", "regulator", p.regulator, known.regulators[p.regulator], (-7.5, 0.0), 0.0, leads
         ),
-        chip(
-            "C1",
-            "capacitor",
-            p.input_capacitor.split()[0],
-            caps[p.input_capacitor],
-            "CAPC",
-            (-4.9, 0.0),
-            90.0,
-            (supply, "GND"),
-        ),
-        chip(
-            "C4",
-            "capacitor",
-            p.boot_capacitor.split()[0],
-            caps[p.boot_capacitor],
-            "CAPC",
-            (-10.8, 2.1),
-            90.0,
-            ("BST", "SW"),
-        ),
+        capacitor(config, "C1", p.input_capacitor, (-4.9, 0.0), 90.0, (supply, "GND")),
+        capacitor(config, "C4", p.boot_capacitor, (-10.8, 2.1), 90.0, ("BST", "SW")),
         chip(
             "L1",
             "inductor",
@@ -196,23 +164,12 @@ def _regulator(config: Input) -> tuple[Device, ...]:
             90.0,
             ("SW", output),
         ),
-        *(
-            chip(
-                ref,
-                "capacitor",
-                p.output_capacitor.split()[0],
-                caps[p.output_capacitor],
-                "CAPC",
-                (x, 5.8),
-                270.0,
-                (output, "GND"),
-            )
-            for ref, x in (("C2", -3.6), ("C3", -1.2))
-        ),
+        capacitor(config, "C2", p.output_capacitor, (-3.6, 5.8), 270.0, (output, "GND")),
+        capacitor(config, "C3", p.output_capacitor, (-1.2, 5.8), 270.0, (output, "GND")),
     )
 
 
-def _refuse(config: Input, faults: Faults) -> None:
+def _refuse(config: Input, faults: Diagnostics) -> None:
     """Refuse headers of another size, signals that lead nowhere, and voltages beyond the parts'."""
     p, known, volts = config.parameters.flange, config.catalogue, config.parameters.supply.voltage_v
     strip = known.strips[p.header]
@@ -220,34 +177,34 @@ def _refuse(config: Input, faults: Faults) -> None:
     faults.refuse_unless(
         strip.rows == 2 and all(count == strip.ways for count in counts),
         "flange.headers",
-        f"{' and '.join(map(str, counts))} signals given, {p.header!r} has {strip.rows} x "
-        f"{strip.ways} contacts: {strip.ways} are needed, in two rows",
+        f"has {' and '.join(map(str, counts))} signals; {p.header!r} has {strip.rows} x "
+        f"{strip.ways} contacts: {strip.ways} signals for each of two rows are needed",
     )
     cables = {*p.headers[0], *p.headers[1]}
     lost = sorted((set(p.signals) ^ cables) - {"SUPPLY", "GND", "REGULATED", OPEN})
     faults.refuse_unless(
         not lost,
         "flange.signals",
-        f"{', '.join(lost)} given at one end only: a line of the contacts ends in a header",
+        f"has {', '.join(lost)} at one end only; each signal must be on a contact and on a header",
     )
     absent = sorted({"SUPPLY", "GND"} - set(p.signals))
     faults.refuse_unless(
         not absent and "REGULATED" not in p.signals,
         "flange.signals",
-        f"{', '.join(p.signals):.80} given, SUPPLY and GND are needed, and no REGULATED, which the "
-        "board makes",
+        f"has {', '.join(p.signals):.80}; SUPPLY and GND are needed, and REGULATED, which the "
+        "board generates, is not allowed",
     )
     least, most = supply_range_v(config)
     faults.refuse_unless(
         not is_regulated(config) or least <= volts <= most,
         "supply.voltage_v",
-        f"{volts:g} given, the flange's regulator, fuse and transistor take {least:g} to "
-        f"{most:g} V, or {known.regulators[p.regulator].output_v:g} V without a regulator; other "
-        "parts, or flange.enabled = false",
+        f"is {volts:g}; the flange's regulator, fuse and transistor need {least:g} to {most:g} V, "
+        f"or {known.regulators[p.regulator].output_v:g} V without the regulator. Choose other "
+        "parts or set flange.enabled = false.",
     )
 
 
-def _refuse_lines(config: Input, parts: tuple[Device, ...], faults: Faults) -> None:
+def _refuse_lines(config: Input, parts: tuple[Device, ...], faults: Diagnostics) -> None:
     """Refuse lines from contact to cable that are called like a net of the board's own parts:
     they would be joined."""
     p = config.parameters.flange
@@ -257,5 +214,6 @@ def _refuse_lines(config: Input, parts: tuple[Device, ...], faults: Faults) -> N
     faults.refuse_unless(
         not taken,
         "flange.signals",
-        f"{', '.join(taken)} given, which the board's own parts are joined by: another name",
+        f"has {', '.join(taken)}; nets of the board's own parts have these names. Choose other "
+        "names.",
     )

@@ -6,7 +6,7 @@ import math
 from lumitip_fab.catalogue.controllers import OPEN, Strip
 from lumitip_fab.catalogue.grippers import Contact, ToolCoupling
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.wiring.ratings import (
     MOST_RESISTOR_LOAD,
     RESISTOR_TOLERANCE,
@@ -22,7 +22,7 @@ _FOR = {"supply": "SUPPLY", "ground": "GND"}
 """Signal that belongs on a contact of a kind, and on no other."""
 
 
-def refuse_map(config: Input, faults: Faults) -> None:
+def refuse_map(config: Input, faults: Diagnostics) -> None:
     """Refuse contacts where the coupling has none, and nets that join what must stay apart."""
     p = config.parameters.flange
     coupling = config.catalogue.couplings[p.coupling]
@@ -30,16 +30,16 @@ def refuse_map(config: Input, faults: Faults) -> None:
     if not _meets(strip, coupling):
         faults.refuse(
             "flange.contacts",
-            f"{p.contacts!r} given, {strip.rows} x {strip.ways} contacts {strip.pitch_mm:g} mm "
-            f"apart, which do not meet the {len(coupling.contacts)} contacts of {p.coupling!r}. "
-            "Take another strip or flange.coupling",
+            f"is {p.contacts!r}, {strip.rows} x {strip.ways} contacts with a pitch of "
+            f"{strip.pitch_mm:g} mm, which do not match the {len(coupling.contacts)} contacts of "
+            f"{p.coupling!r}. Choose another strip or flange.coupling.",
         )
         return
     if len(p.signals) != len(coupling.contacts):
         faults.refuse(
             "flange.signals",
-            f"{len(p.signals)} signals given, {p.coupling!r} has {len(coupling.contacts)} "
-            f"contacts: one for each is needed. Take {_own(coupling)}",
+            f"has {len(p.signals)} signals; {p.coupling!r} has {len(coupling.contacts)} contacts: "
+            f"one signal for each is needed. Use {_own(coupling)}.",
         )
         return
     for signal in dict.fromkeys(p.signals):
@@ -51,38 +51,36 @@ def refuse_map(config: Input, faults: Faults) -> None:
         if signal != OPEN and (wrong := _wrong(signal, on)):
             faults.refuse(
                 "flange.signals",
-                f"{wrong}, by the map of {p.coupling!r} in parts/couplings.toml. Take "
-                f"{_own(coupling)}, or an entry with the map that you have measured",
+                f"has {wrong}, by the contact map of {p.coupling!r} in parts/couplings.toml. Use "
+                f"{_own(coupling)}, or an entry with the contact map that you measured.",
             )
 
 
 def _meets(strip: Strip, coupling: ToolCoupling) -> bool:
-    """Whether every contact of a strip stands on one of the coupling, and none is left."""
+    """Whether the contacts of strip and coupling match one to one."""
     x, y = coupling.contacts_at_mm
-    wanted = [(contact.at_mm[0] - x, contact.at_mm[1] - y) for contact in coupling.contacts]
+    needed = [(contact.at_mm[0] - x, contact.at_mm[1] - y) for contact in coupling.contacts]
     offsets = [place - (strip.ways - 1) / 2 for place in range(strip.ways)]
     rows = [place - (strip.rows - 1) / 2 for place in range(strip.rows)]
     there = [(place * strip.pitch_mm, row * strip.pitch_mm) for row in rows for place in offsets]
-    near = [min(math.dist(one, other) for other in there) <= PLACE_MM for one in wanted]
-    return all(near) and len(wanted) == len(there)
+    near = [min(math.dist(one, other) for other in there) <= PLACE_MM for one in needed]
+    return all(near) and len(needed) == len(there)
 
 
 def _wrong(signal: str, on: list[tuple[int, Contact]]) -> str:
-    """What is wrong with a net on these contacts; empty if nothing is."""
+    """Fault of a net on these contacts; empty without one."""
     where = " and ".join(f"{number} ({contact.carries})" for number, contact in on)
     if len({contact.carries for _, contact in on}) > 1:
-        return f"{signal} stands on contacts {where}, which carry different signals"
+        return f"{signal} on contacts {where}, which carry different signals"
     where = f"contact{'s' if len(on) > 1 else ''} {where}"
     _, contact = on[0]
     belongs = _FOR.get(contact.kind)
     if contact.kind == "open":
-        return f"{signal} stands on {where}: {OPEN} is needed there"
+        return f"{signal} on {where}; {OPEN} is needed there"
     if belongs and signal != belongs:
-        return f"{signal} stands on {where}, of kind {contact.kind}: {belongs} is needed there"
+        return f"{signal} on {where}, of kind {contact.kind}; {belongs} is needed there"
     if not belongs and signal in (*_FOR.values(), "REGULATED"):
-        return (
-            f"{signal} stands on {where}, of kind {contact.kind}: a line of its own is needed there"
-        )
+        return f"{signal} on {where}, of kind {contact.kind}; a separate signal is needed there"
     return ""
 
 
@@ -100,13 +98,13 @@ MOST_OFF_PF = 1.5  # some 15 ppm of a crystal of 32.768 kHz
 
 
 def is_regulated(config: Input) -> bool:
-    """Whether the flange makes its output from a higher supply; else they are one net."""
+    """Whether the flange regulates its output from a higher supply; else they are one net."""
     p = config.parameters
     return p.supply.voltage_v != config.catalogue.regulators[p.flange.regulator].output_v
 
 
 def halved(config: Input) -> bool:
-    """Whether a divider halves the supply for the MOSFET's gate, which bears no high supply."""
+    """Whether a divider halves a high supply for the MOSFET's gate."""
     p = config.parameters
     high_v = p.supply.voltage_v * (1 + SUPPLY_TOLERANCE)
     return high_v > GATE_SHARE * config.catalogue.transistors[p.flange.transistor].gate_v
@@ -126,7 +124,7 @@ def supply_range_v(config: Input) -> tuple[float, float]:
     return least, min(*rated, gates * transistor.gate_v)
 
 
-def refuse_parts(config: Input, strings: Strings, faults: Faults) -> None:
+def refuse_parts(config: Input, strings: Strings, faults: Diagnostics) -> None:
     """Refuse parts that are overloaded, and values with which the circuit does not work."""
     _refuse_gate(config, faults)
     _refuse_fuse(config, strings, faults)
@@ -135,7 +133,7 @@ def refuse_parts(config: Input, strings: Strings, faults: Faults) -> None:
         _refuse_crystal(config, faults)
 
 
-def _refuse_gate(config: Input, faults: Faults) -> None:
+def _refuse_gate(config: Input, faults: Diagnostics) -> None:
     p = config.parameters
     ohm, volts = p.flange.gate_ohm, p.supply.voltage_v / (2 if halved(config) else 1)
     package = config.catalogue.resistors[p.flange.resistor]
@@ -143,19 +141,19 @@ def _refuse_gate(config: Input, faults: Faults) -> None:
     faults.refuse_unless(
         math.isclose(sold, ohm),
         "flange.gate_ohm",
-        f"{ohm:g} given, which is not sold: a value of the E24 or E96 series is needed, such as "
-        f"{sold:g}",
+        f"is {ohm:g}, which is in neither the E24 nor the E96 series. Use {sold:g}.",
     )
     load_w = (volts * (1 + SUPPLY_TOLERANCE)) ** 2 / (ohm * (1 - RESISTOR_TOLERANCE))
     faults.refuse_unless(
         load_w <= allowed_w,
         "flange.gate_ohm",
-        f"{ohm:g} takes up to {1000 * load_w:.0f} mW at {volts:g} V; a {p.flange.resistor!r} takes "
-        f"at most {1000 * allowed_w:.0f} mW: at least {ohm * load_w / allowed_w:.0f} is needed",
+        f"is {ohm:g}, with a power of up to {1000 * load_w:.0f} mW at {volts:g} V; the limit of a "
+        f"{p.flange.resistor!r} is {1000 * allowed_w:.0f} mW: at least "
+        f"{ohm * load_w / allowed_w:.0f} is needed",
     )
 
 
-def _refuse_fuse(config: Input, strings: Strings, faults: Faults) -> None:
+def _refuse_fuse(config: Input, strings: Strings, faults: Diagnostics) -> None:
     p, known = config.parameters, config.catalogue
     fed_ma = known.controllers[p.controller.board].draws_ma / EFFICIENCY
     output_v = known.regulators[p.flange.regulator].output_v
@@ -164,12 +162,13 @@ def _refuse_fuse(config: Input, strings: Strings, faults: Faults) -> None:
     faults.refuse_unless(
         drawn_ma <= allowed_ma,
         "flange.fuse",
-        f"{p.flange.fuse!r} given, which carries {allowed_ma:.0f} mA for years; LEDs and "
-        f"controller draw {drawn_ma:.0f} mA: a larger one, or less emitter.current_ma",
+        f"is {p.flange.fuse!r}, with a limit of {allowed_ma:.0f} mA ({100 * FUSE_SHARE:g} % of its "
+        f"rating); LEDs and controller draw {drawn_ma:.0f} mA. Choose a larger fuse or reduce "
+        "emitter.current_ma.",
     )
 
 
-def _refuse_crystal(config: Input, faults: Faults) -> None:
+def _refuse_crystal(config: Input, faults: Diagnostics) -> None:
     """Refuse capacitors with which the crystal is off."""
     p, known = config.parameters.module, config.catalogue
     crystal, each = known.crystals[p.crystal], known.capacitors[p.crystal_capacitor]
@@ -177,9 +176,9 @@ def _refuse_crystal(config: Input, faults: Faults) -> None:
     faults.refuse_unless(
         abs(load_pf - crystal.load_pf) <= MOST_OFF_PF,
         "module.crystal_capacitor",
-        f"{p.crystal_capacitor!r} given, two of which load the crystal with {load_pf:g} pF; "
-        f"{p.crystal!r} is made for {crystal.load_pf:g} pF: capacitors of "
-        f"{2 * crystal.load_pf - STRAY_PF:g} pF are needed",
+        f"is {p.crystal_capacitor!r}; two of them make a load capacitance of {load_pf:g} pF; "
+        f"{p.crystal!r} needs C_L = {crystal.load_pf:g} pF. Use capacitors of "
+        f"{2 * crystal.load_pf - STRAY_PF:g} pF.",
     )
 
 
@@ -189,7 +188,7 @@ MOST_RIPPLE = 0.01  # of the output, and of the supply at the input
 OUTPUT_CAPACITORS = ("C2", "C3")
 
 
-def derive_regulated(config: Input, faults: Faults) -> tuple[Regulated, ...]:
+def derive_regulated(config: Input, faults: Diagnostics) -> tuple[Regulated, ...]:
     """The flange's 5 V; none without the flange, or where they are its supply.
 
     Ripple of a step-down regulator in continuous conduction: the current swings by
@@ -211,8 +210,8 @@ def derive_regulated(config: Input, faults: Faults) -> tuple[Regulated, ...]:
     faults.refuse_unless(
         ripple_mv <= 1e3 * MOST_RIPPLE * volts,
         "flange.output_capacitor",
-        f"{p.flange.output_capacitor!r} given, with which {volts:g} V ripple by {ripple_mv:.0f} "
-        f"mV; at most {1e3 * MOST_RIPPLE * volts:g} mV are allowed: more capacitance",
+        f"is {p.flange.output_capacitor!r}, with a ripple of {ripple_mv:.0f} mV on {volts:g} V; at "
+        f"most {1e3 * MOST_RIPPLE * volts:g} mV is allowed. Choose a larger capacitance.",
     )
     _refuse_input(config, LOAD_SHARE * part.output_a * duty * (1 - duty) / hertz, faults)
     high_ohm, low_ohm = part.switch_ohm
@@ -234,7 +233,7 @@ def derive_regulated(config: Input, faults: Faults) -> tuple[Regulated, ...]:
     )
 
 
-def _refuse_input(config: Input, coulomb: float, faults: Faults) -> None:
+def _refuse_input(config: Input, coulomb: float, faults: Diagnostics) -> None:
     """Refuse an input capacitor that does not hold the supply while the switch takes a charge."""
     p = config.parameters
     capacitor = config.catalogue.capacitors[p.flange.input_capacitor]
@@ -243,6 +242,7 @@ def _refuse_input(config: Input, coulomb: float, faults: Faults) -> None:
     faults.refuse_unless(
         moved_v <= most_v,
         "flange.input_capacitor",
-        f"{p.flange.input_capacitor!r} given, with which {p.supply.voltage_v:g} V ripple by "
-        f"{1000 * moved_v:.0f} mV; at most {1000 * most_v:g} mV are allowed: more capacitance",
+        f"is {p.flange.input_capacitor!r}, with a ripple of {1000 * moved_v:.0f} mV on "
+        f"{p.supply.voltage_v:g} V; at most {1000 * most_v:g} mV is allowed. Choose a larger "
+        "capacitance.",
     )

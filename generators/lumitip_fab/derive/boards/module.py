@@ -12,7 +12,7 @@
 ╰───────────────────╯
 ```
 
-▒ is the keep-out. What is on the wing follows the module's body and the pads of its four sides.
+▒ is the keep-out. The other parts are placed round the module's body.
 """
 
 from dataclasses import dataclass
@@ -20,13 +20,13 @@ from dataclasses import dataclass
 from lumitip_fab.catalogue.controllers import Module
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards import connectors, patterns
-from lumitip_fab.derive.boards.devices import chip, leaded, wires
-from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.boards.devices import capacitor, chip, leaded, wires
+from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.wiring.wiring import Muxing
 from lumitip_fab.design import Box, Device, Point
 
 WING_MM = 12.6
-"""Beyond the board without a module. No more: the published flange has its bolts beside it."""
+"""Width beyond the board without a module; the bolts of the published flange limit it."""
 TURN_DEG = 90.0  # the antenna, at the top of the module's own frame, to the left
 MOST_WIRES = 9
 """In the row to the receiver, between the board's round corner and the header."""
@@ -55,7 +55,7 @@ class Supplies:
 
 @dataclass(frozen=True)
 class Wing:
-    """What a module adds to the flange's board, and the board's box with it."""
+    """Additions of a module to the flange's board, and the board's box with them."""
 
     box: Box
     devices: tuple[Device, ...]
@@ -69,7 +69,7 @@ def derive_module(
     muxing: Muxing,
     supplies: Supplies,
     box: Box,
-    faults: Faults,
+    faults: Diagnostics,
 ) -> Wing | None:
     """The module with what it needs; none where the controller is not one."""
     if module is None:
@@ -123,86 +123,30 @@ def _module(config: Input, module: Module, muxing: Muxing, at: Point) -> Device:
 
 def _supply(config: Input, supplies: Supplies) -> tuple[Device, ...]:
     """The linear regulator with a capacitor before and after it."""
-    p, known = config.parameters.module, config.catalogue
-    cap, value = known.capacitors[p.supply_capacitor], p.supply_capacitor.split()[0]
-    leads = {"IN": supplies.regulated, "OUT": CONTROLLER, "GND": "GND"}
+    p, fed = config.parameters.module, supplies.regulated
+    entry = config.catalogue.linear_regulators[p.regulator]
+    leads = {"IN": fed, "OUT": CONTROLLER, "GND": "GND"}
     return (
-        leaded(
-            "U3",
-            "regulator",
-            p.regulator,
-            known.linear_regulators[p.regulator],
-            (-17.5, 9.2),
-            0.0,
-            leads,
-        ),
-        chip(
-            "C5", "capacitor", value, cap, "CAPC", (-14.4, 10.2), 0.0, (supplies.regulated, "GND")
-        ),
-        chip("C6", "capacitor", value, cap, "CAPC", (-14.4, 7.8), 0.0, (CONTROLLER, "GND")),
+        leaded("U3", "regulator", p.regulator, entry, (-17.5, 9.2), 0.0, leads),
+        capacitor(config, "C5", p.supply_capacitor, (-14.4, 10.2), 0.0, (fed, "GND")),
+        capacitor(config, "C6", p.supply_capacitor, (-14.4, 7.8), 0.0, (CONTROLLER, "GND")),
     )
 
 
 def _beside(config: Input) -> tuple[Device, ...]:
-    """What is near the module's pads: capacitors of its supplies, and the crystal."""
-    p, known = config.parameters.module, config.catalogue.capacitors
-    value = p.crystal_capacitor.split()[0]
-    crystal = config.catalogue.crystals[p.crystal]
+    """Parts near the module's pads: capacitors of its supplies, and the crystal."""
+    p = config.parameters.module
+    entry, value = config.catalogue.crystals[p.crystal], p.crystal.split()[0]
     return (
-        chip(
-            "C7",
-            "capacitor",
-            p.capacitor.split()[0],
-            known[p.capacitor],
-            "CAPC",
-            (-11.2, 5.2),
-            90.0,
-            (CONTROLLER, "GND"),
-        ),
-        chip(
-            "C10",
-            "capacitor",
-            p.supply_capacitor.split()[0],
-            known[p.supply_capacitor],
-            "CAPC",
-            (-11.2, 10.2),
-            90.0,
-            ("VUSB", "GND"),
-        ),
-        chip(
-            "Y1",
-            "crystal",
-            p.crystal.split()[0],
-            crystal,
-            "XTAL",
-            (-11.3, -7.2),
-            90.0,
-            ("XL1", "XL2"),
-        ),
-        chip(
-            "C8",
-            "capacitor",
-            value,
-            known[p.crystal_capacitor],
-            "CAPC",
-            (-11.3, -11.4),
-            270.0,
-            ("XL1", "GND"),
-        ),
-        chip(
-            "C9",
-            "capacitor",
-            value,
-            known[p.crystal_capacitor],
-            "CAPC",
-            (-11.4, -3.2),
-            270.0,
-            ("XL2", "GND"),
-        ),
+        capacitor(config, "C7", p.capacitor, (-11.2, 5.2), 90.0, (CONTROLLER, "GND")),
+        capacitor(config, "C10", p.supply_capacitor, (-11.2, 10.2), 90.0, ("VUSB", "GND")),
+        chip("Y1", "crystal", value, entry, "XTAL", (-11.3, -7.2), 90.0, ("XL1", "XL2")),
+        capacitor(config, "C8", p.crystal_capacitor, (-11.3, -11.4), 270.0, ("XL1", "GND")),
+        capacitor(config, "C9", p.crystal_capacitor, (-11.4, -3.2), 270.0, ("XL2", "GND")),
     )
 
 
-def _refuse(config: Input, muxing: Muxing, faults: Faults) -> None:
+def _refuse(config: Input, muxing: Muxing, faults: Diagnostics) -> None:
     """Refuse a regulator that does not go between the supplies, and more wires than have room."""
     p, known = config.parameters, config.catalogue
     regulator = known.linear_regulators[p.module.regulator]
@@ -212,21 +156,22 @@ def _refuse(config: Input, muxing: Muxing, faults: Faults) -> None:
     faults.refuse_unless(
         least <= fed_v <= most and regulator.output_v == controller.supply_v,
         "module.regulator",
-        f"{p.module.regulator!r} given, which makes {regulator.output_v:g} V of {least:g} to "
-        f"{most:g} V; {controller.supply_v:g} V of the {fed_v:g} V of flange.regulator are needed",
+        f"is {p.module.regulator!r}, with {regulator.output_v:g} V output and {least:g} to "
+        f"{most:g} V input; {controller.supply_v:g} V output and {fed_v:g} V input, from "
+        "flange.regulator, are needed",
     )
     needed_a = controller.draws_ma / 1000
     faults.refuse_unless(
         needed_a <= regulator.output_a,
         "module.regulator",
-        f"{p.module.regulator!r} given, which carries {1000 * regulator.output_a:g} mA; "
+        f"is {p.module.regulator!r}, which supplies {1000 * regulator.output_a:g} mA; "
         f"{p.controller.board!r} draws {controller.draws_ma:g} mA",
     )
     wires_needed = len(connectors.receiver_signals(muxing))
     faults.refuse_unless(
         wires_needed <= MOST_WIRES,
         "controller.board",
-        f"{p.controller.board!r} given, whose board has room for {MOST_WIRES} wires to the "
-        f"receiver; it needs {wires_needed}: less multiplexers with more inputs, less cells, or a "
-        "controller that plugs into the breakout",
+        f"is {p.controller.board!r}, whose board has room for {MOST_WIRES} wires to the "
+        f"receiver; {wires_needed} are needed. Choose a multiplexer with more inputs, fewer cells, "
+        "or a controller that plugs into the breakout.",
     )

@@ -1,14 +1,17 @@
-"""The parts that the boards carry, and the rules that their copper keeps."""
+"""Packages of the parts, design rules of the copper, PCB fabs, and layers of a flexible board."""
+
+from dataclasses import replace
 
 from lumitip_fab.catalogue import electronics
 from lumitip_fab.catalogue.ordering import Silk
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.boards import placing
-from lumitip_fab.derive.faults import Faults
-from lumitip_fab.design import Chip, Fab, Multiplexer, Packages, Rules
+from lumitip_fab.derive.boards import connectors, placing
+from lumitip_fab.derive.diagnostics import Diagnostics
+from lumitip_fab.derive.finger.stack import is_flex
+from lumitip_fab.design import Box, Chip, Fab, Flexible, Multiplexer, Packages, Rules
 
 LEAST_RING_MM = 0.1  # copper round the hole of a via
-COMMON_SILK = Silk(text_mm=0.8, line_mm=0.15, gap_mm=0.15)  # where the catalogue has no house
+COMMON_SILK = Silk(text_mm=0.8, line_mm=0.15, gap_mm=0.15)  # where the catalogue has no PCB fab
 
 
 def derive_packages(config: Input) -> Packages:
@@ -59,7 +62,7 @@ def _chip(entry: electronics.Chip, value: str = "", marked: str = "") -> Chip:
     )
 
 
-def derive_rules(config: Input, faults: Faults) -> Rules:
+def derive_rules(config: Input, faults: Diagnostics) -> Rules:
     """Rules of the copper; refused where a via has no ring or a track does not leave a lead."""
     p = config.parameters
     board, mux = p.board, config.catalogue.multiplexers[p.receiver.multiplexer]
@@ -67,19 +70,19 @@ def derive_rules(config: Input, faults: Faults) -> Rules:
     faults.refuse_unless(
         board.via_mm >= least - 1e-9,
         "board.via_mm",
-        f"{board.via_mm:g} given, a hole of {board.via_drill_mm:g} mm needs at least {least:g}",
+        f"is {board.via_mm:g}; a hole of {board.via_drill_mm:g} mm needs at least {least:g} mm",
     )
     between = mux.lead_pitch_mm - mux.lead_pad_mm[1]
     faults.refuse_unless(
         board.copper_gap_mm <= between + 1e-9,
         "board.copper_gap_mm",
-        f"{board.copper_gap_mm:g} given, the leads of {p.receiver.multiplexer!r} are only "
-        f"{between:.2f} mm apart: at most that is allowed",
+        f"is {board.copper_gap_mm:g}; at most {between:.2f} is allowed, the gap between the leads "
+        f"of {p.receiver.multiplexer!r}",
     )
     faults.refuse_unless(
         board.track_mm <= board.supply_track_mm,
         "board.supply_track_mm",
-        f"{board.supply_track_mm:g} given, at least board.track_mm = {board.track_mm:g} is needed",
+        f"is {board.supply_track_mm:g}; at least board.track_mm = {board.track_mm:g} is needed",
     )
     silks = [fab.silk for fab in config.catalogue.fabs.values()] or [COMMON_SILK]
     return Rules(
@@ -97,7 +100,7 @@ def derive_rules(config: Input, faults: Faults) -> Rules:
 
 
 def derive_fabs(config: Input) -> tuple[Fab, ...]:
-    """Every board house of the catalogue."""
+    """Every PCB fab of the catalogue."""
     return tuple(
         Fab(
             name=name,
@@ -110,4 +113,34 @@ def derive_fabs(config: Input) -> tuple[Fab, ...]:
             remark=fab.remark,
         )
         for name, fab in config.catalogue.fabs.items()
+    )
+
+
+COVERLAY_MM = 0.0275  # 12.5 um of polyimide on 15 um of adhesive
+STIFFENER_MM = 0.2
+STIFFENER_GAP_MM = 0.3  # to the sides of the wire notch
+OVER_PADS_MM = 0.1
+
+
+def flexible_board(config: Input, box: Box, notch: Box, connector_y_mm: float) -> Flexible | None:
+    """Layers and zones of a flexible board; none for a rigid one.
+
+    The coverlay has the common thickness of PCB fabs (assumed: each has its own); the core is the
+    rest. The board bends beyond the rigid interface. The stiffener is behind
+    the wires' pads, where the plate is open, so that it does not lift the board; it ends before
+    the test points.
+    """
+    p, copper_mm = config.parameters, config.catalogue.laminates.flexible.copper_mm
+    if not is_flex(p):
+        return None
+    held_to = min(notch.y_min_mm + p.flex.interface_mm, box.y_max_mm)
+    x = notch.x_max_mm - STIFFENER_GAP_MM
+    top = connector_y_mm + connectors.WIDE[1] / 2 + OVER_PADS_MM
+    return Flexible(
+        bend=replace(box, y_min_mm=held_to),
+        stiffener=Box(-x, x, box.y_min_mm, top),
+        stiffener_mm=STIFFENER_MM,
+        core_mm=p.stack.pcb_mm - 2 * (copper_mm + COVERLAY_MM),
+        copper_mm=copper_mm,
+        coverlay_mm=COVERLAY_MM,
     )

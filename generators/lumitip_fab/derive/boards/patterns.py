@@ -57,8 +57,8 @@ def rows(name: str, strip: Strip) -> Pattern:
         x = (place - (ways - 1) / 2) * pitch
         lands.append(Land(str(i + 1), x, y, strip.pad_mm, strip.pad_mm, strip.drill_mm, i > 0))
     body = Box(-ways * pitch / 2, ways * pitch / 2, -pitch, pitch)
-    told = f"{name}_2x{ways:02d}_P{pitch:.2f}mm_D{strip.drill_mm:.2f}mm"
-    return Pattern(told, tuple(lands), body, strip.height_mm)
+    full_name = f"{name}_2x{ways:02d}_P{pitch:.2f}mm_D{strip.drill_mm:.2f}mm"
+    return Pattern(full_name, tuple(lands), body, strip.height_mm)
 
 
 def leaded(entry: Leaded) -> Pattern:

@@ -1,4 +1,4 @@
-"""Where the parts of a board go: at the cells, in the zone for parts, and the locating holes."""
+"""Placement of parts at the cells and in the zone for parts, and of the locating holes."""
 
 import math
 
@@ -6,9 +6,9 @@ import numpy as np
 
 from lumitip_fab.catalogue.electronics import Chip
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.cells import Cells
-from lumitip_fab.derive.finger.flex import is_flex
+from lumitip_fab.derive.finger.stack import is_flex
 from lumitip_fab.derive.wiring.wiring import Muxing, Strings
 from lumitip_fab.design import Box, Part, Point, Relief
 
@@ -33,7 +33,9 @@ def at_cells(
     )
 
 
-def parts_zone_depth_mm(config: Input, muxing: Muxing, width_mm: float, faults: Faults) -> float:
+def parts_zone_depth_mm(
+    config: Input, muxing: Muxing, width_mm: float, faults: Diagnostics
+) -> float:
     """Depth of the zone for parts with a channel after each row of multiplexers."""
     p = config.parameters
     mux = config.catalogue.multiplexers[p.receiver.multiplexer]
@@ -42,13 +44,13 @@ def parts_zone_depth_mm(config: Input, muxing: Muxing, width_mm: float, faults: 
     faults.refuse_unless(
         beside <= mux.lead_span_mm,
         "receiver.resistor",
-        f"{p.receiver.resistor!r} given, which takes {beside:.2f} mm beside a multiplexer, with "
-        f"{p.receiver.capacitor!r}; {mux.lead_span_mm:g} mm is there: use a smaller package",
+        f"is {p.receiver.resistor!r}, which takes {beside:.2f} mm beside a multiplexer, with "
+        f"{p.receiver.capacitor!r}; {mux.lead_span_mm:g} mm is available. Use a smaller package.",
     )
     if per_row < 1:
         faults.refuse(
             "board.side_margin_mm",
-            f"{p.board.side_margin_mm:g} given, which makes boards {width_mm:.1f} mm wide; a "
+            f"is {p.board.side_margin_mm:g}, which makes the boards {width_mm:.1f} mm wide; "
             f"{p.receiver.multiplexer!r} with its capacitor needs {_slot_mm(config) + 2:.1f} mm",
         )
         per_row = 1
@@ -96,7 +98,7 @@ def _per_row(config: Input, width_mm: float) -> int:
 
 
 def tip_holes(
-    config: Input, cells: Cells, parts: tuple[Part, ...], box: Box, faults: Faults
+    config: Input, cells: Cells, parts: tuple[Part, ...], box: Box, faults: Diagnostics
 ) -> tuple[Point, ...]:
     """Holes ahead of the first row: outermost and middle of the columns that leave room, or near
     the long edges where fewer than two columns do.
@@ -134,9 +136,9 @@ def tip_holes(
         least = p.board.hole_edge_mm + keep + top - float(cells.y_mm.max())
         faults.refuse(
             "board.tip_margin_mm",
-            f"{p.board.tip_margin_mm:g} given, holes of {p.board.hole_mm:g} mm at "
-            f"{p.board.hole_edge_mm:g} mm from the edge meet the first row of parts; "
-            f"{least:.2f} is always enough",
+            f"is {p.board.tip_margin_mm:g}; holes of {p.board.hole_mm:g} mm at "
+            f"{p.board.hole_edge_mm:g} mm from the edge collide with the first row of parts. "
+            f"{least:.2f} is always enough.",
         )
         return ()
     middle = min(room, key=lambda x: abs(x - (room[0] + room[-1]) / 2))
@@ -151,7 +153,7 @@ def _spans(room: list[float], apart_mm: float) -> bool:
 
 
 def resistors(
-    config: Input, strings: Strings, zone: Box, foot_half_mm: float, faults: Faults
+    config: Input, strings: Strings, zone: Box, foot_half_mm: float, faults: Diagnostics
 ) -> tuple[tuple[Part, ...], tuple[Relief, ...]]:
     """String resistors in two banks beside the coupling, and the reliefs behind them.
 
@@ -169,10 +171,11 @@ def resistors(
     if across_bank < 1 or rows * step_y > zone.length_mm:
         faults.refuse(
             "emitter.resistor",
-            f"{p.emitter.resistor!r} given, {count} string resistors do not fit into two "
+            f"is {p.emitter.resistor!r}; {count} string resistors do not fit into two "
             f"banks of {outer - inner:.1f} x {zone.length_mm:.1f} mm"
             + (" beside the coupling" if p.emitter.resistor_side == "back" else "")
-            + ": use a smaller package, the other emitter.resistor_side, or more board.channel_mm",
+            + ". Use a smaller package, the other emitter.resistor_side, or a larger "
+            "board.channel_mm.",
         )
         return (), ()
     parts: list[Part] = []
@@ -206,7 +209,7 @@ def least_half_width_mm(config: Input, foot_half_mm: float) -> float:
 
 
 def _inner_mm(config: Input, foot_half_mm: float) -> float:
-    """Where the banks of string resistors begin: behind the board, beside the coupling."""
+    """Inner end of the banks of string resistors: behind the board, beside the coupling."""
     p = config.parameters
     if p.emitter.resistor_side == "front":
         return RESISTOR_GAP_MM / 2

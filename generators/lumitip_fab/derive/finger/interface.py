@@ -1,17 +1,16 @@
-"""How the interface of a compliant finger lies on the plate, and its rim in the plate's groove.
+"""Interface of a compliant finger on its plate, with its rim in the plate's groove.
 
-Of rim and groove the rim alone follows the printer's fit. The fit test plate is printed of the
-rigid filament, as the interface is, and its reading is of that filament: the rim goes back by it on
-each side. The groove is in a plate of a filament that bends, of which there is no reading: it is
-drawn as wide as it is wanted.
+The printer's fit offsets the rim alone, on each side. It is measured on the fit test plate, which
+is printed of the rigid filament, as the interface is. The groove is in a plate of flexible
+filament, for which there is no measurement: it is drawn at its nominal width.
 """
 
 import math
 
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.faults import Faults
-from lumitip_fab.derive.finger.flex import behind_mm, foot_half_mm, held_by, is_flex
+from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.outline import letter_on, most_letter_mm
+from lumitip_fab.derive.finger.stack import behind_mm, foot_half_mm, held_by, is_flex
 from lumitip_fab.derive.making.fits import Drawn, refuse_touching
 from lumitip_fab.design import Box, Finger, Interface, Outline
 
@@ -22,7 +21,7 @@ FLARE_MM = 2.2  # of the interface beyond land and ramp: where the ramp flares i
 
 
 def derive_interfaces(
-    config: Input, outline: Outline, finger: Finger, board: Box, faults: Faults
+    config: Input, outline: Outline, finger: Finger, board: Box, faults: Diagnostics
 ) -> tuple[Interface, ...]:
     """The interface of each finger; none of a rigid one.
 
@@ -49,20 +48,20 @@ def derive_interfaces(
     letter_mm = most_letter_mm(line_mm)
     most = outline.length_mm - p.tip.slant_start_mm - 2 * LETTER_GAP_MM - letter_mm
     needed, room = math.ceil(least * 10) / 10, math.floor(most * 10) / 10
-    told = (
+    limits = (
         f"at least {needed:g} is needed for the land and ramp of {p.coupling.gripper!r}, and at "
-        f"most {room:g} is allowed: then come the finger's letter and the wedge"
+        f"most {room:g} is allowed before the finger's letter and the wedge"
     )
     if most < least:
-        told = (
-            f"the land and ramp of {p.coupling.gripper!r} need {needed:g} mm, and before the "
-            f"finger's letter and the wedge are {max(room, 0.0):g} mm: a longer finger, less "
-            "tip.slant_start_mm or less flex.standoff_mm"
+        limits = (
+            f"the land and ramp of {p.coupling.gripper!r} need {needed:g} mm, but only "
+            f"{max(room, 0.0):g} mm is available before the finger's letter and the wedge. Make "
+            "the finger longer, or reduce tip.slant_start_mm or flex.standoff_mm."
         )
     faults.refuse_unless(
         least <= flex.interface_mm <= most,
         "flex.interface_mm",
-        f"{flex.interface_mm:g} given, {told}",
+        f"is {flex.interface_mm:g}; {limits}",
     )
     low = groove.y_max_mm + LETTER_GAP_MM - end_y
     back = p.stack.pcb_mm + p.stack.floor_mm
@@ -81,7 +80,7 @@ def derive_interfaces(
     )
 
 
-def _refuse_holes(config: Input, finger: Finger, board: Box, faults: Faults) -> None:
+def _refuse_holes(config: Input, finger: Finger, board: Box, faults: Diagnostics) -> None:
     """Refuse holes for thread that the board does not cover."""
     wide = config.parameters.flex.thread_hole_mm
     to_edge = min(
@@ -92,12 +91,12 @@ def _refuse_holes(config: Input, finger: Finger, board: Box, faults: Faults) -> 
     faults.refuse_unless(
         wide <= most + 1e-9,
         "flex.thread_hole_mm",
-        f"{wide:g} given, the board's edge is {to_edge:.2f} mm from the middle of such a hole: at "
-        f"most {most:.2f} is allowed, so that no silicone runs past the board",
+        f"is {wide:g}; at most {most:.2f} is allowed, because the board ends {to_edge:.2f} mm from "
+        "the centre of the hole and must cover it against silicone",
     )
 
 
-def _refuse_heights(config: Input, faults: Faults) -> None:
+def _refuse_heights(config: Input, faults: Diagnostics) -> None:
     """Refuse what does not go into plate, pad and groove."""
     p, flex = config.parameters, config.parameters.flex
     line_mm = config.catalogue.printers[p.printer.profile].line_mm
@@ -112,40 +111,40 @@ def _refuse_heights(config: Input, faults: Faults) -> None:
         (
             left >= p.printer.min_wall_mm - 1e-9,
             "flex.groove_depth_mm",
-            f"{flex.groove_depth_mm:g} given, which leaves {left:.2f} mm of plate before the "
+            f"is {flex.groove_depth_mm:g}, which leaves {left:.2f} mm of plate before the "
             f"groove; at least {p.printer.min_wall_mm:g} is needed",
         ),
         (
             rim >= 2 * line_mm - 1e-9,
             "flex.groove_mm",
-            f"{flex.groove_mm:g} given, which leaves a rim of {rim:.2f} mm between gaps of "
+            f"is {flex.groove_mm:g}, which leaves a rim of {rim:.2f} mm between gaps of "
             f"{flex.glue_mm:g}{fitted}; at least two printed lines of {line_mm:g} are needed",
         ),
         (
             flex.groove_depth_mm - flex.glue_mm >= 2 * line_mm / 3,
             "flex.groove_depth_mm",
-            f"{flex.groove_depth_mm:g} given, which leaves a rim "
+            f"is {flex.groove_depth_mm:g}, which leaves a rim "
             f"{flex.groove_depth_mm - flex.glue_mm:.2f} mm high; at least {2 * line_mm / 3:g} is "
             "needed",
         ),
         (
             flex.pad_mm >= p.printer.min_wall_mm - 1e-9,
             "flex.pad_mm",
-            f"{flex.pad_mm:g} given, at least printer.min_wall_mm = {p.printer.min_wall_mm:g} is "
+            f"is {flex.pad_mm:g}; at least printer.min_wall_mm = {p.printer.min_wall_mm:g} is "
             "needed",
         ),
         (
             p.backing.tail_mm <= p.stack.floor_mm,
             "backing.tail_mm",
-            f"{p.backing.tail_mm:g} given, at most stack.floor_mm = {p.stack.floor_mm:g} is "
-            "allowed: behind a bendable plate lies the interface",
+            f"is {p.backing.tail_mm:g}; at most stack.floor_mm = {p.stack.floor_mm:g} is "
+            "allowed, because the interface lies behind the plate",
         ),
         (
             nose is None or reach <= nose.front_w_mm + 1e-9,
             "flex.standoff_mm",
-            f"{flex.standoff_mm:g} given, at least "
-            f"{behind_mm(p) - (nose.front_w_mm if nose else 0.0):g} is needed: board, plate and "
-            f"pad must end before the nose of {p.coupling.gripper!r}",
+            f"is {flex.standoff_mm:g}; at least "
+            f"{behind_mm(p) - (nose.front_w_mm if nose else 0.0):g} is needed, so that "
+            f"board, plate and pad end before the nose of {p.coupling.gripper!r}",
         ),
     ):
         faults.refuse_unless(holds, field, message)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from lumitip_fab.config.parameters import Parameters
-from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.design import Board, Box, Cubic, Letter, Outline, Point
 
 _ROUND = 4 / 3 * (math.sqrt(2) - 1)  # handle of a cubic that follows a quarter ellipse
@@ -15,7 +15,7 @@ LEAST_LEG_MM = 2.0  # plate beside the wire notch at the gripper end
 LEAST_CORNER_MM = 0.5
 
 
-def derive_outline(p: Parameters, board: Board, notch: Box, faults: Faults) -> Outline:
+def derive_outline(p: Parameters, board: Board, notch: Box, faults: Diagnostics) -> Outline:
     """The outline, refused where it is no smooth curve round the board.
 
     Args:
@@ -37,25 +37,25 @@ def derive_outline(p: Parameters, board: Board, notch: Box, faults: Faults) -> O
         (
             shoulder[0] >= waist[0],
             "outline.shoulder_margin_mm",
-            f"{p.outline.shoulder_margin_mm:g} given, at least waist_margin_mm = "
+            f"is {p.outline.shoulder_margin_mm:g}; at least waist_margin_mm = "
             f"{p.outline.waist_margin_mm:g} is needed",
         ),
         (
             shoulder[1] > waist[1] + 1,
             "outline.waist_at",
-            f"{p.outline.waist_at:g} given, more than "
-            f"{(p.outline.shoulder_at_mm + 1) / length:.3f} is needed: there is the widest point",
+            f"is {p.outline.waist_at:g}; more than "
+            f"{(p.outline.shoulder_at_mm + 1) / length:.3f} is needed, behind the widest point",
         ),
         (
             waist[1] > end_y + corner,
             "outline.waist_at",
-            f"{p.outline.waist_at:g} given, at most {1 - corner / length:.3f} is allowed: there "
-            f"the corner of {corner:g} mm begins",
+            f"is {p.outline.waist_at:g}; at most {1 - corner / length:.3f} is allowed, before "
+            f"the corner of {corner:g} mm",
         ),
         (
             room >= LEAST_CORNER_MM,
             "outline.waist_margin_mm",
-            f"{p.outline.waist_margin_mm:g} given, which leaves {room + LEAST_LEG_MM:.2f} mm of "
+            f"is {p.outline.waist_margin_mm:g}, which leaves {room + LEAST_LEG_MM:.2f} mm of "
             f"plate beside the wire notch of {notch.width_mm:.1f} mm at the gripper end; at least "
             f"{LEAST_LEG_MM + LEAST_CORNER_MM:g} is needed",
         ),
@@ -75,10 +75,10 @@ def derive_outline(p: Parameters, board: Board, notch: Box, faults: Faults) -> O
     faults.refuse_unless(
         rim >= p.printer.min_wall_mm,
         "outline.waist_margin_mm",
-        f"{p.outline.waist_margin_mm:g} given, a board of {board.box.width_mm:.1f} x "
-        f"{board.box.length_mm:.1f} mm does not fit the outline: {rim:.2f} mm of rim is left at "
-        f"({where[0]:.1f}, {where[1]:.1f}), {p.printer.min_wall_mm:g} mm of rim are needed; "
-        "widen the outline's margins",
+        f"is {p.outline.waist_margin_mm:g}; a board of {board.box.width_mm:.1f} x "
+        f"{board.box.length_mm:.1f} mm leaves a rim of {rim:.2f} mm at ({where[0]:.1f}, "
+        f"{where[1]:.1f}); a rim of {p.printer.min_wall_mm:g} mm is needed. Increase the outline's "
+        "margins.",
     )
     return outline
 

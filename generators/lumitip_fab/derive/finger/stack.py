@@ -1,14 +1,57 @@
-"""Layers of a finger, the wedge at its tip, what the printer can make, and what the layers
-weigh."""
+"""Layers of a finger, rigid or compliant: thicknesses, tip wedge, printer limits, densities."""
 
 import math
 
+from lumitip_fab.catalogue.grippers import Gripper
 from lumitip_fab.catalogue.materials import Laminate
 from lumitip_fab.config.load import Input
 from lumitip_fab.config.parameters import Parameters
-from lumitip_fab.derive.faults import Faults
-from lumitip_fab.derive.finger.flex import is_flex, stiff_mm
+from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.design import Board, Densities, Outline, Printing, Slicing, Stack, Tip
+
+CARRIER_MM = 1.6  # of the boards outside compliant fingers
+
+
+def is_flex(p: Parameters) -> bool:
+    """Whether the plate bends."""
+    return p.backing.variant == "flex"
+
+
+def held_by(config: Input) -> Gripper:
+    """The gripper with the offsets of this finger: a compliant finger leans farther in, and the
+    pad of its interface moves it away from the bolts."""
+    p = config.parameters
+    gripper = config.catalogue.grippers[p.coupling.gripper]
+    if not is_flex(p):
+        return gripper
+    back, nose = p.flex.standoff_mm, gripper.nose
+    moved = {
+        "tilt_deg": gripper.tilt_deg + p.flex.lean_deg,
+        "bolt_w_mm": gripper.bolt_w_mm + back,
+        "block_back_w_mm": gripper.block_back_w_mm + back,
+        "nose": nose and nose.model_copy(update={"front_w_mm": nose.front_w_mm + back}),
+    }
+    return gripper.model_copy(update=moved)
+
+
+def behind_mm(p: Parameters) -> float:
+    """From the board's front to the coupling's block."""
+    return p.stack.pcb_mm + p.stack.floor_mm + (p.flex.pad_mm if is_flex(p) else 0.0)
+
+
+def stiff_mm(p: Parameters) -> float:
+    """Thickness of the boards outside the fingers."""
+    return CARRIER_MM if is_flex(p) else p.stack.pcb_mm
+
+
+def foot_half_mm(config: Input, notch_half_mm: float) -> float:
+    """Half the width of the part on the plate's back: the groove of an interface, whose legs run
+    beside the notch, or the coupling's block."""
+    p = config.parameters
+    if is_flex(p):
+        return notch_half_mm + p.printer.min_wall_mm + p.flex.groove_mm
+    return config.catalogue.grippers[p.coupling.gripper].block_width_mm / 2
+
 
 LEAST_SILICONE_MM = 0.3
 STIFF_MM = (0.4, 3.2)  # boards that keep their shape
@@ -17,27 +60,27 @@ MOULD_ROOM_MM = 2.0  # gaps and draft of a mould beyond its walls
 TROUGH_ROOM_MM = 5.0  # its trough at the gripper end
 
 
-def derive_stack(config: Input, faults: Faults) -> Stack:
+def derive_stack(config: Input, faults: Diagnostics) -> Stack:
     """The layers, refused where a part would stick out of the silicone or a floor is too thin."""
     p, parts = config.parameters, config.catalogue
     film = parts.films[p.mask.film]
     faults.refuse_unless(
         math.isclose(p.stack.film_mm, film.thickness_mm),
         "stack.film_mm",
-        f"{p.stack.film_mm:g} given, but {p.mask.film!r} is {film.thickness_mm:g} mm thick: "
-        "change one of them",
+        f"is {p.stack.film_mm:g}; {p.mask.film!r} is {film.thickness_mm:g} mm thick. Change one of "
+        "them.",
     )
     faults.refuse_unless(
         p.stack.floor_mm >= p.printer.min_wall_mm,
         "stack.floor_mm",
-        f"{p.stack.floor_mm:g} given, at least printer.min_wall_mm = "
+        f"is {p.stack.floor_mm:g}; at least printer.min_wall_mm = "
         f"{p.printer.min_wall_mm:g} is needed behind a pocket {p.stack.pcb_mm:g} mm deep",
     )
     least, most = FLEXIBLE_MM if is_flex(p) else STIFF_MM
     faults.refuse_unless(
         least <= p.stack.pcb_mm <= most,
         "stack.pcb_mm",
-        f"{p.stack.pcb_mm:g} given, for backing.variant = {p.backing.variant!r} {least:g} to "
+        f"is {p.stack.pcb_mm:g}; with backing.variant = {p.backing.variant!r}, {least:g} to "
         f"{most:g} is allowed",
     )
     heights = {
@@ -52,7 +95,7 @@ def derive_stack(config: Input, faults: Faults) -> Stack:
         faults.refuse_unless(
             left >= LEAST_SILICONE_MM - 1e-9,
             "stack.silicone_mm",
-            f"{p.stack.silicone_mm:g} given, which leaves {left:.2f} mm over {field}, "
+            f"is {p.stack.silicone_mm:g}, which leaves {left:.2f} mm over {field}, "
             f"{height:g} mm high; at least {height + LEAST_SILICONE_MM:.2f} is needed",
         )
     return Stack(
@@ -65,7 +108,9 @@ def derive_stack(config: Input, faults: Faults) -> Stack:
     )
 
 
-def derive_tip(p: Parameters, outline: Outline, board: Board, stack: Stack, faults: Faults) -> Tip:
+def derive_tip(
+    p: Parameters, outline: Outline, board: Board, stack: Stack, faults: Diagnostics
+) -> Tip:
     """The wedge, refused where it would cut into the pocket's floor."""
     plate = stack.plate_mm
     fit = p.printer.fit_mm
@@ -76,38 +121,37 @@ def derive_tip(p: Parameters, outline: Outline, board: Board, stack: Stack, faul
     faults.refuse_unless(
         not stack.sunk or p.tip.slant_start_mm <= to_pocket + 1e-6,
         "tip.slant_start_mm",
-        f"{p.tip.slant_start_mm:g} given, at most {to_pocket:.3f} is allowed: there the pocket "
-        f"begins, whose floor is only {p.stack.floor_mm:g} mm thick",
+        f"is {p.tip.slant_start_mm:g}; at most {to_pocket:.3f} is allowed, up to the "
+        f"pocket, whose floor is only {p.stack.floor_mm:g} mm thick",
     )
     faults.refuse_unless(
         p.tip.edge_mm < plate,
         "tip.edge_mm",
-        f"{p.tip.edge_mm:g} given, less than the plate's {plate:g} mm is allowed",
+        f"is {p.tip.edge_mm:g}; less than the plate's {plate:g} mm is allowed",
     )
     angle = math.degrees(math.atan2(plate - p.tip.edge_mm, outline.tip_y_mm - start_y))
     faults.refuse_unless(
         angle <= 45 + 1e-9,
         "tip.slant_start_mm",
-        f"{p.tip.slant_start_mm:g} given, which makes a wedge of {angle:.0f}° behind the tip; "
+        f"is {p.tip.slant_start_mm:g}, which makes a wedge of {angle:.0f}° behind the tip; "
         f"at least {plate - p.tip.edge_mm:g} is needed for 45°",
     )
     return Tip(start_y, p.tip.edge_mm, angle)
 
 
-def derive_printing(config: Input, outline: Outline, faults: Faults) -> Printing:
+def derive_printing(config: Input, outline: Outline, faults: Diagnostics) -> Printing:
     """Material and limits, refused where a part is larger than the bed."""
     p = config.parameters
     printer = config.catalogue.printers[p.printer.profile]
     faults.refuse_unless(
         p.tip.edge_mm >= printer.line_mm - 1e-9,
         "tip.edge_mm",
-        f"{p.tip.edge_mm:g} given, at least one printed line of {printer.line_mm:g} is needed",
+        f"is {p.tip.edge_mm:g}; at least one printed line of {printer.line_mm:g} is needed",
     )
     faults.refuse_unless(
         p.printer.min_wall_mm >= printer.line_mm,
         "printer.min_wall_mm",
-        f"{p.printer.min_wall_mm:g} given, at least one printed line of {printer.line_mm:g} "
-        "is needed",
+        f"is {p.printer.min_wall_mm:g}; at least one printed line of {printer.line_mm:g} is needed",
     )
     width = float(abs(outline.polygon()[:, 0]).max()) * 2 + 2 * p.mould.wall_mm + MOULD_ROOM_MM
     length = outline.length_mm + 3 * p.mould.wall_mm + MOULD_ROOM_MM + TROUGH_ROOM_MM
@@ -115,8 +159,8 @@ def derive_printing(config: Input, outline: Outline, faults: Faults) -> Printing
     faults.refuse_unless(
         width <= bed[0] and length <= min(bed[1], bed[2]),
         "printer.profile",
-        f"{p.printer.profile!r} given, its {bed[0]:g} x {bed[1]:g} x {bed[2]:g} mm cannot take "
-        f"a mould of {width:.0f} x {length:.0f} mm or a finger {length:.0f} mm tall",
+        f"is {p.printer.profile!r}, with a volume of {bed[0]:g} x {bed[1]:g} x {bed[2]:g} mm; "
+        f"a mould of {width:.0f} x {length:.0f} mm or a finger {length:.0f} mm tall does not fit",
     )
     return Printing(
         p.backing.material,

@@ -1,4 +1,4 @@
-"""Where everything is on the fit test plate."""
+"""Layout of the fit test plate."""
 
 import math
 from dataclasses import replace
@@ -8,12 +8,12 @@ from numpy.typing import NDArray
 
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards.boards import Plan
-from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.making.fits import derive_fits
 from lumitip_fab.design import Box, FitPlate, Fits, Mount, Point
 
 STEPS_MM = (-0.1, -0.05, 0.0, 0.05, 0.1)
-LAYERS = 4  # of a foot, a slice and a pocket's wall: what a fit shows in, and no more to print
+LAYERS = 4  # height of a foot, a slice and a pocket's wall
 SLEEVE_LAYERS = 4  # of a sleeve, and as many of the bolt's hole above it
 LINES = 2  # of walls
 SEAT_MM = 1.0  # of a foot round its pin
@@ -29,8 +29,8 @@ ROW_MM = LABEL_MM + 2 * MARGIN_MM
 APART_MM = 0.8  # between coupons
 
 
-def derive_fit_plate(config: Input, plan: Plan, mount: Mount, faults: Faults) -> FitPlate:
-    """The plate, refused where it does not fit the bed."""
+def derive_fit_plate(config: Input, plan: Plan, mount: Mount, faults: Diagnostics) -> FitPlate:
+    """The plate; refused where it is larger than the bed."""
     p = config.parameters
     printer = config.catalogue.printers[p.printer.profile]
     wall, layers_mm = LINES * printer.line_mm, LAYERS * printer.layer_mm
@@ -65,8 +65,8 @@ def derive_fit_plate(config: Input, plan: Plan, mount: Mount, faults: Faults) ->
     faults.refuse_unless(
         width <= bed[0] and depth <= bed[1],
         "printer.profile",
-        f"{p.printer.profile!r} given, its bed of {bed[0]:g} x {bed[1]:g} mm cannot take a fit "
-        f"test plate of {width:.0f} x {depth:.0f} mm",
+        f"is {p.printer.profile!r}, with a bed of {bed[0]:g} x {bed[1]:g} mm; a fit test plate of "
+        f"{width:.0f} x {depth:.0f} mm does not fit",
     )
     return replace(plate, volume_ml=_volume_mm3(plate, mount) / 1000)
 
@@ -100,7 +100,7 @@ def _slice(mount: Mount, loosest: Fits, wall_mm: float) -> tuple[Box, float]:
 
 
 def _flanks_end_w(mount: Mount) -> float:
-    """Where the nose is as wide as the block."""
+    """The w at which the nose is as wide as the block."""
     if mount.nose is None:
         return math.inf
     wider = mount.block_width_mm - mount.nose.front_width_mm

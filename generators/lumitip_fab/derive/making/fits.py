@@ -1,8 +1,8 @@
-"""What a fit of the printer changes: the one place where it is added to what is drawn.
+"""The printer's fit: the only place where it is added to drawn sizes.
 
-A printed surface that meets something goes back by the fit, square to itself: a gap to a board,
-to metal or to the gripper grows by it, and a gap between two printed parts by twice as much. Of
-two parts of two filaments only the one that the reading is of goes back: see
+A printed surface that meets another part is offset by the fit: a gap to a board, to metal or to
+the gripper grows by the fit, a gap between two printed parts by twice the fit. Between parts of
+two filaments only the part of the measured filament is offset: see
 `lumitip_fab.derive.finger.interface`.
 """
 
@@ -11,42 +11,42 @@ from dataclasses import dataclass
 
 from lumitip_fab.catalogue.grippers import Gripper
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.faults import Faults
-from lumitip_fab.derive.finger.flex import held_by
+from lumitip_fab.derive.diagnostics import Diagnostics
+from lumitip_fab.derive.finger.stack import held_by
 from lumitip_fab.design import Fits, Nose
 
 
 @dataclass(frozen=True)
 class Drawn:
-    """Sizes as they are drawn for a printer, from those that are wanted."""
+    """Drawn sizes for a printer, from nominal ones."""
 
     fit_mm: float
 
-    def gap_mm(self, wanted_mm: float) -> float:
-        """From a printed surface to something that is not printed."""
-        return wanted_mm + self.fit_mm
+    def gap_mm(self, nominal_mm: float) -> float:
+        """Gap between a printed surface and a part that is not printed."""
+        return nominal_mm + self.fit_mm
 
-    def hole_mm(self, wanted_mm: float) -> float:
-        """Diameter or width of what something goes into or through."""
-        return wanted_mm + 2 * self.fit_mm
+    def hole_mm(self, nominal_mm: float) -> float:
+        """Diameter or width of a hole."""
+        return nominal_mm + 2 * self.fit_mm
 
-    def peg_mm(self, wanted_mm: float) -> float:
-        """Diameter or width of what goes into something."""
-        return wanted_mm - 2 * self.fit_mm
-
-
-LEAST_GAP_MM = 0.02  # as drawn: no print goes into itself
+    def peg_mm(self, nominal_mm: float) -> float:
+        """Diameter or width of a peg."""
+        return nominal_mm - 2 * self.fit_mm
 
 
-def refuse_touching(config: Input, field: str, clearance_mm: float, faults: Faults) -> None:
-    """Refuse a fit so tight that nothing is left of a clearance, as drawn."""
+LEAST_GAP_MM = 0.02  # as drawn
+
+
+def refuse_touching(config: Input, field: str, clearance_mm: float, faults: Diagnostics) -> None:
+    """Refuse a fit that removes a clearance."""
     fit_mm = config.parameters.printer.fit_mm
     left_mm = Drawn(fit_mm).gap_mm(clearance_mm)
     faults.refuse_unless(
         fit_mm >= 0 or left_mm >= LEAST_GAP_MM - 1e-9,
         "printer.fit_mm",
-        f"{fit_mm:g} given, which leaves {left_mm:.2f} mm of {field} = {clearance_mm:g}, as drawn; "
-        f"at least {min(LEAST_GAP_MM - clearance_mm, 0.0):.2f} is needed, or more clearance",
+        f"is {fit_mm:g}, which leaves {left_mm:.2f} mm of {field} = {clearance_mm:g}, as drawn; "
+        f"at least {min(LEAST_GAP_MM - clearance_mm, 0.0):.2f} is needed, or a larger clearance",
     )
 
 

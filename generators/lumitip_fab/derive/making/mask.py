@@ -2,7 +2,7 @@
 
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards.boards import Plan
-from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.cells import LEAST_WEB_MM
 from lumitip_fab.design import Box, Mask, Outline
 
@@ -18,7 +18,7 @@ MARK_INSET_MM = 0.5  # from the tip flap's side
 FLAP_TAPER = 0.18  # of the tip flap's side: a little over 10°
 
 
-def derive_mask(config: Input, outline: Outline, plan: Plan, faults: Faults) -> Mask:
+def derive_mask(config: Input, outline: Outline, plan: Plan, faults: Diagnostics) -> Mask:
     """The mask, refused where apertures meet the connector's window or the page is too small."""
     p = config.parameters
     film = config.catalogue.films[p.mask.film]
@@ -27,7 +27,7 @@ def derive_mask(config: Input, outline: Outline, plan: Plan, faults: Faults) -> 
     faults.refuse_unless(
         lowest - window >= LEAST_WEB_MM,
         "mask.hole_mm",
-        f"{p.mask.hole_mm:g} given, which leaves {lowest - window:.2f} mm of web between the last "
+        f"is {p.mask.hole_mm:g}, which leaves {lowest - window:.2f} mm between the last "
         f"row and the connector's window; at least {LEAST_WEB_MM} mm is needed",
     )
     side = p.stack.floor_mm + p.stack.pcb_mm + p.stack.silicone_mm
@@ -35,7 +35,7 @@ def derive_mask(config: Input, outline: Outline, plan: Plan, faults: Faults) -> 
     faults.refuse_unless(
         reach >= LEAST_REACH_MM,
         "mask.flap_mm",
-        f"{p.mask.flap_mm:g} given, which reaches {max(reach, 0):.2f} mm onto the back of a finger "
+        f"is {p.mask.flap_mm:g}, which reaches {max(reach, 0):.2f} mm onto the back of a finger "
         f"{side:g} mm thick; at least {side - p.mask.allowance_mm + LEAST_REACH_MM:.2f} is needed",
     )
     sheet = _sheet(outline, p.mask.allowance_mm + p.mask.flap_mm)
@@ -50,8 +50,8 @@ def derive_mask(config: Input, outline: Outline, plan: Plan, faults: Faults) -> 
     faults.refuse_unless(
         page[0] <= PAGE_MM[0] and page[1] <= PAGE_MM[1],
         "mask.flap_mm",
-        f"{p.mask.flap_mm:g} given, the mask of this finger with its rulers needs a page of "
-        f"{page[0]:.0f} x {page[1]:.0f} mm; A4 and US Letter take {PAGE_MM[0]:.0f} x "
+        f"is {p.mask.flap_mm:g}; the mask of this finger with its rulers needs a page of "
+        f"{page[0]:.0f} x {page[1]:.0f} mm; A4 and US Letter have {PAGE_MM[0]:.0f} x "
         f"{PAGE_MM[1]:.0f} mm",
     )
     return Mask(

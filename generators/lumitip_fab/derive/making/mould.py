@@ -3,7 +3,7 @@
 import math
 
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.outline import DEPTH_MM, least_letter_mm, letter_on
 from lumitip_fab.design import Board, Letter, Mould, Outline, Point, Stack
 from lumitip_fab.design.making import LEDGE_MM
@@ -20,7 +20,7 @@ WHOLE_MM = 1e-6
 
 
 def derive_mould(
-    config: Input, outline: Outline, board: Board, stack: Stack, faults: Faults
+    config: Input, outline: Outline, board: Board, stack: Stack, faults: Diagnostics
 ) -> Mould:
     """The mould, refused where the silicone cannot be shaped as asked."""
     p = config.parameters
@@ -28,20 +28,21 @@ def derive_mould(
     faults.refuse_unless(
         p.mould.taper_length_mm <= p.outline.tip_margin_mm,
         "mould.taper_length_mm",
-        f"{p.mould.taper_length_mm:g} given, at most outline.tip_margin_mm = "
-        f"{p.outline.tip_margin_mm:g} is allowed: the silicone keeps its thickness over the board",
+        f"is {p.mould.taper_length_mm:g}; at most outline.tip_margin_mm = "
+        f"{p.outline.tip_margin_mm:g} is allowed, because the silicone must keep its thickness "
+        "over the board",
     )
     faults.refuse_unless(
         p.mould.tip_silicone_mm < p.stack.silicone_mm,
         "mould.tip_silicone_mm",
-        f"{p.mould.tip_silicone_mm:g} given, less than stack.silicone_mm = "
+        f"is {p.mould.tip_silicone_mm:g}; less than stack.silicone_mm = "
         f"{p.stack.silicone_mm:g} is allowed",
     )
     faults.refuse_unless(
         p.mould.wall_mm >= 2 * p.printer.min_wall_mm,
         "mould.wall_mm",
-        f"{p.mould.wall_mm:g} given, at least {2 * p.printer.min_wall_mm:g} is needed: the trough "
-        "is half as deep as the floor, and printer.min_wall_mm must remain",
+        f"is {p.mould.wall_mm:g}; at least {2 * p.printer.min_wall_mm:g} is needed, because "
+        "the trough is half as deep as the floor, and printer.min_wall_mm must remain",
     )
     lean = math.tan(math.radians(p.mould.draft_deg))
     for depth, allowed, what in (
@@ -51,9 +52,9 @@ def derive_mould(
         faults.refuse_unless(
             depth * lean <= allowed + 1e-9,
             "mould.draft_deg",
-            f"{p.mould.draft_deg:g} given, which over {depth:g} mm of silicone {what} by "
-            f"{depth * lean:.2f} mm; at most {allowed:.2f} mm is allowed: "
-            f"{math.degrees(math.atan(allowed / depth)):.1f}° or less",
+            f"is {p.mould.draft_deg:g}, which over {depth:g} mm of silicone {what} by "
+            f"{depth * lean:.2f} mm; at most {allowed:.2f} mm is allowed. Use "
+            f"{math.degrees(math.atan(allowed / depth)):.1f}° or less.",
         )
     layer_mm, off_mm = whole_layers(
         config.catalogue.printers[p.printer.profile].layer_mm,
@@ -97,7 +98,7 @@ def _off_layer_mm(layer_mm: float, heights_mm: tuple[float, ...]) -> float:
     return max(abs(height - round(height / layer_mm) * layer_mm) for height in heights_mm)
 
 
-def _letter(config: Input, outline: Outline, stack: Stack, faults: Faults) -> Letter:
+def _letter(config: Input, outline: Outline, stack: Stack, faults: Diagnostics) -> Letter:
     """On the outside of the trough's end, whose wall is as high as the cavity and its floor."""
     p = config.parameters
     wall, rise = p.mould.wall_mm, stack.guided_mm * math.tan(math.radians(p.mould.draft_deg))
@@ -108,16 +109,15 @@ def _letter(config: Input, outline: Outline, stack: Stack, faults: Faults) -> Le
     faults.refuse_unless(
         high - low >= least - 1e-9,
         "mould.wall_mm",
-        f"{wall:g} given, which leaves {high - low:.2f} mm for the letter that tells the fingers' "
-        f"moulds apart, {least:g} mm high at least: a wall of "
-        f"{wall + least - (high - low):.2f} or more is needed",
+        f"is {wall:g}, which leaves {high - low:.2f} mm for the letter that marks the mould; "
+        f"{least:g} mm is needed. Use a wall of {wall + least - (high - low):.2f} mm or more.",
     )
     trough_y = outline.end_y_mm - p.mould.wall_gap_mm - rise - wall - LEDGE_MM
     end_mm = wall + TROUGH_MM - trough_y
     return letter_on(low, high, min(DEPTH_MM, wall - p.printer.min_wall_mm), end_mm, line_mm)
 
 
-def _pads(config: Input, outline: Outline, board: Board, faults: Faults) -> tuple[Point, ...]:
+def _pads(config: Input, outline: Outline, board: Board, faults: Diagnostics) -> tuple[Point, ...]:
     """Stops on the rim beside the board, as near the gripper end as the rim takes them: the
     finger's weight is in its coupling and must lie between them and the tip."""
     y = max(board.pocket.y_min_mm, outline.end_y_mm + config.parameters.outline.end_corner_mm)
@@ -127,7 +127,7 @@ def _pads(config: Input, outline: Outline, board: Board, faults: Faults) -> tupl
     faults.refuse_unless(
         outer - inner >= needed - 1e-6,
         "outline.waist_margin_mm",
-        f"{config.parameters.outline.waist_margin_mm:g} given, which leaves a rim of "
+        f"is {config.parameters.outline.waist_margin_mm:g}, which leaves a rim of "
         f"{outer - inner:.2f} mm beside the board; the mould's stops need {needed:.2f} mm",
     )
     x = (inner + outer) / 2

@@ -3,13 +3,13 @@
 from dataclasses import replace
 
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.faults import Faults
-from lumitip_fab.derive.finger.flex import is_flex
+from lumitip_fab.derive.diagnostics import Diagnostics
+from lumitip_fab.derive.finger.stack import is_flex
 from lumitip_fab.design import HeatedPart, HeatStep, Mould, Slicing
 from lumitip_fab.design.making import Filament
 
 
-def derive_slicing(config: Input, mould: Mould, faults: Faults) -> Slicing:
+def derive_slicing(config: Input, mould: Mould, faults: Diagnostics) -> Slicing:
     """Settings of the backing's filament, with the density of the spool at hand, of the one that
     everything else is printed from, and of that one in the mould's layers."""
     p, known = config.parameters, config.catalogue.filaments
@@ -19,8 +19,8 @@ def derive_slicing(config: Input, mould: Mould, faults: Faults) -> Slicing:
     faults.refuse_unless(
         good,
         "backing.material",
-        f"{name!r} given, whose rigid_parts {other!r} is no filament of parts/filaments.toml "
-        "that does without rigid_parts",
+        f"is {name!r}, whose rigid_parts is {other!r}; the name of a filament without "
+        "rigid_parts in parts/filaments.toml is needed",
     )
     rigid = other if good else name
     density = p.backing.density_g_ml
@@ -37,19 +37,19 @@ def derive_slicing(config: Input, mould: Mould, faults: Faults) -> Slicing:
 
 
 def _filament(config: Input, name: str, density_g_ml: float) -> Filament:
-    told = config.catalogue.filaments[name]
+    entry = config.catalogue.filaments[name]
     return Filament(
         name,
-        told.kind,
+        entry.kind,
         density_g_ml,
-        told.nozzle_c,
-        told.bed_c,
-        told.fan_percent,
-        told.speed_mm_s,
-        told.max_flow_mm3_s,
-        told.retract_mm,
-        told.layer_mpa,
-        told.bearing_mpa,
+        entry.nozzle_c,
+        entry.bed_c,
+        entry.fan_percent,
+        entry.speed_mm_s,
+        entry.max_flow_mm3_s,
+        entry.retract_mm,
+        entry.layer_mpa,
+        entry.bearing_mpa,
         config.catalogue.printers[config.parameters.printer.profile].layer_mm,
     )
 
@@ -57,17 +57,17 @@ def _filament(config: Input, name: str, density_g_ml: float) -> Filament:
 JOINT_C = 250.0
 """A joint of lead-free solder, under an iron or in reflow. SAC305 melts at 217 to 220 °C."""
 _REMEDY = {
-    "solder": ("stack.pcb_mm", "a laminate in parts/laminates.toml that bears soldering"),
+    "solder": ("stack.pcb_mm", "a laminate in parts/laminates.toml that withstands soldering"),
     "cure": (
         "mould.silicone",
-        "a silicone that cures cooler, or parts of a filament that bears it",
+        "a silicone that cures at a lower temperature, or a filament that withstands it",
     ),
     "crease": ("mask.film", "another film in parts/films.toml"),
 }
 """Field to refuse, and what to change, of each step."""
 
 
-def derive_heat(config: Input, slicing: Slicing, faults: Faults) -> tuple[HeatStep, ...]:
+def derive_heat(config: Input, slicing: Slicing, faults: Diagnostics) -> tuple[HeatStep, ...]:
     """Soldering, curing and creasing, in the order of work.
 
     Printing is none of them: it melts a filament, and heats no part that is already made.
@@ -108,14 +108,14 @@ def derive_heat(config: Input, slicing: Slicing, faults: Faults) -> tuple[HeatSt
     return steps
 
 
-def _refuse(step: HeatStep, config: Input, faults: Faults) -> None:
+def _refuse(step: HeatStep, config: Input, faults: Diagnostics) -> None:
     """Refuse a step that heats a part beyond the limit of its material."""
     field, remedy = _REMEDY[step.name]
     for part in step.parts:
         faults.refuse_unless(
             step.temperature_c <= part.limit_c,
             field,
-            f"{config.value(field)!r} given; step {step.name!r} heats {step.place} to "
-            f"{step.temperature_c:g} °C; the {part.name} of {part.material} bears at most "
-            f"{part.limit_c:g} °C. Take {remedy}",
+            f"is {config.value(field)!r}; step {step.name!r} heats {step.place} to "
+            f"{step.temperature_c:g} °C; the {part.name} of {part.material} withstands "
+            f"{part.limit_c:g} °C. Choose {remedy}.",
         )

@@ -1,10 +1,10 @@
-"""What is bought, with the prices of the catalogue; a price that is missing stays open."""
+"""Parts to buy, with the prices of the catalogue; a missing price stays open."""
 
 from collections.abc import Mapping
 
 from lumitip_fab.catalogue.ordering import Prices
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.finger.flex import stiff_mm
+from lumitip_fab.derive.finger.stack import stiff_mm
 from lumitip_fab.derive.mount.fasteners import screw_length_mm
 from lumitip_fab.design import Flange, Holder, Mount
 from lumitip_fab.design.making import Slicing
@@ -92,7 +92,7 @@ def _of_flange(config: Input, flange: Flange, prices: Prices) -> list[Bought]:
     pin = f"{flange.pin_mm:g} x {flange.pin_length_mm:g} parallel pin"
     bolt = f"{flange.bolt} socket head screw"
     where = "board of the flange"
-    told = (
+    rows = (
         (screw, "ISO 7046", where, count, f"{flange.screw} screw"),
         (f"{flange.screw} nut", "ISO 4032", where, count, f"{flange.screw} nut"),
         (pin, "ISO 2338", "flange to coupling, glued in", 1, "parallel pin"),
@@ -106,17 +106,17 @@ def _of_flange(config: Input, flange: Flange, prices: Prices) -> list[Bought]:
     )
     return [
         Bought("fasteners", item, "", part, at, n, prices.each.get(price))
-        for item, part, at, n, price in told
+        for item, part, at, n, price in rows
     ]
 
 
 def _parts(config: Input, prices: Prices) -> tuple[PartPrice, ...]:
     """Everything in the catalogue that has an order number and a price."""
-    told: dict[str, float] = {}
+    price_of: dict[str, float] = {}
     for kind in type(config.catalogue).model_fields:
         entries = getattr(config.catalogue, kind)
         for name, entry in entries.items() if isinstance(entries, Mapping) else ():
             order = getattr(getattr(entry, "module", None) or entry, "order_number", None)
             if order is not None and name in prices.each:
-                told[order] = prices.each[name]
-    return tuple(PartPrice(part, told[part]) for part in sorted(told))
+                price_of[order] = prices.each[name]
+    return tuple(PartPrice(part, price) for part, price in sorted(price_of.items()))

@@ -1,47 +1,47 @@
-"""Which threads the printed parts are held by, and what of that goes through which hole."""
+"""Threads that hold the printed parts, and their clearance holes."""
 
 import math
 
 from lumitip_fab.catalogue.materials import Fastener as FastenerEntry
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.design import Fastener
 
 BOARD_SCREW = "M2"  # of the flange's board
 HEAD_PLAY_MM = 0.3  # of a plain head in its counterbore, at least: a knurled one is 0.27 wider
 
 
-def derive_fasteners(config: Input, faults: Faults) -> tuple[Fastener, ...]:
+def derive_fasteners(config: Input, faults: Diagnostics) -> tuple[Fastener, ...]:
     """Every thread that is used, once; refused, and nothing derived, where the catalogue does not
     have one or where its bolts do not go through the holes that an entry has for them."""
     p, known = config.parameters, config.catalogue.fasteners
     gripper = config.catalogue.grippers[p.coupling.gripper]
     coupling = config.catalogue.couplings[p.flange.coupling]
-    wanted = [("coupling.gripper", gripper.bolt)]
+    threads = [("coupling.gripper", gripper.bolt)]
     if p.flange.enabled:
-        wanted += [("flange.coupling", coupling.bolt), ("flange.enabled", BOARD_SCREW)]
+        threads += [("flange.coupling", coupling.bolt), ("flange.enabled", BOARD_SCREW)]
     if p.breakout.enabled:
-        wanted.append(("holder.screw", p.holder.screw))
-    for field, thread in wanted:
+        threads.append(("holder.screw", p.holder.screw))
+    for field, thread in threads:
         faults.refuse_unless(
             thread in known,
             field,
-            f"{_shown(config, field)} given, which needs {thread} screws; parts/fasteners.toml has "
-            f"{', '.join(known)}: add an entry for {thread} to it",
+            f"is {_shown(config, field)}, which needs {thread} screws; parts/fasteners.toml has "
+            f"{', '.join(known)}. Add an entry for {thread}.",
         )
-    if not all(thread in known for _, thread in wanted):
+    if not all(thread in known for _, thread in threads):
         faults.stop()
     _refuse_hole(config, "coupling.gripper", gripper.bolt, gripper.bolt_hole_mm, faults)
     head = known[gripper.bolt].cap_head_mm + HEAD_PLAY_MM
     faults.refuse_unless(
         gripper.counterbore_mm >= head - 1e-9,
         "coupling.gripper",
-        f"{p.coupling.gripper!r} given, whose counterbore_mm = {gripper.counterbore_mm:g} is too "
-        f"narrow for the head of an {gripper.bolt}: at least {head:g} is needed",
+        f"is {p.coupling.gripper!r}, whose counterbore_mm = {gripper.counterbore_mm:g} is too "
+        f"small for the head of an {gripper.bolt}; at least {head:g} is needed",
     )
     if p.flange.enabled:
         _refuse_hole(config, "flange.coupling", coupling.bolt, coupling.bolt_hole_mm, faults)
-    threads = sorted({thread for _, thread in wanted})
+    used = sorted({thread for _, thread in threads})
     return tuple(
         Fastener(
             name,
@@ -52,7 +52,7 @@ def derive_fasteners(config: Input, faults: Faults) -> tuple[Fastener, ...]:
             e.nut_mm,
             e.nut_height_mm,
         )
-        for name, e in ((thread, known[thread]) for thread in threads)
+        for name, e in ((thread, known[thread]) for thread in used)
     )
 
 
@@ -61,14 +61,16 @@ def screw_length_mm(through_mm: float, nut: FastenerEntry) -> float:
     return 2.0 * math.ceil((through_mm + nut.nut_height_mm) / 2)
 
 
-def _refuse_hole(config: Input, field: str, thread: str, hole_mm: float, faults: Faults) -> None:
+def _refuse_hole(
+    config: Input, field: str, thread: str, hole_mm: float, faults: Diagnostics
+) -> None:
     """Refuse a clearance hole of an entry that is none by ISO 273."""
     fine, coarse = config.catalogue.fasteners[thread].hole_mm
     faults.refuse_unless(
         fine - 1e-9 <= hole_mm <= coarse + 1e-9,
         field,
-        f"{_shown(config, field)} given, whose bolt_hole_mm = {hole_mm:g} is no clearance hole of "
-        f"an {thread}: {fine:g} to {coarse:g} is allowed (ISO 273)",
+        f"is {_shown(config, field)}, whose bolt_hole_mm = {hole_mm:g} is not a clearance hole "
+        f"for an {thread}; {fine:g} to {coarse:g} is allowed (ISO 273)",
     )
 
 

@@ -1,13 +1,11 @@
 """The printed parts of the flange round its board, and heights from the robot to the fingers."""
 
-import math
-
-from lumitip_fab.catalogue.grippers import ToolCoupling
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.faults import Faults
-from lumitip_fab.derive.finger.flex import held_by, stiff_mm
-from lumitip_fab.derive.making.fits import Drawn, refuse_touching
+from lumitip_fab.derive.diagnostics import Diagnostics
+from lumitip_fab.derive.finger.stack import held_by, stiff_mm
+from lumitip_fab.derive.making.fits import Drawn
 from lumitip_fab.derive.mount.fasteners import BOARD_SCREW
+from lumitip_fab.derive.mount.rules import refuse_flange
 from lumitip_fab.design import Box, Carrier, Device, Flange, Holder, Point, System, ToolContact
 
 HEADROOM_MM = 0.3  # over the highest part
@@ -24,7 +22,7 @@ SINK_PLAY_MM = 0.4  # of a countersunk head, which then lies below the face
 
 
 def derive_flange_body(
-    config: Input, carriers: tuple[Carrier, ...], faults: Faults
+    config: Input, carriers: tuple[Carrier, ...], faults: Diagnostics
 ) -> tuple[Flange, ...]:
     """Both printed parts; none without the flange's board."""
     if not carriers:
@@ -95,7 +93,7 @@ def derive_flange_body(
         split_z_mm=split_z,
         web_mm=p.web_mm,
     )
-    _refuse(config, flange, faults)
+    refuse_flange(config, flange, faults)
     return (flange,)
 
 
@@ -124,82 +122,6 @@ def _openings(headers: list[Device], board_at: Point, radius_mm: float) -> tuple
         left, right = min(r.x_min_mm for r in rooms), max(r.x_max_mm for r in rooms)
         openings.append(Box(left, right, low, high))
     return tuple(openings)
-
-
-def _refuse(config: Input, flange: Flange, faults: Faults) -> None:
-    """Refuse floors and walls thinner than the printer's, and what does not fit the coupling."""
-    p, least = config.parameters.flange, config.parameters.printer.min_wall_mm
-    coupling = config.catalogue.couplings[p.coupling]
-    floor = flange.board_z_mm - flange.tail_mm - flange.seat_z_mm
-    faults.refuse_unless(
-        floor >= least - 1e-9,
-        "flange.contacts",
-        f"{p.contacts!r} given, {flange.contacts_mm:g} mm high, which leaves {floor:.2f} mm of "
-        f"floor under the solder tails; at least {least:g} is needed: longer contacts, or less "
-        "flange.tail_mm",
-    )
-    faults.refuse_unless(
-        p.web_mm >= least,
-        "flange.web_mm",
-        f"{p.web_mm:g} given, printer.min_wall_mm is {least:g}: at least that is needed",
-    )
-    room = flange.socket_z_mm - least - flange.seat_z_mm
-    faults.refuse_unless(
-        flange.pin_depth_mm <= room + 1e-9,
-        "flange.header",
-        f"{p.header!r} given, which makes the flange {flange.top_z_mm:.1f} mm high: its locating "
-        f"pin finds {room:.1f} mm, {flange.pin_depth_mm:g} are needed: a higher header",
-    )
-    rim = (flange.face_mm - flange.recess_mm) / 2
-    faults.refuse_unless(
-        rim >= least - 1e-9,
-        "flange.coupling",
-        f"{p.coupling!r} given, which leaves {rim:.2f} mm of wall round the gripper's recess of "
-        f"{flange.recess_mm:g} mm; at least {least:g} is needed",
-    )
-    refuse_touching(config, "flange.clearance_mm", p.clearance_mm, faults)
-    _refuse_walls(config, flange, coupling, faults)
-
-
-def _refuse_walls(config: Input, flange: Flange, coupling: ToolCoupling, faults: Faults) -> None:
-    """Refuse holes that come near the board's pocket, and whatever reaches beyond the spigot."""
-    printer, name = config.parameters.printer, config.parameters.flange.coupling
-    least_mm = printer.min_wall_mm
-    fitted = f", with printer.fit_mm = {printer.fit_mm:g}" if printer.fit_mm else ""
-    radius = min(flange.spigot_mm / 2, flange.face_mm / 2 - least_mm)
-    for what, places, hole_mm in (
-        ("a bolt", flange.bolts, flange.bolt_hole_mm),
-        ("the locating pin", (flange.pin_at,), flange.socket_mm),
-        ("the peg", (flange.peg_at,), flange.peg_hole_mm),
-    ):
-        inside = min(_to_pocket(flange, at) for at in places) - hole_mm / 2
-        outside = radius - max(math.hypot(*at) for at in places) - hole_mm / 2
-        faults.refuse_unless(
-            min(inside, outside) >= least_mm,
-            "flange.coupling",
-            f"{name!r} given, where {what} leaves {inside:.2f} mm of wall to the board's pocket "
-            f"and {outside:.2f} to the outside{fitted}: at least {least_mm:g} is needed",
-        )
-    box, corner = flange.pocket, flange.pocket_corner_mm
-    reach = max(
-        math.hypot(abs(x) - corner, abs(y) - corner) + corner
-        for x in (box.x_min_mm, box.x_max_mm)
-        for y in (box.y_min_mm, box.y_max_mm)
-    )
-    faults.refuse_unless(
-        reach <= radius - least_mm,
-        "flange.coupling",
-        f"{name!r} given, whose recess of {coupling.recess_mm:g} mm is too small for the board"
-        f"{fitted}: at least {coupling.recess_mm + 2 * (reach + least_mm - radius):.1f} is needed",
-    )
-
-
-def _to_pocket(flange: Flange, at: Point) -> float:
-    """Distance of a point from the pocket, a rectangle with round corners."""
-    box, corner = flange.pocket, flange.pocket_corner_mm
-    across = max(box.x_min_mm + corner - at[0], at[0] - box.x_max_mm + corner, 0.0)
-    along = max(box.y_min_mm + corner - at[1], at[1] - box.y_max_mm + corner, 0.0)
-    return math.hypot(across, along) - corner
 
 
 ROUND_MM = 2.0  # of a body's sides from the diameter that a holder is made for

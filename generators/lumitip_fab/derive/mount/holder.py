@@ -1,33 +1,28 @@
 """The holder that clips the breakout board to the gripper."""
 
-import math
-
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.faults import Faults
-from lumitip_fab.derive.finger.flex import held_by, stiff_mm
-from lumitip_fab.derive.making.fits import Drawn, refuse_touching
+from lumitip_fab.derive.diagnostics import Diagnostics
+from lumitip_fab.derive.finger.stack import held_by, stiff_mm
+from lumitip_fab.derive.making.fits import Drawn
 from lumitip_fab.derive.mount.fasteners import screw_length_mm
+from lumitip_fab.derive.mount.rules import refuse_holder, shoulder_deg
 from lumitip_fab.design import Box, Carrier, Holder
 
 NUT_PLAY_MM = 0.2  # nut pockets beyond the nuts
 BOSS_RIM_MM = 1.2  # of a boss round its screw
 BOSS_LENGTH_MM = 7.0
-MOST_STRAIN = 0.01  # of the arms while they clip on; PETG yields at some 4 %
-DRILLED_MM = 0.1  # beyond a screw's thread, of the board's holes, truer than printed ones
-RING_MM = 0.4  # of the board, at least, that a screw's head presses on
-LEAST_GRIP_MM = 0.3  # each arm's end inside the body's widest place
 
 
 def derive_holder(
-    config: Input, carriers: tuple[Carrier, ...], faults: Faults
+    config: Input, carriers: tuple[Carrier, ...], faults: Diagnostics
 ) -> tuple[Holder, ...]:
     """The holder of the breakout board; none without that board, or without a round body."""
     p, body = config.parameters, held_by(config).envelope
     of = next((carrier for carrier in carriers if carrier.name == "breakout"), None)
-    given_mm, body_from = p.holder.body_mm, "holder.body_mm"
-    if given_mm == "gripper":
+    source, body_from = p.holder.body_mm, "holder.body_mm"
+    if source == "gripper":
         body_from = f"{config.title('coupling.gripper')}, {body.confidence}"
-    body_mm = body.round_mm if given_mm == "gripper" else given_mm
+    body_mm = body.round_mm if source == "gripper" else source
     if of is None or body_mm is None:
         return ()
     drawn, screw = Drawn(p.printer.fit_mm), config.catalogue.fasteners[p.holder.screw]
@@ -60,119 +55,9 @@ def derive_holder(
         screw_length_mm=screw_length_mm(through, screw),
         nut_mm=drawn.hole_mm(screw.nut_mm + NUT_PLAY_MM),
         boss_mm=(BOSS_LENGTH_MM, width, width + 2 * p.holder.standoff_mm),  # 45°, to print
-        strap_deg=(p.holder.wrap_deg + _shoulder_deg(tray.x_max_mm + wall, radius + wall)) / 2,
+        strap_deg=(p.holder.wrap_deg + shoulder_deg(tray.x_max_mm + wall, radius + wall)) / 2,
         strap_y_mm=(-spacing, spacing),
         strap_hole_mm=p.holder.strap_hole_mm,
     )
-    _refuse_holes(config, of, faults)
-    _refuse(config, of, holder, faults)
-    _refuse_nuts(config, holder, faults)
+    refuse_holder(config, of, holder, faults)
     return (holder,)
-
-
-def _shoulder_deg(x_mm: float, radius_mm: float) -> float:
-    """Where the tray's side meets the arm, from the middle of the tray."""
-    return math.degrees(math.asin(min(x_mm / radius_mm, 1.0)))
-
-
-def _refuse(config: Input, of: Carrier, holder: Holder, faults: Faults) -> None:
-    """Refuse a tray wider than its cradle, arms that break or do not hold, bosses under tails."""
-    p, outer = config.parameters.holder, holder.cradle_mm + holder.wall_mm
-    beyond = holder.outer.x_max_mm - outer
-    if beyond > 0:
-        told = f"{holder.body_mm:g} given"
-        if p.body_mm == "gripper":
-            told = f"'gripper' given, whose entry has {holder.body_mm:g} mm"
-        faults.refuse(
-            "holder.body_mm",
-            f"{told}, the tray is {holder.outer.width_mm:.1f} mm wide: at least "
-            f"{math.ceil((holder.body_mm + 2 * beyond) * 10) / 10:g} is needed",
-        )
-        return
-    refuse_touching(config, "holder.clearance_mm", p.clearance_mm, faults)
-    _refuse_straps(config, holder, faults)
-    printed_mm = holder.cradle_mm - config.parameters.printer.fit_mm  # what is made of it
-    grip = holder.body_mm / 2 - printed_mm * math.sin(math.radians(holder.wrap_deg))
-    faults.refuse_unless(
-        grip >= LEAST_GRIP_MM,
-        "holder.wrap_deg",
-        f"{p.wrap_deg:g} given, which leaves the arms' ends {grip:.2f} mm inside the body's widest "
-        f"place; at least {LEAST_GRIP_MM:g} holds: wrap farther, or less holder.clearance_mm",
-    )
-    free_deg = holder.wrap_deg - _shoulder_deg(holder.outer.x_max_mm, outer)
-    length = outer * math.radians(free_deg)
-    strain = 3 * holder.wall_mm * max(grip, 0.0) / (2 * length**2)
-    faults.refuse_unless(
-        strain <= MOST_STRAIN,
-        "holder.wrap_deg",
-        f"{p.wrap_deg:g} given, clipping on would stretch the arms by {100 * strain:.1f} %; at "
-        f"most {100 * MOST_STRAIN:g} % is allowed: wrap less, or thinner holder.wall_mm",
-    )
-    half_x, half_y = holder.boss_mm[0] / 2, holder.boss_mm[2] / 2
-    tails = [
-        abs(device.y_mm + land.y_mm) - land.height_mm / 2
-        for device in of.devices
-        for land in device.pattern.lands
-        for x, _ in of.holes
-        if land.drill_mm and abs(device.x_mm + land.x_mm - x) < half_x + land.width_mm / 2
-    ]
-    faults.refuse_unless(
-        min(tails, default=math.inf) >= half_y,
-        "holder.standoff_mm",
-        f"{p.standoff_mm:g} given, the bosses under the screws would be {2 * half_y:.1f} mm wide "
-        f"and reach solder tails: at most {min(tails, default=0.0) - holder.boss_mm[1] / 2:.2f} is "
-        "allowed",
-    )
-
-
-def _refuse_holes(config: Input, of: Carrier, faults: Faults) -> None:
-    """Refuse holes of the board that its screws do not go through, or whose heads do."""
-    thread = config.parameters.holder.screw
-    screw = config.catalogue.fasteners[thread]
-    least, most = screw.thread_mm + DRILLED_MM, screw.cap_head_mm - 2 * RING_MM
-    faults.refuse_unless(
-        least - 1e-9 <= of.hole_mm <= most + 1e-9,
-        "breakout.hole_mm",
-        f"{of.hole_mm:g} given, {least:g} to {most:g} is allowed for an {thread} (holder.screw) "
-        f"and its head of {screw.cap_head_mm:g} mm",
-    )
-
-
-def _refuse_nuts(config: Input, holder: Holder, faults: Faults) -> None:
-    """Refuse screws that reach the gripper behind their seat, with their nuts or their ends."""
-    screw = config.catalogue.fasteners[holder.screw]
-    beyond = holder.screw_length_mm - (holder.top_z_mm - holder.seat_z_mm)
-    middle = min(abs(x) for x, _ in holder.holes)
-    for what, inner, needed in (
-        ("nuts", middle - screw.nut_mm / math.sqrt(3), screw.nut_height_mm),
-        (f"ends of {holder.screw_length_mm:g} mm", middle - screw.thread_mm / 2, beyond),
-    ):
-        body = math.sqrt(max((holder.body_mm / 2) ** 2 - max(inner, 0.0) ** 2, 0.0))
-        faults.refuse_unless(
-            holder.cradle_mm - body >= needed,
-            "holder.screw",
-            f"{holder.screw!r} given, whose {what} reach {needed:.2f} mm under their seat, where "
-            f"{holder.cradle_mm - body:.2f} are left to the gripper: thinner screws, or more "
-            "breakout.hole_spacing_mm",
-        )
-
-
-def _refuse_straps(config: Input, holder: Holder, faults: Faults) -> None:
-    """Refuse holes through the arms that leave too little wall to each other or to an arm's end."""
-    p, wall = config.parameters.holder, config.parameters.printer.min_wall_mm
-    least = p.strap_hole_mm + wall
-    most = 2 * (holder.outer.y_max_mm - wall) - p.strap_hole_mm
-    room = f"{least:g} to {most:g} is allowed" if least <= most else "a narrower hole is needed"
-    faults.refuse_unless(
-        least - 1e-9 <= p.strap_spacing_mm <= most + 1e-9,
-        "holder.strap_spacing_mm",
-        f"{p.strap_spacing_mm:g} given, {room} for holes of {p.strap_hole_mm:g} mm in arms "
-        f"{holder.outer.length_mm:g} mm wide, with walls of {wall:g} mm beside them",
-    )
-    reach = math.radians(holder.wrap_deg - holder.strap_deg) * holder.cradle_mm
-    faults.refuse_unless(
-        reach - p.strap_hole_mm / 2 >= wall,
-        "holder.strap_hole_mm",
-        f"{p.strap_hole_mm:g} given, the arms end {reach:.1f} mm from the middle of their holes: "
-        f"at most {2 * (reach - wall):.1f} is allowed, or more holder.wrap_deg",
-    )

@@ -4,9 +4,8 @@ import math
 
 from lumitip_fab.catalogue.grippers import Gripper
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.boards.boards import HOLE_TO_EDGE_MM, Plan
-from lumitip_fab.derive.faults import Faults
-from lumitip_fab.derive.finger.flex import behind_mm, held_by, is_flex
+from lumitip_fab.derive.boards.boards import Plan
+from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.outline import (
     DEPTH_MM,
     LEAST_DEPTH_MM,
@@ -14,18 +13,20 @@ from lumitip_fab.derive.finger.outline import (
     least_letter_mm,
     letter_on,
 )
+from lumitip_fab.derive.finger.stack import held_by, is_flex
 from lumitip_fab.derive.making.fits import derive_fits
+from lumitip_fab.derive.mount.rules import refuse_block, refuse_place
 from lumitip_fab.design import Closing, Letter, Mould, Mount, Outline, Stack
 
 LETTER_MARGIN_MM = 0.6  # or a printed line, to the bed, and to where the ramp begins
 
 
-def derive_mount(config: Input, outline: Outline, plan: Plan, faults: Faults) -> Mount:
+def derive_mount(config: Input, outline: Outline, plan: Plan, faults: Diagnostics) -> Mount:
     """The coupling, refused where finger and gripper do not go together."""
     p = config.parameters
     gripper = held_by(config)
-    _refuse_place(config, gripper, outline, plan, faults)
-    _refuse_holes(config, gripper, faults)
+    refuse_place(config, gripper, outline, plan, faults)
+    refuse_block(config, gripper, faults)
     nose, fits = gripper.nose, derive_fits(config, p.printer.fit_mm)
     field, value = "backing.tail_mm", p.backing.tail_mm
     if is_flex(p):
@@ -36,7 +37,7 @@ def derive_mount(config: Input, outline: Outline, plan: Plan, faults: Faults) ->
     faults.refuse_unless(
         front <= most,
         field,
-        f"{value:g} given, which leaves no wall before the bolt's counterbore; at "
+        f"is {value:g}, which leaves no wall before the counterbore of the bolt; at "
         f"most {most - before:.2f} is allowed",
     )
     pins = gripper.pins
@@ -71,80 +72,7 @@ def _side_by_side(spacing_mm: float | None) -> tuple[float, ...]:
     return () if spacing_mm is None else (-spacing_mm / 2, spacing_mm / 2)
 
 
-def _refuse_place(
-    config: Input, gripper: Gripper, outline: Outline, plan: Plan, faults: Faults
-) -> None:
-    """Refuse a block that does not stand on this finger's back."""
-    p = config.parameters
-    plate = behind_mm(p)
-    ramp = gripper.block_back_w_mm - plate
-    opening = plan.receiver.notch.y_max_mm - outline.end_y_mm
-    length = gripper.land_mm + ramp
-    faults.refuse_unless(
-        length <= outline.length_mm - p.tip.slant_start_mm and opening < length,
-        "coupling.gripper",
-        f"{p.coupling.gripper!r} given, its block and 45° ramp need {length:.1f} mm of finger "
-        f"beyond a wire notch of {opening:.1f} mm; the finger is {outline.length_mm:.1f} mm long",
-    )
-    waist = outline.half_width_at(outline.end_y_mm + length)
-    faults.refuse_unless(
-        waist >= gripper.block_width_mm / 2 + HOLE_TO_EDGE_MM,
-        "coupling.gripper",
-        f"{p.coupling.gripper!r} given, its block is {gripper.block_width_mm:g} mm wide and the "
-        f"finger {2 * waist:.1f} mm",
-    )
-    faults.refuse_unless(
-        ramp > 0,
-        "stack.floor_mm",
-        f"{p.stack.floor_mm:g} given, which makes a plate of {plate:g} mm; less than the "
-        f"{gripper.block_back_w_mm:g} mm of the block of {p.coupling.gripper!r} is allowed",
-    )
-
-
-def _refuse_holes(config: Input, gripper: Gripper, faults: Faults) -> None:
-    """Refuse holes that leave too little of the block between them and round them."""
-    p, pins = config.parameters, gripper.pins
-    head, hole = gripper.counterbore_mm / 2, gripper.bolt_hole_mm / 2 + p.printer.fit_mm
-    apart = gripper.bolt_spacing_mm
-    line_mm = config.catalogue.printers[p.printer.profile].line_mm
-    walls = (
-        ("behind its counterbores", gripper.block_back_w_mm - gripper.bolt_w_mm - head, None),
-        ("beside its counterbores", gripper.block_width_mm / 2 - (apart or 0.0) / 2 - head, None),
-        ("between its counterbores", apart - 2 * head if apart else math.inf, None),
-        ("at its corners", _corner_wall_mm(gripper, head), None),
-        ("round the bolts under their heads", head - hole, line_mm),
-        ("over the pins", gripper.land_mm - (pins.depth_mm if pins else 0.0), None),
-        ("between bolts and pins", _to_pins_mm(gripper, p.printer.fit_mm), line_mm),
-    )
-    for place, wall, printed in walls:
-        least = p.printer.min_wall_mm if printed is None else printed
-        faults.refuse_unless(
-            wall >= least - 1e-9,
-            "coupling.gripper",
-            f"{p.coupling.gripper!r} given, whose block keeps {wall:.2f} mm {place}; at least "
-            f"{least:g} is needed",
-        )
-
-
-def _to_pins_mm(gripper: Gripper, fit_mm: float) -> float:
-    """Wall between a bolt's hole and a pin's beside it; none where the pins are sleeves."""
-    pins, bolts = gripper.pins, gripper.bolt_spacing_mm or 0.0
-    if pins is None or pins.spacing_mm == bolts:
-        return math.inf
-    return abs(pins.spacing_mm - bolts) / 2 - (pins.hole_mm + gripper.bolt_hole_mm) / 2 - 2 * fit_mm
-
-
-def _corner_wall_mm(gripper: Gripper, head_mm: float) -> float:
-    """Wall between a counterbore and the rounded corner of the block's back."""
-    radius = gripper.block_corner_mm
-    across = (gripper.bolt_spacing_mm or 0.0) / 2 - (gripper.block_width_mm / 2 - radius)
-    back = gripper.bolt_w_mm - (gripper.block_back_w_mm - radius)
-    if across <= 0 or back <= 0:
-        return math.inf  # the straight sides are nearer
-    return radius - math.hypot(across, back) - head_mm
-
-
-def _letter(config: Input, gripper: Gripper, faults: Faults) -> Letter:
+def _letter(config: Input, gripper: Gripper, faults: Diagnostics) -> Letter:
     """On the back of the block, between its rounded corners and below the ramp."""
     p = config.parameters
     hole = max(gripper.bolt_hole_mm, gripper.pins.hole_mm if gripper.pins else 0.0)
@@ -157,8 +85,8 @@ def _letter(config: Input, gripper: Gripper, faults: Faults) -> Letter:
     faults.refuse_unless(
         min(high - low, wide / WIDTH) >= least and deep >= LEAST_DEPTH_MM,
         "coupling.gripper",
-        f"{p.coupling.gripper!r} given, whose block has no room on its back for the letter that "
-        f"tells the fingers apart: {wide:.1f} mm between its corners, {gripper.land_mm:g} mm of "
+        f"is {p.coupling.gripper!r}, whose block has no room on its back for the letter that "
+        f"marks the finger: {wide:.1f} mm between its corners, {gripper.land_mm:g} mm of "
         f"land and {behind:.1f} mm of wall behind the bolt; at least {WIDTH * least:.1f}, "
         f"{least + 2 * margin:g} and {p.printer.min_wall_mm + LEAST_DEPTH_MM:g} "
         "are needed",
@@ -172,7 +100,7 @@ CONTACT_MM = 4.0
 
 
 def derive_closing(
-    outline: Outline, stack: Stack, mount: Mount, mould: Mould, faults: Faults
+    outline: Outline, stack: Stack, mount: Mount, mould: Mould, faults: Diagnostics
 ) -> Closing:
     """First contact and largest opening, with the lean of the mount applied.
 
@@ -192,20 +120,20 @@ def derive_closing(
     faults.refuse_unless(
         outline.tip_y_mm - y <= CONTACT_MM,
         "coupling.gripper",
-        f"{mount.gripper!r} given, whose tilt of {mount.tilt_deg:g}° lets the fingers touch first "
-        f"{outline.tip_y_mm - y:.1f} mm from the tip; at most {CONTACT_MM:g} mm is allowed: a tilt "
-        "of 0 or more",
+        f"is {mount.gripper!r}, whose tilt of {mount.tilt_deg:g}° makes the fingers touch first "
+        f"{outline.tip_y_mm - y:.1f} mm from the tip; at most {CONTACT_MM:g} mm is allowed. Use a "
+        "tilt of 0° or more.",
     )
     faults.refuse_unless(
         opening >= 10,
         "coupling.gripper",
-        f"{mount.gripper!r} given, these fingers open to {opening:.1f} mm in it; at least 10 mm "
+        f"is {mount.gripper!r}, in which these fingers open to {opening:.1f} mm; at least 10 mm "
         "is needed",
     )
     faults.refuse_unless(
         opening <= mount.stroke_mm,
         "coupling.gripper",
-        f"{mount.gripper!r} given, in which these fingers stay {opening - mount.stroke_mm:.1f} mm "
-        "apart when it is closed: its bolt_w_mm less its pad_w_mm must grow by half of that",
+        f"is {mount.gripper!r}, in which these fingers stay {opening - mount.stroke_mm:.1f} mm "
+        "apart when it is closed. Increase bolt_w_mm - pad_w_mm of its entry by half of that.",
     )
     return Closing(y, reach, opening)

@@ -1,4 +1,4 @@
-"""Which wire goes where, in which colour, how long, and whether it carries its current."""
+"""Cables: ends, colours, lengths and sections of the wires."""
 
 import math
 from collections.abc import Iterable
@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from itertools import permutations
 
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.design import Carrier, Device, Electrical, Finger, Mount, Outline, Wiring
 from lumitip_fab.design.cabling import Cable, Cabling, Terminal, Wire
 
@@ -25,7 +25,7 @@ _STRIPED = tuple("".join(pair) for pair in permutations(_PLAIN, 2))
 
 @dataclass(frozen=True)
 class Boards:
-    """What the cables join."""
+    """The boards that the cables connect."""
 
     emitter: Finger
     receiver: Finger
@@ -48,18 +48,18 @@ def derive_cabling(
     mount: Mount,
     wiring: Wiring,
     electrical: Electrical,
-    faults: Faults,
+    faults: Diagnostics,
 ) -> Cabling:
     """All cables, from the signals of the connectors that they join."""
-    told, travel_mm = config.parameters.wiring, mount.stroke_mm / 2
+    p, travel_mm = config.parameters.wiring, mount.stroke_mm / 2
     fixed = _FIXED | {boards.emitter.connector.signals[1]: _SUPPLY}
     loads = _loads(config, boards.emitter, wiring, electrical)
     ends = _ends(config, boards, wiring)
     breakout, host = _named(boards.carriers, "breakout"), _host(boards.carriers)
-    to_supply_mm = told.controller_mm if host else told.supply_mm
+    to_supply_mm = p.controller_mm if host else p.supply_mm
     ways = [
         (boards.emitter, loads.lit, travel_mm + to_supply_mm),
-        (boards.receiver, loads.read, travel_mm + told.controller_mm),
+        (boards.receiver, loads.read, travel_mm + p.controller_mm),
     ]
     cables = [
         _cable(
@@ -68,8 +68,8 @@ def derive_cabling(
             ends[finger.name],
             load,
             fixed,
-            told.section_mm2,
-            reach_mm(finger, outline) + way_mm + told.slack_mm,
+            p.section_mm2,
+            reach_mm(finger, outline) + way_mm + p.slack_mm,
         )
         for i, (finger, load, way_mm) in enumerate(ways, 1)
     ]
@@ -83,14 +83,14 @@ def derive_cabling(
                 supply,
                 loads.all,
                 fixed,
-                told.section_mm2,
-                told.supply_mm + told.slack_mm,
+                p.section_mm2,
+                p.supply_mm + p.slack_mm,
             )
         )
     thick = tuple(_thick_enough(config, cable, cables) for cable in cables)
     for cable in thick:
         _refuse_thick(config, cable, boards, faults)
-    return Cabling(thick, travel_mm, told.supply_mm, told.controller_mm, told.slack_mm)
+    return Cabling(thick, travel_mm, p.supply_mm, p.controller_mm, p.slack_mm)
 
 
 def reach_mm(finger: Finger, outline: Outline) -> float:
@@ -110,7 +110,7 @@ def _loads(config: Input, emitter: Finger, wiring: Wiring, electrical: Electrica
 
 
 def _ends(config: Input, boards: Boards, wiring: Wiring) -> dict[str, dict[str, Terminal]]:
-    """Where the signals of each finger go, by name."""
+    """Far end of each signal of each finger, by name."""
     host = _host(boards.carriers)
     if host:
         carrier, *refs = host
@@ -150,15 +150,15 @@ def _pads(finger: Finger) -> tuple[Terminal, ...]:
 
 
 def _wires_of(carrier: Carrier, ref: str) -> tuple[Terminal, ...]:
-    """The wire pads of a carrier that are named so, in their order."""
+    """The wire pads of a connector of a carrier, in their order."""
     device: Device = next(d for d in carrier.devices if d.ref == ref)
     pads = enumerate(device.nets, 1)
     return tuple(Terminal(carrier.name, ref, pad, net, place) for place, (pad, net) in pads)
 
 
 def _feeding(carriers: Iterable[Carrier], pads: tuple[Terminal, ...]) -> dict[str, Terminal]:
-    """What feeds each pad of the breakout: contacts of the flange's header that has most of its
-    nets, or any supply."""
+    """Source of each pad of the breakout: contacts of the flange's header that has most of its
+    nets, or a supply."""
     supply = {pad.name: Terminal("supply", "", pad.name, pad.name, pad.order) for pad in pads}
     flange = _named(carriers, "flange")
     headers = [d for d in flange.devices if d.ref in ("J2", "J3")] if flange else []
@@ -206,8 +206,8 @@ def _cable(
 
 
 def _thick_enough(config: Input, cable: Cable, cables: list[Cable]) -> Cable:
-    """The cable with wires of the section asked for, or the next one that is sold and carries its
-    current over the whole way to the supply."""
+    """The cable with the configured section or, where that is too thin, the smallest sold one that
+    carries its current to the supply."""
     supply_v, asked = config.parameters.supply.voltage_v, config.parameters.wiring.section_mm2
     amps = max(wire.current_ma for wire in cable.wires) / 1000
     way_mm = sum(c.length_mm for c in cables if c.start.board != "receiver")
@@ -218,19 +218,20 @@ def _thick_enough(config: Input, cable: Cable, cables: list[Cable]) -> Cable:
     return replace(cable, section_mm2=next((s for s in SOLD_MM2 if s >= least), least))
 
 
-def _refuse_thick(config: Input, cable: Cable, boards: Boards, faults: Faults) -> None:
+def _refuse_thick(config: Input, cable: Cable, boards: Boards, faults: Diagnostics) -> None:
     """Refuse wires that do not go into the holes at their ends."""
     asked, section = config.parameters.wiring.section_mm2, cable.section_mm2
     drill_mm = min(_drill_mm(end, boards) for end in (cable.start, cable.end))
     most = math.pi / 4 * ((drill_mm - DRILL_ROOM_MM) / STRANDED) ** 2
     amps_ma = max(wire.current_ma for wire in cable.wires)
-    why = f", {section:g} mm² is needed for {amps_ma:.0f} mA" if section > asked else ""
+    need = f"{section:g} mm² is needed for {amps_ma:.0f} mA, but " if section > asked else ""
     faults.refuse_unless(
         section <= most,
         "wiring.section_mm2",
-        f"{asked:g} given{why}; strands of at most {math.floor(1000 * most) / 1000:g} mm² go into "
-        f"the holes of {drill_mm:g} mm at the ends of {cable.name}, {cable.start.board} to "
-        f"{cable.end.board}" + (": less emitter.current_ma is needed" if why else ""),
+        f"is {asked:g}; {need}the holes of {drill_mm:g} mm at the ends of {cable.name} "
+        f"({cable.start.board} to {cable.end.board}) take strands of at most "
+        f"{math.floor(1000 * most) / 1000:g} mm²"
+        + (". Reduce emitter.current_ma." if need else ""),
     )
 
 
@@ -246,5 +247,5 @@ def _drill_mm(end: Terminal, boards: Boards) -> float:
 
 
 def _bare(devices: Iterable[Device], end: Terminal) -> list[Device]:
-    """The wire pads at an end: into a header goes a socket, not a wire."""
+    """Wire pads at an end; a header takes a socket, not a wire."""
     return [d for d in devices if d.ref == end.connector and d.kind == "wires"]

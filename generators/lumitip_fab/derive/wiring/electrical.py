@@ -4,7 +4,7 @@ import math
 
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards.flange_circuit import derive_regulated
-from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.wiring import wiring
 from lumitip_fab.derive.wiring.ratings import RESISTOR_TOLERANCE, SUPPLY_TOLERANCE, string_of
 from lumitip_fab.design.electrical import Channel, Electrical, Strings
@@ -12,8 +12,8 @@ from lumitip_fab.design.electrical import Channel, Electrical, Strings
 SHORTER = 0.75  # of a string's LEDs, to compare
 
 
-def derive_electrical(config: Input, strings: wiring.Strings, faults: Faults) -> Electrical:
-    """What follows from parts, strings and supply."""
+def derive_electrical(config: Input, strings: wiring.Strings, faults: Diagnostics) -> Electrical:
+    """Electrical figures from parts, strings and supply."""
     p = config.parameters
     return Electrical(
         strings=_strings(config, strings),

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from lumitip_fab.catalogue.electronics import Led
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.diagnostics import Diagnostics
 
 THERMAL_V = 0.02585  # kT/q at 300 K
 SUPPLY_TOLERANCE = 0.05
@@ -19,32 +19,8 @@ MOST_RESISTOR_LOAD = 0.8
 falls linearly to 0 at 155 °C (Yageo RC_L series): 0.8 is what is left at 87 °C."""
 LEAST_RESISTOR_SHARE = 0.1
 """Share of the supply across a resistor: below it the current follows every millivolt."""
-_E24 = (
-    1.0,
-    1.1,
-    1.2,
-    1.3,
-    1.5,
-    1.6,
-    1.8,
-    2.0,
-    2.2,
-    2.4,
-    2.7,
-    3.0,
-    3.3,
-    3.6,
-    3.9,
-    4.3,
-    4.7,
-    5.1,
-    5.6,
-    6.2,
-    6.8,
-    7.5,
-    8.2,
-    9.1,
-)
+_E24 = "10 11 12 13 15 16 18 20 22 24 27 30 33 36 39 43 47 51 56 62 68 75 82 91 100"
+"""Tenths of the values of a decade, and of the next decade's first."""
 
 
 @dataclass(frozen=True)
@@ -71,10 +47,8 @@ class String:
 
 def string_of(config: Input, leds: int, current_ma: float) -> String:
     """A string of LEDs for a current: its resistor is the nearest E96 value."""
-    led, volts = (
-        config.catalogue.leds[config.parameters.emitter.led],
-        config.parameters.supply.voltage_v,
-    )
+    p = config.parameters
+    led, volts = config.catalogue.leds[p.emitter.led], p.supply.voltage_v
     drop = volts - leds * led.forward_voltage_v
     ohm = e96(1000 * drop / current_ma)
     low, high = (_extreme_ma(led, volts, leds, ohm, current_ma, sign) for sign in (-1, 1))
@@ -83,10 +57,8 @@ def string_of(config: Input, leds: int, current_ma: float) -> String:
 
 def longest_string(config: Input) -> int:
     """Most LEDs in a string that leave its resistor a tenth of the supply; 0 if not even one."""
-    led, volts = (
-        config.catalogue.leds[config.parameters.emitter.led],
-        config.parameters.supply.voltage_v,
-    )
+    p = config.parameters
+    led, volts = config.catalogue.leds[p.emitter.led], p.supply.voltage_v
     return int(volts * (1 - LEAST_RESISTOR_SHARE) / led.forward_voltage_v)
 
 
@@ -118,7 +90,7 @@ def string_current_ma(
         leds: how many there are.
         ohm: the resistor.
         forward_v: of an LED at `at_ma`.
-        at_ma: current at which the forward voltage is given.
+        at_ma: current at which the forward voltage is measured.
         ideality: of the LEDs.
     """
     low, high = 0.0, 1000 * supply_v / ohm
@@ -140,7 +112,8 @@ def e96(ohm: float) -> float:
 
 def sold_ohm(ohm: float) -> float:
     """The nearest value of the E24 and E96 series, in both of which 1 % resistors are sold."""
-    steps = np.array([e96(ohm), _nearest(ohm, np.array([*_E24, 10.0]))])
+    e24 = np.array([int(value) / 10 for value in _E24.split()])
+    steps = np.array([e96(ohm), _nearest(ohm, e24)])
     return float(steps[np.abs(np.log(steps / ohm)).argmin()])
 
 
@@ -152,17 +125,17 @@ def _nearest(ohm: float, mantissas: NDArray[np.float64]) -> float:
 
 @dataclass(frozen=True)
 class _Duty:
-    """What a capacitor of the parameter file is for."""
+    """Requirements on a capacitor of the parameter file."""
 
     field: str
     volts: float
     beside: str = ""
     """The part that asks for a capacitance, by its name in the catalogue."""
     asked_nf: tuple[float, float] = (0.0, float("inf"))
-    """The least that must be left at its voltage, and the most there may be without any."""
+    """Least capacitance after DC-bias derating, and largest nominal capacitance."""
 
 
-def refuse_receiver_capacitor(config: Input, faults: Faults) -> None:
+def refuse_receiver_capacitor(config: Input, faults: Diagnostics) -> None:
     """Refuse a capacitor with which the multiplexers' supply dips as they switch."""
     p, known = config.parameters, config.catalogue
     supply_v = known.controllers[p.controller.board].supply_v
@@ -171,7 +144,7 @@ def refuse_receiver_capacitor(config: Input, faults: Faults) -> None:
     _refuse(config, [duty], faults)
 
 
-def refuse_flange_capacitors(config: Input, faults: Faults) -> None:
+def refuse_flange_capacitors(config: Input, faults: Diagnostics) -> None:
     """Refuse capacitors of the flange's board that break, or with which its parts do not work."""
     p, known = config.parameters, config.catalogue
     switching = known.regulators[p.flange.regulator]
@@ -197,7 +170,7 @@ def refuse_flange_capacitors(config: Input, faults: Faults) -> None:
     _refuse(config, duties, faults)
 
 
-def _refuse(config: Input, duties: Iterable[_Duty], faults: Faults) -> None:
+def _refuse(config: Input, duties: Iterable[_Duty], faults: Diagnostics) -> None:
     for duty in duties:
         name = config.value(duty.field)
         part = config.catalogue.capacitors[name]
@@ -205,12 +178,12 @@ def _refuse(config: Input, duties: Iterable[_Duty], faults: Faults) -> None:
         faults.refuse_unless(
             needed_v <= part.rated_v,
             duty.field,
-            f"{name!r} given, made for {part.rated_v:g} V; {needed_v:g} V are needed here",
+            f"is {name!r}, rated {part.rated_v:g} V; a rating of {needed_v:g} V is needed",
         )
         there_nf, (least, most) = part.capacitance_nf, duty.asked_nf
         faults.refuse_unless(
             least <= there_nf * part.left and there_nf <= most,
             duty.field,
-            f"{name!r} given, {there_nf:g} nF, of which {there_nf * part.left:g} are sure to be "
-            f"left; {duty.beside!r} needs {least:g} to {most:g} nF",
+            f"is {name!r}, {there_nf:g} nF ({there_nf * part.left:g} nF after DC-bias derating); "
+            f"{duty.beside!r} needs {least:g} to {most:g} nF",
         )

@@ -1,4 +1,4 @@
-"""Which cells hang on which LED string, multiplexer, channel and pin."""
+"""LED strings, multiplexers, channels and pins of the cells."""
 
 import math
 from collections.abc import Iterator
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from lumitip.grid import Integers
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.faults import Faults
+from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.cells import Cells
 from lumitip_fab.derive.wiring.ratings import (
     LEAST_RESISTOR_SHARE,
@@ -47,23 +47,24 @@ class Strings:
 
 @dataclass(frozen=True)
 class Muxing:
-    """How many multiplexers there are and which pins they use."""
+    """Number of multiplexers, and their pins."""
 
     muxes: int
     adc_pins: tuple[str, ...]
     select_pins: tuple[str, ...]
 
 
-def derive_strings(config: Input, cells: Cells, faults: Faults) -> Strings:
-    """As few strings as the supply allows, differing by at most one LED."""
+def derive_strings(config: Input, cells: Cells, faults: Diagnostics) -> Strings:
+    """The fewest strings that the supply allows, differing by at most one LED."""
     p = config.parameters
     led, volts = config.catalogue.leds[p.emitter.led], p.supply.voltage_v
     longest = min(longest_string(config), p.emitter.string_leds)
     if longest < 1:
         faults.refuse(
             "supply.voltage_v",
-            f"{volts:g} given, one LED needs {led.forward_voltage_v:g} V and its resistor a tenth "
-            f"of the supply: at least {led.forward_voltage_v / (1 - LEAST_RESISTOR_SHARE):.2f}",
+            f"is {volts:g}; one LED needs {led.forward_voltage_v:g} V and its resistor 10 % of the "
+            "supply: at least "
+            f"{led.forward_voltage_v / (1 - LEAST_RESISTOR_SHARE):.2f} is needed",
         )
         return Strings((), ())
     groups = np.array_split(_winding(cells), len(lengths(len(cells), longest)))
@@ -88,58 +89,56 @@ def string_problems(config: Input, strings: tuple[String, ...]) -> Iterator[tupl
     if max(highest, current) > led.max_current_ma:
         yield (
             "emitter.current_ma",
-            f"{current:g} mA gives up to {highest:.1f} mA over the tolerances of supply, LEDs and "
-            f"resistor; {p.emitter.led!r} takes at most {led.max_current_ma:g} mA",
+            f"is {current:g}, up to {highest:.1f} mA with all tolerances (supply, LEDs, resistor); "
+            f"{p.emitter.led!r} is rated for {led.max_current_ma:g} mA",
         )
     load = max(string.high_load_w for string in strings)
     allowed = MOST_RESISTOR_LOAD * package.power_w
     if load > allowed:
         yield (
             "emitter.resistor",
-            f"{p.emitter.resistor!r} takes at most {1000 * allowed:.0f} mW "
-            f"({100 * MOST_RESISTOR_LOAD:g} % of its rating); a string's resistor takes up to "
-            f"{1000 * load:.0f} mW at {current:g} mA nominal over the tolerances of supply, LEDs "
-            "and resistor",
+            f"is {p.emitter.resistor!r}, with a power of up to {1000 * load:.0f} mW at "
+            f"{current:g} mA and all tolerances (supply, LEDs, resistor); the limit is "
+            f"{1000 * allowed:.0f} mW ({100 * MOST_RESISTOR_LOAD:g} % of its rating)",
         )
     nominal = [string.nominal_ma for string in strings]
     spread = max(nominal) / min(nominal) - 1
     if spread > MOST_CURRENT_SPREAD:
         yield (
             "emitter.current_ma",
-            f"{current:g} given, strings would differ by {100 * spread:.1f} %; "
+            f"is {current:g}; the currents of the strings differ by {100 * spread:.1f} %; "
             f"at most {100 * MOST_CURRENT_SPREAD:g} % is allowed",
         )
     if sum(nominal) > p.supply.max_ma:
         yield (
             "supply.max_ma",
-            f"{p.supply.max_ma:g} given, {len(strings)} strings at {current:g} mA draw "
-            f"{sum(nominal):.1f} mA: at least that, or less emitter.current_ma, is needed",
+            f"is {p.supply.max_ma:g}; {len(strings)} strings at {current:g} mA draw "
+            f"{sum(nominal):.1f} mA. Increase it or reduce emitter.current_ma.",
         )
     heat_w = sum(nominal) * volts / 1000
     if heat_w > p.emitter.max_heat_w:
         yield (
             "emitter.max_heat_w",
-            f"{p.emitter.max_heat_w:g} given, {len(strings)} strings at {current:g} mA "
-            f"from {volts:g} V leave {heat_w:.2f} W in the finger: at least that, or less "
-            "emitter.current_ma, is needed",
+            f"is {p.emitter.max_heat_w:g}; {len(strings)} strings at {current:g} mA "
+            f"from {volts:g} V produce {heat_w:.2f} W in the finger. Increase it or reduce "
+            "emitter.current_ma.",
         )
 
 
 def _winding(cells: Cells) -> Integers:
-    """The cells along a path up one column and down the next: from neighbour to neighbour, but
-    for the step from a column to one of quite another length."""
+    """The cells up one column and down the next, so that successive cells are near each other."""
     order = np.lexsort((np.where(cells.column % 2, cells.row, -cells.row), cells.column))
     return np.asarray(order, dtype=np.int64)
 
 
 def _from_the_gripper(cells: Cells, string: Integers) -> tuple[int, ...]:
-    """A string that begins at its end nearer to the gripper, where its resistor is."""
+    """A string from its end nearer to the gripper, where its resistor is."""
     first, last = cells.y_mm[string[[0, -1]]]
     return tuple(string[:: -1 if last < first else 1].tolist())
 
 
-def derive_muxing(config: Input, cells: Cells, faults: Faults) -> Muxing:
-    """As few multiplexers as hold all detectors, each on an analog pin of its own."""
+def derive_muxing(config: Input, cells: Cells, faults: Diagnostics) -> Muxing:
+    """The fewest multiplexers for all detectors, each on its own analog pin."""
     p = config.parameters
     mux = config.catalogue.multiplexers[p.receiver.multiplexer]
     controller = config.catalogue.controllers[p.controller.board]
@@ -150,22 +149,22 @@ def derive_muxing(config: Input, cells: Cells, faults: Faults) -> Muxing:
     faults.refuse_unless(
         muxes <= len(pins),
         "grid.columns",
-        f"{len(cells)} cells given, which need {muxes} of {p.receiver.multiplexer!r} "
-        f"({mux.channels} inputs each); {p.controller.board!r} has {len(pins)} analog pins: at "
-        f"most {mux.channels * len(pins)} cells, or a multiplexer with more inputs",
+        f"has {len(cells)} cells, which need {muxes} of {p.receiver.multiplexer!r} "
+        f"({mux.channels} inputs each); {p.controller.board!r} has {len(pins)} analog pins. Use "
+        f"{mux.channels * len(pins)} cells or fewer, or a multiplexer with more inputs.",
     )
     faults.refuse_unless(
         len(mux.select) <= len(controller.select_pins),
         "receiver.multiplexer",
-        f"{p.receiver.multiplexer!r} given, which needs {len(mux.select)} select lines; "
+        f"is {p.receiver.multiplexer!r}, which needs {len(mux.select)} select lines; "
         f"{p.controller.board!r} has {len(controller.select_pins)}",
     )
     sold = sold_ohm(p.receiver.pull_up_ohm)
     faults.refuse_unless(
         math.isclose(sold, p.receiver.pull_up_ohm),
         "receiver.pull_up_ohm",
-        f"{p.receiver.pull_up_ohm:.10g} given, which is not sold: a value of the E24 or E96 series "
-        f"is needed, such as {sold:g}",
+        f"is {p.receiver.pull_up_ohm:.10g}, which is in neither the E24 nor the E96 series. "
+        f"Use {sold:g}.",
     )
     return Muxing(muxes, pins[:muxes], controller.select_pins[: len(mux.select)])
 
@@ -201,7 +200,7 @@ def pins_of(mux: Integers, adc_pins: tuple[str, ...]) -> NDArray[np.str_]:
     return np.array(adc_pins)[mux]
 
 
-def joined(config: Input, strings: Strings, muxing: Muxing) -> Wiring:
+def build_wiring(config: Input, strings: Strings, muxing: Muxing) -> Wiring:
     """All wiring beyond the layout."""
     p = config.parameters
     return Wiring(

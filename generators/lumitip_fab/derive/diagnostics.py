@@ -1,21 +1,26 @@
-"""Collects everything that is impossible together, so that all of it is reported at once."""
+"""Collector of the faults of a parameter file, so that all are reported at once."""
 
 from lumitip_fab.config.load import Input
 from lumitip_fab.errors import InputError, Problem
 
 
-class Faults:
+class Diagnostics:
     """The faults found so far in one parameter file."""
 
     def __init__(self, config: Input) -> None:
-        self._given = config
+        self._config = config
         self._found: list[Problem] = []
         self.stage = 0
-        """How many times derivation could go on: later rules are only reached without faults."""
+        """Number of stages of derivation that had no faults."""
 
     def refuse(self, field: str, message: str) -> None:
-        """Note a fault of a field; `message` has what was given and what is allowed."""
-        self._found.append(self._given.problem(field, message))
+        """Note a fault of a field.
+
+        Args:
+            field: its name, such as `"grid.pitch_mm"`.
+            message: continues the name: "is 1; at least 1.5 is needed".
+        """
+        self._found.append(self._config.problem(field, message))
 
     def refuse_unless(self, holds: bool, field: str, message: str) -> None:
         """Note a fault unless a condition holds."""

@@ -1,0 +1,278 @@
+"""Rules of coupling, holder and flange: refuse what does not fit or would break."""
+
+import math
+
+from lumitip_fab.catalogue.grippers import Gripper, ToolCoupling
+from lumitip_fab.config.load import Input
+from lumitip_fab.derive.boards.boards import HOLE_TO_EDGE_MM, Plan
+from lumitip_fab.derive.diagnostics import Diagnostics
+from lumitip_fab.derive.finger.stack import behind_mm
+from lumitip_fab.derive.making.fits import refuse_touching
+from lumitip_fab.design import Carrier, Flange, Holder, Outline, Point
+
+MOST_STRAIN = 0.01  # of the arms while they clip on; PETG yields at some 4 %
+DRILLED_MM = 0.1  # beyond a screw's thread, of the board's holes, truer than printed ones
+RING_MM = 0.4  # of the board, at least, that a screw's head presses on
+LEAST_GRIP_MM = 0.3  # each arm's end inside the body's widest place
+
+
+def refuse_place(
+    config: Input, gripper: Gripper, outline: Outline, plan: Plan, faults: Diagnostics
+) -> None:
+    """Refuse a block that does not stand on this finger's back."""
+    p = config.parameters
+    plate = behind_mm(p)
+    ramp = gripper.block_back_w_mm - plate
+    opening = plan.receiver.notch.y_max_mm - outline.end_y_mm
+    length = gripper.land_mm + ramp
+    faults.refuse_unless(
+        length <= outline.length_mm - p.tip.slant_start_mm and opening < length,
+        "coupling.gripper",
+        f"is {p.coupling.gripper!r}; its block and 45° ramp need {length:.1f} mm of finger "
+        f"beyond a wire notch of {opening:.1f} mm; the finger is {outline.length_mm:.1f} mm long",
+    )
+    waist = outline.half_width_at(outline.end_y_mm + length)
+    faults.refuse_unless(
+        waist >= gripper.block_width_mm / 2 + HOLE_TO_EDGE_MM,
+        "coupling.gripper",
+        f"is {p.coupling.gripper!r}; its block is {gripper.block_width_mm:g} mm wide, the finger "
+        f"only {2 * waist:.1f} mm; {HOLE_TO_EDGE_MM:g} mm on each side is needed",
+    )
+    faults.refuse_unless(
+        ramp > 0,
+        "stack.floor_mm",
+        f"is {p.stack.floor_mm:g}, which makes a plate of {plate:g} mm; less than the "
+        f"{gripper.block_back_w_mm:g} mm of the block of {p.coupling.gripper!r} is allowed",
+    )
+
+
+def refuse_block(config: Input, gripper: Gripper, faults: Diagnostics) -> None:
+    """Refuse holes that leave too little of the block between them and round them."""
+    p, pins = config.parameters, gripper.pins
+    head, hole = gripper.counterbore_mm / 2, gripper.bolt_hole_mm / 2 + p.printer.fit_mm
+    apart = gripper.bolt_spacing_mm
+    line_mm = config.catalogue.printers[p.printer.profile].line_mm
+    walls = (
+        ("behind its counterbores", gripper.block_back_w_mm - gripper.bolt_w_mm - head, None),
+        ("beside its counterbores", gripper.block_width_mm / 2 - (apart or 0.0) / 2 - head, None),
+        ("between its counterbores", apart - 2 * head if apart else math.inf, None),
+        ("at its corners", _corner_wall_mm(gripper, head), None),
+        ("round the bolts under their heads", head - hole, line_mm),
+        ("over the pins", gripper.land_mm - (pins.depth_mm if pins else 0.0), None),
+        ("between bolts and pins", _to_pins_mm(gripper, p.printer.fit_mm), line_mm),
+    )
+    for place, wall, printed in walls:
+        least = p.printer.min_wall_mm if printed is None else printed
+        faults.refuse_unless(
+            wall >= least - 1e-9,
+            "coupling.gripper",
+            f"is {p.coupling.gripper!r}, whose block has {wall:.2f} mm of wall {place}; at "
+            f"least {least:g} mm is needed",
+        )
+
+
+def _to_pins_mm(gripper: Gripper, fit_mm: float) -> float:
+    """Wall between a bolt's hole and a pin's beside it; none where the pins are sleeves."""
+    pins, bolts = gripper.pins, gripper.bolt_spacing_mm or 0.0
+    if pins is None or pins.spacing_mm == bolts:
+        return math.inf
+    return abs(pins.spacing_mm - bolts) / 2 - (pins.hole_mm + gripper.bolt_hole_mm) / 2 - 2 * fit_mm
+
+
+def _corner_wall_mm(gripper: Gripper, head_mm: float) -> float:
+    """Wall between a counterbore and the rounded corner of the block's back."""
+    radius = gripper.block_corner_mm
+    across = (gripper.bolt_spacing_mm or 0.0) / 2 - (gripper.block_width_mm / 2 - radius)
+    back = gripper.bolt_w_mm - (gripper.block_back_w_mm - radius)
+    if across <= 0 or back <= 0:
+        return math.inf  # the straight sides are nearer
+    return radius - math.hypot(across, back) - head_mm
+
+
+def shoulder_deg(x_mm: float, radius_mm: float) -> float:
+    """Angle at which the tray's side meets the arm, from the middle of the tray."""
+    return math.degrees(math.asin(min(x_mm / radius_mm, 1.0)))
+
+
+def refuse_holder(config: Input, of: Carrier, holder: Holder, faults: Diagnostics) -> None:
+    """Refuse a tray wider than its cradle, arms that break or do not hold, bosses under tails."""
+    _refuse_board_holes(config, of, faults)
+    _refuse_nuts(config, holder, faults)
+    p, outer = config.parameters.holder, holder.cradle_mm + holder.wall_mm
+    beyond = holder.outer.x_max_mm - outer
+    if beyond > 0:
+        value = f"{holder.body_mm:g}"
+        if p.body_mm == "gripper":
+            value = f"'gripper', whose entry has {value} mm"
+        faults.refuse(
+            "holder.body_mm",
+            f"is {value}; the tray is {holder.outer.width_mm:.1f} mm wide: at least "
+            f"{math.ceil((holder.body_mm + 2 * beyond) * 10) / 10:g} is needed",
+        )
+        return
+    refuse_touching(config, "holder.clearance_mm", p.clearance_mm, faults)
+    _refuse_straps(config, holder, faults)
+    printed_mm = holder.cradle_mm - config.parameters.printer.fit_mm  # what is made of it
+    grip = holder.body_mm / 2 - printed_mm * math.sin(math.radians(holder.wrap_deg))
+    faults.refuse_unless(
+        grip >= LEAST_GRIP_MM,
+        "holder.wrap_deg",
+        f"is {p.wrap_deg:g}, with the arms' ends {grip:.2f} mm inside the body's widest place; at "
+        f"least {LEAST_GRIP_MM:g} mm is needed. Increase it or reduce holder.clearance_mm.",
+    )
+    free_deg = holder.wrap_deg - shoulder_deg(holder.outer.x_max_mm, outer)
+    length = outer * math.radians(free_deg)
+    strain = 3 * holder.wall_mm * max(grip, 0.0) / (2 * length**2)
+    faults.refuse_unless(
+        strain <= MOST_STRAIN,
+        "holder.wrap_deg",
+        f"is {p.wrap_deg:g}; clipping on strains the arms by {100 * strain:.1f} %; at most "
+        f"{100 * MOST_STRAIN:g} % is allowed. Reduce it or holder.wall_mm.",
+    )
+    half_x, half_y = holder.boss_mm[0] / 2, holder.boss_mm[2] / 2
+    tails = [
+        abs(device.y_mm + land.y_mm) - land.height_mm / 2
+        for device in of.devices
+        for land in device.pattern.lands
+        for x, _ in of.holes
+        if land.drill_mm and abs(device.x_mm + land.x_mm - x) < half_x + land.width_mm / 2
+    ]
+    faults.refuse_unless(
+        min(tails, default=math.inf) >= half_y,
+        "holder.standoff_mm",
+        f"is {p.standoff_mm:g}; the bosses under the screws would be {2 * half_y:.1f} mm wide "
+        f"and reach solder tails; at most {min(tails, default=0.0) - holder.boss_mm[1] / 2:.2f} is "
+        "allowed",
+    )
+
+
+def _refuse_board_holes(config: Input, of: Carrier, faults: Diagnostics) -> None:
+    """Refuse holes of the board that its screws do not go through, or whose heads do."""
+    thread = config.parameters.holder.screw
+    screw = config.catalogue.fasteners[thread]
+    least, most = screw.thread_mm + DRILLED_MM, screw.cap_head_mm - 2 * RING_MM
+    faults.refuse_unless(
+        least - 1e-9 <= of.hole_mm <= most + 1e-9,
+        "breakout.hole_mm",
+        f"is {of.hole_mm:g}; {least:g} to {most:g} is allowed for an {thread} (holder.screw) "
+        f"and its head of {screw.cap_head_mm:g} mm",
+    )
+
+
+def _refuse_nuts(config: Input, holder: Holder, faults: Diagnostics) -> None:
+    """Refuse screws that reach the gripper behind their seat, with their nuts or their ends."""
+    screw = config.catalogue.fasteners[holder.screw]
+    beyond = holder.screw_length_mm - (holder.top_z_mm - holder.seat_z_mm)
+    middle = min(abs(x) for x, _ in holder.holes)
+    for what, inner, needed in (
+        ("nuts", middle - screw.nut_mm / math.sqrt(3), screw.nut_height_mm),
+        (f"ends of {holder.screw_length_mm:g} mm", middle - screw.thread_mm / 2, beyond),
+    ):
+        body = math.sqrt(max((holder.body_mm / 2) ** 2 - max(inner, 0.0) ** 2, 0.0))
+        faults.refuse_unless(
+            holder.cradle_mm - body >= needed,
+            "holder.screw",
+            f"is {holder.screw!r}, whose {what} reach {needed:.2f} mm under their seat; the "
+            f"gripper is {holder.cradle_mm - body:.2f} mm away. Choose thinner screws or increase "
+            "breakout.hole_spacing_mm.",
+        )
+
+
+def _refuse_straps(config: Input, holder: Holder, faults: Diagnostics) -> None:
+    """Refuse holes through the arms that leave too little wall to each other or to an arm's end."""
+    p, wall = config.parameters.holder, config.parameters.printer.min_wall_mm
+    least = p.strap_hole_mm + wall
+    most = 2 * (holder.outer.y_max_mm - wall) - p.strap_hole_mm
+    room = f"{least:g} to {most:g} is allowed" if least <= most else "a narrower hole is needed"
+    faults.refuse_unless(
+        least - 1e-9 <= p.strap_spacing_mm <= most + 1e-9,
+        "holder.strap_spacing_mm",
+        f"is {p.strap_spacing_mm:g}; {room} for holes of {p.strap_hole_mm:g} mm in arms "
+        f"{holder.outer.length_mm:g} mm wide, with walls of {wall:g} mm beside them",
+    )
+    reach = math.radians(holder.wrap_deg - holder.strap_deg) * holder.cradle_mm
+    faults.refuse_unless(
+        reach - p.strap_hole_mm / 2 >= wall,
+        "holder.strap_hole_mm",
+        f"is {p.strap_hole_mm:g}; the arms end {reach:.1f} mm from the centre of their holes; at "
+        f"most {2 * (reach - wall):.1f} is allowed. Reduce it or increase holder.wrap_deg.",
+    )
+
+
+def refuse_flange(config: Input, flange: Flange, faults: Diagnostics) -> None:
+    """Refuse floors and walls thinner than the printer's, and what does not fit the coupling."""
+    p, least = config.parameters.flange, config.parameters.printer.min_wall_mm
+    coupling = config.catalogue.couplings[p.coupling]
+    floor = flange.board_z_mm - flange.tail_mm - flange.seat_z_mm
+    faults.refuse_unless(
+        floor >= least - 1e-9,
+        "flange.contacts",
+        f"is {p.contacts!r}, {flange.contacts_mm:g} mm high, which leaves {floor:.2f} mm of floor "
+        f"under the solder tails; at least {least:g} mm is needed. Use longer contacts or reduce "
+        "flange.tail_mm.",
+    )
+    faults.refuse_unless(
+        p.web_mm >= least,
+        "flange.web_mm",
+        f"is {p.web_mm:g}; at least printer.min_wall_mm = {least:g} is needed",
+    )
+    room = flange.socket_z_mm - least - flange.seat_z_mm
+    faults.refuse_unless(
+        flange.pin_depth_mm <= room + 1e-9,
+        "flange.header",
+        f"is {p.header!r}, which makes the flange {flange.top_z_mm:.1f} mm high, with "
+        f"{room:.1f} mm for its locating pin; {flange.pin_depth_mm:g} mm is needed. Choose a "
+        "taller header.",
+    )
+    rim = (flange.face_mm - flange.recess_mm) / 2
+    faults.refuse_unless(
+        rim >= least - 1e-9,
+        "flange.coupling",
+        f"is {p.coupling!r}, which leaves {rim:.2f} mm of wall round the gripper's recess of "
+        f"{flange.recess_mm:g} mm; at least {least:g} mm is needed",
+    )
+    refuse_touching(config, "flange.clearance_mm", p.clearance_mm, faults)
+    _refuse_walls(config, flange, coupling, faults)
+
+
+def _refuse_walls(
+    config: Input, flange: Flange, coupling: ToolCoupling, faults: Diagnostics
+) -> None:
+    """Refuse holes that come near the board's pocket, and whatever reaches beyond the spigot."""
+    printer, name = config.parameters.printer, config.parameters.flange.coupling
+    least_mm = printer.min_wall_mm
+    fitted = f", with printer.fit_mm = {printer.fit_mm:g}" if printer.fit_mm else ""
+    radius = min(flange.spigot_mm / 2, flange.face_mm / 2 - least_mm)
+    for what, places, hole_mm in (
+        ("a bolt", flange.bolts, flange.bolt_hole_mm),
+        ("the locating pin", (flange.pin_at,), flange.socket_mm),
+        ("the peg", (flange.peg_at,), flange.peg_hole_mm),
+    ):
+        inside = min(_to_pocket(flange, at) for at in places) - hole_mm / 2
+        outside = radius - max(math.hypot(*at) for at in places) - hole_mm / 2
+        faults.refuse_unless(
+            min(inside, outside) >= least_mm,
+            "flange.coupling",
+            f"is {name!r}, where {what} leaves {inside:.2f} mm of wall to the board's pocket "
+            f"and {outside:.2f} mm to the outside{fitted}; at least {least_mm:g} mm is needed",
+        )
+    box, corner = flange.pocket, flange.pocket_corner_mm
+    reach = max(
+        math.hypot(abs(x) - corner, abs(y) - corner) + corner
+        for x in (box.x_min_mm, box.x_max_mm)
+        for y in (box.y_min_mm, box.y_max_mm)
+    )
+    faults.refuse_unless(
+        reach <= radius - least_mm,
+        "flange.coupling",
+        f"is {name!r}, whose recess of {coupling.recess_mm:g} mm is too small for the board"
+        f"{fitted}; at least {coupling.recess_mm + 2 * (reach + least_mm - radius):.1f} is needed",
+    )
+
+
+def _to_pocket(flange: Flange, at: Point) -> float:
+    """Distance of a point from the pocket, a rectangle with round corners."""
+    box, corner = flange.pocket, flange.pocket_corner_mm
+    across = max(box.x_min_mm + corner - at[0], at[0] - box.x_max_mm + corner, 0.0)
+    along = max(box.y_min_mm + corner - at[1], at[1] - box.y_max_mm + corner, 0.0)
+    return math.hypot(across, along) - corner
