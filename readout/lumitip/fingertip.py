@@ -263,8 +263,8 @@ class Fingertip:
     def _needs_device(self) -> None:
         if isinstance(self._hub.link, Calibrated):
             raise CalibrationError(
-                f"this is a recording of {self.device_id}; only the device can be calibrated: open "
-                "the device"
+                f"this is a recording of {self.device_id}; calibrations are saved only for "
+                "devices. Open the device"
             )
 
     def _saved_calibration(self) -> Calibration:

@@ -253,7 +253,7 @@ def test_a_folder_that_is_a_file_is_told_before_the_trials(
 ) -> None:
     (tmp_path / "taken").write_text("", encoding="utf-8")
     assert main(["bench-tasks", "--trials", "1", "--out", str(tmp_path / "taken")]) == 2
-    assert "cannot be made a folder" in capsys.readouterr().err
+    assert "cannot be created" in capsys.readouterr().err
 
 
 def test_scenes_and_places_of_a_twin(twin: Twin) -> None:

@@ -44,7 +44,7 @@ def add(subparsers: Subparsers) -> None:
         "doctor",
         doctor,
         "Find dead, saturated, noisy and swapped cells.",
-        "Meanwhile move an object over all cells, in all directions: this is needed to find "
+        "During the test move an object over all cells, in all directions: this is needed to find "
         "swapped cells. Exit code 1 if a fault is found.",
     )
     add_fingertip(parser)

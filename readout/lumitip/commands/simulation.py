@@ -108,10 +108,10 @@ def bench_tasks(options: argparse.Namespace) -> int:
     from lumitip.tasks.report import goals, write
 
     layout = Layout.load(options.layout) if options.layout else published_layout()
-    try:  # before the trials, which take long
+    try:  # before the long trials
         options.out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise LumitipError(f"--out {options.out}: cannot be made a folder: {error}") from error
+        raise LumitipError(f"--out {options.out}: cannot be created: {error}") from error
     say = partial(print, flush=True)
     results = run(layout, options.trials, say=say, cores=options.cores)
     for path in write(results, options.out):

@@ -137,7 +137,7 @@ class Hub:
     def _why_silent(self) -> str:
         fault = self.intake.last_fault
         if not self._connected:
-            return f"the link to {self.link.device_id} is lost and reconnects"
+            return f"the connection to {self.link.device_id} is lost; reconnecting"
         if fault:
             return f"{self.stats.unreadable} packets could not be decoded, the last: {fault.why}"
         return f"{self.link.device_id} is connected but sends nothing; is its firmware running?"

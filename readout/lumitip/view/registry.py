@@ -91,7 +91,7 @@ class FingerRegistry:
             event.set()
 
     def describe(self) -> list[dict[str, Any]]:
-        """What the page needs to draw the fingers, as JSON can say it."""
+        """Layouts of the fingers for JSON."""
         return [
             {
                 "number": number,

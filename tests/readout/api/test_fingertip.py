@@ -81,7 +81,7 @@ def test_a_timeout_is_by_the_clock_and_says_why(open_feed) -> None:
     with pytest.raises(LinkTimeout, match=r"1 packets could not be decoded.*a crc fault"):
         tip.read(0.01)
     feed.report(LinkEvent("lost", "gone"))
-    with pytest.raises(TimeoutError, match="is lost and reconnects"):
+    with pytest.raises(TimeoutError, match="is lost; reconnecting"):
         tip.read(0.01)
     assert not tip.connected
 

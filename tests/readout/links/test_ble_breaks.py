@@ -26,7 +26,7 @@ def test_a_cut_link_is_made_again(bluez: FakeBluez, device, until: Until) -> Non
         peer.refuse = 1
         bluez.cut(peer)
         until(lambda: not tip.connected)
-        with pytest.raises(LinkTimeout, match="is lost and reconnects"):
+        with pytest.raises(LinkTimeout, match="is lost; reconnecting"):
             tip.read(0.0)
         until(lambda: tip.stats.reconnects == 1)
         send(bluez, peer, device.packet(10, 2))

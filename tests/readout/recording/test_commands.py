@@ -264,5 +264,5 @@ def test_what_is_kept_for_a_device_is_not_changed_by_its_recording(
     for arguments in (["tare", url], ["tare", url, "--forget"]):
         before = kept.read_bytes()
         assert main(arguments) == 2
-        assert "open the device" in capsys.readouterr().err
+        assert "Open the device" in capsys.readouterr().err
         assert kept.read_bytes() == before

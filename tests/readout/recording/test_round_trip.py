@@ -270,7 +270,7 @@ def test_files_that_are_no_recordings_are_refused(tmp_path: Path) -> None:
         ("a\0b", "cannot be read"),
         ("text.mcap", "is not a recording"),
         ("empty.mcap", "is not a recording"),
-        ("other.mcap", "no recording of a fingertip"),
+        ("other.mcap", "not a recording of a fingertip"),
     ):
         with pytest.raises(RecordingError, match=said) as caught:
             Reader(tmp_path / name)

@@ -154,7 +154,7 @@ def test_figures_are_those_of_the_processor(serve: Serve, page: Page, finger: Fi
 
 def test_scale_gets_lighter_for_every_kind_of_colour_vision(serve: Serve, page: Page) -> None:
     opened(page, serve(TWIN))
-    told = page.evaluate("import('/colour.js').then((m) => m.RAMP)")
+    told = page.evaluate("import('/canvas.js').then((m) => m.RAMP)")
     coded = np.array(told) / 255
     linear = np.where(coded <= 0.04045, coded / 12.92, ((coded + 0.055) / 1.055) ** 2.4)
     # Machado, Oliveira and Fernandes 2009, severity 1: protan, deutan, tritan; then luminance.
