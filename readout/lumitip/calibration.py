@@ -179,8 +179,8 @@ class Calibration:
             found = cls(
                 str(record["device_id"]),
                 str(record["design_hash"]),
-                _array(record["empty"]),
-                _array(record["dark"]),
+                record["empty"],
+                record["dark"],
             )
             found.correction()
             return found
@@ -268,12 +268,3 @@ def _cells(which: Sequence[int] | np.ndarray[tuple[int], np.dtype[np.int64]]) ->
 
 def _listed(values: Values | None) -> list[float] | None:
     return None if values is None else [round(float(v), 4) for v in values]
-
-
-def _array(numbers: object) -> Values | None:
-    if numbers is None:
-        return None
-    values: Values = np.array(numbers, dtype=np.float32)
-    if values.ndim != 1 or not np.isfinite(values).all():
-        raise ValueError("a list of numbers is needed")
-    return values

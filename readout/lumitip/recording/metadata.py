@@ -6,8 +6,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.metadata import version
 
-import numpy as np
-
 from lumitip import arguments
 from lumitip.calibration import Calibration
 from lumitip.errors import LayoutError
@@ -103,20 +101,10 @@ def _calibration(text: str, device_id: str, layout: Layout) -> Calibration | Non
     references = json.loads(text)
     if references is None:
         return None
-    found = Calibration(
-        device_id,
-        layout.design_hash,
-        _values(references.get("empty"), len(layout)),
-        _values(references.get("dark"), len(layout)),
-    )
-    found.correction()
-    return found
-
-
-def _values(numbers: object, cells: int) -> Values | None:
-    if numbers is None:
-        return None
-    values: Values = np.array(numbers, dtype=np.float32)
-    if values.shape != (cells,) or not np.isfinite(values).all():
-        raise ValueError(f"a calibration of {cells} numbers is needed")
-    return values
+    if not isinstance(references, dict):
+        raise ValueError("calibration: an object is needed")
+    empty, dark = references.get("empty"), references.get("dark")
+    calibration = Calibration(device_id, layout.design_hash, empty, dark)
+    calibration.check(device_id, layout.design_hash, len(layout))
+    calibration.correction()
+    return calibration

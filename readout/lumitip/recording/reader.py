@@ -160,7 +160,7 @@ def read_metadata(stream: BinaryIO, source: str) -> Metadata:
             raise RecordingError(f"{source} is not a recording, or is truncated: {record.why}")
         if isinstance(record, Chunk | Message):
             break
-    raise RecordingError(f"{source}: is an MCAP file, but not a recording of a fingertip")
+    raise RecordingError(f"{source} is an MCAP file, but not a recording of a fingertip")
 
 
 def read_frames(stream: BinaryIO, cells: int) -> Iterator[RecordedFrame | Fault]:
