@@ -13,8 +13,8 @@ import numpy as np
 
 from goals import Goals
 from lumitip.protocol import cobs
+from lumitip.protocol.cobs import StreamDecoder
 from lumitip.protocol.packet import Packet, decode, encode, largest_batch
-from lumitip.protocol.stream import StreamDecoder
 
 CELLS = 32
 MTU = 242

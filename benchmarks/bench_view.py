@@ -17,7 +17,7 @@ from playwright.sync_api import Page, sync_playwright
 
 from goals import Goals
 from lumitip.view.finger import Finger
-from lumitip.view.room import Room
+from lumitip.view.registry import FingerRegistry
 from lumitip.view.server import ViewServer
 
 URLS = ("twin://demo?rate=200", "twin://cable?rate=200")
@@ -96,7 +96,7 @@ def main(seconds: float) -> int:
         fingers = [Finger.open(url) for url in urls]
         with (
             tempfile.TemporaryDirectory() as folder,
-            ViewServer(Room(fingers, Path(folder)), port=0) as server,
+            ViewServer(FingerRegistry(fingers, Path(folder)), port=0) as server,
             sync_playwright() as playwright,
         ):
             browser = playwright.chromium.launch(executable_path=chromium, args=arguments)

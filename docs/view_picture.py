@@ -7,7 +7,7 @@ from pathlib import Path
 from playwright.sync_api import sync_playwright
 
 from lumitip.view.finger import Finger
-from lumitip.view.room import Room
+from lumitip.view.registry import FingerRegistry
 from lumitip.view.server import ViewServer
 
 PICTURE = Path(__file__).parent / "images" / "view.png"
@@ -22,7 +22,7 @@ def main(chromium: str) -> None:
     """Open the page, select cells, wait until the plot is filled, take the picture."""
     with (
         tempfile.TemporaryDirectory() as folder,
-        ViewServer(Room([Finger.open(SHOWN)], Path(folder)), port=0) as server,
+        ViewServer(FingerRegistry([Finger.open(SHOWN)], Path(folder)), port=0) as server,
         sync_playwright() as playwright,
     ):
         browser = playwright.chromium.launch(

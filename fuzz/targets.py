@@ -13,8 +13,8 @@ from fuzz.recordings import read_recording, recordings
 from lumitip.errors import LayoutError
 from lumitip.protocol import cobs
 from lumitip.protocol.bluetooth import Fault, Status, decode_legacy
+from lumitip.protocol.cobs import StreamDecoder
 from lumitip.protocol.packet import Packet, PacketError, decode, encode
-from lumitip.protocol.stream import StreamDecoder
 from lumitip.recording import RecordingError
 
 CELLS = 12

@@ -1,6 +1,6 @@
-"""Lumitip on the robot's side: the layout of a fingertip and everything that reads it.
+"""The robot side of Lumitip: the layout of a fingertip, and the programs that read it.
 
-Needs numpy alone; links, recording and views come with extras.
+Needs only numpy; links, recordings and views need extras.
 """
 
 from importlib import import_module
@@ -34,7 +34,7 @@ __all__ = [
     "Stats",
 ]
 
-_LATER = {
+_LAZY = {
     "AsyncFingertip": "async_fingertip",
     "Block": "frame",
     "Calibration": "calibration",
@@ -47,7 +47,7 @@ _LATER = {
 
 
 def __getattr__(name: str) -> Any:
-    # What only a reader needs is imported when it is first named: many programs want the layout.
-    if name not in _LATER:
+    # Imported on first use: many programs need only the layout.
+    if name not in _LAZY:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f"{__name__}.{_LATER[name]}"), name)
+    return getattr(import_module(f"{__name__}.{_LAZY[name]}"), name)

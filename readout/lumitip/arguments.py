@@ -1,4 +1,4 @@
-"""Arguments that several calls take: one rule and one error for each."""
+"""Checks of arguments that several functions take."""
 
 import math
 import operator
@@ -17,45 +17,44 @@ from lumitip.layout import Layout
 from lumitip.values import as_float, shown
 
 Error = type[LumitipError]
-_Wanted = TypeVar("_Wanted")
-_NUMBERS = "biufO"  # kinds of arrays that may hold numbers; of texts and of dates never do
+_T = TypeVar("_T")
+_NUMBERS = "biufO"  # kinds of numpy arrays that can hold numbers
 _PLAIN = {float, int, bool, np.float64}
 
 
-def seconds(given: object, name: str = "timeout") -> float | None:
-    """A time to wait (s); `None` and infinity are as long as it takes and come back as `None`.
+def seconds(value: object, name: str = "timeout") -> float | None:
+    """A time to wait (s); `None` and infinity mean no limit, and return `None`.
 
     Raises:
         ArgumentError: if it is negative, NaN or no number.
     """
-    if given is None:
+    if value is None:
         return None
-    told = as_float(given)
-    if not told >= 0.0:
+    result = as_float(value)
+    if not result >= 0.0:
         raise ArgumentError(
-            f"{name}: {shown(given)} given, seconds from 0 on are needed, or None to wait as long "
-            "as it takes"
+            f"{name} is {shown(value)}; seconds from 0 on are needed, or None to wait without limit"
         )
-    return None if told == math.inf else told
+    return None if result == math.inf else result
 
 
-def count(given: object, name: str, least: int = 1, error: Error = ArgumentError) -> int:
-    """A number of things.
+def count(value: object, name: str, least: int = 1, error: Error = ArgumentError) -> int:
+    """A whole number from `least` on.
 
     Raises:
-        ArgumentError: or `error`, if it is below `least`, or no whole number.
+        ArgumentError: or `error`, if it is not.
     """
     try:
-        told = operator.index(given) if isinstance(given, SupportsIndex) else least - 1
+        result = operator.index(value) if isinstance(value, SupportsIndex) else least - 1
     except TypeError:
-        told = least - 1
-    if told < least:
-        raise error(f"{name}: {shown(given)} given, a whole number from {least} on is needed")
-    return told
+        result = least - 1
+    if result < least:
+        raise error(f"{name} is {shown(value)}; a whole number from {least} on is needed")
+    return result
 
 
 def number(
-    given: object,
+    value: object,
     name: str,
     least: float = -math.inf,
     most: float = math.inf,
@@ -66,101 +65,97 @@ def number(
     """A finite number from `least` to `most`, and above `above`.
 
     Raises:
-        ArgumentError: or `error`, if it is none.
+        ArgumentError: or `error`, if it is not.
     """
-    told = as_float(given)
-    if not (math.isfinite(told) and least <= told <= most and told > above):
-        raise error(f"{name}: {shown(given)} given, {_needed(least, most, above)} is needed")
-    return told
+    result = as_float(value)
+    if not (math.isfinite(result) and least <= result <= most and result > above):
+        raise error(f"{name} is {shown(value)}; {_needed(least, most, above)} is needed")
+    return result
 
 
-def numbers(given: object, name: str, error: Error = ArgumentError) -> Floats:
-    """Numbers as an array of floats, not copied if they are one.
+def numbers(value: object, name: str, error: Error = ArgumentError) -> Floats:
+    """Numbers as an array of floats, without a copy where possible.
 
     Raises:
-        ArgumentError: or `error`, if they are no numbers, or rows of different lengths.
+        ArgumentError: or `error`, if they are not numbers, or rows differ in length.
     """
     why: Exception | None = None
     try:
-        told = np.asarray(given)
-        texts = told.dtype.kind == "O" and any(isinstance(one, str | bytes) for one in told.flat)
-        if told.dtype.kind in _NUMBERS and not texts:  # which would be read as numbers
-            return told.astype(np.float64, copy=False)
+        result = np.asarray(value)
+        texts = result.dtype.kind == "O" and any(isinstance(v, str | bytes) for v in result.flat)
+        if result.dtype.kind in _NUMBERS and not texts:  # numpy would convert texts
+            return result.astype(np.float64, copy=False)
     except (TypeError, ValueError, OverflowError) as caught:
         why = caught
     raise error(
-        f"{name}: {shown(given)} given, numbers of one shape are needed, such as frame.values"
+        f"{name} is {shown(value)}; an array of numbers is needed, such as frame.values"
     ) from why
 
 
 def finite_fields(of: Any, error: Error) -> None:
-    """Refuse a dataclass of which a field that is declared a float is no finite number.
-
-    Numbers of other libraries, which floats may not be added to, become floats.
+    """Reject a dataclass whose float fields are not all finite; convert them to plain floats.
 
     Raises:
-        LumitipError: `error`, naming the first of them.
+        LumitipError: `error`, naming the first such field.
     """
     names, values_of = _float_fields(of.__class__)
     values = values_of(of)
     try:
-        # Of all at once: scenes are made by the ten thousand.
+        # All at once: tens of thousands of scenes are made.
         if _PLAIN.issuperset(map(type, values)) and math.isfinite(sum(values)):
             return
     except OverflowError:
         pass
-    for name, given in zip(names, values, strict=True):
-        told = number(given, name, error=error)
-        if type(given) not in _PLAIN:
-            object.__setattr__(of, name, told)
+    for name, value in zip(names, values, strict=True):
+        result = number(value, name, error=error)
+        if type(value) not in _PLAIN:
+            object.__setattr__(of, name, result)
 
 
-def layout(given: object) -> Layout:
-    """A layout that was read.
+def layout(value: object) -> Layout:
+    """Reject anything but a layout.
 
     Raises:
-        LayoutError: if it is none.
+        LayoutError: if it is not a `Layout`.
     """
-    if not isinstance(given, Layout):
+    if not isinstance(value, Layout):
         raise LayoutError(
-            f"{shown(given)} given, a Layout is needed: Layout.load('outputs/layout.json') or "
-            "tip.layout"
+            f"layout is {shown(value)}; a Layout is needed, such as "
+            "Layout.load('outputs/layout.json') or tip.layout"
         )
-    return given
+    return value
 
 
-def instance(
-    given: object, wanted: type[_Wanted], name: str, error: Error = ArgumentError
-) -> _Wanted:
-    """Something of a class of this package.
+def instance(value: object, kind: type[_T], name: str, error: Error = ArgumentError) -> _T:
+    """Reject anything but an instance of a class.
 
     Raises:
-        ArgumentError: or `error`, if it is of another.
+        ArgumentError: or `error`, if it is not.
     """
-    if not isinstance(given, wanted):
-        raise error(f"{name}: {shown(given)} given, a {wanted.__name__} is needed")
-    return given
+    if not isinstance(value, kind):
+        raise error(f"{name} is {shown(value)}; a {kind.__name__} is needed")
+    return value
 
 
-def function(given: object, name: str) -> None:
-    """Refuse what cannot be called.
+def function(value: object, name: str) -> None:
+    """Reject anything but a function.
 
     Raises:
-        ArgumentError: if it cannot.
+        ArgumentError: if it cannot be called.
     """
-    if not callable(given):
-        raise ArgumentError(f"{name}: {shown(given)} given, a function is needed")
+    if not callable(value):
+        raise ArgumentError(f"{name} is {shown(value)}; a function is needed")
 
 
-def path(given: object, error: Error = ArgumentError) -> Path:
+def path(value: object, error: Error = ArgumentError) -> Path:
     """The path of a file.
 
     Raises:
-        ArgumentError: or `error`, if it is no text and no `Path`.
+        ArgumentError: or `error`, if it is neither text nor a `Path`.
     """
-    if not isinstance(given, str | os.PathLike):
-        raise error(f"{shown(given)} given, the path of a file is needed")
-    return Path(given)
+    if not isinstance(value, str | os.PathLike):
+        raise error(f"the path is {shown(value)}; the name of a file is needed")
+    return Path(value)
 
 
 def _needed(least: float, most: float, above: float) -> str:
@@ -175,7 +170,7 @@ def _needed(least: float, most: float, above: float) -> str:
 @lru_cache(maxsize=64)
 def _float_fields(of: type[Any]) -> tuple[tuple[str, ...], Callable[[Any], tuple[Any, ...]]]:
     names = tuple(field.name for field in fields(of) if field.type is float)
-    if len(names) == 1:  # of one name the getter gives no tuple
+    if len(names) == 1:  # `attrgetter` of one name returns no tuple
         one = operator.attrgetter(*names)
         return names, lambda instance: (one(instance),)
     return names, operator.attrgetter(*names)

@@ -22,11 +22,9 @@ from lumitip.session.hub import Hub
 class AsyncFingertip:
     """An open fingertip, read by coroutines of one loop; made by `AsyncFingertip.open`.
 
-    Coroutines are for the loop that entered it, where any number of tasks may call them; `open`,
-    `latest` and `fingertip` may be called from any thread.
-
-    `tip.fingertip` is the plain one underneath, for what needs no waiting: `latest()`, `stats`,
-    `layout`, `device_id`, `connected`, `drift`, `calibration`, `subscribe`.
+    Tasks of the loop that entered it may call the coroutines. `tip.fingertip` is the `Fingertip`,
+    for all that does not wait: `latest()`, `stats`, `layout`, `device_id`, `connected`, `drift`,
+    `calibration`, `subscribe`.
     """
 
     def __init__(self, url: str, options: dict[str, Any]) -> None:
@@ -39,13 +37,12 @@ class AsyncFingertip:
 
     @classmethod
     def open(cls, url: str, layout: Any = None, **options: Any) -> "AsyncFingertip":
-        """A fingertip to enter with `async with`; arguments and errors as of `Fingertip.open`.
-        From any thread."""
+        """A fingertip for `async with`; arguments and errors of `Fingertip.open`."""
         return cls(url, {"layout": layout, **options})
 
     @property
     def fingertip(self) -> Fingertip:
-        """The plain fingertip underneath. From any thread.
+        """The `Fingertip`. From any thread.
 
         Raises:
             FingertipClosed: outside of `async with`.
@@ -59,30 +56,29 @@ class AsyncFingertip:
         return self.fingertip.latest()
 
     async def read(self, timeout: float | None = 1.0) -> Frame:
-        """As `Fingertip.read`, for tasks of the loop; a call that is cancelled takes no frame."""
+        """As `Fingertip.read`; a cancelled call takes no frame."""
         return await self._reading().next(timeout)
 
     async def get_data(self, num_samples: int, timeout: float | None = 10.0) -> Block:
-        """As `Fingertip.get_data`, for tasks of the loop, also in what its errors hold."""
-        wanted, within_s = count(num_samples, "num_samples"), seconds(timeout)
+        """As `Fingertip.get_data`, errors included."""
+        number, timeout_s = count(num_samples, "num_samples"), seconds(timeout)
         frames: list[Frame] = []
         try:
-            async with asyncio.timeout(within_s):
-                while len(frames) < wanted:
+            async with asyncio.timeout(timeout_s):
+                while len(frames) < number:
                     frames.append(await self._reading().next(None))
         except TimeoutError:
-            raise too_late(frames, wanted, within_s or 0.0) from None
+            raise too_late(frames, number, timeout_s or 0.0) from None
         except EndOfRecording as end:
-            raise ended_early(frames, wanted, end) from None
+            raise ended_early(frames, number, end) from None
         return Block.of(frames)
 
     async def tare(self, kind: Kind = "empty", **options: Any) -> Calibration:
-        """As `Fingertip.tare`, for tasks of the loop, which runs on meanwhile."""
+        """As `Fingertip.tare`, on another thread."""
         return await asyncio.to_thread(self.fingertip.tare, kind, **options)
 
     async def __aiter__(self) -> AsyncIterator[Frame]:
-        """Every frame from the first step of the loop on, to the end of a recording or closing.
-        Any number of tasks of the loop may do so, each with every frame."""
+        """Every frame from now to the end of a recording or `close`; each task gets all frames."""
         tip = self.fingertip
         queue = _AsyncQueue(tip._hub, tip._buffer)
         try:
@@ -116,7 +112,7 @@ class AsyncFingertip:
             tip.close()
 
     def _abandon(self) -> None:
-        # The thread that connects cannot be stopped: whoever is last closes what it opened.
+        # The connecting thread cannot be stopped: the later of the two closes the fingertip.
         with self._opening:
             self._abandoned = True
             tip = self._open
@@ -131,7 +127,7 @@ class AsyncFingertip:
 
 
 class _AsyncQueue:
-    """A queue of the hub that wakes coroutines instead of threads."""
+    """A queue of the hub for coroutines."""
 
     def __init__(self, hub: Hub, size: int) -> None:
         self._hub = hub
@@ -154,10 +150,10 @@ class _AsyncQueue:
             raise self._hub.silent(timeout_s) from None
 
     def end(self) -> None:
-        """Get nothing more."""
+        """Leave the hub."""
         self._hub.remove(self._queue)
 
     def _wake(self) -> None:
-        # Frames may still come while the program ends, when its loop is closed already.
+        # Frames may still arrive after the loop is closed, when the program ends.
         with contextlib.suppress(RuntimeError):
             self._loop.call_soon_threadsafe(self._came.set)

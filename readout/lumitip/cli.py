@@ -1,5 +1,5 @@
-"""The command `lumitip`. Each subcommand is a module of `lumitip.commands`, which says with `add`
-what it takes and does it with `run`; everything heavy is imported within `run`.
+"""The command `lumitip`. `add` of each module in `lumitip.commands` adds its subcommands; heavy
+imports are in their functions.
 """
 
 import argparse
@@ -11,37 +11,25 @@ from importlib import import_module
 
 from lumitip.errors import LumitipError
 
-COMMANDS = (
-    "bench-tasks",
-    "doctor",
-    "export",
-    "info",
-    "record",
-    "recover",
-    "replay",
-    "scan",
-    "tare",
-    "twin",
-    "view",
-)
-REFUSED = 2
+MODULES = ("devices", "record", "recordings", "simulation", "view")
+REJECTED = 2
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run a command; returns what it returns, 2 if what it was given cannot be used."""
+    """Run a command; returns its exit code, 2 for input that cannot be used."""
     options = _parser().parse_args(arguments)
     level = logging.INFO if options.verbose else logging.WARNING
     logging.basicConfig(level=level, format="%(message)s")
     try:
-        code: int = import_module(_module(options.command)).run(options)
+        code: int = options.run(options)
         sys.stdout.flush()
     except LumitipError as error:
         print(f"lumitip: {error}", file=sys.stderr)
-        return REFUSED
+        return REJECTED
     except KeyboardInterrupt:
         return 130
     except BrokenPipeError:
-        # Whoever read the output has enough of it; the interpreter must not flush it again.
+        # The reader closed the pipe; the interpreter must not flush to it at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 141
     return code
@@ -49,17 +37,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
-        prog="lumitip", description="Read, record and look at optical fingertips."
+        prog="lumitip", description="Read, record and display optical fingertips."
     )
-    parser.add_argument("-v", "--verbose", action="store_true", help="say what the links do")
+    parser.add_argument(
+        "-v", "--verbose", action="store_true", help="print the events of the links"
+    )
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for name in COMMANDS:
-        import_module(_module(name)).add(commands)
+    for name in MODULES:
+        import_module(f"lumitip.commands.{name}").add(commands)
     return parser
-
-
-def _module(command: str) -> str:
-    return f"lumitip.commands.{command.replace('-', '_')}"
 
 
 if __name__ == "__main__":

@@ -1,5 +1,4 @@
 """The exceptions of the robot side, all under one root."""
-# Named by what happened, as `TimeoutError` of the standard library would be without its suffix.
 # ruff: noqa: N818
 
 from collections.abc import Sequence
@@ -7,7 +6,7 @@ from typing import Any
 
 
 def how_to_install(extras: str) -> str:
-    """The commands that install this package with some extras; it is on no package index."""
+    """The commands that install this package with some extras; it is not on PyPI."""
     return (
         f"pip install '.[{extras}]' in Lumitip's folder, or pip install 'FILE.whl[{extras}]' "
         "with its wheel"
@@ -19,24 +18,23 @@ class LumitipError(Exception):
 
 
 class ArgumentError(LumitipError, ValueError):
-    """An argument that cannot be used: what was given and what is needed."""
+    """An argument that cannot be used; the message says what is needed."""
 
 
 class LayoutError(LumitipError, ValueError):
-    """A `layout.json` that cannot be used: the message names the field, what was given and
-    what is allowed."""
+    """A `layout.json` that cannot be used; the message names field, value and limit."""
 
 
 class LinkError(LumitipError):
-    """Root of what goes wrong between a fingertip and this computer."""
+    """Root of the errors between a fingertip and this computer."""
 
 
 class UrlError(LinkError, ValueError):
-    """An address that names no link, or an option that the link does not have."""
+    """An address of no link, or with an option that the link does not have."""
 
 
 class MissingExtra(LinkError, ImportError):
-    """A library that this link needs is not installed."""
+    """A library that this feature needs is not installed."""
 
     def __init__(self, extra: str, what: str) -> None:
         super().__init__(f"{what} needs more than numpy: {how_to_install(extra)}")
@@ -45,14 +43,14 @@ class MissingExtra(LinkError, ImportError):
 
 
 class LinkTimeout(LinkError, TimeoutError):
-    """Nothing came in the time that was given."""
+    """Nothing arrived within the timeout."""
 
     block: Any = None
-    """Of `get_data`: a `Block` of the frames that did come, `None` if there were none."""
+    """From `get_data`: a `Block` of the frames that arrived, `None` if there were none."""
 
 
 class NotConnected(LinkError, ConnectionError):
-    """The fingertip was closed, or its link is gone for good."""
+    """The fingertip was closed, or its link has failed."""
 
 
 class FingertipClosed(NotConnected):
@@ -60,63 +58,60 @@ class FingertipClosed(NotConnected):
 
 
 class EndOfRecording(NotConnected):
-    """A replay has given its last frame."""
+    """A replay is at its end."""
 
     block: Any = None
-    """Of `get_data`: a `Block` of the frames that were left, fewer than asked for, `None` if there
-    were none."""
+    """From `get_data`: a `Block` of the last frames, `None` if there were none."""
 
 
 class DeviceNotFound(LinkError):
-    """No device answers to the name, address or port."""
+    """No device has this name, address or port."""
 
 
 class AmbiguousDevice(LinkError):
-    """Several devices answer to the name."""
+    """Several devices have this name."""
 
     def __init__(self, name: str, addresses: Sequence[str], scheme: str) -> None:
         self.addresses = tuple(sorted(addresses))
-        """Where they are: each can be opened by itself."""
+        """The address of each."""
         choices = ", ".join(f"{scheme}://{address}" for address in self.addresses)
-        super().__init__(
-            f"{name or 'no name'!r} given, {len(self.addresses)} devices answer to it: "
-            f"open one of {choices}"
-        )
+        found = f"{name!r} is the name of" if name else "the address has no name; found were"
+        super().__init__(f"{found} {len(self.addresses)} devices. Open one of {choices}")
 
 
 class WrongDesign(LinkError):
-    """The device, recording or file is of another design than the layout."""
+    """The device or recording has another design than the layout."""
 
     def __init__(
         self, found: str, expected: str, where: str, cells: tuple[int, int] | None = None
     ) -> None:
         has, wants = (f" with {n} cells" for n in cells) if cells else ("", "")
         super().__init__(
-            f"{where} is of design {found}{has}, the layout of {expected}{wants}: give the "
+            f"{where} has design {found}{has}; the layout has design {expected}{wants}. Use the "
             "layout.json that its firmware was built from, or flash the firmware of this design"
         )
         self.found = found
-        """First digits of the design hash that came."""
+        """First digits of the design hash received."""
         self.expected = expected
-        """The same of the layout's."""
+        """First digits of the layout's design hash."""
 
 
 class MtuTooSmall(LinkError):
-    """No frame fits into a Bluetooth notification, so none is sent."""
+    """A frame does not fit into a Bluetooth notification, so none is sent."""
 
     def __init__(self, mtu: int, needed: int) -> None:
         super().__init__(
-            f"the Bluetooth connection carries an ATT MTU of {mtu}, a frame of this layout needs "
-            f"{needed}: use an adapter that negotiates a larger MTU, or the serial line"
+            f"the ATT MTU of the Bluetooth connection is {mtu}; a frame of this layout needs "
+            f"{needed}. Use an adapter that negotiates a larger MTU, or the serial line"
         )
         self.mtu = mtu
-        """ATT MTU in force."""
+        """ATT MTU of the connection."""
         self.needed = needed
-        """The smallest at which a frame fits."""
+        """Smallest ATT MTU for a frame."""
 
 
 class CalibrationError(LumitipError, ValueError):
-    """A calibration that cannot be measured, read or kept."""
+    """A calibration that cannot be measured, read or saved."""
 
 
 class CalibrationMismatch(CalibrationError):
@@ -124,4 +119,4 @@ class CalibrationMismatch(CalibrationError):
 
 
 class ViewError(LumitipError):
-    """Something that the live view cannot do."""
+    """A request that the live view cannot do."""

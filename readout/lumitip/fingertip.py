@@ -1,13 +1,13 @@
-"""`Fingertip`: one fingertip, read in whichever way suits the program.
+"""`Fingertip`: one open fingertip, with several ways to read it.
 
     with Fingertip.open("ble://Lumitip", layout="outputs/layout.json") as tip:
         frame = tip.read(timeout=0.5)          # the next frame, in order
-        frame = tip.latest()                   # the freshest, never blocks
+        frame = tip.latest()                   # the newest, never blocks
         block = tip.get_data(num_samples=55)   # (55, cells) with times
         for frame in tip.frames(): ...
         stop = tip.subscribe(print)
 
-The link runs on a thread of its own. Each way of reading gets every frame, whoever else reads.
+The link runs on its own thread. All readers get all frames.
 """
 
 import logging
@@ -37,7 +37,7 @@ _log = logging.getLogger(__name__)
 
 
 class Fingertip:
-    """An open fingertip; made by `Fingertip.open`."""
+    """An open fingertip; see `Fingertip.open`. All methods and properties are thread-safe."""
 
     def __init__(self, hub: Hub, buffer: int, calibrated: bool) -> None:
         self._hub = hub
@@ -46,7 +46,7 @@ class Fingertip:
         self._queue: FrameQueue | None = None
         self._calibration = Calibration(self.device_id, self.layout.design_hash)
         if calibrated:
-            self.calibration = self._known()
+            self.calibration = self._saved_calibration()
 
     @classmethod
     def open(
@@ -60,29 +60,29 @@ class Fingertip:
         calibrated: bool = True,
         on_event: Callable[[LinkEvent], None] | None = None,
     ) -> "Fingertip":
-        """Connect to a fingertip. From any thread; several may open at once.
+        """Connect to a fingertip. Several threads may do so at once.
 
         Args:
             url: `ble://NAME-OR-ADDRESS`, `serial://PORT`, `replay://FILE` or `twin://SHAPE`.
-            layout: the `layout.json` that its firmware was built from, read or as a path; a
-                replay and a twin bring their own.
-            timeout: how long the connection may take (s); `None`: as long as it takes.
-            buffer: most frames that wait for each reader; the oldest then make room, counted as
+            layout: the `layout.json` that its firmware was built from, or its path; not needed
+                for a replay or a twin.
+            timeout: of the connection (s); `None`: no limit.
+            buffer: frames that may wait for each reader; the oldest are dropped, counted in
                 `stats.dropped["queue"]`. 4096 are 8 s at 500 Hz.
-            any_design: read a device of another design all the same.
-            calibrated: use the calibration that `tare` kept for this device and design, or that a
-                recording was made with.
-            on_event: called on the link's thread with whatever happens to the link; keep it short.
+            any_design: accept a device of another design.
+            calibrated: use the calibration that `tare` saved for this device and design, or that
+                of the recording.
+            on_event: called on the link's thread with each event of the link; must be fast.
 
         Raises:
-            LumitipError: of a class that says what is wrong: `LinkTimeout`, `DeviceNotFound`,
-                `AmbiguousDevice`, `WrongDesign`, `MtuTooSmall`, `UrlError`, `LayoutError`,
-                `MissingExtra`, `CalibrationError`, `ArgumentError`.
+            LumitipError: `LinkTimeout`, `DeviceNotFound`, `AmbiguousDevice`, `WrongDesign`,
+                `MtuTooSmall`, `UrlError`, `LayoutError`, `MissingExtra`, `CalibrationError` or
+                `ArgumentError`.
         """
         if isinstance(layout, str | Path):
             layout = Layout.load(layout)
         elif layout is not None and not isinstance(layout, Layout):
-            raise LayoutError(f"{shown(layout)} given, a Layout or the path of one is needed")
+            raise LayoutError(f"layout is {shown(layout)}; a Layout or the path of one is needed")
         hub = Hub(open_link(url, layout, any_design), any_design, on_event)
         hub.start(timeout)
         try:
@@ -92,24 +92,23 @@ class Fingertip:
             raise
 
     def read(self, timeout: float | None = 1.0) -> Frame:
-        """The next frame, in order, waiting up to `timeout` (s), without one as long as it takes.
+        """The next frame, in order, within `timeout` (s); `None` waits without limit.
 
-        The first call begins to keep frames, so what it gives is fresh. From any thread; threads
-        that read share the frames out among them.
+        The first call starts the buffer. Threads that call `read` share its frames.
 
         Raises:
-            LinkTimeout: if none came in time; reading may go on, also while the link is cut.
-            LinkError: if none will come any more, once all before are read: why.
+            LinkTimeout: if no frame came in time; reading may go on, also while the link is cut.
+            LinkError: after the last frame: why no more will come.
         """
         return self._hub.next(self._read_queue(), timeout)
 
     def latest(self) -> Frame | None:
-        """The freshest frame, `None` before the first. Never waits; from any thread.
+        """The newest frame, `None` before the first. Never waits.
 
-        While a link is cut this is the last frame before: `frame.t` tells its age.
+        While the link is cut, the last frame before; see `frame.t` for its age.
 
         Raises:
-            LinkError: if no more will come and this is not the end of a recording: why.
+            LinkError: why no more will come, except at the end of a recording.
         """
         over = self._hub.over
         if over and not isinstance(over, EndOfRecording):
@@ -117,37 +116,35 @@ class Fingertip:
         return self._hub.latest
 
     def get_data(self, num_samples: int, timeout: float | None = 10.0) -> Block:
-        """The next `num_samples` frames as arrays, waiting up to `timeout` (s) for all.
+        """The next `num_samples` frames as arrays, all within `timeout` (s).
 
-        From any thread; takes from the same frames as `read`.
+        Shares the frames with `read`.
 
         Raises:
             ArgumentError: if `num_samples` is below 1.
-            LinkTimeout: if they did not all come in time; its `block` has those that came.
-            EndOfRecording: if fewer were left; its `block` has them, `None` if none was left.
-            LinkError: if no more will come: why.
+            LinkTimeout: if too few came in time; its `block` has those that came.
+            EndOfRecording: if too few were left; its `block` has them.
+            LinkError: why no more will come.
         """
-        wanted, within_s = arguments.count(num_samples, "num_samples"), arguments.seconds(timeout)
-        until = math.inf if within_s is None else time.monotonic() + within_s
+        number, timeout_s = arguments.count(num_samples, "num_samples"), arguments.seconds(timeout)
+        until = math.inf if timeout_s is None else time.monotonic() + timeout_s
         queue, frames = self._read_queue(), list[Frame]()
         try:
-            while len(frames) < wanted:
+            while len(frames) < number:
                 frame = queue.get(until - time.monotonic())
                 if frame is None:
-                    raise too_late(frames, wanted, within_s or 0.0)
+                    raise too_late(frames, number, timeout_s or 0.0)
                 frames.append(frame)
         except EndOfRecording as end:
-            raise ended_early(frames, wanted, end) from None
+            raise ended_early(frames, number, end) from None
         return Block.of(frames)
 
     def frames(self, timeout: float | None = None) -> Iterator[Frame]:
-        """Every frame from the first step of the loop on, to the end of a recording or `close`.
-
-        Several may run, each on its own thread, each with every frame.
+        """Every frame from now to the end of a recording or `close`; each iterator gets all.
 
         Raises:
-            LinkTimeout: if none came within `timeout` (s); without one it waits.
-            LinkError: if the link is given up: why.
+            LinkTimeout: if no frame came within `timeout` (s).
+            LinkError: why the link has failed.
         """
         queue = self._hub.queue(self._buffer)
         try:
@@ -159,8 +156,8 @@ class Fingertip:
             self._hub.remove(queue)
 
     def subscribe(self, callback: Callable[[Frame], None]) -> Callable[[], None]:
-        """Call `callback` with every frame from now on, on a thread of its own, until the returned
-        function is called. From any thread. An exception in it is logged and ends it."""
+        """Call `callback` with every frame, on its own thread, until the returned function is
+        called. An exception in `callback` is logged and ends the calls."""
         arguments.function(callback, "callback")
         queue = self._hub.queue(self._buffer)
 
@@ -170,8 +167,8 @@ class Fingertip:
                     callback(self._hub.next(queue, None))
             except LinkError as error:
                 _log.debug("subscription ends: %s", error)
-            except Exception:  # noqa: BLE001 - a user's function ends only its own subscription
-                _log.exception("%r failed, it is called no more", callback)
+            except Exception:  # noqa: BLE001 - a user's error ends only its subscription
+                _log.exception("%r failed; it will not be called again", callback)
             finally:
                 self._hub.remove(queue)
 
@@ -180,36 +177,35 @@ class Fingertip:
 
     @property
     def layout(self) -> Layout:
-        """The cells. From any thread."""
+        """The cells."""
         return self._hub.link.layout
 
     @property
     def device_id(self) -> str:
-        """Bluetooth address, USB serial number or port. From any thread."""
+        """Bluetooth address, USB serial number or port."""
         return self._hub.link.device_id
 
     @property
     def connected(self) -> bool:
-        """Whether the link stands at this moment. From any thread."""
+        """Whether the link is connected now."""
         return self._hub.connected
 
     @property
     def stats(self) -> Stats:
-        """What became of the frames so far. From any thread."""
+        """Counts of received and lost frames, rate and jitter."""
         return self._hub.stats
 
     @property
     def drift(self) -> Drift | None:
-        """How far the cells wandered while warming up; `None` in the first half minute. From any
-        thread."""
+        """Drift of the cells during warm-up; `None` in the first 30 s."""
         return self._hub.drift
 
     @property
     def calibration(self) -> Calibration:
-        """The references in use; setting them calibrates the frames to come. From any thread.
+        """The references in use; a new one applies to the next frames.
 
         Raises:
-            CalibrationMismatch: on setting that of another device or design.
+            CalibrationMismatch: on setting the calibration of another device or design.
         """
         return self._calibration
 
@@ -223,39 +219,36 @@ class Fingertip:
     def tare(
         self, kind: Kind = "empty", *, num_samples: int = 50, keep: bool = True
     ) -> Calibration:
-        """Measure a reference of every cell and use it from now on. From any thread, which waits
-        until the frames came, each for up to 10 s.
+        """Measure a reference of every cell and use it from now on; waits up to 10 s a frame.
 
         Args:
-            kind: `"empty"` with nothing in the grasp, or `"dark"` with all light shut off.
+            kind: `"empty"`: nothing in the grasp; `"dark"`: all light shut off.
             num_samples: frames to average.
-            keep: whether the next `open` of this device and design uses it too; not of a
-                recording, whose device may have changed since.
+            keep: save it for the next `open`; not possible with a recording.
 
         Raises:
-            ArgumentError: if there is no such kind, or `num_samples` is below 1.
-            CalibrationError: if the cells are not in that state, or it cannot be kept; nothing
+            ArgumentError: if `kind` is unknown, or `num_samples` is below 1.
+            CalibrationError: if the cells are not in that state, or saving failed; nothing
                 changes.
-            LinkError: if the frames did not come.
+            LinkError: if a frame did not come.
         """
-        kind, wanted = checked_kind(kind), arguments.count(num_samples, "num_samples")
+        kind, number = checked_kind(kind), arguments.count(num_samples, "num_samples")
         if keep:
             self._needs_device()
-        queue = self._hub.queue(wanted)
+        queue = self._hub.queue(number)
         try:
-            frames = [self._hub.next(queue, 10.0) for _ in range(wanted)]
+            frames = [self._hub.next(queue, 10.0) for _ in range(number)]
         finally:
             self._hub.remove(queue)
         light = np.stack([complement(f.raw, f.bits) for f in frames])
-        made = self._calibration.measured(kind, light)
+        calibration = self._calibration.measured(kind, light)
         if keep:
-            made.save()
-        self.calibration = made
-        return made
+            calibration.save()
+        self.calibration = calibration
+        return calibration
 
     def forget(self) -> None:
-        """Delete the references kept for this device and design; those in use stay. From any
-        thread.
+        """Delete the saved references of this device and design; those in use stay.
 
         Raises:
             CalibrationError: if they cannot be deleted, or this is a recording.
@@ -264,17 +257,17 @@ class Fingertip:
         self._calibration.forget()
 
     def close(self) -> None:
-        """Disconnect. From any thread, any number of times."""
+        """Disconnect; may be repeated."""
         self._hub.close()
 
     def _needs_device(self) -> None:
         if isinstance(self._hub.link, Calibrated):
             raise CalibrationError(
-                f"this is a recording of {self.device_id}, what is kept is for the device: open "
-                "the device"
+                f"this is a recording of {self.device_id}; calibrations are saved only for "
+                "devices. Open the device"
             )
 
-    def _known(self) -> Calibration:
+    def _saved_calibration(self) -> Calibration:
         if isinstance(self._hub.link, Calibrated):
             return self._hub.link.calibration or self._calibration
         return Calibration.kept(self.device_id, self.layout.design_hash, len(self.layout))

@@ -1,4 +1,4 @@
-"""`Frame`: all cells at one moment, with its times; `Block`: several of them as arrays."""
+"""`Frame`: all cells at one moment, with its times; `Block`: several frames as arrays."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,45 +12,58 @@ from lumitip.grid import Floats, Integers
 from lumitip.values import shown
 
 Codes = NDArray[np.uint8] | NDArray[np.uint16]
-"""Raw values of cells, dark is high."""
+"""ADC codes of cells; high is dark."""
 Values = NDArray[np.float32]
 _Array = TypeVar("_Array", bound=NDArray[Any])
 
 
 def frozen(array: _Array) -> _Array:
-    """A copy that nobody can make writeable again, since it lies in `bytes`."""
+    """A copy that stays read-only, because its memory is a `bytes` object."""
     copy = np.frombuffer(array.tobytes(), array.dtype).reshape(array.shape)
     return cast(_Array, copy)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Frame:
-    """All cells at one moment. Immutable, so it may be handed to any thread."""
+    """All cells at one moment. Immutable, so safe for any thread."""
 
     seq: int
-    """Number of the frame since the link was opened: it grows by one and by every frame that was
-    lost. Of a legacy device it counts what came."""
+    """Number of the frame since the link was opened, lost frames included. For a legacy device,
+    number of frames received."""
     t_device: float | None
-    """Time since the device was switched on (s), by its own clock; `None` of a legacy device."""
+    """Device clock: time since power-on (s); `None` for a legacy device."""
     t_host: float
-    """When the packet arrived, by `time.monotonic` (s)."""
+    """Arrival of the packet, `time.monotonic` (s)."""
     t: float
-    """When the cells were read, by `time.monotonic` (s): the device's clock fitted to the host's,
-    late by the shortest delay of the link. Never goes back. Of a legacy device `t_host`."""
+    """Time the cells were read, `time.monotonic` (s): the device clock fitted to the host clock,
+    late by the shortest delay of the link. Never decreases. `t_host` for a legacy device."""
     t_wall: float
     """`t` as seconds since 1970 (UTC)."""
     raw: Codes
-    """ADC codes as they came, dark is high, shape `(cells,)`, read-only."""
+    """ADC codes, high is dark, shape `(cells,)`, read-only."""
     bits: int
     """Bits of each code."""
     values: Values
     """Light of each cell, 255 is full light whatever the bits, calibrated, shape `(cells,)`,
     read-only."""
     dropped_before: int | None
-    """Frames lost on the way just before this one; `None` where nobody can tell: a legacy device,
-    the first frame after the device started anew."""
+    """Frames lost on the link just before this one; `None` if unknown: from a legacy device, or
+    first after a restart of the device."""
     device_id: str
-    """Where it came from: Bluetooth address, USB serial number or port."""
+    """Bluetooth address, USB serial number or port."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class RecordedFrame:
+    """A frame of a recording; fields as in `Frame`."""
+
+    seq: int
+    t_device: float | None
+    t_host: float
+    t_wall: float
+    raw: Codes
+    bits: int
+    dropped_before: int | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,21 +81,21 @@ class Block:
     values: Values
     """`Frame.values`, shape `(n, cells)`."""
     dropped: int | None
-    """Frames missing between the first and the last; `None` of a legacy device."""
+    """Frames missing between the first and the last; `None` for a legacy device."""
 
     def __len__(self) -> int:
         return len(self.seq)
 
     @classmethod
     def of(cls, frames: Sequence[Frame]) -> "Block":
-        """The block of one or more frames.
+        """Stack one or more frames.
 
         Raises:
-            ArgumentError: if there are none, or something else.
+            ArgumentError: if there are no frames, or other objects among them.
         """
-        told = isinstance(frames, Sequence) and all(isinstance(frame, Frame) for frame in frames)
-        if not told or not frames:
-            raise ArgumentError(f"{shown(frames)} given, a block needs frames, at least one")
+        valid = isinstance(frames, Sequence) and all(isinstance(frame, Frame) for frame in frames)
+        if not valid or not frames:
+            raise ArgumentError(f"frames is {shown(frames)}; one or more frames are needed")
         seq = np.array([f.seq for f in frames], dtype=np.int64)
         raw: Codes = np.array([f.raw for f in frames])
         counted = all(f.t_device is not None for f in frames)
@@ -96,23 +109,24 @@ class Block:
         )
 
 
-def too_late(frames: Sequence[Frame], wanted: int, timeout_s: float) -> LinkTimeout:
-    """What to raise when fewer frames than wanted came in time; it holds those."""
+def too_late(frames: Sequence[Frame], number: int, timeout_s: float) -> LinkTimeout:
+    """The error when too few frames came in time; it holds those that came."""
     error = LinkTimeout(
-        f"{len(frames)} of {wanted} frames came in {timeout_s:g} s: give more time or ask for fewer"
+        f"{len(frames)} of {number} frames came in {timeout_s:g} s. Increase the timeout, "
+        "or ask for fewer"
     )
     error.block = Block.of(frames) if frames else None
     return error
 
 
-def ended_early(frames: Sequence[Frame], wanted: int, end: EndOfRecording) -> EndOfRecording:
-    """What to raise when a recording ended before as many frames as wanted; it holds the last."""
-    error = EndOfRecording(f"{end}: {len(frames)} of {wanted} frames were left, in `block`")
+def ended_early(frames: Sequence[Frame], number: int, end: EndOfRecording) -> EndOfRecording:
+    """The error when a recording ended too early; it holds the last frames."""
+    error = EndOfRecording(f"{end}: {len(frames)} of {number} frames were left, in `block`")
     error.block = Block.of(frames) if frames else None
     return error
 
 
 def complement(raw: Codes, bits: int) -> Values:
-    """Light of codes that are high in the dark: 255 is full light, whatever the bits."""
+    """Light of ADC codes: 255 is full light, independent of the bits."""
     light: Values = np.float32(255.0) - raw * np.float32(255.0 / ((1 << bits) - 1))
     return light

@@ -1,4 +1,4 @@
-r"""The hexagonal grid of cells: the one place where positions and neighbours are computed.
+r"""The hexagonal grid of cells: the only place that computes positions and neighbours.
 
     column 0   1   2          pitch_mm: distance of a cell to each of its six neighbours
            o       o   row 0  (nearest the tip)
@@ -7,15 +7,13 @@ r"""The hexagonal grid of cells: the one place where positions and neighbours ar
                o       row 1
            o       o   row 2
 
-Columns may have any lengths. They stand `pitch_mm * sqrt(3) / 2` apart, and each column's lattice
-is offset by half a pitch from the one before it. Where the lattice allows it, every column is
-centred on y = 0: lengths of neighbouring columns then differ by 1, 3, 5 ... Otherwise every column
-is shifted by a quarter of the pitch, the smallest shift that suits all of them: columns of equal
-length alternate towards the tip and away from it, the leftmost towards the tip.
+Columns may have any lengths. They are `pitch_mm * sqrt(3) / 2` apart; each is offset by half a
+pitch from the one before it. If the lengths of neighbouring columns differ by 1, 3, 5 ..., every
+column is centred on y = 0. Otherwise every column is shifted by a quarter of the pitch: columns of
+equal length alternate towards the tip and away from it, the leftmost towards the tip.
 
-x = 0 is the mean of the cell centres; y = 0 is the centre line of the columns, which is their mean
-too where every column is centred. Cells are ordered column by column, leftmost first in the
-receiver's sensor frame, row 0 nearest the tip.
+x = 0 is the mean of the cell centres; y = 0 is the centre line of the columns. Cells are ordered
+column by column, leftmost first in the receiver's sensor frame, row 0 nearest the tip.
 """
 
 import math
@@ -34,7 +32,7 @@ Integers = NDArray[np.int64]
 
 @dataclass(frozen=True)
 class Grid:
-    """Cells of a hexagonal grid in frame order; every array has shape `(cells,)`."""
+    """Cells of a hexagonal grid in frame order, arrays of shape `(cells,)`."""
 
     x_mm: Floats
     """Distance from the mean of the cell centres, to the right in the receiver's frame."""
@@ -47,7 +45,7 @@ class Grid:
 
 
 def column_pitch_mm(pitch_mm: float) -> float:
-    """Distance between neighbouring columns of a hexagonal grid of this pitch (mm)."""
+    """Distance between neighbouring columns of a hexagonal grid (mm)."""
     return float(pitch_mm * np.sqrt(3.0) / 2.0)
 
 
@@ -55,15 +53,15 @@ def hexagonal_grid(columns: Sequence[int], pitch_mm: float) -> Grid:
     """Cell centres of a hexagonal grid.
 
     Args:
-        columns: number of cells of each column, one or more.
-        pitch_mm: distance between neighbouring cells (mm), finite and above zero.
+        columns: number of cells of each column.
+        pitch_mm: distance between neighbouring cells (mm), above 0.
 
     Raises:
-        ArgumentError: if a column is empty or no whole number, or the pitch is no such number.
+        ArgumentError: if a column has no cell or the pitch is not above 0.
     """
     counts = _counts(columns)
     if not 0.0 < as_float(pitch_mm) < math.inf:
-        raise ArgumentError(f"pitch_mm: {shown(pitch_mm)} given, a number above 0 is needed")
+        raise ArgumentError(f"pitch_mm is {shown(pitch_mm)}; a number above 0 is needed")
     pitch_mm = float(pitch_mm)
     column, row = _places(counts)
     y_mm = _quarters(counts) / 4.0 * pitch_mm
@@ -72,16 +70,10 @@ def hexagonal_grid(columns: Sequence[int], pitch_mm: float) -> Grid:
 
 
 def hexagonal_neighbours(columns: Sequence[int]) -> Integers:
-    """All pairs of neighbouring cells of a hexagonal grid, those one pitch apart, each pair once.
-
-    Args:
-        columns: number of cells of each column, as for `hexagonal_grid`.
-
-    Returns:
-        Cell indices of shape `(pairs, 2)`, smaller index first, sorted.
+    """Pairs of cells one pitch apart, sorted, smaller index first, shape `(pairs, 2)`.
 
     Raises:
-        ArgumentError: as `hexagonal_grid`, of columns.
+        ArgumentError: if a column has no cell.
     """
     counts = _counts(columns)
     columns_of, heights = _places(counts)[0].tolist(), _quarters(counts).tolist()
@@ -96,8 +88,7 @@ def hexagonal_neighbours(columns: Sequence[int]) -> Integers:
 
 
 def collinear(x_mm: Floats, y_mm: Floats) -> bool:
-    """Whether all cells lie on one line, as in a single column: they cannot tell the direction of
-    a border that crosses it."""
+    """Whether all cells lie on one line: the angle of an edge across it is then unknown."""
     places = np.stack([x_mm - x_mm[0], y_mm - y_mm[0]])
     sizes = np.linalg.svd(places, compute_uv=False)
     return bool(sizes[-1] <= 1e-6 * sizes[0])
@@ -111,11 +102,9 @@ def _places(counts: Integers) -> tuple[Integers, Integers]:
 
 
 def _quarters(counts: Integers) -> Integers:
-    """Height of each cell above y = 0 in quarters of the pitch: whole numbers, so that neighbours
-    are found without a tolerance."""
+    """Height of each cell above y = 0 in quarters of the pitch: exact integers."""
     column, row = _places(counts)
-    # Columns of one class can be centred on the same lattice, and columns of the other class are
-    # half a pitch off it.
+    # Columns of the same class, centred, fit the same lattice; the other class is half a pitch off.
     other_class = (counts - 1 - np.arange(counts.size)) % 2 != (counts[0] - 1) % 2
     shifts = np.where(other_class, -1, 1) if other_class.any() else np.zeros_like(counts)
     return np.asarray(2 * (counts[column] - 1) - 4 * row + shifts[column], dtype=np.int64)
@@ -123,16 +112,16 @@ def _quarters(counts: Integers) -> Integers:
 
 def _counts(columns: Sequence[int]) -> Integers:
     try:
-        told = np.asarray(columns)
+        array = np.asarray(columns)
     except ValueError as error:  # rows of different lengths
-        raise _refused(columns, "whole numbers are needed") from error
-    if told.ndim != 1 or (told.size and told.dtype.kind not in "iu"):
-        raise _refused(columns, "whole numbers are needed")
-    counts = told.astype(np.int64)
+        raise _column_error(columns, "whole numbers are needed") from error
+    if array.ndim != 1 or (array.size and array.dtype.kind not in "iu"):
+        raise _column_error(columns, "whole numbers are needed")
+    counts = array.astype(np.int64)
     if counts.size == 0 or (counts < 1).any():
-        raise _refused(columns, "every column needs at least one cell")
+        raise _column_error(columns, "every column needs at least one cell")
     return counts
 
 
-def _refused(columns: object, needed: str) -> ArgumentError:
-    return ArgumentError(f"columns: {shown(columns)} given, {needed}")
+def _column_error(columns: object, needed: str) -> ArgumentError:
+    return ArgumentError(f"columns is {shown(columns)}; {needed}")

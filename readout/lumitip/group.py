@@ -25,7 +25,7 @@ from lumitip.values import shown
 
 @dataclass(frozen=True, eq=False)
 class Moment:
-    """A frame of each fingertip, as near to each other in time as they come. Immutable."""
+    """One frame of each fingertip, closest in time. Immutable."""
 
     frames: Mapping[str, Frame]
     """By name."""
@@ -41,7 +41,7 @@ class Moment:
 
     @property
     def spread_s(self) -> float:
-        """How far apart their times are (s): at most about a period of the slowest."""
+        """Largest difference of their times (s): about one period of the slowest at most."""
         times = [f.t for f in self.frames.values()]
         return max(times) - min(times)
 
@@ -49,7 +49,7 @@ class Moment:
 class FingertipGroup:
     """Several open fingertips; made by `FingertipGroup.open`.
 
-    `read` and `moments` are for one thread at a time; the fingertips in `tips` are read as usual.
+    Call `read` and `moments` from one thread at a time.
     """
 
     def __init__(self, tips: Mapping[str, Fingertip]) -> None:
@@ -64,25 +64,25 @@ class FingertipGroup:
         layout: Layout | str | Path | Mapping[str, Layout | str | Path] | None = None,
         **options: Any,
     ) -> "FingertipGroup":
-        """Connect to every fingertip, or to none. From any thread.
+        """Connect to all fingertips, or to none. From any thread.
 
         Args:
-            urls: address of each by name.
-            layout: of all, or by name.
-            options: for all, as of `Fingertip.open`.
+            urls: addresses by name.
+            layout: one for all, or by name.
+            options: of `Fingertip.open`, for all.
 
         Raises:
-            ArgumentError: if no fingertip is named, or a layout is of none of them.
-            LumitipError: as `Fingertip.open`, for the first that fails; the others are closed.
+            ArgumentError: if there is no address, or a layout of another name.
+            LumitipError: as `Fingertip.open`, from the first that fails; the others are closed.
         """
         if not isinstance(urls, Mapping) or not urls:
             raise ArgumentError(
-                f"{shown(urls)} given, names and addresses of at least one fingertip are needed: "
-                "{'left': 'ble://A1'}"
+                f"urls is {shown(urls)}; names and addresses of at least one fingertip are needed, "
+                "such as {'left': 'ble://A1'}"
             )
-        if isinstance(layout, Mapping) and (astray := sorted(set(layout) - set(urls), key=str)):
-            there = ", ".join(map(str, urls))
-            raise ArgumentError(f"layout of {shown(astray[0])} given, there is {there}")
+        if isinstance(layout, Mapping) and (unknown := sorted(set(layout) - set(urls), key=str)):
+            names = ", ".join(map(str, urls))
+            raise ArgumentError(f"layout has {shown(unknown[0])}; the fingertips are {names}")
         with ExitStack() as stack:
             tips = {}
             for name, url in urls.items():
@@ -92,19 +92,18 @@ class FingertipGroup:
             return cls(tips)
 
     def read(self, timeout: float | None = 1.0) -> Moment:
-        """The next moment at which every fingertip has a frame of its own, waiting up to `timeout`
-        (s), without one as long as it takes. The slowest sets the pace; frames of the others in
-        between are left out.
+        """The next moment with a new frame of every fingertip, within `timeout` (s); `None` waits
+        without limit. The slowest sets the rate; extra frames of the others are skipped.
 
         Raises:
-            LinkTimeout: if it did not come in time, naming the fingertip.
-            LinkError: if a fingertip is given up: why.
+            LinkTimeout: if a fingertip sent no frame in time; the message names it.
+            LinkError: if the link of a fingertip has failed.
         """
         within_s = seconds(timeout)
         until = math.inf if within_s is None else time.monotonic() + within_s
         for name in self.tips:
             self._fill(name, 1, until)
-        # The last of the heads is the first moment that all can meet.
+        # The latest of the first frames: no earlier moment has a frame of each.
         t = max(waiting[0].t for waiting in self._waiting.values())
         for name, waiting in self._waiting.items():
             while waiting[0].t < t:
@@ -116,12 +115,12 @@ class FingertipGroup:
         return Moment(MappingProxyType(taken))
 
     def moments(self, timeout: float | None = 1.0) -> Iterator[Moment]:
-        """`read` again and again; raises as it does."""
+        """Repeat `read`."""
         while True:
             yield self.read(timeout)
 
     def close(self) -> None:
-        """Disconnect all. From any thread, any number of times."""
+        """Disconnect all. From any thread; may be repeated."""
         for tip in self.tips.values():
             tip.close()
 
@@ -131,7 +130,7 @@ class FingertipGroup:
             try:
                 waiting.append(self.tips[name].read(max(0.0, until - time.monotonic())))
             except LinkTimeout as error:
-                # What the others gave is kept for the next call.
+                # Frames of the others wait for the next call.
                 raise LinkTimeout(f"{name}: {error}") from error
 
     def __enter__(self) -> "FingertipGroup":

@@ -1,7 +1,6 @@
-"""`Layout`: where the cells of a fingertip are and how they are read; the form of `layout.json`.
+"""`Layout`: positions, wiring and optics of the cells; the contents of `layout.json`.
 
-The only thing the robot side needs to know about a design. It is written by `lumitip-fab` and
-read back here with numpy alone.
+It is all that the robot side needs of a design. `lumitip-fab` writes it.
 """
 
 import hashlib
@@ -18,12 +17,12 @@ from lumitip.errors import LayoutError
 from lumitip.grid import Floats, Integers
 
 SCHEMA_VERSION = 1
-_DECIMALS = 6  # a nanometre: far below any tolerance, far above the noise of arithmetic
+_DECIMALS = 6  # of a mm: below any tolerance, above rounding errors
 
 
 @dataclass(frozen=True)
 class Cell:
-    """One cell as a record; see `Layout` for units and frames."""
+    """One cell; see `Layout` for units and frames."""
 
     index: int
     x_mm: float
@@ -37,7 +36,7 @@ class Cell:
 
 @dataclass(frozen=True)
 class Optics:
-    """What light meets between an LED and a photodetector, the same at every cell."""
+    """The optical path between an LED and its photodetector, equal for all cells."""
 
     hole_mm: float
     """Mask aperture: across flats of a hexagon, diameter of a circle (mm)."""
@@ -65,10 +64,10 @@ class Optics:
 class Layout:
     """Cells of a fingertip in frame order, in the receiver's sensor frame.
 
-    Sensor frame: gripping face seen with the tip up, x to the right from the mean of the cell
-    centres, y towards the tip from the centre line of the columns, z out of the face from the outer
-    face of the film; mm.
-    Two layouts are equal when their `design_hash` is. Arrays are read-only.
+    Sensor frame (mm): looking at the gripping face with the tip up, x to the right from the mean
+    of the cell centres, y towards the tip from the centre line of the columns, z out of the face
+    from the outer face of the film. Layouts with the same `design_hash` are equal. Arrays are
+    read-only.
     """
 
     x_mm: Floats
@@ -82,7 +81,7 @@ class Layout:
     neighbours: Integers
     """Pairs of neighbouring cells, shape `(pairs, 2)`, smaller index first."""
     mux: Integers
-    """Multiplexer that each detector is wired to, 0 is U1, shape `(cells,)`."""
+    """Multiplexer of each detector, 0 is U1, shape `(cells,)`."""
     channel: Integers
     """Input of that multiplexer, shape `(cells,)`."""
     adc_pin: NDArray[np.str_]
@@ -115,15 +114,15 @@ class Layout:
 
     @property
     def design_hash(self) -> str:
-        """SHA-256 (hex) of cells, wiring and frame order, and of nothing else."""
-        told = {name: _plain(getattr(self, name)) for name in _PER_CELL}
-        text = json.dumps(told, sort_keys=True, separators=(",", ":"))
+        """SHA-256 (hex) of cells, wiring and frame order only."""
+        record = {name: _plain(getattr(self, name)) for name in _PER_CELL}
+        text = json.dumps(record, sort_keys=True, separators=(",", ":"))
         return hashlib.sha256(text.encode()).hexdigest()
 
     def to_json(self) -> str:
-        """The canonical text of `layout.json`: the same layout gives the same bytes."""
-        told = {name: _plain(getattr(self, name)) for name in _ARRAYS}
-        told |= {
+        """The text of `layout.json`: equal layouts give equal bytes."""
+        record = {name: _plain(getattr(self, name)) for name in _ARRAYS}
+        record |= {
             "schema_version": self.schema_version,
             "design_hash": self.design_hash,
             "pitch_mm": round(self.pitch_mm, _DECIMALS),
@@ -132,7 +131,9 @@ class Layout:
                 for k, v in asdict(self.optics).items()
             },
         }
-        lines = (f"{json.dumps(k)}: {json.dumps(told[k], sort_keys=True)}" for k in sorted(told))
+        lines = (
+            f"{json.dumps(k)}: {json.dumps(v, sort_keys=True)}" for k, v in sorted(record.items())
+        )
         return "{\n " + ",\n ".join(lines) + "\n}\n"
 
     @classmethod
@@ -140,7 +141,7 @@ class Layout:
         """Read a `layout.json`.
 
         Raises:
-            LayoutError: if the file cannot be read, or is not a layout that this version reads.
+            LayoutError: if it is not a layout of this version.
         """
         try:
             text = Path(path).read_text(encoding="utf-8")
@@ -150,21 +151,21 @@ class Layout:
 
     @classmethod
     def from_json(cls, text: str, source: str = "layout") -> "Layout":
-        """Read the text of a `layout.json`; keys of later versions are ignored.
+        """Read the text of a `layout.json`, ignoring unknown keys.
 
         Args:
             text: the JSON text.
-            source: name of its origin, for messages.
+            source: its file name, for messages.
 
         Raises:
-            LayoutError: if the text is not a layout that this version reads.
+            LayoutError: if it is not a layout of this version.
         """
         try:
-            told = json.loads(text)
+            record = json.loads(text)
         except (ValueError, TypeError, RecursionError) as error:
-            raise LayoutError(f"{source}: is not JSON: {error}") from error
+            raise LayoutError(f"{source} is not JSON: {error}") from error
         try:
-            return _read(told)
+            return _read(record)
         except LayoutError as error:
             raise LayoutError(f"{source}: {error}") from error
 
@@ -176,53 +177,54 @@ _INTEGERS = ("column", "row", "mux", "channel")
 
 def _plain(value: Any) -> Any:
     if isinstance(value, np.ndarray):
-        # Adding zero turns -0.0 into 0.0, which would otherwise change the text and the hash.
+        # Adding 0.0 turns -0.0 into 0.0, which would change the text and the hash.
         return (np.round(value, _DECIMALS) + 0.0 if value.dtype.kind == "f" else value).tolist()
     return round(value, _DECIMALS) if isinstance(value, float) else value
 
 
-def _read(told: Any) -> Layout:
-    if not isinstance(told, Mapping):
-        raise LayoutError(f"{type(told).__name__} given, a JSON object is needed")
-    version = told.get("schema_version")
+def _read(record: Any) -> Layout:
+    if not isinstance(record, Mapping):
+        raise LayoutError(f"the file is a {type(record).__name__}; a JSON object is needed")
+    version = record.get("schema_version")
     if version != SCHEMA_VERSION or isinstance(version, bool):
         raise LayoutError(
-            f"schema_version: {version!r} given, this version reads {SCHEMA_VERSION}: "
-            "install the lumitip that made the file, or build the design again"
+            f"schema_version is {version!r}; this lumitip reads {SCHEMA_VERSION}. Install the "
+            "lumitip that wrote the file, or build the design again"
         )
-    x_mm = _numbers(told, "x_mm")
+    x_mm = _numbers(record, "x_mm")
     cells = x_mm.size
-    arrays: dict[str, Any] = {"x_mm": x_mm, "y_mm": _numbers(told, "y_mm", cells)}
-    arrays |= {name: _whole(told, name, (cells,)) for name in _INTEGERS}
-    arrays["neighbours"] = _whole(told, "neighbours", (None, 2), below=cells)
+    arrays: dict[str, Any] = {"x_mm": x_mm, "y_mm": _numbers(record, "y_mm", cells)}
+    arrays |= {name: _whole(record, name, (cells,)) for name in _INTEGERS}
+    arrays["neighbours"] = _whole(record, "neighbours", (None, 2), below=cells)
     pairs = arrays["neighbours"].tolist()
     if any(a >= b for a, b in pairs) or len({(a, b) for a, b in pairs}) != len(pairs):
-        raise LayoutError("neighbours: each pair is needed once, its smaller index first")
-    pins = told.get("adc_pin")
+        raise LayoutError("neighbours: each pair must occur once, with the smaller index first")
+    pins = record.get("adc_pin")
     if not isinstance(pins, list) or len(pins) != cells or not all(type(p) is str for p in pins):
         raise LayoutError(f"adc_pin: a list of {cells} pin names is needed")
     layout = Layout(
-        **arrays, adc_pin=np.array(pins), pitch_mm=_number(told, "pitch_mm"), optics=_optics(told)
+        **arrays,
+        adc_pin=np.array(pins),
+        pitch_mm=_number(record, "pitch_mm"),
+        optics=_optics(record),
     )
-    if layout.design_hash != told.get("design_hash"):
+    if layout.design_hash != record.get("design_hash"):
         raise LayoutError(
-            f"design_hash: {str(told.get('design_hash'))[:16]!r} given, the cells and wiring give "
-            f"{layout.design_hash[:16]!r}: the file was changed by hand; build the design again"
+            f"design_hash is {str(record.get('design_hash'))[:16]!r}; the cells and wiring have "
+            f"{layout.design_hash[:16]!r}. The file was changed by hand: build the design again"
         )
     return layout
 
 
-def _number(told: Mapping[str, Any], name: str, within: str = "") -> float:
-    value: Any = told.get(name)
+def _number(record: Mapping[str, Any], name: str, within: str = "") -> float:
+    value: Any = record.get(name)
     if type(value) not in (int, float) or not 0 <= value < 1e12:
-        raise LayoutError(
-            f"{within}{name}: {value!r:.80} given, a finite number not below 0 is needed"
-        )
+        raise LayoutError(f"{within}{name} is {value!r:.80}; a number from 0 to 1e12 is needed")
     return float(value)
 
 
-def _numbers(told: Mapping[str, Any], name: str, count: int | None = None) -> Floats:
-    values = told.get(name)
+def _numbers(record: Mapping[str, Any], name: str, count: int | None = None) -> Floats:
+    values = record.get(name)
     needed = "numbers" if count is None else f"{count} numbers"
     if (
         not isinstance(values, list)
@@ -235,9 +237,9 @@ def _numbers(told: Mapping[str, Any], name: str, count: int | None = None) -> Fl
 
 
 def _whole(
-    told: Mapping[str, Any], name: str, shape: tuple[int | None, ...], below: int = 2**31
+    record: Mapping[str, Any], name: str, shape: tuple[int | None, ...], below: int = 2**31
 ) -> Integers:
-    values = told.get(name)
+    values = record.get(name)
     rows = values if isinstance(values, list) else []
     flat = [v for row in rows for v in (row if isinstance(row, list) else [row])]
     fits = (
@@ -254,13 +256,13 @@ def _whole(
     return np.array(values, dtype=np.int64).reshape([-1 if n is None else n for n in shape])
 
 
-def _optics(told: Mapping[str, Any]) -> Optics:
-    optics = told.get("optics")
+def _optics(record: Mapping[str, Any]) -> Optics:
+    optics = record.get("optics")
     if not isinstance(optics, Mapping):
         raise LayoutError("optics: an object is needed")
     if optics.get("hole_shape") not in ("hexagon", "circle"):
         raise LayoutError(
-            f"optics.hole_shape: {optics.get('hole_shape')!r:.80} given, "
+            f"optics.hole_shape is {optics.get('hole_shape')!r:.80}; "
             'allowed are "hexagon" and "circle"'
         )
     read = {f.name: _number(optics, f.name, "optics.") for f in fields(Optics) if f.type is float}

@@ -4,20 +4,20 @@ import math
 from typing import SupportsFloat
 
 
-def shown(given: object, most: int = 40) -> str:
-    """How a message tells it: in one line, of at most so many characters."""
+def shown(value: object, most: int = 40) -> str:
+    """A value for a message: one line of at most `most` characters."""
     try:
-        told = repr(given)
-    except ValueError:  # a whole number of more digits than Python writes
-        told = f"<{type(given).__name__}>"
-    return " ".join(map(str.strip, told.splitlines()))[:most]
+        text = repr(value)
+    except ValueError:  # an int with more digits than Python prints
+        text = f"<{type(value).__name__}>"
+    return " ".join(map(str.strip, text.splitlines()))[:most]
 
 
-def as_float(given: object) -> float:
-    """A number, not a number if it is none or too large."""
-    if type(given) is float:  # nearly always, and the protocol is slow to ask
-        return given
+def as_float(value: object) -> float:
+    """A value as a float; NaN if it is not a number or too large."""
+    if type(value) is float:  # the usual case; the protocol check is slow
+        return value
     try:
-        return float(given) if isinstance(given, SupportsFloat) else math.nan
+        return float(value) if isinstance(value, SupportsFloat) else math.nan
     except (TypeError, ValueError, OverflowError):
         return math.nan

@@ -10,8 +10,8 @@ import pytest
 from lumitip.layout import Layout
 from lumitip.protocol import bluetooth as uuids
 from lumitip.protocol.bluetooth import Fault, Status, decode_legacy
+from lumitip.protocol.cobs import StreamDecoder
 from lumitip.protocol.packet import decode
-from lumitip.protocol.stream import StreamDecoder
 
 STUBS = f"-I{Path(__file__).parent / 'stubs'}"
 LEGACY = "c134"

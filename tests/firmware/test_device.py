@@ -11,8 +11,8 @@ import pytest
 
 from lumitip.layout import Layout
 from lumitip.protocol.bluetooth import Fault, Status, decode_legacy
+from lumitip.protocol.cobs import StreamDecoder
 from lumitip.protocol.packet import Packet, decode, design_code, largest_batch, needed_mtu
-from lumitip.protocol.stream import StreamDecoder
 
 ADC_BITS = 12
 FRAMES = 24  # of each phase

@@ -185,5 +185,5 @@ def test_a_grid_of_one_column_is_a_row_of_cells() -> None:
 def test_what_is_no_hexagonal_grid_is_refused(
     columns: list[int], pitch_mm: float, named: str
 ) -> None:
-    with pytest.raises(ValueError, match=rf"{named}: .* given, "):
+    with pytest.raises(ValueError, match=rf"{named} is .*; "):
         hexagonal_grid(columns, pitch_mm)

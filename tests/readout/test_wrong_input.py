@@ -72,7 +72,9 @@ def estimator() -> PoseEstimator:
 def test_values_that_are_no_numbers(estimator: PoseEstimator, values: Any) -> None:
     frames: list[Call] = [Processor(CELLS), Processor(CELLS).batch, Tracker(CELLS), estimator]
     for call in [*frames, lambda v: estimator.fitted(v, "edge"), lambda v: learn(CELLS, v)]:
-        with pytest.raises(ValuesError, match=r"given, (numbers of one shape|a frame|frames of)"):
+        with pytest.raises(
+            ValuesError, match=r"(given,|;) (an array of numbers|a frame|frames of)"
+        ):
             call(values)
     others: list[tuple[type[LumitipError], Call]] = [
         (ArgumentError, lambda v: examine(v, CELLS)),
@@ -82,7 +84,7 @@ def test_values_that_are_no_numbers(estimator: PoseEstimator, values: Any) -> No
         others.append((TwinError, lambda v: Twin(CELLS, gains=v)))
         others.append((EstimationError, lambda v: PoseEstimator(CELLS, gains=v)))
     for error, call in others:
-        with pytest.raises(error, match=r"given, .*needed"):
+        with pytest.raises(error, match=r"(given,|;) .*needed"):
             call(values)
 
 
@@ -109,7 +111,7 @@ def test_what_is_no_layout(layout: Any, tmp_path: Path) -> None:
     calls += [lambda v: learn(v, frames), lambda v: examine(frames, v)]
     calls += [lambda v: Writer(tmp_path / "run.mcap", v, device_id="dev")]
     for call in calls:
-        with pytest.raises(LayoutError, match="given, a Layout is needed"):
+        with pytest.raises(LayoutError, match="a Layout is needed"):
             call(layout)
     assert not list(tmp_path.iterdir())
 
@@ -152,7 +154,7 @@ def test_a_setting_that_is_no_number(
     for name in names:
         if isinstance(given, int) and name in COUNTS:
             continue
-        with pytest.raises(error, match=rf"^{name}: .* given, .*(needed|allowed)"):
+        with pytest.raises(error, match=rf"^{name}(: .* given,| is .*;) .*(needed|allowed)"):
             call(**{name: given})
 
 
@@ -205,7 +207,7 @@ def test_a_setting_that_is_no_number(
     ],
 )
 def test_what_cannot_be_so(error: type[LumitipError], call: Callable[[], object]) -> None:
-    with pytest.raises(error, match=r"given|needed|not finite") as told:
+    with pytest.raises(error, match=r"given|needed|not finite|; ") as told:
         call()
     assert "\n" not in str(told.value)
 
@@ -214,7 +216,7 @@ def test_what_cannot_be_so(error: type[LumitipError], call: Callable[[], object]
     "pitch_mm", ["6", None, math.inf, 10**400, -1.0, np.array([6.0, 6.0])], ids=shown
 )
 def test_a_pitch_that_is_none(pitch_mm: Any) -> None:
-    with pytest.raises(ArgumentError, match=r"pitch_mm: .* given, a number above 0 is needed"):
+    with pytest.raises(ArgumentError, match=r"pitch_mm is .*; a number above 0 is needed"):
         hexagonal_grid([4, 5], pitch_mm)
 
 
@@ -234,7 +236,7 @@ def test_a_path_that_is_none(given: Any, tmp_path: Path) -> None:
     calls += [lambda v: Writer(tmp_path / "run.mcap", CELLS, device_id=v)]
     calls += [lambda v: export(tmp_path / "run.mcap", v)]
     for call in calls:
-        with pytest.raises(RecordingError, match=r"given, .* needed"):
+        with pytest.raises(RecordingError, match=r"(given,|;) .* needed"):
             call(given)
     for error, load in (
         (LayoutError, Layout.load),
@@ -251,7 +253,7 @@ def test_a_folder_that_is_a_file_is_told_before_the_trials(
 ) -> None:
     (tmp_path / "taken").write_text("", encoding="utf-8")
     assert main(["bench-tasks", "--trials", "1", "--out", str(tmp_path / "taken")]) == 2
-    assert "cannot be made a folder" in capsys.readouterr().err
+    assert "cannot be created" in capsys.readouterr().err
 
 
 def test_scenes_and_places_of_a_twin(twin: Twin) -> None:
@@ -282,12 +284,12 @@ def test_what_is_seen_and_commanded_in_a_task(twin: Twin) -> None:
             sight_of(seen)  # type: ignore[arg-type]
     contact = Processor(CELLS)(twin.values(HalfPlane()))
     for dt_s in NO_NUMBERS:
-        with pytest.raises(ControlError, match=r"dt_s: .* given"):
+        with pytest.raises(ControlError, match=r"dt_s(: .* given| is .*;)"):
             Tracer(LineLaw())(contact, dt_s)
     for command in (3.0, None, Command(math.nan), Command("1")):  # type: ignore[arg-type]
-        with pytest.raises(TaskError, match="given"):
+        with pytest.raises(TaskError, match=r"given|;"):
             task.step(command)  # type: ignore[arg-type]
-    with pytest.raises(TaskError, match="seed: 'a' given"):
+    with pytest.raises(TaskError, match=r"seed(: 'a' given| is 'a';)"):
         task.reset("a")  # type: ignore[arg-type]
     with pytest.raises(TaskError, match="allowed are centre, line, pose"):
         Bench(task).run("lines", 80.0, Tuning(), 0)

@@ -1,1 +1,1 @@
-"""The subcommands of `lumitip`, one module each."""
+"""The subcommands of `lumitip`."""

@@ -1,85 +1,99 @@
-"""What several subcommands share: the arguments that name a fingertip, and opening it."""
+"""Helpers of several subcommands: arguments that name a fingertip, and opening it."""
 
 import argparse
 import math
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from lumitip.fingertip import Fingertip
 
-Subparsers = Any  # argparse keeps the type of its subparsers to itself
+Subparsers = Any  # argparse does not export this type
 BUILT_LAYOUT = Path("outputs/layout.json")
 
 
-def some_seconds(text: str) -> float:
+def command(
+    subparsers: Subparsers,
+    name: str,
+    run: Callable[[argparse.Namespace], int],
+    text: str,
+    more: str = "",
+) -> argparse.ArgumentParser:
+    """Add a subcommand; its help continues `text` with `more`."""
+    description = f"{text} {more}".strip()
+    parser: argparse.ArgumentParser = subparsers.add_parser(
+        name, help=text, description=description
+    )
+    parser.set_defaults(run=run)
+    return parser
+
+
+def positive_seconds(text: str) -> float:
     """A time above 0 (s), for `type=` of an argument."""
     try:
-        given = float(text)
+        value = float(text)
     except ValueError:
-        given = math.nan
-    if not given > 0.0:
-        raise argparse.ArgumentTypeError(f"{text} given, seconds above 0 are needed")
-    return given
+        value = math.nan
+    if not value > 0.0:
+        raise argparse.ArgumentTypeError(f"the value is {text}; a number above 0 (s) is needed")
+    return value
 
 
-def some(text: str) -> int:
-    """A number from 1 on, for `type=` of an argument."""
+def positive_count(text: str) -> int:
+    """A whole number from 1 on, for `type=` of an argument."""
     try:
-        given = int(text)
+        value = int(text)
     except ValueError:
-        given = 0
-    if given < 1:
-        raise argparse.ArgumentTypeError(f"{text} given, a whole number from 1 on is needed")
-    return given
+        value = 0
+    if value < 1:
+        raise argparse.ArgumentTypeError(f"the value is {text}; a whole number from 1 on is needed")
+    return value
 
 
 def add_fingertip(parser: argparse.ArgumentParser, several: bool = False) -> None:
-    """Add the arguments that name a fingertip, or one or more of them.
-
-    They become `options.url` (`options.urls`, a list), `layout`, `timeout` and `any_design`.
-    """
-    told = "ble://NAME-OR-ADDRESS, serial://PORT, replay://FILE or twin://SHAPE"
+    """Add the arguments that name one fingertip (`options.url`), or several (`options.urls`)."""
+    text = "ble://NAME-OR-ADDRESS, serial://PORT, replay://FILE or twin://SHAPE"
     if several:
-        parser.add_argument("urls", metavar="URL", nargs="+", help=told)
+        parser.add_argument("urls", metavar="URL", nargs="+", help=text)
     else:
-        parser.add_argument("url", metavar="URL", help=told)
+        parser.add_argument("url", metavar="URL", help=text)
+    add_layout(parser)
+    parser.add_argument(
+        "--timeout",
+        type=positive_seconds,
+        default=10.0,
+        metavar="S",
+        help="longest time to connect, in seconds (default: 10)",
+    )
+    parser.add_argument("--any-design", action="store_true", help="accept a device of any design")
+
+
+def add_layout(parser: argparse.ArgumentParser) -> None:
+    """Add `--layout`."""
     parser.add_argument(
         "--layout",
         type=Path,
         metavar="FILE",
-        help=f"layout.json that the firmware was built from ({BUILT_LAYOUT} if it is there)",
-    )
-    parser.add_argument(
-        "--timeout",
-        type=some_seconds,
-        default=10.0,
-        metavar="S",
-        help="seconds that connecting may take (10)",
-    )
-    parser.add_argument(
-        "--any-design", action="store_true", help="read a device of another design all the same"
+        help=f"layout.json of the device's firmware (default: {BUILT_LAYOUT}, if it exists)",
     )
 
 
 def layout_path(options: argparse.Namespace, url: str) -> Path | None:
-    """The layout that was given, or the one that was built here; a replay brings its own."""
-    given: Path | None = options.layout
-    if given is None and BUILT_LAYOUT.is_file() and not url.lower().startswith("replay:"):
+    """The path of `--layout`, or of the layout built here; a replay has its own."""
+    path: Path | None = options.layout
+    if path is None and BUILT_LAYOUT.is_file() and not url.lower().startswith("replay:"):
         return BUILT_LAYOUT
-    return given
+    return path
 
 
-def open_fingertip(
-    options: argparse.Namespace, url: str | None = None, **others: Any
-) -> "Fingertip":
+def open_fingertip(options: argparse.Namespace, **others: Any) -> "Fingertip":
     """Open the fingertip that the arguments name; errors as of `Fingertip.open`."""
     from lumitip.fingertip import Fingertip
 
-    named: str = url or options.url
     return Fingertip.open(
-        named,
-        layout_path(options, named),
+        options.url,
+        layout_path(options, options.url),
         timeout=options.timeout,
         any_design=options.any_design,
         **others,

@@ -1,4 +1,4 @@
-"""`lumitip record`: write what a fingertip sends to a file."""
+"""`lumitip record`: write the frames of a fingertip to a file."""
 
 import argparse
 import math
@@ -10,34 +10,52 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from lumitip.commands.common import Subparsers, add_fingertip, open_fingertip, some, some_seconds
+from lumitip.commands.common import (
+    Subparsers,
+    add_fingertip,
+    command,
+    open_fingertip,
+    positive_count,
+    positive_seconds,
+)
 
 if TYPE_CHECKING:
     from lumitip.fingertip import Fingertip
     from lumitip.recording import Writer
 
-_LOOK_S = 0.2  # without a frame, how long Ctrl-C may wait
+_POLL_S = 0.2  # longest reaction time to Ctrl-C
 
 
 def add(subparsers: Subparsers) -> None:
-    """Say what the command takes."""
-    told = "Record a fingertip as MCAP, which Foxglove, ROS 2 and rosbags open; Ctrl-C ends it."
-    parser = subparsers.add_parser("record", help=told, description=told)
+    """Add the subcommand."""
+    text = "Record a fingertip as MCAP, for Foxglove, ROS 2 and rosbags; Ctrl-C ends it."
+    parser = command(subparsers, "record", run, text)
     add_fingertip(parser)
-    parser.add_argument("file", type=Path, metavar="FILE", help="to write, ending in .mcap")
+    parser.add_argument("file", type=Path, metavar="FILE", help="new file, ends in .mcap")
     parser.add_argument(
-        "--seconds", type=some_seconds, default=math.inf, metavar="S", help="end after S"
+        "--seconds",
+        type=positive_seconds,
+        default=math.inf,
+        metavar="S",
+        help="stop after S seconds",
     )
-    parser.add_argument("--frames", type=some, default=math.inf, metavar="N", help="end after N")
+    parser.add_argument(
+        "--frames",
+        type=positive_count,
+        default=math.inf,
+        metavar="N",
+        help="stop after N frames",
+    )
 
 
 def run(options: argparse.Namespace) -> int:
-    """Carry it out."""
+    """Record until Ctrl-C or a limit."""
     from lumitip.recording import RecordingError, Writer
 
     if options.file.suffix != ".mcap":
         raise RecordingError(
-            f"{options.file} given: without .mcap at its end no other program opens it"
+            f"the file is {options.file}; its name must end in .mcap, or other programs will not "
+            "open it"
         )
     with open_fingertip(options) as tip, _interrupts() as interrupted:
         writer = Writer(
@@ -46,9 +64,9 @@ def run(options: argparse.Namespace) -> int:
         with writer:
             print(f"{tip.device_id}: recording to {options.file} (Ctrl-C ends it)", flush=True)
             _record(tip, writer, options, interrupted)
-        lost = {k: n for k, n in tip.stats.dropped.items() if n} if tip.stats.dropped else {}
-    told = "".join(f", {n} lost ({k})" for k, n in lost.items())
-    print(f"{writer.frames} frames recorded{told}")
+        dropped = tip.stats.dropped or {}
+    lost = "".join(f", {n} lost ({cause})" for cause, n in dropped.items() if n)
+    print(f"{writer.frames} frames recorded{lost}")
     return 0
 
 
@@ -66,16 +84,16 @@ def _record(
         if left <= 0.0:
             return
         try:
-            writer.write(tip.read(timeout=min(left, _LOOK_S)))
+            writer.write(tip.read(timeout=min(left, _POLL_S)))
         except LinkTimeout:
-            continue  # a link that was cut is being made again
+            continue  # the link reconnects
         except EndOfRecording:
             return
 
 
 @contextmanager
 def _interrupts() -> Iterator[threading.Event]:
-    """An event that Ctrl-C and `kill` set, so that neither breaks into the writing of a frame."""
+    """An event that SIGINT and SIGTERM set, so that neither interrupts the writing of a frame."""
     event = threading.Event()
     signals = (signal.SIGINT, signal.SIGTERM)
     before = [signal.signal(number, lambda *_: event.set()) for number in signals]

@@ -3,45 +3,51 @@
 import argparse
 from pathlib import Path
 
-from lumitip.commands.common import Subparsers, add_fingertip, layout_path
+from lumitip.commands.common import Subparsers, add_fingertip, command, layout_path
 
 
 def add(subparsers: Subparsers) -> None:
-    """Say what the command takes."""
-    told = "Show one or more fingertips live in a browser, served from this computer."
-    parser = subparsers.add_parser("view", help=told, description=told)
+    """Add the subcommand."""
+    text = "Display one or more fingertips live in a browser, served from this computer."
+    parser = command(subparsers, "view", run, text)
     add_fingertip(parser, several=True)
     parser.add_argument(
         "--host",
         default="127.0.0.1",
         metavar="ADDRESS",
-        help="address to listen at (127.0.0.1); any other computer then needs the token",
+        help="address to listen on (default: 127.0.0.1); other computers need the token",
     )
     parser.add_argument(
-        "--port", type=int, default=8642, metavar="N", help="port (8642); 0 takes a free one"
+        "--port",
+        type=int,
+        default=8642,
+        metavar="N",
+        help="port (default: 8642); 0 is any free one",
     )
     parser.add_argument(
-        "--token", metavar="TEXT", help="what browsers must show; made up where one is needed"
+        "--token",
+        metavar="TEXT",
+        help="secret that browsers must send (default: random, if needed)",
     )
     parser.add_argument(
         "--folder",
         type=Path,
         default=Path("recordings"),
         metavar="DIR",
-        help="where recordings are written and replayed from (recordings)",
+        help="folder of recordings (default: recordings)",
     )
     parser.add_argument(
         "--rerun",
         nargs="?",
         const="",
         metavar="FILE.rrd",
-        help="show everything in the Rerun viewer too, or write it to a file for it",
+        help="also send the data to the Rerun viewer, or to a file",
     )
-    parser.add_argument("--open", action="store_true", help="open the browser too")
+    parser.add_argument("--open", action="store_true", help="open the browser")
 
 
 def run(options: argparse.Namespace) -> int:
-    """Carry it out."""
+    """Serve until Ctrl-C."""
     import webbrowser
     from contextlib import ExitStack
 
@@ -52,21 +58,21 @@ def run(options: argparse.Namespace) -> int:
     except ModuleNotFoundError as error:
         raise MissingExtra("view", "the live view") from error
     from lumitip.view.finger import Finger
+    from lumitip.view.registry import FingerRegistry
     from lumitip.view.rerun_sink import RerunSink
-    from lumitip.view.room import Room
 
     with ExitStack() as stack:
         sinks: tuple[RerunSink, ...] = ()
         if options.rerun is not None:
             sinks = (RerunSink(Path(options.rerun) if options.rerun else None),)
             stack.callback(sinks[0].close)
-        room = Room((), options.folder)
-        stack.callback(room.close)
+        registry = FingerRegistry((), options.folder)
+        stack.callback(registry.close)
         for url in options.urls:
             layout = layout_path(options, url)
             how = {"timeout": options.timeout, "any_design": options.any_design}
-            room.add(Finger.open(url, layout, sinks, **how))
-        server = ViewServer(room, options.host, options.port, options.token)
+            registry.add(Finger.open(url, layout, sinks, **how))
+        server = ViewServer(registry, options.host, options.port, options.token)
         print(f"live view at {server.url} (Ctrl-C ends it)", flush=True)
         if options.open:
             webbrowser.open(server.url)

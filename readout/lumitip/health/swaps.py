@@ -1,8 +1,8 @@
-"""Swapped cells, told from how cells go together while something moves over them.
+"""Swapped cells, found from correlations while an object moves over all cells.
 
-How much two cells darken together depends on the way from one to the other: the same for all pairs
-that lie so, whatever it is that moves and however thin it is. For each such way the median of its
-pairs is what a pair should have; swapped cells have it with each other's surroundings.
+The correlation of two cells depends on the offset between them, whatever the object. Its median
+over all pairs of the same offset is the expected correlation of each pair. Swapped cells fit the
+expectation better at each other's places.
 """
 
 from dataclasses import dataclass
@@ -14,17 +14,16 @@ from lumitip.grid import Floats
 from lumitip.layout import Layout
 
 LEAST_GAIN, LEAST_TO_SPREAD = 0.03, 0.5
-"""Least gain of correlation for each pair, at all and in parts of how far pairs that lie the same
-way differ anyway (their median). On the twin (20 s of discs, edges, corners and cables of 2 to
-12 mm, free or to and fro) a sound fingertip stays below 0.012, or below 0.4 of that spread where
-the movement differs from place to place; of swaps of any two cells 88 % are found, of neighbours
-74 %."""
+"""Smallest gain in correlation per pair: absolute, and relative to the median spread of pairs with
+the same offset. On the twin (20 s of discs, edges, corners and cables of 2 to 12 mm, free or to
+and fro) a healthy fingertip stays below 0.012, or below 0.4 of the spread where the movement is
+uneven; 88 % of all swaps are found, 74 % of swaps of neighbours."""
 LEAST_ORDER = 0.3
-"""Least order, as of `order`. In the same recordings sound fingertips have 0.36 and more, cells in
-no order at most 0.18."""
-_MOST = 8  # more swaps than these are another layout
-_REACH = 6.6  # pitches between two cells that are compared: all of the published sensor's
-_LEAST_PAIRS = 4  # that lie the same way, for their median to be worth something
+"""Smallest `order`. In the same recordings a healthy fingertip has at least 0.36, shuffled cells
+have at most 0.18."""
+_MOST = 8  # with more swaps the layout is wrong
+_REACH = 6.6  # largest offset (pitches): all pairs of the published sensor
+_LEAST_PAIRS = 4  # of the same offset, for a meaningful median
 
 Mask = np.ndarray[tuple[int], np.dtype[np.bool_]]
 Pairs = np.ndarray[tuple[int, int], np.dtype[np.intp]]
@@ -34,105 +33,102 @@ PairMask = np.ndarray[tuple[int, int], np.dtype[np.bool_]]
 
 @dataclass(frozen=True)
 class Swap:
-    """Two cells that look swapped."""
+    """Two cells that are probably swapped."""
 
     cells: tuple[int, int]
     gain: float
-    """By how much nearer to what is usual their correlations would be, for each pair."""
+    """Mean improvement of their correlations if swapped back."""
     sure: bool
-    """Whether both halves of the recording say so, each by itself."""
+    """Whether each half of the recording alone shows it."""
 
 
-def swaps(light: Values, ways: Pairs, usable: Mask) -> list[Swap]:
-    """Cells that look swapped, the clearest first, at most eight pairs.
+def swaps(light: Values, offsets: Pairs, usable: Mask) -> list[Swap]:
+    """Cells that are probably swapped, largest gain first, at most eight pairs.
 
     Args:
         light: shape `(n, cells)`.
-        ways: number of the way that each pair lies, as of `ways_of`.
-        usable: which cells to compare, shape `(cells,)`.
+        offsets: from `offset_classes`.
+        usable: cells to compare, shape `(cells,)`.
     """
-    halves = [_alike(half) for half in (light[: len(light) // 2], light[len(light) // 2 :])]
-    alike, free, found = _alike(light), usable.copy(), list[Swap]()
+    halves = [_correlations(half) for half in (light[: len(light) // 2], light[len(light) // 2 :])]
+    correlations, free, found = _correlations(light), usable.copy(), list[Swap]()
     for _ in range(_MOST):
-        gain, least = gains(alike, ways, usable)
+        gain, least = gains(correlations, offsets, usable)
         gain[~free] = gain[:, ~free] = -1.0
         i, j = sorted(int(n) for n in np.unravel_index(int(gain.argmax()), gain.shape))
         if gain[i, j] < least:
             break
-        told = (gains(half, ways, usable, np.array([i, j])) for half in halves)
-        sure = all(own[0, 1] >= most for own, most in told)
+        parts = (gains(half, offsets, usable, np.array([i, j])) for half in halves)
+        sure = all(own[0, 1] >= most for own, most in parts)
         found.append(Swap((i, j), float(gain[i, j]), sure))
         free[[i, j]] = False
-        for matrix in (alike, *halves):
+        for matrix in (correlations, *halves):
             matrix[[i, j]] = matrix[[j, i]]
             matrix[:, [i, j]] = matrix[:, [j, i]]
     return found
 
 
-def order(light: Values, ways: Pairs, usable: Mask) -> float:
-    """How far the cells lie as the layout says: the share of the variance of their correlations
-    that the way from one to the other tells, 1 at most; about 0 for cells in no order.
-
-    Arguments as of `swaps`.
-    """
-    alike = _alike(light)
-    usual, known = _usual(alike, ways, _compared(usable))
-    values = alike[known]
+def order(light: Values, offsets: Pairs, usable: Mask) -> float:
+    """Share of the variance of the correlations that the offsets explain: at most 1, about 0 for
+    shuffled cells. Arguments of `swaps`."""
+    correlations = _correlations(light)
+    expected, known = _expected(correlations, offsets, _compared(usable))
+    values = correlations[known]
     variance = float(values.var()) if values.size else 0.0
-    return 1.0 - float(np.mean((values - usual[known]) ** 2)) / variance if variance else 0.0
+    return 1.0 - float(np.mean((values - expected[known]) ** 2)) / variance if variance else 0.0
 
 
 def gains(
-    alike: Floats, ways: Pairs, usable: Mask, among: Cells | None = None
+    correlations: Floats, offsets: Pairs, usable: Mask, among: Cells | None = None
 ) -> tuple[Floats, float]:
-    """By how much swapping two cells would bring their correlations nearer to what is usual.
+    """Mean improvement of the correlations when two cells are swapped.
 
     Args:
-        alike: correlations, shape `(cells, cells)`.
-        ways: number of the way that each pair lies, as of `ways_of`.
-        usable: which cells to compare.
-        among: the cells whose swaps are judged; all, if left out.
+        correlations: shape `(cells, cells)`.
+        offsets: from `offset_classes`.
+        usable: cells to compare.
+        among: cells whose swaps are tested; default: all.
 
     Returns:
-        For each pair of `among` that is compared, shape `(among, among)`, -1 on the diagonal and
-        for cells that cannot be compared; and the gain from which on a swap is told.
+        The gain of each pair, shape `(among, among)`, -1 where there is none; and the smallest
+        gain of a swap.
     """
-    usual, known = _usual(alike, ways, _compared(usable))
-    spread = float(np.median(np.abs(alike[known] - usual[known]))) if known.any() else 0.0
-    those = np.arange(len(alike)) if among is None else among
-    seen = alike if among is None else np.ascontiguousarray(alike[:, those])
-    # astray[a, i]: how far cell a would be from what is usual at place i. A pair's correlation is
-    # the same either way round, so that cells can be taken by rows, which lie together in memory.
-    astray = np.stack(
-        [np.abs(seen[known[i]] - usual[i, known[i], None]).sum(axis=0) for i in those], axis=1
+    expected, known = _expected(correlations, offsets, _compared(usable))
+    spread = float(np.median(np.abs(correlations[known] - expected[known]))) if known.any() else 0.0
+    cells = np.arange(len(correlations)) if among is None else among
+    seen = correlations if among is None else np.ascontiguousarray(correlations[:, cells])
+    # misfit[a, i]: distance of cell a's correlations from those expected at place i. By rows, which
+    # are contiguous in memory; the correlations are symmetric.
+    misfit = np.stack(
+        [np.abs(seen[known[i]] - expected[i, known[i], None]).sum(axis=0) for i in cells], axis=1
     )
-    alike, usual = alike[np.ix_(those, those)], usual[np.ix_(those, those)]
-    weight, others = known[np.ix_(those, those)].astype(np.float64), known[those].sum(axis=1)
-    # The correlation of the two with each other is the same either way.
-    own = np.diag(astray)[:, None] - weight * np.abs(alike - usual)
-    other = astray.T - weight * np.abs(1.0 - usual)
+    correlations, expected = correlations[np.ix_(cells, cells)], expected[np.ix_(cells, cells)]
+    weight, others = known[np.ix_(cells, cells)].astype(np.float64), known[cells].sum(axis=1)
+    # The correlation of the two with each other does not change.
+    own = np.diag(misfit)[:, None] - weight * np.abs(correlations - expected)
+    other = misfit.T - weight * np.abs(1.0 - expected)
     pairs = others[:, None] + others[None, :] - 2.0 * weight
     gain: Floats = np.where(pairs > 0, (own + own.T - other - other.T) / np.maximum(pairs, 1), -1.0)
-    gain[~usable[those]] = gain[:, ~usable[those]] = -1.0
+    gain[~usable[cells]] = gain[:, ~usable[cells]] = -1.0
     np.fill_diagonal(gain, -1.0)
     return gain, max(LEAST_GAIN, LEAST_TO_SPREAD * spread)
 
 
-def ways_of(layout: Layout) -> Pairs:
-    """A number for each way from one cell to another, there and back the same, 0 for those too
-    far apart to be compared, shape `(cells, cells)`."""
-    # In hundredths of a mm, which tell ways apart and forgive rounded places.
+def offset_classes(layout: Layout) -> Pairs:
+    """A number for each offset between two cells, equal for the opposite offset, 0 beyond the
+    reach, shape `(cells, cells)`."""
+    # In hundredths of a mm: tolerates rounding.
     x, y = (np.rint(1e2 * (a[:, None] - a)).astype(np.int64) for a in (layout.x_mm, layout.y_mm))
     near = x * x + y * y <= (1e2 * _REACH * layout.pitch_mm) ** 2
     np.fill_diagonal(near, False)
-    ways: Pairs = np.zeros(near.shape, np.intp)
-    ways[near] = 1 + np.unique(np.abs((x[near] << 24) + y[near]), return_inverse=True)[1]
-    return ways
+    offsets: Pairs = np.zeros(near.shape, np.intp)
+    offsets[near] = 1 + np.unique(np.abs((x[near] << 24) + y[near]), return_inverse=True)[1]
+    return offsets
 
 
-def enough_ways(ways: Pairs) -> bool:
-    """Whether enough pairs lie the same way for swaps to show, by the numbers of `ways_of`."""
-    count = np.bincount(np.triu(ways).ravel(), minlength=1)
+def enough_pairs(offsets: Pairs) -> bool:
+    """Whether any offset has enough pairs to find swaps."""
+    count = np.bincount(np.triu(offsets).ravel(), minlength=1)
     return bool((count[1:] >= _LEAST_PAIRS).any())
 
 
@@ -142,26 +138,25 @@ def _compared(usable: Mask) -> PairMask:
     return pairs
 
 
-def _usual(alike: Floats, ways: Pairs, compared: PairMask) -> tuple[Floats, PairMask]:
-    """The median of the pairs that lie as each pair, and which pairs are compared with enough
-    others."""
-    pair = np.triu(compared & (ways > 0))
-    number, value = ways[pair], alike[pair]
+def _expected(correlations: Floats, offsets: Pairs, compared: PairMask) -> tuple[Floats, PairMask]:
+    """The median over pairs of the same offset, and the pairs with enough others."""
+    pair = np.triu(compared & (offsets > 0))
+    number, value = offsets[pair], correlations[pair]
     order = np.lexsort((value, number))
     number, value = number[order], value[order]
-    count = np.bincount(number, minlength=int(ways.max()) + 1)
+    count = np.bincount(number, minlength=int(offsets.max()) + 1)
     first = np.cumsum(count) - count
     if not value.size:
-        return np.zeros_like(alike), np.zeros_like(compared)
+        return np.zeros_like(correlations), np.zeros_like(compared)
     low, high = (
         np.minimum(first + half, value.size - 1)
         for half in (np.maximum(count - 1, 0) // 2, count // 2)
     )
     median = (value[low] + value[high]) / 2.0
-    return median[ways], (count >= _LEAST_PAIRS)[ways] & compared
+    return median[offsets], (count >= _LEAST_PAIRS)[offsets] & compared
 
 
-def _alike(light: Values) -> Floats:
+def _correlations(light: Values) -> Floats:
     with np.errstate(invalid="ignore", divide="ignore"):
         found: Floats = np.corrcoef(light.T.astype(np.float64))
     return np.nan_to_num(np.atleast_2d(found))

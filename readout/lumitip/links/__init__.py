@@ -1,13 +1,11 @@
-"""Links: the ways that packets come. `open_link` chooses by the scheme of an address."""
+"""Links: the sources of frames. `open_link` chooses one by the scheme of an address."""
 
 from importlib import import_module
 
 from lumitip.errors import LayoutError, UrlError
 from lumitip.layout import Layout
-from lumitip.links.base import Arrival, Fault, Link, LinkEvent, Recorded
+from lumitip.links.base import Link
 from lumitip.links.url import Url
-
-__all__ = ["Arrival", "Fault", "Link", "LinkEvent", "Recorded", "open_link"]
 
 SCHEMES = {
     "ble": "lumitip.links.ble",
@@ -21,24 +19,25 @@ def open_link(url: str, layout: Layout | None = None, any_design: bool = False) 
     """The link of an address, not yet started.
 
     Args:
-        url: `ble://NAME-OR-ADDRESS`, `serial://PORT`, `replay://FILE` or `twin://SHAPE`, options
-            after a question mark: the module of each link says which.
-        layout: the cells of the device; a replay and a twin bring their own.
-        any_design: whether a device of another design is read all the same.
+        url: `ble://NAME-OR-ADDRESS`, `serial://PORT`, `replay://FILE` or `twin://SHAPE`; the
+            module of each link describes its options.
+        layout: the cells of the device; optional for a replay or a twin.
+        any_design: accept a device of another design.
 
     Raises:
-        UrlError: if there is no such link or option.
-        LayoutError: if the link needs a layout and none was given.
+        UrlError: if the link or an option does not exist.
+        LayoutError: if the layout is missing.
         MissingExtra: if a library is missing.
-        LinkError: what the link itself cannot accept.
+        LinkError: if the link rejects the address.
     """
-    told = Url.parse(url)
-    if told.scheme not in SCHEMES:
-        raise UrlError(f"{url!r} given, allowed are {', '.join(f'{name}://…' for name in SCHEMES)}")
-    if layout is None and told.scheme in ("ble", "serial"):
+    address = Url.parse(url)
+    if address.scheme not in SCHEMES:
+        allowed = ", ".join(f"{name}://…" for name in SCHEMES)
+        raise UrlError(f"the address is {url!r}; allowed are {allowed}")
+    if layout is None and address.scheme in ("ble", "serial"):
         raise LayoutError(
-            f"{url} says nothing of its cells: give the layout.json that its firmware was built "
-            "from: layout='outputs/layout.json', or --layout outputs/layout.json"
+            f"{url} needs the layout.json that its firmware was built from: add "
+            "layout='outputs/layout.json', or --layout outputs/layout.json"
         )
-    link: Link = import_module(SCHEMES[told.scheme]).make(told, layout, any_design)
+    link: Link = import_module(SCHEMES[address.scheme]).make(address, layout, any_design)
     return link

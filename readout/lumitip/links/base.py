@@ -1,4 +1,4 @@
-"""What every link gives, and what is asked of one."""
+"""The interface of links: arrivals, events and the `Link` protocol."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -6,50 +6,35 @@ from typing import Literal, Protocol, runtime_checkable
 
 from lumitip.calibration import Calibration
 from lumitip.errors import LinkError
-from lumitip.frame import Codes
+from lumitip.frame import Codes, RecordedFrame
 from lumitip.layout import Layout
 from lumitip.protocol.packet import ForeignPacketError, Packet
-
-
-@dataclass(frozen=True, eq=False)
-class Recorded:
-    """A frame that was given before, with all that was known of it then."""
-
-    seq: int
-    t_device: float | None
-    t_host: float
-    t_wall: float
-    raw: Codes
-    bits: int
-    dropped_before: int | None
-
 
 Cause = Literal["crc", "length"]
 
 
 @dataclass(frozen=True, eq=False)
 class Fault:
-    """Packets that came and could not be read."""
+    """Packets that arrived and could not be decoded."""
 
     cause: Cause
     packets: int
     why: str
-    """The last one's message, for people."""
+    """Message of the last error."""
     foreign: ForeignPacketError | None = None
-    """If the last one was undamaged, but of another number of cells: what it is."""
+    """The last error, if the packet was intact but of another number of cells."""
 
 
 @dataclass(frozen=True, eq=False)
 class Arrival:
-    """Something that came over a link."""
+    """Data received from a link."""
 
     t_host: float
-    """When, by `time.monotonic` (s)."""
-    what: Packet | Codes | Recorded | Fault
-    """A packet; the codes of a legacy frame, shape `(cells,)`, 8 bits; a recorded frame; or the
-    fault of what could not be read."""
+    """`time.monotonic` (s)."""
+    content: Packet | Codes | RecordedFrame | Fault
+    """`Codes`: a legacy frame, shape `(cells,)`, 8 bits."""
     patient: bool = False
-    """Whether `deliver` may wait until somebody reads and has room: a recording has time."""
+    """Whether `deliver` may block until there is a reader with room, as for recordings."""
 
 
 EventKind = Literal["connected", "lost", "restarted", "warm", "ended", "failed"]
@@ -57,14 +42,13 @@ EventKind = Literal["connected", "lost", "restarted", "warm", "ended", "failed"]
 
 @dataclass(frozen=True)
 class LinkEvent:
-    """Something that happened to a link."""
+    """A change of state of a link or device."""
 
     kind: EventKind
-    """`"connected"`, also again; `"lost"`, it is being made again; `"restarted"`, the device
-    started anew; `"warm"`, it has been on for five minutes; `"ended"`, a recording;
-    `"failed"`, given up for the reason in `error`."""
+    """`"connected"`, first or again; `"lost"`, reconnecting; `"restarted"`, the device; `"warm"`,
+    five minutes after power-on; `"ended"`, a recording; `"failed"`, for good, see `error`."""
     detail: str
-    """The same for people."""
+    """Text for the user."""
     error: LinkError | None = None
 
 
@@ -73,43 +57,42 @@ Report = Callable[[LinkEvent], None]
 
 
 class Link(Protocol):
-    """Where packets come from. `start` and `stop` are called once, from any thread."""
+    """A source of frames. `start` and `stop` are called once, from any thread."""
 
     @property
     def layout(self) -> Layout:
-        """The cells that come."""
+        """The cells of the frames."""
 
     @property
     def device_id(self) -> str:
-        """What tells this device from others; final once the link is connected."""
+        """Unique name of the device; final once the link is connected."""
 
     def start(self, deliver: Deliver, report: Report) -> None:
-        """Begin, on a thread of the link's own, and return at once.
+        """Start a thread that connects and delivers; returns at once.
 
         Args:
-            deliver: takes what comes; one thread at a time, never raises, and waits for nothing
-                unless the arrival is patient.
-            report: takes what happens, likewise.
+            deliver: called with each arrival, from one thread at a time; never raises, and blocks
+                only if the arrival is patient.
+            report: called with each event, likewise.
         """
 
     def stop(self) -> None:
-        """End, and return soon, when nothing will be delivered or reported any more. Never
-        raises."""
+        """End the thread; afterwards nothing is delivered or reported. Never raises."""
 
 
 @runtime_checkable
 class Prepares(Protocol):
-    """A link that needs time of its own before it is connected."""
+    """A link with a slow start."""
 
     @property
     def why_late(self) -> str:
-        """What takes the time, and what to do, for people."""
+        """Reason for the delay, and remedy, for the user."""
 
 
 @runtime_checkable
 class Calibrated(Protocol):
-    """A link that brings a calibration along, which is used instead of what is kept here."""
+    """A link with its own calibration, used instead of the saved one."""
 
     @property
     def calibration(self) -> Calibration | None:
-        """As it was when recorded."""
+        """The calibration at the time of recording."""

@@ -1,18 +1,21 @@
-"""`ble://Lumitip`: packets as Bluetooth notifications; version 2, or version 1 of the published
-sensor.
+"""`ble://Lumitip`: Bluetooth notifications of version 2, or version 1 (the published sensor).
 
     ble://NAME-OR-ADDRESS?adapter=hci0&scan=8
 
-Without a name the only fingertip in sight is taken; `scan` is how long to look for it (s). bleak
-runs in a thread of its own and only queues there; packets are read on the link's thread. Needs
-bleak: the extra `ble`.
+The default is the only fingertip in reach; `scan` is the longest scan (s). bleak runs on its own
+thread, which only queues data; the link's thread decodes them. Needs bleak: the extra `ble`.
 """
 
+import asyncio
+import atexit
+import contextlib
 import re
+import threading
 import time
 from collections.abc import Callable, Coroutine
 from concurrent.futures import CancelledError, Future
 from dataclasses import dataclass
+from functools import cache
 from queue import SimpleQueue
 from typing import Any, TypeVar
 
@@ -20,9 +23,7 @@ from lumitip.errors import LinkError, LinkTimeout, MissingExtra, MtuTooSmall, No
 from lumitip.frame import Codes
 from lumitip.layout import Layout
 from lumitip.links.base import Arrival, Cause, Deliver, Fault, Report
-from lumitip.links.ble_loop import shared_loop
-from lumitip.links.retry import keep_connected
-from lumitip.links.thread import ThreadedLink
+from lumitip.links.thread import ThreadedLink, keep_connected
 from lumitip.links.url import Url
 from lumitip.protocol.bluetooth import decode_legacy
 from lumitip.protocol.packet import ATT_BYTES, ForeignPacketError, Packet, PacketError, decode
@@ -42,7 +43,7 @@ _CONNECT_S = 20.0
 
 @dataclass(frozen=True)
 class Notified:
-    """What bleak's thread hands over: a notification, or why there will be none."""
+    """A notification from bleak's thread."""
 
     t_host: float
     data: bytes
@@ -106,7 +107,7 @@ class BleLink(ThreadedLink):
 
     async def _connect(self, items: "SimpleQueue[Item]") -> tuple[BleakClient, Service]:
         device = await find(self._target, self._adapter, self._scan_s)
-        # From now on this very device is meant, whatever else takes its name.
+        # Reconnections use the address: other devices may have the same name.
         self._target = device.address
         self.device_id = f"ble:{device.address}"
 
@@ -134,7 +135,7 @@ class BleLink(ThreadedLink):
 
 
 def sightings(seconds: float) -> list[Sighting]:
-    """The fingertips that advertise within some time, by address.
+    """The fingertips that advertise within some seconds, sorted by address.
 
     Raises:
         LinkError: if Bluetooth cannot be used.
@@ -149,30 +150,70 @@ def _result(future: "Future[T]", what: str) -> T:
     except LinkError:
         raise
     except TimeoutError as error:
-        raise LinkTimeout(f"{what}: no answer; is it in reach?") from error
+        raise LinkTimeout(f"{what}: no answer. Is it in reach?") from error
     except CancelledError as error:
         raise NotConnected(f"{what}: closed while connecting") from error
     except (BleakError, OSError, EOFError) as error:
-        told = str(error) or type(error).__name__
-        raise NotConnected(f"{what}: {told}; is Bluetooth switched on?") from error
+        text = str(error) or type(error).__name__
+        raise NotConnected(f"{what}: {text}. Is Bluetooth switched on?") from error
 
 
 async def _disconnect(client: BleakClient) -> None:
     try:
         await client.disconnect()
     except (BleakError, OSError, EOFError, TimeoutError):
-        return  # it is gone already
+        return  # already disconnected
 
 
 def make(url: Url, layout: Layout, any_design: bool) -> BleLink:
     """The link of an address.
 
     Raises:
-        UrlError: if there is no such option, or no adapter can have that name.
+        UrlError: if an option or the name of the adapter is wrong.
     """
     url.allow("adapter", "scan")
     scan_s = url.number("scan", 8.0, 0.1, 600.0)
     adapter = url.options.get("adapter", "")
     if not re.fullmatch(r"\w*", adapter, re.ASCII):
-        raise UrlError(f"{url.text!r}: adapter={adapter} given, a name like hci0 is needed")
+        raise UrlError(f"{url.text!r}: adapter is {adapter}; a name like hci0 is needed")
     return BleLink(layout, url.target, adapter, scan_s, any_design)
+
+
+class LoopThread:
+    """The event loop of bleak on its own thread, until the program ends.
+
+    All Bluetooth links share it, because bleak keeps state for each loop.
+    """
+
+    def __init__(self) -> None:
+        self._loop = asyncio.new_event_loop()
+        self._thread = threading.Thread(
+            target=self._loop.run_forever, name="lumitip-bleak", daemon=True
+        )
+        self._thread.start()
+        atexit.register(self._end)
+
+    def submit(self, coroutine: Coroutine[Any, Any, T]) -> "Future[T]":
+        """Run a coroutine on the loop. From any other thread."""
+        return asyncio.run_coroutine_threadsafe(coroutine, self._loop)
+
+    def _end(self) -> None:
+        # Cancelled tasks disconnect their device; otherwise the system keeps it connected after
+        # the program ends, and no other program can find it.
+        with contextlib.suppress(TimeoutError):
+            self.submit(_cancel_all()).result(5.0)
+        self._loop.call_soon_threadsafe(self._loop.stop)
+        self._thread.join(5.0)
+
+
+async def _cancel_all() -> None:
+    tasks = asyncio.all_tasks() - {asyncio.current_task()}
+    for task in tasks:
+        task.cancel()
+    await asyncio.gather(*tasks, return_exceptions=True)
+
+
+@cache
+def shared_loop() -> LoopThread:
+    """The loop of all Bluetooth links, started on first use."""
+    return LoopThread()

@@ -1,4 +1,4 @@
-"""A Bluetooth device: how it is found, and what is read from its characteristics."""
+"""Search for a Bluetooth device, and checks of its status."""
 
 import asyncio
 import re
@@ -23,37 +23,37 @@ from lumitip.protocol.bluetooth import (
 )
 from lumitip.protocol.packet import PacketError
 
-SETTLE_S = 1.5  # devices advertise at least once a second: a namesake shows itself by then
+SETTLE_S = 1.5  # devices advertise once a second: enough to see others of the same name
 _ADDRESS = re.compile(r"([0-9A-F]{2}:){5}[0-9A-F]{2}|[0-9A-F]{8}(-[0-9A-F]{4}){3}-[0-9A-F]{12}")
-"""A Bluetooth address, or the UUID that Apple's systems give instead."""
+"""A Bluetooth address, or the UUID that macOS uses instead."""
 
 Sighting = tuple[BLEDevice, AdvertisementData]
 
 
 async def find(target: str, adapter: str, scan_s: float) -> BLEDevice:
-    """The device of a name or address; without one the only fingertip in sight.
+    """The device with a name or address; without one the only fingertip in reach.
 
     Raises:
         DeviceNotFound: if there is none.
-        AmbiguousDevice: if there are several, with their addresses.
+        AmbiguousDevice: if there are several.
     """
     by_address = bool(_ADDRESS.fullmatch(target.upper()))
 
-    def wanted(sighting: Sighting) -> bool:
-        device, told = sighting
+    def matches(sighting: Sighting) -> bool:
+        device, advertisement = sighting
         if by_address:
             return device.address.upper() == target.upper()
         if not target:
-            return is_fingertip(told)
-        return target in (told.local_name, device.name)
+            return is_fingertip(advertisement)
+        return target in (advertisement.local_name, device.name)
 
-    seen = await look(adapter, scan_s, wanted, 0.0 if by_address else SETTLE_S)
-    found = [device for device, told in seen.values() if wanted((device, told))]
+    seen = await look(adapter, scan_s, matches, 0.0 if by_address else SETTLE_S)
+    found = [sighting[0] for sighting in seen.values() if matches(sighting)]
     if not found:
-        names = sorted({told.local_name or device.name or "" for device, told in seen.values()})
+        names = sorted({heard.local_name or device.name or "" for device, heard in seen.values()})
         raise DeviceNotFound(
-            f"{target or 'any fingertip'!r} not seen in {scan_s:g} s; seen were "
-            f"{', '.join(filter(None, names)) or 'none'}: is it switched on, near, and not "
+            f"{target or 'any fingertip'!r} was not found in {scan_s:g} s; found were "
+            f"{', '.join(filter(None, names)) or 'none'}. Is it switched on, in reach, and not "
             "connected to another computer?"
         )
     if len(found) > 1:
@@ -64,13 +64,13 @@ async def find(target: str, adapter: str, scan_s: float) -> BLEDevice:
 async def look(
     adapter: str, scan_s: float, until: Callable[[Sighting], bool], settle_s: float
 ) -> dict[str, Sighting]:
-    """Scan until a sighting is as wanted and `settle_s` more, at most `scan_s`, by address."""
+    """Scan until `until` is true and `settle_s` longer, at most `scan_s`; results by address."""
     seen: dict[str, Sighting] = {}
     enough = asyncio.Event()
 
-    def sighted(device: BLEDevice, told: AdvertisementData) -> None:
-        seen[device.address] = (device, told)
-        if until((device, told)):
+    def sighted(device: BLEDevice, advertisement: AdvertisementData) -> None:
+        seen[device.address] = (device, advertisement)
+        if until((device, advertisement)):
             enough.set()
 
     options: dict[str, Any] = {"bluez": {"adapter": adapter}} if adapter else {}
@@ -84,21 +84,21 @@ async def look(
     return seen
 
 
-def is_fingertip(told: AdvertisementData) -> bool:
+def is_fingertip(advertisement: AdvertisementData) -> bool:
     """Whether an advertisement names the service of version 2 or 1."""
-    return bool({SERVICE, LEGACY_SERVICE} & {uuid.lower() for uuid in told.service_uuids})
+    return bool({SERVICE, LEGACY_SERVICE} & {uuid.lower() for uuid in advertisement.service_uuids})
 
 
-_HASH_DIGITS = 16  # of the design hash, what the status carries
+_HASH_DIGITS = 16  # of the design hash in the status
 
 
 @dataclass(frozen=True)
 class Service:
-    """What a device offers."""
+    """The protocol of a device."""
 
     version: Literal[1, 2]
     status: Status | None
-    """Of version 2, as it was on connecting."""
+    """Of version 2, at connection."""
 
 
 async def begin(
@@ -108,17 +108,17 @@ async def begin(
     notified: Callable[[bytearray], None],
     failed: Callable[[LinkError], None],
 ) -> Service:
-    """Check a connected device and have it send.
+    """Check a connected device and subscribe to its frames.
 
     Args:
         client: connected.
-        layout: the cells that are expected.
-        any_design: whether a device of another design will do.
-        notified: takes each notification of frames; called in bleak's loop, so it only queues.
-        failed: takes what turns out wrong later, likewise.
+        layout: the expected cells.
+        any_design: accept a device of another design.
+        notified: called with each notification, in bleak's loop: must only queue it.
+        failed: called with later errors, likewise.
 
     Raises:
-        LinkError: if it is no fingertip, of another design, or its frames do not fit.
+        LinkError: if it is not a fingertip, of another design, or its MTU is too small.
     """
 
     def frames(_: BleakGATTCharacteristic, data: bytearray) -> None:
@@ -134,24 +134,24 @@ async def begin(
         status = await _status(client)
         check(status, layout, any_design, client.address)
         await client.start_notify(STATUS, status_changed)
-        # StartNotify, not AcquireNotify: its socket overflows without a word when it is not read.
+        # StartNotify, because the socket of AcquireNotify drops data silently.
         await client.start_notify(FRAMES, frames, bluez={"use_start_notify": True})
         return Service(2, status)
     if client.services.get_characteristic(LEGACY_FRAMES):
         await client.start_notify(LEGACY_FRAMES, frames, bluez={"use_start_notify": True})
         return Service(1, None)
     raise DeviceNotFound(
-        f"{client.address} has no fingertip's service: another device of that name? "
-        "`lumitip scan` lists fingertips"
+        f"{client.address} is not a fingertip: it has no such service. `lumitip scan` lists "
+        "fingertips"
     )
 
 
 def check(status: Status, layout: Layout, any_design: bool, address: str) -> None:
-    """Refuse a device that cannot be read with this layout.
+    """Reject a device that does not match the layout.
 
     Raises:
-        WrongDesign: if its cells or, unless `any_design`, its design are others.
-        MtuTooSmall: if its frames do not fit.
+        WrongDesign: if its number of cells or, unless `any_design`, its design differ.
+        MtuTooSmall: if a frame does not fit.
     """
     expected = layout.design_hash[:_HASH_DIGITS]
     if status.cells != len(layout) or (status.design_hash != expected and not any_design):
@@ -160,10 +160,10 @@ def check(status: Status, layout: Layout, any_design: bool, address: str) -> Non
 
 
 def check_mtu(status: Status) -> None:
-    """Refuse a device whose frames do not fit.
+    """Reject a connection whose MTU is too small.
 
     Raises:
-        MtuTooSmall: with both numbers.
+        MtuTooSmall: if a frame does not fit.
     """
     if status.mtu < status.needed_mtu:
         raise MtuTooSmall(status.mtu, status.needed_mtu)
@@ -173,4 +173,4 @@ async def _status(client: BleakClient) -> Status:
     try:
         return Status.decode(bytes(await client.read_gatt_char(STATUS)))
     except PacketError as error:
-        raise LinkError(f"{client.address}: status cannot be read: {error}") from error
+        raise LinkError(f"{client.address}: the status cannot be read: {error}") from error

@@ -1,13 +1,12 @@
-"""`replay://run.mcap`: the frames of a recording, as they came then.
+"""`replay://run.mcap`: the frames of a recording.
 
     replay://FILE?speed=1
 
-`speed` is how many times as fast as recorded; 0 is as fast as the frames are read: nothing begins
-before somebody reads, and every reader is waited for, unless it takes nothing for 5 s. Frames keep
-their numbers and times, so `Frame.t` is of the clock that recorded. The layout and the calibration
-are those of the recording. `~` is the home folder. Gaps take as long as they took then, unlike in
-`lumitip replay` and the live view, which cut them to a second. Needs mcap:
-the extra `record`.
+`speed` is a factor; 0 is as fast as the frames are read: playing starts with the first reader, and
+waits for all readers, except those that read nothing for 5 s. Frames keep their numbers and times,
+so `Frame.t` is a time of the recording computer. Layout and calibration are those of the
+recording. `~` is the home folder. Gaps are not shortened, unlike in `lumitip replay` and the live
+view. Needs mcap: the extra `record`.
 """
 
 import time
@@ -15,10 +14,10 @@ import time
 from lumitip.calibration import Calibration
 from lumitip.errors import WrongDesign
 from lumitip.layout import Layout
-from lumitip.links.base import Arrival, Deliver, LinkEvent, Recorded, Report
+from lumitip.links.base import Arrival, Deliver, LinkEvent, Report
 from lumitip.links.thread import ThreadedLink
 from lumitip.links.url import Url
-from lumitip.recording import Reader, RecordedFrame
+from lumitip.recording import Reader
 
 
 class ReplayLink(ThreadedLink):
@@ -46,37 +45,25 @@ class ReplayLink(ThreadedLink):
         played_s = 0.0
         for frame in self._reader:
             if self._speed:
-                # A clock that was set back while it recorded must not make the replay wait.
+                # The wall clock may have been set back during the recording.
                 played_s += max(0.0, frame.t_wall - last) if last is not None else 0.0
                 last = frame.t_wall
                 self._stopping.wait(max(0.0, began + played_s / self._speed - time.monotonic()))
             if self._stopping.is_set():
                 return
-            deliver(Arrival(time.monotonic(), _recorded(frame), patient=not self._speed))
+            deliver(Arrival(time.monotonic(), frame, patient=not self._speed))
 
 
 def make(url: Url, layout: Layout | None, any_design: bool) -> ReplayLink:
     """The link of an address.
 
     Raises:
-        UrlError: if there is no such option.
+        UrlError: if an option is unknown.
         RecordingError: if the file cannot be read.
-        WrongDesign: if it is not of the layout, unless `any_design`.
+        WrongDesign: if its layout is another one, unless `any_design`.
     """
     url.allow("speed")
     reader = Reader(url.path)
     if layout is not None and layout != reader.layout and not any_design:
         raise WrongDesign(reader.layout.design_hash[:16], layout.design_hash[:16], url.target)
     return ReplayLink(reader, url.number("speed", 1.0, 0.0, 1000.0))
-
-
-def _recorded(frame: RecordedFrame) -> Recorded:
-    return Recorded(
-        frame.seq,
-        frame.t_device,
-        frame.t_host,
-        frame.t_wall,
-        frame.raw,
-        frame.bits,
-        frame.dropped_before,
-    )

@@ -1,4 +1,4 @@
-"""Which fingertips can be seen from here: over Bluetooth and on USB serial ports."""
+"""Search for fingertips: Bluetooth and USB serial ports."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -9,44 +9,44 @@ from lumitip.errors import LinkError
 
 @dataclass(frozen=True)
 class Found:
-    """A device that `Fingertip.open` can be asked for."""
+    """A device for `Fingertip.open`."""
 
     url: str
-    """Its address to open, which no other device has."""
+    """Its unique address."""
     name: str
-    """What it calls itself; several may be of one name."""
+    """Its name; not unique."""
     detail: str
-    """For people: signal strength, kind of port."""
+    """Signal strength or kind of port, for the user."""
     sure: bool
-    """Whether it says that it is a fingertip; a serial port cannot."""
+    """Whether it identifies itself as a fingertip; a serial port cannot."""
 
 
 @dataclass(frozen=True)
 class Scan:
-    """What was found, and what could not be searched."""
+    """The result of a search."""
 
     found: tuple[Found, ...]
     unsearched: tuple[str, ...]
-    """For each kind of link that could not be searched, why."""
+    """Reason for each kind of link that could not be searched."""
 
 
 def scan(seconds: float = 5.0, only: Literal["ble", "serial"] | None = None) -> Scan:
-    """Look around.
+    """Search for devices.
 
     Args:
-        seconds: how long to listen for Bluetooth advertisements.
-        only: one kind of link; both without.
+        seconds: duration of the Bluetooth scan.
+        only: one kind of link; default: both.
     """
     found: list[Found] = []
     unsearched: list[str] = []
-    kinds: dict[str, Callable[[], list[Found]]] = {
+    searches: dict[str, Callable[[], list[Found]]] = {
         "serial": _serial,
         "ble": lambda: _ble(seconds),
     }
-    for kind, look in kinds.items():
+    for kind, search in searches.items():
         if only in (None, kind):
             try:
-                found += look()
+                found += search()
             except LinkError as error:
                 unsearched.append(str(error))
     return Scan(tuple(found), tuple(unsearched))
@@ -72,9 +72,9 @@ def _ble(seconds: float) -> list[Found]:
     return [
         Found(
             f"ble://{device.address}",
-            told.local_name or device.name or "",
-            f"{told.rssi} dBm",
+            advertisement.local_name or device.name or "",
+            f"{advertisement.rssi} dBm",
             sure=True,
         )
-        for device, told in sightings(seconds)
+        for device, advertisement in sightings(seconds)
     ]

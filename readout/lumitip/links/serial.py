@@ -2,8 +2,8 @@
 
     serial://PORT?baud=115200
 
-Without a port the only USB device that can be one is taken. A device with a USB serial number is
-found again under whatever port it comes back as. Needs pyserial: the extra `serial`.
+The default is the only USB serial port. A device with a USB serial number is found again on any
+port after a disconnect. Needs pyserial: the extra `serial`.
 """
 
 import importlib.util
@@ -15,11 +15,10 @@ from typing import Any
 from lumitip.errors import AmbiguousDevice, DeviceNotFound, LinkError, MissingExtra, NotConnected
 from lumitip.layout import Layout
 from lumitip.links.base import Arrival, Cause, Deliver, Fault, Report
-from lumitip.links.retry import keep_connected
-from lumitip.links.thread import ThreadedLink
+from lumitip.links.thread import ThreadedLink, keep_connected
 from lumitip.links.url import Url
+from lumitip.protocol.cobs import StreamDecoder
 from lumitip.protocol.packet import ForeignPacketError
-from lumitip.protocol.stream import StreamDecoder
 
 try:
     import serial
@@ -27,11 +26,11 @@ try:
 except ModuleNotFoundError as missing:
     raise MissingExtra("serial", "serial://") from missing
 
-# What pyserial lets through where the system takes the port away under it.
+# Exceptions of pyserial when the port disappears.
 _GONE: tuple[type[Exception], ...] = (OSError, TypeError)
 if importlib.util.find_spec("termios"):  # not on Windows
     _GONE += (importlib.import_module("termios").error,)
-_WAIT_S = 0.2  # how long a read waits, so that stopping is noticed
+_WAIT_S = 0.2  # timeout of a read, so that `stop` is noticed
 _PIECES = re.compile(rb"[^\0]*\0|[^\0]+")
 CAUSES: tuple[Cause, ...] = ("crc", "length")
 
@@ -65,23 +64,23 @@ class SerialLink(ThreadedLink):
                 connected(f"{self.device_id} on {port}")
                 self._read(line)
         except _GONE as error:
-            raise _told(port, error) from error
+            raise _port_error(port, error) from error
 
     def _read(self, line: Any) -> None:
         decoder = StreamDecoder(len(self.layout), mid_stream=True)
-        told = dict.fromkeys(CAUSES, 0)
+        reported = dict.fromkeys(CAUSES, 0)
         while not self._stopping.is_set():
             chunk = line.read(max(1, line.in_waiting))
             if not chunk:
                 continue
             t_host = time.monotonic()
-            # Piece by piece, so that a damaged packet is told between its neighbours.
+            # Piece by piece, so that a damaged packet is reported between its neighbours.
             for piece in _PIECES.findall(chunk):
                 for packet in decoder.feed(piece):
                     self._deliver(Arrival(t_host, packet))
                 for cause in CAUSES:
-                    if decoder.dropped[cause] > told[cause]:
-                        told[cause] += 1
+                    if decoder.dropped[cause] > reported[cause]:
+                        reported[cause] += 1
                         self._deliver(Arrival(t_host, _fault(cause, decoder.last_error)))
 
     def _port_now(self) -> str:
@@ -105,30 +104,30 @@ def make(url: Url, layout: Layout, any_design: bool) -> SerialLink:  # noqa: ARG
     """The link of an address.
 
     Raises:
-        UrlError: if there is no such option.
-        DeviceNotFound: if no port is given and there is none.
-        AmbiguousDevice: if no port is given and there are several.
+        UrlError: if an option is unknown.
+        DeviceNotFound: if the address has no port and there is none.
+        AmbiguousDevice: if the address has no port and there are several.
     """
     url.allow("baud")
     port = url.target
     if not port:
         found = [str(p.device) for p in usb_ports()]
         if not found:
-            raise DeviceNotFound(f"{url.text}: no USB serial port is there: plug the device in")
+            raise DeviceNotFound(f"{url.text}: there is no USB serial port. Plug the device in")
         if len(found) > 1:
             raise AmbiguousDevice("", found, "serial")
         port = found[0]
     return SerialLink(layout, port, int(url.number("baud", 115200, 1, 10_000_000)))
 
 
-def _told(port: str, error: Exception) -> LinkError:
+def _port_error(port: str, error: Exception) -> LinkError:
     code = getattr(error, "errno", None)
     if isinstance(error, FileNotFoundError) or code == 2:
         there = ", ".join(str(p.device) for p in list_ports.comports()) or "none"
-        return DeviceNotFound(f"{port}: there is no such port; ports there are: {there}")
+        return DeviceNotFound(f"{port}: there is no such port; the ports are: {there}")
     if code == 13:
         return DeviceNotFound(
-            f"{port}: this user may not open it: on Linux join the group that owns it, mostly "
+            f"{port}: no permission. On Linux add this user to the group of the port, mostly "
             "dialout, and log in again"
         )
     return NotConnected(f"{port}: {error}")

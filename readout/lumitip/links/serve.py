@@ -1,4 +1,4 @@
-"""`SerialDevice`: packets on a pseudo-terminal, as a fingertip sends them over USB."""
+"""`SerialDevice`: a simulated USB device on a pseudo-terminal."""
 
 import contextlib
 import os
@@ -16,23 +16,23 @@ try:
     import termios
     import tty
 except ModuleNotFoundError as missing:
-    raise LinkError("this system has no pseudo-terminals; use twin://SHAPE itself") from missing
+    raise LinkError("this system has no pseudo-terminals. Open twin://SHAPE directly") from missing
 
 
 class SerialDevice:
     """The device's end of a serial line, a context manager.
 
-    Like a device it does not wait for a reader: what nobody fetches is lost, the oldest first.
+    Like a device it never waits for a reader: when the buffer is full the oldest data are lost.
     """
 
     def __init__(self, link: Path | None = None) -> None:
         """Open a pseudo-terminal.
 
         Args:
-            link: path at which it can be reached too, until closed.
+            link: path of a symbolic link to it, removed by `close`.
 
         Raises:
-            LinkError: if that path is taken or cannot be made.
+            LinkError: if the symbolic link cannot be created.
         """
         self._mine, self._theirs = pty.openpty()
         tty.setraw(self._theirs)
@@ -45,7 +45,9 @@ class SerialDevice:
             except OSError as error:
                 self._link = None
                 self.close()
-                raise LinkError(f"{link}: cannot be made: {error}; give another path") from error
+                raise LinkError(
+                    f"{link}: cannot be created: {error}. Choose another path"
+                ) from error
 
     @property
     def port(self) -> str:
@@ -60,17 +62,17 @@ class SerialDevice:
             self._rest = data[os.write(self._mine, data) :]
         except BlockingIOError:
             termios.tcflush(self._theirs, termios.TCIFLUSH)
-            # The delimiter ends what the reader may already have of a packet that is lost.
+            # The delimiter ends a packet that the reader has in part.
             data, self._rest = cobs.DELIMITER + packet_bytes, b""
             with contextlib.suppress(BlockingIOError):
                 self._rest = data[os.write(self._mine, data) :]
 
     def serve(self, link: Link, seconds: float | None = None) -> None:
-        """Send what a link delivers, for so long or until interrupted."""
+        """Send the packets of a link, for some seconds or until interrupted."""
 
         def deliver(arrival: Arrival) -> None:
-            if isinstance(arrival.what, Packet):
-                self.send(arrival.what)
+            if isinstance(arrival.content, Packet):
+                self.send(arrival.content)
 
         link.start(deliver, lambda _: None)
         try:
@@ -79,7 +81,7 @@ class SerialDevice:
             link.stop()
 
     def close(self) -> None:
-        """Close the line: its reader finds it unplugged."""
+        """Close the line; for the reader it is unplugged."""
         if self._link:
             with contextlib.suppress(OSError):
                 self._link.unlink()
@@ -90,9 +92,6 @@ class SerialDevice:
         return self
 
     def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
+        self, _: type[BaseException] | None, __: BaseException | None, ___: TracebackType | None
     ) -> None:
         self.close()

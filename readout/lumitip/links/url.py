@@ -14,33 +14,32 @@ _LONGEST = 4096  # of a path on Linux; no name or port is as long
 
 @dataclass(frozen=True)
 class Url:
-    """An address, taken apart."""
+    """The parts of an address."""
 
     text: str
-    """As it was given."""
+    """The whole address."""
     scheme: str
     target: str
-    """What stands between `://` and the question mark, with `%20` and its like replaced."""
+    """The part between `://` and the question mark, percent-decoded."""
     options: dict[str, str]
 
     @classmethod
     def parse(cls, text: str) -> "Url":
-        """Take an address apart.
+        """Parse an address.
 
         Raises:
-            UrlError: if it has no scheme, options that are none, or characters that no name,
-                port or file has.
+            UrlError: if scheme, options or characters are wrong.
         """
         if not isinstance(text, str):
-            raise UrlError(f"{text!r:.40} given, an address like ble://Lumitip is needed")
+            raise UrlError(f"the address is {text!r:.40}; one like ble://Lumitip is needed")
         if len(text) > _LONGEST:
             raise UrlError(
-                f"{text[:40]!r}… of {len(text)} characters given, at most {_LONGEST} are allowed"
+                f"the address {text[:40]!r}… has {len(text)} characters; the limit is {_LONGEST}"
             )
         scheme, found, rest = text.partition("://")
         if not found:
             raise UrlError(
-                f"{text!r} given, an address like ble://Lumitip or twin://demo is needed"
+                f"the address is {text!r}; one like ble://Lumitip or twin://demo is needed"
             )
         target, _, query = rest.partition("?")
         try:
@@ -48,10 +47,10 @@ class Url:
         except ValueError as error:
             raise UrlError(f"{text!r}: options like ?name=value&other=value are needed") from error
         if len(dict(pairs)) != len(pairs):
-            raise UrlError(f"{text!r}: an option is given twice")
+            raise UrlError(f"{text!r}: an option occurs twice")
         for part in (unquote(target), *(word for pair in pairs for word in pair)):
-            if odd := next(filter(_unusable, part), None):
-                raise UrlError(f"{text!r}: {odd!r} in it, which no name, port or file has")
+            if bad := next(filter(_unusable, part), None):
+                raise UrlError(f"{text!r}: the character {bad!r} is not allowed")
         return cls(text, scheme.lower(), unquote(target), dict(pairs))
 
     @property
@@ -59,25 +58,25 @@ class Url:
         """The target as a file; `~` is the user's home folder."""
         try:
             return Path(self.target).expanduser()
-        except RuntimeError:  # there is none: whoever reads says that there is no such file
+        except RuntimeError:  # no home folder: opening the file will fail
             return Path(self.target)
 
     def allow(self, *names: str) -> None:
-        """Refuse options of other names.
+        """Reject options of other names.
 
         Raises:
-            UrlError: naming the first of them.
+            UrlError: for the first such option.
         """
         for name in self.options:
             if name not in names:
                 allowed = ", ".join(names) or "none"
-                raise UrlError(f"{self.text!r}: option {name!r} given, allowed are {allowed}")
+                raise UrlError(f"{self.text!r}: there is no option {name!r}; allowed are {allowed}")
 
     def number(self, name: str, default: float, least: float, most: float) -> float:
         """An option that is a number.
 
         Raises:
-            UrlError: if it is none, or outside the limits.
+            UrlError: if it is not a number within the limits.
         """
         text = self.options.get(name)
         if text is None:
@@ -88,24 +87,24 @@ class Url:
             value = math.nan
         if not least <= value <= most:
             raise UrlError(
-                f"{self.text!r}: {name}={text} given, a number from {least:g} to {most:g} is needed"
+                f"{self.text!r}: {name} is {text}; a number from {least:g} to {most:g} is needed"
             )
         return value
 
     def choice(self, name: str, *allowed: str) -> str:
-        """An option that is one of several words, the first if it is not given.
+        """An option that is one of several words; the first is the default.
 
         Raises:
-            UrlError: if it is another.
+            UrlError: if it is another word.
         """
         value = self.options.get(name, allowed[0])
         if value not in allowed:
-            raise UrlError(f"{self.text!r}: {name}={value} given, allowed are {', '.join(allowed)}")
+            raise UrlError(f"{self.text!r}: {name} is {value}; allowed are {', '.join(allowed)}")
         return value
 
 
 def _unusable(character: str) -> bool:
-    """Whether it is a control character, or none that the system takes in a name."""
+    """Whether it is a control character, or not encodable in a file name."""
     try:
         os.fsencode(character)
     except UnicodeEncodeError:

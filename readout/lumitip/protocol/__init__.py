@@ -1,5 +1,4 @@
-"""What travels between a fingertip and a computer: packets, their frame on a serial line, status.
+"""Packets and status of a fingertip, and packets on a serial line.
 
-Numpy and the standard library alone. Bytes from outside raise `PacketError` or `CobsError` and
-nothing else.
+Needs only numpy. Received bytes raise `PacketError` or `CobsError`, and nothing else.
 """

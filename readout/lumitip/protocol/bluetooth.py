@@ -22,25 +22,22 @@ LEGACY_FRAMES = "0000c134-0000-1000-8000-00805f9b34fb"
 
 
 def legacy_mtu(cells: int) -> int:
-    """The smallest ATT MTU at which a notification takes a frame."""
+    """Smallest ATT MTU for one frame in a notification."""
     return ATT_BYTES + cells
 
 
 def decode_legacy(data: bytes, cells: int) -> NDArray[np.uint8]:
-    """The frame that a notification of version 1 is.
-
-    Returns:
-        Pull-up voltage of each cell, 8 bits, dark is high, shape `(cells,)`, read-only.
+    """Codes of a notification of version 1: 8 bits, high is dark, shape `(cells,)`, read-only.
 
     Raises:
-        PacketError: of reason `"length"`, if there is not one byte for each cell: at a small MTU
-            the rest of the value never comes, and no layer says so.
+        PacketError: with reason `"length"`, if there is not one byte per cell: a small MTU cuts
+            notifications without an error.
     """
     if len(data) != cells:
         raise PacketError(
             "length",
-            f"{len(data)} bytes given, {cells} cells have {cells}: if there are fewer, an ATT MTU "
-            f"of at least {legacy_mtu(cells)} is needed",
+            f"a frame has {len(data)} bytes; {cells} cells need {cells}, and an ATT MTU of at "
+            f"least {legacy_mtu(cells)}",
         )
     return np.frombuffer(bytes(data), np.uint8)
 
@@ -50,33 +47,33 @@ STATUS_BYTES = _STATUS.size
 
 
 class Fault(IntFlag):
-    """What is, or since power-on was, wrong on the device."""
+    """Faults of the device since power-on."""
 
     MTU_TOO_SMALL = 1
-    """A frame does not fit into a notification, so none is sent."""
+    """A frame does not fit into a notification; none is sent."""
     NOTIFY_FAILED = 2
-    """The Bluetooth stack refused a notification: its frames are lost."""
+    """The Bluetooth stack rejected a notification; its frames are lost."""
     SERIAL_FULL = 4
-    """The serial line did not take a packet: its frames are lost there."""
+    """The serial buffer was full; the frames of a packet are lost."""
     LATE = 8
-    """A scan began later than its period asks."""
+    """A scan began late."""
     WATCHDOG = 16
-    """The watchdog started the device anew."""
+    """The watchdog restarted the device."""
 
 
 @dataclass(frozen=True)
 class Status:
-    """What the status characteristic holds."""
+    """Contents of the status characteristic."""
 
     firmware: tuple[int, int, int]
     """Version of the firmware."""
     design_hash: str
-    """First 16 hexadecimal digits of the hash of the design it was made for."""
+    """First 16 hexadecimal digits of the design hash."""
     cells: int
     mtu: int
-    """ATT MTU in force; 23 until a computer asks for more."""
+    """ATT MTU of the connection; 23 before negotiation."""
     needed_mtu: int
-    """The smallest at which a frame fits into a notification."""
+    """Smallest ATT MTU for one frame."""
     faults: Fault
     protocol: int = VERSION
 
@@ -84,7 +81,7 @@ class Status:
         """The bytes of the characteristic.
 
         Raises:
-            PacketError: if a value is outside what it can carry.
+            PacketError: if a value is out of range.
         """
         try:
             code = int(self.design_hash, 16).to_bytes(8, "big")
@@ -102,19 +99,19 @@ class Status:
 
     @classmethod
     def decode(cls, data: bytes) -> "Status":
-        """Read the bytes of the characteristic.
+        """Parse the bytes of the characteristic.
 
         Raises:
-            PacketError: if there are too few, or they are of another version.
+            PacketError: if they are too few, or of another version.
         """
         if len(data) < STATUS_BYTES:
             raise PacketError(
-                "length", f"{len(data)} bytes given, a status has {STATUS_BYTES} or more"
+                "length", f"a status has {len(data)} bytes; at least {STATUS_BYTES} are needed"
             )
         protocol, *firmware, code, cells, mtu, needed, faults = _STATUS.unpack_from(data)
         if protocol != VERSION:
             raise PacketError(
-                "version", f"protocol {protocol} given, this lumitip speaks {VERSION}"
+                "version", f"the protocol is {protocol}; this lumitip supports {VERSION}"
             )
         major, minor, patch = firmware
         return cls((major, minor, patch), code.hex(), cells, mtu, needed, Fault(faults), protocol)

@@ -1,27 +1,24 @@
-"""The messages of an MCAP recording, and the errors of this room."""
+"""The messages of an MCAP recording, and the errors of recordings."""
 
 import math
 import struct
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
 from lumitip.errors import LumitipError
-from lumitip.frame import Codes
+from lumitip.frame import Codes, Frame, RecordedFrame
 
 
 class RecordingError(LumitipError):
-    """A file that cannot be written, or is no recording that this version reads."""
+    """A file that cannot be written, or is not a recording of this version."""
 
 
 class DamagedError(RecordingError):
-    """A recording that ends too early or has holes; `lumitip recover` saves the rest."""
+    """A recording that is truncated or damaged; `lumitip recover` saves the rest."""
 
 
 LONGEST_GAP_S = 1.0
-"""Of a gap in a recording, no more is waited for where people look on (s)."""
+"""Longest wait for a gap in `lumitip replay` and the live view (s)."""
 SCHEMA_NAME = "lumitip_msgs/msg/Frame"
 SCHEMA_TEXT = """\
 # All cells of an optical fingertip at one moment.
@@ -57,50 +54,18 @@ _NUMBERS = struct.Struct("<QddiB3xI")
 _TIME = struct.Struct("<iI")
 _LENGTH = struct.Struct("<I")
 _NANO = 1_000_000_000
-_MOST_SEQ = (1 << 63) - 1  # what tables and arrays hold
-
-
-class Recordable(Protocol):
-    """What a recording keeps of a frame; `lumitip.frame.Frame` has it all."""
-
-    @property
-    def seq(self) -> int: ...
-    @property
-    def t_device(self) -> float | None: ...
-    @property
-    def t_host(self) -> float: ...
-    @property
-    def t_wall(self) -> float: ...
-    @property
-    def raw(self) -> Codes: ...
-    @property
-    def bits(self) -> int: ...
-    @property
-    def dropped_before(self) -> int | None: ...
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class RecordedFrame:
-    """A frame as it was recorded; fields as of `lumitip.frame.Frame`."""
-
-    seq: int
-    t_device: float | None
-    t_host: float
-    t_wall: float
-    raw: Codes
-    bits: int
-    dropped_before: int | None
+_MOST_SEQ = (1 << 63) - 1  # the limit of int64, for tables and arrays
 
 
 def stamp_ns(t_wall: float) -> int:
-    """Whole nanoseconds of a time, which give the same float again."""
-    # The whole seconds apart: a float of nanoseconds since 1970 has steps of 256.
+    """A time in nanoseconds, which converts back to the same float."""
+    # In two parts: a float of nanoseconds since 1970 has steps of 256.
     seconds = math.floor(t_wall)
     return seconds * _NANO + round((t_wall - seconds) * _NANO)
 
 
-def encode(frame: Recordable, device_id: str) -> bytes:
-    """The bytes of a message."""
+def encode(frame: Frame | RecordedFrame, device_id: str) -> bytes:
+    """Encode a message."""
     name = device_id.encode() + b"\0"
     sec, nanosec = divmod(stamp_ns(frame.t_wall), _NANO)
     text = _LENGTH.pack(len(name)) + name
@@ -114,25 +79,20 @@ def encode(frame: Recordable, device_id: str) -> bytes:
         frame.bits,
         codes.size,
     )
-    parts: Sequence[bytes] = (
-        _CDR_LITTLE,
-        _TIME.pack(sec, nanosec),
-        text,
-        bytes(padding),
-        numbers,
-        codes.tobytes(),
-    )
-    return b"".join(parts)
+    time = _TIME.pack(sec, nanosec)
+    return b"".join((_CDR_LITTLE, time, text, bytes(padding), numbers, codes.tobytes()))
 
 
 def decode(data: bytes, cells: int) -> RecordedFrame:
-    """The frame of a message.
+    """Decode a message.
 
     Raises:
-        RecordingError: if the bytes are no message of a fingertip of so many cells.
+        RecordingError: if it is not a message of a fingertip with `cells` cells.
     """
     if data[:4] != _CDR_LITTLE:
-        raise RecordingError(f"a message begins with {data[:4].hex()}, not with little-endian CDR")
+        raise RecordingError(
+            f"a message begins with {data[:4].hex()}; it must be little-endian CDR"
+        )
     body = memoryview(data)[4:]
     try:
         sec, nanosec = _TIME.unpack_from(body)
@@ -141,17 +101,17 @@ def decode(data: bytes, cells: int) -> RecordedFrame:
         at += -at % 8
         seq, t_device, t_host, dropped, bits, count = _NUMBERS.unpack_from(body, at)
     except struct.error as error:
-        raise RecordingError(f"a message of {len(data)} bytes is cut off") from error
+        raise RecordingError(f"a message of {len(data)} bytes is truncated") from error
     codes = body[at + _NUMBERS.size :]
     if count != cells or len(codes) != 2 * cells or bits not in (8, 10, 12):
         raise RecordingError(
-            f"a message of {count} values of {bits} bits in {len(codes)} bytes, {cells} of 8, 10 "
-            "or 12 bits are needed"
+            f"a message has {count} values of {bits} bits in {len(codes)} bytes; {cells} values of "
+            "8, 10 or 12 bits are needed"
         )
     raw = np.frombuffer(codes, "<u2")
-    too_much = int(raw.max()) >> bits or seq > _MOST_SEQ or nanosec >= _NANO
-    if too_much or not np.isfinite(t_host):
-        raise RecordingError("a message with a value or time out of its range")
+    out_of_range = int(raw.max()) >> bits or seq > _MOST_SEQ or nanosec >= _NANO
+    if out_of_range or not np.isfinite(t_host):
+        raise RecordingError("a value or time of a message is out of range")
     kept: Codes = raw.astype(np.uint8) if bits == 8 else raw.astype(np.uint16)
     kept.flags.writeable = False
     return RecordedFrame(

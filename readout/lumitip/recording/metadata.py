@@ -1,4 +1,4 @@
-"""What a recording says about itself: written first, so that it survives whatever follows."""
+"""Metadata of a recording. They are written first, so that they survive damage."""
 
 import json
 import sys
@@ -6,14 +6,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.metadata import version
 
-import numpy as np
-
 from lumitip import arguments
 from lumitip.calibration import Calibration
 from lumitip.errors import LayoutError
-from lumitip.frame import Values, complement
+from lumitip.frame import RecordedFrame, Values, complement
 from lumitip.layout import Layout
-from lumitip.recording.message import RecordedFrame, RecordingError
+from lumitip.recording.message import RecordingError
 
 NAME = "lumitip"
 FORMAT = "1"
@@ -23,25 +21,25 @@ _YEAR_5000 = 1e11
 
 @dataclass(frozen=True, eq=False)
 class Metadata:
-    """About a recording."""
+    """Layout, device, calibration and versions of a recording."""
 
     layout: Layout
     device_id: str
     calibration: Calibration | None
-    """In force when the recording began; the values recorded are raw."""
+    """At the start; recorded values are raw."""
     start_wall: float
-    """When the recording began, seconds since 1970 (UTC)."""
+    """Start of the recording, seconds since 1970 (UTC)."""
     versions: Mapping[str, str]
-    """Of lumitip and what it ran on."""
+    """Of lumitip, numpy, mcap and Python."""
 
     def values(self, frame: RecordedFrame) -> Values:
-        """Light of a frame, calibrated as when it was recorded, 255 is full light."""
+        """Light of a frame with the calibration of the recording, 255 is full light."""
         light = complement(frame.raw, frame.bits)
         correction = self.calibration.correction() if self.calibration else None
         return correction.apply(light) if correction else light
 
     def to_texts(self) -> dict[str, str]:
-        """As MCAP keeps it: texts by name."""
+        """Texts by name, for MCAP."""
         return {
             "format": FORMAT,
             "device_id": self.device_id,
@@ -54,40 +52,40 @@ class Metadata:
 
     @classmethod
     def from_texts(cls, texts: Mapping[str, str]) -> "Metadata":
-        """Read what `to_texts` gave.
+        """Parse the result of `to_texts`.
 
         Raises:
-            RecordingError: if something is missing or wrong.
+            RecordingError: if a text is missing or wrong.
         """
         try:
             if texts["format"] != FORMAT:
                 raise RecordingError(
-                    f"format {texts['format']!r:.40} given, this version reads {FORMAT}: install "
-                    "the lumitip that made the recording"
+                    f"format is {texts['format']!r:.40}; this lumitip reads {FORMAT}. Install the "
+                    "lumitip that wrote the recording"
                 )
             layout = Layout.from_json(texts["layout"])
-            start_wall = begun(float(texts["start_wall"]))
+            start_wall = checked_start(float(texts["start_wall"]))
             versions = {str(k): str(v) for k, v in dict(json.loads(texts["versions"])).items()}
             device_id = texts["device_id"]
             calibration = _calibration(texts["calibration"], device_id, layout)
         except KeyError as error:
-            raise RecordingError(f"the recording does not tell its {error.args[0]}") from error
+            raise RecordingError(f"the recording has no {error.args[0]}") from error
         except (LayoutError, ValueError, TypeError, RecursionError, OverflowError) as error:
             raise RecordingError(f"the recording's metadata cannot be read: {error}") from error
         return cls(layout, device_id, calibration, start_wall, versions)
 
 
-def begun(start_wall: float) -> float:
-    """When a recording began, if it can have been then.
+def checked_start(start_wall: float) -> float:
+    """The start of a recording, if it is plausible.
 
     Raises:
-        RecordingError: if not.
+        RecordingError: if it is not.
     """
     return arguments.number(start_wall, "start_wall", 0.0, _YEAR_5000, error=RecordingError)
 
 
 def versions() -> dict[str, str]:
-    """Of lumitip and what it runs on."""
+    """Versions of lumitip, numpy, mcap and Python."""
     packages = {name: version(name) for name in ("lumitip", "mcap", "numpy")}
     return packages | {"python": ".".join(map(str, sys.version_info[:3]))}
 
@@ -95,28 +93,18 @@ def versions() -> dict[str, str]:
 def _calibration_text(calibration: Calibration | None) -> str:
     if calibration is None:
         return "null"
-    told = {"empty": calibration.empty, "dark": calibration.dark}
-    return json.dumps({k: None if v is None else v.tolist() for k, v in told.items()})
+    references = {"empty": calibration.empty, "dark": calibration.dark}
+    return json.dumps({k: None if v is None else v.tolist() for k, v in references.items()})
 
 
 def _calibration(text: str, device_id: str, layout: Layout) -> Calibration | None:
-    told = json.loads(text)
-    if told is None:
+    references = json.loads(text)
+    if references is None:
         return None
-    found = Calibration(
-        device_id,
-        layout.design_hash,
-        _values(told.get("empty"), len(layout)),
-        _values(told.get("dark"), len(layout)),
-    )
-    found.correction()
-    return found
-
-
-def _values(told: object, cells: int) -> Values | None:
-    if told is None:
-        return None
-    values: Values = np.array(told, dtype=np.float32)
-    if values.shape != (cells,) or not np.isfinite(values).all():
-        raise ValueError(f"a calibration of {cells} numbers is needed")
-    return values
+    if not isinstance(references, dict):
+        raise ValueError("calibration: an object is needed")
+    empty, dark = references.get("empty"), references.get("dark")
+    calibration = Calibration(device_id, layout.design_hash, empty, dark)
+    calibration.check(device_id, layout.design_hash, len(layout))
+    calibration.correction()
+    return calibration

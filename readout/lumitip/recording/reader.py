@@ -1,8 +1,9 @@
-"""`Reader`: the frames of a recording, also of one that broke off."""
+"""`Reader` and `summarise`: the frames of a recording, also of a damaged one."""
 
 import io
 import struct
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, BinaryIO, NamedTuple, cast
 
@@ -13,19 +14,19 @@ from mcap.records import Metadata as MetadataRecord
 from mcap.stream_reader import StreamReader, breakup_chunk
 
 from lumitip import arguments
+from lumitip.frame import RecordedFrame
 from lumitip.layout import Layout
 from lumitip.recording.message import (
     SCHEMA_NAME,
     DamagedError,
-    RecordedFrame,
     RecordingError,
     decode,
 )
 from lumitip.recording.metadata import NAME, Metadata
 
-_MOST_BYTES = 64 * 2**20  # of one record: far above any that `Writer` makes
-# All that damaged bytes make the libraries raise, MemoryError by lengths that are nonsense; and
-# OSError of a disk that fails or was taken away.
+_MOST_BYTES = 64 * 2**20  # of one record: far above those of `Writer`
+# Exceptions of the libraries for damaged bytes (MemoryError for a wrong length), and OSError of a
+# failed or removed disk.
 _FAULTS = (
     McapError,
     ValueError,
@@ -43,45 +44,44 @@ _FAULTS = (
 
 
 class Fault(NamedTuple):
-    """Damage at some place of a file."""
+    """Damage of a file."""
 
     why: str
     ends: bool
-    """Whether nothing can be read behind it."""
+    """Whether nothing after it can be read."""
 
 
 class Reader:
-    """Frames of a recording, in order; iterate as often as you like."""
+    """Frames of a recording, in order; can be iterated repeatedly."""
 
     def __init__(self, path: str | Path, tolerant: bool = False) -> None:
-        """Read what the recording says about itself.
+        """Read the metadata.
 
         Args:
             path: of the file.
-            tolerant: read over damage as well as can be, and tell it in `damage`.
+            tolerant: skip damaged parts and list them in `damage`.
 
         Raises:
-            RecordingError: if the file cannot be read or is no recording.
+            RecordingError: if the file cannot be read or is not a recording.
         """
         self.path = arguments.path(path, RecordingError)
         self.tolerant = tolerant
         self.damage: tuple[str, ...] = ()
-        """What was wrong in the last iteration, for people; filled as it goes on."""
+        """Damage found in the last or current iteration, for the user."""
         with self._open() as stream:
             self.metadata = read_metadata(stream, str(path))
 
     @property
     def layout(self) -> Layout:
-        """The cells that the frames are of."""
+        """The cells of the frames."""
         return self.metadata.layout
 
     def __iter__(self) -> Iterator[RecordedFrame]:
         """Yield the frames.
 
         Raises:
-            DamagedError: where the file is damaged or cannot be read any more, after the frames
-                before; not if tolerant.
-            RecordingError: if the file cannot be opened any more.
+            DamagedError: at the first damage, unless tolerant.
+            RecordingError: if the file cannot be opened.
         """
         self.damage = ()
         frames = 0
@@ -94,8 +94,8 @@ class Reader:
                 self.damage += (found.why,)
                 if not self.tolerant:
                     raise DamagedError(
-                        f"{self.path}: {found.why}, after {frames} frames: "
-                        f"`lumitip recover {self.path}` saves what is left"
+                        f"{self.path}: {found.why}, after {frames} frames. "
+                        f"`lumitip recover {self.path}` saves the readable frames"
                     )
 
     def _open(self) -> BinaryIO:
@@ -103,17 +103,52 @@ class Reader:
             stream = self.path.open("rb")
             if not stream.seekable():
                 stream.close()
-                raise OSError("it is a pipe, a file is needed")
+                raise OSError("it is a pipe; a file is needed")
             return stream
         except (OSError, ValueError) as error:
             raise RecordingError(f"{self.path}: cannot be read: {error}") from error
 
 
-def read_metadata(stream: BinaryIO, source: str) -> Metadata:
-    """What a recording says about itself; it stands before the first chunk.
+@dataclass(frozen=True)
+class Summary:
+    """Summary of a recording."""
+
+    metadata: Metadata
+    frames: int
+    seconds: float
+    """From the first frame to the last, by the wall clock."""
+    lost: int
+    """Frames sent but not received, as far as known."""
+    damage: tuple[str, ...]
+    """Damage of the file, for the user."""
+
+    @property
+    def rate_hz(self) -> float:
+        """Mean frame rate; 0 for less than two frames."""
+        return (self.frames - 1) / self.seconds if self.seconds > 0.0 else 0.0
+
+
+def summarise(path: str | Path) -> Summary:
+    """Read a whole recording, skipping damaged parts.
 
     Raises:
-        RecordingError: if the stream is no recording, or breaks off before.
+        RecordingError: if it is not a recording.
+    """
+    reader = Reader(path, tolerant=True)
+    frames, lost, first, last = 0, 0, 0.0, 0.0
+    for frame in reader:
+        first = first if frames else frame.t_wall
+        last = frame.t_wall
+        frames += 1
+        lost += frame.dropped_before or 0
+    return Summary(reader.metadata, frames, last - first, lost, reader.damage)
+
+
+def read_metadata(stream: BinaryIO, source: str) -> Metadata:
+    """The metadata, which are before the first chunk.
+
+    Raises:
+        RecordingError: if the stream is not a recording, or ends too early.
     """
     for record in _records(stream):
         if isinstance(record, MetadataRecord) and record.name == NAME:
@@ -122,10 +157,10 @@ def read_metadata(stream: BinaryIO, source: str) -> Metadata:
             except RecordingError as error:
                 raise RecordingError(f"{source}: {error}") from error
         if isinstance(record, Fault):
-            raise RecordingError(f"{source}: is no recording, or broke off at once: {record.why}")
+            raise RecordingError(f"{source} is not a recording, or is truncated: {record.why}")
         if isinstance(record, Chunk | Message):
             break
-    raise RecordingError(f"{source}: is MCAP, but no recording of a fingertip")
+    raise RecordingError(f"{source} is an MCAP file, but not a recording of a fingertip")
 
 
 def read_frames(stream: BinaryIO, cells: int) -> Iterator[RecordedFrame | Fault]:
@@ -157,7 +192,7 @@ def _unpacked(stream: BinaryIO) -> Iterator[McapRecord | Fault]:
         try:
             inside = _opened(record)
         except _FAULTS as error:
-            yield Fault(f"a chunk cannot be read ({_told(error)})", ends=False)
+            yield Fault(f"a chunk cannot be read ({_text(error)})", ends=False)
         else:
             yield from inside
 
@@ -172,14 +207,14 @@ def _opened(chunk: Chunk) -> list[McapRecord]:
 
 
 def _records(stream: BinaryIO) -> Iterator[McapRecord | Fault]:
-    """Records of the file, chunks as a whole, and at last the fault that it breaks off with."""
+    """Records of the file, with whole chunks; the last may be a fault."""
     try:
         bounded = _Bounded(stream)
     except OSError as error:
-        yield Fault(f"it cannot be read ({_told(error)})", ends=True)
+        yield Fault(f"it cannot be read ({_text(error)})", ends=True)
         return
-    given = cast(IO[bytes], bounded)
-    records = StreamReader(given, emit_chunks=True, record_size_limit=_MOST_BYTES).records
+    source = cast(IO[bytes], bounded)
+    records = StreamReader(source, emit_chunks=True, record_size_limit=_MOST_BYTES).records
     while True:
         try:
             record = next(records)
@@ -187,7 +222,7 @@ def _records(stream: BinaryIO) -> Iterator[McapRecord | Fault]:
             return
         except _FAULTS as error:
             at = bounded.tell()
-            yield Fault(f"it breaks off near byte {at} ({_told(error)})", ends=True)
+            yield Fault(f"it ends near byte {at} ({_text(error)})", ends=True)
             return
         yield record
         if isinstance(record, Footer):
@@ -195,7 +230,7 @@ def _records(stream: BinaryIO) -> Iterator[McapRecord | Fault]:
 
 
 class _Bounded:
-    """A stream that is never asked for more than it has, which would be reserved first."""
+    """A stream that limits reads to its size: Python allocates what is asked for first."""
 
     def __init__(self, stream: BinaryIO) -> None:
         self._stream = stream
@@ -212,5 +247,5 @@ class _Bounded:
         return self._size - self._left
 
 
-def _told(error: BaseException) -> str:
+def _text(error: BaseException) -> str:
     return f"{type(error).__name__}: {error}" if str(error) else type(error).__name__

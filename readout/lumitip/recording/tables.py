@@ -1,8 +1,8 @@
-"""A recording as a table: Parquet or CSV, one row a frame.
+"""A recording as a table: Parquet or CSV, one row per frame.
 
-Columns: `seq`, `t_wall`, `t_host`, `t_device` (s), `dropped_before`, `bits`, then `raw_0`… (ADC
-codes as they came, dark is high) and `value_0`… (calibrated light, 255 is full light), one of each
-for every cell. What nobody can tell is empty.
+Columns: `seq`, `t_wall`, `t_host`, `t_device` (s), `dropped_before`, `bits`, then for every cell
+`raw_0`… (ADC codes, high is dark) and `value_0`… (calibrated light, 255 is full light). Unknown
+values are empty.
 """
 
 import csv
@@ -16,7 +16,8 @@ import numpy as np
 
 from lumitip import arguments
 from lumitip.errors import MissingExtra
-from lumitip.recording.message import RecordedFrame, RecordingError
+from lumitip.frame import RecordedFrame
+from lumitip.recording.message import RecordingError
 from lumitip.recording.reader import Reader
 
 _BLOCK = 4096
@@ -31,16 +32,16 @@ def export(source: str | Path, target: str | Path) -> int:
         target: of the table, ending in `.parquet` or `.csv`; must not exist yet.
 
     Raises:
-        RecordingError: if either file cannot be used; of a damaged recording no table is left.
-        MissingExtra: if Parquet is asked for without pyarrow.
+        RecordingError: if either file cannot be used; no partial table is left.
+        MissingExtra: for Parquet without pyarrow.
     """
     path = arguments.path(target, RecordingError)
     writers: dict[str, Callable[[Reader, Path], int]] = {".csv": _csv, ".parquet": _parquet}
     if path.suffix not in writers:
-        raise RecordingError(f"{target} given, tables end in {' or '.join(writers)}")
+        raise RecordingError(f"the table is {target}; its name must end in {' or '.join(writers)}")
     reader = Reader(source)
     if path.exists():
-        raise RecordingError(f"{target} is there already: give another name")
+        raise RecordingError(f"{target} exists. Choose another name")
     try:
         return writers[path.suffix](reader, path)
     except BaseException as error:
@@ -81,8 +82,8 @@ def _parquet(reader: Reader, path: Path) -> int:
     fields = [pyarrow.field(n, k) for n, k in zip(_TIMES, kinds, strict=True)]
     fields += [pyarrow.field(n, pyarrow.uint16()) for n in _names("raw", cells)]
     fields += [pyarrow.field(n, pyarrow.float32()) for n in _names("value", cells)]
-    told = {b"lumitip": json.dumps(reader.metadata.to_texts()).encode()}
-    schema = pyarrow.schema(fields, metadata=told)
+    metadata = {b"lumitip": json.dumps(reader.metadata.to_texts()).encode()}
+    schema = pyarrow.schema(fields, metadata=metadata)
     rows = 0
     with parquet.ParquetWriter(path, schema) as table:
         for block in _blocks(reader):

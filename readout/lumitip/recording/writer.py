@@ -1,8 +1,9 @@
-"""`Writer`: frames to an MCAP file that survives the death of its process."""
+"""`Writer` and `recover`: write frames to an MCAP file that survives a crash of its process."""
 
 import time
 from collections.abc import Mapping
 from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
 
@@ -10,16 +11,17 @@ from mcap.writer import Writer as McapWriter
 
 from lumitip import arguments
 from lumitip.calibration import Calibration
+from lumitip.frame import Frame, RecordedFrame
 from lumitip.layout import Layout
 from lumitip.recording.message import (
     SCHEMA_NAME,
     SCHEMA_TEXT,
-    Recordable,
     RecordingError,
     encode,
     stamp_ns,
 )
-from lumitip.recording.metadata import NAME, Metadata, begun, versions
+from lumitip.recording.metadata import NAME, Metadata, checked_start, versions
+from lumitip.recording.reader import Reader
 from lumitip.values import shown
 
 CHUNK_BYTES = 2048
@@ -30,8 +32,7 @@ TOPIC = "/lumitip/frames"
 class Writer:
     """Writes a recording; a context manager. One thread at a time.
 
-    What is older than 0.2 s when a frame is written is in the hands of the operating system, so
-    that a process killed with `kill -9` loses no more than that.
+    Data older than 0.2 s have been passed to the operating system, so that `kill -9` loses no more.
     """
 
     def __init__(
@@ -44,22 +45,20 @@ class Writer:
         start_wall: float | None = None,
         made_with: Mapping[str, str] | None = None,
     ) -> None:
-        """Begin a file.
+        """Create a file.
 
         Args:
             path: of the file, which must not exist yet.
-            layout: the cells that the frames are of.
-            device_id: the device that they come from.
-            calibration: of this device, kept along; the frames are written raw.
-            start_wall: when the recording began, seconds since 1970 (UTC); now.
-            made_with: versions to tell, of the software that runs.
+            layout: the cells of the frames.
+            device_id: the device of the frames.
+            calibration: of this device, stored in the metadata; frames are raw.
+            start_wall: start of the recording, seconds since 1970 (UTC); default: now.
+            made_with: versions of software; default: those in use.
 
         Raises:
-            LayoutError: if it is no layout.
-            CalibrationMismatch: if the calibration is of another device, design or number of cells.
-            CalibrationError: if a cell of it reads no more with an empty grasp than in the dark.
-            RecordingError: if the file is there already or cannot be written, or another argument
-                cannot be so.
+            LayoutError: if `layout` is not a layout.
+            CalibrationError: if the calibration does not fit or is not valid.
+            RecordingError: if the file exists or cannot be written, or another argument is wrong.
         """
         self.path = arguments.path(path, RecordingError)
         arguments.layout(layout)
@@ -72,24 +71,24 @@ class Writer:
             layout,
             device_id,
             calibration,
-            begun(time.time() if start_wall is None else start_wall),
-            versions() if made_with is None else _told(made_with),
+            checked_start(time.time() if start_wall is None else start_wall),
+            versions() if made_with is None else _versions(made_with),
         )
         self.frames = 0
         """Frames written so far."""
         try:
             self._file = self.path.open("xb")
         except FileExistsError as error:
-            raise RecordingError(f"{path} is there already: give another name") from error
+            raise RecordingError(f"{path} exists. Choose another name") from error
         except (OSError, ValueError) as error:
             raise RecordingError(f"{path}: cannot be written: {error}") from error
         try:
             self._begin()
-        except (OSError, ValueError) as error:  # also a device_id that no file can hold
-            given_up = self._given_up(error)
+        except (OSError, ValueError) as error:  # also a device_id that cannot be encoded
+            failure = self._failure(error)
             with suppress(OSError):
-                self.path.unlink()  # it holds nothing, and would be in the way
-            raise given_up from error
+                self.path.unlink()  # it is empty
+            raise failure from error
 
     def _begin(self) -> None:
         library = f"lumitip {self.metadata.versions.get('lumitip', '')}".strip()
@@ -101,20 +100,24 @@ class Writer:
         self._mcap.flush()
         self._flushed = time.monotonic()
 
-    def write(self, frame: Recordable) -> None:
+    def write(self, frame: Frame | RecordedFrame) -> None:
         """Add a frame.
 
         Raises:
-            RecordingError: if it is no frame, or one of another number of cells, or the file is
-                closed or cannot be written; after the last it is closed as well as can be.
+            RecordingError: if it is not a frame of this layout, or the file is closed or cannot be
+                written; in the last case it is closed.
         """
         if not hasattr(frame, "raw"):
-            raise RecordingError(f"{shown(frame)} given, a frame is needed, such as tip.read()")
+            raise RecordingError(
+                f"the frame is {shown(frame)}; a Frame is needed, such as tip.read()"
+            )
         if self._file.closed:
             raise RecordingError(f"{self.path} is closed")
         cells = len(self.metadata.layout)
         if frame.raw.shape != (cells,):
-            raise RecordingError(f"{frame.raw.shape} codes given, the layout has ({cells},)")
+            raise RecordingError(
+                f"the frame has shape {frame.raw.shape}; the layout needs ({cells},)"
+            )
         at_ns = stamp_ns(frame.t_wall)
         data = encode(frame, self.metadata.device_id)
         try:
@@ -125,10 +128,10 @@ class Writer:
                 self._mcap.flush()
                 self._flushed = now
         except OSError as error:
-            raise self._given_up(error) from error
+            raise self._failure(error) from error
 
     def close(self) -> None:
-        """Write the index and end the file; once is enough.
+        """Write the index and end the file; may be repeated.
 
         Raises:
             RecordingError: if the file cannot be written.
@@ -139,10 +142,10 @@ class Writer:
             with self._file:
                 self._mcap.finish()
         except OSError as error:
-            raise self._given_up(error) from error
+            raise self._failure(error) from error
 
-    def _given_up(self, error: Exception) -> RecordingError:
-        with suppress(OSError):  # closing writes what waits once more
+    def _failure(self, error: Exception) -> RecordingError:
+        with suppress(OSError):  # closing flushes again
             self._file.close()
         return RecordingError(f"{self.path}: cannot be written: {error}")
 
@@ -150,17 +153,63 @@ class Writer:
         return self
 
     def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
+        self, _: type[BaseException] | None, __: BaseException | None, ___: TracebackType | None
     ) -> None:
         self.close()
 
 
-def _told(made_with: object) -> dict[str, str]:
+def _versions(made_with: object) -> dict[str, str]:
     if not isinstance(made_with, Mapping):
         raise RecordingError(
-            f"made_with: {shown(made_with)} given, versions by name are needed: {{'robot': '1.0'}}"
+            f"made_with is {shown(made_with)}; versions by name are needed, such as "
+            "{'robot': '1.0'}"
         )
     return {str(name): str(version) for name, version in made_with.items()}
+
+
+@dataclass(frozen=True)
+class Recovered:
+    """The result of `recover`."""
+
+    path: Path
+    frames: int
+    damage: tuple[str, ...]
+    """Damage of the recording, for the user."""
+
+
+def recover(source: str | Path, target: str | Path) -> Recovered:
+    """Copy all readable frames of a recording to a new, complete file.
+
+    Args:
+        source: the damaged recording; it is not changed.
+        target: the new file, which must not exist yet.
+
+    Raises:
+        RecordingError: if nothing can be read, or the target cannot be written; no partial file
+            is left.
+    """
+    reader, path = Reader(source, tolerant=True), arguments.path(target, RecordingError)
+    frames = iter(reader)
+    first = next(frames, None)
+    if first is None:
+        raise RecordingError(
+            f"{source} has no readable frame: {'; '.join(reader.damage) or 'empty'}"
+        )
+    metadata = reader.metadata
+    writer = Writer(
+        path,
+        metadata.layout,
+        device_id=metadata.device_id,
+        calibration=metadata.calibration,
+        start_wall=metadata.start_wall,
+        made_with=metadata.versions,
+    )
+    try:
+        with writer:
+            writer.write(first)
+            for frame in frames:
+                writer.write(frame)
+    except BaseException:
+        writer.path.unlink(missing_ok=True)  # a partial file would block the next attempt
+        raise
+    return Recovered(path, writer.frames, reader.damage)

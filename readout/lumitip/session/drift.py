@@ -1,7 +1,7 @@
-"""How far the cells wander while the fingertip warms up, watched without emptying the grasp.
+"""Drift of the cells during warm-up, measured without an empty grasp.
 
-LEDs lose light as they warm. A cell that is free at some moment of two spans of time shows it by
-its brightest moments; one that is covered throughout either shows the object, not the drift.
+LEDs lose light as they warm up. Each cell's maximum in a first and in a later span of time shows
+the drift, if the cell was free for a moment in both; otherwise it shows the object.
 """
 
 from dataclasses import dataclass
@@ -17,15 +17,14 @@ _SPAN_S = 15.0
 
 @dataclass(frozen=True, eq=False)
 class Drift:
-    """What the cells' brightest moments changed by since the first ones."""
+    """Change of the cells' maxima since the first span."""
 
     watched_s: float
-    """Time between the first span and the last one (s)."""
+    """Time between the first and the last span (s)."""
     change: Values
     """Change of light of each cell, 255 is full light, not calibrated, shape `(cells,)`."""
     warm: bool
-    """Whether the device has been on for five minutes, by its own clock; of a legacy device,
-    whether it has been watched so long."""
+    """Whether five minutes have passed since power-on, or for a legacy device since the start."""
 
     def __str__(self) -> str:
         least, most = float(self.change.min()), float(self.change.max())
@@ -34,11 +33,11 @@ class Drift:
 
 
 class DriftWatch:
-    """Watches frames as they pass. `add` is for one thread, `drift` for any."""
+    """Measures the drift. Call `add` from one thread; read `drift` from any."""
 
     def __init__(self) -> None:
         self.drift: Drift | None = None
-        """`None` before two spans of time have passed."""
+        """`None` before the end of the second span."""
         self._first: tuple[float, Values] | None = None
         self._span_from = self._part_from = -np.inf
         self._sum: Values | None = None
@@ -46,14 +45,7 @@ class DriftWatch:
         self._brightest: Values | None = None
 
     def add(self, raw: Codes, bits: int, t: float, t_device: float | None) -> bool:
-        """Take a frame into account; returns whether the warm-up has just ended.
-
-        Args:
-            raw: its codes, shape `(cells,)`.
-            bits: bits of each.
-            t: its host time (s).
-            t_device: its device time (s), `None` of a legacy device.
-        """
+        """Add a frame, fields as in `Frame`; returns whether the warm-up has just ended."""
         light = complement(raw, bits)
         if self._sum is None:
             self._span_from, self._part_from, self._sum = t, t, np.zeros_like(light)

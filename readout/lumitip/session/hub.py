@@ -1,4 +1,4 @@
-"""One link and everyone who reads it: state, queues, events. What `Fingertip` stands on."""
+"""`Hub`: one link and its readers: state, queues, events. The core of `Fingertip`."""
 
 import logging
 import math
@@ -6,8 +6,7 @@ import threading
 import time
 from collections.abc import Callable
 
-from lumitip import arguments
-from lumitip.arguments import seconds
+from lumitip.arguments import function, seconds
 from lumitip.errors import EndOfRecording, FingertipClosed, LinkError, LinkTimeout
 from lumitip.frame import Frame
 from lumitip.links.base import Arrival, Link, LinkEvent, Prepares, Report
@@ -20,19 +19,19 @@ _log = logging.getLogger(__name__)
 
 
 class Hub:
-    """Starts a link and hands its frames to queues. Every method may be called from any thread.
+    """Starts a link and passes its frames to queues. Thread-safe.
 
     Args:
         link: not yet started.
-        any_design: whether frames of another design are taken.
-        on_event: called on the link's thread with whatever happens to the link.
+        any_design: accept frames of another design.
+        on_event: called on the link's thread with each event.
     """
 
     def __init__(self, link: Link, any_design: bool, on_event: Report | None) -> None:
         self.link = link
         self._counter = Counter()
         if on_event is not None:
-            arguments.function(on_event, "on_event")
+            function(on_event, "on_event")
         self._on_event = on_event
         source = Source(link.layout, lambda: link.device_id, any_design)
         self.intake = Intake(source, self._counter, self._report)
@@ -46,12 +45,12 @@ class Hub:
         self._over: LinkError | None = None
 
     def start(self, timeout_s: float | None) -> None:
-        """Start the link and wait until it is connected, without a time as long as it takes.
+        """Start the link and wait until it is connected; `None` waits without limit.
 
         Raises:
-            LinkTimeout: if it is not in time; the link is stopped then.
-            LinkError: why it cannot be; likewise.
-            ArgumentError: if this is no time; nothing is started.
+            ArgumentError: if the time is wrong; nothing is started.
+            LinkTimeout: if it did not connect in time; the link is stopped.
+            LinkError: why it did not connect; the link is stopped.
         """
         timeout_s = seconds(timeout_s)
         self.link.start(self._deliver, self._report)
@@ -65,37 +64,37 @@ class Hub:
             raise failed
 
     def close(self, reason: LinkError | None = None) -> None:
-        """Stop the link; readers get what is queued, then the reason. May be called again."""
+        """Stop the link; readers get the queued frames, then the reason. May be repeated."""
         self._end(reason or FingertipClosed("the fingertip was closed: open it again"))
         self.link.stop()
 
     @property
     def connected(self) -> bool:
-        """Whether the link stands at this moment."""
+        """Whether the link is connected now."""
         return self._connected
 
     @property
     def over(self) -> LinkError | None:
-        """Why no more frames will come, if so."""
+        """Why no more frames will come; `None` if they will."""
         return self._over
 
     @property
     def latest(self) -> Frame | None:
-        """The last frame that came."""
+        """The newest frame."""
         return self._latest
 
     @property
     def stats(self) -> Stats:
-        """What became of the frames."""
+        """Counts, rate and jitter."""
         return self._counter.snapshot()
 
     @property
     def drift(self) -> Drift | None:
-        """How far the cells wandered."""
+        """Drift of the cells."""
         return self._drift.drift
 
     def queue(self, size: int, notify: Callable[[], None] | None = None) -> FrameQueue:
-        """A queue that gets every frame from now on, until it is given back to `remove`."""
+        """A queue that gets every frame from now until `remove`."""
         queue = FrameQueue(size, notify)
         with self._lock:
             self._queues += (queue,)
@@ -106,18 +105,18 @@ class Hub:
         return queue
 
     def remove(self, queue: FrameQueue) -> None:
-        """Put nothing more into a queue."""
+        """Close a queue."""
         with self._lock:
             self._queues = tuple(q for q in self._queues if q is not queue)
-        queue.cancel(FingertipClosed("this reader was given back"))
+        queue.cancel(FingertipClosed("this reader was closed"))
 
     def next(self, queue: FrameQueue, timeout_s: float | None) -> Frame:
         """The next frame of a queue.
 
         Raises:
-            LinkTimeout: if none came in time.
-            LinkError: why none will come any more.
-            ArgumentError: if this is no time.
+            LinkTimeout: if no frame came in time.
+            LinkError: why no more will come.
+            ArgumentError: if the time is wrong.
         """
         timeout_s = seconds(timeout_s)
         frame = queue.get(timeout_s)
@@ -126,11 +125,11 @@ class Hub:
         return frame
 
     def silent(self, timeout_s: float | None) -> LinkTimeout:
-        """What to raise when no frame came in time."""
+        """The error when no frame came in time."""
         return LinkTimeout(f"no frame in {timeout_s or 0:g} s: {self._why_silent()}")
 
     def _too_late(self, timeout_s: float) -> LinkTimeout:
-        why = "is the device switched on and near? `lumitip scan` lists what can be seen"
+        why = "is the device switched on and in reach? `lumitip scan` lists devices"
         if isinstance(self.link, Prepares):
             why = self.link.why_late
         return LinkTimeout(f"no connection after {timeout_s:g} s: {why}")
@@ -138,11 +137,9 @@ class Hub:
     def _why_silent(self) -> str:
         fault = self.intake.last_fault
         if not self._connected:
-            return f"the link to {self.link.device_id} is cut and is being made again"
+            return f"the connection to {self.link.device_id} is lost; reconnecting"
         if fault:
-            return (
-                f"{self.stats.unreadable} packets came that cannot be read, the last: {fault.why}"
-            )
+            return f"{self.stats.unreadable} packets could not be decoded, the last: {fault.why}"
         return f"{self.link.device_id} is connected but sends nothing; is its firmware running?"
 
     def _deliver(self, arrival: Arrival) -> None:
@@ -151,7 +148,7 @@ class Hub:
         try:
             frames = self.intake.frames(arrival)
         except LinkError as error:
-            # The link runs on until it is closed, since this is its own thread.
+            # On the link's own thread, which cannot stop itself.
             self._report(LinkEvent("failed", str(error), error))
             return
         if not frames:
@@ -181,8 +178,8 @@ class Hub:
         if self._on_event:
             try:
                 self._on_event(event)
-            except Exception:  # noqa: BLE001 - a user's function must not end the link's thread
-                _log.exception("on_event failed on %s", event)
+            except Exception:  # noqa: BLE001 - a user's error must not end the link's thread
+                _log.exception("on_event failed for %s", event)
 
     def _now_connected(self) -> None:
         if self._was_connected:

@@ -1,4 +1,4 @@
-"""From what arrives on a link to frames: in order, with times, values and what is missing."""
+"""`Intake`: arrivals of a link to frames in order, with times, values and losses."""
 
 import time
 from collections.abc import Callable
@@ -8,9 +8,9 @@ import numpy as np
 
 from lumitip.calibration import Correction
 from lumitip.errors import WrongDesign
-from lumitip.frame import Codes, Frame, Values, complement, frozen
+from lumitip.frame import Codes, Frame, RecordedFrame, Values, complement, frozen
 from lumitip.layout import Layout
-from lumitip.links.base import Arrival, Fault, LinkEvent, Recorded, Report
+from lumitip.links.base import Arrival, Fault, LinkEvent, Report
 from lumitip.protocol.packet import ForeignPacketError, Packet, design_code
 from lumitip.session.stats import Counter
 from lumitip.session.timing import DeviceClock, Timeline
@@ -18,7 +18,7 @@ from lumitip.session.timing import DeviceClock, Timeline
 
 @dataclass(frozen=True)
 class Source:
-    """What frames come from."""
+    """The source of frames."""
 
     layout: Layout
     device_id: Callable[[], str]
@@ -26,13 +26,13 @@ class Source:
 
 
 class Intake:
-    """Makes frames. Not thread-safe, but for `correction`, which any thread may set."""
+    """Makes frames. Not thread-safe, except `correction`."""
 
     def __init__(self, source: Source, counter: Counter, report: Report) -> None:
         self.correction: Correction | None = None
-        """What calibrates the values of the frames to come."""
+        """Calibration of the next frames."""
         self.last_fault: Fault | None = None
-        """What the last packet that could not be read suffered from."""
+        """The last packet that could not be decoded."""
         self.clock = DeviceClock()
         self._source = source
         self._counter = counter
@@ -41,32 +41,32 @@ class Intake:
         self._fault_since: Fault | None = None
         self._legacy_frames = 0
         self._last_t = -np.inf
-        # Taken once, so that a computer whose clock is set meanwhile does not tear a recording.
+        # Measured once: setting the clock of the computer must not affect a recording.
         self._wall_s = time.time() - time.monotonic()
 
     def reconnected(self) -> None:
-        """The link was cut and made again."""
+        """Note that the link has reconnected."""
         self._timeline.reconnected()
 
     def frames(self, arrival: Arrival) -> list[Frame]:
-        """The new frames that an arrival holds, in order.
+        """The new frames of an arrival, in order.
 
         Raises:
-            WrongDesign: if the device is of another design.
+            WrongDesign: if the device has another design.
         """
-        what = arrival.what
-        if isinstance(what, Fault):
-            self.last_fault = self._fault_since = what
-            self._counter.unreadable(what.packets)
-            if what.foreign:
-                self._check_foreign(what.foreign)
+        content = arrival.content
+        if isinstance(content, Fault):
+            self.last_fault = self._fault_since = content
+            self._counter.unreadable(content.packets)
+            if content.foreign:
+                self._check_foreign(content.foreign)
             return []
-        if isinstance(what, Recorded):
-            frames = [self._recorded(what)]
-        elif isinstance(what, Packet):
-            frames = self._of_packet(what, arrival.t_host)
+        if isinstance(content, RecordedFrame):
+            frames = [self._recorded(content)]
+        elif isinstance(content, Packet):
+            frames = self._of_packet(content, arrival.t_host)
         else:
-            frames = [self._legacy(what, arrival.t_host)]
+            frames = [self._legacy(content, arrival.t_host)]
         self._counter.frames(frames)
         return frames
 
@@ -77,11 +77,11 @@ class Intake:
         if place.restarted:
             self.clock = DeviceClock()
             self._counter.add("restarts")
-            self._report(LinkEvent("restarted", f"{self._source.device_id()} started anew"))
+            self._report(LinkEvent("restarted", f"{self._source.device_id()} has restarted"))
         if place.repeated == packet.frames:
             return []
         if place.lost:
-            # A damaged packet is what is missing, not lost on the way.
+            # Frames of a damaged packet count as damaged, not as lost on the link.
             self._counter.lost(self._fault_since.cause if self._fault_since else "link", place.lost)
         self._fault_since = None
         raw = frozen(packet.values[place.repeated :])
@@ -124,25 +124,25 @@ class Intake:
             self._source.device_id(),
         )
 
-    def _recorded(self, was: Recorded) -> Frame:
-        self._counter.lost("link", was.dropped_before or 0)
+    def _recorded(self, frame: RecordedFrame) -> Frame:
+        self._counter.lost("link", frame.dropped_before or 0)
         return Frame(
-            was.seq,
-            was.t_device,
-            was.t_host,
-            was.t_wall - self._recorded_wall_s(was),
-            was.t_wall,
-            frozen(was.raw),
-            was.bits,
-            self._values(was.raw, was.bits),
-            was.dropped_before,
+            frame.seq,
+            frame.t_device,
+            frame.t_host,
+            frame.t_wall - self._recorded_wall_s(frame),
+            frame.t_wall,
+            frozen(frame.raw),
+            frame.bits,
+            self._values(frame.raw, frame.bits),
+            frame.dropped_before,
             self._source.device_id(),
         )
 
-    def _recorded_wall_s(self, was: Recorded) -> float:
-        # The computer that recorded had another wall time to its monotonic clock.
+    def _recorded_wall_s(self, frame: RecordedFrame) -> float:
+        # Offset between the wall clock and the monotonic clock of the recording computer.
         if self._last_t == -np.inf:
-            self._wall_s, self._last_t = was.t_wall - was.t_host, was.t_host
+            self._wall_s, self._last_t = frame.t_wall - frame.t_host, frame.t_host
         return self._wall_s
 
     def _values(self, raw: Codes, bits: int) -> Values:
@@ -159,7 +159,7 @@ class Intake:
 
     def _check_foreign(self, packet: ForeignPacketError) -> None:
         layout = self._source.layout
-        # Of the very same design it is no other fingertip, but one whose firmware is at fault.
+        # With the same design hash the firmware is faulty, not the layout.
         if packet.design != design_code(layout.design_hash):
             cells = packet.cells, len(layout)
             raise _wrong(packet.design, layout, self._source.device_id(), cells)

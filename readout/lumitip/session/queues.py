@@ -1,4 +1,4 @@
-"""A bounded queue of frames between the thread of a link and the one that reads."""
+"""`FrameQueue`: a bounded queue between the thread of a link and a reader."""
 
 import threading
 import time
@@ -9,20 +9,20 @@ from lumitip.errors import ArgumentError, LinkError
 from lumitip.frame import Frame
 
 PATIENCE_S = 5.0
-"""How long a recording waits for a reader that takes nothing."""
+"""Time that a recording waits for an idle reader (s)."""
 
 
 class FrameQueue:
-    """Frames in order; when it is full the oldest make room. Any thread may call any method.
+    """Frames in order; when full, the oldest are dropped. Thread-safe.
 
     Args:
-        size: most frames that wait.
-        notify: called, on the link's thread, after frames came or the queue was closed.
+        size: largest number of frames.
+        notify: called on the link's thread after each change.
     """
 
     def __init__(self, size: int, notify: Callable[[], None] | None = None) -> None:
         if size < 1:
-            raise ArgumentError(f"buffer: {size} frames given, at least 1 is needed")
+            raise ArgumentError(f"buffer is {size}; at least 1 frame is needed")
         self._frames: deque[Frame] = deque(maxlen=size)
         self._changed = threading.Condition()
         self._notify = notify
@@ -30,12 +30,11 @@ class FrameQueue:
         self._waits = self._idle = False
 
     def put(self, frames: Sequence[Frame], wait: bool = False) -> int:
-        """Add frames; returns how many old ones made room.
+        """Add frames; returns the number of frames dropped.
 
         Args:
             frames: in order.
-            wait: rather wait until there is room; not for a reader that takes nothing for
-                `PATIENCE_S`, until it takes something again.
+            wait: wait for room instead; but not for a reader idle for `PATIENCE_S`.
         """
         with self._changed:
             while wait and self._frames and self._full(len(frames)) and not self._gone():
@@ -50,7 +49,7 @@ class FrameQueue:
         return lost
 
     def close(self, reason: LinkError) -> None:
-        """No more frames will come: once those that wait are read, `get` raises the reason."""
+        """End the queue: after its last frame, `get` raises the reason."""
         with self._changed:
             self._closed = self._closed or reason
             self._changed.notify_all()
@@ -58,16 +57,16 @@ class FrameQueue:
             self._notify()
 
     def cancel(self, reason: LinkError) -> None:
-        """Close it and forget the frames that wait."""
+        """Close the queue and discard its frames."""
         with self._changed:
             self._frames.clear()
         self.close(reason)
 
     def get(self, timeout_s: float | None) -> Frame | None:
-        """The next frame, or `None` after `timeout_s`; without one it waits as long as it takes.
+        """The next frame, or `None` after `timeout_s`; no limit if that is `None`.
 
         Raises:
-            LinkError: the reason, if the queue was closed and is empty.
+            LinkError: the reason, if the queue is closed and empty.
         """
         until = None if timeout_s is None else time.monotonic() + timeout_s
         with self._changed:

@@ -1,4 +1,4 @@
-"""What became of the frames: counted while they pass, read at any time."""
+"""`Stats`: counts of frames, rate and jitter of a link."""
 
 import threading
 from collections import deque
@@ -11,38 +11,37 @@ import numpy as np
 from lumitip.frame import Frame
 
 CAUSES = ("link", "queue", "crc", "length")
-_RECENT = 512  # frames that rate and jitter are of
+_RECENT = 512  # frames for rate and jitter
 
 
 @dataclass(frozen=True)
 class Stats:
-    """What became of the frames since the link was opened. Immutable."""
+    """Statistics since the link was opened. Immutable."""
 
     received: int
-    """Frames that came and were new."""
+    """New frames received."""
     dropped: Mapping[str, int] | None
-    """Frames lost, by cause: `"link"` on the way, `"crc"` damaged, `"length"` cut off, `"queue"`
-    not read in time. `None` of a legacy device, which cannot tell."""
+    """Frames lost, by cause: `"link"` on the way, `"crc"` damaged, `"length"` truncated, `"queue"`
+    not read in time. `None` for a legacy device: unknown."""
     overflowed: int
-    """Frames that a reader was too slow for; the same as `dropped["queue"]`, and known of a legacy
-    device too."""
+    """Frames not read in time: `dropped["queue"]`, also known for a legacy device."""
     unreadable: int
-    """Packets that could not be read, whether or not a frame was lost with them."""
+    """Packets that could not be decoded."""
     repeated: int
-    """Frames that came again, or too late to be given in order, and were left out."""
+    """Frames received again or too late, and ignored."""
     reconnects: int
-    """How often the link was cut and made again."""
+    """Number of reconnections."""
     restarts: int
-    """How often the device started anew."""
+    """Number of restarts of the device."""
     rate_hz: float | None
-    """Frames a second over the last few hundred; `None` before there are two."""
+    """Frames per second of the last 512; `None` before the second."""
     jitter_ms: float | None
-    """Standard deviation of the delay from reading the cells to arrival (ms), of the same frames;
-    `None` of a legacy device."""
+    """Standard deviation of the delay from reading the cells to arrival (ms) of the same frames;
+    `None` for a legacy device."""
 
 
 class Counter:
-    """Counts for `Stats`. Every method may be called from any thread."""
+    """Counts for `Stats`. Thread-safe."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -53,29 +52,29 @@ class Counter:
         self._legacy = False
 
     def frames(self, frames: list[Frame]) -> None:
-        """New frames."""
+        """Count new frames."""
         with self._lock:
             self._count["received"] += len(frames)
             self._recent.extend((f.t, f.t_host) for f in frames)
             self._legacy = bool(frames) and frames[-1].t_device is None
 
     def add(self, name: str, number: int = 1) -> None:
-        """Count on `"repeated"`, `"reconnects"` or `"restarts"`."""
+        """Count `"repeated"`, `"reconnects"` or `"restarts"`."""
         with self._lock:
             self._count[name] += number
 
     def lost(self, cause: str, frames: int) -> None:
-        """Frames that nobody will read, by cause."""
+        """Count lost frames."""
         with self._lock:
             self._dropped[cause] += frames
 
     def unreadable(self, packets: int) -> None:
-        """Packets that could not be read."""
+        """Count packets that could not be decoded."""
         with self._lock:
             self._unreadable += packets
 
     def snapshot(self) -> Stats:
-        """The counts of this moment."""
+        """The current statistics."""
         with self._lock:
             recent = np.array(self._recent).reshape(-1, 2)
             span_s = float(recent[-1, 0] - recent[0, 0]) if len(recent) > 1 else 0.0

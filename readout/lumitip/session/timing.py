@@ -1,4 +1,4 @@
-"""Host time of samples, from the device's clock and the order in which packets arrive."""
+"""Host time of frames from the device clock, and the order of packets."""
 
 from collections import deque
 from dataclasses import dataclass
@@ -8,14 +8,14 @@ from lumitip.protocol.packet import Packet
 
 Point = tuple[float, float]
 
-_BUCKET_S = 1.0  # of each second only the least late arrival counts
-_WINDOW = 120  # buckets: long enough for a steady rate, short enough to follow a warming crystal
-_LEAST_SPAN_S = 10.0  # before that both clocks are taken to run alike: 100 ppm are then 1 ms
-_MOST_SKEW = 2e-3  # crystals stay far below; more is noise
+_BUCKET_S = 1.0  # only the shortest delay of each second is used
+_WINDOW = 120  # buckets: long enough for a stable rate, short enough to follow a warming crystal
+_LEAST_SPAN_S = 10.0  # before it the skew is taken as 0: 100 ppm make 1 ms
+_MOST_SKEW = 2e-3  # far above that of crystals
 
 
 class DeviceClock:
-    """Fits a device's clock to the host's as packets arrive. Not thread-safe."""
+    """Fits the device clock to the host clock. Not thread-safe."""
 
     def __init__(self) -> None:
         self._lowest: deque[Point] = deque(maxlen=_WINDOW)
@@ -26,16 +26,11 @@ class DeviceClock:
 
     @property
     def skew_ppm(self) -> float:
-        """By how much the host's clock outruns the device's (parts per million)."""
+        """Rate of the host clock relative to the device clock, minus 1 (ppm)."""
         return self._skew * 1e6
 
     def add(self, t_device: float, t_host: float) -> None:
-        """Take the arrival of a frame into account.
-
-        Args:
-            t_device: when the cells were read, device time (s), unwrapped.
-            t_host: when they arrived, host time (s).
-        """
+        """Add a frame: device time of reading (s), unwrapped, and host time of arrival (s)."""
         if not self._lowest:
             self._from = t_device
         x, y = t_device - self._from, t_host - t_device
@@ -63,7 +58,7 @@ class DeviceClock:
 
 
 def _slope_below(points: list[Point]) -> float:
-    """Slope of the lower hull's edge at the mean abscissa; points ascend in x."""
+    """Slope of the lower convex hull at the mean x; points ascend in x."""
     hull: list[Point] = []
     for point in points:
         while len(hull) > 1 and _turns_down(hull[-2], hull[-1], point):
@@ -82,45 +77,44 @@ def _turns_down(a: Point, b: Point, c: Point) -> bool:
 
 _SEQUENCES = 1 << 16
 _TIMES = 1 << 32  # 71.6 minutes of microseconds
-_LATE_US = 1_000_000  # no link keeps a packet back longer than this while others overtake it
-_AHEAD_US = 10_000_000  # what a stalled link may deliver at once, with room to spare
+_LATE_US = 1_000_000  # longest delay of a packet that others overtake
+_AHEAD_US = 10_000_000  # longest stall of a link
 
 
 @dataclass(frozen=True)
 class Place:
-    """Where a packet belongs among those before it."""
+    """Position of a packet in the sequence."""
 
     seq: int
-    """Number of its first new frame, counted on over wraps and restarts."""
+    """Number of its first new frame, continued over wraps and restarts."""
     time_us: int
     """Device time of that frame, unwrapped (us)."""
     repeated: int
-    """Frames at its start that came before, or too late to be given in order."""
+    """Frames at its start that are repeated or too late."""
     lost: int | None
-    """Frames missing just before it; `None` if the device started anew."""
+    """Frames missing just before it; `None` after a restart."""
     restarted: bool = False
-    """Whether the device started anew, so that its clock has nothing to do with the last one."""
+    """Whether the device has restarted, and its clock with it."""
 
 
 class Timeline:
     """Puts packets in order. Not thread-safe."""
 
     def __init__(self) -> None:
-        self._seq = -1  # of the last frame given, counted on over restarts
-        self._sequence = 0  # of the same, as the device counts, unwrapped
+        self._seq = -1  # of the last frame, continued over restarts
+        self._sequence = 0  # of the same frame, counted by the device, unwrapped
         self._time_us = 0
         self._t_host: float | None = None
         self._fresh = False
 
     def reconnected(self) -> None:
-        """The link was cut: nothing sent before can come any more."""
+        """Note a reconnection: older packets can no longer arrive."""
         self._fresh = True
 
     def place(self, packet: Packet, t_host: float) -> Place:
-        """Where this packet belongs; the next call takes it as the last one.
+        """Position of the next packet.
 
-        A number that goes on while the time does not, or the other way round, is another run of
-        the firmware.
+        If only one of its number and its time continues, the device has restarted.
         """
         if self._t_host is None:
             return self._keep(packet, t_host, Place(0, packet.time_us, 0, 0), packet.sequence)

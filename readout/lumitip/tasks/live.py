@@ -101,17 +101,17 @@ class LiveTask(ThreadedLink):
             yield
             return
         from lumitip.view.finger import Finger
-        from lumitip.view.room import Room
+        from lumitip.view.registry import FingerRegistry
         from lumitip.view.server import ViewServer
 
-        room = Room((), Path("recordings"))
-        room.add(Finger(self.url, tip))
+        registry = FingerRegistry((), Path("recordings"))
+        registry.add(Finger(self.url, tip))
         try:
-            with ViewServer(room, port=port) as server:
+            with ViewServer(registry, port=port) as server:
                 print(f"live view at {server.url}", flush=True)
                 yield
         finally:
-            room.close()
+            registry.close()
 
     def _run(self, deliver: Deliver, report: Report) -> None:
         self._packet(0)  # so that the tables are made before time runs

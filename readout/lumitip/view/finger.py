@@ -1,4 +1,4 @@
-"""`Finger`: one fingertip as the live view sees it, read on a thread of its own."""
+"""`Finger`: one fingertip of the live view, read on its own thread."""
 
 import logging
 import threading
@@ -8,39 +8,101 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
-from lumitip.errors import LinkError
+from lumitip.errors import LinkError, LumitipError, ViewError
 from lumitip.fingertip import Fingertip
 from lumitip.frame import Frame
 from lumitip.layout import Layout
 from lumitip.links.base import LinkEvent
 from lumitip.processing import Contact, Processor
 from lumitip.session.hub import Hub
-from lumitip.view.recorder import Recorder
 
 if TYPE_CHECKING:
+    from lumitip.recording import Writer
     from lumitip.view.player import Player
 
 _log = logging.getLogger(__name__)
 
-KEPT = 256  # frames that a browser may catch up on
+KEPT = 256  # frames kept for slow browsers
 _MESSAGE_BYTES = 1 << 16
 
 
 class Sink(Protocol):
-    """Something that takes every frame besides the browsers."""
+    """A receiver of every frame besides the browsers."""
 
     def take(self, finger: "Finger", frame: Frame) -> None:
-        """Take a frame, on the finger's thread."""
+        """Called with each frame on the finger's thread."""
+
+
+class Recorder:
+    """The current recording of a finger. Thread-safe."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._writer: Writer | None = None
+        self._path: Path | None = None
+        self._frames = 0
+        self._error: str | None = None
+
+    def start(self, path: Path, tip: Fingertip) -> None:
+        """Start a recording.
+
+        Raises:
+            LumitipError: if one is running, or the file cannot be written.
+        """
+        from lumitip.recording import Writer
+
+        with self._lock:
+            if self._writer:
+                raise ViewError(f"{self._path} is being recorded. Stop it first")
+            path.parent.mkdir(parents=True, exist_ok=True)
+            self._writer = Writer(
+                path, tip.layout, device_id=tip.device_id, calibration=tip.calibration
+            )
+            self._path, self._frames, self._error = path, 0, None
+
+    def write(self, frame: Frame) -> None:
+        """Write a frame if a recording is running; an error ends it."""
+        with self._lock:
+            if not self._writer:
+                return
+            try:
+                self._writer.write(frame)
+                self._frames += 1
+            except (OSError, LumitipError) as error:
+                self._error = f"the recording ended: {error}"
+                _log.warning("%s: %s", self._path, self._error)
+                self._writer = None
+
+    def stop(self) -> Path | None:
+        """End the recording; returns its file, `None` if there was none."""
+        with self._lock:
+            if not self._writer:
+                return None
+            writer, self._writer = self._writer, None
+            writer.close()
+            return self._path
+
+    def status(self) -> dict[str, Any] | None:
+        """State of the recording for JSON, `None` before the first."""
+        with self._lock:
+            if self._path is None:
+                return None
+            return {
+                "on": self._writer is not None,
+                "file": self._path.name,
+                "frames": self._frames,
+                "error": self._error,
+            }
 
 
 class Finger:
-    """Reads every frame of a fingertip and keeps the last few. From any thread.
+    """Reads every frame of a fingertip and keeps the last ones. Thread-safe.
 
     Args:
-        url: as it was given, for people.
-        tip: open; closed together with the finger.
-        sinks: each takes every frame too.
-        player: what gives the frames, if they were recorded before.
+        url: address, for the user.
+        tip: open; `close` closes it.
+        sinks: receive every frame too.
+        player: the source of the frames of a recording.
     """
 
     def __init__(
@@ -54,21 +116,21 @@ class Finger:
         self.tip = tip
         self.player = player
         self.count = 0
-        """Frames read so far."""
+        """Number of frames read."""
         self.since = 0.0
         """`Frame.t` of the first frame (s)."""
         self.state = "connected"
         self.detail = ""
-        self._given_up = False
+        self._failed = False
         self._sinks = sinks
         self._processor = Processor(tip.layout)
-        self._said: tuple[Frame, Contact] | None = None
+        self._cached: tuple[Frame, Contact] | None = None
         self._frames: deque[tuple[Frame, float]] = deque(maxlen=KEPT)
         self._most = max(1, min(KEPT, _MESSAGE_BYTES // (2 * len(tip.layout))))
         self._began = time.monotonic()
         self._lock = threading.Lock()
         self._recorder = Recorder()
-        self._changed: Callable[[], None] = _nothing
+        self._changed: Callable[[], None] = lambda: None
         self._thread = threading.Thread(target=self._run, name="lumitip-view", daemon=True)
 
     @classmethod
@@ -79,7 +141,7 @@ class Finger:
         sinks: tuple[Sink, ...] = (),
         **options: Any,
     ) -> "Finger":
-        """Connect to a fingertip; not yet read. `options` are those of `Fingertip.open`.
+        """Connect to a fingertip; `options` are those of `Fingertip.open`.
 
         Raises:
             LumitipError: as `Fingertip.open`.
@@ -94,14 +156,14 @@ class Finger:
 
     @classmethod
     def play(cls, url: str, player: "Player", sinks: tuple[Sink, ...] = ()) -> "Finger":
-        """A recording as a finger; not yet read."""
+        """A finger that replays a recording."""
         events = _Later()
         hub = Hub(player, any_design=True, on_event=events)
         hub.start(timeout_s=5.0)
         return events.to(cls(url, Fingertip(hub, KEPT, calibrated=True), sinks, player))
 
     def start(self, changed: Callable[[], None]) -> None:
-        """Begin to read; `changed` is called on the reading thread after each frame or event."""
+        """Start reading; `changed` is called on the reading thread after each frame or event."""
         self._changed = changed
         self._began = time.monotonic()
         self._thread.start()
@@ -114,10 +176,10 @@ class Finger:
         self._recorder.stop()
 
     def newer(self, count: int) -> tuple[list[tuple[Frame, float]], int]:
-        """Frames after the first `count`, each with when it was read, newest last.
+        """Frames after the first `count`, each with its time of reading, newest last.
 
         Returns:
-            As many of the newest as a message holds, and how many older ones are left out.
+            The newest, as many as fit into a message; and the number of those skipped.
         """
         with self._lock:
             fresh = self.count - count
@@ -126,26 +188,26 @@ class Finger:
         return frames, fresh - len(frames)
 
     def contact(self, frame: Frame) -> Contact:
-        """What a frame says; worked out once for all browsers that show the same frame."""
-        said = self._said
-        if said is None or said[0] is not frame:
-            said = self._said = frame, self._processor(frame.values)
-        return said[1]
+        """The contact of a frame; computed once for all browsers."""
+        cached = self._cached
+        if cached is None or cached[0] is not frame:
+            cached = self._cached = frame, self._processor(frame.values)
+        return cached[1]
 
     def on_event(self, event: LinkEvent) -> None:
-        """What happens to the link."""
-        if self._given_up:
-            return  # the link may live on, but nobody reads it
-        states = {"connected": "connected", "lost": "lost", "ended": "ended", "failed": "failed"}
-        self.state = states.get(event.kind, self.state)
+        """Update the state from an event of the link."""
+        if self._failed:
+            return  # reading has stopped
+        if event.kind in ("connected", "lost", "ended", "failed"):
+            self.state = event.kind
         self.detail = event.detail
         self._changed()
 
     def record(self, path: Path) -> None:
-        """Write every frame from now on to a file.
+        """Start a recording.
 
         Raises:
-            LumitipError: if a recording runs already, or the file cannot be written.
+            LumitipError: as `Recorder.start`.
         """
         self._recorder.start(path, self.tip)
 
@@ -154,7 +216,7 @@ class Finger:
         return self._recorder.stop()
 
     def status(self) -> dict[str, Any]:
-        """State and statistics, as JSON can say them."""
+        """State and statistics for JSON."""
         stats = self.tip.stats
         drift = self.tip.drift
         return {
@@ -162,15 +224,8 @@ class Finger:
             "detail": self.detail,
             "read": self.count,
             "silent_s": self._silent_s(),
-            "received": stats.received,
+            **vars(stats),
             "dropped": None if stats.dropped is None else dict(stats.dropped),
-            "overflowed": stats.overflowed,
-            "unreadable": stats.unreadable,
-            "repeated": stats.repeated,
-            "reconnects": stats.reconnects,
-            "restarts": stats.restarts,
-            "rate_hz": stats.rate_hz,
-            "jitter_ms": stats.jitter_ms,
             "drift": None if drift is None else str(drift),
             "calibrated": self.tip.calibration.correction() is not None,
             "recording": self._recorder.status(),
@@ -178,7 +233,7 @@ class Finger:
         }
 
     def _silent_s(self) -> float | None:
-        """Time since the last frame or the start; `None` of a replay, which may stand."""
+        """Time since the last frame or the start (s); `None` for a replay, which may be paused."""
         with self._lock:
             since = self._frames[-1][1] if self._frames else self._began
         return None if self.player else time.monotonic() - since
@@ -189,14 +244,14 @@ class Finger:
                 self._take(frame)
             self.state = "ended"
         except LinkError as error:
-            self._give_up(str(error))
-        except BaseException as error:  # noqa: BLE001 - of a sink, Rerun's panics are no Exception
-            _log.error("%s is read no more", self.url, exc_info=error)
-            self._give_up(f"{type(error).__name__}: {error}")
+            self._fail(str(error))
+        except BaseException as error:  # noqa: BLE001 - panics of Rerun are no Exception
+            _log.error("reading of %s has stopped", self.url, exc_info=error)
+            self._fail(f"{type(error).__name__}: {error}")
         self._changed()
 
-    def _give_up(self, why: str) -> None:
-        self._given_up = True
+    def _fail(self, why: str) -> None:
+        self._failed = True
         self.state, self.detail = "failed", why
 
     def _take(self, frame: Frame) -> None:
@@ -212,7 +267,7 @@ class Finger:
 
 
 class _Later:
-    """Hands events to a finger that is made after the link has begun to report them."""
+    """Passes events to a finger that is created after the link has started."""
 
     def __init__(self) -> None:
         self._finger: Finger | None = None
@@ -222,10 +277,6 @@ class _Later:
             self._finger.on_event(event)
 
     def to(self, finger: Finger) -> Finger:
-        """Hand them to this one from now on."""
+        """Pass events to this finger from now on."""
         self._finger = finger
         return finger
-
-
-def _nothing() -> None:
-    pass

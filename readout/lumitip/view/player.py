@@ -1,11 +1,10 @@
-"""`Player`: a recording as a link that can be paused, wound and sped up.
+"""`Player`: a recording as a link with pause, seek and speed.
 
-At its end it stands still and can be wound back, so it never reports an end.
+It pauses at the end, so it never reports `"ended"`.
 """
 
 import threading
 import time
-from dataclasses import fields
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -14,23 +13,23 @@ import numpy as np
 
 from lumitip.errors import ViewError
 from lumitip.layout import Layout
-from lumitip.links.base import Arrival, Deliver, LinkEvent, Recorded, Report
+from lumitip.links.base import Arrival, Deliver, LinkEvent, Report
 from lumitip.links.url import Url
-from lumitip.recording import LONGEST_GAP_S, Reader, RecordedFrame
+from lumitip.recording import LONGEST_GAP_S, Reader
 
 MOST_BYTES = 1 << 29
 SLOWEST, FASTEST = 0.1, 16.0
 
 
 class Player:
-    """Gives the frames of a recording at their own pace. From any thread.
+    """Plays the frames of a recording. Thread-safe.
 
     Args:
-        path: of the recording; damage is read over.
-        speed: how fast to play, 1 is as it was.
+        path: of the recording; damaged parts are skipped.
+        speed: factor.
 
     Raises:
-        LumitipError: if the file is no recording, holds no frame or is too large to wind.
+        LumitipError: if the file is not a recording, is empty or too large.
     """
 
     def __init__(self, path: Path, speed: float = 1.0) -> None:
@@ -42,27 +41,27 @@ class Player:
         self._frames = list(islice(reader, most + 1))
         if len(self._frames) > most:
             raise ViewError(
-                f"{path}: more than {most} frames, which are too many to wind: "
-                "`lumitip replay` reads files of any length"
+                f"{path} has more than {most} frames, the limit of the player. `lumitip replay` "
+                "reads files of any length"
             )
         if not self._frames:
-            raise ViewError(f"{path}: holds no frame")
+            raise ViewError(f"{path} has no frame")
         walls = np.array([f.t_wall for f in self._frames])
-        # A clock that was set back while it recorded must not stop the show.
+        # The wall clock may have been set back during the recording.
         steps = np.clip(np.diff(walls, prepend=walls[0]), 0.0, LONGEST_GAP_S)
         self._at_s = np.cumsum(steps)
         self._changed = threading.Condition()
         self._next = 0
         self._speed = speed
         self._playing = True
-        self._wound = False
+        self._sought = False
         self._since: tuple[float, float] | None = None
         self._stopping = False
         self._thread: threading.Thread | None = None
 
     @classmethod
     def of_url(cls, text: str) -> "Player":
-        """Of `replay://FILE?speed=2`.
+        """The player of `replay://FILE?speed=2`.
 
         Raises:
             LumitipError: if the address is wrong, or as the class.
@@ -72,14 +71,14 @@ class Player:
         return cls(url.path, url.number("speed", 1.0, SLOWEST, FASTEST))
 
     def start(self, deliver: Deliver, report: Report) -> None:
-        """Begin to play."""
+        """Start playing."""
         self._thread = threading.Thread(
             target=self._run, args=(deliver, report), name="lumitip-player", daemon=True
         )
         self._thread.start()
 
     def stop(self) -> None:
-        """Play nothing more."""
+        """Stop playing."""
         with self._changed:
             self._stopping = True
             self._changed.notify_all()
@@ -92,17 +91,17 @@ class Player:
         position_s: float | None = None,
         speed: float | None = None,
     ) -> None:
-        """Pause or go on, wind, change the speed; what is `None` stays.
+        """Pause or play, seek, change the speed; `None` changes nothing.
 
         Raises:
-            ViewError: if the speed is out of bounds.
+            ViewError: if the speed is out of range.
         """
         if speed is not None and not SLOWEST <= speed <= FASTEST:
-            raise ViewError(f"speed: {speed:g} given, allowed is {SLOWEST:g} to {FASTEST:g}")
+            raise ViewError(f"speed is {speed:g}; allowed are {SLOWEST:g} to {FASTEST:g}")
         with self._changed:
             if position_s is not None:
                 self._next = self._index(position_s)
-                self._wound = True
+                self._sought = True
             if playing is not None:
                 if playing and self._next >= len(self._frames):
                     self._next = 0
@@ -112,7 +111,7 @@ class Player:
             self._changed.notify_all()
 
     def status(self) -> dict[str, Any]:
-        """Where it is, as JSON can say it."""
+        """State for JSON."""
         with self._changed:
             last = max(0, min(self._next, len(self._frames)) - 1)
             return {
@@ -129,12 +128,12 @@ class Player:
     def _run(self, deliver: Deliver, report: Report) -> None:
         report(LinkEvent("connected", f"a recording of {self.device_id}"))
         while (number := self._wait()) is not None:
-            deliver(Arrival(time.monotonic(), _recorded(self._frames[number])))
+            deliver(Arrival(time.monotonic(), self._frames[number]))
 
     def _wait(self) -> int | None:
-        """The number of the next frame once it is due, `None` to stop."""
+        """Wait for the next frame; returns its number, `None` to stop."""
         with self._changed:
-            while not self._stopping and not self._wound:
+            while not self._stopping and not self._sought:
                 if self._next >= len(self._frames):
                     self._playing = False
                 if not self._playing:
@@ -145,19 +144,15 @@ class Player:
                 if left_s <= 0:
                     break
                 self._changed.wait(left_s)
-            # A frame wound to is shown at once, also while it stands still.
-            self._wound = False
+            # After a seek the frame is sent at once, also while paused.
+            self._sought = False
             self._next += 1
             return None if self._stopping else self._next - 1
 
     def _left_s(self) -> float:
-        """Time until the next frame, counted from where playing last began, so nothing adds up."""
+        """Time until the next frame (s), from the last start of playing: errors do not add up."""
         at_s, now = float(self._at_s[self._next]), time.monotonic()
         if self._since is None:
             self._since = now, at_s
         began, began_at_s = self._since
         return began + (at_s - began_at_s) / self._speed - now
-
-
-def _recorded(was: RecordedFrame) -> Recorded:
-    return Recorded(**{f.name: getattr(was, f.name) for f in fields(Recorded)})

@@ -1,7 +1,7 @@
-"""`RerunSink`: what the live view shows, in the Rerun viewer or in a file that it opens.
+"""`RerunSink`: the data of the live view for the Rerun viewer or a file.
 
 For each finger the entities `cells`, `markers`, `centre`, `border`, `mean` and `shape`, on the
-timelines `seq` and `time` (UTC). Rerun's y points down: it is turned, so that the tip is up.
+timelines `seq` and `time` (UTC). y is negated, because Rerun's y points down.
 """
 
 from pathlib import Path
@@ -17,15 +17,15 @@ from lumitip.processing.contact import Point
 from lumitip.view.finger import Finger
 
 MOST_HZ = 60.0
-"""Frames a second that are handed on: more are not seen, and each costs the reading thread."""
+"""Largest rate of frames sent: more are not visible, and slow down the reading thread."""
 _TURN = np.array([1.0, -1.0])
 
 
 class RerunSink:
-    """Hands frames to Rerun. `take` may be called from several threads.
+    """Sends frames to Rerun. Thread-safe.
 
     Args:
-        path: of an `.rrd` file to write; without one the viewer is opened.
+        path: of an `.rrd` file; default: open the viewer.
 
     Raises:
         MissingExtra: if `rerun-sdk` is not installed.
@@ -45,7 +45,7 @@ class RerunSink:
         self._last: dict[str, tuple[float, str]] = {}
 
     def take(self, finger: Finger, frame: Frame) -> None:
-        """Hand a frame on, unless the last of this finger is too short ago."""
+        """Send a frame, limited to `MOST_HZ` per finger."""
         name = finger.tip.device_id
         last_t, last_shape = self._last.get(name, (-np.inf, ""))
         if 0 <= frame.t - last_t < 1 / MOST_HZ:
@@ -69,7 +69,7 @@ class RerunSink:
             self._log([name, "shape"], self._rerun.TextLog(contact.shape))
 
     def close(self) -> None:
-        """Write what is still held back."""
+        """Write buffered data."""
         self._stream.flush()
         self._stream.disconnect()
 
@@ -94,11 +94,11 @@ class RerunSink:
 
 
 def borders(contact: Contact, reach_mm: float) -> list[Floats]:
-    """The fitted lines of a contact's shape as strips of points, each of shape `(2, 2)` (mm).
+    """The fitted lines of a contact as pairs of points, each of shape `(2, 2)` (mm).
 
     Args:
         contact: of a frame.
-        reach_mm: how far lines go on.
+        reach_mm: length of the lines to each side.
     """
     if contact.shape == "edge" and contact.line:
         return [_through(contact.line.point_mm, contact.line.angle_deg, reach_mm)]

@@ -1,56 +1,76 @@
-"""`ViewServer`: the live view behind an address."""
+"""`ViewServer` and `Guard`: the web server of the live view, and its access control.
 
+Pages of other sites in the same browser can send requests to this computer. Three rules keep them
+out: the host name must be this computer's (against DNS rebinding), changes and the stream need the
+origin of our own page, and other computers need the token.
+"""
+
+import hmac
 import ipaddress
 import secrets
 import socket
 import threading
+from http.cookies import CookieError, SimpleCookie
 from types import TracebackType
-from urllib.parse import urlencode
+from urllib.parse import parse_qsl, urlencode
 
 import uvicorn
+from starlette.datastructures import Headers, MutableHeaders
+from starlette.responses import PlainTextResponse, RedirectResponse, Response
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from lumitip.errors import ViewError
 from lumitip.view.app import make_app
-from lumitip.view.guard import Guard
-from lumitip.view.room import Room
+from lumitip.view.registry import FingerRegistry
 
 DEFAULT_PORT = 8642
+_HEADERS = {
+    "Content-Security-Policy": (
+        "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; "
+        "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+    ),
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Cache-Control": "no-store",
+}
 
 
 class ViewServer:
-    """Serves a room until it is stopped; as a context manager on a thread of its own.
+    """Serves fingers until stopped; as a context manager on its own thread.
 
     Args:
-        room: not yet open.
-        host: address to listen at; any but a loopback address needs a token.
-        port: 0 takes a free one.
-        token: what browsers must show; made up where one is needed and none given.
+        registry: the fingers, not yet open.
+        host: address to listen on; all but loopback addresses need a token.
+        port: 0 is any free one.
+        token: secret that browsers must send; default: random if needed.
 
     Raises:
-        ViewError: if the address cannot be listened at, or the token cannot be sent.
+        ViewError: if the address cannot be used, or the token cannot be sent.
     """
 
     def __init__(
         self,
-        room: Room,
+        registry: FingerRegistry,
         host: str = "127.0.0.1",
         port: int = DEFAULT_PORT,
         token: str | None = None,
     ) -> None:
         if token and not (token.isascii() and token.isprintable()):
-            raise ViewError(f"token {token!r:.80} given, letters, digits and signs of ASCII go")
+            raise ViewError(f"the token is {token!r:.80}; printable ASCII characters are needed")
         loopback = _is_loopback(host)
-        self.room = room
+        self.registry = registry
         self.token = token or (None if loopback else secrets.token_urlsafe(24))
         self._socket = _listen(host, port)
         self.port: int = self._socket.getsockname()[1]
         self._host = host
-        guard = Guard(make_app(room), loopback, self.token, self.port)
+        guard = Guard(make_app(registry), loopback, self.token, self.port)
         self._server = uvicorn.Server(
             uvicorn.Config(
                 guard,
                 log_level="warning",
-                ws_per_message_deflate=False,  # values are noise: it would cost and gain nothing
+                ws_per_message_deflate=False,  # noise does not compress
                 ws_max_size=1 << 16,
                 timeout_graceful_shutdown=2,
             )
@@ -59,7 +79,7 @@ class ViewServer:
 
     @property
     def url(self) -> str:
-        """What to open in a browser."""
+        """Address for the browser."""
         host = {"0.0.0.0": socket.gethostname(), "::": socket.gethostname()}.get(
             self._host, self._host
         )
@@ -69,12 +89,12 @@ class ViewServer:
         )
 
     def run(self) -> None:
-        """Serve until the process is asked to end, or `stop`."""
+        """Serve until a signal or `stop`."""
         with self._socket:
             self._server.run(sockets=[self._socket])
 
     def stop(self) -> None:
-        """Ask a running server to end. From any thread."""
+        """End a running server. Thread-safe."""
         self._server.should_exit = True
 
     def __enter__(self) -> "ViewServer":
@@ -99,7 +119,7 @@ def _is_loopback(host: str) -> bool:
 
 def _listen(host: str, port: int) -> socket.socket:
     if not 0 <= port < 1 << 16:
-        raise ViewError(f"port {port} given, allowed is 0 to 65535; 0 takes a free one")
+        raise ViewError(f"port is {port}; allowed are 0 to 65535, 0 is any free one")
     listening = None
     try:
         family, kind, protocol, _, address = socket.getaddrinfo(
@@ -113,7 +133,97 @@ def _listen(host: str, port: int) -> socket.socket:
         if listening:
             listening.close()
         raise ViewError(
-            f"{host}:{port} cannot be listened at: {error.strerror}; give another --host or "
-            "--port, 0 takes a free port"
+            f"{host}:{port} cannot be used: {error.strerror}. Choose another --host or --port; "
+            "port 0 is any free one"
         ) from error
     return listening
+
+
+class Guard:
+    """Passes requests to `app`, or rejects them.
+
+    Args:
+        loopback: whether the server listens on a loopback address only.
+        token: secret that a browser must send, `None` if not needed.
+        port: of the server, for the name of the cookie: ports share cookies.
+    """
+
+    def __init__(self, app: ASGIApp, loopback: bool, token: str | None, port: int) -> None:
+        self._app = app
+        self._loopback = loopback
+        self._token = token
+        self._cookie = f"lumitip_{port}"
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answer one request."""
+        if scope["type"] not in ("http", "websocket"):
+            await self._app(scope, receive, send)
+            return
+        refusal = self._refusal(scope)
+        if refusal is None:
+            await self._app(scope, receive, _with_headers(send))
+        elif scope["type"] == "websocket":
+            # Closing before accepting answers the handshake with 403.
+            await receive()
+            await send({"type": "websocket.close", "code": 1008, "reason": ""})
+        else:
+            await refusal(scope, receive, _with_headers(send))
+
+    def _refusal(self, scope: Scope) -> Response | None:
+        headers = Headers(scope=scope)
+        host = headers.get("host", "")
+        if not self._is_here(host):
+            return PlainTextResponse(f"Host {host!r} is not this live view.\n", 421)
+        safe = scope["type"] == "http" and scope["method"] in ("GET", "HEAD")
+        if not safe and headers.get("origin") != f"http://{host}":
+            return PlainTextResponse("Only the page of the live view may send this request.\n", 403)
+        return self._without_token(scope, headers) if self._token else None
+
+    def _is_here(self, host: str) -> bool:
+        name = host.rpartition(":")[0] if host.rpartition(":")[2].isdigit() else host
+        name = name.strip("[]").lower().rstrip(".")
+        try:
+            address = ipaddress.ip_address(name)
+        except ValueError:
+            own = socket.gethostname().lower()
+            return name == "localhost" or (
+                not self._loopback and name in (own, f"{own}.local", own.partition(".")[0])
+            )
+        # DNS rebinding needs a name, so any address is safe.
+        return address.is_loopback or not self._loopback
+
+    def _without_token(self, scope: Scope, headers: Headers) -> Response | None:
+        """`None` if the token is right; a token in the address moves into a cookie."""
+        if self._is_token(_cookies(headers).get(self._cookie, "")):
+            return None
+        query = dict(parse_qsl(scope["query_string"].decode("latin-1")))
+        if scope["type"] == "http" and self._is_token(query.pop("token", "")):
+            assert self._token
+            rest = f"?{urlencode(query)}" if query else ""
+            moved = RedirectResponse(f"{scope['path']}{rest}", 303)
+            moved.set_cookie(self._cookie, self._token, httponly=True, samesite="strict")
+            return moved
+        return PlainTextResponse(
+            "The token is missing. Open the address that `lumitip view` has printed.\n", 401
+        )
+
+    def _is_token(self, text: str) -> bool:
+        return hmac.compare_digest(text.encode(), (self._token or "").encode())
+
+
+def _cookies(headers: Headers) -> dict[str, str]:
+    try:
+        return {
+            name: cookie.value for name, cookie in SimpleCookie(headers.get("cookie", "")).items()
+        }
+    except CookieError:
+        return {}
+
+
+def _with_headers(send: Send) -> Send:
+    async def send_with(message: Message) -> None:
+        if message["type"] == "http.response.start":
+            MutableHeaders(scope=message).update(_HEADERS)
+        await send(message)
+
+    return send_with

@@ -1,47 +1,64 @@
-"""One browser: it gets the newest frames as fast as it draws them, and no faster.
+"""The session of one browser: flow control, and the binary messages of frames.
 
-At most `WINDOW` messages are on the way to it; it says of each when it was drawn. While the window
-is full frames pass by, and the next message holds the newest with a count of those left out.
-Nothing queues anywhere, however slow the browser is: also a hidden tab, which draws nothing.
+A browser acknowledges each message once it is drawn, and at most `WINDOW` messages are not yet
+acknowledged. While the window is full frames are skipped; the next message has the newest frames
+and the number skipped. So nothing queues for a slow browser or a hidden tab.
+
+Little-endian, every array aligned to its own size:
+
+    u8 kind (1), u8 0, u16 finger, u16 frames, u16 cells, u16 markers, u16 0, u32 number,
+    u32 skipped, u32 0                                  24 bytes
+    f64 × frames          time since the first frame of this finger (s)
+    f32 × 20              contact, see `_contact`; NaN: does not apply
+    f32 × 2 markers       markers (mm)
+    u32 × frames          sequence numbers, modulo 2^32
+    u16 × frames × cells  values in 1/256 of a count, 65535 is NaN
 """
 
 import asyncio
 import json
+import struct
 import time
 from collections import deque
+from collections.abc import Sequence
 from contextlib import suppress
 from typing import Any
 
 import numpy as np
 from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 
+from lumitip.frame import Frame
+from lumitip.processing import SHAPES, Contact
 from lumitip.view.finger import Finger
-from lumitip.view.room import Room
-from lumitip.view.wire import encode
+from lumitip.view.registry import FingerRegistry
 
+HEADER = struct.Struct("<BxHHHHxxIIxxxx")
+FRAMES = 1
+CONTACT_FIELDS = 20
+_NOT_A_NUMBER = 65535
 WINDOW = 4
-"""Most messages of one finger on the way: at 60 pictures and 200 frames a second, each frame."""
+"""Most unacknowledged messages of one finger: enough for every frame at 200 Hz, drawn at 60 Hz."""
 _STATUS_S = 0.5
-_AGES = 600  # 10 s at 60 pictures a second
+_AGES = 600  # 10 s at 60 Hz
 
 
 class Feed:
-    """Frames of one finger on their way to one browser."""
+    """The frames of one finger for one browser."""
 
     def __init__(self, finger: Finger) -> None:
         self.finger = finger
         self.skipped = 0
-        """Frames left out so far."""
+        """Number of frames skipped."""
         self.drawn = 0
-        """Messages drawn so far."""
-        self._count = max(0, finger.count - 1)  # the last one is shown even if none follows
+        """Number of messages drawn."""
+        self._count = max(0, finger.count - 1)  # sends the newest frame at once
         self._number = 0
-        self._flying: deque[tuple[int, float]] = deque()
+        self._pending: deque[tuple[int, float]] = deque()
         self._ages: deque[float] = deque(maxlen=_AGES)
 
     def next(self, finger_number: int) -> bytes | None:
         """The next message, `None` if there is nothing new or the window is full."""
-        if len(self._flying) >= WINDOW:
+        if len(self._pending) >= WINDOW:
             return None
         frames, skipped = self.finger.newer(self._count)
         if not frames:
@@ -50,7 +67,7 @@ class Feed:
         self.skipped += skipped
         self._number += 1
         last, read = frames[-1]
-        self._flying.append((self._number, read if self.finger.player else last.t))
+        self._pending.append((self._number, read if self.finger.player else last.t))
         return encode(
             finger_number,
             self._number,
@@ -61,45 +78,45 @@ class Feed:
         )
 
     def acknowledge(self, number: int) -> None:
-        """The browser has drawn message `number`, and with it all before."""
+        """Note that the browser has drawn all messages up to `number`."""
         now = time.monotonic()
-        while self._flying and self._flying[0][0] <= number:
-            sent, born = self._flying.popleft()
+        while self._pending and self._pending[0][0] <= number:
+            sent, born = self._pending.popleft()
             self.drawn += 1
-            # Earlier ones were overtaken before they were drawn; the first may be old.
+            # Messages before it were never drawn; the first may be old.
             if sent == number and sent > 1:
                 self._ages.append(now - born)
 
     def status(self) -> dict[str, Any]:
-        """How this browser keeps up; ages reach from reading the cells to word of the drawing."""
+        """Statistics for JSON; ages are from reading the cells to the acknowledgement."""
         ages_ms = np.array(self._ages) * 1e3
         return {
             "skipped": self.skipped,
-            "in_flight": len(self._flying),
+            "in_flight": len(self._pending),
             "age_ms": np.percentile(ages_ms, (50, 99)).tolist() if ages_ms.size else None,
         }
 
 
 class Session:
-    """Serves one browser until it leaves."""
+    """Serves one browser until it disconnects."""
 
-    def __init__(self, websocket: WebSocket, room: Room) -> None:
+    def __init__(self, websocket: WebSocket, registry: FingerRegistry) -> None:
         self._websocket = websocket
-        self._room = room
+        self._registry = registry
         self._feeds: dict[int, Feed] = {}
-        self._awake = room.listen()
+        self._awake = registry.listen()
         self._awake.set()
         self._status_due = 0.0
-        self._status_flying = False
+        self._status_pending = False
 
     async def run(self) -> None:
-        """Send frames and listen for what was drawn; returns when the browser leaves."""
-        # Whichever ends first, ends the other: a browser that left, or one that cannot be sent to.
+        """Send frames and receive acknowledgements; returns when the browser disconnects."""
+        # The first task to end also ends the other.
         tasks = [asyncio.create_task(t) for t in (self._send(), self._listen())]
         try:
             done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
         finally:
-            self._room.leave(self._awake)
+            self._registry.leave(self._awake)
             for task in tasks:
                 task.cancel()
             await asyncio.gather(*tasks, return_exceptions=True)
@@ -108,10 +125,10 @@ class Session:
                 task.result()
 
     async def _listen(self) -> None:
-        # Sending notices first that the browser is gone; what it said before still comes.
+        # Sending fails first when the browser disconnects; its last messages still arrive.
         while self._websocket.application_state is WebSocketState.CONNECTED:
-            with suppress(KeyError):  # bytes, which our page never sends
-                self._heard(await self._websocket.receive_text())
+            with suppress(KeyError):  # a binary message, which our page never sends
+                self._acknowledged(await self._websocket.receive_text())
 
     async def _send(self) -> None:
         while True:
@@ -121,13 +138,13 @@ class Session:
                 message = feed.next(number)
                 if message is not None:
                     await self._websocket.send_bytes(message)
-            if time.monotonic() >= self._status_due and not self._status_flying:
+            if time.monotonic() >= self._status_due and not self._status_pending:
                 self._status_due = time.monotonic() + _STATUS_S
-                self._status_flying = True
+                self._status_pending = True
                 await self._websocket.send_text(json.dumps(self._status()))
 
     async def _wait(self) -> None:
-        """Until something changed, was drawn, or a status is due."""
+        """Wait for a change, an acknowledgement, or the next status."""
         left = self._status_due - time.monotonic()
         try:
             await asyncio.wait_for(self._awake.wait(), _STATUS_S if left <= 0 else left)
@@ -136,8 +153,8 @@ class Session:
         self._awake.clear()
 
     def _match(self) -> None:
-        """One feed for each finger that is shown now."""
-        fingers = self._room.fingers
+        """Keep one feed for each finger."""
+        fingers = self._registry.fingers
         if self._feeds.keys() != fingers.keys():
             kept = self._feeds
             self._feeds = {n: kept[n] if n in kept else Feed(f) for n, f in fingers.items()}
@@ -150,16 +167,73 @@ class Session:
             }
         }
 
-    def _heard(self, text: str) -> None:
-        """`{"drawn": {"finger": number}, "status": true}`: what the browser has done with."""
+    def _acknowledged(self, text: str) -> None:
+        """Read `{"drawn": {"finger": number}, "status": true}`."""
         try:
-            told = json.loads(text)
-            drawn = {int(n): int(m) for n, m in told.get("drawn", {}).items()}
+            message = json.loads(text)
+            drawn = {int(n): int(m) for n, m in message.get("drawn", {}).items()}
         except (ValueError, AttributeError, TypeError, OverflowError, RecursionError):
             return
-        for number, message in drawn.items():
-            if number in self._feeds:
-                self._feeds[number].acknowledge(message)
-        if told.get("status"):
-            self._status_flying = False
+        for finger, number in drawn.items():
+            if finger in self._feeds:
+                self._feeds[finger].acknowledge(number)
+        if message.get("status"):
+            self._status_pending = False
         self._awake.set()
+
+
+def encode(
+    finger: int,
+    number: int,
+    frames: Sequence[Frame],
+    contact: Contact,
+    skipped: int = 0,
+    since: float = 0.0,
+) -> bytes:
+    """Encode one or more frames of one finger, in order.
+
+    Args:
+        finger: number of the finger.
+        number: of this message, for its acknowledgement.
+        contact: of the last frame.
+        skipped: number of frames skipped before these.
+        since: `Frame.t` of time 0 (s).
+    """
+    markers = contact.markers_mm if contact.markers_mm is not None else np.empty((0, 2))
+    cells = frames[0].values.size
+    head = HEADER.pack(FRAMES, finger, len(frames), cells, len(markers), number, skipped)
+    values = np.rint(np.stack([f.values for f in frames]) * np.float32(256.0))
+    codes = np.where(np.isfinite(values), values, _NOT_A_NUMBER).astype("<u2")
+    return b"".join(
+        (
+            head,
+            np.array([f.t - since for f in frames], "<f8").tobytes(),
+            np.array(_contact(contact), "<f4").tobytes(),
+            markers.astype("<f4").tobytes(),
+            np.array([f.seq % 2**32 for f in frames], "<u4").tobytes(),
+            codes.tobytes(),
+        )
+    )
+
+
+def _contact(contact: Contact) -> list[float]:
+    """Shape, λ, contrast, centre (2), line (4), corner (6), cable (5); order as in `Contact`."""
+    nan = float("nan")
+    line, corner, cable = contact.line, contact.corner, contact.cable
+    return [
+        float(SHAPES.index(contact.shape)),
+        nan if contact.threshold is None else contact.threshold,
+        nan if contact.contrast is None else contact.contrast,
+        *(contact.centre_mm or (nan, nan)),
+        *((*line.point_mm, line.angle_deg, line.rms_mm) if line else [nan] * 4),
+        *(
+            (*corner.vertex_mm, *corner.directions_deg, corner.opening_deg, corner.rms_mm)
+            if corner
+            else [nan] * 6
+        ),
+        *(
+            (*cable.axis_point_mm, cable.angle_deg, cable.width_mm, cable.rms_mm)
+            if cable
+            else [nan] * 5
+        ),
+    ]

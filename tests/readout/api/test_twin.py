@@ -9,8 +9,7 @@ import pytest
 from lumitip import Fingertip, Layout, LinkEvent, LumitipError
 from lumitip.errors import ArgumentError, LinkError, LinkTimeout, UrlError
 from lumitip.links.base import Deliver, Report
-from lumitip.links.retry import UnexpectedError
-from lumitip.links.thread import ThreadedLink
+from lumitip.links.thread import ThreadedLink, UnexpectedError
 from lumitip.links.twin import published_layout
 from lumitip.links.url import Url
 from lumitip.twin import Model
@@ -19,17 +18,17 @@ from lumitip.twin.pairs import Emitter, Pairs
 
 def test_an_address_is_checked_before_anything_is_opened() -> None:
     for url, told in {
-        "Lumitip": "an address like ble://Lumitip",
+        "Lumitip": "one like ble://Lumitip",
         "usb://x": "allowed are ble://…, serial://…",
-        "twin://pyramid": "'pyramid' given, allowed are demo, disc",
-        "twin://disc?rates=3": "option 'rates' given, allowed are speed, noise, rate, bits, seed",
-        "twin://disc?rate=0": "rate=0 given, a number from 1 to 5000 is needed",
+        "twin://pyramid": "there is no shape 'pyramid'; allowed are demo, disc",
+        "twin://disc?rates=3": "no option 'rates'; allowed are speed, noise, rate, bits, seed",
+        "twin://disc?rate=0": "rate is 0; a number from 1 to 5000 is needed",
         "twin://disc?rate=nan": "a number from 1",
-        "twin://disc?bits=9": "bits=9 given, allowed are 8, 10, 12",
-        "twin://disc?rate=1&rate=2": "an option is given twice",
+        "twin://disc?bits=9": "bits is 9; allowed are 8, 10, 12",
+        "twin://disc?rate=1&rate=2": "an option occurs twice",
         "twin://disc?rate": "options like",
-        "twin://" + 5000 * "a": "'twin://a+'… of 5007 characters given, at most 4096",
-        "ble://Lumitip?adapter=../hci0": "adapter=../hci0 given, a name like hci0 is needed",
+        "twin://" + 5000 * "a": "'twin://a+'… has 5007 characters; the limit is 4096",
+        "ble://Lumitip?adapter=../hci0": "adapter is ../hci0; a name like hci0 is needed",
     }.items():
         with pytest.raises(UrlError, match=told):
             Fingertip.open(url, published_layout())
@@ -50,7 +49,7 @@ def test_an_address_is_checked_before_anything_is_opened() -> None:
     ],
 )
 def test_characters_that_no_name_has_are_refused(place: str, odd: str) -> None:
-    with pytest.raises(UrlError, match=r"in it, which no name, port or file has") as caught:
+    with pytest.raises(UrlError, match="is not allowed") as caught:
         Fingertip.open(place.format(odd), published_layout())
     assert str(caught.value).isprintable(), "it may be printed to a terminal as it is"
 
@@ -76,8 +75,7 @@ def test_a_twin_needs_nothing(make_layout) -> None:
 
 
 def test_what_a_twin_shows_is_always_the_same(layout: Layout) -> None:
-    from lumitip.links.shapes import SHAPES
-    from lumitip.links.twin import Scene, packet_at
+    from lumitip.links.twin import SHAPES, Scene, packet_at
 
     shown = set()
     for shape in SHAPES:
@@ -91,8 +89,7 @@ def test_what_a_twin_shows_is_always_the_same(layout: Layout) -> None:
 def test_a_fingertip_of_one_cell_is_shown_and_examined(make_layout) -> None:
     from lumitip.frame import complement
     from lumitip.health.doctor import examine
-    from lumitip.links.shapes import SHAPES
-    from lumitip.links.twin import Scene, packet_at
+    from lumitip.links.twin import SHAPES, Scene, packet_at
 
     alone = make_layout((1,))
     for shape in SHAPES:

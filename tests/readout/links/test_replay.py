@@ -141,7 +141,7 @@ def test_the_recordings_calibration_is_used(record, layout: Layout) -> None:
 def test_a_recording_of_another_design_is_refused(record, make_layout) -> None:
     path = record(10)
     other = make_layout((4, 5, 4), 5.0)
-    with pytest.raises(WrongDesign, match=r"run10\.mcap is of design"):
+    with pytest.raises(WrongDesign, match=r"run10\.mcap has design"):
         Fingertip.open(f"replay://{path}", other)
     with Fingertip.open(f"replay://{path}?speed=0", other, any_design=True) as tip:
         assert len(tip.layout) == 32

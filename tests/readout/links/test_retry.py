@@ -7,7 +7,7 @@ import pytest
 
 from lumitip.errors import LinkError, MtuTooSmall, NotConnected
 from lumitip.links.base import LinkEvent
-from lumitip.links.retry import delays_s, keep_connected
+from lumitip.links.thread import delays_s, keep_connected
 
 
 class Sessions:

@@ -49,11 +49,11 @@ def test_what_cannot_be_searched_is_said(capsys: pytest.CaptureFixture[str]) -> 
     result = scan(0.1)
     assert [found.url for found in result.found] == ["serial:///dev/ttyACM3"]
     assert len(result.unsearched) == 1
-    assert "is Bluetooth switched on?" in result.unsearched[0]
+    assert "Is Bluetooth switched on?" in result.unsearched[0]
     assert main(["scan", "--only", "ble", "--seconds", "0.1"]) == 1
     told = capsys.readouterr().err
     assert "not searched: Bluetooth: " in told
-    assert "twin://demo is always there" in told
+    assert "twin://demo is a simulated one" in told
 
 
 def test_an_empty_room(

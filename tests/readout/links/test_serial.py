@@ -149,7 +149,10 @@ def test_a_device_of_another_number_of_cells(
     url, other = f"serial://{line.path}", make_layout((4, 5, 4), 6.0)
     with Fingertip.open(url, other, any_design=any_design) as tip:
         line.send(device.packet(0), device.packet(1))
-        told = f"design beef… with 32 cells, the layout of {other.design_hash[:4]}… with 13 cells"
+        told = (
+            "design beef… with 32 cells; the layout has design "
+            f"{other.design_hash[:4]}… with 13 cells"
+        )
         with pytest.raises(WrongDesign, match=told) as caught:
             tip.read(5.0)
         assert caught.value.found == "beef…"
@@ -195,7 +198,7 @@ def test_nothing_is_lost_while_the_reader_sleeps(line: Line, device) -> None:
 
 
 def test_a_port_that_is_not_there_or_not_allowed(device, tmp_path: Path) -> None:
-    with pytest.raises(DeviceNotFound, match="there is no such port; ports there are:"):
+    with pytest.raises(DeviceNotFound, match="there is no such port; the ports are:"):
         Fingertip.open(f"serial://{tmp_path / 'ttyACM7'}", device.layout)
 
 
@@ -225,7 +228,7 @@ def test_without_a_port_the_only_usb_device_is_taken(
     with pytest.raises(AmbiguousDevice, match=re.escape("serial:///dev/ttyACM9")):
         Fingertip.open("serial://", device.layout)
     there.clear()
-    with pytest.raises(DeviceNotFound, match="plug the device in"):
+    with pytest.raises(DeviceNotFound, match="Plug the device in"):
         Fingertip.open("serial://", device.layout)
 
 

@@ -106,7 +106,7 @@ def test_every_single_bit_flipped_is_noticed() -> None:
 
 
 def test_a_packet_of_another_number_of_cells_is_refused() -> None:
-    with pytest.raises(PacketError, match="20 bytes given, 1 frames of 32 cells") as caught:
+    with pytest.raises(PacketError, match="has 20 bytes; 1 frames of 32 cells") as caught:
         decode(encode(KNOWN), 32)
     assert caught.value.reason == "length"
 

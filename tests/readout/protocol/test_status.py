@@ -58,6 +58,6 @@ def test_legacy_frame() -> None:
 
 @pytest.mark.parametrize("length", [0, 20, 31, 33])
 def test_a_legacy_frame_cut_off_is_refused(length: int) -> None:
-    with pytest.raises(PacketError, match=f"{length} bytes given.*{legacy_mtu(32)}") as caught:
+    with pytest.raises(PacketError, match=f"{length} bytes;.*{legacy_mtu(32)}") as caught:
         decode_legacy(bytes(length), 32)
     assert caught.value.reason == "length"

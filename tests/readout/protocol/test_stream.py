@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lumitip.protocol import cobs
+from lumitip.protocol.cobs import StreamDecoder
 from lumitip.protocol.packet import Packet, PacketError, encode
-from lumitip.protocol.stream import StreamDecoder
 
 RUN = bytes(range(1, 255))  # 254 bytes, the longest run
 

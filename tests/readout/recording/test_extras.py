@@ -50,7 +50,7 @@ def test_processing_needs_numpy_alone_and_the_commands_load_nothing_heavy() -> N
     code = """
 import sys
 import lumitip.processing
-from lumitip.commands import export, info, record, recover, replay
+from lumitip.commands import devices, record, recordings, simulation, view
 print(*sorted({m.partition(".")[0] for m in sys.modules}))
 """
     loaded = set(_python(code).split())

@@ -7,8 +7,7 @@ from lumitip import Fingertip
 from lumitip.errors import UrlError
 from lumitip.frame import complement
 from lumitip.links import open_link
-from lumitip.links.shapes import SHAPES, Matter, shown
-from lumitip.links.twin import Scene, packet_at, published_layout
+from lumitip.links.twin import SHAPES, Matter, Scene, moved, packet_at, published_layout
 from lumitip.protocol.packet import decode, encode
 from lumitip.twin import Twin
 
@@ -37,7 +36,7 @@ def test_packets_carry_what_the_twin_computes(shape: str) -> None:
     light = _light(shape)
     twin = Twin(layout, noise=0.0, bits=12, warm_up=0.0)
     for frame, t in zip(light, 2.0 + np.arange(5) / 50.0, strict=True):
-        expected = twin.uncalibrated(twin.light(shown(shape, layout, 40.0 * t, Matter())))
+        expected = twin.uncalibrated(twin.light(moved(shape, layout, 40.0 * t, Matter())))
         assert frame == pytest.approx(expected, abs=0.15)
 
 

@@ -64,7 +64,7 @@ def test_a_path_that_is_taken_and_other_links_are_refused(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "taken").write_text("mine", encoding="utf-8")
-    with pytest.raises(LinkError, match="give another path"):
+    with pytest.raises(LinkError, match="Choose another path"):
         SerialDevice(tmp_path / "taken")
     assert (tmp_path / "taken").read_text(encoding="utf-8") == "mine"
     assert main(["twin", "serial:///dev/null", "--serve-serial"]) == 2

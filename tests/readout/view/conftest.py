@@ -15,7 +15,7 @@ from lumitip.links.base import Arrival, Deliver, LinkEvent, Report
 from lumitip.protocol.packet import Packet, design_code
 from lumitip.session.hub import Hub
 from lumitip.view.finger import Finger
-from lumitip.view.room import Room
+from lumitip.view.registry import FingerRegistry
 from lumitip.view.server import ViewServer
 from programs import program
 
@@ -48,8 +48,8 @@ def serve(tmp_path: Path) -> Iterator[Serve]:
 
         def start(*shown: str | Finger, **options: str) -> ViewServer:
             fingers = [Finger.open(one) if isinstance(one, str) else one for one in shown]
-            room = Room(fingers, tmp_path / "recordings")
-            return stack.enter_context(ViewServer(room, port=0, **options))
+            registry = FingerRegistry(fingers, tmp_path / "recordings")
+            return stack.enter_context(ViewServer(registry, port=0, **options))
 
         yield start
 

@@ -58,7 +58,7 @@ def test_port_that_is_taken_is_told(capsys: pytest.CaptureFixture[str]) -> None:
         port = taken.getsockname()[1]
         assert main(["view", "twin://demo", "--port", str(port)]) == 2
     error = capsys.readouterr().err
-    assert f"127.0.0.1:{port} cannot be listened at" in error
+    assert f"127.0.0.1:{port} cannot be used" in error
     assert "--port" in error
 
 
@@ -66,10 +66,10 @@ def test_port_that_is_taken_is_told(capsys: pytest.CaptureFixture[str]) -> None:
     ("arguments", "told"),
     [
         (["twin://nothing"], "allowed are demo"),
-        (["twin://demo", "nonsense"], "an address like"),
+        (["twin://demo", "nonsense"], "one like"),
         (["replay://none.mcap"], "cannot be read"),
-        (["twin://demo", "--host", "203.0.113.1", "--port", "0"], "cannot be listened at"),
-        (["twin://demo", "--port", "70000"], "allowed is 0 to 65535"),
+        (["twin://demo", "--host", "203.0.113.1", "--port", "0"], "cannot be used"),
+        (["twin://demo", "--port", "70000"], "allowed are 0 to 65535"),
     ],
 )
 def test_what_cannot_be_shown_is_told(

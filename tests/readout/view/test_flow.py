@@ -14,7 +14,7 @@ from websockets.sync.client import ClientConnection, connect
 
 from lumitip.frame import Frame
 from lumitip.view.finger import KEPT, Finger
-from lumitip.view.room import Room
+from lumitip.view.registry import FingerRegistry
 from lumitip.view.server import ViewServer
 from lumitip.view.session import WINDOW, Session
 
@@ -63,7 +63,7 @@ def test_a_browser_that_does_not_draw_gets_a_window_and_no_more(
     serve: Serve, wait_for: WaitFor
 ) -> None:
     server = serve("twin://disc?rate=500")
-    finger = server.room.fingers[1]
+    finger = server.registry.fingers[1]
     with stream(server) as client:
         first = until_silent(client)
         assert [told(m)["number"] for m in first] == list(range(1, WINDOW + 1))
@@ -113,7 +113,7 @@ def test_one_slow_browser_does_not_slow_another(serve: Serve) -> None:
 
 def test_who_comes_late_sees_the_last_frame(serve: Serve, wait_for: WaitFor) -> None:
     server = serve("twin://disc")
-    finger = server.room.fingers[1]
+    finger = server.registry.fingers[1]
     wait_for(lambda: finger.count > 3)
     finger.tip.close()
     wait_for(lambda: finger.status()["state"] == "ended")
@@ -144,7 +144,7 @@ def test_a_browser_that_left_before_its_last_words_are_read_leaves_quietly(
 
         websocket = WebSocket({"type": "websocket"}, receive, send)
         await websocket.accept()
-        await asyncio.wait_for(Session(websocket, Room((), tmp_path)).run(), 10.0)
+        await asyncio.wait_for(Session(websocket, FingerRegistry((), tmp_path)).run(), 10.0)
 
     asyncio.run(main())
 
@@ -178,7 +178,7 @@ def run(page: Page, folder: Path, wait_for: WaitFor, seconds: float) -> None:
     """200 Hz into a page that stands still for half a second now and then."""
     seen = Seen()
     finger = Finger.open("twin://demo?rate=200", sinks=(seen,))
-    with ViewServer(Room([finger], folder), port=0) as server:
+    with ViewServer(FingerRegistry([finger], folder), port=0) as server:
         page.goto(server.url)
         page.wait_for_selector(".finger[data-seq]")
         statuses = []

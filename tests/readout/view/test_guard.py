@@ -157,22 +157,22 @@ def test_every_answer_forbids_what_is_not_from_here(serve: Serve) -> None:
 
 def test_files_outside_the_page_are_not_given(serve: Serve) -> None:
     server = serve("twin://disc")
-    for path in ("/../app.py", "/%2e%2e/app.py", "/..%2fapp.py", "/static/../../room.py"):
+    for path in ("/../app.py", "/%2e%2e/app.py", "/..%2fapp.py", "/static/../../registry.py"):
         assert ask(server, "GET", path).status == 404
 
 
 @pytest.mark.parametrize(
     ("path", "body", "status", "told"),
     [
-        ("/api/fingers/9/tare", {}, 409, "finger 9 is not shown"),
+        ("/api/fingers/9/tare", {}, 409, "finger 9 is closed"),
         ("/api/fingers/" + 5000 * "9" + "/tare", {}, 404, ""),
         ("/api/fingers/-1/close", {}, 404, ""),
         ("/api/fingers/%D9%A3/close", {}, 404, ""),
         ("/api/fingers/1/tare", {"kind": "full"}, 409, "allowed are empty and dark"),
         ("/api/fingers/1/tare", [], 400, "a JSON object"),
         ("/api/fingers/1/tare", b"[" * 100_000, 400, "a JSON object"),
-        ("/api/replay", {"name": "../../etc/passwd"}, 409, "no such recording"),
-        ("/api/replay", {}, 409, "no such recording"),
+        ("/api/replay", {"name": "../../etc/passwd"}, 409, "there is no recording"),
+        ("/api/replay", {}, 409, "there is no recording"),
         ("/api/nothing", {}, 405, ""),
     ],
 )

@@ -12,7 +12,7 @@ from lumitip import Layout
 from lumitip.links.base import LinkEvent
 from lumitip.processing import Processor
 from lumitip.view.finger import Finger
-from lumitip.view.room import Room
+from lumitip.view.registry import FingerRegistry
 from lumitip.view.server import ViewServer
 
 Serve = Callable[..., ViewServer]
@@ -154,7 +154,7 @@ def test_figures_are_those_of_the_processor(serve: Serve, page: Page, finger: Fi
 
 def test_scale_gets_lighter_for_every_kind_of_colour_vision(serve: Serve, page: Page) -> None:
     opened(page, serve(TWIN))
-    told = page.evaluate("import('/colour.js').then((m) => m.RAMP)")
+    told = page.evaluate("import('/canvas.js').then((m) => m.RAMP)")
     coded = np.array(told) / 255
     linear = np.where(coded <= 0.04045, coded / 12.92, ((coded + 0.055) / 1.055) ** 2.4)
     # Machado, Oliveira and Fernandes 2009, severity 1: protan, deutan, tritan; then luminance.
@@ -260,11 +260,11 @@ def test_a_device_that_falls_silent_does_not_look_alive(
 
 def test_page_finds_a_server_that_was_started_anew(browser: Browser, tmp_path: Path) -> None:
     page = browser.new_page()
-    with ViewServer(Room([Finger.open("twin://edge")], tmp_path), port=0) as server:
+    with ViewServer(FingerRegistry([Finger.open("twin://edge")], tmp_path), port=0) as server:
         opened(page, server)
         port = server.port
     expect(page.locator("#notice")).to_have_text("no connection to lumitip view, trying again")
-    with ViewServer(Room([Finger.open("twin://disc")], tmp_path), port=port):
+    with ViewServer(FingerRegistry([Finger.open("twin://disc")], tmp_path), port=port):
         expect(page.locator("h2").first).to_have_text("twin:disc", timeout=20_000)
         page.wait_for_selector(".finger[data-seq]")
         expect(page.locator(".finger")).to_have_count(1)
@@ -284,7 +284,7 @@ def test_help_lists_the_keys_and_closes(serve: Serve, page: Page) -> None:
 def test_clicked_cells_are_plotted(serve: Serve, page: Page) -> None:
     server = serve(TWIN)
     opened(page, server)
-    layout = server.room.fingers[1].tip.layout
+    layout = server.registry.fingers[1].tip.layout
     x, y = places(page, np.array([[layout.x_mm[9], layout.y_mm[9]]]))[0]
     page.locator(".grid").click(position={"x": x, "y": y})
     expect(page.locator(".legend")).to_contain_text("cell 9")

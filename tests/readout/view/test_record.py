@@ -17,7 +17,7 @@ from lumitip.fingertip import Fingertip
 from lumitip.recording import Reader, RecordingError, Writer, summarise
 from lumitip.view.finger import Finger
 from lumitip.view.player import Player
-from lumitip.view.room import Room
+from lumitip.view.registry import FingerRegistry
 from lumitip.view.server import ViewServer
 
 Serve = Callable[..., ViewServer]
@@ -52,13 +52,15 @@ def test_recording_from_the_page_makes_a_readable_file(
     opened(page, server)
     page.locator(".record").click()
     expect(page.locator(".record")).to_have_attribute("aria-pressed", "true")
-    wait_for(lambda: (server.room.fingers[1].status()["recording"] or {}).get("frames", 0) > 200)
+    wait_for(
+        lambda: (server.registry.fingers[1].status()["recording"] or {}).get("frames", 0) > 200
+    )
     page.keyboard.press("r")
     expect(page.locator("#notice")).to_have_text("twin-demo-001.mcap written")
     expect(page.locator(".record")).to_have_attribute("aria-pressed", "false")
     reader = Reader(tmp_path / "recordings" / "twin-demo-001.mcap")
     frames = list(reader)
-    assert reader.layout == server.room.fingers[1].tip.layout
+    assert reader.layout == server.registry.fingers[1].tip.layout
     assert reader.metadata.device_id == "twin:demo"
     seq = [f.seq for f in frames]
     assert len(seq) > 200
@@ -74,7 +76,7 @@ def test_recording_ends_with_the_server(
     server = serve("twin://demo?rate=200")
     opened(page, server)
     page.keyboard.press("r")
-    wait_for(lambda: (server.room.fingers[1].status()["recording"] or {}).get("frames", 0) > 50)
+    wait_for(lambda: (server.registry.fingers[1].status()["recording"] or {}).get("frames", 0) > 50)
     page.goto("about:blank")
     server.__exit__(None, None, None)
     assert len(list(Reader(tmp_path / "recordings" / "twin-demo-001.mcap"))) > 50
@@ -113,7 +115,7 @@ def test_player_gives_every_frame_as_it_was(recording: Path, wait_for: WaitFor) 
     expected = list(Reader(recording))
     got: list[Any] = []
     player = Player(recording, speed=16.0)
-    player.start(lambda arrival: got.append(arrival.what), lambda _: None)
+    player.start(lambda arrival: got.append(arrival.content), lambda _: None)
     wait_for(lambda: len(got) == len(expected))
     for given, was in zip(got, expected, strict=True):
         assert (given.seq, given.t_wall, given.bits) == (was.seq, was.t_wall, was.bits)
@@ -129,7 +131,7 @@ def test_player_shows_the_frame_it_is_wound_to(recording: Path, wait_for: WaitFo
     got: list[Any] = []
     player = Player(recording)
     player.control(playing=False)
-    player.start(lambda arrival: got.append(arrival.what), lambda _: None)
+    player.start(lambda arrival: got.append(arrival.content), lambda _: None)
     expected = list(Reader(recording))
     for count, (position_s, frame) in enumerate(((2.0, 200), (0.0, 0), (99.0, 799), (-1.0, 0)), 1):
         player.control(position_s=position_s)
@@ -144,7 +146,7 @@ def test_player_refuses_what_it_cannot_play(tmp_path: Path, recording: Path) -> 
         Finger.open(f"replay://{tmp_path / 'none.mcap'}")
     broken = tmp_path / "broken.mcap"
     broken.write_bytes(b"not a recording")
-    with pytest.raises(LumitipError, match="no recording"):
+    with pytest.raises(LumitipError, match="not a recording"):
         Finger.open(f"replay://{broken}")
     with pytest.raises(LumitipError, match="speed"):
         Finger.open(f"replay://{recording}?speed=1000")
@@ -160,9 +162,9 @@ def test_tare_from_the_page_is_kept_and_refused_when_something_moves(
     opened(page, server)
     page.keyboard.press("2")
     page.keyboard.press("t")
-    expect(page.locator("#notice")).to_contain_text("hold the fingers still")
+    expect(page.locator("#notice")).to_contain_text("Hold the fingers still")
     expect(page.locator("#notice")).to_have_class("error")
-    assert server.room.fingers[2].tip.calibration.empty is None
+    assert server.registry.fingers[2].tip.calibration.empty is None
 
     assert min(page.evaluate("[...lumitip.panels.get(1).newest.values]")) == 255 - 40
     page.keyboard.press("1")
@@ -178,16 +180,16 @@ def test_files_that_cannot_be_named_or_read_hide_no_others(recording: Path) -> N
     folder = recording.parent
     (Path(os.fsdecode(os.fsencode(folder) + b"/\xff.mcap"))).write_bytes(b"x")
     (folder / "broken.mcap").symlink_to(folder / "gone")
-    assert Room((), folder).recordings() == ["run.mcap"]
+    assert FingerRegistry((), folder).recordings() == ["run.mcap"]
 
 
 def test_one_recording_that_cannot_be_ended_keeps_no_other_open(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     fingers = [Finger.open("twin://demo"), Finger.open("twin://edge")]
-    room = Room(fingers, tmp_path)
+    registry = FingerRegistry(fingers, tmp_path)
     for finger in fingers:
-        finger.record(room.fresh(finger))
+        finger.record(registry.fresh(finger))
 
     stop = fingers[0]._recorder.stop
 
@@ -197,6 +199,6 @@ def test_one_recording_that_cannot_be_ended_keeps_no_other_open(
 
     monkeypatch.setattr(fingers[0]._recorder, "stop", fails)
     with pytest.raises(RecordingError, match="disk full"):
-        room.close()
+        registry.close()
     assert summarise(tmp_path / "twin-edge-001.mcap").damage == ()
     assert not any(finger.tip.connected for finger in fingers)

@@ -1,14 +1,13 @@
-// The cells of one finger as hexagons where the layout says they are, tip up.
+// The cells of one finger as hexagons at their positions, tip up.
 
-import { fit, theme } from "./canvas.js";
-import { colourOf, inkOn, LINES } from "./colour.js";
+import { colourOf, fit, inkOn, LINES, theme } from "./canvas.js";
 import { drawContact } from "./overlay.js";
 
-const GAP = 0.955; // size of a hexagon, as a share of what would touch its neighbours
+const GAP = 0.955; // size of a hexagon relative to the pitch
 const SIDE = 1 / Math.sqrt(3); // of a hexagon one pitch across its flats
 const LEAST_FOR_TEXT = 26; // CSS pixels of pitch
-const [ABOVE, BELOW] = [20, 30]; // CSS pixels for the words at the edges
-const BESIDE = 72; // CSS pixels, where they stand beside the cells instead
+const [ABOVE, BELOW] = [20, 30]; // CSS pixels for text at the edges
+const BESIDE = 72; // CSS pixels for text beside the cells
 
 export class Grid {
   constructor(canvas, layout) {
@@ -18,7 +17,7 @@ export class Grid {
     this.place();
   }
 
-  /** Work out where the cells are on the canvas; on every change of its size. */
+  /** Compute the positions of the cells on the canvas, after each change of its size. */
   place() {
     const { x_mm, y_mm, pitch_mm } = this.layout;
     const { width, height } = fit(this.canvas);
@@ -61,7 +60,7 @@ export class Grid {
     return best;
   }
 
-  /** Leave a cell out if it is selected, else select it, up to as many as there are colours. */
+  /** Select or deselect a cell; at most one per colour. */
   toggle(cell) {
     if (this.selected.includes(cell)) this.selected = this.selected.filter((c) => c !== cell);
     else this.selected = [...this.selected, cell].slice(-LINES.length);
@@ -115,7 +114,7 @@ export class Grid {
     brush.translate(-x, -y);
   }
 
-  /** Which way is up, and how large a pitch is. */
+  /** Draw the direction of the tip and a scale of one pitch. */
   drawFrame(brush, width, height) {
     const length = this.layout.pitch_mm * this.scale;
     const [x, y] = [14.5, height - 14.5];
@@ -136,7 +135,7 @@ export class Grid {
   }
 }
 
-/** Flats face the tip: corners left and right. */
+/** Hexagon with corners left and right. */
 function hexagon(radius) {
   const path = new Path2D();
   for (let i = 0; i < 6; i += 1) {

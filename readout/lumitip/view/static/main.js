@@ -1,13 +1,13 @@
-// The live view: panels for the fingers, one stream, one picture at a time.
+// The live view: a panel for each finger, one stream, one redraw per screen refresh.
 
-import { drawScale } from "./colour.js";
-import { Keys } from "./keys.js";
+import { drawScale } from "./canvas.js";
 import { Panel } from "./panel.js";
 import { get, post, Stream } from "./stream.js";
 
 const SPANS_S = [10, 30, 60];
 const NOTICE_MS = 6000;
 const NEVER_MS = 2 ** 31 - 1;
+const KEY_NAMES = { " ": "Space", 1: "1 … 9", ArrowLeft: "←", ArrowRight: "→" };
 
 const panels = new Map();
 const show = { values: true, overlay: true, span: SPANS_S[0], frozen: false };
@@ -17,7 +17,7 @@ let listing = false;
 
 const byId = (id) => document.getElementById(id);
 
-/** Tell the user something for a while. */
+/** Show a notice to the user for some time. */
 function say(text, isError = false, forMs = NOTICE_MS) {
   byId("notice").textContent = text;
   byId("notice").className = isError ? "error" : "";
@@ -31,7 +31,7 @@ async function list() {
   listing = true;
   try {
     const fingers = await get("api/fingers");
-    // A server that was started anew may show another finger under the same number.
+    // After a restart of the server the same number may be another finger.
     const shown = new Map(fingers.map((layout) => [layout.number, JSON.stringify(layout)]));
     for (const [number, panel] of panels) {
       if (shown.get(number) === JSON.stringify(panel.layout)) continue;
@@ -63,7 +63,7 @@ const stream = new Stream({
   frames: (message) => panels.get(message.finger)?.take(message),
   status: ({ fingers }) => {
     for (const [number, status] of Object.entries(fingers)) {
-      panels.get(Number(number))?.told(status);
+      panels.get(Number(number))?.update(status);
     }
     const known = Object.keys(fingers);
     if (known.length !== panels.size || known.some((n) => !panels.has(Number(n)))) list();
@@ -94,7 +94,7 @@ function freeze() {
   if (!show.frozen) redraw();
 }
 
-/** Switch values or overlay. */
+/** Toggle values or overlay. */
 function flip(what) {
   show[what] = !show[what];
   redraw();
@@ -126,18 +126,53 @@ async function replay() {
 const current = () => panels.get(chosen);
 const help = () => byId("keys").showModal();
 
+/** Keyboard: one table of keys, for actions and help. */
+class Keys {
+  /** `table` has rows [keys, text, action]; the first key is the one shown. */
+  constructor(table, list) {
+    this.actions = new Map();
+    for (const [keys, text, action] of table) {
+      for (const key of keys) this.actions.set(key, action);
+      const term = document.createElement("dt");
+      const shown = document.createElement("kbd");
+      shown.textContent = KEY_NAMES[keys[0]] || keys[0].toUpperCase();
+      term.append(shown);
+      const description = document.createElement("dd");
+      description.textContent = text;
+      list.append(term, description);
+    }
+    document.addEventListener("keydown", (event) => this.pressed(event));
+    // A clicked button keeps the focus; the next space would press it again.
+    document.addEventListener("click", ({ detail, target }) => {
+      if (detail > 0) target.closest("button")?.blur();
+    });
+  }
+
+  pressed(event) {
+    const { key, target } = event;
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    if (document.querySelector("dialog[open]")) return;
+    if (target.matches("select")) return;
+    if (target.matches("button") && (key === " " || key === "Enter")) return;
+    const action = this.actions.get(key.length === 1 ? key.toLowerCase() : key);
+    if (!action) return;
+    event.preventDefault();
+    if (!event.repeat || key.startsWith("Arrow")) action(key);
+  }
+}
+
 new Keys([
-  [[" "], "freeze the picture, or go on", freeze],
-  [["t"], "tare: take the grasp as it is for empty", () => current()?.tare()],
-  [["r"], "begin or end a recording", () => current()?.record()],
+  [[" "], "freeze or continue the display", freeze],
+  [["t"], "tare: measure the empty grasp", () => current()?.tare()],
+  [["r"], "start or stop a recording", () => current()?.record()],
   [["p"], "replay a recording", replay],
-  [["k"], "pause a replay, or go on", () => current()?.player?.toggle()],
-  [["ArrowLeft"], "wind a replay back by a second", () => current()?.player?.wind(-1)],
-  [["ArrowRight"], "wind a replay on by a second", () => current()?.player?.wind(1)],
+  [["k"], "pause or play a replay", () => current()?.player?.toggle()],
+  [["ArrowLeft"], "move a replay back by 1 s", () => current()?.player?.seekBy(-1)],
+  [["ArrowRight"], "move a replay forward by 1 s", () => current()?.player?.seekBy(1)],
   [["v"], "values on the cells", () => flip("values")],
   [["o"], "markers, centre and fitted lines", () => flip("overlay")],
   [["w"], "span of the time plot: 10, 30 or 60 s", widen],
-  [["c"], "leave all selected cells out of the plot", () => current()?.clear()],
+  [["c"], "remove all cells from the plot", () => current()?.clear()],
   [[..."123456789"], "choose a finger", (key) => choose([...panels.keys()][key - 1] ?? chosen)],
   [["?", "h", "F1"], "this help", help],
 ], byId("keys").querySelector("dl"));

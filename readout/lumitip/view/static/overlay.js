@@ -1,4 +1,4 @@
-// What a frame says, drawn over the cells. White with a dark edge is seen on every colour.
+// The contact of a frame, drawn over the cells in white with a dark edge, visible on every colour.
 
 const EDGE = "rgb(10 16 30 / 90%)";
 const FILL = "#ffffff";
@@ -42,7 +42,7 @@ export function drawContact(brush, grid, contact) {
   }
 }
 
-/** The point some way from another in a direction (mm, degrees counter-clockwise from +x). */
+/** The point at a distance in a direction (mm, degrees counter-clockwise from +x). */
 function ahead([x, y], degrees, far) {
   const angle = (degrees * Math.PI) / 180;
   return [x + far * Math.cos(angle), y + far * Math.sin(angle)];

@@ -1,18 +1,17 @@
 // One finger on the page.
 
-import { LINES } from "./colour.js";
+import { LINES } from "./canvas.js";
 import { Grid } from "./grid.js";
-import { History } from "./history.js";
-import { Player } from "./player.js";
-import { Plot } from "./plot.js";
+import { History, Plot } from "./plot.js";
 import { contactReadings, fill, linkReadings } from "./readings.js";
 import { post } from "./stream.js";
 
-const TEXT_MS = 100; // figures that change faster cannot be read
+const TEXT_MS = 100; // faster changes are not readable
 const PLOT_MS = 40;
-const SILENT_S = 1; // without a frame: what is shown is old
+const SEEK_MS = 60; // delay of requests while the slider is dragged
+const SILENT_S = 1; // without a frame the display is marked as old
 
-/** What is worth saying beside the name, the most urgent first. */
+/** Text beside the name: the most urgent message. */
 function detailOf({ state, detail, recording, silent_s, drift }, silent) {
   if (state !== "connected") return detail;
   if (silent) return `no frame for ${silent_s.toFixed(0)} s`;
@@ -21,7 +20,7 @@ function detailOf({ state, detail, recording, silent_s, drift }, silent) {
 }
 
 export class Panel {
-  /** `layout` is an entry of /api/fingers; `say(text, isError)` tells the user something. */
+  /** `layout` is an entry of /api/fingers; `say(text, isError)` shows a notice. */
   constructor(layout, say) {
     const template = document.querySelector("template#finger").content;
     this.element = template.cloneNode(true).querySelector("article");
@@ -46,7 +45,7 @@ export class Panel {
     return this.element.querySelector(selector);
   }
 
-  /** Once the element is on the page. */
+  /** Call when the element is on the page. */
   placed(show) {
     this.show = show;
     this.grid = new Grid(this.find(".grid"), this.layout);
@@ -59,7 +58,7 @@ export class Panel {
     }).observe(this.find(".grid"));
   }
 
-  /** Frames came: keep them; they are drawn with the next picture. */
+  /** Store frames for the next redraw. */
   take(message) {
     this.history.take(message);
     const { values, frames, cells } = message;
@@ -71,7 +70,7 @@ export class Panel {
     this.fresh = true;
   }
 
-  /** Draw what came since the last picture, or everything anew. */
+  /** Draw new frames, or everything. */
   draw(all = false) {
     if (!(this.fresh || all) || !this.newest) return;
     this.fresh = false;
@@ -99,8 +98,8 @@ export class Panel {
     this.counted = { since: now, number: 0 };
   }
 
-  /** What the server says of this finger, twice a second. */
-  told(status) {
+  /** Show a status of the server, twice a second. */
+  update(status) {
     this.status = status;
     const on = Boolean(status.recording?.on);
     const silent = status.silent_s > Math.max(SILENT_S, 3 / (status.rate_hz || 1));
@@ -113,13 +112,13 @@ export class Panel {
     this.find(".record").setAttribute("aria-pressed", on);
     this.find(".grid").setAttribute("aria-label", `cells, shape ${this.newest?.contact.shape}`);
     fill(this.find(".link"), linkReadings(status, this.pictures));
-    this.player?.told(status.player);
+    this.player?.update(status.player);
   }
 
-  async ask(what, told = {}) {
+  async ask(action, body = {}) {
     try {
-      const said = await post(`api/fingers/${this.layout.number}/${what}`, told);
-      if (said.said) this.say(said.said);
+      const { said } = await post(`api/fingers/${this.layout.number}/${action}`, body);
+      if (said) this.say(said);
     } catch (error) {
       this.say(error.message, true);
     }
@@ -171,4 +170,70 @@ export class Panel {
       return entry;
     }));
   }
+}
+
+/** The controls of a replay. */
+class Player {
+  constructor(panel) {
+    this.panel = panel;
+    this.status = null;
+    this.heldUntil = 0;
+    panel.find(".player").hidden = false;
+    panel.find(".actions").hidden = true;
+    panel.find(".close").hidden = false;
+    panel.find(".close").onclick = () => panel.ask("close");
+    panel.find(".play").onclick = () => this.toggle();
+    panel.find(".speed").onchange = ({ target }) => {
+      target.blur();
+      this.ask({ speed: Number(target.value) });
+    };
+    panel.find(".seek").oninput = ({ target }) => this.seek(Number(target.value));
+  }
+
+  ask(change) {
+    return this.panel.ask("player", change);
+  }
+
+  toggle() {
+    if (this.status) this.ask({ playing: !this.status.playing });
+  }
+
+  /** Move by some seconds. */
+  seekBy(seconds) {
+    if (this.status) this.seek(this.status.position_s + seconds);
+  }
+
+  /** Move to a time; of several quick calls the last one counts. */
+  seek(seconds) {
+    if (!this.status) return;
+    const position_s = Math.min(Math.max(seconds, 0), this.status.length_s);
+    this.show({ ...this.status, position_s });
+    this.heldUntil = performance.now() + 700;
+    clearTimeout(this.waiting);
+    this.waiting = setTimeout(() => this.ask({ position_s }), SEEK_MS);
+  }
+
+  /** Show a status of the server, but not while the user moves the slider. */
+  update(status) {
+    if (status && performance.now() > this.heldUntil) this.show(status);
+  }
+
+  show(status) {
+    this.status = status;
+    const { playing, position_s, length_s, speed } = status;
+    const seek = this.panel.find(".seek");
+    seek.max = length_s;
+    seek.value = position_s;
+    this.panel.find(".position").textContent = `${clock(position_s)} / ${clock(length_s)}`;
+    this.panel.find(".play").firstChild.textContent = playing ? "Pause " : "Play ";
+    this.panel.find(".play").setAttribute("aria-pressed", playing);
+    this.panel.find(".speed").value = String(speed);
+  }
+}
+
+/** Minutes, seconds and tenths. */
+function clock(seconds) {
+  const tenths = Math.round(seconds * 10);
+  const rest = ((tenths % 600) / 10).toFixed(1).padStart(4, "0");
+  return `${Math.floor(tenths / 600)}:${rest}`;
 }

@@ -1,4 +1,4 @@
-// The figures beside the cells.
+// The numbers beside the cells.
 
 const FIXED = (v, digits) => v.toFixed(digits).replace("-", "−");
 const DEGREES = (v) => `${FIXED(v, 1)}°`;
@@ -6,7 +6,7 @@ const MILLIMETRES = (v) => `${FIXED(v, 2)} mm`;
 const POINT = ([x, y]) => `${FIXED(x, 1)}, ${FIXED(y, 1)} mm`;
 const COUNT = (v) => v.toLocaleString("en").replaceAll(",", "\u202f");
 
-/** [name, text] of what a contact says; `null` where it says nothing. */
+/** [name, text] of a contact; `null`: does not apply. */
 export function contactReadings(contact) {
   const { centre, threshold, contrast, markers } = contact;
   const { line, corner, cable } = contact;
@@ -30,7 +30,7 @@ export function contactReadings(contact) {
   ];
 }
 
-/** [name, text, whether it is bad] of what the link and this page do. */
+/** [name, text, whether it is bad] of the link and this page. */
 export function linkReadings(status, pictures) {
   const { dropped, age_ms: age } = status;
   const lost = (cause) => (dropped ? COUNT(dropped[cause]) : "not known");
@@ -51,17 +51,17 @@ export function linkReadings(status, pictures) {
   ];
 }
 
-/** Fill a description list; rows stay, so nothing jumps. */
+/** Fill a description list, keeping its rows. */
 export function fill(list, rows) {
   while (list.children.length > 2 * rows.length) list.lastChild.remove();
   while (list.children.length < 2 * rows.length) {
     list.append(document.createElement(list.children.length % 2 ? "dd" : "dt"));
   }
   rows.forEach(([name, text, bad], i) => {
-    const [term, told] = [list.children[2 * i], list.children[2 * i + 1]];
+    const [term, value] = [list.children[2 * i], list.children[2 * i + 1]];
     set(term, name);
-    set(told, text ?? (name && "–"));
-    told.className = bad ? "bad" : "";
+    set(value, text ?? (name && "–"));
+    value.className = bad ? "bad" : "";
   });
 }
 

@@ -1,14 +1,16 @@
-// The stream from the server: each message is answered once it is drawn, which is what lets the
-// next ones through; see view/session.py.
+// Messages of the server. Each is acknowledged once it is drawn, which lets the next ones through;
+// flow control and message format are described in view/session.py.
 
-import { decode } from "./wire.js";
-
-const AGAIN_MS = [300, 600, 1200, 2500, 5000];
+const RETRY_MS = [300, 600, 1200, 2500, 5000];
+const FRAMES = 1;
+const CONTACT_FIELDS = 20;
+const NOT_A_NUMBER = 65535;
+const SHAPES = ["none", "edge", "corner", "cable", "covered"];
 
 export class Stream {
-  /** `heard` is an object with `frames(message)`, `status(status)` and `open(whether)`. */
-  constructor(heard) {
-    this.heard = heard;
+  /** `receiver` is an object with `frames(message)`, `status(status)` and `open(whether)`. */
+  constructor(receiver) {
+    this.receiver = receiver;
     this.tries = 0;
     this.drawn = {};
     this.answer = false;
@@ -22,12 +24,12 @@ export class Stream {
       this.tries = 0;
       this.drawn = {};
       this.answer = false;
-      this.heard.open(true);
+      this.receiver.open(true);
     };
     socket.onmessage = ({ data }) => this.take(data);
     socket.onclose = () => {
-      this.heard.open(false);
-      setTimeout(() => this.connect(), AGAIN_MS[Math.min(this.tries, AGAIN_MS.length - 1)]);
+      this.receiver.open(false);
+      setTimeout(() => this.connect(), RETRY_MS[Math.min(this.tries, RETRY_MS.length - 1)]);
       this.tries += 1;
     };
     this.socket = socket;
@@ -35,16 +37,16 @@ export class Stream {
 
   take(data) {
     if (typeof data === "string") {
-      this.heard.status(JSON.parse(data));
+      this.receiver.status(JSON.parse(data));
       this.answer = true;
       return;
     }
     const message = decode(data);
     this.drawn[message.finger] = message.number;
-    this.heard.frames(message);
+    this.receiver.frames(message);
   }
 
-  /** Say that everything taken so far is drawn. */
+  /** Acknowledge all messages so far. */
   acknowledge() {
     if (this.socket.readyState !== WebSocket.OPEN) return;
     if (!this.answer && !Object.keys(this.drawn).length) return;
@@ -54,20 +56,65 @@ export class Stream {
   }
 }
 
-/** Ask the server to do something; returns what it says, throws what went wrong. */
-export async function post(path, told = {}) {
+/** Send a request; returns the answer, throws its error. */
+export async function post(path, body = {}) {
   const answer = await fetch(path, {
     method: "POST",
     headers: { "Content-Type": "application/json" },
-    body: JSON.stringify(told),
+    body: JSON.stringify(body),
   });
-  const said = await answer.json().catch(() => ({ error: `${path}: ${answer.status}` }));
-  if (!answer.ok) throw new Error(said.error);
-  return said;
+  const result = await answer.json().catch(() => ({ error: `${path}: ${answer.status}` }));
+  if (!answer.ok) throw new Error(result.error);
+  return result;
 }
 
 export async function get(path) {
   const answer = await fetch(path);
   if (!answer.ok) throw new Error(`${path}: ${answer.status} ${await answer.text()}`);
   return answer.json();
+}
+
+/** Decode a message of frames: arrays with one entry, or row of `values`, per frame. */
+function decode(buffer) {
+  const head = new DataView(buffer);
+  if (head.getUint8(0) !== FRAMES) throw new Error(`message of kind ${head.getUint8(0)}`);
+  const frames = head.getUint16(4, true);
+  const cells = head.getUint16(6, true);
+  const markers = head.getUint16(8, true);
+  let at = 24;
+  const next = (type, length) => {
+    const array = new type(buffer, at, length);
+    at += array.byteLength;
+    return array;
+  };
+  const t = next(Float64Array, frames);
+  const fields = next(Float32Array, CONTACT_FIELDS);
+  const points = next(Float32Array, 2 * markers);
+  const seq = next(Uint32Array, frames);
+  const codes = next(Uint16Array, frames * cells);
+  const values = Float32Array.from(codes, (c) => (c === NOT_A_NUMBER ? NaN : c / 256));
+  return {
+    finger: head.getUint16(2, true),
+    number: head.getUint32(12, true),
+    skipped: head.getUint32(16, true),
+    frames, cells, t, seq, values,
+    contact: contactOf(fields, points),
+  };
+}
+
+/** Contact with `null` for fields that do not apply; points [x, y] in mm, angles in degrees. */
+function contactOf(f, markers) {
+  const field = (i, make) => (Number.isNaN(f[i]) ? null : make());
+  return {
+    shape: SHAPES[f[0]],
+    threshold: field(1, () => f[1]),
+    contrast: field(2, () => f[2]),
+    centre: field(3, () => [f[3], f[4]]),
+    line: field(5, () => ({ point: [f[5], f[6]], angle: f[7], rms: f[8] })),
+    corner: field(9, () => ({
+      vertex: [f[9], f[10]], directions: [f[11], f[12]], opening: f[13], rms: f[14],
+    })),
+    cable: field(15, () => ({ point: [f[15], f[16]], angle: f[17], width: f[18], rms: f[19] })),
+    markers,
+  };
 }

@@ -1,4 +1,4 @@
-"""`Room`: the fingertips that are shown, and the browsers that are told when one has changed."""
+"""`FingerRegistry`: the fingertips displayed, and the browsers to notify of changes."""
 
 import asyncio
 import re
@@ -14,12 +14,12 @@ from lumitip.view.finger import Finger
 _SUFFIX = ".mcap"
 
 
-class Room:
-    """Fingers by number, and where recordings go.
+class FingerRegistry:
+    """Fingers by number, and the folder of recordings.
 
     Args:
-        fingers: open; the room closes them.
-        folder: of the recordings that are made and replayed.
+        fingers: open; the registry closes them.
+        folder: of recordings.
     """
 
     def __init__(self, fingers: Iterable[Finger], folder: Path) -> None:
@@ -34,7 +34,7 @@ class Room:
             self.add(finger)
 
     def open(self, loop: asyncio.AbstractEventLoop) -> None:
-        """Begin to read all fingers; browsers live on `loop`."""
+        """Start reading all fingers; `loop` runs the sessions of browsers."""
         self._loop = loop
         for finger in self.fingers.values():
             finger.start(self.changed)
@@ -42,12 +42,12 @@ class Room:
     def close(self) -> None:
         """End recordings and disconnect."""
         self._loop = None
-        with ExitStack() as stack:  # each is closed, whatever the others say
+        with ExitStack() as stack:  # closes all, even if one fails
             for finger in self.fingers.values():
                 stack.callback(finger.close)
 
     def add(self, finger: Finger) -> int:
-        """Show one more; returns its number. It is read once the room is open. From any thread."""
+        """Add a finger; returns its number. Thread-safe."""
         with self._adding:
             self._number += 1
             self.fingers = {**self.fingers, self._number: finger}
@@ -56,7 +56,7 @@ class Room:
             return self._number
 
     def remove(self, number: int) -> None:
-        """Show one no more. From any thread."""
+        """Remove a finger. Thread-safe."""
         with self._adding:
             finger = self.fingers[number]
             self.fingers = {n: f for n, f in self.fingers.items() if n != number}
@@ -64,25 +64,25 @@ class Room:
         self.changed()
 
     def listen(self) -> asyncio.Event:
-        """An event that is set whenever something has changed; on the loop."""
+        """An event that is set on each change; on the loop."""
         event = asyncio.Event()
         self._wakers.add(event)
         return event
 
     def leave(self, event: asyncio.Event) -> None:
-        """Set it no more; on the loop."""
+        """Remove an event; on the loop."""
         self._wakers.discard(event)
 
     def changed(self) -> None:
-        """Wake the browsers' tasks. From any thread."""
+        """Wake the sessions of browsers. Thread-safe."""
         loop = self._loop
-        # One call in flight is enough: whoever wakes looks at everything.
+        # One pending call is enough: a session looks for all changes.
         if loop is None or self._waking.is_set():
             return
         self._waking.set()
         try:
             loop.call_soon_threadsafe(self._wake)
-        except RuntimeError:  # the loop was closed meanwhile: nobody is left to wake
+        except RuntimeError:  # the loop is closed: there are no sessions
             self._waking.clear()
 
     def _wake(self) -> None:
@@ -91,7 +91,7 @@ class Room:
             event.set()
 
     def describe(self) -> list[dict[str, Any]]:
-        """What the page needs to draw the fingers, as JSON can say it."""
+        """Layouts of the fingers for JSON."""
         return [
             {
                 "number": number,
@@ -110,7 +110,7 @@ class Room:
         """Names of the recordings in the folder, newest first."""
         changed_ns: dict[str, int] = {}
         for file in self.folder.glob(f"*{_SUFFIX}"):
-            # A name that is no text cannot be sent; a file may be gone again.
+            # A name may be not encodable, and a file may disappear.
             with suppress(OSError, UnicodeEncodeError):
                 file.name.encode()
                 if file.is_file():
@@ -118,17 +118,17 @@ class Room:
         return sorted(changed_ns, key=changed_ns.__getitem__, reverse=True)
 
     def recording(self, name: str) -> Path:
-        """The file of a recording that is in the folder.
+        """The path of a recording in the folder.
 
         Raises:
-            ViewError: if there is none of that name.
+            ViewError: if there is no such recording.
         """
         if name not in self.recordings():
-            raise ViewError(f"{name!r} given, there is no such recording in {self.folder}")
+            raise ViewError(f"there is no recording {name!r} in {self.folder}")
         return self.folder / name
 
     def fresh(self, finger: Finger) -> Path:
-        """A file for a new recording of a finger: named after it, numbered, not there yet."""
+        """The path of a new recording of a finger, with its name and a number."""
         name = re.sub(r"[^A-Za-z0-9-]+", "-", finger.tip.device_id).strip("-") or "lumitip"
         taken = set(self.recordings())
         number = 1

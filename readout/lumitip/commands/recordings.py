@@ -1,0 +1,137 @@
+"""`lumitip info`, `replay`, `export` and `recover`: commands that read a recording."""
+
+import argparse
+import time
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from lumitip.commands.common import Subparsers, command
+
+if TYPE_CHECKING:
+    from lumitip.processing import Contact
+
+_SLOWEST = 0.001
+
+
+def add(subparsers: Subparsers) -> None:
+    """Add the subcommands."""
+    text = "Describe a recording; exit code 1 if it is damaged."
+    parser = command(subparsers, "info", info, text)
+    _add_file(parser, "the recording")
+    parser = command(
+        subparsers,
+        "replay",
+        replay,
+        "Print the contact in every frame of a recording, at its own speed; gaps take one second "
+        "at most.",
+        "`lumitip view replay://FILE` displays a recording.",
+    )
+    _add_file(parser, "the recording")
+    parser.add_argument(
+        "--speed",
+        type=float,
+        default=1.0,
+        metavar="N",
+        help="N times the recorded speed (default: 1); 0 is as fast as possible",
+    )
+    text = "Write a recording as Parquet or CSV, one row per frame."
+    parser = command(subparsers, "export", export, text)
+    _add_file(parser, "the recording")
+    parser.add_argument("table", type=Path, metavar="TABLE", help="ends in .parquet or .csv")
+    text = "Copy all readable frames of a damaged recording to a new file."
+    parser = command(subparsers, "recover", recover, text)
+    _add_file(parser, "the damaged recording; it is not changed")
+    parser.add_argument(
+        "target",
+        type=Path,
+        nargs="?",
+        metavar="NEW",
+        help="the new file (default: FILE.recovered.mcap)",
+    )
+
+
+def _add_file(parser: argparse.ArgumentParser, text: str) -> None:
+    parser.add_argument("file", type=Path, metavar="FILE", help=text)
+
+
+def info(options: argparse.Namespace) -> int:
+    """Print a summary; exit code 1 if the recording is damaged."""
+    from lumitip.recording import summarise
+
+    summary = summarise(options.file)
+    metadata, calibration = summary.metadata, summary.metadata.calibration
+    references = [n for n in ("empty", "dark") if getattr(calibration, n, None) is not None]
+    lines = {
+        "device": metadata.device_id,
+        "design": f"{metadata.layout.design_hash[:16]}, {len(metadata.layout)} cells",
+        "begun": datetime.fromtimestamp(metadata.start_wall, UTC).isoformat(" ", "seconds"),
+        "frames": f"{summary.frames} in {summary.seconds:.3f} s, {summary.rate_hz:.1f} a second",
+        "lost": str(summary.lost),
+        "calibration": " and ".join(references) or "none",
+        "made with": ", ".join(f"{k} {v}" for k, v in sorted(metadata.versions.items())),
+        "damage": "; ".join(summary.damage[:5]) or "none",
+    }
+    for name, text in lines.items():
+        print(f"{name:<12} {text}")
+    if summary.damage:
+        print(f"`lumitip recover {options.file}` saves the readable frames")
+    return 1 if summary.damage else 0
+
+
+def export(options: argparse.Namespace) -> int:
+    """Write the table."""
+    from lumitip.recording import export as write_table
+
+    rows = write_table(options.file, options.table)
+    print(f"{options.table}: {rows} frames")
+    return 0
+
+
+def recover(options: argparse.Namespace) -> int:
+    """Write the new recording."""
+    from lumitip.recording import recover as write_readable
+
+    target = options.target or options.file.with_suffix(".recovered.mcap")
+    saved = write_readable(options.file, target)
+    print(f"{saved.path}: {saved.frames} frames; {'; '.join(saved.damage) or 'no damage found'}")
+    return 0
+
+
+def replay(options: argparse.Namespace) -> int:
+    """Print one line per frame."""
+    from lumitip.processing import Tracker
+    from lumitip.recording import LONGEST_GAP_S, Reader, RecordingError
+
+    if not (options.speed == 0.0 or options.speed >= _SLOWEST):
+        raise RecordingError(f"--speed is {options.speed:g}; 0, or {_SLOWEST:g} or more, is needed")
+    reader = Reader(options.file)
+    track = Tracker(reader.layout)
+    begun, first, last, due_s = time.monotonic(), None, 0.0, 0.0
+    for frame in reader:
+        first, last = (frame.t_wall, frame.t_wall) if first is None else (first, last)
+        elapsed_s = frame.t_wall - first
+        due_s += min(max(frame.t_wall - last, 0.0), LONGEST_GAP_S)
+        last = frame.t_wall
+        if options.speed:
+            time.sleep(max(begun + due_s / options.speed - time.monotonic(), 0.0))
+        contact = track(reader.metadata.values(frame))
+        lost = f"  {frame.dropped_before} lost before" if frame.dropped_before else ""
+        print(f"{elapsed_s:10.3f} s  {frame.seq:>8}  {_line(contact)}{lost}")
+    return 0
+
+
+def _line(contact: "Contact") -> str:
+    parts = [f"{contact.shape:<8}"]
+    if contact.centre_mm is not None:
+        parts.append("centre {:7.2f} {:7.2f} mm".format(*contact.centre_mm))
+    if contact.shape == "cable" and contact.cable is not None:
+        cable = contact.cable
+        parts.append(f"axis {cable.angle_deg:6.1f}°, {cable.width_mm:.1f} mm wide")
+    elif contact.shape == "corner" and contact.corner is not None:
+        corner = contact.corner
+        vertex = "vertex {:.2f} {:.2f} mm".format(*corner.vertex_mm)
+        parts.append(f"{vertex}, opens {corner.opening_deg:.0f}°")
+    elif contact.line is not None:
+        parts.append(f"line {contact.line.angle_deg:6.1f}°, rms {contact.line.rms_mm:.2f} mm")
+    return "  ".join(parts)
