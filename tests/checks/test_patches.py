@@ -23,11 +23,7 @@ current_ma = 6.0
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "columns",
-    [[3], [12], [2, 1], [1] * 8, [4, 4, 4, 4], [5, 2, 5], [1, 4, 1], [1, 2, 3, 2, 1]],
-    ids=str,
-)
+@pytest.mark.parametrize("columns", [[3], [1] * 8, [5, 2, 5]], ids=str)
 def test_a_patch_passes_every_check(columns: list[int], design_dir: Path, tmp_path: Path) -> None:
     file = Path(shutil.copytree(design_dir, tmp_path / "design")) / "presets" / "patch.toml"
     file.write_text(_FILE.format(columns=columns), encoding="utf-8")
