@@ -128,5 +128,5 @@ def test_an_edge_fitted_to_a_single_column_is_refused(make_layout: Make) -> None
     start: Any = np.array([0.5, 0.0, 0.0, 0.05, 2.5, 0.6, 0.9, 0.1, 0.1])
     values = read(layout, start)
     assert np.isfinite(values).all()
-    with pytest.raises(TwinError, match="layout: cells in one line given"):
+    with pytest.raises(TwinError, match="all cells of the layout lie on one line"):
         fit_edge(layout, values, 0.5, 0.0)

@@ -1,13 +1,12 @@
-"""An optical twin of a fingertip: what it would read of a scene, with numpy alone.
+"""Optical twin of a fingertip: the values that it would read of a scene. Needs numpy alone.
 
 from lumitip.twin import Cable, Twin
 Twin(layout).values(Cable(angle_deg=30.0, diameter_mm=4.0))
 """
 
-from lumitip.twin.image import Image
 from lumitip.twin.optics import Model, TwinError
+from lumitip.twin.outline import Image, Polygon
 from lumitip.twin.pairs import Misregistration
-from lumitip.twin.polygon import Polygon
 from lumitip.twin.scene import Cable, Corner, Disc, HalfPlane, Line, Scene, Shape, Sheet, Thing
 from lumitip.twin.tables import LineTable
 from lumitip.twin.twin import Twin

@@ -1,9 +1,8 @@
-"""The twin fitted to a real frame of a cloth edge, by no more numbers than a table could hold.
+"""Fit of the twin to a real frame of a cloth edge, with nine numbers.
 
-Nine numbers: offset, angle and curvature of the edge; clear transmittance of the cloth; gap; the
-share of scattered light, alpha; the gain; and how the light falls off across the fingertip, in x
-and y. A frame before calibration is fitted, so differences between single cells remain in the
-residual.
+Offset, angle and curvature of the edge; clear transmittance of the cloth; gap; scattered share
+alpha; gain; slopes of the light across the fingertip in x and y. The frame is not calibrated, so
+differences between single cells remain in the residual.
 """
 
 from dataclasses import dataclass
@@ -28,7 +27,7 @@ NAMES = (
     "slope_x",
     "slope_y",
 )
-# Least, most and step of differentiation of each; the steps of gap and alpha make new tables.
+# Limits and differentiation steps; steps of gap and alpha need new tables.
 _LEAST = np.array([-30.0, -360.0, -0.05, 0.0, 1.0, 0.0, 0.3, -0.5, -0.5])
 _MOST = np.array([30.0, 360.0, 0.05, 0.5, 8.0, 1.0, 1.5, 0.5, 0.5])
 _STEPS = np.array([0.02, 0.2, 1e-4, 1e-3, 0.05, 0.05, 1e-3, 1e-3, 1e-3])
@@ -36,19 +35,19 @@ _STEPS = np.array([0.02, 0.2, 1e-4, 1e-3, 0.05, 0.05, 1e-3, 1e-3, 1e-3])
 
 @dataclass(frozen=True, eq=False)
 class Fitted:
-    """A frame and the twin that comes closest to it."""
+    """The twin that comes closest to a frame."""
 
     numbers: dict[str, float]
-    """What was fitted, by the names of `NAMES`: lengths in mm, slopes as the share by which light
-    rises over half of the fingertip."""
+    """The fitted numbers by `NAMES`: lengths in mm, slopes as rise of the light over half of the
+    fingertip."""
     values: Floats
-    """What that twin reads, before calibration, 0 to 255, shape `(cells,)`."""
+    """Values of that twin before calibration, 0 to 255, shape `(cells,)`."""
     rms: float
-    """Root of the mean square of what remains (counts of 255)."""
+    """Root mean square of the residual (counts of 255)."""
 
 
 def read(layout: Layout, numbers: Floats) -> Floats:
-    """What the twin of these numbers, in the order of `NAMES`, reads before calibration."""
+    """Values before calibration of a twin with these numbers, in the order of `NAMES`."""
     offset, angle, curvature, clear, gap, alpha, gain, slope_x, slope_y = map(float, numbers)
     twin = Twin(layout, Model.from_layout(layout, gap, alpha=alpha, gain=gain))
     light = twin.light(HalfPlane(offset, angle, curvature, clear=clear))
@@ -57,39 +56,39 @@ def read(layout: Layout, numbers: Floats) -> Floats:
 
 
 def _of_half(places_mm: Floats) -> Floats:
-    """Places as shares of half of the fingertip, 0 where it has no extent."""
+    """Places relative to half of the fingertip; 0 if it has no extent."""
     return places_mm / (np.abs(places_mm).max() or 1.0)
 
 
 def fit_edge(layout: Layout, values: Floats, offset_mm: float, angle_deg: float) -> Fitted:
-    """Fit an edge to a frame, by Levenberg's and Marquardt's method, which finds the nearest best:
-    few cells lie across an edge, so start within some two degrees.
+    """Fit an edge to a frame with the Levenberg–Marquardt method.
+
+    It finds the nearest minimum: start within about two degrees.
 
     Args:
         layout: the cells.
         values: of a real frame, before calibration, 255 is full light, shape `(cells,)`.
-        offset_mm: roughly where the edge is: signed distance from the origin along its left
-            normal, the cloth to the right of it (mm).
-        angle_deg: roughly its direction.
+        offset_mm: of the edge, about: signed distance from the origin along its left normal, with
+            the cloth to the right (mm).
+        angle_deg: of the edge, about.
 
     Raises:
-        LayoutError: if it is no layout.
-        TwinError: if values are not those of a frame, the start is no number, or all cells lie on
-            one line.
+        LayoutError: if `layout` is no layout.
+        TwinError: if the values or the start are invalid, or all cells lie on one line.
     """
     values = arguments.numbers(values, "values", TwinError)
     if values.shape != (len(arguments.layout(layout)),) or not np.isfinite(values).all():
         raise TwinError(
-            f"values of shape {values.shape} given, {len(layout)} finite numbers are needed"
+            f"values has the shape {values.shape}; {len(layout)} finite numbers are needed"
         )
     if collinear(layout.x_mm, layout.y_mm):
-        raise TwinError("layout: cells in one line given, which do not show an edge's direction")
+        raise TwinError("all cells of the layout lie on one line; the edge has no direction there")
     offset_mm = arguments.number(offset_mm, "offset_mm", error=TwinError)
     angle_deg = arguments.number(angle_deg, "angle_deg", error=TwinError)
     place = np.array([offset_mm, angle_deg, 0.0, 0.05, 2.5, 0.6, 0.9, 0.0, 0.0])
     error = read(layout, place) - values
-    damping, settled = 1.0, 0
-    while settled < 3 and damping < 1e6:
+    damping, small_steps = 1.0, 0
+    while small_steps < 3 and damping < 1e6:
         slopes = np.stack(
             [(read(layout, place + s) - values - error) / s.sum() for s in np.diag(_STEPS)], axis=1
         )
@@ -101,8 +100,8 @@ def fit_edge(layout: Layout, values: Floats, offset_mm: float, angle_deg: float)
                 )
             except np.linalg.LinAlgError:
                 raise TwinError(
-                    f"offset_mm {offset_mm:g}, angle_deg {angle_deg:g} given: no cell sees an edge "
-                    "there; start within some two degrees of it"
+                    f"offset_mm is {offset_mm:g} and angle_deg is {angle_deg:g}; no cell sees an "
+                    "edge there. Start within about two degrees of it."
                 ) from None
             tried = np.clip(place + step, _LEAST, _MOST - _STEPS)
             new = read(layout, tried) - values
@@ -111,7 +110,7 @@ def fit_edge(layout: Layout, values: Floats, offset_mm: float, angle_deg: float)
             damping *= 4.0
         else:
             break
-        settled = settled + 1 if error @ error - new @ new < 1e-3 * (error @ error) else 0
+        small_steps = small_steps + 1 if error @ error - new @ new < 1e-3 * (error @ error) else 0
         place, error, damping = tried, new, damping / 6.0
     numbers = dict(zip(NAMES, place.tolist(), strict=True))
     return Fitted(numbers, error + values, float(np.sqrt(np.mean(error**2))))

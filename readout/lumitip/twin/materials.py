@@ -1,7 +1,7 @@
-"""Sheets of the publication, each by one transmittance that is fitted to its published mean.
+"""Sheets of the publication, each with one transmittance that is fitted to its published mean.
 
-This is a calibration, no validation: one free number to each mean fits by construction. What the
-twin adds is that the transmittances then serve at any gap, in any shape and for any design.
+This is a calibration and no validation: one free number for each mean fits by construction. With
+the twin the transmittances serve at any gap, in any shape and for any design.
 """
 
 from dataclasses import dataclass
@@ -11,12 +11,12 @@ from lumitip.twin.scene import Sheet
 from lumitip.values import shown
 
 MEASURED_GAP_MM = 6.0
-"""Gap at which the publication measured its materials (mm)."""
+"""Gap of the published measurements (mm)."""
 
 
 @dataclass(frozen=True)
 class Material:
-    """A sheet that the publication measured."""
+    """A sheet that was measured in the publication."""
 
     key: str
     """Short name, for addresses and tables."""
@@ -24,12 +24,12 @@ class Material:
     clear: float
     diffuse: float
     published_mean: float
-    """Of all cells, 0 to 255."""
+    """Mean of all cells, 0 to 255."""
     published_bar: float | None
-    """The published error bar, where there is one."""
+    """Published error bar, if any."""
 
     def sheet(self, height: float = 0.5) -> Sheet:
-        """A sheet of it that covers everything."""
+        """A sheet of this material that covers everything."""
         return Sheet(clear=self.clear, diffuse=self.diffuse, height=height)
 
 
@@ -43,7 +43,7 @@ MATERIALS = (
 
 
 def material(key: str) -> Material:
-    """The material of a key.
+    """The material with a key.
 
     Raises:
         TwinError: if there is none.
@@ -51,6 +51,5 @@ def material(key: str) -> Material:
     for one in MATERIALS:
         if isinstance(key, str) and one.key == key:
             return one
-    raise TwinError(
-        f"material: {shown(key)} given, allowed are {', '.join(m.key for m in MATERIALS)}"
-    )
+    allowed = ", ".join(m.key for m in MATERIALS)
+    raise TwinError(f"material is {shown(key)}; one of {allowed} is needed")

@@ -1,4 +1,4 @@
-"""What the light of a fingertip pair is made of: `Model`, and the circuit that reads it.
+"""`Model`: optics of a fingertip pair, and the circuit that reads it.
 
     emitter   die ·        depth behind the mask: die / index + film, as seen from air
               ───   ───    mask, hole_mm
@@ -6,9 +6,9 @@
               ───   ───    mask
     receiver  die ·
 
-The figures that the publication does not give (alpha, knee_v, exponents, depths) are those that
-reproduce its behaviour; the absolute radiometry of sibling datasheets is off by tens of times, so
-one lumped `gain` stands for all of it.
+Figures that the publication does not give (alpha, knee_v, exponents, depths) are chosen so that the
+model reproduces its results. Absolute radiometry from the datasheets of similar parts is wrong by
+tens of times, so one lumped `gain` replaces it.
 """
 
 from collections.abc import Iterable
@@ -27,23 +27,18 @@ from lumitip.values import shown
 FULL = 255.0
 """Value of full light."""
 GAP_MM = 3.0
-"""Gap of a grasp where none is told (mm)."""
-
-
-_TABLED, _ENTRIES = 4.0, 8192  # drives below this one, in so many steps
+"""Default gap of a grasp (mm)."""
+_TABLED, _ENTRIES = 4.0, 8192  # range of the even table of drives, and its steps
 _LIMITS = {"alpha": 1.0, "silicone_index": 3.0, "led_exponent": 100.0, "detector_exponent": 100.0}
 
 
 class TwinError(LumitipError, ValueError):
-    """A model, scene or fault that the twin cannot have."""
+    """An invalid model, scene or fault."""
 
 
 @dataclass(frozen=True)
 class Model:
-    """Optics and circuit of a fingertip pair; lengths in mm.
-
-    Depths are equivalent ones, as seen from air: see `from_layout`.
-    """
+    """Optics and circuit of a fingertip pair; depths are equivalent ones, as seen from air."""
 
     gap_mm: float = GAP_MM
     """From the emitter's skin to the receiver's (mm)."""
@@ -60,17 +55,17 @@ class Model:
     detector_depth_mm: float = 0.9 / 1.41 + 0.1
     """Equivalent depth of the detector die behind its hole (mm)."""
     alpha: float = 0.6
-    """Share of light that silicone and film scatter, so that it comes from all of the hole."""
+    """Share of light that silicone and film scatter, so that it comes from the whole hole."""
     knee_v: float = 0.05
-    """Voltage V_s at which a saturating phototransistor gives way (V)."""
+    """Knee voltage V_s of the saturating phototransistor (V)."""
     supply_v: float = 3.3
     """Supply of the detectors (V)."""
     gain: float = 0.95
-    """Photocurrent of the brightest cell at full light, as a share of what its pull-up carries.
-    Above about 1 the detectors saturate; free cells of the published frame read up to 244 of 255,
-    which 0.95 gives."""
+    """Photocurrent of the brightest cell at full light, as a share of the largest current of its
+    pull-up. Above about 1 the detectors saturate; with 0.95 free cells read 244 of 255, as in the
+    published frame."""
     silicone_index: float = 1.41
-    """Refractive index of the silicone, already within the depths; kept for `changed_index`."""
+    """Refractive index of the silicone; already included in the depths."""
 
     def __post_init__(self) -> None:
         arguments.finite_fields(self, TwinError)
@@ -84,32 +79,32 @@ class Model:
             "gain",
         ):
             if not getattr(self, name) > 0.0:
-                raise TwinError(f"{name}: {getattr(self, name)} given, must be above 0")
+                raise TwinError(f"{name} is {getattr(self, name)}; it must be above 0")
         for name, most in _LIMITS.items():
             least = 1.0 if name == "silicone_index" else 0.0
             if not least <= getattr(self, name) <= most:
                 raise TwinError(
-                    f"{name}: {getattr(self, name)} given, {least:g} to {most:g} is needed"
+                    f"{name} is {getattr(self, name)}; {least:g} to {most:g} is allowed"
                 )
         if not isinstance(self.hole_shape, str) or self.hole_shape not in ("hexagon", "circle"):
             raise TwinError(
-                f'hole_shape: {shown(self.hole_shape)} given, allowed are "hexagon" and "circle"'
+                f'hole_shape is {shown(self.hole_shape)}; "hexagon" or "circle" is needed'
             )
 
     @classmethod
     def from_layout(cls, layout: Layout, gap_mm: float = GAP_MM, **changes: Any) -> "Model":
-        """The model of a design: `layout.optics`, with single fields changed at will.
+        """The model of a design: `layout.optics`, with some fields changed.
 
-        A die at depth h in silicone of index n looks h / n deep from air; the film adds to it.
+        A die at depth h in silicone of index n has the equivalent depth h / n, plus the film.
 
         Args:
-            layout: what `lumitip-fab` built.
+            layout: of the design.
             gap_mm: from skin to skin (mm).
             changes: fields of `Model`; `silicone_index` also changes the depths.
 
         Raises:
-            LayoutError: if it is no layout.
-            TwinError: if there is no such field, or it cannot be so.
+            LayoutError: if `layout` is no layout.
+            TwinError: if a field is unknown or invalid.
         """
         optics = arguments.layout(layout).optics
         _known(changes)
@@ -119,7 +114,7 @@ class Model:
             above=0.0,
             error=TwinError,
         )
-        told: dict[str, Any] = {
+        values: dict[str, Any] = {
             "gap_mm": gap_mm,
             "led_exponent": optics.emitter_exponent,
             "detector_exponent": optics.detector_exponent,
@@ -130,19 +125,19 @@ class Model:
             "silicone_index": index,
             "supply_v": optics.supply_v,
         }
-        return cls(**(told | changes))
+        return cls(**(values | changes))
 
     def changed(self, **changes: Any) -> "Model":
-        """The same with other fields; depths stay as they are.
+        """The model with other fields; the depths stay.
 
         Raises:
-            TwinError: if there is no such field, or it cannot be so.
+            TwinError: if a field is unknown or invalid.
         """
         _known(changes)
         return replace(self, **changes)
 
     def reversed(self) -> "Model":
-        """Light the other way round: emitter and receiver change their parts."""
+        """The model with emitter and receiver exchanged."""
         return replace(
             self,
             led_exponent=self.detector_exponent,
@@ -156,17 +151,17 @@ def _known(changes: Iterable[str]) -> None:
     names = [field.name for field in fields(Model)]
     for name in changes:
         if name not in names:
-            raise TwinError(f"{name!r} given, a model has {', '.join(names)}")
+            raise TwinError(f"a model has no field {name!r}; it has {', '.join(names)}")
 
 
 def values_of_drive(drive: Floats, model: Model) -> Floats:
-    """What the circuit reads of a photocurrent: 0 to 255, high in light, any shape.
+    """Values that the circuit reads of photocurrents: 0 to 255, high in light, any shape.
 
-    The phototransistor works against the pull-up, (Vcc − V) / R = I (1 − exp(−V / V_s)), and the
-    value is 255 (1 − V / Vcc).
+    Phototransistor and pull-up: (Vcc − V) / R = I (1 − exp(−V / V_s)); the value is
+    255 (1 − V / Vcc).
 
     Args:
-        drive: photocurrent I · R / Vcc, 0 in the dark, 1 where the pull-up carries no more.
+        drive: photocurrent I · R / Vcc, 0 in the dark, 1 at the largest current of the pull-up.
         model: knee and supply.
     """
     knee = model.knee_v / model.supply_v
@@ -182,7 +177,7 @@ def values_of_drive(drive: Floats, model: Model) -> Floats:
 
 
 def drive_of_values(values: Floats, model: Model) -> Floats:
-    """The photocurrent (I · R / Vcc) that is read as these values, 0 to below 255."""
+    """Photocurrents (I · R / Vcc) that are read as these values, 0 to below 255."""
     drives, known = _curve(model.knee_v / model.supply_v)
     drive: Floats = np.interp(values, known, drives)
     return drive
@@ -190,8 +185,7 @@ def drive_of_values(values: Floats, model: Model) -> Floats:
 
 @lru_cache(maxsize=16)
 def _curve(knee: float) -> tuple[Floats, Floats]:
-    # The drive is an explicit function of the voltage, so the curve is tabulated that way round,
-    # closer where it bends.
+    # The drive is an explicit function of the voltage; the table is denser at the knee.
     voltage = np.concatenate(
         [np.geomspace(1e-4 * knee, knee, 1500)[:-1], np.linspace(knee, 1.0, 3000)]
     )[::-1]
@@ -201,7 +195,7 @@ def _curve(knee: float) -> tuple[Floats, Floats]:
 
 @lru_cache(maxsize=16)
 def _even_curve(knee: float) -> tuple[Floats, Floats]:
-    # Entries at even steps of the drive are found without a search, ten times as fast.
+    # Even steps of the drive need no search: ten times as fast.
     drives, values = _curve(knee)
     value = np.interp(np.arange(_ENTRIES + 1) * (_TABLED / _ENTRIES), drives, values)
     return value, np.diff(value, append=value[-1])

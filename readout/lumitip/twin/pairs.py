@@ -1,5 +1,12 @@
-"""Which LEDs a cell sees: pairs of cells and LEDs, sorted into bundles of rays they share."""
+"""`Pairs`: cells and the LEDs that they see, sorted into kinds with the same bundle of rays.
 
+`Mixed` computes scenes of several objects at different heights, or with cables among them. Each
+ray passes every object at that object's own height, so shadows overlap as in reality. As an
+approximation, light scattered by a diffuse object passes the others with the mean transmittance
+that they have for the cell's direct light.
+"""
+
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -10,23 +17,25 @@ from lumitip.grid import Floats, Integers
 from lumitip.layout import Layout
 from lumitip.twin.optics import Model, TwinError
 from lumitip.twin.rays import ACROSS, REACH_MM, Bundle, bundle
+from lumitip.twin.scene import PIXEL_MM, Cable, Numbers, Thing
 
-_MANY, _FEW_ACROSS = 60, 3  # with more bundles than these, each gets fewer rays
-_DIM = 0.005  # so does one with less than this share of the brightest one's light
+_FEW_ACROSS = 3  # points across half of a hole where fewer rays suffice
+_MANY = 60  # bundles, beyond which all get fewer rays
+_DIM = 0.005  # share of the brightest bundle's light, below which a bundle gets fewer rays
 _KERNEL_MM = 0.1
 
 
 @dataclass(frozen=True)
 class Misregistration:
-    """How the emitter stands to where it should be, in the receiver's sensor frame."""
+    """Deviation of the emitter from its nominal place, in the receiver's sensor frame."""
 
     x_mm: float = 0.0
     y_mm: float = 0.0
     angle_deg: float = 0.0
-    """Turned about z, through the origin."""
+    """Rotation about z, through the origin."""
     tilt_deg: float = 0.0
-    """Turned about x: the gap grows towards the tip. Holes stay parallel in the model, which
-    leaves out a cosine: 0.4 % at 5 degrees."""
+    """Rotation about x: the gap grows towards the tip. In the model the holes stay parallel, which
+    neglects a cosine: 0.4 % at 5 degrees."""
 
     def __post_init__(self) -> None:
         arguments.finite_fields(self, TwinError)
@@ -34,32 +43,33 @@ class Misregistration:
 
 @dataclass(frozen=True)
 class Emitter:
-    """Where the emitter is and what it is made of."""
+    """Optics and place of the emitter."""
 
     model: Model
-    astray: Misregistration = Misregistration()
+    deviation: Misregistration = Misregistration()
 
     def gap_mm(self, y_mm: Floats) -> Floats:
-        """The gap at places (mm).
+        """Gap at places (mm).
 
         Raises:
             TwinError: if the fingers touch there.
         """
-        tilt_deg = self.astray.tilt_deg
+        tilt_deg = self.deviation.tilt_deg
         gap: Floats = self.model.gap_mm + y_mm * np.tan(np.radians(tilt_deg))
         if gap.min() <= 0.0:
             raise TwinError(
-                f"tilt_deg: {tilt_deg} given, at a gap of {self.model.gap_mm} mm the fingers touch"
+                f"tilt_deg is {tilt_deg}; the fingers touch at a gap of {self.model.gap_mm} mm. "
+                "Reduce the tilt or increase gap_mm."
             )
         return gap
 
     def leds_mm(self, layout: Layout) -> tuple[Floats, Floats]:
-        """Where the LEDs are: LED i faces cell i but for misregistration."""
-        angle = np.radians(self.astray.angle_deg)
+        """Places of the LEDs: LED i faces cell i, apart from misregistration."""
+        angle = np.radians(self.deviation.angle_deg)
         cos, sin = float(np.cos(angle)), float(np.sin(angle))
         return (
-            layout.x_mm * cos - layout.y_mm * sin + self.astray.x_mm,
-            layout.x_mm * sin + layout.y_mm * cos + self.astray.y_mm,
+            layout.x_mm * cos - layout.y_mm * sin + self.deviation.x_mm,
+            layout.x_mm * sin + layout.y_mm * cos + self.deviation.y_mm,
         )
 
 
@@ -70,21 +80,21 @@ class Pairs:
     cells: int
     cell: Integers
     kind: Integers
-    """Which of `kinds` the pair is."""
+    """Index into `kinds`."""
     kinds: tuple[tuple[Model, float, float], ...]
-    """Model (with the gap there) and displacement (mm) of each bundle."""
+    """Model (with the local gap) and displacement (mm) of each bundle."""
 
     @classmethod
     def of(cls, layout: Layout, emitter: Emitter) -> "Pairs":
         """The pairs of a layout and its emitter."""
         led_x, led_y = emitter.leds_mm(layout)
-        model, tilted = emitter.model, emitter.astray.tilt_deg != 0.0
+        model, tilted = emitter.model, emitter.deviation.tilt_deg != 0.0
         dx, dy = led_x - layout.x_mm[:, None], led_y - layout.y_mm[:, None]
         cell, led = np.nonzero(np.hypot(dx, dy) <= REACH_MM)
         gap_mm = emitter.gap_mm((layout.y_mm[cell] + led_y[led]) / 2.0)
         keys = np.round(np.stack([gap_mm, dx[cell, led], dy[cell, led]], axis=1), 3) + 0.0
         keys[:, 0] = np.round(keys[:, 0], 2) if tilted else model.gap_mm
-        # As one whole number each: rows as such sort slowly, and no other thread runs meanwhile.
+        # One integer for each row: rows sort slowly, and block other threads meanwhile.
         gap_um, x_um, y_um = np.rint(1e3 * keys.T).astype(np.int64)
         whole = (gap_um << 40) + (x_um << 20) + y_um
         _, first, kind = np.unique(whole, return_index=True, return_inverse=True)
@@ -94,13 +104,13 @@ class Pairs:
 
     @cached_property
     def _across(self) -> tuple[int, ...]:
-        # Points across half of a hole: few where there are many bundles, or they are dim.
+        """Points across half of a hole, for each kind."""
         rough = np.array([self.bundle(k, _FEW_ACROSS).weight.sum() for k in range(len(self.kinds))])
         bright = (rough > _DIM * rough.max()) & (len(self.kinds) <= _MANY)
         return tuple(np.where(bright, ACROSS, _FEW_ACROSS).tolist())
 
     def bundle(self, kind: int, across: int | None = None) -> Bundle:
-        """The rays of one kind."""
+        """Rays of one kind."""
         return bundle(*self.kinds[kind], across or self._across[kind])
 
     @cached_property
@@ -115,13 +125,13 @@ class Pairs:
 
     @cached_property
     def counts(self) -> Floats:
-        """How often each cell has each kind, shape `(cells, kinds)`."""
+        """Number of pairs of each kind at each cell, shape `(cells, kinds)`."""
         counted = np.zeros((self.cells, len(self.kinds)))
         np.add.at(counted, (self.cell, self.kind), 1.0)
         return counted
 
     def spots(self, kind: int, height: float) -> tuple[Floats, Floats, Floats]:
-        """Where the rays of a kind cross a plane, gathered on a fine raster: x, y (mm), light."""
+        """Points where the rays of a kind cross a plane, on a fine raster: x, y (mm), light."""
         rays = self.bundle(kind)
         x, y = rays.at(height * self.kinds[kind][0].gap_mm)
         column, row, share = spread(x / _KERNEL_MM, y / _KERNEL_MM)
@@ -134,13 +144,13 @@ class Pairs:
 
 
 def tally(index: Integers, light: Floats, size: int = 0) -> Floats:
-    """The light that falls to each index, shape `(size,)` or as many as there are."""
+    """Sum of the light at each index, shape `(size,)` or longer."""
     return np.asarray(np.bincount(index, light, size), dtype=np.float64)
 
 
 def spread(x: Floats, y: Floats) -> tuple[Integers, Integers, Floats]:
-    """The four whole places around each point, and the share of it that each gets, so that the
-    middle stays where it is; arrays of shape `(4, n)`."""
+    """Distribute points over the four integer places around each: columns, rows and shares, each of
+    shape `(4, n)`. The centre of gravity stays."""
     column, row = np.floor(x).astype(np.int64), np.floor(y).astype(np.int64)
     right, up = x - column, y - row
     return (
@@ -148,3 +158,59 @@ def spread(x: Floats, y: Floats) -> tuple[Integers, Integers, Floats]:
         np.stack([row, row, row + 1, row + 1]),
         np.stack([(1 - right) * (1 - up), right * (1 - up), (1 - right) * up, right * up]),
     )
+
+
+class Mixed:
+    """All rays of all cells."""
+
+    def __init__(self, layout: Layout, pairs: Pairs, scattered: Callable[[Thing], Numbers]) -> None:
+        """Gather the rays.
+
+        Args:
+            layout: the cells.
+            pairs: the LEDs that each cell sees.
+            scattered: light that one diffuse object sends to each cell, if it scatters all.
+        """
+        bundles = [pairs.bundle(kind, _FEW_ACROSS) for kind in range(len(pairs.kinds))]
+        sizes = np.array([b.weight.size for b in bundles])[pairs.kind]
+        self._cell = np.repeat(pairs.cell, sizes)
+        self._cells = pairs.cells
+        gaps = np.array([model.gap_mm for model, _, _ in pairs.kinds])
+        self._gap_mm = np.repeat(gaps[pairs.kind], sizes)
+
+        def gathered(part: Callable[[Bundle], Floats]) -> Floats:
+            return np.concatenate([part(bundles[kind]) for kind in pairs.kind])
+
+        self._x_mm = gathered(lambda b: b.x_mm) + layout.x_mm[self._cell]
+        self._y_mm = gathered(lambda b: b.y_mm) + layout.y_mm[self._cell]
+        self._across, self._along = gathered(lambda b: b.across), gathered(lambda b: b.along)
+        weight = gathered(lambda b: b.weight)
+        self._weight = weight / tally(self._cell, weight, self._cells)[self._cell]
+        self._scattered = scattered
+
+    def light(self, found: Sequence[Thing]) -> Floats:
+        """Share of its empty-grasp light that each cell receives, shape `(cells,)`."""
+        passed = [self._passed(thing) for thing in found]
+        light = self._sum(np.prod(passed, axis=0))
+        for number, thing in enumerate(found):
+            if thing.diffuse:
+                others = [p for i, p in enumerate(passed) if i != number]
+                through = self._sum(np.prod(others, axis=0)) if others else 1.0
+                light = light + thing.diffuse * self._scattered(thing) * through
+        return light
+
+    def _passed(self, thing: Thing) -> Floats:
+        """Share of each ray that passes straight through an object, shape `(rays,)`."""
+        up_mm = thing.height * self._gap_mm
+        x, y = self._x_mm + up_mm * self._across, self._y_mm + up_mm * self._along
+        if isinstance(thing, Cable):
+            layers: Sequence[Numbers] = (thing.shade(x, y, self._across, self._along, PIXEL_MM),)
+        else:
+            layers = thing.layers(x, y, PIXEL_MM)
+        passed = np.ones(x.size)
+        for layer in layers:
+            passed *= 1.0 - (1.0 - thing.clear) * layer
+        return passed
+
+    def _sum(self, passed: Floats) -> Floats:
+        return tally(self._cell, self._weight * passed, self._cells)

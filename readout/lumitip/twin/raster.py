@@ -1,8 +1,8 @@
-"""The plane of an object as a raster: what each pixel gives to each cell.
+"""The plane of an object as a raster: the light that each pixel contributes to each cell.
 
-Direct is light that crosses the pixel on its way from an LED to the cell's detector. Scattered is
-light that a diffuse object in that pixel sends there, as a Lambertian sheet: the irradiance by all
-LEDs, times what the detector sees of the pixel, times its area over pi.
+Direct light crosses the pixel on its way from an LED to the cell's detector. Scattered light is
+sent there by a diffuse object in that pixel, as a Lambertian sheet: the irradiance by all LEDs,
+times the detector's view of the pixel, times its area over pi.
 """
 
 from collections.abc import Callable
@@ -18,16 +18,16 @@ from lumitip.twin.pairs import Emitter, Pairs, spread, tally
 from lumitip.twin.rays import REACH_MM, hole_points, in_hole
 from lumitip.twin.scene import PIXEL_MM, Numbers, Singles
 
-_DENSE_CELLS = 64  # for more cells gathering the pixels of each is faster
-_PATCH_MM = 8.0  # around an LED or detector, beyond which a scattering sheet is left out
-_THICK_MM = 0.2  # a sheet that touches a mask still lies this far from it
-_COARSE = 3  # points across half of a hole, enough for light that is scattered anyway
-_LEAST = 1e-5  # share of a cell's light below which a pixel is left out
+_DENSE_CELLS = 64  # with more cells, gathering the pixels of each is faster
+_PATCH_MM = 8.0  # around an LED or detector, beyond which scattered light is neglected
+_THICK_MM = 0.2  # smallest distance of a sheet from a mask
+_COARSE = 3  # points across half of a hole; enough for scattered light
+_LEAST = 1e-5  # share of a cell's light below which a pixel is neglected
 
 
 @dataclass(frozen=True, eq=False)
 class Plane:
-    """Pixels of a plane, and the share of its light that each cell gets by them."""
+    """Pixels of a plane, and the share of each cell's light that they contribute."""
 
     x_mm: Singles
     """Centre of each pixel, shape `(pixels,)` (mm)."""
@@ -37,16 +37,13 @@ class Plane:
     weights: Singles
     """Share of each cell's light, shape `(cells, pixels)`, or `(cells, most)` with `index`."""
     index: NDArray[np.intp] | None
-    """Of many cells: the pixels that each sees, shape `(cells, most)`."""
+    """With many cells: the pixels that each sees, shape `(cells, most)`."""
 
     def __call__(self, coverage: Singles) -> Numbers:
-        """What a coverage of the pixels gives to each cell.
+        """Share of each cell's light from a coverage of the pixels.
 
         Args:
-            coverage: shape `(pixels,)` or `(n, pixels)`.
-
-        Returns:
-            Shape `(cells,)` or `(n, cells)`.
+            coverage: shape `(pixels,)` or `(n, pixels)`; the result is `(cells,)` or `(n, cells)`.
         """
         if self.index is None:
             if coverage.ndim == 1:
@@ -69,14 +66,14 @@ def direct_plane(layout: Layout, pairs: Pairs, emitter: Emitter, height: float) 
 
 
 def scattered_plane(layout: Layout, pairs: Pairs, emitter: Emitter, height: float) -> Plane:
-    """Light that a plane sends to the cells if all of it scatters all that falls on it."""
+    """Light from a plane of which every pixel scatters all light that falls on it."""
     grid = _Grid.around(layout, emitter.model)
     scattered = _Scattered(layout, emitter, height, grid)
     return _plane(len(layout), grid, lambda cell: scattered.row(cell) / pairs.full[cell])
 
 
 def blended(direct: Plane, scattered: Plane, clear: float, diffuse: float) -> Plane:
-    """The plane of one material: what an object of it takes from each cell, less what it scatters.
+    """The plane of one material: light taken by an object of it, less the light that it scatters.
 
     Both planes must be dense.
     """
@@ -96,7 +93,7 @@ def _plane(cells: int, grid: "_Grid", row: Callable[[int], Floats]) -> Plane:
         light = row(cell)
         lit = np.flatnonzero(light > _LEAST)
         seen.append(lit)
-        # What the dimmest pixels would give is spread over the others.
+        # Light of the neglected pixels is spread over the others.
         rows.append(light[lit] * (light.sum() / light[lit].sum()))
     used = np.unique(np.concatenate(seen))
     dense = cells <= _DENSE_CELLS
@@ -112,7 +109,7 @@ def _plane(cells: int, grid: "_Grid", row: Callable[[int], Floats]) -> Plane:
 
 @dataclass(frozen=True)
 class _Grid:
-    """Pixels from column and row 0 on; centres at odd multiples of half a pixel, so symmetric."""
+    """Pixels, symmetric about the origin: centres at odd multiples of half a pixel."""
 
     left: int
     low: int
@@ -122,7 +119,7 @@ class _Grid:
 
     @classmethod
     def around(cls, layout: Layout, model: Model) -> "_Grid":
-        # Small holes see finer than the usual pixel.
+        # Small holes resolve finer details than the usual pixel.
         pixel_mm = min(PIXEL_MM, model.hole_mm / 5.0)
         margin = REACH_MM / 2.0 + _PATCH_MM / 2.0
         half = [
@@ -166,15 +163,15 @@ class _Direct:
             (x + self._layout.x_mm[cell]) / self._grid.pixel_mm - 0.5,
             (y + self._layout.y_mm[cell]) / self._grid.pixel_mm - 0.5,
         )
-        made = tally(
-            self._grid.index(column, row).ravel(), (share * light).ravel(), self._grid.pixels
+        index = self._grid.index(column, row).ravel()
+        shares: Floats = (
+            tally(index, (share * light).ravel(), self._grid.pixels) / self._pairs.full[cell]
         )
-        shares: Floats = made / self._pairs.full[cell]
         return shares
 
 
 class _Scattered:
-    """Light that each pixel sends to a cell if it scatters all that falls on it."""
+    """Light that each pixel sends to a cell if it scatters all light that falls on it."""
 
     def __init__(self, layout: Layout, emitter: Emitter, height: float, grid: _Grid) -> None:
         self._layout, self._grid, self._height = layout, grid, height
@@ -197,14 +194,14 @@ class _Scattered:
             self._model.detector_depth_mm,
             self._model.detector_exponent,
         )
-        made = np.zeros(self._grid.pixels)
-        made[index] = self._irradiance[index] * light * (self._grid.pixel_mm**2 / np.pi)
-        return made
+        row = np.zeros(self._grid.pixels)
+        row[index] = self._irradiance[index] * light * (self._grid.pixel_mm**2 / np.pi)
+        return row
 
     def _patch(
         self, x_mm: float, y_mm: float, away_mm: float, depth_mm: float, exponent: float
     ) -> tuple[Integers, Floats]:
-        """Pixels around one end, and what passes between it and each of them."""
+        """Pixels around an LED or detector, and the light that passes between it and each."""
         away_mm = max(away_mm, _THICK_MM)
         index = self._grid.near(x_mm, y_mm)
         x, y = (a.astype(np.float64) for a in self._grid.centres(index))

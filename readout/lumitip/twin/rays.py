@@ -1,9 +1,9 @@
 """Rays from one LED to one detector, through both holes of the mask.
 
-Light comes from the die (share 1 − alpha) or from anywhere in the hole (alpha, scattered by
-silicone and film), and goes to a detector likewise. Each pair of points is a ray of weight
-cos(angle) ** (m + n + 2) / D², D the distance along the axis. LEDs at the same displacement from
-their detector have the same rays, so a hexagonal grid needs some twenty bundles, whatever its size.
+Light starts at the die (share 1 − alpha) or anywhere in the hole (alpha, scattered by silicone and
+film), and ends at the detector in the same way. Each pair of points is a ray of weight
+cos(angle) ** (m + n + 2) / D² with D the distance along the axis. LEDs at the same displacement
+from their detector have the same rays, so a hexagonal grid of any size needs about twenty bundles.
 """
 
 from collections.abc import Callable
@@ -16,7 +16,7 @@ from lumitip.grid import Floats
 from lumitip.twin.optics import Model
 
 REACH_MM = 12.6
-"""LEDs further than this from a detector are left out (mm)."""
+"""LEDs further than this from a detector are neglected (mm)."""
 ACROSS = 6
 """Points across half of a hole. Values at edges and cables differ by 0.15 counts rms, at most 1.3,
 from those with 8 points."""
@@ -28,28 +28,28 @@ class Bundle:
     """Rays from an LED to a detector at the origin; arrays of shape `(rays,)`."""
 
     x_mm: Floats
-    """Where each ray leaves the receiver's mask (mm)."""
+    """Place where each ray crosses the receiver's mask (mm)."""
     y_mm: Floats
     across: Floats
-    """How far it goes in x for each mm in z, towards the emitter."""
+    """Slope dx/dz, towards the emitter."""
     along: Floats
-    """The same in y."""
+    """Slope dy/dz."""
     weight: Floats
-    """Light that it carries to the detector, on a scale common to all bundles."""
+    """Light that reaches the detector, on a scale common to all bundles."""
 
     def at(self, height_mm: float) -> tuple[Floats, Floats]:
-        """Where the rays cross a plane at this height above the receiver's mask (mm)."""
+        """Places where the rays cross a plane at this height above the receiver's mask (mm)."""
         return self.x_mm + height_mm * self.across, self.y_mm + height_mm * self.along
 
 
 @lru_cache(maxsize=512)
 def bundle(model: Model, dx_mm: float, dy_mm: float, across: int = ACROSS) -> Bundle:
-    """The rays of an LED that stands at `(dx_mm, dy_mm)` from its detector (sensor frame).
+    """Rays from an LED that is displaced by `(dx_mm, dy_mm)` from its detector (sensor frame).
 
     Args:
         model: optics; its gap is the distance of the masks.
-        dx_mm: LED minus detector (mm).
-        dy_mm: the same in y (mm).
+        dx_mm: LED minus detector, in x (mm).
+        dy_mm: in y (mm).
         across: points across half of a hole.
     """
     x, y = hole_points(model, across)
@@ -85,7 +85,7 @@ def _rays(model: Model, shift_mm: tuple[float, float], source: End, target: End)
 
 
 def in_hole(model: Model) -> Callable[[Floats, Floats], np.ndarray]:
-    """A function that tells which points (mm from the centre of a hole) lie within it."""
+    """A function that finds the points (mm from the centre of a hole) within the hole."""
     apothem = model.hole_mm / 2.0 + 1e-9
     if model.hole_shape == "circle":
         return lambda x, y: x * x + y * y <= apothem**2
@@ -94,9 +94,9 @@ def in_hole(model: Model) -> Callable[[Floats, Floats], np.ndarray]:
 
 @lru_cache(maxsize=64)
 def hole_points(model: Model, across: int = ACROSS) -> tuple[Floats, Floats]:
-    """Points that stand for equal areas of a hole, symmetric about both axes (mm)."""
+    """Points of equal areas of a hole, symmetric about both axes (mm)."""
     step = model.hole_mm / 2.0 / across
-    # A hexagon reaches further along x than its flats are apart.
+    # A hexagon is wider along x than across its flats.
     half = (np.arange(int(1.2 * across) + 1) + 0.5) * step
     line = np.concatenate([-half[::-1], half])
     x, y = (a.ravel() for a in np.meshgrid(line, line))

@@ -1,11 +1,11 @@
-"""What is between the fingers: objects by their signed distance, in the receiver's sensor frame.
+"""Objects between the fingers, by their signed distance, in the receiver's sensor frame.
 
 Every object has a height in the gap (0 at the receiver, 1 at the emitter), a clear transmittance
-(light that goes straight on) and a diffuse one (light that the object scatters). A scene is one
-object, or a sequence of them; nothing at all is the empty grasp.
+(light that passes straight) and a diffuse one (light that the object scatters). A scene is one
+object or a sequence of them; the empty sequence is the empty grasp.
 
-Lines follow one convention: `angle_deg` is the direction of the line, `offset_mm` its signed
-distance from the origin along its left normal (−sin, cos).
+For all lines `angle_deg` is the direction, and `offset_mm` the signed distance from the origin
+along the left normal (−sin, cos).
 """
 
 import math
@@ -22,16 +22,16 @@ from lumitip.twin.optics import TwinError
 from lumitip.values import shown
 
 Numbers = NDArray[np.floating[Any]]
-"""Floating-point numbers of any precision: rasters are single, tables double."""
+"""Floats of any precision: rasters are single, tables double."""
 Singles = NDArray[np.float32]
 PIXEL_MM = 0.5
-"""Pixel of the rasters on which objects are drawn (mm)."""
+"""Pixel of the rasters (mm)."""
 MOST_DIAMETER_MM = 200.0
-"""Cables are no thicker: far above what covers a fingertip (mm)."""
+"""Largest diameter of a cable, far more than covers a fingertip (mm)."""
 
 
 def covered(outside_mm: Numbers, pixel_mm: float = PIXEL_MM) -> Numbers:
-    """Share of each pixel that is covered, from the signed distance of its centre (mm)."""
+    """Covered share of each pixel, from the signed distance of its centre (mm)."""
     share: Numbers = outside_mm * (-1.0 / pixel_mm)
     share += 0.5
     np.maximum(share, 0.0, out=share)
@@ -44,36 +44,37 @@ class Thing(ABC):
     """An object between the fingers."""
 
     clear: float = 0.0
-    """Share of light that goes straight through."""
+    """Share of light that passes straight."""
     diffuse: float = 0.0
-    """Share of light that is scattered on its way through."""
+    """Share of light that passes scattered."""
     height: float = 0.5
-    """Where in the gap: 0 on the receiver, 1 on the emitter."""
+    """Height in the gap: 0 on the receiver, 1 on the emitter."""
 
     def __post_init__(self) -> None:
         arguments.finite_fields(self, TwinError)
         if not (self.clear >= 0.0 and self.diffuse >= 0.0 and self.clear + self.diffuse <= 1.0):
             raise TwinError(
-                f"clear {self.clear}, diffuse {self.diffuse} given: not below 0, together 1 at most"
+                f"clear is {self.clear} and diffuse is {self.diffuse}; neither may be below 0, and "
+                "their sum is 1 at most"
             )
         if not 0.0 <= self.height <= 1.0:
-            raise TwinError(f"height: {self.height} given, 0 (receiver) to 1 (emitter) is needed")
+            raise TwinError(f"height is {self.height}; 0 (receiver) to 1 (emitter) is needed")
 
     def layers(self, x_mm: Numbers, y_mm: Numbers, pixel_mm: float = PIXEL_MM) -> Sequence[Numbers]:
-        """Coverage by each layer of the material, one over the other, at places (mm)."""
+        """Coverage by each layer of the material at places (mm)."""
         return (self.coverage(x_mm, y_mm, pixel_mm),)
 
     @abstractmethod
     def coverage(self, x_mm: Numbers, y_mm: Numbers, pixel_mm: float = PIXEL_MM) -> Numbers:
-        """Share of a pixel around each place that is covered, 0 to 1."""
+        """Covered share of a pixel around each place, 0 to 1."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Shape(Thing):
-    """An object that is known by the distance from its border."""
+    """An object that is defined by the distance from its border."""
 
     hem_mm: float = 0.0
-    """Width of a hem along the border, where the material lies double (mm)."""
+    """Width of a hem along the border, where the material is double (mm)."""
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -81,14 +82,14 @@ class Shape(Thing):
 
     @abstractmethod
     def signed_distance_mm(self, x_mm: Numbers, y_mm: Numbers) -> Numbers:
-        """Distance of places from the border, negative under the object (mm)."""
+        """Distance of places from the border, negative inside the object (mm)."""
 
     def coverage(self, x_mm: Numbers, y_mm: Numbers, pixel_mm: float = PIXEL_MM) -> Numbers:
         """See `Thing`."""
         return covered(self.signed_distance_mm(x_mm, y_mm), pixel_mm)
 
     def layers(self, x_mm: Numbers, y_mm: Numbers, pixel_mm: float = PIXEL_MM) -> Sequence[Numbers]:
-        """The material, and the hem upon it."""
+        """The material, and the hem on it."""
         outside_mm = self.signed_distance_mm(x_mm, y_mm)
         whole = covered(outside_mm, pixel_mm)
         if not self.hem_mm:
@@ -98,12 +99,12 @@ class Shape(Thing):
 
 @dataclass(frozen=True)
 class Line(Shape):
-    """What lies along a line, or along an arc that touches it at its point next to the origin."""
+    """An object along a line, or along an arc that touches it at its point nearest the origin."""
 
     offset_mm: float = 0.0
     angle_deg: float = 0.0
     curvature_per_mm: float = 0.0
-    """One over the radius, positive where it bends to the left (1/mm)."""
+    """One over the radius, positive for a bend to the left (1/mm)."""
 
     def left_of(self, x_mm: Numbers, y_mm: Numbers) -> tuple[Numbers, Numbers]:
         """Signed distance of places from the line along its left normal (mm), and the direction
@@ -122,14 +123,14 @@ class Line(Shape):
         return self._bent(left, x, y) if self.curvature_per_mm else left
 
     def _from_foot(self, x_mm: Numbers, y_mm: Numbers) -> tuple[Numbers, Numbers, Numbers]:
-        # From the line's point next to the origin: distance to the left of its tangent, x and y.
+        """Distance left of the line, and x and y from its point nearest the origin (mm)."""
         angle = math.radians(self.angle_deg)
         cos, sin = math.cos(angle), math.sin(angle)
         left = y_mm * cos - x_mm * sin - self.offset_mm
         return left, x_mm + self.offset_mm * sin, y_mm - self.offset_mm * cos
 
     def _bent(self, left: Numbers, x: Numbers, y: Numbers) -> Numbers:
-        # The distance from a circle, in a form that stays exact as the radius grows.
+        """Distance from the circle, in a form that stays exact for large radii."""
         bend = self.curvature_per_mm
         square = x * x + y * y
         rest = np.sqrt(np.maximum(1.0 - 2.0 * bend * left + (bend * bend) * square, 0.0))
@@ -139,7 +140,7 @@ class Line(Shape):
 
 @dataclass(frozen=True)
 class HalfPlane(Line):
-    """A sheet whose edge is the line: it covers all that is to the right of it."""
+    """A sheet whose edge is the line: it covers everything right of it."""
 
     def signed_distance_mm(self, x_mm: Numbers, y_mm: Numbers) -> Numbers:
         """See `Shape`."""
@@ -148,8 +149,8 @@ class HalfPlane(Line):
 
 @dataclass(frozen=True)
 class Cable(Line):
-    """A round cable whose axis is the line. A ray is shaded if it passes within the radius of the
-    axis, so slanting light meets a wider shadow than upright light."""
+    """A round cable whose axis is the line. It takes rays that pass within its radius, so its
+    shadow is wider in slanting light."""
 
     diameter_mm: float = 3.0
 
@@ -167,8 +168,13 @@ class Cable(Line):
     def shade(
         self, x_mm: Numbers, y_mm: Numbers, across: Numbers, along: Numbers, pixel_mm: float
     ) -> Numbers:
-        """Share of rays that the cable takes, from where they cross the plane of its axis (mm)
-        and how far they go in x and y for each mm in z."""
+        """Share of rays that the cable takes.
+
+        Args:
+            x_mm, y_mm: where the rays cross the plane of the axis (mm).
+            across, along: their slopes dx/dz and dy/dz.
+            pixel_mm: width of the soft border (mm).
+        """
         left_mm, beside_deg = self.left_of(x_mm, y_mm)
         beside = np.radians(beside_deg)
         slant = along * np.cos(beside) - across * np.sin(beside)
@@ -177,7 +183,7 @@ class Cable(Line):
 
 @dataclass(frozen=True)
 class Corner(Shape):
-    """A corner of a sheet: its vertex, the direction from there into the sheet, its opening."""
+    """A corner of a sheet: vertex, direction from there into the sheet, opening."""
 
     x_mm: float = 0.0
     y_mm: float = 0.0
@@ -189,7 +195,7 @@ class Corner(Shape):
         arguments.number(self.opening_deg, "opening_deg", most=360.0, above=0.0, error=TwinError)
 
     def signed_distance_mm(self, x_mm: Numbers, y_mm: Numbers) -> Numbers:
-        """See `Shape`; beyond the vertex the distance from the nearer edge's line."""
+        """See `Shape`; beyond the vertex the distance from the line of the nearer edge."""
         angle, half = math.radians(self.angle_deg), math.radians(self.opening_deg) / 2.0
         x, y = x_mm - self.x_mm, y_mm - self.y_mm
         cos, sin = math.cos(angle), math.sin(angle)
@@ -200,7 +206,7 @@ class Corner(Shape):
 
 @dataclass(frozen=True)
 class Disc(Shape):
-    """A disc that lies flat: its middle and diameter (mm)."""
+    """A flat disc: middle and diameter (mm)."""
 
     x_mm: float = 0.0
     y_mm: float = 0.0
@@ -221,7 +227,7 @@ class Sheet(Shape):
     """A sheet that covers everything."""
 
     def signed_distance_mm(self, x_mm: Numbers, y_mm: Numbers) -> Numbers:
-        """See `Shape`: the border is far away."""
+        """See `Shape`; the border is far away."""
         return np.full(np.broadcast_shapes(np.shape(x_mm), np.shape(y_mm)), -1e6)
 
 
@@ -232,7 +238,7 @@ def things(scene: Scene) -> tuple[Thing, ...]:
     """The objects of a scene.
 
     Raises:
-        TwinError: if it is none.
+        TwinError: if it is no scene.
     """
     if isinstance(scene, Thing):
         return (scene,)
@@ -240,7 +246,7 @@ def things(scene: Scene) -> tuple[Thing, ...]:
     for thing in found:
         if not isinstance(thing, Thing):
             raise TwinError(
-                f"scene: {shown(scene)} given, an object like Cable(angle_deg=30.0), or several, "
-                "is needed; nothing is ()"
+                f"scene is {shown(scene)}; an object such as Cable(angle_deg=30.0), or a list of "
+                "objects, is needed. The empty grasp is ()."
             )
     return found

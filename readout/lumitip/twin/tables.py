@@ -1,8 +1,8 @@
-"""How much of a cell's light an edge or a cable takes, by its direction and its distance.
+"""`LineTable`: light that an edge or a cable takes from a cell, by direction and distance.
 
-Behind an edge or a cable that is straight over the reach of a cell, a cell knows of the object
-only the direction and the signed distance of its line, so one look-up replaces the raster. Borders
-are as soft as on the raster, which stands for dies that are no points.
+If the edge or cable is straight over the reach of a cell, the cell's light depends on direction and
+signed distance alone, so one look-up replaces the raster. Borders are as soft as on the raster,
+which accounts for the size of the dies.
 """
 
 from collections.abc import Callable
@@ -26,12 +26,11 @@ class LineTable:
     """Share of light that an opaque object along a line takes from each cell."""
 
     shares: Singles
-    """Shape `(cells, angles, distances)`: angles from 0 up to below 360 in `STEP_DEG`, distances
-    from `-reach_mm` to `reach_mm` in `STEP_MM`. Angle: direction of the line; distance: of the
-    cell's centre from the line along its left normal, positive where a half-plane, which covers
-    what is right of its line, leaves the cell free."""
+    """Shape `(cells, angles, distances)`: angles from 0 to below 360 in `STEP_DEG`, distances from
+    `-reach_mm` to `reach_mm` in `STEP_MM`. Angle: direction of the line. Distance: of the cell's
+    centre from the line along its left normal; a half-plane covers the right of its line."""
     reach_mm: float
-    """Beyond this distance from the line nothing changes any more (mm)."""
+    """Distance from the line beyond which the share is constant (mm)."""
 
     @property
     def angles_deg(self) -> Floats:
@@ -47,7 +46,7 @@ class LineTable:
         """Share of light taken from each cell, shape `(..., cells)`, linear between entries.
 
         Args:
-            angle_deg: direction of the line beside each cell, any shape that goes with the other.
+            angle_deg: direction of the line beside each cell; broadcast with `distance_mm`.
             distance_mm: of each cell's centre, left of the line, shape `(..., cells)` (mm).
         """
         angles, distances = self.shares.shape[1:]
@@ -61,7 +60,7 @@ class LineTable:
         one = begin + first * distances + column
         other = begin + (first + 1) % angles * distances + column
         flat, below = self._flat
-        # Each entry lies beside what it grows by, so that a look-up is a gather and a product.
+        # With the growth of each entry at hand, a look-up is a gather and a product.
         low = flat[one] + right * below[one]
         share: Floats = low + down * (flat[other] + right * below[other] - low)
         return share
@@ -88,13 +87,13 @@ def edge_table(pairs: Pairs, height: float = 0.5) -> LineTable:
         return _steps(y * cos - x * sin, light, reach_mm)
 
     half = _table(pairs, taken, reach_mm)
-    # The other way round the same line covers the other side.
+    # The reversed line covers the other side.
     other = pairs.full[:, None, None] - half[:, :, ::-1]
     return _finished(pairs, np.concatenate([half, other], axis=1), reach_mm)
 
 
 def cable_table(pairs: Pairs, diameter_mm: float, height: float = 0.5) -> LineTable:
-    """The table of an opaque round cable: a ray is taken if it passes within the radius."""
+    """The table of an opaque round cable, which takes rays that pass within its radius."""
     kinds = range(len(pairs.kinds))
     rays = [pairs.bundle(kind) for kind in kinds]
     places = [rays[k].at(height * pairs.kinds[k][0].gap_mm) for k in kinds]
@@ -124,7 +123,7 @@ def _reach(far_mm: float) -> float:
 
 
 def _steps(left_mm: Floats, light: Floats, reach_mm: float) -> Floats:
-    """Light that lies right of a line, for every distance that the cell is left of it."""
+    """Light to the right of a line, for every distance of the cell to the left of it."""
     entries = 2 * round(reach_mm / STEP_MM) + 1
     way = (left_mm + reach_mm) * (1.0 / STEP_MM)
     column = way.astype(np.int64)
@@ -142,15 +141,15 @@ def _table(pairs: Pairs, taken: Callable[[int, float, float], Floats], reach_mm:
         for a, angle in enumerate(angles):
             kinds[kind, a] = taken(kind, float(np.cos(angle)), float(np.sin(angle)))
     soft = _softened(kinds)
-    made = np.empty((pairs.cells, angles.size, entries))
+    light = np.empty((pairs.cells, angles.size, entries))
     for first in range(0, pairs.cells, _AT_ONCE):  # other threads run in between
         some = slice(first, first + _AT_ONCE)
-        made[some] = np.tensordot(pairs.counts[some], soft, axes=1)
-    return made
+        light[some] = np.tensordot(pairs.counts[some], soft, axes=1)
+    return light
 
 
 def _softened(light: Floats) -> Floats:
-    """The mean of every entry's surroundings, as wide as a border is soft."""
+    """Moving mean over the width of a soft border."""
     ends = ((0, 0), (0, 0), (_SOFT + 1, _SOFT))
     summed = np.cumsum(np.pad(light, ends, mode="edge"), axis=2)
     whole = summed[:, :, 2 * _SOFT :] - summed[:, :, : -2 * _SOFT]

@@ -1,4 +1,4 @@
-"""`Twin`: what a fingertip of a layout reads of a scene.
+"""`Twin`: values that a fingertip of a layout reads of a scene.
 
 twin = Twin(layout)
 twin.values(HalfPlane(offset_mm=2.0, angle_deg=15.0))   # calibrated, without noise
@@ -7,7 +7,7 @@ twin.frame(Cable(angle_deg=30.0), t=1.5)                # raw codes, as the firm
 
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, partial
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,23 +17,20 @@ from lumitip.frame import Codes
 from lumitip.grid import Floats
 from lumitip.layout import Layout
 from lumitip.protocol.packet import BITS
-from lumitip.twin import given
-from lumitip.twin.mixed import Mixed
 from lumitip.twin.optics import FULL, Model, TwinError, values_of_drive
-from lumitip.twin.outline import Outline
-from lumitip.twin.pairs import Emitter, Misregistration, Pairs
-from lumitip.twin.polygon import Polygon
+from lumitip.twin.outline import Outline, Polygon
+from lumitip.twin.pairs import Emitter, Misregistration, Mixed, Pairs
 from lumitip.twin.raster import Plane, blended, direct_plane, scattered_plane
 from lumitip.twin.scene import Cable, Line, Numbers, Scene, Singles, Thing, things
 from lumitip.twin.tables import LineTable, cable_table, edge_table
 from lumitip.values import shown
 
 WARM_UP_S = 100.0
-"""Time in which the LEDs come down to a third of what they give too much when switched on."""
+"""Time constant of the decay of the LEDs' extra light after switching on (s)."""
 
 
 class Twin:
-    """The optical twin of a fingertip pair. Thread-safe: nothing changes but for caches."""
+    """The optical twin of a fingertip pair. Thread-safe: only caches change."""
 
     def __init__(
         self,
@@ -51,34 +48,31 @@ class Twin:
 
         Args:
             layout: the cells.
-            model: optics and circuit; those of the layout at a gap of 3 mm if not given.
-            gains: light of each cell relative to when its empty grasp was measured, shape
-                `(cells,)`; 1 if not given.
-            misregistration: how the emitter stands; part of the empty grasp.
+            model: optics and circuit; by default those of the layout at a gap of 3 mm.
+            gains: light of each cell relative to its empty grasp, shape `(cells,)`; by default 1.
+            misregistration: of the emitter; part of the empty grasp.
             ambient: light from outside, as a share of the full light of the brightest cell; not
                 part of the empty grasp.
-            noise: standard deviation of what is read, in counts of 255.
+            noise: standard deviation of the values (counts of 255).
             bits: of the raw codes, 8, 10 or 12.
             seed: of the noise; the same seed and time give the same codes.
-            warm_up: share of light that the LEDs give too much when switched on.
+            warm_up: extra light of the LEDs when switched on, as a share.
 
         Raises:
-            LayoutError: if it is no layout.
-            TwinError: if another of them cannot be so.
+            LayoutError: if `layout` is no layout.
+            TwinError: if another argument is invalid.
         """
         self.layout = arguments.layout(layout)
-        self.model = (
-            Model.from_layout(layout)
-            if model is None
-            else arguments.instance(model, Model, "model", TwinError)
-        )
-        astray = Misregistration() if misregistration is None else misregistration
-        arguments.instance(astray, Misregistration, "misregistration", TwinError)
-        self.emitter = Emitter(self.model, astray)
-        self.gains = given.gains(gains, len(layout))
+        model = Model.from_layout(layout) if model is None else model
+        self.model = arguments.instance(model, Model, "model", TwinError)
+        deviation = Misregistration() if misregistration is None else misregistration
+        arguments.instance(deviation, Misregistration, "misregistration", TwinError)
+        self.emitter = Emitter(self.model, deviation)
+        self.gains = _gains(gains, len(layout))
         self.bits = arguments.count(bits, "bits", error=TwinError)
         if self.bits not in BITS:
-            raise TwinError(f"bits: {shown(bits)} given, allowed are {', '.join(map(str, BITS))}")
+            allowed = ", ".join(map(str, BITS))
+            raise TwinError(f"bits is {shown(bits)}; one of {allowed} is needed")
         self.seed = arguments.count(seed, "seed", 0, TwinError)
         self.ambient, self.noise, self.warm_up = (
             arguments.number(of, name, 0.0, error=TwinError)
@@ -87,15 +81,16 @@ class Twin:
         self._pairs = Pairs.of(layout, self.emitter)
         straight = Pairs.of(layout, Emitter(self.model)).full
         self.drive: Floats = self.model.gain * self._pairs.full / straight.max()
-        """Photocurrent of each cell with an empty grasp, 1 is what the pull-up carries."""
+        """Photocurrent of each cell in the empty grasp; 1 is the largest current of the pull-up."""
         self.empty: Floats = values_of_drive(self.drive, self.model)
-        """What each cell reads with an empty grasp before calibration, 0 to 255."""
-        self._direct = lru_cache(maxsize=8)(self._direct_plane)
-        self._scatter = lru_cache(maxsize=8)(self._scattered_plane)
-        self._material = lru_cache(maxsize=8)(self._material_plane)
-        self._outline = lru_cache(maxsize=8)(self._outline_of)
-        self._edges = lru_cache(maxsize=8)(self._edge_table)
-        self._cables = lru_cache(maxsize=8)(self._cable_table)
+        """Value of each cell in the empty grasp before calibration, 0 to 255."""
+        cached, optics = lru_cache(maxsize=8), (layout, self._pairs, self.emitter)
+        self._direct = cached(partial(direct_plane, *optics))
+        self._scatter = cached(partial(scattered_plane, *optics))
+        self._material = cached(self._material_plane)
+        self._outline = cached(self._outline_of)
+        self._edges = cached(partial(edge_table, self._pairs))
+        self._cables = cached(partial(cable_table, self._pairs))
 
     def values(self, scene: Scene = ()) -> Floats:
         """Values without noise, calibrated with the empty grasp, 0 to 255, shape `(cells,)`."""
@@ -107,26 +102,29 @@ class Twin:
         Args:
             scenes: scenes, or the coverage of an opaque object on `plane(height)`, shape
                 `(n, pixels)`.
-            height: where in the gap that coverage lies.
+            height: of that coverage in the gap.
 
         Raises:
-            TwinError: if they are neither.
+            TwinError: if `scenes` is neither.
         """
         if isinstance(scenes, np.ndarray):
             at = self.plane(height)
-            given.coverage(scenes, at.x_mm.size)
+            if scenes.ndim != 2 or scenes.shape[1] != at.x_mm.size:
+                raise TwinError(
+                    f"scenes has the shape {scenes.shape}; (n, {at.x_mm.size} pixels) is needed"
+                )
             return self.calibrated(1.0 - at(scenes))
         if isinstance(scenes, Thing | str) or not isinstance(scenes, Sequence):
-            raise TwinError(f"scenes: {shown(scenes)} given, a list of scenes is needed")
+            raise TwinError(f"scenes is {shown(scenes)}; a list of scenes is needed")
         if not scenes:
             return np.empty((0, len(self.layout)))
         return self.calibrated(np.stack([self.light(scene) for scene in scenes]))
 
     def light(self, scene: Scene = ()) -> Numbers:
-        """Share of its empty-grasp light that each cell gets, 1 is all, shape `(cells,)`.
+        """Share of its empty-grasp light that each cell receives, shape `(cells,)`.
 
-        A single edge or cable is looked up in a table, flat objects at one height go through the
-        raster, everything else ray by ray.
+        A single edge or cable is looked up in a table, flat objects at one height are computed on
+        the raster, everything else ray by ray.
         """
         found = things(scene)
         if not found:
@@ -139,59 +137,59 @@ class Twin:
         return self._mixed.light(found)
 
     def edges(self, offset_mm: ArrayLike, angle_deg: ArrayLike, clear: ArrayLike = 0.0) -> Floats:
-        """Values of many straight edges, shape `(n, cells)`: one look-up each.
+        """Values of many straight edges, shape `(n, cells)`, from the table.
 
         Args:
-            offset_mm: signed distance of each edge from the origin along its left normal,
-                shape `(n,)`; what is right of it is covered.
+            offset_mm: signed distance of each edge from the origin along its left normal, shape
+                `(n,)`; the right of it is covered.
             angle_deg: its direction, shape `(n,)`.
             clear: transmittance of each sheet, shape `(n,)` or one for all.
 
         Raises:
-            TwinError: if they are no finite numbers of one shape, or a sheet gives light.
+            TwinError: if they are no finite numbers of one shape, or `clear` is not 0 to 1.
         """
-        offset, angle, through = given.alike(offset_mm=offset_mm, angle_deg=angle_deg, clear=clear)
+        offset, angle, through = _same_shape(offset_mm=offset_mm, angle_deg=angle_deg, clear=clear)
         if not ((through >= 0.0) & (through <= 1.0)).all():
-            raise TwinError(f"clear: {shown(clear)} given, from 0 to 1 is needed")
+            raise TwinError(f"clear is {shown(clear)}; numbers from 0 to 1 are needed")
         turn = np.radians(angle)[:, None]
         left = self.layout.y_mm * np.cos(turn) - self.layout.x_mm * np.sin(turn) - offset[:, None]
         share = self.edge_table()(angle[:, None], left)
         return self.calibrated(1.0 - (1.0 - through[:, None]) * share)
 
     def edge_table(self, height: float = 0.5) -> LineTable:
-        """Share of its light that an opaque half-plane takes from each cell, by the direction and
-        the signed distance of its edge."""
-        return self._edges(given.height(height))
+        """Share of light that an opaque half-plane takes from each cell, by direction and signed
+        distance of its edge."""
+        return self._edges(_height(height))
 
     def cable_table(self, diameter_mm: float = 3.0, height: float = 0.5) -> LineTable:
-        """The same of an opaque round cable, by the distance from its axis."""
+        """The same for an opaque round cable, by the distance from its axis."""
         diameter_mm = Cable(diameter_mm=diameter_mm).diameter_mm
-        return self._cables(diameter_mm, given.height(height))
+        return self._cables(diameter_mm, _height(height))
 
     def plane(self, height: float = 0.5) -> Plane:
-        """The raster at a height in the gap: places of its pixels and what each gives."""
-        return self._direct(given.height(height))
+        """The raster at a height in the gap."""
+        return self._direct(_height(height))
 
     def calibrated(self, light: Numbers) -> Floats:
-        """Values of shares of light, both of shape `(..., cells)`, 255 is the empty grasp."""
+        """Values of shares of light, both of shape `(..., cells)`; 255 is the empty grasp."""
         values: Floats = self.uncalibrated(light) * (FULL / self.empty)
         return np.clip(values, 0.0, FULL, out=values)
 
     def uncalibrated(self, light: Numbers, extra: float | Floats = 0.0) -> Floats:
-        """What the circuit reads, 0 to 255, of shares of light; LEDs give `extra` too much."""
+        """Values before calibration, 0 to 255, of shares of light and extra light of the LEDs."""
         drive = light * (self.drive * self.gains * (1.0 + extra))
         return values_of_drive(drive + self.ambient * self.model.gain, self.model)
 
     def frame(self, scene: Scene = (), t: float = 0.0) -> Codes:
-        """Raw codes of one frame, dark is high, shape `(cells,)`: what the firmware sends.
+        """Raw codes of one frame as the firmware sends them: dark is high, shape `(cells,)`.
 
         Args:
-            scene: what is between the fingers.
-            t: time since switching on (s); the LEDs warm up by it.
+            scene: the objects between the fingers.
+            t: time since switching on (s).
         """
-        at_s = arguments.number(t, "t", 0.0, error=TwinError)
-        one: Codes = self.codes(self.light(scene)[None], np.array([at_s]))[0]
-        return one
+        times_s = np.array([arguments.number(t, "t", 0.0, error=TwinError)])
+        codes: Codes = self.codes(self.light(scene)[None], times_s)[0]
+        return codes
 
     def codes(self, light: Numbers, times_s: Floats) -> Codes:
         """Raw codes of shares of light, shape `(n, cells)`, at times since switching on (s)."""
@@ -201,10 +199,11 @@ class Twin:
             chances = [self._chance(t).standard_normal(len(self.layout)) for t in times_s]
             voltage = voltage + (self.noise / FULL) * np.stack(chances)
         most = 2**self.bits - 1
-        # An ADC tells how many whole steps the voltage has, and so is half a step low.
-        codes = np.clip(np.floor(voltage * (most + 1)), 0, most)
-        as_sent: Codes = codes.astype(np.uint8 if self.bits == 8 else np.uint16)
-        return as_sent
+        # An ADC rounds down to whole steps, so it reads half a step low on average.
+        codes: Codes = np.clip(np.floor(voltage * (most + 1)), 0, most).astype(
+            np.uint8 if self.bits == 8 else np.uint16
+        )
+        return codes
 
     def _chance(self, t: float) -> np.random.Generator:
         return np.random.Generator(np.random.SFC64([self.seed, round(t * 1e6)]))
@@ -215,10 +214,12 @@ class Twin:
             table = self._cables(line.diameter_mm, line.height)
         else:
             table = self._edges(line.height)
-        light: Numbers = 1.0 - (1.0 - line.clear) * table(beside_deg, left_mm)
-        if line.diffuse:
-            light = light + line.diffuse * self._scattered(line)
-        return light
+        return self._behind(line, table(beside_deg, left_mm))
+
+    def _behind(self, thing: Thing, taken: Numbers) -> Numbers:
+        """Light behind an object that would take these shares if it were opaque."""
+        light: Numbers = 1.0 - (1.0 - thing.clear) * taken
+        return light + thing.diffuse * self._scattered(thing) if thing.diffuse else light
 
     def _of_flat(self, found: Sequence[Thing]) -> Numbers:
         thing = found[0]
@@ -233,12 +234,7 @@ class Twin:
         layers = thing.layers(at.x_mm, at.y_mm, at.pixel_mm)
         if len(found) == len(layers) == 1:
             taken = at(np.asarray(layers[0], np.float32))
-            if dense and thing.diffuse:
-                return 1.0 - taken
-            alone: Numbers = 1.0 - (1.0 - thing.clear) * taken
-            if thing.diffuse:
-                alone = alone + thing.diffuse * self._scattered(thing)
-            return alone
+            return 1.0 - taken if dense and thing.diffuse else self._behind(thing, taken)
         return self._of_layers(found)
 
     def _of_layers(self, found: Sequence[Thing]) -> Numbers:
@@ -252,7 +248,7 @@ class Twin:
         return light
 
     def _through(self, found: Sequence[Thing], at: Plane) -> tuple[Singles, Singles]:
-        """What goes straight through each pixel, and what goes through at all."""
+        """Share of light that passes each pixel straight, and the share that passes at all."""
         clear = whole = np.ones(at.x_mm.size, np.float32)
         for thing in found:
             for layer in thing.layers(at.x_mm, at.y_mm, at.pixel_mm):
@@ -268,12 +264,6 @@ class Twin:
     def _mixed(self) -> Mixed:
         return Mixed(self.layout, self._pairs, self._scattered)
 
-    def _direct_plane(self, height: float) -> Plane:
-        return direct_plane(self.layout, self._pairs, self.emitter, height)
-
-    def _scattered_plane(self, height: float) -> Plane:
-        return scattered_plane(self.layout, self._pairs, self.emitter, height)
-
     def _material_plane(self, height: float, clear: float, diffuse: float) -> Plane:
         return blended(self._direct(height), self._scatter(height), clear, diffuse)
 
@@ -284,8 +274,27 @@ class Twin:
         scattered = self._scatter(height) if diffuse else replace(at, weights=0.0 * at.weights)
         return Outline(blended(at, scattered, clear, diffuse))
 
-    def _edge_table(self, height: float) -> LineTable:
-        return edge_table(self._pairs, height)
 
-    def _cable_table(self, diameter_mm: float, height: float) -> LineTable:
-        return cable_table(self._pairs, diameter_mm, height)
+def _gains(gains: ArrayLike | None, cells: int) -> Floats:
+    if gains is None:
+        return np.ones(cells)
+    values = arguments.numbers(gains, "gains", TwinError)
+    if values.shape != (cells,) or not (np.isfinite(values) & (values >= 0.0)).all():
+        raise TwinError(f"gains is {shown(gains)}; {cells} numbers from 0 on are needed")
+    return values.copy()
+
+
+def _height(height: float) -> float:
+    return arguments.number(height, "height", 0.0, 1.0, error=TwinError)
+
+
+def _same_shape(**arrays: ArrayLike) -> Sequence[Floats]:
+    """Arrays of one shape `(n,)`, from such arrays and single numbers."""
+    values = {
+        name: np.atleast_1d(arguments.numbers(of, name, TwinError)) for name, of in arrays.items()
+    }
+    shapes = {of.shape for of in values.values()} - {(1,)}
+    if len(shapes) > 1 or any(of.ndim != 1 or not np.isfinite(of).all() for of in values.values()):
+        found = ", ".join(f"{name} of shape {of.shape}" for name, of in values.items())
+        raise TwinError(f"{found}: all must have the same number of finite numbers, or one")
+    return np.broadcast_arrays(*values.values())
