@@ -104,7 +104,7 @@ class Job:
         """A job with its key."""
         told = [
             config.parameters.model_dump(),
-            {field: part.model_dump() for field, part in config.named_parts().items()},
+            {field: part.model_dump() for field, part in config.parts_by_field().items()},
             prices.model_dump(),
             sample,
             code_hash("explore"),

@@ -9,7 +9,8 @@ from pathlib import Path
 from lumitip.errors import how_to_install
 from lumitip.tasks.bench import workers
 from lumitip_fab.catalogue.ordering import Prices
-from lumitip_fab.config.load import NAMED, Input, load
+from lumitip_fab.config.load import Input, load
+from lumitip_fab.config.parts import NAMED
 from lumitip_fab.errors import BuildError, InputError, OutputError, Problem
 from lumitip_fab.explore.accuracy import Sample
 from lumitip_fab.explore.evaluate import FIGURES, Job, Journal, Record, evaluate, unpriced

@@ -16,9 +16,10 @@ from typing import Any
 import numpy as np
 from pydantic import ValidationError
 
-from lumitip_fab.config.load import NAMED, Input
+from lumitip_fab.config.load import Input
 from lumitip_fab.config.messages import problems_of, unknown_name
 from lumitip_fab.config.parameters import Parameters
+from lumitip_fab.config.parts import NAMED
 from lumitip_fab.config.source import Source, flat
 from lumitip_fab.errors import InputError, Problem
 
