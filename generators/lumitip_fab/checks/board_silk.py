@@ -1,4 +1,4 @@
-"""What is printed on a board, and the marks that people and machines find it by."""
+"""Silkscreen of a board, fiducials and test points."""
 
 import itertools
 import math

@@ -105,15 +105,15 @@ def _check(config: Input, asked: Sequence[Axis], prices: Prices, keep_size: bool
         names |= set(varied.get(field, chosen or (config.value(field),)))
     faults = unpriced(config, prices, names)
     if keep_size and "grid.columns" in varied:
-        told = "given with --keep-size, which counts the columns itself; leave one of them out"
-        faults.append(Problem("--vary", 0, "grid.columns", told))
+        conflict = "given with --keep-size, which counts the columns itself; leave one of them out"
+        faults.append(Problem("--vary", 0, "grid.columns", conflict))
     if faults:
         raise InputError(faults)
 
 
 def _found(job: Job, record: Record) -> Found:
-    told = record.get("figures")
-    figures = {name: told[name] for name in FIGURES} if told else {}
+    evaluated = record.get("figures")
+    figures = {name: evaluated[name] for name in FIGURES} if evaluated else {}
     columns = job.config.parameters.grid.columns
     return Found(job.changes, columns, figures, tuple(record.get("refused", ())))
 

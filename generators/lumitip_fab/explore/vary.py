@@ -1,4 +1,4 @@
-"""What is varied: `FIELD=SPEC`, and the designs that come of all combinations.
+"""Varied fields, `FIELD=SPEC`, and the designs of all combinations.
 
 grid.pitch_mm=3:8                        as many values as `points`, evenly from 3 to 8
 grid.pitch_mm=3:8:0.5                    from 3 in steps of 0.5, 8 included
@@ -39,7 +39,7 @@ Changes = tuple[tuple[str, Any], ...]
 
 
 def axes(config: Input, texts: Sequence[str], points: int) -> tuple[Axis, ...]:
-    """What the texts of `--vary` ask for.
+    """Parse the texts of `--vary`.
 
     Args:
         config: the parameter file that is varied.
@@ -85,14 +85,14 @@ def changed(config: Input, changes: Changes, keep_size: bool = False) -> Input:
         keep_size: whether the grid gets as many columns and rows as keep its size when its pitch
             changes.
     """
-    told = config.parameters.model_dump()
+    table = config.parameters.model_dump()
     for field, value in changes:
-        _set(told, field, value)
+        _set(table, field, value)
     if keep_size:
         grid = config.parameters.grid
-        told["grid"]["columns"] = same_size(grid.columns, grid.pitch_mm, told["grid"]["pitch_mm"])
+        table["grid"]["columns"] = same_size(grid.columns, grid.pitch_mm, table["grid"]["pitch_mm"])
     automatic = config.automatic - {field for field, _ in changes}
-    return replace(config, parameters=Parameters.model_validate(told), automatic=automatic)
+    return replace(config, parameters=Parameters.model_validate(table), automatic=automatic)
 
 
 def same_size(columns: Sequence[int], pitch_mm: float, new_mm: float) -> tuple[int, ...]:
@@ -135,11 +135,11 @@ def _nearest(length: float, parity: int) -> int:
     return max(least, 2 * round((length - parity) / 2) + parity)
 
 
-def _set(told: dict[str, Any], field: str, value: Any) -> None:
+def _set(table: dict[str, Any], field: str, value: Any) -> None:
     *sections, key = field.split(".")
     for section in sections:
-        told = told[section]
-    told[key] = value
+        table = table[section]
+    table[key] = value
 
 
 def _axis(config: Input, text: str, points: int) -> Axis:
@@ -208,7 +208,7 @@ def _tuple(value: Any) -> Any:
 
 
 def _not_allowed(config: Input, axis: Axis) -> list[Problem]:
-    """What no design may have, whatever the rest of it."""
+    """Values that no design may have."""
     faults = []
     kind = NAMED.get(axis.field)
 

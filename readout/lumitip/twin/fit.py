@@ -39,16 +39,16 @@ class Fitted:
     """A frame and the twin that comes closest to it."""
 
     numbers: dict[str, float]
-    """What was fitted, by the names of `NAMES`: lengths in mm, slopes as the share by which light
+    """Fitted numbers by the names of `NAMES`: lengths in mm, slopes as the share by which light
     rises over half of the fingertip."""
     values: Floats
-    """What that twin reads, before calibration, 0 to 255, shape `(cells,)`."""
+    """Values of that twin before calibration, 0 to 255, shape `(cells,)`."""
     rms: float
     """Root of the mean square of what remains (counts of 255)."""
 
 
 def read(layout: Layout, numbers: Floats) -> Floats:
-    """What the twin of these numbers, in the order of `NAMES`, reads before calibration."""
+    """Values, before calibration, of the twin with these numbers in the order of `NAMES`."""
     offset, angle, curvature, clear, gap, alpha, gain, slope_x, slope_y = map(float, numbers)
     twin = Twin(layout, Model.from_layout(layout, gap, alpha=alpha, gain=gain))
     light = twin.light(HalfPlane(offset, angle, curvature, clear=clear))
@@ -79,11 +79,9 @@ def fit_edge(layout: Layout, values: Floats, offset_mm: float, angle_deg: float)
     """
     values = arguments.numbers(values, "values", TwinError)
     if values.shape != (len(arguments.layout(layout)),) or not np.isfinite(values).all():
-        raise TwinError(
-            f"values of shape {values.shape} given, {len(layout)} finite numbers are needed"
-        )
+        raise TwinError(f"values has shape {values.shape}; {len(layout)} finite numbers are needed")
     if collinear(layout.x_mm, layout.y_mm):
-        raise TwinError("layout: cells in one line given, which do not show an edge's direction")
+        raise TwinError("layout has all cells in one line; they do not show an edge's direction")
     offset_mm = arguments.number(offset_mm, "offset_mm", error=TwinError)
     angle_deg = arguments.number(angle_deg, "angle_deg", error=TwinError)
     place = np.array([offset_mm, angle_deg, 0.0, 0.05, 2.5, 0.6, 0.9, 0.0, 0.0])
@@ -101,7 +99,7 @@ def fit_edge(layout: Layout, values: Floats, offset_mm: float, angle_deg: float)
                 )
             except np.linalg.LinAlgError:
                 raise TwinError(
-                    f"offset_mm {offset_mm:g}, angle_deg {angle_deg:g} given: no cell sees an edge "
+                    f"offset_mm is {offset_mm:g}, angle_deg is {angle_deg:g}; no cell sees an edge "
                     "there; start within some two degrees of it"
                 ) from None
             tried = np.clip(place + step, _LEAST, _MOST - _STEPS)

@@ -28,10 +28,10 @@ class Image(Thing):
         pixels = arguments.numbers(self.pixels, "pixels", TwinError)
         if pixels.ndim != 2 or not pixels.size or not (0.0 <= pixels.min() <= pixels.max() <= 1.0):
             raise TwinError(
-                f"pixels of shape {pixels.shape} given, rows of coverage from 0 to 1 are needed"
+                f"pixels has shape {pixels.shape}; rows of coverage from 0 to 1 are needed"
             )
         if not self.pixel_mm > 0.0:
-            raise TwinError(f"pixel_mm: {self.pixel_mm} given, must be above 0")
+            raise TwinError(f"pixel_mm is {self.pixel_mm}; it must be above 0")
         # A frame of nothing around it, so that a place outside finds nothing without a test.
         object.__setattr__(self, "_framed", np.pad(pixels.astype(np.float32), 1))
 

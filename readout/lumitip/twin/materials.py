@@ -51,6 +51,4 @@ def material(key: str) -> Material:
     for one in MATERIALS:
         if isinstance(key, str) and one.key == key:
             return one
-    raise TwinError(
-        f"material: {shown(key)} given, allowed are {', '.join(m.key for m in MATERIALS)}"
-    )
+    raise TwinError(f"material is {shown(key)}; allowed are {', '.join(m.key for m in MATERIALS)}")

@@ -1,4 +1,4 @@
-"""What the light of a fingertip pair is made of: `Model`, and the circuit that reads it.
+"""Optical parameters of a fingertip pair, `Model`, and its readout circuit.
 
     emitter   die ·        depth behind the mask: die / index + film, as seen from air
               ───   ───    mask, hole_mm
@@ -27,7 +27,7 @@ from lumitip.values import shown
 FULL = 255.0
 """Value of full light."""
 GAP_MM = 3.0
-"""Gap of a grasp where none is told (mm)."""
+"""Default gap of a grasp (mm)."""
 
 
 _TABLED, _ENTRIES = 4.0, 8192  # drives below this one, in so many steps
@@ -84,16 +84,14 @@ class Model:
             "gain",
         ):
             if not getattr(self, name) > 0.0:
-                raise TwinError(f"{name}: {getattr(self, name)} given, must be above 0")
+                raise TwinError(f"{name} is {getattr(self, name)}; it must be above 0")
         for name, most in _LIMITS.items():
             least = 1.0 if name == "silicone_index" else 0.0
             if not least <= getattr(self, name) <= most:
-                raise TwinError(
-                    f"{name}: {getattr(self, name)} given, {least:g} to {most:g} is needed"
-                )
+                raise TwinError(f"{name} is {getattr(self, name)}; {least:g} to {most:g} is needed")
         if not isinstance(self.hole_shape, str) or self.hole_shape not in ("hexagon", "circle"):
             raise TwinError(
-                f'hole_shape: {shown(self.hole_shape)} given, allowed are "hexagon" and "circle"'
+                f'hole_shape is {shown(self.hole_shape)}; allowed are "hexagon" and "circle"'
             )
 
     @classmethod
@@ -119,7 +117,7 @@ class Model:
             above=0.0,
             error=TwinError,
         )
-        told: dict[str, Any] = {
+        fields: dict[str, Any] = {
             "gap_mm": gap_mm,
             "led_exponent": optics.emitter_exponent,
             "detector_exponent": optics.detector_exponent,
@@ -130,7 +128,7 @@ class Model:
             "silicone_index": index,
             "supply_v": optics.supply_v,
         }
-        return cls(**(told | changes))
+        return cls(**(fields | changes))
 
     def changed(self, **changes: Any) -> "Model":
         """The same with other fields; depths stay as they are.
@@ -156,11 +154,11 @@ def _known(changes: Iterable[str]) -> None:
     names = [field.name for field in fields(Model)]
     for name in changes:
         if name not in names:
-            raise TwinError(f"{name!r} given, a model has {', '.join(names)}")
+            raise TwinError(f"{name!r} is no field of a model; it has {', '.join(names)}")
 
 
 def values_of_drive(drive: Floats, model: Model) -> Floats:
-    """What the circuit reads of a photocurrent: 0 to 255, high in light, any shape.
+    """Values of the circuit from photocurrents: 0 to 255, high in light, any shape.
 
     The phototransistor works against the pull-up, (Vcc − V) / R = I (1 − exp(−V / V_s)), and the
     value is 255 (1 − V / Vcc).

@@ -1,4 +1,4 @@
-"""What lies within an outline, by the outline alone: no pixel is drawn.
+"""Area inside an outline, computed from the outline without a raster.
 
 By Green's theorem the sum of a cell's weights within an outline is the integral along it of
 C dy, where C(x, y) is the sum of the weights left of x in the row at y. C is tabulated once for a

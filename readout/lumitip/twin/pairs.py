@@ -49,7 +49,7 @@ class Emitter:
         gap: Floats = self.model.gap_mm + y_mm * np.tan(np.radians(tilt_deg))
         if gap.min() <= 0.0:
             raise TwinError(
-                f"tilt_deg: {tilt_deg} given, at a gap of {self.model.gap_mm} mm the fingers touch"
+                f"tilt_deg is {tilt_deg}; at a gap of {self.model.gap_mm} mm the fingers touch"
             )
         return gap
 

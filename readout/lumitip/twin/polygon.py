@@ -23,7 +23,7 @@ class Polygon(Shape):
         super().__post_init__()
         points = arguments.numbers(self.points_mm, "points_mm", TwinError)
         if points.ndim != 2 or points.shape[1] != 2 or len(points) < 3:
-            raise TwinError(f"points_mm of shape {points.shape} given, three or more (x, y) needed")
+            raise TwinError(f"points_mm has shape {points.shape}; three or more (x, y) are needed")
         if not np.isfinite(points).all():
             raise TwinError("points_mm: a corner is not finite, (x, y) in mm are needed")
         object.__setattr__(self, "points_mm", points.copy())

@@ -40,7 +40,7 @@ class Plane:
     """Of many cells: the pixels that each sees, shape `(cells, most)`."""
 
     def __call__(self, coverage: Singles) -> Numbers:
-        """What a coverage of the pixels gives to each cell.
+        """Light of each cell from a coverage of the pixels.
 
         Args:
             coverage: shape `(pixels,)` or `(n, pixels)`.

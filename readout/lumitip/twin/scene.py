@@ -1,4 +1,4 @@
-"""What is between the fingers: objects by their signed distance, in the receiver's sensor frame.
+"""Objects between the fingers by their signed distance, in the receiver's sensor frame.
 
 Every object has a height in the gap (0 at the receiver, 1 at the emitter), a clear transmittance
 (light that goes straight on) and a diffuse one (light that the object scatters). A scene is one
@@ -54,10 +54,11 @@ class Thing(ABC):
         arguments.finite_fields(self, TwinError)
         if not (self.clear >= 0.0 and self.diffuse >= 0.0 and self.clear + self.diffuse <= 1.0):
             raise TwinError(
-                f"clear {self.clear}, diffuse {self.diffuse} given: not below 0, together 1 at most"
+                f"clear is {self.clear}, diffuse is {self.diffuse}; each must be 0 or more, "
+                "the sum at most 1"
             )
         if not 0.0 <= self.height <= 1.0:
-            raise TwinError(f"height: {self.height} given, 0 (receiver) to 1 (emitter) is needed")
+            raise TwinError(f"height is {self.height}; 0 (receiver) to 1 (emitter) is needed")
 
     def layers(self, x_mm: Numbers, y_mm: Numbers, pixel_mm: float = PIXEL_MM) -> Sequence[Numbers]:
         """Coverage by each layer of the material, one over the other, at places (mm)."""
@@ -98,7 +99,7 @@ class Shape(Thing):
 
 @dataclass(frozen=True)
 class Line(Shape):
-    """What lies along a line, or along an arc that touches it at its point next to the origin."""
+    """An object along a line, or along an arc that touches it at its point nearest the origin."""
 
     offset_mm: float = 0.0
     angle_deg: float = 0.0
@@ -240,7 +241,7 @@ def things(scene: Scene) -> tuple[Thing, ...]:
     for thing in found:
         if not isinstance(thing, Thing):
             raise TwinError(
-                f"scene: {shown(scene)} given, an object like Cable(angle_deg=30.0), or several, "
-                "is needed; nothing is ()"
+                f"scene is {shown(scene)}; an object like Cable(angle_deg=30.0) is needed, or a "
+                "tuple of several; () is an empty scene"
             )
     return found

@@ -17,7 +17,7 @@ from lumitip.frame import Codes
 from lumitip.grid import Floats
 from lumitip.layout import Layout
 from lumitip.protocol.packet import BITS
-from lumitip.twin import given
+from lumitip.twin import inputs
 from lumitip.twin.mixed import Mixed
 from lumitip.twin.optics import FULL, Model, TwinError, values_of_drive
 from lumitip.twin.outline import Outline
@@ -51,9 +51,9 @@ class Twin:
 
         Args:
             layout: the cells.
-            model: optics and circuit; those of the layout at a gap of 3 mm if not given.
+            model: optics and circuit; those of the layout at a gap of 3 mm by default.
             gains: light of each cell relative to when its empty grasp was measured, shape
-                `(cells,)`; 1 if not given.
+                `(cells,)`; 1 by default.
             misregistration: how the emitter stands; part of the empty grasp.
             ambient: light from outside, as a share of the full light of the brightest cell; not
                 part of the empty grasp.
@@ -75,10 +75,10 @@ class Twin:
         astray = Misregistration() if misregistration is None else misregistration
         arguments.instance(astray, Misregistration, "misregistration", TwinError)
         self.emitter = Emitter(self.model, astray)
-        self.gains = given.gains(gains, len(layout))
+        self.gains = inputs.gains(gains, len(layout))
         self.bits = arguments.count(bits, "bits", error=TwinError)
         if self.bits not in BITS:
-            raise TwinError(f"bits: {shown(bits)} given, allowed are {', '.join(map(str, BITS))}")
+            raise TwinError(f"bits is {shown(bits)}; allowed are {', '.join(map(str, BITS))}")
         self.seed = arguments.count(seed, "seed", 0, TwinError)
         self.ambient, self.noise, self.warm_up = (
             arguments.number(of, name, 0.0, error=TwinError)
@@ -89,7 +89,7 @@ class Twin:
         self.drive: Floats = self.model.gain * self._pairs.full / straight.max()
         """Photocurrent of each cell with an empty grasp, 1 is what the pull-up carries."""
         self.empty: Floats = values_of_drive(self.drive, self.model)
-        """What each cell reads with an empty grasp before calibration, 0 to 255."""
+        """Value of each cell with an empty grasp before calibration, 0 to 255."""
         self._direct = lru_cache(maxsize=8)(self._direct_plane)
         self._scatter = lru_cache(maxsize=8)(self._scattered_plane)
         self._material = lru_cache(maxsize=8)(self._material_plane)
@@ -114,10 +114,10 @@ class Twin:
         """
         if isinstance(scenes, np.ndarray):
             at = self.plane(height)
-            given.coverage(scenes, at.x_mm.size)
+            inputs.coverage(scenes, at.x_mm.size)
             return self.calibrated(1.0 - at(scenes))
         if isinstance(scenes, Thing | str) or not isinstance(scenes, Sequence):
-            raise TwinError(f"scenes: {shown(scenes)} given, a list of scenes is needed")
+            raise TwinError(f"scenes is {shown(scenes)}; a list of scenes is needed")
         if not scenes:
             return np.empty((0, len(self.layout)))
         return self.calibrated(np.stack([self.light(scene) for scene in scenes]))
@@ -150,9 +150,9 @@ class Twin:
         Raises:
             TwinError: if they are no finite numbers of one shape, or a sheet gives light.
         """
-        offset, angle, through = given.alike(offset_mm=offset_mm, angle_deg=angle_deg, clear=clear)
+        offset, angle, through = inputs.alike(offset_mm=offset_mm, angle_deg=angle_deg, clear=clear)
         if not ((through >= 0.0) & (through <= 1.0)).all():
-            raise TwinError(f"clear: {shown(clear)} given, from 0 to 1 is needed")
+            raise TwinError(f"clear is {shown(clear)}; a number from 0 to 1 is needed")
         turn = np.radians(angle)[:, None]
         left = self.layout.y_mm * np.cos(turn) - self.layout.x_mm * np.sin(turn) - offset[:, None]
         share = self.edge_table()(angle[:, None], left)
@@ -161,16 +161,16 @@ class Twin:
     def edge_table(self, height: float = 0.5) -> LineTable:
         """Share of its light that an opaque half-plane takes from each cell, by the direction and
         the signed distance of its edge."""
-        return self._edges(given.height(height))
+        return self._edges(inputs.height(height))
 
     def cable_table(self, diameter_mm: float = 3.0, height: float = 0.5) -> LineTable:
         """The same of an opaque round cable, by the distance from its axis."""
         diameter_mm = Cable(diameter_mm=diameter_mm).diameter_mm
-        return self._cables(diameter_mm, given.height(height))
+        return self._cables(diameter_mm, inputs.height(height))
 
     def plane(self, height: float = 0.5) -> Plane:
         """The raster at a height in the gap: places of its pixels and what each gives."""
-        return self._direct(given.height(height))
+        return self._direct(inputs.height(height))
 
     def calibrated(self, light: Numbers) -> Floats:
         """Values of shares of light, both of shape `(..., cells)`, 255 is the empty grasp."""
@@ -178,7 +178,7 @@ class Twin:
         return np.clip(values, 0.0, FULL, out=values)
 
     def uncalibrated(self, light: Numbers, extra: float | Floats = 0.0) -> Floats:
-        """What the circuit reads, 0 to 255, of shares of light; LEDs give `extra` too much."""
+        """Values, 0 to 255, from shares of light; LEDs are too bright by `extra`."""
         drive = light * (self.drive * self.gains * (1.0 + extra))
         return values_of_drive(drive + self.ambient * self.model.gain, self.model)
 
@@ -252,7 +252,7 @@ class Twin:
         return light
 
     def _through(self, found: Sequence[Thing], at: Plane) -> tuple[Singles, Singles]:
-        """What goes straight through each pixel, and what goes through at all."""
+        """Share of light that goes straight through each pixel, and that goes through at all."""
         clear = whole = np.ones(at.x_mm.size, np.float32)
         for thing in found:
             for layer in thing.layers(at.x_mm, at.y_mm, at.pixel_mm):

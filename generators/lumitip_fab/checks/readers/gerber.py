@@ -20,7 +20,7 @@ _STEPS = 32  # chords of a quarter circle
 
 
 def gerber_area(text: str) -> BaseGeometry:
-    """What a Gerber file paints, in mm; clear objects take away what is below them.
+    """Area that a Gerber file paints, in mm; clear objects erase what is below them.
 
     Raises:
         ValueError: if it is cut short, or not understood in every command.
