@@ -223,7 +223,7 @@ def measure_letter(part: Printed) -> Iterator[Measurement]:
 
 
 def _letter(part: Printed) -> tuple[Letter, Matrix]:
-    """The part's letter, and the matrix from its print bed to the frame that it is given in."""
+    """The part's letter, and the matrix from its print bed to its frame."""
     design = part.design
     if part.kind == design.held:
         return design.mount.letter, np.eye(4)

@@ -65,7 +65,7 @@ def explore(
         points: values of a range that has no step.
         keep_size: whether columns follow the pitch, so that the grid keeps its size.
         sample: what is drawn to judge accuracy.
-        scheduler: address of a Dask scheduler; all cores of this machine if not given.
+        scheduler: address of a Dask scheduler; all cores of this machine by default.
         progress: called with how many are done, and of how many.
 
     Raises:
@@ -105,7 +105,7 @@ def _check(config: Input, asked: Sequence[Axis], prices: Prices, keep_size: bool
         names |= set(varied.get(field, chosen or (config.value(field),)))
     faults = unpriced(config, prices, names)
     if keep_size and "grid.columns" in varied:
-        conflict = "given with --keep-size, which counts the columns itself; leave one of them out"
+        conflict = "and --keep-size exclude each other: --keep-size counts the columns itself"
         faults.append(Problem("--vary", 0, "grid.columns", conflict))
     if faults:
         raise InputError(faults)

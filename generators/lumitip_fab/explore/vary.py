@@ -58,12 +58,12 @@ def axes(config: Input, texts: Sequence[str], points: int) -> tuple[Axis, ...]:
             faults += error.problems
     fields = [axis.field for axis in read]
     for field in sorted({f for f in fields if fields.count(f) > 1}):
-        faults.append(_fault(field, "given twice; give all of its values in one"))
+        faults.append(_fault(field, "is there twice; write all of its values in one"))
     for axis in read:
         faults += _not_allowed(config, axis)
     designs = math.prod(len(axis.values) for axis in read)
     if not faults and designs > MOST_DESIGNS:
-        faults.append(_fault("", f"{designs} designs given, at most {MOST_DESIGNS} are evaluated"))
+        faults.append(_fault("", f"makes {designs} designs; at most {MOST_DESIGNS} are evaluated"))
     if faults:
         raise InputError(faults)
     return tuple(read)
@@ -147,7 +147,9 @@ def _axis(config: Input, text: str, points: int) -> Axis:
     known = config.parameters.model_dump()
     fields = [name for name, _ in flat(known)]
     if not equals or not spec:
-        raise _refusal(text, "given, FIELD=FROM:TO, FIELD=FROM:TO:STEP or FIELD=A,B,C is needed")
+        raise _refusal(
+            text, "is no range; FIELD=FROM:TO, FIELD=FROM:TO:STEP or FIELD=A,B,C is needed"
+        )
     if field not in fields:
         raise _refusal("", unknown_name(field, fields, "a parameter file"))
     return Axis(field, tuple(dict.fromkeys(_values(field, spec, points, _whole(known, field)))))
@@ -163,9 +165,9 @@ def _values(field: str, spec: str, points: int, whole: bool) -> list[Any]:
         try:
             listed = tomllib.loads(f"list = {spec}")["list"]
         except tomllib.TOMLDecodeError as error:
-            raise _refusal(field, f"{spec!r:.80} given, which is no TOML list: {error}") from error
+            raise _refusal(field, f"is {spec!r:.80}, which is no TOML list: {error}") from error
         if not listed:
-            raise _refusal(field, "an empty list given, at least one value is needed")
+            raise _refusal(field, "is an empty list; at least one value is needed")
         return [_tuple(value) for value in listed]
     if ":" in spec:
         numbers = _range(field, spec, points)
@@ -179,18 +181,18 @@ def _range(field: str, spec: str, points: int) -> list[float]:
     except ValueError:
         bounds = []
     if len(bounds) not in (2, 3) or not all(map(math.isfinite, bounds)):
-        raise _refusal(field, f"{spec!r:.80} given, FROM:TO or FROM:TO:STEP in numbers is needed")
+        raise _refusal(field, f"is {spec!r:.80}; FROM:TO or FROM:TO:STEP in numbers is needed")
     low, high = bounds[:2]
     if not low < high:
-        raise _refusal(field, f"{spec!r:.80} given, FROM must be below TO")
+        raise _refusal(field, f"is {spec!r:.80}; FROM must be below TO")
     if len(bounds) == 2:
         if points < 2:
-            raise _refusal(field, f"{points} points given, a range needs at least 2")
+            raise _refusal(field, f"has {points} points; a range needs at least 2")
         return [round(low + (high - low) * i / (points - 1), _DECIMALS) for i in range(points)]
     step = bounds[2]
     if not (high - low) / MOST_DESIGNS <= step:
         raise _refusal(
-            field, f"a step of {step:g} given, at least {(high - low) / MOST_DESIGNS:g} is needed"
+            field, f"has a step of {step:g}; at least {(high - low) / MOST_DESIGNS:g} is needed"
         )
     count = math.floor((high - low) / step + 1e-9) + 1
     return [round(low + i * step, _DECIMALS) for i in range(count)]
