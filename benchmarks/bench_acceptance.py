@@ -58,7 +58,7 @@ def judged(derived: list[Trial], verdicts: list[Verdict], built: list[Trial]) ->
     goals.at_most("refusals not confirmed", sum(not v.confirmed for v in verdicts), 0)
     goals.at_most("crashes", sum(bool(t.crash) for t in (*derived, *built)), 0)
     goals.at_most("built designs with a failed check", sum(bool(t.failed) for t in built), 0)
-    return goals.told()
+    return goals.exit_code()
 
 
 def _options() -> argparse.Namespace:

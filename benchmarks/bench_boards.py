@@ -142,7 +142,7 @@ def main(counts: list[int]) -> int:
                 print(measure(design, finger, goals), flush=True)
             except FabError as fault:
                 goals.not_measured(f"{cells} cells, {finger.name}", str(fault))
-    return goals.told()
+    return goals.exit_code()
 
 
 def _board(design: Design) -> BoardModel:

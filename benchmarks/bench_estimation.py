@@ -31,7 +31,7 @@ GOALS = {
     ("edge", "wrong"): (0.45, 1.5, 3.0),
     ("cable", "wrong"): (0.5, 1.6, 3.0),
 }
-RUNS = 25  # of each frame, by which its time is told
+RUNS = 25  # of each frame, ; its time is the best
 
 
 def row(name: str, missed: Floats, trials: list[Trial]) -> tuple[float, float, float]:
@@ -104,9 +104,11 @@ def accuracy(layout: Layout, count: int, goals: Goals) -> None:
                     )
                 )
             for name, method in methods.items():
-                told = row(name, misses(method, trials, kind), trials)
+                figures = row(name, misses(method, trials, kind), trials)
             goal = GOALS[kind, optics]
-            for unit, figure, most in zip(("mm rms", "° rms", "% gross"), told, goal, strict=True):
+            for unit, figure, most in zip(
+                ("mm rms", "° rms", "% gross"), figures, goal, strict=True
+            ):
                 goals.at_most(f"{kind}, {optics} optics", figure, most, unit)
             print("  {:<22}{:>7.3f}{:>7.2f}{:>56.1f}".format("goal", *goal))
             stated(estimator, trials[:: max(count // STATED, 1)], kind)
@@ -115,12 +117,12 @@ def accuracy(layout: Layout, count: int, goals: Goals) -> None:
 def stated(estimator: PoseEstimator, trials: list[Trial], kind: str) -> None:
     """Print how many misses lie within the deviations that the estimator states, and what it
     flags."""
-    told = [estimator(trial.values, kind) for trial in trials]
+    estimates = [estimator(trial.values, kind) for trial in trials]
     missed = misses(estimated(estimator), trials, kind)
     wild = gross(missed)
-    ratio = missed / np.array([(t.offset_sd_mm, t.angle_sd_deg) for t in told])
+    ratio = missed / np.array([(t.offset_sd_mm, t.angle_sd_deg) for t in estimates])
     within = [100.0 * (ratio[~wild] < most).mean(axis=0) for most in (1.0, 2.0)]
-    flagged = np.array(["ambiguous" in t.flags for t in told])
+    flagged = np.array(["ambiguous" in t.flags for t in estimates])
     print(
         "  within one stated deviation {:.0f} % (offset), {:.0f} % (angle)".format(*within[0])
         + ", within two {:.0f} %, {:.0f} %".format(*within[1])
@@ -130,7 +132,7 @@ def stated(estimator: PoseEstimator, trials: list[Trial], kind: str) -> None:
 
 
 def kinds(layout: Layout, count: int) -> None:
-    """How often the estimator decides right when it is not told the kind."""
+    """How often the estimator decides right without knowing the kind."""
     estimator = PoseEstimator(layout)
     print(f"\nkind decided by the estimator, of {count} frames each")
     for optics, pairs in (
@@ -138,8 +140,8 @@ def kinds(layout: Layout, count: int) -> None:
         ("wrong", [wrong_twin(layout, n) for n in range(8)]),
     ):
         for kind in ("edge", "cable"):
-            told = [estimator(t.values).kind for t in frames(pairs, kind, count, seed=5)]
-            print(f"  {optics} {kind:<8}{100.0 * told.count(kind) / count:>6.1f} % right")
+            decided = [estimator(t.values).kind for t in frames(pairs, kind, count, seed=5)]
+            print(f"  {optics} {kind:<8}{100.0 * decided.count(kind) / count:>6.1f} % right")
 
 
 def speed(goals: Goals, count: int = 300) -> None:
@@ -215,4 +217,4 @@ if __name__ == "__main__":
     accuracy(published_cells, poses, goals)
     kinds(published_cells, max(poses // 5, 10))
     speed(goals)
-    sys.exit(goals.told())
+    sys.exit(goals.exit_code())

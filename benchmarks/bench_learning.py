@@ -1,4 +1,4 @@
-"""What self-calibration gains where the optics are wrong: six fingers, edges and cables.
+"""Gain of self-calibration where the optics are wrong: six fingers, edges and cables.
 
 `learn` sees 300 simulated frames of edges, a minute of ordinary use; before and after are measured
 on other frames of the same finger, cables among them. Run by `make bench`; exits 1 if a goal is
@@ -61,12 +61,12 @@ def finger(layout: Layout, number: int, poses: int) -> Floats:
           f"misfit {learned.rms_before_counts:.1f} counts, then {learned.rms_counts:.1f}")
     # fmt: on
     before, after = PoseEstimator(layout), PoseEstimator(layout, found, gains=learned.gains)
-    told = np.array(
+    errors = np.array(
         [[rms(e, twin, kind, poses, 200 + number) for e in (before, after)] for kind in KINDS]
     )
-    for kind, both in zip(KINDS, told, strict=True):
+    for kind, both in zip(KINDS, errors, strict=True):
         _line(kind, both)
-    return told
+    return errors
 
 
 def _line(kind: str, both: Floats) -> None:
@@ -98,7 +98,7 @@ def main(poses: int) -> int:
             WORST,
         )
         goals.at_most(f"{kind}, gross errors after", float(both[1, 2]), float(both[0, 2]), "%")
-    return goals.told()
+    return goals.exit_code()
 
 
 if __name__ == "__main__":

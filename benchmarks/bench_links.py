@@ -94,7 +94,7 @@ def measure(batch: int) -> int:
     goals.at_most(
         f"reading {RATE_HZ} frames/s, {batch} in a notification", share, LIMIT_SHARE, "of a core"
     )
-    return goals.told()
+    return goals.exit_code()
 
 
 def imported() -> int:
@@ -105,7 +105,7 @@ def imported() -> int:
         "import lumitip; c = now(); import lumitip.fingertip; "
         "print(b - a, c - b, now() - c)"
     )
-    told = [
+    timings = [
         [
             float(t)
             for t in subprocess.run(
@@ -114,14 +114,14 @@ def imported() -> int:
         ]
         for _ in range(5)
     ]
-    numpy_s, lumitip_s, fingertip_s = min(told, key=sum)
+    numpy_s, lumitip_s, fingertip_s = min(timings, key=sum)
     print(
         f"import: numpy {numpy_s:.3f} s, lumitip {lumitip_s:.3f} s more, "
         f"Fingertip {fingertip_s:.3f} s more"
     )
     goals = Goals()
     goals.at_most("import of lumitip with numpy", numpy_s + lumitip_s, LIMIT_IMPORT_S, "s")
-    return goals.told()
+    return goals.exit_code()
 
 
 def main() -> int:

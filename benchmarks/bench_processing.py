@@ -128,8 +128,8 @@ def corners() -> None:
         miss_mm = float(np.hypot(x_mm - vertex_mm[0], y_mm - vertex_mm[1]))
         misses["published"].append((miss_mm, float(np.degrees(abs(turn - opening)))))
     print("\nmedian miss of 100 corners  vertex mm  opening deg")
-    for name, told in misses.items():
-        vertex, angle = np.median(told, axis=0)
+    for name, errors in misses.items():
+        vertex, angle = np.median(errors, axis=0)
         print(f"{name:<28}{vertex:>9.2f}{angle:>13.1f}")
     print(f"not called a corner here: {untold}")
 
@@ -197,4 +197,4 @@ if __name__ == "__main__":
     goals.at_least("batch", per_second, LIMIT_BATCH, "frames/s")
     goals.at_most("a cell of 2,048 to one of 512, frame", frame_growth, LIMIT_GROWTH)
     goals.at_most("a cell of 2,048 to one of 512, batch", batch_growth, LIMIT_GROWTH)
-    sys.exit(goals.told())
+    sys.exit(goals.exit_code())

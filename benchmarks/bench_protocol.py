@@ -70,4 +70,4 @@ if __name__ == "__main__":
     packets()
     goals = Goals()
     goals.at_most("serial at 500 frames/s", stream(), LIMIT_SHARE, "of a core")
-    sys.exit(goals.told())
+    sys.exit(goals.exit_code())

@@ -5,7 +5,7 @@ edges that it draws where it drew this one, the twin knows where they really lie
 far its line is off (a bias) and how sure it is. The fingertips are as wrong as in the other
 benches, and their gap is anything from 2 to 5 mm, for that of this grasp is not published.
 Both methods agree if they are apart by two combined standard deviations at most (95 %), in offset
-and in angle, whatever gap the estimator was told.
+and in angle, whatever gap the estimator assumes.
 
 Run by `make bench`; exits 1 if they do not.
 """
@@ -29,7 +29,7 @@ from poses import Line, Method, published, read, wrong_twin
 REAL_FRAMES = Path(__file__).parents[1] / "tests/readout/published_frames.json"
 
 GAPS_MM = ((2.0, 0.4), (3.0, 0.4), (3.5, 1.0), (4.0, 0.4), (5.0, 0.4))
-"""Gaps that are told to the estimator, with their standard deviations (mm)."""
+"""Gaps that the estimator assumes, with their standard deviations (mm)."""
 ANY_GAP_MM = (2.0, 5.0)
 AROUND_MM, AROUND_DEG = 1.5, 10.0  # of the drawn line: where edges are looked for that read so
 ALIKE_MM, ALIKE_DEG = 0.3, 1.0  # as far off a line is drawn alike
@@ -71,8 +71,10 @@ def stated_by(method: Method, layout: Layout, drawn: Line) -> tuple[Stated, int]
 def without_single_cells_deg(layout: Layout, gap_mm: float, values: Floats) -> float:
     """Deviation of the angle by the jackknife: every cell left out in turn."""
     estimator, cells = PoseEstimator(layout, gap_mm=gap_mm), range(len(values))
-    told = [estimator(np.where(np.arange(len(values)) == c, np.nan, values), "edge") for c in cells]
-    return float(np.sqrt((len(values) - 1.0) * np.var([t.angle_deg for t in told])))
+    estimates = [
+        estimator(np.where(np.arange(len(values)) == c, np.nan, values), "edge") for c in cells
+    ]
+    return float(np.sqrt((len(values) - 1.0) * np.var([t.angle_deg for t in estimates])))
 
 
 def main() -> int:
@@ -87,16 +89,16 @@ def main() -> int:
     print(f"  published method draws {drawn[0]:+.2f} mm, {drawn[1]:.1f}°")
     print(f"  {many} simulated edges that it draws there lie at {yardstick}")
     for gap_mm, gap_sd_mm in GAPS_MM:
-        told = PoseEstimator(layout, gap_mm=gap_mm, gap_sd_mm=gap_sd_mm)(values, "edge")
+        found = PoseEstimator(layout, gap_mm=gap_mm, gap_sd_mm=gap_sd_mm)(values, "edge")
         estimate = Stated(
-            np.array([told.offset_mm, told.angle_deg]),
-            np.array([told.offset_sd_mm, told.angle_sd_deg]),
+            np.array([found.offset_mm, found.angle_deg]),
+            np.array([found.offset_sd_mm, found.angle_sd_deg]),
         )
         apart = estimate.apart(yardstick)
         print(
             f"  estimator, gap {gap_mm:g} ± {gap_sd_mm:g} mm: {estimate} "
             f"(± {without_single_cells_deg(layout, gap_mm, values):.1f}° by jackknife), "
-            f"misfit {told.rms_counts:.1f} counts; published method {yardstick}: "
+            f"misfit {found.rms_counts:.1f} counts; published method {yardstick}: "
             f"{apart:.1f} combined deviations apart, "
             f"they {'agree' if apart <= AGREE else 'do not agree'}"
         )
@@ -106,7 +108,7 @@ def main() -> int:
             AGREE,
             "combined deviations apart",
         )
-    return goals.told()
+    return goals.exit_code()
 
 
 if __name__ == "__main__":

@@ -63,7 +63,7 @@ def each_s(work: Callable[[int], object], seconds: float = 0.4) -> float:
     return min(means)
 
 
-def told(name: str, frames: float, seconds: float, cells: int) -> float:
+def timed(name: str, frames: float, seconds: float, cells: int) -> float:
     """Print a line; returns frames a second."""
     rate = frames / seconds
     print(f"{name:<46}{rate:>12,.0f}{rate * cells:>14,.0f}")
@@ -79,7 +79,7 @@ def scenes(twin: Twin) -> tuple[float, float]:
     corner = lambda i: Corner(*poses[i % 64], -80.0, 90.0)  # noqa: E731
     print(f"{f'{cells} cells':<46}{'frames/s':>12}{'readings/s':>14}")
     moving = [
-        told(name, 1, each_s(lambda i, make=make: twin.values(make(i))), cells)
+        timed(name, 1, each_s(lambda i, make=make: twin.values(make(i))), cells)
         for name, make in {
             "edge, by its table": lambda i: HalfPlane(*poses[i % 64]),
             "cable, exact cylinder, by its table": lambda i: Cable(*poses[i % 64]),
@@ -93,17 +93,17 @@ def scenes(twin: Twin) -> tuple[float, float]:
         }.items()
     ]
     mixed = lambda i: twin.values([Cable(*poses[i % 64]), Sheet(clear=0.5)])  # noqa: E731
-    told("cable on cloth, ray by ray", 1, each_s(mixed), cells)
+    timed("cable on cloth, ray by ray", 1, each_s(mixed), cells)
     at = twin.plane()
     coverage = np.random.default_rng(0).random((BATCH, at.x_mm.size), dtype=np.float32)
-    batch = told(
+    batch = timed(
         f"batch of {BATCH} coverages of {at.x_mm.size} pixels",
         BATCH,
         each_s(lambda _: twin.batch(coverage)),
         cells,
     )
     offset, angle = np.array(poses * (BATCH // 64)).T
-    told(
+    timed(
         f"batch of {BATCH} edges, by their table",
         BATCH,
         each_s(lambda _: twin.edges(offset, angle)),
@@ -126,7 +126,7 @@ def main() -> int:
     goals = Goals()
     goals.at_least("slowest moving scene at 32 cells", rates[0], GOAL_SCENES, "frames/s")
     goals.at_least(f"batch of {BATCH} at 32 cells", rates[1], GOAL_BATCH, "frames/s")
-    return goals.told()
+    return goals.exit_code()
 
 
 if __name__ == "__main__":

@@ -89,7 +89,7 @@ def main(seconds: float) -> int:
     chromium = shutil.which("chromium")
     if chromium is None:
         goals.not_measured("age of frames in the live view", "chromium is not installed")
-        return goals.told()
+        return goals.exit_code()
     arguments = ["--no-sandbox", "--disable-gpu", "--enable-precise-memory-info"]
     for urls in (URLS[:1], URLS):
         print(f"live view, {len(urls)} × 200 Hz, 32 cells; CPU of one core; memory resident")
@@ -105,16 +105,16 @@ def main(seconds: float) -> int:
             page.wait_for_selector(".finger[data-seq]")
             p99_ms, lost = measure(page, fingers, seconds)
             browser.close()
-        told = f"{len(urls)} × 200 Hz"
+        load = f"{len(urls)} × 200 Hz"
         quietest = f"{min(p99_ms):.0f} ms in the best interval, load {os.getloadavg()[0]:.1f}"
         goals.at_most(
-            f"{told}: median p99 of the ages after {INTERVAL_S:.0f} s ({quietest})",
+            f"{load}: median p99 of the ages after {INTERVAL_S:.0f} s ({quietest})",
             statistics.median(p99_ms),
             GOAL_MS,
             "ms",
         )
-        goals.at_most(f"{told}: lost on the way to the server", lost, 0, "frames")
-    return goals.told()
+        goals.at_most(f"{load}: lost on the way to the server", lost, 0, "frames")
+    return goals.exit_code()
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Designs of a given number of cells, for measuring growth."""
+"""Designs with any number of cells, for measuring growth."""
 
 import math
 import shutil

@@ -1,8 +1,8 @@
-"""Goals beside what was measured, and the exit code that tells whether all were met.
+"""Measured figures beside their goals, and the exit code: 0 if all goals were met.
 
 goals = Goals()
 goals.at_most("slowest shape", 76.0, 100.0, "µs a frame")
-sys.exit(goals.told())
+sys.exit(goals.exit_code())
 """
 
 from dataclasses import dataclass, field
@@ -28,7 +28,7 @@ class Goals:
         """Say that a goal could not be tried, which does not meet it."""
         self._rows.append((name, why, False))
 
-    def told(self) -> int:
+    def exit_code(self) -> int:
         """Print every goal; the exit code: 0 if all were met."""
         print()
         for name, against, met in self._rows:

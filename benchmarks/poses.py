@@ -90,7 +90,7 @@ def published(layout: Layout) -> Method:
 
 
 def estimated(estimator: PoseEstimator) -> Method:
-    """The estimator, told what kind of object it sees."""
+    """The estimator with the kind of object known."""
 
     def method(values: Floats, kind: str) -> Line | None:
         found = estimator(values, kind)
@@ -103,11 +103,11 @@ def misses(method: Method, trials: list[Trial], kind: str) -> Floats:
     """Offset (mm) and angle (degrees) that each frame is missed by, shape `(n, 2)`."""
     rows = []
     for trial in trials:
-        told = method(trial.values, kind) or (np.inf, np.inf)
-        turn = told[1] - trial.pose[1]
+        found = method(trial.values, kind) or (np.inf, np.inf)
+        turn = found[1] - trial.pose[1]
         if abs(turn) > 90.0:  # the same line the other way round
-            told, turn = (-told[0], told[1]), (turn + 90.0) % 180.0 - 90.0
-        rows.append((abs(told[0] - trial.pose[0]), abs(turn)))
+            found, turn = (-found[0], found[1]), (turn + 90.0) % 180.0 - 90.0
+        rows.append((abs(found[0] - trial.pose[0]), abs(turn)))
     return np.array(rows)
 
 

@@ -17,7 +17,7 @@ Floats = NDArray[np.float64]
 
 @dataclass
 class Published:
-    """What the published way tells of a frame."""
+    """Result of the published processing for one frame."""
 
     threshold: float
     centre: tuple[float, float]

@@ -27,7 +27,7 @@ TITLES = {
     "cloth_corner": "a real cloth corner",
     "cable": "a real cable",
 }
-RED, BLUE, GREEN = "#d55e00", "#0072b2", "#009e73"  # told apart by colour-blind people too
+RED, BLUE, GREEN = "#d55e00", "#0072b2", "#009e73"  # distinct for colour-blind people too
 
 
 def main() -> None:

@@ -74,7 +74,7 @@ def materials(layout: Layout) -> None:
 
 
 def edges(layout: Layout) -> None:
-    """What a middle cell reads as an edge passes, at three gaps."""
+    """Values of a middle cell as an edge passes, at three gaps."""
     figure, axes = plt.subplots(figsize=(6.4, 3.0), layout="constrained")
     way = np.linspace(-6.0, 6.0, 481)
     middle = int(np.hypot(layout.x_mm, layout.y_mm - 3.0).argmin())

@@ -1,4 +1,4 @@
-"""What is between the fingers, frame by frame, without flicker between shapes.
+"""Contact frame by frame, without flicker between shapes.
 
 python examples/processing.py twin://demo 200
 """

@@ -12,13 +12,13 @@ if len(sys.argv) <= 2:
     sys.exit(__doc__)
 
 
-def told(event: LinkEvent) -> None:
+def print_event(event: LinkEvent) -> None:
     """Called on the link's thread: connected, lost, connected again, …"""
     print(f"{event.kind}: {event.detail}")
 
 
 try:
-    with Fingertip.open(sys.argv[1], layout=sys.argv[2], on_event=told) as tip:
+    with Fingertip.open(sys.argv[1], layout=sys.argv[2], on_event=print_event) as tip:
         for _ in range(50):
             frame = tip.latest()
             if frame is not None and time.monotonic() - frame.t < 0.5:

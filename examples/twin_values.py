@@ -1,4 +1,4 @@
-"""What a fingertip would read of a cable, an edge and a corner, before it is built.
+"""Values that a fingertip would read from a cable, an edge and a corner, before it is built.
 
 python examples/twin_values.py outputs/layout.json
 """

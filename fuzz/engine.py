@@ -34,7 +34,7 @@ class Target:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What came of a target."""
+    """Result of a target."""
 
     inputs: int
     refused: int

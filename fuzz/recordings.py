@@ -67,7 +67,7 @@ def _unguarded(texts: dict[str, str], frames: list[RecordedFrame], kind: dict[st
 
 
 def read_recording(data: bytes) -> None:
-    """Read metadata and all frames; damage within is told, never raised."""
+    """Read metadata and all frames; damage inside is reported, never raised."""
     stream = io.BytesIO(data)
     try:
         cells = len(read_metadata(stream, "input").layout)

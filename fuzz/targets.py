@@ -1,4 +1,4 @@
-"""What reads bytes from outside, each with good inputs to begin from."""
+"""Readers of bytes from outside, each with good inputs to start from."""
 
 from binascii import crc_hqx
 from collections.abc import Sequence

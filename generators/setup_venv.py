@@ -103,7 +103,7 @@ def main(extras: str) -> int:
 
 
 def lacking() -> str:
-    """What this computer lacks, with a remedy; empty if nothing."""
+    """Missing programs and libraries, with a remedy; empty if there are none."""
     if sys.version_info < (3, 11):  # noqa: UP036
         return (
             f"Lumitip needs Python 3.11 or newer, this is {sys.version.split()[0]}: "

@@ -36,7 +36,7 @@ ALLOWED = {
     "checks": "checks.readers design pipeline",
     "explore": "boards catalogue checks config derive design pipeline",
     "cli": "boards catalogue checks checks.readers config derive design docs explore pipeline",
-    "__init__": "checks cli config derive design pipeline",
+    "__init__": "checks cli config derive design parts pipeline",
     "__main__": "cli",
 }
 """The rooms of `lumitip_fab`, and the rooms that each may import."""

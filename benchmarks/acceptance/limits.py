@@ -1,4 +1,4 @@
-"""What cannot exist: the physical limits of `docs/ranges.md`, from the catalogue's figures.
+"""Physical limits of `docs/ranges.md`, from the catalogue's figures.
 
 Nothing here comes from `lumitip_fab`, so that the same figures confirm what it refuses.
 """

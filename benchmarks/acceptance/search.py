@@ -17,7 +17,7 @@ CURRENTS_MA = (19.2, 18.0, 16.0, 14.0, 12.0, 10.0, 8.0, 6.0, 5.0, 4.0, 3.0, 2.0)
 
 
 def free_values() -> dict[str, list[object]]:
-    """What each field that follows from others may be, by field."""
+    """Allowed values of each dependent field, by field."""
     return {
         "emitter.current_ma": [*CURRENTS_MA],
         "emitter.string_leds": [*range(16, 0, -1)],

@@ -1,4 +1,4 @@
-"""What becomes of a user file: accepted, refused or crashed; and, built, which checks fail."""
+"""Trial of a user file: accepted, refused or crashed; and, once built, which checks fail."""
 
 import shutil
 import tempfile
@@ -21,7 +21,7 @@ class Refusal:
 
 @dataclass(frozen=True)
 class Trial:
-    """What became of one design."""
+    """Result of one design."""
 
     name: str
     refusals: tuple[Refusal, ...] = ()
@@ -77,5 +77,5 @@ def build_file(file: Path) -> Trial:
             failed = run_checks(Path(out)).failed
         except Exception:  # noqa: BLE001 - whatever it is, it is what is counted
             return Trial(file.stem, crash=traceback.format_exc())
-    told = (f"{m.check} {m.subject}: {m.measured:g} {m.unit} ({m.limit}) {m.note}" for m in failed)
-    return Trial(file.stem, failed=tuple(told))
+    lines = (f"{m.check} {m.subject}: {m.measured:g} {m.unit} ({m.limit}) {m.note}" for m in failed)
+    return Trial(file.stem, failed=tuple(lines))

@@ -3,18 +3,22 @@
 design = lumitip_fab.derived(Path("design/fingertip.toml"))
 lumitip_fab.build(Path("design/fingertip.toml"), Path("outputs"))
 outcome = lumitip_fab.check(Path("outputs"))
+lumitip_fab.show("outputs/backing/receiver_backing.step")
 """
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from build123d import Shape
+
     from lumitip_fab.checks.run import Outcome
     from lumitip_fab.config.load import Input
     from lumitip_fab.design import Design
     from lumitip_fab.pipeline.build import Progress, Report
 
-__all__ = ["build", "check", "derived", "load"]
+__all__ = ["build", "check", "derived", "load", "show"]
 
 
 # What a function needs is imported when it is called: many programs want one of them.
@@ -40,7 +44,9 @@ def derived(file: Path) -> "Design":
     return derive(load(file))
 
 
-def build(file: Path, out: Path, progress: "Progress | None" = None) -> "Report":
+def build(
+    file: Path, out: Path, progress: "Progress | None" = None, only: Sequence[str] = ()
+) -> "Report":
     """Build a parameter file into an output folder; only what changed is made again.
 
     Args:
@@ -48,6 +54,7 @@ def build(file: Path, out: Path, progress: "Progress | None" = None) -> "Report"
         out: the folder; made if missing.
         progress: called with the name of each step that ends, how many are done, and how many
             there are.
+        only: names of the steps to run, like `["backing"]`; all, if there are none.
 
     Raises:
         InputError: if the file is rejected; then nothing is written.
@@ -56,7 +63,7 @@ def build(file: Path, out: Path, progress: "Progress | None" = None) -> "Report"
     """
     from lumitip_fab.cli import build as command
 
-    return command.build(file, out, progress)
+    return command.build(file, out, progress, only)
 
 
 def check(out: Path) -> "Outcome":
@@ -68,3 +75,21 @@ def check(out: Path) -> "Outcome":
     from lumitip_fab.checks.run import run_checks
 
     return run_checks(out)
+
+
+def show(*parts: "Shape | Path | str", open_page: bool = True) -> Path:
+    """Show parts in the browser, from a page that works without a network.
+
+    Args:
+        parts: shapes of build123d, or STEP, STL, 3MF or GLB files.
+        open_page: open the page; if not, it is only written.
+
+    Returns:
+        The page, in the temporary folder of the system.
+
+    Raises:
+        ValueError: with every argument that is no part.
+    """
+    from lumitip_fab.parts import show as viewer
+
+    return viewer.show(*parts, open_page=open_page)

@@ -26,7 +26,7 @@ LIBRARIES = (
     SystemLibrary("libexpat.so.1", "libexpat1", "expat", "expat"),
     SystemLibrary("libstdc++.so.6", "libstdc++6", "libstdc++", "gcc-libs"),
 )
-"""What `cadquery-ocp-novtk` needs beyond libc and libgcc, from the NEEDED entries of its files."""
+"""Libraries of `cadquery-ocp-novtk` beyond libc and libgcc, from its files' NEEDED entries."""
 
 
 def missing_libraries() -> tuple[SystemLibrary, ...]:

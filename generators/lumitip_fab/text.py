@@ -53,7 +53,7 @@ def _shortened(text: str) -> str:
 
 
 _SIGNS = re.compile(r"[\\`*\[\]<>&|#~!]|(?<![A-Za-z0-9])_|_(?![A-Za-z0-9])")
-"""What Markdown reads within a line; of a `_` only one that is not between letters or digits."""
+"""Markdown signs within a line; a `_` counts only if it is not between letters or digits."""
 
 
 def as_written(text: str) -> str:

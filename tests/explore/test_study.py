@@ -184,7 +184,7 @@ def test_a_design_whose_cells_are_too_few_for_a_pose_is_refused(config: Input) -
         ),
     )
     (told,) = evaluate(Job.of(few, (), config.catalogue.prices, FEW))["refused"]
-    assert told.startswith("grid.columns: layout: 3 cells given, a pose needs at least 4")
+    assert told.startswith("grid.columns: layout has 3 cells; a pose needs at least 4")
 
 
 def test_figures_are_those_of_the_design(config: Input) -> None:
@@ -255,7 +255,7 @@ def test_a_part_without_a_price_and_a_doubled_grid_are_refused(
     with pytest.raises(InputError) as caught:
         explore(file, ["grid.columns=[[5, 4]]"], tmp_path / "out", 6, True, FEW, None, print)
     assert "has no price of '0603'" in str(caught.value)
-    assert "grid.columns: given with --keep-size" in str(caught.value)
+    assert "grid.columns: and --keep-size exclude each other" in str(caught.value)
     (parts / "prices.toml").write_text('currency = "euro"\ndated = 3\n', encoding="utf-8")
     with pytest.raises(InputError) as caught:
         explore(file, TEXTS, tmp_path / "out", 6, True, FEW, None, print)

@@ -64,24 +64,24 @@ def test_every_fault_of_every_text_is_told_at_once(config: Input) -> None:
         "Did you mean 'grid.pitch_mm'?",
         "FIELD=FROM:TO",
         "FROM must be below TO",
-        "'5:x' given",
-        "a step of 0 given",
+        "is '5:x'; FROM",
+        "has a step of 0;",
         "no TOML list",
         "is 'none', which does not exist",
         "Names in parts/leds.toml:",
         "is 9; at most 5 is allowed",
-        "tip.edge_mm: given twice",
-        "an empty list given",
-        "'inf:3' given",
+        "tip.edge_mm: is there twice",
+        "is an empty list",
+        "is 'inf:3'; FROM",
     ):
         assert part in told, part
     assert all(problem.file == "--vary" for problem in caught.value.problems)
 
 
 def test_no_more_designs_than_can_be_evaluated(config: Input) -> None:
-    with pytest.raises(InputError, match="40000 designs given, at most 10000"):
+    with pytest.raises(InputError, match="makes 40000 designs; at most 10000"):
         axes(config, ["grid.pitch_mm=3:8", "mask.hole_mm=1:4"], points=200)
-    with pytest.raises(InputError, match="1 points given, a range needs at least 2"):
+    with pytest.raises(InputError, match="has 1 points; a range needs at least 2"):
         axes(config, ["grid.pitch_mm=3:8"], points=1)
 
 

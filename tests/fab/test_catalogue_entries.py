@@ -8,7 +8,8 @@ from typing import Any
 
 import pytest
 
-from lumitip_fab.config.load import NAMED, Input
+from lumitip_fab.config.load import Input
+from lumitip_fab.config.parts import NAMED
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
 
@@ -53,7 +54,7 @@ def test_every_entry_derives_in_the_published_design(
     design = derive(config)
     assert list(wiring_faults(design)) == []
     assert len(design.layout) == 32
-    assert config.named_parts()[field].source
+    assert config.parts_by_field()[field].source
 
 
 @pytest.mark.parametrize("kind", LEAST)

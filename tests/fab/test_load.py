@@ -8,7 +8,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from lumitip_fab.config.load import NAMED, Input, load
+from lumitip_fab.config.load import Input, load
+from lumitip_fab.config.parts import NAMED
 from lumitip_fab.derive import derive
 from lumitip_fab.errors import InputError, Problem
 
@@ -113,8 +114,8 @@ def test_a_part_of_ones_own_needs_no_python(write: Write) -> None:
     entry = text[text.index("[") :].replace("15406085BA300", "my own LED")
     leds.write_text(text + "\n" + entry.split("\n\n")[0] + "\n", encoding="utf-8")
     config = load(write(BASE + '[emitter]\nled = "my own LED"\n'))
-    assert config.named_parts()["emitter.led"].source
-    assert set(config.named_parts()) == set(NAMED)
+    assert config.parts_by_field()["emitter.led"].source
+    assert set(config.parts_by_field()) == set(NAMED)
 
 
 def test_a_fault_is_placed_in_the_file_that_set_the_value(write: Write) -> None:
@@ -202,6 +203,6 @@ def test_random_values_for_random_fields_are_derived_or_refused(write: Write) ->
 
 def test_an_input_knows_the_part_behind_every_name() -> None:
     given: Input = load(DESIGN / "presets" / "dense.toml")
-    parts = given.named_parts()
+    parts = given.parts_by_field()
     assert parts["receiver.multiplexer"] == given.catalogue.multiplexers["74HC4067PW"]
     assert parts["coupling.gripper"] == given.catalogue.grippers["robotiq_2f85"]

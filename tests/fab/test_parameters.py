@@ -7,8 +7,9 @@ from typing import Any
 import pytest
 from pydantic import BaseModel, ValidationError
 
-from lumitip_fab.config.load import NAMED, Input
+from lumitip_fab.config.load import Input
 from lumitip_fab.config.parameters import Parameters
+from lumitip_fab.config.parts import NAMED
 
 UNITS = ("mm", "mm2", "deg", "g_ml", "ma", "v", "w", "ohm", "fraction")
 PLAIN = {"outline.waist_at"}  # fractions of the length, by their description

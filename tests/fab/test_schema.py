@@ -10,8 +10,8 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from lumitip_fab.cli import main
-from lumitip_fab.config.load import NAMED
 from lumitip_fab.config.parameters import Parameters
+from lumitip_fab.config.parts import NAMED
 from lumitip_fab.config.schema import UNITS, field_title
 
 ROOT = Path(__file__).parents[2]

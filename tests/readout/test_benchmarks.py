@@ -22,7 +22,7 @@ def test_met_goals_are_told(capsys: pytest.CaptureFixture[str]) -> None:
     goals.at_most("slowest", 76.04, 100.0, "µs")
     goals.at_least("batch", 450_123.4, 1e5, "frames/s")
     goals.at_most("lost", 0, 0)
-    assert goals.told() == 0
+    assert goals.exit_code() == 0
     assert capsys.readouterr().out.strip().splitlines() == [
         "met     slowest: 76.04 µs (goal: at most 100)",
         "met     batch: 450,123 frames/s (goal: at least 100,000)",
@@ -43,7 +43,7 @@ def test_one_missed_goal_is_enough(miss, capsys: pytest.CaptureFixture[str]) -> 
     goals = _goals()
     goals.at_most("met", 1.0, 2.0)
     miss(goals)
-    assert goals.told() == 1
+    assert goals.exit_code() == 1
     assert [line.split()[0] for line in capsys.readouterr().out.split("\n") if line] == [
         "met",
         "MISSED",

@@ -83,7 +83,7 @@ def test_a_single_column_tells_where_a_border_is_and_not_its_direction(make_layo
 def test_a_pose_of_three_cells_is_refused_with_the_number_needed(
     columns: tuple[int, ...], make_layout: Make
 ) -> None:
-    with pytest.raises(EstimationError, match="layout: 3 cells given, a pose needs at least 4"):
+    with pytest.raises(EstimationError, match="layout has 3 cells; a pose needs at least 4"):
         PoseEstimator(make_layout(columns))
 
 
@@ -128,5 +128,5 @@ def test_an_edge_fitted_to_a_single_column_is_refused(make_layout: Make) -> None
     start: Any = np.array([0.5, 0.0, 0.0, 0.05, 2.5, 0.6, 0.9, 0.1, 0.1])
     values = read(layout, start)
     assert np.isfinite(values).all()
-    with pytest.raises(TwinError, match="all cells of the layout lie on one line"):
+    with pytest.raises(TwinError, match="layout has all cells in one line"):
         fit_edge(layout, values, 0.5, 0.0)

@@ -1,4 +1,4 @@
-"""What a hurried user gives by mistake is refused in one line: what was given, what is needed."""
+"""Mistakes of a hurried user are rejected in one line: the value, and what is needed."""
 
 import math
 from collections.abc import Callable
@@ -72,9 +72,7 @@ def estimator() -> PoseEstimator:
 def test_values_that_are_no_numbers(estimator: PoseEstimator, values: Any) -> None:
     frames: list[Call] = [Processor(CELLS), Processor(CELLS).batch, Tracker(CELLS), estimator]
     for call in [*frames, lambda v: estimator.fitted(v, "edge"), lambda v: learn(CELLS, v)]:
-        with pytest.raises(
-            ValuesError, match=r"(given,|;) (an array of numbers|a frame|frames of)"
-        ):
+        with pytest.raises(ValuesError, match=r"; (an array of numbers|a frame|frames of)"):
             call(values)
     others: list[tuple[type[LumitipError], Call]] = [
         (ArgumentError, lambda v: examine(v, CELLS)),
@@ -84,7 +82,7 @@ def test_values_that_are_no_numbers(estimator: PoseEstimator, values: Any) -> No
         others.append((TwinError, lambda v: Twin(CELLS, gains=v)))
         others.append((EstimationError, lambda v: PoseEstimator(CELLS, gains=v)))
     for error, call in others:
-        with pytest.raises(error, match=r"(given,|;) .*needed"):
+        with pytest.raises(error, match=r"; .*needed"):
             call(values)
 
 
@@ -92,7 +90,7 @@ def test_values_that_are_no_numbers(estimator: PoseEstimator, values: Any) -> No
 def test_a_kind_that_there_is_not(estimator: PoseEstimator, kind: Any) -> None:
     values = np.linspace(0.0, 255.0, 32)
     for call in (estimator, estimator.fitted):
-        with pytest.raises(EstimationError, match=r"kind: .* given, allowed are edge"):
+        with pytest.raises(EstimationError, match=r"kind is .*; allowed are edge"):
             call(values, kind)
 
 
@@ -154,7 +152,7 @@ def test_a_setting_that_is_no_number(
     for name in names:
         if isinstance(given, int) and name in COUNTS:
             continue
-        with pytest.raises(error, match=rf"^{name}(: .* given,| is .*;) .*(needed|allowed)"):
+        with pytest.raises(error, match=rf"^{name} is .*; .*(needed|allowed)"):
             call(**{name: given})
 
 
@@ -207,7 +205,7 @@ def test_a_setting_that_is_no_number(
     ],
 )
 def test_what_cannot_be_so(error: type[LumitipError], call: Callable[[], object]) -> None:
-    with pytest.raises(error, match=r"given|needed|not finite|; ") as told:
+    with pytest.raises(error, match=r"needed|not finite|; ") as told:
         call()
     assert "\n" not in str(told.value)
 
@@ -236,7 +234,7 @@ def test_a_path_that_is_none(given: Any, tmp_path: Path) -> None:
     calls += [lambda v: Writer(tmp_path / "run.mcap", CELLS, device_id=v)]
     calls += [lambda v: export(tmp_path / "run.mcap", v)]
     for call in calls:
-        with pytest.raises(RecordingError, match=r"(given,|;) .* needed"):
+        with pytest.raises(RecordingError, match=r"; .* needed"):
             call(given)
     for error, load in (
         (LayoutError, Layout.load),
@@ -273,23 +271,23 @@ def test_scenes_and_places_of_a_twin(twin: Twin) -> None:
         lambda: fit_edge(CELLS, np.zeros(32), math.nan, 0.0),
     ]  # type: ignore[arg-type,list-item]
     for call in calls:
-        with pytest.raises(TwinError, match=r"given|needed"):
+        with pytest.raises(TwinError, match="needed"):
             call()
 
 
 def test_what_is_seen_and_commanded_in_a_task(twin: Twin) -> None:
     task = Task(CELLS, Settings("cable"), twin)
     for seen in (np.zeros(32), None, "edge"):
-        with pytest.raises(ControlError, match="given, a Contact or an Estimate is needed"):
+        with pytest.raises(ControlError, match="; a Contact or an Estimate is needed"):
             sight_of(seen)  # type: ignore[arg-type]
     contact = Processor(CELLS)(twin.values(HalfPlane()))
     for dt_s in NO_NUMBERS:
-        with pytest.raises(ControlError, match=r"dt_s(: .* given| is .*;)"):
+        with pytest.raises(ControlError, match=r"dt_s is .*;"):
             Tracer(LineLaw())(contact, dt_s)
     for command in (3.0, None, Command(math.nan), Command("1")):  # type: ignore[arg-type]
-        with pytest.raises(TaskError, match=r"given|;"):
+        with pytest.raises(TaskError, match=";"):
             task.step(command)  # type: ignore[arg-type]
-    with pytest.raises(TaskError, match=r"seed(: 'a' given| is 'a';)"):
+    with pytest.raises(TaskError, match=r"seed is 'a';"):
         task.reset("a")  # type: ignore[arg-type]
     with pytest.raises(TaskError, match="allowed are centre, line, pose"):
         Bench(task).run("lines", 80.0, Tuning(), 0)

@@ -91,7 +91,7 @@ def _receiver(
         }
         # An input without a detector is tied to ground, so that nothing floats.
         leads |= {str(lead): GROUND for lead in mux.inputs if str(lead) not in leads}
-        told = tuple(sorted(leads.items(), key=lambda item: int(item[0])))
+        pins = tuple(sorted(leads.items(), key=lambda item: int(item[0])))
         yield Component(
             f"U{which + 1}",
             mux.value,
@@ -102,7 +102,7 @@ def _receiver(
             0.0,
             0.0,
             "front",
-            told,
+            pins,
             manufacturer=mux.manufacturer,
             lcsc=mux.lcsc,
         )

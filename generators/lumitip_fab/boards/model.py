@@ -70,7 +70,7 @@ class Component:
     ref: str
     value: str
     part: str
-    """What to order; empty of bare copper: wire pads, test points and fiducials."""
+    """Order number; empty for bare copper: wire pads, test points and fiducials."""
     kind: str
     """`"led"`, `"photodetector"`, `"multiplexer"`, `"resistor"`, `"capacitor"`, `"connector"`,
     `"test point"` or `"fiducial"`."""

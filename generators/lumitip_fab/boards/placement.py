@@ -44,8 +44,8 @@ def string_angles(
             turned = dataclasses.replace(led, angle_deg=angle)
             into = pad_at(turned, anode)
             length, angles = min(
-                (round(so_far + math.dist(left, into), 6), told)
-                for left, (so_far, told) in best.items()
+                (round(so_far + math.dist(left, into), 6), angles_so_far)
+                for left, (so_far, angles_so_far) in best.items()
             )
             reached[pad_at(turned, cathode)] = length, (*angles, angle)
         best = reached
@@ -198,7 +198,8 @@ def refuse_overlaps(name: str, parts: tuple[Component, ...], remedy: str) -> Non
         yards = [(part.ref, courtyard(part)) for part in parts if part.side == side]
         for (one, here), (other, there) in spots.overlaps(yards):
             raise BuildError(
-                f"{name}: {one} at {_told(here)} and {other} at {_told(there)} overlap: {remedy}"
+                f"{name}: {one} at {_corners(here)} and {other} at {_corners(there)} overlap: "
+                f"{remedy}"
             )
 
 
@@ -208,12 +209,12 @@ def _refuse_beyond(name: str, parts: tuple[Component, ...], board: Board) -> Non
         yard = courtyard(part)
         if spots.beyond_mm(yard, board.box) > _NOISE_MM:
             raise BuildError(
-                f"{name}: {part.ref} at {_told(yard)} leaves the board at {_told(board.box)}: give "
-                "it more room in [board], or choose smaller parts"
+                f"{name}: {part.ref} at {_corners(yard)} leaves the board at "
+                f"{_corners(board.box)}: give it more room in [board], or choose smaller parts"
             )
 
 
-def _told(box: Box) -> str:
+def _corners(box: Box) -> str:
     return (
         f"x {box.x_min_mm:.2f} to {box.x_max_mm:.2f}, y {box.y_min_mm:.2f} to {box.y_max_mm:.2f} mm"
     )

@@ -98,7 +98,7 @@ def _pieces(
 
 
 class _Copper:
-    """What is on the board, to keep clear of."""
+    """Obstacles on the board."""
 
     def __init__(self, placement: Placement, routing: Routing, lands: list[_Land]) -> None:
         classes = {c.name: c.clearance_mm for c in placement.classes}

@@ -226,7 +226,7 @@ def summary(faults: tuple[Fault, ...], most: int = 5) -> str:
 
 
 def sound(model: BoardModel) -> BoardModel:
-    """The board as given, if it has no fault.
+    """The same board, if it has no fault.
 
     Raises:
         BuildError: it has; names the nets and the places.

@@ -80,9 +80,9 @@ def _step(outputs: Path, design: Design) -> Measurement:
     except (OSError, ValueError) as error:
         return unreadable("assembly.step", _STEP, f"cannot be read: {error!r:.200}")
     names = [f"{finger.name}.{layer}" for finger in design.fingers for layer in design.layers]
-    for told in (*(f"PRODUCT('{name}'" for name in names), "SI_UNIT(.MILLI.,.METRE.)", _STEP_END):
-        if told not in text:
-            return unreadable("assembly.step", _STEP, f"holds no {told}")
+    for phrase in (*(f"PRODUCT('{name}'" for name in names), "SI_UNIT(.MILLI.,.METRE.)", _STEP_END):
+        if phrase not in text:
+            return unreadable("assembly.step", _STEP, f"holds no {phrase}")
     wanted = len(names) + sum(len(finger.parts) for finger in design.fingers)
     solids = text.count("MANIFOLD_SOLID_BREP(")
     return Measurement("assembly.step", _STEP, solids, wanted, wanted, "bodies")
@@ -235,7 +235,7 @@ def _bolt_z_mm(backing: Node, design: Design) -> float:
 
 
 def _interference(scene: Scene, design: Design) -> Iterator[Measurement]:
-    """What bodies of a finger share, and what the fingers share when they just touch."""
+    """Volume shared by the bodies of a finger, and by both fingers when they just touch."""
     try:
         fingers = [_bodies(scene, finger, design.layers) for finger in design.fingers]
     except OutputError as error:

@@ -134,7 +134,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
             yield from packages.measure_files(outputs, part)
         whole = [part for part in made if isinstance(part, Printed)]
         if len(whole) == 2:
-            yield from _told(partial(flex.measure_joint, whole[0]), whole[1], "joint")
+            yield from _caught(partial(flex.measure_joint, whole[0]), whole[1], "joint")
 
 
 def _read(
@@ -168,10 +168,10 @@ def _measured(part: Printed) -> Iterator[Measurement]:
     else:
         steps += (flex.measure_interface_size, *_HELD)
     for step in steps:
-        yield from _told(step, part, step.__name__.removeprefix("measure_"))
+        yield from _caught(step, part, step.__name__.removeprefix("measure_"))
 
 
-def _told(step: Step, part: Printed, name: str) -> Iterator[Measurement]:
+def _caught(step: Step, part: Printed, name: str) -> Iterator[Measurement]:
     try:
         yield from step(part)
     except (
@@ -191,7 +191,7 @@ def measure_surface(part: Printed) -> Iterator[Measurement]:
 
 
 def measure_print(part: Printed) -> Iterator[Measurement]:
-    """What the printer lays over air, and what holds the part on the bed."""
+    """Overhang, and contact with the print bed."""
     hang, bed = solids.overhang_mm2(part.standing), solids.bed_contact_mm2(part.standing)
     most = PUBLISHED_OVERHANG_MM2 if part.kind == part.design.held else FLAT_OVERHANG_MM2
     yield part.figure("overhang", hang, 0.0, most, "mm²")
@@ -223,7 +223,7 @@ def measure_letter(part: Printed) -> Iterator[Measurement]:
 
 
 def _letter(part: Printed) -> tuple[Letter, Matrix]:
-    """The part's letter, and the matrix from its print bed to the frame that it is given in."""
+    """The part's letter, and the matrix from its print bed to its frame."""
     design = part.design
     if part.kind == design.held:
         return design.mount.letter, np.eye(4)

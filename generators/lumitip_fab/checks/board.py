@@ -102,8 +102,8 @@ def _height_mm(part: Part) -> float:
     """By the footprint's name; bare copper has none, NaN if the name tells nothing."""
     if part.footprint.startswith(_FLAT):
         return 0.0
-    told = _HEIGHT.search(part.footprint)
-    return int(told[1]) / 100 if told else math.nan
+    height = _HEIGHT.search(part.footprint)
+    return int(height[1]) / 100 if height else math.nan
 
 
 def _spare_mm(read: Read, part: Part, height_mm: float) -> float:
@@ -145,9 +145,9 @@ def measure_nets(read: ReadBoard) -> Iterator[Measurement]:
     groups, names = read.clusters.groups(), read.clusters.nets()
     opened = sorted(net for net, found in groups.items() if len(found) > 1)
     yield read.count("open", [f"{net} in {len(groups[net])} pieces" for net in opened], "nets")
-    joined = sorted(" and ".join(sorted(told)) for told in names.values() if len(told) > 1)
+    joined = sorted(" and ".join(sorted(labels)) for labels in names.values() if len(labels) > 1)
     yield read.count("short", joined, "places")
-    grounded = {label for label, told in names.items() if "GND" in told}
+    grounded = {label for label, labels in names.items() if "GND" in labels}
     adrift = [
         f"on {'/'.join(sorted(piece.layers))}"
         for piece in read.board.loose

@@ -48,12 +48,12 @@ def _share(read: Read, ref: str, leds: int, volts: float) -> float:
 
 def _highest_a(read: Read, volts: float, leds: int, resistance: float) -> float:
     """Current with every LED at its lowest forward voltage."""
-    told = read.design.electrical.strings
-    slope = told.ideality * THERMAL_V
+    strings = read.design.electrical.strings
+    slope = strings.ideality * THERMAL_V
 
     def missing_v(amps: float) -> float:
-        each = told.forward_v - told.forward_tolerance_v
-        each += slope * math.log(1000 * amps / told.target_ma)
+        each = strings.forward_v - strings.forward_tolerance_v
+        each += slope * math.log(1000 * amps / strings.target_ma)
         return volts - leds * each - amps * resistance
 
     return float(brentq(missing_v, 1e-12, volts / resistance + 1e-9))
@@ -111,14 +111,16 @@ def measure_strings(read: Read) -> Iterator[Measurement]:
     for i, cells in enumerate(wiring.strings):
         chain, ends = _chain(read, f"R{i + 1}", supply, anode)
         lit.append(len(chain))
-        told = [f"D{cell + 1}" for cell in cells]
+        wanted = [f"D{cell + 1}" for cell in cells]
         turned += [ref.removeprefix("-") for ref in chain if ref.startswith("-")]
-        if [ref.removeprefix("-") for ref in chain] != told or not ends:
-            wrong.append(f"R{i + 1} feeds {len(chain)} LEDs, not the {len(told)} of string {i + 1}")
+        if [ref.removeprefix("-") for ref in chain] != wanted or not ends:
+            wrong.append(
+                f"R{i + 1} feeds {len(chain)} LEDs, not the {len(wanted)} of string {i + 1}"
+            )
         part = read.parts.get(f"R{i + 1}")
         resistance = ohm(part.value) if part else math.nan
         drop = wiring.supply_v - wiring.current_ma[i] * 1e-3 * wiring.resistor_ohm[i]
-        amps_ma = 1e3 * (wiring.supply_v - drop / len(told) * len(chain)) / resistance
+        amps_ma = 1e3 * (wiring.supply_v - drop / len(wanted) * len(chain)) / resistance
         shares.append(amps_ma / wiring.current_ma[i])
     yield read.count("strings", wrong, "strings")
     yield read.count("polarity", turned, "LEDs")

@@ -102,7 +102,7 @@ class Read(ReadBoard):
         return self.group("J1", signals.index(signal) + 1) if signal in signals else None
 
     def ordered(self, ref: str) -> str:
-        """What to order for a part, by the catalogue; the board tells a resistor's value."""
+        """Order number of a part from the catalogue; a resistor's value is read from the board."""
         packages, part = self.design.packages, self.parts.get(ref)
         emitter = self.finger.name == "emitter"
         numbers = {
@@ -127,7 +127,7 @@ class ReadCarrier(ReadBoard):
         return self.carrier.name
 
     def ordered(self, ref: str) -> str:
-        """What to order for a part."""
+        """Order number of a part."""
         return next((d.part for d in self.carrier.devices if d.ref == ref), "")
 
 
@@ -163,8 +163,8 @@ def read_carrier(outputs: Path, design: Design, name: str) -> ReadCarrier:
 
 def ohm(value: str) -> float:
     """Resistance that a value tells, such as 150R or 4K99; NaN if it tells none."""
-    told = _VALUE.fullmatch(value)
-    return float(f"{told[1]}.{told[3] or 0}") * _POWER[told[2]] if told else math.nan
+    match = _VALUE.fullmatch(value)
+    return float(f"{match[1]}.{match[3] or 0}") * _POWER[match[2]] if match else math.nan
 
 
 def middle(part: Part | None) -> Point:

@@ -1,4 +1,4 @@
-"""What is printed on a board, and the marks that people and machines find it by."""
+"""Silkscreen of a board, fiducials and test points."""
 
 import itertools
 import math
@@ -46,7 +46,7 @@ def measure_silk(read: Read) -> Iterator[Measurement]:
 
 
 def measure_targets(read: Read) -> Iterator[Measurement]:
-    """Three fiducials far apart, a test point on every signal, and no name given twice."""
+    """Three fiducials far apart, a test point on every signal, and no name twice."""
     marks = [p for p in read.board.parts if p.ref.startswith("FID") and p.front and p.terminals]
     yield read.figure("fiducials", len(marks), 3, 3, "marks")
     apart = [math.dist(a.at, b.at) for a, b in itertools.combinations(marks, 2)]

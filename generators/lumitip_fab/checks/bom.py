@@ -78,15 +78,15 @@ def _bolts(rows: tuple[Row, ...], design: Design) -> Iterator[Measurement]:
     for flange in design.flanges:
         wanted[flange.bolt] += len(flange.bolts)
     for thread, count in wanted.items():
-        told = sum(r.quantity for r in rows if r.item.startswith(f"{thread} socket"))
+        listed = sum(r.quantity for r in rows if r.item.startswith(f"{thread} socket"))
         yield Measurement(
-            "bom.bolts", _FILE, told, count, count, "bolts", f"{thread}, of fingers and flange"
+            "bom.bolts", _FILE, listed, count, count, "bolts", f"{thread}, of fingers and flange"
         )
 
 
 def _read(path: Path) -> tuple[tuple[Row, ...], float, str]:
     try:
-        told = table(path.read_text(encoding="utf-8"))
+        lines = table(path.read_text(encoding="utf-8"))
         rows = tuple(
             Row(
                 r["group"],
@@ -96,11 +96,11 @@ def _read(path: Path) -> tuple[tuple[Row, ...], float, str]:
                 _price(r["unit_price"]),
                 _price(r["price"]),
             )
-            for r in told[:-1]
+            for r in lines[:-1]
         )
-        if told[-1]["group"] != "total":
+        if lines[-1]["group"] != "total":
             raise ValueError("its last line is no total")
-        return rows, _figure(told[-1]["price"]), told[-1]["for"]
+        return rows, _figure(lines[-1]["price"]), lines[-1]["for"]
     except (OSError, ValueError, KeyError, IndexError) as error:
         raise OutputError(f"{path}: cannot be read as a bill: {error!r:.120}") from error
 
@@ -161,25 +161,25 @@ def _casting(outputs: Path, design: Design) -> Iterator[str]:
 
 
 def _wrong_parts(rows: tuple[Row, ...], parts: Counter[str], design: Design) -> list[str]:
-    told: Counter[str] = Counter()
+    counts: Counter[str] = Counter()
     for row in rows:
         if row.group == "electronics":
-            told[row.part] += round(row.quantity)
+            counts[row.part] += round(row.quantity)
     soldered = any(d.kind == "module" for c in design.carriers for d in c.devices)
     wanted = parts + Counter({} if soldered else {design.controller.title: 1})
     return [
-        f"{part}: {told[part]}, not {wanted[part]}"
-        for part in sorted({*told, *wanted})
-        if told[part] != wanted[part]
+        f"{part}: {counts[part]}, not {wanted[part]}"
+        for part in sorted({*counts, *wanted})
+        if counts[part] != wanted[part]
     ]
 
 
 def _prints(rows: tuple[Row, ...], grams: dict[str, float]) -> Measurement:
-    told = {row.item: row.quantity for row in rows if row.group == "prints"}
-    if told.keys() != grams.keys():
-        wrong = sorted(told.keys() ^ grams.keys())
+    listed = {row.item: row.quantity for row in rows if row.group == "prints"}
+    if listed.keys() != grams.keys():
+        wrong = sorted(listed.keys() ^ grams.keys())
         return unreadable("bom.prints", _FILE, f"lists other parts: {', '.join(wrong[:3])}")
-    off = {name: abs(told[name] / grams[name] - 1) for name in grams}
+    off = {name: abs(listed[name] / grams[name] - 1) for name in grams}
     worst = max(off, key=lambda name: off[name])
     return Measurement(
         "bom.prints",
@@ -195,9 +195,9 @@ def _prints(rows: tuple[Row, ...], grams: dict[str, float]) -> Measurement:
 def _near(
     check: str, rows: tuple[Row, ...], group: str, wanted: float, unit: str, note: str
 ) -> Measurement:
-    told = sum(row.quantity for row in rows if row.group == group)
+    listed = sum(row.quantity for row in rows if row.group == group)
     room = _FRACTION * wanted
-    return Measurement(f"bom.{check}", _FILE, told, wanted - room, wanted + room, unit, note)
+    return Measurement(f"bom.{check}", _FILE, listed, wanted - room, wanted + room, unit, note)
 
 
 def _wrong_prices(rows: tuple[Row, ...], design: Design) -> list[str]:
@@ -232,18 +232,18 @@ def _each(row: Row, design: Design) -> float | None:
     return {"mask": purchase.film_sheet, "wiring": purchase.wire_m}.get(row.group)
 
 
-def _same(told: float | None, wanted: float | None, room: float) -> bool:
-    if told is None or wanted is None:
-        return told is wanted
-    return abs(told - wanted) <= room
+def _same(figure: float | None, wanted: float | None, room: float) -> bool:
+    if figure is None or wanted is None:
+        return figure is wanted
+    return abs(figure - wanted) <= room
 
 
 def _sum(rows: tuple[Row, ...], total: float, note: str, design: Design) -> Measurement:
     """The total against its lines; it must say of when the prices are, and what they are worth."""
     purchase = design.purchase
-    told = (purchase.currency, purchase.dated, purchase.confidence)
+    sources = (purchase.currency, purchase.dated, purchase.confidence)
     lines = sum(row.price or 0.0 for row in rows)
-    off = abs(lines - total) if all(word in note for word in told) else math.nan
+    off = abs(lines - total) if all(word in note for word in sources) else math.nan
     return Measurement("bom.total", _FILE, off, 0, _CENT, purchase.currency, f"of {lines:.2f}")
 
 

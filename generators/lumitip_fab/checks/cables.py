@@ -67,16 +67,16 @@ def read_note(path: Path) -> dict[str, tuple[str, ...]]:
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         raise OutputError(f"{path}: {error}") from error
-    heads = {name: told for name, *told in _HEADING.findall(text)}
-    told: dict[str, tuple[str, ...]] = {}
+    heads = {name: rows for name, *rows in _HEADING.findall(text)}
+    rows: dict[str, tuple[str, ...]] = {}
     for wire, colour, start, signal, end, current in _ROW.findall(text):
         boards = heads.get(wire.rpartition(".")[0], ["", "", "", ""])
-        told[wire] = (signal, boards[0], start, boards[1], end, colour, *boards[2:], current)
-    return told
+        rows[wire] = (signal, boards[0], start, boards[1], end, colour, *boards[2:], current)
+    return rows
 
 
 def note_row(row: Row) -> tuple[str, ...]:
-    """What the note should say of a wire."""
+    """The expected row of a wire in the note."""
     current = f"{row.current_ma:.2f}" if row.current_ma else "–"
     return (
         row.signal,

@@ -56,7 +56,7 @@ _NO_DETECTOR = re.compile(r"(R|C|L|FB|TP|J|H|FID)(\d|\?|$)", re.IGNORECASE)
 
 @dataclass(frozen=True)
 class Channels:
-    """What was found on a board."""
+    """Contents of a board."""
 
     by_copper: ChannelMap
     by_name: ChannelMap
@@ -78,7 +78,7 @@ class Channels:
 
     @property
     def best(self) -> ChannelMap:
-        """What the copper says; where it says nothing, as on a board without tracks, the names."""
+        """Connections from the copper; without tracks, from the names of nets."""
         return {
             mux: {
                 channel: self.by_copper[mux].get(channel) or self.by_name[mux][channel]
@@ -159,14 +159,14 @@ def _muxes(board: KicadBoard, copper: _Follower, names: _Follower) -> Iterator[t
     """By what a part is called; else by its leads, and that its inputs read detectors."""
     for part in board.parts:
         numbers = {t.number for t in part.terminals}
-        told = " ".join((part.value, part.footprint, *part.texts))
+        words = " ".join((part.value, part.footprint, *part.texts))
         for pins in PINOUTS:
             if not numbers.issuperset(map(str, range(1, pins.leads + 1))):
                 continue
-            others = any(p.name.search(told) for p in PINOUTS if p is not pins)
+            others = any(p.name.search(words) for p in PINOUTS if p is not pins)
             read = max(len(f.map(part, pins)) for f in (copper, names))
             alike = len({*numbers} - {""}) <= pins.leads + 1 and read >= _LEAST_READ
-            if pins.name.search(told) or (alike and not others):
+            if pins.name.search(words) or (alike and not others):
                 yield part, pins
                 break
 

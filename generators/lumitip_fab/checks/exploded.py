@@ -166,8 +166,8 @@ def _labels(file: str, drawing: Drawing, design: Design, finger: Finger) -> Iter
         f"{finger.name.capitalize()} finger, exploded",
         *(f"{kinds.count(k)} {plural.get(k, k + 's')}" for k in dict.fromkeys(kinds)),
     ]
-    told = [word for word, _ in drawing.words]
-    missing = [word for word in wanted if word not in told]
+    shown = [words for words, _ in drawing.words]
+    missing = [words for words in wanted if words not in shown]
     note = f"of {len(wanted)}" + (f", first {missing[0]!r}" if missing else "")
     yield Measurement("assembly.drawing_labels", file, len(missing), 0, 0, "missing", note)
     columns: dict[float, list[float]] = {}

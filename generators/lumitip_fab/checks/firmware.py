@@ -18,12 +18,12 @@ _SKETCH = "firmware/firmware.ino"
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     """Read both headers as a compiler would, and hold them against the cells."""
     layout = design.layout
-    wired, told = _text(outputs / _LAYOUT), _text(outputs / _PROTOCOL)
+    wired, protocol = _text(outputs / _LAYOUT), _text(outputs / _PROTOCOL)
     yield _channels(wired, layout)
     yield _pins(wired, layout, design)
     yield _converter(wired, layout, design)
-    yield _hash(wired, told, layout)
-    name = re.search(r'#define LUMITIP_DEVICE_NAME "(.*)"$', told, re.MULTILINE)
+    yield _hash(wired, protocol, layout)
+    name = re.search(r'#define LUMITIP_DEVICE_NAME "(.*)"$', protocol, re.MULTILINE)
     same = name is not None and _read_string(name[1]) == design.controller.name.encode()
     yield _faults("firmware.name", _PROTOCOL, int(not same), "Bluetooth name")
     yield _complete(outputs)
@@ -61,7 +61,7 @@ def _pins(text: str, layout: Layout, design: Design) -> Measurement:
 
 
 def _converter(text: str, layout: Layout, design: Design) -> Measurement:
-    """What the scan is worked out from: lines, inputs, bits, pull-up and capacitance."""
+    """Inputs of the scan timing: lines, inputs, bits, pull-up and capacitance."""
     lines, channel = len(design.wiring.select_pins), design.electrical.channel
     wanted = {
         "MUXES": design.wiring.muxes,
@@ -75,16 +75,16 @@ def _converter(text: str, layout: Layout, design: Design) -> Measurement:
     return _faults("firmware.converter", _LAYOUT, len(wrong), ", ".join(wrong) or "inputs, bits")
 
 
-def _hash(wired: str, told: str, layout: Layout) -> Measurement:
+def _hash(wired: str, protocol: str, layout: Layout) -> Measurement:
     """The design hash, whole in both headers and shortened for packets and status."""
     wanted = layout.design_hash
-    told_bytes = re.search(r"DESIGN_HASH\[8\] = \{([^}]*)\}", told)
-    code = re.search(r"DESIGN_CODE = (0x[0-9a-f]{4});", told)
+    hash_bytes = re.search(r"DESIGN_HASH\[8\] = \{([^}]*)\}", protocol)
+    code = re.search(r"DESIGN_CODE = (0x[0-9a-f]{4});", protocol)
     faults = int(f'LAYOUT_HASH[] = "{wanted}"' not in wired)
-    faults += int(f'PROTOCOL_HASH[] = "{wanted}"' not in told)
+    faults += int(f'PROTOCOL_HASH[] = "{wanted}"' not in protocol)
     faults += int(code is None or int(code[1], 16) != int(wanted[:4], 16))
     shortened = [f"0x{wanted[i : i + 2]}" for i in range(0, 16, 2)]
-    faults += int(told_bytes is None or told_bytes[1].split(", ") != shortened)
+    faults += int(hash_bytes is None or hash_bytes[1].split(", ") != shortened)
     return _faults("firmware.hash", _LAYOUT, faults, "equals the layout's")
 
 

@@ -62,14 +62,14 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
 def _printed(subject: str, lying: Any, design: Design) -> Iterator[Measurement]:
     """One closed body that prints as it lies, and its walls."""
 
-    def told(check: str, measured: float, low: float, high: float, unit: str) -> Measurement:
+    def figure(check: str, measured: float, low: float, high: float, unit: str) -> Measurement:
         return Measurement(f"flange.{check}", subject, measured, low, high, unit)
 
-    yield told("readable", len(lying.faces), 4, math.inf, "triangles")
-    yield told("watertight", solids.open_edges(lying), 0, 0, "open edges")
-    yield told("bodies", solids.bodies(lying), 1, 1, "bodies")
-    yield told("overhang", solids.overhang_mm2(lying), 0, MOST_OVERHANG_MM2, "mm²")
-    yield told("bed_contact", solids.bed_contact_mm2(lying), LEAST_BED_MM2, math.inf, "mm²")
+    yield figure("readable", len(lying.faces), 4, math.inf, "triangles")
+    yield figure("watertight", solids.open_edges(lying), 0, 0, "open edges")
+    yield figure("bodies", solids.bodies(lying), 1, 1, "bodies")
+    yield figure("overhang", solids.overhang_mm2(lying), 0, MOST_OVERHANG_MM2, "mm²")
+    yield figure("bed_contact", solids.bed_contact_mm2(lying), LEAST_BED_MM2, math.inf, "mm²")
     yield from walls("flange.min_wall", subject, lying, design.printing.min_wall_mm, ())
 
 
@@ -187,7 +187,7 @@ def _peg(of: Stacked, flange: Flange) -> Iterator[Measurement]:
 
 
 def measure_overlap(of: Stacked) -> Iterator[Measurement]:
-    """What the parts share with each other and with the board and its parts: nothing."""
+    """No volume is shared by the parts, the board and its components."""
     lower, upper = overlap.solid(of.lower, "lower"), overlap.solid(of.upper, "upper")
     inside = flange_board.bodies(of)
     shared = {"lower and upper": overlap.shared_mm3(lower, upper)}

@@ -86,7 +86,7 @@ class Stacked:
 
     @cached_property
     def board_z_mm(self) -> float:
-        """What carries the board, round its screws."""
+        """Area that carries the board, around its screws."""
         ring = 0.5 * self.flange.screw_mm + 0.6
         around = [
             (x + dx, y + dy)
@@ -135,7 +135,7 @@ G_N_KG = 9.81
 
 @dataclass(frozen=True)
 class Strength:
-    """What the flange bears, in times the load."""
+    """Safety factor of the flange."""
 
     layers: float
     """From layer to layer."""
@@ -172,9 +172,9 @@ def strength(lower: Any, upper: Any, design: Design) -> Strength:
 def measure_strength(of: Stacked) -> Iterator[Measurement]:
     """Safety from layer to layer, and under the heads of the bolts."""
     found = strength(of.lower, of.upper, of.design)
-    told = f"{found.load_n:.0f} N at {found.lever_mm:.0f} mm; an estimate"
+    note = f"{found.load_n:.0f} N at {found.lever_mm:.0f} mm; an estimate"
     for check, safety in (("layers", found.layers), ("bolt_bearing", found.bolts)):
-        yield of.figure(check, safety, LEAST_SAFETY, math.inf, "times the load", told)
+        yield of.figure(check, safety, LEAST_SAFETY, math.inf, "times the load", note)
 
 
 def _levels(low_mm: float, high_mm: float) -> Vectors:

@@ -48,9 +48,9 @@ def _note(file: str, text: str, design: Design) -> Iterator[Measurement]:
     """The hottest figure of each section, and orders to heat where nothing may be heated."""
     folder = file.partition("/")[0]
     usual = next(step for name, step in _NOTES.items() if name.startswith(folder))
-    told = list(_sections(text))
-    steps = {heading: "crease" if heading in _FILM_ALONE else usual for heading, _ in told}
-    for heading, words in told:
+    sections = list(_sections(text))
+    steps = {heading: "crease" if heading in _FILM_ALONE else usual for heading, _ in sections}
+    for heading, words in sections:
         limit = design.heat_steps[steps[heading]].limit_c
         figures = [float(value) for value in _DEGREES.findall(words)]
         if figures:
@@ -64,7 +64,7 @@ def _note(file: str, text: str, design: Design) -> Iterator[Measurement]:
             )
     orders = [
         f"{found[0]!r} in {heading!r}"
-        for heading, words in told
+        for heading, words in sections
         if steps[heading] == "cure"
         for found in _TO_HEAT.finditer(words)
     ]
@@ -92,7 +92,7 @@ def _table(outputs: Path, design: Design) -> Measurement:
         for table in chapter.tables
         for row in table[1:]
     ]
-    told = {(row[0], *_ROW.findall(" ".join(row[1:]))) for row in rows}
+    listed = {(row[0], *_ROW.findall(" ".join(row[1:]))) for row in rows}
     wanted = {(s.name, f"{s.temperature_c:g}", f"{s.limit_c:g}") for s in design.heat}
-    wrong = sorted(" ".join(row) for row in told ^ wanted)
+    wrong = sorted(" ".join(row) for row in listed ^ wanted)
     return Measurement("heat.steps", _MANUAL, len(wrong), 0, 0, "wrong rows", "; ".join(wrong[:4]))

@@ -186,7 +186,7 @@ def measure_nuts(clip: Clip) -> Iterator[Measurement]:
 
 
 def _left_mm(holder: Holder, screw: Fastener, x_mm: float, seat_z_mm: float) -> float:
-    """What a nut that bears at a height, or its screw's end, leaves to the gripper's body."""
+    """Distance from a nut seated at a height, or from its screw's end, to the gripper's body."""
     beyond = holder.screw_length_mm - (holder.top_z_mm - seat_z_mm)
     radius, middle = holder.body_mm / 2, abs(x_mm)
     return min(

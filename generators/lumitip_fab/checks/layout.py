@@ -82,18 +82,18 @@ def _cells(columns: Sequence[int], pitch_mm: float) -> list[tuple[int, int, floa
 
 
 def _optics(layout: Layout, design: Design) -> Measurement:
-    """What the twin and the estimator reckon with: pitch, holes, depths, circuit."""
-    told = {**asdict(layout.optics), "pitch_mm": layout.pitch_mm}
+    """Figures of the twin and the estimator: pitch, holes, depths, circuit."""
+    optics = {**asdict(layout.optics), "pitch_mm": layout.pitch_mm}
     wanted = {**asdict(design.layout.optics), "pitch_mm": design.grid.pitch_mm}
-    wrong = [name for name, value in wanted.items() if not _same(told[name], value)]
+    wrong = [name for name, value in wanted.items() if not _same(optics[name], value)]
     note = f"that differ: {', '.join(wrong) or 'none'}"
     return Measurement("layout.optics", _FILE, float(len(wrong)), 0, 0, "figures", note)
 
 
-def _same(told: object, wanted: object) -> bool:
-    if isinstance(told, float) and isinstance(wanted, float):
-        return math.isclose(told, wanted, abs_tol=1e-5)
-    return told == wanted
+def _same(found: object, wanted: object) -> bool:
+    if isinstance(found, float) and isinstance(wanted, float):
+        return math.isclose(found, wanted, abs_tol=1e-5)
+    return found == wanted
 
 
 def _wiring(layout: Layout, design: Design) -> Measurement:

@@ -64,7 +64,7 @@ def measure_letter(
 
 
 def beside(letter: Letter, printing: Printing) -> Exempt:
-    """What stands between the letter's strokes and round it, which one printed line makes."""
+    """Walls between and around the letter's strokes, each one printed line wide."""
     box = letter.box.grown(max(_BESIDE_MM, printing.min_wall_mm))
 
     def holds(points: Vectors) -> Mask:

@@ -22,15 +22,15 @@ _PLACE_MM = 0.05
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     """Count files that are missing or changed; move every STL by its matrix and see it in place."""
-    told = manifest.read(outputs)
-    if not told.files:
+    recorded = manifest.read(outputs)
+    if not recorded.files:
         yield unreadable("manifest.files", _FILE, "missing, or not of this version: build again")
         yield unreadable("manifest.frames", _FILE, "lists no file")
         return
-    changed = [p for p, e in told.files.items() if manifest.sha256_of(outputs / p) != e.sha256]
-    note = ", ".join(changed[:3]) or f"of {len(told.files)}"
+    changed = [p for p, e in recorded.files.items() if manifest.sha256_of(outputs / p) != e.sha256]
+    note = ", ".join(changed[:3]) or f"of {len(recorded.files)}"
     yield Measurement("manifest.files", _FILE, len(changed), 0, 0, "missing or changed", note)
-    for path, entry in sorted(told.files.items()):
+    for path, entry in sorted(recorded.files.items()):
         if path.endswith(".stl") and path.startswith(("backing/", "interface/", "mould/")):
             yield _frame(outputs, path, np.array(entry.to_sensor), design)
 

@@ -94,8 +94,8 @@ def _wrong_figures(manual: Manual, design: Design) -> list[str]:
         "warm-up": f"{_WARM_UP_MIN:g} min",
     }
     chapter = next((c for c in manual.chapters if c.heading == _GLANCE), Chapter(""))
-    told = {row[0]: row[-1] for table in chapter.tables for row in table[1:]}
-    return sorted(k for k in {*wanted, *told} if wanted.get(k) != told.get(k))
+    rows = {row[0]: row[-1] for table in chapter.tables for row in table[1:]}
+    return sorted(k for k in {*wanted, *rows} if wanted.get(k) != rows.get(k))
 
 
 def _wrong_units(manual: Manual, design: Design) -> list[str]:
@@ -103,8 +103,8 @@ def _wrong_units(manual: Manual, design: Design) -> list[str]:
     volts = {design.wiring.supply_v, 5.0, 0.0}  # the controller's supply, and ground
     heat = {figure for s in design.heat for figure in (s.temperature_c, s.limit_c)}
     allowed = {"h": {design.mould.cure_h}, "°C": heat, "V": volts}
-    told = re.findall(r"(?<![\w.])(\d+(?:\.\d+)?) (h|°C|V)\b", " ".join(manual.blocks))
-    found = {(float(value), unit) for value, unit in told}
+    matches = re.findall(r"(?<![\w.])(\d+(?:\.\d+)?) (h|°C|V)\b", " ".join(manual.blocks))
+    found = {(float(value), unit) for value, unit in matches}
     wrong = [f"{value:g} {unit}" for value, unit in sorted(found) if value not in allowed[unit]]
     lost = [f"no {unit}" for unit in allowed if unit not in {u for _, u in found}]
     return wrong + lost
@@ -126,10 +126,10 @@ def _billed(outputs: Path) -> list[tuple[str, ...]]:
     try:
         rows = table((outputs / "bom.csv").read_text(encoding="utf-8"))
         units = {"piece": "", "sheet": " sheets", "g": " g", "m": " m"}
-        told = [
+        lines = [
             (r["item"], r["for"], r["quantity"] + units[r["unit"]], r["price"]) for r in rows[:-1]
         ]
-        return [*told, ("all together", "", "", rows[-1]["price"])]
+        return [*lines, ("all together", "", "", rows[-1]["price"])]
     except (OSError, ValueError, LookupError) as error:
         return [(f"bom.csv cannot be read: {error!r:.80}",)]
 
@@ -151,12 +151,12 @@ def _differing(manual: Manual, wanted: list[tuple[str, ...]]) -> list[str]:
 def _pdf(outputs: Path, manual: Manual) -> Iterator[Measurement]:
     """Words of the HTML that are not in the PDF, and fonts that it does not bring."""
     try:
-        told, without = read_pdf(outputs / _PDF)
+        printed, without = read_pdf(outputs / _PDF)
     except OutputError as error:
         yield unreadable("manual.pdf", _PDF, str(error))
         yield unreadable("manual.fonts", _PDF, str(error))
         return
-    wrong = [text for text in manual.blocks if re.sub(r"\s", "", page_letters(text)) not in told]
+    wrong = [text for text in manual.blocks if re.sub(r"\s", "", page_letters(text)) not in printed]
     yield _count("pdf", _PDF, wrong, "lost paragraphs of the HTML")
     yield _count("fonts", _PDF, without, "fonts that are not embedded")
 

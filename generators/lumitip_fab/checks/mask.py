@@ -81,12 +81,12 @@ def measure_note(
             "mask.note", f"{subject} {name}", worst, 0, limit, "mm", "worst row against the A4 page"
         )
     whole = design.stack.plate_mm + design.stack.cover_mm
-    told = np.array([float(v) for v in (count[1], side[1], *readings.groups())])
+    printed = np.array([float(v) for v in (count[1], side[1], *readings.groups())])
     wanted = np.array([len(finger.cells), whole, *design.mask.measured_ruler_mm])
     yield Measurement(
         "mask.note",
         f"{subject} figures",
-        float(np.abs(told - wanted).max()),
+        float(np.abs(printed - wanted).max()),
         0,
         ROUNDED_MM,
         "",

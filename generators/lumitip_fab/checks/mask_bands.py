@@ -94,7 +94,7 @@ def measure_bands(
 def numbers_of(page: Page, placed: Placed, flaps: tuple[Flap, ...]) -> tuple[int, ...]:
     """The number printed on each flap; 0 where there is not exactly one."""
     middles = placed.points(page.texts.reshape(-1, 4, 2).mean(axis=1))
-    told = [
+    numbers = [
         (int(word), shapely.Point(at))
         for word, at in zip(page.words, middles, strict=True)
         if word.isdecimal()
@@ -102,7 +102,7 @@ def numbers_of(page: Page, placed: Placed, flaps: tuple[Flap, ...]) -> tuple[int
     found = []
     for flap in flaps:
         area = shapely.Polygon(flap.corners)
-        on_it = [number for number, at in told if area.contains(at)]
+        on_it = [number for number, at in numbers if area.contains(at)]
         found.append(on_it[0] if len(on_it) == 1 else 0)
     return tuple(found)
 

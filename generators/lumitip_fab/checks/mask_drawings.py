@@ -23,7 +23,7 @@ _NUMBER = r"-?\d+(?:\.\d+)?"
 
 @dataclass(frozen=True, eq=False)
 class Drawing:
-    """What both drawings hold; the cut of the DXF as well."""
+    """Contents of both drawings, and the cut lines of the DXF."""
 
     black: tuple[Subpath, ...]
     marks: Points
@@ -61,9 +61,9 @@ def read_svg(path: Path) -> Drawing:
 def _one_to_one(root: XmlTree.Element) -> None:
     box = [float(v) for v in root.attrib["viewBox"].split()]
     for name, units_wide in zip(("width", "height"), box[2:], strict=True):
-        told = root.attrib[name]
-        if not told.endswith("mm") or not math.isclose(float(told[:-2]), units_wide):
-            raise ValueError(f"{name} {told} for {units_wide:g} units is not 1:1 in mm")
+        size = root.attrib[name]
+        if not size.endswith("mm") or not math.isclose(float(size[:-2]), units_wide):
+            raise ValueError(f"{name} {size} for {units_wide:g} units is not 1:1 in mm")
 
 
 def _path_data(data: str) -> tuple[Subpath, ...]:
@@ -73,8 +73,11 @@ def _path_data(data: str) -> tuple[Subpath, ...]:
             raise ValueError(f"path {text[:40]!r} is not closed, or not of M, L and C")
         words = re.findall(rf"([MLC])((?:[ ,]?{_NUMBER})*)", "M" + text)
         corners, controls = [], []
-        for letter, told in words:
-            points = np.array(re.findall(_NUMBER, told), dtype=float).reshape(-1, 2) * (1.0, -1.0)
+        for letter, numbers in words:
+            points = np.array(re.findall(_NUMBER, numbers), dtype=float).reshape(-1, 2) * (
+                1.0,
+                -1.0,
+            )
             if len(points) != _WORDS[letter]:
                 raise ValueError(f"path {text[:40]!r}: {letter} with {len(points)} points")
             corners.append(points[-1])

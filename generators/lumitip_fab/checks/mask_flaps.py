@@ -172,7 +172,7 @@ def side_mm(fold: Points, design: Design) -> Points:
 
 
 def _on_back(flap: Flap, side_mm: float, allowance_mm: float) -> shapely.Geometry:
-    """What of a flap lies on the back, drawn tight over allowance and side."""
+    """Length of a flap on the back, when it is drawn tight over allowance and side."""
     outward, start = flap.outward, flap.fold[0]
     out = (flap.corners - start) @ outward
     along = flap.corners - out[:, None] * outward

@@ -1,4 +1,4 @@
-"""What a mask's page promises: its paper, scale and marks, and the black with its apertures."""
+"""A mask's page: paper, scale, marks, and the black area with its apertures."""
 
 import math
 from collections.abc import Iterator

@@ -53,15 +53,15 @@ _LINE_MM = 0.15  # how far under the plate the tip line is probed
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     """Hold each finger's mould against the design."""
     for finger in design.fingers:
-        file, told = f"mould/{finger.name}_mould.stl", set[str]()
+        file, measured = f"mould/{finger.name}_mould.stl", set[str]()
         try:
             mesh = solids.read_mesh(outputs / file)
             for measurement in _measured(mesh, file, outputs, design, finger):
-                told.add(measurement.check)
+                measured.add(measurement.check)
                 yield measurement
         except (OutputError, ArithmeticError, LookupError, ValueError, GEOSException) as error:
             reason = str(error) if isinstance(error, OutputError) else f"not measurable: {error!r}"
-            yield from (unreadable(name, file, reason) for name in NAMES if name not in told)
+            yield from (unreadable(name, file, reason) for name in NAMES if name not in measured)
 
 
 def _measured(

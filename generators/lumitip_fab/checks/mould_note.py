@@ -19,7 +19,7 @@ STATED = re.compile(r"stays on the finger \| \*\*([0-9.]+) mL\*\*")
 
 
 def measure_note(outputs: Path, design: Design, finger: Finger) -> Iterator[Measurement]:
-    """What the casting note tells: grams of both parts, layers, heights and hours."""
+    """The casting note: grams of both parts, layers, heights and hours."""
     file = f"mould/{finger.name}_casting.md"
     try:
         text = (outputs / file).read_text(encoding="utf-8")
@@ -55,8 +55,8 @@ def _figures(text: str, file: str, design: Design) -> Measurement:
     mould = design.mould
     stops_mm = mould.wall_mm + design.stack.cover_mm
     wanted = [f"{v:g}" for v in (mould.layer_mm, mould.wall_mm, stops_mm, mould.cure_h)]
-    told = [re.findall(pattern, text) for pattern in _HOW]
-    wrong = sum(found != [v] for found, v in zip(told, wanted, strict=True))
+    matches = [re.findall(pattern, text) for pattern in _HOW]
+    wrong = sum(found != [v] for found, v in zip(matches, wanted, strict=True))
     return Measurement(
         "mould.note",
         file,

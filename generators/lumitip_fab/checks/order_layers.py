@@ -96,7 +96,7 @@ def _mask(subject: str, read: ReadBoard, layer: str, open_: BaseGeometry) -> Ite
 def _silk(
     subject: str, read: ReadBoard, front: bool, printed: BaseGeometry, bare: BaseGeometry
 ) -> Iterator[Measurement]:
-    """What is printed: the board's lines, ink in the room of each of its words, and no more."""
+    """Silkscreen: the board's lines, ink in the box of each word, and nothing else."""
     silk = read.board.silk
     lines = _in_sensor(
         read, shapely.union_all([line.area for line in silk.lines if line.front == front])
@@ -161,9 +161,9 @@ def _drills(path: str, read: ReadBoard, layers: Mapping[str, bytes]) -> Iterator
         if p.kind == "via"
     ]
     holes = [(t.at, t.drill_mm) for t in read.holes]
-    for key, told in (("plated", plated + vias), ("unplated", holes)):
-        off = _apart(read, drilled(layers[key].decode()), told)
-        note = f"worst of {len(told)} {key} holes"
+    for key, expected in (("plated", plated + vias), ("unplated", holes)):
+        off = _apart(read, drilled(layers[key].decode()), expected)
+        note = f"worst of {len(expected)} {key} holes"
         yield Measurement("orders.drills", path, off, 0, PLACE_MM, "mm", note)
 
 
@@ -203,9 +203,9 @@ def _apart(
     if len(found) != len(wanted) or not found:
         return math.nan
     places = read.sensor([at for at, _ in wanted])
-    told = np.column_stack([places, [size for _, size in wanted]])
-    order = [np.lexsort(np.round(a, 2).T) for a in (told, np.array(found))]
-    return float(np.abs(told[order[0]] - np.array(found)[order[1]]).max())
+    expected = np.column_stack([places, [size for _, size in wanted]])
+    order = [np.lexsort(np.round(a, 2).T) for a in (expected, np.array(found))]
+    return float(np.abs(expected[order[0]] - np.array(found)[order[1]]).max())
 
 
 def _in_sensor(read: ReadBoard, area: BaseGeometry) -> BaseGeometry:

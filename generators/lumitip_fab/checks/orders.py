@@ -1,4 +1,4 @@
-"""What is sent to the board houses, against the board files: layers, parts, places, note."""
+"""Order files against the board files: layers, parts, positions, note."""
 
 import math
 import re
@@ -50,12 +50,12 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
                 yield _count("files", path, _unasked(read.name, ordered, files), "files")
                 yield _tables_twice(path, folder / "order", fab, read.name, files)
                 same = layers == first  # whose bytes would only be measured again
-                told = found if same else tuple(measure_layers("", read, layers, painted))
-                yield from (replace(m, subject=f"{path}{m.subject}") for m in told)
+                measured = found if same else tuple(measure_layers("", read, layers, painted))
+                yield from (replace(m, subject=f"{path}{m.subject}") for m in measured)
                 if isinstance(read, Read) and design.board.flexible:
                     yield measure_stiffener(path, layers, design.board.flexible.stiffener)
                 if not first:
-                    first, found = layers, told
+                    first, found = layers, measured
                 other = [key for key in first if first[key] != layers[key]]
                 yield _count("same", path, other, "layers that differ")
                 yield from _parts(path, read, fab, files)
@@ -93,8 +93,8 @@ def _parts(path: str, read: Read | ReadCarrier, fab: Fab, files: _Files) -> Iter
     lost = sorted(mounted ^ placed.keys()) + [ref for ref, times in placed.items() if times > 1]
     yield _count("placed", path, lost, "parts")
     known = [(row, read.parts[row["ref"]]) for row in rows if row["ref"] in read.parts]
-    told = np.array([(float(row["x_mm"]), float(row["y_mm"])) for row, _ in known])
-    off = np.abs(told - read.sensor([part.at for _, part in known])).max(initial=0.0)
+    places = np.array([(float(row["x_mm"]), float(row["y_mm"])) for row, _ in known])
+    off = np.abs(places - read.sensor([part.at for _, part in known])).max(initial=0.0)
     yield Measurement("orders.positions", path, float(off), 0, PLACE_MM, "mm")
     sides = [row["ref"] for row, part in known if row["side"] != fab.sides[not part.front]]
     yield _count("sides", path, sides, "parts")
@@ -136,13 +136,13 @@ def _misled(read: Read, note: str) -> Iterator[str]:
         if read.finger.name == "emitter"
         else (read.design.packages.photodetector)
     )
-    told = {m["ref"]: m for m in _TERMINALS.finditer(note)}
+    terminals = {m["ref"]: m for m in _TERMINALS.finditer(note)}
     if f"pad 1 is the {chip.marked}" not in note or (
         chip.confidence != "datasheet" and f"{chip.marked} is {chip.confidence}" not in note
     ):
         yield "the mark"
     for part in (p for p in read.board.parts if re.fullmatch(r"[DQ]\d+", p.ref)):
-        row, pads = told.get(part.ref), {t.number: t.at for t in part.terminals}
+        row, pads = terminals.get(part.ref), {t.number: t.at for t in part.terminals}
         wanted = read.sensor([pads["1"], pads["2"]])
         if row is None or row["one"] != chip.marked or row["other"] == chip.marked:
             yield part.ref
@@ -165,7 +165,7 @@ def _unasked(name: str, ordered: dict[str, str], files: _Files) -> list[str]:
 
 
 def _untold(note: str, flexible: Flexible, thickness_mm: float, drawn: str) -> Iterator[str]:
-    """What a flexible board is ordered by and the note tells otherwise, or not at all."""
+    """Figures of a flexible board that the order note has wrong, or not at all."""
     stiff = flexible.stiffener
     edges = (stiff.x_min_mm, stiff.x_max_mm, stiff.y_min_mm, stiff.y_max_mm)
     wanted = {
@@ -175,8 +175,8 @@ def _untold(note: str, flexible: Flexible, thickness_mm: float, drawn: str) -> I
         "bend": (r"where y is above (\S+):", (flexible.bend.y_min_mm,)),
     }
     for name, (row, values) in wanted.items():
-        told = re.search(row, note)
-        if told is None or not np.allclose([float(v) for v in told.groups()], values, atol=1e-3):
+        match = re.search(row, note)
+        if match is None or not np.allclose([float(v) for v in match.groups()], values, atol=1e-3):
             yield name
     if f"Its outline is the drawing {drawn}," not in note:
         yield "its drawing"
@@ -187,12 +187,12 @@ def _misplaced(read: ReadCarrier, note: str) -> Iterator[str]:
     has."""
     behind = re.search(r"^ON THE BACK: (.+?)\. ", note, re.MULTILINE)
     told_behind = set(behind[1].split(", ")) if behind else set()
-    told = {m["ref"]: (float(m["x"]), float(m["y"])) for m in _FIRST_PADS.finditer(note)}
+    first_pads = {m["ref"]: (float(m["x"]), float(m["y"])) for m in _FIRST_PADS.finditer(note)}
     for part in read.board.parts:
         if "exclude_from_bom" in part.attributes:
             continue
         first = next(t.at for t in part.terminals if t.number == "1")
-        place = told.get(part.ref, (math.nan, math.nan))
+        place = first_pads.get(part.ref, (math.nan, math.nan))
         there = np.abs(read.sensor([first])[0] - place).max() <= PLACE_MM
         if not there or (part.ref in told_behind) == part.front:
             yield part.ref
@@ -200,8 +200,8 @@ def _misplaced(read: ReadCarrier, note: str) -> Iterator[str]:
 
 def _tables_twice(path: str, folder: Path, fab: Fab, name: str, files: _Files) -> Measurement:
     """The tables beside a zip are those inside it."""
-    told = (f"{name}_bom.csv", f"{name}_positions.csv")
-    differ = [t for t in told if (folder / f"{fab.name}_{t}").read_bytes() != files[t]]
+    tables = (f"{name}_bom.csv", f"{name}_positions.csv")
+    differ = [t for t in tables if (folder / f"{fab.name}_{t}").read_bytes() != files[t]]
     return _count("tables", path, differ, "tables that differ")
 
 

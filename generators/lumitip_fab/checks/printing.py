@@ -63,10 +63,10 @@ def _read(path: Path) -> dict[str, str]:
 
 def _settings(outputs: Path, design: Design, filament: Filament) -> Measurement:
     try:
-        told = _read(outputs / filament.file)
+        settings = _read(outputs / filament.file)
     except (OSError, UnicodeDecodeError) as problem:
         return unreadable("printing.settings", filament.file, str(problem))
-    wrong = [key for key, value in _wanted(design, filament).items() if told.get(key) != value]
+    wrong = [key for key, value in _wanted(design, filament).items() if settings.get(key) != value]
     return Measurement(
         "printing.settings",
         filament.file,

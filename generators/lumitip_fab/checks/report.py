@@ -66,7 +66,7 @@ def _row(table: Table, m: Measurement) -> None:
 
 
 def tightness(m: Measurement) -> tuple[bool, bool, float]:
-    """What failed first, then the least margin; counts that are exact have none to lose."""
+    """Sort key: failed measurements first, then by margin; exact counts last."""
     margin = -math.inf if math.isnan(m.margin) else m.margin
     return m.passed, m.low == m.high, margin
 
@@ -74,8 +74,8 @@ def tightness(m: Measurement) -> tuple[bool, bool, float]:
 def summary(outcome: Outcome) -> str:
     """One line that counts what was measured."""
     failed = len(outcome.failed)
-    told = f"{len(outcome.measurements)} measurements of {len(outcome.names)} checks"
-    return f"{told}: {f'{failed} FAILED' if failed else 'all within their limits'}"
+    counts = f"{len(outcome.measurements)} measurements of {len(outcome.names)} checks"
+    return f"{counts}: {f'{failed} FAILED' if failed else 'all within their limits'}"
 
 
 def junit(outcome: Outcome) -> bytes:
@@ -97,8 +97,8 @@ def junit(outcome: Outcome) -> bytes:
 
 
 def _sentence(m: Measurement) -> str:
-    told = f"measured {figure(m.measured)} {m.unit}, limit {m.limit}, margin {figure(m.margin)}"
-    return f"{told}; {m.note}" if m.note else told
+    text = f"measured {figure(m.measured)} {m.unit}, limit {m.limit}, margin {figure(m.margin)}"
+    return f"{text}; {m.note}" if m.note else text
 
 
 def figure(value: float) -> str:

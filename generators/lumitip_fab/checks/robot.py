@@ -54,7 +54,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
 
 
 def _misplaced(model: Model) -> list[str]:
-    """What is not as users of the model expect it by name."""
+    """Names that users of the model expect and that are missing."""
     wanted = {
         **{f"lumitip_{f}_joint": ("prismatic", "lumitip_base", f"lumitip_{f}") for f in _FINGERS},
         "lumitip_tcp_joint": ("fixed", "lumitip_base", "lumitip_tcp"),
@@ -121,11 +121,11 @@ def _bounds(model: Model, finger: str, share: float, layer: str = "") -> Vectors
 
 def _body(link: Link, finger: Finger, design: Design) -> Iterator[Measurement]:
     masses, centres = zip(*_pieces(link, finger, design), strict=True)
-    mass, told = sum(masses), f"{finger.name}"
+    mass, subject = sum(masses), f"{finger.name}"
     centre = np.average(centres, axis=0, weights=masses)
-    yield _figure("mass", link.mass_g, mass * (1 - MASS), mass * (1 + MASS), "g", told)
+    yield _figure("mass", link.mass_g, mass * (1 - MASS), mass * (1 + MASS), "g", subject)
     off = float(np.abs(link.centre_mm - centre).max())
-    yield _figure("centre", off, 0, CENTRE_MM, "mm", told)
+    yield _figure("centre", off, 0, CENTRE_MM, "mm", subject)
     hulls = [mesh.convex_hull for mesh in link.collisions.values()]
     seen = np.concatenate([mesh.vertices for mesh in link.visuals.values()])
     outside = np.min([_outside(hull, seen) for hull in hulls], axis=0).max() if hulls else np.inf
@@ -135,10 +135,10 @@ def _body(link: Link, finger: Finger, design: Design) -> Iterator[Measurement]:
         -np.inf,
         REACH_MM,
         "mm",
-        f"{told}: farthest that anything stands out of what touches",
+        f"{subject}: farthest that anything stands out of what touches",
     )
     bulk = sum(h.volume for h in hulls) / sum(abs(m.volume) for m in link.visuals.values())
-    yield _figure("bulk", bulk, 0, BULK, "times what is seen", told)
+    yield _figure("bulk", bulk, 0, BULK, "times what is seen", subject)
 
 
 def _pieces(link: Link, finger: Finger, design: Design) -> Iterator[tuple[float, Vectors]]:
@@ -166,7 +166,7 @@ def _outside(hull: Any, points_mm: Vectors) -> Vectors:
 
 def _macros(outputs: Path) -> Measurement:
     try:
-        told = read_macros(outputs / _MACROS)
+        macros = read_macros(outputs / _MACROS)
         model = read_urdf(outputs / _FILE)
     except OutputError as error:
         return unreadable("robot.macros", _MACROS, str(error))
@@ -175,7 +175,7 @@ def _macros(outputs: Path) -> Measurement:
         for f in _FINGERS
         if f"lumitip_{f}" in model.links
     }
-    apart = sorted(name for name in {*wanted, *told} if wanted.get(name) != told.get(name))
+    apart = sorted(name for name in {*wanted, *macros} if wanted.get(name) != macros.get(name))
     note = ", ".join(apart) or f"{len(wanted)} macros"
     return Measurement("robot.macros", _MACROS, len(apart), 0, 0, "links unlike the URDF's", note)
 

@@ -44,7 +44,7 @@ class Sliced:
     reach_at_mm: float
     """Height of that line over the bed."""
     warnings: tuple[str, ...]
-    """What the slicer had to say."""
+    """Messages of the slicer."""
 
 
 def slice_parts(
@@ -89,10 +89,10 @@ def slice_parts(
 
 def _parts(out: Path) -> Iterator[str]:
     try:
-        told = json.loads((out / "manifest.json").read_text(encoding="utf-8"))["files"]
+        listed = json.loads((out / "manifest.json").read_text(encoding="utf-8"))["files"]
     except (OSError, ValueError, KeyError) as problem:
         raise OutputError(f"{out}: was not built ({problem}): run lumitip-fab build") from None
-    return (path for path in told if path.endswith(".3mf"))
+    return (path for path in listed if path.endswith(".3mf"))
 
 
 def _program() -> str:
@@ -127,19 +127,19 @@ def _read(
     density_g_ml: float,
     line_mm: float,
 ) -> Sliced:
-    told = gcode.layers(text)
-    if not told:
+    layers = gcode.layers(text)
+    if not layers:
         raise BuildError(f"{part}: the slicer made no layer")
-    reach, at_mm = gcode.reach_mm(told)
+    reach, at_mm = gcode.reach_mm(layers)
     mesh = trimesh.load(file, force="mesh")
-    first = told[0].length_mm * line_mm
+    first = layers[0].length_mm * line_mm
     return Sliced(
         part,
         *printed_from,
         gcode.seconds(text),
         gcode.grams(text),
         float(mesh.volume) / 1000 * density_g_ml,
-        len(told),
+        len(layers),
         first,
         reach,
         at_mm,
@@ -149,12 +149,12 @@ def _read(
 
 def as_json(parts: tuple[Sliced, ...]) -> str:
     """Every figure of every part, and the sums."""
-    told: dict[str, Any] = {
+    record: dict[str, Any] = {
         "parts": [dataclasses.asdict(part) for part in parts],
         "seconds": sum(part.seconds for part in parts),
         "grams": round(sum(part.grams for part in parts), 2),
     }
-    return json.dumps(told, indent=1)
+    return json.dumps(record, indent=1)
 
 
 def print_table(parts: tuple[Sliced, ...], console: Console) -> None:

@@ -48,8 +48,8 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     note = f"of {len(scene.nodes)}" + (f", first {missing[0]}" if missing else "")
     yield Measurement("system.bodies", _FILE, len(missing), 0, 0, "missing", note)
     if missing:
-        told = f"{missing[0]} is missing"
-        yield from (unreadable(f"system.{name}", _FILE, told) for name in _BODIES[1:])
+        reason = f"{missing[0]} is missing"
+        yield from (unreadable(f"system.{name}", _FILE, reason) for name in _BODIES[1:])
         yield from measure_drawing(outputs, design, ())
         return
     yield from _stack(scene, design)
@@ -230,10 +230,10 @@ def _interference(scene: Scene, design: Design) -> Measurement:
 
 
 def _heights(scene: Scene, design: Design, tcp_mm: float) -> tuple[float, ...]:
-    """What the drawing must tell, from the bottom up: faces, mount plane, tool centre point."""
-    told = []
+    """Heights that the drawing must show, upwards: faces, mount plane, tool centre point."""
+    heights = []
     for flange in design.flanges:
-        told.append(_bounds(scene, "coupling.body")[1, 2])
-        told.append(_bounds(scene, f"{flange.name}.upper")[1, 2])
-    told.append(_bounds(scene, f"emitter.{design.held}")[0, 2])
-    return (*(float(height) for height in told), tcp_mm)
+        heights.append(_bounds(scene, "coupling.body")[1, 2])
+        heights.append(_bounds(scene, f"{flange.name}.upper")[1, 2])
+    heights.append(_bounds(scene, f"emitter.{design.held}")[0, 2])
+    return (*(float(height) for height in heights), tcp_mm)

@@ -81,8 +81,8 @@ def _on_page(drawing: Drawing, design: Design) -> Iterator[Measurement]:
 
 def _labels(drawing: Drawing, heights: tuple[float, ...]) -> Measurement:
     """Steps and heights as they are written, against the bodies."""
-    told = [match.groups() for words, _ in drawing.words if (match := _CLIMB.match(words))]
-    climbed = sorted((float(height), float(step)) for step, height in told)
+    climbs = [match.groups() for words, _ in drawing.words if (match := _CLIMB.match(words))]
+    climbed = sorted((float(height), float(step)) for step, height in climbs)
     if len(climbed) != len(heights):
         return unreadable("system.heights", _DRAWING, f"{len(climbed)} of {len(heights)} heights")
     wanted = np.column_stack([heights, np.diff((0.0, *heights))])

@@ -75,11 +75,11 @@ def _wrong_ends(rows: tuple[Row, ...], nets: Nets) -> list[str]:
     wrong = [f"{board} {pad}" for board, pad in sorted(pads) if taken[board, pad] != 1]
     wrong += [f"{' '.join(end)} twice" for end, times in taken.items() if times > 1]
     for row in rows:
-        told = {
+        signals = {
             nets[board].get(pad, "none") for board, pad in (row.start, row.end) if board in nets
         }
-        if told != {row.signal}:
-            wrong.append(f"{row.wire}: {' and '.join(sorted(told))}")
+        if signals != {row.signal}:
+            wrong.append(f"{row.wire}: {' and '.join(sorted(signals))}")
     twice = [wire for wire, times in Counter(row.wire for row in rows).items() if times > 1]
     return wrong + [f"{wire} twice" for wire in twice]
 
@@ -151,14 +151,14 @@ def _wrong_colours(rows: tuple[Row, ...], design: Design) -> list[str]:
 
 def _lengths(rows: tuple[Row, ...], boards: dict[str, KicadBoard], design: Design) -> Measurement:
     """How far the worst wire is from the way that it has to go; up to a centimetre is rounding."""
-    told, over = design.cabling, []
+    cabling, over = design.cabling, []
     for row in rows:
-        way = told.slack_mm
+        way = cabling.slack_mm
         if row.start[0] in ("emitter", "receiver"):
-            way += told.travel_mm + _reach_mm(boards[row.start[0]], design)
-            way += told.supply_mm if row.end[0] == "supply" else told.controller_mm
+            way += cabling.travel_mm + _reach_mm(boards[row.start[0]], design)
+            way += cabling.supply_mm if row.end[0] == "supply" else cabling.controller_mm
         else:
-            way += told.supply_mm
+            way += cabling.supply_mm
         over.append(row.length_mm - way)
     worst = max(over, key=lambda mm: abs(mm - _STEP_MM / 2), default=math.nan)
     note = "longer than reach, travel, way and slack"
@@ -172,7 +172,7 @@ def _reach_mm(board: KicadBoard, design: Design) -> float:
 
 
 def _currents(rows: tuple[Row, ...], design: Design) -> Iterator[Measurement]:
-    """What the supply's wires carry against the strings, and what the copper makes of it."""
+    """Current of the supply wires against the strings, and its voltage drop in the copper."""
     supply = design.emitter.connector.signals[1]
     lit_ma = sum(design.electrical.strings.high_ma)
     feeding = [row for row in rows if row.signal == supply]
@@ -199,11 +199,11 @@ def _currents(rows: tuple[Row, ...], design: Design) -> Iterator[Measurement]:
 
 def _note(outputs: Path, rows: tuple[Row, ...]) -> Measurement:
     try:
-        told = read_note(outputs / _NOTE)
+        noted = read_note(outputs / _NOTE)
     except OutputError as error:
         return unreadable("wiring.note", _NOTE, str(error))
     wanted = {row.wire: note_row(row) for row in rows}
-    wrong = [w for w in sorted({*wanted, *told}) if wanted.get(w) != told.get(w)]
+    wrong = [w for w in sorted({*wanted, *noted}) if wanted.get(w) != noted.get(w)]
     return _count("note", _NOTE, wrong, "wires")
 
 
@@ -218,9 +218,9 @@ def _diagram(outputs: Path, rows: tuple[Row, ...]) -> Measurement:
         wire = drawn.get(row.wire)
         if wire is None:
             continue
-        told = (wire.start, wire.end, wire.inks, wire.label.split()[:2])
+        ends = (wire.start, wire.end, wire.inks, wire.label.split()[:2])
         inks = tuple(INKS.get(code, "") for code in codes_of(row.colour))
-        if told != (".".join(row.start), ".".join(row.end), inks, [row.wire, row.colour]):
+        if ends != (".".join(row.start), ".".join(row.end), inks, [row.wire, row.colour]):
             wrong.append(f"{row.wire} from {wire.start} to {wire.end}")
     return _count("diagram", _DIAGRAM, wrong, "wires")
 

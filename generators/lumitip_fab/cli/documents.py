@@ -2,7 +2,8 @@
 
 import tomli_w
 
-from lumitip_fab.config.load import NAMED, Input
+from lumitip_fab.config.load import Input
+from lumitip_fab.config.parts import NAMED
 from lumitip_fab.design import Design
 from lumitip_fab.design.encoding import design_text, encoded
 from lumitip_fab.pipeline.artefact import Artefact
@@ -25,7 +26,7 @@ def documents(config: Input, design: Design) -> tuple[Artefact, ...]:
 
 
 def _resolved(config: Input) -> str:
-    parts = {field: encoded(e.model_dump()) for field, e in config.named_parts().items()}
+    parts = {field: encoded(e.model_dump()) for field, e in config.parts_by_field().items()}
     tables = {f"{NAMED[field]} for {field}": _without_none(entry) for field, entry in parts.items()}
     listed = "".join(f"# {line}".rstrip() + "\n" for line in tomli_w.dumps(tables).splitlines())
     return _HEAD + tomli_w.dumps(encoded(config.parameters.model_dump())) + _PARTS + listed

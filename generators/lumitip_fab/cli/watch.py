@@ -61,7 +61,7 @@ def _rebuilt(file: Path, out: Path, known: dict[str, Any], console: Console) -> 
 
 def _values(file: Path) -> dict[str, Any]:
     config = load(file)
-    parts = {f: encoded(e.model_dump()) for f, e in config.named_parts().items()}
+    parts = {f: encoded(e.model_dump()) for f, e in config.parts_by_field().items()}
     parameters = encoded(config.parameters.model_dump())
     return dict(flat({"parameters": parameters, "parts": parts}))
 

@@ -3,6 +3,7 @@
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -13,43 +14,10 @@ from lumitip_fab.catalogue.record import Entry
 from lumitip_fab.config.automatic import filled
 from lumitip_fab.config.messages import brief, problems_of, shown_path, unknown_name
 from lumitip_fab.config.parameters import Parameters
+from lumitip_fab.config.parts import NAMED, Parts, named_parts
 from lumitip_fab.config.source import Source, read_toml
 from lumitip_fab.errors import InputError, Problem
 from lumitip_fab.paths import design_folder, parts_file
-
-# Which fields name an entry of which catalogue file.
-NAMED = {
-    "emitter.led": "leds",
-    "emitter.resistor": "resistors",
-    "receiver.photodetector": "photodetectors",
-    "receiver.resistor": "resistors",
-    "receiver.capacitor": "capacitors",
-    "receiver.multiplexer": "multiplexers",
-    "backing.material": "filaments",
-    "controller.board": "controllers",
-    "breakout.socket": "strips",
-    "flange.coupling": "couplings",
-    "flange.contacts": "strips",
-    "flange.header": "strips",
-    "flange.regulator": "regulators",
-    "flange.inductor": "inductors",
-    "flange.input_capacitor": "capacitors",
-    "flange.output_capacitor": "capacitors",
-    "flange.boot_capacitor": "capacitors",
-    "flange.fuse": "fuses",
-    "flange.transistor": "transistors",
-    "flange.resistor": "resistors",
-    "module.regulator": "linear_regulators",
-    "module.supply_capacitor": "capacitors",
-    "module.capacitor": "capacitors",
-    "module.crystal": "crystals",
-    "module.crystal_capacitor": "capacitors",
-    "coupling.gripper": "grippers",
-    "holder.screw": "fasteners",
-    "mould.silicone": "silicones",
-    "mask.film": "films",
-    "printer.profile": "printers",
-}
 
 
 @dataclass(frozen=True)
@@ -63,20 +31,22 @@ class Input:
     automatic: frozenset[str] = frozenset()
     """Fields that the program chooses; their values are start values."""
 
-    def named_parts(self) -> dict[str, Entry]:
-        """The catalogue entry that each field in `NAMED` names, by field."""
-        return {
-            field: getattr(self.catalogue, kind)[self.value(field)] for field, kind in NAMED.items()
-        }
+    @cached_property
+    def parts(self) -> Parts:
+        """The catalogue entries that the parameters name: `parts.emitter.led`."""
+        return named_parts(self.parameters, self.catalogue)
+
+    def parts_by_field(self) -> dict[str, Entry]:
+        """The same entries by field, like `"emitter.led"`."""
+        return {field: _attribute(self.parts, field) for field in NAMED}
 
     def title(self, field: str) -> str:
         """Title of the entry that a field in `NAMED` names."""
-        return self.named_parts()[field].title or str(self.value(field))
+        return self.parts_by_field()[field].title or str(self.value(field))
 
     def value(self, field: str) -> Any:
         """The value of a field, like `"grid.pitch_mm"`."""
-        section, key = field.split(".")
-        return getattr(getattr(self.parameters, section), key)
+        return _attribute(self.parameters, field)
 
     def with_values(self, values: Mapping[str, Any]) -> "Input":
         """The same input with other values of some fields, as written in a file.
@@ -96,6 +66,11 @@ class Input:
         if source is not own:  # the base may be good for others
             message = f"{message.removesuffix('.')}. Override it in {shown_path(own.path)}."
         return Problem(shown_path(source.path), source.line(field), field, message)
+
+
+def _attribute(record: Any, field: str) -> Any:
+    section, key = field.split(".")
+    return getattr(getattr(record, section), key)
 
 
 def load(path: Path) -> Input:

@@ -5,8 +5,8 @@ import tomllib
 from typing import Any
 
 from lumitip_fab.config.automatic import AUTO, FIELDS
-from lumitip_fab.config.load import NAMED
 from lumitip_fab.config.parameters import Parameters
+from lumitip_fab.config.parts import NAMED
 from lumitip_fab.paths import packaged_design
 
 BASE = "presets/published.toml"

@@ -118,7 +118,7 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
             controller=Controller(
                 config.title("controller.board"),
                 p.controller.name,
-                config.catalogue.controllers[p.controller.board].adc_bits,
+                config.parts.controller.board.adc_bits,
             ),
             fabs=derive_fabs(config),
             fasteners=fasteners,
@@ -155,6 +155,6 @@ def _parameters_hash(config: Input) -> str:
     """SHA-256 of every value in force: the parameters and the parts that they name."""
     values = [
         config.parameters.model_dump(),
-        {f: e.model_dump() for f, e in config.named_parts().items()},
+        {f: e.model_dump() for f, e in config.parts_by_field().items()},
     ]
     return hashlib.sha256(canonical(values).encode()).hexdigest()

@@ -1,4 +1,4 @@
-"""What the manual says, in Markdown: its own chapters, and the notes that lie beside the parts."""
+"""Text of the manual in Markdown: its own chapters, and the notes of the parts."""
 
 import re
 from typing import Any

@@ -176,14 +176,14 @@ def _ends(run: Run) -> Iterator[str]:
 def _pad(pad: Terminal, x: float, y: float, side: int) -> str:
     """A pad on the edge of a box; its words run into the box, the number next to the edge."""
     words: Iterable[str] = dict.fromkeys((pad.pin, pad.name))
-    told = [
+    lines = [
         _text(x + side * (3 + 7 * i), y + 1.2, word, 3.4, _INK, f'text-anchor="{_anchor(side)}"')
         for i, word in enumerate(words)
     ]
     ring = f'r="1.3" fill="#d9b44a" stroke="{_INK}" stroke-width=".3"'
     return (
         f'<g class="pad" id="{escape(pad.board)}.{escape(pad.label)}">'
-        f'<circle cx="{x:g}" cy="{y:g}" {ring}/>{"".join(told)}</g>'
+        f'<circle cx="{x:g}" cy="{y:g}" {ring}/>{"".join(lines)}</g>'
     )
 
 

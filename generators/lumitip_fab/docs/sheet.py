@@ -150,9 +150,9 @@ def _flowables(tokens: list[Token], files: Files) -> Iterator[Flowable]:
         elif token.type == "inline":
             before = tokens[at - 1]
             if before.type in ("th_open", "td_open"):
-                told = _inline(token)
+                text = _inline(token)
                 style = _FIGURE if "right" in str(before.attrs.get("style", "")) else _CELL
-                rows[-1].append(Paragraph(f"<b>{told}</b>" if before.tag == "th" else told, style))
+                rows[-1].append(Paragraph(f"<b>{text}</b>" if before.tag == "th" else text, style))
             elif before.type == "heading_open":
                 yield from _heading(int(before.tag[1]), token)
             elif numbers:
@@ -247,17 +247,17 @@ def _asked(cell: Paragraph) -> float:
 
 def _inline(token: Token) -> str:
     """Text in reportlab's own mark-up."""
-    told = []
+    parts = []
     for child in token.children or []:
         match child.type:
             case "text":
-                told.append(escape(child.content))
+                parts.append(escape(child.content))
             case "code_inline":
-                told.append(f'<font face="{CODE}">{escape(child.content)}</font>')
+                parts.append(f'<font face="{CODE}">{escape(child.content)}</font>')
             case "softbreak" | "hardbreak":
-                told.append(" ")
+                parts.append(" ")
             case "strong_open" | "em_open":
-                told.append("<b>" if child.tag == "strong" else "<i>")
+                parts.append("<b>" if child.tag == "strong" else "<i>")
             case "strong_close" | "em_close":
-                told.append("</b>" if child.tag == "strong" else "</i>")
-    return "".join(told)
+                parts.append("</b>" if child.tag == "strong" else "</i>")
+    return "".join(parts)

@@ -236,7 +236,7 @@ def _further(design: Design) -> tuple[Row, ...]:
 
 
 def _reached(design: Design) -> str:
-    """What the way to the fingers' mount plane is made of."""
+    """Terms of the height of the fingers' mount plane."""
     system = design.system
     added = system.gripper_z_mm - system.coupling_mm
     before = (

@@ -43,53 +43,54 @@ def electrical_rows(design: Design) -> tuple[Row, ...]:
 
 
 def string_rows(design: Design) -> tuple[Row, ...]:
-    told, wiring = design.electrical.strings, design.wiring
-    low, high = min(told.low_ma), max(told.high_ma)
+    strings, wiring = design.electrical.strings, design.wiring
+    low, high = min(strings.low_ma), max(strings.high_ma)
     longest = max(len(string) for string in wiring.strings)
-    left_v = wiring.supply_v - longest * told.forward_v
+    left_v = wiring.supply_v - longest * strings.forward_v
     return (
         Row("current of a string", "19 to 20 mA", _span(wiring.current_ma), "nominal"),
         Row(
             "... over tolerances",
             "not stated",
             f"{low:.1f} to {high:.1f} mA",
-            f"supply ±{100 * told.supply_tolerance:g} %, forward voltage "
-            f"±{told.forward_tolerance_v:g} V, resistor ±{100 * told.resistor_tolerance:g} %: "
+            f"supply ±{100 * strings.supply_tolerance:g} %, forward voltage "
+            f"±{strings.forward_tolerance_v:g} V, "
+            f"resistor ±{100 * strings.resistor_tolerance:g} %: "
             f"{longest} LEDs leave {left_v:.2f} V of {wiring.supply_v:g} V to the resistor; with "
-            f"emitter.string_leds = {told.fewer_leds} it is "
-            f"{told.fewer_low_ma:.1f} to {told.fewer_high_ma:.1f} mA, on more strings",
+            f"emitter.string_leds = {strings.fewer_leds} it is "
+            f"{strings.fewer_low_ma:.1f} to {strings.fewer_high_ma:.1f} mA, on more strings",
         ),
         Row(
             "load of a string resistor",
             "not stated",
-            f"{1000 * told.resistor_w:.0f} mW",
-            f"nominal; up to {1000 * told.resistor_high_w:.0f} mW at {high:.1f} mA, of "
-            f"{1000 * told.resistor_rated_w:.0f} mW rated",
+            f"{1000 * strings.resistor_w:.0f} mW",
+            f"nominal; up to {1000 * strings.resistor_high_w:.0f} mW at {high:.1f} mA, of "
+            f"{1000 * strings.resistor_rated_w:.0f} mW rated",
         ),
     )
 
 
 def channel_rows(design: Design) -> tuple[Row, ...]:
-    told, optics = design.electrical.channel, design.layout.optics
-    line_pf = told.line_pf + told.detector_pf
+    channel, optics = design.electrical.channel, design.layout.optics
+    line_pf = channel.line_pf + channel.detector_pf
     return (
         Row(
             "signal at full light",
             "not stated",
-            f"{told.full_scale_v:.2f} V",
-            f"of {optics.supply_v:g} V: the detector saturates at {told.saturation_v:g} V or takes "
-            f"{told.light_current_ua:g} µA, whichever is less",
+            f"{channel.full_scale_v:.2f} V",
+            f"of {optics.supply_v:g} V: the detector saturates at {channel.saturation_v:g} V "
+            f"or takes {channel.light_current_ua:g} µA, whichever is less",
         ),
         Row(
             "signal in the dark",
             "not stated",
-            f"{told.dark_v:.2f} V",
-            f"{told.dark_current_na:g} nA through {optics.pull_up_ohm:g} Ω",
+            f"{channel.dark_v:.2f} V",
+            f"{channel.dark_current_na:g} nA through {optics.pull_up_ohm:g} Ω",
         ),
         Row(
             "settling of a channel",
             "not stated",
-            f"{told.settle_us:.0f} µs",
+            f"{channel.settle_us:.0f} µs",
             f"{line_pf:g} pF through {optics.pull_up_ohm:g} Ω, from full light to dark within half "
             f"a step of {design.controller.adc_bits} bits",
         ),

@@ -29,7 +29,7 @@ _KNOWN = np.diag([1.0, 1.0 / 5.0**2, 100.0, 1.0])  # a line that no cell sees: 1
 
 @dataclass(frozen=True)
 class Sample:
-    """What is drawn for every design."""
+    """Random draws that all designs share."""
 
     fingers: int = 5
     """Fingertips with faults."""
@@ -104,7 +104,7 @@ def _faulty(layout: Layout, seed: int, number: int) -> Twin:
 def _miss(
     found_mm: float, found_deg: float, offset_mm: float, angle_deg: float
 ) -> tuple[float, float]:
-    """What an estimate is off by; a line that was not found is off by the most that counts."""
+    """Error of an estimate; a line that was not found counts as the largest error."""
     if not np.isfinite(found_mm):
         return MOST_MM, MOST_DEG
     turn = (found_deg - angle_deg + 180.0) % 360.0 - 180.0

@@ -81,7 +81,7 @@ FIGURES = (
     "cost",
     "current_ma",
 )
-"""What is told of a design, in this order."""
+"""Figures of a design, in this order."""
 
 Record = dict[str, Any]
 """Plain JSON: `key`, and `figures` (by name) or `refused` (what derive says)."""
@@ -102,15 +102,15 @@ class Job:
     @classmethod
     def of(cls, config: Input, changes: Changes, prices: Prices, sample: Sample) -> "Job":
         """A job with its key."""
-        told = [
+        inputs = [
             config.parameters.model_dump(),
-            {field: part.model_dump() for field, part in config.named_parts().items()},
+            {field: part.model_dump() for field, part in config.parts_by_field().items()},
             prices.model_dump(),
             sample,
             code_hash("explore"),
             np.__version__,
         ]
-        key = hashlib.sha256(canonical(told).encode()).hexdigest()
+        key = hashlib.sha256(canonical(inputs).encode()).hexdigest()
         return cls(config, changes, prices, sample, key)
 
 
@@ -185,8 +185,8 @@ class Journal:
 def _record(line: bytes) -> Record | None:
     """A record, `None` of a line that is none: then its design is evaluated again."""
     try:
-        told = json.loads(line)
+        record = json.loads(line)
     except ValueError:
         return None
-    usable = isinstance(told, dict) and isinstance(told.get("key"), str)
-    return told if usable and ("figures" in told or "refused" in told) else None
+    usable = isinstance(record, dict) and isinstance(record.get("key"), str)
+    return record if usable and ("figures" in record or "refused" in record) else None

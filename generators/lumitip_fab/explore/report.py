@@ -100,7 +100,7 @@ def _coloured_by(study: Study, shown: Sequence[Found]) -> tuple[str, list[float]
 
 
 OBJECTIVES = {"error_mm": 1, "cells": 1, "cost": 1, "current_ma": 1, "grid_cm2": -1}
-"""What counts, and whether less (1) or more (-1) of it is better: a small grid is no merit."""
+"""Figures to optimise: 1 if less is better, -1 if more; a small grid is no merit."""
 _UNITS = {"cost": "cost_{currency}"}
 
 
@@ -128,8 +128,8 @@ def write(study: Study, folder: Path) -> list[Path]:
         What was written.
     """
     best = front(study.designs)
-    told = [_row(study, n, n in best) for n in range(len(study.designs))]
-    files = {"designs.csv": _csv(told), "designs.json": _json(study, told)}
+    rows = [_row(study, n, n in best) for n in range(len(study.designs))]
+    files = {"designs.csv": _csv(rows), "designs.json": _json(study, rows)}
     files |= plot(study, best)
     for name, data in files.items():
         write_file(folder / name, data)
@@ -181,9 +181,9 @@ def _print_refused(study: Study, console: Console) -> None:
         count = sum(bool(found.refused) for found in study.designs)
         console.print(f"{count} of {len(study.designs)} designs are refused:")
     for reason, those in by_reason.items():
-        told = ", ".join(f"{field} = {_shown(value)}" for field, value in those[0].changes)
+        values = ", ".join(f"{field} = {_shown(value)}" for field, value in those[0].changes)
         others = f" and {len(those) - 1} more" if len(those) > 1 else ""
-        console.print(f"  {told}{others}: {reason}", soft_wrap=True)
+        console.print(f"  {values}{others}: {reason}", soft_wrap=True)
 
 
 def _row(study: Study, number: int, best: bool) -> dict[str, Any]:
@@ -208,13 +208,13 @@ def _csv(rows: Sequence[dict[str, Any]]) -> bytes:
 
 
 def _json(study: Study, rows: Sequence[dict[str, Any]]) -> bytes:
-    told = {
+    record = {
         "varied": {axis.field: [_plain(v) for v in axis.values] for axis in study.axes},
         "objectives": {n: "least" if s > 0 else "most" for n, s in OBJECTIVES.items()},
         "currency": study.currency,
         "designs": list(rows),
     }
-    return (json.dumps(told, indent=1, ensure_ascii=False) + "\n").encode()
+    return (json.dumps(record, indent=1, ensure_ascii=False) + "\n").encode()
 
 
 def _cell(value: Any) -> Any:

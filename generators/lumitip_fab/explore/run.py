@@ -9,7 +9,8 @@ from pathlib import Path
 from lumitip.errors import how_to_install
 from lumitip.tasks.bench import workers
 from lumitip_fab.catalogue.ordering import Prices
-from lumitip_fab.config.load import NAMED, Input, load
+from lumitip_fab.config.load import Input, load
+from lumitip_fab.config.parts import NAMED
 from lumitip_fab.errors import BuildError, InputError, OutputError, Problem
 from lumitip_fab.explore.accuracy import Sample
 from lumitip_fab.explore.evaluate import FIGURES, Job, Journal, Record, evaluate, unpriced
@@ -64,7 +65,7 @@ def explore(
         points: values of a range that has no step.
         keep_size: whether columns follow the pitch, so that the grid keeps its size.
         sample: what is drawn to judge accuracy.
-        scheduler: address of a Dask scheduler; all cores of this machine if not given.
+        scheduler: address of a Dask scheduler; all cores of this machine by default.
         progress: called with how many are done, and of how many.
 
     Raises:
@@ -104,15 +105,15 @@ def _check(config: Input, asked: Sequence[Axis], prices: Prices, keep_size: bool
         names |= set(varied.get(field, chosen or (config.value(field),)))
     faults = unpriced(config, prices, names)
     if keep_size and "grid.columns" in varied:
-        told = "given with --keep-size, which counts the columns itself; leave one of them out"
-        faults.append(Problem("--vary", 0, "grid.columns", told))
+        conflict = "and --keep-size exclude each other: --keep-size counts the columns itself"
+        faults.append(Problem("--vary", 0, "grid.columns", conflict))
     if faults:
         raise InputError(faults)
 
 
 def _found(job: Job, record: Record) -> Found:
-    told = record.get("figures")
-    figures = {name: told[name] for name in FIGURES} if told else {}
+    evaluated = record.get("figures")
+    figures = {name: evaluated[name] for name in FIGURES} if evaluated else {}
     columns = job.config.parameters.grid.columns
     return Found(job.changes, columns, figures, tuple(record.get("refused", ())))
 

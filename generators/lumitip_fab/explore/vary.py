@@ -1,4 +1,4 @@
-"""What is varied: `FIELD=SPEC`, and the designs that come of all combinations.
+"""Varied fields, `FIELD=SPEC`, and the designs of all combinations.
 
 grid.pitch_mm=3:8                        as many values as `points`, evenly from 3 to 8
 grid.pitch_mm=3:8:0.5                    from 3 in steps of 0.5, 8 included
@@ -16,9 +16,10 @@ from typing import Any
 import numpy as np
 from pydantic import ValidationError
 
-from lumitip_fab.config.load import NAMED, Input
+from lumitip_fab.config.load import Input
 from lumitip_fab.config.messages import problems_of, unknown_name
 from lumitip_fab.config.parameters import Parameters
+from lumitip_fab.config.parts import NAMED
 from lumitip_fab.config.source import Source, flat
 from lumitip_fab.errors import InputError, Problem
 
@@ -38,7 +39,7 @@ Changes = tuple[tuple[str, Any], ...]
 
 
 def axes(config: Input, texts: Sequence[str], points: int) -> tuple[Axis, ...]:
-    """What the texts of `--vary` ask for.
+    """Parse the texts of `--vary`.
 
     Args:
         config: the parameter file that is varied.
@@ -57,12 +58,12 @@ def axes(config: Input, texts: Sequence[str], points: int) -> tuple[Axis, ...]:
             faults += error.problems
     fields = [axis.field for axis in read]
     for field in sorted({f for f in fields if fields.count(f) > 1}):
-        faults.append(_fault(field, "given twice; give all of its values in one"))
+        faults.append(_fault(field, "is there twice; write all of its values in one"))
     for axis in read:
         faults += _not_allowed(config, axis)
     designs = math.prod(len(axis.values) for axis in read)
     if not faults and designs > MOST_DESIGNS:
-        faults.append(_fault("", f"{designs} designs given, at most {MOST_DESIGNS} are evaluated"))
+        faults.append(_fault("", f"makes {designs} designs; at most {MOST_DESIGNS} are evaluated"))
     if faults:
         raise InputError(faults)
     return tuple(read)
@@ -84,14 +85,14 @@ def changed(config: Input, changes: Changes, keep_size: bool = False) -> Input:
         keep_size: whether the grid gets as many columns and rows as keep its size when its pitch
             changes.
     """
-    told = config.parameters.model_dump()
+    table = config.parameters.model_dump()
     for field, value in changes:
-        _set(told, field, value)
+        _set(table, field, value)
     if keep_size:
         grid = config.parameters.grid
-        told["grid"]["columns"] = same_size(grid.columns, grid.pitch_mm, told["grid"]["pitch_mm"])
+        table["grid"]["columns"] = same_size(grid.columns, grid.pitch_mm, table["grid"]["pitch_mm"])
     automatic = config.automatic - {field for field, _ in changes}
-    return replace(config, parameters=Parameters.model_validate(told), automatic=automatic)
+    return replace(config, parameters=Parameters.model_validate(table), automatic=automatic)
 
 
 def same_size(columns: Sequence[int], pitch_mm: float, new_mm: float) -> tuple[int, ...]:
@@ -134,11 +135,11 @@ def _nearest(length: float, parity: int) -> int:
     return max(least, 2 * round((length - parity) / 2) + parity)
 
 
-def _set(told: dict[str, Any], field: str, value: Any) -> None:
+def _set(table: dict[str, Any], field: str, value: Any) -> None:
     *sections, key = field.split(".")
     for section in sections:
-        told = told[section]
-    told[key] = value
+        table = table[section]
+    table[key] = value
 
 
 def _axis(config: Input, text: str, points: int) -> Axis:
@@ -146,7 +147,9 @@ def _axis(config: Input, text: str, points: int) -> Axis:
     known = config.parameters.model_dump()
     fields = [name for name, _ in flat(known)]
     if not equals or not spec:
-        raise _refusal(text, "given, FIELD=FROM:TO, FIELD=FROM:TO:STEP or FIELD=A,B,C is needed")
+        raise _refusal(
+            text, "is no range; FIELD=FROM:TO, FIELD=FROM:TO:STEP or FIELD=A,B,C is needed"
+        )
     if field not in fields:
         raise _refusal("", unknown_name(field, fields, "a parameter file"))
     return Axis(field, tuple(dict.fromkeys(_values(field, spec, points, _whole(known, field)))))
@@ -162,9 +165,9 @@ def _values(field: str, spec: str, points: int, whole: bool) -> list[Any]:
         try:
             listed = tomllib.loads(f"list = {spec}")["list"]
         except tomllib.TOMLDecodeError as error:
-            raise _refusal(field, f"{spec!r:.80} given, which is no TOML list: {error}") from error
+            raise _refusal(field, f"is {spec!r:.80}, which is no TOML list: {error}") from error
         if not listed:
-            raise _refusal(field, "an empty list given, at least one value is needed")
+            raise _refusal(field, "is an empty list; at least one value is needed")
         return [_tuple(value) for value in listed]
     if ":" in spec:
         numbers = _range(field, spec, points)
@@ -178,18 +181,18 @@ def _range(field: str, spec: str, points: int) -> list[float]:
     except ValueError:
         bounds = []
     if len(bounds) not in (2, 3) or not all(map(math.isfinite, bounds)):
-        raise _refusal(field, f"{spec!r:.80} given, FROM:TO or FROM:TO:STEP in numbers is needed")
+        raise _refusal(field, f"is {spec!r:.80}; FROM:TO or FROM:TO:STEP in numbers is needed")
     low, high = bounds[:2]
     if not low < high:
-        raise _refusal(field, f"{spec!r:.80} given, FROM must be below TO")
+        raise _refusal(field, f"is {spec!r:.80}; FROM must be below TO")
     if len(bounds) == 2:
         if points < 2:
-            raise _refusal(field, f"{points} points given, a range needs at least 2")
+            raise _refusal(field, f"has {points} points; a range needs at least 2")
         return [round(low + (high - low) * i / (points - 1), _DECIMALS) for i in range(points)]
     step = bounds[2]
     if not (high - low) / MOST_DESIGNS <= step:
         raise _refusal(
-            field, f"a step of {step:g} given, at least {(high - low) / MOST_DESIGNS:g} is needed"
+            field, f"has a step of {step:g}; at least {(high - low) / MOST_DESIGNS:g} is needed"
         )
     count = math.floor((high - low) / step + 1e-9) + 1
     return [round(low + i * step, _DECIMALS) for i in range(count)]
@@ -207,7 +210,7 @@ def _tuple(value: Any) -> Any:
 
 
 def _not_allowed(config: Input, axis: Axis) -> list[Problem]:
-    """What no design may have, whatever the rest of it."""
+    """Values that no design may have."""
     faults = []
     kind = NAMED.get(axis.field)
 

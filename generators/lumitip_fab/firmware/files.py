@@ -62,7 +62,7 @@ constexpr uint8_t CHANNEL[CELLS] = {{
 
 
 def protocol_header(layout: Layout, controller: Controller, title: Title) -> str:
-    """What is told to whoever listens, and what proves that `layout.h` goes with it."""
+    """Device name and UUIDs, and the checksum that ties it to `layout.h`."""
     code = ", ".join(f"0x{byte:02x}" for byte in bytes.fromhex(layout.design_hash)[:8])
     return f"""{_head(title)}
 #define LUMITIP_DEVICE_NAME {_text(controller.name)}
@@ -91,8 +91,8 @@ constexpr uint16_t WIRING_SUM = 0x{wiring_sum(layout):04x};
 def wiring_sum(layout: Layout) -> int:
     """CRC of multiplexer (two bytes) and channel of each cell in turn, as `wiring.h` has it."""
     pairs = zip(layout.mux.tolist(), layout.channel.tolist(), strict=True)
-    told = (bytes([mux & 0xFF, mux >> 8, channel]) for mux, channel in pairs)
-    return crc_hqx(b"".join(told), 0xFFFF)
+    records = (bytes([mux & 0xFF, mux >> 8, channel]) for mux, channel in pairs)
+    return crc_hqx(b"".join(records), 0xFFFF)
 
 
 def _head(title: Title) -> str:
@@ -125,8 +125,8 @@ def _short(uuid: str) -> str:
 
 
 def _table(values: Iterable[int]) -> str:
-    told = [f"{value}," for value in values]
-    return "\n".join("    " + " ".join(told[i : i + 16]) for i in range(0, len(told), 16))
+    items = [f"{value}," for value in values]
+    return "\n".join("    " + " ".join(items[i : i + 16]) for i in range(0, len(items), 16))
 
 
 def firmware_files(design: Design) -> tuple[Artefact, ...]:

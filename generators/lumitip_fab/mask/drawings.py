@@ -85,14 +85,14 @@ def _at(point: Point, shift: Point) -> str:
 
 def _d(paths: Iterable[Path], shift: Point) -> str:
     """Path data; one sub-path in each line."""
-    told = []
+    lines = []
     for path in paths:
         words = [f"M{_at(path.start, shift)}"]
         for segment in path.segments:
             letter = "L" if len(segment) == 1 else "C"
             words.append(letter + " ".join(_at(point, shift) for point in segment))
-        told.append("".join(words) + "Z")
-    return "\n".join(told)
+        lines.append("".join(words) + "Z")
+    return "\n".join(lines)
 
 
 def _registration(point: Point, shift: Point) -> str:

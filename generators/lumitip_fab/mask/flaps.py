@@ -14,7 +14,7 @@ from lumitip_fab.mask.outline import Finished, Points, fold_corners, folded
 TAPER_DEG = 10.0
 WIDEST_TAPER = 0.2  # of the fold, on each side, so that narrow flaps keep a useful end
 CONCAVE_GAP_DEG = 1.0  # on each side of the slit between flaps that converge
-LEAST_REACH_MM = 2.0  # onto the back, before the windows behind parts are given up
+LEAST_REACH_MM = 2.0  # onto the back, before the windows behind parts are left out
 START_GAP_MM = 0.1  # first fold to what it must keep clear of
 BAND_MM = 0.5  # black beyond the back's edge
 CLEAR_END_MM = 3.2  # left unprinted: bonds better, and takes the number

@@ -135,8 +135,8 @@ def _texts(canvas: Canvas, artwork: Artwork, mask: Mask, title: Title, paper: st
     heading = f"{title.on_pages().name} {title.revision} – {artwork.name.lower()} mask"
     canvas.drawCentredString(x, y, heading)
     canvas.setFont(PLAIN, TEXT_MM)
-    told = f"{name}, print at 100 % (actual size), on the inside of the film"
-    canvas.drawCentredString(x, y - 1.2 * LINE_MM, told)
+    caption = f"{name}, print at 100 % (actual size), on the inside of the film"
+    canvas.drawCentredString(x, y - 1.2 * LINE_MM, caption)
     notes = (
         "Measure both rulers on a paper print. Not 100.0 mm? Put the readings into",
         "mask.measured_ruler_mm (horizontal, vertical) and build again. "

@@ -194,7 +194,7 @@ def _plate(stack: Stack, outline: Outline) -> Solid:
 
 
 def _tip_cutter(stack: Stack, outline: Outline, tip: Tip) -> Solid:
-    """What the wedge takes from the back of the plate."""
+    """Volume that the wedge cuts from the back of the plate."""
     edge_z = stack.face_z_mm - tip.edge_mm
     rise = (edge_z - stack.back_z_mm) / (outline.tip_y_mm - tip.slant_start_y_mm)
     end_y, far_z = outline.tip_y_mm + BEYOND_MM, stack.back_z_mm - BEYOND_MM

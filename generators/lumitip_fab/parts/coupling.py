@@ -53,7 +53,7 @@ def coupling_solid(mount: Mount, stack: Stack, notch: Box | None) -> Solid:
 
 
 def coupling_holes(mount: Mount, stack: Stack) -> list[Solid]:
-    """What screws and gripper pins take away, in the sensor frame: bolt holes, counterbores open
+    """Cutters for screws and gripper pins, in the sensor frame: bolt holes, counterbores open
     towards the tip so that screws and their driver go in, and pin holes."""
     holes = []
     for u in mount.bolt_u_mm:
@@ -97,7 +97,7 @@ def notch_cutter(stack: Stack, mount: Mount, notch: Box) -> Solid:
 
 
 def beside_nose(mount: Mount) -> list[Solid]:
-    """What is taken from the block on either side of its nose, in the mount frame.
+    """Cutters on either side of the block's nose, in the mount frame.
 
     Above the nose the block widens at 45°, so that it prints without support.
     """

@@ -35,7 +35,7 @@ def canonical(text: str) -> str:
     start, end = _colours(text)
     if start < 0:
         return text
-    entities = {int(n): _BREAK.sub("", told) for n, told in _ENTITY.findall(text[start:end])}
+    entities = {int(n): _BREAK.sub("", entity) for n, entity in _ENTITY.findall(text[start:end])}
     return text[:start] + _ordered(entities) + text[end:]
 
 
@@ -53,15 +53,15 @@ def _colours(text: str) -> tuple[int, int]:
 
 def _ordered(entities: dict[int, str]) -> str:
     """Entities sorted by what they say, equal ones once, numbered anew from their first."""
-    told: dict[int, str] = {}
+    expanded: dict[int, str] = {}
 
     def full(number: int) -> str:
-        if number not in told:
-            told[number] = _REFERENCE.sub(
+        if number not in expanded:
+            expanded[number] = _REFERENCE.sub(
                 lambda m: f"<{full(int(m[1]))}>" if int(m[1]) in entities else m[0],
                 _sorted_items(entities[number]),
             )
-        return told[number]
+        return expanded[number]
 
     def _sorted_items(entity: str) -> str:
         if not entity.startswith(_COLOURED):

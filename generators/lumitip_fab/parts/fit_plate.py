@@ -61,7 +61,7 @@ def _corner(plate: FitPlate, step: int, fits: Fits) -> Solid:
 
 
 def _slice(plate: FitPlate, step: int, drawn: Mount) -> Solid:
-    """What of the coupling's foot is shown, as it stands on the gripper."""
+    """A slice of the coupling's foot, as it stands on the gripper."""
     thick = plate.thickness_mm
     body = box_solid(plate.slice, 0.0, thick)
     for side in beside_nose(drawn):

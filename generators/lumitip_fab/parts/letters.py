@@ -40,7 +40,7 @@ _STROKES = {"E": (_E,), "R": (_R, _R_BOWL)}
 
 
 def letter_cutter(finger: str, letter: Letter, to_sensor: Matrix) -> Solid:
-    """What the first letter of a finger's name takes from a wall, in the sensor frame.
+    """Cutter that engraves the first letter of a finger's name into a wall, in the sensor frame.
 
     Args:
         finger: `"emitter"` or `"receiver"`.
@@ -80,7 +80,7 @@ _DIGIT_STROKES = {
 
 
 def value_cutters(text: str, label: Box, face_mm: float, depth_mm: float) -> list[Solid]:
-    """What a value takes from a face that looks up, set from the left.
+    """Cutters that engrave a value into a face that looks up, from the left.
 
     Args:
         text: digits and a sign.

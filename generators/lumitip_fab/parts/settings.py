@@ -30,7 +30,7 @@ def print_settings(design: Design) -> tuple[Artefact, ...]:
 
 def _settings(filament: Filament, printing: Printing, nozzle_mm: float) -> str:
     x, y, z = printing.bed_mm
-    told: dict[str, object] = {
+    values: dict[str, object] = {
         "printer_technology": "FFF",
         "gcode_flavor": "marlin",
         "bed_shape": f"0x0,{x:g}x0,{x:g}x{y:g},0x{y:g}",
@@ -55,7 +55,7 @@ def _settings(filament: Filament, printing: Printing, nozzle_mm: float) -> str:
         "avoid_crossing_perimeters": 1,
         **_of_filament(filament),
     }
-    return "".join(f"{key} = {told[key]}\n" for key in sorted(told))
+    return "".join(f"{key} = {values[key]}\n" for key in sorted(values))
 
 
 def _of_filament(filament: Filament) -> dict[str, object]:
@@ -93,7 +93,9 @@ def _note(title: Title, printing: Printing, slicing: Slicing, bends: bool) -> st
     if bends:
         rows += [(f"interface/{finger}_interface.3mf", standing) for finger in _FINGERS]
     rows += [(f"mould/{finger}_mould.3mf", "open side up") for finger in _FINGERS]
-    listed = "\n".join(f"| `{path}` | {_told(slicing.of(path))} | {lies} |" for path, lies in rows)
+    listed = "\n".join(
+        f"| `{path}` | {_temperatures(slicing.of(path))} | {lies} |" for path, lies in rows
+    )
     return f"""# Printing {as_written(title.name)} {title.revision}
 
 Every STL and 3MF of this folder lies on the bed as it prints: do not turn it. None needs support.
@@ -101,7 +103,7 @@ Every STL and 3MF of this folder lies on the bed as it prints: do not turn it. N
 | file | settings | filament | layers | lies |
 |---|---|---|---:|---|
 {listed}
-| any other `.3mf` | {_told(slicing.rigid)} | as it is |
+| any other `.3mf` | {_temperatures(slicing.rigid)} | as it is |
 
 Solid, {printing.line_mm:g} mm lines, brim of {_BRIM_MM:g} mm,
 nozzle of {slicing.nozzle_mm:g} mm. In PrusaSlicer: File, Import, Import Config, then the part. The
@@ -112,7 +114,7 @@ needs some. Temperatures are starting points: trust the label of your spool.
 """
 
 
-def _told(filament: Filament) -> str:
+def _temperatures(filament: Filament) -> str:
     return f"`{filament.file}` | {filament.name} | {filament.layer_mm:g} mm"
 
 

@@ -68,7 +68,7 @@ def side_prism(corners: list[Point], x_min_mm: float, x_max_mm: float) -> Solid:
 
 
 def one_solid(made: Any, finger: Finger, kind: str) -> Solid:
-    """What the kernel made, if it is one valid solid.
+    """The result of the CAD kernel, if it is one valid solid.
 
     Args:
         made: what it made.

@@ -55,7 +55,7 @@ def wall_offset_mm(stack: Stack, mould: Mould, z_mm: float) -> float:
 def drafted_prism(
     stack: Stack, outline: Outline, mould: Mould, z_min_mm: float, z_max_mm: float
 ) -> Solid:
-    """What the mould's wall encloses between two heights."""
+    """Volume inside the mould's wall between two heights."""
     rings = [offset_wire(outline, wall_offset_mm(stack, mould, z), z) for z in (z_min_mm, z_max_mm)]
     return Solid.make_loft(rings, ruled=True)
 

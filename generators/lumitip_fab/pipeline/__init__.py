@@ -1,1 +1,1 @@
-"""What is built from what, and what need not be built again."""
+"""Build graph, dependencies and the manifest of an output folder."""

@@ -27,7 +27,7 @@ class Artefact:
     """Name of the frame that `to_sensor` leads to: `"sensor"`, `"gripper"`, `"carrier"`,
     `"flange"`, `"tool"` (the robot's tool flange) or `""` for none."""
     facts: Facts = field(default_factory=dict)
-    """What other steps need of it, so that none of them parses the file."""
+    """Figures that other steps need, so that none of them parses the file."""
 
 
 @dataclass(frozen=True)

@@ -55,10 +55,10 @@ Resolve = Callable[[], "tuple[Design, tuple[Artefact, ...]]"]
 
 @dataclass(frozen=True)
 class Report:
-    """What a build changed."""
+    """Result of a build."""
 
     origin: manifest.Origin
-    """What was built."""
+    """The artefacts that were built."""
     written: tuple[str, ...]
     """Files whose bytes changed."""
     removed: tuple[str, ...]

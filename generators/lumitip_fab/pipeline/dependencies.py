@@ -1,4 +1,4 @@
-"""What a result depends on: the fields of the design and the files that were read for it.
+"""Dependencies of a result: the fields of the design and the files that were read for it.
 
 Steps of a build and modules of checks read a `RecordedDesign`. What they read is kept beside the
 result, and a result is used again while all of it is as it was.
@@ -69,5 +69,5 @@ class FieldHashes:
 
 
 def recorded(design: RecordedDesign, files: Iterable[str] = ()) -> Dependencies:
-    """What has been read so far."""
+    """Everything read so far."""
     return Dependencies(tuple(sorted(design.fields)), tuple(sorted(files)))

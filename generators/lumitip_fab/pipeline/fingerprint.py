@@ -85,23 +85,25 @@ def installed_hash() -> str:
 STAMP = ".built"
 
 
-def unchanged(out: Path, told: str) -> manifest.Manifest | None:
+def unchanged(out: Path, fingerprint: str) -> manifest.Manifest | None:
     """The manifest of a folder that this input gave, if nobody has changed a file since."""
     try:
         stamp = (out / STAMP).read_text(encoding="utf-8")
     except (OSError, ValueError):
         return None
     before = manifest.read(out)
-    return before if told and stamp == _stamp(out, told) and before.intact(out) else None
+    return (
+        before if fingerprint and stamp == _stamp(out, fingerprint) and before.intact(out) else None
+    )
 
 
-def remember(out: Path, told: str) -> None:
+def remember(out: Path, fingerprint: str) -> None:
     """Keep what a folder has just been built from."""
-    manifest.write_file(out / STAMP, _stamp(out, told).encode())
+    manifest.write_file(out / STAMP, _stamp(out, fingerprint).encode())
 
 
-def _stamp(out: Path, told: str) -> str:
-    return f"{told} {manifest.sha256_of(out / manifest.NAME)}\n"
+def _stamp(out: Path, fingerprint: str) -> str:
+    return f"{fingerprint} {manifest.sha256_of(out / manifest.NAME)}\n"
 
 
 def input_hash(file: Path) -> str:
@@ -113,11 +115,11 @@ def input_hash(file: Path) -> str:
         files = _with_bases(file)
         for folder in parts_folders(design_folder(file)):
             files += sorted(folder.glob("*.toml"))
-        told = [f"{path.name}\0{hashlib.sha256(path.read_bytes()).hexdigest()}" for path in files]
+        lines = [f"{path.name}\0{hashlib.sha256(path.read_bytes()).hexdigest()}" for path in files]
     except (OSError, ValueError, RecursionError):
         return ""
-    told += [whole_code_hash(), installed_hash()]
-    return hashlib.sha256("\n".join(told).encode()).hexdigest()
+    lines += [whole_code_hash(), installed_hash()]
+    return hashlib.sha256("\n".join(lines).encode()).hexdigest()
 
 
 def _with_bases(file: Path) -> list[Path]:

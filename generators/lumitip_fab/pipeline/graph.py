@@ -51,7 +51,7 @@ class Task:
     """The one of `each` that it is for; empty if it runs once."""
 
     def fixed(self) -> tuple[str, ...]:
-        """What it depends on whatever it reads: its item, its code and its tools."""
+        """Fixed dependencies: its item, its code and its tools."""
         tools = (tool_version(tool) for tool in self.step.tools)
         return (self.step.name, canonical(self.item), code_hash(self.step.room), *tools)
 

@@ -17,7 +17,7 @@ SCHEMA_VERSION = 3
 
 @dataclass(frozen=True)
 class Entry:
-    """What the manifest says of one file."""
+    """Record of one file."""
 
     sha256: str
     bytes: int
@@ -47,13 +47,13 @@ class Ran:
 
     @property
     def dependencies(self) -> Dependencies:
-        """What it depends on."""
+        """Its dependencies."""
         return Dependencies(self.fields, self.reads)
 
 
 @dataclass(frozen=True)
 class Origin:
-    """What an output folder was built from."""
+    """Source of an output folder."""
 
     design_hash: str = ""
     parameters_hash: str = ""

@@ -50,21 +50,21 @@ def assembly(design: Design) -> tuple[Artefact, ...]:
 def _coloured(bodies: Bodies) -> Compound:
     """A finger as a tree of named and coloured shapes; parts of a kind are one shape."""
     name = bodies.finger.name
-    children = [_told(f"{name}.{kind}", solid, kind) for kind, solid in layers_of(bodies)]
+    children = [_layer(f"{name}.{kind}", solid, kind) for kind, solid in layers_of(bodies)]
     for kind in dict.fromkeys(part.kind for part in bodies.finger.parts):
         alike = [
             solid
             for part, solid in zip(bodies.finger.parts, bodies.parts, strict=True)
             if part.kind == kind
         ]
-        children.append(_told(f"{name}.{kind}s", Compound(alike), kind))
+        children.append(_layer(f"{name}.{kind}s", Compound(alike), kind))
     return Compound(label=name, children=children)
 
 
-def _told(label: str, shape: Shape, kind: str) -> Shape:
-    told = copy(shape)
-    told.label, told.color = label, Color(*COLOURS[kind])
-    return told
+def _layer(label: str, shape: Shape, kind: str) -> Shape:
+    named = copy(shape)
+    named.label, named.color = label, Color(*COLOURS[kind])
+    return named
 
 
 def _meshed(bodies: Bodies) -> Iterator[Body]:

@@ -23,7 +23,7 @@ class Bodies:
     finger: Finger
     backing: Solid
     interface: Solid | None
-    """What holds a bendable backing."""
+    """Rigid interface of a flexible backing."""
     board: Solid
     silicone: Solid
     film: Solid

@@ -81,11 +81,13 @@ class Sheet:
             f'y="{0.0 - y_mm:.2f}" text-anchor="{anchor}">{escape(text)}</text>'
         )
 
-    def leaders(self, told: list[tuple[tuple[str, str], Points]], x_mm: float, anchor: str) -> None:
+    def leaders(
+        self, labels: list[tuple[tuple[str, str], Points]], x_mm: float, anchor: str
+    ) -> None:
         """A column of labels with a line from each to its place; labels keep apart.
 
         Args:
-            told: name and detail of each, and where it points at.
+            labels: name and detail of each, and where it points at.
             x_mm: where the words begin or end.
             anchor: `"start"` or `"end"`.
         """
@@ -93,7 +95,7 @@ class Sheet:
         scale = self.words_scale
         bend = x_mm - 4 * gap
         below = math.inf
-        for words, at in sorted(told, key=lambda label: -float(label[1][1])):
+        for words, at in sorted(labels, key=lambda label: -float(label[1][1])):
             y = min(float(at[1]), below - LINE_MM * scale)
             below = y
             self.lines([np.array([at, (bend, y), (x_mm, y)])], "leader")
@@ -105,11 +107,11 @@ class Sheet:
         """Make the page reach a point."""
         self._joined(np.array([[x_mm, y_mm]]))
 
-    def svg(self, told: Mapping[str, float]) -> str:
+    def svg(self, figures: Mapping[str, float]) -> str:
         """The page, cut to what is on it.
 
         Args:
-            told: figures that go with it, for programs; their names begin with `data-`.
+            figures: figures that go with it, for programs; their names begin with `data-`.
         """
         left, bottom = self.low - self.margin_mm
         right, top = self.high + self.margin_mm
@@ -119,7 +121,7 @@ class Sheet:
                 f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:.2f}mm" '
                 f'height="{height:.2f}mm" viewBox="{left:.2f} {-top:.2f} {width:.2f} {height:.2f}" '
                 'font-family="Helvetica, Arial, sans-serif"'
-                + "".join(f' {name}="{value:g}"' for name, value in told.items())
+                + "".join(f' {name}="{value:g}"' for name, value in figures.items())
                 + ">",
                 f'<rect x="{left:.2f}" y="{-top:.2f}" width="{width:.2f}" height="{height:.2f}" '
                 'fill="#fff"/>',

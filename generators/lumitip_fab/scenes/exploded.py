@@ -214,9 +214,9 @@ def _label(sheet: Sheet, layers: list[Layer], finger: Finger, stack: Stack) -> N
 
 
 def _details(finger: Finger, stack: Stack) -> list[tuple[tuple[str, str], Any, str]]:
-    """What is pointed at from the left: words, place in the finger, layer."""
+    """Labels on the left: words, place in the finger, layer."""
     half = stack.rim_z_mm
-    told: list[tuple[tuple[str, str], Any, str]] = []
+    labels: list[tuple[tuple[str, str], Any, str]] = []
     for kind, plural in (
         ("photodetector", "photodetectors"),
         ("led", "LEDs"),
@@ -227,7 +227,7 @@ def _details(finger: Finger, stack: Stack) -> list[tuple[tuple[str, str], Any, s
         if alike:
             at = min(alike, key=lambda part: part.x_mm)
             names = f"{alike[0].name} … {alike[-1].name}"
-            told.append(
+            labels.append(
                 (
                     (f"{len(alike)} {plural}", names),
                     (at.x_mm, at.y_mm, half + at.height_mm),
@@ -236,10 +236,10 @@ def _details(finger: Finger, stack: Stack) -> list[tuple[tuple[str, str], Any, s
             )
     pad = finger.connector.pads[0]
     ways = len(finger.connector.pads)
-    told.append(((f"{ways} wires", "soldered from the back"), (*pad, half), "board"))
+    labels.append(((f"{ways} wires", "soldered from the back"), (*pad, half), "board"))
     hole = min(finger.holes)
     words = ("Pins", "hold the board") if stack.sunk else ("Holes", "for thread")
-    told.append((words, (*hole, stack.face_z_mm), "backing"))
+    labels.append((words, (*hole, stack.face_z_mm), "backing"))
     notch = (finger.notch.x_min_mm + 2, finger.notch.y_min_mm + 4, stack.pocket_z_mm)
-    told.append((("Wire notch", "opens to the gripper"), notch, "backing"))
-    return told
+    labels.append((("Wire notch", "opens to the gripper"), notch, "backing"))
+    return labels

@@ -79,14 +79,14 @@ def glb(scene: str, groups: tuple[Group, ...], extras: dict[str, float]) -> byte
         roots.append(len(nodes))
         flat = [v + 0.0 for v in matrix.T.ravel().tolist()]
         nodes.append({"name": group.name, "matrix": flat, "children": children})
-    told = {
+    document = {
         "asset": {"version": "2.0", "generator": "Lumitip"},
         "scene": 0,
         "scenes": [{"name": scene, "nodes": roots, "extras": extras}],
         "nodes": nodes,
-        **store.told(),
+        **store.tables(),
     }
-    return _packed(told, b"".join(store.chunks))
+    return _packed(document, b"".join(store.chunks))
 
 
 @dataclass
@@ -116,7 +116,7 @@ class _Store:
             self.named.append({"name": body.name, "primitives": [primitive]})
         return self.meshes[key]
 
-    def told(self) -> dict[str, Any]:
+    def tables(self) -> dict[str, Any]:
         """The file's tables."""
         return {
             "meshes": self.named,
@@ -160,7 +160,7 @@ class _Store:
 
 def _material(colour: Colour) -> dict[str, Any]:
     linear = [round(_linear(c), 6) for c in colour[:3]]
-    told: dict[str, Any] = {
+    material: dict[str, Any] = {
         "pbrMetallicRoughness": {
             "baseColorFactor": [*linear, colour[3]],
             "metallicFactor": 0.0,
@@ -168,8 +168,8 @@ def _material(colour: Colour) -> dict[str, Any]:
         }
     }
     if colour[3] < 1:
-        told["alphaMode"] = "BLEND"
-    return told
+        material["alphaMode"] = "BLEND"
+    return material
 
 
 def _linear(c: float) -> float:
@@ -177,8 +177,8 @@ def _linear(c: float) -> float:
     return float(c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4)
 
 
-def _packed(told: dict[str, Any], data: bytes) -> bytes:
-    text = json.dumps(told, separators=(",", ":")).encode()
+def _packed(document: dict[str, Any], data: bytes) -> bytes:
+    text = json.dumps(document, separators=(",", ":")).encode()
     text += b" " * (-len(text) % 4)
     data += b"\0" * (-len(data) % 4)
     length = 12 + 8 + len(text) + 8 + len(data)

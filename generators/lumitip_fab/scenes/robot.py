@@ -72,21 +72,21 @@ def pair_urdf(
         robot.append(_link(model, "lumitip_", meshes))
         joint = _joint(f"lumitip_{model.name}_joint", "prismatic", f"lumitip_{model.name}")
         joint.append(_origin(model.to_base))
-        SubElement(joint, "axis", xyz=_told(model.opening))
+        SubElement(joint, "axis", xyz=_numbers(model.opening))
         SubElement(
             joint,
             "limit",
             lower="0",
-            upper=_told([travel_mm * MM]),
-            effort=_told([EFFORT_N]),
-            velocity=_told([SPEED_M_S]),
+            upper=_numbers([travel_mm * MM]),
+            effort=_numbers([EFFORT_N]),
+            velocity=_numbers([SPEED_M_S]),
         )
         if model is not fingers[0]:
             SubElement(joint, "mimic", joint=f"lumitip_{fingers[0].name}_joint")
         robot.append(joint)
     robot.append(Element("link", name="lumitip_tcp"))
     tcp = _joint("lumitip_tcp_joint", "fixed", "lumitip_tcp")
-    SubElement(tcp, "origin", xyz=_told([0, 0, tcp_mm * MM]), rpy="0 0 0")
+    SubElement(tcp, "origin", xyz=_numbers([0, 0, tcp_mm * MM]), rpy="0 0 0")
     robot.append(tcp)
     return _bytes(robot)
 
@@ -115,11 +115,11 @@ def _link(model: FingerModel, prefix: str, meshes: str) -> Element:
     link = Element("link", name=f"{prefix}{model.name}")
     inertial = SubElement(link, "inertial")
     weight = model.weight
-    SubElement(inertial, "origin", xyz=_told(weight.centre_mm * MM), rpy="0 0 0")
-    SubElement(inertial, "mass", value=_told([weight.mass_g * MM]))
-    told = weight.inertia_g_mm2 * MM**3
+    SubElement(inertial, "origin", xyz=_numbers(weight.centre_mm * MM), rpy="0 0 0")
+    SubElement(inertial, "mass", value=_numbers([weight.mass_g * MM]))
+    inertia = weight.inertia_g_mm2 * MM**3
     axes = {
-        f"i{a}{b}": _told([told[i, j]])
+        f"i{a}{b}": _numbers([inertia[i, j]])
         for i, a in enumerate("xyz")
         for j, b in enumerate("xyz")
         if j >= i
@@ -129,7 +129,7 @@ def _link(model: FingerModel, prefix: str, meshes: str) -> Element:
         visual = SubElement(link, "visual", name=file.removesuffix(".stl"))
         visual.append(_mesh(f"{meshes}/{file}"))
         material = SubElement(visual, "material", name=f"{prefix}{file.removesuffix('.stl')}")
-        SubElement(material, "color", rgba=_told(colour))
+        SubElement(material, "color", rgba=_numbers(colour))
     for file in model.collisions:
         collision = SubElement(link, "collision", name=file.removesuffix(".stl"))
         collision.append(_mesh(f"{meshes}/{file}"))
@@ -138,7 +138,7 @@ def _link(model: FingerModel, prefix: str, meshes: str) -> Element:
 
 def _mesh(path: str) -> Element:
     geometry = Element("geometry")
-    SubElement(geometry, "mesh", filename=path, scale=_told([MM] * 3))
+    SubElement(geometry, "mesh", filename=path, scale=_numbers([MM] * 3))
     return geometry
 
 
@@ -157,10 +157,10 @@ def _origin(matrix: Matrix) -> Element:
         roll, yaw = np.arctan2(-turn[1, 2], turn[1, 1]), 0.0
     else:
         roll, yaw = np.arctan2(turn[2, 1], turn[2, 2]), np.arctan2(turn[1, 0], turn[0, 0])
-    return Element("origin", xyz=_told(matrix[:3, 3] * MM), rpy=_told([roll, pitch, yaw]))
+    return Element("origin", xyz=_numbers(matrix[:3, 3] * MM), rpy=_numbers([roll, pitch, yaw]))
 
 
-def _told(values: object) -> str:
+def _numbers(values: object) -> str:
     numbers = np.asarray(values, dtype=float).reshape(-1)
     return " ".join(f"{value:.9g}" for value in np.where(np.abs(numbers) < 1e-15, 0.0, numbers))
 
@@ -204,8 +204,8 @@ def robot_files(design: Design) -> tuple[Artefact, ...]:
 
 
 def _meshes(finger: Finger, layers: dict[str, Solid], stack: Stack) -> Iterator[tuple[str, Mesh]]:
-    """What is looked at, and the convex bodies that touch: the plate with its skin, and the block
-    behind it."""
+    """Visual meshes of the layers, and convex collision meshes: the plate with its skin, and the
+    block behind it."""
     shown = {kind: export.mesh(layer, CHORD_MM) for kind, layer in layers.items()}
     for kind, surface in shown.items():
         yield f"{finger.name}_{kind}.stl", surface

@@ -154,9 +154,9 @@ def _label(
 
     def climb(to_mm: float) -> str:
         nonlocal below
-        told = f"+ {to_mm - below:.2f} = {to_mm:.2f} mm"
+        step = f"+ {to_mm - below:.2f} = {to_mm:.2f} mm"
         below = to_mm
-        return told
+        return step
 
     for flange in flanges:
         right.append(

@@ -7,7 +7,7 @@ from lumitip.errors import LumitipError
 
 
 class ControlError(LumitipError, ValueError):
-    """A controller, or what it is given, that cannot be so."""
+    """A wrong setting or input of a controller."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""What the controller sees: the contact in the gripper frame, and where it will be."""
+"""Input of the controller: the contact in the gripper frame, and its prediction."""
 
 import math
 from dataclasses import dataclass, replace
@@ -16,20 +16,20 @@ _BEARABLE = frozenset({"misfit", "unfinished", "ambiguous"})
 
 @dataclass(frozen=True, slots=True)
 class Sight:
-    """What is followed, in the sensor frame."""
+    """The followed line, in the sensor frame."""
 
     height_mm: float | None = None
     """Where the line crosses x = 0 (mm); `None` without a line that can be followed."""
     angle: float = 0.0
     """Direction of the line against x (rad)."""
     centre_mm: float | None = None
-    """Height of the dark centre (mm); told by a `Contact` alone."""
+    """Height of the dark centre (mm); only a `Contact` has it."""
     corner_mm: float | None = None
     """How far ahead in x the vertex of a corner is (mm); `None` without a corner."""
 
 
 def sight_of(seen: Contact | Estimate) -> Sight:
-    """What control needs of what was seen.
+    """The figures that the controller needs from a contact or an estimate.
 
     A corner's border is followed like an edge's. An estimate that says itself that it is wrong
     shows no line.
@@ -41,7 +41,7 @@ def sight_of(seen: Contact | Estimate) -> Sight:
         return _of_contact(seen)
     if not isinstance(seen, Estimate):
         raise ControlError(
-            f"{shown(seen)} given, a Contact or an Estimate is needed, such as "
+            f"the input is {shown(seen)}; a Contact or an Estimate is needed, such as "
             "Processor(layout)(frame.values)"
         )
     # A curved line misfits its straight model, and is a line all the same.
@@ -63,7 +63,7 @@ def _of_contact(seen: Contact) -> Sight:
         point_mm = seen.corner.vertex_mm
         if abs(seen.corner.opening_deg - 90.0) <= _CORNER_DEG:
             corner_mm = _ahead(point_mm[0])
-        # Of both rays the one that lies along the way, told as a line.
+        # Of both rays the one along the way, as a line.
         ray = min(seen.corner.directions_deg, key=lambda a: abs(math.sin(math.radians(a))))
         angle_deg = (ray + 90.0) % 180.0 - 90.0
     elif line is not None:
@@ -111,7 +111,7 @@ class Lead:
         self._rate = 0.0
 
     def __call__(self, sight: Sight, dt_s: float) -> Sight:
-        """What will be seen of what is seen now, `dt_s` after the one before (s)."""
+        """Prediction from the input that came `dt_s` after the one before (s)."""
         if not self.lead_s or sight.height_mm is None:
             self.reset()
             return sight

@@ -12,7 +12,7 @@ from lumitip.values import shown
 
 
 class Tracer:
-    """`command = tracer(contact_or_estimate, dt_s)`; what it does depends on what it was given.
+    """`command = tracer(contact_or_estimate, dt_s)`: follows the line in its input.
 
     Without a line it goes on as before, slower and slower, for `slow_s`; then it searches sideways
     where the line went, and back, for `search_s`; then it stops with the reason `"lost"`. With
@@ -42,20 +42,20 @@ class Tracer:
                 on past corners.
             corner_frames: frames in a row that make a corner.
             lead_s: how much later a command takes effect than its frame was taken; the line's
-                angle is told ahead by so much (s).
+                angle is predicted ahead by this time (s).
 
         Raises:
             ControlError: if a time is below 0, a count below 1, or something is of another kind.
         """
         if not callable(law):
-            raise ControlError(f"law: {shown(law)} given, a law like LineLaw(80.0) is needed")
+            raise ControlError(f"law is {shown(law)}; a law like LineLaw(80.0) is needed")
         self.law = law
         self.limits = arguments.instance(
             Limits() if limits is None else limits, Limits, "limits", ControlError
         )
         self.slow_s, self.search_s, self.search_mm_s, ahead_s = (
-            arguments.number(given, name, 0.0, error=ControlError)
-            for given, name in (
+            arguments.number(value, name, 0.0, error=ControlError)
+            for value, name in (
                 (slow_s, "slow_s"),
                 (search_s, "search_s"),
                 (search_mm_s, "search_mm_s"),

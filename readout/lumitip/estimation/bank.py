@@ -19,7 +19,7 @@ _LEAST = 0.02  # of a cell's light, spread over all cells: templates below it sh
 
 @dataclass(frozen=True, eq=False)
 class Bank:
-    """What the cells read of many poses."""
+    """Values of the cells at many poses."""
 
     poses: Floats
     """Shape `(n, entries)`, without `light` and `taken`."""
@@ -28,7 +28,7 @@ class Bank:
     templates: NDArray[np.float32]
     """The same without their mean and of unit length."""
     apart: Floats
-    """One over how far poses must be apart to be told as different ones, of each entry."""
+    """Inverse of the distance at which two poses count as different, of each entry."""
     opaque: bool
     """Whether the object takes all of the light."""
     signed: bool

@@ -1,7 +1,7 @@
 """`Estimate`: the pose of the object between the fingers, with how sure it is.
 
 Sensor frame of the receiver: millimetres, x to the right, y towards the tip; angles in degrees,
-counter-clockwise from +x. A line is told by its direction `angle_deg` and its signed distance
+counter-clockwise from +x. A line has a direction `angle_deg` and its signed distance
 `offset_mm` from the origin along its left normal (−sin, cos).
 """
 
@@ -17,7 +17,7 @@ Point = tuple[float, float]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Estimate:
-    """What one frame says; without contact the numbers are NaN."""
+    """The pose in one frame; without contact the numbers are NaN."""
 
     kind: str
     """`"edge"`, `"cable"`, `"corner"`; without contrast `"none"` or `"covered"`."""
@@ -43,7 +43,7 @@ class Estimate:
     rms_counts: float = np.nan
     """Root mean square misfit (counts of 255)."""
     flags: tuple[str, ...] = ()
-    """What is wrong with the fit, empty if nothing is: `"misfit"` if the shape does not explain
+    """Faults of the fit, empty if there are none: `"misfit"` if the shape does not explain
     the frame, `"weak"` if the frame hardly shows the line, `"astray"` if the fit left the
     fingertip, `"unfinished"` if it did not settle, `"ambiguous"` if another line explains the frame
     nearly as well."""

@@ -22,7 +22,7 @@ from lumitip.twin.optics import FULL, GAP_MM, drive_of_values
 from lumitip.twin.scene import MOST_DIAMETER_MM
 
 DIAMETER_MM = 3.0
-"""Diameter of a cable where none is told (mm)."""
+"""Default diameter of a cable (mm)."""
 LEAST_DIAMETER_MM = 0.3
 """Thinner cables take too little light from any cell to be found (mm)."""
 NOISE = 1.5
@@ -40,7 +40,7 @@ _SIMPLER = {"edge": 1.0, "cable": 1.1, "corner": 2.0}  # a corner fits an edge's
 
 
 class EstimationError(LumitipError, ValueError):
-    """What an estimator cannot be asked for."""
+    """A request that an estimator cannot fulfil."""
 
 
 class PoseEstimator:
@@ -67,7 +67,7 @@ class PoseEstimator:
 
         Args:
             layout: where the cells are.
-            optics: those of the layout if not given; or a whole model, which has its own gap.
+            optics: those of the layout by default; or a whole model, which has its own gap.
             gap_mm: from skin to skin (mm).
             diameter_mm: of a cable; its width is found within about a third of it (mm).
             gains: light of each cell relative to its empty grasp, as `learn` finds it, shape
@@ -88,7 +88,7 @@ class PoseEstimator:
         self.layout = arguments.layout(layout)
         if len(layout) < _LEAST_CELLS:
             raise EstimationError(
-                f"layout: {len(layout)} cells given, a pose needs at least {_LEAST_CELLS}; "
+                f"layout has {len(layout)} cells; a pose needs at least {_LEAST_CELLS}; "
                 "`Processor` works with fewer"
             )
         self._mirrored = collinear(layout.x_mm, layout.y_mm)
@@ -96,14 +96,14 @@ class PoseEstimator:
         self._noise = _number(noise, "noise", above=0.0)
         self._gain_error = _number(gain_error, "gain_error")
         self._huber = _number(huber, "huber", above=0.0)
-        told = (
+        search_for = (
             _number(diameter_mm, "diameter_mm", LEAST_DIAMETER_MM, MOST_DIAMETER_MM),
             _number(gap_sd_mm, "gap_sd_mm"),
             _number(alpha_sd, "alpha_sd", most=1.0),
         )
         self._gains = np.ones(len(layout)) if gains is None else _gains(layout, gains)
         twin = Twin(layout, self.model)
-        self._search = Search(twin, *told)
+        self._search = Search(twin, *search_for)
         self._tracking = tracking
         self._last: tuple[str, Floats, float] | None = None
         steps = np.arange(0.0, FULL + 1.0)[:, None] * (twin.empty / FULL)
@@ -111,7 +111,7 @@ class PoseEstimator:
         self._rise = np.gradient(self._light, axis=0)
 
     def __call__(self, values: ArrayLike, kind: str | None = None) -> Estimate:
-        """What one frame says.
+        """The pose in one frame.
 
         Args:
             values: calibrated values, 255 is full light, shape `(cells,)`; cells whose value is
@@ -124,14 +124,14 @@ class PoseEstimator:
         """
         if kind is not None:
             _known(kind)
-        given = self._given(values)
-        usable = counted(given)
-        told = given[usable]
-        if told.size < _LEAST_CELLS or not np.ptp(told) >= MIN_CONTRAST:
+        frame_values = self._values(values)
+        usable = counted(frame_values)
+        seen = frame_values[usable]
+        if seen.size < _LEAST_CELLS or not np.ptp(seen) >= MIN_CONTRAST:
             self._last = None
-            middle = float(np.median(told)) if told.size else math.inf
+            middle = float(np.median(seen)) if seen.size else math.inf
             return without_contact("covered" if middle < COVERED_BELOW else "none")
-        frame = self._frame(given, usable)
+        frame = self._frame(frame_values, usable)
         name, found = self._found(frame, kind)
         shape = self._search.shape(name)
         free = drifting(shape, found, self._search.drifts)
@@ -184,14 +184,14 @@ class PoseEstimator:
             EstimationError: if there is no such kind.
         """
         _known(kind)
-        given = self._given(values)
-        usable = counted(given)
+        frame_values = self._values(values)
+        usable = counted(frame_values)
         if np.count_nonzero(usable) < _LEAST_CELLS:
             raise ValuesError(
-                f"{np.count_nonzero(usable)} cells with finite values given, at least "
+                f"{np.count_nonzero(usable)} cells have finite values; at least "
                 f"{_LEAST_CELLS} are needed"
             )
-        frame = self._frame(given, usable)
+        frame = self._frame(frame_values, usable)
         found = self._search.best(kind, frame)
         return (self._search.free if free else self._search.expected)(kind, found, frame)
 
@@ -210,14 +210,13 @@ class PoseEstimator:
         """Forget the frame before."""
         self._last = None
 
-    def _given(self, values: ArrayLike) -> Floats:
-        given = arguments.numbers(values, "values", ValuesError)
-        if given.shape != (len(self.layout),):
+    def _values(self, values: ArrayLike) -> Floats:
+        frame = arguments.numbers(values, "values", ValuesError)
+        if frame.shape != (len(self.layout),):
             raise ValuesError(
-                f"values of shape {given.shape} given, a frame of this layout has "
-                f"({len(self.layout)},)"
+                f"values has shape {frame.shape}; a frame of this layout has ({len(self.layout)},)"
             )
-        return given
+        return frame
 
     def _frame(self, values: Floats, usable: np.ndarray) -> Frame:
         values = np.clip(np.where(usable, values, FULL), 0.0, FULL)
@@ -267,29 +266,25 @@ class PoseEstimator:
 
 def _known(kind: str) -> None:
     if kind not in KINDS:
-        raise EstimationError(f"kind: {kind!r} given, allowed are {', '.join(KINDS)} and None")
+        raise EstimationError(f"kind is {kind!r}; allowed are {', '.join(KINDS)} and None")
 
 
 def _number(
-    given: object, name: str, least: float = 0.0, most: float = math.inf, above: float = -math.inf
+    value: object, name: str, least: float = 0.0, most: float = math.inf, above: float = -math.inf
 ) -> float:
-    return arguments.number(given, name, least, most, above=above, error=EstimationError)
+    return arguments.number(value, name, least, most, above=above, error=EstimationError)
 
 
 def _model(layout: Layout, optics: Optics | Model | None, gap_mm: float) -> Model:
     if isinstance(optics, Model):
         return optics
     if optics is not None and not isinstance(optics, Optics):
-        raise EstimationError(
-            f"optics: {optics!r:.40} given, a layout's optics or a Model is needed"
-        )
+        raise EstimationError(f"optics is {optics!r:.40}; a layout's optics or a Model is needed")
     return Model.from_layout(replace(layout, optics=optics) if optics else layout, gap_mm)
 
 
 def _gains(layout: Layout, gains: ArrayLike) -> Floats:
-    given = arguments.numbers(gains, "gains", EstimationError)
-    if given.shape != (len(layout),) or not (np.isfinite(given) & (given > 0.0)).all():
-        raise EstimationError(
-            f"gains: {gains!r:.40} given, {len(layout)} numbers above 0 are needed"
-        )
-    return given.copy()
+    numbers = arguments.numbers(gains, "gains", EstimationError)
+    if numbers.shape != (len(layout),) or not (np.isfinite(numbers) & (numbers > 0.0)).all():
+        raise EstimationError(f"gains is {gains!r:.40}; {len(layout)} numbers above 0 are needed")
+    return numbers.copy()

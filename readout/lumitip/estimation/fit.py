@@ -40,7 +40,7 @@ class Fit:
     """Where the fit ended."""
 
     frame: Frame
-    """What was fitted."""
+    """Result of a fit."""
     pose: Floats
     """With `light` and `taken` at its end, and drifts of the optics before them if these were
     free."""
@@ -114,11 +114,11 @@ def drifting(shape: Shape, found: Fit, drifts: int) -> Fit:
 
 @dataclass(frozen=True, eq=False)
 class _Prior:
-    """What is known of a pose beforehand."""
+    """Prior of a pose."""
 
     known: Floats
     normal: Floats
-    """What it adds to the normal equations, shape `(p, p)`."""
+    """Its contribution to the normal equations, shape `(p, p)`."""
 
     @classmethod
     def of(cls, shape: Shape, size: int) -> "_Prior":

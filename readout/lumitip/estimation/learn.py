@@ -1,9 +1,9 @@
-"""What a minute of ordinary use tells about a fingertip: how bright each cell is, gap and scatter.
+"""Self-calibration from a minute of ordinary use: gain of each cell, gap and scatter.
 
-Every frame is fitted as by `PoseEstimator`; a cell that is brighter than its fits say, frame after
-frame, has a gain above one. Gap and scattered share are free in a fit of each frame, and those of
-all frames together are told: each frame counts for as much as it shows of them. Poses must differ:
-cells that the object never uncovers, or never half covers, keep a gain of one.
+Every frame is fitted as by `PoseEstimator`. A cell that is brighter than its fits in most frames
+has a gain above one. Gap and scattered share are free in the fit of each frame; the result is
+their mean over all frames, weighted by the information in each. Poses must differ: a cell
+that the object never uncovers, or never half covers, keeps a gain of one.
 """
 
 from collections.abc import Sequence
@@ -30,7 +30,7 @@ _SPREAD = 0.25  # gains beyond it are a broken cell or a bad fit
 
 @dataclass(frozen=True, eq=False)
 class Learned:
-    """What was learned: `PoseEstimator(layout, learned.model, gains=learned.gains)` uses it."""
+    """Result of learning: `PoseEstimator(layout, learned.model, gains=learned.gains)` uses it."""
 
     gains: Floats
     """Light of each cell relative to its empty grasp, their mean is 1, shape `(cells,)`."""
@@ -57,7 +57,7 @@ def learn(
         layout: where the cells are.
         values: calibrated values of many frames, shape `(n, cells)`, in any order.
         kind: what was between the fingers, as for `PoseEstimator`.
-        model: optics that are expected; those of the layout if not given.
+        model: optics that are expected; those of the layout by default.
         most_frames: so many frames are used, evenly spread.
 
     Raises:
@@ -71,17 +71,17 @@ def learn(
     rows = arguments.numbers(values, "values", ValuesError)
     if rows.ndim != 2 or rows.shape[1] != len(layout):
         raise ValuesError(
-            f"values of shape {rows.shape} given, frames of this layout have (n, {len(layout)})"
+            f"values has shape {rows.shape}; frames of this layout have (n, {len(layout)})"
         )
     if len(rows):
         rows = rows[np.unique(np.linspace(0, len(rows) - 1, most).astype(np.int64))]
-    told = [(row, e) for row in rows if (e := estimator(row, kind)).trusted]
-    if len(told) < _LEAST_FRAMES:
+    trusted = [(row, e) for row in rows if (e := estimator(row, kind)).trusted]
+    if len(trusted) < _LEAST_FRAMES:
         raise EstimationError(
-            f"{len(told)} frames with an edge, cable or corner given, at least {_LEAST_FRAMES} "
-            "are needed: move an object between the fingers"
+            f"{len(trusted)} frames show an edge, cable or corner; at least {_LEAST_FRAMES} "
+            "are needed. Move an object between the fingers"
         )
-    rows, kinds = np.array([row for row, _ in told]), [estimate.kind for _, estimate in told]
+    rows, kinds = np.array([row for row, _ in trusted]), [estimate.kind for _, estimate in trusted]
     gains, misfits = np.ones(len(layout)), []
     for _ in range(_ROUNDS):
         fits = _fitted(estimator, rows, kinds)

@@ -104,8 +104,8 @@ def covariance(found: Fit) -> Floats:
 def _line(
     pose: Floats, names: tuple[str, ...]
 ) -> tuple[tuple[float, float], Floats, tuple[str, ...]]:
-    """Angle (rad) and offset (mm) of the line that is told, the derivatives of what is told by
-    the pose, and its names."""
+    """Angle (rad) and offset (mm) of the reported line, its derivatives by
+    the pose, and their names."""
     size = pose.size
     if "opening_deg" not in names:
         by_pose = np.eye(size)[[*range(len(names)), -2, -1]]
@@ -113,10 +113,10 @@ def _line(
         return (float(pose[0]), float(pose[1])), by_pose, (*names, "light", "taken")
     angle, x_mm, y_mm, opening = (float(v) for v in pose[:4])
     borders = ((angle + opening / 2.0, 0.5), (angle - opening / 2.0 + math.pi, -0.5))
-    told, half = min(borders, key=lambda b: abs(math.sin(b[0])))
-    cos, sin = math.cos(told), math.sin(told)
+    border, half = min(borders, key=lambda b: abs(math.sin(b[0])))
+    cos, sin = math.cos(border), math.sin(border)
     ahead_mm = -y_mm * sin - x_mm * cos
     by_pose = np.zeros((2, size))
     by_pose[0, [0, 3]] = math.degrees(1.0), math.degrees(half)
     by_pose[1, :4] = ahead_mm, -sin, cos, half * ahead_mm
-    return (told, y_mm * cos - x_mm * sin), by_pose, ("angle_deg", "offset_mm")
+    return (border, y_mm * cos - x_mm * sin), by_pose, ("angle_deg", "offset_mm")

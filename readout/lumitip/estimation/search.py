@@ -122,9 +122,9 @@ class Search:
         shape, loose, straight = self.shape(BENT), frame.looser(LOOSE), len(Cable.names)
         seen = []
         for name, pose in starts:
-            told = len(self.shape(name).names)
-            for bend in (*_BENDS_PER_MM, *pose[straight:told]):
-                start = np.concatenate([pose[:straight], [bend], pose[told:]])
+            end = len(self.shape(name).names)
+            for bend in (*_BENDS_PER_MM, *pose[straight:end]):
+                start = np.concatenate([pose[:straight], [bend], pose[end:]])
                 seen.append(fit(shape, start, loose, _LOOK))  # which is led astray less
         return self.near(BENT, min(seen, key=bounded).pose, frame)
 
@@ -199,7 +199,7 @@ class Search:
         )
 
     def shape(self, kind: str) -> Shape:
-        """What a kind does to the cells."""
+        """Effect of a kind of object on the cells."""
         if kind not in self._shapes:
             if kind == "edge":
                 self._shapes[kind] = Edge(self._cells, self._edge_table)
@@ -207,8 +207,8 @@ class Search:
                 self._shapes[kind] = Corner(self._cells, self._edge_table)
             else:
                 table = self._lookup(lambda twin: twin.cable_table(self._diameter_mm))
-                given = self._cells, table, self._edge_table, self._diameter_mm
-                self._shapes |= {"cable": Cable(*given), BENT: Bent(*given)}
+                arguments = self._cells, table, self._edge_table, self._diameter_mm
+                self._shapes |= {"cable": Cable(*arguments), BENT: Bent(*arguments)}
         return self._shapes[kind]
 
     def _bank(self, kind: str) -> Bank:

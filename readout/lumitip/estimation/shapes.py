@@ -1,4 +1,4 @@
-"""What each kind of object does to the cells: shares of light and their derivatives by the pose.
+"""Shares of light of the cells for each kind of object, with their derivatives by the pose.
 
 A pose is a vector that ends with `light` (beside the object, 1 is the empty grasp) and `taken`
 (of that, by the object): a cell gets `light − taken · share`. Between what the object is and these
@@ -57,7 +57,7 @@ class Shape(Protocol):
         `taken`, shape `(entries, cells)`."""
 
     def priors(self) -> tuple[Floats, Floats]:
-        """What is known beforehand of each of `names`: means and standard deviations."""
+        """Prior of each of `names`: means and standard deviations."""
 
 
 class Edge:

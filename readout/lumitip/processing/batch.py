@@ -20,7 +20,7 @@ _BLOCK_VALUES = 32_768  # 256 KiB of float64
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Batch:
-    """What many frames say; rows of frames without contact hold NaN, and no marker."""
+    """Contacts in many frames; rows of frames without contact hold NaN, and no marker."""
 
     thresholds: Floats
     """λ of each frame, shape `(n,)`."""
@@ -34,7 +34,7 @@ class Batch:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Grid:
-    """What the batch needs to know of a layout; points are complex numbers (mm)."""
+    """Grid of a layout for the batch; points are complex numbers (mm)."""
 
     cells: Points
     begin: Integers

@@ -55,10 +55,10 @@ class Cable:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Contact:
-    """What one frame says; without contrast every field but `shape` is `None`."""
+    """The contact in one frame; without contrast every field but `shape` is `None`."""
 
     shape: str
-    """One of `SHAPES`; the rule is told at `lumitip.processing.shape`."""
+    """One of `SHAPES`; `lumitip.processing.shape` has the rule."""
     threshold: float | None = None
     """λ: cells with a value below it are dark (255 is full light)."""
     contrast: float | None = None

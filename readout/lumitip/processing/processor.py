@@ -66,7 +66,7 @@ class Processor:
         )
 
     def __call__(self, values: ArrayLike) -> Contact:
-        """What one frame says.
+        """The contact in one frame.
 
         Args:
             values: 0–255 (255 is full light), shape `(cells,)`, whole or not.
@@ -76,21 +76,21 @@ class Processor:
         Raises:
             ValuesError: if the shape is another, or they are no numbers.
         """
-        given = arguments.numbers(values, "values", ValuesError)
-        if given.shape != self._grid.cells.shape:
+        frame = arguments.numbers(values, "values", ValuesError)
+        if frame.shape != self._grid.cells.shape:
             raise ValuesError(
-                f"values of shape {given.shape} given, a frame of this layout has "
+                f"values has shape {frame.shape}; a frame of this layout has "
                 f"{self._grid.cells.shape}; `batch` takes several frames"
             )
-        finite = counted(given)
-        usable = None if np.count_nonzero(finite) == given.size else finite
-        told = given if usable is None else given[finite]
-        if told.size < 2:
-            return self.without_contrast(told)
-        level, contrast = threshold(told)
+        finite = counted(frame)
+        usable = None if np.count_nonzero(finite) == frame.size else finite
+        seen = frame if usable is None else frame[finite]
+        if seen.size < 2:
+            return self.without_contrast(seen)
+        level, contrast = threshold(seen)
         if not contrast >= self.min_contrast or contrast <= 0.0:
-            return self.without_contrast(told)
-        return self._contact(given, usable, level, contrast)
+            return self.without_contrast(seen)
+        return self._contact(frame, usable, level, contrast)
 
     def batch(self, values: ArrayLike) -> Batch:
         """Thresholds, centres and markers of many frames, each as for one frame.
@@ -101,13 +101,13 @@ class Processor:
         Raises:
             ValuesError: if the shape is another, or they are no numbers.
         """
-        given = arguments.numbers(values, "values", ValuesError)
-        if given.ndim != 2 or given.shape[1:] != self._grid.cells.shape:
+        frames = arguments.numbers(values, "values", ValuesError)
+        if frames.ndim != 2 or frames.shape[1:] != self._grid.cells.shape:
             raise ValuesError(
-                f"values of shape {given.shape} given, frames of this layout have "
+                f"values has shape {frames.shape}; frames of this layout have "
                 f"(n, {self._grid.cells.size})"
             )
-        return process(given, self._grid, self.min_contrast)
+        return process(frames, self._grid, self.min_contrast)
 
     def without_contrast(self, values: Floats) -> Contact:
         """The contact of a frame without contrast: nothing between the fingers, or all covered.
@@ -121,8 +121,8 @@ class Processor:
     def _fits(
         self, border: Border, is_dark: NDArray[np.bool_]
     ) -> tuple[Line | None, Corner | None, Cable | None]:
-        """What describes the markers; nothing where all cells, and so all markers, lie on one
-        line whatever the direction of the border."""
+        """Line, corner and cable through the markers; none where all cells lie on one line, as
+        the direction of a border is then unknown."""
         if self._collinear:
             return None, None, None
         line = fit_line(border)

@@ -20,8 +20,7 @@ MOST = 1e9
 
 def usable(values: Floats) -> NDArray[np.bool_]:
     """Which values count: neither NaN nor beyond `MOST`."""
-    told: NDArray[np.bool_] = np.abs(values) <= MOST
-    return told
+    return np.asarray(np.abs(values) <= MOST)
 
 
 def threshold(values: Floats) -> tuple[float, float]:

@@ -16,9 +16,9 @@ from lumitip.processing.threshold import usable
 class Tracker:
     """Adds hysteresis to `Processor`: one tracker follows one fingertip, from one thread.
 
-    A contact begins at `min_contrast` and ends below `release_contrast`. Another shape is told
-    once it came `hold` times in a row; until then the shape before is told, as long as its fit
-    applies to the frame. Whether there is contact at all is told at once.
+    A contact begins at `min_contrast` and ends below `release_contrast`. Another shape is
+    reported once it came `hold` times in a row; until then the shape before is reported, as long as
+    its fit applies to the frame. Contact and no contact are reported at once.
     """
 
     def __init__(
@@ -48,30 +48,30 @@ class Tracker:
         self._hold = arguments.count(hold, "hold")
         if release_contrast > self._min_contrast:
             raise ArgumentError(
-                f"release_contrast: {release_contrast} given, it must not be above "
+                f"release_contrast is {release_contrast}; it must not be above "
                 f"min_contrast, {min_contrast}"
             )
         self.reset()
 
     def reset(self) -> None:
         """Forget the frames so far."""
-        self._told: Contact | None = None
+        self._before: Contact | None = None
         self._other = ""
         self._times = 0
 
     def __call__(self, values: ArrayLike) -> Contact:
-        """What the next frame says, given those before; see `Processor`."""
+        """The contact in the next frame, after those before; see `Processor`."""
         contact = self._processor(values)
-        before = self._told
+        before = self._before
         touched = before is not None and before.contrast is not None
         if contact.contrast is not None and contact.contrast < self._min_contrast and not touched:
-            given = np.asarray(values, dtype=np.float64)
-            contact = self._processor.without_contrast(given[usable(given)])
+            frame = np.asarray(values, dtype=np.float64)
+            contact = self._processor.without_contrast(frame[usable(frame)])
         if before is not None and touched and contact.contrast is not None:
             contact = self._steadied(contact, before.shape)
         else:
             self._times = 0
-        self._told = contact
+        self._before = contact
         return contact
 
     def _steadied(self, contact: Contact, shape: str) -> Contact:

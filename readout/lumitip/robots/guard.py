@@ -15,7 +15,7 @@ _STILL_MM_S = 20.0
 
 @dataclass(frozen=True, slots=True)
 class ArmState:
-    """What an arm says of itself."""
+    """State of an arm."""
 
     time_s: float
     """Its own clock (s), which stands still when nothing comes."""

@@ -18,7 +18,7 @@ WHY = {
     "lost": "the tracer lost the line",
     "program": "the control program no longer runs on the arm's controller",
     "protective": "the arm is in a protective stop",
-    "speed": "the arm is faster than it was told",
+    "speed": "the arm is faster than its command",
     "stale": "no fresh frame came within `stale_s`",
     "travel": "the fingertip is further than `travel_mm` from where it began",
     "turn": "the fingertip has turned by more than `turn_deg`",
@@ -83,11 +83,11 @@ class ArmLimits:
         faults = []
         for field in fields(self):
             least, most, why = _ALLOWED[field.name]
-            given = getattr(self, field.name)
-            number = as_float(given)
+            value = getattr(self, field.name)
+            number = as_float(value)
             if not (least < number <= most or number == least > 0.0):
-                told = f"above 0 up to {most:g}" if least == 0.0 else f"{least:g} to {most:g}"
-                faults.append(f"{field.name}: {shown(given)} given, allowed is {told} ({why})")
+                allowed = f"above 0 up to {most:g}" if least == 0.0 else f"{least:g} to {most:g}"
+                faults.append(f"{field.name} is {shown(value)}; allowed is {allowed} ({why})")
             object.__setattr__(self, field.name, number)
         if faults:
             raise ArmError("; ".join(faults))

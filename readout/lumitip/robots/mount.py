@@ -23,7 +23,7 @@ _TOLERANCE = 1e-3
 
 @dataclass(frozen=True, slots=True)
 class Mount:
-    """The sensor frame, told in the tool frame of the arm.
+    """The sensor frame in the tool frame of the arm.
 
     A gripper on a UR arm points along the tool's z. With the fingers opening along the tool's y, a
     receiver on the side of +y looks along -y: `Mount(x=(1, 0, 0), y=(0, 0, 1))`.
@@ -37,18 +37,16 @@ class Mount:
     """The middle of the sensor's cells, from the tool centre point."""
 
     def __post_init__(self) -> None:
-        told = np.full((3, 3), np.nan)
+        axes = np.full((3, 3), np.nan)
         for row, name in enumerate(("x", "y", "origin_mm")):
-            given = arguments.numbers(getattr(self, name), name, ArmError)
-            if given.shape != (3,) or not np.isfinite(given).all():
-                raise ArmError(
-                    f"{name}: {shown(getattr(self, name))} given, three numbers are needed"
-                )
-            told[row] = given
+            axis = arguments.numbers(getattr(self, name), name, ArmError)
+            if axis.shape != (3,) or not np.isfinite(axis).all():
+                raise ArmError(f"{name} is {shown(getattr(self, name))}; three numbers are needed")
+            axes[row] = axis
         off = max(abs(math.hypot(*self.x) - 1), abs(math.hypot(*self.y) - 1))
-        if max(off, abs(float(told[0] @ told[1]))) > _TOLERANCE:
+        if max(off, abs(float(axes[0] @ axes[1]))) > _TOLERANCE:
             raise ArmError(
-                f"x {self.x} and y {self.y} given: both must be of length 1 and square to each "
+                f"x is {self.x}, y is {self.y}; both must be of length 1 and square to each "
                 "other, as the edges of a box are"
             )
 
@@ -74,8 +72,8 @@ class Mount:
         return np.concatenate([velocity - np.cross(turn, arm_m), turn])
 
     def command(self, twist: Floats) -> Command:
-        """What the fingertip does at a twist of the tool centre point in the tool frame: what
-        remains of it in the plane of the sensor."""
+        """Motion of the fingertip, in the plane of the sensor, at a twist of the tool centre
+        point in the tool frame."""
         velocity, turn = twist[:3], twist[3:]
         moved = velocity + np.cross(turn, np.array(self.origin_mm) / 1000.0)
         forward, lateral, _ = self.rotation.T @ moved * 1000.0
@@ -88,13 +86,13 @@ class Mount:
 
 
 def in_base(pose: Floats, twist: Floats) -> Floats:
-    """A twist in the tool frame, told in the base: the same motion, other directions; `(6,)`."""
+    """A twist of the tool frame in the base frame: the same motion, other directions; `(6,)`."""
     axes = rotation_of(pose)
     return np.concatenate([axes @ twist[:3], axes @ twist[3:]])
 
 
 def in_tool(pose: Floats, twist: Floats) -> Floats:
-    """A twist in the base, told in the tool frame; `(6,)`."""
+    """A twist of the base frame in the tool frame; `(6,)`."""
     axes = rotation_of(pose).T
     return np.concatenate([axes @ twist[:3], axes @ twist[3:]])
 

@@ -3,7 +3,7 @@
 A thread of its own sends what holds at `RATE_HZ`, looks at the arm before each and stops it for any
 reason of `WHY`. A stop is final: opening anew is for whoever has looked at the arm.
 
-ur_rtde's script repeats the last speed for ever, whatever time it was given for, and ur_rtde makes
+ur_rtde's script repeats the last speed for ever, whatever its time was, and ur_rtde makes
 a cut connection again by itself. Hence the watchdog of the controller, which stops the program when
 no register is written any more, and hence an arm that was silent once is not moved again.
 """
@@ -96,8 +96,8 @@ class URArm:
         return self._stop.reason if self._stop else ""
 
     def move(self, command: Command, seen_s: float) -> None:
-        """What holds until the next command, or until the frame is too old. Does not wait, except
-        for a command to stop: then until the arm stands.
+        """Set the command; it holds until the next one, or until the frame is too old. Returns at
+        once; a command to stop waits until the arm stands.
 
         Args:
             command: of the tracer. Too fast ones are slowed down as a whole.
@@ -245,8 +245,8 @@ def _connected(host: str, timeout_s: float) -> tuple[Any, Any]:
         return RTDEControlInterface(host, RATE_HZ), receive
     except (OSError, RuntimeError) as problem:
         raise ArmError(
-            f"{host} given, no arm there takes commands at port {_PORT} ({problem}): switch it on, "
-            "unlock the brakes, enable remote control and check the address"
+            f"host is {host}; no arm there takes commands at port {_PORT} ({problem}). Switch it "
+            "on, unlock the brakes, enable remote control and check the address"
         ) from None
 
 

@@ -81,7 +81,7 @@ class TraceEnv(gymnasium.Env[Observation, Observation]):
         """
         shares = arguments.numbers(action, "action", TaskError)
         if shares.shape != (3,) or not np.isfinite(shares).all():
-            raise TaskError(f"action: {shown(action, 60)} given, three finite numbers are needed")
+            raise TaskError(f"action is {shown(action, 60)}; three finite numbers are needed")
         shares = np.clip(shares, -1.0, 1.0)
         command = Command(
             float(shares[0]) * self._limits.forward_mm_s,

@@ -77,7 +77,7 @@ class LiveTask(ThreadedLink):
         return Fingertip(hub, _BUFFER, calibrated=True)
 
     def command(self, command: Command) -> None:
-        """What holds until the next command. From any thread.
+        """Set the command; it holds until the next one. May be called from any thread.
 
         Raises:
             TaskError: if it is no command, or a velocity is no finite number.

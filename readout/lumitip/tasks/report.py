@@ -40,7 +40,7 @@ def write(results: Sequence[Result], folder: Path) -> list[Path]:
 
 
 def markdown(results: Sequence[Result]) -> str:
-    """What each controller was tuned to, how fast it is, and every speed that was tried."""
+    """Tuning of each controller, its top speed, and every speed that was tried."""
     return (
         "Simulated closed loop, no hardware; rms figures are of the curves that were kept.\n\n"
         + "\n".join([*_tunings(results), "", *_speeds(results), "", *_rows(results)])
@@ -52,7 +52,7 @@ def goals(results: Sequence[Result]) -> list[tuple[bool, str]]:
     """Whether each goal was met, and what it is: the line's angle against the published law.
 
     At no loss and on the same processing, so that nothing but the law differs; few losses, and the
-    pose estimator, are told beside it and not judged.
+    pose estimator, are listed beside it and not judged.
     """
     few = {(a.task, a.controller): a for a in advantages(results, FEW)}
     return [
@@ -133,13 +133,13 @@ def _figure(value: float, digits: int, unit: str) -> str:
     return "–" if math.isnan(value) else f"{value:.{digits}f}{unit}"
 
 
-def _plain(told: object) -> object:
+def _plain(value: object) -> object:
     """NaN has no place in JSON."""
-    if isinstance(told, dict):
-        return {k: _plain(v) for k, v in told.items()}
-    if isinstance(told, list | tuple):
-        return [_plain(v) for v in told]
-    return None if isinstance(told, float) and math.isnan(told) else told
+    if isinstance(value, dict):
+        return {k: _plain(v) for k, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(v) for v in value]
+    return None if isinstance(value, float) and math.isnan(value) else value
 
 
 def _plot(results: Sequence[Result], path: Path) -> Path:

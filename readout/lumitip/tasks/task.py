@@ -40,7 +40,7 @@ class TaskError(LumitipError, ValueError):
 
 @dataclass(frozen=True)
 class Settings:
-    """What a task is made of."""
+    """Settings of a task."""
 
     kind: str = "cloth"
     """`"cloth"` (sheet on the side of the tip) or `"cable"`."""
@@ -50,7 +50,7 @@ class Settings:
     """Whether a cloth ends in a corner; else the curve ends the task."""
     rate_hz: float = RATE_HZ
     latency: int = 1
-    """Frames between what the finger meets and what the controller is given."""
+    """Frames from a contact until the controller sees it."""
     lag_s: float = 0.03
     """Time constant of the velocity of the actuator (s)."""
     noise: float = 1.5
@@ -60,7 +60,7 @@ class Settings:
 
     def __post_init__(self) -> None:
         if not isinstance(self.kind, str) or self.kind not in KINDS:
-            raise TaskError(f"kind: {shown(self.kind)} given, allowed are {', '.join(KINDS)}")
+            raise TaskError(f"kind is {shown(self.kind)}; allowed are {', '.join(KINDS)}")
         if self.corner and self.kind != "cloth":
             raise TaskError("corner: a cable has none")
         arguments.finite_fields(self, TaskError)
@@ -113,7 +113,7 @@ class Task:
         Args:
             layout: the cells.
             settings: what is followed and how late.
-            twin: what reads the object; the layout's own if not given. Its noise is not used.
+            twin: what reads the object; the layout's own by default. Its noise is not used.
 
         Raises:
             LayoutError: if it is no layout.
@@ -128,7 +128,7 @@ class Task:
         )
         if self.twin.layout != layout:
             raise TaskError(
-                f"a twin of design {self.twin.layout.design_hash[:16]} given, the layout is of "
+                f"the twin is of design {self.twin.layout.design_hash[:16]}; the layout is of "
                 f"{layout.design_hash[:16]}: give a twin of this layout"
             )
         self.reset()
@@ -189,7 +189,7 @@ class Task:
         return offset_mm / math.cos(angle), angle
 
     def scene(self) -> Scene:
-        """What is between the fingers now."""
+        """The object between the fingers now."""
         offset_mm, angle = self._tangent()
         bend = float(self.curve.bend_per_mm[self._at])
         if self.settings.kind == "cable":

@@ -27,7 +27,7 @@ _LONGEST_S = 120.0
 
 @dataclass(frozen=True)
 class Tuning:
-    """What a controller is tuned by."""
+    """Tuning parameters of a controller."""
 
     gain_per_s: float = 8.0
     turn_per_s: float = 8.0
@@ -49,14 +49,14 @@ class Bench:
         self._centre_mm = centre_height_mm(task.twin, task.settings)
 
     def observer(self, controller: str) -> Observer:
-        """What turns values into what the controller sees.
+        """The function that turns values into the controller's input.
 
         Raises:
             TaskError: if there is no such controller.
         """
         if not isinstance(controller, str) or controller not in CONTROLLERS:
             raise TaskError(
-                f"controller: {shown(controller)} given, allowed are {', '.join(CONTROLLERS)}"
+                f"controller is {shown(controller)}; allowed are {', '.join(CONTROLLERS)}"
             )
         if controller != "pose":
             return self._processor
@@ -268,5 +268,5 @@ def _values(tried: Sequence[Tuning], name: str) -> set[float]:
 def _score(
     bench: Bench | Team, controller: str, speed_mm_s: float, tuning: Tuning, seeds: Sequence[int]
 ) -> tuple[int, float]:
-    told = summary(bench, controller, speed_mm_s, tuning, seeds)
-    return told.losses, told.lateral_rms_mm if told.losses < told.trials else math.inf
+    result = summary(bench, controller, speed_mm_s, tuning, seeds)
+    return result.losses, result.lateral_rms_mm if result.losses < result.trials else math.inf

@@ -78,11 +78,9 @@ def fit_edge(layout: Layout, values: Floats, offset_mm: float, angle_deg: float)
     """
     values = arguments.numbers(values, "values", TwinError)
     if values.shape != (len(arguments.layout(layout)),) or not np.isfinite(values).all():
-        raise TwinError(
-            f"values has the shape {values.shape}; {len(layout)} finite numbers are needed"
-        )
+        raise TwinError(f"values has shape {values.shape}; {len(layout)} finite numbers are needed")
     if collinear(layout.x_mm, layout.y_mm):
-        raise TwinError("all cells of the layout lie on one line; the edge has no direction there")
+        raise TwinError("layout has all cells in one line; they do not show an edge's direction")
     offset_mm = arguments.number(offset_mm, "offset_mm", error=TwinError)
     angle_deg = arguments.number(angle_deg, "angle_deg", error=TwinError)
     place = np.array([offset_mm, angle_deg, 0.0, 0.05, 2.5, 0.6, 0.9, 0.0, 0.0])

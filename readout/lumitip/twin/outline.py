@@ -35,7 +35,7 @@ class Polygon(Shape):
         points = arguments.numbers(self.points_mm, "points_mm", TwinError)
         if points.ndim != 2 or points.shape[1] != 2 or len(points) < 3:
             raise TwinError(
-                f"points_mm has the shape {points.shape}; three or more corners (x, y) are needed"
+                f"points_mm has shape {points.shape}; three or more corners (x, y) are needed"
             )
         if not np.isfinite(points).all():
             raise TwinError("points_mm has a corner that is not finite; (x, y) in mm are needed")
@@ -100,7 +100,7 @@ class Image(Thing):
         pixels = arguments.numbers(self.pixels, "pixels", TwinError)
         if pixels.ndim != 2 or not pixels.size or not (0.0 <= pixels.min() <= pixels.max() <= 1.0):
             raise TwinError(
-                f"pixels has the shape {pixels.shape}; rows of coverage from 0 to 1 are needed"
+                f"pixels has shape {pixels.shape}; rows of coverage from 0 to 1 are needed"
             )
         if not self.pixel_mm > 0.0:
             raise TwinError(f"pixel_mm is {self.pixel_mm}; it must be above 0")

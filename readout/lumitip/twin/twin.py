@@ -111,7 +111,7 @@ class Twin:
             at = self.plane(height)
             if scenes.ndim != 2 or scenes.shape[1] != at.x_mm.size:
                 raise TwinError(
-                    f"scenes has the shape {scenes.shape}; (n, {at.x_mm.size} pixels) is needed"
+                    f"scenes has shape {scenes.shape}; (n, {at.x_mm.size} pixels) is needed"
                 )
             return self.calibrated(1.0 - at(scenes))
         if isinstance(scenes, Thing | str) or not isinstance(scenes, Sequence):

@@ -79,7 +79,7 @@ def test_commands_stay_within_the_limits() -> None:
     assert (command.forward_mm_s, command.lateral_mm_s, command.rotation_rad_s) == (50, 10, 0.5)
     with pytest.raises(ControlError, match="above 0"):
         Limits(lateral_mm_s=0.0)
-    with pytest.raises(ControlError, match="corner_frames: 0 given"):
+    with pytest.raises(ControlError, match="corner_frames is 0;"):
         Tracer(LineLaw(), corner_frames=0)
 
 

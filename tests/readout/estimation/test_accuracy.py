@@ -121,7 +121,7 @@ def test_a_kind_that_was_prepared_waits_for_no_table(
     assert ready(values, "cable").offset_mm == pytest.approx(1.0, abs=0.1)
     with pytest.raises(AssertionError, match="while frames come"):
         PoseEstimator(twin.layout)(values, "cable")
-    with pytest.raises(EstimationError, match="'disc' given, allowed are edge, cable, corner"):
+    with pytest.raises(EstimationError, match="kind is 'disc'; allowed are edge, cable, corner"):
         ready.prepare("edge", "disc")
 
 

@@ -126,7 +126,7 @@ def test_what_cannot_be_asked_for_is_refused(estimator: PoseEstimator, cells: La
         estimator(np.zeros(31))
     with pytest.raises(EstimationError, match="allowed are edge, cable, corner"):
         estimator(np.zeros(32), "disc")
-    with pytest.raises(EstimationError, match=r"gap_sd_mm: -0\.1 given, a number from 0 on"):
+    with pytest.raises(EstimationError, match=r"gap_sd_mm is -0\.1; a number from 0 on"):
         PoseEstimator(cells, gap_sd_mm=-0.1)
     with pytest.raises(EstimationError, match="32 numbers above 0"):
         PoseEstimator(cells, gains=np.ones(31))
@@ -170,7 +170,7 @@ def test_a_dead_cell_teaches_nothing_and_spoils_nothing(cells: Layout, twin: Twi
     learned = learn(cells, rows, "edge")
     assert learned.frames == 30
     assert learned.gains == pytest.approx(np.ones(len(cells)), abs=0.02)
-    with pytest.raises(ValuesError, match="3 cells with finite values given, at least 4"):
+    with pytest.raises(ValuesError, match="3 cells have finite values; at least 4"):
         PoseEstimator(cells).fitted(np.where(np.arange(32) < 3, rows[0], np.nan), "edge")
 
 

@@ -135,9 +135,9 @@ def test_a_grid_without_neighbours_has_no_markers(layout: Layout) -> None:
 @pytest.mark.parametrize(
     ("values", "said"),
     [
-        (np.zeros(31), r"shape \(31,\) given, a frame of this layout has \(32,\)"),
+        (np.zeros(31), r"shape \(31,\); a frame of this layout has \(32,\)"),
         (np.zeros((2, 32)), "`batch` takes several frames"),
-        (5.0, r"shape \(\) given"),
+        (5.0, r"shape \(\);"),
     ],
 )
 def test_values_of_another_shape_are_refused(layout: Layout, values: Any, said: str) -> None:

@@ -67,7 +67,7 @@ def test_a_hold_of_one_is_no_hysteresis(layout: Layout, scene: Any) -> None:
 
 @pytest.mark.parametrize(
     ("given", "said"),
-    [({"hold": 0}, "hold: 0 given"), ({"release_contrast": 21.0}, "release_contrast: 21.0 given")],
+    [({"hold": 0}, "hold is 0;"), ({"release_contrast": 21.0}, "release_contrast is 21.0;")],
 )
 def test_parameters_out_of_range_are_refused(
     layout: Layout, given: dict[str, Any], said: str

@@ -207,7 +207,7 @@ def test_it_stops_when_the_program_is_interrupted_or_killed(
 
 
 def test_no_arm_is_told_in_time() -> None:
-    with pytest.raises(ArmError, match="given, no arm there takes commands at port 30004"):
+    with pytest.raises(ArmError, match="; no arm there takes commands at port 30004"):
         URArm("127.0.0.77", MOUNT, CALM, timeout=2.0)
 
 

@@ -1,1 +1,1 @@
-"""What is sent to a board house to have a board made and its parts placed."""
+"""Files for the PCB manufacturer: Gerbers, bill of materials, positions, notes."""

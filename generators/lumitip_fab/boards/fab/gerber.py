@@ -63,7 +63,7 @@ def _copper(model: BoardModel, side: Side, pads: list[PlacedPad]) -> Iterator[Gr
 
 
 def _mask(board: Placement, pads: list[PlacedPad]) -> Iterator[GraphicObject]:
-    """What the mask leaves open: a negative layer draws its openings."""
+    """Openings of the solder mask: the layer is negative."""
     yield from (objects.pad(pad, opening_mm(pad.component)) for pad in pads)
     yield from (objects.dot(hole, board.hole_mm + 2 * MASK_MM) for hole in board.holes)
 

@@ -20,13 +20,13 @@ from lumitip_fab.design import Point
 class Attributes(GraphicObject):  # type: ignore[misc]
     """Gerber X2 attributes of the objects that follow; none takes all away."""
 
-    told: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    values: dict[str, tuple[str, ...]] = field(default_factory=dict)
 
     def to_statements(self, _: Any) -> Iterator[str]:
         """The commands that set them."""
         yield "%TD*%"
-        for name, values in self.told.items():
-            yield f"%TO.{','.join((name, *values))}*%"
+        for name, fields in self.values.items():
+            yield f"%TO.{','.join((name, *fields))}*%"
 
     def to_primitives(self, _: Any = None) -> Iterator[Any]:
         """Nothing is drawn."""

@@ -1,4 +1,4 @@
-"""What a board is ordered with: bill of materials, placement list, notes and one zip."""
+"""Order files of a board: bill of materials, placement list, notes and one zip."""
 
 import csv
 import io
@@ -73,11 +73,11 @@ def _placed(part: Component, fab: Fab) -> Row:
 
 
 def _table(columns: Iterable[tuple[str, str]], rows: Iterable[Row]) -> bytes:
-    told = tuple(columns)
+    headings = tuple(columns)
     file = io.StringIO()
     writer = csv.writer(file, lineterminator="\r\n")
-    writer.writerow(heading for heading, _ in told)
-    writer.writerows([row[field] for _, field in told] for row in rows)
+    writer.writerow(heading for heading, _ in headings)
+    writer.writerows([row[field] for _, field in headings] for row in rows)
     return file.getvalue().encode()
 
 
@@ -115,10 +115,10 @@ def order_files(
     }
     files = {stem + ending: layers[layer] for layer, ending in fab.layers if layer in layers}
     files[f"{stem}_assembly.txt"] = note
-    told = {f"{fab.name}_{name}": data for name, data in tables.items()}
+    named = {f"{fab.name}_{name}": data for name, data in tables.items()}
     return {
         f"{fab.name}_{stem}.zip": _zipped(files | tables),
-        **told,
+        **named,
     }
 
 
@@ -189,7 +189,7 @@ def _polarity(board: Placement, chip: Chip, kind: str) -> Iterator[str]:
 
 
 def _flexible(flexible: Flexible, outline: str) -> Iterator[str]:
-    """What must be ordered of a flexible board, and the file with the stiffener's outline."""
+    """Order note of a flexible board, and the file with the stiffener's outline."""
     bend, stiff = flexible.bend, flexible.stiffener
     total = flexible.core_mm + 2 * (flexible.copper_mm + flexible.coverlay_mm)
     yield (

@@ -157,12 +157,12 @@ def _rings(polygon: Polygon) -> list[NDArray[np.float64]]:
 
 def _path(each: Painted) -> str:
     """All rings, y down."""
-    told = []
+    paths = []
     for polygon in _polygons(each):
         for ring in _rings(polygon):
             corners = (f"{_short(x)} {_short(-y)}" for x, y in ring[:-1])
-            told.append("M" + "L".join(corners) + "Z")
-    return "".join(told)
+            paths.append("M" + "L".join(corners) + "Z")
+    return "".join(paths)
 
 
 def _short(value: float) -> str:

@@ -1,4 +1,4 @@
-"""What a flexible board's file has beside a rigid one's: stack-up, bend and stiffener."""
+"""Additions to the file of a flexible board: stack-up, bend and stiffener."""
 
 from collections.abc import Iterator
 

@@ -134,7 +134,7 @@ class _Writer:
         )
 
     def contents(self) -> Iterator[Node]:
-        """What a footprint has wherever it lies."""
+        """Content of a footprint that does not depend on its place."""
         yield ("attr", *_attributes(self.component))
         yield from self.texts()
         yield from self.lines()
@@ -152,7 +152,7 @@ class _Writer:
         """Reference and value, and the reference once more where assembly drawings have it."""
         part = self.component
         shown = part.ref_text or Text("", 0.0, 0.0)
-        for kind, told, text, layer in (
+        for kind, value, text, layer in (
             ("reference", part.ref, shown, "SilkS"),
             ("value", part.value, Text("", 0.0, 0.0), "Fab"),
             ("user", "${REFERENCE}", _on_body(part.footprint), "Fab"),
@@ -160,7 +160,7 @@ class _Writer:
             hide = kind == "value" or (kind == "reference" and part.ref_text is None)
             yield _text(
                 kind,
-                told,
+                value,
                 text,
                 angle_on_board_deg(part, text),
                 self.layer(layer),
@@ -216,20 +216,20 @@ class _Writer:
 
 
 def _ordering(part: Component) -> tuple[Node, ...]:
-    """What to order, in the words of the part's symbol: from 10 on, KiCad compares them."""
+    """Ordering fields as in the part's symbol: KiCad 10 compares them."""
     if not part.part:
         return ()
-    told = {"Manufacturer": part.manufacturer, "MPN": part.part}
-    return tuple(("property", Quoted(name), Quoted(value)) for name, value in told.items())
+    properties = {"Manufacturer": part.manufacturer, "MPN": part.part}
+    return tuple(("property", Quoted(name), Quoted(value)) for name, value in properties.items())
 
 
 def _attributes(component: Component) -> tuple[str, ...]:
-    told = ["through_hole" if any(p.drill_mm for p in component.footprint.pads) else "smd"]
+    attributes = ["through_hole" if any(p.drill_mm for p in component.footprint.pads) else "smd"]
     if not component.part:
-        told += ["exclude_from_pos_files", "exclude_from_bom"]
+        attributes += ["exclude_from_pos_files", "exclude_from_bom"]
     if component.kind == "fiducial":
-        told.append("board_only")
-    return tuple(told)
+        attributes.append("board_only")
+    return tuple(attributes)
 
 
 def _on_body(shape: Footprint) -> Text:
@@ -248,7 +248,7 @@ def _round(box: Box, width_mm: float) -> Stroke:
 
 def _text(
     kind: str,
-    told: str,
+    value: str,
     text: Text,
     angle_deg: float,
     layer: str,
@@ -260,7 +260,7 @@ def _text(
     return (
         "fp_text",
         kind,
-        Quoted(told),
+        Quoted(value),
         ("at", *at, angle_deg, "unlocked"),
         ("layer", Quoted(layer)),
         *(("hide",) if hide else ()),

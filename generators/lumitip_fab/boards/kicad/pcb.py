@@ -140,7 +140,7 @@ def edges(board: Placement) -> Iterator[Node]:
 
 
 def silkscreen(board: Placement) -> Iterator[Node]:
-    """What is printed beyond the footprints' own."""
+    """Silkscreen outside the footprints."""
     count = 0
     for side, stroke in board.silk:
         for start, end in zip(stroke.points, stroke.points[1:], strict=False):
@@ -248,5 +248,5 @@ def _title(board: Placement) -> Node:
 
 
 def _layer(number: int, name: str, kind: str, shown: str) -> Node:
-    told = (Quoted(shown),) if shown else ()
-    return (str(number), Quoted(name), kind, *told)
+    shown_as = (Quoted(shown),) if shown else ()
+    return (str(number), Quoted(name), kind, *shown_as)

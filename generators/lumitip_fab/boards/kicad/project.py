@@ -20,7 +20,7 @@ def project_file(board: Placement, name: str) -> bytes:
         board: for its nets, classes and rules.
         name: of the file, with its ending.
     """
-    told = {
+    settings = {
         "board": {"design_settings": {"rules": _rules(board)}},
         "meta": {"filename": name, "version": 1},
         "net_settings": {
@@ -31,7 +31,7 @@ def project_file(board: Placement, name: str) -> bytes:
             ],
         },
     }
-    return (json.dumps(told, indent=2) + "\n").encode()
+    return (json.dumps(settings, indent=2) + "\n").encode()
 
 
 def library_table() -> bytes:

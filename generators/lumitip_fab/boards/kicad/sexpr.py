@@ -19,8 +19,8 @@ class Quoted(str):
 
 def number(value: float) -> str:
     """A length or an angle to 1 nm, without needless zeros and without minus zero."""
-    told = f"{value:.6f}".rstrip("0").rstrip(".")
-    return "0" if told in {"-0", ""} else told
+    digits = f"{value:.6f}".rstrip("0").rstrip(".")
+    return "0" if digits in {"-0", ""} else digits
 
 
 def written(node: Node) -> str:
@@ -41,16 +41,16 @@ def _lines(node: Node, depth: int) -> Iterator[str]:
     yield indent + "(" + " ".join(_flat(v) for v in node[:plain])
     packed = ""
     for value in node[plain:]:
-        told = _flat(value)
+        text = _flat(value)
         if node[0] == "pts":  # points are many and short: as many on a line as fit
-            if packed and len(indent) + len(packed) + len(told) + 3 > _WIDTH:
+            if packed and len(indent) + len(packed) + len(text) + 3 > _WIDTH:
                 yield f"{indent}  {packed}"
                 packed = ""
-            packed = f"{packed} {told}" if packed else told
+            packed = f"{packed} {text}" if packed else text
         elif isinstance(value, tuple):
             yield from _lines(value, depth + 1)
         else:
-            yield f"{indent}  {told}"
+            yield f"{indent}  {text}"
     if packed:
         yield f"{indent}  {packed}"
     yield indent + ")"

@@ -51,7 +51,7 @@ class Net:
 
 @dataclass(frozen=True)
 class Kept:
-    """What stays of the ground net."""
+    """Remaining copper of the ground net."""
 
     tracks: tuple[Track, ...]
     vias: tuple[Via, ...]

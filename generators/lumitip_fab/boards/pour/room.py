@@ -73,7 +73,7 @@ def via_room(placement: Placement, routing: Routing, via_mm: float, drill_mm: fl
 
 
 def opened(area: Geometry) -> Geometry:
-    """What is left of an area without all that is narrower than the pour may be."""
+    """An area without the parts that are narrower than the pour's minimum width."""
     half = MIN_WIDTH_MM / 2
     grown = area.buffer(-half, quad_segs=_ARC).buffer(half, quad_segs=_ARC)
     return shapely.intersection(grown, area).simplify(DETAIL_MM)

@@ -1,4 +1,4 @@
-"""What the router spends its time in, compiled: the search, and the room that copper takes.
+"""Compiled inner loops of the router: the search, and the area that copper blocks.
 
 All work on a grid of nodes `(layer, y, x)`, front and back. A node index is
 `(layer * height + y) * width + x`. Directions 0 to 7 go counter-clockwise from +x in steps of

@@ -132,7 +132,7 @@ CROWD_MM = 4.0  # how far beside and above a pad others crowd it
 
 
 class TightError(BuildError):
-    """What is fixed leaves no way; a finer grid may find one."""
+    """Fixed copper blocks every path; a finer grid may find one."""
 
 
 @dataclass(frozen=True)
@@ -170,7 +170,7 @@ def wanted(
     *,
     thin: bool,
 ) -> Wanted:
-    """What is to be connected.
+    """The pads to connect.
 
     Args:
         name: of the net.

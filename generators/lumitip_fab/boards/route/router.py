@@ -58,7 +58,7 @@ SWEEP = 20  # rounds after which all nets are routed anew,
 SWEEP_SHARE = 0.12  # while more than this share of them is in conflict
 WIDER_MM = 0.1  # wider searches with each round
 DEAR = 1e5  # price that no net pays when another way is left
-PATIENCE = 60  # rounds without progress, before a board is given up
+PATIENCE = 60  # rounds without progress, before the router gives up
 POLISHES = 2
 
 NEGOTIATION = Taste(FIRST_PRICE, margin_mm=2.5, via_mm=0.7)
@@ -66,7 +66,7 @@ BEAUTY = Taste(DEAR, via_mm=2.0, bend_mm=0.5, across=1.2)
 
 
 def negotiate(state: State, nets: list[Wanted]) -> tuple[int, dict[str, Ints]]:
-    """Route all nets; given up when many rounds have brought nothing.
+    """Route all nets; stops after many rounds without progress.
 
     Args:
         state: the maps; `state.routed` has the result.

@@ -24,7 +24,7 @@ class Unreachable(Exception):  # noqa: N818 - not a fault of its own: `route` sa
 
 @dataclass(frozen=True)
 class Taste:
-    """What paths cost, as lengths of track (mm)."""
+    """Cost of paths, as lengths of track (mm)."""
 
     price: float
     """More for each net in the way, as a factor."""

@@ -1,4 +1,4 @@
-"""What is printed on a carrier: names of contacts, references, notes and the title."""
+"""Silkscreen of an auxiliary board: names of contacts, references, notes and the title."""
 
 import dataclasses
 import math
@@ -52,7 +52,7 @@ def with_legend(board: Placement, carrier: Carrier, rules: Rules) -> Placement:
 
 def _put(
     page: Page,
-    told: str,
+    words: str,
     at: Point,
     choices: list[Text],
     apart_mm: float = 0.0,
@@ -65,7 +65,7 @@ def _put(
         page.put(side, [found])
     else:
         first = choices[0]
-        page.miss(repr(told), first.height_mm, page.length_mm(first.text, first.height_mm), at)
+        page.miss(repr(words), first.height_mm, page.length_mm(first.text, first.height_mm), at)
 
 
 def _names(page: Page, device: Device, part: Component, board: Box) -> None:

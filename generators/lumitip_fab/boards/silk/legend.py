@@ -1,5 +1,4 @@
-"""What is printed on a board beyond its parts' outlines: cells, labels, references and the
-title."""
+"""Silkscreen of a finger's board: cells, labels, references and the title."""
 
 import dataclasses
 import math
@@ -142,8 +141,8 @@ def _along_the_edges(page: Page) -> bool:
         [edge + sign * d for d in inwards] for edge, sign in ((box.x_min_mm, 1), (box.x_max_mm, -1))
     )
     arrow = page.arrow("front", ((x, y) for x in left for y in ys))
-    told = f"{board.finger} rev {board.revision}  {board.design_hash[:8]}"
-    for xs, line in ((left, board.name), (right, told)):
+    revision = f"{board.finger} rev {board.revision}  {board.design_hash[:8]}"
+    for xs, line in ((left, board.name), (right, revision)):
         for height in (_TITLE_MM, 0.0):
             if page.first_free(
                 "front", (page.text(line, (x, y), height, 90.0) for x in xs for y in ys)
@@ -166,7 +165,7 @@ def _back(page: Page, finger: Finger, mark: str) -> bool:
     x, y = zone.centre_mm
     room = page.block("back", lines, (x, y))
     if room is None:
-        longest = max(page.length_mm(told) for told, _ in lines)
+        longest = max(page.length_mm(words) for words, _ in lines)
         page.miss(
             "the title on the back",
             page.text("", (x, y)).height_mm * 1.8 * len(lines),

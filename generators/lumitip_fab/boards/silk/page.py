@@ -21,7 +21,7 @@ _MOST_LATE = 32  # shapes beside the tree of those before, which are looked at o
 
 @dataclass
 class Clear:
-    """What is taken on one side of a board while its silkscreen is drawn."""
+    """Occupied area on one side of a board while its silkscreen is drawn."""
 
     inside: Polygon
     """Where silkscreen may be at all."""
@@ -114,15 +114,15 @@ class Page:
         self.texts: list[tuple[Side, Text]] = []
         self.lost: list[str] = []
 
-    def text(self, told: str, at: Point, height_mm: float = 0.0, angle_deg: float = 0.0) -> Text:
+    def text(self, words: str, at: Point, height_mm: float = 0.0, angle_deg: float = 0.0) -> Text:
         """A text, at least as high and as bold as is legible; as small as that by itself."""
         height = max(height_mm, self.rules.silk_text_mm)
         stroke = max(_STROKE * height, self.rules.silk_line_mm)
-        return Text(told, *at, height, stroke, angle_deg)
+        return Text(words, *at, height, stroke, angle_deg)
 
-    def length_mm(self, told: str, height_mm: float = 0.0) -> float:
+    def length_mm(self, words: str, height_mm: float = 0.0) -> float:
         """Length of a line of text."""
-        low, _, high, _ = extent(self.text(told, (0.0, 0.0), height_mm), "front").bounds
+        low, _, high, _ = extent(self.text(words, (0.0, 0.0), height_mm), "front").bounds
         return float(high - low)
 
     def lines(self, side: Side, lines: Iterable[LineString]) -> None:
@@ -222,10 +222,10 @@ class Page:
         heights = [max(scale * height, self.rules.silk_text_mm) for _, height in lines]
         rest = 1.8 * sum(heights) / 2
         texts = []
-        for (told, _), height in zip(lines, heights, strict=True):
+        for (words, _), height in zip(lines, heights, strict=True):
             rest -= 0.9 * height
             at = (0.0, rest) if angle == 0.0 else (-rest, 0.0)
-            texts.append(self.text(told, at, height, angle))
+            texts.append(self.text(words, at, height, angle))
             rest -= 0.9 * height
         return texts
 

@@ -37,19 +37,19 @@ def angle_on_board_deg(component: Component, text: Text) -> float:
 
 
 def text_strokes(
-    told: str, text: Text, at: Point, angle_deg: float, side: Side
+    words: str, text: Text, at: Point, angle_deg: float, side: Side
 ) -> Iterator[Stroke]:
     """The strokes of a centred line of text, in the sensor frame.
 
     Args:
-        told: what it says.
+        words: what it says.
         text: its size.
         at: its middle.
         angle_deg: counter-clockwise, seen from the front.
         side: of the board; on the back it is mirrored, to be read from there.
     """
     glyphs = _font()
-    letters = [glyphs.get(letter, glyphs["?"]) for letter in told]
+    letters = [glyphs.get(letter, glyphs["?"]) for letter in words]
     turn, sign = math.radians(angle_deg), 1 if side == "front" else -1
     cos, sin = math.cos(turn), math.sin(turn)
     left = -sum(width for width, _ in letters) / 2

@@ -9,4 +9,4 @@ MALFORMED = (
     StopIteration,
     RuntimeError,
 )
-"""What readers raise on damaged files, beside their own exceptions."""
+"""Exceptions of the libraries when they read damaged files."""

@@ -1,4 +1,4 @@
-"""What is connected to what, from the copper itself and not from the names of nets."""
+"""Connections from the copper itself, not from the names of nets."""
 
 from collections import defaultdict
 from collections.abc import Iterator

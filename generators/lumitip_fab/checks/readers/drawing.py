@@ -19,7 +19,7 @@ _PAIR = re.compile(r"(-?\d*\.?\d+),(-?\d*\.?\d+)")
 
 @dataclass(frozen=True, eq=False)
 class Drawing:
-    """What the file holds, in mm of the page with y up."""
+    """Contents of the file, in mm of the page with y up."""
 
     size_mm: tuple[float, float]
     view: Vectors

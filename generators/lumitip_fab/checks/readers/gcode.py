@@ -1,4 +1,4 @@
-"""What a slicer's G-code says: layers of extruded lines, mass and time."""
+"""Layers of extruded lines, mass and time from a slicer's G-code."""
 
 import re
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ _NO_PART = ("Skirt/Brim", "Custom", "Support")
 
 @dataclass(frozen=True, eq=False)
 class Layer:
-    """What one layer of the part extrudes, brim and support left away."""
+    """Extrusion of one layer of the part, without brim and support."""
 
     z_mm: float
     points_mm: NDArray[np.float64]
@@ -75,11 +75,11 @@ def layers(text: str) -> tuple[Layer, ...]:
     )
 
 
-def reach_mm(told: tuple[Layer, ...]) -> tuple[float, float]:
+def reach_mm(layers_of: tuple[Layer, ...]) -> tuple[float, float]:
     """How far at most a line is from the nearest one of the layer below it, and at what height
     (mm): what a bridge spans is up to twice as much."""
     worst, at_mm = 0.0, 0.0
-    for below, layer in pairwise(told):
+    for below, layer in pairwise(layers_of):
         far = float(cKDTree(below.points_mm).query(layer.points_mm)[0].max())
         if far > worst:
             worst, at_mm = far, layer.z_mm

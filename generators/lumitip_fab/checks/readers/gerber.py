@@ -20,7 +20,7 @@ _STEPS = 32  # chords of a quarter circle
 
 
 def gerber_area(text: str) -> BaseGeometry:
-    """What a Gerber file paints, in mm; clear objects take away what is below them.
+    """Area that a Gerber file paints, in mm; clear objects erase what is below them.
 
     Raises:
         ValueError: if it is cut short, or not understood in every command.
@@ -73,7 +73,7 @@ def _shape(p: Any) -> BaseGeometry:
             for point in ([start] if clockwise is None else _bow(start, end, centre, clockwise))
         ]
         return Polygon(corners).buffer(0)
-    raise ValueError(f"a Gerber file with a {type(p).__name__} given, which is not understood")
+    raise ValueError(f"the Gerber file holds a {type(p).__name__}, which this reader does not know")
 
 
 def _bow(start: Any, end: Any, centre: Any, clockwise: bool) -> list[tuple[float, float]]:

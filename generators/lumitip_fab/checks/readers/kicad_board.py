@@ -78,7 +78,7 @@ class Ply:
 
 @dataclass(frozen=True, eq=False)
 class KicadBoard:
-    """What a board file holds."""
+    """Contents of a board file."""
 
     parts: tuple[Part, ...]
     loose: tuple[Copper, ...]
@@ -88,7 +88,7 @@ class KicadBoard:
     edges: tuple[BaseGeometry, ...]
     """Lines of the outline."""
     silk: Silk
-    """What is printed."""
+    """Silkscreen."""
     keep_outs: tuple[BaseGeometry, ...]
     """Areas where a rule keeps tracks, vias and fills off every copper layer."""
     plies: tuple[Ply, ...]
@@ -124,10 +124,10 @@ class _Reader:
         self.version = int(numbers(child(root, "version"))[0])
         table = child(root, "layers") or []
         rows = [row for row in table if isinstance(row, list)]
-        told = [(int(str(r[0])), str(r[1])) for r in rows if len(r) > 2 and r[2] in _COPPER_KINDS]
+        layers = [(int(str(r[0])), str(r[1])) for r in rows if len(r) > 2 and r[2] in _COPPER_KINDS]
         # KiCad 9 numbers the back 2 and the inner layers from 4.
-        back = [name for _, name in told if name in {"B.Cu", "Back"}] or [max(told)[1]]
-        inner = [name for _, name in sorted(told) if name not in back]
+        back = [name for _, name in layers if name in {"B.Cu", "Back"}] or [max(layers)[1]]
+        inner = [name for _, name in sorted(layers) if name not in back]
         self.layers = (*inner, back[0])
         self.nets = {w[0]: w[1] for w in map(words, children(root, "net")) if len(w) == 2}
 
@@ -162,18 +162,16 @@ class _Reader:
         """Net of a pad, track, via or zone: by number until KiCad 9, then by name."""
         if (named := words(child(node, "net_name"))) and named[0]:
             return named[0]
-        told = words(child(node, "net"))
-        if not told:
+        net = words(child(node, "net"))
+        if not net:
             return ""
-        return (
-            told[-1] if len(told) > 1 else self.nets.get(told[0], "" if told[0] == "0" else told[0])
-        )
+        return net[-1] if len(net) > 1 else self.nets.get(net[0], "" if net[0] == "0" else net[0])
 
     def on(self, node: Node) -> frozenset[str]:
         """Copper layers of a node."""
-        told = [*words(child(node, "layer")), *words(child(node, "layers"))]
+        layers = [*words(child(node, "layer")), *words(child(node, "layers"))]
         found: set[str] = set()
-        for name in told:
+        for name in layers:
             if name == "*.Cu":
                 found.update(self.layers)
             elif name == "F&B.Cu":
@@ -227,14 +225,16 @@ class _Reader:
 
     def part(self, node: Node) -> Part:
         place = shapes.Place.of(node)
-        told = {w[0]: w[1] for w in map(words, children(node, "property")) if len(w) > 1}
+        properties = {w[0]: w[1] for w in map(words, children(node, "property")) if len(w) > 1}
         for text in map(words, children(node, "fp_text")):
-            told.setdefault({"reference": "Reference", "value": "Value"}.get(text[0], ""), text[1])
-        rest = [*told.values(), *words(child(node, "descr")), *words(child(node, "tags"))]
+            properties.setdefault(
+                {"reference": "Reference", "value": "Value"}.get(text[0], ""), text[1]
+            )
+        rest = [*properties.values(), *words(child(node, "descr")), *words(child(node, "tags"))]
         name = str(node[1]) if len(node) > 1 and isinstance(node[1], str) else ""
         return Part(
-            ref=told.get("Reference", ""),
-            value=told.get("Value", ""),
+            ref=properties.get("Reference", ""),
+            value=properties.get("Value", ""),
             footprint=name.rpartition(":")[2],
             texts=tuple(rest),
             at=place.at,

@@ -141,8 +141,8 @@ def outline(node: Node) -> BaseGeometry:
 def inked(node: Node) -> BaseGeometry:
     """A drawing as its pen draws it, filled if it is."""
     line = outline(node)
-    told = numbers(child(node, "width")) or numbers(child(child(node, "stroke") or [], "width"))
-    drawn = line.buffer((told or (0.0,))[0] / 2, quad_segs=STEPS)
+    width = numbers(child(node, "width")) or numbers(child(child(node, "stroke") or [], "width"))
+    drawn = line.buffer((width or (0.0,))[0] / 2, quad_segs=STEPS)
     fill = words(child(node, "fill"))
     solid = str(node[0]).endswith("poly") if not fill else fill[0] not in {"none", "no"}
     if solid and not str(node[0]).endswith(("line", "arc")):

@@ -34,7 +34,7 @@ class Symbol:
 
 @dataclass(frozen=True)
 class Sheet:
-    """What a sheet holds."""
+    """Contents of a sheet."""
 
     symbols: tuple[Symbol, ...]
     nets: dict[str, set[str]]

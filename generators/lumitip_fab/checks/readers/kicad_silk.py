@@ -89,10 +89,10 @@ def _words(nodes: Iterator[Node], ref: str, place: shapes.Place) -> Iterator[Wor
         hidden = any("hide" in words(n) or child(n, "hide") for n in (node, effects))
         if (front := _side(node)) is None or hidden or not font:
             continue
-        told = words(node)[-1 if node[0] == "gr_text" else 1]
+        text = words(node)[-1 if node[0] == "gr_text" else 1]
         angle = (*numbers(child(node, "at")), 0.0)[2]
         size, pen = numbers(child(font, "size")), numbers(child(font, "thickness"))
-        yield Word(ref, front, told, place.of_pad(node), angle, size[0], (pen or (0.0,))[0])
+        yield Word(ref, front, text, place.of_pad(node), angle, size[0], (pen or (0.0,))[0])
 
 
 def _at(place: shapes.Place, shape: BaseGeometry) -> BaseGeometry:

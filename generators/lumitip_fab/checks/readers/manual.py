@@ -26,11 +26,11 @@ class Face:
     embedded: bool
     """Whether its outlines are in the file; else every printer takes its own."""
     letters: Mapping[int, str]
-    """What each code says; of others Windows' Latin letters."""
+    """Character of each code; Windows-1252 for all others."""
     widths_em: Mapping[int, float]
 
     def text(self, codes: bytes) -> str:
-        """What they say."""
+        """The texts."""
         return "".join(self.letters.get(c) or bytes([c]).decode("cp1252") for c in codes)
 
     def width_em(self, codes: bytes) -> float:
@@ -93,18 +93,20 @@ class Manual(HTMLParser):
         self.pictures: list[tuple[str, bytes]] = []
         """Of which file each is, and its bytes."""
         self.codes: list[str] = []
-        """What stands in the type of a program: file names among it."""
+        """Texts in the code typeface, such as file names."""
         self._open = ""
-        self._told = ""
+        self._text = ""
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         """Opens a heading, a table, a row, a cell, or shows a picture."""
         if tag in _BLOCKS:
             self.blocks.append("")
         if tag == "img":
-            told = dict(attrs)
-            data = (told.get("src") or "").partition("base64,")[2]
-            self.pictures.append((told.get("data-file") or "", b64decode(data, validate=True)))
+            attributes = dict(attrs)
+            data = (attributes.get("src") or "").partition("base64,")[2]
+            self.pictures.append(
+                (attributes.get("data-file") or "", b64decode(data, validate=True))
+            )
         elif tag == "table":
             self.chapters[-1].tables.append([])
         elif tag == "tr":
@@ -112,16 +114,16 @@ class Manual(HTMLParser):
         if tag in ("br", "small"):
             self.blocks.append("")
         if tag in ("td", "th", "code", "h1", "h2", "h3", "h4", "h5", "title", "style"):
-            self._open, self._told = tag, ""
+            self._open, self._text = tag, ""
 
     def handle_endtag(self, tag: str) -> None:
         """Keeps what stood in it."""
         if tag in ("td", "th"):
-            self.chapters[-1].tables[-1][-1].append(self._told)
+            self.chapters[-1].tables[-1][-1].append(self._text)
         elif tag == "code":
-            self.codes.append(self._told)
+            self.codes.append(self._text)
         elif re.fullmatch(r"h\d", tag):
-            self.chapters.append(Chapter(self._told))
+            self.chapters.append(Chapter(self._text))
         if tag in ("title", "style"):
             self._open = ""
         if tag in _BLOCKS:
@@ -131,7 +133,7 @@ class Manual(HTMLParser):
         """Words."""
         if self._open not in ("title", "style"):
             self.blocks[-1] += data
-            self._told += data
+            self._text += data
 
 
 def read_html(path: Path) -> Manual:
@@ -155,7 +157,7 @@ def read_pdf(path: Path) -> tuple[str, list[str]]:
     Raises:
         OutputError: if it is missing or cannot be read.
     """
-    told, without = list[str](), set[str]()
+    lines, without = list[str](), set[str]()
     try:
         with pikepdf.open(path) as document:
             for page in document.pages:
@@ -167,7 +169,7 @@ def read_pdf(path: Path) -> tuple[str, list[str]]:
                         face = str(operands[0])
                     elif str(operator) == "Tj":
                         drawn.append(faces[face].text(bytes(operands[0])))
-                told += drawn[_FOOT:]
+                lines += drawn[_FOOT:]
     except (OSError, *MALFORMED, pikepdf.PdfError) as error:
         raise OutputError(f"{path}: cannot be read as a PDF: {error!r:.120}") from error
-    return re.sub(r"\s", "", "".join(told)), sorted(without)
+    return re.sub(r"\s", "", "".join(lines)), sorted(without)

@@ -64,7 +64,7 @@ class Page:
     texts: Points
     """Corners of the boxes of all texts."""
     words: tuple[str, ...]
-    """What they say."""
+    """The texts."""
     lacking: tuple[str, ...]
     """Fonts that it does not bring."""
 

@@ -50,7 +50,7 @@ class Node:
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """What a GLB file holds."""
+    """Contents of a GLB file."""
 
     nodes: dict[str, Node]
     extras: dict[str, float]
@@ -75,35 +75,35 @@ def _scene(data: bytes) -> Scene:
     if magic != b"glTF" or length != len(data):
         raise ValueError(f"{len(data)} bytes where the file says {length}")
     size = struct.unpack_from("<I", data, _START)[0]
-    told = json.loads(data[_START + _CHUNK : _START + _CHUNK + size])
+    document = json.loads(data[_START + _CHUNK : _START + _CHUNK + size])
     binary = data[_START + 2 * _CHUNK + size :]
     nodes: dict[str, Node] = {}
-    scene = told["scenes"][told["scene"]]
+    scene = document["scenes"][document["scene"]]
     for root in scene["nodes"]:
-        group = told["nodes"][root]
+        group = document["nodes"][root]
         to_scene = np.array(group["matrix"], dtype=np.float64).reshape(4, 4).T
         to_scene[:3, 3] *= _M_TO_MM
         for child in group["children"]:
-            body = told["nodes"][child]
-            nodes[body["name"]] = _node(told, binary, group["name"], body, to_scene)
+            body = document["nodes"][child]
+            nodes[body["name"]] = _node(document, binary, group["name"], body, to_scene)
     return Scene(nodes, scene.get("extras", {}))
 
 
 def _node(
-    told: dict[str, Any], binary: bytes, group: str, body: dict[str, Any], to_scene: Matrix
+    document: dict[str, Any], binary: bytes, group: str, body: dict[str, Any], to_scene: Matrix
 ) -> Node:
-    primitive = told["meshes"][body["mesh"]]["primitives"][0]
-    points = _values(told, binary, primitive["attributes"]["POSITION"]).astype(np.float64)
-    corners = _values(told, binary, primitive["indices"]).reshape(-1, 3).astype(np.int64)
+    primitive = document["meshes"][body["mesh"]]["primitives"][0]
+    points = _values(document, binary, primitive["attributes"]["POSITION"]).astype(np.float64)
+    corners = _values(document, binary, primitive["indices"]).reshape(-1, 3).astype(np.int64)
     if not np.isfinite(points).all() or corners.max(initial=-1) >= len(points):
         raise ValueError(f"{body['name']} is not a mesh")
     x, y, z = (value * _M_TO_MM for value in body.get("translation", (0.0, 0.0, 0.0)))
     return Node(group, applied(translation(x, y, z), points * _M_TO_MM), corners, to_scene)
 
 
-def _values(told: dict[str, Any], binary: bytes, which: int) -> NDArray[Any]:
-    accessor = told["accessors"][which]
-    view = told["bufferViews"][accessor["bufferView"]]
+def _values(document: dict[str, Any], binary: bytes, which: int) -> NDArray[Any]:
+    accessor = document["accessors"][which]
+    view = document["bufferViews"][accessor["bufferView"]]
     width = _WIDTH[accessor["type"]]
     kind = _TYPES[accessor["componentType"]]
     values = np.frombuffer(binary, kind, accessor["count"] * width, view["byteOffset"])

@@ -18,13 +18,13 @@ def corners_mm(path: Path) -> NDArray[np.float64]:
         OutputError: if the file is missing, is no binary STL, or holds no or no finite corner.
     """
     try:
-        told = path.read_bytes()
+        data = path.read_bytes()
     except OSError as error:
         raise OutputError(f"cannot be read: {error.strerror}") from error
-    count = int.from_bytes(told[_HEADER - 4 : _HEADER], "little")
-    if not count or len(told) != _HEADER + count * _TRIANGLE.itemsize:
-        raise OutputError(f"is no binary STL: {len(told)} bytes for {count} triangles")
-    corners = np.frombuffer(told, _TRIANGLE, offset=_HEADER)["corners"].reshape(-1, 3)
+    count = int.from_bytes(data[_HEADER - 4 : _HEADER], "little")
+    if not count or len(data) != _HEADER + count * _TRIANGLE.itemsize:
+        raise OutputError(f"is no binary STL: {len(data)} bytes for {count} triangles")
+    corners = np.frombuffer(data, _TRIANGLE, offset=_HEADER)["corners"].reshape(-1, 3)
     if not np.isfinite(corners).all():
         raise OutputError("has corners that are not finite")
     return corners.astype(float)

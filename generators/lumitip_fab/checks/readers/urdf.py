@@ -102,15 +102,18 @@ def _link(element: Element, folder: Path) -> Link:
 
 def _meshes(element: Element, kind: str, folder: Path) -> Any:
     for body in element.findall(kind):
-        told = body.find("geometry/mesh")
-        if told is None:
+        mesh_element = body.find("geometry/mesh")
+        if mesh_element is None:
             raise ValueError(f"{kind} {body.get('name')} has no mesh")
-        name = told.attrib["filename"]
+        name = mesh_element.attrib["filename"]
         try:
             mesh = read_mesh(folder / name)
         except OutputError as error:
             raise OutputError(f"{name}: {error}") from error
-        yield str(body.get("name")), mesh.apply_scale(_three(told.attrib["scale"]) * M_TO_MM)
+        yield (
+            str(body.get("name")),
+            mesh.apply_scale(_three(mesh_element.attrib["scale"]) * M_TO_MM),
+        )
 
 
 def _joint(element: Element) -> Joint:
@@ -154,7 +157,7 @@ def _attribute(element: Element | None, path: str, name: str) -> str:
 
 
 def _text(element: Element) -> str:
-    told = ElementTree.canonicalize(ElementTree.tostring(element), strip_text=True)
+    text = ElementTree.canonicalize(ElementTree.tostring(element), strip_text=True)
     for own in ("${prefix}", "lumitip_", "${meshes}/", "meshes/"):
-        told = told.replace(own, "")
-    return told
+        text = text.replace(own, "")
+    return text

@@ -5,8 +5,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from lumitip_fab.config.automatic import FIELDS
-from lumitip_fab.config.load import NAMED
 from lumitip_fab.config.messages import brief
+from lumitip_fab.config.parts import NAMED
 from lumitip_fab.derive.auto.judge import Rule, Verdict
 from lumitip_fab.derive.auto.resolve import accepted_with
 from lumitip_fab.derive.auto.search import (

@@ -256,7 +256,7 @@ def change_of(now: Verdict, rule: Rule, field: str, fineness: int = COARSE) -> C
     if field.endswith("_ohm"):
         return first_of(now, rule, field, iter([sold_ohm(now.config.value(field))]))
     if field == "stack.film_mm":
-        film = now.config.catalogue.films[now.config.parameters.mask.film]
+        film = now.config.parts.mask.film
         return first_of(now, rule, field, iter([film.thickness_mm]))
     if automatic.step:
         return smallest_number(now, rule, field, automatic.step, fineness)

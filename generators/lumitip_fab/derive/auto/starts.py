@@ -60,7 +60,7 @@ def _strings(config: Input, longest: int) -> tuple[String, ...]:
 def _proposals(config: Input, longest: int) -> Iterator[tuple[str, Value, str]]:
     p = config.parameters
     strings = _strings(config, longest)
-    package = config.catalogue.resistors[p.emitter.resistor]
+    package = config.parts.emitter.resistor
     load, volts = max(s.high_load_w for s in strings), p.supply.voltage_v
     full = float(FIELDS["emitter.current_ma"].start)
     reason = "current of the published sensor"
@@ -184,7 +184,7 @@ def _layers(config: Input) -> Iterator[Proposal]:
 
 def _printer(config: Input) -> Iterator[Proposal]:
     p = config.parameters
-    line = config.catalogue.printers[p.printer.profile].line_mm
+    line = config.parts.printer.profile.line_mm
     wall = max(float(FIELDS["printer.min_wall_mm"].start), round(LINES_PER_WALL * line, 2))
     yield "printer.min_wall_mm", wall, f"{LINES_PER_WALL:g} lines of {line:g} mm, at least 0.8 mm"
     edge = max(float(FIELDS["tip.edge_mm"].start), line)
@@ -261,7 +261,7 @@ def _vias(config: Input) -> Iterator[Proposal]:
 
 def _channel(config: Input) -> Iterator[Proposal]:
     p = config.parameters
-    channels = config.catalogue.multiplexers[p.receiver.multiplexer].channels
+    channels = config.parts.receiver.multiplexer.channels
     muxes = math.ceil(sum(p.grid.columns) / channels)
     if muxes > 4 or p.board.track_mm < float(FIELDS["board.track_mm"].start):
         reason = f"room to sort {sum(p.grid.columns)} lines before {muxes} multiplexers"

@@ -119,7 +119,7 @@ def _frame(
     config: Input, cells: Cells, muxing: Muxing, chips_: tuple[Part, ...], faults: Diagnostics
 ) -> Frame:
     p = config.parameters
-    gripper = config.catalogue.grippers[p.coupling.gripper]
+    gripper = config.parts.coupling.gripper
     ways = len(connectors.receiver_signals(muxing))
     pin_mm = p.board.hole_mm - 2 * p.backing.pin_clearance_mm
     printed_mm = derive_fits(config, p.printer.fit_mm).pin_mm

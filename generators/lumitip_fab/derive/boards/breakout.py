@@ -45,10 +45,10 @@ class Rows:
 def derive_breakout(config: Input, muxing: Muxing, faults: Diagnostics) -> tuple[Carrier, ...]:
     """The breakout board; none if it is not wanted, or if the controller has no pins to plug."""
     p = config.parameters
-    plug = config.catalogue.controllers[p.controller.board].plug
+    plug = config.parts.controller.board.plug
     if not p.breakout.enabled or plug is None:
         return ()
-    strip = config.catalogue.strips[p.breakout.socket]
+    strip = config.parts.breakout.socket
     length, width = p.breakout.board_mm
     rows = _rows(plug, strip, width)
     _refuse(config, plug, strip, muxing, rows, faults)

@@ -45,7 +45,7 @@ def derive_flange(
 ) -> tuple[Carrier, ...]:
     """The flange's board, with the controller if that is a module; none if it is not wanted."""
     p = config.parameters
-    module = config.catalogue.controllers[p.controller.board].module
+    module = config.parts.controller.board.module
     if not p.flange.enabled:
         faults.refuse_unless(
             module is None,
@@ -88,7 +88,7 @@ def _hot_loop(config: Input) -> tuple[tuple[str, str], ...]:
     """The leads round which the regulator's input current switches; none without it."""
     if not is_regulated(config):
         return ()
-    names = config.catalogue.regulators[config.parameters.flange.regulator].names
+    names = config.parts.flange.regulator.names
     vin, ground = (str(names.index(name) + 1) for name in ("VIN", "GND"))
     return ("U1", vin), ("C1", "1"), ("C1", "2"), ("U1", ground)
 
@@ -96,44 +96,44 @@ def _hot_loop(config: Input) -> tuple[tuple[str, str], ...]:
 def _supplies(config: Input) -> tuple[str, str, str]:
     """Nets of the contacts' supply, of the same after the MOSFET, and of the regulator."""
     volts = f"{config.parameters.supply.voltage_v:g}V"
-    regulator = config.catalogue.regulators[config.parameters.flange.regulator]
+    regulator = config.parts.flange.regulator
     return f"{volts}_IN", volts, f"{regulator.output_v:g}V"
 
 
 def _strips(config: Input) -> tuple[Device, ...]:
     """Contacts and headers."""
-    p, known = config.parameters.flange, config.catalogue.strips
+    p, parts = config.parameters.flange, config.parts.flange
     raw, supply, output = _supplies(config)
     called = {"SUPPLY": supply, "REGULATED": output}
     nets = tuple(raw if signal == "SUPPLY" else signal for signal in p.signals)
     names = tuple(called.get(signal, signal) for signal in p.signals)
-    coupling = config.catalogue.couplings[p.coupling]
+    coupling = parts.coupling
     x, y = coupling.contacts_at_mm
     places = [(contact.at_mm[0] - x, contact.at_mm[1] - y) for contact in coupling.contacts]
-    rows = strip("J1", p.contacts, known[p.contacts], CONTACTS_AT, nets, names)
+    rows = strip("J1", p.contacts, parts.contacts, CONTACTS_AT, nets, names)
     contacts = from_behind(rows, places)
     both = []
     for ref, at, signals in zip(("J2", "J3"), HEADERS_AT, p.headers, strict=True):
         there = tuple(called.get(signal, signal) for signal in signals)
         around = (*there, *reversed(there))
-        both.append(strip(ref, p.header, known[p.header], at, around, around))
+        both.append(strip(ref, p.header, parts.header, at, around, around))
     return contacts, *both
 
 
 def _input(config: Input) -> tuple[Device, ...]:
     """Fuse, and the MOSFET with the supply, or half of a high one, at its gate."""
-    p, known = config.parameters.flange, config.catalogue
+    p, parts = config.parameters.flange, config.parts.flange
     raw, supply, _ = _supplies(config)
-    resistor = known.resistors[p.resistor]
+    resistor = parts.resistor
     code = resistor_code(p.gate_ohm)
     part = resistor.order_number.replace("{code}", code)
-    transistor = known.transistors[p.transistor]
+    transistor = parts.transistor
     leads = {"G": "GATE", "S": supply, "D": "FUSED"}
     upper = chip(
         "R1", "resistor", code, resistor, "RESC", (-5.2, -7.0), 90.0, (supply, "GATE"), part
     )
     return (
-        chip("F1", "fuse", p.fuse, known.fuses[p.fuse], "FUSC", (5.4, -7.0), 180.0, (raw, "FUSED")),
+        chip("F1", "fuse", p.fuse, parts.fuse, "FUSC", (5.4, -7.0), 180.0, (raw, "FUSED")),
         leaded("Q1", "transistor", p.transistor, transistor, (-1.0, -7.0), 270.0, leads),
         *((upper,) if halved(config) else ()),
         chip("R2", "resistor", code, resistor, "RESC", (-2.0, -3.8), 0.0, ("GATE", "GND"), part),
@@ -143,22 +143,20 @@ def _input(config: Input) -> tuple[Device, ...]:
 def _regulator(config: Input) -> tuple[Device, ...]:
     """The regulator with its input capacitor across VIN and GND, and what hangs on SW; nothing
     where the supply is what it would make."""
-    p, known = config.parameters.flange, config.catalogue
+    p, parts = config.parameters.flange, config.parts.flange
     if not is_regulated(config):
         return ()
     _, supply, output = _supplies(config)
     leads = {"FB": output, "EN": supply, "VIN": supply, "GND": "GND", "SW": "SW", "BST": "BST"}
     return (
-        leaded(
-            "U1", "regulator", p.regulator, known.regulators[p.regulator], (-7.5, 0.0), 0.0, leads
-        ),
+        leaded("U1", "regulator", p.regulator, parts.regulator, (-7.5, 0.0), 0.0, leads),
         capacitor(config, "C1", p.input_capacitor, (-4.9, 0.0), 90.0, (supply, "GND")),
         capacitor(config, "C4", p.boot_capacitor, (-10.8, 2.1), 90.0, ("BST", "SW")),
         chip(
             "L1",
             "inductor",
             p.inductor.split()[0],
-            known.inductors[p.inductor],
+            parts.inductor,
             "INDC",
             (-7.5, 5.2),
             90.0,
@@ -171,8 +169,9 @@ def _regulator(config: Input) -> tuple[Device, ...]:
 
 def _refuse(config: Input, faults: Diagnostics) -> None:
     """Refuse headers of another size, signals that lead nowhere, and voltages beyond the parts'."""
-    p, known, volts = config.parameters.flange, config.catalogue, config.parameters.supply.voltage_v
-    strip = known.strips[p.header]
+    p, parts = config.parameters.flange, config.parts.flange
+    volts = config.parameters.supply.voltage_v
+    strip = parts.header
     counts = [len(signals) for signals in p.headers]
     faults.refuse_unless(
         strip.rows == 2 and all(count == strip.ways for count in counts),
@@ -199,7 +198,7 @@ def _refuse(config: Input, faults: Diagnostics) -> None:
         not is_regulated(config) or least <= volts <= most,
         "supply.voltage_v",
         f"is {volts:g}; the flange's regulator, fuse and transistor need {least:g} to {most:g} V, "
-        f"or {known.regulators[p.regulator].output_v:g} V without the regulator. Choose other "
+        f"or {parts.regulator.output_v:g} V without the regulator. Choose other "
         "parts or set flange.enabled = false.",
     )
 

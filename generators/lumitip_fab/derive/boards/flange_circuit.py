@@ -25,8 +25,8 @@ _FOR = {"supply": "SUPPLY", "ground": "GND"}
 def refuse_map(config: Input, faults: Diagnostics) -> None:
     """Refuse contacts where the coupling has none, and nets that join what must stay apart."""
     p = config.parameters.flange
-    coupling = config.catalogue.couplings[p.coupling]
-    strip = config.catalogue.strips[p.contacts]
+    coupling = config.parts.flange.coupling
+    strip = config.parts.flange.contacts
     if not _meets(strip, coupling):
         faults.refuse(
             "flange.contacts",
@@ -100,27 +100,27 @@ MOST_OFF_PF = 1.5  # some 15 ppm of a crystal of 32.768 kHz
 def is_regulated(config: Input) -> bool:
     """Whether the flange regulates its output from a higher supply; else they are one net."""
     p = config.parameters
-    return p.supply.voltage_v != config.catalogue.regulators[p.flange.regulator].output_v
+    return p.supply.voltage_v != config.parts.flange.regulator.output_v
 
 
 def halved(config: Input) -> bool:
     """Whether a divider halves a high supply for the MOSFET's gate."""
     p = config.parameters
     high_v = p.supply.voltage_v * (1 + SUPPLY_TOLERANCE)
-    return high_v > GATE_SHARE * config.catalogue.transistors[p.flange.transistor].gate_v
+    return high_v > GATE_SHARE * config.parts.flange.transistor.gate_v
 
 
 def supply_range_v(config: Input) -> tuple[float, float]:
     """Least and greatest supply that regulator, fuse and transistor take."""
-    p, known = config.parameters.flange, config.catalogue
-    part, transistor = known.regulators[p.regulator], known.transistors[p.transistor]
+    parts = config.parts.flange
+    part, transistor = parts.regulator, parts.transistor
     gates = 2 if halved(config) else 1
     least = max(
         part.input_v[0],
         part.output_v + HEADROOM_V,
         gates * transistor.gate_on_v / (1 - SUPPLY_TOLERANCE),
     )
-    rated = (part.input_v[1], known.fuses[p.fuse].rated_v, transistor.rated_v)
+    rated = (part.input_v[1], parts.fuse.rated_v, transistor.rated_v)
     return least, min(*rated, gates * transistor.gate_v)
 
 
@@ -129,14 +129,14 @@ def refuse_parts(config: Input, strings: Strings, faults: Diagnostics) -> None:
     _refuse_gate(config, faults)
     _refuse_fuse(config, strings, faults)
     refuse_flange_capacitors(config, faults)
-    if config.catalogue.controllers[config.parameters.controller.board].module:
+    if config.parts.controller.board.module:
         _refuse_crystal(config, faults)
 
 
 def _refuse_gate(config: Input, faults: Diagnostics) -> None:
     p = config.parameters
     ohm, volts = p.flange.gate_ohm, p.supply.voltage_v / (2 if halved(config) else 1)
-    package = config.catalogue.resistors[p.flange.resistor]
+    package = config.parts.flange.resistor
     sold, allowed_w = sold_ohm(ohm), MOST_RESISTOR_LOAD * package.power_w
     faults.refuse_unless(
         math.isclose(sold, ohm),
@@ -154,11 +154,11 @@ def _refuse_gate(config: Input, faults: Diagnostics) -> None:
 
 
 def _refuse_fuse(config: Input, strings: Strings, faults: Diagnostics) -> None:
-    p, known = config.parameters, config.catalogue
-    fed_ma = known.controllers[p.controller.board].draws_ma / EFFICIENCY
-    output_v = known.regulators[p.flange.regulator].output_v
+    p = config.parameters
+    fed_ma = config.parts.controller.board.draws_ma / EFFICIENCY
+    output_v = config.parts.flange.regulator.output_v
     drawn_ma = sum(strings.current_ma) + fed_ma * output_v / p.supply.voltage_v
-    allowed_ma = 1000 * FUSE_SHARE * known.fuses[p.flange.fuse].rated_a
+    allowed_ma = 1000 * FUSE_SHARE * config.parts.flange.fuse.rated_a
     faults.refuse_unless(
         drawn_ma <= allowed_ma,
         "flange.fuse",
@@ -170,8 +170,8 @@ def _refuse_fuse(config: Input, strings: Strings, faults: Diagnostics) -> None:
 
 def _refuse_crystal(config: Input, faults: Diagnostics) -> None:
     """Refuse capacitors with which the crystal is off."""
-    p, known = config.parameters.module, config.catalogue
-    crystal, each = known.crystals[p.crystal], known.capacitors[p.crystal_capacitor]
+    p = config.parameters.module
+    crystal, each = config.parts.module.crystal, config.parts.module.crystal_capacitor
     load_pf = (1000 * each.capacitance_nf * each.left + STRAY_PF) / 2
     faults.refuse_unless(
         abs(load_pf - crystal.load_pf) <= MOST_OFF_PF,
@@ -195,12 +195,12 @@ def derive_regulated(config: Input, faults: Diagnostics) -> tuple[Regulated, ...
     V (1 - V / V_in) / (L f), and the capacitors take the half of it above the mean,
     which moves them by the swing / (8 f C). Their series resistance, some milliohms, is left out.
     """
-    p, known = config.parameters, config.catalogue
+    p = config.parameters
     if not p.flange.enabled or not is_regulated(config):
         return ()
-    part = known.regulators[p.flange.regulator]
-    inductor = known.inductors[p.flange.inductor]
-    capacitor = known.capacitors[p.flange.output_capacitor]
+    part = config.parts.flange.regulator
+    inductor = config.parts.flange.inductor
+    capacitor = config.parts.flange.output_capacitor
     hertz, volts = 1e3 * part.switching_khz, part.output_v
     duty = volts / p.supply.voltage_v
     each_uf = capacitor.capacitance_nf * capacitor.left / 1e3
@@ -236,7 +236,7 @@ def derive_regulated(config: Input, faults: Diagnostics) -> tuple[Regulated, ...
 def _refuse_input(config: Input, coulomb: float, faults: Diagnostics) -> None:
     """Refuse an input capacitor that does not hold the supply while the switch takes a charge."""
     p = config.parameters
-    capacitor = config.catalogue.capacitors[p.flange.input_capacitor]
+    capacitor = config.parts.flange.input_capacitor
     moved_v = coulomb / (1e-9 * capacitor.capacitance_nf * capacitor.left)
     most_v = MOST_RIPPLE * p.supply.voltage_v
     faults.refuse_unless(

@@ -124,7 +124,7 @@ def _module(config: Input, module: Module, muxing: Muxing, at: Point) -> Device:
 def _supply(config: Input, supplies: Supplies) -> tuple[Device, ...]:
     """The linear regulator with a capacitor before and after it."""
     p, fed = config.parameters.module, supplies.regulated
-    entry = config.catalogue.linear_regulators[p.regulator]
+    entry = config.parts.module.regulator
     leads = {"IN": fed, "OUT": CONTROLLER, "GND": "GND"}
     return (
         leaded("U3", "regulator", p.regulator, entry, (-17.5, 9.2), 0.0, leads),
@@ -136,7 +136,7 @@ def _supply(config: Input, supplies: Supplies) -> tuple[Device, ...]:
 def _beside(config: Input) -> tuple[Device, ...]:
     """Parts near the module's pads: capacitors of its supplies, and the crystal."""
     p = config.parameters.module
-    entry, value = config.catalogue.crystals[p.crystal], p.crystal.split()[0]
+    entry, value = config.parts.module.crystal, p.crystal.split()[0]
     return (
         capacitor(config, "C7", p.capacitor, (-11.2, 5.2), 90.0, (CONTROLLER, "GND")),
         capacitor(config, "C10", p.supply_capacitor, (-11.2, 10.2), 90.0, ("VUSB", "GND")),
@@ -148,10 +148,10 @@ def _beside(config: Input) -> tuple[Device, ...]:
 
 def _refuse(config: Input, muxing: Muxing, faults: Diagnostics) -> None:
     """Refuse a regulator that does not go between the supplies, and more wires than have room."""
-    p, known = config.parameters, config.catalogue
-    regulator = known.linear_regulators[p.module.regulator]
-    controller = known.controllers[p.controller.board]
-    fed_v = known.regulators[p.flange.regulator].output_v
+    p = config.parameters
+    regulator = config.parts.module.regulator
+    controller = config.parts.controller.board
+    fed_v = config.parts.flange.regulator.output_v
     least, most = regulator.input_v
     faults.refuse_unless(
         least <= fed_v <= most and regulator.output_v == controller.supply_v,

@@ -65,7 +65,7 @@ def _chip(entry: electronics.Chip, value: str = "", marked: str = "") -> Chip:
 def derive_rules(config: Input, faults: Diagnostics) -> Rules:
     """Rules of the copper; refused where a via has no ring or a track does not leave a lead."""
     p = config.parameters
-    board, mux = p.board, config.catalogue.multiplexers[p.receiver.multiplexer]
+    board, mux = p.board, config.parts.receiver.multiplexer
     least = board.via_drill_mm + 2 * LEAST_RING_MM
     faults.refuse_unless(
         board.via_mm >= least - 1e-9,

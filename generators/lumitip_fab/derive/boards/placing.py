@@ -38,7 +38,7 @@ def parts_zone_depth_mm(
 ) -> float:
     """Depth of the zone for parts with a channel after each row of multiplexers."""
     p = config.parameters
-    mux = config.catalogue.multiplexers[p.receiver.multiplexer]
+    mux = config.parts.receiver.multiplexer
     per_row = _per_row(config, width_mm)
     beside = sum(chip.over_pads_mm[0] for chip in _passives(config)) + p.board.clearance_mm
     faults.refuse_unless(
@@ -64,7 +64,7 @@ def multiplexers(config: Input, muxing: Muxing, zone: Box) -> tuple[Part, ...]:
     Capacitor and pull-up stand to the left of each, where supply and output leads are.
     """
     p = config.parameters
-    mux = config.catalogue.multiplexers[p.receiver.multiplexer]
+    mux = config.parts.receiver.multiplexer
     passives = (_slot_mm(config) - mux.body_mm[0]) - p.board.clearance_mm
     per_row = max(_per_row(config, zone.width_mm + 2), 1)
     rows = np.array_split(np.arange(muxing.muxes), math.ceil(muxing.muxes / per_row))
@@ -83,7 +83,7 @@ def multiplexers(config: Input, muxing: Muxing, zone: Box) -> tuple[Part, ...]:
 
 def _slot_mm(config: Input) -> float:
     p = config.parameters
-    body = config.catalogue.multiplexers[p.receiver.multiplexer].body_mm[0]
+    body = config.parts.receiver.multiplexer.body_mm[0]
     return body + max(chip.over_pads_mm[1] for chip in _passives(config)) + 2 * p.board.clearance_mm
 
 
@@ -160,7 +160,7 @@ def resistors(
     R1 is rightmost, because the strings begin with column 0, which is on the emitter's right.
     """
     p = config.parameters
-    chip = config.catalogue.resistors[p.emitter.resistor]
+    chip = config.parts.emitter.resistor
     along, across = chip.over_pads_mm
     inner = _inner_mm(config, foot_half_mm)
     outer = zone.x_max_mm - p.backing.relief_clearance_mm
@@ -204,7 +204,7 @@ def resistors(
 def least_half_width_mm(config: Input, foot_half_mm: float) -> float:
     """Half the board's width that takes one string resistor on each side of the coupling."""
     p = config.parameters
-    _, across = config.catalogue.resistors[p.emitter.resistor].over_pads_mm
+    _, across = config.parts.emitter.resistor.over_pads_mm
     return _inner_mm(config, foot_half_mm) + across + p.backing.relief_clearance_mm + ZONE_MARGIN_MM
 
 

@@ -44,7 +44,7 @@ def derive_interfaces(
     tilt = math.radians(45 - gripper.tilt_deg)
     ramp = (gripper.block_back_w_mm - behind_mm(p)) / math.tan(tilt)
     least = gripper.land_mm + ramp + FLARE_MM
-    line_mm = config.catalogue.printers[p.printer.profile].line_mm
+    line_mm = config.parts.printer.profile.line_mm
     letter_mm = most_letter_mm(line_mm)
     most = outline.length_mm - p.tip.slant_start_mm - 2 * LETTER_GAP_MM - letter_mm
     needed, room = math.ceil(least * 10) / 10, math.floor(most * 10) / 10
@@ -99,8 +99,8 @@ def _refuse_holes(config: Input, finger: Finger, board: Box, faults: Diagnostics
 def _refuse_heights(config: Input, faults: Diagnostics) -> None:
     """Refuse what does not go into plate, pad and groove."""
     p, flex = config.parameters, config.parameters.flex
-    line_mm = config.catalogue.printers[p.printer.profile].line_mm
-    nose = config.catalogue.grippers[p.coupling.gripper].nose
+    line_mm = config.parts.printer.profile.line_mm
+    nose = config.parts.coupling.gripper.nose
     left = p.stack.floor_mm - flex.groove_depth_mm
     gap, fit_mm = Drawn(p.printer.fit_mm).gap_mm(flex.glue_mm), p.printer.fit_mm
     rim = flex.groove_mm - 2 * gap

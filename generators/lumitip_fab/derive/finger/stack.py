@@ -21,7 +21,7 @@ def held_by(config: Input) -> Gripper:
     """The gripper with the offsets of this finger: a compliant finger leans farther in, and the
     pad of its interface moves it away from the bolts."""
     p = config.parameters
-    gripper = config.catalogue.grippers[p.coupling.gripper]
+    gripper = config.parts.coupling.gripper
     if not is_flex(p):
         return gripper
     back, nose = p.flex.standoff_mm, gripper.nose
@@ -50,7 +50,7 @@ def foot_half_mm(config: Input, notch_half_mm: float) -> float:
     p = config.parameters
     if is_flex(p):
         return notch_half_mm + p.printer.min_wall_mm + p.flex.groove_mm
-    return config.catalogue.grippers[p.coupling.gripper].block_width_mm / 2
+    return config.parts.coupling.gripper.block_width_mm / 2
 
 
 LEAST_SILICONE_MM = 0.3
@@ -142,7 +142,7 @@ def derive_tip(
 def derive_printing(config: Input, outline: Outline, faults: Diagnostics) -> Printing:
     """Material and limits, refused where a part is larger than the bed."""
     p = config.parameters
-    printer = config.catalogue.printers[p.printer.profile]
+    printer = config.parts.printer.profile
     faults.refuse_unless(
         p.tip.edge_mm >= printer.line_mm - 1e-9,
         "tip.edge_mm",

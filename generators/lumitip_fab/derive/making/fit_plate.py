@@ -32,7 +32,7 @@ APART_MM = 0.8  # between coupons
 def derive_fit_plate(config: Input, plan: Plan, mount: Mount, faults: Diagnostics) -> FitPlate:
     """The plate; refused where it is larger than the bed."""
     p = config.parameters
-    printer = config.catalogue.printers[p.printer.profile]
+    printer = config.parts.printer.profile
     wall, layers_mm = LINES * printer.line_mm, LAYERS * printer.layer_mm
     sleeve_mm = SLEEVE_LAYERS * printer.layer_mm
     steps = tuple(derive_fits(config, step) for step in STEPS_MM)

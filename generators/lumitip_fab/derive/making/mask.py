@@ -21,7 +21,7 @@ FLAP_TAPER = 0.18  # of the tip flap's side: a little over 10°
 def derive_mask(config: Input, outline: Outline, plan: Plan, faults: Diagnostics) -> Mask:
     """The mask, refused where apertures meet the connector's window or the page is too small."""
     p = config.parameters
-    film = config.catalogue.films[p.mask.film]
+    film = config.parts.mask.film
     lowest = min(y for _, y in plan.receiver.cells) - p.mask.hole_mm / 2
     window = max(plan.receiver.window.y_max_mm, plan.emitter.window.y_max_mm)
     faults.refuse_unless(

@@ -24,7 +24,7 @@ def derive_mould(
 ) -> Mould:
     """The mould, refused where the silicone cannot be shaped as asked."""
     p = config.parameters
-    silicone = config.catalogue.silicones[p.mould.silicone]
+    silicone = config.parts.mould.silicone
     faults.refuse_unless(
         p.mould.taper_length_mm <= p.outline.tip_margin_mm,
         "mould.taper_length_mm",
@@ -57,7 +57,7 @@ def derive_mould(
             f"{math.degrees(math.atan(allowed / depth)):.1f}° or less.",
         )
     layer_mm, off_mm = whole_layers(
-        config.catalogue.printers[p.printer.profile].layer_mm,
+        config.parts.printer.profile.layer_mm,
         (p.mould.wall_mm, p.mould.wall_mm + stack.cover_mm),
     )
     return Mould(
@@ -102,7 +102,7 @@ def _letter(config: Input, outline: Outline, stack: Stack, faults: Diagnostics) 
     """On the outside of the trough's end, whose wall is as high as the cavity and its floor."""
     p = config.parameters
     wall, rise = p.mould.wall_mm, stack.guided_mm * math.tan(math.radians(p.mould.draft_deg))
-    line_mm = config.catalogue.printers[p.printer.profile].line_mm
+    line_mm = config.parts.printer.profile.line_mm
     least = least_letter_mm(line_mm)
     low = max(LETTER_OVER_BED_MM, line_mm)
     high = wall + stack.cover_mm - max(LETTER_UNDER_RIM_MM, line_mm)

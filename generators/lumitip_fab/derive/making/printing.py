@@ -24,7 +24,7 @@ def derive_slicing(config: Input, mould: Mould, faults: Diagnostics) -> Slicing:
     )
     rigid = other if good else name
     density = p.backing.density_g_ml
-    printer = config.catalogue.printers[p.printer.profile]
+    printer = config.parts.printer.profile
     rest = _filament(config, rigid, density if rigid == name else known[rigid].density_g_ml)
     return Slicing(
         printer.nozzle_mm,
@@ -50,7 +50,7 @@ def _filament(config: Input, name: str, density_g_ml: float) -> Filament:
         entry.retract_mm,
         entry.layer_mpa,
         entry.bearing_mpa,
-        config.catalogue.printers[config.parameters.printer.profile].layer_mm,
+        config.parts.printer.profile.layer_mm,
     )
 
 
@@ -73,7 +73,7 @@ def derive_heat(config: Input, slicing: Slicing, faults: Diagnostics) -> tuple[H
     Printing is none of them: it melts a filament, and heats no part that is already made.
     """
     p, known = config.parameters, config.catalogue
-    film, silicone = known.films[p.mask.film], known.silicones[p.mould.silicone]
+    film, silicone = config.parts.mask.film, config.parts.mould.silicone
     laminate = known.laminates.flexible if is_flex(p) else known.laminates.rigid
     kind = "polyimide" if is_flex(p) else "FR-4"
     printed = [("backing", slicing.backing.name), ("mould", slicing.mould.name)]

@@ -15,8 +15,8 @@ def derive_fasteners(config: Input, faults: Diagnostics) -> tuple[Fastener, ...]
     """Every thread that is used, once; refused, and nothing derived, where the catalogue does not
     have one or where its bolts do not go through the holes that an entry has for them."""
     p, known = config.parameters, config.catalogue.fasteners
-    gripper = config.catalogue.grippers[p.coupling.gripper]
-    coupling = config.catalogue.couplings[p.flange.coupling]
+    gripper = config.parts.coupling.gripper
+    coupling = config.parts.flange.coupling
     threads = [("coupling.gripper", gripper.bolt)]
     if p.flange.enabled:
         threads += [("flange.coupling", coupling.bolt), ("flange.enabled", BOARD_SCREW)]

@@ -31,7 +31,7 @@ def derive_flange_body(
     p, pcb_mm = config.parameters.flange, stiff_mm(config.parameters)
     drawn = Drawn(config.parameters.printer.fit_mm)
     screw = config.catalogue.fasteners[BOARD_SCREW]
-    coupling, pogo = config.catalogue.couplings[p.coupling], config.catalogue.strips[p.contacts]
+    coupling, pogo = config.parts.flange.coupling, config.parts.flange.contacts
     # Towards the robot, and so on the board's back, are the contacts alone.
     (contacts,) = (device for device in carrier.devices if device.side == "back")
     front = [device for device in carrier.devices if device is not contacts]

@@ -25,7 +25,7 @@ def derive_holder(
     body_mm = body.round_mm if source == "gripper" else source
     if of is None or body_mm is None:
         return ()
-    drawn, screw = Drawn(p.printer.fit_mm), config.catalogue.fasteners[p.holder.screw]
+    drawn, screw = Drawn(p.printer.fit_mm), config.parts.holder.screw
     wall, play = p.holder.wall_mm, drawn.gap_mm(p.holder.clearance_mm)
     tray = Box(of.box.x_min_mm - play, of.box.x_max_mm + play, of.box.y_min_mm, of.box.y_max_mm)
     floor_z = -p.holder.standoff_mm

@@ -79,7 +79,7 @@ def _letter(config: Input, gripper: Gripper, faults: Diagnostics) -> Letter:
     behind = gripper.block_back_w_mm - gripper.bolt_w_mm - hole / 2 - p.printer.fit_mm
     deep = behind - p.printer.min_wall_mm
     wide = gripper.block_width_mm - 2 * gripper.block_corner_mm
-    line_mm = config.catalogue.printers[p.printer.profile].line_mm
+    line_mm = config.parts.printer.profile.line_mm
     least, margin = least_letter_mm(line_mm), max(LETTER_MARGIN_MM, line_mm)
     low, high = margin, gripper.land_mm - margin
     faults.refuse_unless(

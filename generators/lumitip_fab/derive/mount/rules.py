@@ -51,7 +51,7 @@ def refuse_block(config: Input, gripper: Gripper, faults: Diagnostics) -> None:
     p, pins = config.parameters, gripper.pins
     head, hole = gripper.counterbore_mm / 2, gripper.bolt_hole_mm / 2 + p.printer.fit_mm
     apart = gripper.bolt_spacing_mm
-    line_mm = config.catalogue.printers[p.printer.profile].line_mm
+    line_mm = config.parts.printer.profile.line_mm
     walls = (
         ("behind its counterbores", gripper.block_back_w_mm - gripper.bolt_w_mm - head, None),
         ("beside its counterbores", gripper.block_width_mm / 2 - (apart or 0.0) / 2 - head, None),
@@ -202,7 +202,7 @@ def _refuse_straps(config: Input, holder: Holder, faults: Diagnostics) -> None:
 def refuse_flange(config: Input, flange: Flange, faults: Diagnostics) -> None:
     """Refuse floors and walls thinner than the printer's, and what does not fit the coupling."""
     p, least = config.parameters.flange, config.parameters.printer.min_wall_mm
-    coupling = config.catalogue.couplings[p.coupling]
+    coupling = config.parts.flange.coupling
     floor = flange.board_z_mm - flange.tail_mm - flange.seat_z_mm
     faults.refuse_unless(
         floor >= least - 1e-9,

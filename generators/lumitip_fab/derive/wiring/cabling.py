@@ -101,7 +101,7 @@ def reach_mm(finger: Finger, outline: Outline) -> float:
 def _loads(config: Input, emitter: Finger, wiring: Wiring, electrical: Electrical) -> Loads:
     lit_ma = sum(electrical.strings.high_ma)
     read_ma = 1000 * wiring.muxes * electrical.channel.supply_v / wiring.pull_up_ohm
-    own_ma = config.catalogue.controllers[config.parameters.controller.board].draws_ma + read_ma
+    own_ma = config.parts.controller.board.draws_ma + read_ma
     supply = emitter.connector.signals[1]
     together = {supply: lit_ma, "5V": own_ma, "GND": lit_ma + own_ma}
     if supply == "5V":
@@ -119,7 +119,7 @@ def _ends(config: Input, boards: Boards, wiring: Wiring) -> dict[str, dict[str, 
             for finger, ref in zip(("emitter", "receiver"), refs, strict=True)
         }
     selects = {f"S{i}": pin for i, pin in enumerate(wiring.select_pins)}
-    plug = config.catalogue.controllers[config.parameters.controller.board].plug
+    plug = config.parts.controller.board.plug
     order = (*plug.rows[0], *plug.rows[1]) if plug else ()
     controller = {}
     for place, signal in enumerate(boards.receiver.connector.signals, 1):

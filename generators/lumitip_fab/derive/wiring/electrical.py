@@ -25,7 +25,7 @@ def derive_electrical(config: Input, strings: wiring.Strings, faults: Diagnostic
 
 def _strings(config: Input, strings: wiring.Strings) -> Strings:
     p = config.parameters
-    led = config.catalogue.leds[p.emitter.led]
+    led = config.parts.emitter.led
     fewer = max(1, math.floor(SHORTER * max(len(cells) for cells in strings.cells)))
     shorter = string_of(config, fewer, p.emitter.current_ma)
     return Strings(
@@ -42,7 +42,7 @@ def _strings(config: Input, strings: wiring.Strings) -> Strings:
         fewer_high_ma=shorter.high_ma,
         resistor_w=max(string.load_w for string in strings.strings),
         resistor_high_w=max(string.high_load_w for string in strings.strings),
-        resistor_rated_w=config.catalogue.resistors[p.emitter.resistor].power_w,
+        resistor_rated_w=config.parts.emitter.resistor.power_w,
     )
 
 

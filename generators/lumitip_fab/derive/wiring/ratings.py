@@ -48,7 +48,7 @@ class String:
 def string_of(config: Input, leds: int, current_ma: float) -> String:
     """A string of LEDs for a current: its resistor is the nearest E96 value."""
     p = config.parameters
-    led, volts = config.catalogue.leds[p.emitter.led], p.supply.voltage_v
+    led, volts = config.parts.emitter.led, p.supply.voltage_v
     drop = volts - leds * led.forward_voltage_v
     ohm = e96(1000 * drop / current_ma)
     low, high = (_extreme_ma(led, volts, leds, ohm, current_ma, sign) for sign in (-1, 1))
@@ -58,7 +58,7 @@ def string_of(config: Input, leds: int, current_ma: float) -> String:
 def longest_string(config: Input) -> int:
     """Most LEDs in a string that leave its resistor a tenth of the supply; 0 if not even one."""
     p = config.parameters
-    led, volts = config.catalogue.leds[p.emitter.led], p.supply.voltage_v
+    led, volts = config.parts.emitter.led, p.supply.voltage_v
     return int(volts * (1 - LEAST_RESISTOR_SHARE) / led.forward_voltage_v)
 
 
@@ -137,25 +137,25 @@ class _Duty:
 
 def refuse_receiver_capacitor(config: Input, faults: Diagnostics) -> None:
     """Refuse a capacitor with which the multiplexers' supply dips as they switch."""
-    p, known = config.parameters, config.catalogue
-    supply_v = known.controllers[p.controller.board].supply_v
+    p = config.parameters
+    supply_v = config.parts.controller.board.supply_v
     mux = p.receiver.multiplexer
-    duty = _Duty("receiver.capacitor", supply_v, mux, known.multiplexers[mux].bypass_nf)
+    duty = _Duty("receiver.capacitor", supply_v, mux, config.parts.receiver.multiplexer.bypass_nf)
     _refuse(config, [duty], faults)
 
 
 def refuse_flange_capacitors(config: Input, faults: Diagnostics) -> None:
     """Refuse capacitors of the flange's board that break, or with which its parts do not work."""
-    p, known = config.parameters, config.catalogue
-    switching = known.regulators[p.flange.regulator]
+    p = config.parameters
+    switching = config.parts.flange.regulator
     duties = [
         _Duty("flange.input_capacitor", p.supply.voltage_v),
         _Duty("flange.output_capacitor", switching.output_v),
         _Duty("flange.boot_capacitor", switching.output_v, p.flange.regulator, switching.boot_nf),
     ]
-    controller = known.controllers[p.controller.board]
+    controller = config.parts.controller.board
     if controller.module:
-        linear = known.linear_regulators[p.module.regulator]
+        linear = config.parts.module.regulator
         duties += [
             _Duty(
                 "module.supply_capacitor", switching.output_v, p.module.regulator, linear.stable_nf

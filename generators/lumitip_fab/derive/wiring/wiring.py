@@ -57,7 +57,7 @@ class Muxing:
 def derive_strings(config: Input, cells: Cells, faults: Diagnostics) -> Strings:
     """The fewest strings that the supply allows, differing by at most one LED."""
     p = config.parameters
-    led, volts = config.catalogue.leds[p.emitter.led], p.supply.voltage_v
+    led, volts = config.parts.emitter.led, p.supply.voltage_v
     longest = min(longest_string(config), p.emitter.string_leds)
     if longest < 1:
         faults.refuse(
@@ -83,8 +83,8 @@ def string_problems(config: Input, strings: tuple[String, ...]) -> Iterator[tupl
     """Field and message of every rule that strings break: ratings at the worst case, spread of
     currents, supply and heat."""
     p = config.parameters
-    led, volts = config.catalogue.leds[p.emitter.led], p.supply.voltage_v
-    package, current = config.catalogue.resistors[p.emitter.resistor], p.emitter.current_ma
+    led, volts = config.parts.emitter.led, p.supply.voltage_v
+    package, current = config.parts.emitter.resistor, p.emitter.current_ma
     highest = max(string.high_ma for string in strings)
     if max(highest, current) > led.max_current_ma:
         yield (
@@ -140,8 +140,8 @@ def _from_the_gripper(cells: Cells, string: Integers) -> tuple[int, ...]:
 def derive_muxing(config: Input, cells: Cells, faults: Diagnostics) -> Muxing:
     """The fewest multiplexers for all detectors, each on its own analog pin."""
     p = config.parameters
-    mux = config.catalogue.multiplexers[p.receiver.multiplexer]
-    controller = config.catalogue.controllers[p.controller.board]
+    mux = config.parts.receiver.multiplexer
+    controller = config.parts.controller.board
     muxes = math.ceil(len(cells) / mux.channels)
     pins = controller.analog_pins
     if controller.unlimited_analog_pins:
@@ -226,7 +226,7 @@ def _input_leads(config: Input) -> NDArray[np.float64]:
         |O           |
          1  2  3 … 8      towards the connector
     """
-    mux = config.catalogue.multiplexers[config.parameters.receiver.multiplexer]
+    mux = config.parts.receiver.multiplexer
     row = mux.leads // 2
     places = []
     for channel in range(mux.channels):

@@ -76,9 +76,9 @@ def _middle(x: float, y: float) -> Point:
     return (x + 4 * _PITCH_MM) // 1.27 * 1.27, (y + _UPRIGHT_MM / 2) // 1.27 * 1.27
 
 
-def _beside(told: str, edge_mm: float, y_mm: float) -> Point:
+def _beside(words: str, edge_mm: float, y_mm: float) -> Point:
     """Middle of a text that begins at an edge, or ends there on the left."""
-    return edge_mm + math.copysign(len(told) * _LETTER_MM / 2, edge_mm), y_mm
+    return edge_mm + math.copysign(len(words) * _LETTER_MM / 2, edge_mm), y_mm
 
 
 def _transistor(sheet: Sheet, at: Point, symbol: str, part: Component, device: Device) -> None:

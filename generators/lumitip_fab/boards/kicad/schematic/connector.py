@@ -21,9 +21,9 @@ def draw_wires(sheet: Sheet, at: Point, parts: dict[str, Component], supply: str
     x, first = at[0] + 10.16, at[1] + 17.78
     sheet.texts.append(("Wires", (at[0] + 2.54, at[1] + 5.08), 2.5))
     cells = [part for part in parts.values() if part.kind in ("led", "photodetector")]
-    told = f"{cells[0].ref} to {cells[-1].ref}: {cells[0].value}"
+    caption = f"{cells[0].ref} to {cells[-1].ref}: {cells[0].value}"
     below = first + ways * ROW_MM + 2.54
-    sheet.texts.append((told, (at[0] + 2.54, below), 1.5))
+    sheet.texts.append((caption, (at[0] + 2.54, below), 1.5))
     middle = first + (ways - 1) / 2 * ROW_MM
     sheet.symbols.append(
         Drawn(

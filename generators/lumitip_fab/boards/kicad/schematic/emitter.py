@@ -22,8 +22,8 @@ def draw_strings(
     """Every string with its resistor."""
     for number, string in enumerate(wiring.strings, start=1):
         x, y = at[0], at[1] + (number - 1) * STRING_MM + 12.7
-        told = f"String {number}: {len(string)} LEDs, {wiring.current_ma[number - 1]:.1f} mA"
-        sheet.texts.append((told, (x, y - 10.16), 1.8))
+        caption = f"String {number}: {len(string)} LEDs, {wiring.current_ma[number - 1]:.1f} mA"
+        sheet.texts.append((caption, (x, y - 10.16), 1.8))
         sheet.power(supply, (x + 5.08, y))
         resistor = parts[f"R{number}"]
         sheet.wire((x + 5.08, y), (x + 8.89, y))

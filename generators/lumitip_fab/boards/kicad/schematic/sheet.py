@@ -1,4 +1,4 @@
-"""What is drawn on a sheet and where, and the sizes of paper. mm, y down, on a grid of 1.27 mm."""
+"""Symbols and wires of a sheet with their places, and the paper sizes. mm, y down, 1.27 mm grid."""
 
 from dataclasses import dataclass, field
 from itertools import pairwise

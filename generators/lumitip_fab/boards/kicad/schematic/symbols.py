@@ -187,7 +187,7 @@ def _power(net: str, body: list[Node], kind: str, angle: int) -> Node:
 
 
 def _frame(prefix: str) -> tuple[Node, ...]:
-    told = (("Reference", prefix), ("Value", ""), ("Footprint", ""), ("Datasheet", ""))
+    properties = (("Reference", prefix), ("Value", ""), ("Footprint", ""), ("Datasheet", ""))
     return (
         ("in_bom", "yes"),
         ("on_board", "yes"),
@@ -200,7 +200,7 @@ def _frame(prefix: str) -> tuple[Node, ...]:
                 ("at", 0, 0, 0),
                 HIDDEN if i else _FONT,
             )
-            for i, (key, value) in enumerate(told)
+            for i, (key, value) in enumerate(properties)
         ),
     )
 

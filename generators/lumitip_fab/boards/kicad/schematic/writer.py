@@ -56,9 +56,9 @@ class _Writer:
         for i, (start, end) in enumerate(sheet.wires):
             wire = self.copy("wire", "wire", i)
             wire.start.value, wire.end.value = [*start], [*end]
-        for i, (told, at, height) in enumerate(sheet.texts):
+        for i, (words, at, height) in enumerate(sheet.texts):
             text = self.copy("text", "text", i)
-            text.value, text.at.value = told, [*at, 0]
+            text.value, text.at.value = words, [*at, 0]
             text.effects.font.size.value = [height, height]
         for i, (net, at, angle_deg) in enumerate(sheet.labels):
             label = self.copy("global_label", "label", i)
@@ -87,10 +87,10 @@ class _Writer:
         symbol.at.value = [drawn.x_mm, drawn.y_mm, drawn.angle_deg]
         symbol.in_bom.value = part is None or bool(part.part)
         symbol.uuid.value = uuid
-        told = _told(drawn, part)
+        fields = _field_texts(drawn, part)
         for field in symbol.property:
-            if field.name in told:
-                _fill(field, drawn, *told[field.name])
+            if field.name in fields:
+                _fill(field, drawn, *fields[field.name])
             else:
                 field.delete()
         pattern = symbol.wrapped_parsed_value.pin
@@ -102,18 +102,18 @@ class _Writer:
         entry.value, entry.reference.value = f"/{uuid}", drawn.ref
 
 
-def _told(drawn: Drawn, part: Component | None) -> dict[str, tuple[str, Point | None]]:
-    """What each field of a symbol tells, and where beside it; hidden where it has no place."""
+def _field_texts(drawn: Drawn, part: Component | None) -> dict[str, tuple[str, Point | None]]:
+    """Text of each field of a symbol and its place beside it; a field without a place is hidden."""
     footprint = f"{symbols.LIBRARY}:{part.footprint.name}" if part else ""
-    told = {
+    texts = {
         "Reference": (drawn.ref, drawn.ref_at),
         "Value": (drawn.value, drawn.value_at),
         "Footprint": (footprint, None),
         "Datasheet": ("", None),
     }
     if part and part.part:
-        told |= {"Manufacturer": (part.manufacturer, None), "MPN": (part.part, None)}
-    return told
+        texts |= {"Manufacturer": (part.manufacturer, None), "MPN": (part.part, None)}
+    return texts
 
 
 def _fill(field: Any, drawn: Drawn, text: str, beside: Point | None) -> None:

@@ -1,0 +1,175 @@
+"""The catalogue entries that the parameters name, under the same sections and fields."""
+
+from dataclasses import dataclass, fields
+from typing import Any, get_args, get_type_hints
+
+from lumitip_fab.catalogue import Catalogue
+from lumitip_fab.catalogue.controllers import (
+    Controller,
+    LinearRegulator,
+    Regulator,
+    Strip,
+    Transistor,
+)
+from lumitip_fab.catalogue.electronics import (
+    Capacitor,
+    Crystal,
+    Fuse,
+    Inductor,
+    Led,
+    Multiplexer,
+    Photodetector,
+    Resistor,
+)
+from lumitip_fab.catalogue.grippers import Gripper, ToolCoupling
+from lumitip_fab.catalogue.materials import Fastener, Filament, Film, Printer, Silicone
+from lumitip_fab.config.parameters import Parameters
+
+
+@dataclass(frozen=True)
+class EmitterParts:
+    """Parts of the emitter's board."""
+
+    led: Led
+    resistor: Resistor
+
+
+@dataclass(frozen=True)
+class ReceiverParts:
+    """Parts of the receiver's board."""
+
+    photodetector: Photodetector
+    resistor: Resistor
+    capacitor: Capacitor
+    multiplexer: Multiplexer
+
+
+@dataclass(frozen=True)
+class BackingParts:
+    """Material of the backing."""
+
+    material: Filament
+
+
+@dataclass(frozen=True)
+class ControllerParts:
+    """The microcontroller board."""
+
+    board: Controller
+
+
+@dataclass(frozen=True)
+class BreakoutParts:
+    """Parts of the breakout board."""
+
+    socket: Strip
+
+
+@dataclass(frozen=True)
+class FlangeParts:
+    """Parts of the flange and its board."""
+
+    coupling: ToolCoupling
+    contacts: Strip
+    header: Strip
+    regulator: Regulator
+    inductor: Inductor
+    input_capacitor: Capacitor
+    output_capacitor: Capacitor
+    boot_capacitor: Capacitor
+    fuse: Fuse
+    transistor: Transistor
+    resistor: Resistor
+
+
+@dataclass(frozen=True)
+class ModuleParts:
+    """Parts beside a controller that is soldered to the flange's board."""
+
+    regulator: LinearRegulator
+    supply_capacitor: Capacitor
+    capacitor: Capacitor
+    crystal: Crystal
+    crystal_capacitor: Capacitor
+
+
+@dataclass(frozen=True)
+class CouplingParts:
+    """The gripper."""
+
+    gripper: Gripper
+
+
+@dataclass(frozen=True)
+class HolderParts:
+    """Screws of the holder."""
+
+    screw: Fastener
+
+
+@dataclass(frozen=True)
+class MouldParts:
+    """Material that is cast."""
+
+    silicone: Silicone
+
+
+@dataclass(frozen=True)
+class MaskParts:
+    """Material of the mask."""
+
+    film: Film
+
+
+@dataclass(frozen=True)
+class PrinterParts:
+    """The printer."""
+
+    profile: Printer
+
+
+@dataclass(frozen=True)
+class Parts:
+    """Every named entry."""
+
+    emitter: EmitterParts
+    receiver: ReceiverParts
+    backing: BackingParts
+    controller: ControllerParts
+    breakout: BreakoutParts
+    flange: FlangeParts
+    module: ModuleParts
+    coupling: CouplingParts
+    holder: HolderParts
+    mould: MouldParts
+    mask: MaskParts
+    printer: PrinterParts
+
+
+_SECTIONS: dict[str, Any] = get_type_hints(Parts)
+_KINDS = {
+    get_args(hint)[1]: kind for kind, hint in get_type_hints(Catalogue).items() if get_args(hint)
+}
+NAMED: dict[str, str] = {
+    f"{section}.{field}": _KINDS[record]
+    for section, parts in _SECTIONS.items()
+    for field, record in get_type_hints(parts).items()
+}
+"""Fields that name an entry, and the catalogue file that it is in."""
+
+
+def named_parts(parameters: Parameters, catalogue: Catalogue) -> Parts:
+    """Look up every entry that the parameters name."""
+
+    def section(name: str) -> Any:
+        values = getattr(parameters, name)
+        return _SECTIONS[name](
+            **{
+                field.name: getattr(catalogue, NAMED[f"{name}.{field.name}"])[
+                    getattr(values, field.name)
+                ]
+                for field in fields(_SECTIONS[name])
+            }
+        )
+
+    return Parts(**{name: section(name) for name in _SECTIONS})

@@ -1,0 +1,74 @@
+"""The page of `show`, opened in a browser without a network."""
+
+from collections.abc import Callable
+from io import BytesIO
+from pathlib import Path
+
+import numpy as np
+import pytest
+from build123d import Box, Pos, Sphere
+from PIL import Image
+from playwright.sync_api import sync_playwright
+
+import lumitip_fab
+from lumitip_fab.parts.export import part_files
+from programs import program
+
+BACKGROUND = np.array([255, 255, 255])
+
+
+@pytest.fixture
+def seen() -> Callable[[Path], np.ndarray]:
+    """`seen(page)`: the colours (height, width, 3) that a browser shows."""
+
+    def look(page: Path) -> np.ndarray:
+        with sync_playwright() as playwright:
+            browser = playwright.chromium.launch(
+                executable_path=program("chromium"),
+                args=["--no-sandbox", "--use-gl=swiftshader", "--ignore-gpu-blocklist"],
+            )
+            tab = browser.new_context(offline=True).new_page()
+            tab.goto(page.as_uri())
+            tab.wait_for_timeout(3000)
+            shown = tab.screenshot()
+            browser.close()
+        return np.asarray(Image.open(BytesIO(shown)).convert("RGB"), int)
+
+    return look
+
+
+def test_shapes_and_files_are_drawn_each_in_its_colour(
+    tmp_path: Path, seen: Callable[[Path], np.ndarray]
+) -> None:
+    for artefact in part_files("ball", Sphere(8), np.eye(4), frame=""):
+        (tmp_path / artefact.path).write_bytes(artefact.data)
+    page = lumitip_fab.show(
+        Pos(-25, 0, 0) * Box(12, 12, 12), tmp_path / "ball.stl", open_page=False
+    )
+    pixels = seen(page)
+    drawn = (abs(pixels - BACKGROUND) > 30).any(axis=2)
+    assert 0.02 < drawn.mean() < 0.6
+    assert not drawn[0].any() and not drawn[:, 0].any() and not drawn[:, -1].any()  # whole parts
+    red, _, blue = pixels[drawn].T
+    assert ((blue > red + 20).mean() > 0.1) and ((red > blue + 20).mean() > 0.1)
+
+
+@pytest.mark.parametrize("ending", ["step", "stl", "3mf"])
+def test_every_kind_of_file_opens(tmp_path: Path, ending: str) -> None:
+    files = {a.path: a.data for a in part_files("box", Box(3, 4, 5), np.eye(4), frame="")}
+    file = tmp_path / f"box.{ending}"
+    file.write_bytes(files[file.name])
+    opened: list[str] = []
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("webbrowser.open", opened.append)
+        page = lumitip_fab.show(str(file))
+    assert opened == [page.as_uri()]
+    assert page.stat().st_size > 100_000  # the viewer is in the page
+
+
+def test_what_is_no_part_is_named_all_at_once(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="build the design first") as error:
+        lumitip_fab.show(tmp_path / "gone.stl", tmp_path / "bom.csv", 3)  # type: ignore[arg-type]
+    assert len(str(error.value).splitlines()) == 3
+    with pytest.raises(ValueError, match="at least one part"):
+        lumitip_fab.show()
