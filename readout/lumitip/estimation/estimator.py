@@ -15,8 +15,8 @@ from lumitip.estimation.report import MISFIT_COUNTS, covariance, report, rms_cou
 from lumitip.estimation.search import ALPHA_SD, BENT, GAP_SD_MM, Search, doubtful
 from lumitip.grid import Floats, collinear
 from lumitip.layout import Layout, Optics
-from lumitip.processing.processor import COVERED_BELOW, MIN_CONTRAST, ValuesError
-from lumitip.processing.threshold import usable as counted
+from lumitip.processing.batch import usable_cells
+from lumitip.processing.processor import MIN_CONTRAST, ValuesError, frame_values, is_covered
 from lumitip.twin import Model, Twin
 from lumitip.twin.optics import FULL, GAP_MM, drive_of_values
 from lumitip.twin.scene import MOST_DIAMETER_MM
@@ -124,14 +124,13 @@ class PoseEstimator:
         """
         if kind is not None:
             _known(kind)
-        frame_values = self._values(values)
-        usable = counted(frame_values)
-        seen = frame_values[usable]
-        if seen.size < _LEAST_CELLS or not np.ptp(seen) >= MIN_CONTRAST:
+        read = frame_values(values, self.layout)
+        usable = usable_cells(read)
+        known = read[usable]
+        if known.size < _LEAST_CELLS or not np.ptp(known) >= MIN_CONTRAST:
             self._last = None
-            middle = float(np.median(seen)) if seen.size else math.inf
-            return without_contact("covered" if middle < COVERED_BELOW else "none")
-        frame = self._frame(frame_values, usable)
+            return without_contact("covered" if is_covered(known) else "none")
+        frame = self._frame(read, usable)
         name, found = self._found(frame, kind)
         shape = self._search.shape(name)
         free = drifting(shape, found, self._search.drifts)
@@ -184,14 +183,14 @@ class PoseEstimator:
             EstimationError: if there is no such kind.
         """
         _known(kind)
-        frame_values = self._values(values)
-        usable = counted(frame_values)
+        read = frame_values(values, self.layout)
+        usable = usable_cells(read)
         if np.count_nonzero(usable) < _LEAST_CELLS:
             raise ValuesError(
                 f"{np.count_nonzero(usable)} cells have finite values; at least "
                 f"{_LEAST_CELLS} are needed"
             )
-        frame = self._frame(frame_values, usable)
+        frame = self._frame(read, usable)
         found = self._search.best(kind, frame)
         return (self._search.free if free else self._search.expected)(kind, found, frame)
 
@@ -209,14 +208,6 @@ class PoseEstimator:
     def reset(self) -> None:
         """Forget the frame before."""
         self._last = None
-
-    def _values(self, values: ArrayLike) -> Floats:
-        frame = arguments.numbers(values, "values", ValuesError)
-        if frame.shape != (len(self.layout),):
-            raise ValuesError(
-                f"values has shape {frame.shape}; a frame of this layout has ({len(self.layout)},)"
-            )
-        return frame
 
     def _frame(self, values: Floats, usable: np.ndarray) -> Frame:
         values = np.clip(np.where(usable, values, FULL), 0.0, FULL)

@@ -18,7 +18,7 @@ from lumitip.estimation.fit import Fit
 from lumitip.estimation.report import rms_counts
 from lumitip.grid import Floats
 from lumitip.layout import Layout
-from lumitip.processing.processor import ValuesError
+from lumitip.processing.processor import frames_values
 from lumitip.twin import Model
 
 _ROUNDS = 4
@@ -68,11 +68,7 @@ def learn(
     """
     estimator = PoseEstimator(layout, model)
     most = arguments.count(most_frames, "most_frames", _LEAST_FRAMES)
-    rows = arguments.numbers(values, "values", ValuesError)
-    if rows.ndim != 2 or rows.shape[1] != len(layout):
-        raise ValuesError(
-            f"values has shape {rows.shape}; frames of this layout have (n, {len(layout)})"
-        )
+    rows = frames_values(values, layout)
     if len(rows):
         rows = rows[np.unique(np.linspace(0, len(rows) - 1, most).astype(np.int64))]
     trusted = [(row, e) for row in rows if (e := estimator(row, kind)).trusted]

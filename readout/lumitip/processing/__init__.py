@@ -1,4 +1,4 @@
-"""From the values of a frame to the object between the fingers, with numpy alone.
+"""From the values of a frame to the object between the fingers. Needs numpy alone.
 
 contact = Processor(layout)(frame.values)
 contact.shape, contact.centre_mm, contact.line, contact.corner, contact.cable

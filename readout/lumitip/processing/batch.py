@@ -1,6 +1,8 @@
-"""Thresholds, centres and markers of many frames at once, as one frame after the other would give.
+"""Thresholds, and thresholds, centres and markers of many frames at once.
 
-Frames go through in blocks that stay in the processor's cache.
+The threshold λ between dark and light cells is the mean of the means of two clusters. The values
+are sorted and cut in two at the largest step between neighbours in this order; of equal steps the
+lowest counts. So a value between the step and λ is dark or light by λ alone.
 """
 
 from dataclasses import dataclass
@@ -10,31 +12,63 @@ from numpy.typing import NDArray
 
 from lumitip.grid import Floats, Integers
 from lumitip.processing.fits import Points
-from lumitip.processing.threshold import darkness
-from lumitip.processing.threshold import usable as counted
 
 Flags = NDArray[np.bool_]
 
-_BLOCK_VALUES = 32_768  # 256 KiB of float64
+FULL_LIGHT = 255.0
+"""Value of a cell in full light; 0 is dark. In raw ADC codes dark is high."""
+MOST = 1e9
+"""Largest magnitude of a value that counts; sums of larger ones could overflow."""
+_BLOCK_VALUES = 32_768  # of a block of frames, 256 KiB: it stays in the processor's cache
+
+
+def usable_cells(values: Floats) -> Flags:
+    """Mask of the values that count: neither NaN nor beyond `MOST`."""
+    usable: Flags = np.abs(values) <= MOST
+    return usable
+
+
+def threshold(values: Floats) -> tuple[float, float]:
+    """λ of one frame, and its contrast: the difference of the means of both clusters.
+
+    Args:
+        values: finite, shape `(cells,)`, at least two.
+    """
+    ordered = values.copy()
+    ordered.sort()
+    first = int((ordered[1:] - ordered[:-1]).argmax()) + 1
+    low = float(np.add.reduce(ordered[:first])) / first
+    high = float(np.add.reduce(ordered[first:])) / (ordered.size - first)
+    return (low + high) / 2.0, high - low
+
+
+def darkness(values: Floats) -> Floats:
+    """Weight of dark cells in the dark centre, as published: 255 − value, within 0 to 255.
+
+    Args:
+        values: finite or NaN, any shape; NaN stays NaN. Not raw codes.
+    """
+    weights: Floats = FULL_LIGHT - np.minimum(np.maximum(values, 0.0), FULL_LIGHT)
+    return weights
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Batch:
-    """Contacts in many frames; rows of frames without contact hold NaN, and no marker."""
+    """Results of many frames; frames without contact have NaN, and no markers."""
 
     thresholds: Floats
     """λ of each frame, shape `(n,)`."""
     centres_mm: Floats
     """Mean of the dark cells, weighted with 255 − value, shape `(n, 2)` (mm)."""
     markers_mm: Floats
-    """Markers of each frame, then NaN, shape `(n, most, 2)` (mm)."""
+    """Markers of each frame, padded with NaN, shape `(n, most, 2)` (mm)."""
     counts: Integers
-    """How many markers each frame has, shape `(n,)`."""
+    """Number of markers of each frame, shape `(n,)`."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Grid:
-    """Grid of a layout for the batch; points are complex numbers (mm)."""
+    """Cells and pairs of neighbours of a layout; points are complex numbers (mm)."""
 
     cells: Points
     begin: Integers
@@ -42,13 +76,13 @@ class Grid:
     steps: Points
 
     def between(self, usable: Flags) -> "Grid":
-        """The same with the pairs of usable cells alone."""
+        """The grid with only the pairs of usable cells."""
         kept = usable[self.begin] & usable[self.end]
         return Grid(self.cells, self.begin[kept], self.end[kept], self.steps[kept])
 
 
 def process(values: Floats, grid: Grid, min_contrast: float) -> Batch:
-    """All frames of `values`, shape `(n, cells)`; what `usable` leaves out is left out."""
+    """Results of all frames of `values`, shape `(n, cells)`; other values are ignored."""
     frames, cells = values.shape
     levels = np.full(frames, np.nan)
     centres: Points = np.full(frames, complex(np.nan, np.nan))
@@ -58,11 +92,11 @@ def process(values: Floats, grid: Grid, min_contrast: float) -> Batch:
     for start in range(0, frames if cells > 1 else 0, block):
         here = slice(start, start + block)
         part, usable = values[here], None
-        finite = counted(part)
+        finite = usable_cells(part)
         if np.count_nonzero(finite) < part.size:
             part, usable = np.where(finite, part, np.nan), finite
         level, contrast = thresholds(part, usable)
-        level[~((contrast >= min_contrast) & (contrast > 0.0))] = np.nan  # then nothing is dark
+        level[~((contrast >= min_contrast) & (contrast > 0.0))] = np.nan  # so no cell is dark
         is_dark = part < level[:, None]
         levels[here], centres[here] = level, _centres(part, is_dark, grid.cells)
         found, counts[here] = _markers(part, is_dark, level, usable, grid)
@@ -71,11 +105,11 @@ def process(values: Floats, grid: Grid, min_contrast: float) -> Batch:
 
 
 def thresholds(values: Floats, usable: Flags | None = None) -> tuple[Floats, Floats]:
-    """λ and contrast of each row, as `lumitip.processing.threshold` defines them.
+    """λ and contrast of each row, see `threshold`.
 
     Args:
         values: shape `(n, cells)`, NaN where not usable.
-        usable: which are finite, `None` for all.
+        usable: mask of the finite values, `None` for all.
     """
     ordered = np.sort(values, axis=1)
     steps = ordered[:, 1:] - ordered[:, :-1]
@@ -93,7 +127,7 @@ def thresholds(values: Floats, usable: Flags | None = None) -> tuple[Floats, Flo
 
 
 def padded(points: Points, counts: Integers) -> Points:
-    """Rows of `counts` points each, filled up with NaN to the longest."""
+    """Rows of `counts` points each, padded with NaN to the longest."""
     most = int(counts.max(initial=0))
     rows: Points = np.full((counts.size, most), complex(np.nan, np.nan))
     rows[np.arange(most) < counts[:, None]] = points

@@ -1,4 +1,4 @@
-"""`Contact`: what one frame says about the object between the fingers.
+"""`Contact`: the object between the fingers, from one frame.
 
 Sensor frame of the receiver: millimetres, x to the right, y towards the tip; angles in degrees,
 counter-clockwise from +x.
@@ -26,13 +26,13 @@ class Line:
 
 @dataclass(frozen=True, slots=True)
 class Corner:
-    """Two straight rays that meet, each closest to its own part of the markers."""
+    """Two straight rays that meet, each fitted to its own part of the markers."""
 
     vertex_mm: Point
-    """Where the rays meet (mm)."""
+    """Point where the rays meet (mm)."""
     directions_deg: tuple[float, float]
-    """Directions of the rays away from the vertex, in (−180, 180]; turning counter-clockwise
-    from the first by `opening_deg` gives the second."""
+    """Directions of the rays away from the vertex, in (−180, 180]; the first, turned
+    counter-clockwise by `opening_deg`, is the second."""
     opening_deg: float
     """Angle between the rays, in (0, 180)."""
     rms_mm: float
@@ -41,10 +41,10 @@ class Corner:
 
 @dataclass(frozen=True, slots=True)
 class Cable:
-    """Two parallel borders with the dark between them, and the axis in their middle."""
+    """Two parallel borders with dark cells between them, and the axis in their middle."""
 
     axis_point_mm: Point
-    """The point of the axis nearest to the mean of the markers (mm)."""
+    """Point of the axis nearest to the mean of the markers (mm)."""
     angle_deg: float
     """Direction of the axis, in (−90, 90]."""
     width_mm: float
@@ -55,23 +55,22 @@ class Cable:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Contact:
-    """The contact in one frame; without contrast every field but `shape` is `None`."""
+    """Results of one frame; without contrast every field but `shape` is `None`."""
 
     shape: str
-    """One of `SHAPES`; `lumitip.processing.shape` has the rule."""
+    """One of `SHAPES`; for the rule see `lumitip.processing.processor`."""
     threshold: float | None = None
     """λ: cells with a value below it are dark (255 is full light)."""
     contrast: float | None = None
     """Difference between the means of the light and the dark cluster (counts of 255)."""
     centre_mm: Point | None = None
-    """Mean of the dark cells' centres, each weighted with 255 − value (mm): the darkest weighs
-    most."""
+    """Dark centre: mean of the dark cells, each weighted with 255 − value (mm)."""
     markers_mm: Floats | None = None
-    """Where λ is crossed between neighbours, shape `(k, 2)`, read-only (mm)."""
+    """Points between neighbours where the value crosses λ, shape `(k, 2)`, read-only (mm)."""
     line: Line | None = None
-    """`None` with fewer than two markers, when they favour no direction, or when all cells lie on
-    one line."""
+    """`None` with fewer than two markers, with markers that have no main direction, or if all cells
+    lie on one line."""
     corner: Corner | None = None
-    """`None` unless two rays that meet describe the markers, see `lumitip.processing.shape`."""
+    """`None` unless two rays that meet fit the markers."""
     cable: Cable | None = None
-    """`None` unless there is light on both sides of the dark, see `lumitip.processing.shape`."""
+    """`None` unless there is light on both sides of the dark cells."""

@@ -1,4 +1,4 @@
-"""Line, corner and cable closest to the markers: closed forms over their moments.
+"""Least-squares fits of line, corner and cable to the markers, in closed form from their moments.
 
     line                corner                  cable
     light               light                   light
@@ -7,11 +7,12 @@
                                       o         ---o----o---o--- border
                                        o light  light
 
-Points are complex numbers x + iy (mm): the sum of squares about the mean, whose phase is twice the
-direction of largest scatter, and the sum of squared distances give a line of total least squares.
+Points are complex numbers x + iy (mm). The sum of their squares about the mean has twice the
+direction of largest scatter as its phase; with the sum of squared distances it gives the line of
+total least squares.
 
-The markers in the order in which they stand along the border are cut in two where the lines of
-both parts leave the smallest sum of squares: two rays. Every cut is tried, from running sums.
+For two rays the markers are ordered along the border and cut in two where the lines of both parts
+leave the smallest sum of squares. Every cut is tried, from running sums.
 """
 
 import math
@@ -26,24 +27,24 @@ from lumitip.processing.contact import Cable, Corner, Line, Point
 
 Points = NDArray[np.complex128]
 
-_RAY_MARKERS = 3  # with two a ray fits any two markers exactly, and says nothing
+_RAY_MARKERS = 3  # a ray always fits two markers exactly
 _BORDER_MARKERS = 2
-_CABLE_ROUNDS = 2  # the second changes which border a marker belongs to in few frames only
+_CABLE_ROUNDS = 2  # the second moves markers to the other border in few frames only
 
 
 class Border:
-    """The markers of one frame, and where the dark is."""
+    """Markers of one frame, and the sides of the border."""
 
     __slots__ = ("dark", "light", "markers", "mean", "moments", "outward", "size", "squares")
 
     def __init__(self, markers: Points, outward: Points, dark: complex, light: complex) -> None:
-        """Take the moments that all fits need.
+        """Compute the moments that all fits need.
 
         Args:
             markers: shape `(k,)` (mm).
             outward: from the dark to the light cell of each marker, all of one length, `(k,)`.
-            dark: mean of the dark cells' centres (mm).
-            light: mean of the other cells' centres (mm).
+            dark: mean of the dark cells (mm).
+            light: mean of the other cells (mm).
         """
         self.outward, self.dark, self.light = outward, dark, light
         self.mean = complex(np.add.reduce(markers)) / max(markers.size, 1)
@@ -58,15 +59,15 @@ class Border:
 
 
 class _Parts:
-    """Two parts of the markers of a border, each about its own mean.
+    """Moments of two parts of the markers, each about its own mean.
 
-    The markers are relative to the mean of all, so the totals of both parts cancel.
+    The markers are relative to the mean of all, so the sums of both parts cancel.
     """
 
     __slots__ = ("counts", "means", "size", "squares")
 
     def __init__(self, border: Border, count: int, total: complex, squares: complex) -> None:
-        """Take the sums of one part's markers and of their squares."""
+        """Take the number of markers of one part, their sum, and the sum of their squares."""
         rest = border.markers.size - count
         here, there = total / count, -total / rest
         self.counts = count, rest
@@ -88,7 +89,7 @@ def _along_scatter(squares: complex) -> float:
 
 
 def _rms(size: float, along: float, count: int) -> float:
-    """Distance of points to the lines along their largest scatter, root of the mean square."""
+    """Root mean square distance of points to the lines along their largest scatter."""
     return math.sqrt(max(size - along, 0.0) / (2 * count))
 
 
@@ -98,7 +99,7 @@ def point(at: complex) -> Point:
 
 
 def fit_line(border: Border) -> Line | None:
-    """The line of total least squares, `None` when the markers favour no direction."""
+    """Line of total least squares; `None` if the markers have no main direction."""
     count, along = border.markers.size, abs(border.squares)
     if count < 2 or along <= 1e-9 * border.size:
         return None
@@ -107,11 +108,11 @@ def fit_line(border: Border) -> Line | None:
 
 
 def fit_rays(border: Border) -> tuple[Corner | None, Cable | None]:
-    """The two rays of least squares as a corner, and parallel with the dark between as a cable.
+    """Corner of two rays, and cable of two parallel borders, of least squares.
 
     Returns:
-        The corner: `None` with fewer than three markers to a ray or with parallel rays. The
-        cable: `None` without two borders of two markers each, facing away from the dark.
+        The corner, `None` with fewer than three markers for each ray or with parallel rays; the
+        cable, `None` without two borders of two markers each that face away from the dark cells.
     """
     if border.markers.size < 2 * _RAY_MARKERS:
         return None, None
@@ -120,11 +121,11 @@ def fit_rays(border: Border) -> tuple[Corner | None, Cable | None]:
 
 
 def _cut(border: Border) -> _Parts:
-    """The two parts of the markers whose lines leave the smallest sum of squares."""
+    """Two parts of the markers whose lines leave the smallest sum of squares."""
     sizes = _sizes(border.markers.size)
     running = np.add.accumulate(border.moments[:, _along(border)], axis=1)
     totals, squares = running[:, _RAY_MARKERS - 1 : -_RAY_MARKERS]
-    # What is smallest is the size less this, which is twice what lies along both lines.
+    # The sum of squares is least where the scatter along both lines is largest.
     about = totals * totals / sizes
     along = np.abs(about)
     about[0] -= squares
@@ -144,12 +145,12 @@ def _sizes(markers: int) -> Floats:
 
 
 def _along(border: Border) -> Integers:
-    """Indices of the markers in the order in which they stand along the border.
+    """Indices of the markers in their order along the border.
 
-    They are sorted by their angle about the middle of whichever side is convex: seen from there
-    a border of two rays is met once in each direction. They begin after the widest gap.
+    They are sorted by their angle about the middle of the convex side, from which each direction
+    meets a border of two rays once. They begin after the widest gap.
     """
-    # Outward directions spread apart along a convex dark side, and close in on a hollow one.
+    # Outward directions diverge if the dark side is convex.
     convex = np.vdot(border.markers, border.outward).real >= 0.0
     seen = border.markers - ((border.dark if convex else border.light) - border.mean)
     around = np.arctan2(seen.imag, seen.real)
@@ -185,10 +186,10 @@ def _corner(border: Border, rays: _Parts) -> Corner | None:
 
 
 def _cable(border: Border, rays: _Parts) -> Cable | None:
-    """Parallel borders: their common direction from the scatter about the mean of each.
+    """Parallel borders; their common direction comes from the scatter about the mean of each.
 
-    The rays give the direction to begin with; then each marker belongs to the border that its
-    light cell lies beyond.
+    The rays give the initial direction. Then each marker belongs to the border on the side of its
+    light cell.
     """
     count, borders = border.markers.size, rays
     for _ in range(_CABLE_ROUNDS):
@@ -215,12 +216,12 @@ def _unit(angle: float) -> complex:
 
 
 def _half_turn_deg(angle: float) -> float:
-    """The direction of a line, in (−90, 90]."""
+    """Direction of a line, in (−90, 90]."""
     degrees = math.degrees(angle)
     return degrees + 180.0 if degrees <= -90.0 else degrees
 
 
 def _whole_turn_deg(angle: float) -> float:
-    """The direction of a ray, in (−180, 180]."""
+    """Direction of a ray, in (−180, 180]."""
     degrees = math.degrees(angle)
     return degrees + 360.0 if degrees <= -180.0 else degrees

@@ -8,17 +8,17 @@ from numpy.typing import ArrayLike
 from lumitip import arguments
 from lumitip.errors import ArgumentError
 from lumitip.layout import Layout
+from lumitip.processing.batch import usable_cells
 from lumitip.processing.contact import Contact
 from lumitip.processing.processor import COVERED_BELOW, MIN_CONTRAST, Processor
-from lumitip.processing.threshold import usable
 
 
 class Tracker:
     """Adds hysteresis to `Processor`: one tracker follows one fingertip, from one thread.
 
-    A contact begins at `min_contrast` and ends below `release_contrast`. Another shape is
-    reported once it came `hold` times in a row; until then the shape before is reported, as long as
-    its fit applies to the frame. Contact and no contact are reported at once.
+    A contact begins at `min_contrast` and ends below `release_contrast`, without delay. Its shape
+    changes after `hold` frames in a row with another shape; until then the shape before is
+    reported, as long as its fit applies to the frame.
     """
 
     def __init__(
@@ -32,14 +32,14 @@ class Tracker:
         """Prepare for the grid of a layout.
 
         Args:
-            layout: where the cells are, and which are neighbours.
+            layout: cells and neighbours.
             min_contrast: contrast at which a contact begins (counts of 255).
             release_contrast: contrast below which it ends, not above `min_contrast`.
-            hold: frames in a row that it takes to tell another shape, at least 1.
+            hold: frames in a row before the shape changes, at least 1.
             covered_below: as for `Processor`.
 
         Raises:
-            LayoutError: if it is no layout.
+            LayoutError: if `layout` is no layout.
             ArgumentError: if another parameter is out of its range.
         """
         release_contrast = arguments.number(release_contrast, "release_contrast", 0.0)
@@ -48,33 +48,33 @@ class Tracker:
         self._hold = arguments.count(hold, "hold")
         if release_contrast > self._min_contrast:
             raise ArgumentError(
-                f"release_contrast is {release_contrast}; it must not be above "
-                f"min_contrast, {min_contrast}"
+                f"release_contrast is {release_contrast}; it must not be above min_contrast, "
+                f"which is {min_contrast}"
             )
         self.reset()
 
     def reset(self) -> None:
         """Forget the frames so far."""
-        self._before: Contact | None = None
+        self._last: Contact | None = None
         self._other = ""
         self._times = 0
 
     def __call__(self, values: ArrayLike) -> Contact:
-        """The contact in the next frame, after those before; see `Processor`."""
+        """Process the next frame; see `Processor`."""
         contact = self._processor(values)
-        before = self._before
+        before = self._last
         touched = before is not None and before.contrast is not None
         if contact.contrast is not None and contact.contrast < self._min_contrast and not touched:
             frame = np.asarray(values, dtype=np.float64)
-            contact = self._processor.without_contrast(frame[usable(frame)])
+            contact = self._processor.without_contrast(frame[usable_cells(frame)])
         if before is not None and touched and contact.contrast is not None:
-            contact = self._steadied(contact, before.shape)
+            contact = self._held(contact, before.shape)
         else:
             self._times = 0
-        self._before = contact
+        self._last = contact
         return contact
 
-    def _steadied(self, contact: Contact, shape: str) -> Contact:
+    def _held(self, contact: Contact, shape: str) -> Contact:
         if contact.shape == shape or not _applies(shape, contact):
             self._times = 0
             return contact

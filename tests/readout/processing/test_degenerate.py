@@ -136,7 +136,7 @@ def test_a_grid_without_neighbours_has_no_markers(layout: Layout) -> None:
     ("values", "said"),
     [
         (np.zeros(31), r"shape \(31,\); a frame of this layout has \(32,\)"),
-        (np.zeros((2, 32)), "`batch` takes several frames"),
+        (np.zeros((2, 32)), "or use `Processor.batch`"),
         (5.0, r"shape \(\);"),
     ],
 )
@@ -180,5 +180,5 @@ def test_values_of_no_sensor_are_left_out_without_a_word(layout: Layout, huge: f
 @pytest.mark.parametrize("values", [["a"] * 32, [[1, 2], [3]], [1j] * 32, [10**400] * 32, {}])
 def test_what_is_no_number_is_refused(layout: Layout, values: Any) -> None:
     for ask in (Processor(layout), Processor(layout).batch):
-        with pytest.raises(ValuesError, match="numbers of one shape are needed"):
+        with pytest.raises(ValuesError, match="an array of numbers is needed"):
             ask(values)
