@@ -1,4 +1,4 @@
-"""Control laws: pure functions of what is seen, `None` where that is nothing to follow.
+"""Control laws: from `Sight`, the line that is followed, to `Command`, the motion of the finger.
 
 y ^   /     the finger goes forward along x; the line is at height d, at angle θ
   |  / θ
@@ -6,20 +6,79 @@ y ^   /     the finger goes forward along x; the line is at height d, at angle �
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 from lumitip import arguments
-from lumitip.control.command import Command, ControlError
-from lumitip.control.sight import Sight
+from lumitip.errors import LumitipError
+
+_VELOCITIES = ("forward_mm_s", "lateral_mm_s", "rotation_rad_s")
+
+
+class ControlError(LumitipError, ValueError):
+    """A wrong setting or input of a controller."""
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """Velocity of the finger in the receiver's sensor frame."""
+
+    forward_mm_s: float = 0.0
+    """Along x (mm/s)."""
+    lateral_mm_s: float = 0.0
+    """Along y, towards the tip (mm/s)."""
+    rotation_rad_s: float = 0.0
+    """About z, counter-clockwise (rad/s)."""
+    state: str = "trace"
+    """`"trace"`, `"slow"` where the line was just lost, `"search"`, or `"stop"`."""
+    reason: str = ""
+    """Reason to stop: `"corner"` or `"lost"`."""
+
+    def scaled(self, share: float) -> "Command":
+        """The same motion at a share of its speed."""
+        return replace(self, **{name: share * getattr(self, name) for name in _VELOCITIES})
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """Largest velocities, in both directions."""
+
+    forward_mm_s: float = 400.0
+    lateral_mm_s: float = 400.0
+    rotation_rad_s: float = 8.0
+
+    def __post_init__(self) -> None:
+        arguments.finite_fields(self, ControlError)
+        for name in _VELOCITIES:
+            arguments.number(getattr(self, name), name, above=0.0, error=ControlError)
+
+    def of(self, command: Command) -> Command:
+        """The command within the limits."""
+        limits = {name: getattr(self, name) for name in _VELOCITIES}
+        limited = {n: min(max(getattr(command, n), -most), most) for n, most in limits.items()}
+        return replace(command, **limited)
+
+
+@dataclass(frozen=True, slots=True)
+class Sight:
+    """The followed line, in the sensor frame."""
+
+    height_mm: float | None = None
+    """Height at which the line crosses x = 0 (mm); `None` without a line to follow."""
+    angle: float = 0.0
+    """Direction of the line from x (rad)."""
+    centre_mm: float | None = None
+    """Height of the dark centre (mm); only a `Contact` has it."""
+    corner_mm: float | None = None
+    """Distance in x to the vertex of a corner (mm); `None` without a corner."""
 
 
 class Law(Protocol):
-    """How to follow what is seen."""
+    """A control law."""
 
     @property
     def speed_mm_s(self) -> float:
-        """Speed along the line where all is well (mm/s)."""
+        """Speed along the line (mm/s)."""
 
     def __call__(self, sight: Sight) -> Command | None:
         """The command, `None` where there is nothing to follow."""
@@ -27,13 +86,13 @@ class Law(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class CentreLaw:
-    """The published law: the dark centre is held at a height in the grid, in proportion."""
+    """The published law: proportional control of the height of the dark centre."""
 
     speed_mm_s: float = 20.0
     gain_per_s: float = 6.0
-    """Lateral velocity by the height that is missing (1/s)."""
+    """Lateral velocity for each mm of error (1/s)."""
     target_mm: float = 0.0
-    """Height that the dark centre is held at (mm)."""
+    """Target height of the dark centre (mm)."""
 
     def __post_init__(self) -> None:
         _check(self)
@@ -47,11 +106,11 @@ class CentreLaw:
 
 @dataclass(frozen=True, slots=True)
 class LineLaw:
-    """The line's height in proportion, and its angle fed forward:
+    """Proportional control of the line's height, with feed-forward of its angle:
 
         lateral = K_p d + v tan θ,   rotation = K_θ θ
 
-    so that the finger moves along the line, and turns until the line lies along its way.
+    The finger moves along the line, and turns until it points along the line.
     """
 
     speed_mm_s: float = 80.0
@@ -60,7 +119,7 @@ class LineLaw:
     turn_per_s: float = 8.0
     """K_θ (1/s)."""
     target_mm: float = 0.0
-    """Height that the line is held at (mm)."""
+    """Target height of the line (mm)."""
 
     def __post_init__(self) -> None:
         _check(self)

@@ -1,22 +1,119 @@
-"""`Tracer`: a law with limits, that notices when the line is lost and when a corner comes."""
+"""`Tracer`: a law with limits, which detects the loss of the line and corners."""
 
+import math
 from dataclasses import replace
 
 from lumitip import arguments
-from lumitip.control.command import Command, ControlError, Limits
-from lumitip.control.laws import Law
-from lumitip.control.sight import Lead, Sight, sight_of
-from lumitip.estimation import Estimate
+from lumitip.control.laws import Command, ControlError, Law, Limits, Sight
+from lumitip.estimation import KINDS, Estimate
 from lumitip.processing import Contact
 from lumitip.values import shown
+
+SMOOTHING_S = 0.04
+"""Time constant of the mean turning rate of the line, about two frames (s)."""
+_LARGEST = math.radians(70.0)  # predicted angle
+_ARRIVED_MM = 0.3
+_APPROACH_PER_S = 6.0
+_STEEPEST_DEG = 80.0  # a line across the way of the finger cannot be followed
+_CORNER_DEG = 30.0  # a corner opens by a right angle within this; what is flatter is a curve
+_CORNER_MM = 13.0  # a vertex further from the middle is not seen by enough cells
+_BEARABLE = frozenset({"misfit", "unfinished", "ambiguous"})
+
+
+def sight_of(seen: Contact | Estimate) -> Sight:
+    """The line to follow in a contact or an estimate.
+
+    The border of a corner is followed like an edge. An estimate with other flags than misfit,
+    unfinished and ambiguous has no line.
+
+    Raises:
+        ControlError: if `seen` is neither.
+    """
+    if isinstance(seen, Contact):
+        return _of_contact(seen)
+    if not isinstance(seen, Estimate):
+        raise ControlError(
+            f"the input is {shown(seen)}; a Contact or an Estimate is needed, such as "
+            "Processor(layout)(frame.values)"
+        )
+    # A curved line misfits its straight model, but is a line.
+    if seen.kind not in KINDS or not _BEARABLE.issuperset(seen.flags):
+        return Sight()
+    corner_mm = seen.vertex_mm and _corner_mm(seen.vertex_mm[0], seen.opening_deg)
+    return _line(seen.offset_mm, seen.angle_deg, None, corner_mm)
+
+
+def _of_contact(seen: Contact) -> Sight:
+    centre_mm = seen.centre_mm[1] if seen.centre_mm else None
+    corner_mm = None
+    if seen.shape == "cable" and seen.cable is not None:
+        point_mm, angle_deg = seen.cable.axis_point_mm, seen.cable.angle_deg
+    elif seen.shape == "corner" and seen.corner is not None:
+        point_mm = seen.corner.vertex_mm
+        corner_mm = _corner_mm(point_mm[0], seen.corner.opening_deg)
+        # The line of the ray that is closer to the direction of motion.
+        ray = min(seen.corner.directions_deg, key=lambda a: abs(math.sin(math.radians(a))))
+        angle_deg = (ray + 90.0) % 180.0 - 90.0
+    elif seen.line is not None:
+        point_mm, angle_deg = seen.line.point_mm, seen.line.angle_deg
+    else:
+        return Sight(centre_mm=centre_mm)
+    turn = math.radians(angle_deg)
+    offset_mm = point_mm[1] * math.cos(turn) - point_mm[0] * math.sin(turn)
+    return _line(offset_mm, angle_deg, centre_mm, corner_mm)
+
+
+def _line(
+    offset_mm: float, angle_deg: float, centre_mm: float | None, corner_mm: float | None
+) -> Sight:
+    if abs(angle_deg) > _STEEPEST_DEG:
+        return Sight(centre_mm=centre_mm, corner_mm=corner_mm)
+    turn = math.radians(angle_deg)
+    return Sight(offset_mm / math.cos(turn), turn, centre_mm, corner_mm)
+
+
+def _corner_mm(vertex_x_mm: float, opening_deg: float) -> float | None:
+    """Distance in x to a vertex; `None` if it is far away, or its angle is no right angle."""
+    near = abs(opening_deg - 90.0) <= _CORNER_DEG and abs(vertex_x_mm) <= _CORNER_MM
+    return vertex_x_mm if near else None
+
+
+class Lead:
+    """`sight = lead(sight, dt_s)`: prediction of the line's angle, which goes on turning."""
+
+    def __init__(self, lead_s: float) -> None:
+        """A lead without history.
+
+        Args:
+            lead_s: delay of the commands, the time to predict; 0 changes nothing (s).
+        """
+        self.lead_s = lead_s
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget the history."""
+        self._angle: float | None = None
+        self._rate = 0.0
+
+    def __call__(self, sight: Sight, dt_s: float) -> Sight:
+        """Prediction from the input that came `dt_s` after the one before (s)."""
+        if not self.lead_s or sight.height_mm is None:
+            self.reset()
+            return sight
+        if self._angle is not None and dt_s > 0.0:
+            fresh = 1.0 - math.exp(-dt_s / SMOOTHING_S)
+            self._rate += fresh * ((sight.angle - self._angle) / dt_s - self._rate)
+        self._angle = sight.angle
+        ahead = sight.angle + self.lead_s * self._rate
+        return replace(sight, angle=min(max(ahead, -_LARGEST), _LARGEST))
 
 
 class Tracer:
     """`command = tracer(contact_or_estimate, dt_s)`: follows the line in its input.
 
-    Without a line it goes on as before, slower and slower, for `slow_s`; then it searches sideways
-    where the line went, and back, for `search_s`; then it stops with the reason `"lost"`. With
-    `corner_at_mm` it ends at a corner: it comes to rest with the vertex there.
+    Without a line it slows down for `slow_s`, then searches on the side where the line went and on
+    the other side for `search_s`, then stops with the reason `"lost"`. With `corner_at_mm` it stops
+    at a corner, with the vertex at that place.
     """
 
     def __init__(
@@ -30,22 +127,22 @@ class Tracer:
         corner_frames: int = 2,
         lead_s: float = 0.0,
     ) -> None:
-        """A tracer that has seen nothing yet.
+        """A tracer without history.
 
         Args:
-            law: what to do while the line is seen.
+            law: control law while the line is seen.
             limits: largest velocities.
-            slow_s: how long the line may be out of sight before the search (s).
-            search_s: how long the search may take (s).
-            search_mm_s: its speed (mm/s).
-            corner_at_mm: where the vertex of a corner is to be at the end, in x (mm); `None` goes
-                on past corners.
-            corner_frames: frames in a row that make a corner.
-            lead_s: how much later a command takes effect than its frame was taken; the line's
-                angle is predicted ahead by this time (s).
+            slow_s: time without a line before the search (s).
+            search_s: longest search (s).
+            search_mm_s: speed of the search (mm/s).
+            corner_at_mm: x at which the vertex of a corner ends the trace (mm); `None` passes
+                corners.
+            corner_frames: frames in a row with a corner before it counts.
+            lead_s: delay from a frame to the effect of its command; the line's angle is predicted
+                by this time (s).
 
         Raises:
-            ControlError: if a time is below 0, a count below 1, or something is of another kind.
+            ControlError: if an argument is invalid.
         """
         if not callable(law):
             raise ControlError(f"law is {shown(law)}; a law like LineLaw(80.0) is needed")
@@ -70,7 +167,7 @@ class Tracer:
         self.reset()
 
     def reset(self) -> None:
-        """Forget what was seen."""
+        """Forget the history."""
         self._last = Command()
         self._lead.reset()
         self._unseen_s = 0.0
@@ -79,10 +176,10 @@ class Tracer:
         self._ended = ""
 
     def __call__(self, seen: Contact | Estimate, dt_s: float) -> Command:
-        """The command that follows from what a frame says, `dt_s` after the one before (s).
+        """The command for a frame that came `dt_s` after the one before (s).
 
         Raises:
-            ControlError: if that is no contact and no estimate, or the time is below 0.
+            ControlError: if `seen` is no contact and no estimate, or the time is below 0.
         """
         dt_s = arguments.number(dt_s, "dt_s", 0.0, error=ControlError)
         if self._ended:
@@ -102,7 +199,7 @@ class Tracer:
         return command
 
     def _before_corner(self, command: Command, sight: Sight) -> Command:
-        """Slower towards a corner, so that the finger stands still when it is there."""
+        """Slow down towards a corner, so that the finger stands still there."""
         if self.corner_at_mm is None or sight.corner_mm is None:
             return command
         if self._corners < self.corner_frames:
@@ -110,33 +207,19 @@ class Tracer:
         ahead_mm = sight.corner_mm - self.corner_at_mm
         if ahead_mm <= _ARRIVED_MM:
             return Command(state="stop", reason="corner")
-        share = min(1.0, _APPROACH_PER_S * ahead_mm / max(command.forward_mm_s, 1e-9))
-        return replace(
-            command,
-            forward_mm_s=command.forward_mm_s * share,
-            lateral_mm_s=command.lateral_mm_s * share,
-            rotation_rad_s=command.rotation_rad_s * share,
+        return command.scaled(
+            min(1.0, _APPROACH_PER_S * ahead_mm / max(command.forward_mm_s, 1e-9))
         )
 
     def _without_line(self, dt_s: float) -> Command:
         self._unseen_s += dt_s
         if self._unseen_s <= self.slow_s:
             share = 1.0 - self._unseen_s / self.slow_s if self.slow_s else 0.0
-            last = self._last
-            return Command(
-                last.forward_mm_s * share,
-                last.lateral_mm_s * share,
-                last.rotation_rad_s * share,
-                "slow",
-            )
+            return replace(self._last.scaled(share), state="slow")
         searching_s = self._unseen_s - self.slow_s
         if searching_s <= self.search_s:
-            # A third of the time on the side where the line went, the rest past the other side.
+            # A third of the time on the side where the line went, the rest on the other side.
             side = self._side if searching_s < self.search_s / 3.0 else -self._side
             return Command(0.0, side * self.search_mm_s, 0.0, "search")
         self._ended = "lost"
         return Command(state="stop", reason="lost")
-
-
-_ARRIVED_MM = 0.3
-_APPROACH_PER_S = 6.0

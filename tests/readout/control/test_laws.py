@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from lumitip.control import CentreLaw, ControlError, Limits, LineLaw, Sight, Tracer, sight_of
-from lumitip.control.sight import Lead
+from lumitip.control.tracer import Lead
 from lumitip.estimation import Estimate, PoseEstimator
 from lumitip.links.twin import published_layout
 from lumitip.processing import Processor
