@@ -1,4 +1,4 @@
-"""`Guard`: decides from an arm's state whether it must stop. Needs no arm, clock or thread."""
+"""`Guard`: decides from the state of an arm whether it must stop. Needs no arm, clock or thread."""
 
 import math
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ from lumitip.grid import Floats
 from lumitip.robots.limits import ArmLimits
 from lumitip.robots.mount import Mount, rotation_of
 
-_FASTER = 1.5  # measured speeds overshoot a little; beyond this something else moves the arm
+_FASTER = 1.5  # times the speed limit; measured speeds overshoot, but not by more
 _STILL_MM_S = 20.0
 
 
@@ -18,7 +18,7 @@ class ArmState:
     """State of an arm."""
 
     time_s: float
-    """Its own clock (s), which stands still when nothing comes."""
+    """Clock of the arm (s); it stands still without new data."""
     pose: Floats
     """Of the tool centre point in the base (m, rad), shape `(6,)`."""
     twist: Floats
@@ -33,15 +33,15 @@ class ArmState:
 
 
 class Guard:
-    """Watches an arm from the state in which it was opened on."""
+    """Watches an arm from the state in which it was opened."""
 
     def __init__(self, limits: ArmLimits, mount: Mount, first: ArmState, now_s: float) -> None:
         """Begin to watch.
 
         Args:
-            limits: what is allowed.
-            mount: where the fingertip is.
-            first: the arm now: force, place and turn count from here.
+            limits: of the arm.
+            mount: of the fingertip.
+            first: the arm now; force, travel and turn are measured from here.
             now_s: the host's clock (s).
         """
         self._limits, self._mount, self._first = limits, mount, first
@@ -49,13 +49,13 @@ class Guard:
         self._robot_s, self._changed_s = first.time_s, now_s
 
     def reason(self, state: ArmState, now_s: float, seen_s: float | None) -> tuple[str, str]:
-        """Why the arm must stop, a key of `WHY`, and the figures; empty while it may go on.
+        """The reason to stop, a key of `WHY`, with its figures; empty while the arm may move.
 
         Args:
             state: the arm now.
             now_s: the host's clock (s).
-            seen_s: when the frame was read that the command in force follows from, by the same
-                clock (s); `None` before the first command.
+            seen_s: time of the frame behind the current command, by the same clock (s); `None`
+                before the first command.
         """
         if state.time_s != self._robot_s:
             self._robot_s, self._changed_s = state.time_s, now_s

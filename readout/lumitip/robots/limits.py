@@ -1,4 +1,4 @@
-"""Limits of a robot's motion, and the errors of this room."""
+"""Limits of an arm's motion, the reasons to stop it, and its errors."""
 
 from dataclasses import dataclass, fields
 
@@ -6,7 +6,6 @@ from lumitip.errors import LumitipError
 from lumitip.values import as_float, shown
 
 # ruff: noqa: N818 - named by what happened, as in `lumitip.errors`
-
 
 WHY = {
     "closed": "the program closed it",
@@ -27,7 +26,7 @@ WHY = {
 
 
 class ArmError(LumitipError):
-    """An arm that cannot be reached, or limits or a mount that cannot be so."""
+    """An arm that cannot be reached, or invalid limits or mount."""
 
 
 class ArmStopped(ArmError):
@@ -56,9 +55,9 @@ _ALLOWED: dict[str, tuple[float, float, str]] = {
 
 @dataclass(frozen=True, slots=True)
 class ArmLimits:
-    """Limits of an arm with a fingertip; absurd ones are refused.
+    """Limits of an arm with a fingertip, within a safe range.
 
-    They slow an arm down and stop it, and replace none of its own safety functions: set those of
+    They slow an arm down and stop it. They do not replace its own safety functions: set those of
     the controller as narrow as the task allows.
     """
 
@@ -67,17 +66,17 @@ class ArmLimits:
     rotation_rad_s: float = 1.0
     """Rotation; faster commands are slowed down (rad/s)."""
     acceleration_mm_s2: float = 500.0
-    """Speeding up and braking (mm/s²)."""
+    """Acceleration and braking (mm/s²)."""
     force_n: float = 30.0
     """Largest change of the force on the tool since the arm was opened (N)."""
     travel_mm: float = 300.0
-    """How far the fingertip may go from where it began (mm)."""
+    """Largest distance of the fingertip from its start (mm)."""
     turn_deg: float = 120.0
-    """How far the fingertip may turn from where it began (°)."""
+    """Largest rotation of the fingertip from its start (°)."""
     stale_s: float = 0.1
-    """Oldest frame that may move the arm (s)."""
+    """Largest age of a frame that may move the arm (s)."""
     watchdog_hz: float = 10.0
-    """The controller stops the arm by itself when commands come more seldom than this (Hz)."""
+    """Lowest rate of commands; below it the controller stops the arm by itself (Hz)."""
 
     def __post_init__(self) -> None:
         faults = []
@@ -93,7 +92,7 @@ class ArmLimits:
             raise ArmError("; ".join(faults))
 
     def share(self, speed_mm_s: float, rotation_rad_s: float) -> float:
-        """By how much to slow down, 1 for not at all, so that both are within the limits."""
+        """Factor, at most 1, that brings both speeds within the limits."""
         return min(
             1.0,
             self.speed_mm_s / max(speed_mm_s, 1e-9),

@@ -1,9 +1,9 @@
-"""`Mount`: where the fingertip sits on the tool, and velocities from frame to frame.
+"""`Mount`: place of the fingertip on the tool, and velocities in other coordinate frames.
 
 Three frames: the sensor frame of the receiving finger (mm; x to the right, y towards the tip, z out
 of its face), the tool frame of the arm (its tool centre point, as set on the controller) and the
-arm's base. Poses and twists of an arm are in m and rad: `(x, y, z, rx, ry, rz)`, where a pose turns
-by the vector's length about its direction, and a twist moves the tool centre point.
+arm's base. Poses and twists of an arm are in m and rad: `(x, y, z, rx, ry, rz)`; the last three
+numbers of a pose are a rotation vector, and a twist is that of the tool centre point.
 """
 
 import math
@@ -46,8 +46,7 @@ class Mount:
         off = max(abs(math.hypot(*self.x) - 1), abs(math.hypot(*self.y) - 1))
         if max(off, abs(float(axes[0] @ axes[1]))) > _TOLERANCE:
             raise ArmError(
-                f"x is {self.x}, y is {self.y}; both must be of length 1 and square to each "
-                "other, as the edges of a box are"
+                f"x is {self.x}, y is {self.y}; both must have length 1 and be perpendicular"
             )
 
     @property
@@ -61,10 +60,7 @@ class Mount:
         return np.column_stack([x, y, np.cross(x, y)])
 
     def tool_twist(self, command: Command) -> Floats:
-        """Twist of the tool centre point, in the tool frame, that moves the fingertip so; `(6,)`.
-
-        A turn of the fingertip about itself moves a tool centre point that is somewhere else.
-        """
+        """Twist of the tool centre point, in the tool frame, for a command; `(6,)`."""
         axes = self.rotation
         turn = axes[:, 2] * command.rotation_rad_s
         velocity = axes @ (command.forward_mm_s, command.lateral_mm_s, 0.0) / 1000.0

@@ -1,11 +1,11 @@
 """`URArm`: a Universal Robots arm through RTDE, with ur_rtde (extra `[ur]`).
 
-A thread of its own sends what holds at `RATE_HZ`, looks at the arm before each and stops it for any
-reason of `WHY`. A stop is final: opening anew is for whoever has looked at the arm.
+A thread sends the current command at `RATE_HZ`, checks the arm before each and stops it for any
+reason of `WHY`. A stop is final: somebody must look at the arm and open it again.
 
-ur_rtde's script repeats the last speed for ever, whatever its time was, and ur_rtde makes
-a cut connection again by itself. Hence the watchdog of the controller, which stops the program when
-no register is written any more, and hence an arm that was silent once is not moved again.
+ur_rtde's script repeats the last speed for ever, whatever its time was, and ur_rtde restores a lost
+connection by itself. Therefore the watchdog of the controller stops the program if no register is
+written, and an arm that was silent once is not moved again.
 """
 
 import logging
@@ -27,9 +27,9 @@ from lumitip.robots.limits import ArmError, ArmLimits, ArmStopped
 from lumitip.robots.mount import Mount, in_base, in_tool
 
 RATE_HZ = 125.0
-"""Commands and states a second."""
+"""Rate of commands and states (Hz)."""
 _PORT = 30004
-_PLAYING = 2  # of RTDE's runtime_state; ur_rtde does not hand its names to Python
+_PLAYING = 2  # RTDE's runtime_state; ur_rtde has no name for it in Python
 _VARIABLES = [
     "timestamp",
     "actual_TCP_pose",
@@ -38,7 +38,7 @@ _VARIABLES = [
     "runtime_state",
     "safety_status_bits",
 ]
-_STANDS = 1e-3  # m/s or rad/s
+_STILL = 1e-3  # m/s or rad/s
 _REFUSAL_STATES = 10
 _BRAKING_MORE_S = 0.5
 _LONGEST_S = 600.0
@@ -47,27 +47,27 @@ _log = logging.getLogger(__name__)
 
 
 class URArm:
-    """An open arm, which stands still until its first command. From any thread."""
+    """An open arm, which stands still until its first command. Thread-safe."""
 
     def __init__(
         self, host: str, mount: Mount, limits: ArmLimits | None = None, timeout: float = 5.0
     ) -> None:
-        """Connect, hand the controller its script and set the watchdog; nothing moves yet.
+        """Connect, send the controller its script and set the watchdog; nothing moves yet.
 
-        The arm must be on, in remote control and free to move, its payload and tool centre point
-        set. ur_rtde lets no other Python thread run while it connects: open the arm first, then
-        the fingertip.
+        The arm must be on, in remote control and free to move, with payload and tool centre point
+        set. ur_rtde blocks all other Python threads while it connects: open the arm before the
+        fingertip.
 
         Args:
             host: address of the controller.
-            mount: where the fingertip sits on the tool.
-            limits: how fast, how hard, how far.
-            timeout: how long finding the controller may take (s).
+            mount: of the fingertip on the tool.
+            limits: of speed, force and travel.
+            timeout: to find the controller (s).
 
         Raises:
             MissingExtra: if ur_rtde is not installed.
             ArmError: if the controller does not answer or does not run the script, or an argument
-                cannot be so.
+                is invalid.
         """
         self.host = arguments.instance(host, str, "host", ArmError)
         self.mount = arguments.instance(mount, Mount, "mount", ArmError)
@@ -81,18 +81,18 @@ class URArm:
         self._closing = threading.Event()
         try:
             if not self._control.setWatchdog(self.limits.watchdog_hz):
-                raise ArmError(f"{host}: the controller does not take a watchdog, so nothing moves")
+                raise ArmError(f"{host}: the controller accepts no watchdog, so nothing moves")
             self._guard = Guard(self.limits, mount, self._state(), time.monotonic())
         except BaseException:
             self._leave()
             raise
-        # No daemon: a program that ends for whatever reason waits until the arm stands.
+        # No daemon: any program that ends waits until the arm stands still.
         self._thread = threading.Thread(target=self._run, name="lumitip-ur")
         self._thread.start()
 
     @property
     def stopped(self) -> str:
-        """Why the arm was stopped, a key of `WHY`; empty while it takes commands."""
+        """Reason of the stop, a key of `WHY`; empty while the arm takes commands."""
         return self._stop.reason if self._stop else ""
 
     def move(self, command: Command, seen_s: float) -> None:
@@ -100,29 +100,29 @@ class URArm:
         once; a command to stop waits until the arm stands.
 
         Args:
-            command: of the tracer. Too fast ones are slowed down as a whole.
-            seen_s: when the frame was read that it follows from, `Frame.t` (s).
+            command: of the tracer; too fast ones are slowed down as a whole.
+            seen_s: time of the frame behind the command, `Frame.t` (s).
 
         Raises:
-            ArmStopped: if the arm was stopped before: why.
+            ArmStopped: if the arm was stopped before, with the reason.
             ArmError: if a velocity or the time is no number; leave the `with` block then.
         """
         if self._stop:
             raise self._stop.with_traceback(None)
         arguments.finite_fields(arguments.instance(command, Command, "command", ArmError), ArmError)
         seen_s = arguments.number(seen_s, "seen_s", error=ArmError)
-        # A frame that claims to be of later would move the arm without any frame until then.
+        # A time in the future would keep the arm moving without any frame until then.
         self._asked = (command, min(seen_s, time.monotonic()))
         if command.state == "stop":
             self._thread.join()
 
     def measured(self) -> Command:
-        """How the fingertip moves now, as the arm's controller tells it."""
+        """Motion of the fingertip now, as reported by the arm's controller."""
         state = self._state()
         return self.mount.command(in_tool(state.pose, state.twist))
 
     def close(self) -> None:
-        """Stop the arm, wait until it stands, and disconnect. Any number of times."""
+        """Stop the arm, wait until it stands still, and disconnect. May be called repeatedly."""
         self._closing.set()
         self._thread.join()
 
@@ -131,19 +131,19 @@ class URArm:
             reason, detail = self._drive()
         except Exception as problem:  # noqa: BLE001 - whatever goes wrong must stop the arm
             reason, detail = "error", str(problem)
-            _log.debug("why the arm stops:", exc_info=True)
+            _log.debug("reason of the stop:", exc_info=True)
         self._stop = ArmStopped(reason, detail)
         _log.log(logging.INFO if reason == "closed" else logging.WARNING, "%s", self._stop)
-        # Cut off from the arm, ur_rtde may wait for it for ever: then it is left behind.
+        # Without a connection ur_rtde may wait for ever: then its thread is left behind.
         ending = threading.Thread(target=self._end, args=(reason,), name="lumitip-ur-end")
         ending.daemon = True
         ending.start()
         ending.join(_ENDING_S)
         if ending.is_alive():
-            _log.warning("%s: no answer while stopping, the controller's watchdog does", self.host)
+            _log.warning("%s: no answer while stopping; the watchdog stops the arm", self.host)
 
     def _drive(self) -> tuple[str, str]:
-        """Send what holds until there is a reason to stop: that, and its figures."""
+        """Send the current command until there is a reason to stop: that, and its figures."""
         due_s = time.monotonic()
         while not self._closing.wait(max(0.0, due_s - time.monotonic())):
             if not threading.main_thread().is_alive():
@@ -154,13 +154,13 @@ class URArm:
                 return reason, detail
             if asked and asked[0].state == "stop":
                 return asked[0].reason or "closed", ""
-            if not self._sent(asked[0] if asked else None, state):
+            if not self._follow(asked[0] if asked else None, state):
                 return self._refusal()
             due_s = max(due_s + 1.0 / RATE_HZ, now_s)
         return "closed", ""
 
     def _refusal(self) -> tuple[str, str]:
-        """Why the controller took no command: its state tells, a little later."""
+        """Reason why the controller took no command; its state shows it a little later."""
         for _ in range(_REFUSAL_STATES):
             reason, detail = self._guard.reason(self._state(), time.monotonic(), None)
             if reason:
@@ -168,17 +168,17 @@ class URArm:
             time.sleep(1.0 / RATE_HZ)
         return "error", "the controller took no command"
 
-    def _sent(self, command: Command | None, state: ArmState) -> bool:
+    def _follow(self, command: Command | None, state: ArmState) -> bool:
         if command is None:
             return bool(self._control.kickWatchdog())
         twist = self.mount.tool_twist(command)
         fingertip_mm_s = math.hypot(command.forward_mm_s, command.lateral_mm_s)
         tool_mm_s = float(np.linalg.norm(twist[:3])) * 1000.0
         twist *= self.limits.share(max(fingertip_mm_s, tool_mm_s), abs(command.rotation_rad_s))
-        return self._told(in_base(state.pose, twist))
+        return self._send(in_base(state.pose, twist))
 
-    def _told(self, twist: Floats) -> bool:
-        """Whether the controller took a twist in the base."""
+    def _send(self, twist: Floats) -> bool:
+        """Send a twist in the base; whether the controller took it."""
         speed = twist.tolist()
         return bool(self._control.speedL(speed, self._acceleration_m_s2, 1.0 / RATE_HZ))
 
@@ -187,28 +187,28 @@ class URArm:
         return self.limits.acceleration_mm_s2 / 1000.0
 
     def _end(self, reason: str) -> None:
-        """Brake, end the script and leave; each is tried whatever became of the others."""
+        """Brake, end the script and disconnect; each is tried even if another fails."""
         if reason != "connection":
-            _tried(self._brake)
-            _tried(self._control.speedStop, self._acceleration_m_s2)
-            _tried(self._control.stopScript)
+            _try(self._brake)
+            _try(self._control.speedStop, self._acceleration_m_s2)
+            _try(self._control.stopScript)
         elif self._control.isConnected():
-            # What waits for an answer would wait for minutes; the watchdog does the rest.
-            _tried(self._told, np.zeros(6))
+            # Calls that wait for an answer could wait for minutes; the watchdog does the rest.
+            _try(self._send, np.zeros(6))
         self._leave()
 
     def _brake(self) -> None:
-        """Tell it to stand until it does: `speedStop` alone would let the watchdog bite."""
+        """Send zero speed until the arm stands: with `speedStop` alone the watchdog would act."""
         speed_m_s = float(np.linalg.norm(self._state().twist[:3]))
         until_s = time.monotonic() + speed_m_s / self._acceleration_m_s2 + _BRAKING_MORE_S
-        while time.monotonic() < until_s and self._told(np.zeros(6)):
-            if float(np.abs(self._state().twist).max()) < _STANDS:
+        while time.monotonic() < until_s and self._send(np.zeros(6)):
+            if float(np.abs(self._state().twist).max()) < _STILL:
                 return
             time.sleep(1.0 / RATE_HZ)
 
     def _leave(self) -> None:
-        _tried(self._control.disconnect)
-        _tried(self._receive.disconnect)
+        _try(self._control.disconnect)
+        _try(self._receive.disconnect)
 
     def _state(self) -> ArmState:
         arm = self._receive
@@ -233,7 +233,7 @@ class URArm:
 
 
 def _connected(host: str, timeout_s: float) -> tuple[Any, Any]:
-    """Control and state of an arm; first a plain connection, since ur_rtde's cannot time out."""
+    """Control and state interfaces; first a plain connection, since ur_rtde's has no timeout."""
     try:
         from rtde_control import RTDEControlInterface
         from rtde_receive import RTDEReceiveInterface
@@ -250,8 +250,8 @@ def _connected(host: str, timeout_s: float) -> tuple[Any, Any]:
         ) from None
 
 
-def _tried(call: Any, *arguments: Any) -> None:
+def _try(call: Any, *arguments: Any) -> None:
     try:
         call(*arguments)
-    except Exception as problem:  # noqa: BLE001 - what follows must be tried all the same
+    except Exception as problem:  # noqa: BLE001 - the next steps must be tried anyway
         _log.warning("while stopping the arm: %s", problem)
