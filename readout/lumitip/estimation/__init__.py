@@ -1,4 +1,4 @@
-"""The pose of an edge, a cable or a corner, by fitting the optical model; with numpy alone.
+"""Pose of an edge, a cable or a corner, by fitting the optical model. Needs numpy alone.
 
 estimate = PoseEstimator(layout)(frame.values)
 estimate.kind, estimate.offset_mm, estimate.angle_deg, estimate.flags

@@ -1,4 +1,4 @@
-"""`Bank`: what the cells read at some 7,000 poses, compared with a frame in one product."""
+"""`Bank`: values of the cells at some 7,000 poses, compared with a frame in one product."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -10,11 +10,11 @@ from lumitip.estimation.shapes import Cells, Shape
 from lumitip.grid import Floats
 
 POSES = 7000
-"""Poses of a bank, about: steps of 2 degrees and of half a millimetre on the published
-grid, alike at the far cells."""
+"""Approximate number of poses: steps of 2 degrees and half a millimetre on the published grid,
+which have the same effect at the far cells."""
 _APART_DEG, _APART_MM = 3.0, 0.7
 _TINY = 1e-6
-_LEAST = 0.02  # of a cell's light, spread over all cells: templates below it show nothing
+_LEAST = 0.02  # root mean square share of light below which a template is left out
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,22 +26,22 @@ class Bank:
     shares: NDArray[np.float32]
     """Of the light that each pose takes, shape `(n, cells)`."""
     templates: NDArray[np.float32]
-    """The same without their mean and of unit length."""
+    """The shares without their mean, normalised to unit length."""
     apart: Floats
     """Inverse of the distance at which two poses count as different, of each entry."""
     opaque: bool
     """Whether the object takes all of the light."""
     signed: bool
-    """Whether the negative of a template is the same line with the other side covered."""
+    """Whether a negative template means the same line with the other side covered."""
 
     @classmethod
     def of(cls, shape: Shape, poses: Floats, weights: Floats) -> "Bank":
         """The bank of a shape at poses.
 
         Args:
-            shape: what takes the light.
+            shape: the object.
             poses: shape `(n, entries)`.
-            weights: of each cell, 0 for cells that do not count, shape `(cells,)`.
+            weights: of each cell, 0 for cells to ignore, shape `(cells,)`.
         """
         shares = shape.shares(poses)
         centred = shares - (shares @ weights)[:, None] / weights.sum()
@@ -57,8 +57,8 @@ class Bank:
         return cls(poses[shown], shares, templates, apart, opaque, signed)
 
     def best(self, light: Floats, weights: Floats) -> tuple[Floats, float]:
-        """The pose whose template is most like a frame, shape `(entries,)`, and the share of the
-        frame's variance that it leaves.
+        """The pose whose template is most similar to a frame, shape `(entries,)`, and the share of
+        the frame's variance that it leaves.
 
         Args:
             light: shares of the empty grasp, shape `(cells,)`.
@@ -72,15 +72,15 @@ class Bank:
         return self._pose(at, likeness[at] > 0.0), 1.0 - float(score[at]) ** 2 / size
 
     def closest(self, light: Floats, scale: Floats, starts: int) -> Floats:
-        """The poses that leave least of a frame, the best first and no two of them neighbours,
-        shape `(starts, entries)`.
+        """The poses of least residual, the best first, without neighbours, shape
+        `(starts, entries)`.
 
-        Unlike `best` it weighs each cell by how well it is known: three products instead of one.
+        Unlike `best` it weights each cell by its deviation: three products instead of one.
 
         Args:
             light: shares of the empty grasp, shape `(cells,)`.
             scale: one over the standard deviation of each, shape `(cells,)`.
-            starts: how many poses.
+            starts: number of poses.
         """
         weights = scale**2
         whole, mean = float(weights.sum()), float(weights @ light)
@@ -92,7 +92,7 @@ class Bank:
                 (self._squares, weights),
             )
         )
-        if self.opaque:  # light beside the object alone is free
+        if self.opaque:  # only the light beside the object is free
             turned = np.zeros(taken.size, bool)
             score = (mean - both) ** 2 / np.maximum(whole - 2.0 * taken + squares, _TINY * whole)
         else:

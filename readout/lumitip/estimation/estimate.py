@@ -1,18 +1,26 @@
-"""`Estimate`: the pose of the object between the fingers, with how sure it is.
+"""`Estimate`: the pose of the object between the fingers, with its uncertainty.
 
 Sensor frame of the receiver: millimetres, x to the right, y towards the tip; angles in degrees,
-counter-clockwise from +x. A line has a direction `angle_deg` and its signed distance
+counter-clockwise from +x. A line has the direction `angle_deg` and the signed distance
 `offset_mm` from the origin along its left normal (−sin, cos).
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
+from lumitip.estimation.fit import Fit
+from lumitip.estimation.shapes import Shape
 from lumitip.grid import Floats
+from lumitip.processing.contact import Point
 
 KINDS = ("edge", "cable", "corner")
-Point = tuple[float, float]
+MISFIT_COUNTS = 16.0
+"""Root mean square misfit above which the shape does not explain the frame. Real frames have 10 to
+16 counts of structure that the optical model lacks."""
+BEND = "curvature_per_mm"
+_WEAK_MM, _WEAK_DEG = 1.0, 6.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -22,8 +30,9 @@ class Estimate:
     kind: str
     """`"edge"`, `"cable"`, `"corner"`; without contrast `"none"` or `"covered"`."""
     offset_mm: float
-    """Signed distance of the line from the origin along its left normal (mm): the border of an
-    edge, the axis of a cable, of a corner the border whose direction is closer to the x axis."""
+    """Signed distance of the line from the origin along its left normal (mm). The line is the
+    border of an edge, the axis of a cable, or the border of a corner that is closer to the x axis
+    in direction."""
     angle_deg: float
     """Direction of that line, in (−90, 90]."""
     width_mm: float
@@ -33,22 +42,20 @@ class Estimate:
     gain: float
     """Light beside the object as a share of the empty grasp."""
     covariance: Floats
-    """Of `parameters`, shape `(p, p)`: what the misfit of the frame leaves uncertain."""
+    """Covariance of `parameters` from the misfit of the frame, shape `(p, p)`."""
     quality: float
     """Share of the variance of the frame that the fit explains, at most 1."""
     curvature_per_mm: float = 0.0
-    """One over the radius of a cable that a tracker found to bend, positive to the left of
-    `angle_deg` (1/mm). It is sought with `kind="cable"`, where a straight one was followed before;
-    else, and where a straight line explains the frame, 0."""
+    """One over the radius of a bent cable, positive to the left of `angle_deg` (1/mm). Only a
+    tracker with `kind="cable"` fits it, after a straight cable; 0 if a straight line fits."""
     rms_counts: float = np.nan
     """Root mean square misfit (counts of 255)."""
     flags: tuple[str, ...] = ()
-    """Faults of the fit, empty if there are none: `"misfit"` if the shape does not explain
-    the frame, `"weak"` if the frame hardly shows the line, `"astray"` if the fit left the
-    fingertip, `"unfinished"` if it did not settle, `"ambiguous"` if another line explains the frame
-    nearly as well."""
+    """Faults of the fit: `"misfit"` if the shape does not explain the frame, `"weak"` if the frame
+    hardly shows the line, `"astray"` if the fit left the fingertip, `"unfinished"` if it did not
+    converge, `"ambiguous"` if another line explains the frame nearly as well."""
     dark_side: str = ""
-    """Side of the line that an edge's or corner's sheet lies on, `"left"` or `"right"`."""
+    """Side of the line on which the sheet of an edge or corner is, `"left"` or `"right"`."""
     vertex_mm: Point | None = None
     """Vertex of a corner (mm)."""
     opening_deg: float = np.nan
@@ -56,11 +63,11 @@ class Estimate:
     direction_deg: float = np.nan
     """Direction from a corner's vertex into the sheet, in [−180, 180]."""
     parameters: tuple[str, ...] = ()
-    """Names of what `covariance` is of."""
+    """Names of the rows of `covariance`."""
 
     @property
     def trusted(self) -> bool:
-        """Whether there is a line and nothing is wrong with it."""
+        """Whether there is a line without flags."""
         return self.kind in KINDS and not self.flags
 
     @property
@@ -87,8 +94,112 @@ def without_contact(kind: str) -> Estimate:
 
 
 def half_turn(offset_mm: float, angle_deg: float) -> tuple[float, float, bool]:
-    """The same line with its direction in (−90, 90], and whether it was turned round."""
+    """The same line with its direction in (−90, 90], and whether it was reversed."""
     angle = (angle_deg + 180.0) % 360.0 - 180.0
     if -90.0 < angle <= 90.0:
         return offset_mm, angle, False
     return -offset_mm, angle - 180.0 if angle > 0.0 else angle + 180.0, True
+
+
+def report(
+    shape: Shape, found: Fit, uncertain: Floats, reach_mm: float, mirrored: bool = False
+) -> Estimate:
+    """The estimate from a fit.
+
+    Args:
+        shape: the fitted object.
+        found: the fit.
+        uncertain: its `covariance`.
+        reach_mm: distance from the origin beyond which no cell sees a line (mm).
+        mirrored: whether all cells lie on one line, so that a pose and its mirror image look alike.
+    """
+    pose, corner = found.pose, shape.kind == "corner"
+    (angle, offset_mm), by_pose, names = _line(pose, shape.names)
+    offset_mm, angle_deg, turned = half_turn(offset_mm, math.degrees(angle))
+    spread = by_pose @ uncertain @ by_pose.T
+    seen = dict(zip(names, np.sqrt(np.abs(np.diag(spread))), strict=True))
+    weak = not (seen["offset_mm"] < _WEAK_MM and seen["angle_deg"] < _WEAK_DEG)
+    if turned:
+        # A reversed line has its left and right exchanged.
+        at = [names.index(name) for name in ("offset_mm", BEND) if name in names]
+        spread[at] *= -1.0
+        spread[:, at] *= -1.0
+    bend = float(pose[names.index(BEND)]) if BEND in names else 0.0
+    light, taken = float(pose[-2]), float(pose[-1])
+    misfit = rms_counts(found)
+    estimate = Estimate(
+        kind=shape.kind,
+        offset_mm=offset_mm,
+        angle_deg=angle_deg,
+        width_mm=float(pose[2]) if shape.kind == "cable" else math.nan,
+        transmittance=min(max(1.0 - taken / light, 0.0), 1.0) if light > 0.0 else math.nan,
+        gain=light,
+        covariance=spread,
+        quality=_quality(found),
+        curvature_per_mm=-bend if turned else bend,
+        rms_counts=misfit,
+        dark_side="" if shape.kind == "cable" else "left" if turned else "right",
+        vertex_mm=(float(pose[1]), float(pose[2])) if corner else None,
+        opening_deg=math.degrees(float(pose[3])) if corner else math.nan,
+        direction_deg=math.degrees(math.remainder(float(pose[0]), math.tau))
+        if corner
+        else math.nan,
+        parameters=names,
+    )
+    astray = max(map(abs, pose[1:3] if corner else pose[1:2])) > reach_mm
+    wrong = {
+        "misfit": misfit > MISFIT_COUNTS,
+        "weak": weak,
+        "astray": astray,
+        "unfinished": not found.converged,
+        "ambiguous": found.ambiguous or mirrored,
+    }
+    object.__setattr__(estimate, "flags", tuple(name for name, is_so in wrong.items() if is_so))
+    return estimate
+
+
+def rms_counts(found: Fit) -> float:
+    """Root mean square misfit of the cells that count (counts of 255)."""
+    frame = found.frame
+    miss = (frame.light - found.model) * frame.counts
+    miss[frame.full & (miss < 0.0)] = 0.0
+    usable = frame.scale > 0.0
+    return math.sqrt(float(miss[usable] @ miss[usable]) / np.count_nonzero(usable))
+
+
+def _quality(found: Fit) -> float:
+    frame = found.frame
+    usable = frame.scale > 0.0
+    seen = frame.light[usable]
+    model = np.where(frame.full, np.minimum(found.model, frame.light), found.model)[usable]
+    spread = float(np.sum((seen - seen.mean()) ** 2))
+    return 1.0 - float(np.sum((seen - model) ** 2)) / spread if spread else 0.0
+
+
+def covariance(found: Fit) -> Floats:
+    """Covariance of a pose: the inverse normal matrix, scaled up if the misfit is too large."""
+    spare = max(int(np.count_nonzero(found.frame.scale)) - found.pose.size, 1)
+    # Without this an entry that no cell sees would have an infinite deviation.
+    regular = found.normal + 1e-6 * np.eye(found.pose.size)
+    return np.asarray(np.linalg.inv(regular), dtype=np.float64) * max(found.cost / spare, 1.0)
+
+
+def _line(
+    pose: Floats, names: tuple[str, ...]
+) -> tuple[tuple[float, float], Floats, tuple[str, ...]]:
+    """Angle (rad) and offset (mm) of the reported line, its derivatives by
+    the pose, and their names."""
+    size = pose.size
+    if "opening_deg" not in names:
+        by_pose = np.eye(size)[[*range(len(names)), -2, -1]]
+        by_pose[0, 0] = math.degrees(1.0)
+        return (float(pose[0]), float(pose[1])), by_pose, (*names, "light", "taken")
+    angle, x_mm, y_mm, opening = (float(v) for v in pose[:4])
+    borders = ((angle + opening / 2.0, 0.5), (angle - opening / 2.0 + math.pi, -0.5))
+    border, half = min(borders, key=lambda b: abs(math.sin(b[0])))
+    cos, sin = math.cos(border), math.sin(border)
+    ahead_mm = -y_mm * sin - x_mm * cos
+    by_pose = np.zeros((2, size))
+    by_pose[0, [0, 3]] = math.degrees(1.0), math.degrees(half)
+    by_pose[1, :4] = ahead_mm, -sin, cos, half * ahead_mm
+    return (border, y_mm * cos - x_mm * sin), by_pose, ("angle_deg", "offset_mm")

@@ -1,4 +1,4 @@
-"""`PoseEstimator`: the pose of what is between the fingers, from the values of a frame."""
+"""`PoseEstimator`: the pose of the object between the fingers, from the values of a frame."""
 
 import math
 from copy import copy
@@ -9,9 +9,16 @@ from numpy.typing import ArrayLike
 
 from lumitip import arguments
 from lumitip.errors import LumitipError
-from lumitip.estimation.estimate import KINDS, Estimate, without_contact
+from lumitip.estimation.estimate import (
+    KINDS,
+    MISFIT_COUNTS,
+    Estimate,
+    covariance,
+    report,
+    rms_counts,
+    without_contact,
+)
 from lumitip.estimation.fit import ANGLE_SD_DEG, OFFSET_SD_MM, Fit, Frame, drifting, likely
-from lumitip.estimation.report import MISFIT_COUNTS, covariance, report, rms_counts
 from lumitip.estimation.search import ALPHA_SD, BENT, GAP_SD_MM, Search, doubtful
 from lumitip.grid import Floats, collinear
 from lumitip.layout import Layout, Optics
@@ -24,19 +31,19 @@ from lumitip.twin.scene import MOST_DIAMETER_MM
 DIAMETER_MM = 3.0
 """Default diameter of a cable (mm)."""
 LEAST_DIAMETER_MM = 0.3
-"""Thinner cables take too little light from any cell to be found (mm)."""
+"""Thinner cables take too little light to be found (mm)."""
 NOISE = 1.5
-"""Standard deviation of a value that is expected (counts of 255)."""
+"""Expected standard deviation of a value (counts of 255)."""
 GAIN_ERROR = 0.01
-"""Share by which a cell's light is expected to differ from its empty grasp."""
+"""Expected deviation of a cell's light from its empty grasp, as a share."""
 HUBER = 3.0
 """Standard deviations beyond which the loss grows linearly."""
-_LEAST_CELLS = 4  # fewer say nothing of a line
-_HOPELESS = 2.5  # times what the best bank leaves of a frame: no fit makes up for more
+_LEAST_CELLS = 4  # fewer do not show a line
+_HOPELESS = 2.5  # times the residual of the best bank, beyond which a kind is not fitted
 _BLURRED = np.array([np.radians(ANGLE_SD_DEG), OFFSET_SD_MM])
 _BEARABLE_COUNTS = dict.fromkeys(KINDS, 0.5 * MISFIT_COUNTS) | {BENT: 0.25 * MISFIT_COUNTS}
-_WORSE = 1.3  # times the least misfit since the last search: then a tracker searches anew
-_SIMPLER = {"edge": 1.0, "cable": 1.1, "corner": 2.0}  # a corner fits an edge's frame as well
+_WORSE = 1.3  # times the least misfit since the last search, beyond which a tracker searches again
+_SIMPLER = {"edge": 1.0, "cable": 1.1, "corner": 2.0}  # a corner also fits the frame of an edge
 
 
 class EstimationError(LumitipError, ValueError):
@@ -46,7 +53,7 @@ class EstimationError(LumitipError, ValueError):
 class PoseEstimator:
     """`estimate = PoseEstimator(layout)(values)`: template bank, then least squares.
 
-    Follows one fingertip from one thread when `tracking`; else it holds constants alone.
+    With `tracking` it follows one fingertip, from one thread.
     """
 
     def __init__(
@@ -66,24 +73,23 @@ class PoseEstimator:
         """Prepare tables for the optics of a design.
 
         Args:
-            layout: where the cells are.
-            optics: those of the layout by default; or a whole model, which has its own gap.
+            layout: the cells.
+            optics: by default those of the layout; or a whole model, which has its own gap.
             gap_mm: from skin to skin (mm).
             diameter_mm: of a cable; its width is found within about a third of it (mm).
-            gains: light of each cell relative to its empty grasp, as `learn` finds it, shape
-                `(cells,)`.
-            tracking: begin where the frame before ended, and search anew when that fits badly.
+            gains: light of each cell relative to its empty grasp, see `learn`, shape `(cells,)`.
+            tracking: start from the frame before, and search again if that fits badly.
             noise: standard deviation of a value (counts of 255).
-            gain_error: share by which the light of a cell may differ from its empty grasp.
+            gain_error: deviation of a cell's light from its empty grasp, as a share.
             huber: standard deviations beyond which the loss grows linearly.
             gap_sd_mm: standard deviation of the gap, 0 if it is known (mm).
             alpha_sd: standard deviation of the scattered share, 0 if it is known.
 
         Raises:
-            LayoutError: if it is no layout.
-            EstimationError: if the layout has fewer than four cells, gains are not those of this
-                layout, or another argument is no number in its range.
-            TwinError: if the optics cannot be so.
+            LayoutError: if `layout` is no layout.
+            EstimationError: if the layout has fewer than four cells, or another argument is
+                invalid.
+            TwinError: if the optics are invalid.
         """
         self.layout = arguments.layout(layout)
         if len(layout) < _LEAST_CELLS:
@@ -96,14 +102,14 @@ class PoseEstimator:
         self._noise = _number(noise, "noise", above=0.0)
         self._gain_error = _number(gain_error, "gain_error")
         self._huber = _number(huber, "huber", above=0.0)
-        search_for = (
+        search_settings = (
             _number(diameter_mm, "diameter_mm", LEAST_DIAMETER_MM, MOST_DIAMETER_MM),
             _number(gap_sd_mm, "gap_sd_mm"),
             _number(alpha_sd, "alpha_sd", most=1.0),
         )
         self._gains = np.ones(len(layout)) if gains is None else _gains(layout, gains)
         twin = Twin(layout, self.model)
-        self._search = Search(twin, *search_for)
+        self._search = Search(twin, *search_settings)
         self._tracking = tracking
         self._last: tuple[str, Floats, float] | None = None
         steps = np.arange(0.0, FULL + 1.0)[:, None] * (twin.empty / FULL)
@@ -115,12 +121,12 @@ class PoseEstimator:
 
         Args:
             values: calibrated values, 255 is full light, shape `(cells,)`; cells whose value is
-                not finite, or beyond a billion, are left out.
+                not finite, or beyond a billion, are ignored.
             kind: `"edge"`, `"cable"` or `"corner"`; `None` decides.
 
         Raises:
-            ValuesError: if the shape is another, or they are no numbers.
-            EstimationError: if there is no such kind.
+            ValuesError: if there is another number of values, or they are no numbers.
+            EstimationError: if the kind is unknown.
         """
         if kind is not None:
             _known(kind)
@@ -144,43 +150,44 @@ class PoseEstimator:
         return estimate
 
     def prepare(self, *kinds: str) -> "PoseEstimator":
-        """Make the tables of kinds now, else the first frame that needs them waits: of a cable for
-        about a second, and `None` may need them all. Returns the estimator.
+        """Build the tables now and not with the first frame; of a cable this takes about a second.
 
         Args:
-            kinds: `"edge"`, `"cable"`, `"corner"`; all of them if none is named.
+            kinds: `"edge"`, `"cable"`, `"corner"`; by default all, which `kind=None` may need.
+
+        Returns:
+            The estimator.
 
         Raises:
-            EstimationError: if there is no such kind.
+            EstimationError: if a kind is unknown.
         """
         for kind in kinds:
             _known(kind)
         for kind in kinds or KINDS:
-            self._search.prepare(kind)
+            self._search.bank(kind)
         return self
 
     def _remember(self, name: str, found: Fit, estimate: Estimate) -> None:
-        """Begin the next frame here, unless this one went wrong."""
-        # A bend settles over some frames; a straight line that does not settle is none.
+        """Start the next frame from this fit, unless the fit failed."""
+        # The fit of a bend converges over some frames, that of a straight line at once.
         bearable = {"misfit", "ambiguous", *(["unfinished"] if name == BENT else [])}
         fine = self._tracking and bearable.issuperset(estimate.flags)
-        # Later frames are held against the least misfit since the last search: a line that is
-        # straight again must not let the next one off for having been bent.
+        # Later frames are compared with the least misfit since the last search, so that a bend does
+        # not raise the limit for a line that is straight again.
         misfit = min(self._last[2] if self._last else math.inf, estimate.rms_counts)
         self._last = (name, found.pose, misfit) if fine else None
 
     def fitted(self, values: ArrayLike, kind: str, free: bool = False) -> Fit:
-        """Where the fit of a kind ended with the expected optics, whatever the frame says of them.
+        """The fit of a kind with the expected optics.
 
         Args:
-            values: of one frame, shape `(cells,)`; cells whose value is not finite, or beyond a
-                billion, are left out.
+            values: of one frame, as for a call.
             kind: `"edge"`, `"cable"` or `"corner"`.
-            free: whether gap and scattered share are fitted with the pose nevertheless.
+            free: fit gap and scattered share as well.
 
         Raises:
-            ValuesError: if the shape is another, they are no numbers, or fewer than four are left.
-            EstimationError: if there is no such kind.
+            ValuesError: as for a call, or if fewer than four cells remain.
+            EstimationError: if the kind is unknown.
         """
         _known(kind)
         read = frame_values(values, self.layout)
@@ -195,11 +202,11 @@ class PoseEstimator:
         return (self._search.free if free else self._search.expected)(kind, found, frame)
 
     def optics_at(self, drift: Floats) -> Model:
-        """The optics that a drift of a free fit stands for, shape `(drifts,)`."""
+        """Optics of a drift of a free fit, shape `(drifts,)`."""
         return self._search.optics_at(drift)
 
     def with_gains(self, gains: ArrayLike) -> "PoseEstimator":
-        """The same estimator with other gains of the cells; tables are shared."""
+        """An estimator with other gains of the cells, which shares the tables."""
         other = copy(self)
         other._gains = _gains(self.layout, gains)
         other._last = None
@@ -235,14 +242,14 @@ class PoseEstimator:
         return (kind, self._search.best(kind, frame)) if kind else self._decided(frame)
 
     def _decided(self, frame: Frame) -> tuple[str, Fit]:
-        """The kind that explains a frame, an edge if it does, and its fit."""
+        """The kind that explains a frame best, and its fit; an edge is preferred."""
         search = self._search
         starts = {"edge": search.start("edge", frame)}
         plain = search.plain("edge", starts["edge"][0], frame)
         if not doubtful(plain):
             return "edge", plain
         starts |= {name: search.start(name, frame) for name in KINDS[1:]}
-        # A template that is the frame itself leaves nothing, or by rounding less.
+        # If a template is equal to the frame, the residual is 0, or below it by rounding.
         most = _HOPELESS * max(min(left for _, left in starts.values()), 0.0)
         fits = {}
         for name, (pose, left) in sorted(starts.items(), key=lambda item: item[1][1]):

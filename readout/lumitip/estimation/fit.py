@@ -1,4 +1,4 @@
-"""Fit of a shape's pose to a frame, also where the shape moved while it was read."""
+"""Fit of a shape's pose to a frame, by robust least squares."""
 
 from dataclasses import dataclass, replace
 
@@ -11,50 +11,48 @@ from lumitip.grid import Floats
 ROUNDS = 12
 _FLOOR = 1e-6
 _WILD = 36.0  # loss of one cell
-_SETTLED = 1e-3  # loss that a last step may still promise
+_SETTLED = 1e-3  # expected gain of loss below which the fit has converged
 
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """One frame as the fit sees it; arrays of shape `(cells,)`."""
+    """One frame for the fit; arrays of shape `(cells,)`."""
 
     light: Floats
     """Shares of the empty grasp's light."""
     scale: Floats
     """One over the standard deviation of each share."""
     counts: Floats
-    """Counts of 255 that a share of one is worth there."""
+    """Counts of 255 for a share of one."""
     full: NDArray[np.bool_]
-    """Cells that read full light: more of it would read the same."""
+    """Saturated cells: more light would read the same."""
     huber: float
     """Standard deviations beyond which the loss grows linearly."""
 
     def looser(self, share: float) -> "Frame":
-        """The same frame, if this share of each cell's light were uncertain as well."""
+        """The frame with this share of each cell's light uncertain as well."""
         more = share * self.light * self.scale
         return replace(self, scale=self.scale / np.sqrt(1.0 + more * more))
 
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """Where the fit ended."""
+    """Result of a fit."""
 
     frame: Frame
-    """Result of a fit."""
     pose: Floats
-    """With `light` and `taken` at its end, and drifts of the optics before them if these were
-    free."""
+    """Its last entries are `light` and `taken`; before them are drifts of free optics."""
     cost: float
     """Sum of Huber losses, in standard deviations squared."""
     normal: Floats
     """Matrix of the normal equations, shape `(p, p)`."""
     model: Floats
-    """Shares that the pose gives, shape `(cells,)`."""
-    settled: bool
+    """Shares of light at the pose, shape `(cells,)`."""
+    converged: bool
     drifts: int = 0
-    """How many drifts of the optics the pose has."""
+    """Number of drifts of the optics in the pose."""
     ambiguous: bool = False
-    """Whether another line, elsewhere, explains the frame nearly as well."""
+    """Whether another line explains the frame nearly as well."""
 
 
 def fit(shape: Shape, start: Floats, frame: Frame, rounds: int = ROUNDS) -> Fit:
@@ -62,17 +60,17 @@ def fit(shape: Shape, start: Floats, frame: Frame, rounds: int = ROUNDS) -> Fit:
 
     Args:
         shape: the object.
-        start: pose with `light` and `taken` at its end; the optics are free if it has drifts.
-        frame: what was read.
-        rounds: most steps.
+        start: initial pose; with drifts the optics are free.
+        frame: the values.
+        rounds: largest number of steps.
     """
     prior = _Prior.of(shape, len(start))
     pose = np.array(start, dtype=np.float64)
-    damping, settled = 1e-3, False
+    damping, converged = 1e-3, False
     now = _Point(shape, pose, frame, prior)
     for _ in range(rounds):
         matrix = now.normal.copy()
-        # The floor keeps the matrix regular where a line has left every cell's sight.
+        # The floor keeps the matrix regular if no cell sees the line.
         matrix.flat[:: pose.size + 1] += damping * now.normal.diagonal() + _FLOOR
         step = np.linalg.solve(matrix, now.slope)
         expected = float(step @ now.slope)
@@ -81,20 +79,20 @@ def fit(shape: Shape, start: Floats, frame: Frame, rounds: int = ROUNDS) -> Fit:
             gained = now.cost - then.cost
             pose, now, damping = pose + step, then, damping * 0.1
             if expected < _SETTLED or gained < 5e-3 * now.cost:
-                settled = True
+                converged = True
                 break
         else:
             if expected < _SETTLED:
-                settled = True
+                converged = True
                 break
             damping = max(damping, 1e-4) * 20.0
     drifts = pose.size - len(shape.names) - 2
-    return Fit(frame, pose, now.cost, now.normal, now.model, settled, drifts)
+    return Fit(frame, pose, now.cost, now.normal, now.model, converged, drifts)
 
 
 def bounded(found: Fit) -> float:
-    """The loss of a fit with no cell counted for more than `_WILD`, by which fits compare: one
-    wild cell must not decide between poses."""
+    """Loss of a fit with at most `_WILD` for each cell, so that no single cell decides between
+    fits."""
     frame = found.frame
     miss = (frame.light - found.model) * frame.scale
     size = np.where(frame.full, np.maximum(miss, 0.0), np.abs(miss))
@@ -103,7 +101,7 @@ def bounded(found: Fit) -> float:
 
 
 def drifting(shape: Shape, found: Fit, drifts: int) -> Fit:
-    """The same fit with optics that could be off: its matrix has them, nothing has moved."""
+    """The same fit with drifts of the optics in its pose, at 0, and in its matrix."""
     names = len(shape.names)
     if found.pose.size > names + 2 or not drifts:
         return found
@@ -135,8 +133,8 @@ class _Prior:
 
 
 _LIGHT_SD = 0.1
-_TIE = np.array([[1.0, -1.0], [-1.0, 1.0]])  # of what is taken to the light beside it
-_TIED = _TIE, 400.0 * _TIE  # cables are opaque; sheets take what they will
+_TIE = np.array([[1.0, -1.0], [-1.0, 1.0]])  # ties `taken` to `light`
+_TIED = _TIE, 400.0 * _TIE  # of sheets, and of cables, which are opaque
 
 
 class _Point:
@@ -148,7 +146,7 @@ class _Point:
         share, slopes = shape.slopes(pose)
         size = pose.size
         self.model = pose[-2] - pose[-1] * share
-        rows = np.empty((size + 1, share.size))  # by each entry of the pose, and the misses
+        rows = np.empty((size + 1, share.size))  # slopes by each entry of the pose, and the misfit
         np.multiply(slopes, -pose[-1], out=rows[: size - 2])
         rows[size - 2] = 1.0
         np.negative(share, out=rows[size - 1])
@@ -156,7 +154,7 @@ class _Point:
         rows *= frame.scale
         miss = rows[size]
         weight = frame.huber / np.maximum(np.abs(miss), frame.huber)
-        weight[frame.full & (miss <= 0.0)] = 0.0  # would read the same a little off
+        weight[frame.full & (miss <= 0.0)] = 0.0  # a saturated cell would read the same
         weighted = rows * weight
         products = weighted[:size] @ rows.T
         away = prior.known - pose
@@ -167,13 +165,13 @@ class _Point:
 
 
 OFFSET_SD_MM, ANGLE_SD_DEG = 0.1, 0.4
-"""Standard deviations from which on the mean is taken."""
+"""Standard deviations from which the mean of the likelihood is used."""
 _POINTS = 13
 _MOST = np.array([np.radians(5.0), 1.2])  # rad, mm
 
 
 def likely(shape: Shape, found: Fit, deviations: Floats) -> Floats:
-    """The pose with angle and offset of the likelihood's mean; all else stays.
+    """The pose with angle and offset at the mean of the likelihood.
 
     Args:
         shape: an edge.
@@ -189,7 +187,7 @@ def likely(shape: Shape, found: Fit, deviations: Floats) -> Floats:
     miss[frame.full & (miss < 0.0)] = 0.0
     size = np.minimum(np.abs(miss), frame.huber)
     losses = (size * (2.0 * np.abs(miss) - size)).sum(axis=1)
-    # A misfit that no pose explains must not make one of them look certain.
+    # A misfit that no pose explains must not make one pose look certain.
     spare = max(float(losses.min()) / frame.light.size, 1.0)
     weights = np.exp(-0.5 * (losses - losses.min()) / spare)
     moved = pose.copy()

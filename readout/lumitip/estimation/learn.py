@@ -13,19 +13,19 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lumitip import arguments
+from lumitip.estimation.estimate import rms_counts
 from lumitip.estimation.estimator import EstimationError, PoseEstimator
 from lumitip.estimation.fit import Fit
-from lumitip.estimation.report import rms_counts
 from lumitip.grid import Floats
 from lumitip.layout import Layout
 from lumitip.processing.processor import frames_values
 from lumitip.twin import Model
 
 _ROUNDS = 4
-_LEAST_LIGHT = 0.15  # of the empty grasp: a darker cell tells little of its gain
+_LEAST_LIGHT = 0.15  # of the empty grasp; darker cells show little of their gain
 _LEAST_FRAMES = 20
-_DOUBT = 1.0  # frames in full light that a gain of one, the expected one, counts for
-_SPREAD = 0.25  # gains beyond it are a broken cell or a bad fit
+_DOUBT = 1.0  # weight of the expected gain of one, in frames of full light
+_SPREAD = 0.25  # larger deviations are a broken cell or a bad fit
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,13 +35,13 @@ class Learned:
     gains: Floats
     """Light of each cell relative to its empty grasp, their mean is 1, shape `(cells,)`."""
     model: Model
-    """The optics, with the gap and the scattered share that were learned."""
+    """The optics with the learned gap and scattered share."""
     rms_counts: float
-    """Misfit that is left, the median frame's (counts of 255)."""
+    """Misfit of the median frame (counts of 255)."""
     rms_before_counts: float
-    """The same before, with the optics that were expected and gains of one."""
+    """The same with the expected optics and gains of one."""
     frames: int
-    """Frames that it was learned from."""
+    """Number of frames used."""
 
 
 def learn(
@@ -54,17 +54,17 @@ def learn(
     """Learn gains, gap and scattered share from frames.
 
     Args:
-        layout: where the cells are.
+        layout: the cells.
         values: calibrated values of many frames, shape `(n, cells)`, in any order.
-        kind: what was between the fingers, as for `PoseEstimator`.
-        model: optics that are expected; those of the layout by default.
-        most_frames: so many frames are used, evenly spread.
+        kind: of the object, as for `PoseEstimator`.
+        model: the expected optics; by default those of the layout.
+        most_frames: number of frames to use, evenly spread.
 
     Raises:
-        LayoutError: if it is no layout.
-        ValuesError: if the shape is another, or they are no numbers.
-        EstimationError: if fewer than twenty frames show an edge, cable or corner, or there is no
-            such kind.
+        LayoutError: if `layout` is no layout.
+        ValuesError: if there is another number of values, or they are no numbers.
+        EstimationError: if fewer than twenty frames show an edge, cable or corner, or the kind is
+            unknown.
     """
     estimator = PoseEstimator(layout, model)
     most = arguments.count(most_frames, "most_frames", _LEAST_FRAMES)
@@ -100,11 +100,11 @@ def _misfit(fits: Sequence[Fit]) -> float:
 
 
 def _gains(fits: Sequence[Fit], before: Floats) -> Floats:
-    """Gains that the fits leave, which were made with the gains before."""
+    """Gains from fits that used the gains before."""
     light = np.stack([found.frame.light for found in fits]) * before
     shares = np.stack([found.model for found in fits])
     full = np.stack([found.frame.full for found in fits])
-    # A full cell tells nothing: it reads the same however bright it is.
+    # A saturated cell reads the same however bright it is.
     weights = ((shares > _LEAST_LIGHT) & ~full) * np.minimum(shares, 1.0) ** 2
     ratio = light / np.maximum(shares, _LEAST_LIGHT)
     gains = (weights * ratio).sum(axis=0) + _DOUBT
@@ -113,8 +113,10 @@ def _gains(fits: Sequence[Fit], before: Floats) -> Floats:
 
 
 def _drift(fits: Sequence[Fit]) -> Floats:
-    """How far the optics are off by all fits together, in standard deviations of each thing that
-    may be; what is known of them beforehand, which each fit has, counts once."""
+    """Drift of the optics from all fits, in standard deviations of each parameter.
+
+    The prior, which every fit has, counts once.
+    """
     size = fits[0].drifts
     known, sums = np.eye(size), np.zeros(size)
     for found in fits:

@@ -16,12 +16,12 @@ class Lookup:
     """Shares of light and their derivatives, linear between the entries of a `LineTable`."""
 
     def __init__(self, table: LineTable, drifted: Sequence[LineTable] = ()) -> None:
-        """Lay out tables so that four neighbouring entries are one gather.
+        """Arrange the tables so that one gather reads four neighbouring entries.
 
         Args:
-            table: of the optics that are expected.
-            drifted: of the same cells, each with one thing about the optics a standard deviation
-                off.
+            table: of the expected optics.
+            drifted: of the same cells, each with one parameter of the optics changed by a standard
+                deviation.
         """
         shares = table.shares
         cells, self._angles, self._distances = shares.shape
@@ -45,8 +45,8 @@ class Lookup:
             angle: direction of each line, shape `(..., 1)`, or beside each cell, `(..., cells)`
                 (rad).
             left_mm: distance of each cell, left of it, shape `(..., cells)` (mm).
-            drift: how far the optics are off, in standard deviations of each thing that may be,
-                shape `(drifts,)`; empty for the optics that are expected, without slopes by them.
+            drift: of the optics, in standard deviations of each parameter, shape `(drifts,)`; empty
+                for the expected optics, without slopes by drift.
         """
         turn = np.asarray(angle) * (180.0 / np.pi / STEP_DEG) % self._angles
         first = turn.astype(np.int64)
@@ -74,12 +74,12 @@ class Lookup:
 
 
 def _flat(shares: Singles) -> Singles:
-    # The first direction once more at the end, so that no index needs to be wrapped.
+    # With the first direction repeated at the end, no index needs to be wrapped.
     return np.concatenate([shares, shares[:, :1]], axis=1).ravel()
 
 
 def _as_wide(shares: Singles, distances: int) -> Singles:
-    """The shares over as many distances: beyond its ends a table does not change any more."""
+    """The shares over more or fewer distances; beyond its ends a table is constant."""
     spare = (distances - shares.shape[2]) // 2
     if spare >= 0:
         return np.pad(shares, ((0, 0), (0, 0), (spare, spare)), mode="edge")

@@ -1,8 +1,8 @@
-"""`Search`: from a frame to the best fit of a kind, over the whole fingertip or near a pose.
+"""`Search`: the best fit of a kind to a frame, over the whole fingertip or near a pose.
 
-A frame that the expected optics explain is fitted with them. Where they do not, the fingertip is
-another than was expected: then the optics are free within what is known of them, and some of each
-cell's light is taken to be uncertain, so that neither is mistaken for another pose.
+If the expected optics explain a frame, the fit uses them. Else the fingertip differs from the
+expected one: the optics are free within their deviations, and a share of each cell's light is
+uncertain, so that neither is mistaken for another pose.
 """
 
 from collections.abc import Callable, Sequence
@@ -11,27 +11,29 @@ from dataclasses import replace
 import numpy as np
 
 from lumitip.estimation.bank import Bank, corners, lines
+from lumitip.estimation.estimate import rms_counts
 from lumitip.estimation.fit import Fit, Frame, bounded, fit
 from lumitip.estimation.lookup import Lookup
-from lumitip.estimation.report import rms_counts
 from lumitip.estimation.shapes import Bent, Cable, Cells, Corner, Edge, Shape
 from lumitip.grid import Floats
 from lumitip.twin import LineTable, Model, Twin
 
 GAP_SD_MM, ALPHA_SD = 0.4, 0.12
-"""Standard deviations of gap (mm) and scattered share. The gap stands for the exponents and the
-hole as well, which widen shadows alike."""
+"""Standard deviations of gap (mm) and scattered share. The gap also stands for the exponents and
+the hole, which widen shadows in the same way."""
 LOOSE = 0.06
-"""Share of a cell's light that is uncertain on a fingertip that is not as expected."""
+"""Uncertain share of a cell's light on a fingertip that differs from the expected one."""
 BENT = "bent"
-"""A cable along an arc, which a tracker may find where a straight one was."""
+"""A cable along an arc, which a tracker may find after a straight one."""
 _LEAST_GAP_MM = 0.5
-_BENDS_PER_MM = (-1.0 / 60.0, 0.0, 1.0 / 60.0)  # where the fit of a bent cable begins
-_DOUBT = 1.3  # loss for each cell beyond which the fingertip is not as expected
-_STARTS = 8  # how many are then tried
-_GLANCE, _LOOK, _BEHIND = 2, 5, 20.0  # rounds of each and of the best; loss of the others
-_RIVAL, _ELSEWHERE = 6.0, 2.0  # loss by which poses are nearly alike; poses that are not
-_CLEARLY = 2.5  # times its loss that a bend must save: what no line explains looks bent a little
+_BENDS_PER_MM = (-1.0 / 60.0, 0.0, 1.0 / 60.0)  # starts of the fit of a bent cable
+_DOUBT = 1.3  # loss for each cell beyond which the fingertip differs from the expected one
+_STARTS = 8  # poses of the bank that are then tried
+_GLANCE, _LOOK = 2, 5  # rounds of all starts, and of the best of them
+_BEHIND = 20.0  # loss behind the best, beyond which a start is dropped
+_RIVAL = 6.0  # loss behind the best, within which another pose makes a fit ambiguous
+_ELSEWHERE = 2.0  # distance from the best pose, beyond which a pose is another one
+_CLEARLY = 2.5  # times its loss that a bend must save, since any misfit looks slightly bent
 
 
 class Search:
@@ -41,15 +43,15 @@ class Search:
         """Prepare for the optics of a twin.
 
         Args:
-            twin: as the fingertip is expected to be.
+            twin: of the expected fingertip.
             diameter_mm: of cables (mm).
-            gap_sd_mm: standard deviation of its gap (mm); 0 if it is known.
-            alpha_sd: standard deviation of its scattered share; 0 if it is known.
+            gap_sd_mm: standard deviation of the gap (mm); 0 if it is known.
+            alpha_sd: standard deviation of the scattered share; 0 if it is known.
         """
         self._twin, self._diameter_mm = twin, diameter_mm
         self._drifted = [Twin(twin.layout, m) for m in _drifted(twin.model, gap_sd_mm, alpha_sd)]
         self.drifts = len(self._drifted)
-        """Things about the optics that may be off."""
+        """Number of uncertain parameters of the optics."""
         self._cells = Cells(twin.layout.x_mm, twin.layout.y_mm)
         self._lines = lines(self._cells)
         self.reach_mm = float(self._lines[:, 1].max())
@@ -58,87 +60,72 @@ class Search:
         self._shapes: dict[str, Shape] = {}
         self._banks: dict[str, Bank] = {}
 
-    def prepare(self, kind: str) -> None:
-        """Build shape and bank of a kind, which else its first frame waits for."""
-        self._bank(kind)
-
     def start(self, kind: str, frame: Frame) -> tuple[Floats, float]:
-        """The best pose of the bank of a kind, and the share of the frame that it leaves: see
-        `Bank.best`."""
-        return self._bank(kind).best(frame.light, (frame.scale > 0.0).astype(np.float64))
+        """The best pose in the bank of a kind, see `Bank.best`."""
+        return self.bank(kind).best(frame.light, (frame.scale > 0.0).astype(np.float64))
 
     def plain(self, kind: str, pose: Floats, frame: Frame) -> Fit:
         """The fit with the expected optics from a pose of the bank."""
-        return fit(self.shape(kind), self._whole(kind, pose, frame), frame)
+        return fit(self.shape(kind), self._full_pose(kind, pose, frame), frame)
 
     def best(self, kind: str, frame: Frame, pose: Floats | None = None) -> Fit:
-        """The best fit of a kind.
-
-        Args:
-            kind: what to fit.
-            frame: what was read.
-            pose: the bank's best, if it was asked already.
-        """
+        """The best fit of a kind, from the best pose of the bank, if that is known already."""
         first = self.start(kind, frame)[0] if pose is None else pose
         found = self.plain(kind, first, frame)
         return self._loose(kind, frame, found) if doubtful(found) else found
 
     def _loose(self, kind: str, frame: Frame, plain: Fit, before: Floats | None = None) -> Fit:
-        """The best fit of a kind to a fingertip that is not as expected.
+        """The best fit of a kind to a fingertip that differs from the expected one.
 
         Args:
-            kind: what to fit.
-            frame: what was read.
-            plain: from the bank's best, which a wild cell misleads less than the closest poses.
-            before: pose of the frame before, which decides between poses that are nearly alike.
+            kind: of the object.
+            frame: the values.
+            plain: the fit from the best pose of the bank; outliers mislead it less than the
+                closest poses.
+            before: pose of the frame before, which decides between similar fits.
         """
         shape, loose = self.shape(kind), frame.looser(LOOSE)
-        starts = self._bank(kind).closest(loose.light, loose.scale, _STARTS)
-        whole = [self._whole(kind, pose, frame, self.drifts) for pose in starts]
-        seen = [fit(shape, pose, loose, _GLANCE) for pose in whole]
-        seen.append(self.loosely(kind, plain, frame))
-        losses = [bounded(found) for found in seen]
-        going = [f for f, loss in zip(seen, losses, strict=True) if loss < min(losses) + _BEHIND]
-        fits = [fit(shape, found.pose, loose, _LOOK) for found in going]
+        starts = self.bank(kind).closest(loose.light, loose.scale, _STARTS)
+        poses = [self._full_pose(kind, pose, frame, self.drifts) for pose in starts]
+        tried = [fit(shape, pose, loose, _GLANCE) for pose in poses]
+        tried.append(self.loosely(kind, plain, frame))
+        losses = [bounded(found) for found in tried]
+        kept = [f for f, loss in zip(tried, losses, strict=True) if loss < min(losses) + _BEHIND]
+        fits = [fit(shape, found.pose, loose, _LOOK) for found in kept]
         losses = [bounded(found) for found in fits]
-        first, apart = fits[int(np.argmin(losses))], self._bank(kind).apart
+        first, apart = fits[int(np.argmin(losses))], self.bank(kind).apart
         rivals = [
             f
             for f, loss in zip(fits, losses, strict=True)
             if loss < min(losses) + _RIVAL
-            and _between(kind, f.pose, first.pose) @ apart > _ELSEWHERE
+            and _distance(kind, f.pose, first.pose) @ apart > _ELSEWHERE
         ]
         if before is not None:
-            first = min([first, *rivals], key=lambda f: _between(kind, f.pose, before) @ apart)
+            first = min([first, *rivals], key=lambda f: _distance(kind, f.pose, before) @ apart)
         return replace(fit(shape, first.pose, loose), ambiguous=bool(rivals))
 
     def bent(self, starts: Sequence[tuple[str, Floats]], frame: Frame) -> Fit:
-        """The best fit of a cable that may bend, near one of several poses.
-
-        Args:
-            starts: names, `"cable"` or `BENT`, and poses.
-            frame: what was read.
-        """
+        """The best fit of a bent cable near one of several poses of `"cable"` or `BENT`."""
         shape, loose, straight = self.shape(BENT), frame.looser(LOOSE), len(Cable.names)
-        seen = []
+        fits = []
         for name, pose in starts:
             end = len(self.shape(name).names)
             for bend in (*_BENDS_PER_MM, *pose[straight:end]):
                 start = np.concatenate([pose[:straight], [bend], pose[end:]])
-                seen.append(fit(shape, start, loose, _LOOK))  # which is led astray less
-        return self.near(BENT, min(seen, key=bounded).pose, frame)
+                fits.append(fit(shape, start, loose, _LOOK))  # the loose frame misleads less
+        return self.near(BENT, min(fits, key=bounded).pose, frame)
 
     def again(self, name: str, before: Floats, followed: Fit, frame: Frame) -> tuple[str, Fit]:
-        """The best fit where one that followed the line got worse, and what it is of.
+        """The best fit after the fit of a tracked line got worse: its name and itself.
 
-        If the bank knows nothing better the line is where it was followed to, and bends. Of a
-        cable the bend is found: a straight line elsewhere must explain the frame as well.
+        If the bank has no better pose, the line is where it was tracked, and bends. The bend of a
+        cable is fitted if no straight line elsewhere explains the frame equally well.
 
         Args:
-            name: what was followed: a kind, or `BENT`.
+            name: of the tracked line: a kind, or `BENT`.
             before: its pose in the frame before.
             followed: the fit from there.
-            frame: what was read.
+            frame: the values.
         """
         kind = self.shape(name).kind
         found = self.plain(kind, self.start(kind, frame)[0], frame)
@@ -157,19 +144,14 @@ class Search:
         return (BENT, bent) if stays - bends > least else other
 
     def near(self, kind: str, pose: Floats, frame: Frame) -> Fit:
-        """The fit from where another frame's fit ended, with the optics free if they were there."""
+        """The fit from the pose of another frame, with free optics if they were free there."""
         shape = self.shape(kind)
         free = pose.size > len(shape.names) + 2
         return fit(shape, pose, frame.looser(LOOSE) if free else frame)
 
     def loosely(self, kind: str, found: Fit, frame: Frame) -> Fit:
-        """The same fit with all as free as where the fingertip is not as expected, so that fits
-        of several kinds compare."""
-        if found.frame is not frame:
-            return found
-        names = len(self.shape(kind).names)
-        start = np.insert(found.pose, [names] * self.drifts, 0.0)
-        return fit(self.shape(kind), start, frame.looser(LOOSE))
+        """The same fit with free optics and uncertain light, to compare fits of several kinds."""
+        return self.free(kind, found, frame.looser(LOOSE)) if found.frame is frame else found
 
     def expected(self, kind: str, found: Fit, frame: Frame) -> Fit:
         """The same fit with the expected optics."""
@@ -179,15 +161,14 @@ class Search:
         return fit(self.shape(kind), np.append(found.pose[:names], found.pose[-2:]), frame)
 
     def free(self, kind: str, found: Fit, frame: Frame) -> Fit:
-        """The same fit with free optics, and each cell counting as much as the frame says."""
-        names = len(self.shape(kind).names)
-        pose = found.pose
+        """The same fit with free optics."""
+        names, pose = len(self.shape(kind).names), found.pose
         if pose.size == names + 2:
             pose = np.insert(pose, [names] * self.drifts, 0.0)
         return fit(self.shape(kind), pose, frame)
 
     def optics_at(self, drift: Floats) -> Model:
-        """The optics that a drift stands for, shape `(drifts,)`."""
+        """Optics of a drift, shape `(drifts,)`."""
         model = self._twin.model
         steps = [
             (other.model.gap_mm - model.gap_mm, other.model.alpha - model.alpha)
@@ -199,7 +180,7 @@ class Search:
         )
 
     def shape(self, kind: str) -> Shape:
-        """Effect of a kind of object on the cells."""
+        """The shape of a kind of object."""
         if kind not in self._shapes:
             if kind == "edge":
                 self._shapes[kind] = Edge(self._cells, self._edge_table)
@@ -207,11 +188,15 @@ class Search:
                 self._shapes[kind] = Corner(self._cells, self._edge_table)
             else:
                 table = self._lookup(lambda twin: twin.cable_table(self._diameter_mm))
-                arguments = self._cells, table, self._edge_table, self._diameter_mm
-                self._shapes |= {"cable": Cable(*arguments), BENT: Bent(*arguments)}
+                lookups = self._cells, table, self._edge_table
+                self._shapes |= {
+                    "cable": Cable(*lookups, self._diameter_mm),
+                    BENT: Bent(*lookups, self._diameter_mm),
+                }
         return self._shapes[kind]
 
-    def _bank(self, kind: str) -> Bank:
+    def bank(self, kind: str) -> Bank:
+        """The bank of a kind, built with its tables on first use."""
         if kind not in self._banks:
             poses = corners(self._cells) if kind == "corner" else self._lines
             every = np.ones(self._cells.x_mm.size)
@@ -221,8 +206,8 @@ class Search:
     def _lookup(self, table: Callable[[Twin], LineTable]) -> Lookup:
         return Lookup(table(self._twin), [table(twin) for twin in self._drifted])
 
-    def _whole(self, kind: str, pose: Floats, frame: Frame, drifts: int = 0) -> Floats:
-        """A pose of the bank with all that a fit needs."""
+    def _full_pose(self, kind: str, pose: Floats, frame: Frame, drifts: int = 0) -> Floats:
+        """A pose of the bank with all entries that a fit needs."""
         usable = frame.light[frame.scale > 0.0]
         light = taken = float(usable.max())
         if kind == "cable":
@@ -233,12 +218,12 @@ class Search:
 
 
 def doubtful(found: Fit) -> bool:
-    """Whether a fit leaves more than the expected optics would."""
+    """Whether the loss of a fit is too large for the expected optics."""
     return found.cost > _DOUBT * int(np.count_nonzero(found.frame.scale))
 
 
 def _drifted(model: Model, gap_sd_mm: float, alpha_sd: float) -> list[Model]:
-    """The model with one thing off at a time, towards where it can be."""
+    """The model with one parameter changed at a time, by its standard deviation."""
     models = []
     if gap_sd_mm:
         models.append(model.changed(gap_mm=model.gap_mm + gap_sd_mm))
@@ -248,13 +233,13 @@ def _drifted(model: Model, gap_sd_mm: float, alpha_sd: float) -> list[Model]:
     return models
 
 
-def _between(kind: str, one: Floats, two: Floats) -> Floats:
-    """How far two poses are from each other in each entry that a bank has."""
+def _distance(kind: str, one: Floats, two: Floats) -> Floats:
+    """Distance of two poses in each entry of the bank."""
     entries = 4 if kind == "corner" else 2
     away = one[:entries] - two[:entries]
-    turn = np.pi if kind == "cable" else 2.0 * np.pi  # an edge turned round covers the other side
+    turn = np.pi if kind == "cable" else 2.0 * np.pi  # a reversed edge covers the other side
     turns = np.round(away[0] / turn)
     away[0] -= turns * turn
     if kind == "cable" and turns % 2.0:
-        away[1] = one[1] + two[1]  # the same line the other way round
+        away[1] = one[1] + two[1]  # the same line reversed
     return np.abs(away)

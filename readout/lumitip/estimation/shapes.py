@@ -1,10 +1,10 @@
 """Shares of light of the cells for each kind of object, with their derivatives by the pose.
 
-A pose is a vector that ends with `light` (beside the object, 1 is the empty grasp) and `taken`
-(of that, by the object): a cell gets `light − taken · share`. Between what the object is and these
-two a pose may tell how far the optics are off (`Lookup`); without, they are as expected. An edge
-covers what is right of its line. A corner is the product of its two edges, which is exact where a
-cell's light is spread alike in both directions and an approximation elsewhere.
+A pose is a vector that ends with `light` (beside the object, 1 is the empty grasp) and `taken` (of
+that, by the object): a cell receives `light − taken · share`. Before these two a pose may have
+drifts of the optics (`Lookup`). An edge covers the right of its line. A corner is the product of
+its two edges, which is exact if a cell's light is spread equally in both directions, and else an
+approximation.
 """
 
 from dataclasses import dataclass
@@ -18,12 +18,12 @@ from lumitip.grid import Floats
 _HALF_TURN = np.pi
 _EXPECTED = np.empty(0)
 _BEND_SD_PER_MM = 0.02
-_NEAR = 0.05  # radii from the middle of a bend; nearer cells have no side
+_NEAR = 0.05  # radii from the centre of a bend; closer cells have no side
 
 
 @dataclass(frozen=True, eq=False)
 class Cells:
-    """Where the cells are (mm), shape `(cells,)`."""
+    """Places of the cells (mm), shape `(cells,)`."""
 
     x_mm: Floats
     y_mm: Floats
@@ -33,7 +33,7 @@ class Cells:
         return self.about(angle, offset_mm)[0]
 
     def about(self, angle: Floats, offset_mm: Floats) -> tuple[Floats, Floats]:
-        """Distance of the cells to the left of lines, and along them from the point next to the
+        """Distance of the cells to the left of lines, and along them from the point nearest the
         origin, each of shape `(..., cells)` (mm)."""
         angle, offset_mm = np.asarray(angle)[..., None], np.asarray(offset_mm)[..., None]
         cos, sin = np.cos(angle), np.sin(angle)
@@ -49,8 +49,8 @@ class Shape(Protocol):
     kind: str
 
     def shares(self, poses: Floats, drift: Floats = _EXPECTED) -> Floats:
-        """Shares of light taken at many poses `(n, entries)`, shape `(n, cells)`; the optics are
-        off by a drift, shape `(drifts,)`."""
+        """Shares of light taken at many poses `(n, entries)` with a drift of the optics
+        `(drifts,)`, shape `(n, cells)`."""
 
     def slopes(self, pose: Floats) -> tuple[Floats, Floats]:
         """Share at one pose, shape `(cells,)`, and its derivatives by all but `light` and
@@ -90,8 +90,7 @@ class Edge:
 class Cable:
     """A round cable; pose (angle, offset_mm, width_mm, drifts, light, taken).
 
-    Its table is of the diameter that is expected; other widths differ from it by strips at its
-    two borders.
+    Its table is for the expected diameter; other widths add or remove strips at the two borders.
     """
 
     kind = "cable"
@@ -104,7 +103,7 @@ class Cable:
         self._signs = np.array([1.0, -1.0, -1.0, 1.0])[:, None]
 
     def shares(self, poses: Floats, drift: Floats = _EXPECTED) -> Floats:
-        """See `Shape`; for poses of the diameter that is expected."""
+        """See `Shape`; only for poses with the expected diameter."""
         left = self._cells.beside(poses[:, 0], poses[:, 1])
         return self._table.shares(poses[:, :1], left, drift)
 
@@ -118,8 +117,8 @@ class Cable:
     def _beside(
         self, pose: Floats, angle: Floats, left: Floats
     ) -> tuple[Floats, Floats, Floats, Floats, Floats]:
-        """Share of cells beside an axis, and its derivatives by the distance from the axis, its
-        direction there, the width and each drift."""
+        """Share of cells beside an axis, and its derivatives by distance from the axis, direction
+        of the axis, width and each drift."""
         drift = pose[len(self.names) : -2]
         share, by_left, by_angle, by_drift = self._table(angle, left, drift)
         half = np.array([pose[2], pose[2], self._diameter_mm, self._diameter_mm])[:, None] / 2.0
@@ -137,7 +136,7 @@ class Cable:
         )
 
     def priors(self) -> tuple[Floats, Floats]:
-        """See `Shape`: the diameter within a tenth, more where the frame shows it."""
+        """See `Shape`: the diameter within a tenth."""
         return np.array([0.0, 0.0, self._diameter_mm]), np.array(
             [np.inf, np.inf, self._diameter_mm / 10.0]
         )
@@ -145,10 +144,10 @@ class Cable:
 
 class Bent(Cable):
     """A round cable along an arc; pose (angle, offset_mm, width_mm, curvature_per_mm, drifts,
-    light, taken): the direction at its point next to the origin, one over its radius, positive
-    where it bends to the left.
+    light, taken): the direction at its point nearest the origin; one over its radius, positive for
+    a bend to the left.
 
-    Beside each cell it is taken as straight.
+    As an approximation it is straight beside each cell.
     """
 
     names: tuple[str, ...] = (*Cable.names, "curvature_per_mm")
@@ -157,11 +156,11 @@ class Bent(Cable):
         """See `Shape`."""
         bend = pose[3]
         left, ahead = self._cells.about(pose[0], pose[1])
-        # From the middle of the circle, in radii: across the way, along it, and straight.
+        # From the centre of the circle, in radii: across the line, along it, and the distance.
         across, along = 1.0 - bend * left, bend * ahead
         square = left * left + ahead * ahead
         away = np.maximum(np.hypot(across, along), _NEAR)
-        # In this form the distance from the circle stays exact as the radius grows.
+        # In this form the distance from the circle stays exact for large radii.
         twice = 2.0 * left - bend * square
         beside = twice / (1.0 + away)
         share, by_left, by_angle, by_width, by_drift = self._beside(
@@ -178,7 +177,7 @@ class Bent(Cable):
         return share, np.array([turning, -sideways, by_width, bending, *by_drift])
 
     def priors(self) -> tuple[Floats, Floats]:
-        """See `Shape`: cables that are followed bend with a radius of some 50 mm and more."""
+        """See `Shape`: traced cables bend with a radius of 50 mm or more."""
         means, deviations = super().priors()
         return np.append(means, 0.0), np.append(deviations, _BEND_SD_PER_MM)
 
@@ -233,7 +232,7 @@ class Corner:
         return angles, y_mm * np.cos(angles) - x_mm * np.sin(angles)
 
     def priors(self) -> tuple[Floats, Floats]:
-        """See `Shape`: corners of sheets open by 90 degrees, more or less."""
+        """See `Shape`: corners of sheets open by about 90 degrees."""
         return (
             np.array([0.0, 0.0, 0.0, np.pi / 2.0]),
             np.array([np.inf, np.inf, np.inf, np.radians(12.0)]),
