@@ -1,4 +1,4 @@
-"""The two tasks in closed loop, simulated: follow the edge of a cloth, follow a cable.
+"""Simulated tasks in closed loop: follow the edge of a cloth, follow a cable.
 
 task = Task(layout, Settings("cable"))
 values = task.reset(seed=1)

@@ -1,4 +1,4 @@
-"""All tasks with all laws, on all cores."""
+"""Benchmark of all tasks with all laws, on several cores."""
 
 import math
 import multiprocessing
@@ -29,11 +29,10 @@ _THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 
 @contextmanager
 def workers(most: int) -> Iterator[ProcessPoolExecutor]:
-    """Fresh processes, one for each core but no more than `most`; what is left undone at the end
-    is dropped.
+    """A pool of new processes, one for each core but at most `most`; unfinished work is cancelled.
 
-    Linear algebra asks for no further threads in them: as many as there are cores would wait for
-    each other. A program that calls this needs `if __name__ == "__main__"`.
+    Linear algebra uses a single thread in each, since the processes already use all cores. A
+    program that calls this needs `if __name__ == "__main__"`.
     """
     context = multiprocessing.get_context("spawn")
     with _single_threaded():
@@ -61,13 +60,13 @@ def _single_threaded() -> Iterator[None]:
 _EVERY = tuple(float(v) for v in range(40, 401, 20))
 _FEW = (80.0, 160.0, *(float(v) for v in range(200, 401, 20)))
 SPEEDS_MM_S = {"centre": _EVERY, "line": _EVERY, "pose": _FEW}
-"""Worth trying with each controller, up to the limit of the finger's own speed."""
+"""Speeds to try with each controller, up to the limit of the finger's speed."""
 TASKS = {
     "cloth": Settings("cloth"),
     "cable": Settings("cable"),
     "corner": Settings("cloth", corner=True),
 }
-_ENOUGH = 0.1  # share of lost curves above which faster ones are not tried
+_ENOUGH = 0.1  # share of lost curves above which no higher speed is tried
 
 
 @dataclass(frozen=True)
@@ -80,7 +79,7 @@ class Result:
     rows: tuple[Summary, ...]
 
     def fastest(self, loss_rate: float = 0.0) -> Summary | None:
-        """The last speed up to which no more than this share of the curves was lost."""
+        """The highest speed up to which at most this share of the curves was lost."""
         kept = None
         for row in self.rows:
             if row.loss_rate > loss_rate:
@@ -91,20 +90,20 @@ class Result:
 
 @dataclass(frozen=True)
 class Advantage:
-    """How much faster a controller with the line's angle is than the published law."""
+    """Speed of a controller with the line's angle against the published law."""
 
     task: str
     controller: str
     loss_rate: float
-    """Share of the curves that either may lose."""
+    """Allowed share of lost curves."""
     published_mm_s: float
-    """The published law's highest speed at that loss; NaN if it lost more at the slowest."""
+    """Highest speed of the published law at that loss; NaN if it lost more at every speed."""
     speed_mm_s: float
-    """The controller's; NaN likewise."""
+    """The same of the controller."""
 
     @property
     def times(self) -> float:
-        """Of the published law's speed; NaN if either has none."""
+        """Ratio of both speeds; NaN if one is missing."""
         return self.speed_mm_s / self.published_mm_s
 
 
@@ -138,12 +137,12 @@ def bench_tasks(
     Args:
         layout: the cells.
         trials: curves at each speed.
-        say: called with each line of the table as it is known.
+        say: called with each line of the table.
         controllers: of `CONTROLLERS`.
         speeds_mm_s: of each controller, rising (mm/s).
-        grids: tunings to choose from; a cloth is followed alike with and without a corner.
-        tuning_seeds: curves to tune on, others than those of the test, which begin at 0.
-        cores: processes that share the trials; the results are the same.
+        grids: tunings to choose from; a cloth has one tuning, with and without a corner.
+        tuning_seeds: curves for tuning; those of the test begin at 0.
+        cores: processes that share the trials; they do not change the results.
     """
     results = []
     tunings: dict[tuple[str, str], Tuned] = {}
@@ -164,7 +163,7 @@ def bench_tasks(
 
 
 def tuning_text(controller: str, tuned: Tuned) -> str:
-    """A tuning as text, and what was tried to find it."""
+    """A tuning and the trials to find it, as text."""
     tuning = tuned.tuning
     text = f"K_p {tuning.gain_per_s:.3g}/s, "
     if controller == "centre":

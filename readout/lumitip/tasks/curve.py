@@ -1,4 +1,4 @@
-"""`Curve`: a random smooth line to follow, always the same for the same seed."""
+"""`Curve`: a random smooth line to follow; the same seed gives the same line."""
 
 from dataclasses import dataclass
 
@@ -11,7 +11,7 @@ STEP_MM = 0.25
 LONGEST_MM = 1e6
 """Longest curve (mm)."""
 BEND_DEG = 30.0
-"""Largest direction of a curve against its mean."""
+"""Largest deviation of a curve's direction from its mean."""
 _WAVES, _SHORTEST_MM, _LONGEST_MM = 4, 150.0, 450.0
 _BLEND_MM = 60.0
 
@@ -29,16 +29,16 @@ class Curve:
 
     @classmethod
     def random(cls, length_mm: float, seed: int, straight_end_mm: float = 0.0) -> "Curve":
-        """A curve of the sum of four sine waves in its direction, straight at both ends.
+        """A curve whose direction is the sum of four sine waves, straight at both ends.
 
         Args:
             length_mm: along the curve (mm).
             seed: of its waves.
-            straight_end_mm: length that is straight at its end, as a cloth is before its corner;
-                its beginning is straight for 30 mm (mm).
+            straight_end_mm: straight length before its end, as before the corner of a cloth; the
+                first 30 mm are always straight (mm).
 
         Raises:
-            ArgumentError: if a length or the seed cannot be so.
+            ArgumentError: if a length or the seed is invalid.
         """
         length_mm = arguments.number(length_mm, "length_mm", most=LONGEST_MM, above=0.0)
         seed = arguments.count(seed, "seed", 0)
@@ -62,11 +62,11 @@ class Curve:
 
     @property
     def length_mm(self) -> float:
-        """From its beginning to its end (mm)."""
+        """Length along the curve (mm)."""
         return (self.x_mm.size - 1) * STEP_MM
 
     def nearest(self, x_mm: float, y_mm: float, near: int, reach_mm: float = 30.0) -> int:
-        """Index of the point next to a place, looked for around an index."""
+        """Index of the point nearest to a place, searched around an index."""
         reach = round(reach_mm / STEP_MM)
         low, high = max(near - reach, 0), min(near + reach + 1, self.x_mm.size)
         away = (self.x_mm[low:high] - x_mm) ** 2 + (self.y_mm[low:high] - y_mm) ** 2

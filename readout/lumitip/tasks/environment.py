@@ -4,9 +4,9 @@ env = TraceEnv(layout, Settings("cable"))
 values, info = env.reset(seed=1)
 values, reward, terminated, truncated, info = env.step(action)
 
-The observation is a frame, the action forward, lateral and turning velocity as shares of what
-`limits` allow. The reward is the way along the line (mm) less the square of the distance that the
-line is missed by (mm²), each second; a line that is lost costs 100.
+The observation is a frame. The action is forward, lateral and turning velocity as shares of
+`limits`. The reward is the distance along the line (mm) minus the squared error of the line's
+height (mm²) for each second; a lost line costs 100.
 """
 
 from typing import Any
@@ -49,13 +49,13 @@ class TraceEnv(gymnasium.Env[Observation, Observation]):
 
         Args:
             layout: the cells.
-            settings: what is followed.
-            limits: velocity that an action of 1 is.
-            most_frames: an episode is cut off after so many.
-            twin: what reads the object.
+            settings: of the task.
+            limits: velocities of an action of 1.
+            most_frames: an episode is truncated after this number of frames.
+            twin: simulates the sensor.
 
         Raises:
-            LayoutError, TaskError: as `Task`, also of limits and `most_frames`.
+            LayoutError, TaskError: if an argument is invalid.
         """
         self.task = Task(layout, settings, twin)
         self._limits = arguments.instance(limits, Limits, "limits", TaskError)
@@ -67,17 +67,17 @@ class TraceEnv(gymnasium.Env[Observation, Observation]):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Observation, dict[str, Any]]:
-        """Begin on a new curve; the same seed gives the same curves."""
+        """Start on a new curve; the same seed gives the same curves."""
         super().reset(seed=seed, options=options)
         self._frames = 0
         values = self.task.reset(int(self.np_random.integers(2**31)))
         return values.astype(np.float32), {}
 
     def step(self, action: Observation) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
-        """Go on for one frame.
+        """Advance by one frame.
 
         Raises:
-            TaskError: if the action is not of three finite numbers.
+            TaskError: if the action is not three finite numbers.
         """
         shares = arguments.numbers(action, "action", TaskError)
         if shares.shape != (3,) or not np.isfinite(shares).all():

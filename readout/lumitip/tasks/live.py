@@ -1,4 +1,4 @@
-"""`LiveTask`: a task in real time behind a link, as a robot with a fingertip would be.
+"""`LiveTask`: a task in real time behind a link, like a robot with a fingertip.
 
     world = LiveTask(Task(layout, Settings("cable")), "twin://trace-cable")
     with world.open() as tip, world.shown(tip, port=8642):
@@ -8,8 +8,8 @@
             world.command(tracer(estimator(frame.values), world.period_s))
     print(world.metrics())
 
-Frames are packets of version 2 with raw codes, and come at the rate of the task whether commands
-do or not: a program that computes too long flies blind meanwhile.
+Frames are packets of version 2 with raw codes. They come at the rate of the task, with or without
+commands: a slow program misses frames, and the finger keeps its last command.
 """
 
 import threading
@@ -37,23 +37,22 @@ _BUFFER = 4096
 
 
 class LiveTask(ThreadedLink):
-    """A link whose fingertip moves as it is commanded, until its task ends."""
+    """A link whose fingertip follows commands until its task ends."""
 
     _name = "lumitip-task"
 
     def __init__(self, task: Task, url: str, seed: int = 0, patience_s: float = 0.0) -> None:
-        """A task that has not begun.
+        """A task that has not started.
 
         Args:
-            task: with its own latency or none: what the program and the link take comes on top.
-            url: what it is called, for people.
+            task: its latency is in addition to that of the program and the link.
+            url: its name.
             seed: of the curve.
-            patience_s: how long time stands still for a command that is late (s). With none a
-                program that computes too long flies blind; with some, a busy computer slows the
-                world down.
+            patience_s: how long the simulation waits for a late command (s). With 0 a slow program
+                misses frames; else a busy computer slows the simulation down.
 
         Raises:
-            TaskError: if it is no task, or seed or patience cannot be so.
+            TaskError: if an argument is invalid.
         """
         super().__init__()
         self.layout: Layout = arguments.instance(task, Task, "task", TaskError).layout
@@ -61,17 +60,17 @@ class LiveTask(ThreadedLink):
         self.device_id = url.replace("://", ":")
         self.url = url
         self.period_s = 1.0 / task.settings.rate_hz
-        """Time from frame to frame (s)."""
+        """Period of the frames (s)."""
         empty: Values = task.twin.empty.astype(np.float32)
         self.calibration = Calibration(self.device_id, task.layout.design_hash, empty)
-        """The twin's empty grasp, which every pick of an object begins with."""
+        """The twin's empty grasp."""
         self._task = task
         self._task.reset(seed)
         self._command = Command()
         self._commanded = threading.Event()
 
     def open(self) -> Fingertip:
-        """Begin in real time; the fingertip that reads it."""
+        """Start in real time; returns the fingertip that reads it."""
         hub = Hub(self, any_design=False, on_event=None)
         hub.start(timeout_s=10.0)
         return Fingertip(hub, _BUFFER, calibrated=True)
@@ -80,23 +79,18 @@ class LiveTask(ThreadedLink):
         """Set the command; it holds until the next one. May be called from any thread.
 
         Raises:
-            TaskError: if it is no command, or a velocity is no finite number.
+            TaskError: if it is no command, or a velocity is not finite.
         """
         self._command = checked(command)
         self._commanded.set()
 
     def metrics(self) -> Metrics:
-        """How it went so far, against the truth."""
+        """Errors so far, against the true line."""
         return self._task.metrics()
 
     @contextmanager
     def shown(self, tip: Fingertip, port: int | None) -> Iterator[None]:
-        """Show the fingertip in the live view meanwhile, at a port of this computer.
-
-        Args:
-            tip: what `open` gave.
-            port: 0 takes a free one; `None` shows nothing.
-        """
+        """Show the fingertip of `open` in the live view; port 0 is any free one, `None` no view."""
         if port is None:
             yield
             return
@@ -114,7 +108,7 @@ class LiveTask(ThreadedLink):
             registry.close()
 
     def _run(self, deliver: Deliver, report: Report) -> None:
-        self._packet(0)  # so that the tables are made before time runs
+        self._packet(0)  # builds the tables before time runs
         report(LinkEvent("connected", f"{self.url} is computed, no device"))
         due_s, ended, number = time.monotonic(), False, 0
         while not ended and number * self.period_s < _MOST_S:

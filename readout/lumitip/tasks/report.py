@@ -9,9 +9,9 @@ from pathlib import Path
 from lumitip.tasks.bench import Advantage, Result, advantages
 
 FASTER = 3.0
-"""How many times as fast as the published law the line's angle is to be, without loss."""
+"""Goal for the speed with the line's angle, in times that of the published law, without loss."""
 FEW = 0.05
-"""Share of lost curves at which speeds are compared as well."""
+"""Share of lost curves for a second comparison."""
 _NAMES = {
     "centre": "dark centre (published)",
     "line": "line angle",
@@ -21,10 +21,10 @@ _TITLES = {"cloth": "edge of a cloth", "cable": "cable", "corner": "cloth up to 
 
 
 def write(results: Sequence[Result], folder: Path) -> list[Path]:
-    """Write `tasks.md` and `tasks.json`, and `tasks.svg` where matplotlib is installed.
+    """Write `tasks.md` and `tasks.json`, and `tasks.svg` if matplotlib is installed.
 
     Returns:
-        What was written.
+        The written files.
     """
     folder.mkdir(parents=True, exist_ok=True)
     table, figures = folder / "tasks.md", folder / "tasks.json"
@@ -49,10 +49,10 @@ def markdown(results: Sequence[Result]) -> str:
 
 
 def goals(results: Sequence[Result]) -> list[tuple[bool, str]]:
-    """Whether each goal was met, and what it is: the line's angle against the published law.
+    """Whether each goal was met, and its text: the line's angle against the published law.
 
-    At no loss and on the same processing, so that nothing but the law differs; few losses, and the
-    pose estimator, are listed beside it and not judged.
+    The goal is for no loss and the same processing, so that only the law differs; the figures at
+    few losses are added without a goal.
     """
     few = {(a.task, a.controller): a for a in advantages(results, FEW)}
     return [
@@ -74,11 +74,14 @@ def _told(advantage: Advantage) -> str:
     return f"{advantage.times:.1f} ({speeds})"
 
 
+def _table(head: str, rows: Sequence[Sequence[str]]) -> list[str]:
+    names = head.split(", ")
+    lines = [f"| {' | '.join(cells)} |" for cells in (names, *rows)]
+    return [lines[0], "|" + "---|" * len(names), *lines[1:]]
+
+
 def _tunings(results: Sequence[Result]) -> list[str]:
-    lines = [
-        "| task | controller | K_p | K_θ | lead | height | tried | lost | best at the edge |",
-        "|---|---|---|---|---|---|---|---|---|",
-    ]
+    rows = []
     for r in results:
         tuned, tuning = r.tuned, r.tuned.tuning
         kept = (
@@ -88,16 +91,13 @@ def _tunings(results: Sequence[Result]) -> list[str]:
         )
         tried = [str(tuned.tried), f"{tuned.losses} at {tuned.speed_mm_s:g} mm/s"]
         cells = [_TITLES[r.task], _NAMES[r.controller], f"{tuning.gain_per_s:.3g}/s", *kept, *tried]
-        lines.append("| " + " | ".join([*cells, ", ".join(tuned.at_edge) or "–"]) + " |")
-    return lines
+        rows.append([*cells, ", ".join(tuned.at_edge) or "–"])
+    head = "task, controller, K_p, K_θ, lead, height, tried, lost, best at the edge"
+    return _table(head, rows)
 
 
 def _speeds(results: Sequence[Result]) -> list[str]:
-    few = f"at most {100.0 * FEW:g} % loss up to"
-    lines = [
-        f"| task | controller | no loss up to | times | {few} | times |",
-        "|---|---|---|---|---|---|",
-    ]
+    rows = []
     times = {
         (a.task, a.controller, a.loss_rate): a.times
         for rate in (0.0, FEW)
@@ -108,25 +108,27 @@ def _speeds(results: Sequence[Result]) -> list[str]:
         for rate in (0.0, FEW):
             row = r.fastest(rate)
             faster = times.get((r.task, r.controller, rate), math.nan)
-            cells += [f"{row.speed_mm_s:.0f} mm/s" if row else "–"]
-            cells += ["–" if math.isnan(faster) else f"{faster:.1f}"]
-        lines.append("| " + " | ".join(cells) + " |")
-    return lines
+            cells += [f"{row.speed_mm_s:.0f} mm/s" if row else "–", _figure(faster, 1, "")]
+        rows.append(cells)
+    few = f"at most {100.0 * FEW:g} % loss up to"
+    return _table(f"task, controller, no loss up to, times, {few}, times", rows)
 
 
 def _rows(results: Sequence[Result]) -> list[str]:
-    lines = [
-        "| task | controller | speed | lost | lateral rms | angle rms | corner rms |",
-        "|---|---|---|---|---|---|---|",
+    rows = [
+        [
+            _TITLES[r.task],
+            _NAMES[r.controller],
+            f"{row.speed_mm_s:.0f} mm/s",
+            f"{row.losses} of {row.trials}",
+            _figure(row.lateral_rms_mm, 2, " mm"),
+            _figure(row.angle_rms_deg, 1, "°"),
+            _figure(row.corner_rms_mm, 2, " mm"),
+        ]
+        for r in results
+        for row in r.rows
     ]
-    for r in results:
-        for row in r.rows:
-            cells = [_TITLES[r.task], _NAMES[r.controller], f"{row.speed_mm_s:.0f} mm/s"]
-            cells += [f"{row.losses} of {row.trials}"]
-            cells += [_figure(row.lateral_rms_mm, 2, " mm"), _figure(row.angle_rms_deg, 1, "°")]
-            cells += [_figure(row.corner_rms_mm, 2, " mm")]
-            lines.append("| " + " | ".join(cells) + " |")
-    return lines
+    return _table("task, controller, speed, lost, lateral rms, angle rms, corner rms", rows)
 
 
 def _figure(value: float, digits: int, unit: str) -> str:
@@ -134,7 +136,7 @@ def _figure(value: float, digits: int, unit: str) -> str:
 
 
 def _plain(value: object) -> object:
-    """NaN has no place in JSON."""
+    """A value for JSON, with `null` for NaN."""
     if isinstance(value, dict):
         return {k: _plain(v) for k, v in value.items()}
     if isinstance(value, list | tuple):

@@ -4,8 +4,8 @@
     values, ended = task.step(command)      # one frame later
     task.metrics()
 
-Each step is a frame of the sensor. A frame arrives `latency` frames late, and the finger takes on
-commanded velocities with the lag of its actuator. The object lies still and does not deform.
+Each step is a frame of the sensor. A frame arrives `latency` frames late, and the finger follows
+commanded velocities with the lag of its actuator. The object does not move or deform.
 """
 
 import math
@@ -25,17 +25,17 @@ from lumitip.values import shown
 
 KINDS = ("cloth", "cable")
 RATE_HZ = 55.0
-"""Frames a second that the published firmware sends."""
+"""Frame rate of the published firmware (Hz)."""
 LOST_MM = 9.0
-"""Distance of the line from where it is to be held, beyond which it is lost (mm)."""
+"""Error of the line's height beyond which it is lost (mm)."""
 _CORNER_SEEN_MM = 40.0
 _STRAIGHT_MM = 80.0
-_END_MM = 25.0  # the fingertip must not see where a plain curve ends
-_STANDS_MM_S = 0.5
+_END_MM = 25.0  # the fingertip must not see the end of a curve without corner
+_STILL_MM_S = 0.5
 
 
 class TaskError(LumitipError, ValueError):
-    """A task that cannot be so."""
+    """An invalid setting or input of a task."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ class Settings:
     noise: float = 1.5
     """Standard deviation of a value (counts of 255)."""
     target_mm: float = 0.0
-    """Height in the grid at which the line is to be held (mm)."""
+    """Target height of the line in the grid (mm)."""
 
     def __post_init__(self) -> None:
         if not isinstance(self.kind, str) or self.kind not in KINDS:
@@ -72,10 +72,10 @@ class Settings:
 
 
 def checked(command: Command) -> Command:
-    """A command that can be carried out.
+    """The command, if it is valid.
 
     Raises:
-        TaskError: if it is none, or a velocity is no finite number.
+        TaskError: if it is no command, or a velocity is not finite.
     """
     arguments.finite_fields(arguments.instance(command, Command, "command", TaskError), TaskError)
     return command
@@ -83,22 +83,22 @@ def checked(command: Command) -> Command:
 
 @dataclass(frozen=True, slots=True)
 class Metrics:
-    """How a trial went, against the truth."""
+    """Errors of a trial, against the true line."""
 
     reason: str
-    """`"end"`, `"corner"`, `"lost"`, or `""` while it goes on."""
+    """`"end"`, `"corner"`, `"lost"`, or `""` while it runs."""
     travelled_mm: float
     seconds: float
     lateral_rms_mm: float
-    """Of the distance of the line from where it is to be held."""
+    """Error of the line's height."""
     angle_rms_deg: float
-    """Of the direction of the line against the way of the finger."""
+    """Angle between the line and the finger."""
     corner_error_mm: float
-    """At the end, of the corner's vertex in x from where it is to be; NaN without corner."""
+    """Error of the vertex in x at the end; NaN without corner."""
 
     @property
     def lost(self) -> bool:
-        """Whether the line was lost, or the finger stopped where there was nothing."""
+        """Whether the line was lost, or the finger stopped without reason."""
         return self.reason == "lost"
 
 
@@ -108,33 +108,31 @@ class Task:
     def __init__(
         self, layout: Layout, settings: Settings | None = None, twin: Twin | None = None
     ) -> None:
-        """A task; call `reset` to begin.
+        """A task on the curve of seed 0.
 
         Args:
             layout: the cells.
-            settings: what is followed and how late.
-            twin: what reads the object; the layout's own by default. Its noise is not used.
+            settings: of the task.
+            twin: simulates the sensor; by default that of the layout. Its noise is not used.
 
         Raises:
-            LayoutError: if it is no layout.
-            TaskError: if the twin is of another layout, or one of them is none.
+            LayoutError: if `layout` is no layout.
+            TaskError: if an argument is invalid, or the twin is of another layout.
         """
         self.layout = arguments.layout(layout)
-        self.settings = arguments.instance(
-            Settings() if settings is None else settings, Settings, "settings", TaskError
-        )
-        self.twin = arguments.instance(
-            Twin(layout) if twin is None else twin, Twin, "twin", TaskError
-        )
+        settings = Settings() if settings is None else settings
+        self.settings = arguments.instance(settings, Settings, "settings", TaskError)
+        twin = Twin(layout) if twin is None else twin
+        self.twin = arguments.instance(twin, Twin, "twin", TaskError)
         if self.twin.layout != layout:
             raise TaskError(
-                f"the twin is of design {self.twin.layout.design_hash[:16]}; the layout is of "
-                f"{layout.design_hash[:16]}: give a twin of this layout"
+                f"the design of the twin is {self.twin.layout.design_hash[:16]}; that of the "
+                f"layout is {layout.design_hash[:16]}. Use a twin of this layout."
             )
         self.reset()
 
     def reset(self, seed: int = 0) -> Floats:
-        """Begin a trial on the curve of a seed; returns the first values, shape `(cells,)`.
+        """Start a trial on the curve of a seed; returns the first values, shape `(cells,)`.
 
         Raises:
             TaskError: if the seed is no whole number from 0 on.
@@ -155,7 +153,7 @@ class Task:
         return first
 
     def step(self, command: Command) -> tuple[Floats, bool]:
-        """Go on for one frame.
+        """Advance by one frame.
 
         Args:
             command: velocity in the sensor frame. A state of `"stop"` ends the trial once the
@@ -165,7 +163,7 @@ class Task:
             The values that have arrived by then, shape `(cells,)`, and whether the trial ended.
 
         Raises:
-            TaskError: if it is no command, or a velocity no finite number.
+            TaskError: if it is no command, or a velocity is not finite.
         """
         checked(command)
         self._move(command)
@@ -179,12 +177,12 @@ class Task:
 
     @property
     def travelled_mm(self) -> float:
-        """Way along the curve so far (mm)."""
+        """Distance along the curve so far (mm)."""
         return self._at * STEP_MM
 
     def line(self) -> tuple[float, float]:
-        """The truth: height of the line above the middle of the grid (mm), and its direction
-        (rad), in the sensor frame."""
+        """True height of the line above the middle of the grid (mm), and its direction (rad), in
+        the sensor frame."""
         offset_mm, angle = self._tangent()
         return offset_mm / math.cos(angle), angle
 
@@ -198,13 +196,13 @@ class Task:
         if vertex is not None and vertex[0] < _CORNER_SEEN_MM:
             turn = math.degrees(float(self.curve.heading[-1]) - self.heading)
             return Corner(x_mm=vertex[0], y_mm=vertex[1], angle_deg=turn + 135.0)
-        # The sheet lies left of the way, towards the tip: right of the line seen backwards.
+        # The sheet is left of the line, towards the tip: right of the reversed line.
         return HalfPlane(
             offset_mm=-offset_mm, angle_deg=math.degrees(angle) + 180.0, curvature_per_mm=-bend
         )
 
     def metrics(self) -> Metrics:
-        """How the trial went so far."""
+        """Errors of the trial so far."""
         misses = np.array(self._misses or [(0.0, 0.0)])
         rms = np.sqrt((misses**2).mean(axis=0))
         vertex = self._vertex()
@@ -219,10 +217,10 @@ class Task:
         )
 
     def _judge(self, command: Command, height_mm: float) -> None:
-        stands = float(np.hypot(*self._velocity[:2])) < _STANDS_MM_S
+        still = float(np.hypot(*self._velocity[:2])) < _STILL_MM_S
         if abs(height_mm - self.settings.target_mm) > LOST_MM:
             self.reason = "lost"
-        elif command.state == "stop" and stands:
+        elif command.state == "stop" and still:
             near = (v := self._vertex()) is not None and abs(v[0]) < LOST_MM
             self.reason = "corner" if command.reason == "corner" and near else "lost"
         elif self.settings.corner:
@@ -233,7 +231,7 @@ class Task:
             self.reason = "end"
 
     def _move(self, command: Command) -> None:
-        """Velocities follow the command with the actuator's lag, exactly over the step."""
+        """Follow the command with the actuator's lag; velocities are exact over the step."""
         dt, lag = 1.0 / self.settings.rate_hz, self.settings.lag_s
         asked = np.array([command.forward_mm_s, command.lateral_mm_s, command.rotation_rad_s])
         kept = math.exp(-dt / lag) if lag else 0.0
@@ -250,7 +248,7 @@ class Task:
         return x * cos + y * sin, y * cos - x * sin
 
     def _tangent(self) -> tuple[float, float]:
-        """Signed distance (mm) and direction (rad) of the curve at its point next to the origin."""
+        """Signed distance (mm) and direction (rad) of the curve at its point nearest the origin."""
         x, y = self._in_sensor(self._at)
         angle = float(self.curve.heading[self._at]) - self.heading
         return y * math.cos(angle) - x * math.sin(angle), angle

@@ -1,4 +1,4 @@
-"""One trial of a task, and the tuning of a law over many."""
+"""Trials of a task, and the tuning of a law over many of them."""
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -20,8 +20,8 @@ from lumitip.values import shown
 
 Observer = Callable[[Floats], Contact | Estimate]
 CONTROLLERS = ("centre", "line", "pose")
-"""`centre`: the published law on the published processing; `line`: angle feed-forward on the same
-processing; `pose`: angle feed-forward on the pose estimator."""
+"""`centre`: the published law with the published processing; `line`: angle feed-forward with the
+same processing; `pose`: angle feed-forward with the pose estimator."""
 _LONGEST_S = 120.0
 
 
@@ -33,12 +33,12 @@ class Tuning:
     turn_per_s: float = 8.0
     lead_s: float = 0.0
     height_mm: float = 0.0
-    """Of the published law alone: how much higher the dark centre is held than where it is when
-    the line lies straight in the middle. It lies lower under a line that is turned (mm)."""
+    """For the published law alone: target of the dark centre above its height with a straight line
+    in the middle (mm). With a turned line the dark centre is lower."""
 
 
 class Bench:
-    """Everything that trials of one task share: twin, estimator, processor."""
+    """Task, estimator and processor for trials."""
 
     def __init__(self, task: Task) -> None:
         self.task = task
@@ -64,7 +64,7 @@ class Bench:
         return lambda values: self._estimator(values, self._kind)
 
     def tracer(self, controller: str, speed_mm_s: float, tuning: Tuning) -> Tracer:
-        """A controller that has seen nothing yet."""
+        """A controller without history."""
         corner_at_mm = 0.0 if self.task.settings.corner else None
         if controller == "centre":
             centre_mm = self._centre_mm + tuning.height_mm
@@ -93,7 +93,7 @@ class Bench:
 
 
 class Team:
-    """A `Bench` in each process of a pool; trials come out as from one bench."""
+    """A `Bench` in each process of a pool, with the same results."""
 
     def __init__(self, pool: Executor, layout: Layout, settings: Settings) -> None:
         self._pool, self._layout, self._settings = pool, layout, settings
@@ -123,7 +123,7 @@ def _bench(layout: Layout, settings: Settings) -> Bench:
 
 
 def centre_height_mm(twin: Twin, settings: Settings) -> float:
-    """Height of the dark centre when the line is where it is to be held (mm)."""
+    """Height of the dark centre when the line is at its target (mm)."""
     if settings.kind == "cable":
         values = twin.values(Cable(offset_mm=settings.target_mm))
     else:
@@ -156,7 +156,7 @@ def summary(
     tuning: Tuning,
     seeds: Iterable[int],
 ) -> Summary:
-    """Run trials; root mean squares are of those that kept the line."""
+    """Run trials; root mean squares are over those that kept the line."""
     done = bench.run_all(controller, speed_mm_s, tuning, seeds)
     kept = [m for m in done if not m.lost]
     corners = [m.corner_error_mm for m in kept if not np.isnan(m.corner_error_mm)]
@@ -179,7 +179,7 @@ LINE_GRID = tuple(
     for of in product((8.0, 12.0, 16.0, 20.0, 24.0, 32.0), (6.0, 10.0, 14.0), (0.0, 0.03, 0.06))
 )
 _CENTRE_RATIO = 1.75
-"""About this much apart are the gains of `CENTRE_GRID`."""
+"""Approximate ratio of the gains of `CENTRE_GRID`."""
 CENTRE_GRID = tuple(
     Tuning(gain_per_s, height_mm=height_mm)
     for gain_per_s, height_mm in product(
@@ -188,7 +188,7 @@ CENTRE_GRID = tuple(
 )
 GRIDS = {"centre": CENTRE_GRID, "line": LINE_GRID, "pose": LINE_GRID}
 SEEDS = tuple(range(10_000, 10_012))
-"""Curves to tune on, others than those of the test, which begin at 0."""
+"""Curves for tuning; those of the test begin at 0."""
 SPEEDS_MM_S = {
     ("centre", "cloth"): 200.0,
     ("centre", "cable"): 160.0,
@@ -197,24 +197,24 @@ SPEEDS_MM_S = {
     ("pose", "cloth"): 320.0,
     ("pose", "cable"): 320.0,
 }
-"""Where each begins to fail, where tuning matters, by controller and kind of task."""
+"""Speed at which each controller begins to fail, by controller and kind of task."""
 _NAMES = {"gain_per_s": "K_p", "turn_per_s": "K_θ", "lead_s": "lead", "height_mm": "height"}
 
 
 @dataclass(frozen=True)
 class Tuned:
-    """The best of the tunings that were tried."""
+    """The best of the tried tunings."""
 
     tuning: Tuning
     speed_mm_s: float
-    """Speed of the curves that it was chosen on (mm/s)."""
+    """Speed of the curves for tuning (mm/s)."""
     losses: int
-    """How many of these curves it lost."""
+    """Number of these curves that it lost."""
     tried: int
-    """How many tunings were tried."""
+    """Number of tried tunings."""
     at_edge: tuple[str, ...]
-    """Parameters whose best value is the least or the largest that was tried: a better one may
-    lie beyond."""
+    """Parameters whose best value is the smallest or largest that was tried; a better one may be
+    beyond."""
 
 
 def search(
@@ -224,14 +224,14 @@ def search(
     grids: Mapping[str, Sequence[Tuning]] = GRIDS,
     seeds: Sequence[int] = SEEDS,
 ) -> Tuned:
-    """The tuning with fewest losses, among these of least lateral rms, on curves for tuning.
+    """The tuning with fewest losses, and of these with least lateral rms, on curves for tuning.
 
     Args:
-        bench: what runs the trials.
+        bench: runs the trials.
         controller: of `CONTROLLERS`.
         speed_mm_s: on the curves for tuning (mm/s).
-        grids: tunings to begin with; those of the published law are refined around the best.
-        seeds: curves to tune on.
+        grids: tunings to try; those of the published law are refined around the best.
+        seeds: curves for tuning.
     """
     tried = list(grids[controller])
     scores = {tuning: _score(bench, controller, speed_mm_s, tuning, seeds) for tuning in tried}
@@ -243,7 +243,7 @@ def search(
 
 
 def around(best: Tuning) -> list[Tuning]:
-    """The 24 tunings of the published law that lie between one of `CENTRE_GRID` and the next."""
+    """The 24 tunings of the published law between one of `CENTRE_GRID` and its neighbours."""
     return [
         replace(
             best,
@@ -256,7 +256,7 @@ def around(best: Tuning) -> list[Tuning]:
 
 
 def at_edge(best: Tuning, tried: Sequence[Tuning]) -> tuple[str, ...]:
-    """Names of the parameters that are at the end of what was tried of them."""
+    """Names of the parameters at the end of their tried range."""
     ends = {name: {min(of), max(of)} for name in _NAMES if len(of := _values(tried, name)) > 1}
     return tuple(_NAMES[name] for name, of in ends.items() if asdict(best)[name] in of)
 
