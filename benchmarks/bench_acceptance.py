@@ -3,8 +3,8 @@
 python benchmarks/bench_acceptance.py --count 500 --seed 2 --build 60 --jobs 2
 
 Every refusal is confirmed by a calculation that shares no code with the rule that refused; every
-crash is a failure. Of the accepted designs some are built, and all their checks run. What fails is
-kept in `--keep` as a user file: move it to `tests/acceptance/cases`, and the tests derive it anew.
+crash is a failure. Some of the accepted designs are built, and all their checks run. Designs that
+fail are kept in `--keep` as user files; in `tests/acceptance/cases` they become tests.
 """
 
 import argparse
@@ -18,7 +18,7 @@ from random import Random
 from acceptance.confirm import Verdict, confirm
 from acceptance.generator import Design, design
 from acceptance.trial import Trial, build_file, derive_file, design_folder
-from goals import Goals
+from common import Goals
 
 LEAST_ACCEPTED = 0.97
 Result = tuple[Design, Trial]
@@ -27,7 +27,7 @@ Result = tuple[Design, Trial]
 def main() -> int:
     """Derive all designs, build some; the exit code."""
     options = _options()
-    # Started afresh, so that no process has the locks of another one's threads.
+    # New processes, so that none has the locks of another one's threads.
     context = multiprocessing.get_context("spawn")
     with design_folder() as folder, ProcessPoolExecutor(options.jobs, mp_context=context) as pool:
         designs = [design(options.seed, i) for i in range(options.count)]

@@ -1,8 +1,8 @@
 """Speed of the boards: placement, routing, pour and files against the number of cells.
 
 Run by `make bench`, or with numbers of cells as arguments; exits 1 if a goal is missed. Each stage
-runs once unmeasured, so that compiled code is there. Wall time depends on the machine and on what
-else it does, so processor time is shown too.
+runs once before it is measured, so that its code is compiled. Wall time depends on the machine and
+its load, so processor time is shown too.
 """
 
 import math
@@ -13,7 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar
 
-from goals import Goals
+from common import Goals
 from lumitip_fab.boards.fab.order import assembly_note, layers_of, order_files
 from lumitip_fab.boards.fab.picture import picture_files
 from lumitip_fab.boards.kicad.project import project_files
@@ -59,7 +59,7 @@ via_mm = 0.45
 via_drill_mm = 0.2
 channel_mm = 4.0
 """
-FINE_FROM = 256  # cells from which the lines between two rows of multiplexers ask for fine tracks
+FINE_FROM = 256  # cells from which the lines between two rows of multiplexers need fine tracks
 _T = TypeVar("_T")
 
 
@@ -83,15 +83,15 @@ def design_of(cells: int) -> Design:
 def files(design: Design, model: BoardModel) -> int:
     """Make every file of a board; returns their size in bytes."""
     layers = layers_of(model)
-    made = {
+    written = {
         **project_files(model, design.stack.pcb_mm),
         **schematic_files(model.placement, design.wiring, design.packages),
         **picture_files(model),
     }
     for fab in design.fabs:
         note = assembly_note(model.placement, design.packages, fab)
-        made |= order_files(model, layers, note, fab, model.placement.finger)
-    return sum(map(len, made.values()))
+        written |= order_files(model, layers, note, fab, model.placement.finger)
+    return sum(map(len, written.values()))
 
 
 def measure(design: Design, finger: Finger, goals: Goals) -> str:
@@ -129,7 +129,7 @@ def main(counts: list[int]) -> int:
     """Print the table; the exit code."""
     goals = Goals()
     small = design_of(32)
-    files(small, _board(small))  # compiles, and imports what is imported late
+    files(small, _board(small))  # compiles, and does late imports
     print("seconds, but for the last columns; cpu is processor time")
     print(
         f"{'cells':>6}{'board':>10}{'place':>8}{'route':>8}{'pour':>8}{'files':>8}{'all':>8}{'cpu':>8}"

@@ -1,37 +1,35 @@
 """Accuracy and speed of the pose estimator against the published method and the theoretical bound.
 
-All of it is simulation: frames come from the optical twin, with noise and whole counts. In the
-wrong optics every frame comes of another fingertip than the estimator expects (gap ± 0.5 mm,
-detector exponent ± 0.6, scattered share ± 0.2, hole ± 5 %, and 6 % of spread in the cells' gains).
-Run by `make bench`; exits 1 if a goal is missed. A number as its argument is that of the poses.
+All frames are simulated by the optical twin, with noise and whole counts. With wrong optics every
+frame is of a fingertip that differs from the expected one (gap ± 0.5 mm, detector exponent ± 0.6,
+scattered share ± 0.2, hole ± 5 %, and 6 % of spread in the cells' gains). Run by `make bench`;
+exits 1 if a goal is missed. The argument is the number of poses.
 """
 
-import os
 import sys
 import time
 from collections.abc import Callable
 
 import numpy as np
 
-from designs import columns_for
-from goals import Goals
+from common import Goals, columns_for, layout_of, on_one_core
 from lumitip.estimation import PoseEstimator
-from lumitip.grid import Floats, hexagonal_grid, hexagonal_neighbours
+from lumitip.grid import Floats
 from lumitip.layout import Layout
 from lumitip.links.twin import published_layout
 from lumitip.twin import HalfPlane, Twin
 from poses import NOISE, Trial, estimated, frames, gross, misses, published, scene, wrong_twin
 
-PAIRS = 40  # of wrong fingers; each is used for several poses
+PAIRS = 40  # of wrong fingers, each for several poses
 DRAWS = 3  # of wrong fingers and poses; the goals hold for each
-STATED = 300  # poses at which stated deviations are held against the misses
+STATED = 300  # poses at which stated deviations are compared with the errors
 GOALS = {
     ("edge", "clean"): (0.08, 0.3, 1.0),
     ("cable", "clean"): (0.1, 0.3, 1.0),
     ("edge", "wrong"): (0.45, 1.5, 3.0),
     ("cable", "wrong"): (0.5, 1.6, 3.0),
 }
-RUNS = 25  # of each frame, ; its time is the best
+RUNS = 25  # of each frame
 
 
 def row(name: str, missed: Floats, trials: list[Trial]) -> tuple[float, float, float]:
@@ -52,7 +50,7 @@ def row(name: str, missed: Floats, trials: list[Trial]) -> tuple[float, float, f
 
 def bound(twin: Twin, kind: str, trials: list[Trial]) -> tuple[float, float]:
     """Cramér–Rao bound of offset (mm) and angle (degrees), rms over the poses."""
-    # Light and transmittance are unknown; what no cell sees is known to within 1 mm and 5 degrees.
+    # Light and transmittance are unknown; offset and angle have priors of 1 mm and 5 degrees.
     noise = np.hypot(NOISE, np.sqrt(1.0 / 12.0))
     rows = []
     for trial in trials:
@@ -80,7 +78,7 @@ def bound(twin: Twin, kind: str, trials: list[Trial]) -> tuple[float, float]:
 
 
 def accuracy(layout: Layout, count: int, goals: Goals) -> None:
-    """The tables, held against their goals."""
+    """The tables, with their goals."""
     estimator = PoseEstimator(layout)
     methods = {"published method": published(layout), "estimator": estimated(estimator)}
     for optics, draw in (("clean", 0), *(("wrong", draw) for draw in range(DRAWS))):
@@ -115,8 +113,7 @@ def accuracy(layout: Layout, count: int, goals: Goals) -> None:
 
 
 def stated(estimator: PoseEstimator, trials: list[Trial], kind: str) -> None:
-    """Print how many misses lie within the deviations that the estimator states, and what it
-    flags."""
+    """Print the share of errors within the deviations that the estimator states, and of flags."""
     estimates = [estimator(trial.values, kind) for trial in trials]
     missed = misses(estimated(estimator), trials, kind)
     wild = gross(missed)
@@ -145,30 +142,13 @@ def kinds(layout: Layout, count: int) -> None:
 
 
 def speed(goals: Goals, count: int = 300) -> None:
-    """Time of a frame; an edge at 32 cells is held against its goal."""
+    """Time of a frame; an edge at 32 cells has a goal."""
     print("\ntime of a frame, one core (ms)")
     print(" cells   edge median   90 %   cable   tracking   undecided")
     base = published_layout()
     for cells in (32, 128, 512):
-        columns = columns_for(cells)
-        grid = hexagonal_grid(columns, 6.0 * float(np.sqrt(32.0 / cells)))
-        index = np.arange(grid.x_mm.size)
-        layout = (
-            base
-            if cells == 32
-            else Layout(
-                grid.x_mm,
-                grid.y_mm,
-                grid.column,
-                grid.row,
-                hexagonal_neighbours(columns),
-                index // 8,
-                index % 8,
-                np.array([f"A{i}" for i in index // 8]),
-                6.0,
-                base.optics,
-            )
-        )
+        pitch_mm = 6.0 * float(np.sqrt(32.0 / cells))
+        layout = base if cells == 32 else layout_of(columns_for(cells), pitch_mm, base.optics)
         twin, estimator = Twin(layout), PoseEstimator(layout)
         edges = [t.values for t in frames([twin], "edge", count, seed=3)]
         cables = [t.values for t in frames([twin], "cable", count, seed=3)]
@@ -209,8 +189,7 @@ def _ms(work: Callable[[Floats], object], values: Floats) -> float:
 
 
 if __name__ == "__main__":
-    if hasattr(os, "sched_setaffinity"):
-        os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
+    on_one_core()
     poses = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
     published_cells = published_layout()
     goals = Goals()

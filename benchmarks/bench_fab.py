@@ -10,7 +10,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from designs import write_design
+from common import write_design
 
 PRESETS = Path(__file__).parents[1] / "design" / "presets"
 CELLS = (32, 128, 512, 2048)
@@ -87,16 +87,16 @@ def one_stage(stage: str, cells: int) -> None:
     with tempfile.TemporaryDirectory() as name:
         out = Path(name) / "out"
         file = write_design(cells, PRESETS / "published.toml", Path(name) / "design")
-        derive(load(file))  # imports are not what is measured
+        derive(load(file))  # imports are not measured
         begun = time.perf_counter()
         config = load(file)
         design = derive(config)
         seconds = time.perf_counter() - begun
         if stage != "layout":
             begun = time.perf_counter()
-            made = [a for finger in design.fingers for a in mask_files(design, finger)]
+            masks = [a for finger in design.fingers for a in mask_files(design, finger)]
             seconds = time.perf_counter() - begun
-            for artefact in (*made, *documents(config, design)):
+            for artefact in (*masks, *documents(config, design)):
                 path = out / artefact.path
                 path.parent.mkdir(parents=True, exist_ok=True)
                 path.write_bytes(artefact.data)

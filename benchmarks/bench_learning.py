@@ -6,12 +6,11 @@ missed: no finger's offset may get worse, and all together lose a quarter of the
 A number as its argument is that of the poses.
 """
 
-import os
 import sys
 
 import numpy as np
 
-from goals import Goals
+from common import Goals, on_one_core
 from lumitip.estimation import PoseEstimator, learn
 from lumitip.grid import Floats
 from lumitip.layout import Layout
@@ -21,7 +20,7 @@ from poses import OFFSET_MM, estimated, frames, gross, misses, read, wrong_twin
 
 FINGERS, SEEN = 6, 300
 KINDS = ("edge", "cable")
-LEFT, WORST = 0.75, 1.0  # share of the rms offset that may be left: of all fingers, of any
+LEFT, WORST = 0.75, 1.0  # limit of the remaining rms offset, as a share: all fingers, any finger
 
 
 def ordinary_use(twin: Twin, seed: int) -> Floats:
@@ -54,12 +53,12 @@ def finger(layout: Layout, number: int, poses: int) -> Floats:
     twin = wrong_twin(layout, 100 + number)
     learned = learn(layout, ordinary_use(twin, number), "edge")
     off = 100.0 * np.std(learned.gains / (twin.gains / twin.gains.mean()))
-    made, found = twin.model, learned.model
-    # fmt: off
-    print(f"\nfinger {number}: gap {made.gap_mm:.2f} mm, learned {found.gap_mm:.2f}; "
-          f"scattered share {made.alpha:.2f}, learned {found.alpha:.2f}; gains off by {off:.1f} %; "
-          f"misfit {learned.rms_before_counts:.1f} counts, then {learned.rms_counts:.1f}")
-    # fmt: on
+    true, found = twin.model, learned.model
+    print(
+        f"\nfinger {number}: gap {true.gap_mm:.2f} mm, learned {found.gap_mm:.2f}; scattered share "
+        f"{true.alpha:.2f}, learned {found.alpha:.2f}; gains off by {off:.1f} %; misfit "
+        f"{learned.rms_before_counts:.1f} counts, then {learned.rms_counts:.1f}"
+    )
     before, after = PoseEstimator(layout), PoseEstimator(layout, found, gains=learned.gains)
     errors = np.array(
         [[rms(e, twin, kind, poses, 200 + number) for e in (before, after)] for kind in KINDS]
@@ -70,8 +69,8 @@ def finger(layout: Layout, number: int, poses: int) -> Floats:
 
 
 def _line(kind: str, both: Floats) -> None:
-    said = ["{:.3f} mm, {:.2f}°, {:.1f} % gross".format(*figures) for figures in both]
-    print(f"  {kind:<6} before {said[0]}; after {said[1]}", flush=True)
+    before, after = ("{:.3f} mm, {:.2f}°, {:.1f} % gross".format(*figures) for figures in both)
+    print(f"  {kind:<6} before {before}; after {after}", flush=True)
 
 
 def main(poses: int) -> int:
@@ -102,6 +101,5 @@ def main(poses: int) -> int:
 
 
 if __name__ == "__main__":
-    if hasattr(os, "sched_setaffinity"):
-        os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
+    on_one_core()
     sys.exit(main(int(sys.argv[1]) if len(sys.argv) > 1 else 200))

@@ -1,8 +1,7 @@
 """Links: frames lost and processor time at 500 frames a second over Bluetooth, 20 s at a time.
 
-bleak is as installed; `org.bluez` is faked on a private D-Bus by a process of its own, so that the
-processor time is the reader's alone. Run by `make bench`; exits 1 if a goal
-is missed.
+bleak is the installed one. A separate process fakes `org.bluez` on a private D-Bus, so that the
+processor time is that of the reader alone. Run by `make bench`; exits 1 if a goal is missed.
 """
 
 import asyncio
@@ -17,8 +16,8 @@ ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "tests"))
 
 from bluetooth_peers import ScriptedPeer  # noqa: E402
+from common import Goals  # noqa: E402
 from fake_bluez import FakeBluez  # noqa: E402
-from goals import Goals  # noqa: E402
 from lumitip.fingertip import Fingertip  # noqa: E402
 from lumitip.links.twin import Scene, packet_at, published_layout  # noqa: E402
 from lumitip.protocol.bluetooth import FRAMES, SERVICE, STATUS, Fault, Status  # noqa: E402
@@ -27,11 +26,11 @@ from private_bus import private_bus  # noqa: E402
 
 RATE_HZ, SECONDS = 500, 20
 LIMIT_SHARE, LIMIT_IMPORT_S = 0.5, 0.25
-BATCHES = (1, 4)  # frames in a notification: the hardest case, and what 7.5 ms intervals ask for
+BATCHES = (1, 4)  # frames in a notification: the hardest case, and that of 7.5 ms intervals
 
 
 def serve(address: str, batch: int) -> None:
-    """Be a device that sends `RATE_HZ * SECONDS` frames once somebody listens."""
+    """Simulate a device that sends `RATE_HZ * SECONDS` frames after a subscription."""
     layout = published_layout()
     scene = Scene("disc", 12.0, 1.5, RATE_HZ, 8, 0)
     numbers = range(0, RATE_HZ * SECONDS, batch)
@@ -63,7 +62,7 @@ def serve(address: str, batch: int) -> None:
 
 
 def measure(batch: int) -> int:
-    """Read it all; the exit code."""
+    """Read all frames; the exit code."""
     with tempfile.TemporaryDirectory() as folder, private_bus(Path(folder)) as address:
         os.environ["DBUS_SYSTEM_BUS_ADDRESS"] = address
         command = [sys.executable, __file__, "serve", address, str(batch)]
@@ -138,7 +137,7 @@ def main() -> int:
         f"{'jitter/ms':>12}",
         flush=True,
     )
-    # A process for each, since bleak keeps to the bus that it first saw.
+    # A process for each, since bleak keeps the first bus.
     codes += [subprocess.call([sys.executable, __file__, str(batch)]) for batch in BATCHES]
     return max(codes)
 

@@ -1,10 +1,10 @@
-"""Speed of the processing, all in one run on one core: per frame, in batches, and its growth.
+"""Speed of the processing on one core: per frame, in batches, and its growth with the cells.
 
 Run by `make bench`; exits 1 if a goal is missed. Time depends on the machine, so the published way
-runs beside it; processor time is measured, or what else runs would slow the longer of the two more.
+runs beside it. Processor time is measured, since other load would slow down the longer of the two
+more.
 """
 
-import os
 import sys
 import time
 import warnings
@@ -15,40 +15,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from designs import columns_for
-from goals import Goals
-from lumitip import Layout, Optics
-from lumitip.grid import hexagonal_grid, hexagonal_neighbours
+from common import PUBLISHED, Goals, columns_for, layout_of, on_one_core
+from lumitip import Layout
 from lumitip.processing import Processor
 from published_processing import published
 
 Frames = NDArray[np.uint8]
 Pose = tuple[tuple[float, float], float, float]
-PUBLISHED = (5, 4, 5, 4, 5, 4, 5)
 STARTS = (4, 8)  # with eight the published fit finds the best corner in every frame
 TURNS = 4
 SHAPES = ("edge", "corner", "cable")
 CELLS = (32, 128, 512, 2048)
 LIMIT_US, LIMIT_RATIO, LIMIT_BATCH = 100.0, 100.0, 100_000.0
 LIMIT_GROWTH = 1.5  # of the cost of a cell, from 512 cells to 2,048: linear but for caches
-
-
-def layout_of(columns: Sequence[int], pitch_mm: float) -> Layout:
-    """A layout whose wiring does not matter here."""
-    grid = hexagonal_grid(columns, pitch_mm)
-    index = np.arange(grid.x_mm.size)
-    return Layout(
-        grid.x_mm,
-        grid.y_mm,
-        grid.column,
-        grid.row,
-        hexagonal_neighbours(columns),
-        index // 8,
-        index % 8,
-        np.array([f"A{i}" for i in index // 8]),
-        pitch_mm,
-        Optics(2.5, "hexagon", 0.9, 0.9, 1.0, 2.0, 1.41, 0.1, 75e3, 3.3),
-    )
 
 
 def frames_of(layout: Layout, shape: str, count: int) -> tuple[Frames, list[Pose]]:
@@ -85,8 +64,7 @@ def each_us(work: Callable[[Any], object], items: Sequence[Any]) -> float:
 def per_frame() -> tuple[float, float]:
     """Full pipeline against the published way: the slowest median (µs) and the least ratio.
 
-    Both ways take turns, and of each the quickest turn counts: a neighbour on the same processor
-    doubles some seconds, and never halves any.
+    Both ways take turns, and the fastest turn of each counts: other load only slows down.
     """
     layout = layout_of(PUBLISHED, 6.0)
     process = Processor(layout)
@@ -110,7 +88,7 @@ def per_frame() -> tuple[float, float]:
 
 
 def corners() -> None:
-    """How far both ways miss the vertex and the opening of the same corners."""
+    """Errors of both ways in vertex and opening of the same corners."""
     layout = layout_of(PUBLISHED, 6.0)
     process = Processor(layout)
     frames, poses = frames_of(layout, "corner", 100)
@@ -148,8 +126,9 @@ def batches() -> float:
 def growth() -> tuple[float, float]:
     """Time against the number of cells, over the same area; corners take longest.
 
-    Returns how much more a cell costs at the most cells than at the second most, in frames one by
-    one and in batches.
+    Returns:
+        Ratio of the time of a cell with the most cells to that with the second most, for single
+        frames and for batches.
     """
     each = []
     print(f"\n{'cells':>6}{'markers':>9}{'frame µs':>10}{'a cell':>8}{'batch µs':>10}{'a cell':>8}")
@@ -169,19 +148,6 @@ def growth() -> tuple[float, float]:
         )
         each.append((alone / count, many / count))
     return each[-1][0] / each[-2][0], each[-1][1] / each[-2][1]
-
-
-def on_one_core() -> None:
-    """Keep this process, started anew if need be, on one core with one thread of each library.
-
-    Libraries read these variables when they load, which they have; idle threads of theirs on the
-    same core would make the published way look slower than it is.
-    """
-    single = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
-    if not single.items() <= os.environ.items():
-        os.execve(sys.executable, [sys.executable, *sys.argv], {**os.environ, **single})
-    if hasattr(os, "sched_setaffinity"):
-        os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
 
 
 if __name__ == "__main__":

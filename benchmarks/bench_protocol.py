@@ -11,7 +11,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from goals import Goals
+from common import Goals
 from lumitip.protocol import cobs
 from lumitip.protocol.cobs import StreamDecoder
 from lumitip.protocol.packet import Packet, decode, encode, largest_batch

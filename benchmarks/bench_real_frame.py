@@ -1,9 +1,9 @@
 """The published frame of a cloth edge by both methods, and whether they agree.
 
-The publication states no error of its method. It is taken from that method's own words: of all
-edges that it draws where it drew this one, the twin knows where they really lie, and that is how
-far its line is off (a bias) and how sure it is. The fingertips are as wrong as in the other
-benches, and their gap is anything from 2 to 5 mm, for that of this grasp is not published.
+The publication states no error of its method. It is computed with the twin: simulated edges for
+which the method draws a line in the same place have a known true pose, and their mean and
+deviation are bias and uncertainty of the method. The fingertips differ from the expected one as in
+the other benchmarks, with a gap from 2 to 5 mm, since that of this grasp is not published.
 Both methods agree if they are apart by two combined standard deviations at most (95 %), in offset
 and in angle, whatever gap the estimator assumes.
 
@@ -11,14 +11,13 @@ Run by `make bench`; exits 1 if they do not.
 """
 
 import json
-import os
 import sys
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from goals import Goals
+from common import Goals, on_one_core
 from lumitip.estimation import PoseEstimator
 from lumitip.grid import Floats
 from lumitip.layout import Layout
@@ -31,15 +30,15 @@ REAL_FRAMES = Path(__file__).parents[1] / "tests/readout/published_frames.json"
 GAPS_MM = ((2.0, 0.4), (3.0, 0.4), (3.5, 1.0), (4.0, 0.4), (5.0, 0.4))
 """Gaps that the estimator assumes, with their standard deviations (mm)."""
 ANY_GAP_MM = (2.0, 5.0)
-AROUND_MM, AROUND_DEG = 1.5, 10.0  # of the drawn line: where edges are looked for that read so
-ALIKE_MM, ALIKE_DEG = 0.3, 1.0  # as far off a line is drawn alike
+AROUND_MM, AROUND_DEG = 1.5, 10.0  # range of the simulated edges around the drawn line
+ALIKE_MM, ALIKE_DEG = 0.3, 1.0  # largest difference of two lines in the same place
 FINGERS, EDGES = 40, 8000
 AGREE = 2.0  # combined standard deviations, beyond which 5 % lie
 
 
 @dataclass(frozen=True)
 class Stated:
-    """Where a line is and how sure that is: offset (mm), angle (degrees)."""
+    """A line and its standard deviations: offset (mm), angle (degrees)."""
 
     line: Floats
     deviation: Floats
@@ -49,13 +48,13 @@ class Stated:
         return f"{offset:+.2f} ± {offset_sd:.2f} mm, {angle:.1f} ± {angle_sd:.1f}°"
 
     def apart(self, other: "Stated") -> float:
-        """From another in combined standard deviations, of offset or angle what is more."""
+        """Distance in combined standard deviations: the larger of offset and angle."""
         away = np.abs(self.line - other.line) / np.hypot(self.deviation, other.deviation)
         return float(away.max())
 
 
 def stated_by(method: Method, layout: Layout, drawn: Line) -> tuple[Stated, int]:
-    """Where edges really are of which a method draws a line, and how many such were found."""
+    """True place of the edges for which a method draws a line, and their number."""
     chance, found = np.random.default_rng(5), []
     for seed in range(FINGERS):
         twin = wrong_twin(layout, seed, ANY_GAP_MM)
@@ -69,7 +68,7 @@ def stated_by(method: Method, layout: Layout, drawn: Line) -> tuple[Stated, int]
 
 
 def without_single_cells_deg(layout: Layout, gap_mm: float, values: Floats) -> float:
-    """Deviation of the angle by the jackknife: every cell left out in turn."""
+    """Deviation of the angle by the jackknife: each cell left out in turn."""
     estimator, cells = PoseEstimator(layout, gap_mm=gap_mm), range(len(values))
     estimates = [
         estimator(np.where(np.arange(len(values)) == c, np.nan, values), "edge") for c in cells
@@ -112,6 +111,5 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    if hasattr(os, "sched_setaffinity"):
-        os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
+    on_one_core()
     sys.exit(main())

@@ -1,28 +1,22 @@
 """Speed of the twin on one core: scenes one by one, in batches, from tables, and up to 512 cells.
 
 Run by `make bench`. A reading is one cell of one frame. Published simulators of tactile sensors
-give speeds for rendered images of many thousand pixels, so frames a second do not compare; nor do
-readings, each of which stands here for some thousand rays that were traced once.
+render images of many thousand pixels, so neither frames nor readings a second compare; a reading
+here stands for some thousand rays that were traced once.
 """
 
-import os
 import sys
 import time
 from collections.abc import Callable
 
 import numpy as np
 
-from designs import columns_for
-from goals import Goals
-from lumitip import Layout, Optics
-from lumitip.grid import hexagonal_grid, hexagonal_neighbours
+from common import PUBLISHED, Goals, columns_for, layout_of, on_one_core
 from lumitip.twin import Cable, Corner, HalfPlane, Image, Polygon, Sheet, Twin
 
-PUBLISHED = (5, 4, 5, 4, 5, 4, 5)
 CELLS = (32, 128, 512)
 GOAL_SCENES, GOAL_BATCH = 10_000.0, 50_000.0
 BATCH = 256
-THREADS = "OPENBLAS_NUM_THREADS"
 STAR = [
     (
         9.0 * (1.0 - 0.5 * (i % 2)) * np.cos(i * np.pi / 5),
@@ -30,24 +24,6 @@ STAR = [
     )
     for i in range(10)
 ]
-
-
-def layout_of(columns: tuple[int, ...]) -> Layout:
-    """A layout whose wiring does not matter here."""
-    grid = hexagonal_grid(columns, 6.0)
-    index = np.arange(grid.x_mm.size)
-    return Layout(
-        grid.x_mm,
-        grid.y_mm,
-        grid.column,
-        grid.row,
-        hexagonal_neighbours(columns),
-        index // 8,
-        index % 8,
-        np.array([f"A{i}" for i in index // 8]),
-        6.0,
-        Optics(2.5, "hexagon", 0.9, 0.9, 1.0, 2.0, 1.41, 0.1, 75e3, 3.3),
-    )
 
 
 def each_s(work: Callable[[int], object], seconds: float = 0.4) -> float:
@@ -71,7 +47,7 @@ def timed(name: str, frames: float, seconds: float, cells: int) -> float:
 
 
 def scenes(twin: Twin) -> tuple[float, float]:
-    """One by one and in batches; the least rate of moving scenes, and that of drawn batches."""
+    """Scenes one by one and in batches; the least rate of moving scenes, and that of batches."""
     cells = len(twin.layout)
     poses = [(x, 30.0 * np.sin(x)) for x in np.linspace(-6.0, 6.0, 64).tolist()]
     drawn = Image.of(Polygon(STAR))
@@ -116,7 +92,7 @@ def main() -> int:
     """Print everything; the exit code."""
     rates = (0.0, 0.0)
     for cells in CELLS:
-        layout = layout_of(PUBLISHED if cells == 32 else columns_for(cells))
+        layout = layout_of(PUBLISHED if cells == 32 else columns_for(cells), 6.0)
         begun = time.process_time()
         twin = Twin(layout)
         twin.plane(), twin.edge_table(), twin.cable_table()
@@ -130,9 +106,5 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    if os.environ.get(THREADS) != "1":
-        # NumPy asks for threads as it is imported, and several of them on one core wait in turn.
-        os.execve(sys.executable, [sys.executable, *sys.argv], os.environ | {THREADS: "1"})
-    if hasattr(os, "sched_setaffinity"):
-        os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
+    on_one_core()
     sys.exit(main())

@@ -1,8 +1,8 @@
 """The live view at 200 Hz in Chromium: age of the frames when drawn, cost, memory over time.
 
-Run by `make bench`; exits 1 if a goal is missed. `bench_view.py 300` runs for five minutes. An age
-reaches from reading the cells to the server's hearing that the frame is on the canvas, the way
-there and back included. Server and browser share this machine, and the browser draws without a GPU.
+Run by `make bench`; exits 1 if a goal is missed. `bench_view.py 300` runs for five minutes. The age
+of a frame is the time from reading the cells until the server is informed that it is drawn. Server
+and browser share this machine, and the browser draws without a GPU.
 """
 
 import os
@@ -15,7 +15,7 @@ from pathlib import Path
 
 from playwright.sync_api import Page, sync_playwright
 
-from goals import Goals
+from common import Goals
 from lumitip.view.finger import Finger
 from lumitip.view.registry import FingerRegistry
 from lumitip.view.server import ViewServer
@@ -28,7 +28,7 @@ _PAGE = os.sysconf("SC_PAGE_SIZE")
 
 
 def offspring(pid: int) -> list[int]:
-    """All processes below this one that are Chromium's."""
+    """All child processes of Chromium."""
     found = []
     for entry in Path("/proc").glob("[0-9]*"):
         try:
@@ -42,7 +42,7 @@ def offspring(pid: int) -> list[int]:
 
 
 def usage(pids: list[int]) -> tuple[float, float]:
-    """CPU time (s) and resident memory (MB) of processes, shared pages counted in each."""
+    """CPU time (s) and resident memory (MB) of processes; shared pages count in each."""
     ticks = pages = 0
     for pid in pids:
         fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
@@ -52,8 +52,8 @@ def usage(pids: list[int]) -> tuple[float, float]:
 
 
 def measure(page: Page, fingers: list[Finger], seconds: float) -> tuple[list[float], int]:
-    """Print a row for each interval; returns the p99 of all but the first (ms), and how many frames
-    were lost."""
+    """Print a row for each interval; returns the p99 of all but the first (ms), and the number of
+    lost frames."""
     print(
         f"{'after':>7}{'age p50':>9}{'p99':>8}{'pictures':>10}{'skipped':>9}{'lost':>6}"
         f"{'server':>9}{'':>8}{'browser':>9}{'':>8}{'heap':>8}{'load':>6}"

@@ -1,7 +1,7 @@
-"""Frames of known poses by right and wrong fingertips, and the methods that are held against them.
+"""Frames of known poses from right and wrong fingertips, and the methods to compare.
 
-A wrong fingertip is another than the estimator expects: gap ± 0.5 mm, detector exponent ± 0.6,
-scattered share ± 0.2, hole ± 5 %, and 6 % of spread in the cells' gains.
+A wrong fingertip differs from the expected one: gap ± 0.5 mm, detector exponent ± 0.6, scattered
+share ± 0.2, hole ± 5 %, and 6 % of spread in the cells' gains.
 """
 
 from collections.abc import Callable
@@ -24,7 +24,7 @@ Method = Callable[[Floats, str], Line | None]
 
 @dataclass(frozen=True)
 class Trial:
-    """One frame and the pose it is of."""
+    """A frame with its true pose."""
 
     pose: Line
     values: Floats
@@ -39,7 +39,7 @@ def scene(kind: str, pose: Line) -> Scene:
 def wrong_model(
     layout: Layout, chance: np.random.Generator, gaps_mm: tuple[float, float] = (2.5, 3.5)
 ) -> Model:
-    """Optics that differ from what the estimator expects."""
+    """Optics that differ from the expected ones."""
     return Model.from_layout(
         layout,
         gap_mm=chance.uniform(*gaps_mm),
@@ -50,7 +50,7 @@ def wrong_model(
 
 
 def wrong_twin(layout: Layout, seed: int, gaps_mm: tuple[float, float] = (2.5, 3.5)) -> Twin:
-    """A finger pair as wrong as the wrong-optics columns allow."""
+    """A finger pair with wrong optics and gains."""
     chance = np.random.default_rng((1, seed))
     gains = 1.0 + GAINS * chance.standard_normal(len(layout))
     return Twin(layout, wrong_model(layout, chance, gaps_mm), gains=np.maximum(gains, 0.5))
@@ -59,12 +59,12 @@ def wrong_twin(layout: Layout, seed: int, gaps_mm: tuple[float, float] = (2.5, 3
 def frames(twins: list[Twin], kind: str, count: int, seed: int) -> list[Trial]:
     """Frames of random poses, in whole counts."""
     chance = np.random.default_rng(seed)
-    made = []
+    trials = []
     for number in range(count):
         twin = twins[number * len(twins) // count]
         pose = (chance.uniform(-OFFSET_MM, OFFSET_MM), chance.uniform(-ANGLE_DEG, ANGLE_DEG))
-        made.append(Trial(pose, read(twin, scene(kind, pose), chance)))
-    return made
+        trials.append(Trial(pose, read(twin, scene(kind, pose), chance)))
+    return trials
 
 
 def read(twin: Twin, of: Scene, chance: np.random.Generator) -> Floats:
@@ -100,17 +100,17 @@ def estimated(estimator: PoseEstimator) -> Method:
 
 
 def misses(method: Method, trials: list[Trial], kind: str) -> Floats:
-    """Offset (mm) and angle (degrees) that each frame is missed by, shape `(n, 2)`."""
+    """Errors of offset (mm) and angle (degrees) for each frame, shape `(n, 2)`."""
     rows = []
     for trial in trials:
         found = method(trial.values, kind) or (np.inf, np.inf)
         turn = found[1] - trial.pose[1]
-        if abs(turn) > 90.0:  # the same line the other way round
+        if abs(turn) > 90.0:  # the same line reversed
             found, turn = (-found[0], found[1]), (turn + 90.0) % 180.0 - 90.0
         rows.append((abs(found[0] - trial.pose[0]), abs(turn)))
     return np.array(rows)
 
 
 def gross(missed: Floats) -> np.ndarray:
-    """Which frames are missed by far, shape `(n,)`."""
+    """Mask of the frames with a gross error, shape `(n,)`."""
     return np.asarray((missed[:, 0] > GROSS_MM) | (missed[:, 1] > GROSS_DEG))

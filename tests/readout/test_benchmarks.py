@@ -11,7 +11,7 @@ ROOT = Path(__file__).parents[2]
 
 
 def _goals():
-    spec = importlib.util.spec_from_file_location("goals", ROOT / "benchmarks" / "goals.py")
+    spec = importlib.util.spec_from_file_location("common", ROOT / "benchmarks" / "common.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module.Goals()
