@@ -1,4 +1,4 @@
-"""A fingertip in an asyncio program, beside whatever else it does.
+"""Read a fingertip in an asyncio program.
 
 python examples/asyncio_frames.py twin://disc
 """
@@ -13,7 +13,7 @@ if len(sys.argv) == 1:
 
 
 async def main(url: str, *layout: str) -> None:
-    """Print frames until there were twenty."""
+    """Print twenty frames."""
     async with AsyncFingertip.open(url, *layout) as tip:
         number = 0
         async for frame in tip:

@@ -1,4 +1,4 @@
-"""A function that is called with every frame, on a thread of its own.
+"""Call a function with every frame, in a separate thread.
 
 python examples/callbacks.py twin://corner
 """
@@ -13,7 +13,7 @@ if len(sys.argv) == 1:
 
 
 def frame_came(frame: Frame) -> None:
-    """Slow work is fine here: frames wait, and what had to make room is counted."""
+    """Slow work is allowed here: frames wait in a queue, and dropped ones are counted."""
     print(f"{frame.seq:6}  {(frame.values < 128).sum():2} cells covered")
 
 

@@ -17,13 +17,13 @@ with Fingertip.open(url, layout=sys.argv[3] if len(sys.argv) > 3 else None) as t
     track = Tracker(tip.layout)
     for frame in islice(tip.frames(timeout=2.0), count):
         contact = track(frame.values)
-        said = contact.shape
+        text = contact.shape
         if contact.centre_mm is not None:
-            said += " at {:.1f}, {:.1f} mm".format(*contact.centre_mm)
+            text += " at {:.1f}, {:.1f} mm".format(*contact.centre_mm)
         if contact.shape == "edge" and contact.line is not None:
-            said += f", {contact.line.angle_deg:.0f}°"
+            text += f", {contact.line.angle_deg:.0f}°"
         elif contact.shape == "corner" and contact.corner is not None:
-            said += f", opens {contact.corner.opening_deg:.0f}°"
+            text += f", opens {contact.corner.opening_deg:.0f}°"
         elif contact.shape == "cable" and contact.cable is not None:
-            said += f", {contact.cable.angle_deg:.0f}°, {contact.cable.width_mm:.1f} mm wide"
-        print(f"{frame.seq:6} {said}")
+            text += f", {contact.cable.angle_deg:.0f}°, {contact.cable.width_mm:.1f} mm wide"
+        print(f"{frame.seq:6} {text}")

@@ -1,4 +1,4 @@
-"""Thresholds, dark centres and markers of a whole recording at once.
+"""Compute thresholds, dark centres and markers of a whole recording at once.
 
 python examples/processing_batch.py run.mcap
 """

@@ -1,4 +1,4 @@
-"""A Bluetooth fingertip in a control loop: the freshest frame at each step, and what happens.
+"""Read a Bluetooth fingertip in a control loop: the newest frame at each step, and link events.
 
 python examples/read_bluetooth.py ble://Lumitip outputs/layout.json
 """

@@ -1,4 +1,4 @@
-"""The next frames of a fingertip, in order, with what was lost.
+"""Print the next frames of a fingertip, in order, and the number of lost ones.
 
 python examples/read_frames.py twin://cable
 python examples/read_frames.py ble://Lumitip outputs/layout.json

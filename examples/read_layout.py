@@ -1,4 +1,4 @@
-"""Where the cells of a built fingertip are, and how each is wired. Needs numpy alone.
+"""Print places and wiring of the cells of a built fingertip. Needs numpy alone.
 
 python examples/read_layout.py outputs/layout.json
 """

@@ -1,4 +1,4 @@
-"""A fingertip on USB: a block of frames as arrays, and how the line does.
+"""Read a USB fingertip: a block of frames as arrays, and statistics of the link.
 
 python examples/read_serial.py serial:///dev/ttyACM0 outputs/layout.json
 """

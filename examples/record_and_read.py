@@ -1,4 +1,4 @@
-"""Record two seconds of a fingertip, and read them back. Any ROS 2 tool opens the file too.
+"""Record two seconds of a fingertip and read them back. ROS 2 tools can open the file too.
 
 python examples/record_and_read.py twin://demo run.mcap
 """

@@ -2,9 +2,9 @@
 
     python examples/ros2_node.py --ros-args -p url:=ble://Lumitip -p layout:=outputs/layout.json
 
-~/values (std_msgs/Float32MultiArray) is the light of every cell, 255 is full light; ~/centre
-(geometry_msgs/PointStamped) the dark centre, in metres in the sensor frame: each dark cell is
-weighted with 255 - value, so the darkest weighs most.
+~/values (std_msgs/Float32MultiArray) is the light of every cell, 255 is full light. ~/centre
+(geometry_msgs/PointStamped) is the dark centre, in metres in the sensor frame: the mean of the dark
+cells, each weighted with 255 - value.
 """
 
 import rclpy
@@ -33,7 +33,7 @@ class FingertipNode(Node):
         self.tip.subscribe(self.publish)  # publishers may be used from any thread
 
     def publish(self, frame: Frame) -> None:
-        """Publish one frame, stamped with when its cells were read."""
+        """Publish one frame, with the time at which its cells were read."""
         self.values.publish(Float32MultiArray(data=frame.values.tolist()))
         contact = self.processor(frame.values)
         if contact.centre_mm is None:
@@ -46,7 +46,7 @@ class FingertipNode(Node):
         self.centre.publish(point)
 
     def destroy_node(self) -> None:
-        """Disconnect, then go."""
+        """Disconnect, then destroy the node."""
         self.tip.close()
         super().destroy_node()
 

@@ -1,6 +1,6 @@
-"""Follow a simulated cable in real time, to be seen in the live view.
+"""Follow a simulated cable in real time, with a live view.
 
-python examples/trace_cable.py 80 8642     speed in mm/s; port of the live view, without it none
+python examples/trace_cable.py 80 8642     speed in mm/s; port of the live view (optional)
 """
 
 import sys

@@ -1,5 +1,5 @@
-"""Follow a simulated cable in real time with a UR arm, which moves for real. Untried on an arm:
-read docs/robots.md first, keep a hand on the emergency stop and nothing near the arm.
+"""Follow a simulated cable in real time with a real UR arm. Untried on an arm: read docs/robots.md
+first, keep a hand on the emergency stop, and keep the surroundings of the arm free.
 
 python examples/trace_cable_ur.py 192.168.0.10 40     address of the arm; speed in mm/s
 """

@@ -1,6 +1,6 @@
-"""Follow the edge of a simulated cloth in real time and stop at its corner, in the live view.
+"""Follow the edge of a simulated cloth in real time and stop at its corner, with a live view.
 
-python examples/trace_cloth.py 80 8642     speed in mm/s; port of the live view, without it none
+python examples/trace_cloth.py 80 8642     speed in mm/s; port of the live view (optional)
 """
 
 import sys

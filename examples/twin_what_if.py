@@ -1,4 +1,4 @@
-"""How sharp an edge is at other gaps and holes: what a designer asks before printing a mask.
+"""Sharpness of an edge at other gaps and holes, before a mask is printed.
 
 python examples/twin_what_if.py outputs/layout.json
 """

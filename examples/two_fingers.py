@@ -1,4 +1,4 @@
-"""Two fingertips read together, their frames aligned in time.
+"""Read two fingertips together, with their frames aligned in time.
 
 python examples/two_fingers.py twin://disc "twin://edge?rate=60"
 python examples/two_fingers.py ble://C0:FF:EE:00:00:01 ble://C0:FF:EE:00:00:02 outputs/layout.json
