@@ -296,5 +296,5 @@ def _same_shape(**arrays: ArrayLike) -> Sequence[Floats]:
     shapes = {of.shape for of in values.values()} - {(1,)}
     if len(shapes) > 1 or any(of.ndim != 1 or not np.isfinite(of).all() for of in values.values()):
         found = ", ".join(f"{name} of shape {of.shape}" for name, of in values.items())
-        raise TwinError(f"{found}: all must have the same number of finite numbers, or one")
+        raise TwinError(f"{found}: arrays of one length, of finite numbers, are needed")
     return np.broadcast_arrays(*values.values())
