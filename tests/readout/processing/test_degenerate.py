@@ -180,5 +180,5 @@ def test_values_of_no_sensor_are_left_out_without_a_word(layout: Layout, huge: f
 @pytest.mark.parametrize("values", [["a"] * 32, [[1, 2], [3]], [1j] * 32, [10**400] * 32, {}])
 def test_what_is_no_number_is_refused(layout: Layout, values: Any) -> None:
     for ask in (Processor(layout), Processor(layout).batch):
-        with pytest.raises(ValuesError, match="numbers of one shape are needed"):
+        with pytest.raises(ValuesError, match="an array of numbers is needed"):
             ask(values)
