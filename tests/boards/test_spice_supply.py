@@ -20,7 +20,7 @@ def _derived(design_dir: Path, preset: str) -> Design:
 
 def _netlist(design: Design) -> str:
     (carrier,) = design.regulated
-    (made,) = supply_simulation(design.title, carrier, design.electrical)
+    (made,) = supply_simulation(design, carrier)
     assert made.path == f"boards/{carrier.name}/{carrier.name}.cir"
     return made.data.decode()
 
@@ -74,4 +74,4 @@ def test_a_board_without_a_regulator_has_no_netlist(design_dir: Path) -> None:
     (flange,) = design.regulated
     assert [c.name for c in design.carriers if c != flange] == ["breakout"]
     names = [task.name for task in tasks(STEPS, design) if task.step.name == "supply_spice"]
-    assert names == [f"supply_simulation.{flange.name}"]
+    assert names == [f"supply_spice.{flange.name}"]

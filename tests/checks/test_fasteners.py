@@ -9,7 +9,7 @@ from damages import failing
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from lumitip_fab.derive.making import fits
-from lumitip_fab.derive.mount import flange_body, holder
+from lumitip_fab.derive.mount import flange_body, holder, rules
 from lumitip_fab.design import Design
 from lumitip_fab.design.encoding import design_text
 from lumitip_fab.parts.backing import backing
@@ -38,7 +38,7 @@ def nuts_tight(patch: pytest.MonkeyPatch) -> None:
 
 def screws_long(patch: pytest.MonkeyPatch) -> None:
     patch.setattr(holder, "screw_length_mm", lambda *_: 14.0)
-    patch.setattr(holder, "_refuse_nuts", lambda *_: None)
+    patch.setattr(rules, "_refuse_nuts", lambda *_: None)
 
 
 # Recess, pins and peg are measured against what they meet too.

@@ -148,15 +148,7 @@ def test_a_rim_that_was_drawn_for_another_fit_is_told(fitted: Derived, tmp_path:
     """The gap is measured against glue and fit, not against what was drawn."""
     design = fitted(0.1, COMPLIANT)
     for finger in design.fingers:
-        for made in backing_files(
-            finger,
-            design.stack,
-            design.outline,
-            design.tip,
-            design.board,
-            design.mount,
-            design.interfaces,
-        ):
+        for made in backing_files(design, finger):
             (tmp_path / made.path).parent.mkdir(exist_ok=True)
             (tmp_path / made.path).write_bytes(made.data)
     (tmp_path / "design.json").write_text(design_text(design), encoding="utf-8")

@@ -146,7 +146,7 @@ def test_what_must_not_bend_is_printed_from_another_filament(config: Input, tmp_
 
 @pytest.mark.parametrize("other", ["TPU 98A", "wood"])
 def test_a_filament_for_rigid_parts_must_be_one(config: Input, other: str) -> None:
-    with pytest.raises(InputError, match=f"rigid_parts '{other}' is no filament"):
+    with pytest.raises(InputError, match=f"whose rigid_parts is '{other}'; the name of a filament"):
         derive(_with(config, "TPU 98A", rigid_parts=other))
 
 

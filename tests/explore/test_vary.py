@@ -70,7 +70,7 @@ def test_every_fault_of_every_text_is_told_at_once(config: Input) -> None:
         "is 'none', which does not exist",
         "Names in parts/leds.toml:",
         "is 9; at most 5 is allowed",
-        "tip.edge_mm: is there twice",
+        "tip.edge_mm is there twice",
         "is an empty list",
         "is 'inf:3'; FROM",
     ):

@@ -104,6 +104,6 @@ def test_the_command_adds_the_rows(
 
 def test_a_model_that_is_missing_is_told(damaged: Path) -> None:
     design = read_design(damaged / "design.json")
-    (damaged / "robot/lumitip.urdf").unlink()
-    with pytest.raises(OutputError, match="cannot be read"):
+    (damaged / "flange/flange_lower.stl").unlink()
+    with pytest.raises(OutputError, match="no such file"):
         built_rows(damaged, design)

@@ -23,19 +23,7 @@ def _builds_come_first(built: Callable[[str], Path]) -> None:
 
 
 def test_the_same_design_gives_the_same_files_in_any_process(outputs: Path) -> None:
-    d = read_design(outputs / "design.json")
-    made = assembly.assembly(
-        d.stack,
-        d.outline,
-        d.tip,
-        d.board,
-        d.emitter,
-        d.receiver,
-        d.mount,
-        d.closing,
-        d.mould,
-        d.interfaces,
-    )
+    made = assembly.assembly(read_design(outputs / "design.json"))
     assert [a.path for a in made] == [
         "assembly/assembly.step",
         "assembly/assembly.glb",

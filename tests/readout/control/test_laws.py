@@ -149,5 +149,5 @@ def test_a_tracer_turns_earlier_with_a_lead() -> None:
     assert commands[1].rotation_rad_s > commands[0].rotation_rad_s > 0.0
     ahead.reset()
     assert ahead(_edge(0.0, 4.0), DT_S) == plain.law(sight_of(_edge(0.0, 4.0)))
-    with pytest.raises(ControlError, match=r"lead_s: -0\.1"):
+    with pytest.raises(ControlError, match=r"lead_s is -0\.1"):
         Tracer(LineLaw(), lead_s=-0.1)

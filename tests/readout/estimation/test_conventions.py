@@ -130,7 +130,7 @@ def test_what_cannot_be_asked_for_is_refused(estimator: PoseEstimator, cells: La
         PoseEstimator(cells, gap_sd_mm=-0.1)
     with pytest.raises(EstimationError, match="32 numbers above 0"):
         PoseEstimator(cells, gains=np.ones(31))
-    with pytest.raises(EstimationError, match="move an object"):
+    with pytest.raises(EstimationError, match="Move an object"):
         learn(cells, np.full((50, 32), 255.0))
     with pytest.raises(EstimationError, match="0 frames"):
         learn(cells, np.empty((0, 32)))

@@ -74,6 +74,6 @@ def test_absurd_limits_are_refused_all_at_once() -> None:
         ArmLimits(speed_mm_s=900.0, force_n=-1.0, stale_s=float("nan"), watchdog_hz=1.0)
     told = str(refused.value)
     assert "speed_mm_s is 900.0; allowed is above 0 up to 250 (the reduced speed" in told
-    assert "force_n: -1.0" in told and "stale_s: nan" in told
+    assert "force_n is -1.0" in told and "stale_s is nan" in told
     assert "watchdog_hz is 1.0; allowed is 2 to 50" in told
     assert ArmLimits(speed_mm_s=250.0, watchdog_hz=2.0).acceleration_mm_s2 == 500.0
