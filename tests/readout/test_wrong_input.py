@@ -292,5 +292,5 @@ def test_what_is_seen_and_commanded_in_a_task(twin: Twin) -> None:
     with pytest.raises(TaskError, match="allowed are centre, line, pose"):
         Bench(task).run("lines", 80.0, Tuning(), 0)
     other = replace(CELLS, x_mm=CELLS.x_mm + 1.0)
-    with pytest.raises(TaskError, match="give a twin of this layout"):
+    with pytest.raises(TaskError, match="Use a twin of this layout"):
         Task(other, twin=twin)
