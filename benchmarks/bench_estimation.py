@@ -55,21 +55,11 @@ def bound(twin: Twin, kind: str, trials: list[Trial]) -> tuple[float, float]:
     rows = []
     for trial in trials:
         offset, angle = trial.pose
-        light = twin.values(scene(kind, trial.pose))
-        slopes = [
-            (
-                twin.values(scene(kind, (offset + 0.05, angle)))
-                - twin.values(scene(kind, (offset - 0.05, angle)))
-            )
-            / 0.1,
-            (
-                twin.values(scene(kind, (offset, angle + 0.3)))
-                - twin.values(scene(kind, (offset, angle - 0.3)))
-            )
-            / 0.6,
-            light,
-            255.0 - light,
-        ]
+        steps = ((0.0, 0.0), (0.05, 0.0), (-0.05, 0.0), (0.0, 0.3), (0.0, -0.3))
+        light, right, left, up, down = (
+            twin.values(scene(kind, (offset + by_mm, angle + by_deg))) for by_mm, by_deg in steps
+        )
+        slopes = [(right - left) / 0.1, (up - down) / 0.6, light, 255.0 - light]
         jacobian = np.stack(slopes, axis=1) / noise
         known = np.diag([1.0, 1.0 / 5.0**2, 100.0, 1.0])
         rows.append(np.diag(np.linalg.inv(jacobian.T @ jacobian + known))[:2])

@@ -26,19 +26,11 @@ LEFT, WORST = 0.75, 1.0  # limit of the remaining rms offset, as a share: all fi
 def ordinary_use(twin: Twin, seed: int) -> Floats:
     """Edges in any direction, shape `(n, cells)`."""
     chance = np.random.default_rng(seed)
-    return np.array(
-        [
-            read(
-                twin,
-                HalfPlane(
-                    offset_mm=chance.uniform(-OFFSET_MM, OFFSET_MM),
-                    angle_deg=chance.uniform(-180.0, 180.0),
-                ),
-                chance,
-            )
-            for _ in range(SEEN)
-        ]
+    edges = (
+        HalfPlane(chance.uniform(-OFFSET_MM, OFFSET_MM), chance.uniform(-180.0, 180.0))
+        for _ in range(SEEN)
     )
+    return np.array([read(twin, edge, chance) for edge in edges])
 
 
 def rms(estimator: PoseEstimator, twin: Twin, kind: str, poses: int, seed: int) -> Floats:

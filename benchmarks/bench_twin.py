@@ -18,11 +18,8 @@ CELLS = (32, 128, 512)
 GOAL_SCENES, GOAL_BATCH = 10_000.0, 50_000.0
 BATCH = 256
 STAR = [
-    (
-        9.0 * (1.0 - 0.5 * (i % 2)) * np.cos(i * np.pi / 5),
-        9.0 * (1.0 - 0.5 * (i % 2)) * np.sin(i * np.pi / 5),
-    )
-    for i in range(10)
+    (radius * np.cos(i * np.pi / 5), radius * np.sin(i * np.pi / 5))
+    for i, radius in enumerate([9.0, 4.5] * 5)
 ]
 
 
@@ -39,9 +36,9 @@ def each_s(work: Callable[[int], object], seconds: float = 0.4) -> float:
     return min(means)
 
 
-def timed(name: str, frames: float, seconds: float, cells: int) -> float:
+def timed(name: str, cells: int, work: Callable[[int], object], frames: int = 1) -> float:
     """Print a line; returns frames a second."""
-    rate = frames / seconds
+    rate = frames / each_s(work)
     print(f"{name:<46}{rate:>12,.0f}{rate * cells:>14,.0f}")
     return rate
 
@@ -52,15 +49,14 @@ def scenes(twin: Twin) -> tuple[float, float]:
     poses = [(x, 30.0 * np.sin(x)) for x in np.linspace(-6.0, 6.0, 64).tolist()]
     drawn = Image.of(Polygon(STAR))
     stars = [np.add(STAR, (x, -x / 2.0)) for x, _ in poses]
-    corner = lambda i: Corner(*poses[i % 64], -80.0, 90.0)  # noqa: E731
     print(f"{f'{cells} cells':<46}{'frames/s':>12}{'readings/s':>14}")
     moving = [
-        timed(name, 1, each_s(lambda i, make=make: twin.values(make(i))), cells)
+        timed(name, cells, lambda i, make=make: twin.values(make(i)))
         for name, make in {
             "edge, by its table": lambda i: HalfPlane(*poses[i % 64]),
             "cable, exact cylinder, by its table": lambda i: Cable(*poses[i % 64]),
             "curved cable, by its table": lambda i: Cable(*poses[i % 64], 0.02),
-            "corner, on the raster": corner,
+            "corner, on the raster": lambda i: Corner(*poses[i % 64], -80.0, 90.0),
             "any drawn shape that moves, on the raster": lambda i: drawn.at(
                 poses[i % 64][0], 1.0, poses[i % 64][1]
             ),
@@ -68,23 +64,17 @@ def scenes(twin: Twin) -> tuple[float, float]:
             "corner of cloth that scatters": lambda i: Corner(*poses[i % 64], diffuse=0.3),
         }.items()
     ]
-    mixed = lambda i: twin.values([Cable(*poses[i % 64]), Sheet(clear=0.5)])  # noqa: E731
-    timed("cable on cloth, ray by ray", 1, each_s(mixed), cells)
-    at = twin.plane()
-    coverage = np.random.default_rng(0).random((BATCH, at.x_mm.size), dtype=np.float32)
-    batch = timed(
-        f"batch of {BATCH} coverages of {at.x_mm.size} pixels",
-        BATCH,
-        each_s(lambda _: twin.batch(coverage)),
-        cells,
-    )
-    offset, angle = np.array(poses * (BATCH // 64)).T
+    cloth = Sheet(clear=0.5)
     timed(
-        f"batch of {BATCH} edges, by their table",
-        BATCH,
-        each_s(lambda _: twin.edges(offset, angle)),
-        cells,
+        "cable on cloth, ray by ray", cells, lambda i: twin.values([Cable(*poses[i % 64]), cloth])
     )
+    pixels = twin.plane().x_mm.size
+    coverage = np.random.default_rng(0).random((BATCH, pixels), dtype=np.float32)
+    name = f"batch of {BATCH} coverages of {pixels} pixels"
+    batch = timed(name, cells, lambda _: twin.batch(coverage), BATCH)
+    offset, angle = np.array(poses * (BATCH // 64)).T
+    edges = f"batch of {BATCH} edges, by their table"
+    timed(edges, cells, lambda _: twin.edges(offset, angle), BATCH)
     return min(moving), batch
 
 

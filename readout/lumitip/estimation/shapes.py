@@ -70,12 +70,10 @@ class Edge:
         self._cells, self._table = cells, table
 
     def shares(self, poses: Floats, drift: Floats = _EXPECTED) -> Floats:
-        """See `Shape`."""
         left = self._cells.beside(poses[:, 0], poses[:, 1])
         return self._table.shares(poses[:, :1], left, drift)
 
     def slopes(self, pose: Floats) -> tuple[Floats, Floats]:
-        """See `Shape`."""
         angle = pose[0]
         left, ahead = self._cells.about(angle, pose[1])
         share, by_left, by_angle, by_drift = self._table(pose[:1], left, pose[2:-2])
@@ -83,7 +81,6 @@ class Edge:
         return share, np.array([turning, -by_left, *by_drift])
 
     def priors(self) -> tuple[Floats, Floats]:
-        """See `Shape`."""
         return np.array([0.0, 0.0]), np.array([np.inf, np.inf])
 
 
@@ -108,7 +105,6 @@ class Cable:
         return self._table.shares(poses[:, :1], left, drift)
 
     def slopes(self, pose: Floats) -> tuple[Floats, Floats]:
-        """See `Shape`."""
         left, ahead = self._cells.about(pose[0], pose[1])
         share, by_left, by_angle, by_width, by_drift = self._beside(pose, pose[:1], left)
         turning = by_angle - by_left * ahead
@@ -153,7 +149,6 @@ class Bent(Cable):
     names: tuple[str, ...] = (*Cable.names, "curvature_per_mm")
 
     def slopes(self, pose: Floats) -> tuple[Floats, Floats]:
-        """See `Shape`."""
         bend = pose[3]
         left, ahead = self._cells.about(pose[0], pose[1])
         # From the centre of the circle, in radii: across the line, along it, and the distance.
@@ -193,7 +188,6 @@ class Corner:
         self._cells, self._table = cells, table
 
     def shares(self, poses: Floats, drift: Floats = _EXPECTED) -> Floats:
-        """See `Shape`."""
         angles, offsets = self.borders(poses.T)
         one, two = (
             self._table.shares(a[:, None], self._cells.beside(a, o), drift)
@@ -202,7 +196,6 @@ class Corner:
         return one * two
 
     def slopes(self, pose: Floats) -> tuple[Floats, Floats]:
-        """See `Shape`."""
         angles, offsets = self.borders(pose)
         left = self._cells.beside(angles, offsets)
         shares, by_left, by_angle, by_drift = self._table(angles[:, None], left, pose[4:-2])

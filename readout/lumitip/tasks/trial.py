@@ -101,7 +101,6 @@ class Team:
     def run_all(
         self, controller: str, speed_mm_s: float, tuning: Tuning, seeds: Iterable[int]
     ) -> list[Metrics]:
-        """See `Bench`."""
         run = partial(_run, self._layout, self._settings, controller, speed_mm_s, tuning)
         return list(self._pool.map(run, seeds))
 

@@ -85,7 +85,6 @@ class Shape(Thing):
         """Distance of places from the border, negative inside the object (mm)."""
 
     def coverage(self, x_mm: Numbers, y_mm: Numbers, pixel_mm: float = PIXEL_MM) -> Numbers:
-        """See `Thing`."""
         return covered(self.signed_distance_mm(x_mm, y_mm), pixel_mm)
 
     def layers(self, x_mm: Numbers, y_mm: Numbers, pixel_mm: float = PIXEL_MM) -> Sequence[Numbers]:
@@ -143,7 +142,6 @@ class HalfPlane(Line):
     """A sheet whose edge is the line: it covers everything right of it."""
 
     def signed_distance_mm(self, x_mm: Numbers, y_mm: Numbers) -> Numbers:
-        """See `Shape`."""
         return self.left_mm(x_mm, y_mm)
 
 
@@ -217,7 +215,6 @@ class Disc(Shape):
         arguments.number(self.diameter_mm, "diameter_mm", above=0.0, error=TwinError)
 
     def signed_distance_mm(self, x_mm: Numbers, y_mm: Numbers) -> Numbers:
-        """See `Shape`."""
         away: Numbers = np.hypot(x_mm - self.x_mm, y_mm - self.y_mm) - self.diameter_mm / 2.0
         return away
 
