@@ -15,7 +15,7 @@ _LARGEST = math.radians(70.0)  # predicted angle
 _ARRIVED_MM = 0.3
 _APPROACH_PER_S = 6.0
 _STEEPEST_DEG = 80.0  # a line across the way of the finger cannot be followed
-_CORNER_DEG = 30.0  # a corner opens by a right angle within this; what is flatter is a curve
+_CORNER_DEG = 30.0  # largest deviation of a corner from a right angle; flatter ones are curves
 _CORNER_MM = 13.0  # a vertex further from the middle is not seen by enough cells
 _BEARABLE = frozenset({"misfit", "unfinished", "ambiguous"})
 
@@ -147,9 +147,8 @@ class Tracer:
         if not callable(law):
             raise ControlError(f"law is {shown(law)}; a law like LineLaw(80.0) is needed")
         self.law = law
-        self.limits = arguments.instance(
-            Limits() if limits is None else limits, Limits, "limits", ControlError
-        )
+        limits = Limits() if limits is None else limits
+        self.limits = arguments.instance(limits, Limits, "limits", ControlError)
         self.slow_s, self.search_s, self.search_mm_s, ahead_s = (
             arguments.number(value, name, 0.0, error=ControlError)
             for value, name in (

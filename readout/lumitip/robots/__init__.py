@@ -5,9 +5,8 @@ with URArm("192.168.0.10", Mount(x=(1, 0, 0), y=(0, 0, 1)), ArmLimits(speed_mm_s
         arm.move(tracer(estimator(frame.values), dt_s), frame.t)
 """
 
-from lumitip.robots.guard import ArmState, Guard
-from lumitip.robots.limits import ArmError, ArmLimits, ArmStopped
-from lumitip.robots.mount import Mount
+from lumitip.robots.guard import ArmLimits, ArmState, ArmStopped, Guard
+from lumitip.robots.mount import ArmError, Mount
 from lumitip.robots.ur import URArm
 
 __all__ = ["ArmError", "ArmLimits", "ArmState", "ArmStopped", "Guard", "Mount", "URArm"]

@@ -13,12 +13,16 @@ import numpy as np
 
 from lumitip import arguments
 from lumitip.control import Command
+from lumitip.errors import LumitipError
 from lumitip.grid import Floats
-from lumitip.robots.limits import ArmError
 from lumitip.values import shown
 
 Vector = tuple[float, float, float]
 _TOLERANCE = 1e-3
+
+
+class ArmError(LumitipError):
+    """An arm that cannot be reached, or invalid limits or mount."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,9 +22,8 @@ from lumitip import arguments
 from lumitip.control import Command
 from lumitip.errors import MissingExtra
 from lumitip.grid import Floats
-from lumitip.robots.guard import ArmState, Guard
-from lumitip.robots.limits import ArmError, ArmLimits, ArmStopped
-from lumitip.robots.mount import Mount, in_base, in_tool
+from lumitip.robots.guard import ArmLimits, ArmState, ArmStopped, Guard
+from lumitip.robots.mount import ArmError, Mount, in_base, in_tool
 
 RATE_HZ = 125.0
 """Rate of commands and states (Hz)."""
@@ -71,9 +70,8 @@ class URArm:
         """
         self.host = arguments.instance(host, str, "host", ArmError)
         self.mount = arguments.instance(mount, Mount, "mount", ArmError)
-        self.limits = arguments.instance(
-            ArmLimits() if limits is None else limits, ArmLimits, "limits", ArmError
-        )
+        limits = ArmLimits() if limits is None else limits
+        self.limits = arguments.instance(limits, ArmLimits, "limits", ArmError)
         within_s = arguments.number(timeout, "timeout", most=_LONGEST_S, above=0.0, error=ArmError)
         self._control, self._receive = _connected(host, within_s)
         self._asked: tuple[Command, float] | None = None

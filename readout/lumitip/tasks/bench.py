@@ -50,11 +50,9 @@ def _single_threaded() -> Iterator[None]:
     try:
         yield
     finally:
-        for name, value in before.items():
-            if value is None:
-                del os.environ[name]
-            else:
-                os.environ[name] = value
+        for name in _THREADS:
+            del os.environ[name]
+        os.environ.update({name: value for name, value in before.items() if value is not None})
 
 
 _EVERY = tuple(float(v) for v in range(40, 401, 20))
@@ -193,9 +191,7 @@ def _faster(
 
 def line(row: Summary) -> str:
     """A row as text."""
-    corner = (
-        "" if row.corner_rms_mm != row.corner_rms_mm else f", corner {row.corner_rms_mm:.2f} mm"
-    )
+    corner = "" if math.isnan(row.corner_rms_mm) else f", corner {row.corner_rms_mm:.2f} mm"
     return (
         f"  {row.speed_mm_s:4.0f} mm/s: {row.losses:3} of {row.trials} lost, "
         f"{row.lateral_rms_mm:.2f} mm, {row.angle_rms_deg:.1f}°{corner}"

@@ -101,19 +101,14 @@ class Team:
     def run_all(
         self, controller: str, speed_mm_s: float, tuning: Tuning, seeds: Iterable[int]
     ) -> list[Metrics]:
-        run = partial(_run, self._layout, self._settings, controller, speed_mm_s, tuning)
+        run = partial(_run, self._layout, self._settings, (controller, speed_mm_s, tuning))
         return list(self._pool.map(run, seeds))
 
 
 def _run(
-    layout: Layout,
-    settings: Settings,
-    controller: str,
-    speed_mm_s: float,
-    tuning: Tuning,
-    seed: int,
+    layout: Layout, settings: Settings, trial: tuple[str, float, Tuning], seed: int
 ) -> Metrics:
-    return _bench(layout, settings).run(controller, speed_mm_s, tuning, seed)
+    return _bench(layout, settings).run(*trial, seed)
 
 
 @lru_cache(maxsize=4)

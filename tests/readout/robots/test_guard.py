@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lumitip.robots import ArmError, ArmLimits, ArmState, ArmStopped, Guard, Mount
-from lumitip.robots.limits import WHY
+from lumitip.robots.guard import WHY
 
 MOUNT = Mount(x=(1, 0, 0), y=(0, 0, 1), origin_mm=(0.0, 0.0, 100.0))
 FIRST = ArmState(
