@@ -93,11 +93,11 @@ def corners() -> None:
     process = Processor(layout)
     frames, poses = frames_of(layout, "corner", 100)
     misses: dict[str, list[tuple[float, float]]] = {"here": [], "published": []}
-    untold = 0
+    not_found = 0
     for frame, (vertex_mm, _, opening) in zip(frames, poses, strict=True):
         corner = process(frame).corner
         if corner is None:
-            untold += 1
+            not_found += 1
         else:
             miss_mm = float(np.hypot(*np.subtract(corner.vertex_mm, vertex_mm)))
             misses["here"].append((miss_mm, abs(corner.opening_deg - np.degrees(opening))))
@@ -109,7 +109,7 @@ def corners() -> None:
     for name, errors in misses.items():
         vertex, angle = np.median(errors, axis=0)
         print(f"{name:<28}{vertex:>9.2f}{angle:>13.1f}")
-    print(f"not called a corner here: {untold}")
+    print(f"not called a corner here: {not_found}")
 
 
 def batches() -> float:

@@ -187,8 +187,8 @@ def covariance(found: Fit) -> Floats:
 def _line(
     pose: Floats, names: tuple[str, ...]
 ) -> tuple[tuple[float, float], Floats, tuple[str, ...]]:
-    """Angle (rad) and offset (mm) of the reported line, its derivatives by
-    the pose, and their names."""
+    """Angle (rad) and offset (mm) of the reported line, the derivatives of all reported parameters
+    by the pose, and their names."""
     size = pose.size
     if "opening_deg" not in names:
         by_pose = np.eye(size)[[*range(len(names)), -2, -1]]

@@ -18,7 +18,7 @@ from lumitip.estimation.estimator import EstimationError, PoseEstimator
 from lumitip.estimation.fit import Fit
 from lumitip.grid import Floats
 from lumitip.layout import Layout
-from lumitip.processing.processor import frames_values
+from lumitip.processing.processor import batch_values
 from lumitip.twin import Model
 
 _ROUNDS = 4
@@ -68,7 +68,7 @@ def learn(
     """
     estimator = PoseEstimator(layout, model)
     most = arguments.count(most_frames, "most_frames", _LEAST_FRAMES)
-    rows = frames_values(values, layout)
+    rows = batch_values(values, layout)
     if len(rows):
         rows = rows[np.unique(np.linspace(0, len(rows) - 1, most).astype(np.int64))]
     trusted = [(row, e) for row in rows if (e := estimator(row, kind)).trusted]

@@ -1,4 +1,4 @@
-"""Thresholds, and thresholds, centres and markers of many frames at once.
+"""Threshold of a frame; thresholds, centres and markers of many frames at once.
 
 The threshold λ between dark and light cells is the mean of the means of two clusters. The values
 are sorted and cut in two at the largest step between neighbours in this order; of equal steps the

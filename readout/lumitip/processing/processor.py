@@ -121,7 +121,7 @@ class Processor:
         Raises:
             ValuesError: if there is another number of values, or they are no numbers.
         """
-        return process(frames_values(values, self.layout), self._grid, self.min_contrast)
+        return process(batch_values(values, self.layout), self._grid, self.min_contrast)
 
     def without_contrast(self, values: Floats) -> Contact:
         """The contact of a frame without contrast, from its finite values: none, or covered."""
@@ -194,7 +194,7 @@ def frame_values(values: ArrayLike, layout: Layout) -> Floats:
     return frame
 
 
-def frames_values(values: ArrayLike, layout: Layout) -> Floats:
+def batch_values(values: ArrayLike, layout: Layout) -> Floats:
     """Values of many frames as floats, shape `(n, cells)`.
 
     Raises:

@@ -86,13 +86,13 @@ class Mount:
 
 
 def in_base(pose: Floats, twist: Floats) -> Floats:
-    """A twist of the tool frame in the base frame: the same motion, other directions; `(6,)`."""
+    """A twist in tool axes, expressed in base axes; `(6,)`."""
     axes = rotation_of(pose)
     return np.concatenate([axes @ twist[:3], axes @ twist[3:]])
 
 
 def in_tool(pose: Floats, twist: Floats) -> Floats:
-    """A twist of the base frame in the tool frame; `(6,)`."""
+    """A twist in base axes, expressed in tool axes; `(6,)`."""
     axes = rotation_of(pose).T
     return np.concatenate([axes @ twist[:3], axes @ twist[3:]])
 

@@ -109,7 +109,7 @@ class LiveTask(ThreadedLink):
 
     def _run(self, deliver: Deliver, report: Report) -> None:
         self._packet(0)  # builds the tables before time runs
-        report(LinkEvent("connected", f"{self.url} is computed, no device"))
+        report(LinkEvent("connected", f"{self.url} is simulated"))
         due_s, ended, number = time.monotonic(), False, 0
         while not ended and number * self.period_s < _MOST_S:
             due_s += self.period_s

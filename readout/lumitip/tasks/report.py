@@ -1,4 +1,4 @@
-"""Table, figures and plots of the bench of the tasks."""
+"""Tables, figures and plots of the benchmark of all tasks."""
 
 import json
 import math
