@@ -84,14 +84,9 @@ class Bank:
         """
         weights = scale**2
         whole, mean = float(weights.sum()), float(weights @ light)
-        taken, both, squares = (
-            of @ by.astype(np.float32)
-            for of, by in (
-                (self.shares, weights),
-                (self.shares, weights * light),
-                (self._squares, weights),
-            )
-        )
+        by_cell = weights.astype(np.float32)
+        taken, squares = self.shares @ by_cell, self._squares @ by_cell
+        both = self.shares @ (weights * light).astype(np.float32)
         if self.opaque:  # only the light beside the object is free
             turned = np.zeros(taken.size, bool)
             score = (mean - both) ** 2 / np.maximum(whole - 2.0 * taken + squares, _TINY * whole)

@@ -127,7 +127,14 @@ def report(
     bend = float(pose[names.index(BEND)]) if BEND in names else 0.0
     light, taken = float(pose[-2]), float(pose[-1])
     misfit = rms_counts(found)
-    estimate = Estimate(
+    faults = {
+        "misfit": misfit > MISFIT_COUNTS,
+        "weak": weak,
+        "astray": max(map(abs, pose[1:3] if corner else pose[1:2])) > reach_mm,
+        "unfinished": not found.converged,
+        "ambiguous": found.ambiguous or mirrored,
+    }
+    return Estimate(
         kind=shape.kind,
         offset_mm=offset_mm,
         angle_deg=angle_deg,
@@ -138,6 +145,7 @@ def report(
         quality=_quality(found),
         curvature_per_mm=-bend if turned else bend,
         rms_counts=misfit,
+        flags=tuple(name for name, is_so in faults.items() if is_so),
         dark_side="" if shape.kind == "cable" else "left" if turned else "right",
         vertex_mm=(float(pose[1]), float(pose[2])) if corner else None,
         opening_deg=math.degrees(float(pose[3])) if corner else math.nan,
@@ -146,16 +154,6 @@ def report(
         else math.nan,
         parameters=names,
     )
-    astray = max(map(abs, pose[1:3] if corner else pose[1:2])) > reach_mm
-    wrong = {
-        "misfit": misfit > MISFIT_COUNTS,
-        "weak": weak,
-        "astray": astray,
-        "unfinished": not found.converged,
-        "ambiguous": found.ambiguous or mirrored,
-    }
-    object.__setattr__(estimate, "flags", tuple(name for name, is_so in wrong.items() if is_so))
-    return estimate
 
 
 def rms_counts(found: Fit) -> float:

@@ -29,7 +29,14 @@ FULL = 255.0
 GAP_MM = 3.0
 """Default gap of a grasp (mm)."""
 _TABLED, _ENTRIES = 4.0, 8192  # range of the even table of drives, and its steps
-_LIMITS = {"alpha": 1.0, "silicone_index": 3.0, "led_exponent": 100.0, "detector_exponent": 100.0}
+_LENGTHS = ("gap_mm", "hole_mm", "emitter_depth_mm", "detector_depth_mm")
+_POSITIVE = (*_LENGTHS, "knee_v", "supply_v", "gain")
+_LIMITS = {
+    "alpha": (0.0, 1.0),
+    "silicone_index": (1.0, 3.0),
+    "led_exponent": (0.0, 100.0),
+    "detector_exponent": (0.0, 100.0),
+}
 
 
 class TwinError(LumitipError, ValueError):
@@ -69,23 +76,10 @@ class Model:
 
     def __post_init__(self) -> None:
         arguments.finite_fields(self, TwinError)
-        for name in (
-            "gap_mm",
-            "hole_mm",
-            "emitter_depth_mm",
-            "detector_depth_mm",
-            "knee_v",
-            "supply_v",
-            "gain",
-        ):
-            if not getattr(self, name) > 0.0:
-                raise TwinError(f"{name} is {getattr(self, name)}; it must be above 0")
-        for name, most in _LIMITS.items():
-            least = 1.0 if name == "silicone_index" else 0.0
-            if not least <= getattr(self, name) <= most:
-                raise TwinError(
-                    f"{name} is {getattr(self, name)}; {least:g} to {most:g} is allowed"
-                )
+        for name in _POSITIVE:
+            arguments.number(getattr(self, name), name, above=0.0, error=TwinError)
+        for name, (least, most) in _LIMITS.items():
+            arguments.number(getattr(self, name), name, least, most, error=TwinError)
         if not isinstance(self.hole_shape, str) or self.hole_shape not in ("hexagon", "circle"):
             raise TwinError(
                 f'hole_shape is {shown(self.hole_shape)}; "hexagon" or "circle" is needed'

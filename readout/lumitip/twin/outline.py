@@ -102,8 +102,7 @@ class Image(Thing):
             raise TwinError(
                 f"pixels has shape {pixels.shape}; rows of coverage from 0 to 1 are needed"
             )
-        if not self.pixel_mm > 0.0:
-            raise TwinError(f"pixel_mm is {self.pixel_mm}; it must be above 0")
+        arguments.number(self.pixel_mm, "pixel_mm", above=0.0, error=TwinError)
         # With a border of zeros, places outside need no test.
         object.__setattr__(self, "_framed", np.pad(pixels.astype(np.float32), 1))
 
