@@ -243,7 +243,7 @@ def hurt(folder: Path, file: str, damage: Damage) -> set[str]:
     before = path.read_text()
     path.write_text(damage(before))
     assert path.read_text() != before
-    return failing(folder, "board")
+    return failing(folder, "board", Path(file).stem)
 
 
 @pytest.mark.parametrize("damage", EMITTER_DAMAGES, ids=lambda d: d.__name__)

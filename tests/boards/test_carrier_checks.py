@@ -155,7 +155,7 @@ def test_a_damage_of_the_breakout(damage: Damage, damaged_boards: Path) -> None:
     before = path.read_text()
     path.write_text(damage(before))
     assert path.read_text() != before
-    assert failing(damaged_boards, "board") == DAMAGES[damage]
+    assert failing(damaged_boards, "board", "breakout") == DAMAGES[damage]
 
 
 def test_a_missing_carrier_is_told(damaged_boards: Path) -> None:

@@ -33,7 +33,9 @@ def _ends(main: Callable[[list[str]], int], *arguments: str) -> int:
 
 def test_no_command_is_missed() -> None:
     found = _commands()
-    assert {("lumitip-fab", "channel-map"), ("lumitip-fab", "schema"), ("lumitip", "scan")} < {*found}
+    assert {("lumitip-fab", "channel-map"), ("lumitip-fab", "schema"), ("lumitip", "scan")} < {
+        *found
+    }
     assert len(found) == len(set(found)) >= 20
 
 
