@@ -11,6 +11,8 @@ from damages import cut_short, failing, swap
 from lumitip_fab.checks import orders
 from lumitip_fab.design.encoding import read_design
 
+pytestmark = pytest.mark.slow
+
 Files = dict[str, bytes]
 Damage = Callable[[Files], None]
 FIRST, SECOND = "generic", "jlcpcb"

@@ -12,6 +12,8 @@ from damages import failing
 from lumitip_fab.checks import board
 from lumitip_fab.design.encoding import read_design
 
+pytestmark = pytest.mark.slow
+
 Damage = Callable[[str], str]
 FLANGE = "boards/flange/flange.kicad_pcb"
 

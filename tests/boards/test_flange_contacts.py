@@ -13,6 +13,8 @@ import sexpdata
 from board_damages import in_part
 from damages import failing
 
+pytestmark = pytest.mark.slow
+
 Point = tuple[float, float]
 FLANGE = "boards/flange/flange.kicad_pcb"
 # Published board files of arXiv 2306.05902: the board from its front, y down, from the middle of
