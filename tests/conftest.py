@@ -101,14 +101,27 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--slow", action="store_true", help="run the tests marked slow too")
 
 
+def _whole(config: pytest.Config) -> bool:
+    return config.getoption("--slow") or os.environ.get("LUMITIP_REQUIRE") == "all"
+
+
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Without that, they are left out."""
-    if config.getoption("--slow") or os.environ.get("LUMITIP_REQUIRE") == "all":
-        return
-    slow = [item for item in items if item.get_closest_marker("slow")]
+    slow = [] if _whole(config) else [i for i in items if i.get_closest_marker("slow")]
     if slow:
         config.hook.pytest_deselected(items=slow)
         items[:] = [item for item in items if item not in slow]
+
+
+def pytest_terminal_summary(
+    terminalreporter: pytest.TerminalReporter, config: pytest.Config
+) -> None:
+    """Say what was left out, and how to run it."""
+    if not _whole(config):
+        terminalreporter.write_line(
+            "Left out: the slow tests (other presets, damaged files, KiCad, browser, robot arm).\n"
+            "`LUMITIP_REQUIRE=all make test` runs everything; a tool that is absent then fails."
+        )
 
 
 @pytest.hookimpl(hookwrapper=True)

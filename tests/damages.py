@@ -16,10 +16,12 @@ Corner = tuple[float, float, float]
 Body = Manifold
 
 
-def failing(folder: Path, module: str) -> set[str]:
-    """Names, without the module's own, of its checks that fail on a folder of outputs."""
+def failing(folder: Path, module: str, board: str = "") -> set[str]:
+    """Names, without the module's own, of its checks that fail on a folder of outputs; of one
+    board alone where that is what was damaged."""
     design = read_design(folder / "design.json")
-    found = import_module(f"lumitip_fab.checks.{module}").measure(folder, design)
+    checks = import_module(f"lumitip_fab.checks.{module}")
+    found = checks.measure_board(folder, design, board) if board else checks.measure(folder, design)
     return {m.check.removeprefix(f"{module}.") for m in found if not m.passed}
 
 

@@ -29,6 +29,8 @@ from silk_damages import (
     title_lost,
 )
 
+pytestmark = pytest.mark.slow
+
 Damage = Callable[[str], str]
 EMITTER = "boards/emitter/emitter.kicad_pcb"
 RECEIVER = "boards/receiver/receiver.kicad_pcb"
@@ -243,7 +245,7 @@ def hurt(folder: Path, file: str, damage: Damage) -> set[str]:
     before = path.read_text()
     path.write_text(damage(before))
     assert path.read_text() != before
-    return failing(folder, "board")
+    return failing(folder, "board", Path(file).stem)
 
 
 @pytest.mark.parametrize("damage", EMITTER_DAMAGES, ids=lambda d: d.__name__)
@@ -289,7 +291,6 @@ def test_every_check_fails_for_some_damage(boards: Callable[[str], Path]) -> Non
     assert names == set().union(*tables)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("preset", ["published", "asymmetric", "dense", "mux16"])
 def test_the_boards_of_a_preset_pass(boards: Callable[[str], Path], preset: str) -> None:
     folder = boards(preset)

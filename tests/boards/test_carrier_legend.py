@@ -10,6 +10,8 @@ from lumitip_fab.design import Design
 from lumitip_fab.errors import BuildError
 from lumitip_fab.pipeline.artefact import Artefact
 
+pytestmark = pytest.mark.slow
+
 CARRIERS = ("breakout", "flange")
 
 
@@ -27,7 +29,6 @@ def _made(design: Design, name: str, supply: str) -> tuple[int, tuple[Artefact, 
     return sum(device.pins.count(supply) for device in devices), files
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", CARRIERS)
 def test_a_supply_with_a_fraction_is_printed_beside_its_pads(
     name: str, designs: Callable[[str], Design]

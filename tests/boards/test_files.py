@@ -28,6 +28,8 @@ from lumitip_fab.design.frames import applied
 from lumitip_fab.errors import BuildError
 from lumitip_fab.pipeline.graph import tasks
 
+pytestmark = pytest.mark.slow
+
 Designs = Callable[[str], Design]
 AGAIN = """
 import hashlib, sys

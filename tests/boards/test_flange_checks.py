@@ -12,6 +12,8 @@ from damages import failing
 from lumitip_fab.checks import board
 from lumitip_fab.design.encoding import read_design
 
+pytestmark = pytest.mark.slow
+
 Damage = Callable[[str], str]
 FLANGE = "boards/flange/flange.kicad_pcb"
 
@@ -69,7 +71,7 @@ def test_a_damage_of_the_flange(damage: Damage, damaged_boards: Path) -> None:
     before = path.read_text()
     path.write_text(damage(before))
     assert path.read_text() != before
-    assert failing(damaged_boards, "board") == DAMAGES[damage]
+    assert failing(damaged_boards, "board", "flange") == DAMAGES[damage]
 
 
 def test_the_flange_passes(boards: Callable[[str], Path]) -> None:
@@ -92,4 +94,4 @@ def test_a_note_that_has_the_contacts_on_the_wrong_side_is_seen(damaged_boards: 
         with zipfile.ZipFile(package, "w") as opened:
             for name, data in (files | {"flange_assembly.txt": hurt}).items():
                 opened.writestr(name, data)
-        assert failing(damaged_boards, "orders") == {"note"}
+        assert failing(damaged_boards, "orders", "flange") == {"note"}

@@ -91,7 +91,7 @@ def test_a_damaged_board_file(name: str, hurt: Path) -> None:
     damage, wanted = TEXTS[name]
     file = hurt / FILE
     file.write_text(damage(file.read_text(encoding="utf-8")), encoding="utf-8")
-    assert failing(hurt, "board") == wanted
+    assert failing(hurt, "board", "receiver") == wanted
 
 
 def edited(folder: Path, name: str, edit: Callable[[str], str]) -> None:
@@ -108,7 +108,7 @@ def edited(folder: Path, name: str, edit: Callable[[str], str]) -> None:
 def test_a_note_that_orders_another_board(name: str, hurt: Path) -> None:
     before, after = NOTES[name]
     edited(hurt, "receiver_assembly.txt", lambda note: once(note, re.escape(before), after))
-    assert failing(hurt, "orders") == {"flexible"}
+    assert failing(hurt, "orders", "receiver") == {"flexible"}
 
 
 STIFFENERS: dict[str, tuple[Callable[[str], str], set[str]]] = {
@@ -122,4 +122,4 @@ STIFFENERS: dict[str, tuple[Callable[[str], str], set[str]]] = {
 def test_another_outline_of_the_stiffener(name: str, hurt: Path) -> None:
     damage, wanted = STIFFENERS[name]
     edited(hurt, "receiver-User_1.gbr", damage)
-    assert failing(hurt, "orders") == wanted
+    assert failing(hurt, "orders", "receiver") == wanted

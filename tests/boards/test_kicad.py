@@ -41,7 +41,7 @@ LAYERS = (
     "Edge_Cuts",
 )
 
-pytestmark = needs("kicad-cli")
+pytestmark = [needs("kicad-cli"), pytest.mark.slow]
 
 
 @pytest.fixture(scope="module")

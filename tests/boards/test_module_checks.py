@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from board_damages import moved_part, once, swapped_pads
+from damages import failing
 from lumitip_fab.checks import board
 from lumitip_fab.design.encoding import read_design
 
@@ -24,12 +25,6 @@ def damaged_flange(built: Callable[[str], Path], tmp_path: Path) -> Path:
     shutil.copytree(folder / "boards/flange", tmp_path / "boards/flange")
     shutil.copy(folder / "design.json", tmp_path / "design.json")
     return tmp_path
-
-
-def _failing(folder: Path) -> set[str]:
-    """Checks of the flange's board that fail; the other boards are left out, for speed."""
-    found = board.measure(folder, read_design(folder / "design.json"))
-    return {m.check.removeprefix("board.") for m in found if m.subject == FLANGE and not m.passed}
 
 
 def _ground(text: str) -> str:
@@ -102,11 +97,11 @@ def test_a_damage_of_the_module(damage: Damage, damaged_flange: Path) -> None:
     before = path.read_text()
     path.write_text(damage(before))
     assert path.read_text() != before
-    assert _failing(damaged_flange) == DAMAGES[damage]
+    assert failing(damaged_flange, "board", "flange") == DAMAGES[damage]
 
 
 def test_the_module_passes(damaged_flange: Path) -> None:
-    assert _failing(damaged_flange) == set()
-    found = board.measure(damaged_flange, read_design(damaged_flange / "design.json"))
-    names = {m.check for m in found if m.subject == FLANGE}
+    assert failing(damaged_flange, "board", "flange") == set()
+    design = read_design(damaged_flange / "design.json")
+    names = {m.check for m in board.measure_board(damaged_flange, design, "flange")}
     assert {"board.keep_out", "board.keep_out_rule", "board.antenna_edge"} <= names

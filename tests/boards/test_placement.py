@@ -21,6 +21,8 @@ from lumitip_fab.derive import derive
 from lumitip_fab.design import Box, Design, Finger
 from lumitip_fab.errors import BuildError
 
+pytestmark = pytest.mark.slow
+
 PRESETS = ("published", "asymmetric", "dense", "mux16")
 FINGERS = ("emitter", "receiver")
 Placed = tuple[Design, Finger, Placement]

@@ -19,6 +19,8 @@ from lumitip_fab.boards.verify import summary, verify
 from lumitip_fab.design import Box
 from lumitip_fab.errors import BuildError
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def crossing() -> tuple[Placement, Routing]:

@@ -21,6 +21,8 @@ from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
 from programs import needs, program
 
+pytestmark = pytest.mark.slow
+
 PRESETS = ("published", "asymmetric", "dense", "mux16")
 BOARDS = [(preset, finger) for preset in PRESETS for finger in ("emitter", "receiver")]
 needs_kicad = needs("kicad-cli")

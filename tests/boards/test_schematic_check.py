@@ -8,6 +8,8 @@ import pytest
 from lumitip_fab.checks import schematic
 from lumitip_fab.design.encoding import read_design
 
+pytestmark = pytest.mark.slow
+
 
 def _failed(out: Path) -> dict[str, str]:
     """Name and note of each figure out of its range."""

@@ -14,7 +14,7 @@ from programs import needs, program
 
 # The library catches its own warnings where they are errors, and reads on without what it warned
 # of: only without that is it what a user's script meets.
-pytestmark = pytest.mark.filterwarnings("default")
+pytestmark = [pytest.mark.filterwarnings("default"), pytest.mark.slow]
 
 
 @pytest.fixture(params=["emitter", "receiver"])

@@ -11,6 +11,8 @@ from damages import failing
 from glb_damages import Told, move, node, opened, rewritten
 from lumitip_fab.checks import assembly, exploded
 
+pytestmark = pytest.mark.slow
+
 GLB = "assembly/assembly.glb"
 SVG = "assembly/receiver_exploded.svg"
 EVERY = {name.removeprefix("assembly.") for name in assembly.NAMES}

@@ -16,6 +16,8 @@ from lumitip_fab.design import Design
 from lumitip_fab.design.encoding import read_design
 from lumitip_fab.design.frames import mount_to_sensor
 
+pytestmark = pytest.mark.slow
+
 STL = "backing/receiver_backing.stl"
 EMITTER_STL = "backing/emitter_backing.stl"
 

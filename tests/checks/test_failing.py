@@ -26,6 +26,8 @@ from lumitip_fab.design.encoding import read_design
 from lumitip_fab.design.frames import mount_to_sensor
 from pages import page_damage, runs
 
+pytestmark = pytest.mark.slow
+
 Reports = tuple[Outcome, list[dict[str, Any]], ElementTree.Element]
 
 

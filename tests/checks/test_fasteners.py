@@ -17,6 +17,8 @@ from lumitip_fab.parts.flange import flange_files
 from lumitip_fab.parts.holder import holder_files
 from lumitip_fab.pipeline.artefact import Artefact
 
+pytestmark = pytest.mark.slow
+
 Alter = Callable[[pytest.MonkeyPatch], None]
 
 

@@ -15,6 +15,8 @@ from lumitip_fab.design.encoding import design_text, read_design
 from lumitip_fab.errors import FabError
 from lumitip_fab.parts.backing import backing as backing_files
 
+pytestmark = pytest.mark.slow
+
 Derived = Callable[..., Design]
 ROUND_FLANGE = {"spigot", "recess", "pin_width", "socket_width", "peg_play"}
 ROUND_BOARD = {"board_gap", "board_play"}
@@ -143,7 +145,6 @@ def test_a_fit_that_leaves_no_gap_or_rim_is_refused_with_the_numbers(
     assert told in str(refusal.value)
 
 
-@pytest.mark.slow
 def test_a_rim_that_was_drawn_for_another_fit_is_told(fitted: Derived, tmp_path: Path) -> None:
     """The gap is measured against glue and fit, not against what was drawn."""
     design = fitted(0.1, COMPLIANT)

@@ -16,6 +16,8 @@ from lumitip_fab.derive import derive
 from lumitip_fab.design import FitPlate, Point
 from lumitip_fab.design.encoding import read_design
 
+pytestmark = pytest.mark.slow
+
 STL = "fit/fit_plate.stl"
 NEXT_MM = 0.05  # from a step to the next
 

@@ -11,6 +11,8 @@ from lumitip_fab.checks import flange as checks
 from lumitip_fab.design.encoding import read_design
 from lumitip_fab.design.frames import flange_beds
 
+pytestmark = pytest.mark.slow
+
 LOWER, UPPER = "flange/flange_lower.stl", "flange/flange_upper.stl"
 WIDE_BOARD = {"board_gap", "board_play", "bolt_board", "interference"}
 FILES = {"three_mf", "step"}

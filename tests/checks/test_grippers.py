@@ -22,6 +22,8 @@ from lumitip_fab.parts.fit_plate import fit_plate_files
 from lumitip_fab.parts.settings import print_settings
 from programs import program
 
+pytestmark = pytest.mark.slow
+
 WITHOUT_PRESET = ("onrobot_rg2", "two_hole_jaw")
 NEW = """
 [bench_jaw]
@@ -82,13 +84,11 @@ def failed(file: Path, out: Path) -> list[str]:
     return [f"{m.check} {m.subject}: {m.measured} {m.limit}" for m in run_checks(out).failed]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("gripper", WITHOUT_PRESET)
 def test_a_gripper_of_the_catalogue(gripper: str, held_by: File, tmp_path: Path) -> None:
     assert failed(held_by(gripper), tmp_path / "out") == []
 
 
-@pytest.mark.slow
 def test_a_new_gripper_needs_nothing_but_its_entry(held_by: File, tmp_path: Path) -> None:
     assert failed(held_by("bench_jaw", NEW), tmp_path / "out") == []
 
@@ -100,7 +100,6 @@ def test_every_gripper_of_the_catalogue_holds_the_published_sensor(design_dir: P
     assert set(config.catalogue.grippers) <= tested
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("fit_mm", [-0.1, 0.1])
 def test_the_fit_of_the_printer_passes_every_check(
     fit_mm: float, held_by: File, tmp_path: Path
@@ -226,7 +225,6 @@ EARLY = changed("front_width_mm = 14.0", "front_width_mm = 20.0")
 OWN = {"wide": NEW, "narrow": NARROW, "early": EARLY}
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("gripper", [*OWN, "robotiq_2f85", "wsg50", "franka_hand", "two_hole_jaw"])
 def test_a_fit_test_plate_passes_its_checks_and_prints_in_ten_minutes(
     gripper: str, held_by: File, tmp_path: Path
@@ -249,7 +247,6 @@ def test_a_fit_test_plate_passes_its_checks_and_prints_in_ten_minutes(
     assert sliced.seconds <= (16 if gripper in OWN else 10.5) * 60
 
 
-@pytest.mark.slow
 def test_a_sleeve_of_the_fit_test_plate_too_deep(
     built: Callable[[str], Path], tmp_path: Path
 ) -> None:
@@ -263,7 +260,6 @@ def test_a_sleeve_of_the_fit_test_plate_too_deep(
     assert failing(folder, "fit_plate") == {"sleeve"}
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("damage", DAMAGES, ids=lambda d: d.__name__)
 def test_a_damage_of_the_second_bolt_or_of_a_sleeve(
     damage: Callable[[Manifold], Manifold], built: Callable[[str], Path], tmp_path: Path

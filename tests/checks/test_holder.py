@@ -18,6 +18,8 @@ from lumitip_fab.design.frames import holder_bed_to_carrier
 from lumitip_fab.docs.outside import outside
 from lumitip_fab.parts.holder import holder_files
 
+pytestmark = pytest.mark.slow
+
 Damage = Callable[[Body], Body]
 HOLDER = "holder/holder.stl"
 AXIS_Z, RADIUS = -43.8, 37.8

@@ -9,6 +9,8 @@ import pytest
 from damages import edit, excerpt
 from damages import failing as failing_of
 
+pytestmark = pytest.mark.slow
+
 _NEEDED = (
     "assembly",
     "backing",

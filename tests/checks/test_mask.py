@@ -12,6 +12,8 @@ import pytest
 from damages import cut_short, failing, passing
 from pages import Operation, page_damage, paths, registration, runs
 
+pytestmark = pytest.mark.slow
+
 A4, LETTER = "mask/emitter_mask_a4.pdf", "mask/emitter_mask_letter.pdf"
 PAGE = {"page", "marks", "scale_x", "scale_y", "ruler", "mirrored", "fonts"}
 BLACK = {"count", "position", "size", "shape", "web", "outline", "window", "clear"}

@@ -9,6 +9,8 @@ import pytest
 
 from damages import cut_short, failing, passing
 
+pytestmark = pytest.mark.slow
+
 LETTER = "mask/emitter_mask_letter.pdf"
 SVG, DXF = "mask/emitter_mask.svg", "mask/emitter_mask.dxf"
 NOTE = "mask/emitter_wrapping.md"

@@ -14,6 +14,8 @@ from lumitip_fab.checks.run import MODULES, run_checks
 from lumitip_fab.design import Design
 from lumitip_fab.pipeline.dependencies import RecordedDesign
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture
 def kept(damaged: Path) -> Path:
@@ -135,7 +137,6 @@ def test_what_a_module_reads_is_what_its_source_says() -> None:
         assert reads(name) == run._module(name).READS
 
 
-@pytest.mark.slow
 def test_every_check_is_remembered(outputs: Path, tmp_path: Path, measured: list[str]) -> None:
     path = tmp_path / "checked.json"
     first = run_checks(outputs, MODULES, Memory(path, outputs))

@@ -10,6 +10,8 @@ from manifold3d import Manifold
 from damages import box, carve, edit, failing, flip_a_triangle, remove_packages, swap
 from lumitip_fab.checks import mould
 
+pytestmark = pytest.mark.slow
+
 STL = "mould/receiver_mould.stl"
 NOTE = "mould/receiver_casting.md"
 Damage = Callable[[Manifold], Manifold]

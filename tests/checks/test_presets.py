@@ -10,14 +10,22 @@ import pytest
 from lumitip_fab.checks.result import Measurement
 from lumitip_fab.checks.run import MODULES, as_json, modules_reading, run_checks
 
-SLOW = ("dense", "mux16", "integrated", "robotiq_2f140", "wsg50", "franka_hand", "flex")
+SLOW = (
+    "asymmetric",
+    "dense",
+    "mux16",
+    "integrated",
+    "robotiq_2f140",
+    "wsg50",
+    "franka_hand",
+    "flex",
+)
 
 
 @pytest.mark.parametrize(
     "preset",
     [
         "published",
-        "asymmetric",
         *(pytest.param(p, marks=pytest.mark.slow) for p in SLOW),
     ],
 )

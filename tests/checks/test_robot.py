@@ -8,6 +8,8 @@ import trimesh
 
 from lumitip_fab.checks import robot
 
+pytestmark = pytest.mark.slow
+
 URDF, MACROS = "robot/lumitip.urdf", "robot/lumitip.xacro"
 FILM = "robot/meshes/emitter_film.stl"
 PLATE = "robot/meshes/receiver_collision_plate.stl"

@@ -19,6 +19,8 @@ from lumitip_fab.checks.summary import (
 )
 from lumitip_fab.config.parameters import Parameters
 
+pytestmark = pytest.mark.slow
+
 WEB = Measurement("mask.web", "a.pdf", 0.5, 0.4, math.inf, "mm")
 DRAFT = Measurement("mould.draft", "m.stl", 3.0, 2.0, 4.0, "°")
 SHIFT = Measurement("mask.position", "a.pdf", 0.01, 0, 0.02, "mm")

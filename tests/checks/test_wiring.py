@@ -14,6 +14,8 @@ from lumitip_fab.derive import derive
 from lumitip_fab.docs.wiring import wiring_files
 from lumitip_fab.errors import InputError
 
+pytestmark = pytest.mark.slow
+
 Edit = Callable[[str], str]
 LIST, NOTE, DIAGRAM = "cables.csv", "cables.md", "wiring.svg"
 

@@ -13,6 +13,8 @@ from lumitip_fab.derive.auto.remedies import plan_of
 from lumitip_fab.derive.auto.resolve import RuleError
 from lumitip_fab.design import Design
 
+pytestmark = pytest.mark.slow
+
 
 def _columns(cells: int) -> list[int]:
     """Alternating columns of a number of cells, as square as there are."""

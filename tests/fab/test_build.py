@@ -16,6 +16,8 @@ from lumitip_fab.errors import InputError, OutputError
 from lumitip_fab.pipeline import manifest
 from lumitip_fab.pipeline.build import locked
 
+pytestmark = pytest.mark.slow
+
 PUBLISHED = "presets/published.toml"
 
 
@@ -100,7 +102,6 @@ def test_a_second_build_at_the_same_time_is_refused(design_dir: Path, damaged: P
     assert build(design_dir / PUBLISHED, damaged).written == ("mask/receiver_mask.svg",)
 
 
-@pytest.mark.slow
 def test_same_bytes_in_another_folder_process_and_hash_seed(
     outputs: Path, design_dir: Path, tmp_path: Path
 ) -> None:

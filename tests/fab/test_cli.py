@@ -13,6 +13,8 @@ from lumitip_fab.cli import main
 from lumitip_fab.cli.build import shortened
 from lumitip_fab.config.schema import schema_text
 
+pytestmark = pytest.mark.slow
+
 Run = Callable[..., subprocess.CompletedProcess[str]]
 
 

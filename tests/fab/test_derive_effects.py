@@ -11,6 +11,8 @@ from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
 from lumitip_fab.design.encoding import design_text
 
+pytestmark = pytest.mark.slow
+
 # Another valid value of every field.
 CHANGES: dict[str, Any] = {
     "name": "Other",

@@ -17,6 +17,8 @@ from lumitip_fab.derive import derive
 from lumitip_fab.design import Box, Design, Finger, Point
 from lumitip_fab.errors import InputError
 
+pytestmark = pytest.mark.slow
+
 NOISE_MM = 1e-6
 Faults = Callable[[Design], Iterator[str]]
 PRESETS = ("asymmetric", "dense", "mux16", "published")

@@ -12,6 +12,8 @@ from lumitip_fab.derive import derive
 from lumitip_fab.derive.auto.remedies import Plan, Remedy, Step
 from lumitip_fab.errors import OutputError
 
+pytestmark = pytest.mark.slow
+
 WIDE = "[mask]\nhole_mm = 5.8   # too wide\n"
 
 

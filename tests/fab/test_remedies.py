@@ -10,6 +10,8 @@ from lumitip_fab.derive.auto.remedies import Plan, plan_of, remedy_lines
 from lumitip_fab.derive.auto.resolve import RuleError
 from lumitip_fab.derive.auto.search import bounds
 
+pytestmark = pytest.mark.slow
+
 CROSSED = "[outline]\nshoulder_margin_mm = 2.0\ntip_margin_mm = 1.0\nend_margin_mm = 1.0\n"
 
 

@@ -14,6 +14,8 @@ from lumitip.protocol.bluetooth import Fault, Status, decode_legacy
 from lumitip.protocol.cobs import StreamDecoder
 from lumitip.protocol.packet import Packet, decode, design_code, largest_batch, needed_mtu
 
+pytestmark = pytest.mark.slow
+
 ADC_BITS = 12
 FRAMES = 24  # of each phase
 ALL_FRAMES = 14 * FRAMES

@@ -22,6 +22,8 @@ from lumitip_fab.design.frames import applied
 from lumitip_fab.mask.files import mask_files
 from lumitip_fab.pipeline.artefact import Artefact
 
+pytestmark = pytest.mark.slow
+
 PRESETS = ("published", "asymmetric", "dense")
 
 

@@ -13,6 +13,8 @@ from build123d import Box, Color, Compound, Cylinder, Pos, Solid
 
 from lumitip_fab.parts import export
 
+pytestmark = pytest.mark.slow
+
 MAKE = """
 import hashlib, os
 import numpy as np

@@ -17,6 +17,8 @@ from lumitip_fab.design.encoding import read_design
 from lumitip_fab.parts import mould, skin
 from lumitip_fab.parts import mould as casting
 
+pytestmark = pytest.mark.slow
+
 PRESETS = ("published", "asymmetric", "dense")
 
 

@@ -14,6 +14,8 @@ import lumitip_fab
 from lumitip_fab.parts.export import part_files
 from programs import program
 
+pytestmark = pytest.mark.slow
+
 BACKGROUND = np.array([255, 255, 255])
 
 

@@ -22,11 +22,20 @@ from lumitip_fab.checks.board_carrier import (
 )
 from lumitip_fab.checks.board_circuit import measure_channels, measure_connector, measure_strings
 from lumitip_fab.checks.board_flex import measure_flexible
-from lumitip_fab.checks.board_read import Read, ReadBoard, ReadCarrier, middle, read_all
+from lumitip_fab.checks.board_read import (
+    Read,
+    ReadBoard,
+    ReadCarrier,
+    middle,
+    names_of,
+    path_of,
+    read_any,
+)
 from lumitip_fab.checks.board_silk import measure_silk, measure_targets
 from lumitip_fab.checks.readers.kicad_board import Copper, Part
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.design import Design
+from lumitip_fab.errors import OutputError
 
 CELL_MM = 0.001
 EDGE_MM = 0.002
@@ -214,16 +223,23 @@ _OF_CARRIERS: tuple[Callable[[ReadCarrier], Iterator[Measurement]], ...] = (
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     """Every figure of every board."""
-    for subject, read in read_all(outputs, design):
-        if isinstance(read, str):
-            yield unreadable("board.readable", subject, read)
-            continue
-        yield read.figure("readable", len(read.board.parts), 1, float("inf"), "parts")
-        if isinstance(read, ReadCarrier):
-            yield from _measured(read, _OF_CARRIERS)
-        else:
-            own = measure_strings if read.name == "emitter" else measure_channels
-            yield from _measured(read, (*_OF_FINGERS, own))
+    for name in names_of(design):
+        yield from measure_board(outputs, design, name)
+
+
+def measure_board(outputs: Path, design: Design, name: str) -> Iterator[Measurement]:
+    """Every figure of one board."""
+    try:
+        read = read_any(outputs, design, name)
+    except OutputError as error:
+        yield unreadable("board.readable", path_of(name), str(error))
+        return
+    yield read.figure("readable", len(read.board.parts), 1, float("inf"), "parts")
+    if isinstance(read, ReadCarrier):
+        yield from _measured(read, _OF_CARRIERS)
+    else:
+        own = measure_strings if name == "emitter" else measure_channels
+        yield from _measured(read, (*_OF_FINGERS, own))
 
 
 def _measured(

@@ -2,7 +2,6 @@
 
 import math
 import re
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -18,7 +17,6 @@ from lumitip_fab.checks.readers.kicad_board import KicadBoard, Part, Terminal, r
 from lumitip_fab.checks.result import Measurement
 from lumitip_fab.design import Carrier, Design, Finger, Point
 from lumitip_fab.design.frames import applied, board_page_to_sensor
-from lumitip_fab.errors import OutputError
 
 _VALUE = re.compile(r"(\d+)([RKM])(\d*)")
 _CLOSED_MM = 1e-5  # ends of lines nearer than this meet
@@ -131,20 +129,27 @@ class ReadCarrier(ReadBoard):
         return next((d.part for d in self.carrier.devices if d.ref == ref), "")
 
 
-def read_all(outputs: Path, design: Design) -> Iterator[tuple[str, Read | ReadCarrier | str]]:
-    """Path of each board file, with what was read or why it could not be."""
-    both: tuple[Finger | Carrier, ...] = (*design.fingers, *design.carriers)
-    for of in both:
-        subject = f"boards/{of.name}/{of.name}.kicad_pcb"
-        try:
-            board = read_board(outputs / subject)
-        except OutputError as error:
-            yield subject, str(error)
-            continue
-        if isinstance(of, Finger):
-            yield subject, Read(subject, board, design, of)
-        else:
-            yield subject, ReadCarrier(subject, board, design, of)
+def names_of(design: Design) -> tuple[str, ...]:
+    """Names of all boards: fingers first."""
+    return (*(f.name for f in design.fingers), *(c.name for c in design.carriers))
+
+
+def path_of(name: str) -> str:
+    """Path of a board's file below the output folder."""
+    return f"boards/{name}/{name}.kicad_pcb"
+
+
+def read_any(outputs: Path, design: Design, name: str) -> Read | ReadCarrier:
+    """The board of a finger, or one beside the fingers.
+
+    Raises:
+        OutputError: if its file cannot be read.
+        LookupError: if the design has no such board.
+    """
+    for finger in design.fingers:
+        if finger.name == name:
+            return Read(path_of(name), read_board(outputs / path_of(name)), design, finger)
+    return read_carrier(outputs, design, name)
 
 
 def read_carrier(outputs: Path, design: Design, name: str) -> ReadCarrier:
@@ -157,8 +162,7 @@ def read_carrier(outputs: Path, design: Design, name: str) -> ReadCarrier:
     carrier = next((carrier for carrier in design.carriers if carrier.name == name), None)
     if carrier is None:
         raise LookupError(f"no carrier {name!r}")
-    subject = f"boards/{name}/{name}.kicad_pcb"
-    return ReadCarrier(subject, read_board(outputs / subject), design, carrier)
+    return ReadCarrier(path_of(name), read_board(outputs / path_of(name)), design, carrier)
 
 
 def ohm(value: str) -> float:

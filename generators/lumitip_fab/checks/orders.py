@@ -9,12 +9,13 @@ from pathlib import Path
 
 import numpy as np
 
-from lumitip_fab.checks.board_read import Read, ReadCarrier, read_all
+from lumitip_fab.checks.board_read import Read, ReadCarrier, names_of, path_of, read_any
 from lumitip_fab.checks.order_layers import Painted, measure_layers, measure_stiffener
 from lumitip_fab.checks.readers.kicad_board import Part
 from lumitip_fab.checks.readers.tables import table, unpacked
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.design import Design, Fab, Flexible
+from lumitip_fab.errors import OutputError
 
 READS = ("boards/*.kicad_pcb", "boards/*.zip", "boards/*.csv")
 PLACE_MM = 0.001
@@ -31,43 +32,50 @@ _FIRST_PADS = re.compile(r"^(?P<ref>[A-Z]+\d+)  (?P<x>\S+) (?P<y>\S+)$", re.MULT
 
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
-    """Every zip of every board; all are to have the same layers."""
-    for subject, read in read_all(outputs, design):
-        folder = (outputs / subject).parent
-        if isinstance(read, str):
-            yield unreadable("orders.board", subject, read)
-            continue
-        painted: Painted = {}
-        first: _Files = {}
-        found: tuple[Measurement, ...] = ()
-        for fab in design.fabs:
-            name = f"{fab.name}_{read.name}.zip"
-            path = f"boards/{read.name}/order/{name}"
-            try:
-                files = unpacked(folder / "order" / name)
-                ordered = _ordered(read, fab)
-                layers = {key: files[read.name + end] for key, end in ordered.items()}
-                yield _count("files", path, _unasked(read.name, ordered, files), "files")
-                yield _tables_twice(path, folder / "order", fab, read.name, files)
-                same = layers == first  # whose bytes would only be measured again
-                measured = found if same else tuple(measure_layers("", read, layers, painted))
-                yield from (replace(m, subject=f"{path}{m.subject}") for m in measured)
-                if isinstance(read, Read) and design.board.flexible:
-                    yield measure_stiffener(path, layers, design.board.flexible.stiffener)
-                if not first:
-                    first, found = layers, measured
-                other = [key for key in first if first[key] != layers[key]]
-                yield _count("same", path, other, "layers that differ")
-                yield from _parts(path, read, fab, files)
-                note = files[f"{read.name}_assembly.txt"].decode()
-                wrong = _misled(read, note) if isinstance(read, Read) else _misplaced(read, note)
-                yield _count("note", path, list(wrong), "parts")
-                if isinstance(read, Read) and design.board.flexible:
-                    drawn = read.name + ordered["stiffener"]
-                    untold = _untold(note, design.board.flexible, design.stack.pcb_mm, drawn)
-                    yield _count("flexible", path, list(untold), "figures")
-            except (OSError, KeyError, ValueError, SyntaxError) as error:
-                yield unreadable("orders.readable", path, f"cannot be read: {error!r:.200}")
+    """Every zip of every board."""
+    for name in names_of(design):
+        yield from measure_board(outputs, design, name)
+
+
+def measure_board(outputs: Path, design: Design, name: str) -> Iterator[Measurement]:
+    """Every zip of one board; all are to have the same layers."""
+    try:
+        read = read_any(outputs, design, name)
+    except OutputError as error:
+        yield unreadable("orders.board", path_of(name), str(error))
+        return
+    folder = (outputs / path_of(name)).parent
+    painted: Painted = {}
+    first: _Files = {}
+    found: tuple[Measurement, ...] = ()
+    for fab in design.fabs:
+        package = f"{fab.name}_{name}.zip"
+        path = f"boards/{name}/order/{package}"
+        try:
+            files = unpacked(folder / "order" / package)
+            ordered = _ordered(read, fab)
+            layers = {key: files[name + end] for key, end in ordered.items()}
+            yield _count("files", path, _unasked(name, ordered, files), "files")
+            yield _tables_twice(path, folder / "order", fab, name, files)
+            same = layers == first  # whose bytes would only be measured again
+            measured = found if same else tuple(measure_layers("", read, layers, painted))
+            yield from (replace(m, subject=f"{path}{m.subject}") for m in measured)
+            if isinstance(read, Read) and design.board.flexible:
+                yield measure_stiffener(path, layers, design.board.flexible.stiffener)
+            if not first:
+                first, found = layers, measured
+            other = [key for key in first if first[key] != layers[key]]
+            yield _count("same", path, other, "layers that differ")
+            yield from _parts(path, read, fab, files)
+            note = files[f"{name}_assembly.txt"].decode()
+            wrong = _misled(read, note) if isinstance(read, Read) else _misplaced(read, note)
+            yield _count("note", path, list(wrong), "parts")
+            if isinstance(read, Read) and design.board.flexible:
+                drawn = name + ordered["stiffener"]
+                untold = _untold(note, design.board.flexible, design.stack.pcb_mm, drawn)
+                yield _count("flexible", path, list(untold), "figures")
+        except (OSError, KeyError, ValueError, SyntaxError) as error:
+            yield unreadable("orders.readable", path, f"cannot be read: {error!r:.200}")
 
 
 def _parts(path: str, read: Read | ReadCarrier, fab: Fab, files: _Files) -> Iterator[Measurement]:

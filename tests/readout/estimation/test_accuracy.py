@@ -9,6 +9,8 @@ from lumitip import Layout
 from lumitip.estimation import Estimate, EstimationError, PoseEstimator
 from lumitip.twin import Cable, HalfPlane, Model, Twin
 
+pytestmark = pytest.mark.slow
+
 
 def _rms(missed: NDArray[np.float64]) -> tuple[float, float]:
     mm, deg = np.sqrt((missed**2).mean(axis=0))

@@ -11,6 +11,8 @@ from lumitip.tasks import Settings, Task, Tuning
 from lumitip.tasks.trial import Bench
 from lumitip.twin import Cable, Twin
 
+pytestmark = pytest.mark.slow
+
 
 def _missed(told: Estimate, truth: Cable) -> tuple[float, float]:
     """How far the line told is from the truth (mm, degrees)."""

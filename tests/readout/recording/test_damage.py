@@ -21,6 +21,8 @@ from lumitip.frame import Frame
 from lumitip.recording import DamagedError, Reader, RecordingError, recover, summarise
 from lumitip.recording.message import decode, encode
 
+pytestmark = pytest.mark.slow
+
 Make = Callable[..., list[Frame]]
 Record = Callable[..., Path]
 CUTS = 500

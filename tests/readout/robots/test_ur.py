@@ -17,6 +17,8 @@ from lumitip.errors import MissingExtra
 from lumitip.robots import ArmError, ArmLimits, ArmStopped, Mount, URArm
 from ur_peer import Peer, patient
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parents[3]
 MOUNT = Mount(x=(1, 0, 0), y=(0, 0, 1), origin_mm=(0.0, 0.0, 80.0))
 # A machine with more to do than it can must not look like a lost sensor here.
@@ -217,7 +219,6 @@ def test_without_ur_rtde_it_tells_what_to_install(monkeypatch: pytest.MonkeyPatc
         URArm("127.0.0.77", MOUNT)
 
 
-@pytest.mark.slow
 @patient
 def test_the_example_traces_a_simulated_cable_with_the_arm(peer: Peer) -> None:
     done = subprocess.run(

@@ -13,6 +13,8 @@ import pytest
 from lumitip.links.twin import published_layout
 from lumitip.tasks import Settings, TaskError
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parents[3]
 
 

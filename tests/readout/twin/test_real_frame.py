@@ -8,6 +8,8 @@ import pytest
 from lumitip.links.twin import published_layout
 from lumitip.twin.fit import NAMES, fit_edge, read
 
+pytestmark = pytest.mark.slow
+
 FOUND = (0.087, 182.36, -0.0014, 0.065, 2.5, 0.95, 0.850, 0.022, -0.114)
 """What `fit_edge` finds, in the order of `NAMES`."""
 
@@ -36,7 +38,6 @@ def test_other_numbers_do_not(frame: np.ndarray, damage: dict[str, float]) -> No
     assert rms(frame, **damage) > 12.0
 
 
-@pytest.mark.slow
 def test_the_fit_finds_them_from_elsewhere(frame: np.ndarray) -> None:
     fitted = fit_edge(published_layout(), frame, 1.0, 177.0)
     assert fitted.rms < 9.8
@@ -44,7 +45,6 @@ def test_the_fit_finds_them_from_elsewhere(frame: np.ndarray) -> None:
     assert fitted.values - frame == pytest.approx(0.0, abs=30.0)
 
 
-@pytest.mark.slow
 def test_the_fit_finds_the_truth_where_there_is_one() -> None:
     truth = np.array([0.5, 186.0, 0.003, 0.1, 2.6, 0.55, 0.88, 0.03, -0.05])
     fitted = fit_edge(published_layout(), read(published_layout(), truth), 0.3, 184.5)

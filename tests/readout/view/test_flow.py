@@ -18,6 +18,8 @@ from lumitip.view.registry import FingerRegistry
 from lumitip.view.server import ViewServer
 from lumitip.view.session import WINDOW, Session
 
+pytestmark = pytest.mark.slow
+
 Serve = Callable[..., ViewServer]
 WaitFor = Callable[[Callable[[], bool]], None]
 
@@ -203,6 +205,5 @@ def test_200_hz_into_a_browser(page: Page, tmp_path: Path, wait_for: WaitFor) ->
     run(page, tmp_path, wait_for, 2.0)
 
 
-@pytest.mark.slow
 def test_200_hz_into_a_browser_for_20_s(page: Page, tmp_path: Path, wait_for: WaitFor) -> None:
     run(page, tmp_path, wait_for, 20.0)

@@ -15,6 +15,8 @@ from lumitip.view.finger import Finger
 from lumitip.view.registry import FingerRegistry
 from lumitip.view.server import ViewServer
 
+pytestmark = pytest.mark.slow
+
 Serve = Callable[..., ViewServer]
 WaitFor = Callable[[Callable[[], bool]], None]
 TWIN = "twin://edge"

@@ -20,6 +20,8 @@ from lumitip.view.player import Player
 from lumitip.view.registry import FingerRegistry
 from lumitip.view.server import ViewServer
 
+pytestmark = pytest.mark.slow
+
 Serve = Callable[..., ViewServer]
 StillFinger = Callable[[Layout, np.ndarray], Finger]
 WaitFor = Callable[[Callable[[], bool]], None]
