@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import shapely
 
-from lumitip_fab.checks import flange_board, overlap, packages
+from lumitip_fab.checks import flange_board, packages
 from lumitip_fab.checks.board_read import read_carrier
 from lumitip_fab.checks.flange_read import REACH_MM, Stacked, heights, hole_walls, measure_strength
 from lumitip_fab.checks.printed import circles, holes_at, islands_at, room, round_thread
@@ -188,12 +188,12 @@ def _peg(of: Stacked, flange: Flange) -> Iterator[Measurement]:
 
 def measure_overlap(of: Stacked) -> Iterator[Measurement]:
     """No volume is shared by the parts, the board and its components."""
-    lower, upper = overlap.solid(of.lower, "lower"), overlap.solid(of.upper, "upper")
+    lower, upper = solids.solid(of.lower, "lower"), solids.solid(of.upper, "upper")
     inside = flange_board.bodies(of)
-    shared = {"lower and upper": overlap.shared_mm3(lower, upper)}
+    shared = {"lower and upper": solids.shared_mm3(lower, upper)}
     for name, body in inside.items():
-        shared[f"lower and {name}"] = overlap.shared_mm3(lower, body)
-        shared[f"upper and {name}"] = overlap.shared_mm3(upper, body)
+        shared[f"lower and {name}"] = solids.shared_mm3(lower, body)
+        shared[f"upper and {name}"] = solids.shared_mm3(upper, body)
     which = max(shared, key=lambda pair: shared[pair])
     yield of.figure(
         "interference", shared[which], 0, 0.05, "mm³", f"{which}, the worst of {len(shared)} pairs"
