@@ -11,10 +11,17 @@ from typing import Any
 import numpy as np
 import shapely
 
-from lumitip_fab.checks import flange_board, packages
+from lumitip_fab.checks import flange_board
 from lumitip_fab.checks.board_read import read_carrier
 from lumitip_fab.checks.flange_read import REACH_MM, Stacked, heights, hole_walls, measure_strength
-from lumitip_fab.checks.printed import circles, holes_at, islands_at, room, round_thread
+from lumitip_fab.checks.printed import (
+    circles,
+    holes_at,
+    islands_at,
+    measure_corners,
+    room,
+    round_thread,
+)
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.checks.walls import walls
@@ -47,7 +54,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
                 continue
             meshes[part] = solids.moved(lying, bed)
             yield from _printed(subject, lying, design)
-            yield from packages.measure_corners(
+            yield from measure_corners(
                 "flange", outputs, subject, lying.bounds, meshes[part].vertices
             )
         try:

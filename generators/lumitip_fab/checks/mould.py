@@ -12,12 +12,12 @@ import numpy as np
 import shapely
 from shapely.errors import GEOSException
 
-from lumitip_fab.checks import letters, mould_walls
+from lumitip_fab.checks import mould_walls
 from lumitip_fab.checks.mould_note import STATED, VOLUME_FRACTION, measure_note
-from lumitip_fab.checks.packages import measure_boxes
+from lumitip_fab.checks.printed import measure_boxes
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.result import Measurement, unreadable
-from lumitip_fab.checks.walls import walls
+from lumitip_fab.checks.walls import beside, measure_relief, walls
 from lumitip_fab.design import Design, Finger
 from lumitip_fab.design.frames import applied, backing_bed_to_sensor, mould_bed_to_sensor
 from lumitip_fab.errors import OutputError
@@ -87,8 +87,8 @@ def _measured(
     yield from _stops(probe, file)
     yield from mould_walls.measured(mesh, file, design, finger.notch)
     letter = design.mould.letter
-    yield letters.measure_letter("mould.letter", file, mesh, finger, letter)
-    exempt = (letters.beside(letter, design.printing),)
+    yield measure_relief("mould.letter", file, mesh, finger, letter)
+    exempt = (beside(letter, design.printing),)
     yield from walls("mould.min_wall", file, mesh, design.printing.min_wall_mm, exempt)
     sensor = solids.moved(mesh, mould_bed_to_sensor(design.stack, design.mould))
     yield from measure_boxes("mould", outputs, file, mesh.bounds, sensor.bounds)
