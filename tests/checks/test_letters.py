@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lumitip_fab.checks.letters import beside
+from lumitip_fab.checks.walls import beside
 from lumitip_fab.design import Box, Letter, Printing
 
 

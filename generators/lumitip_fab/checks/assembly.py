@@ -10,7 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-from lumitip_fab.checks import exploded, overlap
+from lumitip_fab.checks import exploded
+from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.readers.scene import Node, Scene, read_scene
 from lumitip_fab.checks.readers.solids import Vectors
 from lumitip_fab.checks.result import Measurement, unreadable
@@ -245,33 +246,33 @@ def _interference(scene: Scene, design: Design) -> Iterator[Measurement]:
         pairs = [p for p in combinations(bodies, 2) if p != ("silicone", "parts")]
         yield _worst(
             f"{_FILE}: {finger.name}",
-            {f"{a} and {b}": overlap.shared_mm3(bodies[a], bodies[b]) for a, b in pairs},
+            {f"{a} and {b}": solids.shared_mm3(bodies[a], bodies[b]) for a, b in pairs},
         )
     opening = _opening_mm(scene, design)
     closed = []
     for finger, bodies in zip(design.fingers, fingers, strict=True):
         to_scene = scene.nodes[f"{finger.name}.film"].to_scene
         shut = translation(0.0, 0.0, _inward(finger) * opening / 2) @ to_scene
-        closed.append({name: overlap.placed(body, shut) for name, body in bodies.items()})
+        closed.append({name: solids.placed(body, shut) for name, body in bodies.items()})
     yield _worst(
         f"{_FILE}: closed",
         {
-            f"{a} and {b}": overlap.shared_mm3(closed[0][a], closed[1][b])
+            f"{a} and {b}": solids.shared_mm3(closed[0][a], closed[1][b])
             for a in closed[0]
             for b in closed[1]
         },
     )
 
 
-def _bodies(scene: Scene, finger: Finger, layers: tuple[str, ...]) -> dict[str, overlap.Solid]:
+def _bodies(scene: Scene, finger: Finger, layers: tuple[str, ...]) -> dict[str, solids.Solid]:
     """The layers and, as one body, the parts."""
-    made = {
-        layer: overlap.solid(scene.nodes[f"{finger.name}.{layer}"].mesh, layer) for layer in layers
+    bodies = {
+        layer: solids.solid(scene.nodes[f"{finger.name}.{layer}"].mesh, layer) for layer in layers
     }
-    made["parts"] = overlap.joined(
-        [overlap.solid(scene.nodes[part.name].mesh, part.name) for part in finger.parts]
+    bodies["parts"] = solids.united(
+        [solids.solid(scene.nodes[part.name].mesh, part.name) for part in finger.parts]
     )
-    return made
+    return bodies
 
 
 def _worst(subject: str, shared: dict[str, float]) -> Measurement:

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import shapely
 
-from lumitip_fab.checks import flex, letters, packages
+from lumitip_fab.checks import flex
 from lumitip_fab.checks.plate import (
     measure_notch,
     measure_outline,
@@ -18,11 +18,11 @@ from lumitip_fab.checks.plate import (
     measure_reliefs,
     measure_tip,
 )
-from lumitip_fab.checks.printed import Printed, circles, holes_at, room, round_thread
+from lumitip_fab.checks.printed import Printed, circles, holes_at, measure_files, room, round_thread
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.readers.solids import Vectors, cast, section
 from lumitip_fab.checks.result import Measurement, unreadable
-from lumitip_fab.checks.walls import MESH_MM, Exempt, Mask, walls
+from lumitip_fab.checks.walls import MESH_MM, Exempt, Mask, beside, measure_relief, walls
 from lumitip_fab.design import Design, Finger, Letter
 from lumitip_fab.design.frames import (
     Matrix,
@@ -131,7 +131,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
                 continue
             yield part.figure("readable", float(len(part.standing.faces)), 4, np.inf, "triangles")
             yield from _measured(part)
-            yield from packages.measure_files(outputs, part)
+            yield from measure_files(outputs, part)
         whole = [part for part in made if isinstance(part, Printed)]
         if len(whole) == 2:
             yield from _caught(partial(flex.measure_joint, whole[0]), whole[1], "joint")
@@ -219,7 +219,7 @@ def measure_letter(part: Printed) -> Iterator[Measurement]:
     """The letter on the back of the coupling's block, or of a bendable plate."""
     letter, to_letter = _letter(part)
     mesh = solids.moved(part.standing, to_letter)
-    yield letters.measure_letter("backing.letter", part.subject, mesh, part.finger, letter)
+    yield measure_relief("backing.letter", part.subject, mesh, part.finger, letter)
 
 
 def _letter(part: Printed) -> tuple[Letter, Matrix]:
@@ -235,7 +235,7 @@ def measure_walls(part: Printed) -> Iterator[Measurement]:
     """The thinnest walls. Thinner ones are listed here by name, each with its own limit."""
     design, mount = part.design, part.design.mount
     letter, to_letter = _letter(part)
-    about = letters.beside(letter, design.printing)
+    about = beside(letter, design.printing)
 
     slant, floor_mm = math.radians(design.tip.angle_deg), design.stack.floor_mm
     start_y = design.tip.slant_start_y_mm

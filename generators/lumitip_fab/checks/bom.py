@@ -120,7 +120,7 @@ def _boards(design: Design) -> tuple[str, ...]:
 
 
 def _parts(outputs: Path, design: Design) -> Counter[str]:
-    """How many of each order number, by the list that goes to a board house that tells it."""
+    """Quantity of each order number, from the list for a PCB fab that includes both."""
     fab = next(
         fab for fab in design.fabs if {"part", "quantity"} <= {field for _, field in fab.bom}
     )

@@ -144,7 +144,7 @@ class _Follower:
                     self.reached.setdefault(key, set()).add(part.ref)
 
     def map(self, part: Part, pins: Pinout) -> dict[str, str]:
-        """The detector of each input that has one; several are told together."""
+        """The detector of each input that has one; several are joined by `+`."""
         rails = {self.by.key(t) for t in part.terminals if t.number in (*pins.rails, *pins.select)}
         found = {}
         for channel, lead in enumerate(pins.inputs):

@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 import shapely
 
-from lumitip_fab.checks import packages
-from lumitip_fab.checks.printed import circles, farthest, holes_at
+from lumitip_fab.checks.printed import circles, farthest, holes_at, measure_boxes
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.readers.solids import Vectors, cast, section
 from lumitip_fab.checks.result import Measurement, unreadable
@@ -87,9 +86,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
             name = measured.__name__.removeprefix("measure_")
             yield unreadable(f"fit_plate.{name}", _FILE, f"cannot be measured: {error!r:.200}")
     coupons = len(design.fit_plate.steps)
-    yield from packages.measure_boxes(
-        "fit_plate", outputs, _FILE, mesh.bounds, mesh.bounds, coupons
-    )
+    yield from measure_boxes("fit_plate", outputs, _FILE, mesh.bounds, mesh.bounds, coupons)
 
 
 def measure_body(plate: _Plate) -> Iterator[Measurement]:

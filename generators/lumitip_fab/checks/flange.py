@@ -11,10 +11,17 @@ from typing import Any
 import numpy as np
 import shapely
 
-from lumitip_fab.checks import flange_board, overlap, packages
+from lumitip_fab.checks import flange_board
 from lumitip_fab.checks.board_read import read_carrier
 from lumitip_fab.checks.flange_read import REACH_MM, Stacked, heights, hole_walls, measure_strength
-from lumitip_fab.checks.printed import circles, holes_at, islands_at, room, round_thread
+from lumitip_fab.checks.printed import (
+    circles,
+    holes_at,
+    islands_at,
+    measure_corners,
+    room,
+    round_thread,
+)
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.checks.walls import walls
@@ -47,7 +54,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
                 continue
             meshes[part] = solids.moved(lying, bed)
             yield from _printed(subject, lying, design)
-            yield from packages.measure_corners(
+            yield from measure_corners(
                 "flange", outputs, subject, lying.bounds, meshes[part].vertices
             )
         try:
@@ -188,12 +195,12 @@ def _peg(of: Stacked, flange: Flange) -> Iterator[Measurement]:
 
 def measure_overlap(of: Stacked) -> Iterator[Measurement]:
     """No volume is shared by the parts, the board and its components."""
-    lower, upper = overlap.solid(of.lower, "lower"), overlap.solid(of.upper, "upper")
+    lower, upper = solids.solid(of.lower, "lower"), solids.solid(of.upper, "upper")
     inside = flange_board.bodies(of)
-    shared = {"lower and upper": overlap.shared_mm3(lower, upper)}
+    shared = {"lower and upper": solids.shared_mm3(lower, upper)}
     for name, body in inside.items():
-        shared[f"lower and {name}"] = overlap.shared_mm3(lower, body)
-        shared[f"upper and {name}"] = overlap.shared_mm3(upper, body)
+        shared[f"lower and {name}"] = solids.shared_mm3(lower, body)
+        shared[f"upper and {name}"] = solids.shared_mm3(upper, body)
     which = max(shared, key=lambda pair: shared[pair])
     yield of.figure(
         "interference", shared[which], 0, 0.05, "mm³", f"{which}, the worst of {len(shared)} pairs"

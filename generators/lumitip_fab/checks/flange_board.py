@@ -7,7 +7,6 @@ import manifold3d
 import numpy as np
 import shapely
 
-from lumitip_fab.checks import overlap
 from lumitip_fab.checks.flange_read import CONTACTS, REACH_MM, Stacked, heights
 from lumitip_fab.checks.printed import circles, farthest, holes_at, room, round_head, round_thread
 from lumitip_fab.checks.readers import solids
@@ -133,7 +132,7 @@ def measure_screws(of: Stacked) -> Iterator[Measurement]:
     yield of.clear("head_clearance", round_head(room(sinks, at) + 0.2, screw))
 
 
-def bodies(of: Stacked) -> dict[str, overlap.Solid]:
+def bodies(of: Stacked) -> dict[str, solids.Solid]:
     """The board and its parts as boxes, each on the side where the board's file has it."""
     thick = of.design.stack.carrier_mm
     seat = of.board_z_mm + SIZE_MM / 2

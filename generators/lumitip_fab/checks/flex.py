@@ -6,9 +6,9 @@ from collections.abc import Iterator
 import numpy as np
 import shapely
 
-from lumitip_fab.checks import overlap
 from lumitip_fab.checks.plate import DEPTH_MM, floor_points, front_z
 from lumitip_fab.checks.printed import Printed, circles, holes_at
+from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.readers.solids import Vectors, cast, section
 from lumitip_fab.checks.result import Measurement
 from lumitip_fab.design import Interface
@@ -109,8 +109,8 @@ def measure_joint(plate: Printed, held: Printed) -> Iterator[Measurement]:
     top = float(held.sensor.bounds[1, 2])
     rise = np.array([top - stack.back_z_mm])
     yield held.near("rim_height", rise, interface.rim_height_mm, GLUE_MM)
-    shared = overlap.shared_mm3(
-        overlap.solid(plate.sensor, "the backing"), overlap.solid(held.sensor, "the interface")
+    shared = solids.shared_mm3(
+        solids.solid(plate.sensor, "the backing"), solids.solid(held.sensor, "the interface")
     )
     yield held.figure("joint", shared, 0.0, SHARED_MM3, "mm³")
     yield held.near("pad", _pad_z(held), stack.back_z_mm, DEPTH_MM)

@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 import shapely
 
-from lumitip_fab.checks import packages
 from lumitip_fab.checks.board_read import ReadCarrier, read_carrier
 from lumitip_fab.checks.printed import (
     Figures,
     circles,
     farthest,
     holes_at,
+    measure_corners,
     room,
     round_nut,
     round_thread,
@@ -81,9 +81,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
         clip = Clip(subject, standing, mesh, holder, board, design)
         yield clip.figure("readable", len(mesh.faces), 4, math.inf, "triangles")
         yield from _measured(clip)
-        yield from packages.measure_corners(
-            "holder", outputs, subject, standing.bounds, mesh.vertices
-        )
+        yield from measure_corners("holder", outputs, subject, standing.bounds, mesh.vertices)
 
 
 def _measured(clip: Clip) -> Iterator[Measurement]:

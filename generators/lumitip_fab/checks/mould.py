@@ -12,12 +12,12 @@ import numpy as np
 import shapely
 from shapely.errors import GEOSException
 
-from lumitip_fab.checks import letters, mould_walls, overlap
+from lumitip_fab.checks import mould_walls
 from lumitip_fab.checks.mould_note import STATED, VOLUME_FRACTION, measure_note
-from lumitip_fab.checks.packages import measure_boxes
+from lumitip_fab.checks.printed import measure_boxes
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.result import Measurement, unreadable
-from lumitip_fab.checks.walls import walls
+from lumitip_fab.checks.walls import beside, measure_relief, walls
 from lumitip_fab.design import Design, Finger
 from lumitip_fab.design.frames import applied, backing_bed_to_sensor, mould_bed_to_sensor
 from lumitip_fab.errors import OutputError
@@ -87,12 +87,12 @@ def _measured(
     yield from _stops(probe, file)
     yield from mould_walls.measured(mesh, file, design, finger.notch)
     letter = design.mould.letter
-    yield letters.measure_letter("mould.letter", file, mesh, finger, letter)
-    exempt = (letters.beside(letter, design.printing),)
+    yield measure_relief("mould.letter", file, mesh, finger, letter)
+    exempt = (beside(letter, design.printing),)
     yield from walls("mould.min_wall", file, mesh, design.printing.min_wall_mm, exempt)
     sensor = solids.moved(mesh, mould_bed_to_sensor(design.stack, design.mould))
     yield from measure_boxes("mould", outputs, file, mesh.bounds, sensor.bounds)
-    body = overlap.solid(mesh, "the mould")
+    body = solids.solid(mesh, "the mould")
     yield _volume(body, file, outputs, design, finger)
     yield _seat(body, file, outputs, design, finger)
 
@@ -189,20 +189,20 @@ def _stops(probe: Probe, file: str) -> Iterator[Measurement]:
 
 
 def _seat(
-    body: overlap.Solid, file: str, outputs: Path, design: Design, finger: Finger
+    body: solids.Solid, file: str, outputs: Path, design: Design, finger: Finger
 ) -> Measurement:
     """The backing lying on the stops touches nothing else: neither wall nor weir."""
     part = f"backing/{finger.name}_backing.stl"
     try:
-        backing = overlap.solid(solids.read_mesh(outputs / part), "the backing")
+        backing = solids.solid(solids.read_mesh(outputs / part), "the backing")
     except OutputError as error:
         return unreadable("mould.seat", part, str(error))
     to_bed = np.linalg.inv(mould_bed_to_sensor(design.stack, design.mould))
-    seated = overlap.placed(backing, to_bed @ backing_bed_to_sensor(design.mount, design.stack))
+    seated = solids.placed(backing, to_bed @ backing_bed_to_sensor(design.mount, design.stack))
     return Measurement(
         "mould.seat",
         file,
-        overlap.shared_mm3(body, seated),
+        solids.shared_mm3(body, seated),
         0,
         SHARED_MM3,
         "mm³",
@@ -211,7 +211,7 @@ def _seat(
 
 
 def _volume(
-    body: overlap.Solid, file: str, outputs: Path, design: Design, finger: Finger
+    body: solids.Solid, file: str, outputs: Path, design: Design, finger: Finger
 ) -> Measurement:
     """Millilitres in the note against the cavity below the rim, less the parts that dip in."""
     note_file = f"mould/{finger.name}_casting.md"
@@ -243,7 +243,7 @@ def _volume(
     )
 
 
-def _cavity_mm3(body: overlap.Solid, design: Design) -> float:
+def _cavity_mm3(body: solids.Solid, design: Design) -> float:
     """Volume between rim plane and mould within the middle of the walls."""
     mould = design.mould
     silhouette = shapely.Polygon(design.outline.polygon() * (1, -1))

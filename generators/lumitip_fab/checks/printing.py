@@ -33,8 +33,8 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
 
 
 def _mould_layers(outputs: Path, design: Design) -> Measurement:
-    """Floor and stops of the moulds are whole layers of what the slicer is told: what it rounds
-    there is missing from, or added to, the silicone."""
+    """Floor and stops of the moulds are whole layers of the slicer's `layer_height`: rounding
+    there makes the silicone thinner or thicker."""
     file = design.slicing.mould.file
     try:
         layer_mm = float(_read(outputs / file)["layer_height"])

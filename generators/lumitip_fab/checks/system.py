@@ -10,7 +10,6 @@ from pathlib import Path
 
 import numpy as np
 
-from lumitip_fab.checks import overlap
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.readers.scene import Scene, read_scene
 from lumitip_fab.checks.readers.solids import Vectors
@@ -68,7 +67,7 @@ def _bounds(scene: Scene, name: str) -> Vectors:
 
 
 def _stack(scene: Scene, design: Design) -> Iterator[Measurement]:
-    """Gaps along the axis from body to body, below zero where they overlap."""
+    """Gaps along the axis from body to body, below zero where they solids."""
     system = design.system
     gripper = _bounds(scene, "gripper.envelope")[:, 2]
     foot = min(_bounds(scene, f"{f.name}.{design.held}")[0, 2] for f in design.fingers)
@@ -207,15 +206,15 @@ def _interference(scene: Scene, design: Design) -> Measurement:
     """The greatest volume that two bodies share whose shapes are real."""
     try:
         bodies = {
-            name: overlap.placed(
-                overlap.solid(scene.nodes[name].mesh, name), scene.nodes[name].to_scene
+            name: solids.placed(
+                solids.solid(scene.nodes[name].mesh, name), scene.nodes[name].to_scene
             )
             for name in real_bodies(design)
         }
     except OutputError as error:
         return unreadable("system.interference", _FILE, str(error))
     shared = {
-        f"{a} and {b}": overlap.shared_mm3(bodies[a], bodies[b]) for a, b in combinations(bodies, 2)
+        f"{a} and {b}": solids.shared_mm3(bodies[a], bodies[b]) for a, b in combinations(bodies, 2)
     }
     worst = max(shared, key=lambda pair: shared[pair])
     return Measurement(

@@ -1,4 +1,4 @@
-"""Thickness of walls by casting rays inward from the surface of a mesh."""
+"""Rays against walls: their thickness, and the letter that is sunk into one."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from lumitip_fab.checks.readers.solids import Vectors, cast
 from lumitip_fab.checks.result import Measurement
+from lumitip_fab.design import Finger, Letter, Printing
 
 Mask = NDArray[np.bool_]
 
@@ -17,6 +18,39 @@ SAMPLES = 3000
 MESH_MM = 0.02  # two chord errors: a wall of exactly the limit must pass
 _FACING = -np.cos(np.radians(30.0))  # less than that is an edge, not a wall
 _SEED = 1
+RELIEF_MM = 0.08
+_START_MM = 2.0  # of the rays, before the wall
+_BESIDE_MM = 0.7  # or the thinnest wall: walls between the letter and the end of its wall
+_ASPECT = 0.7
+# Places in parts of the letter's height, from its lower left corner: sunk, and left standing.
+_SUNK = {
+    "E": (
+        (0.08, 0.1),
+        (0.08, 0.5),
+        (0.08, 0.9),
+        (0.35, 0.08),
+        (0.62, 0.08),
+        (0.35, 0.5),
+        (0.5, 0.5),
+        (0.35, 0.92),
+        (0.62, 0.92),
+    ),
+    "R": (
+        (0.08, 0.1),
+        (0.08, 0.5),
+        (0.08, 0.9),
+        (0.35, 0.5),
+        (0.35, 0.92),
+        (0.62, 0.7),
+        (0.59, 0.1),
+        (0.54, 0.3),
+    ),
+}
+_STANDING = {
+    "E": ((0.4, 0.29), (0.6, 0.29), (0.4, 0.71), (0.6, 0.71)),
+    "R": ((0.3, 0.08), (0.28, 0.3), (0.3, 0.7), (0.45, 0.7)),
+}
+_AROUND = ((-0.08, 0.5), (_ASPECT + 0.08, 0.5), (_ASPECT + 0.08, 0.08), (_ASPECT + 0.08, 0.92))
 
 
 @dataclass(frozen=True)
@@ -65,3 +99,51 @@ def walls(
         thin, (x, y, z) = float(thickness[at]), points[at]
         note = f"at ({x:.1f}, {y:.1f}, {z:.1f}) of the file's frame"
     yield Measurement(check, subject, thin, least_mm - MESH_MM, unit="mm", note=note)
+
+
+def measure_relief(
+    check: str, subject: str, mesh: Any, finger: Finger, letter: Letter
+) -> Measurement:
+    """How far the wall strays from a sunken first letter of the finger's name.
+
+    Args:
+        check: the check's name.
+        subject: the file.
+        mesh: the part as it is printed.
+        finger: whose part it should be.
+        letter: where the letter should be.
+    """
+    wanted = finger.name[0].upper()
+    off = {name: _off_mm(mesh, letter, name) for name in _SUNK}
+    reads = [name for name, by in off.items() if by <= RELIEF_MM]
+    note = f"reads {reads[0]}" if reads else f"reads neither {' nor '.join(off)}"
+    return Measurement(check, subject, off[wanted], 0, RELIEF_MM, "mm", f"{note}, {wanted} wanted")
+
+
+def beside(letter: Letter, printing: Printing) -> Exempt:
+    """Walls between and around the letter's strokes, each one printed line wide."""
+    box = letter.box.grown(max(_BESIDE_MM, printing.min_wall_mm))
+
+    def holds(points: Vectors) -> Mask:
+        across, out, up = points.T
+        inside = (np.abs(across - box.centre_mm[0]) < box.width_mm / 2) & (out <= letter.wall_mm)
+        inside &= np.abs(up - box.centre_mm[1]) < box.length_mm / 2
+        return np.asarray(inside & (out > letter.wall_mm - letter.depth_mm - 0.01))
+
+    return Exempt("letter", printing.line_mm, holds)
+
+
+def _off_mm(mesh: Any, letter: Letter, name: str) -> float:
+    sunk, standing = _SUNK[name], (*_STANDING[name], *_AROUND)
+    box, places = letter.box, np.array([*sunk, *standing]) * letter.box.length_mm
+    starts = np.column_stack(
+        [
+            box.x_max_mm - places[:, 0],
+            np.full(len(places), letter.wall_mm + _START_MM),
+            box.y_min_mm + places[:, 1],
+        ]
+    )
+    reach = _START_MM + 2 * letter.depth_mm
+    distance, _ = cast(mesh, starts, np.array([0.0, -1.0, 0.0]), reach).first(len(places))
+    wanted = np.repeat([letter.depth_mm, 0.0], [len(sunk), len(standing)])
+    return float(np.abs(distance - _START_MM - wanted).max())

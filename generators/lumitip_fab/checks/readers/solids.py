@@ -1,10 +1,11 @@
-"""Read a printed part's mesh and measure it: edges, rays, sections, overhang, walls."""
+"""Read a printed part's mesh and measure it: edges, rays, sections, overhang, shared volume."""
 
 from dataclasses import dataclass
 from functools import reduce
 from pathlib import Path
 from typing import Any
 
+import manifold3d
 import numpy as np
 import shapely
 import trimesh
@@ -15,6 +16,7 @@ from lumitip_fab.design.frames import Matrix
 from lumitip_fab.errors import OutputError
 
 Vectors = NDArray[np.float64]
+Solid = Any  # manifold3d.Manifold
 
 _TOUCH_MM = 1e-6
 _PLANE_MM = 1e-5  # a section is taken this far above the plane asked for, off every corner
@@ -150,3 +152,36 @@ def bed_contact_mm2(mesh: Any) -> float:
     """Area that lies on the bed, z = 0."""
     on_bed = np.abs(mesh.triangles[:, :, 2]).max(axis=1) < 0.01
     return float(mesh.area_faces[on_bed].sum())
+
+
+def solid(mesh: Any, name: str) -> Solid:
+    """A mesh as a body with an inside.
+
+    Raises:
+        OutputError: if it is not closed.
+    """
+    body = manifold3d.Manifold(
+        manifold3d.Mesh64(mesh.vertices.astype(np.float64), mesh.faces.astype(np.uint64))
+    )
+    if body.status() != manifold3d.Error.NoError or body.is_empty():
+        raise OutputError(f"{name} is not a closed body: {body.status()}")
+    return body
+
+
+def placed(body: Solid, matrix: Matrix) -> Solid:
+    """A body in another frame."""
+    return body.transform(matrix[:3])
+
+
+def shared_mm3(a: Solid, b: Solid) -> float:
+    """Volume that two bodies both fill."""
+    low_a, high_a = np.array(a.bounding_box()).reshape(2, 3)
+    low_b, high_b = np.array(b.bounding_box()).reshape(2, 3)
+    if (low_a > high_b).any() or (low_b > high_a).any():
+        return 0.0
+    return abs(float((a ^ b).volume()))
+
+
+def united(bodies: list[Solid]) -> Solid:
+    """Several bodies as one."""
+    return manifold3d.Manifold.batch_boolean(bodies, manifold3d.OpType.Add)

@@ -28,14 +28,14 @@ def unpacked(path: Path) -> dict[str, bytes]:
 
     Raises:
         OSError: if there is none.
-        ValueError: if it is spoilt, holds a name twice, or is packed as no board house or slicer
-            unpacks it.
+        ValueError: if it is damaged, holds a name twice, or is packed in a way that PCB fabs and
+            slicers do not unpack.
     """
     try:
         with zipfile.ZipFile(path) as package:
             names = package.namelist()
             twice = sorted({name for name in names if names.count(name) > 1})
-            if twice:  # which of the two a board house takes is not known
+            if twice:  # which of the two a PCB fab takes is not known
                 raise ValueError(f"packed more than once: {', '.join(twice)}")
             return {name: package.read(name) for name in names}
     # A spoilt header may ask for a password or for a method that is not known.

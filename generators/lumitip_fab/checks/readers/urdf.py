@@ -74,7 +74,7 @@ def read_urdf(path: Path) -> Model:
 
 
 def read_macros(path: Path) -> dict[str, str]:
-    """The link of each macro of a xacro file, told as `Link.text`, by the link's name.
+    """The link of each macro of a xacro file, in the form of `Link.text`, by the link's name.
 
     Raises:
         OutputError: if the file cannot be read.
