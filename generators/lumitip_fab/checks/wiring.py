@@ -184,7 +184,7 @@ def _currents(rows: tuple[Row, ...], design: Design) -> Iterator[Measurement]:
         lit_ma - 0.01,
         math.inf,
         "mA",
-        "least told of the LEDs' supply",
+        "least rating of the LEDs' supply",
     )
     dense = max((r.current_ma / 1000 / r.section_mm2 for r in rows), default=math.nan)
     yield Measurement("wiring.density", _LIST, dense, 0, _MOST_A_PER_MM2, "A/mm²")
