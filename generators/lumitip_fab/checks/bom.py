@@ -139,11 +139,8 @@ def _parts(outputs: Path, design: Design) -> Counter[str]:
 def _grams(outputs: Path, design: Design) -> dict[str, float]:
     """Mass of each printed part, solid."""
     found = {}
-    for path in sorted(
-        p
-        for k in ("backing", "interface", "mould", "holder", "flange", "fit")
-        for p in (outputs / k).glob("*.stl")
-    ):
+    printed = [pattern for pattern in READS if pattern.endswith(".stl")]
+    for path in sorted(path for pattern in printed for path in outputs.glob(pattern)):
         corners = corners_mm(path).reshape(-1, 3, 3)
         mm3 = float(np.linalg.det(corners).sum() / 6)
         name = path.relative_to(outputs).as_posix()

@@ -70,11 +70,14 @@ def electronics(design: Design, files: Files) -> Iterator[Line]:
     yield Line("boards", item, "", "", where_text, placed, "piece", purchase.placing_each)
 
 
+PRINTED = ("backing", "interface", "mould", "holder", "flange", "fit")
+"""Folders of printed parts, in the order of the bill."""
+
+
 def materials(design: Design, files: Files) -> Iterator[Line]:
     """Filament, silicone, film and wire."""
     slicing, purchase = design.slicing, design.purchase
-    kinds = ("backing", "interface", "mould", "holder", "flange", "fit")
-    for path in (path for kind in kinds for path in files.like(f"{kind}/*.stl")):
+    for path in (path for kind in PRINTED for path in files.like(f"{kind}/*.stl")):
         filament = slicing.of(path)
         kg = purchase.filament_kg[filament != slicing.backing]
         grams = round(files.facts(path)["volume_mm3"] / 1000 * filament.density_g_ml, 2)
