@@ -10,7 +10,7 @@ import shapely
 import small_boards as small
 from lumitip_fab.boards.model import BoardModel, Fill, Placement, Routing, Track, Via
 from lumitip_fab.boards.route import route
-from lumitip_fab.boards.verify import Fault, sound, summary, verify
+from lumitip_fab.boards.verify import Fault, require_clean_drc, summary, verify
 from lumitip_fab.errors import BuildError
 
 
@@ -135,7 +135,7 @@ def test_a_fill_too_near_and_one_that_floats(bare: Placement) -> None:
 
 def test_only_a_sound_board_passes(placement: Placement, routing: Routing) -> None:
     good = BoardModel(placement, routing, ())
-    assert sound(good) is good
+    assert require_clean_drc(good) is good
     bad = dataclasses.replace(good, routing=dataclasses.replace(routing, vias=()))
     with pytest.raises(BuildError, match=r"receiver board breaks its rules:\nnet .* in pieces"):
-        sound(bad)
+        require_clean_drc(bad)

@@ -1,6 +1,7 @@
 """Every file of a board outside the fingers. Its design has all parts in their places, so that
 only the copper is left to do."""
 
+from lumitip_fab.boards.circuit import GROUND, SIGNAL, SUPPLY, net_class
 from lumitip_fab.boards.fab.order import carrier_note
 from lumitip_fab.boards.files import model_files
 from lumitip_fab.boards.footprints import pad_at
@@ -10,7 +11,6 @@ from lumitip_fab.boards.model import (
     Component,
     Footprint,
     Net,
-    NetClass,
     Pad,
     Placement,
     Stroke,
@@ -19,7 +19,7 @@ from lumitip_fab.boards.placement import refuse_overlaps
 from lumitip_fab.boards.pour import pour
 from lumitip_fab.boards.route import route
 from lumitip_fab.boards.silk.carrier import with_legend
-from lumitip_fab.boards.verify import sound
+from lumitip_fab.boards.verify import require_clean_drc
 from lumitip_fab.design import (
     Box,
     Carrier,
@@ -152,10 +152,6 @@ def _socket(body: Box, rules: Rules) -> tuple[Stroke, ...]:
     return Stroke(around, pen), Stroke(((bar, low / 2), (bar, high / 2)), _BAR_MM)
 
 
-GROUND = "GND"
-SIGNAL, SUPPLY = "signal", "supply"
-
-
 def carrier_files(design: Design, carrier: Carrier) -> tuple[Artefact, ...]:
     """Every file of a board outside the fingers: KiCad project, pictures of both sides, orders.
 
@@ -167,7 +163,7 @@ def carrier_files(design: Design, carrier: Carrier) -> tuple[Artefact, ...]:
     refuse_overlaps(carrier.name, bare.components, "choose smaller parts")
     placement = with_legend(bare, carrier, design.rules)
     routing, fills = pour(placement, route(placement))
-    model = sound(BoardModel(placement, routing, fills))
+    model = require_clean_drc(BoardModel(placement, routing, fills))
     sheet = carrier_sheet(placement, carrier)
     return model_files(
         model,
@@ -209,14 +205,10 @@ def _placement(title: Title, reading: Reading, carrier: Carrier, rules: Rules) -
             Net(name, SUPPLY if name in carrier.supplies else SIGNAL) for name in carrier.nets
         ),
         classes=(
-            _net_class(SIGNAL, rules.track_mm, rules),
-            _net_class(SUPPLY, rules.supply_track_mm, rules),
+            net_class(SIGNAL, rules.track_mm, rules),
+            net_class(SUPPLY, rules.supply_track_mm, rules),
         ),
         ground=GROUND,
         silk=(),
         texts=(),
     )
-
-
-def _net_class(name: str, track_mm: float, rules: Rules) -> NetClass:
-    return NetClass(name, track_mm, rules.copper_gap_mm, rules.via_mm, rules.via_drill_mm)

@@ -45,8 +45,8 @@ def circuit(
         components=parts,
         nets=tuple(Net(n, SUPPLY if n in (GROUND, supply) else SIGNAL) for n in names),
         classes=(
-            _net_class(SIGNAL, rules.track_mm, rules),
-            _net_class(SUPPLY, rules.supply_track_mm, rules),
+            net_class(SIGNAL, rules.track_mm, rules),
+            net_class(SUPPLY, rules.supply_track_mm, rules),
         ),
     )
 
@@ -201,5 +201,6 @@ def _roomy(finger: Finger, chip: Chip) -> bool:
     return min(gaps, default=ROOMY_MM) >= ROOMY_MM
 
 
-def _net_class(name: str, track_mm: float, rules: Rules) -> NetClass:
+def net_class(name: str, track_mm: float, rules: Rules) -> NetClass:
+    """Rules of a kind of net."""
     return NetClass(name, track_mm, rules.copper_gap_mm, rules.via_mm, rules.via_drill_mm)

@@ -11,7 +11,7 @@ from lumitip_fab.boards.placement import place
 from lumitip_fab.boards.pour import pour
 from lumitip_fab.boards.route import route
 from lumitip_fab.boards.teardrops import with_teardrops
-from lumitip_fab.boards.verify import sound
+from lumitip_fab.boards.verify import require_clean_drc
 from lumitip_fab.design import Design, Fab, Finger
 from lumitip_fab.design.frames import Matrix, board_page_to_sensor
 from lumitip_fab.pipeline.artefact import Artefact
@@ -32,7 +32,7 @@ def board_files(design: Design, finger: Finger) -> tuple[Artefact, ...]:
     if placement.flexible:
         routing = with_teardrops(placement, routing)
     routing, fills = pour(placement, routing)
-    model = sound(BoardModel(placement, routing, fills))
+    model = require_clean_drc(BoardModel(placement, routing, fills))
     sheet = schematic_files(placement, wiring, packages)
     return model_files(
         model,

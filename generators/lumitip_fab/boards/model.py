@@ -135,7 +135,7 @@ class Placement:
     texts: tuple[tuple[Side, Text], ...]
     """Silkscreen beyond the components' own."""
     flexible: Flexible | None = None
-    """Of what it is made, where it bends."""
+    """Layers and bend of a flexible board."""
     ground_only: tuple[Box, ...] = ()
     """Where the back carries no net but ground: under a regulator's hot loop."""
 

@@ -83,7 +83,7 @@ def fractured(area: Polygon) -> tuple[Point, ...]:
 
 
 def _corners(ring: LinearRing) -> Corners:
-    """Rounded corners of shape `(n, 2)`, those that fall together told once."""
+    """Rounded corners of shape `(n, 2)`, coinciding ones once."""
     rounded = np.round(shapely.get_coordinates(ring)[:-1], _NM) + 0.0
     return np.asarray(rounded[(rounded != np.roll(rounded, 1, axis=0)).any(axis=1)])
 

@@ -225,7 +225,7 @@ def summary(faults: tuple[Fault, ...], most: int = 5) -> str:
     return "\n".join([*lines, f"and {more} more"] if more > 0 else lines)
 
 
-def sound(model: BoardModel) -> BoardModel:
+def require_clean_drc(model: BoardModel) -> BoardModel:
     """The same board, if it has no fault.
 
     Raises:

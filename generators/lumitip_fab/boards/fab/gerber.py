@@ -112,9 +112,9 @@ def _layer(
     }
     if key == "outline":
         del attributes[".FilePolarity"]  # the profile has none
-    made = GerberFile(objects=list(drawn), file_attrs=attributes)
+    gerber = GerberFile(objects=list(drawn), file_attrs=attributes)
     settings = FileSettings(unit=MM, notation="absolute", number_format=_LAYER_FORMAT)
-    return Layer(key, _mended(made.write_to_bytes(settings)))
+    return Layer(key, _mended(gerber.write_to_bytes(settings)))
 
 
 def _mended(data: bytes) -> bytes:

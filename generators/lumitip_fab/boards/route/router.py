@@ -10,7 +10,7 @@ from lumitip_fab.boards.route.kernels import Ints
 from lumitip_fab.boards.route.obstacles import Obstacles, TightError, Wanted, wanted
 from lumitip_fab.boards.route.rules import Grid, Rules
 from lumitip_fab.boards.route.state import State
-from lumitip_fab.boards.route.trees import Taste, Unreachable, connect, supported
+from lumitip_fab.boards.route.trees import CostWeights, Unreachable, connect, supported
 from lumitip_fab.errors import BuildError
 
 
@@ -61,8 +61,8 @@ DEAR = 1e5  # price that no net pays when another way is left
 PATIENCE = 60  # rounds without progress, before the router gives up
 POLISHES = 2
 
-NEGOTIATION = Taste(FIRST_PRICE, margin_mm=2.5, via_mm=0.7)
-BEAUTY = Taste(DEAR, via_mm=2.0, bend_mm=0.5, across=1.2)
+NEGOTIATION = CostWeights(FIRST_PRICE, margin_mm=2.5, via_mm=0.7)
+COSMETIC = CostWeights(DEAR, via_mm=2.0, bend_mm=0.5, across=1.2)
 
 
 def negotiate(state: State, nets: list[Wanted]) -> tuple[int, dict[str, Ints]]:
@@ -75,14 +75,14 @@ def negotiate(state: State, nets: list[Wanted]) -> tuple[int, dict[str, Ints]]:
     Returns:
         Number of rounds, and the nodes that are still fought for, by net: empty on success.
     """
-    taste = NEGOTIATION
+    weights = NEGOTIATION
     for net in nets:
         state.routed[net.name] = connect(state, net, [], NEGOTIATION)
         state.count(net, 1)
     fewest = turn = best = 0
     while True:
         turn += 1
-        fought = {n.name: f for n in nets if (f := state.fought_for(n)).size}
+        fought = {n.name: f for n in nets if (f := state.contested(n)).size}
         count = sum(f.size for f in fought.values())
         if turn == 1 or count < fewest:
             fewest, best = count, turn
@@ -93,19 +93,19 @@ def negotiate(state: State, nets: list[Wanted]) -> tuple[int, dict[str, Ints]]:
             stamps.remember(
                 nodes, state.history, state.marked[0], state.turn, HISTORY, HISTORY_REACH
             )
-        taste = dataclasses.replace(
-            taste,
-            price=min(taste.price * PRICE_GROWTH, TOP_PRICE),
-            margin_mm=taste.margin_mm + WIDER_MM,
+        weights = dataclasses.replace(
+            weights,
+            price=min(weights.price * PRICE_GROWTH, TOP_PRICE),
+            margin_mm=weights.margin_mm + WIDER_MM,
         )
         sweep = turn % SWEEP == 0 and len(fought) > SWEEP_SHARE * len(nets)
         for net in (n for n in nets if sweep or n.name in fought):
-            if not (sweep or state.fought_for(net).size):
+            if not (sweep or state.contested(net).size):
                 continue  # another net has given way in this round
             paths = [] if sweep else state.routed[net.name]
-            free = [path for path in paths if not state.fought_for(net, path).size]
+            free = [path for path in paths if not state.contested(net, path).size]
             state.count(net, -1)
-            state.routed[net.name] = connect(state, net, supported(net, free), taste)
+            state.routed[net.name] = connect(state, net, supported(net, free), weights)
             state.count(net, 1)
 
 
@@ -116,9 +116,9 @@ def polish(state: State, nets: list[Wanted]) -> None:
         for net in nets:
             before = state.routed[net.name]
             state.count(net, -1)
-            state.routed[net.name] = connect(state, net, [], BEAUTY)
+            state.routed[net.name] = connect(state, net, [], COSMETIC)
             state.count(net, 1)
-            if state.fought_for(net).size:
+            if state.contested(net).size:
                 state.count(net, -1)
                 state.routed[net.name] = before
                 state.count(net, 1)

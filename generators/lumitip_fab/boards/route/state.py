@@ -63,7 +63,7 @@ class State:
             self.vias,
         )
 
-    def fought_for(self, net: Wanted, path: Ints | None = None) -> Ints:
+    def contested(self, net: Wanted, path: Ints | None = None) -> Ints:
         """Nodes of a net, or of one of its paths, in the room of another net."""
         nodes = self.paths(net) if path is None else path
         return stamps.conflicts(nodes, self.taken, net.neck, net.wide, self.rules.narrow)

@@ -23,25 +23,25 @@ class Unreachable(Exception):  # noqa: N818 - not a fault of its own: `route` sa
 
 
 @dataclass(frozen=True)
-class Taste:
+class CostWeights:
     """Cost of paths, as lengths of track (mm)."""
 
     price: float
-    """More for each net in the way, as a factor."""
+    """Factor for each other net that the path crosses."""
     margin_mm: float = 4.0
-    """How far beyond its two ends a path is searched before it is searched everywhere."""
+    """Margin around both ends of a path that is searched before the whole board is."""
     via_mm: float = 1.0
     bend_mm: float = 0.3
-    """A bend of 45 degrees,"""
+    """Bend of 45°."""
     corner_mm: float = 2.0
-    """one of 90 degrees,"""
+    """Bend of 90°."""
     sharp_mm: float = 20.0
-    """and one of 135 degrees, a last resort."""
+    """Bend of 135°, a last resort."""
     across: float = 1.0
-    """On the back, across: tracks to the connector run along the board there. A factor."""
+    """Factor for steps across the board on its back, where tracks to the connector run along it."""
 
     def costs(self, pitch_mm: float) -> NDArray[np.float64]:
-        """Of a via and of the bends, in steps."""
+        """Costs of a via and of the bends, in steps."""
         return np.array([self.via_mm, self.bend_mm, self.corner_mm, self.sharp_mm]) / pitch_mm
 
     def grain(self) -> NDArray[np.float64]:
@@ -59,14 +59,14 @@ class Piece:
     nodes: list[Ints]
 
 
-def connect(state: State, net: Wanted, kept: list[Ints], taste: Taste) -> list[Ints]:
+def connect(state: State, net: Wanted, kept: list[Ints], weights: CostWeights) -> list[Ints]:
     """Paths that connect all pads of a net, each time from the tree to what is nearest.
 
     Args:
         state: the maps, without this net.
         net: the net.
         kept: paths that stay.
-        taste: what paths cost.
+        weights: costs of paths.
 
     Raises:
         Unreachable: a pad is walled in by what is fixed.
@@ -82,7 +82,7 @@ def connect(state: State, net: Wanted, kept: list[Ints], taste: Taste) -> list[I
         which = min(nearest, key=lambda i: nearest[i][0])
         _, near, far = nearest.pop(which)
         goal = rest[which]
-        path = _path(state, net, tree, goal, (near, far), taste)
+        path = _path(state, net, tree, goal, (near, far), weights)
         paths.append(path)
         _grow(state, path)
         tree.terminals += goal.terminals
@@ -151,7 +151,7 @@ def _path(
     tree: Piece,
     goal: Piece,
     ends: tuple[Terminal, Terminal],
-    taste: Taste,
+    weights: CostWeights,
 ) -> Ints:
     """The cheapest path from the tree to another piece: near the two, or else anywhere."""
     for nodes in goal.nodes:
@@ -159,7 +159,7 @@ def _path(
     box = _box(state.grid, goal.nodes)
     height, width = state.grid.height, state.grid.width
     everywhere = np.array([0, height - 1, 0, width - 1], dtype=np.int32)
-    margin = round((taste.margin_mm + 0.2 * _apart(*ends)) / state.grid.pitch_mm)
+    margin = round((weights.margin_mm + 0.2 * _apart(*ends)) / state.grid.pitch_mm)
     near = _box(state.grid, [ends[0].nodes, *goal.nodes]) + margin * np.array([-1, 1, -1, 1])
     near = np.clip(near, 0, everywhere[[1, 1, 3, 3]]).astype(np.int32)
     starts = np.unique(np.concatenate(tree.nodes))
@@ -181,9 +181,9 @@ def _path(
             net.number,
             net.wide,
             state.rules.narrow,
-            taste.price,
-            taste.grain(),
-            taste.costs(state.grid.pitch_mm),
+            weights.price,
+            weights.grain(),
+            weights.costs(state.grid.pitch_mm),
             state.reached,
             state.came,
             state.seen,

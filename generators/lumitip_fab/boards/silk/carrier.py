@@ -24,7 +24,7 @@ def with_legend(board: Placement, carrier: Carrier, rules: Rules) -> Placement:
     """The board with its silkscreen.
 
     Raises:
-        BuildError: if something that must be told has no room, with what and where.
+        BuildError: if a required label has no room; names the label and the place.
     """
     page = Page(board, rules)
     for note in carrier.notes:

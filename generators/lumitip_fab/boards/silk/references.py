@@ -157,7 +157,7 @@ def _place_of(page: Page, part: Component, room: Clear) -> Text | None:
 
 
 def _printed(page: Page, part: Component, text: Text) -> Component:
-    """A part with its reference at a place on the board, told in its footprint's frame."""
+    """A part with its reference at a place on the board, in its footprint's frame."""
     page.sides[part.side].take(extent(text, part.side))
     x, y = _in_footprint(part, (text.x_mm, text.y_mm))
     angle = text.angle_deg - part.angle_deg
