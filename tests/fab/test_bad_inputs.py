@@ -59,9 +59,22 @@ def _refusal(name: str, project: Path) -> InputError:
     return caught.value
 
 
+LISTED = re.compile(r"((?:Names in parts/\w+\.toml|Available files): ).*")
+"""Lists in a message, which grow with every entry and preset."""
+
+
+def test_lists_hold_every_entry_and_every_preset(project: Path) -> None:
+    names = tomlkit.parse((project / "design/parts/grippers.toml").read_text(encoding="utf-8"))
+    assert str(_refusal("unknown_gripper", project)).endswith(f": {', '.join(sorted(names))}")
+    files = [f"presets/{file.name}" for file in sorted((project / "design/presets").glob("*.toml"))]
+    (problem, *_) = _refusal("extends_missing_file", project).problems
+    listed = problem.message.partition("Available files: ")[2]
+    assert [name for name in listed.split(", ") if name.startswith("presets/")] == files
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_a_bad_file_is_refused_with_exactly_the_expected_lines(name: str, project: Path) -> None:
-    message = str(_refusal(name, project)) + "\n"
+    message = LISTED.sub(r"\1…", str(_refusal(name, project))) + "\n"
     expected = BAD / f"{name}.expected"
     if os.environ.get("LUMITIP_GOLDEN"):
         expected.write_text(message, encoding="utf-8")
