@@ -10,16 +10,8 @@ import pytest
 from lumitip_fab.checks.result import Measurement
 from lumitip_fab.checks.run import MODULES, as_json, modules_reading, run_checks
 
-SLOW = (
-    "asymmetric",
-    "dense",
-    "mux16",
-    "integrated",
-    "robotiq_2f140",
-    "wsg50",
-    "franka_hand",
-    "flex",
-)
+PRESETS = Path(__file__).parents[2] / "design" / "presets"
+SLOW = sorted(file.stem for file in PRESETS.glob("*.toml") if file.stem != "published")
 
 
 @pytest.mark.parametrize(

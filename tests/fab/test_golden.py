@@ -12,17 +12,8 @@ from lumitip_fab.design import Design
 from lumitip_fab.docs import spec
 
 GOLDEN = Path(__file__).parents[1] / "golden"
-PRESETS = (
-    "published",
-    "asymmetric",
-    "dense",
-    "mux16",
-    "integrated",
-    "robotiq_2f140",
-    "wsg50",
-    "franka_hand",
-    "flex",
-)
+DESIGN = Path(__file__).parents[2] / "design"
+PRESETS = sorted(file.stem for file in (DESIGN / "presets").glob("*.toml"))
 
 
 def figures(design: Design) -> Iterator[str]:
