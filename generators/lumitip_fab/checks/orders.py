@@ -101,9 +101,11 @@ def _parts(path: str, read: Read | ReadCarrier, fab: Fab, files: _Files) -> Iter
     lost = sorted(mounted ^ placed.keys()) + [ref for ref, times in placed.items() if times > 1]
     yield _count("placed", path, lost, "parts")
     known = [(row, read.parts[row["ref"]]) for row in rows if row["ref"] in read.parts]
-    places = np.array([(float(row["x_mm"]), float(row["y_mm"])) for row, _ in known])
-    off = np.abs(places - read.sensor([part.at for _, part in known])).max(initial=0.0)
-    yield Measurement("orders.positions", path, float(off), 0, PLACE_MM, "mm")
+    off = 0.0  # a board may have wire pads alone
+    if known:
+        places = np.array([(float(row["x_mm"]), float(row["y_mm"])) for row, _ in known])
+        off = float(np.abs(places - read.sensor([part.at for _, part in known])).max())
+    yield Measurement("orders.positions", path, off, 0, PLACE_MM, "mm")
     sides = [row["ref"] for row, part in known if row["side"] != fab.sides[not part.front]]
     yield _count("sides", path, sides, "parts")
     turns = [_turned_by(read, row, part, fab) for row, part in known]
