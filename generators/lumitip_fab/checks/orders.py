@@ -109,7 +109,7 @@ def _parts(path: str, read: Read | ReadCarrier, fab: Fab, files: _Files) -> Iter
     sides = [row["ref"] for row, part in known if row["side"] != fab.sides[not part.front]]
     yield _count("sides", path, sides, "parts")
     turns = [_turned_by(read, row, part, fab) for row, part in known]
-    yield Measurement("orders.turns", path, float(np.max(turns)), 0, TURN_DEG, "°")
+    yield Measurement("orders.turns", path, float(np.max(turns, initial=0.0)), 0, TURN_DEG, "°")
 
 
 def _turned_by(read: Read | ReadCarrier, row: dict[str, str], part: Part, fab: Fab) -> float:
