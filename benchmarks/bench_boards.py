@@ -80,17 +80,17 @@ def design_of(cells: int) -> Design:
         return derive(load(file))
 
 
-def files(design: Design, model: BoardModel) -> int:
+def files(design: Design, finger: Finger, model: BoardModel) -> int:
     """Make every file of a board; returns their size in bytes."""
     layers = layers_of(model)
     written = {
         **project_files(model, design.stack.pcb_mm),
-        **schematic_files(model.placement, design.wiring, design.packages),
+        **schematic_files(model.placement, finger, design),
         **picture_files(model),
     }
     for fab in design.fabs:
-        note = assembly_note(model.placement, design.packages, fab)
-        written |= order_files(model, layers, note, fab, model.placement.finger)
+        note = assembly_note(model.placement, finger, design.packages, fab)
+        written |= order_files(model, layers, note, fab, model.placement.name)
     return sum(map(len, written.values()))
 
 
@@ -105,13 +105,11 @@ def measure(design: Design, finger: Finger, goals: Goals) -> str:
         return result
 
     busy = time.process_time()
-    placement = timed(
-        lambda: place(d.title, d.reading, d.board, finger, d.wiring, d.packages, d.rules)
-    )
+    placement = timed(lambda: place(d, finger))
     found = timed(lambda: route(placement))
     routing, fills = timed(lambda: pour(placement, found))
     model = BoardModel(placement, routing, fills)
-    timed(lambda: files(design, model))
+    timed(lambda: files(design, finger, model))
     busy = time.process_time() - busy
     name, faults = f"{len(d.layout)} cells, {finger.name}", len(verify(model))
     if limit_s := LIMITS_S.get(len(d.layout)):
@@ -147,7 +145,7 @@ def main(counts: list[int]) -> int:
 
 def _board(design: Design) -> BoardModel:
     d = design
-    placement = place(d.title, d.reading, d.board, d.emitter, d.wiring, d.packages, d.rules)
+    placement = place(d, d.emitter)
     return BoardModel(placement, *pour(placement, route(placement)))
 
 

@@ -192,7 +192,7 @@ class FakeBluez:
                 "org.bluez.GattService1",
                 {
                     "UUID": Variant("s", uuid),
-                    "Device": Variant("o", path),
+                    "Component": Variant("o", path),
                     "Primary": Variant("b", True),
                 },
             )

@@ -2,22 +2,24 @@
 
 from pathlib import Path
 
-from lumitip_fab.boards.model import Component, Footprint, Net, NetClass, Pad, Placement, Side
+from lumitip_fab.boards.model import Net, NetClass, PlacedComponent, Placement
 from lumitip_fab.boards.placement import place
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
-from lumitip_fab.design import Box, Point
+from lumitip_fab.design import Box, Footprint, Pad, Point, Side
 
 CLASSES = (NetClass("signal", 0.2, 0.2, 0.6, 0.3), NetClass("supply", 0.5, 0.2, 0.6, 0.3))
 
 
+BODY = Box(-1, 1, -0.5, 0.5)
+
+
 def _footprint(*pads: Pad) -> Footprint:
-    body = Box(-1, 1, -0.5, 0.5)
-    return Footprint("plain", pads, body, body.grown(0.1), 1.0)
+    return Footprint("plain", pads, BODY, 1.0)
 
 
 CHIP = _footprint(Pad("1", -0.8, 0, 0.8, 0.9), Pad("2", 0.8, 0, 0.8, 0.9))
-PIN = _footprint(Pad("1", 0, 0, 1.6, 1.6, "circle", drill_mm=1.0))
+PIN = _footprint(Pad("1", 0, 0, 1.6, 1.6, True, drill_mm=1.0))
 FINE = _footprint(*(Pad(str(i), 0.65 * i, 0, 0.3, 1.4) for i in range(4)))
 
 
@@ -28,14 +30,17 @@ def part(
     nets: dict[str, str],
     angle_deg: float = 0,
     side: Side = "front",
-) -> Component:
+) -> PlacedComponent:
     """A part in its place."""
-    kind = "connector" if footprint is PIN else "resistor"
-    return Component(ref, "", "", kind, footprint, *at, angle_deg, side, tuple(nets.items()))
+    kind = "wires" if footprint is PIN else "resistor"
+    place = *at, angle_deg, side
+    joined = tuple(nets.items())
+    yard = BODY.grown(0.1)
+    return PlacedComponent(ref, "", "", kind, footprint, *place, joined, courtyard=yard)
 
 
 def board(
-    *parts: Component,
+    *parts: PlacedComponent,
     supply: tuple[str, ...] = ("GND",),
     width_mm: float = 20,
     keep_outs: tuple[Box, ...] = (),
@@ -43,8 +48,8 @@ def board(
     """A board of 10 mm by the width with a hole in its middle."""
     nets = sorted({net for p in parts for _, net in p.nets})
     return Placement(
-        finger="receiver",
-        name="small",
+        name="receiver",
+        title="small",
         revision="A",
         design_hash="",
         outline=Box(-width_mm / 2, width_mm / 2, -5, 5),
@@ -92,12 +97,4 @@ def preset(design_dir: Path, name: str, finger: str) -> Placement:
     """A placed board of a preset."""
     design = derive(load(design_dir / "presets" / f"{name}.toml"))
     which = next(f for f in design.fingers if f.name == finger)
-    return place(
-        design.title,
-        design.reading,
-        design.board,
-        which,
-        design.wiring,
-        design.packages,
-        design.rules,
-    )
+    return place(design, which)

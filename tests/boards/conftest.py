@@ -6,8 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from lumitip_fab.boards.carrier import carrier_files
-from lumitip_fab.boards.files import board_files
+from lumitip_fab.boards.files import board_files, carrier_files
 from lumitip_fab.cli.steps import STEPS
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive

@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 import pytest
 
-from lumitip_fab.boards.carrier import carrier_files
+from lumitip_fab.boards.files import carrier_files
 from lumitip_fab.design import Design
 from lumitip_fab.errors import BuildError
 from lumitip_fab.pipeline.artefact import Artefact
@@ -22,9 +22,9 @@ def _made(design: Design, name: str, supply: str) -> tuple[int, tuple[Artefact, 
         dataclasses.replace(
             device, pins=tuple(supply if pin == "12V" else pin for pin in device.pins)
         )
-        for device in carrier.devices
+        for device in carrier.components
     )
-    renamed = dataclasses.replace(carrier, devices=devices)
+    renamed = dataclasses.replace(carrier, components=devices)
     files = carrier_files(design, renamed)
     return sum(device.pins.count(supply) for device in devices), files
 

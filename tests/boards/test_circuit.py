@@ -34,7 +34,7 @@ def designs(design_dir: Path) -> dict[str, Design]:
 
 def _circuit(design: Design, name: str) -> Circuit:
     finger = getattr(design, name)
-    return circuit(design.reading, finger, design.wiring, design.packages, design.rules)
+    return circuit(design, finger)
 
 
 def _pins(plan: Circuit) -> dict[str, list[tuple[str, str]]]:
@@ -77,7 +77,7 @@ def test_every_detector_hangs_on_the_input_that_the_layout_says(
     for cell in design.layout.cells:
         ref = f"Q{cell.index + 1}"
         assert sorted(pins[ref]) == sorted(
-            [(ref, "1"), (f"U{cell.mux + 1}", str(mux.inputs[cell.channel]))]
+            [(ref, "1"), (f"U{cell.mux + 1}", str(mux.inputs[str(cell.channel)]))]
         )
         assert (ref, "2") in pins["GND"]
         assert (f"U{cell.mux + 1}", str(mux.output)) in pins[cell.adc_pin]

@@ -16,14 +16,13 @@ from gerbonara.layers import LayerStack
 from lumitip_fab.boards.fab import gerber_objects as objects
 from lumitip_fab.boards.fab.order import angle_at
 from lumitip_fab.boards.footprints import placed_pads
-from lumitip_fab.boards.model import Component, Footprint, Pad
 from lumitip_fab.checks.readers.gerber import drilled, gerber_area
-from lumitip_fab.design import Box, Fab
+from lumitip_fab.design import Box, Component, Fab, Footprint, Pad
 
 BOX = Box(-1, 1, -1, 1)
-MUX = Footprint("SOP65P640X110-16N", (Pad("1", -2, -3, 1, 1),), BOX, BOX, 1.1)
-SOT = Footprint("SOT95P360X100-6N", (Pad("1", -1, -1, 1, 1),), BOX, BOX, 1.0)
-CHIP = Footprint("LEDC1608X60N", (Pad("1", -0.6, 0, 0.8, 1.0),), BOX, BOX, 0.6)
+MUX = Footprint("SOP65P640X110-16N", (Pad("1", -2, -3, 1, 1),), BOX, 1.1)
+SOT = Footprint("SOT95P360X100-6N", (Pad("1", -1, -1, 1, 1),), BOX, 1.0)
+CHIP = Footprint("LEDC1608X60N", (Pad("1", -0.6, 0, 0.8, 1.0),), BOX, 0.6)
 
 
 def part(shape: Footprint, angle: float, side: str) -> Component:
@@ -73,6 +72,7 @@ def package(folder: Path, fab: str, finger: str = "receiver") -> dict[str, bytes
         return {name: opened.read(name) for name in opened.namelist()}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("fab", ["generic", "jlcpcb", "pcbway"])
 def test_a_zip_is_understood_by_its_names_alone(
     boards: Callable[[str], Path], tmp_path: Path, fab: str

@@ -1,4 +1,4 @@
-"""A further board needs its devices alone: files and checks follow."""
+"""A further board needs its components alone: files and checks follow."""
 
 import dataclasses
 from collections.abc import Callable
@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from damages import failing
-from lumitip_fab.boards.carrier import carrier_files
-from lumitip_fab.derive.boards import devices
+from lumitip_fab.boards.files import carrier_files
+from lumitip_fab.derive.boards import components
 from lumitip_fab.design import Box, Carrier, Design
 from lumitip_fab.design.encoding import design_text
 
@@ -22,9 +22,9 @@ JOINT = Carrier(
     corner_mm=1.0,
     holes=((-9.0, 0.0), (9.0, 0.0)),
     hole_mm=2.2,
-    devices=(
-        devices.wires("J1", SIGNALS, (0.0, -6.0), False),
-        devices.wires("J2", SIGNALS, (0.0, 6.0), False),
+    components=(
+        components.wires("J1", SIGNALS, (0.0, -6.0), False),
+        components.wires("J2", SIGNALS, (0.0, 6.0), False),
     ),
     notes=(),
     supplies=("GND", "5V"),

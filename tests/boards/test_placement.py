@@ -10,15 +10,15 @@ import pytest
 import shapely
 from shapely import LineString
 
-from lumitip_fab.boards.carrier import carrier_files
+from lumitip_fab.boards.files import carrier_files
 from lumitip_fab.boards.footprints import courtyard, pad_at, placed_pads
-from lumitip_fab.boards.model import SIDES, Component, Placement, opening_mm
+from lumitip_fab.boards.model import SIDES, Placement, opening_mm
 from lumitip_fab.boards.placement import place
 from lumitip_fab.boards.silk.page import extent
 from lumitip_fab.boards.silk.strokes import silkscreen
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
-from lumitip_fab.design import Box, Design, Finger
+from lumitip_fab.design import Box, Component, Design, Finger
 from lumitip_fab.errors import BuildError
 
 pytestmark = pytest.mark.slow
@@ -28,11 +28,6 @@ FINGERS = ("emitter", "receiver")
 Placed = tuple[Design, Finger, Placement]
 
 
-def _placed(design: Design, finger: Finger) -> Placement:
-    d = design
-    return place(d.title, d.reading, d.board, finger, d.wiring, d.packages, d.rules)
-
-
 @pytest.fixture(scope="module")
 def boards(design_dir: Path) -> dict[tuple[str, str], Placed]:
     """Both boards of every preset."""
@@ -40,7 +35,7 @@ def boards(design_dir: Path) -> dict[tuple[str, str], Placed]:
     for preset in PRESETS:
         design = derive(load(design_dir / "presets" / f"{preset}.toml"))
         for finger in design.fingers:
-            found[preset, finger.name] = design, finger, _placed(design, finger)
+            found[preset, finger.name] = design, finger, place(design, finger)
     return found
 
 
@@ -203,7 +198,7 @@ def test_references_stand_at_leds_nearer_each_other(design_dir: Path) -> None:
     grid = config.parameters.grid.model_copy(update={"pitch_mm": 4.5})
     parameters = config.parameters.model_copy(update={"grid": grid})
     design = derive(dataclasses.replace(config, parameters=parameters))
-    assert all(p.ref_text for p in _parts(_placed(design, design.emitter), "led"))
+    assert all(p.ref_text for p in _parts(place(design, design.emitter), "led"))
 
 
 def test_hexagons_surround_the_cells(board: Placed) -> None:
@@ -217,7 +212,7 @@ def test_hexagons_surround_the_cells(board: Placed) -> None:
 
 def test_the_same_design_gives_the_same_board(boards: dict[tuple[str, str], Placed]) -> None:
     design, finger, placement = boards["asymmetric", "receiver"]
-    assert _placed(design, finger) == placement
+    assert place(design, finger) == placement
 
 
 def _crowded(design: Design) -> Iterator[tuple[Finger, str]]:
@@ -241,7 +236,7 @@ def test_what_has_no_room_is_refused_with_the_numbers(
     design = boards["published", "receiver"][0]
     for finger, said in _crowded(design):
         with pytest.raises(BuildError, match=said):
-            _placed(design, finger)
+            place(design, finger)
 
 
 def test_a_title_without_room_is_refused_with_the_numbers(
@@ -252,13 +247,13 @@ def test_a_title_without_room_is_refused_with_the_numbers(
     with pytest.raises(
         BuildError, match=r"the title on the back, .* mm high and \d+\.\d\d mm long"
     ):
-        _placed(dataclasses.replace(design, title=title), finger)
+        place(dataclasses.replace(design, title=title), finger)
 
 
 def test_a_long_title_is_printed_smaller(boards: dict[tuple[str, str], Placed]) -> None:
     design, finger, _ = boards["asymmetric", "emitter"]
     title = dataclasses.replace(design.title, name="Lumitip with the longest of name")
-    placement = _placed(dataclasses.replace(design, title=title), finger)
+    placement = place(dataclasses.replace(design, title=title), finger)
     heights = [text.height_mm for _, text in placement.texts if title.name in text.text]
     assert heights
     assert min(heights) >= design.rules.silk_text_mm
@@ -280,12 +275,12 @@ def test_labels_of_a_row_stand_apart(board: Placed) -> None:
 def test_parts_of_a_carrier_that_overlap_are_refused(designs: Callable[[str], Design]) -> None:
     d = designs("small")
     flange = next(carrier for carrier in d.carriers if carrier.name == "flange")
-    (coil,) = (device for device in flange.devices if device.ref == "L1")
-    wide = dataclasses.replace(coil.pattern, body=Box(-4.0, 4.0, -4.0, 4.0))
+    (coil,) = (device for device in flange.components if device.ref == "L1")
+    wide = dataclasses.replace(coil.footprint, body=Box(-4.0, 4.0, -4.0, 4.0))
     devices = [
         dataclasses.replace(device, pattern=wide) if device is coil else device
-        for device in flange.devices
+        for device in flange.components
     ]
-    flange = dataclasses.replace(flange, devices=tuple(devices))
+    flange = dataclasses.replace(flange, components=tuple(devices))
     with pytest.raises(BuildError, match=r"flange: .*\bL1\b.* overlap: choose smaller"):
         carrier_files(d, flange)

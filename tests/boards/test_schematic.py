@@ -36,9 +36,9 @@ def drawn(design_dir: Path, tmp_path_factory: pytest.TempPathFactory) -> Drawn:
     for preset in PRESETS:
         d = derive(load(design_dir / "presets" / f"{preset}.toml"))
         for finger in d.fingers:
-            board = place(d.title, d.reading, d.board, finger, d.wiring, d.packages, d.rules)
+            board = place(d, finger)
             folder = tmp_path_factory.mktemp(f"{preset}-{finger.name}")
-            made = schematic_files(board, d.wiring, d.packages)
+            made = schematic_files(board, finger, d)
             made |= project_files(BoardModel(board, Routing((), (), 0), ()), d.stack.pcb_mm)
             for path, data in made.items():
                 (folder / path).parent.mkdir(exist_ok=True)
@@ -87,7 +87,7 @@ def test_kicad_reads_the_nets_of_the_circuit(drawn: Drawn, board: tuple[str, str
         "kicadxml",
         "-o",
         file,
-        folder / f"{placement.finger}.kicad_sch",
+        folder / f"{placement.name}.kicad_sch",
     )
     told = ElementTree.parse(file)
     read = {
@@ -133,7 +133,7 @@ def test_a_swapped_pair_of_detectors_is_seen(drawn: Drawn, tmp_path: Path) -> No
 def test_everything_is_on_the_paper_and_on_the_grid(drawn: Drawn) -> None:
     sizes = {"A4": (297, 210), "A3": (420, 297), "A2": (594, 420), "A1": (841, 594)}
     for _, placement, folder in drawn.values():
-        text = (folder / f"{placement.finger}.kicad_sch").read_text(encoding="utf-8")
+        text = (folder / f"{placement.name}.kicad_sch").read_text(encoding="utf-8")
         width, height = sizes[re.search(r'\(paper "(A\d)"\)', text)[1]]
         body = text[text.index("(junction") :]
         ends = re.findall(r"\(xy (\S+) (\S+?)\)", body)
@@ -147,5 +147,5 @@ def test_everything_is_on_the_paper_and_on_the_grid(drawn: Drawn) -> None:
 
 def test_the_same_board_gives_the_same_bytes(drawn: Drawn) -> None:
     design, placement, _ = drawn["asymmetric", "receiver"]
-    first, again = (schematic_files(placement, design.wiring, design.packages) for _ in range(2))
+    first, again = (schematic_files(placement, design.receiver, design) for _ in range(2))
     assert first == again

@@ -46,7 +46,7 @@ def test_pins_have_the_names_of_their_leads(flange: tuple[Design, Node]) -> None
     shapes = _shapes(sheet)
     drawn = {_properties(symbol)["Reference"]: symbol for symbol in children(sheet, "symbol")}
     (carrier,) = (c for c in design.carriers if c.name == "flange")
-    named = [d for d in carrier.devices if d.nets and d.pins and not d.contacts]
+    named = [d for d in carrier.components if d.nets and d.pins and not d.contacts]
     assert {"Q1", "U1"} <= {device.ref for device in named}
     for device in named:
         shape = shapes[words(child(drawn[device.ref], "lib_id"))[0]]
@@ -55,6 +55,6 @@ def test_pins_have_the_names_of_their_leads(flange: tuple[Design, Node]) -> None
             for unit in children(shape, "symbol")
             for pin in children(unit, "pin")
         }
-        lands = [land.number for land in device.pattern.lands]
+        lands = [land.number for land in device.footprint.pads]
         leads = dict(zip(lands, device.pins, strict=True))
         assert pins == {number: leads[number] for number, _ in device.nets}

@@ -24,8 +24,8 @@ def sheet(
     """Value of every part of a finger's board, and its schematic."""
     d = designs("small")
     finger = next(f for f in d.fingers if f.name == request.param)
-    board = place(d.title, d.reading, d.board, finger, d.wiring, d.packages, d.rules)
-    for name, data in schematic_files(board, d.wiring, d.packages).items():
+    board = place(d, finger)
+    for name, data in schematic_files(board, finger, d).items():
         (tmp_path / name).write_bytes(data)
     parts = {c.ref: c.value for c in board.components if c.kind != "fiducial"}
     return parts, tmp_path / f"{finger.name}.kicad_sch"

@@ -16,7 +16,7 @@ from lumitip_fab.boards.kicad.schematic import files, symbols
 from lumitip_fab.boards.kicad.schematic.sheet import Drawn, Sheet
 from lumitip_fab.boards.kicad.schematic.writer import sheet_text
 from lumitip_fab.boards.kicad.sexpr import FORMAT
-from lumitip_fab.boards.model import Component, Placement
+from lumitip_fab.boards.model import Placement
 from lumitip_fab.boards.placement import place
 from lumitip_fab.checks.readers.kicad_shapes import (
     Node,
@@ -26,7 +26,7 @@ from lumitip_fab.checks.readers.kicad_shapes import (
     read_nodes,
     words,
 )
-from lumitip_fab.design import Design, Finger, Point
+from lumitip_fab.design import Component, Design, Point
 
 WORDS = (
     'a "quoted" \\ back',
@@ -43,15 +43,11 @@ WORDS = (
 Written = tuple[Placement, Sheet, dict[str, Component], Path]
 
 
-def _placed(d: Design, finger: Finger) -> Placement:
-    return place(d.title, d.reading, d.board, finger, d.wiring, d.packages, d.rules)
-
-
 @pytest.fixture
 def awkward(designs: Callable[[str], Design], tmp_path: Path) -> Written:
     """A sheet with words that a reader or writer might take for something else."""
     d = designs("small")
-    board = replace(_placed(d, d.emitter), name=WORDS[0], revision="100")
+    board = replace(place(d, d.emitter), title=WORDS[0], revision="100")
     resistor = next(part for part in board.components if part.kind == "resistor")
     sheet, parts = Sheet(), {}
     for i, told in enumerate(WORDS):
@@ -78,7 +74,8 @@ def drawn(
 ) -> Written:
     """The sheet of a finger's board."""
     d = designs("small")
-    board = _placed(d, next(f for f in d.fingers if f.name == request.param))
+    finger = next(f for f in d.fingers if f.name == request.param)
+    board = place(d, finger)
     sheets: list[Sheet] = []
 
     def told(*drawing: Any) -> str:
@@ -86,7 +83,7 @@ def drawn(
         return sheet_text(*drawing)
 
     monkeypatch.setattr(files, "sheet_text", told)
-    made = files.schematic_files(board, d.wiring, d.packages)
+    made = files.schematic_files(board, finger, d)
     file = tmp_path / f"{request.param}.kicad_sch"
     file.write_bytes(made[file.name])
     return board, sheets[0], {part.ref: part for part in board.components}, file
@@ -120,7 +117,7 @@ def test_nothing_is_said_meanwhile() -> None:
     """Nor is the library imported before a schematic is drawn."""
     program = (
         "import logging, sys, warnings; warnings.simplefilter('error')\n"
-        "import lumitip_fab.boards.carrier, lumitip_fab.boards.files\n"
+        "import lumitip_fab.boards.files\n"
         "assert 'skip' not in sys.modules\n"
         "from lumitip_fab.boards.kicad.schematic.template import Template\n"
         "logging.basicConfig(level=logging.INFO)\n"

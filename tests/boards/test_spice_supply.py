@@ -60,7 +60,7 @@ def test_every_part_of_the_output_is_in_the_netlist(design_dir: Path) -> None:
 def test_what_else_is_at_the_output_is_no_output_capacitor(design_dir: Path) -> None:
     design = _derived(design_dir, "integrated")
     (carrier,) = design.regulated
-    there = {d.ref for d in carrier.devices if d.kind == "capacitor" and ("1", "5V") in d.nets}
+    there = {d.ref for d in carrier.components if d.kind == "capacitor" and ("1", "5V") in d.nets}
     assert there == {"C2", "C3", "C5"}, "C5 is of another kind, at the linear regulator's input"
     lines = _netlist(design).splitlines()
     assert [line for line in lines if line.startswith("C") and " 5V " in line] == [

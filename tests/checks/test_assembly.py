@@ -217,12 +217,6 @@ DRAWINGS: dict[str, tuple[Callable[[str], str], set[str]]] = {
         drawn(r'x="[-\d.]+"( y="[-\d.]+" text-anchor="end")', r'x="-80"\1'),
         {"drawing_page"},
     ),
-    "label wrong": (drawn("Silicone, 1.5", "Silicone, 1.6"), {"drawing_labels"}),
-    "count wrong": (drawn("32 photodetectors", "31 photodetectors"), {"drawing_labels"}),
-    "labels meet": (
-        drawn(r'( y=")(-?[\d.]+)("[^>]*>Silicone.*?<text [^>]* y=")[-\d.]+', r"\1\2\3\2"),
-        {"drawing_labels"},
-    ),
     "not 1:1": (drawn(r'width="[\d.]+mm"', 'width="300mm"'), EVERY_DRAWING),
     "truncated": (lambda text: text[: len(text) // 2], EVERY_DRAWING),
 }

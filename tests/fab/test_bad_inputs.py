@@ -99,6 +99,7 @@ ADVICE = re.compile(r"at (?:least|most) (-?[\d.]+\d) is (?:needed|allowed)")
 """Figures that a message gives for its own field; those of other things have a unit."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [n for n in NAMES if not (BAD / n).is_dir()])
 def test_a_figure_that_a_message_names_for_its_field_mends_the_rule(
     name: str, project: Path

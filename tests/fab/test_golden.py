@@ -28,7 +28,7 @@ def figures(design: Design) -> Iterator[str]:
             at = f"{part.x_mm:.3f},{part.y_mm:.3f}"
             yield f"{finger.name}, {part.name} on the {part.side}: {at}"
     for carrier in design.carriers:
-        for device in carrier.devices:
+        for device in carrier.components:
             at = f"{device.x_mm:.3f},{device.y_mm:.3f} at {device.angle_deg:g}°"
             yield f"{carrier.name}, {device.ref} {device.value} {device.part}: {at}"
     for cell in design.reading.cells:

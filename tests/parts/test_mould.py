@@ -22,13 +22,6 @@ pytestmark = pytest.mark.slow
 PRESETS = ("published", "asymmetric", "dense")
 
 
-@pytest.fixture(scope="module", autouse=True)
-def _builds_come_first(built: Callable[[str], Path]) -> None:
-    """A build forks workers, which hang if the CAD kernel's threads already ran here."""
-    for preset in PRESETS:
-        built(preset)
-
-
 @pytest.fixture(scope="module")
 def design(design_dir: Path) -> Design:
     return derive(load(design_dir / "presets" / "published.toml"))

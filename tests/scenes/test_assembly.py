@@ -12,14 +12,7 @@ import trimesh
 from lumitip_fab.design.encoding import read_design
 from lumitip_fab.scenes import assembly
 
-PRESETS = ("published", "asymmetric", "dense")
-
-
-@pytest.fixture(scope="module", autouse=True)
-def _builds_come_first(built: Callable[[str], Path]) -> None:
-    """A build forks workers, which hang if the CAD kernel's threads already ran here."""
-    for preset in PRESETS:
-        built(preset)
+SLOW = [pytest.param(preset, marks=pytest.mark.slow) for preset in ("asymmetric", "dense")]
 
 
 def test_the_same_design_gives_the_same_files_in_any_process(outputs: Path) -> None:
@@ -34,7 +27,7 @@ def test_the_same_design_gives_the_same_files_in_any_process(outputs: Path) -> N
         assert artefact.data == (outputs / artefact.path).read_bytes(), artefact.path
 
 
-@pytest.mark.parametrize("preset", PRESETS)
+@pytest.mark.parametrize("preset", ["published", *SLOW])
 def test_other_programs_read_the_scene_in_metres(preset: str, built: Callable[[str], Path]) -> None:
     folder = built(preset)
     design = read_design(folder / "design.json")

@@ -10,14 +10,25 @@ supply ── R1 ──►|── … ──►|── GND            one string
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from lumitip_fab.boards import footprints
-from lumitip_fab.boards.model import Component, Footprint, Net, NetClass, Side
-from lumitip_fab.design import Chip, Finger, Packages, Reading, Rules, Wiring
+from lumitip_fab.boards.model import Net, NetClass
+from lumitip_fab.design import (
+    Chip,
+    Component,
+    Connector,
+    Design,
+    Finger,
+    Footprint,
+    Led,
+    Photodetector,
+    Rules,
+    Side,
+    footprints,
+)
 from lumitip_fab.text import resistor_code
 
 GROUND = "GND"
 SIGNAL, SUPPLY = "signal", "supply"
-ROOMY_MM = 0.7
+_ROOMY_MM = 0.7
 """Gap between parts at cells from which there is room for lines along their sides."""
 
 
@@ -30,15 +41,14 @@ class Circuit:
     classes: tuple[NetClass, NetClass]
 
 
-def circuit(
-    reading: Reading, finger: Finger, wiring: Wiring, packages: Packages, rules: Rules
-) -> Circuit:
+def circuit(design: Design, finger: Finger) -> Circuit:
     """The circuit of one board."""
-    of_finger = _emitter if finger.name == "emitter" else _receiver
+    rules = design.rules
+    of_finger = _emitter if finger.cell_kind == "led" else _receiver
     supply = finger.connector.signals[1]
     parts = (
-        *of_finger(reading, finger, wiring, packages, rules, supply),
-        *_bare_copper(finger, rules),
+        *of_finger(design, supply),
+        *_bare_copper(finger.connector),
     )
     names = dict.fromkeys((GROUND, supply, *(net for part in parts for _, net in part.nets)))
     return Circuit(
@@ -51,51 +61,49 @@ def circuit(
     )
 
 
-def _emitter(
-    _: Reading, finger: Finger, wiring: Wiring, packages: Packages, rules: Rules, supply: str
-) -> Iterator[Component]:
+def _emitter(design: Design, supply: str) -> Iterator[Component]:
+    wiring, packages = design.wiring, design.packages
     led, resistor = packages.led, packages.string_resistor
-    shape = footprints.chip(led, "LEDC", rules, _roomy(finger, led))
+    shape = footprints.chip("led", led)
     nets_of = {}
     for number, string in enumerate(wiring.strings, start=1):
         links = [f"S{number}_{k}" for k in range(len(string))] + [GROUND]
         for place, cell in enumerate(string):
             nets_of[cell] = _polar(led, anode=links[place], cathode=links[place + 1])
     for cell in sorted(nets_of):
-        yield _part(f"D{cell + 1}", led.value, led, "led", shape, nets_of[cell])
-    shape = footprints.chip(resistor, "RESC", rules)
+        yield _part(f"D{cell + 1}", packages.led_name, led, "led", shape, nets_of[cell])
+    shape = footprints.chip("resistor", resistor)
     for number, ohm in enumerate(wiring.resistor_ohm, start=1):
         nets = ("1", supply), ("2", f"S{number}_0")
         yield _resistor(f"R{number}", ohm, resistor, shape, nets)
 
 
-def _receiver(
-    reading: Reading, finger: Finger, wiring: Wiring, packages: Packages, rules: Rules, supply: str
-) -> Iterator[Component]:
+def _receiver(design: Design, supply: str) -> Iterator[Component]:
+    reading, wiring, packages = design.reading, design.wiring, design.packages
     detector, mux = packages.photodetector, packages.multiplexer
-    shape = footprints.chip(detector, "PTRC", rules, _roomy(finger, detector))
+    shape = footprints.chip("photodetector", detector)
     for cell in reading.cells:
         ref = f"Q{cell.index + 1}"
         nets = _polar(detector, collector=ref, emitter=GROUND)
-        yield _part(ref, detector.value, detector, "photodetector", shape, nets)
-    shape = footprints.multiplexer(mux, rules)
+        yield _part(ref, packages.photodetector_name, detector, "photodetector", shape, nets)
+    shape = footprints.multiplexer(mux)
     shared = {str(lead): f"S{i}" for i, lead in enumerate(mux.select)}
     shared |= {str(mux.supply): supply, str(mux.ground): GROUND, str(mux.enable): GROUND}
     shared |= {} if mux.negative is None else {str(mux.negative): GROUND}
     for which, pin in enumerate(wiring.adc_pins):
         leads = shared | {str(mux.output): pin}
         leads |= {
-            str(mux.inputs[cell.channel]): f"Q{cell.index + 1}"
+            str(mux.inputs[str(cell.channel)]): f"Q{cell.index + 1}"
             for cell in reading.cells
             if cell.mux == which
         }
         # An input without a detector is tied to ground, so that nothing floats.
-        leads |= {str(lead): GROUND for lead in mux.inputs if str(lead) not in leads}
+        leads |= {str(lead): GROUND for lead in mux.input_leads if str(lead) not in leads}
         pins = tuple(sorted(leads.items(), key=lambda item: int(item[0])))
         yield Component(
             f"U{which + 1}",
-            mux.value,
-            mux.part,
+            wiring.multiplexer,
+            mux.order_number,
             "multiplexer",
             shape,
             0.0,
@@ -106,27 +114,28 @@ def _receiver(
             manufacturer=mux.manufacturer,
             lcsc=mux.lcsc,
         )
-    pull_up = footprints.chip(packages.pull_up, "RESC", rules)
-    bypass = footprints.chip(packages.capacitor, "CAPC", rules)
+    pull_up = footprints.chip("resistor", packages.pull_up)
+    bypass = footprints.chip("capacitor", packages.capacitor)
     for which, pin in enumerate(wiring.adc_pins, start=1):
         nets = ("1", supply), ("2", pin)
         yield _resistor(f"R{which}", wiring.pull_up_ohm, packages.pull_up, pull_up, nets)
         nets = ("1", supply), ("2", GROUND)
         chip = packages.capacitor
-        yield _part(f"C{which}", chip.value, chip, "capacitor", bypass, nets)
+        value = f"{chip.capacitance_nf:g}nF"
+        yield _part(f"C{which}", value, chip, "capacitor", bypass, nets)
 
 
-def _bare_copper(finger: Finger, rules: Rules) -> Iterator[Component]:
+def _bare_copper(wires: Connector) -> Iterator[Component]:
     """Connector, test points and fiducials: no part is bought for them."""
-    signals = finger.connector.signals
-    shape = footprints.wire_pads(finger.connector, rules)
+    signals = wires.signals
+    shape = footprints.row("WirePads", len(signals), wires.pitch_mm, wires.pad_mm, wires.drill_mm)
     nets = tuple((str(i), signal) for i, signal in enumerate(signals, start=1))
-    yield _copper("J1", f"{len(signals)} wires", "connector", shape, nets)
-    shape = footprints.test_point(rules)
+    yield _copper("J1", f"{len(signals)} wires", "wires", footprints.bare(shape), nets)
+    shape = footprints.dot("TestPoint")
     for i, signal in enumerate(signals, start=1):
         yield _copper(f"TP{i}", signal, "test point", shape, (("1", signal),), "back")
     for i in range(1, 4):
-        yield _copper(f"FID{i}", "Fiducial", "fiducial", footprints.fiducial(), ())
+        yield _copper(f"FID{i}", "Fiducial", "fiducial", footprints.dot("Fiducial"), ())
 
 
 def _resistor(
@@ -136,7 +145,7 @@ def _resistor(
     return Component(
         ref,
         code,
-        chip.part.replace("{code}", code),
+        chip.order_number.replace("{code}", code),
         "resistor",
         shape,
         0.0,
@@ -159,7 +168,7 @@ def _part(
     return Component(
         ref,
         value,
-        chip.part,
+        chip.order_number,
         kind,
         shape,
         0.0,
@@ -183,22 +192,21 @@ def _copper(
     return Component(ref, value, "", kind, shape, 0.0, 0.0, 0.0, side, nets)
 
 
-def _polar(chip: Chip, **terminals: str) -> tuple[tuple[str, str], ...]:
+def _polar(chip: Led | Photodetector, **terminals: str) -> tuple[tuple[str, str], ...]:
     """Nets of a part with polarity: pad 1 is the terminal that its mark shows."""
     (other,) = (name for name in terminals if name != chip.marked)
     return ("1", terminals[chip.marked]), ("2", terminals[other])
 
 
-def _roomy(finger: Finger, chip: Chip) -> bool:
+def roomy(finger: Finger, chip: Chip) -> bool:
     """Whether the parts at the cells are so far apart that lines fit along their sides."""
-    along = max(chip.pad_pitch_mm + chip.pad_mm[0], chip.body_mm[0])
-    across = max(chip.pad_mm[1], chip.body_mm[1])
+    along, across = chip.over_pads_mm
     size = (across, along) if finger.turned else (along, across)
     first = finger.cells[0]
     gaps = (
         max(abs(x - first[0]) - size[0], abs(y - first[1]) - size[1]) for x, y in finger.cells[1:]
     )
-    return min(gaps, default=ROOMY_MM) >= ROOMY_MM
+    return min(gaps, default=_ROOMY_MM) >= _ROOMY_MM
 
 
 def net_class(name: str, track_mm: float, rules: Rules) -> NetClass:

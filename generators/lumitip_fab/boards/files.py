@@ -1,19 +1,30 @@
-"""Every file of a board, from its circuit to the zips that it is ordered with."""
+"""Every file of a board, from its parts in their places to the zips that it is ordered with."""
 
 from collections.abc import Callable
 
-from lumitip_fab.boards.fab.order import assembly_note, bom_rows, layers_of, order_files
+from lumitip_fab.boards.circuit import GROUND, SIGNAL, SUPPLY, net_class
+from lumitip_fab.boards.fab.order import (
+    assembly_note,
+    bom_rows,
+    carrier_note,
+    layers_of,
+    order_files,
+)
 from lumitip_fab.boards.fab.picture import picture_files
+from lumitip_fab.boards.footprints import pad_at
 from lumitip_fab.boards.kicad.project import project_files
+from lumitip_fab.boards.kicad.schematic.carrier import carrier_sheet
 from lumitip_fab.boards.kicad.schematic.files import schematic_files
-from lumitip_fab.boards.model import BoardModel
-from lumitip_fab.boards.placement import place
+from lumitip_fab.boards.model import BoardModel, Net, Placement
+from lumitip_fab.boards.placement import place, refuse_overlaps
 from lumitip_fab.boards.pour import pour
 from lumitip_fab.boards.route import route
+from lumitip_fab.boards.silk.carrier import with_legend
+from lumitip_fab.boards.silk.outlines import with_outline
 from lumitip_fab.boards.teardrops import with_teardrops
 from lumitip_fab.boards.verify import require_clean_drc
-from lumitip_fab.design import Design, Fab, Finger
-from lumitip_fab.design.frames import Matrix, board_page_to_sensor
+from lumitip_fab.design import Box, Carrier, Design, Fab, Finger, Reading, Rules, Title
+from lumitip_fab.design.frames import Matrix, board_page_to_carrier, board_page_to_sensor
 from lumitip_fab.pipeline.artefact import Artefact
 
 
@@ -24,25 +35,90 @@ def board_files(design: Design, finger: Finger) -> tuple[Artefact, ...]:
         BuildError: if a part has no room, a net cannot be routed, or the finished copper breaks
             its rules.
     """
-    wiring, packages = design.wiring, design.packages
-    placement = place(
-        design.title, design.reading, design.board, finger, wiring, packages, design.rules
-    )
-    routing = route(placement)
-    if placement.flexible:
-        routing = with_teardrops(placement, routing)
-    routing, fills = pour(placement, routing)
-    model = require_clean_drc(BoardModel(placement, routing, fills))
-    sheet = schematic_files(placement, wiring, packages)
+    model = finished(place(design, finger))
+    sheet = schematic_files(model.placement, finger, design)
     return model_files(
         model,
         sheet,
-        lambda fab: assembly_note(model.placement, packages, fab),
+        lambda fab: assembly_note(model.placement, finger, design.packages, fab),
         design.stack.pcb_mm,
         design.fabs,
         board_page_to_sensor(design.stack),
         "sensor",
     )
+
+
+def carrier_files(design: Design, carrier: Carrier) -> tuple[Artefact, ...]:
+    """Every file of a board outside the fingers: KiCad project, pictures of both sides, orders.
+
+    Raises:
+        BuildError: if two parts overlap, a net cannot be routed, a label has no room, or the
+            finished copper breaks its rules.
+    """
+    bare = _placement(design.title, design.reading, carrier, design.rules)
+    refuse_overlaps(carrier.name, bare.components, "choose smaller parts")
+    model = finished(with_legend(bare, carrier, design.rules))
+    sheet = carrier_sheet(model.placement, carrier)
+    return model_files(
+        model,
+        sheet,
+        lambda fab: carrier_note(model.placement, carrier.title, fab),
+        design.stack.carrier_mm,
+        design.fabs,
+        board_page_to_carrier(design.stack),
+        "carrier",
+    )
+
+
+def _hot_loop(carrier: Carrier) -> tuple[Box, ...]:
+    """The box round the middles of the hot loop's pads; none without a regulator."""
+    parts = {part.ref: part for part in carrier.components}
+    places = [pad_at(parts[ref], number) for ref, number in carrier.hot_loop]
+    if not places:
+        return ()
+    xs, ys = zip(*places, strict=True)
+    return (Box(min(xs), max(xs), min(ys), max(ys)),)
+
+
+def _placement(title: Title, reading: Reading, carrier: Carrier, rules: Rules) -> Placement:
+    components = tuple(with_outline(part, rules, roomy=False) for part in carrier.components)
+    return Placement(
+        name=carrier.name,
+        title=title.on_boards().name,
+        revision=title.revision,
+        design_hash=reading.design_hash,
+        outline=carrier.box,
+        corner_mm=carrier.corner_mm,
+        holes=carrier.holes,
+        hole_mm=carrier.hole_mm,
+        keep_outs=carrier.keep_outs,
+        edge_clearance_mm=rules.edge_gap_mm,
+        components=components,
+        ground_only=_hot_loop(carrier),
+        nets=tuple(
+            Net(name, SUPPLY if name in carrier.supplies else SIGNAL) for name in carrier.nets
+        ),
+        classes=(
+            net_class(SIGNAL, rules.track_mm, rules),
+            net_class(SUPPLY, rules.supply_track_mm, rules),
+        ),
+        ground=GROUND,
+        silk=(),
+        texts=(),
+    )
+
+
+def finished(placement: Placement) -> BoardModel:
+    """The board with its copper.
+
+    Raises:
+        BuildError: if a net cannot be routed, or the copper breaks its rules.
+    """
+    routing = route(placement)
+    if placement.flexible:
+        routing = with_teardrops(placement, routing)
+    routing, fills = pour(placement, routing)
+    return require_clean_drc(BoardModel(placement, routing, fills))
 
 
 def model_files(
@@ -65,7 +141,7 @@ def model_files(
         page: from the board file's page to its frame.
         frame: name of that frame.
     """
-    name, layers = model.placement.finger, layers_of(model)
+    name, layers = model.placement.name, layers_of(model)
     orders = {
         f"order/{path}": data
         for fab in fabs

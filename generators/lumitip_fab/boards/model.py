@@ -1,31 +1,13 @@
 """`Board` and what it consists of, between its circuit and its files."""
 
 import uuid
-from dataclasses import dataclass
-from typing import Literal
+from dataclasses import dataclass, field
 
 from shapely import Polygon
 
-from lumitip_fab.design import Box, Flexible, Point
+from lumitip_fab.design import Box, Component, Flexible, Point, Side
 
-Side = Literal["front", "back"]
 SIDES: tuple[Side, Side] = ("front", "back")
-
-
-@dataclass(frozen=True)
-class Pad:
-    """A pad in its footprint's frame: seen from the side that the part is on, y up."""
-
-    number: str
-    x_mm: float
-    y_mm: float
-    width_mm: float
-    height_mm: float
-    shape: Literal["rect", "circle"] = "rect"
-    drill_mm: float = 0.0
-    """Diameter of the plated hole; 0 for a surface-mount pad."""
-    paste: bool = True
-    """Whether solder paste is printed on it."""
 
 
 @dataclass(frozen=True)
@@ -50,43 +32,15 @@ class Text:
 
 
 @dataclass(frozen=True)
-class Footprint:
-    """A land pattern with its drawing, in its own frame."""
+class PlacedComponent(Component):
+    """A component as its board draws it."""
 
-    name: str
-    """By IPC-7351, such as `LEDC1608X60N`."""
-    pads: tuple[Pad, ...]
-    body: Box
-    courtyard: Box
-    height_mm: float
-    silk: tuple[Stroke, ...] = ()
-    """Outline and polarity mark."""
-
-
-@dataclass(frozen=True)
-class Component:
-    """A part in its place."""
-
-    ref: str
-    value: str
-    part: str
-    """Order number; empty for bare copper: wire pads, test points and fiducials."""
-    kind: str
-    """`"led"`, `"photodetector"`, `"multiplexer"`, `"resistor"`, `"capacitor"`, `"connector"`,
-    `"test point"` or `"fiducial"`."""
-    footprint: Footprint
-    x_mm: float
-    y_mm: float
-    angle_deg: float
-    """Counter-clockwise, seen from the front."""
-    side: Side
-    nets: tuple[tuple[str, str], ...]
-    """Net of each connected pad: `(("1", "GND"), ("2", "Q1"))`."""
+    courtyard: Box = field(kw_only=True)
+    """Body and pads with half the gap that parts keep, in the footprint's frame."""
+    outline: tuple[Stroke, ...] = ()
+    """Outline and polarity mark on the silkscreen, in the footprint's frame."""
     ref_text: Text | None = None
     """Reference on the silkscreen, in the footprint's frame; none where there is no room."""
-    manufacturer: str = ""
-    lcsc: str = ""
-    """Number at the distributor LCSC, where it is known."""
 
 
 @dataclass(frozen=True)
@@ -112,8 +66,9 @@ class Net:
 class Placement:
     """A board before it has copper."""
 
-    finger: str
     name: str
+    """Of its folder and its files."""
+    title: str
     revision: str
     design_hash: str
     outline: Box
@@ -126,7 +81,7 @@ class Placement:
     """Where no copper may be on either side."""
     edge_clearance_mm: float
     """Copper to the board's edge and to unplated holes."""
-    components: tuple[Component, ...]
+    components: tuple[PlacedComponent, ...]
     nets: tuple[Net, ...]
     classes: tuple[NetClass, ...]
     ground: str

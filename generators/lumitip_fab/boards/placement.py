@@ -5,28 +5,29 @@ import math
 from collections.abc import Sequence
 
 from lumitip_fab.boards import spots
-from lumitip_fab.boards.circuit import GROUND, circuit
+from lumitip_fab.boards.circuit import GROUND, circuit, roomy
 from lumitip_fab.boards.footprints import courtyard, pad_at
-from lumitip_fab.boards.model import Component, Placement, Side
+from lumitip_fab.boards.model import PlacedComponent, Placement
 from lumitip_fab.boards.silk.legend import with_legend
+from lumitip_fab.boards.silk.outlines import with_outline
 from lumitip_fab.design import (
     Board,
     Box,
+    Design,
     Finger,
     Multiplexer,
     Packages,
     Part,
     Point,
-    Reading,
     Rules,
-    Title,
+    Side,
     Wiring,
 )
 from lumitip_fab.errors import BuildError
 
 
 def string_angles(
-    chain: Sequence[Component], start: Point, anode: str, choices: Sequence[float]
+    chain: Sequence[PlacedComponent], start: Point, anode: str, choices: Sequence[float]
 ) -> tuple[float, ...]:
     """The angles with the shortest links in all, found place by place along the string.
 
@@ -58,32 +59,30 @@ PASSIVE_GAP_MM = 0.6
 _NOISE_MM = 1e-6
 
 
-def place(
-    title: Title,
-    reading: Reading,
-    board: Board,
-    finger: Finger,
-    wiring: Wiring,
-    packages: Packages,
-    rules: Rules,
-) -> Placement:
+def place(design: Design, finger: Finger) -> Placement:
     """A board with every part in its place.
 
     Raises:
         BuildError: if a part has no room, with the numbers.
     """
-    plan = circuit(reading, finger, wiring, packages, rules)
-    parts = {part.ref: part for part in plan.components}
+    title, reading, board = design.title, design.reading, design.board
+    wiring, packages, rules = design.wiring, design.packages, design.rules
+    plan = circuit(design, finger)
+    room = roomy(finger, packages.at_cells(finger))
+    parts = {
+        part.ref: with_outline(part, rules, room or part.kind != finger.cell_kind)
+        for part in plan.components
+    }
     named = {part.name: part for part in finger.parts}
     for ref, part in named.items():
         parts[ref] = _at(parts[ref], (part.x_mm, part.y_mm), side=_side(part))
-    if finger.name == "emitter":
+    if finger.cell_kind == "led":
         _emitter(parts, finger, wiring, packages)
     else:
         _receiver(parts, named, finger, wiring, packages, rules)
     _connector(parts, finger, rules)
     obstacles = [courtyard(part) for ref, part in parts.items() if not ref.startswith("FID")]
-    mark = parts["FID1"].footprint
+    mark = parts["FID1"].courtyard
     corners = spots.fiducials(board, obstacles, mark, finger.holes, rules.edge_gap_mm)
     for ref, at in zip(("FID1", "FID2", "FID3"), corners, strict=True):
         parts[ref] = _at(parts[ref], at)
@@ -91,8 +90,8 @@ def place(
     refuse_overlaps(finger.name, tuple(parts.values()), roomier)
     _refuse_beyond(finger.name, tuple(parts.values()), board)
     bare = Placement(
-        finger=finger.name,
-        name=title.on_boards().name,
+        name=finger.name,
+        title=title.on_boards().name,
         revision=title.revision,
         design_hash=reading.design_hash,
         outline=board.box,
@@ -109,12 +108,11 @@ def place(
         texts=(),
         flexible=board.flexible,
     )
-    marked = packages.led if finger.name == "emitter" else packages.photodetector
-    return with_legend(bare, finger, reading.pitch_mm, marked.marked, rules)
+    return with_legend(bare, finger, reading.pitch_mm, packages.at_cells(finger).marked, rules)
 
 
 def _emitter(
-    parts: dict[str, Component], finger: Finger, wiring: Wiring, packages: Packages
+    parts: dict[str, PlacedComponent], finger: Finger, wiring: Wiring, packages: Packages
 ) -> None:
     """Turn resistors and LEDs so that neighbours of a string face each other."""
     anode = "1" if packages.led.marked == "anode" else "2"
@@ -131,7 +129,7 @@ def _emitter(
 
 
 def _receiver(
-    parts: dict[str, Component],
+    parts: dict[str, PlacedComponent],
     named: dict[str, Part],
     finger: Finger,
     wiring: Wiring,
@@ -153,12 +151,12 @@ def _receiver(
 
 
 def _beside(
-    parts: dict[str, Component], mux: Part, room_mm: float, leads: Multiplexer, rules: Rules
+    parts: dict[str, PlacedComponent], mux: Part, room_mm: float, leads: Multiplexer, rules: Rules
 ) -> None:
     """Capacitor and pull-up to the left of a multiplexer, each at the lead that it serves."""
     for letter, lead, outward in (("C", leads.supply, "1"), ("R", leads.output, "2")):
         part = parts[letter + mux.name[1:]]
-        yard = part.footprint.courtyard.grown(-rules.part_gap_mm / 2)
+        yard = part.courtyard.grown(-rules.part_gap_mm / 2)
         spare = room_mm - yard.length_mm
         if spare < 2 * rules.part_gap_mm - _NOISE_MM:
             raise BuildError(
@@ -173,7 +171,7 @@ def _beside(
         parts[part.ref] = _at(part, at, angle_deg=270.0 if up == (outward == "1") else 90.0)
 
 
-def _connector(parts: dict[str, Component], finger: Finger, rules: Rules) -> None:
+def _connector(parts: dict[str, PlacedComponent], finger: Finger, rules: Rules) -> None:
     """The wire pads where the design has them, and a test point on the back behind each."""
     pads = finger.connector.pads
     parts["J1"] = _at(parts["J1"], ((pads[0][0] + pads[-1][0]) / 2, pads[0][1]))
@@ -183,7 +181,7 @@ def _connector(parts: dict[str, Component], finger: Finger, rules: Rules) -> Non
         parts[point.ref] = _at(point, (x, y + apart))
 
 
-def refuse_overlaps(name: str, parts: tuple[Component, ...], remedy: str) -> None:
+def refuse_overlaps(name: str, parts: tuple[PlacedComponent, ...], remedy: str) -> None:
     """Courtyards keep clear of each other.
 
     Args:
@@ -203,7 +201,7 @@ def refuse_overlaps(name: str, parts: tuple[Component, ...], remedy: str) -> Non
             )
 
 
-def _refuse_beyond(name: str, parts: tuple[Component, ...], board: Board) -> None:
+def _refuse_beyond(name: str, parts: tuple[PlacedComponent, ...], board: Board) -> None:
     """Courtyards stay within the board's edge."""
     for part in parts:
         yard = courtyard(part)
@@ -221,8 +219,8 @@ def _corners(box: Box) -> str:
 
 
 def _at(
-    part: Component, at: Point, angle_deg: float | None = None, side: Side | None = None
-) -> Component:
+    part: PlacedComponent, at: Point, angle_deg: float | None = None, side: Side | None = None
+) -> PlacedComponent:
     return dataclasses.replace(
         part,
         x_mm=round(at[0], 6) + 0.0,

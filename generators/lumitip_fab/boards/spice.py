@@ -3,8 +3,7 @@
 from collections.abc import Iterator
 
 from lumitip_fab.boards.circuit import GROUND, circuit
-from lumitip_fab.boards.model import Component
-from lumitip_fab.design import Carrier, Design, Electrical, Finger, Packages, Wiring
+from lumitip_fab.design import Carrier, Component, Design, Electrical, Finger, Packages, Wiring
 from lumitip_fab.design.electrical import Regulated
 from lumitip_fab.pipeline.artefact import Artefact
 
@@ -19,8 +18,8 @@ def simulation(design: Design, finger: Finger) -> tuple[Artefact, ...]:
     """The netlist of a finger's board: its first string, or its first multiplexer with two
     detectors."""
     wiring, packages = design.wiring, design.packages
-    parts = circuit(design.reading, finger, wiring, packages, design.rules).components
-    body = _string if finger.name == "emitter" else _channel
+    parts = circuit(design, finger).components
+    body = _string if finger.cell_kind == "led" else _channel
     title = design.title.on_boards().name
     lines = (
         f"* {title}, {finger.name}, design {design.reading.design_hash[:8]}",
@@ -64,7 +63,7 @@ def _channel(
     channel, mux = electrical.channel, packages.multiplexer
     leads = next(dict(part.nets) for part in parts if part.ref == "U1")
     supply, line = leads[str(mux.supply)], leads[str(mux.output)]
-    detectors = [n for n in (leads[str(lead)] for lead in mux.inputs) if n != GROUND]
+    detectors = [n for n in (leads[str(lead)] for lead in mux.input_leads) if n != GROUND]
     lit, dark = detectors[0], detectors[-1]
     seconds = wiring.pull_up_ohm * (channel.line_pf + channel.detector_pf) * 1e-12
     after_us = _CONSTANTS * seconds * 1e6
@@ -127,7 +126,7 @@ def _circuit(carrier: Carrier, regulated: Regulated) -> Iterator[str]:
     yield f"Bswitch drive 0 v=v({supply})*({above})"
     yield f"Rswitch drive {coil_in} {regulated.switch_ohm:.4g}"
     yield f"L1 {coil_in} {output} {regulated.inductance_uh:g}u"
-    for device in carrier.devices:
+    for device in carrier.components:
         if device.ref in regulated.capacitors:
             high, low = (net if net != GROUND else "0" for _, net in device.nets)
             yield f"{device.ref} {high} {low} {regulated.capacitor_uf:g}u"
@@ -175,10 +174,10 @@ def _nets(carrier: Carrier) -> tuple[str, str, str]:
     """Nets of the regulator's input, and of its coil's two ends."""
     (input_net,) = (
         net
-        for device in carrier.devices
+        for device in carrier.components
         for number, net in device.nets
         if (device.ref, number) == carrier.hot_loop[0]
     )
-    (coil,) = (device for device in carrier.devices if device.kind == "inductor")
+    (coil,) = (device for device in carrier.components if device.kind == "inductor")
     (_, near), (_, far) = coil.nets
     return input_net, near, far

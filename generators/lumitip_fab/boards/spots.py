@@ -5,7 +5,6 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import shapely
 
-from lumitip_fab.boards.model import Footprint
 from lumitip_fab.design import Board, Box, Point
 from lumitip_fab.errors import BuildError
 
@@ -34,21 +33,21 @@ def beyond_mm(inner: Box, outer: Box) -> float:
 
 
 def fiducials(
-    board: Board, taken: Sequence[Box], mark: Footprint, holes: Sequence[Point], edge_mm: float
+    board: Board, taken: Sequence[Box], mark: Box, holes: Sequence[Point], edge_mm: float
 ) -> tuple[Point, Point, Point]:
     """Three free places near the corners, so far apart and so uneven that no turn looks alike.
 
     Args:
         board: its outline and holes.
         taken: courtyards.
-        mark: the fiducial.
+        mark: courtyard of a fiducial.
         holes: locating holes.
         edge_mm: gap to the board's edge and to holes.
 
     Raises:
         BuildError: if a corner has no room.
     """
-    reach = mark.courtyard.width_mm / 2
+    reach = mark.width_mm / 2
     inside = board.box.grown(-reach - edge_mm)
     low_x, low_y, high_x, high_y = np.array([_sides(box) for box in taken]).T
     drills = np.array(holes)

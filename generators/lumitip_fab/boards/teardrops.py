@@ -11,7 +11,8 @@ import numpy as np
 import shapely
 
 from lumitip_fab.boards.footprints import PlacedPad, placed_pads
-from lumitip_fab.boards.model import SIDES, Placement, Routing, Side, Track
+from lumitip_fab.boards.model import SIDES, Placement, Routing, Track
+from lumitip_fab.design import Side
 
 BEYOND_MM = (0.15, 0.3, 0.45)  # the edge of pad or via: where each piece ends
 WIDER = (2.2, 1.8, 1.4)  # than the track, each piece; none is wider than the pad

@@ -11,8 +11,8 @@ import shapely
 from numpy.typing import NDArray
 
 from lumitip_fab.boards.footprints import PlacedPad, placed_pads
-from lumitip_fab.boards.model import SIDES, BoardModel, Placement, Side
-from lumitip_fab.design import Point
+from lumitip_fab.boards.model import SIDES, BoardModel, Placement
+from lumitip_fab.design import Point, Side
 from lumitip_fab.errors import BuildError
 
 DRILL_WALL_MM = 0.25
@@ -89,7 +89,7 @@ def _copper(model: BoardModel) -> list[Copper]:
     copper = []
     for component in model.placement.components:
         for pad in placed_pads(component):
-            round_ = pad.pad.shape == "circle"
+            round_ = pad.pad.round
             core = shapely.Point(pad.x_mm, pad.y_mm) if round_ else pad.area
             radius = pad.pad.width_mm / 2 if round_ else 0.0
             net = pad.net
@@ -233,5 +233,5 @@ def require_clean_drc(model: BoardModel) -> BoardModel:
     """
     faults = verify(model)
     if faults:
-        raise BuildError(f"the {model.placement.finger} board breaks its rules:\n{summary(faults)}")
+        raise BuildError(f"the {model.placement.name} board breaks its rules:\n{summary(faults)}")
     return model

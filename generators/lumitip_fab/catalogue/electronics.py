@@ -152,6 +152,11 @@ class Multiplexer(Ordered, Entry):
     """Least and greatest capacitance between its supply and ground."""
 
     @property
+    def input_leads(self) -> tuple[int, ...]:
+        """Lead of each input, by channel."""
+        return tuple(self.inputs[str(channel)] for channel in range(self.channels))
+
+    @property
     def channels(self) -> int:
         """Number of inputs."""
         return len(self.inputs)

@@ -14,7 +14,7 @@ from lumitip_fab.checks.board_read import ReadCarrier
 from lumitip_fab.checks.readers.kicad_board import Part, Terminal
 from lumitip_fab.checks.readers.kicad_silk import Word
 from lumitip_fab.checks.result import Measurement
-from lumitip_fab.design import Box, Device, Land, Point, ToolContact
+from lumitip_fab.design import Box, Component, Pad, Point, ToolContact
 from lumitip_fab.design.frames import applied, carrier_to_flange, on_board_page
 
 CONTACTS = "J1"
@@ -111,7 +111,7 @@ def measure_screws(read: ReadCarrier) -> Iterator[Measurement]:
 
 def measure_lands(read: ReadCarrier) -> Iterator[Measurement]:
     """Every pad of every part: its place, its size and its hole."""
-    devices = {device.ref: device for device in read.carrier.devices}
+    devices = {device.ref: device for device in read.carrier.components}
     others = [p.ref for p in read.board.parts if p.ref not in devices and _has_copper(p)]
     yield read.count("other_parts", others, "parts")
     off = {ref: _off_mm(read, device, read.parts.get(ref)) for ref, device in devices.items()}
@@ -123,7 +123,7 @@ def measure_joined(read: ReadCarrier) -> Iterator[Measurement]:
     """Pads that the design joins, followed along the copper, and pads that it does not."""
     pads: dict[str, dict[int | None, list[str]]] = defaultdict(lambda: defaultdict(list))
     owners: dict[int, set[str]] = defaultdict(set)
-    for device in read.carrier.devices:
+    for device in read.carrier.components:
         for number, net in device.nets:
             group = read.group(device.ref, number)
             pads[net][group].append(f"{device.ref}.{number}")
@@ -189,12 +189,12 @@ def measure_keep_outs(read: ReadCarrier) -> Iterator[Measurement]:
 def measure_names(read: ReadCarrier) -> Iterator[Measurement]:
     """The name beside each contact: of all that is printed but references, the nearest, by where
     the word ends and not by its middle."""
-    refs = {device.ref for device in read.carrier.devices}
+    refs = {device.ref for device in read.carrier.components}
     printed = [w for w in read.board.silk.words if w.front and w.text not in refs]
     lines = [_line(read, word) for word in printed]
     wrong = []
-    for device in (d for d in read.carrier.devices if d.contacts):
-        for land, name in zip(device.pattern.lands, device.pins, strict=False):
+    for device in (d for d in read.carrier.components if d.contacts):
+        for land, name in zip(device.footprint.pads, device.pins, strict=False):
             apart = shapely.distance(lines, shapely.Point(_placed(device, land)))
             nearest = int(apart.argmin()) if apart.size else -1
             if nearest < 0 or printed[nearest].text != name or apart[nearest] > NAME_MM:
@@ -251,9 +251,9 @@ def _has_copper(part: Part) -> bool:
     return any(t.copper is not None for t in part.terminals)
 
 
-def _off_mm(read: ReadCarrier, device: Device, part: Part | None) -> float:
+def _off_mm(read: ReadCarrier, device: Component, part: Part | None) -> float:
     """Worst place, size or hole of a part's pads; NaN if one is missing or there are more."""
-    lands = device.pattern.lands
+    lands = device.footprint.pads
     there = part is not None and part.front == (device.side == "front")
     found = {t.number: t for t in part.terminals} if part and there else {}
     if set(found) != {land.number for land in lands} or part is None:
@@ -263,7 +263,7 @@ def _off_mm(read: ReadCarrier, device: Device, part: Part | None) -> float:
     return float(np.max([_pad_off_mm(read, device, land, found[land.number]) for land in lands]))
 
 
-def _pad_off_mm(read: ReadCarrier, device: Device, land: Land, pad: Terminal) -> float:
+def _pad_off_mm(read: ReadCarrier, device: Component, land: Pad, pad: Terminal) -> float:
     if pad.copper is None:
         return math.nan
     x, y = read.sensor([pad.at])[0]
@@ -279,7 +279,7 @@ def _pad_off_mm(read: ReadCarrier, device: Device, land: Land, pad: Terminal) ->
     return off
 
 
-def _placed(device: Device, land: Land) -> Point:
+def _placed(device: Component, land: Pad) -> Point:
     turn = math.radians(device.angle_deg)
     c, s = math.cos(turn), math.sin(turn)
     x = -land.x_mm if device.side == "back" else land.x_mm

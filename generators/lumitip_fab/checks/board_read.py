@@ -102,15 +102,16 @@ class Read(ReadBoard):
     def ordered(self, ref: str) -> str:
         """Order number of a part from the catalogue; a resistor's value is read from the board."""
         packages, part = self.design.packages, self.parts.get(ref)
-        emitter = self.finger.name == "emitter"
-        numbers = {
-            "D": packages.led.part,
-            "Q": packages.photodetector.part,
-            "U": packages.multiplexer.part,
-            "C": packages.capacitor.part,
-            "R": (packages.string_resistor if emitter else packages.pull_up).part,
+        lights = self.finger.cell_kind == "led"
+        entries = {
+            self.finger.cell_letter: packages.at_cells(self.finger),
+            "U": packages.multiplexer,
+            "C": packages.capacitor,
+            "R": packages.string_resistor if lights else packages.pull_up,
         }
-        return numbers.get(ref[:1], "").replace("{code}", part.value if part else "?")
+        entry = entries.get(ref[:1])
+        value = part.value if part else "?"
+        return entry.order_number.replace("{code}", value) if entry else ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,7 +127,7 @@ class ReadCarrier(ReadBoard):
 
     def ordered(self, ref: str) -> str:
         """Order number of a part."""
-        return next((d.part for d in self.carrier.devices if d.ref == ref), "")
+        return next((d.part for d in self.carrier.components if d.ref == ref), "")
 
 
 def names_of(design: Design) -> tuple[str, ...]:

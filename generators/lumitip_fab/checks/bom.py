@@ -162,7 +162,7 @@ def _wrong_parts(rows: tuple[Row, ...], parts: Counter[str], design: Design) -> 
     for row in rows:
         if row.group == "electronics":
             counts[row.part] += round(row.quantity)
-    soldered = any(d.kind == "module" for c in design.carriers for d in c.devices)
+    soldered = any(d.kind == "module" for c in design.carriers for d in c.components)
     wanted = parts + Counter({} if soldered else {design.controller.title: 1})
     return [
         f"{part}: {counts[part]}, not {wanted[part]}"

@@ -1,4 +1,4 @@
-"""The exploded drawings: every body is there in its size and order, all on the page, labelled."""
+"""The exploded drawings: every body is there in its size and order, all on the page."""
 
 import math
 from collections.abc import Iterator
@@ -15,12 +15,11 @@ from lumitip_fab.design import Box, Design, Finger
 from lumitip_fab.design.frames import backing_bed_to_sensor, mount_to_sensor
 from lumitip_fab.errors import OutputError
 
-NAMES = ("assembly.drawing", "assembly.drawing_page", "assembly.drawing_labels")
+NAMES = ("assembly.drawing", "assembly.drawing_page")
 SIZE_MM = 0.1
 SKIN_MM = 0.6  # of silicone and film, whose walls stand off the outline and lean
 ORDER_MM = 10.0  # from layer to layer
 MARGIN_MM = 2.0
-COLUMN_MM = 3.0  # from a line of words to the next
 
 
 def measure_drawing(outputs: Path, design: Design, finger: Finger) -> Iterator[Measurement]:
@@ -31,7 +30,6 @@ def measure_drawing(outputs: Path, design: Design, finger: Finger) -> Iterator[M
         wanted = _wanted(design, finger, dict(_printed(outputs, design, finger)))
         yield from _bodies(file, drawing, wanted, design.layers)
         yield _page(file, drawing)
-        yield from _labels(file, drawing, design, finger)
     except (OutputError, OSError, XmlTree.ParseError, LookupError, ValueError) as error:
         yield from (unreadable(name, file, f"cannot be read: {error!r:.200}") for name in NAMES)
 
@@ -148,40 +146,6 @@ def _page(file: str, drawing: Drawing) -> Measurement:
         math.inf,
         "mm",
         "to the page's edge",
-    )
-
-
-def _labels(file: str, drawing: Drawing, design: Design, finger: Finger) -> Iterator[Measurement]:
-    """Words that are missing or wrong, and words that meet."""
-    stack = design.stack
-    kinds = [part.kind for part in finger.parts if part.side == "front"]
-    plural = {"led": "LEDs"}
-    wanted = [
-        f"Backing, {stack.plate_mm:g} mm",
-        f"Board, {stack.pcb_mm:g} mm",
-        f"Silicone, {stack.silicone_mm:g} mm",
-        f"Film, {stack.film_mm:g} mm",
-        *(["Interface"] if design.interfaces else []),
-        f"{len(finger.connector.pads)} wires",
-        f"{finger.name.capitalize()} finger, exploded",
-        *(f"{kinds.count(k)} {plural.get(k, k + 's')}" for k in dict.fromkeys(kinds)),
-    ]
-    shown = [words for words, _ in drawing.words]
-    missing = [words for words in wanted if words not in shown]
-    note = f"of {len(wanted)}" + (f", first {missing[0]!r}" if missing else "")
-    yield Measurement("assembly.drawing_labels", file, len(missing), 0, 0, "missing", note)
-    columns: dict[float, list[float]] = {}
-    for text in (extent for _, extent in drawing.words):
-        columns.setdefault(round(float(text[0, 0]), 1), []).append(float(text[0, 1]))
-    gap = min(float(np.diff(sorted(c)).min(initial=math.inf)) for c in columns.values())
-    yield Measurement(
-        "assembly.drawing_labels",
-        f"{file} lines",
-        gap,
-        COLUMN_MM,
-        math.inf,
-        "mm",
-        "from a line of words to the next",
     )
 
 

@@ -11,7 +11,7 @@ from lumitip_fab.checks.flange_read import CONTACTS, REACH_MM, Stacked, heights
 from lumitip_fab.checks.printed import circles, farthest, holes_at, room, round_head, round_thread
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.result import Measurement
-from lumitip_fab.design import Device
+from lumitip_fab.design import Component
 
 SIZE_MM = 0.05
 HOLE_MM = 0.05
@@ -95,7 +95,7 @@ def measure_headers(of: Stacked) -> Iterator[Measurement]:
         body = _footprint(of, device)
         x_min, y_min, x_max, y_max = body.bounds
         outward = math.copysign(1.0, (y_min + y_max) / 2)
-        levels = np.linspace(front + 0.3, front + max(device.pattern.height_mm, WIRE_MM), 5)
+        levels = np.linspace(front + 0.3, front + max(device.footprint.height_mm, WIRE_MM), 5)
         across = np.linspace(x_min, x_max, 9)
         start = np.array([(x, (y_min + y_max) / 2, z) for x in across for z in levels])
         hit, _ = solids.cast(of.lower, start, np.array([0.0, outward, 0.0]), REACH_MM).first(
@@ -103,7 +103,7 @@ def measure_headers(of: Stacked) -> Iterator[Measurement]:
         )
         blocked += [ref] if np.isfinite(hit).any() else []
     yield of.figure("cables", len(blocked), 0, 0, "headers", "whose way out is blocked")
-    highest = max(d.pattern.height_mm for d in of.board.carrier.devices if _in_front(of, d))
+    highest = max(d.footprint.height_mm for d in of.board.carrier.components if _in_front(of, d))
     yield of.figure(
         "headroom",
         of.split_mm - front - highest,
@@ -139,8 +139,8 @@ def bodies(of: Stacked) -> dict[str, solids.Solid]:
     ring = np.array(of.outline.exterior.coords)[:-1]
     flat = manifold3d.CrossSection([ring], manifold3d.FillRule.EvenOdd)
     found = {"the board": flat.extrude(thick).translate((0.0, 0.0, seat))}
-    for device in of.board.carrier.devices:
-        height = device.pattern.height_mm
+    for device in of.board.carrier.components:
+        height = device.footprint.height_mm
         if height:
             low = seat + thick if _in_front(of, device) else seat - height
             corners = np.array(_footprint(of, device).exterior.coords)[:-1]
@@ -149,17 +149,17 @@ def bodies(of: Stacked) -> dict[str, solids.Solid]:
     return found
 
 
-def _in_front(of: Stacked, device: Device) -> bool:
+def _in_front(of: Stacked, device: Component) -> bool:
     return of.board.parts[device.ref].front
 
 
-def _device(of: Stacked, ref: str) -> Device:
-    return next(d for d in of.board.carrier.devices if d.ref == ref)
+def _device(of: Stacked, ref: str) -> Component:
+    return next(d for d in of.board.carrier.components if d.ref == ref)
 
 
-def _footprint(of: Stacked, device: Device) -> shapely.Polygon:
+def _footprint(of: Stacked, device: Component) -> shapely.Polygon:
     """A part's body where the board's file has the part."""
-    part, body = of.board.parts[device.ref], device.pattern.body
+    part, body = of.board.parts[device.ref], device.footprint.body
     (at,) = of.places([part.at])
     turn, sign = math.radians(device.angle_deg), 1 if part.front else -1
     left, right = sorted((sign * body.x_min_mm, sign * body.x_max_mm))

@@ -80,7 +80,7 @@ class Stacked:
         """Headers and pads for cables, on the board's front."""
         return tuple(
             d.ref
-            for d in self.board.carrier.devices
+            for d in self.board.carrier.components
             if d.kind in ("header", "wires") and d.ref != CONTACTS
         )
 

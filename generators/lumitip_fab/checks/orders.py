@@ -130,9 +130,9 @@ def _turned_by(read: Read | ReadCarrier, row: dict[str, str], part: Part, fab: F
 
 def _lying_deg(read: ReadCarrier, ref: str, last: str) -> float:
     """Angle of the line from pad 1 to another one of a module that is not turned; 0 of the rest."""
-    modules = (d for d in read.carrier.devices if d.ref == ref and d.kind == "module")
+    modules = (d for d in read.carrier.components if d.ref == ref and d.kind == "module")
     for device in modules:
-        at = {land.number: (land.x_mm, land.y_mm) for land in device.pattern.lands}
+        at = {land.number: (land.x_mm, land.y_mm) for land in device.footprint.pads}
         dx, dy = np.subtract(at[last], at["1"])
         return math.degrees(math.atan2(dy, dx))
     return 0.0
@@ -141,11 +141,7 @@ def _lying_deg(read: ReadCarrier, ref: str, last: str) -> float:
 def _misled(read: Read, note: str) -> Iterator[str]:
     """Parts with polarity of which the assembly note tells another place of a terminal than the
     board has, or another terminal at the mark than the catalogue."""
-    chip = (
-        read.design.packages.led
-        if read.finger.name == "emitter"
-        else (read.design.packages.photodetector)
-    )
+    chip = read.design.packages.at_cells(read.finger)
     terminals = {m["ref"]: m for m in _TERMINALS.finditer(note)}
     if f"pad 1 is the {chip.marked}" not in note or (
         chip.confidence != "datasheet" and f"{chip.marked} is {chip.confidence}" not in note

@@ -37,7 +37,6 @@ MODULES = (
     "system",
     "wiring",
     "bom",
-    "manual",
     "heat",
 )
 _LONG = frozenset({"orders", "board"})

@@ -116,9 +116,9 @@ def _arrives(row: Row, nets: Nets, design: Design) -> str:
         net = nets[board].get(pad)
         pins = {
             name
-            for device in carrier.devices
+            for device in carrier.components
             if device.kind in ("socket", "module")
-            for land, name in zip(device.pattern.lands, device.pins, strict=True)
+            for land, name in zip(device.footprint.pads, device.pins, strict=True)
             if nets[board].get(f"{device.ref}.{land.number}") == net
         }
         pin = "+".join(sorted(pins))

@@ -8,16 +8,15 @@ towards the tip from the centre line of the columns, z out of the face from the 
 from dataclasses import dataclass, replace
 
 from lumitip.layout import Cell, Layout
+from lumitip_fab.catalogue.electronics import Chip, Led, Multiplexer, Photodetector
 from lumitip_fab.design.boards import (
     Board,
     CellInput,
-    Chip,
     Connector,
     Controller,
     Finger,
     Flexible,
     Grid,
-    Multiplexer,
     Packages,
     Part,
     Reading,
@@ -27,7 +26,6 @@ from lumitip_fab.design.boards import (
     Zone,
 )
 from lumitip_fab.design.cabling import Cable, Cabling, Terminal, Wire
-from lumitip_fab.design.carriers import Carrier, Device, Holder, Land, Note, Pattern
 from lumitip_fab.design.electrical import Electrical
 from lumitip_fab.design.fit_plate import FitPlate, Fits
 from lumitip_fab.design.making import (
@@ -42,9 +40,19 @@ from lumitip_fab.design.making import (
     Printing,
     Slicing,
 )
-from lumitip_fab.design.mount import Closing, Fastener, Flange, Mount, Nose, System, ToolContact
+from lumitip_fab.design.mount import (
+    Closing,
+    Fastener,
+    Flange,
+    Holder,
+    Mount,
+    Nose,
+    System,
+    ToolContact,
+)
 from lumitip_fab.design.ordering import Bought, Fab, PartPrice, Purchase
-from lumitip_fab.design.shape import Box, Cubic, Outline, Point, Stack, Tip
+from lumitip_fab.design.pcb import Carrier, Component, Footprint, Note, Pad
+from lumitip_fab.design.shape import Box, Cubic, Outline, Point, Side, Stack, Tip
 from lumitip_fab.text import board_name, page_name
 
 __all__ = [
@@ -58,12 +66,12 @@ __all__ = [
     "Chip",
     "Choice",
     "Closing",
+    "Component",
     "Connector",
     "Controller",
     "Cubic",
     "Densities",
     "Design",
-    "Device",
     "Electrical",
     "Fab",
     "Fastener",
@@ -73,12 +81,13 @@ __all__ = [
     "Fits",
     "Flange",
     "Flexible",
+    "Footprint",
     "Grid",
     "HeatStep",
     "HeatedPart",
     "Holder",
     "Interface",
-    "Land",
+    "Led",
     "Letter",
     "Mask",
     "Mould",
@@ -88,15 +97,17 @@ __all__ = [
     "Note",
     "Outline",
     "Packages",
+    "Pad",
     "Part",
     "PartPrice",
-    "Pattern",
+    "Photodetector",
     "Point",
     "Printing",
     "Purchase",
     "Reading",
     "Relief",
     "Rules",
+    "Side",
     "Slicing",
     "Stack",
     "System",

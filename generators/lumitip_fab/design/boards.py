@@ -6,6 +6,13 @@ otherwise.
 
 from dataclasses import dataclass
 
+from lumitip_fab.catalogue.electronics import (
+    Capacitor,
+    Led,
+    Multiplexer,
+    Photodetector,
+    Resistor,
+)
 from lumitip_fab.design.shape import Box, Point
 
 
@@ -105,6 +112,12 @@ class Finger:
 
     name: str
     """`"emitter"` or `"receiver"`."""
+    cell_kind: str
+    """Kind of the part at each cell: `"led"` or `"photodetector"`."""
+    cell_letter: str
+    """Reference of the part at cell i is this letter and i + 1."""
+    x_sign: float
+    """Cell i is at this times its x in the layout: the fingers face each other."""
     cells: tuple[Point, ...]
     """LED or photodetector of each cell, in frame order."""
     turned: bool
@@ -161,68 +174,22 @@ class Wiring:
 
 
 @dataclass(frozen=True)
-class Chip:
-    """A two-terminal part: what to order, and its size with its pads."""
-
-    part: str
-    """Order number; for resistors, `{code}` stands for the value."""
-    manufacturer: str
-    value: str
-    """Value on drawings; empty for resistors, whose value is in `Wiring`."""
-    body_mm: tuple[float, float, float]
-    """Body: along its terminals, across them, height above the board."""
-    pad_mm: tuple[float, float]
-    """One pad: along the terminals, across them."""
-    pad_pitch_mm: float
-    marked: str
-    """Terminal that the part's mark shows, which is pad 1; empty of parts without polarity."""
-    confidence: str
-    """Confidence in the catalogue's figures of it: "datasheet", "measured", "inferred" or
-    "assumed"."""
-    lcsc: str
-    """Number at the distributor LCSC; empty where it is not known."""
-
-
-@dataclass(frozen=True)
-class Multiplexer:
-    """An analog multiplexer: what to order, its size, and what each lead is."""
-
-    part: str
-    manufacturer: str
-    value: str
-    body_mm: tuple[float, float, float]
-    """Body: along the rows of leads, across them, height above the board."""
-    lead_span_mm: float
-    """Outer ends of the pads of the two rows."""
-    lead_tips_mm: float
-    """Outer ends of the leads."""
-    lead_pitch_mm: float
-    lead_pad_mm: tuple[float, float]
-    """Pad of one lead: along the lead, across it."""
-    leads: int
-    inputs: tuple[int, ...]
-    """Lead of each channel."""
-    select: tuple[int, ...]
-    output: int
-    supply: int
-    ground: int
-    enable: int
-    """Active low."""
-    negative: int | None
-    lcsc: str
-    """Number at the distributor LCSC; empty where it is not known."""
-
-
-@dataclass(frozen=True)
 class Packages:
-    """The parts of both boards."""
+    """The parts of both boards, as the catalogue has them."""
 
-    led: Chip
-    string_resistor: Chip
-    photodetector: Chip
-    pull_up: Chip
-    capacitor: Chip
+    led: Led
+    led_name: str
+    """In the catalogue, which is the value on drawings; likewise below."""
+    string_resistor: Resistor
+    photodetector: Photodetector
+    photodetector_name: str
+    pull_up: Resistor
+    capacitor: Capacitor
     multiplexer: Multiplexer
+
+    def at_cells(self, finger: Finger) -> Led | Photodetector:
+        """What emits or detects light on a finger."""
+        return self.led if finger.cell_kind == "led" else self.photodetector
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from lumitip.layout import Layout
+from lumitip_fab.catalogue.record import Strict
 from lumitip_fab.design import Design
 from lumitip_fab.errors import OutputError
 
@@ -25,6 +26,8 @@ def encoded(value: Any) -> Any:
     """A part of a design as plain JSON values."""
     if isinstance(value, Layout):
         return json.loads(value.to_json())
+    if isinstance(value, Strict):
+        return encoded(value.model_dump())
     if is_dataclass(value) and not isinstance(value, type):
         return {f.name: encoded(getattr(value, f.name)) for f in fields(value)}
     if isinstance(value, list | tuple):
@@ -65,6 +68,8 @@ def read_design(path: Path) -> Design:
 def _decoded(value: Any, kind: type[T]) -> T:
     if kind is Layout:
         return typing.cast(T, Layout.from_json(json.dumps(value)))
+    if isinstance(kind, type) and issubclass(kind, Strict):
+        return kind.model_validate_json(json.dumps(value))
     if is_dataclass(kind):
         hints = typing.get_type_hints(kind)
         values = {f.name: _decoded(value[f.name], hints[f.name]) for f in fields(kind)}
@@ -73,6 +78,10 @@ def _decoded(value: Any, kind: type[T]) -> T:
     if isinstance(kind, types.UnionType):
         inner = next(a for a in arguments if a is not type(None))
         return typing.cast(T, None if value is None else _decoded(value, inner))
+    if typing.get_origin(kind) is typing.Literal:
+        if value not in arguments:
+            raise TypeError(f"{value!r:.80} is none of {arguments}")
+        return typing.cast(T, value)
     if typing.get_origin(kind) is tuple:
         if arguments[-1] is Ellipsis:
             return typing.cast(T, tuple(_decoded(v, arguments[0]) for v in value))

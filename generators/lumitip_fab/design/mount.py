@@ -219,3 +219,65 @@ class Flange:
     def top_z_mm(self) -> float:
         """Height of the flange between coupling and gripper."""
         return self.split_z_mm + self.web_mm + self.recess_depth_mm
+
+
+@dataclass(frozen=True)
+class Holder:
+    """A printed tray for a carrier on a cradle that clips round the gripper's body.
+
+    In the carrier's frame, z = 0 on the back of the board and out of its front: the body's axis
+    runs along y at `axis_z_mm`. It is printed standing on its end at the lowest y. Sizes are as
+    drawn: the printer's fit is in what board, body, screws and nuts go into.
+
+    ```
+       ┌┐              ┌┐   z = board's front
+       │└─┐▁        ▁┌─┘│   bosses carry the board, z = 0
+       │  └──────────┘  │   floor of the tray
+       │   ╭────────╮   │
+      ╭╯  ╱          ╲  ╰╮  cradle
+      │  │     ·      │  │  axis of the body
+      ╰──╯            ╰──╯  arms reach beyond it
+    ```
+    """
+
+    name: str
+    carrier: str
+    """Name of the board in it."""
+    tray: Box
+    """Inside of the tray, open at both ends along y."""
+    outer: Box
+    """Outside of the tray, seen along z."""
+    top_z_mm: float
+    """Rim of the tray."""
+    floor_z_mm: float
+    """Floor of the tray."""
+    seat_z_mm: float
+    """Seat of the nuts, below the floor."""
+    axis_z_mm: float
+    body_mm: float
+    """Diameter of the gripper's body."""
+    body_from: str
+    """Source of that figure: `holder.body_mm`, or the gripper's entry and how sure that is."""
+    clearance_mm: float
+    """Nominal gap from the cradle to that body, and from the tray to the board, on each side."""
+    cradle_mm: float
+    """Radius of the cradle."""
+    wall_mm: float
+    wrap_deg: float
+    """Where the arms end, from the middle of the tray."""
+    holes: tuple[Point, ...]
+    """Screws of the board."""
+    screw: str
+    """Thread of those screws."""
+    screw_mm: float
+    """Their holes."""
+    screw_length_mm: float
+    """Under their heads, which are on the board."""
+    nut_mm: float
+    """Across flats of their nuts' pockets."""
+    boss_mm: tuple[float, float, float]
+    """Of a boss under the board: length along x, width along y on top and at the floor."""
+    strap_deg: float
+    """Where the holes through the arms are, from the middle of the tray."""
+    strap_y_mm: tuple[float, ...]
+    strap_hole_mm: float

@@ -5,11 +5,13 @@ otherwise.
 """
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 Point = tuple[float, float]
+Side = Literal["front", "back"]
 Cubic = tuple[Point, Point, Point, Point]
 GUIDED = 0.75  # of a plate without a pocket, in the mould
 

@@ -119,7 +119,7 @@ def _boards(design: Design, files: Files) -> str:
     names = ("emitter", "receiver", *(carrier.name for carrier in design.carriers))
     behind = any(part.side == "back" for part in design.emitter.parts)
     backs = ["emitter"] if behind else []
-    backs += [c.name for c in design.carriers if any(d.side == "back" for d in c.devices)]
+    backs += [c.name for c in design.carriers if any(d.side == "back" for d in c.components)]
     sides = [*((name, "front") for name in names), *((name, "back") for name in backs)]
     pictures = "\n".join(
         f"![The {name} board, {side}](boards/{name}/{name}_{side}.png)"
@@ -229,7 +229,7 @@ def _run(design: Design) -> str:
 def _loading(design: Design) -> str:
     """The first step: a module has no bootloader yet."""
     upload = "open `firmware/firmware.ino` in the Arduino IDE and upload it"
-    if any(device.kind == "module" for c in design.carriers for device in c.devices):
+    if any(device.kind == "module" for c in design.carriers for device in c.components):
         return (
             "Load the bootloader over J7 of the flange's board, solder a USB cable to J6, then\n"
             f"   {upload}; `firmware/README.md` tells how."

@@ -58,7 +58,7 @@ def _flange(carrier: Carrier) -> Iterator[Row]:
         f"{box.width_mm:.1f} x {box.length_mm:.1f} mm",
         "a rectangle with round corners; published: one side is an arc",
     )
-    values = {device.ref: device.value for device in carrier.devices}
+    values = {device.ref: device.value for device in carrier.components}
     yield Row(
         "its supply",
         "AP63205, 4.7 uH, 10 uF, 2 x 22 uF",

@@ -13,10 +13,10 @@ from gerbonara.utils import MM
 
 from lumitip_fab.boards.fab import gerber_objects as objects
 from lumitip_fab.boards.footprints import PlacedPad, placed_pads
-from lumitip_fab.boards.model import MASK_MM, SIDES, BoardModel, Placement, Side, opening_mm
+from lumitip_fab.boards.model import MASK_MM, SIDES, BoardModel, Placement, opening_mm
 from lumitip_fab.boards.outline import EDGE_MM, corners, straight_edges
 from lumitip_fab.boards.silk.strokes import silkscreen
-from lumitip_fab.design import Box, Point
+from lumitip_fab.design import Box, Point, Side
 
 _LAYER_FORMAT = (4, 6)  # digits before and after the point: to 1 nm
 

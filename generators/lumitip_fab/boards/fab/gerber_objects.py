@@ -47,7 +47,7 @@ def pad(placed: PlacedPad, grown_mm: float = 0.0) -> GraphicObject:
     """A pad's copper or, grown, the opening in the mask over it."""
     shape, turn = placed.pad, placed.component.angle_deg % 180.0
     width, height = (v + 2 * grown_mm for v in (shape.width_mm, shape.height_mm))
-    if shape.shape == "circle":
+    if shape.round:
         return flash((placed.x_mm, placed.y_mm), CircleAperture(width, unit=MM))
     if math.isclose(turn, 0.0) or math.isclose(turn, 90.0):
         size = (width, height) if math.isclose(turn, 0.0) else (height, width)

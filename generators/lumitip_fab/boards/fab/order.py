@@ -8,8 +8,8 @@ from collections.abc import Iterable, Iterator
 
 from lumitip_fab.boards.fab.gerber import gerber_layers, plated_drills, unplated_drills
 from lumitip_fab.boards.footprints import pad_at
-from lumitip_fab.boards.model import BoardModel, Component, Placement
-from lumitip_fab.design import Chip, Fab, Flexible, Packages
+from lumitip_fab.boards.model import BoardModel, Placement
+from lumitip_fab.design import Component, Fab, Finger, Flexible, Led, Packages, Photodetector
 
 Row = dict[str, str]
 
@@ -141,26 +141,26 @@ _OTHER = {"anode": "cathode", "cathode": "anode", "collector": "emitter", "emitt
 _POLAR = {"led": "LED", "photodetector": "photodetector"}
 
 
-def assembly_note(board: Placement, packages: Packages, fab: Fab) -> bytes:
+def assembly_note(board: Placement, finger: Finger, packages: Packages, fab: Fab) -> bytes:
     """Plain text: what marks mean, how far to trust that, and where each terminal goes.
 
     Args:
         board: parts in their places.
+        finger: whose board it is.
         packages: for the terminal that a part's mark shows, and its confidence.
         fab: the board house, whose remark is added.
     """
-    emitter = board.finger == "emitter"
-    chip = packages.led if emitter else packages.photodetector
+    chip = packages.at_cells(finger)
     lines = [
-        f"{board.name}: {board.finger} board, revision {board.revision}, "
+        f"{board.title}: {board.name} board, revision {board.revision}, "
         f"design {board.design_hash[:8]}",
         "",
         *(
-            _flexible(board.flexible, board.finger + dict(fab.layers)["stiffener"])
+            _flexible(board.flexible, board.name + dict(fab.layers)["stiffener"])
             if board.flexible
             else ()
         ),
-        *_polarity(board, chip, "led" if emitter else "photodetector"),
+        *_polarity(board, chip, finger.cell_kind),
         *_others(board),
         *_ordering(board, fab),
         "Places of the terminals, in mm as in the Gerber files, seen from the front:",
@@ -169,7 +169,7 @@ def assembly_note(board: Placement, packages: Packages, fab: Fab) -> bytes:
     return "".join(f"{line}\n" for line in lines).encode()
 
 
-def _polarity(board: Placement, chip: Chip, kind: str) -> Iterator[str]:
+def _polarity(board: Placement, chip: Led | Photodetector, kind: str) -> Iterator[str]:
     parts = [part for part in bought(board) if part.kind == kind]
     yield (
         f"{_refs(board, kind)}, {parts[0].part} by {chip.manufacturer}: pad 1 is the "
@@ -228,7 +228,7 @@ def carrier_note(board: Placement, title: str, fab: Fab) -> bytes:
         fab: the board house, whose remark is added.
     """
     lines = [
-        f"{board.name}: {title}, revision {board.revision}, design {board.design_hash[:8]}",
+        f"{board.title}: {title}, revision {board.revision}, design {board.design_hash[:8]}",
         "",
         *_behind(board),
         *_ordering(board, fab),
@@ -259,7 +259,7 @@ def _ordering(board: Placement, fab: Fab) -> Iterator[str]:
             yield ""
 
 
-def _places(board: Placement, chip: Chip) -> Iterator[str]:
+def _places(board: Placement, chip: Led | Photodetector) -> Iterator[str]:
     for part in bought(board):
         if part.kind in _POLAR:
             one, other = (pad_at(part, number) for number in ("1", "2"))

@@ -12,9 +12,10 @@ from shapely import LineString, Point, Polygon, affinity
 from shapely.geometry.base import BaseGeometry
 
 from lumitip_fab.boards.footprints import PlacedPad, placed_pads
-from lumitip_fab.boards.model import MASK_MM, SIDES, BoardModel, Side, Stroke, opening_mm
+from lumitip_fab.boards.model import MASK_MM, SIDES, BoardModel, Stroke, opening_mm
 from lumitip_fab.boards.outline import outline_area
 from lumitip_fab.boards.silk.strokes import silkscreen
+from lumitip_fab.design import Side
 
 LAMINATE, MASK, COVERED, PLATED, SILK, SHADE = (
     "#b9a878",
@@ -183,7 +184,7 @@ def picture_files(model: BoardModel) -> dict[str, bytes]:
     files = {}
     for side in SIDES:
         seen = painted(model, side)
-        title = f"{board.name} {board.revision}, {board.finger} board, {side}"
-        files[f"{board.finger}_{side}.svg"] = svg_picture(seen, title)
-        files[f"{board.finger}_{side}.png"] = png_picture(seen)
+        title = f"{board.title} {board.revision}, {board.name} board, {side}"
+        files[f"{board.name}_{side}.svg"] = svg_picture(seen, title)
+        files[f"{board.name}_{side}.png"] = png_picture(seen)
     return files

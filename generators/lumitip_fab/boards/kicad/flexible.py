@@ -58,5 +58,5 @@ def regions(board: Placement, flexible: Flexible) -> Iterator[Node]:
             ("layer", Quoted(layer)),
             ("width", LINE_MM),
             ("fill", "none"),
-            ("tstamp", stable_uuid(board.finger, "region", name)),
+            ("tstamp", stable_uuid(board.name, "region", name)),
         )

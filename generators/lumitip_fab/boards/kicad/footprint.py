@@ -5,16 +5,14 @@ from dataclasses import replace
 
 from lumitip_fab.boards.kicad.sexpr import FORMAT, Node, Quoted, written
 from lumitip_fab.boards.model import (
-    Component,
-    Footprint,
-    Pad,
+    PlacedComponent,
     Stroke,
     Text,
     fiducial_margin_mm,
     stable_uuid,
 )
 from lumitip_fab.boards.silk.strokes import angle_on_board_deg
-from lumitip_fab.design import Box, Point
+from lumitip_fab.design import Box, Footprint, Pad, Point
 from lumitip_fab.design.frames import on_board_page
 
 
@@ -30,7 +28,7 @@ HOLE = "MountingHole"
 _FAB_MM, _COURTYARD_MM = 0.1, 0.05
 
 
-def placed_footprint(component: Component, numbers: dict[str, int], finger: str) -> Node:
+def placed_footprint(component: PlacedComponent, numbers: dict[str, int], finger: str) -> Node:
     """A part on its board.
 
     Args:
@@ -55,7 +53,7 @@ def hole_footprint(number: int, at: Point, hole_mm: float, finger: str) -> Node:
     return ("footprint", *head, *_hole(ref, hole_mm, own, "board_only"))
 
 
-def library_file(component: Component) -> bytes:
+def library_file(component: PlacedComponent) -> bytes:
     """The `.kicad_mod` of a part's footprint."""
     shape = component.footprint
     plain = replace(
@@ -110,7 +108,7 @@ def _hole(ref: str, hole_mm: float, own: str, *attributes: str) -> tuple[Node, .
 class _Writer:
     """Writes one part; the parts of its footprint turn and flip with it."""
 
-    def __init__(self, component: Component, numbers: dict[str, int], finger: str) -> None:
+    def __init__(self, component: PlacedComponent, numbers: dict[str, int], finger: str) -> None:
         self.component, self.numbers = component, numbers
         self.front = component.side == "front"
         self.own = stable_uuid(finger, "footprint", component.ref)
@@ -173,9 +171,9 @@ class _Writer:
     def lines(self) -> Iterator[Node]:
         """Silkscreen, body and courtyard."""
         shape = self.component.footprint
-        drawn = [("SilkS", stroke) for stroke in shape.silk]
+        drawn = [("SilkS", stroke) for stroke in self.component.outline]
         drawn.append(("Fab", _round(shape.body, _FAB_MM)))
-        drawn.append(("CrtYd", _round(shape.courtyard, _COURTYARD_MM)))
+        drawn.append(("CrtYd", _round(self.component.courtyard, _COURTYARD_MM)))
         count = 0
         for layer, stroke in drawn:
             for start, end in zip(stroke.points, stroke.points[1:], strict=False):
@@ -197,7 +195,7 @@ class _Writer:
             "pad",
             Quoted(pad.number),
             "thru_hole" if pad.drill_mm else "smd",
-            pad.shape,
+            "circle" if pad.round else "rect",
             ("at", *self.at(pad.x_mm, pad.y_mm), self.angle),
             ("size", pad.width_mm, pad.height_mm),
             *((("drill", pad.drill_mm),) if pad.drill_mm else ()),
@@ -215,7 +213,7 @@ class _Writer:
         return self.layer("Cu"), *paste, self.layer("Mask")
 
 
-def _ordering(part: Component) -> tuple[Node, ...]:
+def _ordering(part: PlacedComponent) -> tuple[Node, ...]:
     """Ordering fields as in the part's symbol: KiCad 10 compares them."""
     if not part.part:
         return ()
@@ -223,7 +221,7 @@ def _ordering(part: Component) -> tuple[Node, ...]:
     return tuple(("property", Quoted(name), Quoted(value)) for name, value in properties.items())
 
 
-def _attributes(component: Component) -> tuple[str, ...]:
+def _attributes(component: PlacedComponent) -> tuple[str, ...]:
     attributes = ["through_hole" if any(p.drill_mm for p in component.footprint.pads) else "smd"]
     if not component.part:
         attributes += ["exclude_from_pos_files", "exclude_from_bom"]

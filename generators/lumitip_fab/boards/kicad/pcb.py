@@ -15,12 +15,11 @@ from lumitip_fab.boards.model import (
     THERMAL_SPOKE_MM,
     BoardModel,
     Placement,
-    Side,
     stable_uuid,
 )
 from lumitip_fab.boards.outline import EDGE_MM, corners, fractured, straight_edges
 from lumitip_fab.boards.silk.strokes import upright
-from lumitip_fab.design import Box, Point
+from lumitip_fab.design import Box, Point, Side
 from lumitip_fab.design.frames import BOARD_ON_PAGE_MM, on_board_page
 
 COPPER = {"front": "F.Cu", "back": "B.Cu"}
@@ -36,7 +35,7 @@ def tracks(model: BoardModel, numbers: dict[str, int]) -> Iterator[Node]:
             ("width", track.width_mm),
             ("layer", Quoted(COPPER[track.side])),
             ("net", numbers[track.net]),
-            ("tstamp", stable_uuid(model.placement.finger, "track", str(count))),
+            ("tstamp", stable_uuid(model.placement.name, "track", str(count))),
         )
 
 
@@ -50,7 +49,7 @@ def vias(model: BoardModel, numbers: dict[str, int]) -> Iterator[Node]:
             ("drill", via.drill_mm),
             ("layers", Quoted("F.Cu"), Quoted("B.Cu")),
             ("net", numbers[via.net]),
-            ("tstamp", stable_uuid(model.placement.finger, "via", str(count))),
+            ("tstamp", stable_uuid(model.placement.name, "via", str(count))),
         )
 
 
@@ -68,7 +67,7 @@ def _zone(model: BoardModel, numbers: dict[str, int], side: Side) -> Node:
         ("net", numbers[board.ground]),
         ("net_name", Quoted(board.ground)),
         layer,
-        ("tstamp", stable_uuid(board.finger, "zone", side)),
+        ("tstamp", stable_uuid(board.name, "zone", side)),
         ("hatch", "edge", 0.5),
         ("connect_pads", ("clearance", CLEARANCE_MM)),
         ("min_thickness", MIN_WIDTH_MM),
@@ -97,7 +96,7 @@ def keep_outs(model: BoardModel) -> Iterator[Node]:
             ("net", 0),
             ("net_name", Quoted("")),
             ("layers", *(Quoted(COPPER[side]) for side in SIDES)),
-            ("tstamp", stable_uuid(board.finger, "keep-out", str(count))),
+            ("tstamp", stable_uuid(board.name, "keep-out", str(count))),
             ("hatch", "edge", 0.5),
             ("connect_pads", ("clearance", 0)),
             ("min_thickness", MIN_WIDTH_MM),
@@ -151,7 +150,7 @@ def silkscreen(board: Placement) -> Iterator[Node]:
                 ("end", *on_board_page(end)),
                 ("layer", Quoted(_SILK[side])),
                 ("width", stroke.width_mm),
-                ("tstamp", stable_uuid(board.finger, "silk", str(count))),
+                ("tstamp", stable_uuid(board.name, "silk", str(count))),
             )
     for number, (side, text) in enumerate(board.texts):
         at = on_board_page((text.x_mm, text.y_mm))
@@ -160,7 +159,7 @@ def silkscreen(board: Placement) -> Iterator[Node]:
             Quoted(text.text),
             ("at", *at, upright(text.angle_deg, side)),
             ("layer", Quoted(_SILK[side])),
-            ("tstamp", stable_uuid(board.finger, "text", str(number))),
+            ("tstamp", stable_uuid(board.name, "text", str(number))),
             effects(text, side == "back"),
         )
 
@@ -171,7 +170,7 @@ def _edge(board: Placement, name: str, keyword: str, *points: tuple[str, Point])
         *((where, *on_board_page(at)) for where, at in points),
         ("layer", Quoted("Edge.Cuts")),
         ("width", EDGE_MM),
-        ("tstamp", stable_uuid(board.finger, "edge", name)),
+        ("tstamp", stable_uuid(board.name, "edge", name)),
     )
 
 
@@ -224,9 +223,9 @@ def _contents(model: BoardModel, thickness_mm: float) -> Iterator[Node]:
     )
     yield ("net", 0, Quoted(""))
     yield from (("net", number, Quoted(name)) for name, number in numbers.items())
-    yield from (placed_footprint(c, numbers, board.finger) for c in board.components)
+    yield from (placed_footprint(c, numbers, board.name) for c in board.components)
     for number, at in enumerate(board.holes, start=1):
-        yield hole_footprint(number, at, board.hole_mm, board.finger)
+        yield hole_footprint(number, at, board.hole_mm, board.name)
     yield from edges(board)
     yield from silkscreen(board)
     if board.flexible:
@@ -240,10 +239,10 @@ def _contents(model: BoardModel, thickness_mm: float) -> Iterator[Node]:
 def _title(board: Placement) -> Node:
     return (
         "title_block",
-        ("title", Quoted(board.name)),
+        ("title", Quoted(board.title)),
         ("rev", Quoted(board.revision)),
         ("comment", 1, Quoted(f"Design {board.design_hash}")),
-        ("comment", 2, Quoted(f"{board.finger} board, seen from its front with the tip up")),
+        ("comment", 2, Quoted(f"{board.name} board, seen from its front with the tip up")),
     )
 
 

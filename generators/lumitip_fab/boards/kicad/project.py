@@ -110,8 +110,8 @@ def project_files(model: BoardModel, thickness_mm: float) -> dict[str, bytes]:
     hole = {f"{hole_name(board.hole_mm)}": hole_library_file(board.hole_mm)}
     mods = {name: library_file(c) for name, c in sorted(shapes.items())} | hole
     return {
-        f"{board.finger}.kicad_pcb": board_file(model, thickness_mm),
-        f"{board.finger}.kicad_pro": project_file(board, f"{board.finger}.kicad_pro"),
+        f"{board.name}.kicad_pcb": board_file(model, thickness_mm),
+        f"{board.name}.kicad_pro": project_file(board, f"{board.name}.kicad_pro"),
         "fp-lib-table": library_table(),
         **{f"{LIBRARY}.pretty/{name}.kicad_mod": data for name, data in mods.items()},
     }

@@ -9,11 +9,11 @@ import shapely
 from shapely import Geometry
 
 from lumitip_fab.boards.footprints import placed_pads
-from lumitip_fab.boards.model import SIDES, Fill, NetClass, Placement, Routing, Side, Via
+from lumitip_fab.boards.model import SIDES, Fill, NetClass, Placement, Routing, Via
 from lumitip_fab.boards.pour.ground import Kept, needed
 from lumitip_fab.boards.pour.room import MARGIN_MM, Sheet, room, sheet, via_room
 from lumitip_fab.boards.verify import DRILL_WALL_MM
-from lumitip_fab.design import Point
+from lumitip_fab.design import Point, Side
 
 LATTICE_MM = 0.5  # places tried
 APART_MM = 6.0  # between stitching vias, where there is room

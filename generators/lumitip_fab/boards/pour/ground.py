@@ -12,9 +12,9 @@ import shapely
 from networkx.algorithms.approximation import steiner_tree
 
 from lumitip_fab.boards.footprints import PlacedPad
-from lumitip_fab.boards.model import SIDES, Routing, Side, Track, Via
+from lumitip_fab.boards.model import SIDES, Routing, Track, Via
 from lumitip_fab.boards.pour.room import Sheet
-from lumitip_fab.design import Point
+from lumitip_fab.design import Point, Side
 from lumitip_fab.errors import BuildError
 
 STEP_MM = 0.5  # tracks are kept or left out in pieces of this length

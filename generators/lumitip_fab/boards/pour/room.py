@@ -16,11 +16,10 @@ from lumitip_fab.boards.model import (
     THERMAL_SPOKE_MM,
     Placement,
     Routing,
-    Side,
     fiducial_margin_mm,
 )
 from lumitip_fab.boards.verify import DRILL_WALL_MM
-from lumitip_fab.design import Point
+from lumitip_fab.design import Point, Side
 
 MARGIN_MM = 0.003  # beyond clearances: curves become polygons, places are rounded,
 DETAIL_MM = 0.001  # and corners that move an outline by less than this are left out
@@ -86,7 +85,7 @@ def _things(placement: Placement, routing: Routing) -> Iterator[Thing]:
     for component in placement.components:
         for pad in placed_pads(component):
             if pad.net != placement.ground:
-                round_ = pad.pad.shape == "circle"
+                round_ = pad.pad.round
                 core = shapely.Point(pad.x_mm, pad.y_mm) if round_ else pad.area
                 radius = pad.pad.width_mm / 2 if round_ else 0.0
                 gap = max(least, of_net.get(pad.net, 0.0), fiducial_margin_mm(component))
@@ -177,7 +176,7 @@ def sheet(room: Geometry, pads: list[PlacedPad]) -> Sheet:
 def _spokes(pad: PlacedPad) -> list[tuple[Polygon, Polygon]]:
     """The four spokes of a pad, each with its outer end: along its axes, of round pads between."""
     size = pad.pad
-    start = 45.0 if size.shape == "circle" else 0.0
+    start = 45.0 if size.round else 0.0
     half = THERMAL_SPOKE_MM / 2
     spokes = []
     for turn, reach in zip(

@@ -96,7 +96,7 @@ class Obstacles:
     def _claim(self, owner: NDArray[np.int16], pad: PlacedPad, keep: float, own: int) -> None:
         round_mm = self._rounded(keep)
         x, y, where = self.from_pad(pad, round_mm)
-        if pad.pad.shape == "circle":
+        if pad.pad.round:
             near = np.hypot(x, y) < self._rounded(pad.pad.width_mm / 2 + keep)
         else:
             dx, dy = np.abs(x) - pad.pad.width_mm / 2, np.abs(y) - pad.pad.height_mm / 2

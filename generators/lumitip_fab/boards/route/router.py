@@ -171,7 +171,7 @@ def _routed(placement: Placement, rules: Rules, pitch_mm: float) -> Routing:
     except Unreachable as fault:
         a, b = (f"{e.pad.component.ref}.{e.pad.pad.number}" for e in fault.ends)
         raise TightError(
-            f"the {placement.finger} board cannot be routed: net {fault.net} finds no way from "
+            f"the {placement.name} board cannot be routed: net {fault.net} finds no way from "
             f"{a} to {b} at ({fault.ends[1].pad.x_mm:.2f}, {fault.ends[1].pad.y_mm:.2f}) mm "
             "between pads, holes and edges; give the parts more room"
         ) from None
@@ -201,7 +201,7 @@ def _unfinished(placement: Placement, grid: Grid, fought: dict[str, Ints], round
     more = len(places) - PLACES_NAMED
     named = ", ".join(places[:PLACES_NAMED]) + (f" and {more} more" if more > 0 else "")
     return (
-        f"the {placement.finger} board is not routed after {rounds} rounds: nets still share room "
+        f"the {placement.name} board is not routed after {rounds} rounds: nets still share room "
         f"(mm): {named}; give the tracks more room: a larger board.channel_mm or grid.pitch_mm, "
         "finer board.track_mm and board.copper_gap_mm, or smaller parts"
     )

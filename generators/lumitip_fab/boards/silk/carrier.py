@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from itertools import pairwise, product
 
 from lumitip_fab.boards.footprints import courtyard, placed_pads
-from lumitip_fab.boards.model import SIDES, Component, Placement, Side, Text
+from lumitip_fab.boards.model import SIDES, PlacedComponent, Placement, Text
 from lumitip_fab.boards.silk.page import Page, extent
-from lumitip_fab.design import Box, Carrier, Device, Point, Rules
+from lumitip_fab.design import Box, Carrier, Point, Rules, Side
 
 _REMEDY = (
     "fewer digits in supply.voltage_v, shorter names of lines in [flange], or a larger "
@@ -31,15 +31,15 @@ def with_legend(board: Placement, carrier: Carrier, rules: Rules) -> Placement:
         text = page.text(note.text, note.at, note.height_mm, note.angle_deg)
         _put(page, note.text, note.at, [text])
     parts = {part.ref: part for part in board.components}
-    for device in carrier.devices:
-        _names(page, device, parts[device.ref], carrier.box)
+    for part in parts.values():
+        _names(page, part, carrier.box)
     for ref, part in parts.items():
         if part.kind == "fiducial":
             continue
         places = [*_round(page, ref, courtyard(part))]
         _put(page, ref, (part.x_mm, part.y_mm), places, _APART_MM, part.side)
     lines = (
-        (board.name, 2.0),
+        (board.title, 2.0),
         (carrier.title, 1.5),
         (f"rev {board.revision}  {board.design_hash[:8]}", 1.5),
     )
@@ -68,18 +68,18 @@ def _put(
         page.miss(repr(words), first.height_mm, page.length_mm(first.text, first.height_mm), at)
 
 
-def _names(page: Page, device: Device, part: Component, board: Box) -> None:
+def _names(page: Page, part: PlacedComponent, board: Box) -> None:
     """The name of each contact beside it: all along their row if they fit, else upright; where
     that finds no room, along the row and a little aside."""
-    if not (device.contacts and device.pins):
+    if not (part.contacts and part.pins):
         return
     pads = placed_pads(part)
     apart = [abs(a.x_mm - b.x_mm) for a, b in pairwise(pads) if a.y_mm == b.y_mm]
     pitch = min(apart, default=0.0)
-    flat = max(map(page.length_mm, device.pins)) + page.rules.silk_gap_mm < pitch
+    flat = max(map(page.length_mm, part.pins)) + page.rules.silk_gap_mm < pitch
     inward = 1.0 if part.y_mm < board.centre_mm[1] else -1.0
-    drawn = part.footprint.body.y_max_mm if part.footprint.silk else 0.0
-    for pad, name in zip(pads, device.pins, strict=True):
+    drawn = part.footprint.body.y_max_mm if part.outline else 0.0
+    for pad, name in zip(pads, part.pins, strict=True):
         rise = pad.y_mm - part.y_mm
         way = math.copysign(1.0, rise) if pad.pad.y_mm else inward  # of two rows, outward
         edge = max(pad.pad.height_mm / 2, drawn - abs(pad.pad.y_mm)) + _AWAY_MM
@@ -93,7 +93,7 @@ def _names(page: Page, device: Device, part: Component, board: Box) -> None:
             for away in (way, -way)
         ]
         places = lying if flat else [*upright, *lying]
-        _put(page, f"{device.ref} {name}", (pad.x_mm, pad.y_mm), places)
+        _put(page, f"{part.ref} {name}", (pad.x_mm, pad.y_mm), places)
 
 
 def _round(page: Page, ref: str, yard: Box) -> Iterator[Text]:

@@ -7,10 +7,10 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from shapely import LineString
 
-from lumitip_fab.boards.model import MASK_MM, Placement, Side, Text
+from lumitip_fab.boards.model import MASK_MM, Placement, Text
 from lumitip_fab.boards.silk.page import Page
 from lumitip_fab.boards.silk.references import with_references
-from lumitip_fab.design import Connector, Finger, Point, Rules
+from lumitip_fab.design import Connector, Finger, Point, Rules, Side
 
 
 def cell_edges(cells: Sequence[Point], pitch_mm: float) -> list[LineString]:
@@ -141,8 +141,8 @@ def _along_the_edges(page: Page) -> bool:
         [edge + sign * d for d in inwards] for edge, sign in ((box.x_min_mm, 1), (box.x_max_mm, -1))
     )
     arrow = page.arrow("front", ((x, y) for x in left for y in ys))
-    revision = f"{board.finger} rev {board.revision}  {board.design_hash[:8]}"
-    for xs, line in ((left, board.name), (right, revision)):
+    revision = f"{board.name} rev {board.revision}  {board.design_hash[:8]}"
+    for xs, line in ((left, board.title), (right, revision)):
         for height in (_TITLE_MM, 0.0):
             if page.first_free(
                 "front", (page.text(line, (x, y), height, 90.0) for x in xs for y in ys)
@@ -157,8 +157,8 @@ def _back(page: Page, finger: Finger, mark: str) -> bool:
     board = page.board
     zone = next(zone.box for zone in finger.zones if zone.name == "cells")
     lines = (
-        (board.name, 2.0),
-        (f"{board.finger} board  rev {board.revision}", 1.5),
+        (board.title, 2.0),
+        (f"{board.name} board  rev {board.revision}", 1.5),
         (f"design {board.design_hash[:8]}", 1.5),
         (f"bracket: {mark}", 1.2),
     )

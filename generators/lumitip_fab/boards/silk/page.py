@@ -10,9 +10,9 @@ from shapely import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from lumitip_fab.boards.footprints import placed, placed_pads
-from lumitip_fab.boards.model import Placement, Side, Stroke, Text, opening_mm
+from lumitip_fab.boards.model import Placement, Stroke, Text, opening_mm
 from lumitip_fab.boards.silk.strokes import text_strokes, upright
-from lumitip_fab.design import Box, Point, Rules
+from lumitip_fab.design import Box, Point, Rules, Side
 from lumitip_fab.errors import BuildError
 
 _SHORTEST_MM = 0.5
@@ -48,7 +48,7 @@ class Clear:
             if part.side == side:
                 taken += [
                     LineString([placed(part, *p) for p in s.points]).buffer(s.width_mm / 2)
-                    for s in part.footprint.silk
+                    for s in part.outline
                 ]
         return cls(rim, gap_mm, line_mm, taken)
 
@@ -214,7 +214,7 @@ class Page:
         """
         if self.lost:
             raise BuildError(
-                f"the {self.board.finger} board has no room on its silkscreen for "
+                f"the {self.board.name} board has no room on its silkscreen for "
                 f"{'; '.join(self.lost)}: {remedy}"
             )
 

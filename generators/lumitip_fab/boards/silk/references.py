@@ -14,9 +14,9 @@ import shapely
 from shapely import LineString
 
 from lumitip_fab.boards.footprints import courtyard
-from lumitip_fab.boards.model import Component, Side, Text
+from lumitip_fab.boards.model import PlacedComponent, Text
 from lumitip_fab.boards.silk.page import Clear, Page, extent
-from lumitip_fab.design import Point
+from lumitip_fab.design import Point, Side
 
 _APART_MM = 0.1  # more than the least gap round references, so that they do not run together
 _STEP_MM = 0.1
@@ -28,7 +28,7 @@ _Places = dict[str, Text]
 
 def with_references(
     page: Page, edges: Sequence[LineString], pitch_mm: float
-) -> tuple[Component, ...]:
+) -> tuple[PlacedComponent, ...]:
     """Print the outlines of the cells; parts with their references where there is room.
 
     Args:
@@ -67,14 +67,14 @@ def with_references(
     return named
 
 
-def _at_cells(page: Page, cells: Sequence[Component], room: Clear) -> _Places:
+def _at_cells(page: Page, cells: Sequence[PlacedComponent], room: Clear) -> _Places:
     """All of them, or none."""
     found = {part.ref: _place_of(page, part, room) for part in cells}
     return {ref: text for ref, text in found.items() if text} if all(found.values()) else {}
 
 
 def _through_outlines(
-    page: Page, cells: Sequence[Component], room: Clear, pitch_mm: float
+    page: Page, cells: Sequence[PlacedComponent], room: Clear, pitch_mm: float
 ) -> _Places:
     """All of them, upright beside their parts and within their cells, or none; all at one side
     where that is possible."""
@@ -100,9 +100,9 @@ def _through_outlines(
     return found
 
 
-def _at_ends(page: Page, cells: Sequence[Component], room: Clear, pitch_mm: float) -> _Places:
+def _at_ends(page: Page, cells: Sequence[PlacedComponent], room: Clear, pitch_mm: float) -> _Places:
     """Of the first and the last cell of each column, beyond it, where there is room."""
-    columns: dict[float, list[Component]] = defaultdict(list)
+    columns: dict[float, list[PlacedComponent]] = defaultdict(list)
     for part in cells:
         columns[round(part.x_mm, 3)].append(part)
     found: _Places = {}
@@ -121,7 +121,7 @@ def _at_ends(page: Page, cells: Sequence[Component], room: Clear, pitch_mm: floa
     return found
 
 
-def _beyond(page: Page, part: Component, start_mm: float, sign: int) -> Iterator[Text]:
+def _beyond(page: Page, part: PlacedComponent, start_mm: float, sign: int) -> Iterator[Text]:
     """Places beyond a part that stands at the end of its column: upright, then level."""
     for angle in (90.0, 0.0):
         size = page.length_mm(part.ref) if angle else page.text("", (0.0, 0.0)).height_mm
@@ -130,7 +130,7 @@ def _beyond(page: Page, part: Component, start_mm: float, sign: int) -> Iterator
             yield page.text(part.ref, (part.x_mm, y), angle_deg=angle)
 
 
-def _place_of(page: Page, part: Component, room: Clear) -> Text | None:
+def _place_of(page: Page, part: PlacedComponent, room: Clear) -> Text | None:
     """A free place for a part's reference, on the board."""
     yard = courtyard(part)
     (x, y), r = yard.centre_mm, part.ref
@@ -156,7 +156,7 @@ def _place_of(page: Page, part: Component, room: Clear) -> Text | None:
     return None
 
 
-def _printed(page: Page, part: Component, text: Text) -> Component:
+def _printed(page: Page, part: PlacedComponent, text: Text) -> PlacedComponent:
     """A part with its reference at a place on the board, in its footprint's frame."""
     page.sides[part.side].take(extent(text, part.side))
     x, y = _in_footprint(part, (text.x_mm, text.y_mm))
@@ -167,7 +167,7 @@ def _printed(page: Page, part: Component, text: Text) -> Component:
     return dataclasses.replace(part, ref_text=local)
 
 
-def _in_footprint(part: Component, at: Point) -> Point:
+def _in_footprint(part: PlacedComponent, at: Point) -> Point:
     """A place on the board in the frame of a part's footprint."""
     turn = np.radians(part.angle_deg)
     dx, dy = at[0] - part.x_mm, at[1] - part.y_mm

@@ -7,8 +7,8 @@ from importlib.resources import files
 from itertools import islice
 
 from lumitip_fab.boards.footprints import placed
-from lumitip_fab.boards.model import Component, Placement, Side, Stroke, Text
-from lumitip_fab.design import Point
+from lumitip_fab.boards.model import Placement, Stroke, Text
+from lumitip_fab.design import Component, Point, Side
 
 Glyph = tuple[float, tuple[tuple[Point, ...], ...]]
 _GLYPHS = 0x2200 - 0x20  # from space: Latin, Greek and arrows, of the font's 65 000
@@ -78,7 +78,7 @@ def _font() -> dict[str, Glyph]:
 def silkscreen(board: Placement) -> Iterator[tuple[Side, Stroke]]:
     """Every stroke with its side, in the sensor frame: footprints, references, lines, texts."""
     for part in board.components:
-        for stroke in part.footprint.silk:
+        for stroke in part.outline:
             points = tuple(placed(part, *point) for point in stroke.points)
             yield part.side, Stroke(points, stroke.width_mm)
         if (text := part.ref_text) is not None:

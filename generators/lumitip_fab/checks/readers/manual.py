@@ -1,4 +1,4 @@
-"""The manual as its reader has it: words, pictures and typefaces of HTML and PDF."""
+"""Words, tables and pictures of the manual's HTML, and the fonts of a PDF's page."""
 
 import re
 from base64 import b64decode
@@ -10,7 +10,6 @@ from typing import Any
 
 import pikepdf
 
-from lumitip_fab.checks.readers import MALFORMED
 from lumitip_fab.errors import OutputError
 
 _LETTER = re.compile(rb"<([0-9A-Fa-f]{2})>\s*<([0-9A-Fa-f]{4})>")
@@ -69,7 +68,6 @@ def lacking(faces: Mapping[str, Face]) -> list[str]:
     return sorted({face.name for face in faces.values() if not face.embedded})
 
 
-_FOOT = 2  # texts at the foot of each page, drawn first
 _BLOCKS = {"h1", "h2", "h3", "h4", "h5", "p", "li", "td", "th", "tr", "table"}
 
 
@@ -149,27 +147,3 @@ def read_html(path: Path) -> Manual:
     except (OSError, ValueError, LookupError) as error:
         raise OutputError(f"{path}: cannot be read as a manual: {error!r:.120}") from error
     return manual
-
-
-def read_pdf(path: Path) -> tuple[str, list[str]]:
-    """All that is written on the pages of a PDF, without spaces, and the fonts that it lacks.
-
-    Raises:
-        OutputError: if it is missing or cannot be read.
-    """
-    lines, without = list[str](), set[str]()
-    try:
-        with pikepdf.open(path) as document:
-            for page in document.pages:
-                faces = faces_of(page)
-                without |= set(lacking(faces))
-                drawn, face = list[str](), ""
-                for operands, operator in pikepdf.parse_content_stream(page):
-                    if str(operator) == "Tf":
-                        face = str(operands[0])
-                    elif str(operator) == "Tj":
-                        drawn.append(faces[face].text(bytes(operands[0])))
-                lines += drawn[_FOOT:]
-    except (OSError, *MALFORMED, pikepdf.PdfError) as error:
-        raise OutputError(f"{path}: cannot be read as a PDF: {error!r:.120}") from error
-    return re.sub(r"\s", "", "".join(lines)), sorted(without)

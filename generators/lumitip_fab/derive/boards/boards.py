@@ -89,6 +89,9 @@ def derive_plan(
     wires = connectors.place(connectors.emitter_signals(config), True, frame.connector_y_mm)
     emitter = Finger(
         name="emitter",
+        cell_kind="led",
+        cell_letter="D",
+        x_sign=-1.0,
         cells=_mirrored(cells),
         turned=led_turned,
         holes=(*((-x, y) for x, y in tip_holes), *rear),
@@ -102,6 +105,9 @@ def derive_plan(
     wires = connectors.place(connectors.receiver_signals(muxing), frame.wide, frame.connector_y_mm)
     receiver = Finger(
         name="receiver",
+        cell_kind="photodetector",
+        cell_letter="Q",
+        x_sign=1.0,
         cells=_plain(cells),
         turned=detector_turned,
         holes=(*tip_holes, *rear),

@@ -17,10 +17,10 @@ from dataclasses import dataclass
 
 from lumitip_fab.catalogue.controllers import Plug, Strip
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.boards import connectors, devices, patterns
+from lumitip_fab.derive.boards import components, connectors
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.wiring.wiring import Muxing
-from lumitip_fab.design import Box, Carrier, Device, Note
+from lumitip_fab.design import Box, Carrier, Component, Note, footprints
 
 REGULATED = "5V"
 """Supply of the controller, from the flange's regulator."""
@@ -63,7 +63,7 @@ def derive_breakout(config: Input, muxing: Muxing, faults: Diagnostics) -> tuple
             corner_mm=CORNER_MM,
             holes=((-half, 0.0), (half, 0.0)),
             hole_mm=p.breakout.hole_mm,
-            devices=_devices(config, plug, strip, muxing, rows),
+            components=_components(config, plug, strip, muxing, rows),
             notes=(Note("USB", (1.5 - length / 2, 0.0), 1.2, 90.0),),
             supplies=tuple(dict.fromkeys(("GND", REGULATED, "3V3", *emitter[1:]))),
             keep_outs=(),
@@ -86,9 +86,9 @@ def _rows(plug: Plug, strip: Strip, width_mm: float) -> Rows:
     )
 
 
-def _devices(
+def _components(
     config: Input, plug: Plug, strip: Strip, muxing: Muxing, rows: Rows
-) -> tuple[Device, ...]:
+) -> tuple[Component, ...]:
     nets = _net_of(plug, muxing)
     sockets, beside = [], []
     for number, (names, side) in enumerate(zip(plug.rows, (-1, 1), strict=True), start=1):
@@ -123,19 +123,20 @@ def _socket(
     names: tuple[str, ...],
     nets: tuple[tuple[str, str], ...],
     y_mm: float,
-) -> Device:
-    shape = patterns.row("PinSocket", strip.ways, strip.pitch_mm, strip.pad_mm, strip.drill_mm)
-    return Device(
+) -> Component:
+    shape = footprints.row("PinSocket", strip.ways, strip.pitch_mm, strip.pad_mm, strip.drill_mm)
+    return Component(
         ref=ref,
         kind="socket",
         value=config.parameters.breakout.socket,
         part=strip.order_number,
         manufacturer=strip.manufacturer,
         lcsc=strip.lcsc,
-        pattern=patterns.raised(shape, strip.height_mm),
+        footprint=footprints.raised(shape, strip.height_mm),
         x_mm=0.0,
         y_mm=y_mm,
         angle_deg=0.0,
+        side="front",
         nets=nets,
         pins=names,
     )
@@ -143,31 +144,29 @@ def _socket(
 
 def _pads(
     ref: str, nets: tuple[tuple[str, str], ...], pitch_mm: float, x_mm: float, y_mm: float
-) -> Device:
+) -> Component:
     """Bare pads for wires, one for each net."""
-    shape = patterns.row("WirePads", len(nets), pitch_mm, PAD_MM, DRILL_MM)
-    return Device(
+    shape = footprints.row("WirePads", len(nets), pitch_mm, PAD_MM, DRILL_MM)
+    return Component(
         ref=ref,
         kind="wires",
         value=f"{len(nets)} wires",
         part="",
-        manufacturer="",
-        lcsc="",
-        pattern=shape,
+        footprint=shape,
         x_mm=x_mm,
         y_mm=y_mm,
         angle_deg=0.0,
+        side="front",
         nets=nets,
-        pins=(),
     )
 
 
 def _wires(
     ref: str, signals: tuple[str, ...], x_mm: float, y_mm: float, length_mm: float
-) -> Device:
+) -> Component:
     """Wire pads of a cable, in the order of the connector at its other end."""
     fits = connectors.half_width_mm(len(signals), wide=True) <= length_mm / 2 - EDGE_MM
-    return devices.wires(ref, signals, (x_mm, y_mm), fits)
+    return components.wires(ref, signals, (x_mm, y_mm), fits)
 
 
 def _refuse(

@@ -15,7 +15,14 @@ With a module as its controller it is wider to the left: see `lumitip_fab.derive
 
 from lumitip_fab.catalogue.controllers import OPEN
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.boards.devices import capacitor, chip, fiducials, from_behind, leaded, strip
+from lumitip_fab.derive.boards.components import (
+    capacitor,
+    chip,
+    fiducials,
+    from_behind,
+    leaded,
+    strip,
+)
 from lumitip_fab.derive.boards.flange_circuit import (
     halved,
     is_regulated,
@@ -27,7 +34,7 @@ from lumitip_fab.derive.boards.module import Supplies, derive_module
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.mount.fasteners import BOARD_SCREW
 from lumitip_fab.derive.wiring.wiring import Muxing, Strings
-from lumitip_fab.design import Box, Carrier, Device, Point
+from lumitip_fab.design import Box, Carrier, Component, Point
 from lumitip_fab.text import resistor_code
 
 BOX = Box(-15.4, 15.4, -27.0, 27.0)
@@ -59,7 +66,7 @@ def derive_flange(
     refuse_parts(config, strings, faults)
     raw, supply, output = _supplies(config)
     wing = derive_module(config, module, muxing, Supplies(supply, output), BOX, faults)
-    parts = (*_input(config), *_regulator(config), *(wing.devices if wing else ()))
+    parts = (*_input(config), *_regulator(config), *(wing.components if wing else ()))
     _refuse_lines(config, parts, faults)
     switched = ("SW",) if is_regulated(config) else ()
     return (
@@ -71,7 +78,7 @@ def derive_flange(
             corner_mm=CORNER_MM,
             holes=HOLES_AT,
             hole_mm=config.catalogue.fasteners[BOARD_SCREW].hole_mm[0],
-            devices=(
+            components=(
                 *_strips(config),
                 *parts,
                 *fiducials(wing.fiducials if wing else FIDUCIALS_AT),
@@ -100,7 +107,7 @@ def _supplies(config: Input) -> tuple[str, str, str]:
     return f"{volts}_IN", volts, f"{regulator.output_v:g}V"
 
 
-def _strips(config: Input) -> tuple[Device, ...]:
+def _strips(config: Input) -> tuple[Component, ...]:
     """Contacts and headers."""
     p, parts = config.parameters.flange, config.parts.flange
     raw, supply, output = _supplies(config)
@@ -120,7 +127,7 @@ def _strips(config: Input) -> tuple[Device, ...]:
     return contacts, *both
 
 
-def _input(config: Input) -> tuple[Device, ...]:
+def _input(config: Input) -> tuple[Component, ...]:
     """Fuse, and the MOSFET with the supply, or half of a high one, at its gate."""
     p, parts = config.parameters.flange, config.parts.flange
     raw, supply, _ = _supplies(config)
@@ -129,18 +136,16 @@ def _input(config: Input) -> tuple[Device, ...]:
     part = resistor.order_number.replace("{code}", code)
     transistor = parts.transistor
     leads = {"G": "GATE", "S": supply, "D": "FUSED"}
-    upper = chip(
-        "R1", "resistor", code, resistor, "RESC", (-5.2, -7.0), 90.0, (supply, "GATE"), part
-    )
+    upper = chip("R1", "resistor", code, resistor, (-5.2, -7.0), 90.0, (supply, "GATE"), part)
     return (
-        chip("F1", "fuse", p.fuse, parts.fuse, "FUSC", (5.4, -7.0), 180.0, (raw, "FUSED")),
+        chip("F1", "fuse", p.fuse, parts.fuse, (5.4, -7.0), 180.0, (raw, "FUSED")),
         leaded("Q1", "transistor", p.transistor, transistor, (-1.0, -7.0), 270.0, leads),
         *((upper,) if halved(config) else ()),
-        chip("R2", "resistor", code, resistor, "RESC", (-2.0, -3.8), 0.0, ("GATE", "GND"), part),
+        chip("R2", "resistor", code, resistor, (-2.0, -3.8), 0.0, ("GATE", "GND"), part),
     )
 
 
-def _regulator(config: Input) -> tuple[Device, ...]:
+def _regulator(config: Input) -> tuple[Component, ...]:
     """The regulator with its input capacitor across VIN and GND, and what hangs on SW; nothing
     where the supply is what it would make."""
     p, parts = config.parameters.flange, config.parts.flange
@@ -157,7 +162,6 @@ def _regulator(config: Input) -> tuple[Device, ...]:
             "inductor",
             p.inductor.split()[0],
             parts.inductor,
-            "INDC",
             (-7.5, 5.2),
             90.0,
             ("SW", output),
@@ -203,7 +207,7 @@ def _refuse(config: Input, faults: Diagnostics) -> None:
     )
 
 
-def _refuse_lines(config: Input, parts: tuple[Device, ...], faults: Diagnostics) -> None:
+def _refuse_lines(config: Input, parts: tuple[Component, ...], faults: Diagnostics) -> None:
     """Refuse lines from contact to cable that are called like a net of the board's own parts:
     they would be joined."""
     p = config.parameters.flange

@@ -19,11 +19,11 @@ from dataclasses import dataclass
 
 from lumitip_fab.catalogue.controllers import Module
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.boards import connectors, patterns
-from lumitip_fab.derive.boards.devices import capacitor, chip, leaded, wires
+from lumitip_fab.derive.boards import connectors
+from lumitip_fab.derive.boards.components import capacitor, chip, leaded, wires
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.wiring.wiring import Muxing
-from lumitip_fab.design import Box, Device, Point
+from lumitip_fab.design import Box, Component, Point, footprints
 
 WING_MM = 12.6
 """Width beyond the board without a module; the bolts of the published flange limit it."""
@@ -58,7 +58,7 @@ class Wing:
     """Additions of a module to the flange's board, and the board's box with them."""
 
     box: Box
-    devices: tuple[Device, ...]
+    components: tuple[Component, ...]
     fiducials: tuple[Point, ...]
     keep_outs: tuple[Box, ...]
 
@@ -78,7 +78,7 @@ def derive_module(
     left = box.x_min_mm - WING_MM
     at = left + module.body_mm[1] / 2, 0.0
     receiver = connectors.receiver_signals(muxing)
-    devices = (
+    components = (
         _module(config, module, muxing, at),
         *_beside(config),
         *_supply(config, supplies),
@@ -89,7 +89,7 @@ def derive_module(
     )
     return Wing(
         box=Box(left, box.x_max_mm, box.y_min_mm, box.y_max_mm),
-        devices=devices,
+        components=components,
         fiducials=FIDUCIALS_AT,
         keep_outs=tuple(
             # Turned by a quarter: (x, y) becomes (-y, x).
@@ -99,29 +99,30 @@ def derive_module(
     )
 
 
-def _module(config: Input, module: Module, muxing: Muxing, at: Point) -> Device:
+def _module(config: Input, module: Module, muxing: Muxing, at: Point) -> Component:
     """The module; a pin of the sketch names its pad, any other pad is called by its port."""
     pins = {port: pin for pin, port in module.ports.items()}
     nets = _NAMED | dict(zip(module.crystal, ("XL1", "XL2"), strict=True))
     nets |= {module.ports[pin]: pin for pin in muxing.adc_pins}
     nets |= {module.ports[pin]: f"S{i}" for i, pin in enumerate(muxing.select_pins)}
-    return Device(
+    return Component(
         ref="U2",
         kind="module",
         value=config.title("controller.board"),
         part=module.order_number,
         manufacturer=module.manufacturer,
         lcsc=module.lcsc,
-        pattern=patterns.module(module),
+        footprint=footprints.module(module),
         x_mm=at[0],
         y_mm=at[1],
         angle_deg=TURN_DEG,
+        side="front",
         nets=tuple((str(i), nets[name]) for i, name in enumerate(module.names, 1) if name in nets),
         pins=tuple(pins.get(name, name) for name in module.names),
     )
 
 
-def _supply(config: Input, supplies: Supplies) -> tuple[Device, ...]:
+def _supply(config: Input, supplies: Supplies) -> tuple[Component, ...]:
     """The linear regulator with a capacitor before and after it."""
     p, fed = config.parameters.module, supplies.regulated
     entry = config.parts.module.regulator
@@ -133,14 +134,14 @@ def _supply(config: Input, supplies: Supplies) -> tuple[Device, ...]:
     )
 
 
-def _beside(config: Input) -> tuple[Device, ...]:
+def _beside(config: Input) -> tuple[Component, ...]:
     """Parts near the module's pads: capacitors of its supplies, and the crystal."""
     p = config.parameters.module
     entry, value = config.parts.module.crystal, p.crystal.split()[0]
     return (
         capacitor(config, "C7", p.capacitor, (-11.2, 5.2), 90.0, (CONTROLLER, "GND")),
         capacitor(config, "C10", p.supply_capacitor, (-11.2, 10.2), 90.0, ("VUSB", "GND")),
-        chip("Y1", "crystal", value, entry, "XTAL", (-11.3, -7.2), 90.0, ("XL1", "XL2")),
+        chip("Y1", "crystal", value, entry, (-11.3, -7.2), 90.0, ("XL1", "XL2")),
         capacitor(config, "C8", p.crystal_capacitor, (-11.3, -11.4), 270.0, ("XL1", "GND")),
         capacitor(config, "C9", p.crystal_capacitor, (-11.4, -3.2), 270.0, ("XL2", "GND")),
     )

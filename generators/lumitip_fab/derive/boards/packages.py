@@ -2,63 +2,29 @@
 
 from dataclasses import replace
 
-from lumitip_fab.catalogue import electronics
 from lumitip_fab.catalogue.ordering import Silk
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards import connectors, placing
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.stack import is_flex
-from lumitip_fab.design import Box, Chip, Fab, Flexible, Multiplexer, Packages, Rules
+from lumitip_fab.design import Box, Fab, Flexible, Packages, Rules
 
 LEAST_RING_MM = 0.1  # copper round the hole of a via
 COMMON_SILK = Silk(text_mm=0.8, line_mm=0.15, gap_mm=0.15)  # where the catalogue has no PCB fab
 
 
 def derive_packages(config: Input) -> Packages:
-    """The parts that are named in the parameter file, as the boards need them."""
+    """The parts of the fingers' boards, by their names in the parameter file."""
     p, parts = config.parameters, config.catalogue
-    led, detector = parts.leds[p.emitter.led], parts.photodetectors[p.receiver.photodetector]
-    capacitor = parts.capacitors[p.receiver.capacitor]
-    mux = parts.multiplexers[p.receiver.multiplexer]
     return Packages(
-        led=_chip(led, p.emitter.led, led.marked),
-        string_resistor=_chip(parts.resistors[p.emitter.resistor]),
-        photodetector=_chip(detector, p.receiver.photodetector, detector.marked),
-        pull_up=_chip(parts.resistors[p.receiver.resistor]),
-        capacitor=_chip(capacitor, f"{capacitor.capacitance_nf:g}nF"),
-        multiplexer=Multiplexer(
-            part=mux.order_number,
-            manufacturer=mux.manufacturer,
-            value=p.receiver.multiplexer,
-            body_mm=mux.body_mm,
-            lead_span_mm=mux.lead_span_mm,
-            lead_tips_mm=mux.lead_tips_mm,
-            lead_pitch_mm=mux.lead_pitch_mm,
-            lead_pad_mm=mux.lead_pad_mm,
-            leads=mux.leads,
-            inputs=tuple(mux.inputs[str(channel)] for channel in range(mux.channels)),
-            select=mux.select,
-            output=mux.output,
-            supply=mux.supply,
-            ground=mux.ground,
-            enable=mux.enable,
-            negative=mux.negative,
-            lcsc=mux.lcsc,
-        ),
-    )
-
-
-def _chip(entry: electronics.Chip, value: str = "", marked: str = "") -> Chip:
-    return Chip(
-        part=entry.order_number,
-        manufacturer=entry.manufacturer,
-        value=value,
-        body_mm=entry.body_mm,
-        pad_mm=entry.pad_mm,
-        pad_pitch_mm=entry.pad_pitch_mm,
-        marked=marked,
-        confidence=entry.confidence,
-        lcsc=entry.lcsc,
+        led=parts.leds[p.emitter.led],
+        led_name=p.emitter.led,
+        string_resistor=parts.resistors[p.emitter.resistor],
+        photodetector=parts.photodetectors[p.receiver.photodetector],
+        photodetector_name=p.receiver.photodetector,
+        pull_up=parts.resistors[p.receiver.resistor],
+        capacitor=parts.capacitors[p.receiver.capacitor],
+        multiplexer=parts.multiplexers[p.receiver.multiplexer],
     )
 
 

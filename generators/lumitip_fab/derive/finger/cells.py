@@ -61,7 +61,7 @@ TRACK_SPACE_MM = 1.5  # between columns, for tracks; with less, parts are turned
 def derive_turned(p: Parameters, field: str, name: str, chip: Chip, faults: Diagnostics) -> bool:
     """Whether parts are turned along y; refused where they fit neither way.
 
-    Land patterns keep a straight lane between columns and between rows, so that tracks pass.
+    Pad patterns keep a straight lane between columns and between rows, so that tracks pass.
     """
     along, across = chip.over_pads_mm
     pitch, columns = p.grid.pitch_mm, column_pitch_mm(p.grid.pitch_mm)

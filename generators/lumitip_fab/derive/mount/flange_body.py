@@ -6,7 +6,7 @@ from lumitip_fab.derive.finger.stack import held_by, stiff_mm
 from lumitip_fab.derive.making.fits import Drawn
 from lumitip_fab.derive.mount.fasteners import BOARD_SCREW
 from lumitip_fab.derive.mount.rules import refuse_flange
-from lumitip_fab.design import Box, Carrier, Device, Flange, Holder, Point, System, ToolContact
+from lumitip_fab.design import Box, Carrier, Component, Flange, Holder, Point, System, ToolContact
 
 HEADROOM_MM = 0.3  # over the highest part
 AROUND_MM = 0.5  # round headers, contacts and solder tails
@@ -33,15 +33,15 @@ def derive_flange_body(
     screw = config.catalogue.fasteners[BOARD_SCREW]
     coupling, pogo = config.parts.flange.coupling, config.parts.flange.contacts
     # Towards the robot, and so on the board's back, are the contacts alone.
-    (contacts,) = (device for device in carrier.devices if device.side == "back")
-    front = [device for device in carrier.devices if device is not contacts]
+    (contacts,) = (device for device in carrier.components if device.side == "back")
+    front = [device for device in carrier.components if device is not contacts]
     headers = [device for device in front if device.kind in ("header", "wires")]
     board_at = (
         coupling.contacts_at_mm[0] - contacts.x_mm,
         coupling.contacts_at_mm[1] - contacts.y_mm,
     )
     board_z = pogo.height_mm - pogo.stroke_mm / 2 - coupling.contacts_depth_mm
-    split_z = board_z + pcb_mm + max(d.pattern.height_mm for d in front) + HEADROOM_MM
+    split_z = board_z + pcb_mm + max(d.footprint.height_mm for d in front) + HEADROOM_MM
     socket_z = min(split_z, split_z + p.web_mm - coupling.pin_depth_mm - SOCKET_SPARE_MM)
     room = socket_z - config.parameters.printer.min_wall_mm + coupling.recess_depth_mm
     pin = next((n for n in PIN_LENGTHS_MM if n - coupling.pin_depth_mm <= room), PIN_LENGTHS_MM[-1])
@@ -103,13 +103,13 @@ def _moved(box: Box, by: Point) -> Box:
     )
 
 
-def _room(device: Device, board_at: Point) -> Box:
+def _room(device: Component, board_at: Point) -> Box:
     """Room round the body of a part, more than a fit of the printer is."""
     at = (device.x_mm + board_at[0], device.y_mm + board_at[1])
-    return _moved(device.pattern.body, at).grown(AROUND_MM)
+    return _moved(device.footprint.body, at).grown(AROUND_MM)
 
 
-def _openings(headers: list[Device], board_at: Point, radius_mm: float) -> tuple[Box, ...]:
+def _openings(headers: list[Component], board_at: Point, radius_mm: float) -> tuple[Box, ...]:
     """One on each side: from the middles of its headers and wire pads out through the wall."""
     openings = []
     for side in (-1, 1):

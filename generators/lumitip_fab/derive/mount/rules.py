@@ -132,8 +132,8 @@ def refuse_holder(config: Input, of: Carrier, holder: Holder, faults: Diagnostic
     half_x, half_y = holder.boss_mm[0] / 2, holder.boss_mm[2] / 2
     tails = [
         abs(device.y_mm + land.y_mm) - land.height_mm / 2
-        for device in of.devices
-        for land in device.pattern.lands
+        for device in of.components
+        for land in device.footprint.pads
         for x, _ in of.holes
         if land.drill_mm and abs(device.x_mm + land.x_mm - x) < half_x + land.width_mm / 2
     ]

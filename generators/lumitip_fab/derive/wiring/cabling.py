@@ -7,7 +7,7 @@ from itertools import permutations
 
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.diagnostics import Diagnostics
-from lumitip_fab.design import Carrier, Device, Electrical, Finger, Mount, Outline, Wiring
+from lumitip_fab.design import Carrier, Component, Electrical, Finger, Mount, Outline, Wiring
 from lumitip_fab.design.cabling import Cable, Cabling, Terminal, Wire
 
 MOST_A_PER_MM2 = 3.0  # in a bundle; a common figure for thin wires without cooling
@@ -139,7 +139,7 @@ def _host(carriers: Iterable[Carrier]) -> tuple[Carrier, str, str] | None:
     breakout, flange = _named(carriers, "breakout"), _named(carriers, "flange")
     if breakout:
         return breakout, "J6", "J5"
-    if flange and any(device.kind == "module" for device in flange.devices):
+    if flange and any(device.kind == "module" for device in flange.components):
         return flange, "J5", "J4"
     return None
 
@@ -151,7 +151,7 @@ def _pads(finger: Finger) -> tuple[Terminal, ...]:
 
 def _wires_of(carrier: Carrier, ref: str) -> tuple[Terminal, ...]:
     """The wire pads of a connector of a carrier, in their order."""
-    device: Device = next(d for d in carrier.devices if d.ref == ref)
+    device: Component = next(d for d in carrier.components if d.ref == ref)
     pads = enumerate(device.nets, 1)
     return tuple(Terminal(carrier.name, ref, pad, net, place) for place, (pad, net) in pads)
 
@@ -161,7 +161,7 @@ def _feeding(carriers: Iterable[Carrier], pads: tuple[Terminal, ...]) -> dict[st
     nets, or a supply."""
     supply = {pad.name: Terminal("supply", "", pad.name, pad.name, pad.order) for pad in pads}
     flange = _named(carriers, "flange")
-    headers = [d for d in flange.devices if d.ref in ("J2", "J3")] if flange else []
+    headers = [d for d in flange.components if d.ref in ("J2", "J3")] if flange else []
     if not headers:
         return supply
     header = max(headers, key=lambda d: len(supply.keys() & {net for _, net in d.nets}))
@@ -241,11 +241,11 @@ def _drill_mm(end: Terminal, boards: Boards) -> float:
         if end.board == finger.name:
             return finger.connector.drill_mm
     carrier = _named(boards.carriers, end.board)
-    devices = carrier.devices if carrier else ()
-    lands = [land for d in _bare(devices, end) for land in d.pattern.lands]
+    devices = carrier.components if carrier else ()
+    lands = [land for d in _bare(devices, end) for land in d.footprint.pads]
     return min((land.drill_mm for land in lands), default=math.inf)
 
 
-def _bare(devices: Iterable[Device], end: Terminal) -> list[Device]:
+def _bare(devices: Iterable[Component], end: Terminal) -> list[Component]:
     """Wire pads at an end; a header takes a socket, not a wire."""
     return [d for d in devices if d.ref == end.connector and d.kind == "wires"]

@@ -6,8 +6,8 @@ from lumitip_fab.boards.kicad.schematic import carrier_symbols, symbols
 from lumitip_fab.boards.kicad.schematic.files import sheet_files
 from lumitip_fab.boards.kicad.schematic.sheet import MARGIN_MM, Drawn, Sheet, paper_for
 from lumitip_fab.boards.kicad.sexpr import Node
-from lumitip_fab.boards.model import Component, Placement
-from lumitip_fab.design import Carrier, Device, Point
+from lumitip_fab.boards.model import Placement
+from lumitip_fab.design import Carrier, Component, Point
 
 _PITCH_MM = 2.54  # from pin to pin
 _COLUMN_MM = 50.8
@@ -31,7 +31,7 @@ def carrier_sheet(board: Placement, carrier: Carrier) -> dict[str, bytes]:
     sheet = Sheet()
     x = y = MARGIN_MM
     sheet.texts.append((carrier.title, (x, y), 2.5))
-    for device in (d for d in carrier.devices if d.nets):
+    for device in (d for d in carrier.components if d.nets):
         part, two = parts[device.ref], carrier_symbols.upright(device.kind)
         upright = two is not None or device.kind == "transistor"
         tall = _UPRIGHT_MM if upright else len(device.nets) * _PITCH_MM + _ABOVE_MM
@@ -52,17 +52,17 @@ def carrier_sheet(board: Placement, carrier: Carrier) -> dict[str, bytes]:
     return sheet_files(board, paper, sheet, shapes, parts)
 
 
-def _left_open(device: Device) -> list[str]:
+def _left_open(device: Component) -> list[str]:
     """Contacts that are joined to nothing."""
     joined = {number for number, _ in device.nets}
-    return [n.number for n in device.pattern.lands if device.contacts and n.number not in joined]
+    return [n.number for n in device.footprint.pads if device.contacts and n.number not in joined]
 
 
-def _shape(device: Device) -> tuple[str, Node]:
+def _shape(device: Component) -> tuple[str, Node]:
     """Name and symbol of contacts in a row, or of a part whose pins have names."""
     if device.contacts:
         numbers = tuple(number for number, _ in device.nets)
-        whole = len(numbers) == len(device.pattern.lands)
+        whole = len(numbers) == len(device.footprint.pads)
         name = f"Strip{len(numbers)}" if whole else f"Strip_{device.ref}"
         return name, symbols.contacts(numbers, _PITCH_MM)
     name = f"{device.kind.capitalize()}_{device.ref}"
@@ -81,7 +81,7 @@ def _beside(words: str, edge_mm: float, y_mm: float) -> Point:
     return edge_mm + math.copysign(len(words) * _LETTER_MM / 2, edge_mm), y_mm
 
 
-def _transistor(sheet: Sheet, at: Point, symbol: str, part: Component, device: Device) -> None:
+def _transistor(sheet: Sheet, at: Point, symbol: str, part: Component, device: Component) -> None:
     """Its source above, its drain below, its gate to the left."""
     x, y = at
     sheet.symbols.append(

@@ -4,7 +4,7 @@ import math
 
 from lumitip_fab.boards.kicad.schematic.symbols import PIN_MM, box, hand_drawn, line, pin, symbol
 from lumitip_fab.boards.kicad.sexpr import Node
-from lumitip_fab.design import Device
+from lumitip_fab.design import Component
 
 WIDE_MM = 15.24
 """Of the box of a part whose pins have names."""
@@ -29,7 +29,7 @@ def upright(kind: str) -> tuple[str, Node] | None:
     return None
 
 
-def transistor(device: Device) -> Node:
+def transistor(device: Component) -> Node:
     """A P-channel MOSFET: gate to the left, source above, drain below, its diode to the right."""
     number = {name: land for (land, _), name in zip(device.nets, device.pins, strict=True)}
     return symbol(
@@ -54,9 +54,9 @@ def transistor(device: Device) -> Node:
     )
 
 
-def chip(device: Device, pitch_mm: float) -> Node:
+def chip(device: Component, pitch_mm: float) -> Node:
     """A box with the names of those pins that are joined, first at the top."""
-    names = dict(zip((land.number for land in device.pattern.lands), device.pins, strict=True))
+    names = dict(zip((land.number for land in device.footprint.pads), device.pins, strict=True))
     half = len(device.nets) / 2 * pitch_mm
     pins = [
         pin(number, 5.08, half - (i + 0.5) * pitch_mm, 180, PIN_MM, names[number])

@@ -1,32 +1,37 @@
 """The files of a schematic: the sheet, its symbols, and the table that finds them."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
-from lumitip_fab.boards.kicad.schematic import connector, emitter, receiver, symbols
+from lumitip_fab.boards.kicad.schematic import fingers, symbols
 from lumitip_fab.boards.kicad.schematic.sheet import MARGIN_MM, Sheet, paper_for
 from lumitip_fab.boards.kicad.schematic.writer import sheet_text
 from lumitip_fab.boards.kicad.sexpr import FORMAT, Node, Quoted, written
-from lumitip_fab.boards.model import Component, Placement
-from lumitip_fab.design import Packages, Point, Wiring
+from lumitip_fab.boards.model import Placement
+from lumitip_fab.design import Component, Design, Finger, Packages, Point, Wiring
 
 
-def schematic_files(board: Placement, wiring: Wiring, packages: Packages) -> dict[str, bytes]:
+def schematic_files(board: Placement, finger: Finger, design: Design) -> dict[str, bytes]:
     """Sheet, symbol library and its table, by their path beside the board.
 
     Args:
         board: its parts, with their nets.
-        wiring: strings in the order in which the current passes their LEDs.
-        packages: leads of the multiplexers, marked terminals.
+        finger: whose board it is.
+        design: its wiring and its parts.
     """
+    wiring, packages = design.wiring, design.packages
     parts = {part.ref: part for part in board.components}
     supply = next(net for _, net in parts["J1"].nets if net != board.ground)
-    shapes = _symbols(board, packages, supply)
-    paper, sheet = _drawn(board, wiring, packages, parts, supply)
+    shapes = _symbols(board, finger, packages, supply)
+    paper, sheet = _drawn(finger, wiring, packages, parts, supply)
     return sheet_files(board, paper, sheet, shapes, parts)
 
 
 def sheet_files(
-    board: Placement, paper: str, sheet: Sheet, shapes: dict[str, Node], parts: dict[str, Component]
+    board: Placement,
+    paper: str,
+    sheet: Sheet,
+    shapes: dict[str, Node],
+    parts: Mapping[str, Component],
 ) -> dict[str, bytes]:
     """A drawn sheet with the library of its symbols, and the table that finds it.
 
@@ -44,17 +49,17 @@ def sheet_files(
         *(symbols.named(name, shape, True) for name, shape in shapes.items()),
     )
     return {
-        f"{board.finger}.kicad_sch": sheet_text(board, paper, sheet, shapes, parts).encode(),
+        f"{board.name}.kicad_sch": sheet_text(board, paper, sheet, shapes, parts).encode(),
         f"{symbols.LIBRARY}.kicad_sym": written(library).encode(),
         "sym-lib-table": written(_table()).encode(),
     }
 
 
-def _symbols(board: Placement, packages: Packages, supply: str) -> dict[str, Node]:
+def _symbols(board: Placement, finger: Finger, packages: Packages, supply: str) -> dict[str, Node]:
     drawn = symbols.hand_drawn()
-    wires = next(part for part in board.components if part.kind == "connector")
+    wires = next(part for part in board.components if part.kind == "wires")
     drawn |= {supply: symbols.supply(supply), "Wires": symbols.wires(len(wires.nets))}
-    if board.finger == "emitter":
+    if finger.cell_kind == "led":
         return drawn | {"LED": symbols.led(packages.led.marked)}
     return drawn | {
         "Phototransistor": symbols.phototransistor(packages.photodetector.marked),
@@ -63,37 +68,37 @@ def _symbols(board: Placement, packages: Packages, supply: str) -> dict[str, Nod
 
 
 def _drawn(
-    board: Placement,
+    finger: Finger,
     wiring: Wiring,
     packages: Packages,
-    parts: dict[str, Component],
+    parts: Mapping[str, Component],
     supply: str,
 ) -> tuple[str, Sheet]:
     """Name of the paper, and the drawing on it."""
     sheet = Sheet()
     ways = len(parts["J1"].nets)
-    if board.finger == "emitter":
-        width, height = emitter.size_mm(wiring)
-        paper, _ = paper_for(width, height + connector.height_mm(ways))
-        emitter.draw_strings(sheet, (MARGIN_MM, MARGIN_MM), wiring, parts, supply)
+    if finger.cell_kind == "led":
+        width, height = fingers.strings_size_mm(wiring)
+        paper, _ = paper_for(width, height + fingers.wires_height_mm(ways))
+        fingers.draw_strings(sheet, (MARGIN_MM, MARGIN_MM), wiring, parts, supply)
         below = MARGIN_MM, MARGIN_MM + height
-        connector.draw_wires(sheet, below, parts, supply)
+        fingers.draw_wires(sheet, below, parts, supply)
         return paper, sheet
     mux = packages.multiplexer
-    tall = max(receiver.height_mm(mux), connector.height_mm(ways))
+    tall = max(fingers.block_height_mm(mux), fingers.wires_height_mm(ways))
     paper, places = _places(wiring.muxes, tall)
-    connector.draw_wires(sheet, next(places), parts, supply)
+    fingers.draw_wires(sheet, next(places), parts, supply)
     for number, at in enumerate(places, start=1):
-        receiver.draw_block(sheet, at, number, mux, parts, supply)
+        fingers.draw_block(sheet, at, number, mux, parts, supply)
     return paper, sheet
 
 
 def _places(blocks: int, tall_mm: float) -> tuple[str, Iterator[Point]]:
     """The smallest paper that takes some blocks after the wires, and where each goes."""
-    wide = receiver.WIDTH_MM
+    wide = fingers.BLOCK_WIDTH_MM
     shapes = [(across, -(-blocks // across)) for across in range(1, blocks + 1)]
     choices = [
-        (paper_for(connector.WIDTH_MM + across * wide, down * tall_mm), across)
+        (paper_for(fingers.WIRES_WIDTH_MM + across * wide, down * tall_mm), across)
         for across, down in shapes
     ]
     (paper, _), across = min(
@@ -104,7 +109,7 @@ def _places(blocks: int, tall_mm: float) -> tuple[str, Iterator[Point]]:
         yield MARGIN_MM, MARGIN_MM
         for i in range(blocks):
             down, right = divmod(i, across)
-            yield MARGIN_MM + connector.WIDTH_MM + right * wide, MARGIN_MM + down * tall_mm
+            yield MARGIN_MM + fingers.WIRES_WIDTH_MM + right * wide, MARGIN_MM + down * tall_mm
 
     return paper, places()
 

@@ -100,16 +100,16 @@ def multiplexer(mux: Multiplexer) -> Node:
 
 def mux_half_mm(mux: Multiplexer) -> float:
     """Half the height of a multiplexer's body."""
-    return (len(mux.inputs) + 1) / 2 * ROW_MM
+    return (mux.channels + 1) / 2 * ROW_MM
 
 
 def mux_pins(mux: Multiplexer) -> list[tuple[str, int, Point, int, str]]:
     """Name, lead, place of its outer end, angle and kind of each pin."""
-    first, top = (len(mux.inputs) - 1) / 2 * ROW_MM, mux_half_mm(mux) + PIN_MM
+    first, top = (mux.channels - 1) / 2 * ROW_MM, mux_half_mm(mux) + PIN_MM
     side = SIDE_MM + PIN_MM
     pins: list[tuple[str, int, Point, int, str]] = [
         (f"Y{i}", lead, (-side, first - i * ROW_MM), 0, "passive")
-        for i, lead in enumerate(mux.inputs)
+        for i, lead in enumerate(mux.input_leads)
     ]
     pins.append(("Z", mux.output, (side, first), 180, "passive"))
     pins += [

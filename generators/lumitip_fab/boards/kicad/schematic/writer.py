@@ -1,12 +1,13 @@
 """A drawing as the text of a `.kicad_sch` in the format of KiCad 6, which 6 to 10 open."""
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from lumitip_fab.boards.kicad.schematic import symbols
 from lumitip_fab.boards.kicad.schematic.sheet import Drawn, Sheet
 from lumitip_fab.boards.kicad.sexpr import Node, written
-from lumitip_fab.boards.model import Component, Placement, stable_uuid
-from lumitip_fab.design import Point
+from lumitip_fab.boards.model import Placement, stable_uuid
+from lumitip_fab.design import Component, Point
 
 if TYPE_CHECKING:
     from lumitip_fab.boards.kicad.schematic.template import Template
@@ -17,7 +18,7 @@ def sheet_text(
     paper: str,
     sheet: Sheet,
     shapes: dict[str, Node],
-    parts: dict[str, Component],
+    parts: Mapping[str, Component],
 ) -> str:
     """The whole sheet; the same drawing gives the same text.
 
@@ -40,15 +41,15 @@ def sheet_text(
 class _Writer:
     """Copies the things of the template, each under an identifier that stays the same."""
 
-    def __init__(self, board: Placement, parts: dict[str, Component], page: "Template") -> None:
+    def __init__(self, board: Placement, parts: Mapping[str, Component], page: "Template") -> None:
         self.board, self.parts, self.page = board, parts, page
 
     def draw(self, paper: str, sheet: Sheet) -> None:
         """All that is on the sheet, and its title."""
         whole, board = self.page.sheet, self.board
-        whole.uuid.value = stable_uuid(board.finger, "sheet")
+        whole.uuid.value = stable_uuid(board.name, "sheet")
         whole.paper.value = paper
-        whole.title_block.title.value = f"{board.name}: {board.finger}"
+        whole.title_block.title.value = f"{board.title}: {board.name}"
         whole.title_block.rev.value = board.revision
         whole.title_block.comment.value = [1, f"Design {board.design_hash}"]
         for i, at in enumerate(sheet.junctions):
@@ -71,7 +72,7 @@ class _Writer:
     def copy(self, pattern: str, kind: str, number: int) -> Any:
         """A thing that has no name."""
         thing = self.page.copy(pattern)
-        thing.uuid.value = stable_uuid(self.board.finger, "schematic", kind, str(number))
+        thing.uuid.value = stable_uuid(self.board.name, "schematic", kind, str(number))
         return thing
 
     def symbol(self, drawn: Drawn) -> None:
@@ -80,7 +81,7 @@ class _Writer:
         The entry tells no value and no footprint: KiCad would prefer them to the fields, and what
         is changed in the fields would be lost; and kicad-skip could not save the file.
         """
-        uuid = stable_uuid(self.board.finger, "symbol", drawn.ref)  # its footprint names it too
+        uuid = stable_uuid(self.board.name, "symbol", drawn.ref)  # its footprint names it too
         part = self.parts.get(drawn.ref)
         symbol = self.page.copy("symbol")
         symbol.lib_id.value = f"{symbols.LIBRARY}:{drawn.symbol}"

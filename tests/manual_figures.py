@@ -4,24 +4,18 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-from lumitip_fab.checks.readers.manual import Chapter, Manual, read_html, read_pdf
+import pikepdf
+
+from lumitip_fab.checks.readers import MALFORMED
+from lumitip_fab.checks.readers.manual import Chapter, Manual, faces_of, lacking, read_html
 from lumitip_fab.checks.readers.tables import table
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.design import Design
 from lumitip_fab.errors import OutputError
 from lumitip_fab.text import page_letters
 
-READS = (
-    "manual/*",
-    "assembly/*.svg",
-    "bom.csv",
-    "boards/*/*.png",
-    "mask/*",
-    "mould/*_casting.md",
-    "wiring/*",
-    "print/*",
-)
 _HTML, _PDF = "manual/manual.html", "manual/manual.pdf"
+_FOOT = 2  # texts at the foot of each page, drawn first
 _GLANCE = "At a glance"
 _WARM_UP_MIN = 5.0  # Table I of the published sensor
 _FLAP = re.compile(r"^\| (\d+) \| ([\d.]+) \| ([\d.]+) \| ([\d.]+) \|$", re.MULTILINE)
@@ -61,7 +55,7 @@ def _wrong_drawings(outputs: Path, manual: Manual, design: Design) -> list[str]:
     wanted |= {f"mask/{name}_mask.svg" for name in names}
     wanted |= {f"boards/{name}/{name}_front.png" for name in boards}
     behind = {f.name for f in design.fingers if any(p.side == "back" for p in f.parts)}
-    behind |= {c.name for c in design.carriers if any(d.side == "back" for d in c.devices)}
+    behind |= {c.name for c in design.carriers if any(d.side == "back" for d in c.components)}
     wanted |= {f"boards/{name}/{name}_back.png" for name in behind}
     shown = dict(manual.pictures)
     wrong = sorted(wanted ^ shown.keys())
@@ -159,6 +153,30 @@ def _pdf(outputs: Path, manual: Manual) -> Iterator[Measurement]:
     wrong = [text for text in manual.blocks if re.sub(r"\s", "", page_letters(text)) not in printed]
     yield _count("pdf", _PDF, wrong, "lost paragraphs of the HTML")
     yield _count("fonts", _PDF, without, "fonts that are not embedded")
+
+
+def read_pdf(path: Path) -> tuple[str, list[str]]:
+    """All that is written on the pages of a PDF, without spaces, and the fonts that it lacks.
+
+    Raises:
+        OutputError: if it is missing or cannot be read.
+    """
+    lines, without = list[str](), set[str]()
+    try:
+        with pikepdf.open(path) as document:
+            for page in document.pages:
+                faces = faces_of(page)
+                without |= set(lacking(faces))
+                drawn, face = list[str](), ""
+                for operands, operator in pikepdf.parse_content_stream(page):
+                    if str(operator) == "Tf":
+                        face = str(operands[0])
+                    elif str(operator) == "Tj":
+                        drawn.append(faces[face].text(bytes(operands[0])))
+                lines += drawn[_FOOT:]
+    except (OSError, *MALFORMED, pikepdf.PdfError) as error:
+        raise OutputError(f"{path}: cannot be read as a PDF: {error!r:.120}") from error
+    return re.sub(r"\s", "", "".join(lines)), sorted(without)
 
 
 def _count(check: str, subject: str, wrong: list[str], unit: str) -> Measurement:

@@ -1,0 +1,134 @@
+"""Courtyard and silkscreen outline of each kind of component, by the rules of the board."""
+
+from lumitip_fab.boards.model import PlacedComponent, Stroke
+from lumitip_fab.design import Box, Component, Footprint, Pad, Rules
+
+_BAR_MM = 0.3  # at the first contact
+_NOTCH_MM = 0.4  # of a multiplexer's body
+_DOT_MM = 0.02  # a stroke so short is a dot
+_BARE = ("wires", "test point", "fiducial")
+
+
+def with_outline(component: Component, rules: Rules, roomy: bool) -> PlacedComponent:
+    """A component with its courtyard and its outline.
+
+    Args:
+        component: in its place, or not yet.
+        rules: gap between parts, lines and gaps of the silkscreen.
+        roomy: whether there is room round it: for a bracket instead of a bar at its marked end,
+            and for longer lines along its sides.
+    """
+    return PlacedComponent(
+        **vars(component),
+        courtyard=_courtyard(component, rules),
+        outline=_outline(component, rules, roomy),
+    )
+
+
+def _courtyard(component: Component, rules: Rules) -> Box:
+    shape = component.footprint
+    if component.kind == "fiducial":
+        return shape.body.grown(shape.pads[0].width_mm / 2)  # a clear ring for cameras
+    xs = [p.x_mm + side * p.width_mm / 2 for p in shape.pads for side in (-1, 1)]
+    ys = [p.y_mm + side * p.height_mm / 2 for p in shape.pads for side in (-1, 1)]
+    if shape.height_mm:  # a part, with a body
+        xs += [shape.body.x_min_mm, shape.body.x_max_mm]
+        ys += [shape.body.y_min_mm, shape.body.y_max_mm]
+    return Box(min(xs), max(xs), min(ys), max(ys)).grown(rules.part_gap_mm / 2)
+
+
+def _outline(component: Component, rules: Rules, roomy: bool) -> tuple[Stroke, ...]:
+    shape, kind = component.footprint, component.kind
+    if kind in _BARE:
+        return ()
+    if kind in ("led", "photodetector"):
+        return (_bracket(shape, rules) if roomy else _bar(shape, rules),)
+    if kind in ("socket", "header"):
+        return _socket(shape.body, rules)
+    if kind in ("regulator", "transistor"):
+        return (_dot(shape.pads[0], rules, _BAR_MM),)
+    if kind == "multiplexer":
+        return _multiplexer(shape, rules)
+    if kind == "module":
+        return _module(shape, rules)
+    return _sides(shape, rules, roomy)
+
+
+def _bracket(shape: Footprint, rules: Rules) -> Stroke:
+    """Round the marked end of a chip."""
+    first, line = shape.pads[0], rules.silk_line_mm
+    x = first.x_mm - first.width_mm / 2 - rules.silk_gap_mm - line / 2
+    y = _half_mm(shape) + rules.silk_gap_mm + line / 2
+    return Stroke(((0.0, y), (x, y), (x, -y), (0.0, -y)), line)
+
+
+def _bar(shape: Footprint, rules: Rules) -> Stroke:
+    """At the marked end of a chip."""
+    first, line = shape.pads[0], rules.silk_line_mm
+    x = first.x_mm - first.width_mm / 2 - rules.silk_gap_mm - line / 2
+    half = _half_mm(shape)
+    return Stroke(((x, -half), (x, half)), line)
+
+
+def _half_mm(shape: Footprint) -> float:
+    """Half the width of a chip's pads and body."""
+    return max(shape.pads[0].height_mm, shape.body.length_mm) / 2
+
+
+def _sides(shape: Footprint, rules: Rules, roomy: bool) -> tuple[Stroke, ...]:
+    """A line along each side of a chip's body, between the pads where they are as wide as it."""
+    first, line = shape.pads[0], rules.silk_line_mm
+    x = -first.x_mm - first.width_mm / 2 - rules.silk_gap_mm - line / (2 if roomy else 1)
+    y = shape.body.y_max_mm + line / 2
+    least = 0.0 if roomy else line
+    return tuple(Stroke(((-x, side), (x, side)), line) for side in (y, -y)) if x > least else ()
+
+
+def _multiplexer(shape: Footprint, rules: Rules) -> tuple[Stroke, ...]:
+    """The body between the rows of pads, with a notch at lead 1's end, and a dot at lead 1."""
+    first, body = shape.pads[0], shape.body
+    left, right = body.x_min_mm, body.x_max_mm
+    inner = -first.y_mm - first.height_mm / 2 - rules.silk_gap_mm - rules.silk_line_mm / 2
+    y = min(inner, body.y_max_mm)
+    outline = (
+        (left, _NOTCH_MM),
+        (left, y),
+        (right, y),
+        (right, -y),
+        (left, -y),
+        (left, -_NOTCH_MM),
+        (left + _NOTCH_MM, -_NOTCH_MM),
+        (left + _NOTCH_MM, _NOTCH_MM),
+        (left, _NOTCH_MM),
+    )
+    return Stroke(outline, rules.silk_line_mm), _dot(first, rules, _BAR_MM / 2)
+
+
+def _dot(first: Pad, rules: Rules, away_mm: float) -> Stroke:
+    """A dot beyond lead 1, away from the body."""
+    x, y = first.x_mm, first.y_mm - first.height_mm / 2 - rules.silk_gap_mm - away_mm
+    return Stroke(((x, y), (x + _DOT_MM, y)), _BAR_MM)
+
+
+def _module(shape: Footprint, rules: Rules) -> tuple[Stroke, ...]:
+    """A line along both long sides, which end before the antenna's end at the board's edge, one
+    along the other end, and a dot beside pad 1."""
+    body, pen, away = shape.body, rules.silk_line_mm, rules.silk_gap_mm + _BAR_MM
+    high = body.y_max_mm - 2 * away
+    frame = body.grown(pen / 2)
+    left, right, bottom = frame.x_min_mm, frame.x_max_mm, frame.y_min_mm
+    dot = left - away, shape.pads[0].y_mm
+    return (
+        Stroke(((left, high), (left, bottom), (right, bottom), (right, high)), pen),
+        Stroke((dot, (dot[0] + _DOT_MM, dot[1])), _BAR_MM),
+    )
+
+
+def _socket(body: Box, rules: Rules) -> tuple[Stroke, ...]:
+    """The body's outline, and a bar at its first contact."""
+    pen = rules.silk_line_mm
+    inner = body.grown(-pen / 2)
+    left, right, low, high = inner.x_min_mm, inner.x_max_mm, inner.y_min_mm, inner.y_max_mm
+    around = ((left, low), (right, low), (right, high), (left, high), (left, low))
+    bar = body.x_min_mm - rules.silk_gap_mm - _BAR_MM / 2
+    return Stroke(around, pen), Stroke(((bar, low / 2), (bar, high / 2)), _BAR_MM)

@@ -1,0 +1,131 @@
+"""Footprints of parts, from their dimensions in the catalogue."""
+
+from dataclasses import replace
+from typing import Literal
+
+from lumitip_fab.catalogue.controllers import Leaded, Module, Strip
+from lumitip_fab.catalogue.electronics import Chip, Multiplexer
+from lumitip_fab.design.pcb import Footprint, Pad
+from lumitip_fab.design.shape import Box
+
+_DOT_MM = 1.0
+_CHIPS = {
+    "resistor": "RESC",
+    "capacitor": "CAPC",
+    "led": "LEDC",
+    "photodetector": "PTRC",
+    "fuse": "FUSC",
+    "inductor": "INDC",
+    "crystal": "XTAL",
+}
+"""First letters of a chip's name by its kind; of phototransistors the standard has none."""
+
+
+def chip(kind: str, entry: Chip) -> Footprint:
+    """A two-terminal part along x, pad 1 to the left."""
+    length, width, height = entry.body_mm
+    at = entry.pad_pitch_mm / 2
+    pads = tuple(Pad(number, x, 0.0, *entry.pad_mm) for number, x in (("1", -at), ("2", at)))
+    size = "".join(f"{int(side * 10 + 1e-9):02d}" for side in (length, width))
+    name = f"{_CHIPS[kind]}{size}X{_hundredths(height)}N"
+    return Footprint(name, pads, _body(length, width), height)
+
+
+def multiplexer(entry: Multiplexer) -> Footprint:
+    """Leads in two rows, lead 1 at the lower left."""
+    row = entry.leads // 2
+    pads = _two_rows(row, entry.leads - row, entry)
+    length, width, height = entry.body_mm
+    pitch, span, high = map(_hundredths, (entry.lead_pitch_mm, entry.lead_tips_mm, height))
+    name = f"SOP{pitch}P{span}X{high}-{entry.leads}N"
+    return Footprint(name, pads, _body(length, width), height)
+
+
+def leaded(entry: Leaded) -> Footprint:
+    """Leads in two rows, lead 1 at the lower left; a row with fewer leads is centred."""
+    leads = len(entry.names)
+    low = (leads + 1) // 2
+    pads = _two_rows(low, leads - low, entry)
+    length, width, height = entry.body_mm
+    pitch, span, high = map(_hundredths, (entry.lead_pitch_mm, entry.lead_span_mm, height))
+    return Footprint(f"SOT{pitch}P{span}X{high}-{leads}N", pads, _body(length, width), height)
+
+
+def _two_rows(low: int, high: int, entry: Multiplexer | Leaded) -> tuple[Pad, ...]:
+    """Pads of leads along x, counted counter-clockwise from the lower left."""
+    along, across = entry.lead_pad_mm
+    y = (entry.lead_span_mm - along) / 2
+    pads = []
+    for i in range(low + high):
+        count, place, side = (low, i, -1) if i < low else (high, low + high - 1 - i, 1)
+        x = (place - (count - 1) / 2) * entry.lead_pitch_mm
+        pads.append(Pad(str(i + 1), x, side * y, across, along))
+    return tuple(pads)
+
+
+def module(entry: Module) -> Footprint:
+    """A module with its antenna at the top."""
+    pads = tuple(
+        Pad(str(i), x, y, width, height)
+        for i, (x, y, width, height) in enumerate(entry.pads_mm, start=1)
+    )
+    width, length, height = entry.body_mm
+    return Footprint(f"Module_{entry.order_number}", pads, _body(width, length), height)
+
+
+def row(name: str, ways: int, pitch_mm: float, pad_mm: float, drill_mm: float) -> Footprint:
+    """A row of plated holes along x about its middle; the first is square.
+
+    Args:
+        name: first part of the footprint's name.
+        ways: number of holes.
+        pitch_mm: from hole to hole.
+        pad_mm: diameter of the copper.
+        drill_mm: diameter of the hole.
+    """
+    middle = (ways - 1) / 2
+    pads = tuple(
+        Pad(str(i + 1), (i - middle) * pitch_mm, 0.0, pad_mm, pad_mm, i > 0, drill_mm, False)
+        for i in range(ways)
+    )
+    full_name = f"{name}_1x{ways:02d}_P{pitch_mm:.2f}mm_D{drill_mm:.1f}mm"
+    return Footprint(full_name, pads, _body(ways * pitch_mm, pitch_mm), 0.0)
+
+
+def bare(footprint: Footprint) -> Footprint:
+    """A row whose body is its copper, and no more."""
+    first, last = footprint.pads[0], footprint.pads[-1]
+    half = first.width_mm / 2
+    return replace(footprint, body=Box(first.x_mm - half, last.x_mm + half, -half, half))
+
+
+def raised(footprint: Footprint, height_mm: float) -> Footprint:
+    """The same footprint under a part of this height."""
+    return replace(footprint, height_mm=height_mm)
+
+
+def rows(name: str, strip: Strip) -> Footprint:
+    """Two rows of plated holes along x, counted counter-clockwise from the lower left."""
+    ways, pitch = strip.ways, strip.pitch_mm
+    pads = []
+    for i in range(2 * ways):
+        place, y = (i, -pitch / 2) if i < ways else (2 * ways - 1 - i, pitch / 2)
+        x = (place - (ways - 1) / 2) * pitch
+        size = strip.pad_mm, strip.pad_mm
+        pads.append(Pad(str(i + 1), x, y, *size, i > 0, strip.drill_mm, False))
+    full_name = f"{name}_2x{ways:02d}_P{pitch:.2f}mm_D{strip.drill_mm:.2f}mm"
+    return Footprint(full_name, tuple(pads), _body(ways * pitch, 2 * pitch), strip.height_mm)
+
+
+def dot(name: Literal["TestPoint", "Fiducial"]) -> Footprint:
+    """A bare round pad: to hold a probe to, or a mark for the placing machine's camera."""
+    pad = Pad("1", 0.0, 0.0, _DOT_MM, _DOT_MM, round=True, paste=False)
+    return Footprint(f"{name}_D{_DOT_MM:.1f}mm", (pad,), _body(_DOT_MM, _DOT_MM), 0.0)
+
+
+def _body(length_mm: float, width_mm: float) -> Box:
+    return Box(-length_mm / 2, length_mm / 2, -width_mm / 2, width_mm / 2)
+
+
+def _hundredths(length_mm: float) -> str:
+    return str(round(length_mm * 100))

@@ -1,0 +1,113 @@
+"""Boards with their components, each in a frame of its own.
+
+Frame of a board outside the fingers: seen from its front, origin at the middle of its outline, x to
+the right, y up. Every length is in mm.
+"""
+
+from dataclasses import dataclass
+
+from lumitip_fab.design.shape import Box, Point, Side
+
+
+@dataclass(frozen=True)
+class Pad:
+    """A pad in its footprint's frame: seen from the side that the part is on, y up."""
+
+    number: str
+    x_mm: float
+    y_mm: float
+    width_mm: float
+    height_mm: float
+    round: bool = False
+    drill_mm: float = 0.0
+    """Diameter of the plated hole; 0 for a surface-mount pad."""
+    paste: bool = True
+    """Whether solder paste is printed on it."""
+
+
+@dataclass(frozen=True)
+class Footprint:
+    """A land pattern with the part's body, in its own frame."""
+
+    name: str
+    """By IPC-7351, such as `LEDC1608X60N`, where that has a name for it."""
+    pads: tuple[Pad, ...]
+    body: Box
+    height_mm: float
+    """Above the board; 0 for bare copper."""
+
+
+@dataclass(frozen=True)
+class Component:
+    """A part, or bare copper, in its place on a board."""
+
+    ref: str
+    value: str
+    part: str
+    """Order number; empty for bare copper: wire pads, test points and fiducials."""
+    kind: str
+    """`"led"`, `"resistor"`, `"socket"`, `"wires"` …, which decides its outline and its symbol."""
+    footprint: Footprint
+    x_mm: float
+    y_mm: float
+    angle_deg: float
+    """Counter-clockwise, seen from the front."""
+    side: Side
+    """Side of its body: a part on the `"back"` is mirrored in x before it is turned."""
+    nets: tuple[tuple[str, str], ...]
+    """Net of each connected pad: `(("1", "GND"), ("2", "Q1"))`."""
+    manufacturer: str = ""
+    lcsc: str = ""
+    """Number at the distributor LCSC; empty where it is not known."""
+    pins: tuple[str, ...] = ()
+    """Name of each pad, in the order of the pads; empty where a part has no names."""
+
+    @property
+    def contacts(self) -> bool:
+        """Whether it is rows of contacts, where someone plugs or solders: their names are printed
+        beside them."""
+        return self.kind in ("socket", "header", "wires")
+
+
+@dataclass(frozen=True)
+class Note:
+    """A line that is printed on a carrier's front."""
+
+    text: str
+    at: Point
+    """Its middle."""
+    height_mm: float
+    angle_deg: float
+
+
+@dataclass(frozen=True)
+class Carrier:
+    """A board with everything on it: what its files must hold."""
+
+    name: str
+    """Of its folder and its files."""
+    title: str
+    """Title on its silkscreen."""
+    title_at: Point
+    """Near which its title stands."""
+    box: Box
+    corner_mm: float
+    """Radius of the outline's corners."""
+    holes: tuple[Point, ...]
+    """Centres of its screw holes."""
+    hole_mm: float
+    components: tuple[Component, ...]
+    notes: tuple[Note, ...]
+    supplies: tuple[str, ...]
+    """Nets that are routed wide; ground is one of them."""
+    keep_outs: tuple[Box, ...]
+    """Areas without copper on either side, under an antenna."""
+    hot_loop: tuple[tuple[str, str], ...]
+    """Pads round which the current of a switching regulator jumps, by part and number of the
+    pad: from its input over the capacitor back to its ground; empty without a regulator."""
+
+    @property
+    def nets(self) -> tuple[str, ...]:
+        """Every net once, ground first."""
+        used = (net for part in self.components for _, net in part.nets)
+        return tuple(dict.fromkeys((*self.supplies, *used)))
