@@ -289,10 +289,3 @@ def test_every_check_fails_for_some_damage(boards: Callable[[str], Path]) -> Non
     names = {m.check.removeprefix("board.") for m in found if m.subject in (EMITTER, RECEIVER)}
     tables = (*EMITTER_DAMAGES.values(), *RECEIVER_DAMAGES.values(), {"readable"})
     assert names == set().union(*tables)
-
-
-@pytest.mark.parametrize("preset", ["published", "asymmetric", "dense", "mux16"])
-def test_the_boards_of_a_preset_pass(boards: Callable[[str], Path], preset: str) -> None:
-    folder = boards(preset)
-    found = list(board.measure(folder, read_design(folder / "design.json")))
-    assert [m for m in found if not m.passed] == []

@@ -278,7 +278,7 @@ def test_parts_of_a_carrier_that_overlap_are_refused(designs: Callable[[str], De
     (coil,) = (device for device in flange.components if device.ref == "L1")
     wide = dataclasses.replace(coil.footprint, body=Box(-4.0, 4.0, -4.0, 4.0))
     devices = [
-        dataclasses.replace(device, pattern=wide) if device is coil else device
+        dataclasses.replace(device, footprint=wide) if device is coil else device
         for device in flange.components
     ]
     flange = dataclasses.replace(flange, components=tuple(devices))
