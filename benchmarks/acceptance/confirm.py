@@ -27,6 +27,7 @@ FIELDS = {
     "module": ("controller.board", "flange.enabled"),
     "plate": ("tip.edge_mm", "stack.floor_mm"),
     "nut": ("holder.screw", "breakout.hole_mm"),
+    "block": ("coupling.gripper", "printer.profile", "printer.fit_mm"),
     "bending": ("backing.variant", "backing.material", "stack.pcb_mm"),
 }
 ELECTRICAL = ("emitter.current_ma", "emitter.max_heat_w", "emitter.string_leds", "supply.max_ma")

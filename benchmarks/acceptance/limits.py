@@ -222,6 +222,20 @@ def _bending(values: Values) -> Iterator[str]:
         yield f"bending: {values['backing.variant']} of {values['backing.material']}"
 
 
+def _block(values: Values) -> Iterator[str]:
+    """The hole of the bolt and the holes of the pins beside it grow by the fit; a wall between
+    them that is thinner than a line is not printed."""
+    printer = values.part("printer.profile", "printers")
+    gripper = entries("grippers")[values["coupling.gripper"]]
+    pins, fit = gripper.get("pins"), values["printer.fit_mm"]
+    if not printer or not pins or "bolt_spacing_mm" in gripper:
+        return
+    radii = [hole / 2 + fit for hole in (gripper["bolt_hole_mm"], pins["hole_mm"])]
+    wall = pins["spacing_mm"] / 2 - sum(radii)
+    if wall < printer["line_mm"] - 1e-9:
+        yield f"block: {wall:.2f} mm between bolt and pins, a line of {printer['line_mm']:g} mm"
+
+
 LIMITS = (
     _page,
     _bed,
@@ -234,4 +248,5 @@ LIMITS = (
     _plate,
     _nut,
     _bending,
+    _block,
 )

@@ -48,6 +48,15 @@ def test_silicone_thinner_than_the_parts_is_confirmed(monkeypatch: pytest.Monkey
     assert verdict.text.startswith("confirmed: cover: 0.8 mm of silicone")
 
 
+def test_a_wall_thinner_than_a_printed_line_is_confirmed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("acceptance.confirm.way_out", lambda _: None)
+    wide = _design(printer__profile="fdm 0.6", printer__fit_mm=0.05)
+    assert {r.field for r in _trial(wide).refusals} == {"coupling.gripper"}
+    verdict = confirm(wide, _trial(wide), search=False)
+    assert verdict.text == "confirmed: block: 0.55 mm between bolt and pins, a line of 0.65 mm"
+    assert not reasons(Values(_design(printer__profile="fdm 0.6").edits, wide.base))
+
+
 def test_a_refusal_without_a_physical_reason_is_not_confirmed() -> None:
     design = _design(mask__hole_mm=2.5, tip__edge_mm=0.5)
     trial = Trial("by_hand", refusals=(Refusal("tip.edge_mm", "0.5 given"),))

@@ -135,7 +135,7 @@ def model_files(
     Args:
         model: the board.
         sheet: files of its schematic.
-        note: for who places the parts, by board house.
+        note: for who places the parts, by PCB fab.
         thickness_mm: of it.
         fabs: where it may be ordered.
         page: from the board file's page to its frame.

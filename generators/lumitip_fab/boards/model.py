@@ -67,7 +67,7 @@ class Placement:
     """A board before it has copper."""
 
     name: str
-    """Of its folder and its files."""
+    """Name of its folder and its files."""
     title: str
     revision: str
     design_hash: str

@@ -27,7 +27,7 @@ class Fault:
     rule: str
     """`"clearance"`, `"short"`, `"open"`, `"edge"`, `"keep-out"` or `"drill"`."""
     nets: tuple[str, str]
-    """Of what is too near to each other; twice the same of a net in pieces."""
+    """The nets that are too close; twice the same for a net in pieces."""
     x_mm: float
     y_mm: float
     distance_mm: float

@@ -172,7 +172,7 @@ class Module(Ordered):
     """Name of each pad from pad 1: ports such as `P0_04`, `GND`, `VDD`, `VDDH`, `VBUS`, `USB_DM`,
     `USB_DP`, `SWDIO`, `SWDCLK`."""
     pads_mm: tuple[tuple[Offset, Offset, Length, Length], ...]
-    """Of each pad its middle, width and height."""
+    """Middle, width and height of each pad."""
     ports: dict[Pin, Pin]
     """Port of each pin that the firmware's board definition has: `A0 = "P0_04"`."""
 

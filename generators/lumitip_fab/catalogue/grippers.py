@@ -60,7 +60,7 @@ class Envelope(Sourced):
     reach_mm: Length
     """From that face to the plane that the fingertips stand on, with the gripper closed."""
     mass_kg: float = Field(gt=0, le=50)
-    """Of the gripper."""
+    """Mass of the gripper."""
     payload_kg: float = Field(gt=0, le=100)
     """Its payload."""
 
@@ -119,7 +119,7 @@ class Gripper(Entry):
     envelope: Envelope
     """Its body, with a source of its own."""
     origin: Mapping[str, Origin] = Field(default_factory=dict)
-    """Of single figures: where they come from, if not from `source`."""
+    """Sources of single figures, where these differ from `source`."""
 
     @property
     def unsure(self) -> tuple[str, ...]:

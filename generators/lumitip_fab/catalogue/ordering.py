@@ -94,7 +94,7 @@ class PlacingPrice(Strict):
     """Placing and soldering."""
 
     each: Price
-    """Of one part."""
+    """Price of one part."""
 
 
 class Prices(Sourced):

@@ -108,7 +108,7 @@ def measure_heights(read: Read) -> Iterator[Measurement]:
 
 
 def _height_mm(part: Part) -> float:
-    """By the footprint's name; bare copper has none, NaN if the name tells nothing."""
+    """By the footprint's name; bare copper has none, NaN if the name does not give it."""
     if part.footprint.startswith(_FLAT):
         return 0.0
     height = _HEIGHT.search(part.footprint)

@@ -16,7 +16,7 @@ from lumitip_fab.checks.result import Measurement
 THERMAL_V = 0.02585
 SUPPLY_HIGH, RESISTOR_LOW = 1.05, 0.99
 MOST_SHARE = 0.8
-"""Of the rating: thick-film chips are rated to 70 °C; at 87 °C 0.8 of it is left."""
+"""Largest share of the rating: thick-film chips are rated to 70 °C; at 87 °C 0.8 of it is left."""
 RATED_W = {"1608": 0.1, "2012": 0.125, "3216": 0.25, "3225": 0.5, "5025": 0.75}
 """Rated power by size in tenths of a millimetre (Yageo RC_L series)."""
 _SIZE = re.compile(r"RESC(\d{4})X")

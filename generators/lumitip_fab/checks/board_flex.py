@@ -101,7 +101,7 @@ def _teardrops(read: Read, flexible: Flexible) -> Iterator[Measurement]:
 
 
 def _widened(tracks: list[Copper], land: Copper) -> list[bool]:
-    """Of each place where tracks leave a land: whether copper is wider there than a track."""
+    """Whether the copper is wider than a track at each place where tracks leave a land."""
     thin = min(track.width_mm for track in tracks)
     together = shapely.union_all([track.area for track in tracks])
     corners = shapely.get_coordinates(shapely.minimum_rotated_rectangle(land.area))

@@ -91,7 +91,7 @@ class Read(ReadBoard):
 
     @property
     def name(self) -> str:
-        """Of its folder and its files."""
+        """Name of its folder and its files."""
         return self.finger.name
 
     def wire(self, signal: str) -> int | None:
@@ -122,7 +122,7 @@ class ReadCarrier(ReadBoard):
 
     @property
     def name(self) -> str:
-        """Of its folder and its files."""
+        """Name of its folder and its files."""
         return self.carrier.name
 
     def ordered(self, ref: str) -> str:
@@ -167,7 +167,7 @@ def read_carrier(outputs: Path, design: Design, name: str) -> ReadCarrier:
 
 
 def ohm(value: str) -> float:
-    """Resistance that a value tells, such as 150R or 4K99; NaN if it tells none."""
+    """Resistance of a value such as 150R or 4K99; NaN of any other text."""
     match = _VALUE.fullmatch(value)
     return float(f"{match[1]}.{match[3] or 0}") * _POWER[match[2]] if match else math.nan
 

@@ -62,7 +62,7 @@ def read_list(path: Path) -> tuple[Row, ...]:
 
 
 def read_note(path: Path) -> dict[str, tuple[str, ...]]:
-    """Of each wire in `cables.md`: signal, both boards with their pads, colour, length, current."""
+    """Each wire in `cables.md`: signal, both boards with their pads, colour, length, current."""
     try:
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:

@@ -167,7 +167,7 @@ def measure_nuts(clip: Clip) -> Iterator[Measurement]:
     rings = holes_at(clip.mesh, holder.seat_z_mm - 0.5)
     off, wide = circles(rings, holder.holes, 2.0)
     yield clip.figure("nuts", farthest(off, 0.0), 0, HOLE_MM, note="from the screws")
-    # `circles` tells the diameter of a circle of the same area
+    # `circles` gives the diameter of a circle of the same area
     flats = wide * math.sqrt(math.pi / (2 * math.sqrt(3)))
     width = holder.nut_mm
     yield clip.figure("nut_width", farthest(flats, width), width - HOLE_MM, width + HOLE_MM)
@@ -244,7 +244,7 @@ def _height(clip: Clip, points: solids.Vectors) -> solids.Vectors:
 
 
 def _roofs_mm2(holder: Holder) -> float:
-    """Of holes that lie as it prints: a quarter of the way round each, and a side of each nut."""
+    """Overhang of lying holes: a quarter of the way round each, and a side of each nut."""
     screws = math.pi / 4 * holder.screw_mm * -holder.seat_z_mm * len(holder.holes)
     straps = math.pi / 4 * holder.strap_hole_mm * holder.wall_mm * 2 * len(holder.strap_y_mm)
     deep = [holder.cradle_mm - math.sqrt(holder.cradle_mm**2 - x**2) for x, _ in holder.holes]

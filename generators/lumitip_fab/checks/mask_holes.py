@@ -18,9 +18,9 @@ class Placed:
 
     scale: tuple[float, float]
     origin: tuple[float, float]
-    """Of the sensor frame, on the sheet."""
+    """Origin of the sensor frame, on the sheet."""
     residual_mm: float
-    """Of the worst mark: turned or skewed sheets show here."""
+    """Residual of the worst mark: turned or skewed sheets show here."""
 
     def points(self, sheet: Points) -> Points:
         """Points of the sheet in the sensor frame."""

@@ -139,7 +139,7 @@ def _lying_deg(read: ReadCarrier, ref: str, last: str) -> float:
 
 
 def _misled(read: Read, note: str) -> Iterator[str]:
-    """Parts with polarity of which the assembly note tells another place of a terminal than the
+    """Parts with polarity for which the assembly note has another place of a terminal than the
     board has, or another terminal at the mark than the catalogue."""
     chip = read.design.packages.at_cells(read.finger)
     terminals = {m["ref"]: m for m in _TERMINALS.finditer(note)}
@@ -189,7 +189,7 @@ def _untold(note: str, flexible: Flexible, thickness_mm: float, drawn: str) -> I
 
 
 def _misplaced(read: ReadCarrier, note: str) -> Iterator[str]:
-    """Parts of a carrier whose first pad or side the assembly note tells elsewhere than the board
+    """Parts of a carrier whose first pad or side in the assembly note differs from the board
     has."""
     behind = re.search(r"^ON THE BACK: (.+?)\. ", note, re.MULTILINE)
     told_behind = set(behind[1].split(", ")) if behind else set()

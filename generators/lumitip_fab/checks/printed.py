@@ -66,14 +66,14 @@ class Printed:
 
 
 def farthest(values: Vectors, wanted: float) -> float:
-    """Of several values the one farthest from a wanted one; NaN if any is, or there is none."""
+    """The value farthest from a nominal one; NaN if any is NaN, or there is none."""
     if not len(values) or not np.isfinite(values).all():
         return float("nan")
     return float(values[np.abs(values - wanted).argmax()])
 
 
 def circles(rings: list[Any], centres: tuple[Point, ...], reach_mm: float) -> tuple[Vectors, ...]:
-    """Of the ring nearest to each centre: how far it is off and its diameter, NaN without one."""
+    """The ring nearest to each centre: its distance and its diameter, NaN without one."""
     polygons = [p for p in map(shapely.Polygon, rings) if p.area > _LEAST_MM2]
     found = np.array([(p.centroid.x, p.centroid.y) for p in polygons]).reshape(-1, 2)
     wide = np.array([2 * np.sqrt(p.area / np.pi) for p in polygons])

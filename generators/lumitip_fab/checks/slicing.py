@@ -38,7 +38,7 @@ class Sliced:
     """Volume of its mesh by the filament's density."""
     layers: int
     first_layer_mm2: float
-    """Of the bed that its first layer covers, brim left away: lines by their width."""
+    """Area of the bed under the first layer, without brim: lines by their width."""
     reach_mm: float
     """How far at most a line hangs over nothing."""
     reach_at_mm: float

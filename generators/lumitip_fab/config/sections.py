@@ -16,7 +16,7 @@ from lumitip_fab.catalogue.record import Name, Strict
 from lumitip_fab.text import LONGEST, board_name
 
 DEVICE_BYTES = 29
-"""Of a Bluetooth name: what one scan response carries."""
+"""Longest Bluetooth name (bytes): the room in one scan response."""
 _JOINERS = "\u200c\u200d"
 """Invisible, but part of how some scripts and emoji are written."""
 
@@ -161,13 +161,13 @@ class Module(Strict):
     """Parts beside a controller module on the flange's board."""
 
     regulator: Name
-    """Of its supply, in `parts/linear_regulators.toml`."""
+    """Linear regulator of its supply, in `parts/linear_regulators.toml`."""
     supply_capacitor: Name
     """At the regulator's input and output and at the USB supply, in `parts/capacitors.toml`."""
     capacitor: Name
     """At the module's supply, in `parts/capacitors.toml`."""
     crystal: Name
-    """Of 32.768 kHz, in `parts/crystals.toml`."""
+    """Crystal of 32.768 kHz, in `parts/crystals.toml`."""
     crystal_capacitor: Name
     """Two of them, in `parts/capacitors.toml`."""
 

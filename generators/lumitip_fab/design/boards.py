@@ -35,9 +35,9 @@ class Flexible:
     stiffener_mm: float
     core_mm: float
     copper_mm: float
-    """Of each side."""
+    """Thickness of the copper on each side."""
     coverlay_mm: float
-    """Of each side, with its adhesive."""
+    """Thickness of the coverlay on each side, with its adhesive."""
 
 
 @dataclass(frozen=True)
@@ -139,7 +139,7 @@ class CellInput:
     """The input that reads a cell."""
 
     index: int
-    """Of the cell."""
+    """Index of the cell."""
     mux: int
     channel: int
 

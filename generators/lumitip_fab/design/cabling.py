@@ -110,7 +110,7 @@ class Cabling:
 
     cables: tuple[Cable, ...]
     travel_mm: float
-    """Of a finger, from closed to open."""
+    """Travel of a finger, from closed to open."""
     supply_mm: float
     """Way to the supply: from the controller's breakout, or from the fingers where it has none."""
     controller_mm: float

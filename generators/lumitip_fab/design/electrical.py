@@ -18,7 +18,7 @@ class Strings:
     resistor_tolerance: float
     """Fraction by which a resistor may be off, either way."""
     low_ma: tuple[float, ...]
-    """Of each string with the lowest supply, the highest forward voltages and resistor."""
+    """Current of each string with the lowest supply, the highest forward voltages and resistor."""
     high_ma: tuple[float, ...]
     fewer_leds: int
     """A shorter string, to compare: LEDs in it, and its currents."""
@@ -37,7 +37,7 @@ class Channel:
     """Channel from a detector to the controller."""
 
     supply_v: float
-    """Of the detectors, which is also the reference of the ADC."""
+    """Supply of the detectors, which is also the reference of the ADC."""
     light_current_ua: float
     dark_current_na: float
     saturation_v: float
@@ -63,7 +63,7 @@ class Regulated:
     switching_khz: float
     soft_start_ms: float
     switch_ohm: float
-    """Of both switches, each by its share of the time."""
+    """Resistance of both switches, each weighted by its share of the time."""
     inductance_uh: float
     capacitors: tuple[str, ...]
     """The output capacitors beside the coil. What else is at the output, such as the input of a
@@ -73,9 +73,9 @@ class Regulated:
     load_a: float
     """For which the figures are."""
     ripple_a: float
-    """Of the coil's current, from low to high; below half of it the regulator skips pulses."""
+    """Ripple of the coil's current, peak to peak; below half of it the regulator skips pulses."""
     ripple_mv: float
-    """Of the output, from low to high."""
+    """Ripple of the output, from low to high."""
     charging_a: float
     """Into the output capacitors during the soft start."""
 

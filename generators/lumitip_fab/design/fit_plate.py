@@ -48,9 +48,9 @@ class FitPlate:
     pitch_mm: float
     """From coupon to coupon along x; the first begins at x = 0."""
     foot: Box
-    """Of the first coupon's corner."""
+    """Foot of the first coupon's corner."""
     pin: Point
-    """Of the first coupon."""
+    """Pin of the first coupon."""
     corner: Point
     """The corner of a board on the first coupon: its left and its far edge."""
     floor_mm: float
@@ -62,16 +62,16 @@ class FitPlate:
     label_mm: float
     """Depth of the engraving."""
     slice: Box
-    """Of the coupling, in the mount's axes u and w."""
+    """Slice of the coupling, in the mount's axes u and w."""
     slice_at: Point
     """Place of u = 0, w = 0 of the first coupon's slice; u runs against x, and w against y."""
     thickness_mm: float
-    """Of slices."""
+    """Thickness of slices."""
     pin_depth_mm: float
-    """Of the holes for the gripper's pins, from below: through, unless they are sleeves round
+    """Depth of the holes for the gripper's pins, from below: through, unless they are sleeves round
     the bolts."""
     volume_ml: float
-    """Of all coupons, estimated."""
+    """Volume of all coupons, estimated."""
 
     @property
     def size_mm(self) -> tuple[float, float, float]:

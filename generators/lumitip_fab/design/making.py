@@ -23,7 +23,7 @@ class Mask:
     registration: tuple[Point, ...]
     """Marks round the artwork, in both x and -x, so the same on the page and in the frame."""
     mark: Box
-    """Box of the letter F on the tip flap, which tells a mirror image from half a turn."""
+    """Box of the letter F on the tip flap, which distinguishes a mirror image from half a turn."""
 
 
 @dataclass(frozen=True)
@@ -58,8 +58,8 @@ class Mould:
     letter: Letter
     """On the outside of the trough's end, which is where it says."""
     layer_mm: float
-    """Of its print: the thickest, up to the printer's own, of which floor and stops are whole
-    layers."""
+    """Layer thickness of its print: the thickest, up to the printer's own, that divides floor and
+    stops into whole layers."""
     off_layer_mm: float
     """From the farther of floor and stops to a whole layer; 0 but where no layer divides both."""
     silicone: str
@@ -195,7 +195,7 @@ class Slicing:
     nozzle_mm: float
     backing: Filament
     rigid: Filament
-    """Of everything but backings and moulds."""
+    """Filament of everything but backings and moulds."""
     mould: Filament
     """As `rigid`, in layers that the mould's heights are whole multiples of."""
 
@@ -216,13 +216,13 @@ class Densities:
 
     backing_g_ml: float
     interface_g_ml: float
-    """Of what holds a bendable backing."""
+    """Density of the interface that holds a bendable backing."""
     board_g_ml: float
-    """Of the fingers' boards, copper included."""
+    """Density of the fingers' boards, with copper."""
     carrier_g_ml: float
-    """Of the boards outside the fingers."""
+    """Density of the boards outside the fingers."""
     part_g_ml: float
-    """Of the small parts on the fingers' boards: moulded or ceramic, as heavy as the laminate of
-    a rigid one for their size (assumed)."""
+    """Density of the small parts on the fingers' boards: moulded or ceramic, as dense as the
+    laminate of a rigid board (assumed)."""
     silicone_g_ml: float
     film_g_ml: float

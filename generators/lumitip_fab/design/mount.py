@@ -80,7 +80,7 @@ class Fastener:
     """A metric thread with its heads and nut, as the catalogue has them."""
 
     name: str
-    """Of the thread, like M5."""
+    """Name of the thread, such as M5."""
     thread_mm: float
     """Outer diameter."""
     hole_mm: tuple[float, float]
@@ -90,7 +90,7 @@ class Fastener:
     countersunk_mm: float
     """Diameter of the head of a countersunk screw."""
     nut_mm: float
-    """Of its nut, across flats."""
+    """Width of its nut, across flats."""
     nut_height_mm: float
 
 
@@ -105,7 +105,7 @@ class System:
     gripper_z_mm: float
     """Plane that the gripper stands on."""
     width_mm: float
-    """Of the gripper's body, along the opening."""
+    """Width of the gripper's body, along the opening."""
     depth_mm: float
     corner_mm: float
     length_mm: float
@@ -276,7 +276,7 @@ class Holder:
     nut_mm: float
     """Across flats of their nuts' pockets."""
     boss_mm: tuple[float, float, float]
-    """Of a boss under the board: length along x, width along y on top and at the floor."""
+    """Size of a boss under the board: length along x, width along y on top and at the floor."""
     strap_deg: float
     """Where the holes through the arms are, from the middle of the tray."""
     strap_y_mm: tuple[float, ...]

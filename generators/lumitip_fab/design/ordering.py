@@ -77,10 +77,10 @@ class Purchase:
     placing_each: float
     """Placing and soldering a part on a board."""
     filament_kg: tuple[float | None, float | None]
-    """Of the backings' filament, and of the one for everything else."""
+    """Price of the backings' filament, and of the one for everything else."""
     silicone_kg: float | None
     film_sheet: float | None
-    """Of A4."""
+    """Price of a sheet of A4."""
     wire_m: float
 
     def part_each(self, part: str) -> float | None:

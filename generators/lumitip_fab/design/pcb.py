@@ -85,7 +85,7 @@ class Carrier:
     """A board with everything on it: what its files must hold."""
 
     name: str
-    """Of its folder and its files."""
+    """Name of its folder and its files."""
     title: str
     """Title on its silkscreen."""
     title_at: Point

@@ -39,7 +39,7 @@ class Line:
 
     @property
     def price(self) -> float | None:
-        """Of the whole quantity."""
+        """Price of the whole quantity."""
         return None if self.each is None else round(self.quantity * self.each, 2)
 
 

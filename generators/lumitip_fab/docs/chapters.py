@@ -130,12 +130,12 @@ def _boards(design: Design, files: Files) -> str:
     zips = "\n".join(f"- `boards/{name}/order/`: {name}" for name in names)
     return f"""## 3. Boards
 
-Each board has a zip for each board house, with Gerber and drill files, parts and places:
+Each board has a zip for each PCB fab, with Gerber and drill files, parts and places:
 
 {zips}
 
 1. Order the boards, or have them placed as well. Hold an LED and a photodetector against their
-   leaflets first: the note in each zip tells which terminal is marked, and how sure that is.
+   leaflets first: the note in each zip names the marked terminal, and the level of confidence.
 2. Solder what is left: parts on the front{last}.
 3. Before the wires go in, measure between ground and supply of each board: no short.
 
@@ -232,9 +232,9 @@ def _loading(design: Design) -> str:
     if any(device.kind == "module" for c in design.carriers for device in c.components):
         return (
             "Load the bootloader over J7 of the flange's board, solder a USB cable to J6, then\n"
-            f"   {upload}; `firmware/README.md` tells how."
+            f"   {upload}; `firmware/README.md` has the steps."
         )
-    return f"{upload[0].upper()}{upload[1:]}; `firmware/README.md` tells how."
+    return f"{upload[0].upper()}{upload[1:]}; `firmware/README.md` has the steps."
 
 
 def _kept() -> str:

@@ -37,7 +37,7 @@ rl_config.useA85 = 0  # streams as text take most of the time, and a quarter mor
 
 _MARGIN = 20 * mm
 _WIDTH = A4[0] - 2 * _MARGIN
-_MOST_HIGH = 220 * mm  # of a drawing, which is otherwise as large as it is told
+_MOST_HIGH = 220 * mm  # of a drawing, which otherwise has its own size
 _GAP = 6 * mm  # between pictures beside each other
 _PAIR_HIGH = 85 * mm
 _DPI = 200
@@ -197,7 +197,7 @@ def _paragraph(token: Token, files: Files) -> Iterator[Flowable]:
 
 
 def _picture(path: str, files: Files, width: float, high: float) -> Flowable:
-    """A drawing stays a drawing, no larger than it is told; a picture of points stays one."""
+    """A drawing stays a drawing, at most in its own size; a picture of pixels stays one."""
     if path.endswith(".svg"):
         drawing = svg2rlg(io.BytesIO(files.read(path)))
         scale = min(1.0, width / drawing.width, high / drawing.height)

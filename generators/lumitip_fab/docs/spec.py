@@ -121,7 +121,7 @@ def _of_rigid(design: Design) -> tuple[Row, ...]:
 
 
 def _of_flex(design: Design) -> tuple[Row, ...]:
-    """Of a compliant finger; the published flexible part's own figures, measured."""
+    """Rows of a compliant finger, beside measured figures of the published flexible part."""
     stack, (interface,) = design.stack, design.interfaces
     rows = len({y for _, y in design.receiver.holes})
     return (
@@ -196,7 +196,7 @@ def _further(design: Design) -> tuple[Row, ...]:
             "fit test plate",
             "none",
             f"{plate.volume_ml:.1f} cm³",
-            "lumitip-fab slice tells how long it prints; its reading is printer.fit_mm, here "
+            "lumitip-fab slice prints its duration; its reading is printer.fit_mm, here "
             f"{printing.fit_mm:g} mm (docs/making.md)",
         ),
         Row(

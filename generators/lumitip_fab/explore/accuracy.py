@@ -1,4 +1,4 @@
-"""How well poses are told with a design, in simulation: real estimates, and the bound.
+"""Accuracy of poses with a design, in simulation: real estimates, and the bound.
 
 Frames come from twins whose optics, gap and cells differ from what the estimator expects, so the
 misses are those of a fingertip as it is made and not only those of noise. The same poses and the
@@ -34,7 +34,7 @@ class Sample:
     fingers: int = 5
     """Fingertips with faults."""
     poses: int = 30
-    """Of each kind of object, with each fingertip."""
+    """Poses of each kind of object, with each fingertip."""
     seed: int = 0
 
 

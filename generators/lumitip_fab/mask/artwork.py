@@ -49,7 +49,7 @@ class Artwork:
     """Everything on the film."""
 
     name: str
-    """Of the finger."""
+    """Name of the finger."""
     black: Path
     """Edge of the black."""
     window: Path

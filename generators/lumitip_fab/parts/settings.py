@@ -110,7 +110,7 @@ nozzle of {slicing.nozzle_mm:g} mm. In PrusaSlicer: File, Import, Import Config,
 settings have no start and end G-code but the slicer's own: choose your printer again where it
 needs some. Temperatures are starting points: trust the label of your spool.
 
-`lumitip-fab slice --out DIR` slices every part with them and tells time and mass.
+`lumitip-fab slice --out DIR` slices every part with them and prints time and mass.
 """
 
 

@@ -180,7 +180,7 @@ def silhouette(mesh: Mesh, seen_by: View) -> list[Points]:
 
 
 def visible_lines(meshes: list[Mesh], seen_by: View) -> list[list[Points]]:
-    """Of each body the sharp edges and contours that no body hides, on the page."""
+    """Sharp edges and contours of each body that no body hides, on the page."""
     seen = [seen_by.seen(mesh.points_mm) for mesh in meshes]
     low = np.min([points[:, :2].min(axis=0) for points in seen], axis=0) - 2 * PIXEL_MM
     high = np.max([points[:, :2].max(axis=0) for points in seen], axis=0) + 2 * PIXEL_MM

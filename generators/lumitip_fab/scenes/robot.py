@@ -150,10 +150,10 @@ def _joint(name: str, kind: str, child: str, parent: str = "lumitip_base") -> El
 
 
 def _origin(matrix: Matrix) -> Element:
-    """A pose as URDF tells it: turns about the fixed axes x, y, z, in this order."""
+    """A pose in the form of URDF: turns about the fixed axes x, y, z, in this order."""
     turn = matrix[:3, :3]
     pitch = np.arctan2(-turn[2, 0], np.hypot(turn[0, 0], turn[1, 0]))
-    if np.hypot(turn[0, 0], turn[1, 0]) < 1e-9:  # x looks along z: only yaw minus roll is told
+    if np.hypot(turn[0, 0], turn[1, 0]) < 1e-9:  # x looks along z: only yaw minus roll is defined
         roll, yaw = np.arctan2(-turn[1, 2], turn[1, 1]), 0.0
     else:
         roll, yaw = np.arctan2(turn[2, 1], turn[2, 2]), np.arctan2(turn[1, 0], turn[0, 0])

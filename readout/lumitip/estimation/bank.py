@@ -24,7 +24,7 @@ class Bank:
     poses: Floats
     """Shape `(n, entries)`, without `light` and `taken`."""
     shares: NDArray[np.float32]
-    """Of the light that each pose takes, shape `(n, cells)`."""
+    """Share of the light that each pose takes, shape `(n, cells)`."""
     templates: NDArray[np.float32]
     """The shares without their mean, normalised to unit length."""
     apart: Floats

@@ -98,7 +98,7 @@ class Service:
 
     version: Literal[1, 2]
     status: Status | None
-    """Of version 2, at connection."""
+    """Status of version 2, read at connection."""
 
 
 async def begin(

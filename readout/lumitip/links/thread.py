@@ -72,7 +72,7 @@ class ThreadedLink(ABC):
     """A `Link` that runs `_run` on its own thread."""
 
     _name = "lumitip-link"
-    """Of the thread."""
+    """Name of the thread."""
 
     def __init__(self) -> None:
         self._stopping = threading.Event()

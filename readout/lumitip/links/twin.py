@@ -47,7 +47,7 @@ class Matter:
     """Size and optics of the shapes."""
 
     diameter_mm: float = 3.0
-    """Of cables (mm)."""
+    """Diameter of cables (mm)."""
     clear: float = 0.0
     diffuse: float = 0.0
     height: float = 0.5

@@ -30,7 +30,7 @@ class Metadata:
     start_wall: float
     """Start of the recording, seconds since 1970 (UTC)."""
     versions: Mapping[str, str]
-    """Of lumitip, numpy, mcap and Python."""
+    """Versions of lumitip, numpy, mcap and Python."""
 
     def values(self, frame: RecordedFrame) -> Values:
         """Light of a frame with the calibration of the recording, 255 is full light."""

@@ -62,7 +62,7 @@ class ArmLimits:
     """
 
     speed_mm_s: float = 100.0
-    """Of the fingertip and of the tool centre point; faster commands are slowed down (mm/s)."""
+    """Limit for fingertip and tool centre point; faster commands are slowed down (mm/s)."""
     rotation_rad_s: float = 1.0
     """Rotation; faster commands are slowed down (rad/s)."""
     acceleration_mm_s2: float = 500.0
@@ -107,9 +107,9 @@ class ArmState:
     time_s: float
     """Clock of the arm (s); it stands still without new data."""
     pose: Floats
-    """Of the tool centre point in the base (m, rad), shape `(6,)`."""
+    """Pose of the tool centre point in the base (m, rad), shape `(6,)`."""
     twist: Floats
-    """Of the tool centre point in the base (m/s, rad/s), shape `(6,)`."""
+    """Twist of the tool centre point in the base (m/s, rad/s), shape `(6,)`."""
     force_n: Floats
     """On the tool (N), shape `(3,)`."""
     connected: bool = True

@@ -156,7 +156,7 @@ class _Direct:
         self._spots = [pairs.spots(kind, height) for kind in range(len(pairs.kinds))]
 
     def row(self, cell: int) -> Floats:
-        """Of one cell, shape `(pixels,)`."""
+        """Light of one cell, shape `(pixels,)`."""
         spots = [self._spots[k] for k in self._pairs.kind[self._pairs.cell == cell]]
         x, y, light = (np.concatenate(part) for part in zip(*spots, strict=True))
         column, row, share = spread(
@@ -186,7 +186,7 @@ class _Scattered:
             self._irradiance[index] += light
 
     def row(self, cell: int) -> Floats:
-        """Of one cell, shape `(pixels,)`, on the scale of the bundles."""
+        """Light of one cell, shape `(pixels,)`, on the scale of the bundles."""
         index, light = self._patch(
             self._layout.x_mm[cell],
             self._layout.y_mm[cell],

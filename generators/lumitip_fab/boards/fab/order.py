@@ -49,7 +49,7 @@ def bom_rows(board: Placement) -> Iterator[Row]:
 
 
 def angle_at(part: Component, fab: Fab) -> float:
-    """The angle (degrees, 0 up to 360) by which a board house turns a part."""
+    """The angle (degrees, 0 up to 360) by which a PCB fab turns a part."""
     name = part.footprint.name
     fitting = [(start, turn) for start, turn in fab.rotations if name.startswith(start)]
     turn = max(fitting, key=lambda each: len(each[0]))[1] if fitting else 0.0
@@ -91,7 +91,7 @@ _MODE = 0o644 << 16
 
 
 def layers_of(model: BoardModel) -> dict[str, bytes]:
-    """Every layer and drill file by its key in the table of board houses."""
+    """Every layer and drill file by its key in the table of PCB fabs."""
     layers = {layer.key: layer.data for layer in gerber_layers(model)}
     return layers | {"plated": plated_drills(model), "unplated": unplated_drills(model)}
 
@@ -99,13 +99,13 @@ def layers_of(model: BoardModel) -> dict[str, bytes]:
 def order_files(
     model: BoardModel, layers: dict[str, bytes], note: bytes, fab: Fab, stem: str
 ) -> dict[str, bytes]:
-    """The zip for a board house, and its two tables once more by themselves.
+    """The zip for a PCB fab, and its two tables once more by themselves.
 
     Args:
         model: the finished board.
         layers: from `layers_of`.
         note: for who places the parts.
-        fab: the board house.
+        fab: the PCB fab.
         stem: what the files' names begin with.
     """
     board = model.placement
@@ -148,7 +148,7 @@ def assembly_note(board: Placement, finger: Finger, packages: Packages, fab: Fab
         board: parts in their places.
         finger: whose board it is.
         packages: for the terminal that a part's mark shows, and its confidence.
-        fab: the board house, whose remark is added.
+        fab: the PCB fab, whose remark is added.
     """
     chip = packages.at_cells(finger)
     lines = [
@@ -225,7 +225,7 @@ def carrier_note(board: Placement, title: str, fab: Fab) -> bytes:
     Args:
         board: parts in their places.
         title: what the board says of itself.
-        fab: the board house, whose remark is added.
+        fab: the PCB fab, whose remark is added.
     """
     lines = [
         f"{board.title}: {title}, revision {board.revision}, design {board.design_hash[:8]}",

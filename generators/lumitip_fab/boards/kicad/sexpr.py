@@ -7,7 +7,7 @@ Node = tuple[Value, ...]
 """`("at", 1.0, 2.0)`: the first is the keyword; a `Quoted` is written between quotes."""
 
 FORMAT = 20211014
-"""Of the boards and footprints that KiCad 6 writes, which 6 to 10 open."""
+"""Version of the file format: that of KiCad 6, which 6 to 10 open."""
 _WIDTH = 160
 
 

@@ -131,7 +131,7 @@ class Sheet:
 
     pieces: tuple[Polygon, ...]
     reached: tuple[tuple[int, ...], ...]
-    """Of each pad the pieces that it is bridged to."""
+    """Pieces that each pad is bridged to."""
 
     def pieces_at(self, places: Sequence[Point]) -> list[int]:
         """The piece of pour at each place, or -1."""

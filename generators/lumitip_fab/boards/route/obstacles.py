@@ -22,7 +22,7 @@ class Obstacles:
     grid: Grid
     rules: Rules
     number: dict[str, int]
-    """Of each net, from 1."""
+    """Number of each net, from 1."""
 
     def owners(self, placement: Placement, pads: tuple[PlacedPad, ...]) -> NDArray[np.int16]:
         """Who may be where: `(classes, 3, H, W)`, see `kernels.search`."""

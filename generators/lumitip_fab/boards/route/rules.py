@@ -55,7 +55,7 @@ class Rules:
 
     @property
     def pitch_mm(self) -> float:
-        """Of the routing grid: half of what a thin track takes with its clearance.
+        """Pitch of the routing grid: half a thin track with its clearance.
 
         Neighbouring tracks then pack without a gap, and a board has no more nodes than it needs.
         """
@@ -64,12 +64,12 @@ class Rules:
 
     @property
     def fine_mm(self) -> float:
-        """Of the grid that also finds ways between pads with little room to spare."""
+        """Pitch of the grid that also finds ways between pads with little room to spare."""
         return _whole_um(self.pitch_mm / 2)
 
     @property
     def drill_mm(self) -> float:
-        """Of the widest via."""
+        """Drill of the widest via."""
         return max(c.via_drill_mm for c in self.classes)
 
     def radii(self, pitch_mm: float, via: bool) -> NDArray[np.float64]:

@@ -101,7 +101,7 @@ def _through_outlines(
 
 
 def _at_ends(page: Page, cells: Sequence[PlacedComponent], room: Clear, pitch_mm: float) -> _Places:
-    """Of the first and the last cell of each column, beyond it, where there is room."""
+    """References of the first and the last cell of each column, beyond it, where there is room."""
     columns: dict[float, list[PlacedComponent]] = defaultdict(list)
     for part in cells:
         columns[round(part.x_mm, 3)].append(part)

@@ -24,7 +24,7 @@ class Layer:
     points_mm: NDArray[np.float64]
     """Along the lines, at most 0.2 mm apart, shape `(n, 2)`."""
     length_mm: float
-    """Of all its lines."""
+    """Length of all its lines."""
 
 
 def seconds(text: str) -> int:
@@ -35,7 +35,7 @@ def seconds(text: str) -> int:
     """
     found = re.search(r"^; estimated printing time \(normal mode\) = (.+)$", text, re.MULTILINE)
     if not found:
-        raise BuildError("the slicer's G-code tells no time")
+        raise BuildError("the slicer's G-code has no time")
     return sum(int(n) * _UNITS_S[unit] for n, unit in re.findall(r"(\d+)([dhms])", found[1]))
 
 
@@ -47,7 +47,7 @@ def grams(text: str) -> float:
     """
     found = re.search(r"^; total filament used \[g\] = ([\d.]+)$", text, re.MULTILINE)
     if not found:
-        raise BuildError("the slicer's G-code tells no mass")
+        raise BuildError("the slicer's G-code has no mass")
     return float(found[1])
 
 

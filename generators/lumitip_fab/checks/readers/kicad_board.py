@@ -35,7 +35,7 @@ class Copper:
     layers: frozenset[str]
     area: BaseGeometry
     width_mm: float = 0.0
-    """Of a track."""
+    """Width of a track."""
     drill_mm: float = 0.0
 
 
@@ -92,7 +92,7 @@ class KicadBoard:
     keep_outs: tuple[BaseGeometry, ...]
     """Areas where a rule keeps tracks, vias and fills off every copper layer."""
     plies: tuple[Ply, ...]
-    """The stack-up, if the file tells it."""
+    """The stack-up, if the file has it."""
     regions: dict[str, BaseGeometry]
     """Rectangle on each layer for a user's own use."""
 

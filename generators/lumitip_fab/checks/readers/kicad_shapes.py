@@ -90,7 +90,7 @@ class Place:
 
     @classmethod
     def of(cls, node: Node) -> "Place":
-        """The place that a node tells."""
+        """The position of a node."""
         x, y, *turn = numbers(child(node, "at"))
         return cls((x, y), turn[0] if turn else 0.0)
 

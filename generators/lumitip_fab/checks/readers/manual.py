@@ -89,7 +89,7 @@ class Manual(HTMLParser):
         """Words of each paragraph, item, heading and cell."""
         self.chapters = [Chapter("")]
         self.pictures: list[tuple[str, bytes]] = []
-        """Of which file each is, and its bytes."""
+        """Path and bytes of each picture."""
         self.codes: list[str] = []
         """Texts in the code typeface, such as file names."""
         self._open = ""

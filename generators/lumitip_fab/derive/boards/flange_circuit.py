@@ -183,7 +183,7 @@ def _refuse_crystal(config: Input, faults: Diagnostics) -> None:
 
 
 LOAD_SHARE = 0.25
-"""Of the regulator's largest current: with less than half its ripple it would skip pulses."""
+"""Least share of the regulator's largest current: below half its ripple it skips pulses."""
 MOST_RIPPLE = 0.01  # of the output, and of the supply at the input
 OUTPUT_CAPACITORS = ("C2", "C3")
 

@@ -195,6 +195,6 @@ def derive_densities(config: Input, slicing: Slicing) -> Densities:
 
 
 def _clad_g_ml(laminate: Laminate, thick_mm: float) -> float:
-    """Of a board with copper on both sides, by its thickness in all."""
+    """Density of a board with copper on both sides, by its total thickness."""
     share = POURED * 2 * laminate.copper_mm / thick_mm
     return (1 - share) * laminate.density_g_ml + share * COPPER_G_ML

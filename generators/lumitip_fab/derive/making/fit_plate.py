@@ -113,7 +113,7 @@ def _is_wide(mount: Mount, w_mm: float) -> bool:
 
 
 def _width_mm(mount: Mount, w_mm: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Of the block and its nose at w."""
+    """Width of the block and its nose at w."""
     wide = np.full(len(w_mm), mount.block_width_mm)
     if mount.nose:
         spread = (

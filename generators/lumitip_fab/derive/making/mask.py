@@ -78,7 +78,7 @@ def _sheet(outline: Outline, around_mm: float) -> Box:
 
 
 def _mark(outline: Outline, allowance_mm: float, flap_mm: float) -> Box:
-    """On the tip flap, left of the middle, so that its place too tells left from right."""
+    """On the tip flap, left of the middle, so that its place also distinguishes left from right."""
     fold = outline.tip_y_mm + allowance_mm
     bottom, top = (fold + share * flap_mm for share in MARK_SHARE)
     height = min(top - bottom, MARK_MM)

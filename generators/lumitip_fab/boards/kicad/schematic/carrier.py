@@ -72,7 +72,7 @@ def _shape(device: Component) -> tuple[str, Node]:
 
 
 def _middle(x: float, y: float) -> Point:
-    """Of an upright part below a place, on the grid."""
+    """Middle of an upright part below a place, on the grid."""
     return (x + 4 * _PITCH_MM) // 1.27 * 1.27, (y + _UPRIGHT_MM / 2) // 1.27 * 1.27
 
 

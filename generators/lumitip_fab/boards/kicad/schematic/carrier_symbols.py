@@ -7,7 +7,7 @@ from lumitip_fab.boards.kicad.sexpr import Node
 from lumitip_fab.design import Component
 
 WIDE_MM = 15.24
-"""Of the box of a part whose pins have names."""
+"""Width of the box of a part with named pins."""
 _TURNS = 4
 
 

@@ -16,7 +16,7 @@ from lumitip_fab.boards.kicad.sexpr import Node, Quoted, Value
 with warnings.catch_warnings():
     warnings.simplefilter("ignore")  # of escapes in its source, where Python has to compile it
     from skip import Schematic
-logging.getLogger("skip").setLevel(logging.WARNING)  # below, it tells of every copy
+logging.getLogger("skip").setLevel(logging.WARNING)  # below, it logs every copy
 
 
 class Template:

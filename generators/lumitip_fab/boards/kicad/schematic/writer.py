@@ -78,7 +78,7 @@ class _Writer:
     def symbol(self, drawn: Drawn) -> None:
         """A symbol in its place, and its entry in the list at the end.
 
-        The entry tells no value and no footprint: KiCad would prefer them to the fields, and what
+        The entry has no value and no footprint: KiCad would prefer them to the fields, and what
         is changed in the fields would be lost; and kicad-skip could not save the file.
         """
         uuid = stable_uuid(self.board.name, "symbol", drawn.ref)  # its footprint names it too
