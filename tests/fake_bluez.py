@@ -192,7 +192,7 @@ class FakeBluez:
                 "org.bluez.GattService1",
                 {
                     "UUID": Variant("s", uuid),
-                    "Component": Variant("o", path),
+                    "Device": Variant("o", path),
                     "Primary": Variant("b", True),
                 },
             )

@@ -22,7 +22,7 @@ __all__ = ["build", "check", "derived", "load", "show"]
 
 
 # What a function needs is imported when it is called: many programs want one of them.
-def load(file: Path) -> "Input":
+def load(file: Path | str) -> "Input":
     """Read a parameter file with its bases and the catalogue.
 
     Raises:
@@ -30,10 +30,10 @@ def load(file: Path) -> "Input":
     """
     from lumitip_fab.config import load as config
 
-    return config.load(file)
+    return config.load(Path(file))
 
 
-def derived(file: Path) -> "Design":
+def derived(file: Path | str) -> "Design":
     """The design that a parameter file describes.
 
     Raises:
@@ -45,9 +45,11 @@ def derived(file: Path) -> "Design":
 
 
 def build(
-    file: Path, out: Path, progress: "Progress | None" = None, only: Sequence[str] = ()
+    file: Path | str, out: Path | str, progress: "Progress | None" = None, only: Sequence[str] = ()
 ) -> "Report":
     """Build a parameter file into an output folder; only what changed is made again.
+
+    It starts processes: in a script, call it below `if __name__ == "__main__":`.
 
     Args:
         file: the parameter file.
@@ -63,18 +65,20 @@ def build(
     """
     from lumitip_fab.cli import build as command
 
-    return command.build(file, out, progress, only)
+    return command.build(Path(file), Path(out), progress, only)
 
 
-def check(out: Path) -> "Outcome":
+def check(out: Path | str) -> "Outcome":
     """Read the files of an output folder back and measure whether they fit.
+
+    It starts processes, as `build` does.
 
     Raises:
         OutputError: if there is no usable `design.json`.
     """
     from lumitip_fab.checks.run import run_checks
 
-    return run_checks(out)
+    return run_checks(Path(out))
 
 
 def show(*parts: "Shape | Path | str", open_page: bool = True) -> Path:

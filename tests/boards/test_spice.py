@@ -43,7 +43,8 @@ def test_a_string_draws_its_nominal_current(
 ) -> None:
     design = presets[preset]
     found = simulated(_netlist(design, "emitter"), tmp_path)
-    assert found["i_ma"] == pytest.approx(design.wiring.current_ma[0], rel=0.002)
+    # The closed form takes the forward voltage at the target current, not at the string's own.
+    assert found["i_ma"] == pytest.approx(design.wiring.current_ma[0], rel=0.005)
 
 
 @needs_ngspice

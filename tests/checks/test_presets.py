@@ -46,8 +46,9 @@ UNREAD = (
     "boards/*/*-lib-table",
     "boards/*/lumitip.kicad_sym",
     "boards/*/lumitip.pretty/*.kicad_mod",
-    "boards/*/*_front.svg",  # pictures, which the manual shows as PNG
-    "boards/*/*_back.svg",
+    "boards/*/*_front.*",  # pictures, which the manual shows as PNG
+    "boards/*/*_back.*",
+    "manual/manual.pdf",  # tests/fab/test_manual.py
 )
 
 
