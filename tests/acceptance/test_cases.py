@@ -21,6 +21,7 @@ def _derived(text: str, name: str) -> Trial:
         return derive_file(file)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.stem)
 def test_a_design_that_was_refused_is_accepted(case: Path) -> None:
     trial = _derived(case.read_text(encoding="utf-8"), case.stem)

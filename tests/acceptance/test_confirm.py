@@ -48,6 +48,7 @@ def test_silicone_thinner_than_the_parts_is_confirmed(monkeypatch: pytest.Monkey
     assert verdict.text.startswith("confirmed: cover: 0.8 mm of silicone")
 
 
+@pytest.mark.slow
 def test_a_wall_thinner_than_a_printed_line_is_confirmed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("acceptance.confirm.way_out", lambda _: None)
     wide = _design(printer__profile="fdm 0.6", printer__fit_mm=0.05)

@@ -16,6 +16,8 @@ from lumitip_fab.design.encoding import read_design
 from lumitip_fab.errors import OutputError
 from programs import program
 
+pytestmark = pytest.mark.slow
+
 BOARD = "boards/receiver/receiver.kicad_pcb"
 
 

@@ -11,6 +11,8 @@ from lumitip_fab.checks.board_silk import measure_silk
 from lumitip_fab.checks.readers.kicad_board import read_board
 from lumitip_fab.design.encoding import read_design
 
+pytestmark = pytest.mark.slow
+
 EMITTER = "boards/emitter/emitter.kicad_pcb"
 NARROW_MM = 4.9
 COLUMN_ENDS = {1, 3, 4, 5, 6, 8, 9, 10, 11, 13}

@@ -19,6 +19,8 @@ from lumitip_fab.boards.footprints import placed_pads
 from lumitip_fab.checks.readers.gerber import drilled, gerber_area
 from lumitip_fab.design import Box, Component, Fab, Footprint, Pad
 
+pytestmark = pytest.mark.slow
+
 BOX = Box(-1, 1, -1, 1)
 MUX = Footprint("SOP65P640X110-16N", (Pad("1", -2, -3, 1, 1),), BOX, 1.1)
 SOT = Footprint("SOT95P360X100-6N", (Pad("1", -1, -1, 1, 1),), BOX, 1.0)
@@ -72,7 +74,6 @@ def package(folder: Path, fab: str, finger: str = "receiver") -> dict[str, bytes
         return {name: opened.read(name) for name in opened.namelist()}
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("fab", ["generic", "jlcpcb", "pcbway"])
 def test_a_zip_is_understood_by_its_names_alone(
     boards: Callable[[str], Path], tmp_path: Path, fab: str

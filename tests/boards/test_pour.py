@@ -46,6 +46,7 @@ def test_a_poured_board_has_no_fault(poured: Poured) -> None:
     assert not faults, summary(faults)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("preset", "finger"), PRESETS)
 def test_presets_have_no_fault(design_dir: Path, preset: str, finger: str) -> None:
     placement = small.preset(design_dir, preset, finger)

@@ -105,6 +105,7 @@ def test_all_is_written_whatever_the_words(awkward: Written) -> None:
     assert named == ["lumitip:R", "lumitip:GND"]
 
 
+@pytest.mark.slow
 def test_identifiers_come_from_names_alone(awkward: Written, drawn: Written) -> None:
     for *_, file in (awkward, drawn):
         text = file.read_text(encoding="utf-8")

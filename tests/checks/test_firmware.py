@@ -108,6 +108,7 @@ def test_every_firmware_check_is_failed_by_some_damage(sketches: Path) -> None:
     assert set.union(*(fails for *_, fails in EDITS)) == ALL
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("preset", PRESETS)
 def test_every_preset_passes(preset: str, tmp_path: Path, design_dir: Path) -> None:
     d = derive(load(design_dir / "presets" / f"{preset}.toml"))

@@ -187,6 +187,7 @@ def test_a_design_whose_cells_are_too_few_for_a_pose_is_refused(config: Input) -
     assert told.startswith("grid.columns: layout has 3 cells; a pose needs at least 4")
 
 
+@pytest.mark.slow
 def test_figures_are_those_of_the_design(config: Input) -> None:
     prices, design = config.catalogue.prices, derive(config)
     config = resolve(config).config

@@ -72,6 +72,7 @@ def test_lists_hold_every_entry_and_every_preset(project: Path) -> None:
     assert [name for name in listed.split(", ") if name.startswith("presets/")] == files
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_a_bad_file_is_refused_with_exactly_the_expected_lines(name: str, project: Path) -> None:
     message = LISTED.sub(r"\1…", str(_refusal(name, project))) + "\n"

@@ -162,6 +162,7 @@ def test_the_dense_preset_reads_124_cells_through_16_inputs_each(
     assert design.emitter.turned
 
 
+@pytest.mark.slow
 def test_every_process_derives_the_same_text() -> None:
     code = (
         "import sys; from pathlib import Path\n"
@@ -188,6 +189,7 @@ def test_every_process_derives_the_same_text() -> None:
     assert text("31337") == first
 
 
+@pytest.mark.slow
 def test_this_process_derives_the_same_text_twice(
     inputs: dict[str, object], designs: dict[str, Design]
 ) -> None:

@@ -86,6 +86,7 @@ def test_what_is_no_design_is_refused(text: str, tmp_path: Path) -> None:
         read_design(file)
 
 
+@pytest.mark.slow
 def test_no_damage_escapes_as_anything_but_an_output_error(saved: Path) -> None:
     chance = random.Random(7)
     sound = json.loads(saved.read_text(encoding="utf-8"))

@@ -134,6 +134,7 @@ def imported(file: Path) -> set[Path]:
     return found
 
 
+@pytest.mark.slow
 def test_whatever_a_generator_imports_makes_it_run_again(package: Path) -> None:
     steps = {step.room: set[Path]() for step in STEPS}
     for step in STEPS:

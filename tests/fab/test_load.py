@@ -149,6 +149,7 @@ def test_problems_are_sorted_told_once_and_read_as_file_line_field_message() -> 
     assert str(Problem("a.toml", 0, "", "cannot be read")) == "a.toml: cannot be read"
 
 
+@pytest.mark.slow
 def test_random_values_for_random_fields_are_derived_or_refused(write: Write) -> None:
     published = load(DESIGN / "presets" / "published.toml").parameters.model_dump()
     fields = [f"{s}.{k}" for s, t in published.items() if isinstance(t, dict) for k in t]

@@ -35,6 +35,7 @@ def _file(design_dir: Path, preset: str, more: str) -> Path:
     return file
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("printer", PRINTERS)
 @pytest.mark.parametrize("preset", ["published", "flex", "wsg50"])
 def test_a_line_fits_between_the_strokes_and_round_the_letters(

@@ -34,6 +34,7 @@ def changed(design_dir: Path, tmp_path: Path) -> Callable[[str], Design]:
     return get
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "text",
     [

@@ -20,6 +20,7 @@ from lumitip.twin import Cable, HalfPlane, Image, Twin
 CELLS = published_layout()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "number",
     [

@@ -28,6 +28,7 @@ OBJECTS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("columns", GRIDS, ids=str)
 def test_the_twin_of_any_grid_reads_what_covers_it(
     columns: tuple[int, ...], make_layout: Make

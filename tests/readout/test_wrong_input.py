@@ -68,6 +68,7 @@ def estimator() -> PoseEstimator:
     return PoseEstimator(CELLS)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("values", NO_VALUES, ids=shown)
 def test_values_that_are_no_numbers(estimator: PoseEstimator, values: Any) -> None:
     frames: list[Call] = [Processor(CELLS), Processor(CELLS).batch, Tracker(CELLS), estimator]

@@ -15,6 +15,7 @@ from lumitip_fab.scenes import assembly
 SLOW = [pytest.param(preset, marks=pytest.mark.slow) for preset in ("asymmetric", "dense")]
 
 
+@pytest.mark.slow
 def test_the_same_design_gives_the_same_files_in_any_process(outputs: Path) -> None:
     made = assembly.assembly(read_design(outputs / "design.json"))
     assert [a.path for a in made] == [

@@ -57,6 +57,7 @@ def test_both_ways_of_seeing_agree(scene: HalfPlane | Cable) -> None:
         assert math.degrees(sight.angle) == pytest.approx(-20.0, abs=most_deg)
 
 
+@pytest.mark.slow
 def test_a_corner_is_seen_ahead_and_a_flat_one_is_none() -> None:
     layout = published_layout()
     values = Twin(layout).values(Corner(x_mm=4.0, y_mm=-1.0, angle_deg=135.0))

@@ -147,6 +147,7 @@ def test_optics_of_another_design_may_be_given(cells: Layout) -> None:
     assert right.offset_mm == pytest.approx(1.0, abs=0.05)
 
 
+@pytest.mark.slow
 def test_a_minute_of_use_teaches_gains_gap_and_scatter(
     cells: Layout, wrong_twins: list[Twin]
 ) -> None:
@@ -163,6 +164,7 @@ def test_a_minute_of_use_teaches_gains_gap_and_scatter(
     assert np.corrcoef(learned.gains, twin.gains)[0, 1] > 0.7
 
 
+@pytest.mark.slow
 def test_a_dead_cell_teaches_nothing_and_spoils_nothing(cells: Layout, twin: Twin) -> None:
     edges = [HalfPlane(offset_mm=0.2 * k - 3.0, angle_deg=12.0 * k) for k in range(30)]
     rows = np.stack([np.floor(twin.values(edge)) for edge in edges])
@@ -174,6 +176,7 @@ def test_a_dead_cell_teaches_nothing_and_spoils_nothing(cells: Layout, twin: Twi
         PoseEstimator(cells).fitted(np.where(np.arange(32) < 3, rows[0], np.nan), "edge")
 
 
+@pytest.mark.slow
 def test_the_published_frame(cells: Layout) -> None:
     """Measured on hardware, at a gap that is not published: near the drawn line at 5.8 degrees,
     with the misfit of structure that the model lacks. The sheet is on the side of the tip."""

@@ -117,6 +117,7 @@ def test_disconnected_at_any_moment(bluez: FakeBluez, device, after: int) -> Non
         assert tip.stats.reconnects == connected
 
 
+@pytest.mark.slow
 def test_nothing_is_lost_while_the_reader_sleeps_for_three_seconds(
     bluez: FakeBluez, device
 ) -> None:

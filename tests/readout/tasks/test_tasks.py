@@ -109,6 +109,7 @@ def test_settings_are_checked() -> None:
             Settings(**wrong)  # type: ignore[arg-type]
 
 
+@pytest.mark.slow
 def test_the_bench_writes_table_figures_and_plots(tmp_path: Path) -> None:
     said: list[str] = []
     results = bench_tasks(

@@ -114,6 +114,7 @@ def test_the_dark_centre_lies_lower_under_a_turned_line_which_height_makes_up_fo
         assert min(HEIGHTS_MM) < centre_mm(angle_deg) - centre_mm(0.0)
 
 
+@pytest.mark.slow
 def test_without_the_height_the_published_law_loses_curves_at_any_gain() -> None:
     bench = Bench(Task(published_layout(), Settings("cloth")))
     for gain_per_s in (16.0, 64.0):

@@ -126,6 +126,7 @@ def test_gains_show_and_the_empty_grasp_does_not_hide_them(twin: Twin) -> None:
     assert aged.empty == pytest.approx(twin.empty)
 
 
+@pytest.mark.slow
 def test_misregistration_is_part_of_the_empty_grasp_and_moves_edges(twin: Twin) -> None:
     for astray in (
         Misregistration(x_mm=1.0, y_mm=0.5),
