@@ -39,7 +39,6 @@ NAMES = (  # measured in the GLB
 )
 FACING_MM = 0.05
 LEAN_DEG = 0.02
-CONTACT_MM = 4.0
 _TOUCH_MM = 1e-4
 OPENING_MM = 0.02
 STROKE_MM = 0.05
@@ -160,7 +159,7 @@ def _contacts(scene: Scene, design: Design) -> Iterator[Measurement]:
             f"{_FILE}: {finger.name}",
             float(design.outline.tip_y_mm - place[1]),
             0,
-            CONTACT_MM,
+            design.closing.most_from_tip_mm,
             "mm",
             "from the tip edge",
         )

@@ -34,8 +34,6 @@ READS = ("flange/*.stl", "flange/*.3mf", "flange/*.step", "boards/flange/*.kicad
 SIZE_MM = 0.05
 HOLE_MM = 0.05
 PEG_PLAY_MM = (0.3, 0.7)  # in its hole, without the printer's fit, which is on both
-PIN_PLAY_MM = 0.1  # of a pin in the hole that it is glued into, without the fit
-SOCKET_PLAY_MM = 0.2  # of the gripper's pin in its holes, without the fit
 MOST_OVERHANG_MM2 = 30.0  # the roof of the pin's hole
 LEAST_BED_MM2 = 2000.0
 _NEAR_MM = 2.0
@@ -166,7 +164,7 @@ def measure_pins(of: Stacked) -> Iterator[Measurement]:
     flange, fit = of.flange, 2 * of.design.printing.fit_mm
     off, wide = circles(holes_at(of.lower, flange.seat_z_mm + 1.0), (flange.pin_at,), _NEAR_MM)
     yield of.near("pin", off, 0.0, HOLE_MM)
-    yield of.near("pin_width", wide, flange.pin_mm + PIN_PLAY_MM + fit, HOLE_MM)
+    yield of.near("pin_width", wide, flange.pin_mm + flange.pin_play_mm + fit, HOLE_MM)
     below = np.array([(*flange.pin_at, flange.seat_z_mm - 1.0)])
     deep, _ = solids.cast(of.lower, below, np.array([0.0, 0.0, 1.0]), REACH_MM).first(1)
     yield of.near("pin_depth", deep - 1.0, flange.pin_depth_mm, SIZE_MM)
@@ -176,7 +174,7 @@ def measure_pins(of: Stacked) -> Iterator[Measurement]:
     found = [circles(holes_at(mesh, z), (flange.pin_at,), _NEAR_MM) for mesh, z in both]
     yield of.near("socket", np.concatenate([off for off, _ in found]), 0.0, HOLE_MM)
     wide = np.concatenate([wide for _, wide in found])
-    yield of.near("socket_width", wide, flange.pin_mm + SOCKET_PLAY_MM + fit, HOLE_MM)
+    yield of.near("socket_width", wide, flange.pin_mm + flange.socket_play_mm + fit, HOLE_MM)
     yield from _peg(of, flange)
 
 

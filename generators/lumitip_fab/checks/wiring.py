@@ -26,9 +26,6 @@ _CONNECTORS = {
     "breakout": ("J5", "J6", "J7"),
     "flange": ("J4", "J5"),  # which are there if the controller is
 }
-_STEP_MM = 10.0
-_MOST_A_PER_MM2 = 3.0
-_MOST_DROP = 0.02
 _OHM_MM2_PER_M = 0.0178
 _FIXED = {"GND": "BK", "3V3": "OG"}
 
@@ -160,9 +157,9 @@ def _lengths(rows: tuple[Row, ...], boards: dict[str, KicadBoard], design: Desig
         else:
             way += cabling.supply_mm
         over.append(row.length_mm - way)
-    worst = max(over, key=lambda mm: abs(mm - _STEP_MM / 2), default=math.nan)
+    worst = max(over, key=lambda mm: abs(mm - cabling.step_mm / 2), default=math.nan)
     note = "longer than reach, travel, way and slack"
-    return Measurement("wiring.lengths", _LIST, worst, 0, _STEP_MM, "mm", note)
+    return Measurement("wiring.lengths", _LIST, worst, 0, cabling.step_mm, "mm", note)
 
 
 def _reach_mm(board: KicadBoard, design: Design) -> float:
@@ -187,13 +184,14 @@ def _currents(rows: tuple[Row, ...], design: Design) -> Iterator[Measurement]:
         "least rating of the LEDs' supply",
     )
     dense = max((r.current_ma / 1000 / r.section_mm2 for r in rows), default=math.nan)
-    yield Measurement("wiring.density", _LIST, dense, 0, _MOST_A_PER_MM2, "A/mm²")
+    most = design.cabling.most_a_per_mm2
+    yield Measurement("wiring.density", _LIST, dense, 0, most, "A/mm²")
     drop = sum(
         row.current_ma / 1000 * _OHM_MM2_PER_M * row.length_mm / 1000 / row.section_mm2
         for row in rows
         if row.signal == supply or (row.signal == "GND" and "receiver" not in row.start)
     )
-    most = _MOST_DROP * design.wiring.supply_v
+    most = design.cabling.most_drop * design.wiring.supply_v
     yield Measurement("wiring.drop", _LIST, drop, 0, most, "V", "supply to emitter and back")
 
 

@@ -116,3 +116,9 @@ class Cabling:
     controller_mm: float
     """From the fingers' gripper end to the controller."""
     slack_mm: float
+    step_mm: float
+    """Lengths are multiples of it."""
+    most_a_per_mm2: float
+    """Largest current density."""
+    most_drop: float
+    """Largest drop of voltage over the wires, both ways, as a share of the LEDs' supply."""

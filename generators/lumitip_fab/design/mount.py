@@ -69,6 +69,8 @@ class Closing:
 
     contact_y_mm: float
     """y, in the sensor frame, of the line that touches first."""
+    most_from_tip_mm: float
+    """Largest distance of that line from the tip."""
     contact_z_mm: float
     """How far that line stands out beyond the sensor frame's origin, after the lean."""
     max_opening_mm: float
@@ -166,10 +168,14 @@ class Flange:
     """Axis of the coupling's locating pin, and of the gripper's."""
     pin_mm: float
     """Diameter of a bought pin that is glued into the lower part."""
+    pin_play_mm: float
+    """Play of a glued pin in its hole, without the fit."""
     pin_hole_mm: float
     pin_length_mm: float
     pin_depth_mm: float
     """How deep it stands in the lower part."""
+    socket_play_mm: float
+    """Play of the gripper's pin in its hole, without the fit."""
     socket_mm: float
     """Diameter of the hole for the gripper's pin."""
     socket_z_mm: float

@@ -136,4 +136,4 @@ def derive_closing(
         f"is {mount.gripper!r}, in which these fingers stay {opening - mount.stroke_mm:.1f} mm "
         "apart when it is closed. Increase bolt_w_mm - pad_w_mm of its entry by half of that.",
     )
-    return Closing(y, reach, opening)
+    return Closing(y, CONTACT_MM, reach, opening)

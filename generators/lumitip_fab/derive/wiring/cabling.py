@@ -90,7 +90,16 @@ def derive_cabling(
     thick = tuple(_thick_enough(config, cable, cables) for cable in cables)
     for cable in thick:
         _refuse_thick(config, cable, boards, faults)
-    return Cabling(thick, travel_mm, p.supply_mm, p.controller_mm, p.slack_mm)
+    return Cabling(
+        cables=thick,
+        travel_mm=travel_mm,
+        supply_mm=p.supply_mm,
+        controller_mm=p.controller_mm,
+        slack_mm=p.slack_mm,
+        step_mm=STEP_MM,
+        most_a_per_mm2=MOST_A_PER_MM2,
+        most_drop=MOST_DROP,
+    )
 
 
 def reach_mm(finger: Finger, outline: Outline) -> float:
