@@ -1,4 +1,4 @@
-"""Damage what is sent to board houses, and exactly the right checks fail."""
+"""Damage what is sent to PCB fabs, and exactly the right checks fail."""
 
 import re
 import zipfile

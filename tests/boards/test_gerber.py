@@ -1,4 +1,4 @@
-"""What board houses get: layers, drills and lists, and what each house makes of an angle."""
+"""What PCB fabs get: layers, drills and lists, and what each house makes of an angle."""
 
 import dataclasses
 import io
