@@ -228,10 +228,11 @@ def _block(values: Values) -> Iterator[str]:
     printer = values.part("printer.profile", "printers")
     gripper = entries("grippers")[values["coupling.gripper"]]
     pins, fit = gripper.get("pins"), values["printer.fit_mm"]
-    if not printer or not pins or "bolt_spacing_mm" in gripper:
+    bolts = gripper.get("bolt_spacing_mm", 0.0)
+    if not printer or not pins or pins["spacing_mm"] == bolts:  # of sleeves round the bolts
         return
     radii = [hole / 2 + fit for hole in (gripper["bolt_hole_mm"], pins["hole_mm"])]
-    wall = pins["spacing_mm"] / 2 - sum(radii)
+    wall = abs(pins["spacing_mm"] - bolts) / 2 - sum(radii)
     if wall < printer["line_mm"] - 1e-9:
         yield f"block: {wall:.2f} mm between bolt and pins, a line of {printer['line_mm']:g} mm"
 

@@ -15,7 +15,7 @@ from gerbonara.layers import LayerStack
 
 from lumitip_fab.boards.fab import gerber_objects as objects
 from lumitip_fab.boards.fab.order import angle_at
-from lumitip_fab.boards.footprints import placed_pads
+from lumitip_fab.boards.placed import placed_pads
 from lumitip_fab.checks.readers.gerber import drilled, gerber_area
 from lumitip_fab.design import Box, Component, Fab, Footprint, Pad
 

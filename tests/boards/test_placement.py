@@ -11,8 +11,8 @@ import shapely
 from shapely import LineString
 
 from lumitip_fab.boards.files import carrier_files
-from lumitip_fab.boards.footprints import courtyard, pad_at, placed_pads
 from lumitip_fab.boards.model import SIDES, Placement, opening_mm
+from lumitip_fab.boards.placed import courtyard, pad_at, placed_pads
 from lumitip_fab.boards.placement import place
 from lumitip_fab.boards.silk.page import extent
 from lumitip_fab.boards.silk.strokes import silkscreen

@@ -43,8 +43,10 @@ def test_a_string_draws_its_nominal_current(
 ) -> None:
     design = presets[preset]
     found = simulated(_netlist(design, "emitter"), tmp_path)
-    # The closed form takes the forward voltage at the target current, not at the string's own.
-    assert found["i_ma"] == pytest.approx(design.wiring.current_ma[0], rel=0.005)
+    # The closed form takes the forward voltage at the target current, not at the string's own,
+    # from which that of dense differs by 1 %.
+    rel = 0.005 if preset == "dense" else 0.002
+    assert found["i_ma"] == pytest.approx(design.wiring.current_ma[0], rel=rel)
 
 
 @needs_ngspice

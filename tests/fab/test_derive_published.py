@@ -198,3 +198,12 @@ def test_this_process_derives_the_same_text_twice(
 
     for name in inputs:
         assert design_text(derive(load(PRESETS / f"{name}.toml"))) == design_text(designs[name])
+
+
+def test_limits_that_checks_take_from_the_design(design: Design) -> None:
+    cabling, closing, (flange, *_) = design.cabling, design.closing, design.flanges
+    assert (cabling.step_mm, cabling.most_a_per_mm2, cabling.most_drop) == (10.0, 3.0, 0.02)
+    assert closing.most_from_tip_mm == 4.0
+    assert (flange.pin_play_mm, flange.socket_play_mm) == (0.1, 0.2)
+    assert [finger.cells_hold.x_sign for finger in design.fingers] == [-1.0, 1.0]
+    assert [finger.cells_hold.ref(4) for finger in design.fingers] == ["D5", "Q5"]

@@ -1,5 +1,6 @@
 """The words on the exploded drawings of the fingers."""
 
+import re
 from collections import defaultdict
 from collections.abc import Callable
 from itertools import pairwise
@@ -43,18 +44,48 @@ def labels(design: Design, finger: Finger) -> set[str]:
     }
 
 
+def missing(design: Design, finger: Finger, drawing: Drawing) -> set[str]:
+    """Labels that are not on a drawing."""
+    return labels(design, finger) - {words for words, _ in drawing.words}
+
+
+def least_gap_mm(drawing: Drawing) -> float:
+    """Least distance from a line of words to the next one in its column."""
+    columns = defaultdict(list)
+    for _, extent in drawing.words:
+        columns[round(float(extent[0, 0]), 1)].append(float(extent[0, 1]))
+    return min(b - a for c in columns.values() for a, b in pairwise(sorted(c)))
+
+
 def test_every_layer_and_kind_of_part_is_named(
     drawings: tuple[Design, dict[str, Drawing]],
 ) -> None:
     design, drawn = drawings
-    for finger in design.fingers:
-        assert labels(design, finger) <= {words for words, _ in drawn[finger.name].words}
+    assert [missing(design, f, drawn[f.name]) for f in design.fingers] == [set(), set()]
 
 
 def test_no_two_lines_of_words_meet(drawings: tuple[Design, dict[str, Drawing]]) -> None:
-    for drawing in drawings[1].values():
-        columns = defaultdict(list)
-        for _, extent in drawing.words:
-            columns[round(float(extent[0, 0]), 1)].append(float(extent[0, 1]))
-        gaps = [b - a for c in columns.values() for a, b in pairwise(sorted(c))]
-        assert min(gaps) >= LINE_MM
+    assert min(map(least_gap_mm, drawings[1].values())) >= LINE_MM
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [("Silicone, 1.5", "Silicone, 1.6"), ("32 photodetectors", "31 photodetectors")],
+)
+def test_a_wrong_label_is_seen(outputs: Path, tmp_path: Path, old: str, new: str) -> None:
+    text = (outputs / "assembly/receiver_exploded.svg").read_text(encoding="utf-8")
+    assert old in text
+    file = tmp_path / "receiver_exploded.svg"
+    file.write_text(text.replace(old, new), encoding="utf-8")
+    design = read_design(outputs / "design.json")
+    (lost,) = missing(design, design.receiver, read_drawing(file))
+    assert lost.startswith(old)
+
+
+def test_lines_that_meet_are_seen(outputs: Path, tmp_path: Path) -> None:
+    text = (outputs / "assembly/receiver_exploded.svg").read_text(encoding="utf-8")
+    silicone = r'( y=")(-?[\d.]+)("[^>]*>Silicone.*?<text [^>]* y=")[-\d.]+'
+    moved, count = re.subn(silicone, r"\1\2\3\2", text, flags=re.DOTALL)
+    assert count == 1
+    (tmp_path / "moved.svg").write_text(moved, encoding="utf-8")
+    assert least_gap_mm(read_drawing(tmp_path / "moved.svg")) < LINE_MM

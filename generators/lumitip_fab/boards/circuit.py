@@ -44,7 +44,7 @@ class Circuit:
 def circuit(design: Design, finger: Finger) -> Circuit:
     """The circuit of one board."""
     rules = design.rules
-    of_finger = _emitter if finger.cell_kind == "led" else _receiver
+    of_finger = _emitter if finger.cells_hold.kind == "led" else _receiver
     supply = finger.connector.signals[1]
     parts = (
         *of_finger(design, supply),
@@ -64,6 +64,7 @@ def circuit(design: Design, finger: Finger) -> Circuit:
 def _emitter(design: Design, supply: str) -> Iterator[Component]:
     wiring, packages = design.wiring, design.packages
     led, resistor = packages.led, packages.string_resistor
+    held = design.emitter.cells_hold
     shape = footprints.chip("led", led)
     nets_of = {}
     for number, string in enumerate(wiring.strings, start=1):
@@ -71,7 +72,7 @@ def _emitter(design: Design, supply: str) -> Iterator[Component]:
         for place, cell in enumerate(string):
             nets_of[cell] = _polar(led, anode=links[place], cathode=links[place + 1])
     for cell in sorted(nets_of):
-        yield _part(f"D{cell + 1}", packages.led_name, led, "led", shape, nets_of[cell])
+        yield _part(held.ref(cell), packages.led_name, led, held.kind, shape, nets_of[cell])
     shape = footprints.chip("resistor", resistor)
     for number, ohm in enumerate(wiring.resistor_ohm, start=1):
         nets = ("1", supply), ("2", f"S{number}_0")
@@ -81,11 +82,12 @@ def _emitter(design: Design, supply: str) -> Iterator[Component]:
 def _receiver(design: Design, supply: str) -> Iterator[Component]:
     reading, wiring, packages = design.reading, design.wiring, design.packages
     detector, mux = packages.photodetector, packages.multiplexer
+    held = design.receiver.cells_hold
     shape = footprints.chip("photodetector", detector)
     for cell in reading.cells:
-        ref = f"Q{cell.index + 1}"
+        ref = held.ref(cell.index)
         nets = _polar(detector, collector=ref, emitter=GROUND)
-        yield _part(ref, packages.photodetector_name, detector, "photodetector", shape, nets)
+        yield _part(ref, packages.photodetector_name, detector, held.kind, shape, nets)
     shape = footprints.multiplexer(mux)
     shared = {str(lead): f"S{i}" for i, lead in enumerate(mux.select)}
     shared |= {str(mux.supply): supply, str(mux.ground): GROUND, str(mux.enable): GROUND}
@@ -93,7 +95,7 @@ def _receiver(design: Design, supply: str) -> Iterator[Component]:
     for which, pin in enumerate(wiring.adc_pins):
         leads = shared | {str(mux.output): pin}
         leads |= {
-            str(mux.inputs[str(cell.channel)]): f"Q{cell.index + 1}"
+            str(mux.inputs[str(cell.channel)]): held.ref(cell.index)
             for cell in reading.cells
             if cell.mux == which
         }

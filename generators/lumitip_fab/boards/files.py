@@ -11,11 +11,11 @@ from lumitip_fab.boards.fab.order import (
     order_files,
 )
 from lumitip_fab.boards.fab.picture import picture_files
-from lumitip_fab.boards.footprints import pad_at
 from lumitip_fab.boards.kicad.project import project_files
 from lumitip_fab.boards.kicad.schematic.carrier import carrier_sheet
 from lumitip_fab.boards.kicad.schematic.files import schematic_files
 from lumitip_fab.boards.model import BoardModel, Net, Placement
+from lumitip_fab.boards.placed import pad_at
 from lumitip_fab.boards.placement import place, refuse_overlaps
 from lumitip_fab.boards.pour import pour
 from lumitip_fab.boards.route import route

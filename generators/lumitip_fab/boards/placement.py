@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 from lumitip_fab.boards import spots
 from lumitip_fab.boards.circuit import GROUND, circuit, roomy
-from lumitip_fab.boards.footprints import courtyard, pad_at
 from lumitip_fab.boards.model import PlacedComponent, Placement
+from lumitip_fab.boards.placed import courtyard, pad_at
 from lumitip_fab.boards.silk.legend import with_legend
 from lumitip_fab.boards.silk.outlines import with_outline
 from lumitip_fab.design import (
@@ -70,13 +70,13 @@ def place(design: Design, finger: Finger) -> Placement:
     plan = circuit(design, finger)
     room = roomy(finger, packages.at_cells(finger))
     parts = {
-        part.ref: with_outline(part, rules, room or part.kind != finger.cell_kind)
+        part.ref: with_outline(part, rules, room or part.kind != finger.cells_hold.kind)
         for part in plan.components
     }
     named = {part.name: part for part in finger.parts}
     for ref, part in named.items():
         parts[ref] = _at(parts[ref], (part.x_mm, part.y_mm), side=_side(part))
-    if finger.cell_kind == "led":
+    if finger.cells_hold.kind == "led":
         _emitter(parts, finger, wiring, packages)
     else:
         _receiver(parts, named, finger, wiring, packages, rules)

@@ -19,7 +19,7 @@ def simulation(design: Design, finger: Finger) -> tuple[Artefact, ...]:
     detectors."""
     wiring, packages = design.wiring, design.packages
     parts = circuit(design, finger).components
-    body = _string if finger.cell_kind == "led" else _channel
+    body = _string if finger.cells_hold.kind == "led" else _channel
     title = design.title.on_boards().name
     lines = (
         f"* {title}, {finger.name}, design {design.reading.design_hash[:8]}",

@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 import shapely
 
-from lumitip_fab.boards.footprints import PlacedPad, placed_pads
 from lumitip_fab.boards.model import SIDES, Placement, Routing, Track
+from lumitip_fab.boards.placed import PlacedPad, placed_pads
 from lumitip_fab.design import Side
 
 BEYOND_MM = (0.15, 0.3, 0.45)  # the edge of pad or via: where each piece ends

@@ -46,7 +46,7 @@ _FLAT = ("TestPoint", "Fiducial", "WirePads", "MountingHole")
 
 def measure_cells(read: Read) -> Iterator[Measurement]:
     """LED or detector i on the front at cell i: at (-x, y) on the emitter, by the facing rule."""
-    letter, sign = read.finger.cell_letter, read.finger.x_sign
+    letter, sign = read.finger.cells_hold.letter, read.finger.cells_hold.x_sign
     cells = read.design.cells
     wanted = np.array([(sign * cell.x_mm, cell.y_mm) for cell in cells])
     found = [read.parts.get(f"{letter}{i + 1}") for i in range(len(cells))]
@@ -238,7 +238,7 @@ def measure_board(outputs: Path, design: Design, name: str) -> Iterator[Measurem
     if isinstance(read, ReadCarrier):
         yield from _measured(read, _OF_CARRIERS)
     else:
-        own = measure_strings if read.finger.cell_kind == "led" else measure_channels
+        own = measure_strings if read.finger.cells_hold.kind == "led" else measure_channels
         yield from _measured(read, (*_OF_FINGERS, own))
 
 

@@ -102,9 +102,9 @@ class Read(ReadBoard):
     def ordered(self, ref: str) -> str:
         """Order number of a part from the catalogue; a resistor's value is read from the board."""
         packages, part = self.design.packages, self.parts.get(ref)
-        lights = self.finger.cell_kind == "led"
+        lights = self.finger.cells_hold.kind == "led"
         entries = {
-            self.finger.cell_letter: packages.at_cells(self.finger),
+            self.finger.cells_hold.letter: packages.at_cells(self.finger),
             "U": packages.multiplexer,
             "C": packages.capacitor,
             "R": packages.string_resistor if lights else packages.pull_up,

@@ -115,7 +115,7 @@ def _is_tip(head: tuple[float, float], ends: list[list[tuple[float, float]]], ti
 
 def _least_cell(read: Read) -> tuple[float, int]:
     """The least share of a cell's outline that is drawn on the front, and which cell it is."""
-    sign = read.finger.x_sign
+    sign = read.finger.cells_hold.x_sign
     cells = read.design.cells
     radius = read.design.grid.pitch_mm / math.sqrt(3)
     angles = np.radians(60 * np.arange(7))
@@ -166,7 +166,7 @@ def _dotted(drawn: Sequence[Line], pads: dict[str, BaseGeometry]) -> set[str]:
 def _misnamed(read: Read) -> Iterator[str]:
     """Names of cells' parts that stand nearer to another cell than to their own."""
     middles = np.array([(cell.x_mm, cell.y_mm) for cell in read.design.cells])
-    middles = middles * (read.finger.x_sign, 1)
+    middles = middles * (read.finger.cells_hold.x_sign, 1)
     for number, word in _names(read):
         nearest = int(np.hypot(*(middles - read.sensor([word.at])[0]).T).argmin()) + 1
         if number != nearest:

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from lumitip.layout import Cell, Layout
 from lumitip_fab.catalogue.electronics import Chip, Led, Multiplexer, Photodetector
 from lumitip_fab.design.boards import (
+    AtCells,
     Board,
     CellInput,
     Connector,
@@ -56,6 +57,7 @@ from lumitip_fab.design.shape import Box, Cubic, Outline, Point, Side, Stack, Ti
 from lumitip_fab.text import board_name, page_name
 
 __all__ = [
+    "AtCells",
     "Board",
     "Bought",
     "Box",

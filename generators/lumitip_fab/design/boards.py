@@ -5,6 +5,7 @@ otherwise.
 """
 
 from dataclasses import dataclass
+from typing import Literal
 
 from lumitip_fab.catalogue.electronics import (
     Capacitor,
@@ -13,7 +14,7 @@ from lumitip_fab.catalogue.electronics import (
     Photodetector,
     Resistor,
 )
-from lumitip_fab.design.shape import Box, Point
+from lumitip_fab.design.shape import Box, Point, Side
 
 
 @dataclass(frozen=True)
@@ -65,7 +66,7 @@ class Part:
     size_x_mm: float
     size_y_mm: float
     height_mm: float
-    side: str
+    side: Side
     """`"front"` (under the silicone) or `"back"`."""
 
     @property
@@ -107,17 +108,26 @@ class Relief:
 
 
 @dataclass(frozen=True)
+class AtCells:
+    """The parts at the cells of a finger."""
+
+    kind: Literal["led", "photodetector"]
+    letter: str
+    x_sign: float
+    """Part i is at this times the x of cell i of the layout: the fingers face each other."""
+
+    def ref(self, cell: int) -> str:
+        """Reference of the part at a cell."""
+        return f"{self.letter}{cell + 1}"
+
+
+@dataclass(frozen=True)
 class Finger:
     """One finger, in its own sensor frame."""
 
     name: str
     """`"emitter"` or `"receiver"`."""
-    cell_kind: str
-    """Kind of the part at each cell: `"led"` or `"photodetector"`."""
-    cell_letter: str
-    """Reference of the part at cell i is this letter and i + 1."""
-    x_sign: float
-    """Cell i is at this times its x in the layout: the fingers face each other."""
+    cells_hold: AtCells
     cells: tuple[Point, ...]
     """LED or photodetector of each cell, in frame order."""
     turned: bool
@@ -189,7 +199,7 @@ class Packages:
 
     def at_cells(self, finger: Finger) -> Led | Photodetector:
         """What emits or detects light on a finger."""
-        return self.led if finger.cell_kind == "led" else self.photodetector
+        return self.led if finger.cells_hold.kind == "led" else self.photodetector
 
 
 @dataclass(frozen=True)

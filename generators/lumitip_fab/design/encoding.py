@@ -75,7 +75,7 @@ def _decoded(value: Any, kind: type[T]) -> T:
         values = {f.name: _decoded(value[f.name], hints[f.name]) for f in fields(kind)}
         return typing.cast(T, kind(**values))
     arguments = typing.get_args(kind)
-    if isinstance(kind, types.UnionType):
+    if typing.get_origin(kind) in (types.UnionType, typing.Union):
         inner = next(a for a in arguments if a is not type(None))
         return typing.cast(T, None if value is None else _decoded(value, inner))
     if typing.get_origin(kind) is typing.Literal:

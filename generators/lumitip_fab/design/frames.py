@@ -1,7 +1,7 @@
 """Every conversion between coordinate frames, as 4x4 matrices on column vectors, in mm.
 
 - Sensor frame of a finger: gripping face seen with the tip up; x right, y to the tip, z out.
-- Frame of a carrier: see `lumitip_fab.design.carriers`; a holder is printed standing on its end.
+- Frame of a carrier: see `lumitip_fab.design.pcb`; a holder is printed standing on its end.
 - Frame of a flange: see `lumitip_fab.design.mount`; both parts are printed as they are mounted.
 - Mount frame: see `lumitip_fab.design.Mount`; what is bolted on is printed in it,
   standing on h = 0.

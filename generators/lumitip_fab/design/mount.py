@@ -1,4 +1,5 @@
-"""Gripper coupling, closing of the fingers, and the printed flange between robot and gripper."""
+"""Gripper coupling, closing of the fingers, the printed flange between robot and gripper, and the
+holder of a board."""
 
 from dataclasses import dataclass
 

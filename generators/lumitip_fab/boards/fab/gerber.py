@@ -12,9 +12,9 @@ from gerbonara.rs274x import GerberFile
 from gerbonara.utils import MM
 
 from lumitip_fab.boards.fab import gerber_objects as objects
-from lumitip_fab.boards.footprints import PlacedPad, placed_pads
 from lumitip_fab.boards.model import MASK_MM, SIDES, BoardModel, Placement, opening_mm
 from lumitip_fab.boards.outline import EDGE_MM, corners, straight_edges
+from lumitip_fab.boards.placed import PlacedPad, placed_pads
 from lumitip_fab.boards.silk.strokes import silkscreen
 from lumitip_fab.design import Box, Point, Side
 

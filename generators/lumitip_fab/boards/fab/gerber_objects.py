@@ -10,9 +10,9 @@ from gerbonara.graphic_objects import Flash, GraphicObject, Line, Region
 from gerbonara.utils import MM
 from shapely import Polygon
 
-from lumitip_fab.boards.footprints import PlacedPad
 from lumitip_fab.boards.model import Stroke
 from lumitip_fab.boards.outline import fractured
+from lumitip_fab.boards.placed import PlacedPad
 from lumitip_fab.design import Point
 
 

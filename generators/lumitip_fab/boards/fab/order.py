@@ -7,8 +7,8 @@ import zipfile
 from collections.abc import Iterable, Iterator
 
 from lumitip_fab.boards.fab.gerber import gerber_layers, plated_drills, unplated_drills
-from lumitip_fab.boards.footprints import pad_at
 from lumitip_fab.boards.model import BoardModel, Placement
+from lumitip_fab.boards.placed import pad_at
 from lumitip_fab.design import Component, Fab, Finger, Flexible, Led, Packages, Photodetector
 
 Row = dict[str, str]
@@ -160,7 +160,7 @@ def assembly_note(board: Placement, finger: Finger, packages: Packages, fab: Fab
             if board.flexible
             else ()
         ),
-        *_polarity(board, chip, finger.cell_kind),
+        *_polarity(board, chip, finger.cells_hold.kind),
         *_others(board),
         *_ordering(board, fab),
         "Places of the terminals, in mm as in the Gerber files, seen from the front:",

@@ -7,7 +7,6 @@ import numpy as np
 import shapely
 from shapely import Geometry, Polygon
 
-from lumitip_fab.boards.footprints import PlacedPad, placed_pads
 from lumitip_fab.boards.model import (
     CLEARANCE_MM,
     MIN_WIDTH_MM,
@@ -18,6 +17,7 @@ from lumitip_fab.boards.model import (
     Routing,
     fiducial_margin_mm,
 )
+from lumitip_fab.boards.placed import PlacedPad, placed_pads
 from lumitip_fab.boards.verify import DRILL_WALL_MM
 from lumitip_fab.design import Point, Side
 

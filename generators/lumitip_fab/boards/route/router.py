@@ -3,8 +3,8 @@
 import dataclasses
 from collections import defaultdict
 
-from lumitip_fab.boards.footprints import PlacedPad, placed_pads
 from lumitip_fab.boards.model import SIDES, Placement, Routing, Track, Via
+from lumitip_fab.boards.placed import PlacedPad, placed_pads
 from lumitip_fab.boards.route import stamps
 from lumitip_fab.boards.route.kernels import Ints
 from lumitip_fab.boards.route.obstacles import Obstacles, TightError, Wanted, wanted

@@ -5,8 +5,8 @@ import math
 from collections.abc import Iterator
 from itertools import pairwise, product
 
-from lumitip_fab.boards.footprints import courtyard, placed_pads
 from lumitip_fab.boards.model import SIDES, PlacedComponent, Placement, Text
+from lumitip_fab.boards.placed import courtyard, placed_pads
 from lumitip_fab.boards.silk.page import Page, extent
 from lumitip_fab.design import Box, Carrier, Point, Rules, Side
 

@@ -13,8 +13,8 @@ import numpy as np
 import shapely
 from shapely import LineString
 
-from lumitip_fab.boards.footprints import courtyard
 from lumitip_fab.boards.model import PlacedComponent, Text
+from lumitip_fab.boards.placed import courtyard
 from lumitip_fab.boards.silk.page import Clear, Page, extent
 from lumitip_fab.design import Point, Side
 

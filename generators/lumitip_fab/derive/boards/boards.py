@@ -25,8 +25,10 @@ from lumitip_fab.derive.finger.cells import Cells, derive_turned
 from lumitip_fab.derive.finger.stack import foot_half_mm, is_flex
 from lumitip_fab.derive.making.fits import derive_fits
 from lumitip_fab.derive.wiring.wiring import Muxing, Strings
-from lumitip_fab.design import Board, Box, Connector, Finger, Part, Point, Zone
+from lumitip_fab.design import AtCells, Board, Box, Connector, Finger, Part, Point, Zone
 
+LED = AtCells("led", "D", -1.0)
+DETECTOR = AtCells("photodetector", "Q", 1.0)
 NOTCH_BEFORE_PADS_MM = 0.6
 NOTCH_BESIDE_MM = 0.5
 SEAT_CLEARANCE_MM = 1.8  # a wire of 1.5 mm passes on each side of the coupling
@@ -74,8 +76,8 @@ def derive_plan(
     detector_turned = derive_turned(
         p, "receiver.photodetector", p.receiver.photodetector, detector, faults
     )
-    leds = placing.at_cells("D", "led", led, led_turned, _mirrored(cells))
-    detectors = placing.at_cells("Q", "photodetector", detector, detector_turned, _plain(cells))
+    leds = placing.at_cells(LED, led, led_turned, _facing(cells, LED))
+    detectors = placing.at_cells(DETECTOR, detector, detector_turned, _facing(cells, DETECTOR))
     frame = _frame(config, cells, muxing, (*leds, *detectors), faults)
     board = _board(config, frame)
     muxes = placing.multiplexers(config, muxing, frame.parts)
@@ -89,10 +91,8 @@ def derive_plan(
     wires = connectors.place(connectors.emitter_signals(config), True, frame.connector_y_mm)
     emitter = Finger(
         name="emitter",
-        cell_kind="led",
-        cell_letter="D",
-        x_sign=-1.0,
-        cells=_mirrored(cells),
+        cells_hold=LED,
+        cells=_facing(cells, LED),
         turned=led_turned,
         holes=(*((-x, y) for x, y in tip_holes), *rear),
         connector=wires,
@@ -105,10 +105,8 @@ def derive_plan(
     wires = connectors.place(connectors.receiver_signals(muxing), frame.wide, frame.connector_y_mm)
     receiver = Finger(
         name="receiver",
-        cell_kind="photodetector",
-        cell_letter="Q",
-        x_sign=1.0,
-        cells=_plain(cells),
+        cells_hold=DETECTOR,
+        cells=_facing(cells, DETECTOR),
         turned=detector_turned,
         holes=(*tip_holes, *rear),
         connector=wires,
@@ -263,13 +261,10 @@ def _window(wires: Connector) -> Box:
     return Box(first - half, last + half, y - half, y + half)
 
 
-def _plain(cells: Cells) -> tuple[Point, ...]:
-    return tuple(zip(cells.x_mm.tolist(), cells.y_mm.tolist(), strict=True))
-
-
-def _mirrored(cells: Cells) -> tuple[Point, ...]:
+def _facing(cells: Cells, held: AtCells) -> tuple[Point, ...]:
     """Facing rule: in the emitter's own frame, LED i is at (-x_i, y_i)."""
-    return tuple((-x + 0.0, y) for x, y in _plain(cells))
+    x_mm = (held.x_sign * cells.x_mm + 0.0).tolist()
+    return tuple(zip(x_mm, cells.y_mm.tolist(), strict=True))
 
 
 def _flipped(parts: tuple[Part, ...]) -> tuple[Part, ...]:

@@ -1,14 +1,17 @@
 """Packages of the parts, design rules of the copper, PCB fabs, and layers of a flexible board."""
 
 from dataclasses import replace
+from typing import TypeVar
 
 from lumitip_fab.catalogue.ordering import Silk
+from lumitip_fab.catalogue.record import Entry
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards import connectors, placing
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.stack import is_flex
 from lumitip_fab.design import Box, Fab, Flexible, Packages, Rules
 
+E = TypeVar("E", bound=Entry)
 LEAST_RING_MM = 0.1  # copper round the hole of a via
 COMMON_SILK = Silk(text_mm=0.8, line_mm=0.15, gap_mm=0.15)  # where the catalogue has no PCB fab
 
@@ -17,15 +20,20 @@ def derive_packages(config: Input) -> Packages:
     """The parts of the fingers' boards, by their names in the parameter file."""
     p, parts = config.parameters, config.catalogue
     return Packages(
-        led=parts.leds[p.emitter.led],
+        led=_without_texts(parts.leds[p.emitter.led]),
         led_name=p.emitter.led,
-        string_resistor=parts.resistors[p.emitter.resistor],
-        photodetector=parts.photodetectors[p.receiver.photodetector],
+        string_resistor=_without_texts(parts.resistors[p.emitter.resistor]),
+        photodetector=_without_texts(parts.photodetectors[p.receiver.photodetector]),
         photodetector_name=p.receiver.photodetector,
-        pull_up=parts.resistors[p.receiver.resistor],
-        capacitor=parts.capacitors[p.receiver.capacitor],
-        multiplexer=parts.multiplexers[p.receiver.multiplexer],
+        pull_up=_without_texts(parts.resistors[p.receiver.resistor]),
+        capacitor=_without_texts(parts.capacitors[p.receiver.capacitor]),
+        multiplexer=_without_texts(parts.multiplexers[p.receiver.multiplexer]),
     )
+
+
+def _without_texts(entry: E) -> E:
+    """The entry without its texts: an edit of its source must not route the boards again."""
+    return entry.model_copy(update={"source": "-", "title": ""})
 
 
 def derive_rules(config: Input, faults: Diagnostics) -> Rules:

@@ -10,7 +10,7 @@ from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.cells import Cells
 from lumitip_fab.derive.finger.stack import is_flex
 from lumitip_fab.derive.wiring.wiring import Muxing, Strings
-from lumitip_fab.design import Box, Part, Point, Relief
+from lumitip_fab.design import AtCells, Box, Part, Point, Relief
 
 HOLE_CLEARANCE_MM = 0.25
 HOLE_WEB_MM = 0.5  # board left between a hole and its edge
@@ -21,15 +21,13 @@ ZONE_MARGIN_MM = 1.0  # zone for parts to the board's long edges
 COUPLING_GAP_MM = 2.0  # mounting block to a relief
 
 
-def at_cells(
-    letter: str, kind: str, chip: Chip, turned: bool, cells: tuple[Point, ...]
-) -> tuple[Part, ...]:
+def at_cells(held: AtCells, chip: Chip, turned: bool, cells: tuple[Point, ...]) -> tuple[Part, ...]:
     """One part at each cell, named in frame order: D1 or Q1 is cell 0."""
     along, across = chip.over_pads_mm
     size = (across, along) if turned else (along, across)
     return tuple(
-        Part(f"{letter}{i}", kind, x, y, *size, chip.body_mm[2], "front")
-        for i, (x, y) in enumerate(cells, start=1)
+        Part(held.ref(i), held.kind, x, y, *size, chip.body_mm[2], "front")
+        for i, (x, y) in enumerate(cells)
     )
 
 

@@ -59,7 +59,7 @@ def _symbols(board: Placement, finger: Finger, packages: Packages, supply: str) 
     drawn = symbols.hand_drawn()
     wires = next(part for part in board.components if part.kind == "wires")
     drawn |= {supply: symbols.supply(supply), "Wires": symbols.wires(len(wires.nets))}
-    if finger.cell_kind == "led":
+    if finger.cells_hold.kind == "led":
         return drawn | {"LED": symbols.led(packages.led.marked)}
     return drawn | {
         "Phototransistor": symbols.phototransistor(packages.photodetector.marked),
@@ -77,7 +77,7 @@ def _drawn(
     """Name of the paper, and the drawing on it."""
     sheet = Sheet()
     ways = len(parts["J1"].nets)
-    if finger.cell_kind == "led":
+    if finger.cells_hold.kind == "led":
         width, height = fingers.strings_size_mm(wiring)
         paper, _ = paper_for(width, height + fingers.wires_height_mm(ways))
         fingers.draw_strings(sheet, (MARGIN_MM, MARGIN_MM), wiring, parts, supply)
