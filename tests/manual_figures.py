@@ -50,12 +50,14 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
 def _wrong_drawings(outputs: Path, manual: Manual, design: Design) -> list[str]:
     """Pictures other than the file of their name, and those that are missing."""
     names = [finger.name for finger in design.fingers]
-    boards = [*names, *(carrier.name for carrier in design.carriers)]
+    boards = [*names, *(auxiliary.name for auxiliary in design.auxiliary_boards)]
     wanted = {"assembly/receiver_exploded.svg", "assembly/system.svg", "wiring/wiring.svg"}
     wanted |= {f"mask/{name}_mask.svg" for name in names}
     wanted |= {f"boards/{name}/{name}_front.png" for name in boards}
     behind = {f.name for f in design.fingers if any(p.side == "back" for p in f.parts)}
-    behind |= {c.name for c in design.carriers if any(d.side == "back" for d in c.components)}
+    behind |= {
+        c.name for c in design.auxiliary_boards if any(d.side == "back" for d in c.components)
+    }
     wanted |= {f"boards/{name}/{name}_back.png" for name in behind}
     shown = dict(manual.pictures)
     wrong = sorted(wanted ^ shown.keys())

@@ -9,6 +9,7 @@ from acceptance.parts import preset
 from acceptance.trial import Trial, build_file, derive_file, design_folder
 
 CASES = sorted((Path(__file__).parent / "cases").glob("*.toml"))
+BUILT_CASES = sorted((Path(__file__).parent / "cases" / "built").glob("*.toml"))
 BUILT = 3
 """`make bench` builds more of them, and larger boards, which are routed for minutes."""
 MOST_CELLS = 80
@@ -27,6 +28,17 @@ def test_a_design_that_was_refused_is_accepted(case: Path) -> None:
     trial = _derived(case.read_text(encoding="utf-8"), case.stem)
     assert not trial.crash, trial.crash
     assert trial.refusals == ()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("case", BUILT_CASES, ids=lambda case: case.stem)
+def test_a_design_that_failed_a_check_passes_every_check(case: Path) -> None:
+    with design_folder() as folder:
+        file = folder / case.name
+        file.write_text(case.read_text(encoding="utf-8"), encoding="utf-8")
+        trial = build_file(file)
+    assert not trial.crash, trial.crash
+    assert trial.failed == ()
 
 
 def cells(drawn: Design) -> int:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from lumitip_fab.boards.files import board_files, carrier_files
+from lumitip_fab.boards.files import auxiliary_files, board_files
 from lumitip_fab.cli.steps import STEPS
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
@@ -57,7 +57,7 @@ def boards(
 def _write(design: Design, out: Path) -> None:
     (out / "design.json").write_text(design_text(design), encoding="utf-8")
     for task in tasks(STEPS, design):
-        make = {"finger_board": board_files, "other_board": carrier_files}.get(task.step.name)
+        make = {"finger_board": board_files, "other_board": auxiliary_files}.get(task.step.name)
         for artefact in make(design, *task.item) if make else ():
             path = out / artefact.path
             path.parent.mkdir(parents=True, exist_ok=True)

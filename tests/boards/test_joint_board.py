@@ -7,14 +7,14 @@ from pathlib import Path
 import pytest
 
 from damages import failing
-from lumitip_fab.boards.files import carrier_files
+from lumitip_fab.boards.files import auxiliary_files
 from lumitip_fab.derive.boards import components
-from lumitip_fab.design import Box, Carrier, Design
+from lumitip_fab.design import AuxiliaryBoard, Box, Design
 from lumitip_fab.design.encoding import design_text
 
 pytestmark = pytest.mark.slow
 SIGNALS = ("GND", "5V", "SDA", "SCL")
-JOINT = Carrier(
+JOINT = AuxiliaryBoard(
     name="joint",
     title="cable joint",
     title_at=(0.0, 0.0),
@@ -36,8 +36,8 @@ JOINT = Carrier(
 def test_a_board_of_wire_pads_alone_is_made_and_passes(
     designs: Callable[[str], Design], tmp_path: Path
 ) -> None:
-    design = dataclasses.replace(designs("small"), carriers=(JOINT,))
-    for artefact in carrier_files(design, JOINT):
+    design = dataclasses.replace(designs("small"), auxiliary_boards=(JOINT,))
+    for artefact in auxiliary_files(design, JOINT):
         path = tmp_path / artefact.path
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(artefact.data)

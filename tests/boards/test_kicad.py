@@ -19,7 +19,7 @@ from programs import needs
 Boards = Callable[[str], Path]
 SLOW = ("published", "asymmetric", "dense", "mux16", "flex")
 BOARDS = ("emitter", "receiver", "breakout", "flange")
-CARRIERS = BOARDS[2:]
+AUXILIARY_BOARDS = BOARDS[2:]
 MODULE = pytest.param("integrated", "flange", marks=pytest.mark.slow)  # controller on the flange
 EVERY = (
     *(("small", name) for name in BOARDS),
@@ -164,8 +164,10 @@ def test_the_written_fill_is_what_kicad_fills(
         assert (areas[1] - areas[0]).area < MISSING_SHARE * areas[1].area, layer
 
 
-@pytest.mark.parametrize(("preset", "name"), [*(("small", name) for name in CARRIERS), MODULE])
-def test_kicad_finds_no_fault_in_a_carriers_schematic(
+@pytest.mark.parametrize(
+    ("preset", "name"), [*(("small", name) for name in AUXILIARY_BOARDS), MODULE]
+)
+def test_kicad_finds_no_fault_in_an_auxiliary_boards_schematic(
     boards: Boards, kicad: Callable[..., str], tmp_path: Path, preset: str, name: str
 ) -> None:
     sheet = boards(preset) / "boards" / name / f"{name}.kicad_sch"

@@ -10,7 +10,7 @@ import pytest
 import shapely
 from shapely import LineString
 
-from lumitip_fab.boards.files import carrier_files
+from lumitip_fab.boards.files import auxiliary_files
 from lumitip_fab.boards.model import SIDES, Placement, opening_mm
 from lumitip_fab.boards.placed import courtyard, pad_at, placed_pads
 from lumitip_fab.boards.placement import place
@@ -272,9 +272,9 @@ def test_labels_of_a_row_stand_apart(board: Placed) -> None:
         assert all(a.distance(b) >= 0.15 for a, b in combinations(labels, 2))
 
 
-def test_parts_of_a_carrier_that_overlap_are_refused(designs: Callable[[str], Design]) -> None:
+def test_parts_of_a_auxiliary_that_overlap_are_refused(designs: Callable[[str], Design]) -> None:
     d = designs("small")
-    flange = next(carrier for carrier in d.carriers if carrier.name == "flange")
+    flange = next(auxiliary for auxiliary in d.auxiliary_boards if auxiliary.name == "flange")
     (coil,) = (device for device in flange.components if device.ref == "L1")
     wide = dataclasses.replace(coil.footprint, body=Box(-4.0, 4.0, -4.0, 4.0))
     devices = [
@@ -283,4 +283,4 @@ def test_parts_of_a_carrier_that_overlap_are_refused(designs: Callable[[str], De
     ]
     flange = dataclasses.replace(flange, components=tuple(devices))
     with pytest.raises(BuildError, match=r"flange: .*\bL1\b.* overlap: choose smaller"):
-        carrier_files(d, flange)
+        auxiliary_files(d, flange)

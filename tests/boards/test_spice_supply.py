@@ -19,9 +19,9 @@ def _derived(design_dir: Path, preset: str) -> Design:
 
 
 def _netlist(design: Design) -> str:
-    (carrier,) = design.regulated
-    (made,) = supply_simulation(design, carrier)
-    assert made.path == f"boards/{carrier.name}/{carrier.name}.cir"
+    (auxiliary,) = design.regulated
+    (made,) = supply_simulation(design, auxiliary)
+    assert made.path == f"boards/{auxiliary.name}/{auxiliary.name}.cir"
     return made.data.decode()
 
 
@@ -59,8 +59,8 @@ def test_every_part_of_the_output_is_in_the_netlist(design_dir: Path) -> None:
 
 def test_what_else_is_at_the_output_is_no_output_capacitor(design_dir: Path) -> None:
     design = _derived(design_dir, "integrated")
-    (carrier,) = design.regulated
-    there = {d.ref for d in carrier.components if d.kind == "capacitor" and ("1", "5V") in d.nets}
+    (auxiliary,) = design.regulated
+    there = {d.ref for d in auxiliary.components if d.kind == "capacitor" and ("1", "5V") in d.nets}
     assert there == {"C2", "C3", "C5"}, "C5 is of another kind, at the linear regulator's input"
     lines = _netlist(design).splitlines()
     assert [line for line in lines if line.startswith("C") and " 5V " in line] == [
@@ -72,6 +72,6 @@ def test_what_else_is_at_the_output_is_no_output_capacitor(design_dir: Path) -> 
 def test_a_board_without_a_regulator_has_no_netlist(design_dir: Path) -> None:
     design = _derived(design_dir, "published")
     (flange,) = design.regulated
-    assert [c.name for c in design.carriers if c != flange] == ["breakout"]
+    assert [c.name for c in design.auxiliary_boards if c != flange] == ["breakout"]
     names = [task.name for task in tasks(STEPS, design) if task.step.name == "supply_spice"]
     assert names == [f"supply_spice.{flange.name}"]

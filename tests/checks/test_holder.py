@@ -14,7 +14,7 @@ from lumitip_fab.checks import holder as checks
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from lumitip_fab.design.encoding import design_text, read_design
-from lumitip_fab.design.frames import holder_bed_to_carrier
+from lumitip_fab.design.frames import holder_bed_to_auxiliary
 from lumitip_fab.docs.outside import outside
 from lumitip_fab.parts.holder import holder_files
 
@@ -133,7 +133,7 @@ FILES = {"three_mf", "step"}
 @pytest.mark.parametrize("damage", DAMAGES, ids=lambda d: d.__name__)
 def test_a_damage_of_the_holder(damage: Damage, damaged: Path) -> None:
     (holder,) = read_design(damaged / "design.json").holders
-    carve(damaged / HOLDER, damage, np.asarray(holder_bed_to_carrier(holder)))
+    carve(damaged / HOLDER, damage, np.asarray(holder_bed_to_auxiliary(holder)))
     assert failing(damaged, "holder") - FILES == DAMAGES[damage]
 
 
@@ -177,7 +177,7 @@ def test_a_holder_goes_round_a_round_body_alone(design_dir: Path, tmp_path: Path
     for gripper in load(folder / "presets/published.toml").catalogue.grippers:
         file.write_text(f'extends = "published.toml"\n[coupling]\ngripper = "{gripper}"\n')
         design = derive(load(file))
-        assert [carrier.name for carrier in design.carriers] == ["breakout", "flange"]
+        assert [auxiliary.name for auxiliary in design.auxiliary_boards] == ["breakout", "flange"]
         made[gripper] = [(holder.body_mm, holder.body_from) for holder in design.holders]
         told = " ".join(f"{row.quantity} {row.reason}" for row in outside(design))
         assert ("fix the board beside it" in told) == (not design.holders)

@@ -27,10 +27,10 @@ def figures(design: Design) -> Iterator[str]:
         for part in finger.parts:
             at = f"{part.x_mm:.3f},{part.y_mm:.3f}"
             yield f"{finger.name}, {part.name} on the {part.side}: {at}"
-    for carrier in design.carriers:
-        for device in carrier.components:
+    for auxiliary in design.auxiliary_boards:
+        for device in auxiliary.components:
             at = f"{device.x_mm:.3f},{device.y_mm:.3f} at {device.angle_deg:g}°"
-            yield f"{carrier.name}, {device.ref} {device.value} {device.part}: {at}"
+            yield f"{auxiliary.name}, {device.ref} {device.value} {device.part}: {at}"
     for cell in design.reading.cells:
         yield f"cell {cell.index}: multiplexer {cell.mux}, channel {cell.channel}"
     for number, string in enumerate(design.wiring.strings, start=1):

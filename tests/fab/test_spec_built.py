@@ -61,8 +61,8 @@ def test_boards_weigh_by_their_laminate_and_copper(inputs: dict[str, Input]) -> 
     rigid, flex = (derive(inputs[name]).densities for name in ("published", "flex"))
     fr4 = 1.85 + 0.7 * 0.07 / 1.6 * (8.96 - 1.85)
     polyimide = 1.42 + 0.7 * 0.036 / 0.2 * (8.96 - 1.42)
-    assert (rigid.board_g_ml, rigid.carrier_g_ml) == pytest.approx((fr4, fr4), abs=1e-6)
-    assert (flex.board_g_ml, flex.carrier_g_ml) == pytest.approx((polyimide, fr4), abs=1e-6)
+    assert (rigid.board_g_ml, rigid.auxiliary_g_ml) == pytest.approx((fr4, fr4), abs=1e-6)
+    assert (flex.board_g_ml, flex.auxiliary_g_ml) == pytest.approx((polyimide, fr4), abs=1e-6)
 
 
 @pytest.mark.slow

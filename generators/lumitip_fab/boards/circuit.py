@@ -7,6 +7,7 @@ supply ── R1 ──►|── … ──►|── GND            one string
                 └── …  (S0, S1, S2 choose)
 """
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -28,7 +29,6 @@ from lumitip_fab.text import resistor_code
 
 GROUND = "GND"
 SIGNAL, SUPPLY = "signal", "supply"
-_ROOMY_MM = 0.7
 """Gap between parts at cells from which there is room for lines along their sides."""
 
 
@@ -200,15 +200,15 @@ def _polar(chip: Led | Photodetector, **terminals: str) -> tuple[tuple[str, str]
     return ("1", terminals[chip.marked]), ("2", terminals[other])
 
 
-def roomy(finger: Finger, chip: Chip) -> bool:
-    """Whether the parts at the cells are so far apart that lines fit along their sides."""
+def gap_at_cells_mm(finger: Finger, chip: Chip) -> float:
+    """Least gap between parts at neighbouring cells; infinite for a single cell."""
     along, across = chip.over_pads_mm
     size = (across, along) if finger.turned else (along, across)
     first = finger.cells[0]
     gaps = (
         max(abs(x - first[0]) - size[0], abs(y - first[1]) - size[1]) for x, y in finger.cells[1:]
     )
-    return min(gaps, default=_ROOMY_MM) >= _ROOMY_MM
+    return min(gaps, default=math.inf)
 
 
 def net_class(name: str, track_mm: float, rules: Rules) -> NetClass:

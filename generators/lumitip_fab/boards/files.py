@@ -5,26 +5,26 @@ from collections.abc import Callable
 from lumitip_fab.boards.circuit import GROUND, SIGNAL, SUPPLY, net_class
 from lumitip_fab.boards.fab.order import (
     assembly_note,
+    auxiliary_note,
     bom_rows,
-    carrier_note,
     layers_of,
     order_files,
 )
 from lumitip_fab.boards.fab.picture import picture_files
 from lumitip_fab.boards.kicad.project import project_files
-from lumitip_fab.boards.kicad.schematic.carrier import carrier_sheet
+from lumitip_fab.boards.kicad.schematic.auxiliary import auxiliary_sheet
 from lumitip_fab.boards.kicad.schematic.files import schematic_files
 from lumitip_fab.boards.model import BoardModel, Net, Placement
 from lumitip_fab.boards.placed import pad_at
 from lumitip_fab.boards.placement import place, refuse_overlaps
 from lumitip_fab.boards.pour import pour
 from lumitip_fab.boards.route import route
-from lumitip_fab.boards.silk.carrier import with_legend
-from lumitip_fab.boards.silk.outlines import with_outline
+from lumitip_fab.boards.silk.auxiliary import with_legend
+from lumitip_fab.boards.silk.outlines import with_outline, without_crowded_lines
 from lumitip_fab.boards.teardrops import with_teardrops
 from lumitip_fab.boards.verify import require_clean_drc
-from lumitip_fab.design import Box, Carrier, Design, Fab, Finger, Reading, Rules, Title
-from lumitip_fab.design.frames import Matrix, board_page_to_carrier, board_page_to_sensor
+from lumitip_fab.design import AuxiliaryBoard, Box, Design, Fab, Finger, Reading, Rules, Title
+from lumitip_fab.design.frames import Matrix, board_page_to_auxiliary, board_page_to_sensor
 from lumitip_fab.pipeline.artefact import Artefact
 
 
@@ -48,55 +48,57 @@ def board_files(design: Design, finger: Finger) -> tuple[Artefact, ...]:
     )
 
 
-def carrier_files(design: Design, carrier: Carrier) -> tuple[Artefact, ...]:
+def auxiliary_files(design: Design, auxiliary: AuxiliaryBoard) -> tuple[Artefact, ...]:
     """Every file of a board outside the fingers: KiCad project, pictures of both sides, orders.
 
     Raises:
         BuildError: if two parts overlap, a net cannot be routed, a label has no room, or the
             finished copper breaks its rules.
     """
-    bare = _placement(design.title, design.reading, carrier, design.rules)
-    refuse_overlaps(carrier.name, bare.components, "choose smaller parts")
-    model = finished(with_legend(bare, carrier, design.rules))
-    sheet = carrier_sheet(model.placement, carrier)
+    bare = _placement(design.title, design.reading, auxiliary, design.rules)
+    refuse_overlaps(auxiliary.name, bare.components, "choose smaller parts")
+    model = finished(with_legend(bare, auxiliary, design.rules))
+    sheet = auxiliary_sheet(model.placement, auxiliary)
     return model_files(
         model,
         sheet,
-        lambda fab: carrier_note(model.placement, carrier.title, fab),
-        design.stack.carrier_mm,
+        lambda fab: auxiliary_note(model.placement, auxiliary.title, fab),
+        design.stack.auxiliary_mm,
         design.fabs,
-        board_page_to_carrier(design.stack),
-        "carrier",
+        board_page_to_auxiliary(design.stack),
+        "auxiliary",
     )
 
 
-def _hot_loop(carrier: Carrier) -> tuple[Box, ...]:
+def _hot_loop(auxiliary: AuxiliaryBoard) -> tuple[Box, ...]:
     """The box round the middles of the hot loop's pads; none without a regulator."""
-    parts = {part.ref: part for part in carrier.components}
-    places = [pad_at(parts[ref], number) for ref, number in carrier.hot_loop]
+    parts = {part.ref: part for part in auxiliary.components}
+    places = [pad_at(parts[ref], number) for ref, number in auxiliary.hot_loop]
     if not places:
         return ()
     xs, ys = zip(*places, strict=True)
     return (Box(min(xs), max(xs), min(ys), max(ys)),)
 
 
-def _placement(title: Title, reading: Reading, carrier: Carrier, rules: Rules) -> Placement:
-    components = tuple(with_outline(part, rules, roomy=False) for part in carrier.components)
+def _placement(
+    title: Title, reading: Reading, auxiliary: AuxiliaryBoard, rules: Rules
+) -> Placement:
+    outlined = [with_outline(part, rules) for part in auxiliary.components]
     return Placement(
-        name=carrier.name,
+        name=auxiliary.name,
         title=title.on_boards().name,
         revision=title.revision,
         design_hash=reading.design_hash,
-        outline=carrier.box,
-        corner_mm=carrier.corner_mm,
-        holes=carrier.holes,
-        hole_mm=carrier.hole_mm,
-        keep_outs=carrier.keep_outs,
+        outline=auxiliary.box,
+        corner_mm=auxiliary.corner_mm,
+        holes=auxiliary.holes,
+        hole_mm=auxiliary.hole_mm,
+        keep_outs=auxiliary.keep_outs,
         edge_clearance_mm=rules.edge_gap_mm,
-        components=components,
-        ground_only=_hot_loop(carrier),
+        components=without_crowded_lines(outlined, rules),
+        ground_only=_hot_loop(auxiliary),
         nets=tuple(
-            Net(name, SUPPLY if name in carrier.supplies else SIGNAL) for name in carrier.nets
+            Net(name, SUPPLY if name in auxiliary.supplies else SIGNAL) for name in auxiliary.nets
         ),
         classes=(
             net_class(SIGNAL, rules.track_mm, rules),

@@ -5,11 +5,11 @@ import math
 from collections.abc import Sequence
 
 from lumitip_fab.boards import spots
-from lumitip_fab.boards.circuit import GROUND, circuit, roomy
+from lumitip_fab.boards.circuit import GROUND, circuit, gap_at_cells_mm
 from lumitip_fab.boards.model import PlacedComponent, Placement
 from lumitip_fab.boards.placed import courtyard, pad_at
 from lumitip_fab.boards.silk.legend import with_legend
-from lumitip_fab.boards.silk.outlines import with_outline
+from lumitip_fab.boards.silk.outlines import with_outline, without_crowded_lines
 from lumitip_fab.design import (
     Board,
     Box,
@@ -68,9 +68,11 @@ def place(design: Design, finger: Finger) -> Placement:
     title, reading, board = design.title, design.reading, design.board
     wiring, packages, rules = design.wiring, design.packages, design.rules
     plan = circuit(design, finger)
-    room = roomy(finger, packages.at_cells(finger))
+    gap_mm = gap_at_cells_mm(finger, packages.at_cells(finger))
     parts = {
-        part.ref: with_outline(part, rules, room or part.kind != finger.cells_hold.kind)
+        part.ref: with_outline(
+            part, rules, gap_mm if part.kind == finger.cells_hold.kind else math.inf
+        )
         for part in plan.components
     }
     named = {part.name: part for part in finger.parts}
@@ -100,7 +102,7 @@ def place(design: Design, finger: Finger) -> Placement:
         hole_mm=board.hole_mm,
         keep_outs=(),
         edge_clearance_mm=rules.edge_gap_mm,
-        components=tuple(parts.values()),
+        components=without_crowded_lines(tuple(parts.values()), rules),
         nets=plan.nets,
         classes=plan.classes,
         ground=GROUND,

@@ -3,7 +3,15 @@
 from collections.abc import Iterator
 
 from lumitip_fab.boards.circuit import GROUND, circuit
-from lumitip_fab.design import Carrier, Component, Design, Electrical, Finger, Packages, Wiring
+from lumitip_fab.design import (
+    AuxiliaryBoard,
+    Component,
+    Design,
+    Electrical,
+    Finger,
+    Packages,
+    Wiring,
+)
 from lumitip_fab.design.electrical import Regulated
 from lumitip_fab.pipeline.artefact import Artefact
 
@@ -102,7 +110,7 @@ _SHARPNESS = 60  # of the comparator; its edges take about 1/60 of a period
 _DAMPING_OHM, _INTEGRAL_S = 0.6, 1e-4
 
 
-def supply_simulation(design: Design, regulated: Carrier) -> tuple[Artefact, ...]:
+def supply_simulation(design: Design, regulated: AuxiliaryBoard) -> tuple[Artefact, ...]:
     """The netlist of a board's switching regulator."""
     (supply,) = design.electrical.supplies
     title = design.title.on_boards()
@@ -116,8 +124,8 @@ def supply_simulation(design: Design, regulated: Carrier) -> tuple[Artefact, ...
     return (Artefact(path, ("\n".join(lines) + "\n").encode(), frame=""),)
 
 
-def _circuit(carrier: Carrier, regulated: Regulated) -> Iterator[str]:
-    supply, coil_in, output = _nets(carrier)
+def _circuit(auxiliary: AuxiliaryBoard, regulated: Regulated) -> Iterator[str]:
+    supply, coil_in, output = _nets(auxiliary)
     period_ns = 1e6 / regulated.switching_khz
     edge_ns = _EDGE_SHARE * period_ns
     load_ohm = regulated.output_v / regulated.load_a
@@ -126,7 +134,7 @@ def _circuit(carrier: Carrier, regulated: Regulated) -> Iterator[str]:
     yield f"Bswitch drive 0 v=v({supply})*({above})"
     yield f"Rswitch drive {coil_in} {regulated.switch_ohm:.4g}"
     yield f"L1 {coil_in} {output} {regulated.inductance_uh:g}u"
-    for device in carrier.components:
+    for device in auxiliary.components:
         if device.ref in regulated.capacitors:
             high, low = (net if net != GROUND else "0" for _, net in device.nets)
             yield f"{device.ref} {high} {low} {regulated.capacitor_uf:g}u"
@@ -142,10 +150,10 @@ def _circuit(carrier: Carrier, regulated: Regulated) -> Iterator[str]:
     yield f"Bduty duty 0 v=min(max((v(soft)+v(sum)+v(wrong)-{into})/v({supply}),0),0.95)"
 
 
-def _measured(carrier: Carrier, regulated: Regulated) -> Iterator[str]:
+def _measured(auxiliary: AuxiliaryBoard, regulated: Regulated) -> Iterator[str]:
     """`mean_v`, `ripple_mv` and `ripple_a` once it stands; `start_ms` to 95 %, `top_v` and `peak_a`
     of all the time."""
-    _, _, output = _nets(carrier)
+    _, _, output = _nets(auxiliary)
     end_us = 1e3 * (regulated.soft_start_ms + _SETTLE_MS)
     step_ns = _STEP_SHARE * 1e6 / regulated.switching_khz
     window = f"from={end_us - _WINDOW_US - 1:g}u to={end_us - 1:g}u"
@@ -170,14 +178,14 @@ def _measured(carrier: Carrier, regulated: Regulated) -> Iterator[str]:
     )
 
 
-def _nets(carrier: Carrier) -> tuple[str, str, str]:
+def _nets(auxiliary: AuxiliaryBoard) -> tuple[str, str, str]:
     """Nets of the regulator's input, and of its coil's two ends."""
     (input_net,) = (
         net
-        for device in carrier.components
+        for device in auxiliary.components
         for number, net in device.nets
-        if (device.ref, number) == carrier.hot_loop[0]
+        if (device.ref, number) == auxiliary.hot_loop[0]
     )
-    (coil,) = (device for device in carrier.components if device.kind == "inductor")
+    (coil,) = (device for device in auxiliary.components if device.kind == "inductor")
     (_, near), (_, far) = coil.nets
     return input_net, near, far

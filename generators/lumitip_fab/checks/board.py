@@ -9,7 +9,7 @@ from typing import TypeVar
 import numpy as np
 import shapely
 
-from lumitip_fab.checks.board_carrier import (
+from lumitip_fab.checks.board_auxiliary import (
     measure_contact_map,
     measure_edge,
     measure_hot_loop,
@@ -24,8 +24,8 @@ from lumitip_fab.checks.board_circuit import measure_channels, measure_connector
 from lumitip_fab.checks.board_flex import measure_flexible
 from lumitip_fab.checks.board_read import (
     Read,
+    ReadAuxiliary,
     ReadBoard,
-    ReadCarrier,
     middle,
     names_of,
     path_of,
@@ -193,7 +193,7 @@ def _ring_mm(via: Copper) -> float:
 
 READS = ("boards/*.kicad_pcb",)
 
-_Any = TypeVar("_Any", Read, ReadCarrier)
+_Any = TypeVar("_Any", Read, ReadAuxiliary)
 _OF_FINGERS: tuple[Callable[[Read], Iterator[Measurement]], ...] = (
     measure_cells,
     measure_outline,
@@ -206,7 +206,7 @@ _OF_FINGERS: tuple[Callable[[Read], Iterator[Measurement]], ...] = (
     measure_targets,
     measure_flexible,
 )
-_OF_CARRIERS: tuple[Callable[[ReadCarrier], Iterator[Measurement]], ...] = (
+_OF_AUXILIARY_BOARDS: tuple[Callable[[ReadAuxiliary], Iterator[Measurement]], ...] = (
     measure_edge,
     measure_screws,
     measure_lands,
@@ -235,8 +235,8 @@ def measure_board(outputs: Path, design: Design, name: str) -> Iterator[Measurem
         yield unreadable("board.readable", path_of(name), str(error))
         return
     yield read.figure("readable", len(read.board.parts), 1, float("inf"), "parts")
-    if isinstance(read, ReadCarrier):
-        yield from _measured(read, _OF_CARRIERS)
+    if isinstance(read, ReadAuxiliary):
+        yield from _measured(read, _OF_AUXILIARY_BOARDS)
     else:
         own = measure_strings if read.finger.cells_hold.kind == "led" else measure_channels
         yield from _measured(read, (*_OF_FINGERS, own))

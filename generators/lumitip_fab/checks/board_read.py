@@ -1,4 +1,4 @@
-"""`Read` and `ReadCarrier`: a board as its file has it, in the frame of what it is the board of."""
+"""`Read` and `ReadAuxiliary`: a board as its file has it, in the frame of its finger or its own."""
 
 import math
 import re
@@ -15,7 +15,7 @@ from shapely.geometry.base import BaseGeometry
 from lumitip_fab.checks.readers.copper import Clusters
 from lumitip_fab.checks.readers.kicad_board import KicadBoard, Part, Terminal, read_board
 from lumitip_fab.checks.result import Measurement
-from lumitip_fab.design import Carrier, Design, Finger, Point
+from lumitip_fab.design import AuxiliaryBoard, Design, Finger, Point
 from lumitip_fab.design.frames import applied, board_page_to_sensor
 
 _VALUE = re.compile(r"(\d+)([RKM])(\d*)")
@@ -115,24 +115,24 @@ class Read(ReadBoard):
 
 
 @dataclass(frozen=True, eq=False)
-class ReadCarrier(ReadBoard):
-    """The board of a carrier; its own frame stands for the sensor frame."""
+class ReadAuxiliary(ReadBoard):
+    """An auxiliary board; its own frame stands for the sensor frame."""
 
-    carrier: Carrier
+    auxiliary: AuxiliaryBoard
 
     @property
     def name(self) -> str:
         """Name of its folder and its files."""
-        return self.carrier.name
+        return self.auxiliary.name
 
     def ordered(self, ref: str) -> str:
         """Order number of a part."""
-        return next((d.part for d in self.carrier.components if d.ref == ref), "")
+        return next((d.part for d in self.auxiliary.components if d.ref == ref), "")
 
 
 def names_of(design: Design) -> tuple[str, ...]:
     """Names of all boards: fingers first."""
-    return (*(f.name for f in design.fingers), *(c.name for c in design.carriers))
+    return (*(f.name for f in design.fingers), *(c.name for c in design.auxiliary_boards))
 
 
 def path_of(name: str) -> str:
@@ -140,7 +140,7 @@ def path_of(name: str) -> str:
     return f"boards/{name}/{name}.kicad_pcb"
 
 
-def read_any(outputs: Path, design: Design, name: str) -> Read | ReadCarrier:
+def read_any(outputs: Path, design: Design, name: str) -> Read | ReadAuxiliary:
     """The board of a finger, or one beside the fingers.
 
     Raises:
@@ -150,20 +150,22 @@ def read_any(outputs: Path, design: Design, name: str) -> Read | ReadCarrier:
     for finger in design.fingers:
         if finger.name == name:
             return Read(path_of(name), read_board(outputs / path_of(name)), design, finger)
-    return read_carrier(outputs, design, name)
+    return read_auxiliary(outputs, design, name)
 
 
-def read_carrier(outputs: Path, design: Design, name: str) -> ReadCarrier:
-    """The board of a carrier.
+def read_auxiliary(outputs: Path, design: Design, name: str) -> ReadAuxiliary:
+    """An auxiliary board.
 
     Raises:
         OutputError: if its file cannot be read.
-        LookupError: if the design has no such carrier.
+        LookupError: if the design has no such auxiliary board.
     """
-    carrier = next((carrier for carrier in design.carriers if carrier.name == name), None)
-    if carrier is None:
-        raise LookupError(f"no carrier {name!r}")
-    return ReadCarrier(path_of(name), read_board(outputs / path_of(name)), design, carrier)
+    auxiliary = next(
+        (auxiliary for auxiliary in design.auxiliary_boards if auxiliary.name == name), None
+    )
+    if auxiliary is None:
+        raise LookupError(f"no auxiliary board {name!r}")
+    return ReadAuxiliary(path_of(name), read_board(outputs / path_of(name)), design, auxiliary)
 
 
 def ohm(value: str) -> float:

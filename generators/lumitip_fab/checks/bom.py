@@ -116,7 +116,7 @@ def _price(text: str) -> float | None:
 
 
 def _boards(design: Design) -> tuple[str, ...]:
-    return (*(f.name for f in design.fingers), *(c.name for c in design.carriers))
+    return (*(f.name for f in design.fingers), *(c.name for c in design.auxiliary_boards))
 
 
 def _parts(outputs: Path, design: Design) -> Counter[str]:
@@ -162,7 +162,7 @@ def _wrong_parts(rows: tuple[Row, ...], parts: Counter[str], design: Design) -> 
     for row in rows:
         if row.group == "electronics":
             counts[row.part] += round(row.quantity)
-    soldered = any(d.kind == "module" for c in design.carriers for d in c.components)
+    soldered = any(d.kind == "module" for c in design.auxiliary_boards for d in c.components)
     wanted = parts + Counter({} if soldered else {design.controller.title: 1})
     return [
         f"{part}: {counts[part]}, not {wanted[part]}"
@@ -217,7 +217,7 @@ def _each(row: Row, design: Design) -> float | None:
         priced = next((p.each for p in purchase.parts if p.of(row.part)), None)
         return known.get(row.item, priced)
     if row.group == "boards":
-        boxes = {c.name: c.box for c in design.carriers}
+        boxes = {c.name: c.box for c in design.auxiliary_boards}
         box = boxes.get(row.item.removesuffix(" board"), design.board.box)
         bare = purchase.board_each + box.width_mm * box.length_mm / 100 * purchase.board_per_cm2
         return round(bare, 2) if row.item.endswith(" board") else purchase.placing_each

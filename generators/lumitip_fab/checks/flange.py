@@ -12,7 +12,7 @@ import numpy as np
 import shapely
 
 from lumitip_fab.checks import flange_board
-from lumitip_fab.checks.board_read import read_carrier
+from lumitip_fab.checks.board_read import read_auxiliary
 from lumitip_fab.checks.flange_read import REACH_MM, Stacked, heights, hole_walls, measure_strength
 from lumitip_fab.checks.printed import (
     circles,
@@ -56,9 +56,9 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
                 "flange", outputs, subject, lying.bounds, meshes[part].vertices
             )
         try:
-            board = read_carrier(outputs, design, flange.carrier)
+            board = read_auxiliary(outputs, design, flange.auxiliary)
         except (OutputError, LookupError) as error:
-            yield unreadable("flange.readable", f"boards/{flange.carrier}", str(error))
+            yield unreadable("flange.readable", f"boards/{flange.auxiliary}", str(error))
             continue
         if len(meshes) == len(flange_beds(flange)):
             yield from _measured(Stacked(meshes["lower"], meshes["upper"], board, flange, design))

@@ -24,7 +24,7 @@ _NEAR_MM = 2.0
 
 def measure_pocket(of: Stacked) -> Iterator[Measurement]:
     """The board's edge in its pocket, what it lies on, and room for its solder tails."""
-    flange, pcb_mm = of.flange, of.design.stack.carrier_mm
+    flange, pcb_mm = of.flange, of.design.stack.auxiliary_mm
     middle = flange.board_z_mm + pcb_mm / 2
     rings = [shapely.Polygon(ring) for ring in holes_at(of.lower, middle)]
     pocket = max(rings, key=lambda ring: ring.area)
@@ -88,7 +88,7 @@ def measure_contacts(of: Stacked) -> Iterator[Measurement]:
 
 def measure_headers(of: Stacked) -> Iterator[Measurement]:
     """The way out of each header's cable, and room over every part."""
-    front = of.board_z_mm + of.design.stack.carrier_mm
+    front = of.board_z_mm + of.design.stack.auxiliary_mm
     blocked = []
     for ref in of.headers:
         device = _device(of, ref)
@@ -103,7 +103,7 @@ def measure_headers(of: Stacked) -> Iterator[Measurement]:
         )
         blocked += [ref] if np.isfinite(hit).any() else []
     yield of.figure("cables", len(blocked), 0, 0, "headers", "whose way out is blocked")
-    highest = max(d.footprint.height_mm for d in of.board.carrier.components if _in_front(of, d))
+    highest = max(d.footprint.height_mm for d in of.board.auxiliary.components if _in_front(of, d))
     yield of.figure(
         "headroom",
         of.split_mm - front - highest,
@@ -134,12 +134,12 @@ def measure_screws(of: Stacked) -> Iterator[Measurement]:
 
 def bodies(of: Stacked) -> dict[str, solids.Solid]:
     """The board and its parts as boxes, each on the side where the board's file has it."""
-    thick = of.design.stack.carrier_mm
+    thick = of.design.stack.auxiliary_mm
     seat = of.board_z_mm + SIZE_MM / 2
     ring = np.array(of.outline.exterior.coords)[:-1]
     flat = manifold3d.CrossSection([ring], manifold3d.FillRule.EvenOdd)
     found = {"the board": flat.extrude(thick).translate((0.0, 0.0, seat))}
-    for device in of.board.carrier.components:
+    for device in of.board.auxiliary.components:
         height = device.footprint.height_mm
         if height:
             low = seat + thick if _in_front(of, device) else seat - height
@@ -154,7 +154,7 @@ def _in_front(of: Stacked, device: Component) -> bool:
 
 
 def _device(of: Stacked, ref: str) -> Component:
-    return next(d for d in of.board.carrier.components if d.ref == ref)
+    return next(d for d in of.board.auxiliary.components if d.ref == ref)
 
 
 def _footprint(of: Stacked, device: Component) -> shapely.Polygon:

@@ -10,12 +10,12 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
-from lumitip_fab.checks.board_read import ReadCarrier
+from lumitip_fab.checks.board_read import ReadAuxiliary
 from lumitip_fab.checks.printed import Figures, farthest
 from lumitip_fab.checks.readers.solids import Vectors, cast, section
 from lumitip_fab.checks.result import Measurement
 from lumitip_fab.design import Design, Flange, Point
-from lumitip_fab.design.frames import applied, carrier_to_flange, gripper_to_tool
+from lumitip_fab.design.frames import applied, auxiliary_to_flange, gripper_to_tool
 
 CONTACTS = "J1"  # on the board's back, towards the robot
 REACH_MM = 100.0
@@ -29,7 +29,7 @@ class Stacked:
     """Mesh of the lower part."""
     upper: Any
     """Mesh of the upper part."""
-    board: ReadCarrier
+    board: ReadAuxiliary
     flange: Flange
     design: Design
 
@@ -61,7 +61,7 @@ class Stacked:
     def places(self, page: list[Point]) -> Vectors:
         """Places on the board's page, shape `(n, 2)`."""
         on_board = self.board.sensor(page)
-        return applied(carrier_to_flange(self.flange), on_board)[:, :2]
+        return applied(auxiliary_to_flange(self.flange), on_board)[:, :2]
 
     def pads(self, ref: str) -> Vectors:
         """Plated holes of a part of the board."""
@@ -80,7 +80,7 @@ class Stacked:
         """Headers and pads for cables, on the board's front."""
         return tuple(
             d.ref
-            for d in self.board.carrier.components
+            for d in self.board.auxiliary.components
             if d.kind in ("header", "wires") and d.ref != CONTACTS
         )
 

@@ -1,6 +1,6 @@
 """The holder as files: printable, the board's screws meet its holes, and it clips on the gripper.
 
-Everything is measured in the frame of the carrier in it.
+Everything is measured in the frame of the auxiliary board in it.
 """
 
 import math
@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import shapely
 
-from lumitip_fab.checks.board_read import ReadCarrier, read_carrier
+from lumitip_fab.checks.board_read import ReadAuxiliary, read_auxiliary
 from lumitip_fab.checks.printed import (
     Figures,
     circles,
@@ -27,7 +27,7 @@ from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.checks.walls import walls
 from lumitip_fab.design import Design, Fastener, Holder
-from lumitip_fab.design.frames import holder_bed_to_carrier, rotation_y, translation
+from lumitip_fab.design.frames import holder_bed_to_auxiliary, rotation_y, translation
 from lumitip_fab.errors import OutputError
 
 READS = ("holder/*.stl", "holder/*.3mf", "holder/*.step", "boards/*.kicad_pcb")
@@ -50,9 +50,9 @@ class Clip:
     standing: Any
     """Mesh as the file has it."""
     mesh: Any
-    """Mesh in the carrier's frame."""
+    """Mesh in the auxiliary board's frame."""
     holder: Holder
-    board: ReadCarrier
+    board: ReadAuxiliary
     design: Design
 
     def figure(
@@ -73,11 +73,11 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
         subject = f"holder/{holder.name}.stl"
         try:
             standing = solids.read_mesh(outputs / subject)
-            board = read_carrier(outputs, design, holder.carrier)
+            board = read_auxiliary(outputs, design, holder.auxiliary)
         except (OutputError, LookupError) as error:
             yield unreadable("holder.readable", subject, f"{error}")
             continue
-        mesh = solids.moved(standing, holder_bed_to_carrier(holder))
+        mesh = solids.moved(standing, holder_bed_to_auxiliary(holder))
         clip = Clip(subject, standing, mesh, holder, board, design)
         yield clip.figure("readable", len(mesh.faces), 4, math.inf, "triangles")
         yield from _measured(clip)
@@ -127,7 +127,7 @@ def measure_tray(clip: Clip) -> Iterator[Measurement]:
     clearance = holder.clearance_mm + clip.design.printing.fit_mm
     worst = farthest(np.concatenate(gaps), clearance)
     yield clip.figure("tray_gap", worst, clearance - SIZE_MM, clearance + SIZE_MM)
-    rim = clip.mesh.bounds[1][2] - clip.design.stack.carrier_mm
+    rim = clip.mesh.bounds[1][2] - clip.design.stack.auxiliary_mm
     yield clip.figure("rim", rim, -SIZE_MM, SIZE_MM, note="above the board's front")
     floor = _height(clip, np.array([(0.0, y) for y in ys]))
     wanted = -holder.floor_z_mm

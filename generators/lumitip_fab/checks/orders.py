@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from lumitip_fab.checks.board_read import Read, ReadCarrier, names_of, path_of, read_any
+from lumitip_fab.checks.board_read import Read, ReadAuxiliary, names_of, path_of, read_any
 from lumitip_fab.checks.order_layers import Painted, measure_layers, measure_stiffener
 from lumitip_fab.checks.readers.kicad_board import Part
 from lumitip_fab.checks.readers.tables import table, unpacked
@@ -28,7 +28,7 @@ _TERMINALS = re.compile(
 )
 """A row of the assembly note: a part, the terminal at pad 1 and the other, each with its place."""
 _FIRST_PADS = re.compile(r"^(?P<ref>[A-Z]+\d+)  (?P<x>\S+) (?P<y>\S+)$", re.MULTILINE)
-"""A row of a carrier's note: a part and the place of its first pad."""
+"""A row of an auxiliary board's note: a part and the place of its first pad."""
 
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
@@ -78,7 +78,7 @@ def measure_board(outputs: Path, design: Design, name: str) -> Iterator[Measurem
             yield unreadable("orders.readable", path, f"cannot be read: {error!r:.200}")
 
 
-def _parts(path: str, read: Read | ReadCarrier, fab: Fab, files: _Files) -> Iterator[Measurement]:
+def _parts(path: str, read: Read | ReadAuxiliary, fab: Fab, files: _Files) -> Iterator[Measurement]:
     """Bill of materials and placement list against the parts on the board."""
     name = read.name
     bom = _rows(files[f"{name}_bom.csv"], fab.bom)
@@ -112,14 +112,14 @@ def _parts(path: str, read: Read | ReadCarrier, fab: Fab, files: _Files) -> Iter
     yield Measurement("orders.turns", path, float(np.max(turns, initial=0.0)), 0, TURN_DEG, "°")
 
 
-def _turned_by(read: Read | ReadCarrier, row: dict[str, str], part: Part, fab: Fab) -> float:
+def _turned_by(read: Read | ReadAuxiliary, row: dict[str, str], part: Part, fab: Fab) -> float:
     """How far a part would be turned from its pads: from lead 1 along its row to the right; of a
     module, as its land pattern lies."""
     pads = {t.number: t.at for t in part.terminals}
     last = str(max(2, len(pads) // 2))
     dx, dy = np.subtract(pads[last], pads["1"])
     seen = math.degrees(math.atan2(-dy, dx))  # counter-clockwise, from the front
-    if isinstance(read, ReadCarrier):
+    if isinstance(read, ReadAuxiliary):
         seen -= _lying_deg(read, part.ref, last)
     if not part.front:
         seen = 180 - seen if fab.back_from_behind else seen
@@ -128,9 +128,9 @@ def _turned_by(read: Read | ReadCarrier, row: dict[str, str], part: Part, fab: F
     return abs((float(row["angle_deg"]) - seen + 180) % 360 - 180)
 
 
-def _lying_deg(read: ReadCarrier, ref: str, last: str) -> float:
+def _lying_deg(read: ReadAuxiliary, ref: str, last: str) -> float:
     """Angle of the line from pad 1 to another one of a module that is not turned; 0 of the rest."""
-    modules = (d for d in read.carrier.components if d.ref == ref and d.kind == "module")
+    modules = (d for d in read.auxiliary.components if d.ref == ref and d.kind == "module")
     for device in modules:
         at = {land.number: (land.x_mm, land.y_mm) for land in device.footprint.pads}
         dx, dy = np.subtract(at[last], at["1"])
@@ -158,7 +158,7 @@ def _misled(read: Read, note: str) -> Iterator[str]:
             yield part.ref
 
 
-def _ordered(read: Read | ReadCarrier, fab: Fab) -> dict[str, str]:
+def _ordered(read: Read | ReadAuxiliary, fab: Fab) -> dict[str, str]:
     """Layers that a board's zip is to have: a stiffener is drawn for flexible boards alone."""
     bends = isinstance(read, Read) and read.design.board.flexible
     return {key: end for key, end in fab.layers if key != "stiffener" or bends}
@@ -188,9 +188,8 @@ def _untold(note: str, flexible: Flexible, thickness_mm: float, drawn: str) -> I
         yield "its drawing"
 
 
-def _misplaced(read: ReadCarrier, note: str) -> Iterator[str]:
-    """Parts of a carrier whose first pad or side in the assembly note differs from the board
-    has."""
+def _misplaced(read: ReadAuxiliary, note: str) -> Iterator[str]:
+    """Parts of an auxiliary board whose first pad or side differs in the assembly note."""
     behind = re.search(r"^ON THE BACK: (.+?)\. ", note, re.MULTILINE)
     told_behind = set(behind[1].split(", ")) if behind else set()
     first_pads = {m["ref"]: (float(m["x"]), float(m["y"])) for m in _FIRST_PADS.finditer(note)}

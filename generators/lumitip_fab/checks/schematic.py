@@ -15,7 +15,7 @@ READS = ("boards/*.kicad_sch", "boards/*.kicad_pcb")
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     """Every schematic against its board."""
-    names = [finger.name for finger in design.fingers] + [c.name for c in design.carriers]
+    names = [finger.name for finger in design.fingers] + [c.name for c in design.auxiliary_boards]
     for name in names:
         subject = f"boards/{name}/{name}.kicad_sch"
         try:

@@ -10,27 +10,36 @@ from pathlib import Path
 
 import numpy as np
 
+from lumitip.errors import LayoutError
+from lumitip.layout import Layout
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.readers.scene import Scene, read_scene
 from lumitip_fab.checks.readers.solids import Vectors
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.checks.system_drawing import PLACE_MM, measure_drawing, real_bodies, wanted_bodies
-from lumitip_fab.design import Carrier, Design
+from lumitip_fab.design import AuxiliaryBoard, Design
 from lumitip_fab.design.frames import (
     Matrix,
     applied,
-    carrier_to_flange,
+    auxiliary_to_flange,
     flange_beds,
     flange_to_tool,
     gripper_to_tool,
-    holder_bed_to_carrier,
+    holder_bed_to_auxiliary,
     holder_to_tool,
 )
 from lumitip_fab.errors import OutputError
 
-READS = ("assembly/system.*", "assembly/assembly.glb", "flange/*.stl", "holder/*.stl")
+READS = (
+    "assembly/system.*",
+    "assembly/assembly.glb",
+    "layout.json",
+    "flange/*.stl",
+    "holder/*.stl",
+)
 _FILE = "assembly/system.glb"
 _ASSEMBLY = "assembly/assembly.glb"
+_LAYOUT = "layout.json"
 _BODIES = ("bodies", "stack", "place", "fingers", "tcp", "interference", "heights")
 SHARED_MM3 = 0.05
 
@@ -54,9 +63,14 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     yield from _stack(scene, design)
     yield _placed("place", scene, _files(outputs, design), "file or outline")
     yield _placed("fingers", scene, _fingers(outputs, design), "the assembly")
-    tcp = _tcp(scene, design)
-    yield from _centre(tcp, scene, design)
     yield _interference(scene, design)
+    try:
+        tcp = _tcp(scene, Layout.load(outputs / _LAYOUT))
+    except (LayoutError, KeyError) as error:
+        yield from (unreadable(f"system.{name}", _FILE, str(error)) for name in ("tcp", "heights"))
+        yield from measure_drawing(outputs, design, ())
+        return
+    yield from _centre(tcp, scene, design)
     yield from measure_drawing(outputs, design, _heights(scene, design, float(tcp[2])))
 
 
@@ -110,32 +124,32 @@ def _recess_z_mm(scene: Scene) -> float:
 def _files(outputs: Path, design: Design) -> Iterator[tuple[str, Vectors]]:
     """Corners in the tool frame of each printed part, by its file, and of each board, by its
     outline."""
-    carriers = {carrier.name: carrier for carrier in design.carriers}
+    auxiliary_boards = {auxiliary.name: auxiliary for auxiliary in design.auxiliary_boards}
     for flange in design.flanges:
         to_tool = flange_to_tool(design.system)
         for part, bed in flange_beds(flange).items():
             mesh = solids.read_mesh(outputs / f"flange/{flange.name}_{part}.stl")
             yield f"{flange.name}.{part}", applied(to_tool @ bed, mesh.vertices)
-        corners = _corners(carriers[flange.carrier], design)
-        yield f"{flange.name}.board", applied(to_tool @ carrier_to_flange(flange), corners)
+        corners = _corners(auxiliary_boards[flange.auxiliary], design)
+        yield f"{flange.name}.board", applied(to_tool @ auxiliary_to_flange(flange), corners)
     for holder in design.holders:
         if holder.name in design.system.holders:
             to_tool = holder_to_tool(holder, design.system)
             mesh = solids.read_mesh(outputs / f"holder/{holder.name}.stl")
-            standing = to_tool @ holder_bed_to_carrier(holder)
+            standing = to_tool @ holder_bed_to_auxiliary(holder)
             yield f"{holder.name}.tray", applied(standing, mesh.vertices)
-            corners = _corners(carriers[holder.carrier], design)
+            corners = _corners(auxiliary_boards[holder.auxiliary], design)
             yield f"{holder.name}.board", applied(to_tool, corners)
 
 
-def _corners(carrier: Carrier, design: Design) -> Vectors:
-    box = carrier.box
+def _corners(auxiliary: AuxiliaryBoard, design: Design) -> Vectors:
+    box = auxiliary.box
     return np.array(
         [
             (x, y, z)
             for x in (box.x_min_mm, box.x_max_mm)
             for y in (box.y_min_mm, box.y_max_mm)
-            for z in (0.0, design.stack.carrier_mm)
+            for z in (0.0, design.stack.auxiliary_mm)
         ]
     )
 
@@ -174,13 +188,17 @@ def _placed(
     )
 
 
-def _tcp(scene: Scene, design: Design) -> Vectors:
-    """Midway between the middles of both fingers' cells, on their faces."""
+def _tcp(scene: Scene, layout: Layout) -> Vectors:
+    """Midway between both fingers' faces, where `layout.json` has the origin of its cells.
+
+    The origin is the mean of the cells in x, but not in y, where columns are equal or irregular.
+    """
+    up_mm = float(layout.y_mm.mean())
     middles = []
     for letter in ("D", "Q"):
-        cells = [scene.nodes[f"{letter}{i}"] for i in range(1, len(design.cells) + 1)]
+        cells = [scene.nodes[f"{letter}{i}"] for i in range(1, len(layout) + 1)]
         extents = [(node.points_mm.min(axis=0) + node.points_mm.max(axis=0)) / 2 for node in cells]
-        middle = np.mean(extents, axis=0) * (1.0, 1.0, 0.0)
+        middle = np.mean(extents, axis=0) * (1.0, 1.0, 0.0) - (0.0, up_mm, 0.0)
         middles.append(applied(cells[0].to_scene, middle[None])[0])
     return np.asarray(np.mean(middles, axis=0))
 
@@ -194,7 +212,7 @@ def _centre(tcp: Vectors, scene: Scene, design: Design) -> Iterator[Measurement]
         float(tcp[2]),
         *limits,
         "mm",
-        "between the cells, from the robot's tool flange",
+        "origin of layout.json, from the robot's tool flange",
     )
     aside = float(np.hypot(*tcp[:2]))
     yield Measurement("system.tcp", f"{_FILE} aside", aside, 0, PLACE_MM, "mm", "off the axis")

@@ -39,7 +39,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
         rows = read_list(outputs / _LIST)
         boards = {
             name: read_board(outputs / f"boards/{name}/{name}.kicad_pcb")
-            for name in ("emitter", "receiver", *(c.name for c in design.carriers))
+            for name in ("emitter", "receiver", *(c.name for c in design.auxiliary_boards))
         }
     except OutputError as error:
         yield unreadable("wiring.readable", _LIST, str(error))
@@ -109,11 +109,11 @@ def _arrives(row: Row, nets: Nets, design: Design) -> str:
     of the breakout, or at the pads of a module."""
     board, pad = row.end
     pin = pad
-    for carrier in (c for c in design.carriers if c.name == board):
+    for auxiliary in (c for c in design.auxiliary_boards if c.name == board):
         net = nets[board].get(pad)
         pins = {
             name
-            for device in carrier.components
+            for device in auxiliary.components
             if device.kind in ("socket", "module")
             for land, name in zip(device.footprint.pads, device.pins, strict=True)
             if nets[board].get(f"{device.ref}.{land.number}") == net

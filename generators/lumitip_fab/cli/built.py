@@ -41,23 +41,23 @@ def built_rows(out: Path, design: Design) -> tuple[Row, ...]:
 
 def _outside(built: Manifest, design: Design) -> Iterator[Row]:
     """Masses of the printed parts and boards beside the fingers: flange and holder."""
-    carriers = {carrier.name: carrier for carrier in design.carriers}
+    auxiliary_boards = {auxiliary.name: auxiliary for auxiliary in design.auxiliary_boards}
     parts: list[tuple[str, str, tuple[str, ...]]] = [
-        (f"mass of the {h.name}", h.carrier, (f"holder/{h.name}.stl",)) for h in design.holders
+        (f"mass of the {h.name}", h.auxiliary, (f"holder/{h.name}.stl",)) for h in design.holders
     ]
     parts += [
         (
             f"mass of the {f.name}",
-            f.carrier,
+            f.auxiliary,
             tuple(f"flange/{f.name}_{part}.stl" for part in flange_beds(f)),
         )
         for f in design.flanges
     ]
     for what, name, files in parts:
-        box = carriers[name].box
-        board_ml = box.width_mm * box.length_mm * design.stack.carrier_mm / 1000
+        box = auxiliary_boards[name].box
+        board_ml = box.width_mm * box.length_mm * design.stack.auxiliary_mm / 1000
         printed = [(_volume_ml(built, file), design.slicing.of(file)) for file in files]
-        grams = board_ml * design.densities.carrier_g_ml
+        grams = board_ml * design.densities.auxiliary_g_ml
         grams += sum(volume * filament.density_g_ml for volume, filament in printed)
         yield Row(
             what,

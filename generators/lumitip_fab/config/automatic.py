@@ -45,6 +45,7 @@ FIELDS: dict[str, Automatic] = {
     "backing.relief_clearance_mm": Automatic(0.8, "room beside the coupling", 0.05),
     "flex.interface_mm": Automatic(26.0, "land and ramp of the gripper", 0.5),
     "flex.standoff_mm": Automatic(2.0, "plate and nose of the gripper", 0.1),
+    "flex.groove_mm": Automatic(1.5, "printer's line", 0.05),
     "flex.groove_depth_mm": Automatic(0.75, "plate", 0.05),
     "flex.thread_hole_mm": Automatic(2.2, "board round the holes", 0.1),
     "tip.slant_start_mm": Automatic(6.0, "pocket and plate", 0.1),

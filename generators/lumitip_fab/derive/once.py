@@ -122,7 +122,7 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
             ),
             fabs=derive_fabs(config),
             fasteners=fasteners,
-            carriers=(*breakout, *flange),
+            auxiliary_boards=(*breakout, *flange),
             holders=holders,
             flanges=flanges,
             system=derive_system(config, flanges, holders),

@@ -52,18 +52,18 @@ from lumitip_fab.design.mount import (
     ToolContact,
 )
 from lumitip_fab.design.ordering import Bought, Fab, PartPrice, Purchase
-from lumitip_fab.design.pcb import Carrier, Component, Footprint, Note, Pad
+from lumitip_fab.design.pcb import AuxiliaryBoard, Component, Footprint, Note, Pad
 from lumitip_fab.design.shape import Box, Cubic, Outline, Point, Side, Stack, Tip
 from lumitip_fab.text import board_name, page_name
 
 __all__ = [
     "AtCells",
+    "AuxiliaryBoard",
     "Board",
     "Bought",
     "Box",
     "Cable",
     "Cabling",
-    "Carrier",
     "CellInput",
     "Chip",
     "Choice",
@@ -184,7 +184,7 @@ class Design:
     fabs: tuple[Fab, ...]
     fasteners: tuple[Fastener, ...]
     """Every thread that holds something, once."""
-    carriers: tuple[Carrier, ...]
+    auxiliary_boards: tuple[AuxiliaryBoard, ...]
     """Boards outside the fingers."""
     holders: tuple[Holder, ...]
     """Holders of the breakout board; none without that board."""
@@ -207,9 +207,9 @@ class Design:
         return {fastener.name: fastener for fastener in self.fasteners}
 
     @property
-    def regulated(self) -> tuple[Carrier, ...]:
-        """The carriers with a switching regulator."""
-        return tuple(carrier for carrier in self.carriers if carrier.hot_loop)
+    def regulated(self) -> tuple[AuxiliaryBoard, ...]:
+        """The auxiliary boards with a switching regulator."""
+        return tuple(auxiliary for auxiliary in self.auxiliary_boards if auxiliary.hot_loop)
 
     @property
     def heat_steps(self) -> dict[str, HeatStep]:

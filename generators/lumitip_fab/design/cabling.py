@@ -48,7 +48,7 @@ class Terminal:
     """End of a wire."""
 
     board: str
-    """`"emitter"`, `"receiver"`, a carrier such as `"breakout"`, `"controller"` or `"supply"`."""
+    """`"emitter"`, `"receiver"`, an auxiliary board, `"controller"` or `"supply"`."""
     connector: str
     """Such as `"J1"`; empty where a board has single pins."""
     pin: str

@@ -1,7 +1,7 @@
 """Every conversion between coordinate frames, as 4x4 matrices on column vectors, in mm.
 
 - Sensor frame of a finger: gripping face seen with the tip up; x right, y to the tip, z out.
-- Frame of a carrier: see `lumitip_fab.design.pcb`; a holder is printed standing on its end.
+- Frame of an auxiliary board: see `lumitip_fab.design.pcb`; a holder prints standing on its end.
 - Frame of a flange: see `lumitip_fab.design.mount`; both parts are printed as they are mounted.
 - Mount frame: see `lumitip_fab.design.Mount`; what is bolted on is printed in it,
   standing on h = 0.
@@ -80,9 +80,9 @@ def mould_bed_to_sensor(stack: Stack, mould: Mould) -> Matrix:
     return translation(0.0, 0.0, stack.silicone_z_mm + mould.wall_mm) @ rotation_x(180.0)
 
 
-def holder_bed_to_carrier(holder: Holder) -> Matrix:
+def holder_bed_to_auxiliary(holder: Holder) -> Matrix:
     """From the print bed of a holder, which stands on its end at the lowest y, to the frame of
-    the carrier in it: bed x = x, bed y = -z, bed z = y."""
+    the auxiliary board in it: bed x = x, bed y = -z, bed z = y."""
     matrix = translation(0.0, holder.outer.y_min_mm, 0.0)
     matrix[:3, :3] = ((1, 0, 0), (0, 0, 1), (0, -1, 0))
     return matrix
@@ -97,7 +97,7 @@ def flange_beds(flange: Flange) -> dict[str, Matrix]:
     }
 
 
-def carrier_to_flange(flange: Flange) -> Matrix:
+def auxiliary_to_flange(flange: Flange) -> Matrix:
     """From the frame of the board in a flange to that of the flange."""
     return translation(*flange.board_at, flange.board_z_mm)
 
@@ -137,7 +137,7 @@ def flange_to_tool(system: System) -> Matrix:
 
 
 def holder_to_tool(holder: Holder, system: System) -> Matrix:
-    """From the frame of the carrier in a holder to that of the robot's tool flange."""
+    """From the frame of the auxiliary board in a holder to that of the robot's tool flange."""
     middle = (holder.outer.y_min_mm + holder.outer.y_max_mm) / 2
     matrix = translation(0.0, holder.axis_z_mm, system.holder_z_mm - middle)
     matrix[:3, :3] = ((1, 0, 0), (0, 0, -1), (0, 1, 0))
@@ -156,10 +156,10 @@ def board_page_to_sensor(stack: Stack) -> Matrix:
     return translation(-across, down, stack.rim_z_mm) @ rotation_x(180.0)
 
 
-def board_page_to_carrier(stack: Stack) -> Matrix:
-    """From the page of a carrier's board file to its frame, z = 0 on the board's back."""
+def board_page_to_auxiliary(stack: Stack) -> Matrix:
+    """From the page of an auxiliary board's board file to its frame, z = 0 on the board's back."""
     across, down = BOARD_ON_PAGE_MM
-    return translation(-across, down, stack.carrier_mm) @ rotation_x(180.0)
+    return translation(-across, down, stack.auxiliary_mm) @ rotation_x(180.0)
 
 
 def on_board_page(point: Point) -> Point:

@@ -219,7 +219,7 @@ class Densities:
     """Density of the interface that holds a bendable backing."""
     board_g_ml: float
     """Density of the fingers' boards, with copper."""
-    carrier_g_ml: float
+    auxiliary_g_ml: float
     """Density of the boards outside the fingers."""
     part_g_ml: float
     """Density of the small parts on the fingers' boards: moulded or ceramic, as dense as the

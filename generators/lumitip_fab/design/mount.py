@@ -142,7 +142,7 @@ class Flange:
     """Both printed parts of the flange: lower and upper."""
 
     name: str
-    carrier: str
+    auxiliary: str
     """Name of the board in it."""
     coupling: str
     """Name of the coupling in the catalogue."""
@@ -230,9 +230,9 @@ class Flange:
 
 @dataclass(frozen=True)
 class Holder:
-    """A printed tray for a carrier on a cradle that clips round the gripper's body.
+    """A printed tray for an auxiliary board on a cradle that clips round the gripper's body.
 
-    In the carrier's frame, z = 0 on the back of the board and out of its front: the body's axis
+    In the board's frame, z = 0 on the back of the board and out of its front: the body's axis
     runs along y at `axis_z_mm`. It is printed standing on its end at the lowest y. Sizes are as
     drawn: the printer's fit is in what board, body, screws and nuts go into.
 
@@ -248,7 +248,7 @@ class Holder:
     """
 
     name: str
-    carrier: str
+    auxiliary: str
     """Name of the board in it."""
     tray: Box
     """Inside of the tray, open at both ends along y."""

@@ -71,7 +71,7 @@ class Component:
 
 @dataclass(frozen=True)
 class Note:
-    """A line that is printed on a carrier's front."""
+    """A line that is printed on an auxiliary board's front."""
 
     text: str
     at: Point
@@ -81,7 +81,7 @@ class Note:
 
 
 @dataclass(frozen=True)
-class Carrier:
+class AuxiliaryBoard:
     """A board with everything on it: what its files must hold."""
 
     name: str

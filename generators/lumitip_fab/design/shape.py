@@ -73,7 +73,7 @@ class Stack:
     film_mm: float
     sunk: bool
     """Whether the board lies in a pocket of the plate, not on its front."""
-    carrier_mm: float
+    auxiliary_mm: float
     """Thickness of the boards outside the fingers."""
 
     @property

@@ -60,7 +60,7 @@ def electronics(design: Design, files: Files) -> Iterator[Line]:
         yield Line("electronics", item, maker, part, boards, sum(where.values()), "piece", each)
     yield from _pieces(purchase, "electronics")
     boxes = {f.name: design.board.box for f in design.fingers}
-    boxes |= {c.name: c.box for c in design.carriers}
+    boxes |= {c.name: c.box for c in design.auxiliary_boards}
     for name, box in boxes.items():
         each = purchase.bare_board_each(box)
         size = f"{box.width_mm:g} x {box.length_mm:g} mm"

@@ -116,10 +116,12 @@ print the rest.
 
 
 def _boards(design: Design, files: Files) -> str:
-    names = ("emitter", "receiver", *(carrier.name for carrier in design.carriers))
+    names = ("emitter", "receiver", *(auxiliary.name for auxiliary in design.auxiliary_boards))
     behind = any(part.side == "back" for part in design.emitter.parts)
     backs = ["emitter"] if behind else []
-    backs += [c.name for c in design.carriers if any(d.side == "back" for d in c.components)]
+    backs += [
+        c.name for c in design.auxiliary_boards if any(d.side == "back" for d in c.components)
+    ]
     sides = [*((name, "front") for name in names), *((name, "back") for name in backs)]
     pictures = "\n".join(
         f"![The {name} board, {side}](boards/{name}/{name}_{side}.png)"
@@ -194,7 +196,7 @@ def _held(design: Design) -> str:
             "The controller's board goes into `holder/holder.3mf`, whose arms clip round the "
             "gripper.\n"
         )
-    if any(carrier.name == "breakout" for carrier in design.carriers):
+    if any(auxiliary.name == "breakout" for auxiliary in design.auxiliary_boards):
         return (
             f"Fix the controller's board beside the gripper: the body of {design.mount.title} "
             "is not round, so there is no holder for it (`holder.body_mm`).\n"
@@ -229,7 +231,7 @@ def _run(design: Design) -> str:
 def _loading(design: Design) -> str:
     """The first step: a module has no bootloader yet."""
     upload = "open `firmware/firmware.ino` in the Arduino IDE and upload it"
-    if any(device.kind == "module" for c in design.carriers for device in c.components):
+    if any(device.kind == "module" for c in design.auxiliary_boards for device in c.components):
         return (
             "Load the bootloader over J7 of the flange's board, solder a USB cable to J6, then\n"
             f"   {upload}; `firmware/README.md` has the steps."

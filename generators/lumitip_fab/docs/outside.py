@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from lumitip_fab.design import Carrier, Design, Flange, Holder
+from lumitip_fab.design import AuxiliaryBoard, Design, Flange, Holder
 from lumitip_fab.design.electrical import Regulated
 
 
@@ -20,22 +20,22 @@ class Row:
 
 def outside(design: Design) -> Iterator[Row]:
     """Rows of the boards and printed parts that the design has."""
-    for carrier in design.carriers:
-        if carrier.name == "breakout":
-            yield from _breakout(carrier)
+    for auxiliary in design.auxiliary_boards:
+        if auxiliary.name == "breakout":
+            yield from _breakout(auxiliary)
         else:
-            yield from _flange(carrier)
+            yield from _flange(auxiliary)
     for supply in design.electrical.supplies:
         yield from _regulated(supply)
-    if any(carrier.name == "breakout" for carrier in design.carriers):
+    if any(auxiliary.name == "breakout" for auxiliary in design.auxiliary_boards):
         yield from _held(design)
     for flange in design.flanges:
         yield from _stack(flange)
 
 
-def _breakout(carrier: Carrier) -> Iterator[Row]:
-    box = carrier.box
-    spacing = carrier.holes[1][0] - carrier.holes[0][0]
+def _breakout(auxiliary: AuxiliaryBoard) -> Iterator[Row]:
+    box = auxiliary.box
+    spacing = auxiliary.holes[1][0] - auxiliary.holes[0][0]
     yield Row(
         "controller breakout",
         "45.7 x 33.0 mm",
@@ -50,15 +50,15 @@ def _breakout(carrier: Carrier) -> Iterator[Row]:
     )
 
 
-def _flange(carrier: Carrier) -> Iterator[Row]:
-    box = carrier.box
+def _flange(auxiliary: AuxiliaryBoard) -> Iterator[Row]:
+    box = auxiliary.box
     yield Row(
         "board of the flange",
         "32.8 x 63.5 mm",
         f"{box.width_mm:.1f} x {box.length_mm:.1f} mm",
         "a rectangle with round corners; published: one side is an arc",
     )
-    values = {device.ref: device.value for device in carrier.components}
+    values = {device.ref: device.value for device in auxiliary.components}
     yield Row(
         "its supply",
         "AP63205, 4.7 uH, 10 uF, 2 x 22 uF",

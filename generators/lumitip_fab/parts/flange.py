@@ -41,7 +41,7 @@ def lower_solid(flange: Flange, stack: Stack) -> Solid:
         cylinder(flange.peg_at, flange.peg_mm, split - BEYOND_MM, split + flange.peg_height_mm),
     )
     above = split + BEYOND_MM
-    front = flange.board_z_mm + stack.carrier_mm
+    front = flange.board_z_mm + stack.auxiliary_mm
     floor = flange.board_z_mm
     taken = [box_solid(flange.pocket, floor, above, flange.pocket_corner_mm)]
     taken += [_cut(box, floor - flange.tail_mm, above) for box in flange.reliefs]

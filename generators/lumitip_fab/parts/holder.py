@@ -1,4 +1,4 @@
-"""The holder of a carrier: a tray on a cradle with two arms that clip round the gripper."""
+"""Holder of an auxiliary board: a tray on a cradle, with two arms that clip round the gripper."""
 
 import math
 
@@ -6,7 +6,7 @@ import numpy as np
 from build123d import Edge, Face, Plane, Solid, Wire
 
 from lumitip_fab.design import Box, Design, Holder, Point
-from lumitip_fab.design.frames import Matrix, holder_bed_to_carrier
+from lumitip_fab.design.frames import Matrix, holder_bed_to_auxiliary
 from lumitip_fab.errors import BuildError
 from lumitip_fab.parts import export
 from lumitip_fab.parts.shapes import box_solid, cylinder, placed, polygon_face, prism
@@ -14,17 +14,17 @@ from lumitip_fab.pipeline.artefact import Artefact
 
 BEYOND_MM = 1.0  # how far a cutter reaches past what it cuts
 _ALONG_Y = np.array([[1.0, 0, 0, 0], [0, 0, -1.0, 0], [0, 1.0, 0, 0], [0, 0, 0, 1.0]])
-"""From a section's frame (x, z, -y) to the carrier's."""
+"""From a section's frame (x, z, -y) to the auxiliary board's."""
 
 
 def holder_files(_design: Design, holder: Holder) -> tuple[Artefact, ...]:
     """The holder: STEP in its board's frame, STL and 3MF standing on the bed."""
-    solid, bed = holder_solid(holder), holder_bed_to_carrier(holder)
-    return export.part_files(f"holder/{holder.name}", solid, bed, "carrier")
+    solid, bed = holder_solid(holder), holder_bed_to_auxiliary(holder)
+    return export.part_files(f"holder/{holder.name}", solid, bed, "auxiliary")
 
 
 def holder_solid(holder: Holder) -> Solid:
-    """The holder in its carrier's frame.
+    """The holder in its auxiliary board's frame.
 
     Raises:
         BuildError: if the kernel does not make one valid solid of it.
@@ -83,7 +83,7 @@ def _arm(holder: Holder, side: int) -> Solid:
 
 
 def _at_axis(holder: Holder) -> Matrix:
-    """From a section's frame with the axis at its origin to the carrier's."""
+    """From a section's frame with the axis at its origin to the auxiliary board's."""
     matrix = _ALONG_Y.copy()
     matrix[2, 3] = holder.axis_z_mm
     return matrix

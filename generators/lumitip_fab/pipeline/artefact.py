@@ -24,7 +24,7 @@ class Artefact:
     to_sensor: Matrix = field(default_factory=lambda: np.eye(4))
     """From the file's own frame to its finger's sensor frame, or to `frame` (4x4, mm)."""
     frame: str = "sensor"
-    """Name of the frame that `to_sensor` leads to: `"sensor"`, `"gripper"`, `"carrier"`,
+    """Name of the frame that `to_sensor` leads to: `"sensor"`, `"gripper"`, `"auxiliary"`,
     `"flange"`, `"tool"` (the robot's tool flange) or `""` for none."""
     facts: Facts = field(default_factory=dict)
     """Figures that other steps need, so that none of them parses the file."""

@@ -8,14 +8,14 @@ import numpy as np
 import trimesh
 from numpy.typing import NDArray
 
-from lumitip_fab.design import Carrier, Design, Finger, Flange, Holder, Stack, System
+from lumitip_fab.design import AuxiliaryBoard, Design, Finger, Flange, Holder, Stack, System
 from lumitip_fab.design.frames import (
     Matrix,
-    carrier_to_flange,
+    auxiliary_to_flange,
     flange_beds,
     flange_to_tool,
     gripper_to_tool,
-    holder_bed_to_carrier,
+    holder_bed_to_auxiliary,
     holder_to_tool,
 )
 from lumitip_fab.parts.surface import Mesh
@@ -105,14 +105,14 @@ def system_files(design: Design, files: Files) -> tuple[Artefact, ...]:
     """Printed parts, boards and the assembly of the fingers: GLB in the tool frame, and an
     exploded drawing."""
     stack, mount, system = design.stack, design.mount, design.system
-    boards = {carrier.name: carrier for carrier in design.carriers}
+    boards = {auxiliary.name: auxiliary for auxiliary in design.auxiliary_boards}
     groups: list[Group] = []
     for flange in design.flanges:
-        groups += _robot_side(files, flange, boards[flange.carrier], stack, system)
+        groups += _robot_side(files, flange, boards[flange.auxiliary], stack, system)
     groups.append(Group("gripper", _raised(system.gripper_z_mm), (_envelope(system),)))
     for holder in design.holders:
         if holder.name in system.holders:
-            groups.append(_held(files, holder, boards[holder.carrier], stack, system))
+            groups.append(_held(files, holder, boards[holder.auxiliary], stack, system))
     to_tool = gripper_to_tool(stack, mount, design.closing, system)
     scene = trimesh.load(io.BytesIO(files.read("assembly/assembly.glb")), file_type="glb")
     groups += [_finger(scene, finger, to_tool) for finger in design.fingers]
@@ -126,7 +126,7 @@ def system_files(design: Design, files: Files) -> tuple[Artefact, ...]:
 
 
 def _robot_side(
-    files: Files, flange: Flange, carrier: Carrier, stack: Stack, system: System
+    files: Files, flange: Flange, auxiliary: AuxiliaryBoard, stack: Stack, system: System
 ) -> Iterator[Group]:
     """The robot's tool flange, the coupling, and the printed flange round its board."""
     robot = disc(system.robot_mm, -ROBOT_MM, 0.0)
@@ -140,9 +140,9 @@ def _robot_side(
         )
         for part in beds
     }
-    board = Body(f"{flange.name}.board", _board(carrier, stack), COLOURS["board"])
+    board = Body(f"{flange.name}.board", _board(auxiliary, stack), COLOURS["board"])
     yield Group(f"{flange.name}_lower", to_tool @ beds["lower"], (parts["lower"],))
-    yield Group(f"{flange.name}_board", to_tool @ carrier_to_flange(flange), (board,))
+    yield Group(f"{flange.name}_board", to_tool @ auxiliary_to_flange(flange), (board,))
     yield Group(f"{flange.name}_upper", to_tool @ beds["upper"], (parts["upper"],))
 
 
@@ -155,12 +155,14 @@ def _envelope(system: System) -> Body:
     )
 
 
-def _held(files: Files, holder: Holder, carrier: Carrier, stack: Stack, system: System) -> Group:
+def _held(
+    files: Files, holder: Holder, auxiliary: AuxiliaryBoard, stack: Stack, system: System
+) -> Group:
     """A holder with its board, in the board's frame."""
-    printed = _moved(_stl(files, f"holder/{holder.name}.stl"), holder_bed_to_carrier(holder))
+    printed = _moved(_stl(files, f"holder/{holder.name}.stl"), holder_bed_to_auxiliary(holder))
     bodies = (
         Body(f"{holder.name}.tray", printed, COLOURS["holder"]),
-        Body(f"{holder.name}.board", _board(carrier, stack), COLOURS["board"]),
+        Body(f"{holder.name}.board", _board(auxiliary, stack), COLOURS["board"]),
     )
     return Group(holder.name, holder_to_tool(holder, system), bodies)
 
@@ -183,10 +185,10 @@ def _finger(scene: trimesh.Scene, finger: Finger, to_tool: Matrix) -> Group:
     return Group(finger.name, np.asarray(to_tool @ placed), tuple(bodies))
 
 
-def _board(carrier: Carrier, stack: Stack) -> Mesh:
-    box = carrier.box
+def _board(auxiliary: AuxiliaryBoard, stack: Stack) -> Mesh:
+    box = auxiliary.box
     across, along = (box.x_min_mm, box.x_max_mm), (box.y_min_mm, box.y_max_mm)
-    return block(across, along, carrier.corner_mm, 0.0, stack.carrier_mm)
+    return block(across, along, auxiliary.corner_mm, 0.0, stack.auxiliary_mm)
 
 
 def _stl(files: Files, path: str) -> Mesh:

@@ -219,8 +219,8 @@ def _others(board: Placement) -> Iterator[str]:
     yield ""
 
 
-def carrier_note(board: Placement, title: str, fab: Fab) -> bytes:
-    """The same of a carrier: which pad is the first of each part.
+def auxiliary_note(board: Placement, title: str, fab: Fab) -> bytes:
+    """The same of an auxiliary board: which pad is the first of each part.
 
     Args:
         board: parts in their places.

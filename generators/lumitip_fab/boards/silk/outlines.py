@@ -1,27 +1,69 @@
 """Courtyard and silkscreen outline of each kind of component, by the rules of the board."""
 
+import dataclasses
+from collections.abc import Sequence
+
+import shapely
+from shapely import LineString
+
 from lumitip_fab.boards.model import PlacedComponent, Stroke
+from lumitip_fab.boards.placed import placed, placed_pads
 from lumitip_fab.design import Box, Component, Footprint, Pad, Rules
 
 _BAR_MM = 0.3  # at the first contact
 _NOTCH_MM = 0.4  # of a multiplexer's body
 _DOT_MM = 0.02  # a stroke so short is a dot
 _BARE = ("wires", "test point", "fiducial")
+_MARKED = (
+    "led",
+    "photodetector",
+    "multiplexer",
+    "regulator",
+    "transistor",
+    "socket",
+    "header",
+    "module",
+)
+_ROOMY_MM = 0.7
+_NOISE_MM = 1e-6
 
 
-def with_outline(component: Component, rules: Rules, roomy: bool) -> PlacedComponent:
+def with_outline(component: Component, rules: Rules, gap_mm: float = 0.6) -> PlacedComponent:
     """A component with its courtyard and its outline.
 
     Args:
         component: in its place, or not yet.
         rules: gap between parts, lines and gaps of the silkscreen.
-        roomy: whether there is room round it: for a bracket instead of a bar at its marked end,
-            and for longer lines along its sides.
+        gap_mm: to the next part: from 0.7 mm on, a bracket goes round the marked end, and lines
+            along the sides are longer; where a bar at the marked end has no room, lines stand
+            beside the marked pad.
     """
     return PlacedComponent(
         **vars(component),
         courtyard=_courtyard(component, rules),
-        outline=_outline(component, rules, roomy),
+        outline=_outline(component, rules, gap_mm),
+    )
+
+
+def without_crowded_lines(
+    parts: Sequence[PlacedComponent], rules: Rules
+) -> tuple[PlacedComponent, ...]:
+    """The parts of a board without outlines that are too near to another part's pads. Outlines
+    that mark the first pad stay."""
+    pads = [pad for part in parts for pad in placed_pads(part)]
+    tree = shapely.STRtree([pad.area for pad in pads])
+
+    def clear(part: PlacedComponent, stroke: Stroke) -> bool:
+        line = LineString([placed(part, *point) for point in stroke.points])
+        away_mm = stroke.width_mm / 2 + rules.silk_gap_mm - _NOISE_MM
+        near = tree.query(line, predicate="dwithin", distance=away_mm)
+        return not any(part.side in pads[k].sides for k in near)
+
+    return tuple(
+        part
+        if part.kind in _MARKED or all(clear(part, stroke) for stroke in part.outline)
+        else dataclasses.replace(part, outline=())
+        for part in parts
     )
 
 
@@ -37,12 +79,15 @@ def _courtyard(component: Component, rules: Rules) -> Box:
     return Box(min(xs), max(xs), min(ys), max(ys)).grown(rules.part_gap_mm / 2)
 
 
-def _outline(component: Component, rules: Rules, roomy: bool) -> tuple[Stroke, ...]:
-    shape, kind = component.footprint, component.kind
+def _outline(component: Component, rules: Rules, gap_mm: float) -> tuple[Stroke, ...]:
+    shape, kind, roomy = component.footprint, component.kind, gap_mm >= _ROOMY_MM
     if kind in _BARE:
         return ()
     if kind in ("led", "photodetector"):
-        return (_bracket(shape, rules) if roomy else _bar(shape, rules),)
+        if roomy:
+            return (_bracket(shape, rules),)
+        fits = gap_mm >= 2 * rules.silk_gap_mm + rules.silk_line_mm - _NOISE_MM
+        return (_bar(shape, rules),) if fits else _beside(shape, rules)
     if kind in ("socket", "header"):
         return _socket(shape.body, rules)
     if kind in ("regulator", "transistor"):
@@ -68,6 +113,14 @@ def _bar(shape: Footprint, rules: Rules) -> Stroke:
     x = first.x_mm - first.width_mm / 2 - rules.silk_gap_mm - line / 2
     half = _half_mm(shape)
     return Stroke(((x, -half), (x, half)), line)
+
+
+def _beside(shape: Footprint, rules: Rules) -> tuple[Stroke, ...]:
+    """On both sides of a chip's marked pad."""
+    first, line = shape.pads[0], rules.silk_line_mm
+    x, half = first.x_mm, (first.width_mm - line) / 2
+    y = _half_mm(shape) + rules.silk_gap_mm + line / 2
+    return tuple(Stroke(((x - half, side), (x + half, side)), line) for side in (y, -y))
 
 
 def _half_mm(shape: Footprint) -> float:

@@ -20,7 +20,7 @@ from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards import components, connectors
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.wiring.wiring import Muxing
-from lumitip_fab.design import Box, Carrier, Component, Note, footprints
+from lumitip_fab.design import AuxiliaryBoard, Box, Component, Note, footprints
 
 REGULATED = "5V"
 """Supply of the controller, from the flange's regulator."""
@@ -42,7 +42,9 @@ class Rows:
     wires_mm: float
 
 
-def derive_breakout(config: Input, muxing: Muxing, faults: Diagnostics) -> tuple[Carrier, ...]:
+def derive_breakout(
+    config: Input, muxing: Muxing, faults: Diagnostics
+) -> tuple[AuxiliaryBoard, ...]:
     """The breakout board; none if it is not wanted, or if the controller has no pins to plug."""
     p = config.parameters
     plug = config.parts.controller.board.plug
@@ -55,7 +57,7 @@ def derive_breakout(config: Input, muxing: Muxing, faults: Diagnostics) -> tuple
     half = p.breakout.hole_spacing_mm / 2
     emitter = connectors.emitter_signals(config)
     return (
-        Carrier(
+        AuxiliaryBoard(
             name="breakout",
             title="controller breakout",
             title_at=(0.0, 0.0),

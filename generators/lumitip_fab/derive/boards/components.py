@@ -1,4 +1,4 @@
-"""Components of carriers: catalogue entries in their places, with the nets of their pads."""
+"""Components of auxiliary boards: catalogue entries in their places, with nets at their pads."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace

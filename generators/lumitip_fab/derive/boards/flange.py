@@ -34,7 +34,7 @@ from lumitip_fab.derive.boards.module import Supplies, derive_module
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.mount.fasteners import BOARD_SCREW
 from lumitip_fab.derive.wiring.wiring import Muxing, Strings
-from lumitip_fab.design import Box, Carrier, Component, Point
+from lumitip_fab.design import AuxiliaryBoard, Box, Component, Point
 from lumitip_fab.text import resistor_code
 
 BOX = Box(-15.4, 15.4, -27.0, 27.0)
@@ -49,7 +49,7 @@ FIDUCIALS_AT: tuple[Point, ...] = ((-13.0, -13.5), (13.0, -15.5), (-13.0, 13.5))
 
 def derive_flange(
     config: Input, strings: Strings, muxing: Muxing, faults: Diagnostics
-) -> tuple[Carrier, ...]:
+) -> tuple[AuxiliaryBoard, ...]:
     """The flange's board, with the controller if that is a module; none if it is not wanted."""
     p = config.parameters
     module = config.parts.controller.board.module
@@ -70,7 +70,7 @@ def derive_flange(
     _refuse_lines(config, parts, faults)
     switched = ("SW",) if is_regulated(config) else ()
     return (
-        Carrier(
+        AuxiliaryBoard(
             name="flange",
             title="breakout flange",
             title_at=TITLE_AT,

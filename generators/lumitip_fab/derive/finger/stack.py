@@ -9,7 +9,7 @@ from lumitip_fab.config.parameters import Parameters
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.design import Board, Densities, Outline, Printing, Slicing, Stack, Tip
 
-CARRIER_MM = 1.6  # of the boards outside compliant fingers
+AUXILIARY_MM = 1.6  # of the boards outside compliant fingers
 
 
 def is_flex(p: Parameters) -> bool:
@@ -41,7 +41,7 @@ def behind_mm(p: Parameters) -> float:
 
 def stiff_mm(p: Parameters) -> float:
     """Thickness of the boards outside the fingers."""
-    return CARRIER_MM if is_flex(p) else p.stack.pcb_mm
+    return AUXILIARY_MM if is_flex(p) else p.stack.pcb_mm
 
 
 def foot_half_mm(config: Input, notch_half_mm: float) -> float:
@@ -104,7 +104,7 @@ def derive_stack(config: Input, faults: Diagnostics) -> Stack:
         p.stack.silicone_mm,
         p.stack.film_mm,
         sunk=not is_flex(p),
-        carrier_mm=stiff_mm(p),
+        auxiliary_mm=stiff_mm(p),
     )
 
 
@@ -187,7 +187,7 @@ def derive_densities(config: Input, slicing: Slicing) -> Densities:
         backing_g_ml=p.backing.density_g_ml,
         interface_g_ml=slicing.rigid.density_g_ml,
         board_g_ml=_clad_g_ml(flexible if is_flex(p) else rigid, p.stack.pcb_mm),
-        carrier_g_ml=_clad_g_ml(rigid, stiff_mm(p)),
+        auxiliary_g_ml=_clad_g_ml(rigid, stiff_mm(p)),
         part_g_ml=rigid.density_g_ml,
         silicone_g_ml=parts.silicones[p.mould.silicone].density_g_ml,
         film_g_ml=parts.films[p.mask.film].density_g_ml,

@@ -6,7 +6,16 @@ from lumitip_fab.derive.finger.stack import held_by, stiff_mm
 from lumitip_fab.derive.making.fits import Drawn
 from lumitip_fab.derive.mount.fasteners import BOARD_SCREW
 from lumitip_fab.derive.mount.rules import refuse_flange
-from lumitip_fab.design import Box, Carrier, Component, Flange, Holder, Point, System, ToolContact
+from lumitip_fab.design import (
+    AuxiliaryBoard,
+    Box,
+    Component,
+    Flange,
+    Holder,
+    Point,
+    System,
+    ToolContact,
+)
 
 HEADROOM_MM = 0.3  # over the highest part
 AROUND_MM = 0.5  # round headers, contacts and solder tails
@@ -22,19 +31,19 @@ SINK_PLAY_MM = 0.4  # of a countersunk head, which then lies below the face
 
 
 def derive_flange_body(
-    config: Input, carriers: tuple[Carrier, ...], faults: Diagnostics
+    config: Input, auxiliary_boards: tuple[AuxiliaryBoard, ...], faults: Diagnostics
 ) -> tuple[Flange, ...]:
     """Both printed parts; none without the flange's board."""
-    if not carriers:
+    if not auxiliary_boards:
         return ()
-    (carrier,) = carriers
+    (auxiliary,) = auxiliary_boards
     p, pcb_mm = config.parameters.flange, stiff_mm(config.parameters)
     drawn = Drawn(config.parameters.printer.fit_mm)
     screw = config.catalogue.fasteners[BOARD_SCREW]
     coupling, pogo = config.parts.flange.coupling, config.parts.flange.contacts
     # Towards the robot, and so on the board's back, are the contacts alone.
-    (contacts,) = (device for device in carrier.components if device.side == "back")
-    front = [device for device in carrier.components if device is not contacts]
+    (contacts,) = (device for device in auxiliary.components if device.side == "back")
+    front = [device for device in auxiliary.components if device is not contacts]
     headers = [device for device in front if device.kind in ("header", "wires")]
     board_at = (
         coupling.contacts_at_mm[0] - contacts.x_mm,
@@ -47,7 +56,7 @@ def derive_flange_body(
     pin = next((n for n in PIN_LENGTHS_MM if n - coupling.pin_depth_mm <= room), PIN_LENGTHS_MM[-1])
     flange = Flange(
         name="flange",
-        carrier=carrier.name,
+        auxiliary=auxiliary.name,
         coupling=p.coupling,
         iso=coupling.iso,
         face_mm=coupling.face_mm,
@@ -75,8 +84,8 @@ def derive_flange_body(
         peg_height_mm=PEG_SHARE * p.web_mm,
         board_at=board_at,
         board_z_mm=board_z,
-        pocket=_moved(carrier.box, board_at).grown(drawn.gap_mm(p.clearance_mm)),
-        pocket_corner_mm=carrier.corner_mm + drawn.gap_mm(p.clearance_mm),
+        pocket=_moved(auxiliary.box, board_at).grown(drawn.gap_mm(p.clearance_mm)),
+        pocket_corner_mm=auxiliary.corner_mm + drawn.gap_mm(p.clearance_mm),
         reliefs=tuple(_room(header, board_at) for header in headers),
         tail_mm=p.tail_mm,
         window=_room(contacts, board_at),
@@ -88,9 +97,9 @@ def derive_flange_body(
         contacts_mm=pogo.height_mm,
         stroke_mm=pogo.stroke_mm,
         openings=_openings(headers, board_at, coupling.face_mm / 2),
-        screws=tuple((x + board_at[0], y + board_at[1]) for x, y in carrier.holes),
+        screws=tuple((x + board_at[0], y + board_at[1]) for x, y in auxiliary.holes),
         screw=BOARD_SCREW,
-        screw_mm=drawn.hole_mm(carrier.hole_mm + SCREW_PLAY_MM),
+        screw_mm=drawn.hole_mm(auxiliary.hole_mm + SCREW_PLAY_MM),
         screw_head_mm=screw.countersunk_mm + SINK_PLAY_MM,
         split_z_mm=split_z,
         web_mm=p.web_mm,

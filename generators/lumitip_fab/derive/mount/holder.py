@@ -6,7 +6,7 @@ from lumitip_fab.derive.finger.stack import held_by, stiff_mm
 from lumitip_fab.derive.making.fits import Drawn
 from lumitip_fab.derive.mount.fasteners import screw_length_mm
 from lumitip_fab.derive.mount.rules import refuse_holder, shoulder_deg
-from lumitip_fab.design import Box, Carrier, Holder
+from lumitip_fab.design import AuxiliaryBoard, Box, Holder
 
 NUT_PLAY_MM = 0.2  # nut pockets beyond the nuts
 BOSS_RIM_MM = 1.2  # of a boss round its screw
@@ -14,11 +14,11 @@ BOSS_LENGTH_MM = 7.0
 
 
 def derive_holder(
-    config: Input, carriers: tuple[Carrier, ...], faults: Diagnostics
+    config: Input, auxiliary_boards: tuple[AuxiliaryBoard, ...], faults: Diagnostics
 ) -> tuple[Holder, ...]:
     """The holder of the breakout board; none without that board, or without a round body."""
     p, body = config.parameters, held_by(config).envelope
-    of = next((carrier for carrier in carriers if carrier.name == "breakout"), None)
+    of = next((auxiliary for auxiliary in auxiliary_boards if auxiliary.name == "breakout"), None)
     source, body_from = p.holder.body_mm, "holder.body_mm"
     if source == "gripper":
         body_from = f"{config.title('coupling.gripper')}, {body.confidence}"
@@ -36,7 +36,7 @@ def derive_holder(
     spacing = p.holder.strap_spacing_mm / 2
     holder = Holder(
         name="holder",
-        carrier=of.name,
+        auxiliary=of.name,
         tray=tray,
         outer=Box(tray.x_min_mm - wall, tray.x_max_mm + wall, tray.y_min_mm, tray.y_max_mm),
         top_z_mm=stiff_mm(p),

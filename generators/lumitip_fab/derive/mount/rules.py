@@ -8,7 +8,7 @@ from lumitip_fab.derive.boards.boards import HOLE_TO_EDGE_MM, Plan
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.stack import behind_mm
 from lumitip_fab.derive.making.fits import refuse_touching
-from lumitip_fab.design import Carrier, Flange, Holder, Outline, Point
+from lumitip_fab.design import AuxiliaryBoard, Flange, Holder, Outline, Point
 
 MOST_STRAIN = 0.01  # of the arms while they clip on; PETG yields at some 4 %
 DRILLED_MM = 0.1  # beyond a screw's thread, of the board's holes, truer than printed ones
@@ -94,7 +94,7 @@ def shoulder_deg(x_mm: float, radius_mm: float) -> float:
     return math.degrees(math.asin(min(x_mm / radius_mm, 1.0)))
 
 
-def refuse_holder(config: Input, of: Carrier, holder: Holder, faults: Diagnostics) -> None:
+def refuse_holder(config: Input, of: AuxiliaryBoard, holder: Holder, faults: Diagnostics) -> None:
     """Refuse a tray wider than its cradle, arms that break or do not hold, bosses under tails."""
     _refuse_board_holes(config, of, faults)
     _refuse_nuts(config, holder, faults)
@@ -146,7 +146,7 @@ def refuse_holder(config: Input, of: Carrier, holder: Holder, faults: Diagnostic
     )
 
 
-def _refuse_board_holes(config: Input, of: Carrier, faults: Diagnostics) -> None:
+def _refuse_board_holes(config: Input, of: AuxiliaryBoard, faults: Diagnostics) -> None:
     """Refuse holes of the board that its screws do not go through, or whose heads do."""
     thread = config.parameters.holder.screw
     screw = config.catalogue.fasteners[thread]

@@ -7,7 +7,7 @@ from itertools import permutations
 
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.diagnostics import Diagnostics
-from lumitip_fab.design import Carrier, Component, Electrical, Finger, Mount, Outline, Wiring
+from lumitip_fab.design import AuxiliaryBoard, Component, Electrical, Finger, Mount, Outline, Wiring
 from lumitip_fab.design.cabling import Cable, Cabling, Terminal, Wire
 
 MOST_A_PER_MM2 = 3.0  # in a bundle; a common figure for thin wires without cooling
@@ -29,7 +29,7 @@ class Boards:
 
     emitter: Finger
     receiver: Finger
-    carriers: tuple[Carrier, ...]
+    auxiliary_boards: tuple[AuxiliaryBoard, ...]
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ def derive_cabling(
     fixed = _FIXED | {boards.emitter.connector.signals[1]: _SUPPLY}
     loads = _loads(config, boards.emitter, wiring, electrical)
     ends = _ends(config, boards, wiring)
-    breakout, host = _named(boards.carriers, "breakout"), _host(boards.carriers)
+    breakout, host = _named(boards.auxiliary_boards, "breakout"), _host(boards.auxiliary_boards)
     to_supply_mm = p.controller_mm if host else p.supply_mm
     ways = [
         (boards.emitter, loads.lit, travel_mm + to_supply_mm),
@@ -75,7 +75,7 @@ def derive_cabling(
     ]
     if breakout:
         fed = _wires_of(breakout, "J7")
-        supply = _feeding(boards.carriers, fed)
+        supply = _feeding(boards.auxiliary_boards, fed)
         cables.append(
             _cable(
                 "W3",
@@ -120,11 +120,11 @@ def _loads(config: Input, emitter: Finger, wiring: Wiring, electrical: Electrica
 
 def _ends(config: Input, boards: Boards, wiring: Wiring) -> dict[str, dict[str, Terminal]]:
     """Far end of each signal of each finger, by name."""
-    host = _host(boards.carriers)
+    host = _host(boards.auxiliary_boards)
     if host:
-        carrier, *refs = host
+        auxiliary, *refs = host
         return {
-            finger: {t.name: t for t in _wires_of(carrier, ref)}
+            finger: {t.name: t for t in _wires_of(auxiliary, ref)}
             for finger, ref in zip(("emitter", "receiver"), refs, strict=True)
         }
     selects = {f"S{i}": pin for i, pin in enumerate(wiring.select_pins)}
@@ -142,10 +142,10 @@ def _ends(config: Input, boards: Boards, wiring: Wiring) -> dict[str, dict[str, 
     return {"emitter": supply, "receiver": controller}
 
 
-def _host(carriers: Iterable[Carrier]) -> tuple[Carrier, str, str] | None:
+def _host(auxiliary_boards: Iterable[AuxiliaryBoard]) -> tuple[AuxiliaryBoard, str, str] | None:
     """The board where the fingers' cables end, with its wire pads for emitter and receiver: the
     breakout, or the flange's board if the controller is on it."""
-    breakout, flange = _named(carriers, "breakout"), _named(carriers, "flange")
+    breakout, flange = _named(auxiliary_boards, "breakout"), _named(auxiliary_boards, "flange")
     if breakout:
         return breakout, "J6", "J5"
     if flange and any(device.kind == "module" for device in flange.components):
@@ -158,18 +158,20 @@ def _pads(finger: Finger) -> tuple[Terminal, ...]:
     return tuple(Terminal(finger.name, "J1", str(pad), name, pad) for pad, name in signals)
 
 
-def _wires_of(carrier: Carrier, ref: str) -> tuple[Terminal, ...]:
-    """The wire pads of a connector of a carrier, in their order."""
-    device: Component = next(d for d in carrier.components if d.ref == ref)
+def _wires_of(auxiliary: AuxiliaryBoard, ref: str) -> tuple[Terminal, ...]:
+    """The wire pads of a connector of an auxiliary board, in their order."""
+    device: Component = next(d for d in auxiliary.components if d.ref == ref)
     pads = enumerate(device.nets, 1)
-    return tuple(Terminal(carrier.name, ref, pad, net, place) for place, (pad, net) in pads)
+    return tuple(Terminal(auxiliary.name, ref, pad, net, place) for place, (pad, net) in pads)
 
 
-def _feeding(carriers: Iterable[Carrier], pads: tuple[Terminal, ...]) -> dict[str, Terminal]:
+def _feeding(
+    auxiliary_boards: Iterable[AuxiliaryBoard], pads: tuple[Terminal, ...]
+) -> dict[str, Terminal]:
     """Source of each pad of the breakout: contacts of the flange's header that has most of its
     nets, or a supply."""
     supply = {pad.name: Terminal("supply", "", pad.name, pad.name, pad.order) for pad in pads}
-    flange = _named(carriers, "flange")
+    flange = _named(auxiliary_boards, "flange")
     headers = [d for d in flange.components if d.ref in ("J2", "J3")] if flange else []
     if not headers:
         return supply
@@ -182,8 +184,8 @@ def _feeding(carriers: Iterable[Carrier], pads: tuple[Terminal, ...]) -> dict[st
     }
 
 
-def _named(carriers: Iterable[Carrier], name: str) -> Carrier | None:
-    return next((carrier for carrier in carriers if carrier.name == name), None)
+def _named(auxiliary_boards: Iterable[AuxiliaryBoard], name: str) -> AuxiliaryBoard | None:
+    return next((auxiliary for auxiliary in auxiliary_boards if auxiliary.name == name), None)
 
 
 def _cable(
@@ -249,8 +251,8 @@ def _drill_mm(end: Terminal, boards: Boards) -> float:
     for finger in (boards.emitter, boards.receiver):
         if end.board == finger.name:
             return finger.connector.drill_mm
-    carrier = _named(boards.carriers, end.board)
-    devices = carrier.components if carrier else ()
+    auxiliary = _named(boards.auxiliary_boards, end.board)
+    devices = auxiliary.components if auxiliary else ()
     lands = [land for d in _bare(devices, end) for land in d.footprint.pads]
     return min((land.drill_mm for land in lands), default=math.inf)
 

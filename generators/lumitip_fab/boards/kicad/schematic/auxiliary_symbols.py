@@ -1,4 +1,4 @@
-"""Symbols that only carriers have: supplies and the controller. y up, in mm."""
+"""Symbols that only auxiliary boards have: supplies and the controller. y up, in mm."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Damage the board files of a carrier, and exactly the right checks fail."""
+"""Damage the board files of an auxiliary board, and exactly the right checks fail."""
 
 import re
 from collections.abc import Callable
@@ -160,7 +160,7 @@ def test_a_damage_of_the_breakout(damage: Damage, damaged_boards: Path) -> None:
     assert failing(damaged_boards, "board", "breakout") == DAMAGES[damage]
 
 
-def test_a_missing_carrier_is_told(damaged_boards: Path) -> None:
+def test_a_missing_auxiliary_is_told(damaged_boards: Path) -> None:
     (damaged_boards / BREAKOUT).unlink()
     assert failing(damaged_boards, "board") == {"readable"}
 

@@ -1,4 +1,4 @@
-"""The sheets of carriers: symbols that say what a part is, and pins under their own names."""
+"""Sheets of auxiliary boards: symbols that say what a part is, pins under their own names."""
 
 import re
 from collections.abc import Callable
@@ -45,8 +45,8 @@ def test_pins_have_the_names_of_their_leads(flange: tuple[Design, Node]) -> None
     design, sheet = flange
     shapes = _shapes(sheet)
     drawn = {_properties(symbol)["Reference"]: symbol for symbol in children(sheet, "symbol")}
-    (carrier,) = (c for c in design.carriers if c.name == "flange")
-    named = [d for d in carrier.components if d.nets and d.pins and not d.contacts]
+    (auxiliary,) = (c for c in design.auxiliary_boards if c.name == "flange")
+    named = [d for d in auxiliary.components if d.nets and d.pins and not d.contacts]
     assert {"Q1", "U1"} <= {device.ref for device in named}
     for device in named:
         shape = shapes[words(child(drawn[device.ref], "lib_id"))[0]]

@@ -1,13 +1,13 @@
-"""The sheet of a carrier: every part with the names of its nets at its pins."""
+"""The sheet of an auxiliary board: every part with the names of its nets at its pins."""
 
 import math
 
-from lumitip_fab.boards.kicad.schematic import carrier_symbols, symbols
+from lumitip_fab.boards.kicad.schematic import auxiliary_symbols, symbols
 from lumitip_fab.boards.kicad.schematic.files import sheet_files
 from lumitip_fab.boards.kicad.schematic.sheet import MARGIN_MM, Drawn, Sheet, paper_for
 from lumitip_fab.boards.kicad.sexpr import Node
 from lumitip_fab.boards.model import Placement
-from lumitip_fab.design import Carrier, Component, Point
+from lumitip_fab.design import AuxiliaryBoard, Component, Point
 
 _PITCH_MM = 2.54  # from pin to pin
 _COLUMN_MM = 50.8
@@ -19,20 +19,20 @@ _LETTER_MM = 1.2
 _LABEL_MM = 5.08  # wire from a pin to its label
 
 
-def carrier_sheet(board: Placement, carrier: Carrier) -> dict[str, bytes]:
+def auxiliary_sheet(board: Placement, auxiliary: AuxiliaryBoard) -> dict[str, bytes]:
     """Sheet, symbol library and its table, by their path beside the board.
 
     Args:
         board: its parts, with their nets.
-        carrier: for what their contacts are called.
+        auxiliary board: for what their contacts are called.
     """
     parts = {part.ref: part for part in board.components}
     shapes: dict[str, Node] = {}
     sheet = Sheet()
     x = y = MARGIN_MM
-    sheet.texts.append((carrier.title, (x, y), 2.5))
-    for device in (d for d in carrier.components if d.nets):
-        part, two = parts[device.ref], carrier_symbols.upright(device.kind)
+    sheet.texts.append((auxiliary.title, (x, y), 2.5))
+    for device in (d for d in auxiliary.components if d.nets):
+        part, two = parts[device.ref], auxiliary_symbols.upright(device.kind)
         upright = two is not None or device.kind == "transistor"
         tall = _UPRIGHT_MM if upright else len(device.nets) * _PITCH_MM + _ABOVE_MM
         if y + tall > MARGIN_MM + _TALL_MM:
@@ -67,8 +67,8 @@ def _shape(device: Component) -> tuple[str, Node]:
         return name, symbols.contacts(numbers, _PITCH_MM)
     name = f"{device.kind.capitalize()}_{device.ref}"
     if device.kind == "transistor":
-        return name, carrier_symbols.transistor(device)
-    return name, carrier_symbols.chip(device, _PITCH_MM)
+        return name, auxiliary_symbols.transistor(device)
+    return name, auxiliary_symbols.chip(device, _PITCH_MM)
 
 
 def _middle(x: float, y: float) -> Point:

@@ -10,12 +10,12 @@ import networkx as nx
 import numpy as np
 import shapely
 
-from lumitip_fab.checks.board_read import ReadCarrier
+from lumitip_fab.checks.board_read import ReadAuxiliary
 from lumitip_fab.checks.readers.kicad_board import Part, Terminal
 from lumitip_fab.checks.readers.kicad_silk import Word
 from lumitip_fab.checks.result import Measurement
 from lumitip_fab.design import Box, Component, Pad, Point, ToolContact
-from lumitip_fab.design.frames import applied, carrier_to_flange, on_board_page
+from lumitip_fab.design.frames import applied, auxiliary_to_flange, on_board_page
 
 CONTACTS = "J1"
 PLACE_MM = 0.02
@@ -24,9 +24,9 @@ _SUPPLY, _GROUND = ("F1", 1), ("C1", 2)
 Contacts = Mapping[str, ToolContact]
 
 
-def measure_contact_map(read: ReadCarrier) -> Iterator[Measurement]:
+def measure_contact_map(read: ReadAuxiliary) -> Iterator[Measurement]:
     """Every pad on the contact of its number, and every net on contacts of its own signal alone."""
-    for flange in (f for f in read.design.flanges if f.carrier == read.name):
+    for flange in (f for f in read.design.flanges if f.auxiliary == read.name):
         contacts = {contact.number: contact for contact in flange.contacts}
         part = read.parts.get(CONTACTS)
         pads = {t.number: t for t in (part.terminals if part else ()) if t.copper is not None}
@@ -35,7 +35,7 @@ def measure_contact_map(read: ReadCarrier) -> Iterator[Measurement]:
         both = contacts.keys() & pads.keys()
         numbers = [number for number in contacts if number in both]
         on_board = read.sensor([pads[number].at for number in numbers])
-        places = applied(carrier_to_flange(flange), on_board)[:, :2]
+        places = applied(auxiliary_to_flange(flange), on_board)[:, :2]
         off = [math.dist(place, contacts[n].at) for n, place in zip(numbers, places, strict=True)]
         yield read.figure(
             "contact_places",
@@ -62,7 +62,9 @@ def _joined(contacts: Contacts, nets: Mapping[str, object]) -> Iterator[str]:
             yield f"contacts {', '.join(numbers)} join {' and '.join(carried)}"
 
 
-def _led(read: ReadCarrier, contacts: Contacts, groups: Mapping[str, int | None]) -> Iterator[str]:
+def _led(
+    read: ReadAuxiliary, contacts: Contacts, groups: Mapping[str, int | None]
+) -> Iterator[str]:
     """Contacts that lead to the board's supply or ground and must not, or must and do not, and
     open ones that lead anywhere."""
     ends = {"supply": read.group(*_SUPPLY), "ground": read.group(*_GROUND)}
@@ -88,30 +90,30 @@ NAME_MM = 3.0  # from a pad to the name beside it, at most
 LETTER = 0.6  # width of a letter at least, of its height
 
 
-def measure_edge(read: ReadCarrier) -> Iterator[Measurement]:
-    """The edge against the carrier's box."""
-    box = read.carrier.box
+def measure_edge(read: ReadAuxiliary) -> Iterator[Measurement]:
+    """The edge against the auxiliary board's box."""
+    box = read.auxiliary.box
     left, low, right, high = read.outline.bounds
     (x_min, y_max), (x_max, y_min) = read.sensor([(left, low), (right, high)])
     off = [x_min - box.x_min_mm, x_max - box.x_max_mm, y_min - box.y_min_mm, y_max - box.y_max_mm]
     yield read.figure("outline", np.abs(off).max(), 0, EDGE_MM)
 
 
-def measure_screws(read: ReadCarrier) -> Iterator[Measurement]:
+def measure_screws(read: ReadAuxiliary) -> Iterator[Measurement]:
     """Screw holes: how many, where, how wide."""
-    wanted, found = read.carrier.holes, read.sensor([hole.at for hole in read.holes])
+    wanted, found = read.auxiliary.holes, read.sensor([hole.at for hole in read.holes])
     yield read.figure("hole_count", len(found), len(wanted), len(wanted), "holes")
     if not wanted:
         return
     apart = np.hypot(*(np.array(wanted)[:, None] - found[None]).transpose(2, 0, 1))
     yield read.figure("holes", apart.min(axis=1).max() if found.size else math.nan, 0, HOLE_MM)
-    off = [abs(hole.drill_mm - read.carrier.hole_mm) for hole in read.holes]
+    off = [abs(hole.drill_mm - read.auxiliary.hole_mm) for hole in read.holes]
     yield read.figure("hole_width", max(off, default=math.nan), 0, HOLE_MM, note="from the design")
 
 
-def measure_lands(read: ReadCarrier) -> Iterator[Measurement]:
+def measure_lands(read: ReadAuxiliary) -> Iterator[Measurement]:
     """Every pad of every part: its place, its size and its hole."""
-    devices = {device.ref: device for device in read.carrier.components}
+    devices = {device.ref: device for device in read.auxiliary.components}
     others = [p.ref for p in read.board.parts if p.ref not in devices and _has_copper(p)]
     yield read.count("other_parts", others, "parts")
     off = {ref: _off_mm(read, device, read.parts.get(ref)) for ref, device in devices.items()}
@@ -119,11 +121,11 @@ def measure_lands(read: ReadCarrier) -> Iterator[Measurement]:
     yield read.figure("lands", off[worst], 0, LAND_MM, note=f"worst at {worst}")
 
 
-def measure_joined(read: ReadCarrier) -> Iterator[Measurement]:
+def measure_joined(read: ReadAuxiliary) -> Iterator[Measurement]:
     """Pads that the design joins, followed along the copper, and pads that it does not."""
     pads: dict[str, dict[int | None, list[str]]] = defaultdict(lambda: defaultdict(list))
     owners: dict[int, set[str]] = defaultdict(set)
-    for device in read.carrier.components:
+    for device in read.auxiliary.components:
         for number, net in device.nets:
             group = read.group(device.ref, number)
             pads[net][group].append(f"{device.ref}.{number}")
@@ -139,19 +141,19 @@ def measure_joined(read: ReadCarrier) -> Iterator[Measurement]:
     yield read.count("joined", both, "places")
 
 
-def measure_supplies(read: ReadCarrier) -> Iterator[Measurement]:
+def measure_supplies(read: ReadAuxiliary) -> Iterator[Measurement]:
     """Width of the tracks of supplies, which are wide but where ground's pour does the work."""
-    wide = {net for net in read.carrier.supplies if net != "GND"}
+    wide = {net for net in read.auxiliary.supplies if net != "GND"}
     widths = [c.width_mm for c in read.board.loose if c.kind == "track" and c.net in wide]
     least = read.design.rules.supply_track_mm
     yield read.figure("supply_width", min(widths, default=math.nan), least, math.inf)
 
 
-def measure_hot_loop(read: ReadCarrier) -> Iterator[Measurement]:
+def measure_hot_loop(read: ReadAuxiliary) -> Iterator[Measurement]:
     """The loop in which a regulator's current jumps: its area, and the ground under it."""
-    if not read.carrier.hot_loop:
+    if not read.auxiliary.hot_loop:
         return
-    pads = [_terminal(read, ref, number) for ref, number in read.carrier.hot_loop]
+    pads = [_terminal(read, ref, number) for ref, number in read.auxiliary.hot_loop]
     corners = [pad.at for pad in pads if pad is not None]
     if len(corners) < len(pads):
         yield read.figure("hot_loop", math.nan, 0, HOT_LOOP_MM2, "mm²")
@@ -164,13 +166,13 @@ def measure_hot_loop(read: ReadCarrier) -> Iterator[Measurement]:
     ]
     share = shapely.union_all(ground).intersection(loop).area / loop.area
     yield read.figure("hot_loop_ground", 100 * share, GROUND_SHARE, 100, "%", "of it, on the back")
-    reach = _copper_mm(read, *read.carrier.hot_loop[0], *read.carrier.hot_loop[1])
+    reach = _copper_mm(read, *read.auxiliary.hot_loop[0], *read.auxiliary.hot_loop[1])
     yield read.figure("hot_loop_input", reach, 0, HOT_TRACK_MM, note="of track to the capacitor")
 
 
-def measure_keep_outs(read: ReadCarrier) -> Iterator[Measurement]:
+def measure_keep_outs(read: ReadAuxiliary) -> Iterator[Measurement]:
     """Copper under an antenna, on whatever layer, and how far the antenna is from the edge."""
-    boxes = read.carrier.keep_outs
+    boxes = read.auxiliary.keep_outs
     if not boxes:
         return
     areas = [_on_page(box) for box in boxes]
@@ -186,14 +188,14 @@ def measure_keep_outs(read: ReadCarrier) -> Iterator[Measurement]:
     yield read.figure("antenna_edge", gap, 0, ANTENNA_EDGE_MM, note="to the board's edge")
 
 
-def measure_names(read: ReadCarrier) -> Iterator[Measurement]:
+def measure_names(read: ReadAuxiliary) -> Iterator[Measurement]:
     """The name beside each contact: of all that is printed but references, the nearest, by where
     the word ends and not by its middle."""
-    refs = {device.ref for device in read.carrier.components}
+    refs = {device.ref for device in read.auxiliary.components}
     printed = [w for w in read.board.silk.words if w.front and w.text not in refs]
     lines = [_line(read, word) for word in printed]
     wrong = []
-    for device in (d for d in read.carrier.components if d.contacts):
+    for device in (d for d in read.auxiliary.components if d.contacts):
         for land, name in zip(device.footprint.pads, device.pins, strict=False):
             apart = shapely.distance(lines, shapely.Point(_placed(device, land)))
             nearest = int(apart.argmin()) if apart.size else -1
@@ -202,19 +204,19 @@ def measure_names(read: ReadCarrier) -> Iterator[Measurement]:
     yield read.count("names", wrong, "contacts")
 
 
-def _line(read: ReadCarrier, word: Word) -> shapely.LineString:
+def _line(read: ReadAuxiliary, word: Word) -> shapely.LineString:
     """Along the middle of a word, from its first letter to its last."""
     turn, half = math.radians(word.angle_deg), LETTER * word.height_mm * len(word.text) / 2
     along = half * np.array([math.cos(turn), -math.sin(turn)])  # the page's y points down
     return shapely.LineString(read.sensor([word.at - along, word.at + along]))
 
 
-def _terminal(read: ReadCarrier, ref: str, number: str) -> Terminal | None:
+def _terminal(read: ReadAuxiliary, ref: str, number: str) -> Terminal | None:
     part = read.parts.get(ref)
     return next((t for t in part.terminals if t.number == number), None) if part else None
 
 
-def _copper_mm(read: ReadCarrier, ref: str, number: str, other: str, pad: str) -> float:
+def _copper_mm(read: ReadAuxiliary, ref: str, number: str, other: str, pad: str) -> float:
     """Length of the shortest way along tracks of one side from pad to pad; infinite if none."""
     ends = [_terminal(read, ref, number), _terminal(read, other, pad)]
     areas = [t.copper.area if t and t.copper else shapely.Point() for t in ends]
@@ -251,7 +253,7 @@ def _has_copper(part: Part) -> bool:
     return any(t.copper is not None for t in part.terminals)
 
 
-def _off_mm(read: ReadCarrier, device: Component, part: Part | None) -> float:
+def _off_mm(read: ReadAuxiliary, device: Component, part: Part | None) -> float:
     """Worst place, size or hole of a part's pads; NaN if one is missing or there are more."""
     lands = device.footprint.pads
     there = part is not None and part.front == (device.side == "front")
@@ -263,7 +265,7 @@ def _off_mm(read: ReadCarrier, device: Component, part: Part | None) -> float:
     return float(np.max([_pad_off_mm(read, device, land, found[land.number]) for land in lands]))
 
 
-def _pad_off_mm(read: ReadCarrier, device: Component, land: Pad, pad: Terminal) -> float:
+def _pad_off_mm(read: ReadAuxiliary, device: Component, land: Pad, pad: Terminal) -> float:
     if pad.copper is None:
         return math.nan
     x, y = read.sensor([pad.at])[0]

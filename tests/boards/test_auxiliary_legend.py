@@ -1,35 +1,35 @@
-"""What is printed beside the pads of carriers."""
+"""What is printed beside the pads of auxiliary boards."""
 
 import dataclasses
 from collections.abc import Callable
 
 import pytest
 
-from lumitip_fab.boards.files import carrier_files
+from lumitip_fab.boards.files import auxiliary_files
 from lumitip_fab.design import Design
 from lumitip_fab.errors import BuildError
 from lumitip_fab.pipeline.artefact import Artefact
 
 pytestmark = pytest.mark.slow
 
-CARRIERS = ("breakout", "flange")
+AUXILIARY_BOARDS = ("breakout", "flange")
 
 
 def _made(design: Design, name: str, supply: str) -> tuple[int, tuple[Artefact, ...]]:
-    """A carrier whose supply of 12 V is called otherwise: its pads of that name, and its files."""
-    (carrier,) = (carrier for carrier in design.carriers if carrier.name == name)
+    """An auxiliary board with another name for its 12 V: pads of that name, and the files."""
+    (auxiliary,) = (auxiliary for auxiliary in design.auxiliary_boards if auxiliary.name == name)
     devices = tuple(
         dataclasses.replace(
             device, pins=tuple(supply if pin == "12V" else pin for pin in device.pins)
         )
-        for device in carrier.components
+        for device in auxiliary.components
     )
-    renamed = dataclasses.replace(carrier, components=devices)
-    files = carrier_files(design, renamed)
+    renamed = dataclasses.replace(auxiliary, components=devices)
+    files = auxiliary_files(design, renamed)
     return sum(device.pins.count(supply) for device in devices), files
 
 
-@pytest.mark.parametrize("name", CARRIERS)
+@pytest.mark.parametrize("name", AUXILIARY_BOARDS)
 def test_a_supply_with_a_fraction_is_printed_beside_its_pads(
     name: str, designs: Callable[[str], Design]
 ) -> None:
@@ -39,7 +39,7 @@ def test_a_supply_with_a_fraction_is_printed_beside_its_pads(
     assert board.data.decode().count('(gr_text "13.8V"') == pads > 0
 
 
-@pytest.mark.parametrize("name", CARRIERS)
+@pytest.mark.parametrize("name", AUXILIARY_BOARDS)
 def test_what_helps_a_name_without_room_is_told(
     name: str, designs: Callable[[str], Design]
 ) -> None:

@@ -8,7 +8,7 @@ from itertools import pairwise, product
 from lumitip_fab.boards.model import SIDES, PlacedComponent, Placement, Text
 from lumitip_fab.boards.placed import courtyard, placed_pads
 from lumitip_fab.boards.silk.page import Page, extent
-from lumitip_fab.design import Box, Carrier, Point, Rules, Side
+from lumitip_fab.design import AuxiliaryBoard, Box, Point, Rules, Side
 
 _REMEDY = (
     "fewer digits in supply.voltage_v, shorter names of lines in [flange], or a larger "
@@ -20,19 +20,19 @@ _ASIDE_MM = (0.3, -0.3, 0.6, -0.6, 0.9, -0.9)  # of a name that has no room at i
 _AWAY_MM = 0.4  # from a pad to its name, and from a part to its reference
 
 
-def with_legend(board: Placement, carrier: Carrier, rules: Rules) -> Placement:
+def with_legend(board: Placement, auxiliary: AuxiliaryBoard, rules: Rules) -> Placement:
     """The board with its silkscreen.
 
     Raises:
         BuildError: if a required label has no room; names the label and the place.
     """
     page = Page(board, rules)
-    for note in carrier.notes:
+    for note in auxiliary.notes:
         text = page.text(note.text, note.at, note.height_mm, note.angle_deg)
         _put(page, note.text, note.at, [text])
     parts = {part.ref: part for part in board.components}
     for part in parts.values():
-        _names(page, part, carrier.box)
+        _names(page, part, auxiliary.box)
     for ref, part in parts.items():
         if part.kind == "fiducial":
             continue
@@ -40,12 +40,12 @@ def with_legend(board: Placement, carrier: Carrier, rules: Rules) -> Placement:
         _put(page, ref, (part.x_mm, part.y_mm), places, _APART_MM, part.side)
     lines = (
         (board.title, 2.0),
-        (carrier.title, 1.5),
+        (auxiliary.title, 1.5),
         (f"rev {board.revision}  {board.design_hash[:8]}", 1.5),
     )
     for side in SIDES:
-        if page.block(side, lines, carrier.title_at) is None:
-            page.miss(f"the title on its {side}", 1.0, page.length_mm(carrier.title), (0.0, 0.0))
+        if page.block(side, lines, auxiliary.title_at) is None:
+            page.miss(f"the title on its {side}", 1.0, page.length_mm(auxiliary.title), (0.0, 0.0))
     page.refuse_losses(_REMEDY)
     return dataclasses.replace(board, silk=tuple(page.strokes), texts=tuple(page.texts))
 
