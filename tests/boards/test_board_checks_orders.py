@@ -129,6 +129,34 @@ def note_without_a_part(files: Files) -> None:
     edit(files, "assembly.txt", rb"Q5  .*\n", b"")
 
 
+def thickness_of_the_fabrication_note(files: Files) -> None:
+    edit(files, "fabrication.txt", b"Thickness: 1.6 mm", b"Thickness: 1 mm")
+
+
+def size_of_the_fabrication_note(files: Files) -> None:
+    edit(files, "fabrication.txt", rb"Size: \S+", b"Size: 40.00")
+
+
+def track_of_the_fabrication_note(files: Files) -> None:
+    edit(files, "fabrication.txt", rb"Narrowest track: \S+", b"Narrowest track: 0.25")
+
+
+def drill_of_the_fabrication_note(files: Files) -> None:
+    edit(files, "fabrication.txt", rb"Smallest drill: \S+", b"Smallest drill: 0.4")
+
+
+def green_board(files: Files) -> None:
+    edit(files, "fabrication.txt", b"matte black, on both", b"green, on both")
+
+
+def no_stop_line(files: Files) -> None:
+    del files["STOP_READ_FIRST.txt"]
+
+
+def stop_line_of_other_parts(files: Files) -> None:
+    edit(files, "STOP_READ_FIRST.txt", rb"Q1 to Q\d+", b"Q1 to Q2")
+
+
 FIRST_DAMAGES: dict[Damage, set[str]] = {
     pour_missing: {"copper", "same"},
     tracks_thin: {"copper", "same"},
@@ -148,6 +176,13 @@ FIRST_DAMAGES: dict[Damage, set[str]] = {
     note_of_a_place: {"note"},
     note_without_a_figure: {"note"},
     note_without_a_part: {"note"},
+    thickness_of_the_fabrication_note: {"fabrication"},
+    size_of_the_fabrication_note: {"fabrication"},
+    track_of_the_fabrication_note: {"fabrication"},
+    drill_of_the_fabrication_note: {"fabrication"},
+    green_board: {"fabrication"},
+    no_stop_line: {"stop"},
+    stop_line_of_other_parts: {"stop"},
     layer_nobody_asked_for: {"files"},
     layer_missing: {"readable"},
     not_gerber: {"readable"},

@@ -3,13 +3,13 @@
 from collections.abc import Callable
 
 from lumitip_fab.boards.circuit import GROUND, SIGNAL, SUPPLY, net_class
-from lumitip_fab.boards.fab.order import (
+from lumitip_fab.boards.fab.notes import (
     assembly_note,
     auxiliary_note,
-    bom_rows,
-    layers_of,
-    order_files,
+    fabrication_note,
+    stop_note,
 )
+from lumitip_fab.boards.fab.order import bom_rows, layers_of, order_files
 from lumitip_fab.boards.fab.picture import picture_files
 from lumitip_fab.boards.kicad.project import project_files
 from lumitip_fab.boards.kicad.schematic.auxiliary import auxiliary_sheet
@@ -36,12 +36,22 @@ def board_files(design: Design, finger: Finger) -> tuple[Artefact, ...]:
             its rules.
     """
     model = finished(place(design, finger))
-    sheet = schematic_files(model.placement, finger, design)
+    board = model.placement
+    sheet = schematic_files(board, finger, design)
+    chip = design.packages.at_cells(finger)
+    notes = {
+        **stop_note(board, chip, finger.cells_hold.kind),
+        f"{board.name}_fabrication.txt": fabrication_note(
+            model, finger.finish, design.stack.pcb_mm
+        ),
+    }
     return model_files(
         model,
         sheet,
-        lambda fab: assembly_note(model.placement, finger, design.packages, fab),
+        notes,
+        lambda fab: assembly_note(board, finger, design.packages, fab),
         design.stack.pcb_mm,
+        finger.finish.mask,
         design.fabs,
         board_page_to_sensor(design.stack),
         "sensor",
@@ -59,11 +69,15 @@ def auxiliary_files(design: Design, auxiliary: AuxiliaryBoard) -> tuple[Artefact
     refuse_overlaps(auxiliary.name, bare.components, "choose smaller parts")
     model = finished(with_legend(bare, auxiliary, design.rules))
     sheet = auxiliary_sheet(model.placement, auxiliary)
+    thickness_mm = design.stack.auxiliary_mm
+    note = fabrication_note(model, auxiliary.finish, thickness_mm)
     return model_files(
         model,
         sheet,
+        {f"{auxiliary.name}_fabrication.txt": note},
         lambda fab: auxiliary_note(model.placement, auxiliary.title, fab),
-        design.stack.auxiliary_mm,
+        thickness_mm,
+        auxiliary.finish.mask,
         design.fabs,
         board_page_to_auxiliary(design.stack),
         "auxiliary",
@@ -126,8 +140,10 @@ def finished(placement: Placement) -> BoardModel:
 def model_files(
     model: BoardModel,
     sheet: dict[str, bytes],
-    note: Callable[[Fab], bytes],
+    notes: dict[str, bytes],
+    assembly: Callable[[Fab], bytes],
     thickness_mm: float,
+    mask: str,
     fabs: tuple[Fab, ...],
     page: Matrix,
     frame: str,
@@ -137,8 +153,10 @@ def model_files(
     Args:
         model: the board.
         sheet: files of its schematic.
-        note: for who places the parts, by PCB fab.
+        notes: text files of every zip, by name.
+        assembly: note for who places the parts, by PCB fab.
         thickness_mm: of it.
+        mask: colour of its solder mask.
         fabs: where it may be ordered.
         page: from the board file's page to its frame.
         frame: name of that frame.
@@ -147,12 +165,14 @@ def model_files(
     orders = {
         f"order/{path}": data
         for fab in fabs
-        for path, data in order_files(model, layers, note(fab), fab, name).items()
+        for path, data in order_files(
+            model, layers, {**notes, f"{name}_assembly.txt": assembly(fab)}, fab, name
+        ).items()
     }
     files = {
         **project_files(model, thickness_mm),
         **sheet,
-        **picture_files(model),
+        **picture_files(model, mask),
         **orders,
     }
     facts = {"parts": list(bom_rows(model.placement))}

@@ -4,7 +4,7 @@ from typing import Literal, Self
 
 from pydantic import Field, model_validator
 
-from lumitip_fab.catalogue.record import Capacitances, Entry, Length, Ordered
+from lumitip_fab.catalogue.record import Capacitances, Confidence, Entry, Length, Ordered
 
 
 class Chip(Ordered, Entry):
@@ -40,7 +40,27 @@ class Optical(Chip):
         return self
 
 
-class Led(Optical):
+class Polar(Optical):
+    """A part with a mark at one of its terminals."""
+
+    marked: str
+    """Terminal that the part's mark shows; the board's mark is beside it."""
+    marked_confidence: Confidence | None = None
+    """Confidence in `marked`; by default that of the entry. Write "measured" after the test with
+    a multimeter in the build manual: the order files then carry no stop line."""
+
+    @property
+    def mark_confidence(self) -> Confidence:
+        """Confidence in the marked terminal."""
+        return self.marked_confidence or self.confidence
+
+    @property
+    def mark_is_known(self) -> bool:
+        """Whether the marked terminal is measured, or read from a datasheet."""
+        return self.mark_confidence in ("datasheet", "measured")
+
+
+class Led(Polar):
     """An infrared light-emitting diode."""
 
     forward_voltage_v: float = Field(ge=0.1, le=10)
@@ -57,7 +77,7 @@ class Led(Optical):
     """Exponent m of the radiant intensity cos(angle) ** m; 1 is Lambertian."""
 
 
-class Photodetector(Optical):
+class Photodetector(Polar):
     """A phototransistor or photodiode."""
 
     exponent: float = Field(ge=0, le=50)

@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import shapely
 
 from lumitip_fab.checks.board_read import Read, ReadAuxiliary, names_of, path_of, read_any
 from lumitip_fab.checks.order_layers import Painted, measure_layers, measure_stiffener
@@ -18,7 +19,9 @@ from lumitip_fab.design import Design, Fab, Flexible
 from lumitip_fab.errors import OutputError
 
 READS = ("boards/*.kicad_pcb", "boards/*.zip", "boards/*.csv")
+STOP_FILE = "STOP_READ_FIRST.txt"
 PLACE_MM = 0.001
+SIZE_MM = 0.006
 TURN_DEG = 0.1
 _Files = dict[str, bytes]
 _TERMINALS = re.compile(
@@ -70,6 +73,11 @@ def measure_board(outputs: Path, design: Design, name: str) -> Iterator[Measurem
             note = files[f"{name}_assembly.txt"].decode()
             wrong = _misled(read, note) if isinstance(read, Read) else _misplaced(read, note)
             yield _count("note", path, list(wrong), "parts")
+            note = files[f"{name}_fabrication.txt"].decode()
+            yield _count("fabrication", path, list(_misordered(read, note)), "figures")
+            if isinstance(read, Read):
+                yield _count("stop", path, list(_unstopped(read, files)), "files")
+            note = files[f"{name}_assembly.txt"].decode()
             if isinstance(read, Read) and design.board.flexible:
                 drawn = name + ordered["stiffener"]
                 untold = _untold(note, design.board.flexible, design.stack.pcb_mm, drawn)
@@ -144,7 +152,7 @@ def _misled(read: Read, note: str) -> Iterator[str]:
     chip = read.design.packages.at_cells(read.finger)
     terminals = {m["ref"]: m for m in _TERMINALS.finditer(note)}
     if f"pad 1 is the {chip.marked}" not in note or (
-        chip.confidence != "datasheet" and f"{chip.marked} is {chip.confidence}" not in note
+        not chip.mark_is_known and f"{chip.marked} is {chip.mark_confidence}" not in note
     ):
         yield "the mark"
     for part in (p for p in read.board.parts if re.fullmatch(r"[DQ]\d+", p.ref)):
@@ -158,6 +166,43 @@ def _misled(read: Read, note: str) -> Iterator[str]:
             yield part.ref
 
 
+def _misordered(read: Read | ReadAuxiliary, note: str) -> Iterator[str]:
+    """Figures of the fabrication note that are not those of the board's file."""
+    finish = read.finger.finish if isinstance(read, Read) else read.auxiliary.finish
+    edges = shapely.union_all(list(read.board.edges)).bounds
+    tracks = [copper.width_mm for copper in read.board.loose if copper.width_mm]
+    drills = [copper.drill_mm for copper in read.board.copper() if copper.drill_mm]
+    figures = {
+        "Copper layers": (float(len(read.board.layers)),),
+        "Size": (edges[2] - edges[0], edges[3] - edges[1]),
+        "Thickness": (read.board.thickness_mm,),
+    }
+    if tracks:
+        figures["Narrowest track"] = (min(tracks),)
+    if drills:
+        figures["Smallest drill"] = (min(drills),)
+    lines: dict[str, str] = dict(re.findall(r"^(.+?): (.+)$", note, re.MULTILINE))
+    for name, wanted in figures.items():
+        stated = [float(figure) for figure in re.findall(r"[\d.]+", lines.get(name, ""))]
+        if len(stated) != len(wanted) or not np.allclose(stated, wanted, atol=SIZE_MM):
+            yield name
+    if finish.mask not in lines.get("Solder mask", lines.get("Coverlay", "")):
+        yield "colour of the mask"
+
+
+def _unstopped(read: Read, files: _Files) -> Iterator[str]:
+    """A stop line that is missing, or stands where the polarity is known; the parts that it does
+    not name."""
+    chip, text = read.design.packages.at_cells(read.finger), files.get(STOP_FILE, b"").decode()
+    if chip.mark_is_known == bool(text):
+        yield STOP_FILE
+    elif text:
+        letter, last = read.finger.cells_hold.letter, len(read.finger.cells)
+        cells = f"{letter}1" if last == 1 else f"{letter}1 to {letter}{last}"
+        if not text.startswith("STOP") or cells not in text or chip.order_number not in text:
+            yield f"{cells} in {STOP_FILE}"
+
+
 def _ordered(read: Read | ReadAuxiliary, fab: Fab) -> dict[str, str]:
     """Layers that a board's zip is to have: a stiffener is drawn for flexible boards alone."""
     bends = isinstance(read, Read) and read.design.board.flexible
@@ -166,8 +211,8 @@ def _ordered(read: Read | ReadAuxiliary, fab: Fab) -> dict[str, str]:
 
 def _unasked(name: str, ordered: dict[str, str], files: _Files) -> list[str]:
     """Files that a zip has beside layers, tables and note: each would be taken for a layer."""
-    asked = {*ordered.values(), "_bom.csv", "_positions.csv", "_assembly.txt"}
-    return sorted(files.keys() - {name + end for end in asked})
+    asked = {*ordered.values(), "_bom.csv", "_positions.csv", "_assembly.txt", "_fabrication.txt"}
+    return sorted(files.keys() - {name + end for end in asked} - {STOP_FILE})
 
 
 def _untold(note: str, flexible: Flexible, thickness_mm: float, drawn: str) -> Iterator[str]:

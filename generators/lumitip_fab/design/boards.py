@@ -14,6 +14,7 @@ from lumitip_fab.catalogue.electronics import (
     Photodetector,
     Resistor,
 )
+from lumitip_fab.design.pcb import FINGER_FINISH, Finish
 from lumitip_fab.design.shape import Box, Point, Side
 
 
@@ -142,6 +143,7 @@ class Finger:
     """Opening through the plate behind the connector, to beyond the gripper end."""
     window: Box
     """Opening of mask and film over the connector."""
+    finish: Finish = FINGER_FINISH
 
 
 @dataclass(frozen=True)

@@ -38,6 +38,30 @@ class Footprint:
 
 
 @dataclass(frozen=True)
+class Finish:
+    """Properties that are ordered with a board and are in none of its layers."""
+
+    mask: str
+    """Colour and gloss of the solder mask."""
+    surface: str
+    """Finish of the pads."""
+    copper_um: float
+    """Thickness of the copper on each side."""
+    reason: str
+    """Reason for the colour; empty where any colour does."""
+
+
+FINGER_FINISH = Finish(
+    mask="matte black",
+    surface="ENIG",
+    copper_um=35.0,
+    reason="the board must not reflect infrared light. No other colour, no gloss, and no "
+    "silkscreen beyond what is drawn",
+)
+AUXILIARY_FINISH = Finish(mask="any colour", surface="ENIG", copper_um=35.0, reason="")
+
+
+@dataclass(frozen=True)
 class Component:
     """A part, or bare copper, in its place on a board."""
 
@@ -105,6 +129,7 @@ class AuxiliaryBoard:
     hot_loop: tuple[tuple[str, str], ...]
     """Pads round which the current of a switching regulator jumps, by part and number of the
     pad: from its input over the capacitor back to its ground; empty without a regulator."""
+    finish: Finish = AUXILIARY_FINISH
 
     @property
     def nets(self) -> tuple[str, ...]:

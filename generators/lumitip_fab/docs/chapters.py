@@ -5,6 +5,7 @@ from typing import Any
 
 from lumitip_fab.design import Design, Flange, HeatStep
 from lumitip_fab.docs.bill import amount, money
+from lumitip_fab.docs.polarity import polarity_test
 from lumitip_fab.pipeline.artefact import Files
 from lumitip_fab.text import as_written
 
@@ -136,8 +137,9 @@ Each board has a zip for each PCB fab, with Gerber and drill files, parts and pl
 
 {zips}
 
-1. Order the boards, or have them placed as well. Hold an LED and a photodetector against their
-   leaflets first: the note in each zip names the marked terminal, and the level of confidence.
+{polarity_test(design.packages)}1. Order the boards, or have them placed as well.
+   `..._fabrication.txt` in each zip has thickness, copper and colour. Finger boards are matte
+   black, because they must not reflect infrared light.
 2. Solder what is left: parts on the front{last}.
 3. Before the wires go in, measure between ground and supply of each board: no short.
 

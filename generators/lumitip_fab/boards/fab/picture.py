@@ -17,14 +17,11 @@ from lumitip_fab.boards.placed import PlacedPad, placed_pads
 from lumitip_fab.boards.silk.strokes import silkscreen
 from lumitip_fab.design import Side
 
-LAMINATE, MASK, COVERED, PLATED, SILK, SHADE = (
-    "#b9a878",
-    "#0c4a34",
-    "#17654a",
-    "#d8b465",
-    "#f3f2ea",
-    "#8f7434",
-)
+LAMINATE, PLATED, SILK, SHADE = "#b9a878", "#d8b465", "#f3f2ea", "#8f7434"
+MASKS = {"matte black": ("#191b1d", "#303336")}
+"""Solder mask on laminate and on copper, by its colour."""
+GREEN = "#0c4a34", "#17654a"
+"""Where any colour does."""
 _ARC = 8  # chords of a quarter circle
 _RIM_MM = 0.06  # darker edge of plated holes
 
@@ -38,9 +35,15 @@ class Painted:
     colour: str
 
 
-def painted(model: BoardModel, side: Side) -> tuple[Painted, ...]:
-    """The areas seen from a side, in the sensor frame; from the back they are mirrored in x."""
-    board = model.placement
+def painted(model: BoardModel, side: Side, mask: str = "") -> tuple[Painted, ...]:
+    """The areas seen from a side, in the sensor frame; from the back they are mirrored in x.
+
+    Args:
+        model: the board.
+        side: from which it is seen.
+        mask: colour of its solder mask, as it is ordered.
+    """
+    board, (on_laminate, on_copper) = model.placement, MASKS.get(mask, GREEN)
     pads = [pad for part in board.components for pad in placed_pads(part) if side in pad.sides]
     drills = _drills(model, pads)
     body = outline_area(board) - drills
@@ -49,8 +52,8 @@ def painted(model: BoardModel, side: Side) -> tuple[Painted, ...]:
     printed = shapely.union_all([_line(s) for where, s in silkscreen(board) if where == side])
     seen = (
         Painted("laminate", body, LAMINATE),
-        Painted("mask", body - open_, MASK),
-        Painted("covered copper", copper - open_, COVERED),
+        Painted("mask", body - open_, on_laminate),
+        Painted("covered copper", copper - open_, on_copper),
         Painted("plated copper", copper & open_, PLATED),
         Painted("rims", (drills.buffer(_RIM_MM) - drills) & copper & open_, SHADE),
         Painted("silkscreen", (printed & body) - open_, SILK),
@@ -178,12 +181,17 @@ def _outline(polygon: Polygon) -> Any:
     return Path.make_compound_path(*rings)
 
 
-def picture_files(model: BoardModel) -> dict[str, bytes]:
-    """PNG and SVG of front and back, by their name."""
+def picture_files(model: BoardModel, mask: str) -> dict[str, bytes]:
+    """PNG and SVG of front and back, by their name.
+
+    Args:
+        model: the board.
+        mask: colour of its solder mask, as it is ordered.
+    """
     board = model.placement
     files = {}
     for side in SIDES:
-        seen = painted(model, side)
+        seen = painted(model, side, mask)
         title = f"{board.title} {board.revision}, {board.name} board, {side}"
         files[f"{board.name}_{side}.svg"] = svg_picture(seen, title)
         files[f"{board.name}_{side}.png"] = png_picture(seen)

@@ -3,6 +3,7 @@
 Places are on KiCad's page: mm, y down.
 """
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -95,6 +96,8 @@ class KicadBoard:
     """The stack-up, if the file has it."""
     regions: dict[str, BaseGeometry]
     """Rectangle on each layer for a user's own use."""
+    thickness_mm: float
+    """Of the finished board; NaN if the file does not state it."""
 
     def copper(self) -> Iterator[Copper]:
         """Every piece of copper."""
@@ -148,6 +151,7 @@ class _Reader:
             tuple(self.keep_outs()),
             tuple(self.plies()),
             regions,
+            (numbers(child(child(self.root, "general") or [], "thickness")) or (math.nan,))[0],
         )
 
     def plies(self) -> Iterator[Ply]:
