@@ -12,6 +12,7 @@ from lumitip_fab.derive import derive, resolve
 from lumitip_fab.derive.auto.remedies import plan_of
 from lumitip_fab.derive.auto.resolve import RuleError
 from lumitip_fab.design import Design
+from lumitip_fab.docs.spec_circuit import pulled_up
 
 pytestmark = pytest.mark.slow
 
@@ -192,3 +193,23 @@ def test_a_thick_plate_slants_from_farther_back(file: Any) -> None:
     design = derive(load(file("[stack]\nfloor_mm = 5.0\n")))
     assert design.tip.angle_deg <= 45 + 1e-9
     assert design.board.pocket.y_max_mm <= design.tip.slant_start_y_mm + 1e-6
+
+
+@pytest.mark.parametrize(
+    ("columns", "multiplexer", "pins", "weak"),
+    [
+        (6, "auto", ["A0", "A1", "A2", "A3", "A6", "A7"], ""),
+        (8, "auto", ["A0", "A1", "A2", "A3"], ""),  # of 16 inputs each
+        (7, "74HC4051PW", ["A0", "A1", "A2", "A3", "A6", "A7", "A4"], "A4: 4700 Ω"),
+        (16, "auto", ["A0", "A1", "A2", "A3", "A6", "A7", "A4", "A5"], "A4 and A5: 4700 Ω"),
+    ],
+)
+def test_inputs_with_pull_ups_are_used_when_no_other_is_left_and_then_stated(
+    file: Any, columns: int, multiplexer: str, pins: list[str], weak: str
+) -> None:
+    text = f"[grid]\ncolumns = {[8] * columns}\npitch_mm = 5.0\n"
+    text += f'[receiver]\nmultiplexer = "{multiplexer}"\n'
+    wiring = derive(load(file(text))).wiring
+    assert list(wiring.adc_pins) == pins
+    assert pulled_up(wiring).startswith(weak)
+    assert bool(pulled_up(wiring)) == bool(weak)

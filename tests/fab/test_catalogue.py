@@ -140,6 +140,8 @@ def test_a_controller_uses_each_pin_once(parts: Catalogue) -> None:
         Controller.model_validate(_changed(board, select_pins=("A0",)))
     with pytest.raises(ValidationError, match="analog_pins"):
         Controller.model_validate(_changed(board, analog_pins=()))
+    with pytest.raises(ValidationError, match="A9 in pulled_up_ohm"):
+        Controller.model_validate(_changed(board, pulled_up_ohm={"A9": 4700.0}))
 
 
 def test_entries_cannot_be_changed(parts: Catalogue) -> None:

@@ -203,7 +203,10 @@ class Controller(Entry):
     """A microcontroller that reads the multiplexers: a board, or a module on the flange's board."""
 
     analog_pins: tuple[Pin, ...] = Field(min_length=1)
-    """Analog inputs in the order in which they are used."""
+    """Analog inputs in the order in which they are used; those of `pulled_up_ohm` come last."""
+    pulled_up_ohm: dict[Pin, float] = Field(default_factory=dict)
+    """Pull-up resistor on the controller, by analog input: it stands in parallel with that of the
+    multiplexer, so that the signal is smaller. Such pins are used when no other is left."""
     unlimited_analog_pins: bool = False
     """Whether there are as many inputs as needed: for benchmarks only."""
     select_pins: tuple[Pin, ...] = Field(min_length=1)
@@ -220,6 +223,18 @@ class Controller(Entry):
     """Its pins, if it plugs into sockets."""
     module: Module | None = None
     """Its pads, if it is soldered to the flange's board."""
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """Analog inputs in the order in which they are used."""
+        return tuple(sorted(self.analog_pins, key=self.pulled_up_ohm.__contains__))
+
+    @model_validator(mode="after")
+    def _pulled_up_pins_are_inputs(self) -> Self:
+        lost = sorted(set(self.pulled_up_ohm) - set(self.analog_pins))
+        if lost:
+            raise ValueError(f"has {', '.join(lost)} in pulled_up_ohm, missing in analog_pins")
+        return self
 
     @model_validator(mode="after")
     def _pins_differ(self) -> Self:

@@ -173,6 +173,8 @@ class Wiring:
     muxes: int
     select_pins: tuple[str, ...]
     adc_pins: tuple[str, ...]
+    pulled_up_ohm: tuple[tuple[str, float], ...]
+    """Pins of these that have a pull-up on the controller, with its resistance."""
     strings: tuple[tuple[int, ...], ...]
     """LEDs of each series string, by cell."""
     resistor: str

@@ -6,6 +6,7 @@ from typing import Any
 from lumitip_fab.design import Design, Flange, HeatStep
 from lumitip_fab.docs.bill import amount, money
 from lumitip_fab.docs.polarity import polarity_test
+from lumitip_fab.docs.spec_circuit import pulled_up
 from lumitip_fab.pipeline.artefact import Files
 from lumitip_fab.text import as_written
 
@@ -170,14 +171,15 @@ flap in the order of its number.
 
 
 def _wired(design: Design, files: Files) -> str:
+    weak = f"{pins}.\n\n" if (pins := pulled_up(design.wiring)) else ""
     return f"""## 4. Wire
 
 ![Wiring](wiring/wiring.svg)
 
 {_included(files.text("wiring/cables.md"))}
 
-Measure {design.wiring.supply_v:g} V and its polarity at the supply before the emitter is connected;
-the LEDs then draw about {sum(design.wiring.current_ma):.1f} mA."""
+{weak}Measure {design.wiring.supply_v:g} V and its polarity at the supply before the emitter is
+connected; the LEDs then draw about {sum(design.wiring.current_ma):.1f} mA."""
 
 
 def _mounted(design: Design) -> str:

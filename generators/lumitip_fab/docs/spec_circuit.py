@@ -1,6 +1,6 @@
 """Electrical figures of a design beside the published ones."""
 
-from lumitip_fab.design import Design
+from lumitip_fab.design import Design, Wiring
 from lumitip_fab.docs.outside import Row
 
 
@@ -75,6 +75,12 @@ def channel_rows(design: Design) -> tuple[Row, ...]:
     line_pf = channel.line_pf + channel.detector_pf
     return (
         Row(
+            "analog inputs",
+            "A0 to A3",
+            ", ".join(design.wiring.adc_pins),
+            pulled_up(design.wiring) or "one for each multiplexer",
+        ),
+        Row(
             "signal at full light",
             "not stated",
             f"{channel.full_scale_v:.2f} V",
@@ -94,6 +100,20 @@ def channel_rows(design: Design) -> tuple[Row, ...]:
             f"{line_pf:g} pF through {optics.pull_up_ohm:g} Ω, from full light to dark within half "
             f"a step of {design.controller.adc_bits} bits",
         ),
+    )
+
+
+def pulled_up(wiring: Wiring) -> str:
+    """A sentence about inputs with pull-ups on the controller; empty without any."""
+    if not wiring.pulled_up_ohm:
+        return ""
+    pins = " and ".join(pin for pin, _ in wiring.pulled_up_ohm)
+    ohm = max(ohm for _, ohm in wiring.pulled_up_ohm)
+    share = ohm / (ohm + wiring.pull_up_ohm)
+    return (
+        f"{pins}: {ohm:g} Ω to the supply on the controller, made for I2C; the cells read there "
+        f"give {100 * share:.0f} % of the signal of the others. Use a multiplexer with more inputs "
+        "or another controller"
     )
 
 

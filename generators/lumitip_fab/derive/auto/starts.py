@@ -202,20 +202,25 @@ def _printer(config: Input) -> Iterator[Proposal]:
 
 def _multiplexer(config: Input) -> Iterator[Proposal]:
     """The published multiplexer where the controller has pins for it, else one with more inputs;
-    the one with most where it has pins for none."""
+    the one with most where it has pins for none. Pins with pull-ups count when the others are too
+    few for any."""
     p, parts = config.parameters, config.catalogue
     cells, controller = sum(p.grid.columns), parts.controllers[p.controller.board]
     start = str(FIELDS["receiver.multiplexer"].start)
     known = sorted(
         parts.multiplexers.items(), key=lambda item: (item[0] != start, item[1].channels)
     )
-    for name, mux in known:
-        needed = math.ceil(cells / mux.channels)
-        pins = needed if controller.unlimited_analog_pins else len(controller.analog_pins)
-        if needed <= pins and len(mux.select) <= len(controller.select_pins):
-            reason = f"{needed} of them read {cells} cells; {p.controller.board} has pins for them"
-            yield "receiver.multiplexer", name, reason
-            return
+    every = len(controller.inputs)
+    for pins in (every - len(controller.pulled_up_ohm), every):
+        for name, mux in known:
+            needed = math.ceil(cells / mux.channels)
+            fits = controller.unlimited_analog_pins or needed <= pins
+            if fits and len(mux.select) <= len(controller.select_pins):
+                reason = (
+                    f"{needed} of them read {cells} cells; {p.controller.board} has pins for them"
+                )
+                yield "receiver.multiplexer", name, reason
+                return
     name, mux = known[-1]
     yield "receiver.multiplexer", name, f"its {mux.channels} inputs are the most"
 

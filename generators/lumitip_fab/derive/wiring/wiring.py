@@ -143,7 +143,7 @@ def derive_muxing(config: Input, cells: Cells, faults: Diagnostics) -> Muxing:
     mux = config.parts.receiver.multiplexer
     controller = config.parts.controller.board
     muxes = math.ceil(len(cells) / mux.channels)
-    pins = controller.analog_pins
+    pins = controller.inputs
     if controller.unlimited_analog_pins:
         pins = tuple(f"A{i}" for i in range(muxes))
     faults.refuse_unless(
@@ -208,6 +208,11 @@ def build_wiring(config: Input, strings: Strings, muxing: Muxing) -> Wiring:
         muxes=muxing.muxes,
         select_pins=muxing.select_pins,
         adc_pins=muxing.adc_pins,
+        pulled_up_ohm=tuple(
+            (pin, ohm)
+            for pin, ohm in config.parts.controller.board.pulled_up_ohm.items()
+            if pin in muxing.adc_pins
+        ),
         strings=strings.cells,
         resistor=p.emitter.resistor,
         resistor_ohm=strings.resistor_ohm,
