@@ -107,7 +107,7 @@ def measure(design: Design, finger: Finger, goals: Goals) -> str:
     busy = time.process_time()
     placement = timed(lambda: place(d, finger))
     found = timed(lambda: route(placement))
-    routing, fills = timed(lambda: pour(placement, found))
+    routing, fills, _ = timed(lambda: pour(placement, found))
     model = BoardModel(placement, routing, fills)
     timed(lambda: files(design, finger, model))
     busy = time.process_time() - busy

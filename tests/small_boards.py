@@ -58,6 +58,7 @@ def board(
         hole_mm=2.0,
         keep_outs=keep_outs,
         edge_clearance_mm=0.3,
+        hole_clearance_mm=0.3,
         components=parts,
         nets=tuple(Net(n, "supply" if n in supply else "signal") for n in nets),
         classes=CLASSES,

@@ -151,7 +151,7 @@ def test_a_board_that_lost_a_track_is_never_written(
     pour = files.pour
 
     def losing(*given: Any) -> tuple[Routing, tuple[Fill, ...]]:
-        routing, fills = pour(*given)
+        routing, fills, _ = pour(*given)
         kept = tuple(t for t in routing.tracks if t.net != "S1_1")
         assert kept != routing.tracks
         return dataclasses.replace(routing, tracks=kept), fills

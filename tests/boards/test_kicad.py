@@ -27,6 +27,7 @@ EVERY = (
     MODULE,
 )
 ALLOWED: dict[str, str] = {}  # names of warnings, each with the reason why it may stand
+FINER: dict[str, set[str]] = {}  # what presets with finer copper than KiCad's defaults show
 MISSING_SHARE = 0.01  # of KiCad's fill, that ours may leave out
 SYSTEM_PYTHON = Path("/usr/bin/python3")
 LAYERS = (
@@ -89,6 +90,24 @@ def test_kicad_finds_no_fault(
     assert told["unconnected_items"] == []
     assert told["schematic_parity"] == []
     assert {v["type"] for v in told["violations"]} <= set(ALLOWED), told["violations"][:3]
+
+
+@pytest.mark.parametrize(("preset", "name"), EVERY)
+def test_kicad_finds_no_error_by_its_default_rules(
+    boards: Boards, kicad: Callable[..., str], tmp_path: Path, preset: str, name: str
+) -> None:
+    """Without the project file KiCad takes the rules that it ships with: 0.5 mm to the edge, two
+    spokes, gaps and tracks of 0.2 mm. Finer boards keep their own gaps and tracks."""
+    board = Path(shutil.copy(boards(preset) / "boards" / name / f"{name}.kicad_pcb", tmp_path))
+    report = tmp_path / "drc.json"
+    kicad(
+        *("kicad-cli", "pcb", "drc", "--severity-error", "--format", "json"),
+        *("-o", report, board),
+    )
+    told = json.loads(report.read_text())
+    assert told["unconnected_items"] == []
+    faults = {v["type"] for v in told["violations"]}
+    assert faults <= FINER.get(preset, set()), told["violations"][:3]
 
 
 @pytest.mark.parametrize(("preset", "name"), EVERY)

@@ -92,7 +92,7 @@ def test_pads_keep_their_gap_to_each_other_the_edge_and_the_holes(board: Placed)
         assert rim >= placement.edge_clearance_mm - 1e-6
         for hole in placement.holes:
             apart = pad.area.distance(shapely.Point(hole)) - placement.hole_mm / 2
-            assert apart >= placement.edge_clearance_mm - 1e-6
+            assert apart >= placement.hole_clearance_mm - 1e-6
 
 
 def test_passives_stand_beside_their_multiplexer_at_its_leads(

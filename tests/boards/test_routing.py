@@ -139,7 +139,7 @@ def test_copper_keeps_out_of_where_none_may_be() -> None:
         small.part("R2", small.CHIP, (6, -1), {"1": "A", "2": "GND"}),
         keep_outs=(area,),
     )
-    routing, fills = pour(placement, route(placement))
+    routing, fills, _ = pour(placement, route(placement))
     assert not verify(BoardModel(placement, routing, fills))
     kept = shapely.box(-3.0, -4.0, 3.0, 2.0)
     assert all(fill.area.intersection(kept).area == 0 for fill in fills)

@@ -109,6 +109,7 @@ def _placement(
         hole_mm=auxiliary.hole_mm,
         keep_outs=auxiliary.keep_outs,
         edge_clearance_mm=rules.edge_gap_mm,
+        hole_clearance_mm=rules.hole_gap_mm,
         components=without_crowded_lines(outlined, rules),
         ground_only=_hot_loop(auxiliary),
         nets=tuple(
@@ -133,8 +134,8 @@ def finished(placement: Placement) -> BoardModel:
     routing = route(placement)
     if placement.flexible:
         routing = with_teardrops(placement, routing)
-    routing, fills = pour(placement, routing)
-    return require_clean_drc(BoardModel(placement, routing, fills))
+    routing, fills, solid = pour(placement, routing)
+    return require_clean_drc(BoardModel(placement, routing, fills, solid))
 
 
 def model_files(

@@ -80,7 +80,9 @@ class Placement:
     keep_outs: tuple[Box, ...]
     """Where no copper may be on either side."""
     edge_clearance_mm: float
-    """Copper to the board's edge and to unplated holes."""
+    """Copper to the board's edge."""
+    hole_clearance_mm: float
+    """Copper to unplated holes."""
     components: tuple[PlacedComponent, ...]
     nets: tuple[Net, ...]
     classes: tuple[NetClass, ...]
@@ -142,6 +144,8 @@ class BoardModel:
     placement: Placement
     routing: Routing
     fills: tuple[Fill, ...]
+    solid: frozenset[tuple[str, str]] = frozenset()
+    """Pads that the pour joins all round, by part and number of the pad."""
 
 
 _NAMESPACE = uuid.UUID("408b861d-d571-5373-9831-97c1aafb6016")
@@ -160,8 +164,8 @@ MIN_WIDTH_MM = 0.2
 """The narrowest piece of pour."""
 CLEARANCE_MM = 0.2
 """Pour to copper of other nets; more where a net class asks for more."""
-LEAST_SPOKES = 1
-"""Bridges that such a pad has at least: 0.3 mm of copper carry far more than any pad here needs."""
+LEAST_SPOKES = 2
+"""Bridges that such a pad has at least; a pad with room for fewer is joined all round."""
 
 
 MASK_MM = 0.05

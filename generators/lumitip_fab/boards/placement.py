@@ -85,7 +85,7 @@ def place(design: Design, finger: Finger) -> Placement:
     _connector(parts, finger, rules)
     obstacles = [courtyard(part) for ref, part in parts.items() if not ref.startswith("FID")]
     mark = parts["FID1"].courtyard
-    corners = spots.fiducials(board, obstacles, mark, finger.holes, rules.edge_gap_mm)
+    corners = spots.fiducials(board, obstacles, mark, finger.holes, rules.hole_gap_mm)
     for ref, at in zip(("FID1", "FID2", "FID3"), corners, strict=True):
         parts[ref] = _at(parts[ref], at)
     roomier = "give them more room in [board], or choose smaller parts"
@@ -102,6 +102,7 @@ def place(design: Design, finger: Finger) -> Placement:
         hole_mm=board.hole_mm,
         keep_outs=(),
         edge_clearance_mm=rules.edge_gap_mm,
+        hole_clearance_mm=rules.hole_gap_mm,
         components=without_crowded_lines(tuple(parts.values()), rules),
         nets=plan.nets,
         classes=plan.classes,

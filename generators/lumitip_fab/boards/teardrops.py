@@ -110,17 +110,17 @@ class _Copper:
         self.sides = [land.sides for land in lands] + [(t.side,) for t in routing.tracks]
         shapes = [land.area for land in lands] + [_area(t) for t in routing.tracks]
         self.shapes = list(shapes)
-        self.edge = shapely.union_all(
-            [
-                _board(placement),
-                *(shapely.Point(h).buffer(placement.hole_mm / 2) for h in placement.holes),
-            ]
+        self.edge = _board(placement)
+        self.holes = shapely.union_all(
+            [shapely.Point(h).buffer(placement.hole_mm / 2) for h in placement.holes]
         )
 
     def free(self, drop: Track) -> bool:
         """Whether a track keeps its distance from all of other nets, from edge and holes."""
         area = _area(drop)
         if area.distance(self.edge) < self.placement.edge_clearance_mm + _MARGIN_MM:
+            return False
+        if area.distance(self.holes) < self.placement.hole_clearance_mm + _MARGIN_MM:
             return False
         near = shapely.dwithin(np.array(self.shapes, dtype=object), area, self.most + _MARGIN_MM)
         own = self.gaps[drop.net]

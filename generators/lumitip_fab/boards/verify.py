@@ -162,18 +162,21 @@ def _over_edge(
     inner = shapely.box(
         box.x_min_mm + corner, box.y_min_mm + corner, box.x_max_mm - corner, box.y_max_mm - corner
     )
-    edges = [(inner.buffer(corner, quad_segs=64).exterior, 0.0, "edge")]
-    edges += [(shapely.Point(h), placement.hole_mm / 2, "hole") for h in placement.holes]
+    from_edge, from_hole = placement.edge_clearance_mm, placement.hole_clearance_mm
+    edges = [(inner.buffer(corner, quad_segs=64).exterior, 0.0, "edge", from_edge)]
+    edges += [
+        (shapely.Point(at), placement.hole_mm / 2, "hole", from_hole) for at in placement.holes
+    ]
     faults = []
-    for edge, radius, what in edges:
+    for edge, radius, what, gap in edges:
         reach = radii + radius
-        near = shapely.dwithin(cores, edge, reach + placement.edge_clearance_mm - _NOISE_MM)
+        near = shapely.dwithin(cores, edge, reach + gap - _NOISE_MM)
         for i in np.flatnonzero(near):
             line = shapely.shortest_line(cores[i], edge)
             x, y = line.coords[0]
             apart = float(line.length - reach[i])
             nets = copper[i].net, what
-            faults.append(Fault("edge", nets, x, y, apart, placement.edge_clearance_mm))
+            faults.append(Fault("edge", nets, x, y, apart, gap))
     return faults
 
 

@@ -22,6 +22,7 @@ from lumitip_fab.checks.board_auxiliary import (
 )
 from lumitip_fab.checks.board_circuit import measure_channels, measure_connector, measure_strings
 from lumitip_fab.checks.board_flex import measure_flexible
+from lumitip_fab.checks.board_pour import measure_spokes
 from lumitip_fab.checks.board_read import (
     Read,
     ReadAuxiliary,
@@ -141,6 +142,8 @@ def measure_copper(read: ReadBoard) -> Iterator[Measurement]:
     rules = read.design.rules
     yield _gap(read, rules.copper_gap_mm)
     yield _edge_gap(read, rules.edge_gap_mm)
+    if read.holes:
+        yield _hole_gap(read, rules.hole_gap_mm)
     tracks = [piece.width_mm for piece in read.board.loose if piece.kind == "track"]
     yield read.figure("track_width", min(tracks, default=math.nan), rules.track_mm, math.inf)
     rings = [_ring_mm(piece) for piece in read.board.loose if piece.kind == "via"]
@@ -176,14 +179,19 @@ def _gap(read: ReadBoard, least_mm: float) -> Measurement:
 
 
 def _edge_gap(read: ReadBoard, least_mm: float) -> Measurement:
-    """The narrowest gap from copper to the edge and to unplated holes."""
-    holes = [shapely.Point(h.at).buffer(h.drill_mm / 2, quad_segs=32) for h in read.holes]
-    borders = [read.outline.boundary, *holes]
+    """The narrowest gap from copper to the edge."""
     copper = [piece.area for piece in read.clusters.pieces]
-    gaps = [float(shapely.distance(border, copper).min()) for border in borders]
     inside = all(read.outline.contains(area) for area in copper)
-    worst = min(gaps) if inside else -math.inf
-    return read.figure("edge_clearance", worst, least_mm - _ROUND_MM, math.inf)
+    gap = float(shapely.distance(read.outline.boundary, copper).min()) if inside else -math.inf
+    return read.figure("edge_clearance", gap, least_mm - _ROUND_MM, math.inf)
+
+
+def _hole_gap(read: ReadBoard, least_mm: float) -> Measurement:
+    """The narrowest gap from copper to unplated holes."""
+    copper = [piece.area for piece in read.clusters.pieces]
+    holes = [shapely.Point(h.at).buffer(h.drill_mm / 2, quad_segs=32) for h in read.holes]
+    gaps = [float(shapely.distance(hole, copper).min()) for hole in holes]
+    return read.figure("hole_clearance", min(gaps), least_mm - _ROUND_MM, math.inf)
 
 
 def _ring_mm(via: Copper) -> float:
@@ -201,6 +209,7 @@ _OF_FINGERS: tuple[Callable[[Read], Iterator[Measurement]], ...] = (
     measure_heights,
     measure_copper,
     measure_nets,
+    measure_spokes,
     measure_connector,
     measure_silk,
     measure_targets,
@@ -213,6 +222,7 @@ _OF_AUXILIARY_BOARDS: tuple[Callable[[ReadAuxiliary], Iterator[Measurement]], ..
     measure_names,
     measure_copper,
     measure_nets,
+    measure_spokes,
     measure_joined,
     measure_supplies,
     measure_hot_loop,

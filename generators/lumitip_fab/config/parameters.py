@@ -131,6 +131,8 @@ class Board(Strict):
     """Diameter of vias (mm)."""
     via_drill_mm: float = Field(ge=0.15, le=1)
     """Hole of vias (mm)."""
+    edge_gap_mm: float = Field(ge=0.2, le=2)
+    """Copper to the edge of every board (mm)."""
     connector_side: Literal["gripper"]
     """Edge of the board with the connector."""
 

@@ -218,7 +218,9 @@ class Rules:
     via_mm: float
     via_drill_mm: float
     edge_gap_mm: float
-    """Copper to the board's edge and to unplated holes."""
+    """Copper to the board's edge."""
+    hole_gap_mm: float
+    """Copper to unplated holes."""
     silk_text_mm: float
     """Height of the smallest letters that every PCB fab prints legibly."""
     silk_line_mm: float

@@ -28,7 +28,12 @@ HOLE = "MountingHole"
 _FAB_MM, _COURTYARD_MM = 0.1, 0.05
 
 
-def placed_footprint(component: PlacedComponent, numbers: dict[str, int], finger: str) -> Node:
+def placed_footprint(
+    component: PlacedComponent,
+    numbers: dict[str, int],
+    finger: str,
+    solid: frozenset[tuple[str, str]] = frozenset(),
+) -> Node:
     """A part on its board.
 
     Args:
@@ -36,7 +41,7 @@ def placed_footprint(component: PlacedComponent, numbers: dict[str, int], finger
         numbers: number of each net.
         finger: whose board it is on.
     """
-    return _Writer(component, numbers, finger).node()
+    return _Writer(component, numbers, finger, solid).node()
 
 
 def hole_footprint(number: int, at: Point, hole_mm: float, finger: str) -> Node:
@@ -105,11 +110,21 @@ def _hole(ref: str, hole_mm: float, own: str, *attributes: str) -> tuple[Node, .
     )
 
 
+_SOLID = 2  # KiCad's number for a pad that a zone joins all round
+
+
 class _Writer:
     """Writes one part; the parts of its footprint turn and flip with it."""
 
-    def __init__(self, component: PlacedComponent, numbers: dict[str, int], finger: str) -> None:
+    def __init__(
+        self,
+        component: PlacedComponent,
+        numbers: dict[str, int],
+        finger: str,
+        solid: frozenset[tuple[str, str]] = frozenset(),
+    ) -> None:
         self.component, self.numbers = component, numbers
+        self.solid = {number for ref, number in solid if ref == component.ref}
         self.front = component.side == "front"
         self.own = stable_uuid(finger, "footprint", component.ref)
         self.path = "/" + stable_uuid(finger, "symbol", component.ref)
@@ -202,6 +217,7 @@ class _Writer:
             ("layers", *map(Quoted, self.pad_layers(pad))),
             *((("net", self.numbers[net], Quoted(net)),) if net else ()),
             *((("solder_mask_margin", margin), ("clearance", margin)) if margin else ()),
+            *((("zone_connect", _SOLID),) if pad.number in self.solid else ()),
             ("tstamp", stable_uuid(self.own, "pad", str(index))),
         )
 

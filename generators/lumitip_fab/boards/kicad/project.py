@@ -58,7 +58,7 @@ def _rules(board: Placement) -> dict[str, Any]:
         "min_via_diameter": min(c.via_mm for c in classes),
         "min_via_annular_width": round(min((c.via_mm - c.via_drill_mm) / 2 for c in classes), 6),
         "min_through_hole_diameter": min(c.via_drill_mm for c in classes),
-        "min_hole_clearance": board.edge_clearance_mm,
+        "min_hole_clearance": board.hole_clearance_mm,
         "min_hole_to_hole": HOLE_TO_HOLE_MM,
         "min_copper_edge_clearance": board.edge_clearance_mm,
         "min_silk_clearance": 0.0,

@@ -2,14 +2,14 @@
 
 import dataclasses
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 import shapely
 from shapely import Geometry
 
-from lumitip_fab.boards.model import SIDES, Fill, NetClass, Placement, Routing, Via
-from lumitip_fab.boards.placed import placed_pads
+from lumitip_fab.boards.model import SIDES, Fill, NetClass, Placement, Routing, Track, Via
+from lumitip_fab.boards.placed import PlacedPad, placed_pads
 from lumitip_fab.boards.pour.ground import Kept, needed
 from lumitip_fab.boards.pour.room import MARGIN_MM, Sheet, room, sheet, via_room
 from lumitip_fab.boards.verify import DRILL_WALL_MM
@@ -17,6 +17,7 @@ from lumitip_fab.design import Point, Side
 
 LATTICE_MM = 0.5  # places tried
 APART_MM = 6.0  # between stitching vias, where there is room
+_APART_MM = 0.01  # round pieces of pour that are left out
 
 
 def candidates(placement: Placement, room: Geometry, front: Geometry, back: Geometry) -> list[Via]:
@@ -84,7 +85,9 @@ def _lattice(part: Geometry) -> list[Point]:
     return list(zip(across[inside].tolist(), along[inside].tolist(), strict=True))
 
 
-def pour(placement: Placement, routing: Routing) -> tuple[Routing, tuple[Fill, ...]]:
+def pour(
+    placement: Placement, routing: Routing
+) -> tuple[Routing, tuple[Fill, ...], frozenset[tuple[str, str]]]:
     """Fill both sides with ground.
 
     Args:
@@ -93,8 +96,8 @@ def pour(placement: Placement, routing: Routing) -> tuple[Routing, tuple[Fill, .
 
     Returns:
         The routing with only those tracks and vias of ground that the pour does not replace, and
-        with stitching vias; and the pour, without pieces that nothing joins to ground. Areas are
-        polygons on whole micrometres.
+        with stitching vias; the pour, without pieces that nothing joins to ground; and the pads
+        that it joins all round. Areas are polygons on whole micrometres.
     """
     pads = [
         pad
@@ -103,25 +106,74 @@ def pour(placement: Placement, routing: Routing) -> tuple[Routing, tuple[Fill, .
         if pad.net == placement.ground
     ]
     if not pads:
-        return routing, ()
-    sheets = {
-        side: sheet(room(placement, routing, side), [p for p in pads if side in p.sides])
-        for side in SIDES
-    }
+        return routing, (), frozenset()
+    rooms = {side: room(placement, routing, side) for side in SIDES}
     others, own = _split(placement, routing)
-    kind = min(placement.classes, key=lambda c: c.via_mm)
+    kind = _kind(placement)
     free = via_room(placement, routing, kind.via_mm, kind.via_drill_mm)
-    whole = [shapely.union_all(sheets[side].pieces) for side in SIDES]
-    possible = candidates(placement, free, *whole)
-    kept = needed(pads, sheets, own, possible)
-    pieces, stitches = _stitched(sheets, kept, possible)
-    vias = (*others.vias, *kept.vias, *stitches)
-    done = Routing((*others.tracks, *kept.tracks), vias, routing.iterations)
-    return done, tuple(
+    while True:
+        sheets, solid = _sheets(rooms, pads)
+        whole = [shapely.union_all(sheets[side].pieces) for side in SIDES]
+        possible = candidates(placement, free, *whole)
+        kept = needed(pads, sheets, own, possible)
+        pieces, stitches = _stitched(sheets, kept, possible)
+        vias = (*kept.vias, *stitches)
+        islands = _islands(sheets, pieces, kept.tracks, vias)
+        if not any(islands.values()):
+            break
+        for side, found in islands.items():
+            rooms[side] = shapely.difference(
+                rooms[side], shapely.union_all(found).buffer(_APART_MM)
+            )
+    done = Routing((*others.tracks, *kept.tracks), (*others.vias, *vias), routing.iterations)
+    fills = tuple(
         Fill(placement.ground, side, shapely.set_precision(sheets[side].pieces[i], 0.001))
         for side in SIDES
         for i in pieces[side]
     )
+    return done, fills, frozenset((pads[i].component.ref, pads[i].pad.number) for i in solid)
+
+
+def _sheets(
+    rooms: dict[Side, Geometry], pads: list[PlacedPad]
+) -> tuple[dict[Side, Sheet], frozenset[int]]:
+    """The pour of both sides, and the pads that it joins all round since bridges have no room."""
+    on_side = {side: [i for i, pad in enumerate(pads) if side in pad.sides] for side in SIDES}
+    solid: frozenset[int] = frozenset()
+    while True:
+        sheets = {
+            side: sheet(
+                rooms[side],
+                [pads[i] for i in numbers],
+                frozenset(k for k, i in enumerate(numbers) if i in solid),
+            )
+            for side, numbers in on_side.items()
+        }
+        starved = {numbers[k] for side, numbers in on_side.items() for k in sheets[side].starved}
+        if not starved:
+            return sheets, solid
+        solid |= starved
+
+
+def _islands(
+    sheets: dict[Side, Sheet],
+    pieces: dict[Side, list[int]],
+    tracks: Sequence[Track],
+    vias: Sequence[Via],
+) -> dict[Side, list[Geometry]]:
+    """Pieces of pour that lead nowhere: joined to a single pad, and to no track or via."""
+    found: dict[Side, list[Geometry]] = {}
+    for side in SIDES:
+        reached = [piece for each in sheets[side].reached for piece in each]
+        cores: list[Geometry] = [shapely.Point(via.x_mm, via.y_mm) for via in vias]
+        cores += [shapely.LineString([t.start, t.end]) for t in tracks if t.side == side]
+        found[side] = [
+            sheets[side].pieces[i]
+            for i in pieces[side]
+            if reached.count(i) < 2
+            and not shapely.intersects(sheets[side].pieces[i], np.array(cores, dtype=object)).any()
+        ]
+    return found
 
 
 def _split(placement: Placement, routing: Routing) -> tuple[Routing, Routing]:

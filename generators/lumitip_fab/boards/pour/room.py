@@ -9,6 +9,7 @@ from shapely import Geometry, Polygon
 
 from lumitip_fab.boards.model import (
     CLEARANCE_MM,
+    LEAST_SPOKES,
     MIN_WIDTH_MM,
     SIDES,
     THERMAL_GAP_MM,
@@ -45,8 +46,7 @@ def room(placement: Placement, routing: Routing, side: Side) -> Geometry:
         for t in _things(placement, routing)
         if side in t.sides
     ]
-    edge = placement.edge_clearance_mm + MARGIN_MM
-    free = shapely.difference(_board(placement, edge, MARGIN_MM), shapely.union_all(taken))
+    free = shapely.difference(_board(placement, MARGIN_MM), shapely.union_all(taken))
     return opened(free)
 
 
@@ -67,7 +67,7 @@ def via_room(placement: Placement, routing: Routing, via_mm: float, drill_mm: fl
         taken.append(shapely.box(bend.x_min_mm, bend.y_min_mm, bend.x_max_mm, bend.y_max_mm))
     apart = drill_mm + DRILL_WALL_MM + MARGIN_MM
     taken += [shapely.Point(v.x_mm, v.y_mm).buffer(apart) for v in routing.vias]
-    board = _board(placement, placement.edge_clearance_mm + radius, radius)
+    board = _board(placement, radius)
     return shapely.difference(board, shapely.union_all(taken))
 
 
@@ -101,20 +101,19 @@ def _things(placement: Placement, routing: Routing) -> Iterator[Thing]:
             yield Thing(at, via.diameter_mm / 2, SIDES, max(least, of_net[via.net]))
 
 
-def _board(placement: Placement, edge_mm: float, keep_out_mm: float) -> Geometry:
-    """The board without a rim along its edge, its holes and, of another width, its keep-outs."""
+def _board(placement: Placement, radius_mm: float) -> Geometry:
+    """Where the middle of something round may be: away from edge, holes and keep-outs."""
     box, corner = placement.outline, placement.corner_mm
+    edge_mm = placement.edge_clearance_mm + radius_mm
+    hole_mm = placement.hole_mm / 2 + placement.hole_clearance_mm + radius_mm
     inner = shapely.box(
         box.x_min_mm + corner, box.y_min_mm + corner, box.x_max_mm - corner, box.y_max_mm - corner
     )
     whole = inner.buffer(corner - edge_mm, quad_segs=_ARC)
-    left_out = [
-        shapely.Point(at).buffer(placement.hole_mm / 2 + edge_mm, quad_segs=2 * _ARC)
-        for at in placement.holes
-    ]
+    left_out = [shapely.Point(at).buffer(hole_mm, quad_segs=2 * _ARC) for at in placement.holes]
     left_out += [
         shapely.box(box.x_min_mm, box.y_min_mm, box.x_max_mm, box.y_max_mm).buffer(
-            keep_out_mm, join_style="mitre"
+            radius_mm, join_style="mitre"
         )
         for box in placement.keep_outs
     ]
@@ -131,7 +130,9 @@ class Sheet:
 
     pieces: tuple[Polygon, ...]
     reached: tuple[tuple[int, ...], ...]
-    """Pieces that each pad is bridged to."""
+    """Pieces that each pad is joined to."""
+    starved: frozenset[int]
+    """Pads with a bridge, but fewer than they ought to have."""
 
     def pieces_at(self, places: Sequence[Point]) -> list[int]:
         """The piece of pour at each place, or -1."""
@@ -143,22 +144,30 @@ class Sheet:
         return [int(i) for i in found]
 
 
-def sheet(room: Geometry, pads: list[PlacedPad]) -> Sheet:
+def sheet(room: Geometry, pads: list[PlacedPad], solid: frozenset[int]) -> Sheet:
     """Cut the pads out of the room for the pour, and bridge the gaps.
 
     Args:
         room: where the pour may be.
         pads: pads of the ground net on this side.
+        solid: pads that are joined all round instead.
     """
-    gaps = [pad.area.buffer(THERMAL_GAP_MM, join_style="round") for pad in pads]
+    gaps = [
+        pad.area.buffer(THERMAL_GAP_MM, join_style="round")
+        for number, pad in enumerate(pads)
+        if number not in solid
+    ]
     body = opened(shapely.difference(room, shapely.union_all(gaps)))
     pieces = [p for p in shapely.get_parts(body) if p.area >= LEAST_AREA_MM2]
     shapely.prepare(pieces)
     shapely.prepare(room)
     tree = shapely.STRtree(pieces)
     added: list[list[Geometry]] = [[] for _ in pieces]
-    reached = []
-    for pad in pads:
+    reached, starved = [], []
+    for number, pad in enumerate(pads):
+        if number in solid:
+            reached.append(tuple(sorted(tree.query(pad.area, predicate="intersects").tolist())))
+            continue
         found = [
             (int(piece), spoke)
             for spoke, end in _spokes(pad)
@@ -169,8 +178,10 @@ def sheet(room: Geometry, pads: list[PlacedPad]) -> Sheet:
         for piece, spoke in found:
             added[piece].append(spoke)
         reached.append(tuple(sorted({piece for piece, _ in found})))
+        if 0 < len(found) < LEAST_SPOKES:
+            starved.append(number)
     whole = [shapely.union_all([p, *more]) for p, more in zip(pieces, added, strict=True)]
-    return Sheet(tuple(whole), tuple(reached))
+    return Sheet(tuple(whole), tuple(reached), frozenset(starved))
 
 
 def _spokes(pad: PlacedPad) -> list[tuple[Polygon, Polygon]]:

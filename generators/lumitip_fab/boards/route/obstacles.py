@@ -47,6 +47,7 @@ class Obstacles:
 
     def _edge(self, placement: Placement, owner: NDArray[np.int16], half_mm: float) -> None:
         keep = placement.edge_clearance_mm + half_mm + MARGIN_MM
+        from_hole = placement.hole_clearance_mm + half_mm + MARGIN_MM
         everywhere = slice(0, self.grid.height), slice(0, self.grid.width)
         x, y = self.grid.offsets(everywhere, *placement.outline.centre_mm)
         half = placement.outline.width_mm / 2, placement.outline.length_mm / 2
@@ -55,7 +56,7 @@ class Obstacles:
         outside = np.hypot(np.maximum(dx, 0), np.maximum(dy, 0))
         inside = np.minimum(np.maximum(dx, dy), 0)
         owner[outside + inside - corner > -keep] = BLOCKED
-        reach = self._rounded(placement.hole_mm / 2 + keep)
+        reach = self._rounded(placement.hole_mm / 2 + from_hole)
         for hole in placement.holes:
             where = self.grid.near(*hole, reach)
             x, y = self.grid.offsets(where, *hole)
