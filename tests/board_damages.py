@@ -3,6 +3,10 @@
 import re
 from collections.abc import Callable
 
+import shapely
+
+from lumitip_fab.boards.outline import fractured
+
 
 def in_part(text: str, ref: str, pattern: str, put: str | Callable[[re.Match[str]], str]) -> str:
     """Replace the first match within a part's footprint."""
@@ -44,3 +48,35 @@ def resistor_smaller(text: str) -> str:
 def unrated(text: str) -> str:
     """A string's resistor in a package without a known rating."""
     return in_part(text, "R1", r"RESC\d{4}X", "RESC9999X")
+
+
+def spokes_cut(text: str) -> str:
+    """The pour of the back cut away round the ground pad of J1, but for one side of it."""
+    at = text.index('(fp_text reference "J1"')
+    part = text[text.rindex("\n  (footprint", 0, at) :]
+    place = re.search(r"\(at (\S+) (\S+?)[ )]", part)
+    pad = re.search(
+        r'\(pad "\w+" thru_hole \w+\s+\(at (\S+) (\S+?)[ )](?:(?!\(pad )[\s\S])*?"GND"', part
+    )
+    assert place and pad
+    x, y = (float(place[k]) + float(pad[k]) for k in (1, 2))
+    half = shapely.box(x - 0.4, y - 1.6, x + 1.6, y + 1.6)
+    cut = half | shapely.box(x - 1.6, y + 0.3, x + 1.6, y + 1.6)  # one spoke stays on its left
+
+    def clipped(match: re.Match[str]) -> str:
+        corners = [tuple(map(float, xy)) for xy in re.findall(r"\(xy (\S+) (\S+?)\)", match[0])]
+        area = shapely.Polygon(corners).buffer(0)
+        if not area.intersects(cut):
+            return match[0]
+        left = [p for p in shapely.get_parts(area - cut) if p.area > 0.05]
+        return "\n".join(_polygon(p) for p in left)
+
+    fill = r'    \(filled_polygon\s+\(layer "B\.Cu"\)\s+\(pts[^()]*(?:\([^()]*\)[^()]*)+\)\s*\)'
+    hurt = re.sub(fill, clipped, text)
+    assert hurt != text
+    return hurt
+
+
+def _polygon(area: shapely.Polygon) -> str:
+    corners = " ".join(f"(xy {x:.3f} {y:.3f})" for x, y in fractured(area))
+    return f'    (filled_polygon (layer "B.Cu") (pts {corners}))'

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from board_damages import in_part, moved_part, once, swapped_pads
+from board_damages import in_part, moved_part, once, spokes_cut, swapped_pads
 from damages import failing
 from lumitip_fab.checks import board
 from lumitip_fab.design.encoding import read_design
@@ -133,7 +133,7 @@ DAMAGES: dict[Damage, set[str]] = {
     part_added: {"other_parts"},
     part_missing: {"other_parts", "lands", "apart"},
     hole_of_a_pad_wider: {"lands"},
-    pad_without_copper: {"lands", "apart", "hole_count", "hole_width", "edge_clearance"},
+    pad_without_copper: {"lands", "apart", "hole_count", "hole_width", "hole_clearance"},
     wires_exchanged: {"lands", "apart", "joined"},
     socket_pins_exchanged: {"open", "short"},
     names_exchanged: {"names"},
@@ -142,12 +142,13 @@ DAMAGES: dict[Damage, set[str]] = {
     track_narrow: {"track_width"},
     track_across: {"short", "joined"},
     supply_narrow: {"supply_width"},
-    track_over_the_edge: {"edge_clearance", "clearance"},
-    hole_moved: {"holes", "edge_clearance"},
+    track_over_the_edge: {"edge_clearance"},
+    spokes_cut: {"spokes"},
+    hole_moved: {"holes", "hole_clearance"},
     hole_narrow: {"hole_width"},
     hole_missing: {"hole_count", "holes", "other_parts"},
     edge_moved: {"outline"},
-    fill_adrift: {"islands", "edge_clearance"},
+    fill_adrift: {"islands", "hole_clearance"},
 }
 
 

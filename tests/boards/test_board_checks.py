@@ -6,7 +6,15 @@ from pathlib import Path
 
 import pytest
 
-from board_damages import in_part, moved_part, once, resistor_smaller, swapped_pads, unrated
+from board_damages import (
+    in_part,
+    moved_part,
+    once,
+    resistor_smaller,
+    spokes_cut,
+    swapped_pads,
+    unrated,
+)
 from damages import cut_short, failing, swap
 from lumitip_fab.checks import board
 from lumitip_fab.design.encoding import read_design
@@ -217,7 +225,7 @@ RECEIVER_DAMAGES: dict[Damage, set[str]] = {
     track_narrow: {"track_width"},
     via_dropped: {"open", "service"},
     via_ring_thin: {"via_ring"},
-    hole_moved: {"holes", "edge_clearance"},
+    hole_moved: {"holes", "hole_clearance"},
     hole_narrow: {"pin_clearance"},
     hole_missing: {"hole_count", "holes", "silk_gap"},
     edge_moved: {"outline", "pocket_gap"},
@@ -236,7 +244,8 @@ RECEIVER_DAMAGES: dict[Damage, set[str]] = {
     connector_reversed: {"wires", "service", "silk_labels"},
     track_added_near_another: {"clearance"},
     track_over_the_edge: {"edge_clearance"},
-    fill_adrift: {"islands", "edge_clearance"},
+    fill_adrift: {"islands", "hole_clearance"},
+    spokes_cut: {"spokes"},
 }
 
 

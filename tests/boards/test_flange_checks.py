@@ -58,7 +58,16 @@ def contacts_in_front(text: str) -> str:
 DAMAGES: dict[Damage, set[str]] = {
     contacts_in_front: {"lands"},
     # Its pads lie in the ground pour.
-    capacitor_far: {"lands", "hot_loop", "hot_loop_input", "open", "short", "apart", "joined"},
+    capacitor_far: {
+        "lands",
+        "hot_loop",
+        "hot_loop_input",
+        "open",
+        "short",
+        "apart",
+        "joined",
+        "spokes",
+    },
     supply_narrow: {"supply_width"},
     ground_under_the_regulator_missing: {"hot_loop_ground"},
     way_to_the_capacitor_missing: {"hot_loop_input", "open", "apart"},

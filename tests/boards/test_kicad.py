@@ -27,7 +27,8 @@ EVERY = (
     MODULE,
 )
 ALLOWED: dict[str, str] = {}  # names of warnings, each with the reason why it may stand
-FINER: dict[str, set[str]] = {}  # what presets with finer copper than KiCad's defaults show
+# What boards with finer copper than KiCad's defaults show of it.
+FINER = {"dense": {"clearance", "copper_edge_clearance", "drill_out_of_range", "via_diameter"}}
 MISSING_SHARE = 0.01  # of KiCad's fill, that ours may leave out
 SYSTEM_PYTHON = Path("/usr/bin/python3")
 LAYERS = (

@@ -52,6 +52,7 @@ CHANGES: dict[str, Any] = {
     "board.copper_gap_mm": 0.15,
     "board.via_mm": 0.7,
     "board.via_drill_mm": 0.25,
+    "board.edge_gap_mm": 0.6,
     "emitter.led": "other",
     "emitter.current_ma": 15.0,
     "emitter.string_leds": 12,

@@ -6,7 +6,12 @@ from collections.abc import Sequence
 
 from lumitip_fab.boards import spots
 from lumitip_fab.boards.circuit import GROUND, circuit, gap_at_cells_mm
-from lumitip_fab.boards.model import PlacedComponent, Placement
+from lumitip_fab.boards.model import (
+    MIN_WIDTH_MM,
+    THERMAL_GAP_MM,
+    PlacedComponent,
+    Placement,
+)
 from lumitip_fab.boards.placed import courtyard, pad_at
 from lumitip_fab.boards.silk.legend import with_legend
 from lumitip_fab.boards.silk.outlines import with_outline, without_crowded_lines
@@ -54,6 +59,8 @@ def string_angles(
 
 
 CORNER_MM = 0.5
+_POUR_BETWEEN_MM = 2 * THERMAL_GAP_MM + MIN_WIDTH_MM
+"""Wire pad to test point: the ground pour passes between them, so that both get bridges."""
 PASSIVE_GAP_MM = 0.6
 """Multiplexer to the capacitor and pull-up beside it, where there is room."""
 _NOISE_MM = 1e-6
@@ -180,7 +187,8 @@ def _connector(parts: dict[str, PlacedComponent], finger: Finger, rules: Rules) 
     parts["J1"] = _at(parts["J1"], ((pads[0][0] + pads[-1][0]) / 2, pads[0][1]))
     for i, (x, y) in enumerate(pads, start=1):
         point = parts[f"TP{i}"]
-        apart = (finger.connector.pad_mm + point.footprint.body.length_mm) / 2 + rules.part_gap_mm
+        gap_mm = max(rules.part_gap_mm, _POUR_BETWEEN_MM)
+        apart = (finger.connector.pad_mm + point.footprint.body.length_mm) / 2 + gap_mm
         parts[point.ref] = _at(point, (x, y + apart))
 
 

@@ -62,7 +62,7 @@ FIELDS: dict[str, Automatic] = {
     "board.copper_gap_mm": Automatic(0.2, "room between the cells"),
     "board.via_mm": Automatic(0.6, "room between the cells"),
     "board.via_drill_mm": Automatic(0.3, "room between the cells"),
-    "board.edge_gap_mm": Automatic(0.5, "rules of common PCB fabs"),
+    "board.edge_gap_mm": Automatic(0.5, "number of tracks"),
     "emitter.led": Automatic("15406085BA300", "pitch", names="leds"),
     "emitter.current_ma": Automatic(19.2, "heat, supply and ratings", 0.1),
     "emitter.string_leds": Automatic(16, "supply and forward voltage", 1),

@@ -137,22 +137,32 @@ def pour(
 def _sheets(
     rooms: dict[Side, Geometry], pads: list[PlacedPad]
 ) -> tuple[dict[Side, Sheet], frozenset[int]]:
-    """The pour of both sides, and the pads that it joins all round since bridges have no room."""
+    """The pour of both sides, and the pads that it joins all round since bridges have no room.
+
+    A plated hole that has its bridges on one side needs none on the other: joined all round, it
+    would take the heat away from the wire that is soldered to it.
+    """
     on_side = {side: [i for i, pad in enumerate(pads) if side in pad.sides] for side in SIDES}
-    solid: frozenset[int] = frozenset()
+    solid: set[int] = set()
+    bare: dict[Side, set[int]] = {side: set() for side in SIDES}
     while True:
-        sheets = {
-            side: sheet(
-                rooms[side],
-                [pads[i] for i in numbers],
-                frozenset(k for k, i in enumerate(numbers) if i in solid),
+        sheets = {}
+        for side, numbers in on_side.items():
+            own = {i: k for k, i in enumerate(numbers)}
+            joined, left_out = (
+                frozenset(own[i] for i in chosen if i in own) for chosen in (solid, bare[side])
             )
-            for side, numbers in on_side.items()
-        }
-        starved = {numbers[k] for side, numbers in on_side.items() for k in sheets[side].starved}
+            sheets[side] = sheet(rooms[side], [pads[i] for i in numbers], joined, left_out)
+        starved = [(side, on_side[side][k]) for side in SIDES for k in sorted(sheets[side].starved)]
         if not starved:
-            return sheets, solid
-        solid |= starved
+            return sheets, frozenset(solid)
+        for side, i in starved:
+            other: Side = "back" if side == "front" else "front"
+            bridged = i in on_side[other] and sheets[other].reached[on_side[other].index(i)]
+            if bridged and (other, i) not in starved:
+                bare[side].add(i)
+            else:
+                solid.add(i)
 
 
 def _islands(

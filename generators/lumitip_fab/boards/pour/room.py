@@ -144,13 +144,16 @@ class Sheet:
         return [int(i) for i in found]
 
 
-def sheet(room: Geometry, pads: list[PlacedPad], solid: frozenset[int]) -> Sheet:
+def sheet(
+    room: Geometry, pads: list[PlacedPad], solid: frozenset[int], bare: frozenset[int]
+) -> Sheet:
     """Cut the pads out of the room for the pour, and bridge the gaps.
 
     Args:
         room: where the pour may be.
         pads: pads of the ground net on this side.
         solid: pads that are joined all round instead.
+        bare: pads that are not joined on this side.
     """
     gaps = [
         pad.area.buffer(THERMAL_GAP_MM, join_style="round")
@@ -163,8 +166,12 @@ def sheet(room: Geometry, pads: list[PlacedPad], solid: frozenset[int]) -> Sheet
     shapely.prepare(room)
     tree = shapely.STRtree(pieces)
     added: list[list[Geometry]] = [[] for _ in pieces]
-    reached, starved = [], []
+    reached: list[tuple[int, ...]] = []
+    starved: list[int] = []
     for number, pad in enumerate(pads):
+        if number in bare:
+            reached.append(())
+            continue
         if number in solid:
             reached.append(tuple(sorted(tree.query(pad.area, predicate="intersects").tolist())))
             continue

@@ -166,6 +166,7 @@ FINE_MM = {"track": 0.15, "gap": 0.15, "via": 0.45, "drill": 0.2}
 """Copper for dense boards, which common PCB fabs make without extra cost."""
 LEAST_DRILL_MM = 0.15  # what `board.via_drill_mm` allows
 ROOMY_CHANNEL_MM = 4.0
+LEAST_EDGE_GAP_MM = 0.25  # that common PCB fabs keep from copper to a routed edge
 LANE_USE = 0.8  # share of the lane between two columns that tracks can fill
 
 
@@ -271,6 +272,7 @@ def _channel(config: Input) -> Iterator[Proposal]:
     if muxes > 4 or p.board.track_mm < float(FIELDS["board.track_mm"].start):
         reason = f"room to sort {sum(p.grid.columns)} lines before {muxes} multiplexers"
         yield "board.channel_mm", ROOMY_CHANNEL_MM, reason
+        yield "board.edge_gap_mm", LEAST_EDGE_GAP_MM, reason
 
 
 def _flange(config: Input) -> Iterator[Proposal]:
