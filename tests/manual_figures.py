@@ -97,6 +97,9 @@ def _wrong_figures(manual: Manual, design: Design) -> list[str]:
 def _wrong_units(manual: Manual, design: Design) -> list[str]:
     """Hours, degrees and volts anywhere in the text that are not the design's."""
     volts = {design.wiring.supply_v, 5.0, 0.0}  # the controller's supply, and ground
+    led = design.packages.led
+    if not led.mark_is_known:  # 0.15 V less at the 1 mA of a multimeter
+        volts.add(round(led.forward_voltage_v - 0.15, 1))
     heat = {figure for s in design.heat for figure in (s.temperature_c, s.limit_c)}
     allowed = {"h": {design.mould.cure_h}, "°C": heat, "V": volts}
     matches = re.findall(r"(?<![\w.])(\d+(?:\.\d+)?) (h|°C|V)\b", " ".join(manual.blocks))

@@ -157,6 +157,10 @@ def stop_line_of_other_parts(files: Files) -> None:
     edit(files, "STOP_READ_FIRST.txt", rb"Q1 to Q\d+", b"Q1 to Q2")
 
 
+def stop_line_names_others_below(files: Files) -> None:
+    edit(files, "STOP_READ_FIRST.txt", rb"\nQ1 to Q\d+", b"\nQ1 to Q2")
+
+
 FIRST_DAMAGES: dict[Damage, set[str]] = {
     pour_missing: {"copper", "same"},
     tracks_thin: {"copper", "same"},
@@ -183,6 +187,7 @@ FIRST_DAMAGES: dict[Damage, set[str]] = {
     green_board: {"fabrication"},
     no_stop_line: {"stop"},
     stop_line_of_other_parts: {"stop"},
+    stop_line_names_others_below: {"stop"},
     layer_nobody_asked_for: {"files"},
     layer_missing: {"readable"},
     not_gerber: {"readable"},

@@ -60,7 +60,8 @@ def string_angles(
 
 CORNER_MM = 0.5
 _POUR_BETWEEN_MM = 2 * THERMAL_GAP_MM + MIN_WIDTH_MM
-"""Wire pad to test point: the ground pour passes between them, so that both get bridges."""
+"""Wire pad to test point: the ground pour passes between them, so that both get bridges. Where
+tracks are thinner than the pour, the board is crowded and the tracks need the room more."""
 PASSIVE_GAP_MM = 0.6
 """Multiplexer to the capacitor and pull-up beside it, where there is room."""
 _NOISE_MM = 1e-6
@@ -185,9 +186,10 @@ def _connector(parts: dict[str, PlacedComponent], finger: Finger, rules: Rules) 
     """The wire pads where the design has them, and a test point on the back behind each."""
     pads = finger.connector.pads
     parts["J1"] = _at(parts["J1"], ((pads[0][0] + pads[-1][0]) / 2, pads[0][1]))
+    crowded = rules.track_mm < MIN_WIDTH_MM
+    gap_mm = rules.part_gap_mm if crowded else max(rules.part_gap_mm, _POUR_BETWEEN_MM)
     for i, (x, y) in enumerate(pads, start=1):
         point = parts[f"TP{i}"]
-        gap_mm = max(rules.part_gap_mm, _POUR_BETWEEN_MM)
         apart = (finger.connector.pad_mm + point.footprint.body.length_mm) / 2 + gap_mm
         parts[point.ref] = _at(point, (x, y + apart))
 

@@ -199,7 +199,8 @@ def _unstopped(read: Read, files: _Files) -> Iterator[str]:
     elif text:
         letter, last = read.finger.cells_hold.letter, len(read.finger.cells)
         cells = f"{letter}1" if last == 1 else f"{letter}1 to {letter}{last}"
-        if not text.startswith("STOP") or cells not in text or chip.order_number not in text:
+        named = text.startswith(f"STOP: do not place {cells} ") and f"\n{cells}: " in text
+        if not named or chip.order_number not in text:
             yield f"{cells} in {STOP_FILE}"
 
 
