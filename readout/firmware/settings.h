@@ -7,7 +7,7 @@
 #define LUMITIP_BITS 8  // of each value sent: 8, 10 or 12, not more than the converter has
 #endif
 #ifndef LUMITIP_PERIOD_US
-#define LUMITIP_PERIOD_US 5000  // from frame to frame; a scan of 32 cells takes about 1.5 ms
+#define LUMITIP_PERIOD_US 5000  // from frame to frame
 #endif
 #ifndef LUMITIP_LATENCY_US
 #define LUMITIP_LATENCY_US 7500  // a frame waits no longer for others to share its packet
@@ -15,8 +15,14 @@
 #ifndef LUMITIP_SAMPLES
 #define LUMITIP_SAMPLES 1  // conversions whose mean is one value
 #endif
+#ifndef LUMITIP_RADIO_US
+#define LUMITIP_RADIO_US 2750  // of the period, for radio and USB; scans fill the rest by waiting
+#endif
+#ifndef LUMITIP_CONVERSION_US
+#define LUMITIP_CONVERSION_US 30  // of one conversion
+#endif
 #ifndef LUMITIP_SETTLE_FACTOR
-#define LUMITIP_SETTLE_FACTOR 2  // times the computed settling: for tolerances and long wires
+#define LUMITIP_SETTLE_FACTOR 2  // shortest wait, times the charging of the line: for long wires
 #endif
 #ifndef LUMITIP_WATCHDOG_S
 #define LUMITIP_WATCHDOG_S 10  // longer than a lost connection blocks the radio; 0: none
@@ -34,6 +40,8 @@ constexpr uint8_t BITS = LUMITIP_BITS;
 constexpr uint16_t PERIOD_US = LUMITIP_PERIOD_US;
 constexpr uint32_t LATENCY_US = LUMITIP_LATENCY_US;
 constexpr uint8_t SAMPLES = LUMITIP_SAMPLES;
+constexpr int32_t RADIO_US = LUMITIP_RADIO_US;
+constexpr uint32_t CONVERSION_US = LUMITIP_CONVERSION_US;
 constexpr uint8_t SETTLE_FACTOR = LUMITIP_SETTLE_FACTOR;
 constexpr int EMITTER_PIN = LUMITIP_EMITTER_PIN;
 constexpr uint32_t EMITTER_US = LUMITIP_EMITTER_US;

@@ -5,7 +5,16 @@ from pathlib import Path
 
 import pytest
 
+from lumitip_fab.boards.circuit import circuit
 from lumitip_fab.boards.spice import simulation
+from lumitip_fab.boards.spice_channel import (
+    SETTLED_COUNTS,
+    STEPS,
+    Corner,
+    corners,
+    detectors,
+    first_line,
+)
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from lumitip_fab.derive.wiring.ratings import string_current_ma
@@ -28,7 +37,7 @@ def _netlist(
     electrical: Electrical | None = None,
 ) -> str:
     d, finger = design, getattr(design, name)
-    (made,) = simulation(
+    made, *_ = simulation(
         dataclasses.replace(d, wiring=wiring or d.wiring, electrical=electrical or d.electrical),
         finger,
     )
@@ -91,6 +100,68 @@ def test_a_detector_that_does_not_saturate_reads_by_its_light(
     dim = dataclasses.replace(design.electrical, channel=channel)
     found = simulated(_netlist(design, "receiver", electrical=dim), tmp_path)
     assert found["full_v"] == pytest.approx(3.3 - 20e-6 * 75e3, abs=0.001)
+
+
+def _detector(design: Design, corner: Corner, step: str, folder: Path) -> dict[str, float]:
+    """What a phototransistor reads after a change of channel."""
+    line = first_line(circuit(design, design.receiver).components, design)
+    lines = ("*", *detectors(line, design, corner, STEPS[step]), ".end")
+    return simulated("\n".join(lines) + "\n", folder)
+
+
+@needs_ngspice
+def test_a_detector_without_gain_or_base_settles_as_computed(
+    presets: dict[str, Design], tmp_path: Path
+) -> None:
+    design = presets["published"]
+    found = _detector(design, Corner(1, 0.01), "to_dark", tmp_path)
+    channel = design.electrical.channel
+    assert found["end_v"] == pytest.approx(channel.dark_v, abs=0.002)
+    assert channel.settle_us < 100
+    # The line's own time constant: from 100 to 200 us nothing is left but the model's leakage.
+    assert abs(found["wrong_100"]) < SETTLED_COUNTS
+
+
+@needs_ngspice
+@pytest.mark.parametrize("step", STEPS)
+def test_a_phototransistor_of_the_published_circuit_does_not_settle_in_the_dark(
+    presets: dict[str, Design], step: str, tmp_path: Path
+) -> None:
+    """What README tells you to measure: the circuit is the published one, and reports."""
+    design = presets["published"]
+    fastest, *_, slowest = corners(design)
+    fast = _detector(design, fastest, step, tmp_path)
+    slow = _detector(design, slowest, step, tmp_path)
+    if STEPS[step].now:
+        assert abs(fast["wrong_400"]) < SETTLED_COUNTS > abs(slow["wrong_400"])
+    else:
+        assert abs(fast["wrong_400"]) < SETTLED_COUNTS < abs(fast["wrong_200"])
+        assert slow["wrong_400"] < -100
+        assert slow["wrong_3200"] < -SETTLED_COUNTS
+    assert slow["end_v"] == pytest.approx(fast["end_v"], abs=0.1)
+
+
+@needs_ngspice
+def test_a_lower_load_settles_sooner(presets: dict[str, Design], tmp_path: Path) -> None:
+    published = presets["published"]
+    wiring = dataclasses.replace(published.wiring, pull_up_ohm=7500.0)
+    low = dataclasses.replace(published, wiring=wiring)
+    slowest = corners(published)[-1]
+    wrong = [_detector(d, slowest, "to_dark", tmp_path)["wrong_400"] for d in (published, low)]
+    assert abs(wrong[1]) < abs(wrong[0]) / 5
+
+
+@needs_ngspice
+def test_the_netlist_of_the_detectors_is_the_slowest_that_dims(
+    presets: dict[str, Design], tmp_path: Path
+) -> None:
+    design = presets["published"]
+    _, made = simulation(design, design.receiver)
+    assert made.path == "boards/receiver/receiver_detectors.cir"
+    found = simulated(made.data.decode(), tmp_path)
+    assert found == pytest.approx(
+        _detector(design, corners(design)[-1], "dimmed", tmp_path), rel=1e-3, abs=1e-3
+    )
 
 
 def test_the_published_string_is_wide_and_fewer_leds_are_steadier(

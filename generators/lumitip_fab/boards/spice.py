@@ -1,49 +1,46 @@
-"""Netlists for ngspice: a string, a detector, and the flange's switching regulator."""
+"""Netlists for ngspice: a string, a channel, and the flange's switching regulator."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from lumitip_fab.boards.circuit import GROUND, circuit
-from lumitip_fab.design import (
-    AuxiliaryBoard,
-    Component,
-    Design,
-    Electrical,
-    Finger,
-    Packages,
-    Wiring,
-)
+from lumitip_fab.boards.spice_channel import STEPS, channel, corners, detectors, first_line
+from lumitip_fab.design import AuxiliaryBoard, Component, Design, Finger
 from lumitip_fab.design.electrical import Regulated
 from lumitip_fab.pipeline.artefact import Artefact
 
 _TEMPERATURE_C = 26.85  # 300 K, as in the closed forms
 _THERMAL_V = 0.0258520  # of ngspice at that temperature
-_KNEE_V = 0.001  # over which a detector takes up its current
-_BEFORE_US, _CONSTANTS = 200, 25  # time before the change of channel; time constants after it
-Parts = tuple[Component, ...]
 
 
 def simulation(design: Design, finger: Finger) -> tuple[Artefact, ...]:
-    """The netlist of a finger's board: its first string, or its first multiplexer with two
-    detectors."""
-    wiring, packages = design.wiring, design.packages
+    """The netlists of a finger's board: its first string; or its first multiplexer with two
+    detectors, once as current sinks and once as phototransistors."""
     parts = circuit(design, finger).components
-    body = _string if finger.cells_hold.kind == "led" else _channel
+    if finger.cells_hold.kind == "led":
+        return (_netlist(design, finger, "", string(parts, design)),)
+    line = first_line(parts, design)
+    slowest = detectors(line, design, corners(design)[-1], STEPS["dimmed"])
+    return (
+        _netlist(design, finger, "", channel(line, design)),
+        _netlist(design, finger, "_detectors", slowest),
+    )
+
+
+def _netlist(design: Design, finger: Finger, ending: str, lines: Iterable[str]) -> Artefact:
     title = design.title.on_boards().name
-    lines = (
+    whole = (
         f"* {title}, {finger.name}, design {design.reading.design_hash[:8]}",
-        *body(parts, wiring, packages, design.electrical),
+        *lines,
         f".options temp={_TEMPERATURE_C} tnom={_TEMPERATURE_C} reltol=1e-5 vntol=1e-7",
         ".end",
     )
-    text = "\n".join(lines) + "\n"
-    return (Artefact(f"boards/{finger.name}/{finger.name}.cir", text.encode(), frame=""),)
+    path = f"boards/{finger.name}/{finger.name}{ending}.cir"
+    return Artefact(path, ("\n".join(whole) + "\n").encode(), frame="")
 
 
-def _string(
-    parts: Parts, wiring: Wiring, packages: Packages, electrical: Electrical
-) -> Iterator[str]:
+def string(parts: tuple[Component, ...], design: Design) -> Iterator[str]:
     """The first string at its supply; `i_ma` is its current."""
-    strings = electrical.strings
+    wiring, packages, strings = design.wiring, design.packages, design.electrical.strings
     anode, cathode = ("1", "2") if packages.led.marked == "anode" else ("2", "1")
     leds = {dict(p.nets)[anode]: p for p in parts if p.kind == "led"}
     supply, net = (net for part in parts if part.ref == "R1" for _, net in part.nets)
@@ -58,48 +55,6 @@ def _string(
     amperes = f"{strings.target_ma / 1000:g}/(exp({exponent:.9g})-1)"
     yield f".model led d(n={strings.ideality:g} is={{{amperes}}})"
     yield from (".control", "op", "let i_ma = -1000*i(vsupply)", "print i_ma", ".endc")
-
-
-def _channel(
-    parts: Parts, wiring: Wiring, packages: Packages, electrical: Electrical
-) -> Iterator[str]:
-    """The first multiplexer as it changes from a detector in full light to one in the dark.
-
-    `full_v` and `dark_v` are what the controller reads before and long after the change,
-    `settle_us` the time until it is within half a step of the latter.
-    """
-    channel, mux = electrical.channel, packages.multiplexer
-    leads = next(dict(part.nets) for part in parts if part.ref == "U1")
-    supply, line = leads[str(mux.supply)], leads[str(mux.output)]
-    detectors = [n for n in (leads[str(lead)] for lead in mux.input_leads) if n != GROUND]
-    lit, dark = detectors[0], detectors[-1]
-    seconds = wiring.pull_up_ohm * (channel.line_pf + channel.detector_pf) * 1e-12
-    after_us = _CONSTANTS * seconds * 1e6
-    end_us = _BEFORE_US + after_us
-    yield f"Vsupply {supply} 0 {channel.supply_v:g}"
-    yield f"R1 {supply} {line} {wiring.pull_up_ohm:g}"
-    yield f"Cline {line} 0 {channel.line_pf:g}p"
-    for net, amperes, knee_at, on in (
-        (lit, channel.light_current_ua * 1e-6, channel.saturation_v, "1 0"),
-        (dark, channel.dark_current_na * 1e-9, 0.0, "0 1"),
-    ):
-        yield f"C{net} {net} 0 {channel.detector_pf:g}p"
-        share = f"min(max((v({net})-{knee_at:g})/{_KNEE_V:g},0),1)"
-        yield f"B{net} {net} 0 i={amperes:g}*{share}"
-        yield f"S{net} {net} {line} on{net} 0 channel"
-        yield f"V{net} on{net} 0 pulse({on} {_BEFORE_US}u 1n 1n 1)"
-    yield f".model channel sw(ron={channel.on_resistance_ohm:g} roff=1e12 vt=0.5)"
-    yield from (
-        ".control",
-        f"tran {after_us / 1000:g}u {end_us:g}u 0 {after_us / 1000:g}u",
-        f"meas tran full_v find v({line}) at={_BEFORE_US - 1}u",
-        f"meas tran dark_v find v({line}) at={end_us - 1:g}u",
-        f"let target = dark_v - {channel.step_v / 2:g}",
-        f"meas tran t_end when v({line})=target rise=last",
-        f"let settle_us = t_end*1e6 - {_BEFORE_US}",
-        "print full_v dark_v settle_us",
-        ".endc",
-    )
 
 
 _SETTLE_MS = 0.5  # from the end of the soft start to the ripple that is measured

@@ -4,7 +4,7 @@ from typing import Literal, Self
 
 from pydantic import Field, model_validator
 
-from lumitip_fab.catalogue.record import Capacitances, Confidence, Entry, Length, Ordered
+from lumitip_fab.catalogue.record import Capacitances, Confidence, Entry, Gains, Length, Ordered
 
 
 class Chip(Ordered, Entry):
@@ -92,6 +92,10 @@ class Photodetector(Polar):
     """Collector to emitter voltage when the light asks for more current than there is."""
     capacitance_pf: float = Field(ge=0, le=1e4)
     """Capacitance of the collector."""
+    gain: Gains = (100.0, 1000.0)
+    """Current gain hFE, least and greatest; 1 and 1 for a photodiode. Assumed where not given."""
+    base_pf: Capacitances = (3.0, 10.0)
+    """Capacitance from collector to base, least and greatest. Assumed where not given."""
 
 
 class Resistor(Chip):

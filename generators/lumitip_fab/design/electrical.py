@@ -51,7 +51,12 @@ class Channel:
     """At full light."""
     dark_v: float
     settle_us: float
-    """From full light to darkness within half a step of the ADC, after a change of channel."""
+    """From full light to darkness within half a step of the ADC, after a change of channel, for a
+    detector without a base."""
+    gain: tuple[float, float]
+    """Current gain hFE of the detectors, least and greatest."""
+    base_pf: tuple[float, float]
+    """Capacitance from collector to base, least and greatest."""
 
 
 @dataclass(frozen=True)

@@ -99,9 +99,9 @@ def channel_rows(design: Design) -> tuple[Row, ...]:
             f"{channel.settle_us:.0f} µs",
             f"{line_pf:g} pF through {optics.pull_up_ohm:g} Ω, from full light to dark within half "
             f"a step of {design.controller.adc_bits} bits. A phototransistor is slower: its time "
-            f"constant hFE x C_cb x R is {_slow_ms(design, *_FAST):.2g} ms at hFE {_FAST[0]:g} and "
-            f"{_FAST[1]:g} pF, {_slow_ms(design, *_SLOW):.2g} ms at {_SLOW[0]:g} and "
-            f"{_SLOW[1]:g} pF; measure yours",
+            f"constant hFE x C_cb x R is {_slow_ms(design, 0):.2g} to {_slow_ms(design, 1):.2g} ms "
+            f"at hFE {channel.gain[0]:g} to {channel.gain[1]:g} and {channel.base_pf[0]:g} to "
+            f"{channel.base_pf[1]:g} pF; measure yours",
         ),
     )
 
@@ -120,13 +120,10 @@ def pulled_up(wiring: Wiring) -> str:
     )
 
 
-# Spread of gain and collector-base capacitance (pF) of phototransistors: assumed.
-_FAST, _SLOW = (100.0, 3.0), (1000.0, 10.0)
-
-
-def _slow_ms(design: Design, gain: float, base_pf: float) -> float:
-    """Time constant of a phototransistor at its pull-up."""
-    return gain * base_pf * design.layout.optics.pull_up_ohm * 1e-9
+def _slow_ms(design: Design, end: int) -> float:
+    """Time constant of a phototransistor at its pull-up: 0 for the fastest, 1 for the slowest."""
+    channel = design.electrical.channel
+    return channel.gain[end] * channel.base_pf[end] * design.wiring.pull_up_ohm * 1e-9
 
 
 def _span(values: tuple[float, ...]) -> str:

@@ -47,4 +47,8 @@ int main() {
   const unsigned first = order.selects - before;
   once.scan(codes);
   printf("%u %u %u\n", first, order.selects - before - first, order.unsettled);
+
+  const uint32_t began = order.us;
+  once.scan(codes);
+  printf("%u %u\n", order.us - began, lumitip::SHORTEST_US);
 }

@@ -76,4 +76,6 @@ def _channel(config: Input) -> Channel:
         full_scale_v=full_v,
         dark_v=dark_v,
         settle_us=1e6 * seconds * math.log(max((dark_v - full_v) / (step_v / 2), 1.0)),
+        gain=detector.gain,
+        base_pf=detector.base_pf,
     )
