@@ -150,11 +150,11 @@ def test_a_board_that_lost_a_track_is_never_written(
     (task,) = (t for t in tasks(STEPS, designs("small")) if t.name == "finger_board.emitter")
     pour = files.pour
 
-    def losing(*given: Any) -> tuple[Routing, tuple[Fill, ...]]:
-        routing, fills, _ = pour(*given)
+    def losing(*given: Any) -> tuple[Routing, tuple[Fill, ...], frozenset[tuple[str, str]]]:
+        routing, fills, solid = pour(*given)
         kept = tuple(t for t in routing.tracks if t.net != "S1_1")
         assert kept != routing.tracks
-        return dataclasses.replace(routing, tracks=kept), fills
+        return dataclasses.replace(routing, tracks=kept), fills, solid
 
     monkeypatch.setattr(files, "pour", losing)
     with pytest.raises(BuildError, match=r"emitter board breaks its rules:\nnet S1_1 is in pieces"):

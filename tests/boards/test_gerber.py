@@ -164,5 +164,5 @@ def test_pictures_are_pictures(boards: Callable[[str], Path]) -> None:
     with Image.open(io.BytesIO((folder / "receiver_front.png").read_bytes())) as picture:
         assert picture.size == pytest.approx(((32.4 + 2) * 32, (31.6 + 2) * 32), abs=40)
         colours = {c for _, c in picture.convert("RGB").getcolors(1 << 24) or []}
-    assert {(12, 74, 52), (23, 101, 74), (216, 180, 101), (243, 242, 234)} <= colours
+    assert {(25, 27, 29), (48, 51, 54), (216, 180, 101), (243, 242, 234)} <= colours
     assert (folder / "receiver_back.svg").read_text().count("<path") == 6

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from build123d import Box, Pos, Sphere
 from PIL import Image
-from playwright.sync_api import sync_playwright
+from playwright.sync_api import Page, sync_playwright
 
 import lumitip_fab
 from lumitip_fab.parts.export import part_files
@@ -17,6 +17,11 @@ from programs import program
 pytestmark = pytest.mark.slow
 
 BACKGROUND = np.array([255, 255, 255])
+LONGEST_S = 40  # on a busy machine
+
+
+def _pixels(tab: Page) -> np.ndarray:
+    return np.asarray(Image.open(BytesIO(tab.screenshot())).convert("RGB"), int)
 
 
 @pytest.fixture
@@ -31,10 +36,14 @@ def seen() -> Callable[[Path], np.ndarray]:
             )
             tab = browser.new_context(offline=True).new_page()
             tab.goto(page.as_uri())
-            tab.wait_for_timeout(3000)
-            shown = tab.screenshot()
+            shown = [_pixels(tab)]
+            for _ in range(LONGEST_S):  # until something is drawn and stands still
+                tab.wait_for_timeout(1000)
+                shown.append(_pixels(tab))
+                if np.ptp(shown[-1]) and np.array_equal(shown[-2], shown[-1]):
+                    break
             browser.close()
-        return np.asarray(Image.open(BytesIO(shown)).convert("RGB"), int)
+        return shown[-1]
 
     return look
 
