@@ -41,13 +41,16 @@ constexpr uint16_t PERIOD_US = LUMITIP_PERIOD_US;
 constexpr uint32_t LATENCY_US = LUMITIP_LATENCY_US;
 constexpr uint8_t SAMPLES = LUMITIP_SAMPLES;
 constexpr int32_t RADIO_US = LUMITIP_RADIO_US;
-constexpr uint32_t CONVERSION_US = LUMITIP_CONVERSION_US;
+constexpr int32_t CONVERSION_US = LUMITIP_CONVERSION_US;
 constexpr uint8_t SETTLE_FACTOR = LUMITIP_SETTLE_FACTOR;
 constexpr int EMITTER_PIN = LUMITIP_EMITTER_PIN;
 constexpr uint32_t EMITTER_US = LUMITIP_EMITTER_US;
 constexpr uint8_t FIRMWARE_VERSION[3] = {1, 1, 0};
 
 static_assert(LUMITIP_PERIOD_US >= 100 && LUMITIP_PERIOD_US <= 65535, "PERIOD_US: 100 to 65535");
+static_assert(LUMITIP_RADIO_US >= 0 && LUMITIP_RADIO_US <= 65535, "RADIO_US: 0 to 65535");
+static_assert(LUMITIP_CONVERSION_US >= 1 && LUMITIP_CONVERSION_US <= 1000,
+              "CONVERSION_US: 1 to 1000");
 static_assert(LUMITIP_SAMPLES >= 1 && LUMITIP_SAMPLES <= 64, "SAMPLES: 1 to 64");
 static_assert(BITS == 8 || BITS == 10 || BITS == 12, "BITS: 8, 10 or 12");
 

@@ -150,8 +150,8 @@ def test_a_board_that_lost_a_track_is_never_written(
     (task,) = (t for t in tasks(STEPS, designs("small")) if t.name == "finger_board.emitter")
     pour = files.pour
 
-    def losing(*given: Any) -> tuple[Routing, tuple[Fill, ...], frozenset[tuple[str, str]]]:
-        routing, fills, solid = pour(*given)
+    def losing(*arguments: Any) -> tuple[Routing, tuple[Fill, ...], frozenset[tuple[str, str]]]:
+        routing, fills, solid = pour(*arguments)
         kept = tuple(t for t in routing.tracks if t.net != "S1_1")
         assert kept != routing.tracks
         return dataclasses.replace(routing, tracks=kept), fills, solid

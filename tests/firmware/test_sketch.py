@@ -92,7 +92,9 @@ def test_a_channel_out_of_reach_does_not_compile(copied: Path, compiled: Compile
     assert "on an input that no multiplexer has" in compiled(copied).stderr
 
 
-@pytest.mark.parametrize("defined", ["BITS=9", "PERIOD_US=70000", "SAMPLES=0"])
+@pytest.mark.parametrize(
+    "defined", ["BITS=9", "PERIOD_US=70000", "SAMPLES=0", "RADIO_US=-1", "CONVERSION_US=0"]
+)
 def test_settings_out_of_range_do_not_compile(
     defined: str, copied: Path, compiled: Compile
 ) -> None:

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator
 
 from lumitip_fab.boards.circuit import GROUND, circuit
-from lumitip_fab.boards.spice_channel import STEPS, channel, corners, detectors, first_line
+from lumitip_fab.boards.spice_channel import STEPS, channel, corners, detectors, first_mux
 from lumitip_fab.design import AuxiliaryBoard, Component, Design, Finger
 from lumitip_fab.design.electrical import Regulated
 from lumitip_fab.pipeline.artefact import Artefact
@@ -17,11 +17,11 @@ def simulation(design: Design, finger: Finger) -> tuple[Artefact, ...]:
     detectors, once as current sinks and once as phototransistors."""
     parts = circuit(design, finger).components
     if finger.cells_hold.kind == "led":
-        return (_netlist(design, finger, "", string(parts, design)),)
-    line = first_line(parts, design)
-    slowest = detectors(line, design, corners(design)[-1], STEPS["dimmed"])
+        return (_netlist(design, finger, "", _string(parts, design)),)
+    nets = first_mux(parts, design)
+    slowest = detectors(nets, design, corners(design)[-1], STEPS["dimmed"])
     return (
-        _netlist(design, finger, "", channel(line, design)),
+        _netlist(design, finger, "", channel(nets, design)),
         _netlist(design, finger, "_detectors", slowest),
     )
 
@@ -38,7 +38,7 @@ def _netlist(design: Design, finger: Finger, ending: str, lines: Iterable[str]) 
     return Artefact(path, ("\n".join(whole) + "\n").encode(), frame="")
 
 
-def string(parts: tuple[Component, ...], design: Design) -> Iterator[str]:
+def _string(parts: tuple[Component, ...], design: Design) -> Iterator[str]:
     """The first string at its supply; `i_ma` is its current."""
     wiring, packages, strings = design.wiring, design.packages, design.electrical.strings
     anode, cathode = ("1", "2") if packages.led.marked == "anode" else ("2", "1")

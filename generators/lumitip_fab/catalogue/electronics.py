@@ -93,9 +93,9 @@ class Photodetector(Polar):
     capacitance_pf: float = Field(ge=0, le=1e4)
     """Capacitance of the collector."""
     gain: Gains = (100.0, 1000.0)
-    """Current gain hFE, least and greatest; 1 and 1 for a photodiode. Assumed where not given."""
+    """Current gain hFE, least and greatest; 1 and 1 for a photodiode. The default is assumed."""
     base_pf: Capacitances = (3.0, 10.0)
-    """Capacitance from collector to base, least and greatest. Assumed where not given."""
+    """Capacitance from collector to base, least and greatest. The default is assumed."""
 
 
 class Resistor(Chip):

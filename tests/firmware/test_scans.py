@@ -1,0 +1,60 @@
+"""Scans on the bench: several conversions, ambient light, and the wait at each input."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from lumitip.layout import Layout
+
+pytestmark = pytest.mark.slow
+
+
+def test_several_conversions_and_ambient_light(
+    host_program: Callable[..., Path], run: Callable[..., Any], sketch: Callable[[str], Path]
+) -> None:
+    done = run(str(host_program("scans", "published")))
+    assert done.returncode == 0, done.stderr
+    mean, lit, counts, _ = done.stdout.splitlines()
+    layout = Layout.load(sketch("published").parent / "layout.json")
+    assert set(mean.split()) == {"102"}  # 101.5, rounded
+    assert lit.split() == [str(4095 - 1000 - 17 * mux) for mux in layout.mux.tolist()]
+    assert counts.split() == ["7", "8", "0"]
+
+
+@pytest.mark.parametrize(
+    ("preset", "period_us", "defines", "waits"),
+    [
+        ("published", 5000, (), True),
+        ("published", 20_000, (), True),
+        ("published", 5000, ("-DLUMITIP_RADIO_US=1000",), True),
+        ("published", 20_000, ("-DLUMITIP_EMITTER_PIN=4",), True),
+        ("mux16", 10_000, (), True),
+        ("dense", 5000, (), False),  # 124 conversions take the time
+        ("published", 2000, (), False),
+    ],
+)
+def test_inputs_wait_for_as_long_as_the_period_allows(
+    host_program: Callable[..., Path],
+    run: Callable[..., Any],
+    sketch: Callable[[str], Path],
+    preset: str,
+    period_us: int,
+    defines: tuple[str, ...],
+    waits: bool,
+) -> None:
+    program = host_program("scans", preset, f"-DLUMITIP_PERIOD_US={period_us}", *defines)
+    took_us, shortest_us = map(int, run(str(program)).stdout.splitlines()[-1].split())
+    layout = Layout.load(sketch(preset).parent / "layout.json")
+    channels, cells = int(layout.channel.max()) + 1, len(layout)
+    waited_us = took_us - 15 * cells  # of the bench's conversions
+    assert waited_us >= channels * shortest_us
+    emitter = int("-DLUMITIP_EMITTER_PIN=4" in defines)
+    radio_us = 1000 if "-DLUMITIP_RADIO_US=1000" in defines else 2750
+    took_us += 15 * cells + 200 * emitter  # conversions of 30 us; light that becomes steady
+    left_us = period_us - took_us * (1 + emitter)
+    if waits:
+        assert radio_us <= left_us < radio_us + channels * 2 * (1 + emitter)
+    else:
+        assert waited_us == channels * shortest_us
