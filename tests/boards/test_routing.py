@@ -12,7 +12,7 @@ import small_boards as small
 from lumitip_fab.boards.model import SIDES, BoardModel, Placement, Routing, Track
 from lumitip_fab.boards.placed import placed_pads
 from lumitip_fab.boards.pour import pour
-from lumitip_fab.boards.route import route
+from lumitip_fab.boards.route import route, router
 from lumitip_fab.boards.route.obstacles import Obstacles
 from lumitip_fab.boards.route.rules import Grid, Rules
 from lumitip_fab.boards.verify import summary, verify
@@ -88,6 +88,20 @@ def test_supply_tracks_are_wide_away_from_narrow_pads(
 def test_what_cannot_be_routed_is_refused_with_nets_and_places() -> None:
     with pytest.raises(BuildError, match=r"rounds.*[A-E] at \(-?\d"):
         route(small.narrows())
+
+
+def test_another_pressure_is_tried_where_nets_find_no_room(
+    crossing: tuple[Placement, Routing], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    placement, routing = crossing
+    none, usual = router.Pressure(1.0, 0.0), router.TRIES[0]  # nets never become dear
+    monkeypatch.setattr(router, "TRIES", (none,))
+    with pytest.raises(BuildError, match="still share room"):
+        route(placement)
+    monkeypatch.setattr(router, "TRIES", (none, usual))
+    second = route(placement)
+    assert (second.tracks, second.vias) == (routing.tracks, routing.vias)
+    assert second.iterations > routing.iterations
 
 
 def test_tracks_lie_side_by_side_on_the_grid(crossing: tuple[Placement, Routing]) -> None:

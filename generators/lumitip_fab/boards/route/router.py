@@ -2,6 +2,7 @@
 
 import dataclasses
 from collections import defaultdict
+from dataclasses import dataclass
 
 from lumitip_fab.boards.model import SIDES, Placement, Routing, Track, Via
 from lumitip_fab.boards.placed import PlacedPad, placed_pads
@@ -49,10 +50,28 @@ def _necked(net: Wanted, grid: Grid, *nodes: int) -> bool:
     return any(net.neck[divmod(node % grid.plane, grid.width)] for node in nodes)
 
 
+@dataclass(frozen=True)
+class Pressure:
+    """How fast a place that several nets want becomes dear."""
+
+    growth: float
+    """Factor of the price with each round."""
+    history: float
+    """More for each round that a node is fought for."""
+
+
+TRIES = (
+    Pressure(1.35, 0.5),
+    Pressure(1.2, 0.5),
+    Pressure(1.1, 0.5),
+    Pressure(1.2, 1.0),
+    Pressure(1.35, 1.0),
+)
+"""One after the other, until all nets have room. Whether a crowded board is routed at last hangs on
+chance: two boards of 124 and 128 cells on the area of the published 32 failed with the first of
+these, and were routed by the second and third."""
 FIRST_PRICE = 0.6  # of a net in the way, in the first round
-PRICE_GROWTH = 1.35
 TOP_PRICE = 30.0
-HISTORY = 0.5  # more for each round that a node is fought for
 HISTORY_REACH = 1  # nodes round it
 SWEEP = 20  # rounds after which all nets are routed anew,
 SWEEP_SHARE = 0.12  # while more than this share of them is in conflict
@@ -65,12 +84,13 @@ NEGOTIATION = CostWeights(FIRST_PRICE, margin_mm=2.5, via_mm=0.7)
 COSMETIC = CostWeights(DEAR, via_mm=2.0, bend_mm=0.5, across=1.2)
 
 
-def negotiate(state: State, nets: list[Wanted]) -> tuple[int, dict[str, Ints]]:
+def negotiate(state: State, nets: list[Wanted], pressure: Pressure) -> tuple[int, dict[str, Ints]]:
     """Route all nets; stops after many rounds without progress.
 
     Args:
-        state: the maps; `state.routed` has the result.
+        state: the maps, without any net; `state.routed` has the result.
         nets: what to connect, in the order of the first round.
+        pressure: how fast a place that several nets want becomes dear.
 
     Returns:
         Number of rounds, and the nodes that are still fought for, by net: empty on success.
@@ -91,11 +111,11 @@ def negotiate(state: State, nets: list[Wanted]) -> tuple[int, dict[str, Ints]]:
         state.turn += 1
         for nodes in fought.values():
             stamps.remember(
-                nodes, state.history, state.marked[0], state.turn, HISTORY, HISTORY_REACH
+                nodes, state.history, state.marked[0], state.turn, pressure.history, HISTORY_REACH
             )
         weights = dataclasses.replace(
             weights,
-            price=min(weights.price * PRICE_GROWTH, TOP_PRICE),
+            price=min(weights.price * pressure.growth, TOP_PRICE),
             margin_mm=weights.margin_mm + WIDER_MM,
         )
         sweep = turn % SWEEP == 0 and len(fought) > SWEEP_SHARE * len(nets)
@@ -107,6 +127,23 @@ def negotiate(state: State, nets: list[Wanted]) -> tuple[int, dict[str, Ints]]:
             state.count(net, -1)
             state.routed[net.name] = connect(state, net, supported(net, free), weights)
             state.count(net, 1)
+
+
+def negotiate_until_free(state: State, nets: list[Wanted]) -> tuple[int, dict[str, Ints]]:
+    """`negotiate` under one pressure after the other, until no net is in the way of another.
+
+    Returns:
+        As `negotiate`: the rounds of all tries, and the fight of the try that came nearest.
+    """
+    rounds, nearest = 0, None
+    for pressure in TRIES:
+        state.clear()
+        turns, fought = negotiate(state, nets, pressure)
+        rounds += turns
+        if not fought:
+            return rounds, {}
+        nearest = min(nearest or fought, fought, key=len)
+    return rounds, nearest or {}
 
 
 def polish(state: State, nets: list[Wanted]) -> None:
@@ -167,7 +204,7 @@ def _routed(placement: Placement, rules: Rules, pitch_mm: float) -> Routing:
         key=lambda net: (net.wide == rules.narrow, net.name == placement.ground, _extent_mm(net))
     )
     try:
-        rounds, fought = negotiate(state, nets)
+        rounds, fought = negotiate_until_free(state, nets)
     except Unreachable as fault:
         a, b = (f"{e.pad.component.ref}.{e.pad.pad.number}" for e in fault.ends)
         raise TightError(

@@ -43,6 +43,12 @@ class State:
         self.queue = np.empty(4 * count, dtype=np.int32)
         self.near_via = np.zeros((grid.height, grid.width), dtype=np.uint8)
 
+    def clear(self) -> None:
+        """Take all nets off the maps, and forget what was fought for."""
+        self.taken[:] = 0
+        self.history[:] = 0
+        self.routed.clear()
+
     def paths(self, net: Wanted) -> Ints:
         """Paths of a net in a row, each ended by -1."""
         return np.concatenate([part for path in self.routed[net.name] for part in (path, _END)])
