@@ -14,10 +14,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from common import Goals
-from lumitip_fab.boards.fab.order import assembly_note, layers_of, order_files
-from lumitip_fab.boards.fab.picture import picture_files
-from lumitip_fab.boards.kicad.project import project_files
-from lumitip_fab.boards.kicad.schematic.files import schematic_files
+from lumitip_fab.boards.files import finger_files
 from lumitip_fab.boards.model import BoardModel
 from lumitip_fab.boards.placement import place
 from lumitip_fab.boards.pour import pour
@@ -80,20 +77,6 @@ def design_of(cells: int) -> Design:
         return derive(load(file))
 
 
-def files(design: Design, finger: Finger, model: BoardModel) -> int:
-    """Make every file of a board; returns their size in bytes."""
-    layers = layers_of(model)
-    written = {
-        **project_files(model, design.stack.pcb_mm),
-        **schematic_files(model.placement, finger, design),
-        **picture_files(model),
-    }
-    for fab in design.fabs:
-        note = assembly_note(model.placement, finger, design.packages, fab)
-        written |= order_files(model, layers, note, fab, model.placement.name)
-    return sum(map(len, written.values()))
-
-
 def measure(design: Design, finger: Finger, goals: Goals) -> str:
     """One row of the table: each stage once."""
     d, seconds = design, []
@@ -109,7 +92,7 @@ def measure(design: Design, finger: Finger, goals: Goals) -> str:
     found = timed(lambda: route(placement))
     routing, fills, _ = timed(lambda: pour(placement, found))
     model = BoardModel(placement, routing, fills)
-    timed(lambda: files(design, finger, model))
+    timed(lambda: finger_files(design, finger, model))
     busy = time.process_time() - busy
     name, faults = f"{len(d.layout)} cells, {finger.name}", len(verify(model))
     if limit_s := LIMITS_S.get(len(d.layout)):
@@ -127,7 +110,7 @@ def main(counts: list[int]) -> int:
     """Print the table; the exit code."""
     goals = Goals()
     small = design_of(32)
-    files(small, _board(small))  # compiles, and does late imports
+    finger_files(small, small.emitter, _board(small))  # compiles, and does late imports
     print("seconds, but for the last columns; cpu is processor time")
     print(
         f"{'cells':>6}{'board':>10}{'place':>8}{'route':>8}{'pour':>8}{'files':>8}{'all':>8}{'cpu':>8}"

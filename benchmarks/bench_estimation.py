@@ -9,6 +9,7 @@ exits 1 if a goal is missed. The argument is the number of poses.
 import sys
 import time
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
@@ -146,7 +147,7 @@ def speed(goals: Goals, count: int = 300) -> None:
         steps = np.linspace(-2.0, 2.0, count)
         moving = [twin.values(HalfPlane(offset_mm=o, angle_deg=3.0 * o)) for o in steps]
         spent = [
-            [_ms(lambda v, k=k, e=e: e(v, k), v) for v in rows]
+            [_ms(partial(e, kind=k), v) for v in rows]
             for e, k, rows in (
                 (estimator, "edge", edges),
                 (estimator, "cable", cables),
@@ -161,10 +162,7 @@ def speed(goals: Goals, count: int = 300) -> None:
         )
         if cells == 32:
             runs = np.array(
-                [
-                    [_ms(lambda v: estimator(v, "edge"), v) for v in edges]  # noqa: B023
-                    for _ in range(RUNS)
-                ]
+                [[_ms(partial(estimator, kind="edge"), v) for v in edges] for _ in range(RUNS)]
             )
             name = "an edge at 32 cells"
             goals.at_most(f"{name}, all single runs", float(np.median(runs)), 1.0, "ms median")

@@ -14,6 +14,7 @@ import time
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from statistics import median
 from typing import Any
 
@@ -98,7 +99,8 @@ def _to_rays(markers: Floats, x: float, y: float, one: float, other: float) -> F
     for angle in (one, other):
         ahead = np.maximum(across * np.cos(angle) + along * np.sin(angle), 0.0)
         distances.append(np.hypot(across - ahead * np.cos(angle), along - ahead * np.sin(angle)))
-    return np.minimum(*distances)
+    nearer: Floats = np.minimum(*distances)
+    return nearer
 
 
 def _corner(markers: Floats, starts: int) -> Floats:
@@ -161,9 +163,9 @@ def per_frame() -> tuple[float, float]:
     for shape in SHAPES:
         frames, _ = frames_of(layout, shape, 300)
         lists = [row.tolist() for row in frames[:30]]
-        ways = [
+        ways: list[tuple[Callable[[Any], object], list[Any]]] = [
             (process, list(np.tile(frames, (2, 1)))),
-            *((lambda v, n=n: published(v, layout, n), lists) for n in STARTS),
+            *((partial(published, layout=layout, starts=n), lists) for n in STARTS),
         ]
         mine, *theirs = np.min([[each_us(*way) for way in ways] for _ in range(TURNS)], axis=0)
         print(
@@ -224,7 +226,7 @@ def growth() -> tuple[float, float]:
         layout = layout_of(columns, 6.0 * float(np.sqrt(32.0 / cells)))
         frames, _ = frames_of(layout, "corner", 200)
         process = Processor(layout)
-        each_us(process, frames[:20])
+        each_us(process, list(frames[:20]))
         alone = each_us(process, list(np.tile(frames, (3, 1))))
         many = min(each_us(process.batch, [frames]) for _ in range(7)) / len(frames)
         markers = float(process.batch(frames).counts.mean())

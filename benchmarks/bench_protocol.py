@@ -8,6 +8,7 @@ import sys
 import timeit
 from binascii import crc_hqx
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
@@ -34,11 +35,12 @@ def packets() -> None:
     for bits in (8, 10, 12):
         for frames in (1, largest_batch(MTU, CELLS, bits)):
             values = np.random.default_rng(0).integers(0, 1 << bits, (frames, CELLS))
-            packet = Packet(1, 2, bits, 3, 4, values.astype(np.uint8 if bits == 8 else np.uint16))
+            whole = values.astype(np.uint8) if bits == 8 else values.astype(np.uint16)
+            packet = Packet(1, 2, bits, 3, 4, whole)
             data = encode(packet)
-            reading = seconds(lambda data=data: decode(data, CELLS))
-            writing = seconds(lambda packet=packet: encode(packet))
-            crc = seconds(lambda data=data: crc_hqx(data, 0xFFFF))
+            reading = seconds(partial(decode, data, CELLS))
+            writing = seconds(partial(encode, packet))
+            crc = seconds(partial(crc_hqx, data, 0xFFFF))
             print(
                 f"  {bits:2} bits, {frames} frames      {1e6 * reading:8.1f}       "
                 f"{1e6 * writing:8.1f}       {reading / crc:8.1f} x"

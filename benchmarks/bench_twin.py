@@ -5,14 +5,17 @@ render images of many thousand pixels, so neither frames nor readings a second c
 here stands for some thousand rays that were traced once.
 """
 
+import math
 import sys
 import time
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
 from common import PUBLISHED, Goals, columns_for, layout_of, on_one_core
-from lumitip.twin import Cable, Corner, HalfPlane, Image, Polygon, Sheet, Twin
+from lumitip.grid import Floats
+from lumitip.twin import Cable, Corner, HalfPlane, Image, Polygon, Scene, Sheet, Twin
 
 CELLS = (32, 128, 512)
 GOAL_SCENES, GOAL_BATCH = 10_000.0, 50_000.0
@@ -43,31 +46,39 @@ def timed(name: str, cells: int, work: Callable[[int], object], frames: int = 1)
     return rate
 
 
+def _read(twin: Twin, make: Callable[[int], Scene], index: int) -> Floats:
+    """Values of the scene with a number."""
+    return twin.values(make(index))
+
+
 def scenes(twin: Twin) -> tuple[float, float]:
     """Scenes one by one and in batches; the least rate of moving scenes, and that of batches."""
     cells = len(twin.layout)
-    poses = [(x, 30.0 * np.sin(x)) for x in np.linspace(-6.0, 6.0, 64).tolist()]
+    places: list[float] = np.linspace(-6.0, 6.0, 64).tolist()
+    poses: list[tuple[float, float]] = [(x, 30.0 * math.sin(x)) for x in places]
+
+    def pose(number: int) -> tuple[float, float]:
+        return poses[number % 64]
+
     drawn = Image.of(Polygon(STAR))
     stars = [np.add(STAR, (x, -x / 2.0)) for x, _ in poses]
     print(f"{f'{cells} cells':<46}{'frames/s':>12}{'readings/s':>14}")
     moving = [
-        timed(name, cells, lambda i, make=make: twin.values(make(i)))
+        timed(name, cells, partial(_read, twin, make))
         for name, make in {
-            "edge, by its table": lambda i: HalfPlane(*poses[i % 64]),
-            "cable, exact cylinder, by its table": lambda i: Cable(*poses[i % 64]),
-            "curved cable, by its table": lambda i: Cable(*poses[i % 64], 0.02),
-            "corner, on the raster": lambda i: Corner(*poses[i % 64], -80.0, 90.0),
+            "edge, by its table": lambda i: HalfPlane(*pose(i)),
+            "cable, exact cylinder, by its table": lambda i: Cable(*pose(i)),
+            "curved cable, by its table": lambda i: Cable(*pose(i), 0.02),
+            "corner, on the raster": lambda i: Corner(*pose(i), -80.0, 90.0),
             "any drawn shape that moves, on the raster": lambda i: drawn.at(
-                poses[i % 64][0], 1.0, poses[i % 64][1]
+                pose(i)[0], 1.0, pose(i)[1]
             ),
             "polygon of ten corners, new each time": lambda i: Polygon(stars[i % 64]),
-            "corner of cloth that scatters": lambda i: Corner(*poses[i % 64], diffuse=0.3),
+            "corner of cloth that scatters": lambda i: Corner(*pose(i), diffuse=0.3),
         }.items()
     ]
     cloth = Sheet(clear=0.5)
-    timed(
-        "cable on cloth, ray by ray", cells, lambda i: twin.values([Cable(*poses[i % 64]), cloth])
-    )
+    timed("cable on cloth, ray by ray", cells, lambda i: twin.values([Cable(*pose(i)), cloth]))
     pixels = twin.plane().x_mm.size
     coverage = np.random.default_rng(0).random((BATCH, pixels), dtype=np.float32)
     name = f"batch of {BATCH} coverages of {pixels} pixels"

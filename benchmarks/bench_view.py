@@ -67,7 +67,7 @@ def measure(page: Page, fingers: list[Finger], seconds: float) -> tuple[list[flo
             "[...lumitip.panels.values()].map((p) => ({ ...p.status, pictures: p.pictures }))"
         )
         age = [max(panel["age_ms"][i] for panel in panels) for i in range(2)]
-        lost = sum(sum(finger.tip.stats.dropped.values()) for finger in fingers)
+        lost = sum(sum((finger.tip.stats.dropped or {}).values()) for finger in fingers)
         heap = page.evaluate("performance.memory.usedJSHeapSize") / 1e6
         print(
             f"{interval * INTERVAL_S:5.0f} s{age[0]:6.1f} ms{age[1]:5.1f} ms"

@@ -79,12 +79,15 @@ def published(layout: Layout) -> Method:
 
     def method(values: Floats, kind: str) -> Line | None:
         contact = process(values)
-        fit = contact.line if kind == "edge" else contact.cable
-        if fit is None:
-            return None
-        x_mm, y_mm = fit.point_mm if kind == "edge" else fit.axis_point_mm
-        turn = np.radians(fit.angle_deg)
-        return float(y_mm * np.cos(turn) - x_mm * np.sin(turn)), fit.angle_deg
+        if kind == "edge":
+            line = contact.line
+            return across(line.point_mm, line.angle_deg) if line else None
+        cable = contact.cable
+        return across(cable.axis_point_mm, cable.angle_deg) if cable else None
+
+    def across(point_mm: tuple[float, float], angle_deg: float) -> Line:
+        (x_mm, y_mm), turn = point_mm, np.radians(angle_deg)
+        return float(y_mm * np.cos(turn) - x_mm * np.sin(turn)), angle_deg
 
     return method
 

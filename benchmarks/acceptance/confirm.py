@@ -28,6 +28,7 @@ FIELDS = {
     "plate": ("tip.edge_mm", "stack.floor_mm"),
     "nut": ("holder.screw", "breakout.hole_mm"),
     "block": ("coupling.gripper", "printer.profile", "printer.fit_mm"),
+    "groove": ("flex.groove_depth_mm", "stack.floor_mm"),
     "bending": ("backing.variant", "backing.material", "stack.pcb_mm"),
 }
 ELECTRICAL = ("emitter.current_ma", "emitter.max_heat_w", "emitter.string_leds", "supply.max_ma")
@@ -65,7 +66,7 @@ def confirm(design: Design, trial: Trial, search: bool = True) -> Verdict:
 
 def reasons(values: Values) -> dict[str, str]:
     """Physical reasons why a design cannot exist, by the fields that they explain."""
-    found = {}
+    found: dict[str, str] = {}
     for text in (text for limit in LIMITS for text in limit(values)):
         found |= dict.fromkeys(FIELDS[text.partition(":")[0]], text)
     lack = lack_of_power(values)

@@ -54,7 +54,7 @@ def design(seed: int, index: int) -> Design:
 
 def _draw(random: Random, name: str) -> Design | None:
     """A design; none where one of its edits changes nothing."""
-    base, kinds = BASE, KINDS
+    base, kinds = BASE, tuple(KINDS)
     if random.random() < PRESET_SHARE:
         base = random.choice([preset for preset in presets() if preset != BASE])
         kinds = tuple(kind for kind in KINDS if kind.name in WITH_A_PRESET)

@@ -1,6 +1,7 @@
 """Random grids: columns that alternate, equal columns, one column, irregular patches."""
 
 import math
+from collections.abc import Callable
 from random import Random
 
 LEAST_CELLS, MOST_CELLS = 3, 257
@@ -21,6 +22,7 @@ def draw_cells(random: Random) -> int:
 
 def draw_columns(random: Random, cells: int) -> list[int]:
     """Cells of each column, about as many in all as asked for."""
+    draws: list[Callable[[Random, int, int], list[int]]]
     draws = [_alternating, _alternating, _equal, _patch]
     if cells <= MOST_IN_ONE_COLUMN:
         draws.append(_single)

@@ -19,6 +19,8 @@ STEP_DOWN_V = 1.0
 MODULE_WIRES = 9
 SCREW_FROM_MIDDLE_MM, BODY_MM, SEAT_GAP_MM = 17.78, 75.0, 0.3
 EDGE_BELOW_PLATE_MM = 0.3
+THINNEST_WALL_MM, WALL_LINES = 0.8, 1.2
+RIM_LINES = 2 / 3
 THICKEST_FLEXIBLE_MM = 0.2
 PUBLISHED = {
     "board.side_margin_mm": 5.8,
@@ -154,7 +156,7 @@ def least_silicone_mm(values: Values) -> float:
         values.part("receiver.photodetector", "photodetectors"),
         min(multiplexers(values), key=lambda m: m["body_mm"][2]),
     )
-    return max(part["body_mm"][2] for part in parts if part) + COVER_MM
+    return float(max(part["body_mm"][2] for part in parts if part) + COVER_MM)
 
 
 def _cover(values: Values) -> Iterator[str]:
@@ -222,6 +224,19 @@ def _bending(values: Values) -> Iterator[str]:
         yield f"bending: {values['backing.variant']} of {values['backing.material']}"
 
 
+def _groove(values: Values) -> Iterator[str]:
+    """The plate of a finger that bends is a wall under the groove in which a rim is glued."""
+    if values["backing.variant"] != "flex":
+        return
+    printer = values.part("printer.profile", "printers")
+    line = printer["line_mm"] if printer else 0.0
+    wall = max(THINNEST_WALL_MM, WALL_LINES * line)
+    rim = RIM_LINES * line + values.number("flex.glue_mm")
+    plate = values.number("stack.floor_mm")
+    if plate < wall + rim - 1e-9:
+        yield f"groove: a plate of {plate:g} mm, a wall of {wall:g} mm and a rim of {rim:g} mm"
+
+
 def _block(values: Values) -> Iterator[str]:
     """The hole of the bolt and the holes of the pins beside it grow by the fit; a wall between
     them that is thinner than a line is not printed."""
@@ -249,5 +264,6 @@ LIMITS = (
     _plate,
     _nut,
     _bending,
+    _groove,
     _block,
 )

@@ -48,6 +48,20 @@ def test_silicone_thinner_than_the_parts_is_confirmed(monkeypatch: pytest.Monkey
     assert verdict.text.startswith("confirmed: cover: 0.8 mm of silicone")
 
 
+def test_a_groove_deeper_than_the_plate_allows_is_confirmed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("acceptance.confirm.way_out", lambda _: None)
+    bends = {"backing__variant": "flex", "backing__material": "TPU 98A", "stack__pcb_mm": 0.11}
+    thin = _design(**bends, stack__floor_mm=1.1)
+    assert {r.field for r in _trial(thin).refusals} == {"flex.groove_depth_mm"}
+    verdict = confirm(thin, _trial(thin), search=False)
+    assert verdict.text == (
+        "confirmed: groove: a plate of 1.1 mm, a wall of 0.8 mm and a rim of 0.45 mm"
+    )
+    assert not reasons(Values(_design(**bends, stack__floor_mm=1.5).edits, thin.base))
+
+
 @pytest.mark.slow
 def test_a_wall_thinner_than_a_printed_line_is_confirmed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("acceptance.confirm.way_out", lambda _: None)

@@ -35,7 +35,11 @@ def board_files(design: Design, finger: Finger) -> tuple[Artefact, ...]:
         BuildError: if a part has no room, a net cannot be routed, or the finished copper breaks
             its rules.
     """
-    model = finished(place(design, finger))
+    return finger_files(design, finger, finished(place(design, finger)))
+
+
+def finger_files(design: Design, finger: Finger, model: BoardModel) -> tuple[Artefact, ...]:
+    """Every file of a finger's finished board."""
     board = model.placement
     sheet = schematic_files(board, finger, design)
     chip = design.packages.at_cells(finger)

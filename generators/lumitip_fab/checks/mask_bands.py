@@ -113,9 +113,10 @@ def measure_numbers(subject: str, flaps: tuple[Flap, ...], numbers: tuple[int, .
     wrong = len(set(range(1, len(flaps) + 1)) - at.keys())
     if not wrong:
         middles = {n: flap.fold.mean(axis=0) for n, flap in at.items()}
-        low_to_high = sorted(middles, key=lambda n: float(middles[n][1]))
-        wrong += low_to_high[-1] != 1
-        wrong += len({2, 3} - set(low_to_high[:2]))
+        up_mm = {n: float(middle[1]) for n, middle in middles.items()}
+        wrong += max(up_mm, key=up_mm.__getitem__) != 1
+        # A wide gripper end has more flaps than two, at the same height.
+        wrong += sum(up_mm[n] > min(up_mm.values()) + _MIRROR_MM for n in (2, 3))
         for n in range(2, len(flaps), 2):
             wrong += not np.allclose(middles[n] * (-1.0, 1.0), middles[n + 1], atol=_MIRROR_MM)
             wrong += n > 4 and _width_mm(at[n]) > _width_mm(at[n - 1]) + _SAME_MM

@@ -175,7 +175,8 @@ MENDS: dict[str, tuple[str, ...]] = {
     "receiver.resistor": ("receiver.capacitor", "board.clearance_mm"),
     "receiver.multiplexer": _ROOM,
     "mask.hole_mm": ("board.channel_mm",),
-    "mask.flap_mm": ("mask.allowance_mm",),
+    "mask.flap_mm": ("mask.allowance_mm", "receiver.multiplexer"),  # fewer make a shorter finger
+    "printer.profile": ("receiver.multiplexer",),
     "mould.draft_deg": ("mould.tip_silicone_mm",),
     "mould.taper_length_mm": ("outline.tip_margin_mm",),
     "flex.groove_depth_mm": ("stack.floor_mm",),

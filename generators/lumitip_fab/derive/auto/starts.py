@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from lumitip.grid import column_pitch_mm
 from lumitip_fab.config.automatic import FIELDS, Value
 from lumitip_fab.config.load import Input
+from lumitip_fab.derive.boards.module import MOST_WIRES
 from lumitip_fab.derive.boards.packages import LEAST_RING_MM
 from lumitip_fab.derive.finger.stack import is_flex
 from lumitip_fab.derive.wiring.ratings import (
@@ -167,6 +168,7 @@ FINE_MM = {"track": 0.15, "gap": 0.15, "via": 0.45, "drill": 0.2}
 LEAST_DRILL_MM = 0.15  # what `board.via_drill_mm` allows
 ROOMY_CHANNEL_MM = 4.0
 LEAST_EDGE_GAP_MM = 0.25  # that common PCB fabs keep from copper to a routed edge
+POWER_WIRES = 2  # supply and ground of the receiver
 LANE_USE = 0.8  # share of the lane between two columns that tracks can fill
 
 
@@ -202,9 +204,9 @@ def _printer(config: Input) -> Iterator[Proposal]:
 
 
 def _multiplexer(config: Input) -> Iterator[Proposal]:
-    """The published multiplexer where the controller has pins for it, else one with more inputs;
-    the one with most where it has pins for none. Pins with pull-ups count when the others are too
-    few for any."""
+    """The published multiplexer where the controller has pins for it, and a module's board room
+    for its wires, else one with more inputs; the one with most where there is room for none. Pins
+    with pull-ups count when the others are too few for any."""
     p, parts = config.parameters, config.catalogue
     cells, controller = sum(p.grid.columns), parts.controllers[p.controller.board]
     start = str(FIELDS["receiver.multiplexer"].start)
@@ -215,8 +217,9 @@ def _multiplexer(config: Input) -> Iterator[Proposal]:
     for pins in (every - len(controller.pulled_up_ohm), every):
         for name, mux in known:
             needed = math.ceil(cells / mux.channels)
-            fits = controller.unlimited_analog_pins or needed <= pins
-            if fits and len(mux.select) <= len(controller.select_pins):
+            read = controller.unlimited_analog_pins or needed <= pins
+            wired = not controller.module or POWER_WIRES + len(mux.select) + needed <= MOST_WIRES
+            if read and wired and len(mux.select) <= len(controller.select_pins):
                 reason = (
                     f"{needed} of them read {cells} cells; {p.controller.board} has pins for them"
                 )
