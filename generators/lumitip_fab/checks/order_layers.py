@@ -20,6 +20,8 @@ MASK_GAP_MM = 0.1  # an opening round a pad, each side, at most
 INK_SHARE = 0.03  # of the room of a word, at least
 _ROUND_MM2 = 0.01  # what chords of round pens leave of all lines of a side
 _SIDES = ("front", "back")
+Holes = list[tuple[float, float, float]]
+"""x, y and diameter of each (mm)."""
 Painted = dict[bytes, BaseGeometry]
 """Layers that were read before, by their bytes: the zips share most of them."""
 
@@ -162,7 +164,9 @@ def _drills(path: str, read: ReadBoard, layers: Mapping[str, bytes]) -> Iterator
     ]
     holes = [(t.at, t.drill_mm) for t in read.holes]
     for key, expected in (("plated", plated + vias), ("unplated", holes)):
-        off = _apart(read, drilled(layers[key].decode()), expected)
+        places = read.sensor([at for at, _ in expected]).tolist()
+        wanted = [(x, y, size) for (x, y), (_, size) in zip(places, expected, strict=True)]
+        off = farthest_mm(drilled(layers[key].decode()), wanted)
         note = f"worst of {len(expected)} {key} holes"
         yield Measurement("orders.drills", path, off, 0, PLACE_MM, "mm", note)
 
@@ -194,18 +198,20 @@ def _soldered(read: ReadBoard, layer: str) -> BaseGeometry:
     )
 
 
-def _apart(
-    read: ReadBoard,
-    found: list[tuple[float, float, float]],
-    wanted: list[tuple[tuple[float, float], float]],
-) -> float:
-    """Worst place or diameter of a hole; NaN if there are more or fewer."""
+def farthest_mm(found: Holes, wanted: Holes) -> float:
+    """Worst distance, or difference in diameter, of a hole from the nearest of the others.
+
+    Args:
+        found: x, y and diameter of each hole (mm).
+        wanted: the same, in any order.
+
+    Returns:
+        NaN if there are more or fewer than wanted.
+    """
     if len(found) != len(wanted) or not found:
         return math.nan
-    places = read.sensor([at for at, _ in wanted])
-    expected = np.column_stack([places, [size for _, size in wanted]])
-    order = [np.lexsort(np.round(a, 2).T) for a in (expected, np.array(found))]
-    return float(np.abs(expected[order[0]] - np.array(found)[order[1]]).max())
+    apart = np.abs(np.array(wanted)[:, None] - np.array(found)).max(axis=2)
+    return float(max(apart.min(axis=0).max(), apart.min(axis=1).max()))
 
 
 def _in_sensor(read: ReadBoard, area: BaseGeometry) -> BaseGeometry:

@@ -272,9 +272,11 @@ def _channel(config: Input) -> Iterator[Proposal]:
     p = config.parameters
     channels = config.parts.receiver.multiplexer.channels
     muxes = math.ceil(sum(p.grid.columns) / channels)
-    if muxes > 4 or p.board.track_mm < float(FIELDS["board.track_mm"].start):
-        reason = f"room to sort {sum(p.grid.columns)} lines before {muxes} multiplexers"
+    fine = p.board.track_mm < float(FIELDS["board.track_mm"].start)
+    reason = f"room to sort {sum(p.grid.columns)} lines before {muxes} multiplexers"
+    if muxes > 4 or fine:
         yield "board.channel_mm", ROOMY_CHANNEL_MM, reason
+    if fine:
         yield "board.edge_gap_mm", LEAST_EDGE_GAP_MM, reason
 
 

@@ -1,0 +1,1 @@
+"""Random boards of both fingers: drawn, routed, and judged by KiCad."""
