@@ -110,11 +110,10 @@ def stock_errors(model: BoardModel, thickness_mm: float) -> tuple[str, ...]:
         if done.returncode:
             return (f"kicad-cli: {done.stderr.strip()}",)
         told = json.loads(report.read_text(encoding="utf-8"))
-    kinds = {fault["type"] for fault in told["violations"]} - (FINER if _fine(board) else set())
-    return (
-        *(f"kicad {kind}" for kind in sorted(kinds)),
-        *("kicad unconnected",)[: len(told["unconnected_items"])],
-    )
+    fine = FINER if _fine(board) else set()
+    kinds = sorted({fault["type"] for fault in told["violations"]} - fine)
+    unjoined = ["unconnected"] if told["unconnected_items"] else []
+    return tuple(f"kicad {kind}" for kind in (*kinds, *unjoined))
 
 
 def _fine(board: Placement) -> bool:

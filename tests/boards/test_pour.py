@@ -20,6 +20,7 @@ from lumitip_fab.boards.model import (
 )
 from lumitip_fab.boards.placed import placed_pads
 from lumitip_fab.boards.pour import pour
+from lumitip_fab.boards.pour.flood import BYPASS_MM
 from lumitip_fab.boards.route import route
 from lumitip_fab.boards.verify import summary, verify
 from lumitip_fab.errors import BuildError
@@ -44,6 +45,22 @@ def poured(routed: tuple[Placement, Routing]) -> Poured:
 def test_a_poured_board_has_no_fault(poured: Poured) -> None:
     faults = verify(BoardModel(*poured))
     assert not faults, summary(faults)
+
+
+@pytest.mark.parametrize("ref", ["C1", "R1"])
+def test_a_capacitor_has_a_ground_via_beside_it(ref: str) -> None:
+    """Elsewhere a via every few millimetres is enough."""
+    placement = small.board(
+        small.part("J1", small.PIN, (-8.8, 0), {"1": "GND"}),
+        small.part("J2", small.PIN, (8.8, 0), {"1": "A"}),
+        small.part(ref, small.CHIP, (1.3, 2.9), {"1": "A", "2": "GND"}),
+    )
+    routing, fills, solid = pour(placement, route(placement))
+    assert not verify(BoardModel(placement, routing, fills, solid))
+    part = next(c for c in placement.components if c.ref == ref)
+    pad = next(p for p in placed_pads(part) if p.net == "GND")
+    away = [pad.area.distance(shapely.Point(v.x_mm, v.y_mm)) for v in routing.vias]
+    assert (min(away) <= BYPASS_MM) is (ref == "C1")
 
 
 @pytest.mark.slow

@@ -3,6 +3,7 @@
 import dataclasses
 import math
 from collections.abc import Iterable, Sequence
+from functools import partial
 
 import numpy as np
 import shapely
@@ -17,6 +18,7 @@ from lumitip_fab.design import Point, Side
 
 LATTICE_MM = 0.5  # places tried
 APART_MM = 6.0  # between stitching vias, where there is room
+BYPASS_MM = 1.0  # from a capacitor's ground pad to a via, where there is room
 _APART_MM = 0.01  # round pieces of pour that are left out
 
 
@@ -107,62 +109,87 @@ def pour(
     ]
     if not pads:
         return routing, (), frozenset()
+    bypasses = [pad for pad in pads if pad.component.ref.startswith("C")]
     rooms = {side: room(placement, routing, side) for side in SIDES}
     others, own = _split(placement, routing)
     kind = _kind(placement)
     free = via_room(placement, routing, kind.via_mm, kind.via_drill_mm)
+    filled = _Sheets(pads)
     while True:
-        sheets, solid = _sheets(rooms, pads)
+        filled.fill(rooms)
+        sheets = filled.of
         whole = [shapely.union_all(sheets[side].pieces) for side in SIDES]
         possible = candidates(placement, free, *whole)
         kept = needed(pads, sheets, own, possible)
-        pieces, stitches = _stitched(sheets, kept, possible)
+        pieces, stitches = _stitched(sheets, kept, possible, bypasses)
         vias = (*kept.vias, *stitches)
         islands = _islands(sheets, pieces, kept.tracks, vias)
         if not any(islands.values()):
             break
         for side, found in islands.items():
-            rooms[side] = shapely.difference(
-                rooms[side], shapely.union_all(found).buffer(_APART_MM)
-            )
+            if found:
+                rooms[side] = shapely.difference(
+                    rooms[side], shapely.union_all(found).buffer(_APART_MM)
+                )
     done = Routing((*others.tracks, *kept.tracks), (*others.vias, *vias), routing.iterations)
     fills = tuple(
         Fill(placement.ground, side, shapely.set_precision(sheets[side].pieces[i], 0.001))
         for side in SIDES
         for i in pieces[side]
     )
-    return done, fills, frozenset((pads[i].component.ref, pads[i].pad.number) for i in solid)
+    return done, fills, frozenset((pads[i].component.ref, pads[i].pad.number) for i in filled.solid)
 
 
-def _sheets(
-    rooms: dict[Side, Geometry], pads: list[PlacedPad]
-) -> tuple[dict[Side, Sheet], frozenset[int]]:
+_Joined = tuple[frozenset[int], frozenset[int]]
+"""Pads that are joined all round, and pads that are not joined, by their number on a side."""
+
+
+class _Sheets:
     """The pour of both sides, and the pads that it joins all round since bridges have no room.
 
     A plated hole that has its bridges on one side needs none on the other: joined all round, it
     would take the heat away from the wire that is soldered to it.
     """
-    on_side = {side: [i for i, pad in enumerate(pads) if side in pad.sides] for side in SIDES}
-    solid: set[int] = set()
-    bare: dict[Side, set[int]] = {side: set() for side in SIDES}
-    while True:
-        sheets = {}
-        for side, numbers in on_side.items():
+
+    def __init__(self, pads: list[PlacedPad]) -> None:
+        self.pads = pads
+        self.solid: set[int] = set()
+        self.of: dict[Side, Sheet] = {}
+        self._on: dict[Side, list[int]] = {
+            side: [i for i, pad in enumerate(pads) if side in pad.sides] for side in SIDES
+        }
+        self._rooms: dict[Side, Geometry] = {}
+        self._made: dict[Side, dict[_Joined, Sheet]] = {}
+
+    def fill(self, rooms: dict[Side, Geometry]) -> None:
+        """Fill rooms; a side whose room has not changed is not filled again."""
+        for side, room_ in rooms.items():
+            if self._rooms.get(side) is not room_:
+                self._rooms[side], self._made[side] = room_, {}
+        self.solid = set()
+        bare: dict[Side, set[int]] = {side: set() for side in SIDES}
+        while starved := self._cut(bare):
+            for side, i in starved:
+                other: Side = "back" if side == "front" else "front"
+                bridged = i in self._on[other] and self.of[other].reached[self._on[other].index(i)]
+                if bridged and (other, i) not in starved:
+                    bare[side].add(i)
+                else:
+                    self.solid.add(i)
+
+    def _cut(self, bare: dict[Side, set[int]]) -> list[tuple[Side, int]]:
+        """Cut both sheets; the pads that are starved."""
+        for side, numbers in self._on.items():
             own = {i: k for k, i in enumerate(numbers)}
             joined, left_out = (
-                frozenset(own[i] for i in chosen if i in own) for chosen in (solid, bare[side])
+                frozenset(own[i] for i in chosen if i in own) for chosen in (self.solid, bare[side])
             )
-            sheets[side] = sheet(rooms[side], [pads[i] for i in numbers], joined, left_out)
-        starved = [(side, on_side[side][k]) for side in SIDES for k in sorted(sheets[side].starved)]
-        if not starved:
-            return sheets, frozenset(solid)
-        for side, i in starved:
-            other: Side = "back" if side == "front" else "front"
-            bridged = i in on_side[other] and sheets[other].reached[on_side[other].index(i)]
-            if bridged and (other, i) not in starved:
-                bare[side].add(i)
-            else:
-                solid.add(i)
+            made = self._made[side]
+            if (joined, left_out) not in made:
+                pads = [self.pads[i] for i in numbers]
+                made[joined, left_out] = sheet(self._rooms[side], pads, joined, left_out)
+            self.of[side] = made[joined, left_out]
+        return [(side, self._on[side][k]) for side in SIDES for k in sorted(self.of[side].starved)]
 
 
 def _islands(
@@ -199,8 +226,24 @@ def _split(placement: Placement, routing: Routing) -> tuple[Routing, Routing]:
     return others, own
 
 
+def _beside(pads: list[PlacedPad], possible: list[Via], present: list[Via]) -> list[Via]:
+    """The nearest via for each pad that has none beside it yet, where one is near."""
+    added: list[Via] = []
+    for pad in pads:
+        away_mm = partial(_away_mm, pad)
+        has = min(map(away_mm, (*present, *added)), default=math.inf)
+        found = min(possible, key=away_mm, default=None)
+        if found and away_mm(found) <= BYPASS_MM < has:
+            added.append(found)
+    return added
+
+
+def _away_mm(pad: PlacedPad, via: Via) -> float:
+    return round(float(pad.area.distance(shapely.Point(via.x_mm, via.y_mm))), 6)
+
+
 def _stitched(
-    sheets: dict[Side, Sheet], kept: Kept, possible: list[Via]
+    sheets: dict[Side, Sheet], kept: Kept, possible: list[Via], bypasses: list[PlacedPad]
 ) -> tuple[dict[Side, list[int]], list[Via]]:
     """Join more pieces of pour to those that are ground, and all of them at many places.
 
@@ -228,6 +271,7 @@ def _stitched(
                 stitches.append(via)
                 grown = True
     used = {(v.x_mm, v.y_mm): v for v, on in lands if all(on[s] in ground[s] for s in SIDES)}
+    stitches += _beside(bypasses, list(used.values()), [*kept.vias, *stitches])
     taken += [(v.x_mm, v.y_mm) for v in stitches]
     stitches += [used[at] for at in spread(sorted(used), taken, APART_MM)]
     return {side: sorted(found) for side, found in ground.items()}, stitches

@@ -2,7 +2,7 @@
 
 import dataclasses
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 
@@ -10,6 +10,7 @@ import networkx as nx
 import numpy as np
 import shapely
 from networkx.algorithms.approximation import steiner_tree
+from numpy.typing import NDArray
 
 from lumitip_fab.boards.model import SIDES, Routing, Track, Via
 from lumitip_fab.boards.placed import PlacedPad
@@ -86,9 +87,9 @@ def needed(
                 f"pad {pad.component.ref}.{pad.pad.number} at ({pad.x_mm:.2f}, {pad.y_mm:.2f}) mm "
                 f"is not joined to net {pad.net}: route the board before its pour"
             )
-    tree = steiner_tree(
-        net.graph.subgraph(sorted(whole)), terminals, weight="weight", method="mehlhorn"
-    )
+    # Taken out in place: a view of a part of the graph makes the search several times slower.
+    net.graph.remove_nodes_from([node for node in net.graph if node not in whole])
+    tree = steiner_tree(net.graph, terminals, weight="weight", method="mehlhorn")
     return _kept(net, tree, sheets)
 
 
@@ -107,17 +108,20 @@ def _copper(net: Net, pads: list[PlacedPad], sheets: dict[Side, Sheet], routing:
         tracks = [t for t in routing.tracks if t.side == side]
         joints = {at for t in tracks for at in (t.start, t.end)}
         joints |= {(v.x_mm, v.y_mm) for v in routing.vias}
-        ends = [_cut(track, sorted(joints)) for track in tracks]
+        ordered = sorted(joints)
+        spots = shapely.points(np.array(ordered).reshape(-1, 2))
+        ends = [_cut(track, ordered, spots) for track in tracks]
         for index, (track, points) in enumerate(zip(tracks, ends, strict=True)):
             for part, (a, b) in enumerate(pairwise(points)):
                 piece = dataclasses.replace(track, start=a, end=b)
                 by = (side, index, part, piece)
                 net.join((side, a), (side, b), math.dist(a, b), by)
         places = [at for points in ends for at in points]
-        for at, found in zip(places, sheets[side].pieces_at(places), strict=True):
+        pieces, over = sheets[side].pieces_at(places), _over(pads, side, places)
+        for at, found, touched in zip(places, pieces, over, strict=True):
             if found >= 0:
                 net.join((side, at), (side, found), 0.0)
-            for i in _over(pads, side, at):
+            for i in touched:
                 net.join((side, at), ("pad", i), 0.0)
 
 
@@ -132,19 +136,31 @@ def _vias(net: Net, sheets: dict[Side, Sheet], vias: tuple[Via, ...], length_mm:
                 net.join((side, at), (side, found), 0.0)
 
 
-def _over(pads: list[PlacedPad], side: Side, at: Point) -> Iterator[int]:
-    spot = shapely.Point(at)
-    return (i for i, pad in enumerate(pads) if side in pad.sides and pad.area.covers(spot))
+def _over(pads: list[PlacedPad], side: Side, places: list[Point]) -> list[list[int]]:
+    """The pads of a side over each place."""
+    on_side = [i for i, pad in enumerate(pads) if side in pad.sides]
+    tree = shapely.STRtree([pads[i].area for i in on_side])
+    spots = shapely.points(np.array(places).reshape(-1, 2))
+    found: list[list[int]] = [[] for _ in places]
+    for place, pad in sorted(zip(*tree.query(spots, predicate="covered_by").tolist(), strict=True)):
+        found[place].append(on_side[pad])
+    return found
 
 
-def _cut(track: Track, joints: Iterable[Point]) -> list[Point]:
-    """Ends of the short pieces of a track: on the grid that it is on, and where others join it."""
+def _cut(track: Track, joints: Sequence[Point], spots: NDArray[np.object_]) -> list[Point]:
+    """Ends of the short pieces of a track: on the grid that it is on, and where others join it.
+
+    Args:
+        track: to cut.
+        joints: where others end.
+        spots: the joints once more, as points to measure from.
+    """
     run = [b - a for a, b in zip(track.start, track.end, strict=True)]
     reach = max(map(abs, run))
     steps = np.arange(1, math.ceil(reach / STEP_MM - 1e-6)) * STEP_MM / reach
     inner = [tuple(a + d * t for a, d in zip(track.start, run, strict=True)) for t in steps]
     line = shapely.LineString([track.start, track.end])
-    inner += [at for at in joints if line.distance(shapely.Point(at)) < 1e-6]
+    inner += [joints[i] for i in np.flatnonzero(shapely.distance(spots, line) < 1e-6).tolist()]
     places = {(round(float(x), 3), round(float(y), 3)) for x, y in inner} | {track.start, track.end}
     return sorted(places, key=lambda at: math.dist(at, track.start))
 
