@@ -29,6 +29,7 @@ Points = NDArray[np.complex128]
 
 _RAY_MARKERS = 3  # a ray always fits two markers exactly
 _BORDER_MARKERS = 2
+_SAME_RAD = 1e-9  # rounding differences between two equal gaps are smaller
 _CABLE_ROUNDS = 2  # the second moves markers to the other border in few frames only
 
 
@@ -148,7 +149,8 @@ def _along(border: Border) -> Integers:
     """Indices of the markers in their order along the border.
 
     They are sorted by their angle about the middle of the convex side, from which each direction
-    meets a border of two rays once. They begin after the widest gap.
+    meets a border of two rays once. They begin after the widest gap. Gaps are often equal, since
+    markers lie on the lines between cells; then after the one whose markers are farthest apart.
     """
     # Outward directions diverge if the dark side is convex.
     convex = np.vdot(border.markers, border.outward).real >= 0.0
@@ -156,11 +158,14 @@ def _along(border: Border) -> Integers:
     around = np.arctan2(seen.imag, seen.real)
     order = around.argsort()
     around = around[order]
-    gaps = around[1:] - around[:-1]
-    widest = int(gaps.argmax())
-    if gaps[widest] > around[0] + 2.0 * math.pi - around[-1]:
-        order = np.concatenate((order[widest + 1 :], order[: widest + 1]))
-    return order
+    gaps = np.empty_like(around)
+    np.subtract(around[1:], around[:-1], out=gaps[:-1])
+    gaps[-1] = around[0] + 2.0 * math.pi - around[-1]
+    begin = (gaps > gaps.max() - _SAME_RAD).nonzero()[0] + 1
+    if begin.size > 1:
+        apart = np.abs(seen[order[begin % order.size]] - seen[order[begin - 1]])
+        begin = begin[apart.argmax() :]
+    return np.concatenate((order[begin[0] :], order[: begin[0]]))
 
 
 def _corner(border: Border, rays: _Parts) -> Corner | None:

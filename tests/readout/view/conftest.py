@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from playwright.sync_api import Browser, ConsoleMessage, Page, sync_playwright
+from playwright.sync_api import Browser, ConsoleMessage, Page, expect, sync_playwright
 
 from lumitip import Fingertip, Layout
 from lumitip.links.base import Arrival, Deliver, LinkEvent, Report
@@ -20,6 +20,7 @@ from lumitip.view.server import ViewServer
 from programs import program
 
 Serve = Callable[..., ViewServer]
+BUSY_MS = 20_000  # that a page may take for a change while other tests run
 
 
 @pytest.fixture(autouse=True)
@@ -119,7 +120,8 @@ def page(browser: Browser) -> Iterator[Page]:
     errors: list[str] = []
     page.on("pageerror", lambda error: errors.append(str(error)))
     page.on("console", lambda said: errors.append(said.text) if _is_fault(said) else None)
-    page.set_default_timeout(20_000)
+    page.set_default_timeout(BUSY_MS)
+    expect.set_options(timeout=BUSY_MS)
     yield page
     context.close()
     assert errors == []

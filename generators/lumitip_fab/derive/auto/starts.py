@@ -70,6 +70,10 @@ def _proposals(config: Input, longest: int) -> Iterator[tuple[str, Value, str]]:
             f"less than {full:g} mA: {len(strings)} strings from {volts:g} V keep to "
             f"supply.max_ma, emitter.max_heat_w = {p.emitter.max_heat_w:g} and their resistors"
         )
+    if "receiver.pull_up_ohm" not in config.automatic and p.emitter.current_ma < _least_ma(
+        config, p.receiver.pull_up_ohm
+    ):
+        reason += "; a bare cell just saturates its pull-up, without a margin"
     yield "emitter.current_ma", p.emitter.current_ma, reason
     yield (
         "emitter.string_leds",
@@ -108,18 +112,18 @@ def _currents(config: Input) -> Iterator[float]:
 
 
 def least_current_ma(config: Input) -> float:
-    """LED current with which a bare cell still saturates, with a margin."""
+    """LED current with which a bare cell just saturates. Currents are tried from the largest down,
+    so that the margin is given up only where supply or heat leaves no more."""
     ohm = config.parameters.receiver.pull_up_ohm
-    return _least_ma(
-        config, ohm * (MOST_PULL_UP if "receiver.pull_up_ohm" in config.automatic else 1)
-    )
+    most = ohm * (MOST_PULL_UP if "receiver.pull_up_ohm" in config.automatic else 1)
+    return _least_ma(config, most) / SATURATION_MARGIN
 
 
 def lowest_ma(config: Input) -> float:
     """Lowest current that a search may choose; 0 where the file sets the current."""
     if "emitter.current_ma" not in config.automatic:
         return 0.0
-    return _least_ma(config, config.parameters.receiver.pull_up_ohm)
+    return _least_ma(config, config.parameters.receiver.pull_up_ohm) / SATURATION_MARGIN
 
 
 def _least_ma(config: Input, ohm: float) -> float:
