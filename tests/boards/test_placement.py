@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+import shutil
 from collections.abc import Callable, Iterator
 from itertools import combinations, pairwise
 from pathlib import Path
@@ -270,6 +271,25 @@ def test_labels_of_a_row_stand_apart(board: Placed) -> None:
         ]
         assert len(labels) == len(finger.connector.signals)
         assert all(a.distance(b) >= 0.15 for a, b in combinations(labels, 2))
+
+
+def test_a_label_without_room_above_its_pad_moves_aside(design_dir: Path, tmp_path: Path) -> None:
+    file = Path(shutil.copytree(design_dir, tmp_path / "design")) / "narrow.toml"
+    file.write_text(
+        'extends = "presets/published.toml"\n'
+        "[grid]\ncolumns = [5, 5, 5, 5, 5]\npitch_mm = 5.7\n[stack]\npcb_mm = 1.0\n"
+    )
+    design = derive(load(file))
+    finger = design.receiver
+    (x, y), name = finger.connector.pads[0], finger.connector.signals[0]
+    at = [
+        (text.x_mm, text.y_mm)
+        for where, text in place(design, finger).texts
+        if where == "front" and text.text == name
+    ]
+    assert len(at) == 1
+    assert 0.0 < abs(at[0][0] - x) < finger.connector.pitch_mm / 2
+    assert abs(at[0][1] - y) < finger.connector.pitch_mm
 
 
 def test_parts_of_a_auxiliary_that_overlap_are_refused(designs: Callable[[str], Design]) -> None:

@@ -38,6 +38,7 @@ _TITLE_MM = 1.0
 _LABEL_GAP_MM = 0.3  # between words in a row, so that they are read apart
 _OUTWARD_MM = 0.25  # that the first and the last label of a row give way
 _STEP_MM = 0.25
+_ASIDE_MM = 1.3  # that a label may stand beside the middle of its pad: half a pitch of wires
 _SPARE_MM = 0.06  # letters do not stand quite in the middle of their text
 _BESIDE_MM = 5.0  # farthest place of the mark of pad 1 from the pad
 
@@ -112,8 +113,21 @@ def _row(
         if page.free(side, texts, _LABEL_GAP_MM if flat else page.rules.silk_gap_mm):
             page.put(side, texts)
             return
+    ends = (pads[0], -1), (pads[-1], 1)
     for signal, at, places in zip(signals, pads, choices, strict=True):
-        if not page.first_free(side, places):
+        moved = (
+            dataclasses.replace(text, x_mm=text.x_mm + sign * d)
+            for d in np.arange(_STEP_MM, _ASIDE_MM, _STEP_MM).tolist()
+            for text in places
+            for sign in (1, -1)
+        )
+        outside = (
+            text
+            for end, sign in ends
+            if at == end
+            for text in _outside(page, signal, at, half_mm, sign)
+        )
+        if not page.first_free(side, (*places, *moved, *outside)):
             text = places[0]
             page.miss(f"the label {signal!r}", text.height_mm, page.length_mm(signal), at)
 
@@ -129,6 +143,19 @@ def _beside(page: Page, signal: str, at: Point, half_mm: float) -> Iterator[Text
     for sign in (1, -1):
         yield page.text(signal, (x, y + sign * flat))
         yield page.text(signal, (x, y + sign * upright), angle_deg=90.0)
+
+
+def _outside(page: Page, signal: str, at: Point, half_mm: float, sign: int) -> Iterator[Text]:
+    """Places for the name of the first or last pad of a row, beyond the row's end."""
+    x, y = at
+    off = half_mm + MASK_MM + page.rules.silk_gap_mm + _SPARE_MM
+    for further in np.arange(0.0, _BESIDE_MM, _STEP_MM).tolist():
+        yield page.text(signal, (x + sign * (off + page.length_mm(signal) / 2 + further), y))
+        yield page.text(
+            signal,
+            (x + sign * (off + page.text(signal, at).height_mm / 2 + further), y),
+            angle_deg=90.0,
+        )
 
 
 def _along_the_edges(page: Page) -> bool:
