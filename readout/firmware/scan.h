@@ -16,10 +16,12 @@ constexpr uint16_t FULL_SCALE = (1u << ADC_BITS) - 1;
 
 // The pull-up charges the line until half a step of the bits sent is left: R C ln(2^(BITS + 1)).
 constexpr double CHARGED_US = PULL_UP_OHM * 1e-6 * LINE_PF * 0.6931472 * (BITS + 1);
-constexpr uint32_t SHORTEST_US = static_cast<uint32_t>(SETTLE_FACTOR * CHARGED_US) + 1;
+constexpr uint32_t LINE_US = static_cast<uint32_t>(SETTLE_FACTOR * CHARGED_US) + 1;
 
-// A phototransistor settles more slowly than the line, and how slowly depends on the part. So an
-// input waits for as long as the period allows, and never less than the line needs.
+// A phototransistor settles more slowly than the line. With a pull-up of its own it is known how
+// slowly; with one for all it depends on the part. So an input waits for as long as the period
+// allows, and never less than line and detector need.
+constexpr uint32_t SHORTEST_US = DETECTOR_US > LINE_US ? DETECTOR_US : LINE_US;
 constexpr int32_t SCANS = EMITTER_PIN < 0 ? 1 : 2;  // of a frame
 constexpr int32_t SCAN_US = (PERIOD_US - RADIO_US) / SCANS;
 constexpr int32_t STEADY_US = EMITTER_PIN < 0 ? 0 : EMITTER_US;

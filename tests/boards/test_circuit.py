@@ -76,9 +76,11 @@ def test_every_detector_hangs_on_the_input_that_the_layout_says(
     pins, mux = _pins(plan), design.packages.multiplexer
     for cell in design.layout.cells:
         ref = f"Q{cell.index + 1}"
-        assert sorted(pins[ref]) == sorted(
+        others = [pin for pin in pins[ref] if not pin[0].startswith("RN")]
+        assert sorted(others) == sorted(
             [(ref, "1"), (f"U{cell.mux + 1}", str(mux.inputs[str(cell.channel)]))]
         )
+        assert len(pins[ref]) - len(others) == int(design.wiring.own_pull_ups)
         assert (ref, "2") in pins["GND"]
         assert (f"U{cell.mux + 1}", str(mux.output)) in pins[cell.adc_pin]
 
@@ -128,9 +130,24 @@ def test_each_multiplexer_has_its_pull_up_and_capacitor_and_no_floating_input(
     plan = _circuit(design, "receiver")
     parts = {part.ref: dict(part.nets) for part in plan.components}
     for i, pin in enumerate(design.wiring.adc_pins, start=1):
-        assert parts[f"R{i}"] == {"1": "3V3", "2": pin}
+        if not design.wiring.own_pull_ups:
+            assert parts[f"R{i}"] == {"1": "3V3", "2": pin}
         assert parts[f"C{i}"] == {"1": "3V3", "2": "GND"}
         assert len(parts[f"U{i}"]) == design.packages.multiplexer.leads
+
+
+@pytest.mark.parametrize("preset", ["asymmetric", "mux16"])
+def test_each_detector_has_a_pull_up_of_its_own_beside_its_multiplexer(
+    designs: dict[str, Design], preset: str
+) -> None:
+    design = designs[preset]
+    plan = _circuit(design, "receiver")
+    arrays = [dict(part.nets) for part in plan.components if part.kind == "resistor array"]
+    joined = [{nets[str(i)], nets[str(9 - i)]} - {"3V3"} for nets in arrays for i in (1, 2, 3, 4)]
+    assert all(nets[str(i)] == "3V3" for nets in arrays for i in (5, 6, 7, 8))
+    found = sorted(net for pair in joined for net in pair)
+    assert found == sorted(f"Q{cell.index + 1}" for cell in design.layout.cells)
+    assert not any(part.kind == "resistor" for part in plan.components)
 
 
 @pytest.mark.parametrize("preset", PRESETS)

@@ -1,6 +1,7 @@
 """ngspice against the closed forms of derive, from the nets of the boards."""
 
 import dataclasses
+import math
 from pathlib import Path
 
 import pytest
@@ -10,6 +11,7 @@ from lumitip_fab.boards.spice import simulation
 from lumitip_fab.boards.spice_channel import (
     STEPS,
     Corner,
+    Step,
     corners,
     detectors,
     first_mux,
@@ -22,6 +24,7 @@ from spice_runs import needs_ngspice, simulated
 
 SETTLED_COUNTS = 0.5  # of 255
 PRESETS = ("published", "asymmetric", "dense", "mux16")
+OWN_PULL_UPS = ("asymmetric", "mux16")
 
 
 @pytest.fixture(scope="module")
@@ -105,7 +108,7 @@ def test_a_detector_that_does_not_saturate_reads_by_its_light(
 def _detector(design: Design, corner: Corner, step: str, folder: Path) -> dict[str, float]:
     """Readings of a phototransistor after a change of channel."""
     nets = first_mux(circuit(design, design.receiver).components, design)
-    lines = ("*", *detectors(nets, design, corner, STEPS[step]), ".end")
+    lines = ("*", *detectors(nets, design, corner, (STEPS | HALF_LIT)[step]), ".end")
     return simulated("\n".join(lines) + "\n", folder)
 
 
@@ -138,6 +141,46 @@ def test_a_phototransistor_of_the_published_circuit_does_not_settle_in_the_dark(
         assert slow["wrong_400"] < -100
         assert slow["wrong_3200"] < -SETTLED_COUNTS
     assert slow["end_v"] == pytest.approx(fast["end_v"], abs=0.1)
+
+
+HALF_LIT = {
+    "dim": Step(1, 0.02, 0.02),
+    "tenth": Step(0, 0.1, 0.1),
+    "third": Step(0, 0.35, 0.35),
+    "after light": Step(1, 0.2, 0.2),
+    "from light": Step(1, 1, 0.1),
+}
+
+
+@needs_ngspice
+@pytest.mark.parametrize("step", [*STEPS, *HALF_LIT])
+@pytest.mark.parametrize("preset", OWN_PULL_UPS)
+def test_with_pull_ups_of_their_own_phototransistors_settle_within_half_a_count(
+    presets: dict[str, Design], preset: str, step: str, tmp_path: Path
+) -> None:
+    """At 200 scans a second, over the whole spread, at the wait that the firmware has."""
+    design = presets[preset]
+    channel = design.electrical.channel
+    wait = f"wrong_{math.ceil(channel.wait_us)}"
+    middle = Corner(math.sqrt(channel.gain[0] * channel.gain[1]), channel.base_pf[1])
+    wrong = [
+        _detector(design, corner, step, tmp_path)[wait] for corner in (*corners(design), middle)
+    ]
+    assert max(map(abs, wrong)) <= SETTLED_COUNTS
+
+
+@needs_ngspice
+def test_the_wait_is_not_much_longer_than_it_must_be(
+    presets: dict[str, Design], tmp_path: Path
+) -> None:
+    design = presets["mux16"]
+    channel = design.electrical.channel
+    third = dataclasses.replace(channel, wait_us=channel.wait_us / 3)
+    hasty = dataclasses.replace(
+        design, electrical=dataclasses.replace(design.electrical, channel=third)
+    )
+    found = _detector(hasty, Corner(400, 5.5), "third", tmp_path)
+    assert abs(found[f"wrong_{math.ceil(third.wait_us)}"]) > SETTLED_COUNTS
 
 
 @needs_ngspice

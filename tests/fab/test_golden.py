@@ -54,6 +54,7 @@ def test_the_file_to_edit_starts_as_the_published_sensor(design_dir: Path) -> No
     fingertip, published = (
         derive(load(design_dir / name)) for name in ("fingertip.toml", "presets/published.toml")
     )
-    assert fingertip.layout == published.layout
+    assert fingertip.grid == published.grid
+    assert fingertip.board == published.board
     assert fingertip.outline == published.outline
     assert fingertip.mould == published.mould

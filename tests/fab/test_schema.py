@@ -75,7 +75,9 @@ def test_every_field_has_the_published_value_as_its_default(
     schema: dict[str, Any], published: dict[str, Any], field: str
 ) -> None:
     section, key = field.split(".")
-    assert _property(schema, field)["default"] == published[section][key]
+    # The published board shares its pull-ups, a new one does not.
+    wanted = "auto" if field == "receiver.load" else published[section][key]
+    assert _property(schema, field)["default"] == wanted
 
 
 def test_name_and_revision_have_defaults_too(

@@ -2,9 +2,13 @@
 
 supply ── R1 ──►|── … ──►|── GND            one string of LEDs; more beside it
 
-3V3 ── R1 ──┬── A0                          one multiplexer with its detectors
+3V3 ── RN1 ──┬── Q1 ──▷ GND                 one multiplexer with its detectors
+    ── RN1 ──│─┬── …
+             U1 ── A0                       (S0, S1, S2 choose)
+
+3V3 ── R1 ──┬── A0                          the same with a shared pull-up
            U1 ──┬── Q1 ──▷ GND
-                └── …  (S0, S1, S2 choose)
+                └── …
 """
 
 import math
@@ -21,10 +25,12 @@ from lumitip_fab.design import (
     Footprint,
     Led,
     Photodetector,
+    ResistorArray,
     Rules,
     Side,
     footprints,
 )
+from lumitip_fab.design.pull_ups import used_slots
 from lumitip_fab.text import resistor_code
 
 GROUND = "GND"
@@ -116,15 +122,40 @@ def _receiver(design: Design, supply: str) -> Iterator[Component]:
             manufacturer=mux.manufacturer,
             lcsc=mux.lcsc,
         )
-    pull_up = footprints.chip("resistor", packages.pull_up)
+    yield from _own_pull_ups(design, supply) if wiring.own_pull_ups else _pull_ups(design, supply)
     bypass = footprints.chip("capacitor", packages.capacitor)
-    for which, pin in enumerate(wiring.adc_pins, start=1):
-        nets = ("1", supply), ("2", pin)
-        yield _resistor(f"R{which}", wiring.pull_up_ohm, packages.pull_up, pull_up, nets)
+    for which in range(1, wiring.muxes + 1):
         nets = ("1", supply), ("2", GROUND)
         chip = packages.capacitor
         value = f"{chip.capacitance_nf:g}nF"
         yield _part(f"C{which}", value, chip, "capacitor", bypass, nets)
+
+
+def _pull_ups(design: Design, supply: str) -> Iterator[Component]:
+    """One at the output of each multiplexer."""
+    wiring, chip = design.wiring, design.packages.pull_up
+    shape = footprints.chip("resistor", chip)
+    for which, pin in enumerate(wiring.adc_pins, start=1):
+        nets = ("1", supply), ("2", pin)
+        yield _resistor(f"R{which}", wiring.pull_up_ohm, chip, shape, nets)
+
+
+def _own_pull_ups(design: Design, supply: str) -> Iterator[Component]:
+    """One for each photodetector, in arrays; both ends of a spare one are at the supply."""
+    array, mux = design.packages.array, design.packages.multiplexer
+    shape = footprints.array(array)
+    for number, (which, slot) in enumerate(used_slots(design.reading.cells, mux, array), start=1):
+        detector_at = {
+            mux.inputs[str(cell.channel)]: design.receiver.cells_hold.ref(cell.index)
+            for cell in design.reading.cells
+            if cell.mux == which
+        }
+        # Turned so that pad 1 is at the cells' end to the right of the multiplexer.
+        leads = slot.leads[:: slot.side]
+        near = [detector_at.get(lead, supply) for lead in leads]
+        near += [supply] * (2 * array.resistors - len(near))
+        nets = tuple((str(i), net) for i, net in enumerate(near, start=1))
+        yield _resistor(f"RN{number}", design.wiring.pull_up_ohm, array, shape, nets)
 
 
 def _bare_copper(wires: Connector) -> Iterator[Component]:
@@ -141,14 +172,18 @@ def _bare_copper(wires: Connector) -> Iterator[Component]:
 
 
 def _resistor(
-    ref: str, ohm: float, chip: Chip, shape: Footprint, nets: tuple[tuple[str, str], ...]
+    ref: str,
+    ohm: float,
+    chip: Chip | ResistorArray,
+    shape: Footprint,
+    nets: tuple[tuple[str, str], ...],
 ) -> Component:
     code = resistor_code(ohm)
     return Component(
         ref,
         code,
         chip.order_number.replace("{code}", code),
-        "resistor",
+        "resistor" if isinstance(chip, Chip) else "resistor array",
         shape,
         0.0,
         0.0,

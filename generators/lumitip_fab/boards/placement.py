@@ -20,7 +20,6 @@ from lumitip_fab.design import (
     Box,
     Design,
     Finger,
-    Multiplexer,
     Packages,
     Part,
     Point,
@@ -28,6 +27,7 @@ from lumitip_fab.design import (
     Side,
     Wiring,
 )
+from lumitip_fab.design.pull_ups import used_slots
 from lumitip_fab.errors import BuildError
 
 
@@ -89,7 +89,7 @@ def place(design: Design, finger: Finger) -> Placement:
     if finger.cells_hold.kind == "led":
         _emitter(parts, finger, wiring, packages)
     else:
-        _receiver(parts, named, finger, wiring, packages, rules)
+        _receiver(parts, named, finger, design)
     _connector(parts, finger, rules)
     obstacles = [courtyard(part) for ref, part in parts.items() if not ref.startswith("FID")]
     mark = parts["FID1"].courtyard
@@ -143,11 +143,10 @@ def _receiver(
     parts: dict[str, PlacedComponent],
     named: dict[str, Part],
     finger: Finger,
-    wiring: Wiring,
-    packages: Packages,
-    rules: Rules,
+    design: Design,
 ) -> None:
     """Turn detectors with their nets to the left or to the connector; passives by each mux."""
+    wiring, packages, rules = design.wiring, design.packages, design.rules
     towards = 90.0 if finger.turned else 0.0
     if packages.photodetector.marked != "collector":
         towards += 180.0
@@ -155,31 +154,65 @@ def _receiver(
         parts[ref] = dataclasses.replace(parts[ref], angle_deg=towards)
     zone = next(zone.box for zone in finger.zones if zone.name == "parts")
     muxes = [named[f"U{i + 1}"] for i in range(wiring.muxes)]
+    taken = {mux.name: mux.box for mux in muxes}  # with its arrays
+    if wiring.own_pull_ups:
+        _arrays(parts, muxes, taken, design)
     for mux in muxes:
-        before = [u.box.x_max_mm for u in muxes if u.y_mm == mux.y_mm and u.x_mm < mux.x_mm]
+        before = [taken[u.name].x_max_mm for u in muxes if u.y_mm == mux.y_mm and u.x_mm < mux.x_mm]
         left = max(before, default=zone.x_min_mm - rules.part_gap_mm)
-        _beside(parts, mux, mux.box.x_min_mm - left, packages.multiplexer, rules)
+        beside = ("C", packages.multiplexer.supply, "1"), ("R", packages.multiplexer.output, "2")
+        for letter, lead, outward in beside[: 1 if wiring.own_pull_ups else 2]:
+            part = parts[letter + mux.name[1:]]
+            up = lead > packages.multiplexer.leads // 2
+            angle = 270.0 if up == (outward == "1") else 90.0
+            _beside(parts, part, mux, (left, taken[mux.name].x_min_mm), up, angle, rules)
+
+
+def _arrays(
+    parts: dict[str, PlacedComponent], muxes: list[Part], taken: dict[str, Box], design: Design
+) -> None:
+    """Arrays of pull-ups to the right and left of their multiplexer, their inputs towards it."""
+    gap_mm = design.rules.part_gap_mm
+    packages = design.packages
+    along, across = packages.array.over_pads_mm
+    slots = used_slots(design.reading.cells, packages.multiplexer, packages.array)
+    for number, (which, slot) in enumerate(slots, start=1):
+        mux, ref = muxes[which], f"RN{number}"
+        box = mux.box
+        x = (box.x_max_mm if slot.side > 0 else box.x_min_mm) + slot.side * (gap_mm + across / 2)
+        y = mux.y_mm + slot.end * (mux.size_y_mm - along) / 2
+        parts[ref] = _at(parts[ref], (x, y), angle_deg=270.0 if slot.side > 0 else 90.0)
+        wide = taken[mux.name]
+        taken[mux.name] = dataclasses.replace(
+            wide,
+            x_min_mm=min(wide.x_min_mm, x - across / 2),
+            x_max_mm=max(wide.x_max_mm, x + across / 2),
+        )
 
 
 def _beside(
-    parts: dict[str, PlacedComponent], mux: Part, room_mm: float, leads: Multiplexer, rules: Rules
+    parts: dict[str, PlacedComponent],
+    part: PlacedComponent,
+    mux: Part,
+    between: tuple[float, float],
+    up: bool,
+    angle_deg: float,
+    rules: Rules,
 ) -> None:
-    """Capacitor and pull-up to the left of a multiplexer, each at the lead that it serves."""
-    for letter, lead, outward in (("C", leads.supply, "1"), ("R", leads.output, "2")):
-        part = parts[letter + mux.name[1:]]
-        yard = part.courtyard.grown(-rules.part_gap_mm / 2)
-        spare = room_mm - yard.length_mm
-        if spare < 2 * rules.part_gap_mm - _NOISE_MM:
-            raise BuildError(
-                f"{part.ref} needs {yard.length_mm + 2 * rules.part_gap_mm:.2f} mm beside "
-                f"{mux.name}, {room_mm:.2f} mm is there: widen the board (board.side_margin_mm) "
-                "or choose a smaller package"
-            )
-        gap = min(PASSIVE_GAP_MM, spare / 2)
-        up = lead > leads.leads // 2
-        reach = (mux.size_y_mm - yard.width_mm) / 2
-        at = (mux.box.x_min_mm - gap - yard.length_mm / 2, mux.y_mm + (reach if up else -reach))
-        parts[part.ref] = _at(part, at, angle_deg=270.0 if up == (outward == "1") else 90.0)
+    """Capacitor or pull-up to the left of a multiplexer, at the lead that it serves."""
+    yard = part.courtyard.grown(-rules.part_gap_mm / 2)
+    room_mm = between[1] - between[0]
+    spare = room_mm - yard.length_mm
+    if spare < 2 * rules.part_gap_mm - _NOISE_MM:
+        raise BuildError(
+            f"{part.ref} needs {yard.length_mm + 2 * rules.part_gap_mm:.2f} mm beside "
+            f"{mux.name}, {room_mm:.2f} mm is there: widen the board (board.side_margin_mm) "
+            "or choose a smaller package"
+        )
+    gap = min(PASSIVE_GAP_MM, spare / 2)
+    reach = (mux.size_y_mm - yard.width_mm) / 2
+    at = (between[1] - gap - yard.length_mm / 2, mux.y_mm + (reach if up else -reach))
+    parts[part.ref] = _at(part, at, angle_deg=angle_deg)
 
 
 def _connector(parts: dict[str, PlacedComponent], finger: Finger, rules: Rules) -> None:

@@ -1,5 +1,6 @@
-"""A channel for ngspice: multiplexer, pull-up and two detectors, ideal and as phototransistors."""
+"""A channel for ngspice: multiplexer, pull-ups and two detectors, ideal and as phototransistors."""
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -16,7 +17,7 @@ class MuxNets:
 
     supply: str
     output: str
-    """To the pull-up and the controller's input."""
+    """To the controller's input, and a shared pull-up."""
     first: str
     """Of the detector at the first used input."""
     last: str
@@ -109,13 +110,16 @@ def detectors(nets: MuxNets, design: Design, corner: Corner, step: Step) -> Iter
 
     Both detectors are phototransistors. Light drives a current from collector to base, and the
     transistor multiplies it by `gain`. `base_pf` is the capacitance from base to collector; base
-    to emitter has the same. The collector of a channel that is not selected floats.
+    to emitter has the same. With a shared pull-up, the collector of a channel that is not selected
+    floats.
 
     `end_v` is the settled reading. `wrong_100` is the error of the reading 100 us after the
-    change, in counts of 255.
+    change, in counts of 255; the firmware's wait is among the times, if it follows from the design.
     """
     figures = design.electrical.channel
     changed_us = _REST_US + SCAN_US
+    waits = () if figures.wait_us is None else (math.ceil(figures.wait_us),)
+    times = sorted({*MEASURED_US, *waits})
     last_us = changed_us + _REST_US
     yield from (
         "* Your detector: current gain hFE, capacitance from collector to base.",
@@ -146,9 +150,9 @@ def detectors(nets: MuxNets, design: Design, corner: Corner, step: Step) -> Iter
         ".control",
         f"tran {_STEP_US:g}u {last_us}u {changed_us - SCAN_US}u {_STEP_US:g}u",
         f"meas tran end_v {read}{last_us - 1}u",
-        *(f"meas tran v_{us} {read}{changed_us + us}u" for us in MEASURED_US),
-        *(f"let wrong_{us} = {COUNTS}*(v_{us}-end_v)/{figures.supply_v:g}" for us in MEASURED_US),
-        f"print end_v {' '.join(f'wrong_{us}' for us in MEASURED_US)}",
+        *(f"meas tran v_{us} {read}{changed_us + us}u" for us in times),
+        *(f"let wrong_{us} = {COUNTS}*(v_{us}-end_v)/{figures.supply_v:g}" for us in times),
+        f"print end_v {' '.join(f'wrong_{us}' for us in times)}",
         ".endc",
     )
 
@@ -156,7 +160,9 @@ def detectors(nets: MuxNets, design: Design, corner: Corner, step: Step) -> Iter
 def _pulled_up(nets: MuxNets, design: Design) -> Iterator[str]:
     figures = design.electrical.channel
     yield f"Vsupply {nets.supply} 0 {figures.supply_v:g}"
-    yield f"R1 {nets.supply} {nets.output} {design.wiring.pull_up_ohm:g}"
+    up = (nets.first, nets.last) if design.wiring.own_pull_ups else (nets.output,)
+    for number, net in enumerate(up, start=1):
+        yield f"R{number} {nets.supply} {net} {design.wiring.pull_up_ohm:g}"
     yield f"Cline {nets.output} 0 {figures.line_pf:g}p"
 
 

@@ -22,6 +22,7 @@ from lumitip_fab.catalogue.electronics import (
     Multiplexer,
     Photodetector,
     Resistor,
+    ResistorArray,
 )
 from lumitip_fab.catalogue.grippers import Gripper, ToolCoupling
 from lumitip_fab.catalogue.materials import Fastener, Filament, Film, Laminates, Printer, Silicone
@@ -35,6 +36,7 @@ class Catalogue(Strict):
     leds: Mapping[Name, Led]
     photodetectors: Mapping[Name, Photodetector]
     resistors: Mapping[Name, Resistor]
+    resistor_arrays: Mapping[Name, ResistorArray]
     capacitors: Mapping[Name, Capacitor]
     multiplexers: Mapping[Name, Multiplexer]
     controllers: Mapping[Name, Controller]

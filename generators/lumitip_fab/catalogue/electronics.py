@@ -105,6 +105,31 @@ class Resistor(Chip):
     """Rated power at 70 °C."""
 
 
+class ResistorArray(Ordered, Entry):
+    """Separate resistors side by side in one chip, each between two opposite pads."""
+
+    body_mm: tuple[Length, Length, Length]
+    """Body: along its rows of pads, across them, height above the board."""
+    pad_mm: tuple[Length, Length]
+    """One solder pad: along the row, across it."""
+    pad_pitch_mm: Length
+    """From pad to pad along a row."""
+    row_pitch_mm: Length
+    """From the middle of one row to the other."""
+    resistors: int = Field(ge=2, le=8)
+    """Resistors in the chip."""
+    power_w: float = Field(gt=0, le=10)
+    """Rated power of each resistor at 70 °C."""
+
+    @property
+    def over_pads_mm(self) -> tuple[float, float]:
+        """Length and width of the land pattern, body included: along its rows, across them."""
+        length = (self.resistors - 1) * self.pad_pitch_mm + self.pad_mm[0]
+        return max(length, self.body_mm[0]), max(
+            self.row_pitch_mm + self.pad_mm[1], self.body_mm[1]
+        )
+
+
 class Capacitor(Chip):
     """A ceramic capacitor."""
 

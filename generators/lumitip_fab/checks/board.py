@@ -35,6 +35,7 @@ from lumitip_fab.checks.board_read import (
 from lumitip_fab.checks.board_silk import measure_silk, measure_targets
 from lumitip_fab.checks.readers.kicad_board import Copper, Part
 from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip_fab.checks.settling import measure_settling
 from lumitip_fab.design import Design
 from lumitip_fab.errors import OutputError
 
@@ -248,8 +249,9 @@ def measure_board(outputs: Path, design: Design, name: str) -> Iterator[Measurem
     if isinstance(read, ReadAuxiliary):
         yield from _measured(read, _OF_AUXILIARY_BOARDS)
     else:
-        own = measure_strings if read.finger.cells_hold.kind == "led" else measure_channels
-        yield from _measured(read, (*_OF_FINGERS, own))
+        lights = read.finger.cells_hold.kind == "led"
+        own = (measure_strings,) if lights else (measure_channels, measure_settling)
+        yield from _measured(read, (*_OF_FINGERS, *own))
 
 
 def _measured(

@@ -3,6 +3,7 @@ case."""
 
 import math
 import re
+from collections import Counter
 from collections.abc import Iterator
 
 import numpy as np
@@ -156,7 +157,8 @@ def _chain(read: Read, resistor: str, supply: str, anode: str) -> tuple[list[str
 
 
 def _unserved(read: Read) -> Iterator[str]:
-    """Leads of multiplexers without their line, and outputs without their pull-up."""
+    """Leads of multiplexers without their line; outputs or photodetectors without exactly one
+    pull-up."""
     design, leads = read.design, read.design.packages.multiplexer
     supply = read.finger.connector.signals[1]
     shared = {leads.supply: supply, leads.ground: GROUND, leads.enable: GROUND}
@@ -166,8 +168,23 @@ def _unserved(read: Read) -> Iterator[str]:
         for lead, signal in (shared | {leads.output: pin}).items():
             if read.group(f"U{which}", lead) != read.wire(signal) or read.wire(signal) is None:
                 yield f"U{which} lead {lead} is not at {signal}"
-        if not _bridged(read, "R", {read.wire(supply), read.wire(pin)}, design.wiring.pull_up_ohm):
-            yield f"{pin} has no pull-up of {design.wiring.pull_up_ohm:g} ohm"
+    wanted = {pin: read.wire(pin) for pin in design.wiring.adc_pins}
+    if design.wiring.own_pull_ups:
+        detectors = (design.receiver.cells_hold.ref(cell.index) for cell in design.cells)
+        collector = "1" if design.packages.photodetector.marked == "collector" else "2"
+        wanted |= {ref: read.group(ref, collector) for ref in detectors}
+    pulled_up = Counter(
+        (ends - {read.wire(supply)}).pop()
+        for ends in _resistors(read, design.wiring.pull_up_ohm)
+        if len(ends) == 2 and read.wire(supply) in ends
+    )
+    for name, group in wanted.items():
+        due = int((name[0] == "Q") == design.wiring.own_pull_ups)
+        if pulled_up[group] != due:
+            yield (
+                f"{name} has {pulled_up[group]} pull-ups of {design.wiring.pull_up_ohm:g} ohm, "
+                f"not {due}"
+            )
 
 
 def _bypasses(read: Read) -> Iterator[Measurement]:
@@ -203,13 +220,14 @@ def _reach(read: Read, mux: Part | None, lead: int, chip: Part | None) -> float:
     return min((math.dist(a, b) for a in ends for b in pads), default=math.inf)
 
 
-def _bridged(read: Read, letter: str, ends: set[int | None], value: float) -> bool:
-    """Whether a resistor of this value joins two groups."""
-    return any(
-        _ends(read, ref) == ends and math.isclose(ohm(part.value), value, rel_tol=1e-6)
-        for ref, part in read.parts.items()
-        if ref.startswith(letter)
-    )
+def _resistors(read: Read, value: float) -> Iterator[set[int | None]]:
+    """The groups that each resistor of this value joins; an array has one between each pad of its
+    first row and the pad opposite."""
+    for ref, part in read.parts.items():
+        if ref.startswith("R") and math.isclose(ohm(part.value), value, rel_tol=1e-6):
+            pads = len(part.terminals)
+            for pad in range(1, pads // 2 + 1):
+                yield {read.group(ref, pad), read.group(ref, pads + 1 - pad)}
 
 
 def _ends(read: Read, ref: str) -> set[int | None]:

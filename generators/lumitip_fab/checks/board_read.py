@@ -109,7 +109,7 @@ class Read(ReadBoard):
             "C": packages.capacitor,
             "R": packages.string_resistor if lights else packages.pull_up,
         }
-        entry = entries.get(ref[:1])
+        entry = packages.array if ref.startswith("RN") else entries.get(ref[:1])
         value = part.value if part else "?"
         return entry.order_number.replace("{code}", value) if entry else ""
 

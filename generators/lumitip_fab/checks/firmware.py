@@ -70,6 +70,7 @@ def _converter(text: str, layout: Layout, design: Design) -> Measurement:
         "ADC_BITS": design.controller.adc_bits,
         "PULL_UP_OHM": round(layout.optics.pull_up_ohm),
         "LINE_PF": math.ceil(channel.line_pf + channel.detector_pf),
+        "DETECTOR_US": math.ceil(channel.wait_us or 0),
     }
     wrong = [name for name, value in wanted.items() if _number(text, name) != value]
     return _faults("firmware.converter", _LAYOUT, len(wrong), ", ".join(wrong) or "inputs, bits")

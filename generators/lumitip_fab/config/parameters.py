@@ -161,10 +161,14 @@ class Receiver(Strict):
     """Name of a photodetector in `parts/photodetectors.toml`."""
     multiplexer: Name
     """Name of a multiplexer in `parts/multiplexers.toml`."""
+    load: Literal["each", "shared"]
+    """Pull-ups: one for each photodetector, always connected, or one for each multiplexer."""
     pull_up_ohm: float = Field(ge=1e3, le=1e7)
-    """Pull-up resistor of each analog line (ohm)."""
+    """Each pull-up (ohm)."""
+    array: Name
+    """Chip of the photodetectors' own pull-ups in `parts/resistor_arrays.toml`."""
     resistor: Name
-    """Package of the pull-ups in `parts/resistors.toml`."""
+    """Package of shared pull-ups in `parts/resistors.toml`."""
     capacitor: Name
     """Name of the capacitor at each multiplexer's supply in `parts/capacitors.toml`."""
 

@@ -20,6 +20,7 @@ from lumitip_fab.catalogue.electronics import (
     Multiplexer,
     Photodetector,
     Resistor,
+    ResistorArray,
 )
 from lumitip_fab.catalogue.grippers import Gripper, ToolCoupling
 from lumitip_fab.catalogue.materials import Fastener, Filament, Film, Printer, Silicone
@@ -39,6 +40,7 @@ class ReceiverParts:
     """Parts of the receiver's board."""
 
     photodetector: Photodetector
+    array: ResistorArray
     resistor: Resistor
     capacitor: Capacitor
     multiplexer: Multiplexer

@@ -13,6 +13,7 @@ from lumitip_fab.catalogue.electronics import (
     Multiplexer,
     Photodetector,
     Resistor,
+    ResistorArray,
 )
 from lumitip_fab.design.pcb import FINGER_FINISH, Finish
 from lumitip_fab.design.shape import Box, Point, Side
@@ -184,7 +185,10 @@ class Wiring:
     """Nominal current of each string."""
     supply_v: float
     pull_up_ohm: float
-    """At each multiplexer's output."""
+    own_pull_ups: bool
+    """Whether each photodetector has its own pull-up; else each multiplexer has one at its
+    output."""
+    pull_ups: int
 
 
 @dataclass(frozen=True)
@@ -198,6 +202,9 @@ class Packages:
     photodetector: Photodetector
     photodetector_name: str
     pull_up: Resistor
+    """Shared by the photodetectors of a multiplexer."""
+    array: ResistorArray
+    """Of the photodetectors' own pull-ups."""
     capacitor: Capacitor
     multiplexer: Multiplexer
 

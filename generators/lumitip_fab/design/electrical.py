@@ -53,6 +53,9 @@ class Channel:
     settle_us: float
     """From full light to darkness within half a step of the ADC, after a change of channel, for a
     detector without a base."""
+    wait_us: float | None
+    """After a change of channel, until every phototransistor reads within half a count of 255 of
+    its settled value; none where collectors float between their turns."""
     gain: tuple[float, float]
     """Current gain hFE of the detectors, least and greatest."""
     base_pf: tuple[float, float]

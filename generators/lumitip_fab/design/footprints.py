@@ -4,7 +4,7 @@ from dataclasses import replace
 from typing import Literal
 
 from lumitip_fab.catalogue.controllers import Leaded, Module, Strip
-from lumitip_fab.catalogue.electronics import Chip, Multiplexer
+from lumitip_fab.catalogue.electronics import Chip, Multiplexer, ResistorArray
 from lumitip_fab.design.pcb import Footprint, Pad
 from lumitip_fab.design.shape import Box
 
@@ -39,6 +39,20 @@ def multiplexer(entry: Multiplexer) -> Footprint:
     pitch, span, high = map(_hundredths, (entry.lead_pitch_mm, entry.lead_tips_mm, height))
     name = f"SOP{pitch}P{span}X{high}-{entry.leads}N"
     return Footprint(name, pads, _body(length, width), height)
+
+
+def array(entry: ResistorArray) -> Footprint:
+    """Resistors side by side along x: pads 1, 2 … in the lower row from the left, the other ends
+    above them, counted counter-clockwise."""
+    pads = []
+    for i in range(2 * entry.resistors):
+        place, side = (i, -1) if i < entry.resistors else (2 * entry.resistors - 1 - i, 1)
+        x = (place - (entry.resistors - 1) / 2) * entry.pad_pitch_mm
+        pads.append(Pad(str(i + 1), x, side * entry.row_pitch_mm / 2, *entry.pad_mm))
+    length, width, height = entry.body_mm
+    size = "".join(f"{round(side * 100)}" for side in (length, width))
+    name = f"RESCAV{_hundredths(entry.pad_pitch_mm)}P{size}X{_hundredths(height)}-{len(pads)}N"
+    return Footprint(name, tuple(pads), _body(length, width), height)
 
 
 def leaded(entry: Leaded) -> Footprint:

@@ -3,6 +3,9 @@
 from lumitip_fab.design import Design, Wiring
 from lumitip_fab.docs.outside import Row
 
+CONVERSION_US, EMITTER_MS = 30, 0.2
+"""As in `settings.h` of the firmware: one conversion, and the emitter until it is steady."""
+
 
 def electrical_rows(design: Design) -> tuple[Row, ...]:
     wiring, controller, optics = design.wiring, design.controller, design.layout.optics
@@ -30,7 +33,7 @@ def electrical_rows(design: Design) -> tuple[Row, ...]:
             "current of the receiver",
             "1 mA",
             f"{_pull_up_ma(design):.2f} mA",
-            f"{wiring.muxes} pull-ups of {optics.pull_up_ohm:g} Ω at {optics.supply_v:g} V and "
+            f"{wiring.pull_ups} pull-ups of {optics.pull_up_ohm:g} Ω at {optics.supply_v:g} V and "
             "full light; multiplexers take microamperes, Table I gives whole mA",
         ),
         Row(
@@ -98,11 +101,36 @@ def channel_rows(design: Design) -> tuple[Row, ...]:
             "not stated",
             f"{channel.settle_us:.0f} µs",
             f"{line_pf:g} pF through {optics.pull_up_ohm:g} Ω, from full light to dark within half "
-            f"a step of {design.controller.adc_bits} bits. A phototransistor is slower: its time "
-            f"constant hFE x C_cb x R is {_slow_ms(design, 0):.2g} to {_slow_ms(design, 1):.2g} ms "
-            f"at hFE {channel.gain[0]:g} to {channel.gain[1]:g} and {channel.base_pf[0]:g} to "
-            f"{channel.base_pf[1]:g} pF; measure yours",
+            f"a step of {design.controller.adc_bits} bits, for a detector without a base",
         ),
+        _phototransistor(design),
+    )
+
+
+def _phototransistor(design: Design) -> Row:
+    """Settling of a detector with its spread: the wait that it needs, or why there is none."""
+    channel = design.electrical.channel
+    spread = (
+        f"hFE {channel.gain[0]:g} to {channel.gain[1]:g} and {channel.base_pf[0]:g} to "
+        f"{channel.base_pf[1]:g} pF (assumed: measure yours)"
+    )
+    if channel.wait_us is None:
+        return Row(
+            "... of a phototransistor",
+            "not stated",
+            f"{_slow_ms(design, 0):.2g} to {_slow_ms(design, 1):.2g} ms",
+            f"time constant hFE x C_cb x R at {spread}: a collector floats until its turn, so that "
+            'readings in the dark are too low. receiver.load = "each" avoids it',
+        )
+    channels = 2 ** len(design.wiring.select_pins)
+    scan_ms = (channels * channel.wait_us + len(design.layout) * CONVERSION_US) / 1000
+    return Row(
+        "... of a phototransistor",
+        "not stated",
+        f"{channel.wait_us:.0f} µs",
+        f"within half a count of 255 after any change, at {spread}. The firmware waits at least "
+        f"that long: a scan takes {scan_ms:.1f} ms or more, one with an ambient scan "
+        f"{2 * scan_ms + 2 * EMITTER_MS:.1f} ms",
     )
 
 
@@ -137,4 +165,4 @@ def _ohms(values: tuple[float, ...]) -> str:
 
 def _pull_up_ma(design: Design) -> float:
     optics = design.layout.optics
-    return 1000 * design.wiring.muxes * optics.supply_v / optics.pull_up_ohm
+    return 1000 * design.wiring.pull_ups * optics.supply_v / optics.pull_up_ohm

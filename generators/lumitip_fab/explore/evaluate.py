@@ -18,6 +18,7 @@ from lumitip_fab.config.messages import shown_path
 from lumitip_fab.derive import resolve
 from lumitip_fab.design import Design
 from lumitip_fab.design.encoding import canonical
+from lumitip_fab.design.pull_ups import used_slots
 from lumitip_fab.errors import InputError, OutputError, Problem
 from lumitip_fab.explore.accuracy import Sample, accuracy
 from lumitip_fab.explore.vary import Changes
@@ -37,12 +38,16 @@ def unpriced(config: Input, prices: Prices, names: set[str]) -> list[Problem]:
 def bill(config: Input, design: Design) -> dict[str, int]:
     """How many of each part the two boards and the controller need."""
     p, wiring = config.parameters, design.wiring
+    mux, array = design.packages.multiplexer, design.packages.array
+    pull_ups = (p.receiver.resistor, wiring.muxes)
+    if wiring.own_pull_ups:
+        pull_ups = p.receiver.array, len(used_slots(design.reading.cells, mux, array))
     counts = (
         (p.emitter.led, len(design.layout)),
         (p.emitter.resistor, len(wiring.strings)),
         (p.receiver.photodetector, len(design.layout)),
         (p.receiver.multiplexer, wiring.muxes),
-        (p.receiver.resistor, wiring.muxes),
+        pull_ups,
         (p.receiver.capacitor, wiring.muxes),
         (p.controller.board, 1),
     )

@@ -17,7 +17,15 @@ from lumitip_fab.explore.evaluate import FIGURES, Job, Journal, Record, evaluate
 from lumitip_fab.explore.vary import Axis, Changes, axes, changed, combinations
 from lumitip_fab.pipeline.build import locked
 
-_PRICED = ("leds", "resistors", "photodetectors", "multiplexers", "capacitors", "controllers")
+_PRICED = (
+    "leds",
+    "resistors",
+    "resistor_arrays",
+    "photodetectors",
+    "multiplexers",
+    "capacitors",
+    "controllers",
+)
 
 Progress = Callable[[int, int], object]
 

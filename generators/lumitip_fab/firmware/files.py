@@ -46,6 +46,8 @@ constexpr uint16_t CHANNELS = {2**lines};
 constexpr uint8_t ADC_BITS = {controller.adc_bits};
 constexpr uint32_t PULL_UP_OHM = {round(layout.optics.pull_up_ohm)};
 constexpr uint32_t LINE_PF = {math.ceil(line_pf)};  // what the pull-up charges
+// What a photodetector needs after a change of input; 0 where it is not known.
+constexpr uint32_t DETECTOR_US = {math.ceil(electrical.channel.wait_us or 0)};
 
 // Multiplexer of each cell, 0 is U1, in frame order.
 constexpr uint16_t MUX[CELLS] = {{

@@ -94,6 +94,8 @@ def _outline(component: Component, rules: Rules, gap_mm: float) -> tuple[Stroke,
         return (_dot(shape.pads[0], rules, _BAR_MM),)
     if kind == "multiplexer":
         return _multiplexer(shape, rules)
+    if kind == "resistor array":
+        return _ends(shape, rules)
     if kind == "module":
         return _module(shape, rules)
     return _sides(shape, rules, roomy)
@@ -135,6 +137,15 @@ def _sides(shape: Footprint, rules: Rules, roomy: bool) -> tuple[Stroke, ...]:
     y = shape.body.y_max_mm + line / 2
     least = 0.0 if roomy else line
     return tuple(Stroke(((-x, side), (x, side)), line) for side in (y, -y)) if x > least else ()
+
+
+def _ends(shape: Footprint, rules: Rules) -> tuple[Stroke, ...]:
+    """A line along each end of a body whose pads are along its sides."""
+    body, line = shape.body, rules.silk_line_mm
+    return tuple(
+        Stroke(((x, body.y_min_mm), (x, body.y_max_mm)), line)
+        for x in (body.x_min_mm - line / 2, body.x_max_mm + line / 2)
+    )
 
 
 def _multiplexer(shape: Footprint, rules: Rules) -> tuple[Stroke, ...]:

@@ -21,7 +21,7 @@ from lumitip_fab.design import Point, Side
 _APART_MM = 0.1  # more than the least gap round references, so that they do not run together
 _STEP_MM = 0.1
 _BEYOND_MM = 2.5  # farthest end of a column's reference from the column
-_SHOWN = ("multiplexer", "resistor", "capacitor")
+_SHOWN = ("multiplexer", "resistor", "resistor array", "capacitor")
 _AT_CELLS = ("led", "photodetector")
 _Places = dict[str, Text]
 

@@ -69,12 +69,14 @@ def read_sheet(path: Path) -> Sheet:
     for symbol in children(whole, "symbol"):
         shape = library[words(child(symbol, "lib_id"))[0]]
         fields = {words(p)[0]: words(p)[1] for p in children(symbol, "property")}
-        placed = [_placed(pin, symbol) for pin in _pins(shape)]
+        unit = int(numbers(child(symbol, "unit"))[0])
+        placed = [_placed(pin, symbol) for pin in _pins(shape, unit)]
         if child(shape, "power") is not None:
             names += [(fields["Value"], pin.at) for pin in placed if pin.kind == "power_in"]
             continue
         footprint = fields["Footprint"].rpartition(":")[2]  # without its library
-        symbols.append(Symbol(fields["Reference"], fields["Value"], footprint))
+        if unit == 1:
+            symbols.append(Symbol(fields["Reference"], fields["Value"], footprint))
         pins += [(f"{fields['Reference']}.{pin.number}", pin.at) for pin in placed]
     return Sheet(tuple(symbols), _nets(joined, names, pins))
 
@@ -137,9 +139,11 @@ def _library(whole: Node) -> dict[str, Node]:
     return {words(s)[0]: s for s in children(child(whole, "lib_symbols") or [], "symbol")}
 
 
-def _pins(shape: Node) -> Iterator[Node]:
-    for unit in children(shape, "symbol"):
-        yield from children(unit, "pin")
+def _pins(shape: Node, unit: int) -> Iterator[Node]:
+    """Pins of a unit of a symbol. A unit is called NAME_1_1, NAME_2_1 …; NAME_0_1 is in all."""
+    for drawing in children(shape, "symbol"):
+        if int(words(drawing)[0].split("_")[-2]) in (0, unit):
+            yield from children(drawing, "pin")
 
 
 def _placed(pin: Node, symbol: Node) -> _Pin:

@@ -174,6 +174,7 @@ MENDS: dict[str, tuple[str, ...]] = {
     "receiver.photodetector": ("board.clearance_mm",),
     "receiver.resistor": ("receiver.capacitor", "board.clearance_mm"),
     "receiver.multiplexer": _ROOM,
+    "receiver.array": ("receiver.load",),
     "mask.hole_mm": ("board.channel_mm",),
     "mask.flap_mm": ("mask.allowance_mm", "receiver.multiplexer"),  # fewer make a shorter finger
     "printer.profile": ("receiver.multiplexer",),
@@ -213,6 +214,7 @@ def menders(field: str) -> tuple[str, ...]:
 
 
 MOST_CHANGES = 40
+_EITHER = {"emitter.resistor_side": ("back", "front"), "receiver.load": ("each", "shared")}
 
 Moved = Callable[[Change, str], None]
 """Called with each change and the message of the rule that it mended."""
@@ -252,8 +254,8 @@ def change_of(now: Verdict, rule: Rule, field: str, fineness: int = COARSE) -> C
     automatic = FIELDS[field]
     if automatic.names:
         return first_of(now, rule, field, catalogue_names(now, automatic.names, field))
-    if field == "emitter.resistor_side":
-        return first_of(now, rule, field, iter(_others(("back", "front"), now, field)))
+    if field in _EITHER:
+        return first_of(now, rule, field, iter(_others(_EITHER[field], now, field)))
     if field.endswith("_ohm"):
         return first_of(now, rule, field, iter([sold_ohm(now.config.value(field))]))
     if field == "stack.film_mm":

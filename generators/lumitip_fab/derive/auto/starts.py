@@ -22,7 +22,9 @@ from lumitip_fab.derive.wiring.wiring import string_problems
 
 CURRENT_STEP = 0.95  # from one current that is tried to the next
 SATURATION_MARGIN = 1.5  # light current at a bare cell, times what saturates its pull-up
-MOST_PULL_UP = 2.0  # times the published one; a channel settles that much slower
+MOST_PULL_UP_OHM = 150e3  # a channel settles that much slower
+SHARED_OHM = 75e3  # the published one
+MOST_OWN_INPUTS = 16  # of a multiplexer with a pull-up for each
 
 
 def choose_strings(config: Input) -> Iterator[tuple[str, Value, str]]:
@@ -85,14 +87,14 @@ def _proposals(config: Input, longest: int) -> Iterator[tuple[str, Value, str]]:
         p.emitter.resistor,
         f"takes up to {1000 * load:.0f} mW over all tolerances, rated {1000 * package.power_w:.0f}",
     )
-    start = float(FIELDS["receiver.pull_up_ohm"].start)
-    factor = min(_least_ma(config, start) / p.emitter.current_ma, MOST_PULL_UP)
-    ohm = start if factor <= 1 else sold_ohm(start * factor)
+    start = SHARED_OHM if p.receiver.load == "shared" else _own_ohm()
+    factor = _least_ma(config, start) / p.emitter.current_ma
+    ohm = start if factor <= 1 else sold_ohm(min(start * factor, MOST_PULL_UP_OHM))
     reason = f"a bare cell saturates it at {p.emitter.current_ma:g} mA"
     if p.emitter.current_ma * SATURATION_MARGIN < _least_ma(config, ohm):
         reason = (
-            f"{MOST_PULL_UP:g} times the published {start:g}, with more a channel settles too "
-            f"slowly; at {p.emitter.current_ma:g} mA a bare cell does not saturate it"
+            f"with more than {MOST_PULL_UP_OHM:g} a channel settles too slowly; at "
+            f"{p.emitter.current_ma:g} mA a bare cell does not saturate it"
         )
     yield "receiver.pull_up_ohm", ohm, reason
 
@@ -115,8 +117,9 @@ def least_current_ma(config: Input) -> float:
     """LED current with which a bare cell just saturates. Currents are tried from the largest down,
     so that the margin is given up only where supply or heat leaves no more."""
     ohm = config.parameters.receiver.pull_up_ohm
-    most = ohm * (MOST_PULL_UP if "receiver.pull_up_ohm" in config.automatic else 1)
-    return _least_ma(config, most) / SATURATION_MARGIN
+    if "receiver.pull_up_ohm" in config.automatic:
+        ohm = MOST_PULL_UP_OHM
+    return _least_ma(config, ohm) / SATURATION_MARGIN
 
 
 def lowest_ma(config: Input) -> float:
@@ -178,7 +181,17 @@ LANE_USE = 0.8  # share of the lane between two columns that tracks can fill
 
 def proposals() -> tuple[Callable[[Input], Iterator[Proposal]], ...]:
     """The formulas, in the order of their dependencies."""
-    return _layers, _printer, choose_strings, _multiplexer, _copper, _vias, _channel, _flange
+    return (
+        _layers,
+        _printer,
+        _multiplexer,
+        _copper,
+        _load,
+        choose_strings,
+        _vias,
+        _channel,
+        _flange,
+    )
 
 
 def _layers(config: Input) -> Iterator[Proposal]:
@@ -252,6 +265,27 @@ def _copper(config: Input) -> Iterator[Proposal]:
     yield "board.copper_gap_mm", FINE_MM["gap"], reason
     yield "board.via_mm", FINE_MM["via"], reason
     yield "board.via_drill_mm", FINE_MM["drill"], reason
+
+
+def _load(config: Input) -> Iterator[Proposal]:
+    """A pull-up for each photodetector where they have room beside the multiplexers."""
+    p, parts = config.parameters, config.parts
+    usual = float(FIELDS["board.track_mm"].start)
+    if p.board.track_mm < usual:
+        yield (
+            "receiver.load",
+            "shared",
+            f"tracks of {p.board.track_mm:g} mm leave no room for the pull-ups of each "
+            "photodetector. Readings in the dark settle slowly",
+        )
+    elif parts.receiver.multiplexer.channels > MOST_OWN_INPUTS:
+        yield "receiver.load", "shared", f"more than {MOST_OWN_INPUTS} inputs of a multiplexer"
+    else:
+        yield "receiver.load", "each", "a reading settles in the dark as well"
+
+
+def _own_ohm() -> float:
+    return float(FIELDS["receiver.pull_up_ohm"].start)
 
 
 def _vias(config: Input) -> Iterator[Proposal]:

@@ -26,6 +26,7 @@ def derive_packages(config: Input) -> Packages:
         photodetector=_without_texts(parts.photodetectors[p.receiver.photodetector]),
         photodetector_name=p.receiver.photodetector,
         pull_up=_without_texts(parts.resistors[p.receiver.resistor]),
+        array=_without_texts(parts.resistor_arrays[p.receiver.array]),
         capacitor=_without_texts(parts.capacitors[p.receiver.capacitor]),
         multiplexer=_without_texts(parts.multiplexers[p.receiver.multiplexer]),
     )

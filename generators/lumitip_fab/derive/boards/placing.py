@@ -10,7 +10,7 @@ from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.cells import Cells
 from lumitip_fab.derive.finger.stack import is_flex
 from lumitip_fab.derive.wiring.wiring import Muxing, Strings
-from lumitip_fab.design import AtCells, Box, Part, Point, Relief
+from lumitip_fab.design import AtCells, Box, Part, Point, Relief, pull_ups
 
 HOLE_CLEARANCE_MM = 0.25
 HOLE_WEB_MM = 0.5  # board left between a hole and its edge
@@ -38,32 +38,57 @@ def parts_zone_depth_mm(
     p = config.parameters
     mux = config.parts.receiver.multiplexer
     per_row = _per_row(config, width_mm)
-    beside = sum(chip.over_pads_mm[0] for chip in _passives(config)) + p.board.clearance_mm
-    faults.refuse_unless(
-        beside <= mux.lead_span_mm,
-        "receiver.resistor",
-        f"is {p.receiver.resistor!r}, which takes {beside:.2f} mm beside a multiplexer, with "
-        f"{p.receiver.capacitor!r}; {mux.lead_span_mm:g} mm is available. Use a smaller package.",
-    )
+    _refuse_tall(config, faults)
     if per_row < 1:
         faults.refuse(
             "board.side_margin_mm",
             f"is {p.board.side_margin_mm:g}, which makes the boards {width_mm:.1f} mm wide; "
-            f"{p.receiver.multiplexer!r} with its capacitor needs {_slot_mm(config) + 2:.1f} mm",
+            f"{p.receiver.multiplexer!r} with the parts beside it needs "
+            f"{_slot_mm(config) + 2:.1f} mm",
         )
         per_row = 1
     rows = math.ceil(muxing.muxes / per_row)
     return rows * (mux.lead_span_mm + p.board.channel_mm)
 
 
+def _refuse_tall(config: Input, faults: Diagnostics) -> None:
+    """Refuse parts that are longer than the multiplexer that they stand beside."""
+    p, mux = config.parameters, config.parts.receiver.multiplexer
+    room = f"mm beside a multiplexer; {mux.lead_span_mm:g} mm is available"
+    if p.receiver.load == "each":
+        array = config.parts.receiver.array
+        most = pull_ups.MOST_COLUMNS * 2 * array.resistors
+        faults.refuse_unless(
+            mux.channels <= most,
+            "receiver.load",
+            f'is "each"; {most} pull-ups have room beside a multiplexer, '
+            f"{p.receiver.multiplexer!r} has {mux.channels} inputs. Use "
+            '"shared", or a multiplexer with fewer inputs.',
+        )
+        tall = 2 * array.over_pads_mm[0] + p.board.clearance_mm
+        faults.refuse_unless(
+            tall <= mux.lead_span_mm,
+            "receiver.array",
+            f"is {p.receiver.array!r}, two of which take {tall:.2f} {room}. Use a smaller array.",
+        )
+        return
+    tall = sum(chip.over_pads_mm[0] for chip in _passives(config)) + p.board.clearance_mm
+    faults.refuse_unless(
+        tall <= mux.lead_span_mm,
+        "receiver.resistor",
+        f"is {p.receiver.resistor!r}, which takes {tall:.2f} mm beside a multiplexer, with "
+        f"{p.receiver.capacitor!r}; {mux.lead_span_mm:g} mm is available. Use a smaller package.",
+    )
+
+
 def multiplexers(config: Input, muxing: Muxing, zone: Box) -> tuple[Part, ...]:
     """Multiplexers in rows across the zone, evenly spread, U1 at the upper left.
 
-    Capacitor and pull-up stand to the left of each, where supply and output leads are.
+    Capacitor and shared pull-up stand to the left of each, where supply and output leads are.
     """
     p = config.parameters
     mux = config.parts.receiver.multiplexer
-    passives = (_slot_mm(config) - mux.body_mm[0]) - p.board.clearance_mm
+    left, right = _beside_mm(config)
     per_row = max(_per_row(config, zone.width_mm + 2), 1)
     rows = np.array_split(np.arange(muxing.muxes), math.ceil(muxing.muxes / per_row))
     parts = []
@@ -72,7 +97,8 @@ def multiplexers(config: Input, muxing: Muxing, zone: Box) -> tuple[Part, ...]:
         for k, which in enumerate(row):
             slot = zone.width_mm / row.size
             x = zone.x_min_mm + slot * (k + 0.5)
-            x += max(0.0, round(passives - (slot - mux.body_mm[0]) / 2, 9))
+            side = (slot - mux.body_mm[0]) / 2
+            x += max(0.0, round(left - side, 9)) - max(0.0, round(right - side, 9))
             name = f"U{which + 1}"
             size = (mux.body_mm[0], mux.lead_span_mm)
             parts.append(Part(name, "multiplexer", x, y, *size, mux.body_mm[2], "front"))
@@ -80,15 +106,29 @@ def multiplexers(config: Input, muxing: Muxing, zone: Box) -> tuple[Part, ...]:
 
 
 def _slot_mm(config: Input) -> float:
-    p = config.parameters
-    body = config.parts.receiver.multiplexer.body_mm[0]
-    return body + max(chip.over_pads_mm[1] for chip in _passives(config)) + 2 * p.board.clearance_mm
+    left, right = _beside_mm(config)
+    gap = config.parameters.board.clearance_mm
+    return config.parts.receiver.multiplexer.body_mm[0] + left + right + gap
 
 
-def _passives(config: Input) -> tuple[Chip, Chip]:
-    """Capacitor and pull-up, which stand upright beside each multiplexer."""
-    p, parts = config.parameters, config.catalogue
-    return parts.capacitors[p.receiver.capacitor], parts.resistors[p.receiver.resistor]
+def _beside_mm(config: Input) -> tuple[float, float]:
+    """Room to the left and to the right of a multiplexer for the parts beside it."""
+    p, parts = config.parameters, config.parts.receiver
+    gap = p.board.clearance_mm
+    left = max(chip.over_pads_mm[1] for chip in _passives(config)) + gap
+    if p.receiver.load != "each":
+        return left, 0.0
+    column = parts.array.over_pads_mm[1] + gap
+    columns = pull_ups.columns_of_arrays(parts.multiplexer, parts.array)
+    return left + (columns - 1) * column, column
+
+
+def _passives(config: Input) -> tuple[Chip, ...]:
+    """Capacitor and shared pull-up, which stand upright beside each multiplexer."""
+    p, parts = config.parameters, config.parts.receiver
+    if p.receiver.load == "each":
+        return (parts.capacitor,)
+    return parts.capacitor, parts.resistor
 
 
 def _per_row(config: Input, width_mm: float) -> int:

@@ -88,6 +88,8 @@ def derive_stack(config: Input, faults: Diagnostics) -> Stack:
         "receiver.photodetector": parts.photodetectors[p.receiver.photodetector].body_mm[2],
         "receiver.multiplexer": parts.multiplexers[p.receiver.multiplexer].body_mm[2],
     }
+    if p.receiver.load == "each":
+        heights["receiver.array"] = parts.resistor_arrays[p.receiver.array].body_mm[2]
     if p.emitter.resistor_side == "front":
         heights["emitter.resistor"] = parts.resistors[p.emitter.resistor].body_mm[2]
     for field, height in heights.items():

@@ -109,7 +109,7 @@ def reach_mm(finger: Finger, outline: Outline) -> float:
 
 def _loads(config: Input, emitter: Finger, wiring: Wiring, electrical: Electrical) -> Loads:
     lit_ma = sum(electrical.strings.high_ma)
-    read_ma = 1000 * wiring.muxes * electrical.channel.supply_v / wiring.pull_up_ohm
+    read_ma = 1000 * wiring.pull_ups * electrical.channel.supply_v / wiring.pull_up_ohm
     own_ma = config.parts.controller.board.draws_ma + read_ma
     supply = emitter.connector.signals[1]
     together = {supply: lit_ma, "5V": own_ma, "GND": lit_ma + own_ma}

@@ -46,11 +46,20 @@ def _strings(config: Input, strings: wiring.Strings) -> Strings:
     )
 
 
-def _channel(config: Input) -> Channel:
-    """The line is pulled up, and a detector under light pulls it down.
+COUNTS, SETTLED_COUNTS = 255, 0.5
+WAIT_SHARE = 0.65
+"""Of the bound in `_wait_us`: ngspice finds at most 0.6 of it, over steps of light and the spread
+of gain and capacitance."""
 
-    supply ── pull-up ──┬── line (C) ── ADC
+
+def _channel(config: Input) -> Channel:
+    """A detector under light pulls down what its pull-up pulls up.
+
+    supply ── pull-up ──┬── line (C) ── ADC          shared
                         └── on-resistance ── detector ── ground
+
+    supply ── pull-up ──┬── detector ── ground       its own
+                        └── on-resistance ── line (C) ── ADC
     """
     p, parts = config.parameters, config.catalogue
     detector = parts.photodetectors[p.receiver.photodetector]
@@ -59,11 +68,19 @@ def _channel(config: Input) -> Channel:
     supply, pull_up = controller.supply_v, p.receiver.pull_up_ohm
     dark_v = supply - pull_up * detector.dark_current_na * 1e-9
     # Under full light the detector either saturates or takes what the light lets it take.
-    saturated = (supply - detector.saturation_v) / (pull_up + mux.on_resistance_ohm)
+    own = p.receiver.load == "each"
+    saturated = (supply - detector.saturation_v) / (
+        pull_up + (0.0 if own else mux.on_resistance_ohm)
+    )
     full_v = supply - pull_up * min(saturated, detector.light_current_ua * 1e-6)
     line_pf = mux.common_pf + controller.input_pf
     seconds = (pull_up * (line_pf + detector.capacitance_pf)) * 1e-12
+    if own:
+        seconds += mux.on_resistance_ohm * line_pf * 1e-12
     step_v = supply / 2**controller.adc_bits
+    change_v = dark_v - full_v
+    if own:  # the line shares its charge with the dark collector before both are pulled up
+        change_v *= line_pf / (line_pf + detector.capacitance_pf)
     return Channel(
         supply_v=supply,
         light_current_ua=detector.light_current_ua,
@@ -75,7 +92,20 @@ def _channel(config: Input) -> Channel:
         step_v=step_v,
         full_scale_v=full_v,
         dark_v=dark_v,
-        settle_us=1e6 * seconds * math.log(max((dark_v - full_v) / (step_v / 2), 1.0)),
+        settle_us=1e6 * seconds * math.log(max(change_v / (step_v / 2), 1.0)),
+        wait_us=_wait_us(pull_up, line_pf) if own else None,
         gain=detector.gain,
         base_pf=detector.base_pf,
     )
+
+
+def _wait_us(pull_up_ohm: float, line_pf: float) -> float:
+    """Wait for a phototransistor whose collector is always pulled up.
+
+    The line brings the charge of the channel before it, which is at most C * supply. The base of a
+    detector of gain B and capacitance C_b takes it up as a capacitor of B C_b would, and gives it
+    back through the pull-up: the error is at most C / (C + B C_b) * exp(-t / (R (C + B C_b))) of
+    the supply. The worst B C_b has the time constant t, and with it the error is R C / (e t).
+    """
+    bound_us = COUNTS / SETTLED_COUNTS * pull_up_ohm * line_pf * 1e-6 / math.e
+    return WAIT_SHARE * bound_us

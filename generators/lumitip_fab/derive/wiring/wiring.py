@@ -219,6 +219,8 @@ def build_wiring(config: Input, strings: Strings, muxing: Muxing) -> Wiring:
         current_ma=strings.current_ma,
         supply_v=p.supply.voltage_v,
         pull_up_ohm=p.receiver.pull_up_ohm,
+        own_pull_ups=p.receiver.load == "each",
+        pull_ups=sum(p.grid.columns) if p.receiver.load == "each" else muxing.muxes,
     )
 
 

@@ -64,6 +64,7 @@ def _symbols(board: Placement, finger: Finger, packages: Packages, supply: str) 
     return drawn | {
         "Phototransistor": symbols.phototransistor(packages.photodetector.marked),
         "Multiplexer": symbols.multiplexer(packages.multiplexer),
+        "R_Array": symbols.resistor_array(packages.array.resistors),
     }
 
 

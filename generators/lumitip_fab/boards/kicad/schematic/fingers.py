@@ -1,6 +1,7 @@
 """Blocks of the fingers' sheets: wires, strings of LEDs, multiplexers with detectors."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from itertools import chain, count
 
 from lumitip_fab.boards.circuit import GROUND
 from lumitip_fab.boards.kicad.schematic.sheet import Drawn, Sheet
@@ -106,6 +107,8 @@ def draw_strings(
 
 
 _MUX_X_MM = 53.34
+PULL_UPS_MM, PULL_UP_ABOVE_MM = 30.48, 2.54
+"""Resistors of the detectors' own pull-ups: from the block's left, and above their lines."""
 _ABOVE_MM, _BELOW_MM = 20.32, 15.24
 BLOCK_WIDTH_MM = 101.6
 
@@ -129,7 +132,10 @@ def draw_block(
     x, y = at[0] + _MUX_X_MM, at[1] + _ABOVE_MM + mux_half_mm(mux)
     pins = {name: (x + px, y - py) for name, _, (px, py), _, _ in mux_pins(mux)}
     leads = {name: str(lead) for name, lead, *_ in mux_pins(mux)}
-    sheet.texts.append((f"{ref} to {nets[str(mux.output)]}", (at[0] + 2.54, at[1] + 5.08), 2.5))
+    title = f"{ref} to {nets[str(mux.output)]}"
+    if f"R{number}" not in parts:
+        title += f", pull-ups of {parts['RN1'].value}"
+    sheet.texts.append((title, (at[0] + 2.54, at[1] + 5.08), 2.5))
     top = mux_half_mm(mux)
     sheet.symbols.append(
         Drawn(
@@ -143,8 +149,11 @@ def draw_block(
             value_at=(0, 0),
         )
     )
-    _detectors(sheet, at[0], pins, leads, nets, parts)
-    _output(sheet, pins["Z"], nets[leads["Z"]], parts[f"R{number}"], supply)
+    pull_ups = None if f"R{number}" in parts else at[0] + PULL_UPS_MM
+    rows, free = _detectors(sheet, at[0], pull_ups, pins, leads, nets, parts)
+    if pull_ups is not None:
+        _own_pull_ups(sheet, pull_ups, rows, free, parts, supply)
+    _output(sheet, pins["Z"], nets[leads["Z"]], parts.get(f"R{number}"), supply)
     for name in (name for name in pins if name[0] == "S"):
         px, py = pins[name]
         sheet.wire((px, py), (px + 5.08, py))
@@ -173,39 +182,103 @@ def draw_block(
 def _detectors(
     sheet: Sheet,
     left_mm: float,
+    pull_ups_mm: float | None,
     pins: dict[str, Point],
     leads: dict[str, str],
     nets: dict[str, str],
     parts: Mapping[str, Component],
-) -> None:
-    """A detector for each input in use, their emitters on one wire to ground."""
+) -> tuple[dict[str, float], list[float]]:
+    """A detector for each input in use, their emitters on one wire to ground. Their lines have a
+    corner where their own pull-ups join them, if they have any.
+
+    Returns:
+        Height of each detector's line by its net, and heights of the lines without one.
+    """
     bus, middle = left_mm + 7.62, left_mm + 17.78
-    rows = []
+    rows: dict[str, float] = {}
+    free: list[float] = []
     for name in (name for name in pins if name[0] == "Y"):
         x, y = pins[name]
         net = nets[leads[name]]
         if net == GROUND:
             sheet.wire((x, y), (x - 5.08, y))
             sheet.power(GROUND, (x - 5.08, y))
+            free.append(y)
             continue
         sheet.symbols.append(
             Drawn("Phototransistor", net, parts[net].value, middle, y, ref_at=(-5.08, -2.54))
         )
         sheet.wire((bus, y), (middle - 5.08, y))
-        sheet.wire((middle + 5.08, y), (x, y))
+        joins = [] if pull_ups_mm is None else [(pull_ups_mm, y)]
+        sheet.wire((middle + 5.08, y), *joins, (x, y))
         sheet.flag(net, (middle + 8.89, y), 90)
-        rows.append(y)
-    sheet.wire((bus, rows[0]), *((bus, y) for y in rows[1:]), (bus, rows[-1] + ROW_MM / 2))
-    sheet.junctions += [(bus, y) for y in rows[1:]]
-    sheet.power(GROUND, (bus, rows[-1] + ROW_MM / 2))
+        rows[net] = y
+    first, *others = rows.values()
+    end = (others or [first])[-1] + ROW_MM / 2
+    sheet.wire((bus, first), *((bus, y) for y in others), (bus, end))
+    sheet.junctions += [(bus, y) for y in others]
+    sheet.power(GROUND, (bus, end))
+    return rows, free
 
 
-def _output(sheet: Sheet, at: Point, net: str, resistor: Component, supply: str) -> None:
-    """The analog line with its pull-up."""
+def _own_pull_ups(
+    sheet: Sheet,
+    x_mm: float,
+    rows: Mapping[str, float],
+    free: Sequence[float],
+    parts: Mapping[str, Component],
+    supply: str,
+) -> None:
+    """A resistor of an array above the line of each detector, and the supply that they share.
+
+    Args:
+        sheet: to draw on.
+        x_mm: where the resistors begin.
+        rows: height of each detector's line.
+        free: heights of the lines without a detector; spare resistors are drawn there.
+        parts: the board's parts.
+        supply: its net.
+    """
+    bus = x_mm + 7.62
+    above = (min(rows.values()) - k * ROW_MM for k in count(1))
+    left = chain(sorted(free), above)
+    tops = []
+    for array in (part for part in parts.values() if part.kind == "resistor array"):
+        half = len(array.nets) // 2
+        near = [net for _, net in array.nets[:half]]
+        if rows.keys().isdisjoint(near):
+            continue
+        for unit, net in enumerate(near, start=1):
+            y = (rows[net] if net in rows else next(left)) - PULL_UP_ABOVE_MM
+            pins = str(unit), str(2 * half + 1 - unit)
+            at = x_mm + 3.81, y
+            sheet.symbols.append(
+                Drawn(
+                    "R_Array", array.ref, array.value, *at, 90, pins, ref_at=(0, -1.905), unit=unit
+                )
+            )
+            tops.append(y)
+            if net in rows:
+                sheet.wire((x_mm, rows[net]), (x_mm, y))
+                sheet.junctions.append((x_mm, rows[net]))
+            else:
+                tops.append(y - PULL_UP_ABOVE_MM)
+                sheet.wire((x_mm, y), (x_mm, tops[-1]), (bus, tops[-1]))
+    tops.sort()
+    end = bus, tops[0] - ROW_MM / 2
+    sheet.wire(end, *((bus, y) for y in tops))
+    sheet.junctions += [(bus, y) for y in tops[:-1]]
+    sheet.power(supply, end)
+
+
+def _output(sheet: Sheet, at: Point, net: str, resistor: Component | None, supply: str) -> None:
+    """The analog line, with a shared pull-up if there is one."""
     x, y = at
     sheet.wire((x, y), (x + 8.89, y), (x + 17.78, y))
-    sheet.junctions.append((x + 8.89, y))
     sheet.flag(net, (x + 17.78, y), 0)
+    if resistor is None:
+        return
+    sheet.junctions.append((x + 8.89, y))
     sheet.symbols.append(
         Drawn(
             "R",

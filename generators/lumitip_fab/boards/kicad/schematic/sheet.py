@@ -21,6 +21,8 @@ class Drawn:
     ref_at: Point | None = None
     """Where its reference stands, from its own place; hidden if None."""
     value_at: Point | None = None
+    unit: int = 1
+    """Which of the part's equal units it is."""
 
 
 @dataclass

@@ -51,6 +51,23 @@ def hand_drawn() -> dict[str, Node]:
     }
 
 
+def resistor_array(resistors: int) -> Node:
+    """Separate resistors, each a unit that is drawn by itself."""
+    body, *_ = (v for v in hand_drawn()["R"] if isinstance(v, tuple) and v[0] == "symbol")
+    frame = symbol("RN", [], [])[:-2]
+    units = (
+        (
+            "symbol",
+            f"{i}_1",
+            *body[2:],
+            pin(str(i), 0, 3.81, 270, 1.27),
+            pin(str(2 * resistors + 1 - i), 0, -3.81, 90, 1.27),
+        )
+        for i in range(1, resistors + 1)
+    )
+    return (*frame, *units)
+
+
 def supply(name: str) -> Node:
     """The symbol of a supply, which names its net."""
     return _power(

@@ -81,11 +81,13 @@ class _Writer:
         The entry has no value and no footprint: KiCad would prefer them to the fields, and what
         is changed in the fields would be lost; and kicad-skip could not save the file.
         """
-        uuid = stable_uuid(self.board.name, "symbol", drawn.ref)  # its footprint names it too
+        more = (str(drawn.unit),) if drawn.unit > 1 else ()
+        uuid = stable_uuid(self.board.name, "symbol", drawn.ref, *more)  # a footprint names it too
         part = self.parts.get(drawn.ref)
         symbol = self.page.copy("symbol")
         symbol.lib_id.value = f"{symbols.LIBRARY}:{drawn.symbol}"
         symbol.at.value = [drawn.x_mm, drawn.y_mm, drawn.angle_deg]
+        symbol.unit.value = drawn.unit
         symbol.in_bom.value = part is None or bool(part.part)
         symbol.uuid.value = uuid
         fields = _field_texts(drawn, part)
@@ -101,6 +103,7 @@ class _Writer:
         pattern.delete()
         entry = self.page.copy("path")
         entry.value, entry.reference.value = f"/{uuid}", drawn.ref
+        entry.unit.value = drawn.unit
 
 
 def _field_texts(drawn: Drawn, part: Component | None) -> dict[str, tuple[str, Point | None]]:
