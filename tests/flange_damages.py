@@ -126,7 +126,12 @@ def window_narrow(body: Body) -> Body:
 
 
 def way_out_blocked(body: Body) -> Body:
-    return body + box((-5.0, 31.0, 0.0), (-2.0, 34.0, 4.0))
+    return body + box((-5.0, 31.5, 0.0), (-2.0, 34.5, 4.0))
+
+
+def shroud_obstructed(body: Body) -> Body:
+    """A block beside the contacts of a header, where its shroud is."""
+    return body + box((11.2, 27.5, 0.0), (14.2, 30.5, 4.0))
 
 
 def screw_askew(body: Body) -> Body:
@@ -220,6 +225,7 @@ LOWERS: dict[Damage, set[str]] = {
     window_blocked: {"window", "window_gap", "interference"},
     window_narrow: {"window_gap"},
     way_out_blocked: {"cables"},
+    shroud_obstructed: {"cables", "interference"},
     screw_askew: {"screws", "screw_clearance"},
     screw_hole_wide: {"screw_width"},
     countersink_missing: {"screw_heads", "head_clearance"},

@@ -30,6 +30,7 @@ ALLOWED = {
     "mask": "design pipeline",
     "firmware": "design pipeline",
     "parts": "design pipeline",
+    "models": "design pipeline parts",
     "scenes": "design pipeline parts",
     "docs": "design pipeline",
     "checks.readers": "design",

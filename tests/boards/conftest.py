@@ -1,6 +1,9 @@
 """Boards by themselves: every file of both boards of a preset, without the printed parts."""
 
+import os
 import shutil
+import signal
+import subprocess
 from collections.abc import Callable
 from pathlib import Path
 
@@ -12,6 +15,7 @@ from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
 from lumitip_fab.design.encoding import design_text
+from lumitip_fab.models.files import model_files
 from lumitip_fab.pipeline.graph import tasks
 
 Boards = Callable[[str], Path]
@@ -54,10 +58,37 @@ def boards(
     )
 
 
+@pytest.fixture(scope="module")
+def kicad(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., str]:
+    """Runs a command of KiCad with a home of its own."""
+    home = tmp_path_factory.mktemp("kicad_home")
+
+    def run(*command: str | Path) -> str:
+        environment = {**os.environ, "HOME": str(home), "XDG_CONFIG_HOME": str(home)}
+        for _ in range(3):  # KiCad's own crashes are rare and come at random: a fault of ours stays
+            done = subprocess.run(
+                [str(word) for word in command],
+                env=environment,
+                capture_output=True,
+                text=True,
+                check=False,
+            )
+            if done.returncode != -signal.SIGSEGV:
+                break
+        assert done.returncode == 0, done.stdout + done.stderr
+        return done.stdout
+
+    return run
+
+
 def _write(design: Design, out: Path) -> None:
     (out / "design.json").write_text(design_text(design), encoding="utf-8")
     for task in tasks(STEPS, design):
-        make = {"finger_board": board_files, "other_board": auxiliary_files}.get(task.step.name)
+        make = {
+            "finger_board": board_files,
+            "other_board": auxiliary_files,
+            "models": model_files,
+        }.get(task.step.name)
         for artefact in make(design, *task.item) if make else ():
             path = out / artefact.path
             path.parent.mkdir(parents=True, exist_ok=True)

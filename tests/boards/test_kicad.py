@@ -1,10 +1,7 @@
 """KiCad itself on the written boards: rules, schematic parity, plots, and its own copper fill."""
 
 import json
-import os
 import shutil
-import signal
-import subprocess
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
@@ -47,29 +44,6 @@ LAYERS = (
 )
 
 pytestmark = [needs("kicad-cli"), pytest.mark.slow]
-
-
-@pytest.fixture(scope="module")
-def kicad(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., str]:
-    """Runs a command of KiCad with a home of its own."""
-    home = tmp_path_factory.mktemp("kicad_home")
-
-    def run(*command: str | Path) -> str:
-        environment = {**os.environ, "HOME": str(home), "XDG_CONFIG_HOME": str(home)}
-        for _ in range(3):  # KiCad's own crashes are rare and come at random: a fault of ours stays
-            done = subprocess.run(
-                [str(word) for word in command],
-                env=environment,
-                capture_output=True,
-                text=True,
-                check=False,
-            )
-            if done.returncode != -signal.SIGSEGV:
-                break
-        assert done.returncode == 0, done.stdout + done.stderr
-        return done.stdout
-
-    return run
 
 
 @pytest.mark.parametrize(("preset", "name"), EVERY)

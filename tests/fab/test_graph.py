@@ -80,6 +80,7 @@ def test_pitch_touches_everything_of_the_fingers(keys: Keys) -> None:
     outside = {
         "holder",
         "flange",
+        "models",
         "slicer",
         "supply_spice",
         "wiring",
@@ -91,7 +92,7 @@ def test_pitch_touches_everything_of_the_fingers(keys: Keys) -> None:
 
 def test_what_is_outside_touches_no_finger(keys: Keys) -> None:
     after = keys("[breakout]\nhole_spacing_mm = 34.0\n")
-    assert changed(keys(), after) == {"other_board", "holder"}
+    assert changed(keys(), after) == {"other_board", "holder", "models"}
     assert changed(keys(), keys("[holder]\nbody_mm = 76.0\n")) == {"holder"}
 
 

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 
 from lumitip_fab.boards.circuit import GROUND, SIGNAL, SUPPLY, net_class
+from lumitip_fab.boards.courtyards import with_courtyards
 from lumitip_fab.boards.fab.notes import (
     assembly_note,
     auxiliary_note,
@@ -139,7 +140,7 @@ def finished(placement: Placement) -> BoardModel:
     if placement.flexible:
         routing = with_teardrops(placement, routing)
     routing, fills, solid = pour(placement, routing)
-    return require_clean_drc(BoardModel(placement, routing, fills, solid))
+    return require_clean_drc(BoardModel(with_courtyards(placement), routing, fills, solid))
 
 
 def model_files(

@@ -41,11 +41,15 @@ def pad_at(component: Component, number: str) -> Point:
 
 def courtyard(component: PlacedComponent) -> Box:
     """The courtyard of a part in its place."""
-    yard = component.courtyard
+    return placed_box(component, component.courtyard)
+
+
+def placed_box(component: Component, shape: Box) -> Box:
+    """A rectangle of a footprint's frame on the board, or the upright one round it."""
     corners = [
         placed(component, x, y)
-        for x in (yard.x_min_mm, yard.x_max_mm)
-        for y in (yard.y_min_mm, yard.y_max_mm)
+        for x in (shape.x_min_mm, shape.x_max_mm)
+        for y in (shape.y_min_mm, shape.y_max_mm)
     ]
     xs, ys = zip(*corners, strict=True)
     return Box(min(xs), max(xs), min(ys), max(ys))

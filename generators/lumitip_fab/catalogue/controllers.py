@@ -23,6 +23,17 @@ OPEN = "NC"
 PinName = Annotated[str, Field(pattern=r"^[A-Z0-9]{1,6}$")]
 
 
+class Shroud(Strict):
+    """The shroud of a right-angle box header, beside its rows of contacts."""
+
+    body_mm: tuple[Length, Length]
+    """Along the rows, and from its back to the end where the plug goes in."""
+    beyond_mm: Length
+    """From the nearest row of contacts to its back."""
+    notch_mm: Length
+    """Width of the notch in its upper wall, for the key of the plug."""
+
+
 class Strip(Ordered, Entry):
     """One or two rows of contacts in plated holes."""
 
@@ -40,6 +51,8 @@ class Strip(Ordered, Entry):
     """Above the board."""
     stroke_mm: float = Field(default=0, ge=0, le=10)
     """Travel of spring contacts; 0 for others."""
+    shroud: Shroud | None = None
+    """Shroud of a right-angle box header; none for others, whose body is over their contacts."""
 
 
 class Plug(Strict):
@@ -76,6 +89,8 @@ class Leaded(Ordered, Entry):
     """Body: along the rows of leads, across them, height above the board."""
     lead_span_mm: Length
     """Outer ends of the pads of the two rows."""
+    lead_tips_mm: Length | None = None
+    """Outer ends of the leads of the two rows; by default 0.4 mm inside those of the pads."""
     lead_pitch_mm: Length
     """Distance between neighbouring leads of the lower row."""
     lead_pad_mm: tuple[Length, Length]

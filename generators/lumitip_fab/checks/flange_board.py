@@ -11,7 +11,7 @@ from lumitip_fab.checks.flange_read import CONTACTS, REACH_MM, Stacked, heights
 from lumitip_fab.checks.printed import circles, farthest, holes_at, room, round_head, round_thread
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.result import Measurement
-from lumitip_fab.design import Component
+from lumitip_fab.design import Box, Component
 
 SIZE_MM = 0.05
 HOLE_MM = 0.05
@@ -92,12 +92,13 @@ def measure_headers(of: Stacked) -> Iterator[Measurement]:
     blocked = []
     for ref in of.headers:
         device = _device(of, ref)
-        body = _footprint(of, device)
+        body = shapely.union_all([_footprint(of, device, box) for box in _boxes(device)])
         x_min, y_min, x_max, y_max = body.bounds
-        outward = math.copysign(1.0, (y_min + y_max) / 2)
+        outward = math.copysign(1.0, y_min + y_max)
         levels = np.linspace(front + 0.3, front + max(device.footprint.height_mm, WIRE_MM), 5)
         across = np.linspace(x_min, x_max, 9)
-        start = np.array([(x, (y_min + y_max) / 2, z) for x in across for z in levels])
+        at = _footprint(of, device).centroid.y
+        start = np.array([(x, at, z) for x in across for z in levels])
         hit, _ = solids.cast(of.lower, start, np.array([0.0, outward, 0.0]), REACH_MM).first(
             len(start)
         )
@@ -143,10 +144,19 @@ def bodies(of: Stacked) -> dict[str, solids.Solid]:
         height = device.footprint.height_mm
         if height:
             low = seat + thick if _in_front(of, device) else seat - height
-            corners = np.array(_footprint(of, device).exterior.coords)[:-1]
-            box = manifold3d.CrossSection([corners], manifold3d.FillRule.EvenOdd)
-            found[device.ref] = box.extrude(height).translate((0.0, 0.0, low))
+            boxes = [
+                np.array(_footprint(of, device, b).exterior.coords)[:-1] for b in _boxes(device)
+            ]
+            flats = [manifold3d.CrossSection([c], manifold3d.FillRule.EvenOdd) for c in boxes]
+            blocks = [flat.extrude(height).translate((0.0, 0.0, low)) for flat in flats]
+            found[device.ref] = solids.united(blocks)
     return found
+
+
+def _boxes(device: Component) -> list[Box]:
+    """A part's body; of a box header also the shroud."""
+    shape = device.footprint
+    return [shape.body, *([shape.shroud.box] if shape.shroud else [])]
 
 
 def _in_front(of: Stacked, device: Component) -> bool:
@@ -157,9 +167,9 @@ def _device(of: Stacked, ref: str) -> Component:
     return next(d for d in of.board.auxiliary.components if d.ref == ref)
 
 
-def _footprint(of: Stacked, device: Component) -> shapely.Polygon:
-    """A part's body where the board's file has the part."""
-    part, body = of.board.parts[device.ref], device.footprint.body
+def _footprint(of: Stacked, device: Component, box: Box | None = None) -> shapely.Polygon:
+    """A part's body, or another box of its footprint, where the board's file has the part."""
+    part, body = of.board.parts[device.ref], box or device.footprint.body
     (at,) = of.places([part.at])
     turn, sign = math.radians(device.angle_deg), 1 if part.front else -1
     left, right = sorted((sign * body.x_min_mm, sign * body.x_max_mm))

@@ -28,6 +28,7 @@ MODULES = (
     "mould",
     "assembly",
     "board",
+    "models",
     "schematic",
     "orders",
     "printing",

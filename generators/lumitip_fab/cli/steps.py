@@ -34,6 +34,7 @@ STEPS = (
     Step(
         "other_board", "boards.files.auxiliary_files", "auxiliary_boards", heavy=True, tools=_COPPER
     ),
+    Step("models", "models.files.model_files", heavy=True, tools=_CAD),
     Step("finger_spice", "boards.spice.simulation", "fingers"),
     Step("supply_spice", "boards.spice.supply_simulation", "regulated"),
     Step("assembly", "scenes.assembly.assembly", heavy=True, tools=_CAD),

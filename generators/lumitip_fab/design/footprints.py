@@ -1,14 +1,18 @@
 """Footprints of parts, from their dimensions in the catalogue."""
 
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Literal
 
+from lumitip_fab.catalogue import controllers as catalogue
 from lumitip_fab.catalogue.controllers import Leaded, Module, Strip
 from lumitip_fab.catalogue.electronics import Chip, Multiplexer, ResistorArray
-from lumitip_fab.design.pcb import Footprint, Pad
+from lumitip_fab.design import Design
+from lumitip_fab.design.pcb import Facing, Footprint, Form, Pad, Shroud
 from lumitip_fab.design.shape import Box
 
 _DOT_MM = 1.0
+_TOE_MM = 0.4  # pad beyond the tip of a lead
 _CHIPS = {
     "resistor": "RESC",
     "capacitor": "CAPC",
@@ -21,6 +25,23 @@ _CHIPS = {
 """First letters of a chip's name by its kind; of phototransistors the standard has none."""
 
 
+def of_design(design: Design) -> Iterator[tuple[str, Footprint]]:
+    """Every footprint of every board, with the kind of its part; some more than once."""
+    unused = "pull_up" if design.wiring.own_pull_ups else "array"
+    for name, entry in vars(design.packages).items():
+        if name == unused:
+            continue
+        if isinstance(entry, Multiplexer):
+            yield "multiplexer", multiplexer(entry)
+        elif isinstance(entry, ResistorArray):
+            yield "resistor array", array(entry)
+        elif isinstance(entry, Chip):
+            kind = type(entry).__name__.lower()
+            yield kind, chip(kind, entry)
+    for board in design.auxiliary_boards:
+        yield from ((part.kind, part.footprint) for part in board.components)
+
+
 def chip(kind: str, entry: Chip) -> Footprint:
     """A two-terminal part along x, pad 1 to the left."""
     length, width, height = entry.body_mm
@@ -28,7 +49,7 @@ def chip(kind: str, entry: Chip) -> Footprint:
     pads = tuple(Pad(number, x, 0.0, *entry.pad_mm) for number, x in (("1", -at), ("2", at)))
     size = "".join(f"{int(side * 10 + 1e-9):02d}" for side in (length, width))
     name = f"{_CHIPS[kind]}{size}X{_hundredths(height)}N"
-    return Footprint(name, pads, _body(length, width), height)
+    return Footprint(name, pads, _body(length, width), height, "chip")
 
 
 def multiplexer(entry: Multiplexer) -> Footprint:
@@ -38,7 +59,7 @@ def multiplexer(entry: Multiplexer) -> Footprint:
     length, width, height = entry.body_mm
     pitch, span, high = map(_hundredths, (entry.lead_pitch_mm, entry.lead_tips_mm, height))
     name = f"SOP{pitch}P{span}X{high}-{entry.leads}N"
-    return Footprint(name, pads, _body(length, width), height)
+    return Footprint(name, pads, _body(length, width), height, "leaded", entry.lead_tips_mm)
 
 
 def array(entry: ResistorArray) -> Footprint:
@@ -52,7 +73,7 @@ def array(entry: ResistorArray) -> Footprint:
     length, width, height = entry.body_mm
     size = "".join(f"{round(side * 100)}" for side in (length, width))
     name = f"RESCAV{_hundredths(entry.pad_pitch_mm)}P{size}X{_hundredths(height)}-{len(pads)}N"
-    return Footprint(name, tuple(pads), _body(length, width), height)
+    return Footprint(name, tuple(pads), _body(length, width), height, "array")
 
 
 def leaded(entry: Leaded) -> Footprint:
@@ -62,7 +83,9 @@ def leaded(entry: Leaded) -> Footprint:
     pads = _two_rows(low, leads - low, entry)
     length, width, height = entry.body_mm
     pitch, span, high = map(_hundredths, (entry.lead_pitch_mm, entry.lead_span_mm, height))
-    return Footprint(f"SOT{pitch}P{span}X{high}-{leads}N", pads, _body(length, width), height)
+    name = f"SOT{pitch}P{span}X{high}-{leads}N"
+    tips = entry.lead_tips_mm or entry.lead_span_mm - 2 * _TOE_MM
+    return Footprint(name, pads, _body(length, width), height, "leaded", tips)
 
 
 def _two_rows(low: int, high: int, entry: Multiplexer | Leaded) -> tuple[Pad, ...]:
@@ -84,7 +107,7 @@ def module(entry: Module) -> Footprint:
         for i, (x, y, width, height) in enumerate(entry.pads_mm, start=1)
     )
     width, length, height = entry.body_mm
-    return Footprint(f"Module_{entry.order_number}", pads, _body(width, length), height)
+    return Footprint(f"Module_{entry.order_number}", pads, _body(width, length), height, "module")
 
 
 def row(name: str, ways: int, pitch_mm: float, pad_mm: float, drill_mm: float) -> Footprint:
@@ -113,13 +136,20 @@ def bare(footprint: Footprint) -> Footprint:
     return replace(footprint, body=Box(first.x_mm - half, last.x_mm + half, -half, half))
 
 
-def raised(footprint: Footprint, height_mm: float) -> Footprint:
-    """The same footprint under a part of this height."""
-    return replace(footprint, height_mm=height_mm)
+def socket(strip: Strip) -> Footprint:
+    """A row of plated holes under a socket."""
+    bare = row("PinSocket", strip.ways, strip.pitch_mm, strip.pad_mm, strip.drill_mm)
+    return replace(bare, height_mm=strip.height_mm, form="socket")
 
 
-def rows(name: str, strip: Strip) -> Footprint:
-    """Two rows of plated holes along x, counted counter-clockwise from the lower left."""
+def rows(name: str, strip: Strip, facing: Facing = "north") -> Footprint:
+    """Two rows of plated holes along x, counted counter-clockwise from the lower left.
+
+    Args:
+        name: first part of the footprint's name.
+        strip: the part on it.
+        facing: side where the plug goes into a box header.
+    """
     ways, pitch = strip.ways, strip.pitch_mm
     pads = []
     for i in range(2 * ways):
@@ -128,7 +158,17 @@ def rows(name: str, strip: Strip) -> Footprint:
         size = strip.pad_mm, strip.pad_mm
         pads.append(Pad(str(i + 1), x, y, *size, i > 0, strip.drill_mm, False))
     full_name = f"{name}_2x{ways:02d}_P{pitch:.2f}mm_D{strip.drill_mm:.2f}mm"
-    return Footprint(full_name, tuple(pads), _body(ways * pitch, 2 * pitch), strip.height_mm)
+    shroud = _shroud(strip.shroud, pitch, facing) if strip.shroud else None
+    form: Form = "springs" if strip.stroke_mm else "box header" if shroud else "header"
+    body = _body(ways * pitch, 2 * pitch)
+    return Footprint(full_name, tuple(pads), body, strip.height_mm, form, shroud=shroud)
+
+
+def _shroud(entry: catalogue.Shroud, pitch_mm: float, facing: Facing) -> Shroud:
+    length, depth = entry.body_mm
+    back = pitch_mm / 2 + entry.beyond_mm
+    low, high = (back, back + depth) if facing == "north" else (-back - depth, -back)
+    return Shroud(Box(-length / 2, length / 2, low, high), entry.notch_mm, facing)
 
 
 def dot(name: Literal["TestPoint", "Fiducial"]) -> Footprint:

@@ -5,6 +5,7 @@ the right, y up. Every length is in mm.
 """
 
 from dataclasses import dataclass
+from typing import Literal
 
 from lumitip_fab.design.shape import Box, Point, Side
 
@@ -25,6 +26,30 @@ class Pad:
     """Whether solder paste is printed on it."""
 
 
+Form = Literal[
+    "bare", "chip", "array", "leaded", "socket", "springs", "header", "box header", "module"
+]
+"""Kinds of bodies; bare copper has none."""
+
+Facing = Literal["north", "south"]
+"""To positive or to negative y."""
+
+
+@dataclass(frozen=True)
+class Shroud:
+    """The shroud of a right-angle box header, in its footprint's frame."""
+
+    box: Box
+    notch_mm: float
+    """Width of the notch in the middle of its upper wall."""
+    facing: Facing
+    """Side where the plug goes in."""
+
+
+MODELS = "boards/models"
+"""Folder of the 3D models, below the output folder."""
+
+
 @dataclass(frozen=True)
 class Footprint:
     """A land pattern with the part's body, in its own frame."""
@@ -33,8 +58,23 @@ class Footprint:
     """By IPC-7351, such as `LEDC1608X60N`, where that has a name for it."""
     pads: tuple[Pad, ...]
     body: Box
+    """Body over the pads; the whole body, but for a box header's shroud."""
     height_mm: float
     """Above the board; 0 for bare copper."""
+    form: Form = "bare"
+    lead_tips_mm: float = 0.0
+    """Outer ends of the leads of both rows; 0 for other forms."""
+    shroud: Shroud | None = None
+
+    @property
+    def library_name(self) -> str:
+        """Name in KiCad's library: by it the sides of a box header differ."""
+        return f"{self.name}_{self.shroud.facing.title()}" if self.shroud else self.name
+
+    @property
+    def model(self) -> str:
+        """File name of its 3D model; empty for bare copper. A box header's faces north."""
+        return "" if self.form == "bare" else f"{self.name}.step"
 
 
 @dataclass(frozen=True)

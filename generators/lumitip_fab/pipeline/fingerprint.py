@@ -36,7 +36,7 @@ def code_hash(*parts: str) -> str:
     """Hash of some modules and folders of this package and of those that all share."""
     roots = [PACKAGE / name for name in (*parts, *SHARED)]
     roots += [Path(lumitip.__file__).parent / name for name in LAYOUT]
-    if "scenes" in parts:
+    if {"models", "scenes"} & {*parts}:
         roots.append(PACKAGE / "parts")
     if "firmware" in parts:
         roots += [Path(lumitip.__file__).parent / "protocol", *firmware_sources()]

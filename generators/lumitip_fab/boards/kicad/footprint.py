@@ -3,16 +3,16 @@
 from collections.abc import Iterator
 from dataclasses import replace
 
+from lumitip_fab.boards.kicad.bodies import around, body_strokes, model
 from lumitip_fab.boards.kicad.sexpr import FORMAT, Node, Quoted, written
 from lumitip_fab.boards.model import (
     PlacedComponent,
-    Stroke,
     Text,
     fiducial_margin_mm,
     stable_uuid,
 )
 from lumitip_fab.boards.silk.strokes import angle_on_board_deg
-from lumitip_fab.design import Box, Footprint, Pad, Point
+from lumitip_fab.design import Footprint, Pad, Point
 from lumitip_fab.design.frames import on_board_page
 
 
@@ -25,7 +25,7 @@ def effects(text: Text, mirrored: bool) -> Node:
 
 LIBRARY = "lumitip"
 HOLE = "MountingHole"
-_FAB_MM, _COURTYARD_MM = 0.1, 0.05
+_COURTYARD_MM = 0.05
 
 
 def placed_footprint(
@@ -72,7 +72,7 @@ def library_file(component: PlacedComponent) -> bytes:
         nets=(),
         ref_text=None,
     )
-    return _library(shape.name, _Writer(plain, {}, LIBRARY).contents())
+    return _library(shape.library_name, _Writer(plain, {}, LIBRARY).contents())
 
 
 def hole_library_file(hole_mm: float) -> bytes:
@@ -137,7 +137,7 @@ class _Writer:
         x, y = on_board_page((part.x_mm, part.y_mm))
         return (
             "footprint",
-            Quoted(f"{LIBRARY}:{shape.name}"),
+            Quoted(f"{LIBRARY}:{shape.library_name}"),
             ("layer", Quoted(self.layer("Cu"))),
             ("tstamp", self.own),
             ("at", x, y, self.angle),
@@ -152,6 +152,7 @@ class _Writer:
         yield from self.texts()
         yield from self.lines()
         yield from (self.pad(i, p) for i, p in enumerate(self.component.footprint.pads))
+        yield from model(self.component.footprint)
 
     def layer(self, kind: str) -> str:
         """A layer of the part's own side."""
@@ -187,8 +188,8 @@ class _Writer:
         """Silkscreen, body and courtyard."""
         shape = self.component.footprint
         drawn = [("SilkS", stroke) for stroke in self.component.outline]
-        drawn.append(("Fab", _round(shape.body, _FAB_MM)))
-        drawn.append(("CrtYd", _round(self.component.courtyard, _COURTYARD_MM)))
+        drawn += [("Fab", stroke) for stroke in body_strokes(shape)]
+        drawn.append(("CrtYd", around(self.component.courtyard, _COURTYARD_MM)))
         count = 0
         for layer, stroke in drawn:
             for start, end in zip(stroke.points, stroke.points[1:], strict=False):
@@ -251,13 +252,6 @@ def _on_body(shape: Footprint) -> Text:
     body = shape.body
     height = min(0.8, body.width_mm / 4, body.length_mm / 1.5)
     return Text("", *body.centre_mm, height_mm=height, width_mm=0.15 * height)
-
-
-def _round(box: Box, width_mm: float) -> Stroke:
-    """A rectangle as a closed polyline."""
-    left, right, low, high = box.x_min_mm, box.x_max_mm, box.y_min_mm, box.y_max_mm
-    corners = (left, low), (right, low), (right, high), (left, high), (left, low)
-    return Stroke(corners, width_mm)
 
 
 def _text(

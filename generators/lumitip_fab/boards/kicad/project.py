@@ -106,7 +106,7 @@ def project_files(model: BoardModel, thickness_mm: float) -> dict[str, bytes]:
         thickness_mm: of the finished board.
     """
     board = model.placement
-    shapes = {c.footprint.name: c for c in board.components}
+    shapes = {c.footprint.library_name: c for c in board.components}
     hole = {f"{hole_name(board.hole_mm)}": hole_library_file(board.hole_mm)}
     mods = {name: library_file(c) for name, c in sorted(shapes.items())} | hole
     return {

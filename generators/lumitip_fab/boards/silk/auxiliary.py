@@ -8,6 +8,7 @@ from itertools import pairwise, product
 from lumitip_fab.boards.model import SIDES, PlacedComponent, Placement, Text
 from lumitip_fab.boards.placed import courtyard, placed_pads
 from lumitip_fab.boards.silk.page import Page, extent
+from lumitip_fab.boards.silk.shrouds import draw_shroud
 from lumitip_fab.design import AuxiliaryBoard, Box, Point, Rules, Side
 
 _REMEDY = (
@@ -38,6 +39,8 @@ def with_legend(board: Placement, auxiliary: AuxiliaryBoard, rules: Rules) -> Pl
             continue
         places = [*_round(page, ref, courtyard(part))]
         _put(page, ref, (part.x_mm, part.y_mm), places, _APART_MM, part.side)
+    for part in parts.values():
+        draw_shroud(page, part)
     lines = (
         (board.title, 2.0),
         (auxiliary.title, 1.5),

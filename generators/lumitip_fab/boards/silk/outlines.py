@@ -6,6 +6,7 @@ from collections.abc import Sequence
 import shapely
 from shapely import LineString
 
+from lumitip_fab.boards.courtyards import land
 from lumitip_fab.boards.model import PlacedComponent, Stroke
 from lumitip_fab.boards.placed import placed, placed_pads
 from lumitip_fab.design import Box, Component, Footprint, Pad, Rules
@@ -71,12 +72,7 @@ def _courtyard(component: Component, rules: Rules) -> Box:
     shape = component.footprint
     if component.kind == "fiducial":
         return shape.body.grown(shape.pads[0].width_mm / 2)  # a clear ring for cameras
-    xs = [p.x_mm + side * p.width_mm / 2 for p in shape.pads for side in (-1, 1)]
-    ys = [p.y_mm + side * p.height_mm / 2 for p in shape.pads for side in (-1, 1)]
-    if shape.height_mm:  # a part, with a body
-        xs += [shape.body.x_min_mm, shape.body.x_max_mm]
-        ys += [shape.body.y_min_mm, shape.body.y_max_mm]
-    return Box(min(xs), max(xs), min(ys), max(ys)).grown(rules.part_gap_mm / 2)
+    return land(shape).grown(rules.part_gap_mm / 2)
 
 
 def _outline(component: Component, rules: Rules, gap_mm: float) -> tuple[Stroke, ...]:

@@ -51,6 +51,17 @@ class Terminal:
     drill_mm: float
 
 
+@dataclass(frozen=True)
+class Model:
+    """The 3D model of a part, in the footprint's frame, y up."""
+
+    path: str
+    """As the file has it, such as `${KIPRJMOD}/../models/X.step`."""
+    offset_mm: tuple[float, ...]
+    scale: tuple[float, ...]
+    rotate_deg: tuple[float, ...]
+
+
 @dataclass(frozen=True, eq=False)
 class Part:
     """A footprint."""
@@ -66,6 +77,7 @@ class Part:
     attributes: frozenset[str]
     """Such as `exclude_from_bom`."""
     terminals: tuple[Terminal, ...]
+    models: tuple[Model, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -246,6 +258,7 @@ class _Reader:
             front=words(child(node, "layer")) == [self.layers[0]],
             attributes=frozenset(words(child(node, "attr"))),
             terminals=tuple(self.terminal(pad, place) for pad in children(node, "pad")),
+            models=tuple(map(_model, children(node, "model"))),
         )
 
     def terminal(self, node: Node, place: "shapes.Place") -> Terminal:
@@ -257,3 +270,10 @@ class _Reader:
         through = frozenset(self.layers) if kind == "thru_hole" else layers
         copper = Copper("pad", net, through, shapes.pad(node, at), 0.0, drill)
         return Terminal(number, net, at, copper, drill)
+
+
+def _model(node: Node) -> Model:
+    places = (
+        numbers(child(child(node, name) or [], "xyz")) for name in ("offset", "scale", "rotate")
+    )
+    return Model(str(node[1]), *places)

@@ -126,7 +126,6 @@ def _socket(
     nets: tuple[tuple[str, str], ...],
     y_mm: float,
 ) -> Component:
-    shape = footprints.row("PinSocket", strip.ways, strip.pitch_mm, strip.pad_mm, strip.drill_mm)
     return Component(
         ref=ref,
         kind="socket",
@@ -134,7 +133,7 @@ def _socket(
         part=strip.order_number,
         manufacturer=strip.manufacturer,
         lcsc=strip.lcsc,
-        footprint=footprints.raised(shape, strip.height_mm),
+        footprint=footprints.socket(strip),
         x_mm=0.0,
         y_mm=y_mm,
         angle_deg=0.0,

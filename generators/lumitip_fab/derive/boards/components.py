@@ -15,7 +15,8 @@ Nets = tuple[tuple[str, str], ...]
 def strip(
     ref: str, value: str, entry: Strip, at: Point, nets: tuple[str, ...], pins: tuple[str, ...]
 ) -> Component:
-    """Two rows of contacts, counter-clockwise from the lower left."""
+    """Two rows of contacts, counter-clockwise from the lower left; a plug goes into a box header
+    from the nearer end of the board."""
     return Component(
         ref=ref,
         kind="header",
@@ -23,7 +24,7 @@ def strip(
         part=entry.order_number,
         manufacturer=entry.manufacturer,
         lcsc=entry.lcsc,
-        footprint=footprints.rows("Header", entry),
+        footprint=footprints.rows("Header", entry, "north" if at[1] > 0 else "south"),
         x_mm=at[0],
         y_mm=at[1],
         angle_deg=0.0,

@@ -114,18 +114,24 @@ def _moved(box: Box, by: Point) -> Box:
     )
 
 
-def _room(device: Component, board_at: Point) -> Box:
-    """Room round the body of a part, more than a fit of the printer is."""
+def _room(device: Component, board_at: Point, body: Box | None = None) -> Box:
+    """Room round a part's body, or its shroud: more than a fit of the printer is."""
     at = (device.x_mm + board_at[0], device.y_mm + board_at[1])
-    return _moved(device.footprint.body, at).grown(AROUND_MM)
+    return _moved(body or device.footprint.body, at).grown(AROUND_MM)
 
 
 def _openings(headers: list[Component], board_at: Point, radius_mm: float) -> tuple[Box, ...]:
-    """One on each side: from the middles of its headers and wire pads out through the wall."""
+    """One on each side: from the middles of its headers and wire pads out through the wall, as wide
+    as they and the headers' shrouds."""
     openings = []
     for side in (-1, 1):
         here = [d for d in headers if side * (d.y_mm + board_at[1]) > 0]
         rooms = [_room(header, board_at) for header in here]
+        rooms += [
+            _room(header, board_at, header.footprint.shroud.box)
+            for header in here
+            if header.footprint.shroud
+        ]
         if not here:
             continue
         start = min(side * (header.y_mm + board_at[1]) for header in here)

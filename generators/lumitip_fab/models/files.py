@@ -1,0 +1,65 @@
+"""STEP files of all packages: what the boards' files refer to."""
+
+from collections.abc import Iterable, Iterator
+
+from build123d import Compound
+
+from lumitip_fab.design import Design, Footprint, footprints
+from lumitip_fab.design.pcb import MODELS
+from lumitip_fab.errors import BuildError
+from lumitip_fab.models import chips, connectors, leaded
+from lumitip_fab.models.shapes import Named
+from lumitip_fab.parts import export
+from lumitip_fab.pipeline.artefact import Artefact
+
+_Held = tuple[str, Footprint]
+"""Kind of a part, and its footprint."""
+
+
+def model_files(design: Design) -> tuple[Artefact, ...]:
+    """A STEP file for each package, in its footprint's frame: z up from the board.
+
+    Raises:
+        BuildError: if two packages of one name have bodies of different sizes.
+    """
+    return tuple(
+        Artefact(f"{MODELS}/{shape.model}", _step(kind, shape), frame="")
+        for kind, shape in _different(footprints.of_design(design))
+    )
+
+
+def _different(held: Iterable[_Held]) -> Iterator[_Held]:
+    """Each package once, by the name of its file."""
+    known: dict[str, _Held] = {}
+    for kind, shape in held:
+        if not shape.model:
+            continue
+        _, first = known.setdefault(shape.model, (kind, shape))
+        if (first.body, first.height_mm) != (shape.body, shape.height_mm):
+            raise BuildError(
+                f"two packages are called {shape.name}, with bodies of {_size(first)} and "
+                f"{_size(shape)} mm; give both the same body_mm in parts/*.toml, or sizes that "
+                "differ by 0.1 mm or more"
+            )
+    yield from (known[name] for name in sorted(known))
+
+
+def _size(shape: Footprint) -> str:
+    body = shape.body
+    return f"{body.width_mm:g} x {body.length_mm:g} x {shape.height_mm:g}"
+
+
+def _step(kind: str, shape: Footprint) -> bytes:
+    makers = {
+        "chip": lambda: chips.chip(kind, shape),
+        "array": lambda: chips.array(shape),
+        "module": lambda: chips.module(shape),
+        "leaded": lambda: leaded.leaded(shape),
+        "socket": lambda: connectors.socket(shape),
+        "header": lambda: connectors.header(shape),
+        "springs": lambda: connectors.springs(shape),
+        "box header": lambda: connectors.box_header(shape),
+    }
+    bodies: tuple[Named, ...] = makers[shape.form]()
+    name = shape.model.removesuffix(".step")
+    return export.step(Compound(children=[body.shape() for body in bodies]), name)

@@ -1,0 +1,73 @@
+"""Courtyards in KiCad's file: the usual widths, less where parts are near; they never overlap."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from itertools import combinations
+
+import pytest
+
+from lumitip_fab.boards.courtyards import CONTACTS_MM, PART_MM, land, with_courtyards
+from lumitip_fab.boards.files import _placement
+from lumitip_fab.boards.model import Placement
+from lumitip_fab.boards.placed import courtyard
+from lumitip_fab.boards.placement import place
+from lumitip_fab.design import Box, Design
+
+
+def boards_of(design: Design) -> dict[str, Placement]:
+    auxiliary = {
+        board.name: _placement(design.title, design.reading, board, design.rules)
+        for board in design.auxiliary_boards
+    }
+    return {finger.name: place(design, finger) for finger in design.fingers} | auxiliary
+
+
+def around_mm(outer: Box, inner: Box) -> float:
+    return min(
+        inner.x_min_mm - outer.x_min_mm,
+        outer.x_max_mm - inner.x_max_mm,
+        inner.y_min_mm - outer.y_min_mm,
+        outer.y_max_mm - inner.y_max_mm,
+    )
+
+
+def overlap(a: Box, b: Box) -> bool:
+    beside = max(b.x_min_mm - a.x_max_mm, a.x_min_mm - b.x_max_mm)
+    return max(beside, b.y_min_mm - a.y_max_mm, a.y_min_mm - b.y_max_mm) <= 0
+
+
+@pytest.mark.parametrize("preset", ["published", "dense", "integrated", "mux16"])
+def test_courtyards_are_apart_and_never_less_than_placement_had(
+    designs: Callable[[str], Design], preset: str
+) -> None:
+    for name, board in boards_of(designs(preset)).items():
+        drawn = with_courtyards(board).components
+        for before, after in zip(board.components, drawn, strict=True):
+            assert around_mm(after.courtyard, before.courtyard) > -0.002, (name, after.ref)
+        yards = [(part.side, part.ref, courtyard(part)) for part in drawn]
+        for (side, one, here), (other_side, other, there) in combinations(yards, 2):
+            assert side != other_side or not overlap(here, there), (name, one, other)
+
+
+def test_courtyards_have_the_usual_width_where_there_is_room(
+    designs: Callable[[str], Design],
+) -> None:
+    boards = boards_of(designs("published"))
+    flange = {part.ref: part for part in with_courtyards(boards["flange"]).components}
+    header, resistor = flange["J3"], flange["R2"]
+    assert around_mm(header.courtyard, header.footprint.shroud.box) == pytest.approx(CONTACTS_MM)
+    assert around_mm(resistor.courtyard, land(resistor.footprint)) == pytest.approx(PART_MM)
+
+
+def test_a_shroud_over_another_part_is_left_out(designs: Callable[[str], Design]) -> None:
+    board = boards_of(designs("published"))["flange"]
+    header = next(part for part in board.components if part.ref == "J3")
+    under = replace(
+        next(part for part in board.components if part.ref == "R2"),
+        x_mm=header.x_mm,
+        y_mm=header.y_mm + 5.0,
+    )
+    parts = tuple(under if part.ref == "R2" else part for part in board.components)
+    drawn = {p.ref: p for p in with_courtyards(replace(board, components=parts)).components}
+    assert not overlap(courtyard(drawn["J3"]), courtyard(drawn["R2"]))
+    assert drawn["J2"].courtyard.y_min_mm == pytest.approx(-12.51)
