@@ -50,7 +50,7 @@ def test_the_flanges_safety_is_told_as_an_estimate(outputs: Path) -> None:
     layers, heads = (
         rows[name] for name in ("safety of the flange's layers", "... right under its bolts' heads")
     )
-    assert (float(layers.computed), float(heads.computed)) == pytest.approx((12.7, 3.4), abs=0.11)
+    assert (float(layers.computed), float(heads.computed)) == pytest.approx((10.5, 3.4), abs=0.11)
     for row in (layers, heads):
         assert "5.9 kg of gripper and payload" in row.reason
         assert "an estimate, not tested" in row.reason

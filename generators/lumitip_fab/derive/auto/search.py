@@ -10,7 +10,7 @@ from annotated_types import Ge, Gt, Le, Lt
 from lumitip_fab.config.automatic import FIELDS
 from lumitip_fab.config.parameters import Parameters
 from lumitip_fab.derive.auto.judge import Rule, Verdict, judge_with
-from lumitip_fab.derive.auto.starts import lowest_ma
+from lumitip_fab.derive.auto.strings import lowest_ma
 from lumitip_fab.derive.wiring.ratings import sold_ohm
 
 DECIMALS = 4

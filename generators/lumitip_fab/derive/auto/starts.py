@@ -1,5 +1,4 @@
-"""First values of automatic fields: formulas, catalogue choices, and current, strings and
-resistors of the LEDs together."""
+"""First values of automatic fields: formulas and catalogue choices."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -7,168 +6,18 @@ from collections.abc import Callable, Iterator
 from lumitip.grid import column_pitch_mm
 from lumitip_fab.config.automatic import FIELDS, Value
 from lumitip_fab.config.load import Input
+from lumitip_fab.derive.auto.strings import choose_strings
 from lumitip_fab.derive.boards.module import MOST_WIRES
 from lumitip_fab.derive.boards.packages import LEAST_RING_MM
 from lumitip_fab.derive.finger.stack import is_flex
 from lumitip_fab.derive.wiring.ratings import (
     SUPPLY_TOLERANCE,
-    String,
-    lengths,
-    longest_string,
     sold_ohm,
-    string_of,
 )
-from lumitip_fab.derive.wiring.wiring import string_problems
-
-CURRENT_STEP = 0.95  # from one current that is tried to the next
-SATURATION_MARGIN = 1.5  # light current at a bare cell, times what saturates its pull-up
-MOST_PULL_UP_OHM = 150e3  # a channel settles that much slower
-SHARED_OHM = 75e3  # the published one
-MOST_OWN_INPUTS = 16  # of a multiplexer with a pull-up for each
-
-
-def choose_strings(config: Input) -> Iterator[tuple[str, Value, str]]:
-    """Automatic values of current, LEDs of a string, resistor and pull-up. Where no combination
-    passes, the one that breaks the fewest rules."""
-    for current in _currents(config):
-        for resistor in _resistors(config):
-            for longest in _lengths(config):
-                tried = config.with_values(
-                    {"emitter.current_ma": current, "emitter.resistor": resistor}
-                )
-                found = _strings(tried, longest)
-                if not any(string_problems(tried, found)):
-                    yield from _proposals(tried, longest)
-                    return
-    least = min(_currents(config), default=config.parameters.emitter.current_ma)
-    candidates = [
-        (config.with_values({"emitter.current_ma": least, "emitter.resistor": resistor}), longest)
-        for resistor in _resistors(config)
-        for longest in _lengths(config)
-    ]
-    if candidates:
-        yield from _proposals(*min(candidates, key=_broken))
-
-
-def _broken(candidate: tuple[Input, int]) -> int:
-    return len(list(string_problems(candidate[0], _strings(*candidate))))
-
-
-def _strings(config: Input, longest: int) -> tuple[String, ...]:
-    cells, current = sum(config.parameters.grid.columns), config.parameters.emitter.current_ma
-    by_length = {n: string_of(config, n, current) for n in set(lengths(cells, longest))}
-    return tuple(by_length[n] for n in lengths(cells, longest))
-
-
-def _proposals(config: Input, longest: int) -> Iterator[tuple[str, Value, str]]:
-    p = config.parameters
-    strings = _strings(config, longest)
-    package = config.parts.emitter.resistor
-    load, volts = max(s.high_load_w for s in strings), p.supply.voltage_v
-    full = float(FIELDS["emitter.current_ma"].start)
-    reason = "current of the published sensor"
-    if p.emitter.current_ma < full:
-        reason = (
-            f"less than {full:g} mA: {len(strings)} strings from {volts:g} V keep to "
-            f"supply.max_ma, emitter.max_heat_w = {p.emitter.max_heat_w:g} and their resistors"
-        )
-    if "receiver.pull_up_ohm" not in config.automatic and p.emitter.current_ma < _least_ma(
-        config, p.receiver.pull_up_ohm
-    ):
-        reason += "; a bare cell just saturates its pull-up, without a margin"
-    yield "emitter.current_ma", p.emitter.current_ma, reason
-    yield (
-        "emitter.string_leds",
-        max(lengths(sum(p.grid.columns), longest)),
-        f"{len(strings)} strings: as few as {volts:g} V and the resistors allow",
-    )
-    yield (
-        "emitter.resistor",
-        p.emitter.resistor,
-        f"takes up to {1000 * load:.0f} mW over all tolerances, rated {1000 * package.power_w:.0f}",
-    )
-    start = SHARED_OHM if p.receiver.load == "shared" else _own_ohm()
-    factor = _least_ma(config, start) / p.emitter.current_ma
-    ohm = start if factor <= 1 else sold_ohm(min(start * factor, MOST_PULL_UP_OHM))
-    reason = f"a bare cell saturates it at {p.emitter.current_ma:g} mA"
-    if p.emitter.current_ma * SATURATION_MARGIN < _least_ma(config, ohm):
-        reason = (
-            f"with more than {MOST_PULL_UP_OHM:g} a channel settles too slowly; at "
-            f"{p.emitter.current_ma:g} mA a bare cell does not saturate it"
-        )
-    yield "receiver.pull_up_ohm", ohm, reason
-
-
-def _currents(config: Input) -> Iterator[float]:
-    """From the published current, or the LED's largest, down to what the detectors need."""
-    p = config.parameters
-    if "emitter.current_ma" not in config.automatic:
-        yield p.emitter.current_ma
-        return
-    full = float(FIELDS["emitter.current_ma"].start)
-    least = least_current_ma(config)
-    current = full
-    while current >= least:
-        yield round(current, 1)
-        current *= CURRENT_STEP
-
-
-def least_current_ma(config: Input) -> float:
-    """LED current with which a bare cell just saturates. Currents are tried from the largest down,
-    so that the margin is given up only where supply or heat leaves no more."""
-    ohm = config.parameters.receiver.pull_up_ohm
-    if "receiver.pull_up_ohm" in config.automatic:
-        ohm = MOST_PULL_UP_OHM
-    return _least_ma(config, ohm) / SATURATION_MARGIN
-
-
-def lowest_ma(config: Input) -> float:
-    """Lowest current that a search may choose; 0 where the file sets the current."""
-    if "emitter.current_ma" not in config.automatic:
-        return 0.0
-    return _least_ma(config, config.parameters.receiver.pull_up_ohm) / SATURATION_MARGIN
-
-
-def _least_ma(config: Input, ohm: float) -> float:
-    """LED current with which a bare cell saturates a pull-up, with a margin.
-
-    The catalogue's `light_current_ua` is for the published current.
-    """
-    p, parts = config.parameters, config.catalogue
-    detector = parts.photodetectors[p.receiver.photodetector]
-    supply_v = parts.controllers[p.controller.board].supply_v
-    saturated_ua = 1e6 * (supply_v - detector.saturation_v) / ohm
-    full = float(FIELDS["emitter.current_ma"].start)
-    return full * SATURATION_MARGIN * saturated_ua / detector.light_current_ua
-
-
-def _resistors(config: Input) -> Iterator[str]:
-    """Packages from small to large."""
-    if "emitter.resistor" not in config.automatic:
-        yield config.parameters.emitter.resistor
-        return
-    known = config.catalogue.resistors
-    yield from sorted(known, key=lambda name: math.prod(known[name].body_mm[:2]))
-
-
-def _lengths(config: Input) -> Iterator[int]:
-    """Lengths of the longest string to try, in descending order."""
-    longest = longest_string(config)
-    if "emitter.string_leds" not in config.automatic:
-        longest = min(longest, config.parameters.emitter.string_leds)
-        if longest:
-            yield longest
-        return
-    cells, before = sum(config.parameters.grid.columns), 0
-    for most in range(longest, 0, -1):
-        count = math.ceil(cells / most)
-        if count != before:
-            yield most
-        before = count
-
 
 Proposal = tuple[str, Value, str]
 
+MOST_OWN_INPUTS = 16  # of a multiplexer with a pull-up for each
 LINES_PER_WALL = 1.2  # slicers print a wall from there on with lines of variable width
 FINE_MM = {"track": 0.15, "gap": 0.15, "via": 0.45, "drill": 0.2}
 """Copper for dense boards, which common PCB fabs make without extra cost."""
@@ -282,10 +131,6 @@ def _load(config: Input) -> Iterator[Proposal]:
         yield "receiver.load", "shared", f"more than {MOST_OWN_INPUTS} inputs of a multiplexer"
     else:
         yield "receiver.load", "each", "a reading settles in the dark as well"
-
-
-def _own_ohm() -> float:
-    return float(FIELDS["receiver.pull_up_ohm"].start)
 
 
 def _vias(config: Input) -> Iterator[Proposal]:
