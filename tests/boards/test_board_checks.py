@@ -290,11 +290,22 @@ def test_the_boards_exchanged(damaged_boards: Path) -> None:
     assert {"cells", "channels", "strings"} <= failing(damaged_boards, "board")
 
 
+def pull_ups_lost(text: str) -> str:
+    """No part is a resistor by its reference."""
+    hurt, count = re.subn(r'((?:"Reference"|reference) ")R', r"\g<1>X", text)
+    assert count
+    return hurt
+
+
+def test_a_receiver_without_pull_ups_never_settles(damaged_boards: Path) -> None:
+    assert {"service", "settling"} <= hurt(damaged_boards, RECEIVER, pull_ups_lost)
+
+
 def test_every_check_fails_for_some_damage(boards: Callable[[str], Path]) -> None:
     folder = boards("small")
     design = read_design(folder / "design.json")
     found = list(board.measure(folder, design))
     assert [m for m in found if not m.passed] == []
     names = {m.check.removeprefix("board.") for m in found if m.subject in (EMITTER, RECEIVER)}
-    tables = (*EMITTER_DAMAGES.values(), *RECEIVER_DAMAGES.values(), {"readable"})
+    tables = (*EMITTER_DAMAGES.values(), *RECEIVER_DAMAGES.values(), {"readable", "settling"})
     assert names == set().union(*tables)

@@ -104,12 +104,39 @@ def test_passives_stand_beside_their_multiplexer_at_its_leads(
         parts = {part.ref: part for part in placement.components}
         zone = next(z.box for z in finger.zones if z.name == "parts")
         mux = design.packages.multiplexer
+        own = design.wiring.own_pull_ups
+        served = [("C", "1", mux.supply)] + ([] if own else [("R", "2", mux.output)])
+        farthest_mm = 3.6 + (design.packages.array.over_pads_mm[1] if own else 0.0)
         for i in range(1, design.wiring.muxes + 1):
-            for ref, pad, lead in ((f"C{i}", "1", mux.supply), (f"R{i}", "2", mux.output)):
-                near = math.dist(pad_at(parts[ref], pad), pad_at(parts[f"U{i}"], str(lead)))
-                assert near < 3.6, (preset, ref)
-                land = courtyard(parts[ref]).grown(-design.rules.part_gap_mm / 2)
+            for letter, pad, lead in served:
+                part = parts[f"{letter}{i}"]
+                near = math.dist(pad_at(part, pad), pad_at(parts[f"U{i}"], str(lead)))
+                assert near < farthest_mm, (preset, part.ref)
+                land = courtyard(part).grown(-design.rules.part_gap_mm / 2)
                 assert _box(zone.grown(1e-6)).contains(_box(land))
+
+
+def test_arrays_of_pull_ups_stand_beside_the_multiplexer_that_they_serve(
+    boards: dict[tuple[str, str], Placed],
+) -> None:
+    with_arrays = [p for p in PRESETS if boards[p, "receiver"][0].wiring.own_pull_ups]
+    assert with_arrays
+    for preset in with_arrays:
+        design, finger, placement = boards[preset, "receiver"]
+        zone = next(z.box for z in finger.zones if z.name == "parts")
+        arrays = _parts(placement, "resistor array")
+        channels = {n for u in _parts(placement, "multiplexer") for _, n in u.nets}
+        assert arrays
+        for array in arrays:
+            cells = {net for _, net in array.nets} - {"3V3"}
+            (mux,) = [
+                u for u in _parts(placement, "multiplexer") if cells <= {n for _, n in u.nets}
+            ]
+            assert cells <= channels
+            gap = _box(courtyard(array)).distance(_box(courtyard(mux)))
+            assert gap < 2 * design.rules.part_gap_mm, (preset, array.ref)
+            land = courtyard(array).grown(-design.rules.part_gap_mm / 2)
+            assert _box(zone.grown(1e-6)).contains(_box(land))
 
 
 def test_neighbours_of_a_string_face_each_other(boards: dict[tuple[str, str], Placed]) -> None:
@@ -244,7 +271,7 @@ def test_a_title_without_room_is_refused_with_the_numbers(
     boards: dict[tuple[str, str], Placed],
 ) -> None:
     design, finger, _ = boards["asymmetric", "emitter"]
-    title = dataclasses.replace(design.title, name="W" * 80)
+    title = dataclasses.replace(design.title, revision="W" * 80)
     with pytest.raises(
         BuildError, match=r"the title on the back, .* mm high and \d+\.\d\d mm long"
     ):

@@ -63,7 +63,8 @@ _POUR_BETWEEN_MM = 2 * THERMAL_GAP_MM + MIN_WIDTH_MM
 """Wire pad to test point: the ground pour passes between them, so that both get bridges. Where
 tracks are thinner than the pour, the board is crowded and the tracks need the room more."""
 PASSIVE_GAP_MM = 0.6
-"""Multiplexer to the capacitor and pull-up beside it, where there is room."""
+"""Multiplexer to the capacitor and pull-up beside it, where there is room. With arrays of pull-ups
+between them the capacitor is as near as it can be."""
 _NOISE_MM = 1e-6
 
 
@@ -209,7 +210,8 @@ def _beside(
             f"{mux.name}, {room_mm:.2f} mm is there: widen the board (board.side_margin_mm) "
             "or choose a smaller package"
         )
-    gap = min(PASSIVE_GAP_MM, spare / 2)
+    arrays_between = between[1] < mux.box.x_min_mm - _NOISE_MM
+    gap = rules.part_gap_mm if arrays_between else min(PASSIVE_GAP_MM, spare / 2)
     reach = (mux.size_y_mm - yard.width_mm) / 2
     at = (between[1] - gap - yard.length_mm / 2, mux.y_mm + (reach if up else -reach))
     parts[part.ref] = _at(part, at, angle_deg=angle_deg)

@@ -47,7 +47,7 @@ def _strings(config: Input, strings: wiring.Strings) -> Strings:
 
 
 COUNTS, SETTLED_COUNTS = 255, 0.5
-WAIT_SHARE = 0.65
+WAIT_SHARE = 0.66
 """Of the bound in `_wait_us`: ngspice finds at most 0.6 of it, over steps of light and the spread
 of gain and capacitance."""
 
