@@ -196,7 +196,7 @@ def test_figures_are_those_of_the_design(config: Input) -> None:
     needed = bill(config, design)
     assert needed["15406085BA300"] == needed["SML-H10TBT86"] == 32
     assert needed["74HC4051PW"] == needed["100nF 0603"] == 4
-    assert (needed["1206"], needed["0603"]) == (len(design.wiring.strings), 4)
+    assert (needed["1206"], needed["4x0603"]) == (len(design.wiring.strings), 32 / 4)
     free = prices.model_copy(update={"each": {**prices.each, "15406085BA300": 0.0}})
     led = prices.each["15406085BA300"]
     assert cost(config, design, prices) - cost(config, design, free) == pytest.approx(32 * led)

@@ -60,6 +60,8 @@ CHANGES: dict[str, Any] = {
     "emitter.resistor_side": "front",
     "receiver.photodetector": "generic 0603 phototransistor",
     "receiver.multiplexer": "74HC4067PW",
+    "receiver.load": "each",
+    "receiver.array": "other",
     "receiver.pull_up_ohm": 68e3,
     "receiver.resistor": "0805",
     "receiver.capacitor": "other",
@@ -135,8 +137,11 @@ WITH: dict[str, dict[str, Any]] = {
     "stack.film_mm": {"mask.film": "thick"},
     "emitter.string_leds": {"emitter.current_ma": 5.0},
 }
-# What a section only does something with.
-ONLY_WITH: dict[str, dict[str, Any]] = {"module": {"controller.board": "nrf52840_module"}}
+# What a section or a field only does something with.
+ONLY_WITH: dict[str, dict[str, Any]] = {
+    "module": {"controller.board": "nrf52840_module"},
+    "receiver.array": {"receiver.load": "each"},
+}
 # Limits that only refuse; changing them leaves the design as it is.
 LIMITS: dict[str, Any] = {"supply.max_ma": 400.0, "emitter.max_heat_w": 1.9}
 # Only one value is allowed so far.
@@ -161,6 +166,7 @@ def published(inputs: dict[str, Input]) -> Input:
     parts = given.catalogue
     more = {
         "leds": ("15406085BA300", {"exponent": 2.0}),
+        "resistor_arrays": ("4x0603", {"order_number": "other"}),
         "capacitors": ("100nF 0603", {"capacitance_nf": 220.0}),
         "films": ("TPU 100um", {"soften_c": 80.0}),
         "couplings": ("Robotiq I/O", {"bolt_hole_mm": 5.5}),
@@ -214,7 +220,7 @@ def test_these_tests_cover_every_field() -> None:
 def test_a_changed_value_changes_the_design_and_its_parameters_hash(
     published: Input, before: Design, vary: Any, field: str
 ) -> None:
-    if only_with := ONLY_WITH.get(field.partition(".")[0]):
+    if only_with := ONLY_WITH.get(field) or ONLY_WITH.get(field.partition(".")[0]):
         published = vary(published, only_with)
         before = derive(published)
     after = derive(vary(published, {field: CHANGES[field], **WITH.get(field, {})}))
