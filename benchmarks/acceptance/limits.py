@@ -14,6 +14,7 @@ PAGE_MM = (210.0 - 16 - 30, 279.4 - 16 - 50)  # for the mask: less margins, rule
 COVER_MM = 0.3  # silicone over the tallest part
 BETWEEN_PADS_MM = 0.25
 FINEST_MM = 0.125  # tracks and gaps at the usual price
+FINEST_BENDING_MM, BENDING_LANE_USE, GROUND_LINES = 0.15, 0.9, 1
 CHANNEL_MM, CONNECTOR_MM, END_MM = 2.2, 2.3, 1.9
 STEP_DOWN_V = 1.0
 MODULE_WIRES = 9
@@ -145,7 +146,13 @@ def _land_patterns(values: Values) -> Iterator[str]:
 
 def _lines(values: Values) -> Iterator[str]:
     most = values["grid.pitch_mm"] * math.sqrt(3) / 2 / (2 * FINEST_MM)
-    if len(values.columns) > 1 and max(values.columns) > most:
+    if values["backing.variant"] == "flex":
+        detector = values.part("receiver.photodetector", "photodetectors")
+        lane = values["grid.pitch_mm"] * math.sqrt(3) / 2 - (
+            min(over_pads_mm(detector)) if detector else 0.0
+        )
+        most = BENDING_LANE_USE * lane / (2 * FINEST_BENDING_MM) - GROUND_LINES
+    if len(values.columns) > 1 and max(values.columns) > most + 1e-9:
         yield f"lines: {max(values.columns)} cells in a column, room for {most:.1f} lines"
 
 

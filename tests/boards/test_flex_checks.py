@@ -43,6 +43,15 @@ def without_teardrops(text: str) -> str:
     return hurt
 
 
+def multiplexer_in_the_bend(text: str) -> str:
+    """The line from which the board bends, and with it the drawn zone, down to a multiplexer."""
+    return once(
+        text,
+        r'(\(gr_rect \(start \S+ \S+\) \(end \S+ )(\S+)\)(.* \(layer "User.2"\))',
+        lambda m: f"{m[1]}{float(m[2]) + 9:g}){m[3]}",
+    )
+
+
 TEXTS: dict[str, tuple[Callable[[str], str], set[str]]] = {
     "thick core": (lambda t: once(t, r"\(thickness 0.109\)", "(thickness 0.2)"), {"stack_up"}),
     "FR-4": (
@@ -62,6 +71,7 @@ TEXTS: dict[str, tuple[Callable[[str], str], set[str]]] = {
         ),
         {"regions"},
     ),
+    "multiplexer in the bend": (multiplexer_in_the_bend, {"regions", "held"}),
     "stiffener too wide": (
         lambda t: once(
             t,
@@ -81,7 +91,7 @@ NOTES = {
     "thickness": ("0.2 mm thick", "1.6 mm thick"),
     "stiffener": ("x -11.503", "x -12.503"),
     "its thickness": ("Stiffener of polyimide, 0.2", "Stiffener of polyimide, 0.3"),
-    "bend": ("where y is above -6.850", "where y is above 6.850"),
+    "bend": ("where y is above -7.950", "where y is above 6.850"),
     "its drawing": ("receiver-User_1.gbr", "receiver-Edge_Cuts.gbr"),
 }
 

@@ -31,6 +31,7 @@ def measure_flexible(read: Read) -> Iterator[Measurement]:
     yield _stack_up(read)
     yield from _regions(read, flexible)
     yield _bend(read, flexible)
+    yield _held(read)
     yield from _teardrops(read, flexible)
 
 
@@ -76,6 +77,21 @@ def _bend(read: Read, flexible: Flexible) -> Measurement:
         if t.copper is not None and t.drill_mm and t.copper.area.intersects(bend)
     ]
     return read.figure("bend", len(holes) + len(plated), 0, 0, "vias and plated holes")
+
+
+def _held(read: Read) -> Measurement:
+    """How far parts that are not at the cells are from the bend, where their joints would break."""
+    bend = read.board.regions.get(_BEND, shapely.Point())
+    bends = (read.finger.cells_hold.letter, "FID")
+    apart = [
+        (t.copper.area.bounds[1] - bend.bounds[3], part.ref)
+        for part in read.board.parts
+        if part.ref.rstrip("0123456789") not in bends and not bend.is_empty
+        for t in part.terminals
+        if t.copper is not None
+    ]
+    least, ref = min(apart, default=(np.nan, "no part"))
+    return read.figure("held", least, 0, np.inf, note=f"from the bend to {ref}")
 
 
 def _teardrops(read: Read, flexible: Flexible) -> Iterator[Measurement]:

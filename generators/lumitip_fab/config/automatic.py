@@ -43,7 +43,7 @@ FIELDS: dict[str, Automatic] = {
     "backing.density_g_ml": Automatic(1.27, "density of backing.material"),
     "backing.tail_mm": Automatic(1.5, "coupling and plate", 0.1),
     "backing.relief_clearance_mm": Automatic(0.8, "room beside the coupling", 0.05),
-    "flex.interface_mm": Automatic(26.0, "land and ramp of the gripper", 0.5),
+    "flex.interface_mm": Automatic(26.0, "multiplexers, land and ramp of the gripper", 0.5),
     "flex.standoff_mm": Automatic(2.0, "plate and nose of the gripper", 0.1),
     "flex.groove_mm": Automatic(1.5, "printer's line", 0.05),
     "flex.groove_depth_mm": Automatic(0.75, "plate", 0.05),

@@ -76,6 +76,11 @@ HISTORY_REACH = 1  # nodes round it
 SWEEP = 20  # rounds after which all nets are routed anew,
 SWEEP_SHARE = 0.12  # while more than this share of them is in conflict
 WIDER_MM = 0.1  # wider searches with each round
+STUCK = 20
+"""Rounds without progress, after which a net is to take any way that is left, however far round:
+where a board bends, two nets cannot cross each other, and the way round may be as long as it."""
+STUCK_PRICE = 1000.0
+STUCK_WIDER_MM = 2.0
 DEAR = 1e5  # price that no net pays when another way is left
 PATIENCE = 60  # rounds without progress, before the router gives up
 POLISHES = 2
@@ -113,10 +118,11 @@ def negotiate(state: State, nets: list[Wanted], pressure: Pressure) -> tuple[int
             stamps.remember(
                 nodes, state.history, state.marked[0], state.turn, pressure.history, HISTORY_REACH
             )
+        stuck = turn - best > STUCK
         weights = dataclasses.replace(
             weights,
-            price=min(weights.price * pressure.growth, TOP_PRICE),
-            margin_mm=weights.margin_mm + WIDER_MM,
+            price=min(weights.price * pressure.growth, STUCK_PRICE if stuck else TOP_PRICE),
+            margin_mm=weights.margin_mm + (STUCK_WIDER_MM if stuck else WIDER_MM),
         )
         sweep = turn % SWEEP == 0 and len(fought) > SWEEP_SHARE * len(nets)
         for net in (n for n in nets if sweep or n.name in fought):

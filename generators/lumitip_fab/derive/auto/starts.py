@@ -3,12 +3,12 @@
 import math
 from collections.abc import Callable, Iterator
 
-from lumitip.grid import column_pitch_mm
 from lumitip_fab.config.automatic import FIELDS, Value
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.auto.strings import choose_strings
 from lumitip_fab.derive.boards.module import MOST_WIRES
 from lumitip_fab.derive.boards.packages import LEAST_RING_MM
+from lumitip_fab.derive.finger.cells import lane_of
 from lumitip_fab.derive.finger.stack import is_flex
 from lumitip_fab.derive.wiring.ratings import (
     SUPPLY_TOLERANCE,
@@ -100,8 +100,7 @@ def _copper(config: Input) -> Iterator[Proposal]:
     p, parts = config.parameters, config.catalogue
     columns = p.grid.columns
     detector = parts.photodetectors[p.receiver.photodetector]
-    lane = column_pitch_mm(p.grid.pitch_mm) - min(detector.over_pads_mm)
-    lines = max(columns)
+    lines, lane = lane_of(p, detector)
     needed = lines * (p.board.track_mm + p.board.copper_gap_mm)
     if needed <= LANE_USE * lane or max(columns) <= 1:
         return

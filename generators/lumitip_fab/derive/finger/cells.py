@@ -1,5 +1,6 @@
 """The cells of the grid, and the orientation of LEDs and photodetectors at them."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,6 +9,7 @@ from lumitip.grid import Floats, Integers, column_pitch_mm, hexagonal_grid, hexa
 from lumitip_fab.catalogue.electronics import Chip
 from lumitip_fab.config.parameters import Parameters
 from lumitip_fab.derive.diagnostics import Diagnostics
+from lumitip_fab.derive.finger.stack import is_flex
 
 LEAST_CELLS = 3
 MOST_CELLS = 4096
@@ -55,11 +57,47 @@ def derive_cells(p: Parameters, faults: Diagnostics) -> Cells:
     return Cells(x_mm, y_mm, grid.column, grid.row, neighbours)
 
 
+GROUND_LINES = 1
+BENDING_LANE_USE = 0.9
+"""Share of the lane between two columns that tracks can fill where a board bends."""
+
+
+def lane_of(p: Parameters, detector: Chip) -> tuple[int, float]:
+    """Tracks that leave a column between it and the next, and the width that they have (mm).
+
+    Where a board bends it has no vias: detectors are on its front, and so are all their tracks and
+    ground.
+    """
+    lines = max(p.grid.columns) + (GROUND_LINES if is_flex(p) else 0)
+    return lines, column_pitch_mm(p.grid.pitch_mm) - min(detector.over_pads_mm)
+
+
+def refuse_lines(p: Parameters, detector: Chip, faults: Diagnostics) -> None:
+    """Refuse columns whose tracks have no room beside them on the front of a flexible board."""
+    lines, lane = lane_of(p, detector)
+    step = p.board.track_mm + p.board.copper_gap_mm
+    if not is_flex(p) or len(p.grid.columns) == 1 or lines * step <= BENDING_LANE_USE * lane:
+        return
+    most = max(math.floor(BENDING_LANE_USE * lane / step) - GROUND_LINES, 0)
+    least_mm = (lines * step / BENDING_LANE_USE + min(detector.over_pads_mm)) * 2 / math.sqrt(3)
+    faults.refuse(
+        "grid.columns",
+        f"has {max(p.grid.columns)} cells in a column. Where the board bends there are no vias: "
+        f"tracks of {p.board.track_mm:g} mm with gaps of {p.board.copper_gap_mm:g} mm leave room "
+        f"for {most} cells in a column at grid.pitch_mm = {p.grid.pitch_mm:g}. A pitch of at least "
+        f"{math.ceil(least_mm * 100 - 1e-6) / 100:.2f} mm is needed",
+    )
+
+
 TRACK_SPACE_MM = 1.5  # between columns, for tracks; with less, parts are turned along y
 
 
-def derive_turned(p: Parameters, field: str, name: str, chip: Chip, faults: Diagnostics) -> bool:
+def derive_turned(
+    p: Parameters, field: str, name: str, chip: Chip, lines: int, faults: Diagnostics
+) -> bool:
     """Whether parts are turned along y; refused where they fit neither way.
+
+    `lines` tracks pass between two columns on one side of the board: there are no vias.
 
     Pad patterns keep a straight lane between columns and between rows, so that tracks pass.
     """
@@ -76,5 +114,6 @@ def derive_turned(p: Parameters, field: str, name: str, chip: Chip, faults: Diag
             f"{gap:g} mm of clearance it needs a pitch of at least {least:.2f} mm, but "
             f"grid.pitch_mm is {pitch:g}",
         )
-    roomy = columns >= along + TRACK_SPACE_MM
+    space = max(TRACK_SPACE_MM, lines * (p.board.track_mm + p.board.copper_gap_mm))
+    roomy = columns >= along + space
     return turned and not (flat and roomy)

@@ -40,29 +40,9 @@ def derive_interfaces(
     half = foot_half_mm(config, finger.notch.x_max_mm)
     end_y = outline.end_y_mm
     groove = Box(-half, half, end_y, end_y + flex.interface_mm)
-    gripper = held_by(config)
-    tilt = math.radians(45 - gripper.tilt_deg)
-    ramp = (gripper.block_back_w_mm - behind_mm(p)) / math.tan(tilt)
-    least = gripper.land_mm + ramp + FLARE_MM
     line_mm = config.parts.printer.profile.line_mm
     letter_mm = most_letter_mm(line_mm)
-    most = outline.length_mm - p.tip.slant_start_mm - 2 * LETTER_GAP_MM - letter_mm
-    needed, room = math.ceil(least * 10) / 10, math.floor(most * 10) / 10
-    limits = (
-        f"at least {needed:g} is needed for the land and ramp of {p.coupling.gripper!r}, and at "
-        f"most {room:g} is allowed before the finger's letter and the wedge"
-    )
-    if most < least:
-        limits = (
-            f"the land and ramp of {p.coupling.gripper!r} need {needed:g} mm, but only "
-            f"{max(room, 0.0):g} mm is available before the finger's letter and the wedge. Make "
-            "the finger longer, or reduce tip.slant_start_mm or flex.standoff_mm."
-        )
-    faults.refuse_unless(
-        least <= flex.interface_mm <= most,
-        "flex.interface_mm",
-        f"is {flex.interface_mm:g}; {limits}",
-    )
+    _refuse_length(config, outline, finger, letter_mm, faults)
     low = groove.y_max_mm + LETTER_GAP_MM - end_y
     back = p.stack.pcb_mm + p.stack.floor_mm
     letter = letter_on(low, low + letter_mm, LETTER_DEPTH_MM, back, line_mm)
@@ -77,6 +57,40 @@ def derive_interfaces(
             flex.thread_hole_mm,
             letter,
         ),
+    )
+
+
+def _refuse_length(
+    config: Input, outline: Outline, finger: Finger, letter_mm: float, faults: Diagnostics
+) -> None:
+    """Refuse an interface that ends before what it must hold, or too near the finger's letter."""
+    p = config.parameters
+    gripper = held_by(config)
+    tilt = math.radians(45 - gripper.tilt_deg)
+    ramp = (gripper.block_back_w_mm - behind_mm(p)) / math.tan(tilt)
+    cells = next(zone.box for zone in finger.zones if zone.name == "cells")
+    # Solder joints of a multiplexer break where the board bends, and tracks need vias before it.
+    holds = {
+        f"for the land and ramp of {p.coupling.gripper!r}": gripper.land_mm + ramp + FLARE_MM,
+        "to hold the multiplexers and the tracks before them": cells.y_min_mm - outline.end_y_mm,
+    }
+    what, least = max(holds.items(), key=lambda item: item[1])
+    most = outline.length_mm - p.tip.slant_start_mm - 2 * LETTER_GAP_MM - letter_mm
+    needed, room = math.ceil(least * 10 - 1e-6) / 10, math.floor(most * 10) / 10
+    limits = (
+        f"at least {needed:g} is needed {what}, and at most {room:g} is allowed before the "
+        "finger's letter and the wedge"
+    )
+    if most < least:
+        limits = (
+            f"{needed:g} mm is needed {what}, but only {max(room, 0.0):g} mm is available before "
+            "the finger's letter and the wedge. Make the finger longer, or reduce "
+            "tip.slant_start_mm or flex.standoff_mm."
+        )
+    faults.refuse_unless(
+        least - 1e-6 <= p.flex.interface_mm <= most,
+        "flex.interface_mm",
+        f"is {p.flex.interface_mm:g}; {limits}",
     )
 
 
