@@ -93,6 +93,10 @@ def _pull_up(random: Random, _: Table, _base: str) -> Table:
     return {"receiver.pull_up_ohm": 1000 * random.choice(E24)}
 
 
+def _load(random: Random, _: Table, _base: str) -> Table:
+    return {"receiver.load": random.choice(("auto", "auto", "shared"))}
+
+
 def _supply(random: Random, _: Table, _base: str) -> Table:
     volts = random.choice((5.0, 9.0, 12.0, 24.0))
     edits: Table = {"supply.voltage_v": volts}
@@ -246,6 +250,7 @@ KINDS = (
     Kind("layers", 3, _layers),
     Kind("optics", 5, _optics),
     Kind("pull-up", 2, _pull_up),
+    Kind("load", 4, _load),
     Kind("supply", 6, _supply),
     Kind("boards", 4, _boards),
     Kind("multiplexer", 3, _entry("receiver.multiplexer", "multiplexers")),
