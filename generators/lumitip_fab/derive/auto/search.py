@@ -14,9 +14,9 @@ from lumitip_fab.derive.auto.strings import lowest_ma
 from lumitip_fab.derive.wiring.ratings import sold_ohm
 
 DECIMALS = 4
-COARSE, FINE = 1, 2
-"""Each trial takes more steps than the last by this fraction of them: all, or one half. A valid
-range may be narrow, such as that of holes for a screw."""
+COARSE, FINE, FINEST = 1, 2, 8
+"""Each trial takes more steps than the last by this fraction of them: all, a half or an eighth. A
+valid range may be narrow, such as that of holes for a screw."""
 
 
 @dataclass(frozen=True)
@@ -246,6 +246,11 @@ def _next(now: Verdict, free: frozenset[str]) -> tuple[Change, str] | None:
                 change = change_of(now, rule, field)
                 if change:
                     return change, problem.message
+    for rule, problem in now.rules.items():
+        if problem.field in free:
+            change = change_of(now, rule, problem.field, FINEST)
+            if change:
+                return change, problem.message
     return None
 
 
