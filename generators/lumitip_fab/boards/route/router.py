@@ -118,7 +118,8 @@ def negotiate(state: State, nets: list[Wanted], pressure: Pressure) -> tuple[int
             stamps.remember(
                 nodes, state.history, state.marked[0], state.turn, pressure.history, HISTORY_REACH
             )
-        stuck = turn - best > STUCK
+        few = len(fought) <= SWEEP_SHARE * len(nets)
+        stuck = few and turn - best > STUCK
         weights = dataclasses.replace(
             weights,
             price=min(weights.price * pressure.growth, STUCK_PRICE if stuck else TOP_PRICE),
