@@ -17,6 +17,7 @@ from lumitip_fab.derive.wiring.ratings import (
 
 Proposal = tuple[str, Value, str]
 
+MOST_SMALL = 8  # of the published multiplexer, which has 8 inputs
 MOST_OWN_INPUTS = 16  # of a multiplexer with a pull-up for each
 LINES_PER_WALL = 1.2  # slicers print a wall from there on with lines of variable width
 FINE_MM = {"track": 0.15, "gap": 0.15, "via": 0.45, "drill": 0.2}
@@ -72,7 +73,8 @@ def _printer(config: Input) -> Iterator[Proposal]:
 def _multiplexer(config: Input) -> Iterator[Proposal]:
     """The published multiplexer where the controller has pins for it, and a module's board room
     for its wires, else one with more inputs; the one with most where there is room for none. Pins
-    with pull-ups count when the others are too few for any."""
+    with pull-ups count when the others are too few for any. Without a limit of pins, the larger one
+    is taken from `MOST_SMALL` on: half as many parts, and tracks between them."""
     p, parts = config.parameters, config.catalogue
     cells, controller = sum(p.grid.columns), parts.controllers[p.controller.board]
     start = str(FIELDS["receiver.multiplexer"].start)
@@ -83,7 +85,8 @@ def _multiplexer(config: Input) -> Iterator[Proposal]:
     for pins in (every - len(controller.pulled_up_ohm), every):
         for name, mux in known:
             needed = math.ceil(cells / mux.channels)
-            read = controller.unlimited_analog_pins or needed <= pins
+            most = MOST_SMALL if name == start else math.inf
+            read = needed <= (most if controller.unlimited_analog_pins else pins)
             wired = not controller.module or POWER_WIRES + len(mux.select) + needed <= MOST_WIRES
             if read and wired and len(mux.select) <= len(controller.select_pins):
                 reason = (
