@@ -80,6 +80,29 @@ def test_every_choice_has_a_value_and_a_reason_in_one_line(file: Any) -> None:
     assert all(c.reason and "\n" not in c.reason for c in design.choices)
 
 
+FLEX = '[stack]\nfloor_mm = 2.0\npcb_mm = 0.2\n[backing]\nvariant = "flex"\nmaterial = "TPU 98A"\n'
+
+
+@pytest.mark.parametrize(("cells", "pitch"), [([3] * 11, 4.0), ([8] * 4, 7.0), ([6, 5] * 3, 6.0)])
+def test_the_interface_of_a_compliant_finger_holds_its_multiplexers(
+    file: Any, cells: list[int], pitch: float
+) -> None:
+    grid = f"[grid]\ncolumns = {cells}\npitch_mm = {pitch}\n[mask]\nhole_mm = {0.4 * pitch:g}\n"
+    design = derive(load(file(FLEX + grid)))
+    assert design.board.flexible
+    bend = design.board.flexible.bend
+    for part in (p for p in design.receiver.parts if p.name.startswith("U")):
+        assert part.box.y_max_mm < bend.y_min_mm
+
+
+def test_a_written_interface_takes_no_room_from_the_tracks(file: Any) -> None:
+    """It ends among the multiplexers: a narrower channel before them would not help."""
+    grid = '[grid]\ncolumns = [6, 5, 6, 5, 6, 5]\n[receiver]\nload = "auto"\n'
+    text = FLEX + grid + "[flex]\ninterface_mm = 26.0\n"
+    with pytest.raises(RuleError, match=r"at least 3\d\.\d is needed to hold the multiplexers"):
+        derive(load(file(text)))
+
+
 def test_what_a_user_wrote_is_never_altered(file: Any) -> None:
     text = '[emitter]\nresistor = "0603"\n[board]\ntip_margin_mm = 3.65\n'
     resolved = resolve(load(file(text)))

@@ -77,8 +77,9 @@ SWEEP = 20  # rounds after which all nets are routed anew,
 SWEEP_SHARE = 0.12  # while more than this share of them is in conflict
 WIDER_MM = 0.1  # wider searches with each round
 STUCK = 20
-"""Rounds without progress, after which a net is to take any way that is left, however far round:
+"""Rounds without progress, after which few nets that still fight look for a way far round:
 where a board bends, two nets cannot cross each other, and the way round may be as long as it."""
+FEW = 3  # nets that still fight, on a small board
 STUCK_PRICE = 1000.0
 STUCK_WIDER_MM = 2.0
 DEAR = 1e5  # price that no net pays when another way is left
@@ -118,7 +119,7 @@ def negotiate(state: State, nets: list[Wanted], pressure: Pressure) -> tuple[int
             stamps.remember(
                 nodes, state.history, state.marked[0], state.turn, pressure.history, HISTORY_REACH
             )
-        few = len(fought) <= SWEEP_SHARE * len(nets)
+        few = len(fought) <= max(FEW, SWEEP_SHARE * len(nets))
         stuck = few and turn - best > STUCK
         weights = dataclasses.replace(
             weights,

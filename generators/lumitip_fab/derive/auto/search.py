@@ -14,9 +14,9 @@ from lumitip_fab.derive.auto.strings import lowest_ma
 from lumitip_fab.derive.wiring.ratings import sold_ohm
 
 DECIMALS = 4
-COARSE, FINE, FINEST = 1, 2, 8
-"""Each trial takes more steps than the last by this fraction of them: all, a half or an eighth. A
-valid range may be narrow, such as that of holes for a screw."""
+COARSE, FINE, FINEST = 1, 2, 32
+"""Each trial takes more steps than the last by one of so many parts of them. A valid range may be
+narrow, such as that of holes for a screw."""
 
 
 @dataclass(frozen=True)
@@ -184,7 +184,6 @@ MENDS: dict[str, tuple[str, ...]] = {
     "flex.standoff_mm": ("flex.groove_depth_mm",),
     "flex.interface_mm": (
         "flex.standoff_mm",
-        "board.channel_mm",
         "tip.slant_start_mm",
         "outline.end_margin_mm",
         "board.tip_margin_mm",
@@ -247,7 +246,7 @@ def _next(now: Verdict, free: frozenset[str]) -> tuple[Change, str] | None:
                 if change:
                     return change, problem.message
     for rule, problem in now.rules.items():
-        if problem.field in free:
+        if problem.field in free and FIELDS[problem.field].step:
             change = change_of(now, rule, problem.field, FINEST)
             if change:
                 return change, problem.message

@@ -73,7 +73,7 @@ def derive_plan(
     led = parts.leds[p.emitter.led]
     detector = parts.photodetectors[p.receiver.photodetector]
     refuse_lines(p, detector, faults)
-    lines = lane_of(p, detector)[0] if is_flex(p) else 0
+    lines = lane_of(p, detector)[0] if is_flex(p) and len(p.grid.columns) > 1 else 0
     led_turned = derive_turned(p, "emitter.led", p.emitter.led, led, 0, faults)
     detector_turned = derive_turned(
         p, "receiver.photodetector", p.receiver.photodetector, detector, lines, faults

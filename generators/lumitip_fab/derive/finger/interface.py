@@ -70,11 +70,14 @@ def _refuse_length(
     ramp = (gripper.block_back_w_mm - behind_mm(p)) / math.tan(tilt)
     cells = next(zone.box for zone in finger.zones if zone.name == "cells")
     # Solder joints of a multiplexer break where the board bends, and tracks need vias before it.
-    holds = {
-        f"for the land and ramp of {p.coupling.gripper!r}": gripper.land_mm + ramp + FLARE_MM,
-        "to hold the multiplexers and the tracks before them": cells.y_min_mm - outline.end_y_mm,
-    }
-    what, least = max(holds.items(), key=lambda item: item[1])
+    for_gripper = gripper.land_mm + ramp + FLARE_MM
+    for_parts = cells.y_min_mm - outline.end_y_mm
+    least = max(for_gripper, for_parts)
+    what = f"for the land and ramp of {p.coupling.gripper!r}"
+    remedy = "Make the finger longer, or reduce tip.slant_start_mm or flex.standoff_mm."
+    if for_parts > for_gripper:
+        what = "to hold the multiplexers and the tracks before them"
+        remedy = "Reduce tip.slant_start_mm, or choose a longer grid or fewer multiplexers."
     most = outline.length_mm - p.tip.slant_start_mm - 2 * LETTER_GAP_MM - letter_mm
     needed, room = math.ceil(least * 10 - 1e-6) / 10, math.floor(most * 10) / 10
     limits = (
@@ -84,8 +87,7 @@ def _refuse_length(
     if most < least:
         limits = (
             f"{needed:g} mm is needed {what}, but only {max(room, 0.0):g} mm is available before "
-            "the finger's letter and the wedge. Make the finger longer, or reduce "
-            "tip.slant_start_mm or flex.standoff_mm."
+            f"the finger's letter and the wedge. {remedy}"
         )
     faults.refuse_unless(
         least - 1e-6 <= p.flex.interface_mm <= most,
