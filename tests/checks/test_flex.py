@@ -93,8 +93,9 @@ def pad_hollow(part: Manifold, _: Design) -> Manifold:
     return part - box((-4, -22, -3.95), (4, -14, -3.5))
 
 
-def pad_short(part: Manifold, _: Design) -> Manifold:
-    return part - box((-20, -7.2, -10), (20, 0, -3.0))
+def pad_short(part: Manifold, design: Design) -> Manifold:
+    y = design.interfaces[0].groove.y_max_mm
+    return part - box((-20, y - 0.35, -10), (20, 0, -3.0))
 
 
 ON_PLATE: dict[Damage, set[str]] = {

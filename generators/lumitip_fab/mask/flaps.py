@@ -13,6 +13,7 @@ from lumitip_fab.mask.outline import Finished, Points, fold_corners, folded
 
 TAPER_DEG = 10.0
 WIDEST_TAPER = 0.2  # of the fold, on each side, so that narrow flaps keep a useful end
+LEAST_END = 0.2  # of the fold that a flap's end keeps
 CONCAVE_GAP_DEG = 1.0  # on each side of the slit between flaps that converge
 LEAST_REACH_MM = 2.0  # onto the back, before the windows behind parts are left out
 START_GAP_MM = 0.1  # first fold to what it must keep clear of
@@ -104,7 +105,9 @@ def _flap(
     least = lowest - mask.allowance_mm + LEAST_REACH_MM
     ought = must + finished.better_clear()
     areas = ought if clear(least, ought) else must
-    length = _longest(mask.flap_mm, lambda value: clear(value, areas))
+    length = _longest(
+        min(mask.flap_mm, _before_it_is_narrow(a, b, leans)), lambda value: clear(value, areas)
+    )
     corners = trapezoid(length)
     middle, outward = (a + b) / 2, _outward(a, b)
     band = max(
@@ -121,6 +124,11 @@ def _flap(
         band=_band(a, b, corners, length, band),
         label=(float(label[0]), float(label[1])),
     )
+
+
+def _before_it_is_narrow(a: Points, b: Points, leans: tuple[float, float]) -> float:
+    """Length at which sides that lean away from both neighbours leave the least end."""
+    return (1 - LEAST_END) * math.dist(a, b) / sum(leans) if sum(leans) else math.inf
 
 
 def _longest(most_mm: float, allowed: Callable[[float], bool]) -> float:
@@ -140,10 +148,13 @@ def _trapezoid(
     width = float(np.hypot(*(b - a)))
     along, outward = (b - a) / width, _outward(a, b)
     usual = min(length_mm * math.tan(math.radians(TAPER_DEG)), WIDEST_TAPER * width)
-    first, second = (max(usual, length_mm * lean) for lean in leans)
-    squeeze = min(1.0, 0.8 * width / (first + second)) if first + second else 1.0
-    c = a + outward * length_mm + along * first * squeeze
-    d = b + outward * length_mm - along * second * squeeze
+    needed = [length_mm * lean for lean in leans]
+    more = [max(usual - least, 0.0) for least in needed]
+    room = max((1 - LEAST_END) * width - sum(needed), 0.0)
+    share = min(1.0, room / sum(more)) if sum(more) else 0.0
+    first, second = (least + share * extra for least, extra in zip(needed, more, strict=True))
+    c = a + outward * length_mm + along * first
+    d = b + outward * length_mm - along * second
     return _point(a), _point(c), _point(d), _point(b)
 
 
