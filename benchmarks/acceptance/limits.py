@@ -145,12 +145,11 @@ def _land_patterns(values: Values) -> Iterator[str]:
 
 
 def _lines(values: Values) -> Iterator[str]:
-    most = values["grid.pitch_mm"] * math.sqrt(3) / 2 / (2 * FINEST_MM)
+    lane = values["grid.pitch_mm"] * math.sqrt(3) / 2
+    most = lane / (2 * FINEST_MM)
     if values["backing.variant"] == "flex":
         detector = values.part("receiver.photodetector", "photodetectors")
-        lane = values["grid.pitch_mm"] * math.sqrt(3) / 2 - (
-            min(over_pads_mm(detector)) if detector else 0.0
-        )
+        lane -= min(over_pads_mm(detector)) if detector else 0.0
         most = BENDING_LANE_USE * lane / (2 * FINEST_BENDING_MM) - GROUND_LINES
     if len(values.columns) > 1 and max(values.columns) > most + 1e-9:
         yield f"lines: {max(values.columns)} cells in a column, room for {most:.1f} lines"

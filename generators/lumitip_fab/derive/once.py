@@ -1,6 +1,7 @@
 """Concrete parameters to `Design`: each quantity is derived once, here, and nowhere else."""
 
 import hashlib
+from dataclasses import dataclass
 
 from lumitip.layout import Layout, Optics
 from lumitip_fab.config.load import Input
@@ -10,7 +11,7 @@ from lumitip_fab.derive.boards.flange import derive_flange
 from lumitip_fab.derive.boards.packages import derive_fabs, derive_packages, derive_rules
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger import outline
-from lumitip_fab.derive.finger.cells import derive_cells
+from lumitip_fab.derive.finger.cells import Cells, derive_cells
 from lumitip_fab.derive.finger.interface import derive_interfaces
 from lumitip_fab.derive.finger.stack import (
     derive_densities,
@@ -34,6 +35,33 @@ from lumitip_fab.design import Controller, Design, Grid, Title
 from lumitip_fab.design.encoding import canonical, round_trip
 
 
+@dataclass(frozen=True)
+class FirstLayout:
+    """Grid, parts and nets, and both boards of the fingers: all that the rest is built round."""
+
+    cells: Cells
+    strings: wiring.Strings
+    muxing: wiring.Muxing
+    plan: boards.Plan
+
+
+def lay_out(config: Input, faults: Diagnostics) -> FirstLayout:
+    """Place the boards' parts.
+
+    Raises:
+        InputError: with all that was collected, if there is no grid, or nothing to place on it.
+    """
+    cells = derive_cells(config.parameters, faults)
+    if not len(cells):
+        faults.stop()  # without a grid nothing else can be judged
+    strings = wiring.derive_strings(config, cells, faults)
+    muxing = wiring.derive_muxing(config, cells, faults)
+    if not strings.cells or len(muxing.adc_pins) < muxing.muxes:
+        faults.stop()  # without parts and nets there are no boards to place
+    plan = boards.derive_plan(config, cells, strings, muxing, faults)
+    return FirstLayout(cells, strings, muxing, plan)
+
+
 def derive_once(config: Input, faults: Diagnostics) -> Design:
     """Derive the whole sensor from values as they are.
 
@@ -46,14 +74,8 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
     """
     p = config.parameters
     stack, fasteners = derive_stack(config, faults), derive_fasteners(config, faults)
-    cells = derive_cells(p, faults)
-    if not len(cells):
-        faults.stop()  # without a grid nothing else can be judged
-    strings = wiring.derive_strings(config, cells, faults)
-    muxing = wiring.derive_muxing(config, cells, faults)
-    if not strings.cells or len(muxing.adc_pins) < muxing.muxes:
-        faults.stop()  # without parts and nets there are no boards to place
-    plan = boards.derive_plan(config, cells, strings, muxing, faults)
+    first = lay_out(config, faults)
+    cells, strings, muxing, plan = first.cells, first.strings, first.muxing, first.plan
     silhouette = outline.derive_outline(p, plan.board, plan.receiver.notch, faults)
     interfaces = derive_interfaces(config, silhouette, plan.receiver, plan.board.box, faults)
     coupling = mount.derive_mount(config, silhouette, plan, faults)

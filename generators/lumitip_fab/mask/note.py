@@ -89,7 +89,8 @@ def wrapping_note(
     across, up = mask.measured_ruler_mm
     shortened = [str(f.number) for f in flaps if f.length_mm < mask.flap_mm]
     shorter = (
-        f"That is why flaps {', '.join(shortened)} are shorter than {mask.flap_mm:g} mm."
+        f"Flaps {', '.join(shortened)} are shorter than {mask.flap_mm:g} mm for that, or because\n"
+        "neighbours would overlap where the outline bends inward."
         if shortened
         else f"All flaps are {mask.flap_mm:g} mm long."
     )

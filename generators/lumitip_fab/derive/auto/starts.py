@@ -6,17 +6,16 @@ from collections.abc import Callable, Iterator
 from lumitip_fab.config.automatic import FIELDS, Value
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.auto.strings import choose_strings
-from lumitip_fab.derive.boards.boards import derive_plan
 from lumitip_fab.derive.boards.module import MOST_WIRES
 from lumitip_fab.derive.boards.packages import LEAST_RING_MM
 from lumitip_fab.derive.diagnostics import Diagnostics
-from lumitip_fab.derive.finger.cells import derive_cells, lane_of
+from lumitip_fab.derive.finger.cells import bending_lines, lane_mm
 from lumitip_fab.derive.finger.stack import is_flex
+from lumitip_fab.derive.once import lay_out
 from lumitip_fab.derive.wiring.ratings import (
     SUPPLY_TOLERANCE,
     sold_ohm,
 )
-from lumitip_fab.derive.wiring.wiring import derive_muxing, derive_strings
 from lumitip_fab.errors import InputError
 
 Proposal = tuple[str, Value, str]
@@ -108,9 +107,10 @@ def _copper(config: Input) -> Iterator[Proposal]:
     p, parts = config.parameters, config.catalogue
     columns = p.grid.columns
     detector = parts.photodetectors[p.receiver.photodetector]
-    lines, lane = lane_of(p, detector)
+    lines = bending_lines(p) if is_flex(p) else max(columns)
+    lane = lane_mm(p, detector)
     needed = lines * (p.board.track_mm + p.board.copper_gap_mm)
-    if needed <= LANE_USE * lane or max(columns) <= 1 or (len(columns) == 1 and is_flex(p)):
+    if needed <= LANE_USE * lane or max(columns) <= 1:
         return
     reason = (
         f"{lines} lines leave a column through a lane of {lane:.2f} mm: "
@@ -171,13 +171,15 @@ def _channel(config: Input) -> Iterator[Proposal]:
 
 
 def _interface(config: Input) -> Iterator[Proposal]:
-    """Length of the interface that holds the multiplexers of a first layout."""
+    """Length of the interface that holds the multiplexers of a first layout, if there is one."""
     if not is_flex(config.parameters):
         return
     try:
-        held = _held_mm(config)
+        finger = lay_out(config, Diagnostics(config)).plan.receiver
     except InputError:
         return
+    at_cells = next(zone.box for zone in finger.zones if zone.name == "cells")
+    held = at_cells.y_min_mm - finger.notch.y_min_mm
     start = float(FIELDS["flex.interface_mm"].start)
     if held > start:
         yield (
@@ -185,22 +187,6 @@ def _interface(config: Input) -> Iterator[Proposal]:
             math.ceil(held * 10 - 1e-6) / 10,
             "as far as the cells: it holds the multiplexers and the tracks before them",
         )
-
-
-def _held_mm(config: Input) -> float:
-    """From the gripper's end of a finger to its cells, with the values as they are; 0 where they
-    give no layout."""
-    faults = Diagnostics(config)
-    cells = derive_cells(config.parameters, faults)
-    if not len(cells):
-        return 0.0
-    strings = derive_strings(config, cells, faults)
-    muxing = derive_muxing(config, cells, faults)
-    if not strings.cells or len(muxing.adc_pins) < muxing.muxes:
-        return 0.0
-    finger = derive_plan(config, cells, strings, muxing, faults).receiver
-    at_cells = next(zone.box for zone in finger.zones if zone.name == "cells")
-    return at_cells.y_min_mm - finger.notch.y_min_mm
 
 
 def _flange(config: Input) -> Iterator[Proposal]:

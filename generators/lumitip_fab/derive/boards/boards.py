@@ -21,7 +21,7 @@ from lumitip_fab.config.parameters import Parameters
 from lumitip_fab.derive.boards import connectors, placing
 from lumitip_fab.derive.boards.packages import flexible_board
 from lumitip_fab.derive.diagnostics import Diagnostics
-from lumitip_fab.derive.finger.cells import Cells, derive_turned, lane_of, refuse_lines
+from lumitip_fab.derive.finger.cells import Cells, bending_lines, derive_turned, refuse_lines
 from lumitip_fab.derive.finger.stack import foot_half_mm, is_flex
 from lumitip_fab.derive.making.fits import derive_fits
 from lumitip_fab.derive.wiring.wiring import Muxing, Strings
@@ -73,10 +73,9 @@ def derive_plan(
     led = parts.leds[p.emitter.led]
     detector = parts.photodetectors[p.receiver.photodetector]
     refuse_lines(p, detector, faults)
-    lines = lane_of(p, detector)[0] if is_flex(p) and len(p.grid.columns) > 1 else 0
     led_turned = derive_turned(p, "emitter.led", p.emitter.led, led, 0, faults)
     detector_turned = derive_turned(
-        p, "receiver.photodetector", p.receiver.photodetector, detector, lines, faults
+        p, "receiver.photodetector", p.receiver.photodetector, detector, bending_lines(p), faults
     )
     leds = placing.at_cells(LED, led, led_turned, _facing(cells, LED))
     detectors = placing.at_cells(DETECTOR, detector, detector_turned, _facing(cells, DETECTOR))

@@ -62,21 +62,26 @@ BENDING_LANE_USE = 0.9
 """Share of the lane between two columns that tracks can fill where a board bends."""
 
 
-def lane_of(p: Parameters, detector: Chip) -> tuple[int, float]:
-    """Tracks that leave a column between it and the next, and the width that they have (mm).
+def bending_lines(p: Parameters) -> int:
+    """Tracks beside a column where a board bends: those of its cells, and ground.
 
-    Where a board bends it has no vias: detectors are on its front, and so are all their tracks and
-    ground.
+    There are no vias, so they share the front with the cells. None on a rigid board, and none
+    beside a column alone, which has the margins of the board.
     """
-    lines = max(p.grid.columns) + (GROUND_LINES if is_flex(p) else 0)
-    return lines, column_pitch_mm(p.grid.pitch_mm) - min(detector.over_pads_mm)
+    columns = p.grid.columns
+    return max(columns) + GROUND_LINES if is_flex(p) and len(columns) > 1 else 0
+
+
+def lane_mm(p: Parameters, detector: Chip) -> float:
+    """Width between two columns of detectors that are turned along them."""
+    return column_pitch_mm(p.grid.pitch_mm) - min(detector.over_pads_mm)
 
 
 def refuse_lines(p: Parameters, detector: Chip, faults: Diagnostics) -> None:
     """Refuse columns whose tracks have no room beside them on the front of a flexible board."""
-    lines, lane = lane_of(p, detector)
+    lines, lane = bending_lines(p), lane_mm(p, detector)
     step = p.board.track_mm + p.board.copper_gap_mm
-    if not is_flex(p) or len(p.grid.columns) == 1 or lines * step <= BENDING_LANE_USE * lane:
+    if not lines or lines * step <= BENDING_LANE_USE * lane:
         return
     most = max(math.floor(BENDING_LANE_USE * lane / step) - GROUND_LINES, 0)
     least_mm = (lines * step / BENDING_LANE_USE + min(detector.over_pads_mm)) * 2 / math.sqrt(3)
@@ -97,9 +102,8 @@ def derive_turned(
 ) -> bool:
     """Whether parts are turned along y; refused where they fit neither way.
 
-    `lines` tracks pass between two columns on one side of the board: there are no vias.
-
-    Pad patterns keep a straight lane between columns and between rows, so that tracks pass.
+    Pad patterns keep a straight lane between columns and between rows, so that tracks pass: room
+    for `lines` of them on one side, from `bending_lines`.
     """
     along, across = chip.over_pads_mm
     pitch, columns = p.grid.pitch_mm, column_pitch_mm(p.grid.pitch_mm)
