@@ -44,6 +44,8 @@ def free_values() -> dict[str, list[object]]:
         "breakout.board_mm": [[45.72, 33.02], [50.8, 35.56], [60.96, 38.1], [45.72, 38.1]],
         "flange.gate_ohm": [100000, 47000, 220000, 470000],
         "flange.fuse": [*entries("fuses")],
+        "flange.tvs": [*entries("tvs_diodes")],
+        "flange.inrush_ohm": [4.7, 10.0, 2.2, 22.0],
         "mask.flap_mm": [13.0, 11.0, 9.0, 16.0],
     }
 

@@ -8,6 +8,7 @@ import os
 import sys
 from collections.abc import Sequence
 from importlib import import_module
+from importlib.metadata import PackageNotFoundError, version
 
 from lumitip.errors import LumitipError
 
@@ -35,6 +36,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return code
 
 
+def installed_version() -> str:
+    """The version of the installed package, for both commands."""
+    try:
+        return f"lumitip {version('lumitip')}"
+    except PackageNotFoundError:
+        return "lumitip, not installed: run from its source folder"
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="lumitip", description="Read, record and display optical fingertips."
@@ -42,6 +51,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "-v", "--verbose", action="store_true", help="print the events of the links"
     )
+    parser.add_argument("--version", action="version", version=installed_version())
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for name in MODULES:
         import_module(f"lumitip.commands.{name}").add(commands)

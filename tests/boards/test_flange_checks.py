@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from board_damages import in_part, moved_part, once
+from board_damages import in_part, moved_part, once, swapped_pads
 from damages import failing
 from lumitip_fab.checks import board
 from lumitip_fab.design.encoding import read_design
@@ -20,7 +20,7 @@ FLANGE = "boards/flange/flange.kicad_pcb"
 
 def capacitor_far(text: str) -> str:
     """The input capacitor where there is nothing: a wide loop, and nothing joins it."""
-    return moved_part(text, "C1", 8.0, 8.0)
+    return moved_part(text, "C1", -7.5, 5.0)
 
 
 def supply_narrow(text: str) -> str:
@@ -37,7 +37,7 @@ def ground_under_the_regulator_missing(text: str) -> str:
 
 def way_to_the_capacitor_missing(text: str) -> str:
     """The tracks of the supply that end at the capacitor taken away."""
-    net = re.search(r'\(net (\d+) "12V"\)', text)
+    net = re.search(r'\(net (\d+) "VIN"\)', text)
     assert net
     x, y = 150 - 4.9, 100 + 0.825
     kept = []
@@ -55,7 +55,40 @@ def contacts_in_front(text: str) -> str:
     return in_part(text, "J1", r'\(layer "B.Cu"\)', '(layer "F.Cu")')
 
 
+def resistor_small(text: str) -> str:
+    """A resistor before the regulator that does not damp, and lets a large pulse through."""
+    return in_part(text, "R3", r'value "4R7"', 'value "0R05"')
+
+
+def resistor_without_a_value(text: str) -> str:
+    return in_part(text, "R3", r'value "4R7"', 'value "some"')
+
+
+def resistor_bridged(text: str) -> str:
+    """A track from one end of the resistor to the other."""
+    at = text.index('(fp_text reference "R3"')
+    part = text[text.rindex("\n  (footprint", 0, at) :]
+    place = re.search(r"\(at (\S+) (\S+?)[ )]", part)
+    net = re.search(r'\(net (\d+) "VIN"\)', text)
+    assert place and net
+    x, y = float(place[1]), float(place[2])
+    track = (
+        f"  (segment (start {x:g} {y - 1.475:g}) (end {x:g} {y + 1.475:g}) (width 0.5) "
+        f'(layer "F.Cu") (net {net[1]}))\n'
+    )
+    at = text.index("  (segment")
+    return text[:at] + track + text[at:]
+
+
+def tvs_reversed(text: str) -> str:
+    return swapped_pads(text, "D1", "1", "2")
+
+
 DAMAGES: dict[Damage, set[str]] = {
+    resistor_small: {"plug_in_voltage", "plug_in_current"},
+    resistor_without_a_value: {"plug_in_voltage", "plug_in_current", "plug_in_surge"},
+    resistor_bridged: {"undamped", "short", "joined"},
+    tvs_reversed: {"tvs", "lands", "undamped", "contact_signals", "apart", "joined"},
     contacts_in_front: {"lands"},
     # Its pads lie in the ground pour.
     capacitor_far: {
@@ -66,7 +99,6 @@ DAMAGES: dict[Damage, set[str]] = {
         "short",
         "apart",
         "joined",
-        "spokes",
     },
     supply_narrow: {"supply_width"},
     ground_under_the_regulator_missing: {"hot_loop_ground"},

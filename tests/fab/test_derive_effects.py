@@ -104,6 +104,9 @@ CHANGES: dict[str, Any] = {
     "flange.transistor": "other",
     "flange.resistor": "0805",
     "flange.gate_ohm": 120000.0,
+    "flange.tvs": "other",
+    "flange.inrush_resistor": "1206",
+    "flange.inrush_ohm": 5.1,
     "module.regulator": "other",
     "module.supply_capacitor": "22uF 0805",
     "module.capacitor": "other",
@@ -180,6 +183,7 @@ def published(inputs: dict[str, Input]) -> Input:
         "linear_regulators": ("MCP1700-3302", {"order_number": "other"}),
         "crystals": ("32.768kHz FC-135", {"order_number": "other"}),
         "transistors": ("Si2309CDS", {"order_number": "other"}),
+        "tvs_diodes": ("SMBJ24A", {"order_number": "other"}),
     }
     tables = {
         kind: {**getattr(parts, kind), "other": getattr(parts, kind)[name].model_copy(update=new)}

@@ -23,6 +23,7 @@ from lumitip_fab.catalogue.electronics import (
     Photodetector,
     Resistor,
     ResistorArray,
+    TvsDiode,
 )
 from lumitip_fab.catalogue.grippers import Gripper, ToolCoupling
 from lumitip_fab.catalogue.materials import Fastener, Filament, Film, Laminates, Printer, Silicone
@@ -47,6 +48,7 @@ class Catalogue(Strict):
     inductors: Mapping[Name, Inductor]
     fuses: Mapping[Name, Fuse]
     transistors: Mapping[Name, Transistor]
+    tvs_diodes: Mapping[Name, TvsDiode]
     couplings: Mapping[Name, ToolCoupling]
     grippers: Mapping[Name, Gripper]
     fasteners: Mapping[Name, Fastener]

@@ -155,6 +155,8 @@ class Transistor(Leaded):
     """Largest voltage from source to gate."""
     gate_on_v: float = Field(gt=0, le=100)
     """Voltage from source to gate at which it is on for certain."""
+    pulse_a: float | None = Field(default=None, gt=0, le=1e4)
+    """Largest current of a pulse of 10 µs, through its channel or its body diode."""
 
     @model_validator(mode="after")
     def _has_its_leads(self) -> Self:

@@ -33,6 +33,7 @@ from lumitip_fab.checks.board_read import (
     read_any,
 )
 from lumitip_fab.checks.board_silk import measure_silk, measure_targets
+from lumitip_fab.checks.plug_in import measure_plug_in
 from lumitip_fab.checks.readers.kicad_board import Copper, Part
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.checks.settling import measure_settling
@@ -229,6 +230,7 @@ _OF_AUXILIARY_BOARDS: tuple[Callable[[ReadAuxiliary], Iterator[Measurement]], ..
     measure_hot_loop,
     measure_keep_outs,
     measure_contact_map,
+    measure_plug_in,
 )
 
 

@@ -19,7 +19,7 @@ from lumitip_fab.design.frames import applied, auxiliary_to_flange, on_board_pag
 
 CONTACTS = "J1"
 PLACE_MM = 0.02
-_SUPPLY, _GROUND = ("F1", 1), ("C1", 2)
+_SUPPLY, _GROUND = ("F1", 1), ("D1", 2)
 """Pads that the board's supply enters by, at the fuse, and that are on its ground."""
 Contacts = Mapping[str, ToolContact]
 

@@ -8,6 +8,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from lumitip.cli import installed_version
 from lumitip_fab.system_libraries import libraries_message, missing_libraries
 
 if TYPE_CHECKING:
@@ -101,15 +102,16 @@ def _run(options: argparse.Namespace) -> int:
 
 def _print_rejection(options: argparse.Namespace, error: "InputError") -> None:
     """Print every problem, and the changes that solve those which the rules found."""
-    from lumitip_fab.derive.auto.remedies import remedy_lines
+    from lumitip_fab.derive.auto.remedies import Plan, plan_of, remedy_lines
     from lumitip_fab.derive.auto.resolve import RuleError
 
-    remedies = remedy_lines(error.verdict) if isinstance(error, RuleError) else []
+    plan = plan_of(error.verdict) if isinstance(error, RuleError) else Plan((), False)
+    remedies = remedy_lines(plan)
     if options.json:
         problems = [vars(p) for p in error.problems]
         print(json.dumps({"problems": problems, "remedies": remedies[1:]}, indent=1))
     print(error, *remedies, sep="\n", file=sys.stderr)
-    if remedies:
+    if plan.complete:
         print(f"lumitip-fab fix {options.file} writes them.", file=sys.stderr)
 
 
@@ -119,6 +121,7 @@ def _parser() -> argparse.ArgumentParser:
         description="From one parameter file to every part of an optical fingertip, and the "
         "proof that they fit.",
     )
+    parser.add_argument("--version", action="version", version=installed_version())
     group = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     commands = {
         name: _command(group.add_parser(name, help=summary, description=summary), flags)

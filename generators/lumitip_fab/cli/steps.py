@@ -37,6 +37,7 @@ STEPS = (
     Step("models", "models.files.model_files", heavy=True, tools=_CAD),
     Step("finger_spice", "boards.spice.simulation", "fingers"),
     Step("supply_spice", "boards.spice.supply_simulation", "regulated"),
+    Step("plug_in_spice", "boards.spice_plug_in.plug_in_simulation", "flanges"),
     Step("assembly", "scenes.assembly.assembly", heavy=True, tools=_CAD),
     Step("robot", "scenes.robot.robot_files", heavy=True, tools=_CAD),
     Step("mould", "parts.mould.mould_files", "fingers", heavy=True, tools=_CAD),

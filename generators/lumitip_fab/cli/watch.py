@@ -11,14 +11,17 @@ from watchfiles import watch as changes
 from lumitip_fab.cli.build import build
 from lumitip_fab.cli.screen import OUT
 from lumitip_fab.config.load import load
-from lumitip_fab.config.source import flat
+from lumitip_fab.config.messages import shown_path
+from lumitip_fab.config.source import flat, read_toml
 from lumitip_fab.design.encoding import encoded
 from lumitip_fab.errors import FabError
 from lumitip_fab.paths import design_folder
 
 
 def run(options: argparse.Namespace) -> int:
-    """Watch the file."""
+    """Watch the file, which must exist."""
+    if not options.file.is_file():
+        read_toml(options.file, shown_path(options.file))  # raises
     watch(options.file, options.out, OUT)
     return 0
 

@@ -1,6 +1,8 @@
 """Read a parameter file with its bases and its catalogue, and report every fault at once."""
 
+import difflib
 import os
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -18,6 +20,9 @@ from lumitip_fab.config.parts import NAMED, Parts, named_parts
 from lumitip_fab.config.source import Source, read_toml
 from lumitip_fab.errors import InputError, Problem
 from lumitip_fab.paths import design_folder, parts_file
+
+_VALUE = re.compile(r"^is (?:'[^']*'|-?\d[\d.e-]*)(?![^\s,;])")
+"""The value at the beginning of a message."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +66,12 @@ class Input:
         return replace(self, parameters=Parameters.model_validate(table))
 
     def problem(self, field: str, message: str) -> Problem:
-        """A fault of a field, placed in the file that set it."""
+        """A fault of a field, placed in the file that set it; of an automatic value in the user's
+        own file, where what it follows from was changed."""
+        if field in self.automatic:
+            own = self.sources[0]
+            message = _VALUE.sub(r"\g<0> (automatic)", message, count=1)
+            return Problem(shown_path(own.path), own.line(field), field, message)
         source, own = _setting(self.sources, field), self.sources[0]
         if source is not own:  # the base may be good for others
             message = f"{message.removesuffix('.')}. Override it in {shown_path(own.path)}."
@@ -147,9 +157,11 @@ def _base(chain: list[Source]) -> Source:
             "Copy the base into that folder."
         )
     if base.is_dir():
-        raise refuse(f"is {name!r:.80}, which is a folder. {_bases(folder, own.path)}")
+        raise refuse(f"is {name!r:.80}, which is a folder. {_available(folder, own.path)}")
     if not exists:
-        raise refuse(f"is {name!r:.80}, which does not exist. {_bases(folder, own.path)}")
+        near = difflib.get_close_matches(name, _bases(folder, own.path), n=1, cutoff=0.8)
+        hint = f"Did you mean {near[0]!r}? " if near else ""
+        raise refuse(f"is {name!r:.80}, which does not exist. {hint}{_available(folder, own.path)}")
     if base == own.path.resolve():
         raise refuse(f"is {name!r:.80}, the file itself. Name another file.")
     above = [source.path.resolve() for source in chain]
@@ -164,12 +176,17 @@ def _chain_text(files: list[Path]) -> str:
     return " → ".join(shown if len(shown) <= 5 else [*shown[:3], "…", shown[-1]])
 
 
-def _bases(folder: Path, own: Path) -> str:
-    """The files of the design folder that a file may extend, as it would name them."""
+def _bases(folder: Path, own: Path) -> list[str]:
+    """The files of the design folder that a file may extend, as it would name them: presets
+    first."""
     here = own.resolve().parent
-    found = [*folder.glob("*.toml"), *folder.glob("presets/*.toml")]
+    found = [*sorted(folder.glob("presets/*.toml")), *sorted(folder.glob("*.toml"))]
     others = (p for p in found if p.is_file() and p.resolve() != own.resolve())
-    names = sorted(os.path.relpath(p, here) for p in others)
+    return [os.path.relpath(p, here) for p in others]
+
+
+def _available(folder: Path, own: Path) -> str:
+    names = _bases(folder, own)
     listed = ", ".join(names[:20]) + (", …" if len(names) > 20 else "")
     return f"Available files: {listed}" if names else "There is no other file."
 

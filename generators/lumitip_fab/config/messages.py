@@ -2,6 +2,7 @@
 
 import datetime
 import difflib
+import re
 import types
 import typing
 from collections.abc import Callable, Iterable, Mapping
@@ -28,6 +29,8 @@ _KINDS = {
     "model_type": "a table",
     "model_attributes_type": "a table",
 }
+_WITH_UNIT = re.compile(r"\s*(-?\d+(?:\.\d+)?)\s*[a-zA-ZµΩ°%²/]*\s*")
+"""A number in quotes, with or without a unit."""
 _BOUNDS = {
     "greater_than": "more than {gt:g} is needed",
     "greater_than_equal": "at least {ge:g} is needed",
@@ -64,8 +67,9 @@ def unknown_name(name: str, allowed: Iterable[str], where: str) -> str:
         where: where they exist, such as a catalogue file.
     """
     names = sorted(allowed)
-    near = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
-    hint = f"Did you mean {near[0]!r}? " if near else ""
+    by_case = {each.casefold(): each for each in names}
+    near = difflib.get_close_matches(name.casefold(), by_case, n=1, cutoff=0.5)
+    hint = f"Did you mean {by_case[near[0]]!r}? " if near else ""
     listed = ", ".join(names[:24]) + (", …" if len(names) > 24 else "")
     return f"is {name!r:.80}, which does not exist. {hint}Names in {where}: {listed}"
 
@@ -118,7 +122,8 @@ def _message(fault: Any, model: Any, location: tuple[Any, ...]) -> str:
         )
         return f"is {brief(value)}, a list of {len(value)}; {bound.format(count)}"
     if kind in _KINDS:
-        return f"is {brief(value)}; {_KINDS[kind]} is needed"
+        bare = _bare_number(value) if "number" in _KINDS[kind] else ""
+        return f"is {brief(value)}; {_KINDS[kind]} is needed{bare}"
     if kind in _BOUNDS:
         return f"is {brief(value)}; {_BOUNDS[kind].format(**context)}"
     if kind == "string_pattern_mismatch":
@@ -127,6 +132,12 @@ def _message(fault: Any, model: Any, location: tuple[Any, ...]) -> str:
     if kind == "value_error":
         return str(context["error"])
     return f"is {brief(value)}: {fault['msg']}"
+
+
+def _bare_number(value: Any) -> str:
+    """How to write a number that is in quotes, perhaps with a unit; empty for anything else."""
+    match = _WITH_UNIT.fullmatch(value) if isinstance(value, str) else None
+    return f": write {match[1]}, without quotes" if match else ""
 
 
 def _written(value: Any) -> str:

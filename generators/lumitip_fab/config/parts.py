@@ -21,6 +21,7 @@ from lumitip_fab.catalogue.electronics import (
     Photodetector,
     Resistor,
     ResistorArray,
+    TvsDiode,
 )
 from lumitip_fab.catalogue.grippers import Gripper, ToolCoupling
 from lumitip_fab.catalogue.materials import Fastener, Filament, Film, Printer, Silicone
@@ -82,6 +83,8 @@ class FlangeParts:
     fuse: Fuse
     transistor: Transistor
     resistor: Resistor
+    tvs: TvsDiode
+    inrush_resistor: Resistor
 
 
 @dataclass(frozen=True)

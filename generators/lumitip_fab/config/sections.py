@@ -155,6 +155,13 @@ class Flange(Strict):
     """Package of the resistors at its gate in `parts/resistors.toml`."""
     gate_ohm: float = Field(ge=1e3, le=1e6)
     """Both resistors, which halve the supply for the gate (ohm)."""
+    tvs: Name
+    """TVS diode from the supply to ground, in `parts/tvs_diodes.toml`."""
+    inrush_resistor: Name
+    """Package of the resistor before the regulator, in `parts/resistors.toml`."""
+    inrush_ohm: float = Field(ge=0.1, le=1000)
+    """Resistor before the regulator and its input capacitor: it limits the current as the flange
+    is plugged in, and damps the ringing with the cable's inductance (ohm)."""
 
 
 class Module(Strict):

@@ -89,6 +89,41 @@ class Regulated:
 
 
 @dataclass(frozen=True)
+class PlugIn:
+    """The flange as it is plugged into a live supply."""
+
+    supply_v: float
+    """Highest supply."""
+    cable_uh: tuple[float, float]
+    """Least and greatest inductance of the cable."""
+    inrush_ohm: float
+    """Resistor before the regulator's input."""
+    capacitor_uf: float
+    """Capacitor at the regulator's input without voltage; 0 where there is no regulator."""
+    left: float
+    """Fraction of it at `left_at_v`: its DC-bias derating."""
+    left_at_v: float
+    capacitor_tolerance: float
+    """Fraction by which it may be off, either way."""
+    breakdown_v: tuple[float, float]
+    """Least and greatest breakdown voltage of the TVS diode."""
+    tvs_ohm: float
+    """Dynamic resistance of the TVS diode."""
+    limit_v: float
+    """Largest voltage at the regulator's input; without a regulator, at the supply."""
+    peak_a: float
+    """Peak of the current, without the cable's inductance."""
+    pulse_a: float | None
+    """Rated pulse of the MOSFET; none where it is not known."""
+    surge_a2s: float
+    """I²t of the pulse, an upper bound."""
+    melting_a2s: float | None
+    """Melting I²t of the fuse; none where it is not known."""
+    pulse_j: float
+    """Energy of the pulse in the resistor, an upper bound."""
+
+
+@dataclass(frozen=True)
 class Electrical:
     """Figures of the boards."""
 
@@ -98,3 +133,5 @@ class Electrical:
     """LEDs and string resistors, nominal."""
     supplies: tuple[Regulated, ...]
     """The flange's regulator; none without it."""
+    plug_ins: tuple[PlugIn, ...] = ()
+    """The flange as it is plugged in; none without it."""

@@ -21,6 +21,7 @@ _CHIPS = {
     "fuse": "FUSC",
     "inductor": "INDC",
     "crystal": "XTAL",
+    "tvs diode": "DIOM",
 }
 """First letters of a chip's name by its kind; of phototransistors the standard has none."""
 

@@ -22,6 +22,8 @@ _KINDS = {
     "Y": "crystal",
 }
 """Kind of a part by the first letter of its references."""
+_ON_BOARD = {("receiver", "Q"): "photodetector", ("flange", "D"): "TVS diode"}
+"""The same where a board has another kind of this letter."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +53,7 @@ def electronics(design: Design, files: Files) -> Iterator[Line]:
         board = path.split("/")[1]
         for row in files.facts(path)["parts"]:
             letter = row["refs"][0]
-            kind = "photodetector" if (board, letter) == ("receiver", "Q") else _KINDS[letter]
+            kind = _ON_BOARD.get((board, letter), _KINDS[letter])
             key = f"{kind} {row['value']}", row["manufacturer"], row["part"]
             found.setdefault(key, {})[board] = int(row["quantity"])
     for (item, maker, part), where in sorted(found.items()):

@@ -1,11 +1,11 @@
 """Figures of what is outside the fingers, beside the published ones."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from lumitip_fab.design import AuxiliaryBoard, Design, Flange, Holder
-from lumitip_fab.design.electrical import Regulated
+from lumitip_fab.design.electrical import PlugIn, Regulated
 
 
 @dataclass(frozen=True)
@@ -27,6 +27,8 @@ def outside(design: Design) -> Iterator[Row]:
             yield from _flange(auxiliary)
     for supply in design.electrical.supplies:
         yield from _regulated(supply)
+    for plug_in in design.electrical.plug_ins:
+        yield from _plugged_in(plug_in)
     if any(auxiliary.name == "breakout" for auxiliary in design.auxiliary_boards):
         yield from _held(design)
     for flange in design.flanges:
@@ -59,12 +61,7 @@ def _flange(auxiliary: AuxiliaryBoard) -> Iterator[Row]:
         "a rectangle with round corners; published: one side is an arc",
     )
     values = {device.ref: device.value for device in auxiliary.components}
-    yield Row(
-        "its supply",
-        "AP63205, 4.7 uH, 10 uF, 2 x 22 uF",
-        f"{values['U1']}, {values['L1']}, {values['C1']}, 2 x {values['C2']}",
-        "parts of [flange]",
-    )
+    yield _supply(auxiliary, values)
     yield Row(
         "its fuse and reversed supply",
         "not stated",
@@ -78,6 +75,21 @@ def _flange(auxiliary: AuxiliaryBoard) -> Iterator[Row]:
             f"{values['U2']}, {values['U3']}, {values['Y1']}",
             "what the publication names as future work; by controller.board",
         )
+
+
+def _supply(auxiliary: AuxiliaryBoard, values: Mapping[str, str]) -> Row:
+    """The regulator's parts; without one, what the robot's contact must carry."""
+    published = "AP63205, 4.7 uH, 10 uF, 2 x 22 uF"
+    if auxiliary.hot_loop:
+        parts = f"{values['U1']}, {values['L1']}, {values['C1']}, 2 x {values['C2']}"
+        return Row("its supply", published, parts, "parts of [flange]")
+    return Row(
+        "its supply",
+        published,
+        "no regulator",
+        "the supply contact itself must carry this voltage: set the robot's tool output before you "
+        f"plug the flange in. With more, {values['D1']} conducts and {values['F1']} melts",
+    )
 
 
 def _regulated(supply: Regulated) -> Iterator[Row]:
@@ -96,6 +108,24 @@ def _regulated(supply: Regulated) -> Iterator[Row]:
         f"{supply.soft_start_ms:g} ms",
         f"soft start; the capacitors then take {1000 * supply.charging_a:.0f} mA; ngspice: "
         "boards/flange/flange.cir",
+    )
+
+
+def _plugged_in(plug_in: PlugIn) -> Iterator[Row]:
+    low, high = plug_in.cable_uh
+    if not plug_in.capacitor_uf:
+        return
+    rated = "" if plug_in.pulse_a is None else f" of {plug_in.pulse_a:g} A that its MOSFET bears"
+    melts = ""
+    if plug_in.melting_a2s is not None:
+        share = 100 * plug_in.surge_a2s / plug_in.melting_a2s
+        melts = f"; {share:.0f} % of the fuse's melting I²t"
+    yield Row(
+        "plugged into a live supply",
+        "not stated",
+        f"{plug_in.peak_a:.1f} A",
+        f"at most{rated}{melts}; {plug_in.inrush_ohm:g} Ω damp {low:g} to {high:g} µH of cable and "
+        f"take {1000 * plug_in.pulse_j:.1f} mJ; ngspice: boards/flange/flange_plug_in.cir",
     )
 
 

@@ -42,6 +42,9 @@ supply {supply_mm:g} mm; and {slack_mm:g} mm each for bends and stripping.
 """
 _FED = """\
 - The wire of 5 V feeds the controller. Leave it away where it is fed over USB."""
+_LIT = """\
+- The wire of 5 V feeds LEDs and controller. Solder it even where the controller is fed over USB:
+  the LEDs stay dark without it."""
 _AT_FLANGE = """
 - At the flange the wires end in a socket for its header {header}, whose contact 1 has the square
   pad."""
@@ -98,7 +101,10 @@ def _power(cabling: Cabling) -> str:
     if not fed(cabling):
         return _ALONE
     headers = {w.end.connector for w in cabling.cables[2].wires if w.end.board == "flange"}
-    return _FED + "".join(_AT_FLANGE.format(header=header) for header in sorted(headers))
+    lit = any(wire.signal == "5V" for wire in cabling.cables[0].wires)
+    return (_LIT if lit else _FED) + "".join(
+        _AT_FLANGE.format(header=header) for header in sorted(headers)
+    )
 
 
 def fed(cabling: Cabling) -> bool:

@@ -21,6 +21,7 @@ _MARKED = (
     "multiplexer",
     "regulator",
     "transistor",
+    "tvs diode",
     "socket",
     "header",
     "module",
@@ -88,6 +89,8 @@ def _outline(component: Component, rules: Rules, gap_mm: float) -> tuple[Stroke,
         return _socket(shape.body, rules)
     if kind in ("regulator", "transistor"):
         return (_dot(shape.pads[0], rules, _BAR_MM),)
+    if kind == "tvs diode":
+        return (_bar(shape, rules), *_sides(shape, rules, roomy))
     if kind == "multiplexer":
         return _multiplexer(shape, rules)
     if kind == "resistor array":

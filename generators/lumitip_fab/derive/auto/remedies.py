@@ -1,6 +1,7 @@
 """The smallest changes of a refused file that work, each tried against the rules before it is
 named."""
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -82,7 +83,31 @@ def _each_enough(verdict: Verdict, steps: list[Step]) -> Iterator[Remedy]:
     for remedy in sorted(found, key=lambda remedy: remedy.field in SWITCHES):
         if remedy.field in common and _accepted(verdict, [remedy]):
             common.remove(remedy.field)
-            yield remedy
+            yield _nearest(verdict, remedy)
+
+
+def _nearest(verdict: Verdict, remedy: Remedy) -> Remedy:
+    """The accepted value nearest to the file's own: the search kept other automatic values as they
+    were, and with new ones a smaller change can be enough."""
+    step = FIELDS[remedy.field].step if remedy.field in FIELDS else _step_of(remedy.field)
+    value, was = remedy.value, remedy.was
+    if not step or not isinstance(value, int | float) or not isinstance(was, int | float):
+        return remedy
+    found, refused = 0, int(abs(was - value) / step + 1e-6)
+    while refused - found > 1:
+        middle = (found + refused) // 2
+        nearer = type(value)(round(value + math.copysign(middle * step, was - value), 6))
+        if _accepted(verdict, [Remedy(remedy.field, nearer, was)]):
+            found, remedy = middle, Remedy(remedy.field, nearer, was)
+        else:
+            refused = middle
+    return remedy
+
+
+def _step_of(field: str) -> float:
+    """Resolution of a search of a field that is not automatic; 0 where it is no length, angle,
+    current, power or voltage."""
+    return next((step for unit, step in STEPS.items() if field.endswith(unit)), 0.0)
 
 
 def _needed(verdict: Verdict, steps: list[Step]) -> tuple[Step, ...]:
@@ -130,15 +155,14 @@ def _change(now: Verdict, rule: Rule, field: str, fineness: int) -> Change | Non
         return first_of(now, rule, field, catalogue_names(now, NAMED[field], field))
     if field in SWITCHES:
         return first_of(now, rule, field, iter([not now.config.value(field)]))
-    step = next((step for unit, step in STEPS.items() if field.endswith(unit)), None)
-    if step is None or not isinstance(now.config.value(field), int | float):
+    step = _step_of(field)
+    if not step or not isinstance(now.config.value(field), int | float):
         return None
     return smallest_number(now, rule, field, step, fineness)
 
 
-def remedy_lines(verdict: Verdict) -> list[str]:
+def remedy_lines(plan: Plan) -> list[str]:
     """The changes as text, for a terminal."""
-    plan = plan_of(verdict)
     if not plan.steps:
         return []
     together = "together " * (plan.complete and len(plan.steps) > 1)
@@ -148,5 +172,5 @@ def remedy_lines(verdict: Verdict) -> list[str]:
         lines.append(f"  {first}")
         lines += [f"    or {other}" for other in others]
     if not plan.complete:
-        lines.append("  These do not mend everything: the other faults need another design.")
+        lines.append("  These do not mend every fault: the others need another design.")
     return lines

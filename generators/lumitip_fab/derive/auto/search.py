@@ -11,7 +11,8 @@ from lumitip_fab.config.automatic import FIELDS
 from lumitip_fab.config.parameters import Parameters
 from lumitip_fab.derive.auto.judge import Rule, Verdict, judge_with
 from lumitip_fab.derive.auto.strings import lowest_ma
-from lumitip_fab.derive.wiring.ratings import sold_ohm
+from lumitip_fab.derive.boards.plug_in import least_inrush_ohm
+from lumitip_fab.derive.wiring.ratings import sold_from, sold_ohm
 
 DECIMALS = 4
 COARSE, FINE, FINEST = 1, 2, 32
@@ -201,6 +202,8 @@ MENDS: dict[str, tuple[str, ...]] = {
     "holder.strap_spacing_mm": ("holder.strap_hole_mm",),
     "flange.fuse": ("emitter.current_ma", "flange.enabled"),
     "flange.input_capacitor": ("supply.voltage_v", "flange.enabled"),
+    "flange.tvs": ("supply.voltage_v", "flange.enabled"),
+    "flange.inrush_resistor": ("flange.inrush_ohm", "flange.enabled"),
     "flange.coupling": ("flange.enabled",),
     "flange.web_mm": ("flange.enabled",),
     "flange.contacts": ("flange.tail_mm", "flange.enabled"),
@@ -260,6 +263,9 @@ def change_of(now: Verdict, rule: Rule, field: str, fineness: int = COARSE) -> C
         return first_of(now, rule, field, catalogue_names(now, automatic.names, field))
     if field in _EITHER:
         return first_of(now, rule, field, iter(_others(_EITHER[field], now, field)))
+    if field == "flange.inrush_ohm":
+        values = sold_ohm(now.config.value(field)), sold_from(least_inrush_ohm(now.config))
+        return first_of(now, rule, field, iter(values))
     if field.endswith("_ohm"):
         return first_of(now, rule, field, iter([sold_ohm(now.config.value(field))]))
     if field == "stack.film_mm":

@@ -6,14 +6,17 @@ from collections.abc import Callable, Iterator
 from lumitip_fab.config.automatic import FIELDS, Value
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.auto.strings import choose_strings
+from lumitip_fab.derive.boards.connectors import POWER_WIRES
 from lumitip_fab.derive.boards.module import MOST_WIRES
 from lumitip_fab.derive.boards.packages import LEAST_RING_MM
+from lumitip_fab.derive.boards.plug_in import least_inrush_ohm
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.cells import bending_lines, lane_mm
 from lumitip_fab.derive.finger.stack import is_flex
 from lumitip_fab.derive.once import lay_out
 from lumitip_fab.derive.wiring.ratings import (
     SUPPLY_TOLERANCE,
+    sold_from,
     sold_ohm,
 )
 from lumitip_fab.errors import InputError
@@ -28,7 +31,6 @@ FINE_MM = {"track": 0.15, "gap": 0.15, "via": 0.45, "drill": 0.2}
 LEAST_DRILL_MM = 0.15  # what `board.via_drill_mm` allows
 ROOMY_CHANNEL_MM = 4.0
 LEAST_EDGE_GAP_MM = 0.25  # that common PCB fabs keep from copper to a routed edge
-POWER_WIRES = 2  # supply and ground of the receiver
 LANE_USE = 0.8  # share of the lane between two columns that tracks can fill
 
 
@@ -199,5 +201,11 @@ def _flange(config: Input) -> Iterator[Proposal]:
         if start.rated_v < needed_v <= capacitor.rated_v and same:
             yield "flange.input_capacitor", name, f"rated for {needed_v:g} V"
             break
+    fitting = [n for n, tvs in parts.tvs_diodes.items() if tvs.standoff_v >= p.supply.voltage_v]
+    if fitting:
+        name = min(fitting, key=lambda each: parts.tvs_diodes[each].standoff_v)
+        yield "flange.tvs", name, f"the lowest stand-off voltage for {p.supply.voltage_v:g} V"
+    ohm = max(float(FIELDS["flange.inrush_ohm"].start), sold_from(least_inrush_ohm(config)))
+    yield "flange.inrush_ohm", ohm, "no ringing, and a small current, as it is plugged in"
     ohm = sold_ohm(float(FIELDS["flange.gate_ohm"].start))
     yield "flange.gate_ohm", ohm, "as small a current as a gate needs"

@@ -5,6 +5,8 @@ from lumitip_fab.derive.wiring.wiring import Muxing
 from lumitip_fab.design import Connector
 
 MOST_WIDE_WAYS = 9
+POWER_WIRES = 2
+"""Supply and ground of the receiver."""
 WIDE = (2.54, 2.286, 1.2)  # pitch, pad, drill: as published
 NARROW = (1.27, 1.0, 0.6)
 

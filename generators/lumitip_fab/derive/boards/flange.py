@@ -4,8 +4,9 @@
 ╭──────────────────────────╮
 │   [ header J3, 2 rows ]  │
 │  C4  L1  C2 C3           │   SW ─ L1 ─ 5V; C2, C3 beside L1's output
-│  U1 C1        [contacts] │   C1 at VIN and GND of U1: the hot loop
-│  R1 Q1 R2  F1  J1        │   24V_IN ─ F1 ─ 24V_F ─ Q1 ─ 24V
+│  U1 C1 R3     [contacts] │   C1 at VIN and GND of U1: the hot loop
+│  R1 Q1 R2  F1  J1        │   24V_IN ─ F1 ─ FUSED ─ Q1 ─ 24V ─ R3 ─ VIN
+│                D1        │   D1 from 24V to GND
 │   [ header J2, 2 rows ]  │
 ╰──────────────────────────╯
 ```
@@ -42,8 +43,13 @@ CORNER_MM = 8.0
 """Inside the spigot of 70.7 mm of the published flange, whose board reaches as far."""
 CONTACTS_AT: Point = (7.46, 0.0)
 HEADERS_AT: tuple[Point, Point] = ((-3.5, -19.05), (-3.5, 19.05))
-TITLE_AT: Point = (6.5, 11.5)
+TITLE_AT: Point = (6.0, 12.5)
+TVS = "tvs diode"
+TVS_AT: Point = (9.4, -10.8)
+INRUSH_AT: Point = (-2.3, 0.0)
 HOLES_AT: tuple[Point, ...] = ((11.0, 19.5), (11.0, -19.5))
+INPUT = "VIN"
+"""Net of the regulator's input."""
 FIDUCIALS_AT: tuple[Point, ...] = ((-13.0, -13.5), (13.0, -15.5), (-13.0, 13.5))
 
 
@@ -68,7 +74,7 @@ def derive_flange(
     wing = derive_module(config, module, muxing, Supplies(supply, output), BOX, faults)
     parts = (*_input(config), *_regulator(config), *(wing.components if wing else ()))
     _refuse_lines(config, parts, faults)
-    switched = ("SW",) if is_regulated(config) else ()
+    behind = ("SW", INPUT) if is_regulated(config) else ()
     return (
         AuxiliaryBoard(
             name="flange",
@@ -84,7 +90,7 @@ def derive_flange(
                 *fiducials(wing.fiducials if wing else FIDUCIALS_AT),
             ),
             notes=(),
-            supplies=tuple(dict.fromkeys(("GND", supply, raw, "FUSED", output, *switched))),
+            supplies=tuple(dict.fromkeys(("GND", supply, raw, "FUSED", output, *behind))),
             keep_outs=wing.keep_outs if wing else (),
             hot_loop=_hot_loop(config),
         ),
@@ -128,7 +134,7 @@ def _strips(config: Input) -> tuple[Component, ...]:
 
 
 def _input(config: Input) -> tuple[Component, ...]:
-    """Fuse, and the MOSFET with the supply, or half of a high one, at its gate."""
+    """Fuse, the MOSFET with the supply, or half of a high one, at its gate, and the TVS diode."""
     p, parts = config.parameters.flange, config.parts.flange
     raw, supply, _ = _supplies(config)
     resistor = parts.resistor
@@ -142,20 +148,24 @@ def _input(config: Input) -> tuple[Component, ...]:
         leaded("Q1", "transistor", p.transistor, transistor, (-1.0, -7.0), 270.0, leads),
         *((upper,) if halved(config) else ()),
         chip("R2", "resistor", code, resistor, (-2.0, -3.8), 0.0, ("GATE", "GND"), part),
+        chip("D1", TVS, p.tvs, parts.tvs, TVS_AT, 0.0, (supply, "GND")),
     )
 
 
 def _regulator(config: Input) -> tuple[Component, ...]:
-    """The regulator with its input capacitor across VIN and GND, and what hangs on SW; nothing
-    where the supply is what it would make."""
+    """The regulator with its input capacitor across VIN and GND, the resistor before them, and
+    what hangs on SW; nothing where the supply is what it would make."""
     p, parts = config.parameters.flange, config.parts.flange
     if not is_regulated(config):
         return ()
     _, supply, output = _supplies(config)
-    leads = {"FB": output, "EN": supply, "VIN": supply, "GND": "GND", "SW": "SW", "BST": "BST"}
+    leads = {"FB": output, "EN": INPUT, "VIN": INPUT, "GND": "GND", "SW": "SW", "BST": "BST"}
+    inrush, code = parts.inrush_resistor, resistor_code(p.inrush_ohm)
+    part = inrush.order_number.replace("{code}", code)
     return (
+        chip("R3", "resistor", code, inrush, INRUSH_AT, 270.0, (supply, INPUT), part),
         leaded("U1", "regulator", p.regulator, parts.regulator, (-7.5, 0.0), 0.0, leads),
-        capacitor(config, "C1", p.input_capacitor, (-4.9, 0.0), 90.0, (supply, "GND")),
+        capacitor(config, "C1", p.input_capacitor, (-4.9, 0.0), 90.0, (INPUT, "GND")),
         capacitor(config, "C4", p.boot_capacitor, (-10.8, 2.1), 90.0, ("BST", "SW")),
         chip(
             "L1",

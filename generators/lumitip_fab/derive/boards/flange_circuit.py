@@ -120,6 +120,7 @@ def supply_range_v(config: Input) -> tuple[float, float]:
         part.output_v + HEADROOM_V,
         gates * transistor.gate_on_v / (1 - SUPPLY_TOLERANCE),
     )
+    least = math.ceil(10 * least - 1e-6) / 10
     rated = (part.input_v[1], parts.fuse.rated_v, transistor.rated_v)
     return least, min(*rated, gates * transistor.gate_v)
 
@@ -153,11 +154,16 @@ def _refuse_gate(config: Input, faults: Diagnostics) -> None:
     )
 
 
+def drawn_by_controller_ma(config: Input) -> float:
+    """Current of the controller, with the regulator's loss."""
+    return config.parts.controller.board.draws_ma / EFFICIENCY
+
+
 def _refuse_fuse(config: Input, strings: Strings, faults: Diagnostics) -> None:
     p = config.parameters
-    fed_ma = config.parts.controller.board.draws_ma / EFFICIENCY
     output_v = config.parts.flange.regulator.output_v
-    drawn_ma = sum(strings.current_ma) + fed_ma * output_v / p.supply.voltage_v
+    fed_ma = drawn_by_controller_ma(config) * output_v / p.supply.voltage_v
+    drawn_ma = sum(strings.current_ma) + fed_ma
     allowed_ma = 1000 * FUSE_SHARE * config.parts.flange.fuse.rated_a
     faults.refuse_unless(
         drawn_ma <= allowed_ma,

@@ -22,7 +22,7 @@ from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards import connectors
 from lumitip_fab.derive.boards.components import capacitor, chip, leaded, wires
 from lumitip_fab.derive.diagnostics import Diagnostics
-from lumitip_fab.derive.wiring.wiring import Muxing
+from lumitip_fab.derive.wiring.wiring import Muxing, larger_multiplexers
 from lumitip_fab.design import Box, Component, Point, footprints
 
 WING_MM = 12.6
@@ -173,6 +173,13 @@ def _refuse(config: Input, muxing: Muxing, faults: Diagnostics) -> None:
         wires_needed <= MOST_WIRES,
         "controller.board",
         f"is {p.controller.board!r}, whose board has room for {MOST_WIRES} wires to the "
-        f"receiver; {wires_needed} are needed. Choose a multiplexer with more inputs, fewer cells, "
-        "or a controller that plugs into the breakout.",
+        f"receiver; {wires_needed} are needed. Use {_most_cells(config)} cells or fewer with "
+        f"{p.receiver.multiplexer!r}, {larger_multiplexers(config)}or a controller that plugs into "
+        "the breakout.",
     )
+
+
+def _most_cells(config: Input) -> int:
+    """Cells that the wires from the receiver can carry with its multiplexers."""
+    mux = config.parts.receiver.multiplexer
+    return mux.channels * (MOST_WIRES - connectors.POWER_WIRES - len(mux.select))

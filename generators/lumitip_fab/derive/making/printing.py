@@ -22,6 +22,13 @@ def derive_slicing(config: Input, mould: Mould, faults: Diagnostics) -> Slicing:
         f"is {name!r}, whose rigid_parts is {other!r}; the name of a filament without "
         "rigid_parts in parts/filaments.toml is needed",
     )
+    bends = known[name].rigid_parts is not None
+    faults.refuse_unless(
+        bends == is_flex(p),
+        "backing.material",
+        f"is {name!r}, which {'bends' if bends else 'does not bend'}; with backing.variant = "
+        f"{p.backing.variant!r} a material that {'does not' if bends else 'does'} is needed",
+    )
     rigid = other if good else name
     density = p.backing.density_g_ml
     printer = config.parts.printer.profile

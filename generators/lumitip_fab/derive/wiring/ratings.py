@@ -117,6 +117,14 @@ def sold_ohm(ohm: float) -> float:
     return float(steps[np.abs(np.log(steps / ohm)).argmin()])
 
 
+def sold_from(least_ohm: float) -> float:
+    """The smallest of these values that is not below a limit."""
+    ohm = sold_ohm(least_ohm)
+    while ohm < least_ohm:
+        ohm = sold_ohm(ohm * 1.02)  # E96 steps by 2.4 %
+    return ohm
+
+
 def _nearest(ohm: float, mantissas: NDArray[np.float64]) -> float:
     decade = 10.0 ** math.floor(math.log10(ohm))
     nearest = mantissas[np.abs(np.log(mantissas * decade / ohm)).argmin()]

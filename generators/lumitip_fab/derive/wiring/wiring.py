@@ -137,6 +137,21 @@ def _from_the_gripper(cells: Cells, string: Integers) -> tuple[int, ...]:
     return tuple(string[:: -1 if last < first else 1].tolist())
 
 
+def larger_multiplexers(config: Input) -> str:
+    """Multiplexers of the catalogue with more inputs, for the middle of a sentence; empty where
+    there are none."""
+    channels = config.parts.receiver.multiplexer.channels
+    names = [n for n, m in config.catalogue.multiplexers.items() if m.channels > channels]
+    return f"{' or '.join(map(repr, names))} with more inputs, " if names else ""
+
+
+def _unlimited(config: Input) -> str:
+    """Controllers of the catalogue without a limit of analog pins, as in a parameter file."""
+    entries = config.catalogue.controllers.items()
+    names = [name for name, entry in entries if entry.unlimited_analog_pins]
+    return " or ".join(f"controller.board = {name!r}" for name in names) or "another controller"
+
+
 def derive_muxing(config: Input, cells: Cells, faults: Diagnostics) -> Muxing:
     """The fewest multiplexers for all detectors, each on its own analog pin."""
     p = config.parameters
@@ -151,7 +166,8 @@ def derive_muxing(config: Input, cells: Cells, faults: Diagnostics) -> Muxing:
         "grid.columns",
         f"has {len(cells)} cells, which need {muxes} of {p.receiver.multiplexer!r} "
         f"({mux.channels} inputs each); {p.controller.board!r} has {len(pins)} analog pins. Use "
-        f"{mux.channels * len(pins)} cells or fewer, or a multiplexer with more inputs.",
+        f"{mux.channels * len(pins)} cells or fewer, {larger_multiplexers(config)}"
+        f"or {_unlimited(config)}.",
     )
     faults.refuse_unless(
         len(mux.select) <= len(controller.select_pins),

@@ -20,6 +20,10 @@ def upright(kind: str) -> tuple[str, Node] | None:
             return "C", hand_drawn()["C"]
         case "fuse":
             return "F", _two("F", [box(-0.762, -2.54, 0.762, 2.54), line((0, 2.54), (0, -2.54))])
+        case "tvs diode":
+            band = line((-1.778, 0.762), (-1.27, 1.27), (1.27, 1.27), (1.778, 1.778))
+            anode = line((-1.27, -1.27), (1.27, -1.27), (0, 1.27), (-1.27, -1.27))
+            return "D_TVS", _two("D", [band, anode], 1.27)
         case "inductor":
             return "L", _two("L", [_coil()])
         case "crystal":

@@ -1,0 +1,170 @@
+"""Plugging the flange into a live supply: cable, resistor, input capacitor and TVS diode.
+
+```
+live supply ── cable (L) ── F1 ── Q1's body diode ──┬── to the LEDs
+                                                    ├── R3 ──┬── U1
+                                                    D1       C1
+                                                    GND      GND
+```
+
+A ceramic capacitor on its own rings with the cable to more than twice the supply, because its
+capacitance falls as its voltage rises, and its charge flows as a pulse of tens of amperes through
+fuse and MOSFET. R3 damps the one and limits the other.
+"""
+
+import math
+
+from lumitip_fab.config.load import Input
+from lumitip_fab.derive.boards.flange_circuit import (
+    drawn_by_controller_ma,
+    is_regulated,
+    supply_range_v,
+)
+from lumitip_fab.derive.diagnostics import Diagnostics
+from lumitip_fab.derive.wiring.ratings import (
+    MOST_RESISTOR_LOAD,
+    RESISTOR_TOLERANCE,
+    SUPPLY_TOLERANCE,
+    sold_from,
+    sold_ohm,
+)
+from lumitip_fab.design.electrical import PlugIn
+
+CABLE_UH = (0.5, 2.0)
+"""Least and greatest inductance of the robot's cable."""
+CAPACITANCE_TOLERANCE = 0.2
+"""Of a ceramic capacitor, either way."""
+MELTING_SHARE = 0.2
+"""Part of its melting I²t that a fuse takes 100,000 times (22 % by makers' application notes)."""
+PULSE_SHARE = 0.8
+"""Part of its rated pulse that the MOSFET takes."""
+
+
+def derive_plug_in(config: Input, faults: Diagnostics) -> tuple[PlugIn, ...]:
+    """Figures of the flange as it is plugged in; none without it.
+
+    Raises nothing: parts that do not bear it are reported to `faults`.
+    """
+    p, parts = config.parameters, config.parts.flange
+    if not p.flange.enabled:
+        return ()
+    high_v = p.supply.voltage_v * (1 + SUPPLY_TOLERANCE)
+    if not is_regulated(config):
+        _refuse_tvs(config, faults)
+    elif p.supply.voltage_v <= supply_range_v(config)[1]:  # else the supply itself is refused
+        _refuse_tvs(config, faults)
+        _refuse_inrush(config, faults)
+    capacitor = parts.input_capacitor
+    full_uf = capacitor.capacitance_nf / 1000 if is_regulated(config) else 0.0
+    low_ohm = p.flange.inrush_ohm * (1 - RESISTOR_TOLERANCE)
+    return (
+        PlugIn(
+            supply_v=high_v,
+            cable_uh=CABLE_UH,
+            inrush_ohm=p.flange.inrush_ohm,
+            capacitor_uf=full_uf,
+            left=capacitor.left,
+            left_at_v=p.supply.voltage_v,
+            capacitor_tolerance=CAPACITANCE_TOLERANCE,
+            breakdown_v=parts.tvs.breakdown_v,
+            tvs_ohm=_tvs_ohm(config),
+            limit_v=parts.regulator.input_v[1] if is_regulated(config) else parts.tvs.clamping_v,
+            peak_a=high_v / low_ohm if full_uf else 0.0,
+            pulse_a=parts.transistor.pulse_a,
+            surge_a2s=_surge_j(config) / low_ohm,
+            melting_a2s=parts.fuse.melting_a2s,
+            pulse_j=_surge_j(config),
+        ),
+    )
+
+
+def least_inrush_ohm(config: Input) -> float:
+    """The smallest resistor that damps the ringing, and keeps the pulse within fuse and MOSFET."""
+    parts = config.parts.flange
+    high_v = config.parameters.supply.voltage_v * (1 + SUPPLY_TOLERANCE)
+    needed = [_damping_ohm(config)]
+    if parts.transistor.pulse_a is not None:
+        needed.append(high_v / (PULSE_SHARE * parts.transistor.pulse_a))
+    if parts.fuse.melting_a2s is not None:
+        needed.append(_surge_j(config) / (MELTING_SHARE * parts.fuse.melting_a2s))
+    return max(needed) / (1 - RESISTOR_TOLERANCE)
+
+
+def _damping_ohm(config: Input) -> float:
+    """Critical damping of the longest cable with the least capacitance: 2 sqrt(L / C)."""
+    capacitor = config.parts.flange.input_capacitor
+    least_nf = capacitor.capacitance_nf * capacitor.left * (1 - CAPACITANCE_TOLERANCE)
+    return 2 * math.sqrt(CABLE_UH[1] * 1e-6 / (least_nf * 1e-9))
+
+
+def _surge_j(config: Input) -> float:
+    """Energy that charging the input capacitor leaves in the resistor, as if its capacitance did
+    not fall with its voltage: C V² / 2, more than it is."""
+    if not is_regulated(config):
+        return 0.0
+    high_v = config.parameters.supply.voltage_v * (1 + SUPPLY_TOLERANCE)
+    most_nf = config.parts.flange.input_capacitor.capacitance_nf * (1 + CAPACITANCE_TOLERANCE)
+    return most_nf * 1e-9 * high_v**2 / 2
+
+
+def _tvs_ohm(config: Input) -> float:
+    """Dynamic resistance of the TVS diode, from breakdown to clamping."""
+    tvs = config.parts.flange.tvs
+    return (tvs.clamping_v - tvs.breakdown_v[1]) / tvs.pulse_a
+
+
+def _refuse_tvs(config: Input, faults: Diagnostics) -> None:
+    """Refuse a TVS diode that conducts at the supply, or only above what the parts bear."""
+    p, parts = config.parameters, config.parts.flange
+    tvs, volts = parts.tvs, p.supply.voltage_v
+    high_v = volts * (1 + SUPPLY_TOLERANCE)
+    faults.refuse_unless(
+        tvs.standoff_v >= volts and tvs.breakdown_v[0] >= high_v,
+        "flange.tvs",
+        f"is {p.flange.tvs!r}, for supplies up to {tvs.standoff_v:g} V, with a breakdown voltage "
+        f"from {tvs.breakdown_v[0]:g} V on; the supply is {volts:g} V, at most {high_v:g} V. "
+        "Choose one with a higher stand-off voltage.",
+    )
+    bears_v = parts.regulator.input_v[1] if is_regulated(config) else parts.transistor.rated_v
+    faults.refuse_unless(
+        tvs.breakdown_v[1] <= bears_v,
+        "flange.tvs",
+        f"is {p.flange.tvs!r}, with a breakdown voltage of up to {tvs.breakdown_v[1]:g} V; the "
+        f"parts behind it bear {bears_v:g} V. Choose one with a lower stand-off voltage.",
+    )
+
+
+def _refuse_inrush(config: Input, faults: Diagnostics) -> None:
+    """Refuse a resistor that rings, lets too much current through, overheats or drops too much."""
+    p, parts = config.parameters, config.parts.flange
+    ohm, sold, least = p.flange.inrush_ohm, sold_ohm(p.flange.inrush_ohm), least_inrush_ohm(config)
+    faults.refuse_unless(
+        math.isclose(sold, ohm),
+        "flange.inrush_ohm",
+        f"is {ohm:g}, which is in neither the E24 nor the E96 series. Use {sold:g}.",
+    )
+    faults.refuse_unless(
+        ohm >= least,
+        "flange.inrush_ohm",
+        f"is {ohm:g}; at least {sold_from(least):g} is needed, or the regulator's input rings with "
+        f"up to {CABLE_UH[1]:g} µH of cable, or the pulse as the flange is plugged in is too large "
+        f"for {p.flange.transistor!r} and {p.flange.fuse!r}",
+    )
+    low_v = p.supply.voltage_v * (1 - SUPPLY_TOLERANCE)
+    drawn_a = drawn_by_controller_ma(config) * parts.regulator.output_v / low_v / 1000
+    load_w = drawn_a**2 * ohm * (1 + RESISTOR_TOLERANCE)
+    allowed_w = MOST_RESISTOR_LOAD * parts.inrush_resistor.power_w
+    faults.refuse_unless(
+        load_w <= allowed_w,
+        "flange.inrush_resistor",
+        f"is {p.flange.inrush_resistor!r}, with a limit of {1000 * allowed_w:.0f} mW; "
+        f"{ohm:g} ohm carry {1000 * drawn_a:.0f} mA, {1000 * load_w:.0f} mW. Choose a larger "
+        "package or a smaller flange.inrush_ohm.",
+    )
+    left_v, least_v = low_v - drawn_a * ohm, parts.regulator.input_v[0]
+    faults.refuse_unless(
+        left_v >= least_v,
+        "flange.inrush_ohm",
+        f"is {ohm:g}, which leaves {left_v:.2f} V of the supply to {p.flange.regulator!r}; at "
+        f"least {least_v:g} V is needed",
+    )
