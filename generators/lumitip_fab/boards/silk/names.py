@@ -10,7 +10,7 @@ import numpy as np
 from lumitip_fab.boards.model import MASK_MM, SIDES, PlacedComponent, Text
 from lumitip_fab.boards.placed import placed_pads
 from lumitip_fab.boards.silk.page import DOWN, LEFT, RIGHT, UP, Page, Way
-from lumitip_fab.design import Box, Point, Side
+from lumitip_fab.design import Point, Side
 
 _GAP_MM = 0.3  # between names in a row, so that they are read apart
 _OUTWARD_MM = 0.25  # that the first and the last name of a row give way
@@ -55,8 +55,7 @@ def _row(
     page: Page, side: Side, names: Sequence[str], pads: Sequence[Point], half_mm: float
 ) -> None:
     """The names of pads in a row: all alike if there is room, else each where it has some."""
-    boxes = [Box(x, x, y, y).grown(half_mm) for x, y in pads]
-    choices = [_beside(page, name, box) for name, box in zip(names, boxes, strict=True)]
+    choices = [_beside(page, name, at, half_mm) for name, at in zip(names, pads, strict=True)]
     for texts in map(list, zip(*choices, strict=True)):
         flat = texts[0].angle_deg == 0.0
         if flat and len(texts) > 1:
@@ -66,10 +65,15 @@ def _row(
             page.put(side, texts)
             return
     steps = np.arange(_STEP_MM, _ALONG_MM, _STEP_MM).tolist()
-    for name, box, places in zip(names, boxes, choices, strict=True):
+    ends = (pads[0], LEFT), (pads[-1], RIGHT)
+    for name, at, places in zip(names, pads, choices, strict=True):
         moved = [_moved(text, sign * d) for d in steps for text in places for sign in (1, -1)]
-        ends = ((boxes[0], LEFT), (boxes[-1], RIGHT))
-        outside = [t for end, way in ends if box is end for t in _outside(page, name, box, way)]
+        outside = [
+            text
+            for end, way in ends
+            if at == end
+            for text in _outside(page, name, at, half_mm, way)
+        ]
         page.require(f"the label {name!r}", [*places, *moved, *outside], side)
 
 
@@ -78,21 +82,22 @@ def _away_mm(page: Page) -> float:
     return MASK_MM + page.rules.silk_gap_mm + _SPARE_MM
 
 
-def _beside(page: Page, name: str, pad: Box) -> list[Text]:
+def _beside(page: Page, name: str, at: Point, half_mm: float) -> list[Text]:
     """Places for the name of a pad in a row: above it, upright above it, both ways below it."""
-    away, pen = _away_mm(page), page.text(name, (0.0, 0.0)).width_mm
+    away, pen, half = _away_mm(page), page.text(name, at).width_mm, (half_mm, half_mm)
     return [
-        page.beside(name, pad, way, away if upright else away + pen / 2, upright)
+        page.beside(name, at, half, way, away if upright else away + pen / 2, upright)
         for way in (UP, DOWN)
         for upright in (False, True)
     ]
 
 
-def _outside(page: Page, name: str, pad: Box, way: Way) -> Iterator[Text]:
+def _outside(page: Page, name: str, at: Point, half_mm: float, way: Way) -> Iterator[Text]:
     """Places for the name of the first or last pad of a row, beyond the row's end."""
     for further in np.arange(0.0, _BEYOND_MM, _STEP_MM).tolist():
         for upright in (False, True):
-            yield page.beside(name, pad, way, _away_mm(page) + further, upright)
+            away, half = _away_mm(page) + further, (half_mm, half_mm)
+            yield page.beside(name, at, half, way, away, upright)
 
 
 def _at_contacts(page: Page, part: PlacedComponent) -> None:
@@ -108,13 +113,12 @@ def _at_contacts(page: Page, part: PlacedComponent) -> None:
         rise = pad.y_mm - part.y_mm
         outward = math.copysign(1.0, rise) if pad.pad.y_mm else inward
         ways = (UP, DOWN) if outward > 0 else (DOWN, UP)
-        half = max(pad.pad.height_mm / 2, drawn - abs(pad.pad.y_mm))
-        box = Box(pad.x_mm, pad.x_mm, pad.y_mm, pad.y_mm).grown(half)
+        at, half = (pad.x_mm, pad.y_mm), max(pad.pad.height_mm / 2, drawn - abs(pad.pad.y_mm))
         lying = [
-            _moved(page.beside(name, box, way, _AWAY_MM), aside)
+            _moved(page.beside(name, at, (half, half), way, _AWAY_MM), aside)
             for aside, way in product(_ASIDE_MM, ways)
         ]
-        upright = [page.beside(name, box, way, _AWAY_MM, upright=True) for way in ways]
+        upright = [page.beside(name, at, (half, half), way, _AWAY_MM, upright=True) for way in ways]
         page.require(repr(f"{part.ref} {name}"), lying if flat else [*upright, *lying])
 
 

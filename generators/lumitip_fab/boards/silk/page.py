@@ -168,31 +168,32 @@ class Page:
     def beside(
         self,
         words: str,
-        box: Box,
+        at: Point,
+        half_mm: Point,
         way: Way,
         away_mm: float,
         upright: bool = False,
         height_mm: float = 0.0,
     ) -> Text:
-        """A text beside the middle of a box's side.
+        """A text beside the middle of a rectangle's side.
 
         Args:
             words: what it says.
-            box: beside which it stands.
-            way: from the box's middle to the text.
+            at: middle of the rectangle.
+            half_mm: half its width and length.
+            way: from the rectangle's middle to the text.
             away_mm: gap between both.
             upright: whether it is turned by a quarter.
             height_mm: of its letters; as small as is legible by default.
         """
-        text = self.text(words, box.centre_mm, height_mm, 90.0 if upright else 0.0)
+        text = self.text(words, at, height_mm, 90.0 if upright else 0.0)
         lengthwise = bool(way[0]) != upright
         size = self.length_mm(words, height_mm) if lengthwise else text.height_mm
-        off = size / 2 + away_mm
-        return replace(
-            text,
-            x_mm=text.x_mm + way[0] * (box.width_mm / 2 + off),
-            y_mm=text.y_mm + way[1] * (box.length_mm / 2 + off),
+        x, y = (
+            middle + sign * (half + away_mm + size / 2)
+            for middle, sign, half in zip(at, way, half_mm, strict=True)
         )
+        return replace(text, x_mm=x, y_mm=y)
 
     def arrow(self, side: Side, places: Iterable[Point]) -> bool:
         """Print an arrow to the tip with its word below, at the first free place of its head."""

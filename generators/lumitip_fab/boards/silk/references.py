@@ -50,10 +50,15 @@ def _round(page: Page, ref: str, yard: Box) -> list[Text]:
         *((way, True) for way in (UP, DOWN, LEFT, RIGHT)),
     )
     return [
-        page.beside(ref, yard, way, _AWAY_MM + farther, upright, _REF_MM)
+        page.beside(ref, *_rectangle(yard), way, _AWAY_MM + farther, upright, _REF_MM)
         for farther in (0.0, 1.0, 2.0, 3.0)
         for way, upright in turns
     ]
+
+
+def _rectangle(yard: Box) -> tuple[Point, Point]:
+    """Middle, and half the width and length."""
+    return yard.centre_mm, (yard.width_mm / 2, yard.length_mm / 2)
 
 
 def _edges(cells: Sequence[Point], pitch_mm: float) -> list[LineString]:
@@ -177,16 +182,16 @@ def _beyond(page: Page, part: PlacedComponent, start_mm: float, sign: int) -> It
 
 def _place_of(page: Page, part: PlacedComponent, room: Clear) -> Text | None:
     """A free place for a part's reference, on the board."""
-    yard, ref = courtyard(part), part.ref
-    half = page.text(ref, yard.centre_mm).height_mm / 2
-    choices = [page.text(ref, yard.centre_mm, 1.2)] if part.kind == "multiplexer" else []
+    yard, ref = _rectangle(courtyard(part)), part.ref
+    half = page.text(ref, yard[0]).height_mm / 2
+    choices = [page.text(ref, yard[0], 1.2)] if part.kind == "multiplexer" else []
     for closer in (0.0, 0.1, 0.2, 0.3, 0.4):
         away = half + page.rules.silk_gap_mm - closer
         choices += [
-            page.beside(ref, yard, way, away, upright=way in (LEFT, RIGHT))
+            page.beside(ref, *yard, way, away, upright=way in (LEFT, RIGHT))
             for way in (UP, DOWN, LEFT, RIGHT)
         ]
-        choices.append(page.beside(ref, yard, UP, half - closer, upright=True))
+        choices.append(page.beside(ref, *yard, UP, half - closer, upright=True))
     free = (
         text
         for apart in (_APART_MM, 0.0)
