@@ -92,7 +92,7 @@ def _printed(design: Design, board: AuxiliaryBoard, cells: Cells | None = None) 
     """A board whose parts are in their places, with outlines and legend."""
     rules, title, stack = design.rules, design.title, design.stack
     outlined = [with_outline(part, rules, cells) for part in board.components]
-    spots.refuse_overlaps(board.name, outlined, inside=board.box if cells else None)
+    spots.refuse_misplaced(board.name, outlined, inside=board.box if cells else None)
     bare = Placement(
         name=board.name,
         title=title.on_boards().name,

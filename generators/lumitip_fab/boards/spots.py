@@ -83,8 +83,8 @@ def _sides(box: Box) -> tuple[float, float, float, float]:
     return box.x_min_mm, box.y_min_mm, box.x_max_mm, box.y_max_mm
 
 
-def refuse_overlaps(name: str, parts: Sequence[PlacedComponent], inside: Box | None) -> None:
-    """Courtyards keep clear of each other.
+def refuse_misplaced(name: str, parts: Sequence[PlacedComponent], inside: Box | None) -> None:
+    """Refuse courtyards that overlap or leave the board.
 
     Args:
         name: of the board.

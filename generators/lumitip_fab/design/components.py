@@ -3,8 +3,9 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
-from lumitip_fab.catalogue.controllers import OPEN, Leaded, Module, Strip
-from lumitip_fab.catalogue.electronics import Chip, Multiplexer, ResistorArray
+from lumitip_fab.catalogue.controllers import OPEN, Leaded, Strip
+from lumitip_fab.catalogue.electronics import Chip, ResistorArray
+from lumitip_fab.catalogue.record import Ordered
 from lumitip_fab.design import footprints
 from lumitip_fab.design.pcb import Component, Footprint
 from lumitip_fab.design.shape import Point, Side
@@ -19,7 +20,7 @@ def mounted(
     ref: str,
     kind: str,
     value: str,
-    entry: Chip | ResistorArray | Multiplexer | Leaded | Strip | Module,
+    entry: Ordered,
     shape: Footprint,
     nets: Nets,
     at: Point = MIDDLE,
