@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from common import Goals
-from lumitip_fab.boards.files import finger_files
+from lumitip_fab.boards.files import model_files
 from lumitip_fab.boards.model import BoardModel
 from lumitip_fab.boards.placement import place
 from lumitip_fab.boards.pour import pour
@@ -92,7 +92,7 @@ def measure(design: Design, finger: Finger, goals: Goals) -> str:
     found = timed(lambda: route(placement))
     routing, fills, _ = timed(lambda: pour(placement, found))
     model = BoardModel(placement, routing, fills)
-    timed(lambda: finger_files(design, finger, model))
+    timed(lambda: model_files(design, model))
     busy = time.process_time() - busy
     name, faults = f"{len(d.layout)} cells, {finger.name}", len(verify(model))
     if limit_s := LIMITS_S.get(len(d.layout)):
@@ -110,7 +110,7 @@ def main(counts: list[int]) -> int:
     """Print the table; the exit code."""
     goals = Goals()
     small = design_of(32)
-    finger_files(small, small.emitter, _board(small))  # compiles, and does late imports
+    model_files(small, _board(small))  # compiles, and does late imports
     print("seconds, but for the last columns; cpu is processor time")
     print(
         f"{'cells':>6}{'board':>10}{'place':>8}{'route':>8}{'pour':>8}{'files':>8}{'all':>8}{'cpu':>8}"

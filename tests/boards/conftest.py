@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from lumitip_fab.boards.files import auxiliary_files, board_files
+from lumitip_fab.boards.files import board_files
 from lumitip_fab.cli.steps import STEPS
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
@@ -86,7 +86,7 @@ def _write(design: Design, out: Path) -> None:
     for task in tasks(STEPS, design):
         make = {
             "finger_board": board_files,
-            "other_board": auxiliary_files,
+            "other_board": board_files,
             "models": model_files,
         }.get(task.step.name)
         for artefact in make(design, *task.item) if make else ():

@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 import pytest
 
-from lumitip_fab.boards.files import auxiliary_files
+from lumitip_fab.boards.files import board_files
 from lumitip_fab.design import Design
 from lumitip_fab.errors import BuildError
 from lumitip_fab.pipeline.artefact import Artefact
@@ -25,7 +25,7 @@ def _made(design: Design, name: str, supply: str) -> tuple[int, tuple[Artefact, 
         for device in auxiliary.components
     )
     renamed = dataclasses.replace(auxiliary, components=devices)
-    files = auxiliary_files(design, renamed)
+    files = board_files(design, renamed)
     return sum(device.pins.count(supply) for device in devices), files
 
 

@@ -6,10 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lumitip_fab.boards.circuit import Circuit, circuit, resistor_code
+from lumitip_fab.boards.circuit import circuit
+from lumitip_fab.boards.placement import place
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
-from lumitip_fab.design import Design
+from lumitip_fab.design import Component, Design
+from lumitip_fab.text import resistor_code
 
 PRESETS = ("published", "asymmetric", "dense", "mux16")
 # Leads of the 74HC4051 by its data sheet.
@@ -32,15 +34,15 @@ def designs(design_dir: Path) -> dict[str, Design]:
     return {name: derive(load(design_dir / "presets" / f"{name}.toml")) for name in PRESETS}
 
 
-def _circuit(design: Design, name: str) -> Circuit:
+def _circuit(design: Design, name: str) -> tuple[Component, ...]:
     finger = getattr(design, name)
     return circuit(design, finger)
 
 
-def _pins(plan: Circuit) -> dict[str, list[tuple[str, str]]]:
+def _pins(parts: tuple[Component, ...]) -> dict[str, list[tuple[str, str]]]:
     """Reference and pad of everything on each net."""
     found = defaultdict(list)
-    for part in plan.components:
+    for part in parts:
         for pad, net in part.nets:
             found[net].append((part.ref, pad))
     return found
@@ -87,7 +89,7 @@ def test_every_detector_hangs_on_the_input_that_the_layout_says(
 
 def test_the_4051_is_wired_as_its_data_sheet_says(designs: dict[str, Design]) -> None:
     plan = _circuit(designs["published"], "receiver")
-    nets = dict(next(part for part in plan.components if part.ref == "U2").nets)
+    nets = dict(next(part for part in plan if part.ref == "U2").nets)
     told = {name: nets[lead] for name, lead in HC4051.items()}
     assert told == {
         "VCC": "3V3",
@@ -110,7 +112,7 @@ def test_the_published_parts_are_ordered_by_their_numbers(designs: dict[str, Des
     parts = {
         p.ref: (p.value, p.part, p.footprint.name)
         for name in ("emitter", "receiver")
-        for p in _circuit(design, name).components
+        for p in _circuit(design, name)
         if p.part
     }
     assert parts["D1"] == ("15406085BA300", "15406085BA300", "LEDC1608X60N")
@@ -118,7 +120,7 @@ def test_the_published_parts_are_ordered_by_their_numbers(designs: dict[str, Des
     assert parts["U4"] == ("74HC4051PW", "74HC4051PW,118", "SOP65P640X110-16N")
     assert parts["R4"] == ("75K", "RC0603FR-0775KL", "RESC1608X50N")
     assert parts["C1"] == ("100nF", "CC0603KRX7R9BB104", "CAPC1608X90N")
-    string_resistors = [p for p in _circuit(design, "emitter").components if p.kind == "resistor"]
+    string_resistors = [p for p in _circuit(design, "emitter") if p.kind == "resistor"]
     assert [p.value for p in string_resistors] == ["150R", "150R"]
 
 
@@ -128,7 +130,7 @@ def test_each_multiplexer_has_its_pull_up_and_capacitor_and_no_floating_input(
 ) -> None:
     design = designs[preset]
     plan = _circuit(design, "receiver")
-    parts = {part.ref: dict(part.nets) for part in plan.components}
+    parts = {part.ref: dict(part.nets) for part in plan}
     for i, pin in enumerate(design.wiring.adc_pins, start=1):
         if not design.wiring.own_pull_ups:
             assert parts[f"R{i}"] == {"1": "3V3", "2": pin}
@@ -142,12 +144,12 @@ def test_each_detector_has_a_pull_up_of_its_own_beside_its_multiplexer(
 ) -> None:
     design = designs[preset]
     plan = _circuit(design, "receiver")
-    arrays = [dict(part.nets) for part in plan.components if part.kind == "resistor array"]
+    arrays = [dict(part.nets) for part in plan if part.kind == "resistor array"]
     joined = [{nets[str(i)], nets[str(9 - i)]} - {"3V3"} for nets in arrays for i in (1, 2, 3, 4)]
     assert all(nets[str(i)] == "3V3" for nets in arrays for i in (5, 6, 7, 8))
     found = sorted(net for pair in joined for net in pair)
     assert found == sorted(f"Q{cell.index + 1}" for cell in design.layout.cells)
-    assert not any(part.kind == "resistor" for part in plan.components)
+    assert not any(part.kind == "resistor" for part in plan)
 
 
 @pytest.mark.parametrize("preset", PRESETS)
@@ -157,19 +159,20 @@ def test_every_signal_has_a_test_point_and_a_class(
 ) -> None:
     design = designs[preset]
     plan = _circuit(design, finger)
-    points = {part.nets[0][1] for part in plan.components if part.kind == "test point"}
+    points = {part.nets[0][1] for part in plan if part.kind == "test point"}
     signals = set(getattr(design, finger).connector.signals)
     assert points == signals
-    classes = {net.name: net.net_class for net in plan.nets}
-    assert len(classes) == len(plan.nets)
+    nets = place(design, getattr(design, finger)).nets
+    classes = {net.name: net.net_class for net in nets}
+    assert len(classes) == len(nets)
     assert {n for n, kind in classes.items() if kind == "supply"} == signals & {
         "GND",
         "3V3",
         "24V",
         "12V",
     }
-    assert set(classes) == {net for part in plan.components for _, net in part.nets}
-    assert sum(part.kind == "fiducial" for part in plan.components) == 3
+    assert set(classes) == {net for part in plan for _, net in part.nets}
+    assert sum(part.kind == "fiducial" for part in plan) == 3
 
 
 @pytest.mark.parametrize(

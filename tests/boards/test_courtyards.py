@@ -7,7 +7,6 @@ from itertools import combinations
 import pytest
 
 from lumitip_fab.boards.courtyards import CONTACTS_MM, PART_MM, land, with_courtyards
-from lumitip_fab.boards.files import _placement
 from lumitip_fab.boards.model import Placement
 from lumitip_fab.boards.placed import courtyard
 from lumitip_fab.boards.placement import place
@@ -15,11 +14,8 @@ from lumitip_fab.design import Box, Design
 
 
 def boards_of(design: Design) -> dict[str, Placement]:
-    auxiliary = {
-        board.name: _placement(design.title, design.reading, board, design.rules)
-        for board in design.auxiliary_boards
-    }
-    return {finger.name: place(design, finger) for finger in design.fingers} | auxiliary
+    boards = (*design.fingers, *design.auxiliary_boards)
+    return {board.name: place(design, board) for board in boards}
 
 
 def around_mm(outer: Box, inner: Box) -> float:

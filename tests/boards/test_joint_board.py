@@ -7,9 +7,10 @@ from pathlib import Path
 import pytest
 
 from damages import failing
-from lumitip_fab.boards.files import auxiliary_files
-from lumitip_fab.derive.boards import components
+from lumitip_fab.boards.files import board_files
+from lumitip_fab.derive.boards.connectors import NARROW
 from lumitip_fab.design import AuxiliaryBoard, Box, Design
+from lumitip_fab.design.components import wires
 from lumitip_fab.design.encoding import design_text
 
 pytestmark = pytest.mark.slow
@@ -23,8 +24,8 @@ JOINT = AuxiliaryBoard(
     holes=((-9.0, 0.0), (9.0, 0.0)),
     hole_mm=2.2,
     components=(
-        components.wires("J1", SIGNALS, (0.0, -6.0), False),
-        components.wires("J2", SIGNALS, (0.0, 6.0), False),
+        wires("J1", SIGNALS, NARROW, (0.0, -6.0)),
+        wires("J2", SIGNALS, NARROW, (0.0, 6.0)),
     ),
     notes=(),
     supplies=("GND", "5V"),
@@ -37,7 +38,7 @@ def test_a_board_of_wire_pads_alone_is_made_and_passes(
     designs: Callable[[str], Design], tmp_path: Path
 ) -> None:
     design = dataclasses.replace(designs("small"), auxiliary_boards=(JOINT,))
-    for artefact in auxiliary_files(design, JOINT):
+    for artefact in board_files(design, JOINT):
         path = tmp_path / artefact.path
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(artefact.data)

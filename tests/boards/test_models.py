@@ -9,7 +9,6 @@ import pytest
 from build123d import import_step
 
 from damages import edit, failing
-from lumitip_fab.boards.files import _placement
 from lumitip_fab.boards.kicad.bodies import body_strokes
 from lumitip_fab.boards.model import PlacedComponent
 from lumitip_fab.boards.placed import placed_box
@@ -51,13 +50,9 @@ HEADER = Strip(
 
 def parts_of(design: Design, name: str) -> tuple[PlacedComponent, ...]:
     """The parts of a board that have a body."""
-    fingers = {finger.name: finger for finger in design.fingers}
-    if name in fingers:
-        board = place(design, fingers[name])
-    else:
-        auxiliary = next(board for board in design.auxiliary_boards if board.name == name)
-        board = _placement(design.title, design.reading, auxiliary, design.rules)
-    return tuple(part for part in board.components if part.part)
+    boards = (*design.fingers, *design.auxiliary_boards)
+    board = next(board for board in boards if board.name == name)
+    return tuple(part for part in place(design, board).components if part.part)
 
 
 def wanted(part: PlacedComponent, pcb_mm: float) -> tuple[float, ...]:

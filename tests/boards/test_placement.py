@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 import shapely
 
-from lumitip_fab.boards.files import auxiliary_files
+from lumitip_fab.boards.files import board_files
 from lumitip_fab.boards.model import SIDES
 from lumitip_fab.boards.placed import courtyard, pad_at, placed_pads
 from lumitip_fab.boards.placement import place
@@ -186,4 +186,4 @@ def test_parts_of_a_auxiliary_that_overlap_are_refused(designs: Callable[[str], 
     ]
     flange = dataclasses.replace(flange, components=tuple(devices))
     with pytest.raises(BuildError, match=r"flange: .*\bL1\b.* overlap: choose smaller"):
-        auxiliary_files(d, flange)
+        board_files(d, flange)

@@ -38,7 +38,7 @@ def drawn(design_dir: Path, tmp_path_factory: pytest.TempPathFactory) -> Drawn:
         for finger in d.fingers:
             board = place(d, finger)
             folder = tmp_path_factory.mktemp(f"{preset}-{finger.name}")
-            made = schematic_files(board, finger, d)
+            made = schematic_files(board, d)
             made |= project_files(BoardModel(board, Routing((), (), 0), ()), d.stack.pcb_mm)
             for path, data in made.items():
                 (folder / path).parent.mkdir(exist_ok=True)
@@ -147,5 +147,5 @@ def test_everything_is_on_the_paper_and_on_the_grid(drawn: Drawn) -> None:
 
 def test_the_same_board_gives_the_same_bytes(drawn: Drawn) -> None:
     design, placement, _ = drawn["asymmetric", "receiver"]
-    first, again = (schematic_files(placement, design.receiver, design) for _ in range(2))
+    first, again = (schematic_files(placement, design) for _ in range(2))
     assert first == again

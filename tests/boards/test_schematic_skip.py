@@ -25,7 +25,7 @@ def sheet(
     d = designs("small")
     finger = next(f for f in d.fingers if f.name == request.param)
     board = place(d, finger)
-    for name, data in schematic_files(board, finger, d).items():
+    for name, data in schematic_files(board, d).items():
         (tmp_path / name).write_bytes(data)
     parts = {c.ref: c.value for c in board.components if c.kind != "fiducial"}
     return parts, tmp_path / f"{finger.name}.kicad_sch"

@@ -83,7 +83,7 @@ def drawn(
         return sheet_text(*drawing)
 
     monkeypatch.setattr(files, "sheet_text", told)
-    made = files.schematic_files(board, finger, d)
+    made = files.schematic_files(board, d)
     file = tmp_path / f"{request.param}.kicad_sch"
     file.write_bytes(made[file.name])
     return board, sheets[0], {part.ref: part for part in board.components}, file

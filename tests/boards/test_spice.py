@@ -107,7 +107,7 @@ def test_a_detector_that_does_not_saturate_reads_by_its_light(
 
 def _detector(design: Design, corner: Corner, step: str, folder: Path) -> dict[str, float]:
     """Readings of a phototransistor after a change of channel."""
-    nets = first_mux(circuit(design, design.receiver).components, design)
+    nets = first_mux(circuit(design, design.receiver), design)
     lines = ("*", *detectors(nets, design, corner, (STEPS | HALF_LIT)[step]), ".end")
     return simulated("\n".join(lines) + "\n", folder)
 

@@ -1,133 +1,30 @@
 """Every file of a board, from its parts in their places to the zips that it is ordered with."""
 
-from collections.abc import Callable
-
-from lumitip_fab.boards.circuit import GROUND, SIGNAL, SUPPLY, net_class
 from lumitip_fab.boards.courtyards import with_courtyards
-from lumitip_fab.boards.fab.notes import (
-    assembly_note,
-    auxiliary_note,
-    fabrication_note,
-    stop_note,
-)
+from lumitip_fab.boards.fab.notes import assembly_note, fabrication_note, stop_note
 from lumitip_fab.boards.fab.order import bom_rows, layers_of, order_files
 from lumitip_fab.boards.fab.picture import picture_files
 from lumitip_fab.boards.kicad.project import project_files
-from lumitip_fab.boards.kicad.schematic.auxiliary import auxiliary_sheet
-from lumitip_fab.boards.kicad.schematic.files import schematic_files
-from lumitip_fab.boards.model import BoardModel, Net, Placement
-from lumitip_fab.boards.placed import pad_at
-from lumitip_fab.boards.placement import place, refuse_overlaps
+from lumitip_fab.boards.kicad.schematic import schematic_files
+from lumitip_fab.boards.model import BoardModel, Placement
+from lumitip_fab.boards.placement import place
 from lumitip_fab.boards.pour import pour
 from lumitip_fab.boards.route import route
-from lumitip_fab.boards.silk.auxiliary import with_legend
-from lumitip_fab.boards.silk.outlines import with_outline, without_crowded_lines
 from lumitip_fab.boards.teardrops import with_teardrops
 from lumitip_fab.boards.verify import require_clean_drc
-from lumitip_fab.design import AuxiliaryBoard, Box, Design, Fab, Finger, Reading, Rules, Title
-from lumitip_fab.design.frames import Matrix, board_page_to_auxiliary, board_page_to_sensor
+from lumitip_fab.design import AuxiliaryBoard, Design, Finger
+from lumitip_fab.design.frames import board_page_to_auxiliary, board_page_to_sensor
 from lumitip_fab.pipeline.artefact import Artefact
 
 
-def board_files(design: Design, finger: Finger) -> tuple[Artefact, ...]:
-    """Every file of a finger's board: KiCad project, pictures of both sides, orders.
+def board_files(design: Design, board: Finger | AuxiliaryBoard) -> tuple[Artefact, ...]:
+    """Every file of a board: KiCad project, pictures of both sides, orders.
 
     Raises:
-        BuildError: if a part has no room, a net cannot be routed, or the finished copper breaks
-            its rules.
+        BuildError: if a part or a label has no room, a net cannot be routed, or the finished
+            copper breaks its rules.
     """
-    return finger_files(design, finger, finished(place(design, finger)))
-
-
-def finger_files(design: Design, finger: Finger, model: BoardModel) -> tuple[Artefact, ...]:
-    """Every file of a finger's finished board."""
-    board = model.placement
-    sheet = schematic_files(board, finger, design)
-    chip = design.packages.at_cells(finger)
-    notes = {
-        **stop_note(board, chip, finger.cells_hold.kind),
-        f"{board.name}_fabrication.txt": fabrication_note(
-            model, finger.finish, design.stack.pcb_mm
-        ),
-    }
-    return model_files(
-        model,
-        sheet,
-        notes,
-        lambda fab: assembly_note(board, finger, design.packages, fab),
-        design.stack.pcb_mm,
-        finger.finish.mask,
-        design.fabs,
-        board_page_to_sensor(design.stack),
-        "sensor",
-    )
-
-
-def auxiliary_files(design: Design, auxiliary: AuxiliaryBoard) -> tuple[Artefact, ...]:
-    """Every file of a board outside the fingers: KiCad project, pictures of both sides, orders.
-
-    Raises:
-        BuildError: if two parts overlap, a net cannot be routed, a label has no room, or the
-            finished copper breaks its rules.
-    """
-    bare = _placement(design.title, design.reading, auxiliary, design.rules)
-    refuse_overlaps(auxiliary.name, bare.components, "choose smaller parts")
-    model = finished(with_legend(bare, auxiliary, design.rules))
-    sheet = auxiliary_sheet(model.placement, auxiliary)
-    thickness_mm = design.stack.auxiliary_mm
-    note = fabrication_note(model, auxiliary.finish, thickness_mm)
-    return model_files(
-        model,
-        sheet,
-        {f"{auxiliary.name}_fabrication.txt": note},
-        lambda fab: auxiliary_note(model.placement, auxiliary.title, fab),
-        thickness_mm,
-        auxiliary.finish.mask,
-        design.fabs,
-        board_page_to_auxiliary(design.stack),
-        "auxiliary",
-    )
-
-
-def _hot_loop(auxiliary: AuxiliaryBoard) -> tuple[Box, ...]:
-    """The box round the middles of the hot loop's pads; none without a regulator."""
-    parts = {part.ref: part for part in auxiliary.components}
-    places = [pad_at(parts[ref], number) for ref, number in auxiliary.hot_loop]
-    if not places:
-        return ()
-    xs, ys = zip(*places, strict=True)
-    return (Box(min(xs), max(xs), min(ys), max(ys)),)
-
-
-def _placement(
-    title: Title, reading: Reading, auxiliary: AuxiliaryBoard, rules: Rules
-) -> Placement:
-    outlined = [with_outline(part, rules) for part in auxiliary.components]
-    return Placement(
-        name=auxiliary.name,
-        title=title.on_boards().name,
-        revision=title.revision,
-        design_hash=reading.design_hash,
-        outline=auxiliary.box,
-        corner_mm=auxiliary.corner_mm,
-        holes=auxiliary.holes,
-        hole_mm=auxiliary.hole_mm,
-        keep_outs=auxiliary.keep_outs,
-        edge_clearance_mm=rules.edge_gap_mm,
-        hole_clearance_mm=rules.hole_gap_mm,
-        components=without_crowded_lines(outlined, rules),
-        ground_only=_hot_loop(auxiliary),
-        nets=tuple(
-            Net(name, SUPPLY if name in auxiliary.supplies else SIGNAL) for name in auxiliary.nets
-        ),
-        classes=(
-            net_class(SIGNAL, rules.track_mm, rules),
-            net_class(SUPPLY, rules.supply_track_mm, rules),
-        ),
-        ground=GROUND,
-        silk=(),
-        texts=(),
-    )
+    return model_files(design, finished(place(design, board)))
 
 
 def finished(placement: Placement) -> BoardModel:
@@ -143,48 +40,26 @@ def finished(placement: Placement) -> BoardModel:
     return require_clean_drc(BoardModel(with_courtyards(placement), routing, fills, solid))
 
 
-def model_files(
-    model: BoardModel,
-    sheet: dict[str, bytes],
-    notes: dict[str, bytes],
-    assembly: Callable[[Fab], bytes],
-    thickness_mm: float,
-    mask: str,
-    fabs: tuple[Fab, ...],
-    page: Matrix,
-    frame: str,
-) -> tuple[Artefact, ...]:
-    """The files of any finished board.
-
-    Args:
-        model: the board.
-        sheet: files of its schematic.
-        notes: text files of every zip, by name.
-        assembly: note for who places the parts, by PCB fab.
-        thickness_mm: of it.
-        mask: colour of its solder mask.
-        fabs: where it may be ordered.
-        page: from the board file's page to its frame.
-        frame: name of that frame.
-    """
-    name, layers = model.placement.name, layers_of(model)
-    orders = {
-        f"order/{path}": data
-        for fab in fabs
-        for path, data in order_files(
-            model, layers, {**notes, f"{name}_assembly.txt": assembly(fab)}, fab, name
-        ).items()
-    }
+def model_files(design: Design, model: BoardModel) -> tuple[Artefact, ...]:
+    """Every file of a finished board."""
+    board, layers = model.placement, layers_of(model)
+    notes = {**stop_note(board), f"{board.name}_fabrication.txt": fabrication_note(model)}
     files = {
-        **project_files(model, thickness_mm),
-        **sheet,
-        **picture_files(model, mask),
-        **orders,
+        **project_files(model, board.thickness_mm),
+        **schematic_files(board, design),
+        **picture_files(model, board.finish.mask),
     }
-    facts = {"parts": list(bom_rows(model.placement))}
+    for fab in design.fabs:
+        texts = {**notes, f"{board.name}_assembly.txt": assembly_note(board, fab)}
+        orders = order_files(model, layers, texts, fab, board.name)
+        files |= {f"order/{path}": data for path, data in orders.items()}
+    # Cells are in the sensor frame of their finger, and with them the whole board.
+    frame = "sensor" if board.cells else "auxiliary"
+    to_frame = board_page_to_sensor if board.cells else board_page_to_auxiliary
+    facts = {"parts": list(bom_rows(board))}
     return tuple(
-        Artefact(f"boards/{name}/{path}", data, page, frame, facts)
+        Artefact(f"boards/{board.name}/{path}", data, to_frame(design.stack), frame, facts)
         if path.endswith(".kicad_pcb")
-        else Artefact(f"boards/{name}/{path}", data, frame="")
+        else Artefact(f"boards/{board.name}/{path}", data, frame="")
         for path, data in files.items()
     )

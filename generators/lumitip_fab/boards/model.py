@@ -5,9 +5,15 @@ from dataclasses import dataclass, field
 
 from shapely import Polygon
 
-from lumitip_fab.design import Box, Component, Flexible, Point, Side
+from lumitip_fab.design import Box, Component, Flexible, Led, Photodetector, Point, Side
+from lumitip_fab.design.pcb import AUXILIARY_FINISH, Finish
 
 SIDES: tuple[Side, Side] = ("front", "back")
+GROUND = "GND"
+SIGNAL, SUPPLY = "signal", "supply"
+"""Classes of nets."""
+AT_CELLS = ("led", "photodetector")
+"""Kinds of parts that stand at cells."""
 
 
 @dataclass(frozen=True)
@@ -63,6 +69,18 @@ class Net:
 
 
 @dataclass(frozen=True)
+class Cells:
+    """Cells on a board's front, with a part at each."""
+
+    at: tuple[Point, ...]
+    pitch_mm: float
+    part: Led | Photodetector
+    """The part at each cell, as the catalogue has it."""
+    gap_mm: float
+    """Least gap between two of them."""
+
+
+@dataclass(frozen=True)
 class Placement:
     """A board before it has copper."""
 
@@ -95,6 +113,11 @@ class Placement:
     """Layers and bend of a flexible board."""
     ground_only: tuple[Box, ...] = ()
     """Where the back carries no net but ground: under a regulator's hot loop."""
+    caption: str = ""
+    """Title beside the name of the whole design."""
+    cells: Cells | None = None
+    finish: Finish = AUXILIARY_FINISH
+    thickness_mm: float = 1.6
 
 
 @dataclass(frozen=True)

@@ -5,10 +5,16 @@ import math
 from collections.abc import Sequence
 
 from lumitip_fab.boards import spots
-from lumitip_fab.boards.circuit import GROUND, circuit, gap_at_cells_mm
+from lumitip_fab.boards.circuit import circuit, gap_at_cells_mm, supply_of
 from lumitip_fab.boards.model import (
+    GROUND,
     MIN_WIDTH_MM,
+    SIGNAL,
+    SUPPLY,
     THERMAL_GAP_MM,
+    Cells,
+    Net,
+    NetClass,
     PlacedComponent,
     Placement,
 )
@@ -16,7 +22,7 @@ from lumitip_fab.boards.placed import courtyard, pad_at
 from lumitip_fab.boards.silk.legend import with_legend
 from lumitip_fab.boards.silk.outlines import with_outline, without_crowded_lines
 from lumitip_fab.design import (
-    Board,
+    AuxiliaryBoard,
     Box,
     Design,
     Finger,
@@ -68,62 +74,107 @@ between them the capacitor is as near as it can be."""
 _NOISE_MM = 1e-6
 
 
-def place(design: Design, finger: Finger) -> Placement:
-    """A board with every part in its place.
+def place(design: Design, board: Finger | AuxiliaryBoard) -> Placement:
+    """A board with every part in its place, and its silkscreen.
+
+    Raises:
+        BuildError: if a part or a label has no room, with the numbers.
+    """
+    if isinstance(board, AuxiliaryBoard):
+        return _printed(design, board)
+    entry = design.packages.at_cells(board)
+    gap_mm = gap_at_cells_mm(board, entry)
+    cells = Cells(board.cells, design.reading.pitch_mm, entry, gap_mm)
+    return _printed(design, finger_board(design, board), cells)
+
+
+def _printed(design: Design, board: AuxiliaryBoard, cells: Cells | None = None) -> Placement:
+    """A board whose parts are in their places, with outlines and legend."""
+    rules, title, stack = design.rules, design.title, design.stack
+    outlined = [with_outline(part, rules, cells) for part in board.components]
+    spots.refuse_misplaced(board.name, outlined, inside=board.box if cells else None)
+    bare = Placement(
+        name=board.name,
+        title=title.on_boards().name,
+        revision=title.revision,
+        design_hash=design.reading.design_hash,
+        outline=board.box,
+        corner_mm=board.corner_mm,
+        holes=board.holes,
+        hole_mm=board.hole_mm,
+        keep_outs=board.keep_outs,
+        edge_clearance_mm=rules.edge_gap_mm,
+        hole_clearance_mm=rules.hole_gap_mm,
+        components=without_crowded_lines(outlined, rules),
+        nets=tuple(Net(name, SUPPLY if name in board.supplies else SIGNAL) for name in board.nets),
+        classes=tuple(
+            NetClass(name, track_mm, rules.copper_gap_mm, rules.via_mm, rules.via_drill_mm)
+            for name, track_mm in ((SIGNAL, rules.track_mm), (SUPPLY, rules.supply_track_mm))
+        ),
+        ground=GROUND,
+        silk=(),
+        texts=(),
+        flexible=design.board.flexible if cells else None,
+        ground_only=_hot_loop(board),
+        caption=board.title,
+        cells=cells,
+        finish=board.finish,
+        thickness_mm=stack.pcb_mm if cells else stack.auxiliary_mm,
+    )
+    return with_legend(bare, board.title_at, board.notes, rules)
+
+
+def _hot_loop(board: AuxiliaryBoard) -> tuple[Box, ...]:
+    """The box round the middles of the hot loop's pads; none without a regulator."""
+    parts = {part.ref: part for part in board.components}
+    places = [pad_at(parts[ref], number) for ref, number in board.hot_loop]
+    if not places:
+        return ()
+    xs, ys = zip(*places, strict=True)
+    return (Box(min(xs), max(xs), min(ys), max(ys)),)
+
+
+def finger_board(design: Design, finger: Finger) -> AuxiliaryBoard:
+    """A finger's board with every part in its place.
 
     Raises:
         BuildError: if a part has no room, with the numbers.
     """
-    title, reading, board = design.title, design.reading, design.board
-    wiring, packages, rules = design.wiring, design.packages, design.rules
-    plan = circuit(design, finger)
-    gap_mm = gap_at_cells_mm(finger, packages.at_cells(finger))
-    parts = {
-        part.ref: with_outline(
-            part, rules, gap_mm if part.kind == finger.cells_hold.kind else math.inf
-        )
-        for part in plan.components
-    }
+    board, rules = design.board, design.rules
+    parts = {part.ref: with_outline(part, rules) for part in circuit(design, finger)}
+    kinds = {part.kind for part in parts.values()}
     named = {part.name: part for part in finger.parts}
     for ref, part in named.items():
-        parts[ref] = _at(parts[ref], (part.x_mm, part.y_mm), side=_side(part))
-    if finger.cells_hold.kind == "led":
-        _emitter(parts, finger, wiring, packages)
-    else:
-        _receiver(parts, named, finger, design)
+        parts[ref] = _at(parts[ref], (part.x_mm, part.y_mm), side=part.side)
+    if "led" in kinds:
+        _turn_strings(parts, finger, design.wiring, design.packages)
+    if "multiplexer" in kinds:
+        _round_multiplexers(parts, named, finger, design)
     _connector(parts, finger, rules)
     obstacles = [courtyard(part) for ref, part in parts.items() if not ref.startswith("FID")]
     mark = parts["FID1"].courtyard
     corners = spots.fiducials(board, obstacles, mark, finger.holes, rules.hole_gap_mm)
     for ref, at in zip(("FID1", "FID2", "FID3"), corners, strict=True):
         parts[ref] = _at(parts[ref], at)
-    roomier = "give them more room in [board], or choose smaller parts"
-    refuse_overlaps(finger.name, tuple(parts.values()), roomier)
-    _refuse_beyond(finger.name, tuple(parts.values()), board)
-    bare = Placement(
+    zone = next(zone.box for zone in finger.zones if zone.name == "cells")
+    return AuxiliaryBoard(
         name=finger.name,
-        title=title.on_boards().name,
-        revision=title.revision,
-        design_hash=reading.design_hash,
-        outline=board.box,
+        title=f"{finger.name} board",
+        title_at=zone.centre_mm,
+        box=board.box,
         corner_mm=CORNER_MM,
         holes=finger.holes,
         hole_mm=board.hole_mm,
+        components=tuple(parts.values()),
+        notes=(),
+        supplies=(GROUND, supply_of(finger)),
         keep_outs=(),
-        edge_clearance_mm=rules.edge_gap_mm,
-        hole_clearance_mm=rules.hole_gap_mm,
-        components=without_crowded_lines(tuple(parts.values()), rules),
-        nets=plan.nets,
-        classes=plan.classes,
-        ground=GROUND,
-        silk=(),
-        texts=(),
-        flexible=board.flexible,
+        hot_loop=(),
+        finish=finger.finish,
     )
-    return with_legend(bare, finger, reading.pitch_mm, packages.at_cells(finger).marked, rules)
 
 
-def _emitter(
+def _turn_strings(
     parts: dict[str, PlacedComponent], finger: Finger, wiring: Wiring, packages: Packages
 ) -> None:
     """Turn resistors and LEDs so that neighbours of a string face each other."""
@@ -140,7 +191,7 @@ def _emitter(
             parts[part.ref] = dataclasses.replace(part, angle_deg=angle)
 
 
-def _receiver(
+def _round_multiplexers(
     parts: dict[str, PlacedComponent],
     named: dict[str, Part],
     finger: Finger,
@@ -229,43 +280,6 @@ def _connector(parts: dict[str, PlacedComponent], finger: Finger, rules: Rules) 
         parts[point.ref] = _at(point, (x, y + apart))
 
 
-def refuse_overlaps(name: str, parts: tuple[PlacedComponent, ...], remedy: str) -> None:
-    """Courtyards keep clear of each other.
-
-    Args:
-        name: of the board.
-        parts: all that are on it.
-        remedy: what helps if two do not.
-
-    Raises:
-        BuildError: if two do not; it names both.
-    """
-    for side in dict.fromkeys(part.side for part in parts):
-        yards = [(part.ref, courtyard(part)) for part in parts if part.side == side]
-        for (one, here), (other, there) in spots.overlaps(yards):
-            raise BuildError(
-                f"{name}: {one} at {_corners(here)} and {other} at {_corners(there)} overlap: "
-                f"{remedy}"
-            )
-
-
-def _refuse_beyond(name: str, parts: tuple[PlacedComponent, ...], board: Board) -> None:
-    """Courtyards stay within the board's edge."""
-    for part in parts:
-        yard = courtyard(part)
-        if spots.beyond_mm(yard, board.box) > _NOISE_MM:
-            raise BuildError(
-                f"{name}: {part.ref} at {_corners(yard)} leaves the board at "
-                f"{_corners(board.box)}: give it more room in [board], or choose smaller parts"
-            )
-
-
-def _corners(box: Box) -> str:
-    return (
-        f"x {box.x_min_mm:.2f} to {box.x_max_mm:.2f}, y {box.y_min_mm:.2f} to {box.y_max_mm:.2f} mm"
-    )
-
-
 def _at(
     part: PlacedComponent, at: Point, angle_deg: float | None = None, side: Side | None = None
 ) -> PlacedComponent:
@@ -276,7 +290,3 @@ def _at(
         angle_deg=part.angle_deg if angle_deg is None else angle_deg,
         side=side or part.side,
     )
-
-
-def _side(part: Part) -> Side:
-    return "back" if part.side == "back" else "front"

@@ -2,7 +2,8 @@
 
 from collections.abc import Iterable, Iterator
 
-from lumitip_fab.boards.circuit import GROUND, circuit
+from lumitip_fab.boards.circuit import circuit
+from lumitip_fab.boards.model import GROUND
 from lumitip_fab.boards.spice_channel import STEPS, channel, corners, detectors, first_mux
 from lumitip_fab.design import AuxiliaryBoard, Component, Design, Finger
 from lumitip_fab.design.electrical import Regulated
@@ -15,8 +16,8 @@ _THERMAL_V = 0.0258520  # of ngspice at that temperature
 def simulation(design: Design, finger: Finger) -> tuple[Artefact, ...]:
     """The netlists of a finger's board: its first string; or its first multiplexer with two
     detectors, once as current sinks and once as phototransistors."""
-    parts = circuit(design, finger).components
-    if finger.cells_hold.kind == "led":
+    parts = circuit(design, finger)
+    if not any(part.kind == "multiplexer" for part in parts):
         return (_netlist(design, finger, "", _string(parts, design)),)
     nets = first_mux(parts, design)
     slowest = detectors(nets, design, corners(design)[-1], STEPS["dimmed"])

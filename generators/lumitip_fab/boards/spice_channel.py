@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from lumitip_fab.boards.circuit import GROUND
+from lumitip_fab.boards.model import GROUND
 from lumitip_fab.design import Component, Design
 
 _KNEE_V = 0.001  # over which an ideal detector takes up its current

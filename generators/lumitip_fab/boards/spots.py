@@ -5,6 +5,8 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import shapely
 
+from lumitip_fab.boards.model import PlacedComponent
+from lumitip_fab.boards.placed import courtyard
 from lumitip_fab.design import Board, Box, Point
 from lumitip_fab.errors import BuildError
 
@@ -79,3 +81,38 @@ def fiducials(
 
 def _sides(box: Box) -> tuple[float, float, float, float]:
     return box.x_min_mm, box.y_min_mm, box.x_max_mm, box.y_max_mm
+
+
+def refuse_misplaced(name: str, parts: Sequence[PlacedComponent], inside: Box | None) -> None:
+    """Refuse courtyards that overlap or leave the board.
+
+    Args:
+        name: of the board.
+        parts: all that are on it.
+        inside: box that they must not leave, if there is one.
+
+    Raises:
+        BuildError: if two overlap, or one leaves the box; it names them.
+    """
+    roomier = "give them more room in [board], or " if inside else ""
+    remedy = f"{roomier}choose smaller parts"
+    for side in dict.fromkeys(part.side for part in parts):
+        yards = [(part.ref, courtyard(part)) for part in parts if part.side == side]
+        for (one, here), (other, there) in overlaps(yards):
+            raise BuildError(
+                f"{name}: {one} at {_corners(here)} and {other} at {_corners(there)} overlap: "
+                f"{remedy}"
+            )
+    for part in parts if inside else ():
+        yard = courtyard(part)
+        if inside and beyond_mm(yard, inside) > _NOISE_MM:
+            raise BuildError(
+                f"{name}: {part.ref} at {_corners(yard)} leaves the board at {_corners(inside)}: "
+                f"{remedy}"
+            )
+
+
+def _corners(box: Box) -> str:
+    return (
+        f"x {box.x_min_mm:.2f} to {box.x_max_mm:.2f}, y {box.y_min_mm:.2f} to {box.y_max_mm:.2f} mm"
+    )

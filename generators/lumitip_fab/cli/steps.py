@@ -31,9 +31,7 @@ STEPS = (
     Step("wiring", "docs.wiring.wiring_files"),
     Step("firmware", "firmware.files.firmware_files", tools=("numpy",)),
     Step("finger_board", "boards.files.board_files", "fingers", heavy=True, tools=_COPPER),
-    Step(
-        "other_board", "boards.files.auxiliary_files", "auxiliary_boards", heavy=True, tools=_COPPER
-    ),
+    Step("other_board", "boards.files.board_files", "auxiliary_boards", heavy=True, tools=_COPPER),
     Step("models", "models.files.model_files", heavy=True, tools=_CAD),
     Step("finger_spice", "boards.spice.simulation", "fingers"),
     Step("supply_spice", "boards.spice.supply_simulation", "regulated"),

@@ -5,19 +5,20 @@ from collections.abc import Iterator
 from lumitip_fab.boards.fab.order import bom_rows, bought
 from lumitip_fab.boards.model import BoardModel, Placement
 from lumitip_fab.boards.placed import pad_at, placed_pads
-from lumitip_fab.design import Fab, Finger, Finish, Flexible, Led, Packages, Photodetector
+from lumitip_fab.design import Fab, Flexible, Led, Photodetector
 
 STOP_FILE = "STOP_READ_FIRST.txt"
 _OTHER = {"anode": "cathode", "cathode": "anode", "collector": "emitter", "emitter": "collector"}
 _POLAR = {"led": "LED", "photodetector": "photodetector"}
 
 
-def stop_note(board: Placement, chip: Led | Photodetector, kind: str) -> dict[str, bytes]:
+def stop_note(board: Placement) -> dict[str, bytes]:
     """The file that stops a PCB fab's operator, where the polarity of the parts at the cells is
-    not known; nothing where it is."""
-    if chip.mark_is_known:
+    not known; nothing where it is, and without cells."""
+    if not board.cells or board.cells.part.mark_is_known:
         return {}
-    refs, part = _refs(board, kind), next(part for part in bought(board) if part.kind == kind)
+    chip, part = board.cells.part, next(part for part in bought(board) if part.kind in _POLAR)
+    refs = _refs(board, part.kind)
     text = f"""STOP: do not place {refs} before the customer has confirmed their polarity.
 
 {refs}: {part.part} by {chip.manufacturer}.
@@ -30,8 +31,9 @@ Bare boards may be made at once. Ask the customer before these parts are placed.
     return {STOP_FILE: text.encode()}
 
 
-def fabrication_note(model: BoardModel, finish: Finish, thickness_mm: float) -> bytes:
+def fabrication_note(model: BoardModel) -> bytes:
     """Figures that a board is made by, a line each, and its finish."""
+    finish = model.placement.finish
     board, tracks, vias = model.placement, model.routing.tracks, model.routing.vias
     width, length = board.outline.width_mm, board.outline.length_mm
     pins = [pad.pad.drill_mm for part in board.components for pad in placed_pads(part)]
@@ -44,7 +46,7 @@ def fabrication_note(model: BoardModel, finish: Finish, thickness_mm: float) -> 
         "Copper layers: 2",
         f"Material: {'polyimide, see the assembly note' if flexible else 'FR-4, Tg 130 or more'}",
         f"Size: {width:.2f} x {length:.2f} mm",
-        f"Thickness: {thickness_mm:g} mm",
+        f"Thickness: {board.thickness_mm:g} mm",
         f"Copper: {flexible.copper_mm * 1000 if flexible else finish.copper_um:g} um on each side",
         f"Surface: {finish.surface}",
         f"{'Coverlay' if flexible else 'Solder mask'}: {finish.mask}, on both sides",
@@ -57,38 +59,34 @@ def fabrication_note(model: BoardModel, finish: Finish, thickness_mm: float) -> 
     return "".join(f"{line}\n" for line in lines).encode()
 
 
-def assembly_note(board: Placement, finger: Finger, packages: Packages, fab: Fab) -> bytes:
-    """Plain text: what marks mean, how far to trust that, and where each terminal goes.
+def assembly_note(board: Placement, fab: Fab) -> bytes:
+    """Plain text: what marks mean, how far to trust that, and where each terminal goes; on a board
+    without parts of polarity, where the first pad of each part is.
 
     Args:
         board: parts in their places.
-        finger: whose board it is.
-        packages: for the terminal that a part's mark shows, and its confidence.
         fab: the PCB fab, whose remark is added.
     """
-    chip = packages.at_cells(finger)
+    chip = board.cells.part if board.cells else None
+    first = "Pad 1 of each part" if chip is None else "Places of the terminals"
+    stiffener = board.name + dict(fab.layers)["stiffener"] if board.flexible else ""
     lines = [
-        f"{board.title}: {board.name} board, revision {board.revision}, "
+        f"{board.title}: {board.caption}, revision {board.revision}, "
         f"design {board.design_hash[:8]}",
         "",
-        *(
-            _flexible(board.flexible, board.name + dict(fab.layers)["stiffener"])
-            if board.flexible
-            else ()
-        ),
-        *_polarity(board, chip, finger.cells_hold.kind),
-        *_others(board),
+        *(_flexible(board.flexible, stiffener) if board.flexible else ()),
+        *((*_polarity(board, chip), *_others(board)) if chip else _behind(board)),
         *_ordering(board, fab),
-        "Places of the terminals, in mm as in the Gerber files, seen from the front:",
-        *_places(board, chip),
+        f"{first}, in mm as in the Gerber files, seen from the front:",
+        *(_places(board, chip) if chip else _first_pads(board)),
     ]
     return "".join(f"{line}\n" for line in lines).encode()
 
 
-def _polarity(board: Placement, chip: Led | Photodetector, kind: str) -> Iterator[str]:
-    parts = [part for part in bought(board) if part.kind == kind]
+def _polarity(board: Placement, chip: Led | Photodetector) -> Iterator[str]:
+    part = next(part for part in bought(board) if part.kind in _POLAR)
     yield (
-        f"{_refs(board, kind)}, {parts[0].part} by {chip.manufacturer}: pad 1 is the "
+        f"{_refs(board, part.kind)}, {part.part} by {chip.manufacturer}: pad 1 is the "
         f"{chip.marked}, pad 2 the {_OTHER[chip.marked]}. On the silkscreen a bracket stands round "
         "pad 1, a bar beyond it, or lines beside it."
     )
@@ -100,7 +98,7 @@ def _polarity(board: Placement, chip: Led | Photodetector, kind: str) -> Iterato
         chip.mark_confidence,
         f"CHECK BEFORE PLACING: that the mark on the part itself shows its {chip.marked} is "
         f"{chip.mark_confidence}, not read from a datasheet. Hold a part against its leaflet; if "
-        f"its mark shows the {_OTHER[chip.marked]}, all {_POLAR[kind]}s are turned by 180 "
+        f"its mark shows the {_OTHER[chip.marked]}, all {_POLAR[part.kind]}s are turned by 180 "
         "degrees against the placement list.",
     )
     yield ""
@@ -138,23 +136,10 @@ def _others(board: Placement) -> Iterator[str]:
     yield ""
 
 
-def auxiliary_note(board: Placement, title: str, fab: Fab) -> bytes:
-    """The same of an auxiliary board: which pad is the first of each part.
-
-    Args:
-        board: parts in their places.
-        title: what the board says of itself.
-        fab: the PCB fab, whose remark is added.
-    """
-    lines = [
-        f"{board.title}: {title}, revision {board.revision}, design {board.design_hash[:8]}",
-        "",
-        *_behind(board),
-        *_ordering(board, fab),
-        "Pad 1 of each part, in mm as in the Gerber files, seen from the front:",
-        *(f"{part.ref}  {x:.3f} {y:.3f}" for part in bought(board) for x, y in [pad_at(part, "1")]),
-    ]
-    return "".join(f"{line}\n" for line in lines).encode()
+def _first_pads(board: Placement) -> Iterator[str]:
+    for part in bought(board):
+        x, y = pad_at(part, "1")
+        yield f"{part.ref}  {x:.3f} {y:.3f}"
 
 
 def _behind(board: Placement) -> Iterator[str]:

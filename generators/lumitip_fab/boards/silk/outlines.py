@@ -1,13 +1,15 @@
 """Courtyard and silkscreen outline of each kind of component, by the rules of the board."""
 
 import dataclasses
+import math
 from collections.abc import Sequence
+from dataclasses import fields
 
 import shapely
 from shapely import LineString
 
 from lumitip_fab.boards.courtyards import land
-from lumitip_fab.boards.model import PlacedComponent, Stroke
+from lumitip_fab.boards.model import AT_CELLS, Cells, PlacedComponent, Stroke
 from lumitip_fab.boards.placed import placed, placed_pads
 from lumitip_fab.design import Box, Component, Footprint, Pad, Rules
 
@@ -16,8 +18,7 @@ _NOTCH_MM = 0.4  # of a multiplexer's body
 _DOT_MM = 0.02  # a stroke so short is a dot
 _BARE = ("wires", "test point", "fiducial")
 _MARKED = (
-    "led",
-    "photodetector",
+    *AT_CELLS,
     "multiplexer",
     "regulator",
     "transistor",
@@ -26,22 +27,25 @@ _MARKED = (
     "header",
     "module",
 )
-_ROOMY_MM = 0.7
+_ROOMY_MM, _CLOSE_MM = 0.7, 0.6
 _NOISE_MM = 1e-6
 
 
-def with_outline(component: Component, rules: Rules, gap_mm: float = 0.6) -> PlacedComponent:
+def with_outline(component: Component, rules: Rules, cells: Cells | None = None) -> PlacedComponent:
     """A component with its courtyard and its outline.
 
     Args:
         component: in its place, or not yet.
         rules: gap between parts, lines and gaps of the silkscreen.
-        gap_mm: to the next part: from 0.7 mm on, a bracket goes round the marked end, and lines
-            along the sides are longer; where a bar at the marked end has no room, lines stand
-            beside the marked pad.
+        cells: of the board. The gap at cells decides the outline of the parts that stand there:
+            from 0.7 mm on, a bracket goes round the marked end; where a bar at the marked end has
+            no room, lines stand beside the marked pad. Other parts of such a board stand apart,
+            and have longer lines than those of a board without cells.
     """
+    apart_mm = math.inf if cells else _CLOSE_MM
+    gap_mm = cells.gap_mm if cells and component.kind in AT_CELLS else apart_mm
     return PlacedComponent(
-        **vars(component),
+        **{field.name: getattr(component, field.name) for field in fields(Component)},
         courtyard=_courtyard(component, rules),
         outline=_outline(component, rules, gap_mm),
     )
@@ -80,7 +84,7 @@ def _outline(component: Component, rules: Rules, gap_mm: float) -> tuple[Stroke,
     shape, kind, roomy = component.footprint, component.kind, gap_mm >= _ROOMY_MM
     if kind in _BARE:
         return ()
-    if kind in ("led", "photodetector"):
+    if kind in AT_CELLS:
         if roomy:
             return (_bracket(shape, rules),)
         fits = gap_mm >= 2 * rules.silk_gap_mm + rules.silk_line_mm - _NOISE_MM

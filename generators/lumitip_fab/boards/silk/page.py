@@ -2,7 +2,7 @@
 
 import itertools
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import shapely
@@ -17,6 +17,10 @@ from lumitip_fab.errors import BuildError
 
 _SHORTEST_MM = 0.5
 _MOST_LATE = 32  # shapes beside the tree of those before, which are looked at one by one
+
+
+Way = tuple[int, int]
+LEFT, RIGHT, UP, DOWN = (-1, 0), (1, 0), (0, 1), (0, -1)
 
 
 @dataclass
@@ -144,13 +148,52 @@ class Page:
             self.texts.append((side, text))
             self.sides[side].take(extent(text, side))
 
-    def first_free(self, side: Side, choices: Iterable[Text]) -> bool:
-        """Print a text at the first of some places that is free."""
+    def first_free(self, side: Side, choices: Iterable[Text], apart_mm: float = 0.0) -> bool:
+        """Print a text at the first of some places that is free, and this much more round it."""
         for text in choices:
-            if self.free(side, [text]):
+            if self.sides[side].free(extent(text, side).buffer(apart_mm)):
                 self.put(side, [text])
                 return True
         return False
+
+    def require(
+        self, what: str, choices: Sequence[Text], side: Side = "front", apart_mm: float = 0.0
+    ) -> None:
+        """The same; if no place is free, that is noted."""
+        if not self.first_free(side, choices, apart_mm):
+            text = choices[0]
+            long_mm = self.length_mm(text.text, text.height_mm)
+            self.miss(what, text.height_mm, long_mm, (text.x_mm, text.y_mm))
+
+    def beside(
+        self,
+        words: str,
+        at: Point,
+        half_mm: Point,
+        way: Way,
+        away_mm: float,
+        upright: bool = False,
+        height_mm: float = 0.0,
+    ) -> Text:
+        """A text beside the middle of a rectangle's side.
+
+        Args:
+            words: what it says.
+            at: middle of the rectangle.
+            half_mm: half its width and length.
+            way: from the rectangle's middle to the text.
+            away_mm: gap between both.
+            upright: whether it is turned by a quarter.
+            height_mm: of its letters; as small as is legible by default.
+        """
+        text = self.text(words, at, height_mm, 90.0 if upright else 0.0)
+        lengthwise = bool(way[0]) != upright
+        size = self.length_mm(words, height_mm) if lengthwise else text.height_mm
+        x, y = (
+            middle + sign * (half + away_mm + size / 2)
+            for middle, sign, half in zip(at, way, half_mm, strict=True)
+        )
+        return replace(text, x_mm=x, y_mm=y)
 
     def arrow(self, side: Side, places: Iterable[Point]) -> bool:
         """Print an arrow to the tip with its word below, at the first free place of its head."""

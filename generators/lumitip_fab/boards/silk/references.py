@@ -1,7 +1,9 @@
 """References of parts on the silkscreen, and the outlines of the cells that they stand in.
 
-At the cells there are all of them, for which the outlines give way if need be, or, where that is
-too narrow, those at the ends of each column: cells are counted from the tip.
+A board without cells has the references of all its parts. On one with cells, parts elsewhere have
+theirs where there is room. At the cells there are all of them, for which the outlines give way if
+need be, or, where that is too narrow, those at the ends of each column: cells are counted from the
+tip.
 """
 
 import dataclasses
@@ -13,29 +15,77 @@ import numpy as np
 import shapely
 from shapely import LineString
 
-from lumitip_fab.boards.model import PlacedComponent, Text
+from lumitip_fab.boards.model import AT_CELLS, PlacedComponent, Text
 from lumitip_fab.boards.placed import courtyard
-from lumitip_fab.boards.silk.page import Clear, Page, extent
-from lumitip_fab.design import Point, Side
+from lumitip_fab.boards.silk.page import DOWN, LEFT, RIGHT, UP, Clear, Page, extent
+from lumitip_fab.design import Box, Point, Side
 
 _APART_MM = 0.1  # more than the least gap round references, so that they do not run together
+_FREE_MM = 0.2  # the same on a board without cells
+_REF_MM, _AWAY_MM = 1.0, 0.4  # height there, and from a part to its reference
 _STEP_MM = 0.1
 _BEYOND_MM = 2.5  # farthest end of a column's reference from the column
 _SHOWN = ("multiplexer", "resistor", "resistor array", "capacitor")
-_AT_CELLS = ("led", "photodetector")
 _Places = dict[str, Text]
 
 
-def with_references(
+def print_references(page: Page) -> tuple[PlacedComponent, ...]:
+    """Print the references of parts, and the outlines of the cells; the parts of the board, with
+    their references where those belong to their footprints."""
+    cells, components = page.board.cells, page.board.components
+    if cells:
+        return _among_cells(page, _edges(cells.at, cells.pitch_mm), cells.pitch_mm)
+    for part in components:
+        if part.kind != "fiducial":
+            places = _round(page, part.ref, courtyard(part))
+            page.require(repr(part.ref), places, part.side, _FREE_MM)
+    return components
+
+
+def _round(page: Page, ref: str, yard: Box) -> list[Text]:
+    """Places for a reference round its part: at its ends, then above, below and upright; then the
+    same farther away."""
+    turns = (
+        *((way, False) for way in (LEFT, RIGHT, UP, DOWN)),
+        *((way, True) for way in (UP, DOWN, LEFT, RIGHT)),
+    )
+    return [
+        page.beside(ref, *_rectangle(yard), way, _AWAY_MM + farther, upright, _REF_MM)
+        for farther in (0.0, 1.0, 2.0, 3.0)
+        for way, upright in turns
+    ]
+
+
+def _rectangle(yard: Box) -> tuple[Point, Point]:
+    """Middle, and half the width and length."""
+    return yard.centre_mm, (yard.width_mm / 2, yard.length_mm / 2)
+
+
+def _edges(cells: Sequence[Point], pitch_mm: float) -> list[LineString]:
+    """Every edge of the hexagons once, in the order of the cells."""
+    around = [
+        (
+            pitch_mm / math.sqrt(3) * math.cos(math.radians(60 * k)),
+            pitch_mm / math.sqrt(3) * math.sin(math.radians(60 * k)),
+        )
+        for k in range(6)
+    ]
+    found: dict[Point, LineString] = {}
+    for x, y in cells:
+        corners = [(x + dx, y + dy) for dx, dy in around]
+        for start, end in zip(corners, corners[1:] + corners[:1], strict=True):
+            middle = (
+                round((start[0] + end[0]) / 2, 3) + 0.0,
+                round((start[1] + end[1]) / 2, 3) + 0.0,
+            )
+            found.setdefault(middle, LineString([start, end]))
+    return list(found.values())
+
+
+def _among_cells(
     page: Page, edges: Sequence[LineString], pitch_mm: float
 ) -> tuple[PlacedComponent, ...]:
-    """Print the outlines of the cells; parts with their references where there is room.
-
-    Args:
-        page: with all that comes before them.
-        edges: of all cells.
-        pitch_mm: of the cells.
-    """
+    """Parts with their references where there is room, and the outlines of the cells."""
     front, components = page.sides["front"], page.board.components
     lines = front.clipped(edges)
     half = page.rules.silk_line_mm / 2
@@ -49,7 +99,7 @@ def with_references(
         if part.kind in _SHOWN and (text := _place_of(page, part, room)):
             shown[part.ref] = text
             room.take(extent(text, part.side))
-    cells = [part for part in components if part.kind in _AT_CELLS]
+    cells = [part for part in components if part.kind in AT_CELLS]
     at_cells, cut = _at_cells(page, cells, rooms["front"]), False
     if not at_cells:
         bare = front.taking(
@@ -132,28 +182,23 @@ def _beyond(page: Page, part: PlacedComponent, start_mm: float, sign: int) -> It
 
 def _place_of(page: Page, part: PlacedComponent, room: Clear) -> Text | None:
     """A free place for a part's reference, on the board."""
-    yard = courtyard(part)
-    (x, y), r = yard.centre_mm, part.ref
-    height = page.text(r, (x, y)).height_mm
-    choices: list[Text] = []
+    yard, ref = _rectangle(courtyard(part)), part.ref
+    half = page.text(ref, yard[0]).height_mm / 2
+    choices = [page.text(ref, yard[0], 1.2)] if part.kind == "multiplexer" else []
     for closer in (0.0, 0.1, 0.2, 0.3, 0.4):
-        off = height + page.rules.silk_gap_mm - closer
-        up, aside = (size / 2 + off for size in (yard.length_mm, yard.width_mm))
-        long = (yard.length_mm + height + page.length_mm(r)) / 2 - closer
+        away = half + page.rules.silk_gap_mm - closer
         choices += [
-            page.text(r, (x, y + up)),
-            page.text(r, (x, y - up)),
-            page.text(r, (x - aside, y), angle_deg=90.0),
-            page.text(r, (x + aside, y), angle_deg=90.0),
-            page.text(r, (x, y + long), angle_deg=90.0),
+            page.beside(ref, *yard, way, away, upright=way in (LEFT, RIGHT))
+            for way in (UP, DOWN, LEFT, RIGHT)
         ]
-    if part.kind == "multiplexer":
-        choices.insert(0, page.text(r, (x, y), 1.2))
-    for apart in (_APART_MM, 0.0):
-        for text in choices:
-            if room.free(extent(text, part.side).buffer(apart)):
-                return text
-    return None
+        choices.append(page.beside(ref, *yard, UP, half - closer, upright=True))
+    free = (
+        text
+        for apart in (_APART_MM, 0.0)
+        for text in choices
+        if room.free(extent(text, part.side).buffer(apart))
+    )
+    return next(free, None)
 
 
 def _printed(page: Page, part: PlacedComponent, text: Text) -> PlacedComponent:

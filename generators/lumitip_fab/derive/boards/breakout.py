@@ -17,10 +17,11 @@ from dataclasses import dataclass
 
 from lumitip_fab.catalogue.controllers import Plug, Strip
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.boards import components, connectors
+from lumitip_fab.derive.boards import connectors
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.wiring.wiring import Muxing
 from lumitip_fab.design import AuxiliaryBoard, Box, Component, Note, footprints
+from lumitip_fab.design.components import mounted, numbered, wires
 
 REGULATED = "5V"
 """Supply of the controller, from the flange's regulator."""
@@ -93,10 +94,15 @@ def _components(
 ) -> tuple[Component, ...]:
     nets = _net_of(plug, muxing)
     sockets, beside = [], []
+    value, shape = config.parameters.breakout.socket, footprints.socket(strip)
     for number, (names, side) in enumerate(zip(plug.rows, (-1, 1), strict=True), start=1):
-        on = tuple((str(i), nets.get(name, name)) for i, name in enumerate(names, start=1))
-        sockets.append(_socket(config, strip, f"J{number}", names, on, side * rows.socket_mm))
-        beside.append(_pads(f"J{number + 2}", on, strip.pitch_mm, 0.0, side * rows.beside_mm))
+        on = tuple(nets.get(name, name) for name in names)
+        at = 0.0, side * rows.socket_mm
+        sockets.append(
+            mounted(f"J{number}", "socket", value, strip, shape, numbered(on), at, pins=names)
+        )
+        at, size_mm = (0.0, side * rows.beside_mm), (strip.pitch_mm, PAD_MM, DRILL_MM)
+        beside.append(wires(f"J{number + 2}", on, size_mm, at, named=False))
     length = config.parameters.breakout.board_mm[0]
     receiver = connectors.receiver_signals(muxing)
     emitter, supply = connectors.emitter_signals(config), supply_signals(config)
@@ -118,56 +124,13 @@ def _net_of(plug: Plug, muxing: Muxing) -> dict[str, str]:
     return nets | {plug.ground: "GND", plug.supply: REGULATED, plug.regulated: "3V3"}
 
 
-def _socket(
-    config: Input,
-    strip: Strip,
-    ref: str,
-    names: tuple[str, ...],
-    nets: tuple[tuple[str, str], ...],
-    y_mm: float,
-) -> Component:
-    return Component(
-        ref=ref,
-        kind="socket",
-        value=config.parameters.breakout.socket,
-        part=strip.order_number,
-        manufacturer=strip.manufacturer,
-        lcsc=strip.lcsc,
-        footprint=footprints.socket(strip),
-        x_mm=0.0,
-        y_mm=y_mm,
-        angle_deg=0.0,
-        side="front",
-        nets=nets,
-        pins=names,
-    )
-
-
-def _pads(
-    ref: str, nets: tuple[tuple[str, str], ...], pitch_mm: float, x_mm: float, y_mm: float
-) -> Component:
-    """Bare pads for wires, one for each net."""
-    shape = footprints.row("WirePads", len(nets), pitch_mm, PAD_MM, DRILL_MM)
-    return Component(
-        ref=ref,
-        kind="wires",
-        value=f"{len(nets)} wires",
-        part="",
-        footprint=shape,
-        x_mm=x_mm,
-        y_mm=y_mm,
-        angle_deg=0.0,
-        side="front",
-        nets=nets,
-    )
-
-
 def _wires(
     ref: str, signals: tuple[str, ...], x_mm: float, y_mm: float, length_mm: float
 ) -> Component:
     """Wire pads of a cable, in the order of the connector at its other end."""
     fits = connectors.half_width_mm(len(signals), wide=True) <= length_mm / 2 - EDGE_MM
-    return components.wires(ref, signals, (x_mm, y_mm), fits)
+    size_mm = connectors.WIDE if fits else connectors.NARROW
+    return wires(ref, signals, size_mm, (x_mm, y_mm))
 
 
 def _refuse(

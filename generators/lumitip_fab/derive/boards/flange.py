@@ -16,14 +16,6 @@ With a module as its controller it is wider to the left: see `lumitip_fab.derive
 
 from lumitip_fab.catalogue.controllers import OPEN
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.boards.components import (
-    capacitor,
-    chip,
-    fiducials,
-    from_behind,
-    leaded,
-    strip,
-)
 from lumitip_fab.derive.boards.flange_circuit import (
     halved,
     is_regulated,
@@ -32,11 +24,19 @@ from lumitip_fab.derive.boards.flange_circuit import (
     supply_range_v,
 )
 from lumitip_fab.derive.boards.module import Supplies, derive_module
+from lumitip_fab.derive.boards.packages import capacitor
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.mount.fasteners import BOARD_SCREW
 from lumitip_fab.derive.wiring.wiring import Muxing, Strings
 from lumitip_fab.design import AuxiliaryBoard, Box, Component, Point
-from lumitip_fab.text import resistor_code
+from lumitip_fab.design.components import (
+    chip,
+    fiducials,
+    from_behind,
+    leaded,
+    resistor,
+    strip,
+)
 
 BOX = Box(-15.4, 15.4, -27.0, 27.0)
 CORNER_MM = 8.0
@@ -123,13 +123,13 @@ def _strips(config: Input) -> tuple[Component, ...]:
     coupling = parts.coupling
     x, y = coupling.contacts_at_mm
     places = [(contact.at_mm[0] - x, contact.at_mm[1] - y) for contact in coupling.contacts]
-    rows = strip("J1", p.contacts, parts.contacts, CONTACTS_AT, nets, names)
+    rows = strip("J1", p.contacts, parts.contacts, nets, CONTACTS_AT, names)
     contacts = from_behind(rows, places)
     both = []
     for ref, at, signals in zip(("J2", "J3"), HEADERS_AT, p.headers, strict=True):
         there = tuple(called.get(signal, signal) for signal in signals)
         around = (*there, *reversed(there))
-        both.append(strip(ref, p.header, parts.header, at, around, around))
+        both.append(strip(ref, p.header, parts.header, around, at, around))
     return contacts, *both
 
 
@@ -137,18 +137,20 @@ def _input(config: Input) -> tuple[Component, ...]:
     """Fuse, the MOSFET with the supply, or half of a high one, at its gate, and the TVS diode."""
     p, parts = config.parameters.flange, config.parts.flange
     raw, supply, _ = _supplies(config)
-    resistor = parts.resistor
-    code = resistor_code(p.gate_ohm)
-    part = resistor.order_number.replace("{code}", code)
-    transistor = parts.transistor
     leads = {"G": "GATE", "S": supply, "D": "FUSED"}
-    upper = chip("R1", "resistor", code, resistor, (-5.2, -7.0), 90.0, (supply, "GATE"), part)
+    upper, lower = (
+        resistor(ref, p.gate_ohm, parts.resistor, nets, at, angle_deg)
+        for ref, nets, at, angle_deg in (
+            ("R1", (supply, "GATE"), (-5.2, -7.0), 90.0),
+            ("R2", ("GATE", "GND"), (-2.0, -3.8), 0.0),
+        )
+    )
     return (
-        chip("F1", "fuse", p.fuse, parts.fuse, (5.4, -7.0), 180.0, (raw, "FUSED")),
-        leaded("Q1", "transistor", p.transistor, transistor, (-1.0, -7.0), 270.0, leads),
+        chip("F1", "fuse", p.fuse, parts.fuse, (raw, "FUSED"), (5.4, -7.0), 180.0),
+        leaded("Q1", "transistor", p.transistor, parts.transistor, leads, (-1.0, -7.0), 270.0),
         *((upper,) if halved(config) else ()),
-        chip("R2", "resistor", code, resistor, (-2.0, -3.8), 0.0, ("GATE", "GND"), part),
-        chip("D1", TVS, p.tvs, parts.tvs, TVS_AT, 0.0, (supply, "GND")),
+        lower,
+        chip("D1", TVS, p.tvs, parts.tvs, (supply, "GND"), TVS_AT, 0.0),
     )
 
 
@@ -160,24 +162,22 @@ def _regulator(config: Input) -> tuple[Component, ...]:
         return ()
     _, supply, output = _supplies(config)
     leads = {"FB": output, "EN": INPUT, "VIN": INPUT, "GND": "GND", "SW": "SW", "BST": "BST"}
-    inrush, code = parts.inrush_resistor, resistor_code(p.inrush_ohm)
-    part = inrush.order_number.replace("{code}", code)
     return (
-        chip("R3", "resistor", code, inrush, INRUSH_AT, 270.0, (supply, INPUT), part),
-        leaded("U1", "regulator", p.regulator, parts.regulator, (-7.5, 0.0), 0.0, leads),
-        capacitor(config, "C1", p.input_capacitor, (-4.9, 0.0), 90.0, (INPUT, "GND")),
-        capacitor(config, "C4", p.boot_capacitor, (-10.8, 2.1), 90.0, ("BST", "SW")),
+        resistor("R3", p.inrush_ohm, parts.inrush_resistor, (supply, INPUT), INRUSH_AT, 270.0),
+        leaded("U1", "regulator", p.regulator, parts.regulator, leads, (-7.5, 0.0), 0.0),
+        capacitor(config, "C1", p.input_capacitor, (INPUT, "GND"), (-4.9, 0.0), 90.0),
+        capacitor(config, "C4", p.boot_capacitor, ("BST", "SW"), (-10.8, 2.1), 90.0),
         chip(
             "L1",
             "inductor",
             p.inductor.split()[0],
             parts.inductor,
+            ("SW", output),
             (-7.5, 5.2),
             90.0,
-            ("SW", output),
         ),
-        capacitor(config, "C2", p.output_capacitor, (-3.6, 5.8), 270.0, (output, "GND")),
-        capacitor(config, "C3", p.output_capacitor, (-1.2, 5.8), 270.0, (output, "GND")),
+        capacitor(config, "C2", p.output_capacitor, (output, "GND"), (-3.6, 5.8), 270.0),
+        capacitor(config, "C3", p.output_capacitor, (output, "GND"), (-1.2, 5.8), 270.0),
     )
 
 

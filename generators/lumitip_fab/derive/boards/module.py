@@ -20,10 +20,11 @@ from dataclasses import dataclass
 from lumitip_fab.catalogue.controllers import Module
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards import connectors
-from lumitip_fab.derive.boards.components import capacitor, chip, leaded, wires
+from lumitip_fab.derive.boards.packages import capacitor
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.wiring.wiring import Muxing, larger_multiplexers
 from lumitip_fab.design import Box, Component, Point, footprints
+from lumitip_fab.design.components import chip, leaded, mounted, wires
 
 WING_MM = 12.6
 """Width beyond the board without a module; the bolts of the published flange limit it."""
@@ -82,10 +83,10 @@ def derive_module(
         _module(config, module, muxing, at),
         *_beside(config),
         *_supply(config, supplies),
-        wires("J4", receiver, (left + 7.9, -22.6), wide=False),
-        wires("J5", ("GND", supplies.leds), (-16.9, -14.0), wide=True),
-        wires("J6", ("VUSB", "D-", "D+", "GND"), (-20.4, 22.6), wide=True),
-        wires("J7", (CONTROLLER, "DIO", "CLK", "RST", "GND"), (-20.6, 16.2), wide=True),
+        wires("J4", receiver, connectors.NARROW, (left + 7.9, -22.6)),
+        wires("J5", ("GND", supplies.leds), connectors.WIDE, (-16.9, -14.0)),
+        wires("J6", ("VUSB", "D-", "D+", "GND"), connectors.WIDE, (-20.4, 22.6)),
+        wires("J7", (CONTROLLER, "DIO", "CLK", "RST", "GND"), connectors.WIDE, (-20.6, 16.2)),
     )
     return Wing(
         box=Box(left, box.x_max_mm, box.y_min_mm, box.y_max_mm),
@@ -105,20 +106,16 @@ def _module(config: Input, module: Module, muxing: Muxing, at: Point) -> Compone
     nets = _NAMED | dict(zip(module.crystal, ("XL1", "XL2"), strict=True))
     nets |= {module.ports[pin]: pin for pin in muxing.adc_pins}
     nets |= {module.ports[pin]: f"S{i}" for i, pin in enumerate(muxing.select_pins)}
-    return Component(
-        ref="U2",
-        kind="module",
-        value=config.title("controller.board"),
-        part=module.order_number,
-        manufacturer=module.manufacturer,
-        lcsc=module.lcsc,
-        footprint=footprints.module(module),
-        x_mm=at[0],
-        y_mm=at[1],
-        angle_deg=TURN_DEG,
-        side="front",
-        nets=tuple((str(i), nets[name]) for i, name in enumerate(module.names, 1) if name in nets),
-        pins=tuple(pins.get(name, name) for name in module.names),
+    return mounted(
+        "U2",
+        "module",
+        config.title("controller.board"),
+        module,
+        footprints.module(module),
+        tuple((str(i), nets[name]) for i, name in enumerate(module.names, 1) if name in nets),
+        at,
+        TURN_DEG,
+        tuple(pins.get(name, name) for name in module.names),
     )
 
 
@@ -128,9 +125,9 @@ def _supply(config: Input, supplies: Supplies) -> tuple[Component, ...]:
     entry = config.parts.module.regulator
     leads = {"IN": fed, "OUT": CONTROLLER, "GND": "GND"}
     return (
-        leaded("U3", "regulator", p.regulator, entry, (-17.5, 9.2), 0.0, leads),
-        capacitor(config, "C5", p.supply_capacitor, (-14.4, 10.2), 0.0, (fed, "GND")),
-        capacitor(config, "C6", p.supply_capacitor, (-14.4, 7.8), 0.0, (CONTROLLER, "GND")),
+        leaded("U3", "regulator", p.regulator, entry, leads, (-17.5, 9.2), 0.0),
+        capacitor(config, "C5", p.supply_capacitor, (fed, "GND"), (-14.4, 10.2), 0.0),
+        capacitor(config, "C6", p.supply_capacitor, (CONTROLLER, "GND"), (-14.4, 7.8), 0.0),
     )
 
 
@@ -139,11 +136,11 @@ def _beside(config: Input) -> tuple[Component, ...]:
     p = config.parameters.module
     entry, value = config.parts.module.crystal, p.crystal.split()[0]
     return (
-        capacitor(config, "C7", p.capacitor, (-11.2, 5.2), 90.0, (CONTROLLER, "GND")),
-        capacitor(config, "C10", p.supply_capacitor, (-11.2, 10.2), 90.0, ("VUSB", "GND")),
-        chip("Y1", "crystal", value, entry, (-11.3, -7.2), 90.0, ("XL1", "XL2")),
-        capacitor(config, "C8", p.crystal_capacitor, (-11.3, -11.4), 270.0, ("XL1", "GND")),
-        capacitor(config, "C9", p.crystal_capacitor, (-11.4, -3.2), 270.0, ("XL2", "GND")),
+        capacitor(config, "C7", p.capacitor, (CONTROLLER, "GND"), (-11.2, 5.2), 90.0),
+        capacitor(config, "C10", p.supply_capacitor, ("VUSB", "GND"), (-11.2, 10.2), 90.0),
+        chip("Y1", "crystal", value, entry, ("XL1", "XL2"), (-11.3, -7.2), 90.0),
+        capacitor(config, "C8", p.crystal_capacitor, ("XL1", "GND"), (-11.3, -11.4), 270.0),
+        capacitor(config, "C9", p.crystal_capacitor, ("XL2", "GND"), (-11.4, -3.2), 270.0),
     )
 
 

@@ -9,7 +9,8 @@ from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards import connectors, placing
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.stack import is_flex
-from lumitip_fab.design import Box, Fab, Flexible, Packages, Rules
+from lumitip_fab.design import Box, Component, Fab, Flexible, Packages, Point, Rules
+from lumitip_fab.design.components import chip
 
 E = TypeVar("E", bound=Entry)
 LEAST_RING_MM = 0.1  # copper round the hole of a via
@@ -30,6 +31,14 @@ def derive_packages(config: Input) -> Packages:
         capacitor=_without_texts(parts.capacitors[p.receiver.capacitor]),
         multiplexer=_without_texts(parts.multiplexers[p.receiver.multiplexer]),
     )
+
+
+def capacitor(
+    config: Input, ref: str, name: str, nets: tuple[str, str], at: Point, angle_deg: float
+) -> Component:
+    """A capacitor by its name in the catalogue."""
+    entry, value = config.catalogue.capacitors[name], name.split(maxsplit=1)[0]
+    return chip(ref, "capacitor", value, entry, nets, at, angle_deg)
 
 
 def _without_texts(entry: E) -> E:

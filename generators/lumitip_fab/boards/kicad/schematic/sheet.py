@@ -1,9 +1,12 @@
 """Symbols and wires of a sheet with their places, and the paper sizes. mm, y down, 1.27 mm grid."""
 
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 
-from lumitip_fab.design import Point
+from lumitip_fab.boards.kicad.sexpr import Node
+from lumitip_fab.design import Component, Point
 
 
 @dataclass(frozen=True)
@@ -37,6 +40,22 @@ class Sheet:
     texts: list[tuple[str, Point, float]] = field(default_factory=list)
     """Text, place of its lower left, height."""
     powers: int = 0
+
+    def part(
+        self,
+        symbol: str,
+        part: Component,
+        at: Point,
+        angle_deg: int = 0,
+        pins: tuple[str, ...] = (),
+        ref_at: Point | None = None,
+        value_at: Point | None = None,
+        unit: int = 1,
+    ) -> None:
+        """A part of the board, by default with all its pads that have a net."""
+        pins = pins or tuple(pad for pad, _ in part.nets)
+        called = symbol, part.ref, part.value
+        self.symbols.append(Drawn(*called, *at, angle_deg, pins, ref_at, value_at, unit))
 
     def power(self, net: str, at: Point, angle_deg: int = 0) -> None:
         """A symbol that gives a wire's end the name of a supply; ground hangs below it."""
@@ -73,3 +92,55 @@ def paper_for(width_mm: float, height_mm: float) -> tuple[str, int]:
         if width_mm + 2 * MARGIN_MM <= wide and height_mm + MARGIN_MM + _TITLE_MM <= high:
             return name, place
     return "A0", len(_PAPERS)
+
+
+@dataclass(frozen=True)
+class Block:
+    """Parts that are drawn together, and the room that they take."""
+
+    width_mm: float
+    height_mm: float
+    draw: Callable[[Sheet, Point], None]
+    """Draws them; the place is that of their upper left corner."""
+    shapes: Mapping[str, Node] = field(default_factory=dict)
+    """Their symbols, by name."""
+
+
+def columns(blocks: Iterable[Block], tall_mm: float = math.inf) -> tuple[str, Sheet]:
+    """Blocks below each other, in columns of equal width: name of the paper, and the drawing.
+
+    Args:
+        blocks: in this order.
+        tall_mm: height from which a further column begins.
+    """
+    blocks, sheet = list(blocks), Sheet()
+    wide = max(block.width_mm for block in blocks)
+    x = y = bottom = MARGIN_MM
+    for block in blocks:
+        if y + block.height_mm > MARGIN_MM + tall_mm:
+            x, y = x + wide, MARGIN_MM
+        block.draw(sheet, (x, y))
+        y += block.height_mm
+        bottom = max(bottom, y)
+    paper, _ = paper_for(x + wide - MARGIN_MM, bottom - MARGIN_MM)
+    return paper, sheet
+
+
+def grid(first: Block, others: Sequence[Block]) -> tuple[str, Sheet]:
+    """Equal blocks in rows to the right of a first one, on the smallest paper that takes them."""
+    wide = max(block.width_mm for block in others)
+    tall = max(block.height_mm for block in (first, *others))
+    shapes = [(across, -(-len(others) // across)) for across in range(1, len(others) + 1)]
+    choices = [
+        (paper_for(first.width_mm + across * wide, down * tall), across) for across, down in shapes
+    ]
+    (paper, _), across = min(
+        choices, key=lambda choice: (choice[0][1], -len(others) % choice[1], -choice[1])
+    )
+    sheet = Sheet()
+    first.draw(sheet, (MARGIN_MM, MARGIN_MM))
+    for i, block in enumerate(others):
+        down, right = divmod(i, across)
+        x = MARGIN_MM + first.width_mm + right * wide
+        block.draw(sheet, (x, MARGIN_MM + down * tall))
+    return paper, sheet

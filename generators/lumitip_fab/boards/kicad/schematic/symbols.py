@@ -3,32 +3,61 @@
 import math
 
 from lumitip_fab.boards.kicad.sexpr import Node, Quoted, Value
-from lumitip_fab.design import Multiplexer, Point
+from lumitip_fab.design import Component, Point
 
 LIBRARY = "lumitip"
 GRID_MM = 1.27
-ROW_MM = 7.62
-"""Between the pins that a row of parts hangs on."""
-SIDE_MM = 10.16
-"""Half the width of a multiplexer's body."""
+PITCH_MM = 2.54
+"""From pin to pin of contacts and chips."""
 PIN_MM = 2.54
+_CHIP_MM = 15.24  # width of the box of a part with named pins
+_TURNS = 4  # of a coil
 _FONT = ("effects", ("font", ("size", 1.27, 1.27)))
 HIDDEN: Node = ("effects", ("font", ("size", 1.27, 1.27)), "hide")
 
 
+def of_part(part: Component) -> tuple[str, Node]:
+    """Name and symbol of a part that is drawn by itself."""
+    if part.kind in TWO_TERMINALS:
+        return two_terminals(part.kind)
+    if part.contacts:
+        numbers = tuple(number for number, _ in part.nets)
+        whole = len(numbers) == len(part.footprint.pads)
+        name = f"Strip{len(numbers)}" if whole else f"Strip_{part.ref}"
+        return name, contacts(numbers, PITCH_MM)
+    draw = transistor if part.kind == "transistor" else chip
+    return f"{part.kind.capitalize()}_{part.ref}", draw(part)
+
+
+TWO_TERMINALS = ("resistor", "capacitor", "fuse", "inductor", "crystal", "tvs diode")
+"""Kinds of parts that are drawn upright, the first terminal at the top."""
+
+
+def two_terminals(kind: str) -> tuple[str, Node]:
+    """Name and symbol of a part of these kinds."""
+    name, body, half_mm = {
+        "resistor": ("R", [box(-1.016, -2.54, 1.016, 2.54)], 2.54),
+        "capacitor": ("C", _plates(2.032, 0.762), 0.762),
+        "fuse": ("F", [box(-0.762, -2.54, 0.762, 2.54), line((0, 2.54), (0, -2.54))], 2.54),
+        "inductor": ("L", [_coil()], 2.54),
+        "tvs diode": ("D", _zener(), 1.27),
+        "crystal": ("Y", [box(-1.27, -0.635, 1.27, 0.635), *_plates(1.27, 1.27)], 1.27),
+    }[kind]
+    reach = 3.81 - half_mm
+    pins = [pin("1", 0, 3.81, 270, reach), pin("2", 0, -3.81, 90, reach)]
+    return name, symbol(name, body, pins)
+
+
+def _zener() -> list[Node]:
+    """A triangle under a bar with bent ends, its cathode at the top."""
+    bar = line((-1.778, 0.762), (-1.27, 1.27), (1.27, 1.27), (1.778, 1.778))
+    return [bar, line((-1.27, -1.27), (1.27, -1.27), (0, 1.27), (-1.27, -1.27))]
+
+
 def hand_drawn() -> dict[str, Node]:
-    """The symbols that every board draws on, by name."""
+    """The symbols of a board whose supplies are drawn as symbols, by name."""
     return {
-        "R": symbol(
-            "R",
-            [box(-1.016, -2.54, 1.016, 2.54)],
-            [pin("1", 0, 3.81, 270, 1.27), pin("2", 0, -3.81, 90, 1.27)],
-        ),
-        "C": symbol(
-            "C",
-            [line((-2.032, 0.762), (2.032, 0.762)), line((-2.032, -0.762), (2.032, -0.762))],
-            [pin("1", 0, 3.81, 270, 3.048), pin("2", 0, -3.81, 90, 3.048)],
-        ),
+        **dict(map(two_terminals, ("resistor", "capacitor"))),
         "TestPoint": symbol("TP", [_circle(0, 3.302, 0.762)], [pin("1", 0, 0, 90, 2.54)]),
         "PWR_FLAG": _power(
             "PWR_FLAG",
@@ -49,23 +78,6 @@ def hand_drawn() -> dict[str, Node]:
             270,
         ),
     }
-
-
-def resistor_array(resistors: int) -> Node:
-    """Separate resistors, each a unit that is drawn by itself."""
-    body, *_ = (v for v in hand_drawn()["R"] if isinstance(v, tuple) and v[0] == "symbol")
-    frame = symbol("RN", [], [])[:-2]
-    units = (
-        (
-            "symbol",
-            f"{i}_1",
-            *body[2:],
-            pin(str(i), 0, 3.81, 270, 1.27),
-            pin(str(2 * resistors + 1 - i), 0, -3.81, 90, 1.27),
-        )
-        for i in range(1, resistors + 1)
-    )
-    return (*frame, *units)
 
 
 def supply(name: str) -> Node:
@@ -105,47 +117,41 @@ def phototransistor(marked: str) -> Node:
     return symbol("Q", body, pins)
 
 
-def multiplexer(mux: Multiplexer) -> Node:
-    """A multiplexer: inputs to the left, output and select lines to the right."""
+def transistor(part: Component) -> Node:
+    """A P-channel MOSFET: gate to the left, source above, drain below, its diode to the right."""
+    number = {name: land for (land, _), name in zip(part.nets, part.pins, strict=True)}
+    return symbol(
+        "Q",
+        [
+            line((-2.54, 0), (-0.508, 0)),
+            line((-0.508, 1.905), (-0.508, -1.905)),
+            *(line((0.127, y + 0.508), (0.127, y - 0.508)) for y in (1.524, 0, -1.524)),
+            line((0.127, 1.524), (2.54, 1.524), (2.54, 2.54)),
+            line((0.127, -1.524), (2.54, -1.524), (2.54, -2.54)),
+            line((0.127, 0), (1.524, 0), (1.524, 1.524)),  # the body is at the source
+            line((0.635, 0.381), (1.27, 0), (0.635, -0.381), (0.635, 0.381)),
+            line((2.54, 1.524), (3.556, 1.524), (3.556, -1.524), (2.54, -1.524)),
+            line((3.048, 0.381), (4.064, 0.381)),
+            line((3.556, 0.381), (3.048, -0.381), (4.064, -0.381), (3.556, 0.381)),
+        ],
+        [
+            pin(number["G"], -5.08, 0, 0, PIN_MM, "G"),
+            pin(number["S"], 2.54, 5.08, 270, PIN_MM, "S"),
+            pin(number["D"], 2.54, -5.08, 90, PIN_MM, "D"),
+        ],
+    )
+
+
+def chip(part: Component) -> Node:
+    """A box with the names of those pins that are joined, first at the top."""
+    names = dict(zip((land.number for land in part.footprint.pads), part.pins, strict=True))
+    half = len(part.nets) / 2 * PITCH_MM
     pins = [
-        pin(str(lead), *at, angle, PIN_MM, name, "input" if name[0] in "SE~" else kind)
-        for name, lead, at, angle, kind in mux_pins(mux)
+        pin(number, 5.08, half - (i + 0.5) * PITCH_MM, 180, PIN_MM, names[number])
+        for i, (number, _) in enumerate(part.nets)
     ]
-    top = mux_half_mm(mux)
-    return symbol("U", [box(-SIDE_MM, -top, SIDE_MM, top, fill="background")], pins, shown=True)
-
-
-def mux_half_mm(mux: Multiplexer) -> float:
-    """Half the height of a multiplexer's body."""
-    return (mux.channels + 1) / 2 * ROW_MM
-
-
-def mux_pins(mux: Multiplexer) -> list[tuple[str, int, Point, int, str]]:
-    """Name, lead, place of its outer end, angle and kind of each pin."""
-    first, top = (mux.channels - 1) / 2 * ROW_MM, mux_half_mm(mux) + PIN_MM
-    side = SIDE_MM + PIN_MM
-    pins: list[tuple[str, int, Point, int, str]] = [
-        (f"Y{i}", lead, (-side, first - i * ROW_MM), 0, "passive")
-        for i, lead in enumerate(mux.input_leads)
-    ]
-    pins.append(("Z", mux.output, (side, first), 180, "passive"))
-    pins += [
-        (f"S{i}", lead, (side, first - 2 * ROW_MM - i * 5.08), 180, "input")
-        for i, lead in enumerate(mux.select)
-    ]
-    pins.append(("VCC", mux.supply, (0, top), 270, "power_in"))
-    pins += [
-        ("GND", mux.ground, (-5.08, -top), 90, "power_in"),
-        ("~{E}", mux.enable, (5.08, -top), 90, "input"),
-    ]
-    if mux.negative is not None:
-        pins.append(("VEE", mux.negative, (0, -top), 90, "power_in"))
-    return pins
-
-
-def wires(ways: int, pitch_mm: float = ROW_MM) -> Node:
-    """A row of contacts numbered from 1, first at the top."""
-    return contacts(tuple(str(i + 1) for i in range(ways)), pitch_mm)
+    body = box(PIN_MM - _CHIP_MM, -half, PIN_MM, half, fill="background")
+    return symbol("U", [body], pins, shown=True)
 
 
 def contacts(numbers: tuple[str, ...], pitch_mm: float) -> Node:
@@ -277,3 +283,20 @@ def _rays(start: Point, away: bool) -> list[Node]:
             a = turn + math.radians(side)
             found.append(line(tip, (tip[0] + 0.6 * math.cos(a), tip[1] + 0.6 * math.sin(a))))
     return found
+
+
+def _plates(half_mm: float, apart_mm: float) -> list[Node]:
+    return [line((-half_mm, y), (half_mm, y)) for y in (apart_mm, -apart_mm)]
+
+
+def _coil() -> Node:
+    """Half circles, one below the other."""
+    radius = 2.54 / _TURNS
+    angles = [math.radians(step * 15) for step in range(13)]
+    return line(
+        *(
+            (radius * math.sin(a), 2.54 - (2 * turn + 1) * radius + radius * math.cos(a))
+            for turn in range(_TURNS)
+            for a in angles
+        )
+    )

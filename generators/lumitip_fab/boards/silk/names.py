@@ -1,0 +1,126 @@
+"""Names of contacts, wire pads and test points on the silkscreen."""
+
+import dataclasses
+import math
+from collections.abc import Iterator, Sequence
+from itertools import pairwise, product
+
+import numpy as np
+
+from lumitip_fab.boards.model import MASK_MM, SIDES, PlacedComponent, Text
+from lumitip_fab.boards.placed import placed_pads
+from lumitip_fab.boards.silk.page import DOWN, LEFT, RIGHT, UP, Page, Way
+from lumitip_fab.design import Point, Side
+
+_GAP_MM = 0.3  # between names in a row, so that they are read apart
+_OUTWARD_MM = 0.25  # that the first and the last name of a row give way
+_STEP_MM = 0.25
+_ALONG_MM = 1.3  # that a name may stand beside the middle of its pad: half a pitch of wires
+_SPARE_MM = 0.06  # letters do not stand quite in the middle of their text
+_BEYOND_MM = 5.0  # farthest place from a pad
+_ASIDE_MM = (0.0, 0.3, -0.3, 0.6, -0.6, 0.9, -0.9)  # of a name without room at its pad's middle
+_AWAY_MM = 0.4  # from a contact to its name
+
+
+def print_names(page: Page) -> None:
+    """The names of all contacts. Where cells leave little room they stand in rows, and the first
+    pad has its number; elsewhere each is at its contact."""
+    components = page.board.components
+    for part in components:
+        if not (part.contacts and part.pins):
+            continue
+        if page.board.cells:
+            pads = placed_pads(part)
+            places = [(pad.x_mm, pad.y_mm) for pad in pads]
+            _row(page, "front", part.pins, places, pads[0].pad.width_mm / 2)
+            _first_pad(page, places[0], pads[0].pad.width_mm / 2)
+        else:
+            _at_contacts(page, part)
+    points = [part for part in components if part.kind == "test point"]
+    for side in SIDES:
+        here = sorted((p for p in points if p.side == side), key=lambda p: (p.y_mm, p.x_mm))
+        if here:
+            places = [(part.x_mm, part.y_mm) for part in here]
+            _row(page, side, [p.value for p in here], places, here[0].footprint.body.length_mm / 2)
+
+
+def _first_pad(page: Page, at: Point, half_mm: float) -> None:
+    """The number of the first pad of a row: to its left, or above or below it."""
+    (x, y), out = at, (half_mm + np.arange(0.6, _BEYOND_MM, _STEP_MM)).tolist()
+    places = [*((x - d, y) for d in out), *((x, y + s * d) for d in out for s in (-1, 1))]
+    page.require("the mark '1' of the first wire pad", [page.text("1", at) for at in places])
+
+
+def _row(
+    page: Page, side: Side, names: Sequence[str], pads: Sequence[Point], half_mm: float
+) -> None:
+    """The names of pads in a row: all alike if there is room, else each where it has some."""
+    choices = [_beside(page, name, at, half_mm) for name, at in zip(names, pads, strict=True)]
+    for texts in map(list, zip(*choices, strict=True)):
+        flat = texts[0].angle_deg == 0.0
+        if flat and len(texts) > 1:
+            for end, sign in ((0, -1), (-1, 1)):
+                texts[end] = _moved(texts[end], sign * _OUTWARD_MM)
+        if page.free(side, texts, _GAP_MM if flat else page.rules.silk_gap_mm):
+            page.put(side, texts)
+            return
+    steps = np.arange(_STEP_MM, _ALONG_MM, _STEP_MM).tolist()
+    ends = (pads[0], LEFT), (pads[-1], RIGHT)
+    for name, at, places in zip(names, pads, choices, strict=True):
+        moved = [_moved(text, sign * d) for d in steps for text in places for sign in (1, -1)]
+        outside = [
+            text
+            for end, way in ends
+            if at == end
+            for text in _outside(page, name, at, half_mm, way)
+        ]
+        page.require(f"the label {name!r}", [*places, *moved, *outside], side)
+
+
+def _away_mm(page: Page) -> float:
+    """From a pad in a row to its name."""
+    return MASK_MM + page.rules.silk_gap_mm + _SPARE_MM
+
+
+def _beside(page: Page, name: str, at: Point, half_mm: float) -> list[Text]:
+    """Places for the name of a pad in a row: above it, upright above it, both ways below it."""
+    away, pen, half = _away_mm(page), page.text(name, at).width_mm, (half_mm, half_mm)
+    return [
+        page.beside(name, at, half, way, away if upright else away + pen / 2, upright)
+        for way in (UP, DOWN)
+        for upright in (False, True)
+    ]
+
+
+def _outside(page: Page, name: str, at: Point, half_mm: float, way: Way) -> Iterator[Text]:
+    """Places for the name of the first or last pad of a row, beyond the row's end."""
+    for further in np.arange(0.0, _BEYOND_MM, _STEP_MM).tolist():
+        for upright in (False, True):
+            away, half = _away_mm(page) + further, (half_mm, half_mm)
+            yield page.beside(name, at, half, way, away, upright)
+
+
+def _at_contacts(page: Page, part: PlacedComponent) -> None:
+    """The name of each contact beside it: all along their row if they fit, else upright; where
+    that finds no room, along the row and a little aside."""
+    pads = placed_pads(part)
+    apart = [abs(a.x_mm - b.x_mm) for a, b in pairwise(pads) if a.y_mm == b.y_mm]
+    pitch = min(apart, default=0.0)
+    flat = max(map(page.length_mm, part.pins)) + page.rules.silk_gap_mm < pitch
+    inward = 1.0 if part.y_mm < page.board.outline.centre_mm[1] else -1.0
+    drawn = part.footprint.body.y_max_mm if part.outline else 0.0
+    for pad, name in zip(pads, part.pins, strict=True):
+        rise = pad.y_mm - part.y_mm
+        outward = math.copysign(1.0, rise) if pad.pad.y_mm else inward
+        ways = (UP, DOWN) if outward > 0 else (DOWN, UP)
+        at, half = (pad.x_mm, pad.y_mm), max(pad.pad.height_mm / 2, drawn - abs(pad.pad.y_mm))
+        lying = [
+            _moved(page.beside(name, at, (half, half), way, _AWAY_MM), aside)
+            for aside, way in product(_ASIDE_MM, ways)
+        ]
+        upright = [page.beside(name, at, (half, half), way, _AWAY_MM, upright=True) for way in ways]
+        page.require(repr(f"{part.ref} {name}"), lying if flat else [*upright, *lying])
+
+
+def _moved(text: Text, along_mm: float) -> Text:
+    return dataclasses.replace(text, x_mm=text.x_mm + along_mm)
