@@ -8,7 +8,7 @@ packages; see the makers' datasheets.
 
 import re
 from collections import defaultdict
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -198,7 +198,8 @@ def read_channels(path: Path) -> Channels:
 
 def channels(board: KicadBoard, clusters: Clusters) -> Channels:
     """Find the multiplexers of a board, and follow each input to its detector."""
-    copper, names = _Follower(board, _Copper(clusters)), _Follower(board, _Names())
+    copper = _Follower(board, lambda t: None if t.copper is None else clusters.of(t.copper))
+    names = _Follower(board, lambda t: t.net or None)
     parts = {p.ref: (p, pins) for p, pins in sorted(_muxes(board, copper, names), key=_by_ref)}
     by_copper = {ref: copper.map(*found) for ref, found in parts.items()}
     by_name = {ref: names.map(*found) for ref, found in parts.items()}
@@ -207,40 +208,23 @@ def channels(board: KicadBoard, clusters: Clusters) -> Channels:
     return Channels(by_copper, by_name, output, parts, doubts)
 
 
-class _Copper:
-    """Follows copper."""
-
-    def __init__(self, clusters: Clusters) -> None:
-        self.clusters = clusters
-
-    def key(self, terminal: Terminal) -> object:
-        return None if terminal.copper is None else self.clusters.of(terminal.copper)
-
-
-class _Names:
-    """Follows the names of nets."""
-
-    def key(self, terminal: Terminal) -> object:
-        return terminal.net or None
-
-
 class _Follower:
-    """From a lead to the detector at the other end."""
+    """From a lead to the detector at the other end, by what is the same along a connection."""
 
-    def __init__(self, board: KicadBoard, by: _Copper | _Names) -> None:
-        self.by = by
+    def __init__(self, board: KicadBoard, key: Callable[[Terminal], object]) -> None:
+        self.key = key
         self.reached: dict[object, set[str]] = {}
         for part in filter(_may_detect, board.parts):
             for terminal in part.terminals:
-                if (key := by.key(terminal)) is not None:
-                    self.reached.setdefault(key, set()).add(part.ref)
+                if (at := key(terminal)) is not None:
+                    self.reached.setdefault(at, set()).add(part.ref)
 
     def map(self, part: Part, pins: Pinout) -> dict[str, str]:
         """The detector of each input that has one; several are joined by `+`."""
-        rails = {self.by.key(t) for t in part.terminals if t.number in (*pins.rails, *pins.select)}
+        rails = {self.key(t) for t in part.terminals if t.number in (*pins.rails, *pins.select)}
         found = {}
         for channel, lead in enumerate(pins.inputs):
-            key = self.by.key(_terminal(part, lead))
+            key = self.key(_terminal(part, lead))
             refs = self.reached.get(key, set()) if key not in rails else set()
             if refs:
                 found[str(channel)] = "+".join(sorted(refs))
