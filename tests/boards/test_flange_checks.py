@@ -55,7 +55,13 @@ def contacts_in_front(text: str) -> str:
     return in_part(text, "J1", r'\(layer "B.Cu"\)', '(layer "F.Cu")')
 
 
+def dot_lost(text: str) -> str:
+    """The dot at lead 1 of the regulator."""
+    return in_part(text, "U1", r'\n[^\n]*\(fp_line [^\n]*"F.SilkS"\) \(width 0\.3\)[^\n]*', "")
+
+
 DAMAGES: dict[Damage, set[str]] = {
+    dot_lost: {"silk_marks"},
     contacts_in_front: {"lands"},
     # Its pads lie in the ground pour.
     capacitor_far: {

@@ -15,7 +15,7 @@ from lumitip_fab.boards.model import PlacedComponent
 from lumitip_fab.boards.placed import placed_box
 from lumitip_fab.boards.placement import place
 from lumitip_fab.catalogue.controllers import Shroud, Strip
-from lumitip_fab.checks.kicad_files import _seen
+from lumitip_fab.checks.models import _seen
 from lumitip_fab.design import Box, Design, footprints
 from lumitip_fab.design.encoding import read_design
 from lumitip_fab.design.frames import on_board_page
@@ -134,7 +134,7 @@ def test_a_damaged_path_is_seen_by_kicad_and_by_the_check(
     file = exported(kicad, board, tmp_path / "board.step")
     parts = parts_of(design, "breakout")
     assert unseen(file, parts, design.stack.auxiliary_mm) == {"J1"}
-    assert failing(damaged_boards, "kicad_files") == {"models.files"}
+    assert failing(damaged_boards, "models") == {"files"}
 
 
 def lost(folder: Path) -> None:
@@ -156,25 +156,22 @@ def _board(old: str, new: str) -> Callable[[Path], None]:
 
 
 DAMAGES: dict[str, tuple[Callable[[Path], None], set[str]]] = {
-    "file lost": (lost, {"models.files"}),
-    "another's model": (of_another, {"models.size"}),
-    "file cut short": (cut_short, {"models.size"}),
-    "model turned": (_board("(rotate (xyz 0 0 180))", "(rotate (xyz 0 0 0))"), {"models.places"}),
-    "model shifted": (_board("(offset (xyz 0 0 0))", "(offset (xyz 1 0 0))"), {"models.places"}),
-    "model in inches": (
-        _board("(scale (xyz 1 1 1))", "(scale (xyz 2.54 2.54 2.54))"),
-        {"models.places"},
-    ),
-    "another path": (_board("${KIPRJMOD}/../models/", "/tmp/models/"), {"models.files"}),
+    "file lost": (lost, {"files"}),
+    "another's model": (of_another, {"size"}),
+    "file cut short": (cut_short, {"size"}),
+    "model turned": (_board("(rotate (xyz 0 0 180))", "(rotate (xyz 0 0 0))"), {"places"}),
+    "model shifted": (_board("(offset (xyz 0 0 0))", "(offset (xyz 1 0 0))"), {"places"}),
+    "model in inches": (_board("(scale (xyz 1 1 1))", "(scale (xyz 2.54 2.54 2.54))"), {"places"}),
+    "another path": (_board("${KIPRJMOD}/../models/", "/tmp/models/"), {"files"}),
 }
 
 
 @pytest.mark.parametrize("name", DAMAGES)
 def test_damage_is_found(damaged_boards: Path, name: str) -> None:
     damage, checks = DAMAGES[name]
-    assert failing(damaged_boards, "kicad_files") == set()
+    assert failing(damaged_boards, "models") == set()
     damage(damaged_boards)
-    assert failing(damaged_boards, "kicad_files") == checks
+    assert failing(damaged_boards, "models") == checks
 
 
 def test_the_same_design_gives_the_same_models(boards: Boards) -> None:

@@ -5,28 +5,22 @@ from pathlib import Path
 
 import pytest
 
-from lumitip_fab.checks import kicad_files
-from lumitip_fab.checks.result import Measurement
+from lumitip_fab.checks import schematic
 from lumitip_fab.design.encoding import read_design
 
 pytestmark = pytest.mark.slow
 
 
-def _measured(out: Path) -> list[Measurement]:
-    """Figures of the schematics."""
-    found = kicad_files.measure(out, read_design(out / "design.json"))
-    return [m for m in found if m.check.startswith("schematic.")]
-
-
 def _failed(out: Path) -> dict[str, str]:
     """Name and note of each figure out of its range."""
-    return {m.check.removeprefix("schematic."): m.note for m in _measured(out) if not m.passed}
+    told = schematic.measure(out, read_design(out / "design.json"))
+    return {m.check.removeprefix("schematic."): m.note for m in told if not m.passed}
 
 
 @pytest.mark.parametrize("preset", ["small", "published"])
 def test_schematics_and_boards_agree(boards: Callable[[str], Path], preset: str) -> None:
     out = boards(preset)
-    told = _measured(out)
+    told = list(schematic.measure(out, read_design(out / "design.json")))
     assert [m.check for m in told] == ["schematic.parts", "schematic.nets"] * 4
     assert all(m.passed for m in told), [m.note for m in told]
 

@@ -1,21 +1,18 @@
-"""What KiCad opens with a board: its schematic, whose parts and nets, followed along its wires, are
-the board's, and the parts' 3D models, each of its own size and the right way round."""
+"""The parts' 3D models: each part of a board has one, of its own size, the right way round."""
 
-from collections import defaultdict
 from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
 
 import numpy as np
 
-from lumitip_fab.checks.board_read import ReadBoard, names_of, path_of, read_any
-from lumitip_fab.checks.readers.kicad_board import KicadBoard, Model
-from lumitip_fab.checks.readers.kicad_sheet import Sheet, read_sheet
+from lumitip_fab.checks.board_read import names_of, path_of, read_any
+from lumitip_fab.checks.readers.kicad_board import Model
 from lumitip_fab.checks.readers.vertices import step_mm
 from lumitip_fab.checks.result import Measurement, count, unreadable
 from lumitip_fab.design import Box, Design, Footprint, footprints
 from lumitip_fab.errors import OutputError
 
-READS = ("boards/*.kicad_sch", "boards/*.kicad_pcb", "boards/models/*")
+READS = ("boards/*/*.kicad_pcb", "boards/models/*")
 SIZE_MM = 0.01
 _PROJECT = "${KIPRJMOD}/"
 _HALF_PIN_MM = 0.32
@@ -23,7 +20,7 @@ _STRAIGHT, _WHOLE = (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)
 
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
-    """Schematic and models of each board; then the size of each model, once."""
+    """Models that are missing or turned, board by board; then the size of each model, once."""
     known = {shape.library_name: shape for _, shape in footprints.of_design(design)}
     sizes: dict[Path, Footprint] = {}
     for name in names_of(design):
@@ -31,9 +28,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
             read = read_any(outputs, design, name)
         except (OutputError, LookupError) as error:
             yield unreadable("models.files", path_of(name), str(error))
-            yield unreadable("schematic.readable", _sheet_of(name), str(error))
             continue
-        yield from _schematic(outputs, read)
         lost, turned = [], []
         for part in read.board.parts:
             if not part.terminals or "exclude_from_bom" in part.attributes:
@@ -94,44 +89,3 @@ def _seen(shape: Footprint) -> Box:
     front = max(box.y_max_mm, -box.y_min_mm)
     pins = min(pad.y_mm for pad in shape.pads) - _HALF_PIN_MM
     return Box(box.x_min_mm, box.x_max_mm, pins, front)
-
-
-def _sheet_of(name: str) -> str:
-    return path_of(name).replace(".kicad_pcb", ".kicad_sch")
-
-
-def _schematic(outputs: Path, read: ReadBoard) -> Iterator[Measurement]:
-    subject = _sheet_of(read.name)
-    try:
-        sheet = read_sheet(outputs / subject)
-    except (OutputError, LookupError, ValueError) as error:
-        yield unreadable("schematic.readable", subject, str(error))
-        return
-    yield count("schematic.parts", subject, list(_other_parts(sheet, read.board)), "parts")
-    yield count("schematic.nets", subject, list(_other_nets(sheet, read.board)), "nets")
-
-
-def _other_parts(sheet: Sheet, board: KicadBoard) -> Iterator[str]:
-    """Parts that are in one of the two only, or of another value or footprint."""
-    drawn = {s.ref: (s.value, s.footprint) for s in sheet.symbols}
-    placed = {
-        part.ref: (part.value, part.footprint)
-        for part in board.parts
-        if "board_only" not in part.attributes
-    }
-    for ref in sorted(drawn.keys() | placed.keys()):
-        if drawn.get(ref) != placed.get(ref):
-            yield f"{ref}: {drawn.get(ref)} in the schematic, {placed.get(ref)} on the board"
-
-
-def _other_nets(sheet: Sheet, board: KicadBoard) -> Iterator[str]:
-    """Nets that join other pads in the schematic than on the board."""
-    placed = defaultdict(set)
-    for part in board.parts:
-        for terminal in part.terminals:
-            if terminal.net:
-                placed[terminal.net].add(f"{part.ref}.{terminal.number}")
-    for net in sorted(sheet.nets.keys() | placed.keys()):
-        drawn, there = sheet.nets.get(net, set()), placed.get(net, set())
-        if drawn != there:
-            yield f"{net}: {', '.join(sorted(drawn ^ there)[:4])} in one of the two only"

@@ -1,0 +1,54 @@
+"""The schematics: every part and net of a sheet, followed along its wires, against the board."""
+
+from collections import defaultdict
+from collections.abc import Iterator
+from pathlib import Path
+
+from lumitip_fab.checks.board_read import names_of
+from lumitip_fab.checks.readers.kicad_board import KicadBoard, read_board
+from lumitip_fab.checks.readers.kicad_sheet import Sheet, read_sheet
+from lumitip_fab.checks.result import Measurement, count, unreadable
+from lumitip_fab.design import Design
+from lumitip_fab.errors import OutputError
+
+READS = ("boards/*.kicad_sch", "boards/*.kicad_pcb")
+
+
+def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
+    """Every schematic against its board."""
+    for name in names_of(design):
+        subject = f"boards/{name}/{name}.kicad_sch"
+        try:
+            sheet = read_sheet(outputs / subject)
+            board = read_board((outputs / subject).with_suffix(".kicad_pcb"))
+        except (OutputError, LookupError, ValueError) as error:
+            yield unreadable("schematic.readable", subject, str(error))
+            continue
+        yield count("schematic.parts", subject, list(_other_parts(sheet, board)), "parts")
+        yield count("schematic.nets", subject, list(_other_nets(sheet, board)), "nets")
+
+
+def _other_parts(sheet: Sheet, board: KicadBoard) -> Iterator[str]:
+    """Parts that are in one of the two only, or of another value or footprint."""
+    drawn = {s.ref: (s.value, s.footprint) for s in sheet.symbols}
+    placed = {
+        part.ref: (part.value, part.footprint)
+        for part in board.parts
+        if "board_only" not in part.attributes
+    }
+    for ref in sorted(drawn.keys() | placed.keys()):
+        if drawn.get(ref) != placed.get(ref):
+            yield f"{ref}: {drawn.get(ref)} in the schematic, {placed.get(ref)} on the board"
+
+
+def _other_nets(sheet: Sheet, board: KicadBoard) -> Iterator[str]:
+    """Nets that join other pads in the schematic than on the board."""
+    placed = defaultdict(set)
+    for part in board.parts:
+        for terminal in part.terminals:
+            if terminal.net:
+                placed[terminal.net].add(f"{part.ref}.{terminal.number}")
+    for net in sorted(sheet.nets.keys() | placed.keys()):
+        drawn, there = sheet.nets.get(net, set()), placed.get(net, set())
+        if drawn != there:
+            yield f"{net}: {', '.join(sorted(drawn ^ there)[:4])} in one of the two only"
