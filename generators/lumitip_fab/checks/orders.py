@@ -71,17 +71,15 @@ def measure_board(outputs: Path, design: Design, name: str) -> Iterator[Measurem
             other = [key for key in first if first[key] != layers[key]]
             yield count("orders.same", path, other, "layers that differ")
             yield from _parts(path, read, fab, files)
-            note = files[f"{name}_assembly.txt"].decode()
+            note, made = (files[f"{name}_{n}.txt"].decode() for n in ("assembly", "fabrication"))
             wrong = _misled(read, read.finger, note) if read.finger else _misplaced(read, note)
             yield count("orders.note", path, list(wrong), "parts")
-            note = files[f"{name}_fabrication.txt"].decode()
-            yield count("orders.fabrication", path, list(_misordered(read, note)), "figures")
+            yield count("orders.fabrication", path, list(_misordered(read, made)), "figures")
             if read.finger:
-                yield count(
-                    "orders.stop", path, list(_unstopped(read, read.finger, files)), "files"
-                )
+                stops = list(_unstopped(read, read.finger, files))
+                yield count("orders.stop", path, stops, "files")
             if flexible:
-                note, drawn = files[f"{name}_assembly.txt"].decode(), name + ordered["stiffener"]
+                drawn = name + ordered["stiffener"]
                 untold = _untold(note, flexible, design.stack.pcb_mm, drawn)
                 yield count("orders.flexible", path, list(untold), "figures")
         except (OSError, KeyError, ValueError, SyntaxError) as error:
