@@ -43,7 +43,7 @@ class ReadBoard(Subject):
     board: KicadBoard
     design: Design
     of: Finger | AuxiliaryBoard
-    """Whose own frame stands for the sensor frame where it is not a finger's."""
+    """What it is in the design. The frame of a board beside the fingers is its own."""
 
     @property
     def finger(self) -> Finger | None:
