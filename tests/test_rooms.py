@@ -36,7 +36,9 @@ ALLOWED = {
     "checks.readers": "design",
     "checks": "checks.readers design pipeline",
     "explore": "boards catalogue checks config derive design pipeline",
-    "cli": "boards catalogue checks checks.readers config derive design docs explore pipeline",
+    "cli": (
+        "boards catalogue checks checks.readers config derive design docs explore parts pipeline"
+    ),
     "__init__": "checks cli config derive design parts pipeline",
     "__main__": "cli",
 }

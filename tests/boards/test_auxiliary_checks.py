@@ -10,6 +10,7 @@ from board_damages import in_part, moved_part, once, spokes_cut, swapped_pads
 from damages import failing
 from lumitip_fab.checks import board
 from lumitip_fab.design.encoding import read_design
+from silk_damages import letters_small, title_lost
 
 pytestmark = pytest.mark.slow
 
@@ -128,6 +129,19 @@ def fill_adrift(text: str) -> str:
     return text.replace("    (filled_polygon", island, 1)
 
 
+def letters_thin(text: str) -> str:
+    return once(text, r'(\(gr_text "GND"[^\n]*\(thickness )0\.15', r"\g<1>0.1")
+
+
+def silk_on_a_pad(text: str) -> str:
+    line = '  (gr_line (start 140 114.367) (end 158 114.367) (layer "F.SilkS") (width 0.15))\n'
+    return text.replace("  (gr_line", line + "  (gr_line", 1)
+
+
+def reference_twice(text: str) -> str:
+    return in_part(text, "H2", 'reference "H2"', 'reference "H1"')
+
+
 DAMAGES: dict[Damage, set[str]] = {
     part_moved: {"lands", "clearance"},  # the pour is as near as it may be
     part_added: {"other_parts"},
@@ -136,7 +150,7 @@ DAMAGES: dict[Damage, set[str]] = {
     pad_without_copper: {"lands", "apart", "hole_count", "hole_width", "hole_clearance"},
     wires_exchanged: {"lands", "apart", "joined"},
     socket_pins_exchanged: {"open", "short"},
-    names_exchanged: {"names"},
+    names_exchanged: {"silk_labels"},
     via_dropped: {"open", "apart"},
     via_ring_thin: {"via_ring"},
     track_narrow: {"track_width"},
@@ -149,6 +163,11 @@ DAMAGES: dict[Damage, set[str]] = {
     hole_missing: {"hole_count", "holes", "other_parts"},
     edge_moved: {"outline"},
     fill_adrift: {"islands", "hole_clearance"},
+    title_lost: {"silk_title"},
+    letters_small: {"silk_letters"},
+    letters_thin: {"silk_lines"},
+    silk_on_a_pad: {"silk_gap"},
+    reference_twice: {"references"},
 }
 
 

@@ -10,7 +10,7 @@ import pytest
 
 from board_damages import in_part
 from lumitip.layout import Layout
-from lumitip_fab.checks.channel_map import ChannelMap, read_channels
+from lumitip_fab.checks.connections import ChannelMap, read_channels
 from lumitip_fab.cli import main
 from lumitip_fab.design.encoding import read_design
 from lumitip_fab.errors import OutputError

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from lumitip_fab.checks.board_read import Read
-from lumitip_fab.checks.board_silk import measure_silk
+from lumitip_fab.checks.board_finger import measure_cell_prints
+from lumitip_fab.checks.board_read import ReadBoard
 from lumitip_fab.checks.readers.kicad_board import read_board
 from lumitip_fab.design.encoding import read_design
 
@@ -35,9 +35,9 @@ def test_narrow_cells_are_named_at_half_of_the_columns_ends_or_all(
     folder = boards("small")
     design = read_design(folder / "design.json")
     design = replace(design, grid=replace(design.grid, pitch_mm=pitch_mm))
-    read = Read(EMITTER, read_board(folder / EMITTER), design, design.fingers[0])
+    read = ReadBoard("board", EMITTER, read_board(folder / EMITTER), design, design.fingers[0])
     printed = read.board.silk
     words = tuple(w for w in printed.words if w.ref[:1] != "D" or int(w.ref[1:]) in named)
     read = replace(read, board=replace(read.board, silk=replace(printed, words=words)))
-    (found,) = (m for m in measure_silk(read) if m.check == "board.silk_cell_names")
+    (found,) = (m for m in measure_cell_prints(read) if m.check == "board.silk_cell_names")
     assert found.measured == unnamed

@@ -84,11 +84,17 @@ def tvs_reversed(text: str) -> str:
     return swapped_pads(text, "D1", "1", "2")
 
 
+def dot_lost(text: str) -> str:
+    """The dot at lead 1 of the regulator."""
+    return in_part(text, "U1", r'\n[^\n]*\(fp_line [^\n]*"F.SilkS"\) \(width 0\.3\)[^\n]*', "")
+
+
 DAMAGES: dict[Damage, set[str]] = {
     resistor_small: {"plug_in_voltage", "plug_in_current"},
     resistor_without_a_value: {"plug_in_voltage", "plug_in_current", "plug_in_surge"},
     resistor_bridged: {"undamped", "short", "joined"},
     tvs_reversed: {"tvs", "lands", "undamped", "contact_signals", "apart", "joined"},
+    dot_lost: {"silk_marks"},
     contacts_in_front: {"lands"},
     # Its pads lie in the ground pour.
     capacitor_far: {

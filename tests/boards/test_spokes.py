@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import pytest
 import shapely
 
-from lumitip_fab.checks.board_pour import measure_spokes
+from lumitip_fab.checks.board_copper import measure_spokes
 from lumitip_fab.checks.board_read import ReadBoard
 from lumitip_fab.checks.readers.kicad_board import Copper, KicadBoard, Part, Terminal
 from lumitip_fab.checks.readers.kicad_silk import Silk
@@ -40,7 +40,8 @@ def _starved(fill: shapely.Geometry, loose: Sequence[Copper] = (VIA,)) -> float:
     board = KicadBoard(
         (part,), (pour, *loose), ("F.Cu", "B.Cu"), (), Silk((), ()), (), (), {}, math.nan
     )
-    (measured,) = measure_spokes(ReadBoard("board", board, None))  # type: ignore[arg-type]
+    read = ReadBoard("board", "board", board, None, None)  # type: ignore[arg-type]
+    (measured,) = measure_spokes(read)
     return measured.measured
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from damages import failing
 from glb_damages import Told, move, node, opened, rewritten
-from lumitip_fab.checks import assembly, exploded
+from lumitip_fab.checks import assembly, drawings
 
 pytestmark = pytest.mark.slow
 
@@ -204,7 +204,7 @@ def part_astray(text: str) -> str:
     return text[:start] + told + text[end:]
 
 
-EVERY_DRAWING = {name.removeprefix("assembly.") for name in exploded.NAMES}
+EVERY_DRAWING = {name.removeprefix("assembly.") for name in drawings.NAMES}
 DRAWINGS: dict[str, tuple[Callable[[str], str], set[str]]] = {
     "part missing": (drawn(r'<g id="Q7">.*?</g>', ""), {"drawing"}),
     "part astray": (part_astray, {"drawing"}),

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 import trimesh
 
-from lumitip_fab.checks.flange_read import strength
+from lumitip_fab.checks.flange import strength
 from lumitip_fab.design import Design
 from lumitip_fab.design.encoding import read_design
 

@@ -12,7 +12,6 @@ from manifold3d import Manifold
 from damages import carve, failing
 from lumitip_fab.checks import fit_plate
 from lumitip_fab.checks.run import run_checks
-from lumitip_fab.checks.slicing import slice_parts
 from lumitip_fab.cli.build import build
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
@@ -20,6 +19,7 @@ from lumitip_fab.design.encoding import design_text, read_design, round_trip
 from lumitip_fab.errors import FabError
 from lumitip_fab.parts.fit_plate import fit_plate_files
 from lumitip_fab.parts.settings import print_settings
+from lumitip_fab.parts.slicing import slice_parts
 from programs import program
 
 pytestmark = pytest.mark.slow

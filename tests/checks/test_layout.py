@@ -19,7 +19,7 @@ ALL = {
     "layout.hash",
     "layout.optics",
 }
-ORIGIN = {"system.heights", "system.tcp"}
+ORIGIN = {"system.tcp"}
 """Measured from the origin that the layout gives."""
 
 

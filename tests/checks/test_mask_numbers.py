@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lumitip_fab.checks.mask_bands import measure_numbers
+from lumitip_fab.checks.mask import measure_numbers
 from lumitip_fab.checks.mask_flaps import Flap
 
 TIP = (-20.0, 20.0, 90.0)

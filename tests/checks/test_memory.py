@@ -7,10 +7,8 @@ from typing import Any
 
 import pytest
 
-from lumitip_fab.checks import memory as remembering
 from lumitip_fab.checks import run
-from lumitip_fab.checks.memory import Memory, reads
-from lumitip_fab.checks.run import MODULES, run_checks
+from lumitip_fab.checks.run import MODULES, Memory, reads, run_checks
 from lumitip_fab.design import Design
 from lumitip_fab.pipeline.dependencies import RecordedDesign
 
@@ -96,7 +94,7 @@ def test_other_code_or_tools_measure_again(
     monkeypatch: pytest.MonkeyPatch,
     depends: str,
 ) -> None:
-    monkeypatch.setattr(remembering, depends, lambda: "another")
+    monkeypatch.setattr(run, depends, lambda: "another")
     run_checks(damaged, ["layout"], Memory(kept, damaged))
     assert measured == ["layout"]
 

@@ -6,9 +6,9 @@ import math
 import pytest
 from rich.console import Console
 
-from lumitip_fab.checks import report
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.checks.run import Outcome
+from lumitip_fab.cli import report
 
 SOUND = (
     Measurement("mask.web", "a.pdf", 0.9, 0.4, math.inf, "mm"),

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from lumitip_fab.checks.readers.stl import corners_mm
+from lumitip_fab.checks.readers.vertices import corners_mm
 from lumitip_fab.errors import OutputError
 
 

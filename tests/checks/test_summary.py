@@ -9,7 +9,7 @@ from rich.console import Console
 
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.checks.run import MODULES, Outcome, run_checks
-from lumitip_fab.checks.summary import (
+from lumitip_fab.cli.summary import (
     DRAWN_AT_THE_LIMIT,
     PARAMETERS,
     parameters_of,

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lumitip_fab.checks.readers import gcode
 from lumitip_fab.cli import main
 from lumitip_fab.errors import BuildError
+from lumitip_fab.parts import slicing
 from programs import program
 
 CODE = """
@@ -37,16 +37,16 @@ G1 X0 Y50 E4
 
 
 def test_layers_are_of_the_part_alone() -> None:
-    told = gcode.layers(CODE)
+    told = slicing.layers_of(CODE)
     assert [layer.z_mm for layer in told] == [0.2, 0.4]
     assert [layer.length_mm for layer in told] == pytest.approx([10.0, 10.0])
     assert np.ptp(told[0].points_mm, axis=0).tolist() == pytest.approx([10.0, 0.0])
-    assert gcode.reach_mm(told) == pytest.approx((3.0, 0.4))
-    assert gcode.seconds(CODE) == 93784 and gcode.grams(CODE) == 7.24
+    assert slicing.reach_mm(told) == pytest.approx((3.0, 0.4))
+    assert slicing.seconds(CODE) == 93784 and slicing.grams(CODE) == 7.24
     with pytest.raises(BuildError, match="no time"):
-        gcode.seconds("")
+        slicing.seconds("")
     with pytest.raises(BuildError, match="no mass"):
-        gcode.grams("")
+        slicing.grams("")
 
 
 FLEX = {"backing/emitter_backing.3mf": 10, "interface/emitter_interface.3mf": 130}

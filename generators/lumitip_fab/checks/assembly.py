@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from lumitip_fab.checks import exploded
+from lumitip_fab.checks.drawings import measure_exploded
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.readers.scene import Node, Scene, read_scene
 from lumitip_fab.checks.readers.solids import Vectors
@@ -53,7 +53,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     """Hold the assembly against the design."""
     yield _step(outputs, design)
     for finger in design.fingers:
-        yield from exploded.measure_drawing(outputs, design, finger)
+        yield from measure_exploded(outputs, design, finger)
     try:
         scene = read_scene(outputs / _FILE)
     except OutputError as error:

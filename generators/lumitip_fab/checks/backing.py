@@ -1,27 +1,40 @@
 """The backings as files: printable, and everything that goes into or onto them fits."""
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 
 import numpy as np
 import shapely
 
-from lumitip_fab.checks import flex
 from lumitip_fab.checks.plate import (
+    measure_face,
+    measure_groove,
+    measure_interface_size,
+    measure_joint,
     measure_notch,
     measure_outline,
     measure_pins,
     measure_pocket,
     measure_reliefs,
+    measure_sheet_size,
+    measure_ties,
     measure_tip,
 )
-from lumitip_fab.checks.printed import Printed, circles, holes_at, measure_files, room, round_thread
+from lumitip_fab.checks.printed import (
+    Printed,
+    circles,
+    holes_at,
+    measure_bed,
+    measure_boxes,
+    measure_closed,
+    room,
+    round_thread,
+)
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.readers.solids import Vectors, cast, section
-from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip_fab.checks.result import Measure, Measurement, measured, unreadable
 from lumitip_fab.checks.walls import MESH_MM, Exempt, Mask, beside, measure_relief, walls
 from lumitip_fab.design import Design, Finger, Letter
 from lumitip_fab.design.frames import (
@@ -115,7 +128,7 @@ PUBLISHED_OVERHANG_MM2 = 341.0  # of the published part, standing on its mount f
 FLAT_OVERHANG_MM2 = 0.5  # of a plate printed on its front: no support
 LEAST_BED_MM2 = 120.0  # on which a finger 55 mm tall stays up
 SIZE_MM = 0.05
-Step = Callable[[Printed], Iterator[Measurement]]
+Step = Measure[Printed]
 
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
@@ -131,10 +144,11 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
                 continue
             yield part.figure("readable", float(len(part.standing.faces)), 4, np.inf, "triangles")
             yield from _measured(part)
-            yield from measure_files(outputs, part)
+            bounds = part.standing.bounds, part.sensor.bounds
+            yield from measure_boxes("backing", outputs, part.subject, *bounds)
         whole = [part for part in made if isinstance(part, Printed)]
         if len(whole) == 2:
-            yield from _caught(partial(flex.measure_joint, whole[0]), whole[1], "joint")
+            yield from measured((measure_joint,), replace(whole[1], plate=whole[0]))
 
 
 def _read(
@@ -146,7 +160,7 @@ def _read(
     except OutputError as error:
         return unreadable("backing.readable", subject, str(error))
     sensor = solids.moved(standing, to_sensor)
-    return Printed(subject, standing, sensor, finger, design, to_sensor, kind)
+    return Printed("backing", subject, standing, sensor, finger, design, to_sensor, kind)
 
 
 _PLATE: tuple[Step, ...] = (measure_outline, measure_reliefs, measure_notch, measure_tip)
@@ -154,48 +168,27 @@ _HELD: tuple[Step, ...] = (measure_bolt, measure_screw, measure_nose)
 
 
 def _measured(part: Printed) -> Iterator[Measurement]:
-    steps: tuple[Step, ...] = (measure_surface, measure_print, measure_walls, measure_letter)
+    steps: tuple[Step, ...] = (measure_print, measure_walls, measure_letter)
     if part.design.stack.sunk:
         steps += (measure_size, measure_pocket, measure_pins, *_PLATE, *_HELD)
     elif part.kind == "backing":
         steps += (
-            flex.measure_sheet_size,
-            flex.measure_face,
-            flex.measure_ties,
-            flex.measure_groove,
+            measure_sheet_size,
+            measure_face,
+            measure_ties,
+            measure_groove,
             *_PLATE,
         )
     else:
-        steps += (flex.measure_interface_size, *_HELD)
-    for step in steps:
-        yield from _caught(step, part, step.__name__.removeprefix("measure_"))
-
-
-def _caught(step: Step, part: Printed, name: str) -> Iterator[Measurement]:
-    try:
-        yield from step(part)
-    except (
-        ArithmeticError,
-        LookupError,
-        ValueError,
-        OutputError,
-        shapely.errors.ShapelyError,
-    ) as error:
-        yield unreadable(f"backing.{name}", part.subject, f"cannot be measured: {error!r:.200}")
-
-
-def measure_surface(part: Printed) -> Iterator[Measurement]:
-    """One closed body."""
-    yield part.figure("watertight", solids.open_edges(part.standing), 0, 0, "open edges")
-    yield part.figure("bodies", solids.bodies(part.standing), 1, 1, "bodies")
+        steps += (measure_interface_size, *_HELD)
+    yield from measured(steps, part)
 
 
 def measure_print(part: Printed) -> Iterator[Measurement]:
-    """Overhang, and contact with the print bed."""
-    hang, bed = solids.overhang_mm2(part.standing), solids.bed_contact_mm2(part.standing)
+    """One closed body; overhang, and contact with the print bed."""
     most = PUBLISHED_OVERHANG_MM2 if part.kind == part.design.held else FLAT_OVERHANG_MM2
-    yield part.figure("overhang", hang, 0.0, most, "mm²")
-    yield part.figure("bed_contact", bed, LEAST_BED_MM2, np.inf, "mm²")
+    yield from measure_closed(part, part.standing)
+    yield from measure_bed(part, part.standing, most, LEAST_BED_MM2)
 
 
 def measure_size(part: Printed) -> Iterator[Measurement]:

@@ -1,237 +1,42 @@
-"""The boards' KiCad files: places of cells, edge, holes and parts; widths, gaps and whole nets."""
+"""The boards' KiCad files against the design: one list of measures, each of which applies to the
+boards that have what it measures."""
 
 import math
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
-from typing import TypeVar
 
 import numpy as np
 import shapely
 
-from lumitip_fab.checks.board_auxiliary import (
-    measure_contact_map,
-    measure_edge,
+from lumitip_fab.checks.board_circuit import measure_channels, measure_contact_map, measure_strings
+from lumitip_fab.checks.board_copper import (
+    measure_copper,
     measure_hot_loop,
     measure_joined,
     measure_keep_outs,
-    measure_lands,
-    measure_names,
-    measure_screws,
+    measure_nets,
+    measure_spokes,
     measure_supplies,
 )
-from lumitip_fab.checks.board_circuit import measure_channels, measure_connector, measure_strings
-from lumitip_fab.checks.board_flex import measure_flexible
-from lumitip_fab.checks.board_pour import measure_spokes
-from lumitip_fab.checks.board_read import (
-    Read,
-    ReadAuxiliary,
-    ReadBoard,
-    middle,
-    names_of,
-    path_of,
-    read_any,
-)
-from lumitip_fab.checks.board_silk import measure_silk, measure_targets
+from lumitip_fab.checks.board_finger import measure_cell_prints, measure_cells, measure_flexible
+from lumitip_fab.checks.board_read import ReadBoard, names_of, path_of, placed, read_any
+from lumitip_fab.checks.board_silk import measure_labels, measure_prints, measure_targets
 from lumitip_fab.checks.plug_in import measure_plug_in
-from lumitip_fab.checks.readers.kicad_board import Copper, Part
-from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip_fab.checks.readers.kicad_board import Part, Terminal
+from lumitip_fab.checks.result import Measure, Measurement, measured, unreadable
 from lumitip_fab.checks.settling import measure_settling
-from lumitip_fab.design import Design
+from lumitip_fab.design import Component, Design, Footprint, Pad, Relief, footprints
+from lumitip_fab.design.shape import Side
 from lumitip_fab.errors import OutputError
 
-CELL_MM = 0.001
+READS = ("boards/*.kicad_pcb",)
 EDGE_MM = 0.002
 HOLE_MM = 0.01
+LAND_MM = 0.001
+WIRE_MM = 0.001
 _HEIGHT = re.compile(r"X(\d+)(?:-\d+)?N$")  # of an IPC-7351 name, in hundredths
 _FLAT = ("TestPoint", "Fiducial", "WirePads", "MountingHole")
-
-
-def measure_cells(read: Read) -> Iterator[Measurement]:
-    """LED or detector i on the front at cell i: at (-x, y) on the emitter, by the facing rule."""
-    letter, sign = read.finger.cells_hold.letter, read.finger.cells_hold.x_sign
-    cells = read.design.cells
-    wanted = np.array([(sign * cell.x_mm, cell.y_mm) for cell in cells])
-    found = [read.parts.get(f"{letter}{i + 1}") for i in range(len(cells))]
-    found = [part if part and part.front else None for part in found]
-    off = np.hypot(*(read.sensor([middle(part) for part in found]) - wanted).T)
-    worst = int(np.nan_to_num(off, nan=math.inf).argmax())
-    yield read.figure("cells", off[worst], 0, CELL_MM, note=f"worst at {letter}{worst + 1}")
-    extra = [ref for ref in read.parts if re.fullmatch(rf"{letter}\d+", ref)]
-    yield read.figure("cell_count", len(extra), len(cells), len(cells), "parts")
-
-
-def measure_outline(read: Read) -> Iterator[Measurement]:
-    """The edge against the board's box, and the gap to the pocket on each side."""
-    box, pocket = read.design.board.box, read.design.board.pocket
-    left, low, right, high = read.outline.bounds
-    (x_min, y_max), (x_max, y_min) = read.sensor([(left, low), (right, high)])
-    off = [x_min - box.x_min_mm, x_max - box.x_max_mm, y_min - box.y_min_mm, y_max - box.y_max_mm]
-    yield read.figure("outline", np.abs(off).max(), 0, EDGE_MM)
-    gaps = [
-        x_min - pocket.x_min_mm,
-        pocket.x_max_mm - x_max,
-        y_min - pocket.y_min_mm,
-        pocket.y_max_mm - y_max,
-    ]
-    clearance = read.design.board.pocket_clearance_mm
-    worst = max(gaps, key=lambda gap: abs(gap - clearance))
-    yield read.figure("pocket_gap", worst, clearance - EDGE_MM, clearance + EDGE_MM)
-
-
-def measure_holes(read: Read) -> Iterator[Measurement]:
-    """The unplated holes against the backing's pins: place, and room all round."""
-    board, wanted = read.design.board, np.array(read.finger.holes)
-    found = read.sensor([hole.at for hole in read.holes])
-    yield read.figure("hole_count", len(found), len(wanted), len(wanted), "holes")
-    apart = np.hypot(*(wanted[:, None] - found[None]).transpose(2, 0, 1))
-    off = apart.min(axis=1).max() if found.size else math.nan
-    yield read.figure("holes", off, 0, HOLE_MM, note="from the backing's pins")
-    room = [(hole.drill_mm - board.pin_mm) / 2 for hole in read.holes]
-    least = (board.hole_mm - board.pin_mm) / 2
-    worst = max(room, key=lambda gap: abs(gap - least), default=math.nan)
-    yield read.figure("pin_clearance", worst, least - EDGE_MM, least + EDGE_MM)
-
-
-def measure_heights(read: Read) -> Iterator[Measurement]:
-    """Heights of the parts by their footprints' names: those on the front at most the silicone's
-    thickness, those on the back with room to the walls and the floor of their relief."""
-    tall = {part.ref: _height_mm(part) for part in read.board.parts if part.terminals}
-    front = [tall[p.ref] for p in read.board.parts if p.terminals and p.front]
-    highest = max(front, key=lambda h: math.inf if math.isnan(h) else h, default=math.nan)
-    yield read.figure("height_front", highest, 0, read.design.stack.silicone_mm)
-    spare = [
-        _spare_mm(read, part, tall[part.ref])
-        for part in read.board.parts
-        if part.terminals and not part.front and tall[part.ref] != 0
-    ]
-    if spare or read.finger.reliefs:
-        least = min(spare, key=lambda s: -math.inf if math.isnan(s) else s, default=math.nan)
-        yield read.figure("room_behind", least, 0, math.inf, note="left round parts on the back")
-
-
-def _height_mm(part: Part) -> float:
-    """By the footprint's name; bare copper has none, NaN if the name does not give it."""
-    if part.footprint.startswith(_FLAT):
-        return 0.0
-    height = _HEIGHT.search(part.footprint)
-    return int(height[1]) / 100 if height else math.nan
-
-
-def _spare_mm(read: Read, part: Part, height_mm: float) -> float:
-    """Least room between a part on the back and the walls and floor of its relief."""
-    copper = [t.copper.area for t in part.terminals if t.copper is not None]
-    left, low, right, high = shapely.union_all(copper).bounds
-    (x_min, y_max), (x_max, y_min) = read.sensor([(left, low), (right, high)])
-    spares = [
-        min(
-            x_min - r.box.x_min_mm,
-            r.box.x_max_mm - x_max,
-            y_min - r.box.y_min_mm,
-            r.box.y_max_mm - y_max,
-            r.depth_mm - height_mm,
-        )
-        for r in read.finger.reliefs
-    ]
-    return float(max(spares, default=math.nan))
-
-
-_ROUND_MM = 0.0006  # what chords of round copper take away, and six digits in files
-
-
-def measure_copper(read: ReadBoard) -> Iterator[Measurement]:
-    """Gaps, widths and rings against the rules of the design."""
-    rules = read.design.rules
-    yield _gap(read, rules.copper_gap_mm)
-    yield _edge_gap(read, rules.edge_gap_mm)
-    if read.holes:
-        yield _hole_gap(read, rules.hole_gap_mm)
-    tracks = [piece.width_mm for piece in read.board.loose if piece.kind == "track"]
-    yield read.figure("track_width", min(tracks, default=math.nan), rules.track_mm, math.inf)
-    rings = [_ring_mm(piece) for piece in read.board.loose if piece.kind == "via"]
-    wanted = (rules.via_mm - rules.via_drill_mm) / 2 - _ROUND_MM
-    if rings:
-        yield read.figure("via_ring", min(rings), wanted, math.inf)
-
-
-def measure_nets(read: ReadBoard) -> Iterator[Measurement]:
-    """Nets that the copper leaves open, and those that it joins."""
-    groups, names = read.clusters.groups(), read.clusters.nets()
-    opened = sorted(net for net, found in groups.items() if len(found) > 1)
-    yield read.count("open", [f"{net} in {len(groups[net])} pieces" for net in opened], "nets")
-    joined = sorted(" and ".join(sorted(labels)) for labels in names.values() if len(labels) > 1)
-    yield read.count("short", joined, "places")
-    grounded = {label for label, labels in names.items() if "GND" in labels}
-    adrift = [
-        f"on {'/'.join(sorted(piece.layers))}"
-        for piece in read.board.loose
-        if piece.kind == "fill" and read.clusters.of(piece) not in grounded & groups["GND"]
-    ]
-    yield read.count("islands", adrift, "fills")
-
-
-def _gap(read: ReadBoard, least_mm: float) -> Measurement:
-    """The narrowest gap between copper that is not connected."""
-    gaps = read.clusters.gaps(2 * least_mm)
-    worst = min(gaps, key=lambda gap: gap[0], default=None)
-    if worst is None:
-        return read.figure("clearance", 2 * least_mm, least_mm - _ROUND_MM, math.inf)
-    note = " and ".join(sorted(f"{piece.kind} of {piece.net or 'no net'}" for piece in worst[1:]))
-    return read.figure("clearance", worst[0], least_mm - _ROUND_MM, math.inf, note=note)
-
-
-def _edge_gap(read: ReadBoard, least_mm: float) -> Measurement:
-    """The narrowest gap from copper to the edge."""
-    copper = [piece.area for piece in read.clusters.pieces]
-    inside = all(read.outline.contains(area) for area in copper)
-    gap = float(shapely.distance(read.outline.boundary, copper).min()) if inside else -math.inf
-    return read.figure("edge_clearance", gap, least_mm - _ROUND_MM, math.inf)
-
-
-def _hole_gap(read: ReadBoard, least_mm: float) -> Measurement:
-    """The narrowest gap from copper to unplated holes."""
-    copper = [piece.area for piece in read.clusters.pieces]
-    holes = [shapely.Point(h.at).buffer(h.drill_mm / 2, quad_segs=32) for h in read.holes]
-    gaps = [float(shapely.distance(hole, copper).min()) for hole in holes]
-    return read.figure("hole_clearance", min(gaps), least_mm - _ROUND_MM, math.inf)
-
-
-def _ring_mm(via: Copper) -> float:
-    left, _, right, _ = via.area.bounds
-    return float(right - left - via.drill_mm) / 2
-
-
-READS = ("boards/*.kicad_pcb",)
-
-_Any = TypeVar("_Any", Read, ReadAuxiliary)
-_OF_FINGERS: tuple[Callable[[Read], Iterator[Measurement]], ...] = (
-    measure_cells,
-    measure_outline,
-    measure_holes,
-    measure_heights,
-    measure_copper,
-    measure_nets,
-    measure_spokes,
-    measure_connector,
-    measure_silk,
-    measure_targets,
-    measure_flexible,
-)
-_OF_AUXILIARY_BOARDS: tuple[Callable[[ReadAuxiliary], Iterator[Measurement]], ...] = (
-    measure_edge,
-    measure_screws,
-    measure_lands,
-    measure_names,
-    measure_copper,
-    measure_nets,
-    measure_spokes,
-    measure_joined,
-    measure_supplies,
-    measure_hot_loop,
-    measure_keep_outs,
-    measure_contact_map,
-    measure_plug_in,
-)
 
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
@@ -248,20 +53,201 @@ def measure_board(outputs: Path, design: Design, name: str) -> Iterator[Measurem
         yield unreadable("board.readable", path_of(name), str(error))
         return
     yield read.figure("readable", len(read.board.parts), 1, float("inf"), "parts")
-    if isinstance(read, ReadAuxiliary):
-        yield from _measured(read, _OF_AUXILIARY_BOARDS)
+    yield from measured(MEASURES, read)
+
+
+def measure_outline(read: ReadBoard) -> Iterator[Measurement]:
+    """The edge against the board's box; of a finger's board also the gap to the pocket."""
+    box = read.box
+    left, low, right, high = read.outline.bounds
+    (x_min, y_max), (x_max, y_min) = read.sensor([(left, low), (right, high)])
+    off = [x_min - box.x_min_mm, x_max - box.x_max_mm, y_min - box.y_min_mm, y_max - box.y_max_mm]
+    yield read.figure("outline", np.abs(off).max(), 0, EDGE_MM)
+    if read.finger is None:
+        return
+    pocket, clearance = read.design.board.pocket, read.design.board.pocket_clearance_mm
+    gaps = [
+        x_min - pocket.x_min_mm,
+        pocket.x_max_mm - x_max,
+        y_min - pocket.y_min_mm,
+        pocket.y_max_mm - y_max,
+    ]
+    worst = max(gaps, key=lambda gap: abs(gap - clearance))
+    yield read.figure("pocket_gap", worst, clearance - EDGE_MM, clearance + EDGE_MM)
+
+
+def measure_holes(read: ReadBoard) -> Iterator[Measurement]:
+    """The unplated holes for pins or screws: how many, where, how wide; and room round pins."""
+    wanted, found = read.of.holes, read.sensor([hole.at for hole in read.holes])
+    yield read.figure("hole_count", len(found), len(wanted), len(wanted), "holes")
+    if not wanted:
+        return
+    apart = np.hypot(*(np.array(wanted)[:, None] - found[None]).transpose(2, 0, 1))
+    off = apart.min(axis=1).max() if found.size else math.nan
+    yield read.figure("holes", off, 0, HOLE_MM, note="from the design's pins or screws")
+    wide = [abs(hole.drill_mm - read.hole_mm) for hole in read.holes]
+    yield read.figure("hole_width", max(wide, default=math.nan), 0, HOLE_MM, note="from the design")
+    if read.finger is None:
+        return
+    pin_mm = read.design.board.pin_mm
+    room, least = [(hole.drill_mm - pin_mm) / 2 for hole in read.holes], (read.hole_mm - pin_mm) / 2
+    worst = max(room, key=lambda gap: abs(gap - least), default=math.nan)
+    yield read.figure("pin_clearance", worst, least - EDGE_MM, least + EDGE_MM)
+
+
+def measure_lands(read: ReadBoard) -> Iterator[Measurement]:
+    """Every pad of every part: its place, its size and its hole. Where the design has no places of
+    parts, they are where the file has them, and their pads as the footprint has them."""
+    if read.components:
+        refs = {device.ref for device in read.components}
+        others = [p.ref for p in read.board.parts if p.ref not in refs and _has_copper(p)]
+        yield read.count("other_parts", others, "parts")
+        wanted: dict[str, Component | None] = {device.ref: device for device in read.components}
     else:
-        lights = read.finger.cells_hold.kind == "led"
-        own = (measure_strings,) if lights else (measure_channels, measure_settling)
-        yield from _measured(read, (*_OF_FINGERS, *own))
+        shapes = _footprints(read)
+        wanted = {p.ref: _as_it_lies(read, p, shapes) for p in read.board.parts if _has_copper(p)}
+    off = {ref: _off_mm(read, device, read.parts.get(ref)) for ref, device in wanted.items()}
+    worst = max(off, key=lambda ref: math.inf if math.isnan(off[ref]) else off[ref])
+    yield read.figure("lands", off[worst], 0, LAND_MM, note=f"worst at {worst}")
 
 
-def _measured(
-    read: _Any, steps: "tuple[Callable[[_Any], Iterator[Measurement]], ...]"
-) -> Iterator[Measurement]:
-    for step in steps:
-        try:
-            yield from step(read)
-        except (ArithmeticError, LookupError, ValueError, shapely.errors.ShapelyError) as error:
-            name = step.__name__.removeprefix("measure_")
-            yield unreadable(f"board.{name}", read.subject, f"cannot be measured: {error!r:.200}")
+def _footprints(read: ReadBoard) -> dict[str, Footprint]:
+    """Footprints of a finger's parts, by name."""
+    shapes = [shape for _, shape in footprints.of_design(read.design)]
+    shapes += [footprints.dot("TestPoint"), footprints.dot("Fiducial")]
+    if read.finger:
+        row = read.finger.connector
+        ways = len(row.signals)
+        shapes.append(footprints.row("WirePads", ways, row.pitch_mm, row.pad_mm, row.drill_mm))
+    return {shape.library_name: shape for shape in shapes}
+
+
+def _as_it_lies(read: ReadBoard, part: Part, shapes: dict[str, Footprint]) -> Component | None:
+    """A part where the file has it, with the footprint of its name; none if there is no such."""
+    if part.footprint not in shapes:
+        return None
+    x_mm, y_mm = read.sensor([part.at])[0].tolist()
+    side: Side = "front" if part.front else "back"
+    angle_deg = part.angle_deg - (0.0 if part.front else 180.0)  # KiCad turns what it mirrors in y
+    shape = shapes[part.footprint]
+    return Component(part.ref, part.value, "", "", shape, x_mm, y_mm, angle_deg, side, ())
+
+
+def _has_copper(part: Part) -> bool:
+    return any(t.copper is not None for t in part.terminals)
+
+
+def _off_mm(read: ReadBoard, device: Component | None, part: Part | None) -> float:
+    """Worst place, size or hole of a part's pads; NaN if one is missing or there are more."""
+    if device is None:
+        return math.nan
+    lands = device.footprint.pads
+    there = part is not None and part.front == (device.side == "front")
+    found = {t.number: t for t in part.terminals} if part and there else {}
+    if set(found) != {land.number for land in lands} or part is None:
+        return math.nan
+    if len(part.terminals) != len(lands):
+        return math.nan
+    return float(np.max([_pad_off_mm(read, device, land, found[land.number]) for land in lands]))
+
+
+def _pad_off_mm(read: ReadBoard, device: Component, land: Pad, pad: Terminal) -> float:
+    if pad.copper is None:
+        return math.nan
+    x, y = read.sensor([pad.at])[0]
+    turned = round(device.angle_deg / 90) % 2
+    size = (land.height_mm, land.width_mm) if turned else (land.width_mm, land.height_mm)
+    left, low, right, high = pad.copper.area.bounds
+    off: float = max(
+        math.dist((x, y), placed(device, land)),
+        abs(pad.drill_mm - land.drill_mm),
+        abs(right - left - size[0]),
+        abs(high - low - size[1]),
+    )
+    return off
+
+
+def measure_wires(read: ReadBoard) -> Iterator[Measurement]:
+    """The pads for a cable's wires, in the design's order."""
+    if read.finger is None:
+        return
+    wanted = np.array(read.finger.connector.pads)
+    part = read.parts.get("J1")
+    found = {t.number: t.at for t in part.terminals} if part else {}
+    pads = [found.get(str(i + 1), (math.nan, math.nan)) for i in range(len(wanted))]
+    off = np.hypot(*(read.sensor(pads) - wanted).T)
+    yield read.figure("wires", off.max() if len(found) == len(wanted) else math.nan, 0, WIRE_MM)
+
+
+def measure_heights(read: ReadBoard) -> Iterator[Measurement]:
+    """Heights of the parts by their footprints' names: those on the front at most the silicone's
+    thickness, those on the back with room to the walls and the floor of their relief."""
+    if (finger := read.finger) is None:
+        return
+    tall = {part.ref: _height_mm(part) for part in read.board.parts if part.terminals}
+    front = [tall[p.ref] for p in read.board.parts if p.terminals and p.front]
+    highest = max(front, key=lambda h: math.inf if math.isnan(h) else h, default=math.nan)
+    yield read.figure("height_front", highest, 0, read.design.stack.silicone_mm)
+    spare = [
+        _spare_mm(read, finger.reliefs, part, tall[part.ref])
+        for part in read.board.parts
+        if part.terminals and not part.front and tall[part.ref] != 0
+    ]
+    if spare or finger.reliefs:
+        least = min(spare, key=lambda s: -math.inf if math.isnan(s) else s, default=math.nan)
+        yield read.figure("room_behind", least, 0, math.inf, note="left round parts on the back")
+
+
+def _height_mm(part: Part) -> float:
+    """By the footprint's name; bare copper has none, NaN if the name does not give it."""
+    if part.footprint.startswith(_FLAT):
+        return 0.0
+    height = _HEIGHT.search(part.footprint)
+    return int(height[1]) / 100 if height else math.nan
+
+
+def _spare_mm(read: ReadBoard, reliefs: tuple[Relief, ...], part: Part, height_mm: float) -> float:
+    """Least room between a part on the back and the walls and floor of its relief."""
+    copper = [t.copper.area for t in part.terminals if t.copper is not None]
+    left, low, right, high = shapely.union_all(copper).bounds
+    (x_min, y_max), (x_max, y_min) = read.sensor([(left, low), (right, high)])
+    spares = [
+        min(
+            x_min - r.box.x_min_mm,
+            r.box.x_max_mm - x_max,
+            y_min - r.box.y_min_mm,
+            r.box.y_max_mm - y_max,
+            r.depth_mm - height_mm,
+        )
+        for r in reliefs
+    ]
+    return float(max(spares, default=math.nan))
+
+
+MEASURES: tuple[Measure[ReadBoard], ...] = (
+    measure_outline,
+    measure_holes,
+    measure_cells,
+    measure_lands,
+    measure_wires,
+    measure_heights,
+    measure_copper,
+    measure_nets,
+    measure_joined,
+    measure_spokes,
+    measure_supplies,
+    measure_hot_loop,
+    measure_keep_outs,
+    measure_prints,
+    measure_labels,
+    measure_cell_prints,
+    measure_targets,
+    measure_flexible,
+    measure_strings,
+    measure_channels,
+    measure_settling,
+    measure_contact_map,
+    measure_plug_in,
+)
+"""Each applies to the boards that have what it measures: a finger's cells, the contacts of a
+coupling, a regulator's hot loop, an antenna's keep-out, flexible layers …"""

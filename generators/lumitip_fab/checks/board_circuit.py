@@ -1,18 +1,20 @@
-"""The circuit of a board, followed along its copper, and the load of its resistors at the worst
-case."""
+"""The circuit of a board, followed along its copper: strings and their load, multiplexers, and the
+contacts of a coupling."""
 
 import math
 import re
-from collections import Counter
-from collections.abc import Iterator
+from collections import Counter, defaultdict
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 from scipy.optimize import brentq
 
-from lumitip_fab.checks.board_read import Read, ohm
-from lumitip_fab.checks.channel_map import channels
+from lumitip_fab.checks.board_read import ReadBoard, ohm
+from lumitip_fab.checks.connections import channels
 from lumitip_fab.checks.readers.kicad_board import Part
 from lumitip_fab.checks.result import Measurement
+from lumitip_fab.design import ToolContact
+from lumitip_fab.design.frames import applied, auxiliary_to_flange
 
 THERMAL_V = 0.02585
 SUPPLY_HIGH, RESISTOR_LOW = 1.05, 0.99
@@ -23,21 +25,21 @@ RATED_W = {"1608": 0.1, "2012": 0.125, "3216": 0.25, "3225": 0.5, "5025": 0.75}
 _SIZE = re.compile(r"RESC(\d{4})X")
 
 
-def measure_loads(read: Read, chains: tuple[int, ...]) -> Iterator[Measurement]:
+def measure_loads(read: ReadBoard, chains: tuple[int, ...]) -> Iterator[Measurement]:
     """The largest load of a string resistor, as a share of its rating.
 
     Args:
         read: the emitter's board.
         chains: LEDs that the copper puts behind each resistor, R1 first.
     """
-    volts = float(read.finger.connector.signals[1].removesuffix("V"))
+    volts = float(read.signals[1].removesuffix("V"))
     shares = [_share(read, f"R{i}", leds, volts) for i, leds in enumerate(chains, start=1)]
     worst = max(range(len(shares)), key=lambda i: (math.isnan(shares[i]), shares[i]))
     note = f"R{worst + 1}, over the tolerances of supply, LEDs and resistor"
     yield read.figure("resistor_load", 100 * shares[worst], 0, 100 * MOST_SHARE, "%", note)
 
 
-def _share(read: Read, ref: str, leds: int, volts: float) -> float:
+def _share(read: ReadBoard, ref: str, leds: int, volts: float) -> float:
     part = read.parts.get(ref)
     size = _SIZE.match(part.footprint) if part else None
     if part is None or size is None or size[1] not in RATED_W:
@@ -47,7 +49,7 @@ def _share(read: Read, ref: str, leds: int, volts: float) -> float:
     return amps**2 * resistance / RATED_W[size[1]]
 
 
-def _highest_a(read: Read, volts: float, leds: int, resistance: float) -> float:
+def _highest_a(read: ReadBoard, volts: float, leds: int, resistance: float) -> float:
     """Current with every LED at its lowest forward voltage."""
     strings = read.design.electrical.strings
     slope = strings.ideality * THERMAL_V
@@ -61,25 +63,16 @@ def _highest_a(read: Read, volts: float, leds: int, resistance: float) -> float:
 
 
 CURRENT_SHARE = 0.02
-WIRE_MM = 0.001
 BYPASS_MM = 4.0  # from a supply lead to its capacitor, at most
 GROUND = "GND"
 
 
-def measure_connector(read: Read) -> Iterator[Measurement]:
-    """The pads for the wires, in the design's order."""
-    wanted = np.array(read.finger.connector.pads)
-    part = read.parts.get("J1")
-    found = {t.number: t.at for t in part.terminals} if part else {}
-    pads = [found.get(str(i + 1), (math.nan, math.nan)) for i in range(len(wanted))]
-    off = np.hypot(*(read.sensor(pads) - wanted).T)
-    yield read.figure("wires", off.max() if len(found) == len(wanted) else math.nan, 0, WIRE_MM)
-
-
-def measure_channels(read: Read) -> Iterator[Measurement]:
+def measure_channels(read: ReadBoard) -> Iterator[Measurement]:
     """Which detector each input reads, against the layout; and what serves the multiplexers."""
+    if not read.muxes:
+        return
     found = channels(read.board, read.clusters)
-    wanted: dict[str, dict[str, str]] = {f"U{m + 1}": {} for m in range(read.design.wiring.muxes)}
+    wanted: dict[str, dict[str, str]] = {f"U{m + 1}": {} for m in range(read.muxes)}
     for cell in read.design.cells:
         wanted[f"U{cell.mux + 1}"][str(cell.channel)] = f"Q{cell.index + 1}"
     wrong = [
@@ -100,16 +93,18 @@ def measure_channels(read: Read) -> Iterator[Measurement]:
     yield read.count("polarity", _reversed_detectors(read), "detectors")
 
 
-def measure_strings(read: Read) -> Iterator[Measurement]:
+def measure_strings(read: ReadBoard) -> Iterator[Measurement]:
     """Each string from the supply through its resistor and LEDs to ground, and its current."""
+    if not read.strings:
+        return
     wiring = read.design.wiring
-    supply, marked = read.finger.connector.signals[1], read.design.packages.led.marked
+    supply, marked = read.signals[1], read.design.packages.led.marked
     anode = "1" if marked == "anode" else "2"
     wrong: list[str] = []
     turned: list[str] = []
     shares = []
     lit = []
-    for i, cells in enumerate(wiring.strings):
+    for i, cells in enumerate(read.strings):
         chain, ends = _chain(read, f"R{i + 1}", supply, anode)
         lit.append(len(chain))
         wanted = [f"D{cell + 1}" for cell in cells]
@@ -131,7 +126,7 @@ def measure_strings(read: Read) -> Iterator[Measurement]:
     yield from measure_loads(read, tuple(lit))
 
 
-def _chain(read: Read, resistor: str, supply: str, anode: str) -> tuple[list[str], bool]:
+def _chain(read: ReadBoard, resistor: str, supply: str, anode: str) -> tuple[list[str], bool]:
     """LEDs after a resistor, with a minus where the current meets the cathode first; and whether
     the last is at ground."""
     ends = [read.group(resistor, 1), read.group(resistor, 2)]
@@ -156,11 +151,11 @@ def _chain(read: Read, resistor: str, supply: str, anode: str) -> tuple[list[str
     return chain, True
 
 
-def _unserved(read: Read) -> Iterator[str]:
+def _unserved(read: ReadBoard) -> Iterator[str]:
     """Leads of multiplexers without their line; outputs or photodetectors without exactly one
     pull-up."""
     design, leads = read.design, read.design.packages.multiplexer
-    supply = read.finger.connector.signals[1]
+    supply = read.signals[1]
     shared = {leads.supply: supply, leads.ground: GROUND, leads.enable: GROUND}
     shared |= {} if leads.negative is None else {leads.negative: GROUND}
     shared |= {lead: f"S{i}" for i, lead in enumerate(leads.select)}
@@ -187,9 +182,9 @@ def _unserved(read: Read) -> Iterator[str]:
             )
 
 
-def _bypasses(read: Read) -> Iterator[Measurement]:
+def _bypasses(read: ReadBoard) -> Iterator[Measurement]:
     """From each multiplexer's supply and ground leads to the pads of a capacitor of its own."""
-    leads, supply = read.design.packages.multiplexer, read.finger.connector.signals[1]
+    leads, supply = read.design.packages.multiplexer, read.signals[1]
     rails = read.wire(supply), read.wire(GROUND)
     free = {
         ref: part
@@ -197,7 +192,7 @@ def _bypasses(read: Read) -> Iterator[Measurement]:
         if ref.startswith("C") and _ends(read, ref) == set(rails)
     }
     far: list[tuple[float, float]] = []
-    for which in range(1, read.design.wiring.muxes + 1):
+    for which in range(1, read.muxes + 1):
         mux = read.parts.get(f"U{which}")
         own = min(free, key=lambda ref: _reach(read, mux, leads.supply, free[ref]), default=None)
         chip = free.pop(own) if own else None
@@ -210,7 +205,7 @@ def _bypasses(read: Read) -> Iterator[Measurement]:
         yield read.figure(name, worst, 0, limit, note="from a multiplexer to its capacitor")
 
 
-def _reach(read: Read, mux: Part | None, lead: int, chip: Part | None) -> float:
+def _reach(read: ReadBoard, mux: Part | None, lead: int, chip: Part | None) -> float:
     """From a lead to the pad of a part that is on the same net; infinite without either."""
     if mux is None or chip is None:
         return math.inf
@@ -220,7 +215,7 @@ def _reach(read: Read, mux: Part | None, lead: int, chip: Part | None) -> float:
     return min((math.dist(a, b) for a in ends for b in pads), default=math.inf)
 
 
-def _resistors(read: Read, value: float) -> Iterator[set[int | None]]:
+def _resistors(read: ReadBoard, value: float) -> Iterator[set[int | None]]:
     """The groups that each resistor of this value joins; an array has one between each pad of its
     first row and the pad opposite."""
     for ref, part in read.parts.items():
@@ -230,12 +225,73 @@ def _resistors(read: Read, value: float) -> Iterator[set[int | None]]:
                 yield {read.group(ref, pad), read.group(ref, pads + 1 - pad)}
 
 
-def _ends(read: Read, ref: str) -> set[int | None]:
+def _ends(read: ReadBoard, ref: str) -> set[int | None]:
     return {read.group(ref, 1), read.group(ref, 2)}
 
 
-def _reversed_detectors(read: Read) -> list[str]:
+def _reversed_detectors(read: ReadBoard) -> list[str]:
     """Detectors whose emitter is not at ground."""
     emitter = "2" if read.design.packages.photodetector.marked == "collector" else "1"
     refs = [f"Q{i + 1}" for i in range(len(read.design.cells))]
     return [ref for ref in refs if read.group(ref, emitter) != read.wire(GROUND)]
+
+
+CONTACTS = "J1"
+CONTACT_MM = 0.02
+_SUPPLY, _GROUND = ("F1", 1), ("D1", 2)
+"""Pads that the board's supply enters by, at the fuse, and that are on its ground."""
+Contacts = Mapping[str, ToolContact]
+
+
+def measure_contact_map(read: ReadBoard) -> Iterator[Measurement]:
+    """Every pad on the contact of its number, and every net on contacts of its own signal alone."""
+    for flange in (f for f in read.design.flanges if f.auxiliary == read.name):
+        contacts = {contact.number: contact for contact in flange.contacts}
+        part = read.parts.get(CONTACTS)
+        pads = {t.number: t for t in (part.terminals if part else ()) if t.copper is not None}
+        lost = sorted(contacts.keys() ^ pads.keys())
+        yield read.count("contact_count", [f"{number} at one end only" for number in lost], "pads")
+        both = contacts.keys() & pads.keys()
+        numbers = [number for number in contacts if number in both]
+        on_board = read.sensor([pads[number].at for number in numbers])
+        places = applied(auxiliary_to_flange(flange), on_board)[:, :2]
+        off = [math.dist(place, contacts[n].at) for n, place in zip(numbers, places, strict=True)]
+        yield read.figure(
+            "contact_places",
+            max(off, default=math.nan),
+            0,
+            CONTACT_MM,
+            note="from the coupling's contact of the same number",
+        )
+        groups = {number: read.group(CONTACTS, number) for number in numbers}
+        named = {number: pads[number].net for number in numbers}
+        wrong = [*_mixed(contacts, groups), *_mixed(contacts, named)]
+        yield read.count(
+            "contact_signals", sorted({*wrong, *_misled(read, contacts, groups)}), "nets"
+        )
+
+
+def _mixed(contacts: Contacts, nets: Mapping[str, object]) -> Iterator[str]:
+    """Contacts of different signals on one net."""
+    on: dict[object, list[str]] = defaultdict(list)
+    for number, net in nets.items():
+        if net not in ("", None):
+            on[net].append(number)
+    for numbers in on.values():
+        carried = sorted({contacts[number].carries for number in numbers})
+        if len(carried) > 1:
+            yield f"contacts {', '.join(numbers)} join {' and '.join(carried)}"
+
+
+def _misled(read: ReadBoard, contacts: Contacts, groups: Mapping[str, int | None]) -> Iterator[str]:
+    """Contacts that lead to the board's supply or ground and must not, or must and do not, and
+    open ones that lead anywhere."""
+    ends = {"supply": read.group(*_SUPPLY), "ground": read.group(*_GROUND)}
+    for number, group in groups.items():
+        contact = contacts[number]
+        for kind, end in ends.items():
+            if (group == end) != (contact.kind == kind):
+                leads = "leads" if group == end else "does not lead"
+                yield f"contact {number} ({contact.carries}) {leads} to the board's {kind}"
+        if contact.kind == "open" and (read.clusters.label == group).sum() != 1:
+            yield f"contact {number} is joined to something; it is to be left open"

@@ -1,4 +1,4 @@
-"""`Read` and `ReadAuxiliary`: a board as its file has it, in the frame of its finger or its own."""
+"""`ReadBoard`: a board as its file has it, in the frame of its finger or its own."""
 
 import math
 import re
@@ -12,11 +12,21 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
-from lumitip_fab.checks.readers.copper import Clusters
+from lumitip_fab.checks.connections import Clusters
 from lumitip_fab.checks.readers.kicad_board import KicadBoard, Part, Terminal, read_board
-from lumitip_fab.checks.result import Measurement
-from lumitip_fab.design import AuxiliaryBoard, Design, Finger, Point
-from lumitip_fab.design.frames import applied, board_page_to_sensor
+from lumitip_fab.checks.result import Subject
+from lumitip_fab.design import (
+    AtCells,
+    AuxiliaryBoard,
+    Box,
+    Component,
+    Design,
+    Finger,
+    Flexible,
+    Pad,
+    Point,
+)
+from lumitip_fab.design.frames import applied, board_page_to_sensor, on_board_page
 
 _VALUE = re.compile(r"(\d+)([RKM])(\d*)")
 _CLOSED_MM = 1e-5  # ends of lines nearer than this meet
@@ -24,12 +34,73 @@ _POWER = {"R": 1.0, "K": 1e3, "M": 1e6}
 
 
 @dataclass(frozen=True, eq=False)
-class ReadBoard:
-    """A board file with what it should be."""
+class ReadBoard(Subject):
+    """A board file with what it should be.
 
-    subject: str
+    What only some boards have is empty, or none, on the others.
+    """
+
     board: KicadBoard
     design: Design
+    of: Finger | AuxiliaryBoard
+    """What it is in the design. The frame of a board beside the fingers is its own."""
+
+    @property
+    def finger(self) -> Finger | None:
+        """The finger that it is in."""
+        return self.of if isinstance(self.of, Finger) else None
+
+    @property
+    def auxiliary(self) -> AuxiliaryBoard | None:
+        """The board beside the fingers."""
+        return self.of if isinstance(self.of, AuxiliaryBoard) else None
+
+    @property
+    def name(self) -> str:
+        """Name of its folder and its files."""
+        return self.of.name
+
+    @property
+    def box(self) -> Box:
+        """The box round its outline."""
+        return self.auxiliary.box if self.auxiliary else self.design.board.box
+
+    @property
+    def hole_mm(self) -> float:
+        """Diameter of its unplated holes."""
+        return self.auxiliary.hole_mm if self.auxiliary else self.design.board.hole_mm
+
+    @property
+    def cells_hold(self) -> AtCells | None:
+        """The parts at its cells."""
+        return self.finger.cells_hold if self.finger else None
+
+    @property
+    def signals(self) -> tuple[str, ...]:
+        """Signals at the pads of its cable, in their order."""
+        return self.finger.connector.signals if self.finger else ()
+
+    @property
+    def strings(self) -> tuple[tuple[int, ...], ...]:
+        """LEDs of each of its series strings, by cell."""
+        lit = self.cells_hold is not None and self.cells_hold.kind == "led"
+        return self.design.wiring.strings if lit else ()
+
+    @property
+    def muxes(self) -> int:
+        """Number of its multiplexers."""
+        read = self.cells_hold is not None and self.cells_hold.kind == "photodetector"
+        return self.design.wiring.muxes if read else 0
+
+    @property
+    def flexible(self) -> Flexible | None:
+        """Its layers and its bend, if it bends."""
+        return self.design.board.flexible if self.finger else None
+
+    @property
+    def components(self) -> tuple[Component, ...]:
+        """Its parts, where the design has their places."""
+        return self.auxiliary.components if self.auxiliary else ()
 
     @cached_property
     def clusters(self) -> Clusters:
@@ -71,63 +142,24 @@ class ReadBoard:
                 return self.clusters.of(terminal.copper)
         return None
 
-    def figure(
-        self, check: str, measured: float, low: float, high: float, unit: str = "mm", note: str = ""
-    ) -> Measurement:
-        """A measurement of this file."""
-        return Measurement(f"board.{check}", self.subject, float(measured), low, high, unit, note)
-
-    def count(self, check: str, wrong: list[str], unit: str) -> Measurement:
-        """How many things are wrong, of which there may be none; the first few are named."""
-        note = "; ".join(wrong[:4]) + (" …" if len(wrong) > 4 else "")
-        return self.figure(check, len(wrong), 0, 0, unit, note)
-
-
-@dataclass(frozen=True, eq=False)
-class Read(ReadBoard):
-    """The board of a finger."""
-
-    finger: Finger
-
-    @property
-    def name(self) -> str:
-        """Name of its folder and its files."""
-        return self.finger.name
-
     def wire(self, signal: str) -> int | None:
-        """The group of a signal at the connector, by the place of its pad in the row."""
-        signals = self.finger.connector.signals
-        return self.group("J1", signals.index(signal) + 1) if signal in signals else None
+        """The group of a signal at the cable, by the place of its pad in the row."""
+        return self.group("J1", self.signals.index(signal) + 1) if signal in self.signals else None
 
     def ordered(self, ref: str) -> str:
-        """Order number of a part from the catalogue; a resistor's value is read from the board."""
+        """Order number of a part; a resistor's value is read from the board."""
+        if not self.finger:
+            return next((d.part for d in self.components if d.ref == ref), "")
         packages, part = self.design.packages, self.parts.get(ref)
-        lights = self.finger.cells_hold.kind == "led"
         entries = {
             self.finger.cells_hold.letter: packages.at_cells(self.finger),
             "U": packages.multiplexer,
             "C": packages.capacitor,
-            "R": packages.string_resistor if lights else packages.pull_up,
+            "R": packages.string_resistor if self.strings else packages.pull_up,
         }
         entry = packages.array if ref.startswith("RN") else entries.get(ref[:1])
         value = part.value if part else "?"
         return entry.order_number.replace("{code}", value) if entry else ""
-
-
-@dataclass(frozen=True, eq=False)
-class ReadAuxiliary(ReadBoard):
-    """An auxiliary board; its own frame stands for the sensor frame."""
-
-    auxiliary: AuxiliaryBoard
-
-    @property
-    def name(self) -> str:
-        """Name of its folder and its files."""
-        return self.auxiliary.name
-
-    def ordered(self, ref: str) -> str:
-        """Order number of a part."""
-        return next((d.part for d in self.auxiliary.components if d.ref == ref), "")
 
 
 def names_of(design: Design) -> tuple[str, ...]:
@@ -140,32 +172,34 @@ def path_of(name: str) -> str:
     return f"boards/{name}/{name}.kicad_pcb"
 
 
-def read_any(outputs: Path, design: Design, name: str) -> Read | ReadAuxiliary:
-    """The board of a finger, or one beside the fingers.
+def read_any(outputs: Path, design: Design, name: str) -> ReadBoard:
+    """A board by its name.
 
     Raises:
         OutputError: if its file cannot be read.
         LookupError: if the design has no such board.
     """
-    for finger in design.fingers:
-        if finger.name == name:
-            return Read(path_of(name), read_board(outputs / path_of(name)), design, finger)
-    return read_auxiliary(outputs, design, name)
+    boards: tuple[Finger | AuxiliaryBoard, ...] = (*design.fingers, *design.auxiliary_boards)
+    for of in boards:
+        if of.name == name:
+            board = read_board(outputs / path_of(name))
+            return ReadBoard("board", path_of(name), board, design, of)
+    raise LookupError(f"no board {name!r}")
 
 
-def read_auxiliary(outputs: Path, design: Design, name: str) -> ReadAuxiliary:
-    """An auxiliary board.
+def on_page(box: Box) -> shapely.Polygon:
+    """An area of a board on KiCad's page."""
+    left, low = on_board_page((box.x_min_mm, box.y_max_mm))
+    right, high = on_board_page((box.x_max_mm, box.y_min_mm))
+    return shapely.box(left, low, right, high)
 
-    Raises:
-        OutputError: if its file cannot be read.
-        LookupError: if the design has no such auxiliary board.
-    """
-    auxiliary = next(
-        (auxiliary for auxiliary in design.auxiliary_boards if auxiliary.name == name), None
-    )
-    if auxiliary is None:
-        raise LookupError(f"no auxiliary board {name!r}")
-    return ReadAuxiliary(path_of(name), read_board(outputs / path_of(name)), design, auxiliary)
+
+def placed(device: Component, land: Pad) -> Point:
+    """Place of a part's pad on its board."""
+    turn = math.radians(device.angle_deg)
+    c, s = math.cos(turn), math.sin(turn)
+    x = -land.x_mm if device.side == "back" else land.x_mm
+    return (device.x_mm + x * c - land.y_mm * s, device.y_mm + x * s + land.y_mm * c)
 
 
 def ohm(value: str) -> float:

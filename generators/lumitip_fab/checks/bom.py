@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 
 from lumitip_fab.checks.cables import read_list
-from lumitip_fab.checks.readers.stl import corners_mm
 from lumitip_fab.checks.readers.tables import table
-from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip_fab.checks.readers.vertices import corners_mm
+from lumitip_fab.checks.result import Measurement, count, unreadable
 from lumitip_fab.design import Design
 from lumitip_fab.errors import OutputError
 
@@ -58,17 +58,20 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     except OutputError as error:
         yield unreadable("bom.readable", _FILE, str(error))
         return
-    yield _count("parts", _wrong_parts(rows, parts, design), "wrong parts")
+    yield count("bom.parts", _FILE, _wrong_parts(rows, parts, design), "wrong parts")
     boards = {f"{name} board" for name in _boards(design)} | {"placing and soldering"}
-    yield _count(
-        "boards", sorted({r.item for r in rows if r.group == "boards"} ^ boards), "wrong boards"
+    yield count(
+        "bom.boards",
+        _FILE,
+        sorted({r.item for r in rows if r.group == "boards"} ^ boards),
+        "wrong boards",
     )
     yield _prints(rows, grams)
     yield _near("silicone", rows, "casting", cast, "g", "parts A and B of both casting notes")
     yield _near("film", rows, "mask", 2.0, "sheets", "one for each finger")
     yield _near("wire", rows, "wiring", metres, "m", "of every wire in the list of cables")
     yield from _bolts(rows, design)
-    yield _count("prices", _wrong_prices(rows, design), "wrong lines")
+    yield count("bom.prices", _FILE, _wrong_prices(rows, design), "wrong lines")
     yield _sum(rows, total, note, design)
 
 
@@ -77,10 +80,10 @@ def _bolts(rows: tuple[Row, ...], design: Design) -> Iterator[Measurement]:
     wanted = Counter({design.mount.bolt: 2 * len(design.mount.bolt_u_mm)})
     for flange in design.flanges:
         wanted[flange.bolt] += len(flange.bolts)
-    for thread, count in wanted.items():
+    for thread, number in wanted.items():
         listed = sum(r.quantity for r in rows if r.item.startswith(f"{thread} socket"))
         yield Measurement(
-            "bom.bolts", _FILE, listed, count, count, "bolts", f"{thread}, of fingers and flange"
+            "bom.bolts", _FILE, listed, number, number, "bolts", f"{thread}, of fingers and flange"
         )
 
 
@@ -242,8 +245,3 @@ def _sum(rows: tuple[Row, ...], total: float, note: str, design: Design) -> Meas
     lines = sum(row.price or 0.0 for row in rows)
     off = abs(lines - total) if all(word in note for word in sources) else math.nan
     return Measurement("bom.total", _FILE, off, 0, _CENT, purchase.currency, f"of {lines:.2f}")
-
-
-def _count(check: str, wrong: list[str], unit: str) -> Measurement:
-    note = "; ".join(wrong[:4]) + (" …" if len(wrong) > 4 else "")
-    return Measurement(f"bom.{check}", _FILE, float(len(wrong)), 0, 0, unit, note)

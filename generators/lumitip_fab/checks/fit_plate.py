@@ -1,6 +1,6 @@
 """The fit test plate: every coupon really is as much looser than the backing as its value says."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import shapely
 
-from lumitip_fab.checks.printed import circles, farthest, holes_at, measure_boxes
+from lumitip_fab.checks.printed import circles, holes_at, measure_boxes, measure_closed
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.readers.solids import Vectors, cast, section
-from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip_fab.checks.result import Measure, Measurement, Subject, measured, unreadable
 from lumitip_fab.design import Design, Point
 from lumitip_fab.errors import OutputError
 
@@ -39,7 +39,7 @@ _CHARACTERS, _CHARACTER_PITCH = 3, 0.85
 
 
 @dataclass(frozen=True, eq=False)
-class _Plate:
+class _Plate(Subject):
     """The plate as it was read."""
 
     mesh: Any
@@ -68,23 +68,9 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     except OutputError as error:
         yield unreadable("fit_plate.readable", _FILE, str(error))
         return
-    yield _figure("readable", "", float(len(mesh.faces)), 4, np.inf, "triangles")
-    plate = _Plate(mesh, design)
-    steps: tuple[Callable[[_Plate], Iterator[Measurement]], ...] = (
-        measure_body,
-        measure_corners,
-        measure_bolts,
-        measure_pins,
-        measure_sleeves,
-        measure_noses,
-        measure_labels,
-    )
-    for measured in steps:
-        try:
-            yield from measured(plate)
-        except (ArithmeticError, LookupError, ValueError, shapely.errors.ShapelyError) as error:
-            name = measured.__name__.removeprefix("measure_")
-            yield unreadable(f"fit_plate.{name}", _FILE, f"cannot be measured: {error!r:.200}")
+    plate = _Plate("fit_plate", _FILE, mesh, design)
+    yield plate.figure("readable", len(mesh.faces), 4, np.inf, "triangles")
+    yield from measured(MEASURES, plate)
     coupons = len(design.fit_plate.steps)
     yield from measure_boxes("fit_plate", outputs, _FILE, mesh.bounds, mesh.bounds, coupons)
 
@@ -92,13 +78,11 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
 def measure_body(plate: _Plate) -> Iterator[Measurement]:
     """Closed bodies, one for each step, of the stated size and volume."""
     mesh, wanted = plate.mesh, plate.design.fit_plate
-    yield _figure("watertight", "", solids.open_edges(mesh), 0, 0, "open edges")
-    steps = len(wanted.steps)
-    yield _figure("bodies", "", solids.bodies(mesh), steps, steps, "bodies")
+    yield from measure_closed(plate, mesh, len(wanted.steps))
     off = mesh.bounds - np.array([(0.0, 0.0, 0.0), wanted.size_mm])
-    yield _near("size", "", off.ravel(), 0.0, SIZE_MM)
+    yield plate.near("size", off.ravel(), 0.0, SIZE_MM)
     least, most = ((1 + side * VOLUME_FRACTION) * wanted.volume_ml for side in (-1, 1))
-    yield _figure("volume", "", float(mesh.volume) / 1000, least, most, "mL")
+    yield plate.figure("volume", float(mesh.volume) / 1000, least, most, "mL")
 
 
 def measure_corners(plate: _Plate) -> Iterator[Measurement]:
@@ -114,12 +98,12 @@ def measure_corners(plate: _Plate) -> Iterator[Measurement]:
         beside = [(x, y + (pin_y - y) * f) for f in free]
         behind = [(x + (pin_x - x) * f, y) for f in free]
         gaps = np.concatenate([_gaps(cut, beside, (-1.0, 0.0)), _gaps(cut, behind, (0.0, 1.0))])
-        yield _near("pocket_gap", name, gaps, board.pocket_clearance_mm + looser, TIGHT_MM)
+        yield plate.near("pocket_gap", gaps, board.pocket_clearance_mm + looser, TIGHT_MM, at=name)
         off, wide = circles(rings, ((pin_x, pin_y),), board.hole_mm / 2)
-        yield _near("pins", name, off, 0.0, PLACE_MM)
-        yield _near("pin", name, wide, board.pin_mm - 2 * looser, TIGHT_MM)
+        yield plate.near("pins", off, 0.0, PLACE_MM, at=name)
+        yield plate.near("pin", wide, board.pin_mm - 2 * looser, TIGHT_MM, at=name)
         open_floor = np.array([(x + 0.3, pin_y), ((x + pin_x) / 2, pin_y)])
-        yield _near("floor", name, _height(plate, open_floor), wanted.floor_mm, PLACE_MM)
+        yield plate.near("floor", _height(plate, open_floor), wanted.floor_mm, PLACE_MM, at=name)
 
 
 def measure_bolts(plate: _Plate) -> Iterator[Measurement]:
@@ -130,9 +114,9 @@ def measure_bolts(plate: _Plate) -> Iterator[Measurement]:
     for step, name in enumerate(plate.names()):
         bolts = plate.mounted(step, mount.bolt_u_mm)
         off, wide = circles(rings, bolts, mount.bolt_hole_mm / 2)
-        yield _near("bolt", name, off, 0.0, PLACE_MM)
+        yield plate.near("bolt", off, 0.0, PLACE_MM, at=name)
         hole = mount.bolt_hole_mm + 2 * plate.looser_mm(step)
-        yield _near("bolt_hole", name, wide, hole, TIGHT_MM)
+        yield plate.near("bolt_hole", wide, hole, TIGHT_MM, at=name)
 
 
 def measure_pins(plate: _Plate) -> Iterator[Measurement]:
@@ -141,9 +125,9 @@ def measure_pins(plate: _Plate) -> Iterator[Measurement]:
     rings = holes_at(plate.mesh, wanted.pin_depth_mm / 2)
     for step, name in enumerate(plate.names() if mount.pin_u_mm else ()):
         off, wide = circles(rings, plate.mounted(step, mount.pin_u_mm), mount.pin_mm / 2)
-        yield _near("gripper_pins", name, off, 0.0, PLACE_MM)
+        yield plate.near("gripper_pins", off, 0.0, PLACE_MM, at=name)
         hole = mount.pin_mm + 2 * plate.looser_mm(step)
-        yield _near("gripper_pin_hole", name, wide, hole, TIGHT_MM)
+        yield plate.near("gripper_pin_hole", wide, hole, TIGHT_MM, at=name)
 
 
 def measure_sleeves(plate: _Plate) -> Iterator[Measurement]:
@@ -156,7 +140,7 @@ def measure_sleeves(plate: _Plate) -> Iterator[Measurement]:
         points = np.concatenate([around + at for at in plate.mounted(step, mount.bolt_u_mm)])
         origins = np.column_stack([points, np.full(len(points), -1.0)])
         rise, _ = cast(plate.mesh, origins, -_DOWN, wanted.size_mm[2] + 2).first(len(points))
-        yield _near("sleeve", name, rise - 1.0, wanted.pin_depth_mm, PLACE_MM)
+        yield plate.near("sleeve", rise - 1.0, wanted.pin_depth_mm, PLACE_MM, at=name)
 
 
 def measure_noses(plate: _Plate) -> Iterator[Measurement]:
@@ -178,7 +162,7 @@ def measure_noses(plate: _Plate) -> Iterator[Measurement]:
             line = shapely.LineString([(x - reach, y - w), (x + reach, y - w)])
             bounds = line.intersection(cut).bounds
             errors += [bounds[2] - x - wide, x - bounds[0] - wide] if bounds else [np.nan]
-        yield _near("nose", name, np.array(errors), 0.0, TIGHT_MM)
+        yield plate.near("nose", np.array(errors), 0.0, TIGHT_MM, at=name)
 
 
 def measure_labels(plate: _Plate) -> Iterator[Measurement]:
@@ -195,7 +179,7 @@ def measure_labels(plate: _Plate) -> Iterator[Measurement]:
         heights = _height(plate, np.array(places))
         due = wanted.thickness_mm - np.array(sunk) * wanted.label_mm
         wrong = int((np.abs(heights - due) > PLACE_MM).sum())
-        yield _figure("label", name, wrong, 0, 0, f"of {len(places)} places wrong")
+        yield plate.figure("label", wrong, 0, 0, f"of {len(places)} places wrong", at=name)
 
 
 def _gaps(cut: Any, starts: list[Point], outward: Point) -> Vectors:
@@ -215,12 +199,12 @@ def _height(plate: _Plate, points: Vectors) -> Vectors:
     return np.asarray(above - drop)
 
 
-def _figure(
-    check: str, at: str, measured: float, low: float, high: float, unit: str = "mm"
-) -> Measurement:
-    subject = f"{_FILE}: {at}" if at else _FILE
-    return Measurement(f"fit_plate.{check}", subject, measured, low, high, unit)
-
-
-def _near(check: str, at: str, measured: Vectors, wanted: float, by: float) -> Measurement:
-    return _figure(check, at, farthest(measured, wanted), wanted - by, wanted + by)
+MEASURES: tuple[Measure[_Plate], ...] = (
+    measure_body,
+    measure_corners,
+    measure_bolts,
+    measure_pins,
+    measure_sleeves,
+    measure_noses,
+    measure_labels,
+)

@@ -2,17 +2,25 @@
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
 import manifold3d
 import numpy as np
 import shapely
+from shapely.geometry.base import BaseGeometry
 
-from lumitip_fab.checks.flange_read import CONTACTS, REACH_MM, Stacked, heights
-from lumitip_fab.checks.printed import circles, farthest, holes_at, room, round_head, round_thread
+from lumitip_fab.checks.board_read import ReadBoard
+from lumitip_fab.checks.printed import circles, holes_at, room, round_head, round_thread
 from lumitip_fab.checks.readers import solids
-from lumitip_fab.checks.result import Measurement
-from lumitip_fab.design import Box, Component
+from lumitip_fab.checks.readers.solids import Vectors, cast, section
+from lumitip_fab.checks.result import Measure, Measurement, Subject, farthest
+from lumitip_fab.design import Box, Component, Design, Flange, Point
+from lumitip_fab.design.frames import applied, auxiliary_to_flange
 
+CONTACTS = "J1"  # on the board's back, towards the robot
+REACH_MM = 100.0
 SIZE_MM = 0.05
 HOLE_MM = 0.05
 WIRE_MM = 2.0  # room for wires over their pads
@@ -20,6 +28,90 @@ LEAST_HEADROOM_MM = 0.1
 LEAST_AROUND_MM = 0.3  # from the spring contacts' body to the window's edge
 LEAST_SHARE, MOST_SHARE = 0.2, 0.9  # of the stroke that the springs are pressed by
 _NEAR_MM = 2.0
+
+
+@dataclass(frozen=True, eq=False)
+class Stacked(Subject):
+    """The flange as it was read."""
+
+    lower: Any
+    """Mesh of the lower part."""
+    upper: Any
+    """Mesh of the upper part."""
+    board: ReadBoard
+    flange: Flange
+    design: Design
+
+    @property
+    def gap_mm(self) -> float:
+        """Wanted from the printed parts to coupling, gripper and board, by the printer's fit."""
+        return self.flange.clearance_mm + self.design.printing.fit_mm
+
+    def places(self, page: list[Point]) -> Vectors:
+        """Places on the board's page, shape `(n, 2)`."""
+        on_board = self.board.sensor(page)
+        return applied(auxiliary_to_flange(self.flange), on_board)[:, :2]
+
+    def pads(self, ref: str) -> Vectors:
+        """Plated holes of a part of the board."""
+        part = self.board.parts[ref]
+        return self.places([t.at for t in part.terminals if t.drill_mm and t.copper is not None])
+
+    @cached_property
+    def outline(self) -> BaseGeometry:
+        """The board's edge."""
+        return shapely.transform(
+            self.board.outline, lambda points: self.places([(x, y) for x, y in points])
+        )
+
+    @cached_property
+    def headers(self) -> tuple[str, ...]:
+        """Headers and pads for cables, on the board's front."""
+        return tuple(
+            d.ref
+            for d in self.board.components
+            if d.kind in ("header", "wires") and d.ref != CONTACTS
+        )
+
+    @cached_property
+    def board_z_mm(self) -> float:
+        """Area that carries the board, around its screws."""
+        ring = 0.5 * self.flange.screw_mm + 0.6
+        around = [
+            (x + dx, y + dy)
+            for x, y in self.flange.screws
+            for dx, dy in ((ring, 0), (-ring, 0), (0, ring), (0, -ring))
+        ]
+        return farthest(heights(self.lower, np.array(around)), self.flange.board_z_mm)
+
+    @cached_property
+    def split_mm(self) -> float:
+        """Where the upper part lies on the lower one, round the bolts."""
+        ring = 0.5 * self.flange.bolt_hole_mm + 0.5
+        around = [
+            (x + dx, y + dy)
+            for x, y in self.flange.bolts
+            for dx, dy in ((ring, 0), (-ring, 0), (0, ring), (0, -ring))
+        ]
+        return farthest(heights(self.lower, np.array(around)), self.flange.split_z_mm)
+
+
+def heights(mesh: Any, points: Vectors) -> Vectors:
+    """Height of what is seen from above at points (x, y); minus infinity through a hole."""
+    above = np.column_stack([points[:, :2], np.full(len(points), REACH_MM / 2)])
+    drop, _ = cast(mesh, above, np.array([0.0, 0.0, -1.0]), 2 * REACH_MM).first(len(points))
+    return np.asarray(above[:, 2] - drop)
+
+
+def hole_walls(mesh: Any, z_mm: float) -> float:
+    """Least distance from a hole to another or to the outside, in a section."""
+    least = np.inf
+    for part in shapely.get_parts(section(mesh, z_mm)):
+        rings = [part.exterior, *part.interiors]
+        for at, ring in enumerate(rings):
+            rest = rings[at + 1 :]
+            least = min(least, *(ring.distance(other) for other in rest), np.inf)
+    return float(least)
 
 
 def measure_pocket(of: Stacked) -> Iterator[Measurement]:
@@ -104,7 +196,7 @@ def measure_headers(of: Stacked) -> Iterator[Measurement]:
         )
         blocked += [ref] if np.isfinite(hit).any() else []
     yield of.figure("cables", len(blocked), 0, 0, "headers", "whose way out is blocked")
-    highest = max(d.footprint.height_mm for d in of.board.auxiliary.components if _in_front(of, d))
+    highest = max(d.footprint.height_mm for d in of.board.components if _in_front(of, d))
     yield of.figure(
         "headroom",
         of.split_mm - front - highest,
@@ -140,7 +232,7 @@ def bodies(of: Stacked) -> dict[str, solids.Solid]:
     ring = np.array(of.outline.exterior.coords)[:-1]
     flat = manifold3d.CrossSection([ring], manifold3d.FillRule.EvenOdd)
     found = {"the board": flat.extrude(thick).translate((0.0, 0.0, seat))}
-    for device in of.board.auxiliary.components:
+    for device in of.board.components:
         height = device.footprint.height_mm
         if height:
             low = seat + thick if _in_front(of, device) else seat - height
@@ -164,7 +256,7 @@ def _in_front(of: Stacked, device: Component) -> bool:
 
 
 def _device(of: Stacked, ref: str) -> Component:
-    return next(d for d in of.board.auxiliary.components if d.ref == ref)
+    return next(d for d in of.board.components if d.ref == ref)
 
 
 def _footprint(of: Stacked, device: Component, box: Box | None = None) -> shapely.Polygon:
@@ -188,3 +280,12 @@ def _footprint(of: Stacked, device: Component, box: Box | None = None) -> shapel
             for x, y in corners
         ]
     )
+
+
+BOARD: tuple[Measure[Stacked], ...] = (
+    measure_pocket,
+    measure_contacts,
+    measure_headers,
+    measure_screws,
+)
+"""Measures of the board in its pocket."""

@@ -4,10 +4,8 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-from lumitip_fab.checks.readers.manual import read_html
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.design import Design
-from lumitip_fab.errors import OutputError
 
 READS = ("mask/*_wrapping.md", "mould/*_casting.md", "wiring/cables.md", "manual/manual.html")
 _MANUAL = "manual/manual.html"
@@ -23,6 +21,9 @@ _SECTION = re.compile(r"^#+ (?:\d+\. )?(.*)$", re.MULTILINE)
 _DEGREES = re.compile(r"(?<![\w.])(-?\d+(?:\.\d+)?)\s+°C")
 _TO_HEAT = re.compile(r"\b(?:warm|heat|bake|oven|hot air|heat gun|hot plate)\b", re.IGNORECASE)
 _ROW = re.compile(r"([\d.]+) °C")
+_CHAPTER = re.compile(r"<h\d[^>]*>(.*?)</h\d>", re.DOTALL)
+_LINE = re.compile(r"<tr[^>]*>(.*?)</tr>", re.DOTALL)
+_CELL = re.compile(r"<td[^>]*>(.*?)</td>", re.DOTALL)
 
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
@@ -82,17 +83,14 @@ def _sections(text: str) -> Iterator[tuple[str, str]]:
 def _table(outputs: Path, design: Design) -> Measurement:
     """The manual's table of steps against the design: each once, with its figures."""
     try:
-        manual = read_html(outputs / _MANUAL)
-    except OutputError as error:
-        return unreadable("heat.steps", _MANUAL, str(error))
-    rows = [
-        row
-        for chapter in manual.chapters
-        if chapter.heading == "Heat"
-        for table in chapter.tables
-        for row in table[1:]
-    ]
-    listed = {(row[0], *_ROW.findall(" ".join(row[1:]))) for row in rows}
+        text = (outputs / _MANUAL).read_text(encoding="utf-8")
+    except (OSError, ValueError) as error:
+        return unreadable("heat.steps", _MANUAL, f"cannot be read: {error!r:.120}")
+    split = _CHAPTER.split(text)  # heading and contents in turn
+    chapters = zip(split[1::2], split[2::2], strict=True)
+    here = "".join(contents for heading, contents in chapters if heading == "Heat")
+    rows = [_CELL.findall(row) for row in _LINE.findall(here)]
+    listed = {(row[0], *_ROW.findall(" ".join(row[1:]))) for row in rows if row}
     wanted = {(s.name, f"{s.temperature_c:g}", f"{s.limit_c:g}") for s in design.heat}
     wrong = sorted(" ".join(row) for row in listed ^ wanted)
     return Measurement("heat.steps", _MANUAL, len(wrong), 0, 0, "wrong rows", "; ".join(wrong[:4]))

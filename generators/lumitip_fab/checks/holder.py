@@ -4,7 +4,7 @@ Everything is measured in the frame of the auxiliary board in it.
 """
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,19 +12,19 @@ from typing import Any
 import numpy as np
 import shapely
 
-from lumitip_fab.checks.board_read import ReadAuxiliary, read_auxiliary
+from lumitip_fab.checks.board_read import ReadBoard, read_any
 from lumitip_fab.checks.printed import (
-    Figures,
     circles,
-    farthest,
     holes_at,
+    measure_bed,
+    measure_closed,
     measure_corners,
     room,
     round_nut,
     round_thread,
 )
 from lumitip_fab.checks.readers import solids
-from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip_fab.checks.result import Measure, Measurement, Subject, farthest, measured, unreadable
 from lumitip_fab.checks.walls import walls
 from lumitip_fab.design import Design, Fastener, Holder
 from lumitip_fab.design.frames import holder_bed_to_auxiliary, rotation_y, translation
@@ -43,28 +43,16 @@ _REACH_MM = 100.0
 
 
 @dataclass(frozen=True, eq=False)
-class Clip:
+class Clip(Subject):
     """A holder as it was read, with the board that goes into it."""
 
-    subject: str
     standing: Any
     """Mesh as the file has it."""
     mesh: Any
     """Mesh in the auxiliary board's frame."""
     holder: Holder
-    board: ReadAuxiliary
+    board: ReadBoard
     design: Design
-
-    def figure(
-        self, check: str, measured: float, low: float, high: float, unit: str = "mm", note: str = ""
-    ) -> Measurement:
-        """A measurement of this file."""
-        return Measurement(f"holder.{check}", self.subject, float(measured), low, high, unit, note)
-
-    def clear(self, check: str, found: Figures) -> Measurement:
-        """Room round a fastener."""
-        measured, low, high, note = found
-        return self.figure(check, measured, low, high, note=note)
 
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
@@ -73,42 +61,22 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
         subject = f"holder/{holder.name}.stl"
         try:
             standing = solids.read_mesh(outputs / subject)
-            board = read_auxiliary(outputs, design, holder.auxiliary)
+            board = read_any(outputs, design, holder.auxiliary)
         except (OutputError, LookupError) as error:
             yield unreadable("holder.readable", subject, f"{error}")
             continue
         mesh = solids.moved(standing, holder_bed_to_auxiliary(holder))
-        clip = Clip(subject, standing, mesh, holder, board, design)
+        clip = Clip("holder", subject, standing, mesh, holder, board, design)
         yield clip.figure("readable", len(mesh.faces), 4, math.inf, "triangles")
-        yield from _measured(clip)
+        yield from measured(MEASURES, clip)
         yield from measure_corners("holder", outputs, subject, standing.bounds, mesh.vertices)
-
-
-def _measured(clip: Clip) -> Iterator[Measurement]:
-    steps: tuple[Callable[[Clip], Iterator[Measurement]], ...] = (
-        measure_print,
-        measure_tray,
-        measure_screws,
-        measure_nuts,
-        measure_cradle,
-        measure_straps,
-    )
-    for step in steps:
-        try:
-            yield from step(clip)
-        except (ArithmeticError, LookupError, ValueError, shapely.errors.ShapelyError) as error:
-            name = step.__name__.removeprefix("measure_")
-            yield unreadable(f"holder.{name}", clip.subject, f"cannot be measured: {error!r:.200}")
 
 
 def measure_print(clip: Clip) -> Iterator[Measurement]:
     """One closed body that prints standing, and its walls."""
     least = clip.design.printing.min_wall_mm
-    yield clip.figure("watertight", solids.open_edges(clip.standing), 0, 0, "open edges")
-    yield clip.figure("bodies", solids.bodies(clip.standing), 1, 1, "bodies")
-    hang, bed = solids.overhang_mm2(clip.standing), solids.bed_contact_mm2(clip.standing)
-    yield clip.figure("overhang", hang, 0, ROOFS * _roofs_mm2(clip.holder), "mm²")
-    yield clip.figure("bed_contact", bed, LEAST_BED_MM2, math.inf, "mm²")
+    yield from measure_closed(clip, clip.standing)
+    yield from measure_bed(clip, clip.standing, ROOFS * _roofs_mm2(clip.holder), LEAST_BED_MM2)
     yield from walls("holder.min_wall", clip.subject, clip.standing, least, ())
 
 
@@ -258,3 +226,13 @@ def _free_y_mm(holder: Holder) -> float:
     taken += [(y, holder.strap_hole_mm / 2) for y in holder.strap_y_mm]
     apart = np.min([np.abs(ys - y) - half for y, half in taken], axis=0)
     return float(ys[np.minimum(apart, holder.outer.y_max_mm - ys).argmax()])
+
+
+MEASURES: tuple[Measure[Clip], ...] = (
+    measure_print,
+    measure_tray,
+    measure_screws,
+    measure_nuts,
+    measure_cradle,
+    measure_straps,
+)

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from lumitip_fab.checks.readers.stl import corners_mm
+from lumitip_fab.checks.readers.vertices import corners_mm
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.design import Design
 from lumitip_fab.design.frames import Matrix, applied

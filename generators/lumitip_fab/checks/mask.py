@@ -1,22 +1,22 @@
 """The masks as files against the design and against each other."""
 
 import math
-import re
 from collections.abc import Generator, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+import shapely
 
-from lumitip_fab.checks.mask_bands import (
+from lumitip_fab.checks.mask_drawings import Drawing, read_dxf, read_svg
+from lumitip_fab.checks.mask_flaps import (
+    Flap,
     bands_of,
+    flaps_of,
     folds_of,
     measure_bands,
-    measure_numbers,
-    numbers_of,
+    measure_flaps,
 )
-from lumitip_fab.checks.mask_drawings import Drawing, read_dxf, read_svg
-from lumitip_fab.checks.mask_flaps import Flap, flaps_of, measure_flaps, side_mm
 from lumitip_fab.checks.mask_holes import (
     Black,
     Placed,
@@ -28,78 +28,10 @@ from lumitip_fab.checks.mask_holes import (
     registration_of,
     sort_out,
 )
-from lumitip_fab.checks.mask_print import measure_black, measure_page
-from lumitip_fab.checks.readers.mask_page import PageError, Points, read_page
+from lumitip_fab.checks.mask_print import measure_black, measure_note, measure_page
+from lumitip_fab.checks.readers.mask_page import Page, PageError, Points, read_page
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.design import Design, Finger
-
-ROUNDED_MM = 0.051  # the note has one decimal
-TENTH_MM = 0.1  # reach: of the least height, which is sampled
-_ROW = re.compile(r"^\| (\d+) \| ([\d.]+) \| ([\d.]+) \| (-?[\d.]+) \|$", re.MULTILINE)
-_COUNT = re.compile(r"The (\d+) apertures")
-_SIDE = re.compile(r"\(([\d.]+) mm of silicone and\s+plate\)")
-_READINGS = re.compile(r"made for\s+`\[([\d.]+), ([\d.]+)\]`")
-
-
-def measure_note(
-    outputs: Path,
-    subject: str,
-    flaps: tuple[Flap, ...],
-    numbers: tuple[int, ...],
-    finger: Finger,
-    design: Design,
-) -> Iterator[Measurement]:
-    """The table of flaps against the page's, and the other figures against the design.
-
-    Raises:
-        PageError: if the note is missing or does not state them.
-    """
-    try:
-        text = (outputs / subject).read_text(encoding="utf-8")
-    except (OSError, ValueError) as error:
-        raise PageError(f"cannot be read: {error!r:.200}") from error
-    rows = {int(n): (float(w), float(h), float(r)) for n, w, h, r in _ROW.findall(text)}
-    count, side, readings = _COUNT.search(text), _SIDE.search(text), _READINGS.search(text)
-    if not rows or not count or not side or not readings:
-        raise PageError("does not state flaps, apertures, height of the side or readings")
-    odd = len(set(numbers) ^ rows.keys())
-    yield Measurement("mask.note", f"{subject} rows", odd, 0, 0, "flaps", "missing or too many")
-    off = np.array(
-        [
-            np.abs(np.array(rows[n]) - _figures(flap, design))
-            for n, flap in zip(numbers, flaps, strict=True)
-            if n in rows
-        ]
-    ).reshape(-1, 3)
-    for name, column, limit in (
-        ("width", 0, ROUNDED_MM),
-        ("length", 1, ROUNDED_MM),
-        ("reach", 2, TENTH_MM),
-    ):
-        worst = float(off[:, column].max()) if len(off) else np.nan
-        yield Measurement(
-            "mask.note", f"{subject} {name}", worst, 0, limit, "mm", "worst row against the A4 page"
-        )
-    whole = design.stack.plate_mm + design.stack.cover_mm
-    printed = np.array([float(v) for v in (count[1], side[1], *readings.groups())])
-    wanted = np.array([len(finger.cells), whole, *design.mask.measured_ruler_mm])
-    yield Measurement(
-        "mask.note",
-        f"{subject} figures",
-        float(np.abs(printed - wanted).max()),
-        0,
-        ROUNDED_MM,
-        "",
-        "apertures, height of the side, readings",
-    )
-
-
-def _figures(flap: Flap, design: Design) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
-    """Width of the fold, length, and how far it lies onto the back, mm."""
-    width = float(np.hypot(*(flap.fold[1] - flap.fold[0])))
-    onto = flap.length_mm + design.mask.allowance_mm - float(side_mm(flap.fold, design).min())
-    return np.array([width, flap.length_mm, onto])
-
 
 READS = ("mask/*.pdf", "mask/*.svg", "mask/*.dxf", "mask/*_wrapping.md")
 
@@ -110,6 +42,8 @@ _FLAPS = ("flaps", "folds", "reach")
 _BANDS = ("bands", "numbers")
 SAME_MM = 0.01
 Finding = Iterator[Measurement]
+_SAME_MM = 0.01  # of flaps on both sides
+_MIRROR_MM = 0.05
 FACING_MM = 0.02  # both may be off by the tolerance of a place
 
 
@@ -136,8 +70,8 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
                 seen[finger.name, paper] = found
         reference = seen.get((finger.name, "a4"))
         yield from _note(outputs, finger, design, reference)
-        yield from _svg(outputs, finger, design, reference)
-        yield from _dxf(outputs, finger, design, reference)
+        for kind in ("svg", "dxf"):
+            yield from _drawing(outputs, kind, finger, design, reference)
     for paper in PAPERS_MM:
         yield _facing(paper, seen.get(("emitter", paper)), seen.get(("receiver", paper)))
 
@@ -185,30 +119,22 @@ def _note(outputs: Path, finger: Finger, design: Design, reference: Seen | None)
         yield from _unreadable(("note",), subject, error)
 
 
-def _svg(outputs: Path, finger: Finger, design: Design, reference: Seen | None) -> Finding:
-    subject = f"mask/{finger.name}_mask.svg"
+def _drawing(
+    outputs: Path, kind: str, finger: Finger, design: Design, reference: Seen | None
+) -> Finding:
+    """A drawing against the A4 page; the DXF has cut lines, and with them flaps of its own."""
+    subject, cuts = f"mask/{finger.name}_mask.{kind}", kind == "dxf"
     try:
-        drawing = read_svg(outputs / subject)
+        drawing = (read_dxf if cuts else read_svg)(outputs / subject)
         placed = place(drawing.marks, design.mask)
         black = sort_out(placed.subpath(run) for run in drawing.black)
     except PageError as error:
-        yield from _unreadable(("svg",), subject, error)
+        yield from _unreadable((kind, *_FLAPS) if cuts else (kind,), subject, error)
         return
-    yield from _same("svg", subject, black, placed, reference)
-    yield from _same_flaps("svg", subject, drawing, placed, reference)
-
-
-def _dxf(outputs: Path, finger: Finger, design: Design, reference: Seen | None) -> Finding:
-    subject = f"mask/{finger.name}_mask.dxf"
-    try:
-        drawing = read_dxf(outputs / subject)
-        placed = place(drawing.marks, design.mask)
-        black = sort_out(placed.subpath(run) for run in drawing.black)
-    except PageError as error:
-        yield from _unreadable(("dxf", *_FLAPS), subject, error)
+    yield from _same(kind, subject, black, placed, reference)
+    yield from _same_flaps(kind, subject, drawing, placed, reference)
+    if not cuts:
         return
-    yield from _same("dxf", subject, black, placed, reference)
-    yield from _same_flaps("dxf", subject, drawing, placed, reference)
     cut = placed.points(drawing.cut)
     if reference:
         worst = edges_apart(cut, reference.cut)
@@ -282,3 +208,39 @@ def _facing(paper: str, emitter: Seen | None, receiver: Seen | None) -> Measurem
 
 def _unreadable(names: tuple[str, ...], subject: str, error: PageError) -> Finding:
     return (unreadable(f"mask.{name}", subject, str(error)) for name in names)
+
+
+def numbers_of(page: Page, placed: Placed, flaps: tuple[Flap, ...]) -> tuple[int, ...]:
+    """The number printed on each flap; 0 where there is not exactly one."""
+    middles = placed.points(page.texts.reshape(-1, 4, 2).mean(axis=1))
+    numbers = [
+        (int(word), shapely.Point(at))
+        for word, at in zip(page.words, middles, strict=True)
+        if word.isdecimal()
+    ]
+    found = []
+    for flap in flaps:
+        area = shapely.Polygon(flap.corners)
+        on_it = [number for number, at in numbers if area.contains(at)]
+        found.append(on_it[0] if len(on_it) == 1 else 0)
+    return tuple(found)
+
+
+def measure_numbers(subject: str, flaps: tuple[Flap, ...], numbers: tuple[int, ...]) -> Measurement:
+    """Flaps out of order: the tip, the gripper end, then both sides from wide to narrow."""
+    at = dict(zip(numbers, flaps, strict=True))
+    wrong = len(set(range(1, len(flaps) + 1)) - at.keys())
+    if not wrong:
+        middles = {n: flap.fold.mean(axis=0) for n, flap in at.items()}
+        up_mm = {n: float(middle[1]) for n, middle in middles.items()}
+        wrong += max(up_mm, key=up_mm.__getitem__) != 1
+        # A wide gripper end has more flaps than two, at the same height.
+        wrong += sum(up_mm[n] > min(up_mm.values()) + _MIRROR_MM for n in (2, 3))
+        for n in range(2, len(flaps), 2):
+            wrong += not np.allclose(middles[n] * (-1.0, 1.0), middles[n + 1], atol=_MIRROR_MM)
+            wrong += n > 4 and _width_mm(at[n]) > _width_mm(at[n - 1]) + _SAME_MM
+    return Measurement("mask.numbers", subject, wrong, 0, 0, "flaps", "out of order")
+
+
+def _width_mm(flap: Flap) -> float:
+    return float(np.hypot(*(flap.fold[1] - flap.fold[0])))

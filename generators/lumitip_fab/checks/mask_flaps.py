@@ -1,4 +1,5 @@
-"""The flaps, from the cut and fold lines of a mask's DXF: flat, and folded onto the back."""
+"""The flaps of a mask, from its cut and fold lines: flat, folded onto the back, and their black
+bands."""
 
 import math
 from collections.abc import Iterator
@@ -7,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from lumitip_fab.checks.readers.mask_page import PageError, Points
+from lumitip_fab.checks.mask_holes import Placed
+from lumitip_fab.checks.readers.mask_page import Page, PageError, Points
 from lumitip_fab.checks.result import Measurement
 from lumitip_fab.design import Box, Design, Finger
 
@@ -17,6 +19,11 @@ NOTCH_MM = 0.25
 REACH_MM = 0.8  # onto the back, less than which holds nothing
 OVERLAP_MM2 = 0.01
 _SAME_MM = 1e-3
+GLUE_MM = 1.9  # of clear film at the end of each flap
+SHORT_MM = 2.0  # of a flap may be clear though it covers the side, for the glue
+LEAK_MM2 = 0.01
+_GRAZE_MM = 0.01
+_CROSS_MM = 1.0  # from a mark to the middle of its cross's lines
 
 
 @dataclass(frozen=True, eq=False)
@@ -196,3 +203,91 @@ def _coupling(design: Design) -> Box:
 
 def _area(box: Box) -> shapely.Geometry:
     return shapely.box(box.x_min_mm, box.y_min_mm, box.x_max_mm, box.y_max_mm)
+
+
+def folds_of(page: Page, placed: Placed, registration: Points) -> tuple[Points, ...]:
+    """The fold lines of a page: single straight lines but for the crosses of the marks.
+
+    Args:
+        page: the page.
+        placed: where the sensor frame lies on it.
+        registration: places of the marks, in the sensor frame.
+    """
+    lines = [
+        placed.points(p.subpaths[0].corners)
+        for p in page.painted
+        if p.stroked
+        and not p.filled
+        and len(p.subpaths) == 1
+        and len(p.subpaths[0].corners) == 2
+        and not len(p.subpaths[0].controls)
+    ]
+    return tuple(
+        line for line in lines if np.hypot(*(registration - line.mean(axis=0)).T).min() > _CROSS_MM
+    )
+
+
+def bands_of(page: Page, placed: Placed) -> tuple[Points, ...]:
+    """The bands of a page: a black fill of nothing but four-cornered runs.
+
+    Raises:
+        PageError: if there is none.
+    """
+    fills = [
+        p.subpaths
+        for p in page.painted
+        if p.filled
+        and p.black
+        and not p.even_odd
+        and all(len(s.corners) == 4 and not len(s.controls) for s in p.subpaths)
+    ]
+    if not fills:
+        raise PageError("no black bands on the flaps")
+    return tuple(placed.points(s.corners) for s in max(fills, key=len))
+
+
+def measure_bands(
+    subject: str, flaps: tuple[Flap, ...], bands: tuple[Points, ...], edge: Points, design: Design
+) -> Iterator[Measurement]:
+    """Film over the finger's side that lets light through, and film that is left for the glue.
+
+    Args:
+        subject: the file.
+        flaps: in the sensor frame.
+        bands: in the sensor frame.
+        edge: of the black.
+        design: for the heights of the finger's sides.
+    """
+    black = shapely.union_all([shapely.Polygon(ring).buffer(_GRAZE_MM) for ring in (edge, *bands)])
+    clear = [_on_side(flap, design).difference(black).area for flap in flaps]
+    note = f"clear film over the finger's side, worst of {len(flaps)} flaps"
+    yield Measurement("mask.bands", f"{subject} light", max(clear), 0, LEAK_MM2, "mm²", note)
+    whole = shapely.union_all([shapely.Polygon(ring) for ring in bands])
+    ends = [_end_mm(flap, whole) for flap in flaps]
+    yield Measurement(
+        "mask.bands",
+        f"{subject} glue",
+        min(ends),
+        GLUE_MM,
+        math.inf,
+        "mm",
+        "clear film at the end of a flap",
+    )
+
+
+def _on_side(flap: Flap, design: Design) -> shapely.Geometry:
+    """The part of a flap, flat, that comes to lie on the finger's side when it is taut, but for
+    what a flap shorter than the side's height lacks."""
+    allowance = design.mask.allowance_mm
+    height = float(side_mm(flap.fold, design).max()) - allowance
+    reach = max(min(height, flap.length_mm - SHORT_MM), 0.0)
+    strip = shapely.Polygon(np.concatenate([flap.fold, flap.fold[::-1] + reach * flap.outward]))
+    return shapely.Polygon(flap.corners).intersection(strip)
+
+
+def _end_mm(flap: Flap, bands: shapely.Geometry) -> float:
+    """From the farthest black on a flap to its end."""
+    inside = shapely.Polygon(flap.corners).buffer(-_GRAZE_MM).intersection(bands)
+    corners = shapely.get_coordinates(inside)
+    reached = float(((corners - flap.fold[0]) @ flap.outward).max()) if len(corners) else 0.0
+    return flap.length_mm - reached

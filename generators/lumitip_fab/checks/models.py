@@ -7,8 +7,8 @@ import numpy as np
 
 from lumitip_fab.checks.board_read import names_of, path_of, read_any
 from lumitip_fab.checks.readers.kicad_board import Model
-from lumitip_fab.checks.readers.step import bounds_mm
-from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip_fab.checks.readers.vertices import step_mm
+from lumitip_fab.checks.result import Measurement, count, unreadable
 from lumitip_fab.design import Box, Design, Footprint, footprints
 from lumitip_fab.errors import OutputError
 
@@ -42,8 +42,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
                 turned.append(part.ref)
             sizes[path] = shape
         for check, wrong in (("files", lost), ("places", turned)):
-            note = ", ".join(wrong[:8]) + (" …" if len(wrong) > 8 else "")
-            yield Measurement(f"models.{check}", path_of(name), len(wrong), 0, 0, "parts", note)
+            yield count(f"models.{check}", read.subject, wrong, "parts")
     for path, shape in sorted(sizes.items()):
         yield _size(path, path.relative_to(outputs.resolve()).as_posix(), shape)
 
@@ -68,11 +67,12 @@ def _straight(model: Model, shape: Footprint) -> bool:
 def _size(path: Path, subject: str, shape: Footprint) -> Measurement:
     """How far the sides and the top of a model are from the body's."""
     try:
-        low, high = bounds_mm(path)
+        corners, _ = step_mm(path)
     except OutputError as error:
         return unreadable("models.size", subject, str(error))
     box = _seen(shape)
     wanted = np.array([box.x_min_mm, box.y_min_mm, box.x_max_mm, box.y_max_mm, shape.height_mm])
+    low, high = corners.min(axis=0), corners.max(axis=0)
     off = np.abs(np.array([*low[:2], *high]) - wanted)
     note = f"from {box.width_mm:g} x {box.length_mm:g} x {shape.height_mm:g} mm"
     return Measurement("models.size", subject, float(off.max()), 0, SIZE_MM, "mm", note)

@@ -3,22 +3,21 @@
 Everything is in the mould's own frame: it stands on z = 0, open side up.
 """
 
+import math
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import manifold3d
 import numpy as np
 import shapely
 from shapely.errors import GEOSException
 
-from lumitip_fab.checks import mould_walls
-from lumitip_fab.checks.mould_note import STATED, VOLUME_FRACTION, measure_note
+from lumitip_fab.checks.mould_note import measure_note, measure_volume
 from lumitip_fab.checks.printed import measure_boxes
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.checks.walls import beside, measure_relief, walls
-from lumitip_fab.design import Design, Finger
+from lumitip_fab.design import Box, Design, Finger
 from lumitip_fab.design.frames import applied, backing_bed_to_sensor, mould_bed_to_sensor
 from lumitip_fab.errors import OutputError
 
@@ -48,6 +47,13 @@ SHARED_MM3 = 0.05
 GRID_MM = 0.8
 _PAD_INNER, _PAD_OUTER = 0.95, 1.13  # of a pad's radius: on it, and beside its drafted foot
 _LINE_MM = 0.15  # how far under the plate the tip line is probed
+GAP_MM = (0.10, 0.30)
+LEAST_DRAFT_DEG = 2.0
+DRAFT_MESH_DEG = 0.25  # of triangles on curved walls
+_ABOVE_MM = 0.05  # stops and weir end at the rim itself
+_STEP_MM = 0.5
+_UPRIGHT = math.sin(math.radians(0.5))  # a facet that leans by less is an upright wall's mesh
+_ON_BED_MM = 1e-3
 
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
@@ -85,7 +91,7 @@ def _measured(
     yield _thickness(probe, file)
     yield _tip_thickness(probe, file)
     yield from _stops(probe, file)
-    yield from mould_walls.measured(mesh, file, design, finger.notch)
+    yield from _walls(mesh, file, design, finger.notch)
     letter = design.mould.letter
     yield measure_relief("mould.letter", file, mesh, finger, letter)
     exempt = (beside(letter, design.printing),)
@@ -93,7 +99,7 @@ def _measured(
     sensor = solids.moved(mesh, mould_bed_to_sensor(design.stack, design.mould))
     yield from measure_boxes("mould", outputs, file, mesh.bounds, sensor.bounds)
     body = solids.solid(mesh, "the mould")
-    yield _volume(body, file, outputs, design, finger)
+    yield measure_volume(body, file, outputs, design, finger)
     yield _seat(body, file, outputs, design, finger)
 
 
@@ -210,46 +216,76 @@ def _seat(
     )
 
 
-def _volume(
-    body: solids.Solid, file: str, outputs: Path, design: Design, finger: Finger
-) -> Measurement:
-    """Millilitres in the note against the cavity below the rim, less the parts that dip in."""
-    note_file = f"mould/{finger.name}_casting.md"
-    try:
-        stated = STATED.search((outputs / note_file).read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        return unreadable("mould.volume", note_file, repr(error))
-    if stated is None:
-        return unreadable("mould.volume", note_file, "states no volume")
-    dipped = sum(
-        part.box.width_mm * part.box.length_mm * part.height_mm
-        for part in finger.parts
-        if part.side == "front"
+def _walls(mesh: Any, file: str, design: Design, notch: Box) -> Iterator[Measurement]:
+    """Gap at the rim, draft above it, and faces that hold the finger back.
+
+    Args:
+        mesh: the mould on its bed.
+        file: its name.
+        design: the design.
+        notch: the finger's wire notch, where the wall may be open.
+    """
+    mould, stack = design.mould, design.stack
+    rim_mm = mould.wall_mm + stack.cover_mm
+    silhouette = shapely.Polygon(design.outline.polygon() * (1, -1))  # as seen from above
+    places = _along(silhouette, design, notch)
+    near = _distances(mesh, rim_mm + _ABOVE_MM, places)
+    yield Measurement("mould.gap", file, float(near.min()), *GAP_MM, "mm", "least at the rim")
+    yield Measurement(
+        "mould.gap",
+        f"{file}: widest",
+        float(near.max()),
+        *GAP_MM,
+        "mm",
+        "but for the weir at the gripper end",
     )
-    box, stack = design.board.box, design.stack
-    if not stack.sunk:
-        dipped += box.width_mm * box.length_mm * stack.pcb_mm
-    measured = (_cavity_mm3(body, design) - dipped) / 1000
-    if not measured > 0:
-        return unreadable("mould.volume", file, "has no cavity that could be measured")
-    return Measurement(
-        "mould.volume",
-        note_file,
-        float(stated[1]),
-        round(measured * (1 - VOLUME_FRACTION), 4),
-        round(measured * (1 + VOLUME_FRACTION), 4),
-        "mL",
-        f"{measured:.3f} mL in {file}",
+    rise = stack.plate_mm / 2  # the wall guides at least half the plate
+    far = _distances(mesh, rim_mm + _ABOVE_MM + rise, places)
+    draft = float(np.degrees(np.arctan2(far - near, rise)).min())
+    least = min(LEAST_DRAFT_DEG, mould.draft_deg) - DRAFT_MESH_DEG
+    yield Measurement(
+        "mould.draft",
+        file,
+        draft,
+        least,
+        unit="deg",
+        note=f"least above the rim; designed {mould.draft_deg:g}",
+    )
+    yield Measurement(
+        "mould.undercut",
+        file,
+        _undercut_mm2(mesh, silhouette, design),
+        0,
+        0.01,
+        "mm²",
+        "that hangs over, seen along the pull",
     )
 
 
-def _cavity_mm3(body: solids.Solid, design: Design) -> float:
-    """Volume between rim plane and mould within the middle of the walls."""
+def _along(silhouette: Any, design: Design, notch: Box) -> Any:
+    """Points along the outline, without those before the weir."""
+    edge = silhouette.exterior
+    points = shapely.line_interpolate_point(edge, np.arange(0.0, edge.length, _STEP_MM))
+    at = shapely.get_coordinates(points)
+    at_end = np.abs(at[:, 1] + design.outline.end_y_mm) < 1e-6
+    return points[~(at_end & (np.abs(at[:, 0]) < notch.x_max_mm))]
+
+
+def _distances(mesh: Any, z_mm: float, places: Any) -> solids.Vectors:
+    material = solids.section(mesh, z_mm)
+    if material.is_empty:
+        return np.full(len(places), np.inf)
+    return np.asarray(shapely.distance(places, material))
+
+
+def _undercut_mm2(mesh: Any, silhouette: Any, design: Design) -> float:
+    """Faces that look down, from the wall's middle inward and above the bed, as they are seen
+    along the pull: a facet of a curved wall may lean, but hangs over next to nothing."""
     mould = design.mould
-    silhouette = shapely.Polygon(design.outline.polygon() * (1, -1))
-    within = silhouette.buffer(mould.wall_gap_mm + mould.wall_mm / 2)
-    ring = np.array(shapely.geometry.polygon.orient(within).exterior.coords)[:-1]
-    low = mould.wall_mm / 2
-    section = manifold3d.CrossSection([ring])
-    filled = section.extrude(mould.wall_mm + design.stack.cover_mm - low).translate([0, 0, low])
-    return float((filled - body).volume())
+    inner = silhouette.buffer(mould.wall_gap_mm + mould.wall_mm / 2)
+    above_bed = mesh.triangles[:, :, 2].min(axis=1) > mesh.bounds[0, 2] + _ON_BED_MM
+    down = (mesh.face_normals[:, 2] < -_UPRIGHT) & above_bed
+    centres = mesh.triangles_center[down]
+    held = shapely.contains_xy(inner, centres[:, 0], centres[:, 1])
+    overhung = mesh.area_faces * -mesh.face_normals[:, 2]
+    return float(overhung[down][held].sum())

@@ -1,9 +1,14 @@
-"""The note for the person who pours: masses and figures against the mould's cavity."""
+"""The note for the person who pours: volume, masses and figures against the mould's cavity."""
 
 import re
 from collections.abc import Iterator
 from pathlib import Path
 
+import manifold3d
+import numpy as np
+import shapely
+
+from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.design import Design, Finger
 
@@ -15,7 +20,7 @@ _HOW = (
     r"stops\s+at (\S+) mm",
     r"Leave it for (\S+) h",
 )
-STATED = re.compile(r"stays on the finger \| \*\*([0-9.]+) mL\*\*")
+_STATED = re.compile(r"stays on the finger \| \*\*([0-9.]+) mL\*\*")
 
 
 def measure_note(outputs: Path, design: Design, finger: Finger) -> Iterator[Measurement]:
@@ -33,7 +38,7 @@ def measure_note(outputs: Path, design: Design, finger: Finger) -> Iterator[Meas
 def _masses(text: str, file: str, design: Design) -> Measurement:
     """Grams of parts A and B in the note against its own millilitres and the mixing ratio."""
     mould = design.mould
-    stated, grams = STATED.search(text), dict(_PART.findall(text))
+    stated, grams = _STATED.search(text), dict(_PART.findall(text))
     if stated is None or grams.keys() != {"A", "B"}:
         return unreadable("mould.masses", file, "does not state the mass of parts A and B")
     whole = float(stated[1]) * (1 + mould.waste_fraction) * mould.density_g_ml
@@ -66,3 +71,48 @@ def _figures(text: str, file: str, design: Design) -> Measurement:
         "wrong figures",
         f"of layers, floor, stops and hours: {', '.join(wanted)}",
     )
+
+
+def measure_volume(
+    body: solids.Solid, file: str, outputs: Path, design: Design, finger: Finger
+) -> Measurement:
+    """Millilitres in the note against the cavity below the rim, less the parts that dip in."""
+    note_file = f"mould/{finger.name}_casting.md"
+    try:
+        stated = _STATED.search((outputs / note_file).read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        return unreadable("mould.volume", note_file, repr(error))
+    if stated is None:
+        return unreadable("mould.volume", note_file, "states no volume")
+    dipped = sum(
+        part.box.width_mm * part.box.length_mm * part.height_mm
+        for part in finger.parts
+        if part.side == "front"
+    )
+    box, stack = design.board.box, design.stack
+    if not stack.sunk:
+        dipped += box.width_mm * box.length_mm * stack.pcb_mm
+    measured = (_cavity_mm3(body, design) - dipped) / 1000
+    if not measured > 0:
+        return unreadable("mould.volume", file, "has no cavity that could be measured")
+    return Measurement(
+        "mould.volume",
+        note_file,
+        float(stated[1]),
+        round(measured * (1 - VOLUME_FRACTION), 4),
+        round(measured * (1 + VOLUME_FRACTION), 4),
+        "mL",
+        f"{measured:.3f} mL in {file}",
+    )
+
+
+def _cavity_mm3(body: solids.Solid, design: Design) -> float:
+    """Volume between rim plane and mould within the middle of the walls."""
+    mould = design.mould
+    silhouette = shapely.Polygon(design.outline.polygon() * (1, -1))
+    within = silhouette.buffer(mould.wall_gap_mm + mould.wall_mm / 2)
+    ring = np.array(shapely.geometry.polygon.orient(within).exterior.coords)[:-1]
+    low = mould.wall_mm / 2
+    section = manifold3d.CrossSection([ring])
+    filled = section.extrude(mould.wall_mm + design.stack.cover_mm - low).translate([0, 0, low])
+    return float((filled - body).volume())

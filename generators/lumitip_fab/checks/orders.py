@@ -10,12 +10,12 @@ from pathlib import Path
 import numpy as np
 import shapely
 
-from lumitip_fab.checks.board_read import Read, ReadAuxiliary, names_of, path_of, read_any
+from lumitip_fab.checks.board_read import ReadBoard, names_of, path_of, read_any
 from lumitip_fab.checks.order_layers import Painted, measure_layers, measure_stiffener
 from lumitip_fab.checks.readers.kicad_board import Part
 from lumitip_fab.checks.readers.tables import table, unpacked
-from lumitip_fab.checks.result import Measurement, unreadable
-from lumitip_fab.design import Design, Fab, Flexible
+from lumitip_fab.checks.result import Measurement, count, unreadable
+from lumitip_fab.design import Design, Fab, Finger, Flexible
 from lumitip_fab.errors import OutputError
 
 READS = ("boards/*.kicad_pcb", "boards/*.zip", "boards/*.csv")
@@ -48,6 +48,7 @@ def measure_board(outputs: Path, design: Design, name: str) -> Iterator[Measurem
         yield unreadable("orders.board", path_of(name), str(error))
         return
     folder = (outputs / path_of(name)).parent
+    flexible = read.flexible
     painted: Painted = {}
     first: _Files = {}
     found: tuple[Measurement, ...] = ()
@@ -58,35 +59,34 @@ def measure_board(outputs: Path, design: Design, name: str) -> Iterator[Measurem
             files = unpacked(folder / "order" / package)
             ordered = _ordered(read, fab)
             layers = {key: files[name + end] for key, end in ordered.items()}
-            yield _count("files", path, _unasked(name, ordered, files), "files")
+            yield count("orders.files", path, _unasked(name, ordered, files), "files")
             yield _tables_twice(path, folder / "order", fab, name, files)
             same = layers == first  # whose bytes would only be measured again
             measured = found if same else tuple(measure_layers("", read, layers, painted))
             yield from (replace(m, subject=f"{path}{m.subject}") for m in measured)
-            if isinstance(read, Read) and design.board.flexible:
-                yield measure_stiffener(path, layers, design.board.flexible.stiffener)
+            if flexible:
+                yield measure_stiffener(path, layers, flexible.stiffener)
             if not first:
                 first, found = layers, measured
             other = [key for key in first if first[key] != layers[key]]
-            yield _count("same", path, other, "layers that differ")
+            yield count("orders.same", path, other, "layers that differ")
             yield from _parts(path, read, fab, files)
-            note = files[f"{name}_assembly.txt"].decode()
-            wrong = _misled(read, note) if isinstance(read, Read) else _misplaced(read, note)
-            yield _count("note", path, list(wrong), "parts")
-            note = files[f"{name}_fabrication.txt"].decode()
-            yield _count("fabrication", path, list(_misordered(read, note)), "figures")
-            if isinstance(read, Read):
-                yield _count("stop", path, list(_unstopped(read, files)), "files")
-            note = files[f"{name}_assembly.txt"].decode()
-            if isinstance(read, Read) and design.board.flexible:
+            note, made = (files[f"{name}_{n}.txt"].decode() for n in ("assembly", "fabrication"))
+            wrong = _misled(read, read.finger, note) if read.finger else _misplaced(read, note)
+            yield count("orders.note", path, list(wrong), "parts")
+            yield count("orders.fabrication", path, list(_misordered(read, made)), "figures")
+            if read.finger:
+                stops = list(_unstopped(read, read.finger, files))
+                yield count("orders.stop", path, stops, "files")
+            if flexible:
                 drawn = name + ordered["stiffener"]
-                untold = _untold(note, design.board.flexible, design.stack.pcb_mm, drawn)
-                yield _count("flexible", path, list(untold), "figures")
+                untold = _untold(note, flexible, design.stack.pcb_mm, drawn)
+                yield count("orders.flexible", path, list(untold), "figures")
         except (OSError, KeyError, ValueError, SyntaxError) as error:
             yield unreadable("orders.readable", path, f"cannot be read: {error!r:.200}")
 
 
-def _parts(path: str, read: Read | ReadAuxiliary, fab: Fab, files: _Files) -> Iterator[Measurement]:
+def _parts(path: str, read: ReadBoard, fab: Fab, files: _Files) -> Iterator[Measurement]:
     """Bill of materials and placement list against the parts on the board."""
     name = read.name
     bom = _rows(files[f"{name}_bom.csv"], fab.bom)
@@ -103,11 +103,11 @@ def _parts(path: str, read: Read | ReadAuxiliary, fab: Fab, files: _Files) -> It
         for row in bom
         if {row["part"]} != {read.ordered(ref) for ref in row["refs"].split(",")}
     ]
-    yield _count("bom", path, wrong, "parts")
+    yield count("orders.bom", path, wrong, "parts")
     rows = _rows(files[f"{name}_positions.csv"], fab.positions)
     placed = Counter(row["ref"] for row in rows)
     lost = sorted(mounted ^ placed.keys()) + [ref for ref, times in placed.items() if times > 1]
-    yield _count("placed", path, lost, "parts")
+    yield count("orders.placed", path, lost, "parts")
     known = [(row, read.parts[row["ref"]]) for row in rows if row["ref"] in read.parts]
     off = 0.0  # a board may have wire pads alone
     if known:
@@ -115,20 +115,19 @@ def _parts(path: str, read: Read | ReadAuxiliary, fab: Fab, files: _Files) -> It
         off = float(np.abs(places - read.sensor([part.at for _, part in known])).max())
     yield Measurement("orders.positions", path, off, 0, PLACE_MM, "mm")
     sides = [row["ref"] for row, part in known if row["side"] != fab.sides[not part.front]]
-    yield _count("sides", path, sides, "parts")
+    yield count("orders.sides", path, sides, "parts")
     turns = [_turned_by(read, row, part, fab) for row, part in known]
     yield Measurement("orders.turns", path, float(np.max(turns, initial=0.0)), 0, TURN_DEG, "°")
 
 
-def _turned_by(read: Read | ReadAuxiliary, row: dict[str, str], part: Part, fab: Fab) -> float:
+def _turned_by(read: ReadBoard, row: dict[str, str], part: Part, fab: Fab) -> float:
     """How far a part would be turned from its pads: from lead 1 along its row to the right; of a
     module, as its land pattern lies."""
     pads = {t.number: t.at for t in part.terminals}
     last = str(max(2, len(pads) // 2))
     dx, dy = np.subtract(pads[last], pads["1"])
     seen = math.degrees(math.atan2(-dy, dx))  # counter-clockwise, from the front
-    if isinstance(read, ReadAuxiliary):
-        seen -= _lying_deg(read, part.ref, last)
+    seen -= _lying_deg(read, part.ref, last)
     if not part.front:
         seen = 180 - seen if fab.back_from_behind else seen
     fits = [(start, turn) for start, turn in fab.rotations if part.footprint.startswith(start)]
@@ -136,9 +135,9 @@ def _turned_by(read: Read | ReadAuxiliary, row: dict[str, str], part: Part, fab:
     return abs((float(row["angle_deg"]) - seen + 180) % 360 - 180)
 
 
-def _lying_deg(read: ReadAuxiliary, ref: str, last: str) -> float:
+def _lying_deg(read: ReadBoard, ref: str, last: str) -> float:
     """Angle of the line from pad 1 to another one of a module that is not turned; 0 of the rest."""
-    modules = (d for d in read.auxiliary.components if d.ref == ref and d.kind == "module")
+    modules = (d for d in read.components if d.ref == ref and d.kind == "module")
     for device in modules:
         at = {land.number: (land.x_mm, land.y_mm) for land in device.footprint.pads}
         dx, dy = np.subtract(at[last], at["1"])
@@ -146,10 +145,10 @@ def _lying_deg(read: ReadAuxiliary, ref: str, last: str) -> float:
     return 0.0
 
 
-def _misled(read: Read, note: str) -> Iterator[str]:
+def _misled(read: ReadBoard, finger: Finger, note: str) -> Iterator[str]:
     """Parts with polarity for which the assembly note has another place of a terminal than the
     board has, or another terminal at the mark than the catalogue."""
-    chip = read.design.packages.at_cells(read.finger)
+    chip = read.design.packages.at_cells(finger)
     terminals = {m["ref"]: m for m in _TERMINALS.finditer(note)}
     if f"pad 1 is the {chip.marked}" not in note or (
         not chip.mark_is_known and f"{chip.marked} is {chip.mark_confidence}" not in note
@@ -166,9 +165,8 @@ def _misled(read: Read, note: str) -> Iterator[str]:
             yield part.ref
 
 
-def _misordered(read: Read | ReadAuxiliary, note: str) -> Iterator[str]:
+def _misordered(read: ReadBoard, note: str) -> Iterator[str]:
     """Figures of the fabrication note that are not those of the board's file."""
-    finish = read.finger.finish if isinstance(read, Read) else read.auxiliary.finish
     edges = shapely.union_all(list(read.board.edges)).bounds
     tracks = [copper.width_mm for copper in read.board.loose if copper.width_mm]
     drills = [copper.drill_mm for copper in read.board.copper() if copper.drill_mm]
@@ -186,28 +184,27 @@ def _misordered(read: Read | ReadAuxiliary, note: str) -> Iterator[str]:
         stated = [float(figure) for figure in re.findall(r"[\d.]+", lines.get(name, ""))]
         if len(stated) != len(wanted) or not np.allclose(stated, wanted, atol=SIZE_MM):
             yield name
-    if finish.mask not in lines.get("Solder mask", lines.get("Coverlay", "")):
+    if read.of.finish.mask not in lines.get("Solder mask", lines.get("Coverlay", "")):
         yield "colour of the mask"
 
 
-def _unstopped(read: Read, files: _Files) -> Iterator[str]:
+def _unstopped(read: ReadBoard, finger: Finger, files: _Files) -> Iterator[str]:
     """A stop line that is missing, or stands where the polarity is known; the parts that it does
     not name."""
-    chip, text = read.design.packages.at_cells(read.finger), files.get(STOP_FILE, b"").decode()
+    chip, text = read.design.packages.at_cells(finger), files.get(STOP_FILE, b"").decode()
     if chip.mark_is_known == bool(text):
         yield STOP_FILE
     elif text:
-        letter, last = read.finger.cells_hold.letter, len(read.finger.cells)
+        letter, last = finger.cells_hold.letter, len(finger.cells)
         cells = f"{letter}1" if last == 1 else f"{letter}1 to {letter}{last}"
         named = text.startswith(f"STOP: do not place {cells} ") and f"\n{cells}: " in text
         if not named or chip.order_number not in text:
             yield f"{cells} in {STOP_FILE}"
 
 
-def _ordered(read: Read | ReadAuxiliary, fab: Fab) -> dict[str, str]:
+def _ordered(read: ReadBoard, fab: Fab) -> dict[str, str]:
     """Layers that a board's zip is to have: a stiffener is drawn for flexible boards alone."""
-    bends = isinstance(read, Read) and read.design.board.flexible
-    return {key: end for key, end in fab.layers if key != "stiffener" or bends}
+    return {key: end for key, end in fab.layers if key != "stiffener" or read.flexible}
 
 
 def _unasked(name: str, ordered: dict[str, str], files: _Files) -> list[str]:
@@ -234,7 +231,7 @@ def _untold(note: str, flexible: Flexible, thickness_mm: float, drawn: str) -> I
         yield "its drawing"
 
 
-def _misplaced(read: ReadAuxiliary, note: str) -> Iterator[str]:
+def _misplaced(read: ReadBoard, note: str) -> Iterator[str]:
     """Parts of an auxiliary board whose first pad or side differs in the assembly note."""
     behind = re.search(r"^ON THE BACK: (.+?)\. ", note, re.MULTILINE)
     told_behind = set(behind[1].split(", ")) if behind else set()
@@ -253,11 +250,7 @@ def _tables_twice(path: str, folder: Path, fab: Fab, name: str, files: _Files) -
     """The tables beside a zip are those inside it."""
     tables = (f"{name}_bom.csv", f"{name}_positions.csv")
     differ = [t for t in tables if (folder / f"{fab.name}_{t}").read_bytes() != files[t]]
-    return _count("tables", path, differ, "tables that differ")
-
-
-def _count(check: str, path: str, wrong: list[str], unit: str) -> Measurement:
-    return Measurement(f"orders.{check}", path, len(wrong), 0, 0, unit, ", ".join(wrong[:4]))
+    return count("orders.tables", path, differ, "tables that differ")
 
 
 def _rows(data: bytes, columns: tuple[tuple[str, str], ...]) -> list[dict[str, str]]:

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 from itertools import product
 
-from lumitip_fab.checks.board_read import ReadAuxiliary, ohm
+from lumitip_fab.checks.board_read import ReadBoard, ohm
 from lumitip_fab.checks.result import Measurement
 from lumitip_fab.design.electrical import PlugIn
 
@@ -14,7 +14,7 @@ _STEP_S = 2e-9
 _END_S = 100e-6
 
 
-def measure_plug_in(read: ReadAuxiliary) -> Iterator[Measurement]:
+def measure_plug_in(read: ReadBoard) -> Iterator[Measurement]:
     """Voltage behind the resistor, peak and I²t of the current; and the way of the TVS diode.
 
     The cable's inductance, the resistor and the capacitor are stepped through by their equations
@@ -79,10 +79,10 @@ def plugged(
     return volt, peak, surge
 
 
-def _wrong_tvs(read: ReadAuxiliary, ground: str) -> Iterator[str]:
+def _wrong_tvs(read: ReadBoard, ground: str) -> Iterator[str]:
     """Pads of the TVS diode that are not where they belong: its cathode, pad 1, on the MOSFET's
     source, its anode on ground."""
-    names = next((d.pins for d in read.auxiliary.components if d.ref == "Q1"), ())
+    names = next((d.pins for d in read.components if d.ref == "Q1"), ())
     source = str(names.index("S") + 1) if "S" in names else ""
     for pad, wanted in (("1", read.group("Q1", source)), ("2", read.group("J1", ground))):
         found = read.group("D1", pad)
@@ -90,7 +90,7 @@ def _wrong_tvs(read: ReadAuxiliary, ground: str) -> Iterator[str]:
             yield f"D1.{pad}"
 
 
-def _undamped(read: ReadAuxiliary) -> Iterator[str]:
+def _undamped(read: ReadBoard) -> Iterator[str]:
     """Capacitors that are on the supply itself, not behind the resistor."""
     supply = read.group("D1", "1")
     for ref in sorted(ref for ref in read.parts if ref.startswith("C")):

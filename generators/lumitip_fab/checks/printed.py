@@ -1,6 +1,6 @@
 """Printed parts: their mesh in both frames, room round fasteners, and 3MF and STEP against STL."""
 
-import re
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,29 +11,28 @@ import numpy as np
 import shapely
 from scipy.spatial import cKDTree
 
-from lumitip_fab.checks.readers.solids import Vectors, section
+from lumitip_fab.checks.readers import solids
+from lumitip_fab.checks.readers.solids import Vectors, cast, section
 from lumitip_fab.checks.readers.tables import unpacked
-from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip_fab.checks.readers.vertices import step_mm
+from lumitip_fab.checks.result import Clearance, Measurement, Subject, farthest, unreadable
 from lumitip_fab.design import Design, Fastener, Finger, Point
 from lumitip_fab.design.frames import Matrix
+from lumitip_fab.errors import OutputError
 
 AGREE_MM = 0.02
 _NAMESPACE = "{http://schemas.microsoft.com/3dmanufacturing/core/2015/02}"
-_VERTEX = re.compile(r"VERTEX_POINT\('',#(\d+)\)")
-_POINT = re.compile(r"#(\d+) = CARTESIAN_POINT\('',\(([^,()]+),([^,()]+),([^,()]+)\)\)")
+RAY_MM = 5.0  # rays start this far in front of the rim
 ROUND_MM = 0.05  # chords of a mesh, and an axis that is a little off
 HEAD_MM = (0.1, 0.8)  # round a countersunk head
 NUT_MM = (0.05, 0.45)  # round a nut, across flats: it goes in, and does not turn
-Figures = tuple[float, float, float, str]
-"""Measured clearance, least, most (mm), and what it is of."""
 _LEAST_MM2 = 1e-6  # smaller rings of a section are where it grazes an edge
 
 
 @dataclass(frozen=True, eq=False)
-class Printed:
+class Printed(Subject):
     """The backing of one finger, or the interface behind it, as it was read."""
 
-    subject: str
     standing: Any
     """Mesh as the file has it, on its bed; what is bolted on, in the mount frame (u, w, h)."""
     sensor: Any
@@ -44,32 +43,8 @@ class Printed:
     """From the first frame to the second."""
     kind: str = "backing"
     """Or `interface`."""
-
-    def figure(
-        self, check: str, measured: float, low: float, high: float, unit: str = "mm", at: str = ""
-    ) -> Measurement:
-        """A measurement of this file, or of a place in it."""
-        subject = f"{self.subject}: {at}" if at else self.subject
-        return Measurement(f"backing.{check}", subject, measured, low, high, unit)
-
-    def near(
-        self,
-        check: str,
-        measured: Vectors,
-        wanted: float,
-        by: float,
-        unit: str = "mm",
-        at: str = "",
-    ) -> Measurement:
-        """The value that strays farthest from what is wanted; NaN if one could not be taken."""
-        return self.figure(check, farthest(measured, wanted), wanted - by, wanted + by, unit, at)
-
-
-def farthest(values: Vectors, wanted: float) -> float:
-    """The value farthest from a nominal one; NaN if any is NaN, or there is none."""
-    if not len(values) or not np.isfinite(values).all():
-        return float("nan")
-    return float(values[np.abs(values - wanted).argmax()])
+    plate: "Printed | None" = None
+    """The plate in which an interface sits."""
 
 
 def circles(rings: list[Any], centres: tuple[Point, ...], reach_mm: float) -> tuple[Vectors, ...]:
@@ -109,7 +84,14 @@ def islands_at(mesh: Any, z_mm: float, area_mm2: float) -> list[Any]:
     return [p.exterior for p in parts if p.geom_type == "Polygon" and p.area < area_mm2]
 
 
-def round_thread(found_mm: Vectors, of: Fastener, fit_mm: float) -> Figures:
+def front_z(part: Printed, points: Vectors) -> Vectors:
+    """Height of what is seen from the front at points (x, y); NaN through a hole."""
+    above = np.column_stack([points, np.full(len(points), part.design.stack.rim_z_mm + RAY_MM)])
+    drop, _ = cast(part.sensor, above, np.array([0.0, 0.0, -1.0]), 40.0).first(len(points))
+    return np.asarray(np.where(np.isfinite(drop), above[:, 2] - drop, np.nan))
+
+
+def round_thread(found_mm: Vectors, of: Fastener, fit_mm: float) -> Clearance:
     """Clearance of a thread, less the printer's fit on both sides."""
     fine, coarse = of.hole_mm
     low, high = fine - of.thread_mm - ROUND_MM, coarse - of.thread_mm + ROUND_MM
@@ -117,27 +99,32 @@ def round_thread(found_mm: Vectors, of: Fastener, fit_mm: float) -> Figures:
     return farthest(clear, (low + high) / 2), low, high, f"round {of.name} of {of.thread_mm:g} mm"
 
 
-def round_head(found_mm: Vectors, of: Fastener) -> Figures:
+def round_head(found_mm: Vectors, of: Fastener) -> Clearance:
     """Clearance of a countersunk head, whose countersink no fit changes."""
     clear = farthest(found_mm - of.countersunk_mm, sum(HEAD_MM) / 2)
     return clear, *HEAD_MM, f"round heads of {of.countersunk_mm:g} mm, {of.name}"
 
 
-def round_nut(found_mm: Vectors, of: Fastener, fit_mm: float) -> Figures:
+def round_nut(found_mm: Vectors, of: Fastener, fit_mm: float) -> Clearance:
     """Clearance of a nut across flats, less the printer's fit on both sides."""
     clear = farthest(found_mm - of.nut_mm - 2 * fit_mm, sum(NUT_MM) / 2)
     return clear, *NUT_MM, f"round nuts of {of.nut_mm:g} mm across flats, {of.name}"
 
 
-def measure_files(outputs: Path, part: Printed) -> Iterator[Measurement]:
-    """How far the boxes round a backing's 3MF and STEP differ from the STL's."""
-    yield from measure_boxes(
-        "backing", outputs, part.subject, part.standing.bounds, part.sensor.bounds
-    )
+def measure_closed(of: Subject, mesh: Any, bodies: int = 1) -> Iterator[Measurement]:
+    """Open edges of a mesh, and how many bodies it is."""
+    yield of.figure("watertight", solids.open_edges(mesh), 0, 0, "open edges")
+    yield of.figure("bodies", solids.bodies(mesh), bodies, bodies, "bodies")
+
+
+def measure_bed(of: Subject, mesh: Any, most: float, least: float) -> Iterator[Measurement]:
+    """Overhang of a mesh that stands on its bed, and what lies on the bed (mm²)."""
+    yield of.figure("overhang", solids.overhang_mm2(mesh), 0, most, "mm²")
+    yield of.figure("bed_contact", solids.bed_contact_mm2(mesh), least, math.inf, "mm²")
 
 
 def measure_boxes(
-    prefix: str, outputs: Path, stl: str, standing: Vectors, sensor: Vectors, solids: int = 1
+    prefix: str, outputs: Path, stl: str, standing: Vectors, sensor: Vectors, bodies: int = 1
 ) -> Iterator[Measurement]:
     """How far the boxes round 3MF and STEP differ from the STL's, and what else they hold.
 
@@ -147,14 +134,14 @@ def measure_boxes(
         stl: the part's STL file in it; the others lie beside it.
         standing: bounds of the part in the printer, shape `(2, 3)`.
         sensor: its bounds in the sensor frame.
-        solids: how many the STEP file has to hold.
+        bodies: how many the STEP file has to hold.
     """
     yield _three_mf_of(prefix, outputs, stl, standing)
     yield _measured(
         f"{prefix}.step",
         outputs,
         stl.replace(".stl", ".step"),
-        lambda path: _step(path, solids),
+        lambda path: _step(path, bodies),
         _from_box(sensor),
     )
 
@@ -202,7 +189,7 @@ def _measured(
 ) -> Measurement:
     try:
         points = read(outputs / path)
-    except (OSError, ValueError, LookupError, SyntaxError) as error:
+    except (OutputError, OSError, ValueError, LookupError, SyntaxError) as error:
         return unreadable(check, path, f"cannot be read: {error!r:.200}")
     return Measurement(check, path, off_mm(points), 0.0, AGREE_MM, "mm")
 
@@ -215,10 +202,8 @@ def _three_mf(path: Path) -> Vectors:
     return np.array([[float(v.attrib[axis]) for axis in "xyz"] for v in vertices])
 
 
-def _step(path: Path, solids: int = 1) -> Vectors:
-    text = re.sub(r"\n\s*", "", path.read_text(encoding="ascii"))
-    found = text.count("MANIFOLD_SOLID_BREP(")
-    if found != solids or "SI_UNIT(.MILLI.,.METRE.)" not in text:
-        raise ValueError(f"{found} solids, {solids} in mm needed")
-    points = {n: (float(x), float(y), float(z)) for n, x, y, z in _POINT.findall(text)}
-    return np.array([points[n] for n in _VERTEX.findall(text)])
+def _step(path: Path, bodies: int = 1) -> Vectors:
+    corners, found = step_mm(path)
+    if found != bodies:
+        raise ValueError(f"{found} solids, {bodies} needed")
+    return corners

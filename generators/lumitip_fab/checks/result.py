@@ -2,14 +2,18 @@
 
 import math
 import unicodedata
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from numbers import Real
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
+from shapely.errors import ShapelyError
 
 from lumitip_fab.design import Design
+from lumitip_fab.errors import OutputError
 
 _UNPRINTABLE = frozenset({"Cc", "Cs", "Cn"})  # control, half of a surrogate pair, unassigned
 NOISE = 1e-5  # of coordinates in files: STL keeps 24 bits, which is 4e-6 mm at 50 mm
@@ -100,3 +104,86 @@ Check = Callable[[Path, Design], Iterator[Measurement]]
 def unreadable(check: str, subject: str, reason: str) -> Measurement:
     """The failed measurement for a file that is missing or cannot be read."""
     return Measurement(check, subject, math.nan, 0.0, 0.0, note=reason)
+
+
+_NAMED = 4  # of the things that are wrong
+_DAMAGED = (ArithmeticError, LookupError, ValueError, OutputError, ShapelyError)
+"""Exceptions of a measure on a file that can be read but is not what it should be."""
+_Of = TypeVar("_Of", bound="Subject")
+Measure = Callable[[_Of], Iterator[Measurement]]
+"""A function `measure_NAME` of what was read."""
+Clearance = tuple[float, float, float, str]
+"""Measured clearance, least, most (mm), and what it is of."""
+
+
+@dataclass(frozen=True, eq=False)
+class Subject:
+    """A file, or some that belong together, as it was read: what is measured bears its name."""
+
+    prefix: str
+    """First part of the checks' names."""
+    subject: str
+
+    def figure(
+        self,
+        check: str,
+        measured: float,
+        low: float,
+        high: float,
+        unit: str = "mm",
+        note: str = "",
+        at: str = "",
+    ) -> Measurement:
+        """A measurement of this file, or of a place in it."""
+        subject = f"{self.subject}: {at}" if at else self.subject
+        return Measurement(
+            f"{self.prefix}.{check}", subject, float(measured), low, high, unit, note
+        )
+
+    def near(
+        self,
+        check: str,
+        measured: object,
+        wanted: float,
+        by: float,
+        note: str = "",
+        unit: str = "mm",
+        at: str = "",
+    ) -> Measurement:
+        """The value that strays farthest from what is wanted; NaN if one could not be taken."""
+        worst = farthest(np.atleast_1d(np.asarray(measured, dtype=np.float64)), wanted)
+        return self.figure(check, worst, wanted - by, wanted + by, unit, note, at)
+
+    def clear(self, check: str, found: Clearance) -> Measurement:
+        """Room round a fastener."""
+        measured, low, high, note = found
+        return self.figure(check, measured, low, high, note=note)
+
+    def count(self, check: str, wrong: Sequence[str], unit: str) -> Measurement:
+        """How many things are wrong, of which there may be none; the first few are named."""
+        return count(f"{self.prefix}.{check}", self.subject, wrong, unit)
+
+
+def farthest(values: NDArray[np.float64], wanted: float) -> float:
+    """The value farthest from a nominal one; NaN if any is NaN, or there is none."""
+    if not len(values) or not np.isfinite(values).all():
+        return math.nan
+    return float(values[np.abs(values - wanted).argmax()])
+
+
+def count(check: str, subject: str, wrong: Sequence[str], unit: str) -> Measurement:
+    """How many things are wrong, of which there may be none; the first few are named."""
+    note = "; ".join(wrong[:_NAMED]) + (" …" if len(wrong) > _NAMED else "")
+    return Measurement(check, subject, len(wrong), 0, 0, unit, note)
+
+
+def measured(measures: Sequence[Measure[_Of]], of: _Of) -> Iterator[Measurement]:
+    """What each measure finds in turn; one that a damaged file stops fails by its own name."""
+    for measure in measures:
+        try:
+            yield from measure(of)
+        except _DAMAGED as error:
+            name = measure.__name__.removeprefix("measure_")
+            yield unreadable(
+                f"{of.prefix}.{name}", of.subject, f"cannot be measured: {error!r:.200}"
+            )

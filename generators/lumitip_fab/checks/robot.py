@@ -9,7 +9,7 @@ import trimesh
 
 from lumitip_fab.checks.readers.solids import Vectors, moved
 from lumitip_fab.checks.readers.urdf import Link, Model, read_macros, read_urdf
-from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip_fab.checks.result import Measurement, Subject, count, unreadable
 from lumitip_fab.design import Design, Finger
 from lumitip_fab.errors import OutputError
 
@@ -35,6 +35,7 @@ MASS = 0.01
 CENTRE_MM = 0.1
 REACH_MM = 0.02
 BULK = 1.6  # volume of what touches, of what is seen
+_URDF = Subject("robot", _FILE)
 
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
@@ -45,7 +46,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
         yield from (unreadable(f"robot.{name}", _FILE, str(error)) for name in _CHECKS)
     else:
         wrong = _misplaced(model)
-        yield _figure("tree", len(wrong), 0, 0, "links and joints", note=", ".join(wrong[:3]))
+        yield _URDF.count("tree", wrong, "links and joints")
         if not wrong:
             yield from _places(model, design)
             for finger in design.fingers:
@@ -76,24 +77,26 @@ def _places(model: Model, design: Design) -> Iterator[Measurement]:
     lean = design.mount.tilt_deg
     want = _about_x(-lean) @ turned @ _about_x(lean)
     off = np.abs(facing[:3, :3] - want[:3, :3]).max()
-    yield _figure("facing", np.degrees(off), 0, 0.01, "°", "one finger's frame in the other's")
+    yield _URDF.figure("facing", np.degrees(off), 0, 0.01, "°", "one finger's frame in the other's")
     tcp = model.to_base("lumitip_tcp")[:3, 3]
     middle = (places[0][:3, 3] + places[1][:3, 3]) / 2
-    yield _figure("tcp", np.abs(tcp - middle).max(), 0, PLACE_MM, "mm", "from between the cells")
+    yield _URDF.figure(
+        "tcp", np.abs(tcp - middle).max(), 0, PLACE_MM, note="from between the cells"
+    )
     held = design.held
     lowest = [_bounds(model, f, 0.0, held)[0][2] for f in _FINGERS]
     worst = max(lowest, key=abs)
-    yield _figure(
-        "seat", worst, -PLACE_MM, PLACE_MM, "mm", f"foot of the {held} to the mount plane"
+    yield _URDF.figure(
+        "seat", worst, -PLACE_MM, PLACE_MM, note=f"foot of the {held} to the mount plane"
     )
     for name, share in (("closed", 0.0), ("open", 1.0)):
         wanted = share * design.closing.max_opening_mm
         gap = _gap(model, share)
-        yield _figure(name, gap, wanted - GAP_MM, wanted + GAP_MM, "mm", "from skin to skin")
+        yield _URDF.figure(name, gap, wanted - GAP_MM, wanted + GAP_MM, note="from skin to skin")
 
     aside = [np.abs(_slid_mm(model, finger)[1:]).max() for finger in _FINGERS]
-    yield _figure(
-        "slide", np.max(aside), 0, PLACE_MM, "mm", "aside, on the way from closed to open"
+    yield _URDF.figure(
+        "slide", np.max(aside), 0, PLACE_MM, note="aside, on the way from closed to open"
     )
 
 
@@ -123,22 +126,21 @@ def _body(link: Link, finger: Finger, design: Design) -> Iterator[Measurement]:
     masses, centres = zip(*_pieces(link, finger, design), strict=True)
     mass, subject = sum(masses), f"{finger.name}"
     centre = np.average(centres, axis=0, weights=masses)
-    yield _figure("mass", link.mass_g, mass * (1 - MASS), mass * (1 + MASS), "g", subject)
+    yield _URDF.figure("mass", link.mass_g, mass * (1 - MASS), mass * (1 + MASS), "g", subject)
     off = float(np.abs(link.centre_mm - centre).max())
-    yield _figure("centre", off, 0, CENTRE_MM, "mm", subject)
+    yield _URDF.figure("centre", off, 0, CENTRE_MM, note=subject)
     hulls = [mesh.convex_hull for mesh in link.collisions.values()]
     seen = np.concatenate([mesh.vertices for mesh in link.visuals.values()])
     outside = np.min([_outside(hull, seen) for hull in hulls], axis=0).max() if hulls else np.inf
-    yield _figure(
+    yield _URDF.figure(
         "reach",
         float(outside),
         -np.inf,
         REACH_MM,
-        "mm",
-        f"{subject}: farthest that anything stands out of what touches",
+        note=f"{subject}: farthest that anything stands out of what touches",
     )
     bulk = sum(h.volume for h in hulls) / sum(abs(m.volume) for m in link.visuals.values())
-    yield _figure("bulk", bulk, 0, BULK, "times what is seen", subject)
+    yield _URDF.figure("bulk", bulk, 0, BULK, "times what is seen", subject)
 
 
 def _pieces(link: Link, finger: Finger, design: Design) -> Iterator[tuple[float, Vectors]]:
@@ -176,18 +178,10 @@ def _macros(outputs: Path) -> Measurement:
         if f"lumitip_{f}" in model.links
     }
     apart = sorted(name for name in {*wanted, *macros} if wanted.get(name) != macros.get(name))
-    note = ", ".join(apart) or f"{len(wanted)} macros"
-    return Measurement("robot.macros", _MACROS, len(apart), 0, 0, "links unlike the URDF's", note)
+    return count("robot.macros", _MACROS, apart, "links unlike the URDF's")
 
 
 def _about_x(angle_deg: float) -> Vectors:
     angle = np.radians(angle_deg)
     matrix = trimesh.transformations.rotation_matrix(angle, (1, 0, 0))
     return np.asarray(matrix)
-
-
-def _figure(
-    check: str, measured: float, low: float, high: float, unit: str, note: str = ""
-) -> Measurement:
-    limits = float(low), float(high)
-    return Measurement(f"robot.{check}", _FILE, float(measured), *limits, unit, note)

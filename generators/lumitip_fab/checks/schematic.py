@@ -4,9 +4,10 @@ from collections import defaultdict
 from collections.abc import Iterator
 from pathlib import Path
 
+from lumitip_fab.checks.board_read import names_of
 from lumitip_fab.checks.readers.kicad_board import KicadBoard, read_board
 from lumitip_fab.checks.readers.kicad_sheet import Sheet, read_sheet
-from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip_fab.checks.result import Measurement, count, unreadable
 from lumitip_fab.design import Design
 from lumitip_fab.errors import OutputError
 
@@ -15,8 +16,7 @@ READS = ("boards/*.kicad_sch", "boards/*.kicad_pcb")
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     """Every schematic against its board."""
-    names = [finger.name for finger in design.fingers] + [c.name for c in design.auxiliary_boards]
-    for name in names:
+    for name in names_of(design):
         subject = f"boards/{name}/{name}.kicad_sch"
         try:
             sheet = read_sheet(outputs / subject)
@@ -24,8 +24,8 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
         except (OutputError, LookupError, ValueError) as error:
             yield unreadable("schematic.readable", subject, str(error))
             continue
-        yield _count("parts", subject, list(_other_parts(sheet, board)), "parts")
-        yield _count("nets", subject, list(_other_nets(sheet, board)), "nets")
+        yield count("schematic.parts", subject, list(_other_parts(sheet, board)), "parts")
+        yield count("schematic.nets", subject, list(_other_nets(sheet, board)), "nets")
 
 
 def _other_parts(sheet: Sheet, board: KicadBoard) -> Iterator[str]:
@@ -52,8 +52,3 @@ def _other_nets(sheet: Sheet, board: KicadBoard) -> Iterator[str]:
         drawn, there = sheet.nets.get(net, set()), placed.get(net, set())
         if drawn != there:
             yield f"{net}: {', '.join(sorted(drawn ^ there)[:4])} in one of the two only"
-
-
-def _count(check: str, subject: str, wrong: list[str], unit: str) -> Measurement:
-    note = "; ".join(wrong[:4]) + (" …" if len(wrong) > 4 else "")
-    return Measurement(f"schematic.{check}", subject, len(wrong), 0, 0, unit, note)

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from lumitip_fab.checks.board_read import Read, ohm
+from lumitip_fab.checks.board_read import ReadBoard, ohm
 from lumitip_fab.checks.result import Measurement
 from lumitip_fab.design.electrical import Channel
 
@@ -33,8 +33,10 @@ LINE_FACTOR, SENT_BITS = 2.0, 8
 _REST_S = 10.0
 
 
-def measure_settling(read: Read) -> Iterator[Measurement]:
+def measure_settling(read: ReadBoard) -> Iterator[Measurement]:
     """The largest error after a change of channel, at the firmware's shortest wait."""
+    if not read.muxes:
+        return
     channel, own = read.design.electrical.channel, read.design.wiring.own_pull_ups
     values = [ohm(part.value) for ref, part in read.parts.items() if ref.startswith("R")]
     pull_up_ohm = max(values, default=math.nan)

@@ -1,4 +1,4 @@
-"""Everything from the robot's tool flange to the fingertips: in order, in place, and labelled.
+"""Everything from the robot's tool flange to the fingertips: in order and in place.
 
 Measured from the bodies of the GLB file, in the tool frame. Bodies that stand for what is bought
 are plain: only printed parts, boards and fingers are held against each other.
@@ -12,11 +12,11 @@ import numpy as np
 
 from lumitip.errors import LayoutError
 from lumitip.layout import Layout
+from lumitip_fab.checks.drawings import measure_system
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.readers.scene import Scene, read_scene
 from lumitip_fab.checks.readers.solids import Vectors
 from lumitip_fab.checks.result import Measurement, unreadable
-from lumitip_fab.checks.system_drawing import PLACE_MM, measure_drawing, real_bodies, wanted_bodies
 from lumitip_fab.design import AuxiliaryBoard, Design
 from lumitip_fab.design.frames import (
     Matrix,
@@ -40,38 +40,55 @@ READS = (
 _FILE = "assembly/system.glb"
 _ASSEMBLY = "assembly/assembly.glb"
 _LAYOUT = "layout.json"
-_BODIES = ("bodies", "stack", "place", "fingers", "tcp", "interference", "heights")
+_BODIES = ("bodies", "stack", "place", "fingers", "tcp", "interference")
 SHARED_MM3 = 0.05
+PLACE_MM = 0.02
 
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
-    """Hold the scene against the design and its files, and the drawing against the scene."""
+    """Hold scene and drawing against the design and its files."""
+    yield from measure_system(outputs, design)
     try:
         scene = read_scene(outputs / _FILE)
         missing = [name for name in wanted_bodies(design) if name not in scene.nodes]
     except OutputError as error:
         yield from (unreadable(f"system.{name}", _FILE, str(error)) for name in _BODIES)
-        yield from measure_drawing(outputs, design, ())
         return
     note = f"of {len(scene.nodes)}" + (f", first {missing[0]}" if missing else "")
     yield Measurement("system.bodies", _FILE, len(missing), 0, 0, "missing", note)
     if missing:
         reason = f"{missing[0]} is missing"
         yield from (unreadable(f"system.{name}", _FILE, reason) for name in _BODIES[1:])
-        yield from measure_drawing(outputs, design, ())
         return
     yield from _stack(scene, design)
     yield _placed("place", scene, _files(outputs, design), "file or outline")
     yield _placed("fingers", scene, _fingers(outputs, design), "the assembly")
     yield _interference(scene, design)
     try:
-        tcp = _tcp(scene, Layout.load(outputs / _LAYOUT))
+        yield from _centre(_tcp(scene, Layout.load(outputs / _LAYOUT)), scene, design)
     except (LayoutError, KeyError) as error:
-        yield from (unreadable(f"system.{name}", _FILE, str(error)) for name in ("tcp", "heights"))
-        yield from measure_drawing(outputs, design, ())
-        return
-    yield from _centre(tcp, scene, design)
-    yield from measure_drawing(outputs, design, _heights(scene, design, float(tcp[2])))
+        yield unreadable("system.tcp", _FILE, str(error))
+
+
+def real_bodies(design: Design) -> Iterator[str]:
+    """Names of the bodies whose shape is that of the thing itself."""
+    for flange in design.flanges:
+        yield from (f"{flange.name}.{part}" for part in ("lower", "board", "upper"))
+    for holder in design.system.holders:
+        yield from (f"{holder}.{part}" for part in ("tray", "board"))
+    for finger in design.fingers:
+        yield f"{finger.name}.{design.held}"
+
+
+def wanted_bodies(design: Design) -> Iterator[str]:
+    """Names of all bodies."""
+    if design.flanges:
+        yield from ("robot.flange", "coupling.body")
+    yield "gripper.envelope"
+    yield from real_bodies(design)
+    for finger in design.fingers:
+        yield from (f"{finger.name}.{layer}" for layer in design.layers)
+        yield from (part.name for part in finger.parts)
 
 
 def _bounds(scene: Scene, name: str) -> Vectors:
@@ -244,13 +261,3 @@ def _interference(scene: Scene, design: Design) -> Measurement:
         "mm³",
         f"{worst}, the worst of {len(shared)} pairs",
     )
-
-
-def _heights(scene: Scene, design: Design, tcp_mm: float) -> tuple[float, ...]:
-    """Heights that the drawing must show, upwards: faces, mount plane, tool centre point."""
-    heights = []
-    for flange in design.flanges:
-        heights.append(_bounds(scene, "coupling.body")[1, 2])
-        heights.append(_bounds(scene, f"{flange.name}.upper")[1, 2])
-    heights.append(_bounds(scene, f"emitter.{design.held}")[0, 2])
-    return (*(float(height) for height in heights), tcp_mm)

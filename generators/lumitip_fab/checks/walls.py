@@ -104,15 +104,8 @@ def walls(
 def measure_relief(
     check: str, subject: str, mesh: Any, finger: Finger, letter: Letter
 ) -> Measurement:
-    """How far the wall strays from a sunken first letter of the finger's name.
-
-    Args:
-        check: the check's name.
-        subject: the file.
-        mesh: the part as it is printed.
-        finger: whose part it should be.
-        letter: where the letter should be.
-    """
+    """How far the wall (mm) strays from a sunken first letter of the name of the finger whose part
+    it should be; the mesh is in the frame of the letter."""
     wanted = finger.name[0].upper()
     off = {name: _off_mm(mesh, letter, name) for name in _SUNK}
     reads = [name for name, by in off.items() if by <= RELIEF_MM]

@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from lumitip_fab.checks.cables import Row, note_row, read_diagram, read_list, read_note
-from lumitip_fab.checks.channel_map import PINOUTS
+from lumitip_fab.checks.connections import PINOUTS
 from lumitip_fab.checks.readers.kicad_board import KicadBoard, read_board
-from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip_fab.checks.result import Measurement, count, unreadable
 from lumitip_fab.design import Design
 from lumitip_fab.design.cabling import INKS, codes_of
 from lumitip_fab.design.frames import applied, board_page_to_sensor
@@ -45,11 +45,11 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
         yield unreadable("wiring.readable", _LIST, str(error))
         return
     nets = {name: _nets(board) for name, board in boards.items()}
-    yield _count("ends", _LIST, _wrong_ends(rows, nets), "pads")
-    yield _count(
-        "pins", _LIST, _wrong_pins(outputs, rows, boards["receiver"], nets, design), "pins"
+    yield count("wiring.ends", _LIST, _wrong_ends(rows, nets), "pads")
+    yield count(
+        "wiring.pins", _LIST, _wrong_pins(outputs, rows, boards["receiver"], nets, design), "pins"
     )
-    yield _count("colours", _LIST, _wrong_colours(rows, design), "wires")
+    yield count("wiring.colours", _LIST, _wrong_colours(rows, design), "wires")
     yield _lengths(rows, boards, design)
     yield from _currents(rows, design)
     yield _note(outputs, rows)
@@ -202,7 +202,7 @@ def _note(outputs: Path, rows: tuple[Row, ...]) -> Measurement:
         return unreadable("wiring.note", _NOTE, str(error))
     wanted = {row.wire: note_row(row) for row in rows}
     wrong = [w for w in sorted({*wanted, *noted}) if wanted.get(w) != noted.get(w)]
-    return _count("note", _NOTE, wrong, "wires")
+    return count("wiring.note", _NOTE, wrong, "wires")
 
 
 def _diagram(outputs: Path, rows: tuple[Row, ...]) -> Measurement:
@@ -220,9 +220,4 @@ def _diagram(outputs: Path, rows: tuple[Row, ...]) -> Measurement:
         inks = tuple(INKS.get(code, "") for code in codes_of(row.colour))
         if ends != (".".join(row.start), ".".join(row.end), inks, [row.wire, row.colour]):
             wrong.append(f"{row.wire} from {wire.start} to {wire.end}")
-    return _count("diagram", _DIAGRAM, wrong, "wires")
-
-
-def _count(check: str, subject: str, wrong: list[str], unit: str) -> Measurement:
-    note = "; ".join(wrong[:4]) + (" …" if len(wrong) > 4 else "")
-    return Measurement(f"wiring.{check}", subject, float(len(wrong)), 0, 0, unit, note)
+    return count("wiring.diagram", _DIAGRAM, wrong, "wires")

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from pathlib import Path
 
-from lumitip_fab.checks.flange_read import LEAST_SAFETY, strength
+from lumitip_fab.checks.flange import LEAST_SAFETY, strength
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.design import Design
 from lumitip_fab.design.frames import flange_beds

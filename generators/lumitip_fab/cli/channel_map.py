@@ -9,7 +9,7 @@ from lumitip_fab.cli.screen import FAILED
 
 def run(options: argparse.Namespace) -> int:
     """Print the map, from the copper of the board."""
-    from lumitip_fab.checks.channel_map import read_channels
+    from lumitip_fab.checks.connections import read_channels
 
     found = read_channels(options.file)
     if options.json:

@@ -5,9 +5,8 @@ import json
 import os
 from contextlib import nullcontext
 
-from lumitip_fab.checks import report, summary
-from lumitip_fab.checks.memory import Memory
-from lumitip_fab.checks.run import MODULES, as_json, run_checks
+from lumitip_fab.checks.run import MODULES, Memory, as_json, run_checks
+from lumitip_fab.cli import report, summary
 from lumitip_fab.cli.screen import ERR, FAILED, OUT
 from lumitip_fab.errors import OutputError
 from lumitip_fab.pipeline.manifest import write_file

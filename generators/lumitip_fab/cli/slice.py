@@ -4,8 +4,8 @@ import argparse
 
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
-from lumitip_fab.checks import slicing
 from lumitip_fab.cli.screen import ERR, OUT
+from lumitip_fab.parts import slicing
 
 
 def run(options: argparse.Namespace) -> int:

@@ -1,6 +1,8 @@
-"""Reading a mask's PDF: what its operators paint, in mm on the page, origin at the lower left."""
+"""Reading a mask's PDF: what its operators paint, in mm on the page, origin at the lower left, and
+the fonts of its texts."""
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -10,7 +12,6 @@ import pikepdf
 from numpy.typing import NDArray
 
 from lumitip_fab.checks.readers import MALFORMED
-from lumitip_fab.checks.readers.manual import Face, faces_of, lacking
 
 Points = NDArray[np.float64]
 
@@ -20,10 +21,64 @@ _FILLS = {"f": False, "F": False, "f*": True, "b": False, "b*": True, "B": False
 _STROKES = ("S", "s", "b", "b*", "B", "B*")
 _HIDING = ("Do", "INLINE IMAGE", "W", "W*", "sh")
 _IDENTITY = np.eye(3)
+_LETTER = re.compile(rb"<([0-9A-Fa-f]{2})>\s*<([0-9A-Fa-f]{4})>")
+_FILES = ("/FontFile", "/FontFile2", "/FontFile3")
+_USUAL_EM = 0.6  # of a letter whose width the file does not tell
 
 
 class PageError(Exception):
     """A file is not what a mask may be; the message says why."""
+
+
+@dataclass(frozen=True)
+class Face:
+    """A font with a letter for each byte."""
+
+    name: str
+    embedded: bool
+    """Whether its outlines are in the file; else every printer takes its own."""
+    letters: Mapping[int, str]
+    """Character of each code; Windows-1252 for all others."""
+    widths_em: Mapping[int, float]
+
+    def text(self, codes: bytes) -> str:
+        """The texts."""
+        return "".join(self.letters.get(c) or bytes([c]).decode("cp1252") for c in codes)
+
+    def width_em(self, codes: bytes) -> float:
+        """How wide they are, in font sizes."""
+        return sum(self.widths_em.get(code, _USUAL_EM) for code in codes)
+
+
+def faces_of(page: pikepdf.Page) -> dict[str, Face]:
+    """The fonts of a page, by the names that its operators use.
+
+    Raises:
+        ValueError: if one has more than a byte for each letter.
+    """
+    fonts: Any = page.resources.get("/Font", {})
+    return {str(name): _face(fonts[name]) for name in fonts.keys()}  # noqa: SIM118
+
+
+def _face(font: Any) -> Face:
+    if str(font.Subtype) not in ("/TrueType", "/Type1"):
+        raise ValueError(f"a font of kind {font.Subtype}, one byte for each letter is needed")
+    outlines = font.get("/FontDescriptor", {})
+    table = font.ToUnicode.read_bytes() if "/ToUnicode" in font else b""
+    letters = {int(code, 16): chr(int(point, 16)) for code, point in _LETTER.findall(table)}
+    widths = [float(width) / 1000 for width in font.get("/Widths", [])]
+    first = int(font.get("/FirstChar", 0))
+    return Face(
+        name=str(font.BaseFont)[1:],
+        embedded=any(kind in outlines for kind in _FILES),
+        letters={code: letter for code, letter in letters.items() if letter != "\0"},
+        widths_em=dict(enumerate(widths, first)),
+    )
+
+
+def lacking(faces: Mapping[str, Face]) -> list[str]:
+    """Names of the fonts that are not embedded."""
+    return sorted({face.name for face in faces.values() if not face.embedded})
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,9 +9,9 @@ from pathlib import Path
 from rich.console import Console
 from rich.text import Text
 
-from lumitip_fab.checks.report import figure, tightness
 from lumitip_fab.checks.result import Measurement
 from lumitip_fab.checks.run import Outcome
+from lumitip_fab.cli.report import figure, tightness
 
 DRAWN_AT_THE_LIMIT = frozenset(
     {

@@ -1,4 +1,5 @@
-"""Which detector each multiplexer input reads, from the copper of any board.
+"""Connections of a board, followed along its copper and not by the names of nets: pieces that are
+connected, and which detector each multiplexer input reads.
 
 Knows the 74HC4051 and its kin (CD4051, MAX4051 …: 8:1, 16 leads) and the 74HC4067 and its kin
 (16:1, 24 leads), whatever the part is called on the board. Leads are numbered alike in all their
@@ -6,16 +7,107 @@ packages; see the makers' datasheets.
 """
 
 import re
-from collections.abc import Iterator, Mapping
+from collections import defaultdict
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from lumitip_fab.checks.readers.copper import Clusters
-from lumitip_fab.checks.readers.kicad_board import KicadBoard, Part, Terminal, read_board
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from shapely.geometry.base import BaseGeometry
+
+from lumitip_fab.checks.readers.kicad_board import Copper, KicadBoard, Part, Terminal, read_board
 from lumitip_fab.errors import OutputError
 
+TOUCH_MM = 1e-5
+_STRETCH = 12  # edges
+Pairs = NDArray[np.int64]
 ChannelMap = dict[str, dict[str, str]]
 """`{"U1": {"0": "Q7", …}, …}`."""
+
+
+class Clusters:
+    """The pieces of copper of a board, in groups that are connected."""
+
+    def __init__(self, board: KicadBoard) -> None:
+        self.pieces = tuple(board.copper())
+        self.layers = board.layers
+        count = len(self.pieces)
+        found = [pairs for _, pairs in self.near(TOUCH_MM)]
+        a, b = np.concatenate([np.empty((0, 2), dtype=np.int64), *found]).T
+        links = coo_array((np.ones(a.size), (a, b)), shape=(count, count))
+        _, labels = connected_components(links, directed=False)
+        self.label: NDArray[np.int64] = np.asarray(labels, dtype=np.int64)
+        self._of = {id(piece): int(label) for piece, label in zip(self.pieces, labels, strict=True)}
+
+    def of(self, piece: Copper) -> int:
+        """Number of the group that a piece belongs to."""
+        return self._of[id(piece)]
+
+    def near(self, distance_mm: float) -> Iterator[tuple[str, Pairs]]:
+        """Pairs of pieces, shape `(n, 2)`, no farther apart than this on a layer."""
+        for layer in self.layers:
+            here = np.array([i for i, p in enumerate(self.pieces) if layer in p.layers], dtype=int)
+            areas = np.array([self.pieces[i].area for i in here], dtype=object)
+            yield layer, here[_pairs(areas, distance_mm)]
+
+    def gaps(self, within_mm: float) -> Iterator[tuple[float, Copper, Copper]]:
+        """Pieces that are not connected but nearer than this, with their distance.
+
+        Fills have very many corners: of those, short stretches of the edge are held against the
+        others.
+        """
+        for layer in self.layers:
+            here = [(i, p) for i, p in enumerate(self.pieces) if layer in p.layers]
+            cut = [(i, part) for i, p in here for part in _stretches(p)]
+            which = np.array([i for i, _ in cut], dtype=int)
+            shapes = np.array([part for _, part in cut], dtype=object)
+            a, b = _pairs(shapes, within_mm).T
+            apart = self.label[which[a]] != self.label[which[b]]
+            a, b = a[apart], b[apart]
+            for gap, i, j in zip(
+                shapely.distance(shapes[a], shapes[b]), which[a], which[b], strict=True
+            ):
+                yield float(gap), self.pieces[i], self.pieces[j]
+
+    def nets(self) -> dict[int, set[str]]:
+        """The net names in each group; copper without a name has none."""
+        found: dict[int, set[str]] = defaultdict(set)
+        for label, piece in zip(self.label, self.pieces, strict=True):
+            found[int(label)].update({piece.net} - {""})
+        return found
+
+    def groups(self) -> dict[str, set[int]]:
+        """The groups that hold pads of each net: more than one where it is open."""
+        found: dict[str, set[int]] = defaultdict(set)
+        for label, piece in zip(self.label, self.pieces, strict=True):
+            if piece.kind == "pad" and piece.net:
+                found[piece.net].add(int(label))
+        return found
+
+
+def _pairs(shapes: NDArray[np.object_], distance_mm: float) -> Pairs:
+    """Pairs of shapes no farther apart than this, shape `(n, 2)`, the smaller number first."""
+    if not shapes.size:
+        return np.empty((0, 2), dtype=np.int64)
+    shapely.prepare(shapes)
+    a, b = shapely.STRtree(shapes).query(shapes, predicate="dwithin", distance=distance_mm)
+    return np.asarray(np.stack([a, b], axis=1)[a < b])
+
+
+def _stretches(piece: Copper) -> list[BaseGeometry]:
+    """The piece itself; of a fill its edge, cut up."""
+    if piece.kind != "fill":
+        return [piece.area]
+    rings = [shapely.get_coordinates(ring) for ring in shapely.get_rings(piece.area)]
+    return [
+        shapely.LineString(ring[i : i + _STRETCH + 1])
+        for ring in rings
+        for i in range(0, len(ring) - 1, _STRETCH)
+    ]
 
 
 @dataclass(frozen=True)
@@ -106,7 +198,8 @@ def read_channels(path: Path) -> Channels:
 
 def channels(board: KicadBoard, clusters: Clusters) -> Channels:
     """Find the multiplexers of a board, and follow each input to its detector."""
-    copper, names = _Follower(board, _Copper(clusters)), _Follower(board, _Names())
+    copper = _Follower(board, lambda t: None if t.copper is None else clusters.of(t.copper))
+    names = _Follower(board, lambda t: t.net or None)
     parts = {p.ref: (p, pins) for p, pins in sorted(_muxes(board, copper, names), key=_by_ref)}
     by_copper = {ref: copper.map(*found) for ref, found in parts.items()}
     by_name = {ref: names.map(*found) for ref, found in parts.items()}
@@ -115,40 +208,23 @@ def channels(board: KicadBoard, clusters: Clusters) -> Channels:
     return Channels(by_copper, by_name, output, parts, doubts)
 
 
-class _Copper:
-    """Follows copper."""
-
-    def __init__(self, clusters: Clusters) -> None:
-        self.clusters = clusters
-
-    def key(self, terminal: Terminal) -> object:
-        return None if terminal.copper is None else self.clusters.of(terminal.copper)
-
-
-class _Names:
-    """Follows the names of nets."""
-
-    def key(self, terminal: Terminal) -> object:
-        return terminal.net or None
-
-
 class _Follower:
-    """From a lead to the detector at the other end."""
+    """From a lead to the detector at the other end, by what is the same along a connection."""
 
-    def __init__(self, board: KicadBoard, by: _Copper | _Names) -> None:
-        self.by = by
+    def __init__(self, board: KicadBoard, key: Callable[[Terminal], object]) -> None:
+        self.key = key
         self.reached: dict[object, set[str]] = {}
         for part in filter(_may_detect, board.parts):
             for terminal in part.terminals:
-                if (key := by.key(terminal)) is not None:
-                    self.reached.setdefault(key, set()).add(part.ref)
+                if (at := key(terminal)) is not None:
+                    self.reached.setdefault(at, set()).add(part.ref)
 
     def map(self, part: Part, pins: Pinout) -> dict[str, str]:
         """The detector of each input that has one; several are joined by `+`."""
-        rails = {self.by.key(t) for t in part.terminals if t.number in (*pins.rails, *pins.select)}
+        rails = {self.key(t) for t in part.terminals if t.number in (*pins.rails, *pins.select)}
         found = {}
         for channel, lead in enumerate(pins.inputs):
-            key = self.by.key(_terminal(part, lead))
+            key = self.key(_terminal(part, lead))
             refs = self.reached.get(key, set()) if key not in rails else set()
             if refs:
                 found[str(channel)] = "+".join(sorted(refs))

@@ -1,7 +1,8 @@
-"""The exploded drawings: every body is there in its size and order, all on the page."""
+"""The exploded drawings of the fingers and of the whole system: every body is there, in its order
+and size, all on the page."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from xml.etree import ElementTree as XmlTree
 
@@ -16,20 +17,22 @@ from lumitip_fab.design.frames import backing_bed_to_sensor, mount_to_sensor
 from lumitip_fab.errors import OutputError
 
 NAMES = ("assembly.drawing", "assembly.drawing_page")
+SYSTEM = ("drawing", "drawing_page")
+_SYSTEM = "assembly/system.svg"
 SIZE_MM = 0.1
 SKIN_MM = 0.6  # of silicone and film, whose walls stand off the outline and lean
-ORDER_MM = 10.0  # from layer to layer
+ORDER_MM = 10.0  # from body to body, on the page
 MARGIN_MM = 2.0
 
 
-def measure_drawing(outputs: Path, design: Design, finger: Finger) -> Iterator[Measurement]:
+def measure_exploded(outputs: Path, design: Design, finger: Finger) -> Iterator[Measurement]:
     """Hold a finger's drawing against the design and its backing."""
     file = f"assembly/{finger.name}_exploded.svg"
     try:
         drawing = read_drawing(outputs / file)
         wanted = _wanted(design, finger, dict(_printed(outputs, design, finger)))
         yield from _bodies(file, drawing, wanted, design.layers)
-        yield _page(file, drawing)
+        yield _page("assembly", file, drawing)
     except (OutputError, OSError, XmlTree.ParseError, LookupError, ValueError) as error:
         yield from (unreadable(name, file, f"cannot be read: {error!r:.200}") for name in NAMES)
 
@@ -84,18 +87,17 @@ def _bodies(
     layers: tuple[str, ...],
 ) -> Iterator[Measurement]:
     """Bodies that are missing, sizes on the page, and how far the layers are apart."""
-    missing = [name for name in wanted if not len(drawing.groups.get(name, ()))]
-    note = f"of {len(wanted)} bodies" + (f", first {missing[0]}" if missing else "")
-    yield Measurement("assembly.drawing", file, len(missing), 0, 0, "missing", note)
+    yield _missing("assembly", file, drawing, wanted)
+    there = [name for name in wanted if len(drawing.groups.get(name, ()))]
     off: dict[str, float] = {}
     shifts: dict[str, Vectors] = {}
-    for name, (corners, within) in wanted.items():
-        if name not in missing:
-            drawn, flat = drawing.groups[name], corners @ drawing.view.T
-            off[name] = float(np.abs(np.ptp(drawn, axis=0) - np.ptp(flat, axis=0)).max()) / within
-            shifts[name] = (
-                drawn.min(axis=0) + drawn.max(axis=0) - flat.min(axis=0) - flat.max(axis=0)
-            ) / 2
+    for name in there:
+        corners, within = wanted[name]
+        drawn, flat = drawing.groups[name], corners @ drawing.view.T
+        off[name] = float(np.abs(np.ptp(drawn, axis=0) - np.ptp(flat, axis=0)).max()) / within
+        shifts[name] = (
+            drawn.min(axis=0) + drawn.max(axis=0) - flat.min(axis=0) - flat.max(axis=0)
+        ) / 2
     worst = max(off, key=lambda name: off[name])
     yield Measurement(
         "assembly.drawing",
@@ -109,16 +111,7 @@ def _bodies(
     if not all(name in shifts for name in layers):
         yield unreadable("assembly.drawing", f"{file} order", "a layer is missing")
         return
-    rise = float(np.diff([shifts[name][1] for name in layers]).min())
-    yield Measurement(
-        "assembly.drawing",
-        f"{file} order",
-        rise,
-        ORDER_MM,
-        math.inf,
-        "mm",
-        "least rise from layer to layer",
-    )
+    yield _order("assembly", file, [shifts[name][1] for name in layers])
     astray = {
         name: float(np.abs(shift - shifts["board"]).max())
         for name, shift in shifts.items()
@@ -136,17 +129,24 @@ def _bodies(
     )
 
 
-def _page(file: str, drawing: Drawing) -> Measurement:
+def _missing(prefix: str, file: str, drawing: Drawing, wanted: Iterable[str]) -> Measurement:
+    """Bodies of which nothing is drawn."""
+    names = list(wanted)
+    missing = [name for name in names if not len(drawing.groups.get(name, ()))]
+    note = f"of {len(names)} bodies" + (f", first {missing[0]}" if missing else "")
+    return Measurement(f"{prefix}.drawing", file, len(missing), 0, 0, "missing", note)
+
+
+def _order(prefix: str, file: str, heights_mm: Sequence[float]) -> Measurement:
+    """How far each body stands above the one before it on the page, at least."""
+    rise, note = float(np.diff(heights_mm).min(initial=math.inf)), "least rise from body to body"
+    return Measurement(f"{prefix}.drawing", f"{file} order", rise, ORDER_MM, math.inf, "mm", note)
+
+
+def _page(prefix: str, file: str, drawing: Drawing) -> Measurement:
     """Least distance of anything drawn or written from the page's edge."""
-    return Measurement(
-        "assembly.drawing_page",
-        file,
-        margin_mm(drawing),
-        MARGIN_MM,
-        math.inf,
-        "mm",
-        "to the page's edge",
-    )
+    margin, note = margin_mm(drawing), "to the page's edge"
+    return Measurement(f"{prefix}.drawing_page", file, margin, MARGIN_MM, math.inf, "mm", note)
 
 
 def _block(box: Box, low_mm: float, high_mm: float) -> Vectors:
@@ -157,3 +157,24 @@ def _block(box: Box, low_mm: float, high_mm: float) -> Vectors:
 def _between(flat: Vectors, low_mm: float, high_mm: float) -> Vectors:
     levels = [np.column_stack([flat, np.full(len(flat), z)]) for z in (low_mm, high_mm)]
     return np.concatenate(levels)
+
+
+def measure_system(outputs: Path, design: Design) -> Iterator[Measurement]:
+    """Hold the drawing of the whole system against the design."""
+    try:
+        drawing = read_drawing(outputs / _SYSTEM)
+    except (OSError, XmlTree.ParseError, LookupError, ValueError) as error:
+        reason = f"cannot be read: {error!r:.200}"
+        yield from (unreadable(f"system.{name}", _SYSTEM, reason) for name in SYSTEM)
+        return
+    stacked = [
+        *(["robot.flange", "coupling.body"] if design.flanges else []),
+        *(f"{f.name}.{part}" for f in design.flanges for part in ("lower", "board", "upper")),
+        "gripper.envelope",
+    ]
+    held = [f"{name}.{part}" for name in design.system.holders for part in ("tray", "board")]
+    layers = [f"{f.name}.{layer}" for f in design.fingers for layer in design.layers]
+    yield _missing("system", _SYSTEM, drawing, [*stacked, *held, *layers])
+    drawn = [drawing.groups[n] for n in (*stacked, "emitter.backing") if n in drawing.groups]
+    yield _order("system", _SYSTEM, [points[:, 1].mean() for points in drawn if len(points)])
+    yield _page("system", _SYSTEM, drawing)
