@@ -25,6 +25,7 @@ from lumitip_fab.design import (
     Footprint,
     Led,
     Photodetector,
+    Resistor,
     ResistorArray,
     Rules,
     Side,
@@ -174,7 +175,7 @@ def _bare_copper(wires: Connector) -> Iterator[Component]:
 def _resistor(
     ref: str,
     ohm: float,
-    chip: Chip | ResistorArray,
+    chip: Resistor | ResistorArray,
     shape: Footprint,
     nets: tuple[tuple[str, str], ...],
 ) -> Component:
@@ -182,8 +183,8 @@ def _resistor(
     return Component(
         ref,
         code,
-        chip.order_number.replace("{code}", code),
-        "resistor" if isinstance(chip, Chip) else "resistor array",
+        chip.part(code),
+        "resistor" if isinstance(chip, Resistor) else "resistor array",
         shape,
         0.0,
         0.0,
@@ -191,6 +192,7 @@ def _resistor(
         "front",
         nets,
         manufacturer=chip.manufacturer,
+        lcsc=chip.lcsc_of(code),
     )
 
 

@@ -4,7 +4,15 @@ from typing import Literal, Self
 
 from pydantic import Field, model_validator
 
-from lumitip_fab.catalogue.record import Capacitances, Confidence, Entry, Gains, Length, Ordered
+from lumitip_fab.catalogue.record import (
+    Capacitances,
+    Confidence,
+    Entry,
+    Gains,
+    Length,
+    Ordered,
+    OrderedByValue,
+)
 
 
 class Chip(Ordered, Entry):
@@ -98,14 +106,14 @@ class Photodetector(Polar):
     """Capacitance from collector to base, least and greatest. The default is assumed."""
 
 
-class Resistor(Chip):
+class Resistor(OrderedByValue, Chip):
     """A resistor package."""
 
     power_w: float = Field(gt=0, le=10)
     """Rated power at 70 °C."""
 
 
-class ResistorArray(Ordered, Entry):
+class ResistorArray(OrderedByValue, Entry):
     """Separate resistors side by side in one chip, each between two opposite pads."""
 
     body_mm: tuple[Length, Length, Length]

@@ -15,7 +15,14 @@ from shapely.geometry.base import BaseGeometry
 from lumitip_fab.checks.readers.copper import Clusters
 from lumitip_fab.checks.readers.kicad_board import KicadBoard, Part, Terminal, read_board
 from lumitip_fab.checks.result import Measurement
-from lumitip_fab.design import AuxiliaryBoard, Design, Finger, Point
+from lumitip_fab.design import (
+    AuxiliaryBoard,
+    Design,
+    Finger,
+    Point,
+    Resistor,
+    ResistorArray,
+)
 from lumitip_fab.design.frames import applied, board_page_to_sensor
 
 _VALUE = re.compile(r"(\d+)([RKM])(\d*)")
@@ -99,8 +106,9 @@ class Read(ReadBoard):
         signals = self.finger.connector.signals
         return self.group("J1", signals.index(signal) + 1) if signal in signals else None
 
-    def ordered(self, ref: str) -> str:
-        """Order number of a part from the catalogue; a resistor's value is read from the board."""
+    def ordered(self, ref: str) -> tuple[str, str]:
+        """Order number of a part and its number at LCSC from the catalogue, the latter empty where
+        it is not known; a resistor's value is read from the board."""
         packages, part = self.design.packages, self.parts.get(ref)
         lights = self.finger.cells_hold.kind == "led"
         entries = {
@@ -110,8 +118,12 @@ class Read(ReadBoard):
             "R": packages.string_resistor if lights else packages.pull_up,
         }
         entry = packages.array if ref.startswith("RN") else entries.get(ref[:1])
+        if entry is None:
+            return "", ""
         value = part.value if part else "?"
-        return entry.order_number.replace("{code}", value) if entry else ""
+        if isinstance(entry, Resistor | ResistorArray):
+            return entry.part(value), entry.lcsc_of(value)
+        return entry.order_number, entry.lcsc
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,9 +137,10 @@ class ReadAuxiliary(ReadBoard):
         """Name of its folder and its files."""
         return self.auxiliary.name
 
-    def ordered(self, ref: str) -> str:
-        """Order number of a part."""
-        return next((d.part for d in self.auxiliary.components if d.ref == ref), "")
+    def ordered(self, ref: str) -> tuple[str, str]:
+        """Order number of a part and its number at LCSC, which is empty where it is not known."""
+        parts = ((d.part, d.lcsc) for d in self.auxiliary.components if d.ref == ref)
+        return next(parts, ("", ""))
 
 
 def names_of(design: Design) -> tuple[str, ...]:

@@ -8,7 +8,14 @@ towards the tip from the centre line of the columns, z out of the face from the 
 from dataclasses import dataclass, replace
 
 from lumitip.layout import Cell, Layout
-from lumitip_fab.catalogue.electronics import Chip, Led, Multiplexer, Photodetector, ResistorArray
+from lumitip_fab.catalogue.electronics import (
+    Chip,
+    Led,
+    Multiplexer,
+    Photodetector,
+    Resistor,
+    ResistorArray,
+)
 from lumitip_fab.design.boards import (
     AtCells,
     Board,
@@ -109,6 +116,7 @@ __all__ = [
     "Purchase",
     "Reading",
     "Relief",
+    "Resistor",
     "ResistorArray",
     "Rules",
     "Shroud",

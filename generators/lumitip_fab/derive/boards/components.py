@@ -82,14 +82,13 @@ def chip(
     at: Point,
     angle_deg: float,
     nets: tuple[str, str],
-    part: str = "",
 ) -> Component:
     """A part with two terminals."""
     return Component(
         ref=ref,
         kind=kind,
         value=value,
-        part=part or entry.order_number,
+        part=entry.order_number,
         manufacturer=entry.manufacturer,
         lcsc=entry.lcsc,
         footprint=footprints.chip(kind, entry),
@@ -99,6 +98,19 @@ def chip(
         side="front",
         nets=numbered(nets),
     )
+
+
+def resistor(
+    ref: str,
+    code: str,
+    entry: electronics.Resistor,
+    at: Point,
+    angle_deg: float,
+    nets: tuple[str, str],
+) -> Component:
+    """A resistor by the code of its value."""
+    device = chip(ref, "resistor", code, entry, at, angle_deg, nets)
+    return replace(device, part=entry.part(code), lcsc=entry.lcsc_of(code))
 
 
 def capacitor(

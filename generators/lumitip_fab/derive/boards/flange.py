@@ -21,6 +21,7 @@ from lumitip_fab.derive.boards.components import (
     fiducials,
     from_behind,
     leaded,
+    resistor,
     strip,
 )
 from lumitip_fab.derive.boards.flange_circuit import (
@@ -131,17 +132,15 @@ def _input(config: Input) -> tuple[Component, ...]:
     """Fuse, and the MOSFET with the supply, or half of a high one, at its gate."""
     p, parts = config.parameters.flange, config.parts.flange
     raw, supply, _ = _supplies(config)
-    resistor = parts.resistor
     code = resistor_code(p.gate_ohm)
-    part = resistor.order_number.replace("{code}", code)
     transistor = parts.transistor
     leads = {"G": "GATE", "S": supply, "D": "FUSED"}
-    upper = chip("R1", "resistor", code, resistor, (-5.2, -7.0), 90.0, (supply, "GATE"), part)
+    upper = resistor("R1", code, parts.resistor, (-5.2, -7.0), 90.0, (supply, "GATE"))
     return (
         chip("F1", "fuse", p.fuse, parts.fuse, (5.4, -7.0), 180.0, (raw, "FUSED")),
         leaded("Q1", "transistor", p.transistor, transistor, (-1.0, -7.0), 270.0, leads),
         *((upper,) if halved(config) else ()),
-        chip("R2", "resistor", code, resistor, (-2.0, -3.8), 0.0, ("GATE", "GND"), part),
+        resistor("R2", code, parts.resistor, (-2.0, -3.8), 0.0, ("GATE", "GND")),
     )
 
 
