@@ -104,6 +104,36 @@ def hole_narrow(text: str) -> str:
     return in_part(text, "H1", r"\(drill 2\.1\)", "(drill 2)")
 
 
+def tie_moved(text: str) -> str:
+    return moved_part(text, "H3", 0.05, 0.0)
+
+
+def tie_far(text: str) -> str:
+    return moved_part(text, "H3", -5.0, 0.0)
+
+
+def tie_wide(text: str) -> str:
+    return in_part(text, "H8", r"\(drill 1\.6\)", "(drill 1.7)")
+
+
+def tie_missing(text: str) -> str:
+    return in_part(text, "H4", "np_thru_hole", "connect")
+
+
+def tie_over_the_edge(text: str) -> str:
+    return moved_part(text, "H8", 0.5, 0.0)
+
+
+def tie_under_a_socket(text: str) -> str:
+    return moved_part(text, "H3", 0.0, -5.6)
+
+
+def text_over_a_tie(text: str) -> str:
+    part = text[: text.index('(fp_text reference "H3"')]
+    x, y = re.findall(r"\n    \(at (\S+) (\S+?)\)", part)[-1]
+    return once(text, r'(\(gr_text "J5" \(at )\S+ \S+', rf"\g<1>{x} {y}")
+
+
 def hole_missing(text: str) -> str:
     return in_part(text, "H1", "np_thru_hole", "connect")
 
@@ -131,9 +161,9 @@ def fill_adrift(text: str) -> str:
 DAMAGES: dict[Damage, set[str]] = {
     part_moved: {"lands", "clearance"},  # the pour is as near as it may be
     part_added: {"other_parts"},
-    part_missing: {"other_parts", "lands", "apart"},
+    part_missing: {"other_parts", "lands", "apart", "tie_reach"},
     hole_of_a_pad_wider: {"lands"},
-    pad_without_copper: {"lands", "apart", "hole_count", "hole_width", "hole_clearance"},
+    pad_without_copper: {"lands", "apart", "tie_count", "tie_width", "hole_clearance"},
     wires_exchanged: {"lands", "apart", "joined"},
     socket_pins_exchanged: {"open", "short"},
     names_exchanged: {"names"},
@@ -147,6 +177,13 @@ DAMAGES: dict[Damage, set[str]] = {
     hole_moved: {"holes", "hole_clearance"},
     hole_narrow: {"hole_width"},
     hole_missing: {"hole_count", "holes", "other_parts"},
+    tie_moved: {"ties", "hole_clearance"},
+    tie_far: {"ties", "tie_reach", "hole_clearance"},
+    tie_wide: {"tie_width", "tie_edge", "hole_clearance"},
+    tie_missing: {"tie_count", "ties", "tie_reach", "other_parts"},
+    tie_over_the_edge: {"ties", "tie_edge", "hole_clearance"},
+    tie_under_a_socket: {"ties", "tie_reach", "tie_parts", "tie_silk", "hole_clearance"},
+    text_over_a_tie: {"tie_silk"},
     edge_moved: {"outline"},
     fill_adrift: {"islands", "hole_clearance"},
 }

@@ -9,7 +9,7 @@ import pytest
 from damages import failing
 from lumitip_fab.boards.files import auxiliary_files
 from lumitip_fab.derive.boards import components
-from lumitip_fab.design import AuxiliaryBoard, Box, Design
+from lumitip_fab.design import AuxiliaryBoard, Box, Design, Tie
 from lumitip_fab.design.encoding import design_text
 
 pytestmark = pytest.mark.slow
@@ -22,6 +22,10 @@ JOINT = AuxiliaryBoard(
     corner_mm=1.0,
     holes=((-9.0, 0.0), (9.0, 0.0)),
     hole_mm=2.2,
+    ties=(
+        Tie("J1", ((-5.0, -6.0), (5.0, -6.0)), 1.6, 1.0),
+        Tie("J2", ((-5.0, 6.0), (5.0, 6.0)), 1.6, 1.0),
+    ),
     components=(
         components.wires("J1", SIGNALS, (0.0, -6.0), False),
         components.wires("J2", SIGNALS, (0.0, 6.0), False),

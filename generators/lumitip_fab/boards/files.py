@@ -112,6 +112,7 @@ def _placement(
         corner_mm=auxiliary.corner_mm,
         holes=auxiliary.holes,
         hole_mm=auxiliary.hole_mm,
+        ties=tuple((at, tie.hole_mm) for tie in auxiliary.ties for at in tie.holes),
         keep_outs=auxiliary.keep_outs,
         edge_clearance_mm=rules.edge_gap_mm,
         hole_clearance_mm=rules.hole_gap_mm,

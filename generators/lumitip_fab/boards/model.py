@@ -95,6 +95,13 @@ class Placement:
     """Layers and bend of a flexible board."""
     ground_only: tuple[Box, ...] = ()
     """Where the back carries no net but ground: under a regulator's hot loop."""
+    ties: tuple[tuple[Point, float], ...] = ()
+    """Unplated holes for the threads that hold the cables, with their diameters."""
+
+    @property
+    def unplated(self) -> tuple[tuple[Point, float], ...]:
+        """Every unplated hole with its diameter."""
+        return (*((at, self.hole_mm) for at in self.holes), *self.ties)
 
 
 @dataclass(frozen=True)

@@ -33,6 +33,7 @@ from lumitip_fab.checks.board_read import (
     read_any,
 )
 from lumitip_fab.checks.board_silk import measure_silk, measure_targets
+from lumitip_fab.checks.board_ties import measure_ties
 from lumitip_fab.checks.readers.kicad_board import Copper, Part
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.checks.settling import measure_settling
@@ -219,6 +220,7 @@ _OF_FINGERS: tuple[Callable[[Read], Iterator[Measurement]], ...] = (
 _OF_AUXILIARY_BOARDS: tuple[Callable[[ReadAuxiliary], Iterator[Measurement]], ...] = (
     measure_edge,
     measure_screws,
+    measure_ties,
     measure_lands,
     measure_names,
     measure_copper,

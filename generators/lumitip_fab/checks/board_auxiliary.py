@@ -101,13 +101,13 @@ def measure_edge(read: ReadAuxiliary) -> Iterator[Measurement]:
 
 def measure_screws(read: ReadAuxiliary) -> Iterator[Measurement]:
     """Screw holes: how many, where, how wide."""
-    wanted, found = read.auxiliary.holes, read.sensor([hole.at for hole in read.holes])
+    wanted, found = read.auxiliary.holes, read.sensor([hole.at for hole in read.screws])
     yield read.figure("hole_count", len(found), len(wanted), len(wanted), "holes")
     if not wanted:
         return
     apart = np.hypot(*(np.array(wanted)[:, None] - found[None]).transpose(2, 0, 1))
     yield read.figure("holes", apart.min(axis=1).max() if found.size else math.nan, 0, HOLE_MM)
-    off = [abs(hole.drill_mm - read.auxiliary.hole_mm) for hole in read.holes]
+    off = [abs(hole.drill_mm - read.auxiliary.hole_mm) for hole in read.screws]
     yield read.figure("hole_width", max(off, default=math.nan), 0, HOLE_MM, note="from the design")
 
 

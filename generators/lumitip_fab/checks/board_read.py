@@ -137,6 +137,18 @@ class ReadAuxiliary(ReadBoard):
         """Name of its folder and its files."""
         return self.auxiliary.name
 
+    @property
+    def screws(self) -> tuple[Terminal, ...]:
+        """Unplated holes as wide as those for screws; the others are for threads."""
+        threads = [tie.hole_mm for tie in self.auxiliary.ties]
+        least = (self.auxiliary.hole_mm + max(threads, default=0.0)) / 2
+        return tuple(hole for hole in self.holes if hole.drill_mm > least)
+
+    @property
+    def threads(self) -> tuple[Terminal, ...]:
+        """The other unplated holes."""
+        return tuple(hole for hole in self.holes if hole not in self.screws)
+
     def ordered(self, ref: str) -> tuple[str, str]:
         """Order number of a part and its number at LCSC, which is empty where it is not known."""
         parts = ((d.part, d.lcsc) for d in self.auxiliary.components if d.ref == ref)

@@ -19,7 +19,7 @@ def part_number_rows(out: Path, design: Design) -> Iterator[Row]:
     fab = next((f for f in design.fabs if {"part", "lcsc"} <= {field for _, field in f.bom}), None)
     if fab is None:
         return
-    boards = [board.name for board in (*design.fingers, *design.auxiliary_boards)]
+    boards = [f.name for f in design.fingers] + [a.name for a in design.auxiliary_boards]
     lines = {board: _lines(out, board, fab) for board in boards}
     for board in boards:
         yield _row(f"part numbers of the {board} board", lines[board])

@@ -59,7 +59,16 @@ from lumitip_fab.design.mount import (
     ToolContact,
 )
 from lumitip_fab.design.ordering import Bought, Fab, PartPrice, Purchase
-from lumitip_fab.design.pcb import AuxiliaryBoard, Component, Finish, Footprint, Note, Pad, Shroud
+from lumitip_fab.design.pcb import (
+    AuxiliaryBoard,
+    Component,
+    Finish,
+    Footprint,
+    Note,
+    Pad,
+    Shroud,
+    Tie,
+)
 from lumitip_fab.design.shape import Box, Cubic, Outline, Point, Side, Stack, Tip
 from lumitip_fab.text import board_name, page_name
 
@@ -125,6 +134,7 @@ __all__ = [
     "Stack",
     "System",
     "Terminal",
+    "Tie",
     "Tip",
     "Title",
     "ToolContact",

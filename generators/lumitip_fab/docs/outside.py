@@ -48,6 +48,20 @@ def _breakout(auxiliary: AuxiliaryBoard) -> Iterator[Row]:
         f"{spacing:.2f} mm apart",
         "one figure for board and holder, breakout.hole_spacing_mm",
     )
+    yield from _tied(auxiliary)
+
+
+def _tied(auxiliary: AuxiliaryBoard) -> Iterator[Row]:
+    """Strain relief of the cables; none where no cable ends at wire pads."""
+    for tie in auxiliary.ties[:1]:
+        yield Row(
+            "its strain relief",
+            "none",
+            f"2 holes of {tie.hole_mm:g} mm at each of {len(auxiliary.ties)} rows of wire pads",
+            f"for a thread of 1 mm round the cable, {tie.web_mm:g} mm from the edge. On a finger's "
+            "board there is no room: a wide row leaves 0.8 mm to the edge and 0.5 mm to the notch, "
+            "in which the plate behind it is open",
+        )
 
 
 def _flange(auxiliary: AuxiliaryBoard) -> Iterator[Row]:
@@ -71,6 +85,7 @@ def _flange(auxiliary: AuxiliaryBoard) -> Iterator[Row]:
         f"{values['F1']}, {values['Q1']}",
         "a MOSFET costs the LEDs no voltage, as a diode would",
     )
+    yield from _tied(auxiliary)
     if "U2" in values:
         yield Row(
             "controller on it",

@@ -3,7 +3,7 @@
 import csv
 import io
 
-from lumitip_fab.design import Cable, Cabling, Design, Title, Wire
+from lumitip_fab.design import AuxiliaryBoard, Cable, Cabling, Design, Title, Wire
 from lumitip_fab.design.cabling import named
 from lumitip_fab.docs.diagram import diagram
 from lumitip_fab.pipeline.artefact import Artefact
@@ -28,7 +28,7 @@ Stranded copper, colours by IEC 60757; `wiring.svg` shows the same as a drawing.
 from the square one: on a finger's board that is the leftmost, seen from the front with the tip up.
 Put the wires of a finger in from the back of its board, solder them on the front, and cut the
 joints short. Solder every board before it goes into a printed part, which an iron would melt.
-
+{ties}
 {tables}
 
 Lengths are for each wire, rounded up to whole centimetres. From a finger: its reach on the finger,
@@ -39,6 +39,13 @@ supply {supply_mm:g} mm; and {slack_mm:g} mm each for bends and stripping.
 - Measure a supply before it is connected: makers' colours differ from these. On the tool connector
   of Universal Robots' arms red is 0 V, and grey carries the voltage.
 - Twist the two wires of the emitter. Leave a loop at each finger, so that it opens without pulling.
+"""
+_TIED = """
+Hold each cable that ends at the {boards}: beside its row of wire pads are two holes of
+{hole_mm:g} mm. Pass a waxed thread or a bare wire of up to 1 mm through both, over the cable, and knot it under the
+board when the wires are soldered and before the board goes into a printed part. A pull is then on
+the thread, not on the joints. The fingers' boards have no room for such holes: hold their
+cables to the gripper near the fingers.
 """
 _FED = """\
 - The wire of 5 V feeds the controller. Leave it away where it is fed over USB."""
@@ -78,9 +85,12 @@ def cable_list(cabling: Cabling) -> str:
     return file.getvalue()
 
 
-def wiring_note(title: Title, cabling: Cabling) -> str:
+def wiring_note(
+    title: Title, cabling: Cabling, auxiliary_boards: tuple[AuxiliaryBoard, ...]
+) -> str:
     """The wires with what to mind, in Markdown."""
     return _NOTE.format(
+        ties=_tied(auxiliary_boards),
         title=as_written(f"{title.name} {title.revision}"),
         tables="\n\n".join(map(_table, cabling.cables)),
         power=_power(cabling),
@@ -89,6 +99,15 @@ def wiring_note(title: Title, cabling: Cabling) -> str:
         supply_mm=cabling.supply_mm,
         slack_mm=cabling.slack_mm,
     )
+
+
+def _tied(auxiliary_boards: tuple[AuxiliaryBoard, ...]) -> str:
+    """The step that holds the cables; empty where none ends at wire pads outside the fingers."""
+    tied = [board for board in auxiliary_boards if board.ties]
+    if not tied:
+        return ""
+    boards = " and the ".join(board.name for board in tied)
+    return _TIED.format(boards=boards, hole_mm=tied[0].ties[0].hole_mm)
 
 
 def _power(cabling: Cabling) -> str:
@@ -130,6 +149,10 @@ def wiring_files(design: Design) -> tuple[Artefact, ...]:
     title, cabling = design.title, design.cabling
     return (
         Artefact("wiring/cables.csv", cable_list(cabling).encode(), frame=""),
-        Artefact("wiring/cables.md", wiring_note(title, cabling).encode(), frame=""),
+        Artefact(
+            "wiring/cables.md",
+            wiring_note(title, cabling, design.auxiliary_boards).encode(),
+            frame="",
+        ),
         Artefact("wiring/wiring.svg", diagram(title, cabling).encode(), frame=""),
     )
