@@ -109,6 +109,7 @@ def place(design: Design, finger: Finger) -> Placement:
         corner_mm=CORNER_MM,
         holes=finger.holes,
         hole_mm=board.hole_mm,
+        ties=tuple((at, tie.hole_mm) for tie in finger.ties for at in tie.holes),
         keep_outs=(),
         edge_clearance_mm=rules.edge_gap_mm,
         hole_clearance_mm=rules.hole_gap_mm,

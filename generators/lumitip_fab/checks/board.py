@@ -33,7 +33,7 @@ from lumitip_fab.checks.board_read import (
     read_any,
 )
 from lumitip_fab.checks.board_silk import measure_silk, measure_targets
-from lumitip_fab.checks.board_ties import measure_ties
+from lumitip_fab.checks.board_ties import measure_finger_ties, measure_ties
 from lumitip_fab.checks.readers.kicad_board import Copper, Part
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.checks.settling import measure_settling
@@ -82,12 +82,12 @@ def measure_outline(read: Read) -> Iterator[Measurement]:
 def measure_holes(read: Read) -> Iterator[Measurement]:
     """The unplated holes against the backing's pins: place, and room all round."""
     board, wanted = read.design.board, np.array(read.finger.holes)
-    found = read.sensor([hole.at for hole in read.holes])
+    found = read.sensor([hole.at for hole in read.screws])
     yield read.figure("hole_count", len(found), len(wanted), len(wanted), "holes")
     apart = np.hypot(*(wanted[:, None] - found[None]).transpose(2, 0, 1))
     off = apart.min(axis=1).max() if found.size else math.nan
     yield read.figure("holes", off, 0, HOLE_MM, note="from the backing's pins")
-    room = [(hole.drill_mm - board.pin_mm) / 2 for hole in read.holes]
+    room = [(hole.drill_mm - board.pin_mm) / 2 for hole in read.screws]
     least = (board.hole_mm - board.pin_mm) / 2
     worst = max(room, key=lambda gap: abs(gap - least), default=math.nan)
     yield read.figure("pin_clearance", worst, least - EDGE_MM, least + EDGE_MM)
@@ -208,6 +208,7 @@ _OF_FINGERS: tuple[Callable[[Read], Iterator[Measurement]], ...] = (
     measure_cells,
     measure_outline,
     measure_holes,
+    measure_finger_ties,
     measure_heights,
     measure_copper,
     measure_nets,

@@ -22,6 +22,7 @@ from lumitip_fab.design import (
     Point,
     Resistor,
     ResistorArray,
+    Tie,
 )
 from lumitip_fab.design.frames import applied, board_page_to_sensor
 
@@ -65,6 +66,27 @@ class ReadBoard:
             if t.copper is None and t.drill_mm
         )
 
+    @property
+    def ties(self) -> tuple[Tie, ...]:
+        """Strain relief by the design."""
+        raise NotImplementedError
+
+    @property
+    def screw_mm(self) -> float:
+        """Diameter of the holes for screws or pins by the design."""
+        raise NotImplementedError
+
+    @property
+    def screws(self) -> tuple[Terminal, ...]:
+        """Unplated holes as wide as those for screws or pins; the others are for threads."""
+        least = (self.screw_mm + max((tie.hole_mm for tie in self.ties), default=0.0)) / 2
+        return tuple(hole for hole in self.holes if hole.drill_mm > least)
+
+    @property
+    def threads(self) -> tuple[Terminal, ...]:
+        """The other unplated holes."""
+        return tuple(hole for hole in self.holes if hole not in self.screws)
+
     def sensor(self, points: Any) -> NDArray[np.float64]:
         """Places on the page, in the sensor frame; shape `(n, 2)`."""
         flat = np.asarray(points, dtype=np.float64).reshape(-1, 2)
@@ -100,6 +122,16 @@ class Read(ReadBoard):
     def name(self) -> str:
         """Name of its folder and its files."""
         return self.finger.name
+
+    @property
+    def ties(self) -> tuple[Tie, ...]:
+        """Strain relief by the design."""
+        return self.finger.ties
+
+    @property
+    def screw_mm(self) -> float:
+        """Diameter of the holes for the locating pins by the design."""
+        return self.design.board.hole_mm
 
     def wire(self, signal: str) -> int | None:
         """The group of a signal at the connector, by the place of its pad in the row."""
@@ -138,16 +170,14 @@ class ReadAuxiliary(ReadBoard):
         return self.auxiliary.name
 
     @property
-    def screws(self) -> tuple[Terminal, ...]:
-        """Unplated holes as wide as those for screws; the others are for threads."""
-        threads = [tie.hole_mm for tie in self.auxiliary.ties]
-        least = (self.auxiliary.hole_mm + max(threads, default=0.0)) / 2
-        return tuple(hole for hole in self.holes if hole.drill_mm > least)
+    def ties(self) -> tuple[Tie, ...]:
+        """Strain relief by the design."""
+        return self.auxiliary.ties
 
     @property
-    def threads(self) -> tuple[Terminal, ...]:
-        """The other unplated holes."""
-        return tuple(hole for hole in self.holes if hole not in self.screws)
+    def screw_mm(self) -> float:
+        """Diameter of the screw holes by the design."""
+        return self.auxiliary.hole_mm
 
     def ordered(self, ref: str) -> tuple[str, str]:
         """Order number of a part and its number at LCSC, which is empty where it is not known."""

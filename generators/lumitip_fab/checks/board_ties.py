@@ -1,4 +1,4 @@
-"""Strain relief on the boards outside the fingers: two holes for a thread at each cable's row."""
+"""Strain relief of the cables: two holes for a thread beside a row of wire pads."""
 
 import math
 from collections.abc import Iterator
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from shapely import affinity
 from shapely.geometry.base import BaseGeometry
 
-from lumitip_fab.checks.board_read import ReadAuxiliary
+from lumitip_fab.checks.board_read import Read, ReadAuxiliary, ReadBoard
 from lumitip_fab.checks.readers.kicad_board import Part
 from lumitip_fab.checks.result import Measurement
 
@@ -24,28 +24,63 @@ _ROUND_MM = 1e-3
 
 
 def measure_ties(read: ReadAuxiliary) -> Iterator[Measurement]:
-    """How many holes there are for threads, where, how wide, and what is beside them."""
+    """The holes beside every row of wire pads that a cable ends at."""
     rows = [d.ref for d in read.auxiliary.components if d.kind == "wires" and d.pins]
-    ties = read.auxiliary.ties
+    yield from _measured(read, rows, list(_bodies(read)))
+
+
+def measure_finger_ties(read: Read) -> Iterator[Measurement]:
+    """Those of a finger's board, if it has room: the plate and the film are open there."""
+    yield from _measured(read, [tie.ref for tie in read.ties], [])
+    if not read.ties:
+        return
+    for name, box in (("notch", read.finger.notch), ("window", read.finger.window)):
+        inside = shapely.box(box.x_min_mm, box.y_min_mm, box.x_max_mm, box.y_max_mm)
+        room = [
+            float(inside.exterior.distance(at)) - hole.drill_mm / 2
+            for hole in read.threads
+            for at in shapely.points(read.sensor([hole.at]))
+            if inside.contains(at)
+        ]
+        least = min(room) if len(room) == len(read.threads) and room else -math.inf
+        yield read.figure(f"tie_{name}", least, 0, math.inf)
+    boxes = [
+        (part.box.x_min_mm, part.box.y_min_mm, part.box.x_max_mm, part.box.y_max_mm)
+        for part in read.finger.parts
+    ]
+    discs = [
+        at.buffer(hole.drill_mm / 2)
+        for hole in read.threads
+        for at in shapely.points(read.sensor([hole.at]))
+    ]
+    parts = [shapely.box(*box) for box in boxes]
+    yield read.figure("tie_parts", _least_mm(discs, parts), PART_GAP_MM, math.inf)
+
+
+def _measured(
+    read: Read | ReadAuxiliary, rows: list[str], bodies: list[BaseGeometry]
+) -> Iterator[Measurement]:
+    """How many holes there are for threads, where, how wide, and what is beside them."""
     yield read.figure("tie_count", len(read.threads), 2 * len(rows), 2 * len(rows), "holes")
     if not rows:
         return
     found = read.sensor([hole.at for hole in read.threads])
-    wanted = np.array([at for tie in ties for at in tie.holes])
+    wanted = np.array([at for tie in read.ties for at in tie.holes])
     apart = np.hypot(*(wanted[:, None] - found[None]).transpose(2, 0, 1))
     off = apart.min(axis=1).max() if found.size else math.nan
     yield read.figure("ties", off, 0, PLACE_MM, note="from the design")
-    size = ties[0].hole_mm
-    wide = max((abs(hole.drill_mm - size) for hole in read.threads), default=math.nan)
+    first = read.ties[0]
+    wide = max((abs(hole.drill_mm - first.hole_mm) for hole in read.threads), default=math.nan)
     yield read.figure("tie_width", wide, 0, PLACE_MM, note="from the design")
     far = {ref: _reach_mm(read.sensor(_pads(read.parts.get(ref))), found) for ref in rows}
     worst = max(rows, key=lambda ref: math.inf if math.isnan(far[ref]) else far[ref])
     yield read.figure("tie_reach", far[worst], 0, REACH_MM, note=f"worst at {worst}")
     discs = [shapely.Point(h.at).buffer(h.drill_mm / 2, quad_segs=32) for h in read.threads]
-    yield read.figure("tie_edge", _edge_mm(read, discs), ties[0].web_mm - _ROUND_MM, math.inf)
-    yield read.figure("tie_parts", _least_mm(discs, list(_bodies(read))), PART_GAP_MM, math.inf)
-    ink, least = [*_printed(read)], read.design.rules.silk_gap_mm - _ROUND_MM
-    yield read.figure("tie_silk", _least_mm(discs, ink), least, math.inf)
+    yield read.figure("tie_edge", _edge_mm(read, discs), first.web_mm - _ROUND_MM, math.inf)
+    if bodies:
+        yield read.figure("tie_parts", _least_mm(discs, bodies), PART_GAP_MM, math.inf)
+    least = read.design.rules.silk_gap_mm - _ROUND_MM
+    yield read.figure("tie_silk", _least_mm(discs, [*_printed(read)]), least, math.inf)
 
 
 def _pads(part: Part | None) -> list[tuple[float, float]]:
@@ -60,14 +95,14 @@ def _reach_mm(pads: NDArray[np.float64], holes: NDArray[np.float64]) -> float:
     return float(np.sort(apart)[1])
 
 
-def _edge_mm(read: ReadAuxiliary, discs: list[BaseGeometry]) -> float:
+def _edge_mm(read: ReadBoard, discs: list[BaseGeometry]) -> float:
     """Least board between a hole and the edge; negative where one lies across it."""
     if not all(read.outline.contains(disc) for disc in discs):
         return -math.inf
     return min((float(read.outline.boundary.distance(disc)) for disc in discs), default=math.nan)
 
 
-def _printed(read: ReadAuxiliary) -> Iterator[BaseGeometry]:
+def _printed(read: ReadBoard) -> Iterator[BaseGeometry]:
     """Silkscreen of both sides; of a text a rectangle within it."""
     yield from (line.area for line in read.board.silk.lines)
     for word in read.board.silk.words:

@@ -3,7 +3,7 @@
 import csv
 import io
 
-from lumitip_fab.design import AuxiliaryBoard, Cable, Cabling, Design, Title, Wire
+from lumitip_fab.design import Cable, Cabling, Design, Wire
 from lumitip_fab.design.cabling import named
 from lumitip_fab.docs.diagram import diagram
 from lumitip_fab.pipeline.artefact import Artefact
@@ -41,12 +41,13 @@ supply {supply_mm:g} mm; and {slack_mm:g} mm each for bends and stripping.
 - Twist the two wires of the emitter. Leave a loop at each finger, so that it opens without pulling.
 """
 _TIED = """
-Hold each cable that ends at the {boards}: beside its row of wire pads are two holes of
-{hole_mm:g} mm. Pass a waxed thread or a bare wire of up to 1 mm through both, over the cable, and knot it under the
-board when the wires are soldered and before the board goes into a printed part. A pull is then on
-the thread, not on the joints. The fingers' boards have no room for such holes: hold their
-cables to the gripper near the fingers.
+Hold each cable at the {boards}: beside its row of wire pads are two holes of {hole_mm:g} mm. When
+the wires are soldered, and before the board goes into a printed part, pass a waxed thread or a bare
+wire of up to 1 mm through both, over the cable, and knot it behind the board. A pull is then on the
+thread, not on the joints.{loose}
 """
+_LOOSE = """ The {boards} has no room for such holes: hold its cable to the gripper, near the
+finger."""
 _FED = """\
 - The wire of 5 V feeds the controller. Leave it away where it is fed over USB."""
 _AT_FLANGE = """
@@ -85,12 +86,11 @@ def cable_list(cabling: Cabling) -> str:
     return file.getvalue()
 
 
-def wiring_note(
-    title: Title, cabling: Cabling, auxiliary_boards: tuple[AuxiliaryBoard, ...]
-) -> str:
+def wiring_note(design: Design) -> str:
     """The wires with what to mind, in Markdown."""
+    title, cabling = design.title, design.cabling
     return _NOTE.format(
-        ties=_tied(auxiliary_boards),
+        ties=_tied(design),
         title=as_written(f"{title.name} {title.revision}"),
         tables="\n\n".join(map(_table, cabling.cables)),
         power=_power(cabling),
@@ -101,13 +101,22 @@ def wiring_note(
     )
 
 
-def _tied(auxiliary_boards: tuple[AuxiliaryBoard, ...]) -> str:
-    """The step that holds the cables; empty where none ends at wire pads outside the fingers."""
-    tied = [board for board in auxiliary_boards if board.ties]
+def _tied(design: Design) -> str:
+    """The step that holds the cables; empty where no board has holes for a thread."""
+    tied = [board for board in (*design.fingers, *design.auxiliary_boards) if board.ties]
     if not tied:
         return ""
-    boards = " and the ".join(board.name for board in tied)
-    return _TIED.format(boards=boards, hole_mm=tied[0].ties[0].hole_mm)
+    return _TIED.format(
+        boards=_listed([board.name for board in tied]),
+        hole_mm=tied[0].ties[0].hole_mm,
+        loose="".join(
+            _LOOSE.format(boards=finger.name) for finger in design.fingers if not finger.ties
+        ),
+    )
+
+
+def _listed(names: list[str]) -> str:
+    return " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))
 
 
 def _power(cabling: Cabling) -> str:
@@ -151,7 +160,7 @@ def wiring_files(design: Design) -> tuple[Artefact, ...]:
         Artefact("wiring/cables.csv", cable_list(cabling).encode(), frame=""),
         Artefact(
             "wiring/cables.md",
-            wiring_note(title, cabling, design.auxiliary_boards).encode(),
+            wiring_note(design).encode(),
             frame="",
         ),
         Artefact("wiring/wiring.svg", diagram(title, cabling).encode(), frame=""),

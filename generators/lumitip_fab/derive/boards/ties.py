@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from lumitip_fab.derive.diagnostics import Diagnostics
-from lumitip_fab.design import Box, Component, Point, Tie
+from lumitip_fab.design import Board, Box, Component, Finger, Point, Tie
 
 HOLE_MM = 1.6
 """For a waxed thread of 1 mm, which passes twice, or a bare wire."""
@@ -56,6 +56,47 @@ class _Room:
             )
         )
 
+    def pair(self, row: "_Row") -> Pair | None:
+        """The best places for a row's two holes; none without room."""
+        return next((pair for pair in _pairs(row, self.box) if all(map(self.has, pair))), None)
+
+
+@dataclass(frozen=True)
+class _Row:
+    """A row of wire pads along x."""
+
+    x_mm: float
+    y_mm: float
+    width_mm: float
+    """Over its pads."""
+    pad_mm: float
+
+    @classmethod
+    def of(cls, row: Component) -> "_Row":
+        """The row of a part that is not turned."""
+        first, last = row.footprint.pads[0], row.footprint.pads[-1]
+        width_mm = last.x_mm - first.x_mm + first.width_mm
+        return cls(row.x_mm, row.y_mm, width_mm, first.width_mm)
+
+
+def finger_ties(finger: Finger, board: Board) -> tuple[Tie, ...]:
+    """Holes beside a finger's wire pads, where the plate behind them and the film before them are
+    open; none where these leave no room, or where the board is flexible and has a stiffener there.
+    """
+    wires, reach = finger.connector, HOLE_MM / 2
+    (left, y), (right, _) = wires.pads[0], wires.pads[-1]
+    row = _Row((left + right) / 2, y, right - left + wires.pad_mm, wires.pad_mm)
+    pads = Box(left, right, y, y).grown(wires.pad_mm / 2)
+    taken = (pads, *(part.box for part in finger.parts))
+    room = _Room(
+        board.box, WEB_MM + reach, taken, tuple((at, board.hole_mm) for at in finger.holes)
+    )
+    pair = None if board.flexible else room.pair(row)
+    openings = finger.notch.grown(-reach), finger.window.grown(-reach)
+    if pair is None or any(_apart_mm(at, box) > 0 for box in openings for at in pair):
+        return ()
+    return (Tie("J1", pair, HOLE_MM, WEB_MM),)
+
 
 def derive_ties(
     components: Sequence[Component],
@@ -80,7 +121,7 @@ def derive_ties(
     for row in (part for part in components if part.kind == "wires" and part.pins):
         # The corners of the rim are rounder by what a hole keeps to the edge.
         room = _Room(box, max(corner_mm, WEB_MM + HOLE_MM / 2), taken, holes)
-        pair = next((pair for pair in _pairs(row, box) if all(map(room.has, pair))), None)
+        pair = room.pair(_Row.of(row))
         if pair is None:
             faults.refuse(
                 field,
@@ -94,15 +135,14 @@ def derive_ties(
     return tuple(ties)
 
 
-def _pairs(row: Component, box: Box) -> Iterator[Pair]:
+def _pairs(row: _Row, box: Box) -> Iterator[Pair]:
     """Places for a row's two holes, the best first."""
-    pads = row.footprint.pads
-    half = pads[0].width_mm / 2
-    left, right = row.x_mm + pads[0].x_mm - half, row.x_mm + pads[-1].x_mm + half
+    half = row.pad_mm / 2
+    left, right = row.x_mm - row.width_mm / 2, row.x_mm + row.width_mm / 2
     out = -1 if row.y_mm - box.y_min_mm < box.y_max_mm - row.y_mm else 1
     edge = box.y_min_mm if out < 0 else box.y_max_mm
     if abs(edge - row.y_mm) - half <= NEAR_EDGE_MM:
-        yield from _beside(row.x_mm, edge - out * (WEB_MM + HOLE_MM / 2), right - left)
+        yield from _beside(row.x_mm, edge - out * (WEB_MM + HOLE_MM / 2), row.width_mm)
     reach = GAP_MM + HOLE_MM / 2
     steps = [STEP_MM * i for i in range(round(BEYOND_MM / STEP_MM) + 1)]
     for total in sorted(a + b for a in steps for b in steps):
@@ -111,7 +151,7 @@ def _pairs(row: Component, box: Box) -> Iterator[Pair]:
     for more in steps:
         for side in (out, -out):
             y = row.y_mm + side * (half + reach + more)
-            yield from _beside(row.x_mm, y, right - left)
+            yield from _beside(row.x_mm, y, row.width_mm)
 
 
 def _beside(x_mm: float, y_mm: float, width_mm: float) -> Iterator[Pair]:
