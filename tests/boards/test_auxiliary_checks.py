@@ -6,7 +6,19 @@ from pathlib import Path
 
 import pytest
 
-from board_damages import in_part, moved_part, once, spokes_cut, swapped_pads
+from board_damages import (
+    in_part,
+    moved_part,
+    once,
+    spokes_cut,
+    swapped_pads,
+    text_over_a_tie,
+    tie_far,
+    tie_missing,
+    tie_moved,
+    tie_of,
+    tie_wide,
+)
 from damages import failing
 from lumitip_fab.checks import board
 from lumitip_fab.design.encoding import read_design
@@ -104,34 +116,12 @@ def hole_narrow(text: str) -> str:
     return in_part(text, "H1", r"\(drill 2\.1\)", "(drill 2)")
 
 
-def tie_moved(text: str) -> str:
-    return moved_part(text, "H3", 0.05, 0.0)
-
-
-def tie_far(text: str) -> str:
-    return moved_part(text, "H3", -5.0, 0.0)
-
-
-def tie_wide(text: str) -> str:
-    return in_part(text, "H8", r"\(drill 1\.6\)", "(drill 1.7)")
-
-
-def tie_missing(text: str) -> str:
-    return in_part(text, "H4", "np_thru_hole", "connect")
-
-
 def tie_over_the_edge(text: str) -> str:
-    return moved_part(text, "H8", 0.5, 0.0)
+    return moved_part(text, tie_of(text, -1), 0.5, 0.0)
 
 
 def tie_under_a_socket(text: str) -> str:
-    return moved_part(text, "H3", 0.0, -5.6)
-
-
-def text_over_a_tie(text: str) -> str:
-    part = text[: text.index('(fp_text reference "H3"')]
-    x, y = re.findall(r"\n    \(at (\S+) (\S+?)\)", part)[-1]
-    return once(text, r'(\(gr_text "J5" \(at )\S+ \S+', rf"\g<1>{x} {y}")
+    return moved_part(text, tie_of(text), 0.0, -5.6)
 
 
 def hole_missing(text: str) -> str:

@@ -79,8 +79,8 @@ def _held_at(finger: Finger, design: Design) -> Row:
     edge_mm = y - wires.pad_mm / 2 - design.board.box.y_min_mm
     notch_mm = finger.notch.x_max_mm - x - wires.pad_mm / 2
     why = (
-        f"its wire pads leave {edge_mm:.1f} mm to the edge and {notch_mm:.1f} mm to the side of the "
-        f"notch, in which the plate behind the board is open: too little for a hole"
+        f"its wire pads leave {edge_mm:.1f} mm to the edge and {notch_mm:.1f} mm to the side of "
+        "the notch, in which the plate behind the board is open: too little for a hole"
     )
     return Row(quantity, "not stated", "none", why)
 

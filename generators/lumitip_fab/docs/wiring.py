@@ -46,8 +46,8 @@ the wires are soldered, and before the board goes into a printed part, pass a wa
 wire of up to 1 mm through both, over the cable, and knot it behind the board. A pull is then on the
 thread, not on the joints.{loose}
 """
-_LOOSE = """ The {boards} has no room for such holes: hold its cable to the gripper, near the
-finger."""
+_LOOSE = """ There is no room for such holes on the
+board of {boards}: hold that cable to the gripper, near the finger."""
 _FED = """\
 - The wire of 5 V feeds the controller. Leave it away where it is fed over USB."""
 _AT_FLANGE = """
@@ -103,15 +103,16 @@ def wiring_note(design: Design) -> str:
 
 def _tied(design: Design) -> str:
     """The step that holds the cables; empty where no board has holes for a thread."""
-    tied = [board for board in (*design.fingers, *design.auxiliary_boards) if board.ties]
+    ties = {f.name: f.ties for f in design.fingers}
+    ties |= {board.name: board.ties for board in design.auxiliary_boards}
+    tied = [name for name, found in ties.items() if found]
     if not tied:
         return ""
+    loose = [finger.name for finger in design.fingers if not finger.ties]
     return _TIED.format(
-        boards=_listed([board.name for board in tied]),
-        hole_mm=tied[0].ties[0].hole_mm,
-        loose="".join(
-            _LOOSE.format(boards=finger.name) for finger in design.fingers if not finger.ties
-        ),
+        boards=_listed(tied),
+        hole_mm=ties[tied[0]][0].hole_mm,
+        loose=_LOOSE.format(boards=_listed(loose)) if loose else "",
     )
 
 
