@@ -80,3 +80,36 @@ def spokes_cut(text: str) -> str:
 def _polygon(area: shapely.Polygon) -> str:
     corners = " ".join(f"(xy {x:.3f} {y:.3f})" for x, y in fractured(area))
     return f'    (filled_polygon (layer "B.Cu") (pts {corners}))'
+
+
+def tie_of(text: str, which: int = 0) -> str:
+    """Reference of a hole for a thread, in the order of the file."""
+    pattern = r'MountingHole_1\.6mm"(?:(?!\(footprint ).)*?\(fp_text reference "(H\d+)"'
+    return re.findall(pattern, text, re.DOTALL)[which]
+
+
+def tie_moved(text: str) -> str:
+    """Too little to see."""
+    return moved_part(text, tie_of(text), 0.05, 0.0)
+
+
+def tie_far(text: str) -> str:
+    """Away from its row of wire pads."""
+    return moved_part(text, tie_of(text), -5.0, 0.0)
+
+
+def tie_wide(text: str) -> str:
+    """Drilled too wide."""
+    return in_part(text, tie_of(text, -1), r"\(drill 1\.6\)", "(drill 1.7)")
+
+
+def tie_missing(text: str) -> str:
+    """Not drilled."""
+    return in_part(text, tie_of(text, 1), "np_thru_hole", "connect")
+
+
+def text_over_a_tie(text: str) -> str:
+    """The name of a row of pads where the hole is."""
+    part = text[: text.index(f'(fp_text reference "{tie_of(text)}"')]
+    x, y = re.findall(r"\n    \(at (\S+) (\S+?)\)", part)[-1]
+    return once(text, r'(\(gr_text "J\d" \(at )\S+ \S+', rf"\g<1>{x} {y}")

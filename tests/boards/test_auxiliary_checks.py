@@ -6,7 +6,19 @@ from pathlib import Path
 
 import pytest
 
-from board_damages import in_part, moved_part, once, spokes_cut, swapped_pads
+from board_damages import (
+    in_part,
+    moved_part,
+    once,
+    spokes_cut,
+    swapped_pads,
+    text_over_a_tie,
+    tie_far,
+    tie_missing,
+    tie_moved,
+    tie_of,
+    tie_wide,
+)
 from damages import failing
 from lumitip_fab.checks import board
 from lumitip_fab.design.encoding import read_design
@@ -105,6 +117,14 @@ def hole_narrow(text: str) -> str:
     return in_part(text, "H1", r"\(drill 2\.1\)", "(drill 2)")
 
 
+def tie_over_the_edge(text: str) -> str:
+    return moved_part(text, tie_of(text, -1), 0.5, 0.0)
+
+
+def tie_under_a_socket(text: str) -> str:
+    return moved_part(text, tie_of(text), 0.0, -5.6)
+
+
 def hole_missing(text: str) -> str:
     return in_part(text, "H1", "np_thru_hole", "connect")
 
@@ -145,9 +165,9 @@ def reference_twice(text: str) -> str:
 DAMAGES: dict[Damage, set[str]] = {
     part_moved: {"lands", "clearance"},  # the pour is as near as it may be
     part_added: {"other_parts"},
-    part_missing: {"other_parts", "lands", "apart"},
+    part_missing: {"other_parts", "lands", "apart", "tie_reach"},
     hole_of_a_pad_wider: {"lands"},
-    pad_without_copper: {"lands", "apart", "hole_count", "hole_width", "hole_clearance"},
+    pad_without_copper: {"lands", "apart", "tie_count", "tie_width", "hole_clearance"},
     wires_exchanged: {"lands", "apart", "joined"},
     socket_pins_exchanged: {"open", "short"},
     names_exchanged: {"silk_labels"},
@@ -161,6 +181,13 @@ DAMAGES: dict[Damage, set[str]] = {
     hole_moved: {"holes", "hole_clearance"},
     hole_narrow: {"hole_width"},
     hole_missing: {"hole_count", "holes", "other_parts"},
+    tie_moved: {"ties", "hole_clearance"},
+    tie_far: {"ties", "tie_reach", "hole_clearance"},
+    tie_wide: {"tie_width", "tie_edge", "hole_clearance"},
+    tie_missing: {"tie_count", "ties", "tie_reach", "other_parts"},
+    tie_over_the_edge: {"ties", "tie_edge", "hole_clearance"},
+    tie_under_a_socket: {"ties", "tie_reach", "tie_parts", "tie_silk", "hole_clearance"},
+    text_over_a_tie: {"tie_silk"},
     edge_moved: {"outline"},
     fill_adrift: {"islands", "hole_clearance"},
     title_lost: {"silk_title"},

@@ -223,6 +223,8 @@ TABLES = {
     "reference twice": (BOM, rb"Q1,Q2,", b"Q1,Q1,Q2,", {"bom"}),
     "quantity": (BOM, rb",13\r", b",12\r", {"bom"}),
     "number lost": (BOM, rb"SML-H10TBT86,13", b",13", {"bom"}),
+    "another number at LCSC": (BOM, rb"C5645,", b"C5646,", {"bom"}),
+    "number at LCSC lost": (BOM, rb"C114636,", b",", {"bom"}),
     "another resistor": (BOM, rb"RC0603FR-0775KL", b"RC0603FR-077K5L", {"bom"}),
     "row lost": (PLACES, rb"Q5,[^\n]*\n", b"", {"placed"}),
     "row twice": (PLACES, rb"(Q5,[^\n]*\n)", rb"\g<1>\g<1>", {"placed"}),

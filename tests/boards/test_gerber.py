@@ -24,6 +24,8 @@ pytestmark = pytest.mark.slow
 BOX = Box(-1, 1, -1, 1)
 MUX = Footprint("SOP65P640X110-16N", (Pad("1", -2, -3, 1, 1),), BOX, 1.1)
 SOT = Footprint("SOT95P360X100-6N", (Pad("1", -1, -1, 1, 1),), BOX, 1.0)
+SOT23 = Footprint("SOT190P320X110-3N", (Pad("1", -1, -1, 1, 1),), BOX, 1.1)
+ARRAY = Footprint("RESCAV80P320160X60-8N", (Pad("1", -1, -1, 1, 1),), BOX, 0.6)
 CHIP = Footprint("LEDC1608X60N", (Pad("1", -0.6, 0, 0.8, 1.0),), BOX, 0.6)
 
 
@@ -44,10 +46,14 @@ def fabs(designs: Callable[..., object]) -> dict[str, Fab]:
         # By IPC-7351 it is at the upper left: ours is that, turned by 90°.
         ("pcbway", MUX, 0, "front", 90),
         ("generic", MUX, 90, "front", 180),
-        # Of small outlines with leads it has lead 1 at the lower right, along the right side.
-        ("jlcpcb", SOT, 0, "front", 270),
+        # Its TSOT-26 too; of SOT-23 it has lead 1 at the lower right, along the right side.
+        ("jlcpcb", SOT, 0, "front", 0),
+        ("jlcpcb", SOT23, 0, "front", 270),
         ("pcbway", SOT, 0, "front", 90),
+        ("pcbway", SOT23, 0, "front", 90),
         ("generic", SOT, 270, "front", 0),
+        ("jlcpcb", ARRAY, 270, "front", 270),
+        ("pcbway", ARRAY, 270, "front", 0),
         ("jlcpcb", CHIP, 270, "front", 270),
         ("pcbway", CHIP, 270, "front", 270),
         # Seen from behind, counter-clockwise is the other way.

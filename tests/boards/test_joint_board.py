@@ -9,7 +9,7 @@ import pytest
 from damages import failing
 from lumitip_fab.boards.files import board_files
 from lumitip_fab.derive.boards.connectors import NARROW
-from lumitip_fab.design import AuxiliaryBoard, Box, Design
+from lumitip_fab.design import AuxiliaryBoard, Box, Design, Tie
 from lumitip_fab.design.components import wires
 from lumitip_fab.design.encoding import design_text
 
@@ -23,6 +23,10 @@ JOINT = AuxiliaryBoard(
     corner_mm=1.0,
     holes=((-9.0, 0.0), (9.0, 0.0)),
     hole_mm=2.2,
+    ties=(
+        Tie("J1", ((-5.0, -6.0), (5.0, -6.0)), 1.6, 1.0),
+        Tie("J2", ((-5.0, 6.0), (5.0, 6.0)), 1.6, 1.0),
+    ),
     components=(
         wires("J1", SIGNALS, NARROW, (0.0, -6.0)),
         wires("J2", SIGNALS, NARROW, (0.0, 6.0)),

@@ -75,7 +75,7 @@ def test_every_choice_has_a_value_and_a_reason_in_one_line(file: Any) -> None:
     design = derive(load(file("[grid]\npitch_mm = 3.5\n[mask]\nhole_mm = 1.4\n")))
     choices = {choice.field: choice for choice in design.choices}
     assert set(choices) == set(FIELDS) - {"receiver.load"}, "published.toml states that one"
-    assert choices["receiver.photodetector"].value == "'generic 0603 phototransistor'"
+    assert choices["receiver.photodetector"].value == "'PT19-21C'"
     assert "needs a pitch of at least 3.70 mm" in choices["receiver.photodetector"].reason
     assert all(c.reason and "\n" not in c.reason for c in design.choices)
 

@@ -2,6 +2,7 @@
 
 import json
 import tomllib
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,7 @@ from pydantic import TypeAdapter, ValidationError
 from reportlab.pdfbase.pdfmetrics import getFont
 
 from lumitip_fab.catalogue import Catalogue, Controller, Led, Multiplexer
+from lumitip_fab.catalogue.electronics import Resistor
 from lumitip_fab.catalogue.record import Sourced
 from lumitip_fab.config.load import Input
 from lumitip_fab.typeface import BOLD, CODE, PLAIN, load_typeface
@@ -147,3 +149,42 @@ def test_a_controller_uses_each_pin_once(parts: Catalogue) -> None:
 def test_entries_cannot_be_changed(parts: Catalogue) -> None:
     with pytest.raises(ValidationError, match="frozen"):
         parts.leds["15406085BA300"].exponent = 2.0
+
+
+def test_resistors_of_known_values_have_a_number_at_lcsc(parts: Catalogue) -> None:
+    small = parts.resistors["0603"]
+    assert (small.part("100K"), small.lcsc_of("100K")) == ("RC0603FR-07100KL", "C14675")
+    assert small.lcsc_of("101K") == ""
+    assert parts.resistor_arrays["4x0603"].lcsc_of("20K") == "C728868"
+    for series in (*parts.resistors.values(), *parts.resistor_arrays.values()):
+        numbers = [number.split()[1] for number in series.lcsc_by_code]
+        assert len(set(numbers)) == len(numbers) >= 60
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"lcsc_by_code": ["75K C1", "75K C2"]}, "75K twice"),
+        ({"lcsc_by_code": ["75K"]}, "should match pattern"),
+        ({"lcsc_by_code": ["75k C1"]}, "should match pattern"),
+        ({"lcsc": "C1"}, "each value has its own number"),
+    ],
+)
+def test_numbers_by_value_that_cannot_be_are_refused(
+    parts: Catalogue, change: dict[str, Any], told: str
+) -> None:
+    entry = json.loads(parts.resistors["0603"].model_dump_json()) | change
+    with pytest.raises(ValidationError, match=told):
+        Resistor.model_validate_json(json.dumps(entry))
+
+
+def test_every_part_has_a_manufacturer(parts: Catalogue) -> None:
+    entries = [
+        getattr(entry, "module", None) or entry
+        for kind in Catalogue.model_fields
+        if isinstance(table := getattr(parts, kind), Mapping)
+        for entry in table.values()
+    ]
+    makers = {e.order_number: e.manufacturer for e in entries if hasattr(e, "manufacturer")}
+    assert len(makers) > 25
+    assert not [number for number, maker in makers.items() if maker == "any"]

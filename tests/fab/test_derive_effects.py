@@ -58,7 +58,7 @@ CHANGES: dict[str, Any] = {
     "emitter.string_leds": 12,
     "emitter.resistor": "1210",
     "emitter.resistor_side": "front",
-    "receiver.photodetector": "generic 0603 phototransistor",
+    "receiver.photodetector": "PT19-21C",
     "receiver.multiplexer": "74HC4067PW",
     "receiver.load": "each",
     "receiver.array": "other",

@@ -118,6 +118,13 @@ class Placement:
     cells: Cells | None = None
     finish: Finish = AUXILIARY_FINISH
     thickness_mm: float = 1.6
+    ties: tuple[tuple[Point, float], ...] = ()
+    """Unplated holes for the threads that hold the cables, with their diameters."""
+
+    @property
+    def unplated(self) -> tuple[tuple[Point, float], ...]:
+        """Every unplated hole with its diameter."""
+        return (*((at, self.hole_mm) for at in self.holes), *self.ties)
 
 
 @dataclass(frozen=True)

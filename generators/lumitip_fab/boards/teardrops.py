@@ -112,7 +112,7 @@ class _Copper:
         self.shapes = list(shapes)
         self.edge = _board(placement)
         self.holes = shapely.union_all(
-            [shapely.Point(h).buffer(placement.hole_mm / 2) for h in placement.holes]
+            [shapely.Point(at).buffer(size / 2) for at, size in placement.unplated]
         )
 
     def free(self, drop: Track) -> bool:

@@ -165,7 +165,8 @@ def _over_edge(
     from_edge, from_hole = placement.edge_clearance_mm, placement.hole_clearance_mm
     edges = [(inner.buffer(corner, quad_segs=64).exterior, 0.0, "edge", from_edge)]
     edges += [
-        (shapely.Point(at), placement.hole_mm / 2, "hole", from_hole) for at in placement.holes
+        (shapely.Point(at), diameter_mm / 2, "hole", from_hole)
+        for at, diameter_mm in placement.unplated
     ]
     faults = []
     for edge, radius, what, gap in edges:
@@ -199,7 +200,7 @@ def _kept_out(
 def _drills(model: BoardModel) -> list[Fault]:
     """Neighbouring holes that leave too little board between them."""
     placement = model.placement
-    holes = [(at, placement.hole_mm / 2, "hole") for at in placement.holes]
+    holes = [(at, diameter_mm / 2, "hole") for at, diameter_mm in placement.unplated]
     holes += [((v.x_mm, v.y_mm), v.drill_mm / 2, v.net) for v in model.routing.vias]
     holes += [((p.x_mm, p.y_mm), p.pad.drill_mm / 2, p.net) for p in _plated(placement)]
     places = np.array([shapely.Point(at) for at, _, _ in holes], dtype=object)

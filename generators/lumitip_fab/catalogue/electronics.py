@@ -11,6 +11,7 @@ from lumitip_fab.catalogue.record import (
     Gains,
     Length,
     Ordered,
+    OrderedByValue,
     Voltages,
 )
 
@@ -106,14 +107,14 @@ class Photodetector(Polar):
     """Capacitance from collector to base, least and greatest. The default is assumed."""
 
 
-class Resistor(Chip):
+class Resistor(OrderedByValue, Chip):
     """A resistor package."""
 
     power_w: float = Field(gt=0, le=10)
     """Rated power at 70 °C."""
 
 
-class ResistorArray(Ordered, Entry):
+class ResistorArray(OrderedByValue, Entry):
     """Separate resistors side by side in one chip, each between two opposite pads."""
 
     body_mm: tuple[Length, Length, Length]

@@ -1,8 +1,8 @@
 """Base classes of catalogue records, and the types of their values."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, field_validator, model_validator
 
 _LETTERS = "A-Za-zµÀ-ÖØ-öø-ÿ"
 """Those of Latin-1: all are in the PDFs' typeface."""
@@ -15,6 +15,7 @@ PIN = r"^[A-Za-z][A-Za-z0-9_]{0,15}$"
 Pin = Annotated[str, Field(pattern=PIN)]
 Offset = Annotated[float, Field(ge=-500, le=500)]
 Name = Annotated[str, Field(min_length=1, max_length=64, pattern=NAME)]
+CodeNumber = Annotated[str, Field(pattern=r"^\d+[RKM]\d* C[1-9]\d*$")]
 
 
 def _ascending(least_and_most: tuple[float, float]) -> tuple[float, float]:
@@ -65,9 +66,41 @@ class Ordered(Strict):
     """Ordering data of a part that is soldered to a board."""
 
     manufacturer: str = Field(min_length=1, max_length=64)
-    """Manufacturer, for the bill of materials; "any" where it does not matter."""
+    """Manufacturer, for the bill of materials."""
     order_number: str = Field(min_length=1, max_length=64)
     """Order number; for resistors, `{code}` stands for the value, such as 75K or 4K99."""
     lcsc: str = Field(default="", pattern=r"^(C[1-9]\d*)?$")
-    """Number at the distributor LCSC, which JLCPCB uses; empty where it is not known, and for
-    resistors, whose number depends on the value."""
+    """Number at the distributor LCSC, which JLCPCB uses; empty where it is not known."""
+
+
+class OrderedByValue(Ordered):
+    """Ordering data of parts of a series, of which the value is chosen."""
+
+    lcsc_by_code: tuple[CodeNumber, ...] = ()
+    """Value and number at LCSC, such as "75K C114636", of the values whose number is known."""
+
+    @field_validator("lcsc_by_code")
+    @classmethod
+    def _once(cls, numbers: tuple[str, ...]) -> tuple[str, ...]:
+        codes = [number.partition(" ")[0] for number in numbers]
+        twice = sorted({code for code in codes if codes.count(code) > 1})
+        if twice:
+            raise ValueError(f"has {', '.join(twice)} twice; each value has one number")
+        return numbers
+
+    @model_validator(mode="after")
+    def _number_by_value(self) -> Self:
+        if self.lcsc and "{code}" in self.order_number:
+            raise ValueError(
+                f"lcsc is {self.lcsc}; each value has its own number. Use lcsc_by_code = "
+                f'["75K {self.lcsc}"]'
+            )
+        return self
+
+    def part(self, code: str) -> str:
+        """Order number of a value."""
+        return self.order_number.replace("{code}", code)
+
+    def lcsc_of(self, code: str) -> str:
+        """Number of a value at LCSC; empty where it is not known."""
+        return dict(number.split() for number in self.lcsc_by_code).get(code, self.lcsc)

@@ -22,6 +22,7 @@ from lumitip_fab.checks.board_copper import (
 from lumitip_fab.checks.board_finger import measure_cell_prints, measure_cells, measure_flexible
 from lumitip_fab.checks.board_read import ReadBoard, names_of, path_of, placed, read_any
 from lumitip_fab.checks.board_silk import measure_labels, measure_prints, measure_targets
+from lumitip_fab.checks.board_ties import measure_ties
 from lumitip_fab.checks.plug_in import measure_plug_in
 from lumitip_fab.checks.readers.kicad_board import Part, Terminal
 from lumitip_fab.checks.result import Measure, Measurement, measured, unreadable
@@ -78,19 +79,22 @@ def measure_outline(read: ReadBoard) -> Iterator[Measurement]:
 
 def measure_holes(read: ReadBoard) -> Iterator[Measurement]:
     """The unplated holes for pins or screws: how many, where, how wide; and room round pins."""
-    wanted, found = read.of.holes, read.sensor([hole.at for hole in read.holes])
+    wanted, found = read.of.holes, read.sensor([hole.at for hole in read.screws])
     yield read.figure("hole_count", len(found), len(wanted), len(wanted), "holes")
     if not wanted:
         return
     apart = np.hypot(*(np.array(wanted)[:, None] - found[None]).transpose(2, 0, 1))
     off = apart.min(axis=1).max() if found.size else math.nan
     yield read.figure("holes", off, 0, HOLE_MM, note="from the design's pins or screws")
-    wide = [abs(hole.drill_mm - read.hole_mm) for hole in read.holes]
+    wide = [abs(hole.drill_mm - read.hole_mm) for hole in read.screws]
     yield read.figure("hole_width", max(wide, default=math.nan), 0, HOLE_MM, note="from the design")
     if read.finger is None:
         return
     pin_mm = read.design.board.pin_mm
-    room, least = [(hole.drill_mm - pin_mm) / 2 for hole in read.holes], (read.hole_mm - pin_mm) / 2
+    room, least = (
+        [(hole.drill_mm - pin_mm) / 2 for hole in read.screws],
+        (read.hole_mm - pin_mm) / 2,
+    )
     worst = max(room, key=lambda gap: abs(gap - least), default=math.nan)
     yield read.figure("pin_clearance", worst, least - EDGE_MM, least + EDGE_MM)
 
@@ -227,6 +231,7 @@ def _spare_mm(read: ReadBoard, reliefs: tuple[Relief, ...], part: Part, height_m
 MEASURES: tuple[Measure[ReadBoard], ...] = (
     measure_outline,
     measure_holes,
+    measure_ties,
     measure_cells,
     measure_lands,
     measure_wires,

@@ -25,6 +25,9 @@ from lumitip_fab.design import (
     Flexible,
     Pad,
     Point,
+    Resistor,
+    ResistorArray,
+    Tie,
 )
 from lumitip_fab.design.frames import applied, board_page_to_sensor, on_board_page
 
@@ -102,6 +105,22 @@ class ReadBoard(Subject):
         """Its parts, where the design has their places."""
         return self.auxiliary.components if self.auxiliary else ()
 
+    @property
+    def ties(self) -> tuple[Tie, ...]:
+        """Strain relief of its cables."""
+        return self.of.ties
+
+    @property
+    def screws(self) -> tuple[Terminal, ...]:
+        """Unplated holes as wide as those for screws or pins; the others are for threads."""
+        least = (self.hole_mm + max((tie.hole_mm for tie in self.ties), default=0.0)) / 2
+        return tuple(hole for hole in self.holes if hole.drill_mm > least)
+
+    @property
+    def threads(self) -> tuple[Terminal, ...]:
+        """The other unplated holes."""
+        return tuple(hole for hole in self.holes if hole not in self.screws)
+
     @cached_property
     def clusters(self) -> Clusters:
         """Copper in connected groups."""
@@ -146,10 +165,12 @@ class ReadBoard(Subject):
         """The group of a signal at the cable, by the place of its pad in the row."""
         return self.group("J1", self.signals.index(signal) + 1) if signal in self.signals else None
 
-    def ordered(self, ref: str) -> str:
-        """Order number of a part; a resistor's value is read from the board."""
+    def ordered(self, ref: str) -> tuple[str, str]:
+        """Order number of a part and its number at LCSC from the catalogue, the latter empty where
+        it is not known; a resistor's value is read from the board."""
         if not self.finger:
-            return next((d.part for d in self.components if d.ref == ref), "")
+            parts = ((d.part, d.lcsc) for d in self.components if d.ref == ref)
+            return next(parts, ("", ""))
         packages, part = self.design.packages, self.parts.get(ref)
         entries = {
             self.finger.cells_hold.letter: packages.at_cells(self.finger),
@@ -158,8 +179,12 @@ class ReadBoard(Subject):
             "R": packages.string_resistor if self.strings else packages.pull_up,
         }
         entry = packages.array if ref.startswith("RN") else entries.get(ref[:1])
+        if entry is None:
+            return "", ""
         value = part.value if part else "?"
-        return entry.order_number.replace("{code}", value) if entry else ""
+        if isinstance(entry, Resistor | ResistorArray):
+            return entry.part(value), entry.lcsc_of(value)
+        return entry.order_number, entry.lcsc
 
 
 def names_of(design: Design) -> tuple[str, ...]:

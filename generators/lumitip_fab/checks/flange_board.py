@@ -209,7 +209,7 @@ def measure_headers(of: Stacked) -> Iterator[Measurement]:
 def measure_screws(of: Stacked) -> Iterator[Measurement]:
     """The screws' holes against those in the board's file, and their countersinks."""
     flange = of.flange
-    places = of.places([hole.at for hole in of.board.holes])
+    places = of.places([hole.at for hole in of.board.screws])
     at = tuple((float(x), float(y)) for x, y in places)
     holes = holes_at(of.lower, flange.board_z_mm - 0.2)
     off, wide = circles(holes, at, _NEAR_MM)

@@ -109,7 +109,7 @@ def measure_tray(clip: Clip) -> Iterator[Measurement]:
 
 def measure_screws(clip: Clip) -> Iterator[Measurement]:
     """The screws' holes against those in the board's file: one by one, and from hole to hole."""
-    board = clip.board.sensor([hole.at for hole in clip.board.holes])
+    board = clip.board.sensor([hole.at for hole in clip.board.screws])
     at = tuple((float(x), float(y)) for x, y in board)
     rings = holes_at(clip.mesh, -0.5)
     off, wide = circles(rings, at, 2.0)

@@ -101,7 +101,13 @@ def _parts(path: str, read: ReadBoard, fab: Fab, files: _Files) -> Iterator[Meas
     wrong += [
         f"{row['refs']:.20} is {row['part'] or 'without a number'}"
         for row in bom
-        if {row["part"]} != {read.ordered(ref) for ref in row["refs"].split(",")}
+        if {row["part"]} != {read.ordered(ref)[0] for ref in row["refs"].split(",")}
+    ]
+    wrong += [
+        f"{row['refs']:.20} has {row['lcsc'] or 'no number'} at LCSC"
+        for row in bom
+        if "lcsc" in row
+        and {row["lcsc"]} != {read.ordered(ref)[1] for ref in row["refs"].split(",")}
     ]
     yield count("orders.bom", path, wrong, "parts")
     rows = _rows(files[f"{name}_positions.csv"], fab.positions)

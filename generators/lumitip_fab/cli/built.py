@@ -1,10 +1,11 @@
-"""Masses of fingers, flange and holder, and the flange's strength, from the built files."""
+"""Masses, the flange's strength and numbers of parts, from the built files."""
 
 from collections.abc import Iterator
 from pathlib import Path
 
 from lumitip_fab.checks.flange import LEAST_SAFETY, strength
 from lumitip_fab.checks.readers import solids
+from lumitip_fab.cli.part_numbers import part_number_rows
 from lumitip_fab.design import Design
 from lumitip_fab.design.frames import flange_beds
 from lumitip_fab.docs.outside import Row
@@ -14,7 +15,7 @@ from lumitip_fab.pipeline.manifest import Manifest
 
 
 def built_rows(out: Path, design: Design) -> tuple[Row, ...]:
-    """Masses of what an output folder was built from.
+    """Masses, strength and part numbers of what an output folder was built from.
 
     Raises:
         OutputError: if the folder was built from other values.
@@ -36,7 +37,12 @@ def built_rows(out: Path, design: Design) -> tuple[Row, ...]:
     ]
     payload = sum(masses_g[f"{f.name}_g"] for f in design.fingers)
     rows.append(Row("payload of both fingers", "not stated", f"{payload:.1f} g", why))
-    return (*rows, *_outside(built, design), *_strength(out, design))
+    return (
+        *rows,
+        *_outside(built, design),
+        *_strength(out, design),
+        *part_number_rows(out, design),
+    )
 
 
 def _outside(built: Manifest, design: Design) -> Iterator[Row]:

@@ -8,7 +8,14 @@ towards the tip from the centre line of the columns, z out of the face from the 
 from dataclasses import dataclass, replace
 
 from lumitip.layout import Cell, Layout
-from lumitip_fab.catalogue.electronics import Chip, Led, Multiplexer, Photodetector, ResistorArray
+from lumitip_fab.catalogue.electronics import (
+    Chip,
+    Led,
+    Multiplexer,
+    Photodetector,
+    Resistor,
+    ResistorArray,
+)
 from lumitip_fab.design.boards import (
     AtCells,
     Board,
@@ -52,7 +59,16 @@ from lumitip_fab.design.mount import (
     ToolContact,
 )
 from lumitip_fab.design.ordering import Bought, Fab, PartPrice, Purchase
-from lumitip_fab.design.pcb import AuxiliaryBoard, Component, Finish, Footprint, Note, Pad, Shroud
+from lumitip_fab.design.pcb import (
+    AuxiliaryBoard,
+    Component,
+    Finish,
+    Footprint,
+    Note,
+    Pad,
+    Shroud,
+    Tie,
+)
 from lumitip_fab.design.shape import Box, Cubic, Outline, Point, Side, Stack, Tip
 from lumitip_fab.text import board_name, page_name
 
@@ -109,6 +125,7 @@ __all__ = [
     "Purchase",
     "Reading",
     "Relief",
+    "Resistor",
     "ResistorArray",
     "Rules",
     "Shroud",
@@ -117,6 +134,7 @@ __all__ = [
     "Stack",
     "System",
     "Terminal",
+    "Tie",
     "Tip",
     "Title",
     "ToolContact",

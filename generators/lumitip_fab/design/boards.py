@@ -15,7 +15,7 @@ from lumitip_fab.catalogue.electronics import (
     Resistor,
     ResistorArray,
 )
-from lumitip_fab.design.pcb import FINGER_FINISH, Finish
+from lumitip_fab.design.pcb import FINGER_FINISH, Finish, Tie
 from lumitip_fab.design.shape import Box, Point, Side
 
 
@@ -144,6 +144,8 @@ class Finger:
     """Opening through the plate behind the connector, to beyond the gripper end."""
     window: Box
     """Opening of mask and film over the connector."""
+    ties: tuple[Tie, ...] = ()
+    """Strain relief of its cable; none where there is no room."""
     finish: Finish = FINGER_FINISH
 
 

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 from lumitip_fab.catalogue.controllers import OPEN, Leaded, Strip
-from lumitip_fab.catalogue.electronics import Chip, ResistorArray
+from lumitip_fab.catalogue.electronics import Chip, Resistor, ResistorArray
 from lumitip_fab.catalogue.record import Ordered
 from lumitip_fab.design import footprints
 from lumitip_fab.design.pcb import Component, Footprint
@@ -76,19 +76,19 @@ def chip(
 def resistor(
     ref: str,
     ohm: float,
-    entry: Chip | ResistorArray,
+    entry: Resistor | ResistorArray,
     nets: Sequence[str],
     at: Point = MIDDLE,
     angle_deg: float = 0.0,
 ) -> Component:
     """A resistor, or an array of them; the order number of its package has the resistance."""
     code = resistor_code(ohm)
-    if isinstance(entry, Chip):
+    if isinstance(entry, Resistor):
         made = chip(ref, "resistor", code, entry, nets, at, angle_deg)
     else:
         shape = footprints.array(entry)
         made = mounted(ref, "resistor array", code, entry, shape, numbered(nets), at, angle_deg)
-    return replace(made, part=made.part.replace("{code}", code))
+    return replace(made, part=entry.part(code), lcsc=entry.lcsc_of(code))
 
 
 def leaded(

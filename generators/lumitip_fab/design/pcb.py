@@ -145,6 +145,18 @@ class Note:
 
 
 @dataclass(frozen=True)
+class Tie:
+    """Strain relief of a cable: two unplated holes for a thread round it."""
+
+    ref: str
+    """The row of wire pads that the cable ends at."""
+    holes: tuple[Point, Point]
+    hole_mm: float
+    web_mm: float
+    """Board that is left between a hole and the edge, at least."""
+
+
+@dataclass(frozen=True)
 class AuxiliaryBoard:
     """A board with everything on it: what its files must hold."""
 
@@ -160,6 +172,8 @@ class AuxiliaryBoard:
     holes: tuple[Point, ...]
     """Centres of its screw holes."""
     hole_mm: float
+    ties: tuple[Tie, ...]
+    """One for each row of wire pads that a cable ends at."""
     components: tuple[Component, ...]
     notes: tuple[Note, ...]
     supplies: tuple[str, ...]

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from lumitip_fab.design import AuxiliaryBoard, Design, Flange, Holder
+from lumitip_fab.design import AuxiliaryBoard, Design, Finger, Flange, Holder
 from lumitip_fab.design.electrical import PlugIn, Regulated
 
 
@@ -25,6 +25,8 @@ def outside(design: Design) -> Iterator[Row]:
             yield from _breakout(auxiliary)
         else:
             yield from _flange(auxiliary)
+    for finger in design.fingers:
+        yield _held_at(finger, design)
     for supply in design.electrical.supplies:
         yield from _regulated(supply)
     for plug_in in design.electrical.plug_ins:
@@ -50,6 +52,39 @@ def _breakout(auxiliary: AuxiliaryBoard) -> Iterator[Row]:
         f"{spacing:.2f} mm apart",
         "one figure for board and holder, breakout.hole_spacing_mm",
     )
+    yield from _tied(auxiliary)
+
+
+def _tied(auxiliary: AuxiliaryBoard) -> Iterator[Row]:
+    """Strain relief of the cables; none where no cable ends at wire pads."""
+    for tie in auxiliary.ties[:1]:
+        yield Row(
+            "its strain relief",
+            "not stated",
+            f"2 holes of {tie.hole_mm:g} mm at each of {len(auxiliary.ties)} rows of wire pads",
+            f"for a thread of 1 mm round the cable, {tie.web_mm:g} mm from the edge",
+        )
+
+
+def _held_at(finger: Finger, design: Design) -> Row:
+    """Strain relief of a finger's cable, or the figures that leave no room for it."""
+    quantity = f"strain relief of the {finger.name}'s cable"
+    for tie in finger.ties:
+        why = (
+            f"for a thread of 1 mm, {tie.web_mm:g} mm from the edge, where plate and film are open"
+        )
+        return Row(quantity, "not stated", f"2 holes of {tie.hole_mm:g} mm", why)
+    if design.board.flexible:
+        return Row(quantity, "not stated", "none", "the board has a stiffener behind its wire pads")
+    wires = finger.connector
+    x, y = wires.pads[-1]
+    edge_mm = y - wires.pad_mm / 2 - design.board.box.y_min_mm
+    notch_mm = finger.notch.x_max_mm - x - wires.pad_mm / 2
+    why = (
+        f"its wire pads leave {edge_mm:.1f} mm to the edge and {notch_mm:.1f} mm to the side of "
+        "the notch, in which the plate behind the board is open: too little for a hole"
+    )
+    return Row(quantity, "not stated", "none", why)
 
 
 def _flange(auxiliary: AuxiliaryBoard) -> Iterator[Row]:
@@ -68,6 +103,7 @@ def _flange(auxiliary: AuxiliaryBoard) -> Iterator[Row]:
         f"{values['F1']}, {values['Q1']}",
         "a MOSFET costs the LEDs no voltage, as a diode would",
     )
+    yield from _tied(auxiliary)
     if "U2" in values:
         yield Row(
             "controller on it",

@@ -3,7 +3,7 @@
 import csv
 import io
 
-from lumitip_fab.design import Cable, Cabling, Design, Title, Wire
+from lumitip_fab.design import Cable, Cabling, Design, Wire
 from lumitip_fab.design.cabling import named
 from lumitip_fab.docs.diagram import diagram
 from lumitip_fab.pipeline.artefact import Artefact
@@ -28,7 +28,7 @@ Stranded copper, colours by IEC 60757; `wiring.svg` shows the same as a drawing.
 from the square one: on a finger's board that is the leftmost, seen from the front with the tip up.
 Put the wires of a finger in from the back of its board, solder them on the front, and cut the
 joints short. Solder every board before it goes into a printed part, which an iron would melt.
-
+{ties}
 {tables}
 
 Lengths are for each wire, rounded up to whole centimetres. From a finger: its reach on the finger,
@@ -40,6 +40,14 @@ supply {supply_mm:g} mm; and {slack_mm:g} mm each for bends and stripping.
   of Universal Robots' arms red is 0 V, and grey carries the voltage.
 - Twist the two wires of the emitter. Leave a loop at each finger, so that it opens without pulling.
 """
+_TIED = """
+Hold each cable at the {boards}: beside its row of wire pads are two holes of {hole_mm:g} mm. When
+the wires are soldered, and before the board goes into a printed part, pass a waxed thread or a bare
+wire of up to 1 mm through both, over the cable, and knot it behind the board. A pull is then on the
+thread, not on the joints.{loose}
+"""
+_LOOSE = """ There is no room for such holes on the
+board of {boards}: hold that cable to the gripper, near the finger."""
 _FED = """\
 - The wire of 5 V feeds the controller. Leave it away where it is fed over USB."""
 _LIT = """\
@@ -81,9 +89,11 @@ def cable_list(cabling: Cabling) -> str:
     return file.getvalue()
 
 
-def wiring_note(title: Title, cabling: Cabling) -> str:
+def wiring_note(design: Design) -> str:
     """The wires with what to mind, in Markdown."""
+    title, cabling = design.title, design.cabling
     return _NOTE.format(
+        ties=_tied(design),
         title=as_written(f"{title.name} {title.revision}"),
         tables="\n\n".join(map(_table, cabling.cables)),
         power=_power(cabling),
@@ -92,6 +102,25 @@ def wiring_note(title: Title, cabling: Cabling) -> str:
         supply_mm=cabling.supply_mm,
         slack_mm=cabling.slack_mm,
     )
+
+
+def _tied(design: Design) -> str:
+    """The step that holds the cables; empty where no board has holes for a thread."""
+    ties = {f.name: f.ties for f in design.fingers}
+    ties |= {board.name: board.ties for board in design.auxiliary_boards}
+    tied = [name for name, found in ties.items() if found]
+    if not tied:
+        return ""
+    loose = [finger.name for finger in design.fingers if not finger.ties]
+    return _TIED.format(
+        boards=_listed(tied),
+        hole_mm=ties[tied[0]][0].hole_mm,
+        loose=_LOOSE.format(boards=_listed(loose)) if loose else "",
+    )
+
+
+def _listed(names: list[str]) -> str:
+    return " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))
 
 
 def _power(cabling: Cabling) -> str:
@@ -136,6 +165,10 @@ def wiring_files(design: Design) -> tuple[Artefact, ...]:
     title, cabling = design.title, design.cabling
     return (
         Artefact("wiring/cables.csv", cable_list(cabling).encode(), frame=""),
-        Artefact("wiring/cables.md", wiring_note(title, cabling).encode(), frame=""),
+        Artefact(
+            "wiring/cables.md",
+            wiring_note(design).encode(),
+            frame="",
+        ),
         Artefact("wiring/wiring.svg", diagram(title, cabling).encode(), frame=""),
     )

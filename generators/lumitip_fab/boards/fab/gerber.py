@@ -65,7 +65,7 @@ def _copper(model: BoardModel, side: Side, pads: list[PlacedPad]) -> Iterator[Gr
 def _mask(board: Placement, pads: list[PlacedPad]) -> Iterator[GraphicObject]:
     """Openings of the solder mask: the layer is negative."""
     yield from (objects.pad(pad, opening_mm(pad.component)) for pad in pads)
-    yield from (objects.dot(hole, board.hole_mm + 2 * MASK_MM) for hole in board.holes)
+    yield from (objects.dot(at, diameter_mm + 2 * MASK_MM) for at, diameter_mm in board.unplated)
 
 
 def _paste(pads: list[PlacedPad]) -> Iterator[GraphicObject]:
@@ -140,10 +140,8 @@ def plated_drills(model: BoardModel) -> bytes:
 
 
 def unplated_drills(model: BoardModel) -> bytes:
-    """The holes for the locating pins."""
-    board = model.placement
-    holes = [(at, board.hole_mm) for at in board.holes]
-    return _excellon(holes, "NonPlated,1,2,NPTH", plated=False)
+    """The holes for locating pins or screws, and for threads round the cables."""
+    return _excellon(model.placement.unplated, "NonPlated,1,2,NPTH", plated=False)
 
 
 def _excellon(holes: Iterable[Hole], function: str, plated: bool) -> bytes:

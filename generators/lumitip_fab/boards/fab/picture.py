@@ -75,14 +75,14 @@ def _copper(model: BoardModel, side: Side, pads: list[PlacedPad]) -> BaseGeometr
 def _openings(model: BoardModel, pads: list[PlacedPad]) -> BaseGeometry:
     grown = [pad.area.buffer(opening_mm(pad.component), join_style="mitre") for pad in pads]
     board = model.placement
-    holes = [_disc(x, y, board.hole_mm + 2 * MASK_MM) for x, y in board.holes]
+    holes = [_disc(*at, diameter_mm + 2 * MASK_MM) for at, diameter_mm in board.unplated]
     return shapely.union_all([*grown, *holes])
 
 
 def _drills(model: BoardModel, pads: list[PlacedPad]) -> BaseGeometry:
     """Holes that one sees through: vias are covered."""
     board = model.placement
-    holes = [_disc(x, y, board.hole_mm) for x, y in board.holes]
+    holes = [_disc(*at, diameter_mm) for at, diameter_mm in board.unplated]
     plated = [_disc(p.x_mm, p.y_mm, p.pad.drill_mm) for p in pads if p.pad.drill_mm]
     return shapely.union_all([*holes, *plated])
 

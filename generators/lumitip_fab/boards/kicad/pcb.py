@@ -224,8 +224,8 @@ def _contents(model: BoardModel, thickness_mm: float) -> Iterator[Node]:
     yield ("net", 0, Quoted(""))
     yield from (("net", number, Quoted(name)) for name, number in numbers.items())
     yield from (placed_footprint(c, numbers, board.name, model.solid) for c in board.components)
-    for number, at in enumerate(board.holes, start=1):
-        yield hole_footprint(number, at, board.hole_mm, board.name)
+    for number, (at, diameter_mm) in enumerate(board.unplated, start=1):
+        yield hole_footprint(number, at, diameter_mm, board.name)
     yield from edges(board)
     yield from silkscreen(board)
     if board.flexible:

@@ -107,8 +107,9 @@ def project_files(model: BoardModel, thickness_mm: float) -> dict[str, bytes]:
     """
     board = model.placement
     shapes = {c.footprint.library_name: c for c in board.components}
-    hole = {f"{hole_name(board.hole_mm)}": hole_library_file(board.hole_mm)}
-    mods = {name: library_file(c) for name, c in sorted(shapes.items())} | hole
+    sizes = {board.hole_mm, *(diameter_mm for _, diameter_mm in board.unplated)}
+    holes = {hole_name(size): hole_library_file(size) for size in sorted(sizes)}
+    mods = {name: library_file(c) for name, c in sorted(shapes.items())} | holes
     return {
         f"{board.name}.kicad_pcb": board_file(model, thickness_mm),
         f"{board.name}.kicad_pro": project_file(board, f"{board.name}.kicad_pro"),

@@ -105,12 +105,15 @@ def _board(placement: Placement, radius_mm: float) -> Geometry:
     """Where the middle of something round may be: away from edge, holes and keep-outs."""
     box, corner = placement.outline, placement.corner_mm
     edge_mm = placement.edge_clearance_mm + radius_mm
-    hole_mm = placement.hole_mm / 2 + placement.hole_clearance_mm + radius_mm
+    from_hole_mm = placement.hole_clearance_mm + radius_mm
     inner = shapely.box(
         box.x_min_mm + corner, box.y_min_mm + corner, box.x_max_mm - corner, box.y_max_mm - corner
     )
     whole = inner.buffer(corner - edge_mm, quad_segs=_ARC)
-    left_out = [shapely.Point(at).buffer(hole_mm, quad_segs=2 * _ARC) for at in placement.holes]
+    left_out = [
+        shapely.Point(at).buffer(diameter_mm / 2 + from_hole_mm, quad_segs=2 * _ARC)
+        for at, diameter_mm in placement.unplated
+    ]
     left_out += [
         shapely.box(box.x_min_mm, box.y_min_mm, box.x_max_mm, box.y_max_mm).buffer(
             radius_mm, join_style="mitre"

@@ -56,8 +56,8 @@ class Obstacles:
         outside = np.hypot(np.maximum(dx, 0), np.maximum(dy, 0))
         inside = np.minimum(np.maximum(dx, dy), 0)
         owner[outside + inside - corner > -keep] = BLOCKED
-        reach = self._rounded(placement.hole_mm / 2 + from_hole)
-        for hole in placement.holes:
+        for hole, diameter_mm in placement.unplated:
+            reach = self._rounded(diameter_mm / 2 + from_hole)
             where = self.grid.near(*hole, reach)
             x, y = self.grid.offsets(where, *hole)
             owner[where][np.hypot(x, y) < reach] = BLOCKED

@@ -44,7 +44,7 @@ class Clear:
         inner = shapely.box(box.x_min_mm, box.y_min_mm, box.x_max_mm, box.y_max_mm)
         rim = inner.buffer(board.corner_mm - gap_mm, quad_segs=16)
         taken: list[BaseGeometry] = [
-            shapely.Point(at).buffer(board.hole_mm / 2) for at in board.holes
+            shapely.Point(at).buffer(diameter_mm / 2) for at, diameter_mm in board.unplated
         ]
         for part in board.components:
             open_mm = opening_mm(part)

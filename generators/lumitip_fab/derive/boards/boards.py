@@ -12,7 +12,7 @@ y_min └──────────────────┘
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from lumitip_fab.config.load import Input
 from lumitip_fab.config.parameters import Parameters
 from lumitip_fab.derive.boards import connectors, placing
 from lumitip_fab.derive.boards.packages import flexible_board
+from lumitip_fab.derive.boards.ties import finger_ties
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.cells import Cells, bending_lines, derive_turned, refuse_lines
 from lumitip_fab.derive.finger.stack import foot_half_mm, is_flex
@@ -116,6 +117,9 @@ def derive_plan(
         reliefs=(),
         notch=frame.notch,
         window=_window(wires),
+    )
+    emitter, receiver = (
+        replace(finger, ties=finger_ties(finger, board)) for finger in (emitter, receiver)
     )
     return Plan(board, emitter, receiver, tuple((m.x_mm, m.y_mm) for m in muxes))
 

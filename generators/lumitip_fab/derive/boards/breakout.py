@@ -17,7 +17,7 @@ from dataclasses import dataclass
 
 from lumitip_fab.catalogue.controllers import Plug, Strip
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.boards import connectors
+from lumitip_fab.derive.boards import connectors, ties
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.wiring.wiring import Muxing
 from lumitip_fab.design import AuxiliaryBoard, Box, Component, Note, footprints
@@ -56,17 +56,22 @@ def derive_breakout(
     rows = _rows(plug, strip, width)
     _refuse(config, plug, strip, muxing, rows, faults)
     half = p.breakout.hole_spacing_mm / 2
+    holes = ((-half, 0.0), (half, 0.0))
+    box = Box(-length / 2, length / 2, -width / 2, width / 2)
+    parts = _components(config, plug, strip, muxing, rows)
+    screws = [(at, p.breakout.hole_mm) for at in holes]
     emitter = connectors.emitter_signals(config)
     return (
         AuxiliaryBoard(
             name="breakout",
             title="controller breakout",
             title_at=(0.0, 0.0),
-            box=Box(-length / 2, length / 2, -width / 2, width / 2),
+            box=box,
             corner_mm=CORNER_MM,
-            holes=((-half, 0.0), (half, 0.0)),
+            holes=holes,
             hole_mm=p.breakout.hole_mm,
-            components=_components(config, plug, strip, muxing, rows),
+            ties=ties.derive_ties(parts, box, CORNER_MM, screws, "breakout.board_mm", faults),
+            components=parts,
             notes=(Note("USB", (1.5 - length / 2, 0.0), 1.2, 90.0),),
             supplies=tuple(dict.fromkeys(("GND", REGULATED, "3V3", *emitter[1:]))),
             keep_outs=(),
@@ -106,7 +111,7 @@ def _components(
     length = config.parameters.breakout.board_mm[0]
     receiver = connectors.receiver_signals(muxing)
     emitter, supply = connectors.emitter_signals(config), supply_signals(config)
-    edge = length / 2 - 2 * EDGE_MM
+    edge = length / 2 - ties.WEB_MM - ties.HOLE_MM - ties.GAP_MM
     left = -edge + connectors.half_width_mm(len(emitter), wide=True)
     right = edge - connectors.half_width_mm(len(supply), wide=True)
     return (
@@ -128,7 +133,8 @@ def _wires(
     ref: str, signals: tuple[str, ...], x_mm: float, y_mm: float, length_mm: float
 ) -> Component:
     """Wire pads of a cable, in the order of the connector at its other end."""
-    fits = connectors.half_width_mm(len(signals), wide=True) <= length_mm / 2 - EDGE_MM
+    beside = ties.WEB_MM + ties.HOLE_MM + ties.GAP_MM
+    fits = connectors.half_width_mm(len(signals), wide=True) <= length_mm / 2 - beside
     size_mm = connectors.WIDE if fits else connectors.NARROW
     return wires(ref, signals, size_mm, (x_mm, y_mm))
 
@@ -150,7 +156,7 @@ def _refuse(
     least_length = max(
         strip.ways * strip.pitch_mm + 2 * EDGE_MM,
         p.hole_spacing_mm + p.hole_mm + 2 * EDGE_MM,
-        2 * (cable + EDGE_MM),
+        2 * (cable + ties.WEB_MM + ties.HOLE_MM + ties.GAP_MM),
     )
     reach = connectors.WIDE[1] / 2 + BETWEEN_MM + PAD_MM / 2
     least_width = 2 * (rows.beside_mm + reach + connectors.WIDE[1] / 2 + EDGE_MM)

@@ -25,6 +25,7 @@ from lumitip_fab.derive.boards.flange_circuit import (
 )
 from lumitip_fab.derive.boards.module import Supplies, derive_module
 from lumitip_fab.derive.boards.packages import capacitor
+from lumitip_fab.derive.boards.ties import derive_ties
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.mount.fasteners import BOARD_SCREW
 from lumitip_fab.derive.wiring.wiring import Muxing, Strings
@@ -75,20 +76,25 @@ def derive_flange(
     parts = (*_input(config), *_regulator(config), *(wing.components if wing else ()))
     _refuse_lines(config, parts, faults)
     behind = ("SW", INPUT) if is_regulated(config) else ()
+    components = (
+        *_strips(config),
+        *parts,
+        *fiducials(wing.fiducials if wing else FIDUCIALS_AT),
+    )
+    box = wing.box if wing else BOX
+    hole_mm = config.catalogue.fasteners[BOARD_SCREW].hole_mm[0]
+    screws = [(at, hole_mm) for at in HOLES_AT]
     return (
         AuxiliaryBoard(
             name="flange",
             title="breakout flange",
             title_at=TITLE_AT,
-            box=wing.box if wing else BOX,
+            box=box,
             corner_mm=CORNER_MM,
             holes=HOLES_AT,
-            hole_mm=config.catalogue.fasteners[BOARD_SCREW].hole_mm[0],
-            components=(
-                *_strips(config),
-                *parts,
-                *fiducials(wing.fiducials if wing else FIDUCIALS_AT),
-            ),
+            hole_mm=hole_mm,
+            ties=derive_ties(components, box, CORNER_MM, screws, "controller.board", faults),
+            components=components,
             notes=(),
             supplies=tuple(dict.fromkeys(("GND", supply, raw, "FUSED", output, *behind))),
             keep_outs=wing.keep_outs if wing else (),
