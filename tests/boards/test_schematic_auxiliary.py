@@ -10,7 +10,10 @@ from lumitip_fab.checks.readers.kicad_shapes import Node, child, children, read_
 from lumitip_fab.design import Design
 
 
-@pytest.fixture(params=["small", pytest.param("integrated", marks=pytest.mark.slow)])
+SLOW = [pytest.param(preset, marks=pytest.mark.slow) for preset in ("small", "integrated")]
+
+
+@pytest.fixture(params=["published", *SLOW])
 def flange(
     boards: Callable[[str], Path], designs: Callable[[str], Design], request: pytest.FixtureRequest
 ) -> tuple[Design, Node]:
