@@ -9,7 +9,6 @@ import pytest
 from lumitip_fab.checks.readers.kicad_shapes import Node, child, children, read_nodes, words
 from lumitip_fab.design import Design
 
-
 SLOW = [pytest.param(preset, marks=pytest.mark.slow) for preset in ("small", "integrated")]
 
 
