@@ -12,8 +12,21 @@ import pytest
 from lumitip_fab.checks.run import modules_reading, run_checks
 from lumitip_fab.cli.build import build
 
-DESIGN = Path(__file__).parents[1] / "design"
+TESTS = Path(__file__).parent
+DESIGN = TESTS.parent / "design"
 Once = Callable[[str, Callable[[Path], object]], Path]
+LONGEST = (
+    "acceptance/test_cases.py",
+    "boards/test_kicad.py",
+    "checks/test_grippers.py",
+    "checks/test_unusual.py",
+    "checks/test_patches.py",
+    "checks/test_presets.py",
+    "fab/test_build.py",
+    "fab/test_slice.py",
+)
+"""Test files that take longest, in this order before all others: a worker has a file to itself, and
+none is to begin a long one when the rest is done."""
 
 
 @pytest.fixture(scope="session")
@@ -90,8 +103,14 @@ def _bytes(path: Path) -> bytes | None:
     return path.read_bytes() if path.is_file() else None
 
 
-def pytest_configure() -> None:
-    """Shells start what runs in the background deaf to Ctrl-C, and so would be what tests start."""
+def pytest_configure(config: pytest.Config) -> None:
+    """Shells start what runs in the background deaf to Ctrl-C, and so would be what tests start.
+
+    Where PYTHONDONTWRITEBYTECODE is set, as in many containers, each process that tests start would
+    compile all that it imports. xdist would begin with the files of most tests, which are quick.
+    """
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+    config.option.loadscopereorder = False
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
@@ -106,10 +125,12 @@ def _whole(config: pytest.Config) -> bool:
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Without that, they are left out."""
-    slow = [] if _whole(config) else [i for i in items if i.get_closest_marker("slow")]
-    if slow:
-        config.hook.pytest_deselected(items=slow)
+    """Without that, they are left out. The longest files come first."""
+    rank = {TESTS / file: place for place, file in enumerate(LONGEST)}
+    items.sort(key=lambda item: rank.get(item.path, len(rank)))
+    if not _whole(config):
+        slow = {item for item in items if item.get_closest_marker("slow")}
+        config.hook.pytest_deselected(items=[item for item in items if item in slow])
         items[:] = [item for item in items if item not in slow]
 
 
@@ -119,8 +140,8 @@ def pytest_terminal_summary(
     """Say what was left out, and how to run it."""
     if not _whole(config):
         terminalreporter.write_line(
-            "Left out: the slow tests (other presets, damaged files, KiCad, browser, robot arm).\n"
-            "`LUMITIP_REQUIRE=all make test` runs everything; a tool that is absent then fails."
+            "Left out: slow tests (other presets, damaged files, KiCad, browser, robot arm); "
+            "`LUMITIP_REQUIRE=all make test` runs everything, and fails where a tool is absent."
         )
 
 

@@ -9,8 +9,10 @@ import pytest
 from lumitip_fab.checks.readers.kicad_shapes import Node, child, children, read_nodes, words
 from lumitip_fab.design import Design
 
+SLOW = [pytest.param(preset, marks=pytest.mark.slow) for preset in ("small", "integrated")]
 
-@pytest.fixture(params=["small", pytest.param("integrated", marks=pytest.mark.slow)])
+
+@pytest.fixture(params=["published", *SLOW])
 def flange(
     boards: Callable[[str], Path], designs: Callable[[str], Design], request: pytest.FixtureRequest
 ) -> tuple[Design, Node]:

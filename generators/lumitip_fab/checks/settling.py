@@ -10,6 +10,7 @@ With one pull-up for all, which is on the line, a collector floats until its tur
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import product
 
 import numpy as np
@@ -46,7 +47,9 @@ def measure_settling(read: ReadBoard) -> Iterator[Measurement]:
     if not math.isnan(pull_up_ohm):
         errors = {
             (gain, base_pf): max(
-                _Cell(channel, pull_up_ohm, own, gain, base_pf, light).error_counts(line_v, wait_us)
+                _error_counts(
+                    _Cell(channel, pull_up_ohm, own, gain, base_pf, light), line_v, wait_us
+                )
                 for light, line_v in product(LIGHTS, (0.0, channel.supply_v))
             )
             for gain, base_pf in product(_spread(channel.gain), channel.base_pf)
@@ -109,3 +112,10 @@ class _Cell:
 
         end = solve_ivp(slope, (0.0, seconds), start, method="BDF", rtol=1e-6, atol=1e-7)
         return np.asarray(end.y[:, -1], dtype=np.float64)
+
+
+@lru_cache(maxsize=1024)
+def _error_counts(cell: _Cell, line_v: float, wait_us: float) -> float:
+    """`cell.error_counts`, integrated once a process: boards that are checked again and again have
+    the same photodetectors."""
+    return cell.error_counts(line_v, wait_us)

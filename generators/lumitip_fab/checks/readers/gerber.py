@@ -3,6 +3,7 @@
 import math
 import warnings
 from collections.abc import Iterable
+from functools import lru_cache
 from typing import Any
 
 import shapely
@@ -19,8 +20,11 @@ Hole = tuple[float, float, float]
 _STEPS = 32  # chords of a quarter circle
 
 
+@lru_cache(maxsize=64)
 def gerber_area(text: str) -> BaseGeometry:
     """Area that a Gerber file paints, in mm; clear objects erase what is below them.
+
+    The same text is read once a process: orders for several fabs share layers.
 
     Raises:
         ValueError: if it is cut short, or not understood in every command.

@@ -6,6 +6,7 @@ Places are on KiCad's page: mm, y down.
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 
 from shapely.geometry.base import BaseGeometry
@@ -15,8 +16,9 @@ from lumitip_fab.checks.readers.kicad_shapes import (
     Node,
     child,
     children,
+    nodes,
     numbers,
-    read_nodes,
+    read_text,
     words,
 )
 from lumitip_fab.checks.readers.kicad_silk import Silk, silk
@@ -124,13 +126,27 @@ def read_board(path: Path) -> KicadBoard:
     Raises:
         OutputError: if it is missing, or is no board.
     """
-    root = read_nodes(path)
+    text = read_text(path)
+    try:
+        return _board(text)
+    except ValueError as error:
+        raise OutputError(f"{path}: {error}") from error
+
+
+@lru_cache(maxsize=8)
+def _board(text: str) -> KicadBoard:
+    """The board of a text, read once a process: six check modules open each board.
+
+    Raises:
+        ValueError: if it is no board.
+    """
+    root = nodes(text)
     if root[0] != "kicad_pcb":
-        raise OutputError(f"{path}: is a {root[0]!r:.40}, a .kicad_pcb is needed")
+        raise ValueError(f"is a {root[0]!r:.40}, a .kicad_pcb is needed")
     try:
         return _Reader(root).board()
     except (ValueError, LookupError, TypeError, ArithmeticError) as error:
-        raise OutputError(f"{path}: cannot be understood: {error!r:.200}") from error
+        raise ValueError(f"cannot be understood: {error!r:.200}") from error
 
 
 class _Reader:

@@ -26,9 +26,29 @@ def read_nodes(path: Path) -> Node:
         OutputError: if it cannot be read or is no such expression.
     """
     try:
-        text = path.read_text(encoding="utf-8")
+        return nodes(read_text(path))
+    except ValueError as error:
+        raise OutputError(f"{path}: {error}") from error
+
+
+def read_text(path: Path) -> str:
+    """The text of a file.
+
+    Raises:
+        OutputError: if it cannot be read.
+    """
+    try:
+        return path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         raise OutputError(f"{path}: cannot be read: {error}") from error
+
+
+def nodes(text: str) -> Node:
+    """The one expression of a text.
+
+    Raises:
+        ValueError: if it is no such expression.
+    """
     whole: Node = []
     open_: list[Node] = [whole]
     for token in _TOKEN.findall(text):
@@ -37,12 +57,12 @@ def read_nodes(path: Path) -> Node:
             open_[-2].append(open_[-1])
         elif token == ")":
             if len(open_) == 1:
-                raise OutputError(f"{path}: is no KiCad file: a ')' too many")
+                raise ValueError("is no KiCad file: a ')' too many")
             open_.pop()
         else:
             open_[-1].append(_ESCAPE.sub(r"\1", token[1:-1]) if token[0] == '"' else token)
     if len(open_) != 1 or len(whole) != 1 or not isinstance(whole[0], list) or not whole[0]:
-        raise OutputError(f"{path}: is no KiCad file, or is cut short")
+        raise ValueError("is no KiCad file, or is cut short")
     return whole[0]
 
 
