@@ -101,7 +101,7 @@ def _lines(board: Placement) -> tuple[tuple[str, float], ...]:
     design = board.design_hash[:8]
     if not board.cells:
         last = f"rev {board.revision}  {design}"
-        return (board.title, 2.0), (board.caption, 1.5), (last, 1.5)
+        return (board.title, 2.0), (board.caption, 1.5), (last, 1.2)
     return (
         (board.title, 2.0),
         (f"{board.caption}  rev {board.revision}", 1.5),
