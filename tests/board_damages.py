@@ -113,3 +113,40 @@ def text_over_a_tie(text: str) -> str:
     part = text[: text.index(f'(fp_text reference "{tie_of(text)}"')]
     x, y = re.findall(r"\n    \(at (\S+) (\S+?)\)", part)[-1]
     return once(text, r'(\(gr_text "J\d" \(at )\S+ \S+', rf"\g<1>{x} {y}")
+
+
+def tie_under_the_film(text: str) -> str:
+    """Beyond the opening of mask and film."""
+    return moved_part(text, tie_of(text), -1.5, 0.0)
+
+
+def tie_under_a_resistor(text: str) -> str:
+    """Through a part on the back, where the plate is closed."""
+    part = text[: text.index('(fp_text reference "R1"')]
+    x, y = re.findall(r"\n    \(at (\S+) (\S+?)[ )]", part)[-1]
+    return in_part(text, tie_of(text), r"\(at \S+ \S+?\)", f"(at {x} {y})")
+
+
+def tie_beyond_the_edge(text: str) -> str:
+    """Into the board's edge."""
+    return moved_part(text, tie_of(text), 0.0, 1.0)
+
+
+TIE_DAMAGES: dict[Callable[[str], str], set[str]] = {
+    tie_moved: {"ties", "hole_clearance"},
+    tie_far: {"ties", "tie_reach", "tie_window", "hole_clearance"},
+    tie_wide: {"tie_width", "hole_clearance"},
+    tie_missing: {"tie_count", "ties", "tie_reach"},
+    tie_under_the_film: {"ties", "tie_window", "tie_silk", "hole_clearance"},
+    tie_under_a_resistor: {
+        "ties",
+        "tie_reach",
+        "tie_window",
+        "tie_notch",
+        "tie_parts",
+        "tie_silk",
+        "hole_clearance",
+    },
+    tie_beyond_the_edge: {"ties", "tie_edge", "hole_clearance"},
+}
+"""Of the emitter, and the checks that fail."""

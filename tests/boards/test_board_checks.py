@@ -7,17 +7,13 @@ from pathlib import Path
 import pytest
 
 from board_damages import (
+    TIE_DAMAGES,
     in_part,
     moved_part,
     once,
     resistor_smaller,
     spokes_cut,
     swapped_pads,
-    tie_far,
-    tie_missing,
-    tie_moved,
-    tie_of,
-    tie_wide,
     unrated,
 )
 from damages import cut_short, failing, swap
@@ -78,20 +74,6 @@ def resistor_taller(text: str) -> str:
     return in_part(text, "R1", r"(RESC\d+X)\d+N", r"\g<1>90N")
 
 
-def tie_under_the_film(text: str) -> str:
-    return moved_part(text, tie_of(text), -1.5, 0.0)
-
-
-def tie_under_a_resistor(text: str) -> str:
-    part = text[: text.index('(fp_text reference "R1"')]
-    x, y = re.findall(r"\n    \(at (\S+) (\S+?)[ )]", part)[-1]
-    return in_part(text, tie_of(text), r"\(at \S+ \S+?\)", f"(at {x} {y})")
-
-
-def tie_beyond_the_edge(text: str) -> str:
-    return moved_part(text, tie_of(text), 0.0, 1.0)
-
-
 def reference_twice(text: str) -> str:
     return in_part(text, "FID3", "FID3", "FID2")
 
@@ -106,21 +88,7 @@ EMITTER_DAMAGES: dict[Damage, set[str]] = {
     resistor_smaller: {"current", "resistor_load"},
     unrated: {"lands", "resistor_load"},
     resistor_taller: {"lands", "room_behind"},
-    tie_moved: {"ties", "hole_clearance"},
-    tie_far: {"ties", "tie_reach", "tie_window", "hole_clearance"},
-    tie_wide: {"tie_width", "hole_clearance"},
-    tie_missing: {"tie_count", "ties", "tie_reach"},
-    tie_under_the_film: {"ties", "tie_window", "tie_silk", "hole_clearance"},
-    tie_under_a_resistor: {
-        "ties",
-        "tie_reach",
-        "tie_window",
-        "tie_notch",
-        "tie_parts",
-        "tie_silk",
-        "hole_clearance",
-    },
-    tie_beyond_the_edge: {"ties", "tie_edge", "hole_clearance"},
+    **TIE_DAMAGES,
     title_lost: {"silk_title"},
     arrow_bent: {"silk_arrow"},
     cell_lost: {"silk_cells"},

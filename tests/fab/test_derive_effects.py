@@ -105,7 +105,7 @@ CHANGES: dict[str, Any] = {
     "flange.resistor": "0805",
     "flange.gate_ohm": 120000.0,
     "flange.tvs": "other",
-    "flange.inrush_resistor": "1206",
+    "flange.inrush_resistor": "other",
     "flange.inrush_ohm": 5.1,
     "module.regulator": "other",
     "module.supply_capacitor": "22uF 0805",
@@ -183,6 +183,7 @@ def published(inputs: dict[str, Input]) -> Input:
         "linear_regulators": ("MCP1700-3302", {"order_number": "other"}),
         "crystals": ("32.768kHz FC-135", {"order_number": "other"}),
         "transistors": ("Si2309CDS", {"order_number": "other"}),
+        "pulse_resistors": ("1206 pulse", {"order_number": "other"}),
         "tvs_diodes": ("SMBJ24A", {"order_number": "other"}),
     }
     tables = {

@@ -21,6 +21,7 @@ from lumitip_fab.catalogue.electronics import (
     Led,
     Multiplexer,
     Photodetector,
+    PulseResistor,
     Resistor,
     ResistorArray,
     TvsDiode,
@@ -37,6 +38,7 @@ class Catalogue(Strict):
     leds: Mapping[Name, Led]
     photodetectors: Mapping[Name, Photodetector]
     resistors: Mapping[Name, Resistor]
+    pulse_resistors: Mapping[Name, PulseResistor]
     resistor_arrays: Mapping[Name, ResistorArray]
     capacitors: Mapping[Name, Capacitor]
     multiplexers: Mapping[Name, Multiplexer]

@@ -114,6 +114,10 @@ class Resistor(OrderedByValue, Chip):
     """Rated power at 70 °C."""
 
 
+class PulseResistor(Resistor):
+    """A resistor package that withstands pulses."""
+
+
 class ResistorArray(OrderedByValue, Entry):
     """Separate resistors side by side in one chip, each between two opposite pads."""
 

@@ -92,7 +92,7 @@ FIELDS: dict[str, Automatic] = {
     "flange.fuse": Automatic("500mA 1206", "current of LEDs and controller", names="fuses"),
     "flange.gate_ohm": Automatic(100000.0, "supply"),
     "flange.tvs": Automatic("SMBJ24A", "supply", names="tvs_diodes"),
-    "flange.inrush_resistor": Automatic("1206 pulse", "inrush_ohm", names="resistors"),
+    "flange.inrush_resistor": Automatic("1206 pulse", "inrush_ohm", names="pulse_resistors"),
     "flange.inrush_ohm": Automatic(4.7, "supply, input capacitor, fuse and MOSFET"),
     "printer.min_wall_mm": Automatic(0.8, "two lines of the printer"),
 }

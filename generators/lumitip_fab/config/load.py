@@ -66,14 +66,11 @@ class Input:
         return replace(self, parameters=Parameters.model_validate(table))
 
     def problem(self, field: str, message: str) -> Problem:
-        """A fault of a field, placed in the file that set it; of an automatic value in the user's
-        own file, where what it follows from was changed."""
-        if field in self.automatic:
-            own = self.sources[0]
-            message = _VALUE.sub(r"\g<0> (automatic)", message, count=1)
-            return Problem(shown_path(own.path), own.line(field), field, message)
+        """A fault of a field, placed in the file that set it; an automatic value is marked."""
         source, own = _setting(self.sources, field), self.sources[0]
-        if source is not own:  # the base may be good for others
+        if field in self.automatic:
+            message = _VALUE.sub(r"\g<0> (automatic)", message, count=1)
+        elif source is not own:  # the base may be good for others
             message = f"{message.removesuffix('.')}. Override it in {shown_path(own.path)}."
         return Problem(shown_path(source.path), source.line(field), field, message)
 

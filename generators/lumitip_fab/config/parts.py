@@ -19,6 +19,7 @@ from lumitip_fab.catalogue.electronics import (
     Led,
     Multiplexer,
     Photodetector,
+    PulseResistor,
     Resistor,
     ResistorArray,
     TvsDiode,
@@ -84,7 +85,7 @@ class FlangeParts:
     transistor: Transistor
     resistor: Resistor
     tvs: TvsDiode
-    inrush_resistor: Resistor
+    inrush_resistor: PulseResistor
 
 
 @dataclass(frozen=True)

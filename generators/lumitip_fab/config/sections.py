@@ -158,7 +158,7 @@ class Flange(Strict):
     tvs: Name
     """TVS diode from the supply to ground, in `parts/tvs_diodes.toml`."""
     inrush_resistor: Name
-    """Package of the resistor before the regulator, in `parts/resistors.toml`."""
+    """Package of the resistor before the regulator, in `parts/pulse_resistors.toml`."""
     inrush_ohm: float = Field(ge=0.1, le=1000)
     """Resistor before the regulator and its input capacitor: it limits the current as the flange
     is plugged in, and damps the ringing with the cable's inductance (ohm)."""

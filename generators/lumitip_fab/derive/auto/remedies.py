@@ -24,6 +24,8 @@ from lumitip_fab.derive.auto.search import (
 MOST_STEPS = 12
 STEPS = {"_mm": 0.05, "_mm2": 0.01, "_deg": 0.5, "_ma": 0.5, "_w": 0.05, "_v": 0.5}
 """Resolution of a search, by the unit of the field."""
+OWNED = ("coupling.gripper", "printer.profile")
+"""What a user has: another one is no small change."""
 SWITCHES = ("flange.enabled", "breakout.enabled")
 
 
@@ -141,6 +143,8 @@ def _mended(now: Verdict, first: Verdict) -> Iterator[tuple[Step, Verdict]]:
 def _changes(now: Verdict, rule: Rule, about: str) -> Iterator[Change]:
     """One change of each field that can mend a rule, the field of the rule first."""
     for field in menders(about):
+        if field in OWNED:
+            continue
         change = _change(now, rule, field, FINE if field == about else COARSE)
         if change:
             yield change

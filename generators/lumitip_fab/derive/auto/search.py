@@ -151,7 +151,7 @@ MENDS: dict[str, tuple[str, ...]] = {
     "outline.shoulder_margin_mm": ("outline.waist_margin_mm",),
     "backing.tail_mm": ("stack.floor_mm",),
     "tip.slant_start_mm": ("outline.tip_margin_mm",),
-    "coupling.gripper": (*_FINGER, "mould.taper_length_mm"),
+    "coupling.gripper": ("printer.fit_mm", *_FINGER, "mould.taper_length_mm"),
     "board.tip_margin_mm": ("board.hole_edge_mm", "board.hole_mm"),
     "board.hole_mm": ("board.tip_margin_mm", "board.side_margin_mm"),
     "board.end_margin_mm": ("board.hole_mm",),
