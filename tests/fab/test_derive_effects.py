@@ -136,7 +136,11 @@ CHANGES: dict[str, Any] = {
 }
 # What else must change with a field.
 WITH: dict[str, dict[str, Any]] = {
-    "backing.variant": {"stack.floor_mm": 2.0, "stack.pcb_mm": 0.2},
+    "backing.variant": {
+        "backing.material": "TPU 98A",
+        "stack.floor_mm": 2.0,
+        "stack.pcb_mm": 0.2,
+    },
     "stack.film_mm": {"mask.film": "thick"},
     "emitter.string_leds": {"emitter.current_ma": 5.0},
 }
