@@ -136,7 +136,7 @@ TIE_DAMAGES: dict[Callable[[str], str], set[str]] = {
     tie_moved: {"ties", "hole_clearance"},
     tie_far: {"ties", "tie_reach", "tie_window", "hole_clearance"},
     tie_wide: {"tie_width", "hole_clearance"},
-    tie_missing: {"tie_count", "ties", "tie_reach"},
+    tie_missing: {"lands", "tie_count", "ties", "tie_reach"},
     tie_under_the_film: {"ties", "tie_window", "tie_silk", "hole_clearance"},
     tie_under_a_resistor: {
         "ties",

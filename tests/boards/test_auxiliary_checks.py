@@ -193,7 +193,7 @@ DAMAGES: dict[Damage, set[str]] = {
     title_lost: {"silk_title"},
     letters_small: {"silk_letters"},
     letters_thin: {"silk_lines"},
-    silk_on_a_pad: {"silk_gap"},
+    silk_on_a_pad: {"silk_gap", "tie_silk"},
     reference_twice: {"references"},
 }
 

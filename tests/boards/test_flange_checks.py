@@ -93,7 +93,15 @@ DAMAGES: dict[Damage, set[str]] = {
     resistor_small: {"plug_in_voltage", "plug_in_current"},
     resistor_without_a_value: {"plug_in_voltage", "plug_in_current", "plug_in_surge"},
     resistor_bridged: {"undamped", "short", "joined"},
-    tvs_reversed: {"tvs", "lands", "undamped", "contact_signals", "apart", "joined"},
+    tvs_reversed: {
+        "tvs",
+        "lands",
+        "silk_marks",
+        "undamped",
+        "contact_signals",
+        "apart",
+        "joined",
+    },
     dot_lost: {"silk_marks"},
     contacts_in_front: {"lands"},
     # Its pads lie in the ground pour.
