@@ -79,7 +79,7 @@ def test_the_check_steps_through_the_same_pulse(
     design = _changed(_design(design_dir, 24), inrush_ohm=ohm, breakdown_v=(200.0, 220.0))
     plug_in, found = _simulated(design, tmp_path)
     volts, amperes, surge = plugged(plug_in, ohm, plug_in.cable_uh[1], 1.0)
-    assert volts == pytest.approx(found["input_v_long"], rel=0.1)
+    assert volts == pytest.approx(found["input_v_long"], rel=0.15)
     assert amperes == pytest.approx(found["peak_a_long"], rel=0.35)
     assert amperes >= found["peak_a_long"], "without fuse and MOSFET it is more"
     assert surge == pytest.approx(1e-6 * found["surge_ua2s_long"], rel=0.6)

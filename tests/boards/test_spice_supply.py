@@ -54,7 +54,7 @@ def test_every_part_of_the_output_is_in_the_netlist(design_dir: Path) -> None:
     lines = _netlist(_derived(design_dir, "published")).splitlines()
     assert "L1 SW 5V 4.7u" in lines
     assert {"C2 5V 0 11u", "C3 5V 0 11u"} <= set(lines)
-    assert "Vsupply 24V 0 24" in lines
+    assert "Vsupply VIN 0 24" in lines
 
 
 def test_what_else_is_at_the_output_is_no_output_capacitor(design_dir: Path) -> None:

@@ -115,14 +115,19 @@ def test_lost_files_are_told(settings: Path, tmp_path: Path) -> None:
 
 
 def _with(config: Input, material: str, **filament: Any) -> Input:
-    backing = config.parameters.backing.model_copy(update={"material": material})
+    """A compliant finger of a material, with other figures in the filament's entry."""
+    compliant = config.with_values(
+        {
+            "backing.variant": "flex",
+            "backing.material": material,
+            "stack.floor_mm": 2.0,
+            "stack.pcb_mm": 0.2,
+        }
+    )
     known = dict(config.catalogue.filaments)
     known[material] = known[material].model_copy(update=filament)
-    return dataclasses.replace(
-        config,
-        parameters=config.parameters.model_copy(update={"backing": backing}),
-        catalogue=config.catalogue.model_copy(update={"filaments": known}),
-    )
+    catalogue = config.catalogue.model_copy(update={"filaments": known})
+    return dataclasses.replace(compliant, catalogue=catalogue)
 
 
 def test_what_must_not_bend_is_printed_from_another_filament(config: Input, tmp_path: Path) -> None:

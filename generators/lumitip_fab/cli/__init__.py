@@ -6,9 +6,8 @@ import sys
 from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from lumitip.cli import installed_version
 from lumitip_fab.system_libraries import libraries_message, missing_libraries
 
 if TYPE_CHECKING:
@@ -121,7 +120,7 @@ def _parser() -> argparse.ArgumentParser:
         description="From one parameter file to every part of an optical fingertip, and the "
         "proof that they fit.",
     )
-    parser.add_argument("--version", action="version", version=installed_version())
+    parser.add_argument("--version", action=_Version, nargs=0, help="print the version")
     group = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     commands = {
         name: _command(group.add_parser(name, help=summary, description=summary), flags)
@@ -136,6 +135,15 @@ def _parser() -> argparse.ArgumentParser:
     _add_options(commands)
     _add_study_options(commands["explore"])
     return parser
+
+
+class _Version(argparse.Action):
+    """Prints the version of the installed package."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
+        from lumitip.cli import installed_version
+
+        parser.exit(message=f"{installed_version()}\n")
 
 
 def _command(parser: argparse.ArgumentParser, flags: list[str]) -> argparse.ArgumentParser:
