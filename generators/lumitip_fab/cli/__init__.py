@@ -143,7 +143,8 @@ class _Version(argparse.Action):
     def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
         from lumitip.cli import installed_version
 
-        parser.exit(message=f"{installed_version()}\n")
+        print(installed_version())
+        parser.exit()
 
 
 def _command(parser: argparse.ArgumentParser, flags: list[str]) -> argparse.ArgumentParser:
