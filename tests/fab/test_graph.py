@@ -76,14 +76,14 @@ def test_waste_of_silicone_touches_the_mould_and_what_shares_its_figures(keys: K
 
 
 def test_pitch_touches_everything_of_the_fingers(keys: Keys) -> None:
-    # What the slicer is told, what holds the controller, and wires know nothing of the cells.
+    # Slicer settings, what holds the controller, and the flange's circuit know nothing of the cells.
     outside = {
         "holder",
         "flange",
         "models",
         "slicer",
         "supply_spice",
-        "wiring",
+        "plug_in_spice",
     }
     assert (
         changed(keys(), keys("[grid]\npitch_mm = 6.1\n")) == {step.name for step in EARLY} - outside
@@ -92,7 +92,8 @@ def test_pitch_touches_everything_of_the_fingers(keys: Keys) -> None:
 
 def test_what_is_outside_touches_no_finger(keys: Keys) -> None:
     after = keys("[breakout]\nhole_spacing_mm = 34.0\n")
-    assert changed(keys(), after) == {"other_board", "holder", "models"}
+    boards = {"other_board", "models", "wiring", "plug_in_spice"}  # all boards are read there
+    assert changed(keys(), after) == {*boards, "holder"}
     assert changed(keys(), keys("[holder]\nbody_mm = 76.0\n")) == {"holder"}
 
 

@@ -151,7 +151,7 @@ def _plugged_in(plug_in: PlugIn) -> Iterator[Row]:
     low, high = plug_in.cable_uh
     if not plug_in.capacitor_uf:
         return
-    rated = "" if plug_in.pulse_a is None else f" of {plug_in.pulse_a:g} A that its MOSFET bears"
+    rated = "" if plug_in.pulse_a is None else f"; its MOSFET bears {plug_in.pulse_a:g} A"
     melts = ""
     if plug_in.melting_a2s is not None:
         share = 100 * plug_in.surge_a2s / plug_in.melting_a2s
