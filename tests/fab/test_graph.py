@@ -76,7 +76,7 @@ def test_waste_of_silicone_touches_the_mould_and_what_shares_its_figures(keys: K
 
 
 def test_pitch_touches_everything_of_the_fingers(keys: Keys) -> None:
-    # Slicer settings, what holds the controller, and the flange's circuit know nothing of the cells.
+    # Slicer settings, what holds the controller and the flange's circuit know nothing of the cells.
     outside = {
         "holder",
         "flange",
