@@ -1,4 +1,4 @@
-"""What only a finger's board has: LED or photodetector at each cell, the cells' outlines and names
+"""Measures of finger boards alone: LED or photodetector at each cell, the cells' outlines and names
 on the silkscreen, the arrow to the tip; and, if it is flexible, stack-up, bend without holes,
 stiffener and teardrops."""
 

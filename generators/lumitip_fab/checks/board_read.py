@@ -46,7 +46,7 @@ class ReadBoard(Subject):
     board: KicadBoard
     design: Design
     of: Finger | AuxiliaryBoard
-    """What it is in the design. The frame of a board beside the fingers is its own."""
+    """Its record in the design. The frame of a board beside the fingers is its own."""
 
     @property
     def finger(self) -> Finger | None:

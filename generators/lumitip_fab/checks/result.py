@@ -178,7 +178,7 @@ def count(check: str, subject: str, wrong: Sequence[str], unit: str) -> Measurem
 
 
 def measured(measures: Sequence[Measure[_Of]], of: _Of) -> Iterator[Measurement]:
-    """What each measure finds in turn; one that a damaged file stops fails by its own name."""
+    """The findings of each measure in turn; one that a damaged file stops fails by its own name."""
     for measure in measures:
         try:
             yield from measure(of)

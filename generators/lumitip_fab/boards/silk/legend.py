@@ -19,7 +19,7 @@ _REMEDY = {
     False: "fewer digits in supply.voltage_v, shorter names of lines in [flange], or a larger "
     "breakout.board_mm",
 }
-"""What helps a board with cells, and one without."""
+"""Remedies for a board with cells, and for one without."""
 
 
 def with_legend(

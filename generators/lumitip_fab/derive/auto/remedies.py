@@ -25,7 +25,7 @@ MOST_STEPS = 12
 STEPS = {"_mm": 0.05, "_mm2": 0.01, "_deg": 0.5, "_ma": 0.5, "_w": 0.05, "_v": 0.5}
 """Resolution of a search, by the unit of the field."""
 OWNED = ("coupling.gripper", "printer.profile")
-"""What a user has: another one is no small change."""
+"""Things that a user owns: another one is no small change."""
 SWITCHES = ("flange.enabled", "breakout.enabled")
 
 

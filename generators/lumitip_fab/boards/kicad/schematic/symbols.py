@@ -31,6 +31,8 @@ def of_part(part: Component) -> tuple[str, Node]:
 
 TWO_TERMINALS = ("resistor", "capacitor", "fuse", "inductor", "crystal", "tvs diode")
 """Kinds of parts that are drawn upright, the first terminal at the top."""
+_BAR = (-1.778, 0.762), (-1.27, 1.27), (1.27, 1.27), (1.778, 1.778)
+_TRIANGLE = (-1.27, -1.27), (1.27, -1.27), (0, 1.27), (-1.27, -1.27)
 
 
 def two_terminals(kind: str) -> tuple[str, Node]:
@@ -40,18 +42,12 @@ def two_terminals(kind: str) -> tuple[str, Node]:
         "capacitor": ("C", _plates(2.032, 0.762), 0.762),
         "fuse": ("F", [box(-0.762, -2.54, 0.762, 2.54), line((0, 2.54), (0, -2.54))], 2.54),
         "inductor": ("L", [_coil()], 2.54),
-        "tvs diode": ("D", _zener(), 1.27),
+        "tvs diode": ("D", [line(*_BAR), line(*_TRIANGLE)], 1.27),
         "crystal": ("Y", [box(-1.27, -0.635, 1.27, 0.635), *_plates(1.27, 1.27)], 1.27),
     }[kind]
     reach = 3.81 - half_mm
     pins = [pin("1", 0, 3.81, 270, reach), pin("2", 0, -3.81, 90, reach)]
     return name, symbol(name, body, pins)
-
-
-def _zener() -> list[Node]:
-    """A triangle under a bar with bent ends, its cathode at the top."""
-    bar = line((-1.778, 0.762), (-1.27, 1.27), (1.27, 1.27), (1.778, 1.778))
-    return [bar, line((-1.27, -1.27), (1.27, -1.27), (0, 1.27), (-1.27, -1.27))]
 
 
 def hand_drawn() -> dict[str, Node]:
