@@ -66,3 +66,9 @@ def resistor_code(ohm: float) -> str:
     power, letter = next((p, c) for p, c in ((6, "M"), (3, "K"), (0, "R")) if ohm >= 10**p or not p)
     digits = f"{ohm / 10**power:.4g}"
     return digits.replace(".", letter) if "." in digits else digits + letter
+
+
+def coded_ohm(code: str) -> float:
+    """The resistance (ohm) of such a code."""
+    (letter,) = (each for each in code if each.isalpha())
+    return float(code.replace(letter, ".")) * {"R": 1.0, "K": 1e3, "M": 1e6}[letter]

@@ -1,4 +1,4 @@
-"""What is printed on the boards of every preset, and where."""
+"""Print on the boards of every preset: texts, their places and their gaps."""
 
 import dataclasses
 import shutil
@@ -60,15 +60,15 @@ def test_silkscreen_is_clear_of_pads_holes_and_the_edge(board: Placed) -> None:
 
 def test_titles_labels_and_references_are_printed(board: Placed) -> None:
     design, finger, placement = board
-    told = {side: [t.text for s, t in placement.texts if s == side] for side in SIDES}
+    printed = {side: [t.text for s, t in placement.texts if s == side] for side in SIDES}
     for side in SIDES:
-        words = " ".join(told[side])
+        words = " ".join(printed[side])
         assert design.title.name in words
         assert f"rev {design.title.revision}" in words
         assert design.layout.design_hash[:8] in words
-        assert "TIP" in told[side]
-        assert set(finger.connector.signals) <= set(told[side])
-    assert "1" in told["front"]
+        assert "TIP" in printed[side]
+        assert set(finger.connector.signals) <= set(printed[side])
+    assert "1" in printed["front"]
     named = {p.ref for p in placement.components if p.ref_text}
     assert {p.ref for p in parts_of(placement, "multiplexer")} <= named
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from lumitip_fab.design import AuxiliaryBoard, Component, Design, Flange
 from lumitip_fab.design.electrical import PlugIn
 from lumitip_fab.pipeline.artefact import Artefact
+from lumitip_fab.text import coded_ohm
 
 _END_US, _STEP_NS = 200.0, 10.0
 _TVS_PF = 1500.0  # of a 600 W TVS diode of 24 V without voltage, from makers' curves
@@ -44,7 +45,7 @@ def _circuit(board: AuxiliaryBoard, plug_in: PlugIn) -> Iterator[str]:
     yield f".model pmos vdmos({_PMOS})"
     for ref in ("R1", "R2"):
         if ref in parts:
-            yield f"{ref} {' '.join(_nets(parts[ref]))} {_ohm(parts[ref].value):g}"
+            yield f"{ref} {' '.join(_nets(parts[ref]))} {coded_ohm(parts[ref].value):g}"
     cathode, anode = _nets(parts["D1"])
     low, high = plug_in.breakdown_v
     yield f"D1 {anode} {cathode} tvs"
@@ -104,9 +105,3 @@ def _measured(board: AuxiliaryBoard, plug_in: PlugIn) -> Iterator[str]:
 def _nets(part: Component) -> tuple[str, ...]:
     """Net of each pad; ngspice calls ground 0."""
     return tuple("0" if net == "GND" else net for _, net in part.nets)
-
-
-def _ohm(code: str) -> float:
-    """The resistance of a code such as 4R7 or 100K."""
-    (letter,) = (each for each in code if each.isalpha())
-    return float(code.replace(letter, ".")) * {"R": 1.0, "K": 1e3, "M": 1e6}[letter]
