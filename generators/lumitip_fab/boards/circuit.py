@@ -2,6 +2,9 @@
 
 supply ── R1 ──►|── … ──►|── GND            one string of LEDs; more beside it
 
+supply ── IN U1 OUT ── R1 ─┬─►|── … ── GND  the same with a current source
+               SET ── R3 ──┘
+
 3V3 ── RN1 ──┬── Q1 ──▷ GND                 one multiplexer with its detectors
     ── RN1 ──│─┬── …
              U1 ── A0                       (S0, S1, S2 choose)
@@ -16,11 +19,13 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from lumitip_fab.boards.model import GROUND
+from lumitip_fab.catalogue.controllers import OPEN
 from lumitip_fab.design import Chip, Component, Design, Finger, Led, Photodetector, footprints
 from lumitip_fab.design.components import (
     MIDDLE,
     chip,
     fiducials,
+    leaded,
     mounted,
     probe,
     resistor,
@@ -48,7 +53,7 @@ def supply_of(finger: Finger) -> str:
 
 
 def _strings(design: Design, finger: Finger) -> Iterator[Component]:
-    """LEDs in series, each string with its resistor."""
+    """LEDs in series, each string with its resistor or its current source."""
     wiring, packages, held = design.wiring, design.packages, finger.cells_hold
     nets_of = {}
     for number, string in enumerate(wiring.strings, start=1):
@@ -57,9 +62,31 @@ def _strings(design: Design, finger: Finger) -> Iterator[Component]:
             nets_of[cell] = _polar(packages.led, anode=links[place], cathode=links[place + 1])
     for cell in sorted(nets_of):
         yield chip(held.ref(cell), held.kind, packages.led_name, packages.led, nets_of[cell])
-    for number, ohm in enumerate(wiring.resistor_ohm, start=1):
+    yield from (_sources if wiring.set_ohm else _string_resistors)(design, finger)
+
+
+def _string_resistors(design: Design, finger: Finger) -> Iterator[Component]:
+    for number, ohm in enumerate(design.wiring.resistor_ohm, start=1):
         nets = supply_of(finger), f"S{number}_0"
-        yield resistor(f"R{number}", ohm, packages.string_resistor, nets)
+        yield resistor(f"R{number}", ohm, design.packages.string_resistor, nets)
+
+
+def _sources(design: Design, finger: Finger) -> Iterator[Component]:
+    """A current source for each string, with a resistor at its OUT and one at its SET."""
+    wiring, packages = design.wiring, design.packages
+    strings = len(wiring.set_ohm)
+    for number in range(1, strings + 1):
+        leads = {"IN": supply_of(finger), "OUT": f"S{number}_OUT", "SET": f"S{number}_SET"}
+        leads[OPEN] = OPEN
+        name, entry = packages.source_name, packages.source
+        yield leaded(f"U{number}", "current source", name, entry, leads, MIDDLE, 0.0)
+    for first, ohms, lead in (
+        (1, wiring.resistor_ohm, "OUT"),
+        (strings + 1, wiring.set_ohm, "SET"),
+    ):
+        for number, ohm in enumerate(ohms, start=1):
+            nets = f"S{number}_{lead}", f"S{number}_0"
+            yield resistor(f"R{first + number - 1}", ohm, packages.string_resistor, nets)
 
 
 def _channels(design: Design, finger: Finger) -> Iterator[Component]:

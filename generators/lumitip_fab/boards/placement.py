@@ -179,11 +179,17 @@ def finger_board(design: Design, finger: Finger) -> AuxiliaryBoard:
 def _turn_strings(
     parts: dict[str, PlacedComponent], finger: Finger, wiring: Wiring, packages: Packages
 ) -> None:
-    """Turn resistors and LEDs so that neighbours of a string face each other."""
+    """Turn what sets the currents, and LEDs so that neighbours of a string face each other."""
     anode = "1" if packages.led.marked == "anode" else "2"
     for ref in [ref for ref in parts if ref.startswith("R")]:
+        if wiring.set_ohm:  # the string begins between the two of a source
+            at_out = int(ref[1:]) <= len(wiring.set_ohm)
+            parts[ref] = dataclasses.replace(parts[ref], angle_deg=270.0 if at_out else 90.0)
+            continue
         turns = [dataclasses.replace(parts[ref], angle_deg=angle) for angle in (90.0, 270.0)]
         parts[ref] = min(turns, key=lambda part: pad_at(part, "1")[1])  # supply to the connector
+    for ref in [ref for ref in parts if ref.startswith("U")]:
+        parts[ref] = dataclasses.replace(parts[ref], angle_deg=180.0)  # IN to the connector
     for number, string in enumerate(wiring.strings, start=1):
         chain = [parts[f"D{cell + 1}"] for cell in string]
         start = pad_at(parts[f"R{number}"], "2")

@@ -1,16 +1,16 @@
-"""Netlists for ngspice: a string, a channel, and the flange's switching regulator."""
+"""Netlists for ngspice: of the fingers' boards, and the flange's switching regulator."""
 
 from collections.abc import Iterable, Iterator
 
 from lumitip_fab.boards.circuit import circuit
 from lumitip_fab.boards.model import GROUND
 from lumitip_fab.boards.spice_channel import STEPS, channel, corners, detectors, first_mux
-from lumitip_fab.design import AuxiliaryBoard, Component, Design, Finger
+from lumitip_fab.boards.spice_string import string
+from lumitip_fab.design import AuxiliaryBoard, Design, Finger
 from lumitip_fab.design.electrical import Regulated
 from lumitip_fab.pipeline.artefact import Artefact
 
 _TEMPERATURE_C = 26.85  # 300 K, as in the closed forms
-_THERMAL_V = 0.0258520  # of ngspice at that temperature
 
 
 def simulation(design: Design, finger: Finger) -> tuple[Artefact, ...]:
@@ -18,7 +18,7 @@ def simulation(design: Design, finger: Finger) -> tuple[Artefact, ...]:
     detectors, once as current sinks and once as phototransistors."""
     parts = circuit(design, finger)
     if not any(part.kind == "multiplexer" for part in parts):
-        return (_netlist(design, finger, "", _string(parts, design)),)
+        return (_netlist(design, finger, "", string(parts, design)),)
     nets = first_mux(parts, design)
     slowest = detectors(nets, design, corners(design)[-1], STEPS["dimmed"])
     return (
@@ -37,25 +37,6 @@ def _netlist(design: Design, finger: Finger, ending: str, lines: Iterable[str]) 
     )
     path = f"boards/{finger.name}/{finger.name}{ending}.cir"
     return Artefact(path, ("\n".join(whole) + "\n").encode(), frame="")
-
-
-def _string(parts: tuple[Component, ...], design: Design) -> Iterator[str]:
-    """The first string at its supply; `i_ma` is its current."""
-    wiring, packages, strings = design.wiring, design.packages, design.electrical.strings
-    anode, cathode = ("1", "2") if packages.led.marked == "anode" else ("2", "1")
-    leds = {dict(p.nets)[anode]: p for p in parts if p.kind == "led"}
-    supply, net = (net for part in parts if part.ref == "R1" for _, net in part.nets)
-    yield f"Vsupply {supply} 0 {wiring.supply_v:g}"
-    yield f"R1 {supply} {net} {wiring.resistor_ohm[0]:g}"
-    while net != GROUND:
-        led = leds[net]
-        left, net = net, dict(led.nets)[cathode]
-        yield f"{led.ref} {left} {'0' if net == GROUND else net} led"
-    # Saturation current with which the forward voltage at the target current is as stated.
-    exponent = strings.forward_v / (strings.ideality * _THERMAL_V)
-    amperes = f"{strings.target_ma / 1000:g}/(exp({exponent:.9g})-1)"
-    yield f".model led d(n={strings.ideality:g} is={{{amperes}}})"
-    yield from (".control", "op", "let i_ma = -1000*i(vsupply)", "print i_ma", ".endc")
 
 
 _SETTLE_MS = 0.5  # from the end of the soft start to the ripple that is measured

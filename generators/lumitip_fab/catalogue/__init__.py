@@ -8,6 +8,7 @@ from collections.abc import Mapping
 
 from lumitip_fab.catalogue.controllers import (
     Controller,
+    CurrentSource,
     LinearRegulator,
     Regulator,
     Strip,
@@ -46,6 +47,7 @@ class Catalogue(Strict):
     strips: Mapping[Name, Strip]
     regulators: Mapping[Name, Regulator]
     linear_regulators: Mapping[Name, LinearRegulator]
+    current_sources: Mapping[Name, CurrentSource]
     crystals: Mapping[Name, Crystal]
     inductors: Mapping[Name, Inductor]
     fuses: Mapping[Name, Fuse]

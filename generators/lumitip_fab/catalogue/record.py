@@ -28,9 +28,11 @@ def _ascending(least_and_most: tuple[float, float]) -> tuple[float, float]:
 _Capacitance = Annotated[float, Field(gt=0, le=1e7)]
 _Gain = Annotated[float, Field(ge=1, le=1e5)]
 _Voltage = Annotated[float, Field(gt=0, le=100)]
+_Current = Annotated[float, Field(gt=0, le=1e5)]
 Capacitances = Annotated[tuple[_Capacitance, _Capacitance], AfterValidator(_ascending)]
 Gains = Annotated[tuple[_Gain, _Gain], AfterValidator(_ascending)]
 Voltages = Annotated[tuple[_Voltage, _Voltage], AfterValidator(_ascending)]
+Currents = Annotated[tuple[_Current, _Current], AfterValidator(_ascending)]
 Confidence = Literal["datasheet", "measured", "inferred", "assumed"]
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import shapely
 
-from lumitip_fab.checks.board_circuit import measure_channels, measure_contact_map, measure_strings
+from lumitip_fab.checks.board_circuit import measure_channels, measure_contact_map
 from lumitip_fab.checks.board_copper import (
     measure_copper,
     measure_hot_loop,
@@ -22,6 +22,7 @@ from lumitip_fab.checks.board_copper import (
 from lumitip_fab.checks.board_finger import measure_cell_prints, measure_cells, measure_flexible
 from lumitip_fab.checks.board_read import ReadBoard, names_of, path_of, placed, read_any
 from lumitip_fab.checks.board_silk import measure_labels, measure_prints, measure_targets
+from lumitip_fab.checks.board_strings import measure_strings
 from lumitip_fab.checks.board_ties import measure_ties
 from lumitip_fab.checks.plug_in import measure_plug_in
 from lumitip_fab.checks.readers.kicad_board import Part, Terminal

@@ -1,13 +1,8 @@
-"""The circuit of a board, followed along its copper: strings and their load, multiplexers, and the
-contacts of a coupling."""
+"""The circuit of a board, followed along its copper: multiplexers, and contacts of a coupling."""
 
 import math
-import re
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping
-
-import numpy as np
-from scipy.optimize import brentq
 
 from lumitip_fab.checks.board_read import ReadBoard, ohm
 from lumitip_fab.checks.connections import channels
@@ -16,53 +11,6 @@ from lumitip_fab.checks.result import Measurement
 from lumitip_fab.design import ToolContact
 from lumitip_fab.design.frames import applied, auxiliary_to_flange
 
-THERMAL_V = 0.02585
-SUPPLY_HIGH, RESISTOR_LOW = 1.05, 0.99
-MOST_SHARE = 0.8
-"""Largest share of the rating: thick-film chips are rated to 70 °C; at 87 °C 0.8 of it is left."""
-RATED_W = {"1608": 0.1, "2012": 0.125, "3216": 0.25, "3225": 0.5, "5025": 0.75}
-"""Rated power by size in tenths of a millimetre (Yageo RC_L series)."""
-_SIZE = re.compile(r"RESC(\d{4})X")
-
-
-def measure_loads(read: ReadBoard, chains: tuple[int, ...]) -> Iterator[Measurement]:
-    """The largest load of a string resistor, as a share of its rating.
-
-    Args:
-        read: the emitter's board.
-        chains: LEDs that the copper puts behind each resistor, R1 first.
-    """
-    volts = float(read.signals[1].removesuffix("V"))
-    shares = [_share(read, f"R{i}", leds, volts) for i, leds in enumerate(chains, start=1)]
-    worst = max(range(len(shares)), key=lambda i: (math.isnan(shares[i]), shares[i]))
-    note = f"R{worst + 1}, over the tolerances of supply, LEDs and resistor"
-    yield read.figure("resistor_load", 100 * shares[worst], 0, 100 * MOST_SHARE, "%", note)
-
-
-def _share(read: ReadBoard, ref: str, leds: int, volts: float) -> float:
-    part = read.parts.get(ref)
-    size = _SIZE.match(part.footprint) if part else None
-    if part is None or size is None or size[1] not in RATED_W:
-        return math.nan
-    resistance = ohm(part.value) * RESISTOR_LOW
-    amps = _highest_a(read, volts * SUPPLY_HIGH, leds, resistance)
-    return amps**2 * resistance / RATED_W[size[1]]
-
-
-def _highest_a(read: ReadBoard, volts: float, leds: int, resistance: float) -> float:
-    """Current with every LED at its lowest forward voltage."""
-    strings = read.design.electrical.strings
-    slope = strings.ideality * THERMAL_V
-
-    def missing_v(amps: float) -> float:
-        each = strings.forward_v - strings.forward_tolerance_v
-        each += slope * math.log(1000 * amps / strings.target_ma)
-        return volts - leds * each - amps * resistance
-
-    return float(brentq(missing_v, 1e-12, volts / resistance + 1e-9))
-
-
-CURRENT_SHARE = 0.02
 BYPASS_MM = 4.0  # from a supply lead to its capacitor, at most
 GROUND = "GND"
 
@@ -91,64 +39,6 @@ def measure_channels(read: ReadBoard) -> Iterator[Measurement]:
     yield read.count("service", list(_unserved(read)), "leads")
     yield from _bypasses(read)
     yield read.count("polarity", _reversed_detectors(read), "detectors")
-
-
-def measure_strings(read: ReadBoard) -> Iterator[Measurement]:
-    """Each string from the supply through its resistor and LEDs to ground, and its current."""
-    if not read.strings:
-        return
-    wiring = read.design.wiring
-    supply, marked = read.signals[1], read.design.packages.led.marked
-    anode = "1" if marked == "anode" else "2"
-    wrong: list[str] = []
-    turned: list[str] = []
-    shares = []
-    lit = []
-    for i, cells in enumerate(read.strings):
-        chain, ends = _chain(read, f"R{i + 1}", supply, anode)
-        lit.append(len(chain))
-        wanted = [f"D{cell + 1}" for cell in cells]
-        turned += [ref.removeprefix("-") for ref in chain if ref.startswith("-")]
-        if [ref.removeprefix("-") for ref in chain] != wanted or not ends:
-            wrong.append(
-                f"R{i + 1} feeds {len(chain)} LEDs, not the {len(wanted)} of string {i + 1}"
-            )
-        part = read.parts.get(f"R{i + 1}")
-        resistance = ohm(part.value) if part else math.nan
-        drop = wiring.supply_v - wiring.current_ma[i] * 1e-3 * wiring.resistor_ohm[i]
-        amps_ma = 1e3 * (wiring.supply_v - drop / len(wanted) * len(chain)) / resistance
-        shares.append(amps_ma / wiring.current_ma[i])
-    yield read.count("strings", wrong, "strings")
-    yield read.count("polarity", turned, "LEDs")
-    off = np.array(shares) - 1
-    worst = off[np.abs(np.nan_to_num(off, nan=math.inf)).argmax()]
-    yield read.figure("current", 1 + worst, 1 - CURRENT_SHARE, 1 + CURRENT_SHARE, "of nominal")
-    yield from measure_loads(read, tuple(lit))
-
-
-def _chain(read: ReadBoard, resistor: str, supply: str, anode: str) -> tuple[list[str], bool]:
-    """LEDs after a resistor, with a minus where the current meets the cathode first; and whether
-    the last is at ground."""
-    ends = [read.group(resistor, 1), read.group(resistor, 2)]
-    source = read.wire(supply)
-    if None in ends or source not in ends:
-        return [], False
-    at, ground = ends[1 - ends.index(source)], read.wire(GROUND)
-    cathode = "1" if anode == "2" else "2"
-    leds = {
-        ref: (read.group(ref, anode), read.group(ref, cathode))
-        for ref in read.parts
-        if ref.startswith("D")
-    }
-    chain: list[str] = []
-    while at != ground:
-        after = [ref for ref, pads in leds.items() if at in pads]
-        if len(after) != 1:
-            return chain, False
-        into, out = leds.pop(after[0])
-        chain.append(after[0] if into == at else f"-{after[0]}")
-        at = out if into == at else into
-    return chain, True
 
 
 def _unserved(read: ReadBoard) -> Iterator[str]:

@@ -174,7 +174,7 @@ class ReadBoard(Subject):
         packages, part = self.design.packages, self.parts.get(ref)
         entries = {
             self.finger.cells_hold.letter: packages.at_cells(self.finger),
-            "U": packages.multiplexer,
+            "U": packages.source if self.strings else packages.multiplexer,
             "C": packages.capacitor,
             "R": packages.string_resistor if self.strings else packages.pull_up,
         }

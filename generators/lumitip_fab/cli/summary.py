@@ -127,6 +127,8 @@ PARAMETERS: dict[str, tuple[str, ...]] = {
     "board.open": ("board.channel_mm", "board.track_mm"),
     "board.current": ("emitter.current_ma", "supply.max_ma"),
     "board.resistor_load": ("emitter.resistor", "emitter.current_ma"),
+    "board.source_load": ("emitter.current_ma", "emitter.string_leds"),
+    "board.source_headroom": ("emitter.string_leds",),
     "holder.overhang": ("holder.wrap_deg", "holder.wall_mm"),
     "holder.min_wall": ("holder.wall_mm",),
     "holder.tray_gap": ("holder.clearance_mm",),

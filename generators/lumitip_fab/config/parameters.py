@@ -147,11 +147,17 @@ class Emitter(Strict):
     string_leds: int = Field(ge=1, le=64)
     """Most LEDs in a string; fewer make its current depend less on supply and LEDs."""
     max_heat_w: float = Field(ge=0.05, le=20)
-    """Most heat that LEDs and resistors may leave in the finger (W)."""
+    """Most heat that LEDs, sources and resistors may leave in the finger (W)."""
+    drive: Literal["source", "resistor"]
+    """What sets the current of a string: a current source, which holds it whatever supply and
+    temperature do, or a resistor."""
+    source: Name
+    """Name of a current source in `parts/current_sources.toml`."""
     resistor: Name
-    """Package of the string resistors in `parts/resistors.toml`."""
+    """Package of the strings' resistors in `parts/resistors.toml`."""
     resistor_side: Literal["front", "back"]
-    """Side of the board that carries the string resistors."""
+    """Side of the board that carries the strings' resistors; those of current sources stand on the
+    front."""
 
 
 class Receiver(Strict):

@@ -6,6 +6,7 @@ from typing import Any, get_args, get_type_hints
 from lumitip_fab.catalogue import Catalogue
 from lumitip_fab.catalogue.controllers import (
     Controller,
+    CurrentSource,
     LinearRegulator,
     Regulator,
     Strip,
@@ -34,6 +35,7 @@ class EmitterParts:
     """Parts of the emitter's board."""
 
     led: Led
+    source: CurrentSource
     resistor: Resistor
 
 

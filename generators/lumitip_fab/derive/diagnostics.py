@@ -13,6 +13,11 @@ class Diagnostics:
         self.stage = 0
         """Number of stages of derivation that had no faults."""
 
+    @property
+    def problems(self) -> tuple[Problem, ...]:
+        """The faults noted so far."""
+        return tuple(self._found)
+
     def refuse(self, field: str, message: str) -> None:
         """Note a fault of a field.
 

@@ -31,6 +31,7 @@ from lumitip_fab.derive.wiring import wiring
 from lumitip_fab.derive.wiring.cabling import Boards, derive_cabling
 from lumitip_fab.derive.wiring.electrical import derive_electrical
 from lumitip_fab.derive.wiring.ratings import refuse_receiver_capacitor
+from lumitip_fab.derive.wiring.strings import Strings, derive_strings
 from lumitip_fab.design import Controller, Design, Grid, Title
 from lumitip_fab.design.encoding import canonical, round_trip
 
@@ -40,7 +41,7 @@ class FirstLayout:
     """Grid, parts and nets, and both boards of the fingers: all that the rest is built round."""
 
     cells: Cells
-    strings: wiring.Strings
+    strings: Strings
     muxing: wiring.Muxing
     plan: boards.Plan
 
@@ -54,7 +55,7 @@ def lay_out(config: Input, faults: Diagnostics) -> FirstLayout:
     cells = derive_cells(config.parameters, faults)
     if not len(cells):
         faults.stop()  # without a grid nothing else can be judged
-    strings = wiring.derive_strings(config, cells, faults)
+    strings = derive_strings(config, cells, faults)
     muxing = wiring.derive_muxing(config, cells, faults)
     if not strings.cells or len(muxing.adc_pins) < muxing.muxes:
         faults.stop()  # without parts and nets there are no boards to place

@@ -7,6 +7,7 @@ otherwise.
 from dataclasses import dataclass
 from typing import Literal
 
+from lumitip_fab.catalogue.controllers import CurrentSource
 from lumitip_fab.catalogue.electronics import (
     Capacitor,
     Led,
@@ -148,6 +149,10 @@ class Finger:
     """Strain relief of its cable; none where there is no room."""
     finish: Finish = FINGER_FINISH
 
+    def body_name(self, part: Part) -> str:
+        """Name of a part's body in scenes: both boards have a U1."""
+        return f"{self.name}.{part.name}"
+
 
 @dataclass(frozen=True)
 class CellInput:
@@ -181,8 +186,11 @@ class Wiring:
     strings: tuple[tuple[int, ...], ...]
     """LEDs of each series string, by cell."""
     resistor: str
-    """Package of the string resistors."""
+    """Package of the strings' resistors."""
     resistor_ohm: tuple[float, ...]
+    """Resistor that carries the current of each string."""
+    set_ohm: tuple[float, ...]
+    """Resistor at the SET of each string's current source; empty without sources."""
     current_ma: tuple[float, ...]
     """Nominal current of each string."""
     supply_v: float
@@ -200,6 +208,9 @@ class Packages:
     led: Led
     led_name: str
     """In the catalogue, which is the value on drawings; likewise below."""
+    source: CurrentSource
+    """Of each string of LEDs, if they have one."""
+    source_name: str
     string_resistor: Resistor
     photodetector: Photodetector
     photodetector_name: str

@@ -4,6 +4,32 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
+class Regulation:
+    """How well current sources hold the current of the strings, and what they bear."""
+
+    source: str
+    """In the catalogue."""
+    set_v: float
+    """Voltage across the resistor at SET, and across that at OUT."""
+    change: float
+    """Of the current of one part over supply and temperature: a fraction, either way."""
+    spread: float
+    """From part to part: a fraction, either way."""
+    left_v: float
+    """At the longest string, beyond what the source needs, at the worst case."""
+    power_w: float
+    """Largest power of a source, at the worst case."""
+    rated_w: float
+    """Power with which its chip reaches its highest temperature at the highest ambient one."""
+    supply_range: float
+    """Fraction by which the supply changes, either way."""
+    temperatures_c: tuple[float, float]
+    """Least and greatest ambient temperature."""
+    forward_v_per_k: float
+    """Greatest fall of an LED's forward voltage with temperature."""
+
+
+@dataclass(frozen=True)
 class Strings:
     """Currents of the LED strings beyond the nominal ones in `Wiring`."""
 
@@ -25,11 +51,13 @@ class Strings:
     fewer_low_ma: float
     fewer_high_ma: float
     resistor_w: float
-    """Largest load of a string resistor, nominal."""
+    """Largest load of a resistor that carries a string's current, nominal."""
     resistor_high_w: float
     """The same at the worst case of all tolerances."""
     resistor_rated_w: float
     """Rated power of the resistor's package."""
+    regulation: Regulation | None = None
+    """None where a resistor alone sets the current."""
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import Literal
 
 from lumitip_fab.catalogue import controllers as catalogue
-from lumitip_fab.catalogue.controllers import Leaded, Module, Strip
+from lumitip_fab.catalogue.controllers import CurrentSource, Leaded, Module, Strip
 from lumitip_fab.catalogue.electronics import Chip, Multiplexer, ResistorArray
 from lumitip_fab.design import Design
 from lumitip_fab.design.pcb import Facing, Footprint, Form, Pad, Shroud
@@ -34,6 +34,9 @@ def of_design(design: Design) -> Iterator[tuple[str, Footprint]]:
             continue
         if isinstance(entry, Multiplexer):
             yield "multiplexer", multiplexer(entry)
+        elif isinstance(entry, CurrentSource):
+            if design.wiring.set_ohm:
+                yield "current source", leaded(entry)
         elif isinstance(entry, ResistorArray):
             yield "resistor array", array(entry)
         elif isinstance(entry, Chip):

@@ -22,7 +22,11 @@ _KINDS = {
     "Y": "crystal",
 }
 """Kind of a part by the first letter of its references."""
-_ON_BOARD = {("receiver", "Q"): "photodetector", ("flange", "D"): "TVS diode"}
+_ON_BOARD = {
+    ("receiver", "Q"): "photodetector",
+    ("emitter", "U"): "current source",
+    ("flange", "D"): "TVS diode",
+}
 """The same where a board has another kind of this letter."""
 
 

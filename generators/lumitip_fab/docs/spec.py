@@ -230,7 +230,7 @@ def _further(design: Design) -> tuple[Row, ...]:
             "heat in the emitter",
             "not stated",
             f"{design.electrical.heat_w:.2f} W",
-            f"{current:.1f} mA from {volts:g} V, all of it in LEDs and their resistors",
+            f"{current:.1f} mA from {volts:g} V, all of it in LEDs and what sets their current",
         ),
     )
 

@@ -1,6 +1,7 @@
 """Electrical figures of a design beside the published ones."""
 
 from lumitip_fab.design import Design, Wiring
+from lumitip_fab.design.electrical import Regulation
 from lumitip_fab.docs.outside import Row
 
 CONVERSION_US, EMITTER_MS = 30, 0.2
@@ -26,8 +27,8 @@ def electrical_rows(design: Design) -> tuple[Row, ...]:
             "current of the emitter",
             "38 mA",
             f"{sum(wiring.current_ma):.1f} mA",
-            f"nominal: {len(wiring.strings)} strings through {_ohms(wiring.resistor_ohm)} from "
-            f"{wiring.supply_v:g} V; Table I gives whole mA",
+            f"nominal: {len(wiring.strings)} strings {_set_by(design)} from {wiring.supply_v:g} V; "
+            "Table I gives whole mA",
         ),
         Row(
             "current of the receiver",
@@ -47,6 +48,8 @@ def electrical_rows(design: Design) -> tuple[Row, ...]:
 
 def string_rows(design: Design) -> tuple[Row, ...]:
     strings, wiring = design.electrical.strings, design.wiring
+    if strings.regulation:
+        return _source_rows(design, strings.regulation)
     low, high = min(strings.low_ma), max(strings.high_ma)
     longest = max(len(string) for string in wiring.strings)
     left_v = wiring.supply_v - longest * strings.forward_v
@@ -69,6 +72,41 @@ def string_rows(design: Design) -> tuple[Row, ...]:
             f"{1000 * strings.resistor_w:.0f} mW",
             f"nominal; up to {1000 * strings.resistor_high_w:.0f} mW at {high:.1f} mA, of "
             f"{1000 * strings.resistor_rated_w:.0f} mW rated",
+        ),
+    )
+
+
+def _source_rows(design: Design, held: Regulation) -> tuple[Row, ...]:
+    strings, wiring = design.electrical.strings, design.wiring
+    low, high = min(strings.low_ma), max(strings.high_ma)
+    coldest, hottest = held.temperatures_c
+    longest = max(len(string) for string in wiring.strings)
+    where = (
+        f"supply ±{100 * held.supply_range:g} %, {coldest:g} to {hottest:g} °C; computed, and "
+        "simulated with ngspice from the data sheet's figures"
+    )
+    return (
+        Row("current of a string", "19 to 20 mA", _span(wiring.current_ma), "nominal"),
+        Row("... of one part", "not stated", f"±{100 * held.change:.1f} %", where),
+        Row(
+            "... from part to part",
+            "not stated",
+            f"±{100 * held.spread:.1f} %",
+            f"reference, offset and resistors of {held.source}: {low:.1f} to {high:.1f} mA with "
+            "all of it; calibration takes it off",
+        ),
+        Row(
+            "voltage left to a current source",
+            "not stated",
+            f"{held.left_v:.2f} V",
+            f"beyond what it needs, with {longest} LEDs, the lowest supply and cold LEDs",
+        ),
+        Row(
+            "power of a current source",
+            "not stated",
+            f"{1000 * held.power_w:.0f} mW",
+            f"at most, with the highest supply and warm LEDs, of {1000 * held.rated_w:.0f} mW that "
+            f"it bears at {hottest:g} °C",
         ),
     )
 
@@ -157,6 +195,12 @@ def _slow_ms(design: Design, end: int) -> float:
 def _span(values: tuple[float, ...]) -> str:
     low, high = f"{min(values):.1f}", f"{max(values):.1f}"
     return f"{low} mA" if low == high else f"{low} to {high} mA"
+
+
+def _set_by(design: Design) -> str:
+    """How the current of the strings is set, after "strings"."""
+    held = design.electrical.strings.regulation
+    return f"with {held.source} each" if held else f"through {_ohms(design.wiring.resistor_ohm)}"
 
 
 def _ohms(values: tuple[float, ...]) -> str:

@@ -44,7 +44,8 @@ def bill(config: Input, design: Design) -> dict[str, int]:
         pull_ups = p.receiver.array, len(used_slots(design.reading.cells, mux, array))
     counts = (
         (p.emitter.led, len(design.layout)),
-        (p.emitter.resistor, len(wiring.strings)),
+        (p.emitter.source, len(wiring.set_ohm)),
+        (p.emitter.resistor, len(wiring.resistor_ohm) + len(wiring.set_ohm)),
         (p.receiver.photodetector, len(design.layout)),
         (p.receiver.multiplexer, wiring.muxes),
         pull_ups,
@@ -53,6 +54,8 @@ def bill(config: Input, design: Design) -> dict[str, int]:
     )
     needed: dict[str, int] = {}
     for name, count in counts:
+        if not count:
+            continue
         needed[name] = needed.get(name, 0) + count
     return needed
 

@@ -19,6 +19,7 @@ from lumitip_fab.pipeline.build import locked
 
 _PRICED = (
     "leds",
+    "current_sources",
     "resistors",
     "resistor_arrays",
     "photodetectors",

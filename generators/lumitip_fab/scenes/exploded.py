@@ -39,6 +39,7 @@ _PART_TINTS = {
     "photodetector": "#fff",
     "led": "#fff",
     "multiplexer": "#b9bcc0",
+    "current source": "#b9bcc0",
     "resistor": "#d8d2c8",
 }
 
@@ -221,6 +222,7 @@ def _details(finger: Finger, stack: Stack) -> list[tuple[tuple[str, str], Any, s
         ("photodetector", "photodetectors"),
         ("led", "LEDs"),
         ("multiplexer", "multiplexers"),
+        ("current source", "current sources"),
         ("resistor", "resistors"),
     ):
         alike = [part for part in finger.parts if part.kind == kind and part.side == "front"]

@@ -26,6 +26,7 @@ COLOURS: dict[str, Colour] = {
     "led": (0.95, 0.80, 0.35, 1.0),
     "photodetector": (0.22, 0.24, 0.30, 1.0),
     "multiplexer": (0.12, 0.12, 0.13, 1.0),
+    "current source": (0.12, 0.12, 0.13, 1.0),
     "resistor": (0.25, 0.22, 0.20, 1.0),
 }
 

@@ -21,6 +21,7 @@ _MARKED = (
     *AT_CELLS,
     "multiplexer",
     "regulator",
+    "current source",
     "transistor",
     "tvs diode",
     "socket",
@@ -91,7 +92,7 @@ def _outline(component: Component, rules: Rules, gap_mm: float) -> tuple[Stroke,
         return (_bar(shape, rules),) if fits else _beside(shape, rules)
     if kind in ("socket", "header"):
         return _socket(shape.body, rules)
-    if kind in ("regulator", "transistor"):
+    if kind in ("regulator", "current source", "transistor"):
         return (_dot(shape.pads[0], rules, _BAR_MM),)
     if kind == "tvs diode":
         return (_bar(shape, rules), *_sides(shape, rules, roomy))

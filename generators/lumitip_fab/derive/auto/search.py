@@ -162,6 +162,8 @@ MENDS: dict[str, tuple[str, ...]] = {
     "emitter.led": ("board.clearance_mm", "emitter.current_ma"),
     "emitter.current_ma": _CURRENT,
     "emitter.max_heat_w": _CURRENT,
+    "emitter.source": ("emitter.drive", *_CURRENT, "board.channel_mm"),
+    "emitter.resistor_side": ("emitter.drive",),
     "emitter.resistor": (
         "emitter.resistor_side",
         "board.channel_mm",
@@ -216,7 +218,11 @@ def menders(field: str) -> tuple[str, ...]:
 
 
 MOST_CHANGES = 40
-_EITHER = {"emitter.resistor_side": ("back", "front"), "receiver.load": ("each", "shared")}
+_EITHER = {
+    "emitter.drive": ("source", "resistor"),
+    "emitter.resistor_side": ("back", "front"),
+    "receiver.load": ("each", "shared"),
+}
 
 Moved = Callable[[Change, str], None]
 """Called with each change and the message of the rule that it mended."""

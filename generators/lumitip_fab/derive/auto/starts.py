@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 
 from lumitip_fab.config.automatic import FIELDS, Value
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.auto.strings import choose_strings
+from lumitip_fab.derive.auto.strings import choose_resistors, choose_strings
 from lumitip_fab.derive.boards.connectors import POWER_WIRES
 from lumitip_fab.derive.boards.module import MOST_WIRES
 from lumitip_fab.derive.boards.packages import LEAST_RING_MM
@@ -45,6 +45,7 @@ def proposals() -> tuple[Callable[[Input], Iterator[Proposal]], ...]:
         choose_strings,
         _vias,
         _channel,
+        _room_of_sources,
         _flange,
         _interface,
     )
@@ -170,6 +171,22 @@ def _channel(config: Input) -> Iterator[Proposal]:
         yield "board.channel_mm", ROOMY_CHANNEL_MM, reason
     if fine:
         yield "board.edge_gap_mm", LEAST_EDGE_GAP_MM, reason
+
+
+def _room_of_sources(config: Input) -> Iterator[Proposal]:
+    """Resistors instead of current sources where these have no room on a first layout."""
+    if "emitter.drive" not in config.automatic or config.parameters.emitter.drive != "source":
+        return
+    faults = Diagnostics(config)
+    try:
+        lay_out(config, faults)
+    except InputError:
+        return
+    crowded = [p.message for p in faults.problems if p.field == "emitter.source"]
+    if crowded:
+        yield from choose_resistors(
+            config, f"otherwise emitter.source {crowded[0].partition('. ')[0]}"
+        )
 
 
 def _interface(config: Input) -> Iterator[Proposal]:

@@ -1,18 +1,20 @@
-"""First values of current, strings and resistors of the LEDs, and of the pull-ups: together."""
+"""First values of drive, current, strings and resistors of the LEDs, and of the pull-ups:
+together."""
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 
 from lumitip_fab.config.automatic import FIELDS, Value
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.wiring.ratings import (
-    String,
+from lumitip_fab.derive.wiring.ratings import sold_ohm
+from lumitip_fab.derive.wiring.series import String
+from lumitip_fab.derive.wiring.strings import (
     lengths,
     longest_string,
-    sold_ohm,
     string_of,
+    string_problems,
 )
-from lumitip_fab.derive.wiring.wiring import string_problems
 
 CURRENT_STEP = 0.95  # from one current that is tried to the next
 SATURATION_MARGIN = 1.5  # light current at a bare cell, times what saturates its pull-up
@@ -21,26 +23,65 @@ SHARED_OHM = 75e3  # the published one
 
 
 def choose_strings(config: Input) -> Iterator[tuple[str, Value, str]]:
-    """Automatic values of current, LEDs of a string, resistor and pull-up. Where no combination
-    passes, the one that breaks the fewest rules."""
+    """Automatic values of drive, current, LEDs of a string, resistor and pull-up. Where no
+    combination passes, the one that breaks the fewest rules."""
+    refused = ""
+    for driven in _drives(config):
+        for tried, longest in _candidates(driven):
+            problem = next(string_problems(tried, _strings(tried, longest)), None)
+            if problem is None:
+                yield from _drive_proposals(tried, refused)
+                yield from _proposals(tried, longest)
+                return
+            refused = refused or f"with current sources {problem[0]} {problem[1]}"
+        refused = refused or "the supply does not feed an LED and a current source"
+    *_, driven = _drives(config)
+    least = min(_currents(driven), default=driven.parameters.emitter.current_ma)
+    lowest = [c for c in _candidates(driven) if c[0].parameters.emitter.current_ma == least]
+    if lowest:
+        tried, longest = min(lowest, key=_broken)
+        yield from _drive_proposals(tried, refused)
+        yield from _proposals(tried, longest)
+
+
+def choose_resistors(config: Input, reason: str) -> Iterator[tuple[str, Value, str]]:
+    """The same without current sources, for a reason."""
+    fixed = replace(config, automatic=config.automatic - {"emitter.drive"})
+    yield "emitter.drive", "resistor", reason
+    yield from choose_strings(_driven(fixed, "resistor"))
+
+
+def _drives(config: Input) -> Iterator[Input]:
+    """The input with each drive that may be chosen."""
+    automatic = "emitter.drive" in config.automatic
+    for drive in ("source", "resistor") if automatic else (config.parameters.emitter.drive,):
+        yield _driven(config, drive)
+
+
+def _driven(config: Input, drive: str) -> Input:
+    """The input with a drive, and with its resistors on the side that belongs to it."""
+    values = {"emitter.drive": drive}
+    if "emitter.resistor_side" in config.automatic:
+        values["emitter.resistor_side"] = "front" if drive == "source" else "back"
+    return config.with_values(values)
+
+
+def _candidates(config: Input) -> Iterator[tuple[Input, int]]:
+    """Currents, packages and lengths to try, in the order in which they are preferred."""
     for current in _currents(config):
         for resistor in _resistors(config):
             for longest in _lengths(config):
-                tried = config.with_values(
-                    {"emitter.current_ma": current, "emitter.resistor": resistor}
-                )
-                found = _strings(tried, longest)
-                if not any(string_problems(tried, found)):
-                    yield from _proposals(tried, longest)
-                    return
-    least = min(_currents(config), default=config.parameters.emitter.current_ma)
-    candidates = [
-        (config.with_values({"emitter.current_ma": least, "emitter.resistor": resistor}), longest)
-        for resistor in _resistors(config)
-        for longest in _lengths(config)
-    ]
-    if candidates:
-        yield from _proposals(*min(candidates, key=_broken))
+                values = {"emitter.current_ma": current, "emitter.resistor": resistor}
+                yield config.with_values(values), longest
+
+
+def _drive_proposals(config: Input, refused: str) -> Iterator[tuple[str, Value, str]]:
+    emitter = config.parameters.emitter
+    held = "it holds the current whatever supply and temperature do"
+    if "emitter.drive" in config.automatic:
+        yield "emitter.drive", emitter.drive, held if emitter.drive == "source" else refused
+    side = "beside the current sources" if emitter.drive == "source" else "as published"
+    yield "emitter.resistor_side", emitter.resistor_side, side
 
 
 def _broken(candidate: tuple[Input, int]) -> int:
@@ -63,7 +104,7 @@ def _proposals(config: Input, longest: int) -> Iterator[tuple[str, Value, str]]:
     if p.emitter.current_ma < full:
         reason = (
             f"less than {full:g} mA: {len(strings)} strings from {volts:g} V keep to "
-            f"supply.max_ma, emitter.max_heat_w = {p.emitter.max_heat_w:g} and their resistors"
+            f"supply.max_ma, emitter.max_heat_w = {p.emitter.max_heat_w:g} and the ratings"
         )
     if "receiver.pull_up_ohm" not in config.automatic and p.emitter.current_ma < _least_ma(
         config, p.receiver.pull_up_ohm
@@ -73,7 +114,7 @@ def _proposals(config: Input, longest: int) -> Iterator[tuple[str, Value, str]]:
     yield (
         "emitter.string_leds",
         max(lengths(sum(p.grid.columns), longest)),
-        f"{len(strings)} strings: as few as {volts:g} V and the resistors allow",
+        f"{len(strings)} strings: as few as {volts:g} V and the ratings allow",
     )
     yield (
         "emitter.resistor",

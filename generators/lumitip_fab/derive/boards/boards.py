@@ -20,13 +20,15 @@ from lumitip_fab.config.load import Input
 from lumitip_fab.config.parameters import Parameters
 from lumitip_fab.derive.boards import connectors, placing
 from lumitip_fab.derive.boards.packages import flexible_board
+from lumitip_fab.derive.boards.sources import source_parts
 from lumitip_fab.derive.boards.ties import finger_ties
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.cells import Cells, bending_lines, derive_turned, refuse_lines
 from lumitip_fab.derive.finger.stack import foot_half_mm, is_flex
 from lumitip_fab.derive.making.fits import derive_fits
-from lumitip_fab.derive.wiring.wiring import Muxing, Strings
-from lumitip_fab.design import AtCells, Board, Box, Connector, Finger, Part, Point, Zone
+from lumitip_fab.derive.wiring.strings import Strings
+from lumitip_fab.derive.wiring.wiring import Muxing
+from lumitip_fab.design import AtCells, Board, Box, Connector, Finger, Part, Point, Relief, Zone
 
 LED = AtCells("led", "D", -1.0)
 DETECTOR = AtCells("photodetector", "Q", 1.0)
@@ -88,8 +90,7 @@ def derive_plan(
         (-frame.rear_hole_x_mm, frame.connector_y_mm),
         (frame.rear_hole_x_mm, frame.connector_y_mm),
     )
-    room = _resistor_room(config, frame)
-    resistors, reliefs = placing.resistors(config, strings, room, frame.foot_half_mm, faults)
+    driving, reliefs = _driving(config, strings, frame, faults)
     wires = connectors.place(connectors.emitter_signals(config), True, frame.connector_y_mm)
     emitter = Finger(
         name="emitter",
@@ -98,7 +99,7 @@ def derive_plan(
         turned=led_turned,
         holes=(*((-x, y) for x, y in tip_holes), *rear),
         connector=wires,
-        parts=(*leds, *resistors),
+        parts=(*leds, *driving),
         zones=_zones(frame),
         reliefs=reliefs,
         notch=frame.notch,
@@ -224,6 +225,16 @@ def _refuse_holes(p: Parameters, pad_mm: float, faults: Diagnostics) -> None:
         f"is {p.board.channel_mm:g}; {what} beside the connector would reach the parts; at "
         f"least {least:.2f} is needed",
     )
+
+
+def _driving(
+    config: Input, strings: Strings, frame: Frame, faults: Diagnostics
+) -> tuple[tuple[Part, ...], tuple[Relief, ...]]:
+    """What sets the currents of the strings, and the reliefs behind it."""
+    if config.parameters.emitter.drive == "source":
+        return source_parts(config, len(strings.cells), frame.parts, faults), ()
+    room = _resistor_room(config, frame)
+    return placing.resistors(config, strings, room, frame.foot_half_mm, faults)
 
 
 def _resistor_room(config: Input, frame: Frame) -> Box:

@@ -28,7 +28,8 @@ from lumitip_fab.derive.boards.packages import capacitor
 from lumitip_fab.derive.boards.ties import derive_ties
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.mount.fasteners import BOARD_SCREW
-from lumitip_fab.derive.wiring.wiring import Muxing, Strings
+from lumitip_fab.derive.wiring.strings import Strings
+from lumitip_fab.derive.wiring.wiring import Muxing
 from lumitip_fab.design import AuxiliaryBoard, Box, Component, Point
 from lumitip_fab.design.components import (
     chip,

@@ -14,7 +14,7 @@ from lumitip_fab.derive.wiring.ratings import (
     refuse_flange_capacitors,
     sold_ohm,
 )
-from lumitip_fab.derive.wiring.wiring import Strings
+from lumitip_fab.derive.wiring.strings import Strings
 from lumitip_fab.design.electrical import Regulated
 
 PLACE_MM = 0.05

@@ -23,6 +23,8 @@ def derive_packages(config: Input) -> Packages:
     return Packages(
         led=_without_texts(parts.leds[p.emitter.led]),
         led_name=p.emitter.led,
+        source=_without_texts(parts.current_sources[p.emitter.source]),
+        source_name=p.emitter.source,
         string_resistor=_without_texts(parts.resistors[p.emitter.resistor]),
         photodetector=_without_texts(parts.photodetectors[p.receiver.photodetector]),
         photodetector_name=p.receiver.photodetector,

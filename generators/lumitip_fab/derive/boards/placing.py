@@ -6,10 +6,12 @@ import numpy as np
 
 from lumitip_fab.catalogue.electronics import Chip
 from lumitip_fab.config.load import Input
+from lumitip_fab.derive.boards.sources import group_mm
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.cells import Cells
 from lumitip_fab.derive.finger.stack import is_flex
-from lumitip_fab.derive.wiring.wiring import Muxing, Strings
+from lumitip_fab.derive.wiring.strings import Strings
+from lumitip_fab.derive.wiring.wiring import Muxing
 from lumitip_fab.design import AtCells, Box, Part, Point, Relief, pull_ups
 
 HOLE_CLEARANCE_MM = 0.25
@@ -240,8 +242,11 @@ def resistors(
 
 
 def least_half_width_mm(config: Input, foot_half_mm: float) -> float:
-    """Half the board's width that takes one string resistor on each side of the coupling."""
+    """Half the board's width that takes one string resistor on each side of the coupling, or a
+    current source with its resistors."""
     p = config.parameters
+    if p.emitter.drive == "source":
+        return group_mm(config)[0] / 2 + ZONE_MARGIN_MM
     _, across = config.parts.emitter.resistor.over_pads_mm
     return _inner_mm(config, foot_half_mm) + across + p.backing.relief_clearance_mm + ZONE_MARGIN_MM
 

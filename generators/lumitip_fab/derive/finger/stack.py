@@ -92,6 +92,8 @@ def derive_stack(config: Input, faults: Diagnostics) -> Stack:
         heights["receiver.array"] = parts.resistor_arrays[p.receiver.array].body_mm[2]
     if p.emitter.resistor_side == "front":
         heights["emitter.resistor"] = parts.resistors[p.emitter.resistor].body_mm[2]
+    if p.emitter.drive == "source":
+        heights["emitter.source"] = config.parts.emitter.source.body_mm[2]
     for field, height in heights.items():
         left = p.stack.silicone_mm - height
         faults.refuse_unless(

@@ -6,14 +6,16 @@ from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards.flange_circuit import derive_regulated
 from lumitip_fab.derive.boards.plug_in import derive_plug_in
 from lumitip_fab.derive.diagnostics import Diagnostics
-from lumitip_fab.derive.wiring import wiring
-from lumitip_fab.derive.wiring.ratings import RESISTOR_TOLERANCE, SUPPLY_TOLERANCE, string_of
+from lumitip_fab.derive.wiring.ratings import RESISTOR_TOLERANCE, SUPPLY_TOLERANCE
+from lumitip_fab.derive.wiring.sources import regulation
+from lumitip_fab.derive.wiring.strings import Strings as DerivedStrings
+from lumitip_fab.derive.wiring.strings import string_of
 from lumitip_fab.design.electrical import Channel, Electrical, Strings
 
 SHORTER = 0.75  # of a string's LEDs, to compare
 
 
-def derive_electrical(config: Input, strings: wiring.Strings, faults: Diagnostics) -> Electrical:
+def derive_electrical(config: Input, strings: DerivedStrings, faults: Diagnostics) -> Electrical:
     """Electrical figures from parts, strings and supply."""
     p = config.parameters
     return Electrical(
@@ -25,7 +27,7 @@ def derive_electrical(config: Input, strings: wiring.Strings, faults: Diagnostic
     )
 
 
-def _strings(config: Input, strings: wiring.Strings) -> Strings:
+def _strings(config: Input, strings: DerivedStrings) -> Strings:
     p = config.parameters
     led = config.parts.emitter.led
     fewer = max(1, math.floor(SHORTER * max(len(cells) for cells in strings.cells)))
@@ -45,6 +47,7 @@ def _strings(config: Input, strings: wiring.Strings) -> Strings:
         resistor_w=max(string.load_w for string in strings.strings),
         resistor_high_w=max(string.high_load_w for string in strings.strings),
         resistor_rated_w=config.parts.emitter.resistor.power_w,
+        regulation=regulation(config, strings.strings) if strings.set_ohm else None,
     )
 
 

@@ -1,4 +1,4 @@
-"""Loads at the worst case: LED strings with their resistors, and capacitors at their voltage."""
+"""Ratings of resistors and capacitors, and the values that resistors are sold in."""
 
 import math
 from collections.abc import Iterable
@@ -7,112 +7,28 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lumitip_fab.catalogue.electronics import Led
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.diagnostics import Diagnostics
 
-THERMAL_V = 0.02585  # kT/q at 300 K
 SUPPLY_TOLERANCE = 0.05
 RESISTOR_TOLERANCE = 0.01
 MOST_RESISTOR_LOAD = 0.8
 """Share of the rated power at the worst case. The rating of thick-film chips holds to 70 °C and
 falls linearly to 0 at 155 °C (Yageo RC_L series): 0.8 is what is left at 87 °C."""
-LEAST_RESISTOR_SHARE = 0.1
-"""Share of the supply across a resistor: below it the current follows every millivolt."""
-_E24 = "10 11 12 13 15 16 18 20 22 24 27 30 33 36 39 43 47 51 56 62 68 75 82 91 100"
-"""Tenths of the values of a decade, and of the next decade's first."""
-
-
-@dataclass(frozen=True)
-class String:
-    """One string: LEDs, its resistor, and what flows."""
-
-    leds: int
-    ohm: float
-    nominal_ma: float
-    low_ma: float
-    """With the lowest supply, the highest forward voltages and the highest resistor."""
-    high_ma: float
-
-    @property
-    def load_w(self) -> float:
-        """Load of the resistor, nominal."""
-        return self.nominal_ma**2 * self.ohm * 1e-6
-
-    @property
-    def high_load_w(self) -> float:
-        """Load of the resistor at the worst case."""
-        return self.high_ma**2 * self.ohm * (1 - RESISTOR_TOLERANCE) * 1e-6
-
-
-def string_of(config: Input, leds: int, current_ma: float) -> String:
-    """A string of LEDs for a current: its resistor is the nearest E96 value."""
-    p = config.parameters
-    led, volts = config.parts.emitter.led, p.supply.voltage_v
-    drop = volts - leds * led.forward_voltage_v
-    ohm = e96(1000 * drop / current_ma)
-    low, high = (_extreme_ma(led, volts, leds, ohm, current_ma, sign) for sign in (-1, 1))
-    return String(leds, ohm, 1000 * drop / ohm, low, high)
-
-
-def longest_string(config: Input) -> int:
-    """Most LEDs in a string that leave its resistor a tenth of the supply; 0 if not even one."""
-    p = config.parameters
-    led, volts = config.parts.emitter.led, p.supply.voltage_v
-    return int(volts * (1 - LEAST_RESISTOR_SHARE) / led.forward_voltage_v)
-
-
-def lengths(cells: int, longest: int) -> tuple[int, ...]:
-    """LEDs of each string: as few strings as possible, which differ by at most one LED."""
-    count = math.ceil(cells / longest)
-    return tuple(cells // count + (i < cells % count) for i in range(count))
-
-
-def _extreme_ma(led: Led, volts: float, leds: int, ohm: float, at_ma: float, sign: int) -> float:
-    """Current at one end of all tolerances: the highest with `sign` 1, the lowest with -1."""
-    return string_current_ma(
-        volts * (1 + sign * SUPPLY_TOLERANCE),
-        leds,
-        ohm * (1 - sign * RESISTOR_TOLERANCE),
-        led.forward_voltage_v - sign * led.forward_tolerance_v,
-        at_ma,
-        led.ideality,
-    )
-
-
-def string_current_ma(
-    supply_v: float, leds: int, ohm: float, forward_v: float, at_ma: float, ideality: float
-) -> float:
-    """Current of LEDs and a resistor in series, by Shockley's equation, found by bisection.
-
-    Args:
-        supply_v: over all of them.
-        leds: how many there are.
-        ohm: the resistor.
-        forward_v: of an LED at `at_ma`.
-        at_ma: current at which the forward voltage is measured.
-        ideality: of the LEDs.
-    """
-    low, high = 0.0, 1000 * supply_v / ohm
-    while high - low > 1e-9:
-        middle = (low + high) / 2
-        drop = forward_v + ideality * THERMAL_V * math.log(max(middle / at_ma, 1e-12))
-        if leds * drop + middle * ohm / 1000 < supply_v:
-            low = middle
-        else:
-            high = middle
-    return (low + high) / 2
+_TENTHS = "10 11 12 13 15 16 18 20 22 24 27 30 33 36 39 43 47 51 56 62 68 75 82 91"
+E24 = tuple(int(value) / 10 for value in _TENTHS.split())
+"""Values of a decade."""
+_E96 = tuple(round(10.0 ** (step / 96), 2) for step in range(96))
 
 
 def e96(ohm: float) -> float:
     """The nearest value of the E96 series (IEC 60063: 96 steps a decade, three digits)."""
-    steps: NDArray[np.float64] = np.power(10.0, np.arange(97) / 96)
-    return _nearest(ohm, np.round(steps, 2))
+    return _nearest(ohm, np.array([*_E96, 10.0]))
 
 
 def sold_ohm(ohm: float) -> float:
     """The nearest value of the E24 and E96 series, in both of which 1 % resistors are sold."""
-    e24 = np.array([int(value) / 10 for value in _E24.split()])
+    e24 = np.array([*E24, 10.0])
     steps = np.array([e96(ohm), _nearest(ohm, e24)])
     return float(steps[np.abs(np.log(steps / ohm)).argmin()])
 
@@ -123,6 +39,14 @@ def sold_from(least_ohm: float) -> float:
     while ohm < least_ohm:
         ohm = sold_ohm(ohm * 1.02)  # E96 steps by 2.4 %
     return ohm
+
+
+def values_between(least_ohm: float, most_ohm: float, fine: bool) -> list[float]:
+    """Values of the E24 series between two resistances, or of E24 and E96 both."""
+    series = {*E24, *(_E96 if fine else ())}
+    decades = range(math.floor(math.log10(least_ohm)), math.floor(math.log10(most_ohm)) + 1)
+    values = {round(value * 10.0**decade, 6) for decade in decades for value in series}
+    return sorted(value for value in values if least_ohm <= value <= most_ohm)
 
 
 def _nearest(ohm: float, mantissas: NDArray[np.float64]) -> float:

@@ -1,7 +1,6 @@
-"""LED strings, multiplexers, channels and pins of the cells."""
+"""Multiplexers, channels and pins of the cells, and all wiring beyond the layout."""
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import lap
@@ -12,37 +11,9 @@ from lumitip.grid import Integers
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.cells import Cells
-from lumitip_fab.derive.wiring.ratings import (
-    LEAST_RESISTOR_SHARE,
-    MOST_RESISTOR_LOAD,
-    String,
-    lengths,
-    longest_string,
-    sold_ohm,
-    string_of,
-)
+from lumitip_fab.derive.wiring.ratings import sold_ohm
+from lumitip_fab.derive.wiring.strings import Strings
 from lumitip_fab.design import Point, Wiring
-
-MOST_CURRENT_SPREAD = 0.05  # between strings
-
-
-@dataclass(frozen=True)
-class Strings:
-    """Series strings of LEDs with their resistors."""
-
-    cells: tuple[tuple[int, ...], ...]
-    strings: tuple[String, ...]
-    """Resistor and currents of each."""
-
-    @property
-    def resistor_ohm(self) -> tuple[float, ...]:
-        """Resistor of each string."""
-        return tuple(string.ohm for string in self.strings)
-
-    @property
-    def current_ma(self) -> tuple[float, ...]:
-        """Nominal current of each string."""
-        return tuple(string.nominal_ma for string in self.strings)
 
 
 @dataclass(frozen=True)
@@ -52,89 +23,6 @@ class Muxing:
     muxes: int
     adc_pins: tuple[str, ...]
     select_pins: tuple[str, ...]
-
-
-def derive_strings(config: Input, cells: Cells, faults: Diagnostics) -> Strings:
-    """The fewest strings that the supply allows, differing by at most one LED."""
-    p = config.parameters
-    led, volts = config.parts.emitter.led, p.supply.voltage_v
-    longest = min(longest_string(config), p.emitter.string_leds)
-    if longest < 1:
-        faults.refuse(
-            "supply.voltage_v",
-            f"is {volts:g}; one LED needs {led.forward_voltage_v:g} V and its resistor 10 % of the "
-            "supply: at least "
-            f"{led.forward_voltage_v / (1 - LEAST_RESISTOR_SHARE):.2f} is needed",
-        )
-        return Strings((), ())
-    groups = np.array_split(_winding(cells), len(lengths(len(cells), longest)))
-    current = p.emitter.current_ma
-    by_length = {n: string_of(config, n, current) for n in {group.size for group in groups}}
-    strings = Strings(
-        tuple(_from_the_gripper(cells, group) for group in groups),
-        tuple(by_length[group.size] for group in groups),
-    )
-    for field, message in string_problems(config, strings.strings):
-        faults.refuse(field, message)
-    return strings
-
-
-def string_problems(config: Input, strings: tuple[String, ...]) -> Iterator[tuple[str, str]]:
-    """Field and message of every rule that strings break: ratings at the worst case, spread of
-    currents, supply and heat."""
-    p = config.parameters
-    led, volts = config.parts.emitter.led, p.supply.voltage_v
-    package, current = config.parts.emitter.resistor, p.emitter.current_ma
-    highest = max(string.high_ma for string in strings)
-    if max(highest, current) > led.max_current_ma:
-        yield (
-            "emitter.current_ma",
-            f"is {current:g}, up to {highest:.1f} mA with all tolerances (supply, LEDs, resistor); "
-            f"{p.emitter.led!r} is rated for {led.max_current_ma:g} mA",
-        )
-    load = max(string.high_load_w for string in strings)
-    allowed = MOST_RESISTOR_LOAD * package.power_w
-    if load > allowed:
-        yield (
-            "emitter.resistor",
-            f"is {p.emitter.resistor!r}, with a power of up to {1000 * load:.0f} mW at "
-            f"{current:g} mA and all tolerances (supply, LEDs, resistor); the limit is "
-            f"{1000 * allowed:.0f} mW ({100 * MOST_RESISTOR_LOAD:g} % of its rating)",
-        )
-    nominal = [string.nominal_ma for string in strings]
-    spread = max(nominal) / min(nominal) - 1
-    if spread > MOST_CURRENT_SPREAD:
-        yield (
-            "emitter.current_ma",
-            f"is {current:g}; the currents of the strings differ by {100 * spread:.1f} %; "
-            f"at most {100 * MOST_CURRENT_SPREAD:g} % is allowed",
-        )
-    if sum(nominal) > p.supply.max_ma:
-        yield (
-            "supply.max_ma",
-            f"is {p.supply.max_ma:g}; {len(strings)} strings at {current:g} mA draw "
-            f"{sum(nominal):.1f} mA. Increase it or reduce emitter.current_ma.",
-        )
-    heat_w = sum(nominal) * volts / 1000
-    if heat_w > p.emitter.max_heat_w:
-        yield (
-            "emitter.max_heat_w",
-            f"is {p.emitter.max_heat_w:g}; {len(strings)} strings at {current:g} mA "
-            f"from {volts:g} V produce {heat_w:.2f} W in the finger. Increase it or reduce "
-            "emitter.current_ma.",
-        )
-
-
-def _winding(cells: Cells) -> Integers:
-    """The cells up one column and down the next, so that successive cells are near each other."""
-    order = np.lexsort((np.where(cells.column % 2, cells.row, -cells.row), cells.column))
-    return np.asarray(order, dtype=np.int64)
-
-
-def _from_the_gripper(cells: Cells, string: Integers) -> tuple[int, ...]:
-    """A string from its end nearer to the gripper, where its resistor is."""
-    first, last = cells.y_mm[string[[0, -1]]]
-    return tuple(string[:: -1 if last < first else 1].tolist())
 
 
 def larger_multiplexers(config: Input) -> str:
@@ -232,6 +120,7 @@ def build_wiring(config: Input, strings: Strings, muxing: Muxing) -> Wiring:
         strings=strings.cells,
         resistor=p.emitter.resistor,
         resistor_ohm=strings.resistor_ohm,
+        set_ohm=strings.set_ohm,
         current_ma=strings.current_ma,
         supply_v=p.supply.voltage_v,
         pull_up_ohm=p.receiver.pull_up_ohm,

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 
-from lumitip_fab.boards.kicad.schematic import symbols
+from lumitip_fab.boards.kicad.schematic import current_sources, symbols
 from lumitip_fab.boards.kicad.schematic.sheet import Block, Sheet
 from lumitip_fab.boards.kicad.schematic.symbols import GRID_MM, PITCH_MM
 from lumitip_fab.boards.model import AT_CELLS, GROUND
@@ -57,15 +57,19 @@ def _wires(parts: Parts, supply: str, sheet: Sheet, at: Point) -> None:
 _LED_MM = 12.7
 _STRING_MM = 22.86
 _STRING_START_MM = 30.48
+_SOURCE = "Current_source"
 
 
 def string_blocks(parts: Parts, supply: str, wiring: Wiring, marked: str) -> Iterator[Block]:
-    """A block for each string of LEDs with its resistor."""
+    """A block for each string of LEDs with its resistor or its current source."""
     for number, string in enumerate(wiring.strings, start=1):
         width_mm = _STRING_START_MM + len(string) * _LED_MM + 20.32
-        current_ma = wiring.current_ma[number - 1]
-        draw = partial(_string, parts, supply, number, string, current_ma)
-        yield Block(width_mm, _STRING_MM, draw, {"LED": symbols.led(marked)})
+        height_mm, shapes = _STRING_MM, {"LED": symbols.led(marked)}
+        if wiring.set_ohm:
+            width_mm, height_mm = width_mm + current_sources.WIDTH_MM, height_mm + 10.16
+            shapes[_SOURCE] = current_sources.symbol(parts[f"U{number}"])
+        draw = partial(_string, parts, supply, number, string, wiring)
+        yield Block(width_mm, height_mm, draw, shapes)
 
 
 def _string(
@@ -73,20 +77,27 @@ def _string(
     supply: str,
     number: int,
     string: Sequence[int],
-    current_ma: float,
+    wiring: Wiring,
     sheet: Sheet,
     at: Point,
 ) -> None:
     x, y = at[0], at[1] + 12.7
-    caption = f"String {number}: {len(string)} LEDs, {current_ma:.1f} mA"
+    caption = f"String {number}: {len(string)} LEDs, {wiring.current_ma[number - 1]:.1f} mA"
     sheet.texts.append((caption, (x, y - 10.16), 1.8))
     sheet.power(supply, (x + 5.08, y))
-    resistor = parts[f"R{number}"]
-    sheet.wire((x + 5.08, y), (x + 8.89, y))
-    sheet.part("R", resistor, (x + 12.7, y), 90, ref_at=(0, -2.54), value_at=(0, 2.54))
-    end = x + 16.51
+    start = x + _STRING_START_MM
+    if wiring.set_ohm:
+        driving = (f"U{number}", f"R{number}", f"R{len(wiring.strings) + number}")
+        source, out, setting = (parts[ref] for ref in driving)
+        current_sources.draw(_SOURCE, (source, out, setting), sheet, (x + 5.08, y))
+        end, start = x + 5.08 + current_sources.WIDTH_MM, start + 34.29
+    else:
+        sheet.wire((x + 5.08, y), (x + 8.89, y))
+        resistor = parts[f"R{number}"]
+        sheet.part("R", resistor, (x + 12.7, y), 90, ref_at=(0, -2.54), value_at=(0, 2.54))
+        end = x + 16.51
     for place, cell in enumerate(string):
-        middle = x + _STRING_START_MM + place * _LED_MM
+        middle = start + place * _LED_MM
         sheet.wire((end, y), (middle - 3.81, y))
         sheet.flag(f"S{number}_{place}", ((end + middle - 3.81) / 2 // 1.27 * 1.27, y), 270)
         sheet.part("LED", parts[f"D{cell + 1}"], (middle, y), ref_at=(0, -5.08))

@@ -232,6 +232,7 @@ def pin(
     length: float,
     name: str = "~",
     kind: str = "passive",
+    hide: bool = False,
 ) -> Node:
     """A pin whose outer end is at (x, y); it reaches `length` from there towards `angle`."""
     return (
@@ -240,6 +241,7 @@ def pin(
         "line",
         ("at", x, y, angle),
         ("length", length),
+        *(("hide",) if hide else ()),
         ("name", Quoted(name), _FONT),
         ("number", Quoted(number), _FONT),
     )
