@@ -165,7 +165,7 @@ def source_taller(text: str) -> str:
 
 DAMAGES: dict[Callable[[str], str], set[str]] = {
     set_resistor_larger: {"current"},
-    set_resistor_far_larger: {"current", "source_headroom", "source_load"},
+    set_resistor_far_larger: {"current", "source_headroom"},
     out_resistor_smaller: {"current", "source_load"},
     leads_swapped: {"sources", "current", "lands"},
     source_turned: {

@@ -137,7 +137,7 @@ def test_check_of_an_empty_folder_says_what_to_do(
 def test_spec_prints_table_1_beside_the_design(
     design_dir: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert main(["spec", str(design_dir / "fingertip.toml")]) == 0
+    assert main(["spec", str(design_dir / "presets" / "published.toml")]) == 0
     told = capsys.readouterr().out
     for figure in ("42.8 x 43.1 mm", "3.21 per cm²", "38.4 mA", "4.0 mm"):
         assert figure in told

@@ -56,6 +56,8 @@ CHANGES: dict[str, Any] = {
     "emitter.led": "other",
     "emitter.current_ma": 15.0,
     "emitter.string_leds": 12,
+    "emitter.drive": "source",
+    "emitter.source": "other",
     "emitter.resistor": "1210",
     "emitter.resistor_side": "front",
     "receiver.photodetector": "PT19-21C",
@@ -135,6 +137,7 @@ CHANGES: dict[str, Any] = {
     "printer.profile": "other",
 }
 # What else must change with a field.
+FRONT: dict[str, Any] = {"emitter.resistor_side": "front", "emitter.resistor": "0603"}
 WITH: dict[str, dict[str, Any]] = {
     "backing.variant": {
         "backing.material": "TPU 98A",
@@ -143,11 +146,13 @@ WITH: dict[str, dict[str, Any]] = {
     },
     "stack.film_mm": {"mask.film": "thick"},
     "emitter.string_leds": {"emitter.current_ma": 5.0},
+    "emitter.drive": FRONT,
 }
 # What a section or a field only does something with.
 ONLY_WITH: dict[str, dict[str, Any]] = {
     "module": {"controller.board": "nrf52840_module"},
     "receiver.array": {"receiver.load": "each"},
+    "emitter.source": {"emitter.drive": "source", **FRONT},
 }
 # Limits that only refuse; changing them leaves the design as it is.
 LIMITS: dict[str, Any] = {"supply.max_ma": 400.0, "emitter.max_heat_w": 1.9}
@@ -184,6 +189,7 @@ def published(inputs: dict[str, Input]) -> Input:
         "regulators": ("AP63205", {"order_number": "other"}),
         "inductors": ("4.7uH 4x4", {"order_number": "other"}),
         "fuses": ("500mA 1206", {"order_number": "other"}),
+        "current_sources": ("LT3092", {"set_ua": 5.0}),
         "linear_regulators": ("MCP1700-3302", {"order_number": "other"}),
         "crystals": ("32.768kHz FC-135", {"order_number": "other"}),
         "transistors": ("Si2309CDS", {"order_number": "other"}),

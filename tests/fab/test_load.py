@@ -93,11 +93,12 @@ def test_lists_are_replaced_and_not_joined(write: Write) -> None:
     assert load(write(BASE + "[grid]\ncolumns = [2, 1]\n")).parameters.grid.columns == (2, 1)
 
 
-def test_the_file_to_edit_is_complete_and_is_the_published_sensor_with_more_pull_ups() -> None:
+def test_the_file_to_edit_is_the_published_sensor_with_pull_ups_and_current_sources() -> None:
     mine, published = load(DESIGN / "fingertip.toml"), load(DESIGN / "presets" / "published.toml")
     assert len(mine.sources) == len(published.sources) == 1
     own, other = mine.parameters.model_dump(), published.parameters.model_dump()
     assert (own["receiver"].pop("load"), other["receiver"].pop("load")) == ("each", "shared")
+    assert (own["emitter"].pop("drive"), other["emitter"].pop("drive")) == ("source", "resistor")
     assert {**own, "name": other["name"]} == other
 
 
