@@ -1,0 +1,173 @@
+"""Blocks of a board that holds no cells: contacts, the supply's way, controller, cables."""
+
+import re
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+
+from lumitip_fab.boards.kicad.schematic.contact_blocks import draw_sockets, draw_strips
+from lumitip_fab.boards.kicad.schematic.draft import Draft, net_of, nets_of, other_net
+from lumitip_fab.boards.kicad.schematic.module_block import draw_module
+from lumitip_fab.boards.kicad.schematic.pin_types import pin_names, pin_type
+from lumitip_fab.boards.kicad.schematic.power_path import draw_buck, draw_linear, draw_plug_in
+from lumitip_fab.boards.kicad.schematic.rail import STEP_MM
+from lumitip_fab.boards.model import GROUND, SUPPLY, Placement
+from lumitip_fab.design import Cable, Component
+from lumitip_fab.errors import BuildError
+
+Parts = Sequence[Component]
+Titled = tuple[str, Draft]
+_LEADERS = ("fuse", "regulator", "module")
+"""Kinds of parts that begin a block; the parts after them on the board's list belong to it."""
+_PLUGS = {"D+": "USB", "DIO": "Debugger"}
+"""Use of wire pads where no cable of the sensor ends, by one of their nets."""
+_FLAG_STEPS = 5
+
+
+def auxiliary_blocks(board: Placement, cables: Sequence[Cable]) -> list[Titled]:
+    """The blocks of a board with their titles.
+
+    Args:
+        board: its parts, with their nets.
+        cables: which say where its wires lead.
+
+    Raises:
+        BuildError: if a part is in none of them.
+    """
+    parts = [part for part in board.components if part.nets]
+    contacts, circuits = [p for p in parts if p.contacts], _groups(parts)
+    supplies = _supplies(board, contacts, circuits)
+    found = [
+        (title, _drafted(supplies, draw))
+        for title, draw in (
+            *_first(contacts),
+            *(_circuit(group, parts) for group in circuits),
+            *_leaving(board, contacts, cables),
+            ("Power flags", _flags(_not_made(parts, supplies))),
+        )
+    ]
+    lost = {part.ref for part in parts}.difference(*(draft.drawn for _, draft in found))
+    if lost:
+        raise BuildError(
+            f"the schematic of {board.name} has no place for {', '.join(sorted(lost))}"
+        )
+    return found
+
+
+def _drafted(supplies: Sequence[str], draw: Callable[[Draft], None]) -> Draft:
+    draft = Draft(supplies)
+    draw(draft)
+    return draft
+
+
+def _groups(parts: Parts) -> list[list[Component]]:
+    """Parts that are drawn together: each group with what its first part is for."""
+    found: list[list[Component]] = []
+    for part in parts:
+        if part.kind in _LEADERS:
+            found.append([])
+        if found and not part.contacts:
+            found[-1].append(part)
+    return sorted(found, key=lambda group: group[0].kind == "module")  # it is large
+
+
+def _supplies(board: Placement, contacts: Parts, circuits: Sequence[Parts]) -> list[str]:
+    """Nets that are drawn with a supply's symbol: ground, and those that lead out of a block."""
+    blocks = [nets_of([part]) for part in contacts] + [nets_of(group) for group in circuits]
+    fed = {net.name for net in board.nets if net.net_class == SUPPLY}
+    fed |= {net for part in board.components for net, kind in _typed(part) if "power" in kind}
+    names = (net.name for net in board.nets if net.name in fed)
+    return [net for net in names if net == GROUND or sum(net in nets for nets in blocks) > 1]
+
+
+def _typed(part: Component) -> list[tuple[str, str]]:
+    """Net and type of each pin of a part."""
+    names = pin_names(part)
+    return [(net, pin_type(part, names.get(pad, ""))) for pad, net in part.nets]
+
+
+Drawing = tuple[str, Callable[[Draft], None]]
+
+
+def _first(contacts: Parts) -> Iterator[Drawing]:
+    """The controller's sockets with the pads beside them, and the contacts of the tool."""
+    pairs = [(part, _beside(part, contacts)) for part in contacts if part.kind == "socket"]
+    if pairs:
+        yield "Controller", lambda draft: draw_sockets(draft, pairs)
+    behind = [part for part in contacts if part.kind == "header" and part.side == "back"]
+    if behind:
+        yield "Contacts of the tool", lambda draft: draw_strips(draft, behind)
+
+
+def _beside(socket: Component, contacts: Parts) -> Component:
+    """The pads with the nets of a socket."""
+    return next(part for part in contacts if part.kind == "wires" and part.nets == socket.nets)
+
+
+def _circuit(group: Parts, parts: Parts) -> Drawing:
+    leader, leads = group[0], set(group[0].pins)
+    if leader.kind == "fuse":
+        return "Reverse supply and plug-in", lambda draft: draw_plug_in(draft, group)
+    if leader.kind == "module":
+        return f"Controller: {leader.value}", lambda draft: draw_module(draft, group)
+    if "SW" in leads:
+        (coil,) = (part for part in group if part.kind == "inductor")
+        output = _volts(other_net(coil, net_of(leader, "SW")))
+        source = _volts(_before_a_resistor(net_of(leader, "VIN"), parts))
+        return f"Buck regulator {source} to {output}", lambda draft: draw_buck(draft, group)
+    ends = (_volts(net_of(leader, pin)) for pin in ("IN", "OUT"))
+    return f"Linear regulator {' to '.join(ends)}", lambda draft: draw_linear(draft, group)
+
+
+def _before_a_resistor(net: str, parts: Parts) -> str:
+    """The net that feeds another through a resistor; the other itself where none does."""
+    resistors = (part for part in parts if part.kind == "resistor" and net in nets_of([part]))
+    return next((other_net(part, net) for part in resistors), net)
+
+
+def _volts(net: str) -> str:
+    """The voltage in a net's name: `"3V3"` is 3.3 V."""
+    return re.sub(r"^(\d+)V(\d+)$", r"\1.\2 V", re.sub(r"^([\d.]+)V$", r"\1 V", net))
+
+
+def _leaving(board: Placement, contacts: Parts, cables: Sequence[Cable]) -> Iterator[Drawing]:
+    """Headers, and the pads of each cable."""
+    headers = [part for part in contacts if part.kind == "header" and part.side == "front"]
+    if headers:
+        yield "Headers", lambda draft: draw_strips(draft, headers)
+    beside = [_beside(part, contacts).ref for part in contacts if part.kind == "socket"]
+    for part in contacts:
+        if part.kind == "wires" and part.ref not in beside:
+            yield _leads_to(board, part, cables), partial(_draw_strip, part)
+
+
+def _draw_strip(part: Component, draft: Draft) -> None:
+    draw_strips(draft, [part])
+
+
+def _leads_to(board: Placement, part: Component, cables: Sequence[Cable]) -> str:
+    """Title of a row of wire pads: what is at the other end."""
+    for cable in cables:
+        for near, far in ((cable.start, cable.end), (cable.end, cable.start)):
+            if (near.board, near.connector) == (board.name, part.ref):
+                return f"To the {far.board}"
+    return next((use for net, use in _PLUGS.items() if net in nets_of([part])), "Wires")
+
+
+def _not_made(parts: Parts, supplies: Sequence[str]) -> list[str]:
+    """Supplies that no pin on the board makes: they come from outside or through passive parts."""
+    made = {net for part in parts for net, kind in _typed(part) if kind == "power_out"}
+    return [net for net in supplies if net not in made]
+
+
+def _flags(nets: Sequence[str]) -> Callable[[Draft], None]:
+    """A flag at each net, by which KiCad's rules know that it is fed."""
+
+    def draw(draft: Draft) -> None:
+        for i, net in enumerate(nets):
+            upper = i * _FLAG_STEPS * STEP_MM, 0.0
+            lower = upper[0], STEP_MM
+            draft.wire(upper, lower)
+            draft.power(net, lower if net == GROUND else upper)
+            draft.fed(upper if net == GROUND else lower, 0 if net == GROUND else 180)
+
+    return draw
