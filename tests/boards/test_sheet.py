@@ -25,13 +25,7 @@ def places(sheet: Sheet) -> dict[str, Point]:
     }
 
 
-def test_a_full_column_is_followed_by_another() -> None:
-    paper, sheet = columns(blocks(3, 50.0, 60.0), tall_mm=150.0)
-    assert paper == "A4"
-    assert places(sheet) == {"0": (0, 0), "1": (0, 60), "2": (50, 0)}
-
-
-def test_without_a_limit_blocks_stand_in_one_column() -> None:
+def test_blocks_stand_below_each_other() -> None:
     paper, sheet = columns(blocks(4, 50.0, 60.0))
     assert paper == "A3"
     assert list(places(sheet).values()) == [(0, 60 * i) for i in range(4)]

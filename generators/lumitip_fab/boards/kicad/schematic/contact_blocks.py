@@ -104,9 +104,8 @@ def _ends(draft: Draft, pins: Sequence[tuple[str, Point]], side: int) -> None:
         for place in places:
             draft.wire(place, (joint, place[1]))
         draft.wire((joint, places[0][1]), (joint, places[-1][1]))
-        middle = joint, places[len(places) // 2][1]
-        end = places[0][0] + side * _ENDS_MM, middle[1]
-        draft.wire(middle, end)
+        end = places[0][0] + side * _ENDS_MM, places[0][1]
+        draft.wire((joint, end[1]), end)
         draft.end(net, end, side)
 
 

@@ -43,7 +43,7 @@ def draw_module(draft: Draft, group: Sequence[Component]) -> None:
             draft.end(nets[pad], end, side)
     places = [pins[pad] for pad in below]
     draft.wire(*places)
-    draft.power(GROUND, places[len(places) // 2])
+    draft.power(GROUND, places[0])
     for crystal in crystals:
         ends = {nets[pad]: pins[pad] for pad, _ in right if nets[pad] in wired}
         _crystal(draft, group, crystal, ends)

@@ -26,7 +26,6 @@ _TYPES = {
         **dict.fromkeys(("RST", "REC", "RX"), "input"),
         "TX": "output",
     },
-    "transistor": {"G": "input"},
 }
 _PORT = re.compile(r"[AD]\d+|P\d_\d+")
 """Pins of a controller that its firmware makes inputs or outputs."""

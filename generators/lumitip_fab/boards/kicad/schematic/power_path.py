@@ -121,9 +121,9 @@ def _transistor(draft: Draft, part: Component, rail: Rail, gate: str) -> Point:
     draft.place(part, f"Transistor_{part.ref}", shape, middle, 0, (0.0, -8.89), (0.0, -6.6))
     rail.skip(10.16)
     pin, node = (middle[0], y + _GATE_MM[0]), (middle[0], y + _GATE_MM[1])
-    left = middle[0] - STEP_MM, node[1]
+    left = middle[0] - STEP_MM, pin[1]
     draft.wire(pin, node)
-    draft.wire(left, node)
+    draft.wire(left, pin)
     draft.tag(gate, left, 180)
     return node
 

@@ -1,6 +1,5 @@
 """Symbols and wires of a sheet with their places, and the paper sizes. mm, y down, 1.27 mm grid."""
 
-import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -108,23 +107,14 @@ class Block:
     """Their symbols, by name."""
 
 
-def columns(blocks: Iterable[Block], tall_mm: float = math.inf) -> tuple[str, Sheet]:
-    """Blocks below each other, in columns of equal width: name of the paper, and the drawing.
-
-    Args:
-        blocks: in this order.
-        tall_mm: height from which a further column begins.
-    """
+def columns(blocks: Iterable[Block]) -> tuple[str, Sheet]:
+    """Blocks below each other: name of the paper, and the drawing."""
     blocks, sheet = list(blocks), Sheet()
-    wide = max(block.width_mm for block in blocks)
-    x = y = bottom = MARGIN_MM
+    wide, y = max(block.width_mm for block in blocks), MARGIN_MM
     for block in blocks:
-        if y + block.height_mm > MARGIN_MM + tall_mm:
-            x, y = x + wide, MARGIN_MM
-        block.draw(sheet, (x, y))
+        block.draw(sheet, (MARGIN_MM, y))
         y += block.height_mm
-        bottom = max(bottom, y)
-    paper, _ = paper_for(x + wide - MARGIN_MM, bottom - MARGIN_MM)
+    paper, _ = paper_for(wide, y - MARGIN_MM)
     return paper, sheet
 
 

@@ -90,7 +90,7 @@ def led(marked: str) -> Node:
 
 
 def phototransistor(marked: str) -> Node:
-    """A phototransistor, its emitter to the left and its collector to the right."""
+    """A phototransistor, its emitter to the left and its open collector to the right."""
     collector, emitter = ("1", "2") if marked == "collector" else ("2", "1")
     body = [
         circle(0, 0.635, 2.54),
@@ -100,7 +100,10 @@ def phototransistor(marked: str) -> Node:
         line((-1.27, 0.0), (-1.905, 0), (-1.905, 0.635)),
         *_rays((-1.4, 4.9), away=False),
     ]
-    pins = [pin(emitter, -5.08, 0, 0, 2.54, "E"), pin(collector, 5.08, 0, 180, 2.54, "C")]
+    pins = [
+        pin(emitter, -5.08, 0, 0, 2.54, "E"),
+        pin(collector, 5.08, 0, 180, 2.54, "C", "open_collector"),
+    ]
     return symbol("Q", body, pins)
 
 
@@ -122,7 +125,7 @@ def transistor(part: Component) -> Node:
             line((3.556, 0.381), (3.048, -0.381), (4.064, -0.381), (3.556, 0.381)),
         ],
         [
-            pin(number["G"], -5.08, 0, 0, PIN_MM, "G"),
+            pin(number["G"], -5.08, 0, 0, PIN_MM, "G", "input"),
             pin(number["S"], 2.54, 5.08, 270, PIN_MM, "S"),
             pin(number["D"], 2.54, -5.08, 90, PIN_MM, "D"),
         ],
