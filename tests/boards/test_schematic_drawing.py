@@ -191,12 +191,23 @@ def test_the_title_block_has_revision_and_hash_but_no_date(drawn: Drawn) -> None
     assert schematic_files(placed, design) == schematic_files(placed, design)
 
 
-def test_a_part_without_a_block_is_refused(drawn: Drawn) -> None:
-    design, placed, _ = drawn(("published", "flange"))
-    spare = next(part for part in placed.components if part.ref == "C1")
-    lone = replace(spare, ref="C99", nets=(("1", "Von"), ("2", "GND")))
-    with pytest.raises(Exception, match="flange has no place for C99"):
-        schematic_files(replace(placed, components=(*placed.components, lone)), design)
+@needs("kicad-cli")
+@pytest.mark.slow
+@pytest.mark.parametrize("preset", ["published", "integrated"])
+def test_parts_in_another_order_are_drawn_by_themselves(
+    drawn: Drawn, kicad: Callable[..., str], tmp_path: Path, preset: str
+) -> None:
+    """Blocks begin with fuse, regulator and module; a further board may have any other parts."""
+    design, placed, sheet = drawn((preset, "flange"))
+    folder = Path(shutil.copytree(sheet.parent, tmp_path / "other"))
+    parts = tuple(reversed(placed.components))
+    for path, data in schematic_files(replace(placed, components=parts), design).items():
+        (folder / path).write_bytes(data)
+    other = folder / sheet.name
+    assert "Other parts" in _titles(other)
+    assert read_sheet(other).nets == read_sheet(sheet).nets
+    assert overlaps(other) == []
+    assert _violations(other, kicad, tmp_path) == []
 
 
 @needs("kicad-cli")

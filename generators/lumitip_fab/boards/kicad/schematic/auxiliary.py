@@ -4,6 +4,7 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 
+from lumitip_fab.boards.kicad.schematic.alone import draw_alone
 from lumitip_fab.boards.kicad.schematic.contact_blocks import draw_sockets, draw_strips
 from lumitip_fab.boards.kicad.schematic.draft import Draft, net_of, nets_of, other_net
 from lumitip_fab.boards.kicad.schematic.module_block import draw_module
@@ -12,10 +13,11 @@ from lumitip_fab.boards.kicad.schematic.power_path import draw_buck, draw_linear
 from lumitip_fab.boards.kicad.schematic.rail import STEP_MM
 from lumitip_fab.boards.model import GROUND, SUPPLY, Placement
 from lumitip_fab.design import Cable, Component
-from lumitip_fab.errors import BuildError
 
 Parts = Sequence[Component]
 Titled = tuple[str, Draft]
+Drawing = tuple[str, Callable[[Draft], None]]
+"""A title and what draws the block."""
 _LEADERS = ("fuse", "regulator", "module")
 """Kinds of parts that begin a block; the parts after them on the board's list belong to it."""
 _PLUGS = {"D+": "USB", "DIO": "Debugger"}
@@ -24,33 +26,27 @@ _FLAG_STEPS = 5
 
 
 def auxiliary_blocks(board: Placement, cables: Sequence[Cable]) -> list[Titled]:
-    """The blocks of a board with their titles.
+    """The blocks of a board with their titles: each part with a net is in one.
 
     Args:
         board: its parts, with their nets.
         cables: which say where its wires lead.
-
-    Raises:
-        BuildError: if a part is in none of them.
     """
     parts = [part for part in board.components if part.nets]
     contacts, circuits = [p for p in parts if p.contacts], _groups(parts)
     supplies = _supplies(board, contacts, circuits)
-    found = [
-        (title, _drafted(supplies, draw))
-        for title, draw in (
-            *_first(contacts),
-            *(_circuit(group, parts) for group in circuits),
-            *_leaving(board, contacts, cables),
-            ("Power flags", _flags(_not_made(parts, supplies))),
-        )
+    drawings = [
+        *_first(contacts),
+        *(drawing for group in circuits for drawing in _circuit(group, parts)),
+        *_leaving(board, contacts, cables),
     ]
-    lost = {part.ref for part in parts}.difference(*(draft.drawn for _, draft in found))
-    if lost:
-        raise BuildError(
-            f"the schematic of {board.name} has no place for {', '.join(sorted(lost))}"
-        )
-    return found
+    found = [(title, _drafted(supplies, draw)) for title, draw in drawings]
+    drawn = set().union(*(draft.drawn for _, draft in found))
+    others = [part for part in parts if part.ref not in drawn]
+    if others:
+        found.append(("Other parts", _drafted(supplies, partial(draw_alone, parts=others))))
+    flags = _flags(_not_made(parts, supplies))
+    return [*found, ("Power flags", _drafted(supplies, flags))]
 
 
 def _drafted(supplies: Sequence[str], draw: Callable[[Draft], None]) -> Draft:
@@ -85,37 +81,41 @@ def _typed(part: Component) -> list[tuple[str, str]]:
     return [(net, pin_type(part, names.get(pad, ""))) for pad, net in part.nets]
 
 
-Drawing = tuple[str, Callable[[Draft], None]]
-
-
 def _first(contacts: Parts) -> Iterator[Drawing]:
     """The controller's sockets with the pads beside them, and the contacts of the tool."""
-    pairs = [(part, _beside(part, contacts)) for part in contacts if part.kind == "socket"]
+    pairs = _sockets(contacts)
     if pairs:
-        yield "Controller", lambda draft: draw_sockets(draft, pairs)
+        yield "Controller", partial(draw_sockets, pairs=pairs)
     behind = [part for part in contacts if part.kind == "header" and part.side == "back"]
     if behind:
-        yield "Contacts of the tool", lambda draft: draw_strips(draft, behind)
+        yield "Contacts of the tool", partial(draw_strips, parts=behind)
 
 
-def _beside(socket: Component, contacts: Parts) -> Component:
-    """The pads with the nets of a socket."""
-    return next(part for part in contacts if part.kind == "wires" and part.nets == socket.nets)
+def _sockets(contacts: Parts) -> list[tuple[Component, Component]]:
+    """Sockets, each with the pads that have its nets."""
+    return [
+        (socket, pads)
+        for socket in contacts
+        for pads in contacts
+        if (socket.kind, pads.kind) == ("socket", "wires") and socket.nets == pads.nets
+    ]
 
 
-def _circuit(group: Parts, parts: Parts) -> Drawing:
-    leader, leads = group[0], set(group[0].pins)
-    if leader.kind == "fuse":
-        return "Reverse supply and plug-in", lambda draft: draw_plug_in(draft, group)
-    if leader.kind == "module":
-        return f"Controller: {leader.value}", lambda draft: draw_module(draft, group)
-    if "SW" in leads:
-        (coil,) = (part for part in group if part.kind == "inductor")
+def _circuit(group: Parts, parts: Parts) -> Iterator[Drawing]:
+    """The drawing of a group; none of parts that are no circuit known here."""
+    leader, kinds = group[0], [part.kind for part in group]
+    if leader.kind == "fuse" and kinds.count("transistor") == 1:
+        yield "Reverse supply and plug-in", partial(draw_plug_in, group=group)
+    elif leader.kind == "module":
+        yield f"Controller: {leader.value}", partial(draw_module, group=group)
+    elif "SW" in leader.pins and kinds.count("inductor") == 1:
+        coil = group[kinds.index("inductor")]
         output = _volts(other_net(coil, net_of(leader, "SW")))
         source = _volts(_before_a_resistor(net_of(leader, "VIN"), parts))
-        return f"Buck regulator {source} to {output}", lambda draft: draw_buck(draft, group)
-    ends = (_volts(net_of(leader, pin)) for pin in ("IN", "OUT"))
-    return f"Linear regulator {' to '.join(ends)}", lambda draft: draw_linear(draft, group)
+        yield f"Buck regulator {source} to {output}", partial(draw_buck, group=group)
+    elif "OUT" in leader.pins:
+        source, output = (_volts(net_of(leader, pin)) for pin in ("IN", "OUT"))
+        yield f"Linear regulator {source} to {output}", partial(draw_linear, group=group)
 
 
 def _before_a_resistor(net: str, parts: Parts) -> str:
@@ -133,15 +133,11 @@ def _leaving(board: Placement, contacts: Parts, cables: Sequence[Cable]) -> Iter
     """Headers, and the pads of each cable."""
     headers = [part for part in contacts if part.kind == "header" and part.side == "front"]
     if headers:
-        yield "Headers", lambda draft: draw_strips(draft, headers)
-    beside = [_beside(part, contacts).ref for part in contacts if part.kind == "socket"]
+        yield "Headers", partial(draw_strips, parts=headers)
+    beside = [pads.ref for _, pads in _sockets(contacts)]
     for part in contacts:
         if part.kind == "wires" and part.ref not in beside:
-            yield _leads_to(board, part, cables), partial(_draw_strip, part)
-
-
-def _draw_strip(part: Component, draft: Draft) -> None:
-    draw_strips(draft, [part])
+            yield _leads_to(board, part, cables), partial(draw_strips, parts=[part])
 
 
 def _leads_to(board: Placement, part: Component, cables: Sequence[Cable]) -> str:
@@ -155,8 +151,10 @@ def _leads_to(board: Placement, part: Component, cables: Sequence[Cable]) -> str
 
 def _not_made(parts: Parts, supplies: Sequence[str]) -> list[str]:
     """Supplies that no pin on the board makes: they come from outside or through passive parts."""
-    made = {net for part in parts for net, kind in _typed(part) if kind == "power_out"}
-    return [net for net in supplies if net not in made]
+    pins = [pin for part in parts for pin in _typed(part)]
+    needed = dict.fromkeys([*supplies, *(net for net, kind in pins if kind == "power_in")])
+    made = {net for net, kind in pins if kind == "power_out"}
+    return [net for net in needed if net not in made]
 
 
 def _flags(nets: Sequence[str]) -> Callable[[Draft], None]:

@@ -17,9 +17,8 @@ _ENDS_MM = 5.08  # from a pin to the name of its net
 _NAME_MM = 5.08  # what a label or the symbol of a supply needs beyond its letters
 
 
-def draw_strips(draft: Draft, parts: Sequence[Component]) -> None:
-    """Rows of contacts beside each other."""
-    x = 0.0
+def draw_strips(draft: Draft, parts: Sequence[Component], x: float = 0.0) -> None:
+    """Rows of contacts beside each other, from a place on."""
     for part in parts:
         x = _header(draft, part, x) if is_header(part) else _strip(draft, part, x)
         x += _APART_MM
@@ -27,7 +26,8 @@ def draw_strips(draft: Draft, parts: Sequence[Component]) -> None:
 
 def is_header(part: Component) -> bool:
     """Whether a part is a plug with two rows, whose contacts are counted round."""
-    return part.kind == "header" and part.side == "front" and len(part.nets) % 2 == 0
+    whole = len(part.nets) == len(part.footprint.pads) and len(part.nets) % 2 == 0
+    return part.kind == "header" and part.side == "front" and whole
 
 
 def draw_sockets(draft: Draft, pairs: Sequence[tuple[Component, Component]]) -> None:

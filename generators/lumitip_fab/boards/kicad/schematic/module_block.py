@@ -3,8 +3,7 @@
 from collections.abc import Sequence
 
 from lumitip_fab.boards.kicad.schematic import shapes
-from lumitip_fab.boards.kicad.schematic.draft import REACH_MM, Draft
-from lumitip_fab.boards.kicad.schematic.pin_types import pin_names, pin_type
+from lumitip_fab.boards.kicad.schematic.draft import REACH_MM, Draft, nets_of
 from lumitip_fab.boards.kicad.schematic.rail import STEP_MM, Rail
 from lumitip_fab.boards.kicad.schematic.symbols import PITCH_MM
 from lumitip_fab.boards.kicad.schematic.text_size import text_mm, up_to_grid
@@ -25,7 +24,8 @@ def draw_module(draft: Draft, group: Sequence[Component]) -> None:
     crystal to the right; ground below."""
     module = group[0]
     crystals = [part for part in group if part.kind == "crystal"]
-    left, right = _left(draft, group), _right(module, crystals)
+    wired = nets_of(crystals)
+    left, right = _left(draft, group, wired), _right(module, wired)
     below = [pad for pad, net in module.nets if net == GROUND]
     shape = shapes.chip(module, left, right, below)
     pins = draft.place(
@@ -34,7 +34,6 @@ def draw_module(draft: Draft, group: Sequence[Component]) -> None:
     )
     nets = dict(module.nets)
     _supplies(draft, group, left, pins)
-    wired = {net for crystal in crystals for _, net in crystal.nets}
     for pad, _ in (*left, *right):
         if not draft.is_supply(nets[pad]) and nets[pad] not in wired:
             side = 1 if pad in dict(right) else -1
@@ -49,9 +48,9 @@ def draw_module(draft: Draft, group: Sequence[Component]) -> None:
         _crystal(draft, group, crystal, ends)
 
 
-def _left(draft: Draft, group: Sequence[Component]) -> Rows:
+def _left(draft: Draft, group: Sequence[Component], wired: set[str]) -> Rows:
     """Pads of supplies, with room for their capacitors, then the other pads with a fixed use."""
-    module, names = group[0], pin_names(group[0])
+    module = group[0]
     rows: Rows = []
     row = 0
     for net in _fed(draft, module):
@@ -61,17 +60,13 @@ def _left(draft: Draft, group: Sequence[Component]) -> Rows:
     others = [
         pad
         for pad, net in module.nets
-        if net != GROUND
-        and not draft.is_supply(net)
-        and (pin_type(module, names[pad]) != "bidirectional" or not _of_sketch(net))
-        and not net.startswith("XL")
+        if net != GROUND and net not in wired and not draft.is_supply(net) and not _of_sketch(net)
     ]
     return [*rows, *((pad, row + i) for i, pad in enumerate(others))]
 
 
-def _right(module: Component, crystals: Sequence[Component]) -> Rows:
+def _right(module: Component, wired: set[str]) -> Rows:
     """Pads of the program, in the order of their nets, then those of the crystal."""
-    wired = {net for crystal in crystals for _, net in crystal.nets}
     nets = dict(module.nets)
     ports = sorted((net, pad) for pad, net in nets.items() if _of_sketch(net))
     rows = [(pad, row) for row, (_, pad) in enumerate(ports)]

@@ -15,6 +15,8 @@ _FONT = ("effects", ("font", ("size", 1.27, 1.27)))
 HIDDEN: Node = ("effects", ("font", ("size", 1.27, 1.27)), "hide")
 
 
+TWO_TERMINALS = ("resistor", "capacitor", "fuse", "inductor", "crystal", "tvs diode")
+"""Kinds of parts that are drawn upright, the first terminal at the top, or turned."""
 _BAR = (-1.778, 0.762), (-1.27, 1.27), (1.27, 1.27), (1.778, 1.778)
 _TRIANGLE = (-1.27, -1.27), (1.27, -1.27), (0, 1.27), (-1.27, -1.27)
 
