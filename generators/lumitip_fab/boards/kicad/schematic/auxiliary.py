@@ -67,10 +67,13 @@ def _groups(parts: Parts) -> list[list[Component]]:
 
 
 def _supplies(board: Placement, contacts: Parts, circuits: Sequence[Parts]) -> list[str]:
-    """Nets that are drawn with a supply's symbol: ground, and those that lead out of a block."""
+    """Nets that are drawn with a supply's symbol: ground, and those that lead out of a block; none
+    that a chip switches."""
     blocks = [nets_of([part]) for part in contacts] + [nets_of(group) for group in circuits]
     fed = {net.name for net in board.nets if net.net_class == SUPPLY}
-    fed |= {net for part in board.components for net, kind in _typed(part) if "power" in kind}
+    pins = [pin for part in board.components for pin in _typed(part)]
+    fed |= {net for net, kind in pins if "power" in kind}
+    fed -= {net for net, kind in pins if kind == "output"}
     names = (net.name for net in board.nets if net.name in fed)
     return [net for net in names if net == GROUND or sum(net in nets for nets in blocks) > 1]
 

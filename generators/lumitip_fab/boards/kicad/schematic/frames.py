@@ -7,6 +7,7 @@ from dataclasses import replace
 from lumitip_fab.boards.kicad.schematic.draft import Draft
 from lumitip_fab.boards.kicad.schematic.extent import bounds
 from lumitip_fab.boards.kicad.schematic.joints import jointed
+from lumitip_fab.boards.kicad.schematic.packing import packed
 from lumitip_fab.boards.kicad.schematic.shapes import pins_of
 from lumitip_fab.boards.kicad.schematic.sheet import MARGIN_MM, PAPERS, TITLE_MM, Drawn, Sheet
 from lumitip_fab.boards.kicad.schematic.text_size import GRID_MM, text_mm, up_to_grid
@@ -15,49 +16,30 @@ from lumitip_fab.design import Point
 
 _TITLE_MM, _HEAD_MM = 2.0, 7.62
 """Letters of a title, and the room above a block for it."""
-_PAD_MM, _GAP_MM = 3.81, 5.08
-"""Round a block inside its frame, and between frames."""
+_PAD_MM = 3.81
+"""Round a block inside its frame."""
 Titled = tuple[str, Draft]
 
 
 def framed(blocks: Sequence[Titled]) -> tuple[str, Sheet]:
-    """Name of the paper and the drawing: rows of blocks, each with its frame and its title."""
+    """Name of the paper and the drawing: blocks, each with its frame and its title."""
     sizes = [_size_mm(*block) for block in blocks]
-    paper, rows = _paper(sizes)
-    sheet, y = Sheet(), MARGIN_MM
-    for row in rows:
-        x, tall = MARGIN_MM, max(sizes[i][1] for i in row)
-        for i in row:
-            title, draft = blocks[i]
-            _put(sheet, title, draft, (x, y), (sizes[i][0], tall))
-            x += sizes[i][0] + _GAP_MM
-        y += tall + _GAP_MM
+    paper, places = _paper(sizes)
+    sheet = Sheet()
+    for (title, draft), (at, size_mm) in zip(blocks, places, strict=True):
+        _put(sheet, title, draft, (at[0] + MARGIN_MM, at[1] + MARGIN_MM), size_mm)
     return paper, sheet
 
 
-def _paper(sizes: Sequence[Point]) -> tuple[str, list[list[int]]]:
-    """The smallest paper that takes frames of these sizes, and their rows; A0 for more."""
+def _paper(sizes: Sequence[Point]) -> tuple[str, list[tuple[Point, Point]]]:
+    """The smallest paper that takes frames of these sizes, and their places; A0 for more."""
     widest = max(wide for wide, _ in sizes)
     for paper, size in PAPERS.items():
         wide, high = size[0] - 2 * MARGIN_MM, size[1] - MARGIN_MM - TITLE_MM
-        rows = _rows(sizes, wide)
-        tall = sum(max(sizes[i][1] for i in row) + _GAP_MM for row in rows) - _GAP_MM
+        places, tall = packed(sizes, wide)
         if paper == "A0" or (widest <= wide and tall <= high):
-            return paper, rows
+            return paper, places
     raise AssertionError("A0 is the last of the papers")
-
-
-def _rows(sizes: Sequence[Point], wide_mm: float) -> list[list[int]]:
-    """Blocks in their order, as many in a row as fit."""
-    rows: list[list[int]] = [[]]
-    x = 0.0
-    for i, (wide, _) in enumerate(sizes):
-        if rows[-1] and x + wide > wide_mm:
-            rows.append([])
-            x = 0.0
-        rows[-1].append(i)
-        x += wide + _GAP_MM
-    return rows
 
 
 def _size_mm(title: str, draft: Draft) -> Point:

@@ -18,7 +18,7 @@ from lumitip_fab.design import Component, Point
 
 Rows = Sequence[tuple[str, int]]
 """Pads with their rows from the top."""
-_LEAD_MM = 3.81  # of contacts, with room for a number of two digits above it
+_LEAD_MM = 3.81  # of contacts and pins below, with room for a number of two digits above it
 _INSIDE_MM = 2.54  # between names of the two sides
 
 
@@ -37,7 +37,7 @@ def chip(part: Component, left: Rows, right: Rows, below: Sequence[str] = ()) ->
     ]
     first = -(len(below) // 2) * PITCH_MM
     pins += [
-        pin(pad, first + i * PITCH_MM, -foot - PIN_MM, 90, PIN_MM, *_typed(part, pad))
+        pin(pad, first + i * PITCH_MM, -foot - _LEAD_MM, 90, _LEAD_MM, *_typed(part, pad))
         for i, pad in enumerate(below)
     ]
     return symbol(
