@@ -142,7 +142,7 @@ def test_each_block_has_its_title(drawn: Drawn) -> None:
     simple = _titles(drawn(("five volts", "flange"))[2])
     assert [t for t in simple if "open" not in t] == [*path, "Headers", "Power flags"]
     breakout = _titles(drawn(("published", "breakout"))[2])
-    assert breakout == ["Controller", *wires, "To the flange", "Power flags"]
+    assert breakout == ["Controller", *wires, "From the supply", "Power flags"]
 
 
 def test_pins_have_their_types(drawn: Drawn) -> None:

@@ -12,7 +12,7 @@ from lumitip_fab.boards.kicad.schematic.pin_types import pin_names, pin_type
 from lumitip_fab.boards.kicad.schematic.power_path import draw_buck, draw_linear, draw_plug_in
 from lumitip_fab.boards.kicad.schematic.rail import STEP_MM
 from lumitip_fab.boards.model import GROUND, SUPPLY, Placement
-from lumitip_fab.design import Cable, Component
+from lumitip_fab.design import Component
 
 Parts = Sequence[Component]
 Titled = tuple[str, Draft]
@@ -20,25 +20,20 @@ Drawing = tuple[str, Callable[[Draft], None]]
 """A title and what draws the block."""
 _LEADERS = ("fuse", "regulator", "module")
 """Kinds of parts that begin a block; the parts after them on the board's list belong to it."""
-_PLUGS = {"D+": "USB", "DIO": "Debugger"}
-"""Use of wire pads where no cable of the sensor ends, by one of their nets."""
+_CABLES = {"S0": "To the receiver", "D+": "USB", "DIO": "Debugger"}
+"""Use of wire pads by one of their nets."""
 _FLAG_STEPS = 5
 
 
-def auxiliary_blocks(board: Placement, cables: Sequence[Cable]) -> list[Titled]:
-    """The blocks of a board with their titles: each part with a net is in one.
-
-    Args:
-        board: its parts, with their nets.
-        cables: which say where its wires lead.
-    """
+def auxiliary_blocks(board: Placement) -> list[Titled]:
+    """The blocks of a board with their titles: each part with a net is in one."""
     parts = [part for part in board.components if part.nets]
     contacts, circuits = [p for p in parts if p.contacts], _groups(parts)
     supplies = _supplies(board, contacts, circuits)
     drawings = [
         *_first(contacts),
         *(drawing for group in circuits for drawing in _circuit(group, parts)),
-        *_leaving(board, contacts, cables),
+        *_leaving(contacts, supplies),
     ]
     found = [(title, _drafted(supplies, draw)) for title, draw in drawings]
     drawn = set().union(*(draft.drawn for _, draft in found))
@@ -132,24 +127,21 @@ def _volts(net: str) -> str:
     return re.sub(r"^(\d+)V(\d+)$", r"\1.\2 V", re.sub(r"^([\d.]+)V$", r"\1 V", net))
 
 
-def _leaving(board: Placement, contacts: Parts, cables: Sequence[Cable]) -> Iterator[Drawing]:
-    """Headers, and the pads of each cable."""
+def _leaving(contacts: Parts, supplies: Sequence[str]) -> Iterator[Drawing]:
+    """Headers, and the wire pads of each cable: the first that carries a supply alone feeds the
+    emitter, a further one the board itself."""
     headers = [part for part in contacts if part.kind == "header" and part.side == "front"]
     if headers:
         yield "Headers", partial(draw_strips, parts=headers)
     beside = [pads.ref for _, pads in _sockets(contacts)]
+    feeding = iter(("To the emitter", "From the supply"))
     for part in contacts:
         if part.kind == "wires" and part.ref not in beside:
-            yield _leads_to(board, part, cables), partial(draw_strips, parts=[part])
-
-
-def _leads_to(board: Placement, part: Component, cables: Sequence[Cable]) -> str:
-    """Title of a row of wire pads: what is at the other end."""
-    for cable in cables:
-        for near, far in ((cable.start, cable.end), (cable.end, cable.start)):
-            if (near.board, near.connector) == (board.name, part.ref):
-                return f"To the {far.board}"
-    return next((use for net, use in _PLUGS.items() if net in nets_of([part])), "Wires")
+            nets = nets_of([part])
+            use = next((use for net, use in _CABLES.items() if net in nets), "Wires")
+            if nets <= {*supplies}:
+                use = next(feeding, "Wires")
+            yield use, partial(draw_strips, parts=[part])
 
 
 def _not_made(parts: Parts, supplies: Sequence[str]) -> list[str]:

@@ -42,7 +42,7 @@ def _drawn(board: Placement, design: Design) -> tuple[dict[str, Node], str, Shee
     parts = {part.ref: part for part in board.components}
     kinds = {part.kind for part in board.components}
     if kinds.isdisjoint(("led", "multiplexer")):
-        drafts = auxiliary_blocks(board, design.cabling.cables)
+        drafts = auxiliary_blocks(board)
         shapes = {name: shape for _, draft in drafts for name, shape in draft.shapes.items()}
         return shapes, *framed(drafts)
     supply = next(n.name for n in board.nets if n.net_class == SUPPLY and n.name != board.ground)
