@@ -59,6 +59,7 @@ def awkward(designs: Callable[[str], Design], tmp_path: Path) -> Written:
         sheet.flag(told, at, (i % 4) * 90)
         sheet.wire(at, (25.4, 76.2), (0.0, -2.54))
         sheet.junctions.append(at)
+        sheet.frames.append((at, (101.6 + i, 127.0)))
     file = tmp_path / "awkward.kicad_sch"
     shapes = {"R": symbols.hand_drawn()["R"], "GND": symbols.hand_drawn()["GND"]}
     file.write_text(sheet_text(board, "A3", sheet, shapes, parts), encoding="utf-8")
@@ -147,6 +148,8 @@ def _all_is_there(written: Written) -> None:
         assert (fields["Footprint"], fields["Datasheet"]) == (footprint, "")
         ordered = (part.manufacturer, part.part) if part and part.part else (None, None)
         assert (fields.get("Manufacturer"), fields.get("MPN")) == ordered
+        numbered = part.lcsc if part and part.part and part.lcsc else None
+        assert fields.get("LCSC") == numbered
         assert words(child(node, "in_bom")) == ["no" if part and not part.part else "yes"]
         ids = [words(field)[0] for field in chain(*(children(f, "id") for f in node[1:] if f))]
         assert ids == [str(i) for i in range(len(fields))]
@@ -163,6 +166,9 @@ def _all_is_there(written: Written) -> None:
 def _read(whole: Node) -> Sheet:
     """A sheet as it was drawn."""
     wires = (child(wire, "pts") for wire in children(whole, "wire"))
+    around = (child(frame, "pts") for frame in children(whole, "polyline"))
+    corners = [[numbers(xy) for xy in children(pts, "xy")] for pts in around]
+    assert all(len(frame) == 5 and frame[0] == frame[4] for frame in corners)
     return _rounded(
         Sheet(
             [_symbol(node) for node in children(whole, "symbol")],
@@ -170,6 +176,7 @@ def _read(whole: Node) -> Sheet:
             [_at(node) for node in children(whole, "junction")],
             [(words(n)[0], _at(n), _angle(n)) for n in children(whole, "global_label")],
             [(words(n)[0], _at(n), _height(n)) for n in children(whole, "text")],
+            [(frame[0], frame[2]) for frame in corners],
         )
     )
 
@@ -231,4 +238,5 @@ def _rounded(sheet: Sheet) -> Sheet:
         [near(at) for at in sheet.junctions],
         [(net, near(at), angle) for net, at, angle in sheet.labels],
         [(told, near(at), height) for told, at, height in sheet.texts],
+        [(near(corner), near(opposite)) for corner, opposite in sheet.frames],
     )

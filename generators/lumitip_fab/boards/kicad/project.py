@@ -11,6 +11,17 @@ from lumitip_fab.boards.model import LEAST_SPOKES, BoardModel, NetClass, Placeme
 HOLE_TO_HOLE_MM = 0.25
 """Wall between two drills."""
 _LEAST_TEXT_MM, _LEAST_STROKE_MM = 0.6, 0.1
+_ERRORS = (
+    "endpoint_off_grid",
+    "footprint_link_issues",
+    "four_way_junction",
+    "lib_symbol_issues",
+    "lib_symbol_mismatch",
+    "multiple_net_names",
+    "pin_to_pin",
+    "unconnected_wire_endpoint",
+)
+"""Rules of schematics that KiCad only warns of, or leaves out, unless it is told."""
 
 
 def project_file(board: Placement, name: str) -> bytes:
@@ -22,6 +33,7 @@ def project_file(board: Placement, name: str) -> bytes:
     """
     settings = {
         "board": {"design_settings": {"rules": _rules(board)}},
+        "erc": {"rule_severities": dict.fromkeys(_ERRORS, "error")},
         "meta": {"filename": name, "version": 1},
         "net_settings": {
             "classes": _classes(board),

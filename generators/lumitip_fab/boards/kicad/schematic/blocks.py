@@ -1,12 +1,10 @@
-"""Blocks of the sheets: wires with test points, strings of LEDs, and parts by themselves."""
+"""Blocks of a finger's sheet: wires with test points, and strings of LEDs."""
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 
 from lumitip_fab.boards.kicad.schematic import current_sources, symbols
 from lumitip_fab.boards.kicad.schematic.sheet import Block, Sheet
-from lumitip_fab.boards.kicad.schematic.symbols import GRID_MM, PITCH_MM
 from lumitip_fab.boards.model import AT_CELLS, GROUND
 from lumitip_fab.design import Component, Point, Wiring
 
@@ -104,83 +102,3 @@ def _string(
         end = middle + 3.81
     sheet.wire((end, y), (end + 5.08, y))
     sheet.power(GROUND, (end + 5.08, y))
-
-
-_ABOVE_MM = 12.7  # of a part, for its reference
-_UPRIGHT_MM = 25.4  # a part whose terminals are above and below
-_LETTER_MM = 1.2
-_LABEL_MM = 5.08  # wire from a pin to its label
-
-
-def heading(words: str) -> Block:
-    """The title of parts by themselves."""
-    return Block(0.0, 0.0, lambda sheet, at: sheet.texts.append((words, at, 2.5)))
-
-
-def part_block(part: Component) -> Block:
-    """A part by itself, with the names of its nets at its pins."""
-    name, shape = symbols.of_part(part)
-    tall_mm, draw = _UPRIGHT_MM, _two
-    if part.kind == "transistor":
-        draw = _transistor
-    elif part.kind not in symbols.TWO_TERMINALS:
-        tall_mm, draw = len(part.nets) * PITCH_MM + _ABOVE_MM, _row
-    joined = {number for number, _ in part.nets}
-    pads = part.footprint.pads if part.contacts else ()
-    left_open = [pad.number for pad in pads if pad.number not in joined]
-
-    def drawn(sheet: Sheet, at: Point) -> None:
-        draw(part, name, sheet, at)
-        if left_open:
-            words, y = f"open: {', '.join(left_open)}", at[1] + tall_mm + PITCH_MM
-            sheet.texts.append((words, (at[0], y), 1.27))
-
-    return Block(_COLUMN_MM, tall_mm, drawn, {name: shape})
-
-
-def _middle(at: Point) -> Point:
-    """Middle of an upright part below a place, on the grid."""
-    x, y = at
-    return (x + 4 * PITCH_MM) // GRID_MM * GRID_MM, (y + _UPRIGHT_MM / 2) // GRID_MM * GRID_MM
-
-
-def _beside(words: str, edge_mm: float, y_mm: float) -> Point:
-    """Middle of a text that begins at an edge, or ends there on the left."""
-    return edge_mm + math.copysign(len(words) * _LETTER_MM / 2, edge_mm), y_mm
-
-
-def _transistor(part: Component, symbol: str, sheet: Sheet, at: Point) -> None:
-    """Its source above, its drain below, its gate to the left."""
-    x, y = _middle(at)
-    shown = _beside(part.ref, 5.08, -1.27), _beside(part.value, 5.08, 1.27)
-    sheet.part(symbol, part, (x, y), ref_at=shown[0], value_at=shown[1])
-    nets = dict(zip(part.pins, (net for _, net in part.nets), strict=True))
-    sheet.wire((x - _LABEL_MM, y), (x - 1.5 * _LABEL_MM, y))
-    sheet.flag(nets["G"], (x - 1.5 * _LABEL_MM, y), 180)
-    for name, way in (("S", -1), ("D", 1)):
-        beside = x + 2 * _LABEL_MM, y + way * 7.62
-        sheet.wire((x + 2.54, y + way * 5.08), (x + 2.54, beside[1]), beside)
-        sheet.flag(nets[name], beside, 0)
-
-
-def _two(part: Component, symbol: str, sheet: Sheet, at: Point) -> None:
-    """A part with two terminals, upright, each with the name of its net."""
-    x, y = _middle(at)
-    shown = _beside(part.ref, -2.54, -1.27), _beside(part.value, -2.54, 1.27)
-    sheet.part(symbol, part, (x, y), ref_at=shown[0], value_at=shown[1])
-    for (_, net), way in zip(part.nets, (-1, 1), strict=True):
-        sheet.wire((x, y + way * 3.81), (x, y + way * 7.62), (x + _LABEL_MM, y + way * 7.62))
-        sheet.flag(net, (x + _LABEL_MM, y + way * 7.62), 0)
-
-
-def _row(part: Component, symbol: str, sheet: Sheet, at: Point) -> None:
-    """A row of contacts, first at the top, each with the name of its net."""
-    ways = len(part.nets)
-    # A row of contacts is drawn to the right of its place, a chip to the left.
-    x, first = at[0] + (2.54 if part.contacts else 12.7), at[1] + _ABOVE_MM
-    middle, end = first + (ways - 1) / 2 * PITCH_MM, ways / 2 * PITCH_MM + 1.27
-    sheet.part(symbol, part, (x, middle), ref_at=(0, -end), value_at=(0, end))
-    for i, (_, net) in enumerate(part.nets):
-        y = first + i * PITCH_MM
-        sheet.wire((x + _LABEL_MM, y), (x + 2 * _LABEL_MM, y))
-        sheet.flag(net, (x + 2 * _LABEL_MM, y), 0)

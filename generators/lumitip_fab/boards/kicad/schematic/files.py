@@ -3,20 +3,15 @@
 from collections.abc import Iterable
 
 from lumitip_fab.boards.kicad.schematic import symbols
-from lumitip_fab.boards.kicad.schematic.blocks import (
-    heading,
-    part_block,
-    string_blocks,
-    wires_block,
-)
+from lumitip_fab.boards.kicad.schematic.auxiliary import auxiliary_blocks
+from lumitip_fab.boards.kicad.schematic.blocks import string_blocks, wires_block
+from lumitip_fab.boards.kicad.schematic.frames import framed
 from lumitip_fab.boards.kicad.schematic.multiplexers import multiplexer_blocks
 from lumitip_fab.boards.kicad.schematic.sheet import Block, Sheet, columns, grid
 from lumitip_fab.boards.kicad.schematic.writer import sheet_text
 from lumitip_fab.boards.kicad.sexpr import FORMAT, Node, Quoted, written
 from lumitip_fab.boards.model import SUPPLY, Placement
 from lumitip_fab.design import Design
-
-_TALL_MM = 150.0  # of a column of parts by themselves
 
 
 def schematic_files(board: Placement, design: Design) -> dict[str, bytes]:
@@ -43,12 +38,13 @@ def schematic_files(board: Placement, design: Design) -> dict[str, bytes]:
 
 def _drawn(board: Placement, design: Design) -> tuple[dict[str, Node], str, Sheet]:
     """Symbols by name, name of the paper, and the drawing: strings or multiplexers with the wires
-    that lead to them; on any other board, each part by itself."""
+    that lead to them; on any other board, blocks in frames."""
     parts = {part.ref: part for part in board.components}
     kinds = {part.kind for part in board.components}
     if kinds.isdisjoint(("led", "multiplexer")):
-        alone = [part_block(part) for part in board.components if part.nets]
-        return _shapes(alone), *columns([heading(board.caption), *alone], _TALL_MM)
+        drafts = auxiliary_blocks(board)
+        shapes = {name: shape for _, draft in drafts for name, shape in draft.shapes.items()}
+        return shapes, *framed(drafts)
     supply = next(n.name for n in board.nets if n.net_class == SUPPLY and n.name != board.ground)
     shapes = symbols.hand_drawn() | {supply: symbols.supply(supply)}
     wires, packages = wires_block(parts, supply), design.packages

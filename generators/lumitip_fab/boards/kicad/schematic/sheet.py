@@ -1,6 +1,5 @@
 """Symbols and wires of a sheet with their places, and the paper sizes. mm, y down, 1.27 mm grid."""
 
-import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -39,6 +38,8 @@ class Sheet:
     """Net, place, and angle to which the flag points: 0 right, 90 up, 180 left."""
     texts: list[tuple[str, Point, float]] = field(default_factory=list)
     """Text, place of its lower left, height."""
+    frames: list[tuple[Point, Point]] = field(default_factory=list)
+    """Upper left and lower right corners."""
     powers: int = 0
 
     def part(
@@ -57,11 +58,11 @@ class Sheet:
         called = symbol, part.ref, part.value
         self.symbols.append(Drawn(*called, *at, angle_deg, pins, ref_at, value_at, unit))
 
-    def power(self, net: str, at: Point, angle_deg: int = 0) -> None:
+    def power(self, net: str, at: Point, angle_deg: int = 0, value_at: Point | None = None) -> None:
         """A symbol that gives a wire's end the name of a supply; ground hangs below it."""
         self.powers += 1
         beyond = (0.0, 4.572) if net == "GND" else (0.0, -3.81)
-        shown = beyond if net != "PWR_FLAG" else None
+        shown = value_at or beyond if net != "PWR_FLAG" else None
         self.symbols.append(
             Drawn(net, f"#PWR{self.powers:03d}", net, *at, angle_deg, ("1",), value_at=shown)
         )
@@ -76,8 +77,8 @@ class Sheet:
 
 
 MARGIN_MM = 20.32
-_TITLE_MM = 35.0  # of the title block, at the bottom right
-_PAPERS = {
+TITLE_MM = 35.0  # of the title block, at the bottom right
+PAPERS = {
     "A4": (297, 210),
     "A3": (420, 297),
     "A2": (594, 420),
@@ -88,10 +89,10 @@ _PAPERS = {
 
 def paper_for(width_mm: float, height_mm: float) -> tuple[str, int]:
     """The smallest paper for a drawing, and its place among them; A0 for what is larger."""
-    for place, (name, (wide, high)) in enumerate(_PAPERS.items()):
-        if width_mm + 2 * MARGIN_MM <= wide and height_mm + MARGIN_MM + _TITLE_MM <= high:
+    for place, (name, (wide, high)) in enumerate(PAPERS.items()):
+        if width_mm + 2 * MARGIN_MM <= wide and height_mm + MARGIN_MM + TITLE_MM <= high:
             return name, place
-    return "A0", len(_PAPERS)
+    return "A0", len(PAPERS)
 
 
 @dataclass(frozen=True)
@@ -106,23 +107,14 @@ class Block:
     """Their symbols, by name."""
 
 
-def columns(blocks: Iterable[Block], tall_mm: float = math.inf) -> tuple[str, Sheet]:
-    """Blocks below each other, in columns of equal width: name of the paper, and the drawing.
-
-    Args:
-        blocks: in this order.
-        tall_mm: height from which a further column begins.
-    """
+def columns(blocks: Iterable[Block]) -> tuple[str, Sheet]:
+    """Blocks below each other: name of the paper, and the drawing."""
     blocks, sheet = list(blocks), Sheet()
-    wide = max(block.width_mm for block in blocks)
-    x = y = bottom = MARGIN_MM
+    wide, y = max(block.width_mm for block in blocks), MARGIN_MM
     for block in blocks:
-        if y + block.height_mm > MARGIN_MM + tall_mm:
-            x, y = x + wide, MARGIN_MM
-        block.draw(sheet, (x, y))
+        block.draw(sheet, (MARGIN_MM, y))
         y += block.height_mm
-        bottom = max(bottom, y)
-    paper, _ = paper_for(x + wide - MARGIN_MM, bottom - MARGIN_MM)
+    paper, _ = paper_for(wide, y - MARGIN_MM)
     return paper, sheet
 
 

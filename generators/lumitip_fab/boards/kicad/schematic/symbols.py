@@ -10,27 +10,13 @@ GRID_MM = 1.27
 PITCH_MM = 2.54
 """From pin to pin of contacts and chips."""
 PIN_MM = 2.54
-_CHIP_MM = 15.24  # width of the box of a part with named pins
 _TURNS = 4  # of a coil
 _FONT = ("effects", ("font", ("size", 1.27, 1.27)))
 HIDDEN: Node = ("effects", ("font", ("size", 1.27, 1.27)), "hide")
 
 
-def of_part(part: Component) -> tuple[str, Node]:
-    """Name and symbol of a part that is drawn by itself."""
-    if part.kind in TWO_TERMINALS:
-        return two_terminals(part.kind)
-    if part.contacts:
-        numbers = tuple(number for number, _ in part.nets)
-        whole = len(numbers) == len(part.footprint.pads)
-        name = f"Strip{len(numbers)}" if whole else f"Strip_{part.ref}"
-        return name, contacts(numbers, PITCH_MM)
-    draw = transistor if part.kind == "transistor" else chip
-    return f"{part.kind.capitalize()}_{part.ref}", draw(part)
-
-
 TWO_TERMINALS = ("resistor", "capacitor", "fuse", "inductor", "crystal", "tvs diode")
-"""Kinds of parts that are drawn upright, the first terminal at the top."""
+"""Kinds of parts that are drawn upright, the first terminal at the top, or turned."""
 _BAR = (-1.778, 0.762), (-1.27, 1.27), (1.27, 1.27), (1.778, 1.778)
 _TRIANGLE = (-1.27, -1.27), (1.27, -1.27), (0, 1.27), (-1.27, -1.27)
 
@@ -54,7 +40,14 @@ def hand_drawn() -> dict[str, Node]:
     """The symbols of a board whose supplies are drawn as symbols, by name."""
     return {
         **dict(map(two_terminals, ("resistor", "capacitor"))),
-        "TestPoint": symbol("TP", [_circle(0, 3.302, 0.762)], [pin("1", 0, 0, 90, 2.54)]),
+        "TestPoint": symbol("TP", [circle(0, 3.302, 0.762)], [pin("1", 0, 0, 90, 2.54)]),
+        **power_symbols(),
+    }
+
+
+def power_symbols() -> dict[str, Node]:
+    """The flag of a supply from outside, and ground, by name."""
+    return {
         "PWR_FLAG": _power(
             "PWR_FLAG",
             [
@@ -99,17 +92,20 @@ def led(marked: str) -> Node:
 
 
 def phototransistor(marked: str) -> Node:
-    """A phototransistor, its emitter to the left and its collector to the right."""
+    """A phototransistor, its emitter to the left and its open collector to the right."""
     collector, emitter = ("1", "2") if marked == "collector" else ("2", "1")
     body = [
-        _circle(0, 0.635, 2.54),
+        circle(0, 0.635, 2.54),
         line((-1.27, 1.27), (1.27, 1.27)),
         line((0.635, 1.27), (1.905, 0), (2.54, 0)),
         line((-0.635, 1.27), (-1.905, 0), (-2.54, 0)),
         line((-1.27, 0.0), (-1.905, 0), (-1.905, 0.635)),
         *_rays((-1.4, 4.9), away=False),
     ]
-    pins = [pin(emitter, -5.08, 0, 0, 2.54, "E"), pin(collector, 5.08, 0, 180, 2.54, "C")]
+    pins = [
+        pin(emitter, -5.08, 0, 0, 2.54, "E"),
+        pin(collector, 5.08, 0, 180, 2.54, "C", "open_collector"),
+    ]
     return symbol("Q", body, pins)
 
 
@@ -131,23 +127,11 @@ def transistor(part: Component) -> Node:
             line((3.556, 0.381), (3.048, -0.381), (4.064, -0.381), (3.556, 0.381)),
         ],
         [
-            pin(number["G"], -5.08, 0, 0, PIN_MM, "G"),
+            pin(number["G"], -5.08, 0, 0, PIN_MM, "G", "input"),
             pin(number["S"], 2.54, 5.08, 270, PIN_MM, "S"),
             pin(number["D"], 2.54, -5.08, 90, PIN_MM, "D"),
         ],
     )
-
-
-def chip(part: Component) -> Node:
-    """A box with the names of those pins that are joined, first at the top."""
-    names = dict(zip((land.number for land in part.footprint.pads), part.pins, strict=True))
-    half = len(part.nets) / 2 * PITCH_MM
-    pins = [
-        pin(number, 5.08, half - (i + 0.5) * PITCH_MM, 180, PIN_MM, names[number])
-        for i, (number, _) in enumerate(part.nets)
-    ]
-    body = box(PIN_MM - _CHIP_MM, -half, PIN_MM, half, fill="background")
-    return symbol("U", [body], pins, shown=True)
 
 
 def contacts(numbers: tuple[str, ...], pitch_mm: float) -> Node:
@@ -159,7 +143,7 @@ def contacts(numbers: tuple[str, ...], pitch_mm: float) -> Node:
         for i, number in enumerate(numbers)
     ]
     half = ways / 2 * pitch_mm
-    dots = [_circle(1.27, first - i * pitch_mm, 0.762) for i in range(ways)]
+    dots = [circle(1.27, first - i * pitch_mm, 0.762) for i in range(ways)]
     return symbol("J", [box(-2.54, -half, 2.54, half, fill="background"), *dots], pins)
 
 
@@ -264,7 +248,8 @@ def box(x0: float, y0: float, x1: float, y1: float, fill: str = "none") -> Node:
     return ("rectangle", ("start", x0, y0), ("end", x1, y1), *_stroke(fill))
 
 
-def _circle(x: float, y: float, radius: float) -> Node:
+def circle(x: float, y: float, radius: float) -> Node:
+    """A circle round a place."""
     return ("circle", ("center", x, y), ("radius", radius), *_stroke())
 
 

@@ -31,6 +31,7 @@ class Template:
         self._order = {thing[0]: i for i, thing in enumerate(self.sheet.tree[1:])}
         drawn = ("junction", "wire", "text", "global_label", "symbol")
         self._patterns: dict[str, Any] = {kind: getattr(self.sheet, kind)[0] for kind in drawn}
+        self._patterns["polyline"] = self.sheet.polyline
         self._patterns["path"] = self.sheet.symbol_instances.path
 
     def copy(self, kind: str) -> Any:

@@ -57,6 +57,12 @@ class _Writer:
         for i, (start, end) in enumerate(sheet.wires):
             wire = self.copy("wire", "wire", i)
             wire.start.value, wire.end.value = [*start], [*end]
+        for i, (corner, opposite) in enumerate(sheet.frames):
+            (x0, y0), (x1, y1) = corner, opposite
+            around = (x0, y0), (x1, y0), (x1, y1), (x0, y1), (x0, y0)
+            frame = self.copy("polyline", "frame", i)
+            for point, (x, y) in zip(frame.pts.xy, around, strict=True):
+                point.value = [x, y]
         for i, (words, at, height) in enumerate(sheet.texts):
             text = self.copy("text", "text", i)
             text.value, text.at.value = words, [*at, 0]
@@ -117,6 +123,7 @@ def _field_texts(drawn: Drawn, part: Component | None) -> dict[str, tuple[str, P
     }
     if part and part.part:
         texts |= {"Manufacturer": (part.manufacturer, None), "MPN": (part.part, None)}
+        texts |= {"LCSC": (part.lcsc, None)} if part.lcsc else {}
     return texts
 
 

@@ -1,0 +1,159 @@
+"""The way of the supply on a flange: fuse, MOSFET and TVS diode, then regulators.
+
+```
+24V_IN ── F1 ── Q1 ──┬────┬──── R3 ── VIN        VIN ──┬── U1 ── C4 ── L1 ──┬── 5V
+                └─ R1┘    D1                           C1                   C2
+                   R2     GND                          GND                  GND
+```
+"""
+
+from collections.abc import Sequence
+
+from lumitip_fab.boards.kicad.schematic import shapes, symbols
+from lumitip_fab.boards.kicad.schematic.draft import (
+    Draft,
+    net_of,
+    nets_of,
+    other_net,
+    pads_of,
+)
+from lumitip_fab.boards.kicad.schematic.pin_types import pin_names
+from lumitip_fab.boards.kicad.schematic.rail import STEP_MM, Rail
+from lumitip_fab.boards.kicad.schematic.symbols import PITCH_MM
+from lumitip_fab.boards.model import GROUND
+from lumitip_fab.design import Component, Point
+
+Group = Sequence[Component]
+_BOOT, _SWITCH, _FEEDBACK = 0, 2, 6
+"""Rows of a buck regulator's pins."""
+_ABOVE_MM = 5.08, 2.54  # reference and value above the top of a chip
+_GATE_MM = 7.62, 10.16  # from the wire to the MOSFET's gate, and to the resistors at it
+
+
+def draw_plug_in(draft: Draft, group: Group) -> None:
+    """Fuse, MOSFET against a reversed supply with its gate's resistors, TVS diode, inrush."""
+    fuse, transistor = (_only(group, kind) for kind in ("fuse", "transistor"))
+    supply, gate, drain = (net_of(transistor, pin) for pin in "SGD")
+    rail = Rail(draft, (0.0, 0.0), other_net(fuse, drain))
+    rail.supply()
+    rail.through(fuse)
+    rail.tag()
+    node = _transistor(draft, transistor, rail, gate)
+    rail.net = supply
+    resistors = [part for part in group if part.kind == "resistor"]
+    for part in resistors:
+        if {supply, gate} == nets_of([part]):
+            rail.on()
+            draft.wire(node, rail.hang(part))
+    lower = Rail(draft, node, gate)
+    for part in resistors:
+        if {gate, GROUND} == nets_of([part]):
+            lower.hang(part)
+    rail.to(max(rail.x_mm, lower.x_mm))
+    for part in group:
+        if {supply, GROUND} == nets_of([part]):
+            rail.hang(part)
+    rail.supply()
+    rail.on()
+    for part in resistors:
+        if supply in nets_of([part]) and part.ref not in draft.drawn:
+            rail.through(part)
+            draft.end(rail.net, rail.end(), 1)
+
+
+def draw_buck(draft: Draft, group: Group) -> None:
+    """A step-down regulator with its capacitors, coil and feedback."""
+    regulator = group[0]
+    switch, boot, vin = (net_of(regulator, pin) for pin in ("SW", "BST", "VIN"))
+    rail = Rail(draft, (0.0, 0.0), vin)
+    rail.supply()
+    rail.on()
+    _hang_all(rail, group)
+    left = {"VIN": 0, "EN": 2}
+    right = {"BST": _BOOT, "SW": _SWITCH, "FB": _FEEDBACK}
+    pins = _chip(draft, regulator, rail, left, right)
+    if net_of(regulator, "EN") == vin:
+        enable = pins["EN"]
+        corner = enable[0] - STEP_MM, enable[1]
+        draft.wire(enable, corner, (corner[0], rail.y_mm))
+    upper, out = Rail(draft, pins["BST"], boot), Rail(draft, pins["SW"], switch)
+    upper.tag()
+    for part in group:
+        if {boot, switch} == nets_of([part]):
+            upper.through(part)
+            draft.wire(upper.end(), (upper.x_mm, out.y_mm))
+    out.tag(270)
+    out.to(max(out.x_mm, upper.x_mm))
+    for part in group:
+        if part.kind == "inductor" and switch in nets_of([part]):
+            out.through(part)
+    feedback = pins["FB"]
+    if net_of(regulator, "FB") == out.net:
+        draft.wire(feedback, (out.x_mm, feedback[1]), out.end())
+    else:
+        draft.end(net_of(regulator, "FB"), feedback, 1)
+    out.on(2 * STEP_MM)
+    _hang_all(out, group)
+    out.supply()
+
+
+def draw_linear(draft: Draft, group: Group) -> None:
+    """A linear regulator between its capacitors."""
+    regulator = group[0]
+    rail = Rail(draft, (0.0, 0.0), net_of(regulator, "IN"))
+    rail.supply()
+    rail.on()
+    _hang_all(rail, group)
+    pins = _chip(draft, regulator, rail, {"IN": 0}, {"OUT": 0})
+    out = Rail(draft, pins["OUT"], net_of(regulator, "OUT"))
+    out.on()
+    _hang_all(out, group)
+    out.supply()
+
+
+def _transistor(draft: Draft, part: Component, rail: Rail, gate: str) -> Point:
+    """The MOSFET in the wire, drain to the left: the place of its gate's resistors."""
+    rail.on()
+    x, y = rail.end()
+    middle = x + 5.08, y + STEP_MM
+    shape = shapes.lying(symbols.transistor(part))
+    assert isinstance(shape, tuple)
+    draft.place(part, f"Transistor_{part.ref}", shape, middle, 0, (0.0, -8.89), (0.0, -6.6))
+    rail.skip(10.16)
+    pin, node = (middle[0], y + _GATE_MM[0]), (middle[0], y + _GATE_MM[1])
+    left = middle[0] - STEP_MM, pin[1]
+    draft.wire(pin, node)
+    draft.wire(left, pin)
+    draft.tag(gate, left, 180)
+    return node
+
+
+def _chip(
+    draft: Draft, part: Component, rail: Rail, left: dict[str, int], right: dict[str, int]
+) -> dict[str, Point]:
+    """A chip with row 0 of its left at the wire's end: places of its pins by name."""
+    rail.on(2 * STEP_MM)
+    names = pin_names(part)
+    below = [pad for pad, _ in part.nets if names[pad] == "GND"]
+    shape = shapes.chip(part, pads_of(part, left), pads_of(part, right), below)
+    beside = -min(x for x, _ in shapes.pins_of(shape).values())
+    top = -PITCH_MM
+    texts = [(0.0, top - above) for above in _ABOVE_MM]
+    x, y = rail.end()
+    at = x + beside, y
+    pins = draft.place(part, f"{part.kind.capitalize()}_{part.ref}", shape, at, 0, *texts)
+    for pad in below:
+        draft.power(GROUND, pins[pad])
+    return {names[pad]: place for pad, place in pins.items()}
+
+
+def _hang_all(rail: Rail, group: Group) -> None:
+    """Every capacitor of a group between a wire and ground."""
+    for part in group:
+        if part.kind == "capacitor" and {rail.net, GROUND} == nets_of([part]):
+            rail.hang(part)
+
+
+def _only(group: Group, kind: str) -> Component:
+    (part,) = (part for part in group if part.kind == kind)
+    return part
