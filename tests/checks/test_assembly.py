@@ -19,19 +19,19 @@ EVERY = {name.removeprefix("assembly.") for name in assembly.NAMES}
 
 
 def led_moved(told: Told) -> None:
-    move(told, "D7", x=0.1)
+    move(told, "emitter.D7", x=0.1)
 
 
 def photodetector_moved(told: Told) -> None:
-    move(told, "Q32", y=-0.1)
+    move(told, "receiver.Q32", y=-0.1)
 
 
 def multiplexer_raised(told: Told) -> None:
-    move(told, "U1", z=0.6)
+    move(told, "receiver.U1", z=0.6)
 
 
 def multiplexer_through_the_skin(told: Told) -> None:
-    move(told, "U1", z=3.0)
+    move(told, "receiver.U1", z=3.0)
 
 
 def finger_shifted(told: Told) -> None:
@@ -77,7 +77,7 @@ def board_turned_out(told: Told) -> None:
 
 
 def part_renamed(told: Told) -> None:
-    node(told, "Q3")["name"] = "Q33"
+    node(told, "receiver.Q3")["name"] = "receiver.Q33"
 
 
 def layer_missing(told: Told) -> None:

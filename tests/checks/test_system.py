@@ -72,7 +72,7 @@ def fingers_high(told: Told) -> None:
 
 
 def led_moved(told: Told) -> None:
-    move(told, "D7", x=0.1)
+    move(told, "emitter.D7", x=0.1)
 
 
 def centre_edited(told: Told) -> None:

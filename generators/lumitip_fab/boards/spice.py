@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator
 
-from lumitip_fab.boards.circuit import circuit
+from lumitip_fab.boards.circuit import cathodes_of, circuit
 from lumitip_fab.boards.model import GROUND
 from lumitip_fab.boards.spice_channel import STEPS, channel, corners, detectors, first_mux
 from lumitip_fab.design import AuxiliaryBoard, Component, Design, Finger
@@ -47,10 +47,13 @@ def _string(parts: tuple[Component, ...], design: Design) -> Iterator[str]:
     supply, net = (net for part in parts if part.ref == "R1" for _, net in part.nets)
     yield f"Vsupply {supply} 0 {wiring.supply_v:g}"
     yield f"R1 {supply} {net} {wiring.resistor_ohm[0]:g}"
-    while net != GROUND:
+    end = cathodes_of(design)
+    while net != end:
         led = leds[net]
         left, net = net, dict(led.nets)[cathode]
         yield f"{led.ref} {left} {'0' if net == GROUND else net} led"
+    if packages.switch is not None:
+        yield f"RQ1 {end} 0 {packages.switch.on_ohm:g}"  # Q1 while the LEDs are on
     # Saturation current with which the forward voltage at the target current is as stated.
     exponent = strings.forward_v / (strings.ideality * _THERMAL_V)
     amperes = f"{strings.target_ma / 1000:g}/(exp({exponent:.9g})-1)"

@@ -91,14 +91,14 @@ def _step(outputs: Path, design: Design) -> Measurement:
 def _wanted(design: Design) -> Iterator[str]:
     for finger in design.fingers:
         yield from (f"{finger.name}.{layer}" for layer in design.layers)
-        yield from (part.name for part in finger.parts)
+        yield from map(finger.body_name, finger.parts)
 
 
 def _facing(scene: Scene, design: Design) -> Measurement:
     """LED i against photodetector i, seen along z."""
     numbers = range(1, len(design.cells) + 1)
-    lit = np.array([scene.nodes[f"D{i}"].centre_mm for i in numbers])
-    seen = np.array([scene.nodes[f"Q{i}"].centre_mm for i in numbers])
+    lit = np.array([scene.nodes[f"emitter.D{i}"].centre_mm for i in numbers])
+    seen = np.array([scene.nodes[f"receiver.Q{i}"].centre_mm for i in numbers])
     apart = np.hypot(*(lit - seen)[:, :2].T)
     worst = int(apart.argmax())
     return Measurement(
@@ -269,7 +269,7 @@ def _bodies(scene: Scene, finger: Finger, layers: tuple[str, ...]) -> dict[str, 
         layer: solids.solid(scene.nodes[f"{finger.name}.{layer}"].mesh, layer) for layer in layers
     }
     bodies["parts"] = solids.united(
-        [solids.solid(scene.nodes[part.name].mesh, part.name) for part in finger.parts]
+        [solids.solid(scene.nodes[name].mesh, name) for name in map(finger.body_name, finger.parts)]
     )
     return bodies
 

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from lumitip_fab.checks.board_read import ReadBoard, ohm
+from lumitip_fab.checks.board_switch import sink
 from lumitip_fab.checks.connections import channels
 from lumitip_fab.checks.readers.kicad_board import Part
 from lumitip_fab.checks.result import Measurement
@@ -128,12 +129,14 @@ def measure_strings(read: ReadBoard) -> Iterator[Measurement]:
 
 def _chain(read: ReadBoard, resistor: str, supply: str, anode: str) -> tuple[list[str], bool]:
     """LEDs after a resistor, with a minus where the current meets the cathode first; and whether
-    the last is at ground."""
+    the last is at ground, or at the transistor that switches them."""
     ends = [read.group(resistor, 1), read.group(resistor, 2)]
     source = read.wire(supply)
     if None in ends or source not in ends:
         return [], False
-    at, ground = ends[1 - ends.index(source)], read.wire(GROUND)
+    at, end = ends[1 - ends.index(source)], sink(read)
+    if end is None:
+        return [], False
     cathode = "1" if anode == "2" else "2"
     leds = {
         ref: (read.group(ref, anode), read.group(ref, cathode))
@@ -141,7 +144,7 @@ def _chain(read: ReadBoard, resistor: str, supply: str, anode: str) -> tuple[lis
         if ref.startswith("D")
     }
     chain: list[str] = []
-    while at != ground:
+    while at != end:
         after = [ref for ref, pads in leds.items() if at in pads]
         if len(after) != 1:
             return chain, False

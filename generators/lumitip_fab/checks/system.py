@@ -88,7 +88,7 @@ def wanted_bodies(design: Design) -> Iterator[str]:
     yield from real_bodies(design)
     for finger in design.fingers:
         yield from (f"{finger.name}.{layer}" for layer in design.layers)
-        yield from (part.name for part in finger.parts)
+        yield from map(finger.body_name, finger.parts)
 
 
 def _bounds(scene: Scene, name: str) -> Vectors:
@@ -212,8 +212,8 @@ def _tcp(scene: Scene, layout: Layout) -> Vectors:
     """
     up_mm = float(layout.y_mm.mean())
     middles = []
-    for letter in ("D", "Q"):
-        cells = [scene.nodes[f"{letter}{i}"] for i in range(1, len(layout) + 1)]
+    for first in ("emitter.D", "receiver.Q"):
+        cells = [scene.nodes[f"{first}{i}"] for i in range(1, len(layout) + 1)]
         extents = [(node.points_mm.min(axis=0) + node.points_mm.max(axis=0)) / 2 for node in cells]
         middle = np.mean(extents, axis=0) * (1.0, 1.0, 0.0) - (0.0, up_mm, 0.0)
         middles.append(applied(cells[0].to_scene, middle[None])[0])

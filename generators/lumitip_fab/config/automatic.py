@@ -68,6 +68,7 @@ FIELDS: dict[str, Automatic] = {
     "emitter.string_leds": Automatic(16, "supply and forward voltage", 1),
     "emitter.resistor": Automatic("1206", "worst-case load", names="resistors"),
     "emitter.resistor_side": Automatic("back", "room beside the coupling"),
+    "emitter.switch": Automatic("AO3400A", "supply, controller and room", names="transistors"),
     "receiver.photodetector": Automatic("SML-H10TBT86", "pitch", names="photodetectors"),
     "receiver.multiplexer": Automatic("74HC4051PW", "cells and analog pins", names="multiplexers"),
     "receiver.load": Automatic("each", "room beside the multiplexer"),

@@ -152,6 +152,9 @@ class Emitter(Strict):
     """Package of the string resistors in `parts/resistors.toml`."""
     resistor_side: Literal["front", "back"]
     """Side of the board that carries the string resistors."""
+    switch: Name
+    """N-channel MOSFET in `parts/transistors.toml` with which the controller turns the LEDs off, so
+    that ambient light is subtracted; "none": they are always on."""
 
 
 class Receiver(Strict):

@@ -80,4 +80,9 @@ def _meshed(bodies: Bodies) -> Iterator[Body]:
             boxes[size] = export.mesh(Solid.make_box(*size))
             boxes[size] = Mesh(boxes[size].points_mm + corner, boxes[size].triangles)
         low = float(solid.bounding_box().min.Z)
-        yield Body(part.name, boxes[size], COLOURS[part.kind], (part.x_mm, part.y_mm, low))
+        yield Body(
+            bodies.finger.body_name(part),
+            boxes[size],
+            COLOURS[part.kind],
+            (part.x_mm, part.y_mm, low),
+        )

@@ -27,6 +27,7 @@ COLOURS: dict[str, Colour] = {
     "photodetector": (0.22, 0.24, 0.30, 1.0),
     "multiplexer": (0.12, 0.12, 0.13, 1.0),
     "resistor": (0.25, 0.22, 0.20, 1.0),
+    "switch": (0.12, 0.12, 0.13, 1.0),
 }
 
 

@@ -169,12 +169,12 @@ def _held(
 
 def _finger(scene: trimesh.Scene, finger: Finger, to_tool: Matrix) -> Group:
     """A finger as the assembly has it, every body in the finger's frame."""
-    kinds = {part.name: part.kind for part in finger.parts}
+    kinds = {finger.body_name(part): part.kind for part in finger.parts}
     placed = scene.graph.get(finger.name)[0].copy()
     placed[:3, 3] *= _MM
     bodies = []
     for name in sorted(scene.graph.nodes_geometry):
-        if name not in kinds and not name.startswith(f"{finger.name}."):
+        if not name.startswith(f"{finger.name}."):
             continue
         place, geometry = scene.graph.get(name, finger.name)
         surface = scene.geometry[geometry]

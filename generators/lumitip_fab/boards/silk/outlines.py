@@ -22,6 +22,7 @@ _MARKED = (
     "multiplexer",
     "regulator",
     "transistor",
+    "switch",
     "tvs diode",
     "socket",
     "header",
@@ -91,7 +92,7 @@ def _outline(component: Component, rules: Rules, gap_mm: float) -> tuple[Stroke,
         return (_bar(shape, rules),) if fits else _beside(shape, rules)
     if kind in ("socket", "header"):
         return _socket(shape.body, rules)
-    if kind in ("regulator", "transistor"):
+    if kind in ("regulator", "transistor", "switch"):
         return (_dot(shape.pads[0], rules, _BAR_MM),)
     if kind == "tvs diode":
         return (_bar(shape, rules), *_sides(shape, rules, roomy))

@@ -59,25 +59,31 @@ _STRING_MM = 22.86
 _STRING_START_MM = 30.48
 
 
-def string_blocks(parts: Parts, supply: str, wiring: Wiring, marked: str) -> Iterator[Block]:
-    """A block for each string of LEDs with its resistor."""
+def string_blocks(
+    parts: Parts, supply: str, cathodes: str, wiring: Wiring, marked: str
+) -> Iterator[Block]:
+    """A block for each string of LEDs with its resistor, then those of their switch."""
     for number, string in enumerate(wiring.strings, start=1):
         width_mm = _STRING_START_MM + len(string) * _LED_MM + 20.32
         current_ma = wiring.current_ma[number - 1]
-        draw = partial(_string, parts, supply, number, string, current_ma)
+        draw = partial(_string, parts, (supply, cathodes), number, string, current_ma)
         yield Block(width_mm, _STRING_MM, draw, {"LED": symbols.led(marked)})
+    if wiring.emitter_pin is not None:
+        yield heading("Switch of the LEDs")
+        yield part_block(parts["Q1"])
+        yield part_block(parts[wiring.pull_down_ref])
 
 
 def _string(
     parts: Parts,
-    supply: str,
+    ends: tuple[str, str],
     number: int,
     string: Sequence[int],
     current_ma: float,
     sheet: Sheet,
     at: Point,
 ) -> None:
-    x, y = at[0], at[1] + 12.7
+    (supply, cathodes), x, y = ends, at[0], at[1] + 12.7
     caption = f"String {number}: {len(string)} LEDs, {current_ma:.1f} mA"
     sheet.texts.append((caption, (x, y - 10.16), 1.8))
     sheet.power(supply, (x + 5.08, y))
@@ -92,13 +98,19 @@ def _string(
         sheet.part("LED", parts[f"D{cell + 1}"], (middle, y), ref_at=(0, -5.08))
         end = middle + 3.81
     sheet.wire((end, y), (end + 5.08, y))
-    sheet.power(GROUND, (end + 5.08, y))
+    if cathodes == GROUND:
+        sheet.power(GROUND, (end + 5.08, y))
+    else:
+        sheet.flag(cathodes, (end + 5.08, y), 0)
 
 
 _ABOVE_MM = 12.7  # of a part, for its reference
 _UPRIGHT_MM = 25.4  # a part whose terminals are above and below
 _LETTER_MM = 1.2
 _LABEL_MM = 5.08  # wire from a pin to its label
+
+
+_UPPER_LEAD = {"transistor": "S", "switch": "D"}
 
 
 def heading(words: str) -> Block:
@@ -110,7 +122,7 @@ def part_block(part: Component) -> Block:
     """A part by itself, with the names of its nets at its pins."""
     name, shape = symbols.of_part(part)
     tall_mm, draw = _UPRIGHT_MM, _two
-    if part.kind == "transistor":
+    if part.kind in _UPPER_LEAD:
         draw = _transistor
     elif part.kind not in symbols.TWO_TERMINALS:
         tall_mm, draw = len(part.nets) * PITCH_MM + _ABOVE_MM, _row
@@ -139,14 +151,15 @@ def _beside(words: str, edge_mm: float, y_mm: float) -> Point:
 
 
 def _transistor(part: Component, symbol: str, sheet: Sheet, at: Point) -> None:
-    """Its source above, its drain below, its gate to the left."""
+    """Its channel upright, its gate to the left."""
     x, y = _middle(at)
     shown = _beside(part.ref, 5.08, -1.27), _beside(part.value, 5.08, 1.27)
     sheet.part(symbol, part, (x, y), ref_at=shown[0], value_at=shown[1])
     nets = dict(zip(part.pins, (net for _, net in part.nets), strict=True))
     sheet.wire((x - _LABEL_MM, y), (x - 1.5 * _LABEL_MM, y))
     sheet.flag(nets["G"], (x - 1.5 * _LABEL_MM, y), 180)
-    for name, way in (("S", -1), ("D", 1)):
+    upper = _UPPER_LEAD[part.kind]
+    for name, way in ((upper, -1), ("D" if upper == "S" else "S", 1)):
         beside = x + 2 * _LABEL_MM, y + way * 7.62
         sheet.wire((x + 2.54, y + way * 5.08), (x + 2.54, beside[1]), beside)
         sheet.flag(nets[name], beside, 0)

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 
+from lumitip_fab.boards.circuit import cathodes_of
 from lumitip_fab.boards.kicad.schematic import symbols
 from lumitip_fab.boards.kicad.schematic.blocks import (
     heading,
@@ -49,14 +50,17 @@ def _drawn(board: Placement, design: Design) -> tuple[dict[str, Node], str, Shee
     if kinds.isdisjoint(("led", "multiplexer")):
         alone = [part_block(part) for part in board.components if part.nets]
         return _shapes(alone), *columns([heading(board.caption), *alone], _TALL_MM)
-    supply = next(n.name for n in board.nets if n.net_class == SUPPLY and n.name != board.ground)
+    others = (board.ground, cathodes_of(design))
+    supply = next(n.name for n in board.nets if n.net_class == SUPPLY and n.name not in others)
     shapes = symbols.hand_drawn() | {supply: symbols.supply(supply)}
     wires, packages = wires_block(parts, supply), design.packages
     if "multiplexer" in kinds:
         blocks = list(multiplexer_blocks(parts, supply, packages))
         paper, sheet = grid(wires, blocks)
     else:
-        blocks = list(string_blocks(parts, supply, design.wiring, packages.led.marked))
+        blocks = list(
+            string_blocks(parts, supply, cathodes_of(design), design.wiring, packages.led.marked)
+        )
         paper, sheet = columns([*blocks, wires])
     return shapes | _shapes([wires, *blocks]), paper, sheet
 
