@@ -69,7 +69,7 @@ def string_blocks(
         draw = partial(_string, parts, (supply, cathodes), number, string, current_ma)
         yield Block(width_mm, _STRING_MM, draw, {"LED": symbols.led(marked)})
     if wiring.emitter_pin is not None:
-        yield heading("Switch of the LEDs")
+        yield Block(0.0, ROW_MM, _switch_title, {})
         yield part_block(parts["Q1"])
         yield part_block(parts[wiring.pull_down_ref])
 
@@ -102,6 +102,10 @@ def _string(
         sheet.power(GROUND, (end + 5.08, y))
     else:
         sheet.flag(cathodes, (end + 5.08, y), 0)
+
+
+def _switch_title(sheet: Sheet, at: Point) -> None:
+    sheet.texts.append(("Switch of the LEDs", (at[0], at[1] + ROW_MM), 1.8))
 
 
 _ABOVE_MM = 12.7  # of a part, for its reference
