@@ -115,6 +115,7 @@ def _boards(random: Random, _: Table, _base: str) -> Table:
         {
             "breakout.enabled": lambda: random.random() < 0.3,
             "flange.enabled": lambda: random.random() < 0.3,
+            "emitter.switch": lambda: random.choice(("auto", "none")),
         },
     )
 
@@ -152,7 +153,8 @@ def _flange(random: Random, _: Table, _base: str) -> Table:
         "flange.coupling": "couplings",
     }
     field = random.choice(list(kinds))
-    return {field: random.choice(list(entries(kinds[field])))}
+    named = {n: e for n, e in entries(kinds[field]).items() if e.get("channel", "P") == "P"}
+    return {field: random.choice(list(named))}
 
 
 def _cables(random: Random, _: Table, _base: str) -> Table:

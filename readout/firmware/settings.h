@@ -1,7 +1,10 @@
 // What may be tuned. Each value can also be given to the compiler: -DLUMITIP_BITS=10.
+// A design whose LEDs are switched has values of its own in layout.h.
 #pragma once
 
 #include <stdint.h>
+
+#include "layout.h"
 
 #ifndef LUMITIP_BITS
 #define LUMITIP_BITS 8  // of each value sent: 8, 10 or 12, not more than the converter has
@@ -28,10 +31,10 @@
 #define LUMITIP_WATCHDOG_S 10  // longer than a lost connection blocks the radio; 0: none
 #endif
 #ifndef LUMITIP_EMITTER_PIN
-#define LUMITIP_EMITTER_PIN -1  // switches the emitter's supply, high is on; -1: it is always on
+#define LUMITIP_EMITTER_PIN -1  // switches the LEDs, high is on; -1: they are always on
 #endif
 #ifndef LUMITIP_EMITTER_US
-#define LUMITIP_EMITTER_US 200  // from switching the emitter until its light is steady
+#define LUMITIP_EMITTER_US 200  // from switching the LEDs until light and photodetectors are steady
 #endif
 
 namespace lumitip {

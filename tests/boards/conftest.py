@@ -33,14 +33,22 @@ voltage_v = 12.0
 [emitter]
 current_ma = 12.0
 """
+SWITCHED = f"""\
+{SMALL}switch = "AO3400A"
+[receiver]
+load = "each"
+pull_up_ohm = 27000.0
+"""
 
 
 @pytest.fixture(scope="session")
 def designs(design_dir: Path, tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Design]:
-    """`designs("dense")`: a preset's design; `"small"` is a grid of 13 cells on two muxes."""
+    """`designs("dense")`: a preset's design; `"small"` is a grid of 13 cells on two muxes, and
+    `"switched"` the same with a transistor that switches the LEDs."""
     folder = tmp_path_factory.mktemp("designs") / "design"
     shutil.copytree(design_dir, folder)
     (folder / "presets" / "small.toml").write_text(SMALL)
+    (folder / "presets" / "switched.toml").write_text(SWITCHED)
     return lambda preset: derive(load(folder / "presets" / f"{preset}.toml"))
 
 
@@ -52,8 +60,8 @@ def boards(
 ) -> Boards:
     """`boards("dense")`: a folder with a preset's boards and design. Do not change it."""
     return lambda preset: (
-        once("small", lambda out: _write(designs("small"), out))
-        if preset == "small"
+        once(preset, lambda out: _write(designs(preset), out))
+        if preset in ("small", "switched")
         else built(preset)
     )
 

@@ -68,13 +68,15 @@ def test_any_pitch_derives(file: Any, pitch: float) -> None:
 def test_the_published_grid_keeps_the_published_values(inputs: dict[str, Input]) -> None:
     given = inputs["published"]
     moved = {f for f, a in FIELDS.items() if given.value(f) != a.start}
-    assert moved == {"receiver.load", "receiver.pull_up_ohm"}, "new designs have more pull-ups"
+    pull_ups = {"receiver.load", "receiver.pull_up_ohm"}
+    assert moved == {*pull_ups, "emitter.switch"}, "new designs have more pull-ups, and a switch"
 
 
 def test_every_choice_has_a_value_and_a_reason_in_one_line(file: Any) -> None:
     design = derive(load(file("[grid]\npitch_mm = 3.5\n[mask]\nhole_mm = 1.4\n")))
     choices = {choice.field: choice for choice in design.choices}
-    assert set(choices) == set(FIELDS) - {"receiver.load"}, "published.toml states that one"
+    stated = {"receiver.load", "emitter.switch"}
+    assert set(choices) == set(FIELDS) - stated, "published.toml states these"
     assert choices["receiver.photodetector"].value == "'PT19-21C'"
     assert "needs a pitch of at least 3.70 mm" in choices["receiver.photodetector"].reason
     assert all(c.reason and "\n" not in c.reason for c in design.choices)

@@ -60,6 +60,7 @@ CHANGES: dict[str, Any] = {
     "emitter.source": "other",
     "emitter.resistor": "1210",
     "emitter.resistor_side": "front",
+    "emitter.switch": "AO3400A",
     "receiver.photodetector": "PT19-21C",
     "receiver.multiplexer": "74HC4067PW",
     "receiver.load": "each",
@@ -153,6 +154,7 @@ ONLY_WITH: dict[str, dict[str, Any]] = {
     "module": {"controller.board": "nrf52840_module"},
     "receiver.array": {"receiver.load": "each"},
     "emitter.source": {"emitter.drive": "source", **FRONT},
+    "emitter.switch": {"receiver.load": "each"},
 }
 # Limits that only refuse; changing them leaves the design as it is.
 LIMITS: dict[str, Any] = {"supply.max_ma": 400.0, "emitter.max_heat_w": 1.9}

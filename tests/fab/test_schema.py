@@ -11,7 +11,7 @@ from jsonschema import Draft202012Validator
 
 from lumitip_fab.cli import main
 from lumitip_fab.config.parameters import Parameters
-from lumitip_fab.config.parts import NAMED
+from lumitip_fab.config.parts import NAMED, OPTIONAL
 from lumitip_fab.config.schema import UNITS, field_title
 
 ROOT = Path(__file__).parents[2]
@@ -59,7 +59,7 @@ def test_no_valid_file_is_underlined(schema: dict[str, Any], file: Path) -> None
 def test_every_entry_of_the_catalogue_is_offered(schema: dict[str, Any], field: str) -> None:
     entries = tomllib.loads((DESIGN / "parts" / f"{NAMED[field]}.toml").read_text(encoding="utf-8"))
     offered = [name for way in _property(schema, field)["anyOf"] for name in way.get("enum", ())]
-    assert offered == list(entries)
+    assert offered == [*entries, *(["none"] if field in OPTIONAL else [])]
 
 
 @pytest.mark.parametrize("field", NAMED)
@@ -75,8 +75,9 @@ def test_every_field_has_the_published_value_as_its_default(
     schema: dict[str, Any], published: dict[str, Any], field: str
 ) -> None:
     section, key = field.split(".")
-    # The published board shares its pull-ups, a new one does not.
-    wanted = "auto" if field == "receiver.load" else published[section][key]
+    # The published boards share pull-ups and have no switch of the LEDs; new ones differ.
+    differs = field in ("receiver.load", "emitter.switch")
+    wanted = "auto" if differs else published[section][key]
     assert _property(schema, field)["default"] == wanted
 
 

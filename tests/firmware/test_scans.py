@@ -7,6 +7,10 @@ from typing import Any
 import pytest
 
 from lumitip.layout import Layout
+from lumitip_fab.config.load import load
+from lumitip_fab.derive import derive
+from lumitip_fab.derive.wiring.ambient import CONVERSION_US, RADIO_US
+from lumitip_fab.paths import firmware_sources
 
 pytestmark = pytest.mark.slow
 
@@ -58,3 +62,24 @@ def test_inputs_wait_for_as_long_as_the_period_allows(
         assert radio_us <= left_us < radio_us + channels * 2 * (1 + emitter)
     else:
         assert waited_us == channels * shortest_us
+
+
+def test_a_design_with_a_switch_has_time_for_both_scans(
+    host_program: Callable[..., Path], run: Callable[..., Any], design_dir: Path
+) -> None:
+    """The period in layout.h, with conversions of 30 us and what radio and USB take."""
+    design = derive(load(design_dir / "presets" / "flex.toml"))
+    ambient = design.electrical.ambient
+    assert ambient is not None
+    took_us, shortest_us = map(int, run(str(host_program("scans", "flex"))).stdout.split()[-2:])
+    assert took_us - 15 * len(design.layout) >= 8 * shortest_us
+    frame_us = 2 * (took_us + 15 * len(design.layout) + ambient.light_us) + 2750
+    assert ambient.period_us - 500 < frame_us <= ambient.period_us
+
+
+def test_times_of_the_design_are_those_of_the_settings() -> None:
+    (settings,) = (
+        f.read_text(encoding="utf-8") for f in firmware_sources() if f.name == "settings.h"
+    )
+    assert f"#define LUMITIP_RADIO_US {RADIO_US} " in settings
+    assert f"#define LUMITIP_CONVERSION_US {CONVERSION_US} " in settings

@@ -1,6 +1,7 @@
 """The circuit of a finger's board: its parts, and the net of each of their pads.
 
-supply ── R1 ──►|── … ──►|── GND            one string of LEDs; more beside it
+supply ── R1 ──►|── … ──►|── GND            one string of LEDs; more beside it, all at GND or
+                                            at the drain of Q1, whose source is at GND
 
 supply ── IN U1 OUT ── R1 ─┬─►|── … ── GND  the same with a current source
                SET ── R3 ──┘
@@ -57,12 +58,13 @@ def _strings(design: Design, finger: Finger) -> Iterator[Component]:
     wiring, packages, held = design.wiring, design.packages, finger.cells_hold
     nets_of = {}
     for number, string in enumerate(wiring.strings, start=1):
-        links = [f"S{number}_{k}" for k in range(len(string))] + [GROUND]
+        links = [f"S{number}_{k}" for k in range(len(string))] + [cathodes_of(design)]
         for place, cell in enumerate(string):
             nets_of[cell] = _polar(packages.led, anode=links[place], cathode=links[place + 1])
     for cell in sorted(nets_of):
         yield chip(held.ref(cell), held.kind, packages.led_name, packages.led, nets_of[cell])
     yield from (_sources if wiring.set_ohm else _string_resistors)(design, finger)
+    yield from _switch(design)
 
 
 def _string_resistors(design: Design, finger: Finger) -> Iterator[Component]:
@@ -87,6 +89,23 @@ def _sources(design: Design, finger: Finger) -> Iterator[Component]:
         for number, ohm in enumerate(ohms, start=1):
             nets = f"S{number}_{lead}", f"S{number}_0"
             yield resistor(f"R{first + number - 1}", ohm, packages.string_resistor, nets)
+
+
+def cathodes_of(design: Design) -> str:
+    """Net of the last cathode of every string: ground, or the drain of their switch."""
+    return GROUND if design.packages.switch is None else "LEDK"
+
+
+def _switch(design: Design) -> Iterator[Component]:
+    """The transistor between the strings and ground, with the pull-down at its gate."""
+    packages, wiring = design.packages, design.wiring
+    if packages.switch is None:
+        return
+    gate = design.emitter.connector.signals[2]
+    leads = {"G": gate, "S": GROUND, "D": cathodes_of(design)}
+    yield leaded("Q1", "switch", packages.switch_name, packages.switch, leads, MIDDLE, 0.0)
+    ref = wiring.pull_down_ref
+    yield resistor(ref, wiring.pull_down_ohm, packages.pull_up, (gate, GROUND))
 
 
 def _channels(design: Design, finger: Finger) -> Iterator[Component]:

@@ -5,7 +5,7 @@ import math
 from collections.abc import Sequence
 
 from lumitip_fab.boards import spots
-from lumitip_fab.boards.circuit import circuit, gap_at_cells_mm, supply_of
+from lumitip_fab.boards.circuit import cathodes_of, circuit, gap_at_cells_mm, supply_of
 from lumitip_fab.boards.model import (
     GROUND,
     MIN_WIDTH_MM,
@@ -149,6 +149,7 @@ def finger_board(design: Design, finger: Finger) -> AuxiliaryBoard:
         parts[ref] = _at(parts[ref], (part.x_mm, part.y_mm), side=part.side)
     if "led" in kinds:
         _turn_strings(parts, finger, design.wiring, design.packages)
+        _turn_pull_down(parts, design.wiring)
     if "multiplexer" in kinds:
         _round_multiplexers(parts, named, finger, design)
     _connector(parts, finger, rules)
@@ -169,11 +170,16 @@ def finger_board(design: Design, finger: Finger) -> AuxiliaryBoard:
         ties=finger.ties,
         components=tuple(parts.values()),
         notes=(),
-        supplies=(GROUND, supply_of(finger)),
+        supplies=tuple(dict.fromkeys((GROUND, supply_of(finger), *_lit_nets(design, kinds)))),
         keep_outs=(),
         hot_loop=(),
         finish=finger.finish,
     )
+
+
+def _lit_nets(design: Design, kinds: set[str]) -> tuple[str, ...]:
+    """The net that carries the current of all strings, on the board of the LEDs."""
+    return (cathodes_of(design),) if "led" in kinds else ()
 
 
 def _turn_strings(
@@ -181,7 +187,7 @@ def _turn_strings(
 ) -> None:
     """Turn what sets the currents, and LEDs so that neighbours of a string face each other."""
     anode = "1" if packages.led.marked == "anode" else "2"
-    for ref in [ref for ref in parts if ref.startswith("R")]:
+    for ref in [ref for ref in parts if ref.startswith("R") and ref != wiring.pull_down_ref]:
         if wiring.set_ohm:  # the string begins between the two of a source
             at_out = int(ref[1:]) <= len(wiring.set_ohm)
             parts[ref] = dataclasses.replace(parts[ref], angle_deg=270.0 if at_out else 90.0)
@@ -197,6 +203,13 @@ def _turn_strings(
         angles = string_angles(chain, start, anode, choices)
         for part, angle in zip(chain, angles, strict=True):
             parts[part.ref] = dataclasses.replace(part, angle_deg=angle)
+
+
+def _turn_pull_down(parts: dict[str, PlacedComponent], wiring: Wiring) -> None:
+    """Turn the gate's pull-down with its gate end to the connector, if there is one."""
+    if wiring.emitter_pin is not None:
+        down = parts[wiring.pull_down_ref]
+        parts[down.ref] = dataclasses.replace(down, angle_deg=90.0)
 
 
 def _round_multiplexers(

@@ -3,6 +3,7 @@
 import itertools
 from collections.abc import Iterator
 
+from lumitip_fab.boards.circuit import cathodes_of
 from lumitip_fab.boards.model import GROUND
 from lumitip_fab.catalogue.controllers import CurrentSource
 from lumitip_fab.design import Component, Design
@@ -77,11 +78,13 @@ def _leds(parts: tuple[Component, ...], design: Design) -> Iterator[str]:
     """The LEDs in the order in which the current passes them."""
     anode, cathode = ("1", "2") if design.packages.led.marked == "anode" else ("2", "1")
     leds = {dict(part.nets)[anode]: part for part in parts if part.kind == "led"}
-    net = "S1_0"
-    while net != GROUND:
+    net, end = "S1_0", cathodes_of(design)
+    while net != end:
         led = leds[net]
         left, net = net, dict(led.nets)[cathode]
         yield f"{led.ref} {left} {'0' if net == GROUND else net} led"
+    if design.packages.switch is not None:
+        yield f"RQ1 {end} 0 {design.packages.switch.on_ohm:g}"  # Q1 while the LEDs are on
 
 
 def _model(strings: Strings) -> Iterator[str]:

@@ -1,7 +1,7 @@
 """Catalogue entries of controllers, and of what boards outside the fingers carry: sockets,
 regulators, transistors."""
 
-from typing import Annotated, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -187,14 +187,20 @@ class LinearRegulator(Leaded):
 
 
 class Transistor(Leaded):
-    """A P-channel MOSFET: G, S and D."""
+    """A MOSFET: G, S and D. Voltages are magnitudes."""
 
+    channel: Literal["P", "N"] = "P"
+    """P where it keeps a reversed supply out, N where it switches the LEDs."""
     rated_v: float = Field(gt=0, le=1000)
-    """Largest voltage from source to drain."""
+    """Largest voltage between source and drain."""
     gate_v: float = Field(gt=0, le=100)
-    """Largest voltage from source to gate."""
+    """Largest voltage between source and gate."""
     gate_on_v: float = Field(gt=0, le=100)
-    """Voltage from source to gate at which it is on for certain."""
+    """Voltage between source and gate at which it is on for certain."""
+    on_ohm: float | None = Field(default=None, gt=0, le=100)
+    """Largest resistance from drain to source at `gate_on_v`; needed of a switch."""
+    drain_a: float | None = Field(default=None, gt=0, le=1000)
+    """Largest continuous current; needed of a switch."""
     pulse_a: float | None = Field(default=None, gt=0, le=1e4)
     """Largest current of a pulse of 10 µs, through its channel or its body diode."""
 
@@ -202,6 +208,12 @@ class Transistor(Leaded):
     def _has_its_leads(self) -> Self:
         if set(self.names) != {"G", "S", "D"}:
             raise ValueError(f"names are {', '.join(self.names)}; G, S and D are needed")
+        return self
+
+    @model_validator(mode="after")
+    def _switches(self) -> Self:
+        if self.channel == "N" and (self.on_ohm is None or self.drain_a is None):
+            raise ValueError('has channel = "N"; on_ohm and drain_a are needed too')
         return self
 
 
@@ -268,6 +280,8 @@ class Controller(Entry):
     """Whether there are as many inputs as needed: for benchmarks only."""
     select_pins: tuple[Pin, ...] = Field(min_length=1)
     """Digital outputs for the select lines, least significant first."""
+    emitter_pin: Pin | None = None
+    """Digital output that switches the LEDs; none where they are always on."""
     adc_bits: int = Field(ge=8, le=16)
     """Resolution of the analog-to-digital converter."""
     input_pf: float = Field(ge=0, le=1e4)
@@ -295,7 +309,8 @@ class Controller(Entry):
 
     @model_validator(mode="after")
     def _pins_differ(self) -> Self:
-        pins = (*self.analog_pins, *self.select_pins)
+        switching = () if self.emitter_pin is None else (self.emitter_pin,)
+        pins = (*self.analog_pins, *self.select_pins, *switching)
         twice = sorted({pin for pin in pins if pins.count(pin) > 1})
         if twice:
             raise ValueError(f"has {', '.join(twice)} twice; each pin is used once")

@@ -23,6 +23,7 @@ from lumitip_fab.checks.board_finger import measure_cell_prints, measure_cells, 
 from lumitip_fab.checks.board_read import ReadBoard, names_of, path_of, placed, read_any
 from lumitip_fab.checks.board_silk import measure_labels, measure_prints, measure_targets
 from lumitip_fab.checks.board_strings import measure_strings
+from lumitip_fab.checks.board_switch import measure_switch
 from lumitip_fab.checks.board_ties import measure_ties
 from lumitip_fab.checks.plug_in import measure_plug_in
 from lumitip_fab.checks.readers.kicad_board import Part, Terminal
@@ -250,6 +251,7 @@ MEASURES: tuple[Measure[ReadBoard], ...] = (
     measure_targets,
     measure_flexible,
     measure_strings,
+    measure_switch,
     measure_channels,
     measure_settling,
     measure_contact_map,

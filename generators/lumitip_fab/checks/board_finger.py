@@ -148,8 +148,9 @@ def _unnamed(read: ReadBoard) -> Iterator[str]:
 
 def _names(read: ReadBoard) -> Iterator[tuple[int, Word]]:
     """The names of cells' parts that are printed on the front, each with its figure."""
+    letter = read.cells_hold.letter if read.cells_hold else ""
     for word in read.board.silk.words:
-        if re.fullmatch(r"[DQ]\d+", word.ref) and word.text == word.ref and word.front:
+        if re.fullmatch(rf"{letter}\d+", word.ref) and word.text == word.ref and word.front:
             yield int(word.ref[1:]), word
 
 

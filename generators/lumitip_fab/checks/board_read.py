@@ -172,11 +172,14 @@ class ReadBoard(Subject):
             parts = ((d.part, d.lcsc) for d in self.components if d.ref == ref)
             return next(parts, ("", ""))
         packages, part = self.design.packages, self.parts.get(ref)
+        in_string = self.strings and ref != self.design.wiring.pull_down_ref
+        if self.strings and packages.switch is not None and ref == "Q1":
+            return packages.switch.order_number, packages.switch.lcsc
         entries = {
             self.finger.cells_hold.letter: packages.at_cells(self.finger),
             "U": packages.source if self.strings else packages.multiplexer,
             "C": packages.capacitor,
-            "R": packages.string_resistor if self.strings else packages.pull_up,
+            "R": packages.string_resistor if in_string else packages.pull_up,
         }
         entry = packages.array if ref.startswith("RN") else entries.get(ref[:1])
         if entry is None:

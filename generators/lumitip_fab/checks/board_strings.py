@@ -9,9 +9,9 @@ from scipy.optimize import brentq
 
 from lumitip_fab.checks.board_read import ReadBoard, ohm
 from lumitip_fab.checks.board_sources import measure_sources, source_lead
+from lumitip_fab.checks.board_switch import sink
 from lumitip_fab.checks.result import Measurement
 
-GROUND = "GND"
 CURRENT_SHARE = 0.02
 THERMAL_V = 0.02585
 SUPPLY_HIGH, RESISTOR_LOW = 1.05, 0.99
@@ -112,9 +112,9 @@ def _start(read: ReadBoard, number: int) -> int | None:
 
 def _chain(read: ReadBoard, start: int | None, anode: str) -> tuple[list[str], bool]:
     """LEDs from a place on, with a minus where the current meets the cathode first; and whether
-    the last is at ground."""
-    at, ground = start, read.wire(GROUND)
-    if at is None:
+    the last is at ground, or at the transistor that switches them."""
+    at, end = start, sink(read)
+    if at is None or end is None:
         return [], False
     cathode = "1" if anode == "2" else "2"
     leds = {
@@ -123,7 +123,7 @@ def _chain(read: ReadBoard, start: int | None, anode: str) -> tuple[list[str], b
         if ref.startswith("D")
     }
     chain: list[str] = []
-    while at != ground:
+    while at != end:
         after = [ref for ref, pads in leds.items() if at in pads]
         if len(after) != 1:
             return chain, False

@@ -57,6 +57,9 @@ def _pins(text: str, layout: Layout, design: Design) -> Measurement:
     # Arduino's functions take D6 as 6, and A0 by its name.
     numbers = [re.sub(r"^D(?=\d+$)", "", pin) for pin in design.wiring.select_pins]
     faults += int(select != numbers)
+    switched = design.wiring.emitter_pin
+    wanted_pin = None if switched is None else re.sub(r"^D(?=\d+$)", "", switched)
+    faults += int(_setting(text, "LUMITIP_EMITTER_PIN") != wanted_pin)
     return _faults("firmware.pins", _LAYOUT, faults, "analog and select pins")
 
 
@@ -73,6 +76,11 @@ def _converter(text: str, layout: Layout, design: Design) -> Measurement:
         "DETECTOR_US": math.ceil(channel.wait_us or 0),
     }
     wrong = [name for name, value in wanted.items() if _number(text, name) != value]
+    ambient = design.electrical.ambient
+    waits = {"EMITTER_US": ambient.light_us, "PERIOD_US": ambient.period_us} if ambient else {}
+    for name, us in waits.items():
+        if _setting(text, f"LUMITIP_{name}") != str(math.ceil(us)):
+            wrong.append(name)
     return _faults("firmware.converter", _LAYOUT, len(wrong), ", ".join(wrong) or "inputs, bits")
 
 
@@ -128,6 +136,12 @@ def _number(text: str, name: str) -> int | None:
 def _table(text: str, name: str) -> list[int]:
     found = re.search(rf"^constexpr \w+ {name}\[CELLS\] = \{{([\d,\s]*)\}};", text, re.MULTILINE)
     return [int(value) for value in re.findall(r"\d+", found[1])] if found else []
+
+
+def _setting(text: str, name: str) -> str | None:
+    """A value that the compiler can be given instead."""
+    found = re.search(rf"^#ifndef {name}\n#define {name} (\S+) ", text, re.MULTILINE)
+    return found[1] if found else None
 
 
 def _list(text: str, name: str) -> list[str]:

@@ -160,7 +160,8 @@ def _misled(read: ReadBoard, finger: Finger, note: str) -> Iterator[str]:
         not chip.mark_is_known and f"{chip.marked} is {chip.mark_confidence}" not in note
     ):
         yield "the mark"
-    for part in (p for p in read.board.parts if re.fullmatch(r"[DQ]\d+", p.ref)):
+    of_cell = re.compile(rf"{finger.cells_hold.letter}\d+")
+    for part in (p for p in read.board.parts if of_cell.fullmatch(p.ref)):
         row, pads = terminals.get(part.ref), {t.number: t.at for t in part.terminals}
         wanted = read.sensor([pads["1"], pads["2"]])
         if row is None or row["one"] != chip.marked or row["other"] == chip.marked:

@@ -101,7 +101,18 @@ def _wrong_pins(
             for name, pins in wanted.items()
             if [arrives.get(name)] != pins
         ]
-    return wrong
+    return wrong + _wrong_switch(outputs, rows, nets, design)
+
+
+def _wrong_switch(outputs: Path, rows: tuple[Row, ...], nets: Nets, design: Design) -> list[str]:
+    """From the gate of the LEDs' switch along its wire to the pin that the firmware uses."""
+    part, found = design.packages.switch, _header(outputs, "LUMITIP_EMITTER_PIN")
+    pin = found[0].split()[0] if found else "none"
+    if part is None:
+        return [] if pin == "none" else [f"firmware switches pin {pin}, no LED"]
+    gate = nets["emitter"].get(f"Q1.{part.names.index('G') + 1}")
+    ends = [_arrives(r, nets, design) for r in rows if r.start[0] == "emitter" and r.signal == gate]
+    return [] if ends == [pin] else [f"switch of the LEDs: {' and '.join(ends)}, not {pin}"]
 
 
 def _arrives(row: Row, nets: Nets, design: Design) -> str:

@@ -70,6 +70,7 @@ FIELDS: dict[str, Automatic] = {
     "emitter.source": Automatic("LT3092", "supply and current", names="current_sources"),
     "emitter.resistor": Automatic("1206", "worst-case load", names="resistors"),
     "emitter.resistor_side": Automatic("back", "emitter.drive and room beside the coupling"),
+    "emitter.switch": Automatic("AO3400A", "supply, controller and room", names="transistors"),
     "receiver.photodetector": Automatic("SML-H10TBT86", "pitch", names="photodetectors"),
     "receiver.multiplexer": Automatic("74HC4051PW", "cells and analog pins", names="multiplexers"),
     "receiver.load": Automatic("each", "room beside the multiplexer"),

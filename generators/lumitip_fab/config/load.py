@@ -16,7 +16,7 @@ from lumitip_fab.catalogue.record import Entry
 from lumitip_fab.config.automatic import filled
 from lumitip_fab.config.messages import brief, problems_of, shown_path, unknown_name
 from lumitip_fab.config.parameters import Parameters
-from lumitip_fab.config.parts import NAMED, Parts, named_parts
+from lumitip_fab.config.parts import NAMED, NONE, OPTIONAL, Parts, named_parts
 from lumitip_fab.config.source import Source, read_toml
 from lumitip_fab.errors import InputError, Problem
 from lumitip_fab.paths import design_folder, parts_file
@@ -42,8 +42,9 @@ class Input:
         return named_parts(self.parameters, self.catalogue)
 
     def parts_by_field(self) -> dict[str, Entry]:
-        """The same entries by field, like `"emitter.led"`."""
-        return {field: _attribute(self.parts, field) for field in NAMED}
+        """The same entries by field, like `"emitter.led"`; without a field that is `"none"`."""
+        entries = {field: _attribute(self.parts, field) for field in NAMED}
+        return {field: entry for field, entry in entries.items() if entry is not None}
 
     def title(self, field: str) -> str:
         """Title of the entry that a field in `NAMED` names."""
@@ -233,6 +234,8 @@ def _unknown_parts(
         section, key = field.split(".")
         table = merged.get(section)
         name = table.get(key) if isinstance(table, dict) else None
+        if name == NONE and field in OPTIONAL:
+            continue
         if isinstance(name, str) and catalogue[kind] and name not in catalogue[kind]:
             source = _setting(sources, field)
             message = unknown_name(name, list(catalogue[kind]), f"parts/{kind}.toml")

@@ -158,6 +158,9 @@ class Emitter(Strict):
     resistor_side: Literal["front", "back"]
     """Side of the board that carries the strings' resistors; those of current sources stand on the
     front."""
+    switch: Name
+    """N-channel MOSFET in `parts/transistors.toml` with which the controller turns the LEDs off, so
+    that ambient light is subtracted; "none": they are always on."""
 
 
 class Receiver(Strict):

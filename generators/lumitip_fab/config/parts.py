@@ -37,6 +37,7 @@ class EmitterParts:
     led: Led
     source: CurrentSource
     resistor: Resistor
+    switch: Transistor | None
 
 
 @dataclass(frozen=True)
@@ -158,24 +159,36 @@ _SECTIONS: dict[str, Any] = get_type_hints(Parts)
 _KINDS = {
     get_args(hint)[1]: kind for kind, hint in get_type_hints(Catalogue).items() if get_args(hint)
 }
-NAMED: dict[str, str] = {
-    f"{section}.{field}": _KINDS[record]
+_HINTS = {
+    f"{section}.{field}": get_args(hint) or (hint,)
     for section, parts in _SECTIONS.items()
-    for field, record in get_type_hints(parts).items()
+    for field, hint in get_type_hints(parts).items()
 }
+NAMED: dict[str, str] = {field: _KINDS[records[0]] for field, records in _HINTS.items()}
 """Fields that name an entry, and the catalogue file that it is in."""
+NONE = "none"
+OPTIONAL = frozenset(field for field, records in _HINTS.items() if type(None) in records)
+"""Those of them that may be `"none"`."""
+
+
+def names_for(field: str, catalogue: Catalogue) -> tuple[str, ...]:
+    """What a field in `NAMED` may be."""
+    return (*getattr(catalogue, NAMED[field]), *((NONE,) if field in OPTIONAL else ()))
 
 
 def named_parts(parameters: Parameters, catalogue: Catalogue) -> Parts:
     """Look up every entry that the parameters name."""
 
+    def entry(field: str, name: str) -> Any:
+        if name == NONE and field in OPTIONAL:
+            return None
+        return getattr(catalogue, NAMED[field])[name]
+
     def section(name: str) -> Any:
         values = getattr(parameters, name)
         return _SECTIONS[name](
             **{
-                field.name: getattr(catalogue, NAMED[f"{name}.{field.name}"])[
-                    getattr(values, field.name)
-                ]
+                field.name: entry(f"{name}.{field.name}", getattr(values, field.name))
                 for field in fields(_SECTIONS[name])
             }
         )

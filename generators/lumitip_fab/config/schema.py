@@ -6,7 +6,7 @@ from typing import Any
 
 from lumitip_fab.config.automatic import AUTO, FIELDS
 from lumitip_fab.config.parameters import Parameters
-from lumitip_fab.config.parts import NAMED
+from lumitip_fab.config.parts import NAMED, NONE, OPTIONAL
 from lumitip_fab.paths import packaged_design
 
 BASE = "presets/published.toml"
@@ -81,7 +81,8 @@ def _annotate(properties: dict[str, Any], section: str, values: dict[str, Any]) 
         shape["default"] = values[field]
         kind = NAMED.get(f"{section}.{field}")
         if kind is not None:
-            _offer(shape, list(_packaged(f"parts/{kind}.toml")))
+            none = [NONE] if f"{section}.{field}" in OPTIONAL else []
+            _offer(shape, [*_packaged(f"parts/{kind}.toml"), *none])
 
 
 def _offer(shape: dict[str, Any], names: list[str]) -> None:

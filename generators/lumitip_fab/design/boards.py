@@ -7,7 +7,7 @@ otherwise.
 from dataclasses import dataclass
 from typing import Literal
 
-from lumitip_fab.catalogue.controllers import CurrentSource
+from lumitip_fab.catalogue.controllers import CurrentSource, Transistor
 from lumitip_fab.catalogue.electronics import (
     Capacitor,
     Led,
@@ -199,6 +199,15 @@ class Wiring:
     """Whether each photodetector has its own pull-up; else each multiplexer has one at its
     output."""
     pull_ups: int
+    emitter_pin: str | None
+    """Pin of the controller that switches the LEDs, high is on; none where they are always on."""
+    pull_down_ohm: float
+    """From the gate of the LEDs' switch to ground."""
+
+    @property
+    def pull_down_ref(self) -> str:
+        """Reference of that resistor, after those of the strings."""
+        return f"R{len(self.resistor_ohm) + len(self.set_ohm) + 1}"
 
 
 @dataclass(frozen=True)
@@ -215,11 +224,15 @@ class Packages:
     photodetector: Photodetector
     photodetector_name: str
     pull_up: Resistor
-    """Shared by the photodetectors of a multiplexer."""
+    """Shared by the photodetectors of a multiplexer; the same package pulls the gate of the LEDs'
+    switch down."""
     array: ResistorArray
     """Of the photodetectors' own pull-ups."""
     capacitor: Capacitor
     multiplexer: Multiplexer
+    switch: Transistor | None
+    """Between the strings of LEDs and ground; none where they are always on."""
+    switch_name: str
 
     def at_cells(self, finger: Finger) -> Led | Photodetector:
         """What emits or detects light on a finger."""

@@ -91,6 +91,20 @@ class Channel:
 
 
 @dataclass(frozen=True)
+class AmbientScan:
+    """Times of a frame that is scanned without the light of the LEDs and with it."""
+
+    light_us: float
+    """After the LEDs are switched, until the slowest photodetector is near its new reading."""
+    near_counts: float
+    """How near, in counts of 255."""
+    scan_us: float
+    """Shortest scan of all cells, without that wait."""
+    period_us: int
+    """From frame to frame, with what radio and USB take."""
+
+
+@dataclass(frozen=True)
 class Regulated:
     """A switching regulator in continuous conduction."""
 
@@ -163,3 +177,5 @@ class Electrical:
     """The flange's regulator; none without it."""
     plug_ins: tuple[PlugIn, ...] = ()
     """The flange as it is plugged in; none without it."""
+    ambient: AmbientScan | None = None
+    """None where the LEDs are always on."""

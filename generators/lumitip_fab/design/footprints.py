@@ -28,8 +28,9 @@ _CHIPS = {
 
 def of_design(design: Design) -> Iterator[tuple[str, Footprint]]:
     """Every footprint of every board, with the kind of its part; some more than once."""
-    unused = "pull_up" if design.wiring.own_pull_ups else "array"
-    for name, entry in vars(design.packages).items():
+    packages, own = design.packages, design.wiring.own_pull_ups
+    unused = "pull_up" if own and packages.switch is None else "" if own else "array"
+    for name, entry in vars(packages).items():
         if name == unused:
             continue
         if isinstance(entry, Multiplexer):
@@ -39,6 +40,8 @@ def of_design(design: Design) -> Iterator[tuple[str, Footprint]]:
                 yield "current source", leaded(entry)
         elif isinstance(entry, ResistorArray):
             yield "resistor array", array(entry)
+        elif isinstance(entry, Leaded):
+            yield "switch", leaded(entry)
         elif isinstance(entry, Chip):
             kind = type(entry).__name__.lower()
             yield kind, chip(kind, entry)

@@ -172,6 +172,8 @@ flap in the order of its number.
 
 def _wired(design: Design, files: Files) -> str:
     weak = f"{pins}.\n\n" if (pins := pulled_up(design.wiring)) else ""
+    switched = design.wiring.emitter_pin is not None
+    lit = "the LEDs are dark until the firmware runs, and" if switched else "the LEDs"
     return f"""## 4. Wire
 
 ![Wiring](wiring/wiring.svg)
@@ -179,7 +181,7 @@ def _wired(design: Design, files: Files) -> str:
 {_included(files.text("wiring/cables.md"))}
 
 {weak}Measure {design.wiring.supply_v:g} V and its polarity at the supply before the emitter is
-connected; the LEDs then draw about {sum(design.wiring.current_ma):.1f} mA."""
+connected; {lit} then draw about {sum(design.wiring.current_ma):.1f} mA."""
 
 
 def _mounted(design: Design) -> str:
@@ -224,7 +226,8 @@ def _run(design: Design) -> str:
     return f"""## 8. Firmware, warm-up and calibration
 
 1. {_loading(design)}
-2. Switch the LEDs on and wait {WARM_UP_MIN} minutes: the readings drift while the finger warms.
+2. Switch the LEDs' supply on and wait {WARM_UP_MIN} minutes: the readings drift while the finger
+   warms.
 3. `lumitip scan` finds the device by the `controller.name` of the parameter file. `lumitip doctor`
    with its address names dead, swapped and saturated cells.
 4. Close the gripper on nothing, and run `lumitip tare`: it measures the empty grasp, against which

@@ -8,7 +8,8 @@
     └──────────┘                        └────────────┘
 
 Without a breakout, the fingers' cables end at the flange if the controller is on its board, else at
-the supply and at the controller's pins, which stand in the order of its edges.
+the supply and at the controller's pins, which stand in the order of its edges. A wire that switches
+the LEDs then runs from the emitter to the controller, between the two.
 """
 
 from collections.abc import Iterable, Iterator
@@ -51,7 +52,7 @@ def diagram(title: Title, cabling: Cabling) -> str:
     """An SVG in mm."""
     runs = tuple(_runs(cabling))
     bottom = max(run.top + _height(run.cable) for run in runs)
-    width = (_RIGHT if len(runs) > 2 else _MIDDLE)[1] + _MARGIN
+    width = max(right for _, right in (_edges(run)[1] for run in runs)) + _MARGIN
     height = bottom + 13 + _MARGIN
     name, drawn = (f"{t.name} {t.revision}: wiring" for t in (title, title.on_pages()))
     lines = [
@@ -60,7 +61,7 @@ def diagram(title: Title, cabling: Cabling) -> str:
         f"<title>{escape(name)}</title>",
         f'<rect width="{width:g}" height="{height:g}" fill="#fff"/>',
         _text(_LEFT[0], 14, drawn, 6, _INK, 'font-weight="bold"'),
-        *_boxes(runs, bottom),
+        *_boxes(runs),
         *(line for run in runs for wire in run.cable.wires for line in _wire(run, wire)),
         *(line for run in runs for line in _ends(run)),
         _text(_LEFT[0], bottom + 8, "Stranded copper, colours by IEC 60757.", _SMALL, _FAINT),
@@ -78,12 +79,14 @@ def diagram(title: Title, cabling: Cabling) -> str:
 
 def _runs(cabling: Cabling) -> Iterator[Run]:
     """The fingers' cables below each other, the supply's beside the first."""
-    fingers, further = cabling.cables[:2], cabling.cables[2:]
+    emitter, receiver, *others = cabling.cables
+    switching = [cable for cable in others if cable.start.board == emitter.start.board]
+    further = [cable for cable in others if cable not in switching]
     beside = max((_height(cable) for cable in further), default=0.0)
     top = _TOP
-    for cable in fingers:
+    for cable in (emitter, *switching, receiver):
         yield Run(cable, _LEFT[1], _MIDDLE[0], top)
-        top += max(_height(cable), beside if cable is fingers[0] else 0.0) + _GAP
+        top += max(_height(cable), beside if cable is emitter else 0.0) + _GAP
     for cable in further:
         yield Run(cable, _MIDDLE[1], _RIGHT[0], _TOP)
 
@@ -97,24 +100,25 @@ def _row_y(top: float, pads: list[Terminal], pad: Terminal) -> float:
     return top + _HEAD + _ROW * (row + 0.5)
 
 
-def _boxes(runs: tuple[Run, ...], bottom: float) -> Iterator[str]:
+def _edges(run: Run) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Edges of the boxes at both ends of a cable."""
+    return (_LEFT, _MIDDLE) if run.start_x == _LEFT[1] else (_MIDDLE, _RIGHT)
+
+
+def _boxes(runs: tuple[Run, ...]) -> Iterator[str]:
     """A box for each board, around all that ends on it."""
-    emitter, receiver, *further = runs
-    for run in (emitter, receiver):
-        yield _box(_LEFT, run.top, run.top + _height(run.cable), run.cable.start.board)
-    host = emitter.cable.end.board
-    if host == receiver.cable.end.board:
-        yield _box(_MIDDLE, _TOP, bottom, host)
-    if further:
-        middle = sum(_MIDDLE) / 2
+    spans: dict[tuple[tuple[float, float], str], list[float]] = {}
+    for run in runs:
+        start, end = _edges(run)
+        for edges, board in ((start, run.cable.start.board), (end, run.cable.end.board)):
+            spans.setdefault((edges, board), []).extend((run.top, run.top + _height(run.cable)))
+    for (edges, board), heights in spans.items():
+        yield _box(edges, min(heights), max(heights), board)
+    if any(_edges(run)[1] == _RIGHT for run in runs):
+        receiver, middle = runs[1], sum(_MIDDLE) / 2
         for i, words in enumerate(("the controller", "plugs into", "J1 and J2")):
             y = receiver.top + _HEAD + 8 + 5 * i
             yield _text(middle + 10, y, words, _SMALL, _FAINT, _CENTRED)
-    elif host != receiver.cable.end.board:
-        for run in (emitter, receiver):
-            yield _box(_MIDDLE, run.top, run.top + _height(run.cable), run.cable.end.board)
-    for run in further:
-        yield _box(_RIGHT, run.top, run.top + _height(run.cable), run.cable.end.board)
 
 
 def _wire(run: Run, wire: Wire) -> Iterator[str]:

@@ -7,7 +7,12 @@ import numpy as np
 from lumitip_fab.design import Design
 from lumitip_fab.design.frames import gripper_to_base, gripper_to_tool
 from lumitip_fab.docs.outside import Row, outside
-from lumitip_fab.docs.spec_circuit import channel_rows, electrical_rows, string_rows
+from lumitip_fab.docs.spec_circuit import (
+    ambient_rows,
+    channel_rows,
+    electrical_rows,
+    string_rows,
+)
 
 
 def rows(design: Design) -> tuple[Row, ...]:
@@ -17,6 +22,7 @@ def rows(design: Design) -> tuple[Row, ...]:
         *_further(design),
         *string_rows(design),
         *channel_rows(design),
+        *ambient_rows(design),
         *outside(design),
     )
 

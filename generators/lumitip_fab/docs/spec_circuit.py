@@ -1,11 +1,11 @@
 """Electrical figures of a design beside the published ones."""
 
 from lumitip_fab.design import Design, Wiring
-from lumitip_fab.design.electrical import Regulation
+from lumitip_fab.design.electrical import AmbientScan, Regulation
 from lumitip_fab.docs.outside import Row
 
-CONVERSION_US, EMITTER_MS = 30, 0.2
-"""As in `settings.h` of the firmware: one conversion, and the emitter until it is steady."""
+CONVERSION_US = 30
+"""As in `settings.h` of the firmware: one conversion."""
 
 
 def electrical_rows(design: Design) -> tuple[Row, ...]:
@@ -20,8 +20,7 @@ def electrical_rows(design: Design) -> tuple[Row, ...]:
         Row(
             "rate",
             "55 Hz",
-            "set by the firmware",
-            "no part of this design sets it: firmware and link do",
+            *_rate(design),
         ),
         Row(
             "current of the emitter",
@@ -167,8 +166,49 @@ def _phototransistor(design: Design) -> Row:
         "not stated",
         f"{channel.wait_us:.0f} µs",
         f"within half a count of 255 after any change, at {spread}. The firmware waits at least "
-        f"that long: a scan takes {scan_ms:.1f} ms or more, one with an ambient scan "
-        f"{2 * scan_ms + 2 * EMITTER_MS:.1f} ms",
+        f"that long: a scan takes {scan_ms:.1f} ms or more",
+    )
+
+
+def ambient_rows(design: Design) -> tuple[Row, ...]:
+    """Where ambient light goes."""
+    ambient, packages = design.electrical.ambient, design.packages
+    if ambient is None or packages.switch is None:
+        words = (
+            "the LEDs are always on: ambient light stays in the codes. emitter.switch takes it off"
+        )
+        return (Row("ambient light", "not stated", "stays in the codes", words),)
+    return (
+        Row(
+            "ambient light",
+            "not stated",
+            "taken off",
+            f"{packages.switch_name} turns the LEDs off by pin {design.wiring.emitter_pin}: every "
+            "frame is scanned without them and with them",
+        ),
+        Row(
+            "... wait after switching",
+            "not stated",
+            f"{ambient.light_us / 1000:.1f} ms",
+            f"until the slowest detector of that spread is within {ambient.near_counts:g} counts "
+            f"of 255; both scans with their waits take {_both_ms(ambient):.1f} ms",
+        ),
+    )
+
+
+def _both_ms(ambient: AmbientScan) -> float:
+    return 2 * (ambient.light_us + ambient.scan_us) / 1000
+
+
+def _rate(design: Design) -> tuple[str, str]:
+    """Rate of the firmware as it is written, and what sets it."""
+    ambient = design.electrical.ambient
+    if ambient is None:
+        return "set by the firmware", "no part of this design sets it: firmware and link do"
+    return (
+        f"{1e6 / ambient.period_us:.0f} Hz",
+        f"a frame of {ambient.period_us / 1000:g} ms: {_both_ms(ambient):.1f} ms for two scans, "
+        "the rest for radio and USB; LUMITIP_PERIOD_US in layout.h",
     )
 
 

@@ -38,7 +38,7 @@ supply {supply_mm:g} mm; and {slack_mm:g} mm each for bends and stripping.
 {power}
 - Measure a supply before it is connected: makers' colours differ from these. On the tool connector
   of Universal Robots' arms red is 0 V, and grey carries the voltage.
-- Twist the two wires of the emitter. Leave a loop at each finger, so that it opens without pulling.
+- Twist the wires of the emitter. Leave a loop at each finger, so that it opens without pulling.
 """
 _TIED = """
 Hold each cable at the {boards}: beside its row of wire pads are two holes of {hole_mm:g} mm. When
@@ -59,6 +59,14 @@ _AT_FLANGE = """
 _ALONE = """\
 - The controller is fed over USB. Its ground and that of the LEDs' supply need not be joined:
   between the fingers there is only light."""
+
+_ALONE_SWITCHED = """\
+- The controller is fed over USB. The wire LED of the emitter goes to its pin {pin}, not to the
+  supply. Join the ground of the LEDs' supply with a ground pin of the controller: without it the
+  LEDs cannot be switched."""
+_SWITCHED = """
+- High on the wire LED turns the LEDs on. While it is open, or the controller has no firmware, they
+  stay dark."""
 
 _MODULE = """\
 - The controller is on the flange's board and fed by it. Solder the wires into the pads of that
@@ -124,6 +132,16 @@ def _listed(names: list[str]) -> str:
 
 
 def _power(cabling: Cabling) -> str:
+    """How the controller comes by its supply, and what switches the LEDs."""
+    wires = (wire for cable in cabling.cables for wire in cable.wires)
+    switching = [wire for wire in wires if wire.signal == "LED"]
+    said = _fed_by(cabling)
+    if switching and switching[0].end.board == "controller":
+        said = _ALONE_SWITCHED.format(pin=switching[0].end.pin)
+    return said + (_SWITCHED if switching else "")
+
+
+def _fed_by(cabling: Cabling) -> str:
     """How the controller comes by its supply."""
     if cabling.cables[1].end.board == "flange":
         return _MODULE

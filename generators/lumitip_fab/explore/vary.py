@@ -19,7 +19,7 @@ from pydantic import ValidationError
 from lumitip_fab.config.load import Input
 from lumitip_fab.config.messages import problems_of, unknown_name
 from lumitip_fab.config.parameters import Parameters
-from lumitip_fab.config.parts import NAMED
+from lumitip_fab.config.parts import NAMED, names_for
 from lumitip_fab.config.source import Source, flat
 from lumitip_fab.errors import InputError, Problem
 
@@ -219,7 +219,7 @@ def _not_allowed(config: Input, axis: Axis) -> list[Problem]:
 
     for value in axis.values:
         if kind is not None:
-            names = getattr(config.catalogue, kind)
+            names = names_for(axis.field, config.catalogue)
             if value not in names:
                 message = unknown_name(str(value), list(names), f"parts/{kind}.toml")
                 faults.append(_fault(axis.field, message))

@@ -34,7 +34,7 @@ def layout_header(
 // lines, lowest bit first.
 #define LUMITIP_ADC_PINS {", ".join(map(_pin, wiring.adc_pins))}
 #define LUMITIP_SELECT_PINS {", ".join(map(_pin, wiring.select_pins))}
-
+{_switching(wiring, electrical)}
 namespace lumitip {{
 
 constexpr char LAYOUT_HASH[] = "{layout.design_hash}";
@@ -60,6 +60,26 @@ constexpr uint8_t CHANNEL[CELLS] = {{
 }};
 
 }}  // namespace lumitip
+"""
+
+
+def _switching(wiring: Wiring, electrical: Electrical) -> str:
+    """Settings of a design whose LEDs are switched; empty where they are always on."""
+    ambient = electrical.ambient
+    if wiring.emitter_pin is None or ambient is None:
+        return ""
+    settings = (
+        ("LUMITIP_EMITTER_PIN", _pin(wiring.emitter_pin), "high turns the LEDs on"),
+        ("LUMITIP_EMITTER_US", math.ceil(ambient.light_us), "until light and detectors are steady"),
+        ("LUMITIP_PERIOD_US", ambient.period_us, "from frame to frame, for both scans"),
+    )
+    lines = "\n".join(
+        f"#ifndef {name}\n#define {name} {value}  // {words}\n#endif"
+        for name, value, words in settings
+    )
+    return f"""
+// Every frame is scanned without the LEDs and with them.
+{lines}
 """
 
 

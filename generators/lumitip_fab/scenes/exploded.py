@@ -41,6 +41,7 @@ _PART_TINTS = {
     "multiplexer": "#b9bcc0",
     "current source": "#b9bcc0",
     "resistor": "#d8d2c8",
+    "switch": "#b9bcc0",
 }
 
 
@@ -224,14 +225,18 @@ def _details(finger: Finger, stack: Stack) -> list[tuple[tuple[str, str], Any, s
         ("multiplexer", "multiplexers"),
         ("current source", "current sources"),
         ("resistor", "resistors"),
+        ("switch", "transistors"),
     ):
         alike = [part for part in finger.parts if part.kind == kind and part.side == "front"]
         if alike:
             at = min(alike, key=lambda part: part.x_mm)
             names = f"{alike[0].name} … {alike[-1].name}"
+            counted = f"{len(alike)} {plural}"
+            if len(alike) == 1:
+                names, counted = at.name, f"1 {plural.removesuffix('s')}"
             labels.append(
                 (
-                    (f"{len(alike)} {plural}", names),
+                    (counted, names),
                     (at.x_mm, at.y_mm, half + at.height_mm),
                     "board",
                 )

@@ -28,6 +28,7 @@ COLOURS: dict[str, Colour] = {
     "multiplexer": (0.12, 0.12, 0.13, 1.0),
     "current source": (0.12, 0.12, 0.13, 1.0),
     "resistor": (0.25, 0.22, 0.20, 1.0),
+    "switch": (0.12, 0.12, 0.13, 1.0),
 }
 
 

@@ -130,6 +130,8 @@ def _others(board: Placement) -> Iterator[str]:
     kinds = {part.kind for part in bought(board)}
     if "multiplexer" in kinds:
         yield f"{_refs(board, 'multiplexer')}: lead 1 is at the dot, on the notch's side."
+    if "switch" in kinds:
+        yield f"{_refs(board, 'switch')}: lead 1 is at the dot."
     symmetric = ("resistor", "resistor array", "capacitor")
     plain = [_refs(board, kind) for kind in symmetric if kind in kinds]
     yield f"{' and '.join(plain)}: either way round."

@@ -23,6 +23,7 @@ _MARKED = (
     "regulator",
     "current source",
     "transistor",
+    "switch",
     "tvs diode",
     "socket",
     "header",
@@ -92,7 +93,7 @@ def _outline(component: Component, rules: Rules, gap_mm: float) -> tuple[Stroke,
         return (_bar(shape, rules),) if fits else _beside(shape, rules)
     if kind in ("socket", "header"):
         return _socket(shape.body, rules)
-    if kind in ("regulator", "current source", "transistor"):
+    if kind in ("regulator", "current source", "transistor", "switch"):
         return (_dot(shape.pads[0], rules, _BAR_MM),)
     if kind == "tvs diode":
         return (_bar(shape, rules), *_sides(shape, rules, roomy))

@@ -25,7 +25,7 @@ _FREE_MM = 0.2  # the same on a board without cells
 _REF_MM, _AWAY_MM = 1.0, 0.4  # height there, and from a part to its reference
 _STEP_MM = 0.1
 _BEYOND_MM = 2.5  # farthest end of a column's reference from the column
-_SHOWN = ("multiplexer", "current source", "transistor", "resistor", "resistor array", "capacitor")
+_SHOWN = ("multiplexer", "current source", "switch", "resistor", "resistor array", "capacitor")
 _Places = dict[str, Text]
 
 

@@ -9,6 +9,7 @@ from annotated_types import Ge, Gt, Le, Lt
 
 from lumitip_fab.config.automatic import FIELDS
 from lumitip_fab.config.parameters import Parameters
+from lumitip_fab.config.parts import NONE, OPTIONAL
 from lumitip_fab.derive.auto.judge import Rule, Verdict, judge_with
 from lumitip_fab.derive.auto.strings import lowest_ma
 from lumitip_fab.derive.boards.plug_in import least_inrush_ohm
@@ -265,6 +266,8 @@ def _next(now: Verdict, free: frozenset[str]) -> tuple[Change, str] | None:
 def change_of(now: Verdict, rule: Rule, field: str, fineness: int = COARSE) -> Change | None:
     """The smallest change of an automatic field that mends a rule; none where none does."""
     automatic = FIELDS[field]
+    if field in OPTIONAL:  # another part is a choice of the user's
+        return first_of(now, rule, field, iter([NONE]))
     if automatic.names:
         return first_of(now, rule, field, catalogue_names(now, automatic.names, field))
     if field in _EITHER:

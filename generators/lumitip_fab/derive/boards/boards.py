@@ -18,7 +18,7 @@ import numpy as np
 
 from lumitip_fab.config.load import Input
 from lumitip_fab.config.parameters import Parameters
-from lumitip_fab.derive.boards import connectors, placing
+from lumitip_fab.derive.boards import connectors, led_switch, placing
 from lumitip_fab.derive.boards.packages import flexible_board
 from lumitip_fab.derive.boards.sources import source_parts
 from lumitip_fab.derive.boards.ties import finger_ties
@@ -92,6 +92,8 @@ def derive_plan(
     )
     driving, reliefs = _driving(config, strings, frame, faults)
     wires = connectors.place(connectors.emitter_signals(config), True, frame.connector_y_mm)
+    switch = led_switch.switch_parts(config, frame.parts, wires, driving)
+    led_switch.refuse_switch(config, strings, bool(switch), faults)
     emitter = Finger(
         name="emitter",
         cells_hold=LED,
@@ -99,7 +101,7 @@ def derive_plan(
         turned=led_turned,
         holes=(*((-x, y) for x, y in tip_holes), *rear),
         connector=wires,
-        parts=(*leds, *driving),
+        parts=(*leds, *driving, *switch),
         zones=_zones(frame),
         reliefs=reliefs,
         notch=frame.notch,
@@ -163,7 +165,7 @@ def _frame(
     side = max(part.size_x_mm for part in chips_) / 2
     parts_top = bottom - reach - p.board.channel_mm
     depth = placing.parts_zone_depth_mm(config, muxing, 2 * half, faults)
-    pad = connectors.WIDE[1]  # the emitter's two pads are wide whatever the receiver's are
+    pad = connectors.WIDE[1]  # the emitter's few pads are wide whatever the receiver's are
     connector_y = parts_top - depth - pad / 2
     y_max = top + p.board.tip_margin_mm
     y_min = y_max - 2 * _up((y_max - (connector_y - p.board.end_margin_mm)) / 2)

@@ -2,7 +2,7 @@
 
 ```
 ┌────────────────────────────────┐
-│   [24V GND]      [24V 5V GND]  │  wires to the emitter and from the flange
+│   [GND 24V LED]  [GND 24V 5V]  │  wires to the emitter and from the flange
 │  ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ │  a pad for each pin of the controller
 │  □ ■ ■ ■ ■ ■ ■ ■ ■ ■ ■ ■ ■ ■ ■ │  socket
 │   ·                        ·   │  screw holes
@@ -73,7 +73,7 @@ def derive_breakout(
             ties=ties.derive_ties(parts, box, CORNER_MM, screws, "breakout.board_mm", faults),
             components=parts,
             notes=(Note("USB", (1.5 - length / 2, 0.0), 1.2, 90.0),),
-            supplies=tuple(dict.fromkeys(("GND", REGULATED, "3V3", *emitter[1:]))),
+            supplies=tuple(dict.fromkeys(("GND", REGULATED, "3V3", emitter[1]))),
             keep_outs=(),
             hot_loop=(),
         ),
@@ -82,7 +82,7 @@ def derive_breakout(
 
 def supply_signals(config: Input) -> tuple[str, ...]:
     """Signals of the cable from the flange, which feeds emitter and controller."""
-    return tuple(dict.fromkeys((*connectors.emitter_signals(config), REGULATED)))
+    return tuple(dict.fromkeys((*connectors.emitter_signals(config)[:2], REGULATED)))
 
 
 def _rows(plug: Plug, strip: Strip, width_mm: float) -> Rows:
@@ -97,7 +97,7 @@ def _rows(plug: Plug, strip: Strip, width_mm: float) -> Rows:
 def _components(
     config: Input, plug: Plug, strip: Strip, muxing: Muxing, rows: Rows
 ) -> tuple[Component, ...]:
-    nets = _net_of(plug, muxing)
+    nets = _net_of(plug, muxing) | switching(config)
     sockets, beside = [], []
     value, shape = config.parameters.breakout.socket, footprints.socket(strip)
     for number, (names, side) in enumerate(zip(plug.rows, (-1, 1), strict=True), start=1):
@@ -127,6 +127,12 @@ def _net_of(plug: Plug, muxing: Muxing) -> dict[str, str]:
     """Net of each pin that has one by another name than its own."""
     nets = {pin: f"S{i}" for i, pin in enumerate(muxing.select_pins)}
     return nets | {plug.ground: "GND", plug.supply: REGULATED, plug.regulated: "3V3"}
+
+
+def switching(config: Input) -> dict[str, str]:
+    """Net of the pin that switches the LEDs; empty where they are always on."""
+    pin = config.parts.controller.board.emitter_pin
+    return {pin: connectors.SWITCH} if pin and config.parts.emitter.switch else {}
 
 
 def _wires(

@@ -7,6 +7,8 @@ from lumitip_fab.design import Connector
 MOST_WIDE_WAYS = 9
 POWER_WIRES = 2
 """Supply and ground of the receiver."""
+SWITCH = "LED"
+"""Signal that switches the LEDs, high is on."""
 WIDE = (2.54, 2.286, 1.2)  # pitch, pad, drill: as published
 NARROW = (1.27, 1.0, 0.6)
 
@@ -18,8 +20,9 @@ def receiver_signals(muxing: Muxing) -> tuple[str, ...]:
 
 
 def emitter_signals(config: Input) -> tuple[str, ...]:
-    """Signals of the emitter's connector."""
-    return ("GND", f"{config.parameters.supply.voltage_v:g}V")
+    """Signals of the emitter's connector: ground, supply and, where there is one, the switch."""
+    switched = (SWITCH,) if config.parts.emitter.switch else ()
+    return ("GND", f"{config.parameters.supply.voltage_v:g}V", *switched)
 
 
 def half_width_mm(ways: int, wide: bool) -> float:

@@ -127,6 +127,12 @@ def supply_range_v(config: Input) -> tuple[float, float]:
 
 def refuse_parts(config: Input, strings: Strings, faults: Diagnostics) -> None:
     """Refuse parts that are overloaded, and values with which the circuit does not work."""
+    faults.refuse_unless(
+        config.parts.flange.transistor.channel == "P",
+        "flange.transistor",
+        f"is {config.parameters.flange.transistor!r}, an N-channel MOSFET; a P-channel one is "
+        "needed in the supply",
+    )
     _refuse_gate(config, faults)
     _refuse_fuse(config, strings, faults)
     refuse_flange_capacitors(config, faults)

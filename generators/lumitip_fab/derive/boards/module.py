@@ -20,6 +20,7 @@ from dataclasses import dataclass
 from lumitip_fab.catalogue.controllers import Module
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards import connectors
+from lumitip_fab.derive.boards.breakout import switching
 from lumitip_fab.derive.boards.packages import capacitor
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.wiring.wiring import Muxing, larger_multiplexers
@@ -31,6 +32,8 @@ WING_MM = 12.6
 TURN_DEG = 90.0  # the antenna, at the top of the module's own frame, to the left
 MOST_WIRES = 9
 """In the row to the receiver, between the board's round corner and the header."""
+J5_END_MM = -15.63
+"""Last pad of the row to the emitter: beyond it the floor holds a bolt of the flange."""
 CONTROLLER = "3V3"
 FIDUCIALS_AT: tuple[Point, ...] = ((-25.6, 8.4), (13.0, -15.5), (-25.6, -8.4))
 _NAMED = {
@@ -78,13 +81,14 @@ def derive_module(
     _refuse(config, muxing, faults)
     left = box.x_min_mm - WING_MM
     at = left + module.body_mm[1] / 2, 0.0
-    receiver = connectors.receiver_signals(muxing)
+    receiver, lit = connectors.receiver_signals(muxing), connectors.emitter_signals(config)
+    pitch = connectors.WIDE[0]
     components = (
         _module(config, module, muxing, at),
         *_beside(config),
         *_supply(config, supplies),
         wires("J4", receiver, connectors.NARROW, (left + 7.9, -22.6)),
-        wires("J5", ("GND", supplies.leds), connectors.WIDE, (-16.9, -14.0)),
+        wires("J5", lit, connectors.WIDE, (J5_END_MM - (len(lit) - 1) / 2 * pitch, -14.0)),
         wires("J6", ("VUSB", "D-", "D+", "GND"), connectors.WIDE, (-20.4, 22.6)),
         wires("J7", (CONTROLLER, "DIO", "CLK", "RST", "GND"), connectors.WIDE, (-20.6, 16.2)),
     )
@@ -106,6 +110,7 @@ def _module(config: Input, module: Module, muxing: Muxing, at: Point) -> Compone
     nets = _NAMED | dict(zip(module.crystal, ("XL1", "XL2"), strict=True))
     nets |= {module.ports[pin]: pin for pin in muxing.adc_pins}
     nets |= {module.ports[pin]: f"S{i}" for i, pin in enumerate(muxing.select_pins)}
+    nets |= {module.ports[pin]: net for pin, net in switching(config).items()}
     return mounted(
         "U2",
         "module",

@@ -32,6 +32,8 @@ def derive_packages(config: Input) -> Packages:
         array=_without_texts(parts.resistor_arrays[p.receiver.array]),
         capacitor=_without_texts(parts.capacitors[p.receiver.capacitor]),
         multiplexer=_without_texts(parts.multiplexers[p.receiver.multiplexer]),
+        switch=_without_texts(config.parts.emitter.switch) if config.parts.emitter.switch else None,
+        switch_name=p.emitter.switch,
     )
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from itertools import permutations
 
 from lumitip_fab.config.load import Input
+from lumitip_fab.derive.boards.connectors import SWITCH
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.design import AuxiliaryBoard, Component, Electrical, Finger, Mount, Outline, Wiring
 from lumitip_fab.design.cabling import Cable, Cabling, Terminal, Wire
@@ -57,21 +58,24 @@ def derive_cabling(
     ends = _ends(config, boards, wiring)
     breakout, host = _named(boards.auxiliary_boards, "breakout"), _host(boards.auxiliary_boards)
     to_supply_mm = p.controller_mm if host else p.supply_mm
+    fed, switched = _parted(_pads(boards.emitter), ends["emitter"])
     ways = [
-        (boards.emitter, loads.lit, travel_mm + to_supply_mm),
-        (boards.receiver, loads.read, travel_mm + p.controller_mm),
+        (boards.emitter, fed, loads.lit, travel_mm + to_supply_mm),
+        (boards.receiver, _pads(boards.receiver), loads.read, travel_mm + p.controller_mm),
     ]
+    if switched:
+        ways.append((boards.emitter, switched, {}, travel_mm + p.controller_mm))
     cables = [
         _cable(
             f"W{i}",
-            _pads(finger),
+            pads,
             ends[finger.name],
             load,
             fixed,
             p.section_mm2,
             reach_mm(finger, outline) + way_mm + p.slack_mm,
         )
-        for i, (finger, load, way_mm) in enumerate(ways, 1)
+        for i, (finger, pads, load, way_mm) in enumerate(ways, 1)
     ]
     if breakout:
         fed = _wires_of(breakout, "J7")
@@ -139,7 +143,19 @@ def _ends(config: Input, boards: Boards, wiring: Wiring) -> dict[str, dict[str, 
         signal: Terminal("supply", "", signal, signal, place)
         for place, signal in enumerate(boards.emitter.connector.signals, 1)
     }
+    if wiring.emitter_pin is not None:
+        pin = wiring.emitter_pin
+        at = order.index(pin) + 1 if pin in order else len(controller) + 1
+        supply[SWITCH] = Terminal("controller", "", pin, pin, at)
     return {"emitter": supply, "receiver": controller}
+
+
+def _parted(
+    pads: tuple[Terminal, ...], ends: dict[str, Terminal]
+) -> tuple[tuple[Terminal, ...], tuple[Terminal, ...]]:
+    """The emitter's pads, apart from one whose wire goes to another place than the first."""
+    here = tuple(pad for pad in pads if ends[pad.name].board == ends[pads[0].name].board)
+    return here, tuple(pad for pad in pads if pad not in here)
 
 
 def _host(auxiliary_boards: Iterable[AuxiliaryBoard]) -> tuple[AuxiliaryBoard, str, str] | None:
@@ -220,8 +236,9 @@ def _thick_enough(config: Input, cable: Cable, cables: list[Cable]) -> Cable:
     """The cable with the configured section or, where that is too thin, the smallest sold one that
     carries its current to the supply."""
     supply_v, asked = config.parameters.supply.voltage_v, config.parameters.wiring.section_mm2
-    amps = max(wire.current_ma for wire in cable.wires) / 1000
-    way_mm = sum(c.length_mm for c in cables if c.start.board != "receiver")
+    amps = max(_currents_ma(cable)) / 1000
+    feeding = [c for c in cables if c.start.board != "receiver" and any(_currents_ma(c))]
+    way_mm = sum(c.length_mm for c in feeding)
     for_drop = 2 * way_mm / 1000 * amps * COPPER_OHM_MM2_PER_M / (MOST_DROP * supply_v)
     least = max(amps / MOST_A_PER_MM2, for_drop)
     if asked >= least:
@@ -229,12 +246,16 @@ def _thick_enough(config: Input, cable: Cable, cables: list[Cable]) -> Cable:
     return replace(cable, section_mm2=next((s for s in SOLD_MM2 if s >= least), least))
 
 
+def _currents_ma(cable: Cable) -> tuple[float, ...]:
+    return tuple(wire.current_ma for wire in cable.wires)
+
+
 def _refuse_thick(config: Input, cable: Cable, boards: Boards, faults: Diagnostics) -> None:
     """Refuse wires that do not go into the holes at their ends."""
     asked, section = config.parameters.wiring.section_mm2, cable.section_mm2
     drill_mm = min(_drill_mm(end, boards) for end in (cable.start, cable.end))
     most = math.pi / 4 * ((drill_mm - DRILL_ROOM_MM) / STRANDED) ** 2
-    amps_ma = max(wire.current_ma for wire in cable.wires)
+    amps_ma = max(_currents_ma(cable))
     need = f"{section:g} mm² is needed for {amps_ma:.0f} mA, but " if section > asked else ""
     faults.refuse_unless(
         section <= most,

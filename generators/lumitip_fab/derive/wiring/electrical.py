@@ -6,6 +6,7 @@ from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards.flange_circuit import derive_regulated
 from lumitip_fab.derive.boards.plug_in import derive_plug_in
 from lumitip_fab.derive.diagnostics import Diagnostics
+from lumitip_fab.derive.wiring.ambient import derive_ambient
 from lumitip_fab.derive.wiring.ratings import RESISTOR_TOLERANCE, SUPPLY_TOLERANCE
 from lumitip_fab.derive.wiring.sources import regulation
 from lumitip_fab.derive.wiring.strings import Strings as DerivedStrings
@@ -17,13 +18,14 @@ SHORTER = 0.75  # of a string's LEDs, to compare
 
 def derive_electrical(config: Input, strings: DerivedStrings, faults: Diagnostics) -> Electrical:
     """Electrical figures from parts, strings and supply."""
-    p = config.parameters
+    p, channel = config.parameters, _channel(config)
     return Electrical(
         strings=_strings(config, strings),
-        channel=_channel(config),
+        channel=channel,
         heat_w=sum(strings.current_ma) * p.supply.voltage_v / 1000,
         supplies=derive_regulated(config, faults),
         plug_ins=derive_plug_in(config, faults),
+        ambient=derive_ambient(config, channel),
     )
 
 

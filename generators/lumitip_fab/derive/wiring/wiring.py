@@ -15,6 +15,9 @@ from lumitip_fab.derive.wiring.ratings import sold_ohm
 from lumitip_fab.derive.wiring.strings import Strings
 from lumitip_fab.design import Point, Wiring
 
+PULL_DOWN_OHM = 100e3
+"""At the gate of the LEDs' switch: they are off while the controller starts."""
+
 
 @dataclass(frozen=True)
 class Muxing:
@@ -126,6 +129,10 @@ def build_wiring(config: Input, strings: Strings, muxing: Muxing) -> Wiring:
         pull_up_ohm=p.receiver.pull_up_ohm,
         own_pull_ups=p.receiver.load == "each",
         pull_ups=sum(p.grid.columns) if p.receiver.load == "each" else muxing.muxes,
+        emitter_pin=config.parts.controller.board.emitter_pin
+        if config.parts.emitter.switch
+        else None,
+        pull_down_ohm=PULL_DOWN_OHM,
     )
 
 

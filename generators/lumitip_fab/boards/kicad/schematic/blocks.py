@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 
-from lumitip_fab.boards.kicad.schematic import current_sources, symbols
+from lumitip_fab.boards.kicad.schematic import current_sources, led_switch, symbols
 from lumitip_fab.boards.kicad.schematic.sheet import Block, Sheet
 from lumitip_fab.boards.model import AT_CELLS, GROUND
 from lumitip_fab.design import Component, Point, Wiring
@@ -58,28 +58,33 @@ _STRING_START_MM = 30.48
 _SOURCE = "Current_source"
 
 
-def string_blocks(parts: Parts, supply: str, wiring: Wiring, marked: str) -> Iterator[Block]:
-    """A block for each string of LEDs with its resistor or its current source."""
+def string_blocks(
+    parts: Parts, supply: str, cathodes: str, wiring: Wiring, marked: str
+) -> Iterator[Block]:
+    """A block for each string of LEDs with its resistor or its current source, then their
+    switch."""
     for number, string in enumerate(wiring.strings, start=1):
         width_mm = _STRING_START_MM + len(string) * _LED_MM + 20.32
         height_mm, shapes = _STRING_MM, {"LED": symbols.led(marked)}
         if wiring.set_ohm:
             width_mm, height_mm = width_mm + current_sources.WIDTH_MM, height_mm + 10.16
             shapes[_SOURCE] = current_sources.symbol(parts[f"U{number}"])
-        draw = partial(_string, parts, supply, number, string, wiring)
+        draw = partial(_string, parts, (supply, cathodes), number, string, wiring)
         yield Block(width_mm, height_mm, draw, shapes)
+    if wiring.emitter_pin is not None:
+        yield led_switch.block(parts["Q1"], parts[wiring.pull_down_ref])
 
 
 def _string(
     parts: Parts,
-    supply: str,
+    ends: tuple[str, str],
     number: int,
     string: Sequence[int],
     wiring: Wiring,
     sheet: Sheet,
     at: Point,
 ) -> None:
-    x, y = at[0], at[1] + 12.7
+    (supply, cathodes), x, y = ends, at[0], at[1] + 12.7
     caption = f"String {number}: {len(string)} LEDs, {wiring.current_ma[number - 1]:.1f} mA"
     sheet.texts.append((caption, (x, y - 10.16), 1.8))
     sheet.power(supply, (x + 5.08, y))
@@ -101,4 +106,7 @@ def _string(
         sheet.part("LED", parts[f"D{cell + 1}"], (middle, y), ref_at=(0, -5.08))
         end = middle + 3.81
     sheet.wire((end, y), (end + 5.08, y))
-    sheet.power(GROUND, (end + 5.08, y))
+    if cathodes == GROUND:
+        sheet.power(GROUND, (end + 5.08, y))
+    else:
+        sheet.flag(cathodes, (end + 5.08, y), 0)

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 
+from lumitip_fab.boards.circuit import cathodes_of
 from lumitip_fab.boards.kicad.schematic import symbols
 from lumitip_fab.boards.kicad.schematic.auxiliary import auxiliary_blocks
 from lumitip_fab.boards.kicad.schematic.blocks import string_blocks, wires_block
@@ -45,14 +46,17 @@ def _drawn(board: Placement, design: Design) -> tuple[dict[str, Node], str, Shee
         drafts = auxiliary_blocks(board)
         shapes = {name: shape for _, draft in drafts for name, shape in draft.shapes.items()}
         return shapes, *framed(drafts)
-    supply = next(n.name for n in board.nets if n.net_class == SUPPLY and n.name != board.ground)
+    others = (board.ground, cathodes_of(design))
+    supply = next(n.name for n in board.nets if n.net_class == SUPPLY and n.name not in others)
     shapes = symbols.hand_drawn() | {supply: symbols.supply(supply)}
     wires, packages = wires_block(parts, supply), design.packages
     if "multiplexer" in kinds:
         blocks = list(multiplexer_blocks(parts, supply, packages))
         paper, sheet = grid(wires, blocks)
     else:
-        blocks = list(string_blocks(parts, supply, design.wiring, packages.led.marked))
+        blocks = list(
+            string_blocks(parts, supply, cathodes_of(design), design.wiring, packages.led.marked)
+        )
         paper, sheet = columns([*blocks, wires])
     return shapes | _shapes([wires, *blocks]), paper, sheet
 
