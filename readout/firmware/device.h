@@ -94,7 +94,7 @@ class Device {
 
   // With an emitter that can be switched, twice, to take the ambient light off.
   void scan() {
-    if (EMITTER_PIN < 0) {
+    if (SCANS == 1) {
       scanner_.scan(codes_);
       return;
     }

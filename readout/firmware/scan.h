@@ -22,9 +22,9 @@ constexpr uint32_t LINE_US = static_cast<uint32_t>(SETTLE_FACTOR * CHARGED_US) +
 // slowly; with one for all it depends on the part. So an input waits for as long as the period
 // allows, and never less than line and detector need.
 constexpr uint32_t SHORTEST_US = DETECTOR_US > LINE_US ? DETECTOR_US : LINE_US;
-constexpr int32_t SCANS = EMITTER_PIN < 0 ? 1 : 2;  // of a frame
+constexpr int32_t SCANS = EMITTER_PIN >= 0 && LUMITIP_AMBIENT ? 2 : 1;  // of a frame
 constexpr int32_t SCAN_US = (PERIOD_US - RADIO_US) / SCANS;
-constexpr int32_t STEADY_US = EMITTER_PIN < 0 ? 0 : EMITTER_US;
+constexpr int32_t STEADY_US = SCANS == 1 ? 0 : EMITTER_US;
 constexpr int32_t READING_US = int32_t{CELLS} * SAMPLES * CONVERSION_US;
 constexpr int32_t SPARE_US = (SCAN_US - STEADY_US - READING_US) / CHANNELS;
 constexpr uint32_t SETTLE_US =

@@ -33,6 +33,9 @@
 #ifndef LUMITIP_EMITTER_PIN
 #define LUMITIP_EMITTER_PIN -1  // switches the LEDs, high is on; -1: they are always on
 #endif
+#ifndef LUMITIP_AMBIENT
+#define LUMITIP_AMBIENT 1  // 0: leaves the ambient light in the codes; the LEDs stay on
+#endif
 #ifndef LUMITIP_EMITTER_US
 #define LUMITIP_EMITTER_US 200  // from switching the LEDs until light and photodetectors are steady
 #endif

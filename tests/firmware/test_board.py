@@ -152,6 +152,21 @@ def test_an_emitter_that_is_switched_takes_ambient_light_off(
     assert all(np.array_equal(values, wanted) for p in packets for values in p.values)
 
 
+def test_a_switched_emitter_may_stay_on_for_the_full_rate(
+    host_program: Callable[..., Path], run: Callable[..., Any]
+) -> None:
+    defines = ("-DLUMITIP_AMBIENT=0", "-DLUMITIP_PERIOD_US=5000")
+    done = run(str(host_program("sketch", "flex", STUBS, *defines)))
+    assert done.returncode == 0, done.stderr
+    seen = Seen(done.stdout)
+    switched = [level for pin, level in seen.of("mtu_247", "pin") if pin == "5"]
+    assert ["5", "1"] in seen.of("setup", "pin")
+    assert switched == []
+    packets = [decode(data, 32) for data in seen.sent("mtu_247", uuids.FRAMES)]
+    assert {p.period_us for p in packets} == {5000}
+    assert sum(len(p.values) for p in packets) > 0.8 * 2_048_000 / 5000
+
+
 def test_the_light_tells_the_state(seen: Seen) -> None:
     assert flashes(seen, "alone") == 1
     assert flashes(seen, "mtu_23") == 2
