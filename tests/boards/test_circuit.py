@@ -1,5 +1,6 @@
 """What is connected to what on the boards, against the published circuit and the layout."""
 
+import re
 from collections import defaultdict
 from pathlib import Path
 
@@ -56,17 +57,26 @@ def test_current_passes_every_led_of_a_string_once(designs: dict[str, Design], p
     seen = []
     for number, string in enumerate(design.wiring.strings, start=1):
         net = f"S{number}_0"
-        assert (f"R{number}", "1") in pins[supply]
+        if design.wiring.set_ohm:
+            setting = f"R{len(design.wiring.strings) + number}"
+            assert {(f"U{number}", "7"), (f"U{number}", "8")} <= set(pins[supply])
+            out = [(f"U{number}", lead) for lead in ("2", "3", "4")]
+            assert sorted(pins[f"S{number}_OUT"]) == [(f"R{number}", "1"), *out]
+            assert sorted(pins[f"S{number}_SET"]) == [(setting, "1"), (f"U{number}", "5")]
+            assert (setting, "2") in pins[net]
+        else:
+            assert (f"R{number}", "1") in pins[supply]
         assert (f"R{number}", "2") in pins[net]
         for cell in string:
             ref = f"D{cell + 1}"
             assert (ref, "2") in pins[net], "the anode, as pad 1 is the marked cathode"
             net = next(n for n, on in pins.items() if (ref, "1") in on)
             seen.append(cell)
-        assert net == "GND"
+        assert net == ("GND" if design.packages.switch is None else "LEDK")
     assert sorted(seen) == list(range(len(design.layout)))
-    links = [on for net, on in pins.items() if net not in ("GND", supply)]
-    assert all(len(on) == 2 for on in links)
+    between = [on for net, on in pins.items() if re.fullmatch(r"S\d+_[1-9]\d*", net)]
+    assert len(between) == len(seen) - len(design.wiring.strings)
+    assert all(len(on) == 2 for on in between)
 
 
 @pytest.mark.parametrize("preset", PRESETS)
@@ -170,7 +180,7 @@ def test_every_signal_has_a_test_point_and_a_class(
         "3V3",
         "24V",
         "12V",
-    }
+    } | ({"LEDK"} & set(classes))
     assert set(classes) == {net for part in plan for _, net in part.nets}
     assert sum(part.kind == "fiducial" for part in plan) == 3
 

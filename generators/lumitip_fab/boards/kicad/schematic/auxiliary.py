@@ -20,7 +20,7 @@ Drawing = tuple[str, Callable[[Draft], None]]
 """A title and what draws the block."""
 _LEADERS = ("fuse", "regulator", "module")
 """Kinds of parts that begin a block; the parts after them on the board's list belong to it."""
-_CABLES = {"S0": "To the receiver", "D+": "USB", "DIO": "Debugger"}
+_CABLES = {"S0": "To the receiver", "LED": "To the emitter", "D+": "USB", "DIO": "Debugger"}
 """Use of wire pads by one of their nets."""
 _FLAG_STEPS = 5
 
@@ -134,13 +134,14 @@ def _leaving(contacts: Parts, supplies: Sequence[str]) -> Iterator[Drawing]:
     if headers:
         yield "Headers", partial(draw_strips, parts=headers)
     beside = [pads.ref for _, pads in _sockets(contacts)]
-    feeding = iter(("To the emitter", "From the supply"))
+    feeding, used = ("To the emitter", "From the supply"), set[str]()
     for part in contacts:
         if part.kind == "wires" and part.ref not in beside:
             nets = nets_of([part])
             use = next((use for net, use in _CABLES.items() if net in nets), "Wires")
             if nets <= {*supplies}:
-                use = next(feeding, "Wires")
+                use = next((use for use in feeding if use not in used), "Wires")
+            used.add(use)
             yield use, partial(draw_strips, parts=[part])
 
 
