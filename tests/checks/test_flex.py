@@ -129,7 +129,7 @@ def interface_gone(folder: Path) -> None:
 
 
 FILES: dict[Callable[[Path], None], set[str]] = {
-    plates_swapped: {"face", "letter", "reliefs"},
+    plates_swapped: {"letter"},
     interfaces_swapped: {"letter"},
     interface_gone: {"readable"},
 }

@@ -2,6 +2,7 @@
 
 import io
 import math
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -133,7 +134,7 @@ def test_every_parameter_that_is_named_exists() -> None:
             assert field in tables[table].annotation.model_fields, f"{table}.{field}"  # type: ignore[union-attr]
 
 
-def test_every_check_that_is_named_exists(outputs: Path) -> None:
-    known = run_checks(outputs, MODULES).names
+def test_every_check_that_is_named_exists(outputs: Path, built: Callable[[str], Path]) -> None:
+    known = run_checks(outputs, MODULES).names | run_checks(built("published"), MODULES).names
     assert set(PARAMETERS) | DRAWN_AT_THE_LIMIT <= known
     assert parameters_of("no.such_check") == ()

@@ -46,6 +46,7 @@ def bill(config: Input, design: Design) -> dict[str, int]:
         (p.emitter.led, len(design.layout)),
         (p.emitter.source, len(wiring.set_ohm)),
         (p.emitter.resistor, len(wiring.resistor_ohm) + len(wiring.set_ohm)),
+        *(((p.emitter.switch, 1), (p.receiver.resistor, 1)) if wiring.emitter_pin else ()),
         (p.receiver.photodetector, len(design.layout)),
         (p.receiver.multiplexer, wiring.muxes),
         pull_ups,

@@ -10,7 +10,7 @@ from lumitip.errors import how_to_install
 from lumitip.tasks.bench import workers
 from lumitip_fab.catalogue.ordering import Prices
 from lumitip_fab.config.load import Input, load
-from lumitip_fab.config.parts import NAMED
+from lumitip_fab.config.parts import NAMED, NONE
 from lumitip_fab.errors import BuildError, InputError, OutputError, Problem
 from lumitip_fab.explore.accuracy import Sample
 from lumitip_fab.explore.evaluate import FIGURES, Job, Journal, Record, evaluate, unpriced
@@ -20,6 +20,7 @@ from lumitip_fab.pipeline.build import locked
 _PRICED = (
     "leds",
     "current_sources",
+    "transistors",
     "resistors",
     "resistor_arrays",
     "photodetectors",
@@ -112,7 +113,7 @@ def _check(config: Input, asked: Sequence[Axis], prices: Prices, keep_size: bool
     for field, part in parts.items():
         chosen = getattr(config.catalogue, part) if field in config.automatic else ()
         names |= set(varied.get(field, chosen or (config.value(field),)))
-    faults = unpriced(config, prices, names)
+    faults = unpriced(config, prices, names - {NONE})
     if keep_size and "grid.columns" in varied:
         conflict = "and --keep-size exclude each other: --keep-size counts the columns itself"
         faults.append(Problem("--vary", 0, "grid.columns", conflict))
