@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 
-from lumitip_fab.boards.kicad.schematic import current_sources, led_switch, symbols
+from lumitip_fab.boards.kicad.schematic import current_sources, symbols
 from lumitip_fab.boards.kicad.schematic.sheet import Block, Sheet
 from lumitip_fab.boards.model import AT_CELLS, GROUND
 from lumitip_fab.design import Component, Point, Wiring
@@ -61,8 +61,7 @@ _SOURCE = "Current_source"
 def string_blocks(
     parts: Parts, supply: str, cathodes: str, wiring: Wiring, marked: str
 ) -> Iterator[Block]:
-    """A block for each string of LEDs with its resistor or its current source, then their
-    switch."""
+    """A block for each string of LEDs with its resistor or its current source."""
     for number, string in enumerate(wiring.strings, start=1):
         width_mm = _STRING_START_MM + len(string) * _LED_MM + 20.32
         height_mm, shapes = _STRING_MM, {"LED": symbols.led(marked)}
@@ -71,8 +70,6 @@ def string_blocks(
             shapes[_SOURCE] = current_sources.symbol(parts[f"U{number}"])
         draw = partial(_string, parts, (supply, cathodes), number, string, wiring)
         yield Block(width_mm, height_mm, draw, shapes)
-    if wiring.emitter_pin is not None:
-        yield led_switch.block(parts["Q1"], parts[wiring.pull_down_ref])
 
 
 def _string(

@@ -3,12 +3,12 @@
 from collections.abc import Iterable
 
 from lumitip_fab.boards.circuit import cathodes_of
-from lumitip_fab.boards.kicad.schematic import symbols
+from lumitip_fab.boards.kicad.schematic import led_switch, symbols
 from lumitip_fab.boards.kicad.schematic.auxiliary import auxiliary_blocks
 from lumitip_fab.boards.kicad.schematic.blocks import string_blocks, wires_block
 from lumitip_fab.boards.kicad.schematic.frames import framed
 from lumitip_fab.boards.kicad.schematic.multiplexers import multiplexer_blocks
-from lumitip_fab.boards.kicad.schematic.sheet import Block, Sheet, columns, grid
+from lumitip_fab.boards.kicad.schematic.sheet import Block, Sheet, beside, columns, grid
 from lumitip_fab.boards.kicad.schematic.writer import sheet_text
 from lumitip_fab.boards.kicad.sexpr import FORMAT, Node, Quoted, written
 from lumitip_fab.boards.model import SUPPLY, Placement
@@ -57,6 +57,9 @@ def _drawn(board: Placement, design: Design) -> tuple[dict[str, Node], str, Shee
         blocks = list(
             string_blocks(parts, supply, cathodes_of(design), design.wiring, packages.led.marked)
         )
+        if design.packages.switch is not None:
+            pull_down = parts[design.wiring.pull_down_ref]
+            wires = beside(wires, led_switch.block(parts["Q1"], pull_down))
         paper, sheet = columns([*blocks, wires])
     return shapes | _shapes([wires, *blocks]), paper, sheet
 

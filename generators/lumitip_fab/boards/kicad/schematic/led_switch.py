@@ -22,7 +22,7 @@ def block(transistor: Component, pull_down: Component) -> Block:
 def _draw(transistor: Component, pull_down: Component, sheet: Sheet, at: Point) -> None:
     nets = dict(zip(transistor.pins, (net for _, net in transistor.nets), strict=True))
     x, y = at[0] + 30.48, at[1] + 20.32
-    sheet.texts.append(("Switch of the LEDs", (at[0], at[1] + 2.54), 1.8))
+    sheet.texts.append(("Switch of the LEDs", (at[0], at[1] + 5.08), 2.5))
     sheet.part(_NAME, transistor, (x, y), ref_at=(8.89, -1.27), value_at=(10.16, 1.27))
     gate, node = x - 5.08, x - 12.7
     sheet.flag(nets["G"], (node - 5.08, y), 180)

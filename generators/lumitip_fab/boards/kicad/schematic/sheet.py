@@ -107,6 +107,21 @@ class Block:
     """Their symbols, by name."""
 
 
+def beside(left: Block, right: Block) -> Block:
+    """Two blocks side by side."""
+
+    def draw(sheet: Sheet, at: Point) -> None:
+        left.draw(sheet, at)
+        right.draw(sheet, (at[0] + left.width_mm, at[1]))
+
+    return Block(
+        left.width_mm + right.width_mm,
+        max(left.height_mm, right.height_mm),
+        draw,
+        {**left.shapes, **right.shapes},
+    )
+
+
 def columns(blocks: Iterable[Block]) -> tuple[str, Sheet]:
     """Blocks below each other: name of the paper, and the drawing."""
     blocks, sheet = list(blocks), Sheet()
