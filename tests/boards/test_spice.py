@@ -18,7 +18,7 @@ from lumitip_fab.boards.spice_channel import (
 )
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
-from lumitip_fab.derive.wiring.ratings import string_current_ma
+from lumitip_fab.derive.wiring.series import string_current_ma
 from lumitip_fab.design import Design, Electrical, Wiring
 from spice_runs import needs_ngspice, simulated
 
@@ -63,7 +63,7 @@ def test_a_string_draws_its_nominal_current(
 
 @needs_ngspice
 @pytest.mark.parametrize("sign", [-1, 1])
-@pytest.mark.parametrize("preset", ["published", "asymmetric"])
+@pytest.mark.parametrize("preset", ["published"])
 def test_the_spread_over_tolerances_is_what_ngspice_finds(
     presets: dict[str, Design], preset: str, sign: int, tmp_path: Path
 ) -> None:

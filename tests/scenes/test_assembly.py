@@ -34,7 +34,7 @@ def test_other_programs_read_the_scene_in_metres(preset: str, built: Callable[[s
     design = read_design(folder / "design.json")
     scene = trimesh.load(folder / "assembly/assembly.glb")
     names = set(scene.graph.nodes_geometry)
-    parts = {part.name for finger in design.fingers for part in finger.parts}
+    parts = {finger.body_name(part) for finger in design.fingers for part in finger.parts}
     layers = {f"{f.name}.{k}" for f in design.fingers for k in ("backing", "board", "film")}
     assert parts | layers < names
     assert scene.extents[1] == pytest.approx(design.outline.length_mm / 1000, abs=0.002)

@@ -31,7 +31,7 @@ def labels(design: Design, finger: Finger) -> set[str]:
     """Every label of a finger's drawing."""
     stack = design.stack
     kinds = [part.kind for part in finger.parts if part.side == "front"]
-    plural = {"led": "LEDs"}
+    called = {"led": "LED", "switch": "transistor"}
     return {
         f"Backing, {stack.plate_mm:g} mm",
         f"Board, {stack.pcb_mm:g} mm",
@@ -40,7 +40,7 @@ def labels(design: Design, finger: Finger) -> set[str]:
         *(["Interface"] if design.interfaces else []),
         f"{len(finger.connector.pads)} wires",
         f"{finger.name.capitalize()} finger, exploded",
-        *(f"{kinds.count(k)} {plural.get(k, k + 's')}" for k in kinds),
+        *(f"{kinds.count(k)} {called.get(k, k)}{'s' * (kinds.count(k) > 1)}" for k in kinds),
     }
 
 

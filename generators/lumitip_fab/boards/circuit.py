@@ -20,7 +20,6 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from lumitip_fab.boards.model import GROUND
-from lumitip_fab.catalogue.controllers import OPEN
 from lumitip_fab.design import Chip, Component, Design, Finger, Led, Photodetector, footprints
 from lumitip_fab.design.components import (
     MIDDLE,
@@ -79,7 +78,6 @@ def _sources(design: Design, finger: Finger) -> Iterator[Component]:
     strings = len(wiring.set_ohm)
     for number in range(1, strings + 1):
         leads = {"IN": supply_of(finger), "OUT": f"S{number}_OUT", "SET": f"S{number}_SET"}
-        leads[OPEN] = OPEN
         name, entry = packages.source_name, packages.source
         yield leaded(f"U{number}", "current source", name, entry, leads, MIDDLE, 0.0)
     for first, ohms, lead in (

@@ -5,8 +5,7 @@ from collections.abc import Iterator
 
 from lumitip_fab.boards.circuit import cathodes_of
 from lumitip_fab.boards.model import GROUND
-from lumitip_fab.catalogue.controllers import CurrentSource
-from lumitip_fab.design import Component, Design
+from lumitip_fab.design import Component, CurrentSource, Design
 from lumitip_fab.design.electrical import Regulation, Strings
 
 _THERMAL_V = 0.0258520  # of ngspice at 26.85 °C

@@ -8,6 +8,7 @@ towards the tip from the centre line of the columns, z out of the face from the 
 from dataclasses import dataclass, replace
 
 from lumitip.layout import Cell, Layout
+from lumitip_fab.catalogue.controllers import CurrentSource
 from lumitip_fab.catalogue.electronics import (
     Chip,
     Led,
@@ -88,6 +89,7 @@ __all__ = [
     "Connector",
     "Controller",
     "Cubic",
+    "CurrentSource",
     "Densities",
     "Design",
     "Electrical",

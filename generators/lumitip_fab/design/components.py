@@ -100,8 +100,8 @@ def leaded(
     at: Point,
     angle_deg: float,
 ) -> Component:
-    """A part with leads; `nets` has the net of each lead by its name."""
-    leads = numbered(nets[name] for name in entry.names)
+    """A part with leads; `nets` has the net of each lead by its name, but for open ones."""
+    leads = numbered(name if name == OPEN else nets[name] for name in entry.names)
     shape = footprints.leaded(entry)
     return mounted(ref, kind, value, entry, shape, leads, at, angle_deg, entry.names)
 
