@@ -137,7 +137,7 @@ class CurrentSource(Leaded):
     set_tolerance: float = Field(ge=0, le=0.2)
     """Fraction by which that of a part may be off at 25 °C, either way."""
     set_drift: float = Field(ge=0, le=0.2)
-    """Fraction by which that of one part changes from 0 to 60 °C, either way."""
+    """Fraction by which that of one part changes with the temperature of its chip, either way."""
     line_per_v: float = Field(ge=0, le=0.1)
     """Fraction by which the current of one part changes for each volt from IN to OUT."""
     offset_mv: float = Field(ge=0, le=50)

@@ -7,8 +7,6 @@ from lumitip_fab.checks.board_read import ReadBoard, ohm
 from lumitip_fab.checks.result import Measurement
 
 ROOM_C = 25.0
-MOST_SHARE = 0.6
-"""Largest share of the power with which the chip reaches its highest temperature."""
 
 
 def measure_sources(
@@ -54,7 +52,7 @@ def _measured(
         left.append(least_v - entry.dropout_v)
     worst = max(range(len(loads)), key=lambda i: (math.isnan(loads[i]), loads[i]))
     note = f"U{worst + 1}, highest supply and warm LEDs, of what it bears at {hottest:g} °C"
-    yield read.figure("source_load", 100 * loads[worst], 0, 100 * MOST_SHARE, "%", note)
+    yield read.figure("source_load", 100 * loads[worst], 0, 100 * held.most_load, "%", note)
     least = min(range(len(left)), key=lambda i: (not math.isnan(left[i]), left[i]))
     note = f"U{least + 1}, beyond what it needs, lowest supply and cold LEDs"
     yield read.figure("source_headroom", left[least], 0, volts, "V", note)

@@ -145,7 +145,8 @@ class Emitter(Strict):
     current_ma: float = Field(ge=0.1, le=1000)
     """Target current of each string of LEDs (mA)."""
     string_leds: int = Field(ge=1, le=64)
-    """Most LEDs in a string; fewer make its current depend less on supply and LEDs."""
+    """Most LEDs in a string; behind a resistor fewer make its current depend less on supply and
+    LEDs."""
     max_heat_w: float = Field(ge=0.05, le=20)
     """Most heat that LEDs, sources and resistors may leave in the finger (W)."""
     drive: Literal["source", "resistor"]

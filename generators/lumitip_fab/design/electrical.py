@@ -27,6 +27,8 @@ class Regulation:
     """Least and greatest ambient temperature."""
     forward_v_per_k: float
     """Greatest fall of an LED's forward voltage with temperature."""
+    most_load: float
+    """Largest share of `rated_w` that is allowed."""
 
 
 @dataclass(frozen=True)

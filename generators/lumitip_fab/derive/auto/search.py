@@ -163,7 +163,8 @@ MENDS: dict[str, tuple[str, ...]] = {
     "emitter.led": ("board.clearance_mm", "emitter.current_ma"),
     "emitter.current_ma": _CURRENT,
     "emitter.max_heat_w": _CURRENT,
-    "emitter.source": ("emitter.drive", *_CURRENT, "board.channel_mm"),
+    "emitter.source": ("emitter.drive", *_CURRENT),
+    "emitter.switch": ("emitter.drive",),
     "emitter.resistor_side": ("emitter.drive",),
     "emitter.resistor": (
         "emitter.resistor_side",

@@ -24,7 +24,7 @@ SHARED_OHM = 75e3  # the published one
 
 def choose_strings(config: Input) -> Iterator[tuple[str, Value, str]]:
     """Automatic values of drive, current, LEDs of a string, resistor and pull-up. Where no
-    combination passes, the one that breaks the fewest rules."""
+    combination passes, the one with resistors that breaks the fewest rules."""
     refused = ""
     for driven in _drives(config):
         for tried, longest in _candidates(driven):

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from lumitip_fab.catalogue.controllers import Transistor
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.diagnostics import Diagnostics
-from lumitip_fab.derive.wiring.ratings import SUPPLY_TOLERANCE
+from lumitip_fab.derive.wiring.sources import SUPPLY_RANGE
 from lumitip_fab.derive.wiring.strings import Strings
 from lumitip_fab.design import Box, Connector, Part
 
@@ -39,7 +39,7 @@ def refuse_switch(config: Input, strings: Strings, placed: bool, faults: Diagnos
         placed or config.parts.emitter.switch is None,
         "emitter.switch",
         f"is {config.parameters.emitter.switch!r}, for which the other parts leave no room before "
-        'the wire pads. Increase board.channel_mm or use "none".',
+        'the wire pads. Use "none".',
     )
 
 
@@ -69,7 +69,7 @@ def _ratings(part: Transistor, config: Input, strings: Strings) -> Iterator[str]
             f", whose gate takes {part.gate_on_v:g} to {part.gate_v:g} V; "
             f"{config.parameters.controller.board!r} gives {gate_v:g} V"
         )
-    high_v = (1 + SUPPLY_TOLERANCE) * supply_v
+    high_v = (1 + SUPPLY_RANGE) * supply_v
     if part.rated_v < high_v:
         yield f", rated for {part.rated_v:g} V; a supply of {supply_v:g} V needs {high_v:g} V"
     amps = sum(string.high_ma for string in strings.strings) / 1000

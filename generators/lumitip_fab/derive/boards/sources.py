@@ -42,8 +42,8 @@ def source_parts(config: Input, strings: int, zone: Box, faults: Diagnostics) ->
             "emitter.source",
             f"is {config.parameters.emitter.source!r}; {strings} of them with their resistors, "
             f"{wide:.1f} x {tall:.1f} mm each, do not fit into {zone.width_mm:.1f} x "
-            f'{zone.length_mm:.1f} mm. Use emitter.drive = "resistor", a smaller '
-            "emitter.resistor, or a larger board.channel_mm.",
+            f'{zone.length_mm:.1f} mm. Use emitter.drive = "resistor", or a smaller '
+            "emitter.resistor.",
         )
         return ()
     spare = zone.length_mm - deep

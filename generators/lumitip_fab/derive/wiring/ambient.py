@@ -3,30 +3,40 @@
 import math
 
 from lumitip_fab.config.load import Input
+from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.design.electrical import AmbientScan, Channel
 
 RADIO_US, CONVERSION_US = 2750, 30
 """As in `settings.h` of the firmware: of a frame, for radio and USB; and of one conversion."""
 NEAR_COUNTS, COUNTS = 2.0, 255
+MOST_PERIOD_US = 65535
+"""As `settings.h` and packets of the firmware allow."""
 STEP_US = 500
 """Periods are multiples of it."""
 THERMAL_V = 0.02585
 
 
-def derive_ambient(config: Input, channel: Channel) -> AmbientScan | None:
-    """Waits and period where the LEDs can be switched."""
+def derive_ambient(config: Input, channel: Channel, faults: Diagnostics) -> AmbientScan | None:
+    """Waits and period where the LEDs can be switched; refused where a frame takes too long."""
     if config.parts.emitter.switch is None:
         return None
     mux, cells = config.parts.receiver.multiplexer, sum(config.parameters.grid.columns)
     light_us = _light_us(config.parameters.receiver.pull_up_ohm, channel)
     waits_us = 2 ** len(mux.select) * (channel.wait_us or channel.settle_us)
     scan_us = waits_us + cells * CONVERSION_US
-    period_us = 2 * (light_us + scan_us) + RADIO_US
+    period_us = STEP_US * math.ceil((2 * (light_us + scan_us) + RADIO_US) / STEP_US)
+    faults.refuse_unless(
+        period_us <= MOST_PERIOD_US,
+        "emitter.switch",
+        f"is {config.parameters.emitter.switch!r}; a frame with two scans of this receiver takes "
+        f"{period_us / 1000:.1f} ms, the firmware's longest is {MOST_PERIOD_US / 1000:.1f} ms. Use "
+        'a lower receiver.pull_up_ohm, or "none".',
+    )
     return AmbientScan(
         light_us=light_us,
         near_counts=NEAR_COUNTS,
         scan_us=scan_us,
-        period_us=STEP_US * math.ceil(period_us / STEP_US),
+        period_us=period_us,
     )
 
 

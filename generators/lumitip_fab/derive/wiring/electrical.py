@@ -25,7 +25,7 @@ def derive_electrical(config: Input, strings: DerivedStrings, faults: Diagnostic
         heat_w=sum(strings.current_ma) * p.supply.voltage_v / 1000,
         supplies=derive_regulated(config, faults),
         plug_ins=derive_plug_in(config, faults),
-        ambient=derive_ambient(config, channel),
+        ambient=derive_ambient(config, channel, faults),
     )
 
 

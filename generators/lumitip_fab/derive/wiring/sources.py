@@ -28,6 +28,8 @@ FORWARD_V_PER_K = 0.002
 """Greatest fall of the forward voltage of an infrared LED with temperature, at these currents."""
 RESISTOR_PER_K = 1e-4  # thick film of 1 % (Yageo RC_L series)
 _NEAR = 0.005
+MOST_OFF = 0.02
+"""Of the current that sold resistors set, from the one that is asked for."""
 MOST_CHANGE = 0.03
 """Of the current of one part, either way, over supply and temperature."""
 MOST_SOURCE_LOAD = 0.6
@@ -59,11 +61,18 @@ def source_problems(config: Input, strings: tuple[String, ...]) -> Iterator[tupl
     p, source = config.parameters, config.parts.emitter.source
     name, held = p.emitter.source, regulation(config, strings)
     least, most = source.range_ma
-    current = p.emitter.current_ma
-    if not least <= current <= most:
+    current, low, high = p.emitter.current_ma, strings[0].low_ma, strings[0].high_ma
+    if low < least or high > most:
         yield (
             "emitter.current_ma",
-            f"is {current:g}; {name!r} sets {least:g} to {most:g} mA",
+            f"is {current:g}, {low:.2f} to {high:.2f} mA with all tolerances; {name!r} sets "
+            f"{least:g} to {most:g} mA",
+        )
+    made = strings[0].nominal_ma
+    if abs(made / current - 1) > MOST_OFF:
+        yield (
+            "emitter.current_ma",
+            f"is {current:g}; the nearest that {name!r} sets with sold resistors is {made:.3g} mA",
         )
     highest_v = p.supply.voltage_v * (1 + SUPPLY_RANGE)
     if highest_v > source.rated_v:
@@ -116,6 +125,7 @@ def regulation(config: Input, strings: tuple[String, ...]) -> Regulation:
         supply_range=SUPPLY_RANGE,
         temperatures_c=(COLDEST_C, HOTTEST_C),
         forward_v_per_k=FORWARD_V_PER_K,
+        most_load=MOST_SOURCE_LOAD,
     )
 
 

@@ -115,7 +115,7 @@ def string_problems(config: Input, strings: tuple[String, ...]) -> Iterator[tupl
     if max(highest, current) > led.max_current_ma:
         yield (
             "emitter.current_ma",
-            f"is {current:g}, up to {highest:.1f} mA with all tolerances (supply, LEDs, resistor); "
+            f"is {current:g}, up to {highest:.1f} mA with all tolerances; "
             f"{p.emitter.led!r} is rated for {led.max_current_ma:g} mA",
         )
     load = max(string.high_load_w for string in strings)
@@ -124,7 +124,7 @@ def string_problems(config: Input, strings: tuple[String, ...]) -> Iterator[tupl
         yield (
             "emitter.resistor",
             f"is {p.emitter.resistor!r}, with a power of up to {1000 * load:.0f} mW at "
-            f"{current:g} mA and all tolerances (supply, LEDs, resistor); the limit is "
+            f"{current:g} mA and all tolerances; the limit is "
             f"{1000 * allowed:.0f} mW ({100 * MOST_RESISTOR_LOAD:g} % of its rating)",
         )
     if p.emitter.drive == "source":
