@@ -55,7 +55,7 @@ def drawn(design_dir: Path, tmp_path_factory: pytest.TempPathFactory) -> Drawn:
     (presets / "five volts.toml").write_text(FIVE_VOLTS)
     designs: dict[str, Design] = {}
 
-    def told(board: tuple[str, str]) -> tuple[Design, Placement, Path]:
+    def draw(board: tuple[str, str]) -> tuple[Design, Placement, Path]:
         preset, name = board
         if preset not in designs:
             designs[preset] = derive(load(presets / f"{preset}.toml"))
@@ -69,11 +69,11 @@ def drawn(design_dir: Path, tmp_path_factory: pytest.TempPathFactory) -> Drawn:
             (out / path).write_bytes(data)
         return design, placed, out / f"{name}.kicad_sch"
 
-    return told
+    return draw
 
 
 def _properties(symbol: Node) -> dict[str, str]:
-    return {told[0]: told[1] for told in map(words, children(symbol, "property"))}
+    return {name: value for name, value, *_ in map(words, children(symbol, "property"))}
 
 
 def _titles(sheet: Path) -> list[str]:
@@ -127,7 +127,7 @@ def test_a_text_that_collides_is_found(
     changed, count = re.subn(old, new.format(x=x, y=y), text, count=1)
     damaged.write_text(changed, encoding="utf-8")
     assert count == 1
-    assert any(found in told for told in overlaps(damaged)), overlaps(damaged)
+    assert any(found in text for text in overlaps(damaged)), overlaps(damaged)
 
 
 def test_each_block_has_its_title(drawn: Drawn) -> None:
@@ -249,5 +249,5 @@ def test_a_wrong_circuit_is_found(
 def _violations(sheet: Path, kicad: Callable[..., str], tmp: Path) -> list[tuple[str, str]]:
     report = tmp / "erc.json"
     kicad("kicad-cli", "sch", "erc", "--severity-all", "--format", "json", "-o", report, sheet)
-    told = json.loads(report.read_text(encoding="utf-8"))
-    return [(v["type"], v["severity"]) for page in told["sheets"] for v in page["violations"]]
+    read = json.loads(report.read_text(encoding="utf-8"))
+    return [(v["type"], v["severity"]) for page in read["sheets"] for v in page["violations"]]

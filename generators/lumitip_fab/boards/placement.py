@@ -1,8 +1,6 @@
-"""Where the parts of a board are, and which way round each LED of a string lies."""
+"""Where the parts of a board are."""
 
 import dataclasses
-import math
-from collections.abc import Sequence
 
 from lumitip_fab.boards import spots
 from lumitip_fab.boards.circuit import cathodes_of, circuit, gap_at_cells_mm, supply_of
@@ -21,48 +19,19 @@ from lumitip_fab.boards.model import (
 from lumitip_fab.boards.placed import courtyard, pad_at
 from lumitip_fab.boards.silk.legend import with_legend
 from lumitip_fab.boards.silk.outlines import with_outline, without_crowded_lines
+from lumitip_fab.boards.strings import turn_strings
 from lumitip_fab.design import (
     AuxiliaryBoard,
     Box,
     Design,
     Finger,
-    Packages,
     Part,
     Point,
     Rules,
     Side,
-    Wiring,
 )
 from lumitip_fab.design.pull_ups import used_slots
 from lumitip_fab.errors import BuildError
-
-
-def string_angles(
-    chain: Sequence[PlacedComponent], start: Point, anode: str, choices: Sequence[float]
-) -> tuple[float, ...]:
-    """The angles with the shortest links in all, found place by place along the string.
-
-    Args:
-        chain: LEDs in the order in which the current passes them.
-        start: pad that the first LED is linked to.
-        anode: number of the pad that the current enters by.
-        choices: angles that each LED may have (degrees).
-    """
-    cathode = "1" if anode == "2" else "2"
-    best: dict[Point, tuple[float, tuple[float, ...]]] = {start: (0.0, ())}
-    for led in chain:
-        reached: dict[Point, tuple[float, tuple[float, ...]]] = {}
-        for angle in choices:
-            turned = dataclasses.replace(led, angle_deg=angle)
-            into = pad_at(turned, anode)
-            length, angles = min(
-                (round(so_far + math.dist(left, into), 6), angles_so_far)
-                for left, (so_far, angles_so_far) in best.items()
-            )
-            reached[pad_at(turned, cathode)] = length, (*angles, angle)
-        best = reached
-    return min(best.values())[1]
-
 
 CORNER_MM = 0.5
 _POUR_BETWEEN_MM = 2 * THERMAL_GAP_MM + MIN_WIDTH_MM
@@ -148,8 +117,7 @@ def finger_board(design: Design, finger: Finger) -> AuxiliaryBoard:
     for ref, part in named.items():
         parts[ref] = _at(parts[ref], (part.x_mm, part.y_mm), side=part.side)
     if "led" in kinds:
-        _turn_strings(parts, finger, design.wiring, design.packages)
-        _turn_pull_down(parts, design.wiring)
+        turn_strings(parts, finger, design.wiring, design.packages)
     if "multiplexer" in kinds:
         _round_multiplexers(parts, named, finger, design)
     _connector(parts, finger, rules)
@@ -180,36 +148,6 @@ def finger_board(design: Design, finger: Finger) -> AuxiliaryBoard:
 def _lit_nets(design: Design, kinds: set[str]) -> tuple[str, ...]:
     """The net that carries the current of all strings, on the board of the LEDs."""
     return (cathodes_of(design),) if "led" in kinds else ()
-
-
-def _turn_strings(
-    parts: dict[str, PlacedComponent], finger: Finger, wiring: Wiring, packages: Packages
-) -> None:
-    """Turn what sets the currents, and LEDs so that neighbours of a string face each other."""
-    anode = "1" if packages.led.marked == "anode" else "2"
-    for ref in [ref for ref in parts if ref.startswith("R") and ref != wiring.pull_down_ref]:
-        if wiring.set_ohm:  # the string begins between the two of a source
-            at_out = int(ref[1:]) <= len(wiring.set_ohm)
-            parts[ref] = dataclasses.replace(parts[ref], angle_deg=270.0 if at_out else 90.0)
-            continue
-        turns = [dataclasses.replace(parts[ref], angle_deg=angle) for angle in (90.0, 270.0)]
-        parts[ref] = min(turns, key=lambda part: pad_at(part, "1")[1])  # supply to the connector
-    for ref in [ref for ref in parts if ref.startswith("U")]:
-        parts[ref] = dataclasses.replace(parts[ref], angle_deg=180.0)  # IN to the connector
-    for number, string in enumerate(wiring.strings, start=1):
-        chain = [parts[f"D{cell + 1}"] for cell in string]
-        start = pad_at(parts[f"R{number}"], "2")
-        choices = (90.0, 270.0) if finger.turned else (0.0, 180.0)
-        angles = string_angles(chain, start, anode, choices)
-        for part, angle in zip(chain, angles, strict=True):
-            parts[part.ref] = dataclasses.replace(part, angle_deg=angle)
-
-
-def _turn_pull_down(parts: dict[str, PlacedComponent], wiring: Wiring) -> None:
-    """Turn the gate's pull-down with its gate end to the connector, if there is one."""
-    if wiring.emitter_pin is not None:
-        down = parts[wiring.pull_down_ref]
-        parts[down.ref] = dataclasses.replace(down, angle_deg=90.0)
 
 
 def _round_multiplexers(

@@ -3,7 +3,7 @@
 import itertools
 from collections.abc import Iterator
 
-from lumitip_fab.boards.circuit import cathodes_of
+from lumitip_fab.boards.circuit import cathodes_of, supply_of
 from lumitip_fab.boards.model import GROUND
 from lumitip_fab.design import Component, CurrentSource, Design
 from lumitip_fab.design.electrical import Regulation, Strings
@@ -13,17 +13,13 @@ _BAND_GAP_EV = 1.42  # gallium arsenide: how the forward voltage falls with temp
 _FOLLOWS_S = 100.0  # OUT follows SET within a fraction of a millivolt
 _KNEE_V = 0.05  # of the dropout, which is reached well below the data sheet's voltage
 _BELOW_V = 0.2
-_RESISTOR_PER_K = 1e-4
 
 
 def string(parts: tuple[Component, ...], design: Design) -> Iterator[str]:
     """The string at its supply; `i_ma` is its current. With a current source also at the ends of
     supply and temperature: `i_0_0` with the lowest of both, `i_1_0` with the highest supply."""
     wiring, strings = design.wiring, design.electrical.strings
-    supply = next(net for part in parts if part.ref in ("R1", "U1") for _, net in part.nets)
-    if strings.regulation:
-        supply = _net_of(parts, "U1", "IN")
-    yield f"Vsupply {supply} 0 {wiring.supply_v:g}"
+    yield f"Vsupply {supply_of(design.emitter)} 0 {wiring.supply_v:g}"
     yield from _source(parts, design) if wiring.set_ohm else _resistor(parts, design)
     yield from _leds(parts, design)
     yield from _model(strings)
@@ -47,6 +43,8 @@ def _resistor(parts: tuple[Component, ...], design: Design) -> Iterator[str]:
 def _source(parts: tuple[Component, ...], design: Design) -> Iterator[str]:
     """U1 with the resistors at its OUT and its SET, whose temperature coefficients are opposite."""
     nets = {pin: _net_of(parts, "U1", pin) for pin in ("IN", "OUT", "SET")}
+    held = design.electrical.strings.regulation
+    per_k = held.resistor_per_k if held else 0.0
     yield f"X1 {nets['IN']} {nets['OUT']} {nets['SET']} source"
     for pin, ohm, sign in (
         ("OUT", design.wiring.resistor_ohm[0], -1),
@@ -55,7 +53,7 @@ def _source(parts: tuple[Component, ...], design: Design) -> Iterator[str]:
         joined = (part for part in parts if part.kind == "resistor")
         part = next(p for p in joined if nets[pin] in (net for _, net in p.nets))
         ends = " ".join(net for _, net in part.nets)
-        yield f"{part.ref} {ends} {ohm:g} tc1={sign * _RESISTOR_PER_K:g}"
+        yield f"{part.ref} {ends} {ohm:g} tc1={sign * per_k:g}"
     yield from _subcircuit(design.packages.source, design.electrical.strings)
 
 

@@ -8,12 +8,12 @@ from collections.abc import Mapping
 
 from lumitip_fab.catalogue.controllers import (
     Controller,
-    CurrentSource,
     LinearRegulator,
     Regulator,
     Strip,
     Transistor,
 )
+from lumitip_fab.catalogue.current_sources import CurrentSource
 from lumitip_fab.catalogue.electronics import (
     Capacitor,
     Crystal,

@@ -139,7 +139,7 @@ def _table(text: str, name: str) -> list[int]:
 
 
 def _setting(text: str, name: str) -> str | None:
-    """A value that the compiler can be given instead."""
+    """A value that an option of the compiler can replace."""
     found = re.search(rf"^#ifndef {name}\n#define {name} (\S+) ", text, re.MULTILINE)
     return found[1] if found else None
 

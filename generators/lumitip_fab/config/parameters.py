@@ -150,7 +150,7 @@ class Emitter(Strict):
     max_heat_w: float = Field(ge=0.05, le=20)
     """Most heat that LEDs, sources and resistors may leave in the finger (W)."""
     drive: Literal["source", "resistor"]
-    """What sets the current of a string: a current source, which holds it whatever supply and
+    """How the current of a string is set: a current source, which holds it whatever supply and
     temperature do, or a resistor."""
     source: Name
     """Name of a current source in `parts/current_sources.toml`."""

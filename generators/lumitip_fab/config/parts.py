@@ -6,12 +6,12 @@ from typing import Any, get_args, get_type_hints
 from lumitip_fab.catalogue import Catalogue
 from lumitip_fab.catalogue.controllers import (
     Controller,
-    CurrentSource,
     LinearRegulator,
     Regulator,
     Strip,
     Transistor,
 )
+from lumitip_fab.catalogue.current_sources import CurrentSource
 from lumitip_fab.catalogue.electronics import (
     Capacitor,
     Crystal,
@@ -172,7 +172,7 @@ OPTIONAL = frozenset(field for field, records in _HINTS.items() if type(None) in
 
 
 def names_for(field: str, catalogue: Catalogue) -> tuple[str, ...]:
-    """What a field in `NAMED` may be."""
+    """Values that a field in `NAMED` may have."""
     return (*getattr(catalogue, NAMED[field]), *((NONE,) if field in OPTIONAL else ()))
 
 

@@ -8,7 +8,7 @@ towards the tip from the centre line of the columns, z out of the face from the 
 from dataclasses import dataclass, replace
 
 from lumitip.layout import Cell, Layout
-from lumitip_fab.catalogue.controllers import CurrentSource
+from lumitip_fab.catalogue.current_sources import CurrentSource
 from lumitip_fab.catalogue.electronics import (
     Chip,
     Led,

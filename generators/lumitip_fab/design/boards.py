@@ -7,7 +7,8 @@ otherwise.
 from dataclasses import dataclass
 from typing import Literal
 
-from lumitip_fab.catalogue.controllers import CurrentSource, Transistor
+from lumitip_fab.catalogue.controllers import Transistor
+from lumitip_fab.catalogue.current_sources import CurrentSource
 from lumitip_fab.catalogue.electronics import (
     Capacitor,
     Led,

@@ -27,6 +27,8 @@ class Regulation:
     """Least and greatest ambient temperature."""
     forward_v_per_k: float
     """Greatest fall of an LED's forward voltage with temperature."""
+    resistor_per_k: float
+    """Temperature coefficient of its resistors: a fraction, either way."""
     most_load: float
     """Largest share of `rated_w` that is allowed."""
 

@@ -5,7 +5,8 @@ from dataclasses import replace
 from typing import Literal
 
 from lumitip_fab.catalogue import controllers as catalogue
-from lumitip_fab.catalogue.controllers import CurrentSource, Leaded, Module, Strip
+from lumitip_fab.catalogue.controllers import Leaded, Module, Strip
+from lumitip_fab.catalogue.current_sources import CurrentSource
 from lumitip_fab.catalogue.electronics import Chip, Multiplexer, ResistorArray
 from lumitip_fab.design import Design
 from lumitip_fab.design.pcb import Facing, Footprint, Form, Pad, Shroud

@@ -174,7 +174,7 @@ def ambient_rows(design: Design) -> tuple[Row, ...]:
     """Where ambient light goes."""
     ambient, packages = design.electrical.ambient, design.packages
     if ambient is None or packages.switch is None:
-        words = "the LEDs are always on, so that it cannot be told from theirs"
+        words = "the LEDs are always on, so that it cannot be measured apart"
         return (Row("ambient light", "not stated", "stays in the codes", words),)
     return (
         Row(

@@ -21,7 +21,7 @@ _ERRORS = (
     "pin_to_pin",
     "unconnected_wire_endpoint",
 )
-"""Rules of schematics that KiCad only warns of, or leaves out, unless it is told."""
+"""Rules of schematics that KiCad by itself only warns of, or leaves out."""
 
 
 def project_file(board: Placement, name: str) -> bytes:

@@ -232,7 +232,7 @@ def _refuse_holes(p: Parameters, pad_mm: float, faults: Diagnostics) -> None:
 def _driving(
     config: Input, strings: Strings, frame: Frame, faults: Diagnostics
 ) -> tuple[tuple[Part, ...], tuple[Relief, ...]]:
-    """What sets the currents of the strings, and the reliefs behind it."""
+    """Current sources or resistors of the strings, and the reliefs behind them."""
     if config.parameters.emitter.drive == "source":
         return source_parts(config, len(strings.cells), frame.parts, faults), ()
     room = _resistor_room(config, frame)

@@ -56,7 +56,7 @@ def _problems(config: Input, strings: Strings) -> Iterator[str]:
     if p.receiver.load == "shared":
         yield (
             '; with receiver.load = "shared" readings in the dark do not settle, so that ambient '
-            'light cannot be told. Use receiver.load = "each", or "none" here.'
+            'light cannot be measured. Use receiver.load = "each", or "none" here.'
         )
     yield from _ratings(part, config, strings)
 

@@ -13,7 +13,7 @@ import math
 from collections.abc import Iterator
 from functools import cache
 
-from lumitip_fab.catalogue.controllers import CurrentSource
+from lumitip_fab.catalogue.current_sources import CurrentSource
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.wiring.ratings import RESISTOR_TOLERANCE, values_between
 from lumitip_fab.derive.wiring.series import String
@@ -125,6 +125,7 @@ def regulation(config: Input, strings: tuple[String, ...]) -> Regulation:
         supply_range=SUPPLY_RANGE,
         temperatures_c=(COLDEST_C, HOTTEST_C),
         forward_v_per_k=FORWARD_V_PER_K,
+        resistor_per_k=RESISTOR_PER_K,
         most_load=MOST_SOURCE_LOAD,
     )
 
@@ -165,7 +166,7 @@ def _spread(source: CurrentSource, set_ohm: float) -> float:
 
 
 def _source_v(config: Input) -> float:
-    """What a source and its resistor need."""
+    """Voltage that a source and its resistor need."""
     return config.parts.emitter.source.dropout_v + SET_V[1] * (1 + RESISTOR_TOLERANCE)
 
 

@@ -9,7 +9,7 @@ from lumitip_fab.boards.kicad.sexpr import Node
 from lumitip_fab.design import Point
 
 _FLAG_MM = 2.54
-"""What a label's outline adds to its letters."""
+"""Length of a label's outline beyond its letters."""
 
 
 def bounds(sheet: Sheet, shapes: Mapping[str, Node]) -> tuple[Point, Point]:

@@ -1,6 +1,6 @@
 """The transistor that switches the LEDs, with the pull-down at its gate."""
 
-from lumitip_fab.boards.kicad.schematic import symbols
+from lumitip_fab.boards.kicad.schematic import mosfets
 from lumitip_fab.boards.kicad.schematic.sheet import Block, Sheet
 from lumitip_fab.boards.model import GROUND
 from lumitip_fab.design import Component, Point
@@ -16,7 +16,7 @@ def block(transistor: Component, pull_down: Component) -> Block:
     def draw(sheet: Sheet, at: Point) -> None:
         _draw(transistor, pull_down, sheet, at)
 
-    return Block(_WIDE_MM, _TALL_MM, draw, {_NAME: symbols.switch(transistor)})
+    return Block(_WIDE_MM, _TALL_MM, draw, {_NAME: mosfets.switch(transistor)})
 
 
 def _draw(transistor: Component, pull_down: Component, sheet: Sheet, at: Point) -> None:

@@ -9,7 +9,7 @@
 
 from collections.abc import Sequence
 
-from lumitip_fab.boards.kicad.schematic import shapes, symbols
+from lumitip_fab.boards.kicad.schematic import mosfets, shapes
 from lumitip_fab.boards.kicad.schematic.draft import (
     Draft,
     net_of,
@@ -116,7 +116,7 @@ def _transistor(draft: Draft, part: Component, rail: Rail, gate: str) -> Point:
     rail.on()
     x, y = rail.end()
     middle = x + 5.08, y + STEP_MM
-    shape = shapes.lying(symbols.transistor(part))
+    shape = shapes.lying(mosfets.transistor(part))
     assert isinstance(shape, tuple)
     draft.place(part, f"Transistor_{part.ref}", shape, middle, 0, (0.0, -8.89), (0.0, -6.6))
     rail.skip(10.16)
