@@ -81,7 +81,8 @@ class Peer:
 
 def patient(test: Callable[..., None]) -> Callable[..., None]:
     """Run a test with a `peer`; again with another one if it failed while the machine was so busy
-    that threads stood still: an arm is rightly stopped by that."""
+    that threads stood still: an arm is rightly stopped by that. A program that a test starts may
+    stand still where this one does not: more work than cores counts too."""
 
     @functools.wraps(test)
     def run(**given: Any) -> None:
@@ -92,7 +93,8 @@ def patient(test: Callable[..., None]) -> Callable[..., None]:
                 test(peer=peer, **given)
                 return
             except (AssertionError, ArmError, subprocess.TimeoutExpired):
-                if not left or max(watch.longest_s, *_late_s(peer)) < _STARVED_S:
+                starved = max(watch.longest_s, *_late_s(peer)) >= _STARVED_S
+                if not left or not (starved or os.getloadavg()[0] > (os.cpu_count() or 1)):
                     raise
             finally:
                 watch.end()
