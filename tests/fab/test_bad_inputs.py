@@ -131,7 +131,7 @@ def test_line_numbers_point_at_the_text_that_is_at_fault(project: Path) -> None:
     }
     for problem in problems:
         line = Path(problem.file).read_text(encoding="utf-8").splitlines()[problem.line - 1]
-        key = next(k for k in reversed(problem.field.split(".")) if not k.isdecimal())
+        key = problem.field.partition(", value ")[0].rpartition(".")[2]
         missing = "is missing" in problem.message
         assert key in line or (missing and problem.field.split(".")[0] in line), problem
 

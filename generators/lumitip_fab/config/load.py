@@ -89,10 +89,11 @@ def load(path: Path) -> Input:
     """
     own = read_toml(path, shown_path(path))
     sources, faults = _with_bases(own)
-    based = not faults  # without its bases, what a file leaves out is no fault
     merged: dict[str, Any] = {}
     for source in reversed(sources):
         merged = _merge(merged, {k: v for k, v in source.table.items() if k != "extends"})
+    faults = faults or _without_base(sources[-1], merged, design_folder(path))
+    whole = not faults  # without its bases, what a file leaves out is no fault
     merged, automatic = filled(merged)
     catalogue, broken = _catalogue(design_folder(path))
     faults += broken
@@ -101,7 +102,7 @@ def load(path: Path) -> Input:
         parameters = Parameters.model_validate(_tuples(merged))
     except ValidationError as error:
         faults += problems_of(
-            error, Parameters, lambda field: _setting(sources, field), missing=based
+            error, Parameters, lambda field: _setting(sources, field), missing=whole
         )
     unknown = _unknown_parts(merged, catalogue, sources)
     named = {fault.field for fault in unknown}
@@ -130,6 +131,20 @@ def _with_bases(own: Source) -> tuple[tuple[Source, ...], list[Problem]]:
     except InputError as error:
         return tuple(chain), list(error.problems)
     return tuple(chain), []
+
+
+def _without_base(last: Source, merged: Mapping[str, Any], folder: Path) -> list[Problem]:
+    """One fault for a file that extends no other and has less than half of the tables."""
+    absent = [name for name in Parameters.model_fields if name not in merged]
+    if 2 * len(absent) <= len(Parameters.model_fields):
+        return []
+    message = (
+        f"is missing, and so are {len(absent)} tables and values that are needed, such as "
+        f"[{absent[-1]}]. A file with only what differs begins with the name of its base. "
+    )
+    return [
+        Problem(shown_path(last.path), 1, "extends", message + _available(folder, last.path))
+    ]
 
 
 def _base(chain: list[Source]) -> Source:

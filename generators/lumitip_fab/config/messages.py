@@ -2,6 +2,7 @@
 
 import datetime
 import difflib
+import itertools
 import re
 import types
 import typing
@@ -103,8 +104,20 @@ def problems_of(
         field = ".".join(map(str, location))
         source = setting(field)
         message = _message(fault, model, location)
-        problems.append(Problem(shown_path(source.path), source.line(field), field, message))
+        place = shown_path(source.path), source.line(field)
+        problems.append(Problem(*place, _named(location), message))
     return problems
+
+
+def _named(location: tuple[int | str, ...]) -> str:
+    """A field by its name; a value of a list by its number, which begins with 1."""
+    text = ""
+    for before, part in itertools.pairwise(("", *location)):
+        if isinstance(part, int):
+            text += f", value {part + 1}"
+        else:
+            text += f", {part}" if isinstance(before, int) else f".{part}"
+    return text.removeprefix(".")
 
 
 def _message(fault: Any, model: Any, location: tuple[Any, ...]) -> str:
