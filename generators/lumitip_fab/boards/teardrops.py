@@ -6,9 +6,11 @@ later, joins its pads.
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 import shapely
+from shapely.ops import substring
 
 from lumitip_fab.boards.model import SIDES, Placement, Routing, Track
 from lumitip_fab.boards.placed import PlacedPad, placed_pads
@@ -40,16 +42,13 @@ def with_teardrops(placement: Placement, routing: Routing) -> Routing:
     lands = list(_lands(placement, routing))
     copper = _Copper(placement, routing, lands)
     tracks: list[Track] = []
-    for track in routing.tracks:
-        if track.net == placement.ground:
-            tracks.append(track)
+    for run in _runs(routing.tracks):
+        if run[0].net == placement.ground:
+            tracks += run
             continue
-        first = _drop(track, lands, copper)
-        rest = replace(track, start=first[-1].end) if first else track
-        back = replace(rest, start=rest.end, end=rest.start)
-        last = _drop(back, lands, copper)
-        rest = replace(rest, end=last[-1].end) if last else rest
-        tracks += [*first, *([rest] if rest.start != rest.end else []), *last]
+        first, rest = _drop(run, lands, copper)
+        last, rest = _drop(_reversed(rest), lands, copper)
+        tracks += [*first, *_reversed(rest), *last]
     return replace(routing, tracks=tuple(tracks))
 
 
@@ -66,36 +65,74 @@ def _width_mm(pad: PlacedPad) -> float:
     return min(pad.pad.width_mm, pad.pad.height_mm)
 
 
-def _drop(track: Track, lands: list[_Land], copper: "_Copper") -> list[Track]:
-    """The pieces by which a track leaves the land that it begins in; none without room."""
-    at, line = shapely.Point(track.start), shapely.LineString([track.start, track.end])
+Run = list[Track]
+"""Tracks of one width that follow each other, each from the end of the one before."""
+
+
+def _runs(tracks: tuple[Track, ...]) -> list[Run]:
+    runs: list[Run] = []
+    for track in tracks:
+        before = runs[-1][-1] if runs else None
+        if before and before == replace(track, start=before.start, end=track.start):
+            runs[-1].append(track)
+        else:
+            runs.append([track])
+    return runs
+
+
+def _reversed(run: Run) -> Run:
+    return [replace(track, start=track.end, end=track.start) for track in reversed(run)]
+
+
+def _drop(run: Run, lands: list[_Land], copper: "_Copper") -> tuple[Run, Run]:
+    """The pieces by which a run leaves the land that it begins in, and the rest of it; without
+    room there are none."""
+    if not run:
+        return [], []
+    first = run[0]
+    at, line = shapely.Point(first.start), shapely.LineString([first.start, *(t.end for t in run)])
     for land in lands:
-        if land.net != track.net or track.side not in land.sides or not land.area.covers(at):
+        if land.net != first.net or first.side not in land.sides or not land.area.covers(at):
             continue
-        outside = line.difference(land.area).length
-        if outside < BEYOND_MM[0]:
-            return []
+        inside_mm = _inside_mm(line, land.area)
         for slimmer in SLIMMER:
-            pieces = list(_pieces(track, line, line.length - outside, land.width_mm, slimmer))
+            pieces, used_mm = _pieces(first, line, inside_mm, land.width_mm, slimmer)
             if pieces and all(map(copper.free, pieces)):
                 copper.add(pieces)
-                return pieces
-    return []
+                return pieces, _along(first, line, used_mm, line.length)
+        break
+    return [], run
+
+
+def _inside_mm(line: shapely.LineString, land: shapely.Geometry) -> float:
+    """Where a line that begins in a land leaves it; its whole length if it does not."""
+    outside = line.difference(land)
+    if outside.is_empty:
+        return float(line.length)
+    return float(line.project(shapely.Point(shapely.get_parts(outside)[0].coords[0])))
 
 
 def _pieces(
     track: Track, line: shapely.LineString, inside_mm: float, most_mm: float, slimmer: float
-) -> Iterator[Track]:
-    """The beginning of a track in pieces, each less wide than the one before."""
-    start = track.start
-    for beyond, wider in zip(BEYOND_MM, WIDER, strict=True):
+) -> tuple[Run, float]:
+    """The beginning of a run in pieces, each less wide than the one before, and where they end."""
+    pieces: Run = []
+    begin_mm = 0.0
+    for beyond_mm, wider in zip(BEYOND_MM, WIDER, strict=True):
         width = round(min(wider * slimmer * track.width_mm, most_mm), 3)
-        if inside_mm + beyond > line.length or width <= track.width_mm:
-            return
-        tip = line.interpolate(inside_mm + beyond)
-        end = (round(tip.x, 3), round(tip.y, 3))
-        yield replace(track, start=start, end=end, width_mm=width)
-        start = end
+        end_mm = inside_mm + beyond_mm
+        if end_mm > line.length or width <= track.width_mm:
+            break
+        pieces += _along(replace(track, width_mm=width), line, begin_mm, end_mm)
+        begin_mm = end_mm
+    return pieces, begin_mm
+
+
+def _along(track: Track, line: shapely.LineString, begin_mm: float, end_mm: float) -> Run:
+    """A part of a line as tracks like another one."""
+    part = substring(line, begin_mm, end_mm)
+    places = [(round(x, 3), round(y, 3)) for x, y in part.coords]
+    return [replace(track, start=a, end=b) for a, b in pairwise(places) if a != b]
 
 
 class _Copper:

@@ -142,9 +142,7 @@ def _without_base(last: Source, merged: Mapping[str, Any], folder: Path) -> list
         f"is missing, and so are {len(absent)} tables and values that are needed, such as "
         f"[{absent[-1]}]. A file with only what differs begins with the name of its base. "
     )
-    return [
-        Problem(shown_path(last.path), 1, "extends", message + _available(folder, last.path))
-    ]
+    return [Problem(shown_path(last.path), 1, "extends", message + _available(folder, last.path))]
 
 
 def _base(chain: list[Source]) -> Source:
