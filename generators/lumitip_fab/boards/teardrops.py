@@ -6,7 +6,8 @@ later, joins its pads.
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from itertools import pairwise
+from functools import partial
+from itertools import pairwise, takewhile
 
 import numpy as np
 import shapely
@@ -14,7 +15,7 @@ from shapely.ops import substring
 
 from lumitip_fab.boards.model import SIDES, Placement, Routing, Track
 from lumitip_fab.boards.placed import PlacedPad, placed_pads
-from lumitip_fab.design import Side
+from lumitip_fab.design import Point, Side
 
 BEYOND_MM = (0.15, 0.3, 0.45)  # the edge of pad or via: where each piece ends
 WIDER = (2.2, 1.8, 1.4)  # than the track, each piece; none is wider than the pad
@@ -85,23 +86,48 @@ def _reversed(run: Run) -> Run:
 
 
 def _drop(run: Run, lands: list[_Land], copper: "_Copper") -> tuple[Run, Run]:
-    """The pieces by which a run leaves the land that it begins in, and the rest of it; without
-    room there are none."""
+    """The tracks by which a run leaves the land that it begins in, and the rest of it."""
     if not run:
         return [], []
-    first = run[0]
-    at, line = shapely.Point(first.start), shapely.LineString([first.start, *(t.end for t in run)])
+    first, at = run[0], run[0].start
     for land in lands:
-        if land.net != first.net or first.side not in land.sides or not land.area.covers(at):
-            continue
-        inside_mm = _inside_mm(line, land.area)
-        for slimmer in SLIMMER:
-            pieces, used_mm = _pieces(first, line, inside_mm, land.width_mm, slimmer)
-            if pieces and all(map(copper.free, pieces)):
-                copper.add(pieces)
-                return pieces, _along(first, line, used_mm, line.length)
-        break
+        if land.net == first.net and first.side in land.sides and _covers(land, at):
+            within = list(takewhile(partial(_ends_in, land), run))
+            pieces, rest = _widened(run[len(within) :], land, copper)
+            return [*within, *pieces], rest
     return [], run
+
+
+def _covers(land: _Land, at: Point) -> bool:
+    return bool(land.area.covers(shapely.Point(at)))
+
+
+def _ends_in(land: _Land, track: Track) -> bool:
+    return _covers(land, track.end)
+
+
+def _widened(run: Run, land: _Land, copper: "_Copper") -> tuple[Run, Run]:
+    """The pieces by which a run leaves a land, each the widest that finds room, none wider than
+    the one before; and the rest of the run."""
+    if not run:
+        return [], []
+    first, line = run[0], shapely.LineString([run[0].start, *(t.end for t in run)])
+    inside_mm, begin_mm, most_mm = _inside_mm(line, land.area), 0.0, land.width_mm
+    pieces: Run = []
+    for beyond_mm, wider in zip(BEYOND_MM, WIDER, strict=True):
+        if (end_mm := inside_mm + beyond_mm) > line.length:
+            break
+        for slimmer in SLIMMER:
+            width_mm = round(min(wider * slimmer * first.width_mm, most_mm), 3)
+            piece = _along(replace(first, width_mm=width_mm), line, begin_mm, end_mm)
+            if width_mm > first.width_mm and all(map(copper.free, piece)):
+                pieces += piece
+                begin_mm, most_mm = end_mm, width_mm
+                break
+        else:
+            break
+    copper.add(pieces)
+    return pieces, _along(first, line, begin_mm, line.length)
 
 
 def _inside_mm(line: shapely.LineString, land: shapely.Geometry) -> float:
@@ -110,22 +136,6 @@ def _inside_mm(line: shapely.LineString, land: shapely.Geometry) -> float:
     if outside.is_empty:
         return float(line.length)
     return float(line.project(shapely.Point(shapely.get_parts(outside)[0].coords[0])))
-
-
-def _pieces(
-    track: Track, line: shapely.LineString, inside_mm: float, most_mm: float, slimmer: float
-) -> tuple[Run, float]:
-    """The beginning of a run in pieces, each less wide than the one before, and where they end."""
-    pieces: Run = []
-    begin_mm = 0.0
-    for beyond_mm, wider in zip(BEYOND_MM, WIDER, strict=True):
-        width = round(min(wider * slimmer * track.width_mm, most_mm), 3)
-        end_mm = inside_mm + beyond_mm
-        if end_mm > line.length or width <= track.width_mm:
-            break
-        pieces += _along(replace(track, width_mm=width), line, begin_mm, end_mm)
-        begin_mm = end_mm
-    return pieces, begin_mm
 
 
 def _along(track: Track, line: shapely.LineString, begin_mm: float, end_mm: float) -> Run:
