@@ -33,7 +33,7 @@ def lines(folder: Path, pattern: str) -> list[dict[str, str]]:
     ("preset", "at_lcsc"),
     [
         ("published", 0.89),
-        ("asymmetric", 0.91),
+        ("asymmetric", AT_LEAST),
         ("dense", 0.95),
         ("flex", AT_LEAST),
         ("franka_hand", AT_LEAST),
