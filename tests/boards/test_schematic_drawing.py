@@ -34,6 +34,7 @@ voltage_v = 5.0
 current_ma = 12.0
 [flange]
 tvs = "SMBJ5.0A"
+indicator = "auto"
 """
 BOARDS = (
     *(("published", name) for name in ("flange", "breakout", "emitter", "receiver")),
@@ -138,9 +139,9 @@ def test_each_block_has_its_title(drawn: Drawn) -> None:
     assert [t for t in flange if "open" not in t] == [*path, buck, "Headers", "Power flags"]
     whole = _titles(drawn(("integrated", "flange"))[2])
     module = ["Controller: Raytac MDBT50Q", "Headers", *wires, "USB", "Debugger", "Power flags"]
-    assert [t for t in whole if "open" not in t] == [*path, buck, linear, *module]
+    assert [t for t in whole if "open" not in t] == [*path, buck, "Power LED", linear, *module]
     simple = _titles(drawn(("five volts", "flange"))[2])
-    assert [t for t in simple if "open" not in t] == [*path, "Headers", "Power flags"]
+    assert [t for t in simple if "open" not in t] == [*path, "Power LED", "Headers", "Power flags"]
     breakout = _titles(drawn(("published", "breakout"))[2])
     assert breakout == ["Controller", *wires, "From the supply", "Power flags"]
 

@@ -97,6 +97,7 @@ FIELDS: dict[str, Automatic] = {
     "flange.tvs": Automatic("SMBJ24A", "supply", names="tvs_diodes"),
     "flange.inrush_resistor": Automatic("1206 pulse", "inrush_ohm", names="pulse_resistors"),
     "flange.inrush_ohm": Automatic(4.7, "supply, input capacitor, fuse and MOSFET"),
+    "flange.indicator": Automatic("APT2012LZGCK", "the flange's output", names="indicators"),
     "printer.min_wall_mm": Automatic(0.8, "two lines of the printer"),
 }
 

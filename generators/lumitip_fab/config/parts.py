@@ -16,6 +16,7 @@ from lumitip_fab.catalogue.electronics import (
     Capacitor,
     Crystal,
     Fuse,
+    Indicator,
     Inductor,
     Led,
     Multiplexer,
@@ -89,6 +90,7 @@ class FlangeParts:
     resistor: Resistor
     tvs: TvsDiode
     inrush_resistor: PulseResistor
+    indicator: Indicator | None
 
 
 @dataclass(frozen=True)

@@ -170,6 +170,37 @@ class PlugIn:
 
 
 @dataclass(frozen=True)
+class Indicator:
+    """The power LED of the flange's board with its resistor."""
+
+    led: str
+    """In the catalogue."""
+    colour: str
+    output_v: float
+    """Nominal voltage of the board's output, which feeds it."""
+    supply_tolerance: float
+    """Fraction by which that may be off, either way."""
+    resistor_tolerance: float
+    forward_v: tuple[float, float]
+    """Least and greatest forward voltage."""
+    ohm: float
+    low_ma: float
+    """Least current: low output, high forward voltage, high resistance."""
+    high_ma: float
+    """Greatest current."""
+    visible_ma: float
+    """Least current with which it is seen in a lit room."""
+    max_ma: float
+    """Its largest continuous current."""
+    resistor_w: float
+    """Power of the resistor at the greatest current."""
+    rated_w: float
+    """Its rated power."""
+    load: float
+    """Largest fraction of its rated power."""
+
+
+@dataclass(frozen=True)
 class Electrical:
     """Figures of the boards."""
 
@@ -181,5 +212,7 @@ class Electrical:
     """The flange's regulator; none without it."""
     plug_ins: tuple[PlugIn, ...] = ()
     """The flange as it is plugged in; none without it."""
+    indicators: tuple[Indicator, ...] = ()
+    """The flange's power LED; none without it."""
     ambient: AmbientScan | None = None
     """None where the LEDs are always on."""

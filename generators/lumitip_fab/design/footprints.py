@@ -18,6 +18,7 @@ _CHIPS = {
     "resistor": "RESC",
     "capacitor": "CAPC",
     "led": "LEDC",
+    "indicator": "LEDC",
     "photodetector": "PTRC",
     "fuse": "FUSC",
     "inductor": "INDC",

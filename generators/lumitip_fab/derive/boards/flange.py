@@ -23,6 +23,7 @@ from lumitip_fab.derive.boards.flange_circuit import (
     refuse_parts,
     supply_range_v,
 )
+from lumitip_fab.derive.boards.indicator import NOTE, indicator_parts
 from lumitip_fab.derive.boards.module import Supplies, derive_module
 from lumitip_fab.derive.boards.packages import capacitor
 from lumitip_fab.derive.boards.ties import derive_ties
@@ -74,7 +75,9 @@ def derive_flange(
     refuse_parts(config, strings, faults)
     raw, supply, output = _supplies(config)
     wing = derive_module(config, module, muxing, Supplies(supply, output), BOX, faults)
-    parts = (*_input(config), *_regulator(config), *(wing.components if wing else ()))
+    light = indicator_parts(config, output)
+    module_parts = wing.components if wing else ()
+    parts = (*_input(config), *_regulator(config), *light, *module_parts)
     _refuse_lines(config, parts, faults)
     behind = ("SW", INPUT) if is_regulated(config) else ()
     components = (
@@ -96,7 +99,7 @@ def derive_flange(
             hole_mm=hole_mm,
             ties=derive_ties(components, box, CORNER_MM, screws, "controller.board", faults),
             components=components,
-            notes=(),
+            notes=(NOTE,) if light else (),
             supplies=tuple(dict.fromkeys(("GND", supply, raw, "FUSED", output, *behind))),
             keep_outs=wing.keep_outs if wing else (),
             hot_loop=_hot_loop(config),

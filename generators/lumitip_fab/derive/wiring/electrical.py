@@ -4,6 +4,7 @@ import math
 
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards.flange_circuit import derive_regulated
+from lumitip_fab.derive.boards.indicator import derive_indicator
 from lumitip_fab.derive.boards.plug_in import derive_plug_in
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.wiring.ambient import derive_ambient
@@ -25,6 +26,7 @@ def derive_electrical(config: Input, strings: DerivedStrings, faults: Diagnostic
         heat_w=sum(strings.current_ma) * p.supply.voltage_v / 1000,
         supplies=derive_regulated(config, faults),
         plug_ins=derive_plug_in(config, faults),
+        indicators=derive_indicator(config, faults),
         ambient=derive_ambient(config, channel, faults),
     )
 
