@@ -21,6 +21,7 @@ from lumitip_fab.checks.board_copper import (
 )
 from lumitip_fab.checks.board_finger import measure_cell_prints, measure_cells, measure_flexible
 from lumitip_fab.checks.board_indicator import measure_indicator
+from lumitip_fab.checks.board_probes import measure_probes
 from lumitip_fab.checks.board_read import ReadBoard, names_of, path_of, placed, read_any
 from lumitip_fab.checks.board_silk import measure_labels, measure_prints, measure_targets
 from lumitip_fab.checks.board_strings import measure_strings
@@ -258,6 +259,7 @@ MEASURES: tuple[Measure[ReadBoard], ...] = (
     measure_contact_map,
     measure_plug_in,
     measure_indicator,
+    measure_probes,
 )
 """Each applies to the boards that have what it measures: a finger's cells, the contacts of a
 coupling, a regulator's hot loop, an antenna's keep-out, flexible layers …"""

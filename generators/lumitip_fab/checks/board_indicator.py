@@ -41,9 +41,9 @@ def _figures(lit: Indicator, resistor: float) -> tuple[float, float, float]:
 
 def _wrong(read: ReadBoard) -> Iterator[str]:
     """Pads that are not where they belong, and an LED that cannot be seen."""
-    node = {read.group(RESISTOR, 1), read.group(RESISTOR, 2)} - {_output(read), None}
+    node = _ends(read) - {output_of(read), None}
     for ref, pad, found, wanted in (
-        (RESISTOR, "supply end", {_output(read)} & _ends(read), {_output(read)}),
+        (RESISTOR, "supply end", {output_of(read)} & _ends(read), {output_of(read)}),
         (LED, "anode", {read.group(LED, _ANODE)}, node),
         (LED, "cathode", {read.group(LED, _CATHODE)}, {read.group(_TVS, "2")}),
     ):
@@ -58,7 +58,7 @@ def _ends(read: ReadBoard) -> set[int | None]:
     return {read.group(RESISTOR, 1), read.group(RESISTOR, 2)}
 
 
-def _output(read: ReadBoard) -> int | None:
+def output_of(read: ReadBoard) -> int | None:
     """The output's copper: the coil's end away from the regulator; the supply behind the MOSFET
     where there is no regulator."""
     if _COIL not in read.parts:

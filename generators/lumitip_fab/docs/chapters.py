@@ -214,7 +214,8 @@ def _flanged(design: Design, flange: Flange) -> str:
     lit = "".join(
         f"""Before you close the flange, lay its contacts on those of the coupling, switch the
 robot's tool output on, and look at D2 on the board's front: it lights {lit.colour} while the board
-makes {lit.output_v:g} V. If it is dark, switch off and look for the fault before you go on.
+makes {lit.output_v:g} V. If it is dark, look for the fault before you go on: the test points beside
+J2, J3 and the contacts have the names of their nets.
 
 """
         for lit in design.electrical.indicators

@@ -105,6 +105,14 @@ def _flange(auxiliary: AuxiliaryBoard) -> Iterator[Row]:
         f"{values['F1']}, {values['Q1']}",
         "a MOSFET costs the LEDs no voltage, as a diode would",
     )
+    points = [part for part in auxiliary.components if part.kind == "test point"]
+    yield Row(
+        "its test points",
+        "not stated",
+        ", ".join(part.value for part in points),
+        f"on the front, {points[0].footprint.pads[0].width_mm:g} mm wide, with their names; on the "
+        "breakout the wire pads have names",
+    )
     yield from _tied(auxiliary)
     if "U2" in values:
         yield Row(

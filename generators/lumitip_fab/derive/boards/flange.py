@@ -26,6 +26,7 @@ from lumitip_fab.derive.boards.flange_circuit import (
 from lumitip_fab.derive.boards.indicator import NOTE, indicator_parts
 from lumitip_fab.derive.boards.module import Supplies, derive_module
 from lumitip_fab.derive.boards.packages import capacitor
+from lumitip_fab.derive.boards.probes import flange_probes
 from lumitip_fab.derive.boards.ties import derive_ties
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.mount.fasteners import BOARD_SCREW
@@ -83,6 +84,7 @@ def derive_flange(
     components = (
         *_strips(config),
         *parts,
+        *flange_probes(config, (raw, supply, output), faults),
         *fiducials(wing.fiducials if wing else FIDUCIALS_AT),
     )
     box = wing.box if wing else BOX
@@ -186,8 +188,8 @@ def _regulator(config: Input) -> tuple[Component, ...]:
             (-7.5, 5.2),
             90.0,
         ),
-        capacitor(config, "C2", p.output_capacitor, (output, "GND"), (-3.6, 5.8), 270.0),
-        capacitor(config, "C3", p.output_capacitor, (output, "GND"), (-1.2, 5.8), 270.0),
+        capacitor(config, "C2", p.output_capacitor, (output, "GND"), (-4.2, 5.8), 270.0),
+        capacitor(config, "C3", p.output_capacitor, (output, "GND"), (-1.8, 5.8), 270.0),
     )
 
 

@@ -4,7 +4,7 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 
-from lumitip_fab.boards.kicad.schematic.alone import draw_alone
+from lumitip_fab.boards.kicad.schematic.alone import draw_alone, draw_probes
 from lumitip_fab.boards.kicad.schematic.contact_blocks import draw_sockets, draw_strips
 from lumitip_fab.boards.kicad.schematic.draft import Draft, net_of, nets_of, other_net
 from lumitip_fab.boards.kicad.schematic.module_block import draw_module
@@ -39,6 +39,7 @@ def auxiliary_blocks(board: Placement) -> list[Titled]:
         *_first(contacts),
         *(drawing for group in circuits for drawing in _circuit(group, parts)),
         *_leaving(contacts, supplies),
+        *_probes(parts),
     ]
     found = [(title, _drafted(supplies, draw)) for title, draw in drawings]
     drawn = set().union(*(draft.drawn for _, draft in found))
@@ -61,7 +62,7 @@ def _groups(parts: Parts) -> list[list[Component]]:
     for part in parts:
         if part.kind in _LEADERS:
             found.append([])
-        if found and not part.contacts:
+        if found and not part.contacts and part.kind != "test point":
             found[-1].append(part)
     return sorted(found, key=lambda group: group[0].kind == "module")  # it is large
 
@@ -151,6 +152,12 @@ def _leaving(contacts: Parts, supplies: Sequence[str]) -> Iterator[Drawing]:
                 use = next((use for use in feeding if use not in used), "Wires")
             used.add(use)
             yield use, partial(draw_strips, parts=[part])
+
+
+def _probes(parts: Parts) -> Iterator[Drawing]:
+    points = [part for part in parts if part.kind == "test point"]
+    if points:
+        yield "Test points", partial(draw_probes, parts=points)
 
 
 def _not_made(parts: Parts, supplies: Sequence[str]) -> list[str]:

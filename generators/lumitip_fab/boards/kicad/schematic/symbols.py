@@ -49,9 +49,14 @@ def hand_drawn() -> dict[str, Node]:
     """The symbols of a board whose supplies are drawn as symbols, by name."""
     return {
         **dict(map(two_terminals, ("resistor", "capacitor"))),
-        "TestPoint": symbol("TP", [circle(0, 3.302, 0.762)], [pin("1", 0, 0, 90, 2.54)]),
+        "TestPoint": test_point(),
         **power_symbols(),
     }
+
+
+def test_point() -> Node:
+    """A test point above its pin."""
+    return symbol("TP", [circle(0, 3.302, 0.762)], [pin("1", 0, 0, 90, 2.54)])
 
 
 def power_symbols() -> dict[str, Node]:
