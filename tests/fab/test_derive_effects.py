@@ -111,6 +111,7 @@ CHANGES: dict[str, Any] = {
     "flange.inrush_resistor": "other",
     "flange.inrush_ohm": 5.1,
     "flange.indicator": "APT2012LZGCK",
+    "receiver.bulk_capacitor": "10uF 0603 10V",
     "module.regulator": "other",
     "module.supply_capacitor": "22uF 0805",
     "module.capacitor": "other",

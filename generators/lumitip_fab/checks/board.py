@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import shapely
 
+from lumitip_fab.checks.board_bulk import measure_bulk
 from lumitip_fab.checks.board_circuit import measure_channels, measure_contact_map
 from lumitip_fab.checks.board_copper import (
     measure_copper,
@@ -255,6 +256,7 @@ MEASURES: tuple[Measure[ReadBoard], ...] = (
     measure_strings,
     measure_switch,
     measure_channels,
+    measure_bulk,
     measure_settling,
     measure_contact_map,
     measure_plug_in,

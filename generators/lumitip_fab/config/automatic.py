@@ -78,6 +78,9 @@ FIELDS: dict[str, Automatic] = {
     "receiver.array": Automatic("4x0603", "room beside the multiplexer", names="resistor_arrays"),
     "receiver.resistor": Automatic("0603", "room beside the multiplexer", names="resistors"),
     "receiver.capacitor": Automatic("100nF 0603", "multiplexer and supply", names="capacitors"),
+    "receiver.bulk_capacitor": Automatic(
+        "10uF 0603 10V", "room beside the wires and current of the detectors", names="capacitors"
+    ),
     "mask.allowance_mm": Automatic(0.75, "page", 0.05),
     "mask.flap_mm": Automatic(13.0, "thickness of a finger and page", 0.5),
     "mould.taper_length_mm": Automatic(3.0, "outline.tip_margin_mm", 0.1),

@@ -49,6 +49,7 @@ class ReceiverParts:
     array: ResistorArray
     resistor: Resistor
     capacitor: Capacitor
+    bulk_capacitor: Capacitor | None
     multiplexer: Multiplexer
 
 

@@ -201,6 +201,27 @@ class Indicator:
 
 
 @dataclass(frozen=True)
+class Bulk:
+    """The bulk capacitor of the receiver at the end of its supply's wire."""
+
+    supply_v: float
+    wire_uh: float
+    """Inductance of the wire with its return."""
+    step_ma: float
+    """Change of the current of all detectors together."""
+    capacitor_uf: float
+    left: float
+    """Fraction of it at its supply: its DC-bias derating."""
+    tolerance: float
+    """Fraction by which it may be less."""
+    dip_mv: float
+    """Dip of the supply at that change."""
+    most_mv: float
+    reach_mm: float
+    """From its pad to the wire's, at most."""
+
+
+@dataclass(frozen=True)
 class Electrical:
     """Figures of the boards."""
 
@@ -214,5 +235,7 @@ class Electrical:
     """The flange as it is plugged in; none without it."""
     indicators: tuple[Indicator, ...] = ()
     """The flange's power LED; none without it."""
+    bulk: Bulk | None = None
+    """The receiver's bulk capacitor; none without it."""
     ambient: AmbientScan | None = None
     """None where the LEDs are always on."""
