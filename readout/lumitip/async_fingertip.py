@@ -9,7 +9,7 @@ import contextlib
 import threading
 from collections.abc import AsyncIterator
 from types import TracebackType
-from typing import Any
+from typing import Any, overload
 
 from lumitip.arguments import count, seconds
 from lumitip.calibration import Calibration, Kind
@@ -32,6 +32,8 @@ class AsyncFingertip:
         self._options = options
         self._open: Fingertip | None = None
         self._queue: _AsyncQueue | None = None
+        self._newest: _AsyncQueue | None = None
+        self._handed_out: Frame | None = None
         self._opening = threading.Lock()
         self._abandoned = False
 
@@ -51,13 +53,41 @@ class AsyncFingertip:
             raise FingertipClosed("not open: use `async with AsyncFingertip.open(url) as tip:`")
         return self._open
 
-    def latest(self) -> Frame | None:
+    @overload
+    def latest(self, max_age_s: float) -> Frame: ...
+
+    @overload
+    def latest(self, max_age_s: float | None = None) -> Frame | None: ...
+
+    def latest(self, max_age_s: float | None = None) -> Frame | None:
         """As `Fingertip.latest`; from any thread."""
-        return self.fingertip.latest()
+        frame = self._handed_out = self.fingertip.latest(max_age_s)
+        return frame
 
     async def read(self, timeout: float | None = 1.0) -> Frame:
         """As `Fingertip.read`; a cancelled call takes no frame."""
-        return await self._reading().next(timeout)
+        frame = await self._reading().next(timeout)
+        if frame is self.fingertip._hub.latest:
+            self._handed_out = frame
+        return frame
+
+    async def wait_latest(self, timeout_s: float | None = 1.0) -> Frame:
+        """As `Fingertip.wait_latest`; tasks that call it share the frames."""
+        timeout_s = seconds(timeout_s, "timeout_s")
+        if self._newest is None:
+            self._newest = _AsyncQueue(self.fingertip._hub, 1, counted=False)
+            newest = self.fingertip.latest()
+            if newest is not None and newest is not self._handed_out:
+                self._handed_out = newest
+                return newest
+        try:
+            async with asyncio.timeout(timeout_s):
+                while (frame := await self._newest.next(None)) is self._handed_out:
+                    pass
+        except TimeoutError:
+            raise self.fingertip._hub.silent(timeout_s) from None
+        self._handed_out = frame
+        return frame
 
     async def get_data(self, num_samples: int, timeout: float | None = 10.0) -> Block:
         """As `Fingertip.get_data`, errors included."""
@@ -100,7 +130,7 @@ class AsyncFingertip:
     async def __aexit__(
         self, _: type[BaseException] | None, __: BaseException | None, ___: TracebackType | None
     ) -> None:
-        tip, self._open, self._queue = self.fingertip, None, None
+        tip, self._open, self._queue, self._newest = self.fingertip, None, None, None
         await asyncio.to_thread(tip.close)
 
     def _open_now(self) -> None:
@@ -129,11 +159,11 @@ class AsyncFingertip:
 class _AsyncQueue:
     """A queue of the hub for coroutines."""
 
-    def __init__(self, hub: Hub, size: int) -> None:
+    def __init__(self, hub: Hub, size: int, counted: bool = True) -> None:
         self._hub = hub
         self._loop = asyncio.get_running_loop()
         self._came = asyncio.Event()
-        self._queue = hub.queue(size, self._wake)
+        self._queue = hub.queue(size, self._wake, counted)
 
     async def next(self, timeout_s: float | None) -> Frame:
         """As `Hub.next`."""

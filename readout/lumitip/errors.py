@@ -49,6 +49,10 @@ class LinkTimeout(LinkError, TimeoutError):
     """From `get_data`: a `Block` of the frames that arrived, `None` if there were none."""
 
 
+class StaleFrame(LinkTimeout):
+    """The newest frame is older than allowed."""
+
+
 class NotConnected(LinkError, ConnectionError):
     """The fingertip was closed, or its link has failed."""
 

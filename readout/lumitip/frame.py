@@ -36,7 +36,9 @@ class Frame:
     """Arrival of the packet, `time.monotonic` (s)."""
     t: float
     """Time the cells were read, `time.monotonic` (s): the device clock fitted to the host clock,
-    late by the shortest delay of the link. Never decreases. `t_host` for a legacy device."""
+    late by the shortest delay of the link. Strictly increases, and frames are never closer than 0.8
+    times their distance by the device clock: after a stall at the start of a link `t` is later than
+    the fit, and even than `t_host`, until it has caught up. `t_host` for a legacy device."""
     t_wall: float
     """`t` as seconds since 1970 (UTC)."""
     raw: Codes
