@@ -61,7 +61,7 @@ ALLOWED_READOUT = {
     "commands": "core face health links processing recording session tasks twin view",
 }
 """The rooms of `lumitip`: `core` is its root, `face` what opens fingertips."""
-FACE = {"__init__", "async_fingertip", "cli", "fingertip", "group"}
+FACE = {"__init__", "async_fingertip", "cli", "fingertip", "group", "options"}
 
 
 def modules(package: str) -> dict[str, Path]:

@@ -8,14 +8,18 @@ import asyncio
 import contextlib
 import threading
 from collections.abc import AsyncIterator
+from functools import partial
+from pathlib import Path
 from types import TracebackType
-from typing import Any, overload
+from typing import Unpack, overload
 
 from lumitip.arguments import count, seconds
 from lumitip.calibration import Calibration, Kind
 from lumitip.errors import EndOfRecording, FingertipClosed
 from lumitip.fingertip import Fingertip
 from lumitip.frame import Block, Frame, ended_early, too_late
+from lumitip.layout import Layout
+from lumitip.options import OpenOptions, check_options
 from lumitip.session.hub import Hub
 
 
@@ -27,8 +31,9 @@ class AsyncFingertip:
     `calibration`, `subscribe`.
     """
 
-    def __init__(self, url: str, options: dict[str, Any]) -> None:
+    def __init__(self, url: str, layout: Layout | str | Path | None, options: OpenOptions) -> None:
         self._url = url
+        self._layout = layout
         self._options = options
         self._open: Fingertip | None = None
         self._queue: _AsyncQueue | None = None
@@ -38,9 +43,15 @@ class AsyncFingertip:
         self._abandoned = False
 
     @classmethod
-    def open(cls, url: str, layout: Any = None, **options: Any) -> "AsyncFingertip":
+    def open(
+        cls,
+        url: str,
+        layout: Layout | str | Path | None = None,
+        **options: Unpack[OpenOptions],
+    ) -> "AsyncFingertip":
         """A fingertip for `async with`; arguments and errors of `Fingertip.open`."""
-        return cls(url, {"layout": layout, **options})
+        check_options(options)
+        return cls(url, layout, options)
 
     @property
     def fingertip(self) -> Fingertip:
@@ -103,9 +114,12 @@ class AsyncFingertip:
             raise ended_early(frames, number, end) from None
         return Block.of(frames)
 
-    async def tare(self, kind: Kind = "empty", **options: Any) -> Calibration:
+    async def tare(
+        self, kind: Kind = "empty", *, num_samples: int = 50, keep: bool = True
+    ) -> Calibration:
         """As `Fingertip.tare`, on another thread."""
-        return await asyncio.to_thread(self.fingertip.tare, kind, **options)
+        tare = partial(self.fingertip.tare, kind, num_samples=num_samples, keep=keep)
+        return await asyncio.to_thread(tare)
 
     async def __aiter__(self) -> AsyncIterator[Frame]:
         """Every frame from now to the end of a recording or `close`; each task gets all frames."""
@@ -118,6 +132,10 @@ class AsyncFingertip:
             return
         finally:
             queue.end()
+
+    def __repr__(self) -> str:
+        state = "not open" if self._open is None else repr(self._open)
+        return f"<AsyncFingertip {self._url}: {state}>"
 
     async def __aenter__(self) -> "AsyncFingertip":
         try:
@@ -134,7 +152,7 @@ class AsyncFingertip:
         await asyncio.to_thread(tip.close)
 
     def _open_now(self) -> None:
-        tip = Fingertip.open(self._url, **self._options)
+        tip = Fingertip.open(self._url, self._layout, **self._options)
         with self._opening:
             self._open = tip
             abandoned = self._abandoned

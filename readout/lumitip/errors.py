@@ -21,6 +21,17 @@ class ArgumentError(LumitipError, ValueError):
     """An argument that cannot be used; the message says what is needed."""
 
 
+class UnknownOption(ArgumentError, TypeError):
+    """An option that a function does not have."""
+
+    def __init__(self, name: str, allowed: Sequence[str]) -> None:
+        super().__init__(f"there is no option {name!r}; allowed are {', '.join(allowed)}")
+        self.name = name
+        """The option."""
+        self.allowed = tuple(allowed)
+        """The options that exist."""
+
+
 class LayoutError(LumitipError, ValueError):
     """A `layout.json` that cannot be used; the message names field, value and limit."""
 

@@ -18,7 +18,7 @@ import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import TracebackType
-from typing import overload
+from typing import Never, overload
 
 from lumitip import arguments
 from lumitip.calibration import Calibration, Kind
@@ -27,6 +27,7 @@ from lumitip.frame import Block, Frame, ended_early, too_late
 from lumitip.layout import Layout
 from lumitip.links import open_link
 from lumitip.links.base import LinkEvent
+from lumitip.options import check_options
 from lumitip.session.drift import Drift
 from lumitip.session.hub import Hub
 from lumitip.session.queues import FrameQueue
@@ -59,6 +60,7 @@ class Fingertip:
         any_design: bool = False,
         calibrated: bool = True,
         on_event: Callable[[LinkEvent], None] | None = None,
+        **unknown: Never,
     ) -> "Fingertip":
         """Connect to a fingertip. Several threads may do so at once.
 
@@ -76,9 +78,10 @@ class Fingertip:
 
         Raises:
             LumitipError: `LinkTimeout`, `DeviceNotFound`, `AmbiguousDevice`, `WrongDesign`,
-                `MtuTooSmall`, `UrlError`, `LayoutError`, `MissingExtra`, `CalibrationError` or
-                `ArgumentError`.
+                `MtuTooSmall`, `UrlError`, `LayoutError`, `MissingExtra`, `CalibrationError`,
+                `ArgumentError` or, for other options, `UnknownOption`, a `TypeError` too.
         """
+        check_options(unknown)
         if isinstance(layout, str | Path):
             layout = Layout.load(layout)
         elif layout is not None and not isinstance(layout, Layout):
@@ -275,6 +278,15 @@ class Fingertip:
             if self._queue is None:
                 self._queue = self._hub.queue(self._buffer)
             return self._queue
+
+    def __repr__(self) -> str:
+        stats, over = self.stats, self._hub.over
+        state = str(over) if over else "connected" if self.connected else "reconnecting"
+        lost = "unknown" if stats.dropped is None else sum(stats.dropped.values())
+        return (
+            f"<Fingertip {self.device_id}: {state}; {len(self.layout)} cells, "
+            f"{stats.received} frames, {stats.rate_hz or 0.0:.1f} Hz, lost: {lost}>"
+        )
 
     def __enter__(self) -> "Fingertip":
         return self

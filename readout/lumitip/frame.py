@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from lumitip.errors import ArgumentError, EndOfRecording, LinkTimeout
 from lumitip.grid import Floats, Integers
-from lumitip.values import shown
+from lumitip.values import one_line, shown
 
 Codes = NDArray[np.uint8] | NDArray[np.uint16]
 """ADC codes of cells; high is dark."""
@@ -54,6 +54,9 @@ class Frame:
     device_id: str
     """Bluetooth address, USB serial number or port."""
 
+    def __repr__(self) -> str:
+        return one_line(self)
+
 
 @dataclass(frozen=True, eq=False, slots=True)
 class RecordedFrame:
@@ -66,6 +69,9 @@ class RecordedFrame:
     raw: Codes
     bits: int
     dropped_before: int | None
+
+    def __repr__(self) -> str:
+        return one_line(self)
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,6 +93,9 @@ class Block:
 
     def __len__(self) -> int:
         return len(self.seq)
+
+    def __repr__(self) -> str:
+        return one_line(self)
 
     @classmethod
     def of(cls, frames: Sequence[Frame]) -> "Block":

@@ -87,7 +87,7 @@ def layout_path(options: argparse.Namespace, url: str) -> Path | None:
     return path
 
 
-def open_fingertip(options: argparse.Namespace, **others: Any) -> "Fingertip":
+def open_fingertip(options: argparse.Namespace, *, calibrated: bool = True) -> "Fingertip":
     """Open the fingertip that the arguments name; errors as of `Fingertip.open`."""
     from lumitip.fingertip import Fingertip
 
@@ -96,5 +96,5 @@ def open_fingertip(options: argparse.Namespace, **others: Any) -> "Fingertip":
         layout_path(options, options.url),
         timeout=options.timeout,
         any_design=options.any_design,
-        **others,
+        calibrated=calibrated,
     )

@@ -70,8 +70,11 @@ def run(options: argparse.Namespace) -> int:
         stack.callback(registry.close)
         for url in options.urls:
             layout = layout_path(options, url)
-            how = {"timeout": options.timeout, "any_design": options.any_design}
-            registry.add(Finger.open(url, layout, sinks, **how))
+            registry.add(
+                Finger.open(
+                    url, layout, sinks, timeout=options.timeout, any_design=options.any_design
+                )
+            )
         server = ViewServer(registry, options.host, options.port, options.token)
         print(f"live view at {server.url} (Ctrl-C ends it)", flush=True)
         if options.open:

@@ -56,13 +56,15 @@ class Hub:
         timeout_s = seconds(timeout_s)
         self.link.start(self._deliver, self._report)
         until = math.inf if timeout_s is None else time.monotonic() + timeout_s
-        with self._changed:
-            while not (self._was_connected or self._over) and time.monotonic() < until:
-                self._changed.wait(min(until - time.monotonic(), threading.TIMEOUT_MAX))
-            failed = None if self._was_connected else self._over or self._too_late(timeout_s or 0)
-        if failed:
-            self.close(failed)
-            raise failed
+        try:
+            with self._changed:
+                while not (self._was_connected or self._over) and time.monotonic() < until:
+                    self._changed.wait(min(until - time.monotonic(), threading.TIMEOUT_MAX))
+                if not self._was_connected:
+                    raise self._over or self._too_late(timeout_s or 0)
+        except BaseException as failed:  # Ctrl-C too
+            self.close(failed if isinstance(failed, LinkError) else None)
+            raise
 
     def close(self, reason: LinkError | None = None) -> None:
         """Stop the link; readers get the queued frames, then the reason. May be repeated."""
