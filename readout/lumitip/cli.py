@@ -11,7 +11,7 @@ TYPE_CHECKING = False  # `typing` is slow to import
 if TYPE_CHECKING:
     from argparse import ArgumentParser
 
-MODULES = ("devices", "record", "recordings", "simulation", "view")
+MODULES = ("devices", "record", "recordings", "serve", "simulation", "view")
 REJECTED = 2
 
 

@@ -68,6 +68,14 @@ class NotConnected(LinkError, ConnectionError):
     """The fingertip was closed, or its link has failed."""
 
 
+class DeviceFailed(NotConnected):
+    """The device of a server has failed for good."""
+
+
+class AccessRefused(LinkError):
+    """A server refuses this client; the message says why."""
+
+
 class FingertipClosed(NotConnected):
     """The fingertip was closed by this program."""
 
@@ -131,6 +139,10 @@ class CalibrationError(LumitipError, ValueError):
 
 class CalibrationMismatch(CalibrationError):
     """A calibration of another design or device."""
+
+
+class SharingError(LumitipError):
+    """A fingertip that cannot be shared as asked."""
 
 
 class ViewError(LumitipError):

@@ -65,9 +65,10 @@ class Fingertip:
         """Connect to a fingertip. Several threads may do so at once.
 
         Args:
-            url: `ble://NAME-OR-ADDRESS`, `serial://PORT`, `replay://FILE` or `twin://SHAPE`.
+            url: `ble://NAME-OR-ADDRESS`, `serial://PORT`, `replay://FILE`, `twin://SHAPE` or
+                `tcp://HOST:PORT`, where `lumitip serve` shares a fingertip.
             layout: the `layout.json` that its firmware was built from, or its path; not needed
-                for a replay or a twin.
+                for a replay, a twin or a shared fingertip.
             timeout: of the connection (s); `None`: no limit.
             buffer: frames that may wait for each reader; the oldest are dropped, counted in
                 `stats.dropped["queue"]`. 4096 are 8 s at 500 Hz.
