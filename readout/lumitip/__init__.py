@@ -53,12 +53,21 @@ _LAZY = {
     "Stats": "session.stats",
 }
 
+_MODULES = ("errors", "grid", "layout")
+"""Modules that are attributes without being imported."""
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__, *_MODULES})
+
 
 def __getattr__(name: str) -> "Any":
     # Imported on first use: many programs need only the layout, and a command can handle Ctrl-C
     # before the slow imports.
     from importlib import import_module
 
+    if name in _MODULES:
+        return import_module(f"{__name__}.{name}")
     if name not in _LAZY:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(import_module(f"{__name__}.{_LAZY[name]}"), name)

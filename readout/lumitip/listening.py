@@ -5,6 +5,7 @@ import ipaddress
 import secrets
 import socket
 
+from lumitip import arguments
 from lumitip.errors import LumitipError
 
 
@@ -24,7 +25,8 @@ def listen(host: str, port: int, error: type[LumitipError]) -> socket.socket:
     Raises:
         LumitipError: `error`, if the address cannot be used; its cause is the `OSError`.
     """
-    if not 0 <= port < 1 << 16:
+    arguments.instance(host, str, "host", error)
+    if not arguments.count(port, "port", 0, error) < 1 << 16:
         raise error(f"port is {port}; allowed are 0 to 65535, 0 is any free one")
     listening = None
     try:

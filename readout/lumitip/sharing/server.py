@@ -16,6 +16,7 @@ from lumitip.layout import Layout
 from lumitip.links import open_link
 from lumitip.links.base import Arrival, Deliver, Fault, Link, LinkEvent, Prepares, Report
 from lumitip.links.tcp import DEFAULT_PORT, Address, greeting_of
+from lumitip.links.url import Url
 from lumitip.listening import is_token, listen, public_host, server_token
 from lumitip.protocol import messages
 from lumitip.protocol.messages import Kind, MessageError
@@ -64,9 +65,12 @@ class FingertipServer:
             SharingError: if the address is taken or cannot be used, or `url` is a recording.
             LumitipError: as `Fingertip.open`.
         """
-        if url.lower().startswith("replay:"):
+        if Url.parse(url).scheme == "replay":
             raise SharingError(f"{url} is a file: each program can open it without a server")
-        layout = Layout.load(layout) if isinstance(layout, str | Path) else layout
+        if isinstance(layout, str | Path):
+            layout = Layout.load(layout)
+        elif layout is not None:
+            arguments.layout(layout)
         self._buffer = arguments.count(buffer, "buffer")
         self._host = host
         self._token = server_token(token, host, SharingError)
@@ -107,6 +111,10 @@ class FingertipServer:
     def clients(self) -> tuple[ClientCounts, ...]:
         """The clients that are connected now."""
         return tuple(client.counts for client in self._clients)
+
+    def __repr__(self) -> str:
+        state = "ended" if self._stopping.is_set() else f"{len(self._clients)} clients"
+        return f"<FingertipServer {self.device_id} at {self._host}: {state}>"
 
     def wait(self) -> None:
         """Wait until the device fails for good or `close`.

@@ -132,6 +132,8 @@ def test_importing_takes_nothing_and_names_come_when_they_are_used() -> None:
 def test_an_unknown_name_is_no_attribute() -> None:
     import lumitip
 
+    assert issubclass(lumitip.errors.LinkError, lumitip.LumitipError)
+    assert {"Fingertip", "OpenOptions", "errors", "layout"} <= set(dir(lumitip))
     with pytest.raises(AttributeError, match="has no attribute 'Fingertips'"):
         _ = lumitip.Fingertips
 

@@ -13,6 +13,7 @@ from lumitip.errors import (
     DeviceFailed,
     LinkError,
     LinkTimeout,
+    LumitipError,
     NotConnected,
     SharingError,
     UrlError,
@@ -192,6 +193,32 @@ def unused_port() -> int:
     with socket.create_server(("127.0.0.1", 0)) as listening:
         port: int = listening.getsockname()[1]
     return port
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"port": "8643"},
+        {"host": 5},
+        {"layout": 5},
+        {"buffer": 0},
+        {"timeout": -1},
+        {"url": None},
+        {"url": "twin"},
+    ],
+)
+def test_wrong_arguments_are_one_error(options) -> None:
+    with pytest.raises(LumitipError) as caught:
+        FingertipServer(**{"url": "twin://disc", "port": 0, **options})
+    assert "\n" not in str(caught.value)
+
+
+def test_a_server_is_one_line(serve) -> None:
+    server = serve()
+    assert repr(server) == "<FingertipServer twin:disc at 127.0.0.1: 0 clients>"
+    server.close()
+    server.close()
+    assert "ended" in repr(server)
 
 
 def test_recordings_are_not_shared() -> None:
