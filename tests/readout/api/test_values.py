@@ -14,6 +14,8 @@ from lumitip.estimation import PoseEstimator
 from lumitip.health.doctor import examine
 from lumitip.processing import Processor, Tracker
 from lumitip.recording import Reader, Writer
+from lumitip.tasks import Curve
+from lumitip.twin import LineTable
 
 
 def test_stats_are_copied_compared_and_pickled(open_feed) -> None:
@@ -74,6 +76,8 @@ def test_every_public_object_is_one_useful_line(open_feed, layout, tmp_path) -> 
         repr(Processor(layout).batch(light)): "thresholds=<float64[2]",
         repr(examine(light, layout)): "noise=<float32[32]",
         repr(Tracer(law)): "<Tracer of LineLaw(speed_mm_s=20.0",
+        repr(LineTable(np.zeros((1, 2, 3), np.float32), 2.0)): "shares=<float32[1, 2, 3] from 0",
+        repr(Curve.random(100.0, 0)): "Curve(x_mm=<float64[",
         text_of_writer: "run.mcap: feed, 1 frames>",
         repr(Reader(path)): "run.mcap: feed, <Layout of 32 cells",
     }
