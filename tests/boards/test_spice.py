@@ -148,6 +148,7 @@ HALF_LIT = {
     "tenth": Step(0, 0.1, 0.1),
     "third": Step(0, 0.35, 0.35),
     "after light": Step(1, 0.2, 0.2),
+    "before it saturates": Step(1, 0.48, 0.48),
     "from light": Step(1, 1, 0.1),
 }
 

@@ -8,8 +8,10 @@ import pytest
 
 from damages import cut_short, edit, excerpt
 from damages import failing as failing_of
+from lumitip_fab.checks.bom import measure
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
+from lumitip_fab.design.encoding import read_design
 
 _NEEDED = ("boards", "backing", "mould", "holder", "flange", "fit", "wiring")
 
@@ -54,6 +56,8 @@ EDITS = [
         ',"74HC4067PW,118"',
         {"parts"},
     ),
+    ("boards/receiver/order/generic_receiver_bom.csv", ",Nexperia,", ",,", {"numbered"}),
+    ("boards/receiver/order/generic_receiver_bom.csv", ",Nexperia,", ",any,", {"numbered"}),
     ("mould/emitter_casting.md", "part A | **", "part A | **1", {"silicone"}),
     ("wiring/cables.csv", "BK,0.08,250", "BK,0.08,950", {"wire"}),
 ]
@@ -77,6 +81,19 @@ def test_a_damage_fails_its_check(
 ) -> None:
     edit(copied / file, old, new)
     assert failing(copied) == expected
+
+
+def test_a_number_at_lcsc_that_is_lost_lowers_the_share(copied: Path) -> None:
+    def share() -> tuple[float, str]:
+        found = measure(copied, read_design(copied / "design.json"))
+        return next((m.measured, m.note) for m in found if m.check == "bom.lcsc")
+
+    before, note = share()
+    assert note == "17 of 19 lines of the boards; not 15406085BA300, 827-22-010-10-001101"
+    edit(copied / "boards/receiver/order/jlcpcb_receiver_bom.csv", "C5645,", ",")
+    after, note = share()
+    assert (before, after) == pytest.approx((100 * 17 / 19, 100 * 16 / 19))
+    assert "74HC4051PW,118" in note
 
 
 def test_a_part_of_another_size_is_seen(copied: Path) -> None:

@@ -1,5 +1,5 @@
 """`bom.csv` against the boards' lists, the printed parts, the casting notes, the cables, and its
-own sums."""
+own sums; and how many lines of the boards' lists have numbers to order by."""
 
 import math
 import re
@@ -14,7 +14,7 @@ from lumitip_fab.checks.cables import read_list
 from lumitip_fab.checks.readers.tables import table
 from lumitip_fab.checks.readers.vertices import corners_mm
 from lumitip_fab.checks.result import Measurement, count, unreadable
-from lumitip_fab.design import Design
+from lumitip_fab.design import Design, Fab
 from lumitip_fab.errors import OutputError
 
 READS = (
@@ -32,6 +32,8 @@ READS = (
 _FILE = "bom.csv"
 _PART_G = re.compile(r"^\| .*, part [AB] \| \*\*([\d.]+) g\*\* \|$", re.MULTILINE)
 _CENT = 0.0051
+_NUMBERED = 95.0
+"""Percent of the boards' lines with a manufacturer and its order number, at least."""
 _FRACTION = 0.01
 
 
@@ -73,6 +75,42 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     yield from _bolts(rows, design)
     yield count("bom.prices", _FILE, _wrong_prices(rows, design), "wrong lines")
     yield _sum(rows, total, note, design)
+    yield from _numbered(outputs, design)
+
+
+def _numbered(outputs: Path, design: Design) -> Iterator[Measurement]:
+    """Share of the boards' lines with a manufacturer and its number, and with LCSC's number, in
+    the written lists for the first PCB fab that asks for each. A part that LCSC does not sell is
+    reported, and does not fail."""
+    for check, fields, least in (
+        ("bom.numbered", ("manufacturer", "part"), _NUMBERED),
+        ("bom.lcsc", ("part", "lcsc"), -math.inf),
+    ):
+        fab = next((f for f in design.fabs if {*fields} <= {field for _, field in f.bom}), None)
+        if fab is None:
+            continue
+        paths = [f"boards/{n}/order/{fab.name}_{n}_bom.csv" for n in _boards(design)]
+        try:
+            lines = [line for path in paths for line in _fields(outputs / path, fab, fields)]
+        except OutputError as error:
+            yield unreadable(check, _FILE, str(error))
+            continue
+        known = [line for line in lines if all(text not in ("", "any") for text in line.values())]
+        without = sorted({line["part"] or "a line" for line in lines if line not in known})
+        note = f"{len(known)} of {len(lines)} lines of the boards"
+        note += f"; not {', '.join(without[:4])}" if without else ""
+        share = 100 * len(known) / len(lines) if lines else 100.0
+        yield Measurement(check, "boards/*/order", share, least, math.inf, "%", note)
+
+
+def _fields(path: Path, fab: Fab, fields: tuple[str, ...]) -> list[dict[str, str]]:
+    """Some fields of each line of a list for a PCB fab."""
+    heading = {field: head for head, field in fab.bom}
+    try:
+        rows = table(path.read_text(encoding="utf-8"))
+        return [{field: row[heading[field]].strip() for field in fields} for row in rows]
+    except (OSError, ValueError, KeyError) as error:
+        raise OutputError(f"{path}: cannot be read: {error!r:.120}") from error
 
 
 def _bolts(rows: tuple[Row, ...], design: Design) -> Iterator[Measurement]:

@@ -26,9 +26,9 @@ SATURATION_A = 1e-14
 REVERSE_GAIN = 2.0
 OPEN_OHM = 1e12
 COUNTS, MOST_COUNTS = 255.0, 0.5
-LIGHTS = (0.0, 0.2, 0.4)
-"""On the photodetector that is read, as shares of full light; with more it settles sooner. The one
-before it was in full light or in the dark."""
+LIGHTS = (0.0, 0.4, 0.7, 0.9, 0.94)
+"""On the photodetector that is read, as shares of what saturates its pull-up; it settles last just
+before that, and soon beyond. The one before it was in full light or in the dark."""
 LINE_FACTOR, SENT_BITS = 2.0, 8
 """By which the firmware waits where it does not know the photodetector."""
 _REST_S = 10.0
@@ -90,7 +90,8 @@ class _Cell:
         """Voltages of line, collector and base after some time; shape `(3,)`."""
         channel, pf = self.channel, self.base_pf * 1e-12
         full_a, dark_a = channel.light_current_ua * 1e-6, channel.dark_current_na * 1e-9
-        lit_a = (dark_a + full_a * self.light) / (self.gain + 1)
+        saturated_a = (channel.supply_v - channel.saturation_v) / self.pull_up_ohm
+        lit_a = (dark_a + min(full_a, saturated_a) * self.light) / (self.gain + 1)
         line_f, own_f = channel.line_pf * 1e-12, channel.detector_pf * 1e-12
         at_line_ohm, at_collector_ohm = (
             (OPEN_OHM, self.pull_up_ohm) if self.own else (self.pull_up_ohm, OPEN_OHM)

@@ -74,7 +74,7 @@ FIELDS: dict[str, Automatic] = {
     "receiver.photodetector": Automatic("SML-H10TBT86", "pitch", names="photodetectors"),
     "receiver.multiplexer": Automatic("74HC4051PW", "cells and analog pins", names="multiplexers"),
     "receiver.load": Automatic("each", "room beside the multiplexer"),
-    "receiver.pull_up_ohm": Automatic(18000.0, "receiver.load and current of the LEDs"),
+    "receiver.pull_up_ohm": Automatic(20000.0, "receiver.load and current of the LEDs"),
     "receiver.array": Automatic("4x0603", "room beside the multiplexer", names="resistor_arrays"),
     "receiver.resistor": Automatic("0603", "room beside the multiplexer", names="resistors"),
     "receiver.capacitor": Automatic("100nF 0603", "multiplexer and supply", names="capacitors"),

@@ -25,7 +25,7 @@ from lumitip_fab.design import Point, Side
 MARGIN_MM = 0.003  # beyond clearances: curves become polygons, places are rounded,
 DETAIL_MM = 0.001  # and corners that move an outline by less than this are left out
 PAD_TO_VIA_MM = 0.1  # solder mask between a pad and a via
-_ARC = 24  # chords of a quarter circle
+_ARC = 16  # chords of a quarter circle
 
 
 @dataclass(frozen=True)
@@ -72,10 +72,15 @@ def via_room(placement: Placement, routing: Routing, via_mm: float, drill_mm: fl
 
 
 def opened(area: Geometry) -> Geometry:
-    """An area without the parts that are narrower than the pour's minimum width."""
+    """An area without the parts that are narrower than the pour's minimum width.
+
+    It stays within the area: the outline that is grown back with chords lies within the circle,
+    and so it is first shrunk as if the circle lay within the chords.
+    """
     half = MIN_WIDTH_MM / 2
-    grown = area.buffer(-half, quad_segs=_ARC).buffer(half, quad_segs=_ARC)
-    return shapely.intersection(grown, area).simplify(DETAIL_MM)
+    around = half / np.cos(np.pi / (4 * _ARC))
+    shrunk = area.buffer(-around, quad_segs=_ARC)
+    return shrunk.buffer(half, quad_segs=_ARC).simplify(DETAIL_MM)
 
 
 def _things(placement: Placement, routing: Routing) -> Iterator[Thing]:

@@ -1,6 +1,7 @@
 """Routing of a placed board by negotiated congestion, to tracks and vias."""
 
 import dataclasses
+import sys
 from collections import defaultdict
 from dataclasses import dataclass
 
@@ -58,9 +59,14 @@ class Pressure:
     """Factor of the price with each round."""
     history: float
     """More for each round that a node is fought for."""
+    via_mm: float = 0.7
+    """Cost of a via, as a length of track."""
+    rounds: int = sys.maxsize
+    """After which the try is given up."""
 
 
 TRIES = (
+    Pressure(1.35, 0.5, via_mm=3.0, rounds=40),
     Pressure(1.35, 0.5),
     Pressure(1.2, 0.5),
     Pressure(1.1, 0.5),
@@ -69,7 +75,8 @@ TRIES = (
 )
 """One after the other, until all nets have room. Whether a crowded board is routed at last hangs on
 chance: two boards of 124 and 128 cells on the area of the published 32 failed with the first of
-these, and were routed by the second and third."""
+these at cheap vias, and were routed by the second and third. Vias are dear at first: where there
+is room, a fifth of them goes."""
 FIRST_PRICE = 0.6  # of a net in the way, in the first round
 TOP_PRICE = 30.0
 HISTORY_REACH = 1  # nodes round it
@@ -86,8 +93,7 @@ DEAR = 1e5  # price that no net pays when another way is left
 PATIENCE = 60  # rounds without progress, before the router gives up
 POLISHES = 2
 
-NEGOTIATION = CostWeights(FIRST_PRICE, margin_mm=2.5, via_mm=0.7)
-COSMETIC = CostWeights(DEAR, via_mm=2.0, bend_mm=0.5, across=1.2)
+COSMETIC = CostWeights(DEAR, via_mm=4.0, bend_mm=0.5, across=1.2)
 
 
 def negotiate(state: State, nets: list[Wanted], pressure: Pressure) -> tuple[int, dict[str, Ints]]:
@@ -101,9 +107,9 @@ def negotiate(state: State, nets: list[Wanted], pressure: Pressure) -> tuple[int
     Returns:
         Number of rounds, and the nodes that are still fought for, by net: empty on success.
     """
-    weights = NEGOTIATION
+    weights = CostWeights(FIRST_PRICE, margin_mm=2.5, via_mm=pressure.via_mm)
     for net in nets:
-        state.routed[net.name] = connect(state, net, [], NEGOTIATION)
+        state.routed[net.name] = connect(state, net, [], weights)
         state.count(net, 1)
     fewest = turn = best = 0
     while True:
@@ -112,7 +118,7 @@ def negotiate(state: State, nets: list[Wanted], pressure: Pressure) -> tuple[int
         count = sum(f.size for f in fought.values())
         if turn == 1 or count < fewest:
             fewest, best = count, turn
-        if not fought or turn - best > PATIENCE:
+        if not fought or turn - best > PATIENCE or turn == pressure.rounds:
             return turn, fought
         state.turn += 1
         for nodes in fought.values():
