@@ -14,6 +14,8 @@ from lumitip.errors import LayoutError
 from lumitip.protocol import cobs
 from lumitip.protocol.bluetooth import Fault, Status, decode_legacy
 from lumitip.protocol.cobs import StreamDecoder
+from lumitip.protocol.messages import Kind, MessageDecoder, MessageError, decode_json, encode_json
+from lumitip.protocol.messages import encode as encode_message
 from lumitip.protocol.packet import Packet, PacketError, decode, encode
 from lumitip.recording import RecordingError
 
@@ -83,9 +85,27 @@ def read_legacy(data: bytes) -> None:
     assert decode_legacy(data, CELLS).tobytes() == data
 
 
+def streams() -> Sequence[bytes]:
+    """Messages of a server."""
+    event = encode_json(Kind.EVENT, {"kind": "lost", "detail": "gone"})
+    return [event + encode_message(Kind.PACKET, packet) + event for packet in packets()]
+
+
+def read_stream(data: bytes) -> None:
+    """Decode messages in two pieces; those found encode to the same bytes."""
+    decoder = MessageDecoder()
+    half = len(data) // 2
+    found = decoder.feed(data[:half]) + decoder.feed(data[half:])
+    assert data.startswith(b"".join(encode_message(*message) for message in found))
+    for kind, payload in found:
+        if kind == Kind.EVENT:
+            decode_json(payload)
+
+
 TARGETS = (
     Target("packet", 0.35, packets, read_packet, (PacketError,), BINARY, sealed),
-    Target("stream", 0.15, lines, read_line, (), BINARY),
+    Target("stream", 0.1, lines, read_line, (), BINARY),
+    Target("messages", 0.05, streams, read_stream, (MessageError,), BINARY),
     Target(
         "cobs",
         0.15,

@@ -53,15 +53,16 @@ ALLOWED_READOUT = {
     "recording": "core protocol",
     "links": "core protocol recording twin",
     "session": "core links protocol",
+    "sharing": "core links protocol session",
     "health": "core",
     "face": "core health links session",
     "robots": "core control",
     "view": "core face links processing recording session",
     "tasks": "control core estimation face links processing protocol session twin view",
-    "commands": "core face health links processing recording session tasks twin view",
+    "commands": "core face health links processing recording session sharing tasks twin view",
 }
 """The rooms of `lumitip`: `core` is its root, `face` what opens fingertips."""
-FACE = {"__init__", "async_fingertip", "cli", "fingertip", "group"}
+FACE = {"__init__", "async_fingertip", "cli", "fingertip", "group", "options"}
 
 
 def modules(package: str) -> dict[str, Path]:

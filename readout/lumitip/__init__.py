@@ -3,19 +3,20 @@
 Needs only numpy; links, recordings and views need extras.
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
-
-from lumitip.errors import LayoutError, LumitipError
-from lumitip.layout import Cell, Layout, Optics
+TYPE_CHECKING = False  # `typing` is slow to import
 
 if TYPE_CHECKING:
+    from typing import Any
+
     from lumitip.async_fingertip import AsyncFingertip
     from lumitip.calibration import Calibration
+    from lumitip.errors import LayoutError, LumitipError
     from lumitip.fingertip import Fingertip
     from lumitip.frame import Block, Frame
     from lumitip.group import FingertipGroup
+    from lumitip.layout import Cell, Layout, Optics
     from lumitip.links.base import LinkEvent
+    from lumitip.options import OpenOptions
     from lumitip.session.stats import Stats
 
 __all__ = [
@@ -30,6 +31,7 @@ __all__ = [
     "LayoutError",
     "LinkEvent",
     "LumitipError",
+    "OpenOptions",
     "Optics",
     "Stats",
 ]
@@ -38,16 +40,34 @@ _LAZY = {
     "AsyncFingertip": "async_fingertip",
     "Block": "frame",
     "Calibration": "calibration",
+    "Cell": "layout",
     "Fingertip": "fingertip",
     "FingertipGroup": "group",
     "Frame": "frame",
+    "Layout": "layout",
+    "LayoutError": "errors",
     "LinkEvent": "links.base",
+    "LumitipError": "errors",
+    "OpenOptions": "options",
+    "Optics": "layout",
     "Stats": "session.stats",
 }
 
+_MODULES = ("errors", "grid", "layout")
+"""Modules that are attributes without being imported."""
 
-def __getattr__(name: str) -> Any:
-    # Imported on first use: many programs need only the layout.
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__, *_MODULES})
+
+
+def __getattr__(name: str) -> "Any":
+    # Imported on first use: many programs need only the layout, and a command can handle Ctrl-C
+    # before the slow imports.
+    from importlib import import_module
+
+    if name in _MODULES:
+        return import_module(f"{__name__}.{name}")
     if name not in _LAZY:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(import_module(f"{__name__}.{_LAZY[name]}"), name)

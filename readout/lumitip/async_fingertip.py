@@ -8,14 +8,18 @@ import asyncio
 import contextlib
 import threading
 from collections.abc import AsyncIterator
+from functools import partial
+from pathlib import Path
 from types import TracebackType
-from typing import Any
+from typing import Unpack, overload
 
 from lumitip.arguments import count, seconds
 from lumitip.calibration import Calibration, Kind
 from lumitip.errors import EndOfRecording, FingertipClosed
 from lumitip.fingertip import Fingertip
 from lumitip.frame import Block, Frame, ended_early, too_late
+from lumitip.layout import Layout
+from lumitip.options import OpenOptions, check_options
 from lumitip.session.hub import Hub
 
 
@@ -27,18 +31,27 @@ class AsyncFingertip:
     `calibration`, `subscribe`.
     """
 
-    def __init__(self, url: str, options: dict[str, Any]) -> None:
+    def __init__(self, url: str, layout: Layout | str | Path | None, options: OpenOptions) -> None:
         self._url = url
+        self._layout = layout
         self._options = options
         self._open: Fingertip | None = None
         self._queue: _AsyncQueue | None = None
+        self._newest: _AsyncQueue | None = None
+        self._handed_out: Frame | None = None
         self._opening = threading.Lock()
         self._abandoned = False
 
     @classmethod
-    def open(cls, url: str, layout: Any = None, **options: Any) -> "AsyncFingertip":
+    def open(
+        cls,
+        url: str,
+        layout: Layout | str | Path | None = None,
+        **options: Unpack[OpenOptions],
+    ) -> "AsyncFingertip":
         """A fingertip for `async with`; arguments and errors of `Fingertip.open`."""
-        return cls(url, {"layout": layout, **options})
+        check_options(options)
+        return cls(url, layout, options)
 
     @property
     def fingertip(self) -> Fingertip:
@@ -51,13 +64,41 @@ class AsyncFingertip:
             raise FingertipClosed("not open: use `async with AsyncFingertip.open(url) as tip:`")
         return self._open
 
-    def latest(self) -> Frame | None:
+    @overload
+    def latest(self, max_age_s: float) -> Frame: ...
+
+    @overload
+    def latest(self, max_age_s: float | None = None) -> Frame | None: ...
+
+    def latest(self, max_age_s: float | None = None) -> Frame | None:
         """As `Fingertip.latest`; from any thread."""
-        return self.fingertip.latest()
+        frame = self._handed_out = self.fingertip.latest(max_age_s)
+        return frame
 
     async def read(self, timeout: float | None = 1.0) -> Frame:
         """As `Fingertip.read`; a cancelled call takes no frame."""
-        return await self._reading().next(timeout)
+        frame = await self._reading().next(timeout)
+        if frame is self.fingertip._hub.latest:
+            self._handed_out = frame
+        return frame
+
+    async def wait_latest(self, timeout_s: float | None = 1.0) -> Frame:
+        """As `Fingertip.wait_latest`; tasks that call it share the frames."""
+        timeout_s = seconds(timeout_s, "timeout_s")
+        if self._newest is None:
+            self._newest = _AsyncQueue(self.fingertip._hub, 1, counted=False)
+            newest = self.fingertip.latest()
+            if newest is not None and newest is not self._handed_out:
+                self._handed_out = newest
+                return newest
+        try:
+            async with asyncio.timeout(timeout_s):
+                while (frame := await self._newest.next(None)) is self._handed_out:
+                    pass
+        except TimeoutError:
+            raise self.fingertip._hub.silent(timeout_s) from None
+        self._handed_out = frame
+        return frame
 
     async def get_data(self, num_samples: int, timeout: float | None = 10.0) -> Block:
         """As `Fingertip.get_data`, errors included."""
@@ -73,9 +114,12 @@ class AsyncFingertip:
             raise ended_early(frames, number, end) from None
         return Block.of(frames)
 
-    async def tare(self, kind: Kind = "empty", **options: Any) -> Calibration:
+    async def tare(
+        self, kind: Kind = "empty", *, num_samples: int = 50, keep: bool = True
+    ) -> Calibration:
         """As `Fingertip.tare`, on another thread."""
-        return await asyncio.to_thread(self.fingertip.tare, kind, **options)
+        tare = partial(self.fingertip.tare, kind, num_samples=num_samples, keep=keep)
+        return await asyncio.to_thread(tare)
 
     async def __aiter__(self) -> AsyncIterator[Frame]:
         """Every frame from now to the end of a recording or `close`; each task gets all frames."""
@@ -89,6 +133,10 @@ class AsyncFingertip:
         finally:
             queue.end()
 
+    def __repr__(self) -> str:
+        state = "not open" if self._open is None else repr(self._open)
+        return f"<AsyncFingertip {self._url}: {state}>"
+
     async def __aenter__(self) -> "AsyncFingertip":
         try:
             await asyncio.to_thread(self._open_now)
@@ -100,11 +148,11 @@ class AsyncFingertip:
     async def __aexit__(
         self, _: type[BaseException] | None, __: BaseException | None, ___: TracebackType | None
     ) -> None:
-        tip, self._open, self._queue = self.fingertip, None, None
+        tip, self._open, self._queue, self._newest = self.fingertip, None, None, None
         await asyncio.to_thread(tip.close)
 
     def _open_now(self) -> None:
-        tip = Fingertip.open(self._url, **self._options)
+        tip = Fingertip.open(self._url, self._layout, **self._options)
         with self._opening:
             self._open = tip
             abandoned = self._abandoned
@@ -129,11 +177,11 @@ class AsyncFingertip:
 class _AsyncQueue:
     """A queue of the hub for coroutines."""
 
-    def __init__(self, hub: Hub, size: int) -> None:
+    def __init__(self, hub: Hub, size: int, counted: bool = True) -> None:
         self._hub = hub
         self._loop = asyncio.get_running_loop()
         self._came = asyncio.Event()
-        self._queue = hub.queue(size, self._wake)
+        self._queue = hub.queue(size, self._wake, counted)
 
     async def next(self, timeout_s: float | None) -> Frame:
         """As `Hub.next`."""

@@ -21,7 +21,7 @@ import numpy as np
 from lumitip import arguments
 from lumitip.errors import ArgumentError, CalibrationError, CalibrationMismatch
 from lumitip.frame import Values
-from lumitip.values import shown
+from lumitip.values import one_line, shown
 
 _LEAST_SPAN = 25.5  # a tenth of full light: the gain stays below 10
 _LEAST_SHARE = 0.4  # of the median cell: the spread of parts is smaller, an object's effect larger
@@ -55,6 +55,9 @@ class Calibration:
     """Light of each cell with nothing in the grasp, shape `(cells,)`, 255 is full light."""
     dark: Values | None = None
     """The same in the dark."""
+
+    def __repr__(self) -> str:
+        return one_line(self)
 
     def __post_init__(self) -> None:
         for name in ("empty", "dark"):

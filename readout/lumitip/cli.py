@@ -1,23 +1,46 @@
 """The command `lumitip`. `add` of each module in `lumitip.commands` adds its subcommands; heavy
-imports are in their functions.
+imports are in functions, so that Ctrl-C finds nothing half imported.
 """
 
-import argparse
-import logging
 import os
 import sys
 from collections.abc import Sequence
-from importlib import import_module
-from importlib.metadata import PackageNotFoundError, version
 
-from lumitip.errors import LumitipError
+TYPE_CHECKING = False  # `typing` is slow to import
 
-MODULES = ("devices", "record", "recordings", "simulation", "view")
+if TYPE_CHECKING:
+    from argparse import ArgumentParser
+
+MODULES = ("devices", "record", "recordings", "serve", "simulation", "view")
 REJECTED = 2
 
 
+def run() -> None:
+    """The whole process of a command."""
+    from lumitip.interrupt import leave_on_interrupt
+
+    leave_on_interrupt()
+    sys.exit(main())
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run a command; returns its exit code, 2 for input that cannot be used."""
+    """Run a command; returns its exit code: 2 for input that cannot be used, 130 after Ctrl-C."""
+    from lumitip.interrupt import INTERRUPTED, InterruptGuard
+
+    with InterruptGuard() as guard:
+        try:
+            return _run_command(arguments)
+        except BaseException:
+            if guard.interrupted:
+                return INTERRUPTED
+            raise
+
+
+def _run_command(arguments: Sequence[str] | None) -> int:
+    import logging
+
+    from lumitip.errors import LumitipError
+
     options = _parser().parse_args(arguments)
     level = logging.INFO if options.verbose else logging.WARNING
     logging.basicConfig(level=level, format="%(message)s")
@@ -27,8 +50,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except LumitipError as error:
         print(f"lumitip: {error}", file=sys.stderr)
         return REJECTED
-    except KeyboardInterrupt:
-        return 130
     except BrokenPipeError:
         # The reader closed the pipe; the interpreter must not flush to it at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -38,13 +59,18 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def installed_version() -> str:
     """The version of the installed package, for both commands."""
+    from importlib.metadata import PackageNotFoundError, version
+
     try:
         return f"lumitip {version('lumitip')}"
     except PackageNotFoundError:
         return "lumitip, not installed: run from its source folder"
 
 
-def _parser() -> argparse.ArgumentParser:
+def _parser() -> "ArgumentParser":
+    import argparse
+    from importlib import import_module
+
     parser = argparse.ArgumentParser(
         prog="lumitip", description="Read, record and display optical fingertips."
     )
@@ -59,4 +85,4 @@ def _parser() -> argparse.ArgumentParser:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    run()

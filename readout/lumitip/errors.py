@@ -21,6 +21,17 @@ class ArgumentError(LumitipError, ValueError):
     """An argument that cannot be used; the message says what is needed."""
 
 
+class UnknownOption(ArgumentError, TypeError):
+    """An option that a function does not have."""
+
+    def __init__(self, name: str, allowed: Sequence[str]) -> None:
+        super().__init__(f"there is no option {name!r}; allowed are {', '.join(allowed)}")
+        self.name = name
+        """The option."""
+        self.allowed = tuple(allowed)
+        """The options that exist."""
+
+
 class LayoutError(LumitipError, ValueError):
     """A `layout.json` that cannot be used; the message names field, value and limit."""
 
@@ -49,8 +60,20 @@ class LinkTimeout(LinkError, TimeoutError):
     """From `get_data`: a `Block` of the frames that arrived, `None` if there were none."""
 
 
+class StaleFrame(LinkTimeout):
+    """The newest frame is older than allowed."""
+
+
 class NotConnected(LinkError, ConnectionError):
     """The fingertip was closed, or its link has failed."""
+
+
+class DeviceFailed(NotConnected):
+    """The device of a server has failed for good."""
+
+
+class AccessRefused(LinkError):
+    """A server refuses this client; the message says why."""
 
 
 class FingertipClosed(NotConnected):
@@ -116,6 +139,10 @@ class CalibrationError(LumitipError, ValueError):
 
 class CalibrationMismatch(CalibrationError):
     """A calibration of another design or device."""
+
+
+class SharingError(LumitipError):
+    """A fingertip that cannot be shared as asked."""
 
 
 class ViewError(LumitipError):

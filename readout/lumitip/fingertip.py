@@ -2,7 +2,8 @@
 
     with Fingertip.open("ble://Lumitip", layout="outputs/layout.json") as tip:
         frame = tip.read(timeout=0.5)          # the next frame, in order
-        frame = tip.latest()                   # the newest, never blocks
+        frame = tip.wait_latest(0.5)           # the newest, for control loops
+        frame = tip.latest(max_age_s=0.1)      # the newest, never blocks
         block = tip.get_data(num_samples=55)   # (55, cells) with times
         for frame in tip.frames(): ...
         stop = tip.subscribe(print)
@@ -17,19 +18,20 @@ import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import TracebackType
-
-import numpy as np
+from typing import Never, overload
 
 from lumitip import arguments
-from lumitip.calibration import Calibration, Kind, checked_kind
-from lumitip.errors import CalibrationError, EndOfRecording, FingertipClosed, LayoutError, LinkError
-from lumitip.frame import Block, Frame, complement, ended_early, too_late
+from lumitip.calibration import Calibration, Kind
+from lumitip.errors import EndOfRecording, FingertipClosed, LayoutError, LinkError
+from lumitip.frame import Block, Frame, ended_early, too_late
 from lumitip.layout import Layout
 from lumitip.links import open_link
-from lumitip.links.base import Calibrated, LinkEvent
+from lumitip.links.base import LinkEvent
+from lumitip.options import check_options
 from lumitip.session.drift import Drift
 from lumitip.session.hub import Hub
 from lumitip.session.queues import FrameQueue
+from lumitip.session.references import References
 from lumitip.session.stats import Stats
 from lumitip.values import shown
 
@@ -44,9 +46,8 @@ class Fingertip:
         self._buffer = arguments.count(buffer, "buffer")
         self._reading = threading.Lock()
         self._queue: FrameQueue | None = None
-        self._calibration = Calibration(self.device_id, self.layout.design_hash)
-        if calibrated:
-            self.calibration = self._saved_calibration()
+        self._handed_out = threading.local()
+        self._references = References(hub, calibrated)
 
     @classmethod
     def open(
@@ -59,13 +60,15 @@ class Fingertip:
         any_design: bool = False,
         calibrated: bool = True,
         on_event: Callable[[LinkEvent], None] | None = None,
+        **unknown: Never,
     ) -> "Fingertip":
         """Connect to a fingertip. Several threads may do so at once.
 
         Args:
-            url: `ble://NAME-OR-ADDRESS`, `serial://PORT`, `replay://FILE` or `twin://SHAPE`.
+            url: `ble://NAME-OR-ADDRESS`, `serial://PORT`, `replay://FILE`, `twin://SHAPE` or
+                `tcp://HOST:PORT`, where `lumitip serve` shares a fingertip.
             layout: the `layout.json` that its firmware was built from, or its path; not needed
-                for a replay or a twin.
+                for a replay, a twin or a shared fingertip.
             timeout: of the connection (s); `None`: no limit.
             buffer: frames that may wait for each reader; the oldest are dropped, counted in
                 `stats.dropped["queue"]`. 4096 are 8 s at 500 Hz.
@@ -76,9 +79,10 @@ class Fingertip:
 
         Raises:
             LumitipError: `LinkTimeout`, `DeviceNotFound`, `AmbiguousDevice`, `WrongDesign`,
-                `MtuTooSmall`, `UrlError`, `LayoutError`, `MissingExtra`, `CalibrationError` or
-                `ArgumentError`.
+                `MtuTooSmall`, `UrlError`, `LayoutError`, `MissingExtra`, `CalibrationError`,
+                `ArgumentError` or, for other options, `UnknownOption`, a `TypeError` too.
         """
+        check_options(unknown)
         if isinstance(layout, str | Path):
             layout = Layout.load(layout)
         elif layout is not None and not isinstance(layout, Layout):
@@ -94,26 +98,53 @@ class Fingertip:
     def read(self, timeout: float | None = 1.0) -> Frame:
         """The next frame, in order, within `timeout` (s); `None` waits without limit.
 
-        The first call starts the buffer. Threads that call `read` share its frames.
+        The first call starts the buffer. Threads that call `read` share its frames. If frames
+        wait for more than half a second, a warning is logged once: use `wait_latest` where only
+        the newest matters.
 
         Raises:
             LinkTimeout: if no frame came in time; reading may go on, also while the link is cut.
             LinkError: after the last frame: why no more will come.
         """
-        return self._hub.next(self._read_queue(), timeout)
+        frame = self._hub.next(self._read_queue(), timeout)
+        if frame is self._hub.latest:
+            self._handed_out.frame = frame
+        return frame
 
-    def latest(self) -> Frame | None:
-        """The newest frame, `None` before the first. Never waits.
+    def wait_latest(self, timeout_s: float | None = 1.0) -> Frame:
+        """The newest frame, once it is newer than the last that this thread got from `read`,
+        `latest` or `wait_latest`; waits up to `timeout_s` (s), `None` without limit.
 
-        While the link is cut, the last frame before; see `frame.t` for its age.
+        For control loops: nothing queues, a slow loop skips frames and never gets an old one
+        behind them. Several threads may call it; each gets the newest.
 
         Raises:
+            LinkTimeout: if no newer frame came in time.
+            LinkError: why no more will come.
+        """
+        last = getattr(self._handed_out, "frame", None)
+        frame = self._handed_out.frame = self._hub.newer(last, timeout_s)
+        return frame
+
+    @overload
+    def latest(self, max_age_s: float) -> Frame: ...
+
+    @overload
+    def latest(self, max_age_s: float | None = None) -> Frame | None: ...
+
+    def latest(self, max_age_s: float | None = None) -> Frame | None:
+        """The newest frame, `None` before the first. Never waits.
+
+        Args:
+            max_age_s: largest age, from reading the cells to now (s); of a recording, from its
+                arrival. Without it the frame may be of any age, as while the link is cut.
+
+        Raises:
+            StaleFrame: if the frame is older than `max_age_s`, or there is none.
             LinkError: why no more will come, except at the end of a recording.
         """
-        over = self._hub.over
-        if over and not isinstance(over, EndOfRecording):
-            raise over.with_traceback(None)
-        return self._hub.latest
+        frame = self._handed_out.frame = self._hub.fresh(max_age_s)
+        return frame
 
     def get_data(self, num_samples: int, timeout: float | None = 10.0) -> Block:
         """The next `num_samples` frames as arrays, all within `timeout` (s).
@@ -207,14 +238,11 @@ class Fingertip:
         Raises:
             CalibrationMismatch: on setting the calibration of another device or design.
         """
-        return self._calibration
+        return self._references.calibration
 
     @calibration.setter
     def calibration(self, calibration: Calibration) -> None:
-        arguments.instance(calibration, Calibration, "calibration", CalibrationError)
-        calibration.check(self.device_id, self.layout.design_hash, len(self.layout))
-        self._calibration = calibration
-        self._hub.intake.correction = calibration.correction()
+        self._references.calibration = calibration
 
     def tare(
         self, kind: Kind = "empty", *, num_samples: int = 50, keep: bool = True
@@ -232,20 +260,7 @@ class Fingertip:
                 changes.
             LinkError: if a frame did not come.
         """
-        kind, number = checked_kind(kind), arguments.count(num_samples, "num_samples")
-        if keep:
-            self._needs_device()
-        queue = self._hub.queue(number)
-        try:
-            frames = [self._hub.next(queue, 10.0) for _ in range(number)]
-        finally:
-            self._hub.remove(queue)
-        light = np.stack([complement(f.raw, f.bits) for f in frames])
-        calibration = self._calibration.measured(kind, light)
-        if keep:
-            calibration.save()
-        self.calibration = calibration
-        return calibration
+        return self._references.measure(kind, num_samples, keep)
 
     def forget(self) -> None:
         """Delete the saved references of this device and design; those in use stay.
@@ -253,30 +268,26 @@ class Fingertip:
         Raises:
             CalibrationError: if they cannot be deleted, or this is a recording.
         """
-        self._needs_device()
-        self._calibration.forget()
+        self._references.forget()
 
     def close(self) -> None:
         """Disconnect; may be repeated."""
         self._hub.close()
-
-    def _needs_device(self) -> None:
-        if isinstance(self._hub.link, Calibrated):
-            raise CalibrationError(
-                f"this is a recording of {self.device_id}; calibrations are saved only for "
-                "devices. Open the device"
-            )
-
-    def _saved_calibration(self) -> Calibration:
-        if isinstance(self._hub.link, Calibrated):
-            return self._hub.link.calibration or self._calibration
-        return Calibration.kept(self.device_id, self.layout.design_hash, len(self.layout))
 
     def _read_queue(self) -> FrameQueue:
         with self._reading:
             if self._queue is None:
                 self._queue = self._hub.queue(self._buffer)
             return self._queue
+
+    def __repr__(self) -> str:
+        stats, over = self.stats, self._hub.over
+        state = str(over) if over else "connected" if self.connected else "reconnecting"
+        lost = "unknown" if stats.dropped is None else sum(stats.dropped.values())
+        return (
+            f"<Fingertip {self.device_id}: {state}; {len(self.layout)} cells, "
+            f"{stats.received} frames, {stats.rate_hz or 0.0:.1f} Hz, lost: {lost}>"
+        )
 
     def __enter__(self) -> "Fingertip":
         return self

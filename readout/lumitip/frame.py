@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from lumitip.errors import ArgumentError, EndOfRecording, LinkTimeout
 from lumitip.grid import Floats, Integers
-from lumitip.values import shown
+from lumitip.values import one_line, shown
 
 Codes = NDArray[np.uint8] | NDArray[np.uint16]
 """ADC codes of cells; high is dark."""
@@ -36,7 +36,9 @@ class Frame:
     """Arrival of the packet, `time.monotonic` (s)."""
     t: float
     """Time the cells were read, `time.monotonic` (s): the device clock fitted to the host clock,
-    late by the shortest delay of the link. Never decreases. `t_host` for a legacy device."""
+    late by the shortest delay of the link. Strictly increases, and frames are never closer than 0.8
+    times their distance by the device clock: after a stall at the start of a link `t` is later than
+    the fit, and even than `t_host`, until it has caught up. `t_host` for a legacy device."""
     t_wall: float
     """`t` as seconds since 1970 (UTC)."""
     raw: Codes
@@ -52,6 +54,9 @@ class Frame:
     device_id: str
     """Bluetooth address, USB serial number or port."""
 
+    def __repr__(self) -> str:
+        return one_line(self)
+
 
 @dataclass(frozen=True, eq=False, slots=True)
 class RecordedFrame:
@@ -64,6 +69,9 @@ class RecordedFrame:
     raw: Codes
     bits: int
     dropped_before: int | None
+
+    def __repr__(self) -> str:
+        return one_line(self)
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,6 +93,9 @@ class Block:
 
     def __len__(self) -> int:
         return len(self.seq)
+
+    def __repr__(self) -> str:
+        return one_line(self)
 
     @classmethod
     def of(cls, frames: Sequence[Frame]) -> "Block":

@@ -13,13 +13,14 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType, TracebackType
-from typing import Any
+from typing import Unpack
 
 from lumitip.arguments import seconds
 from lumitip.errors import ArgumentError, LinkTimeout
 from lumitip.fingertip import Fingertip
 from lumitip.frame import Frame
 from lumitip.layout import Layout
+from lumitip.options import OpenOptions, check_options
 from lumitip.values import shown
 
 
@@ -32,6 +33,9 @@ class Moment:
 
     def __getitem__(self, name: str) -> Frame:
         return self.frames[name]
+
+    def __repr__(self) -> str:
+        return f"<Moment {self.t:.6f} s of {', '.join(self.frames)}, spread {self.spread_s:.6f} s>"
 
     @property
     def t(self) -> float:
@@ -62,7 +66,7 @@ class FingertipGroup:
         cls,
         urls: Mapping[str, str],
         layout: Layout | str | Path | Mapping[str, Layout | str | Path] | None = None,
-        **options: Any,
+        **options: Unpack[OpenOptions],
     ) -> "FingertipGroup":
         """Connect to all fingertips, or to none. From any thread.
 
@@ -75,6 +79,7 @@ class FingertipGroup:
             ArgumentError: if there is no address, or a layout of another name.
             LumitipError: as `Fingertip.open`, from the first that fails; the others are closed.
         """
+        check_options(options)
         if not isinstance(urls, Mapping) or not urls:
             raise ArgumentError(
                 f"urls is {shown(urls)}; names and addresses of at least one fingertip are needed, "
@@ -132,6 +137,10 @@ class FingertipGroup:
             except LinkTimeout as error:
                 # Frames of the others wait for the next call.
                 raise LinkTimeout(f"{name}: {error}") from error
+
+    def __repr__(self) -> str:
+        tips = ", ".join(f"{name}: {tip!r}" for name, tip in self.tips.items())
+        return f"<FingertipGroup of {tips}>"
 
     def __enter__(self) -> "FingertipGroup":
         return self

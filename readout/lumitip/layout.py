@@ -100,6 +100,12 @@ class Layout:
     def __len__(self) -> int:
         return int(self.x_mm.size)
 
+    def __repr__(self) -> str:
+        return (
+            f"<Layout of {len(self)} cells, pitch {self.pitch_mm:g} mm, "
+            f"design {self.design_hash[:16]}>"
+        )
+
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Layout) and self.design_hash == other.design_hash
 

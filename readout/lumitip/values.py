@@ -1,7 +1,10 @@
 """A value of any kind: as one line of text, and as a number."""
 
 import math
-from typing import SupportsFloat
+from dataclasses import fields
+from typing import Any, SupportsFloat
+
+import numpy as np
 
 
 def shown(value: object, most: int = 40) -> str:
@@ -11,6 +14,21 @@ def shown(value: object, most: int = 40) -> str:
     except ValueError:  # an int with more digits than Python prints
         text = f"<{type(value).__name__}>"
     return " ".join(map(str.strip, text.splitlines()))[:most]
+
+
+def one_line(record: Any) -> str:
+    """The `repr` of a dataclass, with shape, type and range instead of the numbers of arrays."""
+    parts = (f"{field.name}={_brief(getattr(record, field.name))}" for field in fields(record))
+    return f"{type(record).__name__}({', '.join(parts)})"
+
+
+def _brief(value: object) -> str:
+    if not isinstance(value, np.ndarray):
+        return repr(value)
+    kind = f"{value.dtype}{list(value.shape)}"
+    if not value.size or value.dtype.kind not in "biuf":
+        return f"<{kind}>"
+    return f"<{kind} from {value.min():g} to {value.max():g}>"
 
 
 def as_float(value: object) -> float:

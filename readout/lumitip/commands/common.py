@@ -53,7 +53,7 @@ def positive_count(text: str) -> int:
 
 def add_fingertip(parser: argparse.ArgumentParser, several: bool = False) -> None:
     """Add the arguments that name one fingertip (`options.url`), or several (`options.urls`)."""
-    text = "ble://NAME-OR-ADDRESS, serial://PORT, replay://FILE or twin://SHAPE"
+    text = "ble://NAME-OR-ADDRESS, serial://PORT, tcp://HOST:PORT, replay://FILE or twin://SHAPE"
     if several:
         parser.add_argument("urls", metavar="URL", nargs="+", help=text)
     else:
@@ -79,15 +79,38 @@ def add_layout(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_server(parser: argparse.ArgumentParser, port: int, clients: str) -> None:
+    """Add the arguments of a server: `--host`, `--port` and `--token`."""
+    parser.add_argument(
+        "--host",
+        default="127.0.0.1",
+        metavar="ADDRESS",
+        help="address to listen on (default: 127.0.0.1); other computers need the token",
+    )
+    parser.add_argument(
+        "--port",
+        type=int,
+        default=port,
+        metavar="N",
+        help=f"port (default: {port}); 0 is any free one",
+    )
+    parser.add_argument(
+        "--token",
+        metavar="TEXT",
+        help=f"secret that {clients} must send (default: random, if needed)",
+    )
+
+
 def layout_path(options: argparse.Namespace, url: str) -> Path | None:
-    """The path of `--layout`, or of the layout built here; a replay has its own."""
+    """The path of `--layout`, or of the layout built here; replays and servers have their own."""
     path: Path | None = options.layout
-    if path is None and BUILT_LAYOUT.is_file() and not url.lower().startswith("replay:"):
+    own = url.lower().startswith(("replay:", "tcp:"))
+    if path is None and BUILT_LAYOUT.is_file() and not own:
         return BUILT_LAYOUT
     return path
 
 
-def open_fingertip(options: argparse.Namespace, **others: Any) -> "Fingertip":
+def open_fingertip(options: argparse.Namespace, *, calibrated: bool = True) -> "Fingertip":
     """Open the fingertip that the arguments name; errors as of `Fingertip.open`."""
     from lumitip.fingertip import Fingertip
 
@@ -96,5 +119,5 @@ def open_fingertip(options: argparse.Namespace, **others: Any) -> "Fingertip":
         layout_path(options, options.url),
         timeout=options.timeout,
         any_design=options.any_design,
-        **others,
+        calibrated=calibrated,
     )

@@ -3,11 +3,11 @@
 import argparse
 import math
 import signal
-import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from types import FrameType
 from typing import TYPE_CHECKING
 
 from lumitip.commands.common import (
@@ -18,6 +18,7 @@ from lumitip.commands.common import (
     positive_count,
     positive_seconds,
 )
+from lumitip.interrupt import INTERRUPTED
 
 if TYPE_CHECKING:
     from lumitip.fingertip import Fingertip
@@ -64,22 +65,23 @@ def run(options: argparse.Namespace) -> int:
         with writer:
             print(f"{tip.device_id}: recording to {options.file} (Ctrl-C ends it)", flush=True)
             _record(tip, writer, options, interrupted)
-        dropped = tip.stats.dropped or {}
-    lost = "".join(f", {n} lost ({cause})" for cause, n in dropped.items() if n)
+        dropped = tip.stats.dropped
+    counts = dropped.items() if dropped else ()
+    lost = "".join(f", {n} lost ({cause})" for cause, n in counts if n)
     print(f"{writer.frames} frames recorded{lost}")
-    return 0
+    return INTERRUPTED if interrupted.by == signal.SIGINT else 0
 
 
 def _record(
     tip: "Fingertip",
     writer: "Writer",
     options: argparse.Namespace,
-    interrupted: threading.Event,
+    interrupted: "_Interruption",
 ) -> None:
     from lumitip.errors import EndOfRecording, LinkTimeout
 
     until = time.monotonic() + options.seconds
-    while not interrupted.is_set() and writer.frames < options.frames:
+    while interrupted.by is None and writer.frames < options.frames:
         left = until - time.monotonic()
         if left <= 0.0:
             return
@@ -91,14 +93,24 @@ def _record(
             return
 
 
+class _Interruption:
+    """The first signal that ends the recording."""
+
+    by: int | None = None
+
+    def note(self, number: int, _: FrameType | None) -> None:
+        """Handle a signal."""
+        self.by = self.by or number
+
+
 @contextmanager
-def _interrupts() -> Iterator[threading.Event]:
-    """An event that SIGINT and SIGTERM set, so that neither interrupts the writing of a frame."""
-    event = threading.Event()
+def _interrupts() -> Iterator["_Interruption"]:
+    """Notes SIGINT and SIGTERM, so that neither interrupts the writing of a frame."""
+    interrupted = _Interruption()
     signals = (signal.SIGINT, signal.SIGTERM)
-    before = [signal.signal(number, lambda *_: event.set()) for number in signals]
+    before = [signal.signal(number, interrupted.note) for number in signals]
     try:
-        yield event
+        yield interrupted
     finally:
         for number, handler in zip(signals, before, strict=True):
             signal.signal(number, handler)

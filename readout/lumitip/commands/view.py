@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from lumitip.commands.common import Subparsers, add_fingertip, command, layout_path
+from lumitip.commands.common import Subparsers, add_fingertip, add_server, command, layout_path
 
 
 def add(subparsers: Subparsers) -> None:
@@ -11,24 +11,7 @@ def add(subparsers: Subparsers) -> None:
     text = "Display one or more fingertips live in a browser, served from this computer."
     parser = command(subparsers, "view", run, text)
     add_fingertip(parser, several=True)
-    parser.add_argument(
-        "--host",
-        default="127.0.0.1",
-        metavar="ADDRESS",
-        help="address to listen on (default: 127.0.0.1); other computers need the token",
-    )
-    parser.add_argument(
-        "--port",
-        type=int,
-        default=8642,
-        metavar="N",
-        help="port (default: 8642); 0 is any free one",
-    )
-    parser.add_argument(
-        "--token",
-        metavar="TEXT",
-        help="secret that browsers must send (default: random, if needed)",
-    )
+    add_server(parser, 8642, "browsers")
     parser.add_argument(
         "--folder",
         type=Path,
@@ -70,8 +53,11 @@ def run(options: argparse.Namespace) -> int:
         stack.callback(registry.close)
         for url in options.urls:
             layout = layout_path(options, url)
-            how = {"timeout": options.timeout, "any_design": options.any_design}
-            registry.add(Finger.open(url, layout, sinks, **how))
+            registry.add(
+                Finger.open(
+                    url, layout, sinks, timeout=options.timeout, any_design=options.any_design
+                )
+            )
         server = ViewServer(registry, options.host, options.port, options.token)
         print(f"live view at {server.url} (Ctrl-C ends it)", flush=True)
         if options.open:

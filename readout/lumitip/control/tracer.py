@@ -174,6 +174,9 @@ class Tracer:
         self._corners = 0
         self._ended = ""
 
+    def __repr__(self) -> str:
+        return f"<Tracer of {self.law!r}, {self._ended or self._last.state}>"
+
     def __call__(self, seen: Contact | Estimate, dt_s: float) -> Command:
         """The command for a frame that came `dt_s` after the one before (s).
 

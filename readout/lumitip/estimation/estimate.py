@@ -14,6 +14,7 @@ from lumitip.estimation.fit import Fit
 from lumitip.estimation.shapes import Shape
 from lumitip.grid import Floats
 from lumitip.processing.contact import Point
+from lumitip.values import one_line
 
 KINDS = ("edge", "cable", "corner")
 MISFIT_COUNTS = 16.0
@@ -64,6 +65,9 @@ class Estimate:
     """Direction from a corner's vertex into the sheet, in [−180, 180]."""
     parameters: tuple[str, ...] = ()
     """Names of the rows of `covariance`."""
+
+    def __repr__(self) -> str:
+        return one_line(self)
 
     @property
     def trusted(self) -> bool:

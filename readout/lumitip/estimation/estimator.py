@@ -116,6 +116,9 @@ class PoseEstimator:
         self._light = drive_of_values(steps, self.model) / twin.drive
         self._rise = np.gradient(self._light, axis=0)
 
+    def __repr__(self) -> str:
+        return f"<PoseEstimator of {self.layout!r}, tracking {self._tracking}>"
+
     def __call__(self, values: ArrayLike, kind: str | None = None) -> Estimate:
         """The pose in one frame.
 

@@ -20,6 +20,7 @@ from lumitip.grid import Floats
 from lumitip.layout import Layout
 from lumitip.processing.processor import batch_values
 from lumitip.twin import Model
+from lumitip.values import one_line
 
 _ROUNDS = 4
 _LEAST_LIGHT = 0.15  # of the empty grasp; darker cells show little of their gain
@@ -42,6 +43,9 @@ class Learned:
     """The same with the expected optics and gains of one."""
     frames: int
     """Number of frames used."""
+
+    def __repr__(self) -> str:
+        return one_line(self)
 
 
 def learn(

@@ -23,6 +23,7 @@ from lumitip.health.swaps import (
     swaps,
 )
 from lumitip.layout import Layout
+from lumitip.values import one_line
 
 Kind = Literal["dark", "saturated", "stuck", "noisy", "swapped", "astray"]
 
@@ -57,6 +58,9 @@ class Report:
     """Standard deviation from frame to frame of each cell, 255 is full light, shape `(cells,)`."""
     unseen: str | None
     """Why swapped cells could not be found, for the user; `None` if they could."""
+
+    def __repr__(self) -> str:
+        return one_line(self)
 
 
 def examine(light: Values, layout: Layout) -> Report:

@@ -12,6 +12,7 @@ SCHEMES = {
     "serial": "lumitip.links.serial",
     "replay": "lumitip.links.replay",
     "twin": "lumitip.links.twin",
+    "tcp": "lumitip.links.tcp",
 }
 
 
@@ -19,9 +20,9 @@ def open_link(url: str, layout: Layout | None = None, any_design: bool = False) 
     """The link of an address, not yet started.
 
     Args:
-        url: `ble://NAME-OR-ADDRESS`, `serial://PORT`, `replay://FILE` or `twin://SHAPE`; the
-            module of each link describes its options.
-        layout: the cells of the device; optional for a replay or a twin.
+        url: `ble://NAME-OR-ADDRESS`, `serial://PORT`, `replay://FILE`, `twin://SHAPE` or
+            `tcp://HOST:PORT`; the module of each link describes its options.
+        layout: the cells of the device; optional for a replay, a twin or a shared device.
         any_design: accept a device of another design.
 
     Raises:

@@ -6,6 +6,7 @@ The default is the only USB serial port. A device with a USB serial number is fo
 port after a disconnect. Needs pyserial: the extra `serial`.
 """
 
+import errno
 import importlib.util
 import re
 import time
@@ -129,5 +130,10 @@ def _port_error(port: str, error: Exception) -> LinkError:
         return DeviceNotFound(
             f"{port}: no permission. On Linux add this user to the group of the port, mostly "
             "dialout, and log in again"
+        )
+    if code == errno.EAGAIN:
+        return NotConnected(
+            f"{port}: another program has it open. End that program, or share the device: "
+            f"`lumitip serve serial://{port}`, and open the address that it prints in each"
         )
     return NotConnected(f"{port}: {error}")

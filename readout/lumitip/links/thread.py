@@ -5,7 +5,15 @@ import threading
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
 
-from lumitip.errors import LinkError, LumitipError, MissingExtra, MtuTooSmall, WrongDesign
+from lumitip.errors import (
+    AccessRefused,
+    DeviceFailed,
+    LinkError,
+    LumitipError,
+    MissingExtra,
+    MtuTooSmall,
+    WrongDesign,
+)
 from lumitip.links.base import Deliver, LinkEvent, Report
 
 _log = logging.getLogger(__name__)
@@ -20,7 +28,14 @@ class UnexpectedError(LinkError):
         self.__cause__ = problem
 
 
-FATAL = (WrongDesign, MtuTooSmall, MissingExtra, UnexpectedError)
+FATAL = (
+    WrongDesign,
+    MtuTooSmall,
+    MissingExtra,
+    UnexpectedError,
+    DeviceFailed,
+    AccessRefused,
+)
 """Errors that a new attempt cannot solve."""
 
 Session = Callable[[Callable[[str], None]], None]

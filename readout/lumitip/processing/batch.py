@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from lumitip.grid import Floats, Integers
 from lumitip.processing.fits import Points
+from lumitip.values import one_line
 
 Flags = NDArray[np.bool_]
 
@@ -64,6 +65,9 @@ class Batch:
     """Markers of each frame, padded with NaN, shape `(n, most, 2)` (mm)."""
     counts: Integers
     """Number of markers of each frame, shape `(n,)`."""
+
+    def __repr__(self) -> str:
+        return one_line(self)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -7,6 +7,7 @@ counter-clockwise from +x.
 from dataclasses import dataclass
 
 from lumitip.grid import Floats
+from lumitip.values import one_line
 
 Point = tuple[float, float]
 SHAPES = ("none", "edge", "corner", "cable", "covered")
@@ -74,3 +75,6 @@ class Contact:
     """`None` unless two rays that meet fit the markers."""
     cable: Cable | None = None
     """`None` unless there is light on both sides of the dark cells."""
+
+    def __repr__(self) -> str:
+        return one_line(self)

@@ -91,6 +91,9 @@ class Processor:
             float(layout.y_mm.max()),
         )
 
+    def __repr__(self) -> str:
+        return f"<Processor of {self.layout!r}, min_contrast {self.min_contrast:g}>"
+
     def __call__(self, values: ArrayLike) -> Contact:
         """Process one frame.
 

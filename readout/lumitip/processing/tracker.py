@@ -53,6 +53,9 @@ class Tracker:
             )
         self.reset()
 
+    def __repr__(self) -> str:
+        return f"<Tracker, hold {self._hold}, {self._processor!r}>"
+
     def reset(self) -> None:
         """Forget the frames so far."""
         self._last: Contact | None = None

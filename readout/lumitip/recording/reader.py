@@ -71,6 +71,9 @@ class Reader:
         with self._open() as stream:
             self.metadata = read_metadata(stream, str(path))
 
+    def __repr__(self) -> str:
+        return f"<Reader {self.path}: {self.metadata.device_id}, {self.layout!r}>"
+
     @property
     def layout(self) -> Layout:
         """The cells of the frames."""

@@ -130,6 +130,9 @@ class Writer:
         except OSError as error:
             raise self._failure(error) from error
 
+    def __repr__(self) -> str:
+        return f"<Writer {self.path}: {self.metadata.device_id}, {self.frames} frames>"
+
     def close(self) -> None:
         """Write the index and end the file; may be repeated.
 

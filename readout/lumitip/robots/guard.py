@@ -7,7 +7,7 @@ import numpy as np
 
 from lumitip.grid import Floats
 from lumitip.robots.mount import ArmError, Mount, rotation_of
-from lumitip.values import as_float, shown
+from lumitip.values import as_float, one_line, shown
 
 _FASTER = 1.5  # times the speed limit; measured speeds overshoot, but not by more
 _STILL_MM_S = 20.0
@@ -117,6 +117,9 @@ class ArmState:
     """Whether the control program runs on the controller."""
     protective: bool = False
     emergency: bool = False
+
+    def __repr__(self) -> str:
+        return one_line(self)
 
 
 class Guard:

@@ -93,6 +93,9 @@ class URArm:
         """Reason of the stop, a key of `WHY`; empty while the arm takes commands."""
         return self._stop.reason if self._stop else ""
 
+    def __repr__(self) -> str:
+        return f"<URArm {self.host}: {self.stopped or 'takes commands'}, {self.limits!r}>"
+
     def move(self, command: Command, seen_s: float) -> None:
         """Set the command; it holds until the next one, or until the frame is too old. Returns at
         once; a command to stop waits until the arm stands.

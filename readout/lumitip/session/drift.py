@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lumitip.frame import Codes, Values, complement
+from lumitip.values import one_line
 
 WARM_UP_S = 300.0
 _SMOOTH_S = 0.5
@@ -25,6 +26,9 @@ class Drift:
     """Change of light of each cell, 255 is full light, not calibrated, shape `(cells,)`."""
     warm: bool
     """Whether five minutes have passed since power-on, or for a legacy device since the start."""
+
+    def __repr__(self) -> str:
+        return one_line(self)
 
     def __str__(self) -> str:
         least, most = float(self.change.min()), float(self.change.max())

@@ -7,8 +7,8 @@ import time
 from collections.abc import Callable
 
 from lumitip.arguments import function, seconds
-from lumitip.errors import EndOfRecording, FingertipClosed, LinkError, LinkTimeout
-from lumitip.frame import Frame
+from lumitip.errors import EndOfRecording, FingertipClosed, LinkError, LinkTimeout, StaleFrame
+from lumitip.frame import Frame, RecordedFrame
 from lumitip.links.base import Arrival, Link, LinkEvent, Prepares, Report
 from lumitip.session.drift import Drift, DriftWatch
 from lumitip.session.intake import Intake, Source
@@ -39,7 +39,8 @@ class Hub:
         self._lock = threading.Lock()
         self._changed = threading.Condition(self._lock)
         self._queues: tuple[FrameQueue, ...] = ()
-        self._latest: Frame | None = None
+        self._newest: tuple[Frame, float] | None = None  # and when it was read, by our clock (s)
+        self._wanted = False  # whether `newer` waits
         self._connected = False
         self._was_connected = False
         self._over: LinkError | None = None
@@ -55,13 +56,15 @@ class Hub:
         timeout_s = seconds(timeout_s)
         self.link.start(self._deliver, self._report)
         until = math.inf if timeout_s is None else time.monotonic() + timeout_s
-        with self._changed:
-            while not (self._was_connected or self._over) and time.monotonic() < until:
-                self._changed.wait(min(until - time.monotonic(), threading.TIMEOUT_MAX))
-            failed = None if self._was_connected else self._over or self._too_late(timeout_s or 0)
-        if failed:
-            self.close(failed)
-            raise failed
+        try:
+            with self._changed:
+                while not (self._was_connected or self._over) and time.monotonic() < until:
+                    self._changed.wait(min(until - time.monotonic(), threading.TIMEOUT_MAX))
+                if not self._was_connected:
+                    raise self._over or self._too_late(timeout_s or 0)
+        except BaseException as failed:  # Ctrl-C too
+            self.close(failed if isinstance(failed, LinkError) else None)
+            raise
 
     def close(self, reason: LinkError | None = None) -> None:
         """Stop the link; readers get the queued frames, then the reason. May be repeated."""
@@ -81,7 +84,7 @@ class Hub:
     @property
     def latest(self) -> Frame | None:
         """The newest frame."""
-        return self._latest
+        return self._newest[0] if self._newest else None
 
     @property
     def stats(self) -> Stats:
@@ -93,9 +96,11 @@ class Hub:
         """Drift of the cells."""
         return self._drift.drift
 
-    def queue(self, size: int, notify: Callable[[], None] | None = None) -> FrameQueue:
-        """A queue that gets every frame from now until `remove`."""
-        queue = FrameQueue(size, notify)
+    def queue(
+        self, size: int, notify: Callable[[], None] | None = None, counted: bool = True
+    ) -> FrameQueue:
+        """A queue that gets every frame from now until `remove`; arguments of `FrameQueue`."""
+        queue = FrameQueue(size, notify, counted)
         with self._lock:
             self._queues += (queue,)
             self._changed.notify_all()
@@ -123,6 +128,49 @@ class Hub:
         if frame is None:
             raise self.silent(timeout_s)
         return frame
+
+    def newer(self, than: Frame | None, timeout_s: float | None) -> Frame:
+        """The newest frame, once it is another one than `than`.
+
+        Raises:
+            LinkTimeout: if no other frame came in time.
+            LinkError: why no more will come.
+            ArgumentError: if the time is wrong.
+        """
+        timeout_s = seconds(timeout_s, "timeout_s")
+        until = math.inf if timeout_s is None else time.monotonic() + timeout_s
+        with self._changed:
+            while (frame := self.fresh()) is None or frame is than:
+                if self._over:
+                    raise self._over.with_traceback(None)
+                left_s = until - time.monotonic()
+                if left_s <= 0.0:
+                    break
+                if not self._wanted:
+                    self._wanted = True
+                    self._changed.notify_all()
+                self._changed.wait(min(left_s, threading.TIMEOUT_MAX))
+            else:
+                return frame
+        raise self.silent(timeout_s)
+
+    def fresh(self, max_age_s: float | None = None) -> Frame | None:
+        """The newest frame, at most `max_age_s` old (s); `None`: of any age, and before the first.
+
+        Raises:
+            StaleFrame: if it is older, or there is none.
+            LinkError: why no more will come, except at the end of a recording.
+            ArgumentError: if the age is wrong.
+        """
+        max_age_s, newest = seconds(max_age_s, "max_age_s"), self._newest
+        if self._over and not isinstance(self._over, EndOfRecording):
+            raise self._over.with_traceback(None)
+        if max_age_s is not None:
+            age_s = time.monotonic() - newest[1] if newest else math.inf
+            if age_s > max_age_s:
+                found = f"the newest frame is {age_s:.3f} s old" if newest else "no frame came yet"
+                raise StaleFrame(f"{found}, max_age_s is {max_age_s:g}: {self._why_silent()}")
+        return newest[0] if newest else None
 
     def silent(self, timeout_s: float | None) -> LinkTimeout:
         """The error when no frame came in time."""
@@ -155,16 +203,22 @@ class Hub:
             return
         if arrival.patient:
             self._wait_for_reader()
-        last = self._latest = frames[-1]
+        last = frames[-1]
+        recorded = isinstance(arrival.content, RecordedFrame)
+        with self._changed:
+            self._newest = last, arrival.t_host if recorded else min(last.t, last.t_host)
+            self._wanted = False
+            self._changed.notify_all()
         for queue in self._queues:
-            if lost := queue.put(frames, wait=arrival.patient):
+            lost = queue.put(frames, wait=arrival.patient)
+            if lost and queue.counted:
                 self._counter.lost("queue", lost)
         if self._drift.add(last.raw, last.bits, last.t, last.t_device):
             self._report(LinkEvent("warm", f"{self.link.device_id}: {self._drift.drift}"))
 
     def _wait_for_reader(self) -> None:
         with self._changed:
-            while not self._queues and not self._over:
+            while not (self._queues or self._wanted or self._over):
                 self._changed.wait()
 
     def _report(self, event: LinkEvent) -> None:

@@ -13,7 +13,7 @@ from lumitip.layout import Layout
 from lumitip.links.base import Arrival, Fault, LinkEvent, Report
 from lumitip.protocol.packet import ForeignPacketError, Packet, design_code
 from lumitip.session.stats import Counter
-from lumitip.session.timing import DeviceClock, Timeline
+from lumitip.session.timing import DeviceClock, SteadyTime, Timeline
 
 
 @dataclass(frozen=True)
@@ -38,9 +38,10 @@ class Intake:
         self._counter = counter
         self._report = report
         self._timeline = Timeline()
+        self._steady = SteadyTime()
         self._fault_since: Fault | None = None
         self._legacy_frames = 0
-        self._last_t = -np.inf
+        self._first_recorded = True
         # Measured once: setting the clock of the computer must not affect a recording.
         self._wall_s = time.time() - time.monotonic()
 
@@ -76,6 +77,7 @@ class Intake:
         self._counter.add("repeated", place.repeated)
         if place.restarted:
             self.clock = DeviceClock()
+            self._steady.restarted()
             self._counter.add("restarts")
             self._report(LinkEvent("restarted", f"{self._source.device_id()} has restarted"))
         if place.repeated == packet.frames:
@@ -88,7 +90,7 @@ class Intake:
         times_us = place.time_us + packet.period_us * np.arange(len(raw))
         t_device = times_us * 1e-6
         self.clock.add(float(t_device[-1]), t_host)
-        t = self._ascending([min(self.clock.host(float(at)), t_host) for at in t_device])
+        t = [self._steady.next(min(self.clock.host(at), t_host), at) for at in t_device.tolist()]
         values = self._values(raw, packet.bits)
         device_id = self._source.device_id()
         return [
@@ -111,12 +113,13 @@ class Intake:
         seq = self._legacy_frames
         self._legacy_frames += 1
         raw = frozen(raw)
+        t = self._steady.next(t_host, None)
         return Frame(
             seq,
             None,
             t_host,
-            t_host,
-            t_host + self._wall_s,
+            t,
+            t + self._wall_s,
             raw,
             8,
             self._values(raw, 8),
@@ -141,8 +144,8 @@ class Intake:
 
     def _recorded_wall_s(self, frame: RecordedFrame) -> float:
         # Offset between the wall clock and the monotonic clock of the recording computer.
-        if self._last_t == -np.inf:
-            self._wall_s, self._last_t = frame.t_wall - frame.t_host, frame.t_host
+        if self._first_recorded:
+            self._wall_s, self._first_recorded = frame.t_wall - frame.t_host, False
         return self._wall_s
 
     def _values(self, raw: Codes, bits: int) -> Values:
@@ -151,11 +154,6 @@ class Intake:
         if correction is not None:
             values = correction.apply(values)
         return frozen(values)
-
-    def _ascending(self, times: list[float]) -> list[float]:
-        for i, t in enumerate(times):
-            self._last_t = times[i] = max(t, float(self._last_t))
-        return times
 
     def _check_foreign(self, packet: ForeignPacketError) -> None:
         layout = self._source.layout

@@ -1,5 +1,6 @@
 """`FrameQueue`: a bounded queue between the thread of a link and a reader."""
 
+import logging
 import threading
 import time
 from collections import deque
@@ -8,8 +9,12 @@ from collections.abc import Callable, Sequence
 from lumitip.errors import ArgumentError, LinkError
 from lumitip.frame import Frame
 
+_log = logging.getLogger(__name__)
+
 PATIENCE_S = 5.0
 """Time that a recording waits for an idle reader (s)."""
+BEHIND_S = 0.5
+"""Time that a frame may wait in a queue without a warning (s)."""
 
 
 class FrameQueue:
@@ -18,16 +23,21 @@ class FrameQueue:
     Args:
         size: largest number of frames.
         notify: called on the link's thread after each change.
+        counted: whether dropped frames count as lost; not if only the newest is wanted.
     """
 
-    def __init__(self, size: int, notify: Callable[[], None] | None = None) -> None:
+    def __init__(
+        self, size: int, notify: Callable[[], None] | None = None, counted: bool = True
+    ) -> None:
         if size < 1:
             raise ArgumentError(f"buffer is {size}; at least 1 frame is needed")
-        self._frames: deque[Frame] = deque(maxlen=size)
+        self.counted = counted
+        self._frames: deque[tuple[Frame, float]] = deque(maxlen=size)
         self._changed = threading.Condition()
         self._notify = notify
         self._closed: LinkError | None = None
         self._waits = self._idle = False
+        self._warns = counted
 
     def put(self, frames: Sequence[Frame], wait: bool = False) -> int:
         """Add frames; returns the number of frames dropped.
@@ -40,8 +50,9 @@ class FrameQueue:
             while wait and self._frames and self._full(len(frames)) and not self._gone():
                 self._waits = True
                 self._idle = not self._changed.wait(PATIENCE_S)
-            before = len(self._frames)
-            self._frames.extend(frames)
+            before, now_s = len(self._frames), time.monotonic()
+            self._frames.extend((frame, now_s) for frame in frames)
+            self._warns = self._warns and not wait  # a recording waits for its reader
             lost = before + len(frames) - len(self._frames)
             self._changed.notify_all()
         if self._notify:
@@ -81,7 +92,19 @@ class FrameQueue:
             if self._waits:
                 self._waits = False
                 self._changed.notify_all()
-            return self._frames.popleft()
+            frame, since_s = self._frames.popleft()
+            waiting, warns = len(self._frames), self._warns
+            behind_s = time.monotonic() - since_s
+            self._warns = warns and behind_s <= BEHIND_S
+        if warns and not self._warns:
+            _log.warning(
+                "%s: this reader is %.1f s behind, %d frames wait in its queue. Use wait_latest() "
+                "if only the newest frame matters; to get every frame, read faster",
+                frame.device_id,
+                behind_s,
+                waiting,
+            )
+        return frame
 
     def _gone(self) -> bool:
         return self._idle or self._closed is not None

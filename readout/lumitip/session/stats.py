@@ -2,9 +2,8 @@
 
 import threading
 from collections import deque
-from collections.abc import Mapping
-from dataclasses import dataclass
-from types import MappingProxyType
+from collections.abc import Iterator, Mapping
+from dataclasses import astuple, dataclass
 
 import numpy as np
 
@@ -14,13 +13,45 @@ CAUSES = ("link", "queue", "crc", "length")
 _RECENT = 512  # frames for rate and jitter
 
 
+@dataclass(frozen=True, eq=False, repr=False)
+class Dropped(Mapping[str, int]):
+    """Frames lost, by cause. Immutable; equal to a `dict` of the same counts."""
+
+    link: int = 0
+    """On the way."""
+    queue: int = 0
+    """Not read in time."""
+    crc: int = 0
+    """Damaged."""
+    length: int = 0
+    """Truncated."""
+
+    def __getitem__(self, cause: str) -> int:
+        if cause not in CAUSES:
+            raise KeyError(cause)
+        number: int = getattr(self, cause)
+        return number
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(CAUSES)
+
+    def __len__(self) -> int:
+        return len(CAUSES)
+
+    def __hash__(self) -> int:
+        return hash(astuple(self))
+
+    def __repr__(self) -> str:
+        return repr(dict(self))
+
+
 @dataclass(frozen=True)
 class Stats:
-    """Statistics since the link was opened. Immutable."""
+    """Statistics since the link was opened. Immutable; can be compared, copied and pickled."""
 
     received: int
     """New frames received."""
-    dropped: Mapping[str, int] | None
+    dropped: Dropped | None
     """Frames lost, by cause: `"link"` on the way, `"crc"` damaged, `"length"` truncated, `"queue"`
     not read in time. `None` for a legacy device: unknown."""
     overflowed: int
@@ -80,7 +111,7 @@ class Counter:
             span_s = float(recent[-1, 0] - recent[0, 0]) if len(recent) > 1 else 0.0
             return Stats(
                 **self._count,
-                dropped=None if self._legacy else MappingProxyType(dict(self._dropped)),
+                dropped=None if self._legacy else Dropped(**self._dropped),
                 overflowed=self._dropped["queue"],
                 unreadable=self._unreadable,
                 rate_hz=(len(recent) - 1) / span_s if span_s > 0 else None,

@@ -12,6 +12,8 @@ _BUCKET_S = 1.0  # only the shortest delay of each second is used
 _WINDOW = 120  # buckets: long enough for a stable rate, short enough to follow a warming crystal
 _LEAST_SPAN_S = 10.0  # before it the skew is taken as 0: 100 ppm make 1 ms
 _MOST_SKEW = 2e-3  # far above that of crystals
+_LEAST_RATE = 0.8
+_LEAST_STEP_S = 1e-6  # seconds since 1970 as a float resolve no less
 
 
 class DeviceClock:
@@ -55,6 +57,37 @@ class DeviceClock:
             skew = _slope_below(points)
         self._skew = min(max(skew, -_MOST_SKEW), _MOST_SKEW)
         self._offset = min(y - self._skew * x for x, y in points)
+
+
+class SteadyTime:
+    """Makes fitted times increase, at 0.8 times the pace of the device at least. Not thread-safe.
+
+    The fit steps back when a frame arrives with a shorter delay than all before, as after a link
+    has stalled; the times approach it gradually, and are later than it meanwhile.
+    """
+
+    def __init__(self) -> None:
+        self._last: float | None = None
+        self._t_device: float | None = None
+
+    def restarted(self) -> None:
+        """Note that the device clock has begun anew."""
+        self._t_device = None
+
+    def next(self, t: float, t_device: float | None) -> float:
+        """The time of the next frame (s).
+
+        Args:
+            t: its fitted time (s).
+            t_device: device clock (s), unwrapped; `None` without one: times increase at least.
+        """
+        if self._last is not None:
+            step_s = 0.0
+            if t_device is not None and self._t_device is not None:
+                step_s = t_device - self._t_device
+            t = max(t, self._last + max(_LEAST_RATE * step_s, _LEAST_STEP_S))
+        self._last, self._t_device = t, t_device
+        return t
 
 
 def _slope_below(points: list[Point]) -> float:

@@ -1,12 +1,13 @@
 """Benchmark of all tasks with all laws, on several cores."""
 
 import math
-import multiprocessing
 import os
+import signal
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
+from multiprocessing.context import SpawnContext, SpawnProcess
 
 from lumitip.layout import Layout
 from lumitip.tasks.task import Settings, Task
@@ -27,6 +28,25 @@ from lumitip.tasks.trial import SPEEDS_MM_S as TUNED_AT_MM_S
 _THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 
 
+class _Worker(SpawnProcess):
+    """A process that ignores Ctrl-C from its very start: its parent ends it."""
+
+    def start(self) -> None:
+        """Start with SIGINT blocked, which a new process inherits."""
+        if not hasattr(signal, "pthread_sigmask"):  # on Windows
+            super().start()
+            return
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+        try:
+            super().start()
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+class _WorkerContext(SpawnContext):
+    Process = _Worker
+
+
 @contextmanager
 def workers(most: int) -> Iterator[ProcessPoolExecutor]:
     """A pool of new processes, one for each core but at most `most`; unfinished work is cancelled.
@@ -34,7 +54,7 @@ def workers(most: int) -> Iterator[ProcessPoolExecutor]:
     Linear algebra uses a single thread in each, since the processes already use all cores. A
     program that calls this needs `if __name__ == "__main__"`.
     """
-    context = multiprocessing.get_context("spawn")
+    context = _WorkerContext()
     with _single_threaded():
         pool = ProcessPoolExecutor(min(most, os.cpu_count() or 1), mp_context=context)
         try:

@@ -6,6 +6,7 @@ import numpy as np
 
 from lumitip import arguments
 from lumitip.grid import Floats
+from lumitip.values import one_line
 
 STEP_MM = 0.25
 LONGEST_MM = 1e6
@@ -26,6 +27,9 @@ class Curve:
     """Direction (rad)."""
     bend_per_mm: Floats
     """Curvature, positive to the left (1/mm)."""
+
+    def __repr__(self) -> str:
+        return one_line(self)
 
     @classmethod
     def random(cls, length_mm: float, seed: int, straight_end_mm: float = 0.0) -> "Curve":

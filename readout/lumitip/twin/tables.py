@@ -14,6 +14,7 @@ import numpy as np
 from lumitip.grid import Floats, Integers
 from lumitip.twin.pairs import Pairs, tally
 from lumitip.twin.scene import PIXEL_MM, Numbers, Singles
+from lumitip.values import one_line
 
 STEP_MM = 0.05
 STEP_DEG = 3.0
@@ -31,6 +32,9 @@ class LineTable:
     centre from the line along its left normal; a half-plane covers the right of its line."""
     reach_mm: float
     """Distance from the line beyond which the share is constant (mm)."""
+
+    def __repr__(self) -> str:
+        return one_line(self)
 
     @property
     def angles_deg(self) -> Floats:

@@ -139,9 +139,11 @@ class Finger:
         url: str,
         layout: Layout | Path | None = None,
         sinks: tuple[Sink, ...] = (),
-        **options: Any,
+        *,
+        timeout: float | None = 10.0,
+        any_design: bool = False,
     ) -> "Finger":
-        """Connect to a fingertip; `options` are those of `Fingertip.open`.
+        """Connect to a fingertip; arguments as of `Fingertip.open`.
 
         Raises:
             LumitipError: as `Fingertip.open`.
@@ -151,7 +153,7 @@ class Finger:
 
             return cls.play(url, Player.of_url(url), sinks)
         events = _Later()
-        tip = Fingertip.open(url, layout, on_event=events, **options)
+        tip = Fingertip.open(url, layout, timeout=timeout, any_design=any_design, on_event=events)
         return events.to(cls(url, tip, sinks))
 
     @classmethod

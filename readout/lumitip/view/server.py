@@ -5,9 +5,7 @@ out: the host name must be this computer's (against DNS rebinding), changes and 
 origin of our own page, and other computers need the token.
 """
 
-import hmac
 import ipaddress
-import secrets
 import socket
 import threading
 from http.cookies import CookieError, SimpleCookie
@@ -20,6 +18,7 @@ from starlette.responses import PlainTextResponse, RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from lumitip.errors import ViewError
+from lumitip.listening import is_loopback, is_token, listen, public_host, server_token
 from lumitip.view.app import make_app
 from lumitip.view.registry import FingerRegistry
 
@@ -57,15 +56,12 @@ class ViewServer:
         port: int = DEFAULT_PORT,
         token: str | None = None,
     ) -> None:
-        if token and not (token.isascii() and token.isprintable()):
-            raise ViewError(f"the token is {token!r:.80}; printable ASCII characters are needed")
-        loopback = _is_loopback(host)
         self.registry = registry
-        self.token = token or (None if loopback else secrets.token_urlsafe(24))
-        self._socket = _listen(host, port)
+        self.token = server_token(token, host, ViewError)
+        self._socket = listen(host, port, ViewError)
         self.port: int = self._socket.getsockname()[1]
         self._host = host
-        guard = Guard(make_app(registry), loopback, self.token, self.port)
+        guard = Guard(make_app(registry), is_loopback(host), self.token, self.port)
         self._server = uvicorn.Server(
             uvicorn.Config(
                 guard,
@@ -80,11 +76,7 @@ class ViewServer:
     @property
     def url(self) -> str:
         """Address for the browser."""
-        host = {"0.0.0.0": socket.gethostname(), "::": socket.gethostname()}.get(
-            self._host, self._host
-        )
-        host = f"[{host}]" if ":" in host else host
-        return f"http://{host}:{self.port}/" + (
+        return f"http://{public_host(self._host, self.port)}/" + (
             f"?{urlencode({'token': self.token})}" if self.token else ""
         )
 
@@ -106,37 +98,6 @@ class ViewServer:
     ) -> None:
         self.stop()
         self._thread.join()
-
-
-def _is_loopback(host: str) -> bool:
-    if host == "localhost":
-        return True
-    try:
-        return ipaddress.ip_address(host).is_loopback
-    except ValueError:
-        return False
-
-
-def _listen(host: str, port: int) -> socket.socket:
-    if not 0 <= port < 1 << 16:
-        raise ViewError(f"port is {port}; allowed are 0 to 65535, 0 is any free one")
-    listening = None
-    try:
-        family, kind, protocol, _, address = socket.getaddrinfo(
-            host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
-        )[0]
-        listening = socket.socket(family, kind, protocol)
-        listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        listening.bind(address)
-        listening.listen(128)
-    except OSError as error:
-        if listening:
-            listening.close()
-        raise ViewError(
-            f"{host}:{port} cannot be used: {error.strerror}. Choose another --host or --port; "
-            "port 0 is any free one"
-        ) from error
-    return listening
 
 
 class Guard:
@@ -208,7 +169,7 @@ class Guard:
         )
 
     def _is_token(self, text: str) -> bool:
-        return hmac.compare_digest(text.encode(), (self._token or "").encode())
+        return is_token(text, self._token or "")
 
 
 def _cookies(headers: Headers) -> dict[str, str]:

@@ -1,0 +1,40 @@
+"""`lumitip serve`: one fingertip for several programs."""
+
+import argparse
+
+from lumitip.commands.common import Subparsers, add_fingertip, add_server, command, layout_path
+
+
+def add(subparsers: Subparsers) -> None:
+    """Add the subcommand."""
+    parser = command(
+        subparsers,
+        "serve",
+        run,
+        "Share a fingertip with several programs: each opens the tcp:// address that is printed.",
+        "Frames of a client that is too slow are dropped, the oldest first, and counted.",
+    )
+    add_fingertip(parser)
+    add_server(parser, 8643, "clients")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Serve until Ctrl-C, or until the device fails."""
+    from lumitip.sharing import FingertipServer
+
+    with FingertipServer(
+        options.url,
+        layout_path(options, options.url),
+        host=options.host,
+        port=options.port,
+        token=options.token,
+        timeout=options.timeout,
+        any_design=options.any_design,
+    ) as server:
+        print(
+            f"{server.device_id}: {len(server.layout)} cells, shared at {server.address} "
+            "(Ctrl-C ends it)",
+            flush=True,
+        )
+        server.wait()
+    return 0

@@ -1,0 +1,72 @@
+"""Ctrl-C (SIGINT) in a command: it ends without a traceback, with exit status 130.
+
+Imports little: until `leave_on_interrupt` is called, Python answers Ctrl-C with a traceback.
+"""
+
+import os
+import signal
+import sys
+
+TYPE_CHECKING = False  # `typing` is slow to import
+
+if TYPE_CHECKING:
+    from types import FrameType, TracebackType
+    from typing import Any
+
+INTERRUPTED = 128 + signal.SIGINT
+"""Exit status of a command that Ctrl-C ended."""
+_AGAIN_S = 0.05
+
+
+def leave_on_interrupt() -> None:
+    """Let SIGINT end the process at once. For the time without anything to clean up."""
+    signal.signal(signal.SIGINT, _leave)
+
+
+def _leave(_: int = 0, __: "FrameType | None" = None) -> None:
+    os._exit(INTERRUPTED)
+
+
+class InterruptGuard:
+    """Raises `KeyboardInterrupt` on the first SIGINT, and ends the process on the second.
+
+    A context manager for the main thread; on other threads it does nothing.
+    """
+
+    def __init__(self) -> None:
+        self.interrupted = False
+        """Whether SIGINT came: other exceptions may follow from it."""
+        self._before: Any = None
+        self._hook = sys.unraisablehook
+
+    def __enter__(self) -> "InterruptGuard":
+        import threading
+
+        if threading.current_thread() is threading.main_thread():
+            self._hook, sys.unraisablehook = sys.unraisablehook, self._unraisable
+            self._before = signal.signal(signal.SIGINT, self._interrupt)
+        return self
+
+    def __exit__(
+        self, _: type[BaseException] | None, __: BaseException | None, ___: "TracebackType | None"
+    ) -> None:
+        if self._before is not None:
+            signal.signal(signal.SIGINT, self._before)
+            sys.unraisablehook = self._hook
+
+    def _interrupt(self, _: int, __: "FrameType | None") -> None:
+        if self.interrupted:
+            _leave()
+        self.interrupted = True
+        raise KeyboardInterrupt
+
+    def _unraisable(self, problem: "sys.UnraisableHookArgs") -> None:
+        if not self.interrupted:
+            self._hook(problem)
+        elif problem.exc_type is KeyboardInterrupt:
+            # Raised in a destructor, where Python drops it: raise it again after that.
+            import _thread
+            import threading
+
+            self.interrupted = False
+            threading.Timer(_AGAIN_S, _thread.interrupt_main).start()
