@@ -18,7 +18,6 @@ from lumitip_fab.catalogue.electronics import (
     Capacitor,
     Crystal,
     Fuse,
-    Indicator,
     Inductor,
     Led,
     Multiplexer,
@@ -54,7 +53,6 @@ class Catalogue(Strict):
     fuses: Mapping[Name, Fuse]
     transistors: Mapping[Name, Transistor]
     tvs_diodes: Mapping[Name, TvsDiode]
-    indicators: Mapping[Name, Indicator]
     couplings: Mapping[Name, ToolCoupling]
     grippers: Mapping[Name, Gripper]
     fasteners: Mapping[Name, Fastener]

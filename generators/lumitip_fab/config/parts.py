@@ -16,7 +16,6 @@ from lumitip_fab.catalogue.electronics import (
     Capacitor,
     Crystal,
     Fuse,
-    Indicator,
     Inductor,
     Led,
     Multiplexer,
@@ -49,7 +48,6 @@ class ReceiverParts:
     array: ResistorArray
     resistor: Resistor
     capacitor: Capacitor
-    bulk_capacitor: Capacitor | None
     multiplexer: Multiplexer
 
 
@@ -91,7 +89,6 @@ class FlangeParts:
     resistor: Resistor
     tvs: TvsDiode
     inrush_resistor: PulseResistor
-    indicator: Indicator | None
 
 
 @dataclass(frozen=True)

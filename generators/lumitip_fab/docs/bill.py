@@ -25,9 +25,9 @@ _KINDS = {
 _ON_BOARD = {
     ("receiver", "Q"): "photodetector",
     ("emitter", "U"): "current source",
-    ("flange", "D1"): "TVS diode",
+    ("flange", "D"): "TVS diode",
 }
-"""The same where a board has another kind of this letter, or of this part alone."""
+"""The same where a board has another kind of this letter."""
 
 
 @dataclass(frozen=True)
@@ -56,9 +56,8 @@ def electronics(design: Design, files: Files) -> Iterator[Line]:
     for path in files.like("boards/*/*.kicad_pcb"):
         board = path.split("/")[1]
         for row in files.facts(path)["parts"]:
-            ref, letter = row["refs"].split(",")[0], row["refs"][0]
-            usual = _ON_BOARD.get((board, letter), _KINDS[letter])
-            kind = _ON_BOARD.get((board, ref), usual)
+            letter = row["refs"][0]
+            kind = _ON_BOARD.get((board, letter), _KINDS[letter])
             key = f"{kind} {row['value']}", row["manufacturer"], row["part"]
             found.setdefault(key, {})[board] = int(row["quantity"])
     for (item, maker, part), where in sorted(found.items()):
