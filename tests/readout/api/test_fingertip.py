@@ -6,7 +6,7 @@ import time
 import numpy as np
 import pytest
 
-from lumitip import Block, Fingertip, Frame, LinkEvent
+from lumitip import Block, Frame, LinkEvent
 from lumitip.errors import EndOfRecording, FingertipClosed, LinkTimeout, NotConnected, WrongDesign
 
 
@@ -266,65 +266,6 @@ def test_a_listener_that_fails_harms_nothing(open_feed, caplog: pytest.LogCaptur
     feed.packet(0)
     assert tip.latest().seq == 0
     assert "on_event failed" in caplog.text
-
-
-def test_frames_keep_their_distance_when_a_stall_begins_the_link(open_feed) -> None:
-    tip, feed = open_feed()
-    base = time.monotonic()
-    arrivals = [2.0 + 0.001 * n for n in range(50)] + [2.1 + 0.04 * n for n in range(250)]
-    frames = []
-    for n, arrival in enumerate(arrivals):
-        feed.packet(4 * n, 4, t_host=base + arrival)
-        frames.append(tip.latest())
-    steps_s = np.diff([f.t for f in frames])
-    assert steps_s.min() >= 0.8 * 0.04 - 1e-9
-    assert steps_s[-1] == pytest.approx(0.04, abs=1e-6), "it has caught up"
-    assert frames[-1].t <= frames[-1].t_host
-    assert np.diff([f.t_wall for f in frames]).min() > 0.0
-
-
-def test_a_link_that_stalls_and_then_bursts_keeps_the_times_of_its_frames(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    from lumitip.links import twin
-
-    real = twin.packet_at
-
-    def stalls(layout, options, number, frames):
-        if number == 100:
-            time.sleep(1.0)
-        return real(layout, options, number, frames)
-
-    monkeypatch.setattr(twin, "packet_at", stalls)
-    with Fingertip.open("twin://disc?rate=200&speed=0") as tip:
-        block = tip.get_data(300, timeout=60.0)
-    assert block.dropped == 0
-    assert (np.diff(block.t) >= 0.8 * 0.005 - 1e-6).all()
-    assert block.t[-1] - block.t[0] == pytest.approx(299 * 0.005, rel=0.25)
-
-
-def test_legacy_frames_of_one_moment_have_times_in_order(
-    open_feed, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    tip, feed = open_feed()
-    now = time.monotonic()
-    monkeypatch.setattr(time, "monotonic", lambda: now)
-    frames = []
-    for value in range(3):
-        feed.legacy(value)
-        frames.append(tip.latest())
-    assert np.diff([f.t for f in frames]).min() > 0.0
-    assert np.diff([f.t_wall for f in frames]).min() > 0.0
-
-
-def test_times_increase_over_a_restart(open_feed) -> None:
-    tip, feed = open_feed()
-    base = time.monotonic()
-    feed.packet(1000, 4, t_host=base)
-    before = tip.latest()
-    feed.packet(0, 4, time_us=100_000, t_host=base + 0.001)
-    assert tip.stats.restarts == 1
-    assert tip.latest().t > before.t
 
 
 def test_rate_and_jitter(open_feed) -> None:

@@ -62,7 +62,7 @@ class Pressure:
     via_mm: float = 0.7
     """Cost of a via, as a length of track."""
     rounds: int = sys.maxsize
-    """After which the try is given up."""
+    """After this many, the next try begins."""
 
 
 TRIES = (
