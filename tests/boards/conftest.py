@@ -38,13 +38,15 @@ SWITCHED = f"""\
 [receiver]
 load = "each"
 pull_up_ohm = 27000.0
+[flange]
+indicator = "auto"
 """
 
 
 @pytest.fixture(scope="session")
 def designs(design_dir: Path, tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Design]:
     """`designs("dense")`: a preset's design; `"small"` is a grid of 13 cells on two muxes, and
-    `"switched"` the same with a transistor that switches the LEDs."""
+    `"switched"` the same with a transistor that switches the LEDs, and a power LED."""
     folder = tmp_path_factory.mktemp("designs") / "design"
     shutil.copytree(design_dir, folder)
     (folder / "presets" / "small.toml").write_text(SMALL)

@@ -34,6 +34,7 @@ voltage_v = 5.0
 current_ma = 12.0
 [flange]
 tvs = "SMBJ5.0A"
+indicator = "auto"
 """
 BOARDS = (
     *(("published", name) for name in ("flange", "breakout", "emitter", "receiver")),
@@ -133,14 +134,14 @@ def test_a_text_that_collides_is_found(
 def test_each_block_has_its_title(drawn: Drawn) -> None:
     path = ["Contacts of the tool", "Reverse supply and plug-in"]
     buck, linear = "Buck regulator 24 V to 5 V", "Linear regulator 5 V to 3.3 V"
-    wires = ["To the receiver", "To the emitter"]
+    wires, last = ["To the receiver", "To the emitter"], ["Test points", "Power flags"]
     flange = _titles(drawn(("published", "flange"))[2])
-    assert [t for t in flange if "open" not in t] == [*path, buck, "Headers", "Power flags"]
+    assert [t for t in flange if "open" not in t] == [*path, buck, "Headers", *last]
     whole = _titles(drawn(("integrated", "flange"))[2])
-    module = ["Controller: Raytac MDBT50Q", "Headers", *wires, "USB", "Debugger", "Power flags"]
-    assert [t for t in whole if "open" not in t] == [*path, buck, linear, *module]
+    module = ["Controller: Raytac MDBT50Q", "Headers", *wires, "USB", "Debugger", *last]
+    assert [t for t in whole if "open" not in t] == [*path, buck, "Power LED", linear, *module]
     simple = _titles(drawn(("five volts", "flange"))[2])
-    assert [t for t in simple if "open" not in t] == [*path, "Headers", "Power flags"]
+    assert [t for t in simple if "open" not in t] == [*path, "Power LED", "Headers", *last]
     breakout = _titles(drawn(("published", "breakout"))[2])
     assert breakout == ["Controller", *wires, "From the supply", "Power flags"]
 

@@ -110,6 +110,8 @@ CHANGES: dict[str, Any] = {
     "flange.tvs": "other",
     "flange.inrush_resistor": "other",
     "flange.inrush_ohm": 5.1,
+    "flange.indicator": "APT2012LZGCK",
+    "receiver.bulk_capacitor": "10uF 0603 10V",
     "module.regulator": "other",
     "module.supply_capacitor": "22uF 0805",
     "module.capacitor": "other",
@@ -197,6 +199,7 @@ def published(inputs: dict[str, Input]) -> Input:
         "transistors": ("Si2309CDS", {"order_number": "other"}),
         "pulse_resistors": ("1206 pulse", {"order_number": "other"}),
         "tvs_diodes": ("SMBJ24A", {"order_number": "other"}),
+        "indicators": ("APT2012LZGCK", {"order_number": "other"}),
     }
     tables = {
         kind: {**getattr(parts, kind), "other": getattr(parts, kind)[name].model_copy(update=new)}

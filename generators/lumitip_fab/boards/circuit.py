@@ -129,6 +129,9 @@ def _channels(design: Design, finger: Finger) -> Iterator[Component]:
     else:
         for which, pin in enumerate(wiring.adc_pins, start=1):
             yield resistor(f"R{which}", wiring.pull_up_ohm, packages.pull_up, (supply, pin))
+    if packages.bulk is not None:
+        ref, value = f"C{wiring.muxes + 1}", packages.bulk_name.split()[0]
+        yield chip(ref, "capacitor", value, packages.bulk, (supply, GROUND))
     bypass = packages.capacitor
     for which in range(1, wiring.muxes + 1):
         value = f"{bypass.capacitance_nf:g}nF"

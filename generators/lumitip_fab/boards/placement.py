@@ -163,6 +163,9 @@ def _round_multiplexers(
         towards += 180.0
     for ref in [ref for ref in parts if ref.startswith("Q")]:
         parts[ref] = dataclasses.replace(parts[ref], angle_deg=towards)
+    bulk = f"C{wiring.muxes + 1}"
+    if bulk in named:
+        parts[bulk] = dataclasses.replace(parts[bulk], angle_deg=270.0)
     zone = next(zone.box for zone in finger.zones if zone.name == "parts")
     muxes = [named[f"U{i + 1}"] for i in range(wiring.muxes)]
     taken = {mux.name: mux.box for mux in muxes}  # with its arrays

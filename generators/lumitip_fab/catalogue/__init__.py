@@ -18,6 +18,7 @@ from lumitip_fab.catalogue.electronics import (
     Capacitor,
     Crystal,
     Fuse,
+    Indicator,
     Inductor,
     Led,
     Multiplexer,
@@ -53,6 +54,7 @@ class Catalogue(Strict):
     fuses: Mapping[Name, Fuse]
     transistors: Mapping[Name, Transistor]
     tvs_diodes: Mapping[Name, TvsDiode]
+    indicators: Mapping[Name, Indicator]
     couplings: Mapping[Name, ToolCoupling]
     grippers: Mapping[Name, Gripper]
     fasteners: Mapping[Name, Fastener]

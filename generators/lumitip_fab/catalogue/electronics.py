@@ -86,6 +86,21 @@ class Led(Polar):
     """Exponent m of the radiant intensity cos(angle) ** m; 1 is Lambertian."""
 
 
+class Indicator(Chip):
+    """A light-emitting diode to look at: terminal 1 is its cathode."""
+
+    colour: Literal["green", "yellow", "orange", "red", "blue", "white"]
+    """Colour of its light."""
+    forward_v: Voltages
+    """Least and greatest forward voltage at the working current."""
+    current_ma: float = Field(ge=0.1, le=100)
+    """Working current."""
+    visible_ma: float = Field(ge=0.01, le=100)
+    """Least current with which it is seen in a lit room."""
+    max_current_ma: float = Field(ge=0.1, le=1000)
+    """Largest continuous current."""
+
+
 class Photodetector(Polar):
     """A phototransistor or photodiode."""
 

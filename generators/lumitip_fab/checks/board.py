@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import shapely
 
+from lumitip_fab.checks.board_bulk import measure_bulk
 from lumitip_fab.checks.board_circuit import measure_channels, measure_contact_map
 from lumitip_fab.checks.board_copper import (
     measure_copper,
@@ -20,6 +21,8 @@ from lumitip_fab.checks.board_copper import (
     measure_supplies,
 )
 from lumitip_fab.checks.board_finger import measure_cell_prints, measure_cells, measure_flexible
+from lumitip_fab.checks.board_indicator import measure_indicator
+from lumitip_fab.checks.board_probes import measure_probes
 from lumitip_fab.checks.board_read import ReadBoard, names_of, path_of, placed, read_any
 from lumitip_fab.checks.board_silk import measure_labels, measure_prints, measure_targets
 from lumitip_fab.checks.board_strings import measure_strings
@@ -253,9 +256,12 @@ MEASURES: tuple[Measure[ReadBoard], ...] = (
     measure_strings,
     measure_switch,
     measure_channels,
+    measure_bulk,
     measure_settling,
     measure_contact_map,
     measure_plug_in,
+    measure_indicator,
+    measure_probes,
 )
 """Each applies to the boards that have what it measures: a finger's cells, the contacts of a
 coupling, a regulator's hot loop, an antenna's keep-out, flexible layers …"""

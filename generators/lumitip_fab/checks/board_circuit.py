@@ -79,7 +79,7 @@ def _bypasses(read: ReadBoard) -> Iterator[Measurement]:
     free = {
         ref: part
         for ref, part in read.parts.items()
-        if ref.startswith("C") and _ends(read, ref) == set(rails)
+        if ref.startswith("C") and ref != f"C{read.muxes + 1}" and _ends(read, ref) == set(rails)
     }
     far: list[tuple[float, float]] = []
     for which in range(1, read.muxes + 1):

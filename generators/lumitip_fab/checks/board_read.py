@@ -175,6 +175,8 @@ class ReadBoard(Subject):
         in_string = self.strings and ref != self.design.wiring.pull_down_ref
         if self.strings and packages.switch is not None and ref == "Q1":
             return packages.switch.order_number, packages.switch.lcsc
+        if packages.bulk is not None and ref == f"C{self.muxes + 1}":
+            return packages.bulk.order_number, packages.bulk.lcsc
         entries = {
             self.finger.cells_hold.letter: packages.at_cells(self.finger),
             "U": packages.source if self.strings else packages.multiplexer,

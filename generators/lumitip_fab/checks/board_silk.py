@@ -93,6 +93,9 @@ def _contacts(read: ReadBoard) -> Iterator[_Contact]:
             if read.wire(signal) == read.group(ref, 1) is not None:
                 front = read.parts[ref].front
                 yield _Contact(f"{ref}.1", _pad_at(read, ref, 1), front, signal)
+    for device in (d for d in read.components if d.kind == "test point"):
+        front = device.ref not in read.parts or read.parts[device.ref].front
+        yield _Contact(f"{device.ref}.1", _pad_at(read, device.ref, 1), front, device.value)
     for device in (d for d in read.components if d.contacts):
         for land, name in zip(device.footprint.pads, device.pins, strict=False):
             yield _Contact(f"{device.ref}.{land.number}", placed(device, land), True, name)

@@ -28,7 +28,7 @@ def measure_ties(read: ReadBoard) -> Iterator[Measurement]:
     """The holes beside every row of wire pads that a cable ends at."""
     if read.finger is None:
         rows = [d.ref for d in read.components if d.kind == "wires" and d.pins]
-        yield from _measured(read, rows, list(_bodies(read)))
+        yield from _measured(read, rows, list(bodies_of(read)))
         return
     yield from _measured(read, [tie.ref for tie in read.ties], [])
     if read.ties:
@@ -109,7 +109,7 @@ def _printed(read: ReadBoard) -> Iterator[BaseGeometry]:
         yield affinity.translate(turned, *word.at)
 
 
-def _bodies(read: ReadBoard) -> Iterator[BaseGeometry]:
+def bodies_of(read: ReadBoard) -> Iterator[BaseGeometry]:
     """Bodies and shrouds, of the catalogue's sizes, where the file has the parts; on the page."""
     for device in read.components:
         part, shape = read.parts.get(device.ref), device.footprint

@@ -78,6 +78,9 @@ FIELDS: dict[str, Automatic] = {
     "receiver.array": Automatic("4x0603", "room beside the multiplexer", names="resistor_arrays"),
     "receiver.resistor": Automatic("0603", "room beside the multiplexer", names="resistors"),
     "receiver.capacitor": Automatic("100nF 0603", "multiplexer and supply", names="capacitors"),
+    "receiver.bulk_capacitor": Automatic(
+        "10uF 0603 10V", "room beside the wires and current of the detectors", names="capacitors"
+    ),
     "mask.allowance_mm": Automatic(0.75, "page", 0.05),
     "mask.flap_mm": Automatic(13.0, "thickness of a finger and page", 0.5),
     "mould.taper_length_mm": Automatic(3.0, "outline.tip_margin_mm", 0.1),
@@ -97,6 +100,7 @@ FIELDS: dict[str, Automatic] = {
     "flange.tvs": Automatic("SMBJ24A", "supply", names="tvs_diodes"),
     "flange.inrush_resistor": Automatic("1206 pulse", "inrush_ohm", names="pulse_resistors"),
     "flange.inrush_ohm": Automatic(4.7, "supply, input capacitor, fuse and MOSFET"),
+    "flange.indicator": Automatic("APT2012LZGCK", "the flange's output", names="indicators"),
     "printer.min_wall_mm": Automatic(0.8, "two lines of the printer"),
 }
 

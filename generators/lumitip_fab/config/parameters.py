@@ -181,17 +181,17 @@ class Receiver(Strict):
     """Package of shared pull-ups in `parts/resistors.toml`."""
     capacitor: Name
     """Name of the capacitor at each multiplexer's supply in `parts/capacitors.toml`."""
+    bulk_capacitor: Name
+    """Capacitor beside the supply's wire, in `parts/capacitors.toml`, or "none"."""
 
 
 class Controller(Strict):
     """The microcontroller that reads the receiver."""
 
     board: Name
-    """Name of a controller in `parts/controllers.toml`: a board that plugs into the breakout, or a
-    module on the flange's board."""
+    """Name of a controller in `parts/controllers.toml`, for the breakout or the flange's board."""
     name: DeviceName
-    """Bluetooth name of the device, in any script: at most 29 bytes of UTF-8, as one scan
-    response carries."""
+    """Bluetooth name of the device, in any script: at most 29 bytes of UTF-8, a scan response."""
 
 
 class Supply(Strict):

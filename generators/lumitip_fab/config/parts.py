@@ -16,6 +16,7 @@ from lumitip_fab.catalogue.electronics import (
     Capacitor,
     Crystal,
     Fuse,
+    Indicator,
     Inductor,
     Led,
     Multiplexer,
@@ -48,6 +49,7 @@ class ReceiverParts:
     array: ResistorArray
     resistor: Resistor
     capacitor: Capacitor
+    bulk_capacitor: Capacitor | None
     multiplexer: Multiplexer
 
 
@@ -89,6 +91,7 @@ class FlangeParts:
     resistor: Resistor
     tvs: TvsDiode
     inrush_resistor: PulseResistor
+    indicator: Indicator | None
 
 
 @dataclass(frozen=True)

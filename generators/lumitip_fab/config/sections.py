@@ -162,6 +162,8 @@ class Flange(Strict):
     inrush_ohm: float = Field(ge=0.1, le=1000)
     """Resistor before the regulator and its input capacitor: it limits the current as the flange
     is plugged in, and damps the ringing with the cable's inductance (ohm)."""
+    indicator: Name
+    """Power LED at the board's output, in `parts/indicators.toml`, or "none"."""
 
 
 class Module(Strict):

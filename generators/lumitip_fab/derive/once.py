@@ -95,7 +95,7 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
     flange = derive_flange(config, strings, muxing, faults)
     flanges = derive_flange_body(config, flange, faults)
     circuit = wiring.build_wiring(config, strings, muxing)
-    figures = derive_electrical(config, strings, faults)
+    figures = derive_electrical(config, strings, circuit.pull_ups, faults)
     joints = Boards(plan.emitter, plan.receiver, (*breakout, *flange))
     cabling = derive_cabling(config, joints, silhouette, coupling, circuit, figures, faults)
     faults.stop()

@@ -230,6 +230,9 @@ class Packages:
     array: ResistorArray
     """Of the photodetectors' own pull-ups."""
     capacitor: Capacitor
+    bulk: Capacitor | None
+    """Beside the wire of the receiver's supply; none where it has no room or is not wanted."""
+    bulk_name: str
     multiplexer: Multiplexer
     switch: Transistor | None
     """Between the strings of LEDs and ground; none where they are always on."""

@@ -159,10 +159,16 @@ def wires(
     return copper(ref, "wires", value, shape, numbered(signals), at, pins=pins)
 
 
-def probe(ref: str, signal: str) -> Component:
-    """A pad on the back to hold a probe to."""
-    shape = footprints.dot("TestPoint")
-    return copper(ref, "test point", signal, shape, numbered([signal]), side="back")
+def probe(
+    ref: str,
+    signal: str,
+    at: Point = MIDDLE,
+    side: Side = "back",
+    pad_mm: float = footprints.DOT_MM,
+) -> Component:
+    """A pad to hold a probe to, `pad_mm` wide."""
+    shape = footprints.dot("TestPoint", pad_mm)
+    return copper(ref, "test point", signal, shape, numbered([signal]), at, side)
 
 
 def fiducials(places: Sequence[Point]) -> tuple[Component, ...]:

@@ -170,6 +170,58 @@ class PlugIn:
 
 
 @dataclass(frozen=True)
+class Indicator:
+    """The power LED of the flange's board with its resistor."""
+
+    led: str
+    """In the catalogue."""
+    colour: str
+    output_v: float
+    """Nominal voltage of the board's output, which feeds it."""
+    supply_tolerance: float
+    """Fraction by which that may be off, either way."""
+    resistor_tolerance: float
+    forward_v: tuple[float, float]
+    """Least and greatest forward voltage."""
+    ohm: float
+    low_ma: float
+    """Least current: low output, high forward voltage, high resistance."""
+    high_ma: float
+    """Greatest current."""
+    visible_ma: float
+    """Least current with which it is seen in a lit room."""
+    max_ma: float
+    """Its largest continuous current."""
+    resistor_w: float
+    """Power of the resistor at the greatest current."""
+    rated_w: float
+    """Its rated power."""
+    load: float
+    """Largest fraction of its rated power."""
+
+
+@dataclass(frozen=True)
+class Bulk:
+    """The bulk capacitor of the receiver at the end of its supply's wire."""
+
+    supply_v: float
+    wire_uh: float
+    """Inductance of the wire with its return."""
+    step_ma: float
+    """Change of the current of all detectors together."""
+    capacitor_uf: float
+    left: float
+    """Fraction of it at its supply: its DC-bias derating."""
+    tolerance: float
+    """Fraction by which it may be less."""
+    dip_mv: float
+    """Dip of the supply at that change."""
+    most_mv: float
+    reach_mm: float
+    """From its pad to the wire's, at most."""
+
+
+@dataclass(frozen=True)
 class Electrical:
     """Figures of the boards."""
 
@@ -181,5 +233,9 @@ class Electrical:
     """The flange's regulator; none without it."""
     plug_ins: tuple[PlugIn, ...] = ()
     """The flange as it is plugged in; none without it."""
+    indicators: tuple[Indicator, ...] = ()
+    """The flange's power LED; none without it."""
+    bulk: Bulk | None = None
+    """The receiver's bulk capacitor; none without it."""
     ambient: AmbientScan | None = None
     """None where the LEDs are always on."""

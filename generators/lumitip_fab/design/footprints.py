@@ -12,12 +12,14 @@ from lumitip_fab.design import Design
 from lumitip_fab.design.pcb import Facing, Footprint, Form, Pad, Shroud
 from lumitip_fab.design.shape import Box
 
-_DOT_MM = 1.0
+DOT_MM = 1.0
+"""Diameter of a mark for cameras, and of a test point behind a wire pad."""
 _TOE_MM = 0.4  # pad beyond the tip of a lead
 _CHIPS = {
     "resistor": "RESC",
     "capacitor": "CAPC",
     "led": "LEDC",
+    "indicator": "LEDC",
     "photodetector": "PTRC",
     "fuse": "FUSC",
     "inductor": "INDC",
@@ -179,10 +181,10 @@ def _shroud(entry: catalogue.Shroud, pitch_mm: float, facing: Facing) -> Shroud:
     return Shroud(Box(-length / 2, length / 2, low, high), entry.notch_mm, facing)
 
 
-def dot(name: Literal["TestPoint", "Fiducial"]) -> Footprint:
+def dot(name: Literal["TestPoint", "Fiducial"], pad_mm: float = DOT_MM) -> Footprint:
     """A bare round pad: to hold a probe to, or a mark for the placing machine's camera."""
-    pad = Pad("1", 0.0, 0.0, _DOT_MM, _DOT_MM, round=True, paste=False)
-    return Footprint(f"{name}_D{_DOT_MM:.1f}mm", (pad,), _body(_DOT_MM, _DOT_MM), 0.0)
+    pad = Pad("1", 0.0, 0.0, pad_mm, pad_mm, round=True, paste=False)
+    return Footprint(f"{name}_D{pad_mm:.1f}mm", (pad,), _body(pad_mm, pad_mm), 0.0)
 
 
 def _body(length_mm: float, width_mm: float) -> Box:

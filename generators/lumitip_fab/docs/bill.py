@@ -25,9 +25,9 @@ _KINDS = {
 _ON_BOARD = {
     ("receiver", "Q"): "photodetector",
     ("emitter", "U"): "current source",
-    ("flange", "D"): "TVS diode",
+    ("flange", "D1"): "TVS diode",
 }
-"""The same where a board has another kind of this letter."""
+"""The same where a board has another kind of this letter, or of this part alone."""
 
 
 @dataclass(frozen=True)
@@ -56,8 +56,9 @@ def electronics(design: Design, files: Files) -> Iterator[Line]:
     for path in files.like("boards/*/*.kicad_pcb"):
         board = path.split("/")[1]
         for row in files.facts(path)["parts"]:
-            letter = row["refs"][0]
-            kind = _ON_BOARD.get((board, letter), _KINDS[letter])
+            ref, letter = row["refs"].split(",")[0], row["refs"][0]
+            usual = _ON_BOARD.get((board, letter), _KINDS[letter])
+            kind = _ON_BOARD.get((board, ref), usual)
             key = f"{kind} {row['value']}", row["manufacturer"], row["part"]
             found.setdefault(key, {})[board] = int(row["quantity"])
     for (item, maker, part), where in sorted(found.items()):

@@ -185,7 +185,7 @@ connected; {lit} then draw about {sum(design.wiring.current_ma):.1f} mA."""
 
 
 def _mounted(design: Design) -> str:
-    flanged = "".join(map(_flanged, design.flanges))
+    flanged = "".join(_flanged(design, flange) for flange in design.flanges)
     return f"""## 7. Mount
 
 Screw each finger on ({len(design.mount.bolt_u_mm)} x {design.mount.bolt}); emitter and receiver
@@ -210,7 +210,16 @@ def _held(design: Design) -> str:
     return ""
 
 
-def _flanged(flange: Flange) -> str:
+def _flanged(design: Design, flange: Flange) -> str:
+    lit = "".join(
+        f"""Before you close the flange, lay its contacts on those of the coupling, switch the
+robot's tool output on, and look at D2 on the board's front: it lights {lit.colour} while the board
+makes {lit.output_v:g} V. If it is dark, look for the fault before you go on: the test points beside
+J2, J3 and the contacts have the names of their nets.
+
+"""
+        for lit in design.electrical.indicators
+    )
     return f"""
 Between robot and gripper: solder the spring contacts onto the back of the flange's board, cut every
 solder tail under it to {flange.tail_mm:g} mm, and screw it into `flange/flange_lower.3mf` from
@@ -219,7 +228,7 @@ peg, and put all of it between the coupling and the gripper, with {len(flange.bo
 {flange.bolt} that are {flange.top_z_mm:.1f} mm longer than before. Confirm first with the robot's
 manual, or with a meter, that the coupling's contacts carry what the board's names say.
 
-"""
+{lit}"""
 
 
 def _run(design: Design) -> str:

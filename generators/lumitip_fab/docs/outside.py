@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from lumitip_fab.design import AuxiliaryBoard, Design, Finger, Flange, Holder
-from lumitip_fab.design.electrical import PlugIn, Regulated
+from lumitip_fab.design.electrical import Indicator, PlugIn, Regulated
 
 
 @dataclass(frozen=True)
@@ -31,6 +31,8 @@ def outside(design: Design) -> Iterator[Row]:
         yield from _regulated(supply)
     for plug_in in design.electrical.plug_ins:
         yield from _plugged_in(plug_in)
+    for lit in design.electrical.indicators:
+        yield _lit(lit)
     if any(auxiliary.name == "breakout" for auxiliary in design.auxiliary_boards):
         yield from _held(design)
     for flange in design.flanges:
@@ -103,6 +105,14 @@ def _flange(auxiliary: AuxiliaryBoard) -> Iterator[Row]:
         f"{values['F1']}, {values['Q1']}",
         "a MOSFET costs the LEDs no voltage, as a diode would",
     )
+    points = [part for part in auxiliary.components if part.kind == "test point"]
+    yield Row(
+        "its test points",
+        "not stated",
+        ", ".join(part.value for part in points),
+        f"on the front, {points[0].footprint.pads[0].width_mm:g} mm wide, with their names; on the "
+        "breakout the wire pads have names",
+    )
     yield from _tied(auxiliary)
     if "U2" in values:
         yield Row(
@@ -162,6 +172,17 @@ def _plugged_in(plug_in: PlugIn) -> Iterator[Row]:
         f"{plug_in.peak_a:.1f} A",
         f"at most{rated}{melts}; {plug_in.inrush_ohm:g} Ω damp {low:g} to {high:g} µH of cable and "
         f"take {1000 * plug_in.pulse_j:.1f} mJ; ngspice: boards/flange/flange_plug_in.cir",
+    )
+
+
+def _lit(lit: Indicator) -> Row:
+    return Row(
+        "power LED of the flange",
+        "not stated",
+        f"{lit.led}, {lit.colour}, through {lit.ohm:g} Ω",
+        f"at its {lit.output_v:g} V; {lit.low_ma:.1f} to {lit.high_ma:.1f} mA over tolerances, "
+        f"{lit.visible_ma:g} mA are seen in a lit room; its resistor takes up to "
+        f"{1000 * lit.resistor_w:.0f} mW of {1000 * lit.rated_w:g} mW rated",
     )
 
 

@@ -141,6 +141,25 @@ def channel_rows(design: Design) -> tuple[Row, ...]:
             f"a step of {design.controller.adc_bits} bits, for a detector without a base",
         ),
         _phototransistor(design),
+        *_bulk(design),
+    )
+
+
+def _bulk(design: Design) -> tuple[Row, ...]:
+    """The receiver's bulk capacitor; none without it."""
+    bulk = design.electrical.bulk
+    if bulk is None:
+        return ()
+    return (
+        Row(
+            "bulk capacitor of the receiver",
+            "not stated",
+            design.packages.bulk_name,
+            f"beside the supply's wire: of {bulk.capacitor_uf:g} µF, {100 * bulk.left:g} % are "
+            f"left by DC bias; the supply dips by {bulk.dip_mv:.1f} mV as all detectors change by "
+            f"{bulk.step_ma:.1f} mA over {bulk.wire_uh:.2f} µH of wire, at most "
+            f"{bulk.most_mv:.1f} mV is allowed",
+        ),
     )
 
 

@@ -13,10 +13,11 @@ _COLOURS: dict[str, Colour] = {
     "crystal": (0.72, 0.70, 0.62),
     "tvs diode": (0.16, 0.16, 0.17),
     "led": (0.95, 0.90, 0.70),
+    "indicator": (0.80, 0.95, 0.82),
     "photodetector": (0.30, 0.26, 0.34),
 }
 _OTHER: Colour = (0.5, 0.5, 0.5)
-_LENS = ("led", "photodetector")
+_LENS = ("led", "photodetector", "indicator")
 _FOOT_SHARE = 0.4  # of the height of a part with a lens: its ends, and the board under the lens
 _LENS_SHARE = 0.7  # of the length
 _MODULE_MM = 0.8  # thickness of a module's own board

@@ -42,6 +42,7 @@ _PART_TINTS = {
     "current source": "#b9bcc0",
     "resistor": "#d8d2c8",
     "switch": "#b9bcc0",
+    "capacitor": "#d8d2c8",
 }
 
 
@@ -226,6 +227,7 @@ def _details(finger: Finger, stack: Stack) -> list[tuple[tuple[str, str], Any, s
         ("current source", "current sources"),
         ("resistor", "resistors"),
         ("switch", "transistors"),
+        ("capacitor", "bulk capacitors"),
     ):
         alike = [part for part in finger.parts if part.kind == kind and part.side == "front"]
         if alike:

@@ -29,6 +29,7 @@ COLOURS: dict[str, Colour] = {
     "current source": (0.12, 0.12, 0.13, 1.0),
     "resistor": (0.25, 0.22, 0.20, 1.0),
     "switch": (0.12, 0.12, 0.13, 1.0),
+    "capacitor": (0.62, 0.47, 0.32, 1.0),
 }
 
 

@@ -37,6 +37,10 @@ def print_names(page: Page) -> None:
         else:
             _at_contacts(page, part)
     points = [part for part in components if part.kind == "test point"]
+    if not page.board.cells:
+        for part in points:
+            _at_probe(page, part)
+        return
     for side in SIDES:
         here = sorted((p for p in points if p.side == side), key=lambda p: (p.y_mm, p.x_mm))
         if here:
@@ -120,6 +124,17 @@ def _at_contacts(page: Page, part: PlacedComponent) -> None:
         ]
         upright = [page.beside(name, at, (half, half), way, _AWAY_MM, upright=True) for way in ways]
         page.require(repr(f"{part.ref} {name}"), lying if flat else [*upright, *lying])
+
+
+def _at_probe(page: Page, part: PlacedComponent) -> None:
+    """The name of a test point beside it, along the board or upright."""
+    half = 2 * (part.footprint.pads[0].width_mm / 2,)
+    choices = [
+        page.beside(part.value, (part.x_mm, part.y_mm), half, way, _AWAY_MM, upright)
+        for upright in (False, True)
+        for way in (RIGHT, LEFT, DOWN, UP)
+    ]
+    page.require(f"the label {part.value!r}", choices, part.side)
 
 
 def _moved(text: Text, along_mm: float) -> Text:

@@ -214,10 +214,11 @@ class Page:
 
     def block(self, side: Side, lines: Sequence[tuple[str, float]], near: Point) -> Box | None:
         """Print lines of text, each with its height, below each other, as near to a place and as
-        large as there is room; upright where they are too long. Tells the room that they took."""
+        large as there is room, in the end all of the least height; upright where they are too
+        long. Tells the room that they took."""
         places = self.anywhere(near)
         least = min(height for _, height in lines)
-        scales = sorted({1.0, 0.8, 0.65, self.rules.silk_text_mm / least}, reverse=True)
+        scales = sorted({1.0, 0.8, 0.65, self.rules.silk_text_mm / least, 0.0}, reverse=True)
         for angle, scale in itertools.product((0.0, 90.0), [s for s in scales if s <= 1.0]):
             texts = self._stack(lines, scale, angle)
             around = shapely.union_all([extent(text, side) for text in texts])

@@ -36,7 +36,7 @@ def print_references(page: Page) -> tuple[PlacedComponent, ...]:
     if cells:
         return _among_cells(page, _edges(cells.at, cells.pitch_mm), cells.pitch_mm)
     for part in components:
-        if part.kind != "fiducial":
+        if part.kind not in ("fiducial", "test point"):  # a test point has the name of its net
             places = _round(page, part.ref, courtyard(part))
             page.require(repr(part.ref), places, part.side, _FREE_MM)
     return components

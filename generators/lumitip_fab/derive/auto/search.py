@@ -139,7 +139,7 @@ _CURRENT = ("emitter.current_ma", "emitter.string_leds", "emitter.resistor")
 
 MENDS: dict[str, tuple[str, ...]] = {
     "grid.columns": ("receiver.multiplexer",),
-    "stack.silicone_mm": ("emitter.resistor_side",),
+    "stack.silicone_mm": ("receiver.bulk_capacitor", "emitter.resistor_side"),
     "stack.floor_mm": ("backing.tail_mm",),
     "outline.tip_fraction": ("outline.shoulder_margin_mm",),
     "outline.waist_margin_mm": (

@@ -18,7 +18,7 @@ import numpy as np
 
 from lumitip_fab.config.load import Input
 from lumitip_fab.config.parameters import Parameters
-from lumitip_fab.derive.boards import connectors, led_switch, placing
+from lumitip_fab.derive.boards import bulk, connectors, led_switch, placing
 from lumitip_fab.derive.boards.packages import flexible_board
 from lumitip_fab.derive.boards.sources import source_parts
 from lumitip_fab.derive.boards.ties import finger_ties
@@ -124,6 +124,7 @@ def derive_plan(
     emitter, receiver = (
         replace(finger, ties=finger_ties(finger, board)) for finger in (emitter, receiver)
     )
+    receiver = bulk.with_bulk(config, receiver, board.box, muxing, faults)
     return Plan(board, emitter, receiver, tuple((m.x_mm, m.y_mm) for m in muxes))
 
 

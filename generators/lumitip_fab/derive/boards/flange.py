@@ -23,8 +23,10 @@ from lumitip_fab.derive.boards.flange_circuit import (
     refuse_parts,
     supply_range_v,
 )
+from lumitip_fab.derive.boards.indicator import NOTE, indicator_parts
 from lumitip_fab.derive.boards.module import Supplies, derive_module
 from lumitip_fab.derive.boards.packages import capacitor
+from lumitip_fab.derive.boards.probes import flange_probes
 from lumitip_fab.derive.boards.ties import derive_ties
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.mount.fasteners import BOARD_SCREW
@@ -74,12 +76,15 @@ def derive_flange(
     refuse_parts(config, strings, faults)
     raw, supply, output = _supplies(config)
     wing = derive_module(config, module, muxing, Supplies(supply, output), BOX, faults)
-    parts = (*_input(config), *_regulator(config), *(wing.components if wing else ()))
+    light = indicator_parts(config, output)
+    module_parts = wing.components if wing else ()
+    parts = (*_input(config), *_regulator(config), *light, *module_parts)
     _refuse_lines(config, parts, faults)
     behind = ("SW", INPUT) if is_regulated(config) else ()
     components = (
         *_strips(config),
         *parts,
+        *flange_probes(config, (raw, supply, output), faults),
         *fiducials(wing.fiducials if wing else FIDUCIALS_AT),
     )
     box = wing.box if wing else BOX
@@ -96,7 +101,7 @@ def derive_flange(
             hole_mm=hole_mm,
             ties=derive_ties(components, box, CORNER_MM, screws, "controller.board", faults),
             components=components,
-            notes=(),
+            notes=(NOTE,) if light else (),
             supplies=tuple(dict.fromkeys(("GND", supply, raw, "FUSED", output, *behind))),
             keep_outs=wing.keep_outs if wing else (),
             hot_loop=_hot_loop(config),
@@ -183,8 +188,8 @@ def _regulator(config: Input) -> tuple[Component, ...]:
             (-7.5, 5.2),
             90.0,
         ),
-        capacitor(config, "C2", p.output_capacitor, (output, "GND"), (-3.6, 5.8), 270.0),
-        capacitor(config, "C3", p.output_capacitor, (output, "GND"), (-1.2, 5.8), 270.0),
+        capacitor(config, "C2", p.output_capacitor, (output, "GND"), (-4.2, 5.8), 270.0),
+        capacitor(config, "C3", p.output_capacitor, (output, "GND"), (-1.8, 5.8), 270.0),
     )
 
 

@@ -106,9 +106,9 @@ def switch_parts(
     pad_x, pad_y = wires.pads[-1]
     free = [
         (y - pad_y + abs(x - pad_x), x, y)
-        for x in _steps(zone.x_min_mm, zone.x_max_mm - left_to_right)
-        for y in _steps(zone.y_min_mm, zone.y_max_mm - high)
-        if not any(_overlap(Box(x, x + left_to_right, y, y + high), box) for box in front)
+        for x in steps(zone.x_min_mm, zone.x_max_mm - left_to_right)
+        for y in steps(zone.y_min_mm, zone.y_max_mm - high)
+        if not any(overlap(Box(x, x + left_to_right, y, y + high), box) for box in front)
     ]
     if not free:
         return ()
@@ -122,11 +122,13 @@ def switch_parts(
     )
 
 
-def _steps(low_mm: float, high_mm: float) -> list[float]:
+def steps(low_mm: float, high_mm: float) -> list[float]:
+    """Places between two ends, in steps."""
     return [low_mm + STEP_MM * i for i in range(int((high_mm - low_mm) / STEP_MM + 1e-9) + 1)]
 
 
-def _overlap(one: Box, other: Box) -> bool:
+def overlap(one: Box, other: Box) -> bool:
+    """Whether two rectangles have an area in common."""
     return (
         one.x_min_mm < other.x_max_mm
         and other.x_min_mm < one.x_max_mm

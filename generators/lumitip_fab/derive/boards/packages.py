@@ -31,6 +31,10 @@ def derive_packages(config: Input) -> Packages:
         pull_up=_without_texts(parts.resistors[p.receiver.resistor]),
         array=_without_texts(parts.resistor_arrays[p.receiver.array]),
         capacitor=_without_texts(parts.capacitors[p.receiver.capacitor]),
+        bulk=_without_texts(config.parts.receiver.bulk_capacitor)
+        if config.parts.receiver.bulk_capacitor
+        else None,
+        bulk_name=p.receiver.bulk_capacitor,
         multiplexer=_without_texts(parts.multiplexers[p.receiver.multiplexer]),
         switch=_without_texts(config.parts.emitter.switch) if config.parts.emitter.switch else None,
         switch_name=p.emitter.switch,

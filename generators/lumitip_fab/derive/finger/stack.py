@@ -90,6 +90,8 @@ def derive_stack(config: Input, faults: Diagnostics) -> Stack:
     }
     if p.receiver.load == "each":
         heights["receiver.array"] = parts.resistor_arrays[p.receiver.array].body_mm[2]
+    if config.parts.receiver.bulk_capacitor:
+        heights["receiver.bulk_capacitor"] = config.parts.receiver.bulk_capacitor.body_mm[2]
     if p.emitter.resistor_side == "front":
         heights["emitter.resistor"] = parts.resistors[p.emitter.resistor].body_mm[2]
     if p.emitter.drive == "source":

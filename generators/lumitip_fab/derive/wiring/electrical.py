@@ -3,7 +3,9 @@
 import math
 
 from lumitip_fab.config.load import Input
+from lumitip_fab.derive.boards.bulk import derive_bulk
 from lumitip_fab.derive.boards.flange_circuit import derive_regulated
+from lumitip_fab.derive.boards.indicator import derive_indicator
 from lumitip_fab.derive.boards.plug_in import derive_plug_in
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.wiring.ambient import derive_ambient
@@ -16,7 +18,9 @@ from lumitip_fab.design.electrical import Channel, Electrical, Strings
 SHORTER = 0.75  # of a string's LEDs, to compare
 
 
-def derive_electrical(config: Input, strings: DerivedStrings, faults: Diagnostics) -> Electrical:
+def derive_electrical(
+    config: Input, strings: DerivedStrings, pull_ups: int, faults: Diagnostics
+) -> Electrical:
     """Electrical figures from parts, strings and supply."""
     p, channel = config.parameters, _channel(config)
     return Electrical(
@@ -25,6 +29,8 @@ def derive_electrical(config: Input, strings: DerivedStrings, faults: Diagnostic
         heat_w=sum(strings.current_ma) * p.supply.voltage_v / 1000,
         supplies=derive_regulated(config, faults),
         plug_ins=derive_plug_in(config, faults),
+        indicators=derive_indicator(config, faults),
+        bulk=derive_bulk(config, pull_ups),
         ambient=derive_ambient(config, channel, faults),
     )
 

@@ -1,13 +1,26 @@
-"""Parts that belong to no block: each by itself, with the names of its nets."""
+"""Test points, and parts that belong to no block: each by itself, with the names of its nets."""
 
 from collections.abc import Sequence
 
 from lumitip_fab.boards.kicad.schematic.contact_blocks import draw_strips
 from lumitip_fab.boards.kicad.schematic.draft import REACH_MM, Draft
 from lumitip_fab.boards.kicad.schematic.rail import STEP_MM
-from lumitip_fab.boards.kicad.schematic.symbols import TWO_TERMINALS
+from lumitip_fab.boards.kicad.schematic.symbols import TWO_TERMINALS, test_point
 from lumitip_fab.boards.model import GROUND
 from lumitip_fab.design import Component
+
+_ROWS, _ROW_MM, _COLUMN_MM = 4, 7.62, 33.02
+"""Test points below each other, and the distances between them."""
+
+
+def draw_probes(draft: Draft, parts: Sequence[Component]) -> None:
+    """Test points in columns, each at the end of its net."""
+    for i, part in enumerate(parts):
+        x, y = i // _ROWS * _COLUMN_MM, i % _ROWS * _ROW_MM
+        draft.place(part, "TestPoint", test_point(), (x, y), ref_at=(3.048, -3.302))
+        draft.wire((x, y), (x + REACH_MM, y))
+        ((_, net),) = part.nets
+        draft.end(net, (x + REACH_MM, y), 1)
 
 
 def draw_alone(draft: Draft, parts: Sequence[Component]) -> None:

@@ -4,12 +4,17 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 
-from lumitip_fab.boards.kicad.schematic.alone import draw_alone
+from lumitip_fab.boards.kicad.schematic.alone import draw_alone, draw_probes
 from lumitip_fab.boards.kicad.schematic.contact_blocks import draw_sockets, draw_strips
 from lumitip_fab.boards.kicad.schematic.draft import Draft, net_of, nets_of, other_net
 from lumitip_fab.boards.kicad.schematic.module_block import draw_module
 from lumitip_fab.boards.kicad.schematic.pin_types import pin_names, pin_type
-from lumitip_fab.boards.kicad.schematic.power_path import draw_buck, draw_linear, draw_plug_in
+from lumitip_fab.boards.kicad.schematic.power_path import (
+    draw_buck,
+    draw_indicator,
+    draw_linear,
+    draw_plug_in,
+)
 from lumitip_fab.boards.kicad.schematic.rail import STEP_MM
 from lumitip_fab.boards.model import GROUND, SUPPLY, Placement
 from lumitip_fab.design import Component
@@ -18,7 +23,7 @@ Parts = Sequence[Component]
 Titled = tuple[str, Draft]
 Drawing = tuple[str, Callable[[Draft], None]]
 """A title and what draws the block."""
-_LEADERS = ("fuse", "regulator", "module")
+_LEADERS = ("fuse", "regulator", "indicator", "module")
 """Kinds of parts that begin a block; the parts after them on the board's list belong to it."""
 _CABLES = {"S0": "To the receiver", "LED": "To the emitter", "D+": "USB", "DIO": "Debugger"}
 """Use of wire pads by one of their nets."""
@@ -34,6 +39,7 @@ def auxiliary_blocks(board: Placement) -> list[Titled]:
         *_first(contacts),
         *(drawing for group in circuits for drawing in _circuit(group, parts)),
         *_leaving(contacts, supplies),
+        *_probes(parts),
     ]
     found = [(title, _drafted(supplies, draw)) for title, draw in drawings]
     drawn = set().union(*(draft.drawn for _, draft in found))
@@ -56,7 +62,7 @@ def _groups(parts: Parts) -> list[list[Component]]:
     for part in parts:
         if part.kind in _LEADERS:
             found.append([])
-        if found and not part.contacts:
+        if found and not part.contacts and part.kind != "test point":
             found[-1].append(part)
     return sorted(found, key=lambda group: group[0].kind == "module")  # it is large
 
@@ -104,6 +110,8 @@ def _circuit(group: Parts, parts: Parts) -> Iterator[Drawing]:
     leader, kinds = group[0], [part.kind for part in group]
     if leader.kind == "fuse" and kinds.count("transistor") == 1:
         yield "Reverse supply and plug-in", partial(draw_plug_in, group=group)
+    elif kinds == ["indicator", "resistor"]:
+        yield "Power LED", partial(draw_indicator, group=group)
     elif leader.kind == "module":
         yield f"Controller: {leader.value}", partial(draw_module, group=group)
     elif "SW" in leader.pins and kinds.count("inductor") == 1:
@@ -118,8 +126,9 @@ def _circuit(group: Parts, parts: Parts) -> Iterator[Drawing]:
 
 def _before_a_resistor(net: str, parts: Parts) -> str:
     """The net that feeds another through a resistor; the other itself where none does."""
+    lit = nets_of(part for part in parts if part.kind == "indicator")
     resistors = (part for part in parts if part.kind == "resistor" and net in nets_of([part]))
-    return next((other_net(part, net) for part in resistors), net)
+    return next((other for part in resistors if (other := other_net(part, net)) not in lit), net)
 
 
 def _volts(net: str) -> str:
@@ -143,6 +152,12 @@ def _leaving(contacts: Parts, supplies: Sequence[str]) -> Iterator[Drawing]:
                 use = next((use for use in feeding if use not in used), "Wires")
             used.add(use)
             yield use, partial(draw_strips, parts=[part])
+
+
+def _probes(parts: Parts) -> Iterator[Drawing]:
+    points = [part for part in parts if part.kind == "test point"]
+    if points:
+        yield "Test points", partial(draw_probes, parts=points)
 
 
 def _not_made(parts: Parts, supplies: Sequence[str]) -> list[str]:

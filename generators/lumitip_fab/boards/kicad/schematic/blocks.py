@@ -10,6 +10,7 @@ from lumitip_fab.design import Component, Point, Wiring
 
 ROW_MM = 7.62
 """Between the lines that a row of parts hangs on."""
+_BULK_MM = 20.32  # height of a capacitor between its supplies
 _COLUMN_MM = 50.8  # width of a part by itself, and of the wires
 Parts = Mapping[str, Component]
 
@@ -18,7 +19,7 @@ def wires_block(parts: Parts, supply: str) -> Block:
     """The connector J1 with a test point at each of its wires."""
     ways = len(parts["J1"].nets)
     shape = symbols.contacts(tuple(str(i + 1) for i in range(ways)), ROW_MM)
-    height_mm = ways * ROW_MM + 25.4
+    height_mm = ways * ROW_MM + 25.4 + (_BULK_MM if _bulk(parts) else 0.0)
     return Block(_COLUMN_MM, height_mm, partial(_wires, parts, supply), {"Wires": shape})
 
 
@@ -32,6 +33,11 @@ def _wires(parts: Parts, supply: str, sheet: Sheet, at: Point) -> None:
     caption = f"{cells[0].ref} to {cells[-1].ref}: {cells[0].value}"
     below = first + ways * ROW_MM + 2.54
     sheet.texts.append((caption, (at[0] + 2.54, below), 1.5))
+    if bulk := _bulk(parts):
+        cx, cy = x, below + _BULK_MM / 2 + 2.54
+        sheet.part("C", bulk, (cx, cy), ref_at=(5.08, -1.27), value_at=(6.35, 1.27))
+        sheet.power(supply, (cx, cy - 3.81))
+        sheet.power(GROUND, (cx, cy + 3.81))
     middle = first + (ways - 1) / 2 * ROW_MM
     sheet.part("Wires", wires, (x, middle), ref_at=(0, -ways / 2 * ROW_MM - 1.27))
     for i, (_, net) in enumerate(wires.nets):
@@ -50,6 +56,12 @@ def _wires(parts: Parts, supply: str, sheet: Sheet, at: Point) -> None:
         else:
             sheet.flag(net, (end, y), 0)
         sheet.wire(*corners)
+
+
+def _bulk(parts: Parts) -> Component | None:
+    """The capacitor that belongs to no multiplexer."""
+    capacitors = (part for part in parts.values() if part.kind == "capacitor")
+    return next((part for part in capacitors if f"U{part.ref[1:]}" not in parts), None)
 
 
 _LED_MM = 12.7

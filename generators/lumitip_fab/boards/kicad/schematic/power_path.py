@@ -11,6 +11,7 @@ from collections.abc import Sequence
 
 from lumitip_fab.boards.kicad.schematic import mosfets, shapes
 from lumitip_fab.boards.kicad.schematic.draft import (
+    REACH_MM,
     Draft,
     net_of,
     nets_of,
@@ -109,6 +110,21 @@ def draw_linear(draft: Draft, group: Group) -> None:
     out.on()
     _hang_all(out, group)
     out.supply()
+
+
+def draw_indicator(draft: Draft, group: Group) -> None:
+    """A power LED below its resistor."""
+    led, resistor = group
+    (between,) = nets_of([led]) & nets_of([resistor])
+    rail = Rail(draft, (0.0, 0.0), other_net(resistor, between))
+    rail.supply()
+    x, y = rail.hang(resistor)
+    node = x, y + STEP_MM
+    draft.wire((x, y), node)
+    draft.wire((x - STEP_MM, node[1]), node)
+    draft.tag(between, (x - STEP_MM, node[1]), 180)
+    draft.stand(led, between, (x, node[1] + REACH_MM))
+    draft.power(other_net(led, between), (x, node[1] + 2 * REACH_MM))
 
 
 def _transistor(draft: Draft, part: Component, rail: Rail, gate: str) -> Point:

@@ -15,7 +15,15 @@ _FONT = ("effects", ("font", ("size", 1.27, 1.27)))
 HIDDEN: Node = ("effects", ("font", ("size", 1.27, 1.27)), "hide")
 
 
-TWO_TERMINALS = ("resistor", "capacitor", "fuse", "inductor", "crystal", "tvs diode")
+TWO_TERMINALS = (
+    "resistor",
+    "capacitor",
+    "fuse",
+    "inductor",
+    "crystal",
+    "tvs diode",
+    "indicator",
+)
 """Kinds of parts that are drawn upright, the first terminal at the top, or turned."""
 _BAR = (-1.778, 0.762), (-1.27, 1.27), (1.27, 1.27), (1.778, 1.778)
 _TRIANGLE = (-1.27, -1.27), (1.27, -1.27), (0, 1.27), (-1.27, -1.27)
@@ -29,20 +37,26 @@ def two_terminals(kind: str) -> tuple[str, Node]:
         "fuse": ("F", [box(-0.762, -2.54, 0.762, 2.54), line((0, 2.54), (0, -2.54))], 2.54),
         "inductor": ("L", [_coil()], 2.54),
         "tvs diode": ("D", [line(*_BAR), line(*_TRIANGLE)], 1.27),
+        "indicator": ("LED", [*_lamp(), *_rays((1.5, -0.6), away=True)], 1.27),
         "crystal": ("Y", [box(-1.27, -0.635, 1.27, 0.635), *_plates(1.27, 1.27)], 1.27),
     }[kind]
     reach = 3.81 - half_mm
     pins = [pin("1", 0, 3.81, 270, reach), pin("2", 0, -3.81, 90, reach)]
-    return name, symbol(name, body, pins)
+    return name, symbol("D" if kind == "indicator" else name, body, pins)
 
 
 def hand_drawn() -> dict[str, Node]:
     """The symbols of a board whose supplies are drawn as symbols, by name."""
     return {
         **dict(map(two_terminals, ("resistor", "capacitor"))),
-        "TestPoint": symbol("TP", [circle(0, 3.302, 0.762)], [pin("1", 0, 0, 90, 2.54)]),
+        "TestPoint": test_point(),
         **power_symbols(),
     }
+
+
+def test_point() -> Node:
+    """A test point above its pin."""
+    return symbol("TP", [circle(0, 3.302, 0.762)], [pin("1", 0, 0, 90, 2.54)])
 
 
 def power_symbols() -> dict[str, Node]:
@@ -241,6 +255,11 @@ def _rays(start: Point, away: bool) -> list[Node]:
             a = turn + math.radians(side)
             found.append(line(tip, (tip[0] + 0.6 * math.cos(a), tip[1] + 0.6 * math.sin(a))))
     return found
+
+
+def _lamp() -> list[Node]:
+    """A diode, its cathode at the top."""
+    return [line((-1.27, 1.27), (1.27, 1.27)), line(*_TRIANGLE)]
 
 
 def _plates(half_mm: float, apart_mm: float) -> list[Node]:
