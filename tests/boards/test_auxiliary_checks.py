@@ -162,13 +162,18 @@ def reference_twice(text: str) -> str:
     return in_part(text, "H2", 'reference "H2"', 'reference "H1"')
 
 
+PROBES = {"probe_width", "probe_room"}
+"""Damaged in test_probes.py."""
 DAMAGES: dict[Damage, set[str]] = {
     part_moved: {"lands", "clearance"},  # the pour is as near as it may be
     part_added: {"other_parts"},
-    part_missing: {"other_parts", "lands", "apart", "tie_reach"},
+    part_missing: {"other_parts", "lands", "apart", "tie_reach", "probes", "probe_names"},
     hole_of_a_pad_wider: {"lands"},
-    pad_without_copper: {"lands", "apart", "tie_count", "tie_width", "hole_clearance"},
-    wires_exchanged: {"lands", "apart", "joined"},
+    pad_without_copper: {
+        *("lands", "apart", "tie_count", "tie_width", "hole_clearance"),
+        *("probes", "probe_names"),
+    },
+    wires_exchanged: {"lands", "apart", "joined", "probes"},
     socket_pins_exchanged: {"open", "short"},
     names_exchanged: {"silk_labels"},
     via_dropped: {"open", "apart"},
@@ -218,4 +223,4 @@ def test_every_check_fails_for_some_damage(boards: Callable[[str], Path]) -> Non
     found = [m for m in board.measure(folder, design) if m.subject == BREAKOUT]
     assert [m for m in found if not m.passed] == []
     names = {m.check.removeprefix("board.") for m in found}
-    assert names == set().union(*DAMAGES.values(), {"readable"})
+    assert names == set().union(*DAMAGES.values(), {"readable"}, PROBES)

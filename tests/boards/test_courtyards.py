@@ -8,9 +8,11 @@ import pytest
 
 from lumitip_fab.boards.courtyards import CONTACTS_MM, PART_MM, land, with_courtyards
 from lumitip_fab.boards.model import Placement
-from lumitip_fab.boards.placed import courtyard
+from lumitip_fab.boards.placed import placed_box
 from lumitip_fab.boards.placement import place
+from lumitip_fab.boards.spots import refuse_misplaced
 from lumitip_fab.design import Box, Design
+from lumitip_fab.errors import BuildError
 
 
 def boards_of(design: Design) -> dict[str, Placement]:
@@ -40,9 +42,15 @@ def test_courtyards_are_apart_and_never_less_than_placement_had(
         drawn = with_courtyards(board).components
         for before, after in zip(board.components, drawn, strict=True):
             assert around_mm(after.courtyard, before.courtyard) > -0.002, (name, after.ref)
-        yards = [(part.side, part.ref, courtyard(part)) for part in drawn]
+        yards = [
+            (part.side, part.ref, placed_box(part, yard))
+            for part in drawn
+            for yard in (part.courtyard, part.shroud_yard)
+            if yard
+        ]
         for (side, one, here), (other_side, other, there) in combinations(yards, 2):
-            assert side != other_side or not overlap(here, there), (name, one, other)
+            apart = side != other_side or one == other or not overlap(here, there)
+            assert apart, (name, one, other)
 
 
 def test_courtyards_have_the_usual_width_where_there_is_room(
@@ -51,19 +59,15 @@ def test_courtyards_have_the_usual_width_where_there_is_room(
     boards = boards_of(designs("published"))
     flange = {part.ref: part for part in with_courtyards(boards["flange"]).components}
     header, resistor = flange["J3"], flange["R2"]
-    assert around_mm(header.courtyard, header.footprint.shroud.box) == pytest.approx(CONTACTS_MM)
+    assert around_mm(header.shroud_yard, header.footprint.shroud.box) == pytest.approx(CONTACTS_MM)
+    assert around_mm(header.courtyard, land(header.footprint)) == pytest.approx(CONTACTS_MM)
     assert around_mm(resistor.courtyard, land(resistor.footprint)) == pytest.approx(PART_MM)
 
 
-def test_a_shroud_over_another_part_is_left_out(designs: Callable[[str], Design]) -> None:
+def test_a_part_under_a_shroud_is_refused(designs: Callable[[str], Design]) -> None:
     board = boards_of(designs("published"))["flange"]
-    header = next(part for part in board.components if part.ref == "J3")
-    under = replace(
-        next(part for part in board.components if part.ref == "R2"),
-        x_mm=header.x_mm,
-        y_mm=header.y_mm + 5.0,
-    )
-    parts = tuple(under if part.ref == "R2" else part for part in board.components)
-    drawn = {p.ref: p for p in with_courtyards(replace(board, components=parts)).components}
-    assert not overlap(courtyard(drawn["J3"]), courtyard(drawn["R2"]))
-    assert drawn["J2"].courtyard.y_min_mm == pytest.approx(-12.51)
+    parts = {part.ref: part for part in board.components}
+    header = parts["J3"]
+    parts["R2"] = replace(parts["R2"], x_mm=header.x_mm, y_mm=header.y_mm + 5.0)
+    with pytest.raises(BuildError, match=r"J3 .* and R2 .* overlap|R2 .* and J3 .* overlap"):
+        refuse_misplaced("flange", tuple(parts.values()), inside=None)

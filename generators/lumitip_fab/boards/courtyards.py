@@ -20,13 +20,8 @@ _APART_MM = 0.002  # between courtyards that would touch
 _STEP_MM = 1e-4
 
 
-def land(shape: Footprint, shroud: bool = False) -> Box:
-    """Pads and body.
-
-    Args:
-        shape: land pattern with body.
-        shroud: whether the shroud of a box header counts.
-    """
+def land(shape: Footprint) -> Box:
+    """Pads and body, without the shroud of a box header."""
     boxes = [
         Box(
             pad.x_mm - pad.width_mm / 2,
@@ -37,7 +32,6 @@ def land(shape: Footprint, shroud: bool = False) -> Box:
         for pad in shape.pads
     ]
     boxes += [shape.body] if shape.height_mm else []
-    boxes += [shape.shroud.box] if shape.shroud and shroud else []
     return Box(
         min(box.x_min_mm for box in boxes),
         max(box.x_max_mm for box in boxes),
@@ -47,18 +41,11 @@ def land(shape: Footprint, shroud: bool = False) -> Box:
 
 
 def with_courtyards(board: Placement) -> Placement:
-    """The board with the courtyards to draw. The shroud of a box header is left out where another
-    part is under it."""
+    """The board with the courtyards to draw, those of shrouds too."""
     parts = board.components
     if not parts:
         return board
     inner = {shape.library_name: land(shape) for shape in (part.footprint for part in parts)}
-    under = _under_shrouds(parts, inner)
-    inner |= {
-        part.footprint.library_name: land(part.footprint, shroud=True)
-        for part in parts
-        if part.footprint.shroud and part.footprint.library_name not in under
-    }
     least: dict[str, float] = {}
     for part, around in zip(parts, _around_mm(parts, inner).tolist(), strict=True):
         name = part.footprint.library_name
@@ -66,23 +53,18 @@ def with_courtyards(board: Placement) -> Placement:
     drawn = tuple(
         part
         if part.kind == "fiducial"
-        else dataclasses.replace(part, courtyard=inner[name].grown(least[name]))
+        else dataclasses.replace(
+            part, courtyard=inner[name].grown(least[name]), shroud_yard=_shroud_yard(part)
+        )
         for part in parts
         for name in (part.footprint.library_name,)
     )
     return dataclasses.replace(board, components=drawn)
 
 
-def _under_shrouds(parts: tuple[PlacedComponent, ...], inner: dict[str, Box]) -> set[str]:
-    """Footprints whose shroud is over another part on some place of the board."""
-    found = set()
-    for part in parts:
-        if part.footprint.shroud:
-            name = part.footprint.library_name
-            trial = inner | {name: land(part.footprint, shroud=True)}
-            gaps = _gaps_mm(parts, trial)[parts.index(part)]
-            found |= {name} if gaps.min() <= _APART_MM else set()
-    return found
+def _shroud_yard(part: PlacedComponent) -> Box | None:
+    shroud = part.footprint.shroud
+    return shroud.box.grown(CONTACTS_MM) if shroud else None
 
 
 def _around_mm(parts: tuple[PlacedComponent, ...], inner: dict[str, Box]) -> NDArray[np.float64]:

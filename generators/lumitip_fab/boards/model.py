@@ -43,6 +43,8 @@ class PlacedComponent(Component):
 
     courtyard: Box = field(kw_only=True)
     """Body and pads with half the gap that parts keep, in the footprint's frame."""
+    shroud_yard: Box | None = None
+    """The same of a box header's shroud, in the file that is written."""
     outline: tuple[Stroke, ...] = ()
     """Outline and polarity mark on the silkscreen, in the footprint's frame."""
     ref_text: Text | None = None

@@ -60,7 +60,7 @@ def corners(board: Placement) -> tuple[Corner, ...]:
 def outline_area(board: Placement) -> Polygon:
     """The board without its holes."""
     outline, r = board.outline, board.corner_mm
-    whole = box(outline.x_min_mm, outline.y_min_mm, outline.x_max_mm, outline.y_max_mm)
+    whole = box(*outline.bounds_mm)
     return whole.buffer(-r, join_style="mitre").buffer(r, quad_segs=_QUARTER_STEPS) if r else whole
 
 

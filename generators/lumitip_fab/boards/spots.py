@@ -6,7 +6,7 @@ import numpy as np
 import shapely
 
 from lumitip_fab.boards.model import PlacedComponent
-from lumitip_fab.boards.placed import courtyard
+from lumitip_fab.boards.placed import courtyard, placed_box
 from lumitip_fab.design import Board, Box, Point
 from lumitip_fab.errors import BuildError
 
@@ -18,7 +18,7 @@ Named = tuple[str, Box]
 
 def overlaps(boxes: Sequence[Named]) -> Iterator[tuple[Named, Named]]:
     """Pairs of boxes that overlap by more than noise."""
-    shapes = shapely.box(*np.array([_sides(b.grown(-_NOISE_MM)) for _, b in boxes]).T)
+    shapes = shapely.box(*np.array([b.grown(-_NOISE_MM).bounds_mm for _, b in boxes]).T)
     for i, j in shapely.STRtree(shapes).query(shapes, predicate="intersects").T.tolist():
         if i < j:
             yield boxes[i], boxes[j]
@@ -51,7 +51,7 @@ def fiducials(
     """
     reach = mark.width_mm / 2
     inside = board.box.grown(-reach - edge_mm)
-    low_x, low_y, high_x, high_y = np.array([_sides(box) for box in taken]).T
+    low_x, low_y, high_x, high_y = np.array([box.bounds_mm for box in taken]).T
     drills = np.array(holes)
     found: list[Point] = []
     for x_side, y_side in ((-1, 1), (1, 1), (-1, -1)):
@@ -79,10 +79,6 @@ def fiducials(
     return found[0], found[1], found[2]
 
 
-def _sides(box: Box) -> tuple[float, float, float, float]:
-    return box.x_min_mm, box.y_min_mm, box.x_max_mm, box.y_max_mm
-
-
 def refuse_misplaced(name: str, parts: Sequence[PlacedComponent], inside: Box | None) -> None:
     """Refuse courtyards that overlap or leave the board.
 
@@ -97,8 +93,10 @@ def refuse_misplaced(name: str, parts: Sequence[PlacedComponent], inside: Box | 
     roomier = "give them more room in [board], or " if inside else ""
     remedy = f"{roomier}choose smaller parts"
     for side in dict.fromkeys(part.side for part in parts):
-        yards = [(part.ref, courtyard(part)) for part in parts if part.side == side]
+        yards = [yard for part in parts if part.side == side for yard in _yards(part)]
         for (one, here), (other, there) in overlaps(yards):
+            if one == other:
+                continue
             raise BuildError(
                 f"{name}: {one} at {_corners(here)} and {other} at {_corners(there)} overlap: "
                 f"{remedy}"
@@ -110,6 +108,13 @@ def refuse_misplaced(name: str, parts: Sequence[PlacedComponent], inside: Box | 
                 f"{name}: {part.ref} at {_corners(yard)} leaves the board at {_corners(inside)}: "
                 f"{remedy}"
             )
+
+
+def _yards(part: PlacedComponent) -> Iterator[Named]:
+    """The courtyard, and the shroud of a box header."""
+    yield part.ref, courtyard(part)
+    if part.footprint.shroud:
+        yield part.ref, placed_box(part, part.footprint.shroud.box)
 
 
 def _corners(box: Box) -> str:

@@ -194,4 +194,4 @@ def _area(track: Track) -> shapely.Geometry:
 
 def _board(placement: Placement) -> shapely.Geometry:
     box = placement.outline
-    return shapely.box(box.x_min_mm, box.y_min_mm, box.x_max_mm, box.y_max_mm).exterior
+    return shapely.box(*box.bounds_mm).exterior

@@ -190,7 +190,7 @@ def _kept_out(
     """Copper where none may be."""
     faults = []
     for box in placement.keep_outs:
-        area = shapely.box(box.x_min_mm, box.y_min_mm, box.x_max_mm, box.y_max_mm)
+        area = shapely.box(*box.bounds_mm)
         for i in np.flatnonzero(shapely.dwithin(cores, area, radii - _NOISE_MM)):
             apart = float(area.distance(cores[i]) - radii[i])
             faults.append(Fault("keep-out", (copper[i].net, "keep-out"), *copper[i].at, apart, 0.0))

@@ -24,6 +24,7 @@ from lumitip_fab.checks.board_finger import measure_cell_prints, measure_cells, 
 from lumitip_fab.checks.board_indicator import measure_indicator
 from lumitip_fab.checks.board_probes import measure_probes
 from lumitip_fab.checks.board_read import ReadBoard, names_of, path_of, placed, read_any
+from lumitip_fab.checks.board_shrouds import measure_shrouds
 from lumitip_fab.checks.board_silk import measure_labels, measure_prints, measure_targets
 from lumitip_fab.checks.board_strings import measure_strings
 from lumitip_fab.checks.board_switch import measure_switch
@@ -262,6 +263,7 @@ MEASURES: tuple[Measure[ReadBoard], ...] = (
     measure_plug_in,
     measure_indicator,
     measure_probes,
+    measure_shrouds,
 )
 """Each applies to the boards that have what it measures: a finger's cells, the contacts of a
 coupling, a regulator's hot loop, an antenna's keep-out, flexible layers …"""

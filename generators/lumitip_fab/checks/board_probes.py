@@ -40,17 +40,19 @@ def measure_probes(read: ReadBoard) -> Iterator[Measurement]:
     coupling: on the open face, wide enough, clear of bodies, and with its name beside it."""
     if read.auxiliary is None:
         return
-    wanted, bodies = _wanted(read), shapely.union_all(list(bodies_of(read)))
+    wanted, bodies = _wanted(read), list(bodies_of(read))
     found = [probe for net in wanted for probe in _probes(read, net)]
     good = [probe for probe in found if _reached(read, probe)]
     missing = [net for net in wanted if not any(probe.net == net for probe in good)]
     yield read.count("probes", missing, "nets without a pad for a probe")
-    best = [_best(bodies, [probe for probe in good if probe.net == net]) for net in wanted]
+    taken = shapely.union_all(bodies)
+    best = [_best(taken, [probe for probe in good if probe.net == net]) for net in wanted]
     note = "beyond the least width of a test point or a wire pad"
     wide = min((beyond for beyond, _ in best), default=math.nan)
     yield read.figure("probe_width", wide, -_NOISE_MM, math.inf, note=note)
-    room = min((room for _, room in best), default=math.nan)
-    yield read.figure("probe_room", room, ROOM_MM, math.inf, note="to the nearest body")
+    if bodies:
+        room = min((room for _, room in best), default=math.nan)
+        yield read.figure("probe_room", room, ROOM_MM, math.inf, note="to the nearest body")
     unnamed = [f"{p.ref} has no {p.net} beside it" for p in found if not _named(read, p)]
     yield read.count("probe_names", unnamed, "pads")
 

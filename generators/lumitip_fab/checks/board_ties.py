@@ -12,7 +12,7 @@ from shapely.geometry.base import BaseGeometry
 from lumitip_fab.checks.board_read import ReadBoard
 from lumitip_fab.checks.readers.kicad_board import Part
 from lumitip_fab.checks.result import Measurement
-from lumitip_fab.design import Finger
+from lumitip_fab.design import Box, Finger
 
 PLACE_MM = 0.01
 REACH_MM = 4.5
@@ -40,16 +40,13 @@ def _in_finger(read: ReadBoard, finger: Finger) -> Iterator[Measurement]:
     places = shapely.points(read.sensor([hole.at for hole in read.threads]))
     holes = [(at, hole.drill_mm / 2) for hole, at in zip(read.threads, places, strict=True)]
     for name, box in (("notch", finger.notch), ("window", finger.window)):
-        inside = shapely.box(box.x_min_mm, box.y_min_mm, box.x_max_mm, box.y_max_mm)
+        inside = shapely.box(*box.bounds_mm)
         room = [
             float(inside.exterior.distance(at)) - radius if inside.contains(at) else -math.inf
             for at, radius in holes
         ]
         yield read.figure(f"tie_{name}", min(room, default=-math.inf), 0, math.inf)
-    parts = [
-        shapely.box(part.box.x_min_mm, part.box.y_min_mm, part.box.x_max_mm, part.box.y_max_mm)
-        for part in finger.parts
-    ]
+    parts = [shapely.box(*part.box.bounds_mm) for part in finger.parts]
     discs = [at.buffer(radius) for at, radius in holes]
     yield read.figure("tie_parts", _least_mm(discs, parts), PART_GAP_MM, math.inf)
 
@@ -116,10 +113,14 @@ def bodies_of(read: ReadBoard) -> Iterator[BaseGeometry]:
         if part is None or not shape.height_mm:
             continue
         for box in (shape.body, *([shape.shroud.box] if shape.shroud else [])):
-            flat = shapely.box(box.x_min_mm, box.y_min_mm, box.x_max_mm, box.y_max_mm)
-            on_page = affinity.scale(flat, 1.0, -1.0, origin=(0, 0))
-            turned = affinity.rotate(on_page, -part.angle_deg, origin=(0, 0))
-            yield affinity.translate(turned, *part.at)
+            yield on_page(box, part)
+
+
+def on_page(box: Box, part: Part) -> BaseGeometry:
+    """A rectangle of a footprint's frame where the file has the part; on the page, y down."""
+    flat = affinity.scale(shapely.box(*box.bounds_mm), 1.0, -1.0, origin=(0, 0))
+    turned = affinity.rotate(flat, -part.angle_deg, origin=(0, 0))
+    return affinity.translate(turned, *part.at)
 
 
 def _least_mm(discs: list[BaseGeometry], others: list[BaseGeometry]) -> float:

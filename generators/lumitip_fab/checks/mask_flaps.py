@@ -202,7 +202,7 @@ def _coupling(design: Design) -> Box:
 
 
 def _area(box: Box) -> shapely.Geometry:
-    return shapely.box(box.x_min_mm, box.y_min_mm, box.x_max_mm, box.y_max_mm)
+    return shapely.box(*box.bounds_mm)
 
 
 def folds_of(page: Page, placed: Placed, registration: Points) -> tuple[Points, ...]:

@@ -71,7 +71,7 @@ def _size(path: Path, subject: str, shape: Footprint) -> Measurement:
     except OutputError as error:
         return unreadable("models.size", subject, str(error))
     box = _seen(shape)
-    wanted = np.array([box.x_min_mm, box.y_min_mm, box.x_max_mm, box.y_max_mm, shape.height_mm])
+    wanted = np.array([*box.bounds_mm, shape.height_mm])
     low, high = corners.min(axis=0), corners.max(axis=0)
     off = np.abs(np.array([*low[:2], *high]) - wanted)
     note = f"from {box.width_mm:g} x {box.length_mm:g} x {shape.height_mm:g} mm"

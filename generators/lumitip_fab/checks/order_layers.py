@@ -64,7 +64,7 @@ def measure_stiffener(path: str, layers: Mapping[str, bytes], wanted: Box) -> Me
     off = math.nan
     if isinstance(drawn, shapely.Polygon) and len(drawn.interiors) == 1:
         middle = np.add(drawn.exterior.bounds, drawn.interiors[0].bounds) / 2
-        edges = (wanted.x_min_mm, wanted.y_min_mm, wanted.x_max_mm, wanted.y_max_mm)
+        edges = wanted.bounds_mm
         off = float(np.abs(middle - edges).max())
     return Measurement("orders.stiffener", path, off, 0, PLACE_MM, "mm", "its outline")
 

@@ -36,6 +36,11 @@ class Box:
         return self.y_max_mm - self.y_min_mm
 
     @property
+    def bounds_mm(self) -> tuple[float, float, float, float]:
+        """Left, low, right and high side."""
+        return self.x_min_mm, self.y_min_mm, self.x_max_mm, self.y_max_mm
+
+    @property
     def centre_mm(self) -> Point:
         """Its middle."""
         return (self.x_min_mm + self.x_max_mm) / 2, (self.y_min_mm + self.y_max_mm) / 2

@@ -2,13 +2,16 @@
 
 from collections.abc import Iterator
 
+import shapely
+
 from lumitip_fab.boards.kicad.sexpr import Node, Quoted
-from lumitip_fab.boards.model import Stroke
+from lumitip_fab.boards.model import PlacedComponent, Stroke
 from lumitip_fab.boards.silk.shrouds import notch
 from lumitip_fab.design import Box, Footprint
 from lumitip_fab.design.pcb import MODELS
 
 _FAB_MM = 0.1
+_COURTYARD_MM = 0.05
 _FOLDER = f"${{KIPRJMOD}}/../{MODELS.rpartition('/')[2]}"
 
 
@@ -18,6 +21,15 @@ def body_strokes(shape: Footprint) -> Iterator[Stroke]:
     if shape.shroud:
         yield around(shape.shroud.box, _FAB_MM)
         yield from (Stroke(ends, _FAB_MM) for ends in notch(shape.shroud))
+
+
+def courtyard_strokes(part: PlacedComponent) -> Iterator[Stroke]:
+    """The courtyard, with that of the shroud as one outline where they meet: KiCad takes lines
+    that cross for a fault."""
+    yards = [yard for yard in (part.courtyard, part.shroud_yard) if yard]
+    joined = shapely.union_all([shapely.box(*yard.bounds_mm) for yard in yards])
+    for area in shapely.get_parts(joined.normalize()):
+        yield Stroke(tuple(area.exterior.coords), _COURTYARD_MM)
 
 
 def around(box: Box, width_mm: float) -> Stroke:

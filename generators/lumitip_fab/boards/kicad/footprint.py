@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import replace
 
-from lumitip_fab.boards.kicad.bodies import around, body_strokes, model
+from lumitip_fab.boards.kicad.bodies import body_strokes, courtyard_strokes, model
 from lumitip_fab.boards.kicad.sexpr import FORMAT, Node, Quoted, written
 from lumitip_fab.boards.model import (
     PlacedComponent,
@@ -25,7 +25,6 @@ def effects(text: Text, mirrored: bool) -> Node:
 
 LIBRARY = "lumitip"
 HOLE = "MountingHole"
-_COURTYARD_MM = 0.05
 
 
 def placed_footprint(
@@ -189,7 +188,7 @@ class _Writer:
         shape = self.component.footprint
         drawn = [("SilkS", stroke) for stroke in self.component.outline]
         drawn += [("Fab", stroke) for stroke in body_strokes(shape)]
-        drawn.append(("CrtYd", around(self.component.courtyard, _COURTYARD_MM)))
+        drawn += [("CrtYd", stroke) for stroke in courtyard_strokes(self.component)]
         count = 0
         for layer, stroke in drawn:
             for start, end in zip(stroke.points, stroke.points[1:], strict=False):

@@ -64,7 +64,7 @@ def via_room(placement: Placement, routing: Routing, via_mm: float, drill_mm: fl
     ]
     if placement.flexible:
         bend = placement.flexible.bend.grown(radius)
-        taken.append(shapely.box(bend.x_min_mm, bend.y_min_mm, bend.x_max_mm, bend.y_max_mm))
+        taken.append(shapely.box(*bend.bounds_mm))
     apart = drill_mm + DRILL_WALL_MM + MARGIN_MM
     taken += [shapely.Point(v.x_mm, v.y_mm).buffer(apart) for v in routing.vias]
     board = _board(placement, radius)
@@ -120,9 +120,7 @@ def _board(placement: Placement, radius_mm: float) -> Geometry:
         for at, diameter_mm in placement.unplated
     ]
     left_out += [
-        shapely.box(box.x_min_mm, box.y_min_mm, box.x_max_mm, box.y_max_mm).buffer(
-            radius_mm, join_style="mitre"
-        )
+        shapely.box(*box.bounds_mm).buffer(radius_mm, join_style="mitre")
         for box in placement.keep_outs
     ]
     return shapely.difference(whole, shapely.union_all(left_out))

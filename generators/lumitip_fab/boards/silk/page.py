@@ -41,7 +41,7 @@ class Clear:
     def of(cls, board: Placement, side: Side, gap_mm: float, line_mm: float) -> "Clear":
         """A side with its pads, its holes and the lines of its footprints."""
         box = board.outline.grown(-board.corner_mm)
-        inner = shapely.box(box.x_min_mm, box.y_min_mm, box.x_max_mm, box.y_max_mm)
+        inner = shapely.box(*box.bounds_mm)
         rim = inner.buffer(board.corner_mm - gap_mm, quad_segs=16)
         taken: list[BaseGeometry] = [
             shapely.Point(at).buffer(diameter_mm / 2) for at, diameter_mm in board.unplated

@@ -87,10 +87,10 @@ def derive_module(
         _module(config, module, muxing, at),
         *_beside(config),
         *_supply(config, supplies),
-        wires("J4", receiver, connectors.NARROW, (left + 7.9, -22.6)),
+        wires("J4", receiver, connectors.NARROW, (left + 7.9, -20.8)),
         wires("J5", lit, connectors.WIDE, (J5_END_MM - (len(lit) - 1) / 2 * pitch, -14.0)),
-        wires("J6", ("VUSB", "D-", "D+", "GND"), connectors.WIDE, (-20.4, 22.6)),
-        wires("J7", (CONTROLLER, "DIO", "CLK", "RST", "GND"), connectors.WIDE, (-20.6, 16.2)),
+        wires("J6", ("VUSB", "D-", "D+", "GND"), connectors.WIDE, (-21.0, 20.25)),
+        wires("J7", (CONTROLLER, "DIO", "CLK", "RST", "GND"), connectors.WIDE, (-20.6, 15.5)),
     )
     return Wing(
         box=Box(left, box.x_max_mm, box.y_min_mm, box.y_max_mm),

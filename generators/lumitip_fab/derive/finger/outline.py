@@ -123,7 +123,7 @@ def _least_rim(outline: Outline, board: Board) -> tuple[float, Point]:
     from shapely import Polygon, box, make_valid
 
     pocket = board.pocket
-    hole = box(pocket.x_min_mm, pocket.y_min_mm, pocket.x_max_mm, pocket.y_max_mm)
+    hole = box(*pocket.bounds_mm)
     skin = Polygon(outline.polygon())
     corners = np.array(skin.exterior.coords)
     dx = np.maximum(np.abs(corners[:, 0]) - pocket.x_max_mm, 0)
