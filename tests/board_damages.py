@@ -1,7 +1,9 @@
 """Ways to hurt a written board file, shared by the tests of its checks."""
 
 import re
+import zipfile
 from collections.abc import Callable
+from pathlib import Path
 
 import shapely
 
@@ -31,6 +33,18 @@ def shifted(dx_mm: float, dy_mm: float) -> Callable[[re.Match[str]], str]:
 def moved_part(text: str, ref: str, dx_mm: float, dy_mm: float) -> str:
     """A footprint moved on the page."""
     return in_part(text, ref, r"\(at (\S+) (\S+?)( \S+\)|\))", shifted(dx_mm, dy_mm))
+
+
+def rezip(path: Path, damage: Callable[[dict[str, bytes]], None]) -> None:
+    """Change the files of a zip."""
+    with zipfile.ZipFile(path) as package:
+        files = {name: package.read(name) for name in package.namelist()}
+    before = dict(files)
+    damage(files)
+    assert files != before
+    with zipfile.ZipFile(path, "w") as package:
+        for name, data in files.items():
+            package.writestr(name, data)
 
 
 def swapped_pads(text: str, ref: str, one: str, other: str) -> str:

@@ -11,6 +11,7 @@ import pytest
 
 from lumitip_fab.checks.run import modules_reading, run_checks
 from lumitip_fab.cli.build import build
+from panelled_boards import write_panelled
 
 TESTS = Path(__file__).parent
 DESIGN = TESTS.parent / "design"
@@ -68,6 +69,12 @@ def built(once: Once) -> Callable[[str], Path]:
 def outputs(built: Callable[[str], Path]) -> Path:
     """The published design, built. Do not change it: `damaged` is a copy."""
     return built("published")
+
+
+@pytest.fixture(scope="session")
+def panelled(once: Once) -> Path:
+    """Receiver and flange of a small design, each with its panel. Do not change it."""
+    return once("panelled", lambda out: write_panelled(DESIGN, out))
 
 
 @pytest.fixture

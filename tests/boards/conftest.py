@@ -17,6 +17,7 @@ from lumitip_fab.design import Design
 from lumitip_fab.design.encoding import design_text
 from lumitip_fab.models.files import model_files
 from lumitip_fab.pipeline.graph import tasks
+from panelled_boards import PANELLED
 
 Boards = Callable[[str], Path]
 
@@ -45,12 +46,14 @@ indicator = "auto"
 
 @pytest.fixture(scope="session")
 def designs(design_dir: Path, tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Design]:
-    """`designs("dense")`: a preset's design; `"small"` is a grid of 13 cells on two muxes, and
-    `"switched"` the same with a transistor that switches the LEDs, and a power LED."""
+    """`designs("dense")`: a preset's design; `"small"` is a grid of 13 cells on two muxes,
+    `"switched"` the same with a transistor that switches the LEDs and a power LED, `"panelled"`
+    with panels."""
     folder = tmp_path_factory.mktemp("designs") / "design"
     shutil.copytree(design_dir, folder)
     (folder / "presets" / "small.toml").write_text(SMALL)
     (folder / "presets" / "switched.toml").write_text(SWITCHED)
+    (folder / "presets" / "panelled.toml").write_text(PANELLED)
     return lambda preset: derive(load(folder / "presets" / f"{preset}.toml"))
 
 

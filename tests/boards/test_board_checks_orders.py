@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from board_damages import rezip
 from damages import cut_short, failing, swap
 from lumitip_fab.checks import orders
 from lumitip_fab.design.encoding import read_design
@@ -20,18 +21,6 @@ FIRST, SECOND = "generic", "jlcpcb"
 
 def folder_of(boards: Path) -> Path:
     return boards / "boards" / "receiver" / "order"
-
-
-def rezip(path: Path, damage: Damage) -> None:
-    """Change the files of a zip."""
-    with zipfile.ZipFile(path) as package:
-        files = {name: package.read(name) for name in package.namelist()}
-    before = dict(files)
-    damage(files)
-    assert files != before
-    with zipfile.ZipFile(path, "w") as package:
-        for name, data in files.items():
-            package.writestr(name, data)
 
 
 def edit(files: Files, ending: str, pattern: bytes, put: bytes) -> None:

@@ -134,7 +134,10 @@ def test_every_parameter_that_is_named_exists() -> None:
             assert field in tables[table].annotation.model_fields, f"{table}.{field}"  # type: ignore[union-attr]
 
 
-def test_every_check_that_is_named_exists(outputs: Path, built: Callable[[str], Path]) -> None:
+def test_every_check_that_is_named_exists(
+    outputs: Path, built: Callable[[str], Path], panelled: Path
+) -> None:
     known = run_checks(outputs, MODULES).names | run_checks(built("asymmetric"), MODULES).names
+    known |= run_checks(panelled, ["panels"]).names
     assert set(PARAMETERS) | DRAWN_AT_THE_LIMIT <= known
     assert parameters_of("no.such_check") == ()

@@ -53,6 +53,7 @@ CHANGES: dict[str, Any] = {
     "board.via_mm": 0.7,
     "board.via_drill_mm": 0.25,
     "board.edge_gap_mm": 0.6,
+    "board.panel": "rails",
     "emitter.led": "other",
     "emitter.current_ma": 15.0,
     "emitter.string_leds": 12,

@@ -7,6 +7,7 @@ from lumitip_fab.boards.fab.picture import picture_files
 from lumitip_fab.boards.kicad.project import project_files
 from lumitip_fab.boards.kicad.schematic import schematic_files
 from lumitip_fab.boards.model import BoardModel, Placement
+from lumitip_fab.boards.panel.files import panel_files
 from lumitip_fab.boards.placement import place
 from lumitip_fab.boards.pour import pour
 from lumitip_fab.boards.route import route
@@ -18,13 +19,15 @@ from lumitip_fab.pipeline.artefact import Artefact
 
 
 def board_files(design: Design, board: Finger | AuxiliaryBoard) -> tuple[Artefact, ...]:
-    """Every file of a board: KiCad project, pictures of both sides, orders.
+    """Every file of a board: KiCad project, pictures of both sides, orders; and of its panel.
 
     Raises:
-        BuildError: if a part or a label has no room, a net cannot be routed, or the finished
-            copper breaks its rules.
+        BuildError: if a part, a label or a tab has no room, a net cannot be routed, or the
+            finished copper breaks its rules.
     """
-    return model_files(design, finished(place(design, board)))
+    model = finished(place(design, board))
+    panels = (panel_files(design, p, model) for p in design.panels if p.board == board.name)
+    return (*model_files(design, model), *(file for files in panels for file in files))
 
 
 def finished(placement: Placement) -> BoardModel:

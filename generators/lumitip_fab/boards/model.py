@@ -82,6 +82,10 @@ class Cells:
     """Least gap between two of them."""
 
 
+Slot = tuple[tuple[Point, float], ...]
+"""A routed opening, counter-clockwise: its corners, which are square, each with its radius."""
+
+
 @dataclass(frozen=True)
 class Placement:
     """A board before it has copper."""
@@ -122,6 +126,15 @@ class Placement:
     thickness_mm: float = 1.6
     ties: tuple[tuple[Point, float], ...] = ()
     """Unplated holes for the threads that hold the cables, with their diameters."""
+    slots: tuple[Slot, ...] = ()
+    """Routed openings of a panel."""
+    pours: tuple[tuple[str, Box], ...] = ()
+    """Net and outline of the pour of each copy in a panel."""
+
+    @property
+    def poured(self) -> tuple[tuple[str, Box], ...]:
+        """Net and outline of each pour; one on a board by itself."""
+        return self.pours or ((self.ground, self.outline),)
 
     @property
     def unplated(self) -> tuple[tuple[Point, float], ...]:

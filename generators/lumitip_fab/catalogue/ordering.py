@@ -47,6 +47,44 @@ class Silk(Strict):
     """Least distance between silkscreen and pads."""
 
 
+Side = Annotated[float, Field(ge=1, le=1000)]
+
+
+class PanelLimits(Sourced):
+    """Figures of a PCB fab that assembles boards and panels."""
+
+    least_mm: tuple[Side, Side]
+    """Smallest board or panel that it assembles."""
+    most_mm: tuple[Side, Side]
+    """Largest one."""
+    rail_mm: Length
+    """Least width of a rail."""
+    fiducial_mm: Length
+    """Diameter of a fiducial's copper."""
+    fiducial_opening_mm: Length
+    """Diameter of the mask's opening round it."""
+    fiducial_edge_mm: Length
+    """Panel's edge to that opening, at least."""
+    tooling_mm: Length
+    """Diameter of the unplated tooling holes."""
+    gap_mm: Length
+    """Width of a routed gap, which is that of the milling cutter."""
+    bite_mm: Length
+    """Diameter of the holes of a mouse bite."""
+    bite_web_mm: Length
+    """Board left between two of them."""
+    bites: int = Field(ge=2, le=20)
+    """Least number of them in a row."""
+    tab_every_mm: Length
+    """An edge has a tab for each such length, and two at least."""
+    copper_mm: Length
+    """Copper to a tab and to the holes of its mouse bite."""
+    part_mm: Length
+    """Mounted parts to a tab."""
+    pad_mm: Length
+    """Pads for wires, and unplated holes of a board, to a tab."""
+
+
 class Fab(Entry):
     """A PCB fab: its names of files and columns, and its angles."""
 
@@ -59,6 +97,8 @@ class Fab(Entry):
     """Heading and field of each column of the placement list."""
     silk: Silk
     """Limits of its silkscreen."""
+    panel: PanelLimits | None = None
+    """Figures of its panels; none of a fab that takes every board alone."""
     remark: str = Field(default="", max_length=300)
     """Remark on ordering there, for the note in its zip."""
     sides: tuple[Heading, Heading]

@@ -114,15 +114,15 @@ def measure_lands(read: ReadBoard) -> Iterator[Measurement]:
         yield read.count("other_parts", others, "parts")
         wanted: dict[str, Component | None] = {device.ref: device for device in read.components}
     else:
-        shapes = _footprints(read)
-        wanted = {p.ref: _as_it_lies(read, p, shapes) for p in read.board.parts if _has_copper(p)}
+        shapes = footprints_of(read)
+        wanted = {p.ref: as_it_lies(read, p, shapes) for p in read.board.parts if _has_copper(p)}
     off = {ref: _off_mm(read, device, read.parts.get(ref)) for ref, device in wanted.items()}
     worst = max(off, key=lambda ref: math.inf if math.isnan(off[ref]) else off[ref])
     yield read.figure("lands", off[worst], 0, LAND_MM, note=f"worst at {worst}")
 
 
-def _footprints(read: ReadBoard) -> dict[str, Footprint]:
-    """Footprints of a finger's parts, by name."""
+def footprints_of(read: ReadBoard) -> dict[str, Footprint]:
+    """Footprints of a board's parts, by name."""
     shapes = [shape for _, shape in footprints.of_design(read.design)]
     shapes += [footprints.dot("TestPoint"), footprints.dot("Fiducial")]
     if read.finger:
@@ -132,7 +132,7 @@ def _footprints(read: ReadBoard) -> dict[str, Footprint]:
     return {shape.library_name: shape for shape in shapes}
 
 
-def _as_it_lies(read: ReadBoard, part: Part, shapes: dict[str, Footprint]) -> Component | None:
+def as_it_lies(read: ReadBoard, part: Part, shapes: dict[str, Footprint]) -> Component | None:
     """A part where the file has it, with the footprint of its name; none if there is no such."""
     if part.footprint not in shapes:
         return None

@@ -74,6 +74,11 @@ class ReadBoard(Subject):
         return self.auxiliary.hole_mm if self.auxiliary else self.design.board.hole_mm
 
     @property
+    def copy_ends(self) -> tuple[str, str]:
+        """Ends of the references in its first and last copy; empty on a board by itself."""
+        return "", ""
+
+    @property
     def cells_hold(self) -> AtCells | None:
         """The parts at its cells."""
         return self.finger.cells_hold if self.finger else None

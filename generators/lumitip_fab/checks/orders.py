@@ -12,6 +12,7 @@ import shapely
 
 from lumitip_fab.checks.board_read import ReadBoard, names_of, path_of, read_any
 from lumitip_fab.checks.order_layers import Painted, measure_layers, measure_stiffener
+from lumitip_fab.checks.panel_read import read_panel
 from lumitip_fab.checks.readers.kicad_board import Part
 from lumitip_fab.checks.readers.tables import table, unpacked
 from lumitip_fab.checks.result import Measurement, count, unreadable
@@ -25,25 +26,26 @@ SIZE_MM = 0.006
 TURN_DEG = 0.1
 _Files = dict[str, bytes]
 _TERMINALS = re.compile(
-    r"^(?P<ref>[DQ]\d+)  (?P<one>[a-z]+) (?P<x1>\S+) (?P<y1>\S+)  "
+    r"^(?P<ref>[DQ]\d+(?:_\d+)?)  (?P<one>[a-z]+) (?P<x1>\S+) (?P<y1>\S+)  "
     r"(?P<other>[a-z]+) (?P<x2>\S+) (?P<y2>\S+)$",
     re.MULTILINE,
 )
 """A row of the assembly note: a part, the terminal at pad 1 and the other, each with its place."""
-_FIRST_PADS = re.compile(r"^(?P<ref>[A-Z]+\d+)  (?P<x>\S+) (?P<y>\S+)$", re.MULTILINE)
+_FIRST_PADS = re.compile(r"^(?P<ref>[A-Z]+\d+(?:_\d+)?)  (?P<x>\S+) (?P<y>\S+)$", re.MULTILINE)
 """A row of an auxiliary board's note: a part and the place of its first pad."""
 
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
-    """Every zip of every board."""
-    for name in names_of(design):
+    """Every zip of every board and panel."""
+    for name in (*names_of(design), *(panel.name for panel in design.panels)):
         yield from measure_board(outputs, design, name)
 
 
 def measure_board(outputs: Path, design: Design, name: str) -> Iterator[Measurement]:
-    """Every zip of one board; all are to have the same layers."""
+    """Every zip of one board or panel; all are to have the same layers."""
     try:
-        read = read_any(outputs, design, name)
+        panels = [panel for panel in design.panels if panel.name == name]
+        read = read_panel(outputs, design, *panels) if panels else read_any(outputs, design, name)
     except OutputError as error:
         yield unreadable("orders.board", path_of(name), str(error))
         return
@@ -160,7 +162,7 @@ def _misled(read: ReadBoard, finger: Finger, note: str) -> Iterator[str]:
         not chip.mark_is_known and f"{chip.marked} is {chip.mark_confidence}" not in note
     ):
         yield "the mark"
-    of_cell = re.compile(rf"{finger.cells_hold.letter}\d+")
+    of_cell = re.compile(rf"{finger.cells_hold.letter}\d+(_\d+)?")
     for part in (p for p in read.board.parts if of_cell.fullmatch(p.ref)):
         row, pads = terminals.get(part.ref), {t.number: t.at for t in part.terminals}
         wanted = read.sensor([pads["1"], pads["2"]])
@@ -203,7 +205,11 @@ def _unstopped(read: ReadBoard, finger: Finger, files: _Files) -> Iterator[str]:
         yield STOP_FILE
     elif text:
         letter, last = finger.cells_hold.letter, len(finger.cells)
-        cells = f"{letter}1" if last == 1 else f"{letter}1 to {letter}{last}"
+        ends = [
+            f"{at}{copy}"
+            for at, copy in zip((f"{letter}1", f"{letter}{last}"), read.copy_ends, strict=True)
+        ]
+        cells = " to ".join(dict.fromkeys(ends))
         named = text.startswith(f"STOP: do not place {cells} ") and f"\n{cells}: " in text
         if not named or chip.order_number not in text:
             yield f"{cells} in {STOP_FILE}"

@@ -36,6 +36,7 @@ MODULES = (
     "models",
     "schematic",
     "orders",
+    "panels",
     "printing",
     "holder",
     "flange",

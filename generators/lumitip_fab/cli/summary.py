@@ -25,6 +25,11 @@ DRAWN_AT_THE_LIMIT = frozenset(
         "board.supply_width",
         "board.track_width",
         "board.via_ring",
+        "panels.fiducial_edge",
+        "panels.fiducial_opening",
+        "panels.fiducials",
+        "panels.tab_copper",
+        "panels.web",
         "wiring.current",
     }
 )

@@ -17,7 +17,16 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from lumitip_fab.catalogue.record import Name, Strict
-from lumitip_fab.config.sections import Breakout, DeviceName, Flange, Flex, Holder, Module, Text
+from lumitip_fab.config.sections import (
+    Board,
+    Breakout,
+    DeviceName,
+    Flange,
+    Flex,
+    Holder,
+    Module,
+    Text,
+)
 
 REVISION = r"^[A-Za-z0-9.\-]{1,8}$"
 Gap = Annotated[float, Field(ge=0, le=20)]
@@ -102,39 +111,6 @@ class Coupling(Strict):
 
     gripper: Name
     """Name of a gripper in `parts/grippers.toml`."""
-
-
-class Board(Strict):
-    """Margins and zones of the two boards, which share one outline."""
-
-    side_margin_mm: float = Field(ge=1, le=50)
-    """Outermost cell centres to the board's long edges (mm)."""
-    tip_margin_mm: float = Field(ge=1, le=50)
-    """First row of cell centres to the board's tip edge (mm)."""
-    end_margin_mm: float = Field(ge=1, le=20)
-    """Connector row to the board's gripper edge (mm)."""
-    hole_mm: float = Field(ge=1, le=5)
-    """Diameter of the holes for the locating pins (mm)."""
-    hole_edge_mm: float = Field(ge=1, le=20)
-    """Centre of the holes at the tip to the board's tip edge (mm)."""
-    clearance_mm: float = Field(ge=0.1, le=2)
-    """Smallest gap between land patterns of neighbouring parts (mm)."""
-    channel_mm: float = Field(ge=0.5, le=20)
-    """Routing channel after the cells and after each row of multiplexers (mm)."""
-    track_mm: float = Field(ge=0.1, le=1)
-    """Width of signal tracks (mm)."""
-    supply_track_mm: float = Field(ge=0.1, le=3)
-    """Width of the tracks of a supply (mm)."""
-    copper_gap_mm: float = Field(ge=0.1, le=1)
-    """Smallest gap between copper of different nets (mm)."""
-    via_mm: float = Field(ge=0.3, le=2)
-    """Diameter of vias (mm)."""
-    via_drill_mm: float = Field(ge=0.15, le=1)
-    """Hole of vias (mm)."""
-    edge_gap_mm: float = Field(ge=0.2, le=2)
-    """Copper to the edge of every board (mm)."""
-    connector_side: Literal["gripper"]
-    """Edge of the board with the connector."""
 
 
 class Emitter(Strict):

@@ -21,6 +21,7 @@ from lumitip_fab.derive.finger.stack import (
 )
 from lumitip_fab.derive.making import mask, mould
 from lumitip_fab.derive.making.fit_plate import derive_fit_plate
+from lumitip_fab.derive.making.panels import derive_panels
 from lumitip_fab.derive.making.printing import derive_heat, derive_slicing
 from lumitip_fab.derive.making.purchase import derive_purchase
 from lumitip_fab.derive.mount import mount
@@ -94,6 +95,7 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
     holders = derive_holder(config, breakout, faults)
     flange = derive_flange(config, strings, muxing, faults)
     flanges = derive_flange_body(config, flange, faults)
+    panels = derive_panels(config, plan.board.box, (*breakout, *flange), faults)
     circuit = wiring.build_wiring(config, strings, muxing)
     figures = derive_electrical(config, strings, circuit.pull_ups, faults)
     joints = Boards(plan.emitter, plan.receiver, (*breakout, *flange))
@@ -146,6 +148,7 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
             fabs=derive_fabs(config),
             fasteners=fasteners,
             auxiliary_boards=(*breakout, *flange),
+            panels=panels,
             holders=holders,
             flanges=flanges,
             system=derive_system(config, flanges, holders),

@@ -60,6 +60,7 @@ from lumitip_fab.design.mount import (
     ToolContact,
 )
 from lumitip_fab.design.ordering import Bought, Fab, PartPrice, Purchase
+from lumitip_fab.design.panel import Panel, PanelRules
 from lumitip_fab.design.pcb import (
     AuxiliaryBoard,
     Component,
@@ -119,6 +120,8 @@ __all__ = [
     "Outline",
     "Packages",
     "Pad",
+    "Panel",
+    "PanelRules",
     "Part",
     "PartPrice",
     "Photodetector",
@@ -209,6 +212,8 @@ class Design:
     """Every thread that holds something, once."""
     auxiliary_boards: tuple[AuxiliaryBoard, ...]
     """Boards outside the fingers."""
+    panels: tuple[Panel, ...]
+    """Panels of the boards that are too small to be assembled alone, if they are asked for."""
     holders: tuple[Holder, ...]
     """Holders of the breakout board; none without that board."""
     flanges: tuple[Flange, ...]

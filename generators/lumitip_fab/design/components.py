@@ -171,12 +171,14 @@ def probe(
     return copper(ref, "test point", signal, shape, numbered([signal]), at, side)
 
 
-def fiducials(places: Sequence[Point]) -> tuple[Component, ...]:
-    """Marks for the placing machine's camera."""
-    shape = footprints.dot("Fiducial")
+def fiducials(
+    places: Sequence[Point], diameter_mm: float = 1.0, side: Side = "front", first: int = 1
+) -> tuple[Component, ...]:
+    """Marks for the placing machine's camera; their numbers begin at `first`."""
+    shape = footprints.dot("Fiducial", diameter_mm)
     return tuple(
-        copper(f"FID{i}", "fiducial", "Fiducial", shape, (), at)
-        for i, at in enumerate(places, start=1)
+        copper(f"FID{i}", "fiducial", "Fiducial", shape, (), at, side=side)
+        for i, at in enumerate(places, start=first)
     )
 
 

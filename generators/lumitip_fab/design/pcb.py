@@ -4,6 +4,7 @@ Frame of a board outside the fingers: seen from its front, origin at the middle 
 the right, y up. Every length is in mm.
 """
 
+import math
 from dataclasses import dataclass
 from typing import Literal
 
@@ -125,6 +126,24 @@ class Component:
     """Number at the distributor LCSC; empty where it is not known."""
     pins: tuple[str, ...] = ()
     """Name of each pad, in the order of the pads; empty where a part has no names."""
+
+    @property
+    def body_on_board(self) -> Box:
+        """The upright rectangle round its body, with a box header's shroud, in its place."""
+        boxes = [self.footprint.body]
+        if self.footprint.shroud:
+            boxes.append(self.footprint.shroud.box)
+        turn = math.radians(self.angle_deg)
+        c, s = round(math.cos(turn), 9), round(math.sin(turn), 9)
+        mirror = -1 if self.side == "back" else 1
+        corners = [
+            (self.x_mm + mirror * x * c - y * s, self.y_mm + mirror * x * s + y * c)
+            for box in boxes
+            for x in (box.x_min_mm, box.x_max_mm)
+            for y in (box.y_min_mm, box.y_max_mm)
+        ]
+        xs, ys = zip(*corners, strict=True)
+        return Box(min(xs), max(xs), min(ys), max(ys))
 
     @property
     def contacts(self) -> bool:

@@ -55,6 +55,8 @@ def electronics(design: Design, files: Files) -> Iterator[Line]:
     found: dict[tuple[str, str, str], dict[str, int]] = {}
     for path in files.like("boards/*/*.kicad_pcb"):
         board = path.split("/")[1]
+        if "parts" not in files.facts(path):
+            continue  # a panel, whose parts are those of its board
         for row in files.facts(path)["parts"]:
             ref, letter = row["refs"].split(",")[0], row["refs"][0]
             usual = _ON_BOARD.get((board, letter), _KINDS[letter])

@@ -137,7 +137,7 @@ def _boards(design: Design, files: Files) -> str:
 Each board has a zip for each PCB fab, with Gerber and drill files, parts and places:
 
 {zips}
-
+{_panels(design)}
 {polarity_test(design.packages)}1. Order the boards, or have them placed as well.
    `..._fabrication.txt` in each zip has thickness, copper and colour. Finger boards are matte
    black, because they must not reflect infrared light.
@@ -145,6 +145,24 @@ Each board has a zip for each PCB fab, with Gerber and drill files, parts and pl
 3. Before the wires go in, measure between ground and supply of each board: no short.
 
 {pictures}"""
+
+
+def _panels(design: Design) -> str:
+    """Panels to order instead of boards, for a fab that assembles them."""
+    if not design.panels:
+        return ""
+    listed = "\n".join(
+        f"- `boards/{panel.name}/order/`: {len(panel.copies)} times {panel.board}"
+        for panel in design.panels
+    )
+    return f"""
+A PCB fab that assembles boards takes these panels instead, as a panel by the customer:
+
+{listed}
+
+Break the boards out along the mouse bites, with pliers close to the tab, and file the edges flush:
+a finger's board fits its pocket with {design.board.pocket_clearance_mm:g} mm on each side.
+"""
 
 
 def _cast(files: Files) -> str:

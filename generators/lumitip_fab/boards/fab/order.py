@@ -80,9 +80,11 @@ def _table(columns: Iterable[tuple[str, str]], rows: Iterable[Row]) -> bytes:
     return file.getvalue().encode()
 
 
-def _natural(ref: str) -> tuple[str, int]:
-    letters, number = re.fullmatch(r"(\D*)(\d*)", ref).groups()  # type: ignore[union-attr]
-    return letters, int(number or 0)
+def _natural(ref: str) -> tuple[str, int, int]:
+    """Letters, number and, in a panel, copy."""
+    found = re.fullmatch(r"(\D*)(\d*)(?:_(\d+))?", ref)
+    letters, number, copy = found.groups()  # type: ignore[union-attr]
+    return letters, int(number or 0), int(copy or 0)
 
 
 _EPOCH = (1980, 1, 1, 0, 0, 0)

@@ -14,12 +14,13 @@ from lumitip_fab.boards.model import (
     THERMAL_GAP_MM,
     THERMAL_SPOKE_MM,
     BoardModel,
+    Fill,
     Placement,
     stable_uuid,
 )
 from lumitip_fab.boards.outline import EDGE_MM, corners, fractured, straight_edges
 from lumitip_fab.boards.silk.strokes import upright
-from lumitip_fab.design import Box, Point, Side
+from lumitip_fab.design import Box, Point
 from lumitip_fab.design.frames import BOARD_ON_PAGE_MM, on_board_page
 
 COPPER = {"front": "F.Cu", "back": "B.Cu"}
@@ -55,19 +56,22 @@ def vias(model: BoardModel, numbers: dict[str, int]) -> Iterator[Node]:
 
 def zones(model: BoardModel, numbers: dict[str, int]) -> Iterator[Node]:
     """The pour of each side: the whole board as its outline, and filled as it will be."""
-    for side in SIDES:
-        if any(fill.side == side for fill in model.fills):
-            yield _zone(model, numbers, side)
+    for net, outline in model.placement.poured:
+        for side in SIDES:
+            fills = tuple(f for f in model.fills if (f.side, f.net) == (side, net))
+            if fills:
+                yield _zone(model.placement, numbers, outline, fills)
 
 
-def _zone(model: BoardModel, numbers: dict[str, int], side: Side) -> Node:
-    board, layer = model.placement, ("layer", Quoted(COPPER[side]))
+def _zone(board: Placement, numbers: dict[str, int], outline: Box, fills: tuple[Fill, ...]) -> Node:
+    net, side = fills[0].net, fills[0].side
+    layer, copy = ("layer", Quoted(COPPER[side])), (net,) if board.pours else ()
     return (
         "zone",
-        ("net", numbers[board.ground]),
-        ("net_name", Quoted(board.ground)),
+        ("net", numbers[net]),
+        ("net_name", Quoted(net)),
         layer,
-        ("tstamp", stable_uuid(board.name, "zone", side)),
+        ("tstamp", stable_uuid(board.name, "zone", side, *copy)),
         ("hatch", "edge", 0.5),
         ("connect_pads", ("clearance", CLEARANCE_MM)),
         ("min_thickness", MIN_WIDTH_MM),
@@ -78,12 +82,8 @@ def _zone(model: BoardModel, numbers: dict[str, int], side: Side) -> Node:
             ("thermal_gap", THERMAL_GAP_MM),
             ("thermal_bridge_width", THERMAL_SPOKE_MM),
         ),
-        ("polygon", _points(_corners(board.outline))),
-        *(
-            ("filled_polygon", layer, _points(fractured(fill.area)))
-            for fill in model.fills
-            if fill.side == side
-        ),
+        ("polygon", _points(_corners(outline))),
+        *(("filled_polygon", layer, _points(fractured(fill.area))) for fill in fills),
     )
 
 

@@ -1,0 +1,1 @@
+"""Panels: copies of a finished board in a frame, held by tabs with mouse bites."""
