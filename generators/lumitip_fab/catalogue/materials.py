@@ -58,6 +58,9 @@ class Filament(Entry):
     heat deflection temperature."""
     rigid_parts: Name | None = None
     """For a flexible filament: the filament of rigid parts, such as moulds."""
+    hole_loss_mm: float = Field(default=0.0, ge=0, le=0.5)
+    """How much smaller than drawn a hole of some millimetres is printed, in diameter, as measured;
+    holes of a printed mask are drawn so much larger (mm)."""
 
     @model_validator(mode="after")
     def _fan_in_order(self) -> Self:
@@ -116,7 +119,7 @@ class Silicone(Entry):
 
 
 class Film(Entry):
-    """A printable film for the mask."""
+    """A film for the mask: clear, to print on, or opaque, to cut."""
 
     thickness_mm: Length
     """Thickness."""
@@ -126,6 +129,8 @@ class Film(Entry):
     """Temperature at which it can be creased (°C)."""
     limit_c: float = Field(gt=20, le=300)
     """Highest temperature that it bears without melting or shrinking (°C)."""
+    opaque: bool = False
+    """Whether it lets no light through, infrared included."""
 
 
 class Printer(Entry):

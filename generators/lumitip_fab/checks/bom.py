@@ -26,6 +26,7 @@ READS = (
     "holder/*.stl",
     "flange/*.stl",
     "fit/*.stl",
+    "mask/*.stl",
     "mould/*_casting.md",
     "wiring/cables.csv",
 )
@@ -70,7 +71,8 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     )
     yield _prints(rows, grams)
     yield _near("silicone", rows, "casting", cast, "g", "parts A and B of both casting notes")
-    yield _near("film", rows, "mask", 2.0, "sheets", "one for each finger")
+    sheets = 0.0 if design.mask.route == "tpu" else 2.0
+    yield _near("film", rows, "mask", sheets, "sheets", "one for each finger, unless it is printed")
     yield _near("wire", rows, "wiring", metres, "m", "of every wire in the list of cables")
     yield from _bolts(rows, design)
     yield count("bom.prices", _FILE, _wrong_prices(rows, design), "wrong lines")
@@ -181,6 +183,8 @@ def _grams(outputs: Path, design: Design) -> dict[str, float]:
     """Mass of each printed part, solid."""
     found = {}
     printed = [pattern for pattern in READS if pattern.endswith(".stl")]
+    if design.mask.route != "tpu":
+        printed.remove("mask/*.stl")
     for path in sorted(path for pattern in printed for path in outputs.glob(pattern)):
         corners = corners_mm(path).reshape(-1, 3, 3)
         mm3 = float(np.linalg.det(corners).sum() / 6)
@@ -263,7 +267,7 @@ def _each(row: Row, design: Design) -> float | None:
         bare = purchase.board_each + box.width_mm * box.length_mm / 100 * purchase.board_per_cm2
         return round(bare, 2) if row.item.endswith(" board") else purchase.placing_each
     if row.group == "prints":
-        kg = purchase.filament_kg[design.slicing.of(row.item) != design.slicing.backing]
+        kg = dict(purchase.filament_kg).get(design.slicing.of(row.item).name)
         return None if kg is None else kg / 1000
     if row.group == "casting":
         return None if purchase.silicone_kg is None else purchase.silicone_kg / 1000

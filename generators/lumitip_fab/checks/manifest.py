@@ -31,7 +31,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     note = ", ".join(changed[:3]) or f"of {len(recorded.files)}"
     yield Measurement("manifest.files", _FILE, len(changed), 0, 0, "missing or changed", note)
     for path, entry in sorted(recorded.files.items()):
-        if path.endswith(".stl") and path.startswith(("backing/", "interface/", "mould/")):
+        if path.endswith(".stl") and path.startswith(("backing/", "interface/", "mould/", "mask/")):
             yield _frame(outputs, path, np.array(entry.to_sensor), design)
 
 
@@ -72,6 +72,9 @@ def _apart(path: str, low: Vector, high: Vector, design: Design) -> Iterator[flo
     elif path.startswith("mould/"):
         # It lies under the skin, its floor `wall_mm` thick, and reaches round the tip.
         yield abs(high[2] - (stack.silicone_z_mm + design.mould.wall_mm))
+        yield max(tip_y - high[1], 0.0)
+    elif path.startswith("mask/"):
+        yield from (abs(high[2]), abs(low[2] + design.mask.sheet.thickness_mm))
         yield max(tip_y - high[1], 0.0)
     for holder in design.holders:
         if path == f"holder/{holder.name}.stl":

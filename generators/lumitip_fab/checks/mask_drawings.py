@@ -11,8 +11,10 @@ import ezdxf
 import numpy as np
 from ezdxf import units
 
+from lumitip_fab.checks.mask_holes import Black, place, sort_out
 from lumitip_fab.checks.readers import MALFORMED
 from lumitip_fab.checks.readers.mask_page import PageError, Points, Subpath
+from lumitip_fab.design import Mask
 
 _SVG = "{http://www.w3.org/2000/svg}"
 _NONE = np.zeros((0, 2))
@@ -118,6 +120,27 @@ def read_dxf(path: Path) -> Drawing:
         raise PageError(f"{len(cuts)} paths on layer CUT, one is needed")
     places = np.array([(p.x, p.y) for p in marks]).reshape(-1, 2)
     return Drawing(tuple(runs), places, tuple(bands), tuple(folds), cuts[0])
+
+
+@dataclass(frozen=True, eq=False)
+class Film:
+    """The film of a finger in its sensor frame, as its DXF has it."""
+
+    black: Black
+    cut: Points
+    folds: tuple[Points, ...]
+
+
+def read_film(outputs: Path, finger: str, mask: Mask) -> Film:
+    """Read what the other routes of a mask share with its film.
+
+    Raises:
+        PageError: if the DXF is missing, damaged, or not a mask's.
+    """
+    drawing = read_dxf(outputs / f"mask/{finger}_mask.dxf")
+    placed = place(drawing.marks, mask)
+    black = sort_out(placed.subpath(run) for run in drawing.black)
+    return Film(black, placed.points(drawing.cut), tuple(map(placed.points, drawing.folds)))
 
 
 def _run(entity: Any) -> Subpath:

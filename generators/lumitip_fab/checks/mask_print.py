@@ -151,7 +151,7 @@ def measure_note(
         raise PageError(f"cannot be read: {error!r:.200}") from error
     rows = {int(n): (float(w), float(h), float(r)) for n, w, h, r in _ROW.findall(text)}
     count, side, readings = _COUNT.search(text), _SIDE.search(text), _READINGS.search(text)
-    if not rows or not count or not side or not readings:
+    if not rows or not count or not side or (not readings and design.mask.route == "film"):
         raise PageError("does not state flaps, apertures, height of the side or readings")
     odd = len(set(numbers) ^ rows.keys())
     yield Measurement("mask.note", f"{subject} rows", odd, 0, 0, "flaps", "missing or too many")
@@ -172,8 +172,9 @@ def measure_note(
             "mask.note", f"{subject} {name}", worst, 0, limit, "mm", "worst row against the A4 page"
         )
     whole = design.stack.plate_mm + design.stack.cover_mm
-    printed = np.array([float(v) for v in (count[1], side[1], *readings.groups())])
-    wanted = np.array([len(finger.cells), whole, *design.mask.measured_ruler_mm])
+    stated = [count[1], side[1], *(readings.groups() if readings else ())]
+    printed = np.array([float(v) for v in stated])
+    wanted = np.array([len(finger.cells), whole, *design.mask.measured_ruler_mm])[: len(printed)]
     yield Measurement(
         "mask.note",
         f"{subject} figures",

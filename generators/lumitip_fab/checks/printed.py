@@ -177,7 +177,7 @@ def _from_box(bounds: Vectors) -> Callable[[Vectors], float]:
 
 def _three_mf_of(prefix: str, outputs: Path, stl: str, standing: Vectors) -> Measurement:
     path = stl.replace(".stl", ".3mf")
-    return _measured(f"{prefix}.three_mf", outputs, path, _three_mf, _from_box(standing))
+    return _measured(f"{prefix}.three_mf", outputs, path, three_mf_mm, _from_box(standing))
 
 
 def _measured(
@@ -194,7 +194,14 @@ def _measured(
     return Measurement(check, path, off_mm(points), 0.0, AGREE_MM, "mm")
 
 
-def _three_mf(path: Path) -> Vectors:
+def three_mf_mm(path: Path) -> Vectors:
+    """Corners of the model in a 3MF file, shape `(n, 3)` (mm).
+
+    Raises:
+        OutputError: if it is no package.
+        ValueError: if its unit is not the millimetre.
+        LookupError: if it has no model.
+    """
     model = ElementTree.fromstring(unpacked(path)["3D/3dmodel.model"])
     if model.get("unit") != "millimeter":
         raise ValueError(f"unit {model.get('unit')!r}, millimeter is needed")

@@ -28,6 +28,8 @@ MODULES = (
     "layout",
     "firmware",
     "mask",
+    "mask_sheet",
+    "mask_cut",
     "backing",
     "fit_plate",
     "mould",

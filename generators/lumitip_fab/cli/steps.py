@@ -42,6 +42,7 @@ STEPS = (
     Step("backing", "parts.backing.backing", "fingers", heavy=True, tools=_CAD),
     Step("holder", "parts.holder.holder_files", "holders", heavy=True, tools=_CAD),
     Step("flange", "parts.flange.flange_files", "flanges", heavy=True, tools=_CAD),
+    Step("sheet", "parts.sheet.sheet_files", "fingers", heavy=True, tools=(*_CAD, "manifold3d")),
     Step("fit_plate", "parts.fit_plate.fit_plate_files", heavy=True, tools=_CAD),
     Step("system", "scenes.system.system_files", late=True, tools=_DRAWN),
     Step("bom", "docs.bill.bill_of_materials", late=True, tools=("numpy",)),

@@ -31,7 +31,7 @@ _OUTLINE = "board, notch and mould round which the outline runs"
 
 FIELDS: dict[str, Automatic] = {
     "stack.floor_mm": Automatic(0.8, "printer's thinnest wall", 0.05),
-    "stack.film_mm": Automatic(0.1, "thickness of mask.film"),
+    "stack.film_mm": Automatic(0.1, "thickness of the mask"),
     "outline.tip_fraction": Automatic(0.486, _OUTLINE, 0.01),
     "outline.tip_margin_mm": Automatic(6.2, _OUTLINE, 0.1),
     "outline.shoulder_margin_mm": Automatic(7.5, _OUTLINE, 0.1),
@@ -81,6 +81,9 @@ FIELDS: dict[str, Automatic] = {
     "receiver.bulk_capacitor": Automatic(
         "10uF 0603 10V", "room beside the wires and current of the detectors", names="capacitors"
     ),
+    "mask.route": Automatic("film", "nothing: printed as published"),
+    "mask.filament": Automatic("TPU 95A", "nothing: a soft filament in black"),
+    "mask.layers": Automatic(2, "nothing: the second layer covers gaps of the first"),
     "mask.allowance_mm": Automatic(0.75, "page", 0.05),
     "mask.flap_mm": Automatic(13.0, "thickness of a finger and page", 0.5),
     "mould.taper_length_mm": Automatic(3.0, "outline.tip_margin_mm", 0.1),

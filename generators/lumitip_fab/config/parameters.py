@@ -53,7 +53,7 @@ class Stack(Strict):
     silicone_mm: float = Field(ge=0.5, le=10)
     """Silicone over the board (mm)."""
     film_mm: float = Field(ge=0.02, le=1)
-    """Mask film; the catalogue's film must have this thickness (mm)."""
+    """Mask: thickness of the catalogue's film, or of all layers of a printed sheet (mm)."""
 
 
 class Outline(Strict):
@@ -194,10 +194,20 @@ class Cables(Strict):
 
 
 class Mask(Strict):
-    """The black print on the inside of the film."""
+    """The black sheet with an aperture above each cell."""
 
+    route: Literal["film", "tpu", "cut"]
+    """How it is made: `"film"`, printed on a clear film; `"tpu"`, a sheet with holes from a 3D
+    printer; `"cut"`, cut from an opaque film. Files for all three are written; thickness, notes,
+    bill and manual follow the route."""
     film: Name
-    """Name of a film in `parts/films.toml`."""
+    """Name of a film in `parts/films.toml`: a clear one to print on, an opaque one to cut. Not used
+    with `route = "tpu"`."""
+    filament: Name
+    """Name of the sheet's filament in `parts/filaments.toml`."""
+    layers: int = Field(ge=1, le=3)
+    """Layers of the printed sheet, each as high as the printer's. From two layers on, its folds are
+    grooves that leave one."""
     hole_mm: float = Field(ge=0.3, le=20)
     """Aperture above each cell: across flats of a hexagon, diameter of a circle (mm)."""
     hole_shape: Literal["hexagon", "circle"]
@@ -208,7 +218,7 @@ class Mask(Strict):
     """Length of the printed 100 mm rulers, horizontal and vertical, as your printer drew them on
     a page made with `[100.0, 100.0]` (mm); the next page is scaled to come out true."""
     allowance_mm: Gap
-    """Finger outline to the first fold, for the film's bend (mm)."""
+    """Finger outline to the first fold, for the mask's bend (mm)."""
     flap_mm: float = Field(ge=3, le=40)
     """Length of the fold flaps, where coupling and notch leave room (mm)."""
 

@@ -128,9 +128,10 @@ class MouldParts:
 
 @dataclass(frozen=True)
 class MaskParts:
-    """Material of the mask."""
+    """Materials of the mask."""
 
     film: Film
+    filament: Filament
 
 
 @dataclass(frozen=True)

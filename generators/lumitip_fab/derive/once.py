@@ -165,7 +165,7 @@ def _optics(config: Input) -> Optics:
     detector = parts.photodetectors[p.receiver.photodetector]
     return Optics(
         hole_mm=p.mask.hole_mm,
-        hole_shape=p.mask.hole_shape,
+        hole_shape="circle" if p.mask.route == "cut" else p.mask.hole_shape,
         emitter_depth_mm=p.stack.silicone_mm - led.die_height_mm,
         detector_depth_mm=p.stack.silicone_mm - detector.die_height_mm,
         emitter_exponent=led.exponent,

@@ -47,6 +47,7 @@ from lumitip_fab.design.making import (
     Mask,
     Mould,
     Printing,
+    Sheet,
     Slicing,
 )
 from lumitip_fab.design.mount import (
@@ -133,6 +134,7 @@ __all__ = [
     "Resistor",
     "ResistorArray",
     "Rules",
+    "Sheet",
     "Shroud",
     "Side",
     "Slicing",

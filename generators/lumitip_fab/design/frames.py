@@ -144,6 +144,11 @@ def holder_to_tool(holder: Holder, system: System) -> Matrix:
     return matrix
 
 
+def sheet_bed_to_sensor() -> Matrix:
+    """From the print bed of a mask's sheet, on which its outer face lies, to the sensor frame."""
+    return rotation_y(180.0)
+
+
 def sensor_to_page(measured_ruler_mm: Point) -> Matrix:
     """From a finger's sensor frame to its mask's page, stretched by what the rulers measured."""
     across, up = (100.0 / measured for measured in measured_ruler_mm)

@@ -10,11 +10,36 @@ LEDGE_MM = 0.5
 
 
 @dataclass(frozen=True)
-class Mask:
-    """The print on the film, in the finger's frame but for the page."""
+class Sheet:
+    """The mask as a printed sheet: the film's outline, its holes and folds, without any print."""
 
+    filament: str
+    layers: int
+    layer_mm: float
+    line_mm: float
+    hole_mm: float
+    """Of a hole as drawn: wider than the aperture by what the print loses."""
+    fold_mm: float
+    """Width of the groove along each fold; 0 without grooves, in a single layer."""
+    letter: bool
+    """Whether the first letter of the finger's name is sunk into the inside: in more than one
+    layer, with strokes as wide as a line."""
+
+    @property
+    def thickness_mm(self) -> float:
+        """Height of all layers."""
+        return round(self.layers * self.layer_mm, 6)
+
+
+@dataclass(frozen=True)
+class Mask:
+    """The mask in the finger's frame, but for the page that it is printed on."""
+
+    route: str
+    """`"film"`, `"tpu"` or `"cut"`."""
     hole_mm: float
     hole_shape: str
+    """Of film and printed sheet; a plotter cuts circles."""
     allowance_mm: float
     flap_mm: float
     film: str
@@ -24,6 +49,12 @@ class Mask:
     """Marks round the artwork, in both x and -x, so the same on the page and in the frame."""
     mark: Box
     """Box of the letter F on the tip flap, which distinguishes a mirror image from half a turn."""
+    sheet: Sheet
+
+    @property
+    def material(self) -> str:
+        """Title of what it is made of by its route."""
+        return self.sheet.filament if self.route == "tpu" else self.film
 
 
 @dataclass(frozen=True)
@@ -198,15 +229,17 @@ class Slicing:
     """Filament of everything but backings and moulds."""
     mould: Filament
     """As `rigid`, in layers that the mould's heights are whole multiples of."""
+    sheet: Filament
+    """Filament of the mask's printed sheet."""
 
     @property
     def filaments(self) -> tuple[Filament, ...]:
         """Each once."""
-        return tuple(dict.fromkeys((self.backing, self.rigid, self.mould)))
+        return tuple(dict.fromkeys((self.backing, self.rigid, self.mould, self.sheet)))
 
     def of(self, path: str) -> Filament:
         """Filament of a part, by its path below the output folder."""
-        kinds = {"backing": self.backing, "mould": self.mould}
+        kinds = {"backing": self.backing, "mould": self.mould, "mask": self.sheet}
         return kinds.get(path.partition("/")[0], self.rigid)
 
 

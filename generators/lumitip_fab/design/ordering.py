@@ -76,8 +76,8 @@ class Purchase:
     board_per_cm2: float
     placing_each: float
     """Placing and soldering a part on a board."""
-    filament_kg: tuple[float | None, float | None]
-    """Price of the backings' filament, and of the one for everything else."""
+    filament_kg: tuple[tuple[str, float], ...]
+    """Name and price of a kilogram of each filament that has one."""
     silicone_kg: float | None
     film_sheet: float | None
     """Price of a sheet of A4."""
@@ -86,6 +86,11 @@ class Purchase:
     def part_each(self, part: str) -> float | None:
         """Price of a part by its order number; none if it is not known."""
         return next((price.each for price in self.parts if price.of(part)), None)
+
+    def filament_g(self, name: str) -> float | None:
+        """Price of a gram of a filament; none if it is not known."""
+        kg = dict(self.filament_kg).get(name)
+        return None if kg is None else kg / 1000
 
     def bare_board_each(self, box: Box) -> float:
         """Price of a bare board of this size, to the cent."""

@@ -80,25 +80,27 @@ def electronics(design: Design, files: Files) -> Iterator[Line]:
 
 
 PRINTED = ("backing", "interface", "mould", "holder", "flange", "fit")
-"""Folders of printed parts, in the order of the bill."""
+"""Folders of printed parts, in the order of the bill; a printed mask is the last."""
 
 
 def materials(design: Design, files: Files) -> Iterator[Line]:
-    """Filament, silicone, film and wire."""
+    """Filament, silicone, film of the mask unless it is printed, and wire."""
     slicing, purchase = design.slicing, design.purchase
-    for path in (path for kind in PRINTED for path in files.like(f"{kind}/*.stl")):
+    printed = design.mask.route == "tpu"
+    kinds = (*PRINTED, "mask") if printed else PRINTED
+    for path in (path for kind in kinds for path in files.like(f"{kind}/*.stl")):
         filament = slicing.of(path)
-        kg = purchase.filament_kg[filament != slicing.backing]
         grams = round(files.facts(path)["volume_mm3"] / 1000 * filament.density_g_ml, 2)
-        where, each = "solid, brim left out", None if kg is None else kg / _GRAMS
+        where, each = "solid, brim left out", purchase.filament_g(filament.name)
         yield Line("prints", path, "", filament.name, where, grams, "g", each)
     mixes = [files.facts(path) for path in files.like("mould/*_casting.md")]
     grams = round(sum(mix["part_a_g"] + mix["part_b_g"] for mix in mixes), 2)
     kg = purchase.silicone_kg
     where, each = "both fingers, with what stays in the cup", None if kg is None else kg / _GRAMS
     yield Line("casting", design.mould.silicone, "", "", where, grams, "g", each)
-    where = "a sheet for each finger"
-    yield Line("mask", design.mask.film, "", "A4", where, 2, "sheet", purchase.film_sheet)
+    if not printed:
+        where = "a sheet for each finger"
+        yield Line("mask", design.mask.film, "", "A4", where, 2, "sheet", purchase.film_sheet)
     metres: dict[float, float] = {}
     for cable in design.cabling.cables:
         length = cable.length_mm * len(cable.wires) / 1000

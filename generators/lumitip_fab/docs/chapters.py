@@ -3,7 +3,7 @@
 import re
 from typing import Any
 
-from lumitip_fab.design import Design, Flange, HeatStep
+from lumitip_fab.design import Design, Flange, HeatStep, Mask
 from lumitip_fab.docs.bill import amount, money
 from lumitip_fab.docs.polarity import polarity_test
 from lumitip_fab.docs.spec_circuit import pulled_up
@@ -53,8 +53,7 @@ outputs. Read a chapter to its end before you begin with it.
 | filament of the backings | {printing.material} |
 | silicone | {mould.silicone} |
 | curing at {mould.cure_c:g} °C | {mould.cure_h:g} h |
-| film | {mask.film} |
-| creasing the film, off the finger | {mask.soften_c:g} °C |
+{_mask_rows(mask)}
 | supply of the LEDs | {design.wiring.supply_v:g} V |
 | current of the LEDs, nominal | {lit_ma:.1f} mA |
 | wires | {sum(len(cable.wires) for cable in design.cabling.cables)} |
@@ -63,7 +62,7 @@ outputs. Read a chapter to its end before you begin with it.
 | warm-up | {WARM_UP_MIN} min |
 
 The order of work: print, order and solder boards, solder the wires on, {fixed}, cast,
-print the film, crease it, wrap, mount, load the firmware, calibrate. Casting takes longest:
+{_ORDER[mask.route]}, wrap, mount, load the firmware, calibrate. Casting takes longest:
 {mould.cure_h:g} h for each finger, both at once in their own moulds.
 
 ## Heat
@@ -74,6 +73,26 @@ below what each of them bears.
 | step | what is heated | temperature | lowest limit |
 |---|---|---:|---:|
 {chr(10).join(map(_heated, design.heat))}"""
+
+
+_MADE = {
+    "film": "Print the film and wrap it",
+    "cut": "Cut the film and wrap it",
+    "tpu": "Print the masks and wrap them",
+}
+_ORDER = {
+    "film": "print the film, crease it",
+    "cut": "cut the film, crease it",
+    "tpu": "print the masks",
+}
+"""What comes before wrapping, by the route of the mask."""
+
+
+def _mask_rows(mask: Mask) -> str:
+    """Material of the mask, and the temperature of its folds if they are creased."""
+    if mask.route == "tpu":
+        return f"| mask, printed | {mask.material} |"
+    return f"| film | {mask.film} |\n| creasing the film, off the finger | {mask.soften_c:g} °C |"
 
 
 def _heated(step: HeatStep) -> str:
@@ -175,14 +194,18 @@ The wires of chapter 4 are soldered before: they lie over the weir while the sil
 
 
 def _wrapped(design: Design, files: Files) -> str:
+    mask = design.mask
+    shown = "as it is printed" if mask.route == "film" else "outline, holes and folds"
     notes = "\n\n".join(
-        f"![The {name} mask, as it is printed](mask/{name}_mask.svg)\n\n"
+        f"![The {name} mask, {shown}](mask/{name}_mask.svg)\n\n"
         + _included(files.text(f"mask/{name}_wrapping.md"))
         for name in ("emitter", "receiver")
     )
-    return f"""## 6. Print the film and wrap it
+    creased = f"creased at {mask.soften_c:g} °C, away from the finger, and wrapped"
+    how = "The sheet is wrapped" if mask.route == "tpu" else f"The film is {creased}"
+    return f"""## 6. {_MADE[mask.route]}
 
-The film is creased at {design.mask.soften_c:g} °C, away from the finger, and wrapped cold, each
+{how} cold, each
 flap in the order of its number.
 
 {notes}"""
@@ -278,8 +301,8 @@ def _kept() -> str:
 
 - The silicone above the LEDs: the published sensor's wore within about {WEAR_GRASPS} grasps. Run
   `lumitip doctor` now and then; cast the emitter anew when its light falls.
-- The film: where ink is rubbed off, light leaks in. Print and wrap a new one, as in chapter 6: it
-  takes an hour.
+- The mask: where its black is rubbed off, light leaks in. Make and wrap a new one, as in
+  chapter 6: it takes an hour.
 - The wires at the fingers, which bend with each grasp.
 - After each of these, tare again."""
 

@@ -1,11 +1,12 @@
-"""The artwork of one finger's mask in its sensor frame, and where it stands on a page."""
+"""The artwork of one finger's mask in its sensor frame, for film, printed sheet and plotter alike,
+and where it stands on a page."""
 
 import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from lumitip_fab.design import Box, Mask, Point
+from lumitip_fab.design import Box, Design, Finger, Mask, Point
 from lumitip_fab.mask.flaps import Flap, make_flaps
 from lumitip_fab.mask.outline import Finished, grown
 
@@ -63,6 +64,20 @@ class Artwork:
     """Left end of the finger's name's base line, beside the letter F on the tip flap."""
     name_mm: float
     """Its font size."""
+
+
+def artwork_of(design: Design, finger: Finger, mask: Mask) -> Artwork:
+    """The artwork of a finger of a design, with a mask that may have other holes."""
+    wrapped = Finished(
+        finger,
+        design.outline,
+        design.stack,
+        design.tip,
+        design.mould,
+        design.mount,
+        design.interfaces,
+    )
+    return make_artwork(wrapped, mask)
 
 
 def make_artwork(finished: Finished, mask: Mask) -> Artwork:

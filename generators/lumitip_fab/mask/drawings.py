@@ -1,8 +1,8 @@
-"""The mask as drawings in mm, the page's view (mirrored) without its stretch: SVG, and DXF for a
-cutter."""
+"""The mask as drawings in mm, the page's view (mirrored) without its stretch: SVG, DXF, and DXF to
+cut an opaque film."""
 
 import io
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from xml.sax.saxutils import escape
 
@@ -122,14 +122,22 @@ def dxf_drawing(artwork: Artwork, mask: Mask) -> bytes:
         artwork: what to draw.
         mask: for the apertures' form and the registration marks.
     """
-    with _fixed_metadata():
-        document = ezdxf.new("R2010", units=units.MM)
-        for name, colour in LAYERS.items():
-            document.layers.add(name, color=colour)
-        space = document.modelspace()
+
+    def draw(space: Modelspace) -> None:
         _film(space, artwork)
         _apertures(space, artwork, mask)
         _marks(space, artwork, mask)
+
+    return _dxf(LAYERS, draw)
+
+
+def _dxf(layers: Mapping[str, int], draw: Callable[[Modelspace], None]) -> bytes:
+    """A drawing in mm with layers and their colours."""
+    with _fixed_metadata():
+        document = ezdxf.new("R2010", units=units.MM)
+        for name, colour in layers.items():
+            document.layers.add(name, color=colour)
+        draw(document.modelspace())
         # ezdxf lists the classes in use in the order of a set of strings.
         document.classes.add_required_classes(document.dxfversion)
         document.classes.classes = dict(sorted(document.classes.classes.items()))
@@ -141,6 +149,29 @@ def dxf_drawing(artwork: Artwork, mask: Mask) -> bytes:
 def dxf_to_sensor() -> Matrix:
     """From the drawing to the sensor frame."""
     return np.diag([-1.0, 1.0, 1.0, 1.0])
+
+
+CUT_LAYERS = {"CUT": 1, "HOLES": 3, "WINDOW": 4, "FOLD": 5}
+
+
+def cut_drawing(artwork: Artwork, mask: Mask) -> bytes:
+    """The bytes of the DXF for a plotter that cuts an opaque film: each layer is one tool.
+
+    Args:
+        artwork: what to cut; a hexagon is cut as the circle in it, because a dragged blade rounds
+            such small corners.
+        mask: for the diameter of the holes.
+    """
+
+    def draw(space: Modelspace) -> None:
+        _closed(space, artwork.cut.corners, "CUT")
+        _closed(space, artwork.window.corners, "WINDOW")
+        for path in artwork.apertures:
+            _circle(space, path, mask.hole_mm, "HOLES")
+        for flap in artwork.flaps:
+            _line(space, flap.fold, "FOLD")
+
+    return _dxf(CUT_LAYERS, draw)
 
 
 @contextmanager
@@ -157,19 +188,16 @@ def _fixed_metadata() -> Iterator[None]:
 def _film(space: Modelspace, artwork: Artwork) -> None:
     _closed(space, artwork.cut.corners, "CUT")
     for flap in artwork.flaps:
-        start, end = (_placed_at(point) for point in flap.fold)
-        space.add_line(start, end, dxfattribs={"layer": "FOLD"})
+        _line(space, flap.fold, "FOLD")
         _closed(space, flap.band, "BANDS")
     _closed(space, artwork.black.corners, "BLACK")
     _closed(space, artwork.window.corners, "WINDOW")
 
 
 def _apertures(space: Modelspace, artwork: Artwork, mask: Mask) -> None:
-    attributes = {"layer": "APERTURES"}
     for path in artwork.apertures:
         if mask.hole_shape == "circle":
-            centre = tuple(np.mean(path.corners, axis=0).tolist())
-            space.add_circle(_placed_at(centre), mask.hole_mm / 2, dxfattribs=attributes)
+            _circle(space, path, mask.hole_mm, "APERTURES")
         else:
             _closed(space, path.corners, "APERTURES")
 
@@ -188,6 +216,16 @@ def _marks(space: Modelspace, artwork: Artwork, mask: Mask) -> None:
         space.add_text(text, height=height, dxfattribs=style).set_placement(
             _placed_at(point), align=align
         )
+
+
+def _circle(space: Modelspace, path: Path, diameter_mm: float, layer: str) -> None:
+    centre = tuple(np.mean(path.corners, axis=0).tolist())
+    space.add_circle(_placed_at(centre), diameter_mm / 2, dxfattribs={"layer": layer})
+
+
+def _line(space: Modelspace, ends: tuple[Point, Point], layer: str) -> None:
+    start, end = map(_placed_at, ends)
+    space.add_line(start, end, dxfattribs={"layer": layer})
 
 
 def _closed(space: Modelspace, corners: tuple[Point, ...], layer: str) -> None:

@@ -1,15 +1,15 @@
-"""How to print a mask and wrap the finger with it, with this finger's own flaps."""
+"""How to make a mask by its route and wrap the finger with it, with this finger's own flaps."""
 
-from lumitip_fab.design import HeatStep, Mask, Stack, Title
+from lumitip_fab.design import Design
 from lumitip_fab.mask.artwork import Artwork
 from lumitip_fab.mask.flaps import BAND_MM, Flap
 from lumitip_fab.mask.outline import FOOT_MM
 from lumitip_fab.text import as_written
 
-_TEXT = """\
+_FILM = """\
 # {title}: printing and wrapping the {name} mask
 
-The film is {film}, {film_mm:g} mm thick. Black is printed on its **inside**, so the page is a
+The film is {material}, {film_mm:g} mm thick. Black is printed on its **inside**, so the page is a
 mirror image on purpose: turn off "fit to page", "scale" and "mirror" in the print dialogue.
 
 ## 1. Make the printer true
@@ -40,19 +40,12 @@ The folds are made off the finger, with local heat: its {weakest} keeps its shap
 up to {finger_c:g} °C.
 1. Lay the film on a metal bar or a steel ruler, printed side down, a fold along its straight edge
    and the flap beyond it.
-2. Bring that line alone to {soften_c:g} °C, with a narrow nozzle of hot air or an iron with its
-   temperature set, until it goes limp.
-3. Press the flap down over the edge and hold it until it is cold. Go on to the next fold, in the
-   order of the flaps' numbers.
-
+{crease}
 ## 5. Wrap
 Nothing is heated from here on.
 1. Lay the film on the silicone, print inward, tip to tip; sight through the outer apertures to the
    parts below.
-2. Fold each flap over the edge and flat onto the back, in the order of its number. The tip is 1,
-   the gripper end 2 and 3, then opposite sides in turn from wide to narrow, 4 to {last}: the film
-   is first taut lengthwise, then across, and the narrow flaps of the corners lap over their
-   neighbours.
+{fold}
 3. Bond the clear ends of the flaps with a thin film of silicone adhesive or double-sided tape,
    and hold each until the bond carries it.
 
@@ -60,7 +53,84 @@ The flaps are black where they cover the side of the finger ({side_mm:.1f} mm of
 plate) and, where they are long enough, {band_mm:g} mm beyond, so that no stray light comes in
 through the silicone's edge. Their ends are left clear because glue holds better on bare film than
 on ink.
+"""
+_CUT = """\
+# {title}: cutting and wrapping the {name} mask
 
+The film is {material}, {film_mm:g} mm thick and opaque. A plotter cuts it; nothing is printed.
+
+## 1. Test the film
+{infrared}
+
+## 2. Cut
+`{name}_cut.dxf` is in mm, 1:1, and shows the inside of the film. A film on a liner has its outside
+up: mirror the drawing in the plotter's program. Each layer is one tool: `HOLES` and `WINDOW` are
+cut out, `CUT` is the edge and comes last, `FOLD` is scored with little force or left out.
+1. Cut it in paper first and measure it: {wide_mm:.1f} mm across all flaps. Another width? Correct
+   the scale of the plotter.
+2. Cut the film. The {count} apertures are circles of {hole_mm:g} mm: take every piece out.
+
+## 3. Crease the folds
+The folds are made off the finger, with local heat: its {weakest} keeps its shape only
+up to {finger_c:g} °C.
+1. Lay the film on a metal bar or a steel ruler, inside down, a fold along its straight edge and the
+   flap beyond it.
+{crease}
+## 4. Wrap
+Nothing is heated from here on.
+1. Lay the film on the silicone, tip to tip; sight through the outer apertures to the parts below.
+{fold}
+3. Bond the ends of the flaps with a thin film of silicone adhesive or double-sided tape, unless
+   the film has adhesive of its own, and hold each until the bond carries it.
+
+The flaps cover the side of the finger ({side_mm:.1f} mm of silicone and
+plate), so that no stray light comes in through the silicone's edge.
+"""
+_TPU = """\
+# {title}: printing and wrapping the {name} mask
+
+The mask is a sheet of {material}, {layers} of {layer_mm:g} mm: {film_mm:g} mm thick.
+`{name}_sheet.3mf` lies on the bed as it prints, with its **outer face down**.
+
+## 1. Print the sheet
+1. Print `{name}_sheet.3mf` with `{settings}`, on a clean and level bed: lines of
+   {line_mm:g} mm, no brim.
+2. Peel it off cold. With a knife, part flaps that the print has joined at their feet.
+3. Hold it against a lamp. The {count} apertures are open, and no light comes through beside them.
+   Clear an aperture with a drill of {hole_mm:g} mm, turned by hand.
+4. {known}
+
+## 2. Test the sheet
+{infrared}
+
+## 3. Wrap
+The folds are bent cold. Nothing is heated.
+1. Lay the sheet on the silicone, its smooth face outward, tip to tip; sight through the outer
+   apertures to the parts below.
+{fold}
+3. Bond the ends of the flaps with silicone adhesive or double-sided tape, and hold each until
+   the bond carries it.
+
+The flaps cover the side of the finger ({side_mm:.1f} mm of silicone and
+plate), so that no stray light comes in through the silicone's edge.
+"""
+_TEXTS = {"film": _FILM, "cut": _CUT, "tpu": _TPU}
+_INFRARED = """\
+Many black plastics let infrared through. Hold a piece without apertures between the fingers before
+they have masks: in `lumitip view` the cells behind it must be as dark as behind sheet metal. If
+they are not, take a material that is coloured with carbon black."""
+_CREASE = """\
+2. Bring that line alone to {soften_c:g} °C, with a narrow nozzle of hot air or an iron with its
+   temperature set, until it goes limp.
+3. Press the flap down over the edge and hold it until it is cold. Go on to the next fold, in the
+   order of the flaps' numbers.
+"""
+_FOLD = """\
+2. Fold each flap over the edge and flat onto the back, in the order of its number. The tip is 1,
+   the gripper end 2 and 3, then opposite sides in turn from wide to narrow, 4 to {last}: the {what}
+   is first taut lengthwise, then across, and the narrow flaps of the corners lap over their
+   neighbours."""
+_TABLE = """
 | fold | width of fold (mm) | length of flap (mm) | onto the back (mm) |
 |---:|---:|---:|---:|
 {table}
@@ -71,22 +141,15 @@ coupling, and none lies over the wire notch or, where there is room, over a wind
 """
 
 
-def wrapping_note(
-    artwork: Artwork, mask: Mask, stack: Stack, heat: tuple[HeatStep, ...], title: Title
-) -> bytes:
-    """The bytes of the note, in Markdown.
+def wrapping_note(artwork: Artwork, design: Design) -> bytes:
+    """The bytes of the note, in Markdown, for the mask's route.
 
     Args:
         artwork: of this finger, for its flaps.
-        mask: film and rulers.
-        stack: for the height of the finger's side.
-        heat: what the film and the finger bear.
-        title: of the design.
+        design: for the mask, what it and the finger bear, and their heights.
     """
-    steps = {step.name: step for step in heat}
-    weakest = min(steps["cure"].parts, key=lambda part: part.limit_c)
+    mask, stack, title = design.mask, design.stack, design.title
     flaps = sorted(artwork.flaps, key=lambda flap: flap.number)
-    across, up = mask.measured_ruler_mm
     shortened = [str(f.number) for f in flaps if f.length_mm < mask.flap_mm]
     shorter = (
         f"Flaps {', '.join(shortened)} are shorter than {mask.flap_mm:g} mm for that, or because\n"
@@ -94,26 +157,56 @@ def wrapping_note(
         if shortened
         else f"All flaps are {mask.flap_mm:g} mm long."
     )
-    text = _TEXT.format(
+    across, up = mask.measured_ruler_mm
+    what = "sheet" if mask.route == "tpu" else "film"
+    text = (_TEXTS[mask.route] + _TABLE).format(
         title=as_written(f"{title.name} {title.revision}"),
         name=artwork.name.lower(),
         NAME=artwork.name,
-        film=mask.film,
+        material=mask.material,
         film_mm=stack.film_mm,
-        soften_c=steps["crease"].temperature_c,
-        weakest=f"{weakest.name} of {weakest.material}",
-        finger_c=weakest.limit_c,
         across=across,
         up=up,
         count=len(artwork.apertures),
+        hole_mm=mask.hole_mm,
+        wide_mm=2 * max(abs(x) for x, _ in artwork.cut.corners),
         side_mm=stack.plate_mm + stack.cover_mm,
         band_mm=BAND_MM,
-        last=len(flaps),
+        infrared=_INFRARED,
+        fold=_FOLD.format(last=len(flaps), what=what),
         table="\n".join(map(_row, flaps)),
         foot_mm=FOOT_MM,
         shorter=shorter,
+        **(_printed(design) if mask.route == "tpu" else _creased(design)),
     )
     return text.encode()
+
+
+def _creased(design: Design) -> dict[str, object]:
+    """Figures of a film that is creased with heat."""
+    weakest = min(design.heat_steps["cure"].parts, key=lambda part: part.limit_c)
+    return {
+        "crease": _CREASE.format(soften_c=design.heat_steps["crease"].temperature_c),
+        "weakest": f"{weakest.name} of {weakest.material}",
+        "finger_c": weakest.limit_c,
+    }
+
+
+def _printed(design: Design) -> dict[str, object]:
+    """Figures of a sheet from a 3D printer."""
+    sheet = design.mask.sheet
+    letter = ", and the first letter of the finger's name on the tip flap," * sheet.letter
+    return {
+        "layers": "one layer" if sheet.layers == 1 else f"{sheet.layers} layers",
+        "layer_mm": sheet.layer_mm,
+        "line_mm": sheet.line_mm,
+        "settings": design.slicing.sheet.file,
+        "known": (
+            f"Grooves along the folds{letter}\n   are on the inside."
+            if sheet.layers > 1
+            else "A fold runs from one foot of its flap to the other. Bend it over a steel ruler."
+        ),
+    }
 
 
 def _row(flap: Flap) -> str:

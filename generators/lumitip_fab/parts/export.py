@@ -6,11 +6,12 @@ import zipfile
 from functools import partial
 from itertools import count
 from typing import Any
-from xml.sax.saxutils import quoteattr
+from xml.sax.saxutils import escape, quoteattr
 
 import numpy as np
 import trimesh
 from build123d import Shape, export_step
+from numpy.typing import ArrayLike
 from OCP.BRep import BRep_Tool
 from OCP.BRepMesh import BRepMesh_IncrementalMesh
 from OCP.TopAbs import TopAbs_REVERSED
@@ -113,7 +114,7 @@ _RELATIONSHIPS = """<?xml version="1.0" encoding="UTF-8"?>
 _MODEL = """<?xml version="1.0" encoding="UTF-8"?>
 <model unit="millimeter" xml:lang="en-US"
  xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02">
-<resources><object id="1" type="model" name={name}><mesh>
+{metadata}<resources><object id="1" type="model" name={name}><mesh>
 <vertices>
 {vertices}
 </vertices>
@@ -124,6 +125,7 @@ _MODEL = """<?xml version="1.0" encoding="UTF-8"?>
 <build><item objectid="1"/></build>
 </model>
 """
+_DESCRIPTION = '<metadata name="Description">{}</metadata>\n'
 
 
 def mesh(shape: Shape, chord_mm: float = CHORD_MM) -> Mesh:
@@ -148,11 +150,21 @@ def mesh(shape: Shape, chord_mm: float = CHORD_MM) -> Mesh:
             a, b, c = facets.Triangle(k).Get()
             corners = (a, c, b) if flipped else (a, b, c)
             triangles.append([first + corner for corner in corners])
-    rounded = np.round(np.array(points), _WELD_DECIMALS) + 0.0
-    welded, places = np.unique(rounded, axis=0, return_inverse=True)
+    return welded(points, triangles)
+
+
+def welded(points_mm: ArrayLike, triangles: ArrayLike) -> Mesh:
+    """A surface whose equal corners are one, without the triangles that vanish by that.
+
+    Args:
+        points_mm: corners, shape `(n, 3)`; equal ones may repeat.
+        triangles: their indices, shape `(m, 3)`.
+    """
+    rounded = np.round(np.array(points_mm), _WELD_DECIMALS) + 0.0
+    corners, places = np.unique(rounded, axis=0, return_inverse=True)
     joined = places.reshape(-1)[np.array(triangles)]
     distinct = (joined != np.roll(joined, 1, axis=1)).all(axis=1)
-    return Mesh(welded, joined[distinct])
+    return Mesh(corners, joined[distinct])
 
 
 def part_files(
@@ -200,12 +212,13 @@ def mesh_stl(surface: Mesh) -> bytes:
     return header + np.uint32(len(records)).tobytes() + records.tobytes()
 
 
-def three_mf(surface: Mesh, name: str) -> bytes:
+def three_mf(surface: Mesh, name: str, description: str = "") -> bytes:
     """A 3MF package with one object.
 
     Args:
         surface: what to print, in print orientation on z = 0.
         name: what slicers call it.
+        description: how to print it, as metadata; none where it is empty.
     """
     vertices = "\n".join(
         f'<vertex x="{x:.5f}" y="{y:.5f}" z="{z:.5f}"/>' for x, y, z in surface.points_mm.tolist()
@@ -213,7 +226,10 @@ def three_mf(surface: Mesh, name: str) -> bytes:
     triangles = "\n".join(
         f'<triangle v1="{a}" v2="{b}" v3="{c}"/>' for a, b, c in surface.triangles.tolist()
     )
-    model = _MODEL.format(name=quoteattr(name), vertices=vertices, triangles=triangles)
+    metadata = _DESCRIPTION.format(escape(description)) if description else ""
+    model = _MODEL.format(
+        name=quoteattr(name), metadata=metadata, vertices=vertices, triangles=triangles
+    )
     package = io.BytesIO()
     with zipfile.ZipFile(package, "w") as files:
         for path, text in (

@@ -52,6 +52,21 @@ def letter_cutter(finger: str, letter: Letter, to_sensor: Matrix) -> Solid:
     return placed(cutter, np.asarray(to_sensor, dtype=np.float64))
 
 
+def letter_rings(finger: str, box: Box) -> list[list[Point]]:
+    """Outline of the first letter of a finger's name, and of what it leaves out: it reads right
+    along x and y, from the left of the box.
+
+    Args:
+        finger: `"emitter"` or `"receiver"`, in any case.
+        box: place, and height of the letter.
+    """
+    high = box.length_mm
+    return [
+        [(box.x_min_mm + u * high, box.y_min_mm + v * high) for u, v in corners]
+        for corners in _STROKES[finger[0].upper()]
+    ]
+
+
 def _ring(corners: tuple[Point, ...], letter: Letter) -> Wire:
     box, bottom = letter.box, letter.wall_mm - letter.depth_mm
     points = [

@@ -1,11 +1,11 @@
 """Settings for PrusaSlicer, one file for each filament and layer, and which part takes which."""
 
-from lumitip_fab.design import Design, Printing, Title
+from lumitip_fab.design import Design, Printing
 from lumitip_fab.design.making import Filament, Slicing
 from lumitip_fab.pipeline.artefact import Artefact
 from lumitip_fab.text import as_written
 
-_BRIM_MM = 3.0  # a backing is tall and stands on little
+_BRIM_MM = 3.0  # a backing is tall and stands on little; a flat sheet has none to trim off
 _OUTER_SHARE = 0.6  # of the speed: outer walls are what board, gripper and silicone meet
 _FIRST_LAYER_MM_S = 20.0
 _FIRST_LAYER_C = 5
@@ -23,19 +23,19 @@ _WIDTHS = (
 def print_settings(design: Design) -> tuple[Artefact, ...]:
     """`print/*.ini` and `print/printing.md`."""
     printing, slicing = design.printing, design.slicing
-    texts = {f.file: _settings(f, printing, slicing.nozzle_mm) for f in slicing.filaments}
-    texts["print/printing.md"] = _note(design.title, printing, slicing, bool(design.interfaces))
+    texts = {f.file: _settings(f, printing, slicing) for f in slicing.filaments}
+    texts["print/printing.md"] = _note(design, bool(design.interfaces))
     return tuple(Artefact(path, texts[path].encode(), frame="") for path in sorted(texts))
 
 
-def _settings(filament: Filament, printing: Printing, nozzle_mm: float) -> str:
+def _settings(filament: Filament, printing: Printing, slicing: Slicing) -> str:
     x, y, z = printing.bed_mm
     values: dict[str, object] = {
         "printer_technology": "FFF",
         "gcode_flavor": "marlin",
         "bed_shape": f"0x0,{x:g}x0,{x:g}x{y:g},0x{y:g}",
         "max_print_height": f"{z:g}",
-        "nozzle_diameter": f"{nozzle_mm:g}",
+        "nozzle_diameter": f"{slicing.nozzle_mm:g}",
         "layer_height": f"{filament.layer_mm:g}",
         "first_layer_height": f"{filament.layer_mm:g}",
         **dict.fromkeys(_WIDTHS, f"{printing.line_mm:g}"),
@@ -48,7 +48,7 @@ def _settings(filament: Filament, printing: Printing, nozzle_mm: float) -> str:
         "fill_pattern": "rectilinear",
         "support_material": 0,
         "brim_type": "outer_only",
-        "brim_width": f"{_BRIM_MM:g}",
+        "brim_width": "0" if filament == slicing.sheet else f"{_BRIM_MM:g}",
         "skirts": 0,
         "seam_position": "rear",
         "elefant_foot_compensation": "0.1",
@@ -86,17 +86,20 @@ def _of_filament(filament: Filament) -> dict[str, object]:
     }
 
 
-def _note(title: Title, printing: Printing, slicing: Slicing, bends: bool) -> str:
+def _note(design: Design, bends: bool) -> str:
+    printing, slicing = design.printing, design.slicing
     standing = "on the mount face, tip up"
     lies = "on its front, groove up" if bends else standing
     rows = [(f"backing/{finger}_backing.3mf", lies) for finger in _FINGERS]
     if bends:
         rows += [(f"interface/{finger}_interface.3mf", standing) for finger in _FINGERS]
     rows += [(f"mould/{finger}_mould.3mf", "open side up") for finger in _FINGERS]
+    needed = "" if design.mask.route == "tpu" else '; only for `mask.route = "tpu"`'
+    rows += [(f"mask/{finger}_sheet.3mf", f"on its outer face{needed}") for finger in _FINGERS]
     listed = "\n".join(
         f"| `{path}` | {_temperatures(slicing.of(path))} | {lies} |" for path, lies in rows
     )
-    return f"""# Printing {as_written(title.name)} {title.revision}
+    return f"""# Printing {as_written(design.title.name)} {design.title.revision}
 
 Every STL and 3MF of this folder lies on the bed as it prints: do not turn it. None needs support.
 
@@ -105,7 +108,7 @@ Every STL and 3MF of this folder lies on the bed as it prints: do not turn it. N
 {listed}
 | any other `.3mf` | {_temperatures(slicing.rigid)} | as it is |
 
-Solid, {printing.line_mm:g} mm lines, brim of {_BRIM_MM:g} mm,
+Solid, {printing.line_mm:g} mm lines, brim of {_BRIM_MM:g} mm but for a mask,
 nozzle of {slicing.nozzle_mm:g} mm. In PrusaSlicer: File, Import, Import Config, then the part. The
 settings have no start and end G-code but the slicer's own: choose your printer again where it
 needs some. Temperatures are starting points: trust the label of your spool.

@@ -38,6 +38,8 @@ def code_hash(*parts: str) -> str:
     roots += [Path(lumitip.__file__).parent / name for name in LAYOUT]
     if {"models", "scenes"} & {*parts}:
         roots.append(PACKAGE / "parts")
+    if "parts" in parts:
+        roots.append(PACKAGE / "mask")
     if "firmware" in parts:
         roots += [Path(lumitip.__file__).parent / "protocol", *firmware_sources()]
     if "explore" in parts:

@@ -44,6 +44,12 @@ _PART_TINTS = {
     "switch": "#b9bcc0",
     "capacitor": "#d8d2c8",
 }
+_MASKS = {
+    "film": ("Film", "mask printed on its inside"),
+    "cut": ("Film", "opaque, cut with holes"),
+    "tpu": ("Mask", "printed sheet with holes"),
+}
+"""Words for the mask, by its route."""
 
 
 @dataclass(frozen=True)
@@ -59,16 +65,17 @@ class Layer:
     """Where its label points at, on the page."""
 
 
-def exploded_view(bodies: Bodies, stack: Stack, outline: Outline) -> str:
+def exploded_view(bodies: Bodies, stack: Stack, outline: Outline, route: str) -> str:
     """The drawing as SVG.
 
     Args:
         bodies: the finger.
         stack: for the layers' heights and names.
+        route: of the mask.
         outline: for the lines along which the layers are pulled apart.
     """
     sheet, finger = Sheet(), bodies.finger
-    layers = _layers(bodies, stack, outline)
+    layers = _layers(bodies, stack, outline, _MASKS[route])
     corners = _projected(_at(outline.polygon(16), stack.rim_z_mm))
     guides = [int(corners[:, 0].argmin()), int(corners[:, 0].argmax())]
     pins = _projected(_at(np.array(finger.holes), stack.rim_z_mm))
@@ -88,7 +95,8 @@ def exploded_view(bodies: Bodies, stack: Stack, outline: Outline) -> str:
     return sheet.svg({"data-azimuth-deg": AZIMUTH_DEG, "data-elevation-deg": ELEVATION_DEG})
 
 
-def _layers(bodies: Bodies, stack: Stack, outline: Outline) -> list[Layer]:
+def _layers(bodies: Bodies, stack: Stack, outline: Outline, mask: tuple[str, str]) -> list[Layer]:
+    named, made = mask
     flat = outline.polygon(16)
     page = _projected(_at(flat, 0.0))
     height = float(np.ptp(page[:, 1]))
@@ -106,7 +114,7 @@ def _layers(bodies: Bodies, stack: Stack, outline: Outline) -> list[Layer]:
             "glued in, flush with the rim" if sunk else "flexible, tied on",
         ),
         "silicone": (f"Silicone, {stack.silicone_mm:g} mm", "cast on the board"),
-        "film": (f"Film, {stack.film_mm:g} mm", "mask printed on its inside"),
+        "film": (f"{named}, {stack.film_mm:g} mm", made),
     }
     layers = []
     for step, (name, solid) in enumerate(layers_of(bodies)):

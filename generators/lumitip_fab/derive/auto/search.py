@@ -13,6 +13,7 @@ from lumitip_fab.config.parts import NONE, OPTIONAL
 from lumitip_fab.derive.auto.judge import Rule, Verdict, judge_with
 from lumitip_fab.derive.auto.strings import lowest_ma
 from lumitip_fab.derive.boards.plug_in import least_inrush_ohm
+from lumitip_fab.derive.finger.stack import mask_mm
 from lumitip_fab.derive.wiring.ratings import sold_from, sold_ohm
 
 DECIMALS = 4
@@ -279,8 +280,7 @@ def change_of(now: Verdict, rule: Rule, field: str, fineness: int = COARSE) -> C
     if field.endswith("_ohm"):
         return first_of(now, rule, field, iter([sold_ohm(now.config.value(field))]))
     if field == "stack.film_mm":
-        film = now.config.parts.mask.film
-        return first_of(now, rule, field, iter([film.thickness_mm]))
+        return first_of(now, rule, field, iter([mask_mm(now.config)[0]]))
     if automatic.step:
         return smallest_number(now, rule, field, automatic.step, fineness)
     return None

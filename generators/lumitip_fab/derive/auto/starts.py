@@ -12,7 +12,7 @@ from lumitip_fab.derive.boards.packages import LEAST_RING_MM
 from lumitip_fab.derive.boards.plug_in import least_inrush_ohm
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.cells import bending_lines, lane_mm
-from lumitip_fab.derive.finger.stack import is_flex
+from lumitip_fab.derive.finger.stack import is_flex, mask_mm
 from lumitip_fab.derive.once import lay_out
 from lumitip_fab.derive.wiring.ratings import (
     SUPPLY_TOLERANCE,
@@ -53,8 +53,8 @@ def proposals() -> tuple[Callable[[Input], Iterator[Proposal]], ...]:
 
 def _layers(config: Input) -> Iterator[Proposal]:
     p, parts = config.parameters, config.catalogue
-    film = parts.films[p.mask.film]
-    yield "stack.film_mm", film.thickness_mm, f"thickness of {p.mask.film}"
+    thick_mm, what = mask_mm(config)
+    yield "stack.film_mm", thick_mm, f"thickness of {what}"
     filament = parts.filaments[p.backing.material]
     yield "backing.density_g_ml", filament.density_g_ml, f"density of {p.backing.material}"
 

@@ -60,15 +60,24 @@ MOULD_ROOM_MM = 2.0  # gaps and draft of a mould beyond its walls
 TROUGH_ROOM_MM = 5.0  # its trough at the gripper end
 
 
+def mask_mm(config: Input) -> tuple[float, str]:
+    """Thickness of the mask by its route, and what has it."""
+    mask = config.parameters.mask
+    if mask.route != "tpu":
+        return config.parts.mask.film.thickness_mm, repr(mask.film)
+    layer_mm = config.parts.printer.profile.layer_mm
+    thick_mm = round(mask.layers * layer_mm, 6)
+    return thick_mm, f"a sheet of mask.layers = {mask.layers} of {layer_mm:g} mm"
+
+
 def derive_stack(config: Input, faults: Diagnostics) -> Stack:
     """The layers, refused where a part would stick out of the silicone or a floor is too thin."""
     p, parts = config.parameters, config.catalogue
-    film = parts.films[p.mask.film]
+    thick_mm, what = mask_mm(config)
     faults.refuse_unless(
-        math.isclose(p.stack.film_mm, film.thickness_mm),
+        math.isclose(p.stack.film_mm, thick_mm),
         "stack.film_mm",
-        f"is {p.stack.film_mm:g}; {p.mask.film!r} is {film.thickness_mm:g} mm thick. Change one of "
-        "them.",
+        f"is {p.stack.film_mm:g}; {what} is {thick_mm:g} mm thick. Change one of them.",
     )
     faults.refuse_unless(
         p.stack.floor_mm >= p.printer.min_wall_mm,
@@ -186,7 +195,7 @@ pour alone covers 69 %."""
 
 
 def derive_densities(config: Input, slicing: Slicing) -> Densities:
-    """Densities of backing, interface, boards, the parts on them, silicone and film."""
+    """Densities of backing, interface, boards, the parts on them, silicone and mask."""
     p, parts = config.parameters, config.catalogue
     rigid, flexible = parts.laminates.rigid, parts.laminates.flexible
     return Densities(
@@ -196,7 +205,9 @@ def derive_densities(config: Input, slicing: Slicing) -> Densities:
         auxiliary_g_ml=_clad_g_ml(rigid, stiff_mm(p)),
         part_g_ml=rigid.density_g_ml,
         silicone_g_ml=parts.silicones[p.mould.silicone].density_g_ml,
-        film_g_ml=parts.films[p.mask.film].density_g_ml,
+        film_g_ml=slicing.sheet.density_g_ml
+        if p.mask.route == "tpu"
+        else config.parts.mask.film.density_g_ml,
     )
 
 

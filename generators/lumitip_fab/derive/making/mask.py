@@ -1,10 +1,10 @@
-"""The print on the film, and whether a page takes it."""
+"""The mask, and whether page, printer and plotter make it."""
 
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards.boards import Plan
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.cells import LEAST_WEB_MM
-from lumitip_fab.design import Box, Mask, Outline
+from lumitip_fab.design import Box, Mask, Outline, Sheet
 
 PAGE_MM = (210.0, 279.4)  # what A4 and US Letter have in common
 PAGE_MARGIN_MM = 8.0  # most printers reach 5 mm from the edge; registration marks reach 2 mm out
@@ -16,12 +16,22 @@ MARK_SHARE = (0.42, 0.72)  # of the tip flap's length: clear of its black band a
 MARK_MM = 4.0
 MARK_INSET_MM = 0.5  # from the tip flap's side
 FLAP_TAPER = 0.18  # of the tip flap's side: a little over 10°
+STROKE = 0.17  # of a letter's height
+FOLD_LINES = 2  # width of a sheet's groove: the print is closed beside it, and it bends by 90°
 
 
 def derive_mask(config: Input, outline: Outline, plan: Plan, faults: Diagnostics) -> Mask:
     """The mask, refused where apertures meet the connector's window or the page is too small."""
     p = config.parameters
     film = config.parts.mask.film
+    opaque = p.mask.route == "cut"
+    faults.refuse_unless(
+        p.mask.route == "tpu" or film.opaque == opaque,
+        "mask.film",
+        f"is {p.mask.film!r}, which is {'opaque' if film.opaque else 'clear'}; with mask.route = "
+        f"{p.mask.route!r} {'an opaque' if opaque else 'a clear'} film is needed: "
+        f"{', '.join(n for n, f in config.catalogue.films.items() if f.opaque == opaque)}",
+    )
     lowest = min(y for _, y in plan.receiver.cells) - p.mask.hole_mm / 2
     window = max(plan.receiver.window.y_max_mm, plan.emitter.window.y_max_mm)
     faults.refuse_unless(
@@ -54,7 +64,12 @@ def derive_mask(config: Input, outline: Outline, plan: Plan, faults: Diagnostics
         f"{page[0]:.0f} x {page[1]:.0f} mm; A4 and US Letter have {PAGE_MM[0]:.0f} x "
         f"{PAGE_MM[1]:.0f} mm",
     )
+    mark = _mark(outline, p.mask.allowance_mm, p.mask.flap_mm)
+    printed = _sheet_of(config, mark)
+    if p.mask.route == "tpu":
+        _refuse_sheet(config, printed, lowest - window, sheet, faults)
     return Mask(
+        route=p.mask.route,
         hole_mm=p.mask.hole_mm,
         hole_shape=p.mask.hole_shape,
         allowance_mm=p.mask.allowance_mm,
@@ -67,7 +82,56 @@ def derive_mask(config: Input, outline: Outline, plan: Plan, faults: Diagnostics
             for y in (sheet.y_max_mm, sheet.y_min_mm)
             for x in (sheet.x_min_mm, sheet.x_max_mm)
         ),
-        mark=_mark(outline, p.mask.allowance_mm, p.mask.flap_mm),
+        mark=mark,
+        sheet=printed,
+    )
+
+
+def _sheet_of(config: Input, mark: Box) -> Sheet:
+    mask, printer = config.parameters.mask, config.parts.printer.profile
+    return Sheet(
+        filament=config.title("mask.filament"),
+        layers=mask.layers,
+        layer_mm=printer.layer_mm,
+        line_mm=printer.line_mm,
+        hole_mm=round(mask.hole_mm + config.parts.mask.filament.hole_loss_mm, 6),
+        fold_mm=round(FOLD_LINES * printer.line_mm, 6) if mask.layers > 1 else 0.0,
+        letter=mask.layers > 1 and STROKE * mark.length_mm >= printer.line_mm,
+    )
+
+
+def _refuse_sheet(
+    config: Input, printed: Sheet, to_window_mm: float, around: Box, faults: Diagnostics
+) -> None:
+    """Refuse a printed sheet with webs or holes narrower than a line, one that is larger than the
+    bed, and a filament that does not bend."""
+    p, line, bed = config.parameters, printed.line_mm, config.parts.printer.profile.bed_mm
+    loss = printed.hole_mm - p.mask.hole_mm
+    web = min(p.grid.pitch_mm - p.mask.hole_mm, to_window_mm + loss / 2) - loss
+    faults.refuse_unless(
+        web >= line - 1e-9,
+        "mask.hole_mm",
+        f"is {p.mask.hole_mm:g}, drawn as {printed.hole_mm:g}, which leaves webs of {web:.2f} mm "
+        f"in the printed sheet; at least one printed line of {line:g} is needed, so at most "
+        f"{max(p.mask.hole_mm - line + web, 0):.2f} is allowed",
+    )
+    faults.refuse_unless(
+        p.mask.hole_mm >= line - 1e-9,
+        "mask.hole_mm",
+        f"is {p.mask.hole_mm:g}; at least one printed line of {line:g} is needed, or the holes of "
+        "the printed sheet close",
+    )
+    faults.refuse_unless(
+        around.width_mm <= bed[0] and around.length_mm <= bed[1],
+        "printer.profile",
+        f"is {p.printer.profile!r}, with a bed of {bed[0]:g} x {bed[1]:g} mm; a mask of "
+        f"{around.width_mm:.0f} x {around.length_mm:.0f} mm does not fit",
+    )
+    faults.refuse_unless(
+        config.parts.mask.filament.rigid_parts is not None,
+        "mask.filament",
+        f"is {p.mask.filament!r}, which does not bend; a filament with rigid_parts in "
+        "parts/filaments.toml is needed",
     )
 
 

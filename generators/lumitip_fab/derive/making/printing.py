@@ -11,7 +11,7 @@ from lumitip_fab.design.making import Filament
 
 def derive_slicing(config: Input, mould: Mould, faults: Diagnostics) -> Slicing:
     """Settings of the backing's filament, with the density of the spool at hand, of the one that
-    everything else is printed from, and of that one in the mould's layers."""
+    everything else is printed from, of that one in the mould's layers, and of the mask's sheet."""
     p, known = config.parameters, config.catalogue.filaments
     name = p.backing.material
     other = known[name].rigid_parts or name
@@ -40,6 +40,9 @@ def derive_slicing(config: Input, mould: Mould, faults: Diagnostics) -> Slicing:
         rest
         if mould.layer_mm == printer.layer_mm
         else replace(rest, layer_mm=mould.layer_mm, part="mould"),
+        replace(
+            _filament(config, p.mask.filament, config.parts.mask.filament.density_g_ml), part="mask"
+        ),
     )
 
 
@@ -75,7 +78,8 @@ _REMEDY = {
 
 
 def derive_heat(config: Input, slicing: Slicing, faults: Diagnostics) -> tuple[HeatStep, ...]:
-    """Soldering, curing and creasing, in the order of work.
+    """Soldering, curing and, unless a printed mask folds along its grooves, creasing, in the order
+    of work.
 
     Printing is none of them: it melts a filament, and heats no part that is already made.
     """
@@ -86,7 +90,7 @@ def derive_heat(config: Input, slicing: Slicing, faults: Diagnostics) -> tuple[H
     printed = [("backing", slicing.backing.name), ("mould", slicing.mould.name)]
     if is_flex(p):
         printed.insert(1, ("interface", slicing.rigid.name))
-    steps = (
+    steps: tuple[HeatStep, ...] = (
         HeatStep(
             "solder",
             "boards and wires, before a board goes into a printed part",
@@ -103,13 +107,15 @@ def derive_heat(config: Input, slicing: Slicing, faults: Diagnostics) -> tuple[H
                 HeatedPart("board", kind, laminate.limit_c),
             ),
         ),
-        HeatStep(
+    )
+    if p.mask.route != "tpu":
+        crease = HeatStep(
             "crease",
             "the film alone, over a metal edge",
             film.soften_c,
             (HeatedPart("film", config.title("mask.film"), film.limit_c),),
-        ),
-    )
+        )
+        steps = (*steps, crease)
     for step in steps:
         _refuse(step, config, faults)
     return steps

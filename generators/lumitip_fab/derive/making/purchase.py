@@ -36,9 +36,10 @@ def derive_purchase(
         board_each=prices.board.each,
         board_per_cm2=prices.board.per_cm2,
         placing_each=prices.placing.each,
-        filament_kg=(
-            prices.kg.get(slicing.backing.name),
-            prices.kg.get(slicing.rigid.name),
+        filament_kg=tuple(
+            (name, prices.kg[name])
+            for name in dict.fromkeys(f.name for f in slicing.filaments)
+            if name in prices.kg
         ),
         silicone_kg=prices.kg.get(p.mould.silicone),
         film_sheet=prices.sheet.get(p.mask.film),
