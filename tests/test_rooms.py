@@ -29,7 +29,7 @@ ALLOWED = {
     "boards": "design pipeline",
     "mask": "design pipeline",
     "firmware": "design pipeline",
-    "parts": "design pipeline",
+    "parts": "design mask pipeline",
     "models": "design pipeline parts",
     "scenes": "design pipeline parts",
     "docs": "design pipeline",

@@ -212,11 +212,12 @@ def _printer(random: Random, _: Table, _base: str) -> Table:
 
 
 def _casting(random: Random, _: Table, _base: str) -> Table:
+    clear = [name for name, film in entries("films").items() if not film.get("opaque")]
     return _some(
         random,
         {
             "mould.silicone": lambda: random.choice(list(entries("silicones"))),
-            "mask.film": lambda: random.choice(list(entries("films"))),
+            "mask.film": lambda: random.choice(clear),
         },
     )
 

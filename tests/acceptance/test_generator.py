@@ -140,7 +140,7 @@ def test_every_entry_of_the_kinds_that_a_user_chooses_from_is_drawn() -> None:
         ("controller.board", "controllers", set()),
         ("emitter.resistor", "resistors", set()),
         ("mould.silicone", "silicones", set()),
-        ("mask.film", "films", set()),
+        ("mask.film", "films", {n for n, f in entries("films").items() if f.get("opaque")}),
         ("printer.profile", "printers", set()),
         ("backing.material", "filaments", set()),
         ("emitter.led", "leds", set()),

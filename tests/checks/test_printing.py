@@ -42,6 +42,7 @@ def failing(folder: Path) -> set[str]:
 
 
 INI, MOULD, NOTE = "petg.ini", "petg_mould.ini", "printing.md"
+SHEET = "tpu_95a_mask.ini"
 EDITS = [
     (INI, "\nlayer_height = 0.2", "\nlayer_height = 0.3", {"settings"}),
     (INI, "first_layer_height = 0.2", "first_layer_height = 0.35", {"settings"}),
@@ -84,6 +85,9 @@ EDITS = [
     (NOTE, "`print/petg_mould.ini` | PETG | 0.15", "`print/petg.ini` | PETG | 0.2", {"parts"}),
     (NOTE, "petg_mould.ini` | PETG | 0.15", "petg_mould.ini` | PETG | 0.2", {"parts"}),
     (NOTE, "petg_mould.ini` | PETG | 0.15", "petg_mould.ini` | PLA | 0.15", {"parts"}),
+    (SHEET, "layer_height = 0.2", "layer_height = 0.3", {"settings"}),
+    (SHEET, "filament_type = FLEX", "filament_type = PLA", {"settings"}),
+    (NOTE, "tpu_95a_mask.ini` | TPU 95A", "petg.ini` | PETG", {"parts"}),
     (NOTE, "| `backing/receiver_backing.3mf`", "`backing/receiver_backing.3mf`", {"parts"}),
 ]
 
@@ -142,6 +146,7 @@ def test_what_must_not_bend_is_printed_from_another_filament(config: Input, tmp_
         "petg.ini",
         "petg_mould.ini",
         "printing.md",
+        "tpu_95a_mask.ini",
         "tpu_98a.ini",
     ]
     note = (out / "print/printing.md").read_text(encoding="utf-8")
@@ -164,7 +169,8 @@ def test_no_file_of_their_own_where_the_moulds_are_whole_layers(
     assert design.slicing.mould == design.slicing.rigid
     out = _written(design, tmp_path / "out")
     assert failing(out) == set()
-    assert sorted(p.name for p in (out / "print").iterdir()) == ["petg.ini", "printing.md"]
+    files = sorted(p.name for p in (out / "print").iterdir())
+    assert files == ["petg.ini", "printing.md", "tpu_95a_mask.ini"]
 
 
 def test_heights_that_no_layer_divides_are_told(config: Input, tmp_path: Path) -> None:

@@ -30,6 +30,8 @@ NEEDED: dict[str, dict[str, Any]] = {
     "VSMB1940X01": COOL,
     "APT1608F3C": COOL,
     "TPU 150um": {"stack.film_mm": 0.15},
+    "TPU black 100um": {"mask.route": "cut"},
+    "vinyl black 70um": {"mask.route": "cut", "stack.film_mm": 0.07},
     "fdm 0.6": {"tip.edge_mm": 0.65, "mould.wall_mm": 2.5},
 }
 """What an entry asks of other fields."""

@@ -122,7 +122,10 @@ CHANGES: dict[str, Any] = {
     "wiring.controller_mm": 160.0,
     "wiring.slack_mm": 50.0,
     "wiring.section_mm2": 0.1,
+    "mask.route": "cut",
     "mask.film": "other",
+    "mask.filament": "TPU 98A",
+    "mask.layers": 1,
     "mask.hole_mm": 2.4,
     "mask.hole_shape": "circle",
     "mask.measured_ruler_mm": (99.0, 100.0),
@@ -151,6 +154,7 @@ WITH: dict[str, dict[str, Any]] = {
     "stack.film_mm": {"mask.film": "thick"},
     "emitter.string_leds": {"emitter.current_ma": 5.0},
     "emitter.drive": FRONT,
+    "mask.route": {"mask.film": "black"},
 }
 # What a section or a field only does something with.
 ONLY_WITH: dict[str, dict[str, Any]] = {
@@ -207,7 +211,8 @@ def published(inputs: dict[str, Input]) -> Input:
         for kind, (name, new) in more.items()
     }
     film = parts.films["TPU 100um"].model_copy(update={"thickness_mm": 0.15})
-    tables["films"] = {**tables["films"], "thick": film}
+    black = parts.films["TPU 100um"].model_copy(update={"opaque": True})
+    tables["films"] = {**tables["films"], "thick": film, "black": black}
     for name, like, height_mm in (
         ("other contacts", "pogo 2x5", 6.5),
         ("other header", "box header 2x7", 8.0),

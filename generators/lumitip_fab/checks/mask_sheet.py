@@ -28,6 +28,7 @@ SAME_MM = 0.01  # of outline and window, against the film's
 LEVEL_MM = 0.001  # of a face, off a whole layer
 FOLD_MM2 = 0.5  # grooves beside the folds: 3 µm of a default mask's length
 _WITHIN = 0.5  # of a layer: where it is cut
+_UPRIGHT = 1e-3  # upward part of a wall's normal
 _LETTER_MM2 = 1.0  # least area of the letter's strokes
 _ISLANDS = {"E": 0, "R": 1}
 
@@ -79,14 +80,15 @@ def measure_closed_body(read: PrintedMask) -> Iterator[Measurement]:
 
 
 def measure_thickness(read: PrintedMask) -> Iterator[Measurement]:
-    """All layers, on the bed; every corner is at a whole layer; the bed's size."""
+    """All layers, on the bed; every face but the walls is at a whole layer; the bed's size."""
     sheet, printing = read.design.mask.sheet, read.design.printing
     heights = read.mesh.vertices[:, 2]
     thick = sheet.layers * printing.layer_mm
     yield read.near("thickness", [heights.max(), thick + heights.min()], thick, LEVEL_MM)
-    off = np.abs(heights / printing.layer_mm - np.round(heights / printing.layer_mm))
-    worst = float(off.max()) * printing.layer_mm
-    yield read.figure("layers", worst, 0, LEVEL_MM, note="of a corner off a whole layer")
+    level = np.abs(read.mesh.face_normals[:, 2]) > _UPRIGHT
+    faces = read.mesh.triangles[level][:, :, 2] / printing.layer_mm
+    off = float(np.abs(faces - np.round(faces)).max()) * printing.layer_mm
+    yield read.figure("layers", off, 0, LEVEL_MM, note="of a face off a whole layer")
     size = np.ptp(read.mesh.bounds, axis=0)[:2]
     room = float((np.array(printing.bed_mm[:2]) - size).min())
     yield read.figure("fits_bed", room, *_least(read, 0.0), note="left on the bed")
@@ -143,7 +145,7 @@ def measure_folds(read: PrintedMask) -> Iterator[Measurement]:
     wide = shapely.buffer(
         list(map(shapely.LineString, read.film.folds)), sheet.fold_mm / 2, cap_style=3
     )
-    wanted = shapely.union_all(wide).intersection(read.low)
+    wanted = shapely.union_all(wide).intersection(shapely.Polygon(read.film.cut))
     wrong = sunk.difference(mark).symmetric_difference(wanted).area
     note = f"of grooves beside {len(read.film.folds)} folds"
     yield read.figure("folds", wrong, 0, FOLD_MM2, "mm²", note)
@@ -197,7 +199,7 @@ def _holes(read: PrintedMask, cut: BaseGeometry) -> list[shapely.Polygon]:
     parts = [p for p in shapely.get_parts(cut) if p.geom_type == "Polygon"]
     mark = _area(read.design.mask.mark)
     rings = [shapely.Polygon(ring) for part in parts for ring in part.interiors]
-    return [r for r in rings if not r.intersects(window) and not mark.contains(r)]
+    return [r for r in rings if not r.intersects(window) and not r.intersects(mark)]
 
 
 def _area(box: Box) -> shapely.Polygon:

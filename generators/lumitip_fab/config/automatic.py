@@ -81,9 +81,9 @@ FIELDS: dict[str, Automatic] = {
     "receiver.bulk_capacitor": Automatic(
         "10uF 0603 10V", "room beside the wires and current of the detectors", names="capacitors"
     ),
-    "mask.route": Automatic("film", "nothing: printed as published"),
-    "mask.filament": Automatic("TPU 95A", "nothing: a soft filament in black"),
-    "mask.layers": Automatic(2, "nothing: the second layer covers gaps of the first"),
+    "mask.route": Automatic("film", "no other value"),
+    "mask.filament": Automatic("TPU 95A", "no other value"),
+    "mask.layers": Automatic(2, "no other value"),
     "mask.allowance_mm": Automatic(0.75, "page", 0.05),
     "mask.flap_mm": Automatic(13.0, "thickness of a finger and page", 0.5),
     "mould.taper_length_mm": Automatic(3.0, "outline.tip_margin_mm", 0.1),

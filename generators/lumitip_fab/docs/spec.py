@@ -67,7 +67,7 @@ def _sizes(design: Design) -> tuple[Row, ...]:
             "depth",
             "21 mm",
             f"{depth:.1f} mm",
-            f"silicone {stack.silicone_mm:g} and film {stack.film_mm:g} before the rim, coupling "
+            f"silicone {stack.silicone_mm:g} and mask {stack.film_mm:g} before the rim, coupling "
             f"{mount.block_back_w_mm:g} behind it; Table I gives whole mm",
         ),
         Row(
@@ -89,7 +89,7 @@ def _sizes(design: Design) -> tuple[Row, ...]:
             "4.0 mm",
             f"{stack.thickness_mm:.1f} mm",
             f"floor {stack.floor_mm:g}, board {stack.pcb_mm:g}, silicone {stack.silicone_mm:g}, "
-            f"film {stack.film_mm:g} mm",
+            f"mask {stack.film_mm:g} mm",
         ),
         Row(
             "density",
@@ -175,7 +175,8 @@ def _further(design: Design) -> tuple[Row, ...]:
     to_tool = gripper_to_tool(stack, design.mount, design.closing, design.system)
     tool_mm = float(to_tool[2, 3])
     skin = (design.mount.stroke_mm - design.closing.max_opening_mm) / 2
-    across = "diameter" if design.mask.hole_shape == "circle" else "across flats"
+    shape = design.layout.optics.hole_shape
+    across = "diameter" if shape == "circle" else "across flats"
     return (
         *over,
         *(_of_flex(design) if design.interfaces else _of_rigid(design)),
@@ -230,7 +231,13 @@ def _further(design: Design) -> tuple[Row, ...]:
             "aperture",
             "2.5 mm",
             f"{design.mask.hole_mm:g} mm",
-            f"{across} of a {design.mask.hole_shape}, by mask.hole_mm; published: a hexagon",
+            f"{across} of a {shape}, by mask.hole_mm; published: a hexagon",
+        ),
+        Row(
+            "mask",
+            "printed film, 0.1 mm",
+            f"{design.mask.material}, {stack.film_mm:g} mm",
+            f"by mask.route = {design.mask.route!r}; outputs/mask has files for all three routes",
         ),
         Row(
             "heat in the emitter",
