@@ -68,7 +68,7 @@ def test_controller_name_touches_the_firmware_alone(keys: Keys) -> None:
 
 
 def test_mask_hole_touches_the_mask_and_what_reads_the_layout(keys: Keys) -> None:
-    assert changed(keys(), keys("[mask]\nhole_mm = 2.0\n")) == {"mask", "firmware"}
+    assert changed(keys(), keys("[mask]\nhole_mm = 2.0\n")) == {"mask", "mask_sheet", "firmware"}
 
 
 def test_waste_of_silicone_touches_the_mould_and_what_shares_its_figures(keys: Keys) -> None:
@@ -234,7 +234,8 @@ def test_only_the_steps_asked_for_run(design_dir: Path, damaged: Path) -> None:
     assert after.tasks.keys() == before.tasks.keys()
     same = {path for path in before.files if after.files[path].sha256 == before.files[path].sha256}
     assert before.files.keys() - same == {
-        *(path for path in before.files if path.startswith(("mask/", "bom"))),
+        *(path for path in before.files if path.startswith("mask/") and "_sheet" not in path),
+        "bom.csv",
         *("design.json", "layout.json", "resolved.toml"),
     }
     assert after.origin == manifest.Origin()  # it is no whole build of either design

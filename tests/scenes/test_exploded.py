@@ -36,7 +36,7 @@ def labels(design: Design, finger: Finger) -> set[str]:
         f"Backing, {stack.plate_mm:g} mm",
         f"Board, {stack.pcb_mm:g} mm",
         f"Silicone, {stack.silicone_mm:g} mm",
-        f"Film, {stack.film_mm:g} mm",
+        f"Mask, {stack.film_mm:g} mm",
         *(["Interface"] if design.interfaces else []),
         f"{len(finger.connector.pads)} wires",
         f"{finger.name.capitalize()} finger, exploded",

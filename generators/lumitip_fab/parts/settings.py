@@ -94,8 +94,8 @@ def _note(design: Design, bends: bool) -> str:
     if bends:
         rows += [(f"interface/{finger}_interface.3mf", standing) for finger in _FINGERS]
     rows += [(f"mould/{finger}_mould.3mf", "open side up") for finger in _FINGERS]
-    needed = "" if design.mask.route == "tpu" else '; only for `mask.route = "tpu"`'
-    rows += [(f"mask/{finger}_sheet.3mf", f"on its outer face{needed}") for finger in _FINGERS]
+    flat = 'on its outer face, for `mask.route = "tpu"`'
+    rows += [(f"mask/{finger}_sheet.3mf", flat) for finger in _FINGERS]
     listed = "\n".join(
         f"| `{path}` | {_temperatures(slicing.of(path))} | {lies} |" for path, lies in rows
     )

@@ -35,7 +35,7 @@ def assembly(design: Design) -> tuple[Artefact, ...]:
     drawings = [
         Artefact(
             f"assembly/{bodies.finger.name}_exploded.svg",
-            exploded_view(bodies, design.stack, design.outline, design.mask.route).encode(),
+            exploded_view(bodies, design.stack, design.outline).encode(),
             frame="",
         )
         for bodies in both

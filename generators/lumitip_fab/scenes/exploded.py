@@ -44,12 +44,6 @@ _PART_TINTS = {
     "switch": "#b9bcc0",
     "capacitor": "#d8d2c8",
 }
-_MASKS = {
-    "film": ("Film", "mask printed on its inside"),
-    "cut": ("Film", "opaque, cut with holes"),
-    "tpu": ("Mask", "printed sheet with holes"),
-}
-"""Words for the mask, by its route."""
 
 
 @dataclass(frozen=True)
@@ -65,17 +59,16 @@ class Layer:
     """Where its label points at, on the page."""
 
 
-def exploded_view(bodies: Bodies, stack: Stack, outline: Outline, route: str) -> str:
+def exploded_view(bodies: Bodies, stack: Stack, outline: Outline) -> str:
     """The drawing as SVG.
 
     Args:
         bodies: the finger.
         stack: for the layers' heights and names.
-        route: of the mask.
         outline: for the lines along which the layers are pulled apart.
     """
     sheet, finger = Sheet(), bodies.finger
-    layers = _layers(bodies, stack, outline, _MASKS[route])
+    layers = _layers(bodies, stack, outline)
     corners = _projected(_at(outline.polygon(16), stack.rim_z_mm))
     guides = [int(corners[:, 0].argmin()), int(corners[:, 0].argmax())]
     pins = _projected(_at(np.array(finger.holes), stack.rim_z_mm))
@@ -95,8 +88,7 @@ def exploded_view(bodies: Bodies, stack: Stack, outline: Outline, route: str) ->
     return sheet.svg({"data-azimuth-deg": AZIMUTH_DEG, "data-elevation-deg": ELEVATION_DEG})
 
 
-def _layers(bodies: Bodies, stack: Stack, outline: Outline, mask: tuple[str, str]) -> list[Layer]:
-    named, made = mask
+def _layers(bodies: Bodies, stack: Stack, outline: Outline) -> list[Layer]:
     flat = outline.polygon(16)
     page = _projected(_at(flat, 0.0))
     height = float(np.ptp(page[:, 1]))
@@ -114,7 +106,7 @@ def _layers(bodies: Bodies, stack: Stack, outline: Outline, mask: tuple[str, str
             "glued in, flush with the rim" if sunk else "flexible, tied on",
         ),
         "silicone": (f"Silicone, {stack.silicone_mm:g} mm", "cast on the board"),
-        "film": (f"{named}, {stack.film_mm:g} mm", made),
+        "film": (f"Mask, {stack.film_mm:g} mm", "black, a hole above each cell"),
     }
     layers = []
     for step, (name, solid) in enumerate(layers_of(bodies)):
