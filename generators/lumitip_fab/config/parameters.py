@@ -24,6 +24,7 @@ from lumitip_fab.config.sections import (
     Flange,
     Flex,
     Holder,
+    Mask,
     Module,
     Text,
 )
@@ -191,36 +192,6 @@ class Cables(Strict):
     """Added to every wire for bends, stripping and strain relief (mm)."""
     section_mm2: float = Field(ge=0.01, le=2)
     """Copper of each wire, at least; what carries more current is thicker. 0.08 is AWG 28 (mm²)."""
-
-
-class Mask(Strict):
-    """The black sheet with an aperture above each cell."""
-
-    route: Literal["film", "tpu", "cut"]
-    """How it is made: `"film"`, printed on a clear film; `"tpu"`, a sheet with holes from a 3D
-    printer; `"cut"`, cut from an opaque film. Files for all three are written; thickness, notes,
-    bill and manual follow the route."""
-    film: Name
-    """Name of a film in `parts/films.toml`: a clear one to print on, an opaque one to cut. Not used
-    with `route = "tpu"`."""
-    filament: Name
-    """Name of the sheet's filament in `parts/filaments.toml`."""
-    layers: int = Field(ge=1, le=3)
-    """Layers of the printed sheet, each as high as the printer's. From two layers on, its folds are
-    grooves that leave one."""
-    hole_mm: float = Field(ge=0.3, le=20)
-    """Aperture above each cell: across flats of a hexagon, diameter of a circle (mm)."""
-    hole_shape: Literal["hexagon", "circle"]
-    """Shape of the apertures; flats of hexagons face the tip."""
-    measured_ruler_mm: tuple[
-        Annotated[float, Field(ge=90, le=110)], Annotated[float, Field(ge=90, le=110)]
-    ]
-    """Length of the printed 100 mm rulers, horizontal and vertical, as your printer drew them on
-    a page made with `[100.0, 100.0]` (mm); the next page is scaled to come out true."""
-    allowance_mm: Gap
-    """Finger outline to the first fold, for the mask's bend (mm)."""
-    flap_mm: float = Field(ge=3, le=40)
-    """Length of the fold flaps, where coupling and notch leave room (mm)."""
 
 
 class Mould(Strict):
