@@ -5,7 +5,7 @@ from typing import Any
 
 from lumitip_fab.design import Design, Flange, HeatStep, Mask
 from lumitip_fab.docs.bill import amount, money
-from lumitip_fab.docs.polarity import polarity_test
+from lumitip_fab.docs.boards import boards_chapter
 from lumitip_fab.docs.spec_circuit import pulled_up
 from lumitip_fab.pipeline.artefact import Files
 from lumitip_fab.text import as_written
@@ -23,7 +23,7 @@ def manual_text(design: Design, files: Files) -> str:
         _front(design),
         _bought(files),
         _printed(files),
-        _boards(design, files),
+        boards_chapter(design, files),
         _wired(design, files),
         _cast(files),
         _wrapped(design, files),
@@ -134,54 +134,6 @@ Hold a board and the bolts against it, write the reading into the parameter file
 print the rest.
 
 {_included(files.text("print/printing.md"))}"""
-
-
-def _boards(design: Design, files: Files) -> str:
-    names = ("emitter", "receiver", *(auxiliary.name for auxiliary in design.auxiliary_boards))
-    behind = any(part.side == "back" for part in design.emitter.parts)
-    backs = ["emitter"] if behind else []
-    backs += [
-        c.name for c in design.auxiliary_boards if any(d.side == "back" for d in c.components)
-    ]
-    sides = [*((name, "front") for name in names), *((name, "back") for name in backs)]
-    pictures = "\n".join(
-        f"![The {name} board, {side}](boards/{name}/{name}_{side}.png)"
-        for name, side in sides
-        if files.like(f"boards/{name}/{name}_{side}.png")
-    )
-    last = ", then the string resistors on the back of the emitter" if behind else ""
-    zips = "\n".join(f"- `boards/{name}/order/`: {name}" for name in names)
-    return f"""## 3. Boards
-
-Each board has a zip for each PCB fab, with Gerber and drill files, parts and places:
-
-{zips}
-{_panels(design)}
-{polarity_test(design.packages)}1. Order the boards, or have them placed as well.
-   `..._fabrication.txt` in each zip has thickness, copper and colour. Finger boards are matte
-   black, because they must not reflect infrared light.
-2. Solder what is left: parts on the front{last}.
-3. Before the wires go in, measure between ground and supply of each board: no short.
-
-{pictures}"""
-
-
-def _panels(design: Design) -> str:
-    """Panels to order instead of boards, for a fab that assembles them."""
-    if not design.panels:
-        return ""
-    listed = "\n".join(
-        f"- `boards/{panel.name}/order/`: {len(panel.copies)} times {panel.board}"
-        for panel in design.panels
-    )
-    return f"""
-A PCB fab that assembles boards takes these panels instead, as a panel by the customer:
-
-{listed}
-
-Break the boards out along the mouse bites, with pliers close to the tab, and file the edges flush:
-a finger's board fits its pocket with {design.board.pocket_clearance_mm:g} mm on each side.
-"""
 
 
 def _cast(files: Files) -> str:
