@@ -68,7 +68,8 @@ class Fingertip:
             url: `ble://NAME-OR-ADDRESS`, `serial://PORT`, `replay://FILE`, `twin://SHAPE` or
                 `tcp://HOST:PORT`, where `lumitip serve` shares a fingertip.
             layout: the `layout.json` that its firmware was built from, or its path; not needed
-                for a replay, a twin or a shared fingertip.
+                for a replay, a twin or a shared fingertip, nor once it was used on this computer:
+                controllers name their design (the published firmware does not).
             timeout: of the connection (s); `None`: no limit.
             buffer: frames that may wait for each reader; the oldest are dropped, counted in
                 `stats.dropped["queue"]`. 4096 are 8 s at 500 Hz.
@@ -87,7 +88,9 @@ class Fingertip:
             layout = Layout.load(layout)
         elif layout is not None and not isinstance(layout, Layout):
             raise LayoutError(f"layout is {shown(layout)}; a Layout or the path of one is needed")
-        hub = Hub(open_link(url, layout, any_design), any_design, on_event)
+        hub = Hub(
+            open_link(url, layout, any_design, arguments.seconds(timeout)), any_design, on_event
+        )
         hub.start(timeout)
         try:
             return cls(hub, buffer, calibrated)

@@ -53,7 +53,7 @@ class Moment:
 class FingertipGroup:
     """Several open fingertips; made by `FingertipGroup.open`.
 
-    Call `read` and `moments` from one thread at a time.
+    Call `read` and `moments` from one thread at a time; `wait_latest` from any.
     """
 
     def __init__(self, tips: Mapping[str, Fingertip]) -> None:
@@ -123,6 +123,27 @@ class FingertipGroup:
         """Repeat `read`."""
         while True:
             yield self.read(timeout)
+
+    def wait_latest(self, timeout_s: float | None = 1.0) -> Moment:
+        """The newest frame of each fingertip, once each is newer than the last that this thread
+        got; waits up to `timeout_s` (s), `None` without limit. For control loops: nothing queues.
+
+        Raises:
+            LinkTimeout: if a fingertip sent no newer frame in time; the message names it.
+            LinkError: if the link of a fingertip has failed.
+        """
+        within_s = seconds(timeout_s, "timeout_s")
+        until = math.inf if within_s is None else time.monotonic() + within_s
+        frames = {}
+        for name, tip in self.tips.items():
+            left_s = None if within_s is None else max(0.0, until - time.monotonic())
+            try:
+                frames[name] = tip.wait_latest(left_s)
+            except LinkTimeout as error:
+                raise LinkTimeout(f"{name}: {error}") from error
+        # While the last was waited for, the others may have sent again.
+        newest = {name: self.tips[name].latest() or frame for name, frame in frames.items()}
+        return Moment(MappingProxyType(newest))
 
     def close(self) -> None:
         """Disconnect all. From any thread; may be repeated."""

@@ -44,6 +44,11 @@ def _layout(columns: tuple[int, ...] = (5, 4, 5, 4, 5, 4, 5), pitch_mm: float = 
     )
 
 
+@pytest.fixture(autouse=True)
+def _own_user_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "user"))
+
+
 @pytest.fixture(scope="session")
 def make_layout() -> Callable[..., Layout]:
     """`make_layout((4, 5, 6, 5), 5.0)`: a layout of that grid, wired in order."""

@@ -75,7 +75,8 @@ def add_layout(parser: argparse.ArgumentParser) -> None:
         "--layout",
         type=Path,
         metavar="FILE",
-        help=f"layout.json of the device's firmware (default: {BUILT_LAYOUT}, if it exists)",
+        help=f"layout.json of the device's firmware (default: {BUILT_LAYOUT}, if it exists, or the "
+        "one that was used with this design before)",
     )
 
 

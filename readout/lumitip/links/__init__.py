@@ -3,8 +3,9 @@
 from importlib import import_module
 
 from lumitip.errors import LayoutError, UrlError
+from lumitip.known_layouts import recall, remember
 from lumitip.layout import Layout
-from lumitip.links.base import Link
+from lumitip.links.base import Identity, Link
 from lumitip.links.url import Url
 
 SCHEMES = {
@@ -16,18 +17,29 @@ SCHEMES = {
 }
 
 
-def open_link(url: str, layout: Layout | None = None, any_design: bool = False) -> Link:
+DEVICES = ("ble", "serial")
+"""Links of controllers, which send no layout but name their design."""
+
+
+def open_link(
+    url: str,
+    layout: Layout | None = None,
+    any_design: bool = False,
+    timeout_s: float | None = None,
+) -> Link:
     """The link of an address, not yet started.
 
     Args:
         url: `ble://NAME-OR-ADDRESS`, `serial://PORT`, `replay://FILE`, `twin://SHAPE` or
             `tcp://HOST:PORT`; the module of each link describes its options.
-        layout: the cells of the device; optional for a replay, a twin or a shared device.
+        layout: the cells of the device; optional for a replay, a twin or a shared device, and for
+            a device whose layout was used on this computer before.
         any_design: accept a device of another design.
+        timeout_s: longest wait for a device to name its design (s), if there is no layout.
 
     Raises:
         UrlError: if the link or an option does not exist.
-        LayoutError: if the layout is missing.
+        LayoutError: if the layout is missing, and is not known from before.
         MissingExtra: if a library is missing.
         LinkError: if the link rejects the address.
     """
@@ -35,10 +47,22 @@ def open_link(url: str, layout: Layout | None = None, any_design: bool = False) 
     if address.scheme not in SCHEMES:
         allowed = ", ".join(f"{name}://…" for name in SCHEMES)
         raise UrlError(f"the address is {url!r}; allowed are {allowed}")
-    if layout is None and address.scheme in ("ble", "serial"):
-        raise LayoutError(
-            f"{url} needs the layout.json that its firmware was built from: add "
-            "layout='outputs/layout.json', or --layout outputs/layout.json"
-        )
-    link: Link = import_module(SCHEMES[address.scheme]).make(address, layout, any_design)
+    module = import_module(SCHEMES[address.scheme])
+    if address.scheme in DEVICES:
+        if layout is None:
+            layout, address = _known(module.identify(address, timeout_s))
+        else:
+            remember(layout)
+    link: Link = module.make(address, layout, any_design)
     return link
+
+
+def _known(device: Identity) -> tuple[Layout, Url]:
+    layout = recall(device.design, device.cells)
+    if layout is None:
+        raise LayoutError(
+            f"{device.device_id} has {device.cells} cells of design {device.design}, whose layout "
+            "was not used on this computer before. Add the layout.json that its firmware was "
+            "built from, this once: layout='outputs/layout.json', or --layout outputs/layout.json"
+        )
+    return layout, device.url

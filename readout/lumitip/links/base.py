@@ -8,6 +8,7 @@ from lumitip.calibration import Calibration
 from lumitip.errors import LinkError
 from lumitip.frame import Codes, RecordedFrame
 from lumitip.layout import Layout
+from lumitip.links.url import Url
 from lumitip.protocol.packet import ForeignPacketError, Packet
 
 Cause = Literal["crc", "length"]
@@ -78,6 +79,18 @@ class Link(Protocol):
 
     def stop(self) -> None:
         """End the thread; afterwards nothing is delivered or reported. Never raises."""
+
+
+@dataclass(frozen=True)
+class Identity:
+    """What a device says of its design before frames are read."""
+
+    device_id: str
+    design: str
+    """First digits of the design hash (hex): 16 over Bluetooth, 4 on a serial line."""
+    cells: int
+    url: Url
+    """Address to open next: that of this very device."""
 
 
 @runtime_checkable

@@ -9,6 +9,7 @@ thread, which only queues data; the link's thread decodes them. Needs bleak: the
 import asyncio
 import atexit
 import contextlib
+import dataclasses
 import re
 import threading
 import time
@@ -22,7 +23,7 @@ from typing import Any, TypeVar
 from lumitip.errors import LinkError, LinkTimeout, MissingExtra, MtuTooSmall, NotConnected, UrlError
 from lumitip.frame import Codes
 from lumitip.layout import Layout
-from lumitip.links.base import Arrival, Cause, Deliver, Fault, Report
+from lumitip.links.base import Arrival, Cause, Deliver, Fault, Identity, Report
 from lumitip.links.thread import ThreadedLink, keep_connected
 from lumitip.links.url import Url
 from lumitip.protocol.bluetooth import decode_legacy
@@ -32,7 +33,15 @@ try:
     from bleak import BleakClient
     from bleak.exc import BleakError
 
-    from lumitip.links.ble_device import Service, Sighting, begin, find, is_fingertip, look
+    from lumitip.links.ble_device import (
+        Service,
+        Sighting,
+        begin,
+        find,
+        is_fingertip,
+        look,
+        read_status,
+    )
 except ModuleNotFoundError as missing:
     raise MissingExtra("ble", "ble://") from missing
 
@@ -171,12 +180,46 @@ def make(url: Url, layout: Layout, any_design: bool) -> BleLink:
     Raises:
         UrlError: if an option or the name of the adapter is wrong.
     """
+    return BleLink(layout, url.target, *_options(url), any_design)
+
+
+def _options(url: Url) -> tuple[str, float]:
+    """Adapter, and longest scan (s)."""
     url.allow("adapter", "scan")
     scan_s = url.number("scan", 8.0, 0.1, 600.0)
     adapter = url.options.get("adapter", "")
     if not re.fullmatch(r"\w*", adapter, re.ASCII):
         raise UrlError(f"{url.text!r}: adapter is {adapter}; a name like hci0 is needed")
-    return BleLink(layout, url.target, adapter, scan_s, any_design)
+    return adapter, scan_s
+
+
+def identify(url: Url, timeout_s: float | None) -> Identity:
+    """The design that a device names in its status.
+
+    Raises:
+        UrlError: as `make`.
+        LayoutError: if it has the published firmware, which names none.
+        LinkError: if it is not found in time, or is not a fingertip.
+    """
+    adapter, scan_s = _options(url)
+    return _result(shared_loop().submit(_asked(url, adapter, scan_s, timeout_s)), url.text)
+
+
+async def _asked(url: Url, adapter: str, scan_s: float, timeout_s: float | None) -> Identity:
+    async with asyncio.timeout(timeout_s):
+        device = await find(url.target, adapter, scan_s)
+        client = BleakClient(device, timeout=_CONNECT_S)
+        try:
+            await client.connect()
+            status = await read_status(client)
+        finally:
+            await _disconnect(client)
+    return Identity(
+        f"ble:{device.address}",
+        status.design_hash,
+        status.cells,
+        dataclasses.replace(url, target=device.address),
+    )
 
 
 class LoopThread:

@@ -11,7 +11,14 @@ from bleak.backends.characteristic import BleakGATTCharacteristic
 from bleak.backends.device import BLEDevice
 from bleak.backends.scanner import AdvertisementData
 
-from lumitip.errors import AmbiguousDevice, DeviceNotFound, LinkError, MtuTooSmall, WrongDesign
+from lumitip.errors import (
+    AmbiguousDevice,
+    DeviceNotFound,
+    LayoutError,
+    LinkError,
+    MtuTooSmall,
+    WrongDesign,
+)
 from lumitip.layout import Layout
 from lumitip.protocol.bluetooth import (
     FRAMES,
@@ -140,10 +147,7 @@ async def begin(
     if client.services.get_characteristic(LEGACY_FRAMES):
         await client.start_notify(LEGACY_FRAMES, frames, bluez={"use_start_notify": True})
         return Service(1, None)
-    raise DeviceNotFound(
-        f"{client.address} is not a fingertip: it has no such service. `lumitip scan` lists "
-        "fingertips"
-    )
+    raise _no_fingertip(client)
 
 
 def check(status: Status, layout: Layout, any_design: bool, address: str) -> None:
@@ -167,6 +171,31 @@ def check_mtu(status: Status) -> None:
     """
     if status.mtu < status.needed_mtu:
         raise MtuTooSmall(status.mtu, status.needed_mtu)
+
+
+async def read_status(client: BleakClient) -> Status:
+    """The status of a connected device.
+
+    Raises:
+        LayoutError: if it has the published firmware, which has none.
+        DeviceNotFound: if it is not a fingertip.
+        LinkError: if the status cannot be read.
+    """
+    if client.services.get_characteristic(STATUS):
+        return await _status(client)
+    if client.services.get_characteristic(LEGACY_FRAMES):
+        raise LayoutError(
+            f"{client.address} has the published firmware, which does not name its design. Add its "
+            "layout.json: layout='outputs/layout.json', or --layout outputs/layout.json"
+        )
+    raise _no_fingertip(client)
+
+
+def _no_fingertip(client: BleakClient) -> DeviceNotFound:
+    return DeviceNotFound(
+        f"{client.address} is not a fingertip: it has no such service. `lumitip scan` lists "
+        "fingertips"
+    )
 
 
 async def _status(client: BleakClient) -> Status:

@@ -6,20 +6,30 @@ The default is the only USB serial port. A device with a USB serial number is fo
 port after a disconnect. Needs pyserial: the extra `serial`.
 """
 
+import dataclasses
 import errno
 import importlib.util
+import math
 import re
 import time
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from lumitip.errors import AmbiguousDevice, DeviceNotFound, LinkError, MissingExtra, NotConnected
+from lumitip.errors import (
+    AmbiguousDevice,
+    DeviceNotFound,
+    LinkError,
+    LinkTimeout,
+    MissingExtra,
+    NotConnected,
+)
 from lumitip.layout import Layout
-from lumitip.links.base import Arrival, Cause, Deliver, Fault, Report
+from lumitip.links.base import Arrival, Cause, Deliver, Fault, Identity, Report
 from lumitip.links.thread import ThreadedLink, keep_connected
 from lumitip.links.url import Url
-from lumitip.protocol.cobs import StreamDecoder
-from lumitip.protocol.packet import ForeignPacketError
+from lumitip.protocol.cobs import DELIMITER, CobsError, StreamDecoder, decode
+from lumitip.protocol.packet import ForeignPacketError, PacketError
+from lumitip.protocol.packet import decode as decode_packet
 
 try:
     import serial
@@ -32,6 +42,7 @@ _GONE: tuple[type[Exception], ...] = (OSError, TypeError)
 if importlib.util.find_spec("termios"):  # not on Windows
     _GONE += (importlib.import_module("termios").error,)
 _WAIT_S = 0.2  # timeout of a read, so that `stop` is noticed
+_MOST_BYTES = 1 << 17  # more than the longest packet
 _PIECES = re.compile(rb"[^\0]*\0|[^\0]+")
 CAUSES: tuple[Cause, ...] = ("crc", "length")
 
@@ -109,6 +120,46 @@ def make(url: Url, layout: Layout, any_design: bool) -> SerialLink:  # noqa: ARG
         DeviceNotFound: if the address has no port and there is none.
         AmbiguousDevice: if the address has no port and there are several.
     """
+    return SerialLink(layout, *_line(url))
+
+
+def identify(url: Url, timeout_s: float | None) -> Identity:
+    """The design that the packets of a device name.
+
+    Raises:
+        UrlError: as `make`.
+        LinkError: if the port cannot be opened, or no packet comes in time.
+    """
+    port, baud = _line(url)
+    until = time.monotonic() + (math.inf if timeout_s is None else timeout_s)
+    waiting = b""
+    try:
+        with serial.Serial(port, baud, timeout=_WAIT_S, exclusive=True) as line:
+            while time.monotonic() < until:
+                waiting += line.read(max(1, line.in_waiting))
+                *pieces, waiting = waiting[-_MOST_BYTES:].split(DELIMITER)
+                for piece in pieces:
+                    if named := _named(piece):
+                        own = dataclasses.replace(url, target=port)
+                        return Identity(f"serial:{port}", *named, own)
+    except _GONE as error:
+        raise _port_error(port, error) from error
+    raise LinkTimeout(f"{port}: no packet in {timeout_s:g} s. Is the firmware running?")
+
+
+def _named(piece: bytes) -> tuple[str, int] | None:
+    """Design and number of cells of a packet between two zeros; nothing if it is damaged."""
+    try:
+        packet = decode_packet(decode(piece), 1)
+    except ForeignPacketError as foreign:
+        return f"{foreign.design:04x}", foreign.cells
+    except (CobsError, PacketError):
+        return None
+    return f"{packet.design:04x}", 1
+
+
+def _line(url: Url) -> tuple[str, int]:
+    """Port and baud rate of an address."""
     url.allow("baud")
     port = url.target
     if not port:
@@ -118,7 +169,7 @@ def make(url: Url, layout: Layout, any_design: bool) -> SerialLink:  # noqa: ARG
         if len(found) > 1:
             raise AmbiguousDevice("", found, "serial")
         port = found[0]
-    return SerialLink(layout, port, int(url.number("baud", 115200, 1, 10_000_000)))
+    return port, int(url.number("baud", 115200, 1, 10_000_000))
 
 
 def _port_error(port: str, error: Exception) -> LinkError:

@@ -174,7 +174,7 @@ class Hub:
 
     def silent(self, timeout_s: float | None) -> LinkTimeout:
         """The error when no frame came in time."""
-        return LinkTimeout(f"no frame in {timeout_s or 0:g} s: {self._why_silent()}")
+        return LinkTimeout(f"no frame in {timeout_s or 0:.3g} s: {self._why_silent()}")
 
     def _too_late(self, timeout_s: float) -> LinkTimeout:
         why = "is the device switched on and in reach? `lumitip scan` lists devices"

@@ -82,7 +82,7 @@ class FingertipServer:
         self._connected = True
         self._ended: LinkError | None = None
         try:
-            link = open_link(url, layout, any_design)
+            link = open_link(url, layout, any_design, arguments.seconds(timeout))
             self._hub = Hub(_Tee(link, self._share), any_design, self._on_event)
             self._hub.start(timeout)
         except BaseException:

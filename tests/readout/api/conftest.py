@@ -2,7 +2,6 @@
 
 import time
 from collections.abc import Callable, Iterator
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -64,11 +63,6 @@ class Feed:
 
 
 OpenFeed = Callable[..., tuple[Fingertip, Feed]]
-
-
-@pytest.fixture(autouse=True)
-def _own_user_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "user"))
 
 
 @pytest.fixture

@@ -1,12 +1,13 @@
 """`AsyncFingertip` and `FingertipGroup`."""
 
 import asyncio
+import threading
 
 import numpy as np
 import pytest
 
 from lumitip import AsyncFingertip, FingertipGroup
-from lumitip.errors import FingertipClosed, LinkTimeout, UrlError
+from lumitip.errors import ArgumentError, FingertipClosed, LinkTimeout, UrlError
 from lumitip.session.hub import Hub
 
 FAST = "twin://disc?rate=1000"
@@ -133,6 +134,29 @@ def test_the_nearest_frame_is_chosen_and_none_is_lost_on_a_timeout(open_feed) ->
     assert moment["right"].raw[0] == 1, "4 ms before, the next is 6 ms after"
     left.packet(2, t_host=at + 0.02)
     assert group.read(0.0)["right"].raw[0] == 3
+
+
+def test_the_newest_moment_of_a_group_queues_nothing(open_feed) -> None:
+    one, left = open_feed(device_id="left")
+    two, right = open_feed(device_id="right")
+    group = FingertipGroup({"left": one, "right": two})
+    for n in range(5):
+        left.packet(n)
+        right.packet(n + 10)
+    moment = group.wait_latest(1.0)
+    assert (moment["left"].raw[0], moment["right"].raw[0]) == (4, 14)
+    left.packet(5)
+    with pytest.raises(LinkTimeout, match=r"^right: no frame in 0\.05 s"):
+        group.wait_latest(0.05)
+    sent = threading.Timer(0.05, lambda: (right.packet(15), left.packet(7)))
+    left.packet(6)
+    sent.start()
+    moment = group.wait_latest(5.0)
+    assert moment["left"].raw[0] in (6, 7)
+    assert moment["right"].raw[0] == 15
+    sent.join()
+    with pytest.raises(ArgumentError, match="timeout_s is -1"):
+        group.wait_latest(-1.0)
 
 
 def test_a_group_opens_all_or_none(monkeypatch: pytest.MonkeyPatch) -> None:

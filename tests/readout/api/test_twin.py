@@ -6,7 +6,7 @@ import time
 import numpy as np
 import pytest
 
-from lumitip import Fingertip, Layout, LinkEvent, LumitipError
+from lumitip import Fingertip, Layout, LinkEvent
 from lumitip.errors import ArgumentError, LinkError, LinkTimeout, UrlError
 from lumitip.links.base import Deliver, Report
 from lumitip.links.thread import ThreadedLink, UnexpectedError
@@ -32,8 +32,6 @@ def test_an_address_is_checked_before_anything_is_opened() -> None:
     }.items():
         with pytest.raises(UrlError, match=told):
             Fingertip.open(url, published_layout())
-    with pytest.raises(LumitipError, match=r"layout='outputs/layout\.json'"):
-        Fingertip.open("ble://Lumitip")
 
 
 @pytest.mark.parametrize("odd", ["%00", "%0A", "a%1B[31m", "~%00", "\x7f", "\ud800"])

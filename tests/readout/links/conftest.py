@@ -11,13 +11,9 @@ from lumitip import Layout
 from lumitip.protocol.bluetooth import Fault, Status
 from lumitip.protocol.packet import Packet, design_code, encode, needed_mtu
 from programs import program
+from serial_line import Line
 
 PERIOD_US = 2000
-
-
-@pytest.fixture(autouse=True)
-def _own_user_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "user"))
 
 
 class Device:
@@ -83,3 +79,11 @@ def bluez(bus: str, monkeypatch: pytest.MonkeyPatch) -> Iterator["object"]:
     service = FakeBluez(bus)
     yield service
     service.stop()
+
+
+@pytest.fixture
+def line(tmp_path: Path) -> Iterator[Line]:
+    made = Line(tmp_path / "ttyACM0")
+    yield made
+    if made.path.is_symlink():
+        made.unplug()

@@ -1,11 +1,8 @@
 """The serial line over a pseudo-terminal, pyserial as installed."""
 
-import os
-import pty
 import re
-import termios
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -15,43 +12,9 @@ from serial.tools import list_ports, list_ports_common
 from lumitip import Fingertip, LinkEvent
 from lumitip.errors import AmbiguousDevice, DeviceNotFound, LinkTimeout, WrongDesign
 from lumitip.protocol import cobs
+from serial_line import Line
 
 Until = Callable[..., None]
-
-
-class Line:
-    """The device's end of a serial line, at a path that stays when it is unplugged."""
-
-    def __init__(self, path: Path) -> None:
-        self.path = path
-        self.plug()
-
-    def plug(self) -> None:
-        self._master, slave = pty.openpty()
-        settings = termios.tcgetattr(slave)
-        settings[3] &= ~termios.ECHO
-        termios.tcsetattr(slave, termios.TCSANOW, settings)
-        self.path.unlink(missing_ok=True)
-        self.path.symlink_to(os.ttyname(slave))
-        os.close(slave)
-
-    def unplug(self) -> None:
-        os.close(self._master)
-        self.path.unlink()
-
-    def send(self, *packets: bytes) -> None:
-        self.send_bytes(b"".join(cobs.encode(packet) + b"\0" for packet in packets))
-
-    def send_bytes(self, data: bytes) -> None:
-        os.write(self._master, data)
-
-
-@pytest.fixture
-def line(tmp_path: Path) -> Iterator[Line]:
-    made = Line(tmp_path / "ttyACM0")
-    yield made
-    if made.path.is_symlink():
-        made.unplug()
 
 
 def test_frames_come_however_the_bytes_are_cut(line: Line, device, until: Until) -> None:
