@@ -99,7 +99,12 @@ def test_the_file_to_edit_is_the_published_sensor_with_pull_ups_and_current_sour
     own, other = mine.parameters.model_dump(), published.parameters.model_dump()
     assert (own["receiver"].pop("load"), other["receiver"].pop("load")) == ("each", "shared")
     assert (own["emitter"].pop("drive"), other["emitter"].pop("drive")) == ("source", "resistor")
-    assert (own["emitter"].pop("switch"), other["emitter"].pop("switch")) == ("AO3400A", "none")
+    for section, field, part in (
+        ("emitter", "switch", "AO3400A"),
+        ("receiver", "bulk_capacitor", "10uF 0603 10V"),
+        ("flange", "indicator", "APT2012LZGCK"),
+    ):
+        assert (own[section].pop(field), other[section].pop(field)) == (part, "none")
     assert {**own, "name": other["name"]} == other
 
 
@@ -118,7 +123,8 @@ def test_a_part_of_ones_own_needs_no_python(write: Write) -> None:
     leds.write_text(text + "\n" + entry.split("\n\n")[0] + "\n", encoding="utf-8")
     config = load(write(BASE + '[emitter]\nled = "my own LED"\n'))
     assert config.parts_by_field()["emitter.led"].source
-    assert set(config.parts_by_field()) == set(NAMED) - {"emitter.switch"}
+    none = {"emitter.switch", "receiver.bulk_capacitor", "flange.indicator"}
+    assert set(config.parts_by_field()) == set(NAMED) - none
 
 
 def test_a_fault_is_placed_in_the_file_that_set_the_value(write: Write) -> None:

@@ -31,7 +31,7 @@ def labels(design: Design, finger: Finger) -> set[str]:
     """Every label of a finger's drawing."""
     stack = design.stack
     kinds = [part.kind for part in finger.parts if part.side == "front"]
-    called = {"led": "LED", "switch": "transistor"}
+    called = {"led": "LED", "switch": "transistor", "capacitor": "bulk capacitor"}
     return {
         f"Backing, {stack.plate_mm:g} mm",
         f"Board, {stack.pcb_mm:g} mm",
