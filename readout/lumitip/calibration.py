@@ -258,10 +258,15 @@ def user_folder() -> Path:
         ) from error
 
 
-def _path(device_id: str, design_hash: str, folder: Path | None) -> Path:
+def file_name(device_id: str, design_hash: str) -> str:
+    """Name of the file that belongs to a device of a design."""
     # Other characters become their code, so that two devices never share a file.
     name = re.sub(r"[^A-Za-z0-9-]", lambda m: f"_{ord(m[0]):02x}", device_id)
-    return (folder or user_folder() / "calibration") / f"{name}.{design_hash[:16]}.json"
+    return f"{name}.{design_hash[:16]}.json"
+
+
+def _path(device_id: str, design_hash: str, folder: Path | None) -> Path:
+    return (folder or user_folder() / "calibration") / file_name(device_id, design_hash)
 
 
 def _cells(which: Sequence[int] | np.ndarray[tuple[int], np.dtype[np.int64]]) -> str:

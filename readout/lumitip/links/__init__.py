@@ -3,7 +3,7 @@
 from importlib import import_module
 
 from lumitip.errors import LayoutError, UrlError
-from lumitip.known_layouts import recall, remember
+from lumitip.known_layouts import recall
 from lumitip.layout import Layout
 from lumitip.links.base import Identity, Link
 from lumitip.links.url import Url
@@ -48,21 +48,19 @@ def open_link(
         allowed = ", ".join(f"{name}://…" for name in SCHEMES)
         raise UrlError(f"the address is {url!r}; allowed are {allowed}")
     module = import_module(SCHEMES[address.scheme])
-    if address.scheme in DEVICES:
-        if layout is None:
-            layout, address = _known(module.identify(address, timeout_s))
-        else:
-            remember(layout)
+    if layout is None and address.scheme in DEVICES:
+        layout, address = _known(module.identify(address, timeout_s))
     link: Link = module.make(address, layout, any_design)
     return link
 
 
 def _known(device: Identity) -> tuple[Layout, Url]:
-    layout = recall(device.design, device.cells)
+    layout = recall(device.device_id, device.design, device.cells)
     if layout is None:
         raise LayoutError(
-            f"{device.device_id} has {device.cells} cells of design {device.design}, whose layout "
-            "was not used on this computer before. Add the layout.json that its firmware was "
-            "built from, this once: layout='outputs/layout.json', or --layout outputs/layout.json"
+            f"{device.device_id} has {device.cells} cells of design {device.design}. It was not "
+            "used on this computer before, and no other device was, or several with different "
+            "optics. Add the layout.json that its firmware was built from, this once: "
+            "layout='outputs/layout.json', or --layout outputs/layout.json"
         )
     return layout, device.url

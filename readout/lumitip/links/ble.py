@@ -22,6 +22,7 @@ from typing import Any, TypeVar
 
 from lumitip.errors import LinkError, LinkTimeout, MissingExtra, MtuTooSmall, NotConnected, UrlError
 from lumitip.frame import Codes
+from lumitip.known_layouts import remember
 from lumitip.layout import Layout
 from lumitip.links.base import Arrival, Cause, Deliver, Fault, Identity, Report
 from lumitip.links.thread import ThreadedLink, keep_connected
@@ -130,6 +131,8 @@ class BleLink(ThreadedLink):
         try:
             await client.connect()
             service = await begin(client, self.layout, self._any_design, notified, items.put)
+            if service.status and not self._any_design:
+                remember(self.device_id, self.layout)
         except BaseException:
             await _disconnect(client)
             raise

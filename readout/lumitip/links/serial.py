@@ -23,12 +23,13 @@ from lumitip.errors import (
     MissingExtra,
     NotConnected,
 )
+from lumitip.known_layouts import remember
 from lumitip.layout import Layout
 from lumitip.links.base import Arrival, Cause, Deliver, Fault, Identity, Report
 from lumitip.links.thread import ThreadedLink, keep_connected
 from lumitip.links.url import Url
 from lumitip.protocol.cobs import DELIMITER, CobsError, StreamDecoder, decode
-from lumitip.protocol.packet import ForeignPacketError, PacketError
+from lumitip.protocol.packet import ForeignPacketError, PacketError, design_code
 from lumitip.protocol.packet import decode as decode_packet
 
 try:
@@ -57,13 +58,13 @@ class SerialLink(ThreadedLink):
         self.layout = layout
         self._port = port
         self._baud = baud
-        self._usb_serial = next((p.serial_number for p in usb_ports() if p.device == port), None)
+        self._usb_serial = _usb_serial(port)
         self._deliver: Deliver
 
     @property
     def device_id(self) -> str:
         """`serial:` and the USB serial number, or the port where there is none."""
-        return f"serial:{self._usb_serial or self._port}"
+        return _device_id(self._usb_serial, self._port)
 
     def _run(self, deliver: Deliver, report: Report) -> None:
         self._deliver = deliver
@@ -80,7 +81,8 @@ class SerialLink(ThreadedLink):
 
     def _read(self, line: Any) -> None:
         decoder = StreamDecoder(len(self.layout), mid_stream=True)
-        reported = dict.fromkeys(CAUSES, 0)
+        reported, code = dict.fromkeys(CAUSES, 0), design_code(self.layout.design_hash)
+        confirmed = False
         while not self._stopping.is_set():
             chunk = line.read(max(1, line.in_waiting))
             if not chunk:
@@ -90,6 +92,9 @@ class SerialLink(ThreadedLink):
             for piece in _PIECES.findall(chunk):
                 for packet in decoder.feed(piece):
                     self._deliver(Arrival(t_host, packet))
+                    if packet.design == code and not confirmed:
+                        confirmed = True
+                        remember(self.device_id, self.layout)
                 for cause in CAUSES:
                     if decoder.dropped[cause] > reported[cause]:
                         reported[cause] += 1
@@ -105,6 +110,14 @@ class SerialLink(ThreadedLink):
 
 def _fault(cause: Cause, error: Exception | None) -> Fault:
     return Fault(cause, 1, str(error), error if isinstance(error, ForeignPacketError) else None)
+
+
+def _usb_serial(port: str) -> str | None:
+    return next((p.serial_number for p in usb_ports() if p.device == port), None)
+
+
+def _device_id(usb_serial: str | None, port: str) -> str:
+    return f"serial:{usb_serial or port}"
 
 
 def usb_ports() -> Sequence[Any]:
@@ -141,7 +154,7 @@ def identify(url: Url, timeout_s: float | None) -> Identity:
                 for piece in pieces:
                     if named := _named(piece):
                         own = dataclasses.replace(url, target=port)
-                        return Identity(f"serial:{port}", *named, own)
+                        return Identity(_device_id(_usb_serial(port), port), *named, own)
     except _GONE as error:
         raise _port_error(port, error) from error
     raise LinkTimeout(f"{port}: no packet in {timeout_s:g} s. Is the firmware running?")

@@ -90,7 +90,7 @@ def derive_module(
         wires("J4", receiver, connectors.NARROW, (left + 7.9, -20.8)),
         wires("J5", lit, connectors.WIDE, (J5_END_MM - (len(lit) - 1) / 2 * pitch, -14.0)),
         wires("J6", ("VUSB", "D-", "D+", "GND"), connectors.WIDE, (-21.0, 20.25)),
-        wires("J7", (CONTROLLER, "DIO", "CLK", "RST", "GND"), connectors.WIDE, (-20.6, 15.5)),
+        wires("J7", (CONTROLLER, "DIO", "CLK", "RST", "GND"), connectors.WIDE, (-20.4, 15.5)),
     )
     return Wing(
         box=Box(left, box.x_max_mm, box.y_min_mm, box.y_max_mm),
