@@ -45,7 +45,7 @@ def _panels(design: Design) -> str:
         for panel in design.panels
     )
     return f"""
-A PCB fab that assembles boards takes these panels instead, as a panel by the customer:
+If the PCB fab also mounts the parts, order these zips instead, and choose "panel by customer":
 
 {listed}
 

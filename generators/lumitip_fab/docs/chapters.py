@@ -29,7 +29,7 @@ def manual_text(design: Design, files: Files) -> str:
         _wrapped(design, files),
         _mounted(design),
         _run(design),
-        _kept(),
+        _kept(design.mask),
     )
     return "\n\n".join(chapter.strip() for chapter in chapters) + "\n"
 
@@ -248,13 +248,14 @@ def _loading(design: Design) -> str:
     return f"{upload[0].upper()}{upload[1:]}; `firmware/README.md` has the steps."
 
 
-def _kept() -> str:
+def _kept(mask: Mask) -> str:
+    worn = "its black is rubbed off" if mask.route == "film" else "it is torn or has come loose"
     return f"""## 9. What wears
 
 - The silicone above the LEDs: the published sensor's wore within about {WEAR_GRASPS} grasps. Run
   `lumitip doctor` now and then; cast the emitter anew when its light falls.
-- The mask: where its black is rubbed off, light leaks in. Make and wrap a new one, as in
-  chapter 6: it takes an hour.
+- The mask: where {worn}, light leaks in. Make and wrap a new one, as in chapter 6: it takes an
+  hour.
 - The wires at the fingers, which bend with each grasp.
 - After each of these, tare again."""
 

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from lumitip_fab.design import AuxiliaryBoard, Design, Finger, Flange, Holder
+from lumitip_fab.design import AuxiliaryBoard, Design, Finger, Flange, Holder, Panel
 from lumitip_fab.design.electrical import Indicator, PlugIn, Regulated
 
 
@@ -37,6 +37,17 @@ def outside(design: Design) -> Iterator[Row]:
         yield from _held(design)
     for flange in design.flanges:
         yield from _stack(flange)
+    for panel in design.panels:
+        yield _panelled(panel)
+
+
+def _panelled(panel: Panel) -> Row:
+    return Row(
+        f"panel of the {panel.board}",
+        "not stated",
+        f"{len(panel.copies)} boards, {panel.box.width_mm:.1f} x {panel.box.length_mm:.1f} mm",
+        "the board is too small for some PCB fabs to mount its parts",
+    )
 
 
 def _breakout(auxiliary: AuxiliaryBoard) -> Iterator[Row]:

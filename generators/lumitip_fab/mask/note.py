@@ -66,8 +66,8 @@ The film is {material}, {film_mm:g} mm thick and opaque. A plotter cuts it; noth
 `{name}_cut.dxf` is in mm, 1:1, and shows the inside of the film. A film on a liner has its outside
 up: mirror the drawing in the plotter's program. Each layer is one tool: `HOLES` and `WINDOW` are
 cut out, `CUT` is the edge and comes last, `FOLD` is scored with little force or left out.
-1. Cut it in paper first and measure it: {wide_mm:.1f} mm across all flaps. Another width? Correct
-   the scale of the plotter.
+1. Cut it in paper first and measure it over all flaps: {wide_mm:.1f} mm across and {long_mm:.1f} mm
+   lengthwise. If it is not so, correct the plotter's scale in that direction.
 2. Cut the film. The {count} apertures are circles of {hole_mm:g} mm: take every piece out.
 
 ## 3. Crease the folds
@@ -158,6 +158,7 @@ def wrapping_note(artwork: Artwork, design: Design) -> bytes:
         else f"All flaps are {mask.flap_mm:g} mm long."
     )
     across, up = mask.measured_ruler_mm
+    ends = [y for _, y in artwork.cut.corners]
     what = "sheet" if mask.route == "tpu" else "film"
     text = (_TEXTS[mask.route] + _TABLE).format(
         title=as_written(f"{title.name} {title.revision}"),
@@ -170,6 +171,7 @@ def wrapping_note(artwork: Artwork, design: Design) -> bytes:
         count=len(artwork.apertures),
         hole_mm=mask.hole_mm,
         wide_mm=2 * max(abs(x) for x, _ in artwork.cut.corners),
+        long_mm=max(ends) - min(ends),
         side_mm=stack.plate_mm + stack.cover_mm,
         band_mm=BAND_MM,
         infrared=_INFRARED,
@@ -202,7 +204,8 @@ def _printed(design: Design) -> dict[str, object]:
         "line_mm": sheet.line_mm,
         "settings": design.slicing.sheet.file,
         "known": (
-            f"Grooves along the folds{letter}\n   are on the inside."
+            f"Grooves along the folds{letter}\n   are on the inside. Where a flap turns onto the "
+            "back there is none:\n   bend it there over a steel ruler."
             if sheet.layers > 1
             else "A fold runs from one foot of its flap to the other. Bend it over a steel ruler."
         ),

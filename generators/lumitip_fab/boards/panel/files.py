@@ -40,8 +40,8 @@ def panel_note(panel: Panel) -> str:
     """Lines of the fabrication note on copies, gaps, tabs, rails and marks."""
     rules, copies = panel.rules, len(panel.copies)
     return (
-        f"\nPanel: {copies} boards, {panel.columns} x {panel.rows}, delivered as a panel by the "
-        "customer\n"
+        f"\nPanel: {copies} boards, {panel.columns} x {panel.rows}, as the customer has drawn it; "
+        "deliver it whole\n"
         f"Rails: {panel.rail_mm:g} mm, left and right; bars as wide join them\n"
         f"Gaps: routed, {rules.gap_mm:g} mm and more, corners with a radius of "
         f"{rules.gap_mm / 2:g} mm\n"

@@ -43,12 +43,13 @@ def tab_places(panel: Panel, model: BoardModel) -> tuple[float, ...]:
         places = places[(places >= first - _NOISE_MM) & (places <= last + _NOISE_MM)]
         free = places[_free(places, box, rules, kept) & _clear(places, box, rules, copper)]
         if not free.size:
+            remedy = "Make board.side_margin_mm greater, or write" if board.cells else "Write"
             raise BuildError(
                 f"the panel of the {board.name} board has no room for a tab of "
                 f"{rules.contact_mm:.2f} mm between y {low:.2f} and {high:.2f} mm on its left and "
                 f"right edge: parts need {rules.part_mm:g} mm, pads for wires and holes "
-                f"{rules.pad_mm:g} mm, copper {rules.copper_mm:g} mm. Write board.panel = "
-                '"none"; on a finger a greater board.side_margin_mm makes room'
+                f"{rules.pad_mm:g} mm, copper {rules.copper_mm:g} mm. {remedy} "
+                'board.panel = "none"'
             )
         found.append(float(free[np.abs(free - middle).argmin()]))
     return tuple(found)

@@ -18,6 +18,8 @@ HOLE_CLEARANCE_MM = 0.25
 HOLE_WEB_MM = 0.5  # board left between a hole and its edge
 HOLES_APART_MM = 0.4  # board left between two holes
 RELIEF_DEPTH_MM = 0.2  # below the part
+ROW_GAP_MM = 1.6
+"""Between two rows of string resistors, where there is room: for vias and tracks to the lower."""
 RESISTOR_GAP_MM = 0.6
 ZONE_MARGIN_MM = 1.0  # zone for parts to the board's long edges
 COUPLING_GAP_MM = 2.0  # mounting block to a relief
@@ -197,7 +199,9 @@ def resistors(
 ) -> tuple[tuple[Part, ...], tuple[Relief, ...]]:
     """String resistors in two banks beside the coupling, and the reliefs behind them.
 
-    R1 is rightmost, because the strings begin with column 0, which is on the emitter's right.
+    R1 is rightmost, because the strings begin with column 0, which is on the emitter's right. Where
+    a bank has several rows, neighbouring strings have resistors one below the other, so that their
+    tracks need not cross.
     """
     p = config.parameters
     chip = config.parts.emitter.resistor
@@ -218,22 +222,33 @@ def resistors(
             "board.channel_mm.",
         )
         return (), ()
+    if rows > 1:
+        step_y = min(along + ROW_GAP_MM, zone.length_mm / rows)
     parts: list[Part] = []
     reliefs: list[Relief] = []
     for side, in_bank in ((1, math.ceil(count / 2)), (-1, count // 2)):
+        places = [
+            (
+                side * (inner + outer) / 2 - (k - (row.size - 1) / 2) * step_x,
+                zone.centre_mm[1] + ((rows - 1) / 2 - r) * step_y,
+            )
+            for r, row in enumerate(np.array_split(np.arange(in_bank), rows))
+            for k in range(row.size)
+        ]
         bank = [
             Part(
-                name=f"R{len(parts) + place + 1}",
+                name=f"R{number}",
                 kind="resistor",
-                x_mm=side * (inner + outer) / 2 - (k - (row.size - 1) / 2) * step_x,
-                y_mm=zone.centre_mm[1] + ((rows - 1) / 2 - r) * step_y,
+                x_mm=x_mm,
+                y_mm=y_mm,
                 size_x_mm=across,
                 size_y_mm=along,
                 height_mm=chip.body_mm[2],
                 side=p.emitter.resistor_side,
             )
-            for r, row in enumerate(np.array_split(np.arange(in_bank), rows))
-            for k, place in enumerate(row.tolist())
+            for number, (x_mm, y_mm) in enumerate(
+                sorted(places, key=lambda at: (-at[0], -at[1])), start=len(parts) + 1
+            )
         ]
         parts += bank
         if bank and p.emitter.resistor_side == "back":

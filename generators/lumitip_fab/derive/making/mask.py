@@ -17,6 +17,10 @@ MARK_MM = 4.0
 MARK_INSET_MM = 0.5  # from the tip flap's side
 FLAP_TAPER = 0.18  # of the tip flap's side: a little over 10°
 STROKE = 0.17  # of a letter's height
+LEAST_SHEET_MM = 0.2
+"""A printed sheet, one layer of the usual height: a thinner one tears as it leaves the bed."""
+FOLD_OFF_MM = 0.3
+"""Of a straight fold from the finger's outline grown by the allowance, at most."""
 FOLD_LINES = 2  # width of a sheet's groove: the print is closed beside it, and it bends by 90°
 
 
@@ -120,6 +124,22 @@ def _refuse_sheet(
         "mask.hole_mm",
         f"is {p.mask.hole_mm:g}; at least one printed line of {line:g} is needed, or the holes of "
         "the printed sheet close",
+    )
+    faults.refuse_unless(
+        printed.thickness_mm >= LEAST_SHEET_MM - 1e-9,
+        "mask.layers",
+        f"is {printed.layers}; a layer of {p.printer.profile!r} is {printed.layer_mm:g} mm, and a "
+        f"printed sheet of {printed.thickness_mm:g} mm tears; at least {LEAST_SHEET_MM:g} mm is "
+        "needed",
+    )
+    # A flap turns about the middle of the layer that the groove leaves.
+    inside = printed.thickness_mm - printed.layer_mm / 2
+    faults.refuse_unless(
+        p.mask.allowance_mm >= inside + FOLD_OFF_MM - 1e-9,
+        "mask.allowance_mm",
+        f"is {p.mask.allowance_mm:g}; folded, a sheet of {printed.thickness_mm:g} mm reaches "
+        f"{inside:g} mm inside its fold, and folds lie up to {FOLD_OFF_MM:g} mm off the outline: "
+        f"at least {inside + FOLD_OFF_MM:.2f} is needed, or the flaps do not close",
     )
     faults.refuse_unless(
         around.width_mm <= bed[0] and around.length_mm <= bed[1],
