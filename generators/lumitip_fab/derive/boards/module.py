@@ -34,6 +34,8 @@ MOST_WIRES = 9
 """In the row to the receiver, between the board's round corner and the header."""
 J5_END_MM = -15.63
 """Last pad of the row to the emitter: beyond it the floor holds a bolt of the flange."""
+J7_AT: Point = (-20.52, 15.5)
+"""Between a panel's tab at the board's edge and a bolt of the flange."""
 CONTROLLER = "3V3"
 FIDUCIALS_AT: tuple[Point, ...] = ((-25.6, 8.4), (13.0, -15.5), (-25.6, -8.4))
 _NAMED = {
@@ -90,7 +92,7 @@ def derive_module(
         wires("J4", receiver, connectors.NARROW, (left + 7.9, -20.8)),
         wires("J5", lit, connectors.WIDE, (J5_END_MM - (len(lit) - 1) / 2 * pitch, -14.0)),
         wires("J6", ("VUSB", "D-", "D+", "GND"), connectors.WIDE, (-21.0, 20.25)),
-        wires("J7", (CONTROLLER, "DIO", "CLK", "RST", "GND"), connectors.WIDE, (-20.4, 15.5)),
+        wires("J7", (CONTROLLER, "DIO", "CLK", "RST", "GND"), connectors.WIDE, J7_AT),
     )
     return Wing(
         box=Box(left, box.x_max_mm, box.y_min_mm, box.y_max_mm),
