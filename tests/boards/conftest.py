@@ -41,6 +41,8 @@ load = "each"
 pull_up_ohm = 27000.0
 [flange]
 indicator = "auto"
+[wiring]
+order = "auto"
 """
 
 

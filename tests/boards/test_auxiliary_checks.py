@@ -162,8 +162,8 @@ def reference_twice(text: str) -> str:
     return in_part(text, "H2", 'reference "H2"', 'reference "H1"')
 
 
-PROBES = {"probe_width", "probe_room"}
-"""Damaged in test_probes.py."""
+ELSEWHERE = {"probe_width", "probe_room", "wire_order"}
+"""Damaged in test_probes.py and test_wire_order.py."""
 DAMAGES: dict[Damage, set[str]] = {
     part_moved: {"lands", "clearance"},  # the pour is as near as it may be
     part_added: {"other_parts"},
@@ -223,4 +223,4 @@ def test_every_check_fails_for_some_damage(boards: Callable[[str], Path]) -> Non
     found = [m for m in board.measure(folder, design) if m.subject == BREAKOUT]
     assert [m for m in found if not m.passed] == []
     names = {m.check.removeprefix("board.") for m in found}
-    assert names == set().union(*DAMAGES.values(), {"readable"}, PROBES)
+    assert names == set().union(*DAMAGES.values(), {"readable"}, ELSEWHERE)

@@ -64,6 +64,11 @@ def pads_exchanged(text: str) -> str:
     return swapped_pads(text, "U2", "20", "21")
 
 
+def supply_at_an_analog_pad(text: str) -> str:
+    """Pads of A0 and VDD with each other's number: A0 leaves by the wire beside S2."""
+    return swapped_pads(text, "U2", "20", "28")
+
+
 def module_askew(text: str) -> str:
     return moved_part(text, "U2", 0.02, 0.0)
 
@@ -86,6 +91,7 @@ DAMAGES: dict[Damage, set[str]] = {
     rule_lets_the_pour_in: {"keep_out_rule"},
     rule_of_one_side: {"keep_out_rule"},
     pads_exchanged: {"lands", "joined", "apart"},
+    supply_at_an_analog_pad: {"lands", "joined", "apart", "wire_order"},
     module_askew: {"lands", "clearance"},  # its tracks stay where they are
     edge_beyond_the_antenna: {"outline", "antenna_edge"},
 }

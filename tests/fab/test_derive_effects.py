@@ -122,6 +122,7 @@ CHANGES: dict[str, Any] = {
     "wiring.controller_mm": 160.0,
     "wiring.slack_mm": 50.0,
     "wiring.section_mm2": 0.1,
+    "wiring.order": "apart",
     "mask.route": "cut",
     "mask.film": "other",
     "mask.filament": "TPU 98A",

@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from lumitip_fab.config.load import Input, load
-from lumitip_fab.config.parts import NAMED
+from lumitip_fab.config.parts import NAMED, OPTIONAL
 from lumitip_fab.derive import derive
 from lumitip_fab.errors import InputError, Problem
 
@@ -97,14 +97,16 @@ def test_the_file_to_edit_is_the_published_sensor_with_pull_ups_and_current_sour
     mine, published = load(DESIGN / "fingertip.toml"), load(DESIGN / "presets" / "published.toml")
     assert len(mine.sources) == len(published.sources) == 1
     own, other = mine.parameters.model_dump(), published.parameters.model_dump()
-    assert (own["receiver"].pop("load"), other["receiver"].pop("load")) == ("each", "shared")
-    assert (own["emitter"].pop("drive"), other["emitter"].pop("drive")) == ("source", "resistor")
-    for section, field, part in (
-        ("emitter", "switch", "AO3400A"),
-        ("receiver", "bulk_capacitor", "10uF 0603 10V"),
-        ("flange", "indicator", "APT2012LZGCK"),
-    ):
-        assert (own[section].pop(field), other[section].pop(field)) == (part, "none")
+    differing = {
+        ("receiver", "load"): ("each", "shared"),
+        ("receiver", "bulk_capacitor"): ("10uF 0603 10V", "none"),
+        ("emitter", "drive"): ("source", "resistor"),
+        ("emitter", "switch"): ("AO3400A", "none"),
+        ("flange", "indicator"): ("APT2012LZGCK", "none"),
+        ("wiring", "order"): ("apart", "published"),
+    }
+    for (section, field), values in differing.items():
+        assert (own[section].pop(field), other[section].pop(field)) == values
     assert {**own, "name": other["name"]} == other
 
 
@@ -123,8 +125,7 @@ def test_a_part_of_ones_own_needs_no_python(write: Write) -> None:
     leds.write_text(text + "\n" + entry.split("\n\n")[0] + "\n", encoding="utf-8")
     config = load(write(BASE + '[emitter]\nled = "my own LED"\n'))
     assert config.parts_by_field()["emitter.led"].source
-    none = {"emitter.switch", "receiver.bulk_capacitor", "flange.indicator"}
-    assert set(config.parts_by_field()) == set(NAMED) - none
+    assert set(config.parts_by_field()) == set(NAMED) - OPTIONAL
 
 
 def test_a_fault_is_placed_in_the_file_that_set_the_value(write: Write) -> None:

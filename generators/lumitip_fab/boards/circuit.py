@@ -49,7 +49,7 @@ def circuit(design: Design, finger: Finger) -> tuple[Component, ...]:
 
 def supply_of(finger: Finger) -> str:
     """Net that feeds a finger's board, beside ground."""
-    return finger.connector.signals[1]
+    return finger.connector.supply
 
 
 def _strings(design: Design, finger: Finger) -> Iterator[Component]:

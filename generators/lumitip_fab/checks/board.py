@@ -22,6 +22,7 @@ from lumitip_fab.checks.board_copper import (
 )
 from lumitip_fab.checks.board_finger import measure_cell_prints, measure_cells, measure_flexible
 from lumitip_fab.checks.board_indicator import measure_indicator
+from lumitip_fab.checks.board_order import measure_wire_order
 from lumitip_fab.checks.board_probes import measure_probes
 from lumitip_fab.checks.board_read import ReadBoard, names_of, path_of, placed, read_any
 from lumitip_fab.checks.board_shrouds import measure_shrouds
@@ -241,6 +242,7 @@ MEASURES: tuple[Measure[ReadBoard], ...] = (
     measure_cells,
     measure_lands,
     measure_wires,
+    measure_wire_order,
     measure_heights,
     measure_copper,
     measure_nets,

@@ -18,14 +18,15 @@ def measure_bulk(read: ReadBoard) -> Iterator[Measurement]:
     bulk, ref = read.design.electrical.bulk, f"C{read.muxes + 1}"
     if bulk is None or not read.muxes:
         return
-    supply = read.signals[1]
+    supply = read.supply
     rails = {read.wire(supply), read.wire(GROUND)}
     there = {read.group(ref, 1), read.group(ref, 2)}
     wrong = [] if there == rails and None not in rails else [f"{ref} is not at {supply} and GND"]
     yield read.count("bulk", wrong, "capacitors")
     part, wires = read.parts.get(ref), read.parts.get("J1")
     pads = [t.at for t in (part.terminals if part else ()) if _joined(read, ref, t.number, supply)]
-    ends = [t.at for t in (wires.terminals if wires else ()) if t.number == "2"]
+    number = str(read.signals.index(supply) + 1)
+    ends = [t.at for t in (wires.terminals if wires else ()) if t.number == number]
     far = min((math.dist(a, b) for a in pads for b in ends), default=math.inf)
     yield read.figure("bulk_reach", far, 0, bulk.reach_mm, note="to the supply's wire")
     least_uf = _micro(part.value if part else "") * bulk.left * (1 - bulk.tolerance)

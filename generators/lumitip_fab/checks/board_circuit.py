@@ -45,7 +45,7 @@ def _unserved(read: ReadBoard) -> Iterator[str]:
     """Leads of multiplexers without their line; outputs or photodetectors without exactly one
     pull-up."""
     design, leads = read.design, read.design.packages.multiplexer
-    supply = read.signals[1]
+    supply = read.supply
     shared = {leads.supply: supply, leads.ground: GROUND, leads.enable: GROUND}
     shared |= {} if leads.negative is None else {leads.negative: GROUND}
     shared |= {lead: f"S{i}" for i, lead in enumerate(leads.select)}
@@ -74,7 +74,7 @@ def _unserved(read: ReadBoard) -> Iterator[str]:
 
 def _bypasses(read: ReadBoard) -> Iterator[Measurement]:
     """From each multiplexer's supply and ground leads to the pads of a capacitor of its own."""
-    leads, supply = read.design.packages.multiplexer, read.signals[1]
+    leads, supply = read.design.packages.multiplexer, read.supply
     rails = read.wire(supply), read.wire(GROUND)
     free = {
         ref: part

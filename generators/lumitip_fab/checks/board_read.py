@@ -89,6 +89,11 @@ class ReadBoard(Subject):
         return self.finger.connector.signals if self.finger else ()
 
     @property
+    def supply(self) -> str:
+        """Signal that feeds a finger's board, beside ground."""
+        return self.finger.connector.supply if self.finger else ""
+
+    @property
     def strings(self) -> tuple[tuple[int, ...], ...]:
         """LEDs of each of its series strings, by cell."""
         lit = self.cells_hold is not None and self.cells_hold.kind == "led"

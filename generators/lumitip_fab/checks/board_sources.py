@@ -36,7 +36,7 @@ def _measured(
         return
     coldest, hottest = held.temperatures_c
     strings = read.design.electrical.strings
-    volts = float(read.signals[1].removesuffix("V"))
+    volts = float(read.supply.removesuffix("V"))
     loads, left = [], []
     for number, (lit, current_ma) in enumerate(zip(lengths, amps_ma, strict=True), start=1):
         set_v = entry.set_ua * 1e-6 * _value(read, number, "SET")
@@ -87,14 +87,14 @@ def _value(read: ReadBoard, number: int, name: str, start: int | None = None) ->
 
 def _misled(read: ReadBoard, number: int, start: int | None) -> Iterator[str]:
     """Leads of a source that are not where they must be."""
-    supply = read.wire(read.signals[1])
+    supply = read.wire(read.supply)
     out, setting = (source_lead(read, number, name) for name in ("OUT", "SET"))
     taken = {supply, start, read.wire("GND")}
     for lead, name in enumerate(read.design.packages.source.names, start=1):
         group = read.group(f"U{number}", lead)
         where = f"U{number} lead {lead} ({name})"
         if name == "IN" and (group != supply or group is None):
-            yield f"{where} is not at {read.signals[1]}"
+            yield f"{where} is not at {read.supply}"
         if name == "OUT" and (group != out or group in taken or group == setting):
             yield f"{where} is not at its resistor alone"
         if name == "SET" and (group in taken or group is None):

@@ -29,7 +29,7 @@ def measure_loads(read: ReadBoard, chains: tuple[int, ...]) -> Iterator[Measurem
         read: the emitter's board.
         chains: LEDs that the copper puts behind each resistor, R1 first.
     """
-    volts = float(read.signals[1].removesuffix("V"))
+    volts = float(read.supply.removesuffix("V"))
     shares = [_share(read, f"R{i}", leds, volts) for i, leds in enumerate(chains, start=1)]
     worst = max(range(len(shares)), key=lambda i: (math.isnan(shares[i]), shares[i]))
     note = f"R{worst + 1}, over the tolerances of supply, LEDs and resistor"
@@ -104,7 +104,7 @@ def _resistor_shares(read: ReadBoard, lengths: tuple[int, ...]) -> list[float]:
 def _start(read: ReadBoard, number: int) -> int | None:
     """Where the LEDs of a string begin: the far end of its resistor."""
     ends = [read.group(f"R{number}", 1), read.group(f"R{number}", 2)]
-    source = read.wire(read.signals[1])
+    source = read.wire(read.supply)
     if read.design.wiring.set_ohm:
         source = source_lead(read, number, "OUT")
     return ends[1 - ends.index(source)] if source in ends and None not in ends else None

@@ -22,7 +22,7 @@ def measure_switch(read: ReadBoard) -> Iterator[Measurement]:
 
 
 def _faults(read: ReadBoard) -> Iterator[str]:
-    supply, gate, ground = read.signals[1], _group(read, "G"), read.wire(GROUND)
+    supply, gate, ground = read.supply, _group(read, "G"), read.wire(GROUND)
     driven = read.wire(read.signals[2]) if len(read.signals) > 2 else None
     if gate is None or gate != driven:
         yield "gate is not at its wire"

@@ -81,6 +81,7 @@ FIELDS: dict[str, Automatic] = {
     "receiver.bulk_capacitor": Automatic(
         "10uF 0603 10V", "room beside the wires and current of the detectors", names="capacitors"
     ),
+    "wiring.order": Automatic("apart", "no other value"),
     "mask.route": Automatic("film", "no other value"),
     "mask.filament": Automatic("TPU 95A", "no other value"),
     "mask.layers": Automatic(2, "no other value"),

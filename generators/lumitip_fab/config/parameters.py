@@ -192,6 +192,9 @@ class Cables(Strict):
     """Added to every wire for bends, stripping and strain relief (mm)."""
     section_mm2: float = Field(ge=0.01, le=2)
     """Copper of each wire, at least; what carries more current is thicker. 0.08 is AWG 28 (mm²)."""
+    order: Literal["apart", "published"]
+    """Wires of the receiver: `"apart"`, with the supplies between select and analog lines, or as
+    published, with the last select line beside the first analog one."""
 
 
 class Mould(Strict):

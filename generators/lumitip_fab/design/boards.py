@@ -94,6 +94,8 @@ class Connector:
 
     signals: tuple[str, ...]
     """Signal of each pad, left to right in the finger's frame."""
+    supply: str
+    """That of these which feeds the finger's board, beside ground."""
     pads: tuple[Point, ...]
     pitch_mm: float
     pad_mm: float
@@ -182,6 +184,8 @@ class Wiring:
     muxes: int
     select_pins: tuple[str, ...]
     adc_pins: tuple[str, ...]
+    apart: bool
+    """Whether the receiver's supplies lie between its select and analog wires."""
     pulled_up_ohm: tuple[tuple[str, float], ...]
     """Pins of these that have a pull-up on the controller, with its resistance."""
     strings: tuple[tuple[int, ...], ...]

@@ -91,7 +91,8 @@ def derive_plan(
         (frame.rear_hole_x_mm, frame.connector_y_mm),
     )
     driving, reliefs = _driving(config, strings, frame, faults)
-    wires = connectors.place(connectors.emitter_signals(config), True, frame.connector_y_mm)
+    lit = connectors.emitter_signals(config)
+    wires = connectors.place(lit, lit[1], True, frame.connector_y_mm)
     switch = led_switch.switch_parts(config, frame.parts, wires, driving)
     led_switch.refuse_switch(config, strings, bool(switch), faults)
     emitter = Finger(
@@ -107,7 +108,8 @@ def derive_plan(
         notch=frame.notch,
         window=_window(wires),
     )
-    wires = connectors.place(connectors.receiver_signals(muxing), frame.wide, frame.connector_y_mm)
+    signals = connectors.receiver_signals(config, muxing)
+    wires = connectors.place(signals, connectors.CONTROLLER, frame.wide, frame.connector_y_mm)
     receiver = Finger(
         name="receiver",
         cells_hold=DETECTOR,
@@ -133,7 +135,7 @@ def _frame(
 ) -> Frame:
     p = config.parameters
     gripper = config.parts.coupling.gripper
-    ways = len(connectors.receiver_signals(muxing))
+    ways = len(connectors.receiver_signals(config, muxing))
     pin_mm = p.board.hole_mm - 2 * p.backing.pin_clearance_mm
     printed_mm = derive_fits(config, p.printer.fit_mm).pin_mm
     faults.refuse_unless(

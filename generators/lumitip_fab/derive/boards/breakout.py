@@ -8,7 +8,7 @@
 │   ·                        ·   │  screw holes
 │  □ ■ ■ ■ ■ ■ ■ ■ ■ ■ ■ ■ ■ ■ ■ │
 │  ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ │
-│   [GND 3V3 S0 S1 S2 A0 A1 …]   │  wires to the receiver, in its own order
+│   [S0 S1 S2 3V3 GND A0 A1 …]   │  wires to the receiver, in its own order
 └────────────────────────────────┘
 ```
 """
@@ -109,7 +109,7 @@ def _components(
         at, size_mm = (0.0, side * rows.beside_mm), (strip.pitch_mm, PAD_MM, DRILL_MM)
         beside.append(wires(f"J{number + 2}", on, size_mm, at, named=False))
     length = config.parameters.breakout.board_mm[0]
-    receiver = connectors.receiver_signals(muxing)
+    receiver = connectors.receiver_signals(config, muxing)
     emitter, supply = connectors.emitter_signals(config), supply_signals(config)
     edge = length / 2 - ties.WEB_MM - ties.HOLE_MM - ties.GAP_MM
     left = -edge + connectors.half_width_mm(len(emitter), wide=True)
@@ -158,7 +158,7 @@ def _refuse(
         f"is {p.socket!r}, which has {strip.ways} contacts; the rows of "
         f"{config.parameters.controller.board!r} have {' and '.join(map(str, sorted(ways)))}",
     )
-    cable = connectors.half_width_mm(len(connectors.receiver_signals(muxing)), wide=False)
+    cable = connectors.half_width_mm(len(connectors.receiver_signals(config, muxing)), wide=False)
     least_length = max(
         strip.ways * strip.pitch_mm + 2 * EDGE_MM,
         p.hole_spacing_mm + p.hole_mm + 2 * EDGE_MM,

@@ -7,16 +7,24 @@ from lumitip_fab.design import Connector
 MOST_WIDE_WAYS = 9
 POWER_WIRES = 2
 """Supply and ground of the receiver."""
+CONTROLLER = "3V3"
+"""Supply of the receiver, from the controller."""
 SWITCH = "LED"
 """Signal that switches the LEDs, high is on."""
 WIDE = (2.54, 2.286, 1.2)  # pitch, pad, drill: as published
 NARROW = (1.27, 1.0, 0.6)
 
 
-def receiver_signals(muxing: Muxing) -> tuple[str, ...]:
-    """Signals of the receiver's connector, in the published order."""
+def receiver_signals(config: Input, muxing: Muxing) -> tuple[str, ...]:
+    """Signals of the receiver's connector, in the order of `wiring.order`.
+
+    Apart, both supplies lie between select and analog lines. Ground is beside the analog ones: of
+    the two it is the quieter, as the detectors' current changes the 3.3 V.
+    """
     selects = tuple(f"S{i}" for i in range(len(muxing.select_pins)))
-    return ("GND", "3V3", *selects, *muxing.adc_pins)
+    if config.parameters.wiring.order == "published":
+        return ("GND", CONTROLLER, *selects, *muxing.adc_pins)
+    return (*selects, CONTROLLER, "GND", *muxing.adc_pins)
 
 
 def emitter_signals(config: Input) -> tuple[str, ...]:
@@ -31,9 +39,9 @@ def half_width_mm(ways: int, wide: bool) -> float:
     return (ways - 1) / 2 * pitch + pad / 2
 
 
-def place(signals: tuple[str, ...], wide: bool, y_mm: float) -> Connector:
+def place(signals: tuple[str, ...], supply: str, wide: bool, y_mm: float) -> Connector:
     """A connector centred on x = 0."""
     pitch, pad, drill = WIDE if wide else NARROW
     first = -(len(signals) - 1) / 2 * pitch
     pads = tuple((first + i * pitch, y_mm) for i in range(len(signals)))
-    return Connector(signals, pads, pitch, pad, drill)
+    return Connector(signals, supply, pads, pitch, pad, drill)

@@ -21,6 +21,7 @@ from lumitip_fab.catalogue.controllers import Module
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards import connectors
 from lumitip_fab.derive.boards.breakout import switching
+from lumitip_fab.derive.boards.connectors import CONTROLLER
 from lumitip_fab.derive.boards.packages import capacitor
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.wiring.wiring import Muxing, larger_multiplexers
@@ -36,7 +37,6 @@ J5_END_MM = -15.63
 """Last pad of the row to the emitter: beyond it the floor holds a bolt of the flange."""
 J7_AT: Point = (-20.52, 15.5)
 """Between a panel's tab at the board's edge and a bolt of the flange."""
-CONTROLLER = "3V3"
 FIDUCIALS_AT: tuple[Point, ...] = ((-25.6, 8.4), (13.0, -15.5), (-25.6, -8.4))
 _NAMED = {
     "GND": "GND",
@@ -83,7 +83,7 @@ def derive_module(
     _refuse(config, muxing, faults)
     left = box.x_min_mm - WING_MM
     at = left + module.body_mm[1] / 2, 0.0
-    receiver, lit = connectors.receiver_signals(muxing), connectors.emitter_signals(config)
+    receiver, lit = connectors.receiver_signals(config, muxing), connectors.emitter_signals(config)
     pitch = connectors.WIDE[0]
     components = (
         _module(config, module, muxing, at),
@@ -172,7 +172,7 @@ def _refuse(config: Input, muxing: Muxing, faults: Diagnostics) -> None:
         f"is {p.module.regulator!r}, which supplies {1000 * regulator.output_a:g} mA; "
         f"{p.controller.board!r} draws {controller.draws_ma:g} mA",
     )
-    wires_needed = len(connectors.receiver_signals(muxing))
+    wires_needed = len(connectors.receiver_signals(config, muxing))
     faults.refuse_unless(
         wires_needed <= MOST_WIRES,
         "controller.board",

@@ -115,6 +115,7 @@ def build_wiring(config: Input, strings: Strings, muxing: Muxing) -> Wiring:
         muxes=muxing.muxes,
         select_pins=muxing.select_pins,
         adc_pins=muxing.adc_pins,
+        apart=p.wiring.order == "apart",
         pulled_up_ohm=tuple(
             (pin, ohm)
             for pin, ohm in config.parts.controller.board.pulled_up_ohm.items()
