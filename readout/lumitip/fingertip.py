@@ -67,9 +67,8 @@ class Fingertip:
         Args:
             url: `ble://NAME-OR-ADDRESS`, `serial://PORT`, `replay://FILE`, `twin://SHAPE` or
                 `tcp://HOST:PORT`, where `lumitip serve` shares a fingertip.
-            layout: the `layout.json` that its firmware was built from, or its path; not needed
-                for a replay, a twin or a shared fingertip, nor once it was used on this computer:
-                controllers name their design (the published firmware does not).
+            layout: the `layout.json` that its firmware was built from, or its path; not needed for
+                a replay, a twin, a shared fingertip, or one that was used on this computer.
             timeout: of the connection (s); `None`: no limit.
             buffer: frames that may wait for each reader; the oldest are dropped, counted in
                 `stats.dropped["queue"]`. 4096 are 8 s at 500 Hz.

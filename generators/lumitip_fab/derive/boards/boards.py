@@ -290,10 +290,7 @@ def _facing(cells: Cells, held: AtCells) -> tuple[Point, ...]:
 
 def _flipped(parts: tuple[Part, ...]) -> tuple[Part, ...]:
     """Parts of the emitter as they face the receiver's frame."""
-    return tuple(
-        Part(q.name, q.kind, -q.x_mm, q.y_mm, q.size_x_mm, q.size_y_mm, q.height_mm, q.side)
-        for q in parts
-    )
+    return tuple(replace(part, x_mm=-part.x_mm) for part in parts)
 
 
 def _up(value_mm: float) -> float:
