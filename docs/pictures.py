@@ -27,6 +27,7 @@ from vtkmodules.vtkRenderingCore import (
 Vector = tuple[float, float, float]
 IMAGES = Path(__file__).parent / "images"
 SHARP_DEG = 12
+_COLOURS = 64
 ZOOM = {"assembly": 1.3, "fit_plate": 1.9}
 SIZE, FLAT = (1000, 800), (1000, 480)
 PLASTIC: Vector = (0.56, 0.66, 0.80)
@@ -62,17 +63,21 @@ def main(out: Path, integrated: Path, flex: Path) -> None:
         shutil.copy(out / f"assembly/{side}_exploded.svg", IMAGES)
         for face in ("front", "back"):
             board = out / f"boards/{side}/{side}_{face}.png"
-            shutil.copy(board, IMAGES / f"board_{side}_{face}.png")
+            _board(board, f"board_{side}_{face}.png")
     for name in ("breakout", "flange"):
-        shutil.copy(out / f"boards/{name}/{name}_front.png", IMAGES / f"board_{name}.png")
-    module = integrated / "boards/flange/flange_front.png"
-    shutil.copy(module, IMAGES / "board_flange_module.png")
+        _board(out / f"boards/{name}/{name}_front.png", f"board_{name}.png")
+    _board(integrated / "boards/flange/flange_front.png", "board_flange_module.png")
     shutil.copy(flex / "assembly/receiver_exploded.svg", IMAGES / "flex_exploded.svg")
-    shutil.copy(flex / "boards/receiver/receiver_front.png", IMAGES / "flex_board.png")
+    _board(flex / "boards/receiver/receiver_front.png", "flex_board.png")
     shutil.copy(out / "wiring/wiring.svg", IMAGES)
     shutil.copy(out / "assembly/system.svg", IMAGES)
     _pages(pypdfium2.PdfDocument(out / "manual/manual.pdf"), (0, 4, 7))
     draw_glb(out / "assembly/assembly.glb", IMAGES / "assembly.png")
+
+
+def _board(picture: Path, name: str) -> None:
+    """A board's picture, whose few colours need a palette alone."""
+    Image.open(picture).quantize(_COLOURS).save(IMAGES / name, optimize=True)
 
 
 def _pages(document: pypdfium2.PdfDocument, numbers: tuple[int, ...]) -> None:

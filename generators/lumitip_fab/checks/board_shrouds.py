@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import shapely
 
 from lumitip_fab.checks.board_read import ReadBoard
-from lumitip_fab.checks.board_ties import on_page
+from lumitip_fab.checks.board_ties import lying
 from lumitip_fab.checks.result import Measurement
 
 ROOM_MM = 0.25
@@ -16,7 +16,7 @@ ROOM_MM = 0.25
 def measure_shrouds(read: ReadBoard) -> Iterator[Measurement]:
     """Least room from a shroud to the pads of other parts on its face, or with a hole."""
     shrouds = {
-        device.ref: on_page(device.footprint.shroud.box, read.parts[device.ref])
+        device.ref: lying(device.footprint.shroud.box, read.parts[device.ref])
         for device in read.components
         if device.footprint.shroud and device.ref in read.parts
     }

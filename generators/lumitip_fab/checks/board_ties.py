@@ -113,10 +113,10 @@ def bodies_of(read: ReadBoard) -> Iterator[BaseGeometry]:
         if part is None or not shape.height_mm:
             continue
         for box in (shape.body, *([shape.shroud.box] if shape.shroud else [])):
-            yield on_page(box, part)
+            yield lying(box, part)
 
 
-def on_page(box: Box, part: Part) -> BaseGeometry:
+def lying(box: Box, part: Part) -> BaseGeometry:
     """A rectangle of a footprint's frame where the file has the part; on the page, y down."""
     flat = affinity.scale(shapely.box(*box.bounds_mm), 1.0, -1.0, origin=(0, 0))
     turned = affinity.rotate(flat, -part.angle_deg, origin=(0, 0))

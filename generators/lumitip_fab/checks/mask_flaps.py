@@ -12,8 +12,8 @@ from lumitip_fab.checks.mask_holes import Placed
 from lumitip_fab.checks.readers.mask_page import Page, PageError, Points
 from lumitip_fab.checks.result import Measurement
 from lumitip_fab.design import Box, Design, Finger
+from lumitip_fab.design.making import FOLD_OFF_MM
 
-SAGITTA_MM = 0.3
 FILLETS_MM = 2.0  # at the foot of the coupling
 NOTCH_MM = 0.25
 REACH_MM = 0.8  # onto the back, less than which holds nothing
@@ -109,7 +109,7 @@ def measure_flaps(
         f"of {len(flaps)} flaps laid flat",
     )
     sagitta = max(_sagitta(flap.fold, edge) for flap in flaps)
-    yield Measurement("mask.folds", subject, sagitta, 0, SAGITTA_MM, "mm", "chord to black's edge")
+    yield Measurement("mask.folds", subject, sagitta, 0, FOLD_OFF_MM, "mm", "chord to black's edge")
     sides = [float(side_mm(flap.fold, design).min()) for flap in flaps]
     back = shapely.union_all(
         [_on_back(f, s, design.mask.allowance_mm) for f, s in zip(flaps, sides, strict=True)]

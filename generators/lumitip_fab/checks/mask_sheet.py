@@ -203,4 +203,4 @@ def _holes(read: PrintedMask, cut: BaseGeometry) -> list[shapely.Polygon]:
 
 
 def _area(box: Box) -> shapely.Polygon:
-    return shapely.box(box.x_min_mm, box.y_min_mm, box.x_max_mm, box.y_max_mm)
+    return shapely.box(*box.bounds_mm)

@@ -72,7 +72,7 @@ def _mounted(read: PanelBoard) -> BaseGeometry:
         if device is None:
             raise ValueError(f"{part.ref} has the footprint {part.footprint}, which no part has")
         box = device.body_on_board
-        found.append(shapely.box(box.x_min_mm, box.y_min_mm, box.x_max_mm, box.y_max_mm))
+        found.append(shapely.box(*box.bounds_mm))
         found += [read.flat(t.copper.area) for t in part.terminals if t.copper is not None]
     return shapely.union_all(found)
 

@@ -50,8 +50,7 @@ def measure_size(read: PanelBoard) -> Iterator[Measurement]:
         ("width", "length"), (right - left, high - low), rules.least_mm, rules.most_mm, strict=True
     ):
         yield read.figure(side, size, least, most)
-    wanted = box.x_min_mm, box.y_min_mm, box.x_max_mm, box.y_max_mm
-    off = np.abs(np.subtract((left, low, right, high), wanted)).max()
+    off = np.abs(np.subtract((left, low, right, high), box.bounds_mm)).max()
     yield read.figure("outline", off, 0, OUTLINE_MM, note="from the design's")
 
 

@@ -9,6 +9,10 @@ LEDGE_MM = 0.5
 """Between the weir and the trough of a mould."""
 
 
+FOLD_OFF_MM = 0.3
+"""Of a mask's straight fold from the finger's outline grown by the allowance, at most."""
+
+
 @dataclass(frozen=True)
 class Sheet:
     """The mask as a printed sheet: the film's outline, its holes and folds, without any print."""

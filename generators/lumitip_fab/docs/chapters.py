@@ -85,7 +85,7 @@ _ORDER = {
     "cut": "cut the film, crease it",
     "tpu": "print the masks",
 }
-"""What comes before wrapping, by the route of the mask."""
+"""Work before the wrapping, by the route of the mask."""
 
 
 def _mask_rows(mask: Mask) -> str:

@@ -11,7 +11,7 @@ from lumitip_fab.design import Box, Finger, Interface, Mould, Mount, Outline, Po
 
 Points = NDArray[np.float64]
 
-SAGITTA_MM = 0.28  # of a straight fold from the black's edge; 0.3 is promised
+SAGITTA_MM = 0.28  # of a straight fold from the black's edge; FOLD_OFF_MM is promised
 STEP_MM = 0.4  # between the points where folds may end
 LONGEST_FOLD_MM = 20.0  # a longer flap is hard to lay down without a crease; the tip's may be
 

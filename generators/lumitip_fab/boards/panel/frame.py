@@ -97,4 +97,4 @@ def moved_box(box: Box, by: Point) -> Box:
 
 
 def _rectangle(box: Box) -> shapely.Polygon:
-    return shapely.box(box.x_min_mm, box.y_min_mm, box.x_max_mm, box.y_max_mm)
+    return shapely.box(*box.bounds_mm)

@@ -96,7 +96,7 @@ def _parts(model: BoardModel) -> BaseGeometry:
     """Mounted parts with their pads."""
     parts = [part for part in model.placement.components if part.part]
     boxes = [part.body_on_board for part in parts]
-    shapes = [shapely.box(b.x_min_mm, b.y_min_mm, b.x_max_mm, b.y_max_mm) for b in boxes]
+    shapes = [shapely.box(*b.bounds_mm) for b in boxes]
     return shapely.union_all([*shapes, *_pads(parts)])
 
 

@@ -5,6 +5,7 @@ from lumitip_fab.derive.boards.boards import Plan
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.cells import LEAST_WEB_MM
 from lumitip_fab.design import Box, Mask, Outline, Sheet
+from lumitip_fab.design.making import FOLD_OFF_MM
 
 PAGE_MM = (210.0, 279.4)  # what A4 and US Letter have in common
 PAGE_MARGIN_MM = 8.0  # most printers reach 5 mm from the edge; registration marks reach 2 mm out
@@ -19,8 +20,6 @@ FLAP_TAPER = 0.18  # of the tip flap's side: a little over 10°
 STROKE = 0.17  # of a letter's height
 LEAST_SHEET_MM = 0.2
 """A printed sheet, one layer of the usual height: a thinner one tears as it leaves the bed."""
-FOLD_OFF_MM = 0.3
-"""Of a straight fold from the finger's outline grown by the allowance, at most."""
 FOLD_LINES = 2  # width of a sheet's groove: the print is closed beside it, and it bends by 90°
 
 
