@@ -7,106 +7,20 @@ from pathlib import Path
 import pytest
 
 from board_damages import (
-    TIE_DAMAGES,
     in_part,
     moved_part,
     once,
-    resistor_smaller,
     spokes_cut,
     swapped_pads,
-    unrated,
 )
 from damages import cut_short, failing, swap
+from emitter_damages import EMITTER, EMITTER_DAMAGES, Damage
 from lumitip_fab.checks import board
 from lumitip_fab.design.encoding import read_design
-from silk_damages import (
-    arrow_bent,
-    cell_lost,
-    cell_misnamed,
-    cell_name_hidden,
-    cell_names_lost,
-    fiducial_lost,
-    fiducials_near,
-    first_pad_unmarked,
-    label_lost,
-    labels_swapped,
-    letters_small,
-    mark_lost,
-    probe_lost,
-    silk_line_thin,
-    silk_on_a_pad,
-    title_lost,
-)
 
 pytestmark = pytest.mark.slow
 
-Damage = Callable[[str], str]
-EMITTER = "boards/emitter/emitter.kicad_pcb"
 RECEIVER = "boards/receiver/receiver.kicad_pcb"
-
-
-def led_moved(text: str) -> str:
-    return moved_part(text, "D7", 0.05, 0.0)
-
-
-def led_on_the_back(text: str) -> str:
-    return in_part(text, "D7", r'\(layer "F.Cu"\)', '(layer "B.Cu")')
-
-
-def led_added(text: str) -> str:
-    extra = '(fp_text reference "D99" (at 0 0) (layer "F.SilkS"))'
-    return text.rstrip()[:-1] + f'(footprint "X" (layer "F.Cu") (at 150 100) {extra}))\n'
-
-
-def led_reversed(text: str) -> str:
-    return swapped_pads(text, "D7", "1", "2")
-
-
-def led_bridged(text: str) -> str:
-    return in_part(text, "D7", r'(\(pad "1".*\(size )\S+ \S+\)', r"\g<1>2.0 1)")
-
-
-def led_taller(text: str) -> str:
-    return in_part(text, "D7", "LEDC1608X60N", "LEDC1608X160N")
-
-
-def resistor_taller(text: str) -> str:
-    return in_part(text, "R1", r"(RESC\d+X)\d+N", r"\g<1>90N")
-
-
-def reference_twice(text: str) -> str:
-    return in_part(text, "FID3", "FID3", "FID2")
-
-
-EMITTER_DAMAGES: dict[Damage, set[str]] = {
-    led_moved: {"cells", "clearance"},  # the pour is as near as it may be
-    led_on_the_back: {"cells", "room_behind", "silk_marks"},
-    led_added: {"cell_count", "silk_marks"},
-    led_reversed: {"lands", "polarity", "silk_marks"},
-    led_bridged: {"lands", "short", "strings", "current", "silk_gap", "resistor_load"},
-    led_taller: {"lands", "height_front"},
-    resistor_smaller: {"current", "resistor_load"},
-    unrated: {"lands", "resistor_load"},
-    resistor_taller: {"lands", "room_behind"},
-    **TIE_DAMAGES,
-    title_lost: {"silk_title"},
-    arrow_bent: {"silk_arrow"},
-    cell_lost: {"silk_cells"},
-    cell_misnamed: {"silk_cell_names"},
-    cell_names_lost: {"silk_cell_names"},
-    cell_name_hidden: {"silk_cell_names"},
-    mark_lost: {"silk_marks"},
-    label_lost: {"silk_labels"},
-    labels_swapped: {"silk_labels"},
-    first_pad_unmarked: {"silk_marks"},
-    letters_small: {"silk_letters"},
-    silk_line_thin: {"silk_lines"},
-    silk_on_a_pad: {"silk_gap"},
-    fiducial_lost: {"fiducials"},
-    fiducials_near: {"fiducial_spread"},
-    probe_lost: {"test_points", "silk_labels"},
-    reference_twice: {"references"},
-}
 
 
 def net_names_swapped(text: str) -> str:

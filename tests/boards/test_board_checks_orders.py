@@ -8,15 +8,15 @@ from pathlib import Path
 import pytest
 
 from board_damages import rezip
-from damages import cut_short, failing, swap
+from damages import failing
 from lumitip_fab.checks import orders
 from lumitip_fab.design.encoding import read_design
+from order_damages import BOM, FIRST, FOLDER_DAMAGES, SECOND
 
 pytestmark = pytest.mark.slow
 
 Files = dict[str, bytes]
 Damage = Callable[[Files], None]
-FIRST, SECOND = "generic", "jlcpcb"
 
 
 def folder_of(boards: Path) -> Path:
@@ -206,7 +206,7 @@ def test_the_layers_of_every_zip_are_held_against_the_board(damaged_boards: Path
 
 # Damages of a table are made in the zip and beside it alike: pattern, what is put, what fails.
 
-BOM, PLACES = "bom.csv", "positions.csv"
+PLACES = "positions.csv"
 TABLES = {
     "reference lost": (BOM, rb"Q1,Q2,", b"Q2,", {"bom"}),
     "reference twice": (BOM, rb"Q1,Q2,", b"Q1,Q1,Q2,", {"bom"}),
@@ -234,66 +234,6 @@ def test_a_damage_of_a_table(name: str, damaged_boards: Path) -> None:
         told = package.read(f"receiver_{table}")
     (order / f"{SECOND}_receiver_{table}").write_bytes(told)
     assert failing(damaged_boards, "orders", "receiver") == wanted
-
-
-def table_beside(order: Path) -> None:
-    path = order / f"{SECOND}_receiver_{BOM}"
-    path.write_bytes(path.read_bytes().replace(b"Q1,", b""))
-
-
-def table_gone(order: Path) -> None:
-    (order / f"{SECOND}_receiver_{BOM}").unlink()
-
-
-def zip_short(order: Path) -> None:
-    cut_short(order / f"{SECOND}_receiver.zip")
-
-
-def zip_spoilt(order: Path) -> None:
-    """A file's packed bytes are others than were packed."""
-    path = order / f"{SECOND}_receiver.zip"
-    data = path.read_bytes()
-    with zipfile.ZipFile(path) as package:
-        at = package.infolist()[0].header_offset + 80
-    path.write_bytes(data[:at] + b"\xff" * 20 + data[at + 20 :])
-
-
-def file_twice_in_a_zip(order: Path) -> None:
-    """Another drill file of the same name before the right one, which is read as the last."""
-    path = order / f"{SECOND}_receiver.zip"
-    with zipfile.ZipFile(path) as package:
-        files = [(name, package.read(name)) for name in package.namelist()]
-    (drills,) = (name for name, _ in files if name.upper().endswith("-NPTH.DRL"))
-    with zipfile.ZipFile(path, "w") as package, pytest.warns(UserWarning, match="Duplicate"):
-        for name, data in [(drills, b"no drill file"), *files]:
-            package.writestr(name, data)
-
-
-def zip_with_a_password(order: Path) -> None:
-    path = order / f"{SECOND}_receiver.zip"
-    data = path.read_bytes()
-    at = data.index(b"PK\x01\x02") + 8  # flags of its first file in the list at the end
-    path.write_bytes(data[:at] + b"\x01" + data[at + 1 :])
-
-
-def zips_swapped(order: Path) -> None:
-    swap(order / f"{SECOND}_receiver.zip", order / f"{FIRST}_receiver.zip")
-
-
-def board_gone(order: Path) -> None:
-    (order.parent / "receiver.kicad_pcb").unlink()
-
-
-FOLDER_DAMAGES: dict[Callable[[Path], None], set[str]] = {
-    table_beside: {"tables"},
-    table_gone: {"readable"},
-    zip_short: {"readable"},
-    zip_spoilt: {"readable"},
-    file_twice_in_a_zip: {"readable"},
-    zip_with_a_password: {"readable"},
-    zips_swapped: {"readable"},
-    board_gone: {"board"},
-}
 
 
 @pytest.mark.parametrize("damage", FOLDER_DAMAGES, ids=lambda d: d.__name__)

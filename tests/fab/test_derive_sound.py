@@ -13,8 +13,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
+from box_gaps import from_point_mm, gap_mm, inside_mm, round_box
 from lumitip_fab.derive import derive
-from lumitip_fab.design import Box, Design, Finger, Point
+from lumitip_fab.design import Design, Finger
 from lumitip_fab.errors import InputError
 
 pytestmark = pytest.mark.slow
@@ -22,31 +23,6 @@ pytestmark = pytest.mark.slow
 NOISE_MM = 1e-6
 Faults = Callable[[Design], Iterator[str]]
 PRESETS = ("asymmetric", "dense", "mux16", "published")
-
-
-def _gap_mm(a: Box, b: Box) -> float:
-    """Distance between two boxes; below zero where they overlap."""
-    dx = max(a.x_min_mm - b.x_max_mm, b.x_min_mm - a.x_max_mm)
-    dy = max(a.y_min_mm - b.y_max_mm, b.y_min_mm - a.y_max_mm)
-    return math.hypot(max(dx, 0), max(dy, 0)) if max(dx, dy) > 0 else max(dx, dy)
-
-
-def _inside_mm(inner: Box, outer: Box) -> float:
-    """Least distance from a box to the sides of the one around it; below zero outside."""
-    return min(
-        inner.x_min_mm - outer.x_min_mm,
-        outer.x_max_mm - inner.x_max_mm,
-        inner.y_min_mm - outer.y_min_mm,
-        outer.y_max_mm - inner.y_max_mm,
-    )
-
-
-def _round(at: Point, across_mm: float) -> Box:
-    return Box(at[0], at[0], at[1], at[1]).grown(across_mm / 2)
-
-
-def _from_point_mm(box: Box, at: Point) -> float:
-    return _gap_mm(box, Box(at[0], at[0], at[1], at[1]))
 
 
 def _faults(design: Design) -> Iterator[str]:
@@ -60,14 +36,14 @@ def _faults(design: Design) -> Iterator[str]:
 def _of_parts(design: Design, finger: Finger) -> Iterator[str]:
     zones = {zone.name: zone.box for zone in finger.zones}
     for (a, here), (b, there) in combinations(zones.items(), 2):
-        if _gap_mm(here, there) < -NOISE_MM:
+        if gap_mm(here, there) < -NOISE_MM:
             yield f"zones {a} and {b} overlap"
     for name, box in zones.items():
-        if _inside_mm(box, design.board.box) < -NOISE_MM:
+        if inside_mm(box, design.board.box) < -NOISE_MM:
             yield f"zone {name} leaves the board"
     for part in finger.parts:
         zone = "cells" if part.kind in ("led", "photodetector") else "parts"
-        if _inside_mm(part.box, zones[zone]) < -NOISE_MM:
+        if inside_mm(part.box, zones[zone]) < -NOISE_MM:
             yield f"{part.name} leaves the zone {zone}"
     sides = {side: [q for q in finger.parts if q.side == side] for side in ("front", "back")}
     for parts in sides.values():
@@ -94,17 +70,17 @@ def _of_holes(design: Design, finger: Finger) -> Iterator[str]:
     if len(finger.holes) < 4 or len(set(finger.holes)) != len(finger.holes):
         yield "fewer than four holes"
     for at in finger.holes:
-        if _inside_mm(_round(at, design.board.hole_mm), design.board.box) < 0.5 - NOISE_MM:
+        if inside_mm(round_box(at, design.board.hole_mm), design.board.box) < 0.5 - NOISE_MM:
             yield f"hole {at} is too near the board's edge"
         for part in finger.parts:
-            if _from_point_mm(part.box, at) < radius + 0.2:
+            if from_point_mm(part.box, at) < radius + 0.2:
                 yield f"hole {at} meets {part.name}"
         for pad in finger.connector.pads:
             if math.dist(pad, at) < radius + finger.connector.pad_mm / 2 + 0.2:
                 yield f"hole {at} meets a pad"
         openings = {"notch": finger.notch} | {f"relief {r.box}": r.box for r in finger.reliefs}
         for name, box in openings.items():
-            wall = _from_point_mm(box, at) - design.board.pin_mm / 2
+            wall = from_point_mm(box, at) - design.board.pin_mm / 2
             if wall < design.printing.min_wall_mm - NOISE_MM:
                 yield f"the pin at {at} stands {wall:.2f} mm from the {name}"
     for a, b in combinations(finger.holes, 2):
@@ -117,9 +93,9 @@ def _of_holes(design: Design, finger: Finger) -> Iterator[str]:
 def _of_reliefs(design: Design, finger: Finger) -> Iterator[str]:
     wall = design.printing.min_wall_mm
     for relief in finger.reliefs:
-        if _inside_mm(relief.box, design.board.pocket) < -NOISE_MM:
+        if inside_mm(relief.box, design.board.pocket) < -NOISE_MM:
             yield "a relief leaves the pocket"
-        if _gap_mm(relief.box, finger.notch) < wall - NOISE_MM:
+        if gap_mm(relief.box, finger.notch) < wall - NOISE_MM:
             yield "a relief is too near the notch"
         reach = design.mount.block_width_mm / 2
         if min(abs(relief.box.x_min_mm), abs(relief.box.x_max_mm)) < reach + wall - NOISE_MM:
@@ -129,7 +105,7 @@ def _of_reliefs(design: Design, finger: Finger) -> Iterator[str]:
             yield f"a relief leaves {left} mm of floor"
     for part in finger.parts:
         if part.side == "back" and not any(
-            _inside_mm(part.box, relief.box) > 0.2 - NOISE_MM and relief.depth_mm >= part.height_mm
+            inside_mm(part.box, relief.box) > 0.2 - NOISE_MM and relief.depth_mm >= part.height_mm
             for relief in finger.reliefs
         ):
             yield f"{part.name} on the back has no relief"
@@ -137,12 +113,12 @@ def _of_reliefs(design: Design, finger: Finger) -> Iterator[str]:
 
 def _of_connector(design: Design, finger: Finger) -> Iterator[str]:
     for pad in finger.connector.pads:
-        box = _round(pad, finger.connector.pad_mm)
-        if _inside_mm(box, design.board.box) < 0.3 - NOISE_MM:
+        box = round_box(pad, finger.connector.pad_mm)
+        if inside_mm(box, design.board.box) < 0.3 - NOISE_MM:
             yield f"pad {pad} is too near the board's edge"
-        if _inside_mm(box, finger.notch) < 0.5 - NOISE_MM:
+        if inside_mm(box, finger.notch) < 0.5 - NOISE_MM:
             yield f"pad {pad} is not over the notch"
-        if _inside_mm(box, finger.window) < 1.0:
+        if inside_mm(box, finger.window) < 1.0:
             yield f"pad {pad} is not in the window"
     if any(
         b - a < finger.connector.pad_mm + 0.2 for (a, _), (b, _) in pairwise(finger.connector.pads)
