@@ -100,6 +100,14 @@ def test_the_interface_of_a_compliant_finger_holds_its_multiplexers(
         assert part.box.y_max_mm < bend.y_min_mm
 
 
+def test_a_wide_corner_leaves_a_wall_beside_the_groove(file: Any) -> None:
+    outline = "[outline]\nshoulder_margin_mm = 10.2\nwaist_margin_mm = 2.7\n"
+    grid = "[grid]\ncolumns = [4, 5, 4, 5]\npitch_mm = 8.7\n"
+    design = derive(load(file(FLEX + grid + outline)))
+    wall_mm = design.outline.end_width_mm / 2 - design.interfaces[0].groove.x_max_mm
+    assert wall_mm >= design.printing.min_wall_mm - 1e-6
+
+
 def test_a_written_interface_takes_no_room_from_the_tracks(file: Any) -> None:
     """It ends among the multiplexers: a narrower channel before them would not help."""
     grid = '[grid]\ncolumns = [6, 5, 6, 5, 6, 5]\n[receiver]\nload = "auto"\n'

@@ -7,7 +7,7 @@ later, joins its pads.
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import pairwise, takewhile
+from itertools import pairwise, product, takewhile
 
 import numpy as np
 import shapely
@@ -19,7 +19,8 @@ from lumitip_fab.design import Point, Side
 
 BEYOND_MM = (0.15, 0.3, 0.45)  # the edge of pad or via: where each piece ends
 WIDER = (2.2, 1.8, 1.4)  # than the track, each piece; none is wider than the pad
-SLIMMER = (1.0, 0.87, 0.76)  # what is tried where there is less room
+SLIMMER = (1.0, 0.87, 0.76)  # what is tried where there is less room,
+ASIDE = (0.0, 0.4, -0.4)  # first along the track, then to one side, by this share of its width
 _MARGIN_MM = 0.002  # beyond clearances
 
 
@@ -117,17 +118,31 @@ def _widened(run: Run, land: _Land, copper: "_Copper") -> tuple[Run, Run]:
     for beyond_mm, wider in zip(BEYOND_MM, WIDER, strict=True):
         if (end_mm := inside_mm + beyond_mm) > line.length:
             break
-        for slimmer in SLIMMER:
-            width_mm = round(min(wider * slimmer * first.width_mm, most_mm), 3)
-            piece = _along(replace(first, width_mm=width_mm), line, begin_mm, end_mm)
-            if width_mm > first.width_mm and all(map(copper.free, piece)):
-                pieces += piece
-                begin_mm, most_mm = end_mm, width_mm
-                break
-        else:
+        piece = _piece(first, substring(line, begin_mm, end_mm), wider, most_mm, copper)
+        if not piece:
             break
+        pieces += piece
+        begin_mm, most_mm = end_mm, piece[0].width_mm
     copper.add(pieces)
-    return pieces, _along(first, line, begin_mm, line.length)
+    return pieces, _tracks(first, substring(line, begin_mm, line.length))
+
+
+def _piece(
+    track: Track, line: shapely.LineString, wider: float, most_mm: float, copper: "_Copper"
+) -> Run:
+    """The widest piece along a line that finds room, or beside it; none if there is none."""
+    for aside, slimmer in product(ASIDE, SLIMMER):
+        beside = _beside(line, aside * track.width_mm)
+        width_mm = round(min(wider * slimmer * track.width_mm, most_mm), 3)
+        piece = _tracks(replace(track, width_mm=width_mm), beside)
+        if width_mm > track.width_mm and all(map(copper.free, piece)):
+            return piece
+    return []
+
+
+def _beside(line: shapely.LineString, aside_mm: float) -> shapely.LineString:
+    """A parallel of a line, which still begins and ends in the copper of a track along it."""
+    return line.offset_curve(aside_mm, join_style="mitre") if aside_mm else line
 
 
 def _inside_mm(line: shapely.LineString, land: shapely.Geometry) -> float:
@@ -138,10 +153,9 @@ def _inside_mm(line: shapely.LineString, land: shapely.Geometry) -> float:
     return float(line.project(shapely.Point(shapely.get_parts(outside)[0].coords[0])))
 
 
-def _along(track: Track, line: shapely.LineString, begin_mm: float, end_mm: float) -> Run:
-    """A part of a line as tracks like another one."""
-    part = substring(line, begin_mm, end_mm)
-    places = [(round(x, 3), round(y, 3)) for x, y in part.coords]
+def _tracks(track: Track, line: shapely.LineString) -> Run:
+    """A line as tracks like another one."""
+    places = [(round(x, 3), round(y, 3)) for x, y in line.coords]
     return [replace(track, start=a, end=b) for a, b in pairwise(places) if a != b]
 
 

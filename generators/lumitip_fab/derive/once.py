@@ -78,7 +78,7 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
     stack, fasteners = derive_stack(config, faults), derive_fasteners(config, faults)
     first = lay_out(config, faults)
     cells, strings, muxing, plan = first.cells, first.strings, first.muxing, first.plan
-    silhouette = outline.derive_outline(p, plan.board, plan.receiver.notch, faults)
+    silhouette = outline.derive_outline(config, plan.board, plan.receiver.notch, faults)
     interfaces = derive_interfaces(config, silhouette, plan.receiver, plan.board.box, faults)
     coupling = mount.derive_mount(config, silhouette, plan, faults)
     tip = derive_tip(p, silhouette, plan.board, stack, faults)

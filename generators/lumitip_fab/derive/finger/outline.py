@@ -4,33 +4,36 @@ import math
 
 import numpy as np
 
-from lumitip_fab.config.parameters import Parameters
+from lumitip_fab.config.load import Input
 from lumitip_fab.derive.diagnostics import Diagnostics
+from lumitip_fab.derive.finger.stack import foot_half_mm, is_flex
 from lumitip_fab.design import Board, Box, Cubic, Letter, Outline, Point
 
 _ROUND = 4 / 3 * (math.sqrt(2) - 1)  # handle of a cubic that follows a quarter ellipse
 
 
-LEAST_LEG_MM = 2.0  # plate beside the wire notch at the gripper end
+LEAST_LEG_MM = 2.0  # plate beside the wire notch at the gripper end, without a groove
 LEAST_CORNER_MM = 0.5
 
 
-def derive_outline(p: Parameters, board: Board, notch: Box, faults: Diagnostics) -> Outline:
+def derive_outline(config: Input, board: Board, notch: Box, faults: Diagnostics) -> Outline:
     """The outline, refused where it is no smooth curve round the board.
 
     Args:
-        p: the parameters.
+        config: the parameters.
         board: the board, with its pocket.
         notch: the wire notch, which leaves two legs at the gripper end.
         faults: where to refuse.
     """
+    p = config.parameters
     tip_y = board.box.y_max_mm + p.outline.tip_margin_mm
     end_y = board.box.y_min_mm - p.outline.end_margin_mm
     length, half_board = tip_y - end_y, board.box.x_max_mm
     shoulder = (half_board + p.outline.shoulder_margin_mm, tip_y - p.outline.shoulder_at_mm)
     waist = (half_board + p.outline.waist_margin_mm, tip_y - p.outline.waist_at * length)
     tip_half = p.outline.tip_fraction * shoulder[0]
-    room = waist[0] - notch.x_max_mm - LEAST_LEG_MM
+    leg_mm = _leg_mm(config, notch)
+    room = waist[0] - notch.x_max_mm - leg_mm
     corner = min(p.outline.end_corner_mm, max(room, LEAST_CORNER_MM))
     end_half = waist[0] - corner
     for holds, field, message in (
@@ -55,9 +58,9 @@ def derive_outline(p: Parameters, board: Board, notch: Box, faults: Diagnostics)
         (
             room >= LEAST_CORNER_MM,
             "outline.waist_margin_mm",
-            f"is {p.outline.waist_margin_mm:g}, which leaves {room + LEAST_LEG_MM:.2f} mm of "
+            f"is {p.outline.waist_margin_mm:g}, which leaves {room + leg_mm:.2f} mm of "
             f"plate beside the wire notch of {notch.width_mm:.1f} mm at the gripper end; at least "
-            f"{LEAST_LEG_MM + LEAST_CORNER_MM:g} is needed",
+            f"{leg_mm + LEAST_CORNER_MM:g} is needed",
         ),
     ):
         faults.refuse_unless(holds, field, message)
@@ -81,6 +84,14 @@ def derive_outline(p: Parameters, board: Board, notch: Box, faults: Diagnostics)
         "margins.",
     )
     return outline
+
+
+def _leg_mm(config: Input, notch: Box) -> float:
+    """Least plate beside the notch: a groove for an interface takes some of it."""
+    if not is_flex(config.parameters):
+        return LEAST_LEG_MM
+    groove_mm = foot_half_mm(config, notch.x_max_mm) - notch.x_max_mm
+    return max(LEAST_LEG_MM, groove_mm + config.parameters.printer.min_wall_mm)
 
 
 def _line(a: Point, b: Point) -> Cubic:
