@@ -37,8 +37,8 @@ def via_in_the_bend(text: str) -> str:
 
 
 def without_teardrops(text: str) -> str:
-    """Every piece of track as wide as signals are."""
-    hurt, count = re.subn(r"(\(segment .*\(width )0\.\d+\)", r"\g<1>0.2)", text)
+    """Every piece of a signal's track as wide as signals are; supplies are wider."""
+    hurt, count = re.subn(r"(\(segment .*\(width )0\.[2-4]\d*\)", r"\g<1>0.2)", text)
     assert count > 100
     return hurt
 
