@@ -9,6 +9,7 @@ from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from lumitip_fab.design.encoding import design_text
 from lumitip_fab.mask.files import mask_files
+from lumitip_fab.parts.coupon import coupon_files
 from lumitip_fab.parts.sheet import sheet_files
 
 
@@ -23,6 +24,8 @@ def masks(tmp_path_factory: pytest.TempPathFactory, design_dir: Path) -> Path:
         made = (*mask_files(d, finger), *sheet_files(d, finger))
         for artefact in made:
             (out / artefact.path).write_bytes(artefact.data)
+    for artefact in coupon_files(d):
+        (out / artefact.path).write_bytes(artefact.data)
     return out
 
 

@@ -13,6 +13,7 @@ from lumitip_fab.config.load import Input, load
 from lumitip_fab.derive import derive
 from lumitip_fab.design.encoding import design_text
 from lumitip_fab.mask.files import mask_files
+from lumitip_fab.parts.coupon import coupon_files
 from lumitip_fab.parts.sheet import sheet_files
 
 pytestmark = pytest.mark.slow
@@ -202,6 +203,8 @@ def written(config: Input, out: Path) -> Path:
     for finger in design.fingers:
         for artefact in (*mask_files(design, finger), *sheet_files(design, finger)):
             (out / artefact.path).write_bytes(artefact.data)
+    for artefact in coupon_files(design):
+        (out / artefact.path).write_bytes(artefact.data)
     return out
 
 
@@ -213,7 +216,7 @@ def test_every_preset_passes_by_every_route(
     values = {"mask.route": "tpu", "mask.layers": layers, "mask.hole_shape": "circle"}
     config = load(design_dir / "presets" / f"{preset}.toml").with_values(values)
     out = written(config, tmp_path / "out")
-    for module in ("mask", "mask_sheet", "mask_cut"):
+    for module in ("mask", "mask_sheet", "mask_cut", "mask_coupon"):
         assert failing(out, module) == set()
     shutil.copy(out / "mask/emitter_cut.dxf", out / "mask/receiver_cut.dxf")
     assert failing(out, "mask_cut")

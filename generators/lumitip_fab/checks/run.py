@@ -30,6 +30,7 @@ MODULES = (
     "mask",
     "mask_sheet",
     "mask_cut",
+    "mask_coupon",
     "backing",
     "fit_plate",
     "mould",

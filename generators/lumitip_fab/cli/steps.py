@@ -49,6 +49,7 @@ STEPS = (
         heavy=True,
         tools=(*_CAD, "manifold3d"),
     ),
+    Step("coupon", "parts.coupon.coupon_files", tools=("reportlab", "lib3mf", "numpy", "trimesh")),
     Step("fit_plate", "parts.fit_plate.fit_plate_files", heavy=True, tools=_CAD),
     Step("system", "scenes.system.system_files", late=True, tools=_DRAWN),
     Step("bom", "docs.bill.bill_of_materials", late=True, tools=("numpy",)),

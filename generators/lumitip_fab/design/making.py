@@ -54,6 +54,8 @@ class Mask:
     mark: Box
     """Box of the letter F on the tip flap, which distinguishes a mirror image from half a turn."""
     sheet: Sheet
+    coupon: Box
+    """A piece of the mask's material without holes that covers all cells of the receiver."""
 
     @property
     def material(self) -> str:

@@ -31,17 +31,20 @@ mirror image on purpose: turn off "fit to page", "scale" and "mirror" in the pri
 4. Hold the print against a lamp. Print a second time over it if the black is not dense.
 5. From the unprinted side the letter F on the tip flap and the name {NAME} must read right.
 
-## 3. Cut
+## 3. Test the black
+{infrared}
+
+## 4. Cut
 Cut along the solid line and cut out the connector's window. The {count} apertures are clear film:
 leave them. For a plotter, `{name}_mask.dxf` has the layers `CUT`, `WINDOW` and `FOLD`.
 
-## 4. Crease the folds
+## 5. Crease the folds
 The folds are made off the finger, with local heat: its {weakest} keeps its shape only
 up to {finger_c:g} °C.
 1. Lay the film on a metal bar or a steel ruler, printed side down, a fold along its straight edge
    and the flap beyond it.
 {crease}
-## 5. Wrap
+## 6. Wrap
 Nothing is heated from here on.
 1. Lay the film on the silicone, print inward, tip to tip; sight through the outer apertures to the
    parts below.
@@ -116,9 +119,16 @@ plate), so that no stray light comes in through the silicone's edge.
 """
 _TEXTS = {"film": _FILM, "cut": _CUT, "tpu": _TPU}
 _INFRARED = """\
-Many black plastics let infrared through. Hold a piece without apertures between the fingers before
-they have masks: in `lumitip view` the cells behind it must be as dark as behind sheet metal. If
-they are not, take a material that is coloured with carbon black."""
+Many black plastics and inks let infrared through. Make a piece without apertures,
+{coupon}.
+Hold it between the fingers before they have masks:
+`lumitip doctor URL --opacity` compares it with sheet metal and says whether it is opaque. If it is
+not, take {other}."""
+_OTHERS = {
+    "film": "an ink with carbon black (a pigment ink), or print once more over it",
+    "tpu": "a filament that is coloured with carbon black, or more layers",
+    "cut": "a film that is coloured with carbon black",
+}
 _CREASE = """\
 2. Bring that line alone to {soften_c:g} °C, with a narrow nozzle of hot air or an iron with its
    temperature set, until it goes limp.
@@ -174,7 +184,7 @@ def wrapping_note(artwork: Artwork, design: Design) -> bytes:
         long_mm=max(ends) - min(ends),
         side_mm=stack.plate_mm + stack.cover_mm,
         band_mm=BAND_MM,
-        infrared=_INFRARED,
+        infrared=_infrared(design),
         fold=_FOLD.format(last=len(flaps), what=what),
         table="\n".join(map(_row, flaps)),
         foot_mm=FOOT_MM,
@@ -182,6 +192,18 @@ def wrapping_note(artwork: Artwork, design: Design) -> bytes:
         **(_printed(design) if mask.route == "tpu" else _creased(design)),
     )
     return text.encode()
+
+
+def _infrared(design: Design) -> str:
+    """How the mask's material is tested."""
+    coupon, route = design.mask.coupon, design.mask.route
+    size = f"{coupon.width_mm:.0f} x {coupon.length_mm:.0f} mm"
+    pieces = {
+        "film": f"`coupon_a4.pdf` on the same film, printed as often over it ({size})",
+        "tpu": f"`coupon.3mf` ({size})",
+        "cut": f"{size} of the same film",
+    }
+    return _INFRARED.format(coupon=pieces[route], other=_OTHERS[route])
 
 
 def _creased(design: Design) -> dict[str, object]:

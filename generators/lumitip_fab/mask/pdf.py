@@ -27,22 +27,10 @@ def pdf_page(artwork: Artwork, mask: Mask, title: Title, paper: str) -> bytes:
         title: of the design.
         paper: `"a4"` or `"letter"`.
     """
-    width, height = PAPERS_MM[paper]
     stretch = [100 / measured for measured in mask.measured_ruler_mm]
     buffer = io.BytesIO()
-    load_typeface()
-    canvas = Canvas(
-        buffer,
-        pagesize=(width * mm, height * mm),
-        invariant=1,
-        pageCompression=0,
-        initialFontName=PLAIN,
-    )
-    canvas.setTitle(f"{title.name} {title.revision}: {artwork.name.lower()} mask")
+    canvas = _centred(buffer, paper, f"{title.name} {title.revision}: {artwork.name.lower()} mask")
     canvas.setSubject("Print at 100 %, mirrored on purpose: the inside of the film")
-    canvas.setAuthor("lumitip-fab")
-    canvas.setCreator("lumitip-fab")
-    canvas.translate(width * mm / 2, height * mm / 2)
     canvas.scale(mm * stretch[0], mm * stretch[1])
     places = arrange(mask)
     canvas.saveState()
@@ -56,6 +44,50 @@ def pdf_page(artwork: Artwork, mask: Mask, title: Title, paper: str) -> bytes:
     canvas.showPage()
     canvas.save()
     return buffer.getvalue()
+
+
+def coupon_page(mask: Mask, title: Title, paper: str) -> bytes:
+    """The bytes of the PDF of the coupon: the black of the masks without holes, 1:1.
+
+    Args:
+        mask: for the coupon's size.
+        title: of the design.
+        paper: `"a4"` or `"letter"`.
+    """
+    wide, long = mask.coupon.width_mm, mask.coupon.length_mm
+    buffer = io.BytesIO()
+    canvas = _centred(buffer, paper, f"{title.name} {title.revision}: coupon")
+    canvas.scale(mm, mm)
+    canvas.setFillGray(0)
+    canvas.rect(-wide / 2, -long / 2, wide, long, stroke=0, fill=1)
+    canvas.setFont(PLAIN, TEXT_MM)
+    texts = (
+        "Coupon: print it on the same film as the masks, with the same ink and as often over it.",
+        "Cut it out. lumitip doctor URL --opacity measures how much light passes.",
+    )
+    for line, text in enumerate(texts):
+        canvas.drawCentredString(0, -long / 2 - (2 + line) * LINE_MM, text)
+    canvas.showPage()
+    canvas.save()
+    return buffer.getvalue()
+
+
+def _centred(buffer: io.BytesIO, paper: str, title: str) -> Canvas:
+    """A page with the origin in its middle."""
+    width, height = PAPERS_MM[paper]
+    load_typeface()
+    canvas = Canvas(
+        buffer,
+        pagesize=(width * mm, height * mm),
+        invariant=1,
+        pageCompression=0,
+        initialFontName=PLAIN,
+    )
+    canvas.setTitle(title)
+    canvas.setAuthor("lumitip-fab")
+    canvas.setCreator("lumitip-fab")
+    canvas.translate(width * mm / 2, height * mm / 2)
+    return canvas
 
 
 def pdf_to_sensor(mask: Mask, paper: str) -> Matrix:

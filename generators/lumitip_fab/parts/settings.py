@@ -95,7 +95,7 @@ def _note(design: Design, bends: bool) -> str:
         rows += [(f"interface/{finger}_interface.3mf", standing) for finger in _FINGERS]
     rows += [(f"mould/{finger}_mould.3mf", "open side up") for finger in _FINGERS]
     flat = 'on its outer face, for `mask.route = "tpu"`'
-    rows += [(f"mask/{finger}_sheet.3mf", flat) for finger in _FINGERS]
+    rows += [(f"mask/{name}.3mf", flat) for name in (*(f"{f}_sheet" for f in _FINGERS), "coupon")]
     listed = "\n".join(
         f"| `{path}` | {_temperatures(slicing.of(path))} | {lies} |" for path, lies in rows
     )

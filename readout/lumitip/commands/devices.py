@@ -49,6 +49,11 @@ def add(subparsers: Subparsers) -> None:
     )
     add_fingertip(parser)
     parser.add_argument(
+        "--opacity",
+        action="store_true",
+        help="measure instead how much light of the LEDs a coupon of the mask's material lets pass",
+    )
+    parser.add_argument(
         "--seconds",
         type=positive_seconds,
         default=15.0,
@@ -100,7 +105,11 @@ def tare(options: argparse.Namespace) -> int:
 
 
 def doctor(options: argparse.Namespace) -> int:
-    """Test the cells; exit code 1 if a fault is found."""
+    """Test the cells, or the mask's material; exit code 1 if a fault is found."""
+    if options.opacity:
+        from lumitip.commands.opacity import measure_opacity
+
+        return 0 if measure_opacity(options) else FAULTS_FOUND
     import numpy as np
 
     from lumitip.frame import complement

@@ -12,7 +12,7 @@ from lumitip_fab.derive.boards.packages import LEAST_RING_MM
 from lumitip_fab.derive.boards.plug_in import least_inrush_ohm
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.cells import bending_lines, lane_mm
-from lumitip_fab.derive.finger.stack import is_flex, mask_mm
+from lumitip_fab.derive.finger.stack import is_flex, least_standoff_mm, mask_mm
 from lumitip_fab.derive.once import lay_out
 from lumitip_fab.derive.wiring.ratings import (
     SUPPLY_TOLERANCE,
@@ -47,6 +47,7 @@ def proposals() -> tuple[Callable[[Input], Iterator[Proposal]], ...]:
         _channel,
         _room_of_sources,
         _flange,
+        _standoff,
         _interface,
     )
 
@@ -187,6 +188,17 @@ def _room_of_sources(config: Input) -> Iterator[Proposal]:
         yield from choose_resistors(
             config, f"otherwise emitter.source {crowded[0].partition('. ')[0]}"
         )
+
+
+def _standoff(config: Input) -> Iterator[Proposal]:
+    """The interface's pad before the gripper's nose; its ramp, and so its length, follow."""
+    if not is_flex(config.parameters):
+        return
+    usual, step = FIELDS["flex.standoff_mm"].start, FIELDS["flex.standoff_mm"].step
+    least = round(math.ceil(least_standoff_mm(config) / step - 1e-6) * step, 3)
+    if least > float(usual):
+        reason = f"board, plate and pad end before the nose of {config.parameters.coupling.gripper}"
+        yield "flex.standoff_mm", least, reason
 
 
 def _interface(config: Input) -> Iterator[Proposal]:

@@ -10,7 +10,13 @@ import math
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.outline import letter_on, most_letter_mm
-from lumitip_fab.derive.finger.stack import behind_mm, foot_half_mm, held_by, is_flex
+from lumitip_fab.derive.finger.stack import (
+    behind_mm,
+    foot_half_mm,
+    held_by,
+    is_flex,
+    least_standoff_mm,
+)
 from lumitip_fab.derive.making.fits import Drawn, refuse_touching
 from lumitip_fab.design import Box, Finger, Interface, Outline
 
@@ -116,13 +122,12 @@ def _refuse_heights(config: Input, faults: Diagnostics) -> None:
     """Refuse what does not go into plate, pad and groove."""
     p, flex = config.parameters, config.parameters.flex
     line_mm = config.parts.printer.profile.line_mm
-    nose = config.parts.coupling.gripper.nose
     left = p.stack.floor_mm - flex.groove_depth_mm
     gap, fit_mm = Drawn(p.printer.fit_mm).gap_mm(flex.glue_mm), p.printer.fit_mm
     rim = flex.groove_mm - 2 * gap
     fitted = f" and printer.fit_mm = {fit_mm:g}" if fit_mm else ""
     refuse_touching(config, "flex.glue_mm", flex.glue_mm, faults)
-    reach = behind_mm(p) - flex.standoff_mm
+    least_mm = least_standoff_mm(config)
     for holds, field, message in (
         (
             left >= p.printer.min_wall_mm - 1e-9,
@@ -156,10 +161,9 @@ def _refuse_heights(config: Input, faults: Diagnostics) -> None:
             "allowed, because the interface lies behind the plate",
         ),
         (
-            nose is None or reach <= nose.front_w_mm + 1e-9,
+            flex.standoff_mm >= least_mm - 1e-9,
             "flex.standoff_mm",
-            f"is {flex.standoff_mm:g}; at least "
-            f"{behind_mm(p) - (nose.front_w_mm if nose else 0.0):g} is needed, so that "
+            f"is {flex.standoff_mm:g}; at least {least_mm:g} is needed, so that "
             f"board, plate and pad end before the nose of {p.coupling.gripper!r}",
         ),
     ):

@@ -39,6 +39,12 @@ def behind_mm(p: Parameters) -> float:
     return p.stack.pcb_mm + p.stack.floor_mm + (p.flex.pad_mm if is_flex(p) else 0.0)
 
 
+def least_standoff_mm(config: Input) -> float:
+    """Least `flex.standoff_mm`: board, plate and pad end before the nose of the gripper."""
+    nose = config.parts.coupling.gripper.nose
+    return behind_mm(config.parameters) - nose.front_w_mm if nose else 0.0
+
+
 def stiff_mm(p: Parameters) -> float:
     """Thickness of the boards outside the fingers."""
     return AUXILIARY_MM if is_flex(p) else p.stack.pcb_mm

@@ -1,10 +1,12 @@
 """The mask, and whether page, printer and plotter make it."""
 
+from collections.abc import Sequence
+
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards.boards import Plan
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.cells import LEAST_WEB_MM
-from lumitip_fab.design import Box, Mask, Outline, Sheet
+from lumitip_fab.design import Box, Mask, Outline, Point, Sheet
 from lumitip_fab.design.making import FOLD_OFF_MM
 
 PAGE_MM = (210.0, 279.4)  # what A4 and US Letter have in common
@@ -87,6 +89,7 @@ def derive_mask(config: Input, outline: Outline, plan: Plan, faults: Diagnostics
         ),
         mark=mark,
         sheet=printed,
+        coupon=_coupon(plan.receiver.cells, p.grid.pitch_mm),
     )
 
 
@@ -158,6 +161,12 @@ def _sheet(outline: Outline, around_mm: float) -> Box:
     """The film that is needed: the outline with its flaps. Its corners are always free."""
     half = float(abs(outline.polygon()[:, 0]).max())
     return Box(-half, half, outline.end_y_mm, outline.tip_y_mm).grown(around_mm)
+
+
+def _coupon(cells: Sequence[Point], pitch_mm: float) -> Box:
+    """All cells, and a pitch more on each side: their light comes through nothing else."""
+    xs, ys = zip(*cells, strict=True)
+    return Box(min(xs), max(xs), min(ys), max(ys)).grown(pitch_mm)
 
 
 def _mark(outline: Outline, allowance_mm: float, flap_mm: float) -> Box:

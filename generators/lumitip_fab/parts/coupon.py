@@ -1,0 +1,30 @@
+"""The coupon: the mask's material without holes, by which the sensor itself tests whether it is
+opaque (`lumitip doctor --opacity`). A film that is cut needs no file: its note has the size."""
+
+import trimesh
+
+from lumitip_fab.design import Design
+from lumitip_fab.design.frames import sheet_bed_to_sensor
+from lumitip_fab.mask.artwork import PAPERS_MM
+from lumitip_fab.mask.pdf import coupon_page
+from lumitip_fab.parts.export import mesh_stl, three_mf, volume_mm3, welded
+from lumitip_fab.pipeline.artefact import Artefact
+
+
+def coupon_files(design: Design) -> tuple[Artefact, ...]:
+    """Pages for a printed film; STL and 3MF for a printed sheet."""
+    mask, bed = design.mask, sheet_bed_to_sensor()
+    left, low, right, high = mask.coupon.mirrored().bounds_mm
+    corners = [[left, low, 0.0], [right, high, mask.sheet.thickness_mm]]
+    block = trimesh.creation.box(bounds=corners)
+    surface = welded(block.vertices, block.faces)
+    facts = {"volume_mm3": volume_mm3(surface)}
+    words = f"{mask.sheet.layers} layers of {mask.sheet.layer_mm:g} mm, {mask.sheet.filament}"
+    return (
+        *(
+            Artefact(f"mask/coupon_{paper}.pdf", coupon_page(mask, design.title, paper), frame="")
+            for paper in PAPERS_MM
+        ),
+        Artefact("mask/coupon.stl", mesh_stl(surface), bed, facts=facts),
+        Artefact("mask/coupon.3mf", three_mf(surface, "coupon", words), bed),
+    )
