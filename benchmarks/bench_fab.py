@@ -82,7 +82,7 @@ def one_stage(stage: str, cells: int) -> None:
     from lumitip_fab.cli.documents import documents
     from lumitip_fab.config.load import load
     from lumitip_fab.derive import derive
-    from lumitip_fab.mask.files import mask_files
+    from lumitip_fab.mask.note import mask_files
 
     with tempfile.TemporaryDirectory() as name:
         out = Path(name) / "out"

@@ -8,7 +8,7 @@ import pytest
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from lumitip_fab.design.encoding import design_text
-from lumitip_fab.mask.files import mask_files
+from lumitip_fab.mask.note import mask_files
 from lumitip_fab.parts.sheet import sheet_files
 
 

@@ -12,7 +12,7 @@ from damages import Body, box, carve, cut_short, failing, flip_a_triangle, passi
 from lumitip_fab.config.load import Input, load
 from lumitip_fab.derive import derive
 from lumitip_fab.design.encoding import design_text
-from lumitip_fab.mask.files import mask_files
+from lumitip_fab.mask.note import mask_files
 from lumitip_fab.parts.sheet import sheet_files
 
 pytestmark = pytest.mark.slow

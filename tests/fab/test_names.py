@@ -18,7 +18,7 @@ from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
 from lumitip_fab.docs.wiring import wiring_files
 from lumitip_fab.firmware.files import firmware_files
-from lumitip_fab.mask.files import mask_files
+from lumitip_fab.mask.note import mask_files
 from lumitip_fab.text import LONGEST, PAGE_LETTERS, board_name, page_letters, page_name
 from lumitip_fab.typeface import BOLD, PLAIN, load_typeface
 

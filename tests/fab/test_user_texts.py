@@ -12,7 +12,7 @@ from lumitip_fab.design.encoding import read_design
 from lumitip_fab.docs.chapters import manual_text
 from lumitip_fab.docs.page import html_page, markdown
 from lumitip_fab.docs.wiring import wiring_files
-from lumitip_fab.mask.files import mask_files
+from lumitip_fab.mask.note import mask_files
 from lumitip_fab.parts.settings import print_settings
 from lumitip_fab.pipeline import manifest
 from lumitip_fab.pipeline.artefact import Artefact, Files, Made

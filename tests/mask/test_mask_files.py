@@ -19,7 +19,7 @@ from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
 from lumitip_fab.design.frames import applied
-from lumitip_fab.mask.files import mask_files
+from lumitip_fab.mask.note import mask_files
 from lumitip_fab.pipeline.artefact import Artefact
 
 pytestmark = pytest.mark.slow
@@ -149,7 +149,7 @@ def test_same_bytes_in_any_process(design_dir: Path) -> None:
         "from pathlib import Path\n"
         "from lumitip_fab.derive import derive\n"
         "from lumitip_fab.config.load import load\n"
-        "from lumitip_fab.mask.files import mask_files\n"
+        "from lumitip_fab.mask.note import mask_files\n"
         "d = derive(load(Path(sys.argv[1])))\n"
         "for f in d.fingers:\n"
         "    for a in mask_files(d, f):\n"
