@@ -1,8 +1,12 @@
-"""Text in the letters and signs that each medium has: PDF pages, silkscreen, Markdown, part
-values."""
+"""Text in the letters and signs that each medium has: PDF pages, silkscreen, Markdown, part values;
+and texts that stand in files beside the code."""
 
 import re
+import tomllib
 import unicodedata
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
 
 from anyascii import anyascii
 
@@ -72,3 +76,28 @@ def coded_ohm(code: str) -> float:
     """The resistance (ohm) of such a code."""
     (letter,) = (each for each in code if each.isalpha())
     return float(code.replace(letter, ".")) * {"R": 1.0, "K": 1e3, "M": 1e6}[letter]
+
+
+def passage(file: str, name: str) -> str:
+    """A passage of a text file of this package, such as `mask/wrapping.md`.
+
+    A line `=== name` begins each passage, which has no line break at its end.
+
+    Raises:
+        KeyError: if the file has no such passage.
+    """
+    return _passages(file)[name]
+
+
+@lru_cache
+def _passages(file: str) -> dict[str, str]:
+    text = (Path(__file__).parent / file).read_text(encoding="utf-8")
+    _, *parts = re.split(r"^=== (\w+)\n", text, flags=re.MULTILINE)
+    texts = (part.removesuffix("\n") for part in parts[1::2])
+    return dict(zip(parts[::2], texts, strict=True))
+
+
+@lru_cache
+def table_of(file: str) -> dict[str, Any]:
+    """A table of this package in TOML, such as `docs/spec.toml`."""
+    return tomllib.loads((Path(__file__).parent / file).read_text(encoding="utf-8"))

@@ -1,5 +1,5 @@
-"""The command `lumitip`. `add` of each module in `lumitip.commands` adds its subcommands; heavy
-imports are in functions, so that Ctrl-C finds nothing half imported.
+"""The command `lumitip`. `commands/commands.toml` lists its subcommands; heavy imports are in
+functions, so that Ctrl-C finds nothing half imported.
 """
 
 import os
@@ -11,7 +11,6 @@ TYPE_CHECKING = False  # `typing` is slow to import
 if TYPE_CHECKING:
     from argparse import ArgumentParser
 
-MODULES = ("devices", "record", "recordings", "serve", "simulation", "view")
 REJECTED = 2
 
 
@@ -38,6 +37,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _run_command(arguments: Sequence[str] | None) -> int:
     import logging
+    from importlib import import_module
 
     from lumitip.errors import LumitipError
 
@@ -45,7 +45,9 @@ def _run_command(arguments: Sequence[str] | None) -> int:
     level = logging.INFO if options.verbose else logging.WARNING
     logging.basicConfig(level=level, format="%(message)s")
     try:
-        code: int = options.run(options)
+        module, _, function = options.run.partition(".")
+        command = getattr(import_module(f"lumitip.commands.{module}"), function)
+        code: int = command(options)
         sys.stdout.flush()
     except LumitipError as error:
         print(f"lumitip: {error}", file=sys.stderr)
@@ -69,7 +71,9 @@ def installed_version() -> str:
 
 def _parser() -> "ArgumentParser":
     import argparse
-    from importlib import import_module
+    from pathlib import Path
+
+    from lumitip.commands.common import add_commands
 
     parser = argparse.ArgumentParser(
         prog="lumitip", description="Read, record and display optical fingertips."
@@ -78,9 +82,7 @@ def _parser() -> "ArgumentParser":
         "-v", "--verbose", action="store_true", help="print the events of the links"
     )
     parser.add_argument("--version", action="version", version=installed_version())
-    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for name in MODULES:
-        import_module(f"lumitip.commands.{name}").add(commands)
+    add_commands(parser, Path(__file__).with_name("commands") / "commands.toml")
     return parser
 
 

@@ -16,7 +16,7 @@ from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
 from lumitip_fab.design.encoding import design_text
 from lumitip_fab.models.files import model_files
-from lumitip_fab.pipeline.graph import tasks
+from lumitip_fab.pipeline.workers import tasks
 from panelled_boards import PANELLED
 
 Boards = Callable[[str], Path]

@@ -26,7 +26,7 @@ from lumitip_fab.cli.steps import STEPS
 from lumitip_fab.design import Design
 from lumitip_fab.design.frames import applied
 from lumitip_fab.errors import BuildError
-from lumitip_fab.pipeline.graph import tasks
+from lumitip_fab.pipeline.workers import tasks
 
 pytestmark = pytest.mark.slow
 
@@ -37,7 +37,7 @@ from pathlib import Path
 from lumitip_fab.boards.files import board_files
 from lumitip_fab.design.encoding import read_design
 from lumitip_fab.cli.steps import STEPS
-from lumitip_fab.pipeline.graph import tasks
+from lumitip_fab.pipeline.workers import tasks
 for task in tasks(STEPS, read_design(Path(sys.argv[1]))):
     if task.name == "finger_board.emitter":
         for made in board_files(task.design, *task.item):

@@ -13,9 +13,9 @@ import pytest
 import shapely
 from gerbonara.layers import LayerStack
 
-from lumitip_fab.boards.fab import gerber_objects as objects
+from lumitip_fab.boards.courtyards import placed_pads
+from lumitip_fab.boards.fab import gerber as objects
 from lumitip_fab.boards.fab.order import angle_at
-from lumitip_fab.boards.placed import placed_pads
 from lumitip_fab.checks.readers.gerber import drilled, gerber_area
 from lumitip_fab.design import Box, Component, Fab, Footprint, Pad
 
@@ -140,7 +140,7 @@ def test_a_turned_pad_is_painted_as_it_lies() -> None:
 
     for angle in (0, 30, 90, 200, 270):
         (pad,) = placed_pads(part(CHIP, angle, "front"))
-        painted = gerber_area(GerberFile(objects=[objects.pad(pad)]).write_to_bytes().decode())
+        painted = gerber_area(GerberFile(objects=[objects.flashed(pad)]).write_to_bytes().decode())
         assert painted.symmetric_difference(pad.area).area < 1e-3
 
 

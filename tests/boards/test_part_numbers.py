@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from lumitip_fab.cli.part_numbers import part_number_rows
+from lumitip_fab.cli.built import part_number_rows
 from lumitip_fab.design.encoding import read_design
 
 pytestmark = pytest.mark.slow

@@ -4,9 +4,8 @@ from functools import partial
 
 import pytest
 
-from lumitip_fab.boards.kicad.schematic.joints import jointed
-from lumitip_fab.boards.kicad.schematic.packing import GAP_MM, packed
-from lumitip_fab.boards.kicad.schematic.sheet import MARGIN_MM, Block, Sheet, columns, grid
+from lumitip_fab.boards.kicad.schematic.frames import GAP_MM, packed
+from lumitip_fab.boards.kicad.schematic.sheet import MARGIN_MM, Block, Sheet, columns, grid, jointed
 from lumitip_fab.design import Point
 
 

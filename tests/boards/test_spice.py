@@ -18,7 +18,7 @@ from lumitip_fab.boards.spice_channel import (
 )
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
-from lumitip_fab.derive.wiring.series import string_current_ma
+from lumitip_fab.derive.wiring.sources import string_current_ma
 from lumitip_fab.design import Design, Electrical, Wiring
 from spice_runs import needs_ngspice, simulated
 

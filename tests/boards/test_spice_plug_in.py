@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from lumitip_fab.boards.spice_plug_in import plug_in_simulation
+from lumitip_fab.boards.spice import plug_in_simulation
 from lumitip_fab.checks.plug_in import plugged
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive

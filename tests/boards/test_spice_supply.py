@@ -10,7 +10,7 @@ from lumitip_fab.cli.steps import STEPS
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
-from lumitip_fab.pipeline.graph import tasks
+from lumitip_fab.pipeline.workers import tasks
 from spice_runs import needs_ngspice, simulated
 
 

@@ -15,7 +15,7 @@ from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from lumitip_fab.design.encoding import design_text, read_design
 from lumitip_fab.design.frames import holder_bed_to_auxiliary
-from lumitip_fab.docs.outside import outside
+from lumitip_fab.docs.spec import outside
 from lumitip_fab.parts.holder import holder_files
 
 pytestmark = pytest.mark.slow

@@ -11,14 +11,14 @@ from rich.console import Console
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.checks.run import MODULES, Outcome, run_checks
 from lumitip_fab.cli.summary import (
-    DRAWN_AT_THE_LIMIT,
-    PARAMETERS,
+    TABLES,
     parameters_of,
     print_summary,
     relative_margin,
     tightest,
 )
 from lumitip_fab.config.parameters import Parameters
+from lumitip_fab.text import table_of
 
 pytestmark = pytest.mark.slow
 
@@ -129,7 +129,7 @@ def test_without_a_bill_there_is_no_price(folder: Path) -> None:
 
 def test_every_parameter_that_is_named_exists() -> None:
     tables = Parameters.model_fields
-    for fields in PARAMETERS.values():
+    for fields in table_of(TABLES)["parameters"].values():
         for table, _, field in (name.partition(".") for name in fields):
             assert field in tables[table].annotation.model_fields, f"{table}.{field}"  # type: ignore[union-attr]
 
@@ -139,5 +139,5 @@ def test_every_check_that_is_named_exists(
 ) -> None:
     known = run_checks(outputs, MODULES).names | run_checks(built("asymmetric"), MODULES).names
     known |= run_checks(panelled, ["panels"]).names
-    assert set(PARAMETERS) | DRAWN_AT_THE_LIMIT <= known
+    assert {*table_of(TABLES)["parameters"], *table_of(TABLES)["drawn_at_the_limit"]} <= known
     assert parameters_of("no.such_check") == ()

@@ -13,11 +13,11 @@ from pathlib import Path
 import pytest
 import tomlkit
 
-from lumitip_fab.config.automatic import AUTO, FIELDS
+from lumitip_fab.config.automatic import AUTO, automatic_fields
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
-from lumitip_fab.derive.auto.judge import judge_with, rule_of
 from lumitip_fab.derive.auto.resolve import RuleError
+from lumitip_fab.derive.auto.search import judge_with, rule_of
 from lumitip_fab.errors import InputError
 
 ROOT = Path(__file__).parents[2]
@@ -41,7 +41,7 @@ def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def _write_out(file: Path) -> None:
     """Replace every `"auto"` by the value that it begins with."""
     document = tomlkit.parse(file.read_text(encoding="utf-8"))
-    for field, automatic in FIELDS.items():
+    for field, automatic in automatic_fields().items():
         section, key = field.split(".")
         if document.get(section, {}).get(key) == AUTO:
             document[section][key] = automatic.start

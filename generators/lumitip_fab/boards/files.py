@@ -7,7 +7,7 @@ from lumitip_fab.boards.fab.picture import picture_files
 from lumitip_fab.boards.kicad.project import project_files
 from lumitip_fab.boards.kicad.schematic import schematic_files
 from lumitip_fab.boards.model import BoardModel, Placement
-from lumitip_fab.boards.panel.files import panel_files
+from lumitip_fab.boards.panel.model import panel_files
 from lumitip_fab.boards.placement import place
 from lumitip_fab.boards.pour import pour
 from lumitip_fab.boards.route import route

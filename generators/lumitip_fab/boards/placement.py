@@ -3,7 +3,14 @@
 import dataclasses
 
 from lumitip_fab.boards import spots
-from lumitip_fab.boards.circuit import cathodes_of, circuit, gap_at_cells_mm, supply_of
+from lumitip_fab.boards.circuit import (
+    cathodes_of,
+    circuit,
+    gap_at_cells_mm,
+    supply_of,
+    turn_strings,
+)
+from lumitip_fab.boards.courtyards import courtyard, pad_at
 from lumitip_fab.boards.model import (
     GROUND,
     MIN_WIDTH_MM,
@@ -16,10 +23,8 @@ from lumitip_fab.boards.model import (
     PlacedComponent,
     Placement,
 )
-from lumitip_fab.boards.placed import courtyard, pad_at
 from lumitip_fab.boards.silk.legend import with_legend
 from lumitip_fab.boards.silk.outlines import with_outline, without_crowded_lines
-from lumitip_fab.boards.strings import turn_strings
 from lumitip_fab.design import (
     AuxiliaryBoard,
     Box,

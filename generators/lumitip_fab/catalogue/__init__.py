@@ -6,28 +6,9 @@ Every entry says where its figures come from (`source`) and how far to trust the
 
 from collections.abc import Mapping
 
-from lumitip_fab.catalogue.controllers import (
-    Controller,
-    LinearRegulator,
-    Regulator,
-    Strip,
-    Transistor,
-)
-from lumitip_fab.catalogue.current_sources import CurrentSource
-from lumitip_fab.catalogue.electronics import (
-    Capacitor,
-    Crystal,
-    Fuse,
-    Indicator,
-    Inductor,
-    Led,
-    Multiplexer,
-    Photodetector,
-    PulseResistor,
-    Resistor,
-    ResistorArray,
-    TvsDiode,
-)
+from lumitip_fab.catalogue import controllers as control
+from lumitip_fab.catalogue import current_sources as sources
+from lumitip_fab.catalogue import electronics
 from lumitip_fab.catalogue.grippers import Gripper, ToolCoupling
 from lumitip_fab.catalogue.materials import Fastener, Filament, Film, Laminates, Printer, Silicone
 from lumitip_fab.catalogue.ordering import Fab, Prices
@@ -37,24 +18,24 @@ from lumitip_fab.catalogue.record import Name, Strict
 class Catalogue(Strict):
     """All parts by kind and name."""
 
-    leds: Mapping[Name, Led]
-    photodetectors: Mapping[Name, Photodetector]
-    resistors: Mapping[Name, Resistor]
-    pulse_resistors: Mapping[Name, PulseResistor]
-    resistor_arrays: Mapping[Name, ResistorArray]
-    capacitors: Mapping[Name, Capacitor]
-    multiplexers: Mapping[Name, Multiplexer]
-    controllers: Mapping[Name, Controller]
-    strips: Mapping[Name, Strip]
-    regulators: Mapping[Name, Regulator]
-    linear_regulators: Mapping[Name, LinearRegulator]
-    current_sources: Mapping[Name, CurrentSource]
-    crystals: Mapping[Name, Crystal]
-    inductors: Mapping[Name, Inductor]
-    fuses: Mapping[Name, Fuse]
-    transistors: Mapping[Name, Transistor]
-    tvs_diodes: Mapping[Name, TvsDiode]
-    indicators: Mapping[Name, Indicator]
+    leds: Mapping[Name, electronics.Led]
+    photodetectors: Mapping[Name, electronics.Photodetector]
+    resistors: Mapping[Name, electronics.Resistor]
+    pulse_resistors: Mapping[Name, electronics.PulseResistor]
+    resistor_arrays: Mapping[Name, electronics.ResistorArray]
+    capacitors: Mapping[Name, electronics.Capacitor]
+    multiplexers: Mapping[Name, electronics.Multiplexer]
+    controllers: Mapping[Name, control.Controller]
+    strips: Mapping[Name, control.Strip]
+    regulators: Mapping[Name, control.Regulator]
+    linear_regulators: Mapping[Name, control.LinearRegulator]
+    current_sources: Mapping[Name, sources.CurrentSource]
+    crystals: Mapping[Name, electronics.Crystal]
+    inductors: Mapping[Name, electronics.Inductor]
+    fuses: Mapping[Name, electronics.Fuse]
+    transistors: Mapping[Name, control.Transistor]
+    tvs_diodes: Mapping[Name, electronics.TvsDiode]
+    indicators: Mapping[Name, electronics.Indicator]
     couplings: Mapping[Name, ToolCoupling]
     grippers: Mapping[Name, Gripper]
     fasteners: Mapping[Name, Fastener]

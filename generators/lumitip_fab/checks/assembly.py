@@ -101,15 +101,8 @@ def _facing(scene: Scene, design: Design) -> Measurement:
     seen = np.array([scene.nodes[f"receiver.Q{i}"].centre_mm for i in numbers])
     apart = np.hypot(*(lit - seen)[:, :2].T)
     worst = int(apart.argmax())
-    return Measurement(
-        "assembly.facing",
-        _FILE,
-        float(apart[worst]),
-        0,
-        FACING_MM,
-        "mm",
-        f"D{worst + 1} to Q{worst + 1}, the worst of {len(apart)}",
-    )
+    note = f"D{worst + 1} to Q{worst + 1}, the worst of {len(apart)}"
+    return Measurement("assembly.facing", _FILE, float(apart[worst]), 0, FACING_MM, "mm", note)
 
 
 def _leans(scene: Scene, design: Design) -> Iterator[Measurement]:
@@ -195,22 +188,13 @@ def _openings(scene: Scene, design: Design) -> Iterator[Measurement]:
         bolt = _bolt_z_mm(scene.nodes[f"{finger.name}.{design.held}"], design) * _inward(finger)
         widest += design.mount.pad_w_mm - (skin - bolt)
     wanted = design.closing.max_opening_mm
+    note = "skin to skin in the open gripper"
     yield Measurement(
-        "assembly.stroke",
-        _FILE,
-        float(widest),
-        wanted - STROKE_MM,
-        wanted + STROKE_MM,
-        "mm",
-        "skin to skin in the open gripper",
+        "assembly.stroke", _FILE, float(widest), wanted - STROKE_MM, wanted + STROKE_MM, "mm", note
     )
+    note = "left between the gripper's pads when the skins meet"
     yield Measurement(
-        "assembly.closes",
-        _FILE,
-        float(design.mount.stroke_mm - widest),
-        0,
-        unit="mm",
-        note="left between the gripper's pads when the skins meet",
+        "assembly.closes", _FILE, float(design.mount.stroke_mm - widest), 0, unit="mm", note=note
     )
 
 
@@ -276,12 +260,5 @@ def _bodies(scene: Scene, finger: Finger, layers: tuple[str, ...]) -> dict[str, 
 
 def _worst(subject: str, shared: dict[str, float]) -> Measurement:
     which = max(shared, key=lambda pair: shared[pair])
-    return Measurement(
-        "assembly.interference",
-        subject,
-        shared[which],
-        0,
-        SHARED_MM3,
-        "mm³",
-        f"{which}, the worst of {len(shared)} pairs",
-    )
+    note = f"{which}, the worst of {len(shared)} pairs"
+    return Measurement("assembly.interference", subject, shared[which], 0, SHARED_MM3, "mm³", note)

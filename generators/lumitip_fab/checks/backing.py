@@ -8,30 +8,7 @@ from pathlib import Path
 import numpy as np
 import shapely
 
-from lumitip_fab.checks.plate import (
-    measure_face,
-    measure_groove,
-    measure_interface_size,
-    measure_joint,
-    measure_notch,
-    measure_outline,
-    measure_pins,
-    measure_pocket,
-    measure_reliefs,
-    measure_sheet_size,
-    measure_ties,
-    measure_tip,
-)
-from lumitip_fab.checks.printed import (
-    Printed,
-    circles,
-    holes_at,
-    measure_bed,
-    measure_boxes,
-    measure_closed,
-    room,
-    round_thread,
-)
+from lumitip_fab.checks import plate, printed
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.readers.solids import Vectors, cast, section
 from lumitip_fab.checks.result import Measure, Measurement, measured, unreadable
@@ -52,21 +29,21 @@ DEPTH_MM = 0.05
 _DOWN, _UP = np.array([0.0, 0.0, -1.0]), np.array([0.0, 0.0, 1.0])
 
 
-def measure_bolt(part: Printed) -> Iterator[Measurement]:
+def measure_bolt(part: printed.Printed) -> Iterator[Measurement]:
     """Bolt holes, above the pins, and gripper pins: place, diameter, and room for the bolt."""
     mount = part.design.mount
-    rings = holes_at(part.standing, (mount.land_mm + mount.pin_depth_mm) / 2)
+    rings = printed.holes_at(part.standing, (mount.land_mm + mount.pin_depth_mm) / 2)
     bolts = tuple((u, mount.bolt_w_mm) for u in mount.bolt_u_mm)
-    off, wide = circles(rings, bolts, mount.bolt_hole_mm / 2)
+    off, wide = printed.circles(rings, bolts, mount.bolt_hole_mm / 2)
     yield part.near("bolt", off, 0.0, POSITION_MM)
     yield part.near("bolt_hole", wide, mount.bolt_hole_mm, DIAMETER_MM)
     bolt, fit_mm = part.design.threads[mount.bolt], part.design.printing.fit_mm
-    clear, low, high, _ = round_thread(room(rings, bolts), bolt, fit_mm)
+    clear, low, high, _ = printed.round_thread(printed.room(rings, bolts), bolt, fit_mm)
     yield part.figure("bolt_clearance", clear, low, high)
     pins = tuple((u, mount.bolt_w_mm) for u in mount.pin_u_mm)
     if pins:
-        rings = holes_at(part.standing, mount.pin_depth_mm / 2)
-        off, wide = circles(rings, pins, mount.pin_mm / 2)
+        rings = printed.holes_at(part.standing, mount.pin_depth_mm / 2)
+        off, wide = printed.circles(rings, pins, mount.pin_mm / 2)
         yield part.near("gripper_pins", off, 0.0, POSITION_MM)
         yield part.near("gripper_pin_hole", wide, mount.pin_mm, DIAMETER_MM)
         beside = (mount.pin_mm + mount.bolt_hole_mm) / 4 if mount.sleeved else 0.0
@@ -75,7 +52,7 @@ def measure_bolt(part: Printed) -> Iterator[Measurement]:
         yield part.near("gripper_pin_depth", depth - 1.0, mount.pin_depth_mm, DEPTH_MM)
 
 
-def measure_screw(part: Printed) -> Iterator[Measurement]:
+def measure_screw(part: printed.Printed) -> Iterator[Measurement]:
     """The screws' seats, seen from where screw and driver come: nothing may stand above them."""
     mount = part.design.mount
     above = float(part.standing.bounds[1, 2]) + 1.0
@@ -94,7 +71,7 @@ def measure_screw(part: Printed) -> Iterator[Measurement]:
     yield part.near("screw_seat", above - drop, mount.land_mm, DEPTH_MM)
 
 
-def measure_nose(part: Printed) -> Iterator[Measurement]:
+def measure_nose(part: printed.Printed) -> Iterator[Measurement]:
     """Half the width of the nose on either side, against its trapezoid."""
     mount, nose = part.design.mount, part.design.mount.nose
     if nose is None:
@@ -128,7 +105,7 @@ PUBLISHED_OVERHANG_MM2 = 341.0  # of the published part, standing on its mount f
 FLAT_OVERHANG_MM2 = 0.5  # of a plate printed on its front: no support
 LEAST_BED_MM2 = 120.0  # on which a finger 55 mm tall stays up
 SIZE_MM = 0.05
-Step = Measure[Printed]
+Step = Measure[printed.Printed]
 
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
@@ -145,53 +122,58 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
             yield part.figure("readable", float(len(part.standing.faces)), 4, np.inf, "triangles")
             yield from _measured(part)
             bounds = part.standing.bounds, part.sensor.bounds
-            yield from measure_boxes("backing", outputs, part.subject, *bounds)
-        whole = [part for part in made if isinstance(part, Printed)]
+            yield from printed.measure_boxes("backing", outputs, part.subject, *bounds)
+        whole = [part for part in made if isinstance(part, printed.Printed)]
         if len(whole) == 2:
-            yield from measured((measure_joint,), replace(whole[1], plate=whole[0]))
+            yield from measured((plate.measure_joint,), replace(whole[1], plate=whole[0]))
 
 
 def _read(
     outputs: Path, design: Design, finger: Finger, kind: str, to_sensor: Matrix
-) -> Printed | Measurement:
+) -> printed.Printed | Measurement:
     subject = f"{kind}/{finger.name}_{kind}.stl"
     try:
         standing = solids.read_mesh(outputs / subject)
     except OutputError as error:
         return unreadable("backing.readable", subject, str(error))
     sensor = solids.moved(standing, to_sensor)
-    return Printed("backing", subject, standing, sensor, finger, design, to_sensor, kind)
+    return printed.Printed("backing", subject, standing, sensor, finger, design, to_sensor, kind)
 
 
-_PLATE: tuple[Step, ...] = (measure_outline, measure_reliefs, measure_notch, measure_tip)
+_PLATE: tuple[Step, ...] = (
+    plate.measure_outline,
+    plate.measure_reliefs,
+    plate.measure_notch,
+    plate.measure_tip,
+)
 _HELD: tuple[Step, ...] = (measure_bolt, measure_screw, measure_nose)
 
 
-def _measured(part: Printed) -> Iterator[Measurement]:
+def _measured(part: printed.Printed) -> Iterator[Measurement]:
     steps: tuple[Step, ...] = (measure_print, measure_walls, measure_letter)
     if part.design.stack.sunk:
-        steps += (measure_size, measure_pocket, measure_pins, *_PLATE, *_HELD)
+        steps += (measure_size, plate.measure_pocket, plate.measure_pins, *_PLATE, *_HELD)
     elif part.kind == "backing":
         steps += (
-            measure_sheet_size,
-            measure_face,
-            measure_ties,
-            measure_groove,
+            plate.measure_sheet_size,
+            plate.measure_face,
+            plate.measure_ties,
+            plate.measure_groove,
             *_PLATE,
         )
     else:
-        steps += (measure_interface_size, *_HELD)
+        steps += (plate.measure_interface_size, *_HELD)
     yield from measured(steps, part)
 
 
-def measure_print(part: Printed) -> Iterator[Measurement]:
+def measure_print(part: printed.Printed) -> Iterator[Measurement]:
     """One closed body; overhang, and contact with the print bed."""
     most = PUBLISHED_OVERHANG_MM2 if part.kind == part.design.held else FLAT_OVERHANG_MM2
-    yield from measure_closed(part, part.standing)
-    yield from measure_bed(part, part.standing, most, LEAST_BED_MM2)
+    yield from printed.measure_closed(part, part.standing)
+    yield from printed.measure_bed(part, part.standing, most, LEAST_BED_MM2)
 
 
-def measure_size(part: Printed) -> Iterator[Measurement]:
+def measure_size(part: printed.Printed) -> Iterator[Measurement]:
     """The box round the part as it stands, against outline and coupling."""
     design = part.design
     stack, tip_y = design.stack, design.outline.tip_y_mm
@@ -208,14 +190,14 @@ def measure_size(part: Printed) -> Iterator[Measurement]:
     yield part.near("size", (part.standing.bounds - wanted).ravel(), 0.0, SIZE_MM)
 
 
-def measure_letter(part: Printed) -> Iterator[Measurement]:
+def measure_letter(part: printed.Printed) -> Iterator[Measurement]:
     """The letter on the back of the coupling's block, or of a bendable plate."""
     letter, to_letter = _letter(part)
     mesh = solids.moved(part.standing, to_letter)
     yield measure_relief("backing.letter", part.subject, mesh, part.finger, letter)
 
 
-def _letter(part: Printed) -> tuple[Letter, Matrix]:
+def _letter(part: printed.Printed) -> tuple[Letter, Matrix]:
     """The part's letter, and the matrix from its print bed to its frame."""
     design = part.design
     if part.kind == design.held:
@@ -224,7 +206,7 @@ def _letter(part: Printed) -> tuple[Letter, Matrix]:
     return design.interfaces[0].letter, np.asarray(from_sensor @ part.to_sensor)
 
 
-def measure_walls(part: Printed) -> Iterator[Measurement]:
+def measure_walls(part: printed.Printed) -> Iterator[Measurement]:
     """The thinnest walls. Thinner ones are listed here by name, each with its own limit."""
     design, mount = part.design, part.design.mount
     letter, to_letter = _letter(part)

@@ -9,27 +9,16 @@ from pathlib import Path
 import numpy as np
 import shapely
 
-from lumitip_fab.checks.board_bulk import measure_bulk
+from lumitip_fab.checks import board_copper
 from lumitip_fab.checks.board_circuit import measure_channels, measure_contact_map
-from lumitip_fab.checks.board_copper import (
-    measure_copper,
-    measure_hot_loop,
-    measure_joined,
-    measure_keep_outs,
-    measure_nets,
-    measure_spokes,
-    measure_supplies,
-)
 from lumitip_fab.checks.board_finger import measure_cell_prints, measure_cells, measure_flexible
-from lumitip_fab.checks.board_indicator import measure_indicator
+from lumitip_fab.checks.board_indicator import measure_bulk, measure_indicator
 from lumitip_fab.checks.board_order import measure_wire_order
 from lumitip_fab.checks.board_probes import measure_probes
 from lumitip_fab.checks.board_read import ReadBoard, names_of, path_of, placed, read_any
-from lumitip_fab.checks.board_shrouds import measure_shrouds
 from lumitip_fab.checks.board_silk import measure_labels, measure_prints, measure_targets
-from lumitip_fab.checks.board_strings import measure_strings
-from lumitip_fab.checks.board_switch import measure_switch
-from lumitip_fab.checks.board_ties import measure_ties
+from lumitip_fab.checks.board_strings import measure_strings, measure_switch
+from lumitip_fab.checks.board_ties import measure_shrouds, measure_ties
 from lumitip_fab.checks.plug_in import measure_plug_in
 from lumitip_fab.checks.readers.kicad_board import Part, Terminal
 from lumitip_fab.checks.result import Measure, Measurement, measured, unreadable
@@ -244,13 +233,13 @@ MEASURES: tuple[Measure[ReadBoard], ...] = (
     measure_wires,
     measure_wire_order,
     measure_heights,
-    measure_copper,
-    measure_nets,
-    measure_joined,
-    measure_spokes,
-    measure_supplies,
-    measure_hot_loop,
-    measure_keep_outs,
+    board_copper.measure_copper,
+    board_copper.measure_nets,
+    board_copper.measure_joined,
+    board_copper.measure_spokes,
+    board_copper.measure_supplies,
+    board_copper.measure_hot_loop,
+    board_copper.measure_keep_outs,
     measure_prints,
     measure_labels,
     measure_cell_prints,

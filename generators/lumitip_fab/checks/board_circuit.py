@@ -146,13 +146,8 @@ def measure_contact_map(read: ReadBoard) -> Iterator[Measurement]:
         on_board = read.sensor([pads[number].at for number in numbers])
         places = applied(auxiliary_to_flange(flange), on_board)[:, :2]
         off = [math.dist(place, contacts[n].at) for n, place in zip(numbers, places, strict=True)]
-        yield read.figure(
-            "contact_places",
-            max(off, default=math.nan),
-            0,
-            CONTACT_MM,
-            note="from the coupling's contact of the same number",
-        )
+        note = "from the coupling's contact of the same number"
+        yield read.figure("contact_places", max(off, default=math.nan), 0, CONTACT_MM, note=note)
         groups = {number: read.group(CONTACTS, number) for number in numbers}
         named = {number: pads[number].net for number in numbers}
         wrong = [*_mixed(contacts, groups), *_mixed(contacts, named)]

@@ -173,12 +173,9 @@ def _stack_up(read: ReadBoard) -> Measurement:
     stiff = [ply for ply in plies if ply.kind != "copper" and ply.material != "Polyimide"]
     whole = sum(ply.thickness_mm for ply in plies)
     good = len(copper) == len(read.board.layers) and len(plies) > len(copper) and not stiff
+    note = f"{len(copper)} of copper, the rest of polyimide"
     return read.figure(
-        "stack_up",
-        whole if good else np.nan,
-        wanted - PLY_MM,
-        wanted + PLY_MM,
-        note=f"{len(copper)} of copper, the rest of polyimide",
+        "stack_up", whole if good else np.nan, wanted - PLY_MM, wanted + PLY_MM, note=note
     )
 
 

@@ -223,15 +223,8 @@ def _prints(rows: tuple[Row, ...], grams: dict[str, float]) -> Measurement:
         return unreadable("bom.prints", _FILE, f"lists other parts: {', '.join(wrong[:3])}")
     off = {name: abs(listed[name] / grams[name] - 1) for name in grams}
     worst = max(off, key=lambda name: off[name])
-    return Measurement(
-        "bom.prints",
-        _FILE,
-        100 * off[worst],
-        0,
-        100 * _FRACTION,
-        "%",
-        f"mass against volume and density, worst at {worst}",
-    )
+    note = f"mass against volume and density, worst at {worst}"
+    return Measurement("bom.prints", _FILE, 100 * off[worst], 0, 100 * _FRACTION, "%", note)
 
 
 def _near(

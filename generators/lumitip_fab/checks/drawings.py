@@ -118,15 +118,8 @@ def _bodies(
         if name not in layers
     }
     loose = max(astray, key=lambda name: astray[name])
-    yield Measurement(
-        "assembly.drawing",
-        f"{file} place",
-        astray[loose],
-        0,
-        SIZE_MM,
-        "mm",
-        f"of {loose}, on its board",
-    )
+    note = f"of {loose}, on its board"
+    yield Measurement("assembly.drawing", f"{file} place", astray[loose], 0, SIZE_MM, "mm", note)
 
 
 def _missing(prefix: str, file: str, drawing: Drawing, wanted: Iterable[str]) -> Measurement:

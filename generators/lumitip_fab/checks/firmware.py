@@ -37,15 +37,8 @@ def _channels(text: str, layout: Layout) -> Measurement:
         return unreadable("firmware.channels", _LAYOUT, reason)
     pairs = zip(mux, channel, layout.mux.tolist(), layout.channel.tolist(), strict=True)
     wrong = sum((m, c) != (wanted_m, wanted_c) for m, c, wanted_m, wanted_c in pairs)
-    return Measurement(
-        "firmware.channels",
-        _LAYOUT,
-        float(wrong),
-        0,
-        0,
-        "cells",
-        f"of {len(layout)} on another input than in the layout",
-    )
+    note = f"of {len(layout)} on another input than in the layout"
+    return Measurement("firmware.channels", _LAYOUT, float(wrong), 0, 0, "cells", note)
 
 
 def _pins(text: str, layout: Layout, design: Design) -> Measurement:

@@ -128,13 +128,8 @@ def measure_bolts(of: Stacked) -> Iterator[Measurement]:
     yield of.figure("hole_wall", least, of.design.printing.min_wall_mm - SIZE_MM, math.inf)
     apart = [of.outline.distance(shapely.Point(at)) for at in flange.bolts]
     clear = min(apart) - flange.bolt_hole_mm / 2
-    yield of.figure(
-        "bolt_board",
-        clear,
-        of.design.printing.min_wall_mm,
-        math.inf,
-        note="from a bolt's hole to the board's edge",
-    )
+    note = "from a bolt's hole to the board's edge"
+    yield of.figure("bolt_board", clear, of.design.printing.min_wall_mm, math.inf, note=note)
 
 
 def measure_pins(of: Stacked) -> Iterator[Measurement]:

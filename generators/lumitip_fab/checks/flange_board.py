@@ -130,20 +130,12 @@ def measure_pocket(of: Stacked) -> Iterator[Measurement]:
     tails = np.concatenate([of.pads(ref) for ref in of.headers])
     floor = heights(of.lower, tails)
     room = float((of.board_z_mm - floor).min())
-    yield of.figure(
-        "tails",
-        room,
-        flange.tail_mm - SIZE_MM,
-        math.inf,
-        note=f"under {len(tails)} pads of headers",
-    )
+    note = f"under {len(tails)} pads of headers"
+    yield of.figure("tails", room, flange.tail_mm - SIZE_MM, math.inf, note=note)
     left = float((floor - of.lower.bounds[0][2]).min())
+    note = "left under the solder tails"
     yield of.figure(
-        "tail_floor",
-        left,
-        of.design.printing.min_wall_mm - SIZE_MM,
-        math.inf,
-        note="left under the solder tails",
+        "tail_floor", left, of.design.printing.min_wall_mm - SIZE_MM, math.inf, note=note
     )
 
 
@@ -158,24 +150,16 @@ def measure_contacts(of: Stacked) -> Iterator[Measurement]:
     here = [shapely.Polygon(ring) for ring in rings if shapely.Polygon(ring).contains(middle)]
     body = _footprint(of, _device(of, CONTACTS))
     free = [ring.exterior.distance(body) for ring in here if ring.contains(body)]
+    note = "round the body of the contacts"
     yield of.figure(
-        "window_gap",
-        free[0] if free else math.nan,
-        LEAST_AROUND_MM,
-        math.inf,
-        note="round the body of the contacts",
+        "window_gap", free[0] if free else math.nan, LEAST_AROUND_MM, math.inf, note=note
     )
     behind = not of.board.parts[CONTACTS].front
     stand = flange.contacts_mm if behind else math.nan
     pressed = stand - (of.board_z_mm - flange.contacts_z_mm)
     low, high = LEAST_SHARE * flange.stroke_mm, MOST_SHARE * flange.stroke_mm
-    yield of.figure(
-        "contact_press",
-        pressed,
-        low - SIZE_MM,
-        high + SIZE_MM,
-        note=f"of {flange.stroke_mm:g} mm of stroke",
-    )
+    note = f"of {flange.stroke_mm:g} mm of stroke"
+    yield of.figure("contact_press", pressed, low - SIZE_MM, high + SIZE_MM, note=note)
 
 
 def measure_headers(of: Stacked) -> Iterator[Measurement]:
@@ -197,12 +181,9 @@ def measure_headers(of: Stacked) -> Iterator[Measurement]:
         blocked += [ref] if np.isfinite(hit).any() else []
     yield of.figure("cables", len(blocked), 0, 0, "headers", "whose way out is blocked")
     highest = max(d.footprint.height_mm for d in of.board.components if _in_front(of, d))
+    note = "over the highest part"
     yield of.figure(
-        "headroom",
-        of.split_mm - front - highest,
-        LEAST_HEADROOM_MM,
-        math.inf,
-        note="over the highest part",
+        "headroom", of.split_mm - front - highest, LEAST_HEADROOM_MM, math.inf, note=note
     )
 
 

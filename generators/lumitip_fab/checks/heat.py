@@ -55,13 +55,9 @@ def _note(file: str, text: str, design: Design) -> Iterator[Measurement]:
         limit = design.heat_steps[steps[heading]].limit_c
         figures = [float(value) for value in _DEGREES.findall(words)]
         if figures:
+            note = f"hottest of {len(figures)} figures"
             yield Measurement(
-                "heat.notes",
-                f"{file}: {heading}",
-                max(figures),
-                high=limit,
-                unit="°C",
-                note=f"hottest of {len(figures)} figures",
+                "heat.notes", f"{file}: {heading}", max(figures), high=limit, unit="°C", note=note
             )
     orders = [
         f"{found[0]!r} in {heading!r}"

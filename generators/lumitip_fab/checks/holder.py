@@ -120,13 +120,8 @@ def measure_screws(clip: Clip) -> Iterator[Measurement]:
     yield clip.clear("screw_clearance", round_thread(room(rings, at), screw, fit_mm))
     centres = np.array([shapely.Polygon(ring).centroid.coords[0] for ring in rings])
     spans = [np.ptp(places[:, 0]) if len(places) else math.nan for places in (board, centres)]
-    yield clip.figure(
-        "spacing",
-        spans[1] - spans[0],
-        -SPACING_MM,
-        SPACING_MM,
-        note="from hole to hole, against the board",
-    )
+    note = "from hole to hole, against the board"
+    yield clip.figure("spacing", spans[1] - spans[0], -SPACING_MM, SPACING_MM, note=note)
 
 
 def measure_nuts(clip: Clip) -> Iterator[Measurement]:
@@ -178,13 +173,8 @@ def measure_cradle(clip: Clip) -> Iterator[Measurement]:
     below = clip.mesh.vertices[clip.mesh.vertices[:, 2] < holder.axis_z_mm]
     inward = float(np.abs(below[:, 0]).min(initial=math.inf))
     grip = holder.body_mm / 2 - inward
-    yield clip.figure(
-        "grip",
-        grip,
-        LEAST_GRIP_MM - fit,
-        math.inf,
-        note="each arm's end inside the body's widest place, as drawn",
-    )
+    note = "each arm's end inside the body's widest place, as drawn"
+    yield clip.figure("grip", grip, LEAST_GRIP_MM - fit, math.inf, note=note)
 
 
 def measure_straps(clip: Clip) -> Iterator[Measurement]:

@@ -48,15 +48,8 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     # Cells of a hexagonal lattice are one pitch apart, or 1.73 pitches and more.
     near = cKDTree(np.stack([x_mm, y_mm], axis=1)).query_pairs(1.3 * design.grid.pitch_mm)
     found = set(map(tuple, layout.neighbours.tolist()))
-    yield Measurement(
-        "layout.neighbours",
-        _FILE,
-        float(len(near ^ found)),
-        0,
-        0,
-        "pairs",
-        f"of {len(near)} that differ",
-    )
+    note = f"of {len(near)} that differ"
+    yield Measurement("layout.neighbours", _FILE, float(len(near ^ found)), 0, 0, "pairs", note)
     yield _optics(layout, design)
     yield _wiring(layout, design)
     yield _facing(layout, design)

@@ -49,15 +49,8 @@ def _frame(outputs: Path, path: str, matrix: Matrix, design: Design) -> Measurem
     apart = [abs(low[0] + high[0]), *_apart(path, low, high, design)]
     turn = matrix[:3, :3]
     apart.append(float(np.abs(turn @ turn.T - np.eye(3)).max()) + abs(np.linalg.det(turn) - 1))
-    return Measurement(
-        "manifest.frames",
-        name,
-        float(max(apart)),
-        0,
-        _PLACE_MM,
-        "mm",
-        "after its matrix, from its place in its frame",
-    )
+    note = "after its matrix, from its place in its frame"
+    return Measurement("manifest.frames", name, float(max(apart)), 0, _PLACE_MM, "mm", note)
 
 
 def _apart(path: str, low: Vector, high: Vector, design: Design) -> Iterator[float]:

@@ -90,24 +90,10 @@ def measure_flaps(
         design: for the heights of its sides and the coupling.
     """
     odd = abs(3 * len(flaps) + 1 - corners)
-    yield Measurement(
-        "mask.folds",
-        f"{subject} count",
-        odd,
-        0,
-        0,
-        "corners",
-        f"of the cut more or less than {len(flaps)} flaps have",
-    )
-    yield Measurement(
-        "mask.flaps",
-        subject,
-        _overlap(flaps),
-        0,
-        OVERLAP_MM2,
-        "mm²",
-        f"of {len(flaps)} flaps laid flat",
-    )
+    note = f"of the cut more or less than {len(flaps)} flaps have"
+    yield Measurement("mask.folds", f"{subject} count", odd, 0, 0, "corners", note)
+    note = f"of {len(flaps)} flaps laid flat"
+    yield Measurement("mask.flaps", subject, _overlap(flaps), 0, OVERLAP_MM2, "mm²", note)
     sagitta = max(_sagitta(flap.fold, edge) for flap in flaps)
     yield Measurement("mask.folds", subject, sagitta, 0, FOLD_OFF_MM, "mm", "chord to black's edge")
     sides = [float(side_mm(flap.fold, design).min()) for flap in flaps]
@@ -118,24 +104,12 @@ def measure_flaps(
     keep += [("interface", interface.box, NOTCH_MM) for interface in design.interfaces]
     for name, box, least in keep:
         apart = float(shapely.distance(back, _area(box)))
-        yield Measurement(
-            "mask.folds",
-            f"{subject} {name}",
-            apart,
-            least,
-            math.inf,
-            "mm",
-            f"folded flaps to the {name}",
-        )
+        note = f"folded flaps to the {name}"
+        yield Measurement("mask.folds", f"{subject} {name}", apart, least, math.inf, "mm", note)
     for relief in finger.reliefs:
         apart = float(shapely.distance(back, _area(relief.box)))
-        yield Measurement(
-            "mask.folds",
-            f"{subject} window",
-            apart,
-            unit="mm",
-            note="flaps to a window behind parts; for information",
-        )
+        note = "flaps to a window behind parts; for information"
+        yield Measurement("mask.folds", f"{subject} window", apart, unit="mm", note=note)
     reaches = [
         f.length_mm + design.mask.allowance_mm - side for f, side in zip(flaps, sides, strict=True)
     ]
@@ -264,15 +238,8 @@ def measure_bands(
     yield Measurement("mask.bands", f"{subject} light", max(clear), 0, LEAK_MM2, "mm²", note)
     whole = shapely.union_all([shapely.Polygon(ring) for ring in bands])
     ends = [_end_mm(flap, whole) for flap in flaps]
-    yield Measurement(
-        "mask.bands",
-        f"{subject} glue",
-        min(ends),
-        GLUE_MM,
-        math.inf,
-        "mm",
-        "clear film at the end of a flap",
-    )
+    note = "clear film at the end of a flap"
+    yield Measurement("mask.bands", f"{subject} glue", min(ends), GLUE_MM, math.inf, "mm", note)
 
 
 def _on_side(flap: Flap, design: Design) -> shapely.Geometry:

@@ -46,46 +46,20 @@ def measure_page(
         )
     left, low, right, high = page.extent
     margin = min(left, low, page.size_mm[0] - right, page.size_mm[1] - high)
-    yield Measurement(
-        "mask.page",
-        f"{subject} margin",
-        margin,
-        PRINTABLE_MM,
-        math.inf,
-        "mm",
-        "to the nearest edge",
-    )
-    yield Measurement(
-        "mask.marks",
-        subject,
-        placed.residual_mm,
-        0,
-        PLACE_MM,
-        "mm",
-        "worst of four registration marks",
-    )
+    note = "to the nearest edge"
+    yield Measurement("mask.page", f"{subject} margin", margin, PRINTABLE_MM, math.inf, "mm", note)
+    note = "worst of four registration marks"
+    yield Measurement("mask.marks", subject, placed.residual_mm, 0, PLACE_MM, "mm", note)
     for axis, got, reading in zip("xy", placed.scale, mask.measured_ruler_mm, strict=True):
         wanted = 100 / reading
+        note = f"a ruler measured {reading:g}"
         yield Measurement(
-            f"mask.scale_{axis}",
-            subject,
-            got,
-            wanted * (1 - SCALE),
-            wanted * (1 + SCALE),
-            "",
-            f"a ruler measured {reading:g}",
+            f"mask.scale_{axis}", subject, got, wanted * (1 - SCALE), wanted * (1 + SCALE), "", note
         )
     yield from _rulers(subject, page, placed)
     yield from _letter(subject, page, placed, mask.mark)
-    yield Measurement(
-        "mask.fonts",
-        subject,
-        len(page.lacking),
-        0,
-        0,
-        "fonts",
-        ", ".join(page.lacking) or "that are not embedded",
-    )
+    note = ", ".join(page.lacking) or "that are not embedded"
+    yield Measurement("mask.fonts", subject, len(page.lacking), 0, 0, "fonts", note)
 
 
 def measure_black(
@@ -107,28 +81,16 @@ def measure_black(
     yield Measurement("mask.web", subject, web, WEB_MM, math.inf, "mm", "least between openings")
     outline = shapely.Polygon(design.outline.polygon(96)).buffer(mask.allowance_mm, 64)
     edge = edges_apart(black.edge, np.array(outline.exterior.coords)[:-1])
-    yield Measurement(
-        "mask.outline",
-        subject,
-        edge,
-        0,
-        EDGE_MM,
-        "mm",
-        f"off the finger's outline grown by {mask.allowance_mm:g}",
-    )
+    note = f"off the finger's outline grown by {mask.allowance_mm:g}"
+    yield Measurement("mask.outline", subject, edge, 0, EDGE_MM, "mm", note)
     if len(black.window):
         window = apart(black.window, _corners(finger.window))
         yield Measurement("mask.window", subject, window, 0, PLACE_MM, "mm", "worst corner")
     else:
         yield unreadable("mask.window", subject, "the black has no window for the connector")
+    note = "other print to the nearest aperture"
     yield Measurement(
-        "mask.clear",
-        subject,
-        _nearest_other(page, placed, shapes),
-        0.1,
-        math.inf,
-        "mm",
-        "other print to the nearest aperture",
+        "mask.clear", subject, _nearest_other(page, placed, shapes), 0.1, math.inf, "mm", note
     )
 
 
@@ -235,15 +197,8 @@ def _letter(subject: str, page: Page, placed: Placed, box: Box) -> Iterator[Meas
     middle = shapely.Polygon(letter).centroid
     left, up = extent.mean(axis=0) - (middle.x, middle.y)
     for name, share in (("stem", left / box.width_mm), ("arms", -up / box.length_mm)):
-        yield Measurement(
-            "mask.mirrored",
-            f"{subject} {name}",
-            float(share),
-            0.03,
-            0.5,
-            "",
-            f"the F's {name} by its centre of area",
-        )
+        note = f"the F's {name} by its centre of area"
+        yield Measurement("mask.mirrored", f"{subject} {name}", float(share), 0.03, 0.5, "", note)
 
 
 def _web(black: Black, shapes: Shapes, within_mm: float) -> float:

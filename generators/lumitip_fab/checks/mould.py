@@ -78,14 +78,9 @@ def _measured(
     yield Measurement("mould.bodies", file, solids.bodies(mesh), 1, 1, "bodies")
     room = np.array(design.printing.bed_mm) - mesh.extents
     yield Measurement("mould.fits_bed", file, float(room.min()), 0, unit="mm", note="room left")
+    note = "height over the bed"
     yield Measurement(
-        "mould.fits_bed",
-        f"{file}: foot",
-        float(mesh.bounds[0, 2]),
-        -0.001,
-        0.001,
-        "mm",
-        "height over the bed",
+        "mould.fits_bed", f"{file}: foot", float(mesh.bounds[0, 2]), -0.001, 0.001, "mm", note
     )
     probe = Probe(mesh, design)
     yield _thickness(probe, file)
@@ -150,14 +145,9 @@ def _tip_thickness(probe: Probe, file: str) -> Measurement:
     x = np.concatenate([np.linspace(-0.95, -0.5, 10), np.linspace(0.5, 0.95, 10)]) * half
     depth = probe.depths_mm(np.column_stack([x, np.full(len(x), outline.tip_y_mm)]))
     worst = float(depth[np.abs(depth - wanted).argmax()])
+    note = "at the tip edge, beside the stop"
     return Measurement(
-        "mould.tip_thickness",
-        file,
-        worst,
-        wanted - THICKNESS_MM,
-        wanted + THICKNESS_MM,
-        "mm",
-        "at the tip edge, beside the stop",
+        "mould.tip_thickness", file, worst, wanted - THICKNESS_MM, wanted + THICKNESS_MM, "mm", note
     )
 
 
@@ -172,25 +162,13 @@ def _stops(probe: Probe, file: str) -> Iterator[Measurement]:
         tops = probe.depths_mm(ring * _PAD_INNER + (x, y))
         feet = probe.depths_mm(free * _PAD_OUTER + (x, y)) - probe.design.stack.cover_mm
         worst = float(max(np.abs(tops).max(), np.abs(feet).max()))
-        yield Measurement(
-            "mould.stops",
-            f"{file}: pad {number}",
-            worst,
-            0,
-            STOPS_MM,
-            "mm",
-            "top against the rim plane, and floor around it",
-        )
+        note = "top against the rim plane, and floor around it"
+        yield Measurement("mould.stops", f"{file}: pad {number}", worst, 0, STOPS_MM, "mm", note)
     along = np.linspace(-1, 1, 9) * outline.tip_width_mm / 8
     line = probe.depths_mm(np.column_stack([along, np.full(9, outline.tip_y_mm - _LINE_MM)]))
+    note = "top against the rim plane"
     yield Measurement(
-        "mould.stops",
-        f"{file}: tip line",
-        float(np.abs(line).max()),
-        0,
-        STOPS_MM,
-        "mm",
-        "top against the rim plane",
+        "mould.stops", f"{file}: tip line", float(np.abs(line).max()), 0, STOPS_MM, "mm", note
     )
 
 
@@ -205,14 +183,9 @@ def _seat(
         return unreadable("mould.seat", part, str(error))
     to_bed = np.linalg.inv(mould_bed_to_sensor(design.stack, design.mould))
     seated = solids.placed(backing, to_bed @ backing_bed_to_sensor(design.mount, design.stack))
+    note = f"shared with {part} when it lies on the stops"
     return Measurement(
-        "mould.seat",
-        file,
-        solids.shared_mm3(body, seated),
-        0,
-        SHARED_MM3,
-        "mm³",
-        f"shared with {part} when it lies on the stops",
+        "mould.seat", file, solids.shared_mm3(body, seated), 0, SHARED_MM3, "mm³", note
     )
 
 
@@ -243,22 +216,11 @@ def _walls(mesh: Any, file: str, design: Design, notch: Box) -> Iterator[Measure
     far = _distances(mesh, rim_mm + _ABOVE_MM + rise, places)
     draft = float(np.degrees(np.arctan2(far - near, rise)).min())
     least = min(LEAST_DRAFT_DEG, mould.draft_deg) - DRAFT_MESH_DEG
+    note = f"least above the rim; designed {mould.draft_deg:g}"
+    yield Measurement("mould.draft", file, draft, least, unit="deg", note=note)
+    note = "that hangs over, seen along the pull"
     yield Measurement(
-        "mould.draft",
-        file,
-        draft,
-        least,
-        unit="deg",
-        note=f"least above the rim; designed {mould.draft_deg:g}",
-    )
-    yield Measurement(
-        "mould.undercut",
-        file,
-        _undercut_mm2(mesh, silhouette, design),
-        0,
-        0.01,
-        "mm²",
-        "that hangs over, seen along the pull",
+        "mould.undercut", file, _undercut_mm2(mesh, silhouette, design), 0, 0.01, "mm²", note
     )
 
 

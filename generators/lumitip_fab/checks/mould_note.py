@@ -44,15 +44,8 @@ def _masses(text: str, file: str, design: Design) -> Measurement:
     whole = float(stated[1]) * (1 + mould.waste_fraction) * mould.density_g_ml
     wanted = [whole * part / sum(mould.mix_ratio) for part in mould.mix_ratio]
     worst = max(abs(float(grams[p]) / w - 1) for p, w in zip("AB", wanted, strict=True))
-    return Measurement(
-        "mould.masses",
-        file,
-        100 * worst,
-        0,
-        100 * VOLUME_FRACTION,
-        "%",
-        f"parts of {wanted[0]:.2f} g and {wanted[1]:.2f} g",
-    )
+    note = f"parts of {wanted[0]:.2f} g and {wanted[1]:.2f} g"
+    return Measurement("mould.masses", file, 100 * worst, 0, 100 * VOLUME_FRACTION, "%", note)
 
 
 def _figures(text: str, file: str, design: Design) -> Measurement:
@@ -62,15 +55,8 @@ def _figures(text: str, file: str, design: Design) -> Measurement:
     wanted = [f"{v:g}" for v in (mould.layer_mm, mould.wall_mm, stops_mm, mould.cure_h)]
     matches = [re.findall(pattern, text) for pattern in _HOW]
     wrong = sum(found != [v] for found, v in zip(matches, wanted, strict=True))
-    return Measurement(
-        "mould.note",
-        file,
-        float(wrong),
-        0,
-        0,
-        "wrong figures",
-        f"of layers, floor, stops and hours: {', '.join(wanted)}",
-    )
+    note = f"of layers, floor, stops and hours: {', '.join(wanted)}"
+    return Measurement("mould.note", file, float(wrong), 0, 0, "wrong figures", note)
 
 
 def measure_volume(

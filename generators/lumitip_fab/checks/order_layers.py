@@ -43,15 +43,8 @@ def measure_layers(
         yield from _mask(f"{path}: {side}", read, layer, area(f"{side} mask"))
         soldered = _in_sensor(read, _soldered(read, layer))
         off = area(f"{side} paste").symmetric_difference(soldered).area
-        yield Measurement(
-            "orders.paste",
-            f"{path}: {side}",
-            off,
-            0,
-            PLACE_MM,
-            "mm²",
-            "differs from the pads of mounted parts",
-        )
+        note = "differs from the pads of mounted parts"
+        yield Measurement("orders.paste", f"{path}: {side}", off, 0, PLACE_MM, "mm²", note)
         bare = shapely.union(area(f"{side} mask"), shapely.difference(_all(outline), outline))
         yield from _silk(f"{path}: {side}", read, side == "front", area(f"{side} silk"), bare)
     yield _edge(path, read, area("outline"))
@@ -106,15 +99,8 @@ def _silk(
     rooms = [_in_sensor(read, _room(word)) for word in silk.words if word.front == front]
     lost = shapely.difference(lines, printed).area
     more = shapely.difference(printed, shapely.union_all([lines, *rooms]).buffer(PLACE_MM)).area
-    yield Measurement(
-        "orders.silk",
-        subject,
-        lost + more,
-        0,
-        _ROUND_MM2,
-        "mm²",
-        "differs from the board's lines and words",
-    )
+    note = "differs from the board's lines and words"
+    yield Measurement("orders.silk", subject, lost + more, 0, _ROUND_MM2, "mm²", note)
     inked = [_inside(printed, room) / room.area for room in rooms]
     yield Measurement(
         "orders.words",

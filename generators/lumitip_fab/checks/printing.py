@@ -67,14 +67,9 @@ def _settings(outputs: Path, design: Design, filament: Filament) -> Measurement:
     except (OSError, UnicodeDecodeError) as problem:
         return unreadable("printing.settings", filament.file, str(problem))
     wrong = [key for key, value in _wanted(design, filament).items() if settings.get(key) != value]
+    note = f"other than printer and filament say: {', '.join(wrong) or 'none'}"
     return Measurement(
-        "printing.settings",
-        filament.file,
-        float(len(wrong)),
-        0,
-        0,
-        "settings",
-        f"other than printer and filament say: {', '.join(wrong) or 'none'}",
+        "printing.settings", filament.file, float(len(wrong)), 0, 0, "settings", note
     )
 
 
@@ -124,12 +119,5 @@ def _parts(outputs: Path, design: Design) -> Measurement:
         for of in [design.slicing.of(path)]
     }
     wrong = listed ^ wanted
-    return Measurement(
-        "printing.parts",
-        _NOTE,
-        float(len(wrong)),
-        0,
-        0,
-        "parts",
-        f"listed wrongly or not at all, of {len(paths)}",
-    )
+    note = f"listed wrongly or not at all, of {len(paths)}"
+    return Measurement("printing.parts", _NOTE, float(len(wrong)), 0, 0, "parts", note)

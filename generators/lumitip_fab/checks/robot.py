@@ -132,13 +132,8 @@ def _body(link: Link, finger: Finger, design: Design) -> Iterator[Measurement]:
     hulls = [mesh.convex_hull for mesh in link.collisions.values()]
     seen = np.concatenate([mesh.vertices for mesh in link.visuals.values()])
     outside = np.min([_outside(hull, seen) for hull in hulls], axis=0).max() if hulls else np.inf
-    yield _URDF.figure(
-        "reach",
-        float(outside),
-        -np.inf,
-        REACH_MM,
-        note=f"{subject}: farthest that anything stands out of what touches",
-    )
+    note = f"{subject}: farthest that anything stands out of what touches"
+    yield _URDF.figure("reach", float(outside), -np.inf, REACH_MM, note=note)
     bulk = sum(h.volume for h in hulls) / sum(abs(m.volume) for m in link.visuals.values())
     yield _URDF.figure("bulk", bulk, 0, BULK, "times what is seen", subject)
 

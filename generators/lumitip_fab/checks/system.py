@@ -17,17 +17,7 @@ from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.readers.scene import Scene, read_scene
 from lumitip_fab.checks.readers.solids import Vectors
 from lumitip_fab.checks.result import Measurement, unreadable
-from lumitip_fab.design import AuxiliaryBoard, Design
-from lumitip_fab.design.frames import (
-    Matrix,
-    applied,
-    auxiliary_to_flange,
-    flange_beds,
-    flange_to_tool,
-    gripper_to_tool,
-    holder_bed_to_auxiliary,
-    holder_to_tool,
-)
+from lumitip_fab.design import AuxiliaryBoard, Design, frames
 from lumitip_fab.errors import OutputError
 
 READS = (
@@ -119,22 +109,15 @@ def _stack(scene: Scene, design: Design) -> Iterator[Measurement]:
             "flange to gripper": gripper[0] - upper[1],
         }
     worst = max(gaps, key=lambda joint: np.nan_to_num(abs(gaps[joint]), nan=np.inf))
-    yield Measurement(
-        "system.stack",
-        _FILE,
-        float(gaps[worst]),
-        -PLACE_MM,
-        PLACE_MM,
-        "mm",
-        f"{worst}, the worst of {len(gaps)}",
-    )
+    note = f"{worst}, the worst of {len(gaps)}"
+    yield Measurement("system.stack", _FILE, float(gaps[worst]), -PLACE_MM, PLACE_MM, "mm", note)
 
 
 def _recess_z_mm(scene: Scene) -> float:
     """Floor of the coupling's recess: the lowest face that looks up."""
     node = scene.nodes["coupling.body"]
     up = node.mesh.face_normals[:, 2] > 1 - 1e-6
-    floor = applied(node.to_scene, node.points_mm[node.triangles[up].ravel()])
+    floor = frames.applied(node.to_scene, node.points_mm[node.triangles[up].ravel()])
     return float(floor[:, 2].min()) if len(floor) else np.nan
 
 
@@ -143,20 +126,23 @@ def _files(outputs: Path, design: Design) -> Iterator[tuple[str, Vectors]]:
     outline."""
     auxiliary_boards = {auxiliary.name: auxiliary for auxiliary in design.auxiliary_boards}
     for flange in design.flanges:
-        to_tool = flange_to_tool(design.system)
-        for part, bed in flange_beds(flange).items():
+        to_tool = frames.flange_to_tool(design.system)
+        for part, bed in frames.flange_beds(flange).items():
             mesh = solids.read_mesh(outputs / f"flange/{flange.name}_{part}.stl")
-            yield f"{flange.name}.{part}", applied(to_tool @ bed, mesh.vertices)
+            yield f"{flange.name}.{part}", frames.applied(to_tool @ bed, mesh.vertices)
         corners = _corners(auxiliary_boards[flange.auxiliary], design)
-        yield f"{flange.name}.board", applied(to_tool @ auxiliary_to_flange(flange), corners)
+        yield (
+            f"{flange.name}.board",
+            frames.applied(to_tool @ frames.auxiliary_to_flange(flange), corners),
+        )
     for holder in design.holders:
         if holder.name in design.system.holders:
-            to_tool = holder_to_tool(holder, design.system)
+            to_tool = frames.holder_to_tool(holder, design.system)
             mesh = solids.read_mesh(outputs / f"holder/{holder.name}.stl")
-            standing = to_tool @ holder_bed_to_auxiliary(holder)
-            yield f"{holder.name}.tray", applied(standing, mesh.vertices)
+            standing = to_tool @ frames.holder_bed_to_auxiliary(holder)
+            yield f"{holder.name}.tray", frames.applied(standing, mesh.vertices)
             corners = _corners(auxiliary_boards[holder.auxiliary], design)
-            yield f"{holder.name}.board", applied(to_tool, corners)
+            yield f"{holder.name}.board", frames.applied(to_tool, corners)
 
 
 def _corners(auxiliary: AuxiliaryBoard, design: Design) -> Vectors:
@@ -175,11 +161,11 @@ def _fingers(outputs: Path, design: Design) -> Iterator[tuple[str, Vectors]]:
     """Corners in the tool frame of each body of the fingers, by the assembly."""
     to_tool = _to_tool(design)
     for name, node in read_scene(outputs / _ASSEMBLY).nodes.items():
-        yield name, applied(to_tool, node.in_scene_mm)
+        yield name, frames.applied(to_tool, node.in_scene_mm)
 
 
-def _to_tool(design: Design) -> Matrix:
-    return gripper_to_tool(design.stack, design.mount, design.closing, design.system)
+def _to_tool(design: Design) -> frames.Matrix:
+    return frames.gripper_to_tool(design.stack, design.mount, design.closing, design.system)
 
 
 def _placed(
@@ -194,15 +180,8 @@ def _placed(
     except (OutputError, KeyError) as error:
         return unreadable(f"system.{check}", _FILE, str(error))
     worst = max(off, key=lambda name: off[name], default="")
-    return Measurement(
-        f"system.{check}",
-        _FILE,
-        off.get(worst, 0.0),
-        0,
-        PLACE_MM,
-        "mm",
-        f"{worst} from {by}, the worst of {len(off)}",
-    )
+    note = f"{worst} from {by}, the worst of {len(off)}"
+    return Measurement(f"system.{check}", _FILE, off.get(worst, 0.0), 0, PLACE_MM, "mm", note)
 
 
 def _tcp(scene: Scene, layout: Layout) -> Vectors:
@@ -216,7 +195,7 @@ def _tcp(scene: Scene, layout: Layout) -> Vectors:
         cells = [scene.nodes[f"{first}{i}"] for i in range(1, len(layout) + 1)]
         extents = [(node.points_mm.min(axis=0) + node.points_mm.max(axis=0)) / 2 for node in cells]
         middle = np.mean(extents, axis=0) * (1.0, 1.0, 0.0) - (0.0, up_mm, 0.0)
-        middles.append(applied(cells[0].to_scene, middle[None])[0])
+        middles.append(frames.applied(cells[0].to_scene, middle[None])[0])
     return np.asarray(np.mean(middles, axis=0))
 
 
@@ -252,12 +231,5 @@ def _interference(scene: Scene, design: Design) -> Measurement:
         f"{a} and {b}": solids.shared_mm3(bodies[a], bodies[b]) for a, b in combinations(bodies, 2)
     }
     worst = max(shared, key=lambda pair: shared[pair])
-    return Measurement(
-        "system.interference",
-        _FILE,
-        shared[worst],
-        0,
-        SHARED_MM3,
-        "mm³",
-        f"{worst}, the worst of {len(shared)} pairs",
-    )
+    note = f"{worst}, the worst of {len(shared)} pairs"
+    return Measurement("system.interference", _FILE, shared[worst], 0, SHARED_MM3, "mm³", note)

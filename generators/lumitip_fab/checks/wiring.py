@@ -13,7 +13,7 @@ from lumitip_fab.checks.connections import PINOUTS
 from lumitip_fab.checks.readers.kicad_board import KicadBoard, read_board
 from lumitip_fab.checks.result import Measurement, count, unreadable
 from lumitip_fab.design import Design
-from lumitip_fab.design.cabling import INKS, codes_of
+from lumitip_fab.design.cabling import COLOURS, codes_of
 from lumitip_fab.design.frames import applied, board_page_to_sensor
 from lumitip_fab.errors import OutputError
 
@@ -148,7 +148,7 @@ def _wrong_colours(rows: tuple[Row, ...], design: Design) -> list[str]:
     wrong = []
     seen: set[tuple[str, str]] = set()
     for row in rows:
-        known = set(codes_of(row.colour)) <= set(INKS)
+        known = set(codes_of(row.colour)) <= set(COLOURS)
         reserved = row.colour in fixed.values() and fixed.get(row.signal) != row.colour
         other = fixed.get(row.signal, row.colour) != row.colour
         if not known or reserved or other or (row.cable, row.colour) in seen:
@@ -185,15 +185,8 @@ def _currents(rows: tuple[Row, ...], design: Design) -> Iterator[Measurement]:
     lit_ma = sum(design.electrical.strings.high_ma)
     feeding = [row for row in rows if row.signal == supply]
     least = min((row.current_ma for row in feeding), default=math.nan)
-    yield Measurement(
-        "wiring.current",
-        _LIST,
-        least,
-        lit_ma - 0.01,
-        math.inf,
-        "mA",
-        "least rating of the LEDs' supply",
-    )
+    note = "least rating of the LEDs' supply"
+    yield Measurement("wiring.current", _LIST, least, lit_ma - 0.01, math.inf, "mA", note)
     dense = max((r.current_ma / 1000 / r.section_mm2 for r in rows), default=math.nan)
     most = design.cabling.most_a_per_mm2
     yield Measurement("wiring.density", _LIST, dense, 0, most, "A/mm²")
@@ -228,7 +221,7 @@ def _diagram(outputs: Path, rows: tuple[Row, ...]) -> Measurement:
         if wire is None:
             continue
         ends = (wire.start, wire.end, wire.inks, wire.label.split()[:2])
-        inks = tuple(INKS.get(code, "") for code in codes_of(row.colour))
+        inks = tuple(COLOURS.get(code, ("", ""))[1] for code in codes_of(row.colour))
         if ends != (".".join(row.start), ".".join(row.end), inks, [row.wire, row.colour]):
             wrong.append(f"{row.wire} from {wire.start} to {wire.end}")
     return count("wiring.diagram", _DIAGRAM, wrong, "wires")

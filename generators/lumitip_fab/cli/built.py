@@ -5,13 +5,56 @@ from pathlib import Path
 
 from lumitip_fab.checks.flange import LEAST_SAFETY, strength
 from lumitip_fab.checks.readers import solids
-from lumitip_fab.cli.part_numbers import part_number_rows
-from lumitip_fab.design import Design
+from lumitip_fab.checks.readers.tables import table
+from lumitip_fab.design import Design, Fab
 from lumitip_fab.design.frames import flange_beds
-from lumitip_fab.docs.outside import Row
+from lumitip_fab.docs.row import Row, rows_of
 from lumitip_fab.errors import OutputError
 from lumitip_fab.pipeline import manifest
 from lumitip_fab.pipeline.manifest import Manifest
+
+
+def part_number_rows(out: Path, design: Design) -> Iterator[Row]:
+    """A row for each board and one for all, from the bill of materials for a fab that asks for both
+    numbers; none where no fab does.
+
+    Raises:
+        OutputError: if a bill of materials cannot be read.
+    """
+    fab = next((f for f in design.fabs if {"part", "lcsc"} <= {field for _, field in f.bom}), None)
+    if fab is None:
+        return
+    boards = [f.name for f in design.fingers] + [a.name for a in design.auxiliary_boards]
+    lines = {board: _lines(out, board, fab) for board in boards}
+    for board in boards:
+        yield _row(f"part numbers of the {board} board", lines[board])
+    yield _row("part numbers of all boards", [line for each in lines.values() for line in each])
+
+
+def _row(quantity: str, lines: list[tuple[str, str]]) -> Row:
+    """Counts of lines as pairs of order number and LCSC number."""
+    known, at_lcsc = (sum(bool(line[i]) for line in lines) for i in (0, 1))
+    missing = sorted({part for part, number in lines if not number})
+    return Row(
+        quantity,
+        "not stated",
+        f"{known} of {len(lines)} lines, {at_lcsc} with LCSC's ({_percent(at_lcsc, len(lines))} %)",
+        f"LCSC numbers are not known for {', '.join(missing)}" if missing else "all are known",
+    )
+
+
+def _percent(count: int, total: int) -> int:
+    return 100 * count // total if total else 100
+
+
+def _lines(out: Path, board: str, fab: Fab) -> list[tuple[str, str]]:
+    heading = {field: name for name, field in fab.bom}
+    path = out / "boards" / board / "order" / f"{fab.name}_{board}_bom.csv"
+    try:
+        rows = table(path.read_text(encoding="utf-8"))
+        return [(row[heading["part"]], row[heading["lcsc"]]) for row in rows]
+    except (OSError, ValueError, KeyError) as error:
+        raise OutputError(f"{path}: cannot be read: {error}. Run lumitip-fab build.") from error
 
 
 def built_rows(out: Path, design: Design) -> tuple[Row, ...]:
@@ -23,22 +66,16 @@ def built_rows(out: Path, design: Design) -> tuple[Row, ...]:
     built = manifest.read(out)
     if built.origin.parameters_hash != design.parameters_hash:
         raise OutputError(f"{out}: not built from these values: run lumitip-fab build first")
-    masses_g = built.files["robot/lumitip.urdf"].facts
-    densities = design.densities
-    why = (
-        f"volumes of the solids, with {densities.backing_g_ml:g} g/mL for the backing, "
-        f"{densities.board_g_ml:.2f} for the board with its copper, {densities.part_g_ml:g} for "
-        f"its parts, {densities.silicone_g_ml:g} for the silicone and {densities.film_g_ml:g} for "
-        "the film; screws and wires are not in it"
-    )
-    rows = [
-        Row(f"mass of the {f.name} finger", "not stated", f"{masses_g[f'{f.name}_g']:.1f} g", why)
-        for f in design.fingers
+    facts = built.files["robot/lumitip.urdf"].facts
+    masses_g = {finger.name: facts[f"{finger.name}_g"] for finger in design.fingers}
+    fingers = [
+        row
+        for name, grams in masses_g.items()
+        for row in rows_of("finger_mass", name=name, grams=grams, of=design.densities)
     ]
-    payload = sum(masses_g[f"{f.name}_g"] for f in design.fingers)
-    rows.append(Row("payload of both fingers", "not stated", f"{payload:.1f} g", why))
     return (
-        *rows,
+        *fingers,
+        *rows_of("payload", grams=sum(masses_g.values()), of=design.densities),
         *_outside(built, design),
         *_strength(out, design),
         *part_number_rows(out, design),
@@ -48,30 +85,18 @@ def built_rows(out: Path, design: Design) -> tuple[Row, ...]:
 def _outside(built: Manifest, design: Design) -> Iterator[Row]:
     """Masses of the printed parts and boards beside the fingers: flange and holder."""
     auxiliary_boards = {auxiliary.name: auxiliary for auxiliary in design.auxiliary_boards}
-    parts: list[tuple[str, str, tuple[str, ...]]] = [
-        (f"mass of the {h.name}", h.auxiliary, (f"holder/{h.name}.stl",)) for h in design.holders
-    ]
+    parts = [(h.name, h.auxiliary, [f"holder/{h.name}.stl"]) for h in design.holders]
     parts += [
-        (
-            f"mass of the {f.name}",
-            f.auxiliary,
-            tuple(f"flange/{f.name}_{part}.stl" for part in flange_beds(f)),
-        )
+        (f.name, f.auxiliary, [f"flange/{f.name}_{part}.stl" for part in flange_beds(f)])
         for f in design.flanges
     ]
-    for what, name, files in parts:
-        box = auxiliary_boards[name].box
+    for name, auxiliary, files in parts:
+        box = auxiliary_boards[auxiliary].box
         board_ml = box.width_mm * box.length_mm * design.stack.auxiliary_mm / 1000
         printed = [(_volume_ml(built, file), design.slicing.of(file)) for file in files]
         grams = board_ml * design.densities.auxiliary_g_ml
         grams += sum(volume * filament.density_g_ml for volume, filament in printed)
-        yield Row(
-            what,
-            "not stated",
-            f"{grams:.1f} g",
-            f"printed solid from {printed[0][1].name}, with its bare board; parts, screws "
-            "and wires are not in it",
-        )
+        yield from rows_of("mass", name=name, grams=grams, filament=printed[0][1])
 
 
 def _strength(out: Path, design: Design) -> Iterator[Row]:
@@ -82,24 +107,8 @@ def _strength(out: Path, design: Design) -> Iterator[Row]:
             for part, bed in flange_beds(flange).items()
         )
         found, filament = strength(lower, upper, design), design.slicing.of(f"flange/{flange.name}")
-        load = (
-            f"{design.system.load_kg:g} kg of gripper and payload, twice as heavy in a stop, "
-            f"{found.lever_mm:.0f} mm before the coupling; an estimate, not tested; at least "
-            f"{LEAST_SAFETY:g} is wanted"
-        )
-        yield Row(
-            "safety of the flange's layers",
-            "not stated",
-            f"{found.layers:.1f}",
-            f"{filament.layer_mpa:g} MPa from layer to layer by the filament's entry, the "
-            f"bolts left out: {load}",
-        )
-        yield Row(
-            "... right under its bolts' heads",
-            "not stated",
-            f"{found.bolts:.1f}",
-            f"{filament.bearing_mpa:g} MPa when it is pressed: {load}",
-        )
+        loads = {"load_kg": design.system.load_kg, "least": LEAST_SAFETY}
+        yield from rows_of("safety", found=found, filament=filament, **loads)
 
 
 def _volume_ml(built: Manifest, file: str) -> float:

@@ -10,7 +10,7 @@ from rich.table import Table
 from lumitip_fab.cli.screen import OUT
 
 if TYPE_CHECKING:
-    from lumitip_fab.docs.outside import Row
+    from lumitip_fab.docs.row import Row
 
 
 def run(options: argparse.Namespace) -> int:

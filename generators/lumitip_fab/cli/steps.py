@@ -1,6 +1,6 @@
 """The steps of a build: every generator, and the tools that it is made with."""
 
-from lumitip_fab.pipeline.graph import Step
+from lumitip_fab.pipeline.workers import Step
 
 _CAD = (
     "build123d",
@@ -35,7 +35,7 @@ STEPS = (
     Step("models", "models.files.model_files", heavy=True, tools=_CAD),
     Step("finger_spice", "boards.spice.simulation", "fingers"),
     Step("supply_spice", "boards.spice.supply_simulation", "regulated"),
-    Step("plug_in_spice", "boards.spice_plug_in.plug_in_simulation", "flanges"),
+    Step("plug_in_spice", "boards.spice.plug_in_simulation", "flanges"),
     Step("assembly", "scenes.assembly.assembly", heavy=True, tools=_CAD),
     Step("robot", "scenes.robot.robot_files", heavy=True, tools=_CAD),
     Step("mould", "parts.mould.mould_files", "fingers", heavy=True, tools=_CAD),
@@ -53,6 +53,6 @@ STEPS = (
     Step("fit_plate", "parts.fit_plate.fit_plate_files", heavy=True, tools=_CAD),
     Step("system", "scenes.system.system_files", late=True, tools=_DRAWN),
     Step("bom", "docs.bill.bill_of_materials", late=True, tools=("numpy",)),
-    Step("manual", "docs.manual.manual_files", late=True, tools=_SET),
+    Step("manual", "docs.chapters.manual_files", late=True, tools=_SET),
 )
 """In this order. `tools`: distributions whose version may change the step's bytes."""

@@ -12,29 +12,9 @@ from rich.text import Text
 from lumitip_fab.checks.result import Measurement
 from lumitip_fab.checks.run import Outcome
 from lumitip_fab.cli.report import figure, tightness
+from lumitip_fab.text import table_of
 
-DRAWN_AT_THE_LIMIT = frozenset(
-    {
-        "board.clearance",
-        "board.edge_clearance",
-        "board.hot_loop_ground",
-        "board.silk_cells",
-        "board.silk_gap",
-        "board.silk_letters",
-        "board.silk_lines",
-        "board.supply_width",
-        "board.track_width",
-        "board.via_ring",
-        "panels.fiducial_edge",
-        "panels.fiducial_opening",
-        "panels.fiducials",
-        "panels.tab_copper",
-        "panels.web",
-        "wiring.current",
-    }
-)
-"""Checks whose figure is meant to stand at its limit: tracks, gaps and letters are drawn with the
-smallest permitted dimension, shares reach 100 %, and a list repeats a computed value."""
+TABLES = "cli/summary.toml"
 
 
 def relative_margin(measurement: Measurement) -> float | None:
@@ -71,103 +51,16 @@ def tightest(
     least: dict[str, tuple[float, Measurement]] = {}
     for m in measurements:
         share = relative_margin(m)
-        if share is None or not m.passed or m.check in DRAWN_AT_THE_LIMIT:
+        if share is None or not m.passed or m.check in table_of(TABLES)["drawn_at_the_limit"]:
             continue
         if m.check not in least or share < least[m.check][0]:
             least[m.check] = (share, m)
     return tuple(sorted(least.values(), key=lambda pair: pair[0])[:count])
 
 
-_GRID = ("grid.columns", "grid.pitch_mm")
-_COUPLING = ("coupling.gripper",)
-_FLANGE = ("flange.coupling", "coupling.gripper")
-PARAMETERS: dict[str, tuple[str, ...]] = {
-    "mask.page": ("mask.flap_mm", *_GRID),
-    "mask.scale_x": ("mask.measured_ruler_mm",),
-    "mask.scale_y": ("mask.measured_ruler_mm",),
-    "mask.web": ("mask.hole_mm", "grid.pitch_mm"),
-    "mask.clear": ("mask.hole_mm", "board.side_margin_mm", "board.tip_margin_mm"),
-    "mask.flaps": ("mask.flap_mm",),
-    "mask.folds": ("mask.allowance_mm",),
-    "mask.reach": ("mask.flap_mm",),
-    "backing.overhang": ("tip.slant_start_mm",),
-    "backing.min_wall": (
-        "tip.edge_mm",
-        "stack.floor_mm",
-        "outline.waist_margin_mm",
-        "backing.relief_clearance_mm",
-    ),
-    "backing.pocket_gap": ("backing.pocket_clearance_mm", "printer.fit_mm"),
-    "backing.pocket_depth": ("stack.pcb_mm",),
-    "backing.pins": ("board.hole_mm", "backing.pin_clearance_mm"),
-    "backing.pin_clearance": ("backing.pin_clearance_mm", "board.hole_mm"),
-    "backing.tip_edge": ("tip.edge_mm",),
-    "backing.slant": ("tip.slant_start_mm",),
-    "backing.bolt_hole": _COUPLING,
-    "backing.bolt_clearance": _COUPLING,
-    "backing.gripper_pin_hole": _COUPLING,
-    "backing.gripper_pin_depth": _COUPLING,
-    "backing.screw_seat": _COUPLING,
-    "backing.nose": _COUPLING,
-    "fit_plate.pocket_gap": ("backing.pocket_clearance_mm", "printer.fit_mm"),
-    "fit_plate.pin": ("backing.pin_clearance_mm", "printer.fit_mm"),
-    "mould.fits_bed": ("printer.profile", *_GRID),
-    "mould.thickness": ("stack.silicone_mm",),
-    "mould.tip_thickness": ("mould.tip_silicone_mm", "mould.taper_length_mm"),
-    "mould.gap": ("mould.wall_gap_mm",),
-    "mould.draft": ("mould.draft_deg",),
-    "mould.min_wall": ("mould.wall_mm",),
-    "assembly.opening": ("stack.silicone_mm", "coupling.gripper"),
-    "assembly.closes": ("stack.silicone_mm", "coupling.gripper"),
-    "assembly.interference": ("coupling.gripper", "outline.end_margin_mm"),
-    "board.pocket_gap": ("backing.pocket_clearance_mm",),
-    "board.pin_clearance": ("backing.pin_clearance_mm", "board.hole_mm"),
-    "board.height_front": ("stack.silicone_mm",),
-    "board.room_behind": ("backing.tail_mm", "backing.relief_clearance_mm"),
-    "board.clearance": ("board.copper_gap_mm", "board.channel_mm"),
-    "board.edge_clearance": ("board.side_margin_mm", "board.tip_margin_mm", "board.end_margin_mm"),
-    "board.track_width": ("board.track_mm",),
-    "board.via_ring": ("board.via_mm", "board.via_drill_mm"),
-    "board.supply_width": ("board.supply_track_mm",),
-    "board.open": ("board.channel_mm", "board.track_mm"),
-    "board.current": ("emitter.current_ma", "supply.max_ma"),
-    "board.resistor_load": ("emitter.resistor", "emitter.current_ma"),
-    "board.source_load": ("emitter.current_ma", "emitter.string_leds"),
-    "board.source_headroom": ("emitter.string_leds",),
-    "holder.overhang": ("holder.wrap_deg", "holder.wall_mm"),
-    "holder.min_wall": ("holder.wall_mm",),
-    "holder.tray_gap": ("holder.clearance_mm",),
-    "holder.tail_room": ("holder.standoff_mm",),
-    "holder.screw_width": ("holder.screw",),
-    "holder.screw_clearance": ("holder.screw",),
-    "holder.nut_clearance": ("holder.screw",),
-    "holder.cradle": ("holder.body_mm", "holder.clearance_mm"),
-    "holder.grip": ("holder.wrap_deg", "holder.wall_mm"),
-    "holder.strap_width": ("holder.strap_hole_mm",),
-    "flange.min_wall": ("flange.web_mm", "printer.min_wall_mm"),
-    "flange.recess": ("flange.clearance_mm", *_FLANGE),
-    "flange.spigot": _FLANGE,
-    "flange.added_height": ("flange.web_mm", "flange.tail_mm"),
-    "flange.bolt_clearance": _FLANGE,
-    "flange.bolt_bearing": ("flange.web_mm",),
-    "flange.hole_wall": ("flange.web_mm",),
-    "flange.board_gap": ("flange.clearance_mm",),
-    "flange.board_play": ("flange.clearance_mm",),
-    "flange.tails": ("flange.tail_mm",),
-    "flange.tail_floor": ("flange.tail_mm",),
-    "flange.contact_press": ("flange.contacts", "flange.coupling"),
-    "flange.headroom": ("flange.header", "flange.web_mm"),
-    "wiring.lengths": ("wiring.supply_mm", "wiring.controller_mm", "wiring.slack_mm"),
-    "wiring.density": ("wiring.section_mm2", "emitter.current_ma"),
-    "wiring.drop": ("wiring.section_mm2", "wiring.supply_mm", "wiring.controller_mm"),
-}
-"""Fields of the parameter file for each check that one of them decides. A check that compares files
-with each other, or with what derives from all parameters, has no entry."""
-
-
 def parameters_of(check: str) -> tuple[str, ...]:
     """The fields to change when a check fails; empty if no single one decides it."""
-    return PARAMETERS.get(check, ())
+    return tuple(table_of(TABLES)["parameters"].get(check, ()))
 
 
 TIGHTEST = 5

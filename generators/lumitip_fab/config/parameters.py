@@ -17,17 +17,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from lumitip_fab.catalogue.record import Name, Strict
-from lumitip_fab.config.sections import (
-    Board,
-    Breakout,
-    DeviceName,
-    Flange,
-    Flex,
-    Holder,
-    Mask,
-    Module,
-    Text,
-)
+from lumitip_fab.config import sections
 
 REVISION = r"^[A-Za-z0-9.\-]{1,8}$"
 Gap = Annotated[float, Field(ge=0, le=20)]
@@ -167,7 +157,7 @@ class Controller(Strict):
 
     board: Name
     """Name of a controller in `parts/controllers.toml`, for the breakout or the flange's board."""
-    name: DeviceName
+    name: sections.DeviceName
     """Bluetooth name of the device, in any script: at most 29 bytes of UTF-8, a scan response."""
 
 
@@ -233,7 +223,7 @@ class Printer(Strict):
 class Parameters(Strict):
     """A whole parameter file."""
 
-    name: Text
+    name: sections.Text
     """Name of the design, in any script; transliterated where a board or a page lacks its
     letters."""
     revision: Annotated[str, Field(pattern=REVISION)]
@@ -242,19 +232,19 @@ class Parameters(Strict):
     stack: Stack
     outline: Outline
     backing: Backing
-    flex: Flex
+    flex: sections.Flex
     tip: Tip
     coupling: Coupling
-    board: Board
+    board: sections.Board
     emitter: Emitter
     receiver: Receiver
     controller: Controller
     supply: Supply
     wiring: Cables
-    mask: Mask
+    mask: sections.Mask
     mould: Mould
-    breakout: Breakout
-    holder: Holder
-    flange: Flange
-    module: Module
+    breakout: sections.Breakout
+    holder: sections.Holder
+    flange: sections.Flange
+    module: sections.Module
     printer: Printer

@@ -3,29 +3,7 @@
 from dataclasses import dataclass, fields
 from typing import Any, get_args, get_type_hints
 
-from lumitip_fab.catalogue import Catalogue
-from lumitip_fab.catalogue.controllers import (
-    Controller,
-    LinearRegulator,
-    Regulator,
-    Strip,
-    Transistor,
-)
-from lumitip_fab.catalogue.current_sources import CurrentSource
-from lumitip_fab.catalogue.electronics import (
-    Capacitor,
-    Crystal,
-    Fuse,
-    Indicator,
-    Inductor,
-    Led,
-    Multiplexer,
-    Photodetector,
-    PulseResistor,
-    Resistor,
-    ResistorArray,
-    TvsDiode,
-)
+from lumitip_fab.catalogue import Catalogue, controllers, current_sources, electronics
 from lumitip_fab.catalogue.grippers import Gripper, ToolCoupling
 from lumitip_fab.catalogue.materials import Fastener, Filament, Film, Printer, Silicone
 from lumitip_fab.config.parameters import Parameters
@@ -35,22 +13,22 @@ from lumitip_fab.config.parameters import Parameters
 class EmitterParts:
     """Parts of the emitter's board."""
 
-    led: Led
-    source: CurrentSource
-    resistor: Resistor
-    switch: Transistor | None
+    led: electronics.Led
+    source: current_sources.CurrentSource
+    resistor: electronics.Resistor
+    switch: controllers.Transistor | None
 
 
 @dataclass(frozen=True)
 class ReceiverParts:
     """Parts of the receiver's board."""
 
-    photodetector: Photodetector
-    array: ResistorArray
-    resistor: Resistor
-    capacitor: Capacitor
-    bulk_capacitor: Capacitor | None
-    multiplexer: Multiplexer
+    photodetector: electronics.Photodetector
+    array: electronics.ResistorArray
+    resistor: electronics.Resistor
+    capacitor: electronics.Capacitor
+    bulk_capacitor: electronics.Capacitor | None
+    multiplexer: electronics.Multiplexer
 
 
 @dataclass(frozen=True)
@@ -64,14 +42,14 @@ class BackingParts:
 class ControllerParts:
     """The microcontroller board."""
 
-    board: Controller
+    board: controllers.Controller
 
 
 @dataclass(frozen=True)
 class BreakoutParts:
     """Parts of the breakout board."""
 
-    socket: Strip
+    socket: controllers.Strip
 
 
 @dataclass(frozen=True)
@@ -79,30 +57,30 @@ class FlangeParts:
     """Parts of the flange and its board."""
 
     coupling: ToolCoupling
-    contacts: Strip
-    header: Strip
-    regulator: Regulator
-    inductor: Inductor
-    input_capacitor: Capacitor
-    output_capacitor: Capacitor
-    boot_capacitor: Capacitor
-    fuse: Fuse
-    transistor: Transistor
-    resistor: Resistor
-    tvs: TvsDiode
-    inrush_resistor: PulseResistor
-    indicator: Indicator | None
+    contacts: controllers.Strip
+    header: controllers.Strip
+    regulator: controllers.Regulator
+    inductor: electronics.Inductor
+    input_capacitor: electronics.Capacitor
+    output_capacitor: electronics.Capacitor
+    boot_capacitor: electronics.Capacitor
+    fuse: electronics.Fuse
+    transistor: controllers.Transistor
+    resistor: electronics.Resistor
+    tvs: electronics.TvsDiode
+    inrush_resistor: electronics.PulseResistor
+    indicator: electronics.Indicator | None
 
 
 @dataclass(frozen=True)
 class ModuleParts:
     """Parts beside a controller that is soldered to the flange's board."""
 
-    regulator: LinearRegulator
-    supply_capacitor: Capacitor
-    capacitor: Capacitor
-    crystal: Crystal
-    crystal_capacitor: Capacitor
+    regulator: controllers.LinearRegulator
+    supply_capacitor: electronics.Capacitor
+    capacitor: electronics.Capacitor
+    crystal: electronics.Crystal
+    crystal_capacitor: electronics.Capacitor
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ import json
 import tomllib
 from typing import Any
 
-from lumitip_fab.config.automatic import AUTO, FIELDS
+from lumitip_fab.config.automatic import AUTO, automatic_fields
 from lumitip_fab.config.parameters import Parameters
 from lumitip_fab.config.parts import NAMED, NONE, OPTIONAL
 from lumitip_fab.paths import packaged_design
@@ -54,7 +54,7 @@ def schema_text() -> str:
 
 def _allow_auto(schema: dict[str, Any]) -> None:
     """Let the fields whose value the program can choose be `"auto"`, which is their default."""
-    for field, automatic in FIELDS.items():
+    for field, automatic in automatic_fields().items():
         section, key = field.split(".")
         name = schema["properties"][section]["$ref"].rpartition("/")[2]
         table = schema["$defs"][name]["properties"]

@@ -3,34 +3,21 @@ insulation."""
 
 from dataclasses import dataclass
 
-INKS = {
-    "BK": "#1a1a1a",
-    "BN": "#8a5a2b",
-    "RD": "#d11f2e",
-    "OG": "#f07d13",
-    "YE": "#e6c200",
-    "GN": "#1f9d48",
-    "BU": "#2463c4",
-    "VT": "#8446b0",
-    "GY": "#8d949b",
-    "WH": "#ffffff",
-    "PK": "#f09bb8",
-    "TQ": "#2bb9b4",
+COLOURS = {
+    "BK": ("black", "#1a1a1a"),
+    "BN": ("brown", "#8a5a2b"),
+    "RD": ("red", "#d11f2e"),
+    "OG": ("orange", "#f07d13"),
+    "YE": ("yellow", "#e6c200"),
+    "GN": ("green", "#1f9d48"),
+    "BU": ("blue", "#2463c4"),
+    "VT": ("violet", "#8446b0"),
+    "GY": ("grey", "#8d949b"),
+    "WH": ("white", "#ffffff"),
+    "PK": ("pink", "#f09bb8"),
+    "TQ": ("turquoise", "#2bb9b4"),
 }
-NAMES = {
-    "BK": "black",
-    "BN": "brown",
-    "RD": "red",
-    "OG": "orange",
-    "YE": "yellow",
-    "GN": "green",
-    "BU": "blue",
-    "VT": "violet",
-    "GY": "grey",
-    "WH": "white",
-    "PK": "pink",
-    "TQ": "turquoise",
-}
+"""Name and ink of each colour, by its code."""
 
 
 def codes_of(colour: str) -> tuple[str, ...]:
@@ -40,7 +27,7 @@ def codes_of(colour: str) -> tuple[str, ...]:
 
 def named(colour: str) -> str:
     """A colour in words, such as `"green"` or `"white with green"`."""
-    return " with ".join(NAMES[code] for code in codes_of(colour))
+    return " with ".join(COLOURS[code][0] for code in codes_of(colour))
 
 
 @dataclass(frozen=True)

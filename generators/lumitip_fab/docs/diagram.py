@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from xml.sax.saxutils import escape
 
 from lumitip_fab.design import Cable, Cabling, Terminal, Title, Wire
-from lumitip_fab.design.cabling import INKS, codes_of
+from lumitip_fab.design.cabling import COLOURS, codes_of
 
 _ROW, _HEAD, _FOOT, _GAP, _TOP = 7.0, 17.0, 3.0, 12.0, 24.0
 _MARGIN, _LABEL = 8.0, 30.0
@@ -135,10 +135,10 @@ def _wire(run: Run, wire: Wire) -> Iterator[str]:
     current = f" {wire.current_ma:.3g} mA" if wire.current_ma else ""
     yield f'<g class="wire" id="{wire.number}" fill="none">'
     yield f'<path d="{path}" stroke="{_INK}" stroke-width="1.5"/>'
-    yield f'<path class="core" d="{path}" stroke="{INKS[base]}" stroke-width="1.1"/>'
+    yield f'<path class="core" d="{path}" stroke="{COLOURS[base][1]}" stroke-width="1.1"/>'
     for code in stripe:
         yield (
-            f'<path class="stripe" d="{path}" stroke="{INKS[code]}" stroke-width="1.1" '
+            f'<path class="stripe" d="{path}" stroke="{COLOURS[code][1]}" stroke-width="1.1" '
             'stroke-dasharray="2 2"/>'
         )
     yield (

@@ -3,6 +3,7 @@
 from base64 import b64encode
 from collections.abc import Sequence
 from html import escape
+from pathlib import Path
 
 from markdown_it import MarkdownIt
 from markdown_it.token import Token
@@ -10,23 +11,6 @@ from markdown_it.token import Token
 from lumitip_fab.pipeline.artefact import Files
 
 _KINDS = {"svg": "image/svg+xml", "png": "image/png"}
-_STYLE = """\
-body { font: 16px/1.5 Helvetica, Arial, sans-serif; color: #1a1a1a; max-width: 50rem;
-  margin: 2rem auto; padding: 0 1rem; }
-h1, h2 { line-height: 1.2; }
-h2 { border-bottom: 2px solid #d9dee3; padding-bottom: .2rem; margin-top: 3rem; }
-table { border-collapse: collapse; margin: 1rem 0; font-size: .9rem; }
-th, td { border: 1px solid #cfd6dc; padding: .25rem .6rem; text-align: left; }
-th { background: #f4f6f8; }
-.alone, .pair { text-align: center; vertical-align: bottom; }
-.alone { display: block; margin: 1.5rem 0; }
-.pair { display: inline-block; width: 49%; margin-bottom: 1rem; }
-img { max-width: 100%; max-height: 40rem; }
-.pair img { max-height: 24rem; }
-small { color: #5a6b7a; font-size: .85rem; }
-code { background: #f4f6f8; padding: 0 .2rem; font-size: .9em; }
-@media print { h2 { break-before: page; } .alone, .pair, tr { break-inside: avoid; } }
-"""
 
 
 def markdown() -> MarkdownIt:
@@ -56,8 +40,9 @@ def html_page(name: str, text: str, files: Files) -> str:
         )
 
     reader.add_render_rule("image", image)
+    style = Path(__file__).with_name("page.css").read_text(encoding="utf-8")
     return (
         f'<!doctype html>\n<html lang="en">\n<head><meta charset="utf-8"><title>{escape(name)}'
-        f'</title>\n<meta name="viewport" content="width=device-width">\n<style>\n{_STYLE}</style>'
+        f'</title>\n<meta name="viewport" content="width=device-width">\n<style>\n{style}</style>'
         f"</head>\n<body>\n{reader.render(text)}</body>\n</html>\n"
     )

@@ -7,7 +7,9 @@ from lumitip_fab.design import Cable, Cabling, Design, Wire
 from lumitip_fab.design.cabling import named
 from lumitip_fab.docs.diagram import diagram
 from lumitip_fab.pipeline.artefact import Artefact
-from lumitip_fab.text import as_written
+from lumitip_fab.text import as_written, passage
+
+_TEXTS = "docs/wiring.md"
 
 COLUMNS = (
     "wire",
@@ -21,56 +23,6 @@ COLUMNS = (
     "length_mm",
     "current_ma",
 )
-_NOTE = """\
-# Wiring {title}
-
-Stranded copper, colours by IEC 60757; `wiring.svg` shows the same as a drawing. Pads are counted
-from the square one: on a finger's board that is the leftmost, seen from the front with the tip up.
-Put the wires of a finger in from the back of its board, solder them on the front, and cut the
-joints short. Solder every board before it goes into a printed part, which an iron would melt.
-{ties}
-{tables}
-
-Lengths are for each wire, rounded up to whole centimetres. From a finger: its reach on the finger,
-{travel_mm:g} mm for half the gripper's stroke and {controller_mm:g} mm along the gripper; to the
-supply {supply_mm:g} mm; and {slack_mm:g} mm each for bends and stripping.
-
-{power}
-- Measure a supply before it is connected: makers' colours differ from these. On the tool connector
-  of Universal Robots' arms red is 0 V, and grey carries the voltage.
-- Twist the wires of the emitter. Leave a loop at each finger, so that it opens without pulling.
-"""
-_TIED = """
-Hold each cable at the {boards}: beside its row of wire pads are two holes of {hole_mm:g} mm. When
-the wires are soldered, and before the board goes into a printed part, pass a waxed thread or a bare
-wire of up to 1 mm through both, over the cable, and knot it behind the board. A pull is then on the
-thread, not on the joints.{loose}
-"""
-_LOOSE = """ There is no room for such holes on the
-board of {boards}: hold that cable to the gripper, near the finger."""
-_FED = """\
-- The wire of 5 V feeds the controller. Leave it away where it is fed over USB."""
-_LIT = """\
-- The wire of 5 V feeds LEDs and controller. Solder it even where the controller is fed over USB:
-  the LEDs stay dark without it."""
-_AT_FLANGE = """
-- At the flange the wires end in a socket for its header {header}, whose contact 1 has the square
-  pad."""
-_ALONE = """\
-- The controller is fed over USB. Its ground and that of the LEDs' supply need not be joined:
-  between the fingers there is only light."""
-
-_ALONE_SWITCHED = """\
-- The controller is fed over USB. The wire LED of the emitter goes to its pin {pin}, not to the
-  supply. Join the ground of the LEDs' supply with a ground pin of the controller: without it the
-  LEDs cannot be switched."""
-_SWITCHED = """
-- High on the wire LED turns the LEDs on. While it is open, or the controller has no firmware, they
-  stay dark."""
-
-_MODULE = """\
-- The controller is on the flange's board and fed by it. Solder the wires into the pads of that
-  board before it goes into the flange."""
 
 
 def cable_list(cabling: Cabling) -> str:
@@ -100,7 +52,7 @@ def cable_list(cabling: Cabling) -> str:
 def wiring_note(design: Design) -> str:
     """The wires with what to mind, in Markdown."""
     title, cabling = design.title, design.cabling
-    return _NOTE.format(
+    return passage(_TEXTS, "note").format(
         ties=_tied(design),
         title=as_written(f"{title.name} {title.revision}"),
         tables="\n\n".join(map(_table, cabling.cables)),
@@ -120,10 +72,10 @@ def _tied(design: Design) -> str:
     if not tied:
         return ""
     loose = [finger.name for finger in design.fingers if not finger.ties]
-    return _TIED.format(
+    return passage(_TEXTS, "tied").format(
         boards=_listed(tied),
         hole_mm=ties[tied[0]][0].hole_mm,
-        loose=_LOOSE.format(boards=_listed(loose)) if loose else "",
+        loose=passage(_TEXTS, "loose").format(boards=_listed(loose)) if loose else "",
     )
 
 
@@ -137,20 +89,20 @@ def _power(cabling: Cabling) -> str:
     switching = [wire for wire in wires if wire.signal == "LED"]
     said = _fed_by(cabling)
     if switching and switching[0].end.board == "controller":
-        said = _ALONE_SWITCHED.format(pin=switching[0].end.pin)
-    return said + (_SWITCHED if switching else "")
+        said = passage(_TEXTS, "alone_switched").format(pin=switching[0].end.pin)
+    return said + (passage(_TEXTS, "switched") if switching else "")
 
 
 def _fed_by(cabling: Cabling) -> str:
     """How the controller comes by its supply."""
     if cabling.cables[1].end.board == "flange":
-        return _MODULE
+        return passage(_TEXTS, "module")
     if not fed(cabling):
-        return _ALONE
+        return passage(_TEXTS, "alone")
     headers = {w.end.connector for w in cabling.cables[2].wires if w.end.board == "flange"}
     lit = any(wire.signal == "5V" for wire in cabling.cables[0].wires)
-    return (_LIT if lit else _FED) + "".join(
-        _AT_FLANGE.format(header=header) for header in sorted(headers)
+    return passage(_TEXTS, "lit" if lit else "fed") + "".join(
+        passage(_TEXTS, "at_flange").format(header=header) for header in sorted(headers)
     )
 
 

@@ -7,20 +7,12 @@ from binascii import crc_hqx
 from collections.abc import Iterable
 
 from lumitip.layout import Layout
-from lumitip.protocol import bluetooth as legacy
-from lumitip.protocol import bluetooth as uuids
-from lumitip.protocol import packet
+from lumitip.protocol import bluetooth, packet
 from lumitip_fab.design import Controller, Design, Title, Wiring
 from lumitip_fab.design.electrical import Electrical
 from lumitip_fab.paths import firmware_sources
 from lumitip_fab.pipeline.artefact import Artefact
-
-_HEAD = """\
-// Written by lumitip-fab for {title}. Do not edit: build the design again.
-#pragma once
-
-#include <stdint.h>
-"""
+from lumitip_fab.text import passage
 
 
 def layout_header(
@@ -29,38 +21,27 @@ def layout_header(
     """Cells and how they are wired."""
     lines = len(wiring.select_pins)
     line_pf = electrical.channel.line_pf + electrical.channel.detector_pf
-    return f"""{_head(title)}
-// Pins of {json.dumps(controller.title)}: one analog input for each multiplexer, U1 first; select
-// lines, lowest bit first.
-#define LUMITIP_ADC_PINS {", ".join(map(_pin, wiring.adc_pins))}
-#define LUMITIP_SELECT_PINS {", ".join(map(_pin, wiring.select_pins))}
-{_switching(wiring, electrical)}
-namespace lumitip {{
-
-constexpr char LAYOUT_HASH[] = "{layout.design_hash}";
-
-constexpr uint16_t CELLS = {len(layout)};
-constexpr uint16_t MUXES = {wiring.muxes};
-constexpr uint8_t SELECT_LINES = {lines};
-constexpr uint16_t CHANNELS = {2**lines};
-constexpr uint8_t ADC_BITS = {controller.adc_bits};
-constexpr uint32_t PULL_UP_OHM = {round(layout.optics.pull_up_ohm)};
-constexpr uint32_t LINE_PF = {math.ceil(line_pf)};  // what the pull-up charges
-// What a photodetector needs after a change of input; 0 where it is not known.
-constexpr uint32_t DETECTOR_US = {math.ceil(electrical.channel.wait_us or 0)};
-
-// Multiplexer of each cell, 0 is U1, in frame order.
-constexpr uint16_t MUX[CELLS] = {{
-{_table(layout.mux.tolist())}
-}};
-
-// Input of that multiplexer.
-constexpr uint8_t CHANNEL[CELLS] = {{
-{_table(layout.channel.tolist())}
-}};
-
-}}  // namespace lumitip
-"""
+    return (
+        _head(title)
+        + "\n"
+        + passage("firmware/headers.txt", "layout").format(
+            board=json.dumps(controller.title),
+            adc_pins=", ".join(map(_pin, wiring.adc_pins)),
+            select_pins=", ".join(map(_pin, wiring.select_pins)),
+            switching=_switching(wiring, electrical),
+            layout=layout,
+            cells=len(layout),
+            wiring=wiring,
+            lines=lines,
+            channels=2**lines,
+            controller=controller,
+            pull_up_ohm=round(layout.optics.pull_up_ohm),
+            line_pf=math.ceil(line_pf),
+            detector_us=math.ceil(electrical.channel.wait_us or 0),
+            mux=_table(layout.mux.tolist()),
+            channel=_table(layout.channel.tolist()),
+        )
+    )
 
 
 def _switching(wiring: Wiring, electrical: Electrical) -> str:
@@ -86,28 +67,21 @@ def _switching(wiring: Wiring, electrical: Electrical) -> str:
 def protocol_header(layout: Layout, controller: Controller, title: Title) -> str:
     """Device name and UUIDs, and the checksum that ties it to `layout.h`."""
     code = ", ".join(f"0x{byte:02x}" for byte in bytes.fromhex(layout.design_hash)[:8])
-    return f"""{_head(title)}
-#define LUMITIP_DEVICE_NAME {_text(controller.name)}
-
-namespace lumitip {{
-
-constexpr uint8_t MAGIC = 0x{packet.MAGIC:02x};
-constexpr uint8_t VERSION = {packet.VERSION};
-constexpr uint16_t DESIGN_CODE = 0x{packet.design_code(layout.design_hash):04x};
-constexpr uint8_t DESIGN_HASH[8] = {{{code}}};
-
-constexpr char SERVICE_UUID[] = "{uuids.SERVICE}";
-constexpr char FRAMES_UUID[] = "{uuids.FRAMES}";
-constexpr char STATUS_UUID[] = "{uuids.STATUS}";
-constexpr char LEGACY_SERVICE_UUID[] = "{_short(legacy.LEGACY_SERVICE)}";
-constexpr char LEGACY_FRAMES_UUID[] = "{_short(legacy.LEGACY_FRAMES)}";
-
-// The layout.h that this file was made with; the compiler holds the two against each other.
-constexpr char PROTOCOL_HASH[] = "{layout.design_hash}";
-constexpr uint16_t WIRING_SUM = 0x{wiring_sum(layout):04x};
-
-}}  // namespace lumitip
-"""
+    return (
+        _head(title)
+        + "\n"
+        + passage("firmware/headers.txt", "protocol").format(
+            name=_text(controller.name),
+            packet=packet,
+            design_code=packet.design_code(layout.design_hash),
+            code=code,
+            uuids=bluetooth,
+            layout=layout,
+            legacy_service=_short(bluetooth.LEGACY_SERVICE),
+            legacy_frames=_short(bluetooth.LEGACY_FRAMES),
+            wiring_sum=wiring_sum(layout),
+        )
+    )
 
 
 def wiring_sum(layout: Layout) -> int:
@@ -119,7 +93,9 @@ def wiring_sum(layout: Layout) -> int:
 
 def _head(title: Title) -> str:
     # Quoted as JSON, a name can neither end the comment nor continue it on the next line.
-    return _HEAD.format(title=f"{json.dumps(title.name)}, revision {title.revision}")
+    return passage("firmware/headers.txt", "head").format(
+        title=f"{json.dumps(title.name)}, revision {title.revision}"
+    )
 
 
 def _pin(name: str) -> str:

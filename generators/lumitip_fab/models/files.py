@@ -7,7 +7,7 @@ from build123d import Compound
 from lumitip_fab.design import Design, Footprint, footprints
 from lumitip_fab.design.pcb import MODELS
 from lumitip_fab.errors import BuildError
-from lumitip_fab.models import chips, connectors, leaded
+from lumitip_fab.models import connectors, shapes
 from lumitip_fab.models.shapes import Named
 from lumitip_fab.parts import export
 from lumitip_fab.pipeline.artefact import Artefact
@@ -51,10 +51,10 @@ def _size(shape: Footprint) -> str:
 
 def _step(kind: str, shape: Footprint) -> bytes:
     makers = {
-        "chip": lambda: chips.chip(kind, shape),
-        "array": lambda: chips.array(shape),
-        "module": lambda: chips.module(shape),
-        "leaded": lambda: leaded.leaded(shape),
+        "chip": lambda: shapes.chip(kind, shape),
+        "array": lambda: shapes.array(shape),
+        "module": lambda: shapes.module(shape),
+        "leaded": lambda: shapes.leaded(shape),
         "socket": lambda: connectors.socket(shape),
         "header": lambda: connectors.header(shape),
         "springs": lambda: connectors.springs(shape),

@@ -17,22 +17,10 @@ from lumitip_fab.design import (
     Point,
     Stack,
     Tip,
+    frames,
 )
-from lumitip_fab.design.frames import (
-    backing_bed_to_sensor,
-    mount_to_sensor,
-    plate_back_to_sensor,
-)
-from lumitip_fab.parts import coupling, export
+from lumitip_fab.parts import coupling, export, shapes
 from lumitip_fab.parts.letters import letter_cutter
-from lumitip_fab.parts.shapes import (
-    box_solid,
-    cylinder,
-    one_solid,
-    outline_face,
-    prism,
-    side_prism,
-)
 from lumitip_fab.pipeline.artefact import Artefact
 
 BEYOND_MM = 1.0  # how far a cutter reaches past what it cuts
@@ -55,14 +43,14 @@ def sheet(plate: Solid, finger: Finger, stack: Stack, mount: Mount, interface: I
     opening = Box(notch.x_min_mm, notch.x_max_mm, end_y, notch.y_max_mm)
     deep = stack.back_z_mm + interface.groove_depth_mm
     island = _within(interface.groove, interface.groove_mm, end_y)
-    groove = box_solid(_from(interface.groove, end_y), low, deep)
+    groove = shapes.box_solid(_from(interface.groove, end_y), low, deep)
     taken = [
         coupling.beyond_mount_plane(mount, stack),
-        box_solid(opening, low, high),
-        groove - box_solid(island, low - BEYOND_MM, high),
-        letter_cutter(finger.name, interface.letter, plate_back_to_sensor(mount, stack)),
-        *(cylinder(at, interface.thread_hole_mm, low, high) for at in finger.holes),
-        *(box_solid(relief.box, low, high) for relief in finger.reliefs),
+        shapes.box_solid(opening, low, high),
+        groove - shapes.box_solid(island, low - BEYOND_MM, high),
+        letter_cutter(finger.name, interface.letter, frames.plate_back_to_sensor(mount, stack)),
+        *(shapes.cylinder(at, interface.thread_hole_mm, low, high) for at in finger.holes),
+        *(shapes.box_solid(relief.box, low, high) for relief in finger.reliefs),
     ]
     return (plate - taken).clean()
 
@@ -78,15 +66,15 @@ def interface_solid(finger: Finger, stack: Stack, mount: Mount, interface: Inter
     # To the coupling the pad is the plate, and all before it the depth of a pocket.
     behind = replace(stack, floor_mm=pad, pcb_mm=stack.rim_z_mm - back_z, sunk=True)
     far = replace(interface.box, x_min_mm=-_FAR_MM, x_max_mm=_FAR_MM, y_min_mm=-_FAR_MM)
-    held = coupling.coupling_solid(mount, behind, None) & box_solid(far, -_FAR_MM, _FAR_MM)
-    whole = box_solid(_from(interface.box, end_y), back_z - pad, back_z) + held
+    held = coupling.coupling_solid(mount, behind, None) & shapes.box_solid(far, -_FAR_MM, _FAR_MM)
+    whole = shapes.box_solid(_from(interface.box, end_y), back_z - pad, back_z) + held
     taken = [
         coupling.beyond_mount_plane(mount, behind),
         *coupling.coupling_holes(mount, behind),
-        letter_cutter(finger.name, mount.letter, mount_to_sensor(mount, behind)),
+        letter_cutter(finger.name, mount.letter, frames.mount_to_sensor(mount, behind)),
     ]
     whole = whole + _rim(stack, interface, end_y)
-    return one_solid((whole - taken).clean(), finger, "interface")
+    return shapes.one_solid((whole - taken).clean(), finger, "interface")
 
 
 def _rim(stack: Stack, interface: Interface, end_y: float) -> Solid:
@@ -100,8 +88,8 @@ def _rim(stack: Stack, interface: Interface, end_y: float) -> Solid:
         (inner.y_max_mm + slope + BEYOND_MM, high + BEYOND_MM),
         (inner.y_min_mm, high + BEYOND_MM),
     ]
-    hollow = side_prism(corners, inner.x_min_mm, inner.x_max_mm)
-    return box_solid(_from(interface.box, end_y), low, high) - hollow
+    hollow = shapes.side_prism(corners, inner.x_min_mm, inner.x_max_mm)
+    return shapes.box_solid(_from(interface.box, end_y), low, high) - hollow
 
 
 def _from(box: Box, y_mm: float) -> Box:
@@ -125,11 +113,11 @@ def backing(design: Design, finger: Finger) -> tuple[Artefact, ...]:
     solid = backing_solid(
         finger, stack, design.outline, design.tip, design.board, mount, design.interfaces
     )
-    path, bed = f"backing/{finger.name}_backing", backing_bed_to_sensor(mount, stack)
+    path, bed = f"backing/{finger.name}_backing", frames.backing_bed_to_sensor(mount, stack)
     files = export.part_files(path, solid, bed)
     for interface in design.interfaces:
         solid = interface_solid(finger, stack, mount, interface)
-        path, bed = f"interface/{finger.name}_interface", mount_to_sensor(mount, stack)
+        path, bed = f"interface/{finger.name}_interface", frames.mount_to_sensor(mount, stack)
         files += export.part_files(path, solid, bed)
     return files
 
@@ -150,8 +138,8 @@ def backing_solid(
     """
     plate = _plate(stack, outline) - _tip_cutter(stack, outline, tip)
     for interface in interfaces:
-        return one_solid(sheet(plate, finger, stack, mount, interface), finger, "backing")
-    plate = plate - box_solid(board.pocket, stack.pocket_z_mm, stack.rim_z_mm + BEYOND_MM)
+        return shapes.one_solid(sheet(plate, finger, stack, mount, interface), finger, "backing")
+    plate = plate - shapes.box_solid(board.pocket, stack.pocket_z_mm, stack.rim_z_mm + BEYOND_MM)
     plate = plate - coupling.notch_cutter(stack, mount, finger.notch)
     whole = plate + coupling.coupling_solid(mount, stack, finger.notch)
     foot = stack.pocket_z_mm - stack.floor_mm / 2
@@ -161,10 +149,10 @@ def backing_solid(
     taken = [
         coupling.beyond_mount_plane(mount, stack),
         *coupling.coupling_holes(mount, stack),
-        letter_cutter(finger.name, mount.letter, mount_to_sensor(mount, stack)),
+        letter_cutter(finger.name, mount.letter, frames.mount_to_sensor(mount, stack)),
         *(_relief(r.box, r.depth_mm, r.through, stack) for r in finger.reliefs),
     ]
-    return one_solid((whole - taken).clean(), finger, "backing")
+    return shapes.one_solid((whole - taken).clean(), finger, "backing")
 
 
 def pin_solid(
@@ -180,7 +168,7 @@ def pin_solid(
         pocket_mm: how far it stands out of the floor.
     """
     lead = min(PIN_LEAD_MM, pin_mm / 4, pocket_mm / 4)
-    pin = cylinder(centre, pin_mm, foot_mm, top_mm)
+    pin = shapes.cylinder(centre, pin_mm, foot_mm, top_mm)
     top = max(pin.edges(), key=lambda edge: edge.center().Z)
     return pin.chamfer(lead, None, [top])
 
@@ -189,8 +177,8 @@ def _plate(stack: Stack, outline: Outline) -> Solid:
     """The plate, reaching past the gripper end so that the tilted mount plane cuts it all."""
     half = outline.end_width_mm / 2
     foot = Box(-half, half, outline.end_y_mm - BEYOND_MM, outline.end_y_mm)
-    plate = prism(outline_face(outline), stack.back_z_mm, stack.face_z_mm)
-    return plate + box_solid(foot, stack.back_z_mm, stack.face_z_mm)
+    plate = shapes.prism(shapes.outline_face(outline), stack.back_z_mm, stack.face_z_mm)
+    return plate + shapes.box_solid(foot, stack.back_z_mm, stack.face_z_mm)
 
 
 def _tip_cutter(stack: Stack, outline: Outline, tip: Tip) -> Solid:
@@ -206,10 +194,10 @@ def _tip_cutter(stack: Stack, outline: Outline, tip: Tip) -> Solid:
         (end_y, far_z),
         (start_y, far_z),
     ]
-    return side_prism(corners, -half, half)
+    return shapes.side_prism(corners, -half, half)
 
 
 def _relief(box: Box, depth_mm: float, through: bool, stack: Stack) -> Solid:
     """Room behind the board, from inside the pocket to its depth or through the plate."""
     bottom = stack.back_z_mm - BEYOND_MM if through else stack.pocket_z_mm - depth_mm
-    return box_solid(box, bottom, stack.pocket_z_mm + stack.pcb_mm / 2)
+    return shapes.box_solid(box, bottom, stack.pocket_z_mm + stack.pcb_mm / 2)

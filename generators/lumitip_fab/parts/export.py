@@ -21,6 +21,9 @@ from lumitip_fab.design.frames import Matrix
 from lumitip_fab.parts.shapes import placed
 from lumitip_fab.parts.surface import Mesh
 from lumitip_fab.pipeline.artefact import Artefact
+from lumitip_fab.text import passage
+
+_TEXTS = "parts/export.txt"
 
 _USAGE = re.compile(r"NEXT_ASSEMBLY_USAGE_OCCURRENCE\('[^']*'([^;]*);")
 _BREAK = re.compile(r"\n\s*")
@@ -99,32 +102,6 @@ _TIMESTAMP = "2000-01-01T00:00:00"
 _ZIP_DATE = (2000, 1, 1, 0, 0, 0)
 _TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
-_CONTENT_TYPES = """<?xml version="1.0" encoding="UTF-8"?>
-<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">
-<Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/>
-<Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/>
-</Types>
-"""
-_RELATIONSHIPS = """<?xml version="1.0" encoding="UTF-8"?>
-<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">
-<Relationship Id="rel0" Target="/3D/3dmodel.model"
- Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/>
-</Relationships>
-"""
-_MODEL = """<?xml version="1.0" encoding="UTF-8"?>
-<model unit="millimeter" xml:lang="en-US"
- xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02">
-{metadata}<resources><object id="1" type="model" name={name}><mesh>
-<vertices>
-{vertices}
-</vertices>
-<triangles>
-{triangles}
-</triangles>
-</mesh></object></resources>
-<build><item objectid="1"/></build>
-</model>
-"""
 _DESCRIPTION = '<metadata name="Description">{}</metadata>\n'
 
 
@@ -227,14 +204,14 @@ def three_mf(surface: Mesh, name: str, description: str = "") -> bytes:
         f'<triangle v1="{a}" v2="{b}" v3="{c}"/>' for a, b, c in surface.triangles.tolist()
     )
     metadata = _DESCRIPTION.format(escape(description)) if description else ""
-    model = _MODEL.format(
+    model = passage(_TEXTS, "model").format(
         name=quoteattr(name), metadata=metadata, vertices=vertices, triangles=triangles
     )
     package = io.BytesIO()
     with zipfile.ZipFile(package, "w") as files:
         for path, text in (
-            ("[Content_Types].xml", _CONTENT_TYPES),
-            ("_rels/.rels", _RELATIONSHIPS),
+            ("[Content_Types].xml", passage(_TEXTS, "content_types")),
+            ("_rels/.rels", passage(_TEXTS, "relationships")),
             ("3D/3dmodel.model", model),
         ):
             entry = zipfile.ZipInfo(path, _ZIP_DATE)

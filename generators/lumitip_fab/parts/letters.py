@@ -6,37 +6,10 @@ from build123d import Face, Solid, Vector, Wire
 from lumitip_fab.design import Box, Letter, Point
 from lumitip_fab.design.frames import Matrix
 from lumitip_fab.parts.shapes import box_solid, placed
+from lumitip_fab.text import table_of
 
 BEYOND_MM = 0.5  # how far the cutter stands out of the wall
-_E = (
-    (0.0, 0.0),
-    (0.7, 0.0),
-    (0.7, 0.17),
-    (0.17, 0.17),
-    (0.17, 0.415),
-    (0.6, 0.415),
-    (0.6, 0.585),
-    (0.17, 0.585),
-    (0.17, 0.83),
-    (0.7, 0.83),
-    (0.7, 1.0),
-    (0.0, 1.0),
-)
-_R = (
-    (0.0, 0.0),
-    (0.17, 0.0),
-    (0.17, 0.415),
-    (0.42, 0.415),
-    (0.53, 0.0),
-    (0.7, 0.0),
-    (0.58, 0.44),
-    (0.7, 0.56),
-    (0.7, 0.88),
-    (0.6, 1.0),
-    (0.0, 1.0),
-)
-_R_BOWL = ((0.17, 0.585), (0.53, 0.585), (0.53, 0.83), (0.17, 0.83))
-_STROKES = {"E": (_E,), "R": (_R, _R_BOWL)}
+_TABLE = "parts/letters.toml"
 
 
 def letter_cutter(finger: str, letter: Letter, to_sensor: Matrix) -> Solid:
@@ -47,7 +20,7 @@ def letter_cutter(finger: str, letter: Letter, to_sensor: Matrix) -> Solid:
         letter: place and size, in the frame in which the part is printed.
         to_sensor: from that frame.
     """
-    outer, *inner = (_ring(corners, letter) for corners in _STROKES[finger[0].upper()])
+    outer, *inner = (_ring(corners, letter) for corners in table_of(_TABLE)[finger[0].upper()])
     cutter = Solid.extrude(Face(outer, inner), Vector(0, letter.depth_mm + BEYOND_MM, 0))
     return placed(cutter, np.asarray(to_sensor, dtype=np.float64))
 
@@ -63,11 +36,11 @@ def letter_rings(finger: str, box: Box) -> list[list[Point]]:
     high = box.length_mm
     return [
         [(box.x_min_mm + u * high, box.y_min_mm + v * high) for u, v in corners]
-        for corners in _STROKES[finger[0].upper()]
+        for corners in table_of(_TABLE)[finger[0].upper()]
     ]
 
 
-def _ring(corners: tuple[Point, ...], letter: Letter) -> Wire:
+def _ring(corners: list[Point], letter: Letter) -> Wire:
     box, bottom = letter.box, letter.wall_mm - letter.depth_mm
     points = [
         (box.x_max_mm - u * box.length_mm, bottom, box.y_min_mm + v * box.length_mm)
@@ -78,20 +51,6 @@ def _ring(corners: tuple[Point, ...], letter: Letter) -> Wire:
 
 STROKE = 0.17  # of the height
 WIDTH, PITCH = 0.6, 0.85
-_DIGIT_STROKES = {
-    "0": "abcdef",
-    "1": "!",
-    "2": "abged",
-    "3": "abgcd",
-    "4": "fgbc",
-    "5": "afgcd",
-    "6": "afgecd",
-    "7": "abc",
-    "8": "abcdefg",
-    "9": "abcdfg",
-    "-": "g",
-    "+": "g|",
-}
 
 
 def value_cutters(text: str, label: Box, face_mm: float, depth_mm: float) -> list[Solid]:
@@ -107,7 +66,7 @@ def value_cutters(text: str, label: Box, face_mm: float, depth_mm: float) -> lis
     solids = []
     for place, character in enumerate(text):
         left = label.x_min_mm + place * PITCH * high
-        for stroke in _DIGIT_STROKES[character]:
+        for stroke in table_of(_TABLE)["strokes"][character]:
             x_min, x_max, y_min, y_max = _place(stroke)
             box = Box(
                 left + x_min * high,

@@ -10,59 +10,13 @@ from lumitip_fab.design import Board, Box, Design, Finger, Mould, Outline, Stack
 from lumitip_fab.design.frames import mould_bed_to_sensor
 from lumitip_fab.design.making import LEDGE_MM
 from lumitip_fab.errors import BuildError
-from lumitip_fab.parts import export
+from lumitip_fab.parts import export, skin
 from lumitip_fab.parts.letters import letter_cutter
 from lumitip_fab.parts.shapes import box_face, box_solid, side_prism
-from lumitip_fab.parts.skin import (
-    drafted_prism,
-    offset_wire,
-    side_solid,
-    silicone_solid,
-    stops,
-    wall_offset_mm,
-)
 from lumitip_fab.pipeline.artefact import Artefact
+from lumitip_fab.text import passage
 
-_NOTE = """# Casting the {finger} finger
-
-| what | how much |
-|---|---|
-| silicone that stays on the finger | **{volume_ml:.2f} mL** |
-| to mix, with {waste:.0%} for the cup and the weir | {mix_ml:.2f} mL |
-| {silicone}, part A | **{part_a_g:.2f} g** |
-| {silicone}, part B | **{part_b_g:.2f} g** |
-| curing at {cure_c:g} °C | {cure_h:g} h |
-
-Print `{finger}_mould.3mf` with its own settings (`print/printing.md`): open side up, without
-supports, in layers of {layer_mm:g} mm. {layers}
-The stops set the thickness of the silicone: cut off blobs, sand nothing. The mould has an {letter}
-in the end of its trough, and the backing that belongs to it an {letter} on {letter_on}.
-
-{board}
-2. Degrease the board. Keep sulphur, latex gloves and fresh superglue away: they stop the cure.
-3. Weigh A and B, stir for three minutes, and degas until no bubbles rise.
-4. Wet the parts of the board with a drop from a brush, so that no air stays between them.
-5. Put the mould level on paper. Fill it from one corner until the silicone bulges over the rim.
-6. Set the tip on its stop at the closed end, the coupling towards the weir, and lower the finger
-   slowly about the tip: air and surplus leave through the wire notch and over the weir.
-7. Press on the plate, not on the coupling, until it rests on the tip line and both pads; lay the
-   wires out over the weir. The silicone must stand at the rim in the wire notch, not above it.
-8. Leave it for {cure_h:g} h. Take the plate between two fingers in the gaps of the wall, hold the
-   coupling with the other hand and pull straight out. Cut the flash along the rim.
-"""
-_IN_POCKET = """\
-1. Glue the board into the backing, flush with its rim. Close every window on the back with tape,
-   and fill the slit round the board with a thin line of silicone; let it cure."""
-_ON_PLATE = """\
-1. Glue the interface to the backing, its rim in the groove, with an adhesive that bends; let it
-   cure. Lay the board on the backing's flat face and tie it on with thread through their holes,
-   knots on the back. Close every window and hole on the back with tape."""
-_WHOLE = """\
-The floor at {floor_mm:g} mm and the stops at {rim_mm:g} mm are then whole layers."""
-_PART = """\
-The slicer rounds the floor at {floor_mm:g} mm and the stops at {rim_mm:g} mm to whole layers, one
-by {off_mm:.2f} mm, and the silicone is as much thicker or thinner: its thickness is kept by a
-`mould.wall_mm` and `stack.silicone_mm` that one layer of 0.05 mm or more divides."""
+_TEXTS = "parts/mould.md"
 
 
 def silicone_mix(volume_ml: float, mould: Mould) -> dict[str, float]:
@@ -88,18 +42,18 @@ def casting_note(finger: str, mix: Mapping[str, float], stack: Stack, mould: Mou
         mould: its layers, the silicone, and how much is wasted.
     """
     rim_mm = mould.wall_mm + stack.cover_mm
-    return _NOTE.format(
+    return passage(_TEXTS, "note").format(
         finger=finger,
         letter=finger[0].upper(),
         letter_on="the back of its block" if stack.sunk else "its back",
-        board=_IN_POCKET if stack.sunk else _ON_PLATE,
+        board=passage(_TEXTS, "in_pocket" if stack.sunk else "on_plate"),
         waste=mould.waste_fraction,
         silicone=mould.silicone,
         **mix,
         cure_h=mould.cure_h,
         cure_c=mould.cure_c,
         layer_mm=mould.layer_mm,
-        layers=(_PART if mould.off_layer_mm else _WHOLE).format(
+        layers=passage(_TEXTS, "part" if mould.off_layer_mm else "whole").format(
             floor_mm=mould.wall_mm, rim_mm=rim_mm, off_mm=mould.off_layer_mm
         ),
     )
@@ -138,7 +92,7 @@ def cast_volume_ml(
     finger: Finger, stack: Stack, outline: Outline, board: Board, mould: Mould
 ) -> float:
     """Silicone that stays on a finger: the cavity to the rim less the parts that dip into it."""
-    cavity = float(silicone_solid(stack, outline, board, mould).volume)
+    cavity = float(skin.silicone_solid(stack, outline, board, mould).volume)
     dipped = sum(
         part.size_x_mm * part.size_y_mm * part.height_mm
         for part in finger.parts
@@ -160,21 +114,21 @@ def mould_solid(finger: Finger, stack: Stack, outline: Outline, mould: Mould) ->
         BuildError: if the kernel does not make one valid solid of it.
     """
     top_z = stack.face_z_mm - stack.guided_mm
-    outside = wall_offset_mm(stack, mould, top_z) + mould.wall_mm
+    outside = skin.wall_offset_mm(stack, mould, top_z) + mould.wall_mm
     weir_half = WEIR_FRACTION * finger.notch.x_max_mm
     catch_y = outline.end_y_mm - outside - LEDGE_MM
     end_y = mould.wall_mm - mould.letter.wall_mm
     catch = Box(-weir_half - LEDGE_MM, weir_half + LEDGE_MM, end_y, catch_y)
     block = _footed(stack, outline, mould, top_z, outside) + _lip(stack, mould, catch, outside)
-    cavity = drafted_prism(stack, outline, mould, top_z - BEYOND_MM, BEYOND_MM)
+    cavity = skin.drafted_prism(stack, outline, mould, top_z - BEYOND_MM, BEYOND_MM)
     taken = [
-        cavity & side_solid(stack, outline, mould),
+        cavity & skin.side_solid(stack, outline, mould),
         _weir(stack, outline, weir_half, outside),
         _trough(stack, mould, catch),
         _grip(stack, outline, outside),
         letter_cutter(finger.name, mould.letter, mould_bed_to_sensor(stack, mould)),
     ]
-    whole = (block - taken) + stops(stack, outline, mould)
+    whole = (block - taken) + skin.stops(stack, outline, mould)
     solids = whole.solids()
     if len(solids) != 1 or not solids[0].is_valid:
         raise BuildError(
@@ -190,8 +144,8 @@ def _footed(
     """The outer body, chamfered where it stands on the bed."""
     bed_z = stack.silicone_z_mm + mould.wall_mm
     shoulder_z = bed_z - FOOT_CHAMFER_MM
-    top, shoulder = (offset_wire(outline, outside_mm, z) for z in (top_z_mm, shoulder_z))
-    foot = offset_wire(outline, outside_mm - FOOT_CHAMFER_MM, bed_z)
+    top, shoulder = (skin.offset_wire(outline, outside_mm, z) for z in (top_z_mm, shoulder_z))
+    foot = skin.offset_wire(outline, outside_mm - FOOT_CHAMFER_MM, bed_z)
     return Solid.make_loft([top, shoulder, foot], ruled=True)
 
 

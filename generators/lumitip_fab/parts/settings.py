@@ -3,7 +3,7 @@
 from lumitip_fab.design import Design, Printing
 from lumitip_fab.design.making import Filament, Slicing
 from lumitip_fab.pipeline.artefact import Artefact
-from lumitip_fab.text import as_written
+from lumitip_fab.text import as_written, passage
 
 _BRIM_MM = 3.0  # a backing is tall and stands on little; a flat sheet has none to trim off
 _OUTER_SHARE = 0.6  # of the speed: outer walls are what board, gripper and silicone meet
@@ -99,22 +99,14 @@ def _note(design: Design, bends: bool) -> str:
     listed = "\n".join(
         f"| `{path}` | {_temperatures(slicing.of(path))} | {lies} |" for path, lies in rows
     )
-    return f"""# Printing {as_written(design.title.name)} {design.title.revision}
-
-Every STL and 3MF of this folder lies on the bed as it prints: do not turn it. None needs support.
-
-| file | settings | filament | layers | lies |
-|---|---|---|---:|---|
-{listed}
-| any other `.3mf` | {_temperatures(slicing.rigid)} | as it is |
-
-Solid, {printing.line_mm:g} mm lines, brim of {_BRIM_MM:g} mm but for a mask,
-nozzle of {slicing.nozzle_mm:g} mm. In PrusaSlicer: File, Import, Import Config, then the part. The
-settings have no start and end G-code but the slicer's own: choose your printer again where it
-needs some. Temperatures are starting points: trust the label of your spool.
-
-`lumitip-fab slice --out DIR` slices every part with them and prints time and mass.
-"""
+    return passage("parts/settings.md", "note").format(
+        title=f"{as_written(design.title.name)} {design.title.revision}",
+        listed=listed,
+        rigid=_temperatures(slicing.rigid),
+        printing=printing,
+        brim_mm=_BRIM_MM,
+        slicing=slicing,
+    )
 
 
 def _temperatures(filament: Filament) -> str:

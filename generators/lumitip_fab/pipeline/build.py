@@ -14,7 +14,7 @@ from lumitip_fab.pipeline.fingerprint import remember, unchanged
 if TYPE_CHECKING:
     from lumitip_fab.design import Design
     from lumitip_fab.pipeline.artefact import Artefact, Files
-    from lumitip_fab.pipeline.graph import Step, Task
+    from lumitip_fab.pipeline.workers import Step, Task
 
 
 try:
@@ -123,7 +123,7 @@ class _Run:
     """One build: what it has made so far."""
 
     def __init__(self, out: Path, design: "Design", progress: Progress) -> None:
-        from lumitip_fab.pipeline.dependencies import FieldHashes
+        from lumitip_fab.pipeline.artefact import FieldHashes
 
         self.out, self.design, self.progress = out, design, progress
         self.before = manifest.read(out)
@@ -139,7 +139,7 @@ class _Run:
     ) -> Report:
         """Write the documents and what the steps make; remove what no step makes any more."""
         # Imported here: to see that nothing changed, none of it is needed.
-        from lumitip_fab.pipeline.graph import tasks
+        from lumitip_fab.pipeline.workers import tasks
 
         asked = tuple(step for step in steps if not only or step.name in only)
         if only:

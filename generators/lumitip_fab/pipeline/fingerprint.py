@@ -23,12 +23,13 @@ SHARED = (
     "paths.py",
     "pipeline/artefact.py",
     "pipeline/fingerprint.py",
-    "pipeline/graph.py",
+    "pipeline/workers.py",
     "pipeline/manifest.py",
     "text.py",
     "typeface.py",
 )
 LAYOUT = ("errors.py", "grid.py", "layout.py")
+_SOURCES = {".css", ".kicad_sch", ".md", ".py", ".toml", ".txt"}
 
 
 @lru_cache
@@ -55,8 +56,8 @@ def whole_code_hash() -> str:
 
 
 def _sources(folder: Path) -> list[Path]:
-    """Code, and the sheet that schematics grow from."""
-    return sorted(f for f in folder.rglob("*") if f.suffix in {".py", ".kicad_sch"})
+    """Code, and the texts and tables beside it."""
+    return sorted(f for f in folder.rglob("*") if f.suffix in _SOURCES)
 
 
 def _hash(files: Iterable[Path]) -> str:

@@ -8,8 +8,7 @@ from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 
 from lumitip_fab.design.encoding import canonical, encoded
-from lumitip_fab.pipeline.artefact import Artefact, Facts
-from lumitip_fab.pipeline.dependencies import Dependencies
+from lumitip_fab.pipeline.artefact import Artefact, Dependencies, Facts
 
 NAME = "manifest.json"
 SCHEMA_VERSION = 3

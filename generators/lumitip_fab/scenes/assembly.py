@@ -14,7 +14,7 @@ from lumitip_fab.parts.surface import Mesh
 from lumitip_fab.pipeline.artefact import Artefact
 from lumitip_fab.scenes.bodies import Bodies, finger_bodies, layers_of
 from lumitip_fab.scenes.exploded import exploded_view
-from lumitip_fab.scenes.glb import COLOURS, Body, Group, glb
+from lumitip_fab.scenes.glb import Body, Group, colour_of, glb
 
 OPENING_MM = 30.0
 CHORD_MM = 0.02
@@ -63,7 +63,7 @@ def _coloured(bodies: Bodies) -> Compound:
 
 def _layer(label: str, shape: Shape, kind: str) -> Shape:
     named = copy(shape)
-    named.label, named.color = label, Color(*COLOURS[kind])
+    named.label, named.color = label, Color(*colour_of(kind))
     return named
 
 
@@ -71,7 +71,7 @@ def _meshed(bodies: Bodies) -> Iterator[Body]:
     """A finger's bodies for a GLB: parts of one size share a box, centred on its footprint."""
     name = bodies.finger.name
     for kind, solid in layers_of(bodies):
-        yield Body(f"{name}.{kind}", export.mesh(solid, CHORD_MM), COLOURS[kind])
+        yield Body(f"{name}.{kind}", export.mesh(solid, CHORD_MM), colour_of(kind))
     boxes: dict[tuple[float, float, float], Mesh] = {}
     for part, solid in zip(bodies.finger.parts, bodies.parts, strict=True):
         size = (part.size_x_mm, part.size_y_mm, part.height_mm)
@@ -83,6 +83,6 @@ def _meshed(bodies: Bodies) -> Iterator[Body]:
         yield Body(
             bodies.finger.body_name(part),
             boxes[size],
-            COLOURS[part.kind],
+            colour_of(part.kind),
             (part.x_mm, part.y_mm, low),
         )

@@ -19,6 +19,7 @@ from lumitip_fab.design import Finger, Outline, Part, Stack
 from lumitip_fab.parts import export
 from lumitip_fab.scenes.bodies import Bodies, layers_of
 from lumitip_fab.scenes.drawing import Points, Sheet, View, silhouette, view
+from lumitip_fab.scenes.glb import tints
 
 AZIMUTH_DEG = 32.0  # of the viewer, from the gripper end towards +x
 ELEVATION_DEG = 32.0
@@ -28,22 +29,6 @@ WORDS_MM = 38.0  # width of the longest label
 _CHORD_MM = 0.05
 _STEPS = 24  # chords of a curve on the page
 _FACES = ((0, 1, 5, 4), (1, 3, 7, 5), (4, 5, 7, 6))  # of a box, towards the viewer
-_TINTS = {
-    "interface": "#dfe2e6",
-    "backing": "#f3f4f5",
-    "board": "#e3efe6",
-    "silicone": "#eaf3f9",
-    "film": "#dcdcde",
-}
-_PART_TINTS = {
-    "photodetector": "#fff",
-    "led": "#fff",
-    "multiplexer": "#b9bcc0",
-    "current source": "#b9bcc0",
-    "resistor": "#d8d2c8",
-    "switch": "#b9bcc0",
-    "capacitor": "#d8d2c8",
-}
 
 
 @dataclass(frozen=True)
@@ -74,7 +59,7 @@ def exploded_view(bodies: Bodies, stack: Stack, outline: Outline) -> str:
     pins = _projected(_at(np.array(finger.holes), stack.rim_z_mm))
     for layer, above in zip(layers, (*layers[1:], None), strict=True):
         with sheet.group(layer.name):
-            sheet.area(_silhouette(layer), "area", _TINTS[layer.name])
+            sheet.area(_silhouette(layer), "area", tints()[layer.name])
             sheet.lines(_visible_lines(layer), "line")
         if layer.name == "board":
             _draw_parts(sheet, finger, stack, layer.rise_mm)
@@ -183,7 +168,7 @@ def _draw_parts(sheet: Sheet, finger: Finger, stack: Stack, rise_mm: float) -> N
         corners = _projected(_box_corners(part, stack.rim_z_mm), rise_mm)
         with sheet.group(part.name):
             for face in _FACES:
-                sheet.area([corners[list(face)]], "part", _PART_TINTS[part.kind])
+                sheet.area([corners[list(face)]], "part", tints("part_tints")[part.kind])
 
 
 def _box_corners(part: Part, low_mm: float) -> Points:

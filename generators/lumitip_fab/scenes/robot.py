@@ -18,7 +18,7 @@ from lumitip_fab.parts import export
 from lumitip_fab.parts.surface import Mesh
 from lumitip_fab.pipeline.artefact import Artefact
 from lumitip_fab.scenes.bodies import finger_bodies, layers_of, part_solid
-from lumitip_fab.scenes.glb import COLOURS
+from lumitip_fab.scenes.glb import colour_of
 
 MM = 0.001
 # What a simulator lets the joints do: the largest of the Robotiq 2F-85's data sheet.
@@ -186,7 +186,7 @@ def robot_files(design: Design) -> tuple[Artefact, ...]:
             FingerModel(
                 name=finger.name,
                 weight=_weight(finger, layers, stack, design.densities),
-                visuals=tuple((f"{finger.name}_{k}.stl", COLOURS[k]) for k in layers),
+                visuals=tuple((f"{finger.name}_{k}.stl", colour_of(k)) for k in layers),
                 collisions=tuple(name for name in meshes if "collision" in name),
                 to_base=to_base @ _closed(finger.name, mount, closing),
                 opening=_opening(finger.name, mount, closing),

@@ -8,19 +8,10 @@ import numpy as np
 import trimesh
 from numpy.typing import NDArray
 
-from lumitip_fab.design import AuxiliaryBoard, Design, Finger, Flange, Holder, Stack, System
-from lumitip_fab.design.frames import (
-    Matrix,
-    auxiliary_to_flange,
-    flange_beds,
-    flange_to_tool,
-    gripper_to_tool,
-    holder_bed_to_auxiliary,
-    holder_to_tool,
-)
+from lumitip_fab.design import AuxiliaryBoard, Design, Finger, Flange, Holder, Stack, System, frames
 from lumitip_fab.parts.surface import Mesh
 from lumitip_fab.pipeline.artefact import Artefact, Files
-from lumitip_fab.scenes.glb import COLOURS, Body, Group, glb
+from lumitip_fab.scenes.glb import Body, Group, colour_of, glb
 from lumitip_fab.scenes.system_view import system_view
 
 SECTIONS = 96
@@ -113,7 +104,7 @@ def system_files(design: Design, files: Files) -> tuple[Artefact, ...]:
     for holder in design.holders:
         if holder.name in system.holders:
             groups.append(_held(files, holder, boards[holder.auxiliary], stack, system))
-    to_tool = gripper_to_tool(stack, mount, design.closing, system)
+    to_tool = frames.gripper_to_tool(stack, mount, design.closing, system)
     scene = trimesh.load(io.BytesIO(files.read("assembly/assembly.glb")), file_type="glb")
     groups += [_finger(scene, finger, to_tool) for finger in design.fingers]
     tcp_mm = float(to_tool[2, 3])
@@ -130,19 +121,21 @@ def _robot_side(
 ) -> Iterator[Group]:
     """The robot's tool flange, the coupling, and the printed flange round its board."""
     robot = disc(system.robot_mm, -ROBOT_MM, 0.0)
-    yield Group("robot", np.eye(4), (Body("robot.flange", robot, COLOURS["robot"]),))
+    yield Group("robot", np.eye(4), (Body("robot.flange", robot, colour_of("robot")),))
     coupling = socket(flange.face_mm, flange.centring_mm, system.coupling_mm, -flange.seat_z_mm)
-    yield Group("coupling", np.eye(4), (Body("coupling.body", coupling, COLOURS["coupling"]),))
-    to_tool, beds = flange_to_tool(system), flange_beds(flange)
+    yield Group("coupling", np.eye(4), (Body("coupling.body", coupling, colour_of("coupling")),))
+    to_tool, beds = frames.flange_to_tool(system), frames.flange_beds(flange)
     parts = {
         part: Body(
-            f"{flange.name}.{part}", _stl(files, f"flange/{flange.name}_{part}.stl"), COLOURS[part]
+            f"{flange.name}.{part}",
+            _stl(files, f"flange/{flange.name}_{part}.stl"),
+            colour_of(part),
         )
         for part in beds
     }
-    board = Body(f"{flange.name}.board", _board(auxiliary, stack), COLOURS["board"])
+    board = Body(f"{flange.name}.board", _board(auxiliary, stack), colour_of("board"))
     yield Group(f"{flange.name}_lower", to_tool @ beds["lower"], (parts["lower"],))
-    yield Group(f"{flange.name}_board", to_tool @ auxiliary_to_flange(flange), (board,))
+    yield Group(f"{flange.name}_board", to_tool @ frames.auxiliary_to_flange(flange), (board,))
     yield Group(f"{flange.name}_upper", to_tool @ beds["upper"], (parts["upper"],))
 
 
@@ -151,7 +144,7 @@ def _envelope(system: System) -> Body:
     return Body(
         "gripper.envelope",
         block((-half[0], half[0]), (-half[1], half[1]), system.corner_mm, 0.0, system.length_mm),
-        COLOURS["gripper"],
+        colour_of("gripper"),
     )
 
 
@@ -159,15 +152,17 @@ def _held(
     files: Files, holder: Holder, auxiliary: AuxiliaryBoard, stack: Stack, system: System
 ) -> Group:
     """A holder with its board, in the board's frame."""
-    printed = _moved(_stl(files, f"holder/{holder.name}.stl"), holder_bed_to_auxiliary(holder))
-    bodies = (
-        Body(f"{holder.name}.tray", printed, COLOURS["holder"]),
-        Body(f"{holder.name}.board", _board(auxiliary, stack), COLOURS["board"]),
+    printed = _moved(
+        _stl(files, f"holder/{holder.name}.stl"), frames.holder_bed_to_auxiliary(holder)
     )
-    return Group(holder.name, holder_to_tool(holder, system), bodies)
+    bodies = (
+        Body(f"{holder.name}.tray", printed, colour_of("holder")),
+        Body(f"{holder.name}.board", _board(auxiliary, stack), colour_of("board")),
+    )
+    return Group(holder.name, frames.holder_to_tool(holder, system), bodies)
 
 
-def _finger(scene: trimesh.Scene, finger: Finger, to_tool: Matrix) -> Group:
+def _finger(scene: trimesh.Scene, finger: Finger, to_tool: frames.Matrix) -> Group:
     """A finger as the assembly has it, every body in the finger's frame."""
     kinds = {finger.body_name(part): part.kind for part in finger.parts}
     placed = scene.graph.get(finger.name)[0].copy()
@@ -181,7 +176,7 @@ def _finger(scene: trimesh.Scene, finger: Finger, to_tool: Matrix) -> Group:
         points = (surface.vertices @ place[:3, :3].T + place[:3, 3]) * _MM
         kind = kinds.get(name, name.rpartition(".")[2])
         mesh = Mesh(np.asarray(points), np.asarray(surface.faces, dtype=np.int64))
-        bodies.append(Body(name, mesh, COLOURS[kind]))
+        bodies.append(Body(name, mesh, colour_of(kind)))
     return Group(finger.name, np.asarray(to_tool @ placed), tuple(bodies))
 
 
@@ -196,11 +191,11 @@ def _stl(files: Files, path: str) -> Mesh:
     return Mesh(np.asarray(read.vertices), np.asarray(read.faces, dtype=np.int64))
 
 
-def _moved(mesh: Mesh, matrix: Matrix) -> Mesh:
+def _moved(mesh: Mesh, matrix: frames.Matrix) -> Mesh:
     return Mesh(mesh.points_mm @ matrix[:3, :3].T + matrix[:3, 3], mesh.triangles)
 
 
-def _raised(by_mm: float) -> Matrix:
+def _raised(by_mm: float) -> frames.Matrix:
     matrix = np.eye(4)
     matrix[2, 3] = by_mm
     return matrix

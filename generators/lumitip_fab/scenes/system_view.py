@@ -7,7 +7,7 @@ import numpy as np
 from lumitip_fab.design import Flange, Mount, System
 from lumitip_fab.parts.surface import Mesh
 from lumitip_fab.scenes.drawing import Points, Sheet, View, silhouette, view, visible_lines
-from lumitip_fab.scenes.glb import Group
+from lumitip_fab.scenes.glb import Group, tints
 
 AZIMUTH_DEG = 35.0
 ELEVATION_DEG = 24.0
@@ -16,19 +16,6 @@ ASIDE_MM = 115.0  # by which a holder is pulled off the gripper
 WORDS_SCALE = 1.6  # of a drawing that is more than twice as large as a finger's
 LABEL_MM, WORDS_MM = 12.0, 104.0
 LAYERS = ("interface", "backing", "board", "silicone", "film")
-_TINTS = {
-    "robot": "#d5d8dc",
-    "coupling": "#c9ced4",
-    "lower": "#e9edf3",
-    "upper": "#e9edf3",
-    "board": "#e3efe6",
-    "gripper": "#f0efec",
-    "holder": "#e9edf3",
-    "interface": "#dfe2e6",
-    "backing": "#f3f4f5",
-    "silicone": "#eaf3f9",
-    "film": "#dcdcde",
-}
 Words = tuple[str, str]
 
 
@@ -83,7 +70,7 @@ def _shown(group: str, body: str) -> bool:
 
 def _tint(name: str) -> str:
     first, _, last = name.partition(".")
-    return _TINTS[last] if last in _TINTS else _TINTS[first]
+    return tints()[last] if last in tints() else tints()[first]
 
 
 def _painted(drawn: list[Drawn], eye: View) -> list[int]:

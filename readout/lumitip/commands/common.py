@@ -1,7 +1,8 @@
-"""Helpers of several subcommands: arguments that name a fingertip, and opening it."""
+"""Helpers of several subcommands: their arguments by a table, and opening a fingertip."""
 
 import argparse
 import math
+import tomllib
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -9,24 +10,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from lumitip.fingertip import Fingertip
 
-Subparsers = Any  # argparse does not export this type
 BUILT_LAYOUT = Path("outputs/layout.json")
-
-
-def command(
-    subparsers: Subparsers,
-    name: str,
-    run: Callable[[argparse.Namespace], int],
-    text: str,
-    more: str = "",
-) -> argparse.ArgumentParser:
-    """Add a subcommand; its help continues `text` with `more`."""
-    description = f"{text} {more}".strip()
-    parser: argparse.ArgumentParser = subparsers.add_parser(
-        name, help=text, description=description
-    )
-    parser.set_defaults(run=run)
-    return parser
 
 
 def positive_seconds(text: str) -> float:
@@ -51,55 +35,44 @@ def positive_count(text: str) -> int:
     return value
 
 
-def add_fingertip(parser: argparse.ArgumentParser, several: bool = False) -> None:
-    """Add the arguments that name one fingertip (`options.url`), or several (`options.urls`)."""
-    text = "ble://NAME-OR-ADDRESS, serial://PORT, tcp://HOST:PORT, replay://FILE or twin://SHAPE"
-    if several:
-        parser.add_argument("urls", metavar="URL", nargs="+", help=text)
-    else:
-        parser.add_argument("url", metavar="URL", help=text)
-    add_layout(parser)
-    parser.add_argument(
-        "--timeout",
-        type=positive_seconds,
-        default=10.0,
-        metavar="S",
-        help="longest time to connect, in seconds (default: 10)",
-    )
-    parser.add_argument("--any-design", action="store_true", help="accept a device of any design")
+_TYPES: dict[str, Callable[[str], Any]] = {
+    "count": positive_count,
+    "number": float,
+    "path": Path,
+    "seconds": positive_seconds,
+    "whole": int,
+}
 
 
-def add_layout(parser: argparse.ArgumentParser) -> None:
-    """Add `--layout`."""
-    parser.add_argument(
-        "--layout",
-        type=Path,
-        metavar="FILE",
-        help=f"layout.json of the device's firmware (default: {BUILT_LAYOUT}, if it exists, or the "
-        "one that was used with this design before)",
-    )
+def add_commands(parser: argparse.ArgumentParser, file: Path) -> None:
+    """Add the subcommands that a table lists, such as `commands/commands.toml`.
+
+    `options.command` has the name, and `options.run` the module and function where the table has
+    them.
+    """
+    table = tomllib.loads(file.read_text(encoding="utf-8"))
+    shared = table.pop("shared")
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    for name, entry in table.items():
+        text = entry["text"]
+        description = f"{text} {entry.get('more', '')}".strip()
+        command = commands.add_parser(name, help=text, description=description)
+        command.set_defaults(run=entry.get("run"))
+        _add_arguments(command, entry["arguments"], shared)
 
 
-def add_server(parser: argparse.ArgumentParser, port: int, clients: str) -> None:
-    """Add the arguments of a server: `--host`, `--port` and `--token`."""
-    parser.add_argument(
-        "--host",
-        default="127.0.0.1",
-        metavar="ADDRESS",
-        help="address to listen on (default: 127.0.0.1); other computers need the token",
-    )
-    parser.add_argument(
-        "--port",
-        type=int,
-        default=port,
-        metavar="N",
-        help=f"port (default: {port}); 0 is any free one",
-    )
-    parser.add_argument(
-        "--token",
-        metavar="TEXT",
-        help=f"secret that {clients} must send (default: random, if needed)",
-    )
+def _add_arguments(parser: Any, arguments: list[Any], shared: dict[str, list[Any]]) -> None:
+    """Add arguments of a table; `shared` has those of several commands."""
+    for argument in arguments:
+        if isinstance(argument, str):
+            _add_arguments(parser, shared[argument], shared)
+        elif isinstance(argument, list):
+            _add_arguments(parser.add_mutually_exclusive_group(), argument, shared)
+        else:
+            values = dict(argument)
+            if "type" in values:
+                values["type"] = _TYPES[values["type"]]
+            parser.add_argument(values.pop("name"), **values)
 
 
 def layout_path(options: argparse.Namespace, url: str) -> Path | None:

@@ -5,13 +5,7 @@ import sys
 from collections import Counter
 from typing import TYPE_CHECKING
 
-from lumitip.commands.common import (
-    Subparsers,
-    add_fingertip,
-    command,
-    open_fingertip,
-    positive_seconds,
-)
+from lumitip.commands.common import open_fingertip
 from lumitip.errors import EndOfRecording, LumitipError
 
 if TYPE_CHECKING:
@@ -20,46 +14,6 @@ if TYPE_CHECKING:
 
 NONE_FOUND = FAULTS_FOUND = 1
 _LEAST_FRAMES = 20  # fewer make healthy cells look stuck or noisy
-
-
-def add(subparsers: Subparsers) -> None:
-    """Add the subcommands."""
-    parser = command(subparsers, "scan", scan, "List Bluetooth fingertips and USB serial ports.")
-    parser.add_argument(
-        "--seconds",
-        type=positive_seconds,
-        default=5.0,
-        metavar="S",
-        help="duration of the Bluetooth scan (default: 5)",
-    )
-    parser.add_argument("--only", choices=("ble", "serial"), help="scan one kind of link only")
-    text = "Measure the empty grasp (or the dark) of every cell, and save it for this device."
-    parser = command(subparsers, "tare", tare, text)
-    add_fingertip(parser)
-    group = parser.add_mutually_exclusive_group()
-    group.add_argument("--dark", action="store_true", help="measure with all light shut off")
-    group.add_argument("--forget", action="store_true", help="delete the saved references")
-    parser = command(
-        subparsers,
-        "doctor",
-        doctor,
-        "Find dead, saturated, noisy and swapped cells.",
-        "During the test move an object over all cells, in all directions: this is needed to find "
-        "swapped cells. Exit code 1 if a fault is found.",
-    )
-    add_fingertip(parser)
-    parser.add_argument(
-        "--opacity",
-        action="store_true",
-        help="measure instead how much light of the LEDs a coupon of the mask's material lets pass",
-    )
-    parser.add_argument(
-        "--seconds",
-        type=positive_seconds,
-        default=15.0,
-        metavar="S",
-        help="duration of the test (default: 15)",
-    )
 
 
 def scan(options: argparse.Namespace) -> int:

@@ -1,23 +1,14 @@
 """`lumitip record`: write the frames of a fingertip to a file."""
 
 import argparse
-import math
 import signal
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING
 
-from lumitip.commands.common import (
-    Subparsers,
-    add_fingertip,
-    command,
-    open_fingertip,
-    positive_count,
-    positive_seconds,
-)
+from lumitip.commands.common import open_fingertip
 from lumitip.interrupt import INTERRUPTED
 
 if TYPE_CHECKING:
@@ -25,28 +16,6 @@ if TYPE_CHECKING:
     from lumitip.recording import Writer
 
 _POLL_S = 0.2  # longest reaction time to Ctrl-C
-
-
-def add(subparsers: Subparsers) -> None:
-    """Add the subcommand."""
-    text = "Record a fingertip as MCAP, for Foxglove, ROS 2 and rosbags; Ctrl-C ends it."
-    parser = command(subparsers, "record", run, text)
-    add_fingertip(parser)
-    parser.add_argument("file", type=Path, metavar="FILE", help="new file, ends in .mcap")
-    parser.add_argument(
-        "--seconds",
-        type=positive_seconds,
-        default=math.inf,
-        metavar="S",
-        help="stop after S seconds",
-    )
-    parser.add_argument(
-        "--frames",
-        type=positive_count,
-        default=math.inf,
-        metavar="N",
-        help="stop after N frames",
-    )
 
 
 def run(options: argparse.Namespace) -> int:

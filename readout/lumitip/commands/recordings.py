@@ -3,56 +3,12 @@
 import argparse
 import time
 from datetime import UTC, datetime
-from pathlib import Path
 from typing import TYPE_CHECKING
-
-from lumitip.commands.common import Subparsers, command
 
 if TYPE_CHECKING:
     from lumitip.processing import Contact
 
 _SLOWEST = 0.001
-
-
-def add(subparsers: Subparsers) -> None:
-    """Add the subcommands."""
-    text = "Describe a recording; exit code 1 if it is damaged."
-    parser = command(subparsers, "info", info, text)
-    _add_file(parser, "the recording")
-    parser = command(
-        subparsers,
-        "replay",
-        replay,
-        "Print the contact in every frame of a recording, at its own speed; gaps take one second "
-        "at most.",
-        "`lumitip view replay://FILE` displays a recording.",
-    )
-    _add_file(parser, "the recording")
-    parser.add_argument(
-        "--speed",
-        type=float,
-        default=1.0,
-        metavar="N",
-        help="N times the recorded speed (default: 1); 0 is as fast as possible",
-    )
-    text = "Write a recording as Parquet or CSV, one row per frame."
-    parser = command(subparsers, "export", export, text)
-    _add_file(parser, "the recording")
-    parser.add_argument("table", type=Path, metavar="TABLE", help="ends in .parquet or .csv")
-    text = "Copy all readable frames of a damaged recording to a new file."
-    parser = command(subparsers, "recover", recover, text)
-    _add_file(parser, "the damaged recording; it is not changed")
-    parser.add_argument(
-        "target",
-        type=Path,
-        nargs="?",
-        metavar="NEW",
-        help="the new file (default: FILE.recovered.mcap)",
-    )
-
-
-def _add_file(parser: argparse.ArgumentParser, text: str) -> None:
-    parser.add_argument("file", type=Path, metavar="FILE", help=text)
 
 
 def info(options: argparse.Namespace) -> int:

@@ -2,20 +2,7 @@
 
 import argparse
 
-from lumitip.commands.common import Subparsers, add_fingertip, add_server, command, layout_path
-
-
-def add(subparsers: Subparsers) -> None:
-    """Add the subcommand."""
-    parser = command(
-        subparsers,
-        "serve",
-        run,
-        "Share a fingertip with several programs: each opens the tcp:// address that is printed.",
-        "Frames of a client that is too slow are dropped, the oldest first, and counted.",
-    )
-    add_fingertip(parser)
-    add_server(parser, 8643, "clients")
+from lumitip.commands.common import layout_path
 
 
 def run(options: argparse.Namespace) -> int:

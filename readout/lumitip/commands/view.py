@@ -3,30 +3,7 @@
 import argparse
 from pathlib import Path
 
-from lumitip.commands.common import Subparsers, add_fingertip, add_server, command, layout_path
-
-
-def add(subparsers: Subparsers) -> None:
-    """Add the subcommand."""
-    text = "Display one or more fingertips live in a browser, served from this computer."
-    parser = command(subparsers, "view", run, text)
-    add_fingertip(parser, several=True)
-    add_server(parser, 8642, "browsers")
-    parser.add_argument(
-        "--folder",
-        type=Path,
-        default=Path("recordings"),
-        metavar="DIR",
-        help="folder of recordings (default: recordings)",
-    )
-    parser.add_argument(
-        "--rerun",
-        nargs="?",
-        const="",
-        metavar="FILE.rrd",
-        help="also send the data to the Rerun viewer, or to a file",
-    )
-    parser.add_argument("--open", action="store_true", help="open the browser")
+from lumitip.commands.common import layout_path
 
 
 def run(options: argparse.Namespace) -> int:

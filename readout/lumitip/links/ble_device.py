@@ -11,14 +11,7 @@ from bleak.backends.characteristic import BleakGATTCharacteristic
 from bleak.backends.device import BLEDevice
 from bleak.backends.scanner import AdvertisementData
 
-from lumitip.errors import (
-    AmbiguousDevice,
-    DeviceNotFound,
-    LayoutError,
-    LinkError,
-    MtuTooSmall,
-    WrongDesign,
-)
+from lumitip import errors
 from lumitip.layout import Layout
 from lumitip.protocol.bluetooth import (
     FRAMES,
@@ -58,13 +51,13 @@ async def find(target: str, adapter: str, scan_s: float) -> BLEDevice:
     found = [sighting[0] for sighting in seen.values() if matches(sighting)]
     if not found:
         names = sorted({heard.local_name or device.name or "" for device, heard in seen.values()})
-        raise DeviceNotFound(
+        raise errors.DeviceNotFound(
             f"{target or 'any fingertip'!r} was not found in {scan_s:g} s; found were "
             f"{', '.join(filter(None, names)) or 'none'}. Is it switched on, in reach, and not "
             "connected to another computer?"
         )
     if len(found) > 1:
-        raise AmbiguousDevice(target, [device.address for device in found], "ble")
+        raise errors.AmbiguousDevice(target, [device.address for device in found], "ble")
     return found[0]
 
 
@@ -113,7 +106,7 @@ async def begin(
     layout: Layout,
     any_design: bool,
     notified: Callable[[bytearray], None],
-    failed: Callable[[LinkError], None],
+    failed: Callable[[errors.LinkError], None],
 ) -> Service:
     """Check a connected device and subscribe to its frames.
 
@@ -134,8 +127,8 @@ async def begin(
     def status_changed(_: BleakGATTCharacteristic, data: bytearray) -> None:
         try:
             check_mtu(Status.decode(bytes(data)))
-        except (LinkError, PacketError) as error:
-            failed(error if isinstance(error, LinkError) else LinkError(str(error)))
+        except (errors.LinkError, PacketError) as error:
+            failed(error if isinstance(error, errors.LinkError) else errors.LinkError(str(error)))
 
     if client.services.get_characteristic(FRAMES):
         status = await _status(client)
@@ -159,7 +152,7 @@ def check(status: Status, layout: Layout, any_design: bool, address: str) -> Non
     """
     expected = layout.design_hash[:_HASH_DIGITS]
     if status.cells != len(layout) or (status.design_hash != expected and not any_design):
-        raise WrongDesign(status.design_hash, expected, f"ble:{address}")
+        raise errors.WrongDesign(status.design_hash, expected, f"ble:{address}")
     check_mtu(status)
 
 
@@ -170,7 +163,7 @@ def check_mtu(status: Status) -> None:
         MtuTooSmall: if a frame does not fit.
     """
     if status.mtu < status.needed_mtu:
-        raise MtuTooSmall(status.mtu, status.needed_mtu)
+        raise errors.MtuTooSmall(status.mtu, status.needed_mtu)
 
 
 async def read_status(client: BleakClient) -> Status:
@@ -184,15 +177,15 @@ async def read_status(client: BleakClient) -> Status:
     if client.services.get_characteristic(STATUS):
         return await _status(client)
     if client.services.get_characteristic(LEGACY_FRAMES):
-        raise LayoutError(
+        raise errors.LayoutError(
             f"{client.address} has the published firmware, which does not name its design. Add its "
             "layout.json: layout='outputs/layout.json', or --layout outputs/layout.json"
         )
     raise _no_fingertip(client)
 
 
-def _no_fingertip(client: BleakClient) -> DeviceNotFound:
-    return DeviceNotFound(
+def _no_fingertip(client: BleakClient) -> errors.DeviceNotFound:
+    return errors.DeviceNotFound(
         f"{client.address} is not a fingertip: it has no such service. `lumitip scan` lists "
         "fingertips"
     )
@@ -202,4 +195,4 @@ async def _status(client: BleakClient) -> Status:
     try:
         return Status.decode(bytes(await client.read_gatt_char(STATUS)))
     except PacketError as error:
-        raise LinkError(f"{client.address}: the status cannot be read: {error}") from error
+        raise errors.LinkError(f"{client.address}: the status cannot be read: {error}") from error

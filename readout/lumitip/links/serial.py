@@ -15,14 +15,7 @@ import time
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from lumitip.errors import (
-    AmbiguousDevice,
-    DeviceNotFound,
-    LinkError,
-    LinkTimeout,
-    MissingExtra,
-    NotConnected,
-)
+from lumitip import errors
 from lumitip.known_layouts import remember
 from lumitip.layout import Layout
 from lumitip.links.base import Arrival, Cause, Deliver, Fault, Identity, Report
@@ -36,7 +29,7 @@ try:
     import serial
     from serial.tools import list_ports
 except ModuleNotFoundError as missing:
-    raise MissingExtra("serial", "serial://") from missing
+    raise errors.MissingExtra("serial", "serial://") from missing
 
 # Exceptions of pyserial when the port disappears.
 _GONE: tuple[type[Exception], ...] = (OSError, TypeError)
@@ -157,7 +150,7 @@ def identify(url: Url, timeout_s: float | None) -> Identity:
                         return Identity(_device_id(_usb_serial(port), port), *named, own)
     except _GONE as error:
         raise _port_error(port, error) from error
-    raise LinkTimeout(f"{port}: no packet in {timeout_s:g} s. Is the firmware running?")
+    raise errors.LinkTimeout(f"{port}: no packet in {timeout_s:g} s. Is the firmware running?")
 
 
 def _named(piece: bytes) -> tuple[str, int] | None:
@@ -178,26 +171,28 @@ def _line(url: Url) -> tuple[str, int]:
     if not port:
         found = [str(p.device) for p in usb_ports()]
         if not found:
-            raise DeviceNotFound(f"{url.text}: there is no USB serial port. Plug the device in")
+            raise errors.DeviceNotFound(
+                f"{url.text}: there is no USB serial port. Plug the device in"
+            )
         if len(found) > 1:
-            raise AmbiguousDevice("", found, "serial")
+            raise errors.AmbiguousDevice("", found, "serial")
         port = found[0]
     return port, int(url.number("baud", 115200, 1, 10_000_000))
 
 
-def _port_error(port: str, error: Exception) -> LinkError:
+def _port_error(port: str, error: Exception) -> errors.LinkError:
     code = getattr(error, "errno", None)
     if isinstance(error, FileNotFoundError) or code == 2:
         there = ", ".join(str(p.device) for p in list_ports.comports()) or "none"
-        return DeviceNotFound(f"{port}: there is no such port; the ports are: {there}")
+        return errors.DeviceNotFound(f"{port}: there is no such port; the ports are: {there}")
     if code == 13:
-        return DeviceNotFound(
+        return errors.DeviceNotFound(
             f"{port}: no permission. On Linux add this user to the group of the port, mostly "
             "dialout, and log in again"
         )
     if code == errno.EAGAIN:
-        return NotConnected(
+        return errors.NotConnected(
             f"{port}: another program has it open. End that program, or share the device: "
             f"`lumitip serve serial://{port}`, and open the address that it prints in each"
         )
-    return NotConnected(f"{port}: {error}")
+    return errors.NotConnected(f"{port}: {error}")

@@ -5,22 +5,14 @@ import threading
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
 
-from lumitip.errors import (
-    AccessRefused,
-    DeviceFailed,
-    LinkError,
-    LumitipError,
-    MissingExtra,
-    MtuTooSmall,
-    WrongDesign,
-)
+from lumitip import errors
 from lumitip.links.base import Deliver, LinkEvent, Report
 
 _log = logging.getLogger(__name__)
 _FIRST_S, _LAST_S = 0.1, 5.0
 
 
-class UnexpectedError(LinkError):
+class UnexpectedError(errors.LinkError):
     """A bug of lumitip or of a library."""
 
     def __init__(self, problem: Exception) -> None:
@@ -29,12 +21,12 @@ class UnexpectedError(LinkError):
 
 
 FATAL = (
-    WrongDesign,
-    MtuTooSmall,
-    MissingExtra,
+    errors.WrongDesign,
+    errors.MtuTooSmall,
+    errors.MissingExtra,
     UnexpectedError,
-    DeviceFailed,
-    AccessRefused,
+    errors.DeviceFailed,
+    errors.AccessRefused,
 )
 """Errors that a new attempt cannot solve."""
 
@@ -68,7 +60,7 @@ def keep_connected(session: Session, report: Report, stopping: threading.Event) 
         try:
             session(now_connected)
         except Exception as problem:  # noqa: BLE001 - reported, not lost with the thread
-            error = problem if isinstance(problem, LinkError) else UnexpectedError(problem)
+            error = problem if isinstance(problem, errors.LinkError) else UnexpectedError(problem)
             if stopping.is_set():
                 _log.debug("while stopping: %s", error)
                 return
@@ -114,8 +106,12 @@ class ThreadedLink(ABC):
         try:
             self._run(deliver, report)
         except Exception as problem:  # noqa: BLE001 - reported, not lost with the thread
-            if isinstance(problem, LumitipError):
-                error = problem if isinstance(problem, LinkError) else LinkError(str(problem))
+            if isinstance(problem, errors.LumitipError):
+                error = (
+                    problem
+                    if isinstance(problem, errors.LinkError)
+                    else errors.LinkError(str(problem))
+                )
             else:
                 error = UnexpectedError(problem)
             if self._stopping.is_set():

@@ -2,6 +2,7 @@
 
 import math
 import struct
+from pathlib import Path
 
 import numpy as np
 
@@ -20,34 +21,12 @@ class DamagedError(RecordingError):
 LONGEST_GAP_S = 1.0
 """Longest wait for a gap in `lumitip replay` and the live view (s)."""
 SCHEMA_NAME = "lumitip_msgs/msg/Frame"
-SCHEMA_TEXT = """\
-# All cells of an optical fingertip at one moment.
 
-# When the cells were read (UTC), and which fingertip they are of.
-std_msgs/Header header
-# Grows by one with every frame of the device, also with those that were lost.
-uint64 sequence
-# The device's own clock (s), NaN where it has none.
-float64 device_time
-# When the frame arrived, by the monotonic clock of the computer that recorded it (s).
-float64 host_time
-# Frames lost just before this one, -1 where nobody can tell.
-int32 dropped_before
-# Bits of each value.
-uint8 bits
-# ADC codes in cell order, dark is high.
-uint16[] values
 
-================================================================================
-MSG: std_msgs/Header
-builtin_interfaces/Time stamp
-string frame_id
+def schema_text() -> str:
+    """The definition of the message for ROS 2, with those that it has in it."""
+    return Path(__file__).with_name("frame.msg").read_text(encoding="utf-8")
 
-================================================================================
-MSG: builtin_interfaces/Time
-int32 sec
-uint32 nanosec
-"""
 
 _CDR_LITTLE = b"\x00\x01\x00\x00"
 _NUMBERS = struct.Struct("<QddiB3xI")

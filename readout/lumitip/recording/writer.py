@@ -13,13 +13,7 @@ from lumitip import arguments
 from lumitip.calibration import Calibration
 from lumitip.frame import Frame, RecordedFrame
 from lumitip.layout import Layout
-from lumitip.recording.message import (
-    SCHEMA_NAME,
-    SCHEMA_TEXT,
-    RecordingError,
-    encode,
-    stamp_ns,
-)
+from lumitip.recording import message
 from lumitip.recording.metadata import NAME, Metadata, checked_start, versions
 from lumitip.recording.reader import Reader
 from lumitip.values import shown
@@ -60,11 +54,11 @@ class Writer:
             CalibrationError: if the calibration does not fit or is not valid.
             RecordingError: if the file exists or cannot be written, or another argument is wrong.
         """
-        self.path = arguments.path(path, RecordingError)
+        self.path = arguments.path(path, message.RecordingError)
         arguments.layout(layout)
-        arguments.instance(device_id, str, "device_id", RecordingError)
+        arguments.instance(device_id, str, "device_id", message.RecordingError)
         if calibration is not None:
-            arguments.instance(calibration, Calibration, "calibration", RecordingError)
+            arguments.instance(calibration, Calibration, "calibration", message.RecordingError)
             calibration.check(device_id, layout.design_hash, len(layout))
             calibration.correction()
         self.metadata = Metadata(
@@ -79,9 +73,9 @@ class Writer:
         try:
             self._file = self.path.open("xb")
         except FileExistsError as error:
-            raise RecordingError(f"{path} exists. Choose another name") from error
+            raise message.RecordingError(f"{path} exists. Choose another name") from error
         except (OSError, ValueError) as error:
-            raise RecordingError(f"{path}: cannot be written: {error}") from error
+            raise message.RecordingError(f"{path}: cannot be written: {error}") from error
         try:
             self._begin()
         except (OSError, ValueError) as error:  # also a device_id that cannot be encoded
@@ -95,7 +89,9 @@ class Writer:
         self._mcap = McapWriter(self._file, chunk_size=CHUNK_BYTES)
         self._mcap.start(profile="ros2", library=library)
         self._mcap.add_metadata(NAME, self.metadata.to_texts())
-        schema = self._mcap.register_schema(SCHEMA_NAME, "ros2msg", SCHEMA_TEXT.encode())
+        schema = self._mcap.register_schema(
+            message.SCHEMA_NAME, "ros2msg", message.schema_text().encode()
+        )
         self._channel = self._mcap.register_channel(TOPIC, "cdr", schema)
         self._mcap.flush()
         self._flushed = time.monotonic()
@@ -108,18 +104,18 @@ class Writer:
                 written; in the last case it is closed.
         """
         if not hasattr(frame, "raw"):
-            raise RecordingError(
+            raise message.RecordingError(
                 f"the frame is {shown(frame)}; a Frame is needed, such as tip.read()"
             )
         if self._file.closed:
-            raise RecordingError(f"{self.path} is closed")
+            raise message.RecordingError(f"{self.path} is closed")
         cells = len(self.metadata.layout)
         if frame.raw.shape != (cells,):
-            raise RecordingError(
+            raise message.RecordingError(
                 f"the frame has shape {frame.raw.shape}; the layout needs ({cells},)"
             )
-        at_ns = stamp_ns(frame.t_wall)
-        data = encode(frame, self.metadata.device_id)
+        at_ns = message.stamp_ns(frame.t_wall)
+        data = message.encode(frame, self.metadata.device_id)
         try:
             self._mcap.add_message(self._channel, at_ns, data, at_ns, frame.seq & 0xFFFFFFFF)
             self.frames += 1
@@ -147,10 +143,10 @@ class Writer:
         except OSError as error:
             raise self._failure(error) from error
 
-    def _failure(self, error: Exception) -> RecordingError:
+    def _failure(self, error: Exception) -> message.RecordingError:
         with suppress(OSError):  # closing flushes again
             self._file.close()
-        return RecordingError(f"{self.path}: cannot be written: {error}")
+        return message.RecordingError(f"{self.path}: cannot be written: {error}")
 
     def __enter__(self) -> "Writer":
         return self
@@ -163,7 +159,7 @@ class Writer:
 
 def _versions(made_with: object) -> dict[str, str]:
     if not isinstance(made_with, Mapping):
-        raise RecordingError(
+        raise message.RecordingError(
             f"made_with is {shown(made_with)}; versions by name are needed, such as "
             "{'robot': '1.0'}"
         )
@@ -191,11 +187,11 @@ def recover(source: str | Path, target: str | Path) -> Recovered:
         RecordingError: if nothing can be read, or the target cannot be written; no partial file
             is left.
     """
-    reader, path = Reader(source, tolerant=True), arguments.path(target, RecordingError)
+    reader, path = Reader(source, tolerant=True), arguments.path(target, message.RecordingError)
     frames = iter(reader)
     first = next(frames, None)
     if first is None:
-        raise RecordingError(
+        raise message.RecordingError(
             f"{source} has no readable frame: {'; '.join(reader.damage) or 'empty'}"
         )
     metadata = reader.metadata

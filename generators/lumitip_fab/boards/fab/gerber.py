@@ -1,22 +1,99 @@
 """The Gerber layers of a board, and its Excellon drill files: plated and unplated holes apart."""
 
+import math
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
+from typing import Any
 
-from gerbonara.apertures import CircleAperture, ExcellonTool
+from gerbonara.apertures import Aperture, CircleAperture, ExcellonTool, RectangleAperture
 from gerbonara.cam import FileSettings
 from gerbonara.excellon import ExcellonFile
-from gerbonara.graphic_objects import Arc, Flash, GraphicObject
+from gerbonara.graphic_objects import Arc, Flash, GraphicObject, Line, Region
 from gerbonara.rs274x import GerberFile
 from gerbonara.utils import MM
+from shapely import Polygon
 
-from lumitip_fab.boards.fab import gerber_objects as objects
-from lumitip_fab.boards.model import MASK_MM, SIDES, BoardModel, Placement, opening_mm
-from lumitip_fab.boards.outline import EDGE_MM, corners, straight_edges
-from lumitip_fab.boards.placed import PlacedPad, placed_pads
+from lumitip_fab.boards.courtyards import PlacedPad, placed_pads
+from lumitip_fab.boards.model import MASK_MM, SIDES, BoardModel, Placement, Stroke, opening_mm
+from lumitip_fab.boards.outline import EDGE_MM, corners, fractured, straight_edges
 from lumitip_fab.boards.silk.strokes import silkscreen
 from lumitip_fab.design import Box, Point, Side
+
+
+@dataclass
+class Attributes(GraphicObject):  # type: ignore[misc]
+    """Gerber X2 attributes of the objects that follow; none takes all away."""
+
+    values: dict[str, tuple[str, ...]] = field(default_factory=dict)
+
+    def to_statements(self, _: Any) -> Iterator[str]:
+        """The commands that set them."""
+        yield "%TD*%"
+        for name, fields in self.values.items():
+            yield f"%TO.{','.join((name, *fields))}*%"
+
+    def to_primitives(self, _: Any = None) -> Iterator[Any]:
+        """Nothing is drawn."""
+        return iter(())
+
+
+def net(name: str) -> Attributes:
+    """The attribute of copper of a net."""
+    return Attributes({"N": (name,)})
+
+
+def pad_of(pad: PlacedPad) -> Attributes:
+    """The attributes of a pad: its part, its number, its net (`N/C` where it has none)."""
+    return Attributes({"P": (pad.component.ref, pad.pad.number), "N": (pad.net or "N/C",)})
+
+
+def flashed(placed: PlacedPad, grown_mm: float = 0.0) -> GraphicObject:
+    """A pad's copper or, grown, the opening in the mask over it."""
+    shape, turn = placed.pad, placed.component.angle_deg % 180.0
+    width, height = (v + 2 * grown_mm for v in (shape.width_mm, shape.height_mm))
+    if shape.round:
+        return flash((placed.x_mm, placed.y_mm), CircleAperture(width, unit=MM))
+    if math.isclose(turn, 0.0) or math.isclose(turn, 90.0):
+        size = (width, height) if math.isclose(turn, 0.0) else (height, width)
+        return flash((placed.x_mm, placed.y_mm), RectangleAperture(*size, unit=MM))
+    return region(placed.area.buffer(grown_mm, join_style="mitre"))
+
+
+def dot(at: Point, diameter_mm: float) -> GraphicObject:
+    """A round spot."""
+    return flash(at, CircleAperture(diameter_mm, unit=MM))
+
+
+def flash(at: Point, aperture: Aperture) -> GraphicObject:
+    """An aperture in one place."""
+    return Flash(*_settled(at), aperture, unit=MM, polarity_dark=True)
+
+
+def line(start: Point, end: Point, width_mm: float) -> GraphicObject:
+    """A straight line with round ends."""
+    round_ = CircleAperture(width_mm, unit=MM)
+    return Line(*_settled(start), *_settled(end), round_, unit=MM, polarity_dark=True)
+
+
+def lines(stroke: Stroke) -> Iterator[GraphicObject]:
+    """A polyline; one point is a dot."""
+    if len(stroke.points) == 1:
+        yield dot(stroke.points[0], stroke.width_mm)
+    for start, end in zip(stroke.points, stroke.points[1:], strict=False):
+        yield line(start, end, stroke.width_mm)
+
+
+def region(area: Polygon) -> GraphicObject:
+    """A filled area; holes are joined to its edge by cuts along x."""
+    outline = list(fractured(area))
+    return Region([*outline, outline[0]], unit=MM, polarity_dark=True)
+
+
+def _settled(at: Point) -> Point:
+    """Rounded to 1 nm, and without a minus before a zero."""
+    return round(at[0], 6) + 0.0, round(at[1], 6) + 0.0
+
 
 _LAYER_FORMAT = (4, 6)  # digits before and after the point: to 1 nm
 
@@ -48,39 +125,39 @@ def gerber_layers(model: BoardModel) -> Iterator[Layer]:
 def _copper(model: BoardModel, side: Side, pads: list[PlacedPad]) -> Iterator[GraphicObject]:
     for fill in model.fills:
         if fill.side == side:
-            yield objects.net(fill.net)
-            yield objects.region(fill.area)
+            yield net(fill.net)
+            yield region(fill.area)
     for track in model.routing.tracks:
         if track.side == side:
-            yield objects.net(track.net)
-            yield objects.line(track.start, track.end, track.width_mm)
+            yield net(track.net)
+            yield line(track.start, track.end, track.width_mm)
     for via in model.routing.vias:
-        yield objects.net(via.net)
-        yield objects.dot((via.x_mm, via.y_mm), via.diameter_mm)
+        yield net(via.net)
+        yield dot((via.x_mm, via.y_mm), via.diameter_mm)
     for pad in pads:
-        yield objects.pad_of(pad)
-        yield objects.pad(pad)
+        yield pad_of(pad)
+        yield flashed(pad)
 
 
 def _mask(board: Placement, pads: list[PlacedPad]) -> Iterator[GraphicObject]:
     """Openings of the solder mask: the layer is negative."""
-    yield from (objects.pad(pad, opening_mm(pad.component)) for pad in pads)
-    yield from (objects.dot(at, diameter_mm + 2 * MASK_MM) for at, diameter_mm in board.unplated)
+    yield from (flashed(pad, opening_mm(pad.component)) for pad in pads)
+    yield from (dot(at, diameter_mm + 2 * MASK_MM) for at, diameter_mm in board.unplated)
 
 
 def _paste(pads: list[PlacedPad]) -> Iterator[GraphicObject]:
-    yield from (objects.pad(p) for p in pads if p.pad.paste and not p.pad.drill_mm)
+    yield from (flashed(p) for p in pads if p.pad.paste and not p.pad.drill_mm)
 
 
 def _silk(board: Placement, side: Side) -> Iterator[GraphicObject]:
     for where, stroke in silkscreen(board):
         if where == side:
-            yield from objects.lines(stroke)
+            yield from lines(stroke)
 
 
 def _outline(board: Placement) -> Iterator[GraphicObject]:
     for start, end in straight_edges(board):
-        yield objects.line(start, end, EDGE_MM)
+        yield line(start, end, EDGE_MM)
     for bow in corners(board):
         centre = bow.centre[0] - bow.start[0], bow.centre[1] - bow.start[1]
         yield Arc(
@@ -98,7 +175,7 @@ def _frame(box: Box) -> Iterator[GraphicObject]:
     """The edges of a rectangle, on the middle of their lines."""
     x, y = (box.x_min_mm, box.x_max_mm), (box.y_min_mm, box.y_max_mm)
     around = [(x[0], y[0]), (x[1], y[0]), (x[1], y[1]), (x[0], y[1]), (x[0], y[0])]
-    yield from (objects.line(*ends, EDGE_MM) for ends in pairwise(around))
+    yield from (line(*ends, EDGE_MM) for ends in pairwise(around))
 
 
 def _layer(

@@ -3,8 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import replace
 
-from lumitip_fab.boards.kicad.bodies import body_strokes, courtyard_strokes, model
-from lumitip_fab.boards.kicad.sexpr import FORMAT, Node, Quoted, written
+from lumitip_fab.boards.kicad import nodes, sexpr
 from lumitip_fab.boards.model import (
     PlacedComponent,
     Text,
@@ -16,7 +15,7 @@ from lumitip_fab.design import Footprint, Pad, Point
 from lumitip_fab.design.frames import on_board_page
 
 
-def effects(text: Text, mirrored: bool) -> Node:
+def effects(text: Text, mirrored: bool) -> sexpr.Node:
     """How a text is drawn: by its height, its stroke, and whether it is read from behind."""
     size = ("size", text.height_mm, text.height_mm)
     mirror = (("justify", "mirror"),) if mirrored else ()
@@ -32,7 +31,7 @@ def placed_footprint(
     numbers: dict[str, int],
     finger: str,
     solid: frozenset[tuple[str, str]] = frozenset(),
-) -> Node:
+) -> sexpr.Node:
     """A part on its board.
 
     Args:
@@ -43,14 +42,14 @@ def placed_footprint(
     return _Writer(component, numbers, finger, solid).node()
 
 
-def hole_footprint(number: int, at: Point, hole_mm: float, finger: str) -> Node:
+def hole_footprint(number: int, at: Point, hole_mm: float, finger: str) -> sexpr.Node:
     """An unplated hole; `number` counts from 1."""
     ref = f"H{number}"
     own = stable_uuid(finger, "footprint", ref)
     x, y = on_board_page(at)
     head = (
-        Quoted(f"{LIBRARY}:{hole_name(hole_mm)}"),
-        ("layer", Quoted("F.Cu")),
+        sexpr.Quoted(f"{LIBRARY}:{hole_name(hole_mm)}"),
+        ("layer", sexpr.Quoted("F.Cu")),
         ("tstamp", own),
         ("at", x, y),
     )
@@ -85,25 +84,25 @@ def hole_name(hole_mm: float) -> str:
     return f"{HOLE}_{hole_mm:g}mm"
 
 
-def _library(name: str, contents: Iterator[Node]) -> bytes:
-    head = ("version", FORMAT), ("generator", "lumitip"), ("layer", Quoted("F.Cu"))
-    return written(("footprint", Quoted(name), *head, *contents)).encode()
+def _library(name: str, contents: Iterator[sexpr.Node]) -> bytes:
+    head = ("version", sexpr.FORMAT), ("generator", "lumitip"), ("layer", sexpr.Quoted("F.Cu"))
+    return sexpr.written(("footprint", sexpr.Quoted(name), *head, *contents)).encode()
 
 
-def _hole(ref: str, hole_mm: float, own: str, *attributes: str) -> tuple[Node, ...]:
+def _hole(ref: str, hole_mm: float, own: str, *attributes: str) -> tuple[sexpr.Node, ...]:
     return (
         ("attr", *attributes, "exclude_from_pos_files", "exclude_from_bom"),
         _text("reference", ref, Text("", 0.0, 0.0), 0.0, "F.SilkS", f"{own}/reference", hide=True),
         _text("value", HOLE, Text("", 0.0, 0.0), 0.0, "F.Fab", f"{own}/value", hide=True),
         (
             "pad",
-            Quoted(""),
+            sexpr.Quoted(""),
             "np_thru_hole",
             "circle",
             ("at", 0, 0),
             ("size", hole_mm, hole_mm),
             ("drill", hole_mm),
-            ("layers", Quoted("*.Cu"), Quoted("*.Mask")),
+            ("layers", sexpr.Quoted("*.Cu"), sexpr.Quoted("*.Mask")),
             ("tstamp", stable_uuid(own, "pad")),
         ),
     )
@@ -130,28 +129,28 @@ class _Writer:
         # KiCad turns a part over about x, the model about y: half a turn apart.
         self.angle = (component.angle_deg + (0 if self.front else 180)) % 360
 
-    def node(self) -> Node:
+    def node(self) -> sexpr.Node:
         """The whole footprint."""
         part, shape = self.component, self.component.footprint
         x, y = on_board_page((part.x_mm, part.y_mm))
         return (
             "footprint",
-            Quoted(f"{LIBRARY}:{shape.library_name}"),
-            ("layer", Quoted(self.layer("Cu"))),
+            sexpr.Quoted(f"{LIBRARY}:{shape.library_name}"),
+            ("layer", sexpr.Quoted(self.layer("Cu"))),
             ("tstamp", self.own),
             ("at", x, y, self.angle),
             *_ordering(part),
-            *((("path", Quoted(self.path)),) if part.kind != "fiducial" else ()),
+            *((("path", sexpr.Quoted(self.path)),) if part.kind != "fiducial" else ()),
             *self.contents(),
         )
 
-    def contents(self) -> Iterator[Node]:
+    def contents(self) -> Iterator[sexpr.Node]:
         """Content of a footprint that does not depend on its place."""
         yield ("attr", *_attributes(self.component))
         yield from self.texts()
         yield from self.lines()
         yield from (self.pad(i, p) for i, p in enumerate(self.component.footprint.pads))
-        yield from model(self.component.footprint)
+        yield from nodes.model(self.component.footprint)
 
     def layer(self, kind: str) -> str:
         """A layer of the part's own side."""
@@ -161,7 +160,7 @@ class _Writer:
         """A point of the footprint's frame in the frame of the file's footprint, y down."""
         return (x_mm, -y_mm) if self.front else (x_mm, y_mm)
 
-    def texts(self) -> Iterator[Node]:
+    def texts(self) -> Iterator[sexpr.Node]:
         """Reference and value, and the reference once more where assembly drawings have it."""
         part = self.component
         shown = part.ref_text or Text("", 0.0, 0.0)
@@ -183,12 +182,12 @@ class _Writer:
                 mirrored=not self.front,
             )
 
-    def lines(self) -> Iterator[Node]:
+    def lines(self) -> Iterator[sexpr.Node]:
         """Silkscreen, body and courtyard."""
         shape = self.component.footprint
         drawn = [("SilkS", stroke) for stroke in self.component.outline]
-        drawn += [("Fab", stroke) for stroke in body_strokes(shape)]
-        drawn += [("CrtYd", stroke) for stroke in courtyard_strokes(self.component)]
+        drawn += [("Fab", stroke) for stroke in nodes.body_strokes(shape)]
+        drawn += [("CrtYd", stroke) for stroke in nodes.courtyard_strokes(self.component)]
         count = 0
         for layer, stroke in drawn:
             for start, end in zip(stroke.points, stroke.points[1:], strict=False):
@@ -197,25 +196,25 @@ class _Writer:
                     "fp_line",
                     ("start", *self.at(*start)),
                     ("end", *self.at(*end)),
-                    ("layer", Quoted(self.layer(layer))),
+                    ("layer", sexpr.Quoted(self.layer(layer))),
                     ("width", stroke.width_mm),
                     ("tstamp", stable_uuid(self.own, "line", str(count))),
                 )
 
-    def pad(self, index: int, pad: Pad) -> Node:
+    def pad(self, index: int, pad: Pad) -> sexpr.Node:
         """A pad with its net."""
         net = dict(self.component.nets).get(pad.number, "")
         margin = fiducial_margin_mm(self.component)
         return (
             "pad",
-            Quoted(pad.number),
+            sexpr.Quoted(pad.number),
             "thru_hole" if pad.drill_mm else "smd",
             "circle" if pad.round else "rect",
             ("at", *self.at(pad.x_mm, pad.y_mm), self.angle),
             ("size", pad.width_mm, pad.height_mm),
             *((("drill", pad.drill_mm),) if pad.drill_mm else ()),
-            ("layers", *map(Quoted, self.pad_layers(pad))),
-            *((("net", self.numbers[net], Quoted(net)),) if net else ()),
+            ("layers", *map(sexpr.Quoted, self.pad_layers(pad))),
+            *((("net", self.numbers[net], sexpr.Quoted(net)),) if net else ()),
             *((("solder_mask_margin", margin), ("clearance", margin)) if margin else ()),
             *((("zone_connect", _SOLID),) if pad.number in self.solid else ()),
             ("tstamp", stable_uuid(self.own, "pad", str(index))),
@@ -229,12 +228,14 @@ class _Writer:
         return self.layer("Cu"), *paste, self.layer("Mask")
 
 
-def _ordering(part: PlacedComponent) -> tuple[Node, ...]:
+def _ordering(part: PlacedComponent) -> tuple[sexpr.Node, ...]:
     """Ordering fields as in the part's symbol: KiCad 10 compares them."""
     if not part.part:
         return ()
     properties = {"Manufacturer": part.manufacturer, "MPN": part.part}
-    return tuple(("property", Quoted(name), Quoted(value)) for name, value in properties.items())
+    return tuple(
+        ("property", sexpr.Quoted(name), sexpr.Quoted(value)) for name, value in properties.items()
+    )
 
 
 def _attributes(component: PlacedComponent) -> tuple[str, ...]:
@@ -263,13 +264,13 @@ def _text(
     at: Point = (0.0, 0.0),
     hide: bool = False,
     mirrored: bool = False,
-) -> Node:
+) -> sexpr.Node:
     return (
         "fp_text",
         kind,
-        Quoted(value),
+        sexpr.Quoted(value),
         ("at", *at, angle_deg, "unlocked"),
-        ("layer", Quoted(layer)),
+        ("layer", sexpr.Quoted(layer)),
         *(("hide",) if hide else ()),
         effects(text, mirrored),
         ("tstamp", stable_uuid(own)),

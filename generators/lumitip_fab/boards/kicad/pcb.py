@@ -3,9 +3,8 @@ boards."""
 
 from collections.abc import Iterator
 
-from lumitip_fab.boards.kicad.flexible import FLEX_LAYERS, regions, stack_up
+from lumitip_fab.boards.kicad import nodes, sexpr
 from lumitip_fab.boards.kicad.footprint import effects, hole_footprint, placed_footprint
-from lumitip_fab.boards.kicad.sexpr import FORMAT, Node, Quoted, written
 from lumitip_fab.boards.model import (
     CLEARANCE_MM,
     MASK_MM,
@@ -26,7 +25,7 @@ from lumitip_fab.design.frames import BOARD_ON_PAGE_MM, on_board_page
 COPPER = {"front": "F.Cu", "back": "B.Cu"}
 
 
-def tracks(model: BoardModel, numbers: dict[str, int]) -> Iterator[Node]:
+def tracks(model: BoardModel, numbers: dict[str, int]) -> Iterator[sexpr.Node]:
     """Every piece of track."""
     for count, track in enumerate(model.routing.tracks):
         yield (
@@ -34,13 +33,13 @@ def tracks(model: BoardModel, numbers: dict[str, int]) -> Iterator[Node]:
             ("start", *on_board_page(track.start)),
             ("end", *on_board_page(track.end)),
             ("width", track.width_mm),
-            ("layer", Quoted(COPPER[track.side])),
+            ("layer", sexpr.Quoted(COPPER[track.side])),
             ("net", numbers[track.net]),
             ("tstamp", stable_uuid(model.placement.name, "track", str(count))),
         )
 
 
-def vias(model: BoardModel, numbers: dict[str, int]) -> Iterator[Node]:
+def vias(model: BoardModel, numbers: dict[str, int]) -> Iterator[sexpr.Node]:
     """Every via."""
     for count, via in enumerate(model.routing.vias):
         yield (
@@ -48,13 +47,13 @@ def vias(model: BoardModel, numbers: dict[str, int]) -> Iterator[Node]:
             ("at", *on_board_page((via.x_mm, via.y_mm))),
             ("size", via.diameter_mm),
             ("drill", via.drill_mm),
-            ("layers", Quoted("F.Cu"), Quoted("B.Cu")),
+            ("layers", sexpr.Quoted("F.Cu"), sexpr.Quoted("B.Cu")),
             ("net", numbers[via.net]),
             ("tstamp", stable_uuid(model.placement.name, "via", str(count))),
         )
 
 
-def zones(model: BoardModel, numbers: dict[str, int]) -> Iterator[Node]:
+def zones(model: BoardModel, numbers: dict[str, int]) -> Iterator[sexpr.Node]:
     """The pour of each side: the whole board as its outline, and filled as it will be."""
     for net, outline in model.placement.poured:
         for side in SIDES:
@@ -63,13 +62,15 @@ def zones(model: BoardModel, numbers: dict[str, int]) -> Iterator[Node]:
                 yield _zone(model.placement, numbers, outline, fills)
 
 
-def _zone(board: Placement, numbers: dict[str, int], outline: Box, fills: tuple[Fill, ...]) -> Node:
+def _zone(
+    board: Placement, numbers: dict[str, int], outline: Box, fills: tuple[Fill, ...]
+) -> sexpr.Node:
     net, side = fills[0].net, fills[0].side
-    layer, copy = ("layer", Quoted(COPPER[side])), (net,) if board.pours else ()
+    layer, copy = ("layer", sexpr.Quoted(COPPER[side])), (net,) if board.pours else ()
     return (
         "zone",
         ("net", numbers[net]),
-        ("net_name", Quoted(net)),
+        ("net_name", sexpr.Quoted(net)),
         layer,
         ("tstamp", stable_uuid(board.name, "zone", side, *copy)),
         ("hatch", "edge", 0.5),
@@ -87,15 +88,15 @@ def _zone(board: Placement, numbers: dict[str, int], outline: Box, fills: tuple[
     )
 
 
-def keep_outs(model: BoardModel) -> Iterator[Node]:
+def keep_outs(model: BoardModel) -> Iterator[sexpr.Node]:
     """Areas of both sides that KiCad keeps free of copper."""
     board = model.placement
     for count, box in enumerate(board.keep_outs):
         yield (
             "zone",
             ("net", 0),
-            ("net_name", Quoted("")),
-            ("layers", *(Quoted(COPPER[side]) for side in SIDES)),
+            ("net_name", sexpr.Quoted("")),
+            ("layers", *(sexpr.Quoted(COPPER[side]) for side in SIDES)),
             ("tstamp", stable_uuid(board.name, "keep-out", str(count))),
             ("hatch", "edge", 0.5),
             ("connect_pads", ("clearance", 0)),
@@ -122,14 +123,14 @@ def _corners(box: Box) -> tuple[Point, ...]:
     )
 
 
-def _points(corners: tuple[Point, ...]) -> Node:
+def _points(corners: tuple[Point, ...]) -> sexpr.Node:
     return ("pts", *(("xy", *on_board_page(corner)) for corner in corners))
 
 
 _SILK = {"front": "F.SilkS", "back": "B.SilkS"}
 
 
-def edges(board: Placement) -> Iterator[Node]:
+def edges(board: Placement) -> Iterator[sexpr.Node]:
     """The outline: four straight lines, and an arc at each corner if they are round."""
     for count, (start, end) in enumerate(straight_edges(board)):
         yield _edge(board, f"side{count}", "gr_line", ("start", start), ("end", end))
@@ -138,7 +139,7 @@ def edges(board: Placement) -> Iterator[Node]:
         yield _edge(board, f"corner{count}", "gr_arc", *ends)
 
 
-def silkscreen(board: Placement) -> Iterator[Node]:
+def silkscreen(board: Placement) -> Iterator[sexpr.Node]:
     """Silkscreen outside the footprints."""
     count = 0
     for side, stroke in board.silk:
@@ -148,7 +149,7 @@ def silkscreen(board: Placement) -> Iterator[Node]:
                 "gr_line",
                 ("start", *on_board_page(start)),
                 ("end", *on_board_page(end)),
-                ("layer", Quoted(_SILK[side])),
+                ("layer", sexpr.Quoted(_SILK[side])),
                 ("width", stroke.width_mm),
                 ("tstamp", stable_uuid(board.name, "silk", str(count))),
             )
@@ -156,19 +157,19 @@ def silkscreen(board: Placement) -> Iterator[Node]:
         at = on_board_page((text.x_mm, text.y_mm))
         yield (
             "gr_text",
-            Quoted(text.text),
+            sexpr.Quoted(text.text),
             ("at", *at, upright(text.angle_deg, side)),
-            ("layer", Quoted(_SILK[side])),
+            ("layer", sexpr.Quoted(_SILK[side])),
             ("tstamp", stable_uuid(board.name, "text", str(number))),
             effects(text, side == "back"),
         )
 
 
-def _edge(board: Placement, name: str, keyword: str, *points: tuple[str, Point]) -> Node:
+def _edge(board: Placement, name: str, keyword: str, *points: tuple[str, Point]) -> sexpr.Node:
     return (
         keyword,
         *((where, *on_board_page(at)) for where, at in points),
-        ("layer", Quoted("Edge.Cuts")),
+        ("layer", sexpr.Quoted("Edge.Cuts")),
         ("width", EDGE_MM),
         ("tstamp", stable_uuid(board.name, "edge", name)),
     )
@@ -201,51 +202,51 @@ def board_file(model: BoardModel, thickness_mm: float) -> bytes:
         model: the finished board.
         thickness_mm: of the finished board.
     """
-    return written(("kicad_pcb", *_contents(model, thickness_mm))).encode()
+    return sexpr.written(("kicad_pcb", *_contents(model, thickness_mm))).encode()
 
 
-def _contents(model: BoardModel, thickness_mm: float) -> Iterator[Node]:
+def _contents(model: BoardModel, thickness_mm: float) -> Iterator[sexpr.Node]:
     board = model.placement
     numbers = {net.name: number for number, net in enumerate(board.nets, start=1)}
-    yield ("version", FORMAT)
+    yield ("version", sexpr.FORMAT)
     yield ("generator", "lumitip")
     yield ("general", ("thickness", thickness_mm))
-    yield ("paper", Quoted("A4"))
+    yield ("paper", sexpr.Quoted("A4"))
     yield _title(board)
-    more = FLEX_LAYERS if board.flexible else ()
+    more = nodes.FLEX_LAYERS if board.flexible else ()
     yield ("layers", *(_layer(*layer) for layer in (*_LAYERS, *more)))
     yield (
         "setup",
-        *([stack_up(board.flexible)] if board.flexible else []),
+        *([nodes.stack_up(board.flexible)] if board.flexible else []),
         ("pad_to_mask_clearance", MASK_MM),
         ("aux_axis_origin", *BOARD_ON_PAGE_MM),
         ("grid_origin", *BOARD_ON_PAGE_MM),
     )
-    yield ("net", 0, Quoted(""))
-    yield from (("net", number, Quoted(name)) for name, number in numbers.items())
+    yield ("net", 0, sexpr.Quoted(""))
+    yield from (("net", number, sexpr.Quoted(name)) for name, number in numbers.items())
     yield from (placed_footprint(c, numbers, board.name, model.solid) for c in board.components)
     for number, (at, diameter_mm) in enumerate(board.unplated, start=1):
         yield hole_footprint(number, at, diameter_mm, board.name)
     yield from edges(board)
     yield from silkscreen(board)
     if board.flexible:
-        yield from regions(board, board.flexible)
+        yield from nodes.regions(board, board.flexible)
     yield from tracks(model, numbers)
     yield from vias(model, numbers)
     yield from zones(model, numbers)
     yield from keep_outs(model)
 
 
-def _title(board: Placement) -> Node:
+def _title(board: Placement) -> sexpr.Node:
     return (
         "title_block",
-        ("title", Quoted(board.title)),
-        ("rev", Quoted(board.revision)),
-        ("comment", 1, Quoted(f"Design {board.design_hash}")),
-        ("comment", 2, Quoted(f"{board.name} board, seen from its front with the tip up")),
+        ("title", sexpr.Quoted(board.title)),
+        ("rev", sexpr.Quoted(board.revision)),
+        ("comment", 1, sexpr.Quoted(f"Design {board.design_hash}")),
+        ("comment", 2, sexpr.Quoted(f"{board.name} board, seen from its front with the tip up")),
     )
 
 
-def _layer(number: int, name: str, kind: str, shown: str) -> Node:
-    shown_as = (Quoted(shown),) if shown else ()
-    return (str(number), Quoted(name), kind, *shown_as)
+def _layer(number: int, name: str, kind: str, shown: str) -> sexpr.Node:
+    shown_as = (sexpr.Quoted(shown),) if shown else ()
+    return (str(number), sexpr.Quoted(name), kind, *shown_as)

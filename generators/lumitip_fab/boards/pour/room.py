@@ -7,18 +7,8 @@ import numpy as np
 import shapely
 from shapely import Geometry, Polygon
 
-from lumitip_fab.boards.model import (
-    CLEARANCE_MM,
-    LEAST_SPOKES,
-    MIN_WIDTH_MM,
-    SIDES,
-    THERMAL_GAP_MM,
-    THERMAL_SPOKE_MM,
-    Placement,
-    Routing,
-    fiducial_margin_mm,
-)
-from lumitip_fab.boards.placed import PlacedPad, placed_pads
+from lumitip_fab.boards import model
+from lumitip_fab.boards.courtyards import PlacedPad, placed_pads
 from lumitip_fab.boards.verify import DRILL_WALL_MM
 from lumitip_fab.design import Point, Side
 
@@ -39,7 +29,7 @@ class Thing:
     """To the pour."""
 
 
-def room(placement: Placement, routing: Routing, side: Side) -> Geometry:
+def room(placement: model.Placement, routing: model.Routing, side: Side) -> Geometry:
     """Where the pour may be on a side, nowhere narrower than its least width."""
     taken = [
         t.core.buffer(t.radius_mm + t.gap_mm + MARGIN_MM, quad_segs=_ARC)
@@ -50,7 +40,9 @@ def room(placement: Placement, routing: Routing, side: Side) -> Geometry:
     return opened(free)
 
 
-def via_room(placement: Placement, routing: Routing, via_mm: float, drill_mm: float) -> Geometry:
+def via_room(
+    placement: model.Placement, routing: model.Routing, via_mm: float, drill_mm: float
+) -> Geometry:
     """Where the middle of a via may be: off all pads and holes, in the room of both sides."""
     radius = via_mm / 2 + MARGIN_MM
     taken = [
@@ -77,23 +69,23 @@ def opened(area: Geometry) -> Geometry:
     It stays within the area: the outline that is grown back with chords lies within the circle,
     and so it is first shrunk as if the circle lay within the chords.
     """
-    half = MIN_WIDTH_MM / 2
+    half = model.MIN_WIDTH_MM / 2
     around = half / np.cos(np.pi / (4 * _ARC))
     shrunk = area.buffer(-around, quad_segs=_ARC)
     return shrunk.buffer(half, quad_segs=_ARC).simplify(DETAIL_MM)
 
 
-def _things(placement: Placement, routing: Routing) -> Iterator[Thing]:
+def _things(placement: model.Placement, routing: model.Routing) -> Iterator[Thing]:
     classes = {c.name: c.clearance_mm for c in placement.classes}
     of_net = {n.name: classes[n.net_class] for n in placement.nets}
-    least = max(CLEARANCE_MM, of_net.get(placement.ground, 0.0))
+    least = max(model.CLEARANCE_MM, of_net.get(placement.ground, 0.0))
     for component in placement.components:
         for pad in placed_pads(component):
             if pad.net != placement.ground:
                 round_ = pad.pad.round
                 core = shapely.Point(pad.x_mm, pad.y_mm) if round_ else pad.area
                 radius = pad.pad.width_mm / 2 if round_ else 0.0
-                gap = max(least, of_net.get(pad.net, 0.0), fiducial_margin_mm(component))
+                gap = max(least, of_net.get(pad.net, 0.0), model.fiducial_margin_mm(component))
                 yield Thing(core, radius, pad.sides, gap)
     for track in routing.tracks:
         if track.net != placement.ground:
@@ -103,10 +95,10 @@ def _things(placement: Placement, routing: Routing) -> Iterator[Thing]:
     for via in routing.vias:
         if via.net != placement.ground:
             at = shapely.Point(via.x_mm, via.y_mm)
-            yield Thing(at, via.diameter_mm / 2, SIDES, max(least, of_net[via.net]))
+            yield Thing(at, via.diameter_mm / 2, model.SIDES, max(least, of_net[via.net]))
 
 
-def _board(placement: Placement, radius_mm: float) -> Geometry:
+def _board(placement: model.Placement, radius_mm: float) -> Geometry:
     """Where the middle of something round may be: away from edge, holes and keep-outs."""
     box, corner = placement.outline, placement.corner_mm
     edge_mm = placement.edge_clearance_mm + radius_mm
@@ -162,7 +154,7 @@ def sheet(
         bare: pads that are not joined on this side.
     """
     gaps = [
-        pad.area.buffer(THERMAL_GAP_MM, join_style="round")
+        pad.area.buffer(model.THERMAL_GAP_MM, join_style="round")
         for number, pad in enumerate(pads)
         if number not in solid
     ]
@@ -191,7 +183,7 @@ def sheet(
         for piece, spoke in found:
             added[piece].append(spoke)
         reached.append(tuple(sorted({piece for piece, _ in found})))
-        if 0 < len(found) < LEAST_SPOKES:
+        if 0 < len(found) < model.LEAST_SPOKES:
             starved.append(number)
     whole = [shapely.union_all([p, *more]) for p, more in zip(pieces, added, strict=True)]
     return Sheet(tuple(whole), tuple(reached), frozenset(starved))
@@ -201,15 +193,17 @@ def _spokes(pad: PlacedPad) -> list[tuple[Polygon, Polygon]]:
     """The four spokes of a pad, each with its outer end: along its axes, of round pads between."""
     size = pad.pad
     start = 45.0 if size.round else 0.0
-    half = THERMAL_SPOKE_MM / 2
+    half = model.THERMAL_SPOKE_MM / 2
     spokes = []
     for turn, reach in zip(
         (0.0, 90.0, 180.0, 270.0), (size.width_mm, size.height_mm) * 2, strict=True
     ):
-        inner, outer = reach / 2 - _INTO_MM, reach / 2 + THERMAL_GAP_MM + _INTO_MM
+        inner, outer = reach / 2 - _INTO_MM, reach / 2 + model.THERMAL_GAP_MM + _INTO_MM
         angle = np.radians(start + turn + pad.component.angle_deg)
         matrix = [np.cos(angle), -np.sin(angle), np.sin(angle), np.cos(angle), pad.x_mm, pad.y_mm]
         spoke = shapely.box(inner, -half, outer, half)
-        end = shapely.box(outer - _INTO_MM / 2, -MIN_WIDTH_MM / 2, outer, MIN_WIDTH_MM / 2)
+        end = shapely.box(
+            outer - _INTO_MM / 2, -model.MIN_WIDTH_MM / 2, outer, model.MIN_WIDTH_MM / 2
+        )
         spokes.append(tuple(shapely.affinity.affine_transform(p, matrix) for p in (spoke, end)))
     return spokes

@@ -5,14 +5,13 @@ import sys
 from collections import defaultdict
 from dataclasses import dataclass
 
+from lumitip_fab.boards.courtyards import PlacedPad, placed_pads
 from lumitip_fab.boards.model import SIDES, Placement, Routing, Track, Via
-from lumitip_fab.boards.placed import PlacedPad, placed_pads
 from lumitip_fab.boards.route import stamps
 from lumitip_fab.boards.route.kernels import Ints
 from lumitip_fab.boards.route.obstacles import Obstacles, TightError, Wanted, wanted
 from lumitip_fab.boards.route.rules import Grid, Rules
-from lumitip_fab.boards.route.state import State
-from lumitip_fab.boards.route.trees import CostWeights, Unreachable, connect, supported
+from lumitip_fab.boards.route.trees import CostWeights, State, Unreachable, connect, supported
 from lumitip_fab.errors import BuildError
 
 

@@ -6,10 +6,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from lumitip_fab.boards.model import SIDES, Placement
-from lumitip_fab.boards.silk.names import print_names
+from lumitip_fab.boards.silk.names import draw_shroud, print_names
 from lumitip_fab.boards.silk.page import Page
 from lumitip_fab.boards.silk.references import print_references
-from lumitip_fab.boards.silk.shrouds import draw_shroud
 from lumitip_fab.design import Note, Point, Rules, Side
 
 _TITLE_MM = 1.0  # height beside cells

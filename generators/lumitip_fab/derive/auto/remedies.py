@@ -5,21 +5,11 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from lumitip_fab.config.automatic import FIELDS
+from lumitip_fab.config.automatic import automatic_fields
 from lumitip_fab.config.messages import brief
 from lumitip_fab.config.parts import NAMED
-from lumitip_fab.derive.auto.judge import Rule, Verdict
+from lumitip_fab.derive.auto import search
 from lumitip_fab.derive.auto.resolve import accepted_with
-from lumitip_fab.derive.auto.search import (
-    COARSE,
-    FINE,
-    Change,
-    catalogue_names,
-    change_of,
-    first_of,
-    menders,
-    smallest_number,
-)
 
 MOST_STEPS = 12
 STEPS = {"_mm": 0.05, "_mm2": 0.01, "_deg": 0.5, "_ma": 0.5, "_w": 0.05, "_v": 0.5}
@@ -59,7 +49,7 @@ class Plan:
     """Whether the file is accepted with all first remedies."""
 
 
-def plan_of(verdict: Verdict) -> Plan:
+def plan_of(verdict: search.Verdict) -> Plan:
     """Changes that mend every broken rule: alternatives of one change where one is enough."""
     now, steps = verdict, []
     for _ in range(MOST_STEPS):
@@ -77,10 +67,10 @@ def plan_of(verdict: Verdict) -> Plan:
     return Plan(_needed(verdict, steps), True)
 
 
-def _each_enough(verdict: Verdict, steps: list[Step]) -> Iterator[Remedy]:
+def _each_enough(verdict: search.Verdict, steps: list[Step]) -> Iterator[Remedy]:
     """Single changes that are sufficient, one for each field; switches of boards come last."""
     broken = {problem.field for problem in verdict.rules.values()}
-    common = set.intersection(*(set(menders(field)) for field in broken))
+    common = set.intersection(*(set(search.menders(field)) for field in broken))
     found = (remedy for step in steps for remedy in step.remedies)
     for remedy in sorted(found, key=lambda remedy: remedy.field in SWITCHES):
         if remedy.field in common and _accepted(verdict, [remedy]):
@@ -88,10 +78,14 @@ def _each_enough(verdict: Verdict, steps: list[Step]) -> Iterator[Remedy]:
             yield _nearest(verdict, remedy)
 
 
-def _nearest(verdict: Verdict, remedy: Remedy) -> Remedy:
+def _nearest(verdict: search.Verdict, remedy: Remedy) -> Remedy:
     """The accepted value nearest to the file's own: the search kept other automatic values as they
     were, and with new ones a smaller change can be enough."""
-    step = FIELDS[remedy.field].step if remedy.field in FIELDS else _step_of(remedy.field)
+    step = (
+        automatic_fields()[remedy.field].step
+        if remedy.field in automatic_fields()
+        else _step_of(remedy.field)
+    )
     value, was = remedy.value, remedy.was
     if not step or not isinstance(value, int | float) or not isinstance(was, int | float):
         return remedy
@@ -112,7 +106,7 @@ def _step_of(field: str) -> float:
     return next((step for unit, step in STEPS.items() if field.endswith(unit)), 0.0)
 
 
-def _needed(verdict: Verdict, steps: list[Step]) -> tuple[Step, ...]:
+def _needed(verdict: search.Verdict, steps: list[Step]) -> tuple[Step, ...]:
     """The steps without redundant ones, whose rule another step fixes too."""
     kept = list(steps)
     for step in steps[:-1]:
@@ -125,11 +119,11 @@ def _needed(verdict: Verdict, steps: list[Step]) -> tuple[Step, ...]:
     return tuple(kept)
 
 
-def _accepted(verdict: Verdict, remedies: list[Remedy]) -> bool:
+def _accepted(verdict: search.Verdict, remedies: list[Remedy]) -> bool:
     return accepted_with(verdict.config, {r.field: r.value for r in remedies})
 
 
-def _mended(now: Verdict, first: Verdict) -> Iterator[tuple[Step, Verdict]]:
+def _mended(now: search.Verdict, first: search.Verdict) -> Iterator[tuple[Step, search.Verdict]]:
     for rule, problem in now.rules.items():
         changes = list(_changes(now, rule, problem.field))
         if changes:
@@ -140,29 +134,31 @@ def _mended(now: Verdict, first: Verdict) -> Iterator[tuple[Step, Verdict]]:
             yield Step(problem.message, remedies), changes[0].verdict
 
 
-def _changes(now: Verdict, rule: Rule, about: str) -> Iterator[Change]:
+def _changes(now: search.Verdict, rule: search.Rule, about: str) -> Iterator[search.Change]:
     """One change of each field that can mend a rule, the field of the rule first."""
-    for field in menders(about):
+    for field in search.menders(about):
         if field in OWNED:
             continue
-        change = _change(now, rule, field, FINE if field == about else COARSE)
+        change = _change(now, rule, field, search.FINE if field == about else search.COARSE)
         if change:
             yield change
 
 
-def _change(now: Verdict, rule: Rule, field: str, fineness: int) -> Change | None:
-    if field in FIELDS:
-        change = change_of(now, rule, field, fineness)
+def _change(
+    now: search.Verdict, rule: search.Rule, field: str, fineness: int
+) -> search.Change | None:
+    if field in automatic_fields():
+        change = search.change_of(now, rule, field, fineness)
         if change:
             return change
     elif field in NAMED:
-        return first_of(now, rule, field, catalogue_names(now, NAMED[field], field))
+        return search.first_of(now, rule, field, search.catalogue_names(now, NAMED[field], field))
     if field in SWITCHES:
-        return first_of(now, rule, field, iter([not now.config.value(field)]))
+        return search.first_of(now, rule, field, iter([not now.config.value(field)]))
     step = _step_of(field)
     if not step or not isinstance(now.config.value(field), int | float):
         return None
-    return smallest_number(now, rule, field, step, fineness)
+    return search.smallest_number(now, rule, field, step, fineness)
 
 
 def remedy_lines(plan: Plan) -> list[str]:

@@ -4,11 +4,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from lumitip_fab.config.automatic import FIELDS, Value
+from lumitip_fab.config.automatic import Value, automatic_fields
 from lumitip_fab.config.load import Input
 from lumitip_fab.config.messages import brief
-from lumitip_fab.derive.auto.judge import Verdict, judge
-from lumitip_fab.derive.auto.search import Change, search
+from lumitip_fab.derive.auto.search import Change, Verdict, judge, search
 from lumitip_fab.derive.auto.starts import proposals
 from lumitip_fab.design import Choice, Design
 from lumitip_fab.errors import InputError
@@ -53,7 +52,7 @@ class _Reasons:
                 brief(config.value(name)),
                 self.of.get(name, f"default; follows {automatic.follows}"),
             )
-            for name, automatic in FIELDS.items()
+            for name, automatic in automatic_fields().items()
             if name in config.automatic
         )
 
@@ -83,7 +82,7 @@ def accepted_with(config: Input, values: Mapping[str, Any]) -> bool:
         values: of fields, as they would be written.
     """
     free = config.automatic - values.keys()
-    begun = {field: FIELDS[field].start for field in free}
+    begun = {field: automatic_fields()[field].start for field in free}
     try:
         resolve(replace(config, automatic=free).with_values({**begun, **values}))
     except InputError:

@@ -1,20 +1,79 @@
 """Search for the smallest changes that mend every broken rule."""
 
 import math
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, get_args
 
 from annotated_types import Ge, Gt, Le, Lt
+from pydantic import ValidationError
 
-from lumitip_fab.config.automatic import FIELDS
+from lumitip_fab.config.automatic import automatic_fields
+from lumitip_fab.config.load import Input
 from lumitip_fab.config.parameters import Parameters
 from lumitip_fab.config.parts import NONE, OPTIONAL
-from lumitip_fab.derive.auto.judge import Rule, Verdict, judge_with
 from lumitip_fab.derive.auto.strings import lowest_ma
 from lumitip_fab.derive.boards.plug_in import least_inrush_ohm
+from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.stack import mask_mm
+from lumitip_fab.derive.once import derive_once
 from lumitip_fab.derive.wiring.ratings import sold_from, sold_ohm
+from lumitip_fab.design import Design
+from lumitip_fab.errors import InputError, Problem
+from lumitip_fab.text import table_of
+
+_NUMBER = re.compile(r"-?\d+(\.\d+)?(e-?\d+)?")
+Rule = tuple[str, str]
+"""A field and the message of its rule without numbers: the same at other values."""
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """Result of derivation for an input."""
+
+    config: Input
+    design: Design | None
+    stage: int
+    """Number of stages without faults; a later rule is only tested after these."""
+    problems: tuple[Problem, ...]
+
+    @property
+    def rules(self) -> dict[Rule, Problem]:
+        """Every rule that is broken."""
+        return {rule_of(problem): problem for problem in self.problems}
+
+    def mends(self, rule: Rule, before: "Verdict") -> bool:
+        """Whether a rule holds that was broken before, and no other one is broken instead."""
+        mine = set(self.rules)
+        further = self.stage > before.stage
+        return rule not in mine and (
+            further or (self.stage == before.stage and mine <= set(before.rules))
+        )
+
+
+def rule_of(problem: Problem) -> Rule:
+    """The rule that a problem is about."""
+    return problem.field, _NUMBER.sub("#", problem.message)
+
+
+def judge(config: Input) -> Verdict:
+    """Derive, and keep what is wrong."""
+    faults = Diagnostics(config)
+    try:
+        design = derive_once(config, faults)
+    except InputError as error:
+        return Verdict(config, None, faults.stage, error.problems)
+    return Verdict(config, design, faults.stage, ())
+
+
+def judge_with(config: Input, values: dict[str, Any]) -> Verdict | None:
+    """Judge other values of some fields; none where a field does not allow its value."""
+    try:
+        return judge(config.with_values(values))
+    except ValidationError:
+        return None
+
 
 DECIMALS = 4
 COARSE, FINE, FINEST = 1, 2, 32
@@ -127,97 +186,9 @@ def catalogue_names(before: Verdict, kind: str, field: str) -> Iterator[str]:
     yield from (name for name in entries if name != before.config.value(field))
 
 
-_ROOM = ("board.channel_mm", "board.side_margin_mm")
-_FINGER = (
-    "outline.waist_margin_mm",
-    "outline.end_margin_mm",
-    "board.channel_mm",
-    "board.tip_margin_mm",
-    "outline.tip_margin_mm",
-    "tip.slant_start_mm",
-)
-_CURRENT = ("emitter.current_ma", "emitter.string_leds", "emitter.resistor")
-
-MENDS: dict[str, tuple[str, ...]] = {
-    "grid.columns": ("receiver.multiplexer",),
-    "stack.silicone_mm": ("receiver.bulk_capacitor", "emitter.resistor_side"),
-    "stack.floor_mm": ("backing.tail_mm",),
-    "outline.tip_fraction": ("outline.shoulder_margin_mm",),
-    "outline.waist_margin_mm": (
-        "outline.shoulder_margin_mm",
-        "outline.end_corner_mm",
-        "outline.shoulder_at_mm",
-        "outline.tip_margin_mm",
-    ),
-    "outline.waist_at": ("outline.end_corner_mm", "outline.shoulder_at_mm"),
-    "outline.shoulder_margin_mm": ("outline.waist_margin_mm",),
-    "backing.tail_mm": ("stack.floor_mm",),
-    "tip.slant_start_mm": ("outline.tip_margin_mm",),
-    "coupling.gripper": ("printer.fit_mm", *_FINGER, "mould.taper_length_mm"),
-    "board.tip_margin_mm": ("board.hole_edge_mm", "board.hole_mm"),
-    "board.hole_mm": ("board.tip_margin_mm", "board.side_margin_mm"),
-    "board.end_margin_mm": ("board.hole_mm",),
-    "board.channel_mm": ("board.hole_mm",),
-    "board.copper_gap_mm": ("receiver.multiplexer",),
-    "board.supply_track_mm": ("board.track_mm",),
-    "board.via_mm": ("board.via_drill_mm",),
-    "emitter.led": ("board.clearance_mm", "emitter.current_ma"),
-    "emitter.current_ma": _CURRENT,
-    "emitter.max_heat_w": _CURRENT,
-    "emitter.source": ("emitter.drive", *_CURRENT),
-    "emitter.switch": ("emitter.drive",),
-    "emitter.resistor_side": ("emitter.drive",),
-    "emitter.resistor": (
-        "emitter.resistor_side",
-        "board.channel_mm",
-        *_CURRENT,
-        "board.side_margin_mm",
-        "backing.relief_clearance_mm",
-    ),
-    "supply.max_ma": _CURRENT,
-    "supply.voltage_v": ("emitter.string_leds", "flange.gate_ohm", "flange.enabled"),
-    "controller.board": ("receiver.multiplexer", "flange.enabled"),
-    "receiver.photodetector": ("board.clearance_mm",),
-    "receiver.resistor": ("receiver.capacitor", "board.clearance_mm"),
-    "receiver.multiplexer": _ROOM,
-    "receiver.array": ("receiver.load",),
-    "mask.hole_mm": ("board.channel_mm",),
-    "mask.flap_mm": ("mask.allowance_mm", "receiver.multiplexer"),  # fewer make a shorter finger
-    "printer.profile": ("receiver.multiplexer",),
-    "mould.draft_deg": ("mould.tip_silicone_mm",),
-    "mould.taper_length_mm": ("outline.tip_margin_mm",),
-    "flex.groove_depth_mm": ("stack.floor_mm",),
-    "flex.standoff_mm": ("flex.groove_depth_mm",),
-    "flex.interface_mm": (
-        "flex.standoff_mm",
-        "tip.slant_start_mm",
-        "outline.end_margin_mm",
-        "board.tip_margin_mm",
-        "outline.tip_margin_mm",
-    ),
-    "flex.thread_hole_mm": ("board.hole_edge_mm", "board.end_margin_mm", "board.side_margin_mm"),
-    "breakout.board_mm": ("breakout.hole_spacing_mm",),
-    "breakout.hole_mm": ("breakout.hole_spacing_mm",),
-    "breakout.hole_spacing_mm": ("breakout.hole_mm",),
-    "holder.body_mm": ("holder.wall_mm", "breakout.enabled"),
-    "holder.wrap_deg": ("holder.wall_mm", "holder.strap_hole_mm"),
-    "holder.standoff_mm": ("breakout.hole_spacing_mm",),
-    "holder.screw": ("breakout.hole_spacing_mm", "holder.wall_mm"),
-    "holder.strap_hole_mm": ("holder.wrap_deg",),
-    "holder.strap_spacing_mm": ("holder.strap_hole_mm",),
-    "flange.fuse": ("emitter.current_ma", "flange.enabled"),
-    "flange.input_capacitor": ("supply.voltage_v", "flange.enabled"),
-    "flange.tvs": ("supply.voltage_v", "flange.enabled"),
-    "flange.inrush_resistor": ("flange.inrush_ohm", "flange.enabled"),
-    "flange.coupling": ("flange.enabled",),
-    "flange.web_mm": ("flange.enabled",),
-    "flange.contacts": ("flange.tail_mm", "flange.enabled"),
-}
-
-
 def menders(field: str) -> tuple[str, ...]:
     """Fields to try for a rule about a field, in order, each once."""
-    return tuple(dict.fromkeys((field, *MENDS.get(field, ()))))
+    return tuple(dict.fromkeys((field, *table_of("derive/auto/menders.toml").get(field, ()))))
 
 
 MOST_CHANGES = 40
@@ -258,7 +229,7 @@ def _next(now: Verdict, free: frozenset[str]) -> tuple[Change, str] | None:
                 if change:
                     return change, problem.message
     for rule, problem in now.rules.items():
-        if problem.field in free and FIELDS[problem.field].step:
+        if problem.field in free and automatic_fields()[problem.field].step:
             change = change_of(now, rule, problem.field, FINEST)
             if change:
                 return change, problem.message
@@ -267,7 +238,7 @@ def _next(now: Verdict, free: frozenset[str]) -> tuple[Change, str] | None:
 
 def change_of(now: Verdict, rule: Rule, field: str, fineness: int = COARSE) -> Change | None:
     """The smallest change of an automatic field that mends a rule; none where none does."""
-    automatic = FIELDS[field]
+    automatic = automatic_fields()[field]
     if field in OPTIONAL:  # another part is a choice of the user's
         return first_of(now, rule, field, iter([NONE]))
     if automatic.names:

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Iterator
 
-from lumitip_fab.config.automatic import FIELDS, Value
+from lumitip_fab.config.automatic import Value, automatic_fields
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.auto.strings import choose_resistors, choose_strings
 from lumitip_fab.derive.boards.connectors import POWER_WIRES
@@ -63,18 +63,20 @@ def _layers(config: Input) -> Iterator[Proposal]:
 def _printer(config: Input) -> Iterator[Proposal]:
     p = config.parameters
     line = config.parts.printer.profile.line_mm
-    wall = max(float(FIELDS["printer.min_wall_mm"].start), round(LINES_PER_WALL * line, 2))
+    wall = max(
+        float(automatic_fields()["printer.min_wall_mm"].start), round(LINES_PER_WALL * line, 2)
+    )
     yield "printer.min_wall_mm", wall, f"{LINES_PER_WALL:g} lines of {line:g} mm, at least 0.8 mm"
-    edge = max(float(FIELDS["tip.edge_mm"].start), line)
+    edge = max(float(automatic_fields()["tip.edge_mm"].start), line)
     yield "tip.edge_mm", edge, f"one line of {line:g} mm, at least 0.45 mm"
     wall = p.printer.min_wall_mm
     plate = p.stack.floor_mm + p.stack.pcb_mm * (not is_flex(p))
     slant = math.ceil(10 * (plate - p.tip.edge_mm) - 1e-6) / 10
-    if slant > float(FIELDS["tip.slant_start_mm"].start):
+    if slant > float(automatic_fields()["tip.slant_start_mm"].start):
         yield "tip.slant_start_mm", slant, f"a plate of {plate:g} mm at 45°"
-    floor = max(float(FIELDS["stack.floor_mm"].start), wall)
+    floor = max(float(automatic_fields()["stack.floor_mm"].start), wall)
     yield "stack.floor_mm", floor, f"at least printer.min_wall_mm = {wall:g}"
-    mould = max(float(FIELDS["mould.wall_mm"].start), round(2 * wall, 2))
+    mould = max(float(automatic_fields()["mould.wall_mm"].start), round(2 * wall, 2))
     yield "mould.wall_mm", mould, f"at least twice printer.min_wall_mm = {wall:g}"
 
 
@@ -85,7 +87,7 @@ def _multiplexer(config: Input) -> Iterator[Proposal]:
     is taken from `MOST_SMALL` on: half as many parts, and tracks between them."""
     p, parts = config.parameters, config.catalogue
     cells, controller = sum(p.grid.columns), parts.controllers[p.controller.board]
-    start = str(FIELDS["receiver.multiplexer"].start)
+    start = str(automatic_fields()["receiver.multiplexer"].start)
     known = sorted(
         parts.multiplexers.items(), key=lambda item: (item[0] != start, item[1].channels)
     )
@@ -130,7 +132,7 @@ def _copper(config: Input) -> Iterator[Proposal]:
 def _load(config: Input) -> Iterator[Proposal]:
     """A pull-up for each photodetector where they have room beside the multiplexers."""
     p, parts = config.parameters, config.parts
-    usual = float(FIELDS["board.track_mm"].start)
+    usual = float(automatic_fields()["board.track_mm"].start)
     if p.board.track_mm < usual:
         yield (
             "receiver.load",
@@ -166,7 +168,7 @@ def _channel(config: Input) -> Iterator[Proposal]:
     p = config.parameters
     channels = config.parts.receiver.multiplexer.channels
     muxes = math.ceil(sum(p.grid.columns) / channels)
-    fine = p.board.track_mm < float(FIELDS["board.track_mm"].start)
+    fine = p.board.track_mm < float(automatic_fields()["board.track_mm"].start)
     reason = f"room to sort {sum(p.grid.columns)} lines before {muxes} multiplexers"
     if muxes > 4 or fine:
         yield "board.channel_mm", ROOMY_CHANNEL_MM, reason
@@ -194,9 +196,9 @@ def _standoff(config: Input) -> Iterator[Proposal]:
     """The interface's pad before the gripper's nose; its ramp, and so its length, follow."""
     if not is_flex(config.parameters):
         return
-    usual, step = FIELDS["flex.standoff_mm"].start, FIELDS["flex.standoff_mm"].step
-    least = round(math.ceil(least_standoff_mm(config) / step - 1e-6) * step, 3)
-    if least > float(usual):
+    usual = automatic_fields()["flex.standoff_mm"]
+    least = round(math.ceil(least_standoff_mm(config) / usual.step - 1e-6) * usual.step, 3)
+    if least > float(usual.start):
         reason = f"board, plate and pad end before the nose of {config.parameters.coupling.gripper}"
         yield "flex.standoff_mm", least, reason
 
@@ -211,7 +213,7 @@ def _interface(config: Input) -> Iterator[Proposal]:
         return
     at_cells = next(zone.box for zone in finger.zones if zone.name == "cells")
     held = at_cells.y_min_mm - finger.notch.y_min_mm
-    start = float(FIELDS["flex.interface_mm"].start)
+    start = float(automatic_fields()["flex.interface_mm"].start)
     if held > start:
         yield (
             "flex.interface_mm",
@@ -223,7 +225,7 @@ def _interface(config: Input) -> Iterator[Proposal]:
 def _flange(config: Input) -> Iterator[Proposal]:
     """Parts of the flange's board that follow from supply and current."""
     p, parts = config.parameters, config.catalogue
-    start = parts.capacitors[str(FIELDS["flange.input_capacitor"].start)]
+    start = parts.capacitors[str(automatic_fields()["flange.input_capacitor"].start)]
     needed_v = p.supply.voltage_v * (1 + SUPPLY_TOLERANCE)
     for name, capacitor in parts.capacitors.items():
         same = capacitor.capacitance_nf >= start.capacitance_nf
@@ -234,7 +236,9 @@ def _flange(config: Input) -> Iterator[Proposal]:
     if fitting:
         name = min(fitting, key=lambda each: parts.tvs_diodes[each].standoff_v)
         yield "flange.tvs", name, f"the lowest stand-off voltage for {p.supply.voltage_v:g} V"
-    ohm = max(float(FIELDS["flange.inrush_ohm"].start), sold_from(least_inrush_ohm(config)))
+    ohm = max(
+        float(automatic_fields()["flange.inrush_ohm"].start), sold_from(least_inrush_ohm(config))
+    )
     yield "flange.inrush_ohm", ohm, "no ringing, and a small current, as it is plugged in"
-    ohm = sold_ohm(float(FIELDS["flange.gate_ohm"].start))
+    ohm = sold_ohm(float(automatic_fields()["flange.gate_ohm"].start))
     yield "flange.gate_ohm", ohm, "as small a current as a gate needs"

@@ -5,10 +5,10 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 
-from lumitip_fab.config.automatic import FIELDS, Value
+from lumitip_fab.config.automatic import Value, automatic_fields
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.wiring.ratings import sold_ohm
-from lumitip_fab.derive.wiring.series import String
+from lumitip_fab.derive.wiring.sources import String
 from lumitip_fab.derive.wiring.strings import (
     lengths,
     longest_string,
@@ -99,7 +99,7 @@ def _proposals(config: Input, longest: int) -> Iterator[tuple[str, Value, str]]:
     strings = _strings(config, longest)
     package = config.parts.emitter.resistor
     load, volts = max(s.high_load_w for s in strings), p.supply.voltage_v
-    full = float(FIELDS["emitter.current_ma"].start)
+    full = float(automatic_fields()["emitter.current_ma"].start)
     reason = "current of the published sensor"
     if p.emitter.current_ma < full:
         reason = (
@@ -122,7 +122,9 @@ def _proposals(config: Input, longest: int) -> Iterator[tuple[str, Value, str]]:
         f"takes up to {1000 * load:.0f} mW over all tolerances, rated {1000 * package.power_w:.0f}",
     )
     start = (
-        SHARED_OHM if p.receiver.load == "shared" else float(FIELDS["receiver.pull_up_ohm"].start)
+        SHARED_OHM
+        if p.receiver.load == "shared"
+        else float(automatic_fields()["receiver.pull_up_ohm"].start)
     )
     factor = _least_ma(config, start) / p.emitter.current_ma
     ohm = start if factor <= 1 else sold_ohm(min(start * factor, MOST_PULL_UP_OHM))
@@ -141,7 +143,7 @@ def _currents(config: Input) -> Iterator[float]:
     if "emitter.current_ma" not in config.automatic:
         yield p.emitter.current_ma
         return
-    full = float(FIELDS["emitter.current_ma"].start)
+    full = float(automatic_fields()["emitter.current_ma"].start)
     least = least_current_ma(config)
     current = full
     while current >= least:
@@ -174,7 +176,7 @@ def _least_ma(config: Input, ohm: float) -> float:
     detector = parts.photodetectors[p.receiver.photodetector]
     supply_v = parts.controllers[p.controller.board].supply_v
     saturated_ua = 1e6 * (supply_v - detector.saturation_v) / ohm
-    full = float(FIELDS["emitter.current_ma"].start)
+    full = float(automatic_fields()["emitter.current_ma"].start)
     return full * SATURATION_MARGIN * saturated_ua / detector.light_current_ua
 
 

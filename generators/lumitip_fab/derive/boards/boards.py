@@ -138,18 +138,13 @@ def _frame(
     ways = len(connectors.receiver_signals(config, muxing))
     pin_mm = p.board.hole_mm - 2 * p.backing.pin_clearance_mm
     printed_mm = derive_fits(config, p.printer.fit_mm).pin_mm
-    faults.refuse_unless(
-        printed_mm >= LEAST_PIN_MM,
-        "backing.pin_clearance_mm",
-        f"is {p.backing.pin_clearance_mm:g}, which leaves pins of {printed_mm:.2f} mm in holes "
-        f"of {p.board.hole_mm:g} mm; at least {LEAST_PIN_MM:g} mm is needed",
+    faults.unless(
+        printed_mm >= LEAST_PIN_MM, "pins_thin", printed_mm=printed_mm, least_pin_mm=LEAST_PIN_MM
     )
-    faults.refuse_unless(
+    faults.unless(
         p.backing.pin_clearance_mm + p.printer.fit_mm >= LEAST_CLEARANCE_MM,
-        "printer.fit_mm",
-        f"is {p.printer.fit_mm:g}, with backing.pin_clearance_mm = "
-        f"{p.backing.pin_clearance_mm:g} the pins are drawn as wide as their holes; at "
-        f"least {LEAST_CLEARANCE_MM - p.backing.pin_clearance_mm:.2f} is needed",
+        "pins_as_wide_as_holes",
+        least=LEAST_CLEARANCE_MM - p.backing.pin_clearance_mm,
     )
     half = float(np.abs(cells.x_mm).max()) + p.board.side_margin_mm
     rim = p.board.hole_mm / 2 + HOLE_TO_EDGE_MM
@@ -177,11 +172,13 @@ def _frame(
         ("board.tip_margin_mm", p.board.tip_margin_mm, reach),
         ("board.side_margin_mm", p.board.side_margin_mm, side),
     ):
-        faults.refuse_unless(
+        faults.unless(
             margin >= taken + p.board.clearance_mm,
-            field,
-            f"is {margin:g}; parts reach {taken:g} mm beyond their cells; at least "
-            f"{taken + p.board.clearance_mm:.2f} is needed",
+            "margin_below_parts",
+            field=field,
+            margin=margin,
+            taken=taken,
+            least=taken + p.board.clearance_mm,
         )
     x_min, x_max = float(cells.x_mm.min()), float(cells.x_mm.max())
     widest = max(-x_min, x_max) + side
@@ -212,24 +209,18 @@ def _refuse_holes(p: Parameters, pad_mm: float, faults: Diagnostics) -> None:
     radius = p.board.hole_mm / 2
     for_hole, for_pad = radius + placing.HOLE_WEB_MM, pad_mm / 2 + PAD_TO_EDGE_MM
     what = f"holes of {p.board.hole_mm:g} mm"
-    faults.refuse_unless(
+    faults.unless(
         p.board.end_margin_mm >= max(for_hole, for_pad) - 1e-9,
-        "board.end_margin_mm",
-        f"is {p.board.end_margin_mm:g}; {what} and pads of {pad_mm:g} mm in the connector's "
-        f"row need at least {max(for_hole, for_pad):.2f} mm",
+        "end_margin_small",
+        what=what,
+        pad_mm=pad_mm,
+        least=max(for_hole, for_pad),
     )
-    faults.refuse_unless(
-        p.board.hole_edge_mm >= for_hole - 1e-9,
-        "board.hole_edge_mm",
-        f"is {p.board.hole_edge_mm:g}; {what} need at least {for_hole:.2f} mm",
+    faults.unless(
+        p.board.hole_edge_mm >= for_hole - 1e-9, "hole_near_edge", what=what, for_hole=for_hole
     )
     least = radius + placing.HOLE_CLEARANCE_MM - pad_mm / 2
-    faults.refuse_unless(
-        p.board.channel_mm >= least - 1e-9,
-        "board.channel_mm",
-        f"is {p.board.channel_mm:g}; {what} beside the connector would reach the parts; at "
-        f"least {least:.2f} is needed",
-    )
+    faults.unless(p.board.channel_mm >= least - 1e-9, "channel_small", what=what, least=least)
 
 
 def _driving(

@@ -152,11 +152,8 @@ def _refuse(
     p = config.parameters.breakout
     length, width = p.board_mm
     ways = {len(names) for names in plug.rows}
-    faults.refuse_unless(
-        ways == {strip.ways},
-        "breakout.socket",
-        f"is {p.socket!r}, which has {strip.ways} contacts; the rows of "
-        f"{config.parameters.controller.board!r} have {' and '.join(map(str, sorted(ways)))}",
+    faults.unless(
+        ways == {strip.ways}, "socket_ways", strip=strip, rows=" and ".join(map(str, sorted(ways)))
     )
     cable = connectors.half_width_mm(len(connectors.receiver_signals(config, muxing)), wide=False)
     least_length = max(
@@ -170,20 +167,13 @@ def _refuse(
         (length, least_length, "long"),
         (width, least_width, "wide"),
     ):
-        faults.refuse_unless(
-            size_mm >= least - 1e-9,
-            "breakout.board_mm",
-            f"is {size_mm:g} mm {what}; sockets, holes and wires need at least {least:.2f} mm",
+        faults.unless(
+            size_mm >= least - 1e-9, "breakout_small", size_mm=size_mm, what=what, least=least
         )
-    faults.refuse_unless(
+    faults.unless(
         p.hole_spacing_mm >= p.hole_mm + HOLE_WEB_MM,
-        "breakout.hole_spacing_mm",
-        f"is {p.hole_spacing_mm:g}; holes of {p.hole_mm:g} mm need at least "
-        f"{p.hole_mm + HOLE_WEB_MM:g} mm",
+        "screw_holes_close",
+        least=p.hole_mm + HOLE_WEB_MM,
     )
     most = plug.spacing_mm - strip.pad_mm - 2 * HOLE_WEB_MM
-    faults.refuse_unless(
-        p.hole_mm <= most,
-        "breakout.hole_mm",
-        f"is {p.hole_mm:g}; at most {most:.2f} mm fits between the sockets",
-    )
+    faults.unless(p.hole_mm <= most, "screw_hole_wide", most=most)

@@ -16,17 +16,10 @@ With a module as its controller it is wider to the left: see `lumitip_fab.derive
 
 from lumitip_fab.catalogue.controllers import OPEN
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.boards.flange_circuit import (
-    halved,
-    is_regulated,
-    refuse_map,
-    refuse_parts,
-    supply_range_v,
-)
-from lumitip_fab.derive.boards.indicator import NOTE, indicator_parts
+from lumitip_fab.derive.boards import flange_circuit
+from lumitip_fab.derive.boards.indicator import NOTE, flange_probes, indicator_parts
 from lumitip_fab.derive.boards.module import Supplies, derive_module
 from lumitip_fab.derive.boards.packages import capacitor
-from lumitip_fab.derive.boards.probes import flange_probes
 from lumitip_fab.derive.boards.ties import derive_ties
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.mount.fasteners import BOARD_SCREW
@@ -64,23 +57,18 @@ def derive_flange(
     p = config.parameters
     module = config.parts.controller.board.module
     if not p.flange.enabled:
-        faults.refuse_unless(
-            module is None,
-            "controller.board",
-            f"is {p.controller.board!r}, a module on the flange's board. Set flange.enabled = true "
-            "or choose a controller that plugs into the breakout.",
-        )
+        faults.unless(module is None, "module_without_flange")
         return ()
     _refuse(config, faults)
-    refuse_map(config, faults)
-    refuse_parts(config, strings, faults)
+    flange_circuit.refuse_map(config, faults)
+    flange_circuit.refuse_parts(config, strings, faults)
     raw, supply, output = _supplies(config)
     wing = derive_module(config, module, muxing, Supplies(supply, output), BOX, faults)
     light = indicator_parts(config, output)
     module_parts = wing.components if wing else ()
     parts = (*_input(config), *_regulator(config), *light, *module_parts)
     _refuse_lines(config, parts, faults)
-    behind = ("SW", INPUT) if is_regulated(config) else ()
+    behind = ("SW", INPUT) if flange_circuit.is_regulated(config) else ()
     components = (
         *_strips(config),
         *parts,
@@ -111,7 +99,7 @@ def derive_flange(
 
 def _hot_loop(config: Input) -> tuple[tuple[str, str], ...]:
     """The leads round which the regulator's input current switches; none without it."""
-    if not is_regulated(config):
+    if not flange_circuit.is_regulated(config):
         return ()
     names = config.parts.flange.regulator.names
     vin, ground = (str(names.index(name) + 1) for name in ("VIN", "GND"))
@@ -160,7 +148,7 @@ def _input(config: Input) -> tuple[Component, ...]:
     return (
         chip("F1", "fuse", p.fuse, parts.fuse, (raw, "FUSED"), (5.4, -7.0), 180.0),
         leaded("Q1", "transistor", p.transistor, parts.transistor, leads, (-1.0, -7.0), 270.0),
-        *((upper,) if halved(config) else ()),
+        *((upper,) if flange_circuit.halved(config) else ()),
         lower,
         chip("D1", TVS, p.tvs, parts.tvs, (supply, "GND"), TVS_AT, 0.0),
     )
@@ -170,7 +158,7 @@ def _regulator(config: Input) -> tuple[Component, ...]:
     """The regulator with its input capacitor across VIN and GND, the resistor before them, and
     what hangs on SW; nothing where the supply is what it would make."""
     p, parts = config.parameters.flange, config.parts.flange
-    if not is_regulated(config):
+    if not flange_circuit.is_regulated(config):
         return ()
     _, supply, output = _supplies(config)
     leads = {"FB": output, "EN": INPUT, "VIN": INPUT, "GND": "GND", "SW": "SW", "BST": "BST"}
@@ -199,33 +187,26 @@ def _refuse(config: Input, faults: Diagnostics) -> None:
     volts = config.parameters.supply.voltage_v
     strip = parts.header
     counts = [len(signals) for signals in p.headers]
-    faults.refuse_unless(
+    faults.unless(
         strip.rows == 2 and all(count == strip.ways for count in counts),
-        "flange.headers",
-        f"has {' and '.join(map(str, counts))} signals; {p.header!r} has {strip.rows} x "
-        f"{strip.ways} contacts: {strip.ways} signals for each of two rows are needed",
+        "header_ways",
+        strip=strip,
+        counts=" and ".join(map(str, counts)),
     )
     cables = {*p.headers[0], *p.headers[1]}
     lost = sorted((set(p.signals) ^ cables) - {"SUPPLY", "GND", "REGULATED", OPEN})
-    faults.refuse_unless(
-        not lost,
-        "flange.signals",
-        f"has {', '.join(lost)} at one end only; each signal must be on a contact and on a header",
-    )
+    faults.unless(not lost, "signal_at_one_end", lost=", ".join(lost))
     absent = sorted({"SUPPLY", "GND"} - set(p.signals))
-    faults.refuse_unless(
-        not absent and "REGULATED" not in p.signals,
-        "flange.signals",
-        f"has {', '.join(p.signals):.80}; SUPPLY and GND are needed, and REGULATED, which the "
-        "board generates, is not allowed",
+    faults.unless(
+        not absent and "REGULATED" not in p.signals, "signals_needed", signals=", ".join(p.signals)
     )
-    least, most = supply_range_v(config)
-    faults.refuse_unless(
-        not is_regulated(config) or least <= volts <= most,
-        "supply.voltage_v",
-        f"is {volts:g}; the flange's regulator, fuse and transistor need {least:g} to {most:g} V, "
-        f"or {parts.regulator.output_v:g} V without the regulator. Choose other "
-        "parts or set flange.enabled = false.",
+    least, most = flange_circuit.supply_range_v(config)
+    faults.unless(
+        not flange_circuit.is_regulated(config) or least <= volts <= most,
+        "flange_supply",
+        least=least,
+        most=most,
+        parts=parts,
     )
 
 
@@ -236,9 +217,4 @@ def _refuse_lines(config: Input, parts: tuple[Component, ...], faults: Diagnosti
     own = {net for part in parts for _, net in part.nets} | set(_supplies(config))
     lines = {*p.signals, *p.headers[0], *p.headers[1]} - {"SUPPLY", "GND", "REGULATED", OPEN}
     taken = sorted(lines & own)
-    faults.refuse_unless(
-        not taken,
-        "flange.signals",
-        f"has {', '.join(taken)}; nets of the board's own parts have these names. Choose other "
-        "names.",
-    )
+    faults.unless(not taken, "net_taken", taken=", ".join(taken))

@@ -7,13 +7,7 @@ from lumitip_fab.catalogue.controllers import OPEN, Strip
 from lumitip_fab.catalogue.grippers import Contact, ToolCoupling
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.diagnostics import Diagnostics
-from lumitip_fab.derive.wiring.ratings import (
-    MOST_RESISTOR_LOAD,
-    RESISTOR_TOLERANCE,
-    SUPPLY_TOLERANCE,
-    refuse_flange_capacitors,
-    sold_ohm,
-)
+from lumitip_fab.derive.wiring import ratings
 from lumitip_fab.derive.wiring.strings import Strings
 from lumitip_fab.design.electrical import Regulated
 
@@ -28,18 +22,14 @@ def refuse_map(config: Input, faults: Diagnostics) -> None:
     coupling = config.parts.flange.coupling
     strip = config.parts.flange.contacts
     if not _meets(strip, coupling):
-        faults.refuse(
-            "flange.contacts",
-            f"is {p.contacts!r}, {strip.rows} x {strip.ways} contacts with a pitch of "
-            f"{strip.pitch_mm:g} mm, which do not match the {len(coupling.contacts)} contacts of "
-            f"{p.coupling!r}. Choose another strip or flange.coupling.",
-        )
+        faults.add("contacts_differ", strip=strip, contacts_count=len(coupling.contacts))
         return
     if len(p.signals) != len(coupling.contacts):
-        faults.refuse(
-            "flange.signals",
-            f"has {len(p.signals)} signals; {p.coupling!r} has {len(coupling.contacts)} contacts: "
-            f"one signal for each is needed. Use {_own(coupling)}.",
+        faults.add(
+            "signal_count",
+            signals_count=len(p.signals),
+            contacts_count=len(coupling.contacts),
+            signals=_own(coupling),
         )
         return
     for signal in dict.fromkeys(p.signals):
@@ -49,11 +39,7 @@ def refuse_map(config: Input, faults: Diagnostics) -> None:
             if p.signals[number - 1] == signal
         ]
         if signal != OPEN and (wrong := _wrong(signal, on)):
-            faults.refuse(
-                "flange.signals",
-                f"has {wrong}, by the contact map of {p.coupling!r} in parts/couplings.toml. Use "
-                f"{_own(coupling)}, or an entry with the contact map that you measured.",
-            )
+            faults.add("contact_signal", wrong=wrong, signals=_own(coupling))
 
 
 def _meets(strip: Strip, coupling: ToolCoupling) -> bool:
@@ -106,7 +92,7 @@ def is_regulated(config: Input) -> bool:
 def halved(config: Input) -> bool:
     """Whether a divider halves a high supply for the MOSFET's gate."""
     p = config.parameters
-    high_v = p.supply.voltage_v * (1 + SUPPLY_TOLERANCE)
+    high_v = p.supply.voltage_v * (1 + ratings.SUPPLY_TOLERANCE)
     return high_v > GATE_SHARE * config.parts.flange.transistor.gate_v
 
 
@@ -118,7 +104,7 @@ def supply_range_v(config: Input) -> tuple[float, float]:
     least = max(
         part.input_v[0],
         part.output_v + HEADROOM_V,
-        gates * transistor.gate_on_v / (1 - SUPPLY_TOLERANCE),
+        gates * transistor.gate_on_v / (1 - ratings.SUPPLY_TOLERANCE),
     )
     least = math.ceil(10 * least - 1e-6) / 10
     rated = (part.input_v[1], parts.fuse.rated_v, transistor.rated_v)
@@ -127,15 +113,10 @@ def supply_range_v(config: Input) -> tuple[float, float]:
 
 def refuse_parts(config: Input, strings: Strings, faults: Diagnostics) -> None:
     """Refuse parts that are overloaded, and values with which the circuit does not work."""
-    faults.refuse_unless(
-        config.parts.flange.transistor.channel == "P",
-        "flange.transistor",
-        f"is {config.parameters.flange.transistor!r}, an N-channel MOSFET; a P-channel one is "
-        "needed in the supply",
-    )
+    faults.unless(config.parts.flange.transistor.channel == "P", "n_channel_in_supply")
     _refuse_gate(config, faults)
     _refuse_fuse(config, strings, faults)
-    refuse_flange_capacitors(config, faults)
+    ratings.refuse_flange_capacitors(config, faults)
     if config.parts.controller.board.module:
         _refuse_crystal(config, faults)
 
@@ -144,19 +125,19 @@ def _refuse_gate(config: Input, faults: Diagnostics) -> None:
     p = config.parameters
     ohm, volts = p.flange.gate_ohm, p.supply.voltage_v / (2 if halved(config) else 1)
     package = config.parts.flange.resistor
-    sold, allowed_w = sold_ohm(ohm), MOST_RESISTOR_LOAD * package.power_w
-    faults.refuse_unless(
-        math.isclose(sold, ohm),
-        "flange.gate_ohm",
-        f"is {ohm:g}, which is in neither the E24 nor the E96 series. Use {sold:g}.",
+    sold, allowed_w = ratings.sold_ohm(ohm), ratings.MOST_RESISTOR_LOAD * package.power_w
+    faults.unless(math.isclose(sold, ohm), "gate_not_sold", ohm=ohm, sold=sold)
+    load_w = (volts * (1 + ratings.SUPPLY_TOLERANCE)) ** 2 / (
+        ohm * (1 - ratings.RESISTOR_TOLERANCE)
     )
-    load_w = (volts * (1 + SUPPLY_TOLERANCE)) ** 2 / (ohm * (1 - RESISTOR_TOLERANCE))
-    faults.refuse_unless(
+    faults.unless(
         load_w <= allowed_w,
-        "flange.gate_ohm",
-        f"is {ohm:g}, with a power of up to {1000 * load_w:.0f} mW at {volts:g} V; the limit of a "
-        f"{p.flange.resistor!r} is {1000 * allowed_w:.0f} mW: at least "
-        f"{ohm * load_w / allowed_w:.0f} is needed",
+        "gate_load",
+        ohm=ohm,
+        load_mw=1000 * load_w,
+        volts=volts,
+        allowed_mw=1000 * allowed_w,
+        least=ohm * load_w / allowed_w,
     )
 
 
@@ -171,26 +152,25 @@ def _refuse_fuse(config: Input, strings: Strings, faults: Diagnostics) -> None:
     fed_ma = drawn_by_controller_ma(config) * output_v / p.supply.voltage_v
     drawn_ma = sum(strings.current_ma) + fed_ma
     allowed_ma = 1000 * FUSE_SHARE * config.parts.flange.fuse.rated_a
-    faults.refuse_unless(
+    faults.unless(
         drawn_ma <= allowed_ma,
-        "flange.fuse",
-        f"is {p.flange.fuse!r}, with a limit of {allowed_ma:.0f} mA ({100 * FUSE_SHARE:g} % of its "
-        f"rating); LEDs and controller draw {drawn_ma:.0f} mA. Choose a larger fuse or reduce "
-        "emitter.current_ma.",
+        "fuse_small",
+        allowed_ma=allowed_ma,
+        fuse_share_percent=100 * FUSE_SHARE,
+        drawn_ma=drawn_ma,
     )
 
 
 def _refuse_crystal(config: Input, faults: Diagnostics) -> None:
     """Refuse capacitors with which the crystal is off."""
-    p = config.parameters.module
     crystal, each = config.parts.module.crystal, config.parts.module.crystal_capacitor
     load_pf = (1000 * each.capacitance_nf * each.left + STRAY_PF) / 2
-    faults.refuse_unless(
+    faults.unless(
         abs(load_pf - crystal.load_pf) <= MOST_OFF_PF,
-        "module.crystal_capacitor",
-        f"is {p.crystal_capacitor!r}; two of them make a load capacitance of {load_pf:g} pF; "
-        f"{p.crystal!r} needs C_L = {crystal.load_pf:g} pF. Use capacitors of "
-        f"{2 * crystal.load_pf - STRAY_PF:g} pF.",
+        "crystal_load",
+        load_pf=load_pf,
+        crystal=crystal,
+        needed_pf=2 * crystal.load_pf - STRAY_PF,
     )
 
 
@@ -219,11 +199,12 @@ def derive_regulated(config: Input, faults: Diagnostics) -> tuple[Regulated, ...
     farad = len(OUTPUT_CAPACITORS) * each_uf * 1e-6
     ripple_a = volts * (1 - duty) / (inductor.inductance_uh * 1e-6 * hertz)
     ripple_mv = 1e3 * ripple_a / (8 * hertz * farad)
-    faults.refuse_unless(
+    faults.unless(
         ripple_mv <= 1e3 * MOST_RIPPLE * volts,
-        "flange.output_capacitor",
-        f"is {p.flange.output_capacitor!r}, with a ripple of {ripple_mv:.0f} mV on {volts:g} V; at "
-        f"most {1e3 * MOST_RIPPLE * volts:g} mV is allowed. Choose a larger capacitance.",
+        "output_ripple",
+        ripple_mv=ripple_mv,
+        volts=volts,
+        most=1000.0 * MOST_RIPPLE * volts,
     )
     _refuse_input(config, LOAD_SHARE * part.output_a * duty * (1 - duty) / hertz, faults)
     high_ohm, low_ohm = part.switch_ohm
@@ -251,10 +232,4 @@ def _refuse_input(config: Input, coulomb: float, faults: Diagnostics) -> None:
     capacitor = config.parts.flange.input_capacitor
     moved_v = coulomb / (1e-9 * capacitor.capacitance_nf * capacitor.left)
     most_v = MOST_RIPPLE * p.supply.voltage_v
-    faults.refuse_unless(
-        moved_v <= most_v,
-        "flange.input_capacitor",
-        f"is {p.flange.input_capacitor!r}, with a ripple of {1000 * moved_v:.0f} mV on "
-        f"{p.supply.voltage_v:g} V; at most {1000 * most_v:g} mV is allowed. Choose a larger "
-        "capacitance.",
-    )
+    faults.unless(moved_v <= most_v, "input_ripple", moved_mv=1000 * moved_v, most_mv=1000 * most_v)

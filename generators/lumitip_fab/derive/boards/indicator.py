@@ -8,6 +8,7 @@
 
 from collections.abc import Iterator
 
+from lumitip_fab.catalogue.controllers import OPEN
 from lumitip_fab.catalogue.electronics import Indicator as Part
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.diagnostics import Diagnostics
@@ -17,7 +18,7 @@ from lumitip_fab.derive.wiring.ratings import (
     values_between,
 )
 from lumitip_fab.design import Component, Note, Point
-from lumitip_fab.design.components import chip, resistor
+from lumitip_fab.design.components import chip, probe, resistor
 from lumitip_fab.design.electrical import Indicator
 
 MOST_LOAD = 0.6
@@ -112,3 +113,47 @@ def _problems(config: Input, part: Part, figures: Indicator) -> Iterator[str]:
             f"{config.parameters.flange.resistor!r} is {1000 * allowed_w:.0f} mW. Choose one with "
             'a smaller current_ma, a larger flange.resistor, or "none".'
         )
+
+
+PAD_MM = 1.5
+"""Wide enough for the tip of a probe that is held by hand."""
+OUTPUT_AT: Point = (6.9, 17.3)
+SUPPLY_AT: Point = (9.6, 17.3)
+GROUND_AT: Point = (12.5, 17.3)
+INPUT_AT: Point = (3.9, 7.4)
+DATA_AT: tuple[Point, ...] = ((6.6, -15.65), (6.6, -17.4), (6.6, -13.9))
+
+
+def flange_probes(
+    config: Input, supplies: tuple[str, str, str], faults: Diagnostics
+) -> tuple[Component, ...]:
+    """A test point for each supply, for ground and for each data line of the coupling.
+
+    Args:
+        config: the input.
+        supplies: nets of the contacts' supply, of the same after the MOSFET, and of the output.
+        faults: where more data lines than there is room for are refused.
+    """
+    raw, supply, output = supplies
+    lines = _data_lines(config)
+    faults.unless(
+        len(lines) <= len(DATA_AT),
+        "too_many_data_lines",
+        data_at_count=len(DATA_AT),
+        open=OPEN,
+        lines=", ".join(lines),
+    )
+    places = dict(zip(lines, DATA_AT, strict=False))
+    places |= {raw: INPUT_AT, supply: SUPPLY_AT, "GND": GROUND_AT, output: OUTPUT_AT}
+    return tuple(
+        probe(f"TP{number}", net, at, "front", PAD_MM)
+        for number, (net, at) in enumerate(places.items(), start=1)
+    )
+
+
+def _data_lines(config: Input) -> tuple[str, ...]:
+    """Signals on the coupling's data contacts, which go on to a header; each once."""
+    contacts = config.parts.flange.coupling.contacts
+    signals = zip(config.parameters.flange.signals, contacts, strict=False)
+    lines = (signal for signal, contact in signals if contact.kind == "data" and signal != OPEN)
+    return tuple(dict.fromkeys(lines))

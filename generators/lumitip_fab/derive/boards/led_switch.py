@@ -35,12 +35,7 @@ def refuse_switch(config: Input, strings: Strings, placed: bool, faults: Diagnos
     """
     for message in _problems(config, strings):
         faults.refuse("emitter.switch", f"is {config.parameters.emitter.switch!r}{message}")
-    faults.refuse_unless(
-        placed or config.parts.emitter.switch is None,
-        "emitter.switch",
-        f"is {config.parameters.emitter.switch!r}, for which the other parts leave no room before "
-        'the wire pads. Use "none".',
-    )
+    faults.unless(placed or config.parts.emitter.switch is None, "switch_no_room")
 
 
 def _problems(config: Input, strings: Strings) -> Iterator[str]:

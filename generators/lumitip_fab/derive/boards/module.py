@@ -153,33 +153,34 @@ def _beside(config: Input) -> tuple[Component, ...]:
 
 def _refuse(config: Input, muxing: Muxing, faults: Diagnostics) -> None:
     """Refuse a regulator that does not go between the supplies, and more wires than have room."""
-    p = config.parameters
     regulator = config.parts.module.regulator
     controller = config.parts.controller.board
     fed_v = config.parts.flange.regulator.output_v
     least, most = regulator.input_v
-    faults.refuse_unless(
+    faults.unless(
         least <= fed_v <= most and regulator.output_v == controller.supply_v,
-        "module.regulator",
-        f"is {p.module.regulator!r}, with {regulator.output_v:g} V output and {least:g} to "
-        f"{most:g} V input; {controller.supply_v:g} V output and {fed_v:g} V input, from "
-        "flange.regulator, are needed",
+        "module_regulator",
+        regulator=regulator,
+        least=least,
+        most=most,
+        controller=controller,
+        fed_v=fed_v,
     )
     needed_a = controller.draws_ma / 1000
-    faults.refuse_unless(
+    faults.unless(
         needed_a <= regulator.output_a,
-        "module.regulator",
-        f"is {p.module.regulator!r}, which supplies {1000 * regulator.output_a:g} mA; "
-        f"{p.controller.board!r} draws {controller.draws_ma:g} mA",
+        "module_regulator_current",
+        output_ma=1000 * regulator.output_a,
+        controller=controller,
     )
     wires_needed = len(connectors.receiver_signals(config, muxing))
-    faults.refuse_unless(
+    faults.unless(
         wires_needed <= MOST_WIRES,
-        "controller.board",
-        f"is {p.controller.board!r}, whose board has room for {MOST_WIRES} wires to the "
-        f"receiver; {wires_needed} are needed. Use {_most_cells(config)} cells or fewer with "
-        f"{p.receiver.multiplexer!r}, {larger_multiplexers(config)}or a controller that plugs into "
-        "the breakout.",
+        "module_wires",
+        most_wires=MOST_WIRES,
+        wires_needed=wires_needed,
+        cells=_most_cells(config),
+        larger=larger_multiplexers(config),
     )
 
 

@@ -59,23 +59,12 @@ def derive_rules(config: Input, faults: Diagnostics) -> Rules:
     p = config.parameters
     board, mux = p.board, config.parts.receiver.multiplexer
     least = board.via_drill_mm + 2 * LEAST_RING_MM
-    faults.refuse_unless(
-        board.via_mm >= least - 1e-9,
-        "board.via_mm",
-        f"is {board.via_mm:g}; a hole of {board.via_drill_mm:g} mm needs at least {least:g} mm",
-    )
+    faults.unless(board.via_mm >= least - 1e-9, "via_ring", board=board, least=least)
     between = mux.lead_pitch_mm - mux.lead_pad_mm[1]
-    faults.refuse_unless(
-        board.copper_gap_mm <= between + 1e-9,
-        "board.copper_gap_mm",
-        f"is {board.copper_gap_mm:g}; at most {between:.2f} is allowed, the gap between the leads "
-        f"of {p.receiver.multiplexer!r}",
+    faults.unless(
+        board.copper_gap_mm <= between + 1e-9, "gap_between_leads", board=board, between=between
     )
-    faults.refuse_unless(
-        board.track_mm <= board.supply_track_mm,
-        "board.supply_track_mm",
-        f"is {board.supply_track_mm:g}; at least board.track_mm = {board.track_mm:g} is needed",
-    )
+    faults.unless(board.track_mm <= board.supply_track_mm, "supply_track_narrow", board=board)
     silks = [fab.silk for fab in config.catalogue.fabs.values()] or [COMMON_SILK]
     return Rules(
         part_gap_mm=board.clearance_mm,

@@ -44,12 +44,7 @@ def parts_zone_depth_mm(
     per_row = _per_row(config, width_mm)
     _refuse_tall(config, faults)
     if per_row < 1:
-        faults.refuse(
-            "board.side_margin_mm",
-            f"is {p.board.side_margin_mm:g}, which makes the boards {width_mm:.1f} mm wide; "
-            f"{p.receiver.multiplexer!r} with the parts beside it needs "
-            f"{_slot_mm(config) + 2:.1f} mm",
-        )
+        faults.add("board_narrow", width_mm=width_mm, needed_mm=_slot_mm(config) + 2)
         per_row = 1
     rows = math.ceil(muxing.muxes / per_row)
     return rows * (mux.lead_span_mm + p.board.channel_mm)
@@ -62,27 +57,12 @@ def _refuse_tall(config: Input, faults: Diagnostics) -> None:
     if p.receiver.load == "each":
         array = config.parts.receiver.array
         most = pull_ups.MOST_COLUMNS * 2 * array.resistors
-        faults.refuse_unless(
-            mux.channels <= most,
-            "receiver.load",
-            f'is "each"; {most} pull-ups have room beside a multiplexer, '
-            f"{p.receiver.multiplexer!r} has {mux.channels} inputs. Use "
-            '"shared", or a multiplexer with fewer inputs.',
-        )
+        faults.unless(mux.channels <= most, "too_many_pull_ups", most=most, mux=mux)
         tall = 2 * array.over_pads_mm[0] + p.board.clearance_mm
-        faults.refuse_unless(
-            tall <= mux.lead_span_mm,
-            "receiver.array",
-            f"is {p.receiver.array!r}, two of which take {tall:.2f} {room}. Use a smaller array.",
-        )
+        faults.unless(tall <= mux.lead_span_mm, "arrays_long", tall=tall, room=room)
         return
     tall = sum(chip.over_pads_mm[0] for chip in _passives(config)) + p.board.clearance_mm
-    faults.refuse_unless(
-        tall <= mux.lead_span_mm,
-        "receiver.resistor",
-        f"is {p.receiver.resistor!r}, which takes {tall:.2f} mm beside a multiplexer, with "
-        f"{p.receiver.capacitor!r}; {mux.lead_span_mm:g} mm is available. Use a smaller package.",
-    )
+    faults.unless(tall <= mux.lead_span_mm, "pull_up_long", tall=tall, mux=mux)
 
 
 def multiplexers(config: Input, muxing: Muxing, zone: Box) -> tuple[Part, ...]:
@@ -176,12 +156,7 @@ def tip_holes(
     if not _spans(room, apart):
         top = max(float(b[3]) for b in boxes)
         least = p.board.hole_edge_mm + keep + top - float(cells.y_mm.max())
-        faults.refuse(
-            "board.tip_margin_mm",
-            f"is {p.board.tip_margin_mm:g}; holes of {p.board.hole_mm:g} mm at "
-            f"{p.board.hole_edge_mm:g} mm from the edge collide with the first row of parts. "
-            f"{least:.2f} is always enough.",
-        )
+        faults.add("tip_holes_collide", least=least)
         return ()
     middle = min(room, key=lambda x: abs(x - (room[0] + room[-1]) / 2))
     if min(middle - room[0], room[-1] - middle) < apart:

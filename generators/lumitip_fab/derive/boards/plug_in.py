@@ -118,19 +118,17 @@ def _refuse_tvs(config: Input, faults: Diagnostics) -> None:
     p, parts = config.parameters, config.parts.flange
     tvs, volts = parts.tvs, p.supply.voltage_v
     high_v = volts * (1 + SUPPLY_TOLERANCE)
-    faults.refuse_unless(
+    faults.unless(
         tvs.standoff_v >= volts and tvs.breakdown_v[0] >= high_v,
-        "flange.tvs",
-        f"is {p.flange.tvs!r}, for supplies up to {tvs.standoff_v:g} V, with a breakdown voltage "
-        f"from {tvs.breakdown_v[0]:g} V on; the supply is {volts:g} V, at most {high_v:g} V. "
-        "Choose one with a higher stand-off voltage.",
+        "tvs_conducts",
+        tvs=tvs,
+        least=tvs.breakdown_v[0],
+        volts=volts,
+        high_v=high_v,
     )
     bears_v = parts.regulator.input_v[1] if is_regulated(config) else parts.transistor.rated_v
-    faults.refuse_unless(
-        tvs.breakdown_v[1] <= bears_v,
-        "flange.tvs",
-        f"is {p.flange.tvs!r}, with a breakdown voltage of up to {tvs.breakdown_v[1]:g} V; the "
-        f"parts behind it bear {bears_v:g} V. Choose one with a lower stand-off voltage.",
+    faults.unless(
+        tvs.breakdown_v[1] <= bears_v, "tvs_late", bears_v=bears_v, breakdown_v=tvs.breakdown_v[1]
     )
 
 
@@ -138,33 +136,21 @@ def _refuse_inrush(config: Input, faults: Diagnostics) -> None:
     """Refuse a resistor that rings, lets too much current through, overheats or drops too much."""
     p, parts = config.parameters, config.parts.flange
     ohm, sold, least = p.flange.inrush_ohm, sold_ohm(p.flange.inrush_ohm), least_inrush_ohm(config)
-    faults.refuse_unless(
-        math.isclose(sold, ohm),
-        "flange.inrush_ohm",
-        f"is {ohm:g}, which is in neither the E24 nor the E96 series. Use {sold:g}.",
-    )
-    faults.refuse_unless(
-        ohm >= least,
-        "flange.inrush_ohm",
-        f"is {ohm:g}; at least {sold_from(least):g} is needed, or the regulator's input rings with "
-        f"up to {CABLE_UH[1]:g} µH of cable, or the pulse as the flange is plugged in is too large "
-        f"for {p.flange.transistor!r} and {p.flange.fuse!r}",
+    faults.unless(math.isclose(sold, ohm), "inrush_not_sold", ohm=ohm, sold=sold)
+    faults.unless(
+        ohm >= least, "inrush_small", ohm=ohm, least=sold_from(least), cable_uh=CABLE_UH[1]
     )
     low_v = p.supply.voltage_v * (1 - SUPPLY_TOLERANCE)
     drawn_a = drawn_by_controller_ma(config) * parts.regulator.output_v / low_v / 1000
     load_w = drawn_a**2 * ohm * (1 + RESISTOR_TOLERANCE)
     allowed_w = MOST_RESISTOR_LOAD * parts.inrush_resistor.power_w
-    faults.refuse_unless(
+    faults.unless(
         load_w <= allowed_w,
-        "flange.inrush_resistor",
-        f"is {p.flange.inrush_resistor!r}, with a limit of {1000 * allowed_w:.0f} mW; "
-        f"{ohm:g} ohm carry {1000 * drawn_a:.0f} mA, {1000 * load_w:.0f} mW. Choose a larger "
-        "package or a smaller flange.inrush_ohm.",
+        "inrush_load",
+        allowed_mw=1000 * allowed_w,
+        ohm=ohm,
+        drawn_ma=1000 * drawn_a,
+        load_mw=1000 * load_w,
     )
     left_v, least_v = low_v - drawn_a * ohm, parts.regulator.input_v[0]
-    faults.refuse_unless(
-        left_v >= least_v,
-        "flange.inrush_ohm",
-        f"is {ohm:g}, which leaves {left_v:.2f} V of the supply to {p.flange.regulator!r}; at "
-        f"least {least_v:g} V is needed",
-    )
+    faults.unless(left_v >= least_v, "inrush_drop", ohm=ohm, left_v=left_v, least_v=least_v)

@@ -38,13 +38,7 @@ def source_parts(config: Input, strings: int, zone: Box, faults: Diagnostics) ->
     least_mm, most_mm = ROWS_APART_MM
     deep = rows * (tall + least_mm) - least_mm
     if per_row < 1 or deep > zone.length_mm + 1e-9:
-        faults.refuse(
-            "emitter.source",
-            f"is {config.parameters.emitter.source!r}; {strings} of them with their resistors, "
-            f"{wide:.1f} x {tall:.1f} mm each, do not fit into {zone.width_mm:.1f} x "
-            f'{zone.length_mm:.1f} mm. Use emitter.drive = "resistor", or a smaller '
-            "emitter.resistor.",
-        )
+        faults.add("sources_no_room", strings=strings, wide=wide, tall=tall, zone=zone)
         return ()
     spare = zone.length_mm - deep
     top = zone.y_max_mm - min(LABELS_MM, spare)

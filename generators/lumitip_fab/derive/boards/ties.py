@@ -123,11 +123,8 @@ def derive_ties(
         room = _Room(box, max(corner_mm, WEB_MM + HOLE_MM / 2), taken, holes)
         pair = room.pair(_Row.of(row))
         if pair is None:
-            faults.refuse(
-                field,
-                f"leaves no room for the two holes of {HOLE_MM:g} mm that hold the cable at "
-                f"{row.ref}, {WEB_MM:g} mm from the edge and {GAP_MM:g} mm from pads and parts. "
-                "Increase it.",
+            faults.add(
+                "tie_no_room", field=field, hole_mm=HOLE_MM, row=row, web_mm=WEB_MM, gap_mm=GAP_MM
             )
             continue
         ties.append(Tie(row.ref, pair, HOLE_MM, WEB_MM))

@@ -36,16 +36,17 @@ def derive_cells(p: Parameters, faults: Diagnostics) -> Cells:
     columns, pitch = p.grid.columns, p.grid.pitch_mm
     count = sum(columns)
     if count < LEAST_CELLS:
-        faults.refuse("grid.columns", f"has {count} cells; at least {LEAST_CELLS} are needed")
+        faults.add("few_cells", count=count, least_cells=LEAST_CELLS)
     if count > MOST_CELLS:
-        faults.refuse("grid.columns", f"has {count} cells; at most {MOST_CELLS} are allowed")
+        faults.add("many_cells", count=count, most_cells=MOST_CELLS)
     web = pitch - p.mask.hole_mm
     if web < LEAST_WEB_MM:
-        faults.refuse(
-            "mask.hole_mm",
-            f"is {p.mask.hole_mm:g}, which leaves {web:.2f} mm between apertures "
-            f"{pitch:g} mm apart; at least {LEAST_WEB_MM} mm is needed, "
-            f"so at most {max(pitch - LEAST_WEB_MM, 0):.2f} is allowed",
+        faults.add(
+            "apertures_close",
+            web=web,
+            pitch=pitch,
+            least_web_mm=LEAST_WEB_MM,
+            most=max(pitch - LEAST_WEB_MM, 0),
         )
     if not LEAST_CELLS <= count <= MOST_CELLS:
         nowhere, none = np.zeros(0), np.zeros(0, dtype=np.int64)
@@ -85,12 +86,11 @@ def refuse_lines(p: Parameters, detector: Chip, faults: Diagnostics) -> None:
         return
     most = max(math.floor(BENDING_LANE_USE * lane / step) - GROUND_LINES, 0)
     least_mm = (lines * step / BENDING_LANE_USE + min(detector.over_pads_mm)) * 2 / math.sqrt(3)
-    faults.refuse(
-        "grid.columns",
-        f"has {max(p.grid.columns)} cells in a column. Where the board bends there are no vias: "
-        f"tracks of {p.board.track_mm:g} mm with gaps of {p.board.copper_gap_mm:g} mm leave room "
-        f"for {most} cells in a column at grid.pitch_mm = {p.grid.pitch_mm:g}. A pitch of at least "
-        f"{math.ceil(least_mm * 100 - 1e-6) / 100:.2f} mm is needed",
+    faults.add(
+        "column_lines",
+        most=most,
+        least=math.ceil(least_mm * 100 - 1e-06) / 100,
+        cells=max(p.grid.columns),
     )
 
 
@@ -112,11 +112,15 @@ def derive_turned(
     turned = columns >= across + gap and pitch >= along + gap
     if not (flat or turned):
         least = max(along + gap, (across + gap) * pitch / columns)
-        faults.refuse(
-            field,
-            f"is {name!r}, {along:g} mm over its pads and {across:g} mm wide; with "
-            f"{gap:g} mm of clearance it needs a pitch of at least {least:.2f} mm, but "
-            f"grid.pitch_mm is {pitch:g}",
+        faults.add(
+            "pitch_small",
+            field=field,
+            name=name,
+            along=along,
+            across=across,
+            gap=gap,
+            least=least,
+            pitch=pitch,
         )
     space = max(TRACK_SPACE_MM, lines * (p.board.track_mm + p.board.copper_gap_mm))
     roomy = columns >= along + space

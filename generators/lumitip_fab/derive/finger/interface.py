@@ -95,11 +95,7 @@ def _refuse_length(
             f"{needed:g} mm is needed {what}, but only {max(room, 0.0):g} mm is available before "
             f"the finger's letter and the wedge. {remedy}"
         )
-    faults.refuse_unless(
-        least - 1e-6 <= p.flex.interface_mm <= most,
-        "flex.interface_mm",
-        f"is {p.flex.interface_mm:g}; {limits}",
-    )
+    faults.unless(least - 1e-6 <= p.flex.interface_mm <= most, "interface_length", limits=limits)
 
 
 def _refuse_holes(config: Input, finger: Finger, board: Box, faults: Diagnostics) -> None:
@@ -110,12 +106,7 @@ def _refuse_holes(config: Input, finger: Finger, board: Box, faults: Diagnostics
         for x, y in finger.holes
     )
     most = 2 * (to_edge - COVERED_MM)
-    faults.refuse_unless(
-        wide <= most + 1e-9,
-        "flex.thread_hole_mm",
-        f"is {wide:g}; at most {most:.2f} is allowed, because the board ends {to_edge:.2f} mm from "
-        "the centre of the hole and must cover it against silicone",
-    )
+    faults.unless(wide <= most + 1e-9, "thread_hole_uncovered", most=most, to_edge=to_edge)
 
 
 def _refuse_heights(config: Input, faults: Diagnostics) -> None:
@@ -127,44 +118,12 @@ def _refuse_heights(config: Input, faults: Diagnostics) -> None:
     rim = flex.groove_mm - 2 * gap
     fitted = f" and printer.fit_mm = {fit_mm:g}" if fit_mm else ""
     refuse_touching(config, "flex.glue_mm", flex.glue_mm, faults)
-    least_mm = least_standoff_mm(config)
-    for holds, field, message in (
-        (
-            left >= p.printer.min_wall_mm - 1e-9,
-            "flex.groove_depth_mm",
-            f"is {flex.groove_depth_mm:g}, which leaves {left:.2f} mm of plate before the "
-            f"groove; at least {p.printer.min_wall_mm:g} is needed",
-        ),
-        (
-            rim >= 2 * line_mm - 1e-9,
-            "flex.groove_mm",
-            f"is {flex.groove_mm:g}, which leaves a rim of {rim:.2f} mm between gaps of "
-            f"{flex.glue_mm:g}{fitted}; at least two printed lines of {line_mm:g} are needed",
-        ),
-        (
-            flex.groove_depth_mm - flex.glue_mm >= 2 * line_mm / 3,
-            "flex.groove_depth_mm",
-            f"is {flex.groove_depth_mm:g}, which leaves a rim "
-            f"{flex.groove_depth_mm - flex.glue_mm:.2f} mm high; at least {2 * line_mm / 3:g} is "
-            "needed",
-        ),
-        (
-            flex.pad_mm >= p.printer.min_wall_mm - 1e-9,
-            "flex.pad_mm",
-            f"is {flex.pad_mm:g}; at least printer.min_wall_mm = {p.printer.min_wall_mm:g} is "
-            "needed",
-        ),
-        (
-            p.backing.tail_mm <= p.stack.floor_mm,
-            "backing.tail_mm",
-            f"is {p.backing.tail_mm:g}; at most stack.floor_mm = {p.stack.floor_mm:g} is "
-            "allowed, because the interface lies behind the plate",
-        ),
-        (
-            flex.standoff_mm >= least_mm - 1e-9,
-            "flex.standoff_mm",
-            f"is {flex.standoff_mm:g}; at least {least_mm:g} is needed, so that "
-            f"board, plate and pad end before the nose of {p.coupling.gripper!r}",
-        ),
-    ):
-        faults.refuse_unless(holds, field, message)
+    least = p.printer.min_wall_mm - 1e-9
+    faults.unless(left >= least, "groove_deep", left=left)
+    faults.unless(rim >= 2 * line_mm - 1e-9, "rim_thin", rim=rim, fitted=fitted, line_mm=line_mm)
+    high, lowest = flex.groove_depth_mm - flex.glue_mm, 2 * line_mm / 3
+    faults.unless(high >= lowest, "rim_low", high=high, least=lowest)
+    faults.unless(flex.pad_mm >= least, "pad_thin")
+    faults.unless(p.backing.tail_mm <= p.stack.floor_mm, "tails_behind_plate")
+    needed = least_standoff_mm(config)
+    faults.unless(flex.standoff_mm >= needed - 1e-9, "before_nose", needed=needed)

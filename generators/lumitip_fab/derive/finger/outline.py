@@ -36,34 +36,18 @@ def derive_outline(config: Input, board: Board, notch: Box, faults: Diagnostics)
     room = waist[0] - notch.x_max_mm - leg_mm
     corner = min(p.outline.end_corner_mm, max(room, LEAST_CORNER_MM))
     end_half = waist[0] - corner
-    for holds, field, message in (
-        (
-            shoulder[0] >= waist[0],
-            "outline.shoulder_margin_mm",
-            f"is {p.outline.shoulder_margin_mm:g}; at least waist_margin_mm = "
-            f"{p.outline.waist_margin_mm:g} is needed",
-        ),
-        (
-            shoulder[1] > waist[1] + 1,
-            "outline.waist_at",
-            f"is {p.outline.waist_at:g}; more than "
-            f"{(p.outline.shoulder_at_mm + 1) / length:.3f} is needed, behind the widest point",
-        ),
-        (
-            waist[1] > end_y + corner,
-            "outline.waist_at",
-            f"is {p.outline.waist_at:g}; at most {1 - corner / length:.3f} is allowed, before "
-            f"the corner of {corner:g} mm",
-        ),
-        (
-            room >= LEAST_CORNER_MM,
-            "outline.waist_margin_mm",
-            f"is {p.outline.waist_margin_mm:g}, which leaves {room + leg_mm:.2f} mm of "
-            f"plate beside the wire notch of {notch.width_mm:.1f} mm at the gripper end; at least "
-            f"{leg_mm + LEAST_CORNER_MM:g} is needed",
-        ),
-    ):
-        faults.refuse_unless(holds, field, message)
+    faults.unless(shoulder[0] >= waist[0], "shoulder_narrow")
+    least = (p.outline.shoulder_at_mm + 1) / length
+    faults.unless(shoulder[1] > waist[1] + 1, "waist_before_shoulder", least=least)
+    most = 1 - corner / length
+    faults.unless(waist[1] > end_y + corner, "waist_behind_corner", most=most, corner=corner)
+    faults.unless(
+        room >= LEAST_CORNER_MM,
+        "legs_narrow",
+        legs_mm=room + leg_mm,
+        width=notch.width_mm,
+        least_mm=leg_mm + LEAST_CORNER_MM,
+    )
     right = [
         _line((-end_half, end_y), (end_half, end_y)),
         _quarter((end_half, end_y), (waist[0], end_y + corner), level_first=True),
@@ -75,13 +59,13 @@ def derive_outline(config: Input, board: Board, notch: Box, faults: Diagnostics)
     left = [_mirrored(piece) for piece in reversed(right[1:-1])]
     outline = Outline((*right, *left), tip_y, end_y, 2 * tip_half, 2 * end_half)
     rim, where = _least_rim(outline, board)
-    faults.refuse_unless(
+    faults.unless(
         rim >= p.printer.min_wall_mm,
-        "outline.waist_margin_mm",
-        f"is {p.outline.waist_margin_mm:g}; a board of {board.box.width_mm:.1f} x "
-        f"{board.box.length_mm:.1f} mm leaves a rim of {rim:.2f} mm at ({where[0]:.1f}, "
-        f"{where[1]:.1f}); a rim of {p.printer.min_wall_mm:g} mm is needed. Increase the outline's "
-        "margins.",
+        "rim_narrow",
+        board=board,
+        rim=rim,
+        x_mm=where[0],
+        y_mm=where[1],
     )
     return outline
 

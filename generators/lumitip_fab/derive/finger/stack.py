@@ -80,24 +80,12 @@ def derive_stack(config: Input, faults: Diagnostics) -> Stack:
     """The layers, refused where a part would stick out of the silicone or a floor is too thin."""
     p, parts = config.parameters, config.catalogue
     thick_mm, what = mask_mm(config)
-    faults.refuse_unless(
-        math.isclose(p.stack.film_mm, thick_mm),
-        "stack.film_mm",
-        f"is {p.stack.film_mm:g}; {what} is {thick_mm:g} mm thick. Change one of them.",
+    faults.unless(
+        math.isclose(p.stack.film_mm, thick_mm), "film_differs", what=what, thick_mm=thick_mm
     )
-    faults.refuse_unless(
-        p.stack.floor_mm >= p.printer.min_wall_mm,
-        "stack.floor_mm",
-        f"is {p.stack.floor_mm:g}; at least printer.min_wall_mm = "
-        f"{p.printer.min_wall_mm:g} is needed behind a pocket {p.stack.pcb_mm:g} mm deep",
-    )
+    faults.unless(p.stack.floor_mm >= p.printer.min_wall_mm, "floor_thin")
     least, most = FLEXIBLE_MM if is_flex(p) else STIFF_MM
-    faults.refuse_unless(
-        least <= p.stack.pcb_mm <= most,
-        "stack.pcb_mm",
-        f"is {p.stack.pcb_mm:g}; with backing.variant = {p.backing.variant!r}, {least:g} to "
-        f"{most:g} is allowed",
-    )
+    faults.unless(least <= p.stack.pcb_mm <= most, "board_thickness", least=least, most=most)
     heights = {
         "emitter.led": parts.leds[p.emitter.led].body_mm[2],
         "receiver.photodetector": parts.photodetectors[p.receiver.photodetector].body_mm[2],
@@ -113,11 +101,13 @@ def derive_stack(config: Input, faults: Diagnostics) -> Stack:
         heights["emitter.source"] = config.parts.emitter.source.body_mm[2]
     for field, height in heights.items():
         left = p.stack.silicone_mm - height
-        faults.refuse_unless(
+        faults.unless(
             left >= LEAST_SILICONE_MM - 1e-9,
-            "stack.silicone_mm",
-            f"is {p.stack.silicone_mm:g}, which leaves {left:.2f} mm over {field}, "
-            f"{height:g} mm high; at least {height + LEAST_SILICONE_MM:.2f} is needed",
+            "silicone_thin",
+            left=left,
+            height=height,
+            least=height + LEAST_SILICONE_MM,
+            beside=field,
         )
     return Stack(
         p.stack.floor_mm,
@@ -139,24 +129,14 @@ def derive_tip(
     # Where the fit widens the pocket, the wedge begins that much later.
     later = min(max(p.tip.slant_start_mm - (to_pocket - fit), 0.0), max(fit, 0.0)) * stack.sunk
     start_y = outline.tip_y_mm - p.tip.slant_start_mm + later
-    faults.refuse_unless(
+    faults.unless(
         not stack.sunk or p.tip.slant_start_mm <= to_pocket + 1e-6,
-        "tip.slant_start_mm",
-        f"is {p.tip.slant_start_mm:g}; at most {to_pocket:.3f} is allowed, up to the "
-        f"pocket, whose floor is only {p.stack.floor_mm:g} mm thick",
+        "slant_in_pocket",
+        to_pocket=to_pocket,
     )
-    faults.refuse_unless(
-        p.tip.edge_mm < plate,
-        "tip.edge_mm",
-        f"is {p.tip.edge_mm:g}; less than the plate's {plate:g} mm is allowed",
-    )
+    faults.unless(p.tip.edge_mm < plate, "tip_edge_thick", plate=plate)
     angle = math.degrees(math.atan2(plate - p.tip.edge_mm, outline.tip_y_mm - start_y))
-    faults.refuse_unless(
-        angle <= 45 + 1e-9,
-        "tip.slant_start_mm",
-        f"is {p.tip.slant_start_mm:g}, which makes a wedge of {angle:.0f}° behind the tip; "
-        f"at least {plate - p.tip.edge_mm:g} is needed for 45°",
-    )
+    faults.unless(angle <= 45 + 1e-9, "wedge_steep", angle=angle, least=plate - p.tip.edge_mm)
     return Tip(start_y, p.tip.edge_mm, angle)
 
 
@@ -164,24 +144,19 @@ def derive_printing(config: Input, outline: Outline, faults: Diagnostics) -> Pri
     """Material and limits, refused where a part is larger than the bed."""
     p = config.parameters
     printer = config.parts.printer.profile
-    faults.refuse_unless(
-        p.tip.edge_mm >= printer.line_mm - 1e-9,
-        "tip.edge_mm",
-        f"is {p.tip.edge_mm:g}; at least one printed line of {printer.line_mm:g} is needed",
-    )
-    faults.refuse_unless(
-        p.printer.min_wall_mm >= printer.line_mm,
-        "printer.min_wall_mm",
-        f"is {p.printer.min_wall_mm:g}; at least one printed line of {printer.line_mm:g} is needed",
-    )
+    faults.unless(p.tip.edge_mm >= printer.line_mm - 1e-9, "tip_edge_line", printer=printer)
+    faults.unless(p.printer.min_wall_mm >= printer.line_mm, "wall_line", printer=printer)
     width = float(abs(outline.polygon()[:, 0]).max()) * 2 + 2 * p.mould.wall_mm + MOULD_ROOM_MM
     length = outline.length_mm + 3 * p.mould.wall_mm + MOULD_ROOM_MM + TROUGH_ROOM_MM
     bed = printer.bed_mm
-    faults.refuse_unless(
+    faults.unless(
         width <= bed[0] and length <= min(bed[1], bed[2]),
-        "printer.profile",
-        f"is {p.printer.profile!r}, with a volume of {bed[0]:g} x {bed[1]:g} x {bed[2]:g} mm; "
-        f"a mould of {width:.0f} x {length:.0f} mm or a finger {length:.0f} mm tall does not fit",
+        "part_beyond_bed",
+        width=width,
+        length=length,
+        bed_x=bed[0],
+        bed_y=bed[1],
+        bed_z=bed[2],
     )
     return Printing(
         p.backing.material,

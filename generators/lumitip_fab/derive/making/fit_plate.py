@@ -31,7 +31,6 @@ APART_MM = 0.8  # between coupons
 
 def derive_fit_plate(config: Input, plan: Plan, mount: Mount, faults: Diagnostics) -> FitPlate:
     """The plate; refused where it is larger than the bed."""
-    p = config.parameters
     printer = config.parts.printer.profile
     wall, layers_mm = LINES * printer.line_mm, LAYERS * printer.layer_mm
     sleeve_mm = SLEEVE_LAYERS * printer.layer_mm
@@ -62,11 +61,13 @@ def derive_fit_plate(config: Input, plan: Plan, mount: Mount, faults: Diagnostic
     )
     width, depth, _ = plate.size_mm
     bed = printer.bed_mm
-    faults.refuse_unless(
+    faults.unless(
         width <= bed[0] and depth <= bed[1],
-        "printer.profile",
-        f"is {p.printer.profile!r}, with a bed of {bed[0]:g} x {bed[1]:g} mm; a fit test plate of "
-        f"{width:.0f} x {depth:.0f} mm does not fit",
+        "fit_plate_beyond_bed",
+        width=width,
+        depth=depth,
+        bed_x=bed[0],
+        bed_y=bed[1],
     )
     return replace(plate, volume_ml=_volume_mm3(plate, mount) / 1000)
 

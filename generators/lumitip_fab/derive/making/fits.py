@@ -42,11 +42,13 @@ def refuse_touching(config: Input, field: str, clearance_mm: float, faults: Diag
     """Refuse a fit that removes a clearance."""
     fit_mm = config.parameters.printer.fit_mm
     left_mm = Drawn(fit_mm).gap_mm(clearance_mm)
-    faults.refuse_unless(
+    faults.unless(
         fit_mm >= 0 or left_mm >= LEAST_GAP_MM - 1e-9,
-        "printer.fit_mm",
-        f"is {fit_mm:g}, which leaves {left_mm:.2f} mm of {field} = {clearance_mm:g}, as drawn; "
-        f"at least {min(LEAST_GAP_MM - clearance_mm, 0.0):.2f} is needed, or a larger clearance",
+        "fit_closes_gap",
+        left_mm=left_mm,
+        clearance_mm=clearance_mm,
+        least=min(LEAST_GAP_MM - clearance_mm, 0.0),
+        beside=field,
     )
 
 

@@ -30,28 +30,29 @@ def derive_mask(config: Input, outline: Outline, plan: Plan, faults: Diagnostics
     p = config.parameters
     film = config.parts.mask.film
     opaque = p.mask.route == "cut"
-    faults.refuse_unless(
+    faults.unless(
         p.mask.route == "tpu" or film.opaque == opaque,
-        "mask.film",
-        f"is {p.mask.film!r}, which is {'opaque' if film.opaque else 'clear'}; with mask.route = "
-        f"{p.mask.route!r} {'an opaque' if opaque else 'a clear'} film is needed: "
-        f"{', '.join(n for n, f in config.catalogue.films.items() if f.opaque == opaque)}",
+        "film_kind",
+        kind="opaque" if film.opaque else "clear",
+        needed="an opaque" if opaque else "a clear",
+        films=", ".join((n for n, f in config.catalogue.films.items() if f.opaque == opaque)),
     )
     lowest = min(y for _, y in plan.receiver.cells) - p.mask.hole_mm / 2
     window = max(plan.receiver.window.y_max_mm, plan.emitter.window.y_max_mm)
-    faults.refuse_unless(
+    faults.unless(
         lowest - window >= LEAST_WEB_MM,
-        "mask.hole_mm",
-        f"is {p.mask.hole_mm:g}, which leaves {lowest - window:.2f} mm between the last "
-        f"row and the connector's window; at least {LEAST_WEB_MM} mm is needed",
+        "aperture_near_window",
+        least_web_mm=LEAST_WEB_MM,
+        web_mm=lowest - window,
     )
     side = p.stack.floor_mm + p.stack.pcb_mm + p.stack.silicone_mm
     reach = p.mask.flap_mm + p.mask.allowance_mm - side
-    faults.refuse_unless(
+    faults.unless(
         reach >= LEAST_REACH_MM,
-        "mask.flap_mm",
-        f"is {p.mask.flap_mm:g}, which reaches {max(reach, 0):.2f} mm onto the back of a finger "
-        f"{side:g} mm thick; at least {side - p.mask.allowance_mm + LEAST_REACH_MM:.2f} is needed",
+        "flap_short",
+        side=side,
+        least=side - p.mask.allowance_mm + LEAST_REACH_MM,
+        reach_mm=max(reach, 0),
     )
     sheet = _sheet(outline, p.mask.allowance_mm + p.mask.flap_mm)
     needed = (
@@ -62,12 +63,13 @@ def derive_mask(config: Input, outline: Outline, plan: Plan, faults: Diagnostics
         side * 100 / measured + 2 * PAGE_MARGIN_MM
         for side, measured in zip(needed, p.mask.measured_ruler_mm, strict=True)
     )
-    faults.refuse_unless(
+    faults.unless(
         page[0] <= PAGE_MM[0] and page[1] <= PAGE_MM[1],
-        "mask.flap_mm",
-        f"is {p.mask.flap_mm:g}; the mask of this finger with its rulers needs a page of "
-        f"{page[0]:.0f} x {page[1]:.0f} mm; A4 and US Letter have {PAGE_MM[0]:.0f} x "
-        f"{PAGE_MM[1]:.0f} mm",
+        "page_small",
+        wide_mm=page[0],
+        long_mm=page[1],
+        page_x=PAGE_MM[0],
+        page_y=PAGE_MM[1],
     )
     mark = _mark(outline, p.mask.allowance_mm, p.mask.flap_mm)
     printed = _sheet_of(config, mark)
@@ -114,47 +116,39 @@ def _refuse_sheet(
     p, line, bed = config.parameters, printed.line_mm, config.parts.printer.profile.bed_mm
     loss = printed.hole_mm - p.mask.hole_mm
     web = min(p.grid.pitch_mm - p.mask.hole_mm, to_window_mm + loss / 2) - loss
-    faults.refuse_unless(
+    faults.unless(
         web >= line - 1e-9,
-        "mask.hole_mm",
-        f"is {p.mask.hole_mm:g}, drawn as {printed.hole_mm:g}, which leaves webs of {web:.2f} mm "
-        f"in the printed sheet; at least one printed line of {line:g} is needed, so at most "
-        f"{max(p.mask.hole_mm - line + web, 0):.2f} is allowed",
+        "sheet_web",
+        printed=printed,
+        web=web,
+        line=line,
+        most=max(p.mask.hole_mm - line + web, 0),
     )
-    faults.refuse_unless(
-        p.mask.hole_mm >= line - 1e-9,
-        "mask.hole_mm",
-        f"is {p.mask.hole_mm:g}; at least one printed line of {line:g} is needed, or the holes of "
-        "the printed sheet close",
-    )
-    faults.refuse_unless(
+    faults.unless(p.mask.hole_mm >= line - 1e-9, "sheet_hole", line=line)
+    faults.unless(
         printed.thickness_mm >= LEAST_SHEET_MM - 1e-9,
-        "mask.layers",
-        f"is {printed.layers}; a layer of {p.printer.profile!r} is {printed.layer_mm:g} mm, and a "
-        f"printed sheet of {printed.thickness_mm:g} mm tears; at least {LEAST_SHEET_MM:g} mm is "
-        "needed",
+        "sheet_thin",
+        printed=printed,
+        least_sheet_mm=LEAST_SHEET_MM,
     )
     # A flap turns about the middle of the layer that the groove leaves.
     inside = printed.thickness_mm - printed.layer_mm / 2
-    faults.refuse_unless(
+    faults.unless(
         p.mask.allowance_mm >= inside + FOLD_OFF_MM - 1e-9,
-        "mask.allowance_mm",
-        f"is {p.mask.allowance_mm:g}; folded, a sheet of {printed.thickness_mm:g} mm reaches "
-        f"{inside:g} mm inside its fold, and folds lie up to {FOLD_OFF_MM:g} mm off the outline: "
-        f"at least {inside + FOLD_OFF_MM:.2f} is needed, or the flaps do not close",
+        "sheet_fold",
+        printed=printed,
+        inside=inside,
+        fold_off_mm=FOLD_OFF_MM,
+        least=inside + FOLD_OFF_MM,
     )
-    faults.refuse_unless(
+    faults.unless(
         around.width_mm <= bed[0] and around.length_mm <= bed[1],
-        "printer.profile",
-        f"is {p.printer.profile!r}, with a bed of {bed[0]:g} x {bed[1]:g} mm; a mask of "
-        f"{around.width_mm:.0f} x {around.length_mm:.0f} mm does not fit",
+        "sheet_beyond_bed",
+        around=around,
+        bed_x=bed[0],
+        bed_y=bed[1],
     )
-    faults.refuse_unless(
-        config.parts.mask.filament.rigid_parts is not None,
-        "mask.filament",
-        f"is {p.mask.filament!r}, which does not bend; a filament with rigid_parts in "
-        "parts/filaments.toml is needed",
-    )
+    faults.unless(config.parts.mask.filament.rigid_parts is not None, "sheet_stiff")
 
 
 def _sheet(outline: Outline, around_mm: float) -> Box:

@@ -25,36 +25,26 @@ def derive_mould(
     """The mould, refused where the silicone cannot be shaped as asked."""
     p = config.parameters
     silicone = config.parts.mould.silicone
-    faults.refuse_unless(
-        p.mould.taper_length_mm <= p.outline.tip_margin_mm,
-        "mould.taper_length_mm",
-        f"is {p.mould.taper_length_mm:g}; at most outline.tip_margin_mm = "
-        f"{p.outline.tip_margin_mm:g} is allowed, because the silicone must keep its thickness "
-        "over the board",
-    )
-    faults.refuse_unless(
-        p.mould.tip_silicone_mm < p.stack.silicone_mm,
-        "mould.tip_silicone_mm",
-        f"is {p.mould.tip_silicone_mm:g}; less than stack.silicone_mm = "
-        f"{p.stack.silicone_mm:g} is allowed",
-    )
-    faults.refuse_unless(
+    faults.unless(p.mould.taper_length_mm <= p.outline.tip_margin_mm, "taper_long")
+    faults.unless(p.mould.tip_silicone_mm < p.stack.silicone_mm, "tip_silicone_thick")
+    faults.unless(
         p.mould.wall_mm >= 2 * p.printer.min_wall_mm,
-        "mould.wall_mm",
-        f"is {p.mould.wall_mm:g}; at least {2 * p.printer.min_wall_mm:g} is needed, because "
-        "the trough is half as deep as the floor, and printer.min_wall_mm must remain",
+        "mould_wall_thin",
+        least=2 * p.printer.min_wall_mm,
     )
     lean = math.tan(math.radians(p.mould.draft_deg))
     for depth, allowed, what in (
         (stack.cover_mm, LEAST_FLOOR_RIM_MM, "leans the skin in under the rim"),
         (p.mould.tip_silicone_mm, p.mould.wall_gap_mm - 0.02, "reaches under the tip edge"),
     ):
-        faults.refuse_unless(
+        faults.unless(
             depth * lean <= allowed + 1e-9,
-            "mould.draft_deg",
-            f"is {p.mould.draft_deg:g}, which over {depth:g} mm of silicone {what} by "
-            f"{depth * lean:.2f} mm; at most {allowed:.2f} mm is allowed. Use "
-            f"{math.degrees(math.atan(allowed / depth)):.1f}° or less.",
+            "draft_large",
+            depth=depth,
+            what=what,
+            allowed=allowed,
+            by_mm=depth * lean,
+            most_deg=math.degrees(math.atan(allowed / depth)),
         )
     layer_mm, off_mm = whole_layers(
         config.parts.printer.profile.layer_mm,
@@ -106,11 +96,13 @@ def _letter(config: Input, outline: Outline, stack: Stack, faults: Diagnostics) 
     least = least_letter_mm(line_mm)
     low = max(LETTER_OVER_BED_MM, line_mm)
     high = wall + stack.cover_mm - max(LETTER_UNDER_RIM_MM, line_mm)
-    faults.refuse_unless(
+    faults.unless(
         high - low >= least - 1e-9,
-        "mould.wall_mm",
-        f"is {wall:g}, which leaves {high - low:.2f} mm for the letter that marks the mould; "
-        f"{least:g} mm is needed. Use a wall of {wall + least - (high - low):.2f} mm or more.",
+        "mould_letter",
+        wall=wall,
+        least=least,
+        room_mm=high - low,
+        wall_mm=wall + least - (high - low),
     )
     trough_y = outline.end_y_mm - p.mould.wall_gap_mm - rise - wall - LEDGE_MM
     end_mm = wall + TROUGH_MM - trough_y
@@ -124,11 +116,8 @@ def _pads(config: Input, outline: Outline, board: Board, faults: Diagnostics) ->
     y += PAD_MM / 2 + PAD_MARGIN_MM
     inner, outer = board.pocket.x_max_mm, outline.half_width_at(y)
     needed = PAD_MM + 2 * PAD_MARGIN_MM
-    faults.refuse_unless(
-        outer - inner >= needed - 1e-6,
-        "outline.waist_margin_mm",
-        f"is {config.parameters.outline.waist_margin_mm:g}, which leaves a rim of "
-        f"{outer - inner:.2f} mm beside the board; the mould's stops need {needed:.2f} mm",
+    faults.unless(
+        outer - inner >= needed - 1e-6, "stops_narrow", needed=needed, rim_mm=outer - inner
     )
     x = (inner + outer) / 2
     return (-x, y), (x, y)

@@ -44,21 +44,15 @@ def derive_panels(
     blanks = [*(_Blank(name, finger) for name in fingers), *map(_blank, auxiliary)]
     small = [blank for blank in blanks if not _fits(blank.box, rules.least_mm, math.inf)]
     edge_mm, least = config.parameters.board.edge_gap_mm, rules.bite_inset_mm + rules.copper_mm
-    faults.refuse_unless(
-        not small or edge_mm >= least - _NOISE_MM,
-        "board.edge_gap_mm",
-        f"is {edge_mm:g}; a panel needs at least {least:g}: mouse bites reach "
-        f"{rules.bite_inset_mm:g} mm into a board and stay {rules.copper_mm:g} mm from copper. "
-        'Or write board.panel = "none"',
-    )
+    faults.unless(not small or edge_mm >= least - _NOISE_MM, "panel_edge", least=least, rules=rules)
     panels = tuple(_panel(blank, rules, config.parameters.board.edge_gap_mm) for blank in small)
     for panel in panels:
-        faults.refuse_unless(
+        faults.unless(
             _fits(panel.box, (0.0, 0.0), rules.most_mm),
-            "board.panel",
-            f"is 'rails'; the panel of the {panel.board} board would be {panel.box.width_mm:g} x "
-            f"{panel.box.length_mm:g} mm, and PCB fabs assemble at most {rules.most_mm[0]:g} x "
-            f'{rules.most_mm[1]:g} mm. Write "none"',
+            "panel_large",
+            panel=panel,
+            most=rules.most_mm[0],
+            most_y=rules.most_mm[1],
         )
     return panels
 

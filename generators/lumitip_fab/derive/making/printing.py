@@ -16,18 +16,14 @@ def derive_slicing(config: Input, mould: Mould, faults: Diagnostics) -> Slicing:
     name = p.backing.material
     other = known[name].rigid_parts or name
     good = other in known and known[other].rigid_parts is None
-    faults.refuse_unless(
-        good,
-        "backing.material",
-        f"is {name!r}, whose rigid_parts is {other!r}; the name of a filament without "
-        "rigid_parts in parts/filaments.toml is needed",
-    )
+    faults.unless(good, "rigid_parts", name=name, other=other)
     bends = known[name].rigid_parts is not None
-    faults.refuse_unless(
+    faults.unless(
         bends == is_flex(p),
-        "backing.material",
-        f"is {name!r}, which {'bends' if bends else 'does not bend'}; with backing.variant = "
-        f"{p.backing.variant!r} a material that {'does not' if bends else 'does'} is needed",
+        "material_bends",
+        name=name,
+        kind="bends" if bends else "does not bend",
+        needed="does not" if bends else "does",
     )
     rigid = other if good else name
     density = p.backing.density_g_ml
@@ -125,10 +121,12 @@ def _refuse(step: HeatStep, config: Input, faults: Diagnostics) -> None:
     """Refuse a step that heats a part beyond the limit of its material."""
     field, remedy = _REMEDY[step.name]
     for part in step.parts:
-        faults.refuse_unless(
+        faults.unless(
             step.temperature_c <= part.limit_c,
-            field,
-            f"is {config.value(field)!r}; step {step.name!r} heats {step.place} to "
-            f"{step.temperature_c:g} °C; the {part.name} of {part.material} withstands "
-            f"{part.limit_c:g} °C. Choose {remedy}.",
+            "step_too_hot",
+            field=field,
+            step=step,
+            part=part,
+            remedy=remedy,
+            value=config.value(field),
         )

@@ -23,21 +23,20 @@ def derive_fasteners(config: Input, faults: Diagnostics) -> tuple[Fastener, ...]
     if p.breakout.enabled:
         threads.append(("holder.screw", p.holder.screw))
     for field, thread in threads:
-        faults.refuse_unless(
+        faults.unless(
             thread in known,
-            field,
-            f"is {_shown(config, field)}, which needs {thread} screws; parts/fasteners.toml has "
-            f"{', '.join(known)}. Add an entry for {thread}.",
+            "thread_unknown",
+            field=field,
+            thread=thread,
+            value=_shown(config, field),
+            known=", ".join(known),
         )
     if not all(thread in known for _, thread in threads):
         faults.stop()
     _refuse_hole(config, "coupling.gripper", gripper.bolt, gripper.bolt_hole_mm, faults)
     head = known[gripper.bolt].cap_head_mm + HEAD_PLAY_MM
-    faults.refuse_unless(
-        gripper.counterbore_mm >= head - 1e-9,
-        "coupling.gripper",
-        f"is {p.coupling.gripper!r}, whose counterbore_mm = {gripper.counterbore_mm:g} is too "
-        f"small for the head of an {gripper.bolt}; at least {head:g} is needed",
+    faults.unless(
+        gripper.counterbore_mm >= head - 1e-9, "counterbore_small", gripper=gripper, head=head
     )
     if p.flange.enabled:
         _refuse_hole(config, "flange.coupling", coupling.bolt, coupling.bolt_hole_mm, faults)
@@ -66,11 +65,15 @@ def _refuse_hole(
 ) -> None:
     """Refuse a clearance hole of an entry that is none by ISO 273."""
     fine, coarse = config.catalogue.fasteners[thread].hole_mm
-    faults.refuse_unless(
+    faults.unless(
         fine - 1e-9 <= hole_mm <= coarse + 1e-9,
-        field,
-        f"is {_shown(config, field)}, whose bolt_hole_mm = {hole_mm:g} is not a clearance hole "
-        f"for an {thread}; {fine:g} to {coarse:g} is allowed (ISO 273)",
+        "bolt_hole",
+        field=field,
+        hole_mm=hole_mm,
+        thread=thread,
+        fine=fine,
+        coarse=coarse,
+        value=_shown(config, field),
     )
 
 

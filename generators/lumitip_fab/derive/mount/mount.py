@@ -34,11 +34,8 @@ def derive_mount(config: Input, outline: Outline, plan: Plan, faults: Diagnostic
     before = p.stack.pcb_mm + (p.stack.floor_mm if is_flex(p) else 0.0)
     front = max(before + value, nose.front_w_mm if nose else 0.0)
     most = gripper.bolt_w_mm - gripper.counterbore_mm / 2 - p.printer.min_wall_mm
-    faults.refuse_unless(
-        front <= most,
-        field,
-        f"is {value:g}, which leaves no wall before the counterbore of the bolt; at "
-        f"most {most - before:.2f} is allowed",
+    faults.unless(
+        front <= most, "no_wall_before_bolt", field=field, value=value, most=most - before
     )
     pins = gripper.pins
     return Mount(
@@ -82,14 +79,15 @@ def _letter(config: Input, gripper: Gripper, faults: Diagnostics) -> Letter:
     line_mm = config.parts.printer.profile.line_mm
     least, margin = least_letter_mm(line_mm), max(LETTER_MARGIN_MM, line_mm)
     low, high = margin, gripper.land_mm - margin
-    faults.refuse_unless(
+    faults.unless(
         min(high - low, wide / WIDTH) >= least and deep >= LEAST_DEPTH_MM,
-        "coupling.gripper",
-        f"is {p.coupling.gripper!r}, whose block has no room on its back for the letter that "
-        f"marks the finger: {wide:.1f} mm between its corners, {gripper.land_mm:g} mm of "
-        f"land and {behind:.1f} mm of wall behind the bolt; at least {WIDTH * least:.1f}, "
-        f"{least + 2 * margin:g} and {p.printer.min_wall_mm + LEAST_DEPTH_MM:g} "
-        "are needed",
+        "letter_no_room",
+        wide=wide,
+        gripper=gripper,
+        behind=behind,
+        least=WIDTH * least,
+        land_mm=least + 2 * margin,
+        wall_mm=p.printer.min_wall_mm + LEAST_DEPTH_MM,
     )
     middle, half = (low + high) / 2, min(high - low, wide / WIDTH) / 2
     depth, back = min(deep, DEPTH_MM), gripper.block_back_w_mm
@@ -117,23 +115,15 @@ def derive_closing(
     reach, y = max((y * sine + z * cosine, y) for y, z in profile)
     bolt = mount.origin_y_mm * sine + stack.rim_z_mm * cosine - mount.bolt_w_mm
     opening = mount.stroke_mm + 2 * (mount.pad_w_mm - (reach - bolt))
-    faults.refuse_unless(
+    faults.unless(
         outline.tip_y_mm - y <= CONTACT_MM,
-        "coupling.gripper",
-        f"is {mount.gripper!r}, whose tilt of {mount.tilt_deg:g}° makes the fingers touch first "
-        f"{outline.tip_y_mm - y:.1f} mm from the tip; at most {CONTACT_MM:g} mm is allowed. Use a "
-        "tilt of 0° or more.",
+        "touches_behind_tip",
+        mount=mount,
+        contact_mm=CONTACT_MM,
+        from_tip_mm=outline.tip_y_mm - y,
     )
-    faults.refuse_unless(
-        opening >= 10,
-        "coupling.gripper",
-        f"is {mount.gripper!r}, in which these fingers open to {opening:.1f} mm; at least 10 mm "
-        "is needed",
-    )
-    faults.refuse_unless(
-        opening <= mount.stroke_mm,
-        "coupling.gripper",
-        f"is {mount.gripper!r}, in which these fingers stay {opening - mount.stroke_mm:.1f} mm "
-        "apart when it is closed. Increase bolt_w_mm - pad_w_mm of its entry by half of that.",
+    faults.unless(opening >= 10, "opens_little", mount=mount, opening=opening)
+    faults.unless(
+        opening <= mount.stroke_mm, "stays_open", mount=mount, apart_mm=opening - mount.stroke_mm
     )
     return Closing(y, CONTACT_MM, reach, opening)

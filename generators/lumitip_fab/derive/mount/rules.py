@@ -25,25 +25,22 @@ def refuse_place(
     ramp = gripper.block_back_w_mm - plate
     opening = plan.receiver.notch.y_max_mm - outline.end_y_mm
     length = gripper.land_mm + ramp
-    faults.refuse_unless(
+    faults.unless(
         length <= outline.length_mm - p.tip.slant_start_mm and opening < length,
-        "coupling.gripper",
-        f"is {p.coupling.gripper!r}; its block and 45° ramp need {length:.1f} mm of finger "
-        f"beyond a wire notch of {opening:.1f} mm; the finger is {outline.length_mm:.1f} mm long",
+        "block_long",
+        length=length,
+        opening=opening,
+        outline=outline,
     )
     waist = outline.half_width_at(outline.end_y_mm + length)
-    faults.refuse_unless(
+    faults.unless(
         waist >= gripper.block_width_mm / 2 + HOLE_TO_EDGE_MM,
-        "coupling.gripper",
-        f"is {p.coupling.gripper!r}; its block is {gripper.block_width_mm:g} mm wide, the finger "
-        f"only {2 * waist:.1f} mm; {HOLE_TO_EDGE_MM:g} mm on each side is needed",
+        "block_wide",
+        gripper=gripper,
+        hole_to_edge_mm=HOLE_TO_EDGE_MM,
+        wide_mm=2 * waist,
     )
-    faults.refuse_unless(
-        ramp > 0,
-        "stack.floor_mm",
-        f"is {p.stack.floor_mm:g}, which makes a plate of {plate:g} mm; less than the "
-        f"{gripper.block_back_w_mm:g} mm of the block of {p.coupling.gripper!r} is allowed",
-    )
+    faults.unless(ramp > 0, "block_behind_plate", plate=plate, gripper=gripper)
 
 
 def refuse_block(config: Input, gripper: Gripper, faults: Diagnostics) -> None:
@@ -63,12 +60,7 @@ def refuse_block(config: Input, gripper: Gripper, faults: Diagnostics) -> None:
     )
     for place, wall, printed in walls:
         least = p.printer.min_wall_mm if printed is None else printed
-        faults.refuse_unless(
-            wall >= least - 1e-9,
-            "coupling.gripper",
-            f"is {p.coupling.gripper!r}, whose block has {wall:.2f} mm of wall {place}; at "
-            f"least {least:g} mm is needed",
-        )
+        faults.unless(wall >= least - 1e-9, "block_wall", wall=wall, place=place, least=least)
 
 
 def _to_pins_mm(gripper: Gripper, fit_mm: float) -> float:
@@ -104,30 +96,26 @@ def refuse_holder(config: Input, of: AuxiliaryBoard, holder: Holder, faults: Dia
         value = f"{holder.body_mm:g}"
         if p.body_mm == "gripper":
             value = f"'gripper', whose entry has {value} mm"
-        faults.refuse(
-            "holder.body_mm",
-            f"is {value}; the tray is {holder.outer.width_mm:.1f} mm wide: at least "
-            f"{math.ceil((holder.body_mm + 2 * beyond) * 10) / 10:g} is needed",
+        faults.add(
+            "tray_wide",
+            value=value,
+            holder=holder,
+            least=math.ceil((holder.body_mm + 2 * beyond) * 10) / 10,
         )
         return
     refuse_touching(config, "holder.clearance_mm", p.clearance_mm, faults)
     _refuse_straps(config, holder, faults)
     printed_mm = holder.cradle_mm - config.parameters.printer.fit_mm  # what is made of it
     grip = holder.body_mm / 2 - printed_mm * math.sin(math.radians(holder.wrap_deg))
-    faults.refuse_unless(
-        grip >= LEAST_GRIP_MM,
-        "holder.wrap_deg",
-        f"is {p.wrap_deg:g}, with the arms' ends {grip:.2f} mm inside the body's widest place; at "
-        f"least {LEAST_GRIP_MM:g} mm is needed. Increase it or reduce holder.clearance_mm.",
-    )
+    faults.unless(grip >= LEAST_GRIP_MM, "arms_grip", grip=grip, least_grip_mm=LEAST_GRIP_MM)
     free_deg = holder.wrap_deg - shoulder_deg(holder.outer.x_max_mm, outer)
     length = outer * math.radians(free_deg)
     strain = 3 * holder.wall_mm * max(grip, 0.0) / (2 * length**2)
-    faults.refuse_unless(
+    faults.unless(
         strain <= MOST_STRAIN,
-        "holder.wrap_deg",
-        f"is {p.wrap_deg:g}; clipping on strains the arms by {100 * strain:.1f} %; at most "
-        f"{100 * MOST_STRAIN:g} % is allowed. Reduce it or holder.wall_mm.",
+        "arms_strain",
+        strain_percent=100 * strain,
+        most_strain_percent=100 * MOST_STRAIN,
     )
     half_x, half_y = holder.boss_mm[0] / 2, holder.boss_mm[2] / 2
     tails = [
@@ -137,12 +125,11 @@ def refuse_holder(config: Input, of: AuxiliaryBoard, holder: Holder, faults: Dia
         for x, _ in of.holes
         if land.drill_mm and abs(device.x_mm + land.x_mm - x) < half_x + land.width_mm / 2
     ]
-    faults.refuse_unless(
+    faults.unless(
         min(tails, default=math.inf) >= half_y,
-        "holder.standoff_mm",
-        f"is {p.standoff_mm:g}; the bosses under the screws would be {2 * half_y:.1f} mm wide "
-        f"and reach solder tails; at most {min(tails, default=0.0) - holder.boss_mm[1] / 2:.2f} is "
-        "allowed",
+        "bosses_wide",
+        most=min(tails, default=0.0) - holder.boss_mm[1] / 2,
+        wide_mm=2 * half_y,
     )
 
 
@@ -151,11 +138,13 @@ def _refuse_board_holes(config: Input, of: AuxiliaryBoard, faults: Diagnostics) 
     thread = config.parameters.holder.screw
     screw = config.catalogue.fasteners[thread]
     least, most = screw.thread_mm + DRILLED_MM, screw.cap_head_mm - 2 * RING_MM
-    faults.refuse_unless(
+    faults.unless(
         least - 1e-9 <= of.hole_mm <= most + 1e-9,
-        "breakout.hole_mm",
-        f"is {of.hole_mm:g}; {least:g} to {most:g} is allowed for an {thread} (holder.screw) "
-        f"and its head of {screw.cap_head_mm:g} mm",
+        "board_hole",
+        of=of,
+        least=least,
+        most=most,
+        screw=screw,
     )
 
 
@@ -169,12 +158,13 @@ def _refuse_nuts(config: Input, holder: Holder, faults: Diagnostics) -> None:
         (f"ends of {holder.screw_length_mm:g} mm", middle - screw.thread_mm / 2, beyond),
     ):
         body = math.sqrt(max((holder.body_mm / 2) ** 2 - max(inner, 0.0) ** 2, 0.0))
-        faults.refuse_unless(
+        faults.unless(
             holder.cradle_mm - body >= needed,
-            "holder.screw",
-            f"is {holder.screw!r}, whose {what} reach {needed:.2f} mm under their seat; the "
-            f"gripper is {holder.cradle_mm - body:.2f} mm away. Choose thinner screws or increase "
-            "breakout.hole_spacing_mm.",
+            "nuts_reach_gripper",
+            holder=holder,
+            what=what,
+            needed=needed,
+            away_mm=holder.cradle_mm - body,
         )
 
 
@@ -184,18 +174,12 @@ def _refuse_straps(config: Input, holder: Holder, faults: Diagnostics) -> None:
     least = p.strap_hole_mm + wall
     most = 2 * (holder.outer.y_max_mm - wall) - p.strap_hole_mm
     room = f"{least:g} to {most:g} is allowed" if least <= most else "a narrower hole is needed"
-    faults.refuse_unless(
-        least - 1e-9 <= p.strap_spacing_mm <= most + 1e-9,
-        "holder.strap_spacing_mm",
-        f"is {p.strap_spacing_mm:g}; {room} for holes of {p.strap_hole_mm:g} mm in arms "
-        f"{holder.outer.length_mm:g} mm wide, with walls of {wall:g} mm beside them",
+    faults.unless(
+        least - 1e-9 <= p.strap_spacing_mm <= most + 1e-9, "straps_close", room=room, holder=holder
     )
     reach = math.radians(holder.wrap_deg - holder.strap_deg) * holder.cradle_mm
-    faults.refuse_unless(
-        reach - p.strap_hole_mm / 2 >= wall,
-        "holder.strap_hole_mm",
-        f"is {p.strap_hole_mm:g}; the arms end {reach:.1f} mm from the centre of their holes; at "
-        f"most {2 * (reach - wall):.1f} is allowed. Reduce it or increase holder.wrap_deg.",
+    faults.unless(
+        reach - p.strap_hole_mm / 2 >= wall, "strap_near_end", reach=reach, most=2 * (reach - wall)
     )
 
 
@@ -204,33 +188,12 @@ def refuse_flange(config: Input, flange: Flange, faults: Diagnostics) -> None:
     p, least = config.parameters.flange, config.parameters.printer.min_wall_mm
     coupling = config.parts.flange.coupling
     floor = flange.board_z_mm - flange.tail_mm - flange.seat_z_mm
-    faults.refuse_unless(
-        floor >= least - 1e-9,
-        "flange.contacts",
-        f"is {p.contacts!r}, {flange.contacts_mm:g} mm high, which leaves {floor:.2f} mm of floor "
-        f"under the solder tails; at least {least:g} mm is needed. Use longer contacts or reduce "
-        "flange.tail_mm.",
-    )
-    faults.refuse_unless(
-        p.web_mm >= least,
-        "flange.web_mm",
-        f"is {p.web_mm:g}; at least printer.min_wall_mm = {least:g} is needed",
-    )
+    faults.unless(floor >= least - 1e-9, "flange_floor", flange=flange, floor=floor)
+    faults.unless(p.web_mm >= least, "flange_web")
     room = flange.socket_z_mm - least - flange.seat_z_mm
-    faults.refuse_unless(
-        flange.pin_depth_mm <= room + 1e-9,
-        "flange.header",
-        f"is {p.header!r}, which makes the flange {flange.top_z_mm:.1f} mm high, with "
-        f"{room:.1f} mm for its locating pin; {flange.pin_depth_mm:g} mm is needed. Choose a "
-        "taller header.",
-    )
+    faults.unless(flange.pin_depth_mm <= room + 1e-9, "flange_pin", flange=flange, room=room)
     rim = (flange.face_mm - flange.recess_mm) / 2
-    faults.refuse_unless(
-        rim >= least - 1e-9,
-        "flange.coupling",
-        f"is {p.coupling!r}, which leaves {rim:.2f} mm of wall round the gripper's recess of "
-        f"{flange.recess_mm:g} mm; at least {least:g} mm is needed",
-    )
+    faults.unless(rim >= least - 1e-9, "flange_rim", rim=rim, flange=flange)
     refuse_touching(config, "flange.clearance_mm", p.clearance_mm, faults)
     _refuse_walls(config, flange, coupling, faults)
 
@@ -239,7 +202,7 @@ def _refuse_walls(
     config: Input, flange: Flange, coupling: ToolCoupling, faults: Diagnostics
 ) -> None:
     """Refuse holes that come near the board's pocket, and whatever reaches beyond the spigot."""
-    printer, name = config.parameters.printer, config.parameters.flange.coupling
+    printer = config.parameters.printer
     least_mm = printer.min_wall_mm
     fitted = f", with printer.fit_mm = {printer.fit_mm:g}" if printer.fit_mm else ""
     radius = min(flange.spigot_mm / 2, flange.face_mm / 2 - least_mm)
@@ -250,11 +213,14 @@ def _refuse_walls(
     ):
         inside = min(_to_pocket(flange, at) for at in places) - hole_mm / 2
         outside = radius - max(math.hypot(*at) for at in places) - hole_mm / 2
-        faults.refuse_unless(
+        faults.unless(
             min(inside, outside) >= least_mm,
-            "flange.coupling",
-            f"is {name!r}, where {what} leaves {inside:.2f} mm of wall to the board's pocket "
-            f"and {outside:.2f} mm to the outside{fitted}; at least {least_mm:g} mm is needed",
+            "flange_wall",
+            what=what,
+            inside=inside,
+            outside=outside,
+            fitted=fitted,
+            least_mm=least_mm,
         )
     box, corner = flange.pocket, flange.pocket_corner_mm
     reach = max(
@@ -262,11 +228,12 @@ def _refuse_walls(
         for x in (box.x_min_mm, box.x_max_mm)
         for y in (box.y_min_mm, box.y_max_mm)
     )
-    faults.refuse_unless(
+    faults.unless(
         reach <= radius - least_mm,
-        "flange.coupling",
-        f"is {name!r}, whose recess of {coupling.recess_mm:g} mm is too small for the board"
-        f"{fitted}; at least {coupling.recess_mm + 2 * (reach + least_mm - radius):.1f} is needed",
+        "recess_small",
+        coupling=coupling,
+        fitted=fitted,
+        least=coupling.recess_mm + 2 * (reach + least_mm - radius),
     )
 
 

@@ -25,12 +25,11 @@ def derive_ambient(config: Input, channel: Channel, faults: Diagnostics) -> Ambi
     waits_us = 2 ** len(mux.select) * (channel.wait_us or channel.settle_us)
     scan_us = waits_us + cells * CONVERSION_US
     period_us = STEP_US * math.ceil((2 * (light_us + scan_us) + RADIO_US) / STEP_US)
-    faults.refuse_unless(
+    faults.unless(
         period_us <= MOST_PERIOD_US,
-        "emitter.switch",
-        f"is {config.parameters.emitter.switch!r}; a frame with two scans of this receiver takes "
-        f"{period_us / 1000:.1f} ms, the firmware's longest is {MOST_PERIOD_US / 1000:.1f} ms. Use "
-        'a lower receiver.pull_up_ohm, or "none".',
+        "frame_long",
+        frame_ms=period_us / 1000,
+        most_ms=MOST_PERIOD_US / 1000,
     )
     return AmbientScan(
         light_us=light_us,

@@ -107,15 +107,23 @@ def _refuse(config: Input, duties: Iterable[_Duty], faults: Diagnostics) -> None
         name = config.value(duty.field)
         part = config.catalogue.capacitors[name]
         needed_v = (1 + SUPPLY_TOLERANCE) * duty.volts
-        faults.refuse_unless(
+        faults.unless(
             needed_v <= part.rated_v,
-            duty.field,
-            f"is {name!r}, rated {part.rated_v:g} V; a rating of {needed_v:g} V is needed",
+            "capacitor_volts",
+            field=duty.field,
+            name=name,
+            part=part,
+            needed_v=needed_v,
         )
         there_nf, (least, most) = part.capacitance_nf, duty.asked_nf
-        faults.refuse_unless(
+        faults.unless(
             least <= there_nf * part.left and there_nf <= most,
-            duty.field,
-            f"is {name!r}, {there_nf:g} nF ({there_nf * part.left:g} nF after DC-bias derating); "
-            f"{duty.beside!r} needs {least:g} to {most:g} nF",
+            "capacitor_value",
+            field=duty.field,
+            name=name,
+            there_nf=there_nf,
+            duty=duty,
+            least=least,
+            most=most,
+            left_nf=there_nf * part.left,
         )

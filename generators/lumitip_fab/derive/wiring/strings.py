@@ -11,15 +11,13 @@ from lumitip_fab.config.load import Input
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.cells import Cells
 from lumitip_fab.derive.wiring.ratings import MOST_RESISTOR_LOAD
-from lumitip_fab.derive.wiring.series import (
+from lumitip_fab.derive.wiring.sources import (
     LEAST_RESISTOR_SHARE,
     String,
-    longest_with_resistor,
-    resistor_string,
-)
-from lumitip_fab.derive.wiring.sources import (
     least_supply_v,
+    longest_with_resistor,
     longest_with_source,
+    resistor_string,
     source_problems,
     source_string,
 )

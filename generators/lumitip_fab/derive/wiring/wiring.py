@@ -52,27 +52,25 @@ def derive_muxing(config: Input, cells: Cells, faults: Diagnostics) -> Muxing:
     pins = controller.inputs
     if controller.unlimited_analog_pins:
         pins = tuple(f"A{i}" for i in range(muxes))
-    faults.refuse_unless(
+    faults.unless(
         muxes <= len(pins),
-        "grid.columns",
-        f"has {len(cells)} cells, which need {muxes} of {p.receiver.multiplexer!r} "
-        f"({mux.channels} inputs each); {p.controller.board!r} has {len(pins)} analog pins. Use "
-        f"{mux.channels * len(pins)} cells or fewer, {larger_multiplexers(config)}"
-        f"or {_unlimited(config)}.",
+        "analog_pins",
+        cells_count=len(cells),
+        muxes=muxes,
+        mux=mux,
+        pins_count=len(pins),
+        cells=mux.channels * len(pins),
+        larger=larger_multiplexers(config),
+        unlimited=_unlimited(config),
     )
-    faults.refuse_unless(
+    faults.unless(
         len(mux.select) <= len(controller.select_pins),
-        "receiver.multiplexer",
-        f"is {p.receiver.multiplexer!r}, which needs {len(mux.select)} select lines; "
-        f"{p.controller.board!r} has {len(controller.select_pins)}",
+        "select_lines",
+        select_count=len(mux.select),
+        select_pins_count=len(controller.select_pins),
     )
     sold = sold_ohm(p.receiver.pull_up_ohm)
-    faults.refuse_unless(
-        math.isclose(sold, p.receiver.pull_up_ohm),
-        "receiver.pull_up_ohm",
-        f"is {p.receiver.pull_up_ohm:.10g}, which is in neither the E24 nor the E96 series. "
-        f"Use {sold:g}.",
-    )
+    faults.unless(math.isclose(sold, p.receiver.pull_up_ohm), "pull_up_not_sold", sold=sold)
     return Muxing(muxes, pins[:muxes], controller.select_pins[: len(mux.select)])
 
 

@@ -4,18 +4,12 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 
-from lumitip_fab.boards.kicad.schematic.alone import draw_alone, draw_probes
+from lumitip_fab.boards.kicad.schematic import power_path
 from lumitip_fab.boards.kicad.schematic.contact_blocks import draw_sockets, draw_strips
-from lumitip_fab.boards.kicad.schematic.draft import Draft, net_of, nets_of, other_net
+from lumitip_fab.boards.kicad.schematic.draft import REACH_MM, Draft, net_of, nets_of, other_net
 from lumitip_fab.boards.kicad.schematic.module_block import draw_module
-from lumitip_fab.boards.kicad.schematic.pin_types import pin_names, pin_type
-from lumitip_fab.boards.kicad.schematic.power_path import (
-    draw_buck,
-    draw_indicator,
-    draw_linear,
-    draw_plug_in,
-)
-from lumitip_fab.boards.kicad.schematic.rail import STEP_MM
+from lumitip_fab.boards.kicad.schematic.shapes import pin_names, pin_type
+from lumitip_fab.boards.kicad.schematic.symbols import TWO_TERMINALS, test_point
 from lumitip_fab.boards.model import GROUND, SUPPLY, Placement
 from lumitip_fab.design import Component
 
@@ -109,19 +103,19 @@ def _circuit(group: Parts, parts: Parts) -> Iterator[Drawing]:
     """The drawing of a group; none of parts that are no circuit known here."""
     leader, kinds = group[0], [part.kind for part in group]
     if leader.kind == "fuse" and kinds.count("transistor") == 1:
-        yield "Reverse supply and plug-in", partial(draw_plug_in, group=group)
+        yield "Reverse supply and plug-in", partial(power_path.draw_plug_in, group=group)
     elif kinds == ["indicator", "resistor"]:
-        yield "Power LED", partial(draw_indicator, group=group)
+        yield "Power LED", partial(power_path.draw_indicator, group=group)
     elif leader.kind == "module":
         yield f"Controller: {leader.value}", partial(draw_module, group=group)
     elif "SW" in leader.pins and kinds.count("inductor") == 1:
         coil = group[kinds.index("inductor")]
         output = _volts(other_net(coil, net_of(leader, "SW")))
         source = _volts(_before_a_resistor(net_of(leader, "VIN"), parts))
-        yield f"Buck regulator {source} to {output}", partial(draw_buck, group=group)
+        yield f"Buck regulator {source} to {output}", partial(power_path.draw_buck, group=group)
     elif "OUT" in leader.pins:
         source, output = (_volts(net_of(leader, pin)) for pin in ("IN", "OUT"))
-        yield f"Linear regulator {source} to {output}", partial(draw_linear, group=group)
+        yield f"Linear regulator {source} to {output}", partial(power_path.draw_linear, group=group)
 
 
 def _before_a_resistor(net: str, parts: Parts) -> str:
@@ -173,10 +167,44 @@ def _flags(nets: Sequence[str]) -> Callable[[Draft], None]:
 
     def draw(draft: Draft) -> None:
         for i, net in enumerate(nets):
-            upper = i * _FLAG_STEPS * STEP_MM, 0.0
-            lower = upper[0], STEP_MM
+            upper = i * _FLAG_STEPS * power_path.STEP_MM, 0.0
+            lower = upper[0], power_path.STEP_MM
             draft.wire(upper, lower)
             draft.power(net, lower if net == GROUND else upper)
             draft.fed(upper if net == GROUND else lower, 0 if net == GROUND else 180)
 
     return draw
+
+
+_ROWS, _ROW_MM, _COLUMN_MM = 4, 7.62, 33.02
+"""Test points below each other, and the distances between them."""
+
+
+def draw_probes(draft: Draft, parts: Sequence[Component]) -> None:
+    """Test points in columns, each at the end of its net."""
+    for i, part in enumerate(parts):
+        x, y = i // _ROWS * _COLUMN_MM, i % _ROWS * _ROW_MM
+        draft.place(part, "TestPoint", test_point(), (x, y), ref_at=(3.048, -3.302))
+        draft.wire((x, y), (x + REACH_MM, y))
+        ((_, net),) = part.nets
+        draft.end(net, (x + REACH_MM, y), 1)
+
+
+def draw_alone(draft: Draft, parts: Sequence[Component]) -> None:
+    """Parts with two terminals upright, others as a box with the names of their pins."""
+    x = 0.0
+    upright = [part for part in parts if part.kind in TWO_TERMINALS and len(part.nets) == 2]
+    for part in upright:
+        (_, upper), (_, lower) = part.nets
+        if upper == GROUND:
+            upper, lower = lower, upper
+        reach = draft.stand(part, upper, (x, 0.0))
+        for net, way in ((upper, -1), (lower, 1)):
+            end = x, way * (REACH_MM + power_path.STEP_MM)
+            draft.wire((x, way * REACH_MM), end)
+            if draft.is_supply(net) and (net == GROUND) == (way > 0):
+                draft.power(net, end)
+            else:
+                draft.tag(net, end, -90 * way % 360)
+        x += reach + 2 * power_path.STEP_MM
+    draw_strips(draft, [part for part in parts if part not in upright], x)

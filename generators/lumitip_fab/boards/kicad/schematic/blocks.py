@@ -1,10 +1,11 @@
-"""Blocks of a finger's sheet: wires with test points, and strings of LEDs."""
+"""Blocks of a finger's sheet: wires with test points, strings of LEDs, and what drives them."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 
-from lumitip_fab.boards.kicad.schematic import current_sources, symbols
+from lumitip_fab.boards.kicad.schematic import shapes, symbols
 from lumitip_fab.boards.kicad.schematic.sheet import Block, Sheet
+from lumitip_fab.boards.kicad.sexpr import Node
 from lumitip_fab.boards.model import AT_CELLS, GROUND
 from lumitip_fab.design import Component, Point, Wiring
 
@@ -78,8 +79,8 @@ def string_blocks(
         width_mm = _STRING_START_MM + len(string) * _LED_MM + 20.32
         height_mm, shapes = _STRING_MM, {"LED": symbols.led(marked)}
         if wiring.set_ohm:
-            width_mm, height_mm = width_mm + current_sources.WIDTH_MM, height_mm + 10.16
-            shapes[_SOURCE] = current_sources.symbol(parts[f"U{number}"])
+            width_mm, height_mm = width_mm + SOURCE_MM, height_mm + 10.16
+            shapes[_SOURCE] = source_symbol(parts[f"U{number}"])
         draw = partial(_string, parts, (supply, cathodes), number, string, wiring)
         yield Block(width_mm, height_mm, draw, shapes)
 
@@ -101,8 +102,8 @@ def _string(
     if wiring.set_ohm:
         driving = (f"U{number}", f"R{number}", f"R{len(wiring.strings) + number}")
         source, out, setting = (parts[ref] for ref in driving)
-        current_sources.draw(_SOURCE, (source, out, setting), sheet, (x + 5.08, y))
-        end, start = x + 5.08 + current_sources.WIDTH_MM, start + 34.29
+        draw_source(_SOURCE, (source, out, setting), sheet, (x + 5.08, y))
+        end, start = x + 5.08 + SOURCE_MM, start + 34.29
     else:
         sheet.wire((x + 5.08, y), (x + 8.89, y))
         resistor = parts[f"R{number}"]
@@ -119,3 +120,85 @@ def _string(
         sheet.power(GROUND, (end + 5.08, y))
     else:
         sheet.flag(cathodes, (end + 5.08, y), 0)
+
+
+_SWITCH = "LED_switch"
+_TALL_MM, _WIDE_MM = 43.18, 60.96
+_DOWN_MM = 7.62  # from the gate's line to the middle of its resistor
+
+
+def switch_block(transistor: Component, pull_down: Component) -> Block:
+    """Gate line from the left, the resistor below it, drain above and source below."""
+
+    def draw(sheet: Sheet, at: Point) -> None:
+        _draw_switch(transistor, pull_down, sheet, at)
+
+    return Block(_WIDE_MM, _TALL_MM, draw, {_SWITCH: shapes.switch(transistor)})
+
+
+def _draw_switch(transistor: Component, pull_down: Component, sheet: Sheet, at: Point) -> None:
+    nets = dict(zip(transistor.pins, (net for _, net in transistor.nets), strict=True))
+    x, y = at[0] + 30.48, at[1] + 20.32
+    sheet.texts.append(("Switch of the LEDs", (at[0], at[1] + 5.08), 2.5))
+    sheet.part(_SWITCH, transistor, (x, y), ref_at=(8.89, -1.27), value_at=(10.16, 1.27))
+    gate, node = x - 5.08, x - 12.7
+    sheet.flag(nets["G"], (node - 5.08, y), 180)
+    sheet.wire((node - 5.08, y), (node, y))
+    sheet.wire((node, y), (gate, y))
+    sheet.junctions.append((node, y))
+    middle = y + _DOWN_MM
+    sheet.wire((node, y), (node, middle - 3.81))
+    sheet.part("R", pull_down, (node, middle), ref_at=(-3.81, -1.27), value_at=(-5.08, 1.27))
+    sheet.wire((node, middle + 3.81), (node, middle + 5.08))
+    sheet.power(GROUND, (node, middle + 5.08))
+    sheet.wire((x + 2.54, y - 5.08), (x + 2.54, y - 7.62), (x + 7.62, y - 7.62))
+    sheet.flag(nets["D"], (x + 7.62, y - 7.62), 0)
+    sheet.wire((x + 2.54, y + 5.08), (x + 2.54, middle + 5.08))
+    sheet.power(GROUND, (x + 2.54, middle + 5.08))
+
+
+_SOURCE_HALF_MM, _SET_MM = 7.62, 7.62  # half the width of its box; OUT to SET
+SOURCE_MM = 41.91
+"""From the end of the wire that feeds it to that of the wire at its resistors."""
+
+
+def source_symbol(part: Component) -> Node:
+    """A box with IN to the left, OUT and SET to the right; leads of one name are one pin."""
+    reach = _SOURCE_HALF_MM + symbols.PIN_MM
+    places = {"IN": (-reach, 0.0, 0), "OUT": (reach, 0.0, 180), "SET": (reach, -_SET_MM, 180)}
+    pins, names = [], set()
+    for number, _ in part.nets:
+        name = part.pins[int(number) - 1]
+        pins.append(symbols.pin(number, *places[name], symbols.PIN_MM, name, hide=name in names))
+        names.add(name)
+    body = symbols.box(
+        -_SOURCE_HALF_MM, _SET_MM / 2, _SOURCE_HALF_MM, -_SET_MM * 1.5, fill="background"
+    )
+    return symbols.symbol("U", [body], pins, shown=True)
+
+
+def draw_source(
+    name: str, parts: tuple[Component, Component, Component], sheet: Sheet, at: Point
+) -> None:
+    """The source and its resistors on a line from the left.
+
+    Args:
+        name: of the symbol.
+        parts: the source, the resistor at its OUT, and that at its SET.
+        sheet: drawn on.
+        at: end of the wire that feeds it.
+    """
+    source, out, setting = parts
+    x, y = at
+    middle, lower = x + _SOURCE_HALF_MM + 2 * symbols.PIN_MM, y + _SET_MM
+    sheet.wire((x, y), (x + symbols.PIN_MM, y))
+    sheet.part(name, source, (middle, y), ref_at=(-5.08, -5.08), value_at=(3.81, -5.08))
+    right = middle + _SOURCE_HALF_MM + symbols.PIN_MM
+    resistor, end = right + 8.89, x + SOURCE_MM
+    for part, line, way in ((out, y, 90), (setting, lower, 270)):
+        sheet.wire((right, line), (resistor - 3.81, line))
+        sheet.flag(part.nets[0][1], (right + 2.54, line), way)
+        sheet.part("R", part, (resistor, line), 90, ref_at=(0, -2.54), value_at=(0, 2.54))
+        sheet.wire((resistor + 3.81, line), (end, line))
+    sheet.wire((end, lower), (end, y))
+    sheet.junctions.append((end, y))

@@ -5,9 +5,9 @@ from itertools import groupby
 
 from lumitip_fab.boards.kicad.schematic import shapes
 from lumitip_fab.boards.kicad.schematic.draft import Draft
-from lumitip_fab.boards.kicad.schematic.rail import STEP_MM
+from lumitip_fab.boards.kicad.schematic.power_path import STEP_MM
+from lumitip_fab.boards.kicad.schematic.sheet import GRID_MM, text_mm, up_to_grid
 from lumitip_fab.boards.kicad.schematic.symbols import PITCH_MM
-from lumitip_fab.boards.kicad.schematic.text_size import GRID_MM, text_mm, up_to_grid
 from lumitip_fab.boards.kicad.sexpr import Node
 from lumitip_fab.design import Component, Point
 

@@ -3,9 +3,8 @@
 from collections.abc import Iterable, Mapping, Sequence
 
 from lumitip_fab.boards.kicad.schematic import shapes, symbols
-from lumitip_fab.boards.kicad.schematic.pin_types import pin_names
-from lumitip_fab.boards.kicad.schematic.sheet import Sheet
-from lumitip_fab.boards.kicad.schematic.text_size import GRID_MM, text_mm, up_to_grid
+from lumitip_fab.boards.kicad.schematic.shapes import pin_names
+from lumitip_fab.boards.kicad.schematic.sheet import GRID_MM, Sheet, text_mm, up_to_grid
 from lumitip_fab.boards.kicad.sexpr import Node
 from lumitip_fab.boards.model import GROUND
 from lumitip_fab.design import Component, Point

@@ -3,9 +3,9 @@
 from collections.abc import Iterable
 
 from lumitip_fab.boards.circuit import cathodes_of
-from lumitip_fab.boards.kicad.schematic import led_switch, symbols
+from lumitip_fab.boards.kicad.schematic import symbols
 from lumitip_fab.boards.kicad.schematic.auxiliary import auxiliary_blocks
-from lumitip_fab.boards.kicad.schematic.blocks import string_blocks, wires_block
+from lumitip_fab.boards.kicad.schematic.blocks import string_blocks, switch_block, wires_block
 from lumitip_fab.boards.kicad.schematic.frames import framed
 from lumitip_fab.boards.kicad.schematic.multiplexers import multiplexer_blocks
 from lumitip_fab.boards.kicad.schematic.sheet import Block, Sheet, beside, columns, grid
@@ -59,7 +59,7 @@ def _drawn(board: Placement, design: Design) -> tuple[dict[str, Node], str, Shee
         )
         if design.packages.switch is not None:
             pull_down = parts[design.wiring.pull_down_ref]
-            wires = beside(wires, led_switch.block(parts["Q1"], pull_down))
+            wires = beside(wires, switch_block(parts["Q1"], pull_down))
         paper, sheet = columns([*blocks, wires])
     return shapes | _shapes([wires, *blocks]), paper, sheet
 

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 from lumitip_fab.boards.kicad.schematic import shapes
 from lumitip_fab.boards.kicad.schematic.draft import REACH_MM, Draft, nets_of
-from lumitip_fab.boards.kicad.schematic.rail import STEP_MM, Rail
+from lumitip_fab.boards.kicad.schematic.power_path import STEP_MM, Rail
+from lumitip_fab.boards.kicad.schematic.sheet import text_mm, up_to_grid
 from lumitip_fab.boards.kicad.schematic.symbols import PITCH_MM
-from lumitip_fab.boards.kicad.schematic.text_size import text_mm, up_to_grid
 from lumitip_fab.boards.model import GROUND
 from lumitip_fab.design import Component, Point
 

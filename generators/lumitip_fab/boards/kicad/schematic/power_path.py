@@ -9,7 +9,7 @@
 
 from collections.abc import Sequence
 
-from lumitip_fab.boards.kicad.schematic import mosfets, shapes
+from lumitip_fab.boards.kicad.schematic import shapes
 from lumitip_fab.boards.kicad.schematic.draft import (
     REACH_MM,
     Draft,
@@ -18,8 +18,8 @@ from lumitip_fab.boards.kicad.schematic.draft import (
     other_net,
     pads_of,
 )
-from lumitip_fab.boards.kicad.schematic.pin_types import pin_names
-from lumitip_fab.boards.kicad.schematic.rail import STEP_MM, Rail
+from lumitip_fab.boards.kicad.schematic.shapes import pin_names
+from lumitip_fab.boards.kicad.schematic.sheet import GRID_MM, text_mm, up_to_grid
 from lumitip_fab.boards.kicad.schematic.symbols import PITCH_MM
 from lumitip_fab.boards.model import GROUND
 from lumitip_fab.design import Component, Point
@@ -29,6 +29,77 @@ _BOOT, _SWITCH, _FEEDBACK = 0, 2, 6
 """Rows of a buck regulator's pins."""
 _ABOVE_MM = 5.08, 2.54  # reference and value above the top of a chip
 _GATE_MM = 7.62, 10.16  # from the wire to the MOSFET's gate, and to the resistors at it
+
+
+STEP_MM = 2.54
+
+
+class Rail:
+    """The right end of a wire, which grows.
+
+    Attributes:
+        x_mm: its end.
+        y_mm: its height on the sheet.
+        net: its name.
+    """
+
+    def __init__(self, draft: Draft, at: Point, net: str) -> None:
+        self.draft, self.net = draft, net
+        self.x_mm, self.y_mm = at
+        self._wired_mm = self.x_mm
+
+    def on(self, length_mm: float = STEP_MM) -> None:
+        """Go on to the right; the wire follows when something is joined to it."""
+        self.x_mm += length_mm
+
+    def to(self, x_mm: float) -> None:
+        """Go on to a place, unless it is passed."""
+        self.x_mm = max(self.x_mm, x_mm)
+
+    def end(self) -> Point:
+        """Its end, with the wire up to there."""
+        if self.x_mm > self._wired_mm:
+            self.draft.wire((self._wired_mm, self.y_mm), (self.x_mm, self.y_mm))
+        self._wired_mm = self.x_mm
+        return self.x_mm, self.y_mm
+
+    def skip(self, length_mm: float) -> None:
+        """Go on without a wire, past a part."""
+        self.end()
+        self.x_mm += length_mm
+        self._wired_mm = self.x_mm
+
+    def tag(self, angle_deg: int = 90) -> None:
+        """Its name, beside it."""
+        self.on()
+        self.draft.tag(self.net, self.end(), angle_deg)
+        self.on()
+
+    def supply(self) -> None:
+        """The symbol of its supply, above it."""
+        self.draft.power(self.net, self.end())
+
+    def through(self, part: Component) -> None:
+        """A part in the wire: from there on it is the part's other net."""
+        wide = max(map(text_mm, (part.ref, part.value)))
+        beside = max(GRID_MM, up_to_grid(wide / 2 - REACH_MM + GRID_MM / 2))
+        self.on(beside)
+        self.draft.lay(part, self.net, (self.x_mm + REACH_MM, self.y_mm))
+        self.skip(2 * REACH_MM)
+        self.net = other_net(part, self.net)
+        self.on(beside)
+
+    def hang(self, part: Component) -> Point:
+        """A part from the wire down to ground, or to the place that is returned."""
+        x, y = self.end()
+        upper = y + _DROP_MM
+        lower = upper + 2 * REACH_MM
+        self.draft.wire((x, y), (x, upper))
+        reach = self.draft.stand(part, self.net, (x, upper + REACH_MM))
+        if other_net(part, self.net) == GROUND:
+            self.draft.power(GROUND, (x, lower))
+        self.on(reach + STEP_MM)
+        return x, lower
 
 
 def draw_plug_in(draft: Draft, group: Group) -> None:
@@ -132,7 +203,7 @@ def _transistor(draft: Draft, part: Component, rail: Rail, gate: str) -> Point:
     rail.on()
     x, y = rail.end()
     middle = x + 5.08, y + STEP_MM
-    shape = shapes.lying(mosfets.transistor(part))
+    shape = shapes.lying(shapes.transistor(part))
     assert isinstance(shape, tuple)
     draft.place(part, f"Transistor_{part.ref}", shape, middle, 0, (0.0, -8.89), (0.0, -6.6))
     rail.skip(10.16)
@@ -173,3 +244,6 @@ def _hang_all(rail: Rail, group: Group) -> None:
 def _only(group: Group, kind: str) -> Component:
     (part,) = (part for part in group if part.kind == kind)
     return part
+
+
+_DROP_MM = 2.54  # from the wire to a part that hangs from it

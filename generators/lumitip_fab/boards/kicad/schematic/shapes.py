@@ -1,18 +1,19 @@
 """Symbols that are drawn for one part: chips with pins on three sides, and rows of contacts."""
 
+import re
 from collections.abc import Iterator, Sequence
 
-from lumitip_fab.boards.kicad.schematic.pin_types import pin_names, pin_type
+from lumitip_fab.boards.kicad.schematic.sheet import text_mm, up_to_grid
 from lumitip_fab.boards.kicad.schematic.symbols import (
     GRID_MM,
     PIN_MM,
     PITCH_MM,
     box,
     circle,
+    line,
     pin,
     symbol,
 )
-from lumitip_fab.boards.kicad.schematic.text_size import text_mm, up_to_grid
 from lumitip_fab.boards.kicad.sexpr import Node, Value
 from lumitip_fab.design import Component, Point
 
@@ -133,3 +134,81 @@ def _nodes(node: Node, key: str) -> Iterator[Node]:
                 yield value
             else:
                 yield from _nodes(value, key)
+
+
+def transistor(part: Component) -> Node:
+    """A P-channel MOSFET: gate to the left, source above, drain below, its diode to the right."""
+    body = [
+        line((0.127, 0), (1.524, 0), (1.524, 1.524)),  # the body is at the source
+        line((0.635, 0.381), (1.27, 0), (0.635, -0.381), (0.635, 0.381)),
+    ]
+    return _mosfet(part, body, ("S", "D"))
+
+
+def switch(part: Component) -> Node:
+    """An N-channel MOSFET: gate to the left, drain above, source below, its diode to the right."""
+    body = [
+        line((0.127, 0), (1.524, 0), (1.524, -1.524)),  # the body is at the source
+        line((1.27, 0.381), (0.635, 0), (1.27, -0.381), (1.27, 0.381)),
+    ]
+    return _mosfet(part, body, ("D", "S"))
+
+
+def _mosfet(part: Component, body: list[Node], ends: tuple[str, str]) -> Node:
+    """A MOSFET between two leads, the upper one first; its diode conducts upwards."""
+    number = {name: land for (land, _), name in zip(part.nets, part.pins, strict=True)}
+    upper, lower = ends
+    return symbol(
+        "Q",
+        [
+            line((-2.54, 0), (-0.508, 0)),
+            line((-0.508, 1.905), (-0.508, -1.905)),
+            *(line((0.127, y + 0.508), (0.127, y - 0.508)) for y in (1.524, 0, -1.524)),
+            line((0.127, 1.524), (2.54, 1.524), (2.54, 2.54)),
+            line((0.127, -1.524), (2.54, -1.524), (2.54, -2.54)),
+            *body,
+            line((2.54, 1.524), (3.556, 1.524), (3.556, -1.524), (2.54, -1.524)),
+            line((3.048, 0.381), (4.064, 0.381)),
+            line((3.556, 0.381), (3.048, -0.381), (4.064, -0.381), (3.556, 0.381)),
+        ],
+        [
+            pin(number["G"], -5.08, 0, 0, PIN_MM, "G", "input"),
+            pin(number[upper], 2.54, 5.08, 270, PIN_MM, upper),
+            pin(number[lower], 2.54, -5.08, 90, PIN_MM, lower),
+        ],
+    )
+
+
+_TYPES = {
+    "regulator": {
+        **dict.fromkeys(("VIN", "IN", "GND"), "power_in"),
+        **dict.fromkeys(("FB", "EN"), "input"),
+        "OUT": "power_out",
+        "SW": "output",
+    },
+    "module": {
+        **dict.fromkeys(("GND", "VDD", "VDDH", "VBUS"), "power_in"),
+        "SWDCLK": "input",
+        **dict.fromkeys(("SWDIO", "USB_DM", "USB_DP"), "bidirectional"),
+    },
+    "socket": {
+        **dict.fromkeys(("GND", "VIN"), "power_in"),
+        **dict.fromkeys(("3V3", "VUSB"), "power_out"),
+        **dict.fromkeys(("RST", "REC", "RX"), "input"),
+        "TX": "output",
+    },
+}
+_PORT = re.compile(r"[AD]\d+|P\d_\d+")
+"""Pins of a controller that its firmware makes inputs or outputs."""
+
+
+def pin_type(part: Component, name: str) -> str:
+    """Type of a part's pin, such as `"power_in"`; passive where its name says nothing."""
+    known = _TYPES.get(part.kind, {})
+    port = part.kind in ("module", "socket") and _PORT.fullmatch(name)
+    return known.get(name, "bidirectional" if port else "passive")
+
+
+def pin_names(part: Component) -> dict[str, str]:
+    """Name of each pad; none where a part has no names."""
+    return dict(zip((pad.number for pad in part.footprint.pads), part.pins, strict=False))

@@ -1,6 +1,9 @@
 """Symbols and wires of a sheet with their places, and the paper sizes. mm, y down, 1.27 mm grid."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+import itertools
+import math
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 
@@ -151,3 +154,104 @@ def grid(first: Block, others: Sequence[Block]) -> tuple[str, Sheet]:
         x = MARGIN_MM + first.width_mm + right * wide
         block.draw(sheet, (x, MARGIN_MM + down * tall))
     return paper, sheet
+
+
+GRID_MM = 1.27
+_LETTER = 0.95
+"""Width of a letter by its height, with the gap to the next: the mean of capitals and digits."""
+
+
+def text_mm(words: str, height_mm: float = GRID_MM) -> float:
+    """Width of a text."""
+    return len(words) * _LETTER * height_mm
+
+
+def up_to_grid(length_mm: float) -> float:
+    """The next length of the grid."""
+    return math.ceil(round(length_mm / GRID_MM, 6)) * GRID_MM
+
+
+_FLAG_MM = 2.54
+"""Length of a label's outline beyond its letters."""
+
+
+def bounds(sheet: Sheet, shapes: Mapping[str, Node]) -> tuple[Point, Point]:
+    """Upper left and lower right corner of all that is drawn."""
+    points = [
+        *(end for wire in sheet.wires for end in wire),
+        *(point for label in sheet.labels for point in _label(*label)),
+        *(point for text in sheet.texts for point in _line(*text)),
+        *(point for drawn in sheet.symbols for point in _symbol(drawn, shapes[drawn.symbol])),
+    ]
+    xs, ys = zip(*points, strict=True)
+    return (min(xs), min(ys)), (max(xs), max(ys))
+
+
+def _label(net: str, at: Point, angle_deg: int) -> Iterator[Point]:
+    long, half = text_mm(net) + _FLAG_MM, GRID_MM
+    turn = math.radians(angle_deg)
+    cos, sin = round(math.cos(turn)), round(math.sin(turn))
+    for along in (0.0, long):
+        for across in (-half, half):
+            yield at[0] + along * cos + across * sin, at[1] - along * sin + across * cos
+
+
+def _line(words: str, at: Point, height_mm: float) -> Iterator[Point]:
+    yield at[0], at[1] - height_mm
+    yield at[0] + text_mm(words, height_mm), at[1]
+
+
+def _symbol(drawn: Drawn, shape: Node) -> Iterator[Point]:
+    turn = math.radians(drawn.angle_deg)
+    cos, sin = round(math.cos(turn)), round(math.sin(turn))
+    for x, y in _places(shape):
+        yield drawn.x_mm + x * cos - y * sin, drawn.y_mm - x * sin - y * cos
+    for words, beside in ((drawn.ref, drawn.ref_at), (drawn.value, drawn.value_at)):
+        if beside is not None:
+            x, y, half = drawn.x_mm + beside[0], drawn.y_mm + beside[1], text_mm(words) / 2
+            yield x - half, y - GRID_MM / 2
+            yield x + half, y + GRID_MM / 2
+
+
+def _places(node: Node) -> Iterator[Point]:
+    """Corners of a symbol's lines, and the outer ends of its pins."""
+    for value in node[1:]:
+        if not isinstance(value, tuple) or value[0] == "property":
+            continue
+        if value[0] in ("xy", "start", "end", "center", "at"):
+            x, y = (float(v) for v in value[1:3] if isinstance(v, int | float))
+            yield x, y
+        else:
+            yield from _places(value)
+
+
+Wire = tuple[Point, Point]
+
+
+def jointed(wires: Iterable[Wire], pins: Iterable[Point]) -> tuple[list[Wire], list[Point]]:
+    """Wires cut at each end and pin that they pass, and the places where three or more meet.
+
+    Args:
+        wires: along x or y.
+        pins: places of all pins.
+    """
+    whole = [(_rounded(start), _rounded(end)) for start, end in wires]
+    ends = [_rounded(pin) for pin in pins]
+    cuts = {end for wire in whole for end in wire} | set(ends)
+    pieces: dict[Wire, None] = {}
+    for start, end in whole:
+        passed = sorted(at for at in cuts if _between(start, at, end))
+        for one, other in itertools.pairwise(passed):
+            pieces[one, other] = None
+    met = Counter([*(end for piece in pieces for end in piece), *ends])
+    return list(pieces), [at for at, count in met.items() if count > 2]
+
+
+def _between(start: Point, at: Point, end: Point) -> bool:
+    """Whether a place is on a wire, its ends among it."""
+    (x0, x1), (y0, y1) = (sorted((start[i], end[i])) for i in (0, 1))
+    return x0 <= at[0] <= x1 and y0 <= at[1] <= y1
+
+
+def _rounded(at: Point) -> Point:
+    return round(at[0], 3), round(at[1], 3)

@@ -1,0 +1,54 @@
+"""`lumitip-fab init`, `schema` and `channel-map`: the design folder, and what files say."""
+
+import argparse
+import json
+import shutil
+import sys
+from pathlib import Path
+
+from lumitip_fab.cli.screen import FAILED, OUT, REFUSED
+
+
+def init(options: argparse.Namespace) -> int:
+    """Copy parameters, presets and parts."""
+    from lumitip_fab.paths import packaged_design
+
+    target: Path = options.directory
+    if target.exists() and (not target.is_dir() or any(target.iterdir())):
+        print(f"{target}: exists and is not empty: name a new or empty folder", file=sys.stderr)
+        return REFUSED
+    try:
+        shutil.copytree(packaged_design(), target, dirs_exist_ok=True)
+    except (OSError, shutil.Error) as error:
+        print(f"{target}: cannot be written: {error}", file=sys.stderr)
+        return REFUSED
+    if not options.quiet:
+        OUT.print(
+            f"{target}: edit fingertip.toml, then: lumitip-fab build "
+            f"{target / 'fingertip.toml'} --out outputs"
+        )
+    return 0
+
+
+def schema(_: argparse.Namespace) -> int:
+    """Print the JSON Schema of parameter files."""
+    from lumitip_fab.config.schema import schema_text
+
+    print(schema_text(), end="")
+    return 0
+
+
+def channel_map(options: argparse.Namespace) -> int:
+    """Print the detector of each multiplexer input, from the copper of the board."""
+    from lumitip_fab.checks.connections import read_channels
+
+    found = read_channels(options.file)
+    if options.json:
+        print(json.dumps(found.best, indent=1))
+    else:
+        for mux, inputs in found.best.items():
+            listed = "  ".join(f"{channel}:{detector}" for channel, detector in inputs.items())
+            print(f"{mux} ({found.output[mux] or 'no net'})  {listed}")
+    for doubt in found.doubts:
+        print(doubt, file=sys.stderr)
+    return FAILED if found.contradicted else 0
