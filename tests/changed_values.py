@@ -70,6 +70,7 @@ CHANGES: dict[str, Any] = {
     "holder.clearance_mm": 0.4,
     "holder.wall_mm": 3.2,
     "holder.wrap_deg": 106.0,
+    "holder.preload_mm": 0.7,
     "holder.standoff_mm": 3.2,
     "holder.screw": "other",
     "holder.strap_hole_mm": 4.1,

@@ -91,8 +91,7 @@ def passage(file: str, name: str) -> str:
 
 @lru_cache
 def _passages(file: str) -> dict[str, str]:
-    text = (Path(__file__).parent / file).read_text(encoding="utf-8")
-    _, *parts = re.split(r"^=== (\w+)\n", text, flags=re.MULTILINE)
+    _, *parts = re.split(r"^=== (\w+)\n", data_file(file), flags=re.MULTILINE)
     texts = (part.removesuffix("\n") for part in parts[1::2])
     return dict(zip(parts[::2], texts, strict=True))
 
@@ -100,4 +99,9 @@ def _passages(file: str) -> dict[str, str]:
 @lru_cache
 def table_of(file: str) -> dict[str, Any]:
     """A table of this package in TOML, such as `docs/spec.toml`."""
-    return tomllib.loads((Path(__file__).parent / file).read_text(encoding="utf-8"))
+    return tomllib.loads(data_file(file))
+
+
+def data_file(file: str) -> str:
+    """A text file of this package, such as `mask/creasing.svg`."""
+    return (Path(__file__).parent / file).read_text(encoding="utf-8")

@@ -83,6 +83,13 @@ def arms_short(body: Body) -> Body:
     return body - box((-60.0, -60.0, -90.0), (60.0, 60.0, AXIS_Z - 2.0))
 
 
+def ribs_worn(body: Body) -> Body:
+    """The ribs of both arms down to the cradle's radius."""
+    bore = Manifold.cylinder(60.0, RADIUS, circular_segments=512).rotate((90.0, 0.0, 0.0))
+    arms = box((-60.0, -60.0, AXIS_Z - 30.0), (60.0, 60.0, AXIS_Z))
+    return body - (bore.translate((0.0, 30.0, AXIS_Z)) ^ arms)
+
+
 def strap_hole_wide(body: Body) -> Body:
     hole = Manifold.cylinder(60.0, 2.2, circular_segments=64).rotate((0.0, 72.4398, 0.0))
     return body - hole.translate((0.0, 6.0, AXIS_Z))
@@ -96,7 +103,7 @@ def strap_hole_filled(body: Body) -> Body:
 
 def arm_hollow(body: Body) -> Body:
     """A slot that leaves 0.6 mm of an arm, seen from outside."""
-    return body - box((RADIUS + 0.6, -14.0, AXIS_Z - 2.0), (60.0, -11.0, AXIS_Z + 2.0))
+    return body - box((RADIUS + 0.6, -14.0, AXIS_Z - 1.5), (60.0, -11.0, AXIS_Z + 1.5))
 
 
 def foot_missing(body: Body) -> Body:
@@ -119,8 +126,9 @@ DAMAGES: dict[Damage, set[str]] = {
     rim_higher: {"rim"},
     tails_touch: {"tail_room", "overhang"},
     boss_low: {"bosses"},
-    cradle_wide: {"cradle"},
-    arms_short: {"cradle", "grip"},
+    cradle_wide: {"cradle", "preload"},
+    ribs_worn: {"preload"},
+    arms_short: {"cradle", "grip", "preload"},
     strap_hole_wide: {"strap_width"},
     strap_hole_filled: {"straps", "strap_width"},
     arm_hollow: {"min_wall"},

@@ -159,10 +159,27 @@ def _left_mm(holder: Holder, screw: Fastener, x_mm: float, seat_z_mm: float) -> 
     )
 
 
+def measure_preload(clip: Clip) -> Iterator[Measurement]:
+    """How far each arm's end reaches into the body, which lies in the middle of the cradle: by rays
+    from the body's axis, in several sections."""
+    holder, fit = clip.holder, clip.design.printing.fit_mm
+    turns = np.radians(holder.wrap_deg + np.linspace(-6.0, 3.0, 37))
+    worst = []
+    for side in (-1.0, 1.0):
+        away = np.column_stack([side * np.sin(turns), np.zeros_like(turns), np.cos(turns)])
+        for share in (-0.9, 0.0, 0.9):
+            y = share * holder.outer.y_max_mm
+            start = np.tile((0.0, y, holder.axis_z_mm + holder.clearance_mm), (len(turns), 1))
+            hit, _ = solids.cast(clip.mesh, start, away, _REACH_MM).first(len(turns))
+            worst.append(holder.body_mm / 2 - (float(hit.min()) - fit))
+    yield clip.near("preload", worst, holder.preload_mm, SIZE_MM, "each arm's end into the body")
+
+
 def measure_cradle(clip: Clip) -> Iterator[Measurement]:
     """The cradle's radius by rays from its axis, and how far the arms close behind the body."""
     holder = clip.holder
-    turns = np.radians(np.linspace(-holder.wrap_deg + 2.0, holder.wrap_deg - 2.0, 61))
+    to_rib = holder.wrap_deg - 2 * math.degrees(holder.end_mm[0] / holder.end_mm[1])
+    turns = np.radians(np.linspace(-to_rib, to_rib, 61))
     away = np.column_stack([np.sin(turns), np.zeros_like(turns), np.cos(turns)])
     y = _free_y_mm(holder)
     start = np.tile((0.0, y, holder.axis_z_mm), (len(turns), 1))
@@ -224,5 +241,6 @@ MEASURES: tuple[Measure[Clip], ...] = (
     measure_screws,
     measure_nuts,
     measure_cradle,
+    measure_preload,
     measure_straps,
 )

@@ -27,6 +27,7 @@ _DRAWN = ("numpy", "shapely", "trimesh")
 _SET = ("lxml", "markdown-it-py", "matplotlib", "pillow", "reportlab", "svglib")
 STEPS = (
     Step("mask", "mask.files.mask_files", "fingers", tools=_INK),
+    Step("creasing", "mask.files.creasing_files", tools=_INK),
     Step("slicer", "parts.settings.print_settings"),
     Step("wiring", "docs.wiring.wiring_files"),
     Step("firmware", "firmware.files.firmware_files", tools=("numpy",)),

@@ -140,6 +140,9 @@ class Holder(Strict):
     wrap_deg: float = Field(ge=91, le=130)
     """How far each arm reaches round the body, from the middle of the tray: beyond 90° it clips
     on (degrees)."""
+    preload_mm: float = Field(ge=0, le=3)
+    """How far the body in the cradle bends each arm out: a rib along the arm's end presses on it
+    (mm)."""
     standoff_mm: float = Field(ge=2, le=20)
     """Room under the board for solder tails (mm)."""
     screw: Name

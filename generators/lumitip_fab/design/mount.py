@@ -1,6 +1,7 @@
 """Gripper coupling, closing of the fingers, the printed flange between robot and gripper, and the
 holder of a board."""
 
+import math
 from dataclasses import dataclass
 
 from lumitip_fab.design.making import Letter
@@ -272,6 +273,8 @@ class Holder:
     wall_mm: float
     wrap_deg: float
     """Where the arms end, from the middle of the tray."""
+    preload_mm: float
+    """How far the body, which lies in the middle of the cradle, bends each arm out."""
     holes: tuple[Point, ...]
     """Screws of the board."""
     screw: str
@@ -288,3 +291,25 @@ class Holder:
     """Where the holes through the arms are, from the middle of the tray."""
     strap_y_mm: tuple[float, ...]
     strap_hole_mm: float
+
+    @property
+    def rib_mm(self) -> float:
+        """Height of the rib on the end of each arm, inward from the cradle.
+
+        The body presses into the cradle's middle, by the clearance away from the axis: at the ribs
+        that leaves `clearance * (1 - cos(wrap))` before they touch.
+        """
+        wrap = math.radians(self.wrap_deg)
+        return self.clearance_mm * (1 - math.cos(wrap)) + self.preload_mm
+
+    @property
+    def end_mm(self) -> tuple[float, float]:
+        """Radius of the bar on an arm's end, with the rib, and its distance from the axis."""
+        radius = (self.wall_mm + self.rib_mm) / 2
+        return radius, self.cradle_mm + self.wall_mm - radius
+
+    @property
+    def inward_mm(self) -> float:
+        """Least distance of the arms' ends from the plane through axis and middle of the tray."""
+        radius, middle = self.end_mm
+        return middle * math.sin(math.radians(self.wrap_deg)) - radius

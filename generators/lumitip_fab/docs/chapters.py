@@ -174,7 +174,8 @@ def _wrapped(design: Design, files: Files) -> str:
     )
     creased = f"creased at {mask.soften_c:g} °C, away from the finger, and wrapped"
     how = "The sheet is wrapped" if mask.route == "tpu" else f"The film is {creased}"
-    return _text("wrapped", made=_MADE[mask.route], how=how, notes=_joined(notes))
+    drawing = "" if mask.route == "tpu" else "![A fold, creased on a bar](mask/creasing.svg)\n\n"
+    return _text("wrapped", made=_MADE[mask.route], how=how, drawing=drawing, notes=_joined(notes))
 
 
 def _mounted(design: Design) -> str:

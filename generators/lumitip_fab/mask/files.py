@@ -1,7 +1,10 @@
 """Every file of one finger's mask but its printed sheet, which is a part: pages, drawings, and the
 note on how to make it by its route and wrap the finger with it."""
 
+from xml.sax.saxutils import escape
+
 from lumitip_fab.design import Design, Finger
+from lumitip_fab.design.making import HeatedPart
 from lumitip_fab.mask.artwork import PAPERS_MM, Artwork, artwork_of
 from lumitip_fab.mask.drawings import (
     cut_drawing,
@@ -14,7 +17,7 @@ from lumitip_fab.mask.flaps import BAND_MM, Flap
 from lumitip_fab.mask.outline import FOOT_MM
 from lumitip_fab.mask.pdf import pdf_page, pdf_to_sensor
 from lumitip_fab.pipeline.artefact import Artefact
-from lumitip_fab.text import as_written, passage
+from lumitip_fab.text import as_written, data_file, passage
 
 _TEXTS = "mask/wrapping.md"
 
@@ -70,9 +73,29 @@ def _infrared(design: Design) -> str:
     return passage(_TEXTS, "infrared").format(coupon=piece, other=passage(_TEXTS, f"other_{route}"))
 
 
+def _weakest(design: Design) -> HeatedPart:
+    """The part of a finger that bears the least heat."""
+    return min(design.heat_steps["cure"].parts, key=lambda part: part.limit_c)
+
+
+def creasing_files(design: Design) -> tuple[Artefact, ...]:
+    """The drawing of how a fold is creased with local heat; none of a sheet that is bent cold."""
+    if design.mask.route == "tpu":
+        return ()
+    weakest = _weakest(design)
+    drawing = data_file("mask/creasing.svg").format(
+        soften_c=design.heat_steps["crease"].temperature_c,
+        film="film, printed side down" if design.mask.route == "film" else "film, inside down",
+        part=weakest.name,
+        material=escape(weakest.material),
+        limit_c=weakest.limit_c,
+    )
+    return (Artefact("mask/creasing.svg", drawing.encode(), frame=""),)
+
+
 def _creased(design: Design) -> dict[str, object]:
     """Figures of a film that is creased with heat."""
-    weakest = min(design.heat_steps["cure"].parts, key=lambda part: part.limit_c)
+    weakest = _weakest(design)
     return {
         "crease": passage(_TEXTS, "crease").format(
             soften_c=design.heat_steps["crease"].temperature_c

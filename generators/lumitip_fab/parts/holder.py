@@ -31,6 +31,7 @@ def holder_solid(holder: Holder) -> Solid:
     """
     whole = _tray(holder) + [_arm(holder, side) for side in (-1, 1)]
     whole = whole - _body(holder)
+    whole = whole + [_end(holder, side) for side in (-1, 1)]
     whole = whole + [_boss(holder, at) for at in holder.holes]
     taken = [cutter for at in holder.holes for cutter in _screw(holder, at)]
     taken += [_strap(holder, side, y) for side in (-1, 1) for y in holder.strap_y_mm]
@@ -66,7 +67,7 @@ def _body(holder: Holder) -> Solid:
 
 
 def _arm(holder: Holder, side: int) -> Solid:
-    """Half a ring from the middle of the tray to its end, which is round."""
+    """Half a ring from the middle of the tray to where its end begins."""
     inner, outer = holder.cradle_mm, holder.cradle_mm + holder.wall_mm
     bow = [
         Edge.make_circle(radius, Plane.XY, 90.0 - holder.wrap_deg, 90.0)
@@ -74,12 +75,17 @@ def _arm(holder: Holder, side: int) -> Solid:
     ]
     ends = [Edge.make_line(bow[0] @ t, bow[1] @ t) for t in (0.0, 1.0)]
     ring = prism(Face(Wire([*bow, *ends])), holder.outer.y_min_mm, holder.outer.y_max_mm)
-    turn = math.radians(90.0 - holder.wrap_deg)
-    middle = inner + holder.wall_mm / 2
-    end = (middle * math.cos(turn), middle * math.sin(turn))
-    ring = ring + cylinder(end, holder.wall_mm, holder.outer.y_min_mm, holder.outer.y_max_mm)
     mirrored = ring.mirror(Plane.YZ) if side < 0 else ring
     return placed(mirrored, _at_axis(holder))
+
+
+def _end(holder: Holder, side: int) -> Solid:
+    """The round bar along an arm's end, whose inner side is the rib that presses on the body."""
+    turn = math.radians(90.0 - holder.wrap_deg)
+    radius, middle = holder.end_mm
+    at = (side * middle * math.cos(turn), middle * math.sin(turn))
+    bar = cylinder(at, 2 * radius, holder.outer.y_min_mm, holder.outer.y_max_mm)
+    return placed(bar, _at_axis(holder))
 
 
 def _at_axis(holder: Holder) -> Matrix:

@@ -49,6 +49,7 @@ def derive_holder(
         cradle_mm=radius,
         wall_mm=wall,
         wrap_deg=p.holder.wrap_deg,
+        preload_mm=p.holder.preload_mm,
         holes=of.holes,
         screw=p.holder.screw,
         screw_mm=screw_mm,

@@ -11,6 +11,7 @@ from lumitip_fab.derive.making.fits import refuse_touching
 from lumitip_fab.design import AuxiliaryBoard, Flange, Holder, Outline, Point
 
 MOST_STRAIN = 0.01  # of the arms while they clip on; PETG yields at some 4 %
+MOST_LASTING_STRAIN = 0.005  # of the arms on the body: more creeps away (assumed)
 DRILLED_MM = 0.1  # beyond a screw's thread, of the board's holes, truer than printed ones
 RING_MM = 0.4  # of the board, at least, that a screw's head presses on
 LEAST_GRIP_MM = 0.3  # each arm's end inside the body's widest place
@@ -105,18 +106,20 @@ def refuse_holder(config: Input, of: AuxiliaryBoard, holder: Holder, faults: Dia
         return
     refuse_touching(config, "holder.clearance_mm", p.clearance_mm, faults)
     _refuse_straps(config, holder, faults)
-    printed_mm = holder.cradle_mm - config.parameters.printer.fit_mm  # what is made of it
-    grip = holder.body_mm / 2 - printed_mm * math.sin(math.radians(holder.wrap_deg))
+    made_mm = holder.inward_mm - config.parameters.printer.fit_mm  # as it is printed
+    grip = holder.body_mm / 2 - made_mm
     faults.unless(grip >= LEAST_GRIP_MM, "arms_grip", grip=grip, least_grip_mm=LEAST_GRIP_MM)
     free_deg = holder.wrap_deg - shoulder_deg(holder.outer.x_max_mm, outer)
     length = outer * math.radians(free_deg)
-    strain = 3 * holder.wall_mm * max(grip, 0.0) / (2 * length**2)
+    per_mm = 3 * holder.wall_mm / (2 * length**2)  # a beam that is bent at its end
+    strain, lasting = per_mm * max(grip, 0.0), per_mm * holder.preload_mm
     faults.unless(
         strain <= MOST_STRAIN,
         "arms_strain",
         strain_percent=100 * strain,
         most_strain_percent=100 * MOST_STRAIN,
     )
+    faults.unless(lasting <= MOST_LASTING_STRAIN, "arms_preload", most=MOST_LASTING_STRAIN / per_mm)
     half_x, half_y = holder.boss_mm[0] / 2, holder.boss_mm[2] / 2
     tails = [
         abs(device.y_mm + land.y_mm) - land.height_mm / 2
