@@ -36,6 +36,8 @@ _CENT = 0.0051
 _NUMBERED = 95.0
 """Percent of the boards' lines with a manufacturer and its order number, at least."""
 _FRACTION = 0.01
+_LENGTH = re.compile(r"M[\d.]+ x ([\d.]+) socket head screw$")
+_THREADS = (1.5, 2.5)  # of a bolt in the gripper, its length an even one
 
 
 @dataclass(frozen=True)
@@ -116,15 +118,21 @@ def _fields(path: Path, fab: Fab, fields: tuple[str, ...]) -> list[dict[str, str
 
 
 def _bolts(rows: tuple[Row, ...], design: Design) -> Iterator[Measurement]:
-    """Bolts of the fingers and of the flange, by thread."""
+    """Bolts of the fingers and of the flange, by thread; how far the former go into the gripper."""
     wanted = Counter({design.mount.bolt: 2 * len(design.mount.bolt_u_mm)})
     for flange in design.flanges:
         wanted[flange.bolt] += len(flange.bolts)
     for thread, number in wanted.items():
-        listed = sum(r.quantity for r in rows if r.item.startswith(f"{thread} socket"))
+        of_thread = re.compile(rf"{re.escape(thread)}(?: x [\d.]+)? socket")
+        listed = sum(r.quantity for r in rows if of_thread.match(r.item))
         yield Measurement(
             "bom.bolts", _FILE, listed, number, number, "bolts", f"{thread}, of fingers and flange"
         )
+    lengths = [found[1] for r in rows if (found := _LENGTH.match(r.item))]
+    length = float(lengths[0]) if len(lengths) == 1 else math.nan
+    threads = (length - design.mount.land_mm) / float(design.mount.bolt.removeprefix("M"))
+    note = "threads into the gripper"
+    yield Measurement("bom.bolt_length", _FILE, threads, *_THREADS, "", note)
 
 
 def _read(path: Path) -> tuple[tuple[Row, ...], float, str]:

@@ -40,6 +40,8 @@ class Mount:
     block_back_w_mm: float
     bolt: str
     """Thread of the bolts, like M5."""
+    bolt_length_mm: float
+    """Under their heads: through the land, and far enough into the gripper."""
     bolt_u_mm: tuple[float, ...]
     bolt_w_mm: float
     bolt_hole_mm: float

@@ -57,10 +57,12 @@ def _controller(config: Input, prices: Prices) -> list[Bought]:
 
 
 def _bolts(mount: Mount, prices: Prices) -> list[Bought]:
-    item = f"{mount.bolt} socket head screw"
-    where = f"fingers to gripper; passes {mount.land_mm:g} mm, then into the gripper's thread"
+    item = f"{mount.bolt} x {mount.bolt_length_mm:g} socket head screw"
+    into = mount.bolt_length_mm - mount.land_mm
+    where = f"fingers to gripper, {into:.1f} mm into its thread: measure how deep that is"
     count = 2 * len(mount.bolt_u_mm)
-    return [Bought("fasteners", item, "", "ISO 4762", where, count, prices.each.get(item))]
+    each = prices.each.get(f"{mount.bolt} socket head screw")
+    return [Bought("fasteners", item, "", "ISO 4762", where, count, each)]
 
 
 def _screws(holder: Holder, prices: Prices) -> list[Bought]:

@@ -60,6 +60,12 @@ def screw_length_mm(through_mm: float, nut: FastenerEntry) -> float:
     return 2.0 * math.ceil((through_mm + nut.nut_height_mm) / 2)
 
 
+def bolt_length_mm(through_mm: float, thread_mm: float) -> float:
+    """The shortest even length that goes through a part and 1.5 threads into a gripper, as light
+    metals need (a rule of thumb)."""
+    return 2.0 * math.ceil((through_mm + 1.5 * thread_mm) / 2)
+
+
 def _refuse_hole(
     config: Input, field: str, thread: str, hole_mm: float, faults: Diagnostics
 ) -> None:

@@ -15,6 +15,7 @@ from lumitip_fab.derive.finger.outline import (
 )
 from lumitip_fab.derive.finger.stack import held_by, is_flex
 from lumitip_fab.derive.making.fits import derive_fits
+from lumitip_fab.derive.mount.fasteners import bolt_length_mm
 from lumitip_fab.derive.mount.rules import refuse_block, refuse_place
 from lumitip_fab.design import Closing, Letter, Mould, Mount, Outline, Stack
 
@@ -48,6 +49,9 @@ def derive_mount(config: Input, outline: Outline, plan: Plan, faults: Diagnostic
         block_front_w_mm=front,
         block_back_w_mm=gripper.block_back_w_mm,
         bolt=gripper.bolt,
+        bolt_length_mm=bolt_length_mm(
+            gripper.land_mm, config.catalogue.fasteners[gripper.bolt].thread_mm
+        ),
         bolt_u_mm=_side_by_side(gripper.bolt_spacing_mm) or (0.0,),
         bolt_w_mm=gripper.bolt_w_mm,
         bolt_hole_mm=fits.bolt_hole_mm,
