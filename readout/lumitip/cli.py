@@ -73,7 +73,7 @@ def _parser() -> "ArgumentParser":
     import argparse
     from pathlib import Path
 
-    from lumitip.commands.common import add_commands
+    from lumitip.command_table import add_commands
 
     parser = argparse.ArgumentParser(
         prog="lumitip", description="Read, record and display optical fingertips."

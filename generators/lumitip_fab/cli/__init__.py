@@ -8,7 +8,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from lumitip.commands.common import add_commands
+from lumitip.command_table import add_commands
 from lumitip_fab.system_libraries import libraries_message, missing_libraries
 
 if TYPE_CHECKING:

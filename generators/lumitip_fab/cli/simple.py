@@ -1,4 +1,4 @@
-"""`lumitip-fab init`, `schema` and `channel-map`: the design folder, and what files say."""
+"""`lumitip-fab init`, `schema`, `channel-map` and `slice`: commands of a few lines each."""
 
 import argparse
 import json
@@ -6,7 +6,7 @@ import shutil
 import sys
 from pathlib import Path
 
-from lumitip_fab.cli.screen import FAILED, OUT, REFUSED
+from lumitip_fab.cli.screen import ERR, FAILED, OUT, REFUSED
 
 
 def init(options: argparse.Namespace) -> int:
@@ -52,3 +52,25 @@ def channel_map(options: argparse.Namespace) -> int:
     for doubt in found.doubts:
         print(doubt, file=sys.stderr)
     return FAILED if found.contradicted else 0
+
+
+def slice_parts(options: argparse.Namespace) -> int:
+    """Slice the printed parts, with progress."""
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
+
+    from lumitip_fab.parts import slicing
+
+    columns = (TextColumn("{task.description:<32}"), BarColumn(), MofNCompleteColumn())
+    silent = options.quiet or options.json
+    with Progress(*columns, console=ERR, disable=silent, transient=True) as bar:
+        shown = bar.add_task("slicing", total=None)
+
+        def progress(name: str, done: int, total: int) -> None:
+            bar.update(shown, description=name, completed=done, total=total)
+
+        parts = slicing.slice_parts(options.out, options.gcode, progress)
+    if options.json:
+        print(slicing.as_json(parts))
+    elif not options.quiet:
+        slicing.print_table(parts, OUT)
+    return 0

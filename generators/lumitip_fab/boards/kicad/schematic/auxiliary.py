@@ -9,7 +9,7 @@ from lumitip_fab.boards.kicad.schematic.contact_blocks import draw_sockets, draw
 from lumitip_fab.boards.kicad.schematic.draft import REACH_MM, Draft, net_of, nets_of, other_net
 from lumitip_fab.boards.kicad.schematic.module_block import draw_module
 from lumitip_fab.boards.kicad.schematic.shapes import pin_names, pin_type
-from lumitip_fab.boards.kicad.schematic.symbols import TWO_TERMINALS, test_point
+from lumitip_fab.boards.kicad.schematic.symbols import TWO_TERMINALS, drawn
 from lumitip_fab.boards.model import GROUND, SUPPLY, Placement
 from lumitip_fab.design import Component
 
@@ -184,7 +184,7 @@ def draw_probes(draft: Draft, parts: Sequence[Component]) -> None:
     """Test points in columns, each at the end of its net."""
     for i, part in enumerate(parts):
         x, y = i // _ROWS * _COLUMN_MM, i % _ROWS * _ROW_MM
-        draft.place(part, "TestPoint", test_point(), (x, y), ref_at=(3.048, -3.302))
+        draft.place(part, "TestPoint", drawn("TestPoint"), (x, y), ref_at=(3.048, -3.302))
         draft.wire((x, y), (x + REACH_MM, y))
         ((_, net),) = part.nets
         draft.end(net, (x + REACH_MM, y), 1)

@@ -77,7 +77,7 @@ def string_blocks(
     """A block for each string of LEDs with its resistor or its current source."""
     for number, string in enumerate(wiring.strings, start=1):
         width_mm = _STRING_START_MM + len(string) * _LED_MM + 20.32
-        height_mm, shapes = _STRING_MM, {"LED": symbols.led(marked)}
+        height_mm, shapes = _STRING_MM, {"LED": symbols.polar("Emitter", marked)}
         if wiring.set_ohm:
             width_mm, height_mm = width_mm + SOURCE_MM, height_mm + 10.16
             shapes[_SOURCE] = source_symbol(parts[f"U{number}"])
@@ -133,7 +133,7 @@ def switch_block(transistor: Component, pull_down: Component) -> Block:
     def draw(sheet: Sheet, at: Point) -> None:
         _draw_switch(transistor, pull_down, sheet, at)
 
-    return Block(_WIDE_MM, _TALL_MM, draw, {_SWITCH: shapes.switch(transistor)})
+    return Block(_WIDE_MM, _TALL_MM, draw, {_SWITCH: shapes.mosfet(transistor, "N")})
 
 
 def _draw_switch(transistor: Component, pull_down: Component, sheet: Sheet, at: Point) -> None:

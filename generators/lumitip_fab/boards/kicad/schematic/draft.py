@@ -109,8 +109,7 @@ class Draft:
         self.sheet.texts.append((words, at, height_mm))
 
     def _supply_shape(self, net: str) -> None:
-        known = symbols.power_symbols()
-        self.shapes[net] = known[net] if net in known else symbols.supply(net)
+        self.shapes[net] = symbols.supply(net)
 
 
 def other_net(part: Component, net: str) -> str:

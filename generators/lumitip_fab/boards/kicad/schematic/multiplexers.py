@@ -24,7 +24,7 @@ def multiplexer_blocks(parts: Parts, supply: str, packages: Packages) -> Iterato
     """A block for each multiplexer with its detectors, its pull-ups and its capacitor."""
     mux = packages.multiplexer
     shapes = {
-        "Phototransistor": symbols.phototransistor(packages.photodetector.marked),
+        "Phototransistor": symbols.polar("Phototransistor", packages.photodetector.marked),
         "Multiplexer": _symbol(mux),
         "R_Array": _array(packages.array.resistors),
     }

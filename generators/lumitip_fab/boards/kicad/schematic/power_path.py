@@ -203,7 +203,7 @@ def _transistor(draft: Draft, part: Component, rail: Rail, gate: str) -> Point:
     rail.on()
     x, y = rail.end()
     middle = x + 5.08, y + STEP_MM
-    shape = shapes.lying(shapes.transistor(part))
+    shape = shapes.lying(shapes.mosfet(part, "P"))
     assert isinstance(shape, tuple)
     draft.place(part, f"Transistor_{part.ref}", shape, middle, 0, (0.0, -8.89), (0.0, -6.6))
     rail.skip(10.16)

@@ -10,7 +10,7 @@ from lumitip_fab.boards.kicad.schematic.symbols import (
     PITCH_MM,
     box,
     circle,
-    line,
+    drawn,
     pin,
     symbol,
 )
@@ -136,47 +136,11 @@ def _nodes(node: Node, key: str) -> Iterator[Node]:
                 yield from _nodes(value, key)
 
 
-def transistor(part: Component) -> Node:
-    """A P-channel MOSFET: gate to the left, source above, drain below, its diode to the right."""
-    body = [
-        line((0.127, 0), (1.524, 0), (1.524, 1.524)),  # the body is at the source
-        line((0.635, 0.381), (1.27, 0), (0.635, -0.381), (0.635, 0.381)),
-    ]
-    return _mosfet(part, body, ("S", "D"))
-
-
-def switch(part: Component) -> Node:
-    """An N-channel MOSFET: gate to the left, drain above, source below, its diode to the right."""
-    body = [
-        line((0.127, 0), (1.524, 0), (1.524, -1.524)),  # the body is at the source
-        line((1.27, 0.381), (0.635, 0), (1.27, -0.381), (1.27, 0.381)),
-    ]
-    return _mosfet(part, body, ("D", "S"))
-
-
-def _mosfet(part: Component, body: list[Node], ends: tuple[str, str]) -> Node:
-    """A MOSFET between two leads, the upper one first; its diode conducts upwards."""
-    number = {name: land for (land, _), name in zip(part.nets, part.pins, strict=True)}
-    upper, lower = ends
-    return symbol(
-        "Q",
-        [
-            line((-2.54, 0), (-0.508, 0)),
-            line((-0.508, 1.905), (-0.508, -1.905)),
-            *(line((0.127, y + 0.508), (0.127, y - 0.508)) for y in (1.524, 0, -1.524)),
-            line((0.127, 1.524), (2.54, 1.524), (2.54, 2.54)),
-            line((0.127, -1.524), (2.54, -1.524), (2.54, -2.54)),
-            *body,
-            line((2.54, 1.524), (3.556, 1.524), (3.556, -1.524), (2.54, -1.524)),
-            line((3.048, 0.381), (4.064, 0.381)),
-            line((3.556, 0.381), (3.048, -0.381), (4.064, -0.381), (3.556, 0.381)),
-        ],
-        [
-            pin(number["G"], -5.08, 0, 0, PIN_MM, "G", "input"),
-            pin(number[upper], 2.54, 5.08, 270, PIN_MM, upper),
-            pin(number[lower], 2.54, -5.08, 90, PIN_MM, lower),
-        ],
-    )
+def mosfet(part: Component, channel: str) -> Node:
+    """A MOSFET with a `"P"` channel, its source above its drain, or an `"N"` channel, its drain
+    above its source: gate to the left, its diode to the right."""
+    lands = {name: land for (land, _), name in zip(part.nets, part.pins, strict=True)}
+    return drawn(f"{channel}_MOSFET", **lands)
 
 
 _TYPES = {

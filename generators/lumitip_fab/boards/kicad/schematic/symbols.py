@@ -1,126 +1,84 @@
-"""Symbols of the schematics, drawn here so that no library is needed. y up, in mm."""
+"""Symbols of the schematics: those of `symbols.kicad_sym`, so that no library of KiCad is needed,
+and what is drawn for one part. y up, in mm."""
 
-import math
+from functools import lru_cache
+from pathlib import Path
 
+import sexpdata
+
+from lumitip_fab.boards.kicad.schematic.template import as_node
 from lumitip_fab.boards.kicad.sexpr import Node, Quoted, Value
-from lumitip_fab.design import Point
+from lumitip_fab.boards.model import GROUND
 
 LIBRARY = "lumitip"
 GRID_MM = 1.27
 PITCH_MM = 2.54
 """From pin to pin of contacts and chips."""
 PIN_MM = 2.54
-_TURNS = 4  # of a coil
 _FONT = ("effects", ("font", ("size", 1.27, 1.27)))
 HIDDEN: Node = ("effects", ("font", ("size", 1.27, 1.27)), "hide")
 
 
-TWO_TERMINALS = (
-    "resistor",
-    "capacitor",
-    "fuse",
-    "inductor",
-    "crystal",
-    "tvs diode",
-    "indicator",
-)
-"""Kinds of parts that are drawn upright, the first terminal at the top, or turned."""
-_BAR = (-1.778, 0.762), (-1.27, 1.27), (1.27, 1.27), (1.778, 1.778)
-_TRIANGLE = (-1.27, -1.27), (1.27, -1.27), (0, 1.27), (-1.27, -1.27)
+TWO_TERMINALS = {
+    "resistor": "R",
+    "capacitor": "C",
+    "fuse": "F",
+    "inductor": "L",
+    "crystal": "Y",
+    "tvs diode": "D",
+    "indicator": "LED",
+}
+"""Symbols of parts that are drawn upright, the first terminal at the top, or turned."""
 
 
 def two_terminals(kind: str) -> tuple[str, Node]:
     """Name and symbol of a part of these kinds."""
-    name, body, half_mm = {
-        "resistor": ("R", [box(-1.016, -2.54, 1.016, 2.54)], 2.54),
-        "capacitor": ("C", _plates(2.032, 0.762), 0.762),
-        "fuse": ("F", [box(-0.762, -2.54, 0.762, 2.54), line((0, 2.54), (0, -2.54))], 2.54),
-        "inductor": ("L", [_coil()], 2.54),
-        "tvs diode": ("D", [line(*_BAR), line(*_TRIANGLE)], 1.27),
-        "indicator": ("LED", [*_lamp(), *_rays((1.5, -0.6), away=True)], 1.27),
-        "crystal": ("Y", [box(-1.27, -0.635, 1.27, 0.635), *_plates(1.27, 1.27)], 1.27),
-    }[kind]
-    reach = 3.81 - half_mm
-    pins = [pin("1", 0, 3.81, 270, reach), pin("2", 0, -3.81, 90, reach)]
-    return name, symbol("D" if kind == "indicator" else name, body, pins)
+    return TWO_TERMINALS[kind], drawn(TWO_TERMINALS[kind])
 
 
 def hand_drawn() -> dict[str, Node]:
     """The symbols of a board whose supplies are drawn as symbols, by name."""
+    return {name: drawn(name) for name in ("R", "C", "TestPoint", "PWR_FLAG", GROUND)}
+
+
+def supply(net: str) -> Node:
+    """The symbol that names a net: of ground, of the flag of a supply from outside, or others."""
+    return drawn(net) if net in ("PWR_FLAG", GROUND) else drawn("SUPPLY", NET=net)
+
+
+def polar(name: str, marked: str) -> Node:
+    """The symbol of an LED or a phototransistor, whose marked terminal is the first."""
+    first = {"anode": "AK", "cathode": "KA", "collector": "CE", "emitter": "EC"}[marked]
+    return drawn(name, **dict(zip(first, "12", strict=True)))
+
+
+def drawn(name: str, **words: str) -> Node:
+    """A symbol of the file, with the words that take the place of `{KEY}` there."""
+    return tuple(_filled(value, words) for value in _library()[name])
+
+
+@lru_cache
+def _library() -> dict[str, Node]:
+    """The symbols of the file by name; the drawings in them are without it, see `named`."""
+    file = Path(__file__).with_name("symbols.kicad_sym")
+    whole = as_node(sexpdata.loads(file.read_text(encoding="utf-8")))
+    shapes = (value for value in whole if isinstance(value, tuple) and value[0] == "symbol")
     return {
-        **dict(map(two_terminals, ("resistor", "capacitor"))),
-        "TestPoint": test_point(),
-        **power_symbols(),
+        str(name): ("symbol", *(_plain(str(name), value) for value in parts))
+        for _, name, *parts in shapes
     }
 
 
-def test_point() -> Node:
-    """A test point above its pin."""
-    return symbol("TP", [circle(0, 3.302, 0.762)], [pin("1", 0, 0, 90, 2.54)])
+def _plain(name: str, value: Value) -> Value:
+    if isinstance(value, tuple) and value[0] == "symbol":
+        return ("symbol", str(value[1]).removeprefix(f"{name}_"), *value[2:])
+    return value
 
 
-def power_symbols() -> dict[str, Node]:
-    """The flag of a supply from outside, and ground, by name."""
-    return {
-        "PWR_FLAG": _power(
-            "PWR_FLAG",
-            [
-                line((0, 0), (0, 1.27)),
-                line((0, 1.27), (-1.016, 1.905), (0, 2.54), (1.016, 1.905), (0, 1.27)),
-            ],
-            "power_out",
-            90,
-        ),
-        "GND": _power(
-            "GND",
-            [
-                line((0, 0), (0, -1.27)),
-                line((-1.27, -1.27), (1.27, -1.27), (0, -2.54), (-1.27, -1.27)),
-            ],
-            "power_in",
-            270,
-        ),
-    }
-
-
-def supply(name: str) -> Node:
-    """The symbol of a supply, which names its net."""
-    return _power(
-        name,
-        [line((0, 0), (0, 2.54)), line((-0.762, 1.27), (0, 2.54), (0.762, 1.27))],
-        "power_in",
-        90,
-    )
-
-
-def led(marked: str) -> Node:
-    """An LED, its anode to the left."""
-    anode, cathode = ("1", "2") if marked == "anode" else ("2", "1")
-    body = [
-        line((-1.27, 1.27), (-1.27, -1.27), (1.27, 0), (-1.27, 1.27)),
-        line((1.27, 1.27), (1.27, -1.27)),
-        *_rays((-0.5, 1.6), away=True),
-    ]
-    pins = [pin(anode, -3.81, 0, 0, 2.54, "A"), pin(cathode, 3.81, 0, 180, 2.54, "K")]
-    return symbol("D", body, pins)
-
-
-def phototransistor(marked: str) -> Node:
-    """A phototransistor, its emitter to the left and its open collector to the right."""
-    collector, emitter = ("1", "2") if marked == "collector" else ("2", "1")
-    body = [
-        circle(0, 0.635, 2.54),
-        line((-1.27, 1.27), (1.27, 1.27)),
-        line((0.635, 1.27), (1.905, 0), (2.54, 0)),
-        line((-0.635, 1.27), (-1.905, 0), (-2.54, 0)),
-        line((-1.27, 0.0), (-1.905, 0), (-1.905, 0.635)),
-        *_rays((-1.4, 4.9), away=False),
-    ]
-    pins = [
-        pin(emitter, -5.08, 0, 0, 2.54, "E"),
-        pin(collector, 5.08, 0, 180, 2.54, "C", "open_collector"),
-    ]
-    return symbol("Q", body, pins)
+def _filled(value: Value, words: dict[str, str]) -> Value:
+    if isinstance(value, tuple):
+        return tuple(_filled(inner, words) for inner in value)
+    return Quoted(value.format_map(words)) if isinstance(value, Quoted) else value
 
 
 def contacts(numbers: tuple[str, ...], pitch_mm: float) -> Node:
@@ -162,19 +120,6 @@ def symbol(prefix: str, body: list[Node], pins: list[Node], shown: bool = False)
         *_frame(prefix),
         ("symbol", "0_1", *body),
         ("symbol", "1_1", *pins),
-    )
-
-
-def _power(net: str, body: list[Node], kind: str, angle: int) -> Node:
-    end = pin("1", 0, 0, angle, 0, net, kind)
-    return (
-        "symbol",
-        ("power",),
-        ("pin_numbers", "hide"),
-        ("pin_names", ("offset", 0), "hide"),
-        *_frame("#PWR"),
-        ("symbol", "0_1", *body),
-        ("symbol", "1_1", end),
     )
 
 
@@ -227,11 +172,6 @@ def _stroke(fill: str = "none") -> tuple[Node, Node]:
     )
 
 
-def line(*points: Point) -> Node:
-    """A line along some points."""
-    return ("polyline", ("pts", *(("xy", *p) for p in points)), *_stroke())
-
-
 def box(x0: float, y0: float, x1: float, y1: float, fill: str = "none") -> Node:
     """A rectangle between two corners."""
     return ("rectangle", ("start", x0, y0), ("end", x1, y1), *_stroke(fill))
@@ -240,40 +180,3 @@ def box(x0: float, y0: float, x1: float, y1: float, fill: str = "none") -> Node:
 def circle(x: float, y: float, radius: float) -> Node:
     """A circle round a place."""
     return ("circle", ("center", x, y), ("radius", radius), *_stroke())
-
-
-def _rays(start: Point, away: bool) -> list[Node]:
-    """Two short arrows of light, from a place up to the right or down to the right."""
-    found = []
-    turn = math.radians(60 if away else -60)
-    cos, sin = math.cos(turn), math.sin(turn)
-    for shift in (0.0, 1.1):
-        x, y = start[0] + shift, start[1]
-        tip = (x + 1.6 * cos, y + 1.6 * sin)
-        found.append(line((x, y), tip))
-        for side in (150, -150):
-            a = turn + math.radians(side)
-            found.append(line(tip, (tip[0] + 0.6 * math.cos(a), tip[1] + 0.6 * math.sin(a))))
-    return found
-
-
-def _lamp() -> list[Node]:
-    """A diode, its cathode at the top."""
-    return [line((-1.27, 1.27), (1.27, 1.27)), line(*_TRIANGLE)]
-
-
-def _plates(half_mm: float, apart_mm: float) -> list[Node]:
-    return [line((-half_mm, y), (half_mm, y)) for y in (apart_mm, -apart_mm)]
-
-
-def _coil() -> Node:
-    """Half circles, one below the other."""
-    radius = 2.54 / _TURNS
-    angles = [math.radians(step * 15) for step in range(13)]
-    return line(
-        *(
-            (radius * math.sin(a), 2.54 - (2 * turn + 1) * radius + radius * math.cos(a))
-            for turn in range(_TURNS)
-            for a in angles
-        )
-    )

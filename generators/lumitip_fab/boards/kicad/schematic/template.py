@@ -54,20 +54,20 @@ class Template:
         return (
             "kicad_sch",
             *(
-                (*_node(thing), *library) if thing[0].value() == "lib_symbols" else _node(thing)
+                (*as_node(thing), *library) if thing[0].value() == "lib_symbols" else as_node(thing)
                 for thing in things
             ),
         )
 
 
-def _node(tree: list[Any]) -> Node:
+def as_node(tree: list[Any]) -> Node:
     """A tree of kicad-skip, in which `None` stands where something was deleted."""
     return tuple(_value(value) for value in tree if value is not None)
 
 
 def _value(value: Any) -> Value:
     if isinstance(value, list):
-        return _node(value)
+        return as_node(value)
     if isinstance(value, Symbol) and re.fullmatch(r"[\w-]+", str(value)):
         return str(value)
     if type(value) is str:
