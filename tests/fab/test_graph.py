@@ -2,6 +2,7 @@
 
 import ast
 import json
+import re
 import shutil
 from collections.abc import Callable
 from importlib import import_module
@@ -67,7 +68,13 @@ def test_controller_name_touches_the_firmware_alone(keys: Keys) -> None:
 
 
 def test_mask_hole_touches_the_mask_and_what_reads_the_layout(keys: Keys) -> None:
-    assert changed(keys(), keys("[mask]\nhole_mm = 2.0\n")) == {"mask", "mask_sheet", "firmware"}
+    assert changed(keys(), keys("[mask]\nhole_mm = 2.0\n")) == {
+        "mask",
+        "mask_sheet",
+        "coupon",
+        "creasing",
+        "firmware",
+    }
 
 
 def test_waste_of_silicone_touches_the_mould_and_what_shares_its_figures(keys: Keys) -> None:
@@ -221,6 +228,9 @@ def test_a_key_follows_what_was_read_and_nothing_else(design_dir: Path) -> None:
     assert Dependencies(("tip",), ("a/*",)).key(hashes, {"a/b": "1", "c": "1"}, "code") != before
 
 
+_MASK = re.compile(r"mask/(emitter|receiver)_(?!sheet)")
+
+
 def test_only_the_steps_asked_for_run(design_dir: Path, damaged: Path) -> None:
     before = manifest.read(damaged)
     file = design_dir / "presets" / "dense.toml"
@@ -233,7 +243,7 @@ def test_only_the_steps_asked_for_run(design_dir: Path, damaged: Path) -> None:
     assert after.tasks.keys() == before.tasks.keys()
     same = {path for path in before.files if after.files[path].sha256 == before.files[path].sha256}
     assert before.files.keys() - same == {
-        *(path for path in before.files if path.startswith("mask/") and "_sheet" not in path),
+        *(path for path in before.files if _MASK.match(path)),
         "bom.csv",
         *("design.json", "layout.json", "resolved.toml"),
     }
@@ -248,6 +258,8 @@ def test_only_the_steps_asked_for_run(design_dir: Path, damaged: Path) -> None:
 def test_a_step_that_is_not_there_is_named_with_those_that_are(
     design_dir: Path, tmp_path: Path
 ) -> None:
-    with pytest.raises(OutputError, match=r"no step is called colour; the steps are mask, slicer"):
+    with pytest.raises(
+        OutputError, match=r"no step is called colour; the steps are mask, creasing"
+    ):
         build(design_dir / "fingertip.toml", tmp_path / "out", only=["mask", "colour"])
     assert not (tmp_path / "out").exists()

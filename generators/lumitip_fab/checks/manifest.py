@@ -31,7 +31,8 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     note = ", ".join(changed[:3]) or f"of {len(recorded.files)}"
     yield Measurement("manifest.files", _FILE, len(changed), 0, 0, "missing or changed", note)
     for path, entry in sorted(recorded.files.items()):
-        if path.endswith(".stl") and path.startswith(("backing/", "interface/", "mould/", "mask/")):
+        placed = path.startswith(("backing/", "interface/", "mould/", "mask/"))
+        if path.endswith(".stl") and placed and entry.frame:
             yield _frame(outputs, path, np.array(entry.to_sensor), design)
 
 
@@ -43,9 +44,6 @@ def _frame(outputs: Path, path: str, matrix: Matrix, design: Design) -> Measurem
     except OutputError as error:
         return unreadable("manifest.frames", name, str(error))
     low, high = corners.min(axis=0), corners.max(axis=0)
-    if path.startswith("fit/"):  # a part of no finger: its frame is the bed's
-        off = float(np.abs(matrix - np.eye(4)).max())
-        return Measurement("manifest.frames", name, off, 0, _PLACE_MM, "mm", "from the bed's frame")
     apart = [abs(low[0] + high[0]), *_apart(path, low, high, design)]
     turn = matrix[:3, :3]
     apart.append(float(np.abs(turn @ turn.T - np.eye(3)).max()) + abs(np.linalg.det(turn) - 1))

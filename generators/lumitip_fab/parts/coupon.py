@@ -4,7 +4,6 @@ opaque (`lumitip doctor --opacity`). A film that is cut needs no file: its note 
 import trimesh
 
 from lumitip_fab.design import Design
-from lumitip_fab.design.frames import sheet_bed_to_sensor
 from lumitip_fab.mask.artwork import PAPERS_MM
 from lumitip_fab.mask.pdf import coupon_page
 from lumitip_fab.parts.export import mesh_stl, three_mf, volume_mm3, welded
@@ -13,8 +12,8 @@ from lumitip_fab.pipeline.artefact import Artefact
 
 def coupon_files(design: Design) -> tuple[Artefact, ...]:
     """Pages for a printed film; STL and 3MF for a printed sheet."""
-    mask, bed = design.mask, sheet_bed_to_sensor()
-    left, low, right, high = mask.coupon.mirrored().bounds_mm
+    mask = design.mask
+    left, low, right, high = mask.coupon.bounds_mm
     corners = [[left, low, 0.0], [right, high, mask.sheet.thickness_mm]]
     block = trimesh.creation.box(bounds=corners)
     surface = welded(block.vertices, block.faces)
@@ -25,6 +24,6 @@ def coupon_files(design: Design) -> tuple[Artefact, ...]:
             Artefact(f"mask/coupon_{paper}.pdf", coupon_page(mask, design.title, paper), frame="")
             for paper in PAPERS_MM
         ),
-        Artefact("mask/coupon.stl", mesh_stl(surface), bed, facts=facts),
-        Artefact("mask/coupon.3mf", three_mf(surface, "coupon", words), bed),
+        Artefact("mask/coupon.stl", mesh_stl(surface), frame="", facts=facts),
+        Artefact("mask/coupon.3mf", three_mf(surface, "coupon", words), frame=""),
     )
