@@ -7,21 +7,12 @@ from lumitip_fab.boards.kicad.footprint import LIBRARY, hole_library_file, hole_
 from lumitip_fab.boards.kicad.pcb import board_file
 from lumitip_fab.boards.kicad.sexpr import Quoted, written
 from lumitip_fab.boards.model import LEAST_SPOKES, BoardModel, NetClass, Placement
+from lumitip_fab.text import table_of
 
 HOLE_TO_HOLE_MM = 0.25
 """Wall between two drills."""
 _LEAST_TEXT_MM, _LEAST_STROKE_MM = 0.6, 0.1
-_ERRORS = (
-    "endpoint_off_grid",
-    "footprint_link_issues",
-    "four_way_junction",
-    "lib_symbol_issues",
-    "lib_symbol_mismatch",
-    "multiple_net_names",
-    "pin_to_pin",
-    "unconnected_wire_endpoint",
-)
-"""Rules of schematics that KiCad by itself only warns of, or leaves out."""
+_TABLES = "boards/kicad/tables.toml"
 
 
 def project_file(board: Placement, name: str) -> bytes:
@@ -33,7 +24,7 @@ def project_file(board: Placement, name: str) -> bytes:
     """
     settings = {
         "board": {"design_settings": {"rules": _rules(board)}},
-        "erc": {"rule_severities": dict.fromkeys(_ERRORS, "error")},
+        "erc": {"rule_severities": dict.fromkeys(table_of(_TABLES)["errors"], "error")},
         "meta": {"filename": name, "version": 1},
         "net_settings": {
             "classes": _classes(board),
@@ -96,16 +87,7 @@ def _class(name: str, rules: NetClass, nets: list[str]) -> dict[str, Any]:
         "track_width": rules.track_mm,
         "via_diameter": rules.via_mm,
         "via_drill": rules.via_drill_mm,
-        "microvia_diameter": 0.3,
-        "microvia_drill": 0.1,
-        "diff_pair_gap": 0.25,
-        "diff_pair_via_gap": 0.25,
-        "diff_pair_width": 0.2,
-        "bus_width": 12,
-        "wire_width": 6,
-        "line_style": 0,
-        "pcb_color": "rgba(0, 0, 0, 0.000)",
-        "schematic_color": "rgba(0, 0, 0, 0.000)",
+        **table_of(_TABLES)["net_class"],
         "nets": nets,  # read by KiCad 6; later ones read the patterns
     }
 
