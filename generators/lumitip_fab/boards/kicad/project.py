@@ -4,8 +4,8 @@ import json
 from typing import Any
 
 from lumitip_fab.boards.kicad.footprint import LIBRARY, hole_library_file, hole_name, library_file
+from lumitip_fab.boards.kicad.nodes import library_table
 from lumitip_fab.boards.kicad.pcb import board_file
-from lumitip_fab.boards.kicad.sexpr import Quoted, written
 from lumitip_fab.boards.model import LEAST_SPOKES, BoardModel, NetClass, Placement
 from lumitip_fab.text import table_of
 
@@ -35,20 +35,6 @@ def project_file(board: Placement, name: str) -> bytes:
         },
     }
     return (json.dumps(settings, indent=2) + "\n").encode()
-
-
-def library_table() -> bytes:
-    """The `fp-lib-table` that finds the board's footprints beside it."""
-    folder = Quoted("${KIPRJMOD}/" + f"{LIBRARY}.pretty")
-    entry = (
-        "lib",
-        ("name", Quoted(LIBRARY)),
-        ("type", Quoted("KiCad")),
-        ("uri", folder),
-        ("options", Quoted("")),
-        ("descr", Quoted("Footprints of this board")),
-    )
-    return written(("fp_lib_table", entry)).encode()
 
 
 def _rules(board: Placement) -> dict[str, Any]:
@@ -107,6 +93,8 @@ def project_files(model: BoardModel, thickness_mm: float) -> dict[str, bytes]:
     return {
         f"{board.name}.kicad_pcb": board_file(model, thickness_mm),
         f"{board.name}.kicad_pro": project_file(board, f"{board.name}.kicad_pro"),
-        "fp-lib-table": library_table(),
+        "fp-lib-table": library_table(
+            "fp", LIBRARY, f"{LIBRARY}.pretty", "Footprints of this board"
+        ).encode(),
         **{f"{LIBRARY}.pretty/{name}.kicad_mod": data for name, data in mods.items()},
     }
