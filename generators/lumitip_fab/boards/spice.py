@@ -9,7 +9,7 @@ from lumitip_fab.boards.spice_channel import STEPS, channel, corners, detectors,
 from lumitip_fab.design import AuxiliaryBoard, Component, Design, Finger, Flange
 from lumitip_fab.design.electrical import PlugIn, Regulated
 from lumitip_fab.pipeline.artefact import Artefact
-from lumitip_fab.text import coded_ohm
+from lumitip_fab.text import coded_ohm, passage
 
 _TEMPERATURE_C = 26.85  # 300 K, as in the closed forms
 
@@ -95,24 +95,12 @@ def _measured(auxiliary: AuxiliaryBoard, regulated: Regulated) -> Iterator[str]:
     end_us = 1e3 * (regulated.soft_start_ms + _SETTLE_MS)
     step_ns = _STEP_SHARE * 1e6 / regulated.switching_khz
     window = f"from={end_us - _WINDOW_US - 1:g}u to={end_us - 1:g}u"
-    yield ".options reltol=1e-4 trtol=1"
-    yield from (
-        ".control",
-        f"save v({output}) i(L1)",
-        f"tran {step_ns:.3f}n {end_us:g}u 0 {step_ns:.3f}n uic",
-        f"meas tran mean_v avg v({output}) {window}",
-        f"meas tran high_v max v({output}) {window}",
-        f"meas tran low_v min v({output}) {window}",
-        f"meas tran high_a max i(L1) {window}",
-        f"meas tran low_a min i(L1) {window}",
-        f"meas tran top_v max v({output})",
-        "meas tran peak_a max i(L1)",
-        f"meas tran rise_s when v({output})={0.95 * regulated.output_v:g} rise=1",
-        "let ripple_mv = 1000*(high_v - low_v)",
-        "let ripple_a = high_a - low_a",
-        "let start_ms = 1000*rise_s",
-        "print mean_v ripple_mv ripple_a top_v peak_a start_ms",
-        ".endc",
+    yield passage("boards/spice.txt", "regulated").format(
+        output=output,
+        step_ns=step_ns,
+        end_us=end_us,
+        window=window,
+        high_v=0.95 * regulated.output_v,
     )
 
 
@@ -201,25 +189,11 @@ def _surge(board: AuxiliaryBoard, plug_in: PlugIn) -> Iterator[str]:
     yield ".options reltol=1e-4"
     yield ".control"
     for name, cable_uh in zip(("short", "long"), plug_in.cable_uh, strict=True):
-        yield from (
-            f"alter Lcable = {cable_uh:g}u",
-            run,
-            f"meas tran input_v_{name} max v({behind})",
-            f"meas tran supply_v_{name} max v({supply})",
-            f"meas tran peak_a_{name} max i(Lcable)",
-            "let square = i(Lcable)*i(Lcable)",
-            f"meas tran surge_{name} integ square from=0 to={_END_US:g}u",
-            f"let surge_ua2s_{name} = 1e6*surge_{name}",
-            f"print input_v_{name} supply_v_{name} peak_a_{name} surge_ua2s_{name}",
+        yield passage("boards/spice.txt", "cable").format(
+            name=name, cable_uh=cable_uh, run=run, behind=behind, supply=supply, end_us=_END_US
         )
-    yield from (
-        f"alter @Vlive[pwl] = [ 0 0 1n {-plug_in.supply_v:g} ]",
-        run,
-        f"meas tran reversed_v min v({supply})",
-        f"meas tran left_a avg i(Lcable) from={_END_US / 2:g}u to={_END_US:g}u",
-        "let reversed_ma = 1000*left_a",
-        "print reversed_v reversed_ma",
-        ".endc",
+    yield passage("boards/spice.txt", "reversed").format(
+        supply_v=-plug_in.supply_v, run=run, supply=supply, half_us=_END_US / 2, end_us=_END_US
     )
 
 

@@ -14,7 +14,7 @@ from lumitip_fab.checks.drawings import measure_exploded
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.readers.scene import Node, Scene, read_scene
 from lumitip_fab.checks.readers.solids import Vectors
-from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip_fab.checks.result import Measurement, Subject, unreadable
 from lumitip_fab.design import Design, Finger
 from lumitip_fab.design.frames import applied, mount_to_sensor, translation
 from lumitip_fab.errors import OutputError
@@ -44,6 +44,7 @@ OPENING_MM = 0.02
 STROKE_MM = 0.05
 SHARED_MM3 = 0.05
 _FILE = "assembly/assembly.glb"
+_GLB = Subject("assembly", _FILE)
 _STEP = "assembly/assembly.step"
 _STEP_END = "END-ISO-10303-21;"
 _FLAT = 0.9  # of the face's own normal: leaves out taper and rounding
@@ -110,24 +111,9 @@ def _leans(scene: Scene, design: Design) -> Iterator[Measurement]:
     tilt = design.mount.tilt_deg
     leans = [_lean_deg(scene.nodes[f"{finger.name}.film"]) for finger in design.fingers]
     for finger, lean in zip(design.fingers, leans, strict=True):
-        yield Measurement(
-            "assembly.lean",
-            f"{_FILE}: {finger.name}",
-            lean,
-            tilt - LEAN_DEG,
-            tilt + LEAN_DEG,
-            "deg",
-            "tip inward",
-        )
-    yield Measurement(
-        "assembly.skew",
-        _FILE,
-        sum(leans),
-        2 * (tilt - LEAN_DEG),
-        2 * (tilt + LEAN_DEG),
-        "deg",
-        "between the axes of LED and photodetector",
-    )
+        yield _GLB.near("lean", lean, tilt, LEAN_DEG, "tip inward", "deg", finger.name)
+    note = "between the axes of LED and photodetector"
+    yield _GLB.near("skew", sum(leans), 2 * tilt, 2 * LEAN_DEG, note, "deg")
 
 
 def _lean_deg(film: Node) -> float:
@@ -147,15 +133,9 @@ def _contacts(scene: Scene, design: Design) -> Iterator[Measurement]:
         reach = _reach_mm(film, finger)
         touching = film.points_mm[reach > reach.max() - _TOUCH_MM]
         place = touching[touching[:, 1].argmax()]  # of a whole line or face, where it begins
-        yield Measurement(
-            "assembly.first_contact",
-            f"{_FILE}: {finger.name}",
-            float(design.outline.tip_y_mm - place[1]),
-            0,
-            design.closing.most_from_tip_mm,
-            "mm",
-            "from the tip edge",
-        )
+        off, most = design.outline.tip_y_mm - place[1], design.closing.most_from_tip_mm
+        note = "from the tip edge"
+        yield _GLB.figure("first_contact", off, 0, most, note=note, at=finger.name)
 
 
 def _reach_mm(node: Node, finger: Finger) -> Vectors:
@@ -173,29 +153,17 @@ def _openings(scene: Scene, design: Design) -> Iterator[Measurement]:
     if stated is None:
         yield unreadable("assembly.opening", _FILE, "states no opening_mm")
     else:
-        yield Measurement(
-            "assembly.opening",
-            _FILE,
-            _opening_mm(scene, design),
-            stated - OPENING_MM,
-            stated + OPENING_MM,
-            "mm",
-            "skin to skin",
-        )
+        opening = _opening_mm(scene, design)
+        yield _GLB.near("opening", opening, stated, OPENING_MM, "skin to skin")
     widest = design.mount.stroke_mm
     for finger in design.fingers:
         skin = _reach_mm(scene.nodes[f"{finger.name}.film"], finger).max()
         bolt = _bolt_z_mm(scene.nodes[f"{finger.name}.{design.held}"], design) * _inward(finger)
         widest += design.mount.pad_w_mm - (skin - bolt)
-    wanted = design.closing.max_opening_mm
     note = "skin to skin in the open gripper"
-    yield Measurement(
-        "assembly.stroke", _FILE, float(widest), wanted - STROKE_MM, wanted + STROKE_MM, "mm", note
-    )
+    yield _GLB.near("stroke", widest, design.closing.max_opening_mm, STROKE_MM, note)
     note = "left between the gripper's pads when the skins meet"
-    yield Measurement(
-        "assembly.closes", _FILE, float(design.mount.stroke_mm - widest), 0, unit="mm", note=note
-    )
+    yield _GLB.figure("closes", design.mount.stroke_mm - widest, 0, math.inf, note=note)
 
 
 def _opening_mm(scene: Scene, design: Design) -> float:

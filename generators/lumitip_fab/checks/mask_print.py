@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from lumitip_fab.checks.mask_flaps import Flap, side_mm
 from lumitip_fab.checks.mask_holes import Black, Placed, apart, edges_apart
 from lumitip_fab.checks.readers.mask_page import Page, PageError, Painted, Points
-from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip_fab.checks.result import Measurement, Subject, unreadable
 from lumitip_fab.design import Box, Design, Finger, Mask
 
 Shapes = NDArray[np.object_]
@@ -41,9 +41,7 @@ def measure_page(
 ) -> Iterator[Measurement]:
     """Paper, margins, registration, scale, rulers, the letter F and fonts."""
     for side, got, wanted in zip(("width", "height"), page.size_mm, paper_mm, strict=True):
-        yield Measurement(
-            "mask.page", f"{subject} {side}", got, wanted - PAPER_MM, wanted + PAPER_MM, "mm"
-        )
+        yield Subject("mask", f"{subject} {side}").near("page", got, wanted, PAPER_MM)
     left, low, right, high = page.extent
     margin = min(left, low, page.size_mm[0] - right, page.size_mm[1] - high)
     note = "to the nearest edge"
@@ -130,22 +128,14 @@ def measure_note(
         ("reach", 2, TENTH_MM),
     ):
         worst = float(off[:, column].max()) if len(off) else np.nan
-        yield Measurement(
-            "mask.note", f"{subject} {name}", worst, 0, limit, "mm", "worst row against the A4 page"
-        )
+        of = Subject("mask", f"{subject} {name}")
+        yield of.figure("note", worst, 0, limit, note="worst row against the A4 page")
     whole = design.stack.plate_mm + design.stack.cover_mm
     stated = [count[1], side[1], *(readings.groups() if readings else ())]
     printed = np.array([float(v) for v in stated])
     wanted = np.array([len(finger.cells), whole, *design.mask.measured_ruler_mm])[: len(printed)]
-    yield Measurement(
-        "mask.note",
-        f"{subject} figures",
-        float(np.abs(printed - wanted).max()),
-        0,
-        ROUNDED_MM,
-        "",
-        "apertures, height of the side, readings",
-    )
+    off_most, note = np.abs(printed - wanted).max(), "apertures, height of the side, readings"
+    yield Subject("mask", f"{subject} figures").figure("note", off_most, 0, ROUNDED_MM, "", note)
 
 
 def _figures(flap: Flap, design: Design) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
@@ -166,15 +156,8 @@ def _rulers(subject: str, page: Page, placed: Placed) -> Iterator[Measurement]:
         lengths[int(spans.argmax())] = float(spans.max())
     for axis, name in enumerate(("horizontal", "vertical")):
         if axis in lengths:
-            yield Measurement(
-                "mask.ruler",
-                f"{subject} {name}",
-                lengths[axis],
-                100 - RULER_MM,
-                100 + RULER_MM,
-                "mm",
-                "by the marks' scale",
-            )
+            of = Subject("mask", f"{subject} {name}")
+            yield of.near("ruler", lengths[axis], 100, RULER_MM, "by the marks' scale")
         else:
             yield unreadable("mask.ruler", f"{subject} {name}", "no such ruler")
 

@@ -15,7 +15,7 @@ from shapely.errors import GEOSException
 from lumitip_fab.checks.mould_note import measure_note, measure_volume
 from lumitip_fab.checks.printed import measure_boxes
 from lumitip_fab.checks.readers import solids
-from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip_fab.checks.result import Measurement, Subject, unreadable
 from lumitip_fab.checks.walls import beside, measure_relief, walls
 from lumitip_fab.design import Box, Design, Finger
 from lumitip_fab.design.frames import applied, backing_bed_to_sensor, mould_bed_to_sensor
@@ -74,14 +74,12 @@ def _measured(
     mesh: Any, file: str, outputs: Path, design: Design, finger: Finger
 ) -> Iterator[Measurement]:
     yield from measure_note(outputs, design, finger)
-    yield Measurement("mould.watertight", file, solids.open_edges(mesh), 0, 0, "edges")
-    yield Measurement("mould.bodies", file, solids.bodies(mesh), 1, 1, "bodies")
+    of = Subject("mould", file)
+    yield of.figure("watertight", solids.open_edges(mesh), 0, 0, "edges")
+    yield of.figure("bodies", solids.bodies(mesh), 1, 1, "bodies")
     room = np.array(design.printing.bed_mm) - mesh.extents
-    yield Measurement("mould.fits_bed", file, float(room.min()), 0, unit="mm", note="room left")
-    note = "height over the bed"
-    yield Measurement(
-        "mould.fits_bed", f"{file}: foot", float(mesh.bounds[0, 2]), -0.001, 0.001, "mm", note
-    )
+    yield of.figure("fits_bed", room.min(), 0, math.inf, note="room left")
+    yield of.near("fits_bed", mesh.bounds[0, 2], 0, 0.001, "height over the bed", at="foot")
     probe = Probe(mesh, design)
     yield _thickness(probe, file)
     yield _tip_thickness(probe, file)
@@ -131,11 +129,9 @@ def _thickness(probe: Probe, file: str) -> Measurement:
         float(np.min([probe.depths_mm(np.array([pad]))[0] for pad in probe.design.mould.pads]))
         + proud
     )
-    worst = float(depth[np.abs(depth - wanted).argmax()])
     note = f"farthest from {wanted:g} at {len(depth)} places over the board, from the pads' tops"
-    return Measurement(
-        "mould.thickness", file, worst, wanted - THICKNESS_MM, wanted + THICKNESS_MM, "mm", note
-    )
+    worst, by = depth[np.abs(depth - wanted).argmax()], THICKNESS_MM
+    return Subject("mould", file).figure("thickness", worst, wanted - by, wanted + by, note=note)
 
 
 def _tip_thickness(probe: Probe, file: str) -> Measurement:
@@ -144,10 +140,10 @@ def _tip_thickness(probe: Probe, file: str) -> Measurement:
     half = outline.tip_width_mm / 2
     x = np.concatenate([np.linspace(-0.95, -0.5, 10), np.linspace(0.5, 0.95, 10)]) * half
     depth = probe.depths_mm(np.column_stack([x, np.full(len(x), outline.tip_y_mm)]))
-    worst = float(depth[np.abs(depth - wanted).argmax()])
     note = "at the tip edge, beside the stop"
-    return Measurement(
-        "mould.tip_thickness", file, worst, wanted - THICKNESS_MM, wanted + THICKNESS_MM, "mm", note
+    worst, by = depth[np.abs(depth - wanted).argmax()], THICKNESS_MM
+    return Subject("mould", file).figure(
+        "tip_thickness", worst, wanted - by, wanted + by, note=note
     )
 
 
@@ -166,10 +162,8 @@ def _stops(probe: Probe, file: str) -> Iterator[Measurement]:
         yield Measurement("mould.stops", f"{file}: pad {number}", worst, 0, STOPS_MM, "mm", note)
     along = np.linspace(-1, 1, 9) * outline.tip_width_mm / 8
     line = probe.depths_mm(np.column_stack([along, np.full(9, outline.tip_y_mm - _LINE_MM)]))
-    note = "top against the rim plane"
-    yield Measurement(
-        "mould.stops", f"{file}: tip line", float(np.abs(line).max()), 0, STOPS_MM, "mm", note
-    )
+    of, note = Subject("mould", file), "top against the rim plane"
+    yield of.figure("stops", np.abs(line).max(), 0, STOPS_MM, note=note, at="tip line")
 
 
 def _seat(
@@ -184,9 +178,8 @@ def _seat(
     to_bed = np.linalg.inv(mould_bed_to_sensor(design.stack, design.mould))
     seated = solids.placed(backing, to_bed @ backing_bed_to_sensor(design.mount, design.stack))
     note = f"shared with {part} when it lies on the stops"
-    return Measurement(
-        "mould.seat", file, solids.shared_mm3(body, seated), 0, SHARED_MM3, "mm³", note
-    )
+    shared_mm3 = solids.shared_mm3(body, seated)
+    return Measurement("mould.seat", file, shared_mm3, 0, SHARED_MM3, "mm³", note)
 
 
 def _walls(mesh: Any, file: str, design: Design, notch: Box) -> Iterator[Measurement]:
@@ -204,14 +197,8 @@ def _walls(mesh: Any, file: str, design: Design, notch: Box) -> Iterator[Measure
     places = _along(silhouette, design, notch)
     near = _distances(mesh, rim_mm + _ABOVE_MM, places)
     yield Measurement("mould.gap", file, float(near.min()), *GAP_MM, "mm", "least at the rim")
-    yield Measurement(
-        "mould.gap",
-        f"{file}: widest",
-        float(near.max()),
-        *GAP_MM,
-        "mm",
-        "but for the weir at the gripper end",
-    )
+    widest, note = float(near.max()), "but for the weir at the gripper end"
+    yield Measurement("mould.gap", f"{file}: widest", widest, *GAP_MM, "mm", note)
     rise = stack.plate_mm / 2  # the wall guides at least half the plate
     far = _distances(mesh, rim_mm + _ABOVE_MM + rise, places)
     draft = float(np.degrees(np.arctan2(far - near, rise)).min())

@@ -11,7 +11,7 @@ from shapely.geometry.base import BaseGeometry
 from lumitip_fab.checks.board_read import ReadBoard
 from lumitip_fab.checks.readers.gerber import drilled, gerber_area
 from lumitip_fab.checks.readers.kicad_silk import Word
-from lumitip_fab.checks.result import Measurement
+from lumitip_fab.checks.result import Measurement, Subject
 from lumitip_fab.design import Box
 
 AREA_SHARE = 0.001  # of the copper
@@ -39,14 +39,14 @@ def measure_layers(
 
     outline = _in_sensor(read, read.outline)
     for side, layer in zip(_SIDES, (read.board.layers[0], read.board.layers[-1]), strict=True):
-        yield from _copper(f"{path}: {side}", read, layer, area(f"{side} copper"))
-        yield from _mask(f"{path}: {side}", read, layer, area(f"{side} mask"))
+        of = Subject("orders", f"{path}: {side}")
+        yield from _copper(of, read, layer, area(f"{side} copper"))
+        yield from _mask(of, read, layer, area(f"{side} mask"))
         soldered = _in_sensor(read, _soldered(read, layer))
         off = area(f"{side} paste").symmetric_difference(soldered).area
-        note = "differs from the pads of mounted parts"
-        yield Measurement("orders.paste", f"{path}: {side}", off, 0, PLACE_MM, "mm²", note)
+        yield of.figure("paste", off, 0, PLACE_MM, "mm²", "differs from the pads of mounted parts")
         bare = shapely.union(area(f"{side} mask"), shapely.difference(_all(outline), outline))
-        yield from _silk(f"{path}: {side}", read, side == "front", area(f"{side} silk"), bare)
+        yield from _silk(of, read, side == "front", area(f"{side} silk"), bare)
     yield _edge(path, read, area("outline"))
     yield from _drills(path, read, layers)
 
@@ -63,15 +63,15 @@ def measure_stiffener(path: str, layers: Mapping[str, bytes], wanted: Box) -> Me
 
 
 def _copper(
-    subject: str, read: ReadBoard, layer: str, painted: BaseGeometry
+    of: Subject, read: ReadBoard, layer: str, painted: BaseGeometry
 ) -> Iterator[Measurement]:
     areas = [p.area for p in read.board.copper() if layer in p.layers]
     copper = _in_sensor(read, shapely.union_all(areas))
     share = painted.symmetric_difference(copper).area / copper.area
-    yield Measurement("orders.copper", subject, share, 0, AREA_SHARE, "of the copper")
+    yield of.figure("copper", share, 0, AREA_SHARE, "of the copper")
 
 
-def _mask(subject: str, read: ReadBoard, layer: str, open_: BaseGeometry) -> Iterator[Measurement]:
+def _mask(of: Subject, read: ReadBoard, layer: str, open_: BaseGeometry) -> Iterator[Measurement]:
     pads = [
         t.copper.area
         for part in read.board.parts
@@ -79,17 +79,13 @@ def _mask(subject: str, read: ReadBoard, layer: str, open_: BaseGeometry) -> Ite
         if t.copper is not None and layer in t.copper.layers
     ]
     covered = _in_sensor(read, shapely.union_all(pads)) - open_
-    yield Measurement(
-        "orders.mask", subject, covered.area, 0, PLACE_MM, "mm²", "of pads under the mask"
-    )
+    yield of.figure("mask", covered.area, 0, PLACE_MM, "mm²", "of pads under the mask")
     bare = open_ - _in_sensor(read, _openable(read, layer))
-    yield Measurement(
-        "orders.exposed", subject, bare.area, 0, PLACE_MM, "mm²", "open away from pads and holes"
-    )
+    yield of.figure("exposed", bare.area, 0, PLACE_MM, "mm²", "open away from pads and holes")
 
 
 def _silk(
-    subject: str, read: ReadBoard, front: bool, printed: BaseGeometry, bare: BaseGeometry
+    of: Subject, read: ReadBoard, front: bool, printed: BaseGeometry, bare: BaseGeometry
 ) -> Iterator[Measurement]:
     """Silkscreen: the board's lines, ink in the box of each word, and nothing else."""
     silk = read.board.silk
@@ -100,21 +96,12 @@ def _silk(
     lost = shapely.difference(lines, printed).area
     more = shapely.difference(printed, shapely.union_all([lines, *rooms]).buffer(PLACE_MM)).area
     note = "differs from the board's lines and words"
-    yield Measurement("orders.silk", subject, lost + more, 0, _ROUND_MM2, "mm²", note)
+    yield of.figure("silk", lost + more, 0, _ROUND_MM2, "mm²", note)
     inked = [_inside(printed, room) / room.area for room in rooms]
-    yield Measurement(
-        "orders.words",
-        subject,
-        min(inked, default=math.nan),
-        INK_SHARE,
-        1.0,
-        "of a word's room",
-        "the least that has ink",
-    )
+    least, note = min(inked, default=math.nan), "the least that has ink"
+    yield of.figure("words", least, INK_SHARE, 1.0, "of a word's room", note)
     off = shapely.intersection(printed, bare).area
-    yield Measurement(
-        "orders.silk_clear", subject, off, 0, PLACE_MM, "mm²", "printed on pads or off the board"
-    )
+    yield of.figure("silk_clear", off, 0, PLACE_MM, "mm²", "printed on pads or off the board")
 
 
 def _inside(printed: BaseGeometry, room: BaseGeometry) -> float:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from lumitip_fab.checks.readers.solids import Vectors, cast
 from lumitip_fab.checks.result import Measurement
 from lumitip_fab.design import Finger, Letter, Printing
+from lumitip_fab.text import table_of
 
 Mask = NDArray[np.bool_]
 
@@ -22,34 +23,6 @@ RELIEF_MM = 0.08
 _START_MM = 2.0  # of the rays, before the wall
 _BESIDE_MM = 0.7  # or the thinnest wall: walls between the letter and the end of its wall
 _ASPECT = 0.7
-# Places in parts of the letter's height, from its lower left corner: sunk, and left standing.
-_SUNK = {
-    "E": (
-        (0.08, 0.1),
-        (0.08, 0.5),
-        (0.08, 0.9),
-        (0.35, 0.08),
-        (0.62, 0.08),
-        (0.35, 0.5),
-        (0.5, 0.5),
-        (0.35, 0.92),
-        (0.62, 0.92),
-    ),
-    "R": (
-        (0.08, 0.1),
-        (0.08, 0.5),
-        (0.08, 0.9),
-        (0.35, 0.5),
-        (0.35, 0.92),
-        (0.62, 0.7),
-        (0.59, 0.1),
-        (0.54, 0.3),
-    ),
-}
-_STANDING = {
-    "E": ((0.4, 0.29), (0.6, 0.29), (0.4, 0.71), (0.6, 0.71)),
-    "R": ((0.3, 0.08), (0.28, 0.3), (0.3, 0.7), (0.45, 0.7)),
-}
 _AROUND = ((-0.08, 0.5), (_ASPECT + 0.08, 0.5), (_ASPECT + 0.08, 0.08), (_ASPECT + 0.08, 0.92))
 
 
@@ -107,7 +80,7 @@ def measure_relief(
     """How far the wall (mm) strays from a sunken first letter of the name of the finger whose part
     it should be; the mesh is in the frame of the letter."""
     wanted = finger.name[0].upper()
-    off = {name: _off_mm(mesh, letter, name) for name in _SUNK}
+    off = {name: _off_mm(mesh, letter, name) for name in table_of("checks/letters.toml")}
     reads = [name for name, by in off.items() if by <= RELIEF_MM]
     note = f"reads {reads[0]}" if reads else f"reads neither {' nor '.join(off)}"
     return Measurement(check, subject, off[wanted], 0, RELIEF_MM, "mm", f"{note}, {wanted} wanted")
@@ -127,7 +100,8 @@ def beside(letter: Letter, printing: Printing) -> Exempt:
 
 
 def _off_mm(mesh: Any, letter: Letter, name: str) -> float:
-    sunk, standing = _SUNK[name], (*_STANDING[name], *_AROUND)
+    places_of = table_of("checks/letters.toml")[name]
+    sunk, standing = places_of["sunk"], (*places_of["standing"], *_AROUND)
     box, places = letter.box, np.array([*sunk, *standing]) * letter.box.length_mm
     starts = np.column_stack(
         [

@@ -8,26 +8,10 @@ from dataclasses import asdict, dataclass
 
 from lumitip_fab.design import Design, Purchase
 from lumitip_fab.pipeline.artefact import Artefact, Files
+from lumitip_fab.text import table_of
 
 _GRAMS = 1000.0
-_KINDS = {
-    "C": "capacitor",
-    "D": "LED",
-    "F": "fuse",
-    "J": "connector",
-    "L": "inductor",
-    "Q": "transistor",
-    "R": "resistor",
-    "U": "circuit",
-    "Y": "crystal",
-}
-"""Kind of a part by the first letter of its references."""
-_ON_BOARD = {
-    ("receiver", "Q"): "photodetector",
-    ("emitter", "U"): "current source",
-    ("flange", "D1"): "TVS diode",
-}
-"""The same where a board has another kind of this letter, or of this part alone."""
+_TABLES = table_of("docs/bill.toml")
 
 
 @dataclass(frozen=True)
@@ -59,8 +43,8 @@ def electronics(design: Design, files: Files) -> Iterator[Line]:
             continue  # a panel, whose parts are those of its board
         for row in files.facts(path)["parts"]:
             ref, letter = row["refs"].split(",")[0], row["refs"][0]
-            usual = _ON_BOARD.get((board, letter), _KINDS[letter])
-            kind = _ON_BOARD.get((board, ref), usual)
+            own = _TABLES["boards"].get(board, {})
+            kind = own.get(ref) or own.get(letter) or _TABLES["kinds"][letter]
             key = f"{kind} {row['value']}", row["manufacturer"], row["part"]
             found.setdefault(key, {})[board] = int(row["quantity"])
     for (item, maker, part), where in sorted(found.items()):
@@ -126,17 +110,7 @@ def _pieces(purchase: Purchase, group: str) -> Iterator[Line]:
             )
 
 
-COLUMNS = (
-    "group",
-    "item",
-    "manufacturer",
-    "part",
-    "for",
-    "quantity",
-    "unit",
-    "unit_price",
-    "price",
-)
+COLUMNS: tuple[str, ...] = tuple(_TABLES["columns"])
 
 
 def bill_of_materials(design: Design, files: Files) -> tuple[Artefact, ...]:

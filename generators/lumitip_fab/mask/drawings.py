@@ -15,9 +15,9 @@ from ezdxf.layouts import Modelspace
 from lumitip_fab.design import Mask, Point, Title
 from lumitip_fab.design.frames import Matrix
 from lumitip_fab.mask.artwork import Artwork, Path
+from lumitip_fab.text import data_file
 
 MARGIN_MM = 6.0
-_LINE = 'fill="none" stroke="{}" stroke-width="0.1"'
 
 
 def svg_drawing(artwork: Artwork, mask: Mask, title: Title) -> bytes:
@@ -33,31 +33,24 @@ def svg_drawing(artwork: Artwork, mask: Mask, title: Title) -> bytes:
     bands = (Path(f.band[0], tuple((p,) for p in f.band[1:])) for f in artwork.flaps)
     folds = (Path(f.fold[0], ((f.fold[1],),)) for f in artwork.flaps)
     holes = (artwork.black, artwork.window, *artwork.apertures)
-    line = _LINE.format("#000")
-    lines = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}mm" height="{height}mm"'
-        f' viewBox="0 0 {width} {height}">',
-        f"<title>{escape(title.name)} {escape(title.revision)}: {artwork.name.lower()} mask, "
-        "inside of the film</title>",
-        f'<path id="black" fill-rule="evenodd" d="{_d(holes, shift)}"/>',
-        f'<path id="bands" d="{_d(bands, shift)}"/>',
-        f'<path id="mark" d="{_d((artwork.mark,), shift)}"/>',
-        f'<path id="cut" {line} d="{_d((artwork.cut,), shift)}"/>',
-        f'<path id="fold" {_LINE.format("#8c8c8c")} stroke-dasharray="1 0.8" '
-        f'd="{_d(folds, shift)}"/>',
-        f'<g id="registration" {line}>',
-        *(_registration(p, shift) for p in mask.registration),
-        "</g>",
-        '<g id="text" font-family="Helvetica, Arial, sans-serif">',
-        _text(artwork.name, artwork.name_at, shift, artwork.name_mm, 'font-weight="bold"'),
-        *(
-            _text(str(f.number), (f.label[0], f.label[1] - 0.6), shift, 1.8, 'text-anchor="middle"')
-            for f in artwork.flaps
-        ),
-        "</g>",
-        "</svg>",
-    ]
-    return ("\n".join(lines) + "\n").encode()
+    labels = (
+        _text(str(f.number), (f.label[0], f.label[1] - 0.6), shift, 1.8, 'text-anchor="middle"')
+        for f in artwork.flaps
+    )
+    drawing = data_file("mask/mask.svg").format(
+        width=width,
+        height=height,
+        title=f"{escape(title.name)} {escape(title.revision)}: {artwork.name.lower()}",
+        black=_d(holes, shift),
+        bands=_d(bands, shift),
+        mark=_d((artwork.mark,), shift),
+        cut=_d((artwork.cut,), shift),
+        folds=_d(folds, shift),
+        registration="\n".join(_registration(p, shift) for p in mask.registration),
+        name=_text(artwork.name, artwork.name_at, shift, artwork.name_mm, 'font-weight="bold"'),
+        labels="".join(f"\n{label}" for label in labels),
+    )
+    return drawing.encode()
 
 
 def svg_to_sensor(mask: Mask) -> Matrix:

@@ -3,21 +3,12 @@
 from lumitip_fab.design import Design, Printing
 from lumitip_fab.design.making import Filament, Slicing
 from lumitip_fab.pipeline.artefact import Artefact
-from lumitip_fab.text import as_written, passage
+from lumitip_fab.text import as_written, data_file, passage
 
 _BRIM_MM = 3.0  # a backing is tall and stands on little; a flat sheet has none to trim off
 _OUTER_SHARE = 0.6  # of the speed: outer walls are what board, gripper and silicone meet
 _FIRST_LAYER_MM_S = 20.0
 _FIRST_LAYER_C = 5
-_WIDTHS = (
-    "extrusion_width",
-    "first_layer_extrusion_width",
-    "perimeter_extrusion_width",
-    "external_perimeter_extrusion_width",
-    "infill_extrusion_width",
-    "solid_infill_extrusion_width",
-    "top_infill_extrusion_width",
-)
 
 
 def print_settings(design: Design) -> tuple[Artefact, ...]:
@@ -29,61 +20,19 @@ def print_settings(design: Design) -> tuple[Artefact, ...]:
 
 
 def _settings(filament: Filament, printing: Printing, slicing: Slicing) -> str:
-    x, y, z = printing.bed_mm
-    values: dict[str, object] = {
-        "printer_technology": "FFF",
-        "gcode_flavor": "marlin",
-        "bed_shape": f"0x0,{x:g}x0,{x:g}x{y:g},0x{y:g}",
-        "max_print_height": f"{z:g}",
-        "nozzle_diameter": f"{slicing.nozzle_mm:g}",
-        "layer_height": f"{filament.layer_mm:g}",
-        "first_layer_height": f"{filament.layer_mm:g}",
-        **dict.fromkeys(_WIDTHS, f"{printing.line_mm:g}"),
-        # Walls of two lines, wedges of one: widths that follow the wall.
-        "perimeter_generator": "arachne",
-        "perimeters": 3,
-        "top_solid_layers": 5,
-        "bottom_solid_layers": 5,
-        "fill_density": "100%",
-        "fill_pattern": "rectilinear",
-        "support_material": 0,
-        "brim_type": "outer_only",
-        "brim_width": "0" if filament == slicing.sheet else f"{_BRIM_MM:g}",
-        "skirts": 0,
-        "seam_position": "rear",
-        "elefant_foot_compensation": "0.1",
-        "avoid_crossing_perimeters": 1,
-        **_of_filament(filament),
-    }
-    return "".join(f"{key} = {values[key]}\n" for key in sorted(values))
-
-
-def _of_filament(filament: Filament) -> dict[str, object]:
     speed = filament.speed_mm_s
-    least, most = filament.fan_percent
-    return {
-        "filament_settings_id": filament.name,
-        "filament_type": filament.kind,
-        "filament_diameter": "1.75",
-        "filament_density": f"{filament.density_g_ml:g}",
-        "filament_max_volumetric_speed": f"{filament.max_flow_mm3_s:g}",
-        "temperature": filament.nozzle_c,
-        "first_layer_temperature": filament.nozzle_c + _FIRST_LAYER_C,
-        "bed_temperature": filament.bed_c,
-        "first_layer_bed_temperature": filament.bed_c,
-        "min_fan_speed": least,
-        "max_fan_speed": most,
-        "bridge_fan_speed": most,
-        "fan_always_on": int(least > 0),
-        "retract_length": f"{filament.retract_mm:g}",
-        "perimeter_speed": f"{speed:g}",
-        "external_perimeter_speed": f"{_OUTER_SHARE * speed:g}",
-        "infill_speed": f"{speed:g}",
-        "solid_infill_speed": f"{speed:g}",
-        "top_solid_infill_speed": f"{_OUTER_SHARE * speed:g}",
-        "bridge_speed": f"{_OUTER_SHARE * speed:g}",
-        "first_layer_speed": f"{min(_FIRST_LAYER_MM_S, speed):g}",
-    }
+    return data_file("parts/slicer.txt").format(
+        bed_mm=printing.bed_mm,
+        line_mm=printing.line_mm,
+        nozzle_mm=slicing.nozzle_mm,
+        brim_mm=0.0 if filament == slicing.sheet else _BRIM_MM,
+        filament=filament,
+        first_c=filament.nozzle_c + _FIRST_LAYER_C,
+        fan=filament.fan_percent,
+        fan_always=int(filament.fan_percent[0] > 0),
+        outer_mm_s=_OUTER_SHARE * speed,
+        first_mm_s=min(_FIRST_LAYER_MM_S, speed),
+    )
 
 
 def _note(design: Design, bends: bool) -> str:

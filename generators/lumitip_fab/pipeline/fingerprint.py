@@ -29,7 +29,7 @@ SHARED = (
     "typeface.py",
 )
 LAYOUT = ("errors.py", "grid.py", "layout.py")
-_SOURCES = {".css", ".kicad_sch", ".kicad_sym", ".md", ".py", ".toml", ".txt"}
+_SOURCES = {".css", ".kicad_sch", ".kicad_sym", ".md", ".py", ".svg", ".toml", ".txt"}
 
 
 @lru_cache

@@ -5,9 +5,11 @@ from collections.abc import Iterator
 from lumitip_fab.boards.courtyards import pad_at, placed_pads
 from lumitip_fab.boards.fab.order import bom_rows, bought
 from lumitip_fab.boards.model import BoardModel, Placement
-from lumitip_fab.design import Fab, Flexible, Led, Photodetector
+from lumitip_fab.design import Fab, Flexible, Led, Panel, Photodetector
+from lumitip_fab.text import passage
 
 STOP_FILE = "STOP_READ_FIRST.txt"
+_TEXTS = "boards/fab/notes.txt"
 _OTHER = {"anode": "cathode", "cathode": "anode", "collector": "emitter", "emitter": "collector"}
 _POLAR = {"led": "LED", "photodetector": "photodetector"}
 
@@ -18,16 +20,9 @@ def stop_note(board: Placement) -> dict[str, bytes]:
     if not board.cells or board.cells.part.mark_is_known:
         return {}
     chip, part = board.cells.part, next(part for part in bought(board) if part.kind in _POLAR)
-    refs = _refs(board, part.kind)
-    text = f"""STOP: do not place {refs} before the customer has confirmed their polarity.
-
-{refs}: {part.part} by {chip.manufacturer}.
-Its mark is taken for the {chip.marked}; this is {chip.mark_confidence}, not read from a datasheet.
-If the mark shows the {_OTHER[chip.marked]}, every one of these parts must be turned by 180 degrees
-against the placement list.
-
-Bare boards may be made at once. Ask the customer before these parts are placed.
-"""
+    text = passage(_TEXTS, "stop").format(
+        refs=_refs(board, part.kind), part=part.part, chip=chip, other=_OTHER[chip.marked]
+    )
     return {STOP_FILE: text.encode()}
 
 
@@ -59,6 +54,14 @@ def fabrication_note(model: BoardModel) -> bytes:
     return "".join(f"{line}\n" for line in lines).encode()
 
 
+def panel_note(panel: Panel) -> str:
+    """Lines of the fabrication note on copies, gaps, tabs, rails and marks."""
+    rules, copies = panel.rules, len(panel.copies)
+    return passage(_TEXTS, "panel").format(
+        panel=panel, rules=rules, copies=copies, radius_mm=rules.gap_mm / 2
+    )
+
+
 def assembly_note(board: Placement, fab: Fab) -> bytes:
     """Plain text: what marks mean, how far to trust that, and where each terminal goes; on a board
     without parts of polarity, where the first pad of each part is.
@@ -85,43 +88,23 @@ def assembly_note(board: Placement, fab: Fab) -> bytes:
 
 def _polarity(board: Placement, chip: Led | Photodetector) -> Iterator[str]:
     part = next(part for part in bought(board) if part.kind in _POLAR)
-    yield (
-        f"{_refs(board, part.kind)}, {part.part} by {chip.manufacturer}: pad 1 is the "
-        f"{chip.marked}, pad 2 the {_OTHER[chip.marked]}. On the silkscreen a bracket stands round "
-        "pad 1, a bar beyond it, or lines beside it."
-    )
-    known = {
-        "datasheet": f"The mark on the part itself shows its {chip.marked}, by its datasheet.",
-        "measured": f"The mark on the part itself shows its {chip.marked}: measured.",
-    }
-    yield known.get(
-        chip.mark_confidence,
-        f"CHECK BEFORE PLACING: that the mark on the part itself shows its {chip.marked} is "
-        f"{chip.mark_confidence}, not read from a datasheet. Hold a part against its leaflet; if "
-        f"its mark shows the {_OTHER[chip.marked]}, all {_POLAR[part.kind]}s are turned by 180 "
-        "degrees against the placement list.",
-    )
+    known = chip.mark_confidence in ("datasheet", "measured")
+    for name in ("pads", chip.mark_confidence if known else "assumed"):
+        yield passage(_TEXTS, name).format(
+            refs=_refs(board, part.kind),
+            part=part.part,
+            kind=_POLAR[part.kind],
+            chip=chip,
+            other=_OTHER[chip.marked],
+        )
     yield ""
 
 
 def _flexible(flexible: Flexible, outline: str) -> Iterator[str]:
     """Order note of a flexible board, and the file with the stiffener's outline."""
-    bend, stiff = flexible.bend, flexible.stiffener
-    total = flexible.core_mm + 2 * (flexible.copper_mm + flexible.coverlay_mm)
-    yield (
-        f"FLEXIBLE BOARD, {total:.3g} mm thick in all: polyimide {flexible.core_mm:.3g} mm, copper "
-        f"{flexible.copper_mm:g} mm on both sides, each under a coverlay of "
-        f"{flexible.coverlay_mm:g} mm. The layers of solder mask are the coverlays' openings."
-    )
-    yield (
-        f"Stiffener of polyimide, {flexible.stiffener_mm:g} mm, on the back, in mm as in the "
-        f"Gerber files: x {stiff.x_min_mm:.3f} to {stiff.x_max_mm:.3f}, y {stiff.y_min_mm:.3f} to "
-        f"{stiff.y_max_mm:.3f}; with the board's plated holes in it, 0.3 mm wider. "
-        f"Its outline is the drawing {outline}, of no copper."
-    )
-    yield (
-        f"It bends where y is above {bend.y_min_mm:.3f}: there are no vias, and nothing stiff may "
-        "be added."
+    total_mm = flexible.core_mm + 2 * (flexible.copper_mm + flexible.coverlay_mm)
+    yield passage(_TEXTS, "flexible").format(
+        flexible=flexible, total_mm=total_mm, stiff=flexible.stiffener, outline=outline
     )
     yield ""
 

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import shapely
 
-from lumitip_fab.boards.kicad.sexpr import Node, Quoted
+from lumitip_fab.boards.kicad.sexpr import Node, Quoted, written
 from lumitip_fab.boards.model import (
     PlacedComponent,
     Placement,
@@ -109,3 +109,10 @@ def regions(board: Placement, flexible: Flexible) -> Iterator[Node]:
             ("fill", "none"),
             ("tstamp", stable_uuid(board.name, "region", name)),
         )
+
+
+def library_table(kind: str, name: str, file: str, words: str) -> str:
+    """The table of one library beside the board; `kind` is `"fp"` or `"sym"`."""
+    values = {"name": name, "type": "KiCad", "uri": "${KIPRJMOD}/" + file, "options": ""}
+    entry = ("lib", *((key, Quoted(value)) for key, value in (values | {"descr": words}).items()))
+    return written((f"{kind}_lib_table", entry))

@@ -21,6 +21,7 @@ from lumitip_fab.boards.outline import EDGE_MM, corners, fractured, straight_edg
 from lumitip_fab.boards.silk.strokes import upright
 from lumitip_fab.design import Box, Point
 from lumitip_fab.design.frames import BOARD_ON_PAGE_MM, on_board_page
+from lumitip_fab.text import table_of
 
 COPPER = {"front": "F.Cu", "back": "B.Cu"}
 
@@ -175,26 +176,6 @@ def _edge(board: Placement, name: str, keyword: str, *points: tuple[str, Point])
     )
 
 
-_LAYERS = (
-    (0, "F.Cu", "signal", ""),
-    (31, "B.Cu", "signal", ""),
-    (32, "B.Adhes", "user", "B.Adhesive"),
-    (33, "F.Adhes", "user", "F.Adhesive"),
-    (34, "B.Paste", "user", ""),
-    (35, "F.Paste", "user", ""),
-    (36, "B.SilkS", "user", "B.Silkscreen"),
-    (37, "F.SilkS", "user", "F.Silkscreen"),
-    (38, "B.Mask", "user", ""),
-    (39, "F.Mask", "user", ""),
-    (44, "Edge.Cuts", "user", ""),
-    (45, "Margin", "user", ""),
-    (46, "B.CrtYd", "user", "B.Courtyard"),
-    (47, "F.CrtYd", "user", "F.Courtyard"),
-    (48, "B.Fab", "user", ""),
-    (49, "F.Fab", "user", ""),
-)
-
-
 def board_file(model: BoardModel, thickness_mm: float) -> bytes:
     """The board as KiCad opens it: routed, poured, ready to plot.
 
@@ -214,7 +195,10 @@ def _contents(model: BoardModel, thickness_mm: float) -> Iterator[sexpr.Node]:
     yield ("paper", sexpr.Quoted("A4"))
     yield _title(board)
     more = nodes.FLEX_LAYERS if board.flexible else ()
-    yield ("layers", *(_layer(*layer) for layer in (*_LAYERS, *more)))
+    yield (
+        "layers",
+        *(_layer(*layer) for layer in (*table_of("boards/kicad/tables.toml")["layers"], *more)),
+    )
     yield (
         "setup",
         *([nodes.stack_up(board.flexible)] if board.flexible else []),

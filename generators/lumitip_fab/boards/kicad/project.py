@@ -4,24 +4,15 @@ import json
 from typing import Any
 
 from lumitip_fab.boards.kicad.footprint import LIBRARY, hole_library_file, hole_name, library_file
+from lumitip_fab.boards.kicad.nodes import library_table
 from lumitip_fab.boards.kicad.pcb import board_file
-from lumitip_fab.boards.kicad.sexpr import Quoted, written
 from lumitip_fab.boards.model import LEAST_SPOKES, BoardModel, NetClass, Placement
+from lumitip_fab.text import table_of
 
 HOLE_TO_HOLE_MM = 0.25
 """Wall between two drills."""
 _LEAST_TEXT_MM, _LEAST_STROKE_MM = 0.6, 0.1
-_ERRORS = (
-    "endpoint_off_grid",
-    "footprint_link_issues",
-    "four_way_junction",
-    "lib_symbol_issues",
-    "lib_symbol_mismatch",
-    "multiple_net_names",
-    "pin_to_pin",
-    "unconnected_wire_endpoint",
-)
-"""Rules of schematics that KiCad by itself only warns of, or leaves out."""
+_TABLES = "boards/kicad/tables.toml"
 
 
 def project_file(board: Placement, name: str) -> bytes:
@@ -33,7 +24,7 @@ def project_file(board: Placement, name: str) -> bytes:
     """
     settings = {
         "board": {"design_settings": {"rules": _rules(board)}},
-        "erc": {"rule_severities": dict.fromkeys(_ERRORS, "error")},
+        "erc": {"rule_severities": dict.fromkeys(table_of(_TABLES)["errors"], "error")},
         "meta": {"filename": name, "version": 1},
         "net_settings": {
             "classes": _classes(board),
@@ -44,20 +35,6 @@ def project_file(board: Placement, name: str) -> bytes:
         },
     }
     return (json.dumps(settings, indent=2) + "\n").encode()
-
-
-def library_table() -> bytes:
-    """The `fp-lib-table` that finds the board's footprints beside it."""
-    folder = Quoted("${KIPRJMOD}/" + f"{LIBRARY}.pretty")
-    entry = (
-        "lib",
-        ("name", Quoted(LIBRARY)),
-        ("type", Quoted("KiCad")),
-        ("uri", folder),
-        ("options", Quoted("")),
-        ("descr", Quoted("Footprints of this board")),
-    )
-    return written(("fp_lib_table", entry)).encode()
 
 
 def _rules(board: Placement) -> dict[str, Any]:
@@ -96,16 +73,7 @@ def _class(name: str, rules: NetClass, nets: list[str]) -> dict[str, Any]:
         "track_width": rules.track_mm,
         "via_diameter": rules.via_mm,
         "via_drill": rules.via_drill_mm,
-        "microvia_diameter": 0.3,
-        "microvia_drill": 0.1,
-        "diff_pair_gap": 0.25,
-        "diff_pair_via_gap": 0.25,
-        "diff_pair_width": 0.2,
-        "bus_width": 12,
-        "wire_width": 6,
-        "line_style": 0,
-        "pcb_color": "rgba(0, 0, 0, 0.000)",
-        "schematic_color": "rgba(0, 0, 0, 0.000)",
+        **table_of(_TABLES)["net_class"],
         "nets": nets,  # read by KiCad 6; later ones read the patterns
     }
 
@@ -125,6 +93,8 @@ def project_files(model: BoardModel, thickness_mm: float) -> dict[str, bytes]:
     return {
         f"{board.name}.kicad_pcb": board_file(model, thickness_mm),
         f"{board.name}.kicad_pro": project_file(board, f"{board.name}.kicad_pro"),
-        "fp-lib-table": library_table(),
+        "fp-lib-table": library_table(
+            "fp", LIBRARY, f"{LIBRARY}.pretty", "Footprints of this board"
+        ).encode(),
         **{f"{LIBRARY}.pretty/{name}.kicad_mod": data for name, data in mods.items()},
     }

@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 
 from lumitip_fab.boards.circuit import cathodes_of
+from lumitip_fab.boards.kicad.nodes import library_table
 from lumitip_fab.boards.kicad.schematic import symbols
 from lumitip_fab.boards.kicad.schematic.auxiliary import auxiliary_blocks
 from lumitip_fab.boards.kicad.schematic.blocks import string_blocks, switch_block, wires_block
@@ -10,7 +11,7 @@ from lumitip_fab.boards.kicad.schematic.frames import framed
 from lumitip_fab.boards.kicad.schematic.multiplexers import multiplexer_blocks
 from lumitip_fab.boards.kicad.schematic.sheet import Block, Sheet, beside, columns, grid
 from lumitip_fab.boards.kicad.schematic.writer import sheet_text
-from lumitip_fab.boards.kicad.sexpr import FORMAT, Node, Quoted, written
+from lumitip_fab.boards.kicad.sexpr import FORMAT, Node, written
 from lumitip_fab.boards.model import SUPPLY, Placement
 from lumitip_fab.design import Design
 
@@ -33,7 +34,9 @@ def schematic_files(board: Placement, design: Design) -> dict[str, bytes]:
     return {
         f"{board.name}.kicad_sch": sheet_text(board, paper, sheet, shapes, parts).encode(),
         f"{symbols.LIBRARY}.kicad_sym": written(library).encode(),
-        "sym-lib-table": written(_table()).encode(),
+        "sym-lib-table": library_table(
+            "sym", symbols.LIBRARY, f"{symbols.LIBRARY}.kicad_sym", "Symbols of this board"
+        ).encode(),
     }
 
 
@@ -67,15 +70,3 @@ def _drawn(board: Placement, design: Design) -> tuple[dict[str, Node], str, Shee
 def _shapes(blocks: Iterable[Block]) -> dict[str, Node]:
     """The symbols of blocks by name, in the order in which they come up."""
     return {name: shape for block in blocks for name, shape in block.shapes.items()}
-
-
-def _table() -> Node:
-    entry = (
-        "lib",
-        ("name", Quoted(symbols.LIBRARY)),
-        ("type", Quoted("KiCad")),
-        ("uri", Quoted("${KIPRJMOD}/" + f"{symbols.LIBRARY}.kicad_sym")),
-        ("options", Quoted("")),
-        ("descr", Quoted("Symbols of this board")),
-    )
-    return ("sym_lib_table", entry)

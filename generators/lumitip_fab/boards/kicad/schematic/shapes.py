@@ -16,6 +16,7 @@ from lumitip_fab.boards.kicad.schematic.symbols import (
 )
 from lumitip_fab.boards.kicad.sexpr import Node, Value
 from lumitip_fab.design import Component, Point
+from lumitip_fab.text import table_of
 
 Rows = Sequence[tuple[str, int]]
 """Pads with their rows from the top."""
@@ -143,34 +144,15 @@ def mosfet(part: Component, channel: str) -> Node:
     return drawn(f"{channel}_MOSFET", **lands)
 
 
-_TYPES = {
-    "regulator": {
-        **dict.fromkeys(("VIN", "IN", "GND"), "power_in"),
-        **dict.fromkeys(("FB", "EN"), "input"),
-        "OUT": "power_out",
-        "SW": "output",
-    },
-    "module": {
-        **dict.fromkeys(("GND", "VDD", "VDDH", "VBUS"), "power_in"),
-        "SWDCLK": "input",
-        **dict.fromkeys(("SWDIO", "USB_DM", "USB_DP"), "bidirectional"),
-    },
-    "socket": {
-        **dict.fromkeys(("GND", "VIN"), "power_in"),
-        **dict.fromkeys(("3V3", "VUSB"), "power_out"),
-        **dict.fromkeys(("RST", "REC", "RX"), "input"),
-        "TX": "output",
-    },
-}
 _PORT = re.compile(r"[AD]\d+|P\d_\d+")
 """Pins of a controller that its firmware makes inputs or outputs."""
 
 
 def pin_type(part: Component, name: str) -> str:
     """Type of a part's pin, such as `"power_in"`; passive where its name says nothing."""
-    known = _TYPES.get(part.kind, {})
+    known = table_of("boards/kicad/tables.toml")["pins"].get(part.kind, {})
     port = part.kind in ("module", "socket") and _PORT.fullmatch(name)
-    return known.get(name, "bidirectional" if port else "passive")
+    return str(known.get(name, "bidirectional" if port else "passive"))
 
 
 def pin_names(part: Component) -> dict[str, str]:
