@@ -1,9 +1,7 @@
 """`ArmLimits`, and `Guard`, which stops an arm at them. Needs no arm, clock or thread."""
 
 import math
-import tomllib
 from dataclasses import dataclass, fields
-from pathlib import Path
 
 import numpy as np
 
@@ -13,8 +11,21 @@ from lumitip.values import as_float, one_line, shown
 
 _FASTER = 1.5  # times the speed limit; measured speeds overshoot, but not by more
 _STILL_MM_S = 20.0
-_TABLES = tomllib.loads(Path(__file__).with_name("guard.toml").read_text(encoding="utf-8"))
-WHY: dict[str, str] = _TABLES["why"]
+WHY = {
+    "closed": "the program closed it",
+    "connection": "the connection to the arm is silent or lost",
+    "corner": "the tracer reached a corner",
+    "emergency": "the emergency stop is pressed",
+    "error": "sending to the arm failed",
+    "force": "the force on the tool changed by more than `force_n`",
+    "lost": "the tracer lost the line",
+    "program": "the control program no longer runs on the arm's controller",
+    "protective": "the arm is in a protective stop",
+    "speed": "the arm is faster than its command",
+    "stale": "no fresh frame came within `stale_s`",
+    "travel": "the fingertip is further than `travel_mm` from where it began",
+    "turn": "the fingertip has turned by more than `turn_deg`",
+}
 """Every reason to stop an arm."""
 
 
@@ -30,7 +41,16 @@ class ArmStopped(ArmError):  # noqa: N818 - named by what happened, as in `lumit
         """A key of `WHY`."""
 
 
-_ALLOWED: dict[str, tuple[float, float, str]] = _TABLES["allowed"]
+_ALLOWED: dict[str, tuple[float, float, str]] = {
+    "speed_mm_s": (0.0, 250.0, "the reduced speed of ISO 10218-1"),
+    "rotation_rad_s": (0.0, 2.0, "a third of a turn in a second"),
+    "acceleration_mm_s2": (50.0, 2000.0, "below 50 the stopping distance is long"),
+    "force_n": (0.0, 100.0, "below the 140 N that ISO/TS 15066 allows on a hand"),
+    "travel_mm": (0.0, 1000.0, "the reach of the smaller arms"),
+    "turn_deg": (0.0, 170.0, "the finger's cable winds up"),
+    "stale_s": (0.0, 0.5, "older frames do not show the present contact"),
+    "watchdog_hz": (2.0, 50.0, "the controller waits for one period"),
+}
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import shapely
 
-from lumitip_fab.boards.kicad.sexpr import Node, Quoted, written
+from lumitip_fab.boards.kicad.sexpr import Node, Quoted, Value, written
 from lumitip_fab.boards.model import (
     PlacedComponent,
     Placement,
@@ -114,5 +114,6 @@ def regions(board: Placement, flexible: Flexible) -> Iterator[Node]:
 def library_table(kind: str, name: str, file: str, words: str) -> str:
     """The table of one library beside the board; `kind` is `"fp"` or `"sym"`."""
     values = {"name": name, "type": "KiCad", "uri": "${KIPRJMOD}/" + file, "options": ""}
-    entry = ("lib", *((key, Quoted(value)) for key, value in (values | {"descr": words}).items()))
+    fields = (values | {"descr": words}).items()
+    entry: Value = ("lib", *((key, Quoted(value)) for key, value in fields))
     return written((f"{kind}_lib_table", entry))
