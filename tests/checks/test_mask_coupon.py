@@ -30,7 +30,7 @@ def drawn(before: bytes, after: bytes) -> Damage:
 
 DAMAGES: dict[str, tuple[Damage, set[str]]] = {
     "smaller": (
-        carved(lambda body: body.scale((0.95, 0.95, 1.0))),
+        carved(lambda body: body.scale((0.8, 0.8, 1.0))),
         {"covers", "three_mf"},
     ),
     "drilled": (

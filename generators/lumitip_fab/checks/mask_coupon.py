@@ -50,11 +50,11 @@ def _black_mm(page: Page) -> tuple[float, float]:
 
 
 def _covers(read: Subject, size_mm: tuple[float, float], design: Design) -> Iterator[Measurement]:
-    """Its size against the cells, with a pitch more on each side."""
+    """Its size against the cells, with half a pitch more on each side: the hexagon round a cell."""
     cells = np.array(design.receiver.cells)
     beyond = (np.array(size_mm) - np.ptp(cells, axis=0)) / 2
     note = "beyond the outer cells"
-    yield read.figure("covers", beyond.min(), design.grid.pitch_mm - SIZE_MM, math.inf, note=note)
+    yield read.figure("covers", beyond.min(), design.grid.pitch_mm / 2, math.inf, note=note)
 
 
 def _printed(read: Subject, outputs: Path, design: Design) -> Iterator[Measurement]:
