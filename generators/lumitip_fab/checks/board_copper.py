@@ -9,7 +9,7 @@ import networkx as nx
 import shapely
 from shapely.geometry.base import BaseGeometry
 
-from lumitip_fab.checks.board_read import ReadBoard, on_page
+from lumitip_fab.checks.board_read import ReadBoard, lands, on_page
 from lumitip_fab.checks.readers.kicad_board import Copper, Terminal
 from lumitip_fab.checks.result import Measurement
 
@@ -132,10 +132,9 @@ def _starved(read: ReadBoard, layer: str) -> Iterator[str]:
     fills = [piece.area for piece in here if piece.kind == "fill"]
     others = [piece.area for piece in here if piece.kind != "fill"]
     pads = [
-        (f"{part.ref}.{terminal.number}", terminal.copper)
-        for part in read.board.parts
-        for terminal in part.terminals
-        if terminal.copper and terminal.net == "GND" and layer in terminal.copper.layers
+        (f"{part.ref}.{terminal.number}", copper)
+        for part, terminal, copper in lands(read.board, layer)
+        if terminal.net == "GND"
     ]
     through = [fill for fill in fills if _leads_on(fill, others, [pad for _, pad in pads])]
     for name, pad in pads:

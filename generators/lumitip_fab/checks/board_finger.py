@@ -11,7 +11,7 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
-from lumitip_fab.checks.board_read import ReadBoard, middle, on_page
+from lumitip_fab.checks.board_read import ReadBoard, lands, middle, on_page
 from lumitip_fab.checks.readers.kicad_board import Copper
 from lumitip_fab.checks.readers.kicad_silk import Word
 from lumitip_fab.checks.result import Measurement
@@ -197,12 +197,7 @@ def _bend(read: ReadBoard, flexible: Flexible) -> Measurement:
     """Vias and plated holes where the board bends."""
     bend = on_page(flexible.bend)
     holes = [c for c in read.board.copper() if c.drill_mm and c.area.intersects(bend)]
-    plated = [
-        t
-        for part in read.board.parts
-        for t in part.terminals
-        if t.copper is not None and t.drill_mm and t.copper.area.intersects(bend)
-    ]
+    plated = [t for _, t, c in lands(read.board) if t.drill_mm and c.area.intersects(bend)]
     return read.figure("bend", len(holes) + len(plated), 0, 0, "vias and plated holes")
 
 
@@ -211,11 +206,9 @@ def _held(read: ReadBoard, at_cells: str) -> Measurement:
     bend = read.board.regions.get(_BEND, shapely.Point())
     bends = (at_cells, "FID")
     apart = [
-        (t.copper.area.bounds[1] - bend.bounds[3], part.ref)
-        for part in read.board.parts
+        (copper.area.bounds[1] - bend.bounds[3], part.ref)
+        for part, _, copper in lands(read.board)
         if part.ref.rstrip("0123456789") not in bends and not bend.is_empty
-        for t in part.terminals
-        if t.copper is not None
     ]
     least, ref = min(apart, default=(np.nan, "no part"))
     return read.figure("held", least, 0, np.inf, note=f"from the bend to {ref}")
@@ -232,8 +225,7 @@ def _teardrops(read: ReadBoard, flexible: Flexible) -> Iterator[Measurement]:
         for net in sorted({c.net for c in here}):
             tracks = [c for c in here if c.net == net and c.kind == "track"]
             if tracks:
-                lands = [c for c in here if c.net == net and c.kind in ("pad", "via")]
-                for land in lands:
+                for land in (c for c in here if c.net == net and c.kind in ("pad", "via")):
                     bends = bool(land.area.intersects(bend))
                     found[bends] += _widened(tracks, land)
     for bends, where, least in ((True, "bends", IN_BEND), (False, "is held", ELSEWHERE)):

@@ -2,6 +2,7 @@
 
 import math
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -13,7 +14,7 @@ from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
 from lumitip_fab.checks.connections import Clusters
-from lumitip_fab.checks.readers.kicad_board import KicadBoard, Part, Terminal, read_board
+from lumitip_fab.checks.readers.kicad_board import Copper, KicadBoard, Part, Terminal, read_board
 from lumitip_fab.checks.result import Subject
 from lumitip_fab.design import (
     AtCells,
@@ -34,6 +35,15 @@ from lumitip_fab.design.frames import applied, board_page_to_sensor, on_board_pa
 _VALUE = re.compile(r"(\d+)([RKM])(\d*)")
 _CLOSED_MM = 1e-5  # ends of lines nearer than this meet
 _POWER = {"R": 1.0, "K": 1e3, "M": 1e6}
+
+
+def lands(board: KicadBoard, layer: str = "") -> Iterator[tuple[Part, Terminal, Copper]]:
+    """Every pad that has copper, or copper on a layer, with its part."""
+    for part in board.parts:
+        for terminal in part.terminals:
+            copper = terminal.copper
+            if copper is not None and (not layer or layer in copper.layers):
+                yield part, terminal, copper
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,7 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
-from lumitip_fab.checks.board_read import ReadBoard, placed
+from lumitip_fab.checks.board_read import ReadBoard, lands, placed
 from lumitip_fab.checks.readers.kicad_silk import Line, Word
 from lumitip_fab.checks.result import Measurement
 from lumitip_fab.design import Point
@@ -204,14 +204,9 @@ def _gap(read: ReadBoard) -> float:
     worst = math.inf
     for front, layer in ((True, read.board.layers[0]), (False, read.board.layers[-1])):
         lines = [line.area for line in read.board.silk.lines if line.front == front]
-        pads = [
-            t.copper.area
-            for part in read.board.parts
-            for t in part.terminals
-            if t.copper is not None and layer in t.copper.layers
-        ]
-        if lines and pads:
-            tree = shapely.STRtree(pads)
+        areas = [copper.area for _, _, copper in lands(read.board, layer)]
+        if lines and areas:
+            tree = shapely.STRtree(areas)
             near = tree.query_nearest(lines, return_distance=True, all_matches=False)[1]
             worst = min(worst, float(near.min()))
     return worst

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from shapely import affinity
 from shapely.geometry.base import BaseGeometry
 
-from lumitip_fab.checks.board_read import ReadBoard
+from lumitip_fab.checks.board_read import ReadBoard, lands
 from lumitip_fab.checks.readers.kicad_board import Part
 from lumitip_fab.checks.result import Measurement
 from lumitip_fab.design import Box, Finger
@@ -144,10 +144,9 @@ def measure_shrouds(read: ReadBoard) -> Iterator[Measurement]:
     }
     front = read.board.layers[0]
     pads = [
-        (part.ref, pad.copper.area)
-        for part in read.board.parts
-        for pad in part.terminals
-        if pad.copper and (pad.drill_mm or front in pad.copper.layers)
+        (part.ref, copper.area)
+        for part, pad, copper in lands(read.board)
+        if pad.drill_mm or front in copper.layers
     ]
     rooms = {
         (ref, other): float(shapely.distance(shroud, area))

@@ -65,12 +65,8 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
         return
     yield count("bom.parts", _FILE, _wrong_parts(rows, parts, design), "wrong parts")
     boards = {f"{name} board" for name in _boards(design)} | {"placing and soldering"}
-    yield count(
-        "bom.boards",
-        _FILE,
-        sorted({r.item for r in rows if r.group == "boards"} ^ boards),
-        "wrong boards",
-    )
+    wrong = sorted({row.item for row in rows if row.group == "boards"} ^ boards)
+    yield count("bom.boards", _FILE, wrong, "wrong boards")
     yield _prints(rows, grams)
     yield _near("silicone", rows, "casting", cast, "g", "parts A and B of both casting notes")
     sheets = 0.0 if design.mask.route == "tpu" else 2.0

@@ -99,15 +99,9 @@ def _bodies(
             drawn.min(axis=0) + drawn.max(axis=0) - flat.min(axis=0) - flat.max(axis=0)
         ) / 2
     worst = max(off, key=lambda name: off[name])
-    yield Measurement(
-        "assembly.drawing",
-        f"{file} size",
-        off[worst] * wanted[worst][1],
-        0,
-        wanted[worst][1],
-        "mm",
-        f"of {worst}, against its size at 1:1",
-    )
+    most, note = wanted[worst][1], f"of {worst}, against its size at 1:1"
+    off_mm = off[worst] * most
+    yield Measurement("assembly.drawing", f"{file} size", off_mm, 0, most, "mm", note)
     if not all(name in shifts for name in layers):
         yield unreadable("assembly.drawing", f"{file} order", "a layer is missing")
         return

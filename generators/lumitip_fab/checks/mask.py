@@ -181,15 +181,8 @@ def _same_flaps(
     ):
         same = len(drawn) == len(other) and len(drawn) > 0
         worst = apart(placed.points(np.concatenate(drawn)), np.concatenate(other)) if same else None
-        yield Measurement(
-            f"mask.{name}",
-            f"{subject} {what}",
-            math.inf if worst is None else worst,
-            0,
-            SAME_MM,
-            "mm",
-            f"{len(drawn)} against {len(other)} on A4",
-        )
+        note, off = f"{len(drawn)} against {len(other)} on A4", math.inf if worst is None else worst
+        yield Measurement(f"mask.{name}", f"{subject} {what}", off, 0, SAME_MM, "mm", note)
 
 
 def _windows_apart(a: Points, b: Points) -> float:

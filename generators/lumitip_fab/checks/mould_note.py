@@ -81,15 +81,9 @@ def measure_volume(
     measured = (_cavity_mm3(body, design) - dipped) / 1000
     if not measured > 0:
         return unreadable("mould.volume", file, "has no cavity that could be measured")
-    return Measurement(
-        "mould.volume",
-        note_file,
-        float(stated[1]),
-        round(measured * (1 - VOLUME_FRACTION), 4),
-        round(measured * (1 + VOLUME_FRACTION), 4),
-        "mL",
-        f"{measured:.3f} mL in {file}",
-    )
+    low, high = (round(measured * (1 + side * VOLUME_FRACTION), 4) for side in (-1, 1))
+    note = f"{measured:.3f} mL in {file}"
+    return Measurement("mould.volume", note_file, float(stated[1]), low, high, "mL", note)
 
 
 def _cavity_mm3(body: solids.Solid, design: Design) -> float:

@@ -8,7 +8,7 @@ import shapely
 from shapely import affinity, box
 from shapely.geometry.base import BaseGeometry
 
-from lumitip_fab.checks.board_read import ReadBoard
+from lumitip_fab.checks.board_read import ReadBoard, lands
 from lumitip_fab.checks.readers.gerber import drilled, gerber_area
 from lumitip_fab.checks.readers.kicad_silk import Word
 from lumitip_fab.checks.result import Measurement, Subject
@@ -72,13 +72,8 @@ def _copper(
 
 
 def _mask(of: Subject, read: ReadBoard, layer: str, open_: BaseGeometry) -> Iterator[Measurement]:
-    pads = [
-        t.copper.area
-        for part in read.board.parts
-        for t in part.terminals
-        if t.copper is not None and layer in t.copper.layers
-    ]
-    covered = _in_sensor(read, shapely.union_all(pads)) - open_
+    areas = [copper.area for _, _, copper in lands(read.board, layer)]
+    covered = _in_sensor(read, shapely.union_all(areas)) - open_
     yield of.figure("mask", covered.area, 0, PLACE_MM, "mm²", "of pads under the mask")
     bare = open_ - _in_sensor(read, _openable(read, layer))
     yield of.figure("exposed", bare.area, 0, PLACE_MM, "mm²", "open away from pads and holes")
@@ -124,12 +119,7 @@ def _edge(path: str, read: ReadBoard, drawn: BaseGeometry) -> Measurement:
 
 
 def _drills(path: str, read: ReadBoard, layers: Mapping[str, bytes]) -> Iterator[Measurement]:
-    plated = [
-        (t.at, t.drill_mm)
-        for part in read.board.parts
-        for t in part.terminals
-        if t.copper is not None and t.drill_mm
-    ]
+    plated = [(t.at, t.drill_mm) for _, t, _ in lands(read.board) if t.drill_mm]
     vias = [
         ((p.area.centroid.x, p.area.centroid.y), p.drill_mm)
         for p in read.board.loose
@@ -162,11 +152,9 @@ def _soldered(read: ReadBoard, layer: str) -> BaseGeometry:
     """Pads on a layer of the parts that are mounted on it."""
     return shapely.union_all(
         [
-            t.copper.area
-            for part in read.board.parts
-            if "exclude_from_bom" not in part.attributes
-            for t in part.terminals
-            if t.copper is not None and not t.drill_mm and layer in t.copper.layers
+            copper.area
+            for part, t, copper in lands(read.board, layer)
+            if "exclude_from_bom" not in part.attributes and not t.drill_mm
         ]
     )
 

@@ -121,13 +121,12 @@ def measure_profile(read: PanelBoard, folder: Path) -> Iterator[Measurement]:
             drawn = gerber_area(files[read.name + layers["outline"]].decode())
             off = drawn.symmetric_difference(edges).area
             yield Measurement("panels.profile", path, off, 0, PROFILE_MM2, "mm²", "from the edges")
-            yield Measurement(
-                "panels.fiducial_opening",
-                path,
+            opening_mm, least = (
                 _least_opening_mm(read, files, layers),
-                read.rules.fiducial_opening_mm - NOISE_MM,
-                math.inf,
-                "mm",
+                read.rules.fiducial_opening_mm,
+            )
+            yield Measurement(
+                "panels.fiducial_opening", path, opening_mm, least - NOISE_MM, unit="mm"
             )
         except (OSError, KeyError, ValueError, SyntaxError) as error:
             yield unreadable("panels.profile", path, f"cannot be read: {error!r:.200}")

@@ -45,15 +45,9 @@ def _mould_layers(outputs: Path, design: Design) -> Measurement:
     floor_mm = design.mould.wall_mm
     heights_mm = (floor_mm, floor_mm + design.stack.cover_mm)
     off_mm = max(abs(h - round(h / layer_mm) * layer_mm) for h in heights_mm)
-    return Measurement(
-        "printing.mould_layers",
-        file,
-        off_mm,
-        0,
-        design.mould.off_layer_mm + _ROUNDING_MM,
-        "mm",
-        f"of floor and stops to a whole layer of {layer_mm:g} mm",
-    )
+    most_mm = design.mould.off_layer_mm + _ROUNDING_MM
+    note = f"of floor and stops to a whole layer of {layer_mm:g} mm"
+    return Measurement("printing.mould_layers", file, off_mm, 0, most_mm, "mm", note)
 
 
 def _read(path: Path) -> dict[str, str]:

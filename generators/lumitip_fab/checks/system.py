@@ -202,14 +202,8 @@ def _tcp(scene: Scene, layout: Layout) -> Vectors:
 def _centre(tcp: Vectors, scene: Scene, design: Design) -> Iterator[Measurement]:
     wanted = float(_to_tool(design)[2, 3])
     limits = wanted - PLACE_MM, wanted + PLACE_MM
-    yield Measurement(
-        "system.tcp",
-        _FILE,
-        float(tcp[2]),
-        *limits,
-        "mm",
-        "origin of layout.json, from the robot's tool flange",
-    )
+    note = "origin of layout.json, from the robot's tool flange"
+    yield Measurement("system.tcp", _FILE, float(tcp[2]), *limits, "mm", note)
     aside = float(np.hypot(*tcp[:2]))
     yield Measurement("system.tcp", f"{_FILE} aside", aside, 0, PLACE_MM, "mm", "off the axis")
     stated = scene.extras.get("tcp_mm", np.nan)

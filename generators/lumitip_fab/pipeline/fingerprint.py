@@ -20,6 +20,7 @@ SHARED = (
     "derive",
     "design",
     "errors.py",
+    "letters.toml",
     "paths.py",
     "pipeline/artefact.py",
     "pipeline/fingerprint.py",
