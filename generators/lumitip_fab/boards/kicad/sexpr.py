@@ -1,6 +1,10 @@
 """S-expressions as KiCad writes them."""
 
+import re
 from collections.abc import Iterator
+from typing import Any
+
+from sexpdata import Symbol
 
 Value = str | int | float | tuple["Value", ...]
 Node = tuple[Value, ...]
@@ -65,3 +69,20 @@ def _flat(value: Value) -> str:
     if isinstance(value, bool):
         raise TypeError("write yes or no: KiCad's files know no other truth values")
     return number(value) if isinstance(value, int | float) else value
+
+
+def as_node(tree: list[Any]) -> Node:
+    """A tree of sexpdata or kicad-skip, in which `None` stands where something was deleted."""
+    return tuple(_value(value) for value in tree if value is not None)
+
+
+def _value(value: Any) -> Value:
+    if isinstance(value, list):
+        return as_node(value)
+    if isinstance(value, Symbol) and re.fullmatch(r"[\w-]+", str(value)):
+        return str(value)
+    if type(value) is str:
+        return Quoted(value)
+    if isinstance(value, int | float):
+        return value
+    raise TypeError(f"{value!r} cannot stand in a schematic")

@@ -6,8 +6,7 @@ from pathlib import Path
 
 import sexpdata
 
-from lumitip_fab.boards.kicad.schematic.template import as_node
-from lumitip_fab.boards.kicad.sexpr import Node, Quoted, Value
+from lumitip_fab.boards.kicad.sexpr import Node, Quoted, Value, as_node
 from lumitip_fab.boards.model import GROUND
 
 LIBRARY = "lumitip"

@@ -1,17 +1,14 @@
 """The sheet that every schematic grows from, `template.kicad_sch`, opened with kicad-skip.
 
-The library has no types: what it gives is `Any`, here and in `writer.py`, and nowhere else.
+The library has no types: what it gives is `Any` here, in `writer.py` and in `as_node`.
 """
 
 import logging
-import re
 import warnings
 from pathlib import Path
 from typing import Any
 
-from sexpdata import Symbol
-
-from lumitip_fab.boards.kicad.sexpr import Node, Quoted, Value
+from lumitip_fab.boards.kicad.sexpr import Node, as_node
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore")  # of escapes in its source, where Python has to compile it
@@ -58,20 +55,3 @@ class Template:
                 for thing in things
             ),
         )
-
-
-def as_node(tree: list[Any]) -> Node:
-    """A tree of kicad-skip, in which `None` stands where something was deleted."""
-    return tuple(_value(value) for value in tree if value is not None)
-
-
-def _value(value: Any) -> Value:
-    if isinstance(value, list):
-        return as_node(value)
-    if isinstance(value, Symbol) and re.fullmatch(r"[\w-]+", str(value)):
-        return str(value)
-    if type(value) is str:
-        return Quoted(value)
-    if isinstance(value, int | float):
-        return value
-    raise TypeError(f"{value!r} cannot stand in a schematic")
