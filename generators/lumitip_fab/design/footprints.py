@@ -25,6 +25,7 @@ _CHIPS = {
     "inductor": "INDC",
     "crystal": "XTAL",
     "tvs diode": "DIOM",
+    "esd diode": "DIOM",
 }
 """First letters of a chip's name by its kind; of phototransistors the standard has none."""
 
