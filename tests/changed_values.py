@@ -61,6 +61,10 @@ CHANGES: dict[str, Any] = {
     "controller.board": "bench",
     "controller.name": "Other",
     "supply.voltage_v": 23.9,
+    "protection.diode": "H5VUD5U",
+    "protection.resistor": "other",
+    "protection.series_ohm": 2200.0,
+    "protection.capacitor": "none",
     "breakout.enabled": False,
     "breakout.socket": "other",
     "breakout.board_mm": (46.0, 33.02),
@@ -136,6 +140,7 @@ CHANGES: dict[str, Any] = {
 }
 # What else must change with a field.
 FRONT: dict[str, Any] = {"emitter.resistor_side": "front", "emitter.resistor": "0603"}
+PROTECTED: dict[str, Any] = {"protection.diode": "H5VUD5U", "breakout.board_mm": (45.72, 38.1)}
 WITH: dict[str, dict[str, Any]] = {
     "backing.variant": {
         "backing.material": "TPU 98A",
@@ -146,6 +151,7 @@ WITH: dict[str, dict[str, Any]] = {
     "emitter.string_leds": {"emitter.current_ma": 5.0},
     "emitter.drive": FRONT,
     "mask.route": {"mask.film": "black"},
+    "protection.diode": {"breakout.board_mm": (45.72, 38.1)},
 }
 # What a section or a field only does something with.
 ONLY_WITH: dict[str, dict[str, Any]] = {
@@ -153,6 +159,9 @@ ONLY_WITH: dict[str, dict[str, Any]] = {
     "receiver.array": {"receiver.load": "each"},
     "emitter.source": {"emitter.drive": "source", **FRONT},
     "emitter.switch": {"receiver.load": "each"},
+    "protection.resistor": PROTECTED,
+    "protection.series_ohm": PROTECTED,
+    "protection.capacitor": PROTECTED,
 }
 # Limits that only refuse; changing them leaves the design as it is.
 LIMITS: dict[str, Any] = {"supply.max_ma": 400.0, "emitter.max_heat_w": 1.9}

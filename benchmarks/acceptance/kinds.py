@@ -118,6 +118,7 @@ def _boards(random: Random, _: Table, _base: str) -> Table:
             "emitter.switch": lambda: random.choice(("auto", "none")),
             "flange.indicator": lambda: random.choice(("auto", "none")),
             "receiver.bulk_capacitor": lambda: random.choice(("auto", "none")),
+            "protection.diode": lambda: random.choice(("auto", "none")),
         },
     )
 

@@ -43,14 +43,18 @@ pull_up_ohm = 27000.0
 indicator = "auto"
 [wiring]
 order = "auto"
+[protection]
+diode = "auto"
+[breakout]
+board_mm = [45.72, 38.1]
 """
 
 
 @pytest.fixture(scope="session")
 def designs(design_dir: Path, tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Design]:
     """`designs("dense")`: a preset's design; `"small"` is a grid of 13 cells on two muxes,
-    `"switched"` the same with a transistor that switches the LEDs and a power LED, `"panelled"`
-    with panels."""
+    `"switched"` the same with a transistor that switches the LEDs, a power LED and protected
+    pins, `"panelled"` with panels."""
     folder = tmp_path_factory.mktemp("designs") / "design"
     shutil.copytree(design_dir, folder)
     (folder / "presets" / "small.toml").write_text(SMALL)

@@ -20,7 +20,9 @@ class MuxNets:
 
     supply: str
     output: str
-    """To the controller's input, and a shared pull-up."""
+    """To the wire of the controller's input, and a shared pull-up."""
+    pin: str
+    """Of the controller's input: the same without a resistor before it."""
     first: str
     """Of the detector at the first used input."""
     last: str
@@ -32,7 +34,9 @@ def first_mux(parts: tuple[Component, ...], design: Design) -> MuxNets:
     mux = design.packages.multiplexer
     leads = next(dict(part.nets) for part in parts if part.ref == "U1")
     inputs = [n for n in (leads[str(lead)] for lead in mux.input_leads) if n != GROUND]
-    return MuxNets(leads[str(mux.supply)], leads[str(mux.output)], inputs[0], inputs[-1])
+    output, apart = leads[str(mux.output)], design.electrical.protection is not None
+    pin = f"{output}_PIN" if apart else output
+    return MuxNets(leads[str(mux.supply)], output, pin, inputs[0], inputs[-1])
 
 
 def channel(nets: MuxNets, design: Design) -> Iterator[str]:
@@ -58,10 +62,10 @@ def channel(nets: MuxNets, design: Design) -> Iterator[str]:
     yield from (
         ".control",
         f"tran {after_us / 1000:g}u {end_us:g}u 0 {after_us / 1000:g}u",
-        f"meas tran full_v find v({nets.output}) at={_BEFORE_US - 1}u",
-        f"meas tran dark_v find v({nets.output}) at={end_us - 1:g}u",
+        f"meas tran full_v find v({nets.pin}) at={_BEFORE_US - 1}u",
+        f"meas tran dark_v find v({nets.pin}) at={end_us - 1:g}u",
         f"let target = dark_v - {figures.step_v / 2:g}",
-        f"meas tran t_end when v({nets.output})=target rise=last",
+        f"meas tran t_end when v({nets.pin})=target rise=last",
         f"let settle_us = t_end*1e6 - {_BEFORE_US}",
         "print full_v dark_v settle_us",
         ".endc",
@@ -86,7 +90,6 @@ STEPS = {
     "dimmed": Step(0, 1, 0),
     "lit_up": Step(0, 0, 1),
 }
-SCAN_US = 5000  # 200 scans a second
 MEASURED_US = (100, 200, 400, 800, 1600, 3200)
 """After the change of channel."""
 _REST_US = 40_000  # before a step and after it: 50 times the slowest time constant assumed
@@ -120,7 +123,7 @@ def detectors(nets: MuxNets, design: Design, corner: Corner, step: Step) -> Iter
     change, in counts of 255; the firmware's wait is among the times, if it follows from the design.
     """
     figures = design.electrical.channel
-    changed_us = _REST_US + SCAN_US
+    changed_us = _REST_US + figures.most_scan_us
     waits = () if figures.wait_us is None else (math.ceil(figures.wait_us),)
     times = sorted({*MEASURED_US, *waits})
     last_us = changed_us + _REST_US
@@ -147,13 +150,13 @@ def detectors(nets: MuxNets, design: Design, corner: Corner, step: Step) -> Iter
         yield f"I{net} {net} b{net} {light}"
     yield ".model detector npn(is=1e-14 bf={gain} br=2 cjc={base} mjc=0 cje={base} mje=0)"
     yield from _changed(nets, design, changed_us)
-    read = f"find v({nets.output}) at="
+    read = f"find v({nets.pin}) at="
     yield from (
         ".options abstol=1e-15 chgtol=1e-17 gmin=1e-14",
         ".control",
-        f"tran {_STEP_US:g}u {last_us}u {changed_us - SCAN_US}u {_STEP_US:g}u",
-        f"meas tran end_v {read}{last_us - 1}u",
-        *(f"meas tran v_{us} {read}{changed_us + us}u" for us in times),
+        f"tran {_STEP_US:g}u {last_us:g}u {_REST_US}u {_STEP_US:g}u",
+        f"meas tran end_v {read}{last_us - 1:g}u",
+        *(f"meas tran v_{us} {read}{changed_us + us:g}u" for us in times),
         *(f"let wrong_{us} = {COUNTS}*(v_{us}-end_v)/{figures.supply_v:g}" for us in times),
         f"print end_v {' '.join(f'wrong_{us}' for us in times)}",
         ".endc",
@@ -166,7 +169,21 @@ def _pulled_up(nets: MuxNets, design: Design) -> Iterator[str]:
     up = (nets.first, nets.last) if design.wiring.own_pull_ups else (nets.output,)
     for number, net in enumerate(up, start=1):
         yield f"R{number} {nets.supply} {net} {design.wiring.pull_up_ohm:g}"
-    yield f"Cline {nets.output} 0 {figures.line_pf:g}p"
+    yield from _line(nets, design)
+
+
+def _line(nets: MuxNets, design: Design) -> Iterator[str]:
+    """The line to the controller's input: with a resistor before that, capacitance on both sides
+    of it."""
+    figures, protection = design.electrical.channel, design.electrical.protection
+    if protection is None:
+        yield f"Cline {nets.output} 0 {figures.line_pf:g}p"
+        return
+    pin_pf = protection.pin_pf + protection.capacitor_pf
+    yield f"Cline {nets.output} 0 {figures.line_pf - pin_pf - protection.diode_pf:g}p"
+    yield f"Cdiode {nets.output} 0 {protection.diode_pf:g}p"
+    yield f"Rseries {nets.output} {nets.pin} {protection.series_ohm:g}"
+    yield f"Cpin {nets.pin} 0 {pin_pf:g}p"
 
 
 def _changed(nets: MuxNets, design: Design, at_us: float) -> Iterator[str]:

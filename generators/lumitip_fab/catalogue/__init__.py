@@ -6,9 +6,9 @@ Every entry says where its figures come from (`source`) and how far to trust the
 
 from collections.abc import Mapping
 
+from lumitip_fab.catalogue import clamps, electronics
 from lumitip_fab.catalogue import controllers as control
 from lumitip_fab.catalogue import current_sources as sources
-from lumitip_fab.catalogue import electronics
 from lumitip_fab.catalogue.grippers import Gripper, ToolCoupling
 from lumitip_fab.catalogue.materials import Fastener, Filament, Film, Laminates, Printer, Silicone
 from lumitip_fab.catalogue.ordering import Fab, Prices
@@ -34,7 +34,8 @@ class Catalogue(Strict):
     inductors: Mapping[Name, electronics.Inductor]
     fuses: Mapping[Name, electronics.Fuse]
     transistors: Mapping[Name, control.Transistor]
-    tvs_diodes: Mapping[Name, electronics.TvsDiode]
+    tvs_diodes: Mapping[Name, clamps.TvsDiode]
+    esd_diodes: Mapping[Name, clamps.EsdDiode]
     indicators: Mapping[Name, electronics.Indicator]
     couplings: Mapping[Name, ToolCoupling]
     grippers: Mapping[Name, Gripper]

@@ -248,6 +248,8 @@ class Controller(Entry):
     """Capacitance of an analog input with the wire to it."""
     supply_v: float = Field(gt=0, le=5.5)
     """Supply of its inputs, which is also the detectors' supply."""
+    hbm_v: float | None = Field(default=None, gt=0, le=1e5)
+    """Discharge of the human-body model that its pins bear; none where it is not known (V)."""
     draws_ma: float = Field(default=0.0, ge=0, le=2000)
     """Largest current of the board itself; 0 where it is not known (mA)."""
     plug: Plug | None = None

@@ -194,29 +194,6 @@ class Fuse(Chip):
     """Melting I²t: integral of the squared current of a short pulse that melts it."""
 
 
-class TvsDiode(Chip):
-    """A unidirectional TVS diode: terminal 1 is its cathode."""
-
-    standoff_v: float = Field(gt=0, le=1000)
-    """Voltage up to which it carries no more than a leakage current."""
-    breakdown_v: Voltages
-    """Least and greatest breakdown voltage."""
-    clamping_v: float = Field(gt=0, le=1000)
-    """Largest voltage at `pulse_a`."""
-    pulse_a: float = Field(gt=0, le=1e4)
-    """Largest peak current of a pulse of 10/1000 µs."""
-
-    @model_validator(mode="after")
-    def _in_order(self) -> Self:
-        if not self.standoff_v < self.breakdown_v[0] < self.clamping_v:
-            raise ValueError(
-                f"standoff_v, breakdown_v and clamping_v are {self.standoff_v:g}, "
-                f"{self.breakdown_v[0]:g} and {self.clamping_v:g}; each must be higher than the "
-                "one before it"
-            )
-        return self
-
-
 class Multiplexer(Ordered, Entry):
     """An analog multiplexer with its leads in two rows."""
 

@@ -15,6 +15,7 @@ from lumitip_fab.checks.board_finger import measure_cell_prints, measure_cells, 
 from lumitip_fab.checks.board_indicator import measure_bulk, measure_indicator
 from lumitip_fab.checks.board_order import measure_wire_order
 from lumitip_fab.checks.board_probes import measure_probes
+from lumitip_fab.checks.board_protection import measure_protection
 from lumitip_fab.checks.board_read import ReadBoard, names_of, path_of, placed, read_any
 from lumitip_fab.checks.board_silk import measure_labels, measure_prints, measure_targets
 from lumitip_fab.checks.board_strings import measure_strings, measure_switch
@@ -254,6 +255,7 @@ MEASURES: tuple[Measure[ReadBoard], ...] = (
     measure_plug_in,
     measure_indicator,
     measure_probes,
+    measure_protection,
     measure_shrouds,
 )
 """Each applies to the boards that have what it measures: a finger's cells, the contacts of a

@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator
 from itertools import pairwise
 
+from lumitip_fab.checks.board_protection import line_of
 from lumitip_fab.checks.board_read import ReadBoard
 from lumitip_fab.checks.readers.kicad_board import Part, Terminal
 from lumitip_fab.checks.result import Measurement
@@ -53,12 +54,12 @@ def _analogs(read: ReadBoard) -> Iterator[int | None]:
 
 
 def _at_pins(read: ReadBoard, pins: tuple[str, ...]) -> Iterator[int | None]:
-    """The copper at pins of the controller, by its socket or by its own pads."""
+    """The copper of the wires of the controller's pins, by its socket or by its own pads."""
     for device in read.components:
         if device.kind in ("socket", "module"):
             for land, pin in zip(device.footprint.pads, device.pins, strict=True):
                 if pin in pins:
-                    yield read.group(device.ref, land.number)
+                    yield line_of(read, read.group(device.ref, land.number))
 
 
 def _rows(read: ReadBoard) -> Iterator[Part]:

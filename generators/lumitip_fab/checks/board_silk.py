@@ -21,7 +21,7 @@ LABEL_MM = 5.0  # from a name's middle to its contact, at most
 LETTER = 0.6  # width of a letter at least, of its height
 DOT_MM = 0.1  # longest line that is a dot
 _NOISE_MM = 1e-4
-_POLAR = "DQU"  # first letters of parts that have a first pad
+_POLAR = "DQUZ"  # first letters of parts that have a first pad
 _FIRST = "1"
 
 
@@ -156,7 +156,7 @@ def _unmarked(read: ReadBoard) -> Iterator[str]:
     for ref, part in read.parts.items():
         drawn = [line for line in lines.get(ref, ()) if line.front == part.front]
         pads = {t.number: t.copper.area for t in part.terminals if t.copper is not None}
-        if ref[:1] in {"D", "Q"} and not _leans(drawn, pads):
+        if ref[:1] in {"D", "Q", "Z"} and not _leans(drawn, pads):
             yield f"{ref} has no mark at pad 1"
         if ref[:1] == "U" and _dotted(drawn, pads) != {"1"}:
             yield f"{ref} has no dot at lead 1 alone"

@@ -117,17 +117,20 @@ def _wrong_switch(outputs: Path, rows: tuple[Row, ...], nets: Nets, design: Desi
 
 def _arrives(row: Row, nets: Nets, design: Design) -> str:
     """The controller's pin at the other end, as the firmware names it: straight, through the socket
-    of the breakout, or at the pads of a module."""
+    of the breakout, or at the pads of a module; through a resistor where one is before the pin."""
     board, pad = row.end
     pin = pad
     for auxiliary in (c for c in design.auxiliary_boards if c.name == board):
-        net = nets[board].get(pad)
+        reached = {nets[board].get(pad)}
+        for device in (d for d in auxiliary.components if d.kind == "resistor"):
+            ends = {nets[board].get(f"{device.ref}.{number}") for number in (1, 2)}
+            reached |= ends if nets[board].get(pad) in ends else set()
         pins = {
             name
             for device in auxiliary.components
             if device.kind in ("socket", "module")
             for land, name in zip(device.footprint.pads, device.pins, strict=True)
-            if nets[board].get(f"{device.ref}.{land.number}") == net
+            if nets[board].get(f"{device.ref}.{land.number}") in reached
         }
         pin = "+".join(sorted(pins))
     return re.sub(r"^D(?=\d+$)", "", pin)

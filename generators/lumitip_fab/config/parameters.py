@@ -239,6 +239,7 @@ class Parameters(Strict):
     emitter: Emitter
     receiver: Receiver
     controller: Controller
+    protection: sections.Protection
     supply: Supply
     wiring: Cables
     mask: sections.Mask

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, fields
 from typing import Any, get_args, get_type_hints
 
-from lumitip_fab.catalogue import Catalogue, controllers, current_sources, electronics
+from lumitip_fab.catalogue import Catalogue, clamps, controllers, current_sources, electronics
 from lumitip_fab.catalogue.grippers import Gripper, ToolCoupling
 from lumitip_fab.catalogue.materials import Fastener, Filament, Film, Printer, Silicone
 from lumitip_fab.config.parameters import Parameters
@@ -46,6 +46,15 @@ class ControllerParts:
 
 
 @dataclass(frozen=True)
+class ProtectionParts:
+    """Parts between the controller's pins and the wires."""
+
+    diode: clamps.EsdDiode | None
+    resistor: electronics.Resistor
+    capacitor: electronics.Capacitor | None
+
+
+@dataclass(frozen=True)
 class BreakoutParts:
     """Parts of the breakout board."""
 
@@ -67,7 +76,7 @@ class FlangeParts:
     fuse: electronics.Fuse
     transistor: controllers.Transistor
     resistor: electronics.Resistor
-    tvs: electronics.TvsDiode
+    tvs: clamps.TvsDiode
     inrush_resistor: electronics.PulseResistor
     indicator: electronics.Indicator | None
 
@@ -127,6 +136,7 @@ class Parts:
     receiver: ReceiverParts
     backing: BackingParts
     controller: ControllerParts
+    protection: ProtectionParts
     breakout: BreakoutParts
     flange: FlangeParts
     module: ModuleParts

@@ -112,6 +112,21 @@ class Board(Strict):
     mouse bites (`rails`); boards of polyimide never are."""
 
 
+class Protection(Strict):
+    """Parts between the controller's pins and the wires that leave its board."""
+
+    diode: Name
+    """ESD diode from each of these wires to ground, in `parts/esd_diodes.toml`; "none": the pins
+    are joined to the wires, without resistors and capacitors too."""
+    resistor: Name
+    """Package of the resistors, in `parts/resistors.toml`."""
+    series_ohm: float = Field(ge=10, le=1e4)
+    """Resistor between each signal's wire and its pin (ohm)."""
+    capacitor: Name
+    """Capacitor from each analog pin to ground, in `parts/capacitors.toml`, or "none". It
+    lengthens the wait after a change of channel."""
+
+
 class Breakout(Strict):
     """The board that the controller plugs into, and where the cables end."""
 

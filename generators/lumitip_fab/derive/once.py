@@ -97,7 +97,7 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
     flanges = derive_flange_body(config, flange, faults)
     panels = derive_panels(config, plan.board.box, (*breakout, *flange), faults)
     circuit = wiring.build_wiring(config, strings, muxing)
-    figures = derive_electrical(config, strings, circuit.pull_ups, faults)
+    figures = derive_electrical(config, strings, muxing, circuit.pull_ups, faults)
     joints = Boards(plan.emitter, plan.receiver, (*breakout, *flange))
     cabling = derive_cabling(config, joints, silhouette, coupling, circuit, figures, faults)
     faults.stop()

@@ -167,6 +167,12 @@ class Design:
         return tuple(auxiliary for auxiliary in self.auxiliary_boards if auxiliary.hot_loop)
 
     @property
+    def protecting(self) -> tuple[AuxiliaryBoard, ...]:
+        """The auxiliary board with the protection of the controller's pins; none without it."""
+        protection = self.electrical.protection
+        return tuple(b for b in self.auxiliary_boards if protection and b.name == protection.board)
+
+    @property
     def heat_steps(self) -> dict[str, HeatStep]:
         """The steps that heat something, by name."""
         return {step.name: step for step in self.heat}

@@ -76,7 +76,8 @@ class Channel:
     on_resistance_ohm: float
     detector_pf: float
     line_pf: float
-    """Common terminal of the multiplexer, wire and input of the controller."""
+    """Common terminal of the multiplexer, wire and input of the controller, with the parts that
+    protect it."""
     step_v: float
     """One step of the ADC."""
     full_scale_v: float
@@ -88,6 +89,8 @@ class Channel:
     wait_us: float | None
     """After a change of channel, until every phototransistor reads within half a count of 255 of
     its settled value; none where collectors float between their turns."""
+    most_scan_us: float
+    """Scan of all cells at the rate that readings settle for."""
     gain: tuple[float, float]
     """Current gain hFE of the detectors, least and greatest."""
     base_pf: tuple[float, float]
@@ -222,6 +225,45 @@ class Bulk:
 
 
 @dataclass(frozen=True)
+class Protection:
+    """Parts between the wires that leave the controller's board and its pins."""
+
+    board: str
+    """Auxiliary board that has them."""
+    diode: str
+    """In the catalogue."""
+    breakdown_v: float
+    """Greatest breakdown voltage of the diode."""
+    dynamic_ohm: float
+    diode_pf: float
+    """Greatest capacitance of the diode."""
+    series_ohm: float
+    resistor_tolerance: float
+    capacitor_pf: float
+    """Capacitor at an analog pin; 0 without one."""
+    pin_pf: float
+    """Capacitance of an analog input with the wire to it."""
+    lines: tuple[str, ...]
+    """Signals with a resistor before their pin, which is on a net of its own."""
+    clamped: tuple[str, ...]
+    """Nets with a diode at each of their wires."""
+    discharge_kv: float
+    """Contact discharge by IEC 61000-4-2."""
+    nh_per_mm: float
+    """Inductance of the way over a diode, by its distance from the wire's pad."""
+    reach_mm: float
+    """From a wire's pad to its diode, at most."""
+    pin_mm: float
+    """From resistor and capacitor to the pin, at most."""
+    hbm_v: float | None
+    """Discharge of the human-body model that a pin bears; none where it is not known."""
+    most_pin_a: float | None
+    """Largest pulse into a pin; none where it is not known."""
+    pin_a: float
+    """Pulse into a pin, an upper bound."""
+
+
+@dataclass(frozen=True)
 class Electrical:
     """Figures of the boards."""
 
@@ -237,5 +279,7 @@ class Electrical:
     """The flange's power LED; none without it."""
     bulk: Bulk | None = None
     """The receiver's bulk capacitor; none without it."""
+    protection: Protection | None = None
+    """None where the controller's pins are joined to the wires."""
     ambient: AmbientScan | None = None
     """None where the LEDs are always on."""

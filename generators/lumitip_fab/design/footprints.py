@@ -11,12 +11,23 @@ from lumitip_fab.catalogue.electronics import Chip, Multiplexer, ResistorArray
 from lumitip_fab.design import Design
 from lumitip_fab.design.pcb import Facing, Footprint, Form, Pad, Shroud
 from lumitip_fab.design.shape import Box
-from lumitip_fab.text import table_of
 
 DOT_MM = 1.0
 """Diameter of a mark for cameras, and of a test point behind a wire pad."""
 _TOE_MM = 0.4  # pad beyond the tip of a lead
-_CHIPS: dict[str, str] = table_of("design/footprints.toml")
+_CHIPS = {
+    "resistor": "RESC",
+    "capacitor": "CAPC",
+    "led": "LEDC",
+    "indicator": "LEDC",
+    "photodetector": "PTRC",
+    "fuse": "FUSC",
+    "inductor": "INDC",
+    "crystal": "XTAL",
+    "tvs diode": "DIOM",
+    "esd diode": "DIOM",
+}
+"""First letters of a chip's name by its kind; of phototransistors the standard has none."""
 
 
 def of_design(design: Design) -> Iterator[tuple[str, Footprint]]:

@@ -18,6 +18,10 @@ def outside(design: Design) -> Iterator[Row]:
     breakout = [board for board in design.auxiliary_boards if board.name == "breakout"]
     for auxiliary in design.auxiliary_boards:
         yield from _breakout(auxiliary) if auxiliary in breakout else _flange(auxiliary)
+    if protection := design.electrical.protection:
+        most_ma = 1000 * (protection.most_pin_a or math.inf)
+        pin_ma = 1000 * protection.pin_a
+        yield from rows_of("protected", protection=protection, pin_ma=pin_ma, most_ma=most_ma)
     for finger in design.fingers:
         yield from _held_at(finger, design)
     for supply in design.electrical.supplies:

@@ -24,6 +24,7 @@ _MARKED = (
     "transistor",
     "switch",
     "tvs diode",
+    "esd diode",
     "indicator",
     "socket",
     "header",
@@ -95,7 +96,7 @@ def _outline(component: Component, rules: Rules, gap_mm: float) -> tuple[Stroke,
         return _socket(shape.body, rules)
     if kind in ("regulator", "current source", "transistor", "switch"):
         return (_dot(shape.pads[0], rules, _BAR_MM),)
-    if kind in ("tvs diode", "indicator"):
+    if kind in ("tvs diode", "esd diode", "indicator"):
         return (_bar(shape, rules), *_sides(shape, rules, roomy))
     if kind == "multiplexer":
         return _multiplexer(shape, rules)

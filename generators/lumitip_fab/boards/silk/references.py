@@ -37,20 +37,29 @@ def print_references(page: Page) -> tuple[PlacedComponent, ...]:
         return _among_cells(page, _edges(cells.at, cells.pitch_mm), cells.pitch_mm)
     for part in components:
         if part.kind not in ("fiducial", "test point"):  # a test point has the name of its net
-            places = _round(page, part.ref, courtyard(part))
+            places = _round(page, part.ref, courtyard(part), _height_mm(page, part))
             page.require(repr(part.ref), places, part.side, _FREE_MM)
     return components
 
 
-def _round(page: Page, ref: str, yard: Box) -> list[Text]:
+def _height_mm(page: Page, part: PlacedComponent) -> float:
+    """Of the reference: less in a row of parts that are nearer to each other than it is long; 0 is
+    as small as is legible."""
+    alike = (p for p in page.board.components if p.footprint.name == part.footprint.name)
+    apart = [math.dist((p.x_mm, p.y_mm), (part.x_mm, part.y_mm)) for p in alike if p is not part]
+    return _REF_MM if page.length_mm(part.ref, _REF_MM) < min(apart, default=math.inf) else 0.0
+
+
+def _round(page: Page, ref: str, yard: Box, height_mm: float) -> list[Text]:
     """Places for a reference round its part: at its ends, then above, below and upright; then the
-    same farther away."""
+    same farther away, and all of them in the smallest letters."""
     turns = (
         *((way, False) for way in (LEFT, RIGHT, UP, DOWN)),
         *((way, True) for way in (UP, DOWN, LEFT, RIGHT)),
     )
     return [
-        page.beside(ref, *_rectangle(yard), way, _AWAY_MM + farther, upright, _REF_MM)
+        page.beside(ref, *_rectangle(yard), way, _AWAY_MM + farther, upright, high)
+        for high in (height_mm, 0.0)
         for farther in (0.0, 1.0, 2.0, 3.0)
         for way, upright in turns
     ]

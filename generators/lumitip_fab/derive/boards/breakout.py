@@ -5,7 +5,7 @@
 │   [GND 24V LED]  [GND 24V 5V]  │  wires to the emitter and from the flange
 │  ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ │  a pad for each pin of the controller
 │  □ ■ ■ ■ ■ ■ ■ ■ ■ ■ ■ ■ ■ ■ ■ │  socket
-│   ·                        ·   │  screw holes
+│   ·                        ·   │  screw holes; between the sockets parts at the pins
 │  □ ■ ■ ■ ■ ■ ■ ■ ■ ■ ■ ■ ■ ■ ■ │
 │  ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ ○ │
 │   [S0 S1 S2 3V3 GND A0 A1 …]   │  wires to the receiver, in its own order
@@ -18,19 +18,22 @@ from dataclasses import dataclass
 from lumitip_fab.catalogue.controllers import Plug, Strip
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards import connectors, ties
+from lumitip_fab.derive.boards.protection import breakout_protection, refuse_breakout
 from lumitip_fab.derive.diagnostics import Diagnostics
+from lumitip_fab.derive.wiring.protection import pin_net
 from lumitip_fab.derive.wiring.wiring import Muxing
-from lumitip_fab.design import AuxiliaryBoard, Box, Component, Note, footprints
-from lumitip_fab.design.components import mounted, numbered, wires
+from lumitip_fab.design import AuxiliaryBoard, Box, Component, Note, Point, footprints
+from lumitip_fab.design.components import fiducials, mounted, numbered, wires
 
-REGULATED = "5V"
-"""Supply of the controller, from the flange's regulator."""
 CORNER_MM = 1.0
 PAD_MM, DRILL_MM = 1.7, 1.0  # of the pads beside the sockets
 EDGE_MM = 1.0  # wire pads to the board's edge
 BETWEEN_MM = (
     0.4  # least gap between rows of copper, for their labels' sake more where there is room
 )
+MARK_MM = 2.0, 5.0
+"""Marks for the placing machine's camera: to the board's end, and from its middle."""
+MARKS = (-1, -1), (1, -1), (-1, 1)
 HOLE_WEB_MM = 1.0  # board and tracks between a screw hole and a socket's row
 
 
@@ -58,7 +61,15 @@ def derive_breakout(
     half = p.breakout.hole_spacing_mm / 2
     holes = ((-half, 0.0), (half, 0.0))
     box = Box(-length / 2, length / 2, -width / 2, width / 2)
-    parts = _components(config, plug, strip, muxing, rows)
+    joints = _components(config, plug, strip, muxing, rows)
+    cables = tuple(part for part in joints if part.kind == "wires" and part.pins)
+    pins = _places(plug, strip, _net_of(plug, muxing) | switching(config), rows)
+    beside_mm = rows.beside_mm + PAD_MM / 2
+    protecting = breakout_protection(config, muxing, cables, pins, beside_mm)
+    band_mm = rows.wires_mm - connectors.WIDE[1] / 2 - beside_mm
+    refuse_breakout(config, cables, protecting, band_mm, holes, faults)
+    marks = [(sign * (length / 2 - MARK_MM[0]), up * MARK_MM[1]) for sign, up in MARKS]
+    parts = (*joints, *protecting, *(fiducials(marks) if protecting else ()))
     screws = [(at, p.breakout.hole_mm) for at in holes]
     emitter = connectors.emitter_signals(config)
     return (
@@ -73,7 +84,7 @@ def derive_breakout(
             ties=ties.derive_ties(parts, box, CORNER_MM, screws, "breakout.board_mm", faults),
             components=parts,
             notes=(Note("USB", (1.5 - length / 2, 0.0), 1.2, 90.0),),
-            supplies=tuple(dict.fromkeys(("GND", REGULATED, "3V3", emitter[1]))),
+            supplies=tuple(dict.fromkeys(("GND", connectors.REGULATED, "3V3", emitter[1]))),
             keep_outs=(),
             hot_loop=(),
         ),
@@ -82,7 +93,7 @@ def derive_breakout(
 
 def supply_signals(config: Input) -> tuple[str, ...]:
     """Signals of the cable from the flange, which feeds emitter and controller."""
-    return tuple(dict.fromkeys((*connectors.emitter_signals(config)[:2], REGULATED)))
+    return tuple(dict.fromkeys((*connectors.emitter_signals(config)[:2], connectors.REGULATED)))
 
 
 def _rows(plug: Plug, strip: Strip, width_mm: float) -> Rows:
@@ -97,7 +108,10 @@ def _rows(plug: Plug, strip: Strip, width_mm: float) -> Rows:
 def _components(
     config: Input, plug: Plug, strip: Strip, muxing: Muxing, rows: Rows
 ) -> tuple[Component, ...]:
-    nets = _net_of(plug, muxing) | switching(config)
+    nets = {
+        pin: pin_net(config, muxing, net)
+        for pin, net in (_net_of(plug, muxing) | switching(config)).items()
+    }
     sockets, beside = [], []
     value, shape = config.parameters.breakout.socket, footprints.socket(strip)
     for number, (names, side) in enumerate(zip(plug.rows, (-1, 1), strict=True), start=1):
@@ -124,9 +138,21 @@ def _components(
 
 
 def _net_of(plug: Plug, muxing: Muxing) -> dict[str, str]:
-    """Net of each pin that has one by another name than its own."""
-    nets = {pin: f"S{i}" for i, pin in enumerate(muxing.select_pins)}
-    return nets | {plug.ground: "GND", plug.supply: REGULATED, plug.regulated: "3V3"}
+    """Net of the wire of each pin that has one, and of the supplies."""
+    nets = {pin: pin for pin in muxing.adc_pins}
+    nets |= {pin: f"S{i}" for i, pin in enumerate(muxing.select_pins)}
+    return nets | {plug.ground: "GND", plug.supply: connectors.REGULATED, plug.regulated: "3V3"}
+
+
+def _places(plug: Plug, strip: Strip, nets: dict[str, str], rows: Rows) -> dict[str, Point]:
+    """Place of a pin with each net."""
+    middle = (strip.ways - 1) / 2
+    return {
+        nets[name]: ((i - middle) * strip.pitch_mm, side * rows.socket_mm)
+        for names, side in zip(plug.rows, (-1, 1), strict=True)
+        for i, name in enumerate(names)
+        if name in nets
+    }
 
 
 def switching(config: Input) -> dict[str, str]:

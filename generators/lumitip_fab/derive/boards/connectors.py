@@ -7,8 +7,11 @@ from lumitip_fab.design import Connector
 MOST_WIDE_WAYS = 9
 POWER_WIRES = 2
 """Supply and ground of the receiver."""
+GROUND = "GND"
 CONTROLLER = "3V3"
 """Supply of the receiver, from the controller."""
+REGULATED = "5V"
+"""Supply of the controller, from the flange's regulator."""
 SWITCH = "LED"
 """Signal that switches the LEDs, high is on."""
 WIDE = (2.54, 2.286, 1.2)  # pitch, pad, drill: as published

@@ -67,7 +67,7 @@ def derive_plug_in(config: Input, faults: Diagnostics) -> tuple[PlugIn, ...]:
             left_at_v=p.supply.voltage_v,
             capacitor_tolerance=CAPACITANCE_TOLERANCE,
             breakdown_v=parts.tvs.breakdown_v,
-            tvs_ohm=_tvs_ohm(config),
+            tvs_ohm=parts.tvs.dynamic_ohm,
             limit_v=parts.regulator.input_v[1] if is_regulated(config) else parts.tvs.clamping_v,
             peak_a=high_v / low_ohm if full_uf else 0.0,
             pulse_a=parts.transistor.pulse_a,
@@ -105,12 +105,6 @@ def _surge_j(config: Input) -> float:
     high_v = config.parameters.supply.voltage_v * (1 + SUPPLY_TOLERANCE)
     most_nf = config.parts.flange.input_capacitor.capacitance_nf * (1 + CAPACITANCE_TOLERANCE)
     return most_nf * 1e-9 * high_v**2 / 2
-
-
-def _tvs_ohm(config: Input) -> float:
-    """Dynamic resistance of the TVS diode, from breakdown to clamping."""
-    tvs = config.parts.flange.tvs
-    return (tvs.clamping_v - tvs.breakdown_v[1]) / tvs.pulse_a
 
 
 def _refuse_tvs(config: Input, faults: Diagnostics) -> None:

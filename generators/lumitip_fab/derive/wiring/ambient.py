@@ -20,11 +20,9 @@ def derive_ambient(config: Input, channel: Channel, faults: Diagnostics) -> Ambi
     """Waits and period where the LEDs can be switched; refused where a frame takes too long."""
     if config.parts.emitter.switch is None:
         return None
-    mux, cells = config.parts.receiver.multiplexer, sum(config.parameters.grid.columns)
     light_us = _light_us(config.parameters.receiver.pull_up_ohm, channel)
-    waits_us = 2 ** len(mux.select) * (channel.wait_us or channel.settle_us)
-    scan_us = waits_us + cells * CONVERSION_US
-    period_us = STEP_US * math.ceil((2 * (light_us + scan_us) + RADIO_US) / STEP_US)
+    scanned_us = scan_us(config, channel.wait_us or channel.settle_us)
+    period_us = STEP_US * math.ceil((2 * (light_us + scanned_us) + RADIO_US) / STEP_US)
     faults.unless(
         period_us <= MOST_PERIOD_US,
         "frame_long",
@@ -34,9 +32,15 @@ def derive_ambient(config: Input, channel: Channel, faults: Diagnostics) -> Ambi
     return AmbientScan(
         light_us=light_us,
         near_counts=NEAR_COUNTS,
-        scan_us=scan_us,
+        scan_us=scanned_us,
         period_us=period_us,
     )
+
+
+def scan_us(config: Input, wait_us: float) -> float:
+    """Shortest scan of all cells with this wait for each input of the multiplexers."""
+    inputs: int = 2 ** len(config.parts.receiver.multiplexer.select)
+    return inputs * wait_us + sum(config.parameters.grid.columns) * CONVERSION_US
 
 
 def _light_us(pull_up_ohm: float, channel: Channel) -> float:

@@ -8,21 +8,25 @@ from lumitip_fab.derive.boards.flange_circuit import derive_regulated
 from lumitip_fab.derive.boards.indicator import derive_indicator
 from lumitip_fab.derive.boards.plug_in import derive_plug_in
 from lumitip_fab.derive.diagnostics import Diagnostics
-from lumitip_fab.derive.wiring.ambient import derive_ambient
+from lumitip_fab.derive.wiring.ambient import derive_ambient, scan_us
+from lumitip_fab.derive.wiring.protection import derive_protection
 from lumitip_fab.derive.wiring.ratings import RESISTOR_TOLERANCE, SUPPLY_TOLERANCE
 from lumitip_fab.derive.wiring.sources import regulation
 from lumitip_fab.derive.wiring.strings import Strings as DerivedStrings
 from lumitip_fab.derive.wiring.strings import string_of
-from lumitip_fab.design.electrical import Channel, Electrical, Strings
+from lumitip_fab.derive.wiring.wiring import Muxing
+from lumitip_fab.design.electrical import Channel, Electrical, Protection, Strings
 
 SHORTER = 0.75  # of a string's LEDs, to compare
 
 
 def derive_electrical(
-    config: Input, strings: DerivedStrings, pull_ups: int, faults: Diagnostics
+    config: Input, strings: DerivedStrings, muxing: Muxing, pull_ups: int, faults: Diagnostics
 ) -> Electrical:
     """Electrical figures from parts, strings and supply."""
-    p, channel = config.parameters, _channel(config)
+    p, protection = config.parameters, derive_protection(config, muxing, faults)
+    channel = _channel(config, protection)
+    _refuse_slow(config, channel, protection, faults)
     return Electrical(
         strings=_strings(config, strings),
         channel=channel,
@@ -31,6 +35,7 @@ def derive_electrical(
         plug_ins=derive_plug_in(config, faults),
         indicators=derive_indicator(config, faults),
         bulk=derive_bulk(config, pull_ups),
+        protection=protection,
         ambient=derive_ambient(config, channel, faults),
     )
 
@@ -59,13 +64,14 @@ def _strings(config: Input, strings: DerivedStrings) -> Strings:
     )
 
 
+SCANS_PER_S = 200
 COUNTS, SETTLED_COUNTS = 255, 0.5
 WAIT_SHARE = 0.88
 """Of the bound in `_wait_us`: the slowest reading, of a phototransistor just before it saturates,
 needs 0.85 of it over the spread of gain and capacitance."""
 
 
-def _channel(config: Input) -> Channel:
+def _channel(config: Input, protection: Protection | None) -> Channel:
     """A detector under light pulls down what its pull-up pulls up.
 
     supply ── pull-up ──┬── line (C) ── ADC          shared
@@ -73,6 +79,8 @@ def _channel(config: Input) -> Channel:
 
     supply ── pull-up ──┬── detector ── ground       its own
                         └── on-resistance ── line (C) ── ADC
+
+    A resistor before the ADC is small beside the pull-up: its time constant adds to the wait.
     """
     p, parts = config.parameters, config.catalogue
     detector = parts.photodetectors[p.receiver.photodetector]
@@ -86,7 +94,11 @@ def _channel(config: Input) -> Channel:
         pull_up + (0.0 if own else mux.on_resistance_ohm)
     )
     full_v = supply - pull_up * min(saturated, detector.light_current_ua * 1e-6)
-    line_pf = mux.common_pf + controller.input_pf
+    line_pf, series_us = mux.common_pf + controller.input_pf, 0.0
+    if protection:
+        line_pf += protection.diode_pf + protection.capacitor_pf
+        pin_pf = protection.pin_pf + protection.capacitor_pf
+        series_us = protection.series_ohm * pin_pf * 1e-6 * math.log(COUNTS / SETTLED_COUNTS)
     seconds = (pull_up * (line_pf + detector.capacitance_pf)) * 1e-12
     if own:
         seconds += mux.on_resistance_ohm * line_pf * 1e-12
@@ -106,9 +118,26 @@ def _channel(config: Input) -> Channel:
         full_scale_v=full_v,
         dark_v=dark_v,
         settle_us=1e6 * seconds * math.log(max(change_v / (step_v / 2), 1.0)),
-        wait_us=_wait_us(pull_up, line_pf) if own else None,
+        wait_us=_wait_us(pull_up, line_pf) + series_us if own else None,
+        most_scan_us=1e6 / SCANS_PER_S,
         gain=detector.gain,
         base_pf=detector.base_pf,
+    )
+
+
+def _refuse_slow(
+    config: Input, channel: Channel, protection: Protection | None, faults: Diagnostics
+) -> None:
+    """Refuse a capacitor at the analog pins with which a scan takes too long."""
+    if protection is None or channel.wait_us is None or not protection.capacitor_pf:
+        return
+    takes_us = scan_us(config, channel.wait_us)
+    faults.unless(
+        takes_us <= channel.most_scan_us,
+        "scan_slow",
+        takes_ms=takes_us / 1000,
+        most_ms=channel.most_scan_us / 1000,
+        rate=SCANS_PER_S,
     )
 
 

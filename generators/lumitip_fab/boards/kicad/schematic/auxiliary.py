@@ -8,6 +8,7 @@ from lumitip_fab.boards.kicad.schematic import power_path
 from lumitip_fab.boards.kicad.schematic.contact_blocks import draw_sockets, draw_strips
 from lumitip_fab.boards.kicad.schematic.draft import REACH_MM, Draft, net_of, nets_of, other_net
 from lumitip_fab.boards.kicad.schematic.module_block import draw_module
+from lumitip_fab.boards.kicad.schematic.protection_block import draw_protection
 from lumitip_fab.boards.kicad.schematic.shapes import pin_names, pin_type
 from lumitip_fab.boards.kicad.schematic.symbols import TWO_TERMINALS, drawn
 from lumitip_fab.boards.model import GROUND, SUPPLY, Placement
@@ -17,8 +18,9 @@ Parts = Sequence[Component]
 Titled = tuple[str, Draft]
 Drawing = tuple[str, Callable[[Draft], None]]
 """A title and what draws the block."""
-_LEADERS = ("fuse", "regulator", "indicator", "module")
-"""Kinds of parts that begin a block; the parts after them on the board's list belong to it."""
+_LEADERS = ("fuse", "regulator", "indicator", "module", "esd diode")
+"""Kinds of parts that begin a block; the parts after them on the board's list belong to it. ESD
+diodes are in one."""
 _CABLES = {"S0": "To the receiver", "LED": "To the emitter", "D+": "USB", "DIO": "Debugger"}
 """Use of wire pads by one of their nets."""
 _FLAG_STEPS = 5
@@ -54,7 +56,7 @@ def _groups(parts: Parts) -> list[list[Component]]:
     """Parts that are drawn together: each group with what its first part is for."""
     found: list[list[Component]] = []
     for part in parts:
-        if part.kind in _LEADERS:
+        if part.kind in _LEADERS and not (found and found[-1][0].kind == part.kind == "esd diode"):
             found.append([])
         if found and not part.contacts and part.kind != "test point":
             found[-1].append(part)
@@ -104,6 +106,8 @@ def _circuit(group: Parts, parts: Parts) -> Iterator[Drawing]:
     leader, kinds = group[0], [part.kind for part in group]
     if leader.kind == "fuse" and kinds.count("transistor") == 1:
         yield "Reverse supply and plug-in", partial(power_path.draw_plug_in, group=group)
+    elif leader.kind == "esd diode":
+        yield "Protection of the pins", partial(draw_protection, group=group)
     elif kinds == ["indicator", "resistor"]:
         yield "Power LED", partial(power_path.draw_indicator, group=group)
     elif leader.kind == "module":

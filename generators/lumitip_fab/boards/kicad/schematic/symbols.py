@@ -25,6 +25,7 @@ TWO_TERMINALS = {
     "inductor": "L",
     "crystal": "Y",
     "tvs diode": "D",
+    "esd diode": "Z",
     "indicator": "LED",
 }
 """Symbols of parts that are drawn upright, the first terminal at the top, or turned."""
