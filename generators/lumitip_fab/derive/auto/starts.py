@@ -2,18 +2,23 @@
 
 import math
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 
 from lumitip_fab.config.automatic import Value, automatic_fields
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.auto.strings import choose_resistors, choose_strings
+from lumitip_fab.derive.boards.boards import Plan
 from lumitip_fab.derive.boards.connectors import POWER_WIRES
 from lumitip_fab.derive.boards.module import MOST_WIRES
 from lumitip_fab.derive.boards.packages import LEAST_RING_MM
 from lumitip_fab.derive.boards.plug_in import least_inrush_ohm
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.cells import bending_lines, lane_mm
-from lumitip_fab.derive.finger.stack import is_flex, least_standoff_mm, mask_mm
-from lumitip_fab.derive.once import lay_out
+from lumitip_fab.derive.finger.stack import behind_mm, is_flex, least_standoff_mm, mask_mm
+from lumitip_fab.derive.finger.strength import Body, bears
+from lumitip_fab.derive.mount.mount import flare_end_mm
+from lumitip_fab.derive.mount.rules import LEAST_FLARE_MM
+from lumitip_fab.derive.once import derive_body, lay_out, optics_of
 from lumitip_fab.derive.wiring.ratings import (
     SUPPLY_TOLERANCE,
     sold_from,
@@ -31,6 +36,11 @@ FINE_MM = {"track": 0.15, "gap": 0.15, "via": 0.45, "drill": 0.2}
 LEAST_DRILL_MM = 0.15  # what `board.via_drill_mm` allows
 ROOMY_CHANNEL_MM = 4.0
 LEAST_EDGE_GAP_MM = 0.25  # that common PCB fabs keep from copper to a routed edge
+COMPLIANT_N, COMPLIANT_BEND = 5.0, 0.25
+FLARE_ON_PAD_MM = 2.2
+DEPTH_STEP_MM = 0.2  # of flares that are tried
+MOST_FLOORS = 8  # that are tried, each 0.1 mm thicker
+FLAP_GAP_MM = 3.0  # flap to the flare, with the fillets beside it
 LANE_USE = 0.8  # share of the lane between two columns that tracks can fill
 
 
@@ -49,6 +59,8 @@ def proposals() -> tuple[Callable[[Input], Iterator[Proposal]], ...]:
         _flange,
         _standoff,
         _interface,
+        _load_case,
+        _flare,
     )
 
 
@@ -220,6 +232,59 @@ def _interface(config: Input) -> Iterator[Proposal]:
             math.ceil(held * 10 - 1e-6) / 10,
             "as far as the cells: it holds the multiplexers and the tracks before them",
         )
+
+
+def _load_case(config: Input) -> Iterator[Proposal]:
+    """Rated force, most bending and glue by the kind of finger."""
+    if is_flex(config.parameters):
+        yield "finger.rated_force_n", COMPLIANT_N, "a compliant finger gives way"
+        yield "finger.bend_fraction", COMPLIANT_BEND, "a compliant finger gives way"
+        yield "backing.glue", "polyurethane", "holds on a plate that bends"
+
+
+def _flare(config: Input) -> Iterator[Proposal]:
+    """Length of the ramp's flare, to where the mask's flap at the tip may lie; its depth, and a
+    thicker floor where no flare is enough, by the rated force."""
+    p = config.parameters
+    if is_flex(p):
+        yield "backing.flare_mm", FLARE_ON_PAD_MM, "on the pad of the interface"
+        return
+    try:
+        plan = lay_out(config, Diagnostics(config)).plan
+    except InputError:
+        return
+    body, optics = _body(config, plan), optics_of(config)
+    flap = p.mask.flap_mm + p.mask.allowance_mm + FLAP_GAP_MM
+    free = body.outline.tip_y_mm - max(flap, p.tip.slant_start_mm)
+    free -= body.mount.ramp_end_y_mm(body.stack.back_z_mm, body.stack.rim_z_mm)
+    length = max(math.floor(10 * free) / 10, LEAST_FLARE_MM)
+    yield "backing.flare_mm", length, "as far as the back is free, up to the mask's flap at the tip"
+    if "backing.flare_mm" not in config.automatic:
+        length = p.backing.flare_mm
+    floors = [p.stack.floor_mm]
+    if "stack.floor_mm" in config.automatic:
+        floors += [round(p.stack.floor_mm + 0.1 * step, 2) for step in range(1, MOST_FLOORS)]
+    depths = [p.backing.flare_depth_mm]
+    if "backing.flare_depth_mm" in config.automatic:
+        deepest = body.mount.block_back_w_mm - behind_mm(p) - LEAST_FLARE_MM
+        steps = max(math.floor((deepest - depths[0]) / DEPTH_STEP_MM), 0)
+        depths += [round(depths[0] + DEPTH_STEP_MM * step, 2) for step in range(1, steps)]
+    for floor in floors:
+        tried = config.with_values({"stack.floor_mm": floor})
+        body = _body(tried, plan)
+        for depth in depths:
+            end = flare_end_mm(length, depth)
+            mount = replace(body.mount, flare_mm=length, flare_depth_mm=depth, flare_end_mm=end)
+            if bears(tried, replace(body, mount=mount), optics):
+                reason = f"bears finger.rated_force_n = {p.finger.rated_force_n:g} N"
+                yield "backing.flare_depth_mm", depth, reason
+                if floor > floors[0]:
+                    yield "stack.floor_mm", floor, f"the finger {reason}"
+                return
+
+
+def _body(config: Input, plan: Plan) -> Body:
+    return derive_body(config, plan, Diagnostics(config))[0]
 
 
 def _flange(config: Input) -> Iterator[Proposal]:

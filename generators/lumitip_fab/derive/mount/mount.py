@@ -19,6 +19,7 @@ from lumitip_fab.derive.mount.fasteners import bolt_length_mm
 from lumitip_fab.derive.mount.rules import refuse_block, refuse_place
 from lumitip_fab.design import Closing, Letter, Mould, Mount, Outline, Stack
 
+FLARE_THINS = 0.4  # of its depth at the ramp, where the flare ends: the bending moment thins so
 LETTER_MARGIN_MM = 0.6  # or a printed line, to the bed, and to where the ramp begins
 
 
@@ -64,9 +65,18 @@ def derive_mount(config: Input, outline: Outline, plan: Plan, faults: Diagnostic
         nose=fits.nose,
         stroke_mm=gripper.stroke_mm,
         pad_w_mm=gripper.pad_w_mm,
+        flare_mm=p.backing.flare_mm,
+        flare_depth_mm=p.backing.flare_depth_mm,
+        flare_end_mm=flare_end_mm(p.backing.flare_mm, p.backing.flare_depth_mm),
         letter=_letter(config, gripper, faults),
+        force_n=gripper.force_n or 0.0,
         unsure=gripper.unsure,
     )
+
+
+def flare_end_mm(flare_mm: float, depth_mm: float) -> float:
+    """Height of a flare where it ends, less than its length."""
+    return min(FLARE_THINS * depth_mm, flare_mm / 2)
 
 
 def _side_by_side(spacing_mm: float | None) -> tuple[float, ...]:
