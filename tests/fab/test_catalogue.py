@@ -10,8 +10,9 @@ import pytest
 from pydantic import TypeAdapter, ValidationError
 from reportlab.pdfbase.pdfmetrics import getFont
 
-from lumitip_fab.catalogue import Catalogue, Controller, Led, Multiplexer
-from lumitip_fab.catalogue.electronics import Resistor
+from lumitip_fab.catalogue import Catalogue
+from lumitip_fab.catalogue.controllers import Controller
+from lumitip_fab.catalogue.electronics import Led, Multiplexer, Resistor
 from lumitip_fab.catalogue.record import Sourced
 from lumitip_fab.config.load import Input
 from lumitip_fab.typeface import BOLD, CODE, PLAIN, load_typeface
