@@ -102,6 +102,8 @@ def _channel(config: Input, protection: Protection | None) -> Channel:
     seconds = (pull_up * (line_pf + detector.capacitance_pf)) * 1e-12
     if own:
         seconds += mux.on_resistance_ohm * line_pf * 1e-12
+    if protection:  # the pin's share of all capacitance is charged late
+        seconds += protection.series_ohm * pin_pf**2 / (line_pf + detector.capacitance_pf) * 1e-12
     step_v = supply / 2**controller.adc_bits
     change_v = dark_v - full_v
     if own:  # the line shares its charge with the dark collector before both are pulled up
