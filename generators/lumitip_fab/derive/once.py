@@ -104,7 +104,6 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
     rules = derive_rules(config, faults)
     refuse_receiver_capacitor(config, faults)
     optics = optics_of(config)
-    strength = derive_strength(config, body, optics, faults)
     breakout = derive_breakout(config, muxing, faults)
     holders = derive_holder(config, breakout, faults)
     flange = derive_flange(config, strings, muxing, faults)
@@ -114,6 +113,8 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
     figures = derive_electrical(config, strings, muxing, circuit.pull_ups, faults)
     joints = Boards(plan.emitter, plan.receiver, (*breakout, *flange))
     cabling = derive_cabling(config, joints, silhouette, coupling, circuit, figures, faults)
+    faults.stop()
+    strength = derive_strength(config, body, optics, faults)
     faults.stop()
     mux, channel = wiring.assign(config, cells, plan.muxes)
     layout = Layout(

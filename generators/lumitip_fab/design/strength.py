@@ -93,6 +93,8 @@ def loads(of: Loaded, strength: Strength, cells_h_mm: Vectors, depth_mm: float) 
         (np.maximum(beam.tension_mpa(layer), beam.side_tension_mpa(layer)) * force, limit)
         for layer, limit in of.printed
     ]
+    if not np.all(sum((layer.area_mm2 for layer, _ in of.printed), np.zeros(1))):
+        parts = [(np.full_like(beam.h_mm, np.inf), limit) for _, limit in of.printed]
     worst, limit = max(parts, key=lambda part: float(part[0].max()) / part[1])
     bare = beam.alone(*(layer for layer, _ in of.printed))
     alone = min(limit / float(bare.tension_mpa(layer).max()) for layer, limit in of.printed)
