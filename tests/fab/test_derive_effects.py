@@ -22,7 +22,7 @@ def published(inputs: dict[str, Input]) -> Input:
     parts = given.catalogue
     more = {
         "leds": ("15406085BA300", {"exponent": 2.0}),
-        "resistors": ("0603", {"power_w": 0.09}),
+        "resistors": ("0603", {"order_number": "OTHER{code}"}),
         "resistor_arrays": ("4x0603", {"order_number": "other"}),
         "capacitors": ("100nF 0603", {"capacitance_nf": 220.0}),
         "films": ("TPU 100um", {"soften_c": 80.0}),
