@@ -124,7 +124,9 @@ def measure_tip(part: Printed) -> Iterator[Measurement]:
     xs = np.linspace(-0.45, 0.45, 9) * outline.tip_width_mm
     edge = _thickness(part, np.array([(x, outline.tip_y_mm - 0.05) for x in xs])) - 0.05 * slope
     yield part.near("tip_edge", edge, tip.edge_mm, DEPTH_MM)
-    low, high = tip.slant_start_y_mm + 0.3, outline.tip_y_mm - 0.3
+    board = part.design.board
+    low = max(tip.slant_start_y_mm, board.pocket.y_max_mm + board.roof_mm) + 0.3
+    high = outline.tip_y_mm - 0.3
     thick = _thickness(part, np.array([(x, y) for x in xs for y in (low, high)]))
     angles = np.degrees(np.arctan((thick[::2] - thick[1::2]) / (high - low)))
     yield part.near("slant", angles, tip.angle_deg, ANGLE_DEG, unit="°")
