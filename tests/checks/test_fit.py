@@ -95,7 +95,7 @@ def test_files_that_were_drawn_for_another_fit_are_told(fit_mm: float, outputs: 
     tight_flange = {name for name in tight if name.startswith("flange.")}
     assert told == {f"flange.{name}" for name in ROUND_FLANGE | ROUND_BOARD} | tight_flange
     told = {m.check for m in holder.measure(outputs, other) if not m.passed}
-    assert told == {"holder.tray_gap", "holder.cradle"} | (tight - tight_flange)
+    assert told == {"holder.tray_gap", "holder.cradle", "holder.preload"} | (tight - tight_flange)
 
 
 def test_a_fit_that_leaves_no_gap_is_refused_with_the_numbers(fitted: Derived) -> None:

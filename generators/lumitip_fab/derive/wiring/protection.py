@@ -51,7 +51,8 @@ def protecting_board(config: Input) -> str | None:
 
 def lines(config: Input, muxing: Muxing) -> tuple[str, ...]:
     """Signals between a wire and a pin."""
-    switched = (SWITCH,) if config.parts.emitter.switch else ()
+    parts = config.parts
+    switched = (SWITCH,) if parts.emitter.switch and parts.controller.board.emitter_pin else ()
     return (*(f"S{i}" for i in range(len(muxing.select_pins))), *muxing.adc_pins, *switched)
 
 
