@@ -90,6 +90,7 @@ def test_pitch_touches_everything_of_the_fingers(keys: Keys) -> None:
         "slicer",
         "supply_spice",
         "plug_in_spice",
+        "discharge_spice",
     }
     assert (
         changed(keys(), keys("[grid]\npitch_mm = 6.1\n")) == {step.name for step in EARLY} - outside

@@ -48,7 +48,7 @@ EDITS = [
     ("Leave it for 24 h", "Leave it for 2 h", {"units", "pdf"}),
     ("creased at 90 °C", "creased at 190 °C", {"units", "pdf"}),
     ("<td>24 V</td>", "<td>5 V</td>", {"figures"}),
-    ("<td>1 x M5</td>", "<td>1 x M4</td>", {"figures", "pdf"}),
+    ("<td>1 x M5 x 12</td>", "<td>1 x M4 x 12</td>", {"figures", "pdf"}),
     ("<td>warm-up</td>", "<td>cool-down</td>", {"figures", "pdf"}),
     ("<code>fit/fit_plate.3mf</code>", "<code>fit/plate.3mf</code>", {"files", "pdf"}),
     ('data-file="wiring/wiring.svg"', 'data-file="wiring/cables.svg"', {"drawings"}),
