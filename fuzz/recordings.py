@@ -14,7 +14,7 @@ from mcap.writer import Writer as McapWriter
 from fuzz.layouts import layouts
 from lumitip import Layout
 from lumitip.recording import RecordedFrame, RecordingError, Writer
-from lumitip.recording.message import SCHEMA_NAME, SCHEMA_TEXT, encode
+from lumitip.recording.message import SCHEMA_NAME, encode, schema_text
 from lumitip.recording.metadata import NAME
 from lumitip.recording.reader import read_frames, read_metadata
 
@@ -58,7 +58,7 @@ def _unguarded(texts: dict[str, str], frames: list[RecordedFrame], kind: dict[st
     mcap = McapWriter(bare, enable_crcs=False, **kind)
     mcap.start(profile="ros2")
     mcap.add_metadata(NAME, texts)
-    schema = mcap.register_schema(SCHEMA_NAME, "ros2msg", SCHEMA_TEXT.encode())
+    schema = mcap.register_schema(SCHEMA_NAME, "ros2msg", schema_text().encode())
     channel = mcap.register_channel("/lumitip/frames", "cdr", schema)
     for frame in frames:
         mcap.add_message(channel, 0, encode(frame, "AA:BB"), 0)

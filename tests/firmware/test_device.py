@@ -43,7 +43,7 @@ class Variant:
 VARIANTS = (
     Variant("published"),
     Variant("published", 12, 2500, 40_000),
-    Variant("asymmetric", 10, 2500, 30_000),
+    Variant("asymmetric", 10, 4000, 30_000),
     Variant("dense", 10, 12_000, 48_000),
 )
 
