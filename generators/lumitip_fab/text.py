@@ -89,6 +89,21 @@ def data_file(file: str) -> str:
     return (Path(__file__).parent / file).read_text(encoding="utf-8")
 
 
-PAGE_LETTERS: tuple[tuple[int, int], ...] = tuple(table_of("letters.toml")["ranges"])
+PAGE_LETTERS = (
+    (0x20, 0x7E),
+    (0xA1, 0xAC),
+    (0xAE, 0x24F),
+    (0x384, 0x3FF),
+    (0x400, 0x525),
+    (0x1E00, 0x1EFB),
+    (0x1F00, 0x1FFF),
+    (0x2010, 0x2027),
+    (0x2030, 0x205E),
+    (0x20A0, 0x20B5),
+    (0x2122, 0x2122),
+    (0x2126, 0x2126),
+    (0x2190, 0x21FF),
+    (0x2200, 0x22FF),
+)
 """Latin, Greek, Cyrillic, punctuation, arrows and mathematics, all of them in the typeface of the
 PDFs, which sets letters from left to right and joins none."""

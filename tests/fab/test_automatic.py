@@ -66,8 +66,8 @@ def test_any_pitch_derives(file: Any, pitch: float) -> None:
 
 
 def test_the_published_grid_keeps_the_published_values(inputs: dict[str, Input]) -> None:
-    given = inputs["published"]
-    moved = {f for f, a in automatic_fields().items() if given.value(f) != a.start}
+    published = inputs["published"]
+    moved = {f for f, a in automatic_fields().items() if published.value(f) != a.start}
     pull_ups = {"receiver.load", "receiver.pull_up_ohm"}
     added = {"emitter.drive", "emitter.switch", "flange.indicator", "receiver.bulk_capacitor"}
     added |= {"protection.diode"}

@@ -36,12 +36,12 @@ def _wanted(text: str) -> set[str]:
     return {field[0] for field in _braces(text)}
 
 
-def test_every_value_of_a_sentence_is_given() -> None:
+def test_every_value_of_a_sentence_has_its_argument() -> None:
     refusals = _refusals()
     assert len(refusals) > 100
     for file, rule, names in refusals:
         missing = _wanted(RULES[rule]["text"]) - names - {"p"}
-        assert not missing or "None" in names, f"{file}: {rule} is not given {missing}"
+        assert not missing or "None" in names, f"{file}: {rule} lacks {missing}"
 
 
 def test_every_sentence_belongs_to_a_rule() -> None:

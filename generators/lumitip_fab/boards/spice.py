@@ -1,4 +1,5 @@
-"""Netlists for ngspice: of the fingers' boards, and the flange's switching regulator."""
+"""Netlists for ngspice: of the fingers' boards, and of the flange's switching regulator and input,
+which is plugged into a live supply."""
 
 import math
 from collections.abc import Iterable, Iterator
@@ -29,15 +30,16 @@ def simulation(design: Design, finger: Finger) -> tuple[Artefact, ...]:
 
 
 def _netlist(design: Design, finger: Finger, ending: str, lines: Iterable[str]) -> Artefact:
-    title = design.title.on_boards().name
-    whole = (
-        f"* {title}, {finger.name}, design {design.reading.design_hash[:8]}",
-        *lines,
-        f".options temp={_TEMPERATURE_C} tnom={_TEMPERATURE_C} reltol=1e-5 vntol=1e-7",
-        ".end",
-    )
-    path = f"boards/{finger.name}/{finger.name}{ending}.cir"
-    return Artefact(path, ("\n".join(whole) + "\n").encode(), frame="")
+    name = design.title.on_boards().name
+    title = f"{name}, {finger.name}, design {design.reading.design_hash[:8]}"
+    options = f".options temp={_TEMPERATURE_C} tnom={_TEMPERATURE_C} reltol=1e-5 vntol=1e-7"
+    return netlist(finger.name, ending, title, (*lines, options))
+
+
+def netlist(board: str, ending: str, title: str, lines: Iterable[str]) -> Artefact:
+    """The netlist of a board, `boards/NAME/NAME_ENDING.cir`, from its title to its end."""
+    text = "\n".join((f"* {title}", *lines, ".end")) + "\n"
+    return Artefact(f"boards/{board}/{board}{ending}.cir", text.encode(), frame="")
 
 
 _SETTLE_MS = 0.5  # from the end of the soft start to the ripple that is measured
@@ -52,14 +54,9 @@ def supply_simulation(design: Design, regulated: AuxiliaryBoard) -> tuple[Artefa
     """The netlist of a board's switching regulator."""
     (supply,) = design.electrical.supplies
     title = design.title.on_boards()
-    lines = (
-        f"* {title.name} {title.revision}, {regulated.name}: its regulator",
-        *_circuit(regulated, supply),
-        *_measured(regulated, supply),
-        ".end",
-    )
-    path = f"boards/{regulated.name}/{regulated.name}.cir"
-    return (Artefact(path, ("\n".join(lines) + "\n").encode(), frame=""),)
+    words = f"{title.name} {title.revision}, {regulated.name}: its regulator"
+    lines = (*_circuit(regulated, supply), *_measured(regulated, supply))
+    return (netlist(regulated.name, "", words, lines),)
 
 
 def _circuit(auxiliary: AuxiliaryBoard, regulated: Regulated) -> Iterator[str]:
@@ -131,14 +128,9 @@ def plug_in_simulation(design: Design, flange: Flange) -> tuple[Artefact, ...]:
     (plug_in,) = design.electrical.plug_ins
     board = next(b for b in design.auxiliary_boards if b.name == flange.auxiliary)
     title = design.title.on_boards()
-    lines = (
-        f"* {title.name} {title.revision}, {board.name}: plugged into a live supply",
-        *_plugged(board, plug_in),
-        *_surge(board, plug_in),
-        ".end",
-    )
-    path = f"boards/{board.name}/{board.name}_plug_in.cir"
-    return (Artefact(path, ("\n".join(lines) + "\n").encode(), frame=""),)
+    words = f"{title.name} {title.revision}, {board.name}: plugged into a live supply"
+    lines = (*_plugged(board, plug_in), *_surge(board, plug_in))
+    return (netlist(board.name, "_plug_in", words, lines),)
 
 
 def _plugged(board: AuxiliaryBoard, plug_in: PlugIn) -> Iterator[str]:

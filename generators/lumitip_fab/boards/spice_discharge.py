@@ -11,6 +11,7 @@ import math
 from collections.abc import Iterator
 
 from lumitip_fab.boards.model import GROUND
+from lumitip_fab.boards.spice import netlist
 from lumitip_fab.design import AuxiliaryBoard, Design
 from lumitip_fab.design.electrical import Protection
 from lumitip_fab.pipeline.artefact import Artefact
@@ -30,9 +31,11 @@ def discharge_simulation(design: Design, board: AuxiliaryBoard) -> tuple[Artefac
     assert protection is not None
     title = design.title.on_boards()
     signals = design.wiring.adc_pins[0], protection.lines[0]
+    words = (
+        f"{title.name} {title.revision}, {board.name}: {protection.discharge_kv:g} kV into the "
+        f"wires {' and '.join(signals)}"
+    )
     lines = (
-        f"* {title.name} {title.revision}, {board.name}: {protection.discharge_kv:g} kV into the "
-        f"wires {' and '.join(signals)}",
         f"Vsupply supply 0 {design.electrical.channel.supply_v:g}",
         "Vsign sign 0 1",
         *(line for net in signals for line in _wire(board, protection, net)),
@@ -40,10 +43,8 @@ def discharge_simulation(design: Design, board: AuxiliaryBoard) -> tuple[Artefac
         f".model esd d(bv={protection.breakdown_v:g} ibv=1m is={_JUNCTION_A:g} "
         f"rs={protection.dynamic_ohm:g} cjo={protection.diode_pf:g}p)",
         *_measured(signals),
-        ".end",
     )
-    path = f"boards/{board.name}/{board.name}_discharge.cir"
-    return (Artefact(path, ("\n".join(lines) + "\n").encode(), frame=""),)
+    return (netlist(board.name, "_discharge", words, lines),)
 
 
 def _wire(board: AuxiliaryBoard, protection: Protection, net: str) -> Iterator[str]:

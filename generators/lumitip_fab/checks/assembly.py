@@ -18,7 +18,6 @@ from lumitip_fab.checks.result import Measurement, Subject, unreadable
 from lumitip_fab.design import Design, Finger
 from lumitip_fab.design.frames import applied, mount_to_sensor, translation
 from lumitip_fab.errors import OutputError
-from lumitip_fab.text import table_of
 
 READS = (
     "assembly/assembly.glb",
@@ -27,7 +26,17 @@ READS = (
     "backing/*_backing.stl",
     "interface/*_interface.stl",
 )
-NAMES: tuple[str, ...] = tuple(table_of("checks/names.toml")["assembly"])
+NAMES = (
+    "assembly.bodies",
+    "assembly.facing",
+    "assembly.lean",
+    "assembly.skew",
+    "assembly.first_contact",
+    "assembly.opening",
+    "assembly.stroke",
+    "assembly.closes",
+    "assembly.interference",
+)
 FACING_MM = 0.05
 LEAN_DEG = 0.02
 _TOUCH_MM = 1e-4

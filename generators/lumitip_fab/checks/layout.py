@@ -13,11 +13,17 @@ from lumitip.errors import LayoutError
 from lumitip.layout import Layout
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.design import Design
-from lumitip_fab.text import table_of
 
 READS = ("layout.json",)
 _FILE = "layout.json"
-_NAMES: tuple[str, ...] = tuple(table_of("checks/names.toml")["layout"])
+_NAMES = (
+    "layout.cells",
+    "layout.order",
+    "layout.neighbours",
+    "layout.wiring",
+    "layout.facing",
+    "layout.optics",
+)
 
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:

@@ -20,10 +20,27 @@ from lumitip_fab.checks.walls import beside, measure_relief, walls
 from lumitip_fab.design import Box, Design, Finger
 from lumitip_fab.design.frames import applied, backing_bed_to_sensor, mould_bed_to_sensor
 from lumitip_fab.errors import OutputError
-from lumitip_fab.text import table_of
 
 READS = ("mould/*", "backing/*_backing.stl")
-NAMES: tuple[str, ...] = tuple(table_of("checks/names.toml")["mould"])
+NAMES = (
+    "mould.watertight",
+    "mould.bodies",
+    "mould.fits_bed",
+    "mould.thickness",
+    "mould.tip_thickness",
+    "mould.stops",
+    "mould.gap",
+    "mould.draft",
+    "mould.undercut",
+    "mould.min_wall",
+    "mould.three_mf",
+    "mould.step",
+    "mould.volume",
+    "mould.masses",
+    "mould.note",
+    "mould.seat",
+    "mould.letter",
+)
 THICKNESS_MM = 0.02
 STOPS_MM = 0.02
 SHARED_MM3 = 0.05

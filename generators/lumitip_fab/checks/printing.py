@@ -8,13 +8,20 @@ from pathlib import Path
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.design import Design
 from lumitip_fab.design.making import Filament
-from lumitip_fab.text import table_of
 
 READS = ("print/*",)
 _NOTE = "print/printing.md"
 _LEAST_LAYER_MM = 0.01
 _ROUNDING_MM = 1e-4
-_WIDTHS = table_of("checks/names.toml")["widths"]
+_WIDTHS = (
+    "extrusion_width",
+    "first_layer_extrusion_width",
+    "perimeter_extrusion_width",
+    "external_perimeter_extrusion_width",
+    "infill_extrusion_width",
+    "solid_infill_extrusion_width",
+    "top_infill_extrusion_width",
+)
 
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:

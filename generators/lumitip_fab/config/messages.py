@@ -16,9 +16,30 @@ from lumitip_fab.catalogue.record import NAME, PIN, TITLE
 from lumitip_fab.config.parameters import REVISION
 from lumitip_fab.config.source import Source
 from lumitip_fab.errors import Problem
-from lumitip_fab.text import table_of
 
-_KINDS, _BOUNDS = (table_of("config/messages.toml")[name] for name in ("kinds", "bounds"))
+_KINDS = {
+    "float_type": "a number",
+    "finite_number": "a finite number",
+    "int_type": "a whole number",
+    "int_from_float": "a whole number",
+    "string_type": "text in quotes",
+    "bool_type": "true or false",
+    "tuple_type": "a list in brackets",
+    "dict_type": "a table",
+    "mapping_type": "a table",
+    "model_type": "a table",
+    "model_attributes_type": "a table",
+}
+_BOUNDS = {
+    "greater_than": "more than {gt:g} is needed",
+    "greater_than_equal": "at least {ge:g} is needed",
+    "less_than": "less than {lt:g} is allowed",
+    "less_than_equal": "at most {le:g} is allowed",
+    "string_too_short": "text of {min_length} or more characters is needed",
+    "string_too_long": "text of at most {max_length} characters is allowed",
+    "literal_error": "{expected} is allowed",
+}
+"""Continuations of a message by pydantic's kind of fault."""
 _WITH_UNIT = re.compile(r"\s*(-?\d+(?:\.\d+)?)\s*[a-zA-ZµΩ°%²/]*\s*")
 """A number in quotes, with or without a unit."""
 _PATTERNS = {

@@ -8,11 +8,19 @@ from lumitip_fab.config.automatic import AUTO, automatic_fields
 from lumitip_fab.config.parameters import Parameters
 from lumitip_fab.config.parts import NAMED, NONE, OPTIONAL
 from lumitip_fab.paths import packaged_design
-from lumitip_fab.text import table_of
 
 BASE = "presets/published.toml"
 """The preset whose values are the defaults."""
-UNITS: dict[str, str] = table_of("config/messages.toml")["units"]
+UNITS = {
+    "mm": "mm",
+    "mm2": "mm²",
+    "deg": "°",
+    "ma": "mA",
+    "v": "V",
+    "w": "W",
+    "ohm": "ohm",
+    "g_ml": "g/mL",
+}
 """Unit by the end of a field's name; a field without one is a count, a fraction or a name."""
 _CONSTRAINTS = ("type", "anyOf", "enum", "const", "pattern", "minLength", "maxLength")
 

@@ -3,9 +3,20 @@ insulation."""
 
 from dataclasses import dataclass
 
-from lumitip_fab.text import table_of
-
-COLOURS: dict[str, tuple[str, str]] = table_of("design/colours.toml")
+COLOURS = {
+    "BK": ("black", "#1a1a1a"),
+    "BN": ("brown", "#8a5a2b"),
+    "RD": ("red", "#d11f2e"),
+    "OG": ("orange", "#f07d13"),
+    "YE": ("yellow", "#e6c200"),
+    "GN": ("green", "#1f9d48"),
+    "BU": ("blue", "#2463c4"),
+    "VT": ("violet", "#8446b0"),
+    "GY": ("grey", "#8d949b"),
+    "WH": ("white", "#ffffff"),
+    "PK": ("pink", "#f09bb8"),
+    "TQ": ("turquoise", "#2bb9b4"),
+}
 """Name and ink of each colour, by its code."""
 
 

@@ -8,10 +8,27 @@ from dataclasses import asdict, dataclass
 
 from lumitip_fab.design import Design, Purchase
 from lumitip_fab.pipeline.artefact import Artefact, Files
-from lumitip_fab.text import table_of
 
 _GRAMS = 1000.0
-_TABLES = table_of("docs/bill.toml")
+_KINDS = {
+    "C": "capacitor",
+    "D": "LED",
+    "F": "fuse",
+    "J": "connector",
+    "L": "inductor",
+    "Q": "transistor",
+    "R": "resistor",
+    "U": "circuit",
+    "Y": "crystal",
+    "Z": "ESD diode",
+}
+"""Kind of a part by the first letter of its references."""
+_ON_BOARD = {
+    "receiver": {"Q": "photodetector"},
+    "emitter": {"U": "current source"},
+    "flange": {"D1": "TVS diode"},
+}
+"""The same where a board has another kind of this letter, or of this part alone."""
 
 
 @dataclass(frozen=True)
@@ -43,8 +60,8 @@ def electronics(design: Design, files: Files) -> Iterator[Line]:
             continue  # a panel, whose parts are those of its board
         for row in files.facts(path)["parts"]:
             ref, letter = row["refs"].split(",")[0], row["refs"][0]
-            own = _TABLES["boards"].get(board, {})
-            kind = own.get(ref) or own.get(letter) or _TABLES["kinds"][letter]
+            own = _ON_BOARD.get(board, {})
+            kind = own.get(ref) or own.get(letter) or _KINDS[letter]
             key = f"{kind} {row['value']}", row["manufacturer"], row["part"]
             found.setdefault(key, {})[board] = int(row["quantity"])
     for (item, maker, part), where in sorted(found.items()):
@@ -110,7 +127,17 @@ def _pieces(purchase: Purchase, group: str) -> Iterator[Line]:
             )
 
 
-COLUMNS: tuple[str, ...] = tuple(_TABLES["columns"])
+COLUMNS = (
+    "group",
+    "item",
+    "manufacturer",
+    "part",
+    "for",
+    "quantity",
+    "unit",
+    "unit_price",
+    "price",
+)
 
 
 def bill_of_materials(design: Design, files: Files) -> tuple[Artefact, ...]:

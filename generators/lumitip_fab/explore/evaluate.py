@@ -24,7 +24,6 @@ from lumitip_fab.explore.accuracy import Sample, accuracy
 from lumitip_fab.explore.vary import Changes
 from lumitip_fab.paths import design_folder, parts_file
 from lumitip_fab.pipeline.fingerprint import code_hash
-from lumitip_fab.text import table_of
 
 
 def unpriced(config: Input, prices: Prices, names: set[str]) -> list[Problem]:
@@ -79,7 +78,18 @@ def cost(config: Input, design: Design, prices: Prices) -> float:
 
 _DIGITS = 5  # of every figure: the same on any machine
 
-FIGURES: tuple[str, ...] = tuple(table_of("explore/study.toml")["figures"])
+FIGURES = (
+    "error_mm",
+    "error_deg",
+    "edge_mm",
+    "cable_mm",
+    "gross_percent",
+    "bound_mm",
+    "cells",
+    "grid_cm2",
+    "cost",
+    "current_ma",
+)
 """Figures of a design, in this order."""
 
 Record = dict[str, Any]

@@ -20,7 +20,6 @@ SHARED = (
     "derive",
     "design",
     "errors.py",
-    "letters.toml",
     "paths.py",
     "pipeline/artefact.py",
     "pipeline/fingerprint.py",

@@ -1,4 +1,4 @@
-"""What a board says beyond copper: bodies, courtyards and 3D models; a flexible board's layers."""
+"""Nodes of a board file beyond copper: bodies, courtyards, 3D models, a flexible board's layers."""
 
 from collections.abc import Iterator
 

@@ -42,7 +42,7 @@ def _row(draft: Draft, group: Sequence[Component], rail: Rail) -> None:
 
 
 def _hang(group: Sequence[Component], rail: Rail) -> None:
-    """What is between the row and ground."""
+    """Parts between the row and ground."""
     for part in group:
         if nets_of([part]) == {rail.net, GROUND}:
             rail.hang(part)
