@@ -6,8 +6,9 @@ from itertools import combinations
 
 import pytest
 
-from lumitip_fab.boards.courtyards import CONTACTS_MM, PART_MM, land, placed_box, with_courtyards
+from lumitip_fab.boards.courtyards import CONTACTS_MM, PART_MM, land, with_courtyards
 from lumitip_fab.boards.model import Placement
+from lumitip_fab.boards.placed import placed_box
 from lumitip_fab.boards.placement import place
 from lumitip_fab.boards.spots import refuse_misplaced
 from lumitip_fab.design import Box, Design

@@ -13,9 +13,9 @@ import pytest
 import shapely
 from gerbonara.layers import LayerStack
 
-from lumitip_fab.boards.courtyards import placed_pads
 from lumitip_fab.boards.fab import gerber as objects
 from lumitip_fab.boards.fab.order import angle_at
+from lumitip_fab.boards.placed import placed_pads
 from lumitip_fab.checks.readers.gerber import drilled, gerber_area
 from lumitip_fab.design import Box, Component, Fab, Footprint, Pad
 

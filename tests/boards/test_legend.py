@@ -9,8 +9,8 @@ import pytest
 import shapely
 from shapely import LineString
 
-from lumitip_fab.boards.courtyards import placed_pads
 from lumitip_fab.boards.model import SIDES, opening_mm
+from lumitip_fab.boards.placed import placed_pads
 from lumitip_fab.boards.placement import place
 from lumitip_fab.boards.silk.page import extent
 from lumitip_fab.boards.silk.strokes import silkscreen

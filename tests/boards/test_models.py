@@ -9,9 +9,9 @@ import pytest
 from build123d import import_step
 
 from damages import edit, failing
-from lumitip_fab.boards.courtyards import placed_box
 from lumitip_fab.boards.kicad.nodes import body_strokes
 from lumitip_fab.boards.model import PlacedComponent
+from lumitip_fab.boards.placed import placed_box
 from lumitip_fab.boards.placement import place
 from lumitip_fab.catalogue.controllers import Shroud, Strip
 from lumitip_fab.checks.models import _seen

@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 import shapely
 
-from lumitip_fab.boards.courtyards import courtyard, pad_at, placed_pads
 from lumitip_fab.boards.files import board_files
 from lumitip_fab.boards.model import SIDES
+from lumitip_fab.boards.placed import courtyard, pad_at, placed_pads
 from lumitip_fab.boards.placement import place
 from lumitip_fab.design import Box, Design, Finger
 from lumitip_fab.errors import BuildError

@@ -7,7 +7,6 @@ import pytest
 import shapely
 
 import small_boards as small
-from lumitip_fab.boards.courtyards import placed_pads
 from lumitip_fab.boards.model import (
     MIN_WIDTH_MM,
     SIDES,
@@ -19,6 +18,7 @@ from lumitip_fab.boards.model import (
     Routing,
     Track,
 )
+from lumitip_fab.boards.placed import placed_pads
 from lumitip_fab.boards.pour import pour
 from lumitip_fab.boards.pour.flood import BYPASS_MM
 from lumitip_fab.boards.route import route

@@ -9,8 +9,8 @@ import pytest
 import shapely
 
 import small_boards as small
-from lumitip_fab.boards.courtyards import placed_pads
 from lumitip_fab.boards.model import SIDES, BoardModel, Placement, Routing, Track
+from lumitip_fab.boards.placed import placed_pads
 from lumitip_fab.boards.pour import pour
 from lumitip_fab.boards.route import route, router
 from lumitip_fab.boards.route.obstacles import Obstacles

@@ -10,7 +10,7 @@ import pytest
 from lumitip_fab.checks import run
 from lumitip_fab.checks.run import MODULES, Memory, reads, run_checks
 from lumitip_fab.design import Design
-from lumitip_fab.pipeline.artefact import RecordedDesign
+from lumitip_fab.pipeline.dependencies import RecordedDesign
 
 pytestmark = pytest.mark.slow
 

@@ -16,8 +16,8 @@ import tomlkit
 from lumitip_fab.config.automatic import AUTO, automatic_fields
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
+from lumitip_fab.derive.auto.judge import judge_with, rule_of
 from lumitip_fab.derive.auto.resolve import RuleError
-from lumitip_fab.derive.auto.search import judge_with, rule_of
 from lumitip_fab.errors import InputError
 
 ROOT = Path(__file__).parents[2]

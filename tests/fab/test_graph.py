@@ -17,7 +17,8 @@ from lumitip_fab.derive import derive
 from lumitip_fab.errors import OutputError
 from lumitip_fab.pipeline import fingerprint as toolchain
 from lumitip_fab.pipeline import manifest
-from lumitip_fab.pipeline.artefact import Dependencies, FieldHashes, Files, Made, RecordedDesign
+from lumitip_fab.pipeline.artefact import Files, Made
+from lumitip_fab.pipeline.dependencies import Dependencies, FieldHashes, RecordedDesign
 from lumitip_fab.pipeline.workers import tasks
 
 PACKAGE = toolchain.PACKAGE

@@ -1,4 +1,4 @@
-"""The circuit of a finger's board: its parts, and the net of each of their pads.
+"""The circuit of a finger's board: its parts, the net of each of their pads, and how its LEDs turn.
 
 supply ── R1 ──►|── … ──►|── GND            one string of LEDs; more beside it, all at GND or
                                             at the drain of Q1, whose source is at GND
@@ -20,8 +20,8 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from lumitip_fab.boards.courtyards import pad_at
 from lumitip_fab.boards.model import GROUND, PlacedComponent
+from lumitip_fab.boards.placed import pad_at
 from lumitip_fab.design import (
     Chip,
     Component,

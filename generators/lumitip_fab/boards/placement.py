@@ -10,7 +10,6 @@ from lumitip_fab.boards.circuit import (
     supply_of,
     turn_strings,
 )
-from lumitip_fab.boards.courtyards import courtyard, pad_at
 from lumitip_fab.boards.model import (
     GROUND,
     MIN_WIDTH_MM,
@@ -23,6 +22,7 @@ from lumitip_fab.boards.model import (
     PlacedComponent,
     Placement,
 )
+from lumitip_fab.boards.placed import courtyard, pad_at
 from lumitip_fab.boards.silk.legend import with_legend
 from lumitip_fab.boards.silk.outlines import with_outline, without_crowded_lines
 from lumitip_fab.design import (

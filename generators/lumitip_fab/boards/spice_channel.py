@@ -1,4 +1,5 @@
-"""A channel for ngspice: multiplexer, pull-ups and two detectors, ideal and as phototransistors."""
+"""For ngspice: a channel with multiplexer, pull-ups and two detectors, ideal and as
+phototransistors; and a string of LEDs."""
 
 import itertools
 import math

@@ -5,8 +5,8 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import shapely
 
-from lumitip_fab.boards.courtyards import courtyard, placed_box
 from lumitip_fab.boards.model import PlacedComponent
+from lumitip_fab.boards.placed import courtyard, placed_box
 from lumitip_fab.design import Board, Box, Point
 from lumitip_fab.errors import BuildError
 

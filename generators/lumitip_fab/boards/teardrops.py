@@ -13,8 +13,8 @@ import numpy as np
 import shapely
 from shapely.ops import substring
 
-from lumitip_fab.boards.courtyards import PlacedPad, placed_pads
 from lumitip_fab.boards.model import SIDES, Placement, Routing, Track
+from lumitip_fab.boards.placed import PlacedPad, placed_pads
 from lumitip_fab.design import Point, Side
 
 BEYOND_MM = (0.15, 0.3, 0.45)  # the edge of pad or via: where each piece ends

@@ -10,8 +10,8 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from lumitip_fab.boards.courtyards import PlacedPad, placed_pads
 from lumitip_fab.boards.model import SIDES, BoardModel, Placement
+from lumitip_fab.boards.placed import PlacedPad, placed_pads
 from lumitip_fab.design import Point, Side
 from lumitip_fab.errors import BuildError
 

@@ -1,4 +1,4 @@
-"""Panels against the boards that they have copies of, and against the figures of PCB fabs."""
+"""Panels against the boards that they copy, and their frames against figures of PCB fabs."""
 
 import math
 from collections.abc import Iterator

@@ -19,7 +19,7 @@ from typing import Any
 from lumitip_fab.checks.result import Measurement
 from lumitip_fab.design import Design
 from lumitip_fab.design.encoding import read_design
-from lumitip_fab.pipeline.artefact import Dependencies, FieldHashes, RecordedDesign
+from lumitip_fab.pipeline.dependencies import Dependencies, FieldHashes, RecordedDesign
 from lumitip_fab.pipeline.fingerprint import PACKAGE, installed_hash, whole_code_hash
 from lumitip_fab.pipeline.manifest import sha256_of, write_file
 

@@ -1,4 +1,4 @@
-"""Text of the manual in Markdown: its own chapters, and the notes of the parts."""
+"""The manual: its own chapters and the notes of the parts, as Markdown, HTML and PDF."""
 
 import re
 from collections.abc import Iterable

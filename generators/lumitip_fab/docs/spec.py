@@ -1,4 +1,5 @@
-"""The published Table I (arXiv 2306.05902) beside the figures of a design, and why they differ."""
+"""The published Table I (arXiv 2306.05902) and other figures beside those of a design, and why they
+differ; rows of boards and printed parts."""
 
 import math
 from collections.abc import Iterator

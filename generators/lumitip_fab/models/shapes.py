@@ -1,4 +1,4 @@
-"""Named and coloured bodies of a package, and the colours of their materials."""
+"""Named bodies of packages, leaded ones, chips, arrays and modules; colours of their materials."""
 
 from collections.abc import Sequence
 from copy import copy

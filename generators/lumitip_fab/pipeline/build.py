@@ -123,7 +123,7 @@ class _Run:
     """One build: what it has made so far."""
 
     def __init__(self, out: Path, design: "Design", progress: Progress) -> None:
-        from lumitip_fab.pipeline.artefact import FieldHashes
+        from lumitip_fab.pipeline.dependencies import FieldHashes
 
         self.out, self.design, self.progress = out, design, progress
         self.before = manifest.read(out)

@@ -22,6 +22,7 @@ SHARED = (
     "errors.py",
     "paths.py",
     "pipeline/artefact.py",
+    "pipeline/dependencies.py",
     "pipeline/fingerprint.py",
     "pipeline/workers.py",
     "pipeline/manifest.py",

@@ -8,7 +8,8 @@ from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 
 from lumitip_fab.design.encoding import canonical, encoded
-from lumitip_fab.pipeline.artefact import Artefact, Dependencies, Facts
+from lumitip_fab.pipeline.artefact import Artefact, Facts
+from lumitip_fab.pipeline.dependencies import Dependencies
 
 NAME = "manifest.json"
 SCHEMA_VERSION = 3

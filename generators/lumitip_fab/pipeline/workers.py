@@ -1,4 +1,4 @@
-"""Runs the tasks of a build: light ones here, heavy ones on all cores."""
+"""Steps of a build, their tasks, and running these: light ones here, heavy ones on all cores."""
 
 import importlib
 import multiprocessing
@@ -13,7 +13,8 @@ from typing import Any
 from lumitip_fab.design import Design
 from lumitip_fab.design.encoding import canonical
 from lumitip_fab.errors import BuildError
-from lumitip_fab.pipeline.artefact import Artefact, Dependencies, Files, RecordedDesign, recorded
+from lumitip_fab.pipeline.artefact import Artefact, Files
+from lumitip_fab.pipeline.dependencies import Dependencies, RecordedDesign, recorded
 from lumitip_fab.pipeline.fingerprint import code_hash, tool_version
 
 

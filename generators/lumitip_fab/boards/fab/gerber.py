@@ -14,9 +14,9 @@ from gerbonara.rs274x import GerberFile
 from gerbonara.utils import MM
 from shapely import Polygon
 
-from lumitip_fab.boards.courtyards import PlacedPad, placed_pads
 from lumitip_fab.boards.model import MASK_MM, SIDES, BoardModel, Placement, Stroke, opening_mm
 from lumitip_fab.boards.outline import EDGE_MM, corners, fractured, straight_edges
+from lumitip_fab.boards.placed import PlacedPad, placed_pads
 from lumitip_fab.boards.silk.strokes import silkscreen
 from lumitip_fab.design import Box, Point, Side
 

@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator
 
-from lumitip_fab.boards.courtyards import pad_at, placed_pads
 from lumitip_fab.boards.fab.order import bom_rows, bought
 from lumitip_fab.boards.model import BoardModel, Placement
+from lumitip_fab.boards.placed import pad_at, placed_pads
 from lumitip_fab.design import Fab, Flexible, Led, Panel, Photodetector
 from lumitip_fab.text import passage
 

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from shapely import LineString, Point, Polygon, affinity
 from shapely.geometry.base import BaseGeometry
 
-from lumitip_fab.boards.courtyards import PlacedPad, placed_pads
 from lumitip_fab.boards.model import MASK_MM, SIDES, BoardModel, Stroke, opening_mm
 from lumitip_fab.boards.outline import outline_area
+from lumitip_fab.boards.placed import PlacedPad, placed_pads
 from lumitip_fab.boards.silk.strokes import silkscreen
 from lumitip_fab.design import Side
 

@@ -1,11 +1,10 @@
-"""A panel as a board: copies of a finished one with names of their own, and the frame."""
+"""A panel as a board: copies of a finished one with names of their own, and frame; its files."""
 
 from collections.abc import Iterator
 from dataclasses import replace
 
 from shapely import affinity
 
-from lumitip_fab.boards.courtyards import placed
 from lumitip_fab.boards.fab.notes import assembly_note, fabrication_note, panel_note, stop_note
 from lumitip_fab.boards.fab.order import layers_of, order_files
 from lumitip_fab.boards.fab.picture import picture_files
@@ -23,6 +22,7 @@ from lumitip_fab.boards.model import (
 )
 from lumitip_fab.boards.panel.frame import label, marks, moved_box, slots, tooling
 from lumitip_fab.boards.panel.tabs import bites, tab_places
+from lumitip_fab.boards.placed import placed
 from lumitip_fab.boards.silk.strokes import angle_on_board_deg
 from lumitip_fab.boards.verify import require_clean_drc
 from lumitip_fab.design import Design, Panel, Point, Rules, Side

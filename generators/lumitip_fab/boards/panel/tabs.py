@@ -8,8 +8,8 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
-from lumitip_fab.boards.courtyards import placed_pads
 from lumitip_fab.boards.model import BoardModel, PlacedComponent
+from lumitip_fab.boards.placed import placed_pads
 from lumitip_fab.design import Box, Panel, PanelRules, Point
 from lumitip_fab.errors import BuildError
 

@@ -9,8 +9,8 @@ import numpy as np
 import shapely
 from shapely import Geometry
 
-from lumitip_fab.boards.courtyards import PlacedPad, placed_pads
 from lumitip_fab.boards.model import SIDES, Fill, NetClass, Placement, Routing, Track, Via
+from lumitip_fab.boards.placed import PlacedPad, placed_pads
 from lumitip_fab.boards.pour.ground import Kept, needed
 from lumitip_fab.boards.pour.room import MARGIN_MM, Sheet, room, sheet, via_room
 from lumitip_fab.boards.verify import DRILL_WALL_MM

@@ -12,8 +12,8 @@ import shapely
 from networkx.algorithms.approximation import steiner_tree
 from numpy.typing import NDArray
 
-from lumitip_fab.boards.courtyards import PlacedPad
 from lumitip_fab.boards.model import SIDES, Routing, Track, Via
+from lumitip_fab.boards.placed import PlacedPad
 from lumitip_fab.boards.pour.room import Sheet
 from lumitip_fab.design import Point, Side
 from lumitip_fab.errors import BuildError

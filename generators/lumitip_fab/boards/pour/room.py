@@ -8,7 +8,7 @@ import shapely
 from shapely import Geometry, Polygon
 
 from lumitip_fab.boards import model
-from lumitip_fab.boards.courtyards import PlacedPad, placed_pads
+from lumitip_fab.boards.placed import PlacedPad, placed_pads
 from lumitip_fab.boards.verify import DRILL_WALL_MM
 from lumitip_fab.design import Point, Side
 

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lumitip_fab.boards.courtyards import PlacedPad
 from lumitip_fab.boards.model import SIDES, Placement, fiducial_margin_mm
+from lumitip_fab.boards.placed import PlacedPad
 from lumitip_fab.boards.route.kernels import BLOCKED, Bytes, Ints
 from lumitip_fab.boards.route.rules import MARGIN_MM, PAD_TO_VIA_MM, Grid, Rules, round_via_mm
 from lumitip_fab.design import Box

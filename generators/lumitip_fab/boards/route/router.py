@@ -5,8 +5,8 @@ import sys
 from collections import defaultdict
 from dataclasses import dataclass
 
-from lumitip_fab.boards.courtyards import PlacedPad, placed_pads
 from lumitip_fab.boards.model import SIDES, Placement, Routing, Track, Via
+from lumitip_fab.boards.placed import PlacedPad, placed_pads
 from lumitip_fab.boards.route import stamps
 from lumitip_fab.boards.route.kernels import Ints
 from lumitip_fab.boards.route.obstacles import Obstacles, TightError, Wanted, wanted

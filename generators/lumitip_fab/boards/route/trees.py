@@ -1,4 +1,4 @@
-"""One net: from pads, and paths that may stay, to a tree that connects them all."""
+"""State and costs of routing; one net, from pads and paths that may stay to a tree of them all."""
 
 import math
 from dataclasses import dataclass, field

@@ -8,8 +8,8 @@ from itertools import pairwise, product
 import numpy as np
 from shapely import LineString
 
-from lumitip_fab.boards.courtyards import placed, placed_pads
 from lumitip_fab.boards.model import MASK_MM, SIDES, PlacedComponent, Text
+from lumitip_fab.boards.placed import placed, placed_pads
 from lumitip_fab.boards.silk.page import DOWN, LEFT, RIGHT, UP, Page, Way
 from lumitip_fab.design import Point, Shroud, Side
 

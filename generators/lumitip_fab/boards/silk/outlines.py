@@ -8,8 +8,9 @@ from dataclasses import fields
 import shapely
 from shapely import LineString
 
-from lumitip_fab.boards.courtyards import land, placed, placed_pads
+from lumitip_fab.boards.courtyards import land
 from lumitip_fab.boards.model import AT_CELLS, Cells, PlacedComponent, Stroke
+from lumitip_fab.boards.placed import placed, placed_pads
 from lumitip_fab.design import Box, Component, Footprint, Pad, Rules
 
 _BAR_MM = 0.3  # at the first contact

@@ -9,8 +9,8 @@ import shapely
 from shapely import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
-from lumitip_fab.boards.courtyards import placed, placed_pads
 from lumitip_fab.boards.model import Placement, Stroke, Text, opening_mm
+from lumitip_fab.boards.placed import placed, placed_pads
 from lumitip_fab.boards.silk.strokes import text_strokes, upright
 from lumitip_fab.design import Box, Point, Rules, Side
 from lumitip_fab.errors import BuildError

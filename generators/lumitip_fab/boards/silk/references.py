@@ -15,8 +15,8 @@ import numpy as np
 import shapely
 from shapely import LineString
 
-from lumitip_fab.boards.courtyards import courtyard
 from lumitip_fab.boards.model import AT_CELLS, PlacedComponent, Text
+from lumitip_fab.boards.placed import courtyard
 from lumitip_fab.boards.silk.page import DOWN, LEFT, RIGHT, UP, Clear, Page, extent
 from lumitip_fab.design import Box, Point, Side
 

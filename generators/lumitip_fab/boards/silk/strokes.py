@@ -6,8 +6,8 @@ from functools import lru_cache
 from importlib.resources import files
 from itertools import islice
 
-from lumitip_fab.boards.courtyards import placed
 from lumitip_fab.boards.model import Placement, Stroke, Text
+from lumitip_fab.boards.placed import placed
 from lumitip_fab.design import Component, Point, Side
 
 Glyph = tuple[float, tuple[tuple[Point, ...], ...]]

@@ -9,6 +9,7 @@ from lumitip_fab.config.automatic import automatic_fields
 from lumitip_fab.config.messages import brief
 from lumitip_fab.config.parts import NAMED
 from lumitip_fab.derive.auto import search
+from lumitip_fab.derive.auto.judge import Rule, Verdict
 from lumitip_fab.derive.auto.resolve import accepted_with
 
 MOST_STEPS = 12
@@ -49,7 +50,7 @@ class Plan:
     """Whether the file is accepted with all first remedies."""
 
 
-def plan_of(verdict: search.Verdict) -> Plan:
+def plan_of(verdict: Verdict) -> Plan:
     """Changes that mend every broken rule: alternatives of one change where one is enough."""
     now, steps = verdict, []
     for _ in range(MOST_STEPS):
@@ -67,7 +68,7 @@ def plan_of(verdict: search.Verdict) -> Plan:
     return Plan(_needed(verdict, steps), True)
 
 
-def _each_enough(verdict: search.Verdict, steps: list[Step]) -> Iterator[Remedy]:
+def _each_enough(verdict: Verdict, steps: list[Step]) -> Iterator[Remedy]:
     """Single changes that are sufficient, one for each field; switches of boards come last."""
     broken = {problem.field for problem in verdict.rules.values()}
     common = set.intersection(*(set(search.menders(field)) for field in broken))
@@ -78,7 +79,7 @@ def _each_enough(verdict: search.Verdict, steps: list[Step]) -> Iterator[Remedy]
             yield _nearest(verdict, remedy)
 
 
-def _nearest(verdict: search.Verdict, remedy: Remedy) -> Remedy:
+def _nearest(verdict: Verdict, remedy: Remedy) -> Remedy:
     """The accepted value nearest to the file's own: the search kept other automatic values as they
     were, and with new ones a smaller change can be enough."""
     step = (
@@ -106,7 +107,7 @@ def _step_of(field: str) -> float:
     return next((step for unit, step in STEPS.items() if field.endswith(unit)), 0.0)
 
 
-def _needed(verdict: search.Verdict, steps: list[Step]) -> tuple[Step, ...]:
+def _needed(verdict: Verdict, steps: list[Step]) -> tuple[Step, ...]:
     """The steps without redundant ones, whose rule another step fixes too."""
     kept = list(steps)
     for step in steps[:-1]:
@@ -119,11 +120,11 @@ def _needed(verdict: search.Verdict, steps: list[Step]) -> tuple[Step, ...]:
     return tuple(kept)
 
 
-def _accepted(verdict: search.Verdict, remedies: list[Remedy]) -> bool:
+def _accepted(verdict: Verdict, remedies: list[Remedy]) -> bool:
     return accepted_with(verdict.config, {r.field: r.value for r in remedies})
 
 
-def _mended(now: search.Verdict, first: search.Verdict) -> Iterator[tuple[Step, search.Verdict]]:
+def _mended(now: Verdict, first: Verdict) -> Iterator[tuple[Step, Verdict]]:
     for rule, problem in now.rules.items():
         changes = list(_changes(now, rule, problem.field))
         if changes:
@@ -134,7 +135,7 @@ def _mended(now: search.Verdict, first: search.Verdict) -> Iterator[tuple[Step, 
             yield Step(problem.message, remedies), changes[0].verdict
 
 
-def _changes(now: search.Verdict, rule: search.Rule, about: str) -> Iterator[search.Change]:
+def _changes(now: Verdict, rule: Rule, about: str) -> Iterator[search.Change]:
     """One change of each field that can mend a rule, the field of the rule first."""
     for field in search.menders(about):
         if field in OWNED:
@@ -144,9 +145,7 @@ def _changes(now: search.Verdict, rule: search.Rule, about: str) -> Iterator[sea
             yield change
 
 
-def _change(
-    now: search.Verdict, rule: search.Rule, field: str, fineness: int
-) -> search.Change | None:
+def _change(now: Verdict, rule: Rule, field: str, fineness: int) -> search.Change | None:
     if field in automatic_fields():
         change = search.change_of(now, rule, field, fineness)
         if change:

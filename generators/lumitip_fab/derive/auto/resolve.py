@@ -7,7 +7,8 @@ from typing import Any
 from lumitip_fab.config.automatic import Value, automatic_fields
 from lumitip_fab.config.load import Input
 from lumitip_fab.config.messages import brief
-from lumitip_fab.derive.auto.search import Change, Verdict, judge, search
+from lumitip_fab.derive.auto.judge import Verdict, judge
+from lumitip_fab.derive.auto.search import Change, search
 from lumitip_fab.derive.auto.starts import proposals
 from lumitip_fab.design import Choice, Design
 from lumitip_fab.errors import InputError

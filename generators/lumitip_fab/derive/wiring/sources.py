@@ -1,4 +1,4 @@
-"""Current sources of the strings: their resistors, and how far the current may be off.
+"""Strings of LEDs with resistors and with sources: parts, and how far the current may be off.
 
 supply ── IN ┌────────┐ OUT ── R_out ──┬──►|── … ──►|── GND
              │ source │ SET ── R_set ──┘

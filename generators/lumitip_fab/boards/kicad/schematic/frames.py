@@ -1,4 +1,4 @@
-"""Drafts in titled frames, beside and below each other on the smallest paper."""
+"""Drafts in titled frames, packed beside and below each other on the smallest paper."""
 
 import math
 from collections.abc import Iterable, Mapping, Sequence

@@ -1,4 +1,4 @@
-"""Symbols that are drawn for one part: chips with pins on three sides, and rows of contacts."""
+"""Symbols that are drawn for one part, chips and rows of contacts, and the types of their pins."""
 
 import re
 from collections.abc import Iterator, Sequence

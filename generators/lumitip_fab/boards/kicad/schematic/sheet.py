@@ -1,4 +1,5 @@
-"""Symbols and wires of a sheet with their places, and the paper sizes. mm, y down, 1.27 mm grid."""
+"""Symbols, wires and blocks of a sheet with their places, text sizes, joints and papers. mm, y
+down, 1.27 mm grid."""
 
 import itertools
 import math
