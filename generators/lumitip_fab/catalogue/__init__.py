@@ -10,7 +10,15 @@ from lumitip_fab.catalogue import clamps, electronics
 from lumitip_fab.catalogue import controllers as control
 from lumitip_fab.catalogue import current_sources as sources
 from lumitip_fab.catalogue.grippers import Gripper, ToolCoupling
-from lumitip_fab.catalogue.materials import Fastener, Filament, Film, Laminates, Printer, Silicone
+from lumitip_fab.catalogue.materials import (
+    Adhesive,
+    Fastener,
+    Filament,
+    Film,
+    Laminates,
+    Printer,
+    Silicone,
+)
 from lumitip_fab.catalogue.ordering import Fab, Prices
 from lumitip_fab.catalogue.record import Name, Strict
 
@@ -40,6 +48,7 @@ class Catalogue(Strict):
     couplings: Mapping[Name, ToolCoupling]
     grippers: Mapping[Name, Gripper]
     fasteners: Mapping[Name, Fastener]
+    adhesives: Mapping[Name, Adhesive]
     silicones: Mapping[Name, Silicone]
     films: Mapping[Name, Film]
     printers: Mapping[Name, Printer]

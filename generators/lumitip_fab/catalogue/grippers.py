@@ -88,6 +88,8 @@ class Gripper(Entry):
 
     stroke_mm: Length
     """Opening of the gripper between its own pads."""
+    force_n: float | None = Field(default=None, gt=0, le=5000)
+    """Greatest force that it closes with; left out where it is not known (N)."""
     pad_w_mm: Length
     """Distance of the gripper's own pad face before the bolts' axes."""
     tilt_deg: float = Field(ge=-10, le=10)

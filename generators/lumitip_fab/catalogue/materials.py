@@ -14,6 +14,10 @@ class Laminate(Sourced):
     """Density without copper."""
     copper_mm: Length
     """Thickness of the copper on each side."""
+    modulus_mpa: float = Field(gt=0, le=100000)
+    """Young's modulus."""
+    most_strain: float = Field(gt=0, le=0.05)
+    """Most that its surface may be strained, with parts soldered on."""
     limit_c: float = Field(ge=60, le=400)
     """Highest temperature that it bears for hours: its glass transition, or its adhesive's (°C)."""
     solder_c: float = Field(ge=100, le=400)
@@ -53,6 +57,8 @@ class Filament(Entry):
     """Tensile strength from layer to layer."""
     bearing_mpa: float = Field(gt=0, le=500)
     """Compressive strength of a solid print."""
+    modulus_mpa: float = Field(gt=0, le=20000)
+    """Young's modulus of a solid print."""
     limit_c: float = Field(ge=30, le=300)
     """Highest temperature at which a printed part keeps its shape (°C): the lower end of its
     heat deflection temperature."""
@@ -118,6 +124,15 @@ class Silicone(Entry):
     """Highest temperature that it withstands when cured (°C)."""
 
 
+class Adhesive(Entry):
+    """A glue between parts of a finger."""
+
+    shear_mpa: float = Field(gt=0, le=100)
+    """Lap shear strength on the parts that it holds here."""
+    lap_mm: Length
+    """Overlap of the test joint that gave it."""
+
+
 class Film(Entry):
     """A film for the mask: clear, to print on, or opaque, to cut."""
 
@@ -144,3 +159,5 @@ class Printer(Entry):
     """Height of one layer."""
     bed_mm: tuple[Length, Length, Length]
     """Print volume."""
+    bridge_mm: Length
+    """Longest line over nothing that does not sag away: a bridge, or an edge of a layer."""

@@ -12,6 +12,7 @@ from lumitip_fab.checks import plate, printed
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.readers.solids import Vectors, cast, section
 from lumitip_fab.checks.result import Measure, Measurement, measured, unreadable
+from lumitip_fab.checks.spans import longest_span_mm
 from lumitip_fab.checks.walls import MESH_MM, Exempt, Mask, beside, measure_relief, walls
 from lumitip_fab.design import Design, Finger, Letter
 from lumitip_fab.design.frames import (
@@ -171,6 +172,9 @@ def measure_print(part: printed.Printed) -> Iterator[Measurement]:
     most = PUBLISHED_OVERHANG_MM2 if part.kind == part.design.held else FLAT_OVERHANG_MM2
     yield from printed.measure_closed(part, part.standing)
     yield from printed.measure_bed(part, part.standing, most, LEAST_BED_MM2)
+    span, at_mm = longest_span_mm(part.standing, part.design.printing)
+    note = f"longest line over nothing, {at_mm:.1f} mm over the bed"
+    yield part.figure("span", span, 0.0, part.design.printing.bridge_mm, note=note)
 
 
 def measure_size(part: printed.Printed) -> Iterator[Measurement]:

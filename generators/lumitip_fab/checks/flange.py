@@ -25,7 +25,7 @@ from lumitip_fab.checks.printed import (
     round_thread,
 )
 from lumitip_fab.checks.readers import solids
-from lumitip_fab.checks.readers.solids import Vectors, section
+from lumitip_fab.checks.readers.solids import Vectors, moments, section
 from lumitip_fab.checks.result import Measure, Measurement, Subject, measured, unreadable
 from lumitip_fab.checks.walls import walls
 from lumitip_fab.design import Design, Flange
@@ -230,7 +230,7 @@ def _levels(low_mm: float, high_mm: float) -> Vectors:
 
 def _layer_mpa(cut: Any, force_n: float, moment_nmm: float) -> float:
     """Greatest tension in a section, by bending and shear; infinite where there is no material."""
-    area, middle, inertia = _moments(cut)
+    area, middle, inertia = moments(cut)
     if area <= 0:
         return math.inf
     corners = shapely.get_coordinates(cut) - middle
@@ -248,26 +248,6 @@ def _bolt_n(places_mm: Vectors, force_n: float, moment_nmm: float) -> float:
         return math.inf
     lean = np.linalg.norm(np.linalg.pinv(away.T @ away) @ away.T, axis=0).max()
     return float(moment_nmm * lean + force_n / len(places_mm))
-
-
-def _moments(cut: Any) -> tuple[float, Vectors, Vectors]:
-    """Area, centre, and second moments about the centre, of polygons with holes."""
-    area, first, second = 0.0, np.zeros(2), np.zeros((2, 2))
-    for part in shapely.get_parts(cut):
-        if part.geom_type != "Polygon":
-            continue
-        whole = shapely.geometry.polygon.orient(part)  # holes turn the other way, and count less
-        for ring in (whole.exterior, *whole.interiors):
-            corners = shapely.get_coordinates(ring)
-            a, b = corners[:-1], corners[1:]
-            cross = a[:, 0] * b[:, 1] - b[:, 0] * a[:, 1]
-            area += float(cross.sum()) / 2
-            first += ((a + b) * cross[:, None]).sum(axis=0) / 6
-            mixed = np.einsum("n,ni,nj->ij", cross, a, b)
-            own = np.einsum("n,ni,nj->ij", cross, a, a) + np.einsum("n,ni,nj->ij", cross, b, b)
-            second += (2 * own + mixed + mixed.T) / 24
-    middle = first / area if area > 0 else first
-    return area, middle, second - area * np.outer(middle, middle)
 
 
 MEASURES: tuple[Measure[Stacked], ...] = (

@@ -166,12 +166,9 @@ def _on_back(flap: Flap, side_mm: float, allowance_mm: float) -> shapely.Geometr
 
 
 def _coupling(design: Design) -> Box:
-    """Block and ramp where they stand on the plate's back, without fillets."""
-    mount, half = design.mount, design.mount.block_width_mm / 2
-    tilt = math.radians(mount.tilt_deg)
-    shoulder_y = mount.land_mm * math.cos(tilt) - mount.block_back_w_mm * math.sin(tilt)
-    rise = mount.block_back_w_mm - design.stack.rim_z_mm + design.stack.back_z_mm
-    end = mount.origin_y_mm + shoulder_y + rise / math.tan(math.pi / 4 - tilt)
+    """Block, ramp and flare where they stand on the plate's back, without fillets."""
+    mount, stack, half = design.mount, design.stack, design.mount.block_width_mm / 2
+    end = mount.ramp_end_y_mm(stack.back_z_mm, stack.rim_z_mm) + mount.flare_mm
     return Box(-half, half, mount.origin_y_mm, end)
 
 

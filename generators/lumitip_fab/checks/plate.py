@@ -23,6 +23,7 @@ FILLET_MM = 0.4  # solder round the foot of a pad's tail
 SIZE_MM = 0.05
 HOLE_MM = 0.05
 GLUE_MM = 0.05
+FLOOR_MM = 0.05  # over the pocket's floor
 SHARED_MM3 = 0.05
 STEP_MM = 0.5
 _DOWN, _UP = np.array([0.0, 0.0, -1.0]), np.array([0.0, 0.0, 1.0])
@@ -46,6 +47,7 @@ def measure_pocket(part: Printed) -> Iterator[Measurement]:
     low, high = (gap + design.printing.fit_mm for gap in GAP_MM)
     stack, box, notch = design.stack, design.board.box, part.finger.notch
     cut = section(part.sensor, stack.rim_z_mm - stack.pcb_mm / 2)
+    floor = section(part.sensor, stack.pocket_z_mm + FLOOR_MM)  # the end at the tip leans
     steps = np.linspace(0.01, 0.99, 25)
     xs, ys = box.x_min_mm + steps * box.width_mm, box.y_min_mm + steps * box.length_mm
     beside = xs[(xs < notch.x_min_mm) | (xs > notch.x_max_mm)]
@@ -55,10 +57,14 @@ def measure_pocket(part: Printed) -> Iterator[Measurement]:
         "tip": ([(x, box.y_max_mm) for x in xs], (0.0, 1.0)),
         "gripper": ([(x, box.y_min_mm) for x in beside], (0.0, -1.0)),
     }
+    leans = design.board.roof_mm / stack.pcb_mm * FLOOR_MM
     for side, (starts, outward) in sides.items():
+        off, there = (leans, floor) if side == "tip" else (0.0, cut)
         from_ = np.array(starts) - np.array(outward) * 0.5
         lines = shapely.linestrings(np.stack([from_, from_ + np.array(outward) * 3.0], axis=1))
-        gaps = shapely.distance(shapely.points(from_), shapely.intersection(lines, cut)) - 0.5
+        gaps = (
+            shapely.distance(shapely.points(from_), shapely.intersection(lines, there)) - 0.5 - off
+        )
         yield part.figure(
             "pocket_gap", farthest(np.asarray(gaps), (low + high) / 2), low, high, at=side
         )
@@ -118,7 +124,9 @@ def measure_tip(part: Printed) -> Iterator[Measurement]:
     xs = np.linspace(-0.45, 0.45, 9) * outline.tip_width_mm
     edge = _thickness(part, np.array([(x, outline.tip_y_mm - 0.05) for x in xs])) - 0.05 * slope
     yield part.near("tip_edge", edge, tip.edge_mm, DEPTH_MM)
-    low, high = tip.slant_start_y_mm + 0.3, outline.tip_y_mm - 0.3
+    board = part.design.board
+    low = max(tip.slant_start_y_mm, board.pocket.y_max_mm + board.roof_mm) + 0.3
+    high = outline.tip_y_mm - 0.3
     thick = _thickness(part, np.array([(x, y) for x in xs for y in (low, high)]))
     angles = np.degrees(np.arctan((thick[::2] - thick[1::2]) / (high - low)))
     yield part.near("slant", angles, tip.angle_deg, ANGLE_DEG, unit="°")

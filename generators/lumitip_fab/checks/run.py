@@ -32,6 +32,7 @@ MODULES = (
     "mask_cut",
     "mask_coupon",
     "backing",
+    "strength",
     "fit_plate",
     "mould",
     "assembly",

@@ -1,4 +1,4 @@
-"""Masses, the flange's strength and numbers of parts, from the built files."""
+"""Masses, strength of fingers and flange, and numbers of parts, from the built files."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -6,6 +6,7 @@ from pathlib import Path
 from lumitip_fab.checks.flange import LEAST_SAFETY, strength
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.readers.tables import table
+from lumitip_fab.checks.strength import finger_loads
 from lumitip_fab.design import Design, Fab
 from lumitip_fab.design.frames import flange_beds
 from lumitip_fab.docs.row import Row, rows_of
@@ -77,6 +78,7 @@ def built_rows(out: Path, design: Design) -> tuple[Row, ...]:
         *fingers,
         *rows_of("payload", grams=sum(masses_g.values()), of=design.densities),
         *_outside(built, design),
+        *_fingers(out, design),
         *_strength(out, design),
         *part_number_rows(out, design),
     )
@@ -97,6 +99,25 @@ def _outside(built: Manifest, design: Design) -> Iterator[Row]:
         grams = board_ml * design.densities.auxiliary_g_ml
         grams += sum(volume * filament.density_g_ml for volume, filament in printed)
         yield from rows_of("mass", name=name, grams=grams, filament=printed[0][1])
+
+
+def _fingers(out: Path, design: Design) -> Iterator[Row]:
+    """What the rated force does to the weaker finger."""
+    limit, half_mm = design.strength, design.mask.hole_mm / 2
+    every = (finger_loads(out, design, finger) for finger in design.fingers)
+    found = min(every, key=lambda each: each.safety)
+    glue = limit.glue_mpa / found.glue_mpa
+    yield from rows_of(
+        "finger_strength",
+        found=found,
+        limit=limit,
+        glue=glue,
+        parts_n=limit.rated_force_n * min(found.safety, glue),
+        gripper=f"up to {limit.gripper_n:g} N" if limit.gripper_n else "a force that is not known",
+        strain=100 * found.board_strain,
+        most_strain=100 * limit.board_strain,
+        most_mm=limit.offset_share * half_mm,
+    )
 
 
 def _strength(out: Path, design: Design) -> Iterator[Row]:

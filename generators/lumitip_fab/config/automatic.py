@@ -11,6 +11,8 @@ from typing import Any
 from lumitip_fab.text import table_of
 
 AUTO = "auto"
+ALL_AUTOMATIC = ("finger",)
+"""Tables with automatic fields alone: a file may leave them out, as files of before do."""
 
 Value = float | int | str
 
@@ -42,7 +44,7 @@ def filled(table: dict[str, Any]) -> tuple[dict[str, Any], frozenset[str]]:
     Returns:
         The table, and the fields whose values are to be chosen.
     """
-    full, chosen = dict(table), set()
+    full, chosen = {section: {} for section in ALL_AUTOMATIC} | table, set()
     for field, automatic in automatic_fields().items():
         section, key = field.split(".")
         values = full.get(section)

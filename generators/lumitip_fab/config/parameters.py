@@ -78,6 +78,12 @@ class Backing(Strict):
     """Name of a filament in `parts/filaments.toml`."""
     density_g_ml: float = Field(ge=0.5, le=3)
     """Density of that filament (g/mL)."""
+    glue: Name
+    """Name of a glue in `parts/adhesives.toml`, behind the board or on an interface."""
+    flare_mm: float = Field(ge=1, le=200)
+    """How far the coupling's 45° ramp flares out along the back, beyond where it would end (mm)."""
+    flare_depth_mm: float = Field(ge=0.5, le=40)
+    """Height over the plate's back at which the ramp turns into its flare (mm)."""
     pocket_clearance_mm: float = Field(ge=0.10, le=0.30)
     """Gap between board and pocket on each side (mm)."""
     pin_clearance_mm: float = Field(ge=0.05, le=0.5)
@@ -86,6 +92,16 @@ class Backing(Strict):
     """Gap between a part on the back of the board and its relief, on each side (mm)."""
     tail_mm: float = Field(ge=0.5, le=5)
     """Room behind the board for solder tails and wires (mm)."""
+
+
+class Finger(Strict):
+    """The load that a finger bears."""
+
+    rated_force_n: float = Field(ge=0.1, le=1000)
+    """Force at the tip of each finger that it bears with all reserves, towards its back and
+    sideways (N)."""
+    bend_fraction: float = Field(gt=0, le=0.5)
+    """Most that the tip may bend under that force, as a fraction of the finger's length."""
 
 
 class Tip(Strict):
@@ -233,6 +249,7 @@ class Parameters(Strict):
     outline: Outline
     backing: Backing
     flex: sections.Flex
+    finger: Finger
     tip: Tip
     coupling: Coupling
     board: sections.Board

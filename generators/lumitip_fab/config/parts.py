@@ -5,7 +5,7 @@ from typing import Any, get_args, get_type_hints
 
 from lumitip_fab.catalogue import Catalogue, clamps, controllers, current_sources, electronics
 from lumitip_fab.catalogue.grippers import Gripper, ToolCoupling
-from lumitip_fab.catalogue.materials import Fastener, Filament, Film, Printer, Silicone
+from lumitip_fab.catalogue.materials import Adhesive, Fastener, Filament, Film, Printer, Silicone
 from lumitip_fab.config.parameters import Parameters
 
 
@@ -33,9 +33,10 @@ class ReceiverParts:
 
 @dataclass(frozen=True)
 class BackingParts:
-    """Material of the backing."""
+    """Materials of the backing."""
 
     material: Filament
+    glue: Adhesive
 
 
 @dataclass(frozen=True)

@@ -19,6 +19,7 @@ from lumitip_fab.derive.finger.stack import (
     derive_stack,
     derive_tip,
 )
+from lumitip_fab.derive.finger.strength import Body, derive_strength
 from lumitip_fab.derive.making import mask, mould
 from lumitip_fab.derive.making.fit_plate import derive_fit_plate
 from lumitip_fab.derive.making.panels import derive_panels
@@ -33,7 +34,7 @@ from lumitip_fab.derive.wiring.cabling import Boards, derive_cabling
 from lumitip_fab.derive.wiring.electrical import derive_electrical
 from lumitip_fab.derive.wiring.ratings import refuse_receiver_capacitor
 from lumitip_fab.derive.wiring.strings import Strings, derive_strings
-from lumitip_fab.design import Controller, Design, Grid, Title
+from lumitip_fab.design import Controller, Design, Grid, Mould, Title
 from lumitip_fab.design.encoding import canonical, round_trip
 
 
@@ -64,6 +65,22 @@ def lay_out(config: Input, faults: Diagnostics) -> FirstLayout:
     return FirstLayout(cells, strings, muxing, plan)
 
 
+def derive_body(config: Input, plan: boards.Plan, faults: Diagnostics) -> tuple[Body, Mould]:
+    """What is built round the boards of the fingers and bears their load, and the mould."""
+    p = config.parameters
+    stack = derive_stack(config, faults)
+    silhouette = outline.derive_outline(config, plan.board, plan.receiver.notch, faults)
+    interfaces = derive_interfaces(config, silhouette, plan.receiver, plan.board.box, faults)
+    coupling = mount.derive_mount(config, silhouette, plan, faults)
+    tip = derive_tip(p, silhouette, plan.board, stack, faults)
+    casting = mould.derive_mould(config, silhouette, plan.board, stack, faults)
+    slicing = derive_slicing(config, casting, faults)
+    meeting = mount.derive_closing(silhouette, stack, coupling, casting, faults)
+    board, finger = plan.board, plan.receiver
+    body = Body(stack, silhouette, tip, board, finger, coupling, interfaces, slicing, meeting)
+    return body, casting
+
+
 def derive_once(config: Input, faults: Diagnostics) -> Design:
     """Derive the whole sensor from values as they are.
 
@@ -75,22 +92,18 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
         InputError: with all that was collected.
     """
     p = config.parameters
-    stack, fasteners = derive_stack(config, faults), derive_fasteners(config, faults)
+    fasteners = derive_fasteners(config, faults)
     first = lay_out(config, faults)
     cells, strings, muxing, plan = first.cells, first.strings, first.muxing, first.plan
-    silhouette = outline.derive_outline(config, plan.board, plan.receiver.notch, faults)
-    interfaces = derive_interfaces(config, silhouette, plan.receiver, plan.board.box, faults)
-    coupling = mount.derive_mount(config, silhouette, plan, faults)
-    tip = derive_tip(p, silhouette, plan.board, stack, faults)
-    casting = mould.derive_mould(config, silhouette, plan.board, stack, faults)
+    body, casting = derive_body(config, plan, faults)
+    stack, silhouette, coupling, slicing = body.stack, body.outline, body.mount, body.slicing
     printing = derive_printing(config, silhouette, faults)
-    slicing = derive_slicing(config, casting, faults)
     heat = derive_heat(config, slicing, faults)
     plate = derive_fit_plate(config, plan, coupling, faults)
     sheet = mask.derive_mask(config, silhouette, plan, faults)
     rules = derive_rules(config, faults)
     refuse_receiver_capacitor(config, faults)
-    meeting = mount.derive_closing(silhouette, stack, coupling, casting, faults)
+    optics = optics_of(config)
     breakout = derive_breakout(config, muxing, faults)
     holders = derive_holder(config, breakout, faults)
     flange = derive_flange(config, strings, muxing, faults)
@@ -100,6 +113,8 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
     figures = derive_electrical(config, strings, muxing, circuit.pull_ups, faults)
     joints = Boards(plan.emitter, plan.receiver, (*breakout, *flange))
     cabling = derive_cabling(config, joints, silhouette, coupling, circuit, figures, faults)
+    faults.stop()
+    strength = derive_strength(config, body, optics, faults)
     faults.stop()
     mux, channel = wiring.assign(config, cells, plan.muxes)
     layout = Layout(
@@ -112,7 +127,7 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
         channel=channel,
         adc_pin=wiring.pins_of(mux, muxing.adc_pins),
         pitch_mm=p.grid.pitch_mm,
-        optics=_optics(config),
+        optics=optics,
     )
     return round_trip(
         Design(
@@ -121,13 +136,14 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
             layout=layout,
             stack=stack,
             outline=silhouette,
-            tip=tip,
+            tip=body.tip,
             board=plan.board,
             emitter=plan.emitter,
             receiver=plan.receiver,
-            interfaces=interfaces,
+            interfaces=body.interfaces,
             mount=coupling,
-            closing=meeting,
+            closing=body.closing,
+            strength=strength,
             wiring=circuit,
             cabling=cabling,
             packages=derive_packages(config),
@@ -159,7 +175,8 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
     )
 
 
-def _optics(config: Input) -> Optics:
+def optics_of(config: Input) -> Optics:
+    """Apertures, dies and silicone of the cells."""
     p, parts = config.parameters, config.catalogue
     led = parts.leds[p.emitter.led]
     detector = parts.photodetectors[p.receiver.photodetector]

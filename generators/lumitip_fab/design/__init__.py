@@ -73,6 +73,7 @@ from lumitip_fab.design.pcb import (
     Tie,
 )
 from lumitip_fab.design.shape import Box, Cubic, Outline, Point, Side, Stack, Tip
+from lumitip_fab.design.strength import Strength
 from lumitip_fab.text import board_name, page_name
 
 
@@ -120,6 +121,7 @@ class Design:
     """Between a bendable plate and the gripper, alike for both fingers; none of rigid ones."""
     mount: Mount
     closing: Closing
+    strength: Strength
     wiring: Wiring
     cabling: Cabling
     packages: Packages

@@ -52,6 +52,10 @@ class Board:
     box: Box
     hole_mm: float
     pocket: Box
+    """On the pocket's floor."""
+    roof_mm: float
+    """How much farther the pocket's end at the tip reaches at the rim: it rises at 45° as printed,
+    so that nothing hangs over."""
     pocket_clearance_mm: float
     pin_mm: float
     """Diameter of the pocket's locating pins, which stand at the board's holes."""

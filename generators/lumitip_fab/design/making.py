@@ -120,6 +120,8 @@ class Printing:
     line_mm: float
     layer_mm: float
     bed_mm: tuple[float, float, float]
+    bridge_mm: float
+    """Longest line that may hang over nothing."""
 
 
 @dataclass(frozen=True)

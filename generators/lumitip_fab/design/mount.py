@@ -1,9 +1,12 @@
 """Gripper coupling, closing of the fingers, and the printed flange between robot and gripper."""
 
+import math
 from dataclasses import dataclass
 
 from lumitip_fab.design.making import Letter
 from lumitip_fab.design.shape import Box, Point
+
+_FLARE_THINS = 0.4  # of its depth at the ramp, where a flare ends: the bending moment thins so
 
 
 @dataclass(frozen=True)
@@ -54,10 +57,29 @@ class Mount:
     nose: Nose | None
     stroke_mm: float
     pad_w_mm: float
+    flare_mm: float
+    """How far the ramp flares out along the plate, beyond where its 45° would end."""
+    flare_depth_mm: float
+    """Height over the plate's back at which the ramp turns into its flare."""
     letter: Letter
     """On the back of the block, beside the bolt's land."""
+    force_n: float
+    """Greatest force of the gripper; 0 where it is not known."""
     unsure: tuple[str, ...]
     """Figures of the gripper that neither a datasheet nor a measurement gives."""
+
+    @property
+    def flare_end_mm(self) -> float:
+        """Height over the plate's back to which the flare thins; it ends there at 45°."""
+        return min(_FLARE_THINS * self.flare_depth_mm, self.flare_mm / 2)
+
+    def ramp_end_y_mm(self, back_z_mm: float, rim_z_mm: float) -> float:
+        """y at which the ramp would reach the plate's back without its flare."""
+        tilt = math.radians(self.tilt_deg)
+        shoulder = self.land_mm * math.cos(tilt) - self.block_back_w_mm * math.sin(tilt)
+        shoulder_z = -self.land_mm * math.sin(tilt) - self.block_back_w_mm * math.cos(tilt)
+        rise = back_z_mm - rim_z_mm - shoulder_z
+        return self.origin_y_mm + shoulder + rise / math.tan(math.pi / 4 - tilt)
 
     @property
     def sleeved(self) -> bool:

@@ -1,6 +1,5 @@
 """The edge of the black, and where flaps lie when they are folded onto the finger's back."""
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -146,13 +145,10 @@ def _ramp(share: float, low: float, high: float) -> float:
 
 
 def _coupling(mount: Mount, stack: Stack) -> Box:
-    """Block with its 45° ramp where they stand on the plate's back."""
-    tilt, half = math.radians(mount.tilt_deg), mount.block_width_mm / 2
-    shoulder = mount.land_mm * math.cos(tilt) - mount.block_back_w_mm * math.sin(tilt)
-    ramp = (mount.block_back_w_mm - stack.rim_z_mm + stack.back_z_mm) / math.tan(
-        math.radians(45) - tilt
-    )
-    return Box(-half, half, mount.origin_y_mm - FOOT_MM, mount.origin_y_mm + shoulder + ramp)
+    """Block with its ramp and flare where they stand on the plate's back."""
+    half = mount.block_width_mm / 2
+    end = mount.ramp_end_y_mm(stack.back_z_mm, stack.rim_z_mm) + mount.flare_mm
+    return Box(-half, half, mount.origin_y_mm - FOOT_MM, end)
 
 
 def _area(box: Box) -> shapely.Geometry:

@@ -139,7 +139,7 @@ def backing_solid(
     plate = _plate(stack, outline) - _tip_cutter(stack, outline, tip)
     for interface in interfaces:
         return shapes.one_solid(sheet(plate, finger, stack, mount, interface), finger, "backing")
-    plate = plate - shapes.box_solid(board.pocket, stack.pocket_z_mm, stack.rim_z_mm + BEYOND_MM)
+    plate = plate - _pocket(stack, board)
     plate = plate - coupling.notch_cutter(stack, mount, finger.notch)
     whole = plate + coupling.coupling_solid(mount, stack, finger.notch)
     foot = stack.pocket_z_mm - stack.floor_mm / 2
@@ -171,6 +171,19 @@ def pin_solid(
     pin = shapes.cylinder(centre, pin_mm, foot_mm, top_mm)
     top = max(pin.edges(), key=lambda edge: edge.center().Z)
     return pin.chamfer(lead, None, [top])
+
+
+def _pocket(stack: Stack, board: Board) -> Solid:
+    """Room of the board. At the tip it rises at 45° as printed, so that nothing hangs over."""
+    box, top_z = board.pocket, stack.rim_z_mm + BEYOND_MM
+    leant = board.roof_mm * (1 + BEYOND_MM / stack.pcb_mm)
+    corners = [
+        (box.y_min_mm, stack.pocket_z_mm),
+        (box.y_max_mm, stack.pocket_z_mm),
+        (box.y_max_mm + leant, top_z),
+        (box.y_min_mm, top_z),
+    ]
+    return shapes.side_prism(corners, box.x_min_mm, box.x_max_mm)
 
 
 def _plate(stack: Stack, outline: Outline) -> Solid:

@@ -4,7 +4,7 @@ Side view, the gripper at the left and the tip to the right (w is down):
 
     h = 0     notch                         plate
       ┊       ┌─────────────────────────────────────
-      ┊──────╱ ── front of the block, 45° ── ╭╯ flare
+      ┊──────╱ ── front of the block, 45° ──╲___───  flare
       │                                   ╭──╯
       │ bolt ▷ land ┆ counterbore     ╱ 45° ramp
       │─────────────┆───────────────╱
@@ -13,7 +13,6 @@ Side view, the gripper at the left and the tip to the right (w is down):
 """
 
 import math
-from itertools import pairwise
 
 import numpy as np
 from build123d import Edge, Face, Plane, Solid, Vector, Wire
@@ -22,8 +21,7 @@ from lumitip_fab.design import Box, Mount, Point, Stack
 from lumitip_fab.design.frames import Matrix, applied, mount_to_sensor
 from lumitip_fab.parts.shapes import cylinder, placed, polygon_face, prism
 
-FLARE_RADIUS_MM = 10.0  # ramp into plate
-FLARE_END_DEG = 12.0  # the flare meets the plate at an angle: tangent faces do not fuse
+FILLET_END_DEG = 12.0  # fillets meet the plate at an angle: tangent faces do not fuse
 SIDE_FLARE_MM = 1.5  # block's sides into plate; less than the gap kept to reliefs
 SHEET_MM = 0.4  # fraction of the floor that block and floor share
 BEYOND_MM = 1.0  # how far a cutter reaches past what it cuts
@@ -40,7 +38,7 @@ def coupling_solid(mount: Mount, stack: Stack, notch: Box | None) -> Solid:
             has no fillets at its sides.
     """
     to_sensor = mount_to_sensor(mount, stack)
-    top_mm = mount.land_mm + mount.block_back_w_mm + FLARE_RADIUS_MM
+    top_mm = mount.land_mm + 2 * mount.block_back_w_mm + mount.flare_mm
     block = prism(_plan(mount), -BEYOND_MM, top_mm)
     for side in beside_nose(mount):
         block = block - side
@@ -146,14 +144,10 @@ def _profile(mount: Mount, stack: Stack, notch: Box | None) -> Wire:
     inside_z = stack.back_z_mm + SHEET_MM * stack.floor_mm
     back = _yz(to_sensor, mount.block_back_w_mm, -BEYOND_MM)
     shoulder = _yz(to_sensor, mount.block_back_w_mm, mount.land_mm)
-    start, middle, end = _flare(mount, shoulder, stack.back_z_mm)
-    steepness = math.tan(math.radians(FLARE_END_DEG))
-    sunk = (end[0] + (inside_z - end[1]) / steepness, inside_z)
-    straight = [sunk, *_front(mount, stack, notch, inside_z), back, shoulder, start]
-    edges = [Edge.make_line(_point(a), _point(b)) for a, b in pairwise(straight)]
-    edges.append(Edge.make_three_point_arc(_point(start), _point(middle), _point(end)))
-    edges.append(Edge.make_line(_point(end), _point(sunk)))
-    return Wire(edges)
+    end, nose, start = _flare(mount, shoulder, stack.back_z_mm)
+    sunk = (end[0] + inside_z - end[1], inside_z)
+    corners = [sunk, *_front(mount, stack, notch, inside_z), back, shoulder, start, nose]
+    return Wire.make_polygon([_point(corner) for corner in corners], close=True)
 
 
 def _front(mount: Mount, stack: Stack, notch: Box | None, inside_z_mm: float) -> list[Point]:
@@ -178,19 +172,16 @@ def _front_top_h(mount: Mount, to_sensor: Matrix, notch_end: Point) -> float:
     return float(h - (mount.block_front_w_mm - w))
 
 
-def _flare(mount: Mount, shoulder: Point, back_z_mm: float) -> tuple[Point, Point, Point]:
-    """Start, middle and end of the arc from the ramp to the plate's back, in (y, z)."""
-    steep, flat = math.radians(45 - mount.tilt_deg), math.radians(FLARE_END_DEG)
-    radius = FLARE_RADIUS_MM
-    centre_z = back_z_mm - radius * math.cos(flat)
-    start_z = centre_z + radius * math.cos(steep)
-    start_y = shoulder[0] + (start_z - shoulder[1]) / math.tan(steep)
-    centre_y = start_y + radius * math.sin(steep)
-
-    def at(angle: float) -> Point:
-        return centre_y - radius * math.sin(angle), centre_z + radius * math.cos(angle)
-
-    return at(steep), at((steep + flat) / 2), at(flat)
+def _flare(mount: Mount, shoulder: Point, back_z_mm: float) -> list[Point]:
+    """The flare in (y, z): from the plate's back at its end, down to the ramp."""
+    steep, depth = math.tan(math.radians(45 - mount.tilt_deg)), mount.flare_depth_mm
+    foot_y = shoulder[0] + (back_z_mm - shoulder[1]) / steep
+    end_y, nose = foot_y + mount.flare_mm, mount.flare_end_mm
+    return [
+        (end_y, back_z_mm),
+        (end_y - nose, back_z_mm - nose),
+        (foot_y - depth / steep, back_z_mm - depth),
+    ]
 
 
 def _side_flares(mount: Mount, stack: Stack, notch: Box, length_mm: float) -> Solid:
@@ -198,7 +189,7 @@ def _side_flares(mount: Mount, stack: Stack, notch: Box, length_mm: float) -> So
     half, radius = mount.block_width_mm / 2, SIDE_FLARE_MM
     back, inside = stack.back_z_mm, stack.back_z_mm + SHEET_MM * stack.floor_mm
     start_y = _notch_end(mount, stack, notch)[1][0]
-    flat = math.radians(FLARE_END_DEG)
+    flat = math.radians(FILLET_END_DEG)
     centre = (half + radius, back - radius * math.cos(flat))
     arc = [
         (centre[0] - radius * math.cos(a), centre[1] + radius * math.sin(a))

@@ -32,7 +32,9 @@ def silicone_mix(volume_ml: float, mould: Mould) -> dict[str, float]:
     }
 
 
-def casting_note(finger: str, mix: Mapping[str, float], stack: Stack, mould: Mould) -> str:
+def casting_note(
+    finger: str, mix: Mapping[str, float], stack: Stack, mould: Mould, glue: str
+) -> str:
     """The note as Markdown.
 
     Args:
@@ -40,13 +42,14 @@ def casting_note(finger: str, mix: Mapping[str, float], stack: Stack, mould: Mou
         mix: silicone that stays on it, and what to mix.
         stack: for the height of the stops.
         mould: its layers, the silicone, and how much is wasted.
+        glue: title of what holds the board, or the interface.
     """
     rim_mm = mould.wall_mm + stack.cover_mm
     return passage(_TEXTS, "note").format(
         finger=finger,
         letter=finger[0].upper(),
         letter_on="the back of its block" if stack.sunk else "its back",
-        board=passage(_TEXTS, "in_pocket" if stack.sunk else "on_plate"),
+        board=passage(_TEXTS, "in_pocket" if stack.sunk else "on_plate").format(glue=glue),
         waste=mould.waste_fraction,
         silicone=mould.silicone,
         **mix,
@@ -76,7 +79,7 @@ def mould_files(design: Design, finger: Finger) -> tuple[Artefact, ...]:
     solid = mould_solid(finger, stack, outline, mould)
     volume_ml = cast_volume_ml(finger, stack, outline, design.board, mould)
     mix = silicone_mix(volume_ml, mould)
-    note = casting_note(finger.name, mix, stack, mould)
+    note = casting_note(finger.name, mix, stack, mould, design.strength.glue)
     return (
         *export.part_files(
             f"mould/{finger.name}_mould",

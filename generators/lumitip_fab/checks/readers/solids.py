@@ -142,6 +142,26 @@ def section(mesh: Any, z_mm: float) -> BaseGeometry:
     return reduce(shapely.symmetric_difference, map(shapely.make_valid, rings), nothing)
 
 
+def moments(cut: BaseGeometry) -> tuple[float, Vectors, Vectors]:
+    """Area, centre, and second moments about the centre, of polygons with holes."""
+    area, first, second = 0.0, np.zeros(2), np.zeros((2, 2))
+    for part in shapely.get_parts(cut):
+        if part.geom_type != "Polygon":
+            continue
+        whole = shapely.geometry.polygon.orient(part)  # holes turn the other way, and count less
+        for ring in (whole.exterior, *whole.interiors):
+            corners = shapely.get_coordinates(ring)
+            a, b = corners[:-1], corners[1:]
+            cross = a[:, 0] * b[:, 1] - b[:, 0] * a[:, 1]
+            area += float(cross.sum()) / 2
+            first += ((a + b) * cross[:, None]).sum(axis=0) / 6
+            mixed = np.einsum("n,ni,nj->ij", cross, a, b)
+            own = np.einsum("n,ni,nj->ij", cross, a, a) + np.einsum("n,ni,nj->ij", cross, b, b)
+            second += (2 * own + mixed + mixed.T) / 24
+    middle = first / area if area > 0 else first
+    return area, middle, second - area * np.outer(middle, middle)
+
+
 def overhang_mm2(mesh: Any) -> float:
     """Area that a printer must lay over air: steeper than 45°, standing on z = 0."""
     hangs = (mesh.face_normals[:, 2] < _STEEPEST) & (mesh.triangles[:, :, 2].max(axis=1) > 0.01)

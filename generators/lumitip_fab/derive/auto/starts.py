@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator
 
 from lumitip_fab.config.automatic import Value, automatic_fields
 from lumitip_fab.config.load import Input
+from lumitip_fab.derive.auto.load import flare, load_case
 from lumitip_fab.derive.auto.strings import choose_resistors, choose_strings
 from lumitip_fab.derive.boards.connectors import POWER_WIRES
 from lumitip_fab.derive.boards.module import MOST_WIRES
@@ -49,6 +50,8 @@ def proposals() -> tuple[Callable[[Input], Iterator[Proposal]], ...]:
         _flange,
         _standoff,
         _interface,
+        load_case,
+        flare,
     )
 
 

@@ -24,7 +24,7 @@ from lumitip_fab.derive.boards.sources import source_parts
 from lumitip_fab.derive.boards.ties import finger_ties
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.cells import Cells, bending_lines, derive_turned, refuse_lines
-from lumitip_fab.derive.finger.stack import foot_half_mm, is_flex
+from lumitip_fab.derive.finger.stack import foot_half_mm, is_flex, roof_mm
 from lumitip_fab.derive.making.fits import derive_fits
 from lumitip_fab.derive.wiring.strings import Strings
 from lumitip_fab.derive.wiring.wiring import Muxing
@@ -250,6 +250,7 @@ def _board(config: Input, frame: Frame) -> Board:
         box=frame.box,
         hole_mm=config.parameters.board.hole_mm,
         pocket=frame.box.grown(fits.pocket_gap_mm),
+        roof_mm=roof_mm(config),
         pocket_clearance_mm=fits.pocket_gap_mm,
         pin_mm=fits.pin_mm,
         flexible=flexible_board(config, frame.box, frame.notch, frame.connector_y_mm),

@@ -23,7 +23,6 @@ from lumitip_fab.design import Box, Finger, Interface, Outline
 LETTER_DEPTH_MM = 0.4
 LETTER_GAP_MM = 1.5  # interface to the letter, and letter to the wedge
 COVERED_MM = 0.5  # board round a thread hole, which else lets silicone through
-FLARE_MM = 2.2  # of the interface beyond land and ramp: where the ramp flares into the pad
 
 
 def derive_interfaces(
@@ -76,10 +75,10 @@ def _refuse_length(
     ramp = (gripper.block_back_w_mm - behind_mm(p)) / math.tan(tilt)
     cells = next(zone.box for zone in finger.zones if zone.name == "cells")
     # Solder joints of a multiplexer break where the board bends, and tracks need vias before it.
-    for_gripper = gripper.land_mm + ramp + FLARE_MM
+    for_gripper = gripper.land_mm + ramp + p.backing.flare_mm
     for_parts = cells.y_min_mm - outline.end_y_mm
     least = max(for_gripper, for_parts)
-    what = f"for the land and ramp of {p.coupling.gripper!r}"
+    what = f"for land, ramp and flare of {p.coupling.gripper!r}"
     remedy = "Make the finger longer, or reduce tip.slant_start_mm or flex.standoff_mm."
     if for_parts > for_gripper:
         what = "to hold the multiplexers and the tracks before them"

@@ -118,11 +118,12 @@ def _least_rim(outline: Outline, board: Board) -> tuple[float, Point]:
     from shapely import Polygon, box, make_valid
 
     pocket = board.pocket
-    hole = box(*pocket.bounds_mm)
+    high_mm = pocket.y_max_mm + board.roof_mm
+    hole = box(pocket.x_min_mm, pocket.y_min_mm, pocket.x_max_mm, high_mm)
     skin = Polygon(outline.polygon())
     corners = np.array(skin.exterior.coords)
     dx = np.maximum(np.abs(corners[:, 0]) - pocket.x_max_mm, 0)
-    above, below = corners[:, 1] - pocket.y_max_mm, pocket.y_min_mm - corners[:, 1]
+    above, below = corners[:, 1] - high_mm, pocket.y_min_mm - corners[:, 1]
     distance = np.hypot(dx, np.maximum(np.maximum(above, below), 0))
     nearest = int(distance.argmin())
     where = (float(corners[nearest, 0]), float(corners[nearest, 1]))

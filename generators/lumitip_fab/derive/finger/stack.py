@@ -45,6 +45,13 @@ def least_standoff_mm(config: Input) -> float:
     return behind_mm(config.parameters) - nose.front_w_mm if nose else 0.0
 
 
+def roof_mm(config: Input) -> float:
+    """How far the end of the pocket leans, so that it rises at 45° on the tilted print bed."""
+    p = config.parameters
+    slope = math.tan(math.radians(45 + held_by(config).tilt_deg))
+    return 0.0 if is_flex(p) else slope * p.stack.pcb_mm
+
+
 def stiff_mm(p: Parameters) -> float:
     """Thickness of the boards outside the fingers."""
     return AUXILIARY_MM if is_flex(p) else p.stack.pcb_mm
@@ -166,6 +173,7 @@ def derive_printing(config: Input, outline: Outline, faults: Diagnostics) -> Pri
         printer.line_mm,
         printer.layer_mm,
         printer.bed_mm,
+        printer.bridge_mm,
     )
 
 

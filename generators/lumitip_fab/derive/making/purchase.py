@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from lumitip_fab.catalogue.ordering import Prices
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.finger.stack import stiff_mm
+from lumitip_fab.derive.finger.stack import is_flex, stiff_mm
 from lumitip_fab.derive.mount.fasteners import screw_length_mm
 from lumitip_fab.design import Flange, Holder, Mount
 from lumitip_fab.design.making import Slicing
@@ -23,6 +23,7 @@ def derive_purchase(
     pieces = [
         *_controller(config, prices),
         *_bolts(mount, prices),
+        _glue(config, prices),
         *(each for holder in holders for each in _screws(holder, prices)),
         *(each for flange in flanges for each in _of_flange(config, flange, prices)),
     ]
@@ -63,6 +64,17 @@ def _bolts(mount: Mount, prices: Prices) -> list[Bought]:
     count = 2 * len(mount.bolt_u_mm)
     each = prices.each.get(f"{mount.bolt} socket head screw")
     return [Bought("fasteners", item, "", "ISO 4762", where, count, each)]
+
+
+def _glue(config: Input, prices: Prices) -> Bought:
+    """A pack of the glue that holds boards or interfaces: some drops are used."""
+    name = config.parameters.backing.glue
+    where = (
+        "boards in their backings" if not is_flex(config.parameters) else "interfaces on backings"
+    )
+    return Bought(
+        "fasteners", config.title("backing.glue"), "", "", where, 1, prices.each.get(name)
+    )
 
 
 def _screws(holder: Holder, prices: Prices) -> list[Bought]:

@@ -64,7 +64,10 @@ def derive_mount(config: Input, outline: Outline, plan: Plan, faults: Diagnostic
         nose=fits.nose,
         stroke_mm=gripper.stroke_mm,
         pad_w_mm=gripper.pad_w_mm,
+        flare_mm=p.backing.flare_mm,
+        flare_depth_mm=p.backing.flare_depth_mm,
         letter=_letter(config, gripper, faults),
+        force_n=gripper.force_n or 0.0,
         unsure=gripper.unsure,
     )
 

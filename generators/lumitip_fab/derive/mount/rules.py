@@ -13,6 +13,7 @@ from lumitip_fab.design import AuxiliaryBoard, Flange, Holder, Outline, Point
 MOST_STRAIN = 0.01  # of the arms while they clip on; PETG yields at some 4 %
 MOST_LASTING_STRAIN = 0.005  # of the arms on the body: more creeps away (assumed)
 DRILLED_MM = 0.1  # beyond a screw's thread, of the board's holes, truer than printed ones
+LEAST_FLARE_MM = 1.0  # that a parameter file allows
 RING_MM = 0.4  # of the board, at least, that a screw's head presses on
 LEAST_GRIP_MM = 0.3  # each arm's end inside the body's widest place
 
@@ -26,6 +27,17 @@ def refuse_place(
     ramp = gripper.block_back_w_mm - plate
     opening = plan.receiver.notch.y_max_mm - outline.end_y_mm
     length = gripper.land_mm + ramp
+    most = outline.length_mm - p.tip.slant_start_mm - length
+    faults.unless(
+        p.backing.flare_mm <= most + 1e-9 or most <= LEAST_FLARE_MM,
+        "flare_long",
+        most_mm=math.floor(most * 10) / 10,
+    )
+    faults.unless(
+        p.backing.flare_depth_mm <= ramp - LEAST_FLARE_MM,
+        "flare_deep",
+        most_mm=ramp - LEAST_FLARE_MM,
+    )
     faults.unless(
         length <= outline.length_mm - p.tip.slant_start_mm and opening < length,
         "block_long",

@@ -1,0 +1,135 @@
+"""Load on a finger, what its materials bear, and what that load does to it."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from lumitip_fab.design.beam import Beam, Layer, Vectors
+
+
+@dataclass(frozen=True)
+class Strength:
+    """The load case, limits, and figures of materials: assumed where the catalogue says so."""
+
+    rated_force_n: float
+    """At the tip of each finger, towards its back, and sideways."""
+    gripper_n: float
+    """Greatest force of the gripper; 0 where it is not known."""
+    safety: float
+    """At least, of the printed layers and of the glue."""
+    most_bend_mm: float
+    """Deflection of the tip, at most."""
+    offset_share: float
+    """How far the path from LED to detector may leave the middle of an aperture, as a share of its
+    half width, at most."""
+    backing_mpa: float
+    """Young's modulus of the backing's filament."""
+    rigid_mpa: float
+    """The same of the filament of an interface."""
+    board_mpa: float
+    """The same of the board's laminate."""
+    board_strain: float
+    """Most that the board's front may be strained, with the parts soldered on it."""
+    glue: str
+    """Title of the glue behind the board, or between plate and interface."""
+    glue_mpa: float
+    """Lap shear strength."""
+    lap_mm: float
+    """Overlap of the test that gave it: near its end a joint bears its peak within that length."""
+
+
+@dataclass(frozen=True)
+class Loads:
+    """Figures of a finger under its rated force; lengths in mm."""
+
+    layers_mpa: float
+    """Greatest tension from layer to layer of printed parts."""
+    layers_h_mm: float
+    """Where: over the mount plane."""
+    safety: float
+    """What the layers bear, over what they get; the least over all printed parts."""
+    bare_n: float
+    """Force at which the layers part without glue."""
+    board_strain: float
+    board_h_mm: float
+    glue_mpa: float
+    """Greatest shear in the glue."""
+    bend_mm: float
+    """Deflection of the tip towards its back."""
+    side_mm: float
+    """Deflection of the tip sideways."""
+    lean_deg: float
+    """Slope at the cell nearest to the tip."""
+    offset_mm: float
+    """Greatest distance of the path from LED to detector from the middle of an aperture."""
+
+
+@dataclass(frozen=True, eq=False)
+class Loaded:
+    """A finger as a beam, with what its layers are."""
+
+    beam: Beam
+    printed: tuple[tuple[Layer, float], ...]
+    """Printed layers, and their strength from layer to layer (MPa)."""
+    board: Layer
+    glued: Layer
+    """The layer that the glue holds on the others."""
+    glue_mm: Vectors
+    """Width of the glue in each section, 0 where there is none."""
+
+
+def loads(of: Loaded, strength: Strength, cells_h_mm: Vectors, depth_mm: float) -> Loads:
+    """What the rated force does to a finger.
+
+    Args:
+        of: its layers.
+        strength: load and materials.
+        cells_h_mm: heights of the cells over the mount plane.
+        depth_mm: of the dies of LED and detector below the mask, the deeper one.
+    """
+    force, beam = strength.rated_force_n, of.beam
+    parts = [
+        (np.maximum(beam.tension_mpa(layer), beam.side_tension_mpa(layer)) * force, limit)
+        for layer, limit in of.printed
+    ]
+    if not np.all(sum((layer.area_mm2 for layer, _ in of.printed), np.zeros(1))):
+        parts = [(np.full_like(beam.h_mm, np.inf), limit) for _, limit in of.printed]
+    worst, limit = max(parts, key=lambda part: float(part[0].max()) / part[1])
+    bare = beam.alone(*(layer for layer, _ in of.printed))
+    alone = min(limit / float(bare.tension_mpa(layer).max()) for layer, limit in of.printed)
+    strain = beam.tension_mpa(of.board) * force / of.board.modulus_mpa
+    back, lean = beam.bent(beam.stiffness_nmm2, np.append(cells_h_mm, beam.tip_h_mm))
+    side, _ = beam.bent(beam.side_stiffness_nmm2, np.append(cells_h_mm, beam.tip_h_mm))
+    # Fingers that bend back alike stay mirror images: a path crosses each mask off its middle by
+    # the lean. Pulled sideways they move apart, and it crosses both masks half way.
+    offset = depth_mm * np.tan(lean[:-1] * force) + side[:-1] * force
+    return Loads(
+        layers_mpa=float(worst.max()),
+        layers_h_mm=float(beam.h_mm[worst.argmax()]),
+        safety=limit / max(float(worst.max()), 1e-9),
+        bare_n=alone,
+        board_strain=float(strain.max()),
+        board_h_mm=float(beam.h_mm[strain.argmax()]),
+        glue_mpa=_glue_mpa(of, strength),
+        bend_mm=float(back[-1]) * force,
+        side_mm=float(side[-1]) * force,
+        lean_deg=math.degrees(float(lean[:-1].max()) * force),
+        offset_mm=float(offset.max()),
+    )
+
+
+def _glue_mpa(of: Loaded, strength: Strength) -> float:
+    """Greatest shear in the glue: along it, by how the force that it passes on changes; and at its
+    ends, where that force passes within the length of a lap joint."""
+    there = np.flatnonzero((of.glue_mm > 0) & (of.glued.area_mm2 > 0))
+    if len(there) < 2:
+        return math.inf
+    held = of.beam.held_n(of.glued)[there] * strength.rated_force_n
+    width, h = of.glue_mm[there], of.beam.h_mm[there]
+    worst = float((np.abs(np.gradient(held, h)) / width).max())
+    for force, wide, along in ((held, width, h - h[0]), (held[::-1], width[::-1], h[-1] - h[::-1])):
+        lap = along <= strength.lap_mm
+        area = float(np.trapezoid(wide[lap], along[lap]))
+        worst = max(worst, float(force[lap][-1]) / max(area, 1e-9))
+    return worst

@@ -1,0 +1,53 @@
+"""Beam figures of a finger against finite elements on its written backing."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from finger_fem import bent
+from lumitip_fab.checks.strength import STEP_MM, finger_loads, loaded
+from lumitip_fab.config.load import load
+from lumitip_fab.derive import derive
+from lumitip_fab.design.beam import Layer, Vectors
+from lumitip_fab.design.encoding import read_design
+from lumitip_fab.design.frames import mount_to_sensor
+from printed_fingers import written
+
+pytestmark = pytest.mark.slow
+BRICK_MM = (1.2, 0.8, 0.3)
+WITHIN = 0.2
+ON_THE_SAFE_SIDE = 1.3  # at most, times the strain of the board's front by finite elements
+OVER_MM = 4.0
+
+
+@pytest.mark.parametrize("preset", ["published", "franka_hand", "wsg50"])
+def test_beam_and_finite_elements_agree(preset: str, tmp_path: Path, design_dir: Path) -> None:
+    """Deflection of the tip; tension from layer to layer in the block, before the notch's corner
+    gathers it; strain along the board's front over the flare, which the beam overrates."""
+    made = derive(load(design_dir / "presets" / f"{preset}.toml"))
+    out = written(made, made, tmp_path / preset)
+    design = read_design(out / "design.json")
+    finger, mount, stack = design.receiver, design.mount, design.stack
+    solved = bent(out, design, finger, BRICK_MM)
+    found = finger_loads(out, design, finger)
+    assert found.bend_mm == pytest.approx(solved.tip_mm, rel=WITHIN)
+    to_mount = np.linalg.inv(mount_to_sensor(mount, stack))
+    tip = to_mount @ (0.0, design.closing.contact_y_mm, stack.rim_z_mm, 1.0)
+    of = loaded(out, design, finger, to_mount, float(tip[2]))
+    cosine, force = math.cos(math.radians(mount.tilt_deg)), design.strength.rated_force_n
+
+    def beam(layer: Layer, y_mm: Vectors) -> Vectors:
+        tension = of.beam.tension_mpa(layer) * force / layer.modulus_mpa
+        return np.interp((y_mm - mount.origin_y_mm) * cosine, of.beam.h_mm, tension)
+
+    block = np.arange(mount.origin_y_mm + 2.0, finger.notch.y_max_mm - 2.0, STEP_MM)
+    pulled = solved.pulled(0.0, block[0], block[-1])
+    assert float(beam(of.printed[0][0], block).mean()) == pytest.approx(pulled, rel=WITHIN)
+    ramp_y = mount.ramp_end_y_mm(stack.back_z_mm, stack.rim_z_mm)
+    flare = np.arange(ramp_y, ramp_y + mount.flare_mm - 2 * OVER_MM, STEP_MM)
+    places = (0.0, design.board.box.x_max_mm / 2)
+    front = [solved.front_strain(x, flare, stack.rim_z_mm, OVER_MM) for x in places]
+    overrated = float(beam(of.board, flare).mean()) / float(np.mean(front))
+    assert 1.0 <= overrated <= ON_THE_SAFE_SIDE

@@ -1,0 +1,123 @@
+"""The fingers' strength and the spans of their print, on backings by themselves, to damage."""
+
+import shutil
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+import trimesh
+
+from lumitip_fab.checks.readers import solids
+from lumitip_fab.checks.spans import longest_span_mm
+from lumitip_fab.checks.strength import measure
+from lumitip_fab.config.load import load
+from lumitip_fab.derive import derive
+from lumitip_fab.design import Design
+from lumitip_fab.design.encoding import read_design
+from printed_fingers import written
+
+PART = "backing/receiver_backing.stl"
+
+
+@pytest.fixture(scope="module", params=["published", "flex"])
+def fingers(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory, design_dir: Path
+) -> Path:
+    """The printed fingers of a preset."""
+    design = derive(load(design_dir / "presets" / f"{request.param}.toml"))
+    return written(design, design, tmp_path_factory.mktemp("fingers") / request.param)
+
+
+def failed(out: Path) -> set[str]:
+    """Names of the checks that fail."""
+    return {m.check for m in measure(out, read_design(out / "design.json")) if not m.passed}
+
+
+def test_both_kinds_of_finger_bear_their_load(fingers: Path) -> None:
+    design = read_design(fingers / "design.json")
+    assert not failed(fingers)
+    for m in design.fingers[0].name, design.fingers[1].name:
+        mesh = solids.read_mesh(fingers / f"backing/{m}_backing.stl")
+        assert longest_span_mm(mesh, design.printing)[0] < 5.0
+
+
+Damage = Callable[[Design], Design]
+
+
+def thin(design: Design) -> Design:
+    """As before there was a flare."""
+    return replace(design, mount=replace(design.mount, flare_depth_mm=0.6))
+
+
+def upright(design: Design) -> Design:
+    """The end of the pocket as it was, level in the print."""
+    return replace(design, board=replace(design.board, roof_mm=0.0))
+
+
+@pytest.fixture(scope="module")
+def published(design_dir: Path) -> Design:
+    """The published design."""
+    return derive(load(design_dir / "presets" / "published.toml"))
+
+
+def test_a_thin_flare_is_found(published: Design, tmp_path: Path) -> None:
+    out = written(published, thin(published), tmp_path / "thin")
+    assert {"strength.bend", "strength.board"} <= failed(out)
+
+
+@pytest.mark.parametrize(
+    ("check", "size_mm", "at_mm"),
+    [
+        ("strength.layers", (30.0, 14.0, 1.0), (0.0, 8.0, 3.5)),  # a saw cut over the mount plane
+        ("strength.glue", (60.0, 4.0, 36.0), (0.0, 2.0, 30.0)),  # no floor behind the board
+    ],
+)
+def test_a_cut_is_found(
+    check: str,
+    size_mm: tuple[float, float, float],
+    at_mm: tuple[float, float, float],
+    published: Design,
+    tmp_path: Path,
+) -> None:
+    out = written(published, published, tmp_path / "cut")
+    whole = trimesh.load(out / PART, force="mesh")
+    away = trimesh.creation.box(size_mm).apply_translation(at_mm)
+    trimesh.boolean.difference([whole, away], engine="manifold").export(out / PART)
+    assert check in failed(out)
+
+
+def test_light_leaves_the_apertures_of_a_finger_that_bends_far(
+    published: Design, tmp_path: Path
+) -> None:
+    strong = replace(published, strength=replace(published.strength, rated_force_n=400.0))
+    assert "strength.light_path" in failed(written(strong, published, tmp_path / "bent"))
+
+
+def test_a_missing_part_is_named(fingers: Path, tmp_path: Path) -> None:
+    out = Path(shutil.copytree(fingers, tmp_path / "missing"))
+    (out / PART).unlink()
+    assert failed(out) == {"strength.readable"}
+
+
+def test_the_level_end_of_a_pocket_is_a_long_span(published: Design, tmp_path: Path) -> None:
+    """As issue 15 measured it: a strand as long as the pocket is wide, under the tip."""
+    out = written(published, upright(published), tmp_path / "level")
+    span, at_mm = longest_span_mm(solids.read_mesh(out / PART), published.printing)
+    assert span == pytest.approx(published.board.pocket.width_mm, abs=0.5)
+    assert at_mm == pytest.approx(48.8, abs=0.3)
+    assert span > published.printing.bridge_mm
+
+
+def test_spans_of_plain_bodies(published: Design) -> None:
+    """A shelf hangs over nothing, a cone of 45° does not."""
+    foot = trimesh.creation.box((10.0, 10.0, 10.0)).apply_translation((0.0, 0.0, 5.0))
+    shelf = trimesh.creation.box((30.0, 10.0, 2.0)).apply_translation((10.0, 0.0, 11.0))
+    table = trimesh.boolean.union([foot, shelf], engine="manifold")
+    span, at_mm = longest_span_mm(table, published.printing)
+    assert span == pytest.approx(20.0, abs=0.5)
+    assert at_mm == pytest.approx(10.1, abs=0.2)
+    cone = trimesh.creation.cone(10.0, 10.0, sections=128).apply_transform(
+        [[1, 0, 0, 0], [0, -1, 0, 0], [0, 0, -1, 10], [0, 0, 0, 1]]
+    )
+    assert longest_span_mm(cone, published.printing)[0] == 0.0
