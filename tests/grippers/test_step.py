@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 from build123d import Axis, Box, Cylinder, Location, Shape, Solid, export_brep
+from OCP.Interface import Interface_Static
 from OCP.STEPControl import STEPControl_StepModelType, STEPControl_Writer
 
 from lumitip_fab.catalogue.grippers import Gripper
@@ -79,12 +80,14 @@ def test_the_part_may_lie_anywhere_and_in_inches(
     moved = solid.moved(Location((70.0, -31.0, 12.0), (31.0, -47.0, 143.0)))
     assert figures_of(moved, config) == figures_of(solid, config)
     file = tmp_path / "inches.step"
-    writer = STEPControl_Writer()
-    writer.Model().SetLocalLengthUnit(25.4) if hasattr(
-        writer.Model(), "SetLocalLengthUnit"
-    ) else None
-    writer.Transfer(solid.wrapped, STEPControl_StepModelType.STEPControl_AsIs)
-    writer.Write(str(file))
+    Interface_Static.SetCVal_s("write.step.unit", "INCH")
+    try:
+        writer = STEPControl_Writer()
+        writer.Transfer(solid.wrapped, STEPControl_StepModelType.STEPControl_AsIs)
+        writer.Write(str(file))
+    finally:
+        Interface_Static.SetCVal_s("write.step.unit", "MM")
+    assert "INCH" in file.read_text(encoding="utf-8")
     assert figures_of(read_solid(file), config) == figures_of(solid, config)
 
 
@@ -112,6 +115,12 @@ def test_plain_holes_leave_the_counterbore_open(config: Input) -> None:
     }
 
 
+def test_chamfers_do_not_make_the_block_narrower(config: Input) -> None:
+    whole = block(bore(-7, 2, 4.5, -1, 51), bore(7, 2, 4.5, -1, 51))
+    foot = [edge for edge in whole.edges() if edge.center().Z < 1e-6 and edge.length > 15]
+    assert figures_of(whole.chamfer(0.8, None, foot), config) == figures_of(whole, config)
+
+
 def test_blind_holes_are_pins_if_they_are_in_the_mount_face(config: Input) -> None:
     bolt = [bore(0, 1, 5.4, -1, 51), bore(0, 1, 9.5, 6, 51)]
     pins = [bore(x, 1, 3.0, -1, 4) for x in (-8, 8)]
@@ -125,9 +134,7 @@ def test_blind_holes_are_pins_if_they_are_in_the_mount_face(config: Input) -> No
     assert "bolt_spacing_mm" not in values
 
 
-def test_four_bolts_are_no_entry(
-    config: Input, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_four_bolts_are_no_entry(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     four = [bore(x, y, 3.4, -1, 51) for x in (-8, 8) for y in (-4, 4)]
     file = tmp_path / "four.step"
     file.write_bytes(step(block(*four), "tip"))

@@ -25,6 +25,7 @@ from lumitip_fab.grippers.reading import refusal
 LEAST_BOLT_MM = 2.0  # diameter of a bolt's hole
 MOST_LEAN_DEG = 10.0  # of the pad against the bolts
 STEP_MM = 0.5  # between the diameters of a hole and its counterbore, at least
+CUT_MM = 2.0  # of the mount face's edges by chamfers, at most
 _SIDE = 0.02  # sine of the angle below which a normal is square to the bolts' row
 
 
@@ -122,7 +123,8 @@ def propose(file: Path, shape: Shape, fasteners: Mapping[str, Fastener]) -> Prop
     pad = _pad(flat, h, row)
     axes = _axes(h, row, pad)
     placed = Proposal(axes, feet.mean(axis=0), found, bolts, pins, mount, pad, {})
-    return Proposal(**{**vars(placed), "figures": _figures(placed, round_, fasteners)})
+    figures = _figures(placed, fasteners) | _face_figures(placed, round_, flat)
+    return Proposal(**{**vars(placed), "figures": figures})
 
 
 def _bolts(found: Sequence[Hole]) -> tuple[int, ...]:
@@ -211,14 +213,13 @@ def _axes(h: Vector, row: Vector | None, pad: PlaneFace | None) -> Vector:
     return np.array([np.cross(w, h), w, h])
 
 
-def _figures(
-    p: Proposal, round_: Iterable[Cylinder], fasteners: Mapping[str, Fastener]
-) -> dict[str, Proposed]:
-    """The figures that the fingertip gives, rounded to 0.01."""
+def _figures(p: Proposal, fasteners: Mapping[str, Fastener]) -> dict[str, Proposed]:
+    """What the holes give, rounded to 0.01."""
     names = " and ".join(f"hole {k + 1}" for k in p.bolts)
     bolt = p.holes[p.bolts[0]]
-    found: dict[str, Proposed] = {"bolt_hole_mm": Proposed(_rounded(bolt.narrow_mm), names)}
-    fits = [n for n, f in fasteners.items() if f.hole_mm[0] <= bolt.narrow_mm <= f.hole_mm[1]]
+    hole = _rounded(bolt.narrow_mm)
+    found: dict[str, Proposed] = {"bolt_hole_mm": Proposed(hole, names)}
+    fits = [n for n, f in fasteners.items() if f.hole_mm[0] <= hole <= f.hole_mm[1]]
     if len(fits) == 1:
         found["bolt"] = Proposed(fits[0], f"{names}, clearance hole by ISO 273")
     if len(p.bolts) == 2:
@@ -233,7 +234,7 @@ def _figures(
         pin, where = p.holes[p.pins[0]], " and ".join(f"hole {k + 1}" for k in p.pins)
         deep = sum(piece.high_mm - piece.low_mm for piece in pin.pieces)
         found |= _pin_figures(pin.narrow_mm, _apart(p, p.pins), deep, where)
-    return found | _face_figures(p, round_)
+    return found
 
 
 def _pin_figures(hole: float, spacing: float, deep: float, where: str) -> dict[str, Proposed]:
@@ -262,10 +263,13 @@ def _steps(
     )
 
 
-def _face_figures(p: Proposal, round_: Iterable[Cylinder]) -> dict[str, Proposed]:
+def _face_figures(
+    p: Proposal, round_: Iterable[Cylinder], flat: Iterable[PlaneFace]
+) -> dict[str, Proposed]:
     """What mount face and pad give; `block_back_w_mm` takes the board to stand at the pad."""
-    u, w, _ = p.placed(p.mount.corners).T
-    found = {"block_width_mm": Proposed(_rounded(np.ptp(u)), "width of the mount face")}
+    flat = tuple(flat)
+    wide = sum(_reach(p, side * p.axes[0], flat) for side in (-1.0, 1.0))
+    found = {"block_width_mm": Proposed(_rounded(wide), "width of the block at the mount face")}
     radii = {
         _rounded(c.diameter_mm / 2)
         for c in round_
@@ -285,9 +289,17 @@ def _face_figures(p: Proposal, round_: Iterable[Cylinder]) -> dict[str, Proposed
     found["pad_w_mm"] = Proposed(pad, "pad to the bolts' axes")
     found["bolt_w_mm"] = Proposed(pad, "the board stands where the pad is")
     found["block_back_w_mm"] = Proposed(
-        _rounded(before + float(w.max())), "pad to the back of the mount face"
+        _rounded(before + _reach(p, p.axes[1], flat)), "pad to the back of the block"
     )
     return found
+
+
+def _reach(p: Proposal, way: Vector, flat: Iterable[PlaneFace]) -> float:
+    """How far the block reaches from the origin: the side behind a chamfer or flank that cuts the
+    edge of the mount face, else that edge."""
+    edge = float(((p.mount.corners - p.origin) @ way).max())
+    sides = [f.offset_mm - float(f.normal @ p.origin) for f in flat if f.normal @ way > 1 - 1e-6]
+    return min((side for side in sides if edge < side < edge + CUT_MM), default=edge)
 
 
 def _apart(p: Proposal, pair: Sequence[int]) -> float:
