@@ -63,7 +63,7 @@ def test_open_answers_are_all_reported_at_once(
 
 
 def test_an_entry_from_the_answers_is_that_gripper(fill: Any, config: Input) -> None:
-    for name, gripper in {"jaw": example(config), **config.catalogue.grippers}.items():
+    for name, gripper in {"jaw": example(config.catalogue), **config.catalogue.grippers}.items():
         read = read_answers(fill(name, gripper, title="My jaw"))
         own = {"source", "confidence", "title", "origin"}
         assert read.model_dump(exclude={*own, "envelope"}) == gripper.model_dump(
@@ -110,7 +110,7 @@ def test_faults_of_several_answers_come_together(
 
 
 def test_the_weakest_source_of_a_table_is_that_of_the_table(fill: Any, config: Input) -> None:
-    jaw = example(config)
+    jaw = example(config.catalogue)
     file = fill("my_jaw", jaw)
     text = file.read_text(encoding="utf-8")
     guess = '{ value = 2.6, source = "seen from outside", confidence = "assumed" }'

@@ -29,7 +29,7 @@ NOT_DRAWN = {"envelope.mass_kg", "envelope.payload_kg"}
 
 
 def gripper_of(name: str, config: Input) -> Gripper:
-    return example(config) if name == "example" else config.catalogue.grippers[name]
+    return example(config.catalogue) if name == "example" else config.catalogue.grippers[name]
 
 
 def drawings(name: str, config: Input) -> dict[str, str]:
@@ -85,7 +85,7 @@ def lengths(svg: str) -> dict[str, float]:
 
 
 def test_dimensions_are_drawn_to_scale(config: Input) -> None:
-    gripper = example(config)
+    gripper = example(config.catalogue)
     assert gripper.nose
     assert gripper.pins
     assert gripper.bolt_spacing_mm

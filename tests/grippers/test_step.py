@@ -65,7 +65,7 @@ GIVEN = (
 def test_a_printed_finger_has_the_figures_of_its_entry(
     name: str, config: Input, backing_step: Write
 ) -> None:
-    gripper = example(config) if name == "example" else config.catalogue.grippers[name]
+    gripper = example(config.catalogue) if name == "example" else config.catalogue.grippers[name]
     proposal = found(backing_step(name, gripper), config)
     values = {figure: proposed.value for figure, proposed in proposal.figures.items()}
     assert values.pop("pad_w_mm") == gripper.bolt_w_mm

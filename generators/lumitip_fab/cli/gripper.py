@@ -28,13 +28,15 @@ def new(options: argparse.Namespace) -> int:
 
     _refuse_options(options)
     name, out = options.name, _folder(options)
-    config = load(options.file or packaged_design() / _FINGER)
+    published = load(packaged_design() / _FINGER)
+    own = load(options.file) if options.file else published
     tip = None
     if options.answers:
-        made = wizard.finished(name, config, options.answers)
+        made = wizard.finished(name, own, options.answers)
     else:
-        tip = wizard.read_fingertip(options.from_step, config) if options.from_step else None
-        made = wizard.started(name, config, options.like, tip)
+        if options.from_step:
+            tip = wizard.read_fingertip(options.from_step, own.catalogue)
+        made = wizard.started(name, published, own.catalogue, options.like, tip)
     files = {out / file: data for file, data in made.items()}
     added = {}
     if options.add:

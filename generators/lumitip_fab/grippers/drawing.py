@@ -1,6 +1,7 @@
 """The drawings of the page: mount face and section of the coupling, and the gripper's body."""
 
 import math
+from collections.abc import Iterable
 
 import manifold3d
 import numpy as np
@@ -16,6 +17,7 @@ from lumitip_fab.grippers.dimensions import (
     pointers,
     rectangle,
 )
+from lumitip_fab.grippers.figures import value_of
 from lumitip_fab.parts.export import welded
 from lumitip_fab.parts.surface import Mesh
 from lumitip_fab.scenes.drawing import Points, Sheet, View, silhouette, visible_lines
@@ -74,74 +76,53 @@ def _page(u: float, w: float) -> Point:
 def _face(sheet: Sheet, g: Gripper, gauge: Mesh, wide: float) -> None:
     """The mount face with all that is measured across it; `wide` is half the width of the view."""
     draw_body(sheet, gauge, FROM_GRIPPER, SCALE)
-    bolt, back, pad, seat = (
-        g.bolt_w_mm,
-        g.block_back_w_mm,
-        g.bolt_w_mm - g.pad_w_mm,
-        g.seat_width_mm / 2,
-    )
-    end, apart = wide + 1.5, (g.bolt_spacing_mm or 0.0) / 2
-    heads = [circle(_page(u, bolt), SCALE * g.counterbore_mm / 2) for u in sorted({-apart, apart})]
-    crosses = [line(_page(u, bolt - 6), _page(u, bolt + 6)) for u in sorted({-apart, apart})]
+    bolt, back, end = g.bolt_w_mm, g.block_back_w_mm, wide + 1.5
+    pad, seat, bolts = bolt - g.pad_w_mm, g.seat_width_mm / 2, _bolts_u(g)
     sheet.lines(
         [
             line(_page(-end, 0), _page(end, 0)),
             line(_page(-end, bolt), _page(end, bolt)),
-            line(_page(-seat, pad), _page(seat, pad)),
-            *(line(_page(u, pad), _page(u, back)) for u in (-seat, seat)),
-            *crosses,
+            line(_page(-seat, back), _page(-seat, pad), _page(seat, pad), _page(seat, back)),
+            *(line(_page(u, bolt - 6), _page(u, bolt + 6)) for u in bolts),
         ],
         "axis",
     )
+    heads = [circle(_page(u, bolt), SCALE * g.counterbore_mm / 2) for u in bolts]
     sheet.lines(heads, "hidden")
-    across, below, up = _across(g), _below(g, back), _up(g, wide, pad)
-    top = max(0.0, -pad)
-    dimension_rows(sheet, across, SCALE * top + _GAP_MM, 1)
-    dimension_rows(sheet, below, -SCALE * back - _GAP_MM, -1)
-    dimension_rows(sheet, up, -SCALE * end - _GAP_MM, -1, upright=True)
+    front = value_of(g, "nose.front_w_mm")
+    above = (("bolt_spacing_mm", bolt), ("pins.spacing_mm", bolt), ("nose.front_width_mm", front))
+    below = (("block_width_mm", back - g.block_corner_mm), ("seat_width_mm", back))
+    dimension_rows(sheet, _levels(g, above), SCALE * max(0.0, -pad) + _GAP_MM, 1)
+    dimension_rows(sheet, _levels(g, below), -SCALE * back - _GAP_MM, -1)
+    dimension_rows(sheet, _depths(g, pad, end), -SCALE * end - _GAP_MM, -1, upright=True)
     pointers(sheet, _round(g, end), SCALE * end + 10.0, 3.0)
 
 
-def _across(g: Gripper) -> list[Span]:
-    """Spacings and the nose, above the mount face."""
-    spans = []
-    if g.bolt_spacing_mm:
-        spans.append(_level("bolt_spacing_mm", g.bolt_spacing_mm, g.bolt_w_mm))
-    if g.pins:
-        spans.append(_level("pins.spacing_mm", g.pins.spacing_mm, g.bolt_w_mm))
-    if g.nose:
-        spans.append(_level("nose.front_width_mm", g.nose.front_width_mm, g.nose.front_w_mm))
-    return spans
+def _bolts_u(g: Gripper) -> tuple[float, ...]:
+    return (-g.bolt_spacing_mm / 2, g.bolt_spacing_mm / 2) if g.bolt_spacing_mm else (0.0,)
 
 
-def _below(g: Gripper, back: float) -> list[Span]:
-    """Widths, below the mount face."""
-    return [
-        _level("block_width_mm", g.block_width_mm, back - g.block_corner_mm),
-        _level("seat_width_mm", g.seat_width_mm, back),
-    ]
+def _levels(g: Gripper, rows: Iterable[tuple[str, float]]) -> list[Span]:
+    """Widths across the middle, each with the w of its feature."""
+    widths = ((name, value_of(g, name), w) for name, w in rows)
+    return [(n, _page(-width / 2, w), _page(width / 2, w)) for n, width, w in widths if width]
 
 
-def _level(name: str, width: float, w: float) -> Span:
-    return name, _page(-width / 2, w), _page(width / 2, w)
-
-
-def _up(g: Gripper, wide: float, pad: float) -> list[Span]:
+def _depths(g: Gripper, pad: float, end: float) -> list[Span]:
     """Distances w, to the left of the mount face."""
-    left = -wide - 1.5
-    bolt = _page(left, g.bolt_w_mm)
+    zero, bolt = _page(-end, 0), _page(-end, g.bolt_w_mm)
     spans = [
-        ("bolt_w_mm", bolt, _page(left, 0)),
+        ("bolt_w_mm", bolt, zero),
         (
             "block_back_w_mm",
-            _page(-g.block_width_mm / 2 + g.block_corner_mm, g.block_back_w_mm),
-            _page(left, 0),
+            _page(g.block_corner_mm - g.block_width_mm / 2, g.block_back_w_mm),
+            zero,
         ),
         ("pad_w_mm", bolt, _page(-g.seat_width_mm / 2, pad)),
     ]
     if g.nose:
         front = _page(-g.nose.front_width_mm / 2, g.nose.front_w_mm)
-        spans.append(("nose.front_w_mm", front, _page(left, 0)))
+        spans.append(("nose.front_w_mm", front, zero))
     return spans
 
 
@@ -152,7 +133,7 @@ def _round(g: Gripper, end: float) -> list[tuple[str, Point]]:
         turn = math.radians(angle_deg)
         return _page(u + diameter / 2 * math.cos(turn), w - diameter / 2 * math.sin(turn))
 
-    bolt = (g.bolt_spacing_mm or 0.0) / 2, g.bolt_w_mm
+    bolt = _bolts_u(g)[-1], g.bolt_w_mm
     corner = g.block_corner_mm * (1 - math.sqrt(0.5))
     labels = [
         ("w = 0: front of the board", _page(end, 0)),
@@ -172,7 +153,7 @@ def _round(g: Gripper, end: float) -> list[tuple[str, Point]]:
 
 def _section(sheet: Sheet, g: Gripper, gauge: Mesh, right: float) -> None:
     """The section through a bolt's axis, with all that is measured along the bolt."""
-    bolt_u = (g.bolt_spacing_mm or 0.0) / 2
+    bolt_u = _bolts_u(g)[-1]
     half = _half(gauge, bolt_u)
     high = float(half.points_mm[:, 2].max())
     draw_body(sheet, half, FROM_SIDE, SCALE, right)
@@ -229,23 +210,19 @@ def _cut(half: Mesh, u: float) -> list[Points]:
 def body_drawing(gripper: Gripper) -> str:
     """The gripper's body from its end and from its side, as SVG."""
     body, sheet = gripper.envelope, Sheet()
-    scale = BODY_MM / body.reach_mm
-    width, depth, corner = scale * body.width_mm, scale * body.depth_mm, scale * body.corner_mm
-    length, reach, opening = (
-        scale * body.length_mm,
-        scale * body.reach_mm,
-        scale * gripper.stroke_mm,
+    sizes = np.array(
+        [body.width_mm, body.depth_mm, body.corner_mm, body.length_mm, gripper.stroke_mm]
     )
-    rounded = shapely.box(corner, corner - width / 2, depth - corner, width / 2 - corner)
-    ring = np.array(rounded.buffer(corner, quad_segs=18).exterior.coords) if corner else None
-    end = rectangle((0.0, depth), (-width / 2, width / 2)) if ring is None else ring
+    width, depth, corner, length, opening = (sizes * BODY_MM / body.reach_mm).tolist()
+    reach, thick = BODY_MM, BODY_MM / body.reach_mm * _FINGER_MM
+    inner = shapely.box(corner, corner - width / 2, depth - corner, width / 2 - corner)
+    end = np.array(inner.buffer(corner, quad_segs=18).exterior.coords)
     left = depth + 52.0
     sheet.area([end], "area", PAPER)
     sheet.area([rectangle((left, left + length), (-width / 2, width / 2))], "area", PAPER)
-    thick = scale * _FINGER_MM
     for side in (-1, 1):
-        inner = side * opening / 2
-        finger = rectangle((left + length, left + reach), (inner, inner + side * thick))
+        pad = side * opening / 2
+        finger = rectangle((left + length, left + reach), (pad, pad + side * thick))
         sheet.area([finger], "area", CUT)
         sheet.lines([rectangle((left + length, left + reach), (0.0, side * thick))], "axis")
     low = -max(width / 2, opening / 2 + thick)

@@ -5,33 +5,28 @@ import numpy as np
 from lumitip_fab.design import Point
 from lumitip_fab.grippers.dimensions import circle, line, pointers
 from lumitip_fab.grippers.drawing import FROM_GRIPPER, FROM_SIDE, draw_body
-from lumitip_fab.grippers.proposal import Proposal
-from lumitip_fab.parts.surface import Mesh
+from lumitip_fab.grippers.proposal import Proposal, upright
+from lumitip_fab.parts.export import mesh
 from lumitip_fab.scenes.drawing import Sheet
 
 LARGE_MM = 95.0  # of the larger view on the page
 _BEYOND_MM = 6.0
+_CHORD_MM = 0.03
 _NAMES_MM = 86.0  # width of the names between the views
 
 
-def found_drawing(proposal: Proposal, surface: Mesh) -> str:
-    """The fingertip seen from the gripper and from its side, as SVG.
-
-    Args:
-        proposal: what was found.
-        surface: the fingertip in the file's coordinates.
-    """
-    body = Mesh(proposal.placed(surface.points_mm), surface.triangles)
+def found_drawing(proposal: Proposal) -> str:
+    """The fingertip seen from the gripper and from its side, as SVG."""
+    body = mesh(proposal.shape, _CHORD_MM)
     low, high = body.points_mm.min(axis=0), body.points_mm.max(axis=0)
     scale, sheet = LARGE_MM / float((high - low).max()), Sheet()
     edge, top = scale * float(high[0]), -scale * float(low[1])
     draw_body(sheet, body, FROM_GRIPPER, scale)
     named: dict[str, list[tuple[int, Point]]] = {}
     for number, hole in enumerate(proposal.holes):
-        at = proposal.place(hole)
-        if at is None:
+        if not upright(hole):
             continue  # it is seen from its side
-        u, w = scale * at
+        u, w = scale * hole.foot[:2]
         sheet.lines([circle((u, -w), scale * p.diameter_mm / 2) for p in hole.pieces], "mark")
         rim = scale * hole.wide_mm / 2 * np.sqrt(0.5)
         named.setdefault(proposal.words(number), []).append((number + 1, (u + rim, rim - w)))
@@ -61,8 +56,8 @@ def _mark_side(
     sheet.lines([line(page(low_h - beyond, 0), end)], "axis")
     names = [("bolts", end), ("mount face", page(0, high_w + beyond))]
     if proposal.pad is not None:
-        w = proposal.placed(proposal.pad.corners)
-        first, last = w[w[:, 2].argmin()], w[w[:, 2].argmax()]
+        pad = proposal.pad.corners
+        first, last = pad[pad[:, 2].argmin()], pad[pad[:, 2].argmax()]
         ends = page(first[2], first[1]), page(last[2], last[1])
         sheet.lines([line(*ends)], "mark")
         names.append(("pad", ends[1]))

@@ -5,6 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from lumitip_fab.catalogue import Catalogue
 from lumitip_fab.catalogue.grippers import Gripper, Nose, Pins
 from lumitip_fab.config.load import Input
 from lumitip_fab.config.messages import shown_path
@@ -58,9 +59,9 @@ def with_figures(base: Gripper, values: Mapping[str, Any]) -> Gripper:
     return base.model_copy(update={**own, **figures})
 
 
-def example(config: Input) -> Gripper:
+def example(catalogue: Catalogue) -> Gripper:
     """A gripper with every figure that an entry may have; none in particular."""
-    jaw = config.catalogue.grippers[_PATTERN]
+    jaw = catalogue.grippers[_PATTERN]
     figures: Mapping[str, Any] = {
         "pins": Pins(hole_mm=3.1, spacing_mm=5.0, depth_mm=2.6),
         "nose": Nose(front_width_mm=12.0, front_w_mm=3.0, half_angle_deg=40.0, height_mm=2.5),

@@ -1,13 +1,11 @@
 """The files of `lumitip-fab gripper new`, before and after the answers."""
 
 from dataclasses import dataclass
-from itertools import product
 from pathlib import Path
 
-import numpy as np
 import tomlkit
-from build123d import Shape
 
+from lumitip_fab.catalogue import Catalogue
 from lumitip_fab.catalogue.grippers import Gripper
 from lumitip_fab.catalogue.record import Confidence
 from lumitip_fab.config.load import Input
@@ -37,7 +35,6 @@ class Fingertip:
     """A maker's fingertip that was read from a file."""
 
     file: Path
-    shape: Shape
     proposal: Proposal
 
     def answers(self) -> dict[str, Answer]:
@@ -55,41 +52,40 @@ class Fingertip:
 
     def notes(self) -> tuple[str, ...]:
         """What the entry of a gripper cannot describe, or may not."""
-        texts, sizes = table_of(TEXTS)["found"], self.shape.bounding_box()
-        corners = [[sizes.min.X, sizes.min.Y, sizes.min.Z], [sizes.max.X, sizes.max.Y, sizes.max.Z]]
-        placed = self.proposal.placed(np.array(list(product(*zip(*corners, strict=True)))))
-        count, notes = len(self.proposal.bolts), []
-        if count > 2:
-            notes.append(texts["two"].format(count=count))
-        if np.ptp(placed[:, 2]) < np.ptp(placed[:, 1]):
-            notes.append(texts["thin"])
-        return tuple(notes)
+        texts, size = table_of(TEXTS)["found"], self.proposal.shape.bounding_box().size
+        count = len(self.proposal.bolts)
+        notes = [texts["two"].format(count=count)] if count > 2 else []
+        return (*notes, texts["thin"]) if size.Z < size.Y else tuple(notes)
 
 
-def read_fingertip(file: Path, config: Input) -> Fingertip:
+def read_fingertip(file: Path, catalogue: Catalogue) -> Fingertip:
     """Read a STEP or FreeCAD file, and find what a gripper's entry needs.
 
     Raises:
         InputError: if it cannot be read, or is no fingertip that can be bolted on.
     """
-    shape = read_solid(file)
-    return Fingertip(file, shape, propose(file, shape, config.catalogue.fasteners))
+    return Fingertip(file, propose(file, read_solid(file), catalogue.fasteners))
 
 
-def started(name: str, config: Input, like: str | None, tip: Fingertip | None) -> Written:
+def started(
+    name: str, finger: Input, catalogue: Catalogue, like: str | None, tip: Fingertip | None
+) -> Written:
     """Page, answers file, and where there are figures for it a gauge.
 
     Args:
         name: of the new gripper.
-        config: the finger, and the catalogue.
+        finger: a finger that holds the grippers of the catalogue, for the drawings.
+        catalogue: with the gripper that is to be drawn.
         like: a gripper of the catalogue to draw, and to make the gauge of.
         tip: the maker's fingertip.
 
     Raises:
         InputError: if `like` is not in the catalogue.
     """
-    texts, shown = table_of(TEXTS), _shown(config, like)
-    foot = mesh(gauge_solid(design_with(config, name, shown)), _CHORD_MM)
+    texts, shown = table_of(TEXTS), example(finger.catalogue)
+    if like:
+        shown = _entry(catalogue, like)
+    foot = mesh(gauge_solid(design_with(finger, name, shown)), _CHORD_MM)
     gauge = foot if like else None
     drawings = {
         texts["page"]["foot"]: coupling_drawing(shown, foot),
@@ -102,36 +98,33 @@ def started(name: str, config: Input, like: str | None, tip: Fingertip | None) -
     files: Written = {}
     if tip:
         known |= tip.answers()
-        picture = found_drawing(tip.proposal, mesh(tip.shape))
+        picture = found_drawing(tip.proposal)
         files[f"{name}_found.svg"] = picture.encode()
         drawings = {texts["page"]["step"].format(file=tip.file.name): picture, **drawings}
-        gauge = _gauge_of(tip, name, config, shown)
+        gauge = _gauge_of(tip, name, finger, shown)
     if gauge:
         files[f"{name}_gauge.stl"] = mesh_stl(gauge)
     answers, sheet = f"{name}.toml", f"{name}.html"
-    title = config.catalogue.grippers[like].title or like if like else ""
+    title = shown.title or like if like else ""
     files[answers] = template(name, known, shown if like else None, sheet).encode()
     files[sheet] = page(name, answers, shown, title, drawings).encode()
     return files
 
 
-def _gauge_of(tip: Fingertip, name: str, config: Input, others: Gripper) -> Mesh | None:
+def _gauge_of(tip: Fingertip, name: str, finger: Input, others: Gripper) -> Mesh | None:
     """The gauge of what a fingertip gives; none where that does not go with the other figures."""
     values = {figure: proposed.value for figure, proposed in tip.proposal.figures.items()}
     try:
-        return mesh(gauge_solid(design_with(config, name, with_figures(others, values))))
+        return mesh(gauge_solid(design_with(finger, name, with_figures(others, values))))
     except InputError:
         return None
 
 
-def _shown(config: Input, like: str | None) -> Gripper:
-    grippers = config.catalogue.grippers
-    if like is None:
-        return example(config)
-    if like not in grippers:
-        message = unknown_name(like, grippers, "parts/grippers.toml")
+def _entry(catalogue: Catalogue, name: str) -> Gripper:
+    if name not in catalogue.grippers:
+        message = unknown_name(name, catalogue.grippers, "parts/grippers.toml")
         raise InputError([Problem("lumitip-fab gripper", 0, "--like", message)])
-    return grippers[like]
+    return catalogue.grippers[name]
 
 
 def finished(name: str, config: Input, answers: Path) -> Written:
@@ -164,7 +157,7 @@ def catalogue_with(name: str, entry: bytes, file: Path, replace: bool) -> tuple[
         InputError: if there is an entry of this name that may not be replaced.
     """
     folder = design_folder(file)
-    text = parts_file(folder, "grippers").read_text(encoding="utf-8")
+    text = parts_file(folder, "grippers").read_text(encoding="utf-8-sig")
     known = tomlkit.parse(text)
     target = folder / "parts" / "grippers.toml"
     if name in known:
