@@ -99,7 +99,7 @@ def test_dimensions_are_drawn_to_scale(config: Input) -> None:
     ]
     assert flat == pytest.approx(sorted(SCALE * size for size in asked), abs=0.02)
     body = gripper.envelope
-    scale = BODY_MM / body.reach_mm
+    scale = BODY_MM / max(body.reach_mm, body.width_mm)
     sizes = (body.width_mm, body.depth_mm, body.length_mm, body.reach_mm, gripper.stroke_mm)
     whole = sorted(lengths(drawn["body"]).values())
     assert whole == pytest.approx(sorted(scale * size for size in sizes), abs=0.02)

@@ -172,7 +172,7 @@ def test_what_was_found_is_shown_and_filled_in(
     assert 'width_mm = "?"' in answers
     picture = (tmp_path / "jaw_found.svg").read_text(encoding="utf-8")
     assert picture.count('stroke="#c0392b"') == 4  # rings of both holes, mount face, pad
-    assert ">hole 1 and 2: bolt, ⌀ 6.10, 4.30, 7.40, through<" in picture
+    assert ">1, 2: bolt, ⌀ 6.10, 4.30, 7.40<" in picture
     assert picture in (tmp_path / "jaw.html").read_text(encoding="utf-8")
     assert (tmp_path / "jaw_gauge.stl").is_file()
 

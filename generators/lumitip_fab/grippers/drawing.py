@@ -16,6 +16,7 @@ from lumitip_fab.grippers.dimensions import (
     line,
     pointers,
     rectangle,
+    write,
 )
 from lumitip_fab.grippers.figures import value_of
 from lumitip_fab.parts.export import welded
@@ -23,7 +24,7 @@ from lumitip_fab.parts.surface import Mesh
 from lumitip_fab.scenes.drawing import Points, Sheet, View, silhouette, visible_lines
 
 SCALE = 4.0  # of the coupling's views on the page
-BODY_MM = 110.0  # length of a gripper on the page
+BODY_MM = 110.0  # length of a gripper on the page, or its width if that is more
 FROM_GRIPPER = View(np.array([[1.0, 0, 0], [0, -1, 0], [0, 0, -1]]))
 FROM_SIDE = View(np.array([[0.0, 0, 1], [0, -1, 0], [1, 0, 0]]))
 """Views of the mount frame (u, w, h), with w down the page."""
@@ -31,6 +32,7 @@ LEAST_MM = 1.5  # of a line that is drawn: shorter ones are the ends of hidden e
 PAPER, CUT = "#f4f6f8", "#cfd9e2"
 _GAP_MM = 8.0  # from a view to its first dimension
 _NAMES_MM = 48.0  # width of the names between two views
+_TIP_MM = 18.0  # length of the gripper's own fingertip on that page
 _FINGER_MM = 12.0  # thickness of a finger in the drawing of the body
 
 
@@ -213,20 +215,22 @@ def body_drawing(gripper: Gripper) -> str:
     sizes = np.array(
         [body.width_mm, body.depth_mm, body.corner_mm, body.length_mm, gripper.stroke_mm]
     )
-    width, depth, corner, length, opening = (sizes * BODY_MM / body.reach_mm).tolist()
-    reach, thick = BODY_MM, BODY_MM / body.reach_mm * _FINGER_MM
+    scale = BODY_MM / max(body.reach_mm, body.width_mm)
+    width, depth, corner, length, opening = (sizes * scale).tolist()
+    reach, thick = scale * body.reach_mm, scale * _FINGER_MM
     inner = shapely.box(corner, corner - width / 2, depth - corner, width / 2 - corner)
     end = np.array(inner.buffer(corner, quad_segs=18).exterior.coords)
-    left = depth + 52.0
+    left, tip = depth + 52.0, depth + 52.0 + reach + _TIP_MM
     sheet.area([end], "area", PAPER)
     sheet.area([rectangle((left, left + length), (-width / 2, width / 2))], "area", PAPER)
     for side in (-1, 1):
         pad = side * opening / 2
         finger = rectangle((left + length, left + reach), (pad, pad + side * thick))
         sheet.area([finger], "area", CUT)
-        sheet.lines([rectangle((left + length, left + reach), (0.0, side * thick))], "axis")
+        sheet.area([rectangle((left + reach, tip), (pad, pad + side * thick))], "area", PAPER)
+        sheet.lines([rectangle((left + length, tip), (0.0, side * thick))], "axis")
     low = -max(width / 2, opening / 2 + thick)
-    sheet.lines([line((-6.0, 0.0), (left + reach + 8.0, 0.0))], "axis")
+    sheet.lines([line((-6.0, 0.0), (tip + 8.0, 0.0))], "axis")
     along = [
         ("envelope.length_mm", (left, -width / 2), (left + length, -width / 2)),
         ("envelope.reach_mm (closed)", (left, -width / 2), (left + reach, low)),
@@ -236,13 +240,14 @@ def body_drawing(gripper: Gripper) -> str:
     dimension_rows(sheet, across, low - _GAP_MM, -1)
     up = [("envelope.width_mm", (0.0, -width / 2), (0.0, width / 2))]
     dimension_rows(sheet, up, -_GAP_MM, -1, upright=True)
-    open_ = [("stroke_mm", (left + reach, -opening / 2), (left + reach, opening / 2))]
-    dimension_rows(sheet, open_, left + reach + _GAP_MM, 1, upright=True)
+    open_ = [("stroke_mm", (tip, -opening / 2), (tip, opening / 2))]
+    dimension_rows(sheet, open_, tip + _GAP_MM, 1, upright=True)
     inset = corner * (1 - math.sqrt(0.5))
-    names = [
-        ("envelope.corner_mm", (depth - inset, width / 2 - inset)),
-        ("face on the robot", (left, width / 4)),
-    ]
-    pointers(sheet, names[:1], depth + 10.0, -low)
-    pointers(sheet, names[1:], left + 8.0, -low)
+    corner_at = (depth - inset, width / 2 - inset)
+    pointers(sheet, [("envelope.corner_mm", corner_at)], depth + 10.0, -low)
+    sheet.lines([line((left - 4.0, 6.0), (left, 6.0))], "leader")
+    sheet.dot(left, 6.0)
+    write(sheet, (left - 38.0, 5.0), "face on the robot")
+    own = [("its own fingertip", (tip, opening / 2 + thick / 2))]
+    pointers(sheet, own, tip + _GAP_MM + 8.0, -low)
     return sheet.svg({})

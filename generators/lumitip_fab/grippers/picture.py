@@ -9,10 +9,10 @@ from lumitip_fab.grippers.proposal import Proposal, upright
 from lumitip_fab.parts.export import mesh
 from lumitip_fab.scenes.drawing import Sheet
 
-LARGE_MM = 95.0  # of the larger view on the page
+LARGE_MM = 85.0  # of the larger view on the page
 _BEYOND_MM = 6.0
 _CHORD_MM = 0.03
-_NAMES_MM = 86.0  # width of the names between the views
+_NAMES_MM = 66.0  # width of the names between the views
 
 
 def found_drawing(proposal: Proposal) -> str:
@@ -32,8 +32,9 @@ def found_drawing(proposal: Proposal) -> str:
         named.setdefault(proposal.words(number), []).append((number + 1, (u + rim, rim - w)))
     names = []
     for words, alike in named.items():
-        numbers = " and ".join(str(number) for number, _ in alike)
-        names.append((f"hole {numbers}: {words}", max(place for _, place in alike)))
+        numbers = ", ".join(str(number) for number, _ in alike)
+        sizes = words.rpartition(", ")[0]
+        names.append((f"{numbers}: {sizes}", max(place for _, place in alike)))
     pointers(sheet, names, edge + 12.0, top)
     right = (edge + 12.0 + _NAMES_MM) / scale - float(low[2])
     draw_body(sheet, body, FROM_SIDE, scale, right)
