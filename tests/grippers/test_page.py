@@ -4,6 +4,7 @@ import math
 import re
 from collections.abc import Iterator
 from itertools import combinations
+from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
@@ -12,7 +13,7 @@ from build123d import Box as Block
 from build123d import Location
 
 from lumitip_fab.catalogue.grippers import Gripper
-from lumitip_fab.config.load import Input
+from lumitip_fab.config.load import Input, load
 from lumitip_fab.design.frames import mount_to_sensor
 from lumitip_fab.grippers.dimensions import LETTER_MM, WORDS_MM
 from lumitip_fab.grippers.drawing import BODY_MM, SCALE, body_drawing, coupling_drawing
@@ -132,3 +133,15 @@ def test_the_gauge_is_the_foot_of_the_printed_finger(name: str, config: Input) -
     assert 0.0 <= gauge.volume - foot.volume <= cut
     assert gauge.volume > 1000
     assert abs(gauge.bounding_box().min.Z) < 1e-6  # it stands on the print bed
+
+
+@pytest.mark.slow
+def test_the_gauge_of_a_compliant_finger_stays_behind_its_plate(
+    config: Input, design_dir: Path
+) -> None:
+    flex = load(design_dir / "presets/flex.toml")
+    d = design_with(flex, "my_jaw", config.catalogue.grippers["two_hole_jaw"])
+    foot = mesh(gauge_solid(d)).points_mm
+    low = foot[foot[:, 2] < 1e-6]
+    assert low[:, 1].min() == pytest.approx(d.mount.block_front_w_mm, abs=1e-3)
+    assert foot[:, 1].min() > 0

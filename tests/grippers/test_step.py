@@ -6,8 +6,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from build123d import Axis, Box, Cylinder, Location, Shape, Solid, export_brep
+from build123d import Axis, Box, Compound, Cylinder, Location, Shape, Solid, export_brep
 from OCP.Interface import Interface_Static
+from OCP.ShapeUpgrade import ShapeUpgrade_ShapeDivideClosed
 from OCP.STEPControl import STEPControl_StepModelType, STEPControl_Writer
 
 from lumitip_fab.catalogue.grippers import Gripper
@@ -99,6 +100,15 @@ def block(*cut: Shape) -> Solid:
 
 def bore(x: float, y: float, diameter: float, low: float, high: float) -> Shape:
     return Cylinder(diameter / 2, high - low).moved(Location((x, y, (low + high) / 2)))
+
+
+def test_holes_of_two_half_cylinders_are_whole(config: Input, backing_step: Write) -> None:
+    solid = read_solid(backing_step("wsg50", config.catalogue.grippers["wsg50"]))
+    divided = ShapeUpgrade_ShapeDivideClosed(solid.wrapped)
+    assert divided.Perform()
+    halves = Compound(Compound(divided.Result()).solids())
+    assert len(halves.faces()) > len(solid.faces()) + 8
+    assert figures_of(halves, config) == figures_of(solid, config)
 
 
 def test_plain_holes_leave_the_counterbore_open(config: Input) -> None:

@@ -19,8 +19,8 @@ def gauge_solid(design: Design) -> Solid:
         BuildError: if the kernel does not make one valid solid of it.
     """
     stack, mount = design.stack, design.mount
-    notch = design.receiver.notch if stack.sunk else None
-    block = coupling.coupling_solid(mount, stack, notch) - coupling.coupling_holes(mount, stack)
+    block = coupling.coupling_solid(mount, stack, design.receiver.notch)
+    block = block - coupling.coupling_holes(mount, stack)
     high = max(mount.land_mm, mount.nose.height_mm if mount.nose else 0.0) + ABOVE_MM
     square = [(-_FAR_MM, -_FAR_MM), (_FAR_MM, -_FAR_MM), (_FAR_MM, _FAR_MM), (-_FAR_MM, _FAR_MM)]
     to_mount = np.asarray(np.linalg.inv(mount_to_sensor(mount, stack)), np.float64)
