@@ -166,6 +166,18 @@ def test_a_plate_with_holes_across_is_doubted(
     assert "If its bolts do not run along the finger" in capsys.readouterr().out
 
 
+def test_several_solids_are_doubted(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    tip = block(bore(-7, 2, 4.5, -1, 51), bore(7, 2, 4.5, -1, 51))
+    rubber = Box(24, 3, 30).moved(Location((0, -10, 30)))
+    file = tmp_path / "two.step"
+    file.write_bytes(step(Compound([tip, rubber]), "tip"))
+    out = ["--out", str(tmp_path / "out")]
+    assert main(["gripper", "new", "jaw", "--from-step", str(file), *out]) == 0
+    told = capsys.readouterr().out
+    assert "The file has 2 solids, which were read as one part." in told
+    assert "Another outer face is of similar size" in told  # rubber in front, block behind
+
+
 def test_what_was_found_is_shown_and_filled_in(
     config: Input, backing_step: Write, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -223,9 +235,9 @@ def test_a_damaged_file_is_one_error(
 
 
 UNFIT: dict[str, tuple[Callable[[], Shape], str]] = {
-    "no_holes": (block, "it has 0 round holes that are blind"),
-    "blind": (lambda: block(bore(0, 0, 4.5, -1, 20)), "it has 1 round holes that are blind"),
-    "narrow": (lambda: block(bore(0, 0, 1.0, -1, 51)), "narrower than 2 mm"),
+    "no_holes": (block, "narrower than 2 mm: 0."),
+    "blind": (lambda: block(bore(0, 0, 4.5, -1, 20)), "narrower than 2 mm: 1."),
+    "narrow": (lambda: block(bore(0, 0, 1.0, -1, 51)), "narrower than 2 mm: 1."),
     "round": (
         lambda: Cylinder(10, 40).rotate(Axis.X, 90) - bore(0, 0, 4.5, -20, 20),
         "has no plane face that its bolt holes (4.5 mm) open into",

@@ -56,8 +56,8 @@ def _mark_side(
     end = page(high_h + beyond, 0)
     sheet.lines([line(page(low_h - beyond, 0), end)], "axis")
     names = [("bolts", end), ("mount face", page(0, high_w + beyond))]
-    if proposal.pad is not None:
-        pad = proposal.pad.corners
+    for face in proposal.pads[:1]:
+        pad = face.corners
         first, last = pad[pad[:, 2].argmin()], pad[pad[:, 2].argmax()]
         ends = page(first[2], first[1]), page(last[2], last[1])
         sheet.lines([line(*ends)], "mark")

@@ -54,7 +54,8 @@ class Proposal:
     pins: tuple[int, ...]
     """Which are for locating pins."""
     mount: PlaneFace
-    pad: PlaneFace | None
+    pads: tuple[PlaneFace, ...]
+    """What may be the pad: the largest face first, then those of half its size or more."""
     figures: Mapping[str, Proposed]
 
     def rows(self) -> Iterator[tuple[str, str, str]]:
@@ -64,10 +65,9 @@ class Proposal:
             if upright(hole):
                 at = ", ".join(f"{x + 0.0:.2f}" for x in np.round(hole.foot[:2], 2))
             yield f"hole {number + 1}", self.words(number), at
-        for name, face in (("mount face", self.mount), ("pad", self.pad)):
-            if face is not None:
-                wide, *long = np.ptp(face.corners, axis=0)
-                yield name, f"{wide:.2f} wide, {max(long):.2f} long", ""
+        for name, face in (("mount face", self.mount), *(("pad", p) for p in self.pads[:1])):
+            wide, *long = np.ptp(face.corners, axis=0)
+            yield name, f"{wide:.2f} wide, {max(long):.2f} long", ""
 
     def words(self, number: int) -> str:
         """A hole in words: use, diameters from the mount face on, ends."""
@@ -96,7 +96,7 @@ def propose(file: Path, shape: Shape, fasteners: Mapping[str, Fastener]) -> Prop
     moved = placed(shape, _look(file, shape).to_mount())
     seen = _look(file, moved)
     figures = {**_of_bolts(seen, fasteners), **_of_pins(seen), **_of_faces(seen, moved)}
-    return Proposal(moved, seen.holes, seen.bolts, seen.pins, seen.mount, seen.pad, figures)
+    return Proposal(moved, seen.holes, seen.bolts, seen.pins, seen.mount, seen.pads, figures)
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,12 +110,12 @@ class _Seen:
     pins: tuple[int, ...]
     row: Vector | None
     """Unit vector from one bolt to the other, or from pin to pin."""
-    pad: PlaneFace | None
+    pads: tuple[PlaneFace, ...]
 
     def to_mount(self) -> Vector:
         """From the file's coordinates to the mount frame (4x4)."""
         h = -self.mount.normal
-        back = np.eye(3)[np.abs(h).argmin()] if self.pad is None else -self.pad.normal
+        back = -self.pads[0].normal if self.pads else np.eye(3)[np.abs(h).argmin()]
         w = np.cross(h, self.row) if self.row is not None else back - h * (back @ h)
         w = w / np.linalg.norm(w) * (1.0 if w @ back >= 0 else -1.0)
         matrix = np.eye(4)
@@ -139,7 +139,7 @@ def _look(file: Path, shape: Shape) -> _Seen:
     if pair:
         a, b = (_foot(found[k], mount) for k in pair)
         row = (b - a) / np.linalg.norm(b - a)
-    return _Seen(found, faces, bolts, mount, pins, row, _pad(faces, -mount.normal, row))
+    return _Seen(found, faces, bolts, mount, pins, row, _pads(faces, -mount.normal, row))
 
 
 def _bolts(found: Sequence[Hole]) -> tuple[int, ...]:
@@ -194,9 +194,9 @@ def _pins(found: Sequence[Hole], bolts: Sequence[int], mount: PlaneFace) -> tupl
     return next((pair for pair in sets if len(pair) == 2), ())
 
 
-def _pad(faces: Sequence[PlaneFace], h: Vector, row: Vector | None) -> PlaneFace | None:
-    """The largest face along the bolts behind which the whole part lies; of equal ones that at
-    the lower y, as in the mount frame."""
+def _pads(faces: Sequence[PlaneFace], h: Vector, row: Vector | None) -> tuple[PlaneFace, ...]:
+    """The largest face along the bolts behind which the whole part lies, and those of half its size
+    or more; of equal ones that at the lower y, as in the mount frame, comes first."""
     cloud, found = np.concatenate([face.corners for face in faces]), []
     for face in faces:
         leans = abs(float(face.normal @ h)) > math.sin(math.radians(MOST_LEAN_DEG))
@@ -205,8 +205,9 @@ def _pad(faces: Sequence[PlaneFace], h: Vector, row: Vector | None) -> PlaneFace
             continue
         across = np.cross(face.normal, h)
         size = float(np.ptp(face.corners @ h) * np.ptp(face.corners @ across))
-        found.append(((-round(size, 2), *face.normal[1:]), face))
-    return min(found, key=lambda each: each[0])[1] if found else None
+        found.append((-round(size, 2), float(face.normal[1]), face))
+    found.sort(key=lambda each: each[:2])
+    return tuple(face for size, _, face in found if size <= found[0][0] / 2)
 
 
 def _of_bolts(seen: _Seen, fasteners: Mapping[str, Fastener]) -> dict[str, Proposed]:
@@ -258,9 +259,9 @@ def _of_faces(seen: _Seen, shape: Shape) -> dict[str, Proposed]:
     }
     if len(radii) == 1:
         found["block_corner_mm"] = Proposed(radii.pop(), "round corners behind the bolts")
-    if seen.pad is not None:
-        normal = seen.pad.normal
-        before = -seen.pad.offset_mm / float(normal[1])
+    if seen.pads:
+        normal = seen.pads[0].normal
+        before = -seen.pads[0].offset_mm / float(normal[1])
         tilt = _rounded(-math.degrees(math.asin(normal[2])))
         found["tilt_deg"] = Proposed(tilt, "pad against bolts")
         found["pad_w_mm"] = Proposed(_rounded(before), "pad to the bolts' axes")

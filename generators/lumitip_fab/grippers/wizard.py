@@ -53,9 +53,15 @@ class Fingertip:
     def notes(self) -> tuple[str, ...]:
         """What the entry of a gripper cannot describe, or may not."""
         texts, size = table_of(TEXTS)["found"], self.proposal.shape.bounding_box().size
-        count = len(self.proposal.bolts)
-        notes = [texts["two"].format(count=count)] if count > 2 else []
-        return (*notes, texts["thin"]) if size.Z < size.Y else tuple(notes)
+        bolts, solids = len(self.proposal.bolts), len(self.proposal.shape.solids())
+        doubts = (
+            (bolts > 2, texts["two"].format(count=bolts)),
+            (solids > 1, texts["solids"].format(count=solids)),
+            (len(self.proposal.pads) > 1, texts["pads"]),
+            (not self.proposal.pads, texts["no_pad"]),
+            (size.Z < size.Y, texts["thin"]),
+        )
+        return tuple(text for holds, text in doubts if holds)
 
 
 def read_fingertip(file: Path, catalogue: Catalogue) -> Fingertip:
