@@ -22,6 +22,8 @@ from lumitip_fab.grippers.trial import design_with, example
 from lumitip_fab.parts.backing import backing_solid
 from lumitip_fab.parts.export import step
 
+pytestmark = pytest.mark.slow
+
 Write = Callable[[str, Gripper], Path]
 
 
