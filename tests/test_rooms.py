@@ -36,8 +36,10 @@ ALLOWED = {
     "checks.readers": "design",
     "checks": "checks.readers design pipeline",
     "explore": "boards catalogue checks config derive design pipeline",
+    "grippers": "catalogue config derive design docs parts scenes",
     "cli": (
-        "boards catalogue checks checks.readers config derive design docs explore parts pipeline"
+        "boards catalogue checks checks.readers config derive design docs explore grippers parts "
+        "pipeline"
     ),
     "__init__": "checks cli config derive design parts pipeline",
     "__main__": "cli",

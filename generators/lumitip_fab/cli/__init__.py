@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from lumitip_fab.errors import InputError
 
 _REFUSED = 2
-MODELLING = frozenset({"build", "watch"})
+MODELLING = frozenset({"build", "gripper", "watch"})
 """Commands that load the CAD kernel."""
 
 

@@ -24,6 +24,8 @@ _STROKES = {
     "part": f'stroke="{_INK}" stroke-width=".12" {_ROUND}',
     "line": f'fill="none" stroke="{_INK}" stroke-width=".22" {_ROUND}',
     "axis": f'fill="none" stroke="{_FAINT}" stroke-width=".18" stroke-dasharray="3 .8 .5 .8"',
+    "hidden": f'fill="none" stroke="{_INK}" stroke-width=".18" stroke-dasharray="1.4 .8"',
+    "mark": f'fill="none" stroke="#c0392b" stroke-width=".4" {_ROUND}',
     "leader": f'fill="none" stroke="{_FAINT}" stroke-width=".18"',
 }
 _WORDS = {

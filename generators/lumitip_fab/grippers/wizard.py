@@ -1,0 +1,175 @@
+"""The files of `lumitip-fab gripper new`, before and after the answers."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import tomlkit
+
+from lumitip_fab.catalogue import Catalogue
+from lumitip_fab.catalogue.grippers import Gripper
+from lumitip_fab.catalogue.record import Confidence
+from lumitip_fab.config.load import Input
+from lumitip_fab.config.messages import shown_path, unknown_name
+from lumitip_fab.errors import InputError, Problem
+from lumitip_fab.grippers.answers import Answer, entry_text, read_answers, template
+from lumitip_fab.grippers.drawing import body_drawing, coupling_drawing
+from lumitip_fab.grippers.figures import TEXTS
+from lumitip_fab.grippers.page import page
+from lumitip_fab.grippers.picture import found_drawing
+from lumitip_fab.grippers.proposal import Proposal, propose
+from lumitip_fab.grippers.reading import read_solid
+from lumitip_fab.grippers.trial import design_with, example, with_figures
+from lumitip_fab.parts.export import mesh, mesh_stl
+from lumitip_fab.parts.gauge import gauge_solid
+from lumitip_fab.parts.surface import Mesh
+from lumitip_fab.paths import design_folder, parts_file
+from lumitip_fab.text import table_of
+
+_CHORD_MM = 0.02
+Written = dict[str, bytes]
+"""Files by their name."""
+
+
+@dataclass(frozen=True)
+class Fingertip:
+    """A maker's fingertip that was read from a file."""
+
+    file: Path
+    proposal: Proposal
+
+    def answers(self) -> dict[str, Answer]:
+        """The figures that it gives, each with its source."""
+        source = table_of(TEXTS)["found"]["source"]
+        trust: Confidence = "inferred"
+        return {
+            name: Answer(
+                value=figure.value,
+                source=source.format(file=self.file.name, where=figure.where),
+                confidence=trust,
+            )
+            for name, figure in self.proposal.figures.items()
+        }
+
+    def notes(self) -> tuple[str, ...]:
+        """What the entry of a gripper cannot describe, or may not."""
+        texts, size = table_of(TEXTS)["found"], self.proposal.shape.bounding_box().size
+        bolts, solids = len(self.proposal.bolts), len(self.proposal.shape.solids())
+        doubts = (
+            (bolts > 2, texts["two"].format(count=bolts)),
+            (solids > 1, texts["solids"].format(count=solids)),
+            (len(self.proposal.pads) > 1, texts["pads"]),
+            (not self.proposal.pads, texts["no_pad"]),
+            (size.Z < size.Y, texts["thin"]),
+        )
+        return tuple(text for holds, text in doubts if holds)
+
+
+def read_fingertip(file: Path, catalogue: Catalogue) -> Fingertip:
+    """Read a STEP or FreeCAD file, and find what a gripper's entry needs.
+
+    Raises:
+        InputError: if it cannot be read, or is no fingertip that can be bolted on.
+    """
+    return Fingertip(file, propose(file, read_solid(file), catalogue.fasteners))
+
+
+def started(
+    name: str, finger: Input, catalogue: Catalogue, like: str | None, tip: Fingertip | None
+) -> Written:
+    """Page, answers file, and where there are figures for it a gauge.
+
+    Args:
+        name: of the new gripper.
+        finger: a finger that holds the grippers of the catalogue, for the drawings.
+        catalogue: with the gripper that is to be drawn.
+        like: a gripper of the catalogue to draw, and to make the gauge of.
+        tip: the maker's fingertip.
+
+    Raises:
+        InputError: if `like` is not in the catalogue.
+    """
+    texts, shown = table_of(TEXTS), example(finger.catalogue)
+    if like:
+        shown = _entry(catalogue, like)
+    foot = mesh(gauge_solid(design_with(finger, name, shown)), _CHORD_MM)
+    gauge = foot if like else None
+    drawings = {
+        texts["page"]["foot"]: coupling_drawing(shown, foot),
+        texts["page"]["whole"]: body_drawing(shown),
+    }
+    known = {
+        figure: Answer(value=value, source=texts["answers"]["chosen"], confidence="assumed")
+        for figure, value in texts["chosen"].items()
+    }
+    files: Written = {}
+    if tip:
+        known |= tip.answers()
+        picture = found_drawing(tip.proposal)
+        files[f"{name}_found.svg"] = picture.encode()
+        drawings = {texts["page"]["step"].format(file=tip.file.name): picture, **drawings}
+        gauge = _gauge_of(tip, name, finger, shown)
+    if gauge:
+        files[f"{name}_gauge.stl"] = mesh_stl(gauge)
+    answers, sheet = f"{name}.toml", f"{name}.html"
+    title = shown.title or like if like else ""
+    files[answers] = template(name, known, shown if like else None, sheet).encode()
+    files[sheet] = page(name, answers, shown, title, drawings).encode()
+    return files
+
+
+def _gauge_of(tip: Fingertip, name: str, finger: Input, others: Gripper) -> Mesh | None:
+    """The gauge of what a fingertip gives; none where that does not go with the other figures."""
+    values = {figure: proposed.value for figure, proposed in tip.proposal.figures.items()}
+    try:
+        return mesh(gauge_solid(design_with(finger, name, with_figures(others, values))))
+    except InputError:
+        return None
+
+
+def _entry(catalogue: Catalogue, name: str) -> Gripper:
+    if name not in catalogue.grippers:
+        message = unknown_name(name, catalogue.grippers, "parts/grippers.toml")
+        raise InputError([Problem("lumitip-fab gripper", 0, "--like", message)])
+    return catalogue.grippers[name]
+
+
+def finished(name: str, config: Input, answers: Path) -> Written:
+    """Entry and gauge of a gripper whose every figure is answered.
+
+    Raises:
+        InputError: with every fault of the answers, or every rule that the gripper breaks.
+    """
+    gripper = read_answers(answers)
+    gauge = mesh(gauge_solid(design_with(config, name, gripper, answers)))
+    return {
+        f"{name}_entry.toml": entry_text(name, gripper).encode(),
+        f"{name}_gauge.stl": mesh_stl(gauge),
+    }
+
+
+def catalogue_with(name: str, entry: bytes, file: Path, replace: bool) -> tuple[Path, bytes]:
+    """The catalogue of a design folder with a further entry.
+
+    Args:
+        name: of the gripper.
+        entry: its table.
+        file: a parameter file in that folder.
+        replace: whether an entry of this name is replaced.
+
+    Returns:
+        The file `parts/grippers.toml` of that folder, and what is to be in it.
+
+    Raises:
+        InputError: if there is an entry of this name that may not be replaced.
+    """
+    folder = design_folder(file)
+    text = parts_file(folder, "grippers").read_text(encoding="utf-8-sig")
+    known = tomlkit.parse(text)
+    target = folder / "parts" / "grippers.toml"
+    if name in known:
+        if not replace:
+            message = table_of(TEXTS)["faults"]["entry"].format(name=name)
+            raise InputError([Problem(shown_path(target), 0, "", message)])
+        known.remove(name)
+        text = tomlkit.dumps(known)
+    return target, f"{text.rstrip()}\n\n".encode() + entry
