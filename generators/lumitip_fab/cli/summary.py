@@ -1,5 +1,5 @@
 """The end of a run in about ten lines: files, checks, tightest margins, failures with the
-parameters to change, price."""
+parameters to change, rated force, price."""
 
 import csv
 import math
@@ -12,6 +12,8 @@ from rich.text import Text
 from lumitip_fab.checks.result import Measurement
 from lumitip_fab.checks.run import Outcome
 from lumitip_fab.cli.report import figure, tightness
+from lumitip_fab.design.encoding import read_design
+from lumitip_fab.errors import OutputError
 from lumitip_fab.text import table_of
 
 TABLES = "cli/summary.toml"
@@ -89,6 +91,7 @@ def print_summary(outcome: Outcome, out: Path, report: Path | None, console: Con
     _print(console, "tightest margins, as a share of the limit or of half the tolerance:")
     for share, m in tightest(outcome.measurements, TIGHTEST):
         _print(console, f"{100 * share:6.1f} %  {_described(m)}")
+    console.print(_force(out), soft_wrap=True)
     console.print(_price(out), soft_wrap=True)
     manual = out / MANUAL
     look = [f"{manual} (how to build it)"] if manual.is_file() else []
@@ -126,6 +129,18 @@ def _failures(outcome: Outcome) -> Iterator[tuple[str, str]]:
 def _described(m: Measurement) -> str:
     unit = f" {m.unit}" if m.unit else ""
     return f"{m.check}  {figure(m.measured)}{unit}, {m.limit}  {m.subject}"
+
+
+def _force(out: Path) -> str:
+    """What the fingers bear, which a gripper may exceed."""
+    try:
+        limit = read_design(out / "design.json").strength
+    except OutputError as error:
+        return f"rated force: {error}"
+    rated = f"rated force: {limit.rated_force_n:g} N at each tip, an estimate"
+    if limit.gripper_n <= limit.rated_force_n:
+        return rated
+    return f"{rated}; the gripper closes with up to {limit.gripper_n:g} N: limit it"
 
 
 def _price(out: Path) -> str:

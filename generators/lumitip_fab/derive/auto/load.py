@@ -9,16 +9,15 @@ from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards.boards import Plan
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.stack import behind_mm, is_flex
-from lumitip_fab.derive.finger.strength import Body, borne_n
+from lumitip_fab.derive.finger.strength import Body, borne_n, least_n
 from lumitip_fab.derive.mount.fasteners import derive_fasteners
 from lumitip_fab.derive.mount.rules import LEAST_FLARE_MM
 from lumitip_fab.derive.once import derive_body, lay_out, optics_of
 from lumitip_fab.design import Mount
 from lumitip_fab.errors import InputError
 
-COMPLIANT_N, LEAST_COMPLIANT_N, COMPLIANT_BEND = 5.0, 0.5, 0.25
+COMPLIANT_N, COMPLIANT_BEND = 5.0, 0.25
 FLARE_ON_PAD_MM = 2.2
-LEAST_RATED_N = 15.0  # that is chosen; a weaker finger is refused unless the file asks for it
 ENOUGH = 0.95  # of what the strongest finger bears: a floor that bears a little more is thick
 DEPTH_STEP_MM, FINER_STEPS = 0.2, 4  # below a flare that holds, in whole millimetres
 FLOOR_STEP_MM, MOST_FLOORS = 0.1, 12  # that are tried
@@ -48,7 +47,7 @@ def flare(config: Input) -> Iterator[Proposal]:
     body = _body(config, plan)
     if is_flex(p):
         borne = math.floor(10 * borne_n(config, body, optics_of(config))) / 10
-        force = min(max(borne, LEAST_COMPLIANT_N), COMPLIANT_N)
+        force = min(max(borne, least_n(flex=True)), COMPLIANT_N)
         yield "finger.rated_force_n", force, "a compliant finger gives way"
         return
     length = _length_mm(config, body)
@@ -59,7 +58,7 @@ def flare(config: Input) -> Iterator[Proposal]:
     most, wanted = max(each.borne_n for each in tried), p.finger.rated_force_n
     reason = f"bears finger.rated_force_n = {wanted:g} N"
     if most < wanted:
-        wanted = max(math.floor(ENOUGH * most), LEAST_RATED_N)
+        wanted = max(math.floor(ENOUGH * most), least_n(flex=False))
         yield "finger.rated_force_n", wanted, f"flare and floor bear at most {most:.0f} N"
         reason = f"bears {wanted:g} N, nearly the most"
     best = next((each for each in tried if each.borne_n >= wanted), tried[-1])

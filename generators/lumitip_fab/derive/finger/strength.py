@@ -31,6 +31,7 @@ from lumitip_fab.design.strength import Loaded, Strength, loads
 
 SAFETY = 1.4  # of an estimate that no test stands behind, of a known force, with layers taken weak
 RESERVE = 1.08  # kept here to every limit, for rectangles are not quite the written part
+LEAST_N, LEAST_COMPLIANT_N = 10.0, 0.5  # a weaker finger must be asked for
 OFFSET_SHARE = 0.5  # of an aperture's half width: no shadow of its edge on the die
 STEP_MM = 0.5
 NOSE_SLICES = 4
@@ -75,16 +76,20 @@ def derive_strength(config: Input, body: Body, optics: Optics, faults: Diagnosti
         optics: for apertures and the depth of the dies.
         faults: where to refuse.
     """
-    strength, p = _limits(config, body), config.parameters
-    field, value = "backing.flare_depth_mm", p.backing.flare_depth_mm
-    remedy = "Increase it, backing.flare_mm or stack.floor_mm, or reduce finger.rated_force_n."
-    if is_flex(p):
-        field, value, remedy = "finger.rated_force_n", p.finger.rated_force_n, "Reduce it."
-    for use in _uses(body, strength, optics):
+    strength, force = _limits(config, body), config.parameters.finger.rated_force_n
+    flex, uses = is_flex(config.parameters), list(_uses(body, strength, optics))
+    borne = math.floor(10 * force / max(use.share for use in uses)) / 10
+    for use in uses:
         if use.share > 1:
-            figures = {"figure": use.figure, "most": use.most}
-            faults.add(use.rule, field, value=value, remedy=remedy, **figures)
+            faults.add(use.rule, figure=use.figure, most=use.most, borne=borne)
+    least, chosen = least_n(flex), "finger.rated_force_n" in config.automatic
+    faults.unless(force >= least or not chosen, "finger_weak", least=least)
     return strength
+
+
+def least_n(flex: bool) -> float:
+    """Least rated force that is chosen for a finger, compliant or not."""
+    return LEAST_COMPLIANT_N if flex else LEAST_N
 
 
 def borne_n(config: Input, body: Body, optics: Optics) -> float:
