@@ -16,9 +16,10 @@ pytestmark = pytest.mark.slow
 
 
 @pytest.fixture(scope="module")
-def published(inputs: dict[str, Input]) -> Input:
-    """The published file with a second part, "other", of every kind that has only one."""
-    given = inputs["published"]
+def published(inputs: dict[str, Input], vary: Any) -> Input:
+    """The published file with a second part, "other", of every kind that has only one, and a rated
+    force that leaves room for every change."""
+    given = vary(inputs["published"], {"finger.rated_force_n": 25.0})
     parts = given.catalogue
     more = {
         "leds": ("15406085BA300", {"exponent": 2.0}),

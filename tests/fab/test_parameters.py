@@ -11,7 +11,7 @@ from lumitip_fab.config.load import Input
 from lumitip_fab.config.parameters import Parameters
 from lumitip_fab.config.parts import NAMED
 
-UNITS = ("mm", "mm2", "deg", "g_ml", "ma", "v", "w", "ohm", "fraction")
+UNITS = ("mm", "mm2", "n", "deg", "g_ml", "ma", "v", "w", "ohm", "fraction")
 PLAIN = {"outline.waist_at"}  # fractions of the length, by their description
 
 
