@@ -186,6 +186,8 @@ def _margins(random: Random, _: Table, _base: str) -> Table:
 
 
 def _tip(random: Random, _: Table, _base: str) -> Table:
+    if random.random() < 0.5:
+        return {"tip.angle_deg": _steps(random, 0, 45, 1)}
     return {"tip.edge_mm": _steps(random, 0.5, 1.6, 0.05)}
 
 

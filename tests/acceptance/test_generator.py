@@ -75,6 +75,7 @@ def test_every_kind_is_drawn_and_no_value_leaves_its_range(designs: list[Design]
         ("grid.pitch_mm", 3.5, 10),
         ("stack.silicone_mm", 0.8, 4),
         ("tip.edge_mm", 0.5, 1.6),
+        ("tip.angle_deg", 0, 45),
         ("outline.tip_margin_mm", 5.5, 9),
         ("supply.voltage_v", 5, 24),
         ("mask.flap_mm", 12, 16),

@@ -56,6 +56,7 @@ def test_the_names_that_other_files_rely_on_are_there() -> None:
         "coupling.gripper",
         "controller.board",
         "controller.name",
+        "tip.angle_deg",
         "tip.slant_start_mm",
         "tip.edge_mm",
         "mould.taper_length_mm",

@@ -85,6 +85,13 @@ def test_values_are_named_as_the_file_has_them(plan: Any) -> None:
             True,
         ),
         ("[tip]\nslant_start_mm = 20.0\nedge_mm = 0.3\n", "tip.edge_mm", 0.45),
+        (
+            "[tip]\nangle_deg = 10.0\nedge_mm = 0.5\n[outline]\ntip_margin_mm = 6.2\n",
+            "tip.edge_mm",
+            1.35,
+        ),
+        ("[tip]\nangle_deg = 30.0\nslant_start_mm = 6.0\n", "tip.slant_start_mm", 3.3),
+        ("[tip]\nangle_deg = 30.0\nslant_start_mm = 5.0\nedge_mm = 0.5\n", "tip.angle_deg", "auto"),
         ("[wiring]\nsection_mm2 = 1.0\n", "wiring.section_mm2", 0.71),
     ],
 )

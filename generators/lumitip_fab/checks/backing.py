@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import shapely
 
-from lumitip_fab.checks import plate, printed
+from lumitip_fab.checks import plate, printed, tip
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.readers.solids import Vectors, cast, section
 from lumitip_fab.checks.result import Measure, Measurement, measured, unreadable
@@ -145,7 +145,7 @@ _PLATE: tuple[Step, ...] = (
     plate.measure_outline,
     plate.measure_reliefs,
     plate.measure_notch,
-    plate.measure_tip,
+    tip.measure_tip,
 )
 _HELD: tuple[Step, ...] = (measure_bolt, measure_screw, measure_nose)
 

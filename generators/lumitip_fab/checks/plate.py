@@ -1,5 +1,5 @@
 """Measures of a backing's plate, taken in the finger's sensor frame: outline, pocket, pins, room
-behind the board, the wedge at the tip; of a bendable plate as it lies on the bed, with the holes
+behind the board; of a bendable plate as it lies on the bed, with the holes
 that the board is tied through and the groove in which its interface sits."""
 
 from collections.abc import Iterator
@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 import shapely
 
-from lumitip_fab.checks.printed import RAY_MM, Printed, circles, front_z, holes_at, islands_at
+from lumitip_fab.checks.printed import Printed, circles, front_z, holes_at, islands_at
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.readers.solids import Vectors, cast, inside, section
 from lumitip_fab.checks.result import Measurement, farthest
@@ -18,7 +18,6 @@ GAP_MM = (0.10, 0.30)
 OUTLINE_MM = 0.05
 DEPTH_MM = 0.05
 PIN_MM = 0.05
-ANGLE_DEG = 0.5
 FILLET_MM = 0.4  # solder round the foot of a pad's tail
 SIZE_MM = 0.05
 HOLE_MM = 0.05
@@ -26,7 +25,7 @@ GLUE_MM = 0.05
 FLOOR_MM = 0.05  # over the pocket's floor
 SHARED_MM3 = 0.05
 STEP_MM = 0.5
-_DOWN, _UP = np.array([0.0, 0.0, -1.0]), np.array([0.0, 0.0, 1.0])
+_UP = np.array([0.0, 0.0, 1.0])
 
 
 def measure_outline(part: Printed) -> Iterator[Measurement]:
@@ -35,7 +34,7 @@ def measure_outline(part: Printed) -> Iterator[Measurement]:
     silhouette = shapely.LinearRing(design.outline.polygon(24))
     corners = shapely.get_coordinates(shapely.segmentize(silhouette, 1.0))
     open_ = (np.abs(corners[:, 0]) < notch.x_max_mm) & (corners[:, 1] < notch.y_max_mm)
-    cut = section(part.sensor, design.stack.face_z_mm - design.tip.edge_mm / 2)
+    cut = section(part.sensor, design.stack.face_z_mm - design.printing.line_mm / 2)
     skins = [p.exterior for p in shapely.get_parts(cut) if p.geom_type == "Polygon"]
     off = shapely.distance(shapely.points(corners[~open_]), shapely.union_all(skins))
     yield part.near("outline", np.asarray(off), 0.0, OUTLINE_MM)
@@ -117,39 +116,12 @@ def measure_notch(part: Printed) -> Iterator[Measurement]:
     yield part.figure("notch", _filled(part, points[front]), 0.0, 0.0, "%")
 
 
-def measure_tip(part: Printed) -> Iterator[Measurement]:
-    """The wedge: thickness at the tip edge and angle."""
-    outline, tip = part.design.outline, part.design.tip
-    slope = np.tan(np.radians(tip.angle_deg))
-    xs = np.linspace(-0.45, 0.45, 9) * outline.tip_width_mm
-    edge = _thickness(part, np.array([(x, outline.tip_y_mm - 0.05) for x in xs])) - 0.05 * slope
-    yield part.near("tip_edge", edge, tip.edge_mm, DEPTH_MM)
-    board = part.design.board
-    low = max(tip.slant_start_y_mm, board.pocket.y_max_mm + board.roof_mm) + 0.3
-    high = outline.tip_y_mm - 0.3
-    thick = _thickness(part, np.array([(x, y) for x in xs for y in (low, high)]))
-    angles = np.degrees(np.arctan((thick[::2] - thick[1::2]) / (high - low)))
-    yield part.near("slant", angles, tip.angle_deg, ANGLE_DEG, unit="°")
-
-
 def _rim_z(part: Printed) -> float:
     """Height of the rim between pocket and tip."""
     design = part.design
     y = (design.board.pocket.y_max_mm + design.outline.tip_y_mm) / 2
     xs = np.array([-0.3, 0.0, 0.3]) * design.outline.tip_width_mm
     return float(np.median(front_z(part, np.array([(x, y) for x in xs]))))
-
-
-def _thickness(part: Printed, points: Vectors) -> Vectors:
-    """Thickness along z at points (x, y); NaN where the rays do not cross two faces."""
-    above = np.column_stack([points, np.full(len(points), part.design.stack.rim_z_mm + RAY_MM)])
-    hits = cast(part.sensor, above, _DOWN, 40.0)
-    thick = np.full(len(points), np.nan)
-    for k in range(len(points)):
-        crossed = hits.distance_mm[hits.ray == k]
-        if len(crossed) == 2:
-            thick[k] = crossed[1] - crossed[0]
-    return thick
 
 
 def floor_points(part: Printed) -> Vectors:

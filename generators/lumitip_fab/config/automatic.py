@@ -13,6 +13,8 @@ from lumitip_fab.text import table_of
 AUTO = "auto"
 ALL_AUTOMATIC = ("finger",)
 """Tables with automatic fields alone: a file may leave them out, as files of before do."""
+FOLLOWING = ("tip.angle_deg",)
+"""Fields that stay `"auto"`: they follow from others, or those from a value that is written."""
 
 Value = float | int | str
 
@@ -45,10 +47,11 @@ def filled(table: dict[str, Any]) -> tuple[dict[str, Any], frozenset[str]]:
         The table, and the fields whose values are to be chosen.
     """
     full, chosen = {section: {} for section in ALL_AUTOMATIC} | table, set()
-    for field, automatic in automatic_fields().items():
+    starts = {field: automatic.start for field, automatic in automatic_fields().items()}
+    for field, start in (starts | dict.fromkeys(FOLLOWING, AUTO)).items():
         section, key = field.split(".")
         values = full.get(section)
         if isinstance(values, dict) and values.get(key, AUTO) == AUTO:
-            full[section] = {**values, key: automatic.start}
+            full[section] = {**values, key: start}
             chosen.add(field)
-    return full, frozenset(chosen)
+    return full, frozenset(chosen - {*FOLLOWING})

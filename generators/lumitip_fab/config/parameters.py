@@ -107,7 +107,10 @@ class Finger(Strict):
 class Tip(Strict):
     """The wedge on the back of the tip that slides under cloth."""
 
-    slant_start_mm: float = Field(ge=1, le=50)
+    angle_deg: sections.Angle
+    """Angle between the back of the plate and the wedge (°), 0 for none. "auto": that of start and
+    edge."""
+    slant_start_mm: float = Field(ge=0.5, le=50)
     """Distance from the tip edge at which the back begins to slant (mm)."""
     edge_mm: float = Field(ge=0.2, le=5)
     """Thickness left at the tip edge (mm)."""

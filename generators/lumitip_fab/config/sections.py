@@ -57,23 +57,26 @@ DeviceName = Annotated[
 ]
 
 Size = Annotated[float, Field(ge=5, le=200)]
-LEAST_BODY_MM, MOST_BODY_MM = 20, 200
 
 
-def _body(value: Any, handler: ValidatorFunctionWrapHandler) -> Any:
-    try:
-        return handler(value)
-    except ValidationError:
-        raise ValueError(
-            f"is {value!r:.80}; 'gripper' or a number from {LEAST_BODY_MM} to {MOST_BODY_MM} is "
-            "allowed"
-        ) from None
+def _number_or(word: str, least: int, most: int) -> WrapValidator:
+    """One message for a value that is neither a number within limits nor the word."""
+
+    def valid(value: Any, handler: ValidatorFunctionWrapHandler) -> Any:
+        try:
+            return handler(value)
+        except ValidationError:
+            raise ValueError(
+                f"is {value!r:.80}; {word!r} or a number from {least} to {most} is allowed"
+            ) from None
+
+    return WrapValidator(valid)
 
 
 Body = Annotated[
-    Annotated[float, Field(ge=LEAST_BODY_MM, le=MOST_BODY_MM)] | Literal["gripper"],
-    WrapValidator(_body),
+    Annotated[float, Field(ge=20, le=200)] | Literal["gripper"], _number_or("gripper", 20, 200)
 ]
+Angle = Annotated[Annotated[float, Field(ge=0, le=45)] | Literal["auto"], _number_or("auto", 0, 45)]
 
 
 class Board(Strict):

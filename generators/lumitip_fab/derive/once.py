@@ -17,9 +17,9 @@ from lumitip_fab.derive.finger.stack import (
     derive_densities,
     derive_printing,
     derive_stack,
-    derive_tip,
 )
 from lumitip_fab.derive.finger.strength import Body, derive_strength
+from lumitip_fab.derive.finger.tip import derive_tip
 from lumitip_fab.derive.making import mask, mould
 from lumitip_fab.derive.making.fit_plate import derive_fit_plate
 from lumitip_fab.derive.making.panels import derive_panels
@@ -67,12 +67,11 @@ def lay_out(config: Input, faults: Diagnostics) -> FirstLayout:
 
 def derive_body(config: Input, plan: boards.Plan, faults: Diagnostics) -> tuple[Body, Mould]:
     """What is built round the boards of the fingers and bears their load, and the mould."""
-    p = config.parameters
     stack = derive_stack(config, faults)
     silhouette = outline.derive_outline(config, plan.board, plan.receiver.notch, faults)
     interfaces = derive_interfaces(config, silhouette, plan.receiver, plan.board.box, faults)
     coupling = mount.derive_mount(config, silhouette, plan, faults)
-    tip = derive_tip(p, silhouette, plan.board, stack, faults)
+    tip = derive_tip(config, silhouette, plan.board, stack, faults)
     casting = mould.derive_mould(config, silhouette, plan.board, stack, faults)
     slicing = derive_slicing(config, casting, faults)
     meeting = mount.derive_closing(silhouette, stack, coupling, casting, faults)

@@ -136,7 +136,9 @@ def backing_solid(
     Raises:
         BuildError: if the kernel does not make one valid solid of it.
     """
-    plate = _plate(stack, outline) - _tip_cutter(stack, outline, tip)
+    plate = _plate(stack, outline)
+    if tip.angle_deg > 0:
+        plate = plate - _tip_cutter(stack, outline, tip)
     for interface in interfaces:
         return shapes.one_solid(sheet(plate, finger, stack, mount, interface), finger, "backing")
     plate = plate - _pocket(stack, board)

@@ -10,6 +10,7 @@ from lumitip_fab.derive.boards.boards import Plan
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.stack import behind_mm, is_flex
 from lumitip_fab.derive.finger.strength import Body, borne_n, least_n
+from lumitip_fab.derive.finger.tip import wedge
 from lumitip_fab.derive.mount.fasteners import derive_fasteners
 from lumitip_fab.derive.mount.rules import LEAST_FLARE_MM
 from lumitip_fab.derive.once import derive_body, lay_out, optics_of
@@ -118,7 +119,7 @@ def _depths_mm(config: Input, mount: Mount) -> list[float]:
 def _length_mm(config: Input, body: Body) -> float:
     p = config.parameters
     flap = p.mask.flap_mm + p.mask.allowance_mm + FLAP_GAP_MM
-    free = body.outline.tip_y_mm - max(flap, p.tip.slant_start_mm)
+    free = body.outline.tip_y_mm - max(flap, wedge(config)[0])
     free -= body.mount.ramp_end_y_mm(body.stack.back_z_mm, body.stack.rim_z_mm)
     return max(math.floor(10 * free) / 10, LEAST_FLARE_MM)
 

@@ -5,7 +5,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from lumitip_fab.config.automatic import automatic_fields
+from lumitip_fab.config.automatic import AUTO, FOLLOWING, automatic_fields
 from lumitip_fab.config.messages import brief
 from lumitip_fab.config.parts import NAMED
 from lumitip_fab.derive.auto import search
@@ -154,10 +154,12 @@ def _change(now: Verdict, rule: Rule, field: str, fineness: int) -> search.Chang
         return search.first_of(now, rule, field, search.catalogue_names(now, NAMED[field], field))
     if field in SWITCHES:
         return search.first_of(now, rule, field, iter([not now.config.value(field)]))
-    step = _step_of(field)
-    if not step or not isinstance(now.config.value(field), int | float):
-        return None
-    return search.smallest_number(now, rule, field, step, fineness)
+    step, found = _step_of(field), None
+    if step and isinstance(now.config.value(field), int | float):
+        found = search.smallest_number(now, rule, field, step, fineness)
+    if found is None and field in FOLLOWING:
+        return search.first_of(now, rule, field, iter([AUTO]))
+    return found
 
 
 def remedy_lines(plan: Plan) -> list[str]:

@@ -10,6 +10,7 @@ from lumitip_fab.config.messages import brief
 from lumitip_fab.derive.auto.judge import Verdict, judge
 from lumitip_fab.derive.auto.search import Change, search
 from lumitip_fab.derive.auto.starts import proposals
+from lumitip_fab.derive.finger.tip import EDGE, START, wedge
 from lumitip_fab.design import Choice, Design
 from lumitip_fab.errors import InputError
 
@@ -67,11 +68,24 @@ def resolve(config: Input) -> Resolved:
     reasons = _Reasons()
     started = _started(config, reasons)
     end = search(judge(started), config.automatic, reasons.moved)
+    if end.design is not None:
+        end = _settled(end, reasons)
     if end.design is None:
         raise RuleError(end)
     choices = reasons.choices(end.config)
     config = replace(end.config, automatic=frozenset())
     return Resolved(config, replace(end.design, choices=choices))
+
+
+def _settled(end: Verdict, reasons: _Reasons) -> Verdict:
+    """The same design, with start and edge of its wedge where a written angle moved them."""
+    sizes = dict(zip((START, EDGE), wedge(end.config), strict=True))
+    moved = {name: size for name, size in sizes.items() if end.config.value(name) != size}
+    if not moved:
+        return end
+    for name in moved:
+        reasons.propose(name, f"follows tip.angle_deg = {end.config.parameters.tip.angle_deg:g}")
+    return judge(end.config.with_values(moved))
 
 
 def accepted_with(config: Input, values: Mapping[str, Any]) -> bool:

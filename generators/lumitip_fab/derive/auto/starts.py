@@ -14,6 +14,7 @@ from lumitip_fab.derive.boards.plug_in import least_inrush_ohm
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.cells import bending_lines, lane_mm
 from lumitip_fab.derive.finger.stack import is_flex, least_standoff_mm, mask_mm
+from lumitip_fab.derive.finger.tip import plate_mm
 from lumitip_fab.derive.once import lay_out
 from lumitip_fab.derive.wiring.ratings import (
     SUPPLY_TOLERANCE,
@@ -73,7 +74,7 @@ def _printer(config: Input) -> Iterator[Proposal]:
     edge = max(float(automatic_fields()["tip.edge_mm"].start), line)
     yield "tip.edge_mm", edge, f"one line of {line:g} mm, at least 0.45 mm"
     wall = p.printer.min_wall_mm
-    plate = p.stack.floor_mm + p.stack.pcb_mm * (not is_flex(p))
+    plate = plate_mm(p)
     slant = math.ceil(10 * (plate - p.tip.edge_mm) - 1e-6) / 10
     if slant > float(automatic_fields()["tip.slant_start_mm"].start):
         yield "tip.slant_start_mm", slant, f"a plate of {plate:g} mm at 45°"

@@ -17,6 +17,7 @@ from lumitip_fab.derive.finger.stack import (
     is_flex,
     least_standoff_mm,
 )
+from lumitip_fab.derive.finger.tip import wedge
 from lumitip_fab.derive.making.fits import Drawn, refuse_touching
 from lumitip_fab.design import Box, Finger, Interface, Outline
 
@@ -83,7 +84,7 @@ def _refuse_length(
     if for_parts > for_gripper:
         what = "to hold the multiplexers and the tracks before them"
         remedy = "Reduce tip.slant_start_mm, or choose a longer grid or fewer multiplexers."
-    most = outline.length_mm - p.tip.slant_start_mm - 2 * LETTER_GAP_MM - letter_mm
+    most = outline.length_mm - wedge(config)[0] - 2 * LETTER_GAP_MM - letter_mm
     needed, room = math.ceil(least * 10 - 1e-6) / 10, math.floor(most * 10) / 10
     limits = (
         f"at least {needed:g} is needed {what}, and at most {room:g} is allowed before the "

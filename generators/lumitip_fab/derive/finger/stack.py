@@ -1,4 +1,4 @@
-"""Layers of a finger, rigid or compliant: thicknesses, tip wedge, printer limits, densities."""
+"""Layers of a finger, rigid or compliant: thicknesses, printer limits, densities."""
 
 import math
 
@@ -7,7 +7,7 @@ from lumitip_fab.catalogue.materials import Laminate
 from lumitip_fab.config.load import Input
 from lumitip_fab.config.parameters import Parameters
 from lumitip_fab.derive.diagnostics import Diagnostics
-from lumitip_fab.design import Board, Densities, Outline, Printing, Slicing, Stack, Tip
+from lumitip_fab.design import Densities, Outline, Printing, Slicing, Stack
 
 AUXILIARY_MM = 1.6  # of the boards outside compliant fingers
 
@@ -124,27 +124,6 @@ def derive_stack(config: Input, faults: Diagnostics) -> Stack:
         sunk=not is_flex(p),
         auxiliary_mm=stiff_mm(p),
     )
-
-
-def derive_tip(
-    p: Parameters, outline: Outline, board: Board, stack: Stack, faults: Diagnostics
-) -> Tip:
-    """The wedge, refused where it would cut into the pocket's floor."""
-    plate = stack.plate_mm
-    fit = p.printer.fit_mm
-    to_pocket = outline.tip_y_mm - board.pocket.y_max_mm + fit
-    # Where the fit widens the pocket, the wedge begins that much later.
-    later = min(max(p.tip.slant_start_mm - (to_pocket - fit), 0.0), max(fit, 0.0)) * stack.sunk
-    start_y = outline.tip_y_mm - p.tip.slant_start_mm + later
-    faults.unless(
-        not stack.sunk or p.tip.slant_start_mm <= to_pocket + 1e-6,
-        "slant_in_pocket",
-        to_pocket=to_pocket,
-    )
-    faults.unless(p.tip.edge_mm < plate, "tip_edge_thick", plate=plate)
-    angle = math.degrees(math.atan2(plate - p.tip.edge_mm, outline.tip_y_mm - start_y))
-    faults.unless(angle <= 45 + 1e-9, "wedge_steep", angle=angle, least=plate - p.tip.edge_mm)
-    return Tip(start_y, p.tip.edge_mm, angle)
 
 
 def derive_printing(config: Input, outline: Outline, faults: Diagnostics) -> Printing:

@@ -7,6 +7,7 @@ from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards.boards import HOLE_TO_EDGE_MM, Plan
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.stack import behind_mm
+from lumitip_fab.derive.finger.tip import wedge
 from lumitip_fab.derive.making.fits import refuse_touching
 from lumitip_fab.design import AuxiliaryBoard, Flange, Holder, Outline, Point
 
@@ -27,7 +28,8 @@ def refuse_place(
     ramp = gripper.block_back_w_mm - plate
     opening = plan.receiver.notch.y_max_mm - outline.end_y_mm
     length = gripper.land_mm + ramp
-    most = outline.length_mm - p.tip.slant_start_mm - length
+    before_wedge = outline.length_mm - wedge(config)[0]
+    most = before_wedge - length
     faults.unless(
         p.backing.flare_mm <= most + 1e-9 or most <= LEAST_FLARE_MM,
         "flare_long",
@@ -39,7 +41,7 @@ def refuse_place(
         most_mm=ramp - LEAST_FLARE_MM,
     )
     faults.unless(
-        length <= outline.length_mm - p.tip.slant_start_mm and opening < length,
+        length <= before_wedge and opening < length,
         "block_long",
         length=length,
         opening=opening,

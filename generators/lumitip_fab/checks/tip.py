@@ -1,0 +1,42 @@
+"""The wedge at the tip of a backing, by rays through its plate in the finger's sensor frame."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from lumitip_fab.checks.printed import RAY_MM, Printed
+from lumitip_fab.checks.readers.solids import Vectors, cast
+from lumitip_fab.checks.result import Measurement
+
+EDGE_MM = 0.05
+ANGLE_DEG = 0.5
+INSET_MM = 0.3  # of the rays from both ends of the wedge
+_DOWN = np.array([0.0, 0.0, -1.0])
+
+
+def measure_tip(part: Printed) -> Iterator[Measurement]:
+    """The wedge: thickness at the tip edge and angle."""
+    outline, tip = part.design.outline, part.design.tip
+    slope = np.tan(np.radians(tip.angle_deg))
+    xs = np.linspace(-0.45, 0.45, 9) * outline.tip_width_mm
+    edge = _thickness(part, np.array([(x, outline.tip_y_mm - 0.05) for x in xs])) - 0.05 * slope
+    yield part.near("tip_edge", edge, tip.edge_mm, EDGE_MM)
+    board = part.design.board
+    start = max(tip.slant_start_y_mm, board.pocket.y_max_mm + board.roof_mm)
+    inset = min(INSET_MM, (outline.tip_y_mm - start) / 4)
+    low, high = start + inset, outline.tip_y_mm - inset
+    thick = _thickness(part, np.array([(x, y) for x in xs for y in (low, high)]))
+    angles = np.degrees(np.arctan((thick[::2] - thick[1::2]) / (high - low)))
+    yield part.near("slant", angles, tip.angle_deg, ANGLE_DEG, unit="°")
+
+
+def _thickness(part: Printed, points: Vectors) -> Vectors:
+    """Thickness along z at points (x, y); NaN where the rays do not cross two faces."""
+    above = np.column_stack([points, np.full(len(points), part.design.stack.rim_z_mm + RAY_MM)])
+    hits = cast(part.sensor, above, _DOWN, 40.0)
+    thick = np.full(len(points), np.nan)
+    for k in range(len(points)):
+        crossed = hits.distance_mm[hits.ray == k]
+        if len(crossed) == 2:
+            thick[k] = crossed[1] - crossed[0]
+    return thick
