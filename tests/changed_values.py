@@ -132,6 +132,8 @@ CHANGES: dict[str, Any] = {
     "mask.allowance_mm": 0.8,
     "mask.flap_mm": 12.0,
     "mould.silicone": "Sylgard 184",
+    "mould.primer": "none",
+    "mould.tape": "polyester tape",
     "mould.taper_length_mm": 2.9,
     "mould.tip_silicone_mm": 0.3,
     "mould.wall_gap_mm": 0.2,

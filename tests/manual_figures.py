@@ -209,11 +209,11 @@ def _noted(outputs: Path, name: str, row: re.Pattern[str], design: Design) -> li
 def _billed(outputs: Path) -> list[tuple[str, ...]]:
     try:
         rows = table((outputs / "bom.csv").read_text(encoding="utf-8"))
-        units = {"piece": "", "sheet": " sheets", "g": " g", "m": " m"}
+        units = {"piece": "", "sheet": " sheets", "g": " g", "m": " m", "mL": " mL"}
         lines = [
             (r["item"], r["for"], r["quantity"] + units[r["unit"]], r["price"]) for r in rows[:-1]
         ]
-        return [*lines, ("all together", "", "", rows[-1]["price"])]
+        return [*lines, ("used by one pair of fingers", "", "", rows[-1]["price"])]
     except (OSError, ValueError, LookupError) as error:
         return [(f"bom.csv cannot be read: {error!r:.80}",)]
 

@@ -133,6 +133,24 @@ class Adhesive(Entry):
     """Overlap of the test joint that gave it."""
 
 
+class Primer(Entry):
+    """A primer between a part and the silicone that is cast on it."""
+
+    coverage_cm2_ml: float = Field(gt=0, le=1000)
+    """Area that a millilitre covers (cm²)."""
+    dry_min: float = Field(ge=0, le=1440)
+    """Time to dry before the silicone is poured (min)."""
+
+
+class Tape(Entry):
+    """A tape that closes windows while the silicone is cast."""
+
+    width_mm: Length
+    """Width."""
+    limit_c: float = Field(ge=20, le=400)
+    """Highest temperature that it bears (°C)."""
+
+
 class Film(Entry):
     """A film for the mask: clear, to print on, or opaque, to cut."""
 

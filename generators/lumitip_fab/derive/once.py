@@ -25,6 +25,7 @@ from lumitip_fab.derive.making.fit_plate import derive_fit_plate
 from lumitip_fab.derive.making.panels import derive_panels
 from lumitip_fab.derive.making.printing import derive_heat, derive_slicing
 from lumitip_fab.derive.making.purchase import derive_purchase
+from lumitip_fab.derive.making.supplies import Assembled, derive_supplies
 from lumitip_fab.derive.mount import mount
 from lumitip_fab.derive.mount.fasteners import derive_fasteners
 from lumitip_fab.derive.mount.flange_body import derive_flange_body, derive_system
@@ -113,6 +114,16 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
     figures = derive_electrical(config, strings, muxing, circuit.pull_ups, faults)
     joints = Boards(plan.emitter, plan.receiver, (*breakout, *flange))
     cabling = derive_cabling(config, joints, silhouette, coupling, circuit, figures, faults)
+    assembled = Assembled(
+        (plan.emitter, plan.receiver),
+        plan.board,
+        stack,
+        silhouette,
+        body.interfaces,
+        holders,
+        joints.auxiliary_boards,
+        cabling,
+    )
     faults.stop()
     strength = derive_strength(config, body, optics, faults)
     faults.stop()
@@ -168,7 +179,9 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
             holders=holders,
             flanges=flanges,
             system=derive_system(config, flanges, holders),
-            purchase=derive_purchase(config, coupling, holders, flanges, slicing),
+            purchase=derive_purchase(
+                config, coupling, holders, flanges, derive_supplies(config, assembled)
+            ),
             parameters_hash=_parameters_hash(config),
             choices=(),
         )
