@@ -26,6 +26,10 @@ TAPE_MARGIN_MM = 5.0
 """Of the tape beyond a window, on each side."""
 KNOT_MM = 80.0
 """Of a thread, on each side of its knot."""
+CLAMPS = 2
+"""Strips of tape across a plate in its mould."""
+CLAMP_END_MM = 25.0
+"""Of such a strip on the mould's outside, at each end."""
 TURNS = 2
 """Of a thread, through both holes."""
 TIE_MM = 200.0
@@ -130,8 +134,10 @@ def _cast(config: Input, of: Assembled) -> Iterator[Used]:
     yield Used(p.backing.glue, where, _glue_mm3(of) / 1000, "mL")
     width = config.parts.mould.tape.width_mm
     taped = sum(_strips_mm(sides, width) for f in of.fingers for sides in _windows(f, of))
-    if taped:
-        yield Used(p.mould.tape, "windows on the back, while casting", taped / 1000, "m")
+    widest = 2 * max(x for x, _ in of.outline.polygon())
+    clamps = len(of.fingers) * CLAMPS * (widest + 2 * (p.mould.wall_mm + CLAMP_END_MM))
+    where = "clamps of both moulds" + (", windows on the back while casting" if taped else "")
+    yield Used(p.mould.tape, where, (taped + clamps) / 1000, "m")
     if primer := config.parts.mould.primer:
         cm2 = sum(Polygon(of.outline.polygon()).area for _ in of.fingers) / 100
         yield Used(p.mould.primer, "front of both fingers", cm2 / primer.coverage_cm2_ml, "mL")
