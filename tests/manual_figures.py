@@ -186,7 +186,7 @@ def _wrong_units(manual: Manual, design: Design) -> list[str]:
     if not led.mark_is_known:  # 0.15 V less at the 1 mA of a multimeter
         volts.add(round(led.forward_voltage_v - 0.15, 1))
     heat = {figure for s in design.heat for figure in (s.temperature_c, s.limit_c)}
-    allowed = {"h": {design.mould.cure_h}, "°C": heat, "V": volts}
+    allowed = {"h": {design.mould.cure_h, design.mould.glue_hard_h}, "°C": heat, "V": volts}
     matches = re.findall(r"(?<![\w.])(\d+(?:\.\d+)?) (h|°C|V)\b", " ".join(manual.blocks))
     found = {(float(value), unit) for value, unit in matches}
     wrong = [f"{value:g} {unit}" for value, unit in sorted(found) if value not in allowed[unit]]
@@ -209,11 +209,11 @@ def _noted(outputs: Path, name: str, row: re.Pattern[str], design: Design) -> li
 def _billed(outputs: Path) -> list[tuple[str, ...]]:
     try:
         rows = table((outputs / "bom.csv").read_text(encoding="utf-8"))
-        units = {"piece": "", "sheet": " sheets", "g": " g", "m": " m"}
+        units = {"piece": "", "sheet": " sheets", "g": " g", "m": " m", "mL": " mL"}
         lines = [
             (r["item"], r["for"], r["quantity"] + units[r["unit"]], r["price"]) for r in rows[:-1]
         ]
-        return [*lines, ("all together", "", "", rows[-1]["price"])]
+        return [*lines, ("used by one pair of fingers", "", "", rows[-1]["price"])]
     except (OSError, ValueError, LookupError) as error:
         return [(f"bom.csv cannot be read: {error!r:.80}",)]
 

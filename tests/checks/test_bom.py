@@ -41,8 +41,8 @@ EDITS = [
     ("bom.csv", "backing/emitter_backing.stl", "backing/emitter_back.stl", {"prints"}),
     (
         "bom.csv",
-        "a sheet for each finger,2,sheet,2,4.00",
-        "a sheet for each finger,1,sheet,2,2.00",
+        "a sheet of A4 for each finger,2,sheet,2,4.00",
+        "a sheet of A4 for each finger,1,sheet,2,2.00",
         {"film", "total"},
     ),
     ("bom.csv", 'deep that is",2,piece', 'deep that is",4,piece', {"bolts", "prices"}),
@@ -117,9 +117,10 @@ def test_a_users_own_prices_replace_those_of_the_package(design_dir: Path, tmp_p
     prices = folder / "parts" / "prices.toml"
     text = prices.read_text(encoding="utf-8")
     dearer = text.replace('"15406085BA300" = 0.30', '"15406085BA300" = 0.45')
-    prices.write_text(dearer.replace('"Solaris" = 60.0\n', ""), encoding="utf-8")
+    prices.write_text(dearer.replace('"Solaris" = 54.0\n', ""), encoding="utf-8")
     before, after = (derive(load(at / "fingertip.toml")).purchase for at in (design_dir, folder))
     told = {part.part: part.each for part in after.parts}
     assert told["15406085BA300"] == 0.45
-    assert after.silicone_kg is None
+    assert after.unit_price(after.silicone) is None
+    assert before.unit_price(before.silicone) == 54.0 / 900.0
     assert {p.part: p.each for p in before.parts}["15406085BA300"] == 0.3

@@ -186,6 +186,6 @@ def test_every_part_has_a_manufacturer(parts: Catalogue) -> None:
         if isinstance(table := getattr(parts, kind), Mapping)
         for entry in table.values()
     ]
-    makers = {e.order_number: e.manufacturer for e in entries if hasattr(e, "manufacturer")}
+    makers = {e.order_number: e.manufacturer for e in entries if hasattr(e, "order_number")}
     assert len(makers) > 25
     assert not [number for number, maker in makers.items() if maker == "any"]

@@ -55,7 +55,7 @@ EDITS = [
     ('data-file="assembly/system.svg"', 'data-file="assembly/robot.svg"', {"drawings"}),
     ("2.47 g", "3.47 g", {"amounts", "pdf"}),
     ("<td>W2.3</td>", "<td>W2.4</td>", {"wires"}),
-    ("<td>all together</td>", "<td>in all</td>", {"parts", "pdf"}),
+    ("<td>used by one pair of fingers</td>", "<td>in all</td>", {"parts", "pdf"}),
 ]
 
 

@@ -13,17 +13,29 @@ DERIVE = Path(lumitip_fab.__file__).parent / "derive"
 
 
 def _refusals() -> list[tuple[str, str, set[str]]]:
-    """File, rule and names of the values of each call of `Diagnostics.unless` and `add`."""
+    """File, rule and names of the values of each call of `Diagnostics.unless` and `add`. A call
+    whose rule is a variable stands for every rule that its file names elsewhere."""
     found = []
     for file in sorted(DERIVE.rglob("*.py")):
-        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
-                place = {"unless": 1, "add": 0}.get(node.func.attr, len(node.args))
-                rule = node.args[place] if place < len(node.args) else None
-                if isinstance(rule, ast.Constant) and rule.value in RULES:
-                    names = {str(k.arg) for k in node.keywords}
-                    found.append((file.name, rule.value, names))
+        nodes = list(ast.walk(ast.parse(file.read_text(encoding="utf-8"))))
+        constants = {node.value for node in nodes if isinstance(node, ast.Constant)}
+        calls = [_called(node) for node in nodes if isinstance(node, ast.Call)]
+        named = {rule.value for rule, _ in calls if isinstance(rule, ast.Constant)}
+        for rule, names in calls:
+            if isinstance(rule, ast.Constant):
+                found += [(file.name, rule.value, names)] if rule.value in RULES else []
+            elif isinstance(rule, ast.Attribute) and rule.attr == "rule":
+                found += [
+                    (file.name, each, names) for each in sorted(RULES.keys() & constants - named)
+                ]
     return found
+
+
+def _called(node: ast.Call) -> tuple[ast.expr | None, set[str]]:
+    """What may be the rule of a call, and the names of its values."""
+    place = {"unless": 1, "add": 0}.get(getattr(node.func, "attr", ""), len(node.args))
+    rule = node.args[place] if place < len(node.args) else None
+    return rule, {str(k.arg) for k in node.keywords}
 
 
 def _braces(text: str) -> list[list[str]]:

@@ -1,5 +1,6 @@
 """Printed parts of the default and of the compliant design go through Debian's PrusaSlicer."""
 
+import csv
 import json
 import shutil
 from collections.abc import Callable
@@ -49,6 +50,18 @@ def test_layers_are_of_the_part_alone() -> None:
         slicing.grams("")
 
 
+def assert_times_are_billed(outputs: Path, parts: dict[str, dict[str, float]]) -> None:
+    """The bill's times and masses against the slicer's own."""
+    with (outputs / "bom.csv").open(encoding="utf-8", newline="") as file:
+        rows = [row for row in csv.DictReader(file) if row["group"] == "prints"]
+    assert len(rows) >= 7
+    for row in rows:
+        part = parts[row["item"].removesuffix("stl") + "3mf"]
+        minutes = int(row["for"].split()[1])
+        assert 60 * minutes == pytest.approx(part["seconds"], rel=0.25), row["item"]
+        assert float(row["quantity"]) == pytest.approx(part["solid_g"], rel=0.01), row["item"]
+
+
 FLEX = {"backing/emitter_backing.3mf": 10, "interface/emitter_interface.3mf": 130}
 
 
@@ -83,6 +96,7 @@ def test_every_part_slices_without_support(
         assert (tmp_path / f"{Path(name).stem}.gcode").stat().st_size > 10_000
         own = {"backing": filament, "mask": "TPU 95A"}
         assert part["filament"] == own.get(name.partition("/")[0], "PETG")
+    assert_times_are_billed(outputs, parts)
     assert {name: parts[name]["layers"] for name in layers} == layers
     assert parts["fit/fit_plate.3mf"]["seconds"] <= 12 * 60
     assert told["grams"] == pytest.approx(sum(p["grams"] for p in parts.values()), abs=0.01)

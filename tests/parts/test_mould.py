@@ -12,7 +12,7 @@ import trimesh
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from lumitip_fab.derive.making.mould import whole_layers
-from lumitip_fab.design import Design
+from lumitip_fab.design import Design, Mould
 from lumitip_fab.design.encoding import read_design
 from lumitip_fab.parts import mould, skin
 from lumitip_fab.parts import mould as casting
@@ -90,9 +90,26 @@ def test_the_film_lies_on_the_silicone(design: Design) -> None:
     assert not film.is_inside((0.0, 0.0, -0.11))
 
 
+def noted(design: Design, of: Mould, open_back: bool = True) -> str:
+    mix = casting.silicone_mix(4.0, of)
+    return casting.casting_note("emitter", mix, design.stack, of, "epoxy", open_back)
+
+
+def test_the_note_says_primer_tape_test_and_the_order_of_demoulding(design: Design) -> None:
+    note = " ".join(noted(design, design.mould).split())
+    assert "a thin film of silicone primer DOWSIL PR-1200" in note
+    assert "with polyimide tape 12 mm" in note and "masking tape" in note
+    assert "Let it harden for 24 h" in note
+    steps = ["Put a drop", "Leave it for 24 h", "Lift the gripper end first", "the tip edge last"]
+    assert sorted(steps, key=note.index) == steps
+    assert "Close every window" not in noted(design, design.mould, open_back=False)
+    bare = noted(design, replace(design.mould, primer="", primer_dry_min=0.0))
+    assert "Wipe a thin film" not in bare
+
+
 def test_the_note_weighs_both_parts(design: Design) -> None:
     mixed = replace(design.mould, mix_ratio=(10.0, 1.0), density_g_ml=1.1, waste_fraction=0.5)
-    note = casting.casting_note("emitter", casting.silicone_mix(4.0, mixed), design.stack, mixed)
+    note = noted(design, mixed)
     masses = [float(m) for m in re.findall(r"\*\*([0-9.]+) g\*\*", note)]
     assert masses == pytest.approx([6.0, 0.6])
     assert "6.00 mL" in note
@@ -118,12 +135,7 @@ def test_layers_divide_the_heights_that_count(
 
 def test_the_note_says_what_the_slicer_rounds(design: Design) -> None:
     rounded = replace(design.mould, layer_mm=0.2, off_layer_mm=0.093)
-    whole, told = (
-        " ".join(
-            casting.casting_note("emitter", casting.silicone_mix(4.0, m), design.stack, m).split()
-        )
-        for m in (design.mould, rounded)
-    )
+    whole, told = (" ".join(noted(design, m).split()) for m in (design.mould, rounded))
     assert "in layers of 0.15 mm. The floor at 2.4 mm and the stops at 3.9 mm" in whole
     assert "are then whole layers" not in told
     assert "by 0.09 mm" in told

@@ -16,10 +16,12 @@ from lumitip_fab.catalogue.materials import (
     Filament,
     Film,
     Laminates,
+    Primer,
     Printer,
     Silicone,
+    Tape,
 )
-from lumitip_fab.catalogue.ordering import Fab, Prices
+from lumitip_fab.catalogue.ordering import Fab, Pack, Prices
 from lumitip_fab.catalogue.record import Name, Strict
 
 
@@ -50,9 +52,12 @@ class Catalogue(Strict):
     fasteners: Mapping[Name, Fastener]
     adhesives: Mapping[Name, Adhesive]
     silicones: Mapping[Name, Silicone]
+    primers: Mapping[Name, Primer]
+    tapes: Mapping[Name, Tape]
     films: Mapping[Name, Film]
     printers: Mapping[Name, Printer]
     filaments: Mapping[Name, Filament]
     fabs: Mapping[Name, Fab]
+    packs: Mapping[Name, Pack]
     laminates: Laminates
     prices: Prices

@@ -9,6 +9,7 @@ from lumitip_fab.catalogue.record import (
     Capacitances,
     Entry,
     Length,
+    Name,
     Offset,
     Ordered,
     Pin,
@@ -53,6 +54,8 @@ class Strip(Ordered, Entry):
     """Travel of spring contacts; 0 for others."""
     shroud: Shroud | None = None
     """Shroud of a right-angle box header; none for others, whose body is over their contacts."""
+    mate: Name | None = None
+    """Name of the mating connector in `packs.toml`; none where wires are soldered on."""
 
 
 class Plug(Strict):

@@ -31,6 +31,16 @@ class Laminates(Strict):
     flexible: Laminate
 
 
+Substance = Literal[
+    "sulphur",
+    "latex",
+    "amine",
+    "polyurethane",
+    "PVC",
+    "tin",
+    "masking tape adhesive",
+]
+"""Substances that keep silicones with a platinum catalyst from curing."""
 _Percent = Annotated[int, Field(ge=0, le=100)]
 
 
@@ -122,6 +132,10 @@ class Silicone(Entry):
     """Temperature to cure at, in the mould with backing and board (°C)."""
     limit_c: float = Field(ge=20, le=400)
     """Highest temperature that it withstands when cured (°C)."""
+    inhibited_by: tuple[Substance, ...]
+    """Substances that keep it from curing where it touches them."""
+    needs_primer: bool
+    """Whether it holds on printed plastics and boards by a primer alone."""
 
 
 class Adhesive(Entry):
@@ -131,6 +145,30 @@ class Adhesive(Entry):
     """Lap shear strength on the parts that it holds here."""
     lap_mm: Length
     """Overlap of the test joint that gave it."""
+    gives_off: tuple[Substance, ...] = ()
+    """Substances in it that may keep a silicone from curing."""
+    hard_h: float | None = Field(default=None, ge=0.1, le=200)
+    """Time after which it is hard and harmless under a primer (h); none where it never is."""
+
+
+class Primer(Entry):
+    """A primer between a part and the silicone that is cast on it."""
+
+    coverage_cm2_ml: float = Field(gt=0, le=1000)
+    """Area that a millilitre covers (cm²)."""
+    dry_min: float = Field(ge=0, le=1440)
+    """Time to dry before the silicone is poured (min)."""
+
+
+class Tape(Entry):
+    """A tape that closes windows while the silicone is cast."""
+
+    width_mm: Length
+    """Width."""
+    gives_off: tuple[Substance, ...] = ()
+    """Substances in it that may keep a silicone from curing."""
+    limit_c: float = Field(ge=20, le=400)
+    """Highest temperature that it bears (°C)."""
 
 
 class Film(Entry):

@@ -121,6 +121,21 @@ class Fab(Entry):
 Price = Annotated[float, Field(ge=0, le=1e6)]
 
 
+class Pack(Entry):
+    """What one buys of something that is sold in packs; its price is in `prices.toml`."""
+
+    manufacturer: str = Field(default="", max_length=64)
+    """Manufacturer of the product; empty where any will do."""
+    product: str = Field(default="", max_length=64)
+    """Name or order number of the product."""
+    pack: str = Field(min_length=1, max_length=64)
+    """The pack, such as "roll of 33 m x 12 mm"."""
+    holds: float = Field(gt=0, le=1e5)
+    """Content of a pack, in `unit`."""
+    unit: Literal["g", "m", "mL", "piece", "sheet"]
+    """Unit of `holds`."""
+
+
 class BoardPrice(Strict):
     """One bare board."""
 
@@ -148,9 +163,5 @@ class Prices(Sourced):
     """One piece, by name of the entry in another file of `parts/`."""
     board: BoardPrice
     placing: PlacingPrice
-    kg: Mapping[str, Price]
-    """A kilogram of a filament or a silicone, by its name in the catalogue."""
-    sheet: Mapping[str, Price]
-    """A sheet of A4 of a film, by its name in the catalogue."""
-    wire_m: Price
-    """A metre of stranded wire."""
+    pack: Mapping[str, Price]
+    """A pack, by its name in `packs.toml`."""

@@ -254,7 +254,7 @@ def _wrong_prices(rows: tuple[Row, ...], design: Design) -> list[str]:
 def _each(row: Row, design: Design) -> float | None:
     """Unit price of a line."""
     purchase = design.purchase
-    if row.group in ("electronics", "fasteners"):
+    if row.group in ("electronics", "fasteners", "supplies"):
         known = {piece.item: piece.each for piece in purchase.pieces}
         priced = next((p.each for p in purchase.parts if p.of(row.part)), None)
         return known.get(row.item, priced)
@@ -264,11 +264,9 @@ def _each(row: Row, design: Design) -> float | None:
         bare = purchase.board_each + box.width_mm * box.length_mm / 100 * purchase.board_per_cm2
         return round(bare, 2) if row.item.endswith(" board") else purchase.placing_each
     if row.group == "prints":
-        kg = dict(purchase.filament_kg).get(design.slicing.of(row.item).name)
-        return None if kg is None else kg / 1000
-    if row.group == "casting":
-        return None if purchase.silicone_kg is None else purchase.silicone_kg / 1000
-    return {"mask": purchase.film_sheet, "wiring": purchase.wire_m}.get(row.group)
+        return purchase.unit_price(design.slicing.of(row.item).name)
+    packs = {"casting": purchase.silicone, "mask": purchase.film, "wiring": "stranded wire"}
+    return purchase.unit_price(packs[row.group])
 
 
 def _same(figure: float | None, wanted: float | None, room: float) -> bool:

@@ -48,6 +48,7 @@ MODULES = (
     "system",
     "wiring",
     "bom",
+    "packs",
     "heat",
 )
 _LONG = frozenset({"orders", "board"})

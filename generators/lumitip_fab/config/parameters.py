@@ -211,6 +211,10 @@ class Mould(Strict):
 
     silicone: Name
     """Name of a silicone in `parts/silicones.toml`."""
+    primer: Name
+    """Name of a primer in `parts/primers.toml`, under the silicone; or `"none"`."""
+    tape: Name
+    """Name of a tape in `parts/tapes.toml`, which closes windows while the silicone is cast."""
     taper_length_mm: float = Field(ge=0.5, le=3.9)
     """Distance from the tip edge over which the silicone thins; the fingers touch first where it
     ends, at most 4 mm from the tip (mm)."""

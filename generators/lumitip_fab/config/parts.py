@@ -5,7 +5,16 @@ from typing import Any, get_args, get_type_hints
 
 from lumitip_fab.catalogue import Catalogue, clamps, controllers, current_sources, electronics
 from lumitip_fab.catalogue.grippers import Gripper, ToolCoupling
-from lumitip_fab.catalogue.materials import Adhesive, Fastener, Filament, Film, Printer, Silicone
+from lumitip_fab.catalogue.materials import (
+    Adhesive,
+    Fastener,
+    Filament,
+    Film,
+    Primer,
+    Printer,
+    Silicone,
+    Tape,
+)
 from lumitip_fab.config.parameters import Parameters
 
 
@@ -109,9 +118,11 @@ class HolderParts:
 
 @dataclass(frozen=True)
 class MouldParts:
-    """Material that is cast."""
+    """Material that is cast, and what is needed for it."""
 
     silicone: Silicone
+    primer: Primer | None
+    tape: Tape
 
 
 @dataclass(frozen=True)

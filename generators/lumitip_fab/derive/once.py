@@ -25,6 +25,7 @@ from lumitip_fab.derive.making.fit_plate import derive_fit_plate
 from lumitip_fab.derive.making.panels import derive_panels
 from lumitip_fab.derive.making.printing import derive_heat, derive_slicing
 from lumitip_fab.derive.making.purchase import derive_purchase
+from lumitip_fab.derive.making.supplies import Assembled, derive_supplies
 from lumitip_fab.derive.mount import mount
 from lumitip_fab.derive.mount.fasteners import derive_fasteners
 from lumitip_fab.derive.mount.flange_body import derive_flange_body, derive_system
@@ -34,7 +35,7 @@ from lumitip_fab.derive.wiring.cabling import Boards, derive_cabling
 from lumitip_fab.derive.wiring.electrical import derive_electrical
 from lumitip_fab.derive.wiring.ratings import refuse_receiver_capacitor
 from lumitip_fab.derive.wiring.strings import Strings, derive_strings
-from lumitip_fab.design import Controller, Design, Grid, Mould, Title
+from lumitip_fab.design import Controller, Design, Grid, Mould, Stack, Title
 from lumitip_fab.design.encoding import canonical, round_trip
 
 
@@ -65,9 +66,10 @@ def lay_out(config: Input, faults: Diagnostics) -> FirstLayout:
     return FirstLayout(cells, strings, muxing, plan)
 
 
-def derive_body(config: Input, plan: boards.Plan, faults: Diagnostics) -> tuple[Body, Mould]:
+def derive_body(
+    config: Input, stack: Stack, plan: boards.Plan, faults: Diagnostics
+) -> tuple[Body, Mould]:
     """What is built round the boards of the fingers and bears their load, and the mould."""
-    stack = derive_stack(config, faults)
     silhouette = outline.derive_outline(config, plan.board, plan.receiver.notch, faults)
     interfaces = derive_interfaces(config, silhouette, plan.receiver, plan.board.box, faults)
     coupling = mount.derive_mount(config, silhouette, plan, faults)
@@ -91,11 +93,11 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
         InputError: with all that was collected.
     """
     p = config.parameters
-    fasteners = derive_fasteners(config, faults)
+    stack, fasteners = derive_stack(config, faults), derive_fasteners(config, faults)
     first = lay_out(config, faults)
     cells, strings, muxing, plan = first.cells, first.strings, first.muxing, first.plan
-    body, casting = derive_body(config, plan, faults)
-    stack, silhouette, coupling, slicing = body.stack, body.outline, body.mount, body.slicing
+    body, casting = derive_body(config, stack, plan, faults)
+    silhouette, coupling, slicing = body.outline, body.mount, body.slicing
     printing = derive_printing(config, silhouette, faults)
     heat = derive_heat(config, slicing, faults)
     plate = derive_fit_plate(config, plan, coupling, faults)
@@ -112,6 +114,16 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
     figures = derive_electrical(config, strings, muxing, circuit.pull_ups, faults)
     joints = Boards(plan.emitter, plan.receiver, (*breakout, *flange))
     cabling = derive_cabling(config, joints, silhouette, coupling, circuit, figures, faults)
+    assembled = Assembled(
+        (plan.emitter, plan.receiver),
+        plan.board,
+        stack,
+        silhouette,
+        body.interfaces,
+        holders,
+        joints.auxiliary_boards,
+        cabling,
+    )
     faults.stop()
     strength = derive_strength(config, body, optics, faults)
     faults.stop()
@@ -167,7 +179,9 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
             holders=holders,
             flanges=flanges,
             system=derive_system(config, flanges, holders),
-            purchase=derive_purchase(config, coupling, holders, flanges, slicing),
+            purchase=derive_purchase(
+                config, coupling, holders, flanges, derive_supplies(config, assembled)
+            ),
             parameters_hash=_parameters_hash(config),
             choices=(),
         )

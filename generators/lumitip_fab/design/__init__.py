@@ -60,7 +60,7 @@ from lumitip_fab.design.mount import (
     System,
     ToolContact,
 )
-from lumitip_fab.design.ordering import Bought, Fab, PartPrice, Purchase
+from lumitip_fab.design.ordering import Bought, Fab, Pack, PartPrice, Purchase
 from lumitip_fab.design.panel import Panel, PanelRules
 from lumitip_fab.design.pcb import (
     AuxiliaryBoard,

@@ -106,6 +106,16 @@ class Mould:
     cure_c: float
     """Temperature to cure at (°C)."""
     waste_fraction: float
+    inhibited_by: tuple[str, ...]
+    """Substances that keep the silicone from curing."""
+    primer: str
+    """Title of the primer under it; empty without one."""
+    primer_dry_min: float
+    """Time that the primer dries; 0 without one."""
+    tape: str
+    """Title of the tape over windows and holes of the back."""
+    glue_hard_h: float
+    """Time until the glue is hard, where it meets the silicone; else 0."""
 
 
 @dataclass(frozen=True)

@@ -41,9 +41,37 @@ class Bought:
     """Order number."""
     where: str
     """Its use."""
-    quantity: int
+    quantity: float
     each: float | None
     """Price of one; none where it is not known."""
+    unit: str = "piece"
+    pack: str = ""
+    """Name of the pack that it comes in; empty where it is bought singly."""
+
+
+@dataclass(frozen=True)
+class Pack:
+    """What one buys of something that is sold in packs."""
+
+    name: str
+    title: str
+    manufacturer: str
+    """Empty where any will do."""
+    product: str
+    pack: str
+    """Such as `"roll of 33 m x 12 mm"`."""
+    holds: float
+    unit: str
+    """Of `holds`: `"g"`, `"m"`, `"mL"`, `"piece"` or `"sheet"`."""
+    price: float | None
+    """Price of a pack; none where it is not known."""
+    confidence: str
+    """Confidence in product and size of the pack."""
+
+    @property
+    def each(self) -> float | None:
+        """Price of a unit; none where it is not known."""
+        return None if self.price is None else self.price / self.holds
 
 
 @dataclass(frozen=True)
@@ -76,21 +104,25 @@ class Purchase:
     board_per_cm2: float
     placing_each: float
     """Placing and soldering a part on a board."""
-    filament_kg: tuple[tuple[str, float], ...]
-    """Name and price of a kilogram of each filament that has one."""
-    silicone_kg: float | None
-    film_sheet: float | None
-    """Price of a sheet of A4."""
-    wire_m: float
+    silicone: str
+    """Name of the silicone's pack."""
+    film: str
+    """Name of the film's pack."""
+    packs: tuple[Pack, ...]
+    """Every pack that may be needed."""
 
     def part_each(self, part: str) -> float | None:
         """Price of a part by its order number; none if it is not known."""
         return next((price.each for price in self.parts if price.of(part)), None)
 
-    def filament_g(self, name: str) -> float | None:
-        """Price of a gram of a filament; none if it is not known."""
-        kg = dict(self.filament_kg).get(name)
-        return None if kg is None else kg / 1000
+    def pack(self, name: str) -> Pack | None:
+        """A pack by its name; none where none is known."""
+        return next((pack for pack in self.packs if pack.name == name), None)
+
+    def unit_price(self, name: str) -> float | None:
+        """Price of a unit out of a pack; none where it is not known."""
+        pack = self.pack(name)
+        return pack.each if pack else None
 
     def bare_board_each(self, box: Box) -> float:
         """Price of a bare board of this size, to the cent."""

@@ -1,15 +1,18 @@
 """`bom.csv`: everything that is bought, printed and cast, from the facts of the built files, with
-prices."""
+prices; and `order.csv`, what must be bought for it."""
 
 import csv
 import io
-from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict
 
-from lumitip_fab.design import Design, Purchase
+from lumitip_fab.design import Bought, Design, Purchase
+from lumitip_fab.design.making import Filament
+from lumitip_fab.design.print_time import print_seconds
+from lumitip_fab.docs.orders import Line, amount, money, order_list
 from lumitip_fab.pipeline.artefact import Artefact, Files
 
-_GRAMS = 1000.0
 _KINDS = {
     "C": "capacitor",
     "D": "LED",
@@ -29,25 +32,6 @@ _ON_BOARD = {
     "flange": {"D1": "TVS diode"},
 }
 """The same where a board has another kind of this letter, or of this part alone."""
-
-
-@dataclass(frozen=True)
-class Line:
-    """A line of the bill."""
-
-    group: str
-    item: str
-    manufacturer: str
-    part: str
-    where: str
-    quantity: float
-    unit: str
-    each: float | None
-
-    @property
-    def price(self) -> float | None:
-        """Price of the whole quantity."""
-        return None if self.each is None else round(self.quantity * self.each, 2)
 
 
 def electronics(design: Design, files: Files) -> Iterator[Line]:
@@ -74,7 +58,7 @@ def electronics(design: Design, files: Files) -> Iterator[Line]:
     for name, box in boxes.items():
         each = purchase.bare_board_each(box)
         size = f"{box.width_mm:g} x {box.length_mm:g} mm"
-        yield Line("boards", f"{name} board", "", size, "bare", 1, "piece", each)
+        yield Line("boards", f"{name} board", "", size, "bare", 1, "piece", each, "bare board")
     placed = sum(sum(where.values()) for where in found.values())
     item, where_text = "placing and soldering", "parts on all boards"
     yield Line("boards", item, "", "", where_text, placed, "piece", purchase.placing_each)
@@ -91,40 +75,70 @@ def materials(design: Design, files: Files) -> Iterator[Line]:
     kinds = (*PRINTED, "mask") if printed else PRINTED
     for path in (path for kind in kinds for path in files.like(f"{kind}/*.stl")):
         filament = slicing.of(path)
-        grams = round(files.facts(path)["volume_mm3"] / 1000 * filament.density_g_ml, 2)
-        where, each = "solid, brim left out", purchase.filament_g(filament.name)
-        yield Line("prints", path, "", filament.name, where, grams, "g", each)
+        facts, name = files.facts(path), filament.name
+        grams = round(facts["volume_mm3"] / 1000 * filament.density_g_ml, 2)
+        where = f"some {_minutes(facts, filament, design)} min, solid, brim left out"
+        yield Line("prints", path, "", name, where, grams, "g", purchase.unit_price(name), name)
     mixes = [files.facts(path) for path in files.like("mould/*_casting.md")]
     grams = round(sum(mix["part_a_g"] + mix["part_b_g"] for mix in mixes), 2)
-    kg = purchase.silicone_kg
-    where, each = "both fingers, with what stays in the cup", None if kg is None else kg / _GRAMS
-    yield Line("casting", design.mould.silicone, "", "", where, grams, "g", each)
+    where, title = "both fingers, with what stays in the cup", design.mould.silicone
+    yield _packed(purchase, "casting", purchase.silicone, title, where, grams, "g")
     if not printed:
-        where = "a sheet for each finger"
-        yield Line("mask", design.mask.film, "", "A4", where, 2, "sheet", purchase.film_sheet)
+        where = "a sheet of A4 for each finger"
+        yield _packed(purchase, "mask", purchase.film, design.mask.film, where, 2, "sheet")
     metres: dict[float, float] = {}
     for cable in design.cabling.cables:
         length = cable.length_mm * len(cable.wires) / 1000
         metres[cable.section_mm2] = metres.get(cable.section_mm2, 0.0) + length
     where = "colours and lengths in wiring/cables.csv"
     for section, length in sorted(metres.items()):
-        item = f"stranded wire, {section:g} mm²"
-        yield Line("wiring", item, "", "", where, round(length, 2), "m", purchase.wire_m)
+        item = f"stranded wire, {section:g} mm² (AWG {_awg(section)})"
+        used = round(length, 2)
+        yield _packed(purchase, "wiring", "stranded wire", item, where, used, "m")
+
+
+def _minutes(facts: Mapping[str, float], filament: Filament, design: Design) -> int:
+    """Time to print a part, to whole minutes."""
+    brim = filament != design.slicing.sheet
+    return round(print_seconds(facts, filament, design.printing, brim) / 60)
+
+
+def _awg(section_mm2: float) -> int:
+    """The even gauge nearest to a section, by ASTM B258: the trade's equivalent."""
+    diameter_mm = math.sqrt(4 * section_mm2 / math.pi)
+    return 2 * round((36 - 39 * math.log(diameter_mm / 0.127, 92)) / 2)
+
+
+def _packed(
+    purchase: Purchase, group: str, name: str, item: str, where: str, quantity: float, unit: str
+) -> Line:
+    """Something out of a pack; with its name alone where no pack is known."""
+    pack = purchase.pack(name)
+    if pack is None:
+        return Line(group, item, "", "", where, quantity, unit, None)
+    maker, product = pack.manufacturer, pack.product
+    return Line(group, item, maker, product, where, quantity, unit, pack.each, name)
 
 
 def _pieces(purchase: Purchase, group: str) -> Iterator[Line]:
     for piece in purchase.pieces:
         if piece.group == group:
-            yield Line(
-                group,
-                piece.item,
-                piece.manufacturer,
-                piece.part,
-                piece.where,
-                piece.quantity,
-                "piece",
-                piece.each,
-            )
+            yield _line(piece)
+
+
+def _line(of: Bought) -> Line:
+    """A line with what is bought."""
+    return Line(
+        of.group,
+        of.item,
+        of.manufacturer,
+        of.part,
+        of.where,
+        of.quantity,
+        of.unit,
+        of.each,
+        of.pack,
+    )
 
 
 COLUMNS = (
@@ -146,11 +160,12 @@ def bill_of_materials(design: Design, files: Files) -> tuple[Artefact, ...]:
     lines = [
         *electronics(design, files),
         *materials(design, files),
+        *_pieces(purchase, "supplies"),
         *_pieces(purchase, "fasteners"),
     ]
     priced = [line.price for line in lines if line.price is not None]
     note = f"{purchase.currency}, {purchase.dated}, {purchase.confidence}: {purchase.source}"
-    note += "; what is used, not packs"
+    note += "; what one pair of fingers uses: packs are in order.csv"
     if len(priced) < len(lines):
         note += f"; {len(lines) - len(priced)} without a price"
     facts = {
@@ -158,17 +173,8 @@ def bill_of_materials(design: Design, files: Files) -> tuple[Artefact, ...]:
         "total": sum(priced),
         "prices": note,
     }
-    return (Artefact("bom.csv", _table(lines, note, sum(priced)), frame="", facts=facts),)
-
-
-def amount(quantity: float) -> str:
-    """A quantity as the bill shows it."""
-    return f"{quantity:g}"
-
-
-def money(price: float | None) -> str:
-    """A price as the bill shows it: empty where none is known."""
-    return "" if price is None else f"{price:.2f}"
+    bill = Artefact("bom.csv", _table(lines, note, sum(priced)), frame="", facts=facts)
+    return bill, order_list(purchase, lines)
 
 
 def _table(lines: list[Line], note: str, total: float) -> bytes:
@@ -189,5 +195,7 @@ def _table(lines: list[Line], note: str, total: float) -> bytes:
                 money(line.price),
             )
         )
-    writer.writerow(("total", "", "", "", note, "", "", "", money(total)))
+    writer.writerow(
+        ("total", "used by one pair of fingers", "", "", note, "", "", "", money(total))
+    )
     return file.getvalue().encode()

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from lumitip_fab.design import Design, Flange, HeatStep, Mask, Packages
-from lumitip_fab.docs.bill import amount, money
+from lumitip_fab.docs.orders import amount, money
 from lumitip_fab.docs.page import html_page
 from lumitip_fab.docs.sheet import pdf_sheets
 from lumitip_fab.docs.spec_circuit import pulled_up
@@ -91,8 +91,25 @@ def _bought(files: Files) -> str:
         f"| {money(line['price'])} |"
         for line in bill["lines"]
     )
+    order = files.facts("order.csv")
+    packs = "\n".join(map(_pack, order["lines"]))
     return _text(
-        "bought", prices=as_written(bill["prices"]), lines=lines, total=money(bill["total"])
+        "bought",
+        prices=as_written(bill["prices"]),
+        lines=lines,
+        total=money(bill["total"]),
+        packs=packs,
+        single=money(order["single"]),
+        to_buy=money(order["total"]),
+    )
+
+
+def _pack(line: dict[str, Any]) -> str:
+    """A line of the packs to buy."""
+    product = " ".join(filter(None, (line["manufacturer"], line["part"])))
+    return (
+        f"| {as_written(line['item'])} | {as_written(product)} | {as_written(line['pack'])} "
+        f"| {line['packs']} | {money(line['price'])} |"
     )
 
 

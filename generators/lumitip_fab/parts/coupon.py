@@ -6,7 +6,7 @@ import trimesh
 from lumitip_fab.design import Design
 from lumitip_fab.mask.artwork import PAPERS_MM
 from lumitip_fab.mask.pdf import coupon_page
-from lumitip_fab.parts.export import mesh_stl, three_mf, volume_mm3, welded
+from lumitip_fab.parts.export import mesh_stl, surface_facts, three_mf, welded
 from lumitip_fab.pipeline.artefact import Artefact
 
 
@@ -17,7 +17,7 @@ def coupon_files(design: Design) -> tuple[Artefact, ...]:
     corners = [[left, low, 0.0], [right, high, mask.sheet.thickness_mm]]
     block = trimesh.creation.box(bounds=corners)
     surface = welded(block.vertices, block.faces)
-    facts = {"volume_mm3": volume_mm3(surface)}
+    facts = surface_facts(surface)
     words = f"{mask.sheet.layers} layers of {mask.sheet.layer_mm:g} mm, {mask.sheet.filament}"
     return (
         *(

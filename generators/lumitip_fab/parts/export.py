@@ -97,6 +97,8 @@ def _ordered(entities: dict[int, str]) -> str:
 
 CHORD_MM = 0.01
 ANGLE_RAD = 0.15
+_LEVEL = 0.999  # upward part of a normal
+_ON_BED_MM = 0.01
 _WELD_DECIMALS = 5  # of a mm: far below the chord error, above the noise of edges shared by faces
 _TIMESTAMP = "2000-01-01T00:00:00"
 _ZIP_DATE = (2000, 1, 1, 0, 0, 0)
@@ -163,7 +165,7 @@ def part_files(
     name = path.rpartition("/")[2]
     in_frame = Artefact(f"{path}.step", step(solid, name), frame=frame)
     surface = mesh(placed(solid, np.asarray(np.linalg.inv(bed_to_frame), np.float64)), chord_mm)
-    facts = {"volume_mm3": volume_mm3(surface)}
+    facts = surface_facts(surface)
     return (
         in_frame,
         Artefact(f"{path}.stl", mesh_stl(surface), bed_to_frame, frame, facts),
@@ -171,10 +173,21 @@ def part_files(
     )
 
 
-def volume_mm3(surface: Mesh) -> float:
-    """Volume inside a closed surface."""
+def surface_facts(surface: Mesh) -> dict[str, float]:
+    """Volume inside a closed surface that lies on the bed, its height, and areas: of its walls as
+    seen from the side, on the bed, and of what looks up."""
     solid = trimesh.Trimesh(surface.points_mm, surface.triangles, process=False)
-    return float(solid.volume)
+    (_, _, low), (_, _, high) = solid.bounds
+    up, areas = solid.face_normals[:, 2], solid.area_faces
+    level = np.abs(up) > _LEVEL
+    middle = solid.triangles_center[:, 2]
+    return {
+        "volume_mm3": float(solid.volume),
+        "height_mm": round(float(high - low), 6),
+        "side_mm2": round(float((areas * np.sqrt(1 - np.minimum(up**2, 1))).sum()), 3),
+        "base_mm2": round(float(areas[level & (middle < low + _ON_BED_MM)].sum()), 3),
+        "top_mm2": round(float(areas[level & (up > 0)].sum()), 3),
+    }
 
 
 def mesh_stl(surface: Mesh) -> bytes:

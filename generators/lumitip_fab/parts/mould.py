@@ -33,7 +33,12 @@ def silicone_mix(volume_ml: float, mould: Mould) -> dict[str, float]:
 
 
 def casting_note(
-    finger: str, mix: Mapping[str, float], stack: Stack, mould: Mould, glue: str
+    finger: str,
+    mix: Mapping[str, float],
+    stack: Stack,
+    mould: Mould,
+    glue: str,
+    open_back: bool,
 ) -> str:
     """The note as Markdown.
 
@@ -43,23 +48,46 @@ def casting_note(
         stack: for the height of the stops.
         mould: its layers, the silicone, and how much is wasted.
         glue: title of what holds the board, or the interface.
+        open_back: whether windows or holes go through the plate.
     """
     rim_mm = mould.wall_mm + stack.cover_mm
-    return passage(_TEXTS, "note").format(
+    taped = _text("taped", tape=mould.tape) if open_back else ""
+    held = _text(
+        "in_pocket" if stack.sunk else "on_plate",
+        glue=glue,
+        glue_hard_h=mould.glue_hard_h,
+        taped=taped,
+    )
+    layers = _text(
+        "part" if mould.off_layer_mm else "whole",
+        floor_mm=mould.wall_mm,
+        rim_mm=rim_mm,
+        off_mm=mould.off_layer_mm,
+    )
+    primed = "primed" if mould.primer else "unprimed"
+    return _text(
+        "note",
         finger=finger,
         letter=finger[0].upper(),
         letter_on="the back of its block" if stack.sunk else "its back",
-        board=passage(_TEXTS, "in_pocket" if stack.sunk else "on_plate").format(glue=glue),
+        board=held,
+        primed=_text(primed, primer=mould.primer, primer_dry_min=mould.primer_dry_min),
+        inhibited_by=", ".join(mould.inhibited_by),
         waste=mould.waste_fraction,
         silicone=mould.silicone,
         **mix,
         cure_h=mould.cure_h,
         cure_c=mould.cure_c,
         layer_mm=mould.layer_mm,
-        layers=passage(_TEXTS, "part" if mould.off_layer_mm else "whole").format(
-            floor_mm=mould.wall_mm, rim_mm=rim_mm, off_mm=mould.off_layer_mm
-        ),
+        layers=layers,
+        tip_mm=mould.tip_silicone_mm,
+        tape=mould.tape,
     )
+
+
+def _text(name: str, /, **values: object) -> str:
+    """A passage of the note with its values."""
+    return passage(_TEXTS, name).format(**values)
 
 
 CHORD_MM = 0.002  # finer than other parts: the draft is measured on walls 1.6 mm high
@@ -79,7 +107,9 @@ def mould_files(design: Design, finger: Finger) -> tuple[Artefact, ...]:
     solid = mould_solid(finger, stack, outline, mould)
     volume_ml = cast_volume_ml(finger, stack, outline, design.board, mould)
     mix = silicone_mix(volume_ml, mould)
-    note = casting_note(finger.name, mix, stack, mould, design.strength.glue)
+    note = casting_note(
+        finger.name, mix, stack, mould, design.strength.glue, open_back(design, finger)
+    )
     return (
         *export.part_files(
             f"mould/{finger.name}_mould",
@@ -89,6 +119,11 @@ def mould_files(design: Design, finger: Finger) -> tuple[Artefact, ...]:
         ),
         Artefact(f"mould/{finger.name}_casting.md", note.encode(), frame="", facts=mix),
     )
+
+
+def open_back(design: Design, finger: Finger) -> bool:
+    """Whether windows or holes for a thread go through the plate."""
+    return bool(design.interfaces) or any(relief.through for relief in finger.reliefs)
 
 
 def cast_volume_ml(

@@ -2,12 +2,10 @@
 
 from lumitip_fab.design import Design, Printing
 from lumitip_fab.design.making import Filament, Slicing
+from lumitip_fab.design.print_time import BRIM_MM, FIRST_LAYER_MM_S, OUTER_SHARE, PERIMETERS
 from lumitip_fab.pipeline.artefact import Artefact
 from lumitip_fab.text import as_written, data_file, passage
 
-_BRIM_MM = 3.0  # a backing is tall and stands on little; a flat sheet has none to trim off
-_OUTER_SHARE = 0.6  # of the speed: outer walls are what board, gripper and silicone meet
-_FIRST_LAYER_MM_S = 20.0
 _FIRST_LAYER_C = 5
 
 
@@ -25,13 +23,14 @@ def _settings(filament: Filament, printing: Printing, slicing: Slicing) -> str:
         bed_mm=printing.bed_mm,
         line_mm=printing.line_mm,
         nozzle_mm=slicing.nozzle_mm,
-        brim_mm=0.0 if filament == slicing.sheet else _BRIM_MM,
+        perimeters=PERIMETERS,
+        brim_mm=0.0 if filament == slicing.sheet else BRIM_MM,
         filament=filament,
         first_c=filament.nozzle_c + _FIRST_LAYER_C,
         fan=filament.fan_percent,
         fan_always=int(filament.fan_percent[0] > 0),
-        outer_mm_s=_OUTER_SHARE * speed,
-        first_mm_s=min(_FIRST_LAYER_MM_S, speed),
+        outer_mm_s=OUTER_SHARE * speed,
+        first_mm_s=min(FIRST_LAYER_MM_S, speed),
     )
 
 
@@ -53,7 +52,7 @@ def _note(design: Design, bends: bool) -> str:
         listed=listed,
         rigid=_temperatures(slicing.rigid),
         printing=printing,
-        brim_mm=_BRIM_MM,
+        brim_mm=BRIM_MM,
         slicing=slicing,
     )
 

@@ -8,7 +8,7 @@ from manifold3d import CrossSection, FillRule
 from lumitip_fab.design import Box, Design, Finger, Point, Sheet
 from lumitip_fab.design.frames import sheet_bed_to_sensor
 from lumitip_fab.mask.artwork import Artwork, Path, artwork_of
-from lumitip_fab.parts.export import mesh_stl, three_mf, volume_mm3, welded
+from lumitip_fab.parts.export import mesh_stl, surface_facts, three_mf, welded
 from lumitip_fab.parts.letters import letter_rings
 from lumitip_fab.parts.surface import Mesh
 from lumitip_fab.pipeline.artefact import Artefact
@@ -23,7 +23,7 @@ def sheet_files(design: Design, finger: Finger) -> tuple[Artefact, ...]:
     mask = replace(design.mask, hole_mm=sheet.hole_mm)
     surface = sheet_mesh(artwork_of(design, finger, mask), mask.mark, sheet)
     path, bed = f"mask/{finger.name}_sheet", sheet_bed_to_sensor()
-    facts = {"volume_mm3": volume_mm3(surface)}
+    facts = surface_facts(surface)
     words = (
         f"{sheet.layers} layers of {sheet.layer_mm:g} mm, lines of {sheet.line_mm:g} mm, "
         f"{sheet.filament}, opaque to infrared; outer face on the bed"

@@ -8,7 +8,7 @@ from lumitip_fab.config.automatic import Value
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards.boards import Plan
 from lumitip_fab.derive.diagnostics import Diagnostics
-from lumitip_fab.derive.finger.stack import behind_mm, is_flex
+from lumitip_fab.derive.finger.stack import behind_mm, derive_stack, is_flex
 from lumitip_fab.derive.finger.strength import Body, borne_n, least_n
 from lumitip_fab.derive.finger.tip import wedge
 from lumitip_fab.derive.mount.fasteners import derive_fasteners
@@ -125,4 +125,5 @@ def _length_mm(config: Input, body: Body) -> float:
 
 
 def _body(config: Input, plan: Plan) -> Body:
-    return derive_body(config, plan, Diagnostics(config))[0]
+    faults = Diagnostics(config)
+    return derive_body(config, derive_stack(config, faults), plan, faults)[0]

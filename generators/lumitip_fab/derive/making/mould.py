@@ -24,7 +24,9 @@ def derive_mould(
 ) -> Mould:
     """The mould, refused where the silicone cannot be shaped as asked."""
     p = config.parameters
-    silicone = config.parts.mould.silicone
+    silicone, primer = config.parts.mould.silicone, config.parts.mould.primer
+    glue = config.parts.backing.glue
+    refuse_inhibitors(config, stack, faults)
     faults.unless(p.mould.taper_length_mm <= p.outline.tip_margin_mm, "taper_long")
     faults.unless(p.mould.tip_silicone_mm < p.stack.silicone_mm, "tip_silicone_thick")
     faults.unless(
@@ -68,7 +70,29 @@ def derive_mould(
         cure_h=silicone.cure_h,
         cure_c=silicone.cure_c,
         waste_fraction=p.mould.waste_fraction,
+        inhibited_by=silicone.inhibited_by,
+        primer=config.title("mould.primer") if primer else "",
+        primer_dry_min=primer.dry_min if primer else 0.0,
+        tape=config.title("mould.tape"),
+        glue_hard_h=(glue.hard_h or 0.0) if stack.sunk else 0.0,
     )
+
+
+def refuse_inhibitors(config: Input, stack: Stack, faults: Diagnostics) -> None:
+    """Refuse a tape or a glue by which the silicone does not cure, and a missing primer.
+
+    The glue of a board in its pocket meets the silicone in the slit round the board; one that is
+    harmless when it is hard is covered by the primer. The glue of an interface is behind the plate.
+    """
+    parts = config.parts
+    silicone, primer, tape = parts.mould.silicone, parts.mould.primer, parts.mould.tape
+    by = [s for s in tape.gives_off if s in silicone.inhibited_by]
+    faults.unless(not by, "tape_inhibits", by=", ".join(by))
+    glue = parts.backing.glue
+    by = [s for s in glue.gives_off if s in silicone.inhibited_by] if stack.sunk else []
+    faults.unless(not by or glue.hard_h is not None, "glue_inhibits", by=", ".join(by))
+    bare = primer is None and (silicone.needs_primer or bool(by))
+    faults.unless(not bare, "primer_missing")
 
 
 def whole_layers(usual_mm: float, heights_mm: tuple[float, ...]) -> tuple[float, float]:

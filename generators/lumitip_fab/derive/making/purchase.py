@@ -1,14 +1,14 @@
-"""Parts to buy, with the prices of the catalogue; a missing price stays open."""
+"""Parts to buy and their packs, with the prices of the catalogue; a missing price stays open."""
 
 from collections.abc import Mapping
 
 from lumitip_fab.catalogue.ordering import Prices
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.finger.stack import is_flex, stiff_mm
+from lumitip_fab.derive.finger.stack import stiff_mm
+from lumitip_fab.derive.making.supplies import Used
 from lumitip_fab.derive.mount.fasteners import screw_length_mm
 from lumitip_fab.design import Flange, Holder, Mount
-from lumitip_fab.design.making import Slicing
-from lumitip_fab.design.ordering import Bought, PartPrice, Purchase
+from lumitip_fab.design.ordering import Bought, Pack, PartPrice, Purchase
 
 
 def derive_purchase(
@@ -16,16 +16,17 @@ def derive_purchase(
     mount: Mount,
     holders: tuple[Holder, ...],
     flanges: tuple[Flange, ...],
-    slicing: Slicing,
+    used: tuple[Used, ...],
 ) -> Purchase:
-    """Screws and controller, and the prices of everything else."""
+    """Screws, controller and supplies, and the prices of everything else."""
     p, prices = config.parameters, config.catalogue.prices
+    packs = _packs(config)
     pieces = [
         *_controller(config, prices),
-        *_bolts(mount, prices),
-        _glue(config, prices),
-        *(each for holder in holders for each in _screws(holder, prices)),
-        *(each for flange in flanges for each in _of_flange(config, flange, prices)),
+        *(_supply(each, packs.get(each.pack)) for each in used),
+        *_bolts(mount, packs),
+        *(each for holder in holders for each in _screws(holder, packs)),
+        *(each for flange in flanges for each in _of_flange(config, flange, packs)),
     ]
     return Purchase(
         currency=prices.currency,
@@ -37,14 +38,56 @@ def derive_purchase(
         board_each=prices.board.each,
         board_per_cm2=prices.board.per_cm2,
         placing_each=prices.placing.each,
-        filament_kg=tuple(
-            (name, prices.kg[name])
-            for name in dict.fromkeys(f.name for f in slicing.filaments)
-            if name in prices.kg
-        ),
-        silicone_kg=prices.kg.get(p.mould.silicone),
-        film_sheet=prices.sheet.get(p.mask.film),
-        wire_m=prices.wire_m,
+        silicone=p.mould.silicone,
+        film=p.mask.film,
+        packs=tuple(packs.values()),
+    )
+
+
+def _packs(config: Input) -> dict[str, Pack]:
+    """Every pack of the catalogue, by name."""
+    known, prices = config.catalogue.packs, config.catalogue.prices
+    return {
+        name: Pack(
+            name,
+            entry.title or name,
+            entry.manufacturer,
+            entry.product,
+            entry.pack,
+            entry.holds,
+            entry.unit,
+            prices.pack.get(name),
+            entry.confidence,
+        )
+        for name, entry in known.items()
+    }
+
+
+def _supply(used: Used, pack: Pack | None) -> Bought:
+    """What a design uses out of a pack; without a pack, its name alone."""
+    if pack is None:
+        return Bought("supplies", used.pack, "", "", used.where, used.quantity, None, used.unit)
+    return Bought(
+        "supplies",
+        pack.title,
+        pack.manufacturer,
+        pack.product,
+        used.where,
+        used.quantity,
+        pack.each,
+        pack.unit,
+        pack.name,
+    )
+
+
+def _fastener(
+    item: str, standard: str, where: str, count: int, name: str, packs: Mapping[str, Pack]
+) -> Bought:
+    """A fastener, in its pack where one is known."""
+    pack = packs.get(name)
+    each = pack.each if pack else None
+    return Bought(
+        "fasteners", item, "", standard, where, count, each, pack=pack.name if pack else ""
     )
 
 
@@ -57,72 +100,42 @@ def _controller(config: Input, prices: Prices) -> list[Bought]:
     return [Bought("electronics", title, "", title, "reads the receiver", 1, prices.each.get(name))]
 
 
-def _bolts(mount: Mount, prices: Prices) -> list[Bought]:
+def _bolts(mount: Mount, packs: Mapping[str, Pack]) -> list[Bought]:
     item = f"{mount.bolt} x {mount.bolt_length_mm:g} socket head screw"
     into = mount.bolt_length_mm - mount.land_mm
     where = f"fingers to gripper, {into:.1f} mm into its thread: measure how deep that is"
-    count = 2 * len(mount.bolt_u_mm)
-    each = prices.each.get(f"{mount.bolt} socket head screw")
-    return [Bought("fasteners", item, "", "ISO 4762", where, count, each)]
+    count, name = 2 * len(mount.bolt_u_mm), f"{mount.bolt} socket head screw"
+    return [_fastener(item, "ISO 4762", where, count, name, packs)]
 
 
-def _glue(config: Input, prices: Prices) -> Bought:
-    """A pack of the glue that holds boards or interfaces: some drops are used."""
-    name = config.parameters.backing.glue
-    where = (
-        "boards in their backings" if not is_flex(config.parameters) else "interfaces on backings"
-    )
-    return Bought(
-        "fasteners", config.title("backing.glue"), "", "", where, 1, prices.each.get(name)
-    )
-
-
-def _screws(holder: Holder, prices: Prices) -> list[Bought]:
+def _screws(holder: Holder, packs: Mapping[str, Pack]) -> list[Bought]:
     """Screws through the breakout board into nuts under its holder."""
     thread, count = holder.screw, len(holder.holes)
     screw = f"{thread} x {holder.screw_length_mm:g} screw"
     where = "breakout on its holder"
     return [
-        Bought(
-            "fasteners", screw, "", "ISO 4762", where, count, prices.each.get(f"{thread} screw")
-        ),
-        Bought(
-            "fasteners",
-            f"{thread} nut",
-            "",
-            "ISO 4032",
-            where,
-            count,
-            prices.each.get(f"{thread} nut"),
-        ),
+        _fastener(screw, "ISO 4762", where, count, f"{thread} screw", packs),
+        _fastener(f"{thread} nut", "ISO 4032", where, count, f"{thread} nut", packs),
     ]
 
 
-def _of_flange(config: Input, flange: Flange, prices: Prices) -> list[Bought]:
+def _of_flange(config: Input, flange: Flange, packs: Mapping[str, Pack]) -> list[Bought]:
     """Screws of its board, its locating pin, and the gripper's bolts, which must be longer."""
     count = len(flange.screws)
     through = flange.board_z_mm - flange.seat_z_mm + stiff_mm(config.parameters)
     length = screw_length_mm(through, config.catalogue.fasteners[flange.screw])
     screw = f"{flange.screw} x {length:g} countersunk screw"
     pin = f"{flange.pin_mm:g} x {flange.pin_length_mm:g} parallel pin"
-    bolt = f"{flange.bolt} socket head screw"
+    bolt, nut = f"{flange.bolt} socket head screw", f"{flange.screw} nut"
+    longer = f"gripper to robot, {flange.top_z_mm:.1f} mm longer than its own"
     where = "board of the flange"
     rows = (
         (screw, "ISO 7046", where, count, f"{flange.screw} screw"),
-        (f"{flange.screw} nut", "ISO 4032", where, count, f"{flange.screw} nut"),
+        (nut, "ISO 4032", where, count, nut),
         (pin, "ISO 2338", "flange to coupling, glued in", 1, "parallel pin"),
-        (
-            bolt,
-            "ISO 4762",
-            f"gripper to robot, {flange.top_z_mm:.1f} mm longer than its own",
-            len(flange.bolts),
-            bolt,
-        ),
+        (bolt, "ISO 4762", longer, len(flange.bolts), bolt),
     )
-    return [
-        Bought("fasteners", item, "", part, at, n, prices.each.get(price))
-        for item, part, at, n, price in rows
-    ]
+    return [_fastener(*row, packs) for row in rows]
 
 
 def _parts(config: Input, prices: Prices) -> tuple[PartPrice, ...]:

@@ -1,0 +1,68 @@
+"""`order.csv` against the bill: whole packs of everything that it lists, and the sum."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from lumitip_fab.checks.readers.tables import table
+from lumitip_fab.checks.result import Measurement, count, unreadable
+from lumitip_fab.design import Design, Purchase
+
+READS = ("bom.csv", "order.csv")
+_FILE = "order.csv"
+_CENT = 0.0051
+
+
+@dataclass(frozen=True)
+class Row:
+    """A line of the list to order."""
+
+    item: str
+    needed: float
+    pack: str
+    packs: int
+    pack_price: float | None
+    price: float | None
+
+
+def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
+    """Read the list as whoever orders by it, and count again."""
+    try:
+        *rows, last = table((outputs / _FILE).read_text(encoding="utf-8"))
+        *bill, _ = table((outputs / "bom.csv").read_text(encoding="utf-8"))
+        orders = [_row(row) for row in rows]
+        used, needed = sum(float(r["quantity"]) for r in bill), sum(r.needed for r in orders)
+        total = float(last["price"])
+    except (OSError, ValueError, KeyError) as error:
+        yield unreadable("packs.readable", _FILE, f"cannot be read: {error!r:.120}")
+        return
+    note = "of all quantities of the bill"
+    yield Measurement("packs.needed", _FILE, needed, used - 0.1, used + 0.1, "units", note)
+    wrong = [order.item for order in orders if not _enough(order, design.purchase)]
+    yield count("packs.enough", _FILE, wrong, "wrong numbers or prices of packs")
+    prices = sum(order.price or 0.0 for order in orders)
+    currency = design.purchase.currency
+    off = abs(prices - total)
+    yield Measurement("packs.total", _FILE, off, 0, _CENT, currency, f"of {prices:.2f}")
+
+
+def _row(row: dict[str, str]) -> Row:
+    return Row(
+        row["item"],
+        float(row["needed"]),
+        row["pack"],
+        int(row["packs"]),
+        float(row["pack_price"]) if row["pack_price"] else None,
+        float(row["price"]) if row["price"] else None,
+    )
+
+
+def _enough(order: Row, purchase: Purchase) -> bool:
+    """Whether so many packs hold what is needed, one less does not, and the price is theirs."""
+    sizes = {pack.pack: pack.holds for pack in purchase.packs} | {"": 1.0}
+    holds = sizes.get(order.pack, math.nan)
+    fits = (order.packs - 1) * holds < order.needed <= order.packs * holds
+    if order.pack_price is None or order.price is None:
+        return fits and order.price is order.pack_price
+    return fits and abs(order.packs * order.pack_price - order.price) <= _CENT

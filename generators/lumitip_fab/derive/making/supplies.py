@@ -1,0 +1,169 @@
+"""How much of glue, primer, tape, thread, ties and mating connectors a pair of fingers uses."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+from shapely import Polygon
+
+from lumitip_fab.config.load import Input
+from lumitip_fab.derive.finger.stack import is_flex
+from lumitip_fab.design import (
+    AuxiliaryBoard,
+    Board,
+    Cabling,
+    Finger,
+    Holder,
+    Interface,
+    Outline,
+    Point,
+    Stack,
+)
+
+GLUE_FILM_MM = 0.1
+"""Thin film of glue between board and floor, or pad and plate (assumed)."""
+TAPE_MARGIN_MM = 5.0
+"""Of the tape beyond a window, on each side."""
+KNOT_MM = 80.0
+"""Of a thread, on each side of its knot."""
+CLAMPS = 2
+"""Strips of tape across a plate in its mould."""
+CLAMP_END_MM = 25.0
+"""Of such a strip on the mould's outside, at each end."""
+TURNS = 2
+"""Of a thread, through both holes."""
+TIE_MM = 200.0
+"""Length of a cable tie: the product in `packs.toml`."""
+TIE_LOCK_MM = 25.0
+"""Of a cable tie, for its lock and to pull at."""
+
+
+@dataclass(frozen=True)
+class Used:
+    """What a pair of fingers uses out of a pack."""
+
+    pack: str
+    where: str
+    quantity: float
+    unit: str
+
+
+@dataclass(frozen=True)
+class Assembled:
+    """What is glued, primed, taped, tied and plugged together."""
+
+    fingers: tuple[Finger, Finger]
+    board: Board
+    stack: Stack
+    outline: Outline
+    interfaces: tuple[Interface, ...]
+    holders: tuple[Holder, ...]
+    auxiliary_boards: tuple[AuxiliaryBoard, ...]
+    cabling: Cabling
+
+
+def derive_supplies(config: Input, of: Assembled) -> tuple[Used, ...]:
+    """All supplies, in the order of work."""
+    found = (*_tied(of), *_held(of), *_plugged(config, of), *_cast(config, of))
+    return tuple(replace(each, quantity=round(each.quantity, 2)) for each in found)
+
+
+def _tied(of: Assembled) -> Iterator[Used]:
+    """Thread of the cables' strain relief, and of the boards on bendable plates."""
+    ties = [tie for finger in of.fingers for tie in finger.ties]
+    length = sum(_loop_mm(*tie.holes, of.stack.pcb_mm) for tie in ties)
+    outside = [tie for board in of.auxiliary_boards for tie in board.ties]
+    length += sum(_loop_mm(*tie.holes, of.stack.auxiliary_mm) for tie in outside)
+    where = f"strain relief of {len(ties) + len(outside)} cable ends"
+    if of.interfaces:
+        through = of.stack.pcb_mm + of.stack.floor_mm
+        for finger in of.fingers:
+            pairs = zip(finger.holes[::2], finger.holes[1::2], strict=False)
+            length += sum(_loop_mm(one, other, through) for one, other in pairs)
+        where += ", boards on their plates"
+    if length:
+        yield Used("waxed thread", where, length / 1000, "m")
+
+
+def _loop_mm(one: Point, other: Point, through_mm: float) -> float:
+    """A thread through two holes and back, some turns, with a knot."""
+    return TURNS * 2 * (math.dist(one, other) + through_mm) + 2 * KNOT_MM
+
+
+def _held(of: Assembled) -> Iterator[Used]:
+    """Cable ties: from arm to arm of the holder round the gripper, and cables without holes for a
+    thread."""
+    count = 0
+    for holder in of.holders:
+        arms_deg = 360 - 2 * holder.strap_deg
+        outside_mm = holder.cradle_mm + holder.wall_mm
+        round_mm = 2 * math.pi * outside_mm * arms_deg / 360
+        each = math.ceil((round_mm + TIE_LOCK_MM) / (TIE_MM - TIE_LOCK_MM))
+        count += len(holder.strap_y_mm) * each
+    loose = [finger for finger in of.fingers if not finger.ties]
+    where = ["holder round the gripper"] * bool(count) + ["cables at the gripper"] * bool(loose)
+    if count + len(loose):
+        yield Used("cable tie", ", ".join(where), count + len(loose), "piece")
+
+
+def _plugged(config: Input, of: Assembled) -> Iterator[Used]:
+    """A mating connector for each header of the flange that a cable ends at."""
+    ends = {
+        wire.end.connector
+        for cable in of.cabling.cables
+        for wire in cable.wires
+        if wire.end.board == "flange"
+    }
+    headers = {
+        device.ref
+        for board in of.auxiliary_boards
+        for device in board.components
+        if board.name == "flange" and device.kind == "header"
+    }
+    mate, plugs = config.parts.flange.header.mate, sorted(ends & headers)
+    if mate and plugs:
+        yield Used(
+            mate, f"plug at {', '.join(plugs)} of the flange, for AWG 28", len(plugs), "piece"
+        )
+
+
+def _cast(config: Input, of: Assembled) -> Iterator[Used]:
+    """Glue, tape and primer, before the silicone is poured."""
+    p = config.parameters
+    where = "interfaces on backings" if is_flex(p) else "boards in their backings"
+    yield Used(p.backing.glue, where, _glue_mm3(of) / 1000, "mL")
+    width = config.parts.mould.tape.width_mm
+    taped = sum(_strips_mm(sides, width) for f in of.fingers for sides in _windows(f, of))
+    widest = 2 * max(x for x, _ in of.outline.polygon())
+    clamps = len(of.fingers) * CLAMPS * (widest + 2 * (p.mould.wall_mm + CLAMP_END_MM))
+    where = "clamps of both moulds" + (", windows on the back while casting" if taped else "")
+    yield Used(p.mould.tape, where, (taped + clamps) / 1000, "m")
+    if primer := config.parts.mould.primer:
+        cm2 = sum(Polygon(of.outline.polygon()).area for _ in of.fingers) / 100
+        yield Used(p.mould.primer, "front of both fingers", cm2 / primer.coverage_cm2_ml, "mL")
+
+
+def _glue_mm3(of: Assembled) -> float:
+    """A film under each board and the slit round it, or a film under each pad."""
+    if of.interfaces:
+        box = of.interfaces[0].box
+        return len(of.fingers) * box.width_mm * box.length_mm * GLUE_FILM_MM
+    box, gap = of.board.box, of.board.pocket_clearance_mm
+    slit = 2 * (box.width_mm + box.length_mm) * gap * of.stack.pcb_mm
+    return len(of.fingers) * (box.width_mm * box.length_mm * GLUE_FILM_MM + slit)
+
+
+def _windows(finger: Finger, of: Assembled) -> Iterator[Point]:
+    """Sides of each window through the plate; the thread's holes are open too."""
+    for relief in finger.reliefs:
+        if relief.through:
+            yield relief.box.width_mm, relief.box.length_mm
+    if of.interfaces:
+        hole = of.interfaces[0].thread_hole_mm
+        yield from ((hole, hole) for _ in finger.holes)
+
+
+def _strips_mm(sides_mm: Point, width_mm: float) -> float:
+    """Length of tape over a window: strips along its longer side, as many as it needs."""
+    short, long = (side + 2 * TAPE_MARGIN_MM for side in sorted(sides_mm))
+    return math.ceil(short / width_mm - 1e-9) * long
