@@ -141,7 +141,7 @@ SENSOR_FRAME = {
     notch_plugged: {"notch"},
     tip_cut: {"tip_edge", "min_wall"},
     slant_filled: {"slant"},
-    shelf_added: {"overhang"},
+    shelf_added: {"overhang", "span"},
     island_added: {"bodies"},
 }
 MOUNT_FRAME = {
