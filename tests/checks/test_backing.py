@@ -77,7 +77,7 @@ def slant_filled(part: Manifold, design: Design) -> Manifold:
 
 
 def shelf_added(part: Manifold, _: Design) -> Manifold:
-    return part + box((-20, 5, -11), (20, 15, -3.5))
+    return part + box((-24, 5, -11), (24, 17, -3.5))
 
 
 def island_added(part: Manifold, _: Design) -> Manifold:
@@ -152,7 +152,7 @@ MOUNT_FRAME = {
     gripper_pin_hole_shallow: {"gripper_pin_depth"},
     lump_in_counterbore: {"screw_seat"},
     nose_widened: {"nose"},
-    foot_hollow: {"bed_contact", "step"},
+    foot_hollow: {"bed_contact", "span", "step"},
     letter_filled: {"letter"},
     letter_shallow: {"letter"},
 }

@@ -3,6 +3,7 @@
 import io
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -17,7 +18,10 @@ from lumitip_fab.cli.summary import (
     relative_margin,
     tightest,
 )
+from lumitip_fab.config.load import load
 from lumitip_fab.config.parameters import Parameters
+from lumitip_fab.derive import derive
+from lumitip_fab.design.encoding import design_text
 from lumitip_fab.text import table_of
 
 pytestmark = pytest.mark.slow
@@ -91,6 +95,24 @@ def test_a_run_without_failures_ends_in_few_lines(folder: Path) -> None:
     assert "manual.html" in lines[7]
     assert "checks.json" in lines[7]
     assert len(lines) == 8
+
+
+@pytest.mark.parametrize(
+    ("closes_n", "text"),
+    [
+        (235.0, "an estimate; the gripper closes with up to 235 N: limit it"),
+        (20.0, "an estimate"),
+        (0.0, "an estimate; the gripper's force is not known: limit it"),
+    ],
+)
+def test_the_end_names_what_the_fingers_bear(
+    folder: Path, design_dir: Path, closes_n: float, text: str
+) -> None:
+    design = derive(load(design_dir / "presets" / "published.toml"))
+    strength = replace(design.strength, gripper_n=closes_n)
+    file = folder / "design.json"
+    file.write_text(design_text(replace(design, strength=strength)), encoding="utf-8")
+    assert f"rated force: 40 N at each tip, {text}" in lines_of(folder, WEB)
 
 
 def test_a_failure_names_the_parameter_to_change(folder: Path) -> None:

@@ -33,7 +33,7 @@ def test_a_floor_is_thicker_where_no_flare_is_enough(file: Any) -> None:
 
 
 def test_a_force_that_is_not_borne_is_refused_with_one_that_is(file: Any) -> None:
-    match = r"finger\.rated_force_n is 100; .* The finger bears"
+    match = r"finger\.rated_force_n is 100; .* This flare and floor bear"
     with pytest.raises(RuleError, match=match) as refused:
         derive(load(file(_force(100.0))))
     (remedy,) = plan_of(refused.value.verdict).steps[0].remedies

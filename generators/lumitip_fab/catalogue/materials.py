@@ -35,9 +35,9 @@ Substance = Literal[
     "sulphur",
     "latex",
     "amine",
-    "polyurethane",
+    "uncured polyurethane",
     "PVC",
-    "tin",
+    "tin compounds",
     "masking tape adhesive",
 ]
 """Substances that keep silicones with a platinum catalyst from curing."""
@@ -167,8 +167,6 @@ class Tape(Entry):
     """Width."""
     gives_off: tuple[Substance, ...] = ()
     """Substances in it that may keep a silicone from curing."""
-    limit_c: float = Field(ge=20, le=400)
-    """Highest temperature that it bears (°C)."""
 
 
 class Film(Entry):

@@ -61,6 +61,8 @@ def _refuse_options(options: argparse.Namespace) -> None:
         faults.append(("NAME", texts["name"].format(name=options.name)))
     if options.add and not options.answers:
         faults.append(("--add", texts["add_answers"]))
+    if options.answers and options.like:
+        faults.append(("--like", texts["like_answers"]))
     if options.add and not options.file:
         faults.append(("--add", texts["add_file"]))
     if faults:

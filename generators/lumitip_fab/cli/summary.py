@@ -91,7 +91,8 @@ def print_summary(outcome: Outcome, out: Path, report: Path | None, console: Con
     _print(console, "tightest margins, as a share of the limit or of half the tolerance:")
     for share, m in tightest(outcome.measurements, TIGHTEST):
         _print(console, f"{100 * share:6.1f} %  {_described(m)}")
-    console.print(_force(out), soft_wrap=True)
+    for line in _force(out):
+        console.print(line, soft_wrap=True)
     console.print(_price(out), soft_wrap=True)
     manual = out / MANUAL
     look = [f"{manual} (how to build it)"] if manual.is_file() else []
@@ -131,16 +132,18 @@ def _described(m: Measurement) -> str:
     return f"{m.check}  {figure(m.measured)}{unit}, {m.limit}  {m.subject}"
 
 
-def _force(out: Path) -> str:
-    """What the fingers bear, which a gripper may exceed."""
+def _force(out: Path) -> Iterator[str]:
+    """What the fingers bear, which a gripper may exceed; nothing where no design can be read."""
     try:
         limit = read_design(out / "design.json").strength
-    except OutputError as error:
-        return f"rated force: {error}"
+    except OutputError:
+        return
     rated = f"rated force: {limit.rated_force_n:g} N at each tip, an estimate"
-    if limit.gripper_n <= limit.rated_force_n:
-        return rated
-    return f"{rated}; the gripper closes with up to {limit.gripper_n:g} N: limit it"
+    if not limit.gripper_n:
+        rated += "; the gripper's force is not known: limit it"
+    elif limit.gripper_n > limit.rated_force_n:
+        rated += f"; the gripper closes with up to {limit.gripper_n:g} N: limit it"
+    yield rated
 
 
 def _price(out: Path) -> str:

@@ -98,7 +98,7 @@ class Finger(Strict):
     """The load that a finger bears."""
 
     rated_force_n: float = Field(ge=0.1, le=1000)
-    """Force at the tip of each finger that it bears with all reserves, towards its back and
+    """Force at the tip of each finger that it bears with all reserves, towards its back or
     sideways (N)."""
     bend_fraction: float = Field(gt=0, le=0.5)
     """Most that the tip may bend under that force, as a fraction of the finger's length."""

@@ -13,7 +13,7 @@ class Strength:
     """The load case, limits, and figures of materials: assumed where the catalogue says so."""
 
     rated_force_n: float
-    """At the tip of each finger, towards its back, and sideways."""
+    """At the tip of each finger, towards its back or sideways; for the light path both."""
     gripper_n: float
     """Greatest force of the gripper; 0 where it is not known."""
     safety: float
@@ -52,7 +52,6 @@ class Loads:
     bare_n: float
     """Force at which the layers part without glue."""
     board_strain: float
-    board_h_mm: float
     glue_mpa: float
     """Greatest shear in the glue."""
     bend_mm: float
@@ -110,7 +109,6 @@ def loads(of: Loaded, strength: Strength, cells_h_mm: Vectors, depth_mm: float) 
         safety=limit / max(float(worst.max()), 1e-9),
         bare_n=alone,
         board_strain=float(strain.max()),
-        board_h_mm=float(beam.h_mm[strain.argmax()]),
         glue_mpa=_glue_mpa(of, strength),
         bend_mm=float(back[-1]) * force,
         side_mm=float(side[-1]) * force,

@@ -106,17 +106,22 @@ def order_list(purchase: Purchase, lines: Iterable[Line]) -> Artefact:
     """The list to order, with the sum of those whose price is known."""
     found = orders(purchase, lines)
     total = sum(order.price for order in found if order.price is not None)
+    unpriced = sum(order.price is None for order in found)
     file = io.StringIO()
     writer = csv.writer(file, lineterminator="\n")
     writer.writerow(COLUMNS)
     for order in found:
         row = asdict(order) | {
             "needed": amount(order.needed),
-            "pack_price": "" if order.pack_price is None else f"{order.pack_price:.4g}",
+            "pack_price": ""
+            if order.pack_price is None
+            else f"{order.pack_price:.5f}".rstrip("0").rstrip("."),
             "price": money(order.price),
         }
         writer.writerow([row[column] for column in COLUMNS])
-    writer.writerow(("to buy for one pair of fingers", *[""] * (len(COLUMNS) - 2), money(total)))
+    title = "to buy for one pair of fingers"
+    title += f", {unpriced} without a price" if unpriced else ""
+    writer.writerow((title, *[""] * (len(COLUMNS) - 2), money(total)))
     facts = {
         "lines": [asdict(order) | {"price": order.price} for order in found if order.pack],
         "single": sum(order.price or 0.0 for order in found if not order.pack),

@@ -2,6 +2,7 @@
 
 import io
 import zipfile
+import zlib
 from pathlib import Path
 
 from build123d import Compound, Shape
@@ -76,7 +77,7 @@ def _freecad(file: Path, data: bytes) -> TopoDS_Shape:
         if len(shapes) != 1:
             raise refusal(file, "freecad_shapes", count=len(shapes))
         written = archive.read(shapes[0])
-    except zipfile.BadZipFile as error:
+    except (zipfile.BadZipFile, zlib.error, RuntimeError) as error:  # RuntimeError: encrypted
         raise refusal(file, "freecad_zip") from error
     if _TOPOLOGY not in written[:200]:
         raise refusal(file, "freecad_shape")

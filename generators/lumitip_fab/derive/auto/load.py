@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 from lumitip_fab.config.automatic import Value
 from lumitip_fab.config.load import Input
+from lumitip_fab.derive.auto.search import bounds
 from lumitip_fab.derive.boards.boards import Plan
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.stack import behind_mm, derive_stack, is_flex
@@ -113,6 +114,7 @@ def _depths_mm(config: Input, mount: Mount) -> list[float]:
     if "backing.flare_depth_mm" not in config.automatic:
         return [start]
     deepest = mount.block_back_w_mm - behind_mm(p) - LEAST_FLARE_MM
+    deepest = min(deepest, bounds("backing.flare_depth_mm")[1])
     return [start + n for n in range(max(math.floor(deepest - start), 0) + 1)]
 
 
@@ -121,7 +123,8 @@ def _length_mm(config: Input, body: Body) -> float:
     flap = p.mask.flap_mm + p.mask.allowance_mm + FLAP_GAP_MM
     free = body.outline.tip_y_mm - max(flap, wedge(config)[0])
     free -= body.mount.ramp_end_y_mm(body.stack.back_z_mm, body.stack.rim_z_mm)
-    return max(math.floor(10 * free) / 10, LEAST_FLARE_MM)
+    _, most = bounds("backing.flare_mm")
+    return min(max(math.floor(10 * free) / 10, LEAST_FLARE_MM), most)
 
 
 def _body(config: Input, plan: Plan) -> Body:

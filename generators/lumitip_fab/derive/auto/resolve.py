@@ -42,9 +42,8 @@ class _Reasons:
         self.of[name] = reason
 
     def moved(self, change: Change, message: str) -> None:
-        self.of[change.field] = (
-            f"otherwise it {message.partition('. Override it in')[0].removesuffix('.')}"
-        )
+        text = message.partition(". Override it in")[0].removesuffix(".")
+        self.of[change.field] = f"otherwise {text}"
 
     def choices(self, config: Input) -> tuple[Choice, ...]:
         """Every automatic field in the order of the file, with its value and reason."""

@@ -15,6 +15,7 @@ from lumitip_fab.derive.auto.strings import lowest_ma
 from lumitip_fab.derive.boards.plug_in import least_inrush_ohm
 from lumitip_fab.derive.finger.stack import mask_mm
 from lumitip_fab.derive.wiring.ratings import sold_from, sold_ohm
+from lumitip_fab.errors import Problem
 from lumitip_fab.text import table_of
 
 DECIMALS = 4
@@ -141,7 +142,7 @@ _EITHER = {
 }
 
 Moved = Callable[[Change, str], None]
-"""Called with each change and the message of the rule that it mended."""
+"""Called with each change and what the rule said that it mended."""
 
 
 def search(start: Verdict, free: frozenset[str], moved: Moved) -> Verdict:
@@ -157,24 +158,25 @@ def search(start: Verdict, free: frozenset[str], moved: Moved) -> Verdict:
         found = _next(now, free)
         if found is None:
             return now
-        change, message = found
-        moved(change, message)
+        change, problem = found
+        subject = "it" if problem.field == change.field else problem.field
+        moved(change, f"{subject} {problem.message}")
         now = change.verdict
     return now
 
 
-def _next(now: Verdict, free: frozenset[str]) -> tuple[Change, str] | None:
+def _next(now: Verdict, free: frozenset[str]) -> tuple[Change, Problem] | None:
     for rule, problem in now.rules.items():
         for field in menders(problem.field):
             if field in free:
                 change = change_of(now, rule, field)
                 if change:
-                    return change, problem.message
+                    return change, problem
     for rule, problem in now.rules.items():
         if problem.field in free and automatic_fields()[problem.field].step:
             change = change_of(now, rule, problem.field, FINEST)
             if change:
-                return change, problem.message
+                return change, problem
     return None
 
 

@@ -122,9 +122,7 @@ def _plugged(config: Input, of: Assembled) -> Iterator[Used]:
     }
     mate, plugs = config.parts.flange.header.mate, sorted(ends & headers)
     if mate and plugs:
-        yield Used(
-            mate, f"plug at {', '.join(plugs)} of the flange, for AWG 28", len(plugs), "piece"
-        )
+        yield Used(mate, f"plug at {', '.join(plugs)} of the flange", len(plugs), "piece")
 
 
 def _cast(config: Input, of: Assembled) -> Iterator[Used]:
