@@ -152,6 +152,9 @@ PROTECTED: dict[str, Any] = {"protection.diode": "H5VUD5U", "breakout.board_mm":
 WITH: dict[str, dict[str, Any]] = {
     "backing.variant": {
         "backing.material": "TPU 98A",
+        "backing.flare_mm": 2.2,
+        "finger.rated_force_n": 0.5,
+        "finger.bend_fraction": 0.25,
         "stack.floor_mm": 2.0,
         "stack.pcb_mm": 0.2,
     },

@@ -215,6 +215,8 @@ ROOMY = {
     "emitter.current_ma": 2.0,
     "outline.tip_margin_mm": 7.0,
 }
+WEAK = {"finger.rated_force_n": 0.5, "finger.bend_fraction": 0.5, "backing.flare_mm": 2.0}
+"""A load that fingers of any length bear: these fields are not chosen here."""
 
 
 @pytest.mark.parametrize("columns", COLUMNS, ids=str)
@@ -224,7 +226,7 @@ def test_a_design_of_any_pitch_is_sound_or_refused(
     sound = 0
     for pitch_mm in np.arange(3.0, 10.25, 0.5).tolist():
         for changes in ({}, ROOMY):
-            wanted = {**changes, "grid.columns": columns, "grid.pitch_mm": pitch_mm}
+            wanted = {**WEAK, **changes, "grid.columns": columns, "grid.pitch_mm": pitch_mm}
             try:
                 design = derive(vary(inputs["published"], wanted))
             except InputError:
