@@ -101,7 +101,7 @@ FILES = {
     triangle_lost: {"watertight"},
     windows_missing: {"reliefs", "letter"},
     fingers_swapped: {"reliefs", "pocket_depth", "letter"},
-    longer: {"size", "outline", "pins", "three_mf", "step"},
+    longer: {"size", "outline", "pins", "pocket_gap", "three_mf", "step"},
     in_inches: EVERY_LENGTH,
     truncated: {"readable"},
     not_a_mesh: {"readable"},

@@ -102,7 +102,7 @@ ON_PLATE: dict[Damage, set[str]] = {
     hole_moved: {"ties"},
     holes_narrow: {"tie_hole"},
     hole_plugged: {"ties", "tie_hole"},
-    face_hollow: {"face", "overhang", "span"},
+    face_hollow: {"face", "overhang"},
     groove_shallow: {"groove_depth"},
     groove_wide: {"groove"},
     notch_narrow: {"notch"},
