@@ -26,7 +26,7 @@ from lumitip_fab.parts.gauge import gauge_solid
 from lumitip_fab.parts.shapes import placed
 
 Box = tuple[float, float, float, float]
-NOT_DRAWN = {"envelope.mass_kg", "envelope.payload_kg"}
+NOT_DRAWN = {"force_n", "envelope.mass_kg", "envelope.payload_kg"}
 
 
 def gripper_of(name: str, config: Input) -> Gripper:
