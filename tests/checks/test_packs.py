@@ -1,4 +1,4 @@
-"""What must be bought for the bill: whole packs, shared by the lines that need them; damages."""
+"""The list to order for the bill: whole packs, shared by the lines that need them; damages."""
 
 import csv
 from dataclasses import replace
@@ -8,8 +8,9 @@ import pytest
 
 from damages import edit, excerpt
 from damages import failing as failing_of
+from lumitip_fab.design import Bought
 from lumitip_fab.design.encoding import read_design
-from lumitip_fab.docs.orders import Line, orders
+from lumitip_fab.docs.orders import orders
 
 Rows = list[dict[str, str]]
 
@@ -64,8 +65,8 @@ def test_what_is_sold_in_packs_names_pack_and_confidence(copied: Path) -> None:
 
 def test_lines_that_share_a_spool_need_it_once_until_it_is_empty(outputs: Path) -> None:
     purchase = read_design(outputs / "design.json").purchase
-    line = Line("prints", "a.stl", "", "PETG", "", 600.0, "g", 0.025, "PETG")
+    line = Bought("prints", "a.stl", "", "PETG", "", 600.0, 0.025, "g", "PETG")
     (order,) = orders(purchase, [line, replace(line, item="b.stl")])
     assert (order.needed, order.packs, order.price) == (1200.0, 2, 50.0)
-    screw = Line("fasteners", "M2 x 6", "", "", "", 2.0, "piece", 0.08, "M2 screw")
+    screw = Bought("fasteners", "M2 x 6", "", "", "", 2.0, 0.08, pack="M2 screw")
     assert len(orders(purchase, [screw, replace(screw, item="M2 x 8")])) == 2

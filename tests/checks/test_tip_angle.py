@@ -46,7 +46,7 @@ def made(design_dir: Path, tmp_path_factory: pytest.TempPathFactory) -> Made:
         out = folder / f"{preset}_{angle_deg}_{more}"
         if out.is_dir():
             return out, read_design(out / "design.json")
-        file = folder / "design" / "given.toml"
+        file = folder / "design" / "mine.toml"
         file.write_text(
             f'extends = "presets/{preset}.toml"\n'
             f'[tip]\nangle_deg = {angle_deg}\nslant_start_mm = "auto"\n{more}\n'

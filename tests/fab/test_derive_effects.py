@@ -20,8 +20,8 @@ ROOMY_N = 25.0
 def published(inputs: dict[str, Input], vary: Any) -> Input:
     """The published file with a second part, "other", of every kind that has only one, and a rated
     force that leaves room for every change."""
-    given = vary(inputs["published"], {"finger.rated_force_n": ROOMY_N})
-    parts = given.catalogue
+    base = vary(inputs["published"], {"finger.rated_force_n": ROOMY_N})
+    parts = base.catalogue
     more = {
         "leds": ("15406085BA300", {"exponent": 2.0}),
         "resistors": ("0603", {"order_number": "OTHER{code}"}),
@@ -59,7 +59,7 @@ def published(inputs: dict[str, Input], vary: Any) -> Input:
     for like in ("10uF 0603", "22uF 0805", "18pF 0603"):
         told = {"order_number": "other"}
         tables["capacitors"][f"other {like[:4]}"] = parts.capacitors[like].model_copy(update=told)
-    return dataclasses.replace(given, catalogue=parts.model_copy(update=tables))
+    return dataclasses.replace(base, catalogue=parts.model_copy(update=tables))
 
 
 @pytest.fixture(scope="module")

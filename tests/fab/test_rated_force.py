@@ -1,4 +1,4 @@
-"""What a finger bears: flare and floor that follow from the rated force, and forces refused."""
+"""The rated force of a finger: flare and floor follow from it; forces that are refused."""
 
 import shutil
 from pathlib import Path
@@ -61,6 +61,11 @@ def test_a_long_or_narrow_finger_is_rated_what_it_bears(
 def test_a_long_finger_does_not_bear_what_the_file_asks(file: Any) -> None:
     with pytest.raises(RuleError, match=r"finger\.rated_force_n is 40; "):
         derive(load(file(LONG + _force(40.0))))
+
+
+def test_a_finger_longer_than_a_flare_may_be_is_refused_in_words(file: Any) -> None:
+    with pytest.raises(RuleError, match="does not fit"):
+        derive(load(file("[grid]\ncolumns = [34, 33, 34]\n")))
 
 
 def test_a_file_of_before_has_no_load_case(design_dir: Path, tmp_path: Path) -> None:

@@ -105,8 +105,8 @@ def test_faults_of_several_answers_come_together(
     jaw = config.catalogue.grippers["two_hole_jaw"]
     file = fill("my_jaw", jaw, land_mm=-1.0, bolt=OPEN, bold=2, tilt_deg=20.0)
     assert main(["gripper", "new", "my_jaw", "--answers", str(file), "--json"]) == 2
-    told = json.loads(capsys.readouterr().out)
-    assert [p["field"] for p in told["problems"]] == ["tilt_deg", "bolt", "land_mm", "bold"]
+    printed = json.loads(capsys.readouterr().out)
+    assert [p["field"] for p in printed["problems"]] == ["tilt_deg", "bolt", "land_mm", "bold"]
 
 
 def test_the_weakest_source_of_a_table_is_that_of_the_table(fill: Any, config: Input) -> None:
@@ -177,10 +177,13 @@ def test_no_file_is_lost(fill: Any, config: Input, capsys: pytest.CaptureFixture
 def test_usage(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     out = ["--out", str(tmp_path / "out")]
     assert main(["gripper", "new", "My/jaw", "--add", *out]) == 2
-    told = capsys.readouterr().err
-    assert "NAME is 'My/jaw'; lowercase letters, digits" in told
-    assert "--add is given without --answers" in told
-    assert "--add is given without --file" in told
+    printed = capsys.readouterr().err
+    assert "NAME is 'My/jaw'; lowercase letters, digits" in printed
+    assert "--add: needs --answers" in printed
+    assert "--add: needs --file" in printed
+    both = ["--like", "wsg50", "--answers", "jaw.toml"]
+    assert main(["gripper", "new", "jaw", *both, *out]) == 2
+    assert "--like: cannot be combined with --answers" in capsys.readouterr().err
     assert main(["gripper", "new", "jaw", "--like", "wsg5", *out]) == 2
     assert (
         "--like is 'wsg5', which does not exist. Did you mean 'wsg50'?" in capsys.readouterr().err

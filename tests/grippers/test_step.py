@@ -1,4 +1,4 @@
-"""What is found in STEP files: figures of fingertips whose entries the finder does not know."""
+"""Finds in STEP files: figures of fingertips whose entries the finder does not know."""
 
 import zipfile
 from collections.abc import Callable
@@ -152,8 +152,8 @@ def test_four_bolts_are_no_entry(tmp_path: Path, capsys: pytest.CaptureFixture[s
     file.write_bytes(step(block(*four), "tip"))
     out = tmp_path / "out"
     assert main(["gripper", "new", "jaw", "--from-step", str(file), "--out", str(out)]) == 0
-    told = capsys.readouterr().out
-    assert "one bolt or two; 4 equal holes were found" in told
+    printed = capsys.readouterr().out
+    assert "one bolt or two; 4 equal holes were found" in printed
     assert 'bolt_spacing_mm = "?"' in (out / "jaw.toml").read_text(encoding="utf-8")
 
 
@@ -175,9 +175,9 @@ def test_several_solids_are_doubted(tmp_path: Path, capsys: pytest.CaptureFixtur
     file.write_bytes(step(Compound([tip, rubber]), "tip"))
     out = ["--out", str(tmp_path / "out")]
     assert main(["gripper", "new", "jaw", "--from-step", str(file), *out]) == 0
-    told = capsys.readouterr().out
-    assert "The file has 2 solids, which were read as one part." in told
-    assert "Another outer face is of similar size" in told  # rubber in front, block behind
+    printed = capsys.readouterr().out
+    assert "The file has 2 solids, which were read as one part." in printed
+    assert "Another outer face is of similar size" in printed  # rubber in front, block behind
 
 
 def test_what_was_found_is_shown_and_filled_in(
@@ -186,9 +186,9 @@ def test_what_was_found_is_shown_and_filled_in(
     wsg50 = config.catalogue.grippers["wsg50"]
     file = backing_step("wsg50", wsg50)
     assert main(["gripper", "new", "jaw", "--from-step", str(file), "--out", str(tmp_path)]) == 0
-    told = capsys.readouterr().out
-    assert "hole 1      bolt, ⌀ 6.10, 4.30, 7.40, through  -10.50, 0.00" in told
-    assert "bolt_spacing_mm  21.0   hole 1 and hole 2" in told
+    printed = capsys.readouterr().out
+    assert "hole 1      bolt, ⌀ 6.10, 4.30, 7.40, through  -10.50, 0.00" in printed
+    assert "bolt_spacing_mm  21.0   hole 1 and hole 2" in printed
     answers = (tmp_path / "jaw.toml").read_text(encoding="utf-8")
     source = 'source = "wsg50.step: hole 1 and hole 2", confidence = "inferred"'
     assert f"bolt_spacing_mm = {{ value = 21.0, {source} }}" in answers
@@ -229,10 +229,10 @@ def test_a_damaged_file_is_one_error(
     file, out = tmp_path / f"{name}.{ending}", tmp_path / "out"
     file.write_bytes(data)
     assert main(["gripper", "new", "jaw", "--from-step", str(file), "--out", str(out)]) == 2
-    told = capfd.readouterr()
-    assert (told.out, told.err.count("\n")) == ("", 1)
-    assert told.err.startswith(f"{file}: ")
-    assert message in told.err
+    printed = capfd.readouterr()
+    assert (printed.out, printed.err.count("\n")) == ("", 1)
+    assert printed.err.startswith(f"{file}: ")
+    assert message in printed.err
     assert not out.exists()
 
 
@@ -255,9 +255,9 @@ def test_a_solid_that_is_no_fingertip_is_one_error(
     file, out = tmp_path / f"{name}.step", tmp_path / "out"
     file.write_bytes(step(make(), "tip"))
     assert main(["gripper", "new", "jaw", "--from-step", str(file), "--out", str(out)]) == 2
-    told = capfd.readouterr()
-    assert (told.out, told.err.count("\n")) == ("", 1)
-    assert message in told.err
+    printed = capfd.readouterr()
+    assert (printed.out, printed.err.count("\n")) == ("", 1)
+    assert message in printed.err
     assert not out.exists()
 
 
@@ -272,11 +272,20 @@ def test_a_freecad_file_with_one_shape_is_read(
                 archive.write(tmp_path / "tip.brp", f"PartShape{number}.brp")
     with zipfile.ZipFile(tmp_path / "other.FCStd", "w") as archive:
         archive.writestr("PartShape.brp", "x")
+    with zipfile.ZipFile(tmp_path / "torn.FCStd", "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.write(tmp_path / "tip.brp", "PartShape.brp")
+    torn = bytearray((tmp_path / "torn.FCStd").read_bytes())
+    torn[200:230] = bytes(30)
+    (tmp_path / "torn.FCStd").write_bytes(torn)
     assert figures_of(read_solid(tmp_path / "1.FCStd"), config)["bolt_spacing_mm"] == 14.0
-    for name, message in (("2", "has 2 shapes"), ("other", "another format than BRep")):
+    for name, message in (
+        ("2", "has 2 shapes"),
+        ("other", "another format than BRep"),
+        ("torn", "is no archive"),
+    ):
         command = ["gripper", "new", "jaw", "--from-step", str(tmp_path / f"{name}.FCStd")]
         assert main([*command, "--out", str(tmp_path / "out")]) == 2
-        told = capfd.readouterr()
-        assert (told.out, told.err.count("\n")) == ("", 1)
-        assert message in told.err
+        printed = capfd.readouterr()
+        assert (printed.out, printed.err.count("\n")) == ("", 1)
+        assert message in printed.err
     assert not (tmp_path / "out").exists()

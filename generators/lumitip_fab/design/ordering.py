@@ -31,7 +31,7 @@ class Fab:
 
 @dataclass(frozen=True)
 class Bought:
-    """Something that is bought by the piece."""
+    """Something that is bought, and a line of the bill."""
 
     group: str
     """Such as `"fasteners"`."""
@@ -43,10 +43,15 @@ class Bought:
     """Its use."""
     quantity: float
     each: float | None
-    """Price of one; none where it is not known."""
+    """Price of a unit; none where it is not known."""
     unit: str = "piece"
     pack: str = ""
     """Name of the pack that it comes in; empty where it is bought singly."""
+
+    @property
+    def price(self) -> float | None:
+        """Price of the whole quantity."""
+        return None if self.each is None else round(self.quantity * self.each, 2)
 
 
 @dataclass(frozen=True)

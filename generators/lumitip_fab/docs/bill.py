@@ -10,7 +10,7 @@ from dataclasses import asdict
 from lumitip_fab.design import Bought, Design, Purchase
 from lumitip_fab.design.making import Filament
 from lumitip_fab.design.print_time import print_seconds
-from lumitip_fab.docs.orders import Line, amount, money, order_list
+from lumitip_fab.docs.orders import amount, money, order_list
 from lumitip_fab.pipeline.artefact import Artefact, Files
 
 _KINDS = {
@@ -34,7 +34,7 @@ _ON_BOARD = {
 """The same where a board has another kind of this letter, or of this part alone."""
 
 
-def electronics(design: Design, files: Files) -> Iterator[Line]:
+def electronics(design: Design, files: Files) -> Iterator[Bought]:
     """Parts of all boards, alike ones together, the controller, bare boards, and placing."""
     purchase = design.purchase
     found: dict[tuple[str, str, str], dict[str, int]] = {}
@@ -51,24 +51,24 @@ def electronics(design: Design, files: Files) -> Iterator[Line]:
     for (item, maker, part), where in sorted(found.items()):
         each = purchase.part_each(part)
         boards = ", ".join(f"{count} on {name}" for name, count in where.items())
-        yield Line("electronics", item, maker, part, boards, sum(where.values()), "piece", each)
+        yield Bought("electronics", item, maker, part, boards, sum(where.values()), each)
     yield from _pieces(purchase, "electronics")
     boxes = {f.name: design.board.box for f in design.fingers}
     boxes |= {c.name: c.box for c in design.auxiliary_boards}
     for name, box in boxes.items():
         each = purchase.bare_board_each(box)
         size = f"{box.width_mm:g} x {box.length_mm:g} mm"
-        yield Line("boards", f"{name} board", "", size, "bare", 1, "piece", each, "bare board")
+        yield Bought("boards", f"{name} board", "", size, "bare", 1, each, pack="bare board")
     placed = sum(sum(where.values()) for where in found.values())
     item, where_text = "placing and soldering", "parts on all boards"
-    yield Line("boards", item, "", "", where_text, placed, "piece", purchase.placing_each)
+    yield Bought("boards", item, "", "", where_text, placed, purchase.placing_each)
 
 
 PRINTED = ("backing", "interface", "mould", "holder", "flange", "fit")
 """Folders of printed parts, in the order of the bill; a printed mask is the last."""
 
 
-def materials(design: Design, files: Files) -> Iterator[Line]:
+def materials(design: Design, files: Files) -> Iterator[Bought]:
     """Filament, silicone, film of the mask unless it is printed, and wire."""
     slicing, purchase = design.slicing, design.purchase
     printed = design.mask.route == "tpu"
@@ -78,7 +78,7 @@ def materials(design: Design, files: Files) -> Iterator[Line]:
         facts, name = files.facts(path), filament.name
         grams = round(facts["volume_mm3"] / 1000 * filament.density_g_ml, 2)
         where = f"some {_minutes(facts, filament, design)} min, solid, brim left out"
-        yield Line("prints", path, "", name, where, grams, "g", purchase.unit_price(name), name)
+        yield Bought("prints", path, "", name, where, grams, purchase.unit_price(name), "g", name)
     mixes = [files.facts(path) for path in files.like("mould/*_casting.md")]
     grams = round(sum(mix["part_a_g"] + mix["part_b_g"] for mix in mixes), 2)
     where, title = "both fingers, with what stays in the cup", design.mould.silicone
@@ -111,34 +111,17 @@ def _awg(section_mm2: float) -> int:
 
 def _packed(
     purchase: Purchase, group: str, name: str, item: str, where: str, quantity: float, unit: str
-) -> Line:
+) -> Bought:
     """Something out of a pack; with its name alone where no pack is known."""
     pack = purchase.pack(name)
     if pack is None:
-        return Line(group, item, "", "", where, quantity, unit, None)
+        return Bought(group, item, "", "", where, quantity, None, unit)
     maker, product = pack.manufacturer, pack.product
-    return Line(group, item, maker, product, where, quantity, unit, pack.each, name)
+    return Bought(group, item, maker, product, where, quantity, pack.each, unit, name)
 
 
-def _pieces(purchase: Purchase, group: str) -> Iterator[Line]:
-    for piece in purchase.pieces:
-        if piece.group == group:
-            yield _line(piece)
-
-
-def _line(of: Bought) -> Line:
-    """A line with what is bought."""
-    return Line(
-        of.group,
-        of.item,
-        of.manufacturer,
-        of.part,
-        of.where,
-        of.quantity,
-        of.unit,
-        of.each,
-        of.pack,
-    )
+def _pieces(purchase: Purchase, group: str) -> Iterator[Bought]:
+    return (piece for piece in purchase.pieces if piece.group == group)
 
 
 COLUMNS = (
@@ -177,7 +160,7 @@ def bill_of_materials(design: Design, files: Files) -> tuple[Artefact, ...]:
     return bill, order_list(purchase, lines)
 
 
-def _table(lines: list[Line], note: str, total: float) -> bytes:
+def _table(lines: list[Bought], note: str, total: float) -> bytes:
     file = io.StringIO()
     writer = csv.writer(file, lineterminator="\n")
     writer.writerow(COLUMNS)

@@ -6,29 +6,8 @@ import math
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 
-from lumitip_fab.design import Pack, Purchase
+from lumitip_fab.design import Bought, Pack, Purchase
 from lumitip_fab.pipeline.artefact import Artefact
-
-
-@dataclass(frozen=True)
-class Line:
-    """A line of the bill."""
-
-    group: str
-    item: str
-    manufacturer: str
-    part: str
-    where: str
-    quantity: float
-    unit: str
-    each: float | None
-    pack: str = ""
-    """Name of the pack that it comes in; empty where it is bought singly."""
-
-    @property
-    def price(self) -> float | None:
-        """Price of the whole quantity."""
-        return None if self.each is None else round(self.quantity * self.each, 2)
 
 
 @dataclass(frozen=True)
@@ -56,10 +35,10 @@ _OF_ITEM = ("boards", "fasteners")
 """Groups of which each item has its own pack; of others, lines share one, such as a spool."""
 
 
-def orders(purchase: Purchase, lines: Iterable[Line]) -> tuple[Order, ...]:
+def orders(purchase: Purchase, lines: Iterable[Bought]) -> tuple[Order, ...]:
     """Packs and pieces that are needed, alike ones together, in the order of the bill."""
     needed: dict[tuple[str, str], float] = {}
-    first: dict[tuple[str, str], Line] = {}
+    first: dict[tuple[str, str], Bought] = {}
     for line in lines:
         shared = line.pack and line.group not in _OF_ITEM
         key = ("", line.pack) if shared else (line.item + line.part, line.pack)
@@ -70,7 +49,7 @@ def orders(purchase: Purchase, lines: Iterable[Line]) -> tuple[Order, ...]:
     )
 
 
-def _order(line: Line, needed: float, pack: Pack | None) -> Order:
+def _order(line: Bought, needed: float, pack: Pack | None) -> Order:
     """Whole packs of what is needed; pieces where there is no pack."""
     needed = round(needed, 2)
     if pack is None:
@@ -102,7 +81,7 @@ COLUMNS = (
 )
 
 
-def order_list(purchase: Purchase, lines: Iterable[Line]) -> Artefact:
+def order_list(purchase: Purchase, lines: Iterable[Bought]) -> Artefact:
     """The list to order, with the sum of those whose price is known."""
     found = orders(purchase, lines)
     total = sum(order.price for order in found if order.price is not None)

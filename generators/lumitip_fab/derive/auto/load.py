@@ -10,7 +10,7 @@ from lumitip_fab.derive.auto.search import bounds
 from lumitip_fab.derive.boards.boards import Plan
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.stack import behind_mm, derive_stack, is_flex
-from lumitip_fab.derive.finger.strength import Body, borne_n, least_n
+from lumitip_fab.derive.finger.strength import LEAST_N, Body, borne_n
 from lumitip_fab.derive.finger.tip import wedge
 from lumitip_fab.derive.mount.fasteners import derive_fasteners
 from lumitip_fab.derive.mount.rules import LEAST_FLARE_MM
@@ -49,7 +49,7 @@ def flare(config: Input) -> Iterator[Proposal]:
     body = _body(config, plan)
     if is_flex(p):
         borne = math.floor(10 * borne_n(config, body, optics_of(config))) / 10
-        force = min(max(borne, least_n(flex=True)), COMPLIANT_N)
+        force = min(max(borne, bounds("finger.rated_force_n")[0]), COMPLIANT_N)
         yield "finger.rated_force_n", force, "a compliant finger gives way"
         return
     length = _length_mm(config, body)
@@ -60,7 +60,7 @@ def flare(config: Input) -> Iterator[Proposal]:
     most, wanted = max(each.borne_n for each in tried), p.finger.rated_force_n
     reason = f"bears finger.rated_force_n = {wanted:g} N"
     if most < wanted:
-        wanted = max(math.floor(ENOUGH * most), least_n(flex=False))
+        wanted = max(math.floor(ENOUGH * most), LEAST_N)
         yield "finger.rated_force_n", wanted, f"flare and floor bear at most {most:.0f} N"
         reason = f"bears {wanted:g} N, nearly the most"
     best = next((each for each in tried if each.borne_n >= wanted), tried[-1])
@@ -71,6 +71,8 @@ def flare(config: Input) -> Iterator[Proposal]:
 
 @dataclass(frozen=True)
 class _Flared:
+    """A floor and a flare that were tried, and the force that they bear."""
+
     floor_mm: float
     depth_mm: float
     borne_n: float
@@ -119,6 +121,7 @@ def _depths_mm(config: Input, mount: Mount) -> list[float]:
 
 
 def _length_mm(config: Input, body: Body) -> float:
+    """Of a flare from the ramp to the mask's flap, or to the wedge at the tip."""
     p = config.parameters
     flap = p.mask.flap_mm + p.mask.allowance_mm + FLAP_GAP_MM
     free = body.outline.tip_y_mm - max(flap, wedge(config)[0])

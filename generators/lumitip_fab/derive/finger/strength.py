@@ -31,7 +31,7 @@ from lumitip_fab.design.strength import Loaded, Strength, loads
 
 SAFETY = 1.4  # of an estimate that no test stands behind, of a known force, with layers taken weak
 RESERVE = 1.08  # kept here to every limit, for rectangles are not quite the written part
-LEAST_N, LEAST_COMPLIANT_N = 10.0, 0.1  # a weaker finger must be asked for
+LEAST_N = 10.0  # of a rigid finger: a weaker one must be asked for
 OFFSET_SHARE = 0.5  # of an aperture's half width: no shadow of its edge on the die
 STEP_MM = 0.5
 NOSE_SLICES = 4
@@ -77,19 +77,14 @@ def derive_strength(config: Input, body: Body, optics: Optics, faults: Diagnosti
         faults: where to refuse.
     """
     strength, force = _limits(config, body), config.parameters.finger.rated_force_n
-    flex, uses = is_flex(config.parameters), list(_uses(body, strength, optics))
+    uses = list(_uses(body, strength, optics))
     borne = math.floor(10 * force / max(use.share for use in uses)) / 10
     for use in uses:
         if use.share > 1:
             faults.add(use.rule, figure=use.figure, most=use.most, borne=borne)
-    least, chosen = least_n(flex), "finger.rated_force_n" in config.automatic
-    faults.unless(force >= least or not chosen, "finger_weak", least=least)
+    chosen = "finger.rated_force_n" in config.automatic and not is_flex(config.parameters)
+    faults.unless(force >= LEAST_N or not chosen, "finger_weak", least=LEAST_N)
     return strength
-
-
-def least_n(flex: bool) -> float:
-    """Least rated force that is chosen for a finger, compliant or not."""
-    return LEAST_COMPLIANT_N if flex else LEAST_N
 
 
 def borne_n(config: Input, body: Body, optics: Optics) -> float:
