@@ -6,6 +6,7 @@ filament, for which there is no measurement: it is drawn at its nominal width.
 """
 
 import math
+from dataclasses import replace
 
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.diagnostics import Diagnostics
@@ -19,10 +20,11 @@ from lumitip_fab.derive.finger.stack import (
 )
 from lumitip_fab.derive.finger.tip import wedge
 from lumitip_fab.derive.making.fits import Drawn, refuse_touching
-from lumitip_fab.design import Box, Finger, Interface, Outline
+from lumitip_fab.design import Box, Finger, Interface, Outline, Point
 
 LETTER_DEPTH_MM = 0.4
 LETTER_GAP_MM = 1.5  # interface to the letter, and letter to the wedge
+SIDE_STEP_MM = 0.5  # of a letter that gives way to a hole
 COVERED_MM = 0.5  # board round a thread hole, which else lets silicone through
 
 
@@ -52,6 +54,9 @@ def derive_interfaces(
     low = groove.y_max_mm + LETTER_GAP_MM - end_y
     back = p.stack.pcb_mm + p.stack.floor_mm
     letter = letter_on(low, low + letter_mm, LETTER_DEPTH_MM, back, line_mm)
+    reach = flex.thread_hole_mm / 2 + p.printer.min_wall_mm
+    holes = [(x, y - end_y) for x, y in finger.holes]
+    letter = replace(letter, box=_between(holes, reach, letter.box, board.x_max_mm))
     return (
         Interface(
             groove,
@@ -64,6 +69,22 @@ def derive_interfaces(
             letter,
         ),
     )
+
+
+def _between(holes: list[Point], reach_mm: float, box: Box, most_mm: float) -> Box:
+    """A letter's box, moved to a side where a hole for thread is too near: as the plate is printed
+    face down, to a place that is free on both sides."""
+    room = math.floor((most_mm - box.x_max_mm) / SIDE_STEP_MM)
+    for x in (SIDE_STEP_MM * n for n in range(room + 1)):
+        moved = Box(box.x_min_mm + x, box.x_max_mm + x, box.y_min_mm, box.y_max_mm)
+        clear = moved.grown(reach_mm), moved.mirrored().grown(reach_mm)
+        if not any(
+            each.x_min_mm < u < each.x_max_mm and each.y_min_mm < v < each.y_max_mm
+            for u, v in holes
+            for each in clear
+        ):
+            return moved
+    return box
 
 
 def _refuse_length(
