@@ -231,12 +231,16 @@ def _letter(group: Group) -> None:
 
 
 def _table(rows: list[list[Paragraph]]) -> Flowable:
-    """Columns as wide as their text up to some words and their longest word, within the page."""
-    asked = [
-        max(_asked(row[i]) for row in rows if i < len(row)) for i in range(max(map(len, rows)))
-    ]
-    share = min(_WIDTH / sum(asked), 1.0)
-    table = LongTable(rows, [share * a for a in asked], repeatRows=1, style=_LINES, hAlign="LEFT")
+    """Columns as wide as their text up to some words, narrower within the page, but not than their
+    longest word."""
+    columns = [[row[i] for row in rows if i < len(row)] for i in range(max(map(len, rows)))]
+    least = [max(cell.minWidth() for cell in column) + _PADDING for column in columns]
+    asked = [max(map(_asked, column)) for column in columns]
+    share = min((_WIDTH - sum(least)) / max(sum(asked) - sum(least), 1.0), 1.0)
+    widths = [low + share * (high - low) for low, high in zip(least, asked, strict=True)]
+    if share < 0:
+        widths = [_WIDTH / sum(asked) * high for high in asked]
+    table = LongTable(rows, widths, repeatRows=1, style=_LINES, hAlign="LEFT")
     table.spaceBefore = table.spaceAfter = 6
     return table
 
