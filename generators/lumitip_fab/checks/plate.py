@@ -117,9 +117,9 @@ def measure_notch(part: Printed) -> Iterator[Measurement]:
 
 
 def _rim_z(part: Printed) -> float:
-    """Height of the rim between pocket and tip."""
-    design = part.design
-    y = (design.board.pocket.y_max_mm + design.outline.tip_y_mm) / 2
+    """Height of the rim between the pocket's leaning end and the tip."""
+    design, board = part.design, part.design.board
+    y = (board.pocket.y_max_mm + board.roof_mm + design.outline.tip_y_mm) / 2
     xs = np.array([-0.3, 0.0, 0.3]) * design.outline.tip_width_mm
     return float(np.median(front_z(part, np.array([(x, y) for x in xs]))))
 
