@@ -37,7 +37,7 @@ def backing_step(config: Input, tmp_path_factory: pytest.TempPathFactory) -> Wri
         if not file.exists():
             d = design_with(config, name, gripper)
             solid = backing_solid(
-                d.receiver, d.stack, d.outline, d.tip, d.board, d.mount, d.interfaces
+                d.receiver, d.stack, d.outline, d.tip, d.board, d.mount, d.interfaces, ()
             )
             file.write_bytes(step(solid, "backing"))
         return file

@@ -17,7 +17,14 @@ from lumitip_fab.parts.backing import backing, backing_solid
 def solid_of(design: Design, which: int = 1) -> object:
     finger = design.fingers[which]
     return backing_solid(
-        finger, design.stack, design.outline, design.tip, design.board, design.mount, ()
+        finger,
+        design.stack,
+        design.outline,
+        design.tip,
+        design.board,
+        design.mount,
+        (),
+        design.keys,
     )
 
 

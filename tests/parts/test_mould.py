@@ -66,7 +66,7 @@ def test_offset_wires_keep_their_distance(design: Design) -> None:
 
 
 def test_the_silicone_tapers_and_keeps_its_thickness(design: Design) -> None:
-    body = skin.silicone_solid(design.stack, design.outline, design.board, design.mould)
+    body = skin.silicone_solid(design.stack, design.outline, design.board, design.mould, [])
     box = body.bounding_box()
     heights = [tuple(box.min)[2], tuple(box.max)[2]]
     assert heights == pytest.approx([-1.6, -0.1], abs=1e-6)
@@ -77,7 +77,7 @@ def test_the_silicone_tapers_and_keeps_its_thickness(design: Design) -> None:
 
 
 def test_stops_leave_their_hollow_in_the_silicone(design: Design) -> None:
-    body = skin.silicone_solid(design.stack, design.outline, design.board, design.mould)
+    body = skin.silicone_solid(design.stack, design.outline, design.board, design.mould, [])
     for x, y in design.mould.pads:
         assert not body.is_inside((x, y, -0.8))
     assert not body.is_inside((0.0, design.outline.tip_y_mm - 0.1, -1.5))
@@ -92,7 +92,7 @@ def test_the_film_lies_on_the_silicone(design: Design) -> None:
 
 def noted(design: Design, of: Mould, open_back: bool = True) -> str:
     mix = casting.silicone_mix(4.0, of)
-    return casting.casting_note("emitter", mix, design.stack, of, "epoxy", open_back)
+    return casting.casting_note("emitter", mix, design.stack, of, "epoxy", 0, open_back)
 
 
 def test_the_note_says_primer_tape_test_and_the_order_of_demoulding(design: Design) -> None:

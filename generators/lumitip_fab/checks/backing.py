@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import shapely
 
-from lumitip_fab.checks import plate, printed, tip
+from lumitip_fab.checks import keys, plate, printed, tip
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.readers.solids import Vectors, cast, section
 from lumitip_fab.checks.result import Measure, Measurement, measured, unreadable
@@ -146,6 +146,7 @@ _PLATE: tuple[Step, ...] = (
     plate.measure_reliefs,
     plate.measure_notch,
     tip.measure_tip,
+    keys.measure_keys,
 )
 _HELD: tuple[Step, ...] = (measure_bolt, measure_screw, measure_nose)
 

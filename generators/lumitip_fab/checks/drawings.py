@@ -59,13 +59,25 @@ def _wanted(
     found = {
         **{kind: (corners, SIZE_MM) for kind, corners in printed.items()},
         "board": (_block(design.board.box, stack.pocket_z_mm, low), SIZE_MM),
-        "silicone": (_between(foot, stack.face_z_mm, face), SKIN_MM),
+        "silicone": (_keyed(_between(foot, stack.face_z_mm, face), design), SKIN_MM),
         "film": (_film(_grown(foot, -lean), face, mould.end_round_mm), SKIN_MM),
     }
     for part in finger.parts:
         if part.side == "front":
             found[part.name] = (_block(part.box, low, low + part.height_mm), SIZE_MM)
     return found
+
+
+def _keyed(skin: Vectors, design: Design) -> Vectors:
+    """A skin with the silicone in the plate's keys, down to the rims of their countersinks."""
+    turn = np.linspace(0.0, 2 * np.pi, 16, endpoint=False)
+    round_ = np.column_stack([np.cos(turn), np.sin(turn)])
+    corners = [skin]
+    for key in design.keys:
+        rim = np.array(key.at) + round_ * key.wide_mm / 2
+        heights = [design.tip.back_z_mm(design.stack, y) for y in rim[:, 1]]
+        corners.append(np.column_stack([rim, heights]))
+    return np.concatenate(corners)
 
 
 def _film(skin: Vectors, face_mm: float, radius_mm: float) -> Vectors:

@@ -1,5 +1,6 @@
 """The note for the person who pours: volume, masses and figures against the mould's cavity."""
 
+import math
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -78,12 +79,22 @@ def measure_volume(
     box, stack = design.board.box, design.stack
     if not stack.sunk:
         dipped += box.width_mm * box.length_mm * stack.pcb_mm
-    measured = (_cavity_mm3(body, design) - dipped) / 1000
+    measured = (_cavity_mm3(body, design) + _keys_mm3(design) - dipped) / 1000
     if not measured > 0:
         return unreadable("mould.volume", file, "has no cavity that could be measured")
     low, high = (round(measured * (1 + side * VOLUME_FRACTION), 4) for side in (-1, 1))
     note = f"{measured:.3f} mL in {file}"
     return Measurement("mould.volume", note_file, float(stated[1]), low, high, "mL", note)
+
+
+def _keys_mm3(design: Design) -> float:
+    """Silicone in the plate's keys: holes, and the rings that their countersinks are wider."""
+    stack, total = design.stack, 0.0
+    for key in design.keys:
+        radius, deep = key.hole_mm / 2, key.sink_mm
+        long = stack.face_z_mm - design.tip.back_z_mm(stack, key.at[1])
+        total += math.pi * (radius**2 * long + deep**2 * (radius + deep / 3))
+    return total
 
 
 def _cavity_mm3(body: solids.Solid, design: Design) -> float:

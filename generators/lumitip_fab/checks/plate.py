@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 import shapely
 
+from lumitip_fab.checks.keys import beside
 from lumitip_fab.checks.printed import Printed, circles, front_z, holes_at, islands_at
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.readers.solids import Vectors, cast, inside, section
@@ -120,7 +121,7 @@ def _rim_z(part: Printed) -> float:
     """Height of the rim between the pocket's leaning end and the tip."""
     design, board = part.design, part.design.board
     y = (board.pocket.y_max_mm + board.roof_mm + design.outline.tip_y_mm) / 2
-    xs = np.array([-0.3, 0.0, 0.3]) * design.outline.tip_width_mm
+    xs = beside(design, np.linspace(-0.3, 0.3, 25) * design.outline.tip_width_mm)
     return float(np.median(front_z(part, np.array([(x, y) for x in xs]))))
 
 

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from lumitip_fab.checks.keys import beside
 from lumitip_fab.checks.printed import RAY_MM, Printed
 from lumitip_fab.checks.readers.solids import Vectors, cast
 from lumitip_fab.checks.result import Measurement
@@ -18,7 +19,7 @@ def measure_tip(part: Printed) -> Iterator[Measurement]:
     """The wedge: thickness at the tip edge and angle."""
     outline, tip = part.design.outline, part.design.tip
     slope = np.tan(np.radians(tip.angle_deg))
-    xs = np.linspace(-0.45, 0.45, 9) * outline.tip_width_mm
+    xs = beside(part.design, np.linspace(-0.45, 0.45, 25) * outline.tip_width_mm)
     edge = _thickness(part, np.array([(x, outline.tip_y_mm - 0.05) for x in xs])) - 0.05 * slope
     yield part.near("tip_edge", edge, tip.edge_mm, EDGE_MM)
     board = part.design.board

@@ -84,6 +84,9 @@ class Backing(Strict):
     """How far the coupling's 45° ramp flares out along the back, beyond where it would end (mm)."""
     flare_depth_mm: float = Field(ge=0.5, le=40)
     """Height over the plate's back at which the ramp turns into its flare (mm)."""
+    key_mm: float = Field(ge=0, le=5)
+    """Diameter of the countersunk holes through the plate beside the board, by which the silicone
+    holds on (mm); 0 for none."""
     pocket_clearance_mm: float = Field(ge=0.10, le=0.30)
     """Gap between board and pocket on each side (mm)."""
     pin_clearance_mm: float = Field(ge=0.05, le=0.5)

@@ -13,6 +13,7 @@ from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger import outline
 from lumitip_fab.derive.finger.cells import Cells, derive_cells
 from lumitip_fab.derive.finger.interface import derive_interfaces
+from lumitip_fab.derive.finger.keys import derive_keys
 from lumitip_fab.derive.finger.stack import (
     derive_densities,
     derive_printing,
@@ -148,6 +149,7 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
             stack=stack,
             outline=silhouette,
             tip=body.tip,
+            keys=derive_keys(config, body, casting),
             board=plan.board,
             emitter=plan.emitter,
             receiver=plan.receiver,

@@ -72,7 +72,7 @@ from lumitip_fab.design.pcb import (
     Shroud,
     Tie,
 )
-from lumitip_fab.design.shape import Box, Cubic, Outline, Point, Side, Stack, Tip
+from lumitip_fab.design.shape import Box, Cubic, Key, Outline, Point, Side, Stack, Tip
 from lumitip_fab.design.strength import Strength
 from lumitip_fab.text import board_name, page_name
 
@@ -114,6 +114,8 @@ class Design:
     stack: Stack
     outline: Outline
     tip: Tip
+    keys: tuple[Key, ...]
+    """Holes by which silicone and plate hold each other, alike for both fingers."""
     board: Board
     emitter: Finger
     receiver: Finger

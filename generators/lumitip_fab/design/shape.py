@@ -4,6 +4,7 @@ Every length is in mm and in the sensor frame of the finger it belongs to, unles
 otherwise.
 """
 
+import math
 from dataclasses import dataclass
 from typing import Literal
 
@@ -177,3 +178,28 @@ class Tip:
     slant_start_y_mm: float
     edge_mm: float
     angle_deg: float
+
+    @property
+    def slope(self) -> float:
+        """Height that the back gains for each length towards the tip edge."""
+        return math.tan(math.radians(self.angle_deg))
+
+    def back_z_mm(self, stack: Stack, y_mm: float) -> float:
+        """Height of the plate's back at a y."""
+        return stack.back_z_mm + max(y_mm - self.slant_start_y_mm, 0.0) * self.slope
+
+
+@dataclass(frozen=True)
+class Key:
+    """A countersunk hole through the plate beside the board. Silicone fills it, and the skin is
+    locked to the plate; the countersink of 90° is in the back."""
+
+    at: Point
+    hole_mm: float
+    sink_mm: float
+    """Depth of the countersink on the hole's axis."""
+
+    @property
+    def wide_mm(self) -> float:
+        """Its diameter in the back of a plate without a wedge."""
+        return self.hole_mm + 2 * self.sink_mm

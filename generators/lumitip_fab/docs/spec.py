@@ -172,6 +172,7 @@ def _of_the_plate(design: Design) -> tuple[Row, ...]:
             over_mm=stack.silicone_mm - part.height_mm,
         )
     ]
+    over += _of_the_keys(design)
     if not design.interfaces:
         return (*over, *rows_of("rigid", stack=stack, printing=printing, proud=stack.pcb_mm - 0.8))
     (interface,), holes = design.interfaces, design.receiver.holes
@@ -180,6 +181,14 @@ def _of_the_plate(design: Design) -> tuple[Row, ...]:
         *over,
         *rows_of("flex", stack=stack, printing=printing, interface=interface, **values),
     )
+
+
+def _of_the_keys(design: Design) -> Iterator[Row]:
+    """The holes that hold the skin, or that there are none."""
+    keys = design.keys
+    hole_mm = keys[0].hole_mm if keys else 0.0
+    left_out = "where the plate has room" if keys else "none fits, or backing.key_mm is 0"
+    return rows_of("keys", count=len(keys), hole_mm=hole_mm, left_out=left_out)
 
 
 def _further(design: Design) -> dict[str, Any]:

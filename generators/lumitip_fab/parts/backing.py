@@ -3,7 +3,6 @@ a compliant one."""
 
 from dataclasses import replace
 
-import numpy as np
 from build123d import Solid
 
 from lumitip_fab.design import (
@@ -12,6 +11,7 @@ from lumitip_fab.design import (
     Design,
     Finger,
     Interface,
+    Key,
     Mount,
     Outline,
     Point,
@@ -21,6 +21,7 @@ from lumitip_fab.design import (
 )
 from lumitip_fab.parts import coupling, export, shapes
 from lumitip_fab.parts.letters import letter_cutter
+from lumitip_fab.parts.plate import key_cutters, plate_solid
 from lumitip_fab.pipeline.artefact import Artefact
 
 BEYOND_MM = 1.0  # how far a cutter reaches past what it cuts
@@ -111,7 +112,14 @@ def backing(design: Design, finger: Finger) -> tuple[Artefact, ...]:
     """The backing of one finger and, where it bends, the interface behind it."""
     stack, mount = design.stack, design.mount
     solid = backing_solid(
-        finger, stack, design.outline, design.tip, design.board, mount, design.interfaces
+        finger,
+        stack,
+        design.outline,
+        design.tip,
+        design.board,
+        mount,
+        design.interfaces,
+        design.keys,
     )
     path, bed = f"backing/{finger.name}_backing", frames.backing_bed_to_sensor(mount, stack)
     files = export.part_files(path, solid, bed)
@@ -130,15 +138,14 @@ def backing_solid(
     board: Board,
     mount: Mount,
     interfaces: tuple[Interface, ...],
+    keys: tuple[Key, ...],
 ) -> Solid:
     """The backing in the finger's sensor frame: with its coupling, or as a plate that bends.
 
     Raises:
         BuildError: if the kernel does not make one valid solid of it.
     """
-    plate = _plate(stack, outline)
-    if tip.angle_deg > 0:
-        plate = plate - _tip_cutter(stack, outline, tip)
+    plate = plate_solid(stack, outline, tip) - key_cutters(keys, stack, tip)
     for interface in interfaces:
         return shapes.one_solid(sheet(plate, finger, stack, mount, interface), finger, "backing")
     plate = plate - _pocket(stack, board)
@@ -186,30 +193,6 @@ def _pocket(stack: Stack, board: Board) -> Solid:
         (box.y_min_mm, top_z),
     ]
     return shapes.side_prism(corners, box.x_min_mm, box.x_max_mm)
-
-
-def _plate(stack: Stack, outline: Outline) -> Solid:
-    """The plate, reaching past the gripper end so that the tilted mount plane cuts it all."""
-    half = outline.end_width_mm / 2
-    foot = Box(-half, half, outline.end_y_mm - BEYOND_MM, outline.end_y_mm)
-    plate = shapes.prism(shapes.outline_face(outline), stack.back_z_mm, stack.face_z_mm)
-    return plate + shapes.box_solid(foot, stack.back_z_mm, stack.face_z_mm)
-
-
-def _tip_cutter(stack: Stack, outline: Outline, tip: Tip) -> Solid:
-    """Volume that the wedge cuts from the back of the plate."""
-    edge_z = stack.face_z_mm - tip.edge_mm
-    rise = (edge_z - stack.back_z_mm) / (outline.tip_y_mm - tip.slant_start_y_mm)
-    end_y, far_z = outline.tip_y_mm + BEYOND_MM, stack.back_z_mm - BEYOND_MM
-    start_y = tip.slant_start_y_mm
-    half = float(np.abs(outline.polygon()[:, 0]).max()) + BEYOND_MM
-    corners = [
-        (start_y, stack.back_z_mm),
-        (end_y, edge_z + rise * BEYOND_MM),
-        (end_y, far_z),
-        (start_y, far_z),
-    ]
-    return shapes.side_prism(corners, -half, half)
 
 
 def _relief(box: Box, depth_mm: float, through: bool, stack: Stack) -> Solid:

@@ -12,6 +12,7 @@ from lumitip_fab.design.making import LEDGE_MM
 from lumitip_fab.errors import BuildError
 from lumitip_fab.parts import export, skin
 from lumitip_fab.parts.letters import letter_cutter
+from lumitip_fab.parts.plate import key_fillings
 from lumitip_fab.parts.shapes import box_face, box_solid, side_prism
 from lumitip_fab.pipeline.artefact import Artefact
 from lumitip_fab.text import passage
@@ -38,6 +39,7 @@ def casting_note(
     stack: Stack,
     mould: Mould,
     glue: str,
+    keys: int,
     open_back: bool,
 ) -> str:
     """The note as Markdown.
@@ -48,6 +50,7 @@ def casting_note(
         stack: for the height of the stops.
         mould: its layers, the silicone, and how much is wasted.
         glue: title of what holds the board, or the interface.
+        keys: how many holes beside the board are to be filled.
         open_back: whether windows or holes go through the plate.
     """
     rim_mm = mould.wall_mm + stack.cover_mm
@@ -80,6 +83,7 @@ def casting_note(
         cure_c=mould.cure_c,
         layer_mm=mould.layer_mm,
         layers=layers,
+        keys=_text("keyed", keys=keys) if keys else "",
         tip_mm=mould.tip_silicone_mm,
         tape=mould.tape,
     )
@@ -105,10 +109,17 @@ def mould_files(design: Design, finger: Finger) -> tuple[Artefact, ...]:
     """The mould of one finger, and the note for the person who pours."""
     stack, outline, mould = design.stack, design.outline, design.mould
     solid = mould_solid(finger, stack, outline, mould)
-    volume_ml = cast_volume_ml(finger, stack, outline, design.board, mould)
+    keys = key_fillings(design.keys, stack, outline, design.tip)
+    volume_ml = cast_volume_ml(finger, stack, outline, design.board, mould, keys)
     mix = silicone_mix(volume_ml, mould)
     note = casting_note(
-        finger.name, mix, stack, mould, design.strength.glue, open_back(design, finger)
+        finger.name,
+        mix,
+        stack,
+        mould,
+        design.strength.glue,
+        len(design.keys),
+        open_back(design, finger),
     )
     return (
         *export.part_files(
@@ -127,10 +138,16 @@ def open_back(design: Design, finger: Finger) -> bool:
 
 
 def cast_volume_ml(
-    finger: Finger, stack: Stack, outline: Outline, board: Board, mould: Mould
+    finger: Finger,
+    stack: Stack,
+    outline: Outline,
+    board: Board,
+    mould: Mould,
+    keys: list[Solid],
 ) -> float:
-    """Silicone that stays on a finger: the cavity to the rim less the parts that dip into it."""
-    cavity = float(skin.silicone_solid(stack, outline, board, mould).volume)
+    """Silicone that stays on a finger: the cavity to the rim and the keys of the plate, less the
+    parts that dip into it."""
+    cavity = float(skin.silicone_solid(stack, outline, board, mould, keys).volume)
     dipped = sum(
         part.size_x_mm * part.size_y_mm * part.height_mm
         for part in finger.parts

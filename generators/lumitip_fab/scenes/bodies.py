@@ -8,6 +8,7 @@ from build123d import Face, Location, Plane, Solid, Vector, Wire
 from lumitip_fab.design import Board, Design, Finger, Part, Point, Stack
 from lumitip_fab.parts import backing as printed
 from lumitip_fab.parts.backing import backing_solid
+from lumitip_fab.parts.plate import key_fillings
 from lumitip_fab.parts.shapes import box_face
 from lumitip_fab.parts.skin import film_solid, silicone_solid
 
@@ -42,14 +43,16 @@ def layers_of(bodies: Bodies) -> Iterator[tuple[str, Solid]]:
 def finger_bodies(design: Design, finger: Finger) -> Bodies:
     """Every body of a finger."""
     stack, outline, tip, board = design.stack, design.outline, design.tip, design.board
-    mount, mould, interfaces = design.mount, design.mould, design.interfaces
+    mount, mould, interfaces, keys = design.mount, design.mould, design.interfaces, design.keys
     held = [printed.interface_solid(finger, stack, mount, interface) for interface in interfaces]
     return Bodies(
         finger=finger,
-        backing=backing_solid(finger, stack, outline, tip, board, mount, interfaces),
+        backing=backing_solid(finger, stack, outline, tip, board, mount, interfaces, keys),
         interface=held[0] if held else None,
         board=board_solid(finger, stack, board),
-        silicone=silicone_solid(stack, outline, board, mould),
+        silicone=silicone_solid(
+            stack, outline, board, mould, key_fillings(keys, stack, outline, tip)
+        ),
         film=film_solid(stack, outline, mould),
         parts=tuple(part_solid(part, stack) for part in finger.parts),
     )
