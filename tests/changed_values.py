@@ -29,6 +29,7 @@ CHANGES: dict[str, Any] = {
     "backing.glue": "epoxy fast",
     "backing.flare_mm": 15.0,
     "backing.flare_depth_mm": 8.4,
+    "backing.key_mm": 1.4,
     "finger.rated_force_n": 20.0,
     "finger.bend_fraction": 0.03,
     "backing.tail_mm": 1.6,
