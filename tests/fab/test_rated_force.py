@@ -68,6 +68,16 @@ def test_a_finger_longer_than_a_flare_may_be_is_refused_in_words(file: Any) -> N
         derive(load(file("[grid]\ncolumns = [34, 33, 34]\n")))
 
 
+def test_a_flare_ends_where_the_counterbores_open_into_the_ramp(file: Any) -> None:
+    # Their outer edge is 13.5 mm behind the board; 11 mm behind the plate left a skin of 0.03 mm.
+    jaw = '[coupling]\ngripper = "two_hole_jaw"\n'
+    with pytest.raises(RuleError, match=r"at most 10\.7 is allowed, below the ramp and the edge"):
+        derive(load(file(jaw + "[backing]\nflare_depth_mm = 11.0\n")))
+    long = derive(load(file(jaw + "[grid]\ncolumns = [12, 11, 12, 11, 12]\n")))
+    edge_mm = long.mount.bolt_w_mm + long.mount.counterbore_mm / 2 - long.stack.plate_mm
+    assert long.mount.flare_depth_mm < edge_mm
+
+
 def test_a_file_of_before_has_no_load_case(design_dir: Path, tmp_path: Path) -> None:
     folder = shutil.copytree(design_dir, tmp_path / "design")
     file = folder / "fingertip.toml"

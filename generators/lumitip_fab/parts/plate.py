@@ -30,8 +30,8 @@ def key_fillings(keys: tuple[Key, ...], stack: Stack, outline: Outline, tip: Tip
 
 def _key(key: Key, stack: Stack, tip: Tip) -> Solid:
     (x, y), radius = key.at, key.hole_mm / 2
-    low = tip.back_z_mm(stack, y) - BEYOND_MM
-    deep = key.sink_mm + BEYOND_MM
+    low = stack.back_z_mm - BEYOND_MM  # on the wedge, too: there the cone leaves the back deeper
+    deep = tip.back_z_mm(stack, y) + key.sink_mm - low
     cone = Solid.make_cone(radius + deep, radius, deep, Plane((x, y, low)))
     return shapes.cylinder(key.at, key.hole_mm, low, stack.face_z_mm + BEYOND_MM) + cone
 

@@ -9,13 +9,12 @@ from lumitip_fab.config.load import Input
 from lumitip_fab.derive.auto.search import bounds
 from lumitip_fab.derive.boards.boards import Plan
 from lumitip_fab.derive.diagnostics import Diagnostics
-from lumitip_fab.derive.finger.stack import behind_mm, derive_stack, is_flex
+from lumitip_fab.derive.finger.stack import behind_mm, derive_stack, held_by, is_flex
 from lumitip_fab.derive.finger.strength import LEAST_N, Body, borne_n
 from lumitip_fab.derive.finger.tip import wedge
 from lumitip_fab.derive.mount.fasteners import derive_fasteners
-from lumitip_fab.derive.mount.rules import LEAST_FLARE_MM
+from lumitip_fab.derive.mount.rules import LEAST_FLARE_MM, deepest_flare_mm
 from lumitip_fab.derive.once import derive_body, lay_out, optics_of
-from lumitip_fab.design import Mount
 from lumitip_fab.errors import InputError
 
 COMPLIANT_N, COMPLIANT_BEND = 5.0, 0.25
@@ -97,7 +96,7 @@ def _until_borne(config: Input, plan: Plan, length_mm: float) -> Iterator[_Flare
             borne = borne_n(tried, replace(body, mount=mount), optics)
             return _Flared(tried.parameters.stack.floor_mm, depth_mm, borne)
 
-        for depth in _depths_mm(tried, body.mount):
+        for depth in _depths_mm(tried):
             found = flared(depth)
             if found.borne_n < wanted:
                 yield found
@@ -109,13 +108,13 @@ def _until_borne(config: Input, plan: Plan, length_mm: float) -> Iterator[_Flare
             return
 
 
-def _depths_mm(config: Input, mount: Mount) -> list[float]:
+def _depths_mm(config: Input) -> list[float]:
     """Depths of flares, 1 mm apart."""
     p = config.parameters
     start = p.backing.flare_depth_mm
     if "backing.flare_depth_mm" not in config.automatic:
         return [start]
-    deepest = mount.block_back_w_mm - behind_mm(p) - LEAST_FLARE_MM
+    deepest = deepest_flare_mm(held_by(config), behind_mm(p))
     deepest = min(deepest, bounds("backing.flare_depth_mm")[1])
     return [start + n for n in range(max(math.floor(deepest - start), 0) + 1)]
 

@@ -59,49 +59,47 @@ def _room(body: Body, mould: Mould, hole_mm: float, sink_mm: float, wall_mm: flo
         return shapely.Polygon()
     skin = shapely.Polygon(body.outline.polygon())
     left, low, right, high = skin.bounds
-    slope = min(tip.slope, STEEPEST)
-    flat, leant = radius + sink_mm, radius + sink_mm / (1 - slope)
-    from_y = tip.slant_start_y_mm - leant
-    room = skin.buffer(-(flat + wall_mm)) & shapely.box(left, low, right, from_y)
-    to_y = high if not slope else tip.slant_start_y_mm + thin / slope
-    if tip.slope <= STEEPEST and to_y > from_y:
-        room |= skin.buffer(-(leant + wall_mm)) & shapely.box(left, from_y, right, to_y)
+    across = radius + sink_mm
+    leant = across / (1 - min(tip.slope, STEEPEST))  # on the wedge, towards the board
+    if tip.slope > STEEPEST:
+        high = tip.slant_start_y_mm - leant
+    elif tip.slope > 0:
+        high = tip.slant_start_y_mm + thin / tip.slope
+    room = skin.buffer(-(across + wall_mm)) & shapely.box(left, low, right, max(high, low))
     taken = [
-        shapely.box(*box.grown(by_mm).bounds_mm)
-        for box, by_mm in (
-            *_in_front(body, mould, radius, wall_mm),
-            *_behind(body, leant + wall_mm),
-        )
+        *_in_front(body, mould, radius + wall_mm),
+        *(_kept_off(box, across + wall_mm, leant + wall_mm) for box in _behind(body)),
     ]
-    return room - shapely.union_all(taken)
+    return room - shapely.union_all([shapely.box(*box.bounds_mm) for box in taken])
 
 
-def _in_front(
-    body: Body, mould: Mould, radius_mm: float, wall_mm: float
-) -> Iterator[tuple[Box, float]]:
-    """Pocket or board, wire notch and the mould's stops, and how far a hole keeps off."""
-    board, stack, outline = body.board, body.stack, body.outline
-    pocket = board.pocket if stack.sunk else board.box
-    yield replace(pocket, y_max_mm=pocket.y_max_mm + board.roof_mm), radius_mm + wall_mm
-    notch = body.finger.notch
-    yield replace(notch, y_min_mm=outline.end_y_mm), radius_mm + wall_mm
+def _kept_off(box: Box, aside_mm: float, above_mm: float) -> Box:
+    """A box grown by what a countersink needs beside it, and more where a wedge follows."""
+    return replace(box.grown(aside_mm), y_max_mm=box.y_max_mm + above_mm)
+
+
+def _in_front(body: Body, mould: Mould, reach_mm: float) -> Iterator[Box]:
+    """Pocket or board, wire notch and the mould's stops, grown by what a hole needs."""
+    board, outline = body.board, body.outline
+    pocket = board.pocket if body.stack.sunk else board.box
+    yield replace(pocket, y_max_mm=pocket.y_max_mm + board.roof_mm).grown(reach_mm)
+    yield replace(body.finger.notch, y_min_mm=outline.end_y_mm).grown(reach_mm)
     half, far = mould.pad_mm / 2, outline.tip_width_mm + outline.end_width_mm
     for x, y in mould.pads:
         left, right = (x - half, far) if x > 0 else (-far, x + half)
-        yield Box(left, right, y - half, y + half), radius_mm + MARGIN_MM
+        yield Box(left, right, y - half, y + half).grown(reach_mm)
 
 
-def _behind(body: Body, by_mm: float) -> Iterator[tuple[Box, float]]:
-    """What stands on the plate's back, or is sunk into it, and how far a countersink keeps off."""
+def _behind(body: Body) -> Iterator[Box]:
+    """What stands on the plate's back, or is sunk into it."""
     stack, mount, outline = body.stack, body.mount, body.outline
     end_y, half = outline.end_y_mm, mount.block_width_mm / 2
     high = mount.ramp_end_y_mm(stack.back_z_mm, stack.rim_z_mm) + mount.flare_mm
-    yield Box(-half, half, end_y, max(high, end_y)), by_mm + ROUND_BLOCK_MM
+    yield Box(-half, half, end_y, max(high, end_y)).grown(ROUND_BLOCK_MM)
+    yield replace(body.finger.notch, y_min_mm=end_y)
     if stack.sunk:
-        yield body.board.pocket, by_mm
-    yield replace(body.finger.notch, y_min_mm=end_y), by_mm
-    for interface in body.interfaces:
-        yield interface.groove, by_mm + ROUND_BLOCK_MM
+        yield body.board.pocket
+    yield from (interface.groove.grown(ROUND_BLOCK_MM) for interface in body.interfaces)
 
 
 def _rows(room: Region, body: Body) -> Iterator[Point]:

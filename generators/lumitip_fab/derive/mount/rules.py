@@ -15,6 +15,7 @@ MOST_STRAIN = 0.01  # of the arms while they clip on; PETG yields at some 4 %
 MOST_LASTING_STRAIN = 0.005  # of the arms on the body: more creeps away (assumed)
 DRILLED_MM = 0.1  # beyond a screw's thread, of the board's holes, truer than printed ones
 LEAST_FLARE_MM = 1.0  # that a parameter file allows
+UNDER_COUNTERBORE_MM = 0.4  # flare to the outer edge of the counterbores, past which it leans
 RING_MM = 0.4  # of the board, at least, that a screw's head presses on
 LEAST_GRIP_MM = 0.3  # each arm's end inside the body's widest place
 
@@ -35,11 +36,8 @@ def refuse_place(
         "flare_long",
         most_mm=math.floor(most * 10) / 10,
     )
-    faults.unless(
-        p.backing.flare_depth_mm <= ramp - LEAST_FLARE_MM,
-        "flare_deep",
-        most_mm=ramp - LEAST_FLARE_MM,
-    )
+    deepest = deepest_flare_mm(gripper, plate)
+    faults.unless(p.backing.flare_depth_mm <= deepest + 1e-9, "flare_deep", most_mm=deepest)
     faults.unless(
         length <= before_wedge and opening < length,
         "block_long",
@@ -56,6 +54,14 @@ def refuse_place(
         wide_mm=2 * waist,
     )
     faults.unless(ramp > 0, "block_behind_plate", plate=plate, gripper=gripper)
+
+
+def deepest_flare_mm(gripper: Gripper, plate_mm: float) -> float:
+    """Most depth of a flare behind a plate: it ends below the ramp, and where the counterbores open
+    into the ramp, for along a flat flare their edge would be a thin skin."""
+    open_w = gripper.bolt_w_mm + gripper.counterbore_mm / 2 - UNDER_COUNTERBORE_MM
+    deepest = min(gripper.block_back_w_mm - LEAST_FLARE_MM, open_w) - plate_mm
+    return max(math.floor(10 * deepest + 1e-6) / 10, LEAST_FLARE_MM / 2)
 
 
 def refuse_block(config: Input, gripper: Gripper, faults: Diagnostics) -> None:
