@@ -100,7 +100,7 @@ def test_keys_are_alike_on_both_sides(made: Made) -> None:
 @pytest.mark.parametrize(
     ("change", "caught"),
     [
-        (lambda key: key if key.at[0] else None, {"keys", "key_hole", "keys_open", "key_sink"}),
+        (lambda key: key if key.at[1] < 0 else None, {"keys", "key_hole", "keys_open", "key_sink"}),
         (lambda key: replace(key, sink_mm=0.05), {"key_sink"}),
         (lambda key: replace(key, hole_mm=1.2), {"key_hole", "key_sink"}),
         (lambda key: replace(key, at=(key.at[0] + 0.2, key.at[1])), {"keys", "key_sink"}),

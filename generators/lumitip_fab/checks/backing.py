@@ -222,7 +222,9 @@ def measure_walls(part: printed.Printed) -> Iterator[Measurement]:
     tip_y = start_y + floor_mm * math.tan(slant) + MESH_MM
 
     def on_tip(points: Vectors) -> Mask:
-        return np.asarray(applied(part.to_sensor, points)[:, 1] > tip_y)
+        places = applied(part.to_sensor, points)
+        # From a key to the tip edge is a wall like others.
+        return (places[:, 1] > tip_y) & ~keys.near(design, places, design.tip.edge_mm)
 
     def at_slant(points: Vectors) -> Mask:
         """Where the slant may begin below the floor of the pocket, which is not the tip's."""

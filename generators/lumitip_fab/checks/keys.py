@@ -7,6 +7,7 @@ import numpy as np
 from lumitip_fab.checks.printed import Printed, circles, holes_at
 from lumitip_fab.checks.readers.solids import Vectors, cast
 from lumitip_fab.checks.result import Measurement
+from lumitip_fab.checks.walls import Mask
 from lumitip_fab.design import Design
 
 POSITION_MM = 0.05
@@ -22,6 +23,14 @@ def beside(design: Design, xs_mm: Vectors) -> Vectors:
     for key in design.keys:
         free &= np.abs(xs_mm - key.at[0]) > key.wide_mm
     return xs_mm[free]
+
+
+def near(design: Design, points: Vectors, reach_mm: float) -> Mask:
+    """Which points of shape `(n, 3)` are within a distance of a key's countersink."""
+    found = np.zeros(len(points), dtype=np.bool_)
+    for key in design.keys:
+        found |= np.hypot(*(points[:, :2] - np.array(key.at)).T) < key.wide_mm / 2 + reach_mm
+    return found
 
 
 def measure_keys(part: Printed) -> Iterator[Measurement]:
