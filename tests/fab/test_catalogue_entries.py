@@ -22,13 +22,14 @@ FIELDS = (
     "printer.profile",
     "controller.board",
 )
-LEAST = {"leds": 4, "photodetectors": 4, "films": 2, "silicones": 2, "printers": 4}
+LEAST = {"leds": 5, "photodetectors": 4, "films": 2, "silicones": 2, "printers": 4}
 OWN_PINS = {"arduino_nano_33_ble", "arduino_nano_rp2040_connect", "arduino_nano_esp32"}
 COOL = {"emitter.current_ma": 10.0, "emitter.resistor": "1206"}
 NEEDED: dict[str, dict[str, Any]] = {
     "VSMY1850": COOL | {"emitter.string_leds": 11},
     "VSMB1940X01": COOL,
     "APT1608F3C": COOL,
+    "XL-1608HIRC-850": COOL,
     "TPU 150um": {"stack.film_mm": 0.15},
     "TPU black 100um": {"mask.route": "cut"},
     "vinyl black 70um": {"mask.route": "cut", "stack.film_mm": 0.07},
