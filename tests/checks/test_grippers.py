@@ -233,7 +233,7 @@ OWN = {"wide": NEW, "narrow": NARROW, "early": EARLY}
 
 
 @pytest.mark.parametrize("gripper", [*OWN, "robotiq_2f85", "wsg50", "franka_hand", "two_hole_jaw"])
-def test_a_fit_test_plate_passes_its_checks_and_prints_in_ten_minutes(
+def test_a_fit_test_plate_passes_its_checks_and_prints_in_half_an_hour(
     gripper: str, held_by: File, tmp_path: Path
 ) -> None:
     file = held_by("bench_jaw", OWN[gripper]) if gripper in OWN else held_by(gripper)
@@ -251,7 +251,7 @@ def test_a_fit_test_plate_passes_its_checks_and_prints_in_ten_minutes(
     program("prusa-slicer")
     (sliced,) = slice_parts(tmp_path)
     assert sliced.warnings == ()
-    assert sliced.seconds <= (16 if gripper in OWN else 10.5) * 60
+    assert sliced.seconds <= 30 * 60
 
 
 def test_a_sleeve_of_the_fit_test_plate_too_deep(

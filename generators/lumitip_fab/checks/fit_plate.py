@@ -1,25 +1,30 @@
 """The fit test plate: every coupon really is as much looser than the backing as its value says."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import shapely
 
-from lumitip_fab.checks.printed import circles, holes_at, measure_boxes, measure_closed
+from lumitip_fab.checks.fit_corner import PLACE_MM, TIGHT_MM, FitCoupons, measure_corners
+from lumitip_fab.checks.printed import (
+    circles,
+    holes_at,
+    measure_bed,
+    measure_boxes,
+    measure_closed,
+)
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.readers.solids import Vectors, cast, section
-from lumitip_fab.checks.result import Measure, Measurement, Subject, measured, unreadable
-from lumitip_fab.design import Design, Point
+from lumitip_fab.checks.result import Measure, Measurement, measured, unreadable
+from lumitip_fab.checks.spans import longest_span_mm
+from lumitip_fab.design import Design
 from lumitip_fab.errors import OutputError
 
 READS = ("fit/*.stl", "fit/*.3mf", "fit/*.step")
-TIGHT_MM = 0.02  # less than half a step: no step passes for its neighbour
-PLACE_MM = 0.05
 SIZE_MM = 0.05
 VOLUME_FRACTION = 0.05
+LEAST_BED_MM2 = 25.0  # of a coupon
 _FILE = "fit/fit_plate.stl"
 _DOWN = np.array([0.0, 0.0, -1.0])
 # Places in parts of a character's height from its lower left corner, and which of them are sunk.
@@ -38,29 +43,6 @@ _SUNK = {"0": "abcdef", "1": "adgpq", "5": "acdfg", "-": "g", "+": "gpq", " ": "
 _CHARACTERS, _CHARACTER_PITCH = 3, 0.85
 
 
-@dataclass(frozen=True, eq=False)
-class _Plate(Subject):
-    """The plate as it was read."""
-
-    mesh: Any
-    design: Design
-
-    def names(self) -> list[str]:
-        """Values of the steps."""
-        hundredths = [f"{100 * fits.fit_mm:+.0f}" for fits in self.design.fit_plate.steps]
-        return ["0" if value in {"+0", "-0"} else value for value in hundredths]
-
-    def looser_mm(self, step: int) -> float:
-        """How much looser than the backing a step is to be."""
-        return self.design.fit_plate.steps[step].fit_mm - self.design.printing.fit_mm
-
-    def mounted(self, step: int, us: tuple[float, ...]) -> tuple[Point, ...]:
-        """Places on the line of the bolts, of those in the slice that is shown."""
-        plate, w = self.design.fit_plate, self.design.mount.bolt_w_mm
-        x, y = plate.at(step, plate.slice_at)
-        return tuple((x - u, y - w) for u in us if plate.slice.x_min_mm < u < plate.slice.x_max_mm)
-
-
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     """Every figure of the plate."""
     try:
@@ -68,14 +50,14 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     except OutputError as error:
         yield unreadable("fit_plate.readable", _FILE, str(error))
         return
-    plate = _Plate("fit_plate", _FILE, mesh, design)
+    plate = FitCoupons("fit_plate", _FILE, mesh, design)
     yield plate.figure("readable", len(mesh.faces), 4, np.inf, "triangles")
     yield from measured(MEASURES, plate)
     coupons = len(design.fit_plate.steps)
     yield from measure_boxes("fit_plate", outputs, _FILE, mesh.bounds, mesh.bounds, coupons)
 
 
-def measure_body(plate: _Plate) -> Iterator[Measurement]:
+def measure_body(plate: FitCoupons) -> Iterator[Measurement]:
     """Closed bodies, one for each step, of the stated size and volume."""
     mesh, wanted = plate.mesh, plate.design.fit_plate
     yield from measure_closed(plate, mesh, len(wanted.steps))
@@ -85,28 +67,19 @@ def measure_body(plate: _Plate) -> Iterator[Measurement]:
     yield plate.figure("volume", float(mesh.volume) / 1000, least, most, "mL")
 
 
-def measure_corners(plate: _Plate) -> Iterator[Measurement]:
-    """On each foot: gaps from a board's edges to the walls, the pin, and the floor."""
-    wanted, board = plate.design.fit_plate, plate.design.board
-    cut = section(plate.mesh, wanted.floor_mm + wanted.pocket_mm / 2)
-    rings = [p.exterior for p in shapely.get_parts(cut) if p.geom_type == "Polygon"]
-    for step, name in enumerate(plate.names()):
-        looser = plate.looser_mm(step)
-        x, y = wanted.at(step, wanted.corner)
-        pin_x, pin_y = wanted.at(step, wanted.pin)
-        free = np.array([0.25, 0.4])
-        beside = [(x, y + (pin_y - y) * f) for f in free]
-        behind = [(x + (pin_x - x) * f, y) for f in free]
-        gaps = np.concatenate([_gaps(cut, beside, (-1.0, 0.0)), _gaps(cut, behind, (0.0, 1.0))])
-        yield plate.near("pocket_gap", gaps, board.pocket_clearance_mm + looser, TIGHT_MM, at=name)
-        off, wide = circles(rings, ((pin_x, pin_y),), board.hole_mm / 2)
-        yield plate.near("pins", off, 0.0, PLACE_MM, at=name)
-        yield plate.near("pin", wide, board.pin_mm - 2 * looser, TIGHT_MM, at=name)
-        open_floor = np.array([(x + 0.3, pin_y), ((x + pin_x) / 2, pin_y)])
-        yield plate.near("floor", _height(plate, open_floor), wanted.floor_mm, PLACE_MM, at=name)
+def measure_print(plate: FitCoupons) -> Iterator[Measurement]:
+    """Prints without support: only pins hang over, and no line is long over nothing."""
+    design, mesh = plate.design, plate.mesh
+    pins_mm2 = len(design.fit_plate.corners) * sum(
+        fits.pin_mm * design.stack.pcb_mm for fits in design.fit_plate.steps
+    )
+    yield from measure_bed(plate, mesh, pins_mm2, LEAST_BED_MM2 * len(design.fit_plate.steps))
+    span, at_mm = longest_span_mm(mesh, design.printing)
+    note = f"longest line over nothing, {at_mm:.1f} mm over the bed"
+    yield plate.figure("span", span, 0.0, design.printing.bridge_mm, note=note)
 
 
-def measure_bolts(plate: _Plate) -> Iterator[Measurement]:
+def measure_bolts(plate: FitCoupons) -> Iterator[Measurement]:
     """The bolt's hole in each slice: place and diameter."""
     wanted, mount = plate.design.fit_plate, plate.design.mount
     low = wanted.pin_depth_mm if mount.sleeved else 0.0
@@ -119,7 +92,7 @@ def measure_bolts(plate: _Plate) -> Iterator[Measurement]:
         yield plate.near("bolt_hole", wide, hole, TIGHT_MM, at=name)
 
 
-def measure_pins(plate: _Plate) -> Iterator[Measurement]:
+def measure_pins(plate: FitCoupons) -> Iterator[Measurement]:
     """The holes for the gripper's pins in each slice: place and diameter."""
     wanted, mount = plate.design.fit_plate, plate.design.mount
     rings = holes_at(plate.mesh, wanted.pin_depth_mm / 2)
@@ -130,7 +103,7 @@ def measure_pins(plate: _Plate) -> Iterator[Measurement]:
         yield plate.near("gripper_pin_hole", wide, hole, TIGHT_MM, at=name)
 
 
-def measure_sleeves(plate: _Plate) -> Iterator[Measurement]:
+def measure_sleeves(plate: FitCoupons) -> Iterator[Measurement]:
     """How deep the holes for sleeves round the bolts are, from below."""
     wanted, mount = plate.design.fit_plate, plate.design.mount
     turn = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
@@ -143,7 +116,7 @@ def measure_sleeves(plate: _Plate) -> Iterator[Measurement]:
         yield plate.near("sleeve", rise - 1.0, wanted.pin_depth_mm, PLACE_MM, at=name)
 
 
-def measure_noses(plate: _Plate) -> Iterator[Measurement]:
+def measure_noses(plate: FitCoupons) -> Iterator[Measurement]:
     """Half the width of each nose on either side, less than its step allows no gap."""
     wanted, mount, nose = plate.design.fit_plate, plate.design.mount, plate.design.mount.nose
     if nose is None:
@@ -165,7 +138,7 @@ def measure_noses(plate: _Plate) -> Iterator[Measurement]:
         yield plate.near("nose", np.array(errors), 0.0, TIGHT_MM, at=name)
 
 
-def measure_labels(plate: _Plate) -> Iterator[Measurement]:
+def measure_labels(plate: FitCoupons) -> Iterator[Measurement]:
     """Each value as it is engraved: places that are sunk though they should stand, or stand."""
     wanted = plate.design.fit_plate
     high = wanted.label.length_mm
@@ -182,16 +155,7 @@ def measure_labels(plate: _Plate) -> Iterator[Measurement]:
         yield plate.figure("label", wrong, 0, 0, f"of {len(places)} places wrong", at=name)
 
 
-def _gaps(cut: Any, starts: list[Point], outward: Point) -> Vectors:
-    """From points on a board's edge outward to the wall."""
-    from_ = np.array(starts) - np.array(outward) * 0.1
-    lines = shapely.linestrings(np.stack([from_, from_ + np.array(outward) * 2.0], axis=1))
-    return np.asarray(
-        shapely.distance(shapely.points(from_), shapely.intersection(lines, cut)) - 0.1
-    )
-
-
-def _height(plate: _Plate, points: Vectors) -> Vectors:
+def _height(plate: FitCoupons, points: Vectors) -> Vectors:
     """Height of what is seen from above at points (x, y)."""
     above = float(plate.mesh.bounds[1, 2]) + 1.0
     origins = np.column_stack([points, np.full(len(points), above)])
@@ -199,8 +163,9 @@ def _height(plate: _Plate, points: Vectors) -> Vectors:
     return np.asarray(above - drop)
 
 
-MEASURES: tuple[Measure[_Plate], ...] = (
+MEASURES: tuple[Measure[FitCoupons], ...] = (
     measure_body,
+    measure_print,
     measure_corners,
     measure_bolts,
     measure_pins,

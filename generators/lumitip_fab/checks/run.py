@@ -34,6 +34,7 @@ MODULES = (
     "backing",
     "strength",
     "fit_plate",
+    "fit_orientation",
     "mould",
     "assembly",
     "board",

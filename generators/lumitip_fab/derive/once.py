@@ -101,7 +101,7 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
     silhouette, coupling, slicing = body.outline, body.mount, body.slicing
     printing = derive_printing(config, silhouette, faults)
     heat = derive_heat(config, slicing, faults)
-    plate = derive_fit_plate(config, plan, coupling, faults)
+    plate = derive_fit_plate(config, plan, stack, coupling, faults)
     sheet = mask.derive_mask(config, silhouette, plan, faults)
     rules = derive_rules(config, faults)
     refuse_receiver_capacitor(config, faults)

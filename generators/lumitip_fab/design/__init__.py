@@ -36,7 +36,7 @@ from lumitip_fab.design.boards import (
 )
 from lumitip_fab.design.cabling import Cable, Cabling, Terminal, Wire
 from lumitip_fab.design.electrical import Electrical
-from lumitip_fab.design.fit_plate import FitPlate, Fits
+from lumitip_fab.design.fit_plate import FitPlate, Fits, PocketCorner
 from lumitip_fab.design.holder import Holder
 from lumitip_fab.design.making import (
     Densities,

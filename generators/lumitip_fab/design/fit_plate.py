@@ -29,34 +29,58 @@ class Fits:
 
 
 @dataclass(frozen=True)
+class PocketCorner:
+    """The corner of the board's pocket at the tip, cut out of a backing as it stands printed:
+    the mount frame is the bed's, moved.
+
+            ╲──╲
+             ╲  ╲ ╲   roof over the board's tip, 45° to the bed
+              ╲ ─ ▌╲  pin, level but for the tilt
+     pocket    ╲  ▌ ╲ gussets
+               ─╲▌───╲────────────  foot, the slice behind it
+    """
+
+    origin_mm: tuple[float, float, float]
+    """Place of the mount frame's origin on the bed, of the first coupon."""
+    x_min_mm: float
+    """Left side of the first coupon's corner on the bed, outside its wall."""
+    x_max_mm: float
+    wall_mm: float
+    """Of each gusset; of the pocket's wall and roof where they are thinnest."""
+    height_mm: float
+    foot: Box
+    """Under the plate and behind it, as thick as a slice."""
+    gusset_mm: tuple[float, float]
+    """How far the gussets reach behind the plate on the bed, and their height."""
+    lead_mm: float
+    """Chamfer of floor and wall at the bed, where a first layer is squeezed wide."""
+    pin: Point
+    """The board's hole at its pin, in the receiver's sensor frame."""
+
+
+@dataclass(frozen=True)
 class FitPlate:
     """The coupons as they lie on the bed: x to the right, y away from the reader, z up.
 
-    Each step is a coupon of its own, so that a board on one meets no other: in front the foot of a
-    corner of the pocket with a pin, behind it a slice of the coupling, all as thin as the layers
-    that a fit takes.
+    Each step is a coupon of its own, so that a board on one meets no other: in front a corner of
+    the pocket with a pin, upright as on the backing, on a foot; behind it a slice of the coupling,
+    as thin as the layers that a fit takes. A compliant finger has no pocket, and its plate the
+    slices alone.
 
       ╲ -10 ╱  ╲ -5  ╱
        │ ◎ │    │ ◎ │    slices of the coupling, the nose away from the reader; values in 0.01 mm
      ┌─┴───┴┐ ┌─┴───┴┐
-     │▛▀▀▀  │ │▛▀▀▀  │   corners: walls at the left and behind, the pin between them
-     └──────┘ └──────┘
+     │▛▀▀▀▀▀│ │▛▀▀▀▀▀│   corners: wall at the left, roof, the pin between them
     """
 
     steps: tuple[Fits, ...]
     """Tightest first, which is the leftmost."""
     pitch_mm: float
     """From coupon to coupon along x; the first begins at x = 0."""
-    foot: Box
-    """Foot of the first coupon's corner."""
-    pin: Point
-    """Pin of the first coupon."""
-    corner: Point
-    """The corner of a board on the first coupon: its left and its far edge."""
-    floor_mm: float
-    """Height of the foot, on which the board lies."""
-    pocket_mm: float
-    """Height of walls and pin over it."""
+    width_mm: float
+    """Of a coupon."""
+    corners: tuple[PocketCorner, ...]
+    """The corner of each coupon; none on a compliant finger."""
     label: Box
     """The value of the first coupon, of three characters."""
     label_mm: float
@@ -76,9 +100,9 @@ class FitPlate:
     @property
     def size_mm(self) -> tuple[float, float, float]:
         """Box round all coupons, from the origin."""
-        width = (len(self.steps) - 1) * self.pitch_mm + max(self.foot.x_max_mm, self.slice.width_mm)
+        width = (len(self.steps) - 1) * self.pitch_mm + self.width_mm
         depth = self.slice_at[1] - self.slice.y_min_mm
-        return width, depth, max(self.thickness_mm, self.floor_mm + self.pocket_mm)
+        return width, depth, max(self.thickness_mm, *(c.height_mm for c in self.corners), 0.0)
 
     def at(self, step: int, place: Point) -> Point:
         """A place of the first coupon moved to another."""

@@ -4,7 +4,7 @@
 - Frame of an auxiliary board: see `lumitip_fab.design.pcb`; a holder prints standing on its end.
 - Frame of a flange: see `lumitip_fab.design.mount`; both parts are printed as they are mounted.
 - Mount frame: see `lumitip_fab.design.Mount`; what is bolted on is printed in it,
-  standing on h = 0.
+  standing on h = 0. The bed of the fit test plate is this frame, moved.
 - Bed of the mould: the sensor frame turned over about x, so that the open side is up.
 - Gripper frame: z = 0 is the mid-plane between the fingers, the lean applied; the receiver
   looks along +z. Opening is the smallest distance from skin to skin.
@@ -23,7 +23,17 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from lumitip_fab.design import Closing, Flange, Holder, Mould, Mount, Point, Stack, System
+from lumitip_fab.design import (
+    Closing,
+    Flange,
+    Holder,
+    Mould,
+    Mount,
+    PocketCorner,
+    Point,
+    Stack,
+    System,
+)
 
 Matrix = NDArray[np.float64]
 BOARD_ON_PAGE_MM = (150.0, 100.0)
@@ -68,6 +78,13 @@ def backing_bed_to_sensor(mount: Mount, stack: Stack) -> Matrix:
     if stack.sunk:
         return mount_to_sensor(mount, stack)
     return translation(0.0, 0.0, stack.face_z_mm) @ rotation_x(180.0)
+
+
+def fit_corner_to_sensor(corner: PocketCorner, mount: Mount, stack: Stack) -> Matrix:
+    """From the bed of the fit test plate to the receiver's sensor frame, of which its first coupon
+    shows a corner."""
+    x, y, z = corner.origin_mm
+    return np.asarray(mount_to_sensor(mount, stack) @ translation(-x, -y, -z))
 
 
 def plate_back_to_sensor(mount: Mount, stack: Stack) -> Matrix:

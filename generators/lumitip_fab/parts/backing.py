@@ -148,7 +148,7 @@ def backing_solid(
     plate = plate_solid(stack, outline, tip) - key_cutters(keys, stack, tip)
     for interface in interfaces:
         return shapes.one_solid(sheet(plate, finger, stack, mount, interface), finger, "backing")
-    plate = plate - _pocket(stack, board)
+    plate = plate - pocket_solid(stack, board)
     plate = plate - coupling.notch_cutter(stack, mount, finger.notch)
     whole = plate + coupling.coupling_solid(mount, stack, finger.notch)
     foot = stack.pocket_z_mm - stack.floor_mm / 2
@@ -182,7 +182,7 @@ def pin_solid(
     return pin.chamfer(lead, None, [top])
 
 
-def _pocket(stack: Stack, board: Board) -> Solid:
+def pocket_solid(stack: Stack, board: Board) -> Solid:
     """Room of the board. At the tip it rises at 45° as printed, so that nothing hangs over."""
     box, top_z = board.pocket, stack.rim_z_mm + BEYOND_MM
     leant = board.roof_mm * (1 + BEYOND_MM / stack.pcb_mm)

@@ -1,14 +1,17 @@
 """The fit test plate: pocket corners, pins, bolt holes and seats, each a little looser."""
 
+from dataclasses import replace
+
 import numpy as np
 from build123d import Compound, Solid
 
-from lumitip_fab.design import Box, Design, FitPlate, Fits, Mount
-from lumitip_fab.design.frames import translation
+from lumitip_fab.design import Box, Design, FitPlate, Mount
+from lumitip_fab.design.frames import fit_corner_to_sensor, translation
 from lumitip_fab.errors import BuildError
 from lumitip_fab.parts import export
-from lumitip_fab.parts.backing import BEYOND_MM, pin_solid
+from lumitip_fab.parts.backing import BEYOND_MM
 from lumitip_fab.parts.coupling import beside_nose
+from lumitip_fab.parts.fit_corner import corner_solid
 from lumitip_fab.parts.letters import value_cutters
 from lumitip_fab.parts.shapes import box_solid, cylinder, placed
 from lumitip_fab.pipeline.artefact import Artefact
@@ -17,26 +20,31 @@ NAME = "fit_plate"
 
 
 def fit_plate_files(design: Design) -> tuple[Artefact, ...]:
-    """The coupons as they lie on the bed."""
-    coupons = fit_plate_solids(design.fit_plate, design.mount)
-    return export.part_files(f"fit/{NAME}", coupons, np.eye(4), frame="")
+    """The coupons as they lie on the bed; the matrix of what is printed leads to the sensor frame
+    of which the first corner is cut."""
+    files = export.part_files(f"fit/{NAME}", fit_plate_solids(design), np.eye(4), frame="")
+    for corner in design.fit_plate.corners:
+        to_sensor = fit_corner_to_sensor(corner, design.mount, design.stack)
+        whole, *printed = files
+        files = (whole, *(replace(f, to_sensor=to_sensor, frame="sensor") for f in printed))
+    return files
 
 
-def fit_plate_solids(plate: FitPlate, mount: Mount) -> Compound:
+def fit_plate_solids(design: Design) -> Compound:
     """The coupons on the bed.
-
-    Args:
-        plate: the steps and where they are.
-        mount: the coupling of which each step shows a slice.
 
     Raises:
         BuildError: if the kernel does not make one valid solid of each.
     """
+    plate = design.fit_plate
     coupons = []
     for step, fits in enumerate(plate.steps):
         label = _shifted(plate.label, step * plate.pitch_mm)
         taken = value_cutters(plate.label_of(step), label, plate.thickness_mm, plate.label_mm)
-        whole = _corner(plate, step, fits) + _slice(plate, step, fits.of(mount))
+        whole = _slice(plate, step, fits.of(design.mount))
+        for corner in plate.corners:
+            shown = corner_solid(corner, fits, design, plate.thickness_mm)
+            whole = whole + placed(shown, translation(step * plate.pitch_mm, 0.0, 0.0))
         solids = (whole - taken).clean().solids()
         if len(solids) != 1 or not solids[0].is_valid:
             raise BuildError(
@@ -45,19 +53,6 @@ def fit_plate_solids(plate: FitPlate, mount: Mount) -> Compound:
             )
         coupons += solids
     return Compound(coupons)
-
-
-def _corner(plate: FitPlate, step: int, fits: Fits) -> Solid:
-    """A corner of the pocket on its foot, open to the right and to the reader, with a pin."""
-    floor, top = plate.floor_mm, plate.floor_mm + plate.pocket_mm
-    foot = _shifted(plate.foot, step * plate.pitch_mm)
-    x, y = plate.at(step, plate.corner)
-    gap = fits.pocket_gap_mm
-    pocket = Box(x - gap, foot.x_max_mm + BEYOND_MM, foot.y_min_mm - BEYOND_MM, y + gap)
-    corner = box_solid(foot, 0.0, top) - box_solid(pocket, floor, top + BEYOND_MM)
-    return corner + pin_solid(
-        plate.at(step, plate.pin), fits.pin_mm, floor / 2, top, plate.pocket_mm
-    )
 
 
 def _slice(plate: FitPlate, step: int, drawn: Mount) -> Solid:

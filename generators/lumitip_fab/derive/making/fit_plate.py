@@ -9,14 +9,15 @@ from numpy.typing import NDArray
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards.boards import Plan
 from lumitip_fab.derive.diagnostics import Diagnostics
+from lumitip_fab.derive.making.fit_corner import Sizes, corner_mm3, derive_corner
 from lumitip_fab.derive.making.fits import derive_fits
-from lumitip_fab.design import Box, FitPlate, Fits, Mount, Point
+from lumitip_fab.design import Box, FitPlate, Fits, Mount, PocketCorner, Stack
 
 STEPS_MM = (-0.1, -0.05, 0.0, 0.05, 0.1)
-LAYERS = 4  # height of a foot, a slice and a pocket's wall
+LAYERS = 4  # height of a foot and a slice
+LEAD_LAYERS = 2  # of a corner's chamfer at the bed
 SLEEVE_LAYERS = 4  # of a sleeve, and as many of the bolt's hole above it
 LINES = 2  # of walls
-SEAT_MM = 1.0  # of a foot round its pin
 FLANK_MM = 3.0  # of a nose's flanks, at least, along w
 CHARACTERS = 3  # of a value
 LABEL_MM = 3.0  # its height
@@ -29,28 +30,32 @@ ROW_MM = LABEL_MM + 2 * MARGIN_MM
 APART_MM = 0.8  # between coupons
 
 
-def derive_fit_plate(config: Input, plan: Plan, mount: Mount, faults: Diagnostics) -> FitPlate:
+def derive_fit_plate(
+    config: Input, plan: Plan, stack: Stack, mount: Mount, faults: Diagnostics
+) -> FitPlate:
     """The plate; refused where it is larger than the bed."""
     printer = config.parts.printer.profile
     wall, layers_mm = LINES * printer.line_mm, LAYERS * printer.layer_mm
     sleeve_mm = SLEEVE_LAYERS * printer.layer_mm
     steps = tuple(derive_fits(config, step) for step in STEPS_MM)
-    to_edges = _hole_to_edges(plan)
-    gap, reach = steps[-1].pocket_gap_mm, steps[0].pin_mm / 2 + SEAT_MM
-    corner = (wall + gap, reach + to_edges[1])
-    pin = (corner[0] + to_edges[0], reach)
-    foot = Box(0.0, pin[0] + reach, 0.0, corner[1] + gap + wall)
     part, label_w = _slice(mount, steps[-1], wall)
-    at = (part.x_max_mm, foot.y_max_mm + part.y_max_mm)
-    middle, low = at[0] - part.centre_mm[0], at[1] - label_w - LABEL_MM
+    head_mm = mount.bolt_w_mm + mount.counterbore_mm / 2 - part.y_max_mm
+    sizes = Sizes(
+        max(wall, config.parameters.printer.min_wall_mm), LEAD_LAYERS * printer.layer_mm, head_mm
+    )
+    corners: tuple[PocketCorner, ...] = (
+        (derive_corner(plan, stack, mount, steps, sizes),) if stack.sunk else ()
+    )
+    width = max(part.width_mm, *(corner.x_max_mm for corner in corners), 0.0)
+    corners = tuple(_centred(corner, width) for corner in corners)
+    front_y = sum(corner.foot.y_max_mm for corner in corners)
+    at = (width / 2 + part.centre_mm[0], front_y + part.y_max_mm)
+    middle, low = width / 2, at[1] - label_w - LABEL_MM
     plate = FitPlate(
         steps=steps,
-        pitch_mm=max(foot.x_max_mm, part.width_mm) + APART_MM,
-        foot=foot,
-        pin=pin,
-        corner=corner,
-        floor_mm=layers_mm,
-        pocket_mm=layers_mm,
+        pitch_mm=width + APART_MM,
+        width_mm=width,
+        corners=corners,
         label=Box(middle - LABEL_WIDE_MM / 2, middle + LABEL_WIDE_MM / 2, low, low + LABEL_MM),
         label_mm=LABEL_LAYERS * printer.layer_mm,
         slice=part,
@@ -59,24 +64,32 @@ def derive_fit_plate(config: Input, plan: Plan, mount: Mount, faults: Diagnostic
         pin_depth_mm=sleeve_mm if mount.sleeved else layers_mm,
         volume_ml=0.0,
     )
-    width, depth, _ = plate.size_mm
+    wide, deep, _ = plate.size_mm
     bed = printer.bed_mm
     faults.unless(
-        width <= bed[0] and depth <= bed[1],
+        wide <= bed[0] and deep <= bed[1],
         "fit_plate_beyond_bed",
-        width=width,
-        depth=depth,
+        width=wide,
+        depth=deep,
         bed_x=bed[0],
         bed_y=bed[1],
     )
-    return replace(plate, volume_ml=_volume_mm3(plate, mount) / 1000)
+    return replace(plate, volume_ml=_volume_mm3(plate, stack, mount, plan.board.box) / 1000)
 
 
-def _hole_to_edges(plan: Plan) -> Point:
-    """From the hole nearest to the gripper end and farthest right to the board's edges there."""
-    box = plan.board.box
-    x, y = min(plan.receiver.holes, key=lambda hole: (hole[1], -hole[0]))
-    return box.x_max_mm - x, y - box.y_min_mm
+def _centred(corner: PocketCorner, width_mm: float) -> PocketCorner:
+    """A corner in the middle of its coupon."""
+    by, (x, y, z) = (width_mm - corner.x_max_mm) / 2, corner.origin_mm
+    foot = replace(
+        corner.foot, x_min_mm=corner.foot.x_min_mm + by, x_max_mm=corner.foot.x_max_mm + by
+    )
+    return replace(
+        corner,
+        origin_mm=(x + by, y, z),
+        x_min_mm=corner.x_min_mm + by,
+        x_max_mm=corner.x_max_mm + by,
+        foot=foot,
+    )
 
 
 def _slice(mount: Mount, loosest: Fits, wall_mm: float) -> tuple[Box, float]:
@@ -124,18 +137,14 @@ def _width_mm(mount: Mount, w_mm: NDArray[np.float64]) -> NDArray[np.float64]:
     return wide
 
 
-def _volume_mm3(plate: FitPlate, mount: Mount) -> float:
+def _volume_mm3(plate: FitPlate, stack: Stack, mount: Mount, board: Box) -> float:
     """Corners and slices, without engraving and chamfers."""
-    return sum(_corner_mm3(plate, fits) + _slice_mm3(plate, fits.of(mount)) for fits in plate.steps)
-
-
-def _corner_mm3(plate: FitPlate, fits: Fits) -> float:
-    """Foot, walls and pin."""
-    foot, (x, y), gap = plate.foot, plate.corner, fits.pocket_gap_mm
-    flat = foot.width_mm * foot.length_mm
-    walls = flat - (foot.x_max_mm - x + gap) * (y + gap - foot.y_min_mm)
-    pin = math.pi / 4 * fits.pin_mm**2
-    return flat * plate.floor_mm + (walls + pin) * plate.pocket_mm
+    slices = sum(_slice_mm3(plate, fits.of(mount)) for fits in plate.steps)
+    return slices + sum(
+        corner_mm3(corner, fits, stack, board, plate.thickness_mm)
+        for fits in plate.steps
+        for corner in plate.corners
+    )
 
 
 def _slice_mm3(plate: FitPlate, drawn: Mount) -> float:
