@@ -25,6 +25,7 @@ READS = ("fit/*.stl", "fit/*.3mf", "fit/*.step")
 SIZE_MM = 0.05
 VOLUME_FRACTION = 0.05
 LEAST_BED_MM2 = 25.0  # of a coupon
+RINGS = 1.02  # area over sleeves, by that of their rings
 _FILE = "fit/fit_plate.stl"
 _DOWN = np.array([0.0, 0.0, -1.0])
 # Places in parts of a character's height from its lower left corner, and which of them are sunk.
@@ -68,12 +69,15 @@ def measure_body(plate: FitCoupons) -> Iterator[Measurement]:
 
 
 def measure_print(plate: FitCoupons) -> Iterator[Measurement]:
-    """Prints without support: only pins hang over, and no line is long over nothing."""
+    """Prints without support: only pins hang over, and the hole of a bolt over its sleeve; no line
+    is long over nothing."""
     design, mesh = plate.design, plate.mesh
-    pins_mm2 = len(design.fit_plate.corners) * sum(
-        fits.pin_mm * design.stack.pcb_mm for fits in design.fit_plate.steps
-    )
-    yield from measure_bed(plate, mesh, pins_mm2, LEAST_BED_MM2 * len(design.fit_plate.steps))
+    wanted, mount = design.fit_plate, design.mount
+    pins = len(wanted.corners) * sum(f.pin_mm * design.stack.pcb_mm for f in wanted.steps)
+    shown = len(plate.mounted(0, mount.bolt_u_mm)) if mount.sleeved else 0
+    rings = [np.pi / 4 * (f.gripper_pin_mm**2 - f.bolt_hole_mm**2) for f in wanted.steps]
+    most = pins + RINGS * shown * float(sum(rings))
+    yield from measure_bed(plate, mesh, most, LEAST_BED_MM2 * len(wanted.steps))
     span, at_mm = longest_span_mm(mesh, design.printing)
     note = f"longest line over nothing, {at_mm:.1f} mm over the bed"
     yield plate.figure("span", span, 0.0, design.printing.bridge_mm, note=note)
