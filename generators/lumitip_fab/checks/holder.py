@@ -219,11 +219,13 @@ def _height(clip: Clip, points: solids.Vectors) -> solids.Vectors:
 
 
 def _roofs_mm2(holder: Holder) -> float:
-    """Overhang of lying holes: a quarter of the way round each, and a side of each nut."""
+    """Overhang of lying holes: a quarter of the way round each, a side of each nut, and the roof
+    of each lug."""
     screws = math.pi / 4 * holder.screw_mm * -holder.seat_z_mm * len(holder.holes)
     straps = math.pi / 4 * holder.strap_hole_mm * holder.wall_mm * 2 * len(holder.strap_y_mm)
     deep = [holder.cradle_mm - math.sqrt(holder.cradle_mm**2 - x**2) for x, _ in holder.holes]
-    return screws + straps + holder.nut_mm / math.sqrt(3) * sum(deep)
+    ties = sum(lug.opening.width_mm * (lug.along_mm[1] - lug.along_mm[0]) for lug in holder.lugs)
+    return screws + straps + ties + holder.nut_mm / math.sqrt(3) * sum(deep)
 
 
 def _free_y_mm(holder: Holder) -> float:

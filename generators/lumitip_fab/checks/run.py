@@ -35,6 +35,7 @@ MODULES = (
     "strength",
     "fit_plate",
     "fit_orientation",
+    "tie_lugs",
     "mould",
     "assembly",
     "board",

@@ -124,6 +124,7 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
         holders,
         joints.auxiliary_boards,
         cabling,
+        coupling,
     )
     faults.stop()
     strength = derive_strength(config, body, optics, faults)

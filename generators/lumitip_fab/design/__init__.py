@@ -74,6 +74,7 @@ from lumitip_fab.design.pcb import (
 )
 from lumitip_fab.design.shape import Box, Cubic, Key, Outline, Point, Side, Stack, Tip
 from lumitip_fab.design.strength import Strength
+from lumitip_fab.design.tie_lug import TieLug
 from lumitip_fab.text import board_name, page_name
 
 

@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass
 
 from lumitip_fab.design.shape import Box, Point
+from lumitip_fab.design.tie_lug import TieLug
 
 
 @dataclass(frozen=True)
@@ -68,6 +69,8 @@ class Holder:
     """Where the holes through the arms are, from the middle of the tray."""
     strap_y_mm: tuple[float, ...]
     strap_hole_mm: float
+    lugs: tuple[TieLug, ...]
+    """For ties round the cables, on the bed of the printer; none where the tray leaves no room."""
 
     @property
     def rib_mm(self) -> float:

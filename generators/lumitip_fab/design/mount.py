@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from lumitip_fab.design.making import Letter
 from lumitip_fab.design.shape import Box, Point
+from lumitip_fab.design.tie_lug import TieLug
 
 _FLARE_THINS = 0.4  # of its depth at the ramp, where a flare ends: the bending moment thins so
 
@@ -63,6 +64,8 @@ class Mount:
     """Height over the plate's back at which the ramp turns into its flare."""
     letter: Letter
     """On the back of the block, beside the bolt's land."""
+    lugs: tuple[TieLug, ...]
+    """For ties round the cable, beside the block; none where it leaves no room."""
     force_n: float
     """Greatest force of the gripper; 0 where it is not known."""
     unsure: tuple[str, ...]

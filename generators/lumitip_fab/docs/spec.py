@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from lumitip_fab.design import AuxiliaryBoard, Design, Finger, Flange
+from lumitip_fab.design import AuxiliaryBoard, Design, Finger, Flange, Holder, Mount, TieLug
 from lumitip_fab.design.electrical import PlugIn
 from lumitip_fab.design.frames import gripper_to_base, gripper_to_tool
 from lumitip_fab.docs.row import Row, rows_of
@@ -25,6 +25,7 @@ def outside(design: Design) -> Iterator[Row]:
         yield from rows_of("protected", protection=protection, pin_ma=pin_ma, most_ma=most_ma)
     for finger in design.fingers:
         yield from _held_at(finger, design)
+    yield from _lugs(design.mount.lugs, "lugs", "no_lugs", mount=design.mount)
     for supply in design.electrical.supplies:
         charging_ma = 1000 * supply.charging_a
         least_a = supply.ripple_a / 2
@@ -39,6 +40,7 @@ def outside(design: Design) -> Iterator[Row]:
         yield from rows_of("no_holder", mount=design.mount)
     for holder in design.holders if breakout else ():
         yield from rows_of("holder", holder=holder)
+        yield from _lugs(holder.lugs, "holder_lugs", "no_holder_lugs", holder=holder)
     for flange in design.flanges:
         yield from _stack(flange)
     for panel in design.panels:
@@ -68,6 +70,13 @@ def _held_at(finger: Finger, design: Design) -> Iterator[Row]:
     edge_mm = y - wires.pad_mm / 2 - design.board.box.y_min_mm
     notch_mm = finger.notch.x_max_mm - x - wires.pad_mm / 2
     return rows_of("no_thread", name=finger.name, edge_mm=edge_mm, notch_mm=notch_mm)
+
+
+def _lugs(lugs: tuple[TieLug, ...], some: str, none: str, **of: Mount | Holder) -> Iterator[Row]:
+    """Lugs for cable ties, or what leaves no room for them."""
+    wide, thick = lugs[0].tie_mm if lugs else (0.0, 0.0)
+    names = ", ".join(lug.name for lug in lugs)
+    return rows_of(some if lugs else none, names=names, wide=wide, thick=thick, **of)
 
 
 def _flange(auxiliary: AuxiliaryBoard) -> Iterator[Row]:

@@ -53,7 +53,7 @@ def wiring_note(design: Design) -> str:
     """The wires with what to mind, in Markdown."""
     title, cabling = design.title, design.cabling
     return passage(_TEXTS, "note").format(
-        ties=_tied(design),
+        ties=_tied(design) + _lugged(design),
         title=as_written(f"{title.name} {title.revision}"),
         tables="\n\n".join(map(_table, cabling.cables)),
         power=_power(cabling),
@@ -77,6 +77,17 @@ def _tied(design: Design) -> str:
         hole_mm=ties[tied[0]][0].hole_mm,
         loose=passage(_TEXTS, "loose").format(boards=_listed(loose)) if loose else "",
     )
+
+
+def _lugged(design: Design) -> str:
+    """The lugs that cable ties go through; empty where no part has any."""
+    named = ["fingers"] * bool(design.mount.lugs)
+    named += [holder.name for holder in design.holders if holder.lugs]
+    lugs = (*design.mount.lugs, *(lug for holder in design.holders for lug in holder.lugs))
+    if not lugs:
+        return ""
+    wide, thick = lugs[0].tie_mm
+    return passage(_TEXTS, "lugged").format(parts=_listed(named), wide=wide, thick=thick)
 
 
 def _listed(names: list[str]) -> str:

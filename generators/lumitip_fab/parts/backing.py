@@ -72,9 +72,10 @@ def interface_solid(finger: Finger, stack: Stack, mount: Mount, interface: Inter
     taken = [
         coupling.beyond_mount_plane(mount, behind),
         *coupling.coupling_holes(mount, behind),
+        *coupling.tie_openings(mount, behind),
         letter_cutter(finger.name, mount.letter, frames.mount_to_sensor(mount, behind)),
     ]
-    whole = whole + _rim(stack, interface, end_y)
+    whole = whole + _rim(stack, interface, end_y) + coupling.tie_lugs(mount, behind)
     return shapes.one_solid((whole - taken).clean(), finger, "interface")
 
 
@@ -151,6 +152,7 @@ def backing_solid(
     plate = plate - pocket_solid(stack, board)
     plate = plate - coupling.notch_cutter(stack, mount, finger.notch)
     whole = plate + coupling.coupling_solid(mount, stack, finger.notch)
+    whole = whole + coupling.tie_lugs(mount, stack)
     foot = stack.pocket_z_mm - stack.floor_mm / 2
     whole = whole + [
         pin_solid(hole, board.pin_mm, foot, stack.rim_z_mm, stack.pcb_mm) for hole in finger.holes
@@ -158,6 +160,7 @@ def backing_solid(
     taken = [
         coupling.beyond_mount_plane(mount, stack),
         *coupling.coupling_holes(mount, stack),
+        *coupling.tie_openings(mount, stack),
         letter_cutter(finger.name, mount.letter, frames.mount_to_sensor(mount, stack)),
         *(_relief(r.box, r.depth_mm, r.through, stack) for r in finger.reliefs),
     ]

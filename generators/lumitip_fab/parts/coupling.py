@@ -20,6 +20,7 @@ from build123d import Edge, Face, Plane, Solid, Vector, Wire
 from lumitip_fab.design import Box, Mount, Point, Stack
 from lumitip_fab.design.frames import Matrix, applied, mount_to_sensor
 from lumitip_fab.parts.shapes import cylinder, placed, polygon_face, prism
+from lumitip_fab.parts.tie_lug import lug_openings, lug_solids
 
 FILLET_END_DEG = 12.0  # fillets meet the plate at an angle: tangent faces do not fuse
 SIDE_FLARE_MM = 1.5  # block's sides into plate; less than the gap kept to reliefs
@@ -65,6 +66,16 @@ def coupling_holes(mount: Mount, stack: Stack) -> list[Solid]:
         for u in mount.pin_u_mm
     ]
     return [placed(hole, mount_to_sensor(mount, stack)) for hole in holes]
+
+
+def tie_lugs(mount: Mount, stack: Stack) -> list[Solid]:
+    """The lugs beside the block, in the sensor frame."""
+    return [placed(lug, mount_to_sensor(mount, stack)) for lug in lug_solids(mount.lugs)]
+
+
+def tie_openings(mount: Mount, stack: Stack) -> list[Solid]:
+    """The openings of those lugs, in the sensor frame."""
+    return [placed(cutter, mount_to_sensor(mount, stack)) for cutter in lug_openings(mount.lugs)]
 
 
 def beyond_mount_plane(mount: Mount, stack: Stack) -> Solid:

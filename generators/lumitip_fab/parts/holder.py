@@ -10,6 +10,7 @@ from lumitip_fab.design.frames import Matrix, holder_bed_to_auxiliary
 from lumitip_fab.errors import BuildError
 from lumitip_fab.parts import export
 from lumitip_fab.parts.shapes import box_solid, cylinder, placed, polygon_face, prism
+from lumitip_fab.parts.tie_lug import lug_openings, lug_solids
 from lumitip_fab.pipeline.artefact import Artefact
 
 BEYOND_MM = 1.0  # how far a cutter reaches past what it cuts
@@ -35,6 +36,9 @@ def holder_solid(holder: Holder) -> Solid:
     whole = whole + [_boss(holder, at) for at in holder.holes]
     taken = [cutter for at in holder.holes for cutter in _screw(holder, at)]
     taken += [_strap(holder, side, y) for side in (-1, 1) for y in holder.strap_y_mm]
+    bed = holder_bed_to_auxiliary(holder)
+    whole = whole + [placed(lug, bed) for lug in lug_solids(holder.lugs)]
+    taken += [placed(cutter, bed) for cutter in lug_openings(holder.lugs)]
     whole = (whole - taken).clean()
     solids = whole.solids()
     if len(solids) != 1 or not solids[0].is_valid:

@@ -15,6 +15,7 @@ from lumitip_fab.design import (
     Finger,
     Holder,
     Interface,
+    Mount,
     Outline,
     Point,
     Stack,
@@ -60,6 +61,7 @@ class Assembled:
     holders: tuple[Holder, ...]
     auxiliary_boards: tuple[AuxiliaryBoard, ...]
     cabling: Cabling
+    mount: Mount
 
 
 def derive_supplies(config: Input, of: Assembled) -> tuple[Used, ...]:
@@ -91,8 +93,8 @@ def _loop_mm(one: Point, other: Point, through_mm: float) -> float:
 
 
 def _held(of: Assembled) -> Iterator[Used]:
-    """Cable ties: from arm to arm of the holder round the gripper, and cables without holes for a
-    thread."""
+    """Cable ties: from arm to arm of the holder round the gripper, at the lugs of fingers and
+    holder, and without lugs round a cable that no thread holds."""
     count = 0
     for holder in of.holders:
         arms_deg = 360 - 2 * holder.strap_deg
@@ -100,10 +102,12 @@ def _held(of: Assembled) -> Iterator[Used]:
         round_mm = 2 * math.pi * outside_mm * arms_deg / 360
         each = math.ceil((round_mm + TIE_LOCK_MM) / (TIE_MM - TIE_LOCK_MM))
         count += len(holder.strap_y_mm) * each
-    loose = [finger for finger in of.fingers if not finger.ties]
+    loose = [finger for finger in of.fingers if of.mount.lugs or not finger.ties]
+    lugs = sum(len(holder.lugs) for holder in of.holders)
     where = ["holder round the gripper"] * bool(count) + ["cables at the gripper"] * bool(loose)
-    if count + len(loose):
-        yield Used("cable tie", ", ".join(where), count + len(loose), "piece")
+    where += ["cables at the holder"] * bool(lugs)
+    if where:
+        yield Used("cable tie", ", ".join(where), count + len(loose) + lugs, "piece")
 
 
 def _plugged(config: Input, of: Assembled) -> Iterator[Used]:

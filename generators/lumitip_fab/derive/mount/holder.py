@@ -1,11 +1,14 @@
 """The holder that clips the breakout board to the gripper."""
 
+from dataclasses import replace
+
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.stack import held_by, stiff_mm
 from lumitip_fab.derive.making.fits import Drawn
 from lumitip_fab.derive.mount.fasteners import screw_length_mm
 from lumitip_fab.derive.mount.rules import refuse_holder, shoulder_deg
+from lumitip_fab.derive.mount.tie_lugs import holder_lugs
 from lumitip_fab.design import AuxiliaryBoard, Box, Holder
 
 NUT_PLAY_MM = 0.2  # nut pockets beyond the nuts
@@ -59,6 +62,7 @@ def derive_holder(
         strap_deg=(p.holder.wrap_deg + shoulder_deg(tray.x_max_mm + wall, radius + wall)) / 2,
         strap_y_mm=(-spacing, spacing),
         strap_hole_mm=p.holder.strap_hole_mm,
+        lugs=(),
     )
     refuse_holder(config, of, holder, faults)
-    return (holder,)
+    return (replace(holder, lugs=holder_lugs(config, holder, of)),)

@@ -1,6 +1,7 @@
 """The gripper coupling, from its catalogue entry, and how the two fingers meet."""
 
 import math
+from dataclasses import replace
 
 from lumitip_fab.catalogue.grippers import Gripper
 from lumitip_fab.config.load import Input
@@ -17,6 +18,7 @@ from lumitip_fab.derive.finger.stack import held_by, is_flex
 from lumitip_fab.derive.making.fits import derive_fits
 from lumitip_fab.derive.mount.fasteners import bolt_length_mm
 from lumitip_fab.derive.mount.rules import refuse_block, refuse_place
+from lumitip_fab.derive.mount.tie_lugs import finger_lugs
 from lumitip_fab.design import Closing, Letter, Mould, Mount, Outline, Stack
 
 LETTER_MARGIN_MM = 0.6  # or a printed line, to the bed, and to where the ramp begins
@@ -39,7 +41,7 @@ def derive_mount(config: Input, outline: Outline, plan: Plan, faults: Diagnostic
         front <= most, "no_wall_before_bolt", field=field, value=value, most=most - before
     )
     pins = gripper.pins
-    return Mount(
+    mount = Mount(
         gripper=p.coupling.gripper,
         title=config.title("coupling.gripper"),
         origin_y_mm=outline.end_y_mm,
@@ -67,9 +69,11 @@ def derive_mount(config: Input, outline: Outline, plan: Plan, faults: Diagnostic
         flare_mm=p.backing.flare_mm,
         flare_depth_mm=p.backing.flare_depth_mm,
         letter=_letter(config, gripper, faults),
+        lugs=(),
         force_n=gripper.force_n or 0.0,
         unsure=gripper.unsure,
     )
+    return replace(mount, lugs=finger_lugs(config, mount, outline))
 
 
 def _side_by_side(spacing_mm: float | None) -> tuple[float, ...]:
