@@ -49,6 +49,7 @@ MODULES = (
     "robot",
     "system",
     "wiring",
+    "bending",
     "bom",
     "packs",
     "heat",

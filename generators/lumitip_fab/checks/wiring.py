@@ -166,17 +166,19 @@ def _lengths(rows: tuple[Row, ...], boards: dict[str, KicadBoard], design: Desig
     for row in rows:
         way = cabling.slack_mm
         if row.start[0] in ("emitter", "receiver"):
-            way += cabling.travel_mm + _reach_mm(boards[row.start[0]], design)
+            way += cabling.travel_mm + reach_mm(boards[row.start[0]], design)
+            way += sum(c.added_mm for c in cabling.cables if c.name == row.cable)
             way += cabling.supply_mm if row.end[0] == "supply" else cabling.controller_mm
         else:
             way += cabling.supply_mm
         over.append(row.length_mm - way)
     worst = max(over, key=lambda mm: abs(mm - cabling.step_mm / 2), default=math.nan)
-    note = "longer than reach, travel, way and slack"
+    note = "longer than reach, travel, way, slack and what bends need"
     return Measurement("wiring.lengths", _LIST, worst, 0, cabling.step_mm, "mm", note)
 
 
-def _reach_mm(board: KicadBoard, design: Design) -> float:
+def reach_mm(board: KicadBoard, design: Design) -> float:
+    """From the farthest pad of a finger's wires to the middle of its gripper end."""
     pads = np.array([t.at for p in board.parts if p.ref == "J1" for t in p.terminals])
     places = applied(board_page_to_sensor(design.stack), pads)[:, :2]
     return float((abs(places[:, 0]) + places[:, 1]).max() - design.outline.end_y_mm)

@@ -76,6 +76,8 @@ class Cable:
     """Least length: its path and the slack."""
     length_mm: float
     """To cut each wire to."""
+    added_mm: float
+    """More than the least length, rounded up: until no bend is too tight."""
     section_mm2: float
     """Copper of each wire."""
     wires: tuple[Wire, ...]
@@ -92,10 +94,31 @@ class Cable:
 
 
 @dataclass(frozen=True)
+class Loop:
+    """The part of a finger's cable that moves with it, from the tie at the finger to the place
+    where it is held along the gripper."""
+
+    cable: str
+    run_mm: float
+    """Between both ends along the tool axis."""
+    length_mm: float
+    radius_mm: float
+    """The smallest bend radius while the gripper closes and opens, estimated."""
+    at_mm: float
+    """How far the finger is from closed where that is."""
+    outer_mm: float
+    """Diameter of one of its wires, with its insulation."""
+    least_mm: float
+    """The smallest radius that it may have."""
+
+
+@dataclass(frozen=True)
 class Cabling:
     """All cables, and the parts of their lengths."""
 
     cables: tuple[Cable, ...]
+    loops: tuple[Loop, ...]
+    """Of each cable that moves with a finger."""
     travel_mm: float
     """Travel of a finger, from closed to open."""
     supply_mm: float
@@ -107,5 +130,7 @@ class Cabling:
     """Lengths are multiples of it."""
     most_a_per_mm2: float
     """Largest current density."""
+    bend_ratio: float
+    """Least bend radius of a moving wire, by its outer diameter."""
     most_drop: float
     """Largest drop of voltage over the wires, both ways, as a share of the LEDs' supply."""

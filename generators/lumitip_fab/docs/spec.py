@@ -26,6 +26,10 @@ def outside(design: Design) -> Iterator[Row]:
     for finger in design.fingers:
         yield from _held_at(finger, design)
     yield from _lugs(design.mount.lugs, "lugs", "no_lugs", mount=design.mount)
+    added = {cable.name: cable.added_mm for cable in design.cabling.cables}
+    for loop in design.cabling.loops:
+        longer = f"; cut {added[loop.cable]:g} mm longer for it" if added[loop.cable] else ""
+        yield from rows_of("loop", loop=loop, ratio=design.cabling.bend_ratio, longer=longer)
     for supply in design.electrical.supplies:
         charging_ma = 1000 * supply.charging_a
         least_a = supply.ripple_a / 2

@@ -2,6 +2,7 @@
 
 import csv
 import io
+import math
 
 from lumitip_fab.design import Cable, Cabling, Design, Wire
 from lumitip_fab.design.cabling import named
@@ -61,6 +62,8 @@ def wiring_note(design: Design) -> str:
         controller_mm=cabling.controller_mm,
         supply_mm=cabling.supply_mm,
         slack_mm=cabling.slack_mm,
+        radius_mm=math.floor(min(loop.radius_mm for loop in cabling.loops)),
+        least_mm=math.ceil(max(loop.least_mm for loop in cabling.loops)),
     )
 
 

@@ -8,12 +8,12 @@ from itertools import permutations
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards.connectors import SWITCH
 from lumitip_fab.derive.diagnostics import Diagnostics
+from lumitip_fab.derive.wiring.loops import BEND_RATIO, STRANDED, Way, loop_of, with_room
 from lumitip_fab.design import AuxiliaryBoard, Component, Electrical, Finger, Mount, Outline, Wiring
 from lumitip_fab.design.cabling import Cable, Cabling, Terminal, Wire
 
 MOST_A_PER_MM2 = 3.0  # in a bundle; a common figure for thin wires without cooling
 MOST_DROP = 0.02  # of the LEDs' supply, both ways
-STRANDED = 1.15  # diameter of strands over that of solid copper of the same section
 DRILL_ROOM_MM = 0.1
 STEP_MM = 10.0  # lengths are multiples of it
 COPPER_OHM_MM2_PER_M = 0.0178
@@ -59,12 +59,13 @@ def derive_cabling(
     breakout, host = _named(boards.auxiliary_boards, "breakout"), _host(boards.auxiliary_boards)
     to_supply_mm = p.controller_mm if host else p.supply_mm
     fed, switched = _parted(_pads(boards.emitter), ends["emitter"])
-    ways = [
-        (boards.emitter, fed, loads.lit, travel_mm + to_supply_mm),
-        (boards.receiver, _pads(boards.receiver), loads.read, travel_mm + p.controller_mm),
+    parts = [
+        (boards.emitter, fed, loads.lit, to_supply_mm),
+        (boards.receiver, _pads(boards.receiver), loads.read, p.controller_mm),
     ]
     if switched:
-        ways.append((boards.emitter, switched, {}, travel_mm + p.controller_mm))
+        parts.append((boards.emitter, switched, {}, p.controller_mm))
+    ways = [Way(reach_mm(finger, outline), travel_mm, run_mm) for finger, _, _, run_mm in parts]
     cables = [
         _cable(
             f"W{i}",
@@ -73,9 +74,9 @@ def derive_cabling(
             load,
             fixed,
             p.section_mm2,
-            reach_mm(finger, outline) + way_mm + p.slack_mm,
+            way.length_mm + p.slack_mm,
         )
-        for i, (finger, pads, load, way_mm) in enumerate(ways, 1)
+        for i, ((finger, pads, load, _), way) in enumerate(zip(parts, ways, strict=True), 1)
     ]
     if breakout:
         fed = _wires_of(breakout, "J7")
@@ -91,17 +92,22 @@ def derive_cabling(
                 p.supply_mm + p.slack_mm,
             )
         )
-    thick = tuple(_thick_enough(config, cable, cables) for cable in cables)
-    for cable in thick:
+    for _ in range(2):  # a longer cable may have to be thicker, and a thicker one longer
+        cables = [_thick_enough(config, cable, cables) for cable in cables]
+        moving = [with_room(c, way, STEP_MM) for c, way in zip(cables, ways, strict=False)]
+        cables = [*moving, *cables[len(ways) :]]
+    for cable in cables:
         _refuse_thick(config, cable, boards, faults)
     return Cabling(
-        cables=thick,
+        cables=tuple(cables),
+        loops=tuple(loop_of(cable, way) for cable, way in zip(cables, ways, strict=False)),
         travel_mm=travel_mm,
         supply_mm=p.supply_mm,
         controller_mm=p.controller_mm,
         slack_mm=p.slack_mm,
         step_mm=STEP_MM,
         most_a_per_mm2=MOST_A_PER_MM2,
+        bend_ratio=BEND_RATIO,
         most_drop=MOST_DROP,
     )
 
@@ -229,7 +235,7 @@ def _cable(
         for place, start in enumerate(starts, 1)
     )
     length_mm = STEP_MM * math.ceil(round(least_mm / STEP_MM, 6))
-    return Cable(name, least_mm, length_mm, section_mm2, wires)
+    return Cable(name, least_mm, length_mm, 0.0, section_mm2, wires)
 
 
 def _thick_enough(config: Input, cable: Cable, cables: list[Cable]) -> Cable:

@@ -1,0 +1,112 @@
+"""Bend radius of the fingers' cables over the stroke, from the written list of wires.
+
+A chain of stiff links with springs between them is put between both ties, and its bending energy is
+made least for several places of the finger. Its ends lie along the tool axis, one along the gripper
+as far as the wiring says, the other in line with it where the gripper is closed.
+"""
+
+import math
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+from scipy.optimize import minimize
+
+from lumitip_fab.checks.cables import Row, read_list
+from lumitip_fab.checks.readers.kicad_board import read_board
+from lumitip_fab.checks.readers.solids import Vectors
+from lumitip_fab.checks.result import Measurement, unreadable
+from lumitip_fab.checks.wiring import reach_mm
+from lumitip_fab.design import Design
+from lumitip_fab.errors import OutputError
+
+READS = ("wiring/cables.csv", "boards/*.kicad_pcb")
+LINKS = 40
+PLACES = (0.0, 0.25, 0.5, 1.0)  # of the finger's travel
+AGREE = 0.06  # of the figure in the design: links are short, not endless
+MARGIN = 0.97  # of the least radius, for the same reason
+_FINGERS = ("emitter", "receiver")
+_LIST = "wiring/cables.csv"
+_SOLID = 1.15  # strands are that much thicker than solid copper
+_PVC_MM = ((1.31, 0.38), (math.inf, 0.51))  # up to a section: UL's AWM style 10236
+
+
+def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
+    """The smallest radius of each cable that moves with a finger."""
+    try:
+        rows = read_list(outputs / _LIST)
+        boards = {f: read_board(outputs / f"boards/{f}/{f}.kicad_pcb") for f in _FINGERS}
+    except OutputError as error:
+        yield unreadable("bending.readable", _LIST, str(error))
+        return
+    figures = {loop.cable: loop.radius_mm for loop in design.cabling.loops}
+    cables = {row.cable: row for row in rows if row.start[0] in _FINGERS}
+    yield Measurement("bending.readable", _LIST, len(cables), len(figures), len(figures), "cables")
+    for name, row in cables.items():
+        shortest = min(each.length_mm for each in rows if each.cable == name)
+        free_mm = shortest - reach_mm(boards[row.start[0]], design)
+        radius = _radius_mm(row, free_mm, design)
+        least = MARGIN * design.cabling.bend_ratio * _outer_mm(row.section_mm2)
+        subject = f"{_LIST}: {name}"
+        note = f"{free_mm:.0f} mm between the ties; an estimate"
+        yield Measurement("bending.radius", subject, radius, least, math.inf, "mm", note)
+        off = radius / figures.get(name, math.nan) - 1
+        note = "from the figure in the design"
+        yield Measurement(
+            "bending.figure", subject, 100 * off, -100 * AGREE, 100 * AGREE, "%", note
+        )
+
+
+def _outer_mm(section_mm2: float) -> float:
+    """Diameter of a wire with its insulation."""
+    wall = next(thick for most, thick in _PVC_MM if section_mm2 <= most)
+    return _SOLID * math.sqrt(4 * section_mm2 / math.pi) + 2 * wall
+
+
+def _radius_mm(row: Row, free_mm: float, design: Design) -> float:
+    """The smallest radius at any place; NaN if the cable does not reach, or no rest is found."""
+    cabling = design.cabling
+    run_mm = cabling.supply_mm if row.end[0] == "supply" else cabling.controller_mm
+    travel_mm = design.mount.stroke_mm / 2
+    if math.hypot(run_mm, travel_mm) >= free_mm:
+        return math.nan
+    turn = 1.5 * np.sin(2 * np.pi * (np.arange(LINKS) + 0.5) / LINKS)
+    found = []
+    for place in PLACES:
+        turn = _at_rest(turn, run_mm / free_mm, place * travel_mm / free_mm)
+        found.append(free_mm / float(np.abs(_bends(turn)).max()))
+    return float(np.min(found))
+
+
+def _at_rest(start: Vectors, run: float, across: float) -> Vectors:
+    """Angles of the links of a chain of length 1, with the least bending energy found."""
+
+    def energy(turn: Vectors) -> float:
+        bends = _bends(turn)
+        return float((bends[1:-1] ** 2).sum() + (bends[0] ** 2 + bends[-1] ** 2) / 2) / 2 / LINKS
+
+    def slope(turn: Vectors) -> Vectors:
+        bends = _bends(turn)
+        return np.asarray(bends[:-1] - bends[1:])
+
+    ends = [
+        {
+            "type": "eq",
+            "fun": lambda turn: np.cos(turn).mean() - run,
+            "jac": lambda turn: -np.sin(turn) / LINKS,
+        },
+        {
+            "type": "eq",
+            "fun": lambda turn: np.sin(turn).mean() - across,
+            "jac": lambda turn: np.cos(turn) / LINKS,
+        },
+    ]
+    options = {"maxiter": 500, "ftol": 1e-9}
+    found = minimize(energy, start, jac=slope, constraints=ends, method="SLSQP", options=options)
+    return np.asarray(found.x) if found.success else np.full(LINKS, np.nan)
+
+
+def _bends(turn: Vectors) -> Vectors:
+    """Curvature between links, and at both ties, half a link from the first and the last."""
+    inner = np.diff(turn) * LINKS
+    return np.concatenate([[2 * LINKS * turn[0]], inner, [-2 * LINKS * turn[-1]]])
