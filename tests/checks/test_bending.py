@@ -40,7 +40,7 @@ def test_an_undamaged_list_passes(cables: Path) -> None:
 
 
 def test_wires_too_thick_to_bend(cables: Path) -> None:
-    changed(cables, "W1", SECTION, "4")
+    changed(cables, "W1", SECTION, "6")
     assert failing(cables, "bending") == {"radius"}
 
 

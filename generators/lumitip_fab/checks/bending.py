@@ -21,9 +21,9 @@ from lumitip_fab.design import Design
 from lumitip_fab.errors import OutputError
 
 READS = ("wiring/cables.csv", "boards/*.kicad_pcb")
-LINKS = 40
-PLACES = (0.0, 0.25, 0.5, 1.0)  # of the finger's travel
-AGREE = 0.06  # of the figure in the design: links are short, not endless
+LINKS = 24
+PLACES = (0.0, 0.2, 0.6, 1.0)  # of the finger's travel
+AGREE = 0.03  # of the figure in the design: links are short, not endless
 MARGIN = 0.97  # of the least radius, for the same reason
 _FINGERS = ("emitter", "receiver")
 _LIST = "wiring/cables.csv"
