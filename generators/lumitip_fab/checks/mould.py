@@ -38,6 +38,7 @@ NAMES = (
     "mould.volume",
     "mould.masses",
     "mould.note",
+    "mould.clamped",
     "mould.seat",
     "mould.letter",
 )

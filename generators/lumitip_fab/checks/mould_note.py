@@ -30,10 +30,12 @@ def measure_note(outputs: Path, design: Design, finger: Finger) -> Iterator[Meas
     try:
         text = (outputs / file).read_text(encoding="utf-8")
     except (OSError, ValueError) as error:
-        yield from (unreadable(f"mould.{name}", file, repr(error)) for name in ("masses", "note"))
+        names = "masses", "note", "clamped"
+        yield from (unreadable(f"mould.{name}", file, repr(error)) for name in names)
         return
     yield _masses(text, file, design)
     yield _figures(text, file, design)
+    yield _clamped(text, file, design)
 
 
 def _masses(text: str, file: str, design: Design) -> Measurement:
@@ -58,6 +60,17 @@ def _figures(text: str, file: str, design: Design) -> Measurement:
     wrong = sum(found != [v] for found, v in zip(matches, wanted, strict=True))
     note = f"of layers, floor, stops and hours: {', '.join(wanted)}"
     return Measurement("mould.note", file, float(wrong), 0, 0, "wrong figures", note)
+
+
+def _clamped(text: str, file: str, design: Design) -> Measurement:
+    """The note names the printed clamp and its screws, or says that there is none."""
+    wanted = {"There is no room for a printed clamp"} if not design.clamps else set()
+    for clamp in design.clamps:
+        name = f"{clamp.screw.name} x {clamp.screw_length_mm:g} countersunk"
+        wanted |= {f"`mould/{clamp.name}.3mf`", name}
+    missing = sorted(each for each in wanted if each not in text)
+    note = f"of {', '.join(sorted(wanted))}"
+    return Measurement("mould.clamped", file, len(missing), 0, 0, "missing", note)
 
 
 def measure_volume(

@@ -22,6 +22,7 @@ from lumitip_fab.derive.finger.stack import (
 from lumitip_fab.derive.finger.strength import Body, derive_strength
 from lumitip_fab.derive.finger.tip import derive_tip
 from lumitip_fab.derive.making import mask, mould
+from lumitip_fab.derive.making.clamp import derive_clamps
 from lumitip_fab.derive.making.fit_plate import derive_fit_plate
 from lumitip_fab.derive.making.panels import derive_panels
 from lumitip_fab.derive.making.printing import derive_heat, derive_slicing
@@ -115,8 +116,10 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
     figures = derive_electrical(config, strings, muxing, circuit.pull_ups, faults)
     joints = Boards(plan.emitter, plan.receiver, (*breakout, *flange))
     cabling = derive_cabling(config, joints, silhouette, coupling, circuit, figures, faults)
+    fingers = plan.emitter, plan.receiver
+    clamps = derive_clamps(config, body, fingers, casting, printing, cabling)
     assembled = Assembled(
-        (plan.emitter, plan.receiver),
+        fingers,
         plan.board,
         stack,
         silhouette,
@@ -125,6 +128,7 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
         joints.auxiliary_boards,
         cabling,
         coupling,
+        clamps,
     )
     faults.stop()
     strength = derive_strength(config, body, optics, faults)
@@ -165,6 +169,7 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
             electrical=figures,
             mask=sheet,
             mould=casting,
+            clamps=clamps,
             printing=printing,
             heat=heat,
             slicing=slicing,
@@ -183,7 +188,7 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
             flanges=flanges,
             system=derive_system(config, flanges, holders),
             purchase=derive_purchase(
-                config, coupling, holders, flanges, derive_supplies(config, assembled)
+                config, coupling, clamps, holders, flanges, derive_supplies(config, assembled)
             ),
             parameters_hash=_parameters_hash(config),
             choices=(),

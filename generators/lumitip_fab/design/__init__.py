@@ -35,6 +35,7 @@ from lumitip_fab.design.boards import (
     Zone,
 )
 from lumitip_fab.design.cabling import Cable, Cabling, Terminal, Wire
+from lumitip_fab.design.clamp import Clamp
 from lumitip_fab.design.electrical import Electrical
 from lumitip_fab.design.fit_plate import FitPlate, Fits, PocketCorner
 from lumitip_fab.design.holder import Holder
@@ -132,6 +133,8 @@ class Design:
     electrical: Electrical
     mask: Mask
     mould: Mould
+    clamps: tuple[Clamp, ...]
+    """Holds a finger in its mould, alike for both fingers; none where there is no room for it."""
     printing: Printing
     heat: tuple[HeatStep, ...]
     """Every step that heats something, in the order of work."""

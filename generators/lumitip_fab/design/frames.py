@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumitip_fab.design import (
+    Clamp,
     Closing,
     Flange,
     Holder,
@@ -95,6 +96,12 @@ def plate_back_to_sensor(mount: Mount, stack: Stack) -> Matrix:
 def mould_bed_to_sensor(stack: Stack, mould: Mould) -> Matrix:
     """From the mould's print bed: its floor is `wall_mm` thick below the silicone's face."""
     return translation(0.0, 0.0, stack.silicone_z_mm + mould.wall_mm) @ rotation_x(180.0)
+
+
+def clamp_bed_to_sensor(stack: Stack, clamp: Clamp) -> Matrix:
+    """From the print bed of a clamp, on which its flat back lies, to the sensor frame of a finger
+    that it holds."""
+    return translation(0.0, 0.0, stack.back_z_mm - clamp.foot_mm - clamp.thickness_mm)
 
 
 def holder_bed_to_auxiliary(holder: Holder) -> Matrix:

@@ -8,6 +8,8 @@ from lumitip_fab.design.shape import Box, Point
 LEDGE_MM = 0.5
 """Between the weir and the trough of a mould."""
 
+TIP_LAND_FRACTION = 1 / 3
+"""Of the straight tip edge, on which a finger stands in its mould; the rest keeps its silicone."""
 
 FOLD_OFF_MM = 0.3
 """Of a mask's straight fold from the finger's outline grown by the allowance, at most."""

@@ -6,11 +6,12 @@ from collections.abc import Mapping
 import numpy as np
 from build123d import Face, Location, Solid, Vector, Wire
 
-from lumitip_fab.design import Board, Box, Design, Finger, Mould, Outline, Stack
+from lumitip_fab.design import Board, Box, Clamp, Design, Finger, Mould, Outline, Stack
 from lumitip_fab.design.frames import mould_bed_to_sensor
 from lumitip_fab.design.making import LEDGE_MM
 from lumitip_fab.errors import BuildError
 from lumitip_fab.parts import export, skin
+from lumitip_fab.parts.clamp import FOOT_CHAMFER_MM, rails
 from lumitip_fab.parts.letters import letter_cutter
 from lumitip_fab.parts.plate import key_fillings
 from lumitip_fab.parts.shapes import box_face, box_solid, side_prism
@@ -41,6 +42,7 @@ def casting_note(
     glue: str,
     keys: int,
     open_back: bool,
+    clamps: tuple[Clamp, ...],
 ) -> str:
     """The note as Markdown.
 
@@ -52,6 +54,7 @@ def casting_note(
         glue: title of what holds the board, or the interface.
         keys: how many holes beside the board are to be filled.
         open_back: whether windows or holes go through the plate.
+        clamps: the printed clamp; none where tape holds the finger.
     """
     rim_mm = mould.wall_mm + stack.cover_mm
     taped = _text("taped", tape=mould.tape) if open_back else ""
@@ -85,8 +88,21 @@ def casting_note(
         layers=layers,
         keys=_text("keyed", keys=keys) if keys else "",
         tip_mm=mould.tip_silicone_mm,
-        tape=mould.tape,
+        **_clamped(mould, clamps),
     )
+
+
+def _clamped(mould: Mould, clamps: tuple[Clamp, ...]) -> dict[str, str]:
+    """How the finger is held down, and let go."""
+    for clamp in clamps:
+        pads_n = clamp.pads_n(clamp.thickness_mm)
+        return {
+            "screwed": _text("screwed", clamp=clamp) + "\n   ",
+            "clamped": _text("clamped", pads_n=pads_n),
+            "unclamped": _text("unclamped"),
+        }
+    held = _text("taped_down", tape=mould.tape)
+    return {"screwed": "", "clamped": held, "unclamped": _text("untaped")}
 
 
 def _text(name: str, /, **values: object) -> str:
@@ -95,7 +111,6 @@ def _text(name: str, /, **values: object) -> str:
 
 
 CHORD_MM = 0.002  # finer than other parts: the draft is measured on walls 1.6 mm high
-FOOT_CHAMFER_MM = 0.4  # the first layer spreads
 WEIR_FRACTION = 0.8  # of the wire notch, through which wires and surplus leave
 WEIR_DRAFT_DEG = 15.0
 GRIP_MM = 14.0  # gap in both walls to take the plate between two fingers
@@ -108,7 +123,7 @@ BEYOND_MM = 1.0
 def mould_files(design: Design, finger: Finger) -> tuple[Artefact, ...]:
     """The mould of one finger, and the note for the person who pours."""
     stack, outline, mould = design.stack, design.outline, design.mould
-    solid = mould_solid(finger, stack, outline, mould)
+    solid = mould_solid(finger, stack, outline, mould, design.clamps)
     keys = key_fillings(design.keys, stack, outline, design.tip)
     volume_ml = cast_volume_ml(finger, stack, outline, design.board, mould, keys)
     mix = silicone_mix(volume_ml, mould)
@@ -120,6 +135,7 @@ def mould_files(design: Design, finger: Finger) -> tuple[Artefact, ...]:
         design.strength.glue,
         len(design.keys),
         open_back(design, finger),
+        design.clamps,
     )
     return (
         *export.part_files(
@@ -156,7 +172,9 @@ def cast_volume_ml(
     return (cavity - dipped) / 1000
 
 
-def mould_solid(finger: Finger, stack: Stack, outline: Outline, mould: Mould) -> Solid:
+def mould_solid(
+    finger: Finger, stack: Stack, outline: Outline, mould: Mould, clamps: tuple[Clamp, ...]
+) -> Solid:
     """The mould in the finger's sensor frame, where its open side looks to -z.
 
     Args:
@@ -164,6 +182,7 @@ def mould_solid(finger: Finger, stack: Stack, outline: Outline, mould: Mould) ->
         stack: heights; the wall ends below the plate's back, so that the plate stands out.
         outline: of the plate.
         mould: the wall and the skin.
+        clamps: for the rails on its outside.
 
     Raises:
         BuildError: if the kernel does not make one valid solid of it.
@@ -175,6 +194,7 @@ def mould_solid(finger: Finger, stack: Stack, outline: Outline, mould: Mould) ->
     end_y = mould.wall_mm - mould.letter.wall_mm
     catch = Box(-weir_half - LEDGE_MM, weir_half + LEDGE_MM, end_y, catch_y)
     block = _footed(stack, outline, mould, top_z, outside) + _lip(stack, mould, catch, outside)
+    block = block + [rail for clamp in clamps for rail in rails(clamp, stack, mould)]
     cavity = skin.drafted_prism(stack, outline, mould, top_z - BEYOND_MM, BEYOND_MM)
     taken = [
         cavity & skin.side_solid(stack, outline, mould),

@@ -17,11 +17,11 @@ from build123d import Edge, Face, Plane, Solid, Vector, Wire
 from numpy.typing import NDArray
 
 from lumitip_fab.design import Board, Box, Cubic, Mould, Outline, Point, Stack
+from lumitip_fab.design.making import TIP_LAND_FRACTION
 from lumitip_fab.parts.shapes import box_face, box_solid
 
 FOOT_MM = 0.1  # a stop widens by this at the most
 TIP_LAND_MM = 0.3  # how far the tip line reaches under the plate; with the gap, one printed line
-TIP_LAND_FRACTION = 1 / 3  # of the straight tip edge; the rest keeps its silicone
 _SAMPLES = 13  # points that fix each offset curve: off by less than 0.0005 mm
 _BEYOND_MM = 1.0
 _FAR_MM = 400.0

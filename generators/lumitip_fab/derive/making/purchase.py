@@ -7,13 +7,15 @@ from lumitip_fab.config.load import Input
 from lumitip_fab.derive.finger.stack import stiff_mm
 from lumitip_fab.derive.making.supplies import Used
 from lumitip_fab.derive.mount.fasteners import screw_length_mm
-from lumitip_fab.design import Flange, Holder, Mount
+from lumitip_fab.design import Clamp, Flange, Holder, Mount
+from lumitip_fab.design.clamp import CLAMPS
 from lumitip_fab.design.ordering import Bought, Pack, PartPrice, Purchase
 
 
 def derive_purchase(
     config: Input,
     mount: Mount,
+    clamps: tuple[Clamp, ...],
     holders: tuple[Holder, ...],
     flanges: tuple[Flange, ...],
     used: tuple[Used, ...],
@@ -25,6 +27,7 @@ def derive_purchase(
         *_controller(config, prices),
         *(_supply(each, packs.get(each.pack)) for each in used),
         *_bolts(mount, packs),
+        *(each for clamp in clamps for each in _of_clamps(clamp, packs)),
         *(each for holder in holders for each in _screws(holder, packs)),
         *(each for flange in flanges for each in _of_flange(config, flange, packs)),
     ]
@@ -106,6 +109,19 @@ def _bolts(mount: Mount, packs: Mapping[str, Pack]) -> list[Bought]:
     where = f"fingers to gripper, {into:.1f} mm into its thread: measure how deep that is"
     count, name = 2 * len(mount.bolt_u_mm), f"{mount.bolt} socket head screw"
     return [_fastener(item, "ISO 4762", where, count, name, packs)]
+
+
+def _of_clamps(clamp: Clamp, packs: Mapping[str, Pack]) -> list[Bought]:
+    """Screws of both clamps, each with a nut on the rail and one on the clamp."""
+    thread, count = clamp.screw.name, CLAMPS * len(clamp.screws)
+    screw, where = (
+        f"{thread} x {clamp.screw_length_mm:g} countersunk screw",
+        "clamps of both moulds",
+    )
+    return [
+        _fastener(screw, "ISO 7046", where, count, f"{thread} screw", packs),
+        _fastener(f"{thread} nut", "ISO 4032", where, 2 * count, f"{thread} nut", packs),
+    ]
 
 
 def _screws(holder: Holder, packs: Mapping[str, Pack]) -> list[Bought]:

@@ -12,6 +12,7 @@ from lumitip_fab.design import (
     AuxiliaryBoard,
     Board,
     Cabling,
+    Clamp,
     Finger,
     Holder,
     Interface,
@@ -27,8 +28,8 @@ TAPE_MARGIN_MM = 5.0
 """Of the tape beyond a window, on each side."""
 KNOT_MM = 80.0
 """Of a thread, on each side of its knot."""
-CLAMPS = 2
-"""Strips of tape across a plate in its mould."""
+STRIPS = 2
+"""Of tape, across a plate in its mould without a printed clamp."""
 CLAMP_END_MM = 25.0
 """Of such a strip on the mould's outside, at each end."""
 TURNS = 2
@@ -62,6 +63,7 @@ class Assembled:
     auxiliary_boards: tuple[AuxiliaryBoard, ...]
     cabling: Cabling
     mount: Mount
+    clamps: tuple[Clamp, ...]
 
 
 def derive_supplies(config: Input, of: Assembled) -> tuple[Used, ...]:
@@ -137,9 +139,12 @@ def _cast(config: Input, of: Assembled) -> Iterator[Used]:
     width = config.parts.mould.tape.width_mm
     taped = sum(_strips_mm(sides, width) for f in of.fingers for sides in _windows(f, of))
     widest = 2 * max(x for x, _ in of.outline.polygon())
-    clamps = len(of.fingers) * CLAMPS * (widest + 2 * (p.mould.wall_mm + CLAMP_END_MM))
-    where = "clamps of both moulds" + (", windows on the back while casting" if taped else "")
-    yield Used(p.mould.tape, where, (taped + clamps) / 1000, "m")
+    each = STRIPS * (widest + 2 * (p.mould.wall_mm + CLAMP_END_MM))
+    down = 0.0 if of.clamps else len(of.fingers) * each
+    uses = ["clamps of both moulds"] * bool(down)
+    uses += ["windows on the back while casting"] * bool(taped)
+    if uses:
+        yield Used(p.mould.tape, ", ".join(uses), (taped + down) / 1000, "m")
     if primer := config.parts.mould.primer:
         cm2 = sum(Polygon(of.outline.polygon()).area for _ in of.fingers) / 100
         yield Used(p.mould.primer, "front of both fingers", cm2 / primer.coverage_cm2_ml, "mL")
