@@ -168,6 +168,14 @@ def layers_edited(folder: Path) -> None:
     edit(folder / NOTE, "in layers of 0.15 mm", "in layers of 0.2 mm")
 
 
+def clamp_forgotten(folder: Path) -> None:
+    edit(folder / NOTE, "`mould/clamp.3mf`", "tape")
+
+
+def screw_edited(folder: Path) -> None:
+    edit(folder / NOTE, "M3 x 20 countersunk", "M3 x 12 countersunk")
+
+
 def hours_edited(folder: Path) -> None:
     edit(folder / NOTE, "Leave it for 24 h", "Leave it for 2 h")
 
@@ -196,8 +204,10 @@ FILES = {
     mass_edited: {"masses"},
     layers_edited: {"note"},
     hours_edited: {"note"},
-    note_empty: {"volume", "masses", "note"},
-    note_missing: {"volume", "masses", "note"},
+    clamp_forgotten: {"clamped"},
+    screw_edited: {"clamped"},
+    note_empty: {"volume", "masses", "note", "clamped"},
+    note_missing: {"volume", "masses", "note", "clamped"},
     backing_missing: {"seat"},
 }
 

@@ -48,7 +48,10 @@ def test_the_mould_is_one_piece_round_the_finger(preset: str, built: Callable[[s
     assert mesh.is_watertight
     assert mesh.body_count == 1
     wide = np.ptp(shape.outline.polygon()[:, 0])
-    assert wide + 2 * shape.mould.wall_mm < mesh.extents[0] < wide + 2 * shape.mould.wall_mm + 1
+    (clamp,) = shape.clamps
+    assert mesh.extents[0] == pytest.approx(2 * clamp.rails[1].x_max_mm, abs=1e-4)
+    (low, _, _), (high, _, _) = mesh.slice_plane((0, 0, clamp.rail_mm + 0.1), (0, 0, 1)).bounds
+    assert wide + 2 * shape.mould.wall_mm < high - low < wide + 2 * shape.mould.wall_mm + 1
     assert mesh.bounds[0, 2] == pytest.approx(0.0, abs=1e-6)
     assert mesh.extents[2] == pytest.approx(
         shape.mould.wall_mm + shape.stack.silicone_mm + shape.stack.pcb_mm
@@ -92,7 +95,9 @@ def test_the_film_lies_on_the_silicone(design: Design) -> None:
 
 def noted(design: Design, of: Mould, open_back: bool = True) -> str:
     mix = casting.silicone_mix(4.0, of)
-    return casting.casting_note("emitter", mix, design.stack, of, "epoxy", 0, open_back)
+    return casting.casting_note(
+        "emitter", mix, design.stack, of, "epoxy", 0, open_back, design.clamps
+    )
 
 
 def test_the_note_says_primer_tape_test_and_the_order_of_demoulding(design: Design) -> None:
@@ -144,7 +149,8 @@ def test_the_note_says_what_the_slicer_rounds(design: Design) -> None:
 def test_each_finger_s_mould_has_its_letter(design: Design) -> None:
     """The letters take the same wall, and nothing else differs."""
     one, other = (
-        mould.mould_solid(f, design.stack, design.outline, design.mould) for f in design.fingers
+        mould.mould_solid(f, design.stack, design.outline, design.mould, design.clamps)
+        for f in design.fingers
     )
     letter = design.mould.letter
     stroke = letter.box.width_mm * letter.box.length_mm * letter.depth_mm

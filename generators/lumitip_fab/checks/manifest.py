@@ -60,6 +60,10 @@ def _apart(path: str, low: Vector, high: Vector, design: Design) -> Iterator[flo
         (interface,) = design.interfaces
         yield abs(high[1] - interface.box.y_max_mm)
         yield abs(high[2] - stack.back_z_mm - interface.rim_height_mm)
+    elif path in {clamp.file for clamp in design.clamps}:
+        for clamp in design.clamps:
+            yield abs(low[2] - (stack.back_z_mm - clamp.foot_mm - clamp.thickness_mm))
+            yield abs(high[1] - clamp.legs[-1].y_max_mm)
     elif path.startswith("mould/"):
         # It lies under the skin, its floor `wall_mm` thick, and reaches round the tip.
         yield abs(high[2] - (stack.silicone_z_mm + design.mould.wall_mm))
