@@ -46,11 +46,11 @@ def foot_at_the_tip_gone(part: Body) -> Body:
 
 
 def against_the_block(part: Body) -> Body:
-    return part + box((-19, 10, 9.5), (-7.9, 20, 13))
+    return part + box((-19, 10, 9.5), (-7.9, 20, 13.35))
 
 
 def against_the_rail(part: Body) -> Body:
-    return part + box((37, -13.5, 1), (38.4, -13, 3))
+    return part + box((37, -13.5, 1), (38.4, -13, 13.35))
 
 
 def over_the_wires(part: Body) -> Body:
@@ -70,7 +70,7 @@ def mark_higher(part: Body) -> Body:
 
 
 def leg_out(part: Body) -> Body:
-    return part + box((39.3, 25.25, 0.6), (39.6, 30.25, 1.3))
+    return part + box((38.9, 25.25, 0.6), (39.6, 30.25, 13.35))
 
 
 def screw_hole_off(part: Body) -> Body:
@@ -101,7 +101,7 @@ def island_added(part: Body) -> Body:
 OTHER_FILES = {"three_mf", "step"}  # no longer the part that the STL holds
 CARVED = {
     foot_shorter: {"seats"},
-    foot_longer: {"seats", "clear", "marks", "step", "three_mf"} - OTHER_FILES,
+    foot_longer: {"seats", "clear", "marks"},
     foot_beside_the_pad: {"seats", "over_pads", "marks"},
     foot_at_the_tip_gone: {"seats", "over_tip", "marks"},
     against_the_block: {"clear"},
@@ -112,7 +112,7 @@ CARVED = {
     leg_out: OTHER_FILES | {"flush", "marks"},
     screw_hole_off: {"screws"},
     screw_hole_wide: {"screw_clearance"},
-    lug_thicker: OTHER_FILES | {"screw_length", "overhang", "bed_contact"},
+    lug_thicker: OTHER_FILES | {"screw_length"},
     arm_thinner: {"press"},
     leg_slotted: {"min_wall", "overhang"},
     island_added: OTHER_FILES | {"bodies", "fits_bed"},

@@ -133,11 +133,11 @@ def measure_over_pads(held: Held) -> Iterator[Measurement]:
     pads = [shapely.Point(x, -y) for x, y in design.mould.pads]
     inside = [_inside_mm(cut, pad) for pad in pads]
     least = design.mould.pad_mm / 2 - HOLE_MM
-    yield held.figure("over_pads", min(inside), least, math.inf, note="of a foot round each pad")
+    yield held.figure("over_pads", np.min(inside), least, math.inf, note="of a foot round each pad")
     half, tip_y = design.outline.tip_width_mm * TIP_LAND_FRACTION / 2, -design.outline.tip_y_mm
     spanned = shapely.MultiPoint([*pads, (-half, tip_y), (half, tip_y)]).convex_hull
     feet = [shapely.box(*_turned(foot)).intersection(cut).centroid for foot in clamp.feet[2:]]
-    within = min(_inside_mm(spanned, foot) for foot in feet)
+    within = np.min([_inside_mm(spanned, foot) for foot in feet])
     yield held.figure("over_tip", within, 0, math.inf, note="inside the triangle of the stops")
 
 
@@ -212,7 +212,7 @@ def measure_press(held: Held) -> Iterator[Measurement]:
     clamp = held.clamp
     boxes = (*clamp.arms, clamp.bar, *clamp.lugs)
     points = np.array([_middle(box) for box in boxes])
-    above = np.column_stack([points, np.full(len(points), clamp.top_mm + 1.0)])
+    above = np.column_stack([points, np.full(len(points), held.mesh.bounds[1][2] + 1.0)])
     hits = solids.cast(held.mesh, above, _DOWN, _REACH_MM)
     through = [hits.distance_mm[hits.ray == k] for k in range(len(points))]
     thin = min(float(np.ptp(found)) if len(found) else 0.0 for found in through)
