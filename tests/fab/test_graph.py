@@ -83,8 +83,8 @@ def test_waste_of_silicone_touches_the_mould_and_what_shares_its_figures(keys: K
 
 
 def test_pitch_touches_everything_of_the_fingers(keys: Keys) -> None:
-    # What holds the controller and the flange's circuit know nothing of the cells; the slicer's note
-    # lists the clamp, which not every grid has room for.
+    # What holds the controller and the flange's circuit know nothing of the cells. The slicer's
+    # note lists the clamp, for which not every grid has room.
     outside = {
         "holder",
         "flange",

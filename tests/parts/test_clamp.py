@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from lumitip_fab.checks.mould_note import measure_note
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
@@ -88,6 +89,25 @@ def test_without_room_there_is_no_clamp_and_the_note_says_so(
     assert "`mould/clamp.3mf`" in notes[0] and "M3 x 20 countersunk" in notes[0]
     assert "There is no room for a printed clamp" in notes[1] and "two strips of" in notes[1]
     assert "clamp.3mf" not in notes[1] and "M3" not in notes[1]
+
+
+def test_a_note_that_is_silent_about_a_missing_clamp_is_seen(
+    changed: Callable[..., Design], design_dir: Path, tmp_path: Path
+) -> None:
+    fasteners = (design_dir / "parts/fasteners.toml").read_text(encoding="utf-8")
+    bare = changed(fasteners=fasteners.replace('["M3"]', '["M3.5"]'))
+    mix = silicone_mix(4.0, bare.mould)
+    note = casting_note("emitter", mix, bare.stack, bare.mould, "x", False, bare.clamps)
+    file = tmp_path / "mould/emitter_casting.md"
+    file.parent.mkdir()
+
+    def failed(text: str) -> set[str]:
+        file.write_text(text, encoding="utf-8")
+        found = measure_note(tmp_path, bare, bare.emitter)
+        return {m.check for m in found if not m.passed}
+
+    assert failed(note) == set()
+    assert failed(note.replace("There is no room for a printed clamp.", "")) == {"mould.clamped"}
 
 
 def _tape_m(design: Design) -> float:
