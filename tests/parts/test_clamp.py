@@ -65,6 +65,12 @@ def test_feet_of_a_compliant_finger_stand_beside_its_interface(
         assert abs(foot.centre_mm[0]) - foot.width_mm / 2 > interface.box.x_max_mm
     for foot in clamp.feet[2:]:
         assert foot.y_min_mm > interface.box.y_max_mm
+    mix = silicone_mix(4.0, design.mould)
+    notes = [
+        casting_note("emitter", mix, d.stack, d.mould, "x", True, d.clamps)
+        for d in (design, changed())
+    ]
+    assert ["hold its tip on its stop with a strip" in note for note in notes] == [True, False]
 
 
 def test_a_longer_finger_has_a_thicker_clamp(changed: Callable[..., Design]) -> None:

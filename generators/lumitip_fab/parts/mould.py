@@ -88,17 +88,18 @@ def casting_note(
         layers=layers,
         keys=_text("keyed", keys=keys) if keys else "",
         tip_mm=mould.tip_silicone_mm,
-        **_clamped(mould, clamps),
+        **_clamped(mould, clamps, stack.sunk),
     )
 
 
-def _clamped(mould: Mould, clamps: tuple[Clamp, ...]) -> dict[str, str]:
-    """How the finger is held down, and let go."""
+def _clamped(mould: Mould, clamps: tuple[Clamp, ...], rigid: bool) -> dict[str, str]:
+    """How the finger is held down, and let go; the tip of a plate that bends by tape as well."""
     for clamp in clamps:
         pads_n = clamp.pads_n(clamp.thickness_mm)
         return {
             "screwed": _text("screwed", clamp=clamp) + "\n   ",
-            "clamped": _text("clamped", pads_n=pads_n),
+            "clamped": _text("clamped", pads_n=pads_n)
+            + ("" if rigid else _text("tip_taped", tape=mould.tape)),
             "unclamped": _text("unclamped"),
         }
     held = _text("taped_down", tape=mould.tape)

@@ -29,7 +29,8 @@ TAPE_MARGIN_MM = 5.0
 KNOT_MM = 80.0
 """Of a thread, on each side of its knot."""
 STRIPS = 2
-"""Of tape, across a plate in its mould without a printed clamp."""
+"""Of tape, across a plate in its mould without a printed clamp; with it, one across the tip of a
+plate that bends."""
 CLAMP_END_MM = 25.0
 """Of such a strip on the mould's outside, at each end."""
 TURNS = 2
@@ -139,9 +140,9 @@ def _cast(config: Input, of: Assembled) -> Iterator[Used]:
     width = config.parts.mould.tape.width_mm
     taped = sum(_strips_mm(sides, width) for f in of.fingers for sides in _windows(f, of))
     widest = 2 * max(x for x, _ in of.outline.polygon())
-    each = STRIPS * (widest + 2 * (p.mould.wall_mm + CLAMP_END_MM))
-    down = 0.0 if of.clamps else len(of.fingers) * each
-    uses = ["clamps of both moulds"] * bool(down)
+    strips = (1 if of.interfaces else 0) if of.clamps else STRIPS
+    down = len(of.fingers) * strips * (widest + 2 * (p.mould.wall_mm + CLAMP_END_MM))
+    uses = ["tips of both plates" if of.clamps else "clamps of both moulds"] * bool(down)
     uses += ["windows on the back while casting"] * bool(taped)
     if uses:
         yield Used(p.mould.tape, ", ".join(uses), (taped + down) / 1000, "m")
