@@ -18,8 +18,8 @@ from lumitip_fab.design.making import TIP_LAND_FRACTION
 from lumitip_fab.design.print_time import BRIM_MM
 
 SCREW = "M3"
-LENGTHS_MM = (8, 10, 12, 16, 20, 25, 30, 35, 40, 45, 50)
-"""Preferred lengths of ISO 7046 screws of M3."""
+LENGTHS_MM = (8, 10, 12, 16, 20, 25, 30)
+"""Countersunk screws of M3 as they are commonly sold (inferred)."""
 ARM_MM = 8.0
 BAR_MM = 8.0
 THICKNESS_MM = (4.0, 12.0)
