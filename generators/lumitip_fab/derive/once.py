@@ -117,7 +117,8 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
     joints = Boards(plan.emitter, plan.receiver, (*breakout, *flange))
     cabling = derive_cabling(config, joints, silhouette, coupling, circuit, figures, faults)
     fingers = plan.emitter, plan.receiver
-    clamps = derive_clamps(config, body, fingers, casting, printing, cabling)
+    keys = derive_keys(config, body, casting)
+    clamps = derive_clamps(config, body, fingers, keys, casting, printing, cabling)
     assembled = Assembled(
         fingers,
         plan.board,
@@ -154,7 +155,7 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
             stack=stack,
             outline=silhouette,
             tip=body.tip,
-            keys=derive_keys(config, body, casting),
+            keys=keys,
             board=plan.board,
             emitter=plan.emitter,
             receiver=plan.receiver,

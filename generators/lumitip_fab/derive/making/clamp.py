@@ -12,7 +12,7 @@ from shapely import Polygon
 
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.finger.strength import Body
-from lumitip_fab.design import Box, Cabling, Fastener, Finger, Mould, Point, Printing
+from lumitip_fab.design import Box, Cabling, Fastener, Finger, Key, Mould, Point, Printing
 from lumitip_fab.design.clamp import PITCH_MM, Clamp
 from lumitip_fab.design.making import TIP_LAND_FRACTION
 from lumitip_fab.design.print_time import BRIM_MM
@@ -50,6 +50,7 @@ class _Plan:
 
     body: Body
     fingers: tuple[Finger, Finger]
+    keys: tuple[Key, ...]
     mould: Mould
     printing: Printing
 
@@ -57,6 +58,8 @@ class _Plan:
         """Places on the plate's back where no foot may stand, on the right side."""
         for finger in self.fingers:
             boxes = [finger.notch, *(relief.box for relief in finger.reliefs)]
+            for (x, y), half in ((key.at, key.wide_mm / 2) for key in self.keys):
+                boxes.append(Box(x, x, y, y).grown(half))
             for interface in self.body.interfaces:
                 boxes += [Box(x, x, y, y).grown(KNOT_MM - APART_MM) for x, y in finger.holes]
                 up = self.body.mount.origin_y_mm
@@ -84,13 +87,14 @@ def derive_clamps(
     config: Input,
     body: Body,
     fingers: tuple[Finger, Finger],
+    keys: tuple[Key, ...],
     mould: Mould,
     printing: Printing,
     cabling: Cabling,
 ) -> tuple[Clamp, ...]:
     """The clamp, alike for both fingers; none where there is no room for it."""
     entry = config.catalogue.fasteners.get(SCREW)
-    plan = _Plan(body, fingers, mould, printing)
+    plan = _Plan(body, fingers, keys, mould, printing)
     rear, front = _at_pads(plan), _at_tip(plan)
     if entry is None or rear is None or front is None:
         return ()
@@ -135,9 +139,11 @@ def _at_pads(plan: _Plan) -> Box | None:
 
 
 def _arm_from_mm(plan: _Plan) -> float:
-    """Inner side of the right arm: beside block, notch and interface, and over its foot."""
+    """Inner side of the right arm: beside block and lugs, notch and interface, over its foot."""
     notch = max(finger.notch.x_max_mm for finger in plan.fingers)
-    beside = [plan.body.mount.block_width_mm / 2 + SIDE_MM, notch + 2 * APART_MM]
+    mount = plan.body.mount
+    out = max((lug.out_mm + 2 * APART_MM for lug in mount.lugs), default=SIDE_MM)
+    beside = [mount.block_width_mm / 2 + max(out, SIDE_MM), notch + 2 * APART_MM]
     beside += [interface.box.x_max_mm + 2 * APART_MM for interface in plan.body.interfaces]
     return max(plan.mould.pads[1][0] - ARM_MM / 2, *beside)
 
