@@ -222,9 +222,12 @@ def measure_walls(part: printed.Printed) -> Iterator[Measurement]:
     tip_y = start_y + floor_mm * math.tan(slant) + MESH_MM
 
     def on_tip(points: Vectors) -> Mask:
-        places = applied(part.to_sensor, points)
-        # From a key to the tip edge is a wall like others.
-        return (places[:, 1] > tip_y) & ~keys.near(design, places, design.tip.edge_mm)
+        places, edge_mm = applied(part.to_sensor, points), design.tip.edge_mm
+        tip = places[:, 1] > tip_y
+        if edge_mm < design.printing.min_wall_mm:
+            return np.asarray(tip)
+        # From a key to a thick tip edge is a wall like others.
+        return np.asarray(tip & ~keys.near(design, places, edge_mm))
 
     def at_slant(points: Vectors) -> Mask:
         """Where the slant may begin below the floor of the pocket, which is not the tip's."""
