@@ -44,6 +44,18 @@ def test_wires_too_thick_to_bend(cables: Path) -> None:
     assert failing(cables, "bending") == {"radius"}
 
 
+@pytest.mark.parametrize("value", ["nan", "0", "-1", "inf"])
+def test_no_section(value: str, cables: Path) -> None:
+    changed(cables, "W1", SECTION, value)
+    assert failing(cables, "bending") == {"radius"}
+
+
+@pytest.mark.parametrize("value", ["nan", "inf"])
+def test_no_length(value: str, cables: Path) -> None:
+    changed(cables, "W1", LENGTH, value)
+    assert failing(cables, "bending") == {"radius", "figure"}
+
+
 def test_a_cable_of_another_length(cables: Path) -> None:
     changed(cables, "W2", LENGTH, "400")
     assert failing(cables, "bending") == {"figure"}

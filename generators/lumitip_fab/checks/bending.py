@@ -58,7 +58,9 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
 
 
 def _outer_mm(section_mm2: float) -> float:
-    """Diameter of a wire with its insulation."""
+    """Diameter of a wire with its insulation; endless where the list has no section."""
+    if not 0 < section_mm2 < math.inf:
+        return math.inf
     wall = next(thick for most, thick in _PVC_MM if section_mm2 <= most)
     return _SOLID * math.sqrt(4 * section_mm2 / math.pi) + 2 * wall
 
@@ -68,7 +70,7 @@ def _radius_mm(row: Row, free_mm: float, design: Design) -> float:
     cabling = design.cabling
     run_mm = cabling.supply_mm if row.end[0] == "supply" else cabling.controller_mm
     travel_mm = design.mount.stroke_mm / 2
-    if math.hypot(run_mm, travel_mm) >= free_mm:
+    if not math.hypot(run_mm, travel_mm) < free_mm < math.inf:
         return math.nan
     turn = 1.5 * np.sin(2 * np.pi * (np.arange(LINKS) + 0.5) / LINKS)
     found = []
