@@ -5,12 +5,15 @@ Needs the extra `[docs]` (VTK drawing off screen, PDFium).
 
 import shutil
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pypdfium2
 from PIL import Image
 from vtkmodules import vtkInteractionStyle as _  # noqa: F401 - registers the renderer
 from vtkmodules import vtkRenderingOpenGL2 as __  # noqa: F401
+from vtkmodules.vtkCommonMath import vtkMatrix4x4
 from vtkmodules.vtkFiltersCore import vtkFeatureEdges, vtkPolyDataNormals
 from vtkmodules.vtkIOGeometry import vtkSTLReader
 from vtkmodules.vtkIOImage import vtkPNGWriter
@@ -24,6 +27,9 @@ from vtkmodules.vtkRenderingCore import (
     vtkWindowToImageFilter,
 )
 
+from lumitip_fab.design import frames
+from lumitip_fab.design.encoding import read_design
+
 Vector = tuple[float, float, float]
 IMAGES = Path(__file__).parent / "images"
 SHARP_DEG = 12
@@ -31,6 +37,7 @@ _COLOURS = 64
 ZOOM = {"assembly": 1.3, "fit_plate": 1.85}
 SIZE, FLAT = (1000, 800), (1000, 480)
 PLASTIC: Vector = (0.56, 0.66, 0.80)
+CLAMP: Vector = (0.85, 0.56, 0.31)
 MOULD: Vector = (0.84, 0.76, 0.62)
 
 
@@ -52,6 +59,9 @@ def main(out: Path, integrated: Path, flex: Path) -> None:
     )
     for part, picture, direction, colour in shots:
         draw([actor(out / part, colour)], IMAGES / picture, direction, (0, 0, 1))
+    clamped = list(_clamped(out))
+    if clamped:
+        draw(clamped, IMAGES / "clamp.png", (-0.7, 1, 0.9), (0, 0, 1))
     plate = actor(out / "fit/fit_plate.stl", PLASTIC)
     draw([plate], IMAGES / "fit_plate.png", (0.3, -0.9, 0.9), (0, 0, 1), FLAT)
     for side in ("receiver", "emitter"):
@@ -71,8 +81,21 @@ def main(out: Path, integrated: Path, flex: Path) -> None:
     _board(flex / "boards/receiver/receiver_front.png", "flex_board.png")
     shutil.copy(out / "wiring/wiring.svg", IMAGES)
     shutil.copy(out / "assembly/system.svg", IMAGES)
-    _pages(pypdfium2.PdfDocument(out / "manual/manual.pdf"), (0, 4, 7))
+    _pages(pypdfium2.PdfDocument(out / "manual/manual.pdf"), (0, 4, 8))
     draw_glb(out / "assembly/assembly.glb", IMAGES / "assembly.png")
+
+
+def _clamped(out: Path) -> Iterator[list[vtkActor]]:
+    """The receiver in its mould under the clamp, in the frame of the mould's bed."""
+    design = read_design(out / "design.json")
+    stack, mount = design.stack, design.mount
+    to_bed = np.linalg.inv(frames.mould_bed_to_sensor(stack, design.mould))
+    for clamp in design.clamps:
+        yield actor(out / "mould/receiver_mould.stl", MOULD)
+        to_sensor = frames.backing_bed_to_sensor(mount, stack)
+        yield actor(out / "backing/receiver_backing.stl", PLASTIC, to_bed @ to_sensor)
+        to_sensor = frames.clamp_bed_to_sensor(stack, clamp)
+        yield actor(out / clamp.file, CLAMP, to_bed @ to_sensor)
 
 
 def _board(picture: Path, name: str) -> None:
@@ -90,8 +113,8 @@ def _pages(document: pypdfium2.PdfDocument, numbers: tuple[int, ...]) -> None:
     together.save(IMAGES / "manual.png", optimize=True)
 
 
-def actor(stl: Path, colour: Vector) -> list[vtkActor]:
-    """A part shaded, with its sharp edges drawn."""
+def actor(stl: Path, colour: Vector, moved: frames.Matrix | None = None) -> list[vtkActor]:
+    """A part shaded, with its sharp edges drawn; where its file has it, or moved by a matrix."""
     reader = vtkSTLReader()
     reader.SetFileName(str(stl))
     smooth = vtkPolyDataNormals()
@@ -112,6 +135,10 @@ def actor(stl: Path, colour: Vector) -> list[vtkActor]:
         shown.GetProperty().SetColor(*tint)
         shown.GetProperty().SetAmbient(0.25)
         shown.GetProperty().SetLineWidth(1.4)
+        if moved is not None:
+            at = vtkMatrix4x4()
+            at.DeepCopy(np.asarray(moved).ravel().tolist())
+            shown.SetUserMatrix(at)
         actors.append(shown)
     return actors
 
