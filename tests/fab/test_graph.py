@@ -102,7 +102,8 @@ def test_what_is_outside_touches_no_finger(keys: Keys) -> None:
     after = keys("[breakout]\nhole_spacing_mm = 34.0\n")
     boards = {"other_board", "models", "wiring", "plug_in_spice"}  # all boards are read there
     assert changed(keys(), after) == {*boards, "holder"}
-    assert changed(keys(), keys("[holder]\nbody_mm = 76.0\n")) == {"holder"}
+    # The wiring note has the lugs of the holder.
+    assert changed(keys(), keys("[holder]\nbody_mm = 76.0\n")) == {"holder", "wiring"}
 
 
 def test_lengths_of_wires_touch_the_wiring_alone(keys: Keys) -> None:
