@@ -74,8 +74,9 @@ def pin_shifted(part: Manifold, design: Design) -> Manifold:
 
 
 def floor_raised(part: Manifold, design: Design) -> Manifold:
-    (x, y), low = design.fit_plate.corners[0].pin, design.stack.pocket_z_mm
-    raised = box((x - 8.0, y - 1.0, low - 0.3), (x - 2.0, y + 1.0, low + 0.1))
+    y, low = design.fit_plate.corners[0].pin[1], design.stack.pocket_z_mm
+    x = design.board.box.x_min_mm
+    raised = box((x + 0.05, y - 1.0, low - 0.3), (x + 2.0, y + 1.0, low + 0.1))
     return in_sensor(part, design, 0, lambda whole: whole + raised)
 
 
@@ -198,7 +199,7 @@ DAMAGES = {
     gripper_pin_moved: {"gripper_pins"},
     nose_of_the_step_before: {"nose"},
     value_of_another_step: {"label"},
-    steps_swapped: PLACED - {"bolt", "gripper_pins", "pocket_depth"},
+    steps_swapped: PLACED - {"bolt", "gripper_pins"},
     hollow: {"volume"},
     longer: {"size", "three_mf", "step", "pocket_gap", "pins", "bolt", "gripper_pins", "nose"},
     crumb: {"bodies"},

@@ -74,7 +74,7 @@ def missing(part: Manifold, lug: TieLug) -> Manifold:
 
 
 DAMAGES: dict[Damage, set[str]] = {
-    filled: {"opening", "wall"},
+    filled: {"opening"},
     bar_thin: {"wall"},
     roof_thin: {"wall"},
     beneath_thin: {"wall"},

@@ -18,6 +18,7 @@ TIGHT_MM = 0.02  # less than half a step: no step passes for its neighbour
 PLACE_MM = 0.05
 FLOOR_MM = 0.05  # over the pocket's floor, where the roof's end is measured
 _ALONG = (0.25, 0.4, 0.5)  # of the way from the board's corner to its pin
+_BESIDE_MM = (0.1, 0.25, 0.4)  # the board's edge, short of the pin
 _DOWN = np.array([0.0, 0.0, -1.0])
 
 
@@ -70,7 +71,7 @@ def _corners(plate: FitCoupons, corner: PocketCorner) -> Iterator[Measurement]:
         off, wide = circles(rings, ((pin_x + by, pin_y),), board.hole_mm / 2)
         yield plate.near("pins", off, 0.0, PLACE_MM, at=name)
         yield plate.near("pin", wide, board.pin_mm - 2 * looser, TIGHT_MM, at=name)
-        floor = [(edge_x + (pin_x - edge_x) * f + by, pin_y) for f in free]
+        floor = [(edge_x + beside_mm + by, pin_y) for beside_mm in _BESIDE_MM]
         deep = stack.rim_z_mm - _front_z(mesh, np.array(floor), stack.rim_z_mm + RAY_MM)
         yield plate.near("pocket_depth", deep, stack.pcb_mm, PLACE_MM, at=name)
 

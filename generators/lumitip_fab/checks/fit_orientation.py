@@ -18,6 +18,7 @@ from lumitip_fab.pipeline import manifest
 
 READS = ("fit/fit_plate.stl", "backing/*.stl", "interface/*.stl", "manifest.json")
 ALIKE_DEG = 0.5
+INSIDE_MM = 0.3
 _FILE = "fit/fit_plate.stl"
 _REACH_MM = 20.0
 _TURNS = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
@@ -123,10 +124,9 @@ def _surface(
 
 
 def _in_pocket(both: _Both, corner: PocketCorner) -> Vectors:
-    """A point in the pocket between the board's corner and its pin, in the sensor frame."""
-    box, stack = both.design.board.box, both.design.stack
-    x, y = 0.6 * corner.pin[0] + 0.4 * box.x_min_mm, corner.pin[1]
-    return np.array([x, y, stack.pocket_z_mm + stack.pcb_mm / 2])
+    """A point in the pocket beside the pin, just within the board's edge, in the sensor frame."""
+    x, stack = both.design.board.box.x_min_mm + INSIDE_MM, both.design.stack
+    return np.array([x, corner.pin[1], stack.pocket_z_mm + stack.pcb_mm / 2])
 
 
 def _part(both: _Both) -> Vectors:

@@ -117,15 +117,19 @@ def measure_flaps(part: _Lugged) -> Iterator[Measurement]:
 
 
 def _wall_mm(part: _Lugged, lug: TieLug, along_mm: float) -> float:
-    """The thinnest material round an opening in a section; NaN where that is no hole."""
+    """The thinnest material of a lug round its opening in a section; NaN where that is no hole.
+
+    What is behind the opening is the part's own wall, which other checks measure.
+    """
     cut = section(solids.moved(part.mesh, _ACROSS), along_mm)
     out, up = lug.opening.centre_mm
     middle = shapely.Point(lug.side * (lug.face_mm + out), up)
     for piece in shapely.get_parts(cut):
         holes = [hole for hole in piece.interiors if shapely.Polygon(hole).contains(middle)]
         if holes:
-            others = (piece.exterior, *(ring for ring in piece.interiors if ring != holes[0]))
-            return float(min(holes[0].distance(ring) for ring in others))
+            ends = sorted((lug.side * lug.face_mm, lug.side * (lug.face_mm + _REACH_MM)))
+            outside = shapely.box(ends[0], -_REACH_MM, ends[1], 2 * _REACH_MM)
+            return float(holes[0].distance(piece.exterior.intersection(outside)))
     return math.nan
 
 
