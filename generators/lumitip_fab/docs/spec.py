@@ -185,7 +185,7 @@ def _of_the_plate(design: Design) -> tuple[Row, ...]:
             over_mm=stack.silicone_mm - part.height_mm,
         )
     ]
-    over += _of_the_keys(design)
+    over += [*_of_the_keys(design), *_of_the_clamp(design)]
     if not design.interfaces:
         return (*over, *rows_of("rigid", stack=stack, printing=printing, proud=stack.pcb_mm - 0.8))
     (interface,), holes = design.interfaces, design.receiver.holes
@@ -202,6 +202,14 @@ def _of_the_keys(design: Design) -> Iterator[Row]:
     hole_mm = keys[0].hole_mm if keys else 0.0
     left_out = "where the plate has room" if keys else "none fits, or backing.key_mm is 0"
     return rows_of("keys", count=len(keys), hole_mm=hole_mm, left_out=left_out)
+
+
+def _of_the_clamp(design: Design) -> Iterator[Row]:
+    """The press of the clamp that holds a finger in its mould, or that there is none."""
+    for clamp in design.clamps:
+        yield from rows_of("clamp", clamp=clamp, press_n=clamp.pads_n(clamp.thickness_mm))
+    if not design.clamps:
+        yield from rows_of("no_clamp")
 
 
 def _further(design: Design) -> dict[str, Any]:
