@@ -64,7 +64,7 @@ def _figures(text: str, file: str, design: Design) -> Measurement:
 
 def _clamped(text: str, file: str, design: Design) -> Measurement:
     """The note names the printed clamp and its screws, or says that there is none."""
-    wanted = {"There is no room for a printed clamp"} if not design.clamps else set()
+    wanted = {"This finger has no printed clamp"} if not design.clamps else set()
     for clamp in design.clamps:
         name = f"{clamp.screw.name} x {clamp.screw_length_mm:g} countersunk"
         wanted |= {f"`mould/{clamp.name}.3mf`", name}

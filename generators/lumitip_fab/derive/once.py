@@ -116,6 +116,9 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
     figures = derive_electrical(config, strings, muxing, circuit.pull_ups, faults)
     joints = Boards(plan.emitter, plan.receiver, (*breakout, *flange))
     cabling = derive_cabling(config, joints, silhouette, coupling, circuit, figures, faults)
+    faults.stop()
+    strength = derive_strength(config, body, optics, faults)
+    faults.stop()
     fingers = plan.emitter, plan.receiver
     keys = derive_keys(config, body, casting)
     clamps = derive_clamps(config, body, fingers, keys, casting, printing, cabling)
@@ -131,9 +134,6 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
         coupling,
         clamps,
     )
-    faults.stop()
-    strength = derive_strength(config, body, optics, faults)
-    faults.stop()
     mux, channel = wiring.assign(config, cells, plan.muxes)
     layout = Layout(
         x_mm=cells.x_mm,

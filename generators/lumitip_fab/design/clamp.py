@@ -15,8 +15,6 @@ PITCH_MM = 0.5
 """Of an M3 thread, coarse by ISO 261."""
 _SHEAR = 1 / 2.7
 """Shear modulus by Young's modulus, of Poisson's ratio 0.35 (assumed)."""
-_TWIST = 0.23
-"""Of width and cube of thickness, of a bar twice as wide as thick: its torsion constant."""
 
 
 @dataclass(frozen=True)
@@ -104,7 +102,7 @@ class Clamp:
         ahead, behind = (1 - self.pads_share) * self.span_mm, self.pads_share * self.span_mm
         bent = ahead**2 * behind**2 / (3 * stiff * arm.width_mm * self.span_mm)
         reached = over**3 / (3 * stiff * lug.length_mm)
-        twist = self.modulus_mpa * _SHEAR * _TWIST * arm.width_mm * thickness_mm**3
+        twist = self.modulus_mpa * _SHEAR * torsion_mm4(arm.width_mm, thickness_mm)
         twisted = over**2 * ahead * behind / (self.span_mm * twist)
         inner = self.feet[3].centre_mm[0]
         reach = middle - inner
@@ -112,6 +110,14 @@ class Clamp:
         carried = (1 - self.pads_share) ** 2 * bar
         each_n = QUARTER_TURN * PITCH_MM / (bent + reached + twisted + carried)
         return 2 * each_n * self.pads_share
+
+
+def torsion_mm4(width_mm: float, thickness_mm: float) -> float:
+    """Torsion constant of a rectangular bar (Roark's Formulas for Stress and Strain, table of
+    torsion)."""
+    long, short = max(width_mm, thickness_mm), min(width_mm, thickness_mm)
+    flat = short / long
+    return long * short**3 * (1 / 3 - 0.21 * flat * (1 - flat**4 / 12))
 
 
 def printed_times(clamps: tuple[Clamp, ...], path: str) -> int:

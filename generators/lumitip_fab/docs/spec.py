@@ -199,9 +199,9 @@ def _of_the_plate(design: Design) -> tuple[Row, ...]:
 def _of_the_keys(design: Design) -> Iterator[Row]:
     """The holes that hold the skin, or that there are none."""
     keys = design.keys
-    hole_mm = keys[0].hole_mm if keys else 0.0
-    left_out = "where the plate has room" if keys else "none fits, or backing.key_mm is 0"
-    return rows_of("keys", count=len(keys), hole_mm=hole_mm, left_out=left_out)
+    if keys:
+        return rows_of("keys", count=len(keys), hole_mm=keys[0].hole_mm)
+    return rows_of("no_keys")
 
 
 def _of_the_clamp(design: Design) -> Iterator[Row]:

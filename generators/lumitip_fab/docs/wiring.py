@@ -2,7 +2,6 @@
 
 import csv
 import io
-import math
 
 from lumitip_fab.design import Cable, Cabling, Design, Wire
 from lumitip_fab.design.cabling import named
@@ -62,8 +61,7 @@ def wiring_note(design: Design) -> str:
         controller_mm=cabling.controller_mm,
         supply_mm=cabling.supply_mm,
         slack_mm=cabling.slack_mm,
-        radius_mm=math.floor(min(loop.radius_mm for loop in cabling.loops)),
-        least_mm=math.ceil(max(loop.least_mm for loop in cabling.loops)),
+        loop=min(cabling.loops, key=lambda loop: loop.radius_mm / loop.least_mm),
     )
 
 
@@ -75,10 +73,13 @@ def _tied(design: Design) -> str:
     if not tied:
         return ""
     loose = [finger.name for finger in design.fingers if not finger.ties]
+    held = "hold that cable to the gripper, near the finger"
+    if design.mount.lugs:
+        held = "there the tie at the finger's lug, below, holds the cable"
     return passage(_TEXTS, "tied").format(
         boards=_listed(tied),
         hole_mm=ties[tied[0]][0].hole_mm,
-        loose=passage(_TEXTS, "loose").format(boards=_listed(loose)) if loose else "",
+        loose=passage(_TEXTS, "loose").format(boards=_listed(loose), held=held) if loose else "",
     )
 
 

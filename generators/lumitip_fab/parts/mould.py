@@ -57,7 +57,9 @@ def casting_note(
         clamps: the printed clamp; none where tape holds the finger.
     """
     rim_mm = mould.wall_mm + stack.cover_mm
-    taped = _text("taped", tape=mould.tape) if open_back else ""
+    bare = _text("bare", keys=keys) if keys else ""
+    openings = "window" if stack.sunk else "window and every hole for thread"
+    taped = _text("taped", tape=mould.tape, openings=openings, bare=bare) if open_back else ""
     held = _text(
         "in_pocket" if stack.sunk else "on_plate",
         glue=glue,

@@ -21,6 +21,7 @@ SPACING_MM = 7.0  # in a row
 LEAST_APART_MM = 6.0
 MARGIN_MM = 0.15  # over the thinnest wall
 ROUND_BLOCK_MM = 1.0  # free beside the coupling
+UNDER_FOOT_MM = 2.0  # from the middle of a stop
 STEEPEST = 0.6  # wedge into which a countersink is cut
 STEP_MM = 0.25
 
@@ -68,7 +69,7 @@ def _room(body: Body, mould: Mould, hole_mm: float, sink_mm: float, wall_mm: flo
     room = skin.buffer(-(across + wall_mm)) & shapely.box(left, low, right, max(high, low))
     taken = [
         *_in_front(body, mould, radius + wall_mm),
-        *(_kept_off(box, across + wall_mm, leant + wall_mm) for box in _behind(body)),
+        *(_kept_off(box, across + wall_mm, leant + wall_mm) for box in _behind(body, mould)),
     ]
     return room - shapely.union_all([shapely.box(*box.bounds_mm) for box in taken])
 
@@ -90,13 +91,15 @@ def _in_front(body: Body, mould: Mould, reach_mm: float) -> Iterator[Box]:
         yield Box(left, right, y - half, y + half).grown(reach_mm)
 
 
-def _behind(body: Body) -> Iterator[Box]:
-    """What stands on the plate's back, or is sunk into it."""
+def _behind(body: Body, mould: Mould) -> Iterator[Box]:
+    """What stands on the plate's back, or is sunk into it; a clamp's feet, behind the stops."""
     stack, mount, outline = body.stack, body.mount, body.outline
-    end_y, half = outline.end_y_mm, mount.block_width_mm / 2
+    end_y = outline.end_y_mm
+    half = mount.block_width_mm / 2 + max((lug.out_mm for lug in mount.lugs), default=0.0)
     high = mount.ramp_end_y_mm(stack.back_z_mm, stack.rim_z_mm) + mount.flare_mm
     yield Box(-half, half, end_y, max(high, end_y)).grown(ROUND_BLOCK_MM)
     yield replace(body.finger.notch, y_min_mm=end_y)
+    yield from (Box(x, x, y, y).grown(UNDER_FOOT_MM) for x, y in mould.pads)
     if stack.sunk:
         yield body.board.pocket
     yield from (interface.groove.grown(ROUND_BLOCK_MM) for interface in body.interfaces)

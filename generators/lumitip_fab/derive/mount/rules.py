@@ -14,7 +14,7 @@ from lumitip_fab.design import AuxiliaryBoard, Flange, Holder, Outline, Point
 MOST_STRAIN = 0.01  # of the arms while they clip on; PETG yields at some 4 %
 MOST_LASTING_STRAIN = 0.005  # of the arms on the body: more creeps away (assumed)
 DRILLED_MM = 0.1  # beyond a screw's thread, of the board's holes, truer than printed ones
-LEAST_FLARE_MM = 1.0  # that a parameter file allows
+LEAST_FLARE_MM, LEAST_DEPTH_MM = 1.0, 0.5  # that a parameter file allows
 UNDER_COUNTERBORE_MM = 0.4  # flare to the outer edge of the counterbores, past which it leans
 RING_MM = 0.4  # of the board, at least, that a screw's head presses on
 LEAST_GRIP_MM = 0.3  # each arm's end inside the body's widest place
@@ -61,7 +61,7 @@ def deepest_flare_mm(gripper: Gripper, plate_mm: float) -> float:
     into the ramp, for along a flat flare their edge would be a thin skin."""
     open_w = gripper.bolt_w_mm + gripper.counterbore_mm / 2 - UNDER_COUNTERBORE_MM
     deepest = min(gripper.block_back_w_mm - LEAST_FLARE_MM, open_w) - plate_mm
-    return max(math.floor(10 * deepest + 1e-6) / 10, LEAST_FLARE_MM / 2)
+    return max(math.floor(10 * deepest + 1e-6) / 10, LEAST_DEPTH_MM)
 
 
 def refuse_block(config: Input, gripper: Gripper, faults: Diagnostics) -> None:
