@@ -101,7 +101,7 @@ SCENE = {
     film_lifted: {"opening", "stroke"},
     film_moved_back: {"first_contact", "opening", "interference"},
     film_behind_the_pads: {"opening", "stroke", "closes", "interference"},
-    backing_sunk: {"stroke"},
+    backing_sunk: {"stroke", "interference"},
     board_turned_out: {"interference"},
     part_renamed: EVERY,
     layer_missing: EVERY,

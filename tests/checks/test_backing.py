@@ -80,6 +80,11 @@ def shelf_added(part: Manifold, _: Design) -> Manifold:
     return part + box((-24, 5, -11), (24, 17, -3.5))
 
 
+def key_filled(part: Manifold, design: Design) -> Manifold:
+    (x, y), wide = design.keys[0].at, design.keys[0].wide_mm
+    return part + box((x - wide, y - wide, -3.0), (x + wide, y + wide, -1.6))
+
+
 def island_added(part: Manifold, _: Design) -> Manifold:
     return part + box((15, 0, -8), (17, 2, -6))
 
@@ -141,7 +146,8 @@ SENSOR_FRAME = {
     notch_plugged: {"notch"},
     tip_cut: {"tip_edge", "min_wall"},
     slant_filled: {"slant"},
-    shelf_added: {"overhang", "span"},
+    shelf_added: {"overhang", "span", "keys_open", "key_sink"},
+    key_filled: {"keys", "key_hole", "keys_open", "key_sink"},
     island_added: {"bodies"},
 }
 MOUNT_FRAME = {
