@@ -81,8 +81,8 @@ def shelf_added(part: Manifold, _: Design) -> Manifold:
 
 
 def key_filled(part: Manifold, design: Design) -> Manifold:
-    (x, y), wide = design.keys[0].at, design.keys[0].wide_mm
-    return part + box((x - wide, y - wide, -3.0), (x + wide, y + wide, -1.6))
+    x, y = max(design.keys, key=lambda key: key.sink_mm).at
+    return part + box((x - 1, y - 1, -3.9), (x + 1, y + 1, -1.6))
 
 
 def island_added(part: Manifold, _: Design) -> Manifold:
