@@ -3,6 +3,7 @@
 import math
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
 from xml.etree import ElementTree
@@ -123,7 +124,8 @@ def test_the_page_needs_nothing_else_and_lists_every_figure(config: Input) -> No
 def test_the_gauge_is_the_foot_of_the_printed_finger(name: str, config: Input) -> None:
     d = design_with(config, name, gripper_of(name, config))
     gauge = gauge_solid(d)
-    finger = backing_solid(d.receiver, d.stack, d.outline, d.tip, d.board, d.mount, (), ())
+    mount = replace(d.mount, lugs=())  # a gauge has none
+    finger = backing_solid(d.receiver, d.stack, d.outline, d.tip, d.board, mount, (), ())
     to_mount = np.linalg.inv(mount_to_sensor(d.mount, d.stack))
     high = gauge.bounding_box().max.Z
     behind = Block(100, 40, high).moved(Location((0, 22.7, high / 2)))  # of the plate
