@@ -226,8 +226,9 @@ def measure_walls(part: printed.Printed) -> Iterator[Measurement]:
         tip = places[:, 1] > tip_y
         if edge_mm < design.printing.min_wall_mm:
             return np.asarray(tip)
-        # From a key to a thick tip edge is a wall like others.
-        return np.asarray(tip & ~keys.near(design, places, edge_mm))
+        # From a key to a thick tip edge is a wall like others, and so is what is behind the roof.
+        past_roof = places[:, 1] > tip_y + design.board.roof_mm
+        return np.asarray(tip & past_roof & ~keys.near(design, places, edge_mm))
 
     def at_slant(points: Vectors) -> Mask:
         """Where the slant may begin below the floor of the pocket, which is not the tip's."""
