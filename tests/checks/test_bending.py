@@ -8,8 +8,8 @@ import pytest
 
 from damages import excerpt, failing, passing
 from lumitip_fab.derive.wiring.bending import smallest_radius
-from lumitip_fab.derive.wiring.loops import Way, loop_of, outer_mm, with_room
-from lumitip_fab.design.cabling import Cable
+from lumitip_fab.derive.wiring.loops import Way, loop_of, with_room
+from lumitip_fab.design.cabling import Cable, outer_mm
 from lumitip_fab.design.encoding import read_design
 
 LIST = "wiring/cables.csv"

@@ -18,6 +18,7 @@ from lumitip_fab.checks.readers.solids import Vectors
 from lumitip_fab.checks.result import Measurement, unreadable
 from lumitip_fab.checks.wiring import reach_mm
 from lumitip_fab.design import Design
+from lumitip_fab.design.cabling import outer_mm
 from lumitip_fab.errors import OutputError
 
 READS = ("wiring/cables.csv", "boards/*.kicad_pcb")
@@ -27,8 +28,6 @@ AGREE = 0.03  # of the figure in the design: links are short, not endless
 MARGIN = 0.97  # of the least radius, for the same reason
 _FINGERS = ("emitter", "receiver")
 _LIST = "wiring/cables.csv"
-_SOLID = 1.15  # strands are that much thicker than solid copper
-_PVC_MM = ((1.31, 0.38), (math.inf, 0.51))  # up to a section: UL's AWM style 10236
 
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
@@ -46,7 +45,9 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
         shortest = min(each.length_mm for each in rows if each.cable == name)
         free_mm = shortest - reach_mm(boards[row.start[0]], design)
         radius = _radius_mm(row, free_mm, design)
-        least = MARGIN * design.cabling.bend_ratio * _outer_mm(row.section_mm2)
+        stated = 0 < row.section_mm2 < math.inf
+        wide = outer_mm(row.section_mm2) if stated else math.inf
+        least = MARGIN * design.cabling.bend_ratio * wide
         subject = f"{_LIST}: {name}"
         note = f"{free_mm:.0f} mm between the ties; an estimate"
         yield Measurement("bending.radius", subject, radius, least, math.inf, "mm", note)
@@ -55,14 +56,6 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
         yield Measurement(
             "bending.figure", subject, 100 * off, -100 * AGREE, 100 * AGREE, "%", note
         )
-
-
-def _outer_mm(section_mm2: float) -> float:
-    """Diameter of a wire with its insulation; endless where the list has no section."""
-    if not 0 < section_mm2 < math.inf:
-        return math.inf
-    wall = next(thick for most, thick in _PVC_MM if section_mm2 <= most)
-    return _SOLID * math.sqrt(4 * section_mm2 / math.pi) + 2 * wall
 
 
 def _radius_mm(row: Row, free_mm: float, design: Design) -> float:

@@ -1,6 +1,7 @@
 """The wires between the boards, from the fingers to the supply, and the colours of their
 insulation."""
 
+import math
 from dataclasses import dataclass
 
 COLOURS = {
@@ -18,6 +19,18 @@ COLOURS = {
     "TQ": ("turquoise", "#2bb9b4"),
 }
 """Name and ink of each colour, by its code."""
+
+
+INSULATION_MM = ((1.31, 0.38), (math.inf, 0.51))
+"""Thickness up to a section (mm²): 15 mils of PVC to AWG 16, 20 beyond, as in UL's AWM style 10236.
+That the wire is of such a kind is assumed."""
+STRANDED = 1.15  # diameter of strands over that of solid copper of the same section
+
+
+def outer_mm(section_mm2: float) -> float:
+    """Diameter of a wire with its insulation."""
+    wall = next(thick for most, thick in INSULATION_MM if section_mm2 <= most)
+    return STRANDED * math.sqrt(4 * section_mm2 / math.pi) + 2 * wall
 
 
 def codes_of(colour: str) -> tuple[str, ...]:

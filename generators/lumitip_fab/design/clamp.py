@@ -41,7 +41,7 @@ class Clamp:
     legs: tuple[Box, ...]
     feet: tuple[Box, ...]
     """Two behind the pads, then two towards the tip line."""
-    rails: tuple[Box, Box]
+    rails: tuple[Box, ...]
     """On the mould's outside; their inner sides are within its wall."""
     screws: tuple[Point, Point]
     screw: Fastener

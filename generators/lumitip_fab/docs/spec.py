@@ -198,10 +198,10 @@ def _of_the_plate(design: Design) -> tuple[Row, ...]:
 
 def _of_the_keys(design: Design) -> Iterator[Row]:
     """The holes that hold the skin, or that there are none."""
-    keys = design.keys
-    if keys:
-        return rows_of("keys", count=len(keys), hole_mm=keys[0].hole_mm)
-    return rows_of("no_keys")
+    for key in design.keys[:1]:
+        yield from rows_of("keys", count=len(design.keys), hole_mm=key.hole_mm)
+    if not design.keys:
+        yield from rows_of("no_keys")
 
 
 def _of_the_clamp(design: Design) -> Iterator[Row]:

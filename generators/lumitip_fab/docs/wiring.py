@@ -91,7 +91,9 @@ def _lugged(design: Design) -> str:
     if not lugs:
         return ""
     wide, thick = lugs[0].tie_mm
-    return passage(_TEXTS, "lugged").format(parts=_listed(named), wide=wide, thick=thick)
+    fingers = passage(_TEXTS, "at_block") if design.mount.lugs else ""
+    parts = _listed(named)
+    return passage(_TEXTS, "lugged").format(parts=parts, wide=wide, thick=thick, fingers=fingers)
 
 
 def _listed(names: list[str]) -> str:

@@ -21,10 +21,8 @@ from lumitip_fab.design import (
 )
 from lumitip_fab.parts import coupling, export, shapes
 from lumitip_fab.parts.letters import letter_cutter
-from lumitip_fab.parts.plate import key_cutters, plate_solid
+from lumitip_fab.parts.plate import BEYOND_MM, key_cutters, plate_solid
 from lumitip_fab.pipeline.artefact import Artefact
-
-BEYOND_MM = 1.0  # how far a cutter reaches past what it cuts
 
 
 def sheet(plate: Solid, finger: Finger, stack: Stack, mount: Mount, interface: Interface) -> Solid:
@@ -76,7 +74,7 @@ def interface_solid(finger: Finger, stack: Stack, mount: Mount, interface: Inter
         letter_cutter(finger.name, mount.letter, frames.mount_to_sensor(mount, behind)),
     ]
     whole = whole + _rim(stack, interface, end_y) + coupling.tie_lugs(mount, behind)
-    return shapes.one_solid((whole - taken).clean(), finger, "interface")
+    return shapes.one_solid((whole - taken).clean(), f"{finger.name} interface")
 
 
 def _rim(stack: Stack, interface: Interface, end_y: float) -> Solid:
@@ -148,7 +146,8 @@ def backing_solid(
     """
     plate = plate_solid(stack, outline, tip) - key_cutters(keys, stack, tip)
     for interface in interfaces:
-        return shapes.one_solid(sheet(plate, finger, stack, mount, interface), finger, "backing")
+        bendable = sheet(plate, finger, stack, mount, interface)
+        return shapes.one_solid(bendable, f"{finger.name} backing")
     plate = plate - pocket_solid(stack, board)
     plate = plate - coupling.notch_cutter(stack, mount, finger.notch)
     whole = plate + coupling.coupling_solid(mount, stack, finger.notch)
@@ -164,7 +163,7 @@ def backing_solid(
         letter_cutter(finger.name, mount.letter, frames.mount_to_sensor(mount, stack)),
         *(_relief(r.box, r.depth_mm, r.through, stack) for r in finger.reliefs),
     ]
-    return shapes.one_solid((whole - taken).clean(), finger, "backing")
+    return shapes.one_solid((whole - taken).clean(), f"{finger.name} backing")
 
 
 def pin_solid(

@@ -8,11 +8,12 @@ from build123d import Face, Plane, Solid, Vector, Wire
 from lumitip_fab.design import Box, Clamp, Design, Mould, Stack
 from lumitip_fab.design.clamp import MARK_MM
 from lumitip_fab.design.frames import clamp_bed_to_sensor
-from lumitip_fab.errors import BuildError
 from lumitip_fab.parts import export
-from lumitip_fab.parts.shapes import box_solid, cylinder
+from lumitip_fab.parts.shapes import box_solid, cylinder, one_solid
 from lumitip_fab.pipeline.artefact import Artefact
 
+CHANGED = "mould.wall_mm or the outline"
+"""What a user may change where the kernel fails on mould or clamp."""
 FOOT_CHAMFER_MM = 0.4  # the first layer spreads
 BEYOND_MM = 1.0  # how far a cutter reaches past what it cuts
 
@@ -37,7 +38,7 @@ def clamp_solid(clamp: Clamp, stack: Stack, mould: Mould) -> Solid:
     whole = whole + [box_solid(leg, top, bed_z - clamp.leg_end_mm) for leg in clamp.legs]
     taken = [cylinder(at, clamp.hole_mm, top - BEYOND_MM, under + 1) for at in clamp.screws]
     taken += [_mark(clamp, leg, bed_z) for leg in clamp.legs]
-    return _one((whole - taken).clean(), "clamp")
+    return one_solid((whole - taken).clean(), "clamp", CHANGED)
 
 
 def rails(clamp: Clamp, stack: Stack, mould: Mould) -> list[Solid]:
@@ -58,7 +59,9 @@ def rails(clamp: Clamp, stack: Stack, mould: Mould) -> list[Solid]:
         )
         hole = cylinder(at, clamp.rail_hole_mm, top - BEYOND_MM, bed_z + BEYOND_MM)
         chamfered = block.chamfer(FOOT_CHAMFER_MM, None, on_bed)
-        made.append(_one(chamfered - [head, hole, _mark(clamp, rail, bed_z)], "mould"))
+        made.append(
+            one_solid(chamfered - [head, hole, _mark(clamp, rail, bed_z)], "mould", CHANGED)
+        )
     return made
 
 
@@ -80,14 +83,3 @@ def _mark(clamp: Clamp, box: Box, bed_z_mm: float) -> Solid:
     ]
     face = Face(Wire.make_polygon([(x, start, h) for x, h in corners], close=True))
     return Solid.extrude(face, Vector(0, length, 0))
-
-
-def _one(made: Solid, part: str) -> Solid:
-    """The result of the CAD kernel, if it is one valid solid."""
-    solids = made.solids()
-    if len(solids) != 1 or not solids[0].is_valid:
-        raise BuildError(
-            f"{part}: the CAD kernel made {len(solids)} solids of it, one valid solid is needed; "
-            "change mould.wall_mm or the outline a little"
-        )
-    return solids[0]

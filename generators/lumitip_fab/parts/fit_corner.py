@@ -8,7 +8,8 @@ from build123d import Face, Solid, Vector, Wire
 
 from lumitip_fab.design import Box, Design, Fits, PocketCorner
 from lumitip_fab.design.frames import fit_corner_to_sensor
-from lumitip_fab.parts.backing import BEYOND_MM, pin_solid, pocket_solid
+from lumitip_fab.parts.backing import pin_solid, pocket_solid
+from lumitip_fab.parts.plate import BEYOND_MM
 from lumitip_fab.parts.shapes import box_solid, placed, side_prism
 
 SHARED = 0.5  # of the floor, that gussets and pin reach into it

@@ -9,10 +9,10 @@ from lumitip_fab.design import Box, Design, FitPlate, Mount
 from lumitip_fab.design.frames import fit_corner_to_sensor, translation
 from lumitip_fab.errors import BuildError
 from lumitip_fab.parts import export
-from lumitip_fab.parts.backing import BEYOND_MM
 from lumitip_fab.parts.coupling import beside_nose
 from lumitip_fab.parts.fit_corner import corner_solid
 from lumitip_fab.parts.letters import value_cutters
+from lumitip_fab.parts.plate import BEYOND_MM
 from lumitip_fab.parts.shapes import box_solid, cylinder, placed
 from lumitip_fab.pipeline.artefact import Artefact
 

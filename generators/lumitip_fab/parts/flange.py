@@ -4,9 +4,8 @@ from build123d import Plane, Solid
 
 from lumitip_fab.design import Box, Design, Flange, Point, Stack
 from lumitip_fab.design.frames import flange_beds
-from lumitip_fab.errors import BuildError
 from lumitip_fab.parts import export
-from lumitip_fab.parts.shapes import box_solid, cylinder
+from lumitip_fab.parts.shapes import box_solid, cylinder, one_solid
 from lumitip_fab.pipeline.artefact import Artefact
 
 BEYOND_MM = 1.0  # how far a cutter reaches past what it cuts
@@ -53,7 +52,7 @@ def lower_solid(flange: Flange, stack: Stack) -> Solid:
         cylinder(flange.pin_at, flange.pin_hole_mm, seat - BEYOND_MM, seat + flange.pin_depth_mm)
     )
     taken.append(cylinder(flange.pin_at, flange.socket_mm, flange.socket_z_mm, above))
-    return _one(whole - taken, "lower")
+    return one_solid((whole - taken).clean(), "flange, lower", "[flange]")
 
 
 def upper_solid(flange: Flange) -> Solid:
@@ -68,7 +67,7 @@ def upper_solid(flange: Flange) -> Solid:
     taken += _bolts(flange, split, top)
     for at, hole in ((flange.pin_at, flange.socket_mm), (flange.peg_at, flange.peg_hole_mm)):
         taken.append(cylinder(at, hole, split - BEYOND_MM, top))
-    return _one(whole - taken, "upper")
+    return one_solid((whole - taken).clean(), "flange, upper", "[flange]")
 
 
 def _cut(box: Box, low_mm: float, high_mm: float, outward: bool = False) -> Solid:
@@ -94,13 +93,3 @@ def _bolts(flange: Flange, low_mm: float, high_mm: float) -> list[Solid]:
         cylinder(at, flange.bolt_hole_mm, low_mm - BEYOND_MM, high_mm + BEYOND_MM)
         for at in flange.bolts
     ]
-
-
-def _one(made: Solid, part: str) -> Solid:
-    solids = made.clean().solids()
-    if len(solids) != 1 or not solids[0].is_valid:
-        raise BuildError(
-            f"flange, {part}: the CAD kernel made {len(solids)} solids of it, one valid solid is "
-            "needed; change [flange] a little"
-        )
-    return solids[0]

@@ -25,4 +25,4 @@ def gauge_solid(design: Design) -> Solid:
     square = [(-_FAR_MM, -_FAR_MM), (_FAR_MM, -_FAR_MM), (_FAR_MM, _FAR_MM), (-_FAR_MM, _FAR_MM)]
     to_mount = np.asarray(np.linalg.inv(mount_to_sensor(mount, stack)), np.float64)
     foot = placed(block, to_mount) & prism(polygon_face(square), 0.0, high)
-    return one_solid(foot, design.receiver, "gauge")
+    return one_solid(foot, f"{design.receiver.name} gauge")

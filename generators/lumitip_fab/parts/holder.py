@@ -7,9 +7,8 @@ from build123d import Edge, Face, Plane, Solid, Wire
 
 from lumitip_fab.design import Box, Design, Holder, Point
 from lumitip_fab.design.frames import Matrix, holder_bed_to_auxiliary
-from lumitip_fab.errors import BuildError
 from lumitip_fab.parts import export
-from lumitip_fab.parts.shapes import box_solid, cylinder, placed, polygon_face, prism
+from lumitip_fab.parts.shapes import box_solid, cylinder, one_solid, placed, polygon_face, prism
 from lumitip_fab.parts.tie_lug import lug_openings, lug_solids
 from lumitip_fab.pipeline.artefact import Artefact
 
@@ -40,13 +39,7 @@ def holder_solid(holder: Holder) -> Solid:
     whole = whole + [placed(lug, bed) for lug in lug_solids(holder.lugs)]
     taken += [placed(cutter, bed) for cutter in lug_openings(holder.lugs)]
     whole = (whole - taken).clean()
-    solids = whole.solids()
-    if len(solids) != 1 or not solids[0].is_valid:
-        raise BuildError(
-            f"holder: the CAD kernel made {len(solids)} solids of it, one valid solid is needed; "
-            "change [holder] a little"
-        )
-    return solids[0]
+    return one_solid(whole, "holder", "[holder]")
 
 
 def _tray(holder: Holder) -> Solid:

@@ -9,12 +9,11 @@ from build123d import Face, Location, Solid, Vector, Wire
 from lumitip_fab.design import Board, Box, Clamp, Design, Finger, Mould, Outline, Stack
 from lumitip_fab.design.frames import mould_bed_to_sensor
 from lumitip_fab.design.making import LEDGE_MM
-from lumitip_fab.errors import BuildError
 from lumitip_fab.parts import export, skin
-from lumitip_fab.parts.clamp import FOOT_CHAMFER_MM, rails
+from lumitip_fab.parts.clamp import CHANGED, FOOT_CHAMFER_MM, rails
 from lumitip_fab.parts.letters import letter_cutter
 from lumitip_fab.parts.plate import key_fillings
-from lumitip_fab.parts.shapes import box_face, box_solid, side_prism
+from lumitip_fab.parts.shapes import box_face, box_solid, one_solid, side_prism
 from lumitip_fab.pipeline.artefact import Artefact
 from lumitip_fab.text import passage
 
@@ -207,13 +206,7 @@ def mould_solid(
         letter_cutter(finger.name, mould.letter, mould_bed_to_sensor(stack, mould)),
     ]
     whole = (block - taken) + skin.stops(stack, outline, mould)
-    solids = whole.solids()
-    if len(solids) != 1 or not solids[0].is_valid:
-        raise BuildError(
-            f"mould: the CAD kernel made {len(solids)} solids of it, one valid solid is needed; "
-            "change mould.wall_mm or the outline a little"
-        )
-    return solids[0]
+    return one_solid(whole, "mould", CHANGED)
 
 
 def _footed(

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from build123d import Edge, Face, Location, Plane, Solid, Vector, Wire
 
-from lumitip_fab.design import Box, Finger, Outline, Point
+from lumitip_fab.design import Box, Outline, Point
 from lumitip_fab.design.frames import Matrix
 from lumitip_fab.errors import BuildError
 
@@ -67,13 +67,13 @@ def side_prism(corners: list[Point], x_min_mm: float, x_max_mm: float) -> Solid:
     return Solid.extrude(face, Vector(x_max_mm - x_min_mm, 0, 0))
 
 
-def one_solid(made: Any, finger: Finger, kind: str) -> Solid:
+def one_solid(made: Any, part: str, change: str = "the outline or the coupling") -> Solid:
     """The result of the CAD kernel, if it is one valid solid.
 
     Args:
         made: what it made.
-        finger: whose part it is.
-        kind: name of the part.
+        part: its name.
+        change: what a user may change so that it succeeds.
 
     Raises:
         BuildError: if it is none, or several.
@@ -81,8 +81,8 @@ def one_solid(made: Any, finger: Finger, kind: str) -> Solid:
     solids = made.solids()
     if len(solids) != 1 or not solids[0].is_valid:
         raise BuildError(
-            f"{finger.name} {kind}: the CAD kernel made {len(solids)} solids of it, one valid "
-            "solid is needed; change the outline or the coupling a little"
+            f"{part}: the CAD kernel made {len(solids)} solids of it, one valid solid is needed; "
+            f"change {change} a little"
         )
     return solids[0]
 

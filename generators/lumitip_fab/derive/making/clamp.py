@@ -197,7 +197,7 @@ def _drawn(plan: _Plan, screw: Fastener, rear: Box, front: Box) -> Clamp:
         lugs=_both(lugs),
         legs=_both(legs),
         feet=(*_both([rear]), *_both([front])),
-        rails=_pair(Box(least, flush, y_low, y_high)),
+        rails=_both([Box(least, flush, y_low, y_high)]),
         screws=((-x_screw, y_screw), (x_screw, y_screw)),
         screw=screw,
         screw_length_mm=0.0,
@@ -260,10 +260,6 @@ def _layered(layer_mm: float, low_mm: float, high_mm: float) -> Iterator[float]:
 def _both(right: list[Box]) -> tuple[Box, ...]:
     """Each box on the left, then on the right."""
     return tuple(box for each in right for box in (each.mirrored(), each))
-
-
-def _pair(right: Box) -> tuple[Box, Box]:
-    return right.mirrored(), right
 
 
 def _meet(a: Box, b: Box) -> bool:

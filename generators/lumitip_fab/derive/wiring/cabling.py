@@ -8,9 +8,9 @@ from itertools import permutations
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive.boards.connectors import SWITCH
 from lumitip_fab.derive.diagnostics import Diagnostics
-from lumitip_fab.derive.wiring.loops import BEND_RATIO, STRANDED, Way, loop_of, with_room
+from lumitip_fab.derive.wiring.loops import BEND_RATIO, Way, loop_of, with_room
 from lumitip_fab.design import AuxiliaryBoard, Component, Electrical, Finger, Mount, Outline, Wiring
-from lumitip_fab.design.cabling import Cable, Cabling, Terminal, Wire
+from lumitip_fab.design.cabling import STRANDED, Cable, Cabling, Terminal, Wire
 
 MOST_A_PER_MM2 = 3.0  # in a bundle; a common figure for thin wires without cooling
 MOST_DROP = 0.02  # of the LEDs' supply, both ways

@@ -1,20 +1,15 @@
 """The moving part of each finger's cable: its bend radius, and the length that keeps it large."""
 
-import math
 from dataclasses import dataclass, replace
 from itertools import count
 
 from lumitip_fab.derive.wiring.bending import smallest_radius
-from lumitip_fab.design.cabling import Cable, Loop
+from lumitip_fab.design.cabling import Cable, Loop, outer_mm
 
 BEND_RATIO = 8.0
 """Least bend radius of a moving wire by its outer diameter. Assumed: a table of cables up to 8 mm
 thick has 5 for free movement, 9 under load and 10 over pulleys (kunshan-nichigoh.com, Bending
 Radius). A bundle is loose, so that its wires bend one by one."""
-INSULATION_MM = ((1.31, 0.38), (math.inf, 0.51))
-"""Thickness up to a section (mm²): 15 mils of PVC to AWG 16, 20 beyond, as in UL's AWM style 10236.
-That the wire is of such a kind is assumed."""
-STRANDED = 1.15  # diameter of strands over that of solid copper of the same section
 
 
 @dataclass(frozen=True)
@@ -31,12 +26,6 @@ class Way:
     def length_mm(self) -> float:
         """All of it."""
         return self.reach_mm + self.travel_mm + self.run_mm
-
-
-def outer_mm(section_mm2: float) -> float:
-    """Diameter of a wire with its insulation."""
-    wall = next(thick for most, thick in INSULATION_MM if section_mm2 <= most)
-    return STRANDED * math.sqrt(4 * section_mm2 / math.pi) + 2 * wall
 
 
 def loop_of(cable: Cable, way: Way) -> Loop:
