@@ -1,6 +1,8 @@
 """Bluetooth: bleak as installed against a fake `org.bluez` on a private D-Bus."""
 
 from collections.abc import Callable
+from contextlib import suppress
+from itertools import count
 
 import pytest
 
@@ -107,7 +109,7 @@ def test_a_device_of_other_cells_is_always_refused(bluez: FakeBluez, device, mak
         Fingertip.open("ble://Lumitip", make_layout((4, 5, 4), 6.0), any_design=True)
 
 
-def test_two_devices_at_once(bluez: FakeBluez, device) -> None:
+def test_two_devices_at_once(bluez: FakeBluez, device, until: Until) -> None:
     left = add_fingertip(bluez, device, HERE, "Left")
     right = add_fingertip(bluez, device, THERE, "Right")
     urls = {"left": "ble://Left", "right": f"ble://{THERE.lower()}"}
@@ -116,13 +118,23 @@ def test_two_devices_at_once(bluez: FakeBluez, device) -> None:
         for tip in group.tips.values():
             with pytest.raises(LinkTimeout):
                 tip.read(0.0)
-        for n in range(20):
+        numbers, moments = count(), []
+
+        def ten_moments() -> bool:
+            # Packets that a busy computer delivers late shift one device's clock against the
+            # other's: some of its frames then have no partner, so the devices go on sending.
+            n = next(numbers)
             send(bluez, left, device.packet(n))
             send(bluez, right, device.packet(n + 100))
-        moments = [group.read(5.0) for _ in range(10)]
-        assert all(m["left"].raw[0] < 20 <= m["right"].raw[0] for m in moments)
+            with suppress(LinkTimeout):
+                moments.append(group.read(0.05))
+            return len(moments) == 10
+
+        until(ten_moments)
+        for name, tip in group.tips.items():
+            assert {moment[name].device_id for moment in moments} == {tip.device_id}
         bluez.cut(left)
-        send(bluez, right, device.packet(120))
+        send(bluez, right, device.packet(next(numbers) + 100))
         assert group.tips["right"].connected
 
 
