@@ -134,6 +134,10 @@ def mask_files(design: Design, finger: Finger) -> tuple[Artefact, ...]:
     artwork = artwork_of(design, finger, mask)
     stem = f"mask/{finger.name}_mask"
     note = wrapping_note(artwork, design)
+    flaps = [
+        {"number": flap.number, "on_back": flap.on_back(mask.allowance_mm)}
+        for flap in artwork.flaps
+    ]
     return (
         *(
             Artefact(
@@ -143,7 +147,12 @@ def mask_files(design: Design, finger: Finger) -> tuple[Artefact, ...]:
             )
             for paper in PAPERS_MM
         ),
-        Artefact(f"{stem}.svg", svg_drawing(artwork, mask, title), svg_to_sensor(mask)),
+        Artefact(
+            f"{stem}.svg",
+            svg_drawing(artwork, mask, title),
+            svg_to_sensor(mask),
+            facts={"flaps": flaps},
+        ),
         Artefact(f"{stem}.dxf", dxf_drawing(artwork, mask), dxf_to_sensor()),
         Artefact(f"mask/{finger.name}_cut.dxf", cut_drawing(artwork, mask), dxf_to_sensor()),
         Artefact(f"mask/{finger.name}_wrapping.md", note, frame=""),

@@ -50,6 +50,12 @@ class Flap:
         """Length of the fold."""
         return math.dist(*self.fold)
 
+    def on_back(self, allowance_mm: float) -> list[Point]:
+        """Corners of the part that lies on the back, seen through the finger from its front."""
+        side_mm = self.length_mm + allowance_mm - self.reach_mm
+        lying = folded(self.corners, allowance_mm, side_mm)
+        return [_point(np.array(corner)) for corner in lying.exterior.coords[:-1]]
+
 
 def make_flaps(finished: Finished, mask: Mask) -> tuple[Flap, ...]:
     """All flaps, counter-clockwise from the right leg of the gripper end."""

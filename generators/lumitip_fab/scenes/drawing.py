@@ -21,6 +21,7 @@ _ROUND = 'stroke-linecap="round" stroke-linejoin="round"'
 _STROKES = {
     "area": f'stroke="{_INK}" stroke-width=".5" {_ROUND}',
     "body": f'stroke="{_INK}" stroke-width=".3" {_ROUND}',
+    "behind": f'stroke="{_FAINT}" stroke-width=".15" {_ROUND}',
     "part": f'stroke="{_INK}" stroke-width=".12" {_ROUND}',
     "line": f'fill="none" stroke="{_INK}" stroke-width=".22" {_ROUND}',
     "axis": f'fill="none" stroke="{_FAINT}" stroke-width=".18" stroke-dasharray="3 .8 .5 .8"',
@@ -32,6 +33,7 @@ _WORDS = {
     "title": (6.0, f'font-weight="bold" fill="{_INK}"'),
     "name": (3.6, f'font-weight="bold" fill="{_INK}"'),
     "detail": (3.0, f'fill="{_FAINT}"'),
+    "number": (2.4, f'fill="{_INK}"'),
 }
 
 
@@ -64,6 +66,12 @@ class Sheet:
             path = "".join(f"M{self._joined(line)}" for line in lines)
             self.drawn.append(f'<path {_STROKES[style]} d="{path}"/>')
 
+    def wire(self, line: Points, colour: str) -> None:
+        """A wire, on a white edge that parts it from what it crosses."""
+        path = f'fill="none" {_ROUND} d="M{self._joined(line)}"'
+        self.drawn.append(f'<path stroke="#fff" stroke-width="1.3" {path}/>')
+        self.drawn.append(f'<path stroke="{colour}" stroke-width=".8" {path}/>')
+
     def dot(self, x_mm: float, y_mm: float) -> None:
         """Where a leader points at."""
         self.drawn.append(f'<circle fill="{_FAINT}" cx="{x_mm:.2f}" cy="{0.0 - y_mm:.2f}" r=".6"/>')
@@ -74,8 +82,8 @@ class Sheet:
         Args:
             x_mm, y_mm: where it is anchored.
             text: what it says.
-            style: `"title"`, `"name"` or `"detail"`.
-            anchor: `"start"` or `"end"`.
+            style: `"title"`, `"name"`, `"detail"` or `"number"`.
+            anchor: `"start"`, `"middle"` or `"end"`.
         """
         size, look = _WORDS[style]
         self.drawn.append(
@@ -147,9 +155,14 @@ _NEAR_MM = 0.02  # of a simplified line from what it stands for
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """A direction of view; the page's x and y and the way to the viewer, as rows."""
+    """A direction of view; the page's x and y and the way to the viewer, as rows, which are as
+    long as the page is enlarged."""
 
     axes: Points
+
+    def enlarged(self, scale: float) -> "View":
+        """The same view at another scale of the page."""
+        return View(self.axes * scale)
 
     def seen(self, points_mm: Points) -> Points:
         """Points as x and y on the page and height above it, shape `(n, 3)`."""
@@ -167,11 +180,21 @@ def view(azimuth_deg: float, elevation_deg: float) -> View:
 
 
 def silhouette(mesh: Mesh, seen_by: View) -> list[Points]:
-    """Outer and inner contours of a body on the page."""
-    flat = seen_by.seen(mesh.points_mm)[:, :2][mesh.triangles]
-    a, b = flat[:, 1] - flat[:, 0], flat[:, 2] - flat[:, 0]
-    front = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0] > 1e-6
-    whole = shapely.union_all(shapely.polygons(flat[front]), grid_size=0.001)
+    """Outer and inner contours of a body on the page.
+
+    The lines along which it turns away from the viewer divide the page; what a triangle covers of
+    the pieces is the body.
+    """
+    seen = seen_by.seen(mesh.points_mm)
+    solid = trimesh.Trimesh(mesh.points_mm, mesh.triangles, process=False)
+    front = _front(mesh, seen)
+    turns = solid.face_adjacency_edges[front[solid.face_adjacency].sum(axis=1) == 1]
+    flat = seen[:, :2]
+    contour = shapely.union_all(shapely.linestrings(flat[turns]), grid_size=0.001)
+    pieces = shapely.get_parts(shapely.polygonize([contour]))
+    triangles = shapely.STRtree(shapely.polygons(flat[mesh.triangles[front]]))
+    covered, _ = triangles.query(shapely.point_on_surface(pieces), predicate="intersects")
+    whole = shapely.union_all(pieces[np.unique(covered)], grid_size=0.001)
     whole = whole.buffer(0.01, join_style="mitre").buffer(-0.01, join_style="mitre")
     whole = shapely.simplify(whole, _NEAR_MM)
     return [
@@ -247,11 +270,15 @@ def _lines(mesh: Mesh, seen: Points, depths: Points, low: Points) -> list[Points
 def _edges(mesh: Mesh, seen: Points) -> tuple[Points, Points]:
     """Both ends of each edge that is sharp, or where the body turns away from the viewer."""
     solid = trimesh.Trimesh(mesh.points_mm, mesh.triangles, process=False)
-    corners = seen[mesh.triangles]
-    a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    front = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0] > 1e-9
-    pairs = front[solid.face_adjacency]
+    pairs = _front(mesh, seen)[solid.face_adjacency]
     sharp = np.degrees(solid.face_adjacency_angles) > SHARP_DEG
     drawn = (sharp & pairs.any(axis=1)) | (pairs[:, 0] != pairs[:, 1])
     ends = solid.face_adjacency_edges[drawn]
     return seen[ends[:, 0]], seen[ends[:, 1]]
+
+
+def _front(mesh: Mesh, seen: Points) -> NDArray[np.bool_]:
+    """Whether each triangle looks to the viewer."""
+    corners = seen[mesh.triangles]
+    a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0] > 1e-9)

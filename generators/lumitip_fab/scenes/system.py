@@ -106,7 +106,7 @@ def system_files(design: Design, files: Files) -> tuple[Artefact, ...]:
             groups.append(_held(files, holder, boards[holder.auxiliary], stack, system))
     to_tool = frames.gripper_to_tool(stack, mount, design.closing, system)
     scene = trimesh.load(io.BytesIO(files.read("assembly/assembly.glb")), file_type="glb")
-    groups += [_finger(scene, finger, to_tool) for finger in design.fingers]
+    groups += [finger_group(scene, finger, to_tool) for finger in design.fingers]
     tcp_mm = float(to_tool[2, 3])
     extras = {"opening_mm": float(scene.metadata["opening_mm"]), "tcp_mm": tcp_mm}
     drawing = system_view(groups, design.flanges, mount, system, tcp_mm)
@@ -128,7 +128,7 @@ def _robot_side(
     parts = {
         part: Body(
             f"{flange.name}.{part}",
-            _stl(files, f"flange/{flange.name}_{part}.stl"),
+            stl_mesh(files, f"flange/{flange.name}_{part}.stl"),
             colour_of(part),
         )
         for part in beds
@@ -152,9 +152,8 @@ def _held(
     files: Files, holder: Holder, auxiliary: AuxiliaryBoard, stack: Stack, system: System
 ) -> Group:
     """A holder with its board, in the board's frame."""
-    printed = _moved(
-        _stl(files, f"holder/{holder.name}.stl"), frames.holder_bed_to_auxiliary(holder)
-    )
+    bed = frames.holder_bed_to_auxiliary(holder)
+    printed = stl_mesh(files, f"holder/{holder.name}.stl").moved(bed)
     bodies = (
         Body(f"{holder.name}.tray", printed, colour_of("holder")),
         Body(f"{holder.name}.board", _board(auxiliary, stack), colour_of("board")),
@@ -162,7 +161,7 @@ def _held(
     return Group(holder.name, frames.holder_to_tool(holder, system), bodies)
 
 
-def _finger(scene: trimesh.Scene, finger: Finger, to_tool: frames.Matrix) -> Group:
+def finger_group(scene: trimesh.Scene, finger: Finger, to_tool: frames.Matrix) -> Group:
     """A finger as the assembly has it, every body in the finger's frame."""
     kinds = {finger.body_name(part): part.kind for part in finger.parts}
     placed = scene.graph.get(finger.name)[0].copy()
@@ -186,13 +185,10 @@ def _board(auxiliary: AuxiliaryBoard, stack: Stack) -> Mesh:
     return block(across, along, auxiliary.corner_mm, 0.0, stack.auxiliary_mm)
 
 
-def _stl(files: Files, path: str) -> Mesh:
+def stl_mesh(files: Files, path: str) -> Mesh:
+    """A printed part in its own frame."""
     read = trimesh.load(io.BytesIO(files.read(path)), file_type="stl")
     return Mesh(np.asarray(read.vertices), np.asarray(read.faces, dtype=np.int64))
-
-
-def _moved(mesh: Mesh, matrix: frames.Matrix) -> Mesh:
-    return Mesh(mesh.points_mm @ matrix[:3, :3].T + matrix[:3, 3], mesh.triangles)
 
 
 def _raised(by_mm: float) -> frames.Matrix:

@@ -1,0 +1,99 @@
+"""The drawings of the manual's steps, from the parts as they were written."""
+
+import io
+
+import numpy as np
+import trimesh
+
+from lumitip_fab.design import Design, Finger, frames
+from lumitip_fab.parts.surface import Mesh
+from lumitip_fab.pipeline.artefact import Artefact, Files
+from lumitip_fab.scenes.casting_views import (
+    Cast,
+    clamped_view,
+    filled_view,
+    lifted_view,
+    lowered_view,
+)
+from lumitip_fab.scenes.finger_views import board_view, cable_view, folded_view
+from lumitip_fab.scenes.glb import Group
+from lumitip_fab.scenes.system import finger_group, stl_mesh
+
+
+def work_views(design: Design, files: Files) -> tuple[Artefact, ...]:
+    """A drawing of each step of the work that a picture explains. Both fingers are made alike: the
+    emitter is drawn, but for the wires, of which the receiver has more."""
+    scene = trimesh.load(io.BytesIO(files.read("assembly/assembly.glb")), file_type="glb")
+    groups = {f.name: finger_group(scene, f, np.eye(4)) for f in design.fingers}
+    layers = {name: _layers(group) for name, group in groups.items()}
+    finger, wired = design.emitter, design.receiver
+    cast = _cast(design, finger, layers[finger.name], files)
+    clamp = design.clamps[0] if design.clamps else None
+    drawings = {
+        "board": board_view(finger, layers[finger.name], _front(groups[finger.name], finger)),
+        "cable": cable_view(
+            wired, layers[wired.name], _colours(design, wired), design.mount, design.stack
+        ),
+        "filled": filled_view(cast),
+        "lowered": lowered_view(cast),
+        "clamped": clamped_view(cast, clamp, _clamp(design, files)),
+        "lifted": lifted_view(cast),
+        "folded": folded_view(
+            layers[finger.name], files.facts(f"mask/{finger.name}_mask.svg")["flaps"]
+        ),
+    }
+    return tuple(
+        Artefact(f"manual/{name}.svg", drawing.encode(), frame="")
+        for name, drawing in drawings.items()
+    )
+
+
+def _layers(group: Group) -> dict[str, Mesh]:
+    """Bodies of a finger by the last part of their names."""
+    return {body.name.rpartition(".")[2]: body.mesh for body in group.bodies}
+
+
+def _front(group: Group, finger: Finger) -> list[Mesh]:
+    """Parts on the board's front."""
+    front = {finger.body_name(part) for part in finger.parts if part.side == "front"}
+    return [body.mesh for body in group.bodies if body.name in front]
+
+
+def _cast(design: Design, finger: Finger, layers: dict[str, Mesh], files: Files) -> Cast:
+    to_bed = _to_bed(design)
+    return Cast(
+        stl_mesh(files, f"mould/{finger.name}_mould.stl"),
+        {
+            name: layers[name].moved(to_bed)
+            for name in ("interface", "backing", "board", "silicone")
+            if name in layers
+        },
+        design.mould.wall_mm + design.stack.cover_mm,
+        -design.outline.tip_y_mm,
+    )
+
+
+def _to_bed(design: Design) -> frames.Matrix:
+    """From the sensor frame to the bed of the mould."""
+    bed = frames.mould_bed_to_sensor(design.stack, design.mould)
+    return np.asarray(np.linalg.inv(bed), np.float64)
+
+
+def _clamp(design: Design, files: Files) -> Mesh | None:
+    """The printed clamp where it lies on the finger in the mould."""
+    for clamp in design.clamps:
+        lies = _to_bed(design) @ frames.clamp_bed_to_sensor(design.stack, clamp)
+        return stl_mesh(files, clamp.file).moved(lies)
+    return None
+
+
+def _colours(design: Design, finger: Finger) -> list[str]:
+    """Colours of a finger's wires, in the order of its pads."""
+    ends = {
+        end.order: wire.colour
+        for cable in design.cabling.cables
+        for wire in cable.wires
+        for end in (wire.start, wire.end)
+        if end.board == finger.name
+    }
+    return [ends[order] for order in sorted(ends)]
