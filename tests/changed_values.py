@@ -136,6 +136,7 @@ CHANGES: dict[str, Any] = {
     "mould.silicone": "Sylgard 184",
     "mould.primer": "Primer G 790",
     "mould.tape": "polyester tape",
+    "mould.insert": "PET 100um",
     "mould.taper_length_mm": 2.9,
     "mould.tip_silicone_mm": 0.3,
     "mould.wall_gap_mm": 0.2,

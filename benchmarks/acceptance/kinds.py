@@ -215,12 +215,15 @@ def _printer(random: Random, _: Table, _base: str) -> Table:
 
 
 def _casting(random: Random, _: Table, _base: str) -> Table:
-    clear = [name for name, film in entries("films").items() if not film.get("opaque")]
+    films = entries("films").items()
+    clear = [name for name, film in films if not film.get("opaque")]
+    smooth = [name for name, film in films if film.get("smooth")]
     return _some(
         random,
         {
             "mould.silicone": lambda: random.choice(list(entries("silicones"))),
             "mask.film": lambda: random.choice(clear),
+            "mould.insert": lambda: random.choice(smooth),
         },
     )
 

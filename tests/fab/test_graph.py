@@ -84,9 +84,10 @@ def test_waste_of_silicone_touches_the_mould_and_what_shares_its_figures(keys: K
 
 def test_pitch_touches_everything_of_the_fingers(keys: Keys) -> None:
     # What holds the controller and the flange's circuit know nothing of the cells. The slicer's
-    # note lists the clamp, for which not every grid has room.
+    # note lists the clamp, for which not every grid has room. There is no insert.
     outside = {
         "holder",
+        "insert",
         "flange",
         "models",
         "supply_spice",

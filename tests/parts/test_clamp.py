@@ -14,7 +14,8 @@ from lumitip_fab.design import Design
 from lumitip_fab.design.clamp import torsion_mm4
 from lumitip_fab.design.encoding import read_design
 from lumitip_fab.parts import clamp as parts
-from lumitip_fab.parts.mould import casting_note, open_back, silicone_mix
+from lumitip_fab.parts.casting import casting_note, silicone_mix
+from lumitip_fab.parts.mould import open_back
 
 Write = Callable[[str], Path]
 

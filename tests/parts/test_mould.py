@@ -12,10 +12,9 @@ import trimesh
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from lumitip_fab.derive.making.mould import whole_layers
-from lumitip_fab.design import Design, Mould
+from lumitip_fab.design import Box, Design, Insert, Mould
 from lumitip_fab.design.encoding import read_design
-from lumitip_fab.parts import mould, skin
-from lumitip_fab.parts import mould as casting
+from lumitip_fab.parts import casting, mould, skin
 
 pytestmark = pytest.mark.slow
 
@@ -110,6 +109,18 @@ def test_the_note_says_primer_tape_test_and_the_order_of_demoulding(design: Desi
     assert "Close every window" not in noted(design, design.mould, open_back=False)
     bare = noted(design, replace(design.mould, primer="", primer_dry_min=0.0))
     assert "Wipe a thin film" not in bare
+
+
+def test_the_note_says_how_a_smooth_film_is_cut_laid_and_peeled(design: Design) -> None:
+    bare = noted(design, design.mould)
+    assert "film" not in bare.replace("thin film", "") and "recess" not in bare
+    box = Box(-19.04, 19.04, -15.45, 15.45)
+    film = Insert("insert", "PET transparency 100 µm", 0.1, box, 0.3)
+    note = " ".join(noted(design, replace(design.mould, inserts=(film,))).split())
+    assert "The floor at 2.5 mm, the recess in it at 2.4 mm and the stops at 4 mm" in note
+    steps = ["38.08 x 30.90 mm", "Keep primer away", "Lay the film into its recess"]
+    steps += ["Fill it from one corner", "Cut the flash", "Peel it off the skin"]
+    assert sorted(steps, key=note.index) == steps
 
 
 def test_the_note_weighs_both_parts(design: Design) -> None:

@@ -170,7 +170,7 @@ class Tape(Entry):
 
 
 class Film(Entry):
-    """A film for the mask: clear, to print on, or opaque, to cut."""
+    """A film for the mask: clear, to print on, or opaque, to cut; or for the mould's floor."""
 
     thickness_mm: Length
     """Thickness."""
@@ -182,6 +182,8 @@ class Film(Entry):
     """Highest temperature that it bears without melting or shrinking (°C)."""
     opaque: bool = False
     """Whether it lets no light through, infrared included."""
+    smooth: bool = False
+    """Whether both faces are as smooth as glass, and silicone cures on them and peels off them."""
 
 
 class Printer(Entry):

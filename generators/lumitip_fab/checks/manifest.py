@@ -65,8 +65,8 @@ def _apart(path: str, low: Vector, high: Vector, design: Design) -> Iterator[flo
             yield abs(low[2] - (stack.back_z_mm - clamp.foot_mm - clamp.thickness_mm))
             yield abs(high[1] - clamp.legs[-1].y_max_mm)
     elif path.startswith("mould/"):
-        # It lies under the skin, its floor `wall_mm` thick, and reaches round the tip.
-        yield abs(high[2] - (stack.silicone_z_mm + design.mould.wall_mm))
+        # It lies under the skin, its floor `floor_mm` high, and reaches round the tip.
+        yield abs(high[2] - (stack.silicone_z_mm + design.mould.floor_mm))
         yield max(tip_y - high[1], 0.0)
     elif path.startswith("mask/"):
         yield from (abs(high[2]), abs(low[2] + design.mask.sheet.thickness_mm))

@@ -16,8 +16,8 @@ from lumitip_fab.checks.mould_note import measure_note, measure_volume
 from lumitip_fab.checks.printed import measure_boxes
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.result import Measurement, Subject, unreadable
-from lumitip_fab.checks.walls import beside, measure_relief, walls
-from lumitip_fab.design import Box, Design, Finger
+from lumitip_fab.checks.walls import Mask, beside, measure_relief, walls
+from lumitip_fab.design import Box, Design, Finger, Insert
 from lumitip_fab.design.frames import applied, backing_bed_to_sensor, mould_bed_to_sensor
 from lumitip_fab.errors import OutputError
 
@@ -53,6 +53,7 @@ LEAST_DRAFT_DEG = 2.0
 DRAFT_MESH_DEG = 0.25  # of triangles on curved walls
 _ABOVE_MM = 0.05  # stops and weir end at the rim itself
 _STEP_MM = 0.5
+_GAP_SIDE_MM = 0.01  # on the side of a recess itself nothing is probed
 _UPRIGHT = math.sin(math.radians(0.5))  # a facet that leans by less is an upright wall's mesh
 _ON_BED_MM = 1e-3
 
@@ -104,7 +105,7 @@ class Probe:
         self.mesh, self.design = mesh, design
         to_sensor = mould_bed_to_sensor(design.stack, design.mould)
         self.to_bed = np.asarray(np.linalg.inv(to_sensor), dtype=np.float64)
-        self.rim_mm = design.mould.wall_mm + design.stack.cover_mm
+        self.rim_mm = design.mould.floor_mm + design.stack.cover_mm
 
     def depths_mm(self, points: solids.Vectors) -> solids.Vectors:
         """How far the mould lies below the rim plane at points (x, y) of the sensor frame."""
@@ -121,7 +122,9 @@ def _thickness(probe: Probe, file: str) -> Measurement:
     box = probe.design.board.box
     x = np.arange(box.x_min_mm, box.x_max_mm, GRID_MM)
     y = np.arange(box.y_min_mm, box.y_max_mm, GRID_MM)
-    depth = probe.depths_mm(np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2))
+    at = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+    film_mm, free = _film_mm(at, probe.design.inserts)
+    depth = (probe.depths_mm(at) - film_mm)[free]
     stack = probe.design.stack
     wanted = stack.silicone_mm
     proud = 0.0 if stack.sunk else stack.pcb_mm  # of the board before the plate
@@ -133,6 +136,21 @@ def _thickness(probe: Probe, file: str) -> Measurement:
     note = f"farthest from {wanted:g} at {len(depth)} places over the board, from the pads' tops"
     worst, by = depth[np.abs(depth - wanted).argmax()], THICKNESS_MM
     return Subject("mould", file).figure("thickness", worst, wanted - by, wanted + by, note=note)
+
+
+def _film_mm(at: solids.Vectors, inserts: tuple[Insert, ...]) -> tuple[solids.Vectors, Mask]:
+    """Thickness of the film on the floor at some places, and which are not in the gap round it."""
+    film_mm, free = np.zeros(len(at)), np.ones(len(at), dtype=np.bool_)
+    for insert in inserts:
+        film, recess = (_within(at, box) for box in (insert.box, insert.recess.grown(_GAP_SIDE_MM)))
+        film_mm[film] = insert.thickness_mm
+        free &= film | ~recess
+    return film_mm, free
+
+
+def _within(at: solids.Vectors, box: Box) -> Mask:
+    left, low, right, high = box.bounds_mm
+    return np.asarray(((at >= (left, low)) & (at <= (right, high))).all(axis=1))
 
 
 def _tip_thickness(probe: Probe, file: str) -> Measurement:
@@ -193,7 +211,7 @@ def _walls(mesh: Any, file: str, design: Design, notch: Box) -> Iterator[Measure
         notch: the finger's wire notch, where the wall may be open.
     """
     mould, stack = design.mould, design.stack
-    rim_mm = mould.wall_mm + stack.cover_mm
+    rim_mm = mould.floor_mm + stack.cover_mm
     silhouette = shapely.Polygon(design.outline.polygon() * (1, -1))  # as seen from above
     places = _along(silhouette, design, notch)
     near = _distances(mesh, rim_mm + _ABOVE_MM, places)

@@ -54,8 +54,8 @@ def _masses(text: str, file: str, design: Design) -> Measurement:
 def _figures(text: str, file: str, design: Design) -> Measurement:
     """Layers, heights and hours in the note against the design."""
     mould = design.mould
-    stops_mm = mould.wall_mm + design.stack.cover_mm
-    wanted = [f"{v:g}" for v in (mould.layer_mm, mould.wall_mm, stops_mm, mould.cure_h)]
+    stops_mm = mould.floor_mm + design.stack.cover_mm
+    wanted = [f"{v:g}" for v in (mould.layer_mm, mould.floor_mm, stops_mm, mould.cure_h)]
     matches = [re.findall(pattern, text) for pattern in _HOW]
     wrong = sum(found != [v] for found, v in zip(matches, wanted, strict=True))
     note = f"of layers, floor, stops and hours: {', '.join(wanted)}"
@@ -111,12 +111,13 @@ def _keys_mm3(design: Design) -> float:
 
 
 def _cavity_mm3(body: solids.Solid, design: Design) -> float:
-    """Volume between rim plane and mould within the middle of the walls."""
+    """Volume between rim plane and mould within the middle of the walls, less an insert's."""
     mould = design.mould
     silhouette = shapely.Polygon(design.outline.polygon() * (1, -1))
     within = silhouette.buffer(mould.wall_gap_mm + mould.wall_mm / 2)
     ring = np.array(shapely.geometry.polygon.orient(within).exterior.coords)[:-1]
     low = mould.wall_mm / 2
     section = manifold3d.CrossSection([ring])
-    filled = section.extrude(mould.wall_mm + design.stack.cover_mm - low).translate([0, 0, low])
-    return float((filled - body).volume())
+    filled = section.extrude(mould.floor_mm + design.stack.cover_mm - low).translate([0, 0, low])
+    films = sum(insert.volume_mm3 for insert in mould.inserts)
+    return float((filled - body).volume()) - films

@@ -33,8 +33,8 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
 
 
 def _mould_layers(outputs: Path, design: Design) -> Measurement:
-    """Floor and stops of the moulds are whole layers of the slicer's `layer_height`: rounding
-    there makes the silicone thinner or thicker."""
+    """Floor, recess and stops of the moulds are whole layers of the slicer's `layer_height`:
+    rounding there makes the silicone thinner or thicker."""
     file = design.slicing.mould.file
     try:
         layer_mm = float(_read(outputs / file)["layer_height"])
@@ -42,10 +42,10 @@ def _mould_layers(outputs: Path, design: Design) -> Measurement:
             raise ValueError(f"layer_height = {layer_mm:g}")
     except (OSError, KeyError, ValueError) as problem:
         return unreadable("printing.mould_layers", file, str(problem))
-    floor_mm = design.mould.wall_mm
-    heights_mm = (floor_mm, floor_mm + design.stack.cover_mm)
+    mould = design.mould
+    heights_mm = (mould.wall_mm, mould.floor_mm, mould.floor_mm + design.stack.cover_mm)
     off_mm = max(abs(h - round(h / layer_mm) * layer_mm) for h in heights_mm)
-    most_mm = design.mould.off_layer_mm + _ROUNDING_MM
+    most_mm = mould.off_layer_mm + _ROUNDING_MM
     note = f"of floor and stops to a whole layer of {layer_mm:g} mm"
     return Measurement("printing.mould_layers", file, off_mm, 0, most_mm, "mm", note)
 

@@ -37,6 +37,7 @@ MODULES = (
     "fit_orientation",
     "tie_lugs",
     "mould",
+    "insert",
     "clamp",
     "assembly",
     "board",

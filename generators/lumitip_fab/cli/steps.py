@@ -36,6 +36,7 @@ STEPS = (
     Step("assembly", "scenes.assembly.assembly", heavy=True, tools=_CAD),
     Step("robot", "scenes.robot.robot_files", heavy=True, tools=_CAD),
     Step("mould", "parts.mould.mould_files", "fingers", heavy=True, tools=_CAD),
+    Step("insert", "parts.insert.insert_files", "inserts", tools=_INK),
     Step("clamp", "parts.clamp.clamp_files", "clamps", heavy=True, tools=_CAD),
     Step("backing", "parts.backing.backing", "fingers", heavy=True, tools=_CAD),
     Step("holder", "parts.holder.holder_files", "holders", heavy=True, tools=_CAD),

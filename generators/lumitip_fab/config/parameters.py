@@ -218,6 +218,9 @@ class Mould(Strict):
     """Name of a primer in `parts/primers.toml`, under the silicone; or `"none"`."""
     tape: Name
     """Name of a tape in `parts/tapes.toml`, which closes windows while the silicone is cast."""
+    insert: Name
+    """Name of a smooth film in `parts/films.toml`, which lies on the mould's floor in front of the
+    cells, so that the silicone's face is as smooth; or `"none"`."""
     taper_length_mm: float = Field(ge=0.5, le=3.9)
     """Distance from the tip edge over which the silicone thins; the fingers touch first where it
     ends, at most 4 mm from the tip (mm)."""

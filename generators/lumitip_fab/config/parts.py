@@ -123,6 +123,7 @@ class MouldParts:
     silicone: Silicone
     primer: Primer | None
     tape: Tape
+    insert: Film | None
 
 
 @dataclass(frozen=True)

@@ -76,7 +76,7 @@ def derive_body(
     interfaces = derive_interfaces(config, silhouette, plan.receiver, plan.board.box, faults)
     coupling = mount.derive_mount(config, silhouette, plan, faults)
     tip = derive_tip(config, silhouette, plan.board, stack, faults)
-    casting = mould.derive_mould(config, silhouette, plan.board, stack, faults)
+    casting = mould.derive_mould(config, silhouette, plan, stack, faults)
     slicing = derive_slicing(config, casting, faults)
     meeting = mount.derive_closing(silhouette, stack, coupling, casting, faults)
     board, finger = plan.board, plan.receiver
@@ -101,7 +101,7 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
     body, casting = derive_body(config, stack, plan, faults)
     silhouette, coupling, slicing = body.outline, body.mount, body.slicing
     printing = derive_printing(config, silhouette, faults)
-    heat = derive_heat(config, slicing, faults)
+    heat = derive_heat(config, slicing, casting, faults)
     plate = derive_fit_plate(config, plan, stack, coupling, faults)
     sheet = mask.derive_mask(config, silhouette, plan, faults)
     rules = derive_rules(config, faults)
@@ -133,6 +133,7 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
         cabling,
         coupling,
         clamps,
+        casting.inserts,
     )
     mux, channel = wiring.assign(config, cells, plan.muxes)
     layout = Layout(

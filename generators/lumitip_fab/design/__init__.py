@@ -39,6 +39,7 @@ from lumitip_fab.design.clamp import Clamp
 from lumitip_fab.design.electrical import Electrical
 from lumitip_fab.design.fit_plate import FitPlate, Fits, PocketCorner
 from lumitip_fab.design.holder import Holder
+from lumitip_fab.design.insert import Insert
 from lumitip_fab.design.making import (
     Densities,
     Filament,
@@ -179,6 +180,11 @@ class Design:
         """The auxiliary board with the protection of the controller's pins; none without it."""
         protection = self.electrical.protection
         return tuple(b for b in self.auxiliary_boards if protection and b.name == protection.board)
+
+    @property
+    def inserts(self) -> tuple[Insert, ...]:
+        """The film on the floor of both moulds; none without it."""
+        return self.mould.inserts
 
     @property
     def heat_steps(self) -> dict[str, HeatStep]:

@@ -94,8 +94,8 @@ def plate_back_to_sensor(mount: Mount, stack: Stack) -> Matrix:
 
 
 def mould_bed_to_sensor(stack: Stack, mould: Mould) -> Matrix:
-    """From the mould's print bed: its floor is `wall_mm` thick below the silicone's face."""
-    return translation(0.0, 0.0, stack.silicone_z_mm + mould.wall_mm) @ rotation_x(180.0)
+    """From the mould's print bed: its floor is `floor_mm` high below the silicone's face."""
+    return translation(0.0, 0.0, stack.silicone_z_mm + mould.floor_mm) @ rotation_x(180.0)
 
 
 def clamp_bed_to_sensor(stack: Stack, clamp: Clamp) -> Matrix:

@@ -3,6 +3,7 @@
 import re
 from dataclasses import dataclass
 
+from lumitip_fab.design.insert import Insert
 from lumitip_fab.design.shape import Box, Point
 
 LEDGE_MM = 0.5
@@ -91,16 +92,19 @@ class Mould:
     wall_gap_mm: float
     draft_deg: float
     wall_mm: float
+    """Thickness of its walls, and of its floor, under an insert too."""
+    inserts: tuple[Insert, ...]
+    """The smooth film on its floor; none if the file names none, or there is no room for it."""
     pads: tuple[Point, ...]
     """Hard stops on the plate's rim, beside the board."""
     pad_mm: float
     letter: Letter
     """On the outside of the trough's end, which is where it says."""
     layer_mm: float
-    """Layer thickness of its print: the thickest, up to the printer's own, that divides floor and
-    stops into whole layers."""
+    """Layer thickness of its print: the thickest, up to the printer's own, that divides floor,
+    recess and stops into whole layers."""
     off_layer_mm: float
-    """From the farther of floor and stops to a whole layer; 0 but where no layer divides both."""
+    """From the farthest of them to a whole layer; 0 but where no layer divides all."""
     silicone: str
     density_g_ml: float
     mix_ratio: Point
@@ -118,6 +122,11 @@ class Mould:
     """Title of the tape over windows and holes of the back."""
     glue_hard_h: float
     """Time until the glue is hard, where it meets the silicone; else 0."""
+
+    @property
+    def floor_mm(self) -> float:
+        """The silicone's face over the bed: beside an insert, and on it."""
+        return self.wall_mm + sum(insert.thickness_mm for insert in self.inserts)
 
 
 @dataclass(frozen=True)
@@ -187,7 +196,7 @@ class HeatedPart:
     """A part that a step heats."""
 
     name: str
-    """`"backing"`, `"board"`, `"film"`, `"interface"`, `"mould"` or `"silicone"`."""
+    """`"backing"`, `"board"`, `"film"`, `"insert"`, `"interface"`, `"mould"` or `"silicone"`."""
     material: str
     limit_c: float
     """Highest temperature that its material bears in this step (°C)."""

@@ -10,6 +10,7 @@ import numpy as np
 from lumitip_fab.design import AuxiliaryBoard, Design, Finger, Flange, Holder, Mount, TieLug
 from lumitip_fab.design.electrical import PlugIn
 from lumitip_fab.design.frames import gripper_to_base, gripper_to_tool
+from lumitip_fab.design.insert import LEAST_MARGIN_MM
 from lumitip_fab.docs.row import Row, rows_of
 from lumitip_fab.docs.spec_circuit import ambient_rows, channel_rows, electrical_rows, string_rows
 
@@ -185,7 +186,7 @@ def _of_the_plate(design: Design) -> tuple[Row, ...]:
             over_mm=stack.silicone_mm - part.height_mm,
         )
     ]
-    over += [*_of_the_keys(design), *_of_the_clamp(design)]
+    over += [*_of_the_keys(design), *_of_the_insert(design), *_of_the_clamp(design)]
     if not design.interfaces:
         return (*over, *rows_of("rigid", stack=stack, printing=printing, proud=stack.pcb_mm - 0.8))
     (interface,), holes = design.interfaces, design.receiver.holes
@@ -202,6 +203,14 @@ def _of_the_keys(design: Design) -> Iterator[Row]:
         yield from rows_of("keys", count=len(design.keys), hole_mm=key.hole_mm)
     if not design.keys:
         yield from rows_of("no_keys")
+
+
+def _of_the_insert(design: Design) -> Iterator[Row]:
+    """The film that gives the silicone its face, or that there is none."""
+    for insert in design.inserts:
+        yield from rows_of("insert", insert=insert)
+    if not design.inserts:
+        yield from rows_of("no_insert", margin_mm=LEAST_MARGIN_MM)
 
 
 def _of_the_clamp(design: Design) -> Iterator[Row]:

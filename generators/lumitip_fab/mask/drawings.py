@@ -121,10 +121,10 @@ def dxf_drawing(artwork: Artwork, mask: Mask) -> bytes:
         _apertures(space, artwork, mask)
         _marks(space, artwork, mask)
 
-    return _dxf(LAYERS, draw)
+    return dxf_file(LAYERS, draw)
 
 
-def _dxf(layers: Mapping[str, int], draw: Callable[[Modelspace], None]) -> bytes:
+def dxf_file(layers: Mapping[str, int], draw: Callable[[Modelspace], None]) -> bytes:
     """A drawing in mm with layers and their colours."""
     with _fixed_metadata():
         document = ezdxf.new("R2010", units=units.MM)
@@ -164,7 +164,7 @@ def cut_drawing(artwork: Artwork, mask: Mask) -> bytes:
         for flap in artwork.flaps:
             _line(space, flap.fold, "FOLD")
 
-    return _dxf(CUT_LAYERS, draw)
+    return dxf_file(CUT_LAYERS, draw)
 
 
 @contextmanager

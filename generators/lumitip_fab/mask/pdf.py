@@ -29,7 +29,9 @@ def pdf_page(artwork: Artwork, mask: Mask, title: Title, paper: str) -> bytes:
     """
     stretch = [100 / measured for measured in mask.measured_ruler_mm]
     buffer = io.BytesIO()
-    canvas = _centred(buffer, paper, f"{title.name} {title.revision}: {artwork.name.lower()} mask")
+    canvas = centred_page(
+        buffer, paper, f"{title.name} {title.revision}: {artwork.name.lower()} mask"
+    )
     canvas.setSubject("Print at 100 %, mirrored on purpose: the inside of the film")
     canvas.scale(mm * stretch[0], mm * stretch[1])
     places = arrange(mask)
@@ -56,7 +58,7 @@ def coupon_page(mask: Mask, title: Title, paper: str) -> bytes:
     """
     wide, long = mask.coupon.width_mm, mask.coupon.length_mm
     buffer = io.BytesIO()
-    canvas = _centred(buffer, paper, f"{title.name} {title.revision}: coupon")
+    canvas = centred_page(buffer, paper, f"{title.name} {title.revision}: coupon")
     canvas.scale(mm, mm)
     canvas.setFillGray(0)
     canvas.rect(-wide / 2, -long / 2, wide, long, stroke=0, fill=1)
@@ -72,7 +74,7 @@ def coupon_page(mask: Mask, title: Title, paper: str) -> bytes:
     return buffer.getvalue()
 
 
-def _centred(buffer: io.BytesIO, paper: str, title: str) -> Canvas:
+def centred_page(buffer: io.BytesIO, paper: str, title: str) -> Canvas:
     """A page with the origin in its middle."""
     width, height = PAPERS_MM[paper]
     load_typeface()

@@ -67,7 +67,7 @@ def rails(clamp: Clamp, stack: Stack, mould: Mould) -> list[Solid]:
 
 def _bed_z_mm(stack: Stack, mould: Mould) -> float:
     """z of the mould's bed, in the sensor frame, where z looks down in the mould."""
-    return stack.silicone_z_mm + mould.wall_mm
+    return stack.silicone_z_mm + mould.floor_mm
 
 
 def _mark(clamp: Clamp, box: Box, bed_z_mm: float) -> Solid:

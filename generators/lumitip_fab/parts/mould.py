@@ -1,116 +1,30 @@
-"""The silicone mould of a finger, printed open side up, and the note for the person who pours."""
+"""The silicone mould of a finger, printed open side up."""
 
 import math
-from collections.abc import Mapping
 
 import numpy as np
 from build123d import Face, Location, Solid, Vector, Wire
 
-from lumitip_fab.design import Board, Box, Clamp, Design, Finger, Mould, Outline, Stack
+from lumitip_fab.design import (
+    Board,
+    Box,
+    Clamp,
+    Design,
+    Finger,
+    Insert,
+    Mould,
+    Outline,
+    Stack,
+)
 from lumitip_fab.design.frames import mould_bed_to_sensor
 from lumitip_fab.design.making import LEDGE_MM
 from lumitip_fab.parts import export, skin
+from lumitip_fab.parts.casting import casting_note, silicone_mix
 from lumitip_fab.parts.clamp import CHANGED, FOOT_CHAMFER_MM, rails
 from lumitip_fab.parts.letters import letter_cutter
 from lumitip_fab.parts.plate import key_fillings
 from lumitip_fab.parts.shapes import box_face, box_solid, one_solid, side_prism
 from lumitip_fab.pipeline.artefact import Artefact
-from lumitip_fab.text import passage
-
-_TEXTS = "parts/mould.md"
-
-
-def silicone_mix(volume_ml: float, mould: Mould) -> dict[str, float]:
-    """How much silicone to mix for a finger, with what stays in the cup; masses as weighed."""
-    mix_ml = volume_ml * (1 + mould.waste_fraction)
-    a, b = mould.mix_ratio
-    mass_g = mix_ml * mould.density_g_ml
-    return {
-        "volume_ml": volume_ml,
-        "mix_ml": mix_ml,
-        "part_a_g": round(mass_g * a / (a + b), 2),
-        "part_b_g": round(mass_g * b / (a + b), 2),
-    }
-
-
-def casting_note(
-    finger: str,
-    mix: Mapping[str, float],
-    stack: Stack,
-    mould: Mould,
-    glue: str,
-    keys: int,
-    open_back: bool,
-    clamps: tuple[Clamp, ...],
-) -> str:
-    """The note as Markdown.
-
-    Args:
-        finger: its name.
-        mix: silicone that stays on it, and what to mix.
-        stack: for the height of the stops.
-        mould: its layers, the silicone, and how much is wasted.
-        glue: title of what holds the board, or the interface.
-        keys: how many holes beside the board are to be filled.
-        open_back: whether windows or holes go through the plate.
-        clamps: the printed clamp; none where tape holds the finger.
-    """
-    rim_mm = mould.wall_mm + stack.cover_mm
-    bare = _text("bare", keys=keys) if keys else ""
-    openings = "window" if stack.sunk else "window and every hole for thread"
-    taped = _text("taped", tape=mould.tape, openings=openings, bare=bare) if open_back else ""
-    held = _text(
-        "in_pocket" if stack.sunk else "on_plate",
-        glue=glue,
-        glue_hard_h=mould.glue_hard_h,
-        taped=taped,
-    )
-    layers = _text(
-        "part" if mould.off_layer_mm else "whole",
-        floor_mm=mould.wall_mm,
-        rim_mm=rim_mm,
-        off_mm=mould.off_layer_mm,
-    )
-    primed = "primed" if mould.primer else "unprimed"
-    return _text(
-        "note",
-        finger=finger,
-        letter=finger[0].upper(),
-        letter_on="the back of its block" if stack.sunk else "its back",
-        board=held,
-        primed=_text(primed, primer=mould.primer, primer_dry_min=mould.primer_dry_min),
-        inhibited_by=", ".join(mould.inhibited_by),
-        waste=mould.waste_fraction,
-        silicone=mould.silicone,
-        **mix,
-        cure_h=mould.cure_h,
-        cure_c=mould.cure_c,
-        layer_mm=mould.layer_mm,
-        layers=layers,
-        keys=_text("keyed", keys=keys) if keys else "",
-        tip_mm=mould.tip_silicone_mm,
-        **_clamped(mould, clamps, stack.sunk),
-    )
-
-
-def _clamped(mould: Mould, clamps: tuple[Clamp, ...], rigid: bool) -> dict[str, str]:
-    """How the finger is held down, and let go; the tip of a plate that bends by tape as well."""
-    for clamp in clamps:
-        pads_n = clamp.pads_n(clamp.thickness_mm)
-        return {
-            "screwed": _text("screwed", clamp=clamp) + "\n   ",
-            "clamped": _text("clamped", pads_n=pads_n)
-            + ("" if rigid else _text("tip_taped", tape=mould.tape)),
-            "unclamped": _text("unclamped"),
-        }
-    held = _text("taped_down", tape=mould.tape)
-    return {"screwed": "", "clamped": held, "unclamped": _text("untaped")}
-
-
-def _text(name: str, /, **values: object) -> str:
-    """A passage of the note with its values."""
-    return passage(_TEXTS, name).format(**values)
-
 
 CHORD_MM = 0.002  # finer than other parts: the draft is measured on walls 1.6 mm high
 WEIR_FRACTION = 0.8  # of the wire notch, through which wires and surplus leave
@@ -204,6 +118,7 @@ def mould_solid(
         _trough(stack, mould, catch),
         _grip(stack, outline, outside),
         letter_cutter(finger.name, mould.letter, mould_bed_to_sensor(stack, mould)),
+        *(_recess(insert, stack) for insert in mould.inserts),
     ]
     whole = (block - taken) + skin.stops(stack, outline, mould)
     return one_solid(whole, "mould", CHANGED)
@@ -213,7 +128,7 @@ def _footed(
     stack: Stack, outline: Outline, mould: Mould, top_z_mm: float, outside_mm: float
 ) -> Solid:
     """The outer body, chamfered where it stands on the bed."""
-    bed_z = stack.silicone_z_mm + mould.wall_mm
+    bed_z = stack.silicone_z_mm + mould.floor_mm
     shoulder_z = bed_z - FOOT_CHAMFER_MM
     top, shoulder = (skin.offset_wire(outline, outside_mm, z) for z in (top_z_mm, shoulder_z))
     foot = skin.offset_wire(outline, outside_mm - FOOT_CHAMFER_MM, bed_z)
@@ -222,7 +137,7 @@ def _footed(
 
 def _lip(stack: Stack, mould: Mould, catch: Box, outside_mm: float) -> Solid:
     """The block that holds the trough, joined to the body."""
-    bed_z = stack.silicone_z_mm + mould.wall_mm
+    bed_z = stack.silicone_z_mm + mould.floor_mm
     inside_y = catch.y_max_mm + LEDGE_MM + outside_mm / 2
     outer = Box(
         catch.x_min_mm - mould.wall_mm,
@@ -248,8 +163,8 @@ def _weir(stack: Stack, outline: Outline, half_mm: float, outside_mm: float) -> 
 
 
 def _trough(stack: Stack, mould: Mould, catch: Box) -> Solid:
-    """The basin for the surplus, over a floor half as thick as the mould's."""
-    rim, floor = stack.face_z_mm, stack.silicone_z_mm + mould.wall_mm / 2
+    """The basin for the surplus, over a floor half as thick as the walls."""
+    rim, floor = stack.face_z_mm, stack.silicone_z_mm + mould.floor_mm - mould.wall_mm / 2
     slope = math.tan(math.radians(WEIR_DRAFT_DEG))
     over = LEDGE_MM  # above the rim, where there is nothing left to cut
     rings = [
@@ -257,6 +172,12 @@ def _trough(stack: Stack, mould: Mould, catch: Box) -> Solid:
         box_face(catch.grown(-slope * (floor - rim))).outer_wire().moved(_height(floor)),
     ]
     return Solid.make_loft(rings, ruled=True)
+
+
+def _recess(insert: Insert, stack: Stack) -> Solid:
+    """The place of the insert in the floor."""
+    floor = stack.silicone_z_mm
+    return box_solid(insert.recess, floor - stack.cover_mm / 2, floor + insert.thickness_mm)
 
 
 def _grip(stack: Stack, outline: Outline, outside_mm: float) -> Solid:

@@ -2,15 +2,20 @@
 
 import math
 
+import shapely
+
 from lumitip_fab.config.load import Input
+from lumitip_fab.derive.boards.boards import Plan
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.outline import DEPTH_MM, least_letter_mm, letter_on
+from lumitip_fab.derive.making.insert import derive_inserts
 from lumitip_fab.design import Board, Letter, Mould, Outline, Point, Stack
 from lumitip_fab.design.making import LEDGE_MM
 
 PAD_MM = 2.0
 LEAST_FLOOR_RIM_MM = 0.5
 PAD_MARGIN_MM = 0.1
+STOP_FOOT_MM = 0.1  # a stop is wider by this where it meets the floor
 END_ROUND = 2 / 3  # of the silicone's thickness
 TROUGH_MM = 4.0  # along y
 LETTER_OVER_BED_MM = 0.6  # or a printed line, which is clear of the chamfer at the foot
@@ -20,13 +25,16 @@ WHOLE_MM = 1e-6
 
 
 def derive_mould(
-    config: Input, outline: Outline, board: Board, stack: Stack, faults: Diagnostics
+    config: Input, outline: Outline, plan: Plan, stack: Stack, faults: Diagnostics
 ) -> Mould:
     """The mould, refused where the silicone cannot be shaped as asked."""
     p = config.parameters
     silicone, primer = config.parts.mould.silicone, config.parts.mould.primer
     glue = config.parts.backing.glue
     refuse_inhibitors(config, stack, faults)
+    film, films = config.parts.mould.insert, config.catalogue.films
+    smooth = ", ".join(repr(name) for name, entry in films.items() if entry.smooth)
+    faults.unless(film is None or film.smooth, "insert_rough", films=smooth)
     faults.unless(p.mould.taper_length_mm <= p.outline.tip_margin_mm, "taper_long")
     faults.unless(p.mould.tip_silicone_mm < p.stack.silicone_mm, "tip_silicone_thick")
     faults.unless(
@@ -48,9 +56,12 @@ def derive_mould(
             by_mm=depth * lean,
             most_deg=math.degrees(math.atan(allowed / depth)),
         )
+    pads = _pads(config, outline, plan.board, faults)
+    inserts = derive_inserts(config, _flat(config, outline, stack, pads), plan.receiver)
+    floor_mm = p.mould.wall_mm + sum(insert.thickness_mm for insert in inserts)
     layer_mm, off_mm = whole_layers(
         config.parts.printer.profile.layer_mm,
-        (p.mould.wall_mm, p.mould.wall_mm + stack.cover_mm),
+        tuple(dict.fromkeys((p.mould.wall_mm, floor_mm, floor_mm + stack.cover_mm))),
     )
     return Mould(
         taper_length_mm=p.mould.taper_length_mm,
@@ -59,9 +70,10 @@ def derive_mould(
         wall_gap_mm=p.mould.wall_gap_mm,
         draft_deg=p.mould.draft_deg,
         wall_mm=p.mould.wall_mm,
-        pads=_pads(config, outline, board, faults),
+        inserts=inserts,
+        pads=pads,
         pad_mm=PAD_MM,
-        letter=_letter(config, outline, stack, faults),
+        letter=_letter(config, outline, stack, floor_mm, faults),
         layer_mm=layer_mm,
         off_layer_mm=off_mm,
         silicone=config.title("mould.silicone"),
@@ -112,14 +124,16 @@ def _off_layer_mm(layer_mm: float, heights_mm: tuple[float, ...]) -> float:
     return max(abs(height - round(height / layer_mm) * layer_mm) for height in heights_mm)
 
 
-def _letter(config: Input, outline: Outline, stack: Stack, faults: Diagnostics) -> Letter:
+def _letter(
+    config: Input, outline: Outline, stack: Stack, floor_mm: float, faults: Diagnostics
+) -> Letter:
     """On the outside of the trough's end, whose wall is as high as the cavity and its floor."""
     p = config.parameters
     wall, rise = p.mould.wall_mm, stack.guided_mm * math.tan(math.radians(p.mould.draft_deg))
     line_mm = config.parts.printer.profile.line_mm
     least = least_letter_mm(line_mm)
     low = max(LETTER_OVER_BED_MM, line_mm)
-    high = wall + stack.cover_mm - max(LETTER_UNDER_RIM_MM, line_mm)
+    high = floor_mm + stack.cover_mm - max(LETTER_UNDER_RIM_MM, line_mm)
     faults.unless(
         high - low >= least - 1e-9,
         "mould_letter",
@@ -131,6 +145,24 @@ def _letter(config: Input, outline: Outline, stack: Stack, faults: Diagnostics) 
     trough_y = outline.end_y_mm - p.mould.wall_gap_mm - rise - wall - LEDGE_MM
     end_mm = wall + TROUGH_MM - trough_y
     return letter_on(low, high, min(DEPTH_MM, wall - p.printer.min_wall_mm), end_mm, line_mm)
+
+
+def _flat(
+    config: Input, outline: Outline, stack: Stack, pads: tuple[Point, ...]
+) -> shapely.Geometry:
+    """The floor between the walls, the rounding at the gripper end, the taper and the stops."""
+    mould, rounding = config.parameters.mould, END_ROUND * stack.silicone_mm
+    lean = math.tan(math.radians(mould.draft_deg))
+    floor = shapely.Polygon(outline.polygon()).buffer(mould.wall_gap_mm - stack.cover_mm * lean)
+    left, _, right, _ = floor.bounds
+    low = outline.end_y_mm - mould.wall_gap_mm + (stack.cover_mm - rounding) * lean + rounding
+    flat = floor & shapely.box(left, low, right, outline.tip_y_mm - mould.taper_length_mm)
+    half = PAD_MM / 2 + STOP_FOOT_MM
+    ends = [sorted((x - math.copysign(half, x), left if x < 0 else right)) for x, _ in pads]
+    feet = [
+        shapely.box(a, y - half, b, y + half) for (a, b), (_, y) in zip(ends, pads, strict=True)
+    ]
+    return flat - shapely.union_all(feet)
 
 
 def _pads(config: Input, outline: Outline, board: Board, faults: Diagnostics) -> tuple[Point, ...]:

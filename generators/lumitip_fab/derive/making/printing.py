@@ -66,14 +66,16 @@ _REMEDY = {
     "solder": ("stack.pcb_mm", "a laminate in parts/laminates.toml that withstands soldering"),
     "cure": (
         "mould.silicone",
-        "a silicone that cures at a lower temperature, or a filament that withstands it",
+        "a silicone that cures at a lower temperature, or a material that withstands it",
     ),
     "crease": ("mask.film", "another film in parts/films.toml"),
 }
 """Field to refuse, and what to change, of each step."""
 
 
-def derive_heat(config: Input, slicing: Slicing, faults: Diagnostics) -> tuple[HeatStep, ...]:
+def derive_heat(
+    config: Input, slicing: Slicing, mould: Mould, faults: Diagnostics
+) -> tuple[HeatStep, ...]:
     """Soldering, curing and, unless a printed mask folds along its grooves, creasing, in the order
     of work.
 
@@ -101,6 +103,7 @@ def derive_heat(config: Input, slicing: Slicing, faults: Diagnostics) -> tuple[H
                 HeatedPart("silicone", config.title("mould.silicone"), silicone.limit_c),
                 *(HeatedPart(part, name, known.filaments[name].limit_c) for part, name in printed),
                 HeatedPart("board", kind, laminate.limit_c),
+                *_inserted(config, mould),
             ),
         ),
     )
@@ -115,6 +118,12 @@ def derive_heat(config: Input, slicing: Slicing, faults: Diagnostics) -> tuple[H
     for step in steps:
         _refuse(step, config, faults)
     return steps
+
+
+def _inserted(config: Input, mould: Mould) -> tuple[HeatedPart, ...]:
+    """The film on the mould's floor."""
+    film = config.parts.mould.insert
+    return tuple(HeatedPart("insert", each.film, film.limit_c) for each in mould.inserts if film)
 
 
 def _refuse(step: HeatStep, config: Input, faults: Diagnostics) -> None:

@@ -15,6 +15,7 @@ from lumitip_fab.design import (
     Clamp,
     Finger,
     Holder,
+    Insert,
     Interface,
     Mount,
     Outline,
@@ -37,6 +38,9 @@ TURNS = 2
 """Of a thread, through both holes."""
 TIE_MM = 200.0
 """Length of a cable tie: the product in `packs.toml`."""
+A4_MM = (210.0, 297.0)
+CUT_MM = 5.0
+"""Of a sheet, from one insert to the next."""
 TIE_LOCK_MM = 25.0
 """Of a cable tie, for its lock and to pull at."""
 
@@ -65,6 +69,7 @@ class Assembled:
     cabling: Cabling
     mount: Mount
     clamps: tuple[Clamp, ...]
+    inserts: tuple[Insert, ...]
 
 
 def derive_supplies(config: Input, of: Assembled) -> tuple[Used, ...]:
@@ -149,6 +154,16 @@ def _cast(config: Input, of: Assembled) -> Iterator[Used]:
     if primer := config.parts.mould.primer:
         cm2 = sum(Polygon(of.outline.polygon()).area for _ in of.fingers) / 100
         yield Used(p.mould.primer, "front of both fingers", cm2 / primer.coverage_cm2_ml, "mL")
+    for insert in of.inserts:
+        yield Used(p.mould.insert, "floor of both moulds", sheets(insert), "sheet")
+
+
+def sheets(insert: Insert) -> int:
+    """Sheets of A4 for the inserts of both moulds: one where two lie side by side."""
+    short, long = sorted((insert.box.width_mm + CUT_MM, insert.box.length_mm + CUT_MM))
+    pairs = ((2 * short, long), (short, 2 * long))
+    fits = any(min(pair) <= A4_MM[0] and max(pair) <= A4_MM[1] for pair in pairs)
+    return 1 if fits else 2
 
 
 def _glue_mm3(of: Assembled) -> float:
