@@ -13,9 +13,8 @@ from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
 from lumitip_fab.design.clamp import torsion_mm4
 from lumitip_fab.design.encoding import read_design
+from lumitip_fab.docs.casting import casting_note, open_back, silicone_mix
 from lumitip_fab.parts import clamp as parts
-from lumitip_fab.parts.casting import casting_note, silicone_mix
-from lumitip_fab.parts.mould import open_back
 
 Write = Callable[[str], Path]
 
@@ -69,10 +68,7 @@ def test_feet_of_a_compliant_finger_stand_beside_its_interface(
     for foot in clamp.feet[2:]:
         assert foot.y_min_mm > interface.box.y_max_mm
     mix = silicone_mix(4.0, design.mould)
-    notes = [
-        casting_note("emitter", mix, d.stack, d.mould, "x", 0, True, d.clamps)
-        for d in (design, changed())
-    ]
+    notes = [casting_note(d, d.emitter, mix) for d in (design, changed())]
     assert ["hold its tip on its stop with a strip" in note for note in notes] == [True, False]
 
 
@@ -91,12 +87,7 @@ def test_without_room_there_is_no_clamp_and_the_note_says_so(
     bare = changed(fasteners=without)
     assert bare.clamps == ()
     assert _tape_m(bare) > _tape_m(design)
-    notes = [
-        casting_note(
-            "emitter", silicone_mix(4.0, d.mould), d.stack, d.mould, "x", 0, False, d.clamps
-        )
-        for d in (design, bare)
-    ]
+    notes = [casting_note(d, d.emitter, silicone_mix(4.0, d.mould)) for d in (design, bare)]
     assert "`mould/clamp.3mf`" in notes[0] and "M3 x 20 countersunk" in notes[0]
     assert "This finger has no printed clamp" in notes[1] and "two strips of" in notes[1]
     assert "clamp.3mf" not in notes[1] and "M3" not in notes[1]
@@ -108,7 +99,7 @@ def test_a_note_that_is_silent_about_a_missing_clamp_is_seen(
     fasteners = (design_dir / "parts/fasteners.toml").read_text(encoding="utf-8")
     bare = changed(fasteners=fasteners.replace('["M3"]', '["M3.5"]'))
     mix = silicone_mix(4.0, bare.mould)
-    note = casting_note("emitter", mix, bare.stack, bare.mould, "x", 0, False, bare.clamps)
+    note = casting_note(bare, bare.emitter, mix)
     file = tmp_path / "mould/emitter_casting.md"
     file.parent.mkdir()
 

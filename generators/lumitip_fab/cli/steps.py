@@ -46,6 +46,8 @@ STEPS = (
     Step("fit_plate", "parts.fit_plate.fit_plate_files", heavy=True, tools=_CAD),
     Step("system", "scenes.system.system_files", late=True, tools=_DRAWN),
     Step("work", "scenes.work.work_views", late=True, tools=_DRAWN),
+    Step("casting", "docs.casting.casting_files", late=True),
+    Step("wrapping", "docs.wrapping.wrapping_files", late=True),
     Step("bom", "docs.bill.bill_of_materials", late=True, tools=_NUMBERS),
     Step("manual", "docs.chapters.manual_files", late=True, tools=_SET),
 )

@@ -1,14 +1,24 @@
 """The manual: its own chapters and the notes of the parts, as Markdown, HTML and PDF."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from itertools import count
 from typing import Any
 
 from lumitip_fab.design import Design, Flange, HeatStep, Mask, Packages
+from lumitip_fab.docs.casting import (
+    amounts,
+    casting_steps,
+    moulds_text,
+    silicone_mix,
+    volume_ml,
+)
 from lumitip_fab.docs.orders import amount, money
 from lumitip_fab.docs.page import html_page
 from lumitip_fab.docs.sheet import pdf_sheets
 from lumitip_fab.docs.spec_circuit import pulled_up
+from lumitip_fab.docs.wrapping import mask_facts, wrapping_steps
 from lumitip_fab.pipeline.artefact import Artefact, Files
 from lumitip_fab.text import as_written, passage
 
@@ -17,36 +27,28 @@ WARM_UP_MIN = 5
 WEAR_GRASPS = 100
 """After about so many grasps the published sensor's silicone had worn above the LEDs."""
 _PROBE_V = 0.15  # less than at the working current: a diode test drives about 1 mA
+_STEP = re.compile(r"^## #\. ", re.MULTILINE)
 _HEADING = re.compile(r"^(#+) ", re.MULTILINE)
-_MADE = {
-    "film": "Print the film and wrap it",
-    "cut": "Cut the film and wrap it",
-    "tpu": "Print the masks and wrap them",
-}
-_ORDER = {
-    "film": "print the film, crease it",
-    "cut": "cut the film, crease it",
-    "tpu": "print the masks",
-}
-"""Work before the wrapping, by the route of the mask."""
 
 
 def manual_text(design: Design, files: Files) -> str:
     """The whole manual. An image stands alone in its paragraph; its path is below the outputs."""
-    casting = files.like("mould/*_casting.md")
     chapters = (
         _front(design),
         _bought(files),
         _text("printed", note=_included(files.text("print/printing.md"))),
         _boards(design, files),
         _wired(design, files),
-        _text("cast", notes=_joined(map(_included, map(files.text, casting)))),
-        _wrapped(design, files),
+        _amounts(design, files),
+        *(step.page() for step in casting_steps(design, design.fingers)),
+        *_masked(design, files),
         _mounted(design),
         _text("run", warm_up_min=WARM_UP_MIN, loading=_loading(design)),
         _kept(design.mask),
     )
-    return _joined(chapter.strip() for chapter in chapters) + "\n"
+    numbers = count(1)
+    joined = _joined(chapter.strip() for chapter in chapters) + "\n"
+    return _STEP.sub(lambda _: f"## {next(numbers)}. ", joined)
 
 
 def _front(design: Design) -> str:
@@ -63,10 +65,17 @@ def _front(design: Design) -> str:
         wires=sum(len(cable.wires) for cable in design.cabling.cables),
         bolts=len(design.mount.bolt_u_mm),
         warm_up_min=WARM_UP_MIN,
-        fixed="tie the boards on" if design.interfaces else "glue the boards in",
-        order=_ORDER[design.mask.route],
+        keys=_keys(design),
+        nozzle_mm=design.slicing.nozzle_mm,
         heated="\n".join(map(_heated, design.heat)),
     )
+
+
+def _keys(design: Design) -> str:
+    """Sizes of all screws, for which keys are needed."""
+    others = {holder.screw for holder in design.holders}
+    others |= {clamp.screw.name for clamp in design.clamps}
+    return ", ".join(sorted({design.mount.bolt, *others}))
 
 
 def _mask_rows(mask: Mask) -> str:
@@ -181,18 +190,26 @@ def _wired(design: Design, files: Files) -> str:
     )
 
 
-def _wrapped(design: Design, files: Files) -> str:
-    mask = design.mask
-    shown = "as it is printed" if mask.route == "film" else "outline, holes and folds"
-    notes = (
-        f"![The {name} mask, {shown}](mask/{name}_mask.svg)\n\n"
-        + _included(files.text(f"mask/{name}_wrapping.md"))
-        for name in ("emitter", "receiver")
+def _amounts(design: Design, files: Files) -> str:
+    """What to weigh for each finger, and how the moulds are printed."""
+    tables = (
+        f"### The {finger.name} finger\n\n"
+        + amounts(design.mould, silicone_mix(volume_ml(finger, files), design.mould))
+        for finger in design.fingers
     )
-    creased = f"creased at {mask.soften_c:g} °C, away from the finger, and wrapped"
-    how = "The sheet is wrapped" if mask.route == "tpu" else f"The film is {creased}"
-    drawing = "" if mask.route == "tpu" else "![A fold, creased on a bar](mask/creasing.svg)\n\n"
-    return _text("wrapped", made=_MADE[mask.route], how=how, drawing=drawing, notes=_joined(notes))
+    return _text("amounts", tables=_joined(tables), moulds=moulds_text(design))
+
+
+def _masked(design: Design, files: Files) -> Iterator[str]:
+    """The steps of the mask; the first shows both masks."""
+    shown = "as it is printed" if design.mask.route == "film" else "outline, holes and folds"
+    pictures = "\n".join(
+        f"![The {f.name} mask, {shown}](mask/{f.name}_mask.svg)" for f in design.fingers
+    )
+    first, *others = wrapping_steps(design, mask_facts(files, design.emitter), "NAME")
+    both = _text("masks", pictures=pictures)
+    yield replace(first, text=f"{both}\n\n{first.text}").page()
+    yield from (step.page() for step in others)
 
 
 def _mounted(design: Design) -> str:

@@ -3,6 +3,7 @@
 import io
 from collections.abc import Iterator
 from html import escape
+from itertools import pairwise
 
 import PIL.Image
 from markdown_it.token import Token
@@ -15,7 +16,6 @@ from reportlab.lib.styles import ParagraphStyle
 from reportlab.lib.units import inch, mm
 from reportlab.pdfgen.canvas import Canvas
 from reportlab.platypus import (
-    CondPageBreak,
     Flowable,
     Image,
     KeepTogether,
@@ -41,18 +41,17 @@ _MOST_HIGH = 220 * mm  # of a drawing, which otherwise has its own size
 _GAP = 6 * mm  # between pictures beside each other
 _PAIR_HIGH = 85 * mm
 _DPI = 200
-_LEAST_LEFT = 110 * mm  # of a page, for a chapter to begin on it
 _BODY = ParagraphStyle(
     "body",
     fontName=PLAIN,
-    fontSize=8.4,
-    leading=12.5,
+    fontSize=9.2,
+    leading=13.6,
     spaceAfter=5,
     bulletFontName=PLAIN,
-    bulletFontSize=8.4,
+    bulletFontSize=9.2,
 )
 _ITEM = ParagraphStyle("item", _BODY, leftIndent=16, spaceAfter=3)
-_CELL = ParagraphStyle("cell", _BODY, fontSize=7.1, leading=10, spaceAfter=0)
+_CELL = ParagraphStyle("cell", _BODY, fontSize=7.6, leading=10.6, spaceAfter=0)
 _FIGURE = ParagraphStyle("figure", _CELL, alignment=TA_RIGHT)
 _GREY = colors.HexColor("#5a6b7a")
 _SMALL = ParagraphStyle("small", _BODY, fontSize=7.1, alignment=1, textColor=_GREY)
@@ -79,7 +78,7 @@ _LINES = TableStyle(
         ("BOTTOMPADDING", (0, 0), (-1, -1), 2),
     ]
 )
-_LETTER, _PADDING = 4.6, 18.0  # width of a letter of a cell's text, and what is left beside it
+_LETTER, _PADDING = 4.9, 18.0  # width of a letter of a cell's text, and what is left beside it
 _BESIDE = TableStyle(
     [
         ("ALIGN", (0, 0), (-1, -1), "CENTER"),
@@ -121,7 +120,8 @@ def pdf_sheets(name: str, text: str, files: Files) -> bytes:
 
     tokens = markdown().parse(text)
     _set_letters(tokens)
-    document.build(list(_flowables(tokens, files)), onFirstPage=foot, onLaterPages=foot)
+    sections = [KeepTogether(list(_flowables(part, files))) for part in _sections(tokens)]
+    document.build(sections, onFirstPage=foot, onLaterPages=foot)
     return buffer.getvalue()
 
 
@@ -130,6 +130,13 @@ def _set_letters(tokens: list[Token]) -> None:
     for token in tokens:
         token.content = page_letters(token.content)
         _set_letters(token.children or [])
+
+
+def _sections(tokens: list[Token]) -> Iterator[list[Token]]:
+    """The steps, from heading to heading: one that fits on a page is not broken."""
+    begins = [k for k, t in enumerate(tokens) if t.type == "heading_open" and t.tag == "h2"]
+    for begin, end in pairwise([0, *begins, len(tokens)]):
+        yield tokens[begin:end]
 
 
 def _flowables(tokens: list[Token], files: Files) -> Iterator[Flowable]:
@@ -170,8 +177,6 @@ def _bullet(numbers: list[int | None]) -> str:
 
 
 def _heading(level: int, token: Token) -> Iterator[Flowable]:
-    if level == 2:
-        yield CondPageBreak(_LEAST_LEFT)
     yield Paragraph(_inline(token), _HEADS[min(level, 4)])
 
 

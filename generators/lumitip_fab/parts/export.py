@@ -20,7 +20,7 @@ from OCP.TopLoc import TopLoc_Location
 from lumitip_fab.design.frames import Matrix
 from lumitip_fab.parts.shapes import placed
 from lumitip_fab.parts.surface import Mesh
-from lumitip_fab.pipeline.artefact import Artefact
+from lumitip_fab.pipeline.artefact import Artefact, Facts
 from lumitip_fab.text import passage
 
 _TEXTS = "parts/export.txt"
@@ -152,6 +152,7 @@ def part_files(
     bed_to_frame: Matrix,
     frame: str = "sensor",
     chord_mm: float = CHORD_MM,
+    facts: Facts | None = None,
 ) -> tuple[Artefact, ...]:
     """STEP of a printed part in a frame, STL and 3MF as it lies on the bed, with its volume.
 
@@ -161,14 +162,15 @@ def part_files(
         bed_to_frame: from the bed to that frame (4x4, mm).
         frame: name of the frame.
         chord_mm: how far a triangle may lie off a curved face.
+        facts: more figures of the part, beside those of its surface.
     """
     name = path.rpartition("/")[2]
     in_frame = Artefact(f"{path}.step", step(solid, name), frame=frame)
     surface = mesh(placed(solid, np.asarray(np.linalg.inv(bed_to_frame), np.float64)), chord_mm)
-    facts = surface_facts(surface)
+    figures = {**surface_facts(surface), **(facts or {})}
     return (
         in_frame,
-        Artefact(f"{path}.stl", mesh_stl(surface), bed_to_frame, frame, facts),
+        Artefact(f"{path}.stl", mesh_stl(surface), bed_to_frame, frame, figures),
         Artefact(f"{path}.3mf", three_mf(surface, name), bed_to_frame, frame),
     )
 

@@ -19,7 +19,6 @@ from lumitip_fab.design import (
 from lumitip_fab.design.frames import mould_bed_to_sensor
 from lumitip_fab.design.making import LEDGE_MM
 from lumitip_fab.parts import export, skin
-from lumitip_fab.parts.casting import casting_note, silicone_mix
 from lumitip_fab.parts.clamp import CHANGED, FOOT_CHAMFER_MM, rails
 from lumitip_fab.parts.letters import letter_cutter
 from lumitip_fab.parts.plate import key_fillings
@@ -37,36 +36,18 @@ BEYOND_MM = 1.0
 
 
 def mould_files(design: Design, finger: Finger) -> tuple[Artefact, ...]:
-    """The mould of one finger, and the note for the person who pours."""
+    """The mould of one finger; its facts have the silicone that stays on the finger."""
     stack, outline, mould = design.stack, design.outline, design.mould
     solid = mould_solid(finger, stack, outline, mould, design.clamps)
     keys = key_fillings(design.keys, stack, outline, design.tip)
     volume_ml = cast_volume_ml(finger, stack, outline, design.board, mould, keys)
-    mix = silicone_mix(volume_ml, mould)
-    note = casting_note(
-        finger.name,
-        mix,
-        stack,
-        mould,
-        design.strength.glue,
-        len(design.keys),
-        open_back(design, finger),
-        design.clamps,
+    return export.part_files(
+        f"mould/{finger.name}_mould",
+        solid,
+        mould_bed_to_sensor(stack, mould),
+        chord_mm=CHORD_MM,
+        facts={"cast_ml": volume_ml},
     )
-    return (
-        *export.part_files(
-            f"mould/{finger.name}_mould",
-            solid,
-            mould_bed_to_sensor(stack, mould),
-            chord_mm=CHORD_MM,
-        ),
-        Artefact(f"mould/{finger.name}_casting.md", note.encode(), frame="", facts=mix),
-    )
-
-
-def open_back(design: Design, finger: Finger) -> bool:
-    """Whether windows or holes for a thread go through the plate."""
-    return bool(design.interfaces) or any(relief.through for relief in finger.reliefs)
 
 
 def cast_volume_ml(

@@ -18,7 +18,7 @@ from lumitip_fab.scenes.cut import cut, rings_of
 from lumitip_fab.scenes.drawing import Points, Sheet, View, silhouette, view, visible_lines
 from lumitip_fab.scenes.glb import tints
 
-WIDTH_MM = 105.0  # of a cut on the page
+WIDTH_MM = 154.0  # of a cut on the page
 BULGE_MM = 1.2  # of the silicone over the rim, as it is drawn
 LOWERED_DEG, LIFTED_DEG = 9.0, 4.0  # of the finger to the mould, as they are drawn
 AZIMUTH_DEG, ELEVATION_DEG = 38.0, 30.0
@@ -60,7 +60,7 @@ def filled_view(cast: Cast) -> str:
     page.label(("Silicone", "bulges over the rim"), (left + right) / 2, cast.rim_mm + BULGE_MM / 2)
     page.label(("Weir", "surplus runs over it"), right + 1.0, cast.rim_mm)
     page.label(("Trough", "for the surplus"), page.mould.bounds[2] - 5.0, low)
-    return page.svg("Mould, cut along its middle: filled")
+    return page.svg()
 
 
 def lowered_view(cast: Cast) -> str:
@@ -75,7 +75,7 @@ def lowered_view(cast: Cast) -> str:
     page.turn(LOWERED_DEG + _ARC_DEG, LOWERED_DEG)
     page.label(("Tip", "first, on its stop"), cast.tip_y_mm + 0.5, cast.rim_mm + 1.0)
     page.label(("Wires", "over the weir"), page.cavity.bounds[2] + 1.0, cast.rim_mm)
-    return page.svg("The finger is lowered about its tip")
+    return page.svg()
 
 
 def lifted_view(cast: Cast) -> str:
@@ -88,7 +88,7 @@ def lifted_view(cast: Cast) -> str:
     page.turn(LIFTED_DEG, LIFTED_DEG + _ARC_DEG)
     page.label(("Gripper end", "first, until air is under it"), page.cavity.bounds[2] - 2.0, 4.0)
     page.label(("Tip edge", "last: its silicone is thin"), cast.tip_y_mm + 0.5, cast.rim_mm)
-    return page.svg("The finger is lifted, gripper end first")
+    return page.svg()
 
 
 def clamped_view(cast: Cast, clamp: Clamp | None, printed: Mesh | None) -> str:
@@ -175,16 +175,21 @@ class _Page:
         """Words with a line to a place."""
         self._labels.append((words, np.array([y_mm, z_mm]) * self.scale))
 
-    def svg(self, title: str) -> str:
-        """The page; labels stand at the side that is nearer to their places."""
-        left, right = float(self._sheet.low[0]) - _LABEL_MM, float(self._sheet.high[0]) + _LABEL_MM
-        top = float(self._sheet.high[1]) + _LABEL_MM
-        middle = (left + right) / 2
-        self._sheet.leaders([each for each in self._labels if each[1][0] < middle], left, "end")
-        self._sheet.leaders([each for each in self._labels if each[1][0] >= middle], right, "start")
-        self._sheet.words(left - _WORDS_MM, top, title, "title", "start")
-        self._sheet.cover(left - _WORDS_MM, top + 2.0)
-        self._sheet.cover(right + _WORDS_MM, top)
+    def svg(self) -> str:
+        """The page, its labels in a row below."""
+        right = float(self._sheet.high[0]) - _WORDS_MM
+        row = float(self._sheet.low[1]) - _LABEL_MM
+        labels = sorted(self._labels, key=lambda label: float(label[1][0]))
+        free = float(self._sheet.low[0])
+        for k, (words, at) in enumerate(labels):
+            most = right - _WORDS_MM * (len(labels) - 1 - k)
+            x = max(min(float(at[0]), most), free)
+            free = x + _WORDS_MM
+            self._sheet.lines([np.array([at, (x, row + 4.0)])], "leader")
+            self._sheet.dot(float(at[0]), float(at[1]))
+            self._sheet.words(x, row, words[0], "name", "start")
+            self._sheet.words(x, row - 4.0, words[1], "detail", "start")
+            self._sheet.cover(x, row - 5.0)
         return self._sheet.svg({"data-scale": self.scale})
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import shapely
 
 from lumitip_fab.design import Finger, Mount, Stack, frames
+from lumitip_fab.design.cabling import COLOURS, codes_of
 from lumitip_fab.parts.surface import Mesh
 from lumitip_fab.scenes.cut import rings_of
 from lumitip_fab.scenes.drawing import Points, Sheet, View, silhouette, view, visible_lines
@@ -24,20 +25,6 @@ _ABREAST_MM = 0.5  # from wire to wire of a cable, as it is drawn
 _NUMBER_DOWN_MM = 0.9  # of a number's base line, to have it in the middle
 _ANGLES = {"data-azimuth-deg": AZIMUTH_DEG, "data-elevation-deg": ELEVATION_DEG}
 _STEPS = 8  # chords of a wire from point to point
-_TINTS = {  # of wires on paper, by the code of IEC 60757
-    "BK": "#1a1a1a",
-    "BN": "#7a4a21",
-    "RD": "#c0392b",
-    "OG": "#e67e22",
-    "YE": "#e0b400",
-    "GN": "#2e8b57",
-    "BU": "#2c6fbb",
-    "VT": "#7d4fa8",
-    "GY": "#8a939b",
-    "WH": "#c9ced4",
-    "PK": "#e58fb1",
-    "TQ": "#3aa6a0",
-}
 
 
 def board_view(finger: Finger, layers: Mapping[str, Mesh], parts: Sequence[Mesh]) -> str:
@@ -140,7 +127,7 @@ def _page(eye: View, at: Points) -> Points:
 
 def _lay(sheet: Sheet, eye: View, colours: Sequence[str], ways: Sequence[Points]) -> None:
     for colour, way in zip(colours, ways, strict=True):
-        sheet.wire(_page(eye, way), _TINTS[colour])
+        sheet.wire(_page(eye, way), [COLOURS[code][1] for code in codes_of(colour)])
 
 
 def _wires(

@@ -1,0 +1,205 @@
+"""The casting of the skin: amounts, and the steps from the board in its backing to the finger out
+of its mould; for the note beside each mould and for the manual."""
+
+from collections.abc import Mapping
+
+from lumitip_fab.design import Design, Finger, Mould
+from lumitip_fab.docs.steps import WorkStep
+from lumitip_fab.pipeline.artefact import Artefact, Files
+from lumitip_fab.text import passage
+
+_TEXTS = "docs/casting.md"
+
+
+def casting_files(design: Design, files: Files) -> tuple[Artefact, ...]:
+    """The note for the person who pours, for each finger; its facts are the masses."""
+    return tuple(
+        Artefact(
+            f"mould/{finger.name}_casting.md",
+            casting_note(design, finger, mix).encode(),
+            frame="",
+            facts=mix,
+        )
+        for finger in design.fingers
+        for mix in [silicone_mix(volume_ml(finger, files), design.mould)]
+    )
+
+
+def volume_ml(finger: Finger, files: Files) -> float:
+    """Silicone that stays on a finger."""
+    return float(files.facts(f"mould/{finger.name}_mould.stl")["cast_ml"])
+
+
+def silicone_mix(volume_ml: float, mould: Mould) -> dict[str, float]:
+    """How much silicone to mix for a finger, with what stays in the cup; masses as weighed."""
+    mix_ml = volume_ml * (1 + mould.waste_fraction)
+    a, b = mould.mix_ratio
+    mass_g = mix_ml * mould.density_g_ml
+    return {
+        "volume_ml": volume_ml,
+        "mix_ml": mix_ml,
+        "part_a_g": round(mass_g * a / (a + b), 2),
+        "part_b_g": round(mass_g * b / (a + b), 2),
+    }
+
+
+def casting_note(design: Design, finger: Finger, mix: Mapping[str, float]) -> str:
+    """The note of a finger as Markdown, with what to mix."""
+    steps = casting_steps(design, (finger,))
+    moulds = _moulds(design, f"`{finger.name}_mould.3mf`")
+    parts = (f"# Casting the {finger.name} finger", amounts(design.mould, mix), moulds)
+    return "\n\n".join([*parts, *(step.note() for step in steps)]) + "\n"
+
+
+def amounts(mould: Mould, mix: Mapping[str, float]) -> str:
+    """The table of what to weigh."""
+    return _text(
+        "amounts",
+        waste=mould.waste_fraction,
+        silicone=mould.silicone,
+        cure_h=mould.cure_h,
+        cure_c=mould.cure_c,
+        **mix,
+    )
+
+
+def casting_steps(design: Design, fingers: tuple[Finger, ...]) -> list[WorkStep]:
+    """The work in its order, for these fingers."""
+    mould = design.mould
+    smooth = (
+        WorkStep("Cut the smooth film", _text("insert", insert=insert)) for insert in mould.inserts
+    )
+    return [
+        WorkStep(
+            "Put the board in", _held(design, fingers), "manual/board.svg", _board_caption(design)
+        ),
+        WorkStep("Try the silicone", _tried(mould)),
+        *smooth,
+        WorkStep(
+            "Fill the mould",
+            _filled(design),
+            "manual/filled.svg",
+            "The mould, cut along its middle and filled",
+        ),
+        WorkStep(
+            "Lower the finger",
+            _lowered(design),
+            "manual/lowered.svg",
+            "The tip on its stop, the gripper end coming down; cut along the middle",
+        ),
+        WorkStep(
+            "Clamp it, and wait",
+            _clamped(design),
+            "manual/clamped.svg",
+            "The clamp on finger and mould",
+        ),
+        WorkStep(
+            "Take the finger out",
+            _out(design),
+            "manual/lifted.svg",
+            "The finger comes out, the gripper end first",
+        ),
+    ]
+
+
+def _board_caption(design: Design) -> str:
+    finds = "its holes go over the pins" if design.stack.sunk else "hole goes over hole"
+    return f"The board above its place: {finds}"
+
+
+def moulds_text(design: Design) -> str:
+    """How both moulds are printed."""
+    return _moulds(design, "each mould, `mould/*_mould.3mf`,")
+
+
+def _moulds(design: Design, moulds: str) -> str:
+    mould = design.mould
+    layers = _text(
+        "part" if mould.off_layer_mm else "whole",
+        floor_mm=mould.floor_mm,
+        recess="".join(_text("recess", depth_mm=mould.wall_mm) for _ in mould.inserts),
+        rim_mm=mould.floor_mm + design.stack.cover_mm,
+        off_mm=mould.off_layer_mm,
+    )
+    letter_on = "the back of its block" if design.stack.sunk else "its back"
+    return _text(
+        "moulds", moulds=moulds, layer_mm=mould.layer_mm, layers=layers, letter_on=letter_on
+    )
+
+
+def _held(design: Design, fingers: tuple[Finger, ...]) -> str:
+    """How the board is fixed, and what is closed before silicone comes."""
+    mould, sunk = design.mould, design.stack.sunk
+    bare = _text("bare", keys=len(design.keys)) if design.keys else ""
+    openings = "window" if sunk else "window and every hole for thread"
+    number = 4 if sunk else 3
+    taped = ""
+    if any(open_back(design, finger) for finger in fingers):
+        taped = _text("taped", number=number, tape=mould.tape, openings=openings, bare=bare)
+    name = "pocket" if sunk else "plate"
+    return _text(name, glue=design.strength.glue, glue_hard_h=mould.glue_hard_h, taped=taped)
+
+
+def open_back(design: Design, finger: Finger) -> bool:
+    """Whether windows or holes for a thread go through the plate."""
+    return bool(design.interfaces) or any(relief.through for relief in finger.reliefs)
+
+
+def _tried(mould: Mould) -> str:
+    primed = mould.primer != ""
+    first = _text("primed" if primed else "unprimed", **_primer(mould))
+    return _text(
+        "tried",
+        silicone=mould.silicone,
+        inhibited_by=", ".join(mould.inhibited_by),
+        primer=f"{mould.primer}, " * primed,
+        primed=first + "\n",
+        again=", prime the spot again" * primed,
+        reprimed=", and prime it" * primed,
+        cure_h=mould.cure_h,
+        cure_c=mould.cure_c,
+    )
+
+
+def _primer(mould: Mould) -> dict[str, object]:
+    return {"primer": mould.primer, "primer_dry_min": mould.primer_dry_min}
+
+
+def _filled(design: Design) -> str:
+    work = [_text("weighed"), _text("wetted")]
+    work += [_text("screwed", clamp=clamp) for clamp in design.clamps]
+    work += [_text("laid") for _ in design.mould.inserts]
+    work.append(_text("poured"))
+    return _text("filled", work="\n".join(f"{n}. {text}" for n, text in enumerate(work, 1)))
+
+
+def _lowered(design: Design) -> str:
+    return _text("lowered", keys=_text("keyed", keys=len(design.keys)) if design.keys else "")
+
+
+def _clamped(design: Design) -> str:
+    """How the finger is held down; the tip of a plate that bends by tape as well."""
+    mould = design.mould
+    times = {"cure_h": mould.cure_h, "cure_c": mould.cure_c}
+    tip = "" if design.stack.sunk else _text("tip_taped", tape=mould.tape)
+    for clamp in design.clamps:
+        pads_n = clamp.pads_n(clamp.thickness_mm)
+        return _text("clamped", clamp=clamp, pads_n=pads_n, tip_taped=tip, **times)
+    return _text("taped_down", tape=mould.tape, tip_taped=tip, **times)
+
+
+def _out(design: Design) -> str:
+    mould = design.mould
+    return _text(
+        "out",
+        cure_h=mould.cure_h,
+        unclamped=_text("unclamped" if design.clamps else "untaped"),
+        tip_mm=mould.tip_silicone_mm,
+        peeled="".join(_text("peeled", insert=insert) for insert in mould.inserts),
+        unheld="it was not primed there." if mould.primer else "it was not clean there.",
+    )
+
+
+def _text(name: str, /, **values: object) -> str:
+    """A passage of the note with its values."""
+    return passage(_TEXTS, name).format(**values)
