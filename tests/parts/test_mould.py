@@ -149,6 +149,12 @@ def test_layers_divide_the_heights_that_count(
     assert whole_layers(usual, heights) == pytest.approx(wanted)
 
 
+def test_layers_divide_the_recess_where_they_cannot_divide_all() -> None:
+    assert whole_layers(0.2, (2.4, 2.5, 4.0), 0.1) == pytest.approx((0.1, 0.0))
+    assert whole_layers(0.2, (2.411, 2.511, 4.007), 0.1) == pytest.approx((0.1, 0.011))
+    assert whole_layers(0.2, (2.4, 2.533, 4.0), 0.133) == pytest.approx((0.05, 0.017))
+
+
 def test_the_note_says_what_the_slicer_rounds(design: Design) -> None:
     rounded = replace(design.mould, layer_mm=0.2, off_layer_mm=0.093)
     whole, told = (" ".join(noted(design, m).split()) for m in (design.mould, rounded))

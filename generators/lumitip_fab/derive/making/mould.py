@@ -58,10 +58,12 @@ def derive_mould(
         )
     pads = _pads(config, outline, plan.board, faults)
     inserts = derive_inserts(config, _flat(config, outline, stack, pads), plan.receiver)
-    floor_mm = p.mould.wall_mm + sum(insert.thickness_mm for insert in inserts)
+    recess_mm = sum(insert.thickness_mm for insert in inserts)
+    floor_mm = p.mould.wall_mm + recess_mm
     layer_mm, off_mm = whole_layers(
         config.parts.printer.profile.layer_mm,
-        tuple(dict.fromkeys((p.mould.wall_mm, floor_mm, floor_mm + stack.cover_mm))),
+        (p.mould.wall_mm, floor_mm, floor_mm + stack.cover_mm),
+        recess_mm,
     )
     return Mould(
         taper_length_mm=p.mould.taper_length_mm,
@@ -107,17 +109,24 @@ def refuse_inhibitors(config: Input, stack: Stack, faults: Diagnostics) -> None:
     faults.unless(not bare, "primer_missing")
 
 
-def whole_layers(usual_mm: float, heights_mm: tuple[float, ...]) -> tuple[float, float]:
+def whole_layers(
+    usual_mm: float, heights_mm: tuple[float, ...], recess_mm: float = 0.0
+) -> tuple[float, float]:
     """The thickest layer, up to the printer's usual one, that divides all heights, and 0.
 
     After the usual one steps of 0.01 mm are tried, down to 0.05 mm, which printers still lay. Where
     none divides all, the usual one stays: with it, how far the worst height is from a whole layer.
+    A recess takes one that divides its depth, or the finest, so that it is not rounded away.
     """
     finest, finer = round(LEAST_LAYER_MM * 100), math.floor(usual_mm * 100 + WHOLE_MM)
-    for layer_mm in (usual_mm, *(h / 100 for h in range(finer, finest - 1, -1))):
-        if _off_layer_mm(layer_mm, heights_mm) < WHOLE_MM:
-            return layer_mm, 0.0
-    return usual_mm, _off_layer_mm(usual_mm, heights_mm)
+    layers_mm = (usual_mm, *(h / 100 for h in range(finer, finest - 1, -1)))
+    for wanted_mm in (heights_mm, *([(recess_mm,)] if recess_mm else [])):
+        for layer_mm in layers_mm:
+            if _off_layer_mm(layer_mm, wanted_mm) < WHOLE_MM:
+                off_mm = _off_layer_mm(layer_mm, heights_mm)
+                return layer_mm, off_mm if off_mm >= WHOLE_MM else 0.0
+    layer_mm = min(LEAST_LAYER_MM, usual_mm) if recess_mm else usual_mm
+    return layer_mm, _off_layer_mm(layer_mm, heights_mm)
 
 
 def _off_layer_mm(layer_mm: float, heights_mm: tuple[float, ...]) -> float:
