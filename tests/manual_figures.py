@@ -21,7 +21,6 @@ _HTML, _PDF = "manual/manual.html", "manual/manual.pdf"
 _FOOT = 2  # texts at the foot of each page, drawn first
 _GLANCE = "At a glance"
 _WARM_UP_MIN = 5.0  # Table I of the published sensor
-_FLAP = re.compile(r"^\| (\d+) \| ([\d.]+) \| ([\d.]+) \| ([\d.]+) \|$", re.MULTILINE)
 _AMOUNT = re.compile(r"^\| (.*?) \| \**([\d.]+ (?:mL|g|h))\** \|$", re.MULTILINE)
 _WIRE = re.compile(
     r"^\| (W\d+\.\d+) \| (.*?) \| (.*?) \| (.*?) \| (.*?) \| (.*?) \|$", re.MULTILINE
@@ -120,7 +119,6 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     yield _count("figures", _HTML, _wrong_figures(manual, design), "wrong figures")
     yield _count("units", _HTML, _wrong_units(manual, design), "wrong figures with a unit")
     for check, wanted in (
-        ("flaps", _noted(outputs, "mask/{}_wrapping.md", _FLAP, design)),
         ("amounts", _noted(outputs, "mould/{}_casting.md", _AMOUNT, design)),
         ("wires", _noted(outputs, "wiring/cables.md", _WIRE, design)),
         ("parts", _billed(outputs)),
@@ -135,6 +133,8 @@ def _wrong_drawings(outputs: Path, manual: Manual, design: Design) -> list[str]:
     boards = [*names, *(auxiliary.name for auxiliary in design.auxiliary_boards)]
     wanted = {"assembly/receiver_exploded.svg", "assembly/system.svg", "wiring/wiring.svg"}
     wanted |= {f"mask/{name}_mask.svg" for name in names}
+    work = ("board", "cable", "filled", "lowered", "clamped", "lifted", "folded")
+    wanted |= {f"manual/{name}.svg" for name in work}
     if design.mask.route != "tpu":
         wanted.add("mask/creasing.svg")
     wanted |= {f"boards/{name}/{name}_front.png" for name in boards}
@@ -240,18 +240,19 @@ def _pdf(outputs: Path, manual: Manual) -> Iterator[Measurement]:
         yield unreadable("manual.pdf", _PDF, str(error))
         yield unreadable("manual.fonts", _PDF, str(error))
         return
-    wrong = [text for text in manual.blocks if re.sub(r"\s", "", page_letters(text)) not in printed]
+    whole = "".join(printed)
+    wrong = [text for text in manual.blocks if re.sub(r"\s", "", page_letters(text)) not in whole]
     yield _count("pdf", _PDF, wrong, "lost paragraphs of the HTML")
     yield _count("fonts", _PDF, without, "fonts that are not embedded")
 
 
-def read_pdf(path: Path) -> tuple[str, list[str]]:
-    """All that is written on the pages of a PDF, without spaces, and the fonts that it lacks.
+def read_pdf(path: Path) -> tuple[list[str], list[str]]:
+    """What is written on each page of a PDF, without spaces, and the fonts that it lacks.
 
     Raises:
         OutputError: if it is missing or cannot be read.
     """
-    lines, without = list[str](), set[str]()
+    sheets, without = list[str](), set[str]()
     try:
         with pikepdf.open(path) as document:
             for page in document.pages:
@@ -263,10 +264,10 @@ def read_pdf(path: Path) -> tuple[str, list[str]]:
                         face = str(operands[0])
                     elif str(operator) == "Tj":
                         drawn.append(faces[face].text(bytes(operands[0])))
-                lines += drawn[_FOOT:]
+                sheets.append(re.sub(r"\s", "", "".join(drawn[_FOOT:])))
     except (OSError, *MALFORMED, pikepdf.PdfError) as error:
         raise OutputError(f"{path}: cannot be read as a PDF: {error!r:.120}") from error
-    return re.sub(r"\s", "", "".join(lines)), sorted(without)
+    return sheets, sorted(without)
 
 
 def _count(check: str, subject: str, wrong: list[str], unit: str) -> Measurement:

@@ -193,8 +193,15 @@ def test_what_uses_files_of_others_runs_again_when_those_or_their_facts_change(
     before = all_keys(versions)
     assert changed(before, all_keys(versions | {"backing/emitter_backing.stl": "x"})) == {"bom"}
     assert changed(before, all_keys(versions | {"flange/another.stl": "x"})) == {"bom"}
-    assert changed(before, all_keys(versions | {"assembly/assembly.glb": "x"})) == {"system"}
-    assert changed(before, all_keys(versions | {"mask/emitter_mask.svg": "x"})) == {"manual"}
+    assert changed(before, all_keys(versions | {"assembly/assembly.glb": "x"})) == {
+        "system",
+        "work",
+    }
+    assert changed(before, all_keys(versions | {"mask/emitter_mask.svg": "x"})) == {
+        "manual",
+        "work",
+        "wrapping",
+    }
     entry = built.files["backing/emitter_backing.stl"]
     heavier = manifest.Entry(**vars(entry) | {"facts": {"volume_mm3": 1.0}})
     assert heavier.version != entry.version
@@ -232,7 +239,7 @@ def test_a_key_follows_what_was_read_and_nothing_else(design_dir: Path) -> None:
     assert Dependencies(("tip",), ("a/*",)).key(hashes, {"a/b": "1", "c": "1"}, "code") != before
 
 
-_MASK = re.compile(r"mask/(emitter|receiver)_(?!sheet)")
+_MASK = re.compile(r"mask/(emitter|receiver)_(?!sheet|wrapping)")
 
 
 def test_only_the_steps_asked_for_run(design_dir: Path, damaged: Path) -> None:

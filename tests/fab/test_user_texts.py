@@ -12,6 +12,7 @@ from lumitip_fab.design.encoding import read_design
 from lumitip_fab.docs.chapters import manual_text
 from lumitip_fab.docs.page import html_page, markdown
 from lumitip_fab.docs.wiring import wiring_files
+from lumitip_fab.docs.wrapping import wrapping_note
 from lumitip_fab.mask.files import mask_files
 from lumitip_fab.parts.settings import print_settings
 from lumitip_fab.pipeline import manifest
@@ -43,8 +44,9 @@ def _notes(design: Design) -> dict[str, str]:
     d = design
     made: list[Artefact] = [*print_settings(d)]
     made += wiring_files(d)
-    made += mask_files(d, d.receiver)
-    return {a.path: a.data.decode() for a in made if a.path.endswith(".md")}
+    (facts,) = (a.facts for a in mask_files(d, d.receiver) if a.facts)
+    notes = {a.path: a.data.decode() for a in made if a.path.endswith(".md")}
+    return notes | {"mask/receiver_wrapping.md": wrapping_note(d, d.receiver, facts)}
 
 
 @pytest.mark.parametrize("name", NAMES)

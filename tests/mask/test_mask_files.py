@@ -2,6 +2,7 @@
 
 import hashlib
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Callable
@@ -17,8 +18,9 @@ from lumitip_fab.checks.mask_holes import black_of, place, registration_of
 from lumitip_fab.checks.readers.mask_page import read_page
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
-from lumitip_fab.design import Design
+from lumitip_fab.design import Design, Finger
 from lumitip_fab.design.frames import applied
+from lumitip_fab.docs.wrapping import wrapping_note
 from lumitip_fab.mask.files import mask_files
 from lumitip_fab.pipeline.artefact import Artefact
 
@@ -33,8 +35,15 @@ def preset(design_dir: Path) -> Callable[[str], Design]:
 
 
 def made(design: Design) -> list[Artefact]:
-    d = design
-    return [artefact for finger in d.fingers for artefact in mask_files(d, finger)]
+    return [artefact for finger in design.fingers for artefact in mask_of(design, finger)]
+
+
+def mask_of(design: Design, finger: Finger) -> list[Artefact]:
+    """Files of a finger's mask with the note."""
+    files = mask_files(design, finger)
+    (facts,) = (a.facts for a in files if a.facts)
+    note = wrapping_note(design, finger, facts).encode()
+    return [*files, Artefact(f"mask/{finger.name}_wrapping.md", note, frame="")]
 
 
 def written(design: Design, out: Path) -> list[Artefact]:
@@ -138,9 +147,10 @@ def test_notes_name_every_flap(preset: Callable[[str], Design]) -> None:
         text = note.data.decode()
         assert "90 °C" in text
         assert "measured_ruler_mm" in text
-        assert max(len(line) for line in text.splitlines()) <= 100
-        rows = [line for line in text.splitlines() if line.startswith("| ")]
-        assert [int(r.split("|")[1]) for r in rows[1:]] == list(range(1, len(rows)))
+        assert max(len(line) for line in text.splitlines() if line[:1] != "|") <= 100
+        rows = re.findall(r"^\| (\d+) \|", text, re.MULTILINE)
+        assert rows == [str(number) for number in range(1, len(rows) + 1)]
+        assert len(rows) == 21
 
 
 def test_same_bytes_in_any_process(design_dir: Path) -> None:
@@ -167,7 +177,8 @@ def test_same_bytes_in_any_process(design_dir: Path) -> None:
         for seed in ("0", "1", "4", "77")
     ]
     design = derive(load(file))
-    here = "".join(f"{a.path} {hashlib.sha256(a.data).hexdigest()}\n" for a in made(design))
+    files = [a for finger in design.fingers for a in mask_files(design, finger)]
+    here = "".join(f"{a.path} {hashlib.sha256(a.data).hexdigest()}\n" for a in files)
     assert set(told) == {here}
 
 

@@ -15,7 +15,13 @@ _NOTES = {
     "wiring/cables.md": "solder",
 }
 """Notes, and the step whose parts lie there while one works by them."""
-_FILM_ALONE = ("Make the printer true", "Print on the film", "Cut", "Crease the folds")
+_FILM_ALONE = (
+    "Make the printer true",
+    "Print on the film",
+    "Test, cut and crease the film",
+    "Cut",
+    "Crease the folds",
+)
 """Sections of the wrapping note in which the film is away from the finger."""
 _SECTION = re.compile(r"^#+ (?:\d+\. )?(.*)$", re.MULTILINE)
 _DEGREES = re.compile(r"(?<![\w.])(-?\d+(?:\.\d+)?)\s+°C")

@@ -67,9 +67,9 @@ class Sheet:
             self.drawn.append(f'<path {_STROKES[style]} d="{path}"/>')
 
     def wire(self, line: Points, colours: Sequence[str]) -> None:
-        """A wire, on a white edge that parts it from what it crosses; a second colour as dashes."""
+        """A wire with a dark edge that parts it from its neighbours; a second colour as dashes."""
         path = f'fill="none" {_ROUND} d="M{self._joined(line)}"'
-        self.drawn.append(f'<path stroke="#fff" stroke-width="1.3" {path}/>')
+        self.drawn.append(f'<path stroke="{_FAINT}" stroke-width="1.1" {path}/>')
         for dashes, colour in zip(("", ' stroke-dasharray="1 2"'), colours, strict=False):
             self.drawn.append(f'<path stroke="{colour}" stroke-width=".8"{dashes} {path}/>')
 
