@@ -3,6 +3,7 @@
 import io
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree as XmlTree
 
@@ -11,13 +12,17 @@ import pytest
 import shapely
 import trimesh
 
-from lumitip_fab.design import Design
+from lumitip_fab.design import Box, Design, Finger, Insert
 from lumitip_fab.design.cabling import COLOURS, codes_of
 from lumitip_fab.design.encoding import read_design
+from lumitip_fab.design.frames import mould_bed_to_sensor
+from lumitip_fab.docs.casting import casting_steps
 from lumitip_fab.parts.surface import Mesh
+from lumitip_fab.scenes.casting_views import Cast, clamped_view, filled_view
 from lumitip_fab.scenes.cut import cut, rings_of
 from lumitip_fab.scenes.drawing import silhouette, view
-from lumitip_fab.scenes.system import block, socket
+from lumitip_fab.scenes.finger_views import cable_view
+from lumitip_fab.scenes.system import block, finger_group, socket
 
 SVG = "{http://www.w3.org/2000/svg}"
 PRESETS = [
@@ -75,11 +80,12 @@ def test_the_finger_goes_in_and_comes_out_as_it_is(folder: Path) -> None:
     assert left < full
 
 
-def test_each_flap_on_the_back_has_its_number(folder: Path) -> None:
-    note = (folder / "mask/emitter_wrapping.md").read_text(encoding="utf-8")
+@pytest.mark.parametrize("finger", ["emitter", "receiver"])
+def test_each_flap_on_the_back_has_its_number(finger: str, folder: Path) -> None:
+    note = (folder / f"mask/{finger}_wrapping.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| (\d+) \| ([\d.]+) \| ([\d.]+) \| ([\d.]+) \|$", note, re.MULTILINE)
     numbers = [number for number, _, _, reach in rows if float(reach) > 0.0]
-    shown = [text.text for text in drawn(folder, "folded").iter(f"{SVG}text")]
+    shown = [text.text for text in drawn(folder, f"{finger}_folded").iter(f"{SVG}text")]
     assert shown == numbers
 
 
@@ -112,6 +118,55 @@ def test_the_clamp_is_drawn_where_there_is_one(folder: Path) -> None:
     design, root = read_design(folder / "design.json"), drawn(folder, "clamped")
     groups = [g.attrib["id"] for g in root.iter(f"{SVG}g")]
     assert ("clamp" in groups) == bool(design.clamps)
+
+
+def bodies(folder: Path, finger: Finger) -> dict[str, Mesh]:
+    scene = trimesh.load(folder / "assembly/assembly.glb")
+    group = finger_group(scene, finger, np.eye(4))
+    return {body.name.rpartition(".")[2]: body.mesh for body in group.bodies}
+
+
+def test_without_lugs_the_wires_go_straight_on(outputs: Path) -> None:
+    design = read_design(outputs / "design.json")
+    seen, colours = bodies(outputs, design.receiver), pads(design)
+    mounts = (design.mount, replace(design.mount, lugs=()))
+    tied, free = (
+        cable_view(design.receiver, seen, colours, mount, design.stack) for mount in mounts
+    )
+    assert ["Lug" in tied, "Lug" in free] == [True, False]
+    assert tied.count('stroke-width=".8"') == free.count('stroke-width=".8"') >= 18
+
+
+def test_without_a_clamp_step_and_drawing_name_none(outputs: Path) -> None:
+    design = read_design(outputs / "design.json")
+    bare = replace(design, clamps=())
+    titles = [[step.title for step in casting_steps(d, d.fingers)] for d in (design, bare)]
+    assert [("Clamp it, and wait" in t, "Tape it down, and wait" in t) for t in titles] == [
+        (True, False),
+        (False, True),
+    ]
+    drawing = clamped_view(cast(outputs, bare), None, None)
+    assert 'id="clamp"' not in drawing and "Nut" not in drawing
+    assert 'id="mould"' in drawing
+
+
+def test_a_film_lies_on_the_floor_below_the_stops(outputs: Path) -> None:
+    design = read_design(outputs / "design.json")
+    film = Insert("insert", "film", 0.2, Box(-18, 18, -15, 15), 0.3)
+    mould = replace(design.mould, inserts=(film,))
+    assert mould.stops_mm(1.5) == design.mould.stops_mm(1.5) + 0.2
+    laid = Box(-15, 15, mould.wall_mm, mould.floor_mm)
+    root = XmlTree.fromstring(filled_view(replace(cast(outputs, design), films=(laid,))))
+    assert area_mm2(root, "film") == pytest.approx(30 * 0.2, rel=0.05)
+
+
+def cast(folder: Path, design: Design) -> Cast:
+    surface = written(folder, "mould/emitter_mould.stl")
+    mould = Mesh(np.asarray(surface.vertices), np.asarray(surface.faces))
+    to_bed = np.linalg.inv(mould_bed_to_sensor(design.stack, design.mould))
+    layers = {n: m.moved(to_bed) for n, m in bodies(folder, design.emitter).items()}
+    rim_mm = design.mould.stops_mm(design.stack.cover_mm)
+    return Cast(mould, layers, rim_mm, -design.outline.tip_y_mm, ())
 
 
 def test_a_cut_keeps_what_is_hollow() -> None:

@@ -240,7 +240,7 @@ def _stops_mm(held: Held) -> float:
     """How far the pads really are over the rim plane, the higher one."""
     pads = np.array([(x, -y, held.clamp.top_mm) for x, y in held.design.mould.pads])
     drop, _ = solids.cast(held.mould, pads, _DOWN, _REACH_MM).first(len(pads))
-    rim = held.design.mould.floor_mm + held.design.stack.cover_mm
+    rim = held.design.mould.stops_mm(held.design.stack.cover_mm)
     return float((held.clamp.top_mm - drop).max()) - rim
 
 

@@ -105,7 +105,7 @@ class Probe:
         self.mesh, self.design = mesh, design
         to_sensor = mould_bed_to_sensor(design.stack, design.mould)
         self.to_bed = np.asarray(np.linalg.inv(to_sensor), dtype=np.float64)
-        self.rim_mm = design.mould.floor_mm + design.stack.cover_mm
+        self.rim_mm = design.mould.stops_mm(design.stack.cover_mm)
 
     def depths_mm(self, points: solids.Vectors) -> solids.Vectors:
         """How far the mould lies below the rim plane at points (x, y) of the sensor frame."""
@@ -211,7 +211,7 @@ def _walls(mesh: Any, file: str, design: Design, notch: Box) -> Iterator[Measure
         notch: the finger's wire notch, where the wall may be open.
     """
     mould, stack = design.mould, design.stack
-    rim_mm = mould.floor_mm + stack.cover_mm
+    rim_mm = mould.stops_mm(stack.cover_mm)
     silhouette = shapely.Polygon(design.outline.polygon() * (1, -1))  # as seen from above
     places = _along(silhouette, design, notch)
     near = _distances(mesh, rim_mm + _ABOVE_MM, places)

@@ -54,7 +54,7 @@ def _masses(text: str, file: str, design: Design) -> Measurement:
 def _figures(text: str, file: str, design: Design) -> Measurement:
     """Layers, heights and hours in the note against the design."""
     mould = design.mould
-    stops_mm = mould.floor_mm + design.stack.cover_mm
+    stops_mm = mould.stops_mm(design.stack.cover_mm)
     wanted = [f"{v:g}" for v in (mould.layer_mm, mould.floor_mm, stops_mm, mould.cure_h)]
     matches = [re.findall(pattern, text) for pattern in _HOW]
     wrong = sum(found != [v] for found, v in zip(matches, wanted, strict=True))
@@ -118,6 +118,6 @@ def _cavity_mm3(body: solids.Solid, design: Design) -> float:
     ring = np.array(shapely.geometry.polygon.orient(within).exterior.coords)[:-1]
     low = mould.wall_mm / 2
     section = manifold3d.CrossSection([ring])
-    filled = section.extrude(mould.floor_mm + design.stack.cover_mm - low).translate([0, 0, low])
+    filled = section.extrude(mould.stops_mm(design.stack.cover_mm) - low).translate([0, 0, low])
     films = sum(insert.volume_mm3 for insert in mould.inserts)
     return float((filled - body).volume()) - films

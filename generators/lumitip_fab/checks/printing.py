@@ -43,7 +43,7 @@ def _mould_layers(outputs: Path, design: Design) -> Measurement:
     except (OSError, KeyError, ValueError) as problem:
         return unreadable("printing.mould_layers", file, str(problem))
     mould = design.mould
-    heights_mm = (mould.wall_mm, mould.floor_mm, mould.floor_mm + design.stack.cover_mm)
+    heights_mm = (mould.wall_mm, mould.floor_mm, mould.stops_mm(design.stack.cover_mm))
     off_mm = max(abs(h - round(h / layer_mm) * layer_mm) for h in heights_mm)
     most_mm = mould.off_layer_mm + _ROUNDING_MM
     note = f"of floor and stops to a whole layer of {layer_mm:g} mm"

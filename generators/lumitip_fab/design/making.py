@@ -128,6 +128,10 @@ class Mould:
         """The silicone's face over the bed: beside an insert, and on it."""
         return self.wall_mm + sum(insert.thickness_mm for insert in self.inserts)
 
+    def stops_mm(self, cover_mm: float) -> float:
+        """Height of the stops over the bed, by the silicone's cover of the plate."""
+        return self.floor_mm + cover_mm
+
 
 @dataclass(frozen=True)
 class Printing:

@@ -63,43 +63,39 @@ def amounts(mould: Mould, mix: Mapping[str, float]) -> str:
     )
 
 
-def casting_steps(design: Design, fingers: tuple[Finger, ...]) -> list[WorkStep]:
-    """The work in its order, for these fingers."""
+def casting_steps(design: Design, fingers: tuple[Finger, ...], weighed: str = "") -> list[WorkStep]:
+    """The work in its order.
+
+    Args:
+        design: for all that is used.
+        fingers: that are made.
+        weighed: tables of what to weigh, where they do not stand before the steps.
+    """
     mould = design.mould
     smooth = (
         WorkStep("Cut the smooth film", _text("insert", insert=insert)) for insert in mould.inserts
     )
+    held = "Clamp it, and wait" if design.clamps else "Tape it down, and wait"
+    on_it = "The clamp on finger and mould" if design.clamps else "The finger in its mould"
+    filled = "\n\n".join(filter(None, [weighed, _filled(design)]))
     return [
-        WorkStep(
-            "Put the board in", _held(design, fingers), "manual/board.svg", _board_caption(design)
-        ),
-        WorkStep("Try the silicone", _tried(mould)),
+        _drawn("board", "Put the board in", _held(design, fingers), _board_caption(design)),
         *smooth,
-        WorkStep(
-            "Fill the mould",
-            _filled(design),
-            "manual/filled.svg",
-            "The mould, cut along its middle and filled",
-        ),
-        WorkStep(
+        WorkStep("Try the silicone", _tried(design)),
+        _drawn("filled", "Fill the mould", filled, "The mould, cut along its middle"),
+        _drawn(
+            "lowered",
             "Lower the finger",
             _lowered(design),
-            "manual/lowered.svg",
             "The tip on its stop, the gripper end coming down; cut along the middle",
         ),
-        WorkStep(
-            "Clamp it, and wait",
-            _clamped(design),
-            "manual/clamped.svg",
-            "The clamp on finger and mould",
-        ),
-        WorkStep(
-            "Take the finger out",
-            _out(design),
-            "manual/lifted.svg",
-            "The finger comes out, the gripper end first",
-        ),
+        _drawn("clamped", held, _clamped(design), on_it),
+        _drawn("lifted", "Take the finger out", _out(design), "The gripper end comes first"),
     ]
+
+
+def _drawn(drawing: str, title: str, text: str, caption: str) -> WorkStep:
+    return WorkStep(title, text, ((f"manual/{drawing}.svg", caption),))
 
 
 def _board_caption(design: Design) -> str:
@@ -118,7 +114,7 @@ def _moulds(design: Design, moulds: str) -> str:
         "part" if mould.off_layer_mm else "whole",
         floor_mm=mould.floor_mm,
         recess="".join(_text("recess", depth_mm=mould.wall_mm) for _ in mould.inserts),
-        rim_mm=mould.floor_mm + design.stack.cover_mm,
+        rim_mm=mould.stops_mm(design.stack.cover_mm),
         off_mm=mould.off_layer_mm,
     )
     letter_on = "the back of its block" if design.stack.sunk else "its back"
@@ -132,12 +128,14 @@ def _held(design: Design, fingers: tuple[Finger, ...]) -> str:
     mould, sunk = design.mould, design.stack.sunk
     bare = _text("bare", keys=len(design.keys)) if design.keys else ""
     openings = "window" if sunk else "window and every hole for thread"
-    number = 4 if sunk else 3
-    taped = ""
+    taped, tape = "", ""
     if any(open_back(design, finger) for finger in fingers):
+        number = 4 if sunk else 3
         taped = _text("taped", number=number, tape=mould.tape, openings=openings, bare=bare)
+        tape = f"{mould.tape}, "
     name = "pocket" if sunk else "plate"
-    return _text(name, glue=design.strength.glue, glue_hard_h=mould.glue_hard_h, taped=taped)
+    glue = {"glue": design.strength.glue, "glue_hard_h": mould.glue_hard_h}
+    return _text(name, taped=taped, tape=tape, **glue)
 
 
 def open_back(design: Design, finger: Finger) -> bool:
@@ -145,32 +143,40 @@ def open_back(design: Design, finger: Finger) -> bool:
     return bool(design.interfaces) or any(relief.through for relief in finger.reliefs)
 
 
-def _tried(mould: Mould) -> str:
-    primed = mould.primer != ""
-    first = _text("primed" if primed else "unprimed", **_primer(mould))
+def _tried(design: Design) -> str:
+    mould, primed = design.mould, design.mould.primer != ""
+    beside = ": plate, board and the glue round the board" if design.stack.sunk else ""
+    first = _text(
+        "primed" if primed else "unprimed",
+        primer=mould.primer,
+        primer_dry_min=mould.primer_dry_min,
+        beside=beside,
+    )
     return _text(
         "tried",
         silicone=mould.silicone,
         inhibited_by=", ".join(mould.inhibited_by),
         primer=f"{mould.primer}, " * primed,
         primed=first + "\n",
-        again=", prime the spot again" * primed,
+        film=", one on a piece that is left over of the smooth film" if mould.inserts else "",
+        peels=_text("peels") if mould.inserts else "",
+        again=", prime the spot again and let it dry" * primed,
+        longer="let the glue harden longer, " * design.stack.sunk,
         reprimed=", and prime it" * primed,
         cure_h=mould.cure_h,
         cure_c=mould.cure_c,
     )
 
 
-def _primer(mould: Mould) -> dict[str, object]:
-    return {"primer": mould.primer, "primer_dry_min": mould.primer_dry_min}
-
-
 def _filled(design: Design) -> str:
-    work = [_text("weighed"), _text("wetted")]
-    work += [_text("screwed", clamp=clamp) for clamp in design.clamps]
+    work = [_text("screwed", clamp=clamp) for clamp in design.clamps]
+    work += [_text("weighed"), _text("wetted")]
     work += [_text("laid") for _ in design.mould.inserts]
     work.append(_text("poured"))
-    return _text("filled", work="\n".join(f"{n}. {text}" for n, text in enumerate(work, 1)))
+    needs = ["the screws and nuts of the mould, " for _ in design.clamps]
+    needs += ["the smooth film, a plastic card, " for _ in design.mould.inserts]
+    numbered = "\n".join(f"{n}. {text}" for n, text in enumerate(work, 1))
+    return _text("filled", needs="".join(needs), work=numbered)
 
 
 def _lowered(design: Design) -> str:
@@ -179,21 +185,24 @@ def _lowered(design: Design) -> str:
 
 def _clamped(design: Design) -> str:
     """How the finger is held down; the tip of a plate that bends by tape as well."""
-    mould = design.mould
+    mould, bends = design.mould, not design.stack.sunk
     times = {"cure_h": mould.cure_h, "cure_c": mould.cure_c}
-    tip = "" if design.stack.sunk else _text("tip_taped", tape=mould.tape)
+    tip = _text("tip_taped", tape=mould.tape) if bends else ""
     for clamp in design.clamps:
         pads_n = clamp.pads_n(clamp.thickness_mm)
-        return _text("clamped", clamp=clamp, pads_n=pads_n, tip_taped=tip, **times)
+        tape = f"{mould.tape}, " * bends
+        return _text("clamped", clamp=clamp, pads_n=pads_n, tip_taped=tip, tape=tape, **times)
     return _text("taped_down", tape=mould.tape, tip_taped=tip, **times)
 
 
 def _out(design: Design) -> str:
-    mould = design.mould
+    mould, bends = design.mould, not design.stack.sunk
+    held = ["clamp, screws and nuts"] if design.clamps else []
+    held += ["all tape"] if bends or not design.clamps else []
     return _text(
         "out",
         cure_h=mould.cure_h,
-        unclamped=_text("unclamped" if design.clamps else "untaped"),
+        held=" and ".join(held),
         tip_mm=mould.tip_silicone_mm,
         peeled="".join(_text("peeled", insert=insert) for insert in mould.inserts),
         unheld="it was not primed there." if mould.primer else "it was not clean there.",

@@ -6,7 +6,7 @@ from dataclasses import replace
 from itertools import count
 from typing import Any
 
-from lumitip_fab.design import Design, Flange, HeatStep, Mask, Packages
+from lumitip_fab.design import Design, Flange, HeatStep, Mask, Mould, Packages
 from lumitip_fab.docs.casting import (
     amounts,
     casting_steps,
@@ -36,14 +36,17 @@ def manual_text(design: Design, files: Files) -> str:
     chapters = (
         _front(design),
         _bought(files),
-        _text("printed", note=_included(files.text("print/printing.md"))),
+        _printed(design, files),
         _boards(design, files),
         _wired(design, files),
-        _amounts(design, files),
-        *(step.page() for step in casting_steps(design, design.fingers)),
+        _text("tested", loading=_loading(design)),
+        *(
+            step.section()
+            for step in casting_steps(design, design.fingers, _amounts(design, files))
+        ),
         *_masked(design, files),
         _mounted(design),
-        _text("run", warm_up_min=WARM_UP_MIN, loading=_loading(design)),
+        _text("run", warm_up_min=WARM_UP_MIN),
         _kept(design.mask),
     )
     numbers = count(1)
@@ -67,8 +70,17 @@ def _front(design: Design) -> str:
         warm_up_min=WARM_UP_MIN,
         keys=_keys(design),
         nozzle_mm=design.slicing.nozzle_mm,
+        mask_tools=_text(f"tools_{design.mask.route}"),
+        waiting=_waiting(design.mould),
         heated="\n".join(map(_heated, design.heat)),
     )
+
+
+def _waiting(mould: Mould) -> str:
+    """Hours that something hardens, one after the other."""
+    glued = [f"{mould.glue_hard_h:g} h for the glue"] if mould.glue_hard_h else []
+    cures = [f"{mould.cure_h:g} h for {what}" for what in ("a trial of the silicone", "the skin")]
+    return ", then ".join(glued + cures)
 
 
 def _keys(design: Design) -> str:
@@ -191,13 +203,17 @@ def _wired(design: Design, files: Files) -> str:
 
 
 def _amounts(design: Design, files: Files) -> str:
-    """What to weigh for each finger, and how the moulds are printed."""
-    tables = (
+    """What to weigh for each finger."""
+    return _joined(
         f"### The {finger.name} finger\n\n"
         + amounts(design.mould, silicone_mix(volume_ml(finger, files), design.mould))
         for finger in design.fingers
     )
-    return _text("amounts", tables=_joined(tables), moulds=moulds_text(design))
+
+
+def _printed(design: Design, files: Files) -> str:
+    note = _included(files.text("print/printing.md"))
+    return _text("printed", note=note, moulds=moulds_text(design))
 
 
 def _masked(design: Design, files: Files) -> Iterator[str]:
@@ -208,8 +224,8 @@ def _masked(design: Design, files: Files) -> Iterator[str]:
     )
     first, *others = wrapping_steps(design, mask_facts(files, design.emitter), "NAME")
     both = _text("masks", pictures=pictures)
-    yield replace(first, text=f"{both}\n\n{first.text}").page()
-    yield from (step.page() for step in others)
+    yield replace(first, text=f"{both}\n\n{first.text}").section()
+    yield from (step.section() for step in others)
 
 
 def _mounted(design: Design) -> str:

@@ -10,16 +10,14 @@ class WorkStep:
     title: str
     text: str
     """In Markdown."""
-    picture: str = ""
-    """Path of a drawing below the output folder; empty without one."""
-    caption: str = ""
-    """Of the drawing."""
+    drawings: tuple[tuple[str, str], ...] = ()
+    """Path of each below the output folder, and its caption."""
 
     def note(self) -> str:
-        """For a note, which has no pictures."""
+        """For a note, which has no drawings."""
         return f"## {self.title}\n\n{self.text}"
 
-    def page(self) -> str:
-        """For the manual, where each step begins a page."""
-        shown = f"![{self.caption}]({self.picture})\n\n" if self.picture else ""
-        return f"## #. {self.title}\n\n{shown}{self.text}"
+    def section(self) -> str:
+        """For the manual, which keeps a step on one page where it fits."""
+        shown = "\n".join(f"![{caption}]({path})" for path, caption in self.drawings)
+        return "\n\n".join(filter(None, [f"## #. {self.title}", shown, self.text]))

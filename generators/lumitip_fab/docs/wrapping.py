@@ -14,25 +14,28 @@ _TITLES = {
     "cut": "cutting and wrapping",
     "tpu": "printing and wrapping",
 }
-_CREASED = ("mask/creasing.svg", "A fold, creased on a bar")
-_FOLDED = ("manual/folded.svg", "The finger from behind: the flaps in the order of folding")
+_CREASED = (("mask/creasing.svg", "A fold, creased on a bar"),)
+_FOLDED = tuple(
+    (f"manual/{name}_folded.svg", f"The {name} from behind: its flaps in the order of folding")
+    for name in ("emitter", "receiver")
+)
 _STEPS = {
     "film": (
-        ("Print the film", "film", ("", "")),
+        ("Print the film", "film", ()),
         ("Test, cut and crease the film", "film_cut", _CREASED),
         ("Wrap the finger", "film_wrap", _FOLDED),
     ),
     "cut": (
-        ("Cut the film", "cut", ("", "")),
+        ("Cut the film", "cut", ()),
         ("Crease the folds", "cut_crease", _CREASED),
         ("Wrap the finger", "cut_wrap", _FOLDED),
     ),
     "tpu": (
-        ("Print the sheets", "tpu", ("", "")),
+        ("Print the sheets", "tpu", ()),
         ("Wrap the finger", "tpu_wrap", _FOLDED),
     ),
 }
-"""By the mask's route: title, passage, and drawing of each step with its caption."""
+"""By the mask's route: title, passage and drawings of each step."""
 
 
 def wrapping_files(design: Design, files: Files) -> tuple[Artefact, ...]:
@@ -76,8 +79,8 @@ def wrapping_steps(design: Design, mask: Facts, name: str) -> list[WorkStep]:
     """
     values = _values(design, mask, name)
     return [
-        WorkStep(title, passage(_TEXTS, text).format(**values) + _signs(design, text), *drawing)
-        for title, text, drawing in _STEPS[design.mask.route]
+        WorkStep(title, passage(_TEXTS, text).format(**values) + _signs(design, text), drawings)
+        for title, text, drawings in _STEPS[design.mask.route]
     ]
 
 

@@ -59,7 +59,7 @@ def mask_files(design: Design, finger: Finger) -> tuple[Artefact, ...]:
 
 
 def _facts(artwork: Artwork, mask: Mask) -> Facts:
-    """What the note on wrapping and its drawing need: apertures, size over all flaps, each flap."""
+    """Apertures, size over all flaps and each flap, for the note on wrapping and its drawing."""
     ends = [y for _, y in artwork.cut.corners]
     return {
         "apertures": len(artwork.apertures),

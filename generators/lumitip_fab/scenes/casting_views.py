@@ -12,7 +12,7 @@ import numpy as np
 import shapely
 from shapely import affinity
 
-from lumitip_fab.design import Clamp, frames
+from lumitip_fab.design import Box, Clamp, frames
 from lumitip_fab.parts.surface import Mesh
 from lumitip_fab.scenes.cut import cut, rings_of
 from lumitip_fab.scenes.drawing import Points, Sheet, View, silhouette, view, visible_lines
@@ -42,6 +42,8 @@ class Cast:
     """Height of the mould's stops."""
     tip_y_mm: float
     """Tip edge of the plate."""
+    films: tuple[Box, ...]
+    """Cuts of what lies smooth on the floor."""
 
     def turned(self, names: tuple[str, ...], by_deg: float) -> dict[str, Mesh]:
         """Layers of the finger, turned about its tip edge, the gripper end up."""
@@ -56,9 +58,11 @@ def filled_view(cast: Cast) -> str:
     left, low, right, _ = page.cavity.bounds
     page.behind(cast.mould)
     page.fill(shapely.union(page.cavity, _bulge(left, right, cast.rim_mm)), "silicone")
-    page.fill(page.mould, "mould")
-    page.label(("Silicone", "bulges over the rim"), (left + right) / 2, cast.rim_mm + BULGE_MM / 2)
-    page.label(("Weir", "surplus runs over it"), right + 1.0, cast.rim_mm)
+    page.fill_mould()
+    page.label(
+        ("Silicone", "a little over the weir"), (left + right) / 2, cast.rim_mm + BULGE_MM / 2
+    )
+    page.label(("Weir", "as high as the stops"), right + 1.0, cast.rim_mm)
     page.label(("Trough", "for the surplus"), page.mould.bounds[2] - 5.0, low)
     return page.svg()
 
@@ -70,11 +74,11 @@ def lowered_view(cast: Cast) -> str:
     areas = {name: cut(mesh) for name, mesh in layers.items()}
     page.behind(cast.mould, *layers.values())
     page.fill(page.cavity - shapely.union_all(list(areas.values())), "silicone")
-    page.fill(page.mould, "mould")
+    page.fill_mould()
     page.fill_all(areas)
     page.turn(LOWERED_DEG + _ARC_DEG, LOWERED_DEG)
     page.label(("Tip", "first, on its stop"), cast.tip_y_mm + 0.5, cast.rim_mm + 1.0)
-    page.label(("Wires", "over the weir"), page.cavity.bounds[2] + 1.0, cast.rim_mm)
+    page.label(("Weir", "wires and surplus go over it"), page.cavity.bounds[2] + 1.0, cast.rim_mm)
     return page.svg()
 
 
@@ -83,7 +87,7 @@ def lifted_view(cast: Cast) -> str:
     page = _Page(cast)
     layers = cast.turned(("silicone", "interface", "backing", "board"), LIFTED_DEG)
     page.behind(cast.mould, *layers.values())
-    page.fill(page.mould, "mould")
+    page.fill_mould()
     page.fill_all({name: cut(mesh) for name, mesh in layers.items()})
     page.turn(LIFTED_DEG, LIFTED_DEG + _ARC_DEG)
     page.label(("Gripper end", "first, until air is under it"), page.cavity.bounds[2] - 2.0, 4.0)
@@ -128,7 +132,7 @@ def _clamp_labels(clamp: Clamp, eye: View) -> list[tuple[Words, Points]]:
     ]
     nut, leg = (max(places, key=lambda at: float(eye.seen(at)[2])) for places in (nuts, legs))
     return [
-        (("Nut", "one on each screw"), eye.seen(nut)[:2]),
+        (("Nut", "here, on each screw"), eye.seen(nut)[:2]),
         (("Marks", "of leg and mould in one line"), eye.seen(leg)[:2]),
     ]
 
@@ -157,6 +161,12 @@ class _Page:
         with self._sheet.group(tint):
             rings = [ring * self.scale for ring in rings_of(area)]
             self._sheet.area(rings, "body", tints()[tint])
+
+    def fill_mould(self) -> None:
+        """Paint the mould, and the film on its floor."""
+        self.fill(self.mould, "mould")
+        for film in self.cast.films:
+            self.fill(shapely.box(*film.bounds_mm), "film")
 
     def fill_all(self, areas: Mapping[str, shapely.Geometry]) -> None:
         """Paint layers, each in its own tint."""

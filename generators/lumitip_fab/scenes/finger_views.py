@@ -144,7 +144,7 @@ def _wires(
             np.array([x, y, stack.pocket_z_mm]),
             np.array([0.9 * x, (low_y + high_y) / 2 + abreast, stack.pocket_z_mm - 0.5]),
         ]
-        for lug in mount.lugs[-1:]:
+        for lug in mount.lugs[:1]:
             out = lug.side * (lug.face_mm + lug.out_mm + 0.5)
             along = sum(lug.along_mm) / 2 + abreast
             up = (lug.opening.y_min_mm + lug.opening.y_max_mm) / 2

@@ -5,7 +5,7 @@ import io
 import numpy as np
 import trimesh
 
-from lumitip_fab.design import Design, Finger, frames
+from lumitip_fab.design import Box, Design, Finger, Insert, Mould, frames
 from lumitip_fab.parts.surface import Mesh
 from lumitip_fab.pipeline.artefact import Artefact, Files
 from lumitip_fab.scenes.casting_views import (
@@ -21,8 +21,8 @@ from lumitip_fab.scenes.system import finger_group, stl_mesh
 
 
 def work_views(design: Design, files: Files) -> tuple[Artefact, ...]:
-    """A drawing of each step of the work that a picture explains. Both fingers are made alike: the
-    emitter is drawn, but for the wires, of which the receiver has more."""
+    """A drawing of each step of the work that a picture explains. Where both fingers are made alike
+    the emitter is drawn; the receiver for the wires, of which it has more."""
     scene = trimesh.load(io.BytesIO(files.read("assembly/assembly.glb")), file_type="glb")
     groups = {f.name: finger_group(scene, f, np.eye(4)) for f in design.fingers}
     layers = {name: _layers(group) for name, group in groups.items()}
@@ -38,10 +38,10 @@ def work_views(design: Design, files: Files) -> tuple[Artefact, ...]:
         "lowered": lowered_view(cast),
         "clamped": clamped_view(cast, clamp, _clamp(design, files)),
         "lifted": lifted_view(cast),
-        "folded": folded_view(
-            layers[finger.name], files.facts(f"mask/{finger.name}_mask.svg")["flaps"]
-        ),
     }
+    for name, seen in layers.items():
+        flaps = files.facts(f"mask/{name}_mask.svg")["flaps"]
+        drawings[f"{name}_folded"] = folded_view(seen, flaps)
     return tuple(
         Artefact(f"manual/{name}.svg", drawing.encode(), frame="")
         for name, drawing in drawings.items()
@@ -68,9 +68,16 @@ def _cast(design: Design, finger: Finger, layers: dict[str, Mesh], files: Files)
             for name in ("interface", "backing", "board", "silicone")
             if name in layers
         },
-        design.mould.wall_mm + design.stack.cover_mm,
+        design.mould.stops_mm(design.stack.cover_mm),
         -design.outline.tip_y_mm,
+        tuple(_laid(design.mould, insert) for insert in design.mould.inserts),
     )
+
+
+def _laid(mould: Mould, insert: Insert) -> Box:
+    """A film on the floor, along the mould and up from its bed; the mould's y is -y."""
+    box = insert.box
+    return Box(-box.y_max_mm, -box.y_min_mm, mould.floor_mm - insert.thickness_mm, mould.floor_mm)
 
 
 def _to_bed(design: Design) -> frames.Matrix:

@@ -186,7 +186,7 @@ def _drawn(plan: _Plan, screw: Fastener, rear: Box, front: Box) -> Clamp:
     lugs = [Box(inner, flush, *end) for end in ends]
     y_screw = (y_low + y_high) / 2
     lugs.append(Box(inner, flush, y_screw - LUG_MM / 2, y_screw + LUG_MM / 2))
-    rim = mould.floor_mm + stack.cover_mm
+    rim = mould.stops_mm(stack.cover_mm)
     rail = math.floor(min(rim, RAIL_MM[1]) / layer + 1e-9) * layer
     arm = Box(inner, outer, ends[0][0], ends[1][1])
     bar_y = y_high - BAR_MM / 2, y_high + BAR_MM / 2
