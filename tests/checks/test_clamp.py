@@ -145,7 +145,13 @@ def nut_against_the_wall(part: Body) -> Body:
     return part + box((32.3, 4, 3.8), (32.9, 8, 7))
 
 
+def wall_below_the_nuts(part: Body) -> Body:
+    """As round a thin plate: walls end beside the nuts, not above them."""
+    return part - box((-60, -60, 4.2), (60, 60, 12))
+
+
 MOULDS = {
+    wall_below_the_nuts: set(),
     rail_mark_filled: {"marks"},
     pads_higher: {"marks"},
     head_too_wide: {"head_clearance"},

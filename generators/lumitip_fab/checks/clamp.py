@@ -48,6 +48,7 @@ SHARED_MM3 = 0.05
 LEAST_BED_MM2 = 300.0
 _INSET_MM = 0.2
 _BESIDE_MM = 1.5  # of a mark's place, from the end of its rail
+_BESIDE_NUT = (0.05, 0.5, 1.0)  # of its height, where walls are looked for
 _STEP_MM = 0.02
 _REACH_MM = 60.0
 _SEARCH_MM = 5.0
@@ -202,8 +203,11 @@ def measure_screws(held: Held) -> Iterator[Measurement]:
     nut = clamp.screw
     left = clamp.screw_length_mm - float(held.mesh.bounds[1][2]) - nut.nut_height_mm
     yield held.figure("screw_length", left, PITCH_MM, math.inf, note="of a screw beyond its nut")
-    wall = solids.section(held.mould, clamp.rail_mm + nut.nut_height_mm / 2)
-    apart = min(shapely.Point(axis).distance(wall) for axis in at) - nut.nut_mm / math.sqrt(3)
+    heights = (clamp.rail_mm + share * nut.nut_height_mm for share in _BESIDE_NUT)
+    walls = [wall for z in heights if not (wall := solids.section(held.mould, z)).is_empty]
+    # A wall that ends below a nut leaves it room.
+    near = [shapely.Point(axis).distance(wall) for wall in walls for axis in at]
+    apart = min(near, default=nut.nut_mm) - nut.nut_mm / math.sqrt(3)
     yield held.figure("nut_room", apart, 0, math.inf, note="from a nut on its rail to the wall")
 
 
