@@ -158,7 +158,7 @@ def _tried(design: Design) -> str:
         inhibited_by=", ".join(mould.inhibited_by),
         primer=f"{mould.primer}, " * primed,
         primed=first + "\n",
-        film=", one on a piece that is left over of the smooth film" if mould.inserts else "",
+        film=", and one on a piece that is left over of the smooth film" if mould.inserts else "",
         peels=_text("peels") if mould.inserts else "",
         again=", prime the spot again and let it dry" * primed,
         longer="let the glue harden longer, " * design.stack.sunk,

@@ -33,7 +33,7 @@ _WORDS = {
     "title": (6.0, f'font-weight="bold" fill="{_INK}"'),
     "name": (3.6, f'font-weight="bold" fill="{_INK}"'),
     "detail": (3.0, f'fill="{_FAINT}"'),
-    "number": (2.4, f'fill="{_INK}"'),
+    "number": (4.0, f'fill="{_INK}"'),
 }
 
 

@@ -22,7 +22,7 @@ _PLAN = View(np.eye(3)).enlarged(PLAN_SCALE)
 _LABEL_MM, _WORDS_MM = 8.0, 44.0
 _PAST_MM = 22.0  # of the cable, beyond the mount face
 _ABREAST_MM = 0.5  # from wire to wire of a cable, as it is drawn
-_NUMBER_DOWN_MM = 0.9  # of a number's base line, to have it in the middle
+_NUMBER_DOWN_MM = 1.4  # of a number's base line, to have it in the middle
 _ANGLES = {"data-azimuth-deg": AZIMUTH_DEG, "data-elevation-deg": ELEVATION_DEG}
 _STEPS = 8  # chords of a wire from point to point
 
