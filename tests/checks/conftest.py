@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
+from finger_notes import noted_mask
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from lumitip_fab.design.encoding import design_text
-from lumitip_fab.mask.files import mask_files
 from lumitip_fab.parts.coupon import coupon_files
 from lumitip_fab.parts.sheet import sheet_files
 
@@ -21,7 +21,7 @@ def masks(tmp_path_factory: pytest.TempPathFactory, design_dir: Path) -> Path:
     (out / "mask").mkdir()
     (out / "design.json").write_text(design_text(d), encoding="utf-8")
     for finger in d.fingers:
-        made = (*mask_files(d, finger), *sheet_files(d, finger))
+        made = (*noted_mask(d, finger), *sheet_files(d, finger))
         for artefact in made:
             (out / artefact.path).write_bytes(artefact.data)
     for artefact in coupon_files(d):

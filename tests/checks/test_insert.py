@@ -2,7 +2,7 @@
 
 import re
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,17 +13,15 @@ from ezdxf.layouts import Modelspace
 from manifold3d import Manifold
 
 from damages import box, carve, cut_short, edit, failing
+from finger_notes import noted_mould
 from lumitip_fab.checks import insert as insert_checks
 from lumitip_fab.checks import mould as mould_checks
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
-from lumitip_fab.design import Box, Design, Finger
+from lumitip_fab.design import Box, Design
 from lumitip_fab.design.encoding import design_text, read_design
 from lumitip_fab.design.frames import mould_bed_to_sensor
-from lumitip_fab.docs.casting import casting_note, silicone_mix
 from lumitip_fab.parts.insert import insert_files, insert_page
-from lumitip_fab.parts.mould import mould_files
-from lumitip_fab.pipeline.artefact import Artefact
 
 pytestmark = pytest.mark.slow
 
@@ -55,7 +53,7 @@ def made(design_dir: Path, tmp_path_factory: pytest.TempPathFactory) -> Made:
         file.write_text(DESIGNS[name], encoding="utf-8")
         design = derive(load(file))
         (out / "mould").mkdir(parents=True)
-        made = [a for finger in design.fingers for a in _cast(design, finger)]
+        made = [a for finger in design.fingers for a in noted_mould(design, finger)]
         made += [a for insert in design.inserts for a in insert_files(design, insert)]
         for artefact in made:
             (out / artefact.path).write_bytes(artefact.data)
@@ -63,15 +61,6 @@ def made(design_dir: Path, tmp_path_factory: pytest.TempPathFactory) -> Made:
         return out
 
     return make
-
-
-def _cast(design: Design, finger: Finger) -> Iterator[Artefact]:
-    """Mould and casting note of a finger."""
-    files = mould_files(design, finger)
-    yield from files
-    (cast_ml,) = (a.facts["cast_ml"] for a in files if "cast_ml" in a.facts)
-    note = casting_note(design, finger, silicone_mix(cast_ml, design.mould))
-    yield Artefact(f"mould/{finger.name}_casting.md", note.encode())
 
 
 @pytest.fixture

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 import shapely
 
+from finger_notes import noted_mould
 from lumitip_fab.checks import backing as backing_checks
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.config.load import load
@@ -15,7 +16,6 @@ from lumitip_fab.derive import derive
 from lumitip_fab.design import Design, Key
 from lumitip_fab.design.frames import backing_bed_to_sensor
 from lumitip_fab.parts.backing import backing
-from lumitip_fab.parts.mould import mould_files
 from lumitip_fab.parts.plate import key_fillings
 
 pytestmark = pytest.mark.slow
@@ -114,7 +114,7 @@ def test_keys_that_do_not_hold_are_caught(made: Made, change: Change, caught: se
 def test_a_finger_without_keys_has_none(design: Design) -> None:
     bare = replace(design, keys=())
     assert key_fillings(bare.keys, bare.stack, bare.outline, bare.tip) == []
-    notes = [mould_files(each, each.receiver)[-1].data.decode() for each in (design, bare)]
+    notes = [noted_mould(each, each.receiver)[-1].data.decode() for each in (design, bare)]
     assert "small holes beside the board" in notes[0]
     assert "small holes beside the board" not in notes[1]
 

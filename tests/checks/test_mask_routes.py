@@ -9,10 +9,10 @@ import pytest
 from manifold3d import CrossSection
 
 from damages import Body, box, carve, cut_short, failing, flip_a_triangle, passing, swap
+from finger_notes import noted_mask
 from lumitip_fab.config.load import Input, load
 from lumitip_fab.derive import derive
 from lumitip_fab.design.encoding import design_text
-from lumitip_fab.mask.files import mask_files
 from lumitip_fab.parts.coupon import coupon_files
 from lumitip_fab.parts.sheet import sheet_files
 
@@ -201,7 +201,7 @@ def written(config: Input, out: Path) -> Path:
     (out / "mask").mkdir(parents=True)
     (out / "design.json").write_text(design_text(design), encoding="utf-8")
     for finger in design.fingers:
-        for artefact in (*mask_files(design, finger), *sheet_files(design, finger)):
+        for artefact in (*noted_mask(design, finger), *sheet_files(design, finger)):
             (out / artefact.path).write_bytes(artefact.data)
     for artefact in coupon_files(design):
         (out / artefact.path).write_bytes(artefact.data)

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import shapely
 
+from finger_notes import noted_mask, noted_mould
 from lumitip_fab.checks import backing as backing_checks
 from lumitip_fab.checks import mask as mask_checks
 from lumitip_fab.checks import mould as mould_checks
@@ -22,9 +23,7 @@ from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
 from lumitip_fab.design.encoding import design_text, read_design
 from lumitip_fab.design.frames import backing_bed_to_sensor, mould_bed_to_sensor
-from lumitip_fab.mask.files import mask_files
 from lumitip_fab.parts.backing import backing
-from lumitip_fab.parts.mould import mould_files
 
 pytestmark = pytest.mark.slow
 
@@ -53,7 +52,7 @@ def made(design_dir: Path, tmp_path_factory: pytest.TempPathFactory) -> Made:
         )
         design = derive(load(file))
         for finger in design.fingers:
-            for maker in (backing, mould_files, mask_files):
+            for maker in (backing, noted_mould, noted_mask):
                 for artefact in maker(design, finger):
                     (out / artefact.path).parent.mkdir(parents=True, exist_ok=True)
                     (out / artefact.path).write_bytes(artefact.data)

@@ -13,14 +13,14 @@ import numpy as np
 import pikepdf
 import pytest
 
+from finger_notes import noted_mask
 from lumitip_fab.checks import mask as mask_check
 from lumitip_fab.checks.mask_holes import black_of, place, registration_of
 from lumitip_fab.checks.readers.mask_page import read_page
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
-from lumitip_fab.design import Design, Finger
+from lumitip_fab.design import Design
 from lumitip_fab.design.frames import applied
-from lumitip_fab.docs.wrapping import wrapping_note
 from lumitip_fab.mask.files import mask_files
 from lumitip_fab.pipeline.artefact import Artefact
 
@@ -35,15 +35,7 @@ def preset(design_dir: Path) -> Callable[[str], Design]:
 
 
 def made(design: Design) -> list[Artefact]:
-    return [artefact for finger in design.fingers for artefact in mask_of(design, finger)]
-
-
-def mask_of(design: Design, finger: Finger) -> list[Artefact]:
-    """Files of a finger's mask with the note."""
-    files = mask_files(design, finger)
-    (facts,) = (a.facts for a in files if a.facts)
-    note = wrapping_note(design, finger, facts).encode()
-    return [*files, Artefact(f"mask/{finger.name}_wrapping.md", note, frame="")]
+    return [artefact for finger in design.fingers for artefact in noted_mask(design, finger)]
 
 
 def written(design: Design, out: Path) -> list[Artefact]:
