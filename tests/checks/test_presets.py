@@ -39,6 +39,7 @@ def test_a_measurement_that_could_not_be_taken_fails() -> None:
 
 
 UNREAD = (
+    "manual/*.svg",  # drawings of the work: tests/scenes/test_work.py
     ".built",  # spares a build
     "resolved.toml",  # the input again
     "boards/*/*.cir",  # run by ngspice in the tests
