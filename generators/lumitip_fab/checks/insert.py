@@ -19,7 +19,7 @@ from lumitip_fab.checks.readers.mask_page import PageError, read_page
 from lumitip_fab.checks.result import Measure, Measurement, Subject, measured, unreadable
 from lumitip_fab.design import Design, Finger, Insert
 from lumitip_fab.design.frames import applied
-from lumitip_fab.design.insert import LEAST_MARGIN_MM
+from lumitip_fab.design.insert import LAND_MM, LEAST_MARGIN_MM
 from lumitip_fab.errors import OutputError
 
 READS = ("mould/*_mould.stl", "mould/*_casting.md", "mould/insert*")
@@ -27,8 +27,6 @@ PAPERS = ("a4", "letter")
 LEVEL_MM = 0.02  # of the film's face, off the floor beside it
 PLAY_MM = 0.05  # off the clearance of the design
 LEAST_PLAY_MM = 0.2
-APART_MM = 0.5
-"""Least floor from the film to stops, walls, the rounding and the taper."""
 SIZE_MM = 0.01
 _OVER_FLOOR_MM = 0.05  # where stops and walls are cut
 _BESIDE_MM = 0.2  # from the side of the recess, where the floor is probed
@@ -149,7 +147,7 @@ def measure_apart(laid: Laid) -> Iterator[Measurement]:
     """The film against stops and walls, and what rises from the floor at both ends."""
     material = solids.section(laid.probe.mesh, laid.design.mould.floor_mm + _OVER_FLOOR_MM)
     gap = float(shapely.distance(_edge(laid), material).min())
-    yield laid.figure("apart", gap, APART_MM, math.inf, note="from the film to stops and walls")
+    yield laid.figure("apart", gap, LAND_MM, math.inf, note="from the film to stops and walls")
 
 
 def _edge(laid: Laid) -> Any:

@@ -8,6 +8,9 @@ LEAST_MARGIN_MM = 0.8
 """From an aperture to the film's edge: a film that is cut 0.3 mm short and lies against one side of
 its recess still covers it."""
 
+LAND_MM = 0.5
+"""Least floor from the recess, and so from the film, to stops, walls, rounding and taper."""
+
 
 @dataclass(frozen=True)
 class Insert:

@@ -219,9 +219,14 @@ class HeatStep:
     parts: tuple[HeatedPart, ...]
 
     @property
+    def weakest(self) -> HeatedPart:
+        """The part that bears the least heat."""
+        return min(self.parts, key=lambda part: part.limit_c)
+
+    @property
     def limit_c(self) -> float:
         """The lowest limit of its parts (°C)."""
-        return min(part.limit_c for part in self.parts)
+        return self.weakest.limit_c
 
 
 @dataclass(frozen=True)

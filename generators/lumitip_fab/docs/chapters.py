@@ -98,7 +98,7 @@ def _mask_rows(mask: Mask) -> str:
 
 
 def _heated(step: HeatStep) -> str:
-    weakest = min(step.parts, key=lambda part: part.limit_c)
+    weakest = step.weakest
     return (
         f"| {step.name} | {step.place} | {step.temperature_c:g} °C "
         f"| {weakest.limit_c:g} °C ({weakest.name}: {as_written(weakest.material)}) |"

@@ -146,7 +146,7 @@ def _infrared(design: Design) -> str:
 
 def _creased(design: Design) -> dict[str, object]:
     """Figures of a film that is creased with heat."""
-    weakest = min(design.heat_steps["cure"].parts, key=lambda part: part.limit_c)
+    weakest = design.heat_steps["cure"].weakest
     return {
         "crease": passage(_TEXTS, "crease").format(
             soften_c=design.heat_steps["crease"].temperature_c

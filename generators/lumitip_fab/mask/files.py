@@ -22,7 +22,7 @@ def creasing_files(design: Design) -> tuple[Artefact, ...]:
     """The drawing of how a fold is creased with local heat; none of a sheet that is bent cold."""
     if design.mask.route == "tpu":
         return ()
-    weakest = min(design.heat_steps["cure"].parts, key=lambda part: part.limit_c)
+    weakest = design.heat_steps["cure"].weakest
     drawing = data_file("mask/creasing.svg").format(
         soften_c=design.heat_steps["crease"].temperature_c,
         film="film, printed side down" if design.mask.route == "film" else "film, inside down",

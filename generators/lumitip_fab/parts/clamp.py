@@ -13,7 +13,7 @@ from lumitip_fab.parts.shapes import box_solid, cylinder, one_solid
 from lumitip_fab.pipeline.artefact import Artefact
 
 CHANGED = "mould.wall_mm or the outline"
-"""What a user may change where the kernel fails on mould or clamp."""
+"""Parameters to change where the kernel fails on mould or clamp."""
 FOOT_CHAMFER_MM = 0.4  # the first layer spreads
 BEYOND_MM = 1.0  # how far a cutter reaches past what it cuts
 

@@ -6,12 +6,11 @@ import shapely
 
 from lumitip_fab.config.load import Input
 from lumitip_fab.design import Box, Finger, Insert
-from lumitip_fab.design.insert import LEAST_MARGIN_MM
+from lumitip_fab.design.insert import LAND_MM, LEAST_MARGIN_MM
 
 MARGIN_MM = 2.0  # from an aperture to the film's edge, where there is room
 STEP_MM = 0.1
 CLEARANCE_MM = 0.3  # a film is cut by hand to some 0.3 mm
-LAND_MM = 0.5  # of floor, from the recess to a stop, to the wall, the rounding or the taper
 
 
 def derive_inserts(config: Input, flat: shapely.Geometry, finger: Finger) -> tuple[Insert, ...]:
