@@ -15,7 +15,7 @@ from lumitip_fab.checks.readers.tables import table
 from lumitip_fab.checks.readers.vertices import corners_mm
 from lumitip_fab.checks.result import Measurement, count, unreadable
 from lumitip_fab.design import Design, Fab
-from lumitip_fab.design.clamp import printed_times
+from lumitip_fab.design.mould import printed_times
 from lumitip_fab.errors import OutputError
 
 READS = (
@@ -194,7 +194,7 @@ def _grams(outputs: Path, design: Design) -> dict[str, float]:
         corners = corners_mm(path).reshape(-1, 3, 3)
         mm3 = float(np.linalg.det(corners).sum() / 6)
         name = path.relative_to(outputs).as_posix()
-        times = printed_times(design.clamps, name)
+        times = printed_times(design.round_moulds, name)
         found[name] = times * mm3 / 1000 * design.slicing.of(name).density_g_ml
     return found
 

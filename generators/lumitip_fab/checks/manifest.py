@@ -64,6 +64,11 @@ def _apart(path: str, low: Vector, high: Vector, design: Design) -> Iterator[flo
         for clamp in design.clamps:
             yield abs(low[2] - (stack.back_z_mm - clamp.foot_mm - clamp.thickness_mm))
             yield abs(high[1] - clamp.legs[-1].y_max_mm)
+    elif path in {prop.file for prop in design.props}:
+        for prop in design.props:
+            bed_z = stack.silicone_z_mm + design.mould.floor_mm
+            yield abs(high[2] - bed_z - prop.height_mm)
+            yield abs(high[1] - prop.plate.y_max_mm)
     elif path.startswith("mould/"):
         # It lies under the skin, its floor `floor_mm` high, and reaches round the tip.
         yield abs(high[2] - (stack.silicone_z_mm + design.mould.floor_mm))

@@ -213,13 +213,13 @@ def _walls(mesh: Any, file: str, design: Design, notch: Box) -> Iterator[Measure
     mould, stack = design.mould, design.stack
     rim_mm = mould.stops_mm(stack.cover_mm)
     silhouette = shapely.Polygon(design.outline.polygon() * (1, -1))  # as seen from above
-    places = _along(silhouette, design, notch)
-    near = _distances(mesh, rim_mm + _ABOVE_MM, places)
+    places = along(silhouette, -design.outline.end_y_mm, notch)
+    near = distances(mesh, rim_mm + _ABOVE_MM, places)
     yield Measurement("mould.gap", file, float(near.min()), *GAP_MM, "mm", "least at the rim")
     widest, note = float(near.max()), "but for the weir at the gripper end"
     yield Measurement("mould.gap", f"{file}: widest", widest, *GAP_MM, "mm", note)
     rise = stack.plate_mm / 2  # the wall guides at least half the plate
-    far = _distances(mesh, rim_mm + _ABOVE_MM + rise, places)
+    far = distances(mesh, rim_mm + _ABOVE_MM + rise, places)
     draft = float(np.degrees(np.arctan2(far - near, rise)).min())
     least = min(LEAST_DRAFT_DEG, mould.draft_deg) - DRAFT_MESH_DEG
     note = f"least above the rim; designed {mould.draft_deg:g}"
@@ -230,16 +230,17 @@ def _walls(mesh: Any, file: str, design: Design, notch: Box) -> Iterator[Measure
     )
 
 
-def _along(silhouette: Any, design: Design, notch: Box) -> Any:
-    """Points along the outline, without those before the weir."""
+def along(silhouette: Any, end_y_mm: float, notch: Box) -> Any:
+    """Points along an outline as seen from above, without those before the weir at its end."""
     edge = silhouette.exterior
     points = shapely.line_interpolate_point(edge, np.arange(0.0, edge.length, _STEP_MM))
     at = shapely.get_coordinates(points)
-    at_end = np.abs(at[:, 1] + design.outline.end_y_mm) < 1e-6
+    at_end = np.abs(at[:, 1] - end_y_mm) < 1e-6
     return points[~(at_end & (np.abs(at[:, 0]) < notch.x_max_mm))]
 
 
-def _distances(mesh: Any, z_mm: float, places: Any) -> solids.Vectors:
+def distances(mesh: Any, z_mm: float, places: Any) -> solids.Vectors:
+    """From places to a mesh's section at a height; infinite where there is none."""
     material = solids.section(mesh, z_mm)
     if material.is_empty:
         return np.full(len(places), np.inf)

@@ -11,9 +11,10 @@ import shapely
 
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.result import Measurement, unreadable
-from lumitip_fab.design import Design, Finger
+from lumitip_fab.design import Design, Finger, Prop
 
 VOLUME_FRACTION = 0.02
+_GRID_MM = 0.05
 _PART = re.compile(r", part ([AB]) \| \*\*([0-9.]+) g\*\*")
 _HOW = (
     r"layers of (\S+) mm",
@@ -92,7 +93,8 @@ def measure_volume(
     box, stack = design.board.box, design.stack
     if not stack.sunk:
         dipped += box.width_mm * box.length_mm * stack.pcb_mm
-    measured = (_cavity_mm3(body, design) + _keys_mm3(design) - dipped) / 1000
+    filled = _keys_mm3(design) + sum(_wrap_mm3(design, prop) for prop in design.props)
+    measured = (_cavity_mm3(body, design) + filled - dipped) / 1000
     if not measured > 0:
         return unreadable("mould.volume", file, "has no cavity that could be measured")
     low, high = (round(measured * (1 + side * VOLUME_FRACTION), 4) for side in (-1, 1))
@@ -108,6 +110,25 @@ def _keys_mm3(design: Design) -> float:
         long = stack.face_z_mm - design.tip.back_z_mm(stack, key.at[1])
         total += math.pi * (radius**2 * long + deep**2 * (radius + deep / 3))
     return total
+
+
+def _wrap_mm3(design: Design, prop: Prop) -> float:
+    """Silicone round the tip: what stands over rim plane and plate, counted on a grid."""
+    stack, tip, outline = design.stack, design.tip, design.outline
+    plate = shapely.Polygon(outline.polygon())
+    room = plate.buffer(design.mould.wall_gap_mm)
+    slots = shapely.union_all([shapely.box(*slot.bounds_mm) for slot in tip.slots])
+    left, _, right, high = room.bounds
+    x = np.arange(left, right, _GRID_MM) + _GRID_MM / 2
+    y = np.arange(tip.slant_start_y_mm, high, _GRID_MM) + _GRID_MM / 2
+    at = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+    level = (at[:, 1] - prop.weir_y_mm) * math.tan(math.radians(prop.tilt_deg))
+    back = np.array([tip.back_z_mm(stack, v) for v in y]) - stack.face_z_mm
+    on_plate = shapely.contains_xy(plate, at) & ~shapely.contains_xy(slots, at)
+    above = level - np.where(on_plate, np.repeat(-back, len(x)), 0.0)
+    round_tip = shapely.contains_xy(room, at) & (above > 0)
+    covered = at[round_tip & on_plate, 1].min(initial=high)  # farther back it is flash
+    return float(above[round_tip & (at[:, 1] >= covered)].sum()) * _GRID_MM**2
 
 
 def _cavity_mm3(body: solids.Solid, design: Design) -> float:

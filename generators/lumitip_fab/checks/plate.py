@@ -22,6 +22,7 @@ PIN_MM = 0.05
 FILLET_MM = 0.4  # solder round the foot of a pad's tail
 SIZE_MM = 0.05
 HOLE_MM = 0.05
+SLOT_MM = 0.05  # beside a slot of the tip edge, which is measured by itself
 GLUE_MM = 0.05
 FLOOR_MM = 0.05  # over the pocket's floor
 SHARED_MM3 = 0.05
@@ -30,11 +31,13 @@ _UP = np.array([0.0, 0.0, 1.0])
 
 
 def measure_outline(part: Printed) -> Iterator[Measurement]:
-    """The plate's silhouette just behind the rim, above the wedge, but for the notch."""
+    """The plate's silhouette just behind the rim, above the wedge, but for notch and slots."""
     design, notch = part.design, part.finger.notch
     silhouette = shapely.LinearRing(design.outline.polygon(24))
     corners = shapely.get_coordinates(shapely.segmentize(silhouette, 1.0))
     open_ = (np.abs(corners[:, 0]) < notch.x_max_mm) & (corners[:, 1] < notch.y_max_mm)
+    for slot in design.tip.slots:
+        open_ |= shapely.contains_xy(shapely.box(*slot.grown(SLOT_MM).bounds_mm), corners)
     cut = section(part.sensor, design.stack.face_z_mm - design.printing.line_mm / 2)
     skins = [p.exterior for p in shapely.get_parts(cut) if p.geom_type == "Polygon"]
     off = shapely.distance(shapely.points(corners[~open_]), shapely.union_all(skins))

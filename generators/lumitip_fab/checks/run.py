@@ -38,6 +38,7 @@ MODULES = (
     "tie_lugs",
     "mould",
     "insert",
+    "wrap",
     "clamp",
     "assembly",
     "board",

@@ -11,6 +11,7 @@ from lumitip_fab.checks.result import Measurement
 
 EDGE_MM = 0.05
 ANGLE_DEG = 0.5
+BESIDE_MM = 0.1  # a slot
 INSET_MM = 0.3  # of the rays from both ends of the wedge
 _DOWN = np.array([0.0, 0.0, -1.0])
 
@@ -19,7 +20,9 @@ def measure_tip(part: Printed) -> Iterator[Measurement]:
     """The wedge: thickness at the tip edge and angle."""
     outline, tip = part.design.outline, part.design.tip
     slope = np.tan(np.radians(tip.angle_deg))
-    xs = beside(part.design, np.linspace(-0.45, 0.45, 25) * outline.tip_width_mm)
+    xs = beside(part.design, np.linspace(-0.45, 0.45, 41) * outline.tip_width_mm)
+    for slot in tip.slots:
+        xs = xs[(xs < slot.x_min_mm - BESIDE_MM) | (xs > slot.x_max_mm + BESIDE_MM)]
     edge = _thickness(part, np.array([(x, outline.tip_y_mm - 0.05) for x in xs])) - 0.05 * slope
     yield part.near("tip_edge", edge, tip.edge_mm, EDGE_MM)
     board = part.design.board

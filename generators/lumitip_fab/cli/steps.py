@@ -37,6 +37,7 @@ STEPS = (
     Step("robot", "scenes.robot.robot_files", heavy=True, tools=_CAD),
     Step("mould", "parts.mould.mould_files", "fingers", heavy=True, tools=_CAD),
     Step("insert", "parts.insert.insert_files", "inserts", tools=_INK),
+    Step("prop", "parts.prop.prop_files", "props", heavy=True, tools=_CAD),
     Step("clamp", "parts.clamp.clamp_files", "clamps", heavy=True, tools=_CAD),
     Step("backing", "parts.backing.backing", "fingers", heavy=True, tools=_CAD),
     Step("holder", "parts.holder.holder_files", "holders", heavy=True, tools=_CAD),

@@ -76,7 +76,7 @@ def derive_body(
     interfaces = derive_interfaces(config, silhouette, plan.receiver, plan.board.box, faults)
     coupling = mount.derive_mount(config, silhouette, plan, faults)
     tip = derive_tip(config, silhouette, plan.board, stack, faults)
-    casting = mould.derive_mould(config, silhouette, plan, stack, faults)
+    casting = mould.derive_mould(config, silhouette, plan, stack, tip, faults)
     slicing = derive_slicing(config, casting, faults)
     meeting = mount.derive_closing(silhouette, stack, coupling, casting, faults)
     board, finger = plan.board, plan.receiver

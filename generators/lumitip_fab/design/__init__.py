@@ -48,11 +48,11 @@ from lumitip_fab.design.making import (
     Interface,
     Letter,
     Mask,
-    Mould,
     Printing,
     Sheet,
     Slicing,
 )
+from lumitip_fab.design.mould import Mould
 from lumitip_fab.design.mount import (
     Closing,
     Fastener,
@@ -74,6 +74,7 @@ from lumitip_fab.design.pcb import (
     Shroud,
     Tie,
 )
+from lumitip_fab.design.prop import Prop
 from lumitip_fab.design.shape import Box, Cubic, Key, Outline, Point, Side, Stack, Tip
 from lumitip_fab.design.strength import Strength
 from lumitip_fab.design.tie_lug import TieLug
@@ -185,6 +186,16 @@ class Design:
     def inserts(self) -> tuple[Insert, ...]:
         """The film on the floor of both moulds; none without it."""
         return self.mould.inserts
+
+    @property
+    def props(self) -> tuple[Prop, ...]:
+        """What tilts both moulds; none where they stand level."""
+        return self.mould.props
+
+    @property
+    def round_moulds(self) -> tuple[Clamp | Prop, ...]:
+        """What is printed for each of the moulds."""
+        return *self.clamps, *self.props
 
     @property
     def heat_steps(self) -> dict[str, HeatStep]:

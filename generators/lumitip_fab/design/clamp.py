@@ -7,8 +7,6 @@ from lumitip_fab.design.shape import Box, Point
 
 MARK_MM = 0.4
 """Depth of a mark: a V-groove, twice as high as deep."""
-CLAMPS = 2
-"""To print: both fingers cure at once, each in its own mould."""
 QUARTER_TURN = 0.25
 """Of both nuts, after all feet touch."""
 PITCH_MM = 0.5
@@ -118,8 +116,3 @@ def torsion_mm4(width_mm: float, thickness_mm: float) -> float:
     long, short = max(width_mm, thickness_mm), min(width_mm, thickness_mm)
     flat = short / long
     return long * short**3 * (1 / 3 - 0.21 * flat * (1 - flat**4 / 12))
-
-
-def printed_times(clamps: tuple[Clamp, ...], path: str) -> int:
-    """How often a part is printed for a pair of fingers."""
-    return CLAMPS if path in {clamp.file for clamp in clamps} else 1

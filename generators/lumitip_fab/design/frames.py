@@ -32,6 +32,7 @@ from lumitip_fab.design import (
     Mount,
     PocketCorner,
     Point,
+    Prop,
     Stack,
     System,
 )
@@ -96,6 +97,11 @@ def plate_back_to_sensor(mount: Mount, stack: Stack) -> Matrix:
 def mould_bed_to_sensor(stack: Stack, mould: Mould) -> Matrix:
     """From the mould's print bed: its floor is `floor_mm` high below the silicone's face."""
     return translation(0.0, 0.0, stack.silicone_z_mm + mould.floor_mm) @ rotation_x(180.0)
+
+
+def prop_bed_to_sensor(stack: Stack, mould: Mould, prop: Prop) -> Matrix:
+    """From the print bed of a prop, stop up, as if the mould lay flat on it."""
+    return mould_bed_to_sensor(stack, mould) @ translation(0.0, 0.0, -prop.height_mm)
 
 
 def clamp_bed_to_sensor(stack: Stack, clamp: Clamp) -> Matrix:

@@ -3,7 +3,6 @@
 import re
 from dataclasses import dataclass
 
-from lumitip_fab.design.insert import Insert
 from lumitip_fab.design.shape import Box, Point
 
 LEDGE_MM = 0.5
@@ -11,6 +10,9 @@ LEDGE_MM = 0.5
 
 TIP_LAND_FRACTION = 1 / 3
 """Of the straight tip edge, on which a finger stands in its mould; the rest keeps its silicone."""
+
+FOOT_CHAMFER_MM = 0.4
+"""Of mould and clamp where they stand on the bed: the first layer spreads."""
 
 FOLD_OFF_MM = 0.3
 """Of a mask's straight fold from the finger's outline grown by the allowance, at most."""
@@ -79,58 +81,6 @@ class Letter:
     wall_mm: float
     """Where the wall stands on the second axis."""
     depth_mm: float
-
-
-@dataclass(frozen=True)
-class Mould:
-    """The silicone mould and what is poured into it."""
-
-    taper_length_mm: float
-    tip_silicone_mm: float
-    end_round_mm: float
-    """Rounding of the skin at the gripper end."""
-    wall_gap_mm: float
-    draft_deg: float
-    wall_mm: float
-    """Thickness of its walls, and of its floor, under an insert too."""
-    inserts: tuple[Insert, ...]
-    """The smooth film on its floor; none if the file names none, or there is no room for it."""
-    pads: tuple[Point, ...]
-    """Hard stops on the plate's rim, beside the board."""
-    pad_mm: float
-    letter: Letter
-    """On the outside of the trough's end, which is where it says."""
-    layer_mm: float
-    """Layer thickness of its print: the thickest, up to the printer's own, that divides floor,
-    recess and stops into whole layers."""
-    off_layer_mm: float
-    """From the farthest of them to a whole layer; 0 but where no layer divides all."""
-    silicone: str
-    density_g_ml: float
-    mix_ratio: Point
-    cure_h: float
-    cure_c: float
-    """Temperature to cure at (°C)."""
-    waste_fraction: float
-    inhibited_by: tuple[str, ...]
-    """Substances that keep the silicone from curing."""
-    primer: str
-    """Title of the primer under it; empty without one."""
-    primer_dry_min: float
-    """Time that the primer dries; 0 without one."""
-    tape: str
-    """Title of the tape over windows and holes of the back."""
-    glue_hard_h: float
-    """Time until the glue is hard, where it meets the silicone; else 0."""
-
-    @property
-    def floor_mm(self) -> float:
-        """The silicone's face over the bed: beside an insert, and on it."""
-        return self.wall_mm + sum(insert.thickness_mm for insert in self.inserts)
-
-    def stops_mm(self, cover_mm: float) -> float:
-        """Height of the stops over the bed, by the silicone's cover of the plate."""
-        return self.floor_mm + cover_mm
 
 
 @dataclass(frozen=True)

@@ -178,6 +178,14 @@ class Tip:
     slant_start_y_mm: float
     edge_mm: float
     angle_deg: float
+    slots: tuple[Box, ...] = ()
+    """Where the edge is set back, left and right of the mould's stop: silicone fills them, and
+    wraps the skin round the tip; none where it ends at the edge."""
+
+    @property
+    def slot_mm(self) -> float:
+        """How far the edge is set back; 0 without slots."""
+        return max((slot.length_mm for slot in self.slots), default=0.0)
 
     @property
     def slope(self) -> float:

@@ -8,8 +8,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import asdict
 
 from lumitip_fab.design import Bought, Design, Purchase
-from lumitip_fab.design.clamp import printed_times
 from lumitip_fab.design.making import Filament
+from lumitip_fab.design.mould import printed_times
 from lumitip_fab.design.print_time import print_seconds
 from lumitip_fab.docs.orders import amount, money, order_list
 from lumitip_fab.pipeline.artefact import Artefact, Files
@@ -77,7 +77,7 @@ def materials(design: Design, files: Files) -> Iterator[Bought]:
     for path in (path for kind in kinds for path in files.like(f"{kind}/*.stl")):
         filament = slicing.of(path)
         facts, name = files.facts(path), filament.name
-        number = printed_times(design.clamps, path)
+        number = printed_times(design.round_moulds, path)
         grams = round(number * facts["volume_mm3"] / 1000 * filament.density_g_ml, 2)
         where = f"some {_minutes(facts, filament, design)} min, solid, brim left out"
         where = f"{number} times, each {where}" if number > 1 else where

@@ -146,6 +146,10 @@ def open_back(design: Design, finger: Finger) -> bool:
 def _tried(design: Design) -> str:
     mould, primed = design.mould, design.mould.primer != ""
     beside = ": plate, board and the glue round the board" if design.stack.sunk else ""
+    for _ in design.props:
+        lip_mm = mould.lip_length_mm(design.outline, design.tip)
+        joined = ";" if beside else ":"
+        beside += f"{joined} and the back of the tip, {lip_mm + 1:.0f} mm from its edge"
     first = _text(
         "primed" if primed else "unprimed",
         primer=mould.primer,
@@ -172,26 +176,32 @@ def _filled(design: Design) -> str:
     work = [_text("screwed", clamp=clamp) for clamp in design.clamps]
     work += [_text("weighed"), _text("wetted")]
     work += [_text("laid") for _ in design.mould.inserts]
-    work.append(_text("poured"))
+    stands = [_text("propped", prop=prop) for prop in design.props] or [_text("level")]
+    work.append(f"{stands[0]} {_text('poured')}")
     needs = ["the screws and nuts of the mould, " for _ in design.clamps]
+    needs += [f"`mould/{prop.name}.3mf`, printed, " for prop in design.props]
     needs += ["the smooth film, a plastic card, " for _ in design.mould.inserts]
     numbered = "\n".join(f"{n}. {text}" for n, text in enumerate(work, 1))
     return _text("filled", needs="".join(needs), work=numbered)
 
 
 def _lowered(design: Design) -> str:
-    return _text("lowered", keys=_text("keyed", keys=len(design.keys)) if design.keys else "")
+    keys = _text("keyed", keys=len(design.keys)) if design.keys else ""
+    return _text("lowered", keys=keys, covered=_text("covered") if design.props else "")
 
 
 def _clamped(design: Design) -> str:
     """How the finger is held down; the tip of a plate that bends by tape as well."""
     mould, bends = design.mould, not design.stack.sunk
-    times = {"cure_h": mould.cure_h, "cure_c": mould.cure_c}
+    stands = "on its prop" if mould.props else "level"
+    times = {"cure_h": mould.cure_h, "cure_c": mould.cure_c, "stands": stands}
     tip = _text("tip_taped", tape=mould.tape) if bends else ""
     for clamp in design.clamps:
         pads_n = clamp.pads_n(clamp.thickness_mm)
         tape = f"{mould.tape}, " * bends
-        return _text("clamped", clamp=clamp, pads_n=pads_n, tip_taped=tip, tape=tape, **times)
+        across = ", held across the finger," if mould.props else ""
+        values = {"pads_n": pads_n, "tip_taped": tip, "tape": tape, "across": across}
+        return _text("clamped", clamp=clamp, **values, **times)
     return _text("taped_down", tape=mould.tape, tip_taped=tip, **times)
 
 
@@ -204,6 +214,9 @@ def _out(design: Design) -> str:
         cure_h=mould.cure_h,
         held=" and ".join(held),
         tip_mm=mould.tip_silicone_mm,
+        wrapped=_text("wrapped", lip_mm=mould.lip_length_mm(design.outline, design.tip))
+        if mould.props
+        else "",
         peeled="".join(_text("peeled", insert=insert) for insert in mould.inserts),
         unheld="it was not primed there." if mould.primer else "it was not clean there.",
     )

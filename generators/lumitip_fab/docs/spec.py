@@ -186,7 +186,8 @@ def _of_the_plate(design: Design) -> tuple[Row, ...]:
             over_mm=stack.silicone_mm - part.height_mm,
         )
     ]
-    over += [*_of_the_keys(design), *_of_the_insert(design), *_of_the_clamp(design)]
+    over += [*_of_the_keys(design), *_of_the_wrap(design), *_of_the_insert(design)]
+    over += _of_the_clamp(design)
     if not design.interfaces:
         return (*over, *rows_of("rigid", stack=stack, printing=printing, proud=stack.pcb_mm - 0.8))
     (interface,), holes = design.interfaces, design.receiver.holes
@@ -203,6 +204,15 @@ def _of_the_keys(design: Design) -> Iterator[Row]:
         yield from rows_of("keys", count=len(design.keys), hole_mm=key.hole_mm)
     if not design.keys:
         yield from rows_of("no_keys")
+
+
+def _of_the_wrap(design: Design) -> Iterator[Row]:
+    """The silicone round the tip, or that the skin ends at its edge."""
+    for prop in design.props:
+        length = design.mould.lip_length_mm(design.outline, design.tip)
+        yield from rows_of("wrap", prop=prop, slot_mm=design.tip.slot_mm, length_mm=length)
+    if not design.props:
+        yield from rows_of("no_wrap")
 
 
 def _of_the_insert(design: Design) -> Iterator[Row]:

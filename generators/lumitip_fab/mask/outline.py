@@ -116,6 +116,7 @@ class Finished:
         to_tip = self.outline.tip_y_mm - y_mm
         slant = self.outline.tip_y_mm - self.tip.slant_start_y_mm
         plate = _ramp(to_tip / slant, self.tip.edge_mm, self.stack.plate_mm)
+        plate = max(plate, self.mould.level_mm(y_mm))  # the silicone round the tip
         taper = to_tip / self.mould.taper_length_mm
         return plate + _ramp(taper, self.mould.tip_silicone_mm, self.stack.cover_mm)
 

@@ -8,13 +8,13 @@ from build123d import Face, Plane, Solid, Vector, Wire
 from lumitip_fab.design import Box, Clamp, Design, Mould, Stack
 from lumitip_fab.design.clamp import MARK_MM
 from lumitip_fab.design.frames import clamp_bed_to_sensor
+from lumitip_fab.design.making import FOOT_CHAMFER_MM
 from lumitip_fab.parts import export
 from lumitip_fab.parts.shapes import box_solid, cylinder, one_solid
 from lumitip_fab.pipeline.artefact import Artefact
 
 CHANGED = "mould.wall_mm or the outline"
 """Parameters to change where the kernel fails on mould or clamp."""
-FOOT_CHAMFER_MM = 0.4  # the first layer spreads
 BEYOND_MM = 1.0  # how far a cutter reaches past what it cuts
 
 

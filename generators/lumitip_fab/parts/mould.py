@@ -17,12 +17,12 @@ from lumitip_fab.design import (
     Stack,
 )
 from lumitip_fab.design.frames import mould_bed_to_sensor
-from lumitip_fab.design.making import LEDGE_MM
+from lumitip_fab.design.making import FOOT_CHAMFER_MM, LEDGE_MM
 from lumitip_fab.parts import export, skin
-from lumitip_fab.parts.clamp import CHANGED, FOOT_CHAMFER_MM, rails
+from lumitip_fab.parts.clamp import CHANGED, rails
 from lumitip_fab.parts.letters import letter_cutter
-from lumitip_fab.parts.plate import key_fillings
 from lumitip_fab.parts.shapes import box_face, box_solid, one_solid, side_prism
+from lumitip_fab.parts.wrap import fillings
 from lumitip_fab.pipeline.artefact import Artefact
 
 CHORD_MM = 0.002  # finer than other parts: the draft is measured on walls 1.6 mm high
@@ -39,8 +39,8 @@ def mould_files(design: Design, finger: Finger) -> tuple[Artefact, ...]:
     """The mould of one finger; its facts have the silicone that stays on the finger."""
     stack, outline, mould = design.stack, design.outline, design.mould
     solid = mould_solid(finger, stack, outline, mould, design.clamps)
-    keys = key_fillings(design.keys, stack, outline, design.tip)
-    volume_ml = cast_volume_ml(finger, stack, outline, design.board, mould, keys)
+    filled = fillings(design.keys, stack, outline, design.tip, mould)
+    volume_ml = cast_volume_ml(finger, stack, outline, design.board, mould, filled)
     return export.part_files(
         f"mould/{finger.name}_mould",
         solid,
@@ -56,11 +56,11 @@ def cast_volume_ml(
     outline: Outline,
     board: Board,
     mould: Mould,
-    keys: list[Solid],
+    filled: list[Solid],
 ) -> float:
-    """Silicone that stays on a finger: the cavity to the rim and the keys of the plate, less the
-    parts that dip into it."""
-    cavity = float(skin.silicone_solid(stack, outline, board, mould, keys).volume)
+    """Silicone that stays on a finger: the cavity to the rim, what it fills in the plate and round
+    its tip, less the parts that dip into it."""
+    cavity = float(skin.silicone_solid(stack, outline, board, mould, filled).volume)
     dipped = sum(
         part.size_x_mm * part.size_y_mm * part.height_mm
         for part in finger.parts
@@ -97,7 +97,7 @@ def mould_solid(
         cavity & skin.side_solid(stack, outline, mould),
         _weir(stack, outline, weir_half, outside),
         _trough(stack, mould, catch),
-        _grip(stack, outline, outside),
+        _grip(stack, outline, mould, outside),
         letter_cutter(finger.name, mould.letter, mould_bed_to_sensor(stack, mould)),
         *(_recess(insert, stack) for insert in mould.inserts),
     ]
@@ -161,11 +161,11 @@ def _recess(insert: Insert, stack: Stack) -> Solid:
     return box_solid(insert.recess, floor - stack.cover_mm / 2, floor + insert.thickness_mm)
 
 
-def _grip(stack: Stack, outline: Outline, outside_mm: float) -> Solid:
-    """The gaps in both side walls, as one cutter across the mould."""
-    centre_y = outline.end_y_mm + GRIP_AT * outline.length_mm
-    bottom, over = stack.face_z_mm - GRIP_ABOVE_RIM_MM, stack.back_z_mm
-    half = GRIP_MM / 2
+def _grip(stack: Stack, outline: Outline, mould: Mould, outside_mm: float) -> Solid:
+    """The gaps in both side walls, as one cutter across the mould, above the silicone's level."""
+    centre_y, half = outline.end_y_mm + GRIP_AT * outline.length_mm, GRIP_MM / 2
+    level = mould.level_mm(centre_y + half)
+    bottom, over = stack.face_z_mm - level - GRIP_ABOVE_RIM_MM, stack.back_z_mm
     wider = half + (bottom - over) * math.tan(math.radians(GRIP_SLOPE_DEG))
     far = float(np.abs(outline.polygon()[:, 0]).max()) + outside_mm + BEYOND_MM
     corners = [

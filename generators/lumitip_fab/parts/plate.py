@@ -1,5 +1,7 @@
 """The plate of a finger with the wedge at its tip, and the keys through it that silicone fills."""
 
+from dataclasses import replace
+
 import numpy as np
 from build123d import Plane, Solid
 
@@ -12,7 +14,9 @@ BEYOND_MM = 1.0  # how far a cutter reaches past what it cuts
 def plate_solid(stack: Stack, outline: Outline, tip: Tip) -> Solid:
     """The plate, reaching past the gripper end so that the tilted mount plane cuts it all."""
     plate = _whole(stack, outline)
-    return plate - _tip_cutter(stack, outline, tip) if tip.angle_deg > 0 else plate
+    taken = [_tip_cutter(stack, outline, tip)] if tip.angle_deg > 0 else []
+    taken += [_slot(slot, stack) for slot in tip.slots]
+    return plate - taken if taken else plate
 
 
 def key_cutters(keys: tuple[Key, ...], stack: Stack, tip: Tip) -> list[Solid]:
@@ -42,6 +46,12 @@ def _whole(stack: Stack, outline: Outline) -> Solid:
     foot = Box(-half, half, outline.end_y_mm - BEYOND_MM, outline.end_y_mm)
     plate = shapes.prism(shapes.outline_face(outline), stack.back_z_mm, stack.face_z_mm)
     return plate + shapes.box_solid(foot, stack.back_z_mm, stack.face_z_mm)
+
+
+def _slot(slot: Box, stack: Stack) -> Solid:
+    """What sets the tip edge back."""
+    reaching = replace(slot, y_max_mm=slot.y_max_mm + BEYOND_MM)
+    return shapes.box_solid(reaching, stack.back_z_mm - BEYOND_MM, stack.face_z_mm + BEYOND_MM)
 
 
 def _tip_cutter(stack: Stack, outline: Outline, tip: Tip) -> Solid:

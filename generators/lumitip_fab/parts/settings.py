@@ -1,8 +1,8 @@
 """Settings for PrusaSlicer, one file for each filament and layer, and which part takes which."""
 
 from lumitip_fab.design import Design, Printing
-from lumitip_fab.design.clamp import CLAMPS
 from lumitip_fab.design.making import Filament, Slicing
+from lumitip_fab.design.mould import MOULDS
 from lumitip_fab.design.print_time import BRIM_MM, FIRST_LAYER_MM_S, OUTER_SHARE, PERIMETERS
 from lumitip_fab.pipeline.artefact import Artefact
 from lumitip_fab.text import as_written, data_file, passage
@@ -43,8 +43,8 @@ def _note(design: Design, bends: bool) -> str:
     if bends:
         rows += [(f"interface/{finger}_interface.3mf", standing) for finger in _FINGERS]
     rows += [(f"mould/{finger}_mould.3mf", "open side up") for finger in _FINGERS]
-    prints = f"on its flat back, feet up; print {CLAMPS}"
-    rows += [(clamp.file.replace(".stl", ".3mf"), prints) for clamp in design.clamps]
+    for each, how in ((design.clamps, "on its flat back, feet up"), (design.props, "stop up")):
+        rows += [(part.file.replace(".stl", ".3mf"), f"{how}; print {MOULDS}") for part in each]
     flat = 'on its outer face, for `mask.route = "tpu"`'
     rows += [(f"mask/{name}.3mf", flat) for name in (*(f"{f}_sheet" for f in _FINGERS), "coupon")]
     listed = "\n".join(

@@ -28,16 +28,16 @@ _FAR_MM = 400.0
 
 
 def silicone_solid(
-    stack: Stack, outline: Outline, board: Board, mould: Mould, keys: list[Solid]
+    stack: Stack, outline: Outline, board: Board, mould: Mould, filled: list[Solid]
 ) -> Solid:
     """The silicone of a finger, from the plate to its face, as the mould's stops leave it, with
-    what fills the plate's keys.
+    what fills the plate's keys and the room round its tip.
 
     The parts on the board are still to be taken out of it.
     """
     body = drafted_prism(stack, outline, mould, stack.face_z_mm, _above(stack))
     body = body & side_solid(stack, outline, mould)
-    body = body + keys if keys else body
+    body = body + filled if filled else body
     taken = stops(stack, outline, mould)
     if not stack.sunk:
         taken.append(box_solid(board.box, stack.face_z_mm, stack.rim_z_mm))

@@ -8,9 +8,9 @@ from build123d import Face, Location, Plane, Solid, Vector, Wire
 from lumitip_fab.design import Board, Design, Finger, Part, Point, Stack
 from lumitip_fab.parts import backing as printed
 from lumitip_fab.parts.backing import backing_solid
-from lumitip_fab.parts.plate import key_fillings
 from lumitip_fab.parts.shapes import box_face
 from lumitip_fab.parts.skin import film_solid, silicone_solid
+from lumitip_fab.parts.wrap import fillings
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +51,7 @@ def finger_bodies(design: Design, finger: Finger) -> Bodies:
         interface=held[0] if held else None,
         board=board_solid(finger, stack, board),
         silicone=silicone_solid(
-            stack, outline, board, mould, key_fillings(keys, stack, outline, tip)
+            stack, outline, board, mould, fillings(keys, stack, outline, tip, mould)
         ),
         film=film_solid(stack, outline, mould),
         parts=tuple(part_solid(part, stack) for part in finger.parts),

@@ -44,6 +44,10 @@ class Cast:
     """Tip edge of the plate."""
     films: tuple[Box, ...]
     """Cuts of what lies smooth on the floor."""
+    prop: Mesh | None = None
+    """Under the gripper end, where the mould is tilted."""
+    slope: float = 0.0
+    """What the silicone's level rises for each mm towards the tip."""
 
     def turned(self, names: tuple[str, ...], by_deg: float) -> dict[str, Mesh]:
         """Layers of the finger, turned about its tip edge, the gripper end up."""
@@ -57,8 +61,12 @@ def filled_view(cast: Cast) -> str:
     page = _Page(cast)
     left, low, right, _ = page.cavity.bounds
     page.behind(cast.mould)
-    page.fill(shapely.union(page.cavity, _bulge(left, right, cast.rim_mm)), "silicone")
+    over = _bulge(left, right, cast.rim_mm, cast.slope)
+    page.fill(shapely.union(page.cavity, over - page.mould), "silicone")
     page.fill_mould()
+    if cast.prop is not None:
+        page.fill(cut(cast.prop), "clamp")
+        page.label(("Prop", "its stop at the mould's end"), page.mould.bounds[2] - 1.0, -0.5)
     page.label(
         ("Silicone", "a little over the weir"), (left + right) / 2, cast.rim_mm + BULGE_MM / 2
     )
@@ -203,12 +211,19 @@ class _Page:
         return self._sheet.svg({"data-scale": self.scale})
 
 
-def _bulge(left_mm: float, right_mm: float, rim_mm: float) -> shapely.Geometry:
-    """The silicone over the rim: half an ellipse."""
+def _bulge(left_mm: float, right_mm: float, rim_mm: float, slope: float = 0.0) -> shapely.Geometry:
+    """The silicone over the rim: half an ellipse, on a wedge where its level rises to the left."""
     centre = shapely.Point((left_mm + right_mm) / 2, 0.0)
     ellipse = affinity.scale(centre.buffer(1.0, 32), (right_mm - left_mm) / 2, BULGE_MM)
     above = shapely.box(left_mm, 0.0, right_mm, BULGE_MM)
-    return affinity.translate(shapely.intersection(ellipse, above), 0.0, rim_mm)
+    level = shapely.Polygon(
+        [(left_mm, 0.0), (right_mm, 0.0), (left_mm, slope * (right_mm - left_mm))]
+    )
+    raised = affinity.affine_transform(
+        shapely.intersection(ellipse, above), [1.0, 0.0, -slope, 1.0, 0.0, slope * right_mm]
+    )
+    whole = shapely.union(raised, level) if slope else raised
+    return affinity.translate(whole, 0.0, rim_mm)
 
 
 def _head(line: Points) -> Points:

@@ -71,7 +71,19 @@ def _cast(design: Design, finger: Finger, layers: dict[str, Mesh], files: Files)
         design.mould.stops_mm(design.stack.cover_mm),
         -design.outline.tip_y_mm,
         tuple(_laid(design.mould, insert) for insert in design.mould.inserts),
+        _prop(design, files),
+        design.mould.level_mm(1.0) - design.mould.level_mm(0.0),
     )
+
+
+def _prop(design: Design, files: Files) -> Mesh | None:
+    """The prop as it stands under a mould, in the frame of the mould's bed."""
+    for prop in design.props:
+        edge = frames.translation(0.0, -prop.plate.y_max_mm, 0.0)
+        lower = frames.translation(0.0, 0.0, -prop.height_mm)
+        turn = edge @ frames.rotation_x(-prop.tilt_deg) @ np.linalg.inv(edge)
+        return stl_mesh(files, prop.file).moved(turn @ lower)
+    return None
 
 
 def _laid(mould: Mould, insert: Insert) -> Box:

@@ -100,6 +100,7 @@ def _behind(body: Body, mould: Mould) -> Iterator[Box]:
     yield Box(-half, half, end_y, max(high, end_y)).grown(ROUND_BLOCK_MM)
     yield replace(body.finger.notch, y_min_mm=end_y)
     yield from (Box(x, x, y, y).grown(UNDER_FOOT_MM) for x, y in mould.pads)
+    yield from body.tip.slots
     if stack.sunk:
         yield body.board.pocket
     yield from (interface.groove.grown(ROUND_BLOCK_MM) for interface in body.interfaces)

@@ -18,6 +18,7 @@ from lumitip_fab.config.load import Input
 from lumitip_fab.config.parameters import Parameters
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.stack import is_flex
+from lumitip_fab.derive.finger.tip_slots import derive_slots
 from lumitip_fab.design import Board, Outline, Stack, Tip
 
 START, EDGE, ANGLE = "tip.slant_start_mm", "tip.edge_mm", "tip.angle_deg"
@@ -75,7 +76,9 @@ def derive_tip(
     elif written and abs(angle - float(p.tip.angle_deg)) > ANGLE_OFF_DEG:
         faults.add("tip_angle_differs", start=start, edge=edge, angle=angle, plate=plate)
     faults.unless(written or angle <= 45 + 1e-9, "wedge_steep", angle=angle, least=plate - edge)
-    return Tip(start_y, edge, angle)
+    slope = math.tan(math.radians(angle))
+    slots = derive_slots(config, outline, board, stack, (edge, slope), faults)
+    return Tip(start_y, edge, angle, slots)
 
 
 def _rounded_down(value_mm: float) -> float:

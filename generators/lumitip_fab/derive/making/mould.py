@@ -9,7 +9,8 @@ from lumitip_fab.derive.boards.boards import Plan
 from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.outline import DEPTH_MM, least_letter_mm, letter_on
 from lumitip_fab.derive.making.insert import derive_inserts
-from lumitip_fab.design import Board, Letter, Mould, Outline, Point, Stack
+from lumitip_fab.derive.making.prop import derive_prop
+from lumitip_fab.design import Board, Letter, Mould, Outline, Point, Prop, Stack, Tip
 from lumitip_fab.design.making import LEDGE_MM
 
 PAD_MM = 2.0
@@ -25,7 +26,7 @@ WHOLE_MM = 1e-6
 
 
 def derive_mould(
-    config: Input, outline: Outline, plan: Plan, stack: Stack, faults: Diagnostics
+    config: Input, outline: Outline, plan: Plan, stack: Stack, tip: Tip, faults: Diagnostics
 ) -> Mould:
     """The mould, refused where the silicone cannot be shaped as asked."""
     p = config.parameters
@@ -65,6 +66,8 @@ def derive_mould(
         (p.mould.wall_mm, floor_mm, floor_mm + stack.cover_mm),
         recess_mm,
     )
+    letter = _letter(config, outline, stack, floor_mm, faults)
+    props = (_prop(config, outline, plan, stack, tip, -letter.wall_mm, layer_mm),)
     return Mould(
         taper_length_mm=p.mould.taper_length_mm,
         tip_silicone_mm=p.mould.tip_silicone_mm,
@@ -73,9 +76,10 @@ def derive_mould(
         draft_deg=p.mould.draft_deg,
         wall_mm=p.mould.wall_mm,
         inserts=inserts,
+        props=props if tip.slots else (),
         pads=pads,
         pad_mm=PAD_MM,
-        letter=_letter(config, outline, stack, floor_mm, faults),
+        letter=letter,
         layer_mm=layer_mm,
         off_layer_mm=off_mm,
         silicone=config.title("mould.silicone"),
@@ -138,7 +142,7 @@ def _letter(
 ) -> Letter:
     """On the outside of the trough's end, whose wall is as high as the cavity and its floor."""
     p = config.parameters
-    wall, rise = p.mould.wall_mm, stack.guided_mm * math.tan(math.radians(p.mould.draft_deg))
+    wall = p.mould.wall_mm
     line_mm = config.parts.printer.profile.line_mm
     least = least_letter_mm(line_mm)
     low = max(LETTER_OVER_BED_MM, line_mm)
@@ -151,9 +155,31 @@ def _letter(
         room_mm=high - low,
         wall_mm=wall + least - (high - low),
     )
-    trough_y = outline.end_y_mm - p.mould.wall_gap_mm - rise - wall - LEDGE_MM
-    end_mm = wall + TROUGH_MM - trough_y
+    end_mm = wall + TROUGH_MM - (outline.end_y_mm - _outside_mm(config, stack) - LEDGE_MM)
     return letter_on(low, high, min(DEPTH_MM, wall - p.printer.min_wall_mm), end_mm, line_mm)
+
+
+def _outside_mm(config: Input, stack: Stack) -> float:
+    """From the outline to the outside of the wall, where it ends."""
+    mould = config.parameters.mould
+    rise = stack.guided_mm * math.tan(math.radians(mould.draft_deg))
+    return mould.wall_gap_mm + rise + mould.wall_mm
+
+
+def _prop(
+    config: Input,
+    outline: Outline,
+    plan: Plan,
+    stack: Stack,
+    tip: Tip,
+    end_y_mm: float,
+    layer_mm: float,
+) -> Prop:
+    outside = _outside_mm(config, stack)
+    weir_y, tip_y = outline.end_y_mm - outside - LEDGE_MM, outline.tip_y_mm + outside
+    half = max(finger.notch.x_max_mm for finger in (plan.emitter, plan.receiver))
+    lip = config.parameters.mould.tip_lip_mm
+    return derive_prop(lip, outline, tip, (weir_y, end_y_mm, tip_y), half, layer_mm)
 
 
 def _flat(

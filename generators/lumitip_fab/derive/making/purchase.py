@@ -8,7 +8,7 @@ from lumitip_fab.derive.finger.stack import stiff_mm
 from lumitip_fab.derive.making.supplies import Used
 from lumitip_fab.derive.mount.fasteners import screw_length_mm
 from lumitip_fab.design import Clamp, Flange, Holder, Mount
-from lumitip_fab.design.clamp import CLAMPS
+from lumitip_fab.design.mould import MOULDS
 from lumitip_fab.design.ordering import Bought, Pack, PartPrice, Purchase
 
 
@@ -113,7 +113,7 @@ def _bolts(mount: Mount, packs: Mapping[str, Pack]) -> list[Bought]:
 
 def _of_clamps(clamp: Clamp, packs: Mapping[str, Pack]) -> list[Bought]:
     """Screws of both clamps, each with a nut on the rail and one on the clamp."""
-    thread, count = clamp.screw.name, CLAMPS * len(clamp.screws)
+    thread, count = clamp.screw.name, MOULDS * len(clamp.screws)
     screw, where = (
         f"{thread} x {clamp.screw_length_mm:g} countersunk screw",
         "clamps of both moulds",

@@ -1,0 +1,81 @@
+"""The silicone mould, and what is poured into it."""
+
+from dataclasses import dataclass
+
+from lumitip_fab.design.clamp import Clamp
+from lumitip_fab.design.insert import Insert
+from lumitip_fab.design.making import Letter
+from lumitip_fab.design.prop import Prop
+from lumitip_fab.design.shape import Outline, Point, Tip
+
+MOULDS = 2
+"""To print: both fingers cure at once, each in its own mould, with what holds and tilts it."""
+
+
+@dataclass(frozen=True)
+class Mould:
+    """The silicone mould and what is poured into it."""
+
+    taper_length_mm: float
+    tip_silicone_mm: float
+    end_round_mm: float
+    """Rounding of the skin at the gripper end."""
+    wall_gap_mm: float
+    draft_deg: float
+    wall_mm: float
+    """Thickness of its walls, and of its floor, under an insert too."""
+    inserts: tuple[Insert, ...]
+    """The smooth film on its floor; none if the file names none, or there is no room for it."""
+    props: tuple[Prop, ...]
+    """Tilts it for a skin that is wrapped round the tip; none for another."""
+    pads: tuple[Point, ...]
+    """Hard stops on the plate's rim, beside the board."""
+    pad_mm: float
+    letter: Letter
+    """On the outside of the trough's end, which is where it says."""
+    layer_mm: float
+    """Layer thickness of its print: the thickest, up to the printer's own, that divides floor,
+    recess and stops into whole layers."""
+    off_layer_mm: float
+    """From the farthest of them to a whole layer; 0 but where no layer divides all."""
+    silicone: str
+    density_g_ml: float
+    mix_ratio: Point
+    cure_h: float
+    cure_c: float
+    """Temperature to cure at (°C)."""
+    waste_fraction: float
+    inhibited_by: tuple[str, ...]
+    """Substances that keep the silicone from curing."""
+    primer: str
+    """Title of the primer under it; empty without one."""
+    primer_dry_min: float
+    """Time that the primer dries; 0 without one."""
+    tape: str
+    """Title of the tape over windows and holes of the back."""
+    glue_hard_h: float
+    """Time until the glue is hard, where it meets the silicone; else 0."""
+
+    @property
+    def floor_mm(self) -> float:
+        """The silicone's face over the bed: beside an insert, and on it."""
+        return self.wall_mm + sum(insert.thickness_mm for insert in self.inserts)
+
+    def level_mm(self, y_mm: float) -> float:
+        """Height of the silicone over the rim plane, as the mould stands while it cures."""
+        return sum(prop.level_mm(y_mm) for prop in self.props)
+
+    def lip_length_mm(self, outline: Outline, tip: Tip) -> float:
+        """From the tip edge to where the silicone's level meets the back of the plate."""
+        rise = self.level_mm(1.0) - self.level_mm(0.0) + tip.slope
+        over = self.level_mm(outline.tip_y_mm) - tip.edge_mm
+        return over / rise if self.props else 0.0
+
+    def stops_mm(self, cover_mm: float) -> float:
+        """Height of the stops over the bed, by the silicone's cover of the plate."""
+        return self.floor_mm + cover_mm
+
+
+def printed_times(round_moulds: tuple[Clamp | Prop, ...], path: str) -> int:
+    """How often a part is printed for a pair of fingers, by the path of its STL."""
+    return MOULDS if path in {part.file for part in round_moulds} else 1

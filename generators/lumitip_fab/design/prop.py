@@ -1,0 +1,45 @@
+"""The prop under the gripper end of a mould, by which the silicone stands higher at the tip."""
+
+import math
+from dataclasses import dataclass
+
+from lumitip_fab.design.shape import Box
+
+
+@dataclass(frozen=True)
+class Prop:
+    """A strip with a stop, alike for both fingers. Side view, the mould open side up:
+
+            weir                            tip
+        ──╮      ╭ ─ ─ ─ level ─ ─ ─ ─ ─ ─ ─ ─ ─ ╮
+        │ ╰──────╯                               │
+        ├────────────────────────────────────────┘ bed of the mould
+      ┌─┤─────┐
+      └───────┘ prop
+
+    Surplus leaves over the weir, whose height is that of the rim plane: so the tilt alone sets how
+    high the silicone stands at the tip.
+    """
+
+    name: str
+    plate: Box
+    """Under the mould, in the sensor frame."""
+    height_mm: float
+    stop: Box
+    """Behind the mould's end."""
+    stop_mm: float
+    """Height of the stop over the plate."""
+    tilt_deg: float
+    lip_mm: float
+    """Silicone on the back of the plate where its edge is set back, at least."""
+    weir_y_mm: float
+    """Where the surplus leaves: the outer edge of the weir."""
+
+    @property
+    def file(self) -> str:
+        """Path of its STL below the output folder."""
+        return f"mould/{self.name}.stl"
+
+    def level_mm(self, y_mm: float) -> float:
+        """Height of the silicone over the rim plane."""
+        return (y_mm - self.weir_y_mm) * math.tan(math.radians(self.tilt_deg))
