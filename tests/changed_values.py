@@ -139,6 +139,7 @@ CHANGES: dict[str, Any] = {
     "mould.insert": "PET 100um",
     "mould.taper_length_mm": 2.9,
     "mould.tip_silicone_mm": 0.3,
+    "mould.tip_lip_mm": 0.3,
     "mould.wall_gap_mm": 0.2,
     "mould.draft_deg": 4.0,
     "mould.wall_mm": 2.6,

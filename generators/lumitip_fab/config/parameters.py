@@ -227,8 +227,8 @@ class Mould(Strict):
     tip_silicone_mm: float = Field(ge=0.05, le=5)
     """Silicone left at the tip edge (mm)."""
     tip_lip_mm: float = Field(ge=0, le=2)
-    """Silicone on the back of the tip edge, at least: the skin is wrapped round the tip. 0: it ends
-    at the edge (mm)."""
+    """Silicone on the back of the tip edge, at least: the skin is wrapped round the tip, where
+    plate and mould have room. 0: it ends at the edge (mm)."""
     wall_gap_mm: float = Field(ge=0.12, le=0.28)
     """Gap between the plate's rim and the mould's wall (mm)."""
     draft_deg: float = Field(ge=2, le=20)

@@ -99,7 +99,8 @@ def lifted_view(cast: Cast) -> str:
     page.fill_all({name: cut(mesh) for name, mesh in layers.items()})
     page.turn(LIFTED_DEG, LIFTED_DEG + _ARC_DEG)
     page.label(("Gripper end", "first, until air is under it"), page.cavity.bounds[2] - 2.0, 4.0)
-    page.label(("Tip edge", "last: its silicone is thin"), cast.tip_y_mm + 0.5, cast.rim_mm)
+    last = "its silicone is thin" if cast.prop is None else "the skin goes round it"
+    page.label(("Tip edge", f"last: {last}"), cast.tip_y_mm + 0.5, cast.rim_mm)
     return page.svg()
 
 

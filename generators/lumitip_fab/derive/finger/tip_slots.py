@@ -1,7 +1,6 @@
 """Slots in the tip edge: they are filled with silicone, which wraps the skin round the tip."""
 
 from lumitip_fab.config.load import Input
-from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.design import Board, Box, Outline, Stack
 from lumitip_fab.design.making import TIP_LAND_FRACTION
 
@@ -10,7 +9,6 @@ FROM_STOP_MM = 0.5  # to the mould's stop
 FROM_END_MM = 0.8  # to the end of the straight edge
 LEAST_WIDTH_MM = 2.0
 OVER_LEVEL_MM = 0.3  # of the mould's wall, which holds the silicone
-FIELD = "mould.tip_lip_mm"
 
 
 def derive_slots(
@@ -19,7 +17,6 @@ def derive_slots(
     board: Board,
     stack: Stack,
     edge: tuple[float, float],
-    faults: Diagnostics,
 ) -> tuple[Box, ...]:
     """The slots, left and right; none where the file wants none, or where there is no room.
 
@@ -29,7 +26,6 @@ def derive_slots(
         board: whose pocket they must not meet.
         stack: for the height of the mould's wall.
         edge: thickness of the tip edge (mm), and what it gains for each mm away from it.
-        faults: where to refuse a lip that the file asks for and that has no room.
     """
     p = config.parameters
     lip, (edge_mm, slope) = p.mould.tip_lip_mm, edge
@@ -43,7 +39,5 @@ def derive_slots(
     most = stack.guided_mm - OVER_LEVEL_MM - layer - edge_mm - SLOT_MM * slope
     fits = outer - inner >= LEAST_WIDTH_MM and ahead >= p.printer.min_wall_mm
     if not fits or lip > most + 1e-9:
-        asked = FIELD not in config.automatic
-        faults.unless(not asked, "tip_lip_no_room", most=max(most, 0.0) if fits else 0.0)
         return ()
     return Box(-outer, -inner, low, high), Box(inner, outer, low, high)
