@@ -81,7 +81,7 @@ def casting_steps(design: Design, fingers: tuple[Finger, ...], weighed: str = ""
     return [
         _drawn("board", "Put the board in", _held(design, fingers), _board_caption(design)),
         *smooth,
-        WorkStep("Try the silicone", _tried(design)),
+        _drawn("drop", "Try the silicone", _tried(design), "Where the drop goes"),
         _drawn("filled", "Fill the mould", filled, "The mould, cut along its middle"),
         _drawn(
             "lowered",

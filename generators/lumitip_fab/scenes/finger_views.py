@@ -38,14 +38,13 @@ def board_view(finger: Finger, layers: Mapping[str, Mesh], parts: Sequence[Mesh]
     sheet, eye = Sheet(), view(AZIMUTH_DEG, ELEVATION_DEG).enlarged(SCALE)
     raised = frames.translation(0.0, 0.0, RAISED_MM)
     lower = {name: layers[name] for name in ("interface", "backing") if name in layers}
-    _paint(sheet, eye, lower)
+    paint(sheet, eye, lower)
     board = layers["board"]
     top_mm, low_mm = float(board.points_mm[:, 2].max()), float(board.points_mm[:, 2].min())
     ways = [np.array([(x, y, low_mm), (x, y, top_mm + RAISED_MM)]) for x, y in finger.holes]
     sheet.lines([eye.seen(way)[:, :2] for way in ways], "axis")
-    _paint(sheet, eye, {"board": board.moved(raised)})
-    for part in sorted((part.moved(raised) for part in parts), key=lambda m: _near(m, eye)):
-        sheet.area(silhouette(part, eye), "part", "#fff")
+    paint(sheet, eye, {"board": board.moved(raised)})
+    paint_parts(sheet, eye, [part.moved(raised) for part in parts])
     return sheet.svg(_ANGLES)
 
 
@@ -67,10 +66,10 @@ def cable_view(
     """
     sheet, eye = Sheet(), view(AZIMUTH_DEG, ELEVATION_DEG).enlarged(SCALE)
     behind = {name: mesh.moved(_BEHIND) for name, mesh in layers.items()}
-    _paint(sheet, eye, {"board": behind["board"]})
+    paint(sheet, eye, {"board": behind["board"]})
     hidden, open_ways = _wires(finger, mount, stack, len(colours))
     _lay(sheet, eye, colours, hidden)
-    _paint(sheet, eye, {k: behind[k] for k in ("backing", "interface") if k in behind})
+    paint(sheet, eye, {k: behind[k] for k in ("backing", "interface") if k in behind})
     _lay(sheet, eye, colours, open_ways)
     labels = [(("Wires", "through the notch, under the block"), open_ways[0][0])]
     if mount.lugs:
@@ -91,7 +90,7 @@ def folded_view(layers: Mapping[str, Mesh], flaps: Sequence[Mapping[str, Any]]) 
     """
     sheet = Sheet()
     seen = {name: layers[name] for name in ("backing", "interface") if name in layers}
-    _paint(sheet, _PLAN, {name: mesh.moved(_BEHIND) for name, mesh in seen.items()})
+    paint(sheet, _PLAN, {name: mesh.moved(_BEHIND) for name, mesh in seen.items()})
     laid = sorted((f for f in flaps if f["on_back"]), key=lambda flap: int(flap["number"]))
     areas = [shapely.Polygon(np.array(f["on_back"]) * (-PLAN_SCALE, PLAN_SCALE)) for f in laid]
     for area in areas:
@@ -103,13 +102,19 @@ def folded_view(layers: Mapping[str, Mesh], flaps: Sequence[Mapping[str, Any]]) 
     return sheet.svg({"data-scale": PLAN_SCALE})
 
 
-def _paint(sheet: Sheet, eye: View, bodies: Mapping[str, Mesh]) -> None:
+def paint(sheet: Sheet, eye: View, bodies: Mapping[str, Mesh]) -> None:
     """Bodies from the farthest to the nearest, in this order, with the lines that are seen."""
     lines = visible_lines(list(bodies.values()), eye)
     for (name, mesh), found in zip(bodies.items(), lines, strict=True):
         with sheet.group(name):
             sheet.area(silhouette(mesh, eye), "body", tints()[name])
             sheet.lines(found, "line")
+
+
+def paint_parts(sheet: Sheet, eye: View, parts: Sequence[Mesh]) -> None:
+    """Parts of a board, the nearest last."""
+    for part in sorted(parts, key=lambda mesh: _near(mesh, eye)):
+        sheet.area(silhouette(part, eye), "part", "#fff")
 
 
 def _near(mesh: Mesh, eye: View) -> float:

@@ -1,13 +1,15 @@
 """The drawings of the manual's steps, from the parts as they were written."""
 
 import io
+import math
 
 import numpy as np
 import trimesh
 
-from lumitip_fab.design import Box, Design, Finger, Insert, Mould, frames
+from lumitip_fab.design import Box, Design, Finger, Insert, Mould, Point, frames
 from lumitip_fab.parts.surface import Mesh
 from lumitip_fab.pipeline.artefact import Artefact, Files
+from lumitip_fab.scenes.bench_views import drop_view, facing_view
 from lumitip_fab.scenes.casting_views import (
     Cast,
     clamped_view,
@@ -19,6 +21,8 @@ from lumitip_fab.scenes.finger_views import board_view, cable_view, folded_view
 from lumitip_fab.scenes.glb import Group
 from lumitip_fab.scenes.system import finger_group, stl_mesh
 
+OFF_MM = 3.5  # from keys and stops to where a drop of silicone is tried
+
 
 def work_views(design: Design, files: Files) -> tuple[Artefact, ...]:
     """A drawing of each step of the work that a picture explains. Where both fingers are made alike
@@ -29,8 +33,11 @@ def work_views(design: Design, files: Files) -> tuple[Artefact, ...]:
     finger, wired = design.emitter, design.receiver
     cast = _cast(design, finger, layers[finger.name], files)
     clamp = design.clamps[0] if design.clamps else None
+    boards = {f.name: (layers[f.name]["board"], _front(groups[f.name], f)) for f in design.fingers}
     drawings = {
-        "board": board_view(finger, layers[finger.name], _front(groups[finger.name], finger)),
+        "facing": facing_view(boards[finger.name], boards[wired.name]),
+        "board": board_view(finger, layers[finger.name], boards[finger.name][1]),
+        "drop": drop_view(layers[finger.name], _bare_spot(design), design.stack),
         "cable": cable_view(
             wired, layers[wired.name], _colours(design, wired), design.mount, design.stack
         ),
@@ -90,6 +97,18 @@ def _laid(mould: Mould, insert: Insert) -> Box:
     """A film on the floor, along the mould and up from its bed; the mould's y is -y."""
     box = insert.box
     return Box(-box.y_max_mm, -box.y_min_mm, mould.floor_mm - insert.thickness_mm, mould.floor_mm)
+
+
+def _bare_spot(design: Design) -> Point:
+    """Where the plate beside the board is widest, off its keys and the mould's stops."""
+    inner, outline = design.board.pocket.x_max_mm, design.outline
+    taken = [key.at for key in design.keys] + list(design.mould.pads)
+    found = []
+    for y in np.linspace(design.board.box.y_min_mm, design.board.box.y_max_mm, 81).tolist():
+        at = (inner + outline.half_width_at(y)) / 2, y
+        off = min(math.dist(at, other) for other in taken)
+        found.append((min(off, OFF_MM), at[0], y))
+    return max(found)[1:]
 
 
 def _to_bed(design: Design) -> frames.Matrix:
