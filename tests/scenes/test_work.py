@@ -23,6 +23,7 @@ from lumitip_fab.scenes.cut import cut, rings_of
 from lumitip_fab.scenes.drawing import silhouette, view
 from lumitip_fab.scenes.finger_views import cable_view
 from lumitip_fab.scenes.system import block, finger_group, socket
+from lumitip_fab.scenes.work import bare_spot
 
 SVG = "{http://www.w3.org/2000/svg}"
 PRESETS = [
@@ -68,7 +69,35 @@ def test_the_cut_mould_is_to_scale_and_full_to_its_rim(folder: Path) -> None:
     assert area_mm2(root, "mould") == pytest.approx(sliced_mm2(mould), rel=0.01)
     length_mm = design.outline.tip_y_mm - design.outline.end_y_mm
     below = length_mm * design.stack.cover_mm
-    assert 0.9 * below < area_mm2(root, "silicone") < below + 1.3 * length_mm
+    raised = design.mould.level_mm(design.outline.tip_y_mm) * length_mm / 2
+    bulge = area_mm2(root, "silicone") - below - raised
+    assert -0.1 * below < bulge < 1.3 * length_mm
+
+
+def test_a_tilted_mould_lies_on_its_prop(folder: Path) -> None:
+    design, root = read_design(folder / "design.json"), drawn(folder, "filled")
+    for prop in design.props:
+        mm2 = prop.plate.length_mm * prop.height_mm + prop.stop.length_mm * prop.stop_mm
+        assert area_mm2(root, "clamp") == pytest.approx(mm2, rel=0.02)
+    words = {text.text for text in root.iter(f"{SVG}text")}
+    assert ("Prop" in words) == bool(design.props)
+
+
+def test_boards_face_each_other_with_all_their_parts(folder: Path) -> None:
+    design, root = read_design(folder / "design.json"), drawn(folder, "facing")
+    parts = [p for finger in design.fingers for p in finger.parts if p.side == "front"]
+    white = [p for p in root.iter(f"{SVG}path") if p.attrib.get("fill") == "#fff"]
+    assert len(white) == len(parts)
+
+
+def test_the_drop_is_on_the_bare_plate(folder: Path) -> None:
+    design = read_design(folder / "design.json")
+    x, y = bare_spot(design)
+    pocket = design.board.pocket
+    assert pocket.x_max_mm < x < design.outline.half_width_at(y)
+    taken = [key.at for key in design.keys] + list(design.mould.pads)
+    assert min(np.hypot(x - a, y - b) for a, b in taken) > 2.5
+    assert "Drop" in {text.text for text in drawn(folder, "drop").iter(f"{SVG}text")}
 
 
 def test_the_finger_goes_in_and_comes_out_as_it_is(folder: Path) -> None:

@@ -37,7 +37,7 @@ def work_views(design: Design, files: Files) -> tuple[Artefact, ...]:
     drawings = {
         "facing": facing_view(boards[finger.name], boards[wired.name]),
         "board": board_view(finger, layers[finger.name], boards[finger.name][1]),
-        "drop": drop_view(layers[finger.name], _bare_spot(design), design.stack),
+        "drop": drop_view(layers[finger.name], bare_spot(design), design.stack),
         "cable": cable_view(
             wired, layers[wired.name], _colours(design, wired), design.mount, design.stack
         ),
@@ -99,7 +99,7 @@ def _laid(mould: Mould, insert: Insert) -> Box:
     return Box(-box.y_max_mm, -box.y_min_mm, mould.floor_mm - insert.thickness_mm, mould.floor_mm)
 
 
-def _bare_spot(design: Design) -> Point:
+def bare_spot(design: Design) -> Point:
     """Where the plate beside the board is widest, off its keys and the mould's stops."""
     inner, outline = design.board.pocket.x_max_mm, design.outline
     taken = [key.at for key in design.keys] + list(design.mould.pads)
