@@ -2,6 +2,7 @@
 
 import json
 import math
+import sys
 from pathlib import Path
 
 import matplotlib as mpl
@@ -19,6 +20,13 @@ from lumitip.twin.fit import fit_edge
 from lumitip.twin.materials import MATERIALS, MEASURED_GAP_MM
 
 ROOT = Path(__file__).parents[1]
+sys.path.insert(0, str(ROOT / "benchmarks"))
+
+from bench_real_misfit import KEPT_SD  # noqa: E402
+from real_fit import NAMES, RealFit, Shared  # noqa: E402
+from real_frames import real_frame as frame_of  # noqa: E402
+from real_terms import MADE, PLAIN, RealTwin  # noqa: E402
+
 IMAGES = ROOT / "docs/images"
 REAL_FRAMES = ROOT / "tests/readout/published_frames.json"
 WIDTHS_MM = {2.0: 1.3, 3.0: 1.9, 6.0: 4.5}
@@ -38,6 +46,7 @@ def main() -> None:
     materials(layout)
     edges(layout)
     real_frame(layout)
+    real_frames(layout)
     scenes(layout)
 
 
@@ -104,6 +113,29 @@ def real_frame(layout: Layout) -> None:
     hexagons(parts[2], layout, left, f"difference, {fitted.rms:.1f} counts rms", "PuOr", (-40, 40))
     save(figure, "twin_real_frame.png")
     print({name: round(value, 4) for name, value in fitted.numbers.items()}, round(fitted.rms, 2))
+
+
+def real_frames(layout: Layout) -> None:
+    """The three published frames, the twin with hem, bend and gains learned from the two other
+    frames, and what remains."""
+    fit = RealFit(RealTwin(layout))
+    starts = {name: PLAIN[name] | MADE.get(name, {}) for name in NAMES}
+    own = {name: fit.alone(name, starts[name], fit.nothing).own[name] for name in NAMES}
+    found = fit.held_out(own, {}, KEPT_SD)
+    figure, rows = plt.subplots(3, 3, figsize=(8.4, 7.2), layout="constrained")
+    for axes, name in zip(rows, NAMES, strict=True):
+        shared = Shared({}, found[name][1].gains)
+        numbers = fit.alone(name, own[name], shared).own[name]
+        fitted = fit.values(name, numbers, shared)
+        real = frame_of(name)
+        title = name.replace("_", " ")
+        many = f"twin, {len(numbers)} numbers and gains"
+        left = fitted - real
+        counts = f"difference, {math.sqrt(np.mean(left**2)):.1f} counts rms"
+        hexagons(axes[0], layout, real, f"{title} (hardware)")
+        hexagons(axes[1], layout, fitted, many)
+        hexagons(axes[2], layout, left, counts, "PuOr", (-40, 40))
+    save(figure, "twin_real_frames.png")
 
 
 def scenes(layout: Layout) -> None:
