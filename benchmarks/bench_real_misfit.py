@@ -50,7 +50,7 @@ class Row:
             " ".join(f"{of[name]:6.1f}" for name in NAMES) for of in (self.within, self.held_out)
         )
         verdict = "" if self is before else "all three" if self.lowers_all(before) else "-"
-        return f"  {self.name:<44}{self.shared:>4}  {both}   {verdict}"
+        return f"  {self.name:<50}{self.shared:>4}  {both}   {verdict}"
 
 
 class Table:

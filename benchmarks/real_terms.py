@@ -50,6 +50,9 @@ TERMS: dict[str, Numbers] = {
     "ambient light": {"ambient": 0.02},
     "slope of the light": {"slope_x": 0.0, "slope_y": 0.0},
     "gap of the calibration": {"calibration_gap_mm": 4.0},
+    "blur and floor": {"blur": 0.05, "floor": 0.05},
+    "crosstalk and saturation": {"crosstalk": 1.3, "gain": 0.95},
+    "crosstalk, saturation and scattered share": {"crosstalk": 1.3, "gain": 0.95, "alpha": 0.6},
 }
 """Candidates: shared numbers, where their fit starts."""
 LIMITS = {
