@@ -15,6 +15,7 @@ from lumitip_fab.design import Design, Finger
 from lumitip_fab.design.frames import mount_to_sensor
 
 POISSON = 0.35
+SPREAD_MM = 2.0  # round the place of a force, as silicone spreads it
 OFF_MM = 1e-3  # of a brick's middle from where faces of the mesh lie
 
 
@@ -27,7 +28,7 @@ class Bent:
     moved_mm: Any
     """Shape `(3, n)`."""
     tip_mm: float
-    """Deflection of that line towards the back."""
+    """Deflection of that line, or place, towards the back."""
 
     def front_strain(self, x_mm: float, y_mm: Any, front_z_mm: float, over_mm: float) -> Any:
         """Strain along the front at some y, over a length."""
@@ -38,6 +39,17 @@ class Bent:
         along, moved = self.nodes_mm[1, line], self.moved_mm[1, line]
         ends = [np.interp(y_mm + side * over_mm / 2, along, moved) for side in (-1, 1)]
         return (ends[1] - ends[0]) / over_mm
+
+    def turned(self, half_mm: float, y_mm: Any, low_z_mm: float) -> Any:
+        """Turn about the finger's axis at some y, of what lies within a half width in front of a
+        z."""
+        x, y, z = self.nodes_mm
+        found = []
+        for level in y_mm:
+            near = (z > low_z_mm) & (x > OFF_MM) & (x < half_mm)
+            near &= np.abs(y - y[np.abs(y - level).argmin()]) < OFF_MM
+            found.append(-(self.moved_mm[2, near] @ x[near]) / (x[near] @ x[near]))
+        return np.array(found)
 
     def pulled(self, x_mm: float, low_y_mm: float, high_y_mm: float) -> float:
         """Greatest strain along the finger in each section, on average between two y."""
@@ -57,8 +69,23 @@ def _apart(values: Any) -> Any:
     return np.unique(values.round(6))
 
 
-def bent(outputs: Path, design: Design, finger: Finger, step_mm: tuple[float, ...]) -> Bent:
-    """Solve it, clamped in the mount plane."""
+def bent(
+    outputs: Path,
+    design: Design,
+    finger: Finger,
+    step_mm: tuple[float, ...],
+    twisted_at_mm: tuple[float, float] | None = None,
+) -> Bent:
+    """Solve it, clamped in the mount plane.
+
+    Args:
+        outputs: the output folder.
+        design: for frames, load and materials.
+        finger: whose parts they are.
+        step_mm: size of the bricks.
+        twisted_at_mm: x and y of the force's place; half of it there, and half of it the other way
+            on the other side, which twists the finger and does not bend it. None: the tip.
+    """
     mesh, moduli = _bricks(outputs, design, finger, step_mm)
     basis = skfem.Basis(mesh, skfem.ElementVector(skfem.ElementHex1()), intorder=2)
     constant = basis.with_element(skfem.ElementHex0())
@@ -72,8 +99,13 @@ def bent(outputs: Path, design: Design, finger: Finger, step_mm: tuple[float, ..
     height = to_mount[2, :3] @ mesh.p + to_mount[2, 3]
     base = np.flatnonzero(block & (height < step_mm[1] / 2))  # bricks follow the plane in steps
     line = np.flatnonzero((np.abs(y - touch) < OFF_MM) & (np.abs(z - rim) < OFF_MM))
+    middle = [0]
+    if twisted_at_mm is not None:
+        away = np.hypot(x - twisted_at_mm[0], y - twisted_at_mm[1])
+        line, middle = np.flatnonzero((away < SPREAD_MM) & (np.abs(z - rim) < OFF_MM)), [1, 2]
     of = basis.nodal_dofs
-    fixed = np.unique(np.concatenate([of[:, base].ravel(), of[0, np.flatnonzero(x < OFF_MM)]]))
+    plane = of[middle][:, np.flatnonzero(x < OFF_MM)]
+    fixed = np.unique(np.concatenate([of[:, base].ravel(), plane.ravel()]))
     force = np.zeros(basis.N)
     force[of[2, line]] = -design.strength.rated_force_n / 2 / len(line)
     free = np.setdiff1d(np.arange(basis.N), fixed)

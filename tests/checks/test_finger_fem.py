@@ -13,6 +13,7 @@ from lumitip_fab.derive import derive
 from lumitip_fab.design.beam import Layer, Vectors
 from lumitip_fab.design.encoding import read_design
 from lumitip_fab.design.frames import mount_to_sensor
+from lumitip_fab.design.torsion import torsion
 from printed_fingers import written
 
 pytestmark = pytest.mark.slow
@@ -20,6 +21,9 @@ BRICK_MM = (1.2, 0.8, 0.3)
 WITHIN = 0.2
 ON_THE_SAFE_SIDE = 1.3  # at most, times the strain of the board's front by finite elements
 OVER_MM = 4.0
+OVERTURNED = 1.75
+"""At most, the twist at the outermost cells over that by finite elements: the plate is short and
+wide, and as stiff in its plane as the block holds it."""
 
 
 @pytest.mark.parametrize("preset", ["published", "franka_hand", "wsg50"])
@@ -51,3 +55,27 @@ def test_beam_and_finite_elements_agree(preset: str, tmp_path: Path, design_dir:
     front = [solved.front_strain(x, flare, stack.rim_z_mm, OVER_MM) for x in places]
     overrated = float(beam(of.board, flare).mean()) / float(np.mean(front))
     assert 1.0 <= overrated <= ON_THE_SAFE_SIDE
+
+
+@pytest.mark.parametrize("preset", ["published", "wsg50"])
+def test_twist_and_finite_elements_agree(preset: str, tmp_path: Path, design_dir: Path) -> None:
+    """Turn about the axis by the rated force on the outermost cells: within the flare, and at those
+    cells, where the beam overrates it."""
+    made = derive(load(design_dir / "presets" / f"{preset}.toml"))
+    out = written(made, made, tmp_path / preset)
+    design = read_design(out / "design.json")
+    finger, mount, stack = design.receiver, design.mount, design.stack
+    x, y = max(((abs(x), y) for x, y in finger.cells), key=lambda at: (round(at[0], 3), at[1]))
+    solved = bent(out, design, finger, BRICK_MM, (x, y))
+    ramp_y = mount.ramp_end_y_mm(stack.back_z_mm, stack.rim_z_mm)
+    flare = np.arange(ramp_y, ramp_y + mount.flare_mm / 2, STEP_MM)
+    by_elements = solved.turned(mount.block_width_mm / 2, flare, stack.pocket_z_mm)
+    to_mount = np.linalg.inv(mount_to_sensor(mount, stack))
+    tip = to_mount @ (0.0, design.closing.contact_y_mm, stack.rim_z_mm, 1.0)
+    of = loaded(out, design, finger, to_mount, float(tip[2]))
+    along = (flare - mount.origin_y_mm) * math.cos(math.radians(mount.tilt_deg))
+    torque = design.strength.rated_force_n * x
+    by_beam = of.beam.summed(torque / torsion(of.beam).stiffness_nmm2, along)
+    assert by_beam == pytest.approx(by_elements, rel=WITHIN)
+    at_cells = math.degrees(solved.tip_mm / x)
+    assert 1.0 <= finger_loads(out, design, finger).twist_deg / at_cells <= OVERTURNED

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 import trimesh
 
@@ -15,6 +16,7 @@ from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
 from lumitip_fab.design.encoding import read_design
+from lumitip_fab.design.frames import backing_bed_to_sensor
 from printed_fingers import written
 
 PART = "backing/receiver_backing.stl"
@@ -32,6 +34,12 @@ def fingers(
 def failed(out: Path) -> set[str]:
     """Names of the checks that fail."""
     return {m.check for m in measure(out, read_design(out / "design.json")) if not m.passed}
+
+
+def figures(out: Path) -> dict[str, float]:
+    """Measured figures of the damaged finger."""
+    found = measure(out, read_design(out / "design.json"))
+    return {m.check: float(m.measured) for m in found if m.subject == PART}
 
 
 def test_both_kinds_of_finger_bear_their_load(fingers: Path) -> None:
@@ -92,6 +100,21 @@ def test_light_leaves_the_apertures_of_a_finger_that_bends_far(
 ) -> None:
     strong = replace(published, strength=replace(published.strength, rated_force_n=400.0))
     assert "strength.light_path" in failed(written(strong, published, tmp_path / "bent"))
+
+
+def test_a_plate_with_a_neck_twists_and_shades(fingers: Path, tmp_path: Path) -> None:
+    """Saw cuts from both sides, between interface and tip; a rigid finger has its board there."""
+    out = Path(shutil.copytree(fingers, tmp_path / "neck"))
+    design, before = read_design(out / "design.json"), figures(out)["strength.twist"]
+    to_sensor = backing_bed_to_sensor(design.mount, design.stack)
+    whole = trimesh.load(out / PART, force="mesh").apply_transform(to_sensor)
+    for side in (-1, 1):
+        away = trimesh.creation.box((30.0, 8.0, 30.0)).apply_translation((side * 20.0, 6.0, 0.0))
+        whole = trimesh.boolean.difference([whole, away], engine="manifold")
+    whole.apply_transform(np.linalg.inv(to_sensor)).export(out / PART)
+    compliant = bool(design.interfaces)
+    assert figures(out)["strength.twist"] > (1.3 if compliant else 1.02) * before
+    assert ("strength.light_path" in failed(out)) == compliant
 
 
 def test_a_missing_part_is_named(fingers: Path, tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -39,6 +40,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
 def _limits(subject: str, found: Loads, design: Design) -> Iterator[Measurement]:
     limit = design.strength
     load = f"{limit.rated_force_n:g} N where the fingers touch first; an estimate"
+    aside = f"{limit.rated_force_n:g} N on the cells {found.aside_mm:.1f} mm beside the middle"
     most_mm = limit.offset_share * design.mask.hole_mm / 2
     at = f"{found.layers_h_mm:.0f} mm over the mount plane, {load}"
     for check, value, low, high, unit, note in (
@@ -47,6 +49,7 @@ def _limits(subject: str, found: Loads, design: Design) -> Iterator[Measurement]
         ("board", 100 * found.board_strain, 0.0, 100 * limit.board_strain, "%", f"strain, {load}"),
         ("bend", found.bend_mm, 0.0, limit.most_bend_mm, "mm", load),
         ("light_path", found.offset_mm, 0.0, most_mm, "mm", f"off an aperture's middle, {load}"),
+        ("twist", found.twist_deg, 0.0, math.inf, "°", f"{aside}; for information"),
         ("without_glue", found.bare_n, 0.0, math.inf, "N", "layers part; for information"),
     ):
         yield Measurement(f"strength.{check}", subject, value, low, high, unit, note)
@@ -61,11 +64,11 @@ def finger_loads(outputs: Path, design: Design, finger: Finger) -> Loads:
     to_mount = np.linalg.inv(mount_to_sensor(design.mount, design.stack))
     inverse = np.asarray(to_mount, dtype=np.float64)
     tip = inverse @ (0.0, design.closing.contact_y_mm, design.stack.rim_z_mm, 1.0)
-    cells = [inverse @ (0.0, y, design.stack.rim_z_mm, 1.0) for _, y in finger.cells]
+    cells = [inverse @ (x, y, design.stack.rim_z_mm, 1.0) for x, y in finger.cells]
     optics = design.layout.optics
     depth = max(optics.emitter_depth_mm, optics.detector_depth_mm)
     found = loaded(outputs, design, finger, inverse, float(tip[2]))
-    return loads(found, design.strength, np.array([cell[2] for cell in cells]), depth)
+    return loads(found, design.strength, np.array(cells)[:, [0, 2]], depth)
 
 
 def loaded(
@@ -88,32 +91,42 @@ def loaded(
     along = design.mount.origin_y_mm + h / math.cos(math.radians(design.mount.tilt_deg))
     planes = list(zip(h, along, reached_mm(design.mount, plate, h), strict=True))
     cuts = [_borne(section(mesh, z), y, w, design) for z, y, w in planes]
-    printed = [(_layer(cuts, limit.backing_mpa), slicing.backing.layer_mpa)]
+    half = design.mount.block_width_mm / 2
+    printed = [(_layer(cuts, limit.backing_mpa, half), slicing.backing.layer_mpa)]
     notch_y = finger.notch.y_max_mm if stack.sunk else -math.inf
     box, pocket = design.board.box, design.board.pocket
     blocks = board_blocks(pocket, box, notch_y, design.mount, stack.pcb_mm, h)
-    board = rectangles(limit.board_mpa, blocks, glued=stack.sunk)
+    board = rectangles(limit.board_mpa, half, blocks, glued=stack.sunk)
     glued, glue = board, _width(cuts, design, h) * (board.area_mm2 > 0)
     if design.interfaces:
         mesh = solids.read_mesh(outputs / f"interface/{finger.name}_interface.stl")
         backs = [_borne(section(mesh, z), y, w, design) for z, y, w in planes]
-        printed.append((_layer(backs, limit.rigid_mpa), slicing.rigid.layer_mpa))
+        printed.append((_layer(backs, limit.rigid_mpa, half), slicing.rigid.layer_mpa))
         glued = printed[0][0]
         glue = np.array([np.ptp(b.bounds[::2]) if not b.is_empty else 0.0 for b in backs])
-    beam = Beam(h, tip_h_mm, (*(layer for layer, _ in printed), board))
+    face = to_mount @ (0.0, design.closing.contact_y_mm, 0.0, 1.0)
+    beam = Beam(h, tip_h_mm, (*(layer for layer, _ in printed), board), float(face[1]))
     return Loaded(beam, tuple(printed), board, glued, glue)
 
 
-def _layer(cuts: list[Any], modulus_mpa: float) -> Layer:
-    """A printed part's sections as a layer."""
+def _layer(cuts: list[Any], modulus_mpa: float, half_mm: float) -> Layer:
+    """A printed part's sections as a layer, and its strips within the block's width and beside."""
+    far, strips = _FAR_MM, []
+    within = [shapely.clip_by_rect(cut, -half_mm, -far, half_mm, far) for cut in cuts]
+    for strip in (within, [cut.difference(core) for cut, core in zip(cuts, within, strict=True)]):
+        strips.append(_summed(strip, modulus_mpa))
+    return replace(_summed(cuts, modulus_mpa), strips=tuple(strips))
+
+
+def _summed(cuts: list[Any], modulus_mpa: float) -> Layer:
     rows = []
     for cut in cuts:
         area, (_, w), inertia = moments(cut)
         bounds = (math.nan,) * 4 if cut.is_empty else cut.bounds
         around = inertia[0, 0], inertia[1, 1] + area * w * w
-        rows.append((area, area * w, around[1], around[0], bounds[1], max(-bounds[0], bounds[2])))
-    area, first, second, side, front, half = np.nan_to_num(np.array(rows)).T
-    return Layer(modulus_mpa, area, first, second, side, front, half)
+        half = max(-bounds[0], bounds[2])
+        rows.append((area, area * w, around[1], around[0], bounds[1], bounds[3], half))
+    return Layer(modulus_mpa, *np.nan_to_num(np.array(rows)).T)
 
 
 def _width(cuts: list[Any], design: Design, h_mm: Vectors) -> Vectors:

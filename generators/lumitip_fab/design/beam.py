@@ -7,7 +7,7 @@ follows Euler and Bernoulli: sections stay plane, layers that are glued to each 
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,10 +32,14 @@ class Layer:
     """Second moment about u = 0."""
     front_mm: Vectors
     """Least w."""
+    back_mm: Vectors
+    """Greatest w."""
     half_mm: Vectors
     """Greatest distance from u = 0."""
     glued: bool = True
     """Whether it does not slip on the others."""
+    strips: "tuple[Layer, ...]" = ()
+    """What of it lies within the width of the coupling's block, and what beside it."""
 
     @property
     def middle_mm(self) -> Vectors:
@@ -57,23 +61,42 @@ section; where it is not, it has no height."""
 
 
 def rectangles(
-    modulus_mpa: float, blocks: Sequence[Block], taken: Sequence[Block] = (), glued: bool = True
+    modulus_mpa: float,
+    core_mm: float,
+    blocks: Sequence[Block],
+    taken: Sequence[Block] = (),
+    glued: bool = True,
 ) -> Layer:
     """A layer of rectangles.
 
     Args:
         modulus_mpa: of its material.
+        core_mm: half width of the coupling's block.
         blocks: that do not overlap.
         taken: cut from these.
         glued: whether it does not slip.
     """
     sign = np.array([1.0] * len(blocks) + [-1.0] * len(taken))[:, None]
     inner, outer, front, back = (np.array(s) for s in zip(*blocks, *taken, strict=True))
+    strips = (
+        _summed(modulus_mpa, sign, (*sides, front, back), glued)
+        for sides in (
+            (np.minimum(inner, core_mm), np.minimum(outer, core_mm)),
+            (np.maximum(inner, core_mm), np.maximum(outer, core_mm)),
+        )
+    )
+    whole = _summed(modulus_mpa, sign, (inner, outer, front, back), glued)
+    return replace(whole, strips=tuple(strips))
+
+
+def _summed(modulus_mpa: float, sign: Vectors, sides: Block, glued: bool) -> Layer:
+    inner, outer, front, back = sides
     there = (back > front) & (outer > inner)
     wide = np.where(there, 2 * sign * (outer - inner), 0.0)
     cubed = np.where(there, 2 / 3 * sign * (outer**3 - inner**3), 0.0)
     kept = there & (sign > 0)
     front_mm = np.where(kept, front, np.inf).min(axis=0)
+    back_mm = np.where(kept, back, -np.inf).max(axis=0)
     return Layer(
         modulus_mpa,
         (wide * (back - front)).sum(axis=0),
@@ -81,6 +104,7 @@ def rectangles(
         (wide * (back**3 - front**3) / 3).sum(axis=0),
         (cubed * (back - front)).sum(axis=0),
         np.where(np.isfinite(front_mm), front_mm, 0.0),
+        np.where(np.isfinite(back_mm), back_mm, 0.0),
         np.where(kept, outer, 0.0).max(axis=0),
         glued,
     )
@@ -141,10 +165,12 @@ class Beam:
     """Ascending."""
     tip_h_mm: float
     layers: tuple[Layer, ...]
+    tip_w_mm: float = 0.0
+    """w of the gripping face there."""
 
     def alone(self, *layers: Layer) -> "Beam":
         """Some layers without the others."""
-        return Beam(self.h_mm, self.tip_h_mm, layers)
+        return replace(self, layers=layers)
 
     @property
     def arm_mm(self) -> Vectors:
@@ -189,6 +215,13 @@ class Beam:
         """Force along the finger that a layer holds by 1 N at the tip, towards the back."""
         pull = layer.modulus_mpa * layer.area_mm2 * np.abs(self.middle_mm - layer.middle_mm)
         return np.asarray(pull * self.arm_mm / self.stiffness_nmm2)
+
+    def summed(self, per_mm: Vectors, at_h_mm: Vectors) -> Vectors:
+        """What a figure of a unit of length comes to, from the mount plane to heights."""
+        h = np.concatenate([[0.0], self.h_mm])
+        each = np.concatenate([[per_mm[0]], per_mm])
+        steps = (each[1:] + each[:-1]) / 2 * np.diff(h)
+        return np.asarray(np.interp(at_h_mm, h, np.concatenate([[0.0], np.cumsum(steps)])))
 
     def bent(self, stiffness_nmm2: Vectors, at_h_mm: Vectors) -> tuple[Vectors, Vectors]:
         """Deflection (mm) and slope (radians) at heights by 1 N at the tip."""

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from lumitip_fab.design.mount import Fastener
 from lumitip_fab.design.shape import Box, Point
+from lumitip_fab.design.torsion import SHEAR
 
 MARK_MM = 0.4
 """Depth of a mark: a V-groove, twice as high as deep."""
@@ -11,8 +12,6 @@ QUARTER_TURN = 0.25
 """Of both nuts, after all feet touch."""
 PITCH_MM = 0.5
 """Of an M3 thread, coarse by ISO 261."""
-_SHEAR = 1 / 2.7
-"""Shear modulus by Young's modulus, of Poisson's ratio 0.35 (assumed)."""
 
 
 @dataclass(frozen=True)
@@ -100,7 +99,7 @@ class Clamp:
         ahead, behind = (1 - self.pads_share) * self.span_mm, self.pads_share * self.span_mm
         bent = ahead**2 * behind**2 / (3 * stiff * arm.width_mm * self.span_mm)
         reached = over**3 / (3 * stiff * lug.length_mm)
-        twist = self.modulus_mpa * _SHEAR * torsion_mm4(arm.width_mm, thickness_mm)
+        twist = self.modulus_mpa * SHEAR * torsion_mm4(arm.width_mm, thickness_mm)
         twisted = over**2 * ahead * behind / (self.span_mm * twist)
         inner = self.feet[3].centre_mm[0]
         reach = middle - inner

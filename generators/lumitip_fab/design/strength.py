@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lumitip_fab.design.beam import Beam, Layer, Vectors
+from lumitip_fab.design.torsion import SHEAR, torsion
 
 
 @dataclass(frozen=True)
@@ -44,7 +45,7 @@ class Loads:
     """Figures of a finger under its rated force; lengths in mm."""
 
     layers_mpa: float
-    """Greatest tension from layer to layer of printed parts."""
+    """Greatest principal tension from layer to layer of printed parts, by bending and twist."""
     layers_h_mm: float
     """Where: over the mount plane."""
     safety: float
@@ -60,6 +61,10 @@ class Loads:
     """Deflection of the tip sideways."""
     lean_deg: float
     """Slope at the cell nearest to the tip."""
+    aside_mm: float
+    """How far from the middle a thing may be grasped: at the outermost cells."""
+    twist_deg: float
+    """Turn about the finger's axis at those cells, by the rated force on them."""
     offset_mm: float
     """Greatest distance of the path from LED to detector from the middle of an aperture."""
 
@@ -78,43 +83,96 @@ class Loaded:
     """Width of the glue in each section, 0 where there is none."""
 
 
-def loads(of: Loaded, strength: Strength, cells_h_mm: Vectors, depth_mm: float) -> Loads:
+def loads(of: Loaded, strength: Strength, cells_mm: Vectors, depth_mm: float) -> Loads:
     """What the rated force does to a finger.
+
+    Towards the back it acts in the middle of the tip, or as far aside as the outermost cells and as
+    high as the highest: what lies farther out is not felt. There it bends less, and twists.
 
     Args:
         of: its layers.
         strength: load and materials.
-        cells_h_mm: heights of the cells over the mount plane.
+        cells_mm: u of the cells, and their heights over the mount plane; shape `(n, 2)`.
         depth_mm: of the dies of LED and detector below the mask, the deeper one.
     """
     force, beam = strength.rated_force_n, of.beam
+    aside, across = _turned(beam, cells_mm)
     parts = [
-        (np.maximum(beam.tension_mpa(layer), beam.side_tension_mpa(layer)) * force, limit)
-        for layer, limit in of.printed
+        (_tension_mpa(beam, layer, aside, across) * force, limit) for layer, limit in of.printed
     ]
     if not np.all(sum((layer.area_mm2 for layer, _ in of.printed), np.zeros(1))):
         parts = [(np.full_like(beam.h_mm, np.inf), limit) for _, limit in of.printed]
     worst, limit = max(parts, key=lambda part: float(part[0].max()) / part[1])
     bare = beam.alone(*(layer for layer, _ in of.printed))
-    alone = min(limit / float(bare.tension_mpa(layer).max()) for layer, limit in of.printed)
+    alone = _turned(bare, cells_mm)
+    bare_n = min(
+        limit / float(_tension_mpa(bare, layer, *alone).max()) for layer, limit in of.printed
+    )
     strain = beam.tension_mpa(of.board) * force / of.board.modulus_mpa
-    back, lean = beam.bent(beam.stiffness_nmm2, np.append(cells_h_mm, beam.tip_h_mm))
-    side, _ = beam.bent(beam.side_stiffness_nmm2, np.append(cells_h_mm, beam.tip_h_mm))
-    # Fingers that bend back alike stay mirror images: a path crosses each mask off its middle by
-    # the lean. Pulled sideways they move apart, and it crosses both masks half way.
-    offset = depth_mm * np.tan(lean[:-1] * force) + side[:-1] * force
+    cells_h = cells_mm[:, 1]
+    back, lean = beam.bent(beam.stiffness_nmm2, np.append(cells_h, beam.tip_h_mm))
+    side, _ = beam.bent(beam.side_stiffness_nmm2, np.append(cells_h, beam.tip_h_mm))
+    turn = beam.summed(aside.twist, cells_h)
+    # Fingers that bend and twist alike stay mirror images: a path crosses each mask off its middle
+    # by lean and turn. Pulled sideways they move apart, and it crosses both masks half way.
+    swung = beam.summed(across.twist * across.lever_mm, cells_h)
+    offset = np.hypot(depth_mm * lean[:-1], depth_mm * turn + side[:-1] + swung) * force
     return Loads(
         layers_mpa=float(worst.max()),
         layers_h_mm=float(beam.h_mm[worst.argmax()]),
         safety=limit / max(float(worst.max()), 1e-9),
-        bare_n=alone,
+        bare_n=bare_n,
         board_strain=float(strain.max()),
         glue_mpa=_glue_mpa(of, strength),
         bend_mm=float(back[-1]) * force,
         side_mm=float(side[-1]) * force,
         lean_deg=math.degrees(float(lean[:-1].max()) * force),
+        aside_mm=float(aside.lever_mm.max()),
+        twist_deg=math.degrees(float(turn.max()) * force),
         offset_mm=float(offset.max()),
     )
+
+
+@dataclass(frozen=True, eq=False)
+class _Turned:
+    """Twist by 1 N that acts beside the sections' middle."""
+
+    arm_mm: Vectors
+    """Distance of each section from the force that bends it."""
+    lever_mm: Vectors
+    twist: Vectors
+    """Of a unit of length."""
+    reach_mm: tuple[Vectors, ...]
+    """For the shear strain in each layer of the beam."""
+
+
+def _turned(beam: Beam, cells_mm: Vectors) -> tuple[_Turned, _Turned]:
+    """Towards the back on the outermost cells, and sideways on the gripping face at the tip.
+    Silicone passes the force to the plate up to the highest cells, where the plate is whole."""
+    found, top = torsion(beam), float(cells_mm[:, 1].max())
+    under = beam.h_mm <= top
+    out = np.where(under, float(np.abs(cells_mm[:, 0]).max()), 0.0)
+    across = np.where(under, np.abs(beam.middle_mm - beam.tip_w_mm), 0.0)
+    arm, stiff = np.maximum(top - beam.h_mm, 0.0), found.stiffness_nmm2
+    return (
+        _Turned(arm, out, out / stiff, found.reach_mm),
+        _Turned(beam.arm_mm, across, across / stiff, found.reach_mm),
+    )
+
+
+def _tension_mpa(beam: Beam, layer: Layer, aside: _Turned, across: _Turned) -> Vectors:
+    """Greatest principal tension in a layer by 1 N: towards the back in the middle of the tip or on
+    the outermost cells, or sideways. Where a section bends most and where it twists most is taken
+    to be one place."""
+    of = next(k for k, each in enumerate(beam.layers) if each is layer)
+    shear = SHEAR * layer.modulus_mpa
+    back, side = beam.tension_mpa(layer), beam.side_tension_mpa(layer)
+    lower = back * aside.arm_mm / np.maximum(beam.arm_mm, 1e-9)
+    twisted = (
+        pulled / 2 + np.hypot(pulled / 2, shear * case.reach_mm[of] * case.twist)
+        for pulled, case in ((lower, aside), (side, across))
+    )
+    return np.maximum(back, np.maximum(*twisted))
 
 
 def _glue_mpa(of: Loaded, strength: Strength) -> float:

@@ -114,7 +114,7 @@ def _limits(config: Input, body: Body) -> Strength:
 
 def _uses(body: Body, limit: Strength, optics: Optics) -> Iterator[_Use]:
     """Every rule, with what the rated force makes of it."""
-    cells = np.array([y for _, y in body.finger.cells]) - body.mount.origin_y_mm
+    cells = np.array(body.finger.cells) - (0.0, body.mount.origin_y_mm)
     depth = max(optics.emitter_depth_mm, optics.detector_depth_mm)
     found = loads(_loaded(body, limit), limit, cells, depth)
     for rule, figure, most in (
@@ -133,21 +133,23 @@ def _loaded(body: Body, limit: Strength) -> Loaded:
     """The finger's layers as rectangles."""
     stack, mount, box, pocket = body.stack, body.mount, body.board.box, body.board.pocket
     tip_h = body.closing.contact_y_mm - mount.origin_y_mm
+    tip_w = stack.rim_z_mm - tip_h * math.tan(math.radians(mount.tilt_deg))
     h = np.arange(STEP_MM, tip_h, STEP_MM)
     at = _Planes(body, h)
     notch_y = body.finger.notch.y_max_mm if stack.sunk else -math.inf
     cut = board_blocks(pocket, box, notch_y, mount, stack.pcb_mm, h)
-    board = rectangles(limit.board_mpa, cut, glued=stack.sunk)
+    core = mount.block_width_mm / 2
+    board = rectangles(limit.board_mpa, core, cut, glued=stack.sunk)
     blocks, taken = _held(body, at)
     front = at.front + stack.pcb_mm
     if body.interfaces:
         (interface,) = body.interfaces
-        plate = rectangles(limit.backing_mpa, [(at.notch, at.half, front, at.back)])
-        rigid = rectangles(limit.rigid_mpa, blocks, taken)
+        plate = rectangles(limit.backing_mpa, core, [(at.notch, at.half, front, at.back)])
+        rigid = rectangles(limit.rigid_mpa, core, blocks, taken)
         width = np.where(at.y < interface.box.y_max_mm, 2 * interface.box.x_max_mm, 0.0)
         strong = body.slicing.backing.layer_mpa, body.slicing.rigid.layer_mpa
         printed = (plate, strong[0]), (rigid, strong[1])
-        return Loaded(Beam(h, tip_h, (plate, rigid, board)), printed, board, plate, width)
+        return Loaded(Beam(h, tip_h, (plate, rigid, board), tip_w), printed, board, plate, width)
     held = at.notch == 0  # the plate's legs beside the notch bear nothing
     inside = (at.y > pocket.y_min_mm) & (at.y < pocket.y_max_mm)
     rims = np.where(inside, pocket.x_max_mm, at.notch)
@@ -155,10 +157,10 @@ def _loaded(body: Body, limit: Strength) -> Loaded:
         (rims, at.half * held, at.front, np.minimum(front, at.back)),
         (at.notch, at.half * held, front, at.back),
     ]
-    whole = rectangles(limit.backing_mpa, blocks, taken)
+    whole = rectangles(limit.backing_mpa, core, blocks, taken)
     width = 2 * (box.x_max_mm - at.notch) * (board.area_mm2 > 0)
     strength = ((whole, body.slicing.backing.layer_mpa),)
-    return Loaded(Beam(h, tip_h, (whole, board)), strength, board, board, width)
+    return Loaded(Beam(h, tip_h, (whole, board), tip_w), strength, board, board, width)
 
 
 class _Planes:
