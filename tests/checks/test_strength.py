@@ -16,7 +16,7 @@ from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
 from lumitip_fab.design.encoding import read_design
-from lumitip_fab.design.frames import backing_bed_to_sensor
+from lumitip_fab.design.frames import backing_bed_to_sensor, mount_to_sensor
 from printed_fingers import written
 
 PART = "backing/receiver_backing.stl"
@@ -92,6 +92,34 @@ def test_a_cut_is_found(
     whole = trimesh.load(out / PART, force="mesh")
     away = trimesh.creation.box(size_mm).apply_translation(at_mm)
     trimesh.boolean.difference([whole, away], engine="manifold").export(out / PART)
+    assert check in failed(out)
+
+
+@pytest.mark.parametrize(
+    ("check", "diameter_mm", "low_mm", "high_mm"),
+    [
+        ("strength.bolt_head", 8.0, -1.0, 6.0),  # a drill for the head went through the land
+        ("strength.bolt_seat", 8.9, -1.0, 3.0),  # a recess in the foot leaves a thin land
+    ],
+)
+def test_a_weak_seat_of_a_bolt_is_found(
+    check: str,
+    diameter_mm: float,
+    low_mm: float,
+    high_mm: float,
+    published: Design,
+    tmp_path: Path,
+) -> None:
+    out = written(published, published, tmp_path / "drilled")
+    mount, stack = published.mount, published.stack
+    bed_to_mount = np.linalg.inv(mount_to_sensor(mount, stack)) @ backing_bed_to_sensor(
+        mount, stack
+    )
+    whole = trimesh.load(out / PART, force="mesh").apply_transform(bed_to_mount)
+    away = trimesh.creation.cylinder(diameter_mm / 2, high_mm - low_mm)
+    away.apply_translation((mount.bolt_u_mm[0], mount.bolt_w_mm, (low_mm + high_mm) / 2))
+    drilled = trimesh.boolean.difference([whole, away], engine="manifold")
+    drilled.apply_transform(np.linalg.inv(bed_to_mount)).export(out / PART)
     assert check in failed(out)
 
 

@@ -39,6 +39,9 @@ def test_a_force_that_is_not_borne_is_refused_with_one_that_is(file: Any) -> Non
     (remedy,) = plan_of(refused.value.verdict).steps[0].remedies
     assert remedy.field == "finger.rated_force_n"
     assert 30 < float(str(remedy.value)) < 50
+    words = str(refused.value)
+    assert "plastic under the bolts' heads bears" in words
+    assert "land round the bolts' heads bears" in words
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import shapely
 
+from lumitip_fab.checks.bolt_seat import measure_seats
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.readers.solids import Vectors, moments, section
 from lumitip_fab.checks.result import Measurement, unreadable
@@ -31,10 +32,12 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
         subject = f"backing/{finger.name}_backing.stl"
         try:
             found = finger_loads(outputs, design, finger)
+            seats = list(measure_seats(outputs, design, finger))
         except OutputError as error:
             yield unreadable("strength.readable", subject, str(error))
             continue
         yield from _limits(subject, found, design)
+        yield from seats
 
 
 def _limits(subject: str, found: Loads, design: Design) -> Iterator[Measurement]:

@@ -27,6 +27,7 @@ from lumitip_fab.design import (
     Tip,
 )
 from lumitip_fab.design.beam import Beam, Block, Vectors, board_blocks, reached_mm, rectangles
+from lumitip_fab.design.seat import designed_foot, designed_seat, pull_n
 from lumitip_fab.design.strength import Loaded, Strength, loads
 
 SAFETY = 1.4  # of an estimate that no test stands behind, of a known force, with layers taken weak
@@ -77,7 +78,7 @@ def derive_strength(config: Input, body: Body, optics: Optics, faults: Diagnosti
         faults: where to refuse.
     """
     strength, force = _limits(config, body), config.parameters.finger.rated_force_n
-    uses = list(_uses(body, strength, optics))
+    uses = list(_uses(config, body, strength, optics))
     borne = math.floor(10 * force / max(use.share for use in uses)) / 10
     for use in uses:
         if use.share > 1:
@@ -90,7 +91,7 @@ def derive_strength(config: Input, body: Body, optics: Optics, faults: Diagnosti
 def borne_n(config: Input, body: Body, optics: Optics) -> float:
     """The greatest force that keeps every limit: stress and bend grow with it."""
     limit = _limits(config, body)
-    return limit.rated_force_n / max(use.share for use in _uses(body, limit, optics))
+    return limit.rated_force_n / max(use.share for use in _uses(config, body, limit, optics))
 
 
 def _limits(config: Input, body: Body) -> Strength:
@@ -112,7 +113,7 @@ def _limits(config: Input, body: Body) -> Strength:
     )
 
 
-def _uses(body: Body, limit: Strength, optics: Optics) -> Iterator[_Use]:
+def _uses(config: Input, body: Body, limit: Strength, optics: Optics) -> Iterator[_Use]:
     """Every rule, with what the rated force makes of it."""
     cells = np.array(body.finger.cells) - (0.0, body.mount.origin_y_mm)
     depth = max(optics.emitter_depth_mm, optics.detector_depth_mm)
@@ -125,7 +126,17 @@ def _uses(body: Body, limit: Strength, optics: Optics) -> Iterator[_Use]:
         yield _Use(rule, figure, most / RESERVE, figure * RESERVE / most)
     least = limit.safety * RESERVE
     glue = limit.glue_mpa / max(found.glue_mpa, 1e-9)
-    for rule, safety in (("finger_parts", found.safety), ("finger_comes_unglued", glue)):
+    head = config.catalogue.fasteners[body.mount.bolt].cap_head_mm
+    arm = body.closing.contact_y_mm - body.mount.origin_y_mm
+    pull = pull_n(limit.rated_force_n, arm, body.mount, designed_foot(body.mount))
+    seat = designed_seat(body.mount, head, pull)
+    filament = body.slicing.rigid if body.interfaces else body.slicing.backing
+    for rule, safety in (
+        ("finger_parts", found.safety),
+        ("finger_comes_unglued", glue),
+        ("finger_sinks_heads", filament.bearing_mpa / seat.bearing_mpa),
+        ("finger_shears_land", filament.layer_mpa / seat.shear_mpa),
+    ):
         yield _Use(rule, safety, least, least / max(safety, 1e-9))
 
 
