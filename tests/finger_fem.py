@@ -1,4 +1,5 @@
-"""Finite elements of a finger: bricks that fill its written backing and the board in its pocket."""
+"""Finite elements of a finger: bricks that fill its written backing and the board in its pocket, or
+the plate and the interface of a compliant one."""
 
 from dataclasses import dataclass
 from itertools import pairwise
@@ -12,7 +13,7 @@ from skfem.helpers import ddot, sym_grad, trace
 
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.design import Design, Finger
-from lumitip_fab.design.frames import mount_to_sensor
+from lumitip_fab.design.frames import backing_bed_to_sensor, mount_to_sensor
 
 POISSON = 0.35
 SPREAD_MM = 2.0  # round the place of a force, as silicone spreads it
@@ -92,7 +93,7 @@ def bent(
     lam = constant.interpolate(moduli * POISSON / ((1 + POISSON) * (1 - 2 * POISSON)))
     mu = constant.interpolate(moduli / (2 * (1 + POISSON)))
     stiffness = _elastic.assemble(basis, lam=lam, mu=mu)
-    touch, rim = design.closing.contact_y_mm, design.stack.rim_z_mm
+    touch, rim = design.closing.contact_y_mm, design.stack.face_z_mm
     x, y, z = mesh.p
     block = (x < design.mount.block_width_mm / 2) & (z < design.stack.back_z_mm - OFF_MM)
     to_mount = np.linalg.inv(mount_to_sensor(design.mount, design.stack))
@@ -129,15 +130,18 @@ def _elastic(u: Any, v: Any, w: Any) -> Any:
 def _bricks(
     outputs: Path, design: Design, finger: Finger, step_mm: tuple[float, ...]
 ) -> tuple[Any, Any]:
-    """Bricks whose middle lies in the backing, or in the pocket with the board, and their moduli.
+    """Bricks whose middle lies in the finger, and their moduli.
 
     Along z whole bricks fill board and floor."""
-    stack, pocket = design.stack, design.board.pocket
-    part = solids.read_mesh(outputs / f"backing/{finger.name}_backing.stl")
-    part = solids.moved(part, mount_to_sensor(design.mount, stack))
-    (_, low, deep), (half, _, _) = part.bounds
-    touch = design.closing.contact_y_mm
-    planes = (stack.rim_z_mm, stack.pocket_z_mm, stack.back_z_mm)
+    stack, touch = design.stack, design.closing.contact_y_mm
+    backing = solids.read_mesh(outputs / f"backing/{finger.name}_backing.stl")
+    parts = [solids.moved(backing, backing_bed_to_sensor(design.mount, stack))]
+    for _ in design.interfaces:
+        held = solids.read_mesh(outputs / f"interface/{finger.name}_interface.stl")
+        parts.append(solids.moved(held, mount_to_sensor(design.mount, stack)))
+    low, deep = np.min([part.bounds[0, 1:] for part in parts], axis=0)
+    half = max(part.bounds[1, 0] for part in parts)
+    planes = [stack.face_z_mm, *([stack.pocket_z_mm] if stack.sunk else []), stack.back_z_mm]
     through = [np.linspace(a, b, 1 + round((a - b) / step_mm[2])) for a, b in pairwise(planes)]
     below = stack.back_z_mm - deep + step_mm[2]
     axes = [
@@ -147,12 +151,32 @@ def _bricks(
     ]
     mesh = skfem.MeshHex.init_tensor(*axes)
     middle = mesh.p[:, mesh.t].mean(axis=1).T + OFF_MM
-    printed = solids.inside(part, middle)
-    x, y, z = middle.T
-    board = (x < pocket.x_max_mm) & (y > pocket.y_min_mm) & (y < pocket.y_max_mm)
-    board &= z > stack.pocket_z_mm
-    slit = (x < pocket.x_max_mm) & (y > pocket.y_max_mm) & (z > stack.pocket_z_mm)
-    slit &= y < pocket.y_max_mm + design.board.roof_mm  # full of glue
-    limit, kept = design.strength, np.flatnonzero(printed | board | slit)
-    moduli = np.where(board, limit.board_mpa, limit.backing_mpa)[kept]
+    within = [solids.inside(part, middle) for part in parts]
+    soft, stiff = _rigid(design, middle) if stack.sunk else _compliant(design, middle)
+    within[0] |= soft
+    hard = stiff if stack.sunk else within[1]
+    limit, kept = design.strength, np.flatnonzero(np.any([*within, stiff], axis=0))
+    hard_mpa = limit.board_mpa if stack.sunk else limit.rigid_mpa
+    moduli = np.where(hard, hard_mpa, limit.backing_mpa)[kept]
     return mesh.restrict(kept), moduli
+
+
+def _rigid(design: Design, middle_mm: Any) -> tuple[Any, Any]:
+    """Bricks of the glue in the slit at the board's end, and of the board."""
+    stack, pocket = design.stack, design.board.pocket
+    x, y, z = middle_mm.T
+    across = (x < pocket.x_max_mm) & (z > stack.pocket_z_mm)
+    slit = across & (y > pocket.y_max_mm) & (y < pocket.y_max_mm + design.board.roof_mm)
+    return slit, across & (y > pocket.y_min_mm) & (y < pocket.y_max_mm)
+
+
+def _compliant(design: Design, middle_mm: Any) -> tuple[Any, Any]:
+    """Bricks of the glue round the interface's rim; none of the board, which slips on the plate."""
+    (interface,), back = design.interfaces, design.stack.back_z_mm
+    groove, (x, y, z) = interface.groove, middle_mm.T
+    glue = (z > back) & (z < back + interface.groove_depth_mm)
+    glue &= (x < groove.x_max_mm) & (y < groove.y_max_mm)
+    inner = (x < groove.x_max_mm - interface.groove_mm) & (
+        y < groove.y_max_mm - interface.groove_mm
+    )
+    return glue & ~inner, np.zeros(len(middle_mm), dtype=bool)

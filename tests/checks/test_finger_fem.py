@@ -1,4 +1,4 @@
-"""Beam figures of a finger against finite elements on its written backing."""
+"""Beam figures of a finger against finite elements on its written parts."""
 
 import math
 from pathlib import Path
@@ -18,6 +18,8 @@ from printed_fingers import written
 
 pytestmark = pytest.mark.slow
 BRICK_MM = (1.2, 0.8, 0.3)
+COMPLIANT_BRICK_MM = (1.5, 0.8, 0.4)
+BESIDE_MM = 1.0  # the interface's end, before its corner gathers the stress
 WITHIN = 0.2
 ON_THE_SAFE_SIDE = 1.3  # at most, times the strain of the board's front by finite elements
 OVER_MM = 4.0
@@ -79,3 +81,32 @@ def test_twist_and_finite_elements_agree(preset: str, tmp_path: Path, design_dir
     assert by_beam == pytest.approx(by_elements, rel=WITHIN)
     at_cells = math.degrees(solved.tip_mm / x)
     assert 1.0 <= finger_loads(out, design, finger).twist_deg / at_cells <= OVERTURNED
+
+
+def test_a_compliant_finger_and_finite_elements_agree(tmp_path: Path, design_dir: Path) -> None:
+    """Deflection of the tip; tension of the plate, from the interface to the wedge, by the strain
+    of its front; twist at the outermost cells, which the beam overrates. The board, which slips and
+    has 1 % of the plate's stiffness, is left out of the elements. Both are linear."""
+    made = derive(load(design_dir / "presets" / "flex.toml"))
+    out = written(made, made, tmp_path / "flex")
+    design = read_design(out / "design.json")
+    finger, mount, stack = design.receiver, design.mount, design.stack
+    solved = bent(out, design, finger, COMPLIANT_BRICK_MM)
+    found = finger_loads(out, design, finger)
+    assert found.bend_mm == pytest.approx(solved.tip_mm, rel=WITHIN)
+    to_mount = np.linalg.inv(mount_to_sensor(mount, stack))
+    tip = to_mount @ (0.0, design.closing.contact_y_mm, stack.rim_z_mm, 1.0)
+    of = loaded(out, design, finger, to_mount, float(tip[2]))
+    (interface,), plate = design.interfaces, of.printed[0][0]
+    ends = interface.box.y_max_mm + BESIDE_MM, design.tip.slant_start_y_mm
+    free = np.arange(ends[0] + OVER_MM / 2, ends[1], STEP_MM)
+    along = (free - mount.origin_y_mm) * math.cos(math.radians(mount.tilt_deg))
+    tension = of.beam.tension_mpa(plate) * design.strength.rated_force_n
+    by_beam = np.interp(along, of.beam.h_mm, tension) / plate.modulus_mpa
+    places = (0.0, 6.0, 12.0, 18.0)
+    front = [solved.front_strain(x, free, stack.face_z_mm, OVER_MM) for x in places]
+    assert float(by_beam.mean()) == pytest.approx(float(np.mean(front)), rel=WITHIN)
+    outermost = max(((abs(x), y) for x, y in finger.cells), key=lambda at: (round(at[0], 3), at[1]))
+    twisted = bent(out, design, finger, COMPLIANT_BRICK_MM, outermost)
+    at_cells = math.degrees(twisted.tip_mm / outermost[0])
+    assert 1.0 <= found.twist_deg / at_cells <= OVERTURNED
