@@ -20,6 +20,7 @@ LONGEST = (
     "acceptance/test_cases.py",
     "boards/test_kicad.py",
     "checks/test_grippers.py",
+    "checks/test_finger_fem.py",
     "checks/test_unusual.py",
     "checks/test_patches.py",
     "checks/test_presets.py",
