@@ -101,6 +101,16 @@ def test_the_interface_of_a_compliant_finger_holds_its_multiplexers(
         assert part.box.y_max_mm < bend.y_min_mm
 
 
+@pytest.mark.parametrize(("rows", "channel_mm"), [(7, "4.0"), (9, "5.0")])
+def test_a_board_that_bends_has_a_channel_to_sort_its_lines(
+    file: Any, rows: int, channel_mm: str
+) -> None:
+    bends = '[backing]\nvariant = "flex"\nmaterial = "TPU 95A"\n[stack]\npcb_mm = 0.17\nfloor_mm = 2.5\n'
+    design = derive(load(file(f"[grid]\ncolumns = {[rows] * 8}\n{bends}")))
+    chosen = {choice.field: choice.value for choice in design.choices}
+    assert chosen["board.channel_mm"] == channel_mm
+
+
 def test_a_wide_corner_leaves_a_wall_beside_the_groove(file: Any) -> None:
     outline = "[outline]\nshoulder_margin_mm = 10.2\nwaist_margin_mm = 2.7\n"
     grid = "[grid]\ncolumns = [4, 5, 4, 5]\npitch_mm = 8.7\n"

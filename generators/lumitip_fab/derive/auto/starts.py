@@ -32,6 +32,10 @@ FINE_MM = {"track": 0.15, "gap": 0.15, "via": 0.45, "drill": 0.2}
 """Copper for dense boards, which common PCB fabs make without extra cost."""
 LEAST_DRILL_MM = 0.15  # what `board.via_drill_mm` allows
 ROOMY_CHANNEL_MM = 4.0
+WIDE_CHANNEL_MM = 5.0
+MOST_BENT_LINES = 64
+"""Of a board that bends, in a roomy channel. Its lines cannot cross where it bends, so the channel
+sorts them all: 72 lines were not routed in a roomy one, and were in a wide one."""
 LEAST_EDGE_GAP_MM = 0.25  # that common PCB fabs keep from copper to a routed edge
 LANE_USE = 0.8  # share of the lane between two columns that tracks can fill
 
@@ -173,9 +177,11 @@ def _channel(config: Input) -> Iterator[Proposal]:
     channels = config.parts.receiver.multiplexer.channels
     muxes = math.ceil(sum(p.grid.columns) / channels)
     fine = p.board.track_mm < float(automatic_fields()["board.track_mm"].start)
-    reason = f"room to sort {sum(p.grid.columns)} lines before {muxes} multiplexers"
+    lines = sum(p.grid.columns)
+    reason = f"room to sort {lines} lines before {muxes} multiplexers"
     if muxes > 4 or fine:
-        yield "board.channel_mm", ROOMY_CHANNEL_MM, reason
+        wide = is_flex(p) and lines > MOST_BENT_LINES
+        yield "board.channel_mm", WIDE_CHANNEL_MM if wide else ROOMY_CHANNEL_MM, reason
     if fine:
         yield "board.edge_gap_mm", LEAST_EDGE_GAP_MM, reason
 
