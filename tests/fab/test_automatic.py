@@ -105,7 +105,8 @@ def test_the_interface_of_a_compliant_finger_holds_its_multiplexers(
 def test_a_board_that_bends_has_a_channel_to_sort_its_lines(
     file: Any, rows: int, channel_mm: str
 ) -> None:
-    bends = '[backing]\nvariant = "flex"\nmaterial = "TPU 95A"\n[stack]\npcb_mm = 0.17\nfloor_mm = 2.5\n'
+    bends = '[backing]\nvariant = "flex"\nmaterial = "TPU 95A"\n'
+    bends += "[stack]\npcb_mm = 0.17\nfloor_mm = 2.5\n"
     design = derive(load(file(f"[grid]\ncolumns = {[rows] * 8}\n{bends}")))
     chosen = {choice.field: choice.value for choice in design.choices}
     assert chosen["board.channel_mm"] == channel_mm

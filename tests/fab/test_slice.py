@@ -62,7 +62,7 @@ def assert_times_are_billed(outputs: Path, parts: dict[str, dict[str, float]]) -
     for row in rows:
         part = parts[row["item"].removesuffix("stl") + "3mf"]
         times, minutes = BILLED.fullmatch(row["for"]).groups()
-        assert (times == "2") == (row["item"] == "mould/clamp.stl"), row["item"]
+        assert (times == "2") == (row["item"] in ("mould/clamp.stl", "mould/prop.stl")), row["item"]
         assert 60 * int(minutes) == pytest.approx(part["seconds"], rel=0.25), row["item"]
         grams = int(times or 1) * part["solid_g"]
         assert float(row["quantity"]) == pytest.approx(grams, rel=0.01), row["item"]

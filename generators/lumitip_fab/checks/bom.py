@@ -194,7 +194,7 @@ def _grams(outputs: Path, design: Design) -> dict[str, float]:
         corners = corners_mm(path).reshape(-1, 3, 3)
         mm3 = float(np.linalg.det(corners).sum() / 6)
         name = path.relative_to(outputs).as_posix()
-        times = printed_times(design.round_moulds, name)
+        times = printed_times(design.mould_accessories, name)
         found[name] = times * mm3 / 1000 * design.slicing.of(name).density_g_ml
     return found
 

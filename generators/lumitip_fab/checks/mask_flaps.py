@@ -148,7 +148,7 @@ def side_mm(fold: Points, design: Design) -> Points:
     y = np.linspace(fold[0, 1], fold[1, 1], 17)
     plate = np.interp(y, [tip.slant_start_y_mm, outline.tip_y_mm], [stack.plate_mm, tip.edge_mm])
     for prop in design.props:  # the silicone round the tip stands higher than the back there
-        plate = np.maximum(plate, (y - prop.weir_y_mm) * math.tan(math.radians(prop.tilt_deg)))
+        plate = np.maximum(plate, prop.level_mm(y))
     tapered = [outline.tip_y_mm - mould.taper_length_mm, outline.tip_y_mm]
     silicone = np.interp(y, tapered, [stack.cover_mm, mould.tip_silicone_mm])
     return np.asarray(plate + silicone)

@@ -113,7 +113,8 @@ def _keys_mm3(design: Design) -> float:
 
 
 def _wrap_mm3(design: Design, prop: Prop) -> float:
-    """Silicone round the tip: what stands over rim plane and plate, counted on a grid."""
+    """Silicone round the tip: what stands over rim plane and plate, counted on a grid. The level is
+    the design's, which `checks.wrap` holds against the written parts."""
     stack, tip, outline = design.stack, design.tip, design.outline
     plate = shapely.Polygon(outline.polygon())
     room = plate.buffer(design.mould.wall_gap_mm)
@@ -122,7 +123,7 @@ def _wrap_mm3(design: Design, prop: Prop) -> float:
     x = np.arange(left, right, _GRID_MM) + _GRID_MM / 2
     y = np.arange(tip.slant_start_y_mm, high, _GRID_MM) + _GRID_MM / 2
     at = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
-    level = (at[:, 1] - prop.weir_y_mm) * math.tan(math.radians(prop.tilt_deg))
+    level = prop.level_mm(at[:, 1])
     back = np.array([tip.back_z_mm(stack, v) for v in y]) - stack.face_z_mm
     on_plate = shapely.contains_xy(plate, at) & ~shapely.contains_xy(slots, at)
     above = level - np.where(on_plate, np.repeat(-back, len(x)), 0.0)

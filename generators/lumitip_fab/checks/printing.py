@@ -106,7 +106,7 @@ def _parts(outputs: Path, design: Design) -> Measurement:
     kinds = ("backing", *(["interface"] if design.interfaces else []), "mould")
     fingers = design.fingers
     paths = [f"{kind}/{finger.name}_{kind}.3mf" for kind in kinds for finger in fingers]
-    paths += [part.file.replace(".stl", ".3mf") for part in design.round_moulds]
+    paths += [part.file.replace(".stl", ".3mf") for part in design.mould_accessories]
     paths += [*(f"mask/{finger.name}_sheet.3mf" for finger in fingers), "mask/coupon.3mf"]
     wanted = {
         (path, of.file, of.name, f"{of.layer_mm:g}")

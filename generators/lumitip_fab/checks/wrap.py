@@ -27,6 +27,7 @@ HEIGHT_MM = 0.02
 LEVEL_MM = 0.05
 OVER_MM = 0.25  # of the walls over the level, at least
 MOST_OVER_MM = 0.35  # of a lip over the least
+_OVER_LEVEL_MM = (-0.2, -0.1, 0.0, 0.1, OVER_MM)
 _EDGE_MM = 0.05  # from the edge of a slot, where the plate is probed
 _ON_BED_MM = 1e-3
 _STEP_MM = 0.2
@@ -56,12 +57,20 @@ class Tilted(Subject):
 
     @property
     def level_mm(self) -> float:
-        """Height of the silicone over the table: that of the weir's highest place."""
-        outline, prop = self.design.outline, self.prop
-        y = np.arange(-outline.end_y_mm, -prop.weir_y_mm, _STEP_MM)
-        above = np.column_stack([np.zeros((len(y), 1)), y, np.full(len(y), _top(self.mould))])
-        fall, _ = solids.cast(self.mould, above, _DOWN, 2 * _top(self.mould)).first(len(y))
-        return float(self.height_mm(y, above[:, 2] - fall).max())
+        """Height of the silicone over the table: that of the lowest way over the weir, of all
+        straight ones out of the cavity."""
+        half = self.finger.notch.x_max_mm
+        x, y = np.arange(-half, half, _STEP_MM), np.arange(*self.weir_y_mm, _STEP_MM)
+        at = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+        above = np.column_stack([at, np.full(len(at), _top(self.mould))])
+        fall, _ = solids.cast(self.mould, above, _DOWN, 2 * _top(self.mould)).first(len(at))
+        heights = self.height_mm(at[:, 1], above[:, 2] - fall).reshape(len(y), len(x))
+        return float(heights.max(axis=0).min())
+
+    @property
+    def weir_y_mm(self) -> tuple[float, float]:
+        """From the plate's end to the trough."""
+        return -self.design.outline.end_y_mm, -self.prop.weir_y_mm
 
     def over_rim_mm(self, y_mm: float) -> float:
         """How far the silicone stands over the rim plane, at a y of the sensor frame."""
@@ -165,26 +174,30 @@ def measure_lip(tilted: Tilted) -> Iterator[Measurement]:
 
 
 def measure_held(tilted: Tilted) -> Iterator[Measurement]:
-    """The mould's wall, all round the plate over the silicone's level, but for the weir."""
+    """The mould's wall, all round the plate but for the weir: from the silicone's level at the
+    gripper end, which is the least above the floor, to some height over it."""
     design, mould = tilted.design, tilted.design.mould
     turned = tilted.mould.copy()
     corners = turned.vertices - (0.0, tilted.pivot_y_mm, 0.0)
     sine, cosine = math.sin(tilted.tilt), math.cos(tilted.tilt)
     turned.vertices = corners @ np.array([[1, 0, 0], [0, cosine, sine], [0, -sine, cosine]])
-    height = tilted.level_mm + OVER_MM
+    gaps = []
+    for over_mm in _OVER_LEVEL_MM:
+        height = tilted.level_mm + over_mm
+        away = shapely.Polygon(design.outline.polygon() * (1, -1))
 
-    def seen(points: solids.Vectors) -> solids.Vectors:
-        """Places of the plate's edge at that height, seen from above."""
-        away = points[:, 1] - tilted.pivot_y_mm
-        return np.column_stack([points[:, 0], away / cosine - height * sine / cosine])
+        def seen(points: solids.Vectors, height: float = height) -> solids.Vectors:
+            """Places of the plate's edge at a height over the table, seen from above."""
+            along_mm = (points[:, 1] - tilted.pivot_y_mm - height * sine) / cosine
+            return np.column_stack([points[:, 0], along_mm])
 
-    lying = shapely.transform(shapely.Polygon(design.outline.polygon() * (1, -1)), seen)
-    end_y = float(seen(np.array([[0.0, -design.outline.end_y_mm]]))[0, 1])
-    gaps = distances(turned, height, along(lying, end_y, tilted.finger.notch))
+        end_y = float(seen(np.array([[0.0, -design.outline.end_y_mm]]))[0, 1])
+        places = along(shapely.transform(away, seen), end_y, tilted.finger.notch)
+        gaps.append(float(distances(turned, height, places).max()))
     high = tilted.over_rim_mm(design.outline.tip_y_mm) + OVER_MM
     leans = high * math.tan(math.radians(mould.draft_deg))
-    note = f"from the plate to the wall, {OVER_MM:g} mm over the level"
-    yield tilted.figure("held", gaps.max(), 0.0, mould.wall_gap_mm + leans + _GAP_MM, note=note)
+    note = f"from the plate to the wall, up to {OVER_MM:g} mm over the level"
+    yield tilted.figure("held", max(gaps), 0.0, mould.wall_gap_mm + leans + _GAP_MM, note=note)
 
 
 MEASURES: tuple[Measure[Tilted], ...] = (

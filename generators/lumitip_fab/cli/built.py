@@ -108,18 +108,18 @@ def _fingers(out: Path, design: Design) -> Iterator[Row]:
     every = (finger_loads(out, design, finger) for finger in design.fingers)
     found = min(every, key=lambda each: each.safety)
     glue = limit.glue_mpa / found.glue_mpa
-    seats = (finger_seat(out, design, finger) for finger in design.fingers)
-    seat = max(seats, key=lambda each: each.shear_mpa)
+    seats = [finger_seat(out, design, finger) for finger in design.fingers]
+    bearing, shear = max(s.bearing_mpa for s in seats), max(s.shear_mpa for s in seats)
     filament = design.slicing.rigid if design.interfaces else design.slicing.backing
     yield from rows_of(
         "finger_strength",
         found=found,
         limit=limit,
         glue=glue,
-        seat=seat,
+        pull_n=max(seat.pull_n for seat in seats),
         mount=design.mount,
-        heads=filament.bearing_mpa / seat.bearing_mpa,
-        land=filament.layer_mpa / seat.shear_mpa,
+        heads=filament.bearing_mpa / bearing,
+        land=filament.layer_mpa / shear,
         parts_n=limit.rated_force_n * min(found.safety, glue),
         gripper=f"up to {limit.gripper_n:g} N" if limit.gripper_n else "a force that is not known",
         strain=100 * found.board_strain,

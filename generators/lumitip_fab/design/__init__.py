@@ -189,12 +189,12 @@ class Design:
 
     @property
     def props(self) -> tuple[Prop, ...]:
-        """What tilts both moulds; none where they stand level."""
+        """The prop of both moulds; none where they stand level."""
         return self.mould.props
 
     @property
-    def round_moulds(self) -> tuple[Clamp | Prop, ...]:
-        """What is printed for each of the moulds."""
+    def mould_accessories(self) -> tuple[Clamp | Prop, ...]:
+        """Parts that are printed once for each mould."""
         return *self.clamps, *self.props
 
     @property

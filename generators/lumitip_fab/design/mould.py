@@ -76,6 +76,6 @@ class Mould:
         return self.floor_mm + cover_mm
 
 
-def printed_times(round_moulds: tuple[Clamp | Prop, ...], path: str) -> int:
+def printed_times(mould_accessories: tuple[Clamp | Prop, ...], path: str) -> int:
     """How often a part is printed for a pair of fingers, by the path of its STL."""
-    return MOULDS if path in {part.file for part in round_moulds} else 1
+    return MOULDS if path in {part.file for part in mould_accessories} else 1

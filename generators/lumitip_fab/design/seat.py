@@ -2,8 +2,9 @@
 
 Lever model: the rated force turns the finger about a line near the edge of its foot. There plastic
 presses on the gripper in a triangle, from nothing at the nearest bolt to most at the edge, whose
-middle is a third of the way in; bolts pull by their distance from that line. Neither their
-pre-load, nor pins and nose, take part. Heads are the catalogue's, by ISO 4762.
+middle is a third of the way in; bolts pull by their distance from that line. The foot is
+taken to lie on the gripper up to its back edge. Neither pre-load, nor pins and nose, take part.
+Heads are the catalogue's, by ISO 4762.
 """
 
 import math

@@ -77,7 +77,7 @@ def materials(design: Design, files: Files) -> Iterator[Bought]:
     for path in (path for kind in kinds for path in files.like(f"{kind}/*.stl")):
         filament = slicing.of(path)
         facts, name = files.facts(path), filament.name
-        number = printed_times(design.round_moulds, path)
+        number = printed_times(design.mould_accessories, path)
         grams = round(number * facts["volume_mm3"] / 1000 * filament.density_g_ml, 2)
         where = f"some {_minutes(facts, filament, design)} min, solid, brim left out"
         where = f"{number} times, each {where}" if number > 1 else where

@@ -148,8 +148,8 @@ def _tried(design: Design) -> str:
     beside = ": plate, board and the glue round the board" if design.stack.sunk else ""
     for _ in design.props:
         lip_mm = mould.lip_length_mm(design.outline, design.tip)
-        joined = ";" if beside else ":"
-        beside += f"{joined} and the back of the tip, {lip_mm + 1:.0f} mm from its edge"
+        beside += ";" if beside else ":"
+        beside += f" and the back of the tip, {lip_mm + 1:.0f} mm from its edge"
     first = _text(
         "primed" if primed else "unprimed",
         primer=mould.primer,
@@ -160,6 +160,9 @@ def _tried(design: Design) -> str:
         "tried",
         silicone=mould.silicone,
         inhibited_by=", ".join(mould.inhibited_by),
+        trial_g=_trial(mould),
+        spot=f"{'across the glue round' if design.stack.sunk else 'beside'} the board",
+        drying=f", {mould.primer_dry_min:g} min to dry" * primed,
         primer=f"{mould.primer}, " * primed,
         primed=first + "\n",
         film=", and one on a piece that is left over of the smooth film" if mould.inserts else "",
@@ -172,17 +175,27 @@ def _tried(design: Design) -> str:
     )
 
 
+def _trial(mould: Mould) -> str:
+    """Amounts for a few drops."""
+    a, b = (part / min(mould.mix_ratio) for part in mould.mix_ratio)
+    return f"{a:g} g of part A with {b:g} g of part B, and stir it for three minutes"
+
+
 def _filled(design: Design) -> str:
     work = [_text("screwed", clamp=clamp) for clamp in design.clamps]
     work += [_text("weighed"), _text("wetted")]
     work += [_text("laid") for _ in design.mould.inserts]
-    stands = [_text("propped", prop=prop) for prop in design.props] or [_text("level")]
-    work.append(f"{stands[0]} {_text('poured')}")
+    props = design.mould.props
+    stands = "".join(_text("propped", prop=prop) for prop in props) or _text("level")
+    work.append(f"{stands} {_text('poured_all' if props else 'poured')}")
     needs = ["the screws and nuts of the mould, " for _ in design.clamps]
     needs += [f"`mould/{prop.name}.3mf`, printed, " for prop in design.props]
     needs += ["the smooth film, a plastic card, " for _ in design.mould.inserts]
     numbered = "\n".join(f"{n}. {text}" for n, text in enumerate(work, 1))
-    return _text("filled", needs="".join(needs), work=numbered)
+    full = "the silicone bulges over the weir and the stops"
+    if props:
+        full = "the silicone covers all stops, and stands higher at the tip"
+    return _text("filled", needs="".join(needs), work=numbered, full=full)
 
 
 def _lowered(design: Design) -> str:
@@ -195,13 +208,13 @@ def _clamped(design: Design) -> str:
     mould, bends = design.mould, not design.stack.sunk
     stands = "on its prop" if mould.props else "level"
     times = {"cure_h": mould.cure_h, "cure_c": mould.cure_c, "stands": stands}
-    tip = _text("tip_taped", tape=mould.tape) if bends else ""
+    lip_mm = mould.lip_length_mm(design.outline, design.tip)
+    dry = f", {lip_mm + 1:.0f} mm or more from its edge, off the silicone" if mould.props else ""
+    tip = _text("tip_taped", tape=mould.tape, dry=dry) if bends else ""
     for clamp in design.clamps:
         pads_n = clamp.pads_n(clamp.thickness_mm)
         tape = f"{mould.tape}, " * bends
-        across = ", held across the finger," if mould.props else ""
-        values = {"pads_n": pads_n, "tip_taped": tip, "tape": tape, "across": across}
-        return _text("clamped", clamp=clamp, **values, **times)
+        return _text("clamped", clamp=clamp, pads_n=pads_n, tip_taped=tip, tape=tape, **times)
     return _text("taped_down", tape=mould.tape, tip_taped=tip, **times)
 
 

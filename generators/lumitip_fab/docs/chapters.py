@@ -1,5 +1,6 @@
 """The manual: its own chapters and the notes of the parts, as Markdown, HTML and PDF."""
 
+import math
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
@@ -36,10 +37,10 @@ def manual_text(design: Design, files: Files) -> str:
     chapters = (
         _front(design),
         _bought(files),
-        _printed(design, files),
         _boards(design, files),
+        _printed(design, files),
         _wired(design, files),
-        _text("tested", loading=_loading(design)),
+        _text("tested", loading=_loading(design), limit_ma=_limit_ma(design)),
         *(
             step.section()
             for step in casting_steps(design, design.fingers, _amounts(design, files))
@@ -70,10 +71,15 @@ def _front(design: Design) -> str:
         warm_up_min=WARM_UP_MIN,
         keys=_keys(design),
         nozzle_mm=design.slicing.nozzle_mm,
-        mask_tools=_text(f"tools_{design.mask.route}"),
+        mask_tools=_text(f"tools_{design.mask.route}", soften_c=design.mask.soften_c),
         waiting=_waiting(design.mould),
         heated="\n".join(map(_heated, design.heat)),
     )
+
+
+def _limit_ma(design: Design) -> float:
+    """Of a bench supply: twice what the LEDs draw, in tens."""
+    return 20 * math.ceil(sum(design.wiring.current_ma) / 10)
 
 
 def _waiting(mould: Mould) -> str:
@@ -84,7 +90,7 @@ def _waiting(mould: Mould) -> str:
 
 
 def _keys(design: Design) -> str:
-    """Sizes of all screws, for which keys are needed."""
+    """Sizes of all screws."""
     others = {holder.screw for holder in design.holders}
     others |= {clamp.screw.name for clamp in design.clamps}
     return ", ".join(sorted({design.mount.bolt, *others}))
@@ -235,7 +241,9 @@ def _mounted(design: Design) -> str:
     elif any(auxiliary.name == "breakout" for auxiliary in design.auxiliary_boards):
         held = _text("beside_gripper", mount=mount)
     flanged = "".join(_flanged(design, flange) for flange in design.flanges)
-    return _text("mounted", bolts=len(mount.bolt_u_mm), mount=mount, held=held, flanged=flanged)
+    tied = _text("tied") + "\n" if mount.lugs else ""
+    bolts = len(mount.bolt_u_mm)
+    return _text("mounted", bolts=bolts, mount=mount, held=held, flanged=flanged, tied=tied)
 
 
 def _flanged(design: Design, flange: Flange) -> str:

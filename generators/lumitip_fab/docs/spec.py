@@ -210,7 +210,15 @@ def _of_the_wrap(design: Design) -> Iterator[Row]:
     """The silicone round the tip, or that the skin ends at its edge."""
     for prop in design.props:
         length = design.mould.lip_length_mm(design.outline, design.tip)
-        yield from rows_of("wrap", prop=prop, slot_mm=design.tip.slot_mm, length_mm=length)
+        skin = design.mould.tip_silicone_mm
+        yield from rows_of(
+            "wrap",
+            prop=prop,
+            slot_mm=design.tip.slot_mm,
+            length_mm=length,
+            thick_mm=prop.level_mm(design.outline.tip_y_mm) + skin,
+            bare_mm=design.tip.edge_mm + skin,
+        )
     if not design.props:
         yield from rows_of("no_wrap")
 

@@ -90,7 +90,9 @@ def mould_solid(
     catch_y = outline.end_y_mm - outside - LEDGE_MM
     end_y = mould.wall_mm - mould.letter.wall_mm
     catch = Box(-weir_half - LEDGE_MM, weir_half + LEDGE_MM, end_y, catch_y)
-    block = _footed(stack, outline, mould, top_z, outside) + _lip(stack, mould, catch, outside)
+    block = _footed(stack, outline, mould, top_z, outside) + _trough_block(
+        stack, mould, catch, outside
+    )
     block = block + [rail for clamp in clamps for rail in rails(clamp, stack, mould)]
     cavity = skin.drafted_prism(stack, outline, mould, top_z - BEYOND_MM, BEYOND_MM)
     taken = [
@@ -116,7 +118,7 @@ def _footed(
     return Solid.make_loft([top, shoulder, foot], ruled=True)
 
 
-def _lip(stack: Stack, mould: Mould, catch: Box, outside_mm: float) -> Solid:
+def _trough_block(stack: Stack, mould: Mould, catch: Box, outside_mm: float) -> Solid:
     """The block that holds the trough, joined to the body."""
     bed_z = stack.silicone_z_mm + mould.floor_mm
     inside_y = catch.y_max_mm + LEDGE_MM + outside_mm / 2

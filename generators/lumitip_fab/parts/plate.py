@@ -49,7 +49,7 @@ def _whole(stack: Stack, outline: Outline) -> Solid:
 
 
 def _slot(slot: Box, stack: Stack) -> Solid:
-    """What sets the tip edge back."""
+    """Cutter that sets the tip edge back."""
     reaching = replace(slot, y_max_mm=slot.y_max_mm + BEYOND_MM)
     return shapes.box_solid(reaching, stack.back_z_mm - BEYOND_MM, stack.face_z_mm + BEYOND_MM)
 

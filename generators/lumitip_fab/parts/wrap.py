@@ -1,4 +1,4 @@
-"""What the silicone fills beside its skin: the keys of the plate, and the room round its tip.
+"""Silicone beside the skin: in the keys of the plate, and round its tip.
 
 Side view of the tip, gripping face up, beside the mould's stop:
 

@@ -17,11 +17,11 @@ DROP_MM = 3.2  # across, as it is drawn
 _FACE_DOWN = frames.rotation_y(180.0)
 _LABEL_MM, _WORDS_MM = 8.0, 44.0
 _AROUND = 48
-Board = tuple[Mesh, Sequence[Mesh]]
+BoardMeshes = tuple[Mesh, Sequence[Mesh]]
 """A board, and the parts on its front; in the sensor frame of its finger."""
 
 
-def facing_view(emitter: Board, receiver: Board) -> str:
+def facing_view(emitter: BoardMeshes, receiver: BoardMeshes) -> str:
     """The emitter's board face down over the receiver's, whose face is up."""
     sheet, eye = Sheet(), view(AZIMUTH_DEG, FACING_DEG).enlarged(SCALE)
     over = frames.translation(0.0, 0.0, APART_MM) @ _FACE_DOWN
@@ -51,12 +51,13 @@ def drop_view(layers: Mapping[str, Mesh], at: Point, stack: Stack) -> str:
         stack: for the front of the plate.
     """
     sheet, eye = Sheet(), view(AZIMUTH_DEG, ELEVATION_DEG).enlarged(SCALE)
+    words = "across plate, glue and board" if stack.sunk else "on the plate, beside the board"
     paint(sheet, eye, {k: layers[k] for k in ("interface", "backing", "board") if k in layers})
     turn = np.linspace(0.0, 2 * np.pi, _AROUND, endpoint=False)
     ring = DROP_MM / 2 * np.column_stack([np.cos(turn), np.sin(turn), 0 * turn])
     seen = eye.seen(ring + np.array([*at, stack.face_z_mm]))[:, :2]
     sheet.area([seen], "body", tints()["silicone"])
-    _written(sheet, [(("Drop", "on the plate, beside the board"), seen.mean(axis=0))])
+    _written(sheet, [(("Drop", words), seen.mean(axis=0))])
     return sheet.svg({"data-azimuth-deg": AZIMUTH_DEG, "data-elevation-deg": ELEVATION_DEG})
 
 

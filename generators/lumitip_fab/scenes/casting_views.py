@@ -20,6 +20,7 @@ from lumitip_fab.scenes.glb import tints
 
 WIDTH_MM = 154.0  # of a cut on the page
 BULGE_MM = 1.2  # of the silicone over the rim, as it is drawn
+BELOW_WEIR_MM = 0.3  # of the silicone in a tilted mould, as it is drawn
 LOWERED_DEG, LIFTED_DEG = 9.0, 4.0  # of the finger to the mould, as they are drawn
 AZIMUTH_DEG, ELEVATION_DEG = 38.0, 30.0
 CLAMP_SCALE = 1.4
@@ -57,19 +58,22 @@ class Cast:
 
 
 def filled_view(cast: Cast) -> str:
-    """The mould, filled until the silicone bulges over the rim."""
-    page = _Page(cast)
+    """The mould, filled until the silicone bulges over the rim; or tilted on its prop, the
+    silicone level, as the table is."""
+    page = _Page(cast, math.degrees(math.atan(cast.slope)))
     left, low, right, _ = page.cavity.bounds
     page.behind(cast.mould)
-    over = _bulge(left, right, cast.rim_mm, cast.slope)
-    page.fill(shapely.union(page.cavity, over - page.mould), "silicone")
-    page.fill_mould()
-    if cast.prop is not None:
+    words = "a little over the weir"
+    if cast.prop is None:
+        page.fill(shapely.union(page.cavity, _bulge(left, right, cast.rim_mm)), "silicone")
+    else:
+        words = "level, higher at the tip"
+        page.fill(_poured(cast, page.mould, right), "silicone")
         page.fill(cut(cast.prop), "clamp")
+        page.table()
         page.label(("Prop", "its stop at the mould's end"), page.mould.bounds[2] - 1.0, -0.5)
-    page.label(
-        ("Silicone", "a little over the weir"), (left + right) / 2, cast.rim_mm + BULGE_MM / 2
-    )
+    page.fill_mould()
+    page.label(("Silicone", words), (left + right) / 2, cast.rim_mm - 0.5)
     page.label(("Weir", "as high as the stops"), right + 1.0, cast.rim_mm)
     page.label(("Trough", "for the surplus"), page.mould.bounds[2] - 5.0, low)
     return page.svg()
@@ -147,9 +151,10 @@ def _clamp_labels(clamp: Clamp, eye: View) -> list[tuple[Words, Points]]:
 
 
 class _Page:
-    """A sheet for the cut of a mould, enlarged."""
+    """A sheet for the cut of a mould, enlarged, and turned as it stands."""
 
-    def __init__(self, cast: Cast) -> None:
+    def __init__(self, cast: Cast, lean_deg: float = 0.0) -> None:
+        self._turn = frames.rotation_x(lean_deg)[1:3, 1:3]
         self.cast, self.mould = cast, cut(cast.mould)
         low, bottom, high, _ = self.mould.bounds
         self.scale = WIDTH_MM / (high - low)
@@ -162,13 +167,13 @@ class _Page:
     def behind(self, *meshes: Mesh) -> None:
         """Contours of what is cut, to show what lies behind the cut."""
         for mesh in meshes:
-            rings = [ring * self.scale for ring in silhouette(mesh, _SIDE)]
+            rings = [self._placed(ring) for ring in silhouette(mesh, _SIDE)]
             self._sheet.area(rings, "behind", "#fbfbfa")
 
     def fill(self, area: shapely.Geometry, tint: str) -> None:
         """Paint an area."""
         with self._sheet.group(tint):
-            rings = [ring * self.scale for ring in rings_of(area)]
+            rings = [self._placed(ring) for ring in rings_of(area)]
             self._sheet.area(rings, "body", tints()[tint])
 
     def fill_mould(self) -> None:
@@ -192,7 +197,16 @@ class _Page:
 
     def label(self, words: Words, y_mm: float, z_mm: float) -> None:
         """Words with a line to a place."""
-        self._labels.append((words, np.array([y_mm, z_mm]) * self.scale))
+        self._labels.append((words, self._placed(np.array([[y_mm, z_mm]]))[0]))
+
+    def table(self) -> None:
+        """The line on which the lowest of what was drawn stands."""
+        low, high = self._sheet.low, self._sheet.high
+        self._sheet.lines([np.array([(low[0], low[1]), (high[0], low[1])])], "leader")
+
+    def _placed(self, points: Points) -> Points:
+        """Places of the mould's frame on the page."""
+        return np.asarray(self.scale * points @ self._turn.T)
 
     def svg(self) -> str:
         """The page, its labels in a row below."""
@@ -212,19 +226,22 @@ class _Page:
         return self._sheet.svg({"data-scale": self.scale})
 
 
-def _bulge(left_mm: float, right_mm: float, rim_mm: float, slope: float = 0.0) -> shapely.Geometry:
-    """The silicone over the rim: half an ellipse, on a wedge where its level rises to the left."""
+def _bulge(left_mm: float, right_mm: float, rim_mm: float) -> shapely.Geometry:
+    """The silicone over the rim: half an ellipse."""
     centre = shapely.Point((left_mm + right_mm) / 2, 0.0)
     ellipse = affinity.scale(centre.buffer(1.0, 32), (right_mm - left_mm) / 2, BULGE_MM)
     above = shapely.box(left_mm, 0.0, right_mm, BULGE_MM)
-    level = shapely.Polygon(
-        [(left_mm, 0.0), (right_mm, 0.0), (left_mm, slope * (right_mm - left_mm))]
-    )
-    raised = affinity.affine_transform(
-        shapely.intersection(ellipse, above), [1.0, 0.0, -slope, 1.0, 0.0, slope * right_mm]
-    )
-    whole = shapely.union(raised, level) if slope else raised
-    return affinity.translate(whole, 0.0, rim_mm)
+    return affinity.translate(shapely.intersection(ellipse, above), 0.0, rim_mm)
+
+
+def _poured(cast: Cast, mould: shapely.Geometry, weir_mm: float) -> shapely.Geometry:
+    """The silicone in a tilted mould, before the finger raises it to the weir."""
+    wall_mm = mould.bounds[0]
+    top_mm = cast.rim_mm - BELOW_WEIR_MM
+    raised_mm = top_mm + cast.slope * (weir_mm - wall_mm)
+    corners = [(wall_mm, 0.0), (weir_mm, 0.0), (weir_mm, top_mm), (wall_mm, raised_mm)]
+    parts = shapely.get_parts(shapely.difference(shapely.Polygon(corners), mould))
+    return max(parts, key=lambda part: float(part.area))
 
 
 def _head(line: Points) -> Points:

@@ -91,7 +91,7 @@ def _layers(bodies: Bodies, stack: Stack, outline: Outline) -> list[Layer]:
             "glued in, flush with the rim" if sunk else "flexible, tied on",
         ),
         "silicone": (f"Silicone, {stack.silicone_mm:g} mm", "cast on the board"),
-        "film": (f"Mask, {stack.film_mm:g} mm", "black, a hole above each cell"),
+        "film": (f"Mask, {stack.film_mm:g} mm", "black but above each cell"),
     }
     layers = []
     for step, (name, solid) in enumerate(layers_of(bodies)):

@@ -100,15 +100,17 @@ def _laid(mould: Mould, insert: Insert) -> Box:
 
 
 def bare_spot(design: Design) -> Point:
-    """Where the plate beside the board is widest, off its keys and the mould's stops."""
-    inner, outline = design.board.pocket.x_max_mm, design.outline
+    """Place of the trial drop: across the glue round a board in its pocket, else beside it; off
+    keys and the mould's stops, as far out as there is room."""
+    box, outline = design.board.box, design.outline
     taken = [key.at for key in design.keys] + list(design.mould.pads)
     found = []
-    for y in np.linspace(design.board.box.y_min_mm, design.board.box.y_max_mm, 81).tolist():
-        at = (inner + outline.half_width_at(y)) / 2, y
+    for y in np.linspace(box.y_min_mm, box.y_max_mm, 81).tolist():
+        x = (box.x_max_mm + outline.half_width_at(y)) / 2
+        at = (box.x_max_mm, y) if design.stack.sunk else (x, y)
         off = min(math.dist(at, other) for other in taken)
-        found.append((min(off, OFF_MM), at[0], y))
-    return max(found)[1:]
+        found.append((min(off, OFF_MM), x, *at))
+    return max(found)[2:]
 
 
 def _to_bed(design: Design) -> frames.Matrix:

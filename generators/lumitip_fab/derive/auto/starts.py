@@ -35,7 +35,8 @@ ROOMY_CHANNEL_MM = 4.0
 WIDE_CHANNEL_MM = 5.0
 MOST_BENT_LINES = 64
 """Of a board that bends, in a roomy channel. Its lines cannot cross where it bends, so the channel
-sorts them all: 72 lines were not routed in a roomy one, and were in a wide one."""
+sorts them all: 72 lines were not routed in a roomy one, and were in a wide one. Where the limit is
+between these is not known."""
 LEAST_EDGE_GAP_MM = 0.25  # that common PCB fabs keep from copper to a routed edge
 LANE_USE = 0.8  # share of the lane between two columns that tracks can fill
 
@@ -179,9 +180,10 @@ def _channel(config: Input) -> Iterator[Proposal]:
     fine = p.board.track_mm < float(automatic_fields()["board.track_mm"].start)
     lines = sum(p.grid.columns)
     reason = f"room to sort {lines} lines before {muxes} multiplexers"
-    if muxes > 4 or fine:
-        wide = is_flex(p) and lines > MOST_BENT_LINES
-        yield "board.channel_mm", WIDE_CHANNEL_MM if wide else ROOMY_CHANNEL_MM, reason
+    if is_flex(p) and lines > MOST_BENT_LINES:
+        yield "board.channel_mm", WIDE_CHANNEL_MM, reason
+    elif muxes > 4 or fine:
+        yield "board.channel_mm", ROOMY_CHANNEL_MM, reason
     if fine:
         yield "board.edge_gap_mm", LEAST_EDGE_GAP_MM, reason
 

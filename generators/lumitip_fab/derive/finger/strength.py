@@ -32,7 +32,7 @@ from lumitip_fab.design.strength import Loaded, Strength, loads
 
 SAFETY = 1.4  # of an estimate that no test stands behind, of a known force, with layers taken weak
 RESERVE = 1.08  # kept here to every limit, for rectangles are not quite the written part
-LEAST_N = 10.0  # of a rigid finger: a weaker one must be asked for
+LEAST_N = 8.0  # of a rigid finger: a weaker one must be asked for
 OFFSET_SHARE = 0.5  # of an aperture's half width: no shadow of its edge on the die
 STEP_MM = 0.5
 NOSE_SLICES = 4

@@ -67,7 +67,9 @@ def derive_mould(
         recess_mm,
     )
     letter = _letter(config, outline, stack, floor_mm, faults)
-    props = (_prop(config, outline, plan, stack, tip, -letter.wall_mm, layer_mm),)
+    props = [
+        _prop(config, outline, plan, stack, tip, -letter.wall_mm, layer_mm) for _ in tip.slots[:1]
+    ]
     return Mould(
         taper_length_mm=p.mould.taper_length_mm,
         tip_silicone_mm=p.mould.tip_silicone_mm,
@@ -76,7 +78,7 @@ def derive_mould(
         draft_deg=p.mould.draft_deg,
         wall_mm=p.mould.wall_mm,
         inserts=inserts,
-        props=props if tip.slots else (),
+        props=tuple(props),
         pads=pads,
         pad_mm=PAD_MM,
         letter=letter,
@@ -175,6 +177,7 @@ def _prop(
     end_y_mm: float,
     layer_mm: float,
 ) -> Prop:
+    """The prop under the mould's end at `end_y_mm`; as wide as the wire notch."""
     outside = _outside_mm(config, stack)
     weir_y, tip_y = outline.end_y_mm - outside - LEDGE_MM, outline.tip_y_mm + outside
     half = max(finger.notch.x_max_mm for finger in (plan.emitter, plan.receiver))

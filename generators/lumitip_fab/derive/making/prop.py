@@ -28,7 +28,7 @@ def derive_prop(
         outline: of the plate.
         tip: its wedge, with slots.
         ends_mm: y of the weir's outer edge, of the mould's end there and of its end at the tip.
-        half_mm: half the width of the trough.
+        half_mm: half its width, if that is more than the least.
         layer_mm: of the print.
     """
     weir_y, end_y, tip_y = ends_mm
