@@ -107,11 +107,19 @@ def test_a_damaged_tip(damage: Damage, fails: set[str], copied: Path) -> None:
 
 
 def weir_raised(part: Body) -> Body:
-    return part + box((-9, -35, -1.8), (9, -33, -1.5))
+    return part + box((-12, -35, -1.8), (12, -33, -1.5))
 
 
 def weir_cut(part: Body) -> Body:
     return part - box((-4, -40, -1.9), (4, -32.5, -1.1))
+
+
+def groove_beside_the_middle(part: Body) -> Body:
+    return part - box((4, -40, -1.9), (6, -32.5, -1.1))
+
+
+def slit_under_the_level(part: Body) -> Body:
+    return part - box((-1, 21.9, -2.6), (1, 30, -2.45))
 
 
 def wall_low_at_the_tip(part: Body) -> Body:
@@ -127,6 +135,8 @@ def grip_too_deep(part: Body) -> Body:
     [
         (weir_raised, {"level", "held"}),
         (weir_cut, {"level", "lip"}),
+        (groove_beside_the_middle, {"level", "lip"}),
+        (slit_under_the_level, {"held"}),
         (wall_low_at_the_tip, {"held"}),
         (grip_too_deep, {"held"}),
     ],
