@@ -116,6 +116,8 @@ def _fingers(out: Path, design: Design) -> Iterator[Row]:
         found=found,
         limit=limit,
         glue=glue,
+        bearing=bearing,
+        shear=shear,
         pull_n=max(seat.pull_n for seat in seats),
         mount=design.mount,
         heads=filament.bearing_mpa / bearing,
