@@ -53,9 +53,9 @@ EDITS = [
     ("<code>fit/fit_plate.3mf</code>", "<code>fit/plate.3mf</code>", {"files", "pdf"}),
     ('data-file="wiring/wiring.svg"', 'data-file="wiring/cables.svg"', {"drawings"}),
     ('data-file="assembly/system.svg"', 'data-file="assembly/robot.svg"', {"drawings"}),
-    ("2.51 g", "3.51 g", {"amounts", "pdf"}),
+    ("2.53 g", "3.53 g", {"amounts", "pdf"}),
     ("<td>W2.3</td>", "<td>W2.4</td>", {"wires"}),
-    ("<td>used by one pair of fingers</td>", "<td>in all</td>", {"parts", "pdf"}),
+    ("<td>used by one pair of fingers</td>", "<td>altogether</td>", {"parts", "pdf"}),
 ]
 
 

@@ -102,13 +102,18 @@ def test_the_note_says_primer_tape_test_and_the_order_of_demoulding(design: Desi
     assert "a thin film of silicone primer DOWSIL PR-1200" in note
     assert "with polyimide tape 12 mm" in note and "masking tape" in note
     assert "Let it harden for 24 h" in note
-    steps = ["Put a drop", "Leave it for 24 h", "Lift the gripper end first", "the tip edge last"]
+    steps = [
+        "Put a drop",
+        "Leave it for 24 h",
+        "Lift the gripper end first",
+        "The tip edge comes last",
+    ]
     assert sorted(steps, key=note.index) == steps
     closed = replace(design, emitter=replace(design.emitter, reliefs=()))
     assert "Close every window" in note
     assert "Close every window" not in noted(closed, design.mould)
     bare = noted(design, replace(design.mould, primer="", primer_dry_min=0.0))
-    assert "Wipe a thin film" not in bare
+    assert "Brush a thin film" in note and "Brush a thin film" not in bare
 
 
 def test_the_note_says_how_a_smooth_film_is_cut_laid_and_peeled(design: Design) -> None:
@@ -119,8 +124,21 @@ def test_the_note_says_how_a_smooth_film_is_cut_laid_and_peeled(design: Design) 
     note = " ".join(noted(design, replace(design.mould, inserts=(film,))).split())
     assert "The floor at 2.5 mm, the recess in it at 2.4 mm and the stops at 4 mm" in note
     steps = ["38.08 x 30.90 mm", "Keep primer away", "Lay the film into its recess"]
-    steps += ["Fill it from one corner", "Cut the flash", "Peel it off the skin"]
+    steps += ["Pour in all of it", "Cut the flash", "Peel it off the skin"]
     assert sorted(steps, key=note.index) == steps
+
+
+def test_the_note_of_a_tilted_mould_tells_of_its_prop(design: Design) -> None:
+    tilted = " ".join(noted(design, design.mould).split())
+    level = " ".join(noted(design, replace(design.mould, props=())).split())
+    for words, in_tilted in (
+        ("`mould/prop.3mf`", True),
+        ("Pour in all of it", True),
+        ("Leave it on round the tip, 2 mm from the edge", True),
+        ("on its prop", True),
+        ("Fill it from one corner up to the weir", False),
+    ):
+        assert (words in tilted, words in level) == (in_tilted, not in_tilted), words
 
 
 def test_the_note_weighs_both_parts(design: Design) -> None:
