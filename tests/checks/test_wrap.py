@@ -1,6 +1,7 @@
 """Damage what wraps the skin round the tip, and exactly the right checks fail."""
 
 import math
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 
@@ -154,13 +155,11 @@ def test_damaged_files(copied: Path) -> None:
     assert failing(copied, "wrap") == {"prop"}
 
 
-def of_lines(design_dir: Path, lines: str) -> Design:
-    file = design_dir / "mine.toml"
+def of_lines(design_dir: Path, tmp_path: Path, lines: str) -> Design:
+    folder = Path(shutil.copytree(design_dir, tmp_path / "design"))
+    file = folder / "mine.toml"
     file.write_text(f'extends = "fingertip.toml"\n{lines}', encoding="utf-8")
-    try:
-        return derive(load(file))
-    finally:
-        file.unlink()
+    return derive(load(file))
 
 
 @pytest.mark.parametrize(
@@ -176,7 +175,7 @@ def test_other_tips_pass_every_check(lines: str, design_dir: Path, tmp_path: Pat
     if lines.startswith("extends"):
         made = derive(load(design_dir / "presets" / "flex.toml"))
     else:
-        made = of_lines(design_dir, lines)
+        made = of_lines(design_dir, tmp_path, lines)
     out = written(made, made, tmp_path / "made")
     (out / "mould").mkdir()
     files = [a for finger in made.fingers for a in mould_files(made, finger)]
@@ -197,8 +196,10 @@ def test_other_tips_pass_every_check(lines: str, design_dir: Path, tmp_path: Pat
         "[mould]\ntip_lip_mm = 1.5\n",
     ],
 )
-def test_without_room_the_skin_ends_at_the_edge(lines: str, design_dir: Path) -> None:
-    design = of_lines(design_dir, lines)
+def test_without_room_the_skin_ends_at_the_edge(
+    lines: str, design_dir: Path, tmp_path: Path
+) -> None:
+    design = of_lines(design_dir, tmp_path, lines)
     assert design.tip.slots == () and design.props == ()
     assert design.mould.level_mm(design.outline.tip_y_mm) == 0.0
 
