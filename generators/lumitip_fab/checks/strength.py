@@ -122,6 +122,7 @@ def _layer(cuts: list[Any], modulus_mpa: float, half_mm: float) -> Layer:
 
 
 def _summed(cuts: list[Any], modulus_mpa: float) -> Layer:
+    """Sections as one layer without strips."""
     rows = []
     for cut in cuts:
         area, (_, w), inertia = moments(cut)

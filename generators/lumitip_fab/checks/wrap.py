@@ -4,6 +4,7 @@ they stand on their props, by the written parts."""
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -15,10 +16,7 @@ from lumitip_fab.checks.printed import RAY_MM, measure_boxes
 from lumitip_fab.checks.readers import solids
 from lumitip_fab.checks.result import Measure, Measurement, Subject, measured, unreadable
 from lumitip_fab.design import Design, Finger, Prop
-from lumitip_fab.design.frames import (
-    backing_bed_to_sensor,
-    prop_bed_to_sensor,
-)
+from lumitip_fab.design.frames import backing_bed_to_sensor, prop_bed_to_sensor
 from lumitip_fab.errors import OutputError
 
 READS = ("mould/*_mould.stl", "mould/prop.*", "backing/*_backing.stl")
@@ -55,22 +53,18 @@ class Tilted(Subject):
         turned = (np.asarray(y_mm) - self.pivot_y_mm) * math.sin(self.tilt)
         return np.asarray(turned + np.asarray(z_mm) * math.cos(self.tilt))
 
-    @property
+    @cached_property
     def level_mm(self) -> float:
         """Height of the silicone over the table: that of the lowest way over the weir, of all
-        straight ones out of the cavity."""
+        straight ones from the plate's end to the trough."""
         half = self.finger.notch.x_max_mm
-        x, y = np.arange(-half, half, _STEP_MM), np.arange(*self.weir_y_mm, _STEP_MM)
+        x = np.arange(-half, half, _STEP_MM)
+        y = np.arange(-self.design.outline.end_y_mm, -self.prop.weir_y_mm, _STEP_MM)
         at = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
         above = np.column_stack([at, np.full(len(at), _top(self.mould))])
         fall, _ = solids.cast(self.mould, above, _DOWN, 2 * _top(self.mould)).first(len(at))
         heights = self.height_mm(at[:, 1], above[:, 2] - fall).reshape(len(y), len(x))
         return float(heights.max(axis=0).min())
-
-    @property
-    def weir_y_mm(self) -> tuple[float, float]:
-        """From the plate's end to the trough."""
-        return -self.design.outline.end_y_mm, -self.prop.weir_y_mm
 
     def over_rim_mm(self, y_mm: float) -> float:
         """How far the silicone stands over the rim plane, at a y of the sensor frame."""
@@ -174,17 +168,16 @@ def measure_lip(tilted: Tilted) -> Iterator[Measurement]:
 
 
 def measure_held(tilted: Tilted) -> Iterator[Measurement]:
-    """The mould's wall, all round the plate but for the weir: from the silicone's level at the
-    gripper end, which is the least above the floor, to some height over it."""
+    """The mould's wall, all round the plate but for the weir, at heights about the silicone's
+    level."""
     design, mould = tilted.design, tilted.design.mould
     turned = tilted.mould.copy()
     corners = turned.vertices - (0.0, tilted.pivot_y_mm, 0.0)
     sine, cosine = math.sin(tilted.tilt), math.cos(tilted.tilt)
     turned.vertices = corners @ np.array([[1, 0, 0], [0, cosine, sine], [0, -sine, cosine]])
-    gaps = []
+    edge, gaps = shapely.Polygon(design.outline.polygon() * (1, -1)), []
     for over_mm in _OVER_LEVEL_MM:
         height = tilted.level_mm + over_mm
-        away = shapely.Polygon(design.outline.polygon() * (1, -1))
 
         def seen(points: solids.Vectors, height: float = height) -> solids.Vectors:
             """Places of the plate's edge at a height over the table, seen from above."""
@@ -192,7 +185,7 @@ def measure_held(tilted: Tilted) -> Iterator[Measurement]:
             return np.column_stack([points[:, 0], along_mm])
 
         end_y = float(seen(np.array([[0.0, -design.outline.end_y_mm]]))[0, 1])
-        places = along(shapely.transform(away, seen), end_y, tilted.finger.notch)
+        places = along(shapely.transform(edge, seen), end_y, tilted.finger.notch)
         gaps.append(float(distances(turned, height, places).max()))
     high = tilted.over_rim_mm(design.outline.tip_y_mm) + OVER_MM
     leans = high * math.tan(math.radians(mould.draft_deg))

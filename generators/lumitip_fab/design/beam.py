@@ -39,7 +39,7 @@ class Layer:
     glued: bool = True
     """Whether it does not slip on the others."""
     strips: "tuple[Layer, ...]" = ()
-    """What of it lies within the width of the coupling's block, and what beside it."""
+    """Its part within the width of the coupling's block, and that beside it."""
 
     @property
     def middle_mm(self) -> Vectors:
@@ -90,6 +90,7 @@ def rectangles(
 
 
 def _summed(modulus_mpa: float, sign: Vectors, sides: Block, glued: bool) -> Layer:
+    """Rectangles on both sides of u = 0, each with its sign, as one layer without strips."""
     inner, outer, front, back = sides
     there = (back > front) & (outer > inner)
     wide = np.where(there, 2 * sign * (outer - inner), 0.0)
@@ -217,7 +218,7 @@ class Beam:
         return np.asarray(pull * self.arm_mm / self.stiffness_nmm2)
 
     def summed(self, per_mm: Vectors, at_h_mm: Vectors) -> Vectors:
-        """What a figure of a unit of length comes to, from the mount plane to heights."""
+        """Sum of a figure of a unit of length, from the mount plane to heights."""
         h = np.concatenate([[0.0], self.h_mm])
         each = np.concatenate([[per_mm[0]], per_mm])
         steps = (each[1:] + each[:-1]) / 2 * np.diff(h)

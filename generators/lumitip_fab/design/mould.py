@@ -65,11 +65,15 @@ class Mould:
         """Height of the silicone over the rim plane, as the mould stands while it cures."""
         return sum(prop.level_mm(y_mm) for prop in self.props)
 
+    @property
+    def level_slope(self) -> float:
+        """Height that this level gains for each mm towards the tip."""
+        return sum(prop.slope for prop in self.props)
+
     def lip_length_mm(self, outline: Outline, tip: Tip) -> float:
         """From the tip edge to where the silicone's level meets the back of the plate."""
-        rise = self.level_mm(1.0) - self.level_mm(0.0) + tip.slope
         over = self.level_mm(outline.tip_y_mm) - tip.edge_mm
-        return over / rise if self.props else 0.0
+        return over / (self.level_slope + tip.slope) if self.props else 0.0
 
     def stops_mm(self, cover_mm: float) -> float:
         """Height of the stops over the bed, by the silicone's cover of the plate."""

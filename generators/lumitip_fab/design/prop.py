@@ -46,6 +46,11 @@ class Prop:
         """Path of its STL below the output folder."""
         return f"mould/{self.name}.stl"
 
+    @property
+    def slope(self) -> float:
+        """Of the level to the mould."""
+        return math.tan(math.radians(self.tilt_deg))
+
     @overload
     def level_mm(self, y_mm: float) -> float: ...
 
@@ -55,4 +60,4 @@ class Prop:
     def level_mm(self, y_mm: float | NDArray[np.float64]) -> float | NDArray[np.float64]:
         """Height of the silicone over the rim plane, at one or several y of the sensor frame. That
         of a liquid at rest: what it creeps up the wall is not in it."""
-        return (y_mm - self.weir_y_mm) * math.tan(math.radians(self.tilt_deg))
+        return (y_mm - self.weir_y_mm) * self.slope

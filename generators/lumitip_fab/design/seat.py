@@ -15,7 +15,7 @@ from lumitip_fab.design.mount import Mount
 
 @dataclass(frozen=True)
 class Foot:
-    """What stands on the gripper, in the mount frame."""
+    """Face of a finger that stands on the gripper, in the mount frame."""
 
     back_mm: float
     """Greatest w."""

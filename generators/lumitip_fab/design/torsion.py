@@ -53,7 +53,7 @@ def _across_nmm2(strip: Iterable[Layer]) -> tuple[Vectors, Vectors]:
 
 
 def _compact(across: Vectors, side: Vectors) -> Vectors:
-    """What is left of a thin section's stiffness, by the stiffness of its two axes."""
+    """Share of a thin section's stiffness that a compact one has, by that of its two axes."""
     low, high = np.minimum(across, side), np.maximum(across, side)
     flat = np.sqrt(low / np.maximum(high, 1e-12))
     rectangle = 1 - 0.63 * flat * (1 - flat**4 / 12)

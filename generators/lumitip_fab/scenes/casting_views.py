@@ -48,7 +48,7 @@ class Cast:
     prop: Mesh | None = None
     """Under the gripper end, where the mould is tilted."""
     slope: float = 0.0
-    """What the silicone's level rises for each mm towards the tip."""
+    """Height that the silicone's level gains for each mm towards the tip."""
 
     def turned(self, names: tuple[str, ...], by_deg: float) -> dict[str, Mesh]:
         """Layers of the finger, turned about its tip edge, the gripper end up."""

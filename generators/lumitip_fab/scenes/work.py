@@ -79,7 +79,7 @@ def _cast(design: Design, finger: Finger, layers: dict[str, Mesh], files: Files)
         -design.outline.tip_y_mm,
         tuple(_laid(design.mould, insert) for insert in design.mould.inserts),
         _prop(design, files),
-        design.mould.level_mm(1.0) - design.mould.level_mm(0.0),
+        design.mould.level_slope,
     )
 
 

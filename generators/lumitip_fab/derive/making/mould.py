@@ -157,7 +157,7 @@ def _letter(
         room_mm=high - low,
         wall_mm=wall + least - (high - low),
     )
-    end_mm = wall + TROUGH_MM - (outline.end_y_mm - _outside_mm(config, stack) - LEDGE_MM)
+    end_mm = wall + TROUGH_MM - _weir_y_mm(config, outline, stack)
     return letter_on(low, high, min(DEPTH_MM, wall - p.printer.min_wall_mm), end_mm, line_mm)
 
 
@@ -166,6 +166,11 @@ def _outside_mm(config: Input, stack: Stack) -> float:
     mould = config.parameters.mould
     rise = stack.guided_mm * math.tan(math.radians(mould.draft_deg))
     return mould.wall_gap_mm + rise + mould.wall_mm
+
+
+def _weir_y_mm(config: Input, outline: Outline, stack: Stack) -> float:
+    """Outer edge of the weir, where the trough begins."""
+    return outline.end_y_mm - _outside_mm(config, stack) - LEDGE_MM
 
 
 def _prop(
@@ -178,11 +183,10 @@ def _prop(
     layer_mm: float,
 ) -> Prop:
     """The prop under the mould's end at `end_y_mm`; as wide as the wire notch."""
-    outside = _outside_mm(config, stack)
-    weir_y, tip_y = outline.end_y_mm - outside - LEDGE_MM, outline.tip_y_mm + outside
+    tip_y = outline.tip_y_mm + _outside_mm(config, stack)
+    ends = _weir_y_mm(config, outline, stack), end_y_mm, tip_y
     half = max(finger.notch.x_max_mm for finger in (plan.emitter, plan.receiver))
-    lip = config.parameters.mould.tip_lip_mm
-    return derive_prop(lip, outline, tip, (weir_y, end_y_mm, tip_y), half, layer_mm)
+    return derive_prop(config.parameters.mould.tip_lip_mm, outline, tip, ends, half, layer_mm)
 
 
 def _flat(
