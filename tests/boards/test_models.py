@@ -15,7 +15,7 @@ from lumitip_fab.boards.placed import placed_box
 from lumitip_fab.boards.placement import place
 from lumitip_fab.catalogue.controllers import Shroud, Strip
 from lumitip_fab.checks.models import _seen
-from lumitip_fab.design import Box, Design, footprints
+from lumitip_fab.design import Design, footprints
 from lumitip_fab.design.encoding import read_design
 from lumitip_fab.design.frames import on_board_page
 from lumitip_fab.errors import BuildError
@@ -58,10 +58,7 @@ def parts_of(design: Design, name: str) -> tuple[PlacedComponent, ...]:
 def wanted(part: PlacedComponent, pcb_mm: float) -> tuple[float, ...]:
     """The box round a part in KiCad's export: y up, z from the board's back."""
     shape = part.footprint
-    seen, shroud = _seen(shape), shape.shroud
-    if shroud and shroud.facing == "south":
-        seen = Box(-seen.x_max_mm, -seen.x_min_mm, -seen.y_max_mm, -seen.y_min_mm)
-    box = placed_box(part, seen)
+    box = placed_box(part, _seen(shape))
     (left, low), (right, high) = (
         on_board_page(at) for at in ((box.x_min_mm, box.y_min_mm), (box.x_max_mm, box.y_max_mm))
     )
@@ -188,12 +185,11 @@ def test_two_bodies_of_one_name_are_refused(designs: Callable[[str], Design]) ->
 
 
 def test_a_shroud_is_drawn_on_the_side_of_its_plug() -> None:
-    for facing, low, high in (("north", 3.11, 12.01), ("south", -12.01, -3.11)):
-        shape = footprints.rows("Header", HEADER, facing)
-        box = shape.shroud.box
-        assert (box.y_min_mm, box.y_max_mm) == pytest.approx((low, high))
-        assert shape.library_name == f"{shape.name}_{facing.title()}"
-        body, shroud, *notch = body_strokes(shape)
-        assert sorted({x for x, _ in shroud.points}) == pytest.approx([-7.64, 7.64])
-        assert [points.points[0][0] for points in notch] == pytest.approx([-2.05, 2.05])
-        assert max(abs(y) for _, y in body.points) == pytest.approx(2.54)
+    shape = footprints.rows("Header", HEADER)
+    assert shape.shroud is not None
+    box = shape.shroud.box
+    assert (box.y_min_mm, box.y_max_mm) == pytest.approx((3.11, 12.01))
+    body, shroud, *notch = body_strokes(shape)
+    assert sorted({x for x, _ in shroud.points}) == pytest.approx([-7.64, 7.64])
+    assert [points.points[0][0] for points in notch] == pytest.approx([-2.05, 2.05])
+    assert max(abs(y) for _, y in body.points) == pytest.approx(2.54)

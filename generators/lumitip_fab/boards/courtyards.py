@@ -45,10 +45,10 @@ def with_courtyards(board: Placement) -> Placement:
     parts = board.components
     if not parts:
         return board
-    inner = {shape.library_name: land(shape) for shape in (part.footprint for part in parts)}
+    inner = {shape.name: land(shape) for shape in (part.footprint for part in parts)}
     least: dict[str, float] = {}
     for part, around in zip(parts, _around_mm(parts, inner).tolist(), strict=True):
-        name = part.footprint.library_name
+        name = part.footprint.name
         least[name] = min(around, least.get(name, around))
     drawn = tuple(
         part
@@ -57,7 +57,7 @@ def with_courtyards(board: Placement) -> Placement:
             part, courtyard=inner[name].grown(least[name]), shroud_yard=_shroud_yard(part)
         )
         for part in parts
-        for name in (part.footprint.library_name,)
+        for name in (part.footprint.name,)
     )
     return dataclasses.replace(board, components=drawn)
 
@@ -84,7 +84,7 @@ def _usual_mm(part: PlacedComponent) -> float:
 def _gaps_mm(parts: tuple[PlacedComponent, ...], inner: dict[str, Box]) -> NDArray[np.float64]:
     """Gaps between all parts of a side; infinite between sides, and of a part to itself."""
     boxes = [
-        placed_box(p, p.courtyard if p.kind == "fiducial" else inner[p.footprint.library_name])
+        placed_box(p, p.courtyard if p.kind == "fiducial" else inner[p.footprint.name])
         for p in parts
     ]
     left, right, low, high = np.array(

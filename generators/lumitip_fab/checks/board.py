@@ -12,6 +12,7 @@ import shapely
 from lumitip_fab.checks import board_copper
 from lumitip_fab.checks.board_circuit import measure_channels, measure_contact_map
 from lumitip_fab.checks.board_finger import measure_cell_prints, measure_cells, measure_flexible
+from lumitip_fab.checks.board_headers import measure_shrouds, measure_sockets
 from lumitip_fab.checks.board_indicator import measure_bulk, measure_indicator
 from lumitip_fab.checks.board_order import measure_wire_order
 from lumitip_fab.checks.board_probes import measure_probes
@@ -19,7 +20,7 @@ from lumitip_fab.checks.board_protection import measure_protection
 from lumitip_fab.checks.board_read import ReadBoard, names_of, path_of, placed, read_any
 from lumitip_fab.checks.board_silk import measure_labels, measure_prints, measure_targets
 from lumitip_fab.checks.board_strings import measure_strings, measure_switch
-from lumitip_fab.checks.board_ties import measure_shrouds, measure_ties
+from lumitip_fab.checks.board_ties import measure_ties
 from lumitip_fab.checks.plug_in import measure_plug_in
 from lumitip_fab.checks.readers.kicad_board import Part, Terminal
 from lumitip_fab.checks.result import Measure, Measurement, measured, unreadable
@@ -120,7 +121,7 @@ def footprints_of(read: ReadBoard) -> dict[str, Footprint]:
         row = read.finger.connector
         ways = len(row.signals)
         shapes.append(footprints.row("WirePads", ways, row.pitch_mm, row.pad_mm, row.drill_mm))
-    return {shape.library_name: shape for shape in shapes}
+    return {shape.name: shape for shape in shapes}
 
 
 def as_it_lies(read: ReadBoard, part: Part, shapes: dict[str, Footprint]) -> Component | None:
@@ -257,6 +258,7 @@ MEASURES: tuple[Measure[ReadBoard], ...] = (
     measure_probes,
     measure_protection,
     measure_shrouds,
+    measure_sockets,
 )
 """Each applies to the boards that have what it measures: a finger's cells, the contacts of a
 coupling, a regulator's hot loop, an antenna's keep-out, flexible layers …"""

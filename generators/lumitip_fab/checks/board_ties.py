@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from shapely import affinity
 from shapely.geometry.base import BaseGeometry
 
-from lumitip_fab.checks.board_read import ReadBoard, lands
+from lumitip_fab.checks.board_read import ReadBoard
 from lumitip_fab.checks.readers.kicad_board import Part
 from lumitip_fab.checks.result import Measurement
 from lumitip_fab.design import Box, Finger
@@ -129,33 +129,3 @@ def _least_mm(discs: list[BaseGeometry], others: list[BaseGeometry]) -> float:
         return math.nan
     tree = shapely.union_all(others)
     return min(float(tree.distance(disc)) for disc in discs) if others else math.inf
-
-
-ROOM_MM = 0.25
-"""From a shroud to the pads of other parts, at least."""
-
-
-def measure_shrouds(read: ReadBoard) -> Iterator[Measurement]:
-    """Least room from a shroud to the pads of other parts on its face, or with a hole."""
-    shrouds = {
-        device.ref: lying(device.footprint.shroud.box, read.parts[device.ref])
-        for device in read.components
-        if device.footprint.shroud and device.ref in read.parts
-    }
-    front = read.board.layers[0]
-    pads = [
-        (part.ref, copper.area)
-        for part, pad, copper in lands(read.board)
-        if pad.drill_mm or front in copper.layers
-    ]
-    rooms = {
-        (ref, other): float(shapely.distance(shroud, area))
-        for ref, shroud in shrouds.items()
-        for other, area in pads
-        if other != ref
-    }
-    if not rooms:
-        return
-    nearest = min(rooms, key=lambda pair: rooms[pair])
-    note = f"from the shroud of {nearest[0]} to {nearest[1]}"
-    yield read.figure("shroud_room", rooms[nearest], ROOM_MM, math.inf, note=note)

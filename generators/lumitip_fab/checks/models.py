@@ -21,7 +21,7 @@ _STRAIGHT, _WHOLE = (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)
 
 def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     """Models that are missing or turned, board by board; then the size of each model, once."""
-    known = {shape.library_name: shape for _, shape in footprints.of_design(design)}
+    known = {shape.name: shape for _, shape in footprints.of_design(design)}
     sizes: dict[Path, Footprint] = {}
     for name in names_of(design):
         try:
@@ -38,7 +38,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
             if path is None or shape is None or not path.is_file():
                 lost.append(part.ref)
                 continue
-            if not _straight(part.models[0], shape):
+            if not _straight(part.models[0]):
                 turned.append(part.ref)
             sizes[path] = shape
         for check, wrong in (("files", lost), ("places", turned)):
@@ -56,12 +56,9 @@ def _path(outputs: Path, board: str, models: tuple[Model, ...]) -> Path | None:
     return path if path.is_relative_to(outputs.resolve()) else None
 
 
-def _straight(model: Model, shape: Footprint) -> bool:
-    """Whether a model lies in its footprint's frame; a box header's faces its plug."""
-    south = shape.shroud is not None and shape.shroud.facing == "south"
-    wanted = (0.0, 0.0, 180.0 if south else 0.0)
-    placed = model.offset_mm == _STRAIGHT and model.scale == _WHOLE
-    return placed and model.rotate_deg == wanted
+def _straight(model: Model) -> bool:
+    """Whether a model lies in its footprint's frame."""
+    return model.offset_mm == model.rotate_deg == _STRAIGHT and model.scale == _WHOLE
 
 
 def _size(path: Path, subject: str, shape: Footprint) -> Measurement:
@@ -79,13 +76,12 @@ def _size(path: Path, subject: str, shape: Footprint) -> Measurement:
 
 
 def _seen(shape: Footprint) -> Box:
-    """A package from above: body and leads, or the shroud, facing north, and the pins behind."""
+    """A package from above: body and leads, or the shroud and the pins behind it."""
     body, tips = shape.body, shape.lead_tips_mm / 2
     if shape.shroud is None:
         return Box(
             body.x_min_mm, body.x_max_mm, min(body.y_min_mm, -tips), max(body.y_max_mm, tips)
         )
     box = shape.shroud.box
-    front = max(box.y_max_mm, -box.y_min_mm)
     pins = min(pad.y_mm for pad in shape.pads) - _HALF_PIN_MM
-    return Box(box.x_min_mm, box.x_max_mm, pins, front)
+    return Box(box.x_min_mm, box.x_max_mm, pins, box.y_max_mm)

@@ -109,10 +109,11 @@ def leaded(
 def strip(
     ref: str, value: str, entry: Strip, nets: tuple[str, ...], at: Point, pins: tuple[str, ...]
 ) -> Component:
-    """Two rows of contacts, counter-clockwise from the lower left; a plug goes into a box header
-    from the nearer end of the board."""
-    shape = footprints.rows("Header", entry, "north" if at[1] > 0 else "south")
-    return mounted(ref, "header", value, entry, shape, numbered(nets), at, pins=pins)
+    """Two rows of contacts, counted across both; a plug goes into a box header from the nearer
+    end of the board."""
+    shape = footprints.rows("Header", entry)
+    angle_deg = 180.0 if shape.shroud and at[1] < 0 else 0.0
+    return mounted(ref, "header", value, entry, shape, numbered(nets), at, angle_deg, pins)
 
 
 def from_behind(device: Component, places: Sequence[Point]) -> Component:

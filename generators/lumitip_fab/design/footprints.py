@@ -9,7 +9,7 @@ from lumitip_fab.catalogue.controllers import Leaded, Module, Strip
 from lumitip_fab.catalogue.current_sources import CurrentSource
 from lumitip_fab.catalogue.electronics import Chip, Multiplexer, ResistorArray
 from lumitip_fab.design import Design
-from lumitip_fab.design.pcb import Facing, Footprint, Form, Pad, Shroud
+from lumitip_fab.design.pcb import Footprint, Form, Pad, Shroud
 from lumitip_fab.design.shape import Box
 
 DOT_MM = 1.0
@@ -153,33 +153,34 @@ def socket(strip: Strip) -> Footprint:
     return replace(bare, height_mm=strip.height_mm, form="socket")
 
 
-def rows(name: str, strip: Strip, facing: Facing = "north") -> Footprint:
-    """Two rows of plated holes along x, counted counter-clockwise from the lower left.
+def rows(name: str, strip: Strip) -> Footprint:
+    """Two rows of plated holes along x, counted as the contacts of a ribbon cable's socket are:
+    across both rows from the left, 1 in the row away from the plug, which goes in from +y.
 
     Args:
         name: first part of the footprint's name.
         strip: the part on it.
-        facing: side where the plug goes into a box header.
+
+    Source: IDC-Header_2x07_P2.54mm_Horizontal of KiCad's libraries.
     """
     ways, pitch = strip.ways, strip.pitch_mm
+    size = strip.pad_mm, strip.pad_mm
     pads = []
     for i in range(2 * ways):
-        place, y = (i, -pitch / 2) if i < ways else (2 * ways - 1 - i, pitch / 2)
-        x = (place - (ways - 1) / 2) * pitch
-        size = strip.pad_mm, strip.pad_mm
+        column, row = divmod(i, 2)
+        x, y = pitch * (column - (ways - 1) / 2), pitch * (row - 0.5)
         pads.append(Pad(str(i + 1), x, y, *size, i > 0, strip.drill_mm, False))
     full_name = f"{name}_2x{ways:02d}_P{pitch:.2f}mm_D{strip.drill_mm:.2f}mm"
-    shroud = _shroud(strip.shroud, pitch, facing) if strip.shroud else None
+    shroud = _shroud(strip.shroud, pitch) if strip.shroud else None
     form: Form = "springs" if strip.stroke_mm else "box header" if shroud else "header"
     body = _body(ways * pitch, 2 * pitch)
     return Footprint(full_name, tuple(pads), body, strip.height_mm, form, shroud=shroud)
 
 
-def _shroud(entry: catalogue.Shroud, pitch_mm: float, facing: Facing) -> Shroud:
+def _shroud(entry: catalogue.Shroud, pitch_mm: float) -> Shroud:
     length, depth = entry.body_mm
     back = pitch_mm / 2 + entry.beyond_mm
-    low, high = (back, back + depth) if facing == "north" else (-back - depth, -back)
-    return Shroud(Box(-length / 2, length / 2, low, high), entry.notch_mm, facing)
+    return Shroud(Box(-length / 2, length / 2, back, back + depth), entry.notch_mm)
 
 
 def dot(name: Literal["TestPoint", "Fiducial"], pad_mm: float = DOT_MM) -> Footprint:

@@ -32,19 +32,14 @@ Form = Literal[
 ]
 """Kinds of bodies; bare copper has none."""
 
-Facing = Literal["north", "south"]
-"""To positive or to negative y."""
-
 
 @dataclass(frozen=True)
 class Shroud:
-    """The shroud of a right-angle box header, in its footprint's frame."""
+    """The shroud of a right-angle box header in its footprint's frame; the plug goes in from +y."""
 
     box: Box
     notch_mm: float
     """Width of the notch in the middle of its upper wall."""
-    facing: Facing
-    """Side where the plug goes in."""
 
 
 MODELS = "boards/models"
@@ -68,13 +63,8 @@ class Footprint:
     shroud: Shroud | None = None
 
     @property
-    def library_name(self) -> str:
-        """Name in KiCad's library: by it the sides of a box header differ."""
-        return f"{self.name}_{self.shroud.facing.title()}" if self.shroud else self.name
-
-    @property
     def model(self) -> str:
-        """File name of its 3D model; empty for bare copper. A box header's faces north."""
+        """File name of its 3D model; empty for bare copper."""
         return "" if self.form == "bare" else f"{self.name}.step"
 
 

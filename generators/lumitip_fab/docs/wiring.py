@@ -118,17 +118,12 @@ def _fed_by(cabling: Cabling) -> str:
         return passage(_TEXTS, "alone")
     plugged = [w for w in cabling.cables[2].wires if w.end.board == "flange"]
     headers = {wire.end.connector for wire in plugged}
-    contacts = ", ".join(f"{w.number} goes to {_contacts(w.end.order)}" for w in plugged)
+    contacts = ", ".join(f"{w.number} goes to contact {w.end.pin}" for w in plugged)
     lit = any(wire.signal == "5V" for wire in cabling.cables[0].wires)
     return passage(_TEXTS, "lit" if lit else "fed") + "".join(
         passage(_TEXTS, "at_flange").format(header=header, contacts=contacts)
         for header in sorted(headers)
     )
-
-
-def _contacts(column: int) -> str:
-    """Contacts of a socket in a column of a header, from the square pad on."""
-    return f"contact {2 * column - 1} or {2 * column}"
 
 
 def fed(cabling: Cabling) -> bool:

@@ -61,12 +61,11 @@ def springs(shape: Footprint) -> tuple[Named, ...]:
 
 
 def box_header(shape: Footprint) -> tuple[Named, ...]:
-    """A right-angle box header that faces north: the shroud with its notch above, and the pins."""
+    """A right-angle box header: the shroud with its notch above, and the pins."""
     shroud, height = shape.shroud, shape.height_mm
     if shroud is None:
         raise ValueError(f"{shape.name} has no shroud")
-    # Alike but for half a turn, by which the board's file turns the model of one that faces south.
-    box = shroud.box if shroud.facing == "north" else _turned(shroud.box)
+    box = shroud.box
     front = box.y_max_mm
     cavity = Box(
         box.x_min_mm + _WALL_MM, box.x_max_mm - _WALL_MM, box.y_min_mm + _BACK_MM, front + _WALL_MM
@@ -80,10 +79,6 @@ def box_header(shape: Footprint) -> tuple[Named, ...]:
     pins = [_pin(shape, pad, box) for pad in shape.pads]
     body = box_solid(box, 0.0, height).cut(*hollow).cut(*pins)
     return Named("shroud", [body], PLASTIC), Named("pins", pins, GOLD)
-
-
-def _turned(box: Box) -> Box:
-    return Box(-box.x_max_mm, -box.x_min_mm, -box.y_max_mm, -box.y_min_mm)
 
 
 def _pin(shape: Footprint, pad: Pad, box: Box) -> Solid:

@@ -70,7 +70,7 @@ def library_file(component: PlacedComponent) -> bytes:
         nets=(),
         ref_text=None,
     )
-    return _library(shape.library_name, _Writer(plain, {}, LIBRARY).contents())
+    return _library(shape.name, _Writer(plain, {}, LIBRARY).contents())
 
 
 def hole_library_file(hole_mm: float) -> bytes:
@@ -135,7 +135,7 @@ class _Writer:
         x, y = on_board_page((part.x_mm, part.y_mm))
         return (
             "footprint",
-            sexpr.Quoted(f"{LIBRARY}:{shape.library_name}"),
+            sexpr.Quoted(f"{LIBRARY}:{shape.name}"),
             ("layer", sexpr.Quoted(self.layer("Cu"))),
             ("tstamp", self.own),
             ("at", x, y, self.angle),

@@ -49,13 +49,12 @@ def model(shape: Footprint) -> Iterator[Node]:
     """The 3D model, in the footprint's frame; none of bare copper."""
     if not shape.model:
         return
-    turn_deg = 180 if shape.shroud and shape.shroud.facing == "south" else 0
     yield (
         "model",
         Quoted(f"{_FOLDER}/{shape.model}"),
         ("offset", ("xyz", 0, 0, 0)),
         ("scale", ("xyz", 1, 1, 1)),
-        ("rotate", ("xyz", 0, 0, turn_deg)),
+        ("rotate", ("xyz", 0, 0, 0)),
     )
 
 

@@ -86,7 +86,7 @@ def project_files(model: BoardModel, thickness_mm: float) -> dict[str, bytes]:
         thickness_mm: of the finished board.
     """
     board = model.placement
-    shapes = {c.footprint.library_name: c for c in board.components}
+    shapes = {c.footprint.name: c for c in board.components}
     sizes = {board.hole_mm, *(diameter_mm for _, diameter_mm in board.unplated)}
     holes = {hole_name(size): hole_library_file(size) for size in sorted(sizes)}
     mods = {name: library_file(c) for name, c in sorted(shapes.items())} | holes

@@ -109,8 +109,8 @@ def _at_contacts(page: Page, part: PlacedComponent) -> None:
     """The name of each contact beside it: all along their row if they fit, else upright; where
     that finds no room, along the row and a little aside."""
     pads = placed_pads(part)
-    apart = [abs(a.x_mm - b.x_mm) for a, b in pairwise(pads) if a.y_mm == b.y_mm]
-    pitch = min(apart, default=0.0)
+    columns = sorted({round(pad.x_mm, 6) for pad in pads})
+    pitch = min((b - a for a, b in pairwise(columns)), default=0.0)
     flat = max(map(page.length_mm, part.pins)) + page.rules.silk_gap_mm < pitch
     inward = 1.0 if part.y_mm < page.board.outline.centre_mm[1] else -1.0
     drawn = part.footprint.body.y_max_mm if part.outline else 0.0
@@ -182,15 +182,14 @@ def draw_shroud(page: Page, part: PlacedComponent) -> None:
 def _arrows(part: PlacedComponent, shroud: Shroud) -> Iterator[_Lines]:
     """Arrows within the notch, those nearest the front first; heads alone where that is all that
     has room."""
-    out = 1.0 if shroud.facing == "north" else -1.0
     x, y = shroud.box.centre_mm
     depth = shroud.box.length_mm
     for whole in (True, False):
         for k in range(int(depth / _STEP_MM)):
-            tip = y + out * (depth / 2 - k * _STEP_MM)
-            low = tip - out * _HEAD_MM
+            tip = y + depth / 2 - k * _STEP_MM
+            low = tip - _HEAD_MM
             head = ((x - _HEAD_MM, low), (x, tip), (x + _HEAD_MM, low))
-            shaft = ((x, tip), (x, tip - out * _SHAFT_MM))
+            shaft = ((x, tip), (x, tip - _SHAFT_MM))
             yield [_on_board(part, line) for line in ((head, shaft) if whole else (head,))]
 
 

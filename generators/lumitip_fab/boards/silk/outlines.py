@@ -94,7 +94,7 @@ def _outline(component: Component, rules: Rules, gap_mm: float) -> tuple[Stroke,
         fits = gap_mm >= 2 * rules.silk_gap_mm + rules.silk_line_mm - _NOISE_MM
         return (_bar(shape, rules),) if fits else _beside(shape, rules)
     if kind in ("socket", "header"):
-        return _socket(shape.body, rules)
+        return _socket(shape, rules)
     if kind in ("regulator", "current source", "transistor", "switch"):
         return (_dot(shape.pads[0], rules, _BAR_MM),)
     if kind in ("tvs diode", "esd diode", "indicator"):
@@ -195,11 +195,13 @@ def _module(shape: Footprint, rules: Rules) -> tuple[Stroke, ...]:
     )
 
 
-def _socket(body: Box, rules: Rules) -> tuple[Stroke, ...]:
-    """The body's outline, and a bar at its first contact."""
-    pen = rules.silk_line_mm
+def _socket(shape: Footprint, rules: Rules) -> tuple[Stroke, ...]:
+    """The body's outline, and a bar beside its first contact."""
+    body, first, pen = shape.body, shape.pads[0], rules.silk_line_mm
     inner = body.grown(-pen / 2)
     left, right, low, high = inner.x_min_mm, inner.x_max_mm, inner.y_min_mm, inner.y_max_mm
     around = ((left, low), (right, low), (right, high), (left, high), (left, low))
-    bar = body.x_min_mm - rules.silk_gap_mm - _BAR_MM / 2
-    return Stroke(around, pen), Stroke(((bar, low / 2), (bar, high / 2)), _BAR_MM)
+    end = math.copysign(body.x_max_mm + rules.silk_gap_mm + _BAR_MM / 2, first.x_mm)
+    reach = (high - abs(first.y_mm)) / 2
+    bar = (end, first.y_mm - reach), (end, first.y_mm + reach)
+    return Stroke(around, pen), Stroke(bar, _BAR_MM)

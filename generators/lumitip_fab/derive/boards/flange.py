@@ -127,9 +127,11 @@ def _strips(config: Input) -> tuple[Component, ...]:
     contacts = from_behind(rows, places)
     both = []
     for ref, at, signals in zip(("J2", "J3"), HEADERS_AT, p.headers, strict=True):
-        there = tuple(called.get(signal, signal) for signal in signals)
-        around = (*there, *reversed(there))
-        both.append(strip(ref, p.header, parts.header, around, at, around))
+        # Contacts are counted from the left of one who looks where the cable goes.
+        counted = signals if at[1] > 0 else reversed(signals)
+        each = parts.header.rows
+        across = tuple(called.get(signal, signal) for signal in counted for _ in range(each))
+        both.append(strip(ref, p.header, parts.header, across, at, across))
     return contacts, *both
 
 

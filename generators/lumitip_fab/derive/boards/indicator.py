@@ -121,7 +121,7 @@ OUTPUT_AT: Point = (6.9, 17.3)
 SUPPLY_AT: Point = (9.6, 17.3)
 GROUND_AT: Point = (12.5, 17.3)
 INPUT_AT: Point = (3.9, 7.4)
-DATA_AT: tuple[Point, ...] = ((6.6, -15.65), (6.6, -17.4), (6.6, -13.9))
+DATA_AT: tuple[Point, ...] = ((7.0, -15.65), (7.0, -17.4), (7.0, -13.9))
 
 
 def flange_probes(

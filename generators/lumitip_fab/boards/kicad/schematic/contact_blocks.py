@@ -25,7 +25,7 @@ def draw_strips(draft: Draft, parts: Sequence[Component], x: float = 0.0) -> Non
 
 
 def is_header(part: Component) -> bool:
-    """Whether a part is a plug with two rows, whose contacts are counted round."""
+    """Whether a part is a plug with two rows, whose contacts are counted across both."""
     whole = len(part.nets) == len(part.footprint.pads) and len(part.nets) % 2 == 0
     return part.kind == "header" and part.side == "front" and whole
 
@@ -79,10 +79,9 @@ def _header(draft: Draft, part: Component, x: float) -> float:
     beside = max(place[0] for place in shapes.pins_of(shape).values())
     names = _names_mm(dict(part.nets))
     pins = _placed(draft, part, f"Header_{part.ref}", shape, (x + names + beside, 0.0))
-    half = len(numbers) // 2
-    _ends(draft, [(net, pins[number]) for number, net in part.nets[:half]], -1)
-    _ends(draft, [(net, pins[number]) for number, net in reversed(part.nets[half:])], 1)
-    _open(draft, part, x + names, half)
+    _ends(draft, [(net, pins[number]) for number, net in part.nets[::2]], -1)
+    _ends(draft, [(net, pins[number]) for number, net in part.nets[1::2]], 1)
+    _open(draft, part, x + names, len(numbers) // 2)
     return x + 2 * (names + beside)
 
 

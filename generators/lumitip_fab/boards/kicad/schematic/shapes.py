@@ -65,16 +65,13 @@ def strip(part: Component, pads: Sequence[str], side: int) -> Node:
 
 
 def header(part: Component, pads: Sequence[str]) -> Node:
-    """Two columns of contacts, counter-clockwise from the upper left."""
+    """Two columns of contacts, counted across both, from the upper left."""
     ways = len(pads) // 2
     half = up_to_grid(2 * PITCH_MM)
     pins = [
-        pin(pad, -half - _LEAD_MM, -row * PITCH_MM, 0, _LEAD_MM)
-        for row, pad in enumerate(pads[:ways])
-    ]
-    pins += [
-        pin(pad, half + _LEAD_MM, -row * PITCH_MM, 180, _LEAD_MM)
-        for row, pad in enumerate(reversed(pads[ways:]))
+        pin(pad, side * (half + _LEAD_MM), -row * PITCH_MM, angle_deg, _LEAD_MM)
+        for side, angle_deg, column in ((-1, 0, pads[::2]), (1, 180, pads[1::2]))
+        for row, pad in enumerate(column)
     ]
     foot = (ways - 0.5) * PITCH_MM
     dots = [

@@ -114,7 +114,7 @@ class _Writer:
 
 def _field_texts(drawn: Drawn, part: Component | None) -> dict[str, tuple[str, Point | None]]:
     """Text of each field of a symbol and its place beside it; a field without a place is hidden."""
-    footprint = f"{symbols.LIBRARY}:{part.footprint.library_name}" if part else ""
+    footprint = f"{symbols.LIBRARY}:{part.footprint.name}" if part else ""
     texts = {
         "Reference": (drawn.ref, drawn.ref_at),
         "Value": (drawn.value, drawn.value_at),
