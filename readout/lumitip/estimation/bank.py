@@ -1,7 +1,6 @@
 """`Bank`: values of the cells at some 7,000 poses, compared with a frame in one product."""
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +12,10 @@ POSES = 7000
 """Approximate number of poses: steps of 2 degrees and half a millimetre on the published grid,
 which have the same effect at the far cells."""
 _APART_DEG, _APART_MM = 3.0, 0.7
+_FEW = 400
+"""Poses of the greatest scores, which usually hold enough that are no neighbours."""
 _TINY = 1e-6
+_AT_ONCE = 1 << 16  # shares that are looked up together, which takes a few MB for each 10,000
 _LEAST = 0.02  # root mean square share of light below which a template is left out
 
 
@@ -25,6 +27,8 @@ class Bank:
     """Shape `(n, entries)`, without `light` and `taken`."""
     shares: NDArray[np.float32]
     """Share of the light that each pose takes, shape `(n, cells)`."""
+    squares: NDArray[np.float32]
+    """Of the shares."""
     templates: NDArray[np.float32]
     """The shares without their mean, normalised to unit length."""
     apart: Floats
@@ -43,7 +47,9 @@ class Bank:
             poses: shape `(n, entries)`.
             weights: of each cell, 0 for cells to ignore, shape `(cells,)`.
         """
-        shares = shape.shares(poses)
+        few = max(_AT_ONCE // weights.size, 1)
+        parts = [shape.shares(poses[i : i + few]) for i in range(0, len(poses), few)]
+        shares = np.concatenate(parts)
         centred = shares - (shares @ weights)[:, None] / weights.sum()
         sizes = np.sqrt(centred**2 @ weights)
         shown = sizes > _LEAST * np.sqrt(weights.sum())
@@ -54,7 +60,7 @@ class Bank:
         )
         opaque, signed = shape.kind == "cable", shape.kind == "edge"
         shares, templates = shares[shown].astype(np.float32), templates.astype(np.float32)
-        return cls(poses[shown], shares, templates, apart, opaque, signed)
+        return cls(poses[shown], shares, shares**2, templates, apart, opaque, signed)
 
     def best(self, light: Floats, weights: Floats) -> tuple[Floats, float]:
         """The pose whose template is most similar to a frame, shape `(entries,)`, and the share of
@@ -85,7 +91,7 @@ class Bank:
         weights = scale**2
         whole, mean = float(weights.sum()), float(weights @ light)
         by_cell = weights.astype(np.float32)
-        taken, squares = self.shares @ by_cell, self._squares @ by_cell
+        taken, squares = self.shares @ by_cell, self.squares @ by_cell
         both = self.shares @ (weights * light).astype(np.float32)
         if self.opaque:  # only the light beside the object is free
             turned = np.zeros(taken.size, bool)
@@ -96,16 +102,30 @@ class Bank:
             score = likeness**2 / np.maximum(squares - taken**2 / whole, _TINY * whole)
             if not self.signed:
                 score[turned] = 0.0
-        found = []
-        for _ in range(starts):
-            at = int(score.argmax())
-            found.append(self._pose(at, turned[at]))
-            score[np.abs(self.poses - self.poses[at]) @ self.apart < 1.0] = -np.inf
-        return np.array(found)
+        found = self._apart(score, starts, min(_FEW, score.size))
+        if len(found) < starts:
+            found = self._apart(score, starts, score.size)
+        return np.array([self._pose(at, turned[at]) for at in found])
 
-    @cached_property
-    def _squares(self) -> NDArray[np.float32]:
-        return self.shares**2
+    def _apart(self, score: NDArray[np.floating], starts: int, among: int) -> list[int]:
+        """Places of the greatest scores, the first the greatest, without neighbours.
+
+        Args:
+            score: of each pose.
+            starts: number of places, at most.
+            among: number of poses to search, those of the greatest scores.
+        """
+        best = np.argpartition(score, -among)[-among:] if among < score.size else None
+        places = np.arange(score.size) if best is None else np.sort(best)
+        scores, scaled = score[places].copy(), self.poses[places] * self.apart
+        found: list[int] = []
+        for _ in range(min(starts, places.size)):
+            at = int(scores.argmax())
+            if scores[at] == -np.inf:
+                break
+            found.append(int(places[at]))
+            scores[np.abs(scaled - scaled[at]).sum(axis=1) < 1.0] = -np.inf
+        return found
 
     def _pose(self, at: int, turned: bool) -> Floats:
         pose: Floats = self.poses[at].copy()

@@ -1,12 +1,13 @@
 """Fit of a shape's pose to a frame, by robust least squares."""
 
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lumitip.estimation.shapes import Shape
-from lumitip.grid import Floats
+from lumitip.grid import Floats, Integers
 
 ROUNDS = 12
 _FLOOR = 1e-6
@@ -64,40 +65,61 @@ def fit(shape: Shape, start: Floats, frame: Frame, rounds: int = ROUNDS) -> Fit:
         frame: the values.
         rounds: largest number of steps.
     """
-    prior = _Prior.of(shape, len(start))
-    pose = np.array(start, dtype=np.float64)
-    damping, converged = 1e-3, False
-    now = _Point(shape, pose, frame, prior)
+    return fits(shape, np.asarray(start, dtype=np.float64)[None], frame, rounds)[0]
+
+
+def fits(shape: Shape, starts: Floats, frame: Frame, rounds: int = ROUNDS) -> list[Fit]:
+    """The poses of least loss near several starts, all at once.
+
+    Args:
+        shape: the object.
+        starts: initial poses, shape `(n, p)`; with drifts the optics are free.
+        frame: the values.
+        rounds: largest number of steps.
+    """
+    count, size = starts.shape
+    prior = _Prior.of(shape, size)
+    now = _Points.at(shape, starts, frame, prior)
+    damping, converged = np.full(count, 1e-3), np.zeros(count, bool)
+    left = np.arange(count)  # not converged yet
     for _ in range(rounds):
-        matrix = now.normal.copy()
+        here = now if left.size == count else now.some(left)
+        matrix = here.normal.copy()
         # The floor keeps the matrix regular if no cell sees the line.
-        matrix.flat[:: pose.size + 1] += damping * now.normal.diagonal() + _FLOOR
-        step = np.linalg.solve(matrix, now.slope)
-        expected = float(step @ now.slope)
-        then = _Point(shape, pose + step, frame, prior)
-        if then.cost <= now.cost:
-            gained = now.cost - then.cost
-            pose, now, damping = pose + step, then, damping * 0.1
-            if expected < _SETTLED or gained < 5e-3 * now.cost:
-                converged = True
-                break
-        else:
-            if expected < _SETTLED:
-                converged = True
-                break
-            damping = max(damping, 1e-4) * 20.0
-    drifts = pose.size - len(shape.names) - 2
-    return Fit(frame, pose, now.cost, now.normal, now.model, converged, drifts)
+        diagonal = matrix.reshape(left.size, -1)[:, :: size + 1]
+        diagonal += damping[left, None] * diagonal + _FLOOR
+        step = np.linalg.solve(matrix, here.slope[..., None])[..., 0]
+        then = _Points.at(shape, here.pose + step, frame, prior)
+        gained = here.cost - then.cost
+        better = gained >= 0.0
+        done = (step * here.slope).sum(axis=1) < _SETTLED
+        done |= better & (gained < 5e-3 * here.cost)
+        now = then if better.all() and left.size == count else now.but(left[better], then, better)
+        worse = 20.0 * np.maximum(damping[left], 1e-4)
+        damping[left] = np.where(better, 0.1 * damping[left], worse)
+        converged[left[done]] = True
+        left = left[~done]
+        if not left.size:
+            break
+    drifts = size - len(shape.names) - 2
+    return [
+        Fit(frame, pose, float(cost), normal, model, bool(is_so), drifts)
+        for pose, cost, normal, model, is_so in zip(
+            now.pose, now.cost, now.normal, now.model, converged, strict=True
+        )
+    ]
 
 
-def bounded(found: Fit) -> float:
-    """Loss of a fit with at most `_WILD` for each cell, so that no single cell decides between
-    fits."""
-    frame = found.frame
-    miss = (frame.light - found.model) * frame.scale
+def bounded(found: Sequence[Fit]) -> Floats:
+    """Losses of fits to one frame with at most `_WILD` for each cell, so that no single cell
+    decides between fits; shape `(n,)`."""
+    frame = found[0].frame
+    miss = (frame.light - np.array([each.model for each in found])) * frame.scale
     size = np.where(frame.full, np.maximum(miss, 0.0), np.abs(miss))
     within = np.minimum(size, frame.huber)
-    return found.cost - float(np.maximum(within * (2.0 * size - within) - _WILD, 0.0).sum())
+    beyond = np.maximum(within * (2.0 * size - within) - _WILD, 0.0).sum(axis=1)
+    losses: Floats = np.array([each.cost for each in found]) - beyond
+    return losses
 
 
 def drifting(shape: Shape, found: Fit, drifts: int) -> Fit:
@@ -106,8 +128,8 @@ def drifting(shape: Shape, found: Fit, drifts: int) -> Fit:
     if found.pose.size > names + 2 or not drifts:
         return found
     pose = np.concatenate([found.pose[:names], np.zeros(drifts), found.pose[names:]])
-    at = _Point(shape, pose, found.frame, _Prior.of(shape, pose.size))
-    return replace(found, pose=pose, normal=at.normal, drifts=drifts)
+    at = _Points.at(shape, pose[None], found.frame, _Prior.of(shape, pose.size))
+    return replace(found, pose=pose, normal=at.normal[0], drifts=drifts)
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,31 +159,51 @@ _TIE = np.array([[1.0, -1.0], [-1.0, 1.0]])  # ties `taken` to `light`
 _TIED = _TIE, 400.0 * _TIE  # of sheets, and of cables, which are opaque
 
 
-class _Point:
-    """Loss and normal equations at one pose."""
+@dataclass(frozen=True, eq=False)
+class _Points:
+    """Losses and normal equations at poses; arrays of shape `(n, ...)`."""
 
-    __slots__ = ("cost", "model", "normal", "slope")
+    pose: Floats
+    model: Floats
+    normal: Floats
+    slope: Floats
+    cost: Floats
 
-    def __init__(self, shape: Shape, pose: Floats, frame: Frame, prior: _Prior) -> None:
+    @classmethod
+    def at(cls, shape: Shape, pose: Floats, frame: Frame, prior: _Prior) -> "_Points":
         share, slopes = shape.slopes(pose)
-        size = pose.size
-        self.model = pose[-2] - pose[-1] * share
-        rows = np.empty((size + 1, share.size))  # slopes by each entry of the pose, and the misfit
-        np.multiply(slopes, -pose[-1], out=rows[: size - 2])
-        rows[size - 2] = 1.0
-        np.negative(share, out=rows[size - 1])
-        np.subtract(frame.light, self.model, out=rows[size])
+        size, light, taken = pose.shape[1], pose[:, -2:-1], pose[:, -1:]
+        model = light - taken * share
+        # Slopes by each entry of the pose, and the misfit.
+        rows = np.empty((len(pose), size + 1, share.shape[1]))
+        for entry, slope in enumerate(slopes):
+            np.multiply(slope, -taken, out=rows[:, entry])
+        rows[:, size - 2] = 1.0
+        np.negative(share, out=rows[:, size - 1])
+        np.subtract(frame.light, model, out=rows[:, size])
         rows *= frame.scale
-        miss = rows[size]
+        miss = rows[:, size]
         weight = frame.huber / np.maximum(np.abs(miss), frame.huber)
         weight[frame.full & (miss <= 0.0)] = 0.0  # a saturated cell would read the same
-        weighted = rows * weight
-        products = weighted[:size] @ rows.T
+        weighted = rows * weight[:, None]
+        products = weighted[:, :size] @ rows.swapaxes(1, 2)
         away = prior.known - pose
-        pull = prior.normal @ away
-        self.normal = products[:, :size] + prior.normal
-        self.slope = products[:, size] + pull
-        self.cost = float(weighted[size] @ (2.0 * miss - weighted[size]) + away @ pull)
+        pull = away @ prior.normal
+        cost = (weighted[:, size] * (2.0 * miss - weighted[:, size])).sum(axis=1)
+        cost += (away * pull).sum(axis=1)
+        return cls(
+            pose, model, products[..., :size] + prior.normal, products[..., size] + pull, cost
+        )
+
+    def some(self, at: Integers) -> "_Points":
+        """These at some places."""
+        return _Points(*(getattr(self, each.name)[at] for each in fields(self)))
+
+    def but(self, at: Integers, other: "_Points", some: NDArray[np.bool_]) -> "_Points":
+        """These with some of others at some places."""
+        for each in fields(self) if at.size else ():
+            getattr(self, each.name)[at] = getattr(other, each.name)[some]
+        return self
 
 
 OFFSET_SD_MM, ANGLE_SD_DEG = 0.1, 0.4

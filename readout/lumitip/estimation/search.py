@@ -5,15 +5,15 @@ expected one: the optics are free within their deviations, and a share of each c
 uncertain, so that neither is mistaken for another pose.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from lumitip.estimation.bank import Bank, corners, lines
 from lumitip.estimation.estimate import rms_counts
-from lumitip.estimation.fit import Fit, Frame, bounded, fit
-from lumitip.estimation.lookup import Lookup
+from lumitip.estimation.fit import Fit, Frame, bounded, fit, fits
+from lumitip.estimation.lookup import Lookup, between_borders
 from lumitip.estimation.shapes import Bent, Cable, Cells, Corner, Edge, Shape
 from lumitip.grid import Floats
 from lumitip.twin import LineTable, Model, Twin
@@ -49,14 +49,14 @@ class Search:
             alpha_sd: standard deviation of the scattered share; 0 if it is known.
         """
         self._twin, self._diameter_mm = twin, diameter_mm
-        self._drifted = [Twin(twin.layout, m) for m in _drifted(twin.model, gap_sd_mm, alpha_sd)]
+        self._drifted = _drifted(twin.model, gap_sd_mm, alpha_sd)
         self.drifts = len(self._drifted)
         """Number of uncertain parameters of the optics."""
         self._cells = Cells(twin.layout.x_mm, twin.layout.y_mm)
         self._lines = lines(self._cells)
         self.reach_mm = float(self._lines[:, 1].max())
         """Distance from the origin beyond which no cell sees a line (mm)."""
-        self._edge_table = self._lookup(Twin.edge_table)
+        self._edge_table = Lookup([one.edge_table() for one in self._twins()])
         self._shapes: dict[str, Shape] = {}
         self._banks: dict[str, Bank] = {}
 
@@ -87,33 +87,41 @@ class Search:
         shape, loose = self.shape(kind), frame.looser(LOOSE)
         starts = self.bank(kind).closest(loose.light, loose.scale, _STARTS)
         poses = [self._full_pose(kind, pose, frame, self.drifts) for pose in starts]
-        tried = [fit(shape, pose, loose, _GLANCE) for pose in poses]
+        tried = fits(shape, np.array(poses), loose, _GLANCE)
         tried.append(self.loosely(kind, plain, frame))
-        losses = [bounded(found) for found in tried]
-        kept = [f for f, loss in zip(tried, losses, strict=True) if loss < min(losses) + _BEHIND]
-        fits = [fit(shape, found.pose, loose, _LOOK) for found in kept]
-        losses = [bounded(found) for found in fits]
-        first, apart = fits[int(np.argmin(losses))], self.bank(kind).apart
+        looked = fits(shape, self._kept(tried), loose, _LOOK)
+        losses = bounded(looked)
+        first, apart = looked[int(losses.argmin())], self.bank(kind).apart
         rivals = [
             f
-            for f, loss in zip(fits, losses, strict=True)
-            if loss < min(losses) + _RIVAL
+            for f, loss in zip(looked, losses, strict=True)
+            if loss < losses.min() + _RIVAL
             and _distance(kind, f.pose, first.pose) @ apart > _ELSEWHERE
         ]
         if before is not None:
             first = min([first, *rivals], key=lambda f: _distance(kind, f.pose, before) @ apart)
         return replace(fit(shape, first.pose, loose), ambiguous=bool(rivals))
 
+    @staticmethod
+    def _kept(tried: list[Fit]) -> Floats:
+        """Poses of the fits that are not far behind the best, shape `(n, p)`."""
+        losses = bounded(tried)
+        kept = np.flatnonzero(losses < losses.min() + _BEHIND)
+        return np.array([tried[number].pose for number in kept])
+
     def bent(self, starts: Sequence[tuple[str, Floats]], frame: Frame) -> Fit:
         """The best fit of a bent cable near one of several poses of `"cable"` or `BENT`."""
         shape, loose, straight = self.shape(BENT), frame.looser(LOOSE), len(Cable.names)
-        fits = []
+        poses = []
         for name, pose in starts:
             end = len(self.shape(name).names)
-            for bend in (*_BENDS_PER_MM, *pose[straight:end]):
-                start = np.concatenate([pose[:straight], [bend], pose[end:]])
-                fits.append(fit(shape, start, loose, _LOOK))  # the loose frame misleads less
-        return self.near(BENT, min(fits, key=bounded).pose, frame)
+            free = self._free_pose(name, pose)
+            poses += [
+                np.concatenate([free[:straight], [bend], free[end:]])
+                for bend in (*_BENDS_PER_MM, *free[straight:end])
+            ]
+        tried = fits(shape, np.array(poses), loose, _LOOK)  # the loose frame misleads less
+        return self.near(BENT, tried[int(bounded(tried).argmin())].pose, frame)
 
     def again(self, name: str, before: Floats, followed: Fit, frame: Frame) -> tuple[str, Fit]:
         """The best fit after the fit of a tracked line got worse: its name and itself.
@@ -139,7 +147,9 @@ class Search:
             return other
         starts = [(name, before), (name, followed.pose), (kind, found.pose)]
         bent = self.bent(starts, frame)
-        bends, stays = (bounded(self.loosely(*of, frame)) for of in ((BENT, bent), other))
+        bends, stays = (
+            float(bounded([self.loosely(*of, frame)])[0]) for of in ((BENT, bent), other)
+        )
         least = _RIVAL if other[0] == BENT else max(_RIVAL, _CLEARLY * bends)
         return (BENT, bent) if stays - bends > least else other
 
@@ -162,17 +172,19 @@ class Search:
 
     def free(self, kind: str, found: Fit, frame: Frame) -> Fit:
         """The same fit with free optics."""
-        names, pose = len(self.shape(kind).names), found.pose
-        if pose.size == names + 2:
-            pose = np.insert(pose, [names] * self.drifts, 0.0)
-        return fit(self.shape(kind), pose, frame)
+        return fit(self.shape(kind), self._free_pose(kind, found.pose), frame)
+
+    def _free_pose(self, kind: str, pose: Floats) -> Floats:
+        """A pose with drifts of the optics, which are 0 if it had none."""
+        names = len(self.shape(kind).names)
+        expected = pose.size == names + 2
+        return np.insert(pose, [names] * self.drifts, 0.0) if expected else pose
 
     def optics_at(self, drift: Floats) -> Model:
         """Optics of a drift, shape `(drifts,)`."""
         model = self._twin.model
         steps = [
-            (other.model.gap_mm - model.gap_mm, other.model.alpha - model.alpha)
-            for other in self._drifted
+            (other.gap_mm - model.gap_mm, other.alpha - model.alpha) for other in self._drifted
         ]
         gap_mm, alpha = np.array([model.gap_mm, model.alpha]) + drift @ np.reshape(steps, (-1, 2))
         return model.changed(
@@ -187,11 +199,15 @@ class Search:
             elif kind == "corner":
                 self._shapes[kind] = Corner(self._cells, self._edge_table)
             else:
-                table = self._lookup(lambda twin: twin.cable_table(self._diameter_mm))
-                lookups = self._cells, table, self._edge_table
+                diameter_mm, beyond, edges = self._diameter_mm, list[LineTable](), list[LineTable]()
+                for one in self._twins():
+                    edges.append(one.edge_table())
+                    cable = one.cable_table(diameter_mm)
+                    beyond.append(between_borders(cable, edges[-1], diameter_mm))
+                table = Lookup(beyond, edges)
                 self._shapes |= {
-                    "cable": Cable(*lookups, self._diameter_mm),
-                    BENT: Bent(*lookups, self._diameter_mm),
+                    "cable": Cable(self._cells, table, diameter_mm),
+                    BENT: Bent(self._cells, table, diameter_mm),
                 }
         return self._shapes[kind]
 
@@ -203,8 +219,10 @@ class Search:
             self._banks[kind] = Bank.of(self.shape(kind), poses, every)
         return self._banks[kind]
 
-    def _lookup(self, table: Callable[[Twin], LineTable]) -> Lookup:
-        return Lookup(table(self._twin), [table(twin) for twin in self._drifted])
+    def _twins(self) -> Iterator[Twin]:
+        """Twins of the expected optics and of each drift, one at a time: they keep their tables."""
+        for model in (self._twin.model, *self._drifted):
+            yield Twin(self._twin.layout, model)
 
     def _full_pose(self, kind: str, pose: Floats, frame: Frame, drifts: int = 0) -> Floats:
         """A pose of the bank with all entries that a fit needs."""

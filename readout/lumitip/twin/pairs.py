@@ -74,6 +74,16 @@ class Emitter:
 
 
 @dataclass(frozen=True, eq=False)
+class Around:
+    """Sets of LEDs that cells see: inside a regular grid all cells see the same."""
+
+    counts: Floats
+    """Number of pairs of each kind in each set, shape `(rows, kinds)`."""
+    row: Integers
+    """Set of each cell, shape `(cells,)`."""
+
+
+@dataclass(frozen=True, eq=False)
 class Pairs:
     """All pairs of a cell and an LED within reach; arrays of shape `(pairs,)`."""
 
@@ -124,11 +134,16 @@ class Pairs:
         return tally(self.cell, self.light[self.kind], self.cells)
 
     @cached_property
-    def counts(self) -> Floats:
-        """Number of pairs of each kind at each cell, shape `(cells, kinds)`."""
+    def around(self) -> "Around":
+        """The LEDs around the cells, each set once."""
         counted = np.zeros((self.cells, len(self.kinds)))
         np.add.at(counted, (self.cell, self.kind), 1.0)
-        return counted
+        # Equal rows have equal bytes: whole numbers, and no negative zeros.
+        names = [row.tobytes() for row in counted]
+        first = {name: cell for cell, name in reversed(list(enumerate(names)))}
+        cells = sorted(first.values())
+        place = {names[cell]: row for row, cell in enumerate(cells)}
+        return Around(counted[cells], np.array([place[name] for name in names]))
 
     def spots(self, kind: int, height: float) -> tuple[Floats, Floats, Floats]:
         """Points where the rays of a kind cross a plane, on a fine raster: x, y (mm), light."""

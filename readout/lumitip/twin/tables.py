@@ -19,7 +19,6 @@ from lumitip.values import one_line
 STEP_MM = 0.05
 STEP_DEG = 3.0
 _SOFT = round(PIXEL_MM / STEP_MM / 2.0)  # half the width of a border, in steps
-_AT_ONCE = 128  # cells of a product of matrices
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,11 +26,13 @@ class LineTable:
     """Share of light that an opaque object along a line takes from each cell."""
 
     shares: Singles
-    """Shape `(cells, angles, distances)`: angles from 0 to below 360 in `STEP_DEG`, distances from
+    """Shape `(rows, angles, distances)`: angles from 0 to below 360 in `STEP_DEG`, distances from
     `-reach_mm` to `reach_mm` in `STEP_MM`. Angle: direction of the line. Distance: of the cell's
     centre from the line along its left normal; a half-plane covers the right of its line."""
     reach_mm: float
     """Distance from the line beyond which the share is constant (mm)."""
+    row: Integers
+    """Row of each cell, shape `(cells,)`: cells with the same LEDs around them share one."""
 
     def __repr__(self) -> str:
         return one_line(self)
@@ -71,8 +72,8 @@ class LineTable:
 
     @cached_property
     def _begin(self) -> Integers:
-        cells, angles, distances = self.shares.shape
-        begin: Integers = np.arange(cells) * (angles * distances)
+        _, angles, distances = self.shares.shape
+        begin: Integers = self.row * (angles * distances)
         return begin
 
     @cached_property
@@ -92,8 +93,7 @@ def edge_table(pairs: Pairs, height: float = 0.5) -> LineTable:
 
     half = _table(pairs, taken, reach_mm)
     # The reversed line covers the other side.
-    other = pairs.full[:, None, None] - half[:, :, ::-1]
-    return _finished(pairs, np.concatenate([half, other], axis=1), reach_mm)
+    return _finished(pairs, half, np.float32(1.0) - half[:, :, ::-1], reach_mm)
 
 
 def cable_table(pairs: Pairs, diameter_mm: float, height: float = 0.5) -> LineTable:
@@ -119,7 +119,7 @@ def cable_table(pairs: Pairs, diameter_mm: float, height: float = 0.5) -> LineTa
         return _steps(left - half, ray.weight, reach_mm) - _steps(left + half, ray.weight, reach_mm)
 
     half = _table(pairs, taken, reach_mm)
-    return _finished(pairs, np.concatenate([half, half[:, :, ::-1]], axis=1), reach_mm)
+    return _finished(pairs, half, half[:, :, ::-1], reach_mm)
 
 
 def _reach(far_mm: float) -> float:
@@ -137,29 +137,29 @@ def _steps(left_mm: Floats, light: Floats, reach_mm: float) -> Floats:
     return summed
 
 
-def _table(pairs: Pairs, taken: Callable[[int, float, float], Floats], reach_mm: float) -> Floats:
+def _table(pairs: Pairs, taken: Callable[[int, float, float], Floats], reach_mm: float) -> Singles:
+    """Share of light in each row, for half a turn of directions."""
     angles = np.radians(np.arange(0.0, 180.0, STEP_DEG))
     entries = 2 * round(reach_mm / STEP_MM) + 1
-    kinds = np.empty((len(pairs.kinds), angles.size, entries))
-    for kind in range(len(pairs.kinds)):
-        for a, angle in enumerate(angles):
-            kinds[kind, a] = taken(kind, float(np.cos(angle)), float(np.sin(angle)))
-    soft = _softened(kinds)
-    light = np.empty((pairs.cells, angles.size, entries))
-    for first in range(0, pairs.cells, _AT_ONCE):  # other threads run in between
-        some = slice(first, first + _AT_ONCE)
-        light[some] = np.tensordot(pairs.counts[some], soft, axes=1)
+    around, kinds = pairs.around.counts, range(len(pairs.kinds))
+    light = np.empty((len(around), angles.size, entries), np.float32)
+    full = around @ pairs.light
+    for a, angle in enumerate(angles):
+        cos, sin = float(np.cos(angle)), float(np.sin(angle))
+        soft = _softened(np.array([taken(kind, cos, sin) for kind in kinds]))
+        light[:, a] = around @ soft / full[:, None]
     return light
 
 
 def _softened(light: Floats) -> Floats:
-    """Moving mean over the width of a soft border."""
-    ends = ((0, 0), (0, 0), (_SOFT + 1, _SOFT))
-    summed = np.cumsum(np.pad(light, ends, mode="edge"), axis=2)
-    whole = summed[:, :, 2 * _SOFT :] - summed[:, :, : -2 * _SOFT]
-    mean: Floats = (whole[:, :, 1:] + whole[:, :, :-1]) / (4.0 * _SOFT)
+    """Moving mean over the width of a soft border, along the second axis."""
+    ends = ((0, 0), (_SOFT + 1, _SOFT))
+    summed = np.cumsum(np.pad(light, ends, mode="edge"), axis=1)
+    whole = summed[:, 2 * _SOFT :] - summed[:, : -2 * _SOFT]
+    mean: Floats = (whole[:, 1:] + whole[:, :-1]) / (4.0 * _SOFT)
     return mean
 
 
-def _finished(pairs: Pairs, light: Floats, reach_mm: float) -> LineTable:
-    return LineTable((light / pairs.full[:, None, None]).astype(np.float32), reach_mm)
+def _finished(pairs: Pairs, half: Singles, other: Singles, reach_mm: float) -> LineTable:
+    shares = np.concatenate([half, other], axis=1)
+    return LineTable(shares, reach_mm, pairs.around.row)

@@ -76,7 +76,9 @@ def test_every_public_object_is_one_useful_line(open_feed, layout, tmp_path) -> 
         repr(Processor(layout).batch(light)): "thresholds=<float64[2]",
         repr(examine(light, layout)): "noise=<float32[32]",
         repr(Tracer(law)): "<Tracer of LineLaw(speed_mm_s=20.0",
-        repr(LineTable(np.zeros((1, 2, 3), np.float32), 2.0)): "shares=<float32[1, 2, 3] from 0",
+        repr(
+            LineTable(np.zeros((1, 2, 3), np.float32), 2.0, np.zeros(1, int))
+        ): "shares=<float32[1, 2, 3] from 0",
         repr(Curve.random(100.0, 0)): "Curve(x_mm=<float64[",
         text_of_writer: "run.mcap: feed, 1 frames>",
         repr(Reader(path)): "run.mcap: feed, <Layout of 32 cells",
