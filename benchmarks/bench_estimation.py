@@ -1,4 +1,4 @@
-"""Accuracy and speed of the pose estimator against the published method and the theoretical bound.
+"""Accuracy of the pose estimator against the published method and the theoretical bound.
 
 All frames are simulated by the optical twin, with noise and whole counts. With wrong optics every
 frame is of a fingertip that differs from the expected one (gap ± 0.5 mm, detector exponent ± 0.6,
@@ -7,18 +7,15 @@ exits 1 if a goal is missed. The argument is the number of poses.
 """
 
 import sys
-import time
-from collections.abc import Callable
-from functools import partial
 
 import numpy as np
 
-from common import Goals, columns_for, layout_of, on_one_core
+from common import Goals, on_one_core
 from lumitip.estimation import PoseEstimator
 from lumitip.grid import Floats
 from lumitip.layout import Layout
 from lumitip.links.twin import published_layout
-from lumitip.twin import HalfPlane, Twin
+from lumitip.twin import Twin
 from poses import NOISE, Trial, estimated, frames, gross, misses, published, scene, wrong_twin
 
 PAIRS = 40  # of wrong fingers, each for several poses
@@ -30,7 +27,6 @@ GOALS = {
     ("edge", "wrong"): (0.45, 1.5, 3.0),
     ("cable", "wrong"): (0.5, 1.6, 3.0),
 }
-RUNS = 25  # of each frame
 
 
 def row(name: str, missed: Floats, trials: list[Trial]) -> tuple[float, float, float]:
@@ -132,50 +128,6 @@ def kinds(layout: Layout, count: int) -> None:
             print(f"  {optics} {kind:<8}{100.0 * decided.count(kind) / count:>6.1f} % right")
 
 
-def speed(goals: Goals, count: int = 300) -> None:
-    """Time of a frame; an edge at 32 cells has a goal."""
-    print("\ntime of a frame, one core (ms)")
-    print(" cells   edge median   90 %   cable   tracking   undecided")
-    base = published_layout()
-    for cells in (32, 128, 512):
-        pitch_mm = 6.0 * float(np.sqrt(32.0 / cells))
-        layout = base if cells == 32 else layout_of(columns_for(cells), pitch_mm, base.optics)
-        twin, estimator = Twin(layout), PoseEstimator(layout)
-        edges = [t.values for t in frames([twin], "edge", count, seed=3)]
-        cables = [t.values for t in frames([twin], "cable", count, seed=3)]
-        follower = PoseEstimator(layout, tracking=True)
-        steps = np.linspace(-2.0, 2.0, count)
-        moving = [twin.values(HalfPlane(offset_mm=o, angle_deg=3.0 * o)) for o in steps]
-        spent = [
-            [_ms(partial(e, kind=k), v) for v in rows]
-            for e, k, rows in (
-                (estimator, "edge", edges),
-                (estimator, "cable", cables),
-                (follower, None, moving),
-                (estimator, None, edges),
-            )
-        ]
-        middle = [float(np.median(s[5:])) for s in spent]
-        print(
-            f"{cells:>6}{middle[0]:>14.2f}{np.percentile(spent[0], 90):>7.2f}{middle[1]:>8.2f}"
-            f"{middle[2]:>11.2f}{middle[3]:>12.2f}"
-        )
-        if cells == 32:
-            runs = np.array(
-                [[_ms(partial(estimator, kind="edge"), v) for v in edges] for _ in range(RUNS)]
-            )
-            name = "an edge at 32 cells"
-            goals.at_most(f"{name}, all single runs", float(np.median(runs)), 1.0, "ms median")
-            best = float(np.median(runs.min(axis=0)))
-            goals.at_most(f"{name}, best of {RUNS} runs", best, 1.0, "ms median")
-
-
-def _ms(work: Callable[[Floats], object], values: Floats) -> float:
-    begun = time.perf_counter()
-    work(values)
-    return 1e3 * (time.perf_counter() - begun)
-
-
 if __name__ == "__main__":
     on_one_core()
     poses = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
@@ -183,5 +135,4 @@ if __name__ == "__main__":
     goals = Goals()
     accuracy(published_cells, poses, goals)
     kinds(published_cells, max(poses // 5, 10))
-    speed(goals)
     sys.exit(goals.exit_code())
