@@ -1,10 +1,12 @@
 """`Bank`: values of the cells at some 7,000 poses, compared with a frame in one product."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lumitip.estimation.fit import Fit
 from lumitip.estimation.shapes import Cells, Shape
 from lumitip.grid import Floats
 
@@ -14,6 +16,10 @@ which have the same effect at the far cells."""
 _APART_DEG, _APART_MM = 3.0, 0.7
 _FEW = 400
 """Poses of the greatest scores, which usually hold enough that are no neighbours."""
+_LIT, _DARK = 0.8, (0.1, 0.25)
+"""Shares of cells below the light beside an object, and below that under it."""
+_OFF = 0.35  # share of light by which a cell disagrees with a pose
+_ELSEWHERE = 2.0  # distance beyond which a pose is at another place
 _TINY = 1e-6
 _AT_ONCE = 1 << 16  # shares that are looked up together, which takes a few MB for each 10,000
 _LEAST = 0.02  # root mean square share of light below which a template is left out
@@ -106,6 +112,46 @@ class Bank:
         if len(found) < starts:
             found = self._apart(score, starts, score.size)
         return np.array([self._pose(at, turned[at]) for at in found])
+
+    def robust(self, light: Floats, usable: NDArray[np.bool_], starts: int) -> Floats:
+        """The poses that most cells agree with, whatever a few of them read; the best first,
+        without neighbours, shape `(n, entries)`.
+
+        A cell that disagrees counts the same however far it is off. A sheet's own light is tried at
+        two levels, for dead cells may be darker than it.
+
+        Args:
+            light: shares of the empty grasp, shape `(cells,)`.
+            usable: cells that count, shape `(cells,)`.
+            starts: number of poses, at most.
+        """
+        seen, shares = light[usable].astype(np.float32), self.shares[:, usable]
+        top = np.quantile(seen, _LIT)
+        lows = [np.float32(0.0)] if self.opaque else np.quantile(seen, _DARK)
+        best, turned = np.full(len(shares), -np.inf, np.float32), np.zeros(len(shares), bool)
+        for low in lows:
+            for side in (False, True) if self.signed else (False,):
+                model = top - (top - low) * (1.0 - shares if side else shares)
+                score = -np.minimum(np.abs(seen - model), _OFF).sum(axis=1)
+                turned[score > best] = side
+                np.maximum(best, score, out=best)
+        found = self._apart(best, starts, min(_FEW, best.size))
+        return np.array([self._pose(at, turned[at]) for at in found])
+
+    def distance(self, one: Floats, two: Floats) -> float:
+        """How far two poses are apart, in distances at which they count as different."""
+        entries = self.apart.size
+        away = one[:entries] - two[:entries]
+        turn = np.pi if self.opaque else 2.0 * np.pi  # a reversed edge covers the other side
+        turns = np.round(away[0] / turn)
+        away[0] -= turns * turn
+        if self.opaque and turns % 2.0:
+            away[1] = one[1] + two[1]  # the same line reversed
+        return float(np.abs(away) @ self.apart)
+
+    def elsewhere(self, first: Fit, others: Sequence[Fit]) -> list[Fit]:
+        """Those of some fits that are at another place than the first."""
+        return [f for f in others if self.distance(f.pose, first.pose) > _ELSEWHERE]
 
     def _apart(self, score: NDArray[np.floating], starts: int, among: int) -> list[int]:
         """Places of the greatest scores, the first the greatest, without neighbours.

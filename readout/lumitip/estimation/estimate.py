@@ -6,6 +6,7 @@ counter-clockwise from +x. A line has the direction `angle_deg` and the signed d
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -66,6 +67,9 @@ class Estimate:
     """Direction from a corner's vertex into the sheet, in [−180, 180]."""
     parameters: tuple[str, ...] = ()
     """Names of the rows of `covariance`."""
+    left_out: tuple[int, ...] = ()
+    """Cells that the estimate does not use: without a finite value, or dead, stuck or covered ones,
+    which read something that no pose explains while all others agree."""
 
     def __repr__(self) -> str:
         return one_line(self)
@@ -92,10 +96,11 @@ class Estimate:
         return float(np.sqrt(max(self.covariance[at, at], 0.0)))
 
 
-def without_contact(kind: str) -> Estimate:
-    """The estimate of a frame without contrast."""
+def without_contact(kind: str, left_out: Sequence[int] = ()) -> Estimate:
+    """The estimate of a frame without contrast, but for cells that were left out."""
     nan = float("nan")
-    return Estimate(kind, nan, nan, nan, nan, nan, np.empty((0, 0)), nan)
+    lost = tuple(left_out)
+    return Estimate(kind, nan, nan, nan, nan, nan, np.empty((0, 0)), nan, left_out=lost)
 
 
 def half_turn(offset_mm: float, angle_deg: float) -> tuple[float, float, bool]:
@@ -158,6 +163,7 @@ def report(
         if corner
         else math.nan,
         parameters=names,
+        left_out=tuple(np.flatnonzero(found.frame.scale == 0.0).tolist()),
     )
 
 

@@ -2,10 +2,10 @@
 
 import math
 from copy import copy
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from lumitip import arguments
 from lumitip.errors import LumitipError
@@ -18,8 +18,15 @@ from lumitip.estimation.estimate import (
     rms_counts,
     without_contact,
 )
-from lumitip.estimation.fit import ANGLE_SD_DEG, OFFSET_SD_MM, Fit, Frame, drifting, likely
-from lumitip.estimation.search import ALPHA_SD, BENT, GAP_SD_MM, Search, doubtful
+from lumitip.estimation.fit import (
+    ANGLE_SD_DEG,
+    OFFSET_SD_MM,
+    Fit,
+    Frame,
+    drifting,
+    likely,
+)
+from lumitip.estimation.search import ALPHA_SD, BENT, GAP_SD_MM, Search
 from lumitip.grid import Floats, collinear
 from lumitip.layout import Layout, Optics
 from lumitip.processing.batch import usable_cells
@@ -39,11 +46,9 @@ GAIN_ERROR = 0.01
 HUBER = 3.0
 """Standard deviations beyond which the loss grows linearly."""
 _LEAST_CELLS = 4  # fewer do not show a line
-_HOPELESS = 2.5  # times the residual of the best bank, beyond which a kind is not fitted
 _BLURRED = np.array([np.radians(ANGLE_SD_DEG), OFFSET_SD_MM])
 _BEARABLE_COUNTS = dict.fromkeys(KINDS, 0.5 * MISFIT_COUNTS) | {BENT: 0.25 * MISFIT_COUNTS}
 _WORSE = 1.3  # times the least misfit since the last search, beyond which a tracker searches again
-_SIMPLER = {"edge": 1.0, "cable": 1.1, "corner": 2.0}  # a corner also fits the frame of an edge
 
 
 class EstimationError(LumitipError, ValueError):
@@ -111,7 +116,7 @@ class PoseEstimator:
         twin = Twin(layout, self.model)
         self._search = Search(twin, *search_settings)
         self._tracking = tracking
-        self._last: tuple[str, Floats, float] | None = None
+        self._last: _Last | None = None
         steps = np.arange(0.0, FULL + 1.0)[:, None] * (twin.empty / FULL)
         self._light = drive_of_values(steps, self.model) / twin.drive
         self._rise = np.gradient(self._light, axis=0)
@@ -138,7 +143,8 @@ class PoseEstimator:
         known = read[usable]
         if known.size < _LEAST_CELLS or not np.ptp(known) >= MIN_CONTRAST:
             self._last = None
-            return without_contact("covered" if is_covered(known) else "none")
+            kind_seen = "covered" if is_covered(known) else "none"
+            return without_contact(kind_seen, np.flatnonzero(~usable).tolist())
         frame = self._frame(read, usable)
         name, found = self._found(frame, kind)
         shape = self._search.shape(name)
@@ -177,8 +183,9 @@ class PoseEstimator:
         fine = self._tracking and bearable.issuperset(estimate.flags)
         # Later frames are compared with the least misfit since the last search, so that a bend does
         # not raise the limit for a line that is straight again.
-        misfit = min(self._last[2] if self._last else math.inf, estimate.rms_counts)
-        self._last = (name, found.pose, misfit) if fine else None
+        misfit = min(self._last.misfit_counts if self._last else math.inf, estimate.rms_counts)
+        dead = found.frame.scale == 0.0
+        self._last = _Last(name, found.pose, misfit, dead) if fine else None
 
     def fitted(self, values: ArrayLike, kind: str, free: bool = False) -> Fit:
         """The fit of a kind with the expected optics.
@@ -219,7 +226,7 @@ class PoseEstimator:
         """Forget the frame before."""
         self._last = None
 
-    def _frame(self, values: Floats, usable: np.ndarray) -> Frame:
+    def _frame(self, values: Floats, usable: NDArray[np.bool_]) -> Frame:
         values = np.clip(np.where(usable, values, FULL), 0.0, FULL)
         whole = np.minimum(values.astype(np.int64), int(FULL) - 1)
         each = np.arange(values.size)
@@ -232,37 +239,31 @@ class PoseEstimator:
         return Frame(light / self._gains, scale, self._gains / rise, full, self._huber)
 
     def _found(self, frame: Frame, kind: str | None) -> tuple[str, Fit]:
-        search = self._search
-        if self._last is not None and kind in (None, search.shape(self._last[0]).kind):
-            name, pose, misfit = self._last
-            followed = search.near(name, pose, frame)
-            if rms_counts(followed) < max(_BEARABLE_COUNTS[name], _WORSE * misfit):
-                return name, followed
+        search, last = self._search, self._last
+        if last is not None and kind in (None, search.shape(last.name).kind):
+            alive = frame.without(last.dead)
+            followed = search.near(last.name, last.pose, alive)
+            bearable = max(_BEARABLE_COUNTS[last.name], _WORSE * last.misfit_counts)
+            if rms_counts(followed) < bearable:
+                return last.name, followed
             self._last = None
             if kind is not None:
-                return search.again(name, pose, followed, frame)
+                return search.again(last.name, last.pose, followed, alive)
         self._last = None
-        return (kind, self._search.best(kind, frame)) if kind else self._decided(frame)
+        return (kind, search.best(kind, frame)) if kind else search.decided(frame)
 
-    def _decided(self, frame: Frame) -> tuple[str, Fit]:
-        """The kind that explains a frame best, and its fit; an edge is preferred."""
-        search = self._search
-        starts = {"edge": search.start("edge", frame)}
-        plain = search.plain("edge", starts["edge"][0], frame)
-        if not doubtful(plain):
-            return "edge", plain
-        starts |= {name: search.start(name, frame) for name in KINDS[1:]}
-        # If a template is equal to the frame, the residual is 0, or below it by rounding.
-        most = _HOPELESS * max(min(left for _, left in starts.values()), 0.0)
-        fits = {}
-        for name, (pose, left) in sorted(starts.items(), key=lambda item: item[1][1]):
-            if left <= most:
-                fits[name] = search.best(name, frame, pose)
-                if name != "corner" and not doubtful(fits[name]):
-                    return name, fits[name]
-        loose = {name: search.loosely(name, found, frame) for name, found in fits.items()}
-        name = min(fits, key=lambda n: _SIMPLER[n] * (loose[n].cost + 3.0 * fits[n].pose.size))
-        return name, fits[name]
+
+@dataclass(frozen=True, eq=False)
+class _Last:
+    """What a tracker knows of the frame before."""
+
+    name: str
+    """Of the shape."""
+    pose: Floats
+    misfit_counts: float
+    """Least misfit since the last search."""
+    dead: NDArray[np.bool_]
+    """Cells that were left out."""
 
 
 def _known(kind: str) -> None:

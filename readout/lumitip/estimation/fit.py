@@ -10,8 +10,11 @@ from lumitip.estimation.shapes import Shape
 from lumitip.grid import Floats, Integers
 
 ROUNDS = 12
+RIVAL = 6.0
+"""Loss behind the best, within which another pose makes a fit ambiguous."""
 _FLOOR = 1e-6
 _WILD = 36.0  # loss of one cell
+_DOUBT = 1.3  # loss for each cell beyond which the fingertip differs from the expected one
 _SETTLED = 1e-3  # expected gain of loss below which the fit has converged
 
 
@@ -34,6 +37,16 @@ class Frame:
         """The frame with this share of each cell's light uncertain as well."""
         more = share * self.light * self.scale
         return replace(self, scale=self.scale / np.sqrt(1.0 + more * more))
+
+    def without(self, cells: NDArray[np.bool_]) -> "Frame":
+        """The frame without some cells."""
+        return replace(self, scale=np.where(cells, 0.0, self.scale))
+
+    def misses(self, model: Floats) -> Floats:
+        """How far the cells are from shares of light `(..., cells)`, in standard deviations."""
+        miss = (self.light - model) * self.scale
+        size: Floats = np.where(self.full, np.maximum(miss, 0.0), np.abs(miss))
+        return size
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,12 +127,16 @@ def bounded(found: Sequence[Fit]) -> Floats:
     """Losses of fits to one frame with at most `_WILD` for each cell, so that no single cell
     decides between fits; shape `(n,)`."""
     frame = found[0].frame
-    miss = (frame.light - np.array([each.model for each in found])) * frame.scale
-    size = np.where(frame.full, np.maximum(miss, 0.0), np.abs(miss))
+    size = frame.misses(np.array([each.model for each in found]))
     within = np.minimum(size, frame.huber)
     beyond = np.maximum(within * (2.0 * size - within) - _WILD, 0.0).sum(axis=1)
     losses: Floats = np.array([each.cost for each in found]) - beyond
     return losses
+
+
+def doubtful(found: Fit) -> bool:
+    """Whether the loss of a fit is too large for what its frame takes as uncertain."""
+    return found.cost > _DOUBT * int(np.count_nonzero(found.frame.scale))
 
 
 def drifting(shape: Shape, found: Fit, drifts: int) -> Fit:

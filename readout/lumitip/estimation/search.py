@@ -7,12 +7,14 @@ uncertain, so that neither is mistaken for another pose.
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from lumitip.estimation.bank import Bank, corners, lines
-from lumitip.estimation.estimate import rms_counts
-from lumitip.estimation.fit import Fit, Frame, bounded, fit, fits
+from lumitip.estimation.dead import without_dead
+from lumitip.estimation.estimate import KINDS, rms_counts
+from lumitip.estimation.fit import RIVAL, Fit, Frame, bounded, doubtful, fit, fits
 from lumitip.estimation.lookup import Lookup, between_borders
 from lumitip.estimation.shapes import Bent, Cable, Cells, Corner, Edge, Shape
 from lumitip.grid import Floats
@@ -27,12 +29,11 @@ BENT = "bent"
 """A cable along an arc, which a tracker may find after a straight one."""
 _LEAST_GAP_MM = 0.5
 _BENDS_PER_MM = (-1.0 / 60.0, 0.0, 1.0 / 60.0)  # starts of the fit of a bent cable
-_DOUBT = 1.3  # loss for each cell beyond which the fingertip differs from the expected one
 _STARTS = 8  # poses of the bank that are then tried
 _GLANCE, _LOOK = 2, 5  # rounds of all starts, and of the best of them
 _BEHIND = 20.0  # loss behind the best, beyond which a start is dropped
-_RIVAL = 6.0  # loss behind the best, within which another pose makes a fit ambiguous
-_ELSEWHERE = 2.0  # distance from the best pose, beyond which a pose is another one
+_HOPELESS = 2.5  # times the residual of the best bank, beyond which a kind is not fitted
+_SIMPLER = {"edge": 1.0, "cable": 1.1, "corner": 2.0}  # a corner also fits the frame of an edge
 _CLEARLY = 2.5  # times its loss that a bend must save, since any misfit looks slightly bent
 
 
@@ -90,17 +91,35 @@ class Search:
         tried = fits(shape, np.array(poses), loose, _GLANCE)
         tried.append(self.loosely(kind, plain, frame))
         looked = fits(shape, self._kept(tried), loose, _LOOK)
-        losses = bounded(looked)
-        first, apart = looked[int(losses.argmin())], self.bank(kind).apart
-        rivals = [
-            f
-            for f, loss in zip(looked, losses, strict=True)
-            if loss < losses.min() + _RIVAL
-            and _distance(kind, f.pose, first.pose) @ apart > _ELSEWHERE
-        ]
+        losses, bank = bounded(looked), self.bank(kind)
+        first = looked[int(losses.argmin())]
+        near = losses < losses.min() + RIVAL
+        rivals = bank.elsewhere(first, [f for f, is_so in zip(looked, near, strict=True) if is_so])
         if before is not None:
-            first = min([first, *rivals], key=lambda f: _distance(kind, f.pose, before) @ apart)
-        return replace(fit(shape, first.pose, loose), ambiguous=bool(rivals))
+            first = min([first, *rivals], key=lambda f: bank.distance(f.pose, before))
+        best = replace(fit(shape, first.pose, loose), ambiguous=bool(rivals))
+        if not doubtful(best):
+            return best
+        return without_dead(shape, bank, best, partial(self._full_pose, kind)) or best
+
+    def decided(self, frame: Frame) -> tuple[str, Fit]:
+        """The kind that explains a frame best, and its fit; an edge is preferred."""
+        starts = {"edge": self.start("edge", frame)}
+        plain = self.plain("edge", starts["edge"][0], frame)
+        if not doubtful(plain):
+            return "edge", plain
+        starts |= {name: self.start(name, frame) for name in KINDS[1:]}
+        # If a template is equal to the frame, the residual is 0, or below it by rounding.
+        most = _HOPELESS * max(min(left for _, left in starts.values()), 0.0)
+        fits = {}
+        for name, (pose, left) in sorted(starts.items(), key=lambda item: item[1][1]):
+            if left <= most:
+                fits[name] = self.best(name, frame, pose)
+                if name != "corner" and not doubtful(fits[name]):
+                    return name, fits[name]
+        loose = {name: self.loosely(name, found, frame) for name, found in fits.items()}
+        name = min(fits, key=lambda n: _SIMPLER[n] * (loose[n].cost + 3.0 * fits[n].pose.size))
+        return name, fits[name]
 
     @staticmethod
     def _kept(tried: list[Fit]) -> Floats:
@@ -150,7 +169,7 @@ class Search:
         bends, stays = (
             float(bounded([self.loosely(*of, frame)])[0]) for of in ((BENT, bent), other)
         )
-        least = _RIVAL if other[0] == BENT else max(_RIVAL, _CLEARLY * bends)
+        least = RIVAL if other[0] == BENT else max(RIVAL, _CLEARLY * bends)
         return (BENT, bent) if stays - bends > least else other
 
     def near(self, kind: str, pose: Floats, frame: Frame) -> Fit:
@@ -235,11 +254,6 @@ class Search:
         return np.concatenate([pose, np.zeros(drifts), [light, taken]])
 
 
-def doubtful(found: Fit) -> bool:
-    """Whether the loss of a fit is too large for the expected optics."""
-    return found.cost > _DOUBT * int(np.count_nonzero(found.frame.scale))
-
-
 def _drifted(model: Model, gap_sd_mm: float, alpha_sd: float) -> list[Model]:
     """The model with one parameter changed at a time, by its standard deviation."""
     models = []
@@ -249,15 +263,3 @@ def _drifted(model: Model, gap_sd_mm: float, alpha_sd: float) -> list[Model]:
         step = alpha_sd if model.alpha + alpha_sd <= 1.0 else -alpha_sd
         models.append(model.changed(alpha=model.alpha + step))
     return models
-
-
-def _distance(kind: str, one: Floats, two: Floats) -> Floats:
-    """Distance of two poses in each entry of the bank."""
-    entries = 4 if kind == "corner" else 2
-    away = one[:entries] - two[:entries]
-    turn = np.pi if kind == "cable" else 2.0 * np.pi  # a reversed edge covers the other side
-    turns = np.round(away[0] / turn)
-    away[0] -= turns * turn
-    if kind == "cable" and turns % 2.0:
-        away[1] = one[1] + two[1]  # the same line reversed
-    return np.abs(away)

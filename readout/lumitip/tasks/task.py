@@ -57,6 +57,10 @@ class Settings:
     """Standard deviation of a value (counts of 255)."""
     target_mm: float = 0.0
     """Target height of the line in the grid (mm)."""
+    dead_cells: int = 0
+    """Cells that do not see the light, others in each trial."""
+    dead_value: float | None = None
+    """What a dead cell reads (counts of 255); nothing (NaN) by default."""
 
     def __post_init__(self) -> None:
         if not isinstance(self.kind, str) or self.kind not in KINDS:
@@ -67,6 +71,9 @@ class Settings:
         arguments.count(self.latency, "latency", 0, TaskError)
         arguments.number(self.length_mm, "length_mm", most=LONGEST_MM, above=0.0, error=TaskError)
         arguments.number(self.rate_hz, "rate_hz", above=0.0, error=TaskError)
+        arguments.count(self.dead_cells, "dead_cells", 0, TaskError)
+        if self.dead_value is not None:
+            arguments.number(self.dead_value, "dead_value", 0.0, 255.0, error=TaskError)
         for name in ("lag_s", "noise"):
             arguments.number(getattr(self, name), name, 0.0, error=TaskError)
 
@@ -129,6 +136,10 @@ class Task:
                 f"the design of the twin is {self.twin.layout.design_hash[:16]}; that of the "
                 f"layout is {layout.design_hash[:16]}. Use a twin of this layout."
             )
+        if self.settings.dead_cells > len(layout):
+            raise TaskError(
+                f"dead_cells is {self.settings.dead_cells}; the layout has {len(layout)} cells"
+            )
         self.reset()
 
     def reset(self, seed: int = 0) -> Floats:
@@ -142,6 +153,9 @@ class Task:
         straight_mm = _STRAIGHT_MM if s.corner else 0.0
         self.curve = Curve.random(s.length_mm, seed, straight_mm)
         self._chance = np.random.default_rng((8, seed))
+        cells = np.random.default_rng((9, seed)).permutation(len(self.layout))
+        self.dead = cells[: s.dead_cells]
+        """Cells that do not see the light in this trial."""
         self.x_mm, self.y_mm, self.heading = 0.0, -s.target_mm, 0.0
         self._at = 0
         self._velocity = np.zeros(3)
@@ -259,4 +273,6 @@ class Task:
     def _read(self) -> Floats:
         noise = self.settings.noise * self._chance.standard_normal(len(self.layout))
         values: Floats = np.floor(np.clip(self.twin.values(self.scene()) + noise, 0.0, 255.0))
+        read = self.settings.dead_value
+        values[self.dead] = math.nan if read is None else read
         return values

@@ -1,0 +1,64 @@
+"""A fit without the few cells that read nothing of what the others see: dead, stuck or covered."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from lumitip.estimation.bank import Bank
+from lumitip.estimation.fit import RIVAL, Fit, Frame, doubtful, fit
+from lumitip.estimation.shapes import Shape
+from lumitip.grid import Floats
+
+_MOST = 0.125
+"""Share of the cells that may be left out."""
+_FAR_SD = 6.0
+"""Standard deviations from the others' fit beyond which a cell is left out."""
+_EACH = 10.0
+"""Loss of a cell that is left out: one less is preferred to a slightly better fit."""
+_STARTS, _ROUNDS = 4, 3
+
+
+def without_dead(
+    shape: Shape, bank: Bank, found: Fit, full: Callable[[Floats, Frame, int], Floats]
+) -> Fit | None:
+    """The fit with the fewest cells left out that explains all others; none if there is none.
+
+    Args:
+        shape: the object.
+        bank: of its kind.
+        found: the best fit to all cells, with free optics.
+        full: a pose of the bank with all entries of a fit: of pose, frame and number of drifts.
+    """
+    frame = found.frame
+    usable = frame.scale > 0.0
+    most = int(_MOST * np.count_nonzero(usable))
+    starts = [found.pose]
+    starts += [full(p, frame, found.drifts) for p in bank.robust(frame.light, usable, _STARTS)]
+    fits = [left for start in starts if (left := _trimmed(shape, start, frame, most))]
+    if not fits:
+        return None
+    best = min(fits, key=_cost)
+    near = [each for each in fits if _cost(each) < _cost(best) + RIVAL]
+    return replace(best, ambiguous=bool(bank.elsewhere(best, near)))
+
+
+def _cost(found: Fit) -> float:
+    """Loss of a fit and of the cells that it leaves out."""
+    return found.cost + _EACH * np.count_nonzero(found.frame.scale == 0.0)
+
+
+def _trimmed(shape: Shape, start: Floats, frame: Frame, most: int) -> Fit | None:
+    """The fit from a start without the cells that are far from it, if at most so many are."""
+    share, _ = shape.slopes(start[None])
+    model = start[-2] - start[-1] * share[0]
+    for _ in range(_ROUNDS):
+        far = frame.misses(model)
+        wild = far > max(_FAR_SD, np.sort(far)[-most - 1])
+        found = fit(shape, start, frame.without(wild))
+        if not doubtful(found):
+            wild = frame.misses(found.model) > _FAR_SD
+            again = fit(shape, found.pose, frame.without(wild))
+            return again if np.count_nonzero(wild) <= most and not doubtful(again) else None
+        start, model = found.pose, found.model
+    return None
