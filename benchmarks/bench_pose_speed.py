@@ -34,13 +34,13 @@ def main() -> int:
     """Print all tables; the exit code."""
     layout, goals = published_layout(), Goals()
     memory(goals)  # first: a process is said to have had the memory of the one that started it
+    alone = PoseEstimator(layout).prepare()
     right, wrong = [Twin(layout)], [wrong_twin(layout, seed) for seed in range(FINGERS)]
     print("\n32 cells, one core (ms)         median    90 %    99 %     all runs: median    99 %")
     for optics, twins in (("right optics", right), ("wrong optics", wrong)):
         for kind in KINDS:
             for shown in ("edge", "cable") if kind is None else (kind,):
                 values = [trial.values for trial in frames(twins, shown, COUNT, seed=3)]
-                alone = PoseEstimator(layout).prepare()
                 name = f"{shown}, {'undecided, ' if kind is None else ''}{optics}"
                 median = _print(name, [_alone(alone, v, kind) for v in values], goals)
                 if optics == "right optics" and kind is not None:
@@ -84,8 +84,9 @@ def _tracked(
         for thing, by in zip(things, noise, strict=True)
     ]
     passes = []
+    tracker = PoseEstimator(twin.layout, tracking=True).prepare(kind)
     for _ in range(RUNS):
-        tracker = PoseEstimator(twin.layout, tracking=True).prepare(kind)
+        tracker.reset()
         passes.append([_ms(tracker, values, kind) for values in rows])
     return np.array(passes).T
 

@@ -17,14 +17,14 @@ _APPROACH_PER_S = 6.0
 _STEEPEST_DEG = 80.0  # a line across the way of the finger cannot be followed
 _CORNER_DEG = 30.0  # largest deviation of a corner from a right angle; flatter ones are curves
 _CORNER_MM = 13.0  # a vertex further from the middle is not seen by enough cells
-_BEARABLE = frozenset({"misfit", "unfinished", "ambiguous"})
+_BEARABLE = frozenset({"misfit", "unfinished", "ambiguous", "dead"})
 
 
 def sight_of(seen: Contact | Estimate) -> Sight:
     """The line to follow in a contact or an estimate.
 
     The border of a corner is followed like an edge. An estimate with other flags than misfit,
-    unfinished and ambiguous has no line.
+    unfinished, ambiguous and dead has no line.
 
     Raises:
         ControlError: if `seen` is neither.

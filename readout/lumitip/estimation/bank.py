@@ -113,9 +113,9 @@ class Bank:
             found = self._apart(score, starts, score.size)
         return np.array([self._pose(at, turned[at]) for at in found])
 
-    def robust(self, light: Floats, usable: NDArray[np.bool_], starts: int) -> Floats:
-        """The poses that most cells agree with, whatever a few of them read; the best first,
-        without neighbours, shape `(n, entries)`.
+    def robust(self, light: Floats, usable: NDArray[np.bool_], starts: int, most: int) -> Floats:
+        """Poses that all but a few cells agree with, whatever these read; the best first, without
+        neighbours, shape `(n, entries)`.
 
         A cell that disagrees counts the same however far it is off. A sheet's own light is tried at
         two levels, for dead cells may be darker than it.
@@ -124,19 +124,22 @@ class Bank:
             light: shares of the empty grasp, shape `(cells,)`.
             usable: cells that count, shape `(cells,)`.
             starts: number of poses, at most.
+            most: number of cells that may disagree; at least one does.
         """
         seen, shares = light[usable].astype(np.float32), self.shares[:, usable]
         top = np.quantile(seen, _LIT)
         lows = [np.float32(0.0)] if self.opaque else np.quantile(seen, _DARK)
-        best, turned = np.full(len(shares), -np.inf, np.float32), np.zeros(len(shares), bool)
+        best, off = np.full(len(shares), np.inf, np.float32), np.zeros(len(shares), int)
+        turned = np.zeros(len(shares), bool)
         for low in lows:
             for side in (False, True) if self.signed else (False,):
-                model = top - (top - low) * (1.0 - shares if side else shares)
-                score = -np.minimum(np.abs(seen - model), _OFF).sum(axis=1)
-                turned[score > best] = side
-                np.maximum(best, score, out=best)
-        found = self._apart(best, starts, min(_FEW, best.size))
-        return np.array([self._pose(at, turned[at]) for at in found])
+                miss = np.abs(seen - top + (top - low) * (1.0 - shares if side else shares))
+                loss = np.minimum(miss, _OFF).sum(axis=1)
+                better = loss < best
+                best[better], turned[better] = loss[better], side
+                off[better] = np.count_nonzero(miss[better] > _OFF, axis=1)
+        found = self._apart(-best, starts, min(_FEW, best.size))
+        return np.array([self._pose(at, turned[at]) for at in found if 0 < off[at] <= most])
 
     def distance(self, one: Floats, two: Floats) -> float:
         """How far two poses are apart, in distances at which they count as different."""

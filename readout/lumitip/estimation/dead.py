@@ -1,4 +1,4 @@
-"""A fit without the few cells that read nothing of what the others see: dead, stuck or covered."""
+"""A fit without the few cells that are dead: they read an end of the scale, whatever is there."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -10,7 +10,7 @@ from lumitip.estimation.fit import RIVAL, Fit, Frame, doubtful, fit
 from lumitip.estimation.shapes import Shape
 from lumitip.grid import Floats
 
-_MOST = 0.125
+_MOST = 0.1
 """Share of the cells that may be left out."""
 _FAR_SD = 6.0
 """Standard deviations from the others' fit beyond which a cell is left out."""
@@ -33,8 +33,8 @@ def without_dead(
     frame = found.frame
     usable = frame.scale > 0.0
     most = int(_MOST * np.count_nonzero(usable))
-    starts = [found.pose]
-    starts += [full(p, frame, found.drifts) for p in bank.robust(frame.light, usable, _STARTS)]
+    poses = bank.robust(frame.light, usable, _STARTS, most)
+    starts = [full(pose, frame, found.drifts) for pose in poses]
     fits = [left for start in starts if (left := _trimmed(shape, start, frame, most))]
     if not fits:
         return None
@@ -49,16 +49,19 @@ def _cost(found: Fit) -> float:
 
 
 def _trimmed(shape: Shape, start: Floats, frame: Frame, most: int) -> Fit | None:
-    """The fit from a start without the cells that are far from it, if at most so many are."""
+    """The fit from a start without the cells that are far from it, if at most so many are, and all
+    of them may be dead."""
     share, _ = shape.slopes(start[None])
     model = start[-2] - start[-1] * share[0]
     for _ in range(_ROUNDS):
-        far = frame.misses(model)
+        far = np.where(frame.stuck, frame.misses(model), 0.0)
         wild = far > max(_FAR_SD, np.sort(far)[-most - 1])
         found = fit(shape, start, frame.without(wild))
         if not doubtful(found):
             wild = frame.misses(found.model) > _FAR_SD
+            if np.count_nonzero(wild) > most or np.any(wild & ~frame.stuck):
+                return None
             again = fit(shape, found.pose, frame.without(wild))
-            return again if np.count_nonzero(wild) <= most and not doubtful(again) else None
+            return None if doubtful(again) else again
         start, model = found.pose, found.model
     return None

@@ -56,7 +56,9 @@ class Estimate:
     flags: tuple[str, ...] = ()
     """Faults of the fit: `"misfit"` if the shape does not explain the frame, `"weak"` if the frame
     hardly shows the line, `"astray"` if the fit left the fingertip, `"unfinished"` if it did not
-    converge, `"ambiguous"` if another line explains the frame nearly as well."""
+    converge, `"ambiguous"` if another line explains the frame nearly as well, `"dead"` if it is
+    without cells that read an end of the scale: dead, or covered by another object. A tracker drops
+    this flag when it has gone on without them for some frames."""
     dark_side: str = ""
     """Side of the line on which the sheet of an edge or corner is, `"left"` or `"right"`."""
     vertex_mm: Point | None = None
@@ -112,7 +114,12 @@ def half_turn(offset_mm: float, angle_deg: float) -> tuple[float, float, bool]:
 
 
 def report(
-    shape: Shape, found: Fit, uncertain: Floats, reach_mm: float, mirrored: bool = False
+    shape: Shape,
+    found: Fit,
+    uncertain: Floats,
+    reach_mm: float,
+    mirrored: bool = False,
+    flags: tuple[str, ...] = (),
 ) -> Estimate:
     """The estimate from a fit.
 
@@ -122,6 +129,7 @@ def report(
         uncertain: its `covariance`.
         reach_mm: distance from the origin beyond which no cell sees a line (mm).
         mirrored: whether all cells lie on one line, so that a pose and its mirror image look alike.
+        flags: more flags.
     """
     pose, corner = found.pose, shape.kind == "corner"
     (angle, offset_mm), by_pose, names = _line(pose, shape.names)
@@ -155,7 +163,7 @@ def report(
         quality=_quality(found),
         curvature_per_mm=-bend if turned else bend,
         rms_counts=misfit,
-        flags=tuple(name for name, is_so in faults.items() if is_so),
+        flags=(*(name for name, is_so in faults.items() if is_so), *flags),
         dark_side="" if shape.kind == "cable" else "left" if turned else "right",
         vertex_mm=(float(pose[1]), float(pose[2])) if corner else None,
         opening_deg=math.degrees(float(pose[3])) if corner else math.nan,

@@ -18,14 +18,7 @@ from lumitip.estimation.estimate import (
     rms_counts,
     without_contact,
 )
-from lumitip.estimation.fit import (
-    ANGLE_SD_DEG,
-    OFFSET_SD_MM,
-    Fit,
-    Frame,
-    drifting,
-    likely,
-)
+from lumitip.estimation.fit import ANGLE_SD_DEG, OFFSET_SD_MM, Fit, Frame, drifting, likely
 from lumitip.estimation.search import ALPHA_SD, BENT, GAP_SD_MM, Search
 from lumitip.grid import Floats, collinear
 from lumitip.layout import Layout, Optics
@@ -48,6 +41,8 @@ HUBER = 3.0
 _LEAST_CELLS = 4  # fewer do not show a line
 _BLURRED = np.array([np.radians(ANGLE_SD_DEG), OFFSET_SD_MM])
 _BEARABLE_COUNTS = dict.fromkeys(KINDS, 0.5 * MISFIT_COUNTS) | {BENT: 0.25 * MISFIT_COUNTS}
+_END_COUNTS = 3.0  # from an end of the scale
+_OUT_FRAMES = 10  # for which a tracker goes on without a cell before it takes it for dead
 _WORSE = 1.3  # times the least misfit since the last search, beyond which a tracker searches again
 
 
@@ -143,8 +138,8 @@ class PoseEstimator:
         known = read[usable]
         if known.size < _LEAST_CELLS or not np.ptp(known) >= MIN_CONTRAST:
             self._last = None
-            kind_seen = "covered" if is_covered(known) else "none"
-            return without_contact(kind_seen, np.flatnonzero(~usable).tolist())
+            left_out = np.flatnonzero(~usable).tolist()
+            return without_contact("covered" if is_covered(known) else "none", left_out)
         frame = self._frame(read, usable)
         name, found = self._found(frame, kind)
         shape = self._search.shape(name)
@@ -154,8 +149,12 @@ class PoseEstimator:
             deviations = np.sqrt(np.abs(np.diag(uncertain))[:2])
             if np.any(deviations > _BLURRED):
                 free = replace(free, pose=likely(shape, free, deviations))
-        estimate = report(shape, free, uncertain, self._search.reach_mm, self._mirrored)
-        self._remember(name, found, estimate)
+        before = self._last.out_for if self._last else 0
+        out_for = np.where(found.frame.scale == 0.0, 1 + before, 0)
+        dead = usable & (out_for > 0) & (out_for < _OUT_FRAMES)
+        flags = ("dead",) if dead.any() else ()
+        estimate = report(shape, free, uncertain, self._search.reach_mm, self._mirrored, flags)
+        self._remember(name, found, estimate, out_for)
         return estimate
 
     def prepare(self, *kinds: str) -> "PoseEstimator":
@@ -176,16 +175,17 @@ class PoseEstimator:
             self._search.bank(kind)
         return self
 
-    def _remember(self, name: str, found: Fit, estimate: Estimate) -> None:
+    def _remember(
+        self, name: str, found: Fit, estimate: Estimate, out_for: NDArray[np.int64]
+    ) -> None:
         """Start the next frame from this fit, unless the fit failed."""
         # The fit of a bend converges over some frames, that of a straight line at once.
-        bearable = {"misfit", "ambiguous", *(["unfinished"] if name == BENT else [])}
+        bearable = {"misfit", "ambiguous", "dead", *(["unfinished"] if name == BENT else [])}
         fine = self._tracking and bearable.issuperset(estimate.flags)
         # Later frames are compared with the least misfit since the last search, so that a bend does
         # not raise the limit for a line that is straight again.
         misfit = min(self._last.misfit_counts if self._last else math.inf, estimate.rms_counts)
-        dead = found.frame.scale == 0.0
-        self._last = _Last(name, found.pose, misfit, dead) if fine else None
+        self._last = _Last(name, found.pose, misfit, out_for) if fine else None
 
     def fitted(self, values: ArrayLike, kind: str, free: bool = False) -> Fit:
         """The fit of a kind with the expected optics.
@@ -219,7 +219,7 @@ class PoseEstimator:
         """An estimator with other gains of the cells, which shares the tables."""
         other = copy(self)
         other._gains = _gains(self.layout, gains)
-        other._last = None
+        other.reset()
         return other
 
     def reset(self) -> None:
@@ -236,12 +236,14 @@ class PoseEstimator:
         deviation = np.hypot(self._noise * rise, self._gain_error * light)
         scale = usable * self._gains / deviation
         full = values > FULL - 1.0
-        return Frame(light / self._gains, scale, self._gains / rise, full, self._huber)
+        stuck = (values <= _END_COUNTS) | (values >= FULL - _END_COUNTS)
+        counts = self._gains / rise
+        return Frame(light / self._gains, scale, counts, full, self._huber, stuck)
 
     def _found(self, frame: Frame, kind: str | None) -> tuple[str, Fit]:
         search, last = self._search, self._last
         if last is not None and kind in (None, search.shape(last.name).kind):
-            alive = frame.without(last.dead)
+            alive = frame.without(last.out_for > 0)
             followed = search.near(last.name, last.pose, alive)
             bearable = max(_BEARABLE_COUNTS[last.name], _WORSE * last.misfit_counts)
             if rms_counts(followed) < bearable:
@@ -262,8 +264,8 @@ class _Last:
     pose: Floats
     misfit_counts: float
     """Least misfit since the last search."""
-    dead: NDArray[np.bool_]
-    """Cells that were left out."""
+    out_for: NDArray[np.int64]
+    """Frames for which each cell has been left out."""
 
 
 def _known(kind: str) -> None:

@@ -32,6 +32,8 @@ class Frame:
     """Saturated cells: more light would read the same."""
     huber: float
     """Standard deviations beyond which the loss grows linearly."""
+    stuck: NDArray[np.bool_]
+    """Cells that may be dead: they read an end of the scale."""
 
     def looser(self, share: float) -> "Frame":
         """The frame with this share of each cell's light uncertain as well."""

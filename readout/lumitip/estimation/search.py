@@ -69,11 +69,21 @@ class Search:
         """The fit with the expected optics from a pose of the bank."""
         return fit(self.shape(kind), self._full_pose(kind, pose, frame), frame)
 
-    def best(self, kind: str, frame: Frame, pose: Floats | None = None) -> Fit:
-        """The best fit of a kind, from the best pose of the bank, if that is known already."""
-        first = self.start(kind, frame)[0] if pose is None else pose
-        found = self.plain(kind, first, frame)
+    def best(self, kind: str, frame: Frame) -> Fit:
+        """The best fit of a kind."""
+        return self.alive(kind, self._best(kind, frame, self.start(kind, frame)[0]))
+
+    def _best(self, kind: str, frame: Frame, pose: Floats) -> Fit:
+        """The best fit of a kind to all cells, from the best pose of the bank."""
+        found = self.plain(kind, pose, frame)
         return self._loose(kind, frame, found) if doubtful(found) else found
+
+    def alive(self, kind: str, found: Fit) -> Fit:
+        """A fit to all cells or, if that is bad, without a few that nothing explains."""
+        if not doubtful(found):
+            return found
+        full = partial(self._full_pose, kind)
+        return without_dead(self.shape(kind), self.bank(kind), found, full) or found
 
     def _loose(self, kind: str, frame: Frame, plain: Fit, before: Floats | None = None) -> Fit:
         """The best fit of a kind to a fingertip that differs from the expected one.
@@ -97,10 +107,7 @@ class Search:
         rivals = bank.elsewhere(first, [f for f, is_so in zip(looked, near, strict=True) if is_so])
         if before is not None:
             first = min([first, *rivals], key=lambda f: bank.distance(f.pose, before))
-        best = replace(fit(shape, first.pose, loose), ambiguous=bool(rivals))
-        if not doubtful(best):
-            return best
-        return without_dead(shape, bank, best, partial(self._full_pose, kind)) or best
+        return replace(fit(shape, first.pose, loose), ambiguous=bool(rivals))
 
     def decided(self, frame: Frame) -> tuple[str, Fit]:
         """The kind that explains a frame best, and its fit; an edge is preferred."""
@@ -114,12 +121,14 @@ class Search:
         fits = {}
         for name, (pose, left) in sorted(starts.items(), key=lambda item: item[1][1]):
             if left <= most:
-                fits[name] = self.best(name, frame, pose)
+                fits[name] = self._best(name, frame, pose)
                 if name != "corner" and not doubtful(fits[name]):
                     return name, fits[name]
         loose = {name: self.loosely(name, found, frame) for name, found in fits.items()}
-        name = min(fits, key=lambda n: _SIMPLER[n] * (loose[n].cost + 3.0 * fits[n].pose.size))
-        return name, fits[name]
+        likely = sorted(fits, key=lambda n: _SIMPLER[n] * (loose[n].cost + 3.0 * fits[n].pose.size))
+        alive = ((name, self.alive(name, fits[name])) for name in likely)
+        explained = ((name, found) for name, found in alive if not doubtful(found))
+        return next(explained, (likely[0], fits[likely[0]]))
 
     @staticmethod
     def _kept(tried: list[Fit]) -> Floats:
@@ -131,15 +140,12 @@ class Search:
     def bent(self, starts: Sequence[tuple[str, Floats]], frame: Frame) -> Fit:
         """The best fit of a bent cable near one of several poses of `"cable"` or `BENT`."""
         shape, loose, straight = self.shape(BENT), frame.looser(LOOSE), len(Cable.names)
-        poses = []
+        tried: list[Fit] = []
         for name, pose in starts:
             end = len(self.shape(name).names)
-            free = self._free_pose(name, pose)
-            poses += [
-                np.concatenate([free[:straight], [bend], free[end:]])
-                for bend in (*_BENDS_PER_MM, *free[straight:end])
-            ]
-        tried = fits(shape, np.array(poses), loose, _LOOK)  # the loose frame misleads less
+            bends = (*_BENDS_PER_MM, *pose[straight:end])
+            each = [np.concatenate([pose[:straight], [bend], pose[end:]]) for bend in bends]
+            tried += fits(shape, np.array(each), loose, _LOOK)  # the loose frame misleads less
         return self.near(BENT, tried[int(bounded(tried).argmin())].pose, frame)
 
     def again(self, name: str, before: Floats, followed: Fit, frame: Frame) -> tuple[str, Fit]:
@@ -163,14 +169,16 @@ class Search:
         else:
             other = name, followed
         if kind != "cable":
-            return other
+            return other[0], self.alive(*other)
         starts = [(name, before), (name, followed.pose), (kind, found.pose)]
         bent = self.bent(starts, frame)
         bends, stays = (
             float(bounded([self.loosely(*of, frame)])[0]) for of in ((BENT, bent), other)
         )
         least = RIVAL if other[0] == BENT else max(RIVAL, _CLEARLY * bends)
-        return (BENT, bent) if stays - bends > least else other
+        if stays - bends > least:
+            return BENT, bent
+        return other if other[0] == BENT else (other[0], self.alive(*other))
 
     def near(self, kind: str, pose: Floats, frame: Frame) -> Fit:
         """The fit from the pose of another frame, with free optics if they were free there."""

@@ -46,7 +46,8 @@ def shapes(twin: Twin) -> dict[str, Shape]:
 
 def seen(values: Floats) -> Frame:
     ones = np.ones(values.size)
-    return Frame(values / 255.0, 100.0 * ones, 255.0 * ones, values > 254.0, 3.0)
+    full = values > 254.0
+    return Frame(values / 255.0, 100.0 * ones, 255.0 * ones, full, 3.0, np.zeros_like(full))
 
 
 @pytest.mark.parametrize("kind", STARTS)
