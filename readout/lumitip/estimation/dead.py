@@ -14,6 +14,8 @@ _MOST = 0.1
 """Share of the cells that may be left out."""
 _FAR_SD = 6.0
 """Standard deviations from the others' fit beyond which a cell is left out."""
+_CLEARLY = 0.25
+"""Share of the loss that may remain."""
 _EACH = 10.0
 """Loss of a cell that is left out: one less is preferred to a slightly better fit."""
 _STARTS, _ROUNDS = 4, 3
@@ -22,7 +24,8 @@ _STARTS, _ROUNDS = 4, 3
 def without_dead(
     shape: Shape, bank: Bank, found: Fit, full: Callable[[Floats, Frame, int], Floats]
 ) -> Fit | None:
-    """The fit with the fewest cells left out that explains all others; none if there is none.
+    """The fit with the fewest cells left out that explains all others, or nearly so; none if there
+    is none.
 
     Args:
         shape: the object.
@@ -35,7 +38,8 @@ def without_dead(
     most = int(_MOST * np.count_nonzero(usable))
     poses = bank.robust(frame.light, usable, _STARTS, most)
     starts = [full(pose, frame, found.drifts) for pose in poses]
-    fits = [left for start in starts if (left := _trimmed(shape, start, frame, most))]
+    enough = _CLEARLY * found.cost
+    fits = [left for start in starts if (left := _trimmed(shape, start, frame, most, enough))]
     if not fits:
         return None
     best = min(fits, key=_cost)
@@ -48,9 +52,17 @@ def _cost(found: Fit) -> float:
     return found.cost + _EACH * np.count_nonzero(found.frame.scale == 0.0)
 
 
-def _trimmed(shape: Shape, start: Floats, frame: Frame, most: int) -> Fit | None:
-    """The fit from a start without the cells that are far from it, if at most so many are, and all
-    of them may be dead."""
+def _trimmed(shape: Shape, start: Floats, frame: Frame, most: int, enough: float) -> Fit | None:
+    """The fit from a start without the cells that are far from it.
+
+    Args:
+        shape: the object.
+        start: its pose.
+        frame: the values.
+        most: number of cells to leave out, all of which may be dead.
+        enough: a loss that is small enough, although the fit does not explain the other cells: the
+            line may be curved.
+    """
     share, _ = shape.slopes(start[None])
     model = start[-2] - start[-1] * share[0]
     for _ in range(_ROUNDS):
@@ -58,10 +70,10 @@ def _trimmed(shape: Shape, start: Floats, frame: Frame, most: int) -> Fit | None
         wild = far > max(_FAR_SD, np.sort(far)[-most - 1])
         found = fit(shape, start, frame.without(wild))
         if not doubtful(found):
-            wild = frame.misses(found.model) > _FAR_SD
-            if np.count_nonzero(wild) > most or np.any(wild & ~frame.stuck):
-                return None
-            again = fit(shape, found.pose, frame.without(wild))
-            return None if doubtful(again) else again
+            break
         start, model = found.pose, found.model
-    return None
+    wild = frame.stuck & (frame.misses(found.model) > _FAR_SD)
+    if not 0 < np.count_nonzero(wild) <= most:
+        return None
+    again = fit(shape, found.pose, frame.without(wild))
+    return again if not doubtful(again) or again.cost < enough else None

@@ -126,9 +126,8 @@ class Search:
                     return name, fits[name]
         loose = {name: self.loosely(name, found, frame) for name, found in fits.items()}
         likely = sorted(fits, key=lambda n: _SIMPLER[n] * (loose[n].cost + 3.0 * fits[n].pose.size))
-        alive = ((name, self.alive(name, fits[name])) for name in likely)
-        explained = ((name, found) for name, found in alive if not doubtful(found))
-        return next(explained, (likely[0], fits[likely[0]]))
+        alive = [(name, self.alive(name, fits[name])) for name in likely]
+        return next((each for each in alive if not doubtful(each[1])), alive[0])
 
     @staticmethod
     def _kept(tried: list[Fit]) -> Floats:
