@@ -113,6 +113,24 @@ def test_replay_from_the_page_pauses_winds_and_closes(
     expect(page.locator(".finger")).to_have_count(1, timeout=30_000)
 
 
+def test_a_page_that_is_loaded_after_the_end_shows_the_last_frame(
+    serve: Serve, page: Page, wait_for: WaitFor, recording: Path
+) -> None:
+    server = serve(f"replay://{recording}?speed=16")
+    finger = server.registry.fingers[1]
+    wait_for(lambda: finger.status()["player"]["playing"] is False)
+    last = list(Reader(recording))[-1].seq
+    for _ in range(6):
+        page.goto(server.url)
+        page.wait_for_selector(f'.finger[data-seq="{last}"]')
+        grid = "lumitip.panels.get(1).grid.canvas.getContext('2d').getImageData(0, 0, 800, 400)"
+        assert page.evaluate(f"new Set(new Uint32Array({grid}.data.buffer)).size") > 50
+    # The list of fingers may come long after the frame.
+    page.route("**/api/fingers", lambda route: (page.wait_for_timeout(400), route.continue_()))
+    page.goto(server.url)
+    page.wait_for_selector(f'.finger[data-seq="{last}"]')
+
+
 def test_player_gives_every_frame_as_it_was(recording: Path, wait_for: WaitFor) -> None:
     expected = list(Reader(recording))
     got: list[Any] = []

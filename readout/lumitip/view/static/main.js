@@ -10,6 +10,7 @@ const NEVER_MS = 2 ** 31 - 1;
 const KEY_NAMES = { " ": "Space", 1: "1 … 9", ArrowLeft: "←", ArrowRight: "→" };
 
 const panels = new Map();
+const newest = new Map(); // last message of each finger, for a panel that is made after it
 const show = { values: true, overlay: true, span: SPANS_S[0], frozen: false };
 let chosen = 0;
 let noticed = 0;
@@ -45,6 +46,8 @@ async function list() {
       byId("fingers").append(panel.element);
       panel.element.addEventListener("pointerdown", () => choose(layout.number));
       panel.placed(show);
+      // Of an ended replay there is one message only, which may come before the list of fingers.
+      if (newest.has(layout.number)) panel.take(newest.get(layout.number));
     }
     choose(panels.has(chosen) ? chosen : fingers[0]?.number);
   } catch (error) {
@@ -60,7 +63,10 @@ function choose(number) {
 }
 
 const stream = new Stream({
-  frames: (message) => panels.get(message.finger)?.take(message),
+  frames: (message) => {
+    newest.set(message.finger, message);
+    panels.get(message.finger)?.take(message);
+  },
   status: ({ fingers }) => {
     for (const [number, status] of Object.entries(fingers)) {
       panels.get(Number(number))?.update(status);
@@ -71,6 +77,7 @@ const stream = new Stream({
   open: (whether) => {
     document.body.dataset.stream = whether ? "open" : "closed";
     if (whether) {
+      newest.clear();
       say("");
       list();
     } else say("no connection to lumitip view, trying again", true, NEVER_MS);
