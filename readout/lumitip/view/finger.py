@@ -15,6 +15,7 @@ from lumitip.layout import Layout
 from lumitip.links.base import LinkEvent
 from lumitip.processing import Contact, Processor
 from lumitip.session.hub import Hub
+from lumitip.view.estimating import EXPECTED, Estimates, Expected
 from lumitip.view.recorder import Recorder
 
 if TYPE_CHECKING:
@@ -41,6 +42,7 @@ class Finger:
         tip: open; `close` closes it.
         sinks: receive every frame too.
         player: the source of the frames of a recording.
+        expected: by the estimates.
     """
 
     def __init__(
@@ -49,6 +51,7 @@ class Finger:
         tip: Fingertip,
         sinks: tuple[Sink, ...] = (),
         player: "Player | None" = None,
+        expected: Expected = EXPECTED,
     ) -> None:
         self.url = url
         self.tip = tip
@@ -59,6 +62,7 @@ class Finger:
         """`Frame.t` of the first frame (s)."""
         self.state = "connected"
         self.detail = ""
+        self.estimates = Estimates(tip.layout, expected)
         self._failed = False
         self._sinks = sinks
         self._processor = Processor(tip.layout)
@@ -107,10 +111,12 @@ class Finger:
         self._changed = changed
         self._began = time.monotonic()
         self._thread.start()
+        self.estimates.start(changed)
 
     def close(self) -> None:
         """End the recording, disconnect and stop reading."""
         self.tip.close()
+        self.estimates.close()
         if self._thread.is_alive():
             self._thread.join()
         self._recorder.stop()
@@ -155,6 +161,11 @@ class Finger:
         """End the recording; returns its file, `None` if there was none."""
         return self._recorder.stop()
 
+    def is_recording_to(self, name: str) -> bool:
+        """Whether a recording of this name is being written."""
+        recording = self._recorder.status()
+        return recording is not None and recording["on"] and recording["file"] == name
+
     def status(self) -> dict[str, Any]:
         """State and statistics for JSON."""
         stats = self.tip.stats
@@ -168,7 +179,9 @@ class Finger:
             "dropped": None if stats.dropped is None else dict(stats.dropped),
             "drift": None if drift is None else str(drift),
             "calibrated": self.tip.calibration.correction() is not None,
+            "estimates": {"state": self.estimates.state, "detail": self.estimates.detail},
             "recording": self._recorder.status(),
+            "scene": self.tip.simulated.placement() if self.tip.simulated else None,
             "player": self.player.status() if self.player else None,
         }
 

@@ -98,6 +98,7 @@ class FingerRegistry:
                 "url": finger.url,
                 "device": finger.tip.device_id,
                 "replayed": finger.player is not None,
+                "scene": finger.tip.simulated.controls() if finger.tip.simulated else None,
                 "design": finger.tip.layout.design_hash[:16],
                 "pitch_mm": finger.tip.layout.pitch_mm,
                 "x_mm": finger.tip.layout.x_mm.tolist(),
@@ -126,6 +127,17 @@ class FingerRegistry:
         if name not in self.recordings():
             raise ViewError(f"there is no recording {name!r} in {self.folder}")
         return self.folder / name
+
+    def finished(self, name: str) -> Path:
+        """The path of a recording that is complete.
+
+        Raises:
+            ViewError: if there is no such recording, or it is being written.
+        """
+        path = self.recording(name)
+        if any(finger.is_recording_to(name) for finger in self.fingers.values()):
+            raise ViewError(f"{name} is being recorded. Stop it first, then download it")
+        return path
 
     def fresh(self, finger: Finger) -> Path:
         """The path of a new recording of a finger, with its name and a number."""

@@ -16,9 +16,11 @@ from typing import Any
 import numpy as np
 from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 
+from lumitip.view.estimating import Estimated
 from lumitip.view.finger import Finger
+from lumitip.view.losses import Losses
 from lumitip.view.registry import FingerRegistry
-from lumitip.view.wire import encode
+from lumitip.view.wire import encode, encode_estimate
 
 WINDOW = 4
 """Most unacknowledged messages of one finger: enough for every frame at 200 Hz, drawn at 60 Hz."""
@@ -34,11 +36,14 @@ class Feed:
         self.skipped = 0
         """Number of frames skipped."""
         self.drawn = 0
-        """Number of messages drawn."""
+        """Number of messages of frames drawn."""
         self._count = max(0, finger.count - 1)  # sends the newest frame at once
         self._number = 0
-        self._pending: deque[tuple[int, float]] = deque()
+        self._since = self._count
+        self._estimated: Estimated | None = None
+        self._pending: deque[tuple[int, float | None]] = deque()
         self._ages: deque[float] = deque(maxlen=_AGES)
+        self._losses = Losses()
 
     def next(self, finger_number: int) -> bytes | None:
         """The next message, `None` if there is nothing new or the window is full."""
@@ -51,6 +56,7 @@ class Feed:
         self.skipped += skipped
         self._number += 1
         last, read = frames[-1]
+        self.finger.estimates.ask(last, self._count)
         self._pending.append((self._number, read if self.finger.player else last.t))
         return encode(
             finger_number,
@@ -61,21 +67,40 @@ class Feed:
             self.finger.since,
         )
 
+    def estimate(self, finger_number: int) -> str | None:
+        """The newest estimate, `None` if it was sent, or if the window is full."""
+        found = self.finger.estimates.newest
+        # An estimate from before this browser came is of an old frame.
+        if found is None or found is self._estimated or found.number <= self._since:
+            return None
+        if len(self._pending) >= WINDOW:
+            return None
+        self._estimated = found
+        self._number += 1
+        self._pending.append((self._number, None))
+        return encode_estimate(
+            finger_number, self._number, found.frame.t - self.finger.since, found.shown
+        )
+
     def acknowledge(self, number: int) -> None:
         """Note that the browser has drawn all messages up to `number`."""
         now = time.monotonic()
+        newest = None
         while self._pending and self._pending[0][0] <= number:
             sent, born = self._pending.popleft()
-            self.drawn += 1
-            # Messages before it were never drawn; the first may be old.
-            if sent == number and sent > 1:
-                self._ages.append(now - born)
+            if born is not None:
+                self.drawn += 1
+                newest = sent, born
+        # Messages before the newest were never drawn; the first may be old.
+        if newest and newest[0] > 1:
+            self._ages.append(now - newest[1])
 
     def status(self) -> dict[str, Any]:
         """Statistics for JSON; ages are from reading the cells to the acknowledgement."""
         ages_ms = np.array(self._ages) * 1e3
         return {
             "skipped": self.skipped,
+            "losses": self._losses.status(self.finger.tip.stats, self.skipped),
             "in_flight": len(self._pending),
             "age_ms": np.percentile(ages_ms, (50, 99)).tolist() if ages_ms.size else None,
         }
@@ -122,6 +147,9 @@ class Session:
                 message = feed.next(number)
                 if message is not None:
                     await self._websocket.send_bytes(message)
+                estimate = feed.estimate(number)
+                if estimate is not None:
+                    await self._websocket.send_text(estimate)
             if time.monotonic() >= self._status_due and not self._status_pending:
                 self._status_due = time.monotonic() + _STATUS_S
                 self._status_pending = True

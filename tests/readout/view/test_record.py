@@ -69,7 +69,7 @@ def test_recording_from_the_page_makes_a_readable_file(
     assert seq == list(range(seq[0], seq[0] + len(seq)))
 
     page.keyboard.press("r")
-    expect(page.locator(".detail")).to_have_text(re.compile("recording twin-demo-002.mcap"))
+    expect(page.locator(".recorded")).to_have_text(re.compile("recording twin-demo-002.mcap"))
 
 
 def test_recording_ends_with_the_server(
