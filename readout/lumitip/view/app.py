@@ -189,5 +189,5 @@ async def _replay(registry: FingerRegistry, body: dict[str, Any], _: Request) ->
 
     path = registry.recording(str(body.get("name")))
     player = await anyio.to_thread.run_sync(Player, path)
-    finger = await anyio.to_thread.run_sync(Finger.play, path.name, player)
+    finger = await anyio.to_thread.run_sync(Finger.play, path.name, player, (), registry.expected)
     return {"said": f"replaying {path.name}", "number": registry.add(finger)}

@@ -1,27 +1,27 @@
-"""`Estimates`: the pose in the newest frame, on a thread of its own while a browser asks.
+"""`Estimates`: the pose in the newest frame, while a browser asks; see `pose_process`."""
 
-The thread never estimates more than `MOST_HZ` times a second, and rests at least as long as an
-estimate took: it leaves the other half of the time to the threads that read.
-"""
-
-import logging
+import json
+import os
+import subprocess
+import sys
 import threading
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
-from lumitip.errors import LumitipError
-from lumitip.estimation import PoseEstimator
-from lumitip.estimation.estimator import DIAMETER_MM
+from lumitip import arguments
+from lumitip.errors import ViewError
+from lumitip.estimation.estimator import DIAMETER_MM, LEAST_DIAMETER_MM
 from lumitip.frame import Frame
 from lumitip.layout import Layout
+from lumitip.links.url import Url
 from lumitip.twin.optics import GAP_MM
-from lumitip.view.pose import described, reach_of
+from lumitip.twin.scene import MOST_DIAMETER_MM
 
 MOST_HZ = 30.0
 """Largest rate of estimates: more are not readable."""
-_log = logging.getLogger(__name__)
+_COMMAND = (sys.executable, "-m", "lumitip.view.pose_process")
 
 
 @dataclass(frozen=True)
@@ -30,6 +30,26 @@ class Expected:
 
     gap_mm: float = GAP_MM
     diameter_mm: float = DIAMETER_MM
+
+    def __post_init__(self) -> None:
+        arguments.number(self.gap_mm, "gap", 0.5, 20.0, error=ViewError)
+        arguments.number(
+            self.diameter_mm, "diameter", LEAST_DIAMETER_MM, MOST_DIAMETER_MM, error=ViewError
+        )
+
+    @classmethod
+    def of(
+        cls, url: str, gap_mm: float | None = None, diameter_mm: float | None = None
+    ) -> "Expected":
+        """Of an address: a twin:// has its own gap and diameter, others the default.
+
+        Raises:
+            ViewError: if a number is out of range.
+        """
+        options = Url.parse(url).options if url.lower().startswith("twin:") else {}
+        gap_mm = float(options.get("gap", GAP_MM)) if gap_mm is None else gap_mm
+        default_mm = max(float(options.get("diameter", DIAMETER_MM)), LEAST_DIAMETER_MM)
+        return cls(gap_mm, default_mm if diameter_mm is None else diameter_mm)
 
 
 EXPECTED = Expected()
@@ -43,7 +63,7 @@ class Estimated:
     number: int
     """Number of frames that were read up to this one."""
     shown: dict[str, Any]
-    """See `described`."""
+    """See `lumitip.view.pose.described`."""
 
 
 class Estimates:
@@ -60,12 +80,13 @@ class Estimates:
         """`"preparing"`, `"ready"` or `"failed"`."""
         self.detail = ""
         """Why there are none."""
-        self._layout = layout
-        self._expected = expected
+        self._first = {"layout": json.loads(layout.to_json()), **asdict(expected)}
         self._asked: tuple[Frame, int] | None = None
         self._changed: Callable[[], None] = lambda: None
         self._wake = threading.Event()
         self._stopping = threading.Event()
+        self._lock = threading.Lock()
+        self._process: subprocess.Popen[str] | None = None
         self._thread = threading.Thread(target=self._guarded, name="lumitip-estimates", daemon=True)
 
     def start(self, changed: Callable[[], None]) -> None:
@@ -79,38 +100,35 @@ class Estimates:
         self._wake.set()
 
     def close(self) -> None:
-        """End the thread; one that still computes tables ends later by itself."""
-        self._stopping.set()
+        """End process and thread."""
+        with self._lock:
+            self._stopping.set()
+            if self._process:
+                self._process.kill()
         self._wake.set()
-        if self._thread.is_alive() and self.state != "preparing":
+        if self._thread.is_alive():
             self._thread.join()
 
     def _guarded(self) -> None:
+        self._wake.wait()  # without a browser there is no process
         try:
-            self._run()
-        except LumitipError as error:
-            self._fail(str(error))
-        except Exception as error:  # noqa: BLE001 - shown, not lost with the thread
-            _log.exception("the estimates have stopped")
-            self._fail(f"unexpected {type(error).__name__}: {error}")
+            with self._lock:
+                if self._stopping.is_set():
+                    return
+                self._process = _started()
+            with self._process:
+                try:
+                    self._run(self._process)
+                finally:
+                    self._process.kill()
+        except (ViewError, OSError, ValueError) as error:
+            if not self._stopping.is_set():
+                self.state, self.detail = "failed", str(error)
+                self._changed()
 
-    def _fail(self, why: str) -> None:
-        self.state, self.detail = "failed", why
-        self._changed()
-
-    def _run(self) -> None:
-        self._wake.wait()  # without a browser no tables are computed
-        if self._stopping.is_set():
-            return
-        estimator = PoseEstimator(
-            self._layout,
-            gap_mm=self._expected.gap_mm,
-            diameter_mm=self._expected.diameter_mm,
-            tracking=True,
-        ).prepare()
-        reach_mm = reach_of(self._layout)
+    def _run(self, process: "subprocess.Popen[str]") -> None:
+        _asked(process, self._first)
         self.state = "ready"
-        angle_deg: float | None = None
         while not self._stopping.is_set():
             self._wake.wait()
             self._wake.clear()
@@ -118,9 +136,39 @@ class Estimates:
             if asked is None or (last and last.frame is asked[0]):
                 continue
             begun = time.monotonic()
-            shown = described(estimator(asked[0].values), reach_mm, angle_deg)
-            angle_deg = shown["angle_deg"]
-            self.newest = Estimated(*asked, shown)
+            self.newest = Estimated(*asked, _asked(process, asked[0].values.tolist()))
             self._changed()
-            took_s = time.monotonic() - begun
-            self._stopping.wait(max(1.0 / MOST_HZ - took_s, took_s))
+            self._stopping.wait(1.0 / MOST_HZ - (time.monotonic() - begun))
+
+
+def _started() -> "subprocess.Popen[str]":
+    ours = {"PYTHONPATH": os.pathsep.join(filter(None, sys.path)), "OPENBLAS_NUM_THREADS": "1"}
+    return subprocess.Popen(
+        _COMMAND,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        encoding="utf-8",
+        env=os.environ | ours,
+    )
+
+
+def _asked(process: "subprocess.Popen[str]", question: object) -> dict[str, Any]:
+    """The answer of the process to a line.
+
+    Raises:
+        ViewError: if it answers that it failed, or has ended.
+    """
+    assert process.stdin
+    assert process.stdout
+    try:
+        process.stdin.write(json.dumps(question) + "\n")
+        process.stdin.flush()
+        line = process.stdout.readline()
+    except BrokenPipeError:
+        line = ""
+    if not line:
+        raise ViewError(f"the process of the estimates has ended, exit code {process.wait()}")
+    answer: dict[str, Any] = json.loads(line)
+    if "failed" in answer:
+        raise ViewError(answer["failed"])
+    return answer

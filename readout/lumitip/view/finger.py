@@ -84,27 +84,41 @@ class Finger:
         *,
         timeout: float | None = 10.0,
         any_design: bool = False,
+        gap_mm: float | None = None,
+        diameter_mm: float | None = None,
     ) -> "Finger":
-        """Connect to a fingertip; arguments as of `Fingertip.open`.
+        """Connect to a fingertip; arguments as of `Fingertip.open` and `Expected.of`.
 
         Raises:
-            LumitipError: as `Fingertip.open`.
+            LumitipError: as `Fingertip.open`, or if gap or diameter is out of range.
         """
         if url.partition("://")[0].lower() == "replay":
             from lumitip.view.player import Player
 
-            return cls.play(url, Player.of_url(url), sinks)
+            expected = Expected.of(url, gap_mm, diameter_mm)
+            return cls.play(url, Player.of_url(url), sinks, expected)
         events = _Later()
         tip = Fingertip.open(url, layout, timeout=timeout, any_design=any_design, on_event=events)
-        return events.to(cls(url, tip, sinks))
+        try:
+            return events.to(cls(url, tip, sinks, None, Expected.of(url, gap_mm, diameter_mm)))
+        except BaseException:
+            tip.close()
+            raise
 
     @classmethod
-    def play(cls, url: str, player: "Player", sinks: tuple[Sink, ...] = ()) -> "Finger":
+    def play(
+        cls,
+        url: str,
+        player: "Player",
+        sinks: tuple[Sink, ...] = (),
+        expected: Expected = EXPECTED,
+    ) -> "Finger":
         """A finger that replays a recording."""
         events = _Later()
         hub = Hub(player, any_design=True, on_event=events)
         hub.start(timeout_s=5.0)
-        return events.to(cls(url, Fingertip(hub, KEPT, calibrated=True), sinks, player))
+        tip = Fingertip(hub, KEPT, calibrated=True)
+        return events.to(cls(url, tip, sinks, player, expected))
 
     def start(self, changed: Callable[[], None]) -> None:
         """Start reading; `changed` is called on the reading thread after each frame or event."""

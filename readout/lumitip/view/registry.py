@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from lumitip.errors import ViewError
+from lumitip.view.estimating import EXPECTED, Expected
 from lumitip.view.finger import Finger
 
 _SUFFIX = ".mcap"
@@ -20,10 +21,14 @@ class FingerRegistry:
     Args:
         fingers: open; the registry closes them.
         folder: of recordings.
+        expected: by the estimates, in replays that the page opens.
     """
 
-    def __init__(self, fingers: Iterable[Finger], folder: Path) -> None:
+    def __init__(
+        self, fingers: Iterable[Finger], folder: Path, expected: Expected = EXPECTED
+    ) -> None:
         self.folder = folder
+        self.expected = expected
         self.fingers: dict[int, Finger] = {}
         self._number = 0
         self._wakers: set[asyncio.Event] = set()
