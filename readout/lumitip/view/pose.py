@@ -18,7 +18,7 @@ NORMAL_95 = 1.96
 ELLIPSE_95 = 2.448
 """The same in two dimensions: the root of the 95 % quantile of chi² with two degrees."""
 WORDS = {
-    "misfit": "misfit: no edge, cable or corner explains these cells; the true error is larger",
+    "misfit": "misfit: no edge, cable or corner explains these cells; the error may be larger",
     "weak": "weak: the cells hardly show this line",
     "astray": "astray: the fit left the fingertip",
     "unfinished": "unfinished: the fit did not converge",

@@ -125,6 +125,7 @@ def test_a_page_that_is_loaded_after_the_end_shows_the_last_frame(
         page.wait_for_selector(f'.finger[data-seq="{last}"]')
         grid = "lumitip.panels.get(1).grid.canvas.getContext('2d').getImageData(0, 0, 800, 400)"
         assert page.evaluate(f"new Set(new Uint32Array({grid}.data.buffer)).size") > 50
+        expect(page.locator(".kind")).to_have_text("cable")  # the estimate is there too
     # The list of fingers may come long after the frame.
     page.route("**/api/fingers", lambda route: (page.wait_for_timeout(400), route.continue_()))
     page.goto(server.url)

@@ -67,5 +67,5 @@ export function estimateReadings(estimate) {
 export function estimateWords(estimate, { state, detail }) {
   if (state === "failed") return `no estimate: ${detail}`;
   if (state === "preparing") return "the tables of the estimate are being computed";
-  return estimate?.words[0] ? estimate.words.join("; ") : "";
+  return estimate ? estimate.words.join("; ") : "";
 }

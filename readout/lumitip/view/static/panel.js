@@ -11,6 +11,7 @@ import { fileOf, post } from "./stream.js";
 import { publishedLine, Series, Trend } from "./trend.js";
 
 const TEXT_MS = 100; // faster changes are not readable
+const WORDS_MS = 700; // nor are sentences that change more often
 const PLOT_MS = 40;
 const SILENT_S = 1; // without a frame the display is marked as old
 
@@ -34,7 +35,7 @@ export class Panel {
     this.published = new Series();
     this.pictures = 0;
     this.counted = { since: performance.now(), number: 0 };
-    this.due = { text: 0, plot: 0 };
+    this.due = { text: 0, words: 0, plot: 0 };
     this.find("h2").textContent = layout.device;
     this.find(".url").textContent = layout.url === layout.device ? "" : layout.url;
     this.find(".url").title = `${layout.url}, design ${layout.design}`;
@@ -120,8 +121,10 @@ export class Panel {
     fill(this.find(".contact"), contactReadings(contact));
     set(this.find(".kind"), this.estimate?.kind ?? "–");
     fill(this.find(".estimate"), estimateReadings(this.estimate));
-    const words = this.status ? estimateWords(this.estimate, this.status.estimates) : "";
-    set(this.find(".words"), words);
+    const now = performance.now();
+    if (!this.status || now < this.due.words) return;
+    this.due.words = now + WORDS_MS;
+    set(this.find(".words"), estimateWords(this.estimate, this.status.estimates));
   }
 
   count(now) {

@@ -5,7 +5,8 @@ import { BOTTOM, drawTimes } from "./plot.js";
 
 const LEFT = 36;
 const TOP = 6;
-const MOST = 4096; // points kept: a minute at 60 Hz
+const MOST = 4096; // points kept: a minute
+const LEAST_S = 1 / 65; // between two points
 const GAP_S = 0.5; // a longer gap interrupts a line, and so does a larger turn
 const GAP_DEG = 45;
 const STEPS = [0.5, 1, 2, 5, 10, 15, 30, 45, 90, 180];
@@ -36,8 +37,9 @@ export class Series {
   }
 
   add(point) {
-    if (point.t === this.points.at(-1)?.t) return;
-    if (point.t < this.points.at(-1)?.t) this.points = [];
+    const passed = point.t - (this.points.at(-1)?.t ?? -Infinity);
+    if (passed >= 0 && passed < LEAST_S) return;
+    if (passed < 0) this.points = [];
     this.points.push(point);
     if (this.points.length > 2 * MOST) this.points = this.points.slice(-MOST);
   }
