@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import Page, expect
 
+from live_page import opened, until
 from lumitip import Layout, LumitipError
 from lumitip.calibration import Calibration
 from lumitip.fingertip import Fingertip
@@ -26,12 +27,6 @@ Serve = Callable[..., ViewServer]
 StillFinger = Callable[[Layout, np.ndarray], Finger]
 WaitFor = Callable[[Callable[[], bool]], None]
 PLAYER = "lumitip.panels.get({}).status?.player"
-
-
-def opened(page: Page, server: ViewServer) -> Page:
-    page.goto(server.url)
-    page.wait_for_selector(".finger[data-seq]")
-    return page
 
 
 @pytest.fixture
@@ -124,7 +119,7 @@ def test_a_page_that_is_loaded_after_the_end_shows_the_last_frame(
         page.goto(server.url)
         page.wait_for_selector(f'.finger[data-seq="{last}"]')
         grid = "lumitip.panels.get(1).grid.canvas.getContext('2d').getImageData(0, 0, 800, 400)"
-        assert page.evaluate(f"new Set(new Uint32Array({grid}.data.buffer)).size") > 50
+        until(page, f"new Set(new Uint32Array({grid}.data.buffer)).size > 50")
         expect(page.locator(".kind")).to_have_text("cable")  # the estimate is there too
     # The list of fingers may come long after the frame.
     page.route("**/api/fingers", lambda route: (page.wait_for_timeout(400), route.continue_()))
