@@ -37,8 +37,8 @@ def pixels(page: Page, points: np.ndarray, canvas: str = f"{GRID}.canvas") -> np
 
 def places(page: Page, points_mm: np.ndarray) -> np.ndarray:
     """Places on the grid's canvas of points of the sensor frame (mm)."""
-    told = f"points => points.map((p) => {GRID}.at(p))"
-    return np.array(page.evaluate(told, points_mm.tolist()))
+    script = f"points => points.map((p) => {GRID}.at(p))"
+    return np.array(page.evaluate(script, points_mm.tolist()))
 
 
 def until(page: Page, condition: str, timeout_s: float = 30.0) -> None:

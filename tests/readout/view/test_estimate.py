@@ -45,9 +45,9 @@ def test_estimate_is_drawn_where_it_is_in_its_own_colour(
     estimate, _ = shown(page, serve, still, layout, SCENES[kind])
     page.keyboard.press("v")
     expect(page.locator(".kind")).to_have_text(kind)
-    told = described(estimate, reach_of(layout))
+    drawn = described(estimate, reach_of(layout))
     low, high = np.array([[layout.x_mm.min(), layout.y_mm.min()], [15.0, 12.0]])
-    for line in told["lines"]:
+    for line in drawn["lines"]:
         ends = np.array(line)
         along = ends[0] + np.linspace(0, 1, 400)[:, None] * (ends[1] - ends[0])
         along = along[((along > low) & (along < high)).all(axis=1)]

@@ -95,9 +95,9 @@ def test_losses_on_the_page_move_nothing_and_can_be_read(
         page.wait_for_timeout(300)
         before = json.loads(page.evaluate(boxes))
         for cause in CAUSES:
-            told = Losses()
-            told.status(NONE, 0, 0.0)
-            text = told.status(lost(**{cause: 12_345}), 0, 3.0)
+            losses = Losses()
+            losses.status(NONE, 0, 0.0)
+            text = losses.status(lost(**{cause: 12_345}), 0, 3.0)
             with monkeypatch.context() as patch:
                 patch.setattr(Losses, "status", lambda *_, text=text: text)
                 expect(words).to_have_text(text["text"].replace("\u202f", " "))

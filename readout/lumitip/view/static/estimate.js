@@ -63,9 +63,12 @@ export function estimateReadings(estimate) {
   return [...rows, ["misfit", rms === null ? null : `${FIXED(rms, 1)} counts`]];
 }
 
-/** The sentence below the numbers. */
-export function estimateWords(estimate, { state, detail }) {
+/** The sentence below the numbers: the first flag in words, and the names of others. */
+export function estimateWords(estimate, { estimates: { state, detail }, calibrated, player }) {
   if (state === "failed") return `no estimate: ${detail}`;
   if (state === "preparing") return "the tables of the estimate are being computed";
-  return estimate ? estimate.words.join("; ") : "";
+  if (!estimate?.words.length) return "";
+  const others = estimate.flags.length > 1 ? `; also ${estimate.flags.slice(1).join(", ")}` : "";
+  const untared = calibrated || player ? "" : ". Not tared yet";
+  return estimate.words[0] + others + untared;
 }

@@ -124,7 +124,7 @@ export class Panel {
     const now = performance.now();
     if (!this.status || now < this.due.words) return;
     this.due.words = now + WORDS_MS;
-    set(this.find(".words"), estimateWords(this.estimate, this.status.estimates));
+    set(this.find(".words"), estimateWords(this.estimate, this.status));
   }
 
   count(now) {
