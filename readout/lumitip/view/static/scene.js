@@ -67,9 +67,10 @@ export class Scene {
     const label = document.createElement("label");
     const [slider, entry] = [document.createElement("input"), document.createElement("input")];
     const [word, unit] = [name.replace(/_.*/, ""), name.endsWith("deg") ? "°" : "mm"];
-    Object.assign(slider, {
-      type: "range", min: least, max: most, step: 0.1, tabIndex: -1, ariaLabel: `${word}, slider`,
-    });
+    // A twin computes for half a second for each new diameter of a cable.
+    const step = name === "diameter_mm" ? 0.5 : 0.1;
+    Object.assign(slider, { type: "range", min: least, max: most, step, tabIndex: -1 });
+    slider.ariaLabel = `${word}, slider`;
     Object.assign(entry, { type: "text", inputMode: "decimal", name, size: 5 });
     slider.oninput = () => {
       entry.value = slider.value;
