@@ -149,6 +149,7 @@ def _started() -> "subprocess.Popen[str]":
         stdout=subprocess.PIPE,
         encoding="utf-8",
         env=os.environ | ours,
+        start_new_session=True,  # Ctrl-C is for the live view, which ends the process
     )
 
 

@@ -14,7 +14,6 @@ A failure is `{"failed": "…"}`, the last line. The process ends when its input
 
 import json
 import os
-import signal
 import sys
 from collections.abc import Iterable, Iterator
 from typing import Any
@@ -45,7 +44,6 @@ def answers(lines: Iterable[str]) -> Iterator[dict[str, Any]]:
 
 def main() -> None:
     """Answer until the input ends."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the live view, which ends this
     if hasattr(os, "nice"):
         os.nice(_NICER)
     try:
