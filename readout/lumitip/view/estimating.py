@@ -7,6 +7,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -116,11 +117,10 @@ class Estimates:
                 if self._stopping.is_set():
                     return
                 self._process = _started()
-            with self._process:
-                try:
-                    self._run(self._process)
-                finally:
-                    self._process.kill()
+            try:
+                self._run(self._process)
+            finally:
+                _end(self._process)
         except (ViewError, OSError, ValueError) as error:
             if not self._stopping.is_set():
                 self.state, self.detail = "failed", str(error)
@@ -151,6 +151,15 @@ def _started() -> "subprocess.Popen[str]":
         env=os.environ | ours,
         start_new_session=True,  # Ctrl-C is for the live view, which ends the process
     )
+
+
+def _end(process: "subprocess.Popen[str]") -> None:
+    process.kill()
+    process.wait()
+    for pipe in (process.stdin, process.stdout):
+        with suppress(OSError):  # a line that was not read
+            if pipe:
+                pipe.close()
 
 
 def _asked(process: "subprocess.Popen[str]", question: object) -> dict[str, Any]:
