@@ -25,8 +25,8 @@ WORDS = {
     "ambiguous": "ambiguous: another line explains the cells nearly as well",
 }
 """Flags of `Estimate` for the reader of the page."""
-_PLACES = 17  # along a line, of its band
-_AROUND = 33  # points of an ellipse
+_PLACES = 9  # along a line, of its band
+_AROUND = 25  # points of an ellipse
 _KEPT_DEG = 120.0  # a line keeps the direction of the frames before up to this angle
 _FAR = 1e4  # no number on the page is larger
 

@@ -6,6 +6,7 @@ export const MARGIN = { left: 40, right: 46, top: 26, bottom: 26 }; // CSS pixel
 const STEPS_MM = [1, 2, 5, 10, 20, 50, 100, 200];
 const LEAST_STEP = 34; // CSS pixels between the numbers of a ruler
 const FONT = "12px system-ui, sans-serif";
+const widths = new Map(); // of words, in CSS pixels
 const LINE = "rgb(128 138 153 / 90%)"; // visible on dark and on light cells
 
 /** Multiples of a step within a range (mm); the step fits the scale (CSS pixels / mm). */
@@ -74,7 +75,8 @@ function word(brush, text, x, y, align, baseline) {
   brush.textAlign = align;
   brush.textBaseline = baseline;
   brush.fillText(text, x, y);
-  const { width } = brush.measureText(text);
+  if (!widths.has(text)) widths.set(text, brush.measureText(text).width);
+  const width = widths.get(text);
   const left = x - { left: 0, center: width / 2, right: width }[align];
   return [text, left, y - { top: 0, middle: 6, bottom: 12 }[baseline], width, 12];
 }

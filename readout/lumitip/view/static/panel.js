@@ -13,6 +13,7 @@ import { publishedLine, Series, Trend } from "./trend.js";
 const TEXT_MS = 100; // faster changes are not readable
 const WORDS_MS = 700; // nor are sentences that change more often
 const PLOT_MS = 40;
+const TREND_MS = 100;
 const SILENT_S = 1; // without a frame the display is marked as old
 
 /** Text beside the name: the most urgent message. */
@@ -35,7 +36,7 @@ export class Panel {
     this.published = new Series();
     this.pictures = 0;
     this.counted = { since: performance.now(), number: 0 };
-    this.due = { text: 0, words: 0, plot: 0 };
+    this.due = { text: 0, words: 0, plot: 0, trend: 0 };
     this.find("h2").textContent = layout.device;
     this.find(".url").textContent = layout.url === layout.device ? "" : layout.url;
     this.find(".url").title = `${layout.url}, design ${layout.design}`;
@@ -105,6 +106,9 @@ export class Panel {
     if (all || now >= this.due.plot) {
       this.due.plot = now + PLOT_MS;
       this.plot.draw(this.grid.selected, this.show.span);
+    }
+    if (all || now >= this.due.trend) {
+      this.due.trend = now + TREND_MS;
       for (const trend of this.trends) trend.draw(this.history.last, this.show.span);
     }
     if (all || now >= this.due.text) {
