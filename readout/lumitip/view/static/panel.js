@@ -10,10 +10,8 @@ import { Scene } from "./scene.js";
 import { fileOf, post } from "./stream.js";
 import { publishedLine, Series, Trend } from "./trend.js";
 
-const TEXT_MS = 100; // faster changes are not readable
-const WORDS_MS = 700; // nor are sentences that change more often
-const PLOT_MS = 40;
-const TREND_MS = 100;
+// Parts of a panel that are drawn less often than the cells (ms): faster changes are not readable.
+const EVERY_MS = { drawPlot: 40, drawTrends: 100, writeNumbers: 100, writeWords: 700 };
 const SILENT_S = 1; // without a frame the display is marked as old
 
 /** Text beside the name: the most urgent message. */
@@ -36,7 +34,8 @@ export class Panel {
     this.published = new Series();
     this.pictures = 0;
     this.counted = { since: performance.now(), number: 0 };
-    this.due = { text: 0, words: 0, plot: 0, trend: 0 };
+    this.due = Object.fromEntries(Object.keys(EVERY_MS).map((part) => [part, 0]));
+    this.late = new Set();
     this.find("h2").textContent = layout.device;
     this.find(".url").textContent = layout.url === layout.device ? "" : layout.url;
     this.find(".url").title = `${layout.url}, design ${layout.design}`;
@@ -96,39 +95,44 @@ export class Panel {
     this.fresh = true;
   }
 
-  /** Draw new frames, or everything. */
+  /** Draw new frames, or everything; what changes too fast to be read is drawn when it is due. */
   draw(all = false) {
-    if (!(this.fresh || all) || !this.newest) return;
-    this.fresh = false;
+    if (!this.newest) return;
     const now = performance.now();
-    const { values, contact, seq } = this.newest;
-    this.grid.draw(values, contact, this.estimate, this.show);
-    if (all || now >= this.due.plot) {
-      this.due.plot = now + PLOT_MS;
-      this.plot.draw(this.grid.selected, this.show.span);
+    if (this.fresh || all) {
+      this.fresh = false;
+      this.grid.draw(this.newest.values, this.newest.contact, this.estimate, this.show);
+      this.element.dataset.seq = this.newest.seq;
+      this.late = new Set(Object.keys(EVERY_MS));
+      this.count(now);
     }
-    if (all || now >= this.due.trend) {
-      this.due.trend = now + TREND_MS;
-      for (const trend of this.trends) trend.draw(this.history.last, this.show.span);
+    for (const part of this.late) {
+      if (!all && now < this.due[part]) continue;
+      this.due[part] = now + EVERY_MS[part];
+      this.late.delete(part);
+      this[part]();
     }
-    if (all || now >= this.due.text) {
-      this.due.text = now + TEXT_MS;
-      this.write(contact);
-    }
-    this.element.dataset.seq = seq;
-    this.count(now);
+  }
+
+  drawPlot() {
+    this.plot.draw(this.grid.selected, this.show.span);
+  }
+
+  drawTrends() {
+    for (const trend of this.trends) trend.draw(this.history.last, this.show.span);
   }
 
   /** The numbers beside the cells. */
-  write(contact) {
+  writeNumbers() {
+    const { contact } = this.newest;
     set(this.find(".shape"), contact.shape);
     fill(this.find(".contact"), contactReadings(contact));
     set(this.find(".kind"), this.estimate?.kind ?? "–");
     fill(this.find(".estimate"), estimateReadings(this.estimate));
-    const now = performance.now();
-    if (!this.status || now < this.due.words) return;
-    this.due.words = now + WORDS_MS;
-    set(this.find(".words"), estimateWords(this.estimate, this.status));
+  }
+
+  writeWords() {
+    if (this.status) set(this.find(".words"), estimateWords(this.estimate, this.status));
   }
 
   count(now) {
@@ -142,6 +146,7 @@ export class Panel {
   /** Show a status of the server, twice a second. */
   update(status) {
     this.status = status;
+    this.late.add("writeWords");
     const on = Boolean(status.recording?.on);
     const silent = status.silent_s > Math.max(SILENT_S, 3 / (status.rate_hz || 1));
     const detail = detailOf(status, silent);
