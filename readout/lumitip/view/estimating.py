@@ -1,4 +1,7 @@
-"""`Estimates`: the pose in the newest frame, while a browser asks; see `pose_process`."""
+"""`Estimates`: the pose in the newest frame, while a browser asks; see `pose_process`.
+
+After an estimate the process rests for as long as it took, so it uses half a core at most.
+"""
 
 import json
 import os
@@ -138,7 +141,8 @@ class Estimates:
             begun = time.monotonic()
             self.newest = Estimated(*asked, _asked(process, asked[0].values.tolist()))
             self._changed()
-            self._stopping.wait(1.0 / MOST_HZ - (time.monotonic() - begun))
+            took_s = time.monotonic() - begun
+            self._stopping.wait(max(1.0 / MOST_HZ - took_s, took_s))
 
 
 def _started() -> "subprocess.Popen[str]":
