@@ -27,8 +27,8 @@ _TICKS = os.sysconf("SC_CLK_TCK")
 _PAGE = os.sysconf("SC_PAGE_SIZE")
 
 
-def offspring(pid: int) -> list[int]:
-    """All child processes of Chromium."""
+def offspring(pid: int, program: str) -> list[int]:
+    """All child processes that run a program, and theirs."""
     found = []
     for entry in Path("/proc").glob("[0-9]*"):
         try:
@@ -37,7 +37,7 @@ def offspring(pid: int) -> list[int]:
             continue
         if int(rest.split()[1]) == pid:
             below = int(entry.name)
-            found += [below] * name.startswith("chrom") + offspring(below)
+            found += [below] * name.startswith(program) + offspring(below, program)
     return found
 
 
@@ -55,16 +55,20 @@ def measure(page: Page, fingers: list[Finger], seconds: float) -> tuple[list[flo
     """Print a row for each interval; returns the p99 of all but the first (ms), and the number of
     lost frames."""
     print(
-        f"{'after':>7}{'age p50':>9}{'p99':>8}{'pictures':>10}{'skipped':>9}{'lost':>6}"
-        f"{'server':>9}{'':>8}{'browser':>9}{'':>8}{'heap':>8}{'load':>6}"
+        f"{'after':>7}{'age p50':>9}{'p99':>8}{'pictures':>10}{'estimates':>11}"
+        f"{'skipped':>9}{'lost':>6}{'server':>9}{'':>8}{'browser':>9}{'':>8}{'heap':>8}{'load':>6}"
     )
     p99_ms, begun = [], time.monotonic()
-    cpu_before = usage([os.getpid()])[0], usage(offspring(os.getpid()))[0]
+    own = os.getpid()
+    servers = [own, *offspring(own, "python")]  # and the processes of the estimates
+    cpu_before = usage(servers)[0], usage(offspring(own, "chrom"))[0]
     for interval in range(1, max(2, round(seconds / INTERVAL_S)) + 1):
         page.wait_for_timeout(1e3 * (begun + interval * INTERVAL_S - time.monotonic()))
-        server, browser = usage([os.getpid()]), usage(offspring(os.getpid()))
+        server, browser = usage(servers), usage(offspring(own, "chrom"))
         panels = page.evaluate(
-            "[...lumitip.panels.values()].map((p) => ({ ...p.status, pictures: p.pictures }))"
+            "[...lumitip.panels.values()].map((p) => ({ ...p.status, pictures: p.pictures,"
+            f" estimates: p.estimates.points.filter(({{ t }}) => t > p.history.last - {INTERVAL_S})"
+            ".length }))"
         )
         age = [max(panel["age_ms"][i] for panel in panels) for i in range(2)]
         lost = sum(sum((finger.tip.stats.dropped or {}).values()) for finger in fingers)
@@ -72,6 +76,7 @@ def measure(page: Page, fingers: list[Finger], seconds: float) -> tuple[list[flo
         print(
             f"{interval * INTERVAL_S:5.0f} s{age[0]:6.1f} ms{age[1]:5.1f} ms"
             f"{min(panel['pictures'] for panel in panels):7.0f}/s"
+            f"{min(panel['estimates'] for panel in panels) / INTERVAL_S:9.0f}/s"
             f"{sum(panel['skipped'] for panel in panels):9d}{lost:6d}"
             f"{100 * (server[0] - cpu_before[0]) / INTERVAL_S:7.0f} %{server[1]:5.0f} MB"
             f"{100 * (browser[0] - cpu_before[1]) / INTERVAL_S:7.0f} %{browser[1]:5.0f} MB"

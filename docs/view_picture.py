@@ -13,9 +13,14 @@ from lumitip.view.server import ViewServer
 PICTURE = Path(__file__).parent / "images" / "view.png"
 SHOWN = "twin://corner?rate=200"
 SELECTED = (7, 16)  # cells that the object covers and leaves within the time that is plotted
-NEWEST = "lumitip.panels.get(1).newest.contact"
-WANTED = f"{NEWEST}.shape === 'corner' && {NEWEST}.markers.length > 24"
-PLOT_FILLED_MS = 11_500
+PANEL = "lumitip.panels.get(1)"
+NEWEST = f"{PANEL}.newest.contact"
+WANTED = (
+    f"{NEWEST}.shape === 'corner' && {NEWEST}.markers.length > 24"
+    f" && {PANEL}.estimate.kind === 'corner' && !{PANEL}.find('.words').textContent"
+    f" && !{PANEL}.estimate.flags.length"
+)
+PLOT_FILLED_MS = 14_000
 
 
 def main(chromium: str) -> None:
@@ -28,7 +33,7 @@ def main(chromium: str) -> None:
         browser = playwright.chromium.launch(
             executable_path=chromium, args=["--no-sandbox", "--disable-gpu"]
         )
-        page = browser.new_page(viewport={"width": 1180, "height": 740}, color_scheme="light")
+        page = browser.new_page(viewport={"width": 1280, "height": 800}, color_scheme="light")
         page.goto(server.url)
         page.wait_for_selector(".finger[data-seq]")
         for cell in SELECTED:

@@ -59,7 +59,7 @@ ALLOWED_READOUT = {
     "health": "core",
     "face": "core health links session",
     "robots": "core control",
-    "view": "core face links processing recording session",
+    "view": "core estimation face links processing recording session twin",
     "tasks": "control core estimation face links processing protocol session twin view",
     "commands": "core face health links processing recording session sharing tasks twin view",
 }

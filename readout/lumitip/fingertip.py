@@ -26,7 +26,7 @@ from lumitip.errors import EndOfRecording, FingertipClosed, LayoutError, LinkErr
 from lumitip.frame import Block, Frame, ended_early, too_late
 from lumitip.layout import Layout
 from lumitip.links import open_link
-from lumitip.links.base import LinkEvent
+from lumitip.links.base import LinkEvent, Placeable
 from lumitip.options import check_options
 from lumitip.session.drift import Drift
 from lumitip.session.hub import Hub
@@ -219,6 +219,11 @@ class Fingertip:
         return self._hub.link.device_id
 
     @property
+    def simulated(self) -> Placeable | None:
+        """Control of the object of a `twin://`; `None` for all others."""
+        return self._hub.link if isinstance(self._hub.link, Placeable) else None
+
+    @property
     def connected(self) -> bool:
         """Whether the link is connected now."""
         return self._hub.connected
@@ -283,13 +288,7 @@ class Fingertip:
             return self._queue
 
     def __repr__(self) -> str:
-        stats, over = self.stats, self._hub.over
-        state = str(over) if over else "connected" if self.connected else "reconnecting"
-        lost = "unknown" if stats.dropped is None else sum(stats.dropped.values())
-        return (
-            f"<Fingertip {self.device_id}: {state}; {len(self.layout)} cells, "
-            f"{stats.received} frames, {stats.rate_hz or 0.0:.1f} Hz, lost: {lost}>"
-        )
+        return f"<Fingertip {self._hub.summary()}>"
 
     def __enter__(self) -> "Fingertip":
         return self

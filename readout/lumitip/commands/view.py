@@ -17,6 +17,7 @@ def run(options: argparse.Namespace) -> int:
         from lumitip.view.server import ViewServer
     except ModuleNotFoundError as error:
         raise MissingExtra("view", "the live view") from error
+    from lumitip.view.estimating import Expected
     from lumitip.view.finger import Finger
     from lumitip.view.registry import FingerRegistry
     from lumitip.view.rerun_sink import RerunSink
@@ -26,13 +27,20 @@ def run(options: argparse.Namespace) -> int:
         if options.rerun is not None:
             sinks = (RerunSink(Path(options.rerun) if options.rerun else None),)
             stack.callback(sinks[0].close)
-        registry = FingerRegistry((), options.folder)
+        expected = Expected.of("", options.gap, options.diameter)
+        registry = FingerRegistry((), options.folder, expected)
         stack.callback(registry.close)
         for url in options.urls:
             layout = layout_path(options, url)
             registry.add(
                 Finger.open(
-                    url, layout, sinks, timeout=options.timeout, any_design=options.any_design
+                    url,
+                    layout,
+                    sinks,
+                    timeout=options.timeout,
+                    any_design=options.any_design,
+                    gap_mm=options.gap,
+                    diameter_mm=options.diameter,
                 )
             )
         server = ViewServer(registry, options.host, options.port, options.token)

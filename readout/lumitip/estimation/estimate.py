@@ -68,10 +68,10 @@ class Estimate:
     direction_deg: float = np.nan
     """Direction from a corner's vertex into the sheet, in [−180, 180]."""
     parameters: tuple[str, ...] = ()
-    """Names of the rows of `covariance`."""
+    """Names of the rows of `covariance`; `x_mm` and `y_mm` are those of a corner's vertex."""
     left_out: tuple[int, ...] = ()
-    """Cells that the estimate does not use: without a finite value, or dead, stuck or covered ones,
-    which read something that no pose explains while all others agree."""
+    """Cells that the estimate does not use: those without a finite value, and a few that read an
+    end of the scale while all others agree on a line: dead, stuck or covered."""
 
     def __repr__(self) -> str:
         return one_line(self)
@@ -216,7 +216,9 @@ def _line(
     border, half = min(borders, key=lambda b: abs(math.sin(b[0])))
     cos, sin = math.cos(border), math.sin(border)
     ahead_mm = -y_mm * sin - x_mm * cos
-    by_pose = np.zeros((2, size))
+    by_pose = np.zeros((6, size))
     by_pose[0, [0, 3]] = math.degrees(1.0), math.degrees(half)
     by_pose[1, :4] = ahead_mm, -sin, cos, half * ahead_mm
-    return (border, y_mm * cos - x_mm * sin), by_pose, ("angle_deg", "offset_mm")
+    by_pose[range(2, 6), range(4)] = math.degrees(1.0), 1.0, 1.0, math.degrees(1.0)
+    names = ("angle_deg", "offset_mm", "direction_deg", "x_mm", "y_mm", "opening_deg")
+    return (border, y_mm * cos - x_mm * sin), by_pose, names

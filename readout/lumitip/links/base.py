@@ -1,8 +1,8 @@
 """The interface of links: arrivals, events and the `Link` protocol."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Literal, Protocol, runtime_checkable
+from typing import Any, Literal, Protocol, runtime_checkable
 
 from lumitip.calibration import Calibration
 from lumitip.errors import LinkError
@@ -109,3 +109,22 @@ class Calibrated(Protocol):
     @property
     def calibration(self) -> Calibration | None:
         """The calibration at the time of recording."""
+
+
+@runtime_checkable
+class Placeable(Protocol):
+    """A simulated fingertip, whose object a user can move."""
+
+    def controls(self) -> dict[str, Any]:
+        """Allowed objects, materials and numbers, for JSON."""
+
+    def placement(self) -> dict[str, Any]:
+        """The object now, for JSON."""
+
+    def place(self, asked: Mapping[str, object]) -> None:
+        """Change the object, such as `{"object": "edge", "offset_mm": 2.0, "angle_deg": 80.0}`;
+        with `{"moving": True}` it moves by itself again.
+
+        Raises:
+            ArgumentError: if the request is not understood; nothing changes.
+        """

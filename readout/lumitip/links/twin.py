@@ -19,20 +19,23 @@ SHAPE is disc, edge, corner, cable, sheet, empty, or demo, which shows the first
 
 import threading
 import time
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from importlib.resources import files
+from typing import Any
 
 import numpy as np
 
 from lumitip.errors import UrlError
 from lumitip.layout import Layout
+from lumitip.links import twin_object
 from lumitip.links.base import Arrival, Deliver, LinkEvent, Report
 from lumitip.links.thread import ThreadedLink
 from lumitip.links.url import Url
 from lumitip.protocol.packet import BITS, Packet, design_code
 from lumitip.twin import Model, Twin, scene
-from lumitip.twin.materials import MATERIALS, material
+from lumitip.twin.materials import MATERIALS
 
 TASKS = {"trace-cloth": "trace_cloth.py", "trace-cable": "trace_cable.py"}
 """Links of `lumitip.tasks.live`, and the example that runs each."""
@@ -51,6 +54,14 @@ class Matter:
     clear: float = 0.0
     diffuse: float = 0.0
     height: float = 0.5
+    material: str = twin_object.OPAQUE
+    """Key of the material."""
+
+    @classmethod
+    def of(cls, key: str, diameter_mm: float) -> "Matter":
+        """The matter of a material."""
+        clear, diffuse = twin_object.light_through(key)
+        return cls(diameter_mm, clear, diffuse, material=key)
 
 
 OPAQUE = Matter()
@@ -69,6 +80,8 @@ class Scene:
     gap_mm: float = 3.0
     matter: Matter = OPAQUE
     warm_up: float = 0.025
+    placed: twin_object.Placed | None = None
+    """The object where a user has put it; `None` while it moves by itself."""
 
 
 class TwinLink(ThreadedLink):
@@ -85,6 +98,8 @@ class TwinLink(ThreadedLink):
             "cells). Increase the timeout, or use a layout of fewer cells"
         )
         self._options = options
+        self._choice = twin_object.Choice(options.shape, options.matter.material)
+        self._sent = 0
         self._start_lock = threading.Lock()
         self._started = False
 
@@ -104,14 +119,34 @@ class TwinLink(ThreadedLink):
         report(LinkEvent("connected", f"{self.device_id} is simulated"))
         began = time.monotonic()
         batch = max(1, round(self._options.rate_hz / _PACKETS_HZ))
-        sent = 0
         while not self._stopping.is_set():
             # A packet is sent at the time of its last frame; a late thread catches up.
-            due_s = (sent + batch) / self._options.rate_hz
+            due_s = (self._sent + batch) / self._options.rate_hz
             if self._stopping.wait(max(0.0, began + due_s - time.monotonic())):
                 return
-            deliver(Arrival(time.monotonic(), packet_at(self.layout, self._options, sent, batch)))
-            sent += batch
+            packet = packet_at(self.layout, self._options, self._sent, batch)
+            deliver(Arrival(time.monotonic(), packet))
+            self._sent += batch
+
+    def controls(self) -> dict[str, Any]:
+        """See `Placeable`."""
+        return twin_object.controls_of(self.layout, SHAPES)
+
+    def placement(self) -> dict[str, Any]:
+        """See `Placeable`."""
+        return twin_object.status_of(self._choice, self._now(), self.layout)
+
+    def place(self, asked: Mapping[str, object]) -> None:
+        """See `Placeable`."""
+        choice = twin_object.changed(self._choice, self._now(), self.layout, asked, SHAPES)
+        matter = Matter.of(choice.material, self._options.matter.diameter_mm)
+        self._choice = choice
+        self._options = replace(
+            self._options, shape=choice.shape, matter=matter, placed=choice.placed
+        )
+
+    def _now(self) -> twin_object.Placed:
+        return scene_at(self.layout, self._options, self._sent / self._options.rate_hz)
 
 
 def packet_at(layout: Layout, options: Scene, number: int, frames: int) -> Packet:
@@ -125,7 +160,7 @@ def packet_at(layout: Layout, options: Scene, number: int, frames: int) -> Packe
         options.seed,
         options.warm_up,
     )
-    scenes = [moved(options.shape, layout, t * options.speed_mm_s, options.matter) for t in times_s]
+    scenes = [scene_at(layout, options, t) for t in times_s]
     return Packet(
         design=design_code(layout.design_hash),
         sequence=number % 2**16,
@@ -134,6 +169,13 @@ def packet_at(layout: Layout, options: Scene, number: int, frames: int) -> Packe
         period_us=min(round(1e6 / options.rate_hz), 2**16 - 1),
         values=twin.codes(np.stack([twin.light(one) for one in scenes]), times_s),
     )
+
+
+def scene_at(layout: Layout, options: Scene, t_s: float) -> twin_object.Placed:
+    """The scene at a time (s)."""
+    if options.placed is not None:
+        return options.placed
+    return moved(options.shape, layout, t_s * options.speed_mm_s, options.matter)
 
 
 @lru_cache(maxsize=8)
@@ -160,7 +202,6 @@ def make(url: Url, layout: Layout | None, any_design: bool) -> TwinLink:  # noqa
             f"{url.text!r}: there is no shape {shape!r}; allowed are {', '.join(SHAPES)}"
         )
     sheet = url.choice("material", "opaque", *(m.key for m in MATERIALS))
-    of = None if sheet == "opaque" else material(sheet)
     options = Scene(
         shape=shape,
         speed_mm_s=url.number("speed", 12.0, 0.0, 1000.0),
@@ -169,11 +210,7 @@ def make(url: Url, layout: Layout | None, any_design: bool) -> TwinLink:  # noqa
         bits=int(url.choice("bits", *map(str, BITS))),
         seed=int(url.number("seed", 0, 0, 2**32)),
         gap_mm=url.number("gap", 3.0, 0.5, 20.0),
-        matter=Matter(
-            diameter_mm=url.number("diameter", 3.0, 0.1, 20.0),
-            clear=of.clear if of else 0.0,
-            diffuse=of.diffuse if of else 0.0,
-        ),
+        matter=Matter.of(sheet, url.number("diameter", 3.0, 0.1, 20.0)),
         warm_up=url.number("warm", 2.5, 0.0, 100.0) / 100.0,
     )
     return TwinLink(layout or published_layout(), options)
@@ -185,7 +222,7 @@ def published_layout() -> Layout:
     return Layout.from_json(text, "published_layout.json")
 
 
-def moved(shape: str, layout: Layout, way_mm: float, matter: Matter) -> scene.Scene:
+def moved(shape: str, layout: Layout, way_mm: float, matter: Matter) -> twin_object.Placed:
     """The scene of one of `SHAPES` after moving `way_mm` over the cells."""
     if shape == "demo":
         turn = int(way_mm // _DEMO_MM)

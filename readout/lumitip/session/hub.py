@@ -96,6 +96,18 @@ class Hub:
         """Drift of the cells."""
         return self._drift.drift
 
+    def summary(self) -> str:
+        """Device, state, cells and counts, in one line."""
+        stats = self.stats
+        state = (
+            str(self._over) if self._over else "connected" if self._connected else "reconnecting"
+        )
+        lost = "unknown" if stats.dropped is None else sum(stats.dropped.values())
+        return (
+            f"{self.link.device_id}: {state}; {len(self.link.layout)} cells, "
+            f"{stats.received} frames, {stats.rate_hz or 0.0:.1f} Hz, lost: {lost}"
+        )
+
     def queue(
         self, size: int, notify: Callable[[], None] | None = None, counted: bool = True
     ) -> FrameQueue:

@@ -10,7 +10,7 @@ import anyio
 from starlette.applications import Starlette
 from starlette.exceptions import HTTPException
 from starlette.requests import Request
-from starlette.responses import JSONResponse, Response
+from starlette.responses import FileResponse, JSONResponse, Response
 from starlette.routing import Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
 from starlette.websockets import WebSocket
@@ -59,15 +59,25 @@ def make_app(registry: FingerRegistry) -> Starlette:
     async def recordings(_: Request) -> Response:
         return JSONResponse(await anyio.to_thread.run_sync(registry.recordings))
 
+    async def download(request: Request) -> Response:
+        name: str = request.path_params["name"]
+        try:
+            path = await anyio.to_thread.run_sync(registry.finished, name)
+        except ViewError as error:
+            return JSONResponse({"error": str(error)}, 404)
+        return FileResponse(path, filename=path.name, media_type="application/octet-stream")
+
     return Starlette(
         routes=[
             WebSocketRoute("/stream", stream),
             Route("/api/fingers", fingers),
             Route("/api/recordings", recordings),
+            Route("/api/recordings/{name}", download),
             _post("/api/fingers/{number}/tare", registry, _tare),
             _post("/api/fingers/{number}/record", registry, _record),
             _post("/api/fingers/{number}/close", registry, _close),
             _post("/api/fingers/{number}/player", registry, _player),
+            _post("/api/fingers/{number}/scene", registry, _scene),
             _post("/api/replay", registry, _replay),
             Mount("/", StaticFiles(directory=STATIC, html=True)),
         ],
@@ -153,6 +163,17 @@ async def _player(
     return {}
 
 
+async def _scene(
+    registry: FingerRegistry, body: dict[str, Any], request: Request
+) -> dict[str, Any]:
+    """`{"object": "edge", "offset_mm": 2.0, "angle_deg": 80.0}`, see `Placeable.place`"""
+    _, finger = _finger(registry, request)
+    if finger.tip.simulated is None:
+        raise ViewError(f"{finger.url} is not simulated; only the object of a twin:// can be moved")
+    finger.tip.simulated.place(body)
+    return {}
+
+
 def _number(body: dict[str, Any], name: str) -> float | None:
     value = body.get(name)
     if value is None:
@@ -168,5 +189,5 @@ async def _replay(registry: FingerRegistry, body: dict[str, Any], _: Request) ->
 
     path = registry.recording(str(body.get("name")))
     player = await anyio.to_thread.run_sync(Player, path)
-    finger = await anyio.to_thread.run_sync(Finger.play, path.name, player)
+    finger = await anyio.to_thread.run_sync(Finger.play, path.name, player, (), registry.expected)
     return {"said": f"replaying {path.name}", "number": registry.add(finger)}

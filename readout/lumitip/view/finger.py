@@ -8,16 +8,17 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
-from lumitip.errors import LinkError, LumitipError, ViewError
+from lumitip.errors import LinkError
 from lumitip.fingertip import Fingertip
 from lumitip.frame import Frame
 from lumitip.layout import Layout
 from lumitip.links.base import LinkEvent
 from lumitip.processing import Contact, Processor
 from lumitip.session.hub import Hub
+from lumitip.view.estimating import EXPECTED, Estimates, Expected
+from lumitip.view.recorder import Recorder
 
 if TYPE_CHECKING:
-    from lumitip.recording import Writer
     from lumitip.view.player import Player
 
 _log = logging.getLogger(__name__)
@@ -33,68 +34,6 @@ class Sink(Protocol):
         """Called with each frame on the finger's thread."""
 
 
-class Recorder:
-    """The current recording of a finger. Thread-safe."""
-
-    def __init__(self) -> None:
-        self._lock = threading.Lock()
-        self._writer: Writer | None = None
-        self._path: Path | None = None
-        self._frames = 0
-        self._error: str | None = None
-
-    def start(self, path: Path, tip: Fingertip) -> None:
-        """Start a recording.
-
-        Raises:
-            LumitipError: if one is running, or the file cannot be written.
-        """
-        from lumitip.recording import Writer
-
-        with self._lock:
-            if self._writer:
-                raise ViewError(f"{self._path} is being recorded. Stop it first")
-            path.parent.mkdir(parents=True, exist_ok=True)
-            self._writer = Writer(
-                path, tip.layout, device_id=tip.device_id, calibration=tip.calibration
-            )
-            self._path, self._frames, self._error = path, 0, None
-
-    def write(self, frame: Frame) -> None:
-        """Write a frame if a recording is running; an error ends it."""
-        with self._lock:
-            if not self._writer:
-                return
-            try:
-                self._writer.write(frame)
-                self._frames += 1
-            except (OSError, LumitipError) as error:
-                self._error = f"the recording ended: {error}"
-                _log.warning("%s: %s", self._path, self._error)
-                self._writer = None
-
-    def stop(self) -> Path | None:
-        """End the recording; returns its file, `None` if there was none."""
-        with self._lock:
-            if not self._writer:
-                return None
-            writer, self._writer = self._writer, None
-            writer.close()
-            return self._path
-
-    def status(self) -> dict[str, Any] | None:
-        """State of the recording for JSON, `None` before the first."""
-        with self._lock:
-            if self._path is None:
-                return None
-            return {
-                "on": self._writer is not None,
-                "file": self._path.name,
-                "frames": self._frames,
-                "error": self._error,
-            }
-
-
 class Finger:
     """Reads every frame of a fingertip and keeps the last ones. Thread-safe.
 
@@ -103,6 +42,7 @@ class Finger:
         tip: open; `close` closes it.
         sinks: receive every frame too.
         player: the source of the frames of a recording.
+        expected: by the estimates.
     """
 
     def __init__(
@@ -111,6 +51,7 @@ class Finger:
         tip: Fingertip,
         sinks: tuple[Sink, ...] = (),
         player: "Player | None" = None,
+        expected: Expected = EXPECTED,
     ) -> None:
         self.url = url
         self.tip = tip
@@ -121,6 +62,7 @@ class Finger:
         """`Frame.t` of the first frame (s)."""
         self.state = "connected"
         self.detail = ""
+        self.estimates = Estimates(tip.layout, expected)
         self._failed = False
         self._sinks = sinks
         self._processor = Processor(tip.layout)
@@ -142,37 +84,53 @@ class Finger:
         *,
         timeout: float | None = 10.0,
         any_design: bool = False,
+        gap_mm: float | None = None,
+        diameter_mm: float | None = None,
     ) -> "Finger":
-        """Connect to a fingertip; arguments as of `Fingertip.open`.
+        """Connect to a fingertip; arguments as of `Fingertip.open` and `Expected.of`.
 
         Raises:
-            LumitipError: as `Fingertip.open`.
+            LumitipError: as `Fingertip.open`, or if gap or diameter is out of range.
         """
         if url.partition("://")[0].lower() == "replay":
             from lumitip.view.player import Player
 
-            return cls.play(url, Player.of_url(url), sinks)
+            expected = Expected.of(url, gap_mm, diameter_mm)
+            return cls.play(url, Player.of_url(url), sinks, expected)
         events = _Later()
         tip = Fingertip.open(url, layout, timeout=timeout, any_design=any_design, on_event=events)
-        return events.to(cls(url, tip, sinks))
+        try:
+            return events.to(cls(url, tip, sinks, None, Expected.of(url, gap_mm, diameter_mm)))
+        except BaseException:
+            tip.close()
+            raise
 
     @classmethod
-    def play(cls, url: str, player: "Player", sinks: tuple[Sink, ...] = ()) -> "Finger":
+    def play(
+        cls,
+        url: str,
+        player: "Player",
+        sinks: tuple[Sink, ...] = (),
+        expected: Expected = EXPECTED,
+    ) -> "Finger":
         """A finger that replays a recording."""
         events = _Later()
         hub = Hub(player, any_design=True, on_event=events)
         hub.start(timeout_s=5.0)
-        return events.to(cls(url, Fingertip(hub, KEPT, calibrated=True), sinks, player))
+        tip = Fingertip(hub, KEPT, calibrated=True)
+        return events.to(cls(url, tip, sinks, player, expected))
 
     def start(self, changed: Callable[[], None]) -> None:
         """Start reading; `changed` is called on the reading thread after each frame or event."""
         self._changed = changed
         self._began = time.monotonic()
         self._thread.start()
+        self.estimates.start(changed)
 
     def close(self) -> None:
         """End the recording, disconnect and stop reading."""
         self.tip.close()
+        self.estimates.close()
         if self._thread.is_alive():
             self._thread.join()
         self._recorder.stop()
@@ -217,6 +175,11 @@ class Finger:
         """End the recording; returns its file, `None` if there was none."""
         return self._recorder.stop()
 
+    def is_recording_to(self, name: str) -> bool:
+        """Whether a recording of this name is being written."""
+        recording = self._recorder.status()
+        return recording is not None and recording["on"] and recording["file"] == name
+
     def status(self) -> dict[str, Any]:
         """State and statistics for JSON."""
         stats = self.tip.stats
@@ -230,7 +193,9 @@ class Finger:
             "dropped": None if stats.dropped is None else dict(stats.dropped),
             "drift": None if drift is None else str(drift),
             "calibrated": self.tip.calibration.correction() is not None,
+            "estimates": {"state": self.estimates.state, "detail": self.estimates.detail},
             "recording": self._recorder.status(),
+            "scene": self.tip.simulated.placement() if self.tip.simulated else None,
             "player": self.player.status() if self.player else None,
         }
 

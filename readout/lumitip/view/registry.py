@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from lumitip.errors import ViewError
+from lumitip.view.estimating import EXPECTED, Expected
 from lumitip.view.finger import Finger
 
 _SUFFIX = ".mcap"
@@ -20,10 +21,14 @@ class FingerRegistry:
     Args:
         fingers: open; the registry closes them.
         folder: of recordings.
+        expected: by the estimates, in replays that the page opens.
     """
 
-    def __init__(self, fingers: Iterable[Finger], folder: Path) -> None:
+    def __init__(
+        self, fingers: Iterable[Finger], folder: Path, expected: Expected = EXPECTED
+    ) -> None:
         self.folder = folder
+        self.expected = expected
         self.fingers: dict[int, Finger] = {}
         self._number = 0
         self._wakers: set[asyncio.Event] = set()
@@ -98,6 +103,7 @@ class FingerRegistry:
                 "url": finger.url,
                 "device": finger.tip.device_id,
                 "replayed": finger.player is not None,
+                "scene": finger.tip.simulated.controls() if finger.tip.simulated else None,
                 "design": finger.tip.layout.design_hash[:16],
                 "pitch_mm": finger.tip.layout.pitch_mm,
                 "x_mm": finger.tip.layout.x_mm.tolist(),
@@ -126,6 +132,17 @@ class FingerRegistry:
         if name not in self.recordings():
             raise ViewError(f"there is no recording {name!r} in {self.folder}")
         return self.folder / name
+
+    def finished(self, name: str) -> Path:
+        """The path of a recording that is complete.
+
+        Raises:
+            ViewError: if there is no such recording, or it is being written.
+        """
+        path = self.recording(name)
+        if any(finger.is_recording_to(name) for finger in self.fingers.values()):
+            raise ViewError(f"{name} is being recorded. Stop it first, then download it")
+        return path
 
     def fresh(self, finger: Finger) -> Path:
         """The path of a new recording of a finger, with its name and a number."""

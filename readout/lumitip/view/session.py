@@ -2,40 +2,26 @@
 
 A browser acknowledges each message once it is drawn, and at most `WINDOW` messages are not yet
 acknowledged. While the window is full frames are skipped; the next message has the newest frames
-and the number skipped. So nothing queues for a slow browser or a hidden tab.
-
-Little-endian, every array aligned to its own size:
-
-    u8 kind (1), u8 0, u16 finger, u16 frames, u16 cells, u16 markers, u16 0, u32 number,
-    u32 skipped, u32 0                                  24 bytes
-    f64 × frames          time since the first frame of this finger (s)
-    f32 × 20              contact, see `_contact`; NaN: does not apply
-    f32 × 2 markers       markers (mm)
-    u32 × frames          sequence numbers, modulo 2^32
-    u16 × frames × cells  values in 1/256 of a count, 65535 is NaN
+and the number skipped. So nothing queues for a slow browser or a hidden tab. `wire` has the
+messages.
 """
 
 import asyncio
 import json
-import struct
 import time
 from collections import deque
-from collections.abc import Sequence
 from contextlib import suppress
 from typing import Any
 
 import numpy as np
 from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 
-from lumitip.frame import Frame
-from lumitip.processing import SHAPES, Contact
+from lumitip.view.estimating import Estimated
 from lumitip.view.finger import Finger
+from lumitip.view.losses import Losses
 from lumitip.view.registry import FingerRegistry
+from lumitip.view.wire import encode, encode_estimate
 
-HEADER = struct.Struct("<BxHHHHxxIIxxxx")
-FRAMES = 1
-CONTACT_FIELDS = 20
-_NOT_A_NUMBER = 65535
 WINDOW = 4
 """Most unacknowledged messages of one finger: enough for every frame at 200 Hz, drawn at 60 Hz."""
 _STATUS_S = 0.5
@@ -50,11 +36,14 @@ class Feed:
         self.skipped = 0
         """Number of frames skipped."""
         self.drawn = 0
-        """Number of messages drawn."""
+        """Number of messages of frames drawn."""
         self._count = max(0, finger.count - 1)  # sends the newest frame at once
         self._number = 0
-        self._pending: deque[tuple[int, float]] = deque()
+        self._since = self._count
+        self._estimated: Estimated | None = None
+        self._pending: deque[tuple[int, float | None]] = deque()
         self._ages: deque[float] = deque(maxlen=_AGES)
+        self._losses = Losses()
 
     def next(self, finger_number: int) -> bytes | None:
         """The next message, `None` if there is nothing new or the window is full."""
@@ -67,6 +56,7 @@ class Feed:
         self.skipped += skipped
         self._number += 1
         last, read = frames[-1]
+        self.finger.estimates.ask(last, self._count)
         self._pending.append((self._number, read if self.finger.player else last.t))
         return encode(
             finger_number,
@@ -77,21 +67,40 @@ class Feed:
             self.finger.since,
         )
 
+    def estimate(self, finger_number: int) -> str | None:
+        """The newest estimate, `None` if it was sent, or if the window is full."""
+        found = self.finger.estimates.newest
+        # An estimate from before this browser came is of an old frame.
+        if found is None or found is self._estimated or found.number <= self._since:
+            return None
+        if len(self._pending) >= WINDOW:
+            return None
+        self._estimated = found
+        self._number += 1
+        self._pending.append((self._number, None))
+        return encode_estimate(
+            finger_number, self._number, found.frame.t - self.finger.since, found.shown
+        )
+
     def acknowledge(self, number: int) -> None:
         """Note that the browser has drawn all messages up to `number`."""
         now = time.monotonic()
+        newest = None
         while self._pending and self._pending[0][0] <= number:
             sent, born = self._pending.popleft()
-            self.drawn += 1
-            # Messages before it were never drawn; the first may be old.
-            if sent == number and sent > 1:
-                self._ages.append(now - born)
+            if born is not None:
+                self.drawn += 1
+                newest = sent, born
+        # Messages before the newest were never drawn; the first may be old.
+        if newest and newest[0] > 1:
+            self._ages.append(now - newest[1])
 
     def status(self) -> dict[str, Any]:
         """Statistics for JSON; ages are from reading the cells to the acknowledgement."""
         ages_ms = np.array(self._ages) * 1e3
         return {
             "skipped": self.skipped,
+            "losses": self._losses.status(self.finger.tip.stats, self.skipped),
             "in_flight": len(self._pending),
             "age_ms": np.percentile(ages_ms, (50, 99)).tolist() if ages_ms.size else None,
         }
@@ -138,6 +147,9 @@ class Session:
                 message = feed.next(number)
                 if message is not None:
                     await self._websocket.send_bytes(message)
+                estimate = feed.estimate(number)
+                if estimate is not None:
+                    await self._websocket.send_text(estimate)
             if time.monotonic() >= self._status_due and not self._status_pending:
                 self._status_due = time.monotonic() + _STATUS_S
                 self._status_pending = True
@@ -180,60 +192,3 @@ class Session:
         if message.get("status"):
             self._status_pending = False
         self._awake.set()
-
-
-def encode(
-    finger: int,
-    number: int,
-    frames: Sequence[Frame],
-    contact: Contact,
-    skipped: int = 0,
-    since: float = 0.0,
-) -> bytes:
-    """Encode one or more frames of one finger, in order.
-
-    Args:
-        finger: number of the finger.
-        number: of this message, for its acknowledgement.
-        contact: of the last frame.
-        skipped: number of frames skipped before these.
-        since: `Frame.t` of time 0 (s).
-    """
-    markers = contact.markers_mm if contact.markers_mm is not None else np.empty((0, 2))
-    cells = frames[0].values.size
-    head = HEADER.pack(FRAMES, finger, len(frames), cells, len(markers), number, skipped)
-    values = np.rint(np.stack([f.values for f in frames]) * np.float32(256.0))
-    codes = np.where(np.isfinite(values), values, _NOT_A_NUMBER).astype("<u2")
-    return b"".join(
-        (
-            head,
-            np.array([f.t - since for f in frames], "<f8").tobytes(),
-            np.array(_contact(contact), "<f4").tobytes(),
-            markers.astype("<f4").tobytes(),
-            np.array([f.seq % 2**32 for f in frames], "<u4").tobytes(),
-            codes.tobytes(),
-        )
-    )
-
-
-def _contact(contact: Contact) -> list[float]:
-    """Shape, λ, contrast, centre (2), line (4), corner (6), cable (5); order as in `Contact`."""
-    nan = float("nan")
-    line, corner, cable = contact.line, contact.corner, contact.cable
-    return [
-        float(SHAPES.index(contact.shape)),
-        nan if contact.threshold is None else contact.threshold,
-        nan if contact.contrast is None else contact.contrast,
-        *(contact.centre_mm or (nan, nan)),
-        *((*line.point_mm, line.angle_deg, line.rms_mm) if line else [nan] * 4),
-        *(
-            (*corner.vertex_mm, *corner.directions_deg, corner.opening_deg, corner.rms_mm)
-            if corner
-            else [nan] * 6
-        ),
-        *(
-            (*cable.axis_point_mm, cable.angle_deg, cable.width_mm, cable.rms_mm)
-            if cable
-            else [nan] * 5
-        ),
-    ]

@@ -23,7 +23,7 @@ from lumitip.cli import main
 from lumitip.frame import Frame
 from lumitip.processing import Processor
 from lumitip.recording import Reader
-from lumitip.view.session import encode
+from lumitip.view.wire import encode
 
 ROOT = Path(__file__).parents[3]
 NAMES = ("cloth_edge", "cloth_corner", "cable")

@@ -70,6 +70,8 @@ def test_port_that_is_taken_is_told(capsys: pytest.CaptureFixture[str]) -> None:
         (["replay://none.mcap"], "cannot be read"),
         (["twin://demo", "--host", "203.0.113.1", "--port", "0"], "cannot be used"),
         (["twin://demo", "--port", "70000"], "allowed are 0 to 65535"),
+        (["twin://demo", "--gap", "50"], "gap is 50.0; a number from 0.5 to 20 is needed"),
+        (["twin://demo", "--diameter", "0"], "diameter is 0.0; a number from 0.3 to 200"),
     ],
 )
 def test_what_cannot_be_shown_is_told(

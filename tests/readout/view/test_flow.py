@@ -40,7 +40,10 @@ def stream(server: ViewServer) -> ClientConnection:
     return connect(f"ws://{here}/stream", origin=f"http://{here}")  # type: ignore[arg-type]
 
 
-def told(message: bytes) -> dict[str, Any]:
+def told(message: bytes | str) -> dict[str, Any]:
+    """A message of frames, or an estimate, which skips none and has none."""
+    if isinstance(message, str):
+        return {"skipped": 0, "seq": [], **json.loads(message)["estimate"]}
     head = struct.unpack_from("<BBHHHHHIII", message)
     finger, frames, _, markers, _, number, skipped, _ = head[2:]
     at = 24 + 8 * frames + 80 + 8 * markers
@@ -48,15 +51,15 @@ def told(message: bytes) -> dict[str, Any]:
     return {"finger": finger, "number": number, "skipped": skipped, "seq": list(seq)}
 
 
-def until_silent(client: ClientConnection) -> list[bytes]:
-    """Messages of frames until nothing comes for a while."""
-    messages = []
+def until_silent(client: ClientConnection) -> list[bytes | str]:
+    """Messages of frames and estimates until nothing comes for a while."""
+    messages = list[bytes | str]()
     while True:
         try:
             message = client.recv(timeout=0.5)
         except TimeoutError:
             return messages
-        if isinstance(message, bytes):
+        if isinstance(message, bytes) or "estimate" in json.loads(message):
             messages.append(message)
             assert len(messages) < 50, "it does not wait for the browser"
 
@@ -75,6 +78,7 @@ def test_a_browser_that_does_not_draw_gets_a_window_and_no_more(
         after = until_silent(client)
     assert [told(m)["number"] for m in after] == list(range(WINDOW + 1, 2 * WINDOW + 1))
     assert sum(told(m)["skipped"] for m in first) == 0
+    first, after = ([m for m in some if isinstance(m, bytes)] for some in (first, after))
     caught_up = told(after[0])
     assert len(caught_up["seq"]) == KEPT
     # Nothing is missing but what is said to be.
@@ -91,7 +95,7 @@ def test_a_browser_that_draws_gets_every_frame(serve: Serve) -> None:
     with stream(server) as client:
         while len(got) < 300:
             message = client.recv(timeout=10)
-            if isinstance(message, str):
+            if isinstance(message, str) and "estimate" not in json.loads(message):
                 client.send(json.dumps({"status": True}))
                 continue
             frames = told(message)
@@ -107,7 +111,7 @@ def test_one_slow_browser_does_not_slow_another(serve: Serve) -> None:
         frames = 0
         while frames < 300:
             message = quick.recv(timeout=10)
-            if isinstance(message, bytes):
+            if isinstance(message, bytes) or "estimate" in json.loads(message):
                 frames += len(told(message)["seq"])
                 quick.send(json.dumps({"drawn": {"1": told(message)["number"]}}))
         assert len(until_silent(slow)) == WINDOW
@@ -120,9 +124,32 @@ def test_who_comes_late_sees_the_last_frame(serve: Serve, wait_for: WaitFor) -> 
     finger.tip.close()
     wait_for(lambda: finger.status()["state"] == "ended")
     with stream(server) as client:
-        (message,) = until_silent(client)
+        message = until_silent(client)[0]
     last = finger.tip.stats.received - 1
     assert told(message)["seq"] == [last]
+
+
+def test_who_comes_late_gets_the_estimate_of_the_last_frame_and_no_older_one(
+    serve: Serve, wait_for: WaitFor
+) -> None:
+    server = serve("twin://edge")
+    finger = server.registry.fingers[1]
+    with stream(server) as client:
+        wait_for(lambda: finger.estimates.newest is not None)
+        until_silent(client)  # the window is full: no frame is asked for any more
+    old = finger.estimates.newest
+    assert old
+    wait_for(lambda: finger.count > old.number + 20)
+    finger.tip.close()
+    wait_for(lambda: finger.status()["state"] == "ended")
+    for _ in range(3):
+        with stream(server) as client:
+            frame, estimate = until_silent(client)
+        assert told(frame)["number"] == 1
+        assert told(estimate)["number"] == 2
+        assert finger.estimates.newest
+        assert finger.estimates.newest.number == finger.count
+        assert told(estimate)["t"] == finger.newer(finger.count - 1)[0][0][0].t - finger.since
 
 
 def test_a_browser_that_left_before_its_last_words_are_read_leaves_quietly(

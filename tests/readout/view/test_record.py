@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import Page, expect
 
+from live_page import opened, until
 from lumitip import Layout, LumitipError
 from lumitip.calibration import Calibration
 from lumitip.fingertip import Fingertip
@@ -26,12 +27,6 @@ Serve = Callable[..., ViewServer]
 StillFinger = Callable[[Layout, np.ndarray], Finger]
 WaitFor = Callable[[Callable[[], bool]], None]
 PLAYER = "lumitip.panels.get({}).status?.player"
-
-
-def opened(page: Page, server: ViewServer) -> Page:
-    page.goto(server.url)
-    page.wait_for_selector(".finger[data-seq]")
-    return page
 
 
 @pytest.fixture
@@ -69,7 +64,7 @@ def test_recording_from_the_page_makes_a_readable_file(
     assert seq == list(range(seq[0], seq[0] + len(seq)))
 
     page.keyboard.press("r")
-    expect(page.locator(".detail")).to_have_text(re.compile("recording twin-demo-002.mcap"))
+    expect(page.locator(".recorded")).to_have_text(re.compile("recording twin-demo-002.mcap"))
 
 
 def test_recording_ends_with_the_server(
@@ -111,6 +106,25 @@ def test_replay_from_the_page_pauses_winds_and_closes(
     wait_for(lambda: page.evaluate(PLAYER.format(2))["position_s"] > 2.9)
     replay.locator(".close").click()
     expect(page.locator(".finger")).to_have_count(1, timeout=30_000)
+
+
+def test_a_page_that_is_loaded_after_the_end_shows_the_last_frame(
+    serve: Serve, page: Page, wait_for: WaitFor, recording: Path
+) -> None:
+    server = serve(f"replay://{recording}?speed=16")
+    finger = server.registry.fingers[1]
+    wait_for(lambda: finger.status()["player"]["playing"] is False)
+    last = list(Reader(recording))[-1].seq
+    for _ in range(6):
+        page.goto(server.url)
+        page.wait_for_selector(f'.finger[data-seq="{last}"]')
+        grid = "lumitip.panels.get(1).grid.canvas.getContext('2d').getImageData(0, 0, 800, 400)"
+        until(page, f"new Set(new Uint32Array({grid}.data.buffer)).size > 50")
+        expect(page.locator(".kind")).to_have_text("cable")  # the estimate is there too
+    # The list of fingers may come long after the frame.
+    page.route("**/api/fingers", lambda route: (page.wait_for_timeout(400), route.continue_()))
+    page.goto(server.url)
+    page.wait_for_selector(f'.finger[data-seq="{last}"]')
 
 
 def test_player_gives_every_frame_as_it_was(recording: Path, wait_for: WaitFor) -> None:

@@ -1,4 +1,4 @@
-"""What the browser gets, read here as it is told in `lumitip.view.session`."""
+"""What the browser gets, read here as it is told in `lumitip.view.wire`."""
 
 import struct
 from collections.abc import Callable
@@ -9,7 +9,7 @@ import pytest
 from lumitip import Layout
 from lumitip.frame import Frame
 from lumitip.processing import Processor
-from lumitip.view.session import encode
+from lumitip.view.wire import encode
 
 
 def frame(values: np.ndarray, seq: int, t: float) -> Frame:

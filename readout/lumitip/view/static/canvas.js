@@ -72,6 +72,9 @@ export function inkOn(value) {
 /** Colours of the selected cells: Okabe and Ito, for any colour vision. */
 export const LINES = ["#d55e00", "#56b4e9", "#009e73", "#cc79a7", "#e69f00", "#0072b2"];
 
+/** Colour of the estimate, apart from the white and orange of the published method. */
+export const ESTIMATE = "#d81b8c";
+
 /** Draw the scale on a canvas of 256 × 1 pixels. */
 export function drawScale(canvas) {
   const brush = canvas.getContext("2d");

@@ -1,13 +1,13 @@
 // The cells of one finger as hexagons at their positions, tip up.
 
+import { drawAxes, drawRulers, MARGIN } from "./axes.js";
 import { colourOf, fit, inkOn, LINES, theme } from "./canvas.js";
+import { drawEstimate } from "./estimate.js";
 import { drawContact } from "./overlay.js";
 
 const GAP = 0.955; // size of a hexagon relative to the pitch
 const SIDE = 1 / Math.sqrt(3); // of a hexagon one pitch across its flats
 const LEAST_FOR_TEXT = 26; // CSS pixels of pitch
-const [ABOVE, BELOW] = [20, 30]; // CSS pixels for text at the edges
-const BESIDE = 72; // CSS pixels for text beside the cells
 
 export class Grid {
   constructor(canvas, layout) {
@@ -24,14 +24,14 @@ export class Grid {
     const margin = pitch_mm * 0.85;
     const [left, right] = [Math.min(...x_mm) - margin, Math.max(...x_mm) + margin];
     const [low, high] = [Math.min(...y_mm) - margin, Math.max(...y_mm) + margin];
-    const across = width / (right - left);
-    this.scale = Math.min(across, height / (high - low));
-    this.middle = [width / 2, height / 2];
-    if (width - (right - left) * this.scale < 2 * BESIDE) {
-      this.scale = Math.min(across, (height - ABOVE - BELOW) / (high - low));
-      this.middle[1] = (height + ABOVE - BELOW) / 2;
-    }
+    const across = (width - MARGIN.left - MARGIN.right) / (right - left);
+    const down = (height - MARGIN.top - MARGIN.bottom) / (high - low);
+    this.scale = Math.max(Math.min(across, down), 0);
+    this.middle = [
+      (width + MARGIN.left - MARGIN.right) / 2, (height + MARGIN.top - MARGIN.bottom) / 2,
+    ];
     this.origin = [(left + right) / 2, (low + high) / 2];
+    this.extent = [left, right, low, high];
     this.rectangle = [
       ...this.at([left, high]), (right - left) * this.scale, (high - low) * this.scale,
     ];
@@ -66,14 +66,17 @@ export class Grid {
     else this.selected = [...this.selected, cell].slice(-LINES.length);
   }
 
-  draw(values, contact, show) {
+  /** Cells, axes and lines; on top the numbers of the cells, which no line covers. */
+  draw(values, contact, estimate, show) {
     const { brush, width, height } = fit(this.canvas);
     brush.clearRect(0, 0, width, height);
     this.centres.forEach((centre, i) => this.drawCell(brush, centre, values[i]));
-    if (show.values) this.drawValues(brush, values);
     this.selected.forEach((cell, i) => this.outline(brush, this.centres[cell], LINES[i]));
+    if (show.overlay) drawAxes(brush, this);
+    if (show.overlay && estimate) drawEstimate(brush, this, estimate);
     if (show.overlay && contact) drawContact(brush, this, contact);
-    this.drawFrame(brush, width, height);
+    if (show.values) this.drawValues(brush, values);
+    this.words = drawRulers(brush, this);
   }
 
   drawCell(brush, [x, y], value) {
@@ -89,16 +92,22 @@ export class Grid {
     brush.translate(-x, -y);
   }
 
+  /** The number of each cell, on a patch of its colour that interrupts lines. */
   drawValues(brush, values) {
     const pitch = this.radius / SIDE;
     if (pitch < LEAST_FOR_TEXT) return;
-    brush.font = `${Math.min(15, Math.round(pitch * 0.24))}px system-ui, sans-serif`;
+    const size = Math.min(15, Math.round(pitch * 0.24));
+    brush.font = `${size}px system-ui, sans-serif`;
     brush.textAlign = "center";
     brush.textBaseline = "middle";
     this.centres.forEach(([x, y], i) => {
       if (Number.isNaN(values[i])) return;
+      const text = String(Math.round(values[i]));
+      const half = 0.32 * size * text.length + 2;
+      brush.fillStyle = colourOf(values[i]);
+      brush.fillRect(x - half, y - 0.6 * size, 2 * half, 1.15 * size);
       brush.fillStyle = inkOn(values[i]);
-      brush.fillText(Math.round(values[i]), x, y);
+      brush.fillText(text, x, y);
     });
   }
 
@@ -112,26 +121,6 @@ export class Grid {
     brush.lineWidth = 3;
     brush.stroke(this.hexagon);
     brush.translate(-x, -y);
-  }
-
-  /** Draw the direction of the tip and a scale of one pitch. */
-  drawFrame(brush, width, height) {
-    const length = this.layout.pitch_mm * this.scale;
-    const [x, y] = [14.5, height - 14.5];
-    brush.strokeStyle = brush.fillStyle = theme.soft;
-    brush.lineWidth = 1;
-    brush.beginPath();
-    brush.moveTo(x, y - 4);
-    brush.lineTo(x, y);
-    brush.lineTo(x + length, y);
-    brush.lineTo(x + length, y - 4);
-    brush.stroke();
-    brush.font = "12px system-ui, sans-serif";
-    brush.textAlign = "left";
-    brush.textBaseline = "bottom";
-    brush.fillText(`${Number(this.layout.pitch_mm.toFixed(2))} mm`, x, y - 5);
-    brush.textBaseline = "top";
-    brush.fillText("↑ tip", 14, 12);
   }
 }
 

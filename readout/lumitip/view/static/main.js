@@ -2,7 +2,7 @@
 
 import { drawScale } from "./canvas.js";
 import { Panel } from "./panel.js";
-import { get, post, Stream } from "./stream.js";
+import { fileOf, get, post, Stream } from "./stream.js";
 
 const SPANS_S = [10, 30, 60];
 const NOTICE_MS = 6000;
@@ -10,6 +10,8 @@ const NEVER_MS = 2 ** 31 - 1;
 const KEY_NAMES = { " ": "Space", 1: "1 … 9", ArrowLeft: "←", ArrowRight: "→" };
 
 const panels = new Map();
+// The last messages of each finger, for a panel that is made after they came.
+const newest = { frames: new Map(), estimate: new Map() };
 const show = { values: true, overlay: true, span: SPANS_S[0], frozen: false };
 let chosen = 0;
 let noticed = 0;
@@ -45,6 +47,10 @@ async function list() {
       byId("fingers").append(panel.element);
       panel.element.addEventListener("pointerdown", () => choose(layout.number));
       panel.placed(show);
+      // Of an ended replay there is one message only, which may come before the list of fingers.
+      const { frames, estimate } = newest;
+      if (frames.has(layout.number)) panel.take(frames.get(layout.number));
+      if (estimate.has(layout.number)) panel.estimated(estimate.get(layout.number));
     }
     choose(panels.has(chosen) ? chosen : fingers[0]?.number);
   } catch (error) {
@@ -60,7 +66,14 @@ function choose(number) {
 }
 
 const stream = new Stream({
-  frames: (message) => panels.get(message.finger)?.take(message),
+  frames: (message) => {
+    newest.frames.set(message.finger, message);
+    panels.get(message.finger)?.take(message);
+  },
+  estimate: (estimate) => {
+    newest.estimate.set(estimate.finger, estimate);
+    panels.get(estimate.finger)?.estimated(estimate);
+  },
   status: ({ fingers }) => {
     for (const [number, status] of Object.entries(fingers)) {
       panels.get(Number(number))?.update(status);
@@ -71,6 +84,8 @@ const stream = new Stream({
   open: (whether) => {
     document.body.dataset.stream = whether ? "open" : "closed";
     if (whether) {
+      newest.frames.clear();
+      newest.estimate.clear();
       say("");
       list();
     } else say("no connection to lumitip view, trying again", true, NEVER_MS);
@@ -111,13 +126,14 @@ async function replay() {
   const dialog = byId("recordings");
   dialog.querySelector(".none").hidden = names.length > 0;
   dialog.querySelector("ul").replaceChildren(...names.map((name) => {
-    const [item, button] = [document.createElement("li"), document.createElement("button")];
+    const [item, button, link] = ["li", "button", "a"].map((tag) => document.createElement(tag));
     button.textContent = name;
+    Object.assign(link, { href: fileOf(name), download: name, textContent: "Download" });
     button.onclick = () => post("api/replay", { name }).then(
       ({ said, number }) => { say(said); chosen = number; list(); },
       (error) => say(error.message, true),
     );
-    item.append(button);
+    item.append(button, link);
     return item;
   }));
   dialog.showModal();
@@ -152,7 +168,7 @@ class Keys {
     const { key, target } = event;
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     if (document.querySelector("dialog[open]")) return;
-    if (target.matches("select")) return;
+    if (target.matches("select, .scene input")) return;
     if (target.matches("button") && (key === " " || key === "Enter")) return;
     const action = this.actions.get(key.length === 1 ? key.toLowerCase() : key);
     if (!action) return;
@@ -170,7 +186,7 @@ new Keys([
   [["ArrowLeft"], "move a replay back by 1 s", () => current()?.player?.seekBy(-1)],
   [["ArrowRight"], "move a replay forward by 1 s", () => current()?.player?.seekBy(1)],
   [["v"], "values on the cells", () => flip("values")],
-  [["o"], "markers, centre and fitted lines", () => flip("overlay")],
+  [["o"], "axes, markers, centre, fitted lines and estimate", () => flip("overlay")],
   [["w"], "span of the time plot: 10, 30 or 60 s", widen],
   [["c"], "remove all cells from the plot", () => current()?.clear()],
   [[..."123456789"], "choose a finger", (key) => choose([...panels.keys()][key - 1] ?? chosen)],

@@ -1,8 +1,9 @@
-// The contact of a frame, drawn over the cells in white with a dark edge, visible on every colour.
+// The contact of a frame by the published method: white with a dark edge, visible on every colour.
 
 const EDGE = "rgb(10 16 30 / 90%)";
 const FILL = "#ffffff";
 const CENTRE = "#e8590c";
+const ARM = 14; // CSS pixels: seen beside the number of a cell, which lies above it
 
 export function drawContact(brush, grid, contact) {
   if (!contact.markers.length && !contact.centre) return;
@@ -77,10 +78,10 @@ function cross(brush, [x, y]) {
     brush.strokeStyle = colour;
     brush.lineWidth = width;
     brush.beginPath();
-    brush.moveTo(x - 9, y);
-    brush.lineTo(x + 9, y);
-    brush.moveTo(x, y - 9);
-    brush.lineTo(x, y + 9);
+    brush.moveTo(x - ARM, y);
+    brush.lineTo(x + ARM, y);
+    brush.moveTo(x, y - ARM);
+    brush.lineTo(x, y + ARM);
     brush.stroke();
   }
 }

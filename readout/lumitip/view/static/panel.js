@@ -1,22 +1,23 @@
 // One finger on the page.
 
 import { LINES } from "./canvas.js";
+import { estimateReadings, estimateWords } from "./estimate.js";
 import { Grid } from "./grid.js";
+import { Player } from "./player.js";
 import { History, Plot } from "./plot.js";
-import { contactReadings, fill, linkReadings } from "./readings.js";
-import { post } from "./stream.js";
+import { contactReadings, COUNT, fill, linkReadings, set } from "./readings.js";
+import { Scene } from "./scene.js";
+import { fileOf, post } from "./stream.js";
+import { publishedLine, Series, Trend } from "./trend.js";
 
-const TEXT_MS = 100; // faster changes are not readable
-const PLOT_MS = 40;
-const SEEK_MS = 60; // delay of requests while the slider is dragged
+// Parts of a panel that are drawn less often than the cells (ms): faster changes are not readable.
+const EVERY_MS = { drawPlot: 40, drawTrends: 100, writeNumbers: 100, writeWords: 700 };
 const SILENT_S = 1; // without a frame the display is marked as old
 
 /** Text beside the name: the most urgent message. */
-function detailOf({ state, detail, recording, silent_s, drift }, silent) {
+function detailOf({ state, detail, silent_s, drift }, silent) {
   if (state !== "connected") return detail;
-  if (silent) return `no frame for ${silent_s.toFixed(0)} s`;
-  if (recording?.on) return `recording ${recording.file}: ${recording.frames} frames`;
-  return recording?.error || drift || "";
+  return silent ? `no frame for ${silent_s.toFixed(0)} s` : drift || "";
 }
 
 export class Panel {
@@ -28,17 +29,23 @@ export class Panel {
     this.say = say;
     this.status = null;
     this.newest = null;
+    this.estimate = null;
+    this.estimates = new Series();
+    this.published = new Series();
     this.pictures = 0;
     this.counted = { since: performance.now(), number: 0 };
-    this.due = { text: 0, plot: 0 };
+    this.due = Object.fromEntries(Object.keys(EVERY_MS).map((part) => [part, 0]));
+    this.late = new Set();
     this.find("h2").textContent = layout.device;
     this.find(".url").textContent = layout.url === layout.device ? "" : layout.url;
     this.find(".url").title = `${layout.url}, design ${layout.design}`;
     this.find(".tare").onclick = () => this.tare();
     this.find(".record").onclick = () => this.record();
     if (layout.replayed) this.player = new Player(this);
+    if (layout.scene) this.scene = new Scene(this);
     this.find(".grid").onclick = (event) => this.clicked(event);
     fill(this.find(".contact"), contactReadings({ markers: [], threshold: null, contrast: null }));
+    fill(this.find(".estimate"), estimateReadings(null));
   }
 
   find(selector) {
@@ -51,6 +58,9 @@ export class Panel {
     this.grid = new Grid(this.find(".grid"), this.layout);
     this.history = new History(this.layout.x_mm.length);
     this.plot = new Plot(this.find(".plot"), this.history);
+    this.trends = ["offset", "angle"].map(
+      (name) => new Trend(this.find(`canvas.${name}`), name, this.estimates, this.published),
+    );
     this.legend();
     new ResizeObserver(() => {
       this.grid.place();
@@ -68,26 +78,61 @@ export class Panel {
       seq: message.seq[frames - 1],
     };
     this.fresh = true;
+    const line = publishedLine(message.contact, this.estimate?.angle_deg ?? null);
+    this.published.add({ t: message.t[frames - 1], ...line });
   }
 
-  /** Draw new frames, or everything. */
+  /** Store an estimate for the next redraw. */
+  estimated(estimate) {
+    this.estimate = estimate;
+    this.estimates.add({
+      t: estimate.t,
+      offset: estimate.offset_mm,
+      offsetError: estimate.error.offset_mm,
+      angle: estimate.angle_deg,
+      angleError: estimate.error.angle_deg,
+    });
+    this.fresh = true;
+  }
+
+  /** Draw new frames, or everything; what changes too fast to be read is drawn when it is due. */
   draw(all = false) {
-    if (!(this.fresh || all) || !this.newest) return;
-    this.fresh = false;
+    if (!this.newest) return;
     const now = performance.now();
-    const { values, contact, seq } = this.newest;
-    this.grid.draw(values, contact, this.show);
-    if (all || now >= this.due.plot) {
-      this.due.plot = now + PLOT_MS;
-      this.plot.draw(this.grid.selected, this.show.span);
+    if (this.fresh || all) {
+      this.fresh = false;
+      this.grid.draw(this.newest.values, this.newest.contact, this.estimate, this.show);
+      this.element.dataset.seq = this.newest.seq;
+      this.late = new Set(Object.keys(EVERY_MS));
+      this.count(now);
     }
-    if (all || now >= this.due.text) {
-      this.due.text = now + TEXT_MS;
-      this.find(".shape").textContent = contact.shape;
-      fill(this.find(".contact"), contactReadings(contact));
+    for (const part of this.late) {
+      if (!all && now < this.due[part]) continue;
+      this.due[part] = now + EVERY_MS[part];
+      this.late.delete(part);
+      this[part]();
     }
-    this.element.dataset.seq = seq;
-    this.count(now);
+  }
+
+  drawPlot() {
+    this.plot.draw(this.grid.selected, this.show.span);
+  }
+
+  drawTrends() {
+    for (const trend of this.trends) trend.draw(this.history.last, this.show.span);
+  }
+
+  /** The numbers beside the cells. */
+  writeNumbers() {
+    const { contact } = this.newest;
+    set(this.find(".shape"), contact.shape);
+    fill(this.find(".contact"), contactReadings(contact));
+    set(this.find(".kind"), this.estimate?.kind ?? "–");
+    fill(this.find(".estimate"), estimateReadings(this.estimate));
+  }
+
+  writeWords() {
+    if (this.status) set(this.find(".words"), estimateWords(this.estimate, this.status));
   }
 
   count(now) {
@@ -101,6 +146,7 @@ export class Panel {
   /** Show a status of the server, twice a second. */
   update(status) {
     this.status = status;
+    this.late.add("writeWords");
     const on = Boolean(status.recording?.on);
     const silent = status.silent_s > Math.max(SILENT_S, 3 / (status.rate_hz || 1));
     const detail = detailOf(status, silent);
@@ -112,7 +158,25 @@ export class Panel {
     this.find(".record").setAttribute("aria-pressed", on);
     this.find(".grid").setAttribute("aria-label", `cells, shape ${this.newest?.contact.shape}`);
     fill(this.find(".link"), linkReadings(status, this.pictures));
+    set(this.find(".losses"), status.losses.text);
+    this.find(".losses").classList.toggle("bad", status.losses.fresh);
+    this.recorded(status.recording);
     this.player?.update(status.player);
+    this.scene?.update(status.scene);
+  }
+
+  /** Name and length of the recording; once it is finished a link to the file. */
+  recorded(recording) {
+    const [text, link] = [this.find(".recorded span"), this.find(".recorded a")];
+    const done = Boolean(recording && !recording.on);
+    link.hidden = !done;
+    if (!recording) return;
+    const frames = `${COUNT(recording.frames)} frames`;
+    set(text, recording.error || (done ? frames : `recording ${recording.file}: ${frames}`));
+    if (!done) return;
+    set(link, recording.file);
+    link.href = fileOf(recording.file);
+    link.download = recording.file;
   }
 
   async ask(action, body = {}) {
@@ -170,70 +234,4 @@ export class Panel {
       return entry;
     }));
   }
-}
-
-/** The controls of a replay. */
-class Player {
-  constructor(panel) {
-    this.panel = panel;
-    this.status = null;
-    this.heldUntil = 0;
-    panel.find(".player").hidden = false;
-    panel.find(".actions").hidden = true;
-    panel.find(".close").hidden = false;
-    panel.find(".close").onclick = () => panel.ask("close");
-    panel.find(".play").onclick = () => this.toggle();
-    panel.find(".speed").onchange = ({ target }) => {
-      target.blur();
-      this.ask({ speed: Number(target.value) });
-    };
-    panel.find(".seek").oninput = ({ target }) => this.seek(Number(target.value));
-  }
-
-  ask(change) {
-    return this.panel.ask("player", change);
-  }
-
-  toggle() {
-    if (this.status) this.ask({ playing: !this.status.playing });
-  }
-
-  /** Move by some seconds. */
-  seekBy(seconds) {
-    if (this.status) this.seek(this.status.position_s + seconds);
-  }
-
-  /** Move to a time; of several quick calls the last one counts. */
-  seek(seconds) {
-    if (!this.status) return;
-    const position_s = Math.min(Math.max(seconds, 0), this.status.length_s);
-    this.show({ ...this.status, position_s });
-    this.heldUntil = performance.now() + 700;
-    clearTimeout(this.waiting);
-    this.waiting = setTimeout(() => this.ask({ position_s }), SEEK_MS);
-  }
-
-  /** Show a status of the server, but not while the user moves the slider. */
-  update(status) {
-    if (status && performance.now() > this.heldUntil) this.show(status);
-  }
-
-  show(status) {
-    this.status = status;
-    const { playing, position_s, length_s, speed } = status;
-    const seek = this.panel.find(".seek");
-    seek.max = length_s;
-    seek.value = position_s;
-    this.panel.find(".position").textContent = `${clock(position_s)} / ${clock(length_s)}`;
-    this.panel.find(".play").firstChild.textContent = playing ? "Pause " : "Play ";
-    this.panel.find(".play").setAttribute("aria-pressed", playing);
-    this.panel.find(".speed").value = String(speed);
-  }
-}
-
-/** Minutes, seconds and tenths. */
-function clock(seconds) {
-  const tenths = Math.round(seconds * 10);
-  const rest = ((tenths % 600) / 10).toFixed(1).padStart(4, "0");
-  return `${Math.floor(tenths / 600)}:${rest}`;
 }

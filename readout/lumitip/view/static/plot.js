@@ -3,7 +3,7 @@
 import { fit, LINES, theme } from "./canvas.js";
 
 const LEFT = 30;
-const BOTTOM = 18;
+export const BOTTOM = 18;
 const TOP = 6;
 const GAP_S = 0.5; // a longer gap interrupts the lines
 const MOST_FRAMES = 16384; // 82 s at 200 Hz
@@ -118,7 +118,7 @@ export class Plot {
 }
 
 function drawAxes(axes) {
-  const { brush, left, right, top, bottom, span } = axes;
+  const { brush, left, right } = axes;
   brush.font = "11px system-ui, sans-serif";
   brush.fillStyle = theme.soft;
   brush.strokeStyle = theme.line;
@@ -132,8 +132,19 @@ function drawAxes(axes) {
     brush.lineTo(right, y);
     if (value % 128 === 0 || value === 255) brush.fillText(value, left - 6, y);
   }
+  brush.stroke();
+  drawTimes(axes, 5);
+}
+
+/** The time axis in a number of parts: lines upwards, and seconds before now below. */
+export function drawTimes({ brush, left, right, top, bottom, span }, parts) {
+  brush.font = "11px system-ui, sans-serif";
+  brush.fillStyle = theme.soft;
+  brush.strokeStyle = theme.line;
+  brush.lineWidth = 1;
   brush.textBaseline = "top";
-  const step = span / 5;
+  brush.beginPath();
+  const step = span / parts;
   for (let ago = 0; ago <= span; ago += step) {
     const x = Math.round(right - (ago / span) * (right - left)) - 0.5;
     brush.moveTo(x, top);

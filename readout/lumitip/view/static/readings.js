@@ -1,10 +1,10 @@
 // The numbers beside the cells.
 
-const FIXED = (v, digits) => v.toFixed(digits).replace("-", "−");
+export const FIXED = (v, digits) => v.toFixed(digits).replace("-", "−");
 const DEGREES = (v) => `${FIXED(v, 1)}°`;
 const MILLIMETRES = (v) => `${FIXED(v, 2)} mm`;
-const POINT = ([x, y]) => `${FIXED(x, 1)}, ${FIXED(y, 1)} mm`;
-const COUNT = (v) => v.toLocaleString("en").replaceAll(",", "\u202f");
+export const POINT = ([x, y]) => `${FIXED(x, 1)}, ${FIXED(y, 1)} mm`;
+export const COUNT = (v) => v.toLocaleString("en").replaceAll(",", "\u202f");
 
 /** [name, text] of a contact; `null`: does not apply. */
 export function contactReadings(contact) {
@@ -65,6 +65,6 @@ export function fill(list, rows) {
   });
 }
 
-function set(element, text) {
+export function set(element, text) {
   if (element.textContent !== text) element.textContent = text;
 }

@@ -1,5 +1,5 @@
 // Messages of the server. Each is acknowledged once it is drawn, which lets the next ones through;
-// flow control and message format are described in view/session.py.
+// flow control is described in view/session.py, the messages in view/wire.py.
 
 const RETRY_MS = [300, 600, 1200, 2500, 5000];
 const FRAMES = 1;
@@ -8,7 +8,7 @@ const NOT_A_NUMBER = 65535;
 const SHAPES = ["none", "edge", "corner", "cable", "covered"];
 
 export class Stream {
-  /** `receiver` is an object with `frames(message)`, `status(status)` and `open(whether)`. */
+  /** `receiver` is an object with `frames(message)`, `estimate(estimate)`, `status(status)` and `open(whether)`. */
   constructor(receiver) {
     this.receiver = receiver;
     this.tries = 0;
@@ -37,8 +37,14 @@ export class Stream {
 
   take(data) {
     if (typeof data === "string") {
-      this.receiver.status(JSON.parse(data));
-      this.answer = true;
+      const message = JSON.parse(data);
+      if (message.estimate) {
+        this.drawn[message.estimate.finger] = message.estimate.number;
+        this.receiver.estimate(message.estimate);
+      } else {
+        this.answer = true;
+        this.receiver.status(message);
+      }
       return;
     }
     const message = decode(data);
@@ -67,6 +73,9 @@ export async function post(path, body = {}) {
   if (!answer.ok) throw new Error(result.error);
   return result;
 }
+
+/** Address of a recording, to download. */
+export const fileOf = (name) => `api/recordings/${encodeURIComponent(name)}`;
 
 export async function get(path) {
   const answer = await fetch(path);
