@@ -142,7 +142,7 @@ def test_each_step_at_the_bench_says_what_is_needed_and_what_the_signs_mean(copi
     )
     titles = [title for title, _ in steps]
     first, last = titles.index("Put the board in"), titles.index("Wrap the finger")
-    assert last - first == 8
+    assert last - first == 9
     for title, text in steps[first : last + 1]:
         assert "<strong>You need:</strong>" in text, title
         assert "<strong>Time:</strong>" in text, title

@@ -84,6 +84,22 @@ def test_a_tilted_mould_lies_on_its_prop(folder: Path) -> None:
     assert ("Prop" in words) == bool(design.props)
 
 
+def test_the_mould_from_above_names_its_stops_and_where_silicone_is(folder: Path) -> None:
+    design, root = read_design(folder / "design.json"), drawn(folder, "mould")
+    plate = shapely.Polygon(design.outline.polygon())
+    pads_mm2 = sum(
+        (design.outline.half_width_at(y) - abs(x) + design.mould.pad_mm) * design.mould.pad_mm
+        for x, y in design.mould.pads
+    )
+    under = area_mm2(root, "silicone")
+    assert plate.area - 1.2 * pads_mm2 - 30 < under < plate.area - 0.8 * pads_mm2
+    words = {text.text for text in root.iter(f"{SVG}text")}
+    assert {"Tip line", "Pad", "Gap", "Weir", "Trough", "Pour", "Plate", "Board"} <= words
+    assert ("Rail" in words) == bool(design.clamps)
+    (dashed,) = root.findall(f"{SVG}g[@id='dashed']/{SVG}path")
+    assert dashed.attrib["d"].count("M") == 2
+
+
 def test_boards_face_each_other_with_all_their_parts(folder: Path) -> None:
     design, root = read_design(folder / "design.json"), drawn(folder, "facing")
     parts = [p for finger in design.fingers for p in finger.parts if p.side == "front"]
@@ -174,6 +190,11 @@ def test_without_a_clamp_step_and_drawing_name_none(outputs: Path) -> None:
     design = read_design(outputs / "design.json")
     bare = replace(design, clamps=())
     titles = [[step.title for step in casting_steps(d, d.fingers)] for d in (design, bare)]
+    dry = [
+        next(s.text for s in casting_steps(d, d.fingers) if s.title == "Try the mould")
+        for d in (design, bare)
+    ]
+    assert ["four feet" in text for text in dry] == [True, False]
     assert [("Clamp it, and wait" in t, "Tape it down, and wait" in t) for t in titles] == [
         (True, False),
         (False, True),

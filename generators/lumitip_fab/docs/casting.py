@@ -80,6 +80,7 @@ def casting_steps(design: Design, fingers: tuple[Finger, ...], weighed: str = ""
     filled = "\n\n".join(filter(None, [weighed, _filled(design)]))
     return [
         _drawn("board", "Put the board in", _held(design, fingers), _board_caption(design)),
+        _drawn("mould", "Try the mould", _fitted(design), "The mould from above, the tip up"),
         *smooth,
         _drawn("drop", "Try the silicone", _tried(design), "Where the drop goes"),
         _drawn("filled", "Fill the mould", filled, "The mould, cut along its middle"),
@@ -143,6 +144,24 @@ def open_back(design: Design, finger: Finger) -> bool:
     return bool(design.interfaces) or any(relief.through for relief in finger.reliefs)
 
 
+def _fitted(design: Design) -> str:
+    """Finger and clamp, tried in the empty mould."""
+    work, needs, good = [_text("cleaned")], "", "it lies on tip line and both pads"
+    for clamp in design.clamps:
+        work.append(_text("screwed", clamp=clamp))
+        needs = f"the clamp, {clamp.screw.name} screws and nuts, "
+        good += ", and the marks are in one line at four corners"
+    work.append(_text("laid_dry"))
+    work += [_text("clamped_dry") for _ in design.clamps]
+    work.append(_text("lifted_dry"))
+    high = _text("high_dry") if design.clamps else ""
+    return _text("fitted", needs=needs, good=good, work=_numbered(work), high=high)
+
+
+def _numbered(work: list[str]) -> str:
+    return "\n".join(f"{n}. {text}" for n, text in enumerate(work, 1))
+
+
 def _tried(design: Design) -> str:
     mould, primed = design.mould, design.mould.primer != ""
     beside = ": plate, board and the glue round the board" if design.stack.sunk else ""
@@ -182,20 +201,17 @@ def _trial(mould: Mould) -> str:
 
 
 def _filled(design: Design) -> str:
-    work = [_text("screwed", clamp=clamp) for clamp in design.clamps]
-    work += [_text("weighed"), _text("wetted")]
+    work = [_text("weighed"), _text("wetted")]
     work += [_text("laid") for _ in design.mould.inserts]
     props = design.mould.props
     stands = "".join(_text("propped", prop=prop) for prop in props) or _text("level")
     work.append(f"{stands} {_text('poured_all' if props else 'poured')}")
-    needs = ["the screws and nuts of the mould, " for _ in design.clamps]
-    needs += [f"`mould/{prop.name}.3mf`, printed, " for prop in design.props]
+    needs = [f"`mould/{prop.name}.3mf`, printed, " for prop in design.props]
     needs += ["the smooth film, a plastic card, " for _ in design.mould.inserts]
-    numbered = "\n".join(f"{n}. {text}" for n, text in enumerate(work, 1))
     full = "the silicone bulges over the weir and the stops"
     if props:
         full = "the silicone covers all stops, and stands higher at the tip"
-    return _text("filled", needs="".join(needs), work=numbered, full=full)
+    return _text("filled", needs="".join(needs), work=_numbered(work), full=full)
 
 
 def _lowered(design: Design) -> str:

@@ -19,6 +19,7 @@ from lumitip_fab.scenes.casting_views import (
 )
 from lumitip_fab.scenes.finger_views import board_view, cable_view, folded_view
 from lumitip_fab.scenes.glb import Group
+from lumitip_fab.scenes.mould_view import mould_view
 from lumitip_fab.scenes.system import finger_group, stl_mesh
 
 OFF_MM = 3.5  # from keys and stops to where a drop of silicone is tried
@@ -37,6 +38,7 @@ def work_views(design: Design, files: Files) -> tuple[Artefact, ...]:
     drawings = {
         "facing": facing_view(boards[finger.name], boards[wired.name]),
         "board": board_view(finger, layers[finger.name], boards[finger.name][1]),
+        "mould": mould_view(cast.mould, design.outline, design.board, design.mould, design.clamps),
         "drop": drop_view(layers[finger.name], bare_spot(design), design.stack),
         "cable": cable_view(
             wired, layers[wired.name], _colours(design, wired), design.mount, design.stack
