@@ -150,6 +150,21 @@ def test_each_step_at_the_bench_says_what_is_needed_and_what_the_signs_mean(copi
         assert "data-file=" in text or title == "Try the silicone"
 
 
+def chapter(copied: Path, title: str) -> str:
+    text = (copied / HTML).read_text(encoding="utf-8")
+    found = re.search(rf"<h2>\d+\. {title}</h2>(.*?)(?=<h2>|</body>)", text, re.DOTALL)
+    assert found
+    return found[1]
+
+
+def test_mounting_is_a_numbered_list_from_the_robot_to_the_fingers(copied: Path) -> None:
+    (work,) = re.findall(r"<ol>(.*?)</ol>", chapter(copied, "Mount"), re.DOTALL)
+    order = ["off", "Take the gripper off", "flange_upper", "Put the flange", "holder.3mf"]
+    order += ["Tie each finger", "Screw each finger", "Plug the cable", "Open and close"]
+    assert sorted(order, key=work.index) == order
+    assert work.count("<li>") >= len(order)
+
+
 def test_nothing_stands_twice(copied: Path) -> None:
     text = (copied / HTML).read_text(encoding="utf-8")
     blocks = re.findall(r"<(?:p|li)>(.*?)</(?:p|li)>", text, re.DOTALL)

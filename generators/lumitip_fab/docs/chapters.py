@@ -7,7 +7,7 @@ from dataclasses import replace
 from itertools import count
 from typing import Any
 
-from lumitip_fab.design import Design, Flange, HeatStep, Mask, Mould, Packages
+from lumitip_fab.design import Design, HeatStep, Mask, Mould, Packages
 from lumitip_fab.docs.casting import (
     amounts,
     casting_steps,
@@ -15,6 +15,7 @@ from lumitip_fab.docs.casting import (
     silicone_mix,
     volume_ml,
 )
+from lumitip_fab.docs.mounting import mounting
 from lumitip_fab.docs.orders import amount, money
 from lumitip_fab.docs.page import html_page
 from lumitip_fab.docs.sheet import pdf_sheets
@@ -46,7 +47,7 @@ def manual_text(design: Design, files: Files) -> str:
             for step in casting_steps(design, design.fingers, _amounts(design, files))
         ),
         *_masked(design, files),
-        _mounted(design),
+        mounting(design),
         _text("run", warm_up_min=WARM_UP_MIN),
         _kept(design.mask),
     )
@@ -232,23 +233,6 @@ def _masked(design: Design, files: Files) -> Iterator[str]:
     both = _text("masks", pictures=pictures)
     yield replace(first, text=f"{both}\n\n{first.text}").section()
     yield from (step.section() for step in others)
-
-
-def _mounted(design: Design) -> str:
-    mount, held = design.mount, ""
-    if design.holders:
-        held = _text("in_holder")
-    elif any(auxiliary.name == "breakout" for auxiliary in design.auxiliary_boards):
-        held = _text("beside_gripper", mount=mount)
-    flanged = "".join(_flanged(design, flange) for flange in design.flanges)
-    tied = _text("tied") + "\n" if mount.lugs else ""
-    bolts = len(mount.bolt_u_mm)
-    return _text("mounted", bolts=bolts, mount=mount, held=held, flanged=flanged, tied=tied)
-
-
-def _flanged(design: Design, flange: Flange) -> str:
-    lit = "".join(_text("indicator", lit=lit) for lit in design.electrical.indicators)
-    return _text("flange", flange=flange, bolts=len(flange.bolts), lit=lit)
 
 
 def _loading(design: Design) -> str:
