@@ -165,6 +165,19 @@ def test_mounting_is_a_numbered_list_from_the_robot_to_the_fingers(copied: Path)
     assert work.count("<li>") >= len(order)
 
 
+def test_the_gripper_s_bolts_have_a_standard_length(copied: Path) -> None:
+    (flange,) = read_design(copied / "design.json").flanges
+    cells = re.findall(r"<td[^>]*>([^<]*)</td>", chapter(copied, "Mount"))
+    rows = [cells[at : at + 4] for at in range(0, len(cells), 4)]
+    assert len(rows) == 5
+    for own, least, ordered, deeper in rows:
+        least_mm, length_mm = float(least.split()[0]), float(ordered.split()[-1])
+        assert least_mm == pytest.approx(float(own.split()[0]) + flange.top_z_mm, abs=0.05)
+        assert length_mm % 5 == 0 and -0.5 <= length_mm - least_mm < 5
+        assert float(deeper.split()[0]) == pytest.approx(length_mm - least_mm, abs=0.05)
+        assert ordered.startswith(f"{flange.bolt} x ")
+
+
 def test_nothing_stands_twice(copied: Path) -> None:
     text = (copied / HTML).read_text(encoding="utf-8")
     blocks = re.findall(r"<(?:p|li)>(.*?)</(?:p|li)>", text, re.DOTALL)

@@ -1,15 +1,21 @@
-"""The manual's step of mounting: flange, controller's board and fingers."""
+"""The manual's step of mounting: flange, controller's board and fingers, and how long the gripper's
+bolts must be."""
 
 from collections.abc import Iterator
 
 from lumitip_fab.design import Design, Flange
+from lumitip_fab.design.mount import BOLTS_MM, SHORTER_MM, standard_bolt_mm
 from lumitip_fab.text import passage
+
+OWN_MM = (12, 16, 20, 25, 30)
+"""Lengths of a gripper's own bolts, as examples."""
 
 
 def mounting(design: Design) -> str:
     """The step, its work numbered."""
     work = "\n".join(f"{n}. {text}" for n, text in enumerate(_work(design), 1))
-    return _text("mounted", work=work)
+    lengths = "".join(_lengths(flange) for flange in design.flanges)
+    return _text("mounted", work=work, lengths=lengths)
 
 
 def _work(design: Design) -> Iterator[str]:
@@ -56,6 +62,20 @@ def _plugs(design: Design) -> list[tuple[str, str]]:
         if wire.end.board == "flange" and wire.end.connector in headers
     }
     return sorted(found)
+
+
+def _lengths(flange: Flange) -> str:
+    """The rule for the gripper's bolts, with examples."""
+    rows = []
+    for own_mm in OWN_MM:
+        least_mm = own_mm + flange.top_z_mm
+        if least_mm <= BOLTS_MM[-1]:
+            length_mm = standard_bolt_mm(least_mm)
+            rows.append(
+                f"| {own_mm} mm | {least_mm:.1f} mm | {flange.bolt} x {length_mm} "
+                f"| {length_mm - least_mm:+.1f} mm |"
+            )
+    return _text("lengths", flange=flange, less_mm=SHORTER_MM, rows="\n".join(rows))
 
 
 def _text(name: str, /, **values: object) -> str:
