@@ -136,6 +136,8 @@ def test_each_flap_on_the_back_has_its_number(finger: str, folder: Path) -> None
     numbers = [number for number, _, _, reach in rows if float(reach) > 0.0]
     shown = [text.text for text in drawn(folder, f"{finger}_folded").iter(f"{SVG}text")]
     assert shown == numbers
+    dashed = [p for p in drawn(folder, f"{finger}_folded").iter() if "stroke-dasharray" in p.attrib]
+    assert len(dashed) == len(read_design(folder / "design.json").props), "the lip of silicone"
 
 
 def test_each_wire_has_its_colour_in_the_order_of_the_pads(folder: Path) -> None:

@@ -50,11 +50,18 @@ def work_views(design: Design, files: Files) -> tuple[Artefact, ...]:
     }
     for name, seen in layers.items():
         flaps = files.facts(f"mask/{name}_mask.svg")["flaps"]
-        drawings[f"{name}_folded"] = folded_view(seen, flaps)
+        drawings[f"{name}_folded"] = folded_view(seen, flaps, _lip_y(design))
     return tuple(
         Artefact(f"manual/{name}.svg", drawing.encode(), frame="")
         for name, drawing in drawings.items()
     )
+
+
+def _lip_y(design: Design) -> float | None:
+    """Where the silicone ends on the back of the tip, if it is wrapped round it."""
+    if not design.props:
+        return None
+    return design.outline.tip_y_mm - design.mould.lip_length_mm(design.outline, design.tip)
 
 
 def _layers(group: Group) -> dict[str, Mesh]:
