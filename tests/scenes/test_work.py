@@ -18,7 +18,9 @@ from lumitip_fab.design.encoding import read_design
 from lumitip_fab.design.frames import mould_bed_to_sensor
 from lumitip_fab.docs.casting import casting_steps
 from lumitip_fab.parts.surface import Mesh
-from lumitip_fab.scenes.casting_views import Cast, clamped_view, filled_view
+from lumitip_fab.scenes.casting_page import Cast
+from lumitip_fab.scenes.casting_views import filled_view
+from lumitip_fab.scenes.clamped_view import clamped_view
 from lumitip_fab.scenes.cut import cut, rings_of
 from lumitip_fab.scenes.drawing import silhouette, view
 from lumitip_fab.scenes.finger_views import cable_view
@@ -82,6 +84,29 @@ def test_a_tilted_mould_lies_on_its_prop(folder: Path) -> None:
         assert area_mm2(root, "clamp") == pytest.approx(mm2, rel=0.02)
     words = {text.text for text in root.iter(f"{SVG}text")}
     assert ("Prop" in words) == bool(design.props)
+
+
+@pytest.mark.parametrize("name", ["lowered", "lifted", "clamped"])
+def test_a_mould_stands_on_its_prop_with_the_wires_over_its_weir(folder: Path, name: str) -> None:
+    design, root = read_design(folder / "design.json"), drawn(folder, name)
+    groups = [g.attrib["id"] for g in root.iter(f"{SVG}g")]
+    props = groups.count("prop") if name == "clamped" else groups.count("clamp")
+    drawings = 2 if name == "clamped" else 1
+    assert props == drawings * len(design.props)
+    inks = [path.attrib["stroke"] for path in root.findall(f"{SVG}path")]
+    colours = [COLOURS[code][1] for c in pads(design, "emitter") for code in codes_of(c)]
+    assert [
+        ink for ink in inks if ink in {ink for _, ink in COLOURS.values()}
+    ] == colours * drawings
+
+
+def test_screws_and_nuts_are_on_rails_and_clamp(folder: Path) -> None:
+    design, root = read_design(folder / "design.json"), drawn(folder, "clamped")
+    groups = [g.attrib["id"] for g in root.iter(f"{SVG}g")]
+    for clamp in design.clamps:
+        ends = clamp.screw_length_mm > clamp.top_mm + clamp.screw.nut_height_mm
+        assert groups.count("screw") == 2 * len(clamp.screws) * (3 + ends)
+    assert ("screw" in groups) == bool(design.clamps)
 
 
 def test_the_mould_from_above_names_its_stops_and_where_silicone_is(folder: Path) -> None:
@@ -148,13 +173,13 @@ def test_each_wire_has_its_colour_in_the_order_of_the_pads(folder: Path) -> None
     assert wires == wanted * 2  # behind the block, and before it
 
 
-def pads(design: Design) -> list[str]:
+def pads(design: Design, board: str = "receiver") -> list[str]:
     ends = [
         (end.order, wire.colour)
         for cable in design.cabling.cables
         for wire in cable.wires
         for end in (wire.start, wire.end)
-        if end.board == "receiver"
+        if end.board == board
     ]
     return [colour for _, colour in sorted(ends)]
 

@@ -76,7 +76,11 @@ def casting_steps(design: Design, fingers: tuple[Finger, ...], weighed: str = ""
         WorkStep("Cut the smooth film", _text("insert", insert=insert)) for insert in mould.inserts
     )
     held = "Clamp it, and wait" if design.clamps else "Tape it down, and wait"
-    on_it = "The clamp on finger and mould" if design.clamps else "The finger in its mould"
+    on_it = (
+        "The clamp on finger and mould; below, as its marks are looked at"
+        if design.clamps
+        else "The finger in its mould"
+    )
     filled = "\n\n".join(filter(None, [weighed, _filled(design)]))
     return [
         _drawn("board", "Put the board in", _held(design, fingers), _board_caption(design)),

@@ -165,13 +165,13 @@ def _wires(
             points += [(to_sensor @ (out, along, h, 1.0))[:3] for h in (up, up - _PAST_MM)]
         if not mount.lugs:
             points += [np.array([0.9 * x, low_y - h, stack.back_z_mm]) for h in (0, _PAST_MM)]
-        way = _smooth(points)
+        way = smooth(points)
         hidden.append(way[: 2 * _STEPS + 1])
         open_ways.append(way[2 * _STEPS :])
     return hidden, open_ways
 
 
-def _smooth(points: Sequence[Points]) -> Points:
+def smooth(points: Sequence[Points]) -> Points:
     """A line through points without corners (Catmull-Rom)."""
     ends = [2 * points[0] - points[1], *points, 2 * points[-1] - points[-2]]
     t = np.linspace(0.0, 1.0, _STEPS, endpoint=False)[:, None]

@@ -10,13 +10,10 @@ from lumitip_fab.design import Box, Design, Finger, Insert, Mould, Point, frames
 from lumitip_fab.parts.surface import Mesh
 from lumitip_fab.pipeline.artefact import Artefact, Files
 from lumitip_fab.scenes.bench_views import drop_view, facing_view
-from lumitip_fab.scenes.casting_views import (
-    Cast,
-    clamped_view,
-    filled_view,
-    lifted_view,
-    lowered_view,
-)
+from lumitip_fab.scenes.casting_page import Cast
+from lumitip_fab.scenes.casting_parts import nuts_of, screws_of, wires_of
+from lumitip_fab.scenes.casting_views import filled_view, lifted_view, lowered_view
+from lumitip_fab.scenes.clamped_view import clamped_view
 from lumitip_fab.scenes.finger_views import board_view, cable_view, folded_view
 from lumitip_fab.scenes.glb import Group
 from lumitip_fab.scenes.mould_view import mould_view
@@ -45,7 +42,7 @@ def work_views(design: Design, files: Files) -> tuple[Artefact, ...]:
         ),
         "filled": filled_view(cast),
         "lowered": lowered_view(cast),
-        "clamped": clamped_view(cast, clamp, _clamp(design, files)),
+        "clamped": clamped_view(cast, clamp, _clamp(design, files), nuts_of(design.clamps)),
         "lifted": lifted_view(cast),
     }
     for name, seen in layers.items():
@@ -76,9 +73,10 @@ def _front(group: Group, finger: Finger) -> list[Mesh]:
 
 
 def _cast(design: Design, finger: Finger, layers: dict[str, Mesh], files: Files) -> Cast:
-    to_bed = _to_bed(design)
+    to_bed, mould = _to_bed(design), stl_mesh(files, f"mould/{finger.name}_mould.stl")
+    colours = _colours(design, finger)
     return Cast(
-        stl_mesh(files, f"mould/{finger.name}_mould.stl"),
+        mould,
         {
             name: layers[name].moved(to_bed)
             for name in ("interface", "backing", "board", "silicone")
@@ -89,6 +87,8 @@ def _cast(design: Design, finger: Finger, layers: dict[str, Mesh], files: Files)
         tuple(_laid(design.mould, insert) for insert in design.mould.inserts),
         _prop(design, files),
         design.mould.level_slope,
+        screws_of(design.clamps),
+        wires_of(finger, colours, to_bed, mould, design),
     )
 
 
