@@ -61,6 +61,7 @@ def _packs(config: Input) -> dict[str, Pack]:
             entry.unit,
             prices.pack.get(name),
             entry.confidence,
+            entry.colours,
         )
         for name, entry in known.items()
     }
