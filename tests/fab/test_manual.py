@@ -184,6 +184,10 @@ def test_nothing_stands_twice(copied: Path) -> None:
     long = [block for block in blocks if len(block) > 60 and "<img" not in block]
     assert len(long) > 60
     assert sorted(block for block in set(long) if long.count(block) > 1) == []
+    plain = (re.sub(r"<.*?>", "", block) for block in blocks)
+    sentences = [" ".join(s.split()) for block in plain for s in re.split(r"(?<=[.:?]) ", block)]
+    said = [sentence for sentence in sentences if len(sentence) > 32]
+    assert sorted(sentence for sentence in set(said) if said.count(sentence) > 1) == []
 
 
 def test_a_step_that_fits_on_a_page_is_not_broken(copied: Path) -> None:

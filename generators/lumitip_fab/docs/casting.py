@@ -46,7 +46,7 @@ def silicone_mix(volume_ml: float, mould: Mould) -> dict[str, float]:
 def casting_note(design: Design, finger: Finger, mix: Mapping[str, float]) -> str:
     """The note of a finger as Markdown, with what to mix."""
     steps = casting_steps(design, (finger,))
-    moulds = _moulds(design, f"`{finger.name}_mould.3mf`")
+    moulds = _moulds(design, f"`{finger.name}_mould.3mf`") + " " + heights(design)
     parts = (f"# Casting the {finger.name} finger", amounts(design.mould, mix), moulds)
     return "\n\n".join([*parts, *(step.note() for step in steps)]) + "\n"
 
@@ -63,13 +63,31 @@ def amounts(mould: Mould, mix: Mapping[str, float]) -> str:
     )
 
 
+def amounts_of_both(mould: Mould, mixes: Mapping[str, Mapping[str, float]]) -> str:
+    """The table of what to weigh for each finger, by its name."""
+
+    def each(figure: str, unit: str, bold: str = "") -> str:
+        return " | ".join(f"{bold}{mix[figure]:.2f} {unit}{bold}" for mix in mixes.values())
+
+    return _text(
+        "weighed_both",
+        names=" | ".join(mixes),
+        volumes=each("volume_ml", "mL"),
+        waste=mould.waste_fraction,
+        mixes=each("mix_ml", "mL"),
+        silicone=mould.silicone,
+        parts_a=each("part_a_g", "g", "**"),
+        parts_b=each("part_b_g", "g", "**"),
+    )
+
+
 def casting_steps(design: Design, fingers: tuple[Finger, ...], weighed: str = "") -> list[WorkStep]:
     """The work in its order.
 
     Args:
         design: for all that is used.
         fingers: that are made.
-        weighed: tables of what to weigh, where they do not stand before the steps.
+        weighed: table of what to weigh, where it does not stand before the steps.
     """
     mould = design.mould
     smooth = (
@@ -108,12 +126,13 @@ def _board_caption(design: Design) -> str:
     return f"The board above its place: {finds}"
 
 
-def moulds_text(design: Design) -> str:
-    """How both moulds are printed."""
-    return _moulds(design, "each mould, `mould/*_mould.3mf`,")
-
-
 def _moulds(design: Design, moulds: str) -> str:
+    """How a mould is printed."""
+    return _text("moulds", moulds=moulds, layer_mm=design.mould.layer_mm)
+
+
+def heights(design: Design) -> str:
+    """Heights of a mould that count, and the letter by which it is known."""
     mould = design.mould
     layers = _text(
         "part" if mould.off_layer_mm else "whole",
@@ -123,9 +142,7 @@ def _moulds(design: Design, moulds: str) -> str:
         off_mm=mould.off_layer_mm,
     )
     letter_on = "the back of its block" if design.stack.sunk else "its back"
-    return _text(
-        "moulds", moulds=moulds, layer_mm=mould.layer_mm, layers=layers, letter_on=letter_on
-    )
+    return _text("heights", layers=layers, letter_on=letter_on)
 
 
 def _held(design: Design, fingers: tuple[Finger, ...]) -> str:

@@ -9,9 +9,9 @@ from typing import Any
 
 from lumitip_fab.design import Design, HeatStep, Mask, Mould, Packages
 from lumitip_fab.docs.casting import (
-    amounts,
+    amounts_of_both,
     casting_steps,
-    moulds_text,
+    heights,
     silicone_mix,
     volume_ml,
 )
@@ -41,7 +41,7 @@ def manual_text(design: Design, files: Files) -> str:
         _boards(design, files),
         _printed(design, files),
         _wired(design, files),
-        _text("tested", loading=_loading(design), limit_ma=_limit_ma(design)),
+        _tested(design),
         *(
             step.section()
             for step in casting_steps(design, design.fingers, _amounts(design, files))
@@ -75,6 +75,19 @@ def _front(design: Design) -> str:
         mask_tools=_text(f"tools_{design.mask.route}", soften_c=design.mask.soften_c),
         waiting=_waiting(design.mould),
         heated="\n".join(map(_heated, design.heat)),
+    )
+
+
+def _tested(design: Design) -> str:
+    """The first test, with the LEDs' current."""
+    switched = design.wiring.emitter_pin is not None
+    return _text(
+        "tested",
+        loading=_loading(design),
+        limit_ma=_limit_ma(design),
+        supply_v=design.wiring.supply_v,
+        lit="They are dark until the firmware runs, and draw" if switched else "They draw",
+        current_ma=sum(design.wiring.current_ma),
     )
 
 
@@ -198,29 +211,22 @@ def polarity_test(packages: Packages) -> str:
 
 def _wired(design: Design, files: Files) -> str:
     weak = f"{pins}.\n\n" if (pins := pulled_up(design.wiring)) else ""
-    switched = design.wiring.emitter_pin is not None
     return _text(
         "wired",
         note=_included(files.text("wiring/cables.md")),
         weak=weak,
-        supply_v=design.wiring.supply_v,
-        lit="the LEDs are dark until the firmware runs, and" if switched else "the LEDs",
-        current_ma=sum(design.wiring.current_ma),
     )
 
 
 def _amounts(design: Design, files: Files) -> str:
     """What to weigh for each finger."""
-    return _joined(
-        f"### The {finger.name} finger\n\n"
-        + amounts(design.mould, silicone_mix(volume_ml(finger, files), design.mould))
-        for finger in design.fingers
-    )
+    mixes = {f.name: silicone_mix(volume_ml(f, files), design.mould) for f in design.fingers}
+    return amounts_of_both(design.mould, mixes)
 
 
 def _printed(design: Design, files: Files) -> str:
     note = _included(files.text("print/printing.md"))
-    return _text("printed", note=note, moulds=moulds_text(design))
+    return _text("printed", note=note, moulds=heights(design))
 
 
 def _masked(design: Design, files: Files) -> Iterator[str]:
@@ -236,9 +242,10 @@ def _masked(design: Design, files: Files) -> Iterator[str]:
 
 
 def _loading(design: Design) -> str:
-    """The first step: a module has no bootloader yet."""
+    """How the firmware comes onto the controller: a module has no bootloader yet."""
     components = (device for board in design.auxiliary_boards for device in board.components)
-    return _text("bootloader" if any(d.kind == "module" for d in components) else "upload")
+    module = any(d.kind == "module" for d in components)
+    return _text("bootloader" if module else "upload", controller=design.controller.title)
 
 
 def _kept(mask: Mask) -> str:
@@ -247,8 +254,9 @@ def _kept(mask: Mask) -> str:
 
 
 def _included(note: str) -> str:
-    """A note as a part of a chapter: its headings two levels lower."""
-    return _HEADING.sub(lambda found: f"{found[1]}## ", note).strip()
+    """A note as a part of a chapter, without its title: its headings a level lower."""
+    _, _, text = note.partition("\n")
+    return _HEADING.sub(lambda found: f"{found[1]}# ", text).strip()
 
 
 def _joined(texts: Iterable[str]) -> str:
