@@ -7,7 +7,7 @@ from dataclasses import replace
 from itertools import count
 from typing import Any
 
-from lumitip_fab.design import Design, HeatStep, Mask, Mould, Packages
+from lumitip_fab.design import Cabling, Design, HeatStep, Mask, Mould, Packages
 from lumitip_fab.docs.casting import (
     amounts_of_both,
     casting_steps,
@@ -85,10 +85,23 @@ def _tested(design: Design) -> str:
         "tested",
         loading=_loading(design),
         limit_ma=_limit_ma(design),
+        poles=_poles(design.cabling, f"{design.wiring.supply_v:g}V"),
         supply_v=design.wiring.supply_v,
         lit="They are dark until the firmware runs, and draw" if switched else "They draw",
         current_ma=sum(design.wiring.current_ma),
     )
+
+
+def _poles(cabling: Cabling, net: str) -> str:
+    """Where a bench supply goes: to the wires that lead away from the fingers and their boards."""
+    wires = [wire for cable in cabling.cables for wire in cable.wires]
+    away = [w for w in wires if w.start.board == "breakout" or w.end.board == "supply"]
+    ends = {wire.signal: wire.number for wire in away}
+    if not {net, "GND"} <= ends.keys():
+        return _text("poles_board", net=net)
+    free = [number for signal, number in ends.items() if signal == "5V" != net]
+    spared = "".join(_text("poles_free", wire=wire) for wire in free)
+    return _text("poles", plus=ends[net], minus=ends["GND"], free=spared)
 
 
 def _limit_ma(design: Design) -> float:
