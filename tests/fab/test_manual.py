@@ -157,6 +157,20 @@ def chapter(copied: Path, title: str) -> str:
     return found[1]
 
 
+def test_what_a_step_uses_up_is_in_the_list_of_parts(copied: Path) -> None:
+    text = (copied / HTML).read_text(encoding="utf-8")
+    needs = re.findall(r"<strong>You need:</strong>(.*?)<strong>", text, re.DOTALL)
+    needed = {
+        re.sub(r"^an? (new )?", "", n.strip(" .\n")) for all_ in needs for n in all_.split(",")
+    }
+    design = read_design(copied / "design.json")
+    supplies = {p.item for p in design.purchase.pieces if p.group == "supplies"}
+    shared = {" ".join(need.split()) for need in needed} & supplies
+    assert {"isopropanol", "nitrile gloves", "wooden stick", "knife blade", "plain paper"} <= shared
+    listed = set(re.findall(r"<td>(.*?)</td>", chapter(copied, "Parts")))
+    assert supplies <= listed
+
+
 def test_mounting_is_a_numbered_list_from_the_robot_to_the_fingers(copied: Path) -> None:
     (work,) = re.findall(r"<ol>(.*?)</ol>", chapter(copied, "Mount"), re.DOTALL)
     order = ["off", "Take the gripper off", "flange_upper", "Put the flange", "holder.3mf"]

@@ -91,7 +91,8 @@ def casting_steps(design: Design, fingers: tuple[Finger, ...], weighed: str = ""
     """
     mould = design.mould
     smooth = (
-        WorkStep("Cut the smooth film", _text("insert", insert=insert)) for insert in mould.inserts
+        WorkStep("Cut the smooth film", _text("insert", insert=insert, tape=mould.tape))
+        for insert in mould.inserts
     )
     held = "Clamp it, and wait" if design.clamps else "Tape it down, and wait"
     on_it = (
@@ -203,7 +204,7 @@ def _tried(design: Design) -> str:
         trial_g=_trial(mould),
         spot=f"{'across the glue round' if design.stack.sunk else 'beside'} the board",
         drying=f", {mould.primer_dry_min:g} min to dry" * primed,
-        primer=f"{mould.primer}, " * primed,
+        primer=f"{mould.primer}, a fine brush, " * primed,
         primed=first + "\n",
         film=", and one on a piece that is left over of the smooth film" if mould.inserts else "",
         peels=_text("peels") if mould.inserts else "",
@@ -237,7 +238,10 @@ def _filled(design: Design) -> str:
 
 def _lowered(design: Design) -> str:
     keys = _text("keyed", keys=len(design.keys)) if design.keys else ""
-    return _text("lowered", keys=keys, covered=_text("covered") if design.props else "")
+    stick = "a wooden stick, " if design.keys else ""
+    return _text(
+        "lowered", keys=keys, stick=stick, covered=_text("covered") if design.props else ""
+    )
 
 
 def _clamped(design: Design) -> str:

@@ -72,10 +72,18 @@ def _front(design: Design) -> str:
         warm_up_min=WARM_UP_MIN,
         keys=_keys(design),
         nozzle_mm=design.slicing.nozzle_mm,
+        board_tools=_board_tools(design),
         mask_tools=_text(f"tools_{design.mask.route}", soften_c=design.mask.soften_c),
         waiting=_waiting(design.mould),
         heated="\n".join(map(_heated, design.heat)),
     )
+
+
+def _board_tools(design: Design) -> str:
+    """For a board that is tied on, and for a smooth film."""
+    tools = ["a needle"] * bool(design.interfaces)
+    tools += ["a cutting mat, a plastic card"] * bool(design.mould.inserts)
+    return "".join(f", {tool}" for tool in tools)
 
 
 def _tested(design: Design) -> str:

@@ -134,6 +134,7 @@ def _values(design: Design, facts: Facts, name: str) -> dict[str, object]:
         "infrared": _infrared(design),
         "fold": fold,
         "lip": _lip(design, facts),
+        "tape": design.mould.tape,
         **(_printed(design) if mask.route == "tpu" else _creased(design)),
     }
 
