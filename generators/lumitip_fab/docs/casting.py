@@ -226,8 +226,9 @@ def _filled(design: Design) -> str:
     work = [_text("weighed"), _text("wetted")]
     work += [_text("laid") for _ in design.mould.inserts]
     props = design.mould.props
-    stands = "".join(_text("propped", prop=prop) for prop in props) or _text("level")
-    work.append(f"{stands} {_text('poured_all' if props else 'poured')}")
+    work += [_text("levelled") for _ in props[:1]]
+    work += [_text("propped", prop=prop) for prop in props] or [_text("level")]
+    work.append(_text("poured_all" if props else "poured"))
     needs = [f"`mould/{prop.name}.3mf`, printed, " for prop in design.props]
     needs += ["the smooth film, a plastic card, " for _ in design.mould.inserts]
     full = "the silicone bulges over the weir and the stops"
