@@ -144,15 +144,13 @@ def _of_flange(config: Input, flange: Flange, packs: Mapping[str, Pack]) -> list
     screw = f"{flange.screw} x {length:g} countersunk screw"
     pin = f"{flange.pin_mm:g} x {flange.pin_length_mm:g} parallel pin"
     bolt, nut = f"{flange.bolt} socket head screw", f"{flange.screw} nut"
-    longer = (
-        f"gripper to robot, {flange.top_z_mm:.1f} mm longer than its own: lengths in step Mount"
-    )
+    longer = f"gripper to robot, {flange.top_z_mm:.1f} mm longer than its own"
     where = "board of the flange"
     rows = (
         (screw, "ISO 7046", where, count, f"{flange.screw} screw"),
         (nut, "ISO 4032", where, count, nut),
         (pin, "ISO 2338", "flange to coupling, glued in", 1, "parallel pin"),
-        (bolt, "ISO 4762", longer, len(flange.bolts), bolt),
+        (f"{bolt}, length by step Mount", "ISO 4762", longer, len(flange.bolts), bolt),
     )
     return [_fastener(*row, packs) for row in rows]
 
