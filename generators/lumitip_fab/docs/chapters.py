@@ -128,6 +128,7 @@ def _keys(design: Design) -> str:
     """Sizes of all screws."""
     others = {holder.screw for holder in design.holders}
     others |= {clamp.screw.name for clamp in design.clamps}
+    others |= {thread for flange in design.flanges for thread in (flange.screw, flange.bolt)}
     return ", ".join(sorted({design.mount.bolt, *others}))
 
 
