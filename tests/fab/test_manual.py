@@ -184,7 +184,7 @@ def test_the_gripper_s_bolts_have_a_standard_length(copied: Path) -> None:
     (flange,) = read_design(copied / "design.json").flanges
     cells = re.findall(r"<td[^>]*>([^<]*)</td>", chapter(copied, "Mount"))
     rows = [cells[at : at + 4] for at in range(0, len(cells), 4)]
-    assert len(rows) == 5
+    assert len(rows) == 4
     for own, least, ordered, deeper in rows:
         least_mm, length_mm = float(least.split()[0]), float(ordered.split()[-1])
         assert least_mm == pytest.approx(float(own.split()[0]) + flange.top_z_mm, abs=0.05)
@@ -229,7 +229,7 @@ def test_pages_but_the_last_are_used(outputs: Path) -> None:
         *pages, _last = document.pages
         margin, high = 51.0, float(pages[0].mediabox[3])
         for number, page in enumerate(pages, 1):
-            assert lowest_of(page) - margin < 0.36 * (high - 2 * margin), f"page {number}"
+            assert lowest_of(page) - margin < 0.4 * (high - 2 * margin), f"page {number}"
 
 
 def test_a_step_that_fits_on_a_page_is_not_broken(copied: Path) -> None:

@@ -7,7 +7,7 @@ from lumitip_fab.design import Design, Flange
 from lumitip_fab.design.mount import BOLTS_MM, SHORTER_MM, standard_bolt_mm
 from lumitip_fab.text import passage
 
-OWN_MM = (12, 16, 20, 25, 30)
+OWN_MM = (12, 16, 20, 25)
 """Lengths of a gripper's own bolts, as examples."""
 
 

@@ -38,6 +38,7 @@ _MARGIN = 20 * mm
 _WIDTH = A4[0] - 2 * _MARGIN
 _PAGE_HIGH = A4[1] - 2 * 18 * mm - 12  # between the margins, less the frame's own padding
 _MOST_HIGH = 132 * mm  # of a drawing, which otherwise has its own size
+_WIDE, _WIDE_HIGH = 1.5, 145 * mm  # of the page: a drawing so wide has small words already
 _GAP = 6 * mm  # between pictures beside each other
 _PAIR_HIGH = 85 * mm
 _COLUMNS = ((1, 1), (2, 4), (3, 1000))
@@ -219,6 +220,8 @@ def _picture(path: str, files: Files, width: float, high: float) -> Flowable:
     """A drawing stays a drawing, at most in its own size; a picture of pixels stays one."""
     if path.endswith(".svg"):
         drawing = svg2rlg(io.BytesIO(files.read(path)))
+        if drawing.width > _WIDE * _WIDTH:
+            high = max(high, _WIDE_HIGH)
         scale = min(1.0, width / drawing.width, high / drawing.height)
         drawing.scale(scale, scale)
         drawing.width, drawing.height = drawing.width * scale, drawing.height * scale
