@@ -33,6 +33,10 @@ def _work(design: Design) -> Iterator[str]:
     yield _text("screwed_on", bolts=len(mount.bolt_u_mm), mount=mount)
     for header, board in _plugs(design):
         yield _text("plugged", board=board, header=header)
+    wires = (wire for cable in design.cabling.cables for wire in cable.wires)
+    ends = [f"{wire.number} to {wire.signal}" for wire in wires if wire.end.board == "supply"]
+    if ends:
+        yield _text("supplied", ends=", ".join(ends))
     yield _text("moved")
 
 
