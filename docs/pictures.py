@@ -81,7 +81,7 @@ def main(out: Path, integrated: Path, flex: Path) -> None:
     _board(flex / "boards/receiver/receiver_front.png", "flex_board.png")
     shutil.copy(out / "wiring/wiring.svg", IMAGES)
     shutil.copy(out / "assembly/system.svg", IMAGES)
-    _pages(pypdfium2.PdfDocument(out / "manual/manual.pdf"), (0, 13, 18))
+    _pages(pypdfium2.PdfDocument(out / "manual/manual.pdf"), (0, 10, 14))
     draw_glb(out / "assembly/assembly.glb", IMAGES / "assembly.png")
 
 

@@ -21,7 +21,7 @@ _HTML, _PDF = "manual/manual.html", "manual/manual.pdf"
 _FOOT = 2  # texts at the foot of each page, drawn first
 _GLANCE = "At a glance"
 _WARM_UP_MIN = 5.0  # Table I of the published sensor
-_AMOUNT = re.compile(r"^\| (.*?) \| \**([\d.]+ (?:mL|g|h))\** \|$", re.MULTILINE)
+_AMOUNT = re.compile(r"^\| (.*?) \| \**([\d.]+ (?:mL|g))\** \|$", re.MULTILINE)
 _WIRE = re.compile(
     r"^\| (W\d+\.\d+) \| (.*?) \| (.*?) \| (.*?) \| (.*?) \| (.*?) \|$", re.MULTILINE
 )
@@ -119,7 +119,7 @@ def measure(outputs: Path, design: Design) -> Iterator[Measurement]:
     yield _count("figures", _HTML, _wrong_figures(manual, design), "wrong figures")
     yield _count("units", _HTML, _wrong_units(manual, design), "wrong figures with a unit")
     for check, wanted in (
-        ("amounts", _noted(outputs, "mould/{}_casting.md", _AMOUNT, design)),
+        ("amounts", _weighed(_noted(outputs, "mould/{}_casting.md", _AMOUNT, design))),
         ("wires", _noted(outputs, "wiring/cables.md", _WIRE, design)),
         ("parts", _billed(outputs)),
     ):
@@ -133,7 +133,7 @@ def _wrong_drawings(outputs: Path, manual: Manual, design: Design) -> list[str]:
     boards = [*names, *(auxiliary.name for auxiliary in design.auxiliary_boards)]
     wanted = {"assembly/receiver_exploded.svg", "assembly/system.svg", "wiring/wiring.svg"}
     wanted |= {f"mask/{name}_mask.svg" for name in names}
-    work = ("facing", "board", "drop", "cable", "filled", "lowered", "clamped", "lifted")
+    work = ("facing", "board", "mould", "drop", "cable", "filled", "lowered", "clamped", "lifted")
     wanted |= {f"manual/{name}.svg" for name in work}
     wanted |= {f"manual/{name}_folded.svg" for name in names}
     if design.mask.route != "tpu":
@@ -205,6 +205,14 @@ def _noted(outputs: Path, name: str, row: re.Pattern[str], design: Design) -> li
         except (OSError, UnicodeDecodeError):
             found.append((f"{file} cannot be read",))
     return found
+
+
+def _weighed(rows: list[tuple[str, ...]]) -> list[tuple[str, ...]]:
+    """Rows of both casting notes beside each other."""
+    both: dict[str, tuple[str, ...]] = {}
+    for what, *amounts in rows:
+        both[what] = (*both.get(what, ()), *amounts)
+    return [(what, *amounts) for what, amounts in both.items()]
 
 
 def _billed(outputs: Path) -> list[tuple[str, ...]]:

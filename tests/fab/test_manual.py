@@ -4,6 +4,7 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pikepdf
 import pytest
 
@@ -142,12 +143,54 @@ def test_each_step_at_the_bench_says_what_is_needed_and_what_the_signs_mean(copi
     )
     titles = [title for title, _ in steps]
     first, last = titles.index("Put the board in"), titles.index("Wrap the finger")
-    assert last - first == 8
+    assert last - first == 9
     for title, text in steps[first : last + 1]:
         assert "<strong>You need:</strong>" in text, title
         assert "<strong>Time:</strong>" in text, title
         assert "<th>what it means, what to do</th>" in text, title
         assert "data-file=" in text or title == "Try the silicone"
+
+
+def chapter(copied: Path, title: str) -> str:
+    text = (copied / HTML).read_text(encoding="utf-8")
+    found = re.search(rf"<h2>\d+\. {title}</h2>(.*?)(?=<h2>|</body>)", text, re.DOTALL)
+    assert found
+    return found[1]
+
+
+def test_what_a_step_uses_up_is_in_the_list_of_parts(copied: Path) -> None:
+    text = (copied / HTML).read_text(encoding="utf-8")
+    needs = re.findall(r"<strong>You need:</strong>(.*?)<strong>", text, re.DOTALL)
+    needed = {
+        re.sub(r"^an? (new )?", "", n.strip(" .\n")) for all_ in needs for n in all_.split(",")
+    }
+    design = read_design(copied / "design.json")
+    supplies = {p.item for p in design.purchase.pieces if p.group == "supplies"}
+    shared = {" ".join(need.split()) for need in needed} & supplies
+    assert {"isopropanol", "nitrile gloves", "wooden stick", "knife blade", "plain paper"} <= shared
+    listed = set(re.findall(r"<td>(.*?)</td>", chapter(copied, "Parts")))
+    assert supplies <= listed
+
+
+def test_mounting_is_a_numbered_list_from_the_robot_to_the_fingers(copied: Path) -> None:
+    (work,) = re.findall(r"<ol>(.*?)</ol>", chapter(copied, "Mount"), re.DOTALL)
+    order = ["off", "Take the gripper off", "flange_upper", "Put the flange", "holder.3mf"]
+    order += ["Tie each finger", "Screw each finger", "Plug the cable", "Open and close"]
+    assert sorted(order, key=work.index) == order
+    assert work.count("<li>") >= len(order)
+
+
+def test_the_gripper_s_bolts_have_a_standard_length(copied: Path) -> None:
+    (flange,) = read_design(copied / "design.json").flanges
+    cells = re.findall(r"<td[^>]*>([^<]*)</td>", chapter(copied, "Mount"))
+    rows = [cells[at : at + 4] for at in range(0, len(cells), 4)]
+    assert len(rows) == 4
+    for own, least, ordered, deeper in rows:
+        least_mm, length_mm = float(least.split()[0]), float(ordered.split()[-1])
+        assert least_mm == pytest.approx(float(own.split()[0]) + flange.top_z_mm, abs=0.05)
+        assert length_mm % 5 == 0 and -0.5 <= length_mm - least_mm < 5
+        assert float(deeper.split()[0]) == pytest.approx(length_mm - least_mm, abs=0.05)
+        assert ordered.startswith(f"{flange.bolt} x ")
 
 
 def test_nothing_stands_twice(copied: Path) -> None:
@@ -156,6 +199,37 @@ def test_nothing_stands_twice(copied: Path) -> None:
     long = [block for block in blocks if len(block) > 60 and "<img" not in block]
     assert len(long) > 60
     assert sorted(block for block in set(long) if long.count(block) > 1) == []
+    plain = (re.sub(r"<.*?>", "", block) for block in blocks)
+    sentences = [" ".join(s.split()) for block in plain for s in re.split(r"(?<=[.:?]) ", block)]
+    said = [sentence for sentence in sentences if len(sentence) > 32]
+    assert sorted(sentence for sentence in set(said) if said.count(sentence) > 1) == []
+
+
+def lowest_of(page: pikepdf.Page) -> float:
+    """Height of the lowest words of a page over its edge, without the two at its foot (points)."""
+    now, kept, heights = np.eye(3), [np.eye(3)], list[float]()
+    line = np.eye(3)
+    for operands, operator in pikepdf.parse_content_stream(page):
+        match str(operator):
+            case "q":
+                kept.append(now)
+            case "Q":
+                now = kept.pop()
+            case "cm" | "Tm" as kind:
+                a, b, c, d, e, f = map(float, operands)
+                matrix = np.array([[a, b, 0], [c, d, 0], [e, f, 1]])
+                now, line = (matrix @ now, line) if kind == "cm" else (now, matrix)
+            case "Tj":
+                heights.append(float((line @ now)[2, 1]))
+    return min(heights[2:])
+
+
+def test_pages_but_the_last_are_used(outputs: Path) -> None:
+    with pikepdf.open(outputs / PDF) as document:
+        *pages, _last = document.pages
+        margin, high = 51.0, float(pages[0].mediabox[3])
+        for number, page in enumerate(pages, 1):
+            assert lowest_of(page) - margin < 0.4 * (high - 2 * margin), f"page {number}"
 
 
 def test_a_step_that_fits_on_a_page_is_not_broken(copied: Path) -> None:

@@ -1,9 +1,15 @@
 """Glue, tape, primer, thread and ties that a design uses follow from its geometry."""
 
+from dataclasses import replace
+from typing import Any
+
 import pytest
 
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive import derive
+from lumitip_fab.design import Bought
+from lumitip_fab.docs.orders import orders
+from lumitip_fab.docs.wiring import wiring_note
 
 
 def test_supplies_follow_the_design(inputs: dict[str, Input]) -> None:
@@ -18,5 +24,38 @@ def test_supplies_follow_the_design(inputs: dict[str, Input]) -> None:
     assert rigid["epoxy"] == pytest.approx(2 * (width * length * 0.1 + slit) / 1000, abs=0.006)
     fingers = derive(inputs["published"]).fingers
     windows = sum(relief.through for finger in fingers for relief in finger.reliefs)
-    assert ("polyimide tape" in rigid) == bool(windows), "strips only without a printed clamp"
+    carried_m = 0.6  # of both films, on the paper that carries them through the printer
+    assert (rigid["polyimide tape"] > carried_m) == bool(windows), "strips only without a clamp"
     assert flex["polyimide tape"] > 0 and "epoxy" not in flex
+
+
+@pytest.mark.parametrize("preset", ["published", "dense", "integrated"])
+def test_each_wire_has_a_colour_of_the_set_or_a_mark(inputs: dict[str, Input], preset: str) -> None:
+    design = derive(inputs[preset])
+    pack = design.purchase.pack("stranded wire")
+    assert pack and len(pack.colours) == 10 and "10 colours" in pack.pack
+    note = " ".join(wiring_note(design).split())
+    marked = note.partition("at both ends: ")[2].partition(". -")[0]
+    wires = [wire for cable in design.cabling.cables for wire in cable.wires]
+    others = [wire.number for wire in wires if wire.colour not in pack.colours]
+    assert [each.split()[0] for each in marked.split("; ") if each] == others
+    assert (preset == "published") == (marked == "W3.3 white, marked pink")
+
+
+def test_wires_of_two_sections_are_two_sets(inputs: dict[str, Input]) -> None:
+    purchase = derive(inputs["published"]).purchase
+    thin = Bought("wiring", "stranded wire, 0.08 mm²", "", "", "", 3.0, 0.3, "m", "stranded wire")
+    thick = replace(thin, item="stranded wire, 0.25 mm²")
+    assert [order.packs for order in orders(purchase, [thin, thick])] == [1, 1]
+
+
+def test_consumables_have_an_amount_a_pack_and_a_price(inputs: dict[str, Input], vary: Any) -> None:
+    purchase = derive(inputs["published"]).purchase
+    found = {piece.item: piece for piece in purchase.pieces if piece.group == "supplies"}
+    for item in ("isopropanol", "nitrile gloves", "clean cup", "plain paper", "silicone adhesive"):
+        pack = purchase.pack(found[item].pack)
+        assert pack and found[item].quantity <= pack.holds and found[item].price, item
+        assert pack.confidence == "assumed" and not pack.manufacturer, item
+    filmed = derive(vary(inputs["published"], {"mould.insert": "PET 100um"}))
+    cloths = next(p for p in filmed.purchase.pieces if p.item == "lint-free cloth")
+    assert cloths.quantity == found["lint-free cloth"].quantity + 2

@@ -21,8 +21,9 @@ from lumitip_fab.config.load import load
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
 from lumitip_fab.design.frames import applied
+from lumitip_fab.docs.wrapping import wrapping_note
 from lumitip_fab.mask.files import mask_files
-from lumitip_fab.pipeline.artefact import Artefact
+from lumitip_fab.pipeline.artefact import Artefact, Facts
 
 pytestmark = pytest.mark.slow
 
@@ -180,3 +181,19 @@ def test_metadata(preset: Callable[[str], Design], tmp_path: Path) -> None:
         assert str(pdf.docinfo["/Title"]) == "Lumitip published A: receiver mask"
         assert str(pdf.docinfo["/CreationDate"]).startswith("D:20000101")  # no clock
         assert "/XObject" not in pdf.pages[0].resources  # no pictures
+
+
+def test_the_flaps_at_the_tip_are_bonded_beyond_the_lip_of_silicone(
+    preset: Callable[[str], Design],
+) -> None:
+    design = preset("published")
+    (facts,) = (a.facts for a in mask_files(design, design.emitter) if a.facts)
+    short = {**facts, "flaps": [{**flap, "reach_mm": 4.0} for flap in facts["flaps"]]}
+
+    def bonded(of: Design, mask: Facts) -> str:
+        return " ".join(wrapping_note(of, of.emitter, mask).split())
+
+    assert "beyond, 3 mm or more from the tip edge" in bonded(design, facts)
+    assert "bond these flaps with silicone adhesive" in bonded(design, short)
+    edge = replace(design, mould=replace(design.mould, props=()))
+    assert "lip of silicone" not in bonded(edge, facts)

@@ -136,7 +136,7 @@ def test_the_note_of_a_tilted_mould_tells_of_its_prop(design: Design) -> None:
         ("Pour in all of it", True),
         ("Leave it on round the tip, 2 mm from the edge", True),
         ("on its prop", True),
-        ("Fill it from one corner up to the weir", False),
+        ("Fill it from one corner of the tip up to the weir", False),
     ):
         assert (words in tilted, words in level) == (in_tilted, not in_tilted), words
 

@@ -18,7 +18,9 @@ from lumitip_fab.design.encoding import read_design
 from lumitip_fab.design.frames import mould_bed_to_sensor
 from lumitip_fab.docs.casting import casting_steps
 from lumitip_fab.parts.surface import Mesh
-from lumitip_fab.scenes.casting_views import Cast, clamped_view, filled_view
+from lumitip_fab.scenes.casting_page import Cast
+from lumitip_fab.scenes.casting_views import filled_view
+from lumitip_fab.scenes.clamped_view import clamped_view
 from lumitip_fab.scenes.cut import cut, rings_of
 from lumitip_fab.scenes.drawing import silhouette, view
 from lumitip_fab.scenes.finger_views import cable_view
@@ -84,6 +86,43 @@ def test_a_tilted_mould_lies_on_its_prop(folder: Path) -> None:
     assert ("Prop" in words) == bool(design.props)
 
 
+@pytest.mark.parametrize("name", ["lowered", "lifted", "clamped"])
+def test_a_mould_stands_on_its_prop_with_the_wires_over_its_weir(folder: Path, name: str) -> None:
+    design, root = read_design(folder / "design.json"), drawn(folder, name)
+    groups = [g.attrib["id"] for g in root.iter(f"{SVG}g")]
+    props = groups.count("prop") if name == "clamped" else groups.count("clamp")
+    drawings = 2 if name == "clamped" else 1
+    assert props == drawings * len(design.props)
+    wires = [p for p in root.findall(f"{SVG}path") if p.attrib.get("stroke-width") == ".8"]
+    colours = [COLOURS[code][1] for c in pads(design, "emitter") for code in codes_of(c)]
+    assert [path.attrib["stroke"] for path in wires] == colours * drawings
+
+
+def test_screws_and_nuts_are_on_rails_and_clamp(folder: Path) -> None:
+    design, root = read_design(folder / "design.json"), drawn(folder, "clamped")
+    groups = [g.attrib["id"] for g in root.iter(f"{SVG}g")]
+    for clamp in design.clamps:
+        ends = clamp.screw_length_mm > clamp.top_mm + clamp.screw.nut_height_mm
+        assert groups.count("screw") == 2 * len(clamp.screws) * (3 + ends)
+    assert ("screw" in groups) == bool(design.clamps)
+
+
+def test_the_mould_from_above_names_its_stops_and_where_silicone_is(folder: Path) -> None:
+    design, root = read_design(folder / "design.json"), drawn(folder, "mould")
+    plate = shapely.Polygon(design.outline.polygon())
+    pads_mm2 = sum(
+        (design.outline.half_width_at(y) - abs(x) + design.mould.pad_mm) * design.mould.pad_mm
+        for x, y in design.mould.pads
+    )
+    under = area_mm2(root, "silicone")
+    assert plate.area - 1.2 * pads_mm2 - 30 < under < plate.area - 0.8 * pads_mm2
+    words = {text.text for text in root.iter(f"{SVG}text")}
+    assert {"Tip line", "Pad", "Gap", "Weir", "Trough", "Pour", "Plate", "Board"} <= words
+    assert ("Rail" in words) == bool(design.clamps)
+    (dashed,) = root.findall(f"{SVG}g[@id='dashed']/{SVG}path")
+    assert dashed.attrib["d"].count("M") == 2
+
+
 def test_boards_face_each_other_with_all_their_parts(folder: Path) -> None:
     design, root = read_design(folder / "design.json"), drawn(folder, "facing")
     parts = [p for finger in design.fingers for p in finger.parts if p.side == "front"]
@@ -120,6 +159,8 @@ def test_each_flap_on_the_back_has_its_number(finger: str, folder: Path) -> None
     numbers = [number for number, _, _, reach in rows if float(reach) > 0.0]
     shown = [text.text for text in drawn(folder, f"{finger}_folded").iter(f"{SVG}text")]
     assert shown == numbers
+    dashed = [p for p in drawn(folder, f"{finger}_folded").iter() if "stroke-dasharray" in p.attrib]
+    assert len(dashed) == len(read_design(folder / "design.json").props), "the lip of silicone"
 
 
 def test_each_wire_has_its_colour_in_the_order_of_the_pads(folder: Path) -> None:
@@ -130,13 +171,13 @@ def test_each_wire_has_its_colour_in_the_order_of_the_pads(folder: Path) -> None
     assert wires == wanted * 2  # behind the block, and before it
 
 
-def pads(design: Design) -> list[str]:
+def pads(design: Design, board: str = "receiver") -> list[str]:
     ends = [
         (end.order, wire.colour)
         for cable in design.cabling.cables
         for wire in cable.wires
         for end in (wire.start, wire.end)
-        if end.board == "receiver"
+        if end.board == board
     ]
     return [colour for _, colour in sorted(ends)]
 
@@ -174,6 +215,11 @@ def test_without_a_clamp_step_and_drawing_name_none(outputs: Path) -> None:
     design = read_design(outputs / "design.json")
     bare = replace(design, clamps=())
     titles = [[step.title for step in casting_steps(d, d.fingers)] for d in (design, bare)]
+    dry = [
+        next(s.text for s in casting_steps(d, d.fingers) if s.title == "Try the mould")
+        for d in (design, bare)
+    ]
+    assert ["four feet" in text for text in dry] == [True, False]
     assert [("Clamp it, and wait" in t, "Tape it down, and wait" in t) for t in titles] == [
         (True, False),
         (False, True),

@@ -134,6 +134,8 @@ class Pack(Entry):
     """Content of a pack, in `unit`."""
     unit: Literal["g", "m", "mL", "piece", "sheet"]
     """Unit of `holds`."""
+    colours: tuple[Annotated[str, Field(pattern=r"^[A-Z]{2}$")], ...] = ()
+    """Colours of a set of wires, by the codes of IEC 60757."""
 
 
 class BoardPrice(Strict):

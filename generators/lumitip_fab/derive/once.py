@@ -23,6 +23,7 @@ from lumitip_fab.derive.finger.strength import Body, derive_strength
 from lumitip_fab.derive.finger.tip import derive_tip
 from lumitip_fab.derive.making import mask, mould
 from lumitip_fab.derive.making.clamp import derive_clamps
+from lumitip_fab.derive.making.consumables import derive_consumables
 from lumitip_fab.derive.making.fit_plate import derive_fit_plate
 from lumitip_fab.derive.making.panels import derive_panels
 from lumitip_fab.derive.making.printing import derive_heat, derive_slicing
@@ -134,7 +135,9 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
         coupling,
         clamps,
         casting.inserts,
+        keys,
     )
+    supplies = (*derive_supplies(config, assembled), *derive_consumables(config, assembled))
     mux, channel = wiring.assign(config, cells, plan.muxes)
     layout = Layout(
         x_mm=cells.x_mm,
@@ -189,9 +192,7 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
             holders=holders,
             flanges=flanges,
             system=derive_system(config, flanges, holders),
-            purchase=derive_purchase(
-                config, coupling, clamps, holders, flanges, derive_supplies(config, assembled)
-            ),
+            purchase=derive_purchase(config, coupling, clamps, holders, flanges, supplies),
             parameters_hash=_parameters_hash(config),
             choices=(),
         )

@@ -123,6 +123,17 @@ class Fastener:
     nut_height_mm: float
 
 
+BOLTS_MM = (10, 12, 16, 20, 25, 30, 35, 40, 45, 50, 55, 60, 65, 70, 80, 90, 100)
+"""Lengths of socket head screws as they are commonly sold (inferred)."""
+SHORTER_MM = 0.5
+"""By which such a screw may be shorter than it ought to be: less than a turn of M4."""
+
+
+def standard_bolt_mm(least_mm: float) -> int:
+    """The shortest of these lengths that is long enough."""
+    return next(length for length in BOLTS_MM if length >= least_mm - SHORTER_MM)
+
+
 @dataclass(frozen=True)
 class System:
     """Heights along the tool axis, and the body of the gripper."""

@@ -72,6 +72,8 @@ class Pack:
     """Price of a pack; none where it is not known."""
     confidence: str
     """Confidence in product and size of the pack."""
+    colours: tuple[str, ...] = ()
+    """Colours of a set of wires, by the codes of IEC 60757."""
 
     @property
     def each(self) -> float | None:

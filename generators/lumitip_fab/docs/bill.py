@@ -93,7 +93,8 @@ def materials(design: Design, files: Files) -> Iterator[Bought]:
     for cable in design.cabling.cables:
         length = cable.length_mm * len(cable.wires) / 1000
         metres[cable.section_mm2] = metres.get(cable.section_mm2, 0.0) + length
-    where = "colours and lengths in wiring/cables.csv"
+    colours = {wire.colour for cable in design.cabling.cables for wire in cable.wires}
+    where = f"{len(colours)} colours: wiring/cables.csv has their lengths"
     for section, length in sorted(metres.items()):
         item = f"stranded wire, {section:g} mm² (AWG {_awg(section)})"
         used = round(length, 2)

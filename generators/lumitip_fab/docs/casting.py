@@ -46,7 +46,7 @@ def silicone_mix(volume_ml: float, mould: Mould) -> dict[str, float]:
 def casting_note(design: Design, finger: Finger, mix: Mapping[str, float]) -> str:
     """The note of a finger as Markdown, with what to mix."""
     steps = casting_steps(design, (finger,))
-    moulds = _moulds(design, f"`{finger.name}_mould.3mf`")
+    moulds = _moulds(design, f"`{finger.name}_mould.3mf`") + " " + heights(design)
     parts = (f"# Casting the {finger.name} finger", amounts(design.mould, mix), moulds)
     return "\n\n".join([*parts, *(step.note() for step in steps)]) + "\n"
 
@@ -63,23 +63,47 @@ def amounts(mould: Mould, mix: Mapping[str, float]) -> str:
     )
 
 
+def amounts_of_both(mould: Mould, mixes: Mapping[str, Mapping[str, float]]) -> str:
+    """The table of what to weigh for each finger, by its name."""
+
+    def each(figure: str, unit: str, bold: str = "") -> str:
+        return " | ".join(f"{bold}{mix[figure]:.2f} {unit}{bold}" for mix in mixes.values())
+
+    return _text(
+        "weighed_both",
+        names=" | ".join(mixes),
+        volumes=each("volume_ml", "mL"),
+        waste=mould.waste_fraction,
+        mixes=each("mix_ml", "mL"),
+        silicone=mould.silicone,
+        parts_a=each("part_a_g", "g", "**"),
+        parts_b=each("part_b_g", "g", "**"),
+    )
+
+
 def casting_steps(design: Design, fingers: tuple[Finger, ...], weighed: str = "") -> list[WorkStep]:
     """The work in its order.
 
     Args:
         design: for all that is used.
         fingers: that are made.
-        weighed: tables of what to weigh, where they do not stand before the steps.
+        weighed: table of what to weigh, where it does not stand before the steps.
     """
     mould = design.mould
     smooth = (
-        WorkStep("Cut the smooth film", _text("insert", insert=insert)) for insert in mould.inserts
+        WorkStep("Cut the smooth film", _text("insert", insert=insert, tape=mould.tape))
+        for insert in mould.inserts
     )
     held = "Clamp it, and wait" if design.clamps else "Tape it down, and wait"
-    on_it = "The clamp on finger and mould" if design.clamps else "The finger in its mould"
+    on_it = (
+        "The clamp on finger and mould; below, as its marks are looked at"
+        if design.clamps
+        else "The finger in its mould"
+    )
     filled = "\n\n".join(filter(None, [weighed, _filled(design)]))
     return [
         _drawn("board", "Put the board in", _held(design, fingers), _board_caption(design)),
+        _drawn("mould", "Try the mould", _fitted(design), "The mould from above, the tip up"),
         *smooth,
         _drawn("drop", "Try the silicone", _tried(design), "Where the drop goes"),
         _drawn("filled", "Fill the mould", filled, "The mould, cut along its middle"),
@@ -103,12 +127,13 @@ def _board_caption(design: Design) -> str:
     return f"The board above its place: {finds}"
 
 
-def moulds_text(design: Design) -> str:
-    """How both moulds are printed."""
-    return _moulds(design, "each mould, `mould/*_mould.3mf`,")
-
-
 def _moulds(design: Design, moulds: str) -> str:
+    """How a mould is printed."""
+    return _text("moulds", moulds=moulds, layer_mm=design.mould.layer_mm)
+
+
+def heights(design: Design) -> str:
+    """Heights of a mould that count, and the letter by which it is known."""
     mould = design.mould
     layers = _text(
         "part" if mould.off_layer_mm else "whole",
@@ -118,9 +143,7 @@ def _moulds(design: Design, moulds: str) -> str:
         off_mm=mould.off_layer_mm,
     )
     letter_on = "the back of its block" if design.stack.sunk else "its back"
-    return _text(
-        "moulds", moulds=moulds, layer_mm=mould.layer_mm, layers=layers, letter_on=letter_on
-    )
+    return _text("heights", layers=layers, letter_on=letter_on)
 
 
 def _held(design: Design, fingers: tuple[Finger, ...]) -> str:
@@ -143,6 +166,24 @@ def open_back(design: Design, finger: Finger) -> bool:
     return bool(design.interfaces) or any(relief.through for relief in finger.reliefs)
 
 
+def _fitted(design: Design) -> str:
+    """Finger and clamp, tried in the empty mould."""
+    work, needs, good = [_text("cleaned")], "", "it lies on tip line and both pads"
+    for clamp in design.clamps:
+        work.append(_text("screwed", clamp=clamp))
+        needs = f"the clamp, {clamp.screw.name} screws and nuts, "
+        good += ", and the marks are in one line at four corners"
+    work.append(_text("laid_dry"))
+    work += [_text("clamped_dry") for _ in design.clamps]
+    work.append(_text("lifted_dry"))
+    high = _text("high_dry") if design.clamps else ""
+    return _text("fitted", needs=needs, good=good, work=_numbered(work), high=high)
+
+
+def _numbered(work: list[str]) -> str:
+    return "\n".join(f"{n}. {text}" for n, text in enumerate(work, 1))
+
+
 def _tried(design: Design) -> str:
     mould, primed = design.mould, design.mould.primer != ""
     beside = ": plate, board and the glue round the board" if design.stack.sunk else ""
@@ -163,7 +204,7 @@ def _tried(design: Design) -> str:
         trial_g=_trial(mould),
         spot=f"{'across the glue round' if design.stack.sunk else 'beside'} the board",
         drying=f", {mould.primer_dry_min:g} min to dry" * primed,
-        primer=f"{mould.primer}, " * primed,
+        primer=f"{mould.primer}, a fine brush, " * primed,
         primed=first + "\n",
         film=", and one on a piece that is left over of the smooth film" if mould.inserts else "",
         peels=_text("peels") if mould.inserts else "",
@@ -182,25 +223,26 @@ def _trial(mould: Mould) -> str:
 
 
 def _filled(design: Design) -> str:
-    work = [_text("screwed", clamp=clamp) for clamp in design.clamps]
-    work += [_text("weighed"), _text("wetted")]
+    work = [_text("weighed"), _text("wetted")]
     work += [_text("laid") for _ in design.mould.inserts]
     props = design.mould.props
-    stands = "".join(_text("propped", prop=prop) for prop in props) or _text("level")
-    work.append(f"{stands} {_text('poured_all' if props else 'poured')}")
-    needs = ["the screws and nuts of the mould, " for _ in design.clamps]
-    needs += [f"`mould/{prop.name}.3mf`, printed, " for prop in design.props]
+    work += [_text("levelled") for _ in props[:1]]
+    work += [_text("propped", prop=prop) for prop in props] or [_text("level")]
+    work.append(_text("poured_all" if props else "poured"))
+    needs = [f"`mould/{prop.name}.3mf`, printed, " for prop in design.props]
     needs += ["the smooth film, a plastic card, " for _ in design.mould.inserts]
-    numbered = "\n".join(f"{n}. {text}" for n, text in enumerate(work, 1))
     full = "the silicone bulges over the weir and the stops"
     if props:
         full = "the silicone covers all stops, and stands higher at the tip"
-    return _text("filled", needs="".join(needs), work=numbered, full=full)
+    return _text("filled", needs="".join(needs), work=_numbered(work), full=full)
 
 
 def _lowered(design: Design) -> str:
     keys = _text("keyed", keys=len(design.keys)) if design.keys else ""
-    return _text("lowered", keys=keys, covered=_text("covered") if design.props else "")
+    stick = "a wooden stick, " if design.keys else ""
+    return _text(
+        "lowered", keys=keys, stick=stick, covered=_text("covered") if design.props else ""
+    )
 
 
 def _clamped(design: Design) -> str:

@@ -7,14 +7,15 @@ from dataclasses import replace
 from itertools import count
 from typing import Any
 
-from lumitip_fab.design import Design, Flange, HeatStep, Mask, Mould, Packages
+from lumitip_fab.design import Cabling, Design, HeatStep, Mask, Mould, Packages
 from lumitip_fab.docs.casting import (
-    amounts,
+    amounts_of_both,
     casting_steps,
-    moulds_text,
+    heights,
     silicone_mix,
     volume_ml,
 )
+from lumitip_fab.docs.mounting import mounting
 from lumitip_fab.docs.orders import amount, money
 from lumitip_fab.docs.page import html_page
 from lumitip_fab.docs.sheet import pdf_sheets
@@ -40,13 +41,13 @@ def manual_text(design: Design, files: Files) -> str:
         _boards(design, files),
         _printed(design, files),
         _wired(design, files),
-        _text("tested", loading=_loading(design), limit_ma=_limit_ma(design)),
+        _tested(design),
         *(
             step.section()
             for step in casting_steps(design, design.fingers, _amounts(design, files))
         ),
         *_masked(design, files),
-        _mounted(design),
+        mounting(design),
         _text("run", warm_up_min=WARM_UP_MIN),
         _kept(design.mask),
     )
@@ -71,10 +72,44 @@ def _front(design: Design) -> str:
         warm_up_min=WARM_UP_MIN,
         keys=_keys(design),
         nozzle_mm=design.slicing.nozzle_mm,
+        board_tools=_board_tools(design),
         mask_tools=_text(f"tools_{design.mask.route}", soften_c=design.mask.soften_c),
         waiting=_waiting(design.mould),
         heated="\n".join(map(_heated, design.heat)),
     )
+
+
+def _board_tools(design: Design) -> str:
+    """For a board that is tied on, and for a smooth film."""
+    tools = ["a needle"] * bool(design.interfaces)
+    tools += ["a cutting mat, a plastic card"] * bool(design.mould.inserts)
+    return "".join(f", {tool}" for tool in tools)
+
+
+def _tested(design: Design) -> str:
+    """The first test, with the LEDs' current."""
+    switched = design.wiring.emitter_pin is not None
+    return _text(
+        "tested",
+        loading=_loading(design),
+        limit_ma=_limit_ma(design),
+        poles=_poles(design.cabling, f"{design.wiring.supply_v:g}V"),
+        supply_v=design.wiring.supply_v,
+        lit="They are dark until the firmware runs, and draw" if switched else "They draw",
+        current_ma=sum(design.wiring.current_ma),
+    )
+
+
+def _poles(cabling: Cabling, net: str) -> str:
+    """Where a bench supply goes: to the wires that lead away from the fingers and their boards."""
+    wires = [wire for cable in cabling.cables for wire in cable.wires]
+    away = [w for w in wires if w.start.board == "breakout" or w.end.board == "supply"]
+    ends = {wire.signal: wire.number for wire in away}
+    if not {net, "GND"} <= ends.keys():
+        return _text("poles_board", net=net)
+    free = [number for signal, number in ends.items() if signal == "5V" != net]
+    spared = "".join(_text("poles_free", wire=wire) for wire in free)
+    return _text("poles", plus=ends[net], minus=ends["GND"], free=spared)
 
 
 def _limit_ma(design: Design) -> float:
@@ -93,6 +128,7 @@ def _keys(design: Design) -> str:
     """Sizes of all screws."""
     others = {holder.screw for holder in design.holders}
     others |= {clamp.screw.name for clamp in design.clamps}
+    others |= {thread for flange in design.flanges for thread in (flange.screw, flange.bolt)}
     return ", ".join(sorted({design.mount.bolt, *others}))
 
 
@@ -197,29 +233,22 @@ def polarity_test(packages: Packages) -> str:
 
 def _wired(design: Design, files: Files) -> str:
     weak = f"{pins}.\n\n" if (pins := pulled_up(design.wiring)) else ""
-    switched = design.wiring.emitter_pin is not None
     return _text(
         "wired",
         note=_included(files.text("wiring/cables.md")),
         weak=weak,
-        supply_v=design.wiring.supply_v,
-        lit="the LEDs are dark until the firmware runs, and" if switched else "the LEDs",
-        current_ma=sum(design.wiring.current_ma),
     )
 
 
 def _amounts(design: Design, files: Files) -> str:
     """What to weigh for each finger."""
-    return _joined(
-        f"### The {finger.name} finger\n\n"
-        + amounts(design.mould, silicone_mix(volume_ml(finger, files), design.mould))
-        for finger in design.fingers
-    )
+    mixes = {f.name: silicone_mix(volume_ml(f, files), design.mould) for f in design.fingers}
+    return amounts_of_both(design.mould, mixes)
 
 
 def _printed(design: Design, files: Files) -> str:
     note = _included(files.text("print/printing.md"))
-    return _text("printed", note=note, moulds=moulds_text(design))
+    return _text("printed", note=note, moulds=heights(design))
 
 
 def _masked(design: Design, files: Files) -> Iterator[str]:
@@ -234,27 +263,11 @@ def _masked(design: Design, files: Files) -> Iterator[str]:
     yield from (step.section() for step in others)
 
 
-def _mounted(design: Design) -> str:
-    mount, held = design.mount, ""
-    if design.holders:
-        held = _text("in_holder")
-    elif any(auxiliary.name == "breakout" for auxiliary in design.auxiliary_boards):
-        held = _text("beside_gripper", mount=mount)
-    flanged = "".join(_flanged(design, flange) for flange in design.flanges)
-    tied = _text("tied") + "\n" if mount.lugs else ""
-    bolts = len(mount.bolt_u_mm)
-    return _text("mounted", bolts=bolts, mount=mount, held=held, flanged=flanged, tied=tied)
-
-
-def _flanged(design: Design, flange: Flange) -> str:
-    lit = "".join(_text("indicator", lit=lit) for lit in design.electrical.indicators)
-    return _text("flange", flange=flange, bolts=len(flange.bolts), lit=lit)
-
-
 def _loading(design: Design) -> str:
-    """The first step: a module has no bootloader yet."""
+    """How the firmware comes onto the controller: a module has no bootloader yet."""
     components = (device for board in design.auxiliary_boards for device in board.components)
-    return _text("bootloader" if any(d.kind == "module" for d in components) else "upload")
+    module = any(d.kind == "module" for d in components)
+    return _text("bootloader" if module else "upload", controller=design.controller.title)
 
 
 def _kept(mask: Mask) -> str:
@@ -263,8 +276,9 @@ def _kept(mask: Mask) -> str:
 
 
 def _included(note: str) -> str:
-    """A note as a part of a chapter: its headings two levels lower."""
-    return _HEADING.sub(lambda found: f"{found[1]}## ", note).strip()
+    """A note as a part of a chapter, without its title: its headings a level lower."""
+    _, _, text = note.partition("\n")
+    return _HEADING.sub(lambda found: f"{found[1]}# ", text).strip()
 
 
 def _joined(texts: Iterable[str]) -> str:

@@ -31,7 +31,7 @@ class Order:
         return None if self.pack_price is None else round(self.packs * self.pack_price, 2)
 
 
-_OF_ITEM = ("boards", "fasteners")
+_OF_ITEM = ("boards", "fasteners", "wiring")
 """Groups of which each item has its own pack; of others, lines share one, such as a spool."""
 
 

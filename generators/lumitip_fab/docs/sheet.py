@@ -22,7 +22,6 @@ from reportlab.platypus import (
     LongTable,
     Paragraph,
     SimpleDocTemplate,
-    Spacer,
     Table,
     TableStyle,
 )
@@ -37,9 +36,13 @@ rl_config.useA85 = 0  # streams as text take most of the time, and a quarter mor
 
 _MARGIN = 20 * mm
 _WIDTH = A4[0] - 2 * _MARGIN
-_MOST_HIGH = 220 * mm  # of a drawing, which otherwise has its own size
+_PAGE_HIGH = A4[1] - 2 * 18 * mm - 12  # between the margins, less the frame's own padding
+_MOST_HIGH = 132 * mm  # of a drawing, which otherwise has its own size
+_WIDE, _WIDE_HIGH = 1.5, 145 * mm  # of the page: a drawing so wide has small words already
 _GAP = 6 * mm  # between pictures beside each other
 _PAIR_HIGH = 85 * mm
+_COLUMNS = ((1, 1), (2, 4), (3, 1000))
+"""How many pictures of a paragraph stand in a row, up to how many."""
 _DPI = 200
 _BODY = ParagraphStyle(
     "body",
@@ -120,8 +123,8 @@ def pdf_sheets(name: str, text: str, files: Files) -> bytes:
 
     tokens = markdown().parse(text)
     _set_letters(tokens)
-    sections = [KeepTogether(list(_flowables(part, files))) for part in _sections(tokens)]
-    document.build(sections, onFirstPage=foot, onLaterPages=foot)
+    story = [piece for part in _sections(tokens) for piece in _kept(part, files)]
+    document.build(story, onFirstPage=foot, onLaterPages=foot)
     return buffer.getvalue()
 
 
@@ -133,10 +136,22 @@ def _set_letters(tokens: list[Token]) -> None:
 
 
 def _sections(tokens: list[Token]) -> Iterator[list[Token]]:
-    """The steps, from heading to heading: one that fits on a page is not broken."""
+    """The steps, from heading to heading."""
     begins = [k for k, t in enumerate(tokens) if t.type == "heading_open" and t.tag == "h2"]
     for begin, end in pairwise([0, *begins, len(tokens)]):
         yield tokens[begin:end]
+
+
+def _kept(tokens: list[Token], files: Files) -> list[Flowable]:
+    """A step with a drawing that fits on a page is not broken; another one begins below the step
+    before it."""
+    step = list(_flowables(tokens, files))
+    if not any(child.type == "image" for token in tokens for child in token.children or []):
+        return step
+    measured = Canvas(io.BytesIO())
+    heights = [piece.wrapOn(measured, _WIDTH, _PAGE_HIGH)[1] for piece in step]
+    gaps = [piece.getSpaceBefore() + piece.getSpaceAfter() for piece in step]
+    return [KeepTogether(step)] if sum(heights) + sum(gaps) <= _PAGE_HIGH else step
 
 
 def _flowables(tokens: list[Token], files: Files) -> Iterator[Flowable]:
@@ -185,8 +200,9 @@ def _paragraph(token: Token, files: Files) -> Iterator[Flowable]:
     pictures = [child for child in children if child.type == "image"]
     if not pictures:
         yield Paragraph(_inline(token), _BODY)
-    beside = len(pictures) > 1
-    width, high = ((_WIDTH - _GAP) / 2, _PAIR_HIGH) if beside else (_WIDTH, _MOST_HIGH)
+    columns = next(n for n, most in _COLUMNS if len(pictures) <= most)
+    width = (_WIDTH - (columns - 1) * _GAP) / columns
+    high = _PAIR_HIGH if columns > 1 else _MOST_HIGH
     shown = [
         [
             _picture(str(child.attrs["src"]), files, width, high),
@@ -194,17 +210,18 @@ def _paragraph(token: Token, files: Files) -> Iterator[Flowable]:
         ]
         for child in pictures
     ]
-    if beside:
-        pairs = [[*shown[i : i + 2], ""][:2] for i in range(0, len(shown), 2)]
-        yield Table(pairs, [_WIDTH / 2] * 2, style=_BESIDE)
-    for picture in [] if beside else shown:
-        yield KeepTogether([*picture, Spacer(0, 6)])
+    if pictures:
+        padded = [*shown, *[""] * (-len(shown) % columns)]
+        rows = [padded[i : i + columns] for i in range(0, len(padded), columns)]
+        yield Table(rows, [_WIDTH / columns] * columns, style=_BESIDE)
 
 
 def _picture(path: str, files: Files, width: float, high: float) -> Flowable:
     """A drawing stays a drawing, at most in its own size; a picture of pixels stays one."""
     if path.endswith(".svg"):
         drawing = svg2rlg(io.BytesIO(files.read(path)))
+        if drawing.width > _WIDE * _WIDTH:
+            high = max(high, _WIDE_HIGH)
         scale = min(1.0, width / drawing.width, high / drawing.height)
         drawing.scale(scale, scale)
         drawing.width, drawing.height = drawing.width * scale, drawing.height * scale

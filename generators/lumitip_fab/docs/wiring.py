@@ -3,8 +3,8 @@
 import csv
 import io
 
-from lumitip_fab.design import Cable, Cabling, Design, Wire
-from lumitip_fab.design.cabling import named
+from lumitip_fab.design import Cable, Cabling, Design, Pack, Wire
+from lumitip_fab.design.cabling import COLOURS, codes_of, named
 from lumitip_fab.docs.diagram import diagram
 from lumitip_fab.pipeline.artefact import Artefact
 from lumitip_fab.text import as_written, passage
@@ -56,6 +56,7 @@ def wiring_note(design: Design) -> str:
         ties=_tied(design) + _lugged(design),
         title=as_written(f"{title.name} {title.revision}"),
         tables="\n\n".join(map(_table, cabling.cables)),
+        marked=_marked(cabling, design.purchase.pack("stranded wire")),
         power=_power(cabling),
         travel_mm=cabling.travel_mm,
         controller_mm=cabling.controller_mm,
@@ -63,6 +64,25 @@ def wiring_note(design: Design) -> str:
         slack_mm=cabling.slack_mm,
         loop=min(cabling.loops, key=lambda loop: loop.radius_mm / loop.least_mm),
     )
+
+
+def _marked(cabling: Cabling, pack: Pack | None) -> str:
+    """Wires whose colour is not in the set that is bought: of another one, marked with a pen."""
+    wires = [wire for cable in cabling.cables for wire in cable.wires]
+    known = pack.colours if pack else ()
+    others = [wire for wire in wires if wire.colour not in known]
+    if not known or not others:
+        return ""
+    marks = "; ".join(f"{wire.number} {_mark(wire.colour, known)}" for wire in others)
+    return passage(_TEXTS, "marked").format(count=len(known), wires=marks) + "\n"
+
+
+def _mark(colour: str, known: tuple[str, ...]) -> str:
+    """A wire out of the set and its mark, such as `"white, marked pink"`."""
+    ground, *marks = codes_of(colour)
+    if ground not in known:
+        ground, marks = "WH", [ground, *marks]
+    return f"{COLOURS[ground][0]}, marked {' and '.join(COLOURS[code][0] for code in marks)}"
 
 
 def _tied(design: Design) -> str:

@@ -19,6 +19,9 @@ _FOLDED = tuple(
     (f"manual/{name}_folded.svg", f"The {name} from behind: its flaps in the order of folding")
     for name in ("emitter", "receiver")
 )
+_LIP_END = "; dashed, where the silicone ends"
+_BEYOND_MM, _BOND_MM = 1.0, 2.0
+"""Of the tip's flap: from the lip of silicone to its bond, and what a bond needs at least."""
 _STEPS = {
     "film": (
         ("Print the film", "film", ()),
@@ -79,7 +82,11 @@ def wrapping_steps(design: Design, mask: Facts, name: str) -> list[WorkStep]:
     """
     values = _values(design, mask, name)
     return [
-        WorkStep(title, passage(_TEXTS, text).format(**values) + _signs(design, text), drawings)
+        WorkStep(
+            title,
+            passage(_TEXTS, text).format(**values) + _signs(design, text),
+            tuple((path, caption + _lip_end(design, path)) for path, caption in drawings),
+        )
         for title, text, drawings in _STEPS[design.mask.route]
     ]
 
@@ -87,6 +94,21 @@ def wrapping_steps(design: Design, mask: Facts, name: str) -> list[WorkStep]:
 def _signs(design: Design, text: str) -> str:
     what = _what(design)
     return passage(_TEXTS, "wrap_signs").format(what=what) if text.endswith("_wrap") else ""
+
+
+def _lip_end(design: Design, drawing: str) -> str:
+    """A drawing of the folded flaps shows where the skin ends on the back, if it does."""
+    return _LIP_END if design.props and drawing.endswith("_folded.svg") else ""
+
+
+def _lip(design: Design, facts: Facts) -> str:
+    """Where the tip's flap is bonded beside a skin that is wrapped round the tip."""
+    if not design.props:
+        return ""
+    lip_mm = design.mould.lip_length_mm(design.outline, design.tip)
+    reach_mm = next(flap["reach_mm"] for flap in facts["flaps"] if flap["number"] == 1)
+    name = "lip" if reach_mm >= lip_mm + _BEYOND_MM + _BOND_MM else "lip_only"
+    return passage(_TEXTS, name).format(lip_mm=lip_mm, from_mm=lip_mm + _BEYOND_MM)
 
 
 def _what(design: Design) -> str:
@@ -111,6 +133,8 @@ def _values(design: Design, facts: Facts, name: str) -> dict[str, object]:
         "band_mm": facts["band_mm"],
         "infrared": _infrared(design),
         "fold": fold,
+        "lip": _lip(design, facts),
+        "tape": design.mould.tape,
         **(_printed(design) if mask.route == "tpu" else _creased(design)),
     }
 

@@ -17,7 +17,7 @@ from lumitip_fab.design import (
     Stack,
 )
 from lumitip_fab.design.frames import mould_bed_to_sensor
-from lumitip_fab.design.making import FOOT_CHAMFER_MM, LEDGE_MM
+from lumitip_fab.design.making import FOOT_CHAMFER_MM, GRIP_AT, LEDGE_MM
 from lumitip_fab.parts import export, skin
 from lumitip_fab.parts.clamp import CHANGED, rails
 from lumitip_fab.parts.letters import letter_cutter
@@ -31,7 +31,6 @@ WEIR_DRAFT_DEG = 15.0
 GRIP_MM = 14.0  # gap in both walls to take the plate between two fingers
 GRIP_ABOVE_RIM_MM = 0.4
 GRIP_SLOPE_DEG = 45.0
-GRIP_AT = 0.4  # of the finger's length from the gripper end
 BEYOND_MM = 1.0
 
 

@@ -81,12 +81,15 @@ def cable_view(
     return sheet.svg(_ANGLES)
 
 
-def folded_view(layers: Mapping[str, Mesh], flaps: Sequence[Mapping[str, Any]]) -> str:
+def folded_view(
+    layers: Mapping[str, Mesh], flaps: Sequence[Mapping[str, Any]], lip_y_mm: float | None = None
+) -> str:
     """The back of the finger with the mask's flaps on it, each with its number.
 
     Args:
         layers: interface, backing and board in the sensor frame.
         flaps: number and area on the back of each, as the mask's facts have them.
+        lip_y_mm: where silicone that is wrapped round the tip ends, under the first flap.
     """
     sheet = Sheet()
     seen = {name: layers[name] for name in ("backing", "interface") if name in layers}
@@ -95,6 +98,11 @@ def folded_view(layers: Mapping[str, Mesh], flaps: Sequence[Mapping[str, Any]]) 
     areas = [shapely.Polygon(np.array(f["on_back"]) * (-PLAN_SCALE, PLAN_SCALE)) for f in laid]
     for area in areas:
         sheet.area(rings_of(area), "body", tints()["film"])
+    if lip_y_mm is not None and areas:
+        left, low, right, high = areas[0].bounds
+        if low < (end := lip_y_mm * PLAN_SCALE) < high:
+            under = areas[0] & shapely.LineString([(left, end), (right, end)])
+            sheet.lines([np.array(under.coords)], "hidden")
     for k, (flap, area) in enumerate(zip(laid, areas, strict=True)):
         free = max(shapely.get_parts(area - shapely.union_all(areas[k + 1 :])), key=_size)
         at = shapely.maximum_inscribed_circle(free).coords[0]
@@ -157,13 +165,13 @@ def _wires(
             points += [(to_sensor @ (out, along, h, 1.0))[:3] for h in (up, up - _PAST_MM)]
         if not mount.lugs:
             points += [np.array([0.9 * x, low_y - h, stack.back_z_mm]) for h in (0, _PAST_MM)]
-        way = _smooth(points)
+        way = smooth(points)
         hidden.append(way[: 2 * _STEPS + 1])
         open_ways.append(way[2 * _STEPS :])
     return hidden, open_ways
 
 
-def _smooth(points: Sequence[Points]) -> Points:
+def smooth(points: Sequence[Points]) -> Points:
     """A line through points without corners (Catmull-Rom)."""
     ends = [2 * points[0] - points[1], *points, 2 * points[-1] - points[-2]]
     t = np.linspace(0.0, 1.0, _STEPS, endpoint=False)[:, None]

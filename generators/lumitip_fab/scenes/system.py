@@ -20,7 +20,7 @@ SECTIONS = 96
 
 def disc(diameter_mm: float, low_mm: float, high_mm: float) -> Mesh:
     """A cylinder round z."""
-    return _prism(_ring(diameter_mm / 2), low_mm, high_mm)
+    return prism(ring(diameter_mm / 2), low_mm, high_mm)
 
 
 def block(
@@ -42,12 +42,12 @@ def block(
             )
     rounded = np.round(np.array(outline), 9)
     distinct = np.abs(rounded - np.roll(rounded, 1, axis=0)).max(axis=1) > 1e-6
-    return _prism(rounded[distinct], low_mm, high_mm)
+    return prism(rounded[distinct], low_mm, high_mm)
 
 
 def socket(diameter_mm: float, recess_mm: float, height_mm: float, depth_mm: float) -> Mesh:
     """A cylinder round z from z = 0, with a round recess in its top."""
-    outer, inner = _ring(diameter_mm / 2), _ring(recess_mm / 2)
+    outer, inner = ring(diameter_mm / 2), ring(recess_mm / 2)
     floor = height_mm - depth_mm
     rings = [_at(outer, 0.0), _at(outer, height_mm), _at(inner, height_mm), _at(inner, floor)]
     n = len(outer)
@@ -56,7 +56,7 @@ def socket(diameter_mm: float, recess_mm: float, height_mm: float, depth_mm: flo
     return Mesh(np.concatenate(rings), np.array(triangles, dtype=np.int64))
 
 
-def _prism(outline: NDArray[np.float64], low_mm: float, high_mm: float) -> Mesh:
+def prism(outline: NDArray[np.float64], low_mm: float, high_mm: float) -> Mesh:
     """A convex outline, counter-clockwise, along z."""
     n = len(outline)
     triangles = [*_band(0, n, n), *_fan(0, n)[:, ::-1].tolist(), *_fan(n, n).tolist()]
@@ -64,8 +64,9 @@ def _prism(outline: NDArray[np.float64], low_mm: float, high_mm: float) -> Mesh:
     return Mesh(points, np.array(triangles, dtype=np.int64))
 
 
-def _ring(radius_mm: float) -> NDArray[np.float64]:
-    turn = np.arange(SECTIONS) * (2 * math.pi / SECTIONS)
+def ring(radius_mm: float, corners: int = SECTIONS) -> NDArray[np.float64]:
+    """Corners round z, as chords of a circle."""
+    turn = np.arange(corners) * (2 * math.pi / corners)
     return np.column_stack([radius_mm * np.cos(turn), radius_mm * np.sin(turn)])
 
 

@@ -10,15 +10,13 @@ from lumitip_fab.design import Box, Design, Finger, Insert, Mould, Point, frames
 from lumitip_fab.parts.surface import Mesh
 from lumitip_fab.pipeline.artefact import Artefact, Files
 from lumitip_fab.scenes.bench_views import drop_view, facing_view
-from lumitip_fab.scenes.casting_views import (
-    Cast,
-    clamped_view,
-    filled_view,
-    lifted_view,
-    lowered_view,
-)
+from lumitip_fab.scenes.casting_page import Cast
+from lumitip_fab.scenes.casting_parts import nuts_of, screws_of, wires_of
+from lumitip_fab.scenes.casting_views import filled_view, lifted_view, lowered_view
+from lumitip_fab.scenes.clamped_view import clamped_view
 from lumitip_fab.scenes.finger_views import board_view, cable_view, folded_view
 from lumitip_fab.scenes.glb import Group
+from lumitip_fab.scenes.mould_view import mould_view
 from lumitip_fab.scenes.system import finger_group, stl_mesh
 
 OFF_MM = 3.5  # from keys and stops to where a drop of silicone is tried
@@ -37,22 +35,30 @@ def work_views(design: Design, files: Files) -> tuple[Artefact, ...]:
     drawings = {
         "facing": facing_view(boards[finger.name], boards[wired.name]),
         "board": board_view(finger, layers[finger.name], boards[finger.name][1]),
+        "mould": mould_view(cast.mould, design.outline, design.board, design.mould, design.clamps),
         "drop": drop_view(layers[finger.name], bare_spot(design), design.stack),
         "cable": cable_view(
             wired, layers[wired.name], _colours(design, wired), design.mount, design.stack
         ),
         "filled": filled_view(cast),
         "lowered": lowered_view(cast),
-        "clamped": clamped_view(cast, clamp, _clamp(design, files)),
+        "clamped": clamped_view(cast, clamp, _clamp(design, files), nuts_of(design.clamps)),
         "lifted": lifted_view(cast),
     }
     for name, seen in layers.items():
         flaps = files.facts(f"mask/{name}_mask.svg")["flaps"]
-        drawings[f"{name}_folded"] = folded_view(seen, flaps)
+        drawings[f"{name}_folded"] = folded_view(seen, flaps, _lip_y(design))
     return tuple(
         Artefact(f"manual/{name}.svg", drawing.encode(), frame="")
         for name, drawing in drawings.items()
     )
+
+
+def _lip_y(design: Design) -> float | None:
+    """Where the silicone ends on the back of the tip, if it is wrapped round it."""
+    if not design.props:
+        return None
+    return design.outline.tip_y_mm - design.mould.lip_length_mm(design.outline, design.tip)
 
 
 def _layers(group: Group) -> dict[str, Mesh]:
@@ -67,9 +73,10 @@ def _front(group: Group, finger: Finger) -> list[Mesh]:
 
 
 def _cast(design: Design, finger: Finger, layers: dict[str, Mesh], files: Files) -> Cast:
-    to_bed = _to_bed(design)
+    to_bed, mould = _to_bed(design), stl_mesh(files, f"mould/{finger.name}_mould.stl")
+    colours = _colours(design, finger)
     return Cast(
-        stl_mesh(files, f"mould/{finger.name}_mould.stl"),
+        mould,
         {
             name: layers[name].moved(to_bed)
             for name in ("interface", "backing", "board", "silicone")
@@ -80,6 +87,8 @@ def _cast(design: Design, finger: Finger, layers: dict[str, Mesh], files: Files)
         tuple(_laid(design.mould, insert) for insert in design.mould.inserts),
         _prop(design, files),
         design.mould.level_slope,
+        screws_of(design.clamps),
+        wires_of(finger, colours, to_bed, mould, design),
     )
 
 

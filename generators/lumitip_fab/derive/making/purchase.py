@@ -61,6 +61,7 @@ def _packs(config: Input) -> dict[str, Pack]:
             entry.unit,
             prices.pack.get(name),
             entry.confidence,
+            entry.colours,
         )
         for name, entry in known.items()
     }
@@ -149,7 +150,7 @@ def _of_flange(config: Input, flange: Flange, packs: Mapping[str, Pack]) -> list
         (screw, "ISO 7046", where, count, f"{flange.screw} screw"),
         (nut, "ISO 4032", where, count, nut),
         (pin, "ISO 2338", "flange to coupling, glued in", 1, "parallel pin"),
-        (bolt, "ISO 4762", longer, len(flange.bolts), bolt),
+        (f"{bolt}, length by step Mount", "ISO 4762", longer, len(flange.bolts), bolt),
     )
     return [_fastener(*row, packs) for row in rows]
 

@@ -17,6 +17,7 @@ from lumitip_fab.design import (
     Holder,
     Insert,
     Interface,
+    Key,
     Mount,
     Outline,
     Point,
@@ -38,6 +39,8 @@ TURNS = 2
 """Of a thread, through both holes."""
 TIE_MM = 200.0
 """Length of a cable tie: the product in `packs.toml`."""
+CARRIER_MM = 300.0
+"""Of tape, that holds a mask's film on the paper that carries it through the printer."""
 A4_MM = (210.0, 297.0)
 CUT_MM = 5.0
 """Of a sheet, from one insert to the next."""
@@ -70,6 +73,7 @@ class Assembled:
     mount: Mount
     clamps: tuple[Clamp, ...]
     inserts: tuple[Insert, ...]
+    keys: tuple[Key, ...]
 
 
 def derive_supplies(config: Input, of: Assembled) -> tuple[Used, ...]:
@@ -149,8 +153,10 @@ def _cast(config: Input, of: Assembled) -> Iterator[Used]:
     down = len(of.fingers) * strips * (widest + 2 * (p.mould.wall_mm + CLAMP_END_MM))
     uses = ["tips of both plates" if of.clamps else "clamps of both moulds"] * bool(down)
     uses += ["windows on the back while casting"] * bool(taped)
+    carried = len(of.fingers) * CARRIER_MM if p.mask.route == "film" else 0.0
+    uses += ["films on their carriers"] * bool(carried)
     if uses:
-        yield Used(p.mould.tape, ", ".join(uses), (taped + down) / 1000, "m")
+        yield Used(p.mould.tape, ", ".join(uses), (taped + down + carried) / 1000, "m")
     if primer := config.parts.mould.primer:
         cm2 = sum(Polygon(of.outline.polygon()).area for _ in of.fingers) / 100
         yield Used(p.mould.primer, "front of both fingers", cm2 / primer.coverage_cm2_ml, "mL")

@@ -1,0 +1,87 @@
+"""The manual's step of mounting: flange, controller's board and fingers, and how long the gripper's
+bolts must be."""
+
+from collections.abc import Iterator
+
+from lumitip_fab.design import Design, Flange
+from lumitip_fab.design.mount import BOLTS_MM, SHORTER_MM, standard_bolt_mm
+from lumitip_fab.text import passage
+
+OWN_MM = (12, 16, 20, 25)
+"""Lengths of a gripper's own bolts, as examples."""
+
+
+def mounting(design: Design) -> str:
+    """The step, its work numbered."""
+    work = "\n".join(f"{n}. {text}" for n, text in enumerate(_work(design), 1))
+    lengths = "".join(_lengths(flange) for flange in design.flanges)
+    return _text("mounted", work=work, lengths=lengths)
+
+
+def _work(design: Design) -> Iterator[str]:
+    """From the robot to the fingers."""
+    mount = design.mount
+    yield _text("switched_off")
+    for flange in design.flanges:
+        yield from _flanged(design, flange)
+    for holder in design.holders:
+        yield _text("in_holder", holder=holder, screws=len(holder.holes))
+    if not design.holders and any(board.name == "breakout" for board in design.auxiliary_boards):
+        yield _text("beside_gripper", mount=mount)
+    if mount.lugs:
+        yield _text("tied")
+    yield _text("screwed_on", bolts=len(mount.bolt_u_mm), mount=mount)
+    for header, board in _plugs(design):
+        yield _text("plugged", board=board, header=header)
+    wires = (wire for cable in design.cabling.cables for wire in cable.wires)
+    ends = [f"{wire.number} to {wire.signal}" for wire in wires if wire.end.board == "supply"]
+    if ends:
+        yield _text("supplied", ends=", ".join(ends))
+    yield _text("moved")
+
+
+def _flanged(design: Design, flange: Flange) -> Iterator[str]:
+    """The flange between robot and gripper."""
+    yield _text("taken_off")
+    yield _text("confirmed")
+    yield _text("contacts", flange=flange)
+    for lit in design.electrical.indicators:
+        yield _text("indicator", lit=lit)
+    yield _text("closed", flange=flange)
+    yield _text("flange", flange=flange, bolts=len(flange.bolts))
+
+
+def _plugs(design: Design) -> list[tuple[str, str]]:
+    """Headers of the flange that a cable is plugged into, and the board that it comes from."""
+    headers = {
+        device.ref
+        for board in design.auxiliary_boards
+        for device in board.components
+        if board.name == "flange" and device.kind == "header"
+    }
+    found = {
+        (wire.end.connector, wire.start.board)
+        for cable in design.cabling.cables
+        for wire in cable.wires
+        if wire.end.board == "flange" and wire.end.connector in headers
+    }
+    return sorted(found)
+
+
+def _lengths(flange: Flange) -> str:
+    """The rule for the gripper's bolts, with examples."""
+    rows = []
+    for own_mm in OWN_MM:
+        least_mm = own_mm + flange.top_z_mm
+        if least_mm <= BOLTS_MM[-1]:
+            length_mm = standard_bolt_mm(least_mm)
+            rows.append(
+                f"| {own_mm} mm | {least_mm:.1f} mm | {flange.bolt} x {length_mm} "
+                f"| {length_mm - least_mm:+.1f} mm |"
+            )
+    return _text("lengths", flange=flange, less_mm=SHORTER_MM, rows="\n".join(rows))
+
+
+def _text(name: str, /, **values: object) -> str:
+    """A passage of the manual with its values."""
+    return passage("docs/chapters.md", name).format(**values)

@@ -1,0 +1,106 @@
+"""The drawing of a finger that is clamped in its mould: from above, and from the side, as its marks
+are looked at. In the frame of the mould's bed."""
+
+import numpy as np
+
+from lumitip_fab.design import Clamp, frames
+from lumitip_fab.parts.surface import Mesh
+from lumitip_fab.scenes.casting_page import LABEL_MM, SIDE, WORDS_MM, Cast, Words, inks
+from lumitip_fab.scenes.drawing import Points, Sheet, View, silhouette, view, visible_lines
+from lumitip_fab.scenes.glb import tints
+
+AZIMUTH_DEG, ELEVATION_DEG = 38.0, 30.0
+SCALE = 1.4
+_ABOVE = view(AZIMUTH_DEG, ELEVATION_DEG).enlarged(SCALE)
+_BESIDE = SIDE.enlarged(SCALE)
+_GAP_MM = 10.0  # from the drawing above to the one below
+Bodies = list[tuple[str, Mesh]]
+Label = tuple[Words, Points]
+
+
+def clamped_view(
+    cast: Cast, clamp: Clamp | None, printed: Mesh | None, nuts: tuple[Mesh, ...] = ()
+) -> str:
+    """The finger in its mould, and the clamp that holds it, if there is one.
+
+    Args:
+        cast: mould and finger.
+        clamp: for its marks.
+        printed: its mesh, where it lies on the finger.
+        nuts: on the clamp.
+    """
+    sheet, lean = Sheet(), frames.rotation_x(cast.lean_deg)
+    bodies: Bodies = [("mould", cast.mould)]
+    bodies += [
+        (name, cast.layers[name]) for name in ("interface", "backing") if name in cast.layers
+    ]
+    bodies += [("screw", mesh) for mesh in cast.screws]
+    bodies += [] if printed is None else [("clamp", printed)]
+    bodies += [("screw", mesh) for mesh in nuts]
+    prop: Bodies = [] if cast.prop is None else [("prop", cast.prop)]
+    stood = [(name, mesh.moved(lean)) for name, mesh in (*prop, *bodies)]
+    ways = [way @ lean[:3, :3].T for way in cast.ways(0.0)]
+    _wires(sheet, cast, [_ABOVE.seen(way)[:, :2] for way in ways])
+    _paint(sheet, _ABOVE, stood, np.zeros(3))
+    labels = [] if clamp is None else [_nut_label(clamp, lean)]
+    down = np.array([0.0, 0.0, _below(sheet, stood)])
+    _wires(sheet, cast, [_BESIDE.seen(way + down)[:, :2] for way in ways])
+    _paint(sheet, _BESIDE, stood, down)
+    level = float(sheet.low[1])
+    sheet.lines([np.array([(sheet.low[0], level), (sheet.high[0], level)])], "leader")
+    labels += _side_labels(cast, clamp, ways, lean, down)
+    right = float(sheet.high[0]) + LABEL_MM
+    sheet.leaders(labels, right, "start")
+    sheet.cover(right + WORDS_MM, level)
+    return sheet.svg({"data-azimuth-deg": AZIMUTH_DEG, "data-elevation-deg": ELEVATION_DEG})
+
+
+def _paint(sheet: Sheet, eye: View, bodies: Bodies, by_mm: Points) -> None:
+    """Bodies from the farthest to the nearest, then the lines that are seen of all."""
+    placed = [(name, Mesh(mesh.points_mm + by_mm, mesh.triangles)) for name, mesh in bodies]
+    lines = visible_lines([mesh for _, mesh in placed], eye)
+    for name, mesh in placed:
+        with sheet.group(name):
+            sheet.area(silhouette(mesh, eye), "body", tints()[_TINTS.get(name, name)])
+    for found in lines:
+        sheet.lines(found, "line")
+
+
+_TINTS = {"prop": "clamp", "screw": "coupling"}
+
+
+def _wires(sheet: Sheet, cast: Cast, lines: list[Points]) -> None:
+    for wire, line in zip(cast.wires, lines, strict=True):
+        sheet.wire(line, inks(wire.colour))
+
+
+def _below(sheet: Sheet, bodies: Bodies) -> float:
+    """Height by which bodies are moved to be seen from the side below what is drawn."""
+    highest = max(float(_BESIDE.seen(mesh.points_mm)[:, 1].max()) for _, mesh in bodies)
+    return (float(sheet.low[1]) - _GAP_MM - highest) / SCALE
+
+
+def _nut_label(clamp: Clamp, lean: frames.Matrix) -> Label:
+    """The nut that is nearest to the viewer; the sensor frame's y is -y here."""
+    nuts = [lean[:3, :3] @ (x, -y, clamp.top_mm) for x, y in clamp.screws]
+    nut = max(nuts, key=lambda at: float(_ABOVE.seen(at)[2]))
+    return ("Nut", "on each screw, turned by hand"), _ABOVE.seen(nut)[:2]
+
+
+def _side_labels(
+    cast: Cast, clamp: Clamp | None, ways: list[Points], lean: frames.Matrix, down: Points
+) -> list[Label]:
+    """What is looked at from the side."""
+    labels: list[Label] = []
+    if clamp is not None:
+        leg = min(clamp.legs, key=lambda box: (-box.x_max_mm, box.y_min_mm))
+        mark = lean[:3, :3] @ (leg.x_max_mm, -leg.centre_mm[1], clamp.mark_mm)
+        labels.append((("Marks", "of leg and mould in one line"), _BESIDE.seen(mark + down)[:2]))
+    for way in ways[:1]:
+        over = way[np.argmin(np.abs(way[:, 1] - cast.mould.points_mm[:, 1].max()))]
+        labels.append((("Wires", "over the weir"), _BESIDE.seen(over + down)[:2]))
+    if cast.prop is not None:
+        prop = cast.prop.points_mm
+        at = lean[:3, :3] @ (0.0, prop[:, 1].max() - 1.0, prop[:, 2].min() + 1.0)
+        labels.append((("Prop", "left under the mould"), _BESIDE.seen(at + down)[:2]))
+    return labels
