@@ -7,6 +7,7 @@ from lumitip_fab.design import Design, Flange
 from lumitip_fab.design.mount import BOLTS_MM, SHORTER_MM, standard_bolt_mm
 from lumitip_fab.text import passage
 
+_INPUT = "_IN"  # ends the name of the contacts' supply
 OWN_MM = (12, 16, 20, 25)
 """Lengths of a gripper's own bolts, as examples."""
 
@@ -46,9 +47,20 @@ def _flanged(design: Design, flange: Flange) -> Iterator[str]:
     yield _text("confirmed")
     yield _text("contacts", flange=flange)
     for lit in design.electrical.indicators:
-        yield _text("indicator", lit=lit)
+        output = f"{lit.output_v:g}V"
+        raw = next(name for name in _probed(design) if name.endswith(_INPUT))
+        supply = raw.removesuffix(_INPUT).replace("V", " V")
+        yield _text("indicator", lit=lit, supply=supply, raw=raw, output=output)
     yield _text("closed", flange=flange)
     yield _text("flange", flange=flange, bolts=len(flange.bolts))
+    if design.electrical.indicators:
+        yield _text("powered")
+
+
+def _probed(design: Design) -> list[str]:
+    """Nets of the test points on the flange's board."""
+    (flange,) = (board for board in design.auxiliary_boards if board.name == "flange")
+    return [part.value for part in flange.components if part.kind == "test point"]
 
 
 def _plugs(design: Design) -> list[tuple[str, str]]:
