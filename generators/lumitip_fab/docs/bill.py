@@ -90,12 +90,13 @@ def materials(design: Design, files: Files) -> Iterator[Bought]:
         where = "a sheet of A4 for each finger"
         yield _packed(purchase, "mask", purchase.film, design.mask.film, where, 2, "sheet")
     metres: dict[float, float] = {}
+    colours: dict[float, set[str]] = {}
     for cable in design.cabling.cables:
         length = cable.length_mm * len(cable.wires) / 1000
         metres[cable.section_mm2] = metres.get(cable.section_mm2, 0.0) + length
-    colours = {wire.colour for cable in design.cabling.cables for wire in cable.wires}
-    where = f"{len(colours)} colours: wiring/cables.csv has their lengths"
+        colours.setdefault(cable.section_mm2, set()).update(wire.colour for wire in cable.wires)
     for section, length in sorted(metres.items()):
+        where = f"{len(colours[section])} colours: wiring/cables.csv has their lengths"
         item = f"stranded wire, {section:g} mm² (AWG {_awg(section)})"
         used = round(length, 2)
         yield _packed(purchase, "wiring", "stranded wire", item, where, used, "m")

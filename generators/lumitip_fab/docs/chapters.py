@@ -106,7 +106,7 @@ def _poles(cabling: Cabling, net: str) -> str:
     away = [w for w in wires if w.start.board == "breakout" or w.end.board == "supply"]
     ends = {wire.signal: wire.number for wire in away}
     if not {net, "GND"} <= ends.keys():
-        return _text("poles_board", net=net)
+        return _text("poles_board", net=f"{net}_IN")  # before fuse and reverse protection
     free = [number for signal, number in ends.items() if signal == "5V" != net]
     spared = "".join(_text("poles_free", wire=wire) for wire in free)
     return _text("poles", plus=ends[net], minus=ends["GND"], free=spared)

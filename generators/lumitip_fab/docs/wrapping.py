@@ -1,6 +1,7 @@
 """The making of a mask by its route, and the wrapping of a finger with it: for the note beside each
 mask and for the manual."""
 
+import math
 from typing import Any
 
 from lumitip_fab.design import Design, Finger
@@ -108,7 +109,7 @@ def _lip(design: Design, facts: Facts) -> str:
     lip_mm = design.mould.lip_length_mm(design.outline, design.tip)
     reach_mm = next(flap["reach_mm"] for flap in facts["flaps"] if flap["number"] == 1)
     name = "lip" if reach_mm >= lip_mm + _BEYOND_MM + _BOND_MM else "lip_only"
-    return passage(_TEXTS, name).format(lip_mm=lip_mm, from_mm=lip_mm + _BEYOND_MM)
+    return passage(_TEXTS, name).format(lip_mm=lip_mm, from_mm=math.ceil(lip_mm + _BEYOND_MM))
 
 
 def _what(design: Design) -> str:

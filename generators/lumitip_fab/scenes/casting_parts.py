@@ -58,7 +58,7 @@ def wires_of(
     table = _OVER_MM - (high + _PAST_MM - low) * design.mould.level_slope
     notch_y = (finger.notch.y_min_mm + finger.notch.y_max_mm) / 2
     found = []
-    for colour, (x, y) in zip(colours, finger.connector.pads, strict=False):
+    for colour, (x, y) in zip(colours, finger.connector.pads, strict=True):
         held = np.array([(x, y, stack.pocket_z_mm), (x, notch_y, stack.pocket_z_mm - _OVER_MM)])
         lying = np.array(
             [

@@ -124,11 +124,12 @@ class Bank:
             light: shares of the empty grasp, shape `(cells,)`.
             usable: cells that count, shape `(cells,)`.
             starts: number of poses, at most.
-            most: number of cells that may disagree; at least one does.
+            most: number of cells that may disagree. Poses with which all agree are left out.
         """
         seen, shares = light[usable].astype(np.float32), self.shares[:, usable]
-        top = np.quantile(seen, _LIT)
-        lows = [np.float32(0.0)] if self.opaque else np.quantile(seen, _DARK)
+        top = np.float32(np.quantile(seen, _LIT))
+        levels = np.zeros(1) if self.opaque else np.quantile(seen, _DARK)
+        lows = levels.astype(np.float32)
         best, off = np.full(len(shares), np.inf, np.float32), np.zeros(len(shares), int)
         turned = np.zeros(len(shares), bool)
         for low in lows:

@@ -39,11 +39,12 @@ def without_dead(
     poses = bank.robust(frame.light, usable, _STARTS, most)
     starts = [full(pose, frame, found.drifts) for pose in poses]
     enough = _CLEARLY * found.cost
-    fits = [left for start in starts if (left := _trimmed(shape, start, frame, most, enough))]
-    if not fits:
+    trimmed = (_trimmed(shape, start, frame, most, enough) for start in starts)
+    tried = [each for each in trimmed if each]
+    if not tried:
         return None
-    best = min(fits, key=_cost)
-    near = [each for each in fits if _cost(each) < _cost(best) + RIVAL]
+    best = min(tried, key=_cost)
+    near = [each for each in tried if _cost(each) < _cost(best) + RIVAL]
     return replace(best, ambiguous=bool(bank.elsewhere(best, near)))
 
 

@@ -57,8 +57,7 @@ class Estimate:
     """Faults of the fit: `"misfit"` if the shape does not explain the frame, `"weak"` if the frame
     hardly shows the line, `"astray"` if the fit left the fingertip, `"unfinished"` if it did not
     converge, `"ambiguous"` if another line explains the frame nearly as well, `"dead"` if it is
-    without cells that read an end of the scale: dead, or covered by another object. A tracker drops
-    this flag when it has gone on without them for some frames."""
+    without cells that read an end of the scale: dead, or covered by another object."""
     dark_side: str = ""
     """Side of the line on which the sheet of an edge or corner is, `"left"` or `"right"`."""
     vertex_mm: Point | None = None

@@ -42,7 +42,7 @@ _LEAST_CELLS = 4  # fewer do not show a line
 _BLURRED = np.array([np.radians(ANGLE_SD_DEG), OFFSET_SD_MM])
 _BEARABLE_COUNTS = dict.fromkeys(KINDS, 0.5 * MISFIT_COUNTS) | {BENT: 0.25 * MISFIT_COUNTS}
 _END_COUNTS = 3.0  # from an end of the scale
-_OUT_FRAMES = 10  # for which a tracker goes on without a cell before it takes it for dead
+_SAME = 0.05  # share of light by which a dead cell may change
 _WORSE = 1.3  # times the least misfit since the last search, beyond which a tracker searches again
 
 
@@ -149,12 +149,10 @@ class PoseEstimator:
             deviations = np.sqrt(np.abs(np.diag(uncertain))[:2])
             if np.any(deviations > _BLURRED):
                 free = replace(free, pose=likely(shape, free, deviations))
-        before = self._last.out_for if self._last else 0
-        out_for = np.where(found.frame.scale == 0.0, 1 + before, 0)
-        dead = usable & (out_for > 0) & (out_for < _OUT_FRAMES)
+        dead = usable & (found.frame.scale == 0.0)
         flags = ("dead",) if dead.any() else ()
         estimate = report(shape, free, uncertain, self._search.reach_mm, self._mirrored, flags)
-        self._remember(name, found, estimate, out_for)
+        self._remember(name, found, estimate, dead)
         return estimate
 
     def prepare(self, *kinds: str) -> "PoseEstimator":
@@ -175,9 +173,7 @@ class PoseEstimator:
             self._search.bank(kind)
         return self
 
-    def _remember(
-        self, name: str, found: Fit, estimate: Estimate, out_for: NDArray[np.int64]
-    ) -> None:
+    def _remember(self, name: str, found: Fit, estimate: Estimate, dead: NDArray[np.bool_]) -> None:
         """Start the next frame from this fit, unless the fit failed."""
         # The fit of a bend converges over some frames, that of a straight line at once.
         bearable = {"misfit", "ambiguous", "dead", *(["unfinished"] if name == BENT else [])}
@@ -185,7 +181,7 @@ class PoseEstimator:
         # Later frames are compared with the least misfit since the last search, so that a bend does
         # not raise the limit for a line that is straight again.
         misfit = min(self._last.misfit_counts if self._last else math.inf, estimate.rms_counts)
-        self._last = _Last(name, found.pose, misfit, out_for) if fine else None
+        self._last = _Last(name, found.pose, misfit, dead, found.frame.light) if fine else None
 
     def fitted(self, values: ArrayLike, kind: str, free: bool = False) -> Fit:
         """The fit of a kind with the expected optics.
@@ -209,6 +205,7 @@ class PoseEstimator:
             )
         frame = self._frame(read, usable)
         found = self._search.best(kind, frame)
+        frame = frame.without(found.frame.scale == 0.0)
         return (self._search.free if free else self._search.expected)(kind, found, frame)
 
     def optics_at(self, drift: Floats) -> Model:
@@ -243,7 +240,8 @@ class PoseEstimator:
     def _found(self, frame: Frame, kind: str | None) -> tuple[str, Fit]:
         search, last = self._search, self._last
         if last is not None and kind in (None, search.shape(last.name).kind):
-            alive = frame.without(last.out_for > 0)
+            same = np.abs(frame.light - last.light) < _SAME
+            alive = frame.without(last.dead & same)
             followed = search.near(last.name, last.pose, alive)
             bearable = max(_BEARABLE_COUNTS[last.name], _WORSE * last.misfit_counts)
             if rms_counts(followed) < bearable:
@@ -264,8 +262,10 @@ class _Last:
     pose: Floats
     misfit_counts: float
     """Least misfit since the last search."""
-    out_for: NDArray[np.int64]
-    """Frames for which each cell has been left out."""
+    dead: NDArray[np.bool_]
+    """Cells that were left out although they had a value."""
+    light: Floats
+    """What each cell saw: a dead one sees the same in every frame."""
 
 
 def _known(kind: str) -> None:

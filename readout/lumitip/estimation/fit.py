@@ -94,7 +94,7 @@ def fits(shape: Shape, starts: Floats, frame: Frame, rounds: int = ROUNDS) -> li
     """
     count, size = starts.shape
     prior = _Prior.of(shape, size)
-    now = _Points.at(shape, starts, frame, prior)
+    now = _Points.at(shape, starts.copy(), frame, prior)
     damping, converged = np.full(count, 1e-3), np.zeros(count, bool)
     left = np.arange(count)  # not converged yet
     for _ in range(rounds):
@@ -219,7 +219,7 @@ class _Points:
         return _Points(*(getattr(self, each.name)[at] for each in fields(self)))
 
     def but(self, at: Integers, other: "_Points", some: NDArray[np.bool_]) -> "_Points":
-        """These with some of others at some places."""
+        """These, changed: with some of others at some places."""
         for each in fields(self) if at.size else ():
             getattr(self, each.name)[at] = getattr(other, each.name)[some]
         return self

@@ -55,7 +55,8 @@ class Lookup:
             sheet: number of the sheet, broadcast with `left_mm`.
         """
         turn = np.asarray(angle) * (180.0 / np.pi / STEP_DEG) % self._angles
-        first = turn.astype(np.int64)
+        # The remainder of a tiny negative angle is a whole turn.
+        first = np.minimum(turn.astype(np.int64), self._angles - 1)
         down = turn - first
         way = np.minimum(np.maximum(left_mm * (1.0 / STEP_MM) + self._middle, 0.0), self._most)
         column = way.astype(np.int64)

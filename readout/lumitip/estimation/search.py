@@ -118,16 +118,23 @@ class Search:
         starts |= {name: self.start(name, frame) for name in KINDS[1:]}
         # If a template is equal to the frame, the residual is 0, or below it by rounding.
         most = _HOPELESS * max(min(left for _, left in starts.values()), 0.0)
-        fits = {}
+        found = {}
         for name, (pose, left) in sorted(starts.items(), key=lambda item: item[1][1]):
             if left <= most:
-                fits[name] = self._best(name, frame, pose)
-                if name != "corner" and not doubtful(fits[name]):
-                    return name, fits[name]
-        loose = {name: self.loosely(name, found, frame) for name, found in fits.items()}
-        likely = sorted(fits, key=lambda n: _SIMPLER[n] * (loose[n].cost + 3.0 * fits[n].pose.size))
-        alive = [(name, self.alive(name, fits[name])) for name in likely]
-        return next((each for each in alive if not doubtful(each[1])), alive[0])
+                found[name] = self._best(name, frame, pose)
+                if name != "corner" and not doubtful(found[name]):
+                    return name, found[name]
+        loose = {name: self.loosely(name, each, frame) for name, each in found.items()}
+        likely = sorted(
+            found, key=lambda n: _SIMPLER[n] * (loose[n].cost + 3.0 * found[n].pose.size)
+        )
+        best = likely[0], self.alive(likely[0], found[likely[0]])
+        for name in likely[1:]:
+            if not doubtful(best[1]):
+                break
+            other = self.alive(name, found[name])
+            best = best if doubtful(other) else (name, other)
+        return best
 
     @staticmethod
     def _kept(tried: list[Fit]) -> Floats:

@@ -25,7 +25,8 @@ from lumitip.twin.scene import MOST_DIAMETER_MM
 
 MOST_HZ = 30.0
 """Largest rate of estimates: more are not readable."""
-_COMMAND = (sys.executable, "-m", "lumitip.view.pose_process")
+# Without -P a file of the current folder could stand in for a module.
+_COMMAND = (sys.executable, "-P", "-m", "lumitip.view.pose_process")
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,7 @@ WORDS = {
     "astray": "astray: the fit left the fingertip",
     "unfinished": "unfinished: the fit did not converge",
     "ambiguous": "ambiguous: another line explains the cells nearly as well",
-    "dead": "dead: found without cells that may be dead: {left_out}",
+    "dead": "dead: found without cells {left_out}, which have no value or may be dead",
 }
 """Flags of `Estimate` for the reader of the page."""
 _PLACES = 9  # along a line, of its band

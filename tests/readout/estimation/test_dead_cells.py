@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
+from bench_dead_cells import TUNED
 from lumitip import Layout
 from lumitip.estimation import PoseEstimator
-from lumitip.tasks import Settings, Task, TaskError, Tuning
+from lumitip.tasks import Settings, Task, TaskError
 from lumitip.tasks.trial import Bench
 from lumitip.twin import Cable, HalfPlane, Scene, Twin
 
-TUNED = {"cloth": Tuning(24.0, 6.0, 0.03), "cable": Tuning(8.0, 14.0, 0.06)}
 EDGE, CABLE = HalfPlane(offset_mm=1.0, angle_deg=8.0), Cable(offset_mm=-1.5, angle_deg=-12.0)
 
 
@@ -54,10 +54,24 @@ def test_a_tracker_goes_on_without_stuck_cells(twin: Twin) -> None:
         values = np.floor(twin.values(Cable(CABLE.offset_mm + step, CABLE.angle_deg)))
         values[stuck] = 0.0
         found = tracker(values, "cable")
-        assert set(found.left_out) == set(stuck)
+        assert set(found.left_out) == set(stuck) and "dead" in found.flags
         assert found.offset_mm == pytest.approx(CABLE.offset_mm + step, abs=0.1)
-    tracker.reset()
-    assert tracker(twin.values(CABLE), "cable").left_out == ()
+    values[stuck] = twin.values(Cable(CABLE.offset_mm + step, CABLE.angle_deg))[stuck]
+    assert (tracker(values, "cable").left_out, tracker(values, "cable").flags) == ((), ())
+
+
+def test_a_tracker_takes_cells_back_that_had_no_value(twin: Twin) -> None:
+    tracker, chance = PoseEstimator(twin.layout, tracking=True), np.random.default_rng(2)
+    for _ in range(60):
+        values = np.floor(twin.values(EDGE))
+        missing = int(chance.integers(len(values)))
+        values[missing] = np.nan
+        found = tracker(values, "edge")
+        assert (found.left_out, found.flags) == ((missing,), ())
+    half = np.arange(len(values)) % 2 == 0
+    for lost in (half, ~half):
+        values = np.where(lost, np.nan, np.floor(twin.values(EDGE)))
+        assert set(tracker(values, "edge").left_out) == set(np.flatnonzero(lost).tolist())
 
 
 def test_a_fit_is_not_saved_by_leaving_out_many_cells(estimator: PoseEstimator, twin: Twin) -> None:

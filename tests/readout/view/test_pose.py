@@ -100,7 +100,8 @@ def test_cells_that_may_be_dead_are_named(layout: Layout) -> None:
     values[lit] = 0.0
     shown = described(PoseEstimator(layout)(values, "edge"), 10.0)
     cells = ", ".join(map(str, lit.tolist()))
-    assert shown["words"] == [f"dead: found without cells that may be dead: {cells}"]
+    said = f"dead: found without cells {cells}, which have no value or may be dead"
+    assert shown["words"] == [said]
 
 
 def test_without_contact_there_is_nothing_to_draw(layout: Layout) -> None:

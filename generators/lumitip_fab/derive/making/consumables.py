@@ -33,7 +33,8 @@ def _consumed(config: Input, of: Assembled) -> Iterator[Used]:
     yield Used("isopropanol", "cleaning before glue and silicone", wipes * WIPE_ML, "mL")
     yield Used("lint-free cloth", "cleaning before glue and silicone", wipes, "sheet")
     yield Used("sandpaper", "roughening before glue", 1, "sheet")
-    yield Used("nitrile gloves", ", ".join(GLOVED), 2 * len(GLOVED), "piece")
+    gloved = [work for work in GLOVED if primed or work != "priming"]
+    yield Used("nitrile gloves", ", ".join(gloved), 2 * len(gloved), "piece")
     yield Used("clean cup", "mixing silicone, and a drop of the trial", FINGERS + 2, "piece")
     sticks = 2 + FINGERS + bool(of.keys)
     yield Used("wooden stick", "spreading glue, mixing silicone", sticks, "piece")

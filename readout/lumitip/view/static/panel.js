@@ -146,6 +146,9 @@ export class Panel {
   /** Show a status of the server, twice a second. */
   update(status) {
     this.status = status;
+    if (status.estimates.state === "failed") {
+      this.estimate = null;
+    }
     this.late.add("writeWords");
     const on = Boolean(status.recording?.on);
     const silent = status.silent_s > Math.max(SILENT_S, 3 / (status.rate_hz || 1));
