@@ -151,7 +151,7 @@ DAMAGES: dict[str, tuple[Callable[[Path], None], set[str]]] = {
     "file lost": (lost, {"files"}),
     "another's model": (of_another, {"size"}),
     "file cut short": (cut_short, {"size"}),
-    "model turned": (_board("(rotate (xyz 0 0 180))", "(rotate (xyz 0 0 0))"), {"places"}),
+    "model turned": (_board("(rotate (xyz 0 0 0))", "(rotate (xyz 0 0 180))"), {"places"}),
     "model shifted": (_board("(offset (xyz 0 0 0))", "(offset (xyz 1 0 0))"), {"places"}),
     "model in inches": (_board("(scale (xyz 1 1 1))", "(scale (xyz 2.54 2.54 2.54))"), {"places"}),
     "another path": (_board("${KIPRJMOD}/../models/", "/tmp/models/"), {"files"}),
