@@ -49,7 +49,7 @@ def narrow(text: str, ref: str) -> str:
 
 def beside_a_header(text: str, ref: str) -> str:
     """Under the edge of the header, its tracks where they were."""
-    return moved_part(text, ref, -0.3, 0.0)
+    return moved_part(text, ref, -0.7, 0.0)
 
 
 DAMAGES: dict[tuple[Damage, str], set[str]] = {
