@@ -2,7 +2,10 @@
 insulation."""
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
+
+from lumitip_fab.design.pcb import AuxiliaryBoard
 
 COLOURS = {
     "BK": ("black", "#1a1a1a"),
@@ -147,3 +150,14 @@ class Cabling:
     """Least bend radius of a moving wire, by its outer diameter."""
     most_drop: float
     """Largest drop of voltage over the wires, both ways, as a share of the LEDs' supply."""
+
+
+def plugged_headers(
+    cables: Iterable[Cable], auxiliary_boards: Iterable[AuxiliaryBoard]
+) -> list[str]:
+    """References of the flange's headers that a cable is plugged into, sorted."""
+    wires = (wire for cable in cables for wire in cable.wires)
+    ends = {wire.end.connector for wire in wires if wire.end.board == "flange"}
+    flanges = (board for board in auxiliary_boards if board.name == "flange")
+    headers = {part.ref for board in flanges for part in board.components if part.kind == "header"}
+    return sorted(ends & headers)

@@ -4,6 +4,7 @@ bolts must be."""
 from collections.abc import Iterator
 
 from lumitip_fab.design import Design, Flange
+from lumitip_fab.design.cabling import plugged_headers
 from lumitip_fab.design.mount import BOLTS_MM, SHORTER_MM, standard_bolt_mm
 from lumitip_fab.text import passage
 
@@ -65,19 +66,10 @@ def _probed(design: Design) -> list[str]:
 
 def _plugs(design: Design) -> list[tuple[str, str]]:
     """Headers of the flange that a cable is plugged into, and the board that it comes from."""
-    headers = {
-        device.ref
-        for board in design.auxiliary_boards
-        for device in board.components
-        if board.name == "flange" and device.kind == "header"
-    }
-    found = {
-        (wire.end.connector, wire.start.board)
-        for cable in design.cabling.cables
-        for wire in cable.wires
-        if wire.end.board == "flange" and wire.end.connector in headers
-    }
-    return sorted(found)
+    headers = plugged_headers(design.cabling.cables, design.auxiliary_boards)
+    wires = (wire for cable in design.cabling.cables for wire in cable.wires)
+    found = {(w.end.connector, w.start.board) for w in wires if w.end.board == "flange"}
+    return sorted(plug for plug in found if plug[0] in headers)
 
 
 def _lengths(flange: Flange) -> str:

@@ -98,8 +98,8 @@ def test_what_is_no_line_is_flagged(estimator: PoseEstimator, twin: Twin) -> Non
     blob = Polygon(points_mm=[(-3, -3), (3, -3), (3, 3), (-3, 3)])
     other = Polygon(points_mm=[(8, 5), (13, 5), (13, 10), (8, 10)])
     third = Polygon(points_mm=[(-13, -10), (-8, -10), (-8, -5), (-13, -5)])
-    told = estimator(twin.values((blob, other, third)))
-    assert {"misfit", "dead"} & set(told.flags)
+    found = estimator(twin.values((blob, other, third)))
+    assert {"misfit", "dead"} & set(found.flags)
     tracker = PoseEstimator(twin.layout, tracking=True)
     assert not any(tracker(twin.values((blob, other, third))).trusted for _ in range(20))
     assert estimator(twin.values(HalfPlane(offset_mm=1.0, angle_deg=8.0))).trusted

@@ -40,7 +40,7 @@ def stream(server: ViewServer) -> ClientConnection:
     return connect(f"ws://{here}/stream", origin=f"http://{here}")  # type: ignore[arg-type]
 
 
-def told(message: bytes | str) -> dict[str, Any]:
+def parsed(message: bytes | str) -> dict[str, Any]:
     """A message of frames, or an estimate, which skips none and has none."""
     if isinstance(message, str):
         return {"skipped": 0, "seq": [], **json.loads(message)["estimate"]}
@@ -71,21 +71,21 @@ def test_a_browser_that_does_not_draw_gets_a_window_and_no_more(
     finger = server.registry.fingers[1]
     with stream(server) as client:
         first = until_silent(client)
-        assert [told(m)["number"] for m in first] == list(range(1, WINDOW + 1))
+        assert [parsed(m)["number"] for m in first] == list(range(1, WINDOW + 1))
         before = finger.count
         wait_for(lambda: finger.count > before + 2 * KEPT)
         client.send(json.dumps({"drawn": {"1": WINDOW}}))
         after = until_silent(client)
-    assert [told(m)["number"] for m in after] == list(range(WINDOW + 1, 2 * WINDOW + 1))
-    assert sum(told(m)["skipped"] for m in first) == 0
+    assert [parsed(m)["number"] for m in after] == list(range(WINDOW + 1, 2 * WINDOW + 1))
+    assert sum(parsed(m)["skipped"] for m in first) == 0
     first, after = ([m for m in some if isinstance(m, bytes)] for some in (first, after))
-    caught_up = told(after[0])
+    caught_up = parsed(after[0])
     assert len(caught_up["seq"]) == KEPT
     # Nothing is missing but what is said to be.
-    last = told(first[-1])["seq"][-1]
+    last = parsed(first[-1])["seq"][-1]
     assert caught_up["seq"][0] == last + 1 + caught_up["skipped"]
     assert caught_up["skipped"] > 0
-    following = [s for m in after for s in told(m)["seq"]]
+    following = [s for m in after for s in parsed(m)["seq"]]
     assert following == list(range(following[0], following[0] + len(following)))
 
 
@@ -98,7 +98,7 @@ def test_a_browser_that_draws_gets_every_frame(serve: Serve) -> None:
             if isinstance(message, str) and "estimate" not in json.loads(message):
                 client.send(json.dumps({"status": True}))
                 continue
-            frames = told(message)
+            frames = parsed(message)
             assert frames["skipped"] == 0
             got += frames["seq"]
             client.send(json.dumps({"drawn": {"1": frames["number"]}}))
@@ -112,8 +112,8 @@ def test_one_slow_browser_does_not_slow_another(serve: Serve) -> None:
         while frames < 300:
             message = quick.recv(timeout=10)
             if isinstance(message, bytes) or "estimate" in json.loads(message):
-                frames += len(told(message)["seq"])
-                quick.send(json.dumps({"drawn": {"1": told(message)["number"]}}))
+                frames += len(parsed(message)["seq"])
+                quick.send(json.dumps({"drawn": {"1": parsed(message)["number"]}}))
         assert len(until_silent(slow)) == WINDOW
 
 
@@ -126,7 +126,7 @@ def test_who_comes_late_sees_the_last_frame(serve: Serve, wait_for: WaitFor) -> 
     with stream(server) as client:
         message = until_silent(client)[0]
     last = finger.tip.stats.received - 1
-    assert told(message)["seq"] == [last]
+    assert parsed(message)["seq"] == [last]
 
 
 def test_who_comes_late_gets_the_estimate_of_the_last_frame_and_no_older_one(
@@ -145,11 +145,11 @@ def test_who_comes_late_gets_the_estimate_of_the_last_frame_and_no_older_one(
     for _ in range(3):
         with stream(server) as client:
             frame, estimate = until_silent(client)
-        assert told(frame)["number"] == 1
-        assert told(estimate)["number"] == 2
+        assert parsed(frame)["number"] == 1
+        assert parsed(estimate)["number"] == 2
         assert finger.estimates.newest
         assert finger.estimates.newest.number == finger.count
-        assert told(estimate)["t"] == finger.newer(finger.count - 1)[0][0][0].t - finger.since
+        assert parsed(estimate)["t"] == finger.newer(finger.count - 1)[0][0][0].t - finger.since
 
 
 def test_a_browser_that_left_before_its_last_words_are_read_leaves_quietly(

@@ -1,4 +1,4 @@
-"""What the browser gets, read here as it is told in `lumitip.view.wire`."""
+"""Messages to the browser, read here as `lumitip.view.wire` describes them."""
 
 import struct
 from collections.abc import Callable

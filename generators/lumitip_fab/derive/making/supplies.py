@@ -23,6 +23,7 @@ from lumitip_fab.design import (
     Point,
     Stack,
 )
+from lumitip_fab.design.cabling import plugged_headers
 
 GLUE_FILM_MM = 0.1
 """Thin film of glue between board and floor, or pad and plate (assumed)."""
@@ -124,19 +125,8 @@ def _held(of: Assembled) -> Iterator[Used]:
 
 def _plugged(config: Input, of: Assembled) -> Iterator[Used]:
     """A mating connector for each header of the flange that a cable ends at."""
-    ends = {
-        wire.end.connector
-        for cable in of.cabling.cables
-        for wire in cable.wires
-        if wire.end.board == "flange"
-    }
-    headers = {
-        device.ref
-        for board in of.auxiliary_boards
-        for device in board.components
-        if board.name == "flange" and device.kind == "header"
-    }
-    mate, plugs = config.parts.flange.header.mate, sorted(ends & headers)
+    plugs = plugged_headers(of.cabling.cables, of.auxiliary_boards)
+    mate = config.parts.flange.header.mate
     if mate and plugs:
         yield Used(mate, f"plug at {', '.join(plugs)} of the flange", len(plugs), "piece")
 
