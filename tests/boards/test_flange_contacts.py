@@ -12,6 +12,8 @@ import sexpdata
 
 from board_damages import in_part
 from damages import failing
+from lumitip_fab.checks import board
+from lumitip_fab.design.encoding import read_design
 
 pytestmark = pytest.mark.slow
 
@@ -152,6 +154,44 @@ def test_a_damaged_map_is_seen(
         name for name in failing(damaged_boards, "board", "flange") if name.startswith("contact_")
     }
     assert found == expected
+
+
+def without_tracks(net: str) -> Callable[[str], str]:
+    """The tracks of a net taken away."""
+
+    def change(text: str) -> str:
+        index = re.search(rf'\(net (\d+) "{re.escape(net)}"\)', text)
+        assert index
+        return re.sub(rf"\n  \(segment [^\n]*\(net {index[1]}\)[^\n]*", "", text)
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("net", "lost"),
+    [("485-", "8 (485-)"), ("CASING", "5 (CASING)"), ("12V_IN", "3 (24V)")],
+)
+def test_a_contact_that_leads_to_no_header_is_seen(
+    damaged_boards: Path, net: str, lost: str
+) -> None:
+    path = damaged_boards / FLANGE
+    before = path.read_text()
+    path.write_text(without_tracks(net)(before))
+    assert path.read_text() != before
+    design = read_design(damaged_boards / "design.json")
+    found = {m.check: m for m in board.measure_board(damaged_boards, design, "flange")}
+    assert not found["board.passed_on"].passed
+    assert found["board.passed_on"].note == lost
+
+
+def test_the_gripper_s_supply_is_on_both_contacts_of_a_column(
+    boards: Callable[[str], Path],
+) -> None:
+    design = read_design(boards("small") / "design.json")
+    (flange,) = (each for each in design.auxiliary_boards if each.name == "flange")
+    raw = dict(next(part for part in flange.components if part.ref == "J1").nets)["3"]
+    (header,) = (p for p in flange.components if p.ref == "J3")
+    assert [number for number, net in header.nets if net == raw] == ["7", "8"]
 
 
 def test_the_map_passes_as_it_is_written(boards: Callable[[str], Path]) -> None:

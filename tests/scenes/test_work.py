@@ -21,10 +21,8 @@ from lumitip_fab.parts.surface import Mesh
 from lumitip_fab.scenes.casting_page import Cast
 from lumitip_fab.scenes.casting_views import filled_view
 from lumitip_fab.scenes.clamped_view import clamped_view
-from lumitip_fab.scenes.cut import cut, rings_of
-from lumitip_fab.scenes.drawing import silhouette, view
 from lumitip_fab.scenes.finger_views import cable_view
-from lumitip_fab.scenes.system import block, finger_group, socket
+from lumitip_fab.scenes.system import finger_group
 from lumitip_fab.scenes.work import bare_spot
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -128,6 +126,11 @@ def test_boards_face_each_other_with_all_their_parts(folder: Path) -> None:
     parts = [p for finger in design.fingers for p in finger.parts if p.side == "front"]
     white = [p for p in root.iter(f"{SVG}path") if p.attrib.get("fill") == "#fff"]
     assert len(white) == len(parts)
+    wires = [p for p in root.findall(f"{SVG}path") if p.attrib.get("stroke-width") == ".8"]
+    colours = [*pads(design), *pads(design, "emitter")]
+    assert [w.attrib["stroke"] for w in wires] == [
+        COLOURS[code][1] for colour in colours for code in codes_of(colour)
+    ]
 
 
 def test_the_drop_is_where_the_glue_is(folder: Path) -> None:
@@ -194,6 +197,32 @@ def test_the_clamp_is_drawn_where_there_is_one(folder: Path) -> None:
     assert ("clamp" in groups) == bool(design.clamps)
 
 
+def test_marks_of_leg_and_mould_are_enlarged_in_one_line(folder: Path) -> None:
+    design, root = read_design(folder / "design.json"), drawn(folder, "clamped")
+    details = root.findall(f"{SVG}g[@id='detail']")
+    assert len(details) == len(design.clamps)
+    for detail in details:
+        circle, *lines = (_lines(path) for path in detail.iter(f"{SVG}path"))
+        middle = (circle[0][:, 0].min() + circle[0][:, 0].max()) / 2
+        sides: dict[bool, list[float]] = {True: [], False: []}
+        for line in (line for path in lines for line in path):
+            (x0, y0), (x1, y1) = line[np.argmin(line[:, 0])], line[np.argmax(line[:, 0])]
+            right = x0 > middle - 1.0
+            if x1 - x0 > 5.0 and abs(y1 - y0) < 0.1 * (x1 - x0) and (right or x1 < middle + 1.0):
+                sides[right].append(y0 + (y1 - y0) / (x1 - x0) * (middle - x0))
+        marks = sorted(sides[True])[:3]
+        assert len(marks) == 3 and marks[2] - marks[0] > 4.0
+        assert all(min(abs(y - other) for other in sides[False]) < 0.5 for y in marks)
+
+
+def _lines(path: XmlTree.Element) -> list[np.ndarray]:
+    """Lines of a path, shape `(n, 2)` each."""
+    return [
+        np.array([tuple(map(float, pair.split(","))) for pair in line.split("L")])
+        for line in re.findall(r"M([^MZ]*)", path.attrib["d"])
+    ]
+
+
 def bodies(folder: Path, finger: Finger) -> dict[str, Mesh]:
     scene = trimesh.load(folder / "assembly/assembly.glb")
     group = finger_group(scene, finger, np.eye(4))
@@ -246,34 +275,3 @@ def cast(folder: Path, design: Design) -> Cast:
     layers = {n: m.moved(to_bed) for n, m in bodies(folder, design.emitter).items()}
     rim_mm = design.mould.stops_mm(design.stack.cover_mm)
     return Cast(mould, layers, rim_mm, -design.outline.tip_y_mm, ())
-
-
-def test_a_cut_keeps_what_is_hollow() -> None:
-    whole = block((-5, 5), (0, 8), 0.0, 0.0, 3.0)
-    assert cut(whole).area == pytest.approx(24.0)
-    assert cut(block((1, 5), (0, 8), 0.0, 0.0, 3.0)).is_empty
-    cup = cut(socket(20.0, 16.0, 10.0, 4.0))
-    assert cup.area == pytest.approx(20 * 10 - 16 * 4, rel=1e-3)
-    inner = block((-2, 2), (2, 6), 0.0, 1.0, 2.0)
-    hollow = Mesh(
-        np.concatenate([whole.points_mm, inner.points_mm]),
-        np.concatenate([whole.triangles, inner.triangles[:, ::-1] + len(whole.points_mm)]),
-    )
-    area = cut(hollow)
-    assert area.area == pytest.approx(24.0 - 4.0)
-    assert len(rings_of(area)) == 2
-
-
-@pytest.mark.parametrize("angles", [(0.0, 0.0), (32.0, 38.0), (35.0, 24.0)])
-def test_a_silhouette_is_all_that_the_triangles_cover(
-    angles: tuple[float, float], outputs: Path
-) -> None:
-    surface = written(outputs, "backing/receiver_backing.stl")
-    mesh = Mesh(np.asarray(surface.vertices), np.asarray(surface.faces))
-    eye = view(*angles)
-    triangles = shapely.polygons(eye.seen(mesh.points_mm)[:, :2][mesh.triangles])
-    covered = shapely.union_all(triangles[shapely.area(triangles) > 1e-6], grid_size=0.001)
-    whole = shapely.Polygon()
-    for ring in silhouette(mesh, eye):
-        whole = shapely.symmetric_difference(whole, shapely.Polygon(ring))
-    assert whole.area == pytest.approx(covered.area, rel=2e-4)

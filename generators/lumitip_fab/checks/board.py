@@ -10,7 +10,11 @@ import numpy as np
 import shapely
 
 from lumitip_fab.checks import board_copper
-from lumitip_fab.checks.board_circuit import measure_channels, measure_contact_map
+from lumitip_fab.checks.board_circuit import (
+    measure_channels,
+    measure_contact_map,
+    measure_passed_on,
+)
 from lumitip_fab.checks.board_finger import measure_cell_prints, measure_cells, measure_flexible
 from lumitip_fab.checks.board_headers import measure_shrouds, measure_sockets
 from lumitip_fab.checks.board_indicator import measure_bulk, measure_indicator
@@ -253,6 +257,7 @@ MEASURES: tuple[Measure[ReadBoard], ...] = (
     measure_bulk,
     measure_settling,
     measure_contact_map,
+    measure_passed_on,
     measure_plug_in,
     measure_indicator,
     measure_probes,

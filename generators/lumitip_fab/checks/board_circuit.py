@@ -156,6 +156,26 @@ def measure_contact_map(read: ReadBoard) -> Iterator[Measurement]:
         )
 
 
+def measure_passed_on(read: ReadBoard) -> Iterator[Measurement]:
+    """Contacts of the robot that lead to no header: the gripper lies on the flange and touches
+    none of them. The supply before the fuse may be left out, for a gripper with its own cable."""
+    for flange in (f for f in read.design.flanges if f.auxiliary == read.name):
+        headers = [d for d in read.components if d.kind == "header" and d.ref != CONTACTS]
+        pads = [(header.ref, number) for header in headers for number, _ in header.nets]
+        reached = {read.group(*pad) for pad in pads if pad[0] in read.parts} - {None}
+        supplies = {c.number for c in flange.contacts if c.kind == "supply"}
+        nets = dict(next(d for d in read.components if d.ref == CONTACTS).nets)
+        named = {net for header in headers for _, net in header.nets}
+        free = {number for number in supplies if nets.get(number) not in named}
+        lost = [
+            f"{c.number} ({c.carries})"
+            for c in flange.contacts
+            if c.kind != "open" and c.number not in free
+            if read.group(CONTACTS, c.number) not in reached
+        ]
+        yield read.count("passed_on", lost, "contacts")
+
+
 def _mixed(contacts: Contacts, nets: Mapping[str, object]) -> Iterator[str]:
     """Contacts of different signals on one net."""
     on: dict[object, list[str]] = defaultdict(list)

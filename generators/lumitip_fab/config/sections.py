@@ -194,7 +194,8 @@ class Flange(Strict):
     """Headers for cables in `parts/strips.toml`, two rows."""
     headers: tuple[tuple[Signal, ...], tuple[Signal, ...]]
     """Signals of both headers, the lower one first, left to right seen from the gripper;
-    `REGULATED` is the regulator's output."""
+    `REGULATED` is the regulator's output, `SUPPLY` is behind the fuse of the sensor, and
+    `SUPPLY_IN` before it, for the gripper."""
     regulator: Name
     """Switching regulator in `parts/regulators.toml`."""
     inductor: Name

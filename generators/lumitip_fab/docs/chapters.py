@@ -1,13 +1,13 @@
 """The manual: its own chapters and the notes of the parts, as Markdown, HTML and PDF."""
 
-import math
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from itertools import count
 from typing import Any
 
-from lumitip_fab.design import Cabling, Design, HeatStep, Mask, Mould, Packages
+from lumitip_fab.design import Design, HeatStep, Mask, Mould, Packages
+from lumitip_fab.design.cabling import plugged_headers
 from lumitip_fab.docs.casting import (
     amounts_of_both,
     casting_steps,
@@ -15,6 +15,7 @@ from lumitip_fab.docs.casting import (
     silicone_mix,
     volume_ml,
 )
+from lumitip_fab.docs.first_test import first_test
 from lumitip_fab.docs.mounting import mounting
 from lumitip_fab.docs.orders import amount, money
 from lumitip_fab.docs.page import html_page
@@ -41,7 +42,7 @@ def manual_text(design: Design, files: Files) -> str:
         _boards(design, files),
         _printed(design, files),
         _wired(design, files),
-        _tested(design),
+        first_test(design),
         *(
             step.section()
             for step in casting_steps(design, design.fingers, _amounts(design, files))
@@ -80,41 +81,11 @@ def _front(design: Design) -> str:
 
 
 def _board_tools(design: Design) -> str:
-    """For a board that is tied on, and for a smooth film."""
-    tools = ["a needle"] * bool(design.interfaces)
+    """For a socket on wires, a board that is tied on, and a smooth film."""
+    plugs = plugged_headers(design.cabling.cables, design.auxiliary_boards)
+    tools = ["a small vice"] * bool(plugs) + ["a needle"] * bool(design.interfaces)
     tools += ["a cutting mat, a plastic card"] * bool(design.mould.inserts)
     return "".join(f", {tool}" for tool in tools)
-
-
-def _tested(design: Design) -> str:
-    """The first test, with the LEDs' current."""
-    switched = design.wiring.emitter_pin is not None
-    return _text(
-        "tested",
-        loading=_loading(design),
-        limit_ma=_limit_ma(design),
-        poles=_poles(design.cabling, f"{design.wiring.supply_v:g}V"),
-        supply_v=design.wiring.supply_v,
-        lit="They are dark until the firmware runs, and draw" if switched else "They draw",
-        current_ma=sum(design.wiring.current_ma),
-    )
-
-
-def _poles(cabling: Cabling, net: str) -> str:
-    """Where a bench supply goes: to the wires that lead away from the fingers and their boards."""
-    wires = [wire for cable in cabling.cables for wire in cable.wires]
-    away = [w for w in wires if w.start.board == "breakout" or w.end.board == "supply"]
-    ends = {wire.signal: wire.number for wire in away}
-    if not {net, "GND"} <= ends.keys():
-        return _text("poles_board", net=f"{net}_IN")  # before fuse and reverse protection
-    free = [number for signal, number in ends.items() if signal == "5V" != net]
-    spared = "".join(_text("poles_free", wire=wire) for wire in free)
-    return _text("poles", plus=ends[net], minus=ends["GND"], free=spared)
-
-
-def _limit_ma(design: Design) -> float:
-    """Of a bench supply: twice what the LEDs draw, in tens."""
-    return 20 * math.ceil(sum(design.wiring.current_ma) / 10)
 
 
 def _waiting(mould: Mould) -> str:
@@ -247,7 +218,9 @@ def _amounts(design: Design, files: Files) -> str:
 
 
 def _printed(design: Design, files: Files) -> str:
-    note = _included(files.text("print/printing.md"))
+    lines = files.text("print/printing.md").splitlines()
+    made = [line for line in lines if design.mask.route == "tpu" or "| `mask/" not in line]
+    note = _included("\n".join(made))
     return _text("printed", note=note, moulds=heights(design))
 
 
@@ -261,13 +234,6 @@ def _masked(design: Design, files: Files) -> Iterator[str]:
     both = _text("masks", pictures=pictures)
     yield replace(first, text=f"{both}\n\n{first.text}").section()
     yield from (step.section() for step in others)
-
-
-def _loading(design: Design) -> str:
-    """How the firmware comes onto the controller: a module has no bootloader yet."""
-    components = (device for board in design.auxiliary_boards for device in board.components)
-    module = any(d.kind == "module" for d in components)
-    return _text("bootloader" if module else "upload", controller=design.controller.title)
 
 
 def _kept(mask: Mask) -> str:

@@ -3,12 +3,14 @@ bolts must be."""
 
 from collections.abc import Iterator
 
-from lumitip_fab.design import Design, Flange
+from lumitip_fab.design import AuxiliaryBoard, Design, Flange
 from lumitip_fab.design.cabling import plugged_headers
 from lumitip_fab.design.mount import BOLTS_MM, SHORTER_MM, standard_bolt_mm
 from lumitip_fab.text import passage
 
 _INPUT = "_IN"  # ends the name of the contacts' supply
+FINGERS_MIN, FLANGE_MIN, HOLDER_MIN = 20, 60, 15
+"""How long the work takes (assumed)."""
 OWN_MM = (12, 16, 20, 25)
 """Lengths of a gripper's own bolts, as examples."""
 
@@ -17,7 +19,25 @@ def mounting(design: Design) -> str:
     """The step, its work numbered."""
     work = "\n".join(f"{n}. {text}" for n, text in enumerate(_work(design), 1))
     lengths = "".join(_lengths(flange) for flange in design.flanges)
-    return _text("mounted", work=work, lengths=lengths)
+    return _text(
+        "mounted",
+        work=work,
+        lengths=lengths,
+        needs=", ".join(_needs(design)),
+        minutes=FINGERS_MIN + FLANGE_MIN * bool(design.flanges) + HOLDER_MIN * len(design.holders),
+        signs=_text("flange_sign") if design.flanges else "",
+    )
+
+
+def _needs(design: Design) -> Iterator[str]:
+    """Tools, and what is used up."""
+    yield "the keys and screwdrivers"
+    if design.mount.lugs or design.holders:
+        yield "cable ties, side cutters"
+    if design.flanges:
+        yield f"a soldering iron, a multimeter, a bench supply, {design.strength.glue}"
+    if _plugs(design):
+        yield "a small vice"
 
 
 def _work(design: Design) -> Iterator[str]:
@@ -33,8 +53,10 @@ def _work(design: Design) -> Iterator[str]:
     if mount.lugs:
         yield _text("tied")
     yield _text("screwed_on", bolts=len(mount.bolt_u_mm), mount=mount)
-    for header, board in _plugs(design):
-        yield _text("plugged", board=board, header=header)
+    if design.flanges:
+        yield _passed_on(design)
+    for header, cable in _plugs(design):
+        yield _text("plugged", cable=cable, header=header)
     wires = (wire for cable in design.cabling.cables for wire in cable.wires)
     ends = [f"{wire.number} to {wire.signal}" for wire in wires if wire.end.board == "supply"]
     if ends:
@@ -52,23 +74,42 @@ def _flanged(design: Design, flange: Flange) -> Iterator[str]:
         raw = next(name for name in _probed(design) if name.endswith(_INPUT))
         supply = raw.removesuffix(_INPUT).replace("V", " V")
         yield _text("indicator", lit=lit, supply=supply, raw=raw, output=output)
-    yield _text("closed", flange=flange)
+    yield _text("closed", flange=flange, glue=design.strength.glue)
     yield _text("flange", flange=flange, bolts=len(flange.bolts))
     if design.electrical.indicators:
         yield _text("powered")
 
 
+def _passed_on(design: Design) -> str:
+    """Where the gripper's supply and lines are: on the headers of the flange's board."""
+    board = _flange(design)
+    headers = [part for part in board.components if part.kind == "header" and part.side == "front"]
+    raw = next(name for name in _probed(design) if name.endswith(_INPUT))
+    pads = [f"{part.ref}.{number}" for part in headers for number, net in part.nets if net == raw]
+    supply = _text("from_robot", pads=" and ".join(pads)) if pads else _text("behind_fuse")
+    lines = [part.ref for part in headers if {net for _, net in part.nets} - {*board.supplies}]
+    return _text("passed_on", supply=supply, lines=" and ".join(lines))
+
+
+def _flange(design: Design) -> AuxiliaryBoard:
+    """The flange's board."""
+    return next(board for board in design.auxiliary_boards if board.name == "flange")
+
+
 def _probed(design: Design) -> list[str]:
     """Nets of the test points on the flange's board."""
-    (flange,) = (board for board in design.auxiliary_boards if board.name == "flange")
-    return [part.value for part in flange.components if part.kind == "test point"]
+    return [part.value for part in _flange(design).components if part.kind == "test point"]
 
 
 def _plugs(design: Design) -> list[tuple[str, str]]:
-    """Headers of the flange that a cable is plugged into, and the board that it comes from."""
+    """Headers of the flange that a cable is plugged into, and the name of that cable."""
     headers = plugged_headers(design.cabling.cables, design.auxiliary_boards)
-    wires = (wire for cable in design.cabling.cables for wire in cable.wires)
-    found = {(w.end.connector, w.start.board) for w in wires if w.end.board == "flange"}
+    found = {
+        (wire.end.connector, cable.name)
+        for cable in design.cabling.cables
+        for wire in cable.wires
+        if wire.end.board == "flange"
+    }
     return sorted(plug for plug in found if plug[0] in headers)
 
 

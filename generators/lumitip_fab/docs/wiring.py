@@ -4,13 +4,15 @@ import csv
 import io
 
 from lumitip_fab.design import Cable, Cabling, Design, Pack, Wire
-from lumitip_fab.design.cabling import COLOURS, codes_of, named
+from lumitip_fab.design.cabling import COLOURS, codes_of, named, outer_mm
 from lumitip_fab.docs.diagram import diagram
 from lumitip_fab.pipeline.artefact import Artefact
 from lumitip_fab.text import as_written, passage
 
 _TEXTS = "docs/wiring.md"
 
+SLOT_MM = 1.25
+"""Of insulation, at most, in the slots of a socket for flat cable, which stand 1.27 mm apart."""
 COLUMNS = (
     "wire",
     "signal",
@@ -124,10 +126,16 @@ def _power(cabling: Cabling) -> str:
     """How the controller comes by its supply, and what switches the LEDs."""
     wires = (wire for cable in cabling.cables for wire in cable.wires)
     switching = [wire for wire in wires if wire.signal == "LED"]
-    said = _fed_by(cabling)
+    said = _seated(cabling) + _fed_by(cabling)
     if switching and switching[0].end.board == "controller":
         said = passage(_TEXTS, "alone_switched").format(pin=switching[0].end.pin)
     return said + (passage(_TEXTS, "switched") if switching else "")
+
+
+def _seated(cabling: Cabling) -> str:
+    """How the controller goes onto its board, where there is one."""
+    boards = {wire.end.board for cable in cabling.cables for wire in cable.wires}
+    return passage(_TEXTS, "seated") if "breakout" in boards else ""
 
 
 def _fed_by(cabling: Cabling) -> str:
@@ -139,9 +147,11 @@ def _fed_by(cabling: Cabling) -> str:
     plugged = [w for w in cabling.cables[2].wires if w.end.board == "flange"]
     headers = {wire.end.connector for wire in plugged}
     contacts = ", ".join(f"{w.number} goes to contact {w.end.pin}" for w in plugged)
+    thick = outer_mm(cabling.cables[2].section_mm2) > SLOT_MM
+    pressed = passage(_TEXTS, "pressed_flat" if thick else "pressed").format(slot_mm=SLOT_MM)
     lit = any(wire.signal == "5V" for wire in cabling.cables[0].wires)
     return passage(_TEXTS, "lit" if lit else "fed") + "".join(
-        passage(_TEXTS, "at_flange").format(header=header, contacts=contacts)
+        passage(_TEXTS, "at_flange").format(header=header, contacts=contacts, pressed=pressed)
         for header in sorted(headers)
     )
 

@@ -134,6 +134,7 @@ def _values(design: Design, facts: Facts, name: str) -> dict[str, object]:
         "band_mm": facts["band_mm"],
         "infrared": _infrared(design),
         "fold": fold,
+        "held": passage(_TEXTS, "held").format(tape=design.mould.tape),
         "lip": _lip(design, facts),
         "tape": design.mould.tape,
         **(_printed(design) if mask.route == "tpu" else _creased(design)),

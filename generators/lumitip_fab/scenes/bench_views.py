@@ -2,13 +2,22 @@
 drop of silicone on the plate."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from lumitip_fab.design import Point, Stack, frames
 from lumitip_fab.parts.surface import Mesh
-from lumitip_fab.scenes.drawing import Points, Sheet, view
-from lumitip_fab.scenes.finger_views import AZIMUTH_DEG, ELEVATION_DEG, SCALE, paint, paint_parts
+from lumitip_fab.scenes.casting_page import inks
+from lumitip_fab.scenes.drawing import Points, Sheet, View, view
+from lumitip_fab.scenes.finger_views import (
+    AZIMUTH_DEG,
+    ELEVATION_DEG,
+    SCALE,
+    paint,
+    paint_parts,
+    smooth,
+)
 from lumitip_fab.scenes.glb import tints
 
 FACING_DEG = 14.0  # elevation, to look between the boards
@@ -17,29 +26,61 @@ DROP_MM = 3.2  # across, as it is drawn
 _FACE_DOWN = frames.rotation_y(180.0)
 _LABEL_MM, _WORDS_MM = 8.0, 44.0
 _AROUND = 48
-BoardMeshes = tuple[Mesh, Sequence[Mesh]]
-"""A board, and the parts on its front; in the sensor frame of its finger."""
+_WIRE_MM, _SAG_MM = 24.0, 3.0
+"""How far wires are drawn beyond the board, and how far they hang down there."""
 
 
-def facing_view(emitter: BoardMeshes, receiver: BoardMeshes) -> str:
+@dataclass(frozen=True, eq=False)
+class WiredBoard:
+    """A board of a finger with its wires, in the sensor frame."""
+
+    board: Mesh
+    parts: Sequence[Mesh]
+    """On its front."""
+    pads: Sequence[Point]
+    """Of the wires."""
+    colours: Sequence[str]
+    """Of the wires, pad by pad, by the codes of IEC 60757."""
+
+    def moved(self, frame: frames.Matrix) -> "WiredBoard":
+        """Board and parts in another frame; the pads stay in the sensor frame."""
+        parts = [part.moved(frame) for part in self.parts]
+        return WiredBoard(self.board.moved(frame), parts, self.pads, self.colours)
+
+
+def facing_view(emitter: WiredBoard, receiver: WiredBoard) -> str:
     """The emitter's board face down over the receiver's, whose face is up."""
     sheet, eye = Sheet(), view(AZIMUTH_DEG, FACING_DEG).enlarged(SCALE)
     over = frames.translation(0.0, 0.0, APART_MM) @ _FACE_DOWN
-    labels = []
-    for words, (board, parts), frame in (
-        (("Receiver", "face up"), receiver, np.eye(4)),
-        (("Emitter", "face down, some 10 mm over it"), emitter, over),
-    ):
-        lying, hung = board.moved(frame), frame is over
-        if hung:
-            paint_parts(sheet, eye, [part.moved(frame) for part in parts])
-        paint(sheet, eye, {"board": lying})
-        if not hung:
-            paint_parts(sheet, eye, list(parts))
-        right = lying.points_mm[eye.seen(lying.points_mm)[:, 0].argmax()]
-        labels.append((words, eye.seen(right)[:2]))
+    _wire(sheet, eye, receiver, np.eye(4))
+    paint(sheet, eye, {"board": receiver.board})
+    paint_parts(sheet, eye, receiver.parts)
+    hung = emitter.moved(over)
+    paint_parts(sheet, eye, hung.parts)
+    paint(sheet, eye, {"board": hung.board})
+    _wire(sheet, eye, emitter, over)
+    labels = [
+        (("Receiver", "face up"), _right(eye, receiver.board)),
+        (("Emitter", "face down, some 10 mm over it"), _right(eye, hung.board)),
+    ]
     _written(sheet, labels)
     return sheet.svg({"data-azimuth-deg": AZIMUTH_DEG, "data-elevation-deg": FACING_DEG})
+
+
+def _right(eye: View, mesh: Mesh) -> Points:
+    """The corner of a body that is farthest to the right on the page."""
+    seen = eye.seen(mesh.points_mm)
+    return seen[seen[:, 0].argmax(), :2]
+
+
+def _wire(sheet: Sheet, eye: View, wired: WiredBoard, frame: frames.Matrix) -> None:
+    """Wires from the back of the board, beyond its gripper end; they hang down."""
+    low = wired.board.points_mm.min(axis=0)
+    for (x, y), colour in zip(wired.pads, wired.colours, strict=True):
+        way = [(x, y, low[2]), (x, low[1], low[2] - 1.0), (x, low[1] - _WIRE_MM, low[2] - 1.0)]
+        placed = np.array(way) @ frame[:3, :3].T + frame[:3, 3]
+        placed[-1, 2] -= _SAG_MM
+        sheet.wire(eye.seen(smooth(list(placed)))[:, :2], inks(colour))
 
 
 def drop_view(layers: Mapping[str, Mesh], at: Point, stack: Stack) -> str:

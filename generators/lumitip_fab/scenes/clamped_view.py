@@ -1,11 +1,16 @@
 """The drawing of a finger that is clamped in its mould: from above, and from the side, as its marks
 are looked at. In the frame of the mould's bed."""
 
+from collections.abc import Iterator
+from dataclasses import dataclass
+
 import numpy as np
+import shapely
 
 from lumitip_fab.design import Clamp, frames
 from lumitip_fab.parts.surface import Mesh
 from lumitip_fab.scenes.casting_page import LABEL_MM, SIDE, WORDS_MM, Cast, Words, inks
+from lumitip_fab.scenes.cut import rings_of
 from lumitip_fab.scenes.drawing import Points, Sheet, View, silhouette, view, visible_lines
 from lumitip_fab.scenes.glb import tints
 
@@ -14,6 +19,9 @@ SCALE = 1.4
 _ABOVE = view(AZIMUTH_DEG, ELEVATION_DEG).enlarged(SCALE)
 _BESIDE = SIDE.enlarged(SCALE)
 _GAP_MM = 10.0  # from the drawing above to the one below
+_ZOOM, _LENS_MM = 5.0, 15.0
+"""Of the marks' detail: how much larger it is, and its radius on the page."""
+_CHORDS = 48
 Bodies = list[tuple[str, Mesh]]
 Label = tuple[Words, Points]
 
@@ -45,25 +53,76 @@ def clamped_view(
     labels = [] if clamp is None else [_nut_label(clamp, lean)]
     down = np.array([0.0, 0.0, _below(sheet, stood)])
     _wires(sheet, cast, [_BESIDE.seen(way + down)[:, :2] for way in ways])
-    _paint(sheet, _BESIDE, stood, down)
+    beside = _paint(sheet, _BESIDE, stood, down)
     level = float(sheet.low[1])
     sheet.lines([np.array([(sheet.low[0], level), (sheet.high[0], level)])], "leader")
     labels += _side_labels(cast, clamp, ways, lean, down)
     right = float(sheet.high[0]) + LABEL_MM
     sheet.leaders(labels, right, "start")
     sheet.cover(right + WORDS_MM, level)
+    if clamp is not None:
+        at, nut = _mark_at(clamp, lean, down), _nut_label(clamp, lean)[1]
+        _enlarge(sheet, beside, at, np.array([right + WORDS_MM / 2, (nut[1] + at[1]) / 2]))
     return sheet.svg({"data-azimuth-deg": AZIMUTH_DEG, "data-elevation-deg": ELEVATION_DEG})
 
 
-def _paint(sheet: Sheet, eye: View, bodies: Bodies, by_mm: Points) -> None:
+@dataclass(frozen=True, eq=False)
+class _Drawn:
+    """Bodies as they lie on the page."""
+
+    areas: list[tuple[str, list[Points]]]
+    """Tint and contours of each, from the farthest to the nearest."""
+    lines: list[list[Points]]
+    """What is seen of the edges of each."""
+
+
+def _paint(sheet: Sheet, eye: View, bodies: Bodies, by_mm: Points) -> _Drawn:
     """Bodies from the farthest to the nearest, then the lines that are seen of all."""
     placed = [(name, Mesh(mesh.points_mm + by_mm, mesh.triangles)) for name, mesh in bodies]
     lines = visible_lines([mesh for _, mesh in placed], eye)
+    areas = []
     for name, mesh in placed:
+        areas.append((tints()[_TINTS.get(name, name)], silhouette(mesh, eye)))
         with sheet.group(name):
-            sheet.area(silhouette(mesh, eye), "body", tints()[_TINTS.get(name, name)])
+            sheet.area(areas[-1][1], "body", areas[-1][0])
     for found in lines:
         sheet.lines(found, "line")
+    return _Drawn(areas, lines)
+
+
+def _enlarge(sheet: Sheet, drawn: _Drawn, at: Points, to: Points) -> None:
+    """A place of the page once more, larger, in a circle with a line to it."""
+    small = shapely.Point(at).buffer(_LENS_MM / _ZOOM, _CHORDS)
+
+    def moved(points: Points) -> Points:
+        return np.asarray((points - at) * _ZOOM + to)
+
+    with sheet.group("detail"):
+        sheet.area([moved(np.array(small.exterior.coords))], "behind", "#fff")
+        for tint, rings in drawn.areas:
+            area = shapely.build_area(shapely.MultiLineString(rings)) & small
+            if not area.is_empty:
+                sheet.area([moved(ring) for ring in rings_of(area)], "behind", tint)
+        for found in drawn.lines:
+            sheet.lines([moved(line) for line in _within(found, small)], "line")
+    rings = [np.array(small.exterior.coords), moved(np.array(small.exterior.coords))]
+    way = (to - at) / np.hypot(*(to - at))
+    join = np.array([at + way * _LENS_MM / _ZOOM, to - way * _LENS_MM])
+    sheet.lines([*rings, join], "leader")
+
+
+def _within(lines: list[Points], area: shapely.Geometry) -> Iterator[Points]:
+    """The pieces of lines in an area."""
+    for piece in shapely.get_parts(shapely.MultiLineString(lines) & area):
+        if piece.geom_type == "LineString" and not piece.is_empty:
+            yield np.array(piece.coords)
+
+
+def _mark_at(clamp: Clamp, lean: frames.Matrix, down: Points) -> Points:
+    """Where the marks of a leg and of its rail meet, on the page, seen from the side."""
+    leg = min(clamp.legs, key=lambda box: (-box.x_max_mm, box.y_min_mm))
+    mark = lean[:3, :3] @ (leg.x_max_mm, -leg.y_max_mm, clamp.mark_mm)
+    return np.asarray(_BESIDE.seen(mark + down)[:2])
 
 
 _TINTS = {"prop": "clamp", "screw": "coupling"}
@@ -93,9 +152,7 @@ def _side_labels(
     """What is looked at from the side."""
     labels: list[Label] = []
     if clamp is not None:
-        leg = min(clamp.legs, key=lambda box: (-box.x_max_mm, box.y_min_mm))
-        mark = lean[:3, :3] @ (leg.x_max_mm, -leg.centre_mm[1], clamp.mark_mm)
-        labels.append((("Marks", "of leg and mould in one line"), _BESIDE.seen(mark + down)[:2]))
+        labels.append((("Marks", "of leg and mould in one line"), _mark_at(clamp, lean, down)))
     for way in ways[:1]:
         over = way[np.argmin(np.abs(way[:, 1] - cast.mould.points_mm[:, 1].max()))]
         labels.append((("Wires", "over the weir"), _BESIDE.seen(over + down)[:2]))

@@ -9,7 +9,7 @@ import trimesh
 from lumitip_fab.design import Box, Design, Finger, Insert, Mould, Point, frames
 from lumitip_fab.parts.surface import Mesh
 from lumitip_fab.pipeline.artefact import Artefact, Files
-from lumitip_fab.scenes.bench_views import drop_view, facing_view
+from lumitip_fab.scenes.bench_views import WiredBoard, drop_view, facing_view
 from lumitip_fab.scenes.casting_page import Cast
 from lumitip_fab.scenes.casting_parts import nuts_of, screws_of, wires_of
 from lumitip_fab.scenes.casting_views import filled_view, lifted_view, lowered_view
@@ -31,10 +31,10 @@ def work_views(design: Design, files: Files) -> tuple[Artefact, ...]:
     finger, wired = design.emitter, design.receiver
     cast = _cast(design, finger, layers[finger.name], files)
     clamp = design.clamps[0] if design.clamps else None
-    boards = {f.name: (layers[f.name]["board"], _front(groups[f.name], f)) for f in design.fingers}
+    boards = {f.name: _wired(design, f, layers[f.name], groups[f.name]) for f in design.fingers}
     drawings = {
         "facing": facing_view(boards[finger.name], boards[wired.name]),
-        "board": board_view(finger, layers[finger.name], boards[finger.name][1]),
+        "board": board_view(finger, layers[finger.name], boards[finger.name].parts),
         "mould": mould_view(cast.mould, design.outline, design.board, design.mould, design.clamps),
         "drop": drop_view(layers[finger.name], bare_spot(design), design.stack),
         "cable": cable_view(
@@ -70,6 +70,11 @@ def _front(group: Group, finger: Finger) -> list[Mesh]:
     """Parts on the board's front."""
     front = {finger.body_name(part) for part in finger.parts if part.side == "front"}
     return [body.mesh for body in group.bodies if body.name in front]
+
+
+def _wired(design: Design, finger: Finger, layers: dict[str, Mesh], group: Group) -> WiredBoard:
+    pads, colours = finger.connector.pads, _colours(design, finger)
+    return WiredBoard(layers["board"], _front(group, finger), pads, colours)
 
 
 def _cast(design: Design, finger: Finger, layers: dict[str, Mesh], files: Files) -> Cast:

@@ -47,6 +47,8 @@ INRUSH_AT: Point = (-2.3, 0.0)
 HOLES_AT: tuple[Point, ...] = ((11.0, 19.5), (11.0, -19.5))
 INPUT = "VIN"
 """Net of the regulator's input."""
+BUILT_IN = {"SUPPLY", "SUPPLY_IN", "GND", "REGULATED", OPEN}
+"""Signals that are not lines from a contact to a header of the same name."""
 FIDUCIALS_AT: tuple[Point, ...] = ((-13.0, -13.5), (13.0, -15.5), (-13.0, 13.5))
 
 
@@ -117,7 +119,7 @@ def _strips(config: Input) -> tuple[Component, ...]:
     """Contacts and headers."""
     p, parts = config.parameters.flange, config.parts.flange
     raw, supply, output = _supplies(config)
-    called = {"SUPPLY": supply, "REGULATED": output}
+    called = {"SUPPLY": supply, "SUPPLY_IN": raw, "REGULATED": output}
     nets = tuple(raw if signal == "SUPPLY" else signal for signal in p.signals)
     names = tuple(called.get(signal, signal) for signal in p.signals)
     coupling = parts.coupling
@@ -196,7 +198,7 @@ def _refuse(config: Input, faults: Diagnostics) -> None:
         counts=" and ".join(map(str, counts)),
     )
     cables = {*p.headers[0], *p.headers[1]}
-    lost = sorted((set(p.signals) ^ cables) - {"SUPPLY", "GND", "REGULATED", OPEN})
+    lost = sorted((set(p.signals) ^ cables) - BUILT_IN)
     faults.unless(not lost, "signal_at_one_end", lost=", ".join(lost))
     absent = sorted({"SUPPLY", "GND"} - set(p.signals))
     faults.unless(
@@ -217,6 +219,6 @@ def _refuse_lines(config: Input, parts: tuple[Component, ...], faults: Diagnosti
     they would be joined."""
     p = config.parameters.flange
     own = {net for part in parts for _, net in part.nets} | set(_supplies(config))
-    lines = {*p.signals, *p.headers[0], *p.headers[1]} - {"SUPPLY", "GND", "REGULATED", OPEN}
+    lines = {*p.signals, *p.headers[0], *p.headers[1]} - BUILT_IN
     taken = sorted(lines & own)
     faults.unless(not taken, "net_taken", taken=", ".join(taken))

@@ -65,7 +65,7 @@ def _wrong(signal: str, on: list[tuple[int, Contact]]) -> str:
         return f"{signal} on {where}; {OPEN} is needed there"
     if belongs and signal != belongs:
         return f"{signal} on {where}, of kind {contact.kind}; {belongs} is needed there"
-    if not belongs and signal in (*_FOR.values(), "REGULATED"):
+    if not belongs and signal in (*_FOR.values(), "SUPPLY_IN", "REGULATED"):
         return f"{signal} on {where}, of kind {contact.kind}; a separate signal is needed there"
     return ""
 

@@ -1,0 +1,49 @@
+"""The manual's first test: supply, program, and both boards face to face."""
+
+import math
+
+from lumitip_fab.design import Cabling, Design
+from lumitip_fab.text import passage
+
+
+def first_test(design: Design) -> str:
+    """The step, with the LEDs' current."""
+    switched = design.wiring.emitter_pin is not None
+    return _text(
+        "tested",
+        loading=_loading(design),
+        limit_ma=_limit_ma(design),
+        poles=_poles(design.cabling, f"{design.wiring.supply_v:g}V"),
+        supply_v=design.wiring.supply_v,
+        lit="They are dark until the firmware runs, and draw" if switched else "They draw",
+        current_ma=sum(design.wiring.current_ma),
+    )
+
+
+def _poles(cabling: Cabling, net: str) -> str:
+    """Where a bench supply goes: to the wires that lead away from the fingers and their boards."""
+    wires = [wire for cable in cabling.cables for wire in cable.wires]
+    away = [w for w in wires if w.start.board == "breakout" or w.end.board == "supply"]
+    ends = {wire.signal: wire.number for wire in away}
+    if not {net, "GND"} <= ends.keys():
+        return _text("poles_board", net=f"{net}_IN")  # before fuse and reverse protection
+    free = [number for signal, number in ends.items() if signal == "5V" != net]
+    spared = "".join(_text("poles_free", wire=wire) for wire in free)
+    return _text("poles", plus=ends[net], minus=ends["GND"], free=spared)
+
+
+def _limit_ma(design: Design) -> float:
+    """Of a bench supply: twice what the LEDs draw, in tens."""
+    return 20 * math.ceil(sum(design.wiring.current_ma) / 10)
+
+
+def _loading(design: Design) -> str:
+    """How the firmware comes onto the controller: a module has no bootloader yet."""
+    components = (device for board in design.auxiliary_boards for device in board.components)
+    module = any(d.kind == "module" for d in components)
+    return _text("bootloader" if module else "upload", controller=design.controller.title)
+
+
+def _text(name: str, /, **values: object) -> str:
+    """A passage of the manual with its values."""
+    return passage("docs/chapters.md", name).format(**values)
