@@ -3,7 +3,9 @@
 import cmath
 import math
 import re
+import shutil
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -182,6 +184,24 @@ def test_a_contact_that_leads_to_no_header_is_seen(
     found = {m.check: m for m in board.measure_board(damaged_boards, design, "flange")}
     assert not found["board.passed_on"].passed
     assert found["board.passed_on"].note == lost
+
+
+def test_contacts_that_the_design_leaves_open_are_not_missed(
+    boards: Callable[[str], Path], tmp_path: Path
+) -> None:
+    folder = Path(shutil.copytree(boards("small"), tmp_path / "open"))
+    path = folder / FLANGE
+    path.write_text(without_tracks("485-")(path.read_text()))
+    design = read_design(folder / "design.json")
+    (flange,) = (each for each in design.auxiliary_boards if each.name == "flange")
+    parts = tuple(
+        replace(p, nets=tuple(net for net in p.nets if net[1] != "485-")) if p.ref == "J1" else p
+        for p in flange.components
+    )
+    others = tuple(b for b in design.auxiliary_boards if b.name != "flange")
+    changed = replace(design, auxiliary_boards=(*others, replace(flange, components=parts)))
+    found = {m.check: m for m in board.measure_board(folder, changed, "flange")}
+    assert found["board.passed_on"].passed
 
 
 def test_the_gripper_s_supply_is_on_both_contacts_of_a_column(

@@ -124,7 +124,7 @@ def test_the_note_says_how_a_smooth_film_is_cut_laid_and_peeled(design: Design) 
     note = " ".join(noted(design, replace(design.mould, inserts=(film,))).split())
     assert "The floor at 2.5 mm, the recess in it at 2.4 mm and the stops at 4 mm" in note
     steps = ["38.08 x 30.90 mm", "Keep primer away", "Lay the film into its recess"]
-    steps += ["Pour in all of it", "Cut the flash", "Peel it off the skin"]
+    steps += ["Pour in all that runs", "Cut the flash", "Peel it off the skin"]
     assert sorted(steps, key=note.index) == steps
 
 
@@ -133,7 +133,7 @@ def test_the_note_of_a_tilted_mould_tells_of_its_prop(design: Design) -> None:
     level = " ".join(noted(design, replace(design.mould, props=())).split())
     for words, in_tilted in (
         ("`mould/prop.3mf`", True),
-        ("Pour in all of it", True),
+        ("Pour in all that runs", True),
         ("Leave it on round the tip, 2 mm from the edge", True),
         ("on its prop", True),
         ("Fill it from one corner of the tip up to the weir", False),

@@ -157,8 +157,9 @@ def measure_contact_map(read: ReadBoard) -> Iterator[Measurement]:
 
 
 def measure_passed_on(read: ReadBoard) -> Iterator[Measurement]:
-    """Contacts of the robot that lead to no header: the gripper lies on the flange and touches
-    none of them. The supply before the fuse may be left out, for a gripper with its own cable."""
+    """Contacts of the robot that lead to no header: a gripper on the flange touches no contact, and
+    needs its cable from there. Contacts that the design leaves open are not counted, nor is a
+    supply that its headers have only behind the fuse."""
     for flange in (f for f in read.design.flanges if f.auxiliary == read.name):
         headers = [d for d in read.components if d.kind == "header" and d.ref != CONTACTS]
         pads = [(header.ref, number) for header in headers for number, _ in header.nets]
@@ -167,10 +168,11 @@ def measure_passed_on(read: ReadBoard) -> Iterator[Measurement]:
         nets = dict(next(d for d in read.components if d.ref == CONTACTS).nets)
         named = {net for header in headers for _, net in header.nets}
         free = {number for number in supplies if nets.get(number) not in named}
+        free |= {contact.number for contact in flange.contacts} - nets.keys()
         lost = [
             f"{c.number} ({c.carries})"
             for c in flange.contacts
-            if c.kind != "open" and c.number not in free
+            if c.number not in free
             if read.group(CONTACTS, c.number) not in reached
         ]
         yield read.count("passed_on", lost, "contacts")

@@ -6,11 +6,10 @@ from collections.abc import Iterator
 from lumitip_fab.design import AuxiliaryBoard, Design, Flange
 from lumitip_fab.design.cabling import plugged_headers
 from lumitip_fab.design.mount import BOLTS_MM, SHORTER_MM, standard_bolt_mm
+from lumitip_fab.docs.wiring import listed
 from lumitip_fab.text import passage
 
 _INPUT = "_IN"  # ends the name of the contacts' supply
-FINGERS_MIN, FLANGE_MIN, HOLDER_MIN = 20, 60, 15
-"""How long the work takes (assumed)."""
 OWN_MM = (12, 16, 20, 25)
 """Lengths of a gripper's own bolts, as examples."""
 
@@ -24,7 +23,8 @@ def mounting(design: Design) -> str:
         work=work,
         lengths=lengths,
         needs=", ".join(_needs(design)),
-        minutes=FINGERS_MIN + FLANGE_MIN * bool(design.flanges) + HOLDER_MIN * len(design.holders),
+        minutes=_minutes(design),
+        glued=", and the glue's" if design.flanges else "",
         signs=_text("flange_sign") if design.flanges else "",
     )
 
@@ -33,17 +33,27 @@ def _needs(design: Design) -> Iterator[str]:
     """Tools, and what is used up."""
     yield "the keys and screwdrivers"
     if design.mount.lugs or design.holders:
-        yield "cable ties, side cutters"
+        yield "cable ties"
+    yield "side cutters"
     if design.flanges:
-        yield f"a soldering iron, a multimeter, a bench supply, {design.strength.glue}"
+        yield f"a soldering iron, solder, a multimeter, {design.strength.glue}, nitrile gloves"
+    if design.electrical.indicators:
+        yield "a bench supply"
     if _plugs(design):
         yield "a small vice"
+
+
+def _minutes(design: Design) -> int:
+    """How long the work takes (assumed)."""
+    return 20 + 60 * len(design.flanges) + 15 * len(design.holders)
 
 
 def _work(design: Design) -> Iterator[str]:
     """From the robot to the fingers."""
     mount = design.mount
     yield _text("switched_off")
+    for header, cable in _plugs(design):
+        yield _text("socketed", cable=cable, header=header)
     for flange in design.flanges:
         yield from _flanged(design, flange)
     for holder in design.holders:
@@ -72,8 +82,7 @@ def _flanged(design: Design, flange: Flange) -> Iterator[str]:
     for lit in design.electrical.indicators:
         output = f"{lit.output_v:g}V"
         raw = next(name for name in _probed(design) if name.endswith(_INPUT))
-        supply = raw.removesuffix(_INPUT).replace("V", " V")
-        yield _text("indicator", lit=lit, supply=supply, raw=raw, output=output)
+        yield _text("indicator", lit=lit, supply=_volts(raw), raw=raw, output=output)
     yield _text("closed", flange=flange, glue=design.strength.glue)
     yield _text("flange", flange=flange, bolts=len(flange.bolts))
     if design.electrical.indicators:
@@ -86,9 +95,15 @@ def _passed_on(design: Design) -> str:
     headers = [part for part in board.components if part.kind == "header" and part.side == "front"]
     raw = next(name for name in _probed(design) if name.endswith(_INPUT))
     pads = [f"{part.ref}.{number}" for part in headers for number, net in part.nets if net == raw]
-    supply = _text("from_robot", pads=" and ".join(pads)) if pads else _text("behind_fuse")
-    lines = [part.ref for part in headers if {net for _, net in part.nets} - {*board.supplies}]
-    return _text("passed_on", supply=supply, lines=" and ".join(lines))
+    supply = _text("from_robot", pads=listed(pads), volts=_volts(raw)) if pads else ""
+    own = [part.ref for part in headers if {net for _, net in part.nets} - {*board.supplies}]
+    lines = _text("lines", lines=listed(own)) if own else ""
+    return _text("passed_on", supply=supply or _text("behind_fuse"), lines=lines)
+
+
+def _volts(raw: str) -> str:
+    """Voltage of the contacts' supply, such as `"24 V"`."""
+    return raw.removesuffix(_INPUT).replace("V", " V")
 
 
 def _flange(design: Design) -> AuxiliaryBoard:

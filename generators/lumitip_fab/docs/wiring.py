@@ -11,8 +11,9 @@ from lumitip_fab.text import as_written, passage
 
 _TEXTS = "docs/wiring.md"
 
-SLOT_MM = 1.25
-"""Of insulation, at most, in the slots of a socket for flat cable, which stand 1.27 mm apart."""
+SLOT_MM, SLOT_MM2 = 1.25, 0.09
+"""Insulation and section, at most, of a wire in a socket for flat cable, whose slots are 1.27 mm
+apart and made for AWG 28 (assumed: the maker's drawing was not read)."""
 COLUMNS = (
     "wire",
     "signal",
@@ -99,9 +100,9 @@ def _tied(design: Design) -> str:
     if design.mount.lugs:
         held = "there the tie at the finger's lug, below, holds the cable"
     return passage(_TEXTS, "tied").format(
-        boards=_listed(tied),
+        boards=listed(tied),
         hole_mm=ties[tied[0]][0].hole_mm,
-        loose=passage(_TEXTS, "loose").format(boards=_listed(loose), held=held) if loose else "",
+        loose=passage(_TEXTS, "loose").format(boards=listed(loose), held=held) if loose else "",
     )
 
 
@@ -114,11 +115,12 @@ def _lugged(design: Design) -> str:
         return ""
     wide, thick = lugs[0].tie_mm
     fingers = passage(_TEXTS, "at_block") if design.mount.lugs else ""
-    parts = _listed(named)
+    parts = listed(named)
     return passage(_TEXTS, "lugged").format(parts=parts, wide=wide, thick=thick, fingers=fingers)
 
 
-def _listed(names: list[str]) -> str:
+def listed(names: list[str]) -> str:
+    """Names as a sentence has them, such as `"a, b and c"`."""
     return " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))
 
 
@@ -147,7 +149,8 @@ def _fed_by(cabling: Cabling) -> str:
     plugged = [w for w in cabling.cables[2].wires if w.end.board == "flange"]
     headers = {wire.end.connector for wire in plugged}
     contacts = ", ".join(f"{w.number} goes to contact {w.end.pin}" for w in plugged)
-    thick = outer_mm(cabling.cables[2].section_mm2) > SLOT_MM
+    section_mm2 = cabling.cables[2].section_mm2
+    thick = section_mm2 > SLOT_MM2 or outer_mm(section_mm2) > SLOT_MM
     pressed = passage(_TEXTS, "pressed_flat" if thick else "pressed").format(slot_mm=SLOT_MM)
     lit = any(wire.signal == "5V" for wire in cabling.cables[0].wires)
     return passage(_TEXTS, "lit" if lit else "fed") + "".join(

@@ -56,7 +56,7 @@ def clamped_view(
     beside = _paint(sheet, _BESIDE, stood, down)
     level = float(sheet.low[1])
     sheet.lines([np.array([(sheet.low[0], level), (sheet.high[0], level)])], "leader")
-    labels += _side_labels(cast, clamp, ways, lean, down)
+    labels += _side_labels(cast, ways, lean, down)
     right = float(sheet.high[0]) + LABEL_MM
     sheet.leaders(labels, right, "start")
     sheet.cover(right + WORDS_MM, level)
@@ -91,7 +91,7 @@ def _paint(sheet: Sheet, eye: View, bodies: Bodies, by_mm: Points) -> _Drawn:
 
 
 def _enlarge(sheet: Sheet, drawn: _Drawn, at: Points, to: Points) -> None:
-    """A place of the page once more, larger, in a circle with a line to it."""
+    """The marks once more, larger, in a circle with a line to their place."""
     small = shapely.Point(at).buffer(_LENS_MM / _ZOOM, _CHORDS)
 
     def moved(points: Points) -> Points:
@@ -109,6 +109,9 @@ def _enlarge(sheet: Sheet, drawn: _Drawn, at: Points, to: Points) -> None:
     way = (to - at) / np.hypot(*(to - at))
     join = np.array([at + way * _LENS_MM / _ZOOM, to - way * _LENS_MM])
     sheet.lines([*rings, join], "leader")
+    x, y = float(to[0]), float(to[1]) - _LENS_MM
+    sheet.words(x, y - 4.5, "Marks", "name", "middle")
+    sheet.words(x, y - 8.1, "of leg and mould in one line", "detail", "middle")
 
 
 def _within(lines: list[Points], area: shapely.Geometry) -> Iterator[Points]:
@@ -146,13 +149,9 @@ def _nut_label(clamp: Clamp, lean: frames.Matrix) -> Label:
     return ("Nut", "on each screw, turned by hand"), _ABOVE.seen(nut)[:2]
 
 
-def _side_labels(
-    cast: Cast, clamp: Clamp | None, ways: list[Points], lean: frames.Matrix, down: Points
-) -> list[Label]:
+def _side_labels(cast: Cast, ways: list[Points], lean: frames.Matrix, down: Points) -> list[Label]:
     """What is looked at from the side."""
     labels: list[Label] = []
-    if clamp is not None:
-        labels.append((("Marks", "of leg and mould in one line"), _mark_at(clamp, lean, down)))
     for way in ways[:1]:
         over = way[np.argmin(np.abs(way[:, 1] - cast.mould.points_mm[:, 1].max()))]
         labels.append((("Wires", "over the weir"), _BESIDE.seen(over + down)[:2]))

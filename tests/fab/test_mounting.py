@@ -1,0 +1,101 @@
+"""The step of mounting and the wiring note, for designs with other boards, supplies and wires."""
+
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from lumitip_fab.config.load import Input
+from lumitip_fab.derive import derive
+from lumitip_fab.design import Design
+from lumitip_fab.docs.mounting import mounting
+from lumitip_fab.docs.wiring import wiring_note
+
+Written = Callable[..., Design]
+
+
+@pytest.fixture
+def written(inputs: dict[str, Input], vary: Any) -> Written:
+    """`written({"flange.enabled": False}, "integrated")`: such a design."""
+    return lambda changes=None, preset="published": derive(vary(inputs[preset], changes or {}))
+
+
+def words(text: str) -> str:
+    return " ".join(text.split())
+
+
+def test_the_gripper_gets_the_supply_before_the_fuse(written: Written) -> None:
+    step = words(mounting(written()))
+    assert "The robot's lines are on J2. Its 24 V are on J3.7 and J3.8, before the fuse" in step
+    assert step.index("Press the socket for J3") < step.index("Connect the gripper")
+    assert step.index("Connect the gripper") < step.index("Plug the socket of W3 in at J3")
+
+
+def test_another_supply_is_named_by_its_voltage(written: Written) -> None:
+    step = words(mounting(written({"supply.voltage_v": 12.0})))
+    assert "Its 12 V are on J3.7 and J3.8" in step and "24 V" not in step
+
+
+LINES = ("GND", "CASING", "Von", "485+", "485-", "3V3_out", "485GND")
+SUPPLIES = ("REGULATED", "REGULATED", "SUPPLY", "SUPPLY_IN", "GND", "GND", "GND")
+BEHIND = {"flange.headers": (LINES, (*SUPPLIES[:3], "SUPPLY", *SUPPLIES[4:]))}
+CLOSED = {
+    "flange.signals": ("GND", "GND", "SUPPLY", *["NC"] * 7),
+    "flange.headers": (("GND",) * 7, SUPPLIES),
+}
+
+
+def test_a_supply_behind_the_fuse_is_not_offered(written: Written) -> None:
+    step = words(mounting(written(BEHIND)))
+    assert "do not feed the gripper from it" in step and "before the fuse" not in step
+
+
+def test_a_flange_without_lines_names_none(written: Written) -> None:
+    step = words(mounting(written(CLOSED)))
+    assert "The robot's lines" not in step and "Its 24 V are on J3.7" in step
+
+
+@pytest.mark.parametrize(
+    ("changes", "preset", "sockets"),
+    [
+        ({}, "published", 1),
+        ({}, "integrated", 0),
+        ({"breakout.enabled": False}, "published", 0),
+    ],
+)
+def test_a_socket_is_pressed_where_a_cable_is_plugged_in(
+    written: Written, changes: dict[str, Any], preset: str, sockets: int
+) -> None:
+    design = written(changes, preset)
+    step, note = words(mounting(design)), wiring_note(design)
+    assert step.count("Press the socket") == step.count("Plug the socket") == sockets
+    assert step.count("a small vice") == sockets
+    assert words(note).count("press the cover down") == sockets
+
+
+def test_without_a_flange_nothing_is_said_of_it(written: Written) -> None:
+    step = mounting(written({"flange.enabled": False}))
+    assert not re.search(r"flange|J3|the glue|soldering iron", step)
+
+
+def test_wires_that_are_too_thick_go_to_a_flat_cable(written: Written) -> None:
+    thin, thick = (words(wiring_note(written({"wiring.section_mm2": s}))) for s in (0.08, 0.2))
+    assert "at most 1.25 mm thick" in thin and "flat cable of 14 wires" not in thin
+    assert "flat cable of 14 wires" in thick and "across the slot" not in thick
+
+
+@pytest.mark.parametrize("preset", ["published", "integrated"])
+def test_points_of_the_wiring_note_stand_apart(written: Written, preset: str) -> None:
+    note = wiring_note(written({}, preset))
+    points = re.findall(r"^- ", note, re.MULTILINE)
+    assert len(points) >= 4
+    assert not re.search(r"\.- |\S- [A-Z]", note)
+
+
+def test_a_bench_supply_is_needed_where_a_light_shows_it(written: Written) -> None:
+    design = written({}, "dense")
+    bare = replace(design, electrical=replace(design.electrical, indicators=()))
+    lit = [bool(d.electrical.indicators) for d in (design, bare)]
+    assert [("a bench supply" in mounting(d)) for d in (design, bare)] == lit
