@@ -106,15 +106,16 @@ def _outside(page: Page, name: str, at: Point, half_mm: float, way: Way) -> Iter
 
 
 def _at_contacts(page: Page, part: PlacedComponent) -> None:
-    """The name of each contact beside it: all along their row if they fit, else upright; where
-    that finds no room, along the row and a little aside."""
+    """The name of each contact beside it: along the row if most of them fit, longer ones upright;
+    else all upright. Where that finds no room, along the row and a little aside."""
     pads = placed_pads(part)
     columns = sorted({round(pad.x_mm, 6) for pad in pads})
     pitch = min((b - a for a, b in pairwise(columns)), default=0.0)
-    flat = max(map(page.length_mm, part.pins)) + page.rules.silk_gap_mm < pitch
+    fits = [page.length_mm(name) + page.rules.silk_gap_mm < pitch for name in part.pins]
+    mostly = 2 * sum(fits) > len(fits)
     inward = 1.0 if part.y_mm < page.board.outline.centre_mm[1] else -1.0
     drawn = part.footprint.body.y_max_mm if part.outline else 0.0
-    for pad, name in zip(pads, part.pins, strict=True):
+    for pad, name, flat in zip(pads, part.pins, fits, strict=True):
         rise = pad.y_mm - part.y_mm
         outward = math.copysign(1.0, rise) if pad.pad.y_mm else inward
         ways = (UP, DOWN) if outward > 0 else (DOWN, UP)
@@ -124,7 +125,7 @@ def _at_contacts(page: Page, part: PlacedComponent) -> None:
             for aside, way in product(_ASIDE_MM, ways)
         ]
         upright = [page.beside(name, at, (half, half), way, _AWAY_MM, upright=True) for way in ways]
-        page.require(repr(f"{part.ref} {name}"), lying if flat else [*upright, *lying])
+        page.require(repr(f"{part.ref} {name}"), lying if flat and mostly else [*upright, *lying])
 
 
 def _at_probe(page: Page, part: PlacedComponent) -> None:

@@ -25,9 +25,9 @@ MOST_LOAD = 0.6
 """Share of the resistor's rated power at the worst case."""
 RESISTOR, LED = "R4", "D2"
 NET = "PWR_LED"
-RESISTOR_AT: Point = (-5.9, 10.5)
-LED_AT: Point = (-5.9, 12.3)
-NOTE = Note("PWR", (-5.9, 14.0), 1.0, 0.0)
+RESISTOR_AT: Point = (-6.4, 10.5)
+LED_AT: Point = (-6.4, 12.3)
+NOTE = Note("PWR", (-6.4, 14.0), 1.0, 0.0)
 """Beside the LED, on the silkscreen."""
 
 
