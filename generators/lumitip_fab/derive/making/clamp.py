@@ -31,6 +31,7 @@ LEG_GAP_MM = 0.5  # to the rail
 LEG_END_MM = 0.6  # over the bed
 RAIL_MM = (2.8, 5.0)
 APART_MM = 0.5  # from what is not to be touched
+OFF_WALL_MM = 0.41  # from a foot to the mould's wall, beside the printer's fit
 SIDE_MM = 2.5  # beside the block, whose sides have fillets of 1.5 mm
 KNOT_MM = 3.0  # round a hole for thread
 HEAD_PLAY_MM = 0.4
@@ -74,6 +75,16 @@ class _Plan:
     def free(self, foot: Box) -> bool:
         """Whether a foot stands on the bare back."""
         return not any(_meet(foot, box) for box in self.taken())
+
+    def off_wall(self, foot: Box) -> bool:
+        """Whether a right foot is on the plate and keeps off the mould's wall, which ends below the
+        plate's back."""
+        stack, mould = self.body.stack, self.mould
+        ends = foot.y_min_mm, foot.y_max_mm
+        beside_mm = min(map(self.body.outline.half_width_at, ends)) - foot.x_max_mm
+        wall_mm = beside_mm + mould.wall_gap_mm + _lean_mm(self)
+        off_mm = math.hypot(wall_mm, stack.plate_mm - stack.guided_mm)
+        return beside_mm >= 0 and off_mm >= OFF_WALL_MM + self.printing.fit_mm
 
     def behind_y_mm(self) -> float:
         """y where coupling and interface end towards the tip."""
@@ -130,10 +141,7 @@ def _at_pads(plan: _Plan) -> Box | None:
     half = plan.mould.pad_mm / 2
     for low, deep in ((x - FOOT_HALF_MM, FOOT_HALF_MM), (x - half, half)):
         foot = Box(max(low, inner), x + half, y - deep, y + deep)
-        on_plate = all(
-            plan.body.outline.half_width_at(end) >= x + half for end in (y - deep, y + deep)
-        )
-        if foot.x_min_mm <= x - half and on_plate and plan.free(foot):
+        if foot.x_min_mm <= x - half and plan.off_wall(foot) and plan.free(foot):
             return foot
     return None
 
@@ -220,9 +228,13 @@ def _sides_mm(plan: _Plan, low_mm: float, high_mm: float) -> Point:
     along a rail."""
     mould, outline = plan.mould, plan.body.outline
     halves = [outline.half_width_at(y) for y in np.linspace(low_mm, high_mm, 60)]
-    lean = plan.body.stack.guided_mm * math.tan(math.radians(mould.draft_deg))
-    inside = mould.wall_gap_mm + lean
+    inside = mould.wall_gap_mm + _lean_mm(plan)
     return round(min(halves) + inside + mould.wall_mm / 2, 3), max(halves) + inside + mould.wall_mm
+
+
+def _lean_mm(plan: _Plan) -> float:
+    """From the plate's gap to the top of the mould's wall, by the draft."""
+    return plan.body.stack.guided_mm * math.tan(math.radians(plan.mould.draft_deg))
 
 
 def _stiffened(clamp: Clamp, thickness_mm: float) -> Clamp:
