@@ -1,4 +1,4 @@
-"""`lumitip info`, `replay`, `export` and `recover`: commands that read a recording."""
+"""`lumitip info`, `replay`, `export`, `recover` and `foxglove`: commands that read recordings."""
 
 import argparse
 import time
@@ -15,7 +15,7 @@ def info(options: argparse.Namespace) -> int:
     """Print a summary; exit code 1 if the recording is damaged."""
     from lumitip.recording import summarise
 
-    summary = summarise(options.file)
+    summary = summarise(options.file, options.finger)
     metadata, calibration = summary.metadata, summary.metadata.calibration
     references = [n for n in ("empty", "dark") if getattr(calibration, n, None) is not None]
     lines = {
@@ -39,7 +39,7 @@ def export(options: argparse.Namespace) -> int:
     """Write the table."""
     from lumitip.recording import export as write_table
 
-    rows = write_table(options.file, options.table)
+    rows = write_table(options.file, options.table, options.finger)
     print(f"{options.table}: {rows} frames")
     return 0
 
@@ -54,6 +54,33 @@ def recover(options: argparse.Namespace) -> int:
     return 0
 
 
+def foxglove(options: argparse.Namespace) -> int:
+    """Write the file for Foxglove, and the layout of its panels beside it."""
+    from lumitip.foxglove import FoxgloveError, panels, write_scene
+
+    names = [file.stem for file in options.files]
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise FoxgloveError(
+            f"two recordings are called {twice[0]!r}, and a fingertip is named after its file: "
+            "rename one"
+        )
+    written = write_scene(
+        options.out,
+        dict(zip(names, options.files, strict=True)),
+        gap_mm=options.gap,
+        diameter_mm=options.diameter,
+        estimates=not options.no_estimate,
+    )
+    layout = options.out.with_suffix(".json")
+    layout.write_text(panels(names), encoding="utf-8")
+    print(f"{written.path}: {written.frames} frames of {', '.join(names)}")
+    print(f"{layout}: in Foxglove, menu of layouts, import from file")
+    for why in written.damage:
+        print(f"left out: {why}")
+    return 1 if written.damage else 0
+
+
 def replay(options: argparse.Namespace) -> int:
     """Print one line per frame."""
     from lumitip.processing import Tracker
@@ -61,7 +88,7 @@ def replay(options: argparse.Namespace) -> int:
 
     if not (options.speed == 0.0 or options.speed >= _SLOWEST):
         raise RecordingError(f"--speed is {options.speed:g}; 0, or {_SLOWEST:g} or more, is needed")
-    reader = Reader(options.file)
+    reader = Reader(options.file, finger=options.finger)
     track = Tracker(reader.layout)
     begun, first, last, due_s = time.monotonic(), None, 0.0, 0.0
     for frame in reader:

@@ -1,12 +1,13 @@
 """`replay://run.mcap`: the frames of a recording.
 
-    replay://FILE?speed=1
+    replay://FILE?speed=1&finger=NAME
 
-`speed` is a factor; 0 is as fast as the frames are read: playing starts with the first reader, and
-waits for all readers, except those that read nothing for 5 s. Frames keep their numbers and times,
-so `Frame.t` is a time of the recording computer. Layout and calibration are those of the
-recording. `~` is the home folder. Gaps are not shortened, unlike in `lumitip replay` and the live
-view. Needs mcap: the extra `record`.
+`finger` chooses one of several fingertips, see `lumitip.recording.Reader`. `speed` is a factor; 0
+is as fast as the frames are read: playing starts with the first reader, and waits for all readers,
+except those that read nothing for 5 s. Frames keep their numbers and times, so `Frame.t` is a time
+of the recording computer. Layout and calibration are those of the recording. `~` is the home
+folder. Gaps are not shortened, unlike in `lumitip replay` and the live view. Needs mcap: the extra
+`record`.
 """
 
 import time
@@ -62,8 +63,8 @@ def make(url: Url, layout: Layout | None, any_design: bool) -> ReplayLink:
         RecordingError: if the file cannot be read.
         WrongDesign: if its layout is another one, unless `any_design`.
     """
-    url.allow("speed")
-    reader = Reader(url.path)
+    url.allow("speed", "finger")
+    reader = Reader(url.path, finger=url.options.get("finger"))
     if layout is not None and layout != reader.layout and not any_design:
         raise WrongDesign(reader.layout.design_hash[:16], layout.design_hash[:16], url.target)
     return ReplayLink(reader, url.number("speed", 1.0, 0.0, 1000.0))

@@ -23,6 +23,11 @@ LONGEST_GAP_S = 1.0
 SCHEMA_NAME = "lumitip_msgs/msg/Frame"
 
 
+def frames_topic(finger: str) -> str:
+    """Topic of the raw codes of a fingertip, in a file with several."""
+    return f"/{finger}/frames"
+
+
 def schema_text() -> str:
     """The definition of the message for ROS 2, with those that it has in it."""
     return Path(__file__).with_name("frame.msg").read_text(encoding="utf-8")

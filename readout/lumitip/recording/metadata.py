@@ -14,6 +14,8 @@ from lumitip.layout import Layout
 from lumitip.recording.message import RecordingError
 
 NAME = "lumitip"
+FINGER = "finger"
+"""Key of the name of a fingertip, in a file with several."""
 FORMAT = "1"
 
 _YEAR_5000 = 1e11

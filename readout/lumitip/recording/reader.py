@@ -21,8 +21,9 @@ from lumitip.recording.message import (
     DamagedError,
     RecordingError,
     decode,
+    frames_topic,
 )
-from lumitip.recording.metadata import NAME, Metadata
+from lumitip.recording.metadata import FINGER, NAME, Metadata
 
 _MOST_BYTES = 64 * 2**20  # of one record: far above those of `Writer`
 # Exceptions of the libraries for damaged bytes (MemoryError for a wrong length), and OSError of a
@@ -54,22 +55,24 @@ class Fault(NamedTuple):
 class Reader:
     """Frames of a recording, in order; can be iterated repeatedly."""
 
-    def __init__(self, path: str | Path, tolerant: bool = False) -> None:
+    def __init__(self, path: str | Path, tolerant: bool = False, finger: str | None = None) -> None:
         """Read the metadata.
 
         Args:
             path: of the file.
             tolerant: skip damaged parts and list them in `damage`.
+            finger: name of a fingertip in a file with several, as `lumitip foxglove` writes.
 
         Raises:
-            RecordingError: if the file cannot be read or is not a recording.
+            RecordingError: if the file cannot be read or is not a recording, or has several
+                fingertips and not the one that is named.
         """
         self.path = arguments.path(path, RecordingError)
         self.tolerant = tolerant
         self.damage: tuple[str, ...] = ()
         """Damage found in the last or current iteration, for the user."""
         with self._open() as stream:
-            self.metadata = read_metadata(stream, str(path))
+            self.finger, self.metadata = read_metadata(stream, str(path), finger)
 
     def __repr__(self) -> str:
         return f"<Reader {self.path}: {self.metadata.device_id}, {self.layout!r}>"
@@ -89,7 +92,7 @@ class Reader:
         self.damage = ()
         frames = 0
         with self._open() as stream:
-            for found in read_frames(stream, len(self.layout)):
+            for found in read_frames(stream, len(self.layout), self.finger):
                 if isinstance(found, RecordedFrame):
                     frames += 1
                     yield found
@@ -131,13 +134,17 @@ class Summary:
         return (self.frames - 1) / self.seconds if self.seconds > 0.0 else 0.0
 
 
-def summarise(path: str | Path) -> Summary:
+def summarise(path: str | Path, finger: str | None = None) -> Summary:
     """Read a whole recording, skipping damaged parts.
+
+    Args:
+        path: of the file.
+        finger: see `Reader`.
 
     Raises:
         RecordingError: if it is not a recording.
     """
-    reader = Reader(path, tolerant=True)
+    reader = Reader(path, tolerant=True, finger=finger)
     frames, lost, first, last = 0, 0, 0.0, 0.0
     for frame in reader:
         first = first if frames else frame.t_wall
@@ -147,27 +154,48 @@ def summarise(path: str | Path) -> Summary:
     return Summary(reader.metadata, frames, last - first, lost, reader.damage)
 
 
-def read_metadata(stream: BinaryIO, source: str) -> Metadata:
-    """The metadata, which are before the first chunk.
+def read_metadata(stream: BinaryIO, source: str, finger: str | None = None) -> tuple[str, Metadata]:
+    """Name and metadata of a fingertip; all are before the first chunk. The name is empty in a file
+    with one fingertip.
 
     Raises:
-        RecordingError: if the stream is not a recording, or ends too early.
+        RecordingError: if the stream is not a recording, or ends too early, or has several
+            fingertips and not the one that is named.
     """
+    texts: dict[str, dict[str, str]] = {}
     for record in _records(stream):
         if isinstance(record, MetadataRecord) and record.name == NAME:
-            try:
-                return Metadata.from_texts(record.metadata)
-            except RecordingError as error:
-                raise RecordingError(f"{source}: {error}") from error
-        if isinstance(record, Fault):
+            texts[record.metadata.get(FINGER, "")] = record.metadata
+        if isinstance(record, Fault) and not texts:
             raise RecordingError(f"{source} is not a recording, or is truncated: {record.why}")
-        if isinstance(record, Chunk | Message):
+        if isinstance(record, Chunk | Message | Fault):
             break
-    raise RecordingError(f"{source} is an MCAP file, but not a recording of a fingertip")
+    if not texts:
+        raise RecordingError(f"{source} is an MCAP file, but not a recording of a fingertip")
+    chosen = next(iter(texts)) if finger is None and len(texts) == 1 else finger
+    if chosen not in texts:
+        raise RecordingError(_unknown_finger(source, finger, list(texts)))
+    try:
+        return chosen, Metadata.from_texts(texts[chosen])
+    except RecordingError as error:
+        raise RecordingError(f"{source}: {error}") from error
 
 
-def read_frames(stream: BinaryIO, cells: int) -> Iterator[RecordedFrame | Fault]:
-    """Frames and damage of a recording, in order. Never raises for damage."""
+def _unknown_finger(source: str, finger: str | None, names: list[str]) -> str:
+    if names == [""]:
+        return f"finger is {finger!r:.60}; {source} has one fingertip, which has no name"
+    asked = "no finger was named" if finger is None else f"finger is {finger!r:.60}"
+    return f"{asked}; {source} has {', '.join(map(repr, names))}: choose one"
+
+
+def read_frames(stream: BinaryIO, cells: int, finger: str = "") -> Iterator[RecordedFrame | Fault]:
+    """Frames and damage of a recording, in order. Never raises for damage.
+
+    Args:
+        stream: the file.
+        cells: of each frame.
+        finger: whose frames, in a file with several fingertips.
+    """
     ours: set[int] = set()
     schemas: dict[int, Schema] = {}
     for record in _unpacked(stream):
@@ -177,7 +205,9 @@ def read_frames(stream: BinaryIO, cells: int) -> Iterator[RecordedFrame | Fault]
             schemas[record.id] = record
         elif isinstance(record, Channel):
             schema = schemas.get(record.schema_id)
-            if schema and schema.name == SCHEMA_NAME and record.message_encoding == "cdr":
+            whose = not finger or record.topic == frames_topic(finger)
+            cdr = record.message_encoding == "cdr"
+            if schema and schema.name == SCHEMA_NAME and cdr and whose:
                 ours.add(record.id)
         elif isinstance(record, Message) and record.channel_id in ours:
             try:

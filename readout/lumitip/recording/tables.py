@@ -24,12 +24,13 @@ _BLOCK = 4096
 _TIMES = ("seq", "t_wall", "t_host", "t_device", "dropped_before", "bits")
 
 
-def export(source: str | Path, target: str | Path) -> int:
+def export(source: str | Path, target: str | Path, finger: str | None = None) -> int:
     """Write a recording as a table; returns the number of rows.
 
     Args:
         source: of the recording.
         target: of the table, ending in `.parquet` or `.csv`; must not exist yet.
+        finger: see `Reader`.
 
     Raises:
         RecordingError: if either file cannot be used; no partial table is left.
@@ -39,7 +40,7 @@ def export(source: str | Path, target: str | Path) -> int:
     writers: dict[str, Callable[[Reader, Path], int]] = {".csv": _csv, ".parquet": _parquet}
     if path.suffix not in writers:
         raise RecordingError(f"the table is {target}; its name must end in {' or '.join(writers)}")
-    reader = Reader(source)
+    reader = Reader(source, finger=finger)
     if path.exists():
         raise RecordingError(f"{target} exists. Choose another name")
     try:

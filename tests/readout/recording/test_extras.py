@@ -27,6 +27,20 @@ except LumitipError as error:
     assert "pip install '.[record]'" in _python(code)
 
 
+@pytest.mark.parametrize("library", ["foxglove_schemas_protobuf", "mcap_protobuf", "mcap"])
+def test_without_its_libraries_the_file_for_foxglove_names_the_extra(library: str) -> None:
+    code = f"""
+import sys
+sys.modules[{library!r}] = None
+from lumitip import LumitipError
+try:
+    import lumitip.foxglove
+except LumitipError as error:
+    print(error)
+"""
+    assert "pip install '.[foxglove]'" in _python(code)
+
+
 def test_without_pyarrow_parquet_names_the_extra() -> None:
     code = """
 import sys, tempfile

@@ -1,0 +1,94 @@
+"""Files for Foxglove that are refused, of damaged recordings, and read again one by one."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from lumitip import LumitipError
+from lumitip.cli import main
+from lumitip.foxglove import FoxgloveError, write_scene
+from lumitip.frame import Frame
+from lumitip.recording import Reader, RecordingError, export, summarise
+
+Sources = dict[str, tuple[Path, list[Frame]]]
+
+
+def test_the_same_recordings_give_the_same_bytes(
+    scene: Path, sources: Sources, tmp_path: Path
+) -> None:
+    again = tmp_path / "again.mcap"
+    write_scene(again, {name: file for name, (file, _) in sources.items()})
+    assert again.read_bytes() == scene.read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("name", "why"),
+    [("", "letters"), ("2nd", "a letter first"), ("a b", "letters"), ("lumitip", "not 'lumitip'")],
+)
+def test_a_name_that_no_topic_can_have_is_refused(
+    tmp_path: Path, sources: Sources, name: str, why: str
+) -> None:
+    with pytest.raises(FoxgloveError, match=why):
+        write_scene(tmp_path / "scene.mcap", {name: sources["left"][0]})
+    assert not list(tmp_path.iterdir())
+
+
+def test_what_cannot_be_written_leaves_nothing(tmp_path: Path, sources: Sources) -> None:
+    path = sources["left"][0]
+    with pytest.raises(FoxgloveError, match=r"must end in \.mcap"):
+        write_scene(tmp_path / "scene.txt", {"left": path})
+    with pytest.raises(FoxgloveError, match="recordings by name are needed"):
+        write_scene(tmp_path / "scene.mcap", {})
+    with pytest.raises(RecordingError, match="cannot be read"):
+        write_scene(tmp_path / "scene.mcap", {"left": tmp_path / "none.mcap"})
+    with pytest.raises(LumitipError, match="gap_mm"):
+        write_scene(tmp_path / "scene.mcap", {"left": path}, gap_mm=-1.0)
+    with pytest.raises(FoxgloveError, match="cannot be written"):
+        write_scene(tmp_path / "no folder" / "scene.mcap", {"left": path}, estimates=False)
+    assert not list(tmp_path.iterdir())
+    (tmp_path / "scene.mcap").write_text("mine")
+    with pytest.raises(FoxgloveError, match="exists"):
+        write_scene(tmp_path / "scene.mcap", {"left": path}, estimates=False)
+    assert (tmp_path / "scene.mcap").read_text() == "mine"
+
+
+def test_a_file_with_several_fingertips_asks_which(scene: Path, tmp_path: Path) -> None:
+    with pytest.raises(RecordingError, match=r"no finger was named; .* has 'left', 'right'"):
+        Reader(scene)
+    with pytest.raises(RecordingError, match=r"finger is 'third'; .* has 'left', 'right'"):
+        Reader(scene, finger="third")
+    assert summarise(scene, "right").frames == 8
+    assert export(scene, tmp_path / "left.csv", "left") == 8
+
+
+def test_a_recording_of_one_fingertip_has_no_names(
+    sources: Sources,
+) -> None:
+    with pytest.raises(RecordingError, match="has one fingertip, which has no name"):
+        Reader(sources["left"][0], finger="left")
+
+
+def test_the_command_writes_file_and_panels(
+    sources: Sources, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    files = [str(file) for file, _ in sources.values()]
+    out = tmp_path / "scene.mcap"
+    assert main(["foxglove", *files, "--out", str(out), "--no-estimate"]) == 0
+    printed = capsys.readouterr().out
+    assert "16 frames of left, right" in printed and "scene.json" in printed
+    assert json.loads((tmp_path / "scene.json").read_text())["configById"]
+    assert main(["info", str(out), "--finger", "left"]) == 0
+    assert main(["foxglove", *files[:1], *files[:1], "--out", str(tmp_path / "b.mcap")]) == 2
+    assert "two recordings are called 'left'" in capsys.readouterr().err
+
+
+def test_damaged_recordings_are_read_as_far_as_they_go(
+    sources: Sources, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    short = tmp_path / "left.mcap"
+    short.write_bytes(sources["left"][0].read_bytes()[:-400])
+    out = tmp_path / "scene.mcap"
+    assert main(["foxglove", str(short), "--out", str(out), "--no-estimate"]) == 1
+    assert "left out: left: it ends near byte" in capsys.readouterr().out
+    assert 0 < summarise(out, "left").frames <= 8
