@@ -7,12 +7,9 @@ from pathlib import Path
 import pytest
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
-STARTED_BY_ROS = "ros2_node.py"  # takes parameters of ROS, and has a default for each
 
 
-@pytest.mark.parametrize(
-    "example", sorted(e.name for e in EXAMPLES.glob("*.py") if e.name != STARTED_BY_ROS)
-)
+@pytest.mark.parametrize("example", sorted(path.name for path in EXAMPLES.glob("*.py")))
 def test_an_example_without_arguments_tells_its_usage(example: str) -> None:
     done = subprocess.run(
         [sys.executable, EXAMPLES / example], capture_output=True, text=True, check=False

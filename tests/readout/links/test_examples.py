@@ -2,7 +2,6 @@
 
 import os
 import pty
-import re
 import subprocess
 import sys
 import threading
@@ -101,15 +100,6 @@ def test_read_serial(device, layout_file: str) -> None:
     os.close(master)
     os.close(slave)
     assert told.startswith("55 frames of 32 cells, 0 lost between")
-
-
-def test_ros2_node() -> None:
-    told = _run("ros2_node.py", env={"PYTHONPATH": str(ROOT / "tests" / "ros_stand_ins")})
-    assert "info twin:demo is " in told
-    assert told.count("/lumitip/values 32 values") >= 5
-    points = re.findall(r"/lumitip/centre point in fingertip at ([-\d.]+) ([-\d.]+)", told)
-    assert len(points) >= 5 and all(abs(float(m)) < 0.02 for point in points for m in point)
-    assert "destroyed" in told
 
 
 def test_no_example_is_left_out() -> None:

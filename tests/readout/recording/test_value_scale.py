@@ -5,10 +5,7 @@ reads the recording must find the dark centre that the definition gives for its 
 """
 
 import csv
-import os
 import re
-import subprocess
-import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -80,38 +77,6 @@ def test_exported_tables_keep_codes_and_values_apart(recorded: Expected, tmp_pat
     assert told == pytest.approx(values.astype(float), abs=0.05)
     codes = np.array([float(row[f"raw_{cell}"]) for cell in range(32)])
     assert np.corrcoef(codes, values)[0, 1] == pytest.approx(-1.0, abs=1e-4)
-
-
-def test_the_ros_example_publishes_values_and_the_dark_centre(recorded: Expected) -> None:
-    path, values, centre_mm = recorded
-    done = subprocess.run(
-        [
-            sys.executable,
-            "-W",
-            "error",
-            "examples/ros2_node.py",
-            "--ros-args",
-            "-p",
-            f"url:=replay://{path}",
-        ],
-        env={
-            **os.environ,
-            "PYTHONPATH": os.pathsep.join(
-                [str(ROOT / "tests" / "ros_stand_ins"), os.environ.get("PYTHONPATH", "")]
-            ),
-        },
-        capture_output=True,
-        text=True,
-        timeout=60,
-        cwd=ROOT,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
-    points = re.findall(r"/lumitip/centre point in fingertip at ([-\d.]+) ([-\d.]+)", done.stdout)
-    assert len(points) >= 5
-    assert np.array(points[0], float) * 1e3 == pytest.approx(centre_mm, abs=0.02)
-    means = re.findall(r"/lumitip/values 32 values, mean ([\d.]+)", done.stdout)
-    assert float(means[0]) == pytest.approx(values.mean(), abs=0.1)
 
 
 def test_the_batch_of_a_recording_is_on_the_values(recorded: Expected) -> None:

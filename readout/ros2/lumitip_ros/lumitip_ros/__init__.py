@@ -1,0 +1,1 @@
+"""A fingertip in ROS 2."""

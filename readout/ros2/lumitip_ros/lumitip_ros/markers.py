@@ -1,0 +1,71 @@
+"""Markers for RViz: cells as grey discs, the lines of contact and estimate."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from geometry_msgs.msg import Point
+from std_msgs.msg import ColorRGBA, Header
+from visualization_msgs.msg import Marker, MarkerArray
+
+from lumitip import Frame, Layout
+
+_METRE = 1e-3
+_SIZE, _HIGH_MM, _LINE_MM = 0.8, 0.2, 0.3
+PUBLISHED, ESTIMATE = (0.34, 0.71, 0.91), (0.91, 0.35, 0.05)
+"""Colours of the published method and of the estimate, as in the live view."""
+
+
+def cells(frame: Frame, layout: Layout, head: Header) -> Marker:
+    """All cells as one marker; a cell without a value is red."""
+    marker = _marker(head, "cells", Marker.SPHERE_LIST)
+    marker.scale.x = marker.scale.y = _SIZE * layout.pitch_mm * _METRE
+    marker.scale.z = _HIGH_MM * _METRE
+    marker.points = _points(np.column_stack([layout.x_mm, layout.y_mm]))
+    marker.colors = [_grey(value) for value in frame.values.tolist()]
+    return marker
+
+
+def lines(
+    drawn: Sequence[np.ndarray], colour: Sequence[float], namespace: str, head: Header
+) -> Marker:
+    """Lines as one marker; none delete those of the frame before.
+
+    Args:
+        drawn: both ends of each line, shape `(2, 2)` (mm).
+        colour: red, green and blue, 0 to 1.
+        namespace: of the marker.
+        head: of the frame.
+    """
+    marker = _marker(head, namespace, Marker.LINE_LIST)
+    marker.action = Marker.ADD if len(drawn) else Marker.DELETE
+    marker.scale.x = _LINE_MM * _METRE
+    marker.color = _colour(*colour)
+    marker.points = [point for line in drawn for point in _points(np.asarray(line))]
+    return marker
+
+
+def together(markers: Sequence[Marker]) -> MarkerArray:
+    """One message of all."""
+    return MarkerArray(markers=list(markers))
+
+
+def _marker(head: Header, namespace: str, kind: int) -> Marker:
+    marker = Marker(header=head, ns=namespace, id=0, type=kind, action=Marker.ADD)
+    marker.pose.orientation.w = 1.0
+    return marker
+
+
+def _points(places_mm: np.ndarray) -> list[Point]:
+    return [Point(x=x * _METRE, y=y * _METRE, z=0.0) for x, y in places_mm.tolist()]
+
+
+def _grey(value: float) -> ColorRGBA:
+    if not math.isfinite(value):
+        return _colour(0.8, 0.1, 0.1)
+    share = min(max(value / 255.0, 0.0), 1.0)
+    return _colour(share, share, share)
+
+
+def _colour(red: float, green: float, blue: float) -> ColorRGBA:
+    return ColorRGBA(r=red, g=green, b=blue, a=1.0)
