@@ -62,7 +62,9 @@ ALLOWED_READOUT = {
     "foxglove": "core estimation processing recording twin view",
     "view": "core estimation face links processing recording session twin",
     "tasks": "control core estimation face links processing protocol session twin view",
-    "commands": "core face foxglove health links processing recording session sharing tasks twin view",
+    "commands": (
+        "core face foxglove health links processing recording session sharing tasks twin view"
+    ),
 }
 """The rooms of `lumitip`: `core` is its root, `face` what opens fingertips."""
 FACE = {"__init__", "async_fingertip", "cli", "fingertip", "group", "options"}
