@@ -29,6 +29,8 @@ class Node:
         self.qos: dict[str, Any] = {}
         self.services: dict[str, Callable[..., Any]] = {}
         self.timers: list[Callable[[], None]] = []
+        self.groups: dict[str, Any] = {}
+        self.acknowledged = 0
         self.logged: list[tuple[str, str]] = []
         self.destroyed = False
         Node.made.append(self)
@@ -40,8 +42,8 @@ class Node:
     def get_parameter(self, name: str) -> Any:
         return SimpleNamespace(value=self.parameters[name])
 
-    def get_name(self) -> str:
-        return self.name
+    def get_fully_qualified_name(self) -> str:
+        return f"/{self.name}"
 
     def get_clock(self) -> Any:
         stamp = sys.modules["builtin_interfaces.msg"].Time(sec=1, nanosec=2)
@@ -56,12 +58,18 @@ class Node:
     def create_publisher(self, kind: type, topic: str, qos: Any) -> Any:
         return self._publisher(kind, topic, qos, lambda: True)
 
-    def create_service(self, kind: type, name: str, answer: Callable[..., Any]) -> None:
+    def create_service(
+        self, kind: type, name: str, answer: Callable[..., Any], callback_group: Any = None
+    ) -> None:
         self.services[name] = lambda: answer(kind.Request(), kind.Response())
+        self.groups[name] = callback_group
 
-    def create_timer(self, period_s: float, call: Callable[[], None]) -> None:
+    def create_timer(
+        self, period_s: float, call: Callable[[], None], callback_group: Any = None
+    ) -> None:
         assert period_s > 0.0
         self.timers.append(call)
+        self.groups["timer"] = callback_group
 
     def destroy_node(self) -> None:
         self.destroyed = True
@@ -75,7 +83,10 @@ class Node:
             if active():
                 kept.append(message)
 
-        return SimpleNamespace(publish=publish)
+        def wait_for_all_acked(_: Any) -> None:
+            self.acknowledged = len(kept)
+
+        return SimpleNamespace(publish=publish, wait_for_all_acked=wait_for_all_acked)
 
 
 class LifecycleNode(Node):
@@ -101,16 +112,21 @@ class Executor:
     """Runs until the test's time is over."""
 
     rounds = 50
+    shut_down = False
 
     def __init__(self, threads: int) -> None:
         assert threads > 1, "a service that waits would block the timers"
         self._left = self.rounds
+        Executor.shut_down = False
 
     def add_node(self, node: Node) -> None:
         self._node = node
         with suppress(AttributeError):
             node.on_configure(None)
             node.on_activate(None)
+
+    def shutdown(self) -> None:
+        Executor.shut_down = True
 
     def spin_once(self, timeout_sec: float) -> None:
         threading.Event().wait(timeout_sec)
@@ -126,6 +142,8 @@ def rclpy_modules() -> dict[str, ModuleType]:
     """`rclpy`, `tf2_ros` and `std_srvs`, by name."""
     contents: dict[str, dict[str, Any]] = {
         "rclpy": {"init": lambda: None, "ok": lambda: True, "try_shutdown": lambda: None},
+        "rclpy.callback_groups": {"MutuallyExclusiveCallbackGroup": type("Group", (), {})},
+        "rclpy.duration": {"Duration": SimpleNamespace},
         "rclpy.executors": {
             "ExternalShutdownException": type("ExternalShutdownException", (Exception,), {}),
             "MultiThreadedExecutor": Executor,

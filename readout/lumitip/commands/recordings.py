@@ -3,6 +3,7 @@
 import argparse
 import time
 from datetime import UTC, datetime
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -49,7 +50,7 @@ def recover(options: argparse.Namespace) -> int:
     from lumitip.recording import recover as write_readable
 
     target = options.target or options.file.with_suffix(".recovered.mcap")
-    saved = write_readable(options.file, target)
+    saved = write_readable(options.file, target, options.finger)
     print(f"{saved.path}: {saved.frames} frames; {'; '.join(saved.damage) or 'no damage found'}")
     return 0
 
@@ -58,23 +59,31 @@ def foxglove(options: argparse.Namespace) -> int:
     """Write the file for Foxglove, and the layout of its panels beside it."""
     from lumitip.foxglove import FoxgloveError, panels, write_scene
 
-    names = [file.stem for file in options.files]
-    twice = sorted({name for name in names if names.count(name) > 1})
-    if twice:
-        raise FoxgloveError(
-            f"two recordings are called {twice[0]!r}, and a fingertip is named after its file: "
-            "rename one"
-        )
+    recordings: dict[str, Path] = {}
+    for text in options.files:
+        name, is_given, file = text.partition("=")
+        name, file = (name, file) if is_given else (Path(text).stem, text)
+        if name in recordings:
+            raise FoxgloveError(
+                f"two recordings are called {name!r}. Give one another name: NAME=FILE"
+            )
+        recordings[name] = Path(file)
+    layout = options.out.with_suffix(".foxglove.json")
+    if layout.exists():
+        raise FoxgloveError(f"{layout} exists. Choose another --out")
     written = write_scene(
         options.out,
-        dict(zip(names, options.files, strict=True)),
+        recordings,
         gap_mm=options.gap,
         diameter_mm=options.diameter,
         estimates=not options.no_estimate,
     )
-    layout = options.out.with_suffix(".json")
-    layout.write_text(panels(names), encoding="utf-8")
-    print(f"{written.path}: {written.frames} frames of {', '.join(names)}")
+    try:
+        with layout.open("x", encoding="utf-8") as file_of_layout:
+            file_of_layout.write(panels(list(recordings)))
+    except OSError as error:
+        raise FoxgloveError(f"{layout}: cannot be written: {error}") from error
+    print(f"{written.path}: {written.frames} frames of {', '.join(recordings)}")
     print(f"{layout}: in Foxglove, menu of layouts, import from file")
     for why in written.damage:
         print(f"left out: {why}")

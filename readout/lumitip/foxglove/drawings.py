@@ -40,6 +40,8 @@ _LINE_MM = 0.3
 _SPARE_MM = 20.0  # between fingertips
 PUBLISHED, ESTIMATE = (0.34, 0.71, 0.91), (0.91, 0.35, 0.05)
 """Colours of the published method and of the estimate, as in the live view."""
+MISSING = (0.8, 0.1, 0.1)
+"""Colour of a cell without a value."""
 
 
 def stamp(at_ns: int) -> Timestamp:
@@ -69,12 +71,14 @@ class Raster:
         self.step_mm = step_mm
 
     def grid(self, values: Values, frame_id: str, at_ns: int) -> Grid:
-        """The light of a frame, grey, with the value of each square as `light`."""
-        light = np.nan_to_num(values.astype(np.float32))[self.cell]
-        grey = light.clip(0, 255).astype(np.uint8)
+        """The light of a frame, grey, with the value of each square as `light`; squares of a cell
+        without a value are red."""
+        light = values.astype(np.float32)[self.cell]
+        missing = ~np.isfinite(light)
+        grey = np.nan_to_num(light).clip(0, 255).astype(np.uint8)
         squares = np.zeros(self.cell.shape, _SQUARE)
-        for colour in ("red", "green", "blue"):
-            squares[colour] = grey
+        for colour, share in zip(("red", "green", "blue"), MISSING, strict=True):
+            squares[colour] = np.where(missing, round(255 * share), grey)
         squares["alpha"] = np.where(self.shown, 255, 0)
         squares["light"] = light
         return Grid(
@@ -213,6 +217,7 @@ def _pose(x_mm: float, y_mm: float, z_mm: float) -> Pose:
 
 def _grey(value: float) -> Color:
     if not math.isfinite(value):
-        return Color(r=0.8, g=0.1, b=0.1, a=1.0)
+        red, green, blue = MISSING
+        return Color(r=red, g=green, b=blue, a=1.0)
     share = min(max(value / 255.0, 0.0), 1.0)
     return Color(r=share, g=share, b=share, a=1.0)

@@ -28,8 +28,8 @@ def panels(names: Sequence[str]) -> str:
         configs[table] = {"topicPath": f"/{name}/contact", "diffEnabled": False}
         columns.append(_split("column", plot, table, 65))
     beside: Any = columns[0]
-    for column in columns[1:]:
-        beside = _split("row", beside, column, 50)
+    for count, column in enumerate(columns[1:], 1):
+        beside = _split("row", beside, column, 100 * count / (count + 1))
     layout = {
         "configById": configs,
         "globalVariables": {},

@@ -69,8 +69,8 @@ def write_scene(
         estimates: whether poses are estimated, which takes about a millisecond for each frame.
 
     Raises:
-        FoxgloveError: if there is no recording, a name cannot be used, or the file exists or cannot
-            be written; no partial file is left.
+        FoxgloveError: if there is no recording or no frame, a name cannot be used, or the file
+            exists or cannot be written; after an error no partial file is left.
         RecordingError: if a file is not a recording.
         EstimationError, TwinError: if gap or diameter cannot be used.
     """
@@ -113,7 +113,7 @@ def _name(name: object) -> str:
     if not isinstance(name, str) or not _NAME.fullmatch(name) or name == ROOT:
         raise FoxgloveError(
             f"a fingertip is called {name!r:.60}; letters, digits and _ are allowed, a letter "
-            f"first, and not {ROOT!r}"
+            f"first, and not {ROOT!r}. Give it another name: NAME=FILE"
         )
     return name
 
@@ -132,14 +132,21 @@ class _Finger:
             self._estimator = PoseEstimator(
                 layout, gap_mm=gap_mm, diameter_mm=diameter_mm, tracking=True
             ).prepare()
-        self._reach_mm, self._drawn_s = reach_of(layout), float("-inf")
+        self._reach_mm, self._drawn_ns = reach_of(layout), float("-inf")
 
     def frames(self) -> Iterator[tuple[int, str, RecordedFrame]]:
-        """Frames with their time (ns) and name, in order of time."""
-        newest_ns = 0
+        """Frames with their time (ns) and name, in order of time. After the wall clock was set back
+        the times go on by the other clock of the computer."""
+        newest_ns = shift_ns = 0
+        last_s: float | None = None
         for frame in self.reader:
-            newest_ns = max(newest_ns, frames_message.stamp_ns(frame.t_wall))
-            yield newest_ns, self.name, frame
+            at_ns = frames_message.stamp_ns(frame.t_wall) + shift_ns
+            if last_s is not None and at_ns < newest_ns:
+                passed_ns = round(max(frame.t_host - last_s, 0.0) * 1e9)
+                shift_ns += newest_ns + passed_ns - at_ns
+                at_ns = newest_ns + passed_ns
+            newest_ns, last_s = at_ns, frame.t_host
+            yield at_ns, self.name, frame
 
     def messages(self, at_ns: int, frame: RecordedFrame) -> Iterator[tuple[str, Any]]:
         """Topic and message of all that is written of a frame but its raw codes."""
@@ -150,9 +157,9 @@ class _Finger:
         estimate = self._estimator(values) if self._estimator else None
         if estimate:
             yield "estimate", numbers.estimate_record(estimate)
-        if 0.0 <= frame.t_wall - self._drawn_s < 1.0 / MOST_HZ:
+        if at_ns - self._drawn_ns < 1e9 / MOST_HZ:
             return
-        self._drawn_s = frame.t_wall
+        self._drawn_ns = at_ns
         yield "light", self._raster.grid(values, self.name, at_ns)
         yield "cells", drawings.cells(layout, values, self.name, at_ns)
         strips = borders(contact, self._reach_mm)
@@ -234,4 +241,6 @@ def _write(mcap: McapWriter, fingers: list[_Finger]) -> int:
         for topic, message in finger.messages(at_ns, frame):
             topics.message(f"/{name}/{topic}", at_ns, message)
     mcap.finish()
+    if not count:
+        raise FoxgloveError("no recording has a frame")
     return count

@@ -176,18 +176,20 @@ class Recovered:
     """Damage of the recording, for the user."""
 
 
-def recover(source: str | Path, target: str | Path) -> Recovered:
+def recover(source: str | Path, target: str | Path, finger: str | None = None) -> Recovered:
     """Copy all readable frames of a recording to a new, complete file.
 
     Args:
         source: the damaged recording; it is not changed.
         target: the new file, which must not exist yet.
+        finger: see `Reader`.
 
     Raises:
         RecordingError: if nothing can be read, or the target cannot be written; no partial file
             is left.
     """
-    reader, path = Reader(source, tolerant=True), arguments.path(target, message.RecordingError)
+    reader = Reader(source, tolerant=True, finger=finger)
+    path = arguments.path(target, message.RecordingError)
     frames = iter(reader)
     first = next(frames, None)
     if first is None:

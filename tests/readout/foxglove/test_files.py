@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from lumitip import LumitipError
+from lumitip import Layout, LumitipError
 from lumitip.cli import main
 from lumitip.foxglove import FoxgloveError, write_scene
 from lumitip.frame import Frame
-from lumitip.recording import Reader, RecordingError, export, summarise
+from lumitip.recording import Reader, RecordingError, Writer, export, summarise
 
 Sources = dict[str, tuple[Path, list[Frame]]]
 
@@ -76,11 +76,34 @@ def test_the_command_writes_file_and_panels(
     out = tmp_path / "scene.mcap"
     assert main(["foxglove", *files, "--out", str(out), "--no-estimate"]) == 0
     printed = capsys.readouterr().out
-    assert "16 frames of left, right" in printed and "scene.json" in printed
-    assert json.loads((tmp_path / "scene.json").read_text())["configById"]
+    assert "16 frames of left, right" in printed and "scene.foxglove.json" in printed
+    assert json.loads((tmp_path / "scene.foxglove.json").read_text())["configById"]
     assert main(["info", str(out), "--finger", "left"]) == 0
-    assert main(["foxglove", *files[:1], *files[:1], "--out", str(tmp_path / "b.mcap")]) == 2
-    assert "two recordings are called 'left'" in capsys.readouterr().err
+    assert main(["recover", str(out), str(tmp_path / "left.mcap"), "--finger", "left"]) == 0
+    assert Reader(tmp_path / "left.mcap").metadata.device_id == "device 0"
+    other = ["--out", str(tmp_path / "b.mcap"), "--no-estimate"]
+    assert main(["foxglove", *files[:1], *files[:1], *other]) == 2
+    assert "two recordings are called 'left'. Give one another name" in capsys.readouterr().err
+    assert main(["foxglove", files[0], f"again={files[0]}", *other]) == 0
+    assert "16 frames of left, again" in capsys.readouterr().out
+
+
+def test_the_command_overwrites_nothing(
+    sources: Sources, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "scene.foxglove.json").write_text("mine")
+    arguments = [str(sources["left"][0]), "--out", str(tmp_path / "scene.mcap"), "--no-estimate"]
+    assert main(["foxglove", *arguments]) == 2
+    assert "exists" in capsys.readouterr().err
+    assert (tmp_path / "scene.foxglove.json").read_text() == "mine"
+    assert not (tmp_path / "scene.mcap").exists()
+
+
+def test_recordings_without_a_frame_make_no_file(layout: Layout, tmp_path: Path) -> None:
+    Writer(tmp_path / "empty.mcap", layout, device_id="x").close()
+    with pytest.raises(FoxgloveError, match="no recording has a frame"):
+        write_scene(tmp_path / "scene.mcap", {"empty": tmp_path / "empty.mcap"}, estimates=False)
+    assert not (tmp_path / "scene.mcap").exists()
 
 
 def test_damaged_recordings_are_read_as_far_as_they_go(

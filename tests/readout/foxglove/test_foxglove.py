@@ -10,7 +10,8 @@ import pytest
 from mcap.reader import make_reader
 
 from lumitip import Layout
-from lumitip.foxglove import drawings, panels, write_scene
+from lumitip.estimation.estimate import without_contact
+from lumitip.foxglove import drawings, numbers, panels, write_scene
 from lumitip.frame import Frame
 from lumitip.recording import Reader, Writer
 
@@ -62,6 +63,61 @@ def test_json_keeps_to_its_schema_and_has_calibrated_light(
         reader = Reader(path)
         wanted = reader.metadata.values(next(iter(reader)))
         np.testing.assert_allclose(messages[f"/{name}/values"][0][2]["values"], wanted, rtol=1e-6)
+
+
+def test_types_in_schemas_are_single_words_that_foxglove_knows() -> None:
+    """Its reader takes each type as a word, and leaves out a topic with another one."""
+    kinds = {"object", "array", "number", "integer", "string", "boolean"}
+
+    def walk(schema: dict[str, Any]) -> None:
+        assert schema["type"] in kinds, schema
+        for inner in schema.get("properties", {}).values():
+            walk(inner)
+        if schema["type"] == "array":
+            walk(schema["items"])
+
+    for schema in (numbers.VALUES, numbers.CONTACT, numbers.ESTIMATE):
+        walk(json.loads(schema.text))
+
+
+def test_what_is_not_known_is_left_out_or_marked(layout: Layout) -> None:
+    values = np.full(32, 250.0, np.float32)
+    values[[3, 4]] = np.nan, np.inf
+    record = numbers.values_record(values, None)
+    jsonschema.validate(record, json.loads(numbers.VALUES.text))
+    assert record["values"][3:6] == [-1.0, -1.0, 250.0] and record["mean"] == 250.0
+    assert "dropped_before" not in record
+    nothing = without_contact("none", [3])
+    record = numbers.estimate_record(nothing)
+    jsonschema.validate(record, json.loads(numbers.ESTIMATE.text))
+    assert record["left_out"] == [3] and "offset_mm" not in record
+    grid = drawings.Raster(layout).grid(values, "left", 0)
+    squares = np.frombuffer(grid.data, np.uint8).reshape(-1, grid.cell_stride)
+    red = (squares[:, :3] == [204, 26, 26]).all(axis=1)
+    assert 0 < red.sum() < len(squares) / 8
+    light = np.frombuffer(grid.data, "<f4")[1::2]
+    assert np.isnan(light).any() and np.isinf(light).any()
+    update = drawings.cells(layout, values, "left", 0)
+    discs = update.entities[0].cylinders
+    assert discs[3].color.r == pytest.approx(0.8) and discs[5].color.r == pytest.approx(250 / 255)
+
+
+def test_times_go_on_after_the_wall_clock_was_set_back(
+    tmp_path: Path, layout: Layout, sources: Sources
+) -> None:
+    _, (frame, *_) = sources["left"]
+    with Writer(tmp_path / "a.mcap", layout, device_id="device 0") as writer:
+        for i in range(20):
+            back_s = 3600.0 if i > 5 else 0.0
+            writer.write(_at(frame, i, frame.t_wall + i / 50.0 - back_s, frame.t_host + i / 50.0))
+    write_scene(tmp_path / "scene.mcap", {"a": tmp_path / "a.mcap"}, estimates=False)
+    with (tmp_path / "scene.mcap").open("rb") as file:
+        times = [
+            message.log_time
+            for _, channel, message in make_reader(file).iter_messages()
+            if channel.topic == "/a/values"
+        ]
+    np.testing.assert_allclose(np.diff(times), 2e7, atol=1e3)
 
 
 def test_contact_and_estimate_are_those_of_the_edge(messages: Messages) -> None:
@@ -163,9 +219,9 @@ def test_drawings_come_at_most_sixty_times_a_second(
     assert "/fast/estimate" not in topics
 
 
-def _at(frame: Frame, seq: int, t_wall: float) -> Frame:
+def _at(frame: Frame, seq: int, t_wall: float, t_host: float = 0.0) -> Frame:
     fields = {name: getattr(frame, name) for name in frame.__slots__}
-    return Frame(**fields | {"seq": seq, "t_wall": t_wall})
+    return Frame(**fields | {"seq": seq, "t_wall": t_wall, "t_host": t_host})
 
 
 def test_panels_show_topics_and_fields_that_the_file_has(messages: Messages) -> None:

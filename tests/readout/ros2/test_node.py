@@ -66,7 +66,9 @@ def test_contact_and_estimate_are_in_metres_and_radians(active: Any) -> None:
         assert estimate.width == pytest.approx(fitted.width_mm / 1000)
         names = list(estimate.parameters)
         size = len(names)
-        assert size == len(fitted.parameters) and not any(n.endswith("_mm") for n in names)
+        assert size == len(fitted.parameters) and not any("_" in n for n in names)
+        assert estimate.curvature == pytest.approx(fitted.curvature_per_mm * 1000)
+        assert estimate.transmittance == pytest.approx(fitted.transmittance)
         spread = np.reshape(estimate.covariance, (size, size))
         at = names.index("offset"), names.index("angle")
         assert math.sqrt(spread[at[0], at[0]]) == pytest.approx(fitted.offset_sd_mm / 1000)
@@ -124,6 +126,11 @@ def test_markers_show_cells_and_lines_and_delete_what_is_gone(active: Any, ros: 
     gone = ros.markers.lines([], ros.markers.ESTIMATE, "estimate", cells.header)
     assert gone.action == gone.DELETE and gone.points == []
     assert all(m.pose.orientation.w == 1.0 for m in marked)
+    over = estimate.points[0].z - cells.scale.z / 2
+    assert cells.type == cells.CUBE_LIST and over > 1e-4, "lines are over the cells"
+    active.on_deactivate(None)
+    (last,) = active.published["~/markers"][-1].markers
+    assert last.action == last.DELETEALL
 
 
 def test_nothing_is_published_unless_the_node_is_active(make_node: Make) -> None:
@@ -150,7 +157,8 @@ def test_nothing_is_published_unless_the_node_is_active(make_node: Make) -> None
     [
         ({"url": "serial:///dev/lumitip-none"}, "lumitip-none"),
         ({"url": "twin://edge", "layout": "/no/layout.json"}, "/no/layout.json"),
-        ({"url": "twin://edge", "gap_mm": -1.0}, "gap_mm"),
+        ({"url": "twin://edge", "gap_mm": -1.0}, "The parameter estimate: false does without"),
+        ({"url": "tcp://127.0.0.1:1"}, "127.0.0.1"),
     ],
 )
 def test_what_cannot_be_opened_leaves_the_node_unconfigured(
@@ -159,7 +167,10 @@ def test_what_cannot_be_opened_leaves_the_node_unconfigured(
     node = make_node(**parameters)
     assert node.on_configure(None) is Returned.FAILURE
     assert any(level == "error" and why in text for level, text in node.logged)
-    assert node._tip is None
+    assert node._tip is None and not node.failure, "the process goes on"
+    node.diagnose()
+    (status,) = node.published["/diagnostics"][-1].status
+    assert status.level == status.ERROR and why in status.message
 
 
 def test_taring_answers_why_it_failed(make_node: Make) -> None:
@@ -195,7 +206,41 @@ def test_a_link_that_is_given_up_is_fatal_and_ends_the_process(
     assert any(level == "fatal" and "is over" in text for level, text in node.logged)
     (status,) = node.published["/diagnostics"][-1].status
     assert status.level == status.ERROR and "is over" in status.message
-    assert node.destroyed
+    assert node.destroyed and Executor.shut_down
+    assert node.acknowledged == len(node.published["/diagnostics"])
+
+
+def test_a_frame_that_cannot_be_published_is_fatal(
+    make_node: Make, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    node = make_node(url="twin://edge", estimate=False)
+    node.on_configure(None)
+    monkeypatch.setattr(node, "_track", lambda _: 1 / 0)
+    node.on_activate(None)
+    until = time.monotonic() + 5.0
+    while not node.failure:
+        assert time.monotonic() < until
+        time.sleep(0.01)
+    assert "ZeroDivisionError" in node.failure
+    assert any(level == "fatal" for level, _ in node.logged)
+
+
+def test_after_the_end_of_ros_nothing_more_is_said(
+    make_node: Make, ros: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    node = make_node(url="twin://edge", estimate=False)
+    node.on_configure(None)
+    monkeypatch.setattr(node, "_track", lambda _: 1 / 0)
+    monkeypatch.setattr(ros.rclpy, "ok", lambda: False)
+    node.on_activate(None)
+    time.sleep(0.3)
+    assert not node.failure and not any(level == "fatal" for level, _ in node.logged)
+
+
+def test_diagnostics_do_not_wait_for_taring(make_node: Make) -> None:
+    groups = make_node(url="twin://edge").groups
+    assert groups["timer"] is not None, "of its own"
+    assert groups["~/tare"] is None, "that of the transitions"
 
 
 def test_ctrl_c_ends_without_an_error(ros: Any, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -218,14 +263,18 @@ def test_diagnostics_tell_how_the_fingertip_is(make_node: Make) -> None:
     node = make_node(url="twin://edge", estimate=False)
     assert told(node) == (b"\3", "not configured")
     node.on_configure(None)
-    assert told(node) == (b"\1", "connected, no frame yet")
     node.on_activate(None)
     wait_for(node, "~/values", 3)
     assert told(node) == (b"\0", "frames arrive")
     (status,) = node.published["/diagnostics"][-1].status
     figures = {pair.key: pair.value for pair in status.values}
     assert int(figures["received"]) >= 3 and figures["lost"] == "0"
+    assert status.name == "/fingertip: fingertip"
     node.on_deactivate(None)
     time.sleep(0.6)
+    assert told(node) == (b"\0", "frames arrive"), "the link is well, only nothing is published"
+    node.parameters["stale_s"] = 1e-6
     level, text = told(node)
-    assert level == b"\1" and "s old" in text
+    assert level == b"\1" and "s" in text
+    node.on_cleanup(None)
+    assert told(node) == (b"\3", "not configured")

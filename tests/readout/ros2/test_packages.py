@@ -16,7 +16,10 @@ from lumitip.recording.message import schema_text
 
 ROOT = Path(__file__).parents[3] / "readout" / "ros2"
 MESSAGES, NODE = ROOT / "lumitip_msgs", ROOT / "lumitip_ros"
-NOT_OF_ROS = {"lumitip", "lumitip_ros", "numpy", "setuptools", *sys.stdlib_module_names}
+NOT_OF_ROS = {"lumitip", "lumitip_ros", "setuptools", *sys.stdlib_module_names}
+"""Lumitip is installed with pip."""
+NAMES = {"numpy": "python3-numpy"}
+"""Of modules in a package.xml, where they differ."""
 
 
 def needed(package: Path) -> set[str]:
@@ -40,7 +43,8 @@ def imported(path: Path) -> set[str]:
 def test_packages_name_all_that_they_import() -> None:
     sources = [*NODE.rglob("*.py")]
     assert len(sources) >= 6
-    used = set().union(*map(imported, sources)) - NOT_OF_ROS
+    modules = set().union(*map(imported, sources)) - NOT_OF_ROS
+    used = {NAMES.get(module, module) for module in modules}
     assert used == needed(NODE), "imports, and exec_depend in package.xml"
 
 
@@ -91,11 +95,28 @@ def test_the_installed_files_exist(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_parameters_are_the_same_everywhere(ros: Any) -> None:
     config = yaml.safe_load((NODE / "config" / "fingertip.yaml").read_text("utf-8"))
-    assert config["/**"]["ros__parameters"] == ros.PARAMETERS
+    launched = launch_parameters()
+    assert config["/**"]["ros__parameters"] | launched == ros.PARAMETERS
     page = (ROOT / "README.md").read_text("utf-8")
     table = page.partition("| parameter |")[2]
-    named = re.findall(r"`(\w+)`", "".join(re.findall(r"^\| (`[^|]*)\|", table, re.MULTILINE)))
-    assert named == list(ros.PARAMETERS)
+    rows = re.findall(r"^\| `(\w+)` \| (\w+) \| (\S+) \|", table, re.MULTILINE)
+    kinds = {str: "string", bool: "bool", float: "double"}
+    assert [(name, kind) for name, kind, _ in rows] == [
+        (name, kinds[type(value)]) for name, value in ros.PARAMETERS.items()
+    ]
+    for name, _, default in rows:
+        value = ros.PARAMETERS[name]
+        shown = {"": "empty", True: "true"}.get(value, str(value))  # type: ignore[arg-type]
+        assert default.strip("`") == shown, name
+
+
+def launch_parameters() -> dict[str, str]:
+    """Parameters that the launch file sets, with their defaults."""
+    text = (NODE / "launch" / "fingertip.launch.py").read_text("utf-8")
+    for node in ast.parse(text).body:
+        if isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "") == "PARAMETERS":
+            return {name: default for name, (default, _) in ast.literal_eval(node.value).items()}
+    raise AssertionError("the launch file has no PARAMETERS")
 
 
 def test_topics_of_the_page_are_those_of_the_node(make_node: Any) -> None:
@@ -117,8 +138,8 @@ class Recorder(ModuleType):
 
 
 LAUNCH = {
-    "launch": {"LaunchDescription"},
-    "launch.actions": {"DeclareLaunchArgument", "EmitEvent", "RegisterEventHandler"},
+    "launch": {"Action", "LaunchDescription"},
+    "launch.actions": {"DeclareLaunchArgument", "EmitEvent", "RegisterEventHandler", "TimerAction"},
     "launch.event_handlers": {"OnProcessStart"},
     "launch.events": {"matches_action"},
     "launch.substitutions": {"LaunchConfiguration", "PathJoinSubstitution"},
@@ -127,6 +148,7 @@ LAUNCH = {
     "launch_ros.event_handlers": {"OnStateTransition"},
     "launch_ros.events": set(),
     "launch_ros.events.lifecycle": {"ChangeState"},
+    "launch_ros.parameter_descriptions": {"ParameterValue"},
     "launch_ros.substitutions": {"FindPackageShare"},
     "lifecycle_msgs": set(),
     "lifecycle_msgs.msg": {"Transition"},
@@ -134,9 +156,7 @@ LAUNCH = {
 """Modules and names that ROS 2 has."""
 
 
-def test_the_launch_file_configures_then_activates(
-    ros: Any, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_launch_file_configures_then_activates(monkeypatch: pytest.MonkeyPatch) -> None:
     path = NODE / "launch" / "fingertip.launch.py"
     for node in ast.walk(ast.parse(path.read_text("utf-8"))):
         if isinstance(node, ast.ImportFrom):
@@ -148,17 +168,18 @@ def test_the_launch_file_configures_then_activates(
     (node,) = [part for part in parts if part["is"] == "LifecycleNode"]
     assert (node["package"], node["executable"]) == ("lumitip_ros", "fingertip")
     declared = {part["args"][0] for part in parts if part["is"] == "DeclareLaunchArgument"}
-    assert declared == set(made["ARGUMENTS"]) <= {*ros.PARAMETERS, "name", "namespace"}
-    set_here = node["parameters"][1]
-    assert set(set_here) <= set(ros.PARAMETERS)
-    for name, (default, _) in made["ARGUMENTS"].items():
-        if name in ros.PARAMETERS:
-            assert default == ros.PARAMETERS[name]
-    started, configured = (p["args"][0] for p in parts if p["is"] == "RegisterEventHandler")
+    assert declared == {"config", "name", "namespace", *launch_parameters()}
+    assert set(node["parameters"][1]) == set(launch_parameters())
+    assert all(value["value_type"] is str for value in node["parameters"][1].values())
+    started, active, refused = (p["args"][0] for p in parts if p["is"] == "RegisterEventHandler")
     assert started["is"] == "OnProcessStart" and started["target_action"] is node
     assert _transition(started["on_start"]) == 1
-    assert (configured["start_state"], configured["goal_state"]) == ("configuring", "inactive")
-    assert _transition(configured["entities"]) == 3
+    assert (active["start_state"], active["goal_state"]) == ("configuring", "inactive")
+    assert _transition(active["entities"]) == 3
+    assert (refused["start_state"], refused["goal_state"]) == ("configuring", "unconfigured")
+    (later,) = refused["entities"]
+    assert later["is"] == "TimerAction" and later["period"] > 1.0
+    assert _transition(later["actions"]) == 1
 
 
 def _transition(actions: list[Any]) -> int:

@@ -1,59 +1,65 @@
 """Diagnostics of a fingertip for `/diagnostics`."""
 
+from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
 from lumitip import Fingertip
+from lumitip.errors import LinkError, StaleFrame
 
 
 def status(
-    name: str, tip: Fingertip | None, failure: str, age_s: float | None, stale_s: float
+    name: str, tip: Fingertip | None, given_up: str, refused: str, stale_s: float
 ) -> DiagnosticStatus:
-    """How a fingertip is.
+    """Level, text and figures of a fingertip.
 
     Args:
-        name: of the node.
+        name: of the node, with its namespace.
         tip: the open fingertip, if there is one.
-        failure: why the link was given up; empty while it was not.
-        age_s: age of the newest frame; `None` before the first.
+        given_up: why its link was given up; empty while it was not.
+        refused: why the last attempt to configure the node failed; empty without.
         stale_s: age from which a frame is too old.
     """
-    level, text = _judged(tip, failure, age_s, stale_s)
-    found = DiagnosticStatus(level=level, name=f"{name}: fingertip", message=text)
+    level, text = _level(tip, given_up, refused, stale_s)
+    message = DiagnosticStatus(level=level, name=f"{name}: fingertip", message=text)
     if tip is not None:
-        stats = tip.stats
-        found.hardware_id = tip.device_id
-        dropped = sum(stats.dropped.values()) if stats.dropped else None
-        figures = {
-            "received": stats.received,
-            "lost": "unknown" if dropped is None else dropped,
-            "not read in time": stats.overflowed,
-            "unreadable packets": stats.unreadable,
-            "reconnections": stats.reconnects,
-            "restarts of the device": stats.restarts,
-            "rate (Hz)": "unknown" if stats.rate_hz is None else f"{stats.rate_hz:.1f}",
-        }
-        found.values = [KeyValue(key=key, value=str(value)) for key, value in figures.items()]
-    return found
+        message.hardware_id = tip.device_id
+        message.values = [KeyValue(key=key, value=text) for key, text in _figures(tip).items()]
+    return message
 
 
-def _judged(
-    tip: Fingertip | None, failure: str, age_s: float | None, stale_s: float
-) -> tuple[bytes, str]:
-    if failure:
-        return DiagnosticStatus.ERROR, failure
+def array(status: DiagnosticStatus, stamp: Time) -> DiagnosticArray:
+    """The message of one status."""
+    message = DiagnosticArray(status=[status])
+    message.header.stamp = stamp
+    return message
+
+
+def _level(tip: Fingertip | None, given_up: str, refused: str, stale_s: float) -> tuple[bytes, str]:
     if tip is None:
-        return DiagnosticStatus.STALE, "not configured"
+        failed = DiagnosticStatus.ERROR, refused
+        return failed if refused else (DiagnosticStatus.STALE, "not configured")
+    if given_up:
+        return DiagnosticStatus.ERROR, given_up
     if not tip.connected:
         return DiagnosticStatus.WARN, "the link is cut, reconnecting"
-    if age_s is None:
-        return DiagnosticStatus.WARN, "connected, no frame yet"
-    if age_s > stale_s:
-        return DiagnosticStatus.WARN, f"the newest frame is {age_s:.1f} s old"
+    try:
+        tip.latest(stale_s)
+    except StaleFrame as error:
+        return DiagnosticStatus.WARN, str(error)
+    except LinkError as error:
+        return DiagnosticStatus.ERROR, str(error)
     return DiagnosticStatus.OK, "frames arrive"
 
 
-def array(found: DiagnosticStatus, stamp: object) -> DiagnosticArray:
-    """The message of one status."""
-    message = DiagnosticArray(status=[found])
-    message.header.stamp = stamp
-    return message
+def _figures(tip: Fingertip) -> dict[str, str]:
+    stats = tip.stats
+    lost = "unknown" if stats.dropped is None else str(sum(stats.dropped.values()))
+    return {
+        "received": str(stats.received),
+        "lost": lost,
+        "not read in time": str(stats.overflowed),
+        "unreadable packets": str(stats.unreadable),
+        "reconnections": str(stats.reconnects),
+        "restarts of the device": str(stats.restarts),
+        "rate (Hz)": "unknown" if stats.rate_hz is None else f"{stats.rate_hz:.1f}",
+    }

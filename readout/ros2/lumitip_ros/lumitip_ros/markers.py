@@ -1,4 +1,4 @@
-"""Markers for RViz: cells as grey discs, the lines of contact and estimate."""
+"""Markers for RViz: cells as grey tiles, and over them the lines of contact and estimate."""
 
 import math
 from collections.abc import Sequence
@@ -11,53 +11,55 @@ from visualization_msgs.msg import Marker, MarkerArray
 from lumitip import Frame, Layout
 
 _METRE = 1e-3
-_SIZE, _HIGH_MM, _LINE_MM = 0.8, 0.2, 0.3
+_SIZE = 0.7  # of a cell, in pitches
+_HIGH_MM, _LINE_MM = 0.2, 0.3
+_OVER_MM = 0.4  # of lines over the face, so that no cell hides them
 PUBLISHED, ESTIMATE = (0.34, 0.71, 0.91), (0.91, 0.35, 0.05)
 """Colours of the published method and of the estimate, as in the live view."""
 
 
-def cells(frame: Frame, layout: Layout, head: Header) -> Marker:
+def cells(frame: Frame, layout: Layout, header: Header) -> Marker:
     """All cells as one marker; a cell without a value is red."""
-    marker = _marker(head, "cells", Marker.SPHERE_LIST)
+    marker = _marker(header, "cells", Marker.CUBE_LIST)
     marker.scale.x = marker.scale.y = _SIZE * layout.pitch_mm * _METRE
     marker.scale.z = _HIGH_MM * _METRE
-    marker.points = _points(np.column_stack([layout.x_mm, layout.y_mm]))
+    marker.points = _points(np.column_stack([layout.x_mm, layout.y_mm]), 0.0)
     marker.colors = [_grey(value) for value in frame.values.tolist()]
     return marker
 
 
 def lines(
-    drawn: Sequence[np.ndarray], colour: Sequence[float], namespace: str, head: Header
+    drawn: Sequence[np.ndarray], colour: Sequence[float], namespace: str, header: Header
 ) -> Marker:
-    """Lines as one marker; none delete those of the frame before.
+    """Lines as one marker; without lines it deletes those of the frame before.
 
     Args:
         drawn: both ends of each line, shape `(2, 2)` (mm).
         colour: red, green and blue, 0 to 1.
         namespace: of the marker.
-        head: of the frame.
+        header: of the frame.
     """
-    marker = _marker(head, namespace, Marker.LINE_LIST)
+    marker = _marker(header, namespace, Marker.LINE_LIST)
     marker.action = Marker.ADD if len(drawn) else Marker.DELETE
     marker.scale.x = _LINE_MM * _METRE
     marker.color = _colour(*colour)
-    marker.points = [point for line in drawn for point in _points(np.asarray(line))]
+    marker.points = [point for line in drawn for point in _points(np.asarray(line), _OVER_MM)]
     return marker
 
 
-def together(markers: Sequence[Marker]) -> MarkerArray:
-    """One message of all."""
-    return MarkerArray(markers=list(markers))
+def none() -> MarkerArray:
+    """Deletes all markers."""
+    return MarkerArray(markers=[Marker(action=Marker.DELETEALL)])
 
 
-def _marker(head: Header, namespace: str, kind: int) -> Marker:
-    marker = Marker(header=head, ns=namespace, id=0, type=kind, action=Marker.ADD)
+def _marker(header: Header, namespace: str, kind: int) -> Marker:
+    marker = Marker(header=header, ns=namespace, id=0, type=kind, action=Marker.ADD)
     marker.pose.orientation.w = 1.0
     return marker
 
 
-def _points(places_mm: np.ndarray) -> list[Point]:
-    return [Point(x=x * _METRE, y=y * _METRE, z=0.0) for x, y in places_mm.tolist()]
+def _points(places_mm: np.ndarray, z_mm: float) -> list[Point]:
+    return [Point(x=x * _METRE, y=y * _METRE, z=z_mm * _METRE) for x, y in places_mm.tolist()]
 
 
 def _grey(value: float) -> ColorRGBA:

@@ -25,20 +25,20 @@ def header(frame: Frame, frame_id: str) -> Header:
     )
 
 
-def values(frame: Frame, head: Header) -> Values:
+def values(frame: Frame, header: Header) -> Values:
     """Light of all cells."""
     dropped = -1 if frame.dropped_before is None else frame.dropped_before
-    return Values(header=head, values=frame.values.tolist(), dropped_before=dropped)
+    return Values(header=header, values=frame.values.tolist(), dropped_before=dropped)
 
 
-def contact(found: processing.Contact, head: Header) -> Contact:
+def contact(found: processing.Contact, header: Header) -> Contact:
     """Contact by the published method."""
     line = found.line if found.shape == "edge" else None
     cable = found.cable if found.shape == "cable" else None
     corner = found.corner if found.shape == "corner" else None
     turned = cable or line
     return Contact(
-        header=head,
+        header=header,
         shape=found.shape,
         threshold=_NAN if found.threshold is None else float(found.threshold),
         contrast=_NAN if found.contrast is None else float(found.contrast),
@@ -50,7 +50,7 @@ def contact(found: processing.Contact, head: Header) -> Contact:
     )
 
 
-def estimate(found: Estimated, head: Header) -> Estimate:
+def estimate(found: Estimated, header: Header) -> Estimate:
     """Pose with its covariance."""
     named = [_in_si(name) for name in found.parameters]
     covariance = [
@@ -59,28 +59,32 @@ def estimate(found: Estimated, head: Header) -> Estimate:
         for (_, column_scale), value in zip(named, row, strict=True)
     ]
     return Estimate(
-        header=head,
+        header=header,
         kind=found.kind,
         flags=list(found.flags),
         offset=float(found.offset_mm) * _METRE,
         angle=math.radians(found.angle_deg),
+        dark_side=found.dark_side,
         width=float(found.width_mm) * _METRE,
+        curvature=float(found.curvature_per_mm) / _METRE,
         vertex=_point(found.vertex_mm),
         direction=math.radians(found.direction_deg),
         opening=math.radians(found.opening_deg),
         parameters=[name for name, _ in named],
         covariance=covariance,
+        transmittance=float(found.transmittance),
+        gain=float(found.gain),
         rms_counts=float(found.rms_counts),
         left_out=list(found.left_out),
     )
 
 
-def line_transform(found: Estimated, head: Header, child_frame_id: str) -> TransformStamped:
+def line_transform(found: Estimated, header: Header, child_frame_id: str) -> TransformStamped:
     """The line of an estimate as a frame: its origin is the point of the line that is nearest to
     the origin of the sensor, its x axis runs along the line."""
     angle = math.radians(found.angle_deg)
     offset = float(found.offset_mm) * _METRE
-    placed = TransformStamped(header=head, child_frame_id=child_frame_id)
+    placed = TransformStamped(header=header, child_frame_id=child_frame_id)
     placed.transform.translation.x = -offset * math.sin(angle)
     placed.transform.translation.y = offset * math.cos(angle)
     placed.transform.rotation.z = math.sin(angle / 2.0)

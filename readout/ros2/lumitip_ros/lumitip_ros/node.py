@@ -12,6 +12,8 @@ from collections.abc import Callable
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from lumitip_msgs.msg import Contact, Estimate, Values
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
+from rclpy.duration import Duration
 from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
 from rclpy.lifecycle import LifecycleNode, State, TransitionCallbackReturn
 from rclpy.qos import qos_profile_sensor_data
@@ -40,6 +42,7 @@ PARAMETERS: dict[str, str | bool | float] = {
 """Name and default of each; see README.md."""
 _DIAGNOSTICS_S = 1.0
 _MARKERS_S = 1.0 / 30.0
+_SENDING_S = 0.5  # longest wait for the last diagnostics to be received
 
 
 class FingertipNode(LifecycleNode):
@@ -49,11 +52,10 @@ class FingertipNode(LifecycleNode):
         super().__init__("fingertip")
         for name, default in PARAMETERS.items():
             self.declare_parameter(name, default)
-        self.failure = ""
-        """Why the link was given up."""
         self._tip: Fingertip | None = None
         self._stop: Callable[[], None] | None = None
-        self._marked_s = self._newest_s = float("-inf")
+        self._given_up = self._refused = ""
+        self._marked_s = float("-inf")
         sensor = qos_profile_sensor_data
         self._values = self.create_lifecycle_publisher(Values, "~/values", sensor)
         self._contact = self.create_lifecycle_publisher(Contact, "~/contact", sensor)
@@ -61,25 +63,31 @@ class FingertipNode(LifecycleNode):
         self._markers = self.create_lifecycle_publisher(MarkerArray, "~/markers", sensor)
         self._diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", 10)
         self._transforms = TransformBroadcaster(self)
+        # Taring is in the group of the transitions: none of them closes the link meanwhile.
         self.create_service(Trigger, "~/tare", self._tare)
-        self.create_timer(_DIAGNOSTICS_S, self._diagnose)
+        # Diagnostics go on while a transition or taring waits for the fingertip.
+        apart = MutuallyExclusiveCallbackGroup()
+        self.create_timer(_DIAGNOSTICS_S, self.diagnose, callback_group=apart)
+
+    @property
+    def failure(self) -> str:
+        """Why the open link was given up; empty while it was not."""
+        return self._given_up if self._tip is not None else ""
 
     def on_configure(self, _: State) -> TransitionCallbackReturn:
         """Connect; without success the node stays unconfigured."""
+        self._given_up = self._refused = ""
         try:
             self._tip = Fingertip.open(
                 self._text("url"), self._text("layout") or None, on_event=self._on_event
             )
             self._track, self._pose = Tracker(self._tip.layout), None
             if self.get_parameter("estimate").value:
-                self._pose = PoseEstimator(
-                    self._tip.layout,
-                    gap_mm=self._number("gap_mm"),
-                    diameter_mm=self._number("diameter_mm"),
-                    tracking=True,
-                ).prepare()
-        except LumitipError as error:
-            self.get_logger().error(str(error))
+                self._pose = self._estimator(self._tip)
+        except Exception as error:  # noqa: BLE001 - rclpy would swallow it without a word
+            expected = isinstance(error, LumitipError)
+            self._refused = str(error) if expected else repr(error)
+            self.get_logger().error(self._refused)
             self._close()
             return TransitionCallbackReturn.FAILURE
         self.get_logger().info(f"{self._tip.device_id}: {len(self._tip.layout)} cells")
@@ -93,8 +101,9 @@ class FingertipNode(LifecycleNode):
         return result
 
     def on_deactivate(self, state: State) -> TransitionCallbackReturn:
-        """Publish no more; the link stays."""
+        """Publish no more, and delete the markers; the link stays."""
         self._pause()
+        self._markers.publish(markers.none())
         return super().on_deactivate(state)
 
     def on_cleanup(self, _: State) -> TransitionCallbackReturn:
@@ -117,32 +126,61 @@ class FingertipNode(LifecycleNode):
         self._close()
         super().destroy_node()
 
+    def diagnose(self) -> None:
+        """Publish the state of the fingertip."""
+        name, stale_s = self.get_fully_qualified_name(), self._number("stale_s")
+        status = health.status(name, self._tip, self._given_up, self._refused, stale_s)
+        stamp = self.get_clock().now().to_msg()
+        self._diagnostics.publish(health.array(status, stamp))
+
+    def wait_until_told(self) -> None:
+        """Wait until the last diagnostics have been received, for at most half a second."""
+        self._diagnostics.wait_for_all_acked(Duration(seconds=_SENDING_S))
+
+    def _estimator(self, tip: Fingertip) -> PoseEstimator:
+        try:
+            return PoseEstimator(
+                tip.layout,
+                gap_mm=self._number("gap_mm"),
+                diameter_mm=self._number("diameter_mm"),
+                tracking=True,
+            ).prepare()
+        except LumitipError as error:
+            raise LumitipError(f"{error}. The parameter estimate: false does without") from error
+
     def _publish(self, frame: Frame) -> None:
         """Publish a frame; on a thread of the fingertip, which publishers may be used from."""
+        try:
+            self._publish_all(frame)
+        except Exception as error:  # noqa: BLE001 - the thread would end without a word
+            if rclpy.ok():  # else publishers are gone: the process ends
+                self._give_up(f"a frame could not be published: {error!r}")
+
+    def _publish_all(self, frame: Frame) -> None:
         tip = self._tip
         if tip is None:
             return
-        self._newest_s = time.monotonic()
-        head = messages.header(frame, self._text("frame_id"))
+        header = messages.header(frame, self._text("frame_id"))
         contact = self._track(frame.values)
-        self._values.publish(messages.values(frame, head))
-        self._contact.publish(messages.contact(contact, head))
+        self._values.publish(messages.values(frame, header))
+        self._contact.publish(messages.contact(contact, header))
         estimate = self._pose(frame.values) if self._pose else None
         if estimate:
-            self._estimate.publish(messages.estimate(estimate, head))
+            self._estimate.publish(messages.estimate(estimate, header))
             if estimate.trusted:
                 child = self._text("line_frame_id")
-                self._transforms.sendTransform(messages.line_transform(estimate, head, child))
-        if self._newest_s - self._marked_s < _MARKERS_S:
+                self._transforms.sendTransform(messages.line_transform(estimate, header, child))
+        now_s = time.monotonic()
+        if now_s - self._marked_s < _MARKERS_S:
             return
-        self._marked_s, reach_mm = self._newest_s, reach_of(tip.layout)
-        drawn = [markers.cells(frame, tip.layout, head)]
+        self._marked_s, reach_mm = now_s, reach_of(tip.layout)
+        drawn = [markers.cells(frame, tip.layout, header)]
         lines = borders(contact, reach_mm)
-        drawn.append(markers.lines(lines, markers.PUBLISHED, "published", head))
+        drawn.append(markers.lines(lines, markers.PUBLISHED, "published", header))
         if estimate:
             lines = described(estimate, reach_mm)["lines"]
-            drawn.append(markers.lines(lines, markers.ESTIMATE, "estimate", head))
-        self._markers.publish(markers.together(drawn))
+            drawn.append(markers.lines(lines, markers.ESTIMATE, "estimate", header))
+        self._markers.publish(MarkerArray(markers=drawn))
 
     def _tare(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         """Measure the empty grasp."""
@@ -156,22 +194,18 @@ class FingertipNode(LifecycleNode):
         return response
 
     def _on_event(self, event: LinkEvent) -> None:
-        """Log an event of the link, and remember that it was given up."""
+        """Log an event of the link."""
         log = self.get_logger()
         if event.kind in ("failed", "ended"):
-            self.failure = event.detail
-            log.fatal(event.detail)
+            self._give_up(event.detail)
         elif event.kind in ("lost", "restarted"):
             log.warning(event.detail)
         else:
             log.info(event.detail)
 
-    def _diagnose(self) -> None:
-        newest_s = self._newest_s
-        age_s = time.monotonic() - newest_s if newest_s > float("-inf") else None
-        stale_s = self._number("stale_s")
-        found = health.status(self.get_name(), self._tip, self.failure, age_s, stale_s)
-        self._diagnostics.publish(health.array(found, self.get_clock().now().to_msg()))
+    def _give_up(self, why: str) -> None:
+        self._given_up = why
+        self.get_logger().fatal(why)
 
     def _pause(self) -> None:
         if self._stop:
@@ -195,19 +229,23 @@ def main() -> None:
     """Run until it is interrupted, or until its link is given up: exit code 1."""
     rclpy.init()
     node = FingertipNode()
-    executor = MultiThreadedExecutor(2)  # taring waits for frames
+    executor = MultiThreadedExecutor(2)  # one thread for diagnostics
     executor.add_node(node)
+    failure = ""
     try:
-        while rclpy.ok() and not node.failure:
+        while rclpy.ok() and not failure:
             executor.spin_once(timeout_sec=0.2)
-        if node.failure:
-            node._diagnose()
+            failure = node.failure
+        if failure:
+            node.diagnose()
+            node.wait_until_told()
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
     finally:
+        executor.shutdown()
         node.destroy_node()
         rclpy.try_shutdown()
-    sys.exit(1 if node.failure else 0)
+    sys.exit(1 if failure else 0)
 
 
 if __name__ == "__main__":
