@@ -97,17 +97,8 @@ def _among_cells(
     """Parts with their references where there is room, and the outlines of the cells."""
     front, components = page.sides["front"], page.board.components
     lines = front.clipped(edges)
-    half = page.rules.silk_line_mm / 2
-    rooms: dict[Side, Clear] = {
-        "front": front.taking([line.buffer(half) for line in lines]),
-        "back": page.sides["back"].taking([]),
-    }
-    shown: _Places = {}
-    for part in components:
-        room = rooms[part.side]
-        if part.kind in _SHOWN and (text := _place_of(page, part, room)):
-            shown[part.ref] = text
-            room.take(extent(text, part.side))
+    rooms = _rooms(page, lines)
+    shown = _of_parts(page, rooms)
     cells = [part for part in components if part.kind in AT_CELLS]
     at_cells, cut = _at_cells(page, cells, rooms["front"]), False
     if not at_cells:
@@ -118,12 +109,34 @@ def _among_cells(
         )
         at_cells = _through_outlines(page, cells, bare, pitch_mm)
         cut = bool(at_cells)
-    shown |= at_cells or _at_ends(page, cells, rooms["front"], pitch_mm)
+    if not at_cells:  # the ends of columns have the first choice: there are few places for them
+        rooms = _rooms(page, lines)
+        at_cells = _at_ends(page, cells, rooms["front"], pitch_mm)
+        shown = _of_parts(page, rooms)
+    shown |= at_cells
     named = tuple(
         _printed(page, part, shown[part.ref]) if part.ref in shown else part for part in components
     )
     page.lines("front", front.clipped(edges) if cut else lines)
     return named
+
+
+def _rooms(page: Page, lines: Sequence[LineString]) -> dict[Side, Clear]:
+    """Both sides with the outlines of the cells, to try where references fit."""
+    half = page.rules.silk_line_mm / 2
+    outlines = [line.buffer(half) for line in lines]
+    return {"front": page.sides["front"].taking(outlines), "back": page.sides["back"].taking([])}
+
+
+def _of_parts(page: Page, rooms: dict[Side, Clear]) -> _Places:
+    """References of parts elsewhere than at cells, where there is room."""
+    shown: _Places = {}
+    for part in page.board.components:
+        room = rooms[part.side]
+        if part.kind in _SHOWN and (text := _place_of(page, part, room)):
+            shown[part.ref] = text
+            room.take(extent(text, part.side))
+    return shown
 
 
 def _at_cells(page: Page, cells: Sequence[PlacedComponent], room: Clear) -> _Places:
