@@ -13,32 +13,27 @@ def _python(code: str) -> str:
     return done.stdout
 
 
-@pytest.mark.parametrize("library", ["mcap", "zstandard"])
-def test_without_its_libraries_recording_names_the_extra(library: str) -> None:
+@pytest.mark.parametrize(
+    ("library", "room", "extra"),
+    [
+        ("mcap", "recording", "record"),
+        ("zstandard", "recording", "record"),
+        ("mcap", "foxglove", "foxglove"),
+        ("mcap_protobuf", "foxglove", "foxglove"),
+        ("foxglove_schemas_protobuf", "foxglove", "foxglove"),
+    ],
+)
+def test_without_its_libraries_a_room_names_the_extra(library: str, room: str, extra: str) -> None:
     code = f"""
 import sys
 sys.modules[{library!r}] = None
 from lumitip import LumitipError
 try:
-    import lumitip.recording
+    import lumitip.{room}
 except LumitipError as error:
     print(error)
 """
-    assert "pip install '.[record]'" in _python(code)
-
-
-@pytest.mark.parametrize("library", ["foxglove_schemas_protobuf", "mcap_protobuf", "mcap"])
-def test_without_its_libraries_the_file_for_foxglove_names_the_extra(library: str) -> None:
-    code = f"""
-import sys
-sys.modules[{library!r}] = None
-from lumitip import LumitipError
-try:
-    import lumitip.foxglove
-except LumitipError as error:
-    print(error)
-"""
-    assert "pip install '.[foxglove]'" in _python(code)
+    assert f"pip install '.[{extra}]'" in _python(code)
 
 
 def test_without_pyarrow_parquet_names_the_extra() -> None:
