@@ -260,7 +260,7 @@ def test_diagnostics_tell_how_the_fingertip_is(make_node: Make) -> None:
         (status,) = node.published["/diagnostics"][-1].status
         return status.level, status.message
 
-    node = make_node(url="twin://edge", estimate=False)
+    node = make_node(url="twin://edge", estimate=False, stale_s=5.0)
     assert told(node) == (b"\3", "not configured")
     node.on_configure(None)
     node.on_activate(None)
