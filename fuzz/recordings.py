@@ -14,8 +14,8 @@ from mcap.writer import Writer as McapWriter
 from fuzz.layouts import layouts
 from lumitip import Layout
 from lumitip.recording import RecordedFrame, RecordingError, Writer
-from lumitip.recording.message import SCHEMA_NAME, encode, schema_text
-from lumitip.recording.metadata import NAME
+from lumitip.recording.message import SCHEMA_NAME, encode, frames_topic, schema_text
+from lumitip.recording.metadata import FINGER, NAME
 from lumitip.recording.reader import read_frames, read_metadata
 
 _MOST_FRAMES = 1000  # of the few that are in the files, however the damage repeats them
@@ -49,17 +49,21 @@ def recordings() -> tuple[bytes, ...]:
         {"compression": CompressionType.LZ4},
         {"use_chunking": False},
     )
-    return whole, *(_unguarded(texts, frames, kind) for kind in kinds)
+    others = (_unguarded(texts, frames, kind, "/lumitip/frames") for kind in kinds)
+    named = _unguarded(texts | {FINGER: "left"}, frames, kinds[0], frames_topic("left"))
+    return whole, *others, named
 
 
-def _unguarded(texts: dict[str, str], frames: list[RecordedFrame], kind: dict[str, Any]) -> bytes:
+def _unguarded(
+    texts: dict[str, str], frames: list[RecordedFrame], kind: dict[str, Any], topic: str
+) -> bytes:
     """The same frames in another kind of file, without checksums."""
     bare = io.BytesIO()
     mcap = McapWriter(bare, enable_crcs=False, **kind)
     mcap.start(profile="ros2")
     mcap.add_metadata(NAME, texts)
     schema = mcap.register_schema(SCHEMA_NAME, "ros2msg", schema_text().encode())
-    channel = mcap.register_channel("/lumitip/frames", "cdr", schema)
+    channel = mcap.register_channel(topic, "cdr", schema)
     for frame in frames:
         mcap.add_message(channel, 0, encode(frame, "AA:BB"), 0)
     mcap.finish()
@@ -70,11 +74,11 @@ def read_recording(data: bytes) -> None:
     """Read metadata and all frames; damage inside is reported, never raised."""
     stream = io.BytesIO(data)
     try:
-        cells = len(read_metadata(stream, "input").layout)
-        refused = None
+        finger, metadata = read_metadata(stream, "input")
+        cells, refused = len(metadata.layout), None
     except RecordingError as error:
-        cells, refused = 3, error
-    for found, frame in enumerate(read_frames(stream, cells)):
+        finger, cells, refused = "", 3, error
+    for found, frame in enumerate(read_frames(stream, cells, finger)):
         assert found < _MOST_FRAMES
         if isinstance(frame, RecordedFrame):
             assert frame.raw.shape == (cells,)
