@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from board_damages import in_part, moved_part, once, swapped_pads
+from board_damages import in_part, moved_part, swapped_pads
 from damages import failing
 from lumitip_fab.checks import board
 from lumitip_fab.config.load import load
@@ -82,7 +82,9 @@ def test_a_damage_of_a_test_point(damage: Callable[..., str], net: str, folder: 
 
 def test_a_name_that_is_not_printed_is_seen(folder: Path) -> None:
     text = (folder / FLANGE).read_text()
-    (folder / FLANGE).write_text(once(text, r'\(gr_text "12V_IN"', '(gr_text "12V_INN"'))
+    hurt = text.replace('(gr_text "12V_IN"', '(gr_text "12V_INN"')  # at header and test point
+    assert hurt.count('"12V_INN"') == 3
+    (folder / FLANGE).write_text(hurt)
     assert failing(folder, "board", "flange") == {"probe_names", "silk_labels"}
 
 
