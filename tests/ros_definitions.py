@@ -26,7 +26,7 @@ def typestore() -> Any:
 
 
 class Message:
-    """A message; fields that are not given have ROS's defaults."""
+    """A message; fields without a value have ROS's defaults."""
 
     _kind: str
     _fields: list[tuple[str, Any]]
@@ -51,8 +51,8 @@ def message_modules(store: Any) -> dict[str, ModuleType]:
     modules: dict[str, ModuleType] = {}
     for kind, (constants, fields) in store.fielddefs.items():
         package, _, name = kind.split("/")
-        given = {n: bytes([v]) if type_ == "byte" else v for n, type_, v in constants}
-        namespace = {"_kind": kind, "_fields": fields, "_classes": classes, **given}
+        values = {n: bytes([v]) if type_ == "byte" else v for n, type_, v in constants}
+        namespace = {"_kind": kind, "_fields": fields, "_classes": classes, **values}
         classes[kind] = type(name, (Message,), namespace)
         for module in (package, f"{package}.msg"):
             modules.setdefault(module, ModuleType(module))

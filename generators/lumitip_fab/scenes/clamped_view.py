@@ -73,7 +73,7 @@ class _Drawn:
     areas: list[tuple[str, list[Points]]]
     """Tint and contours of each, from the farthest to the nearest."""
     lines: list[list[Points]]
-    """What is seen of the edges of each."""
+    """Pieces of the edges of each that are seen."""
 
 
 def _paint(sheet: Sheet, eye: View, bodies: Bodies, by_mm: Points) -> _Drawn:

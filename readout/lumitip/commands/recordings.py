@@ -61,8 +61,8 @@ def foxglove(options: argparse.Namespace) -> int:
 
     recordings: dict[str, Path] = {}
     for text in options.files:
-        name, is_given, file = text.partition("=")
-        name, file = (name, file) if is_given else (Path(text).stem, text)
+        name, equals, file = text.partition("=")
+        name, file = (name, file) if equals else (Path(text).stem, text)
         if name in recordings:
             raise FoxgloveError(
                 f"two recordings are called {name!r}. Give one another name: NAME=FILE"

@@ -254,27 +254,29 @@ def test_ctrl_c_ends_without_an_error(ros: Any, monkeypatch: pytest.MonkeyPatch)
 
 
 def test_diagnostics_tell_how_the_fingertip_is(make_node: Make) -> None:
-    def told(node: Any) -> tuple[bytes, str]:
+    def diagnosed(node: Any) -> tuple[bytes, str]:
         (diagnose,) = node.timers
         diagnose()
         (status,) = node.published["/diagnostics"][-1].status
         return status.level, status.message
 
     node = make_node(url="twin://edge", estimate=False, stale_s=5.0)
-    assert told(node) == (b"\3", "not configured")
+    assert diagnosed(node) == (b"\3", "not configured")
     node.on_configure(None)
     node.on_activate(None)
     wait_for(node, "~/values", 3)
-    assert told(node) == (b"\0", "frames arrive")
+    assert diagnosed(node) == (b"\0", "frames arrive")
     (status,) = node.published["/diagnostics"][-1].status
     figures = {pair.key: pair.value for pair in status.values}
     assert int(figures["received"]) >= 3 and figures["lost"] == "0"
     assert status.name == "/fingertip: fingertip"
     node.on_deactivate(None)
     time.sleep(0.6)
-    assert told(node) == (b"\0", "frames arrive"), "the link is well, only nothing is published"
+    assert diagnosed(node) == (b"\0", "frames arrive"), (
+        "the link is well, only nothing is published"
+    )
     node.parameters["stale_s"] = 1e-6
-    level, text = told(node)
+    level, text = diagnosed(node)
     assert level == b"\1" and "s" in text
     node.on_cleanup(None)
-    assert told(node) == (b"\3", "not configured")
+    assert diagnosed(node) == (b"\3", "not configured")

@@ -1,4 +1,4 @@
-"""What colcon and ROS would need of the two packages, checked without them."""
+"""Files that colcon and ROS need of the two packages, checked without them."""
 
 import ast
 import re
@@ -77,17 +77,17 @@ def test_a_recording_has_the_message_of_this_package() -> None:
 
 
 def test_the_installed_files_exist(monkeypatch: pytest.MonkeyPatch) -> None:
-    given: dict[str, Any] = {}
+    arguments: dict[str, Any] = {}
     setuptools = ModuleType("setuptools")
-    setuptools.setup = lambda **values: given.update(values)  # type: ignore[attr-defined]
+    setuptools.setup = lambda **values: arguments.update(values)  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "setuptools", setuptools)
     monkeypatch.chdir(NODE)
     runpy.run_path("setup.py")
-    installed = [file for _, files in given["data_files"] for file in files]
+    installed = [file for _, files in arguments["data_files"] for file in files]
     assert {"launch/fingertip.launch.py", "config/fingertip.yaml", "package.xml"} <= set(installed)
     assert all(Path(file).is_file() for file in installed)
-    assert all((NODE / package / "__init__.py").is_file() for package in given["packages"])
-    (script,) = given["entry_points"]["console_scripts"]
+    assert all((NODE / package / "__init__.py").is_file() for package in arguments["packages"])
+    (script,) = arguments["entry_points"]["console_scripts"]
     name, module, function = re.fullmatch(r"(\w+) = ([\w.]+):(\w+)", script).groups()  # type: ignore[union-attr]
     source = (NODE / (module.replace(".", "/") + ".py")).read_text("utf-8")
     assert name == "fingertip" and f"def {function}()" in source

@@ -133,7 +133,7 @@ class FingertipNode(LifecycleNode):
         stamp = self.get_clock().now().to_msg()
         self._diagnostics.publish(health.array(status, stamp))
 
-    def wait_until_told(self) -> None:
+    def wait_until_received(self) -> None:
         """Wait until the last diagnostics have been received, for at most half a second."""
         self._diagnostics.wait_for_all_acked(Duration(seconds=_SENDING_S))
 
@@ -238,7 +238,7 @@ def main() -> None:
             failure = node.failure
         if failure:
             node.diagnose()
-            node.wait_until_told()
+            node.wait_until_received()
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
     finally:
