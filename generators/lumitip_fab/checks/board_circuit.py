@@ -164,15 +164,13 @@ def measure_passed_on(read: ReadBoard) -> Iterator[Measurement]:
         headers = [d for d in read.components if d.kind == "header" and d.ref != CONTACTS]
         pads = [(header.ref, number) for header in headers for number, _ in header.nets]
         reached = {read.group(*pad) for pad in pads if pad[0] in read.parts} - {None}
-        supplies = {c.number for c in flange.contacts if c.kind == "supply"}
         nets = dict(next(d for d in read.components if d.ref == CONTACTS).nets)
         named = {net for header in headers for _, net in header.nets}
-        free = {number for number in supplies if nets.get(number) not in named}
-        free |= {contact.number for contact in flange.contacts} - nets.keys()
+        used = [c for c in flange.contacts if c.number in nets]
         lost = [
             f"{c.number} ({c.carries})"
-            for c in flange.contacts
-            if c.number not in free
+            for c in used
+            if c.kind != "supply" or nets[c.number] in named
             if read.group(CONTACTS, c.number) not in reached
         ]
         yield read.count("passed_on", lost, "contacts")

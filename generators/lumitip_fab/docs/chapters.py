@@ -8,6 +8,7 @@ from typing import Any
 
 from lumitip_fab.design import Design, HeatStep, Mask, Mould, Packages
 from lumitip_fab.design.cabling import plugged_headers
+from lumitip_fab.docs.bring_up import first_test
 from lumitip_fab.docs.casting import (
     amounts_of_both,
     casting_steps,
@@ -15,7 +16,6 @@ from lumitip_fab.docs.casting import (
     silicone_mix,
     volume_ml,
 )
-from lumitip_fab.docs.first_test import first_test
 from lumitip_fab.docs.mounting import mounting
 from lumitip_fab.docs.orders import amount, money
 from lumitip_fab.docs.page import html_page

@@ -59,15 +59,15 @@ def foxglove(options: argparse.Namespace) -> int:
     """Write the file for Foxglove, and the layout of its panels beside it."""
     from lumitip.foxglove import FoxgloveError, panels, write_scene
 
-    recordings: dict[str, Path] = {}
+    recordings: dict[str, str] = {}
     for text in options.files:
-        name, equals, file = text.partition("=")
-        name, file = (name, file) if equals else (Path(text).stem, text)
+        name, equals, path = text.partition("=")
+        name, path = (name, path) if equals else (Path(text).stem, text)
         if name in recordings:
             raise FoxgloveError(
                 f"two recordings are called {name!r}. Give one another name: NAME=FILE"
             )
-        recordings[name] = Path(file)
+        recordings[name] = path
     layout = options.out.with_suffix(".foxglove.json")
     if layout.exists():
         raise FoxgloveError(f"{layout} exists. Choose another --out")
@@ -79,8 +79,8 @@ def foxglove(options: argparse.Namespace) -> int:
         estimates=not options.no_estimate,
     )
     try:
-        with layout.open("x", encoding="utf-8") as file_of_layout:
-            file_of_layout.write(panels(list(recordings)))
+        with layout.open("x", encoding="utf-8") as file:
+            file.write(panels(list(recordings)))
     except OSError as error:
         raise FoxgloveError(f"{layout}: cannot be written: {error}") from error
     print(f"{written.path}: {written.frames} frames of {', '.join(recordings)}")

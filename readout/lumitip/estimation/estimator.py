@@ -38,7 +38,7 @@ GAIN_ERROR = 0.01
 """Expected deviation of a cell's light from its empty grasp, as a share."""
 HUBER = 3.0
 """Standard deviations beyond which the loss grows linearly."""
-_LEAST_CELLS = 4  # fewer do not show a line
+LEAST_CELLS = 4  # fewer do not show a line
 _BLURRED = np.array([np.radians(ANGLE_SD_DEG), OFFSET_SD_MM])
 _BEARABLE_COUNTS = dict.fromkeys(KINDS, 0.5 * MISFIT_COUNTS) | {BENT: 0.25 * MISFIT_COUNTS}
 _END_COUNTS = 3.0  # from an end of the scale
@@ -92,9 +92,9 @@ class PoseEstimator:
             TwinError: if the optics are invalid.
         """
         self.layout = arguments.layout(layout)
-        if len(layout) < _LEAST_CELLS:
+        if len(layout) < LEAST_CELLS:
             raise EstimationError(
-                f"layout has {len(layout)} cells; a pose needs at least {_LEAST_CELLS}; "
+                f"layout has {len(layout)} cells; a pose needs at least {LEAST_CELLS}; "
                 "`Processor` works with fewer"
             )
         self._mirrored = collinear(layout.x_mm, layout.y_mm)
@@ -136,7 +136,7 @@ class PoseEstimator:
         read = frame_values(values, self.layout)
         usable = usable_cells(read)
         known = read[usable]
-        if known.size < _LEAST_CELLS or not np.ptp(known) >= MIN_CONTRAST:
+        if known.size < LEAST_CELLS or not np.ptp(known) >= MIN_CONTRAST:
             self._last = None
             left_out = np.flatnonzero(~usable).tolist()
             return without_contact("covered" if is_covered(known) else "none", left_out)
@@ -198,10 +198,10 @@ class PoseEstimator:
         _known(kind)
         read = frame_values(values, self.layout)
         usable = usable_cells(read)
-        if np.count_nonzero(usable) < _LEAST_CELLS:
+        if np.count_nonzero(usable) < LEAST_CELLS:
             raise ValuesError(
                 f"{np.count_nonzero(usable)} cells have finite values; at least "
-                f"{_LEAST_CELLS} are needed"
+                f"{LEAST_CELLS} are needed"
             )
         frame = self._frame(read, usable)
         found = self._search.best(kind, frame)

@@ -24,10 +24,11 @@ from foxglove_schemas_protobuf.Vector2_pb2 import Vector2
 from foxglove_schemas_protobuf.Vector3_pb2 import Vector3
 from google.protobuf.timestamp_pb2 import Timestamp
 
-from lumitip.foxglove.names import ROOT
+from lumitip.foxglove.panels import ROOT
 from lumitip.frame import Values
 from lumitip.grid import Floats
 from lumitip.layout import Layout
+from lumitip.view.drawn import MISSING
 
 METRE = 1e-3
 """A millimetre in metres."""
@@ -38,10 +39,6 @@ _LEVEL_MM = 0.2  # of lines over cells, and of cells over the grid
 _SIZE = 0.8  # of a cell, in pitches
 _LINE_MM = 0.3
 _SPARE_MM = 20.0  # between fingertips
-PUBLISHED, ESTIMATE = (0.34, 0.71, 0.91), (0.91, 0.35, 0.05)
-"""Colours of the published method and of the estimate, as in the live view."""
-MISSING = (0.8, 0.1, 0.1)
-"""Colour of a cell without a value."""
 
 
 def stamp(at_ns: int) -> Timestamp:
@@ -77,8 +74,8 @@ class Raster:
         missing = ~np.isfinite(light)
         grey = np.nan_to_num(light).clip(0, 255).astype(np.uint8)
         squares = np.zeros(self.cell.shape, _SQUARE)
-        for colour, share in zip(("red", "green", "blue"), MISSING, strict=True):
-            squares[colour] = np.where(missing, round(255 * share), grey)
+        for colour, value in zip(("red", "green", "blue"), MISSING, strict=True):
+            squares[colour] = np.where(missing, value, grey)
         squares["alpha"] = np.where(self.shown, 255, 0)
         squares["light"] = light
         return Grid(
@@ -90,28 +87,24 @@ class Raster:
             row_stride=self.cell.shape[1] * _SQUARE.itemsize,
             cell_stride=_SQUARE.itemsize,
             fields=[
-                PackedElementField(name=name, offset=_offset(name), type=_TYPES[name])
-                for name in _TYPES
+                PackedElementField(name=name, offset=offset, type=kind)
+                for name, (offset, kind) in _FIELDS.items()
             ],
             data=squares.tobytes(),
         )
 
 
-_SQUARE = np.dtype(
-    [("red", "u1"), ("green", "u1"), ("blue", "u1"), ("alpha", "u1"), ("light", "<f4")]
-)
-_TYPES = {
-    "red": PackedElementField.UINT8,
-    "green": PackedElementField.UINT8,
-    "blue": PackedElementField.UINT8,
-    "alpha": PackedElementField.UINT8,
-    "light": PackedElementField.FLOAT32,
+_BYTE, _FLOAT = PackedElementField.UINT8, PackedElementField.FLOAT32
+_FIELDS = {
+    "red": (0, _BYTE),
+    "green": (1, _BYTE),
+    "blue": (2, _BYTE),
+    "alpha": (3, _BYTE),
+    "light": (4, _FLOAT),
 }
-
-
-def _offset(name: str) -> int:
-    fields = _SQUARE.fields
-    return int(fields[name][1]) if fields else 0
+"""Offset in a square of the grid, and type of each of its values."""
+_SIZES = {_BYTE: "u1", _FLOAT: "<f4"}
+_SQUARE = np.dtype([(name, _SIZES[kind]) for name, (_, kind) in _FIELDS.items()])
 
 
 def cells(layout: Layout, values: Values, frame_id: str, at_ns: int) -> SceneUpdate:
@@ -144,12 +137,11 @@ def lines(
     Args:
         layout: the cells.
         drawn: both ends of each line, shape `(2, 2)` (mm).
-        colour: red, green and blue, 0 to 1.
+        colour: red, green and blue, 0 to 255.
         name: of the entity.
         frame_id: of the sensor frame.
         at_ns: time of the frame.
     """
-    red, green, blue = colour
     strips = [
         LinePrimitive(
             type=LinePrimitive.LINE_STRIP,
@@ -157,7 +149,7 @@ def lines(
             thickness=_LINE_MM * METRE,
             scale_invariant=False,
             points=[Point3(x=x * METRE, y=y * METRE, z=0.0) for x, y in ends],
-            color=Color(r=red, g=green, b=blue, a=1.0),
+            color=_colour(colour),
         )
         for line in drawn
         if (ends := _on_face(np.asarray(line), layout))
@@ -217,7 +209,10 @@ def _pose(x_mm: float, y_mm: float, z_mm: float) -> Pose:
 
 def _grey(value: float) -> Color:
     if not math.isfinite(value):
-        red, green, blue = MISSING
-        return Color(r=red, g=green, b=blue, a=1.0)
-    share = min(max(value / 255.0, 0.0), 1.0)
-    return Color(r=share, g=share, b=share, a=1.0)
+        return _colour(MISSING)
+    return _colour([min(max(value, 0.0), 255.0)] * 3)
+
+
+def _colour(values: Sequence[float]) -> Color:
+    red, green, blue = (value / 255.0 for value in values)
+    return Color(r=red, g=green, b=blue, a=1.0)

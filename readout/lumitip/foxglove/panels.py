@@ -4,8 +4,8 @@ import json
 from collections.abc import Sequence
 from typing import Any
 
-from lumitip.foxglove.names import ROOT
-
+ROOT = "lumitip"
+"""Frame in which the fingertips stand beside each other."""
 _DRAWN = ("light", "cells", "published", "estimated")
 _SERIES = (
     ("offset (mm)", "estimate.offset_mm"),

@@ -19,22 +19,20 @@ from mcap_protobuf.schema import register_schema
 from lumitip import arguments
 from lumitip.errors import LumitipError
 from lumitip.estimation import PoseEstimator
-from lumitip.estimation.estimator import DIAMETER_MM
+from lumitip.estimation.estimator import DIAMETER_MM, LEAST_CELLS
 from lumitip.foxglove import drawings, numbers
-from lumitip.foxglove.names import ROOT
+from lumitip.foxglove.panels import ROOT
 from lumitip.frame import RecordedFrame
 from lumitip.processing import Tracker
 from lumitip.recording import Reader
 from lumitip.recording import message as frames_message
 from lumitip.recording.metadata import FINGER, NAME
 from lumitip.twin.optics import GAP_MM
+from lumitip.view.drawn import ESTIMATE, PUBLISHED, borders
 from lumitip.view.pose import described, reach_of
-from lumitip.view.rerun_sink import borders
 
 MOST_HZ = 60.0
 """Largest rate of drawings: more are not visible. Numbers have every frame."""
-LEAST_CELLS = 4
-"""Of an estimate."""
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
 
@@ -165,13 +163,13 @@ class _Finger:
         strips = borders(contact, self._reach_mm)
         yield (
             "published",
-            drawings.lines(layout, strips, drawings.PUBLISHED, "published", self.name, at_ns),
+            drawings.lines(layout, strips, PUBLISHED, "published", self.name, at_ns),
         )
         if estimate:
             strips = described(estimate, self._reach_mm)["lines"]
             yield (
                 "estimated",
-                drawings.lines(layout, strips, drawings.ESTIMATE, "estimate", self.name, at_ns),
+                drawings.lines(layout, strips, ESTIMATE, "estimate", self.name, at_ns),
             )
 
 

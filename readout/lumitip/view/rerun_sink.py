@@ -13,7 +13,7 @@ from lumitip.errors import MissingExtra
 from lumitip.frame import Frame
 from lumitip.grid import Floats
 from lumitip.processing import Contact
-from lumitip.processing.contact import Point
+from lumitip.view.drawn import PUBLISHED, borders
 from lumitip.view.finger import Finger
 
 MOST_HZ = 60.0
@@ -83,7 +83,7 @@ class RerunSink:
         strips = [strip * _TURN for strip in borders(contact, reach_mm)]
         self._log(
             [name, "border"],
-            self._rerun.LineStrips2D(strips, colors=[86, 180, 233], draw_order=40.0),
+            self._rerun.LineStrips2D(strips, colors=PUBLISHED, draw_order=40.0),
         )
 
     def _points(self, path: list[str], points_mm: Floats, **how: Any) -> None:
@@ -91,33 +91,3 @@ class RerunSink:
 
     def _log(self, path: list[str], what: Any) -> None:
         self._stream.log(path, what)
-
-
-def borders(contact: Contact, reach_mm: float) -> list[Floats]:
-    """The fitted lines of a contact as pairs of points, each of shape `(2, 2)` (mm).
-
-    Args:
-        contact: of a frame.
-        reach_mm: length of the lines to each side.
-    """
-    if contact.shape == "edge" and contact.line:
-        return [_through(contact.line.point_mm, contact.line.angle_deg, reach_mm)]
-    if contact.shape == "corner" and contact.corner:
-        vertex = np.array(contact.corner.vertex_mm)
-        ways = (reach_mm * _direction(angle) for angle in contact.corner.directions_deg)
-        return [np.array((vertex, vertex + way)) for way in ways]
-    if contact.shape == "cable" and contact.cable:
-        angle, half = contact.cable.angle_deg, contact.cable.width_mm / 2.0
-        axis = _through(contact.cable.axis_point_mm, angle, reach_mm)
-        across = half * _direction(angle + 90.0)
-        return [axis + across, axis - across]
-    return []
-
-
-def _through(point_mm: Point, angle_deg: float, reach_mm: float) -> Floats:
-    way = reach_mm * _direction(angle_deg)
-    return np.array((np.array(point_mm) - way, np.array(point_mm) + way))
-
-
-def _direction(angle_deg: float) -> Floats:
-    return np.array((np.cos(np.deg2rad(angle_deg)), np.sin(np.deg2rad(angle_deg))))

@@ -14,6 +14,7 @@ from lumitip.estimation.estimate import without_contact
 from lumitip.foxglove import drawings, numbers, panels, write_scene
 from lumitip.frame import Frame
 from lumitip.recording import Reader, Writer
+from lumitip.view.drawn import ESTIMATE
 
 Messages = dict[str, list[tuple[Any, Any, Any]]]
 Sources = dict[str, tuple[Path, list[Frame]]]
@@ -186,7 +187,7 @@ def test_discs_lie_on_the_cells_and_lines_on_the_edge(
 def test_lines_end_at_the_edge_of_the_face(
     layout: Layout, line: list[tuple[float, float]], ends: list[tuple[float, float]] | None
 ) -> None:
-    update = drawings.lines(layout, [np.array(line)], drawings.ESTIMATE, "line", "left", 0)
+    update = drawings.lines(layout, [np.array(line)], ESTIMATE, "line", "left", 0)
     found = [[(p.x * 1e3, p.y * 1e3) for p in each.points] for each in update.entities[0].lines]
     assert len(found) == bool(ends)
     if ends:

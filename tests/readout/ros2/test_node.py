@@ -123,7 +123,7 @@ def test_markers_show_cells_and_lines_and_delete_what_is_gone(active: Any, ros: 
     layout = active._tip.layout
     np.testing.assert_allclose([p.x for p in cells.points], layout.x_mm / 1000)
     assert len(estimate.points) == 6 and estimate.action == estimate.ADD
-    gone = ros.markers.lines([], ros.markers.ESTIMATE, "estimate", cells.header)
+    gone = ros.markers.lines([], ros.ESTIMATE, "estimate", cells.header)
     assert gone.action == gone.DELETE and gone.points == []
     assert all(m.pose.orientation.w == 1.0 for m in marked)
     over = estimate.points[0].z - cells.scale.z / 2
@@ -193,7 +193,7 @@ def recorded(path: Path) -> Path:
     return path
 
 
-def test_a_link_that_is_given_up_is_fatal_and_ends_the_process(
+def test_a_link_that_fails_for_good_is_fatal_and_ends_the_process(
     ros: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = recorded(tmp_path / "run.mcap")

@@ -13,8 +13,9 @@ from lumitip.errors import MissingExtra
 from lumitip.frame import Frame
 from lumitip.links.base import LinkEvent
 from lumitip.processing import Processor
+from lumitip.view.drawn import borders
 from lumitip.view.finger import Finger
-from lumitip.view.rerun_sink import RerunSink, borders
+from lumitip.view.rerun_sink import RerunSink
 
 COMPONENTS = {
     "cells": "Points2D:positions",

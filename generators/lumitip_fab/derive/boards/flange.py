@@ -47,7 +47,7 @@ INRUSH_AT: Point = (-2.3, 0.0)
 HOLES_AT: tuple[Point, ...] = ((11.0, 19.5), (11.0, -19.5))
 INPUT = "VIN"
 """Net of the regulator's input."""
-BUILT_IN = {"SUPPLY", "SUPPLY_IN", "GND", "REGULATED", OPEN}
+BUILT_IN = frozenset({"SUPPLY", "SUPPLY_IN", "GND", "REGULATED", OPEN})
 """Signals that are not lines from a contact to a header of the same name."""
 FIDUCIALS_AT: tuple[Point, ...] = ((-13.0, -13.5), (13.0, -15.5), (-13.0, 13.5))
 

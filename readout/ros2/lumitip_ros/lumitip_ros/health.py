@@ -8,18 +8,18 @@ from lumitip.errors import LinkError, StaleFrame
 
 
 def status(
-    name: str, tip: Fingertip | None, given_up: str, refused: str, stale_s: float
+    name: str, tip: Fingertip | None, failed: str, refused: str, stale_s: float
 ) -> DiagnosticStatus:
     """Level, text and figures of a fingertip.
 
     Args:
         name: of the node, with its namespace.
         tip: the open fingertip, if there is one.
-        given_up: why its link was given up; empty while it was not.
+        failed: why its link has failed for good; empty while it has not.
         refused: why the last attempt to configure the node failed; empty without.
         stale_s: age from which a frame is too old.
     """
-    level, text = _level(tip, given_up, refused, stale_s)
+    level, text = _level(tip, failed, refused, stale_s)
     message = DiagnosticStatus(level=level, name=f"{name}: fingertip", message=text)
     if tip is not None:
         message.hardware_id = tip.device_id
@@ -34,12 +34,13 @@ def array(status: DiagnosticStatus, stamp: Time) -> DiagnosticArray:
     return message
 
 
-def _level(tip: Fingertip | None, given_up: str, refused: str, stale_s: float) -> tuple[bytes, str]:
+def _level(tip: Fingertip | None, failed: str, refused: str, stale_s: float) -> tuple[bytes, str]:
     if tip is None:
-        failed = DiagnosticStatus.ERROR, refused
-        return failed if refused else (DiagnosticStatus.STALE, "not configured")
-    if given_up:
-        return DiagnosticStatus.ERROR, given_up
+        if refused:
+            return DiagnosticStatus.ERROR, refused
+        return DiagnosticStatus.STALE, "not configured"
+    if failed:
+        return DiagnosticStatus.ERROR, failed
     if not tip.connected:
         return DiagnosticStatus.WARN, "the link is cut, reconnecting"
     try:

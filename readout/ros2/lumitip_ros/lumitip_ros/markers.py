@@ -9,13 +9,12 @@ from std_msgs.msg import ColorRGBA, Header
 from visualization_msgs.msg import Marker, MarkerArray
 
 from lumitip import Frame, Layout
+from lumitip.view.drawn import MISSING
 
 _METRE = 1e-3
 _SIZE = 0.7  # of a cell, in pitches
 _HIGH_MM, _LINE_MM = 0.2, 0.3
 _OVER_MM = 0.4  # of lines over the face, so that no cell hides them
-PUBLISHED, ESTIMATE = (0.34, 0.71, 0.91), (0.91, 0.35, 0.05)
-"""Colours of the published method and of the estimate, as in the live view."""
 
 
 def cells(frame: Frame, layout: Layout, header: Header) -> Marker:
@@ -35,14 +34,14 @@ def lines(
 
     Args:
         drawn: both ends of each line, shape `(2, 2)` (mm).
-        colour: red, green and blue, 0 to 1.
+        colour: red, green and blue, 0 to 255.
         namespace: of the marker.
         header: of the frame.
     """
     marker = _marker(header, namespace, Marker.LINE_LIST)
     marker.action = Marker.ADD if len(drawn) else Marker.DELETE
     marker.scale.x = _LINE_MM * _METRE
-    marker.color = _colour(*colour)
+    marker.color = _colour(colour)
     marker.points = [point for line in drawn for point in _points(np.asarray(line), _OVER_MM)]
     return marker
 
@@ -64,10 +63,10 @@ def _points(places_mm: np.ndarray, z_mm: float) -> list[Point]:
 
 def _grey(value: float) -> ColorRGBA:
     if not math.isfinite(value):
-        return _colour(0.8, 0.1, 0.1)
-    share = min(max(value / 255.0, 0.0), 1.0)
-    return _colour(share, share, share)
+        return _colour(MISSING)
+    return _colour([min(max(value, 0.0), 255.0)] * 3)
 
 
-def _colour(red: float, green: float, blue: float) -> ColorRGBA:
+def _colour(values: Sequence[float]) -> ColorRGBA:
+    red, green, blue = (value / 255.0 for value in values)
     return ColorRGBA(r=red, g=green, b=blue, a=1.0)

@@ -1,8 +1,8 @@
 """The lifecycle node `fingertip`.
 
-Configured, it is connected; active, it publishes every frame. A link that is given up is logged as
-fatal, is an error in `/diagnostics`, and ends the process with exit code 1, so that a launch file
-can start it anew.
+Configured, it is connected; active, it publishes every frame. A link that has failed for good is
+logged as fatal, is an error in `/diagnostics`, and ends the process with exit code 1, so that a
+launch file can start it anew.
 """
 
 import sys
@@ -25,8 +25,8 @@ from lumitip import Fingertip, Frame, LumitipError
 from lumitip.estimation import PoseEstimator
 from lumitip.links.base import LinkEvent
 from lumitip.processing import Tracker
+from lumitip.view.drawn import ESTIMATE, PUBLISHED, borders
 from lumitip.view.pose import described, reach_of
-from lumitip.view.rerun_sink import borders
 from lumitip_ros import health, markers, messages
 
 PARAMETERS: dict[str, str | bool | float] = {
@@ -54,7 +54,7 @@ class FingertipNode(LifecycleNode):
             self.declare_parameter(name, default)
         self._tip: Fingertip | None = None
         self._stop: Callable[[], None] | None = None
-        self._given_up = self._refused = ""
+        self._failed = self._refused = ""
         self._marked_s = float("-inf")
         sensor = qos_profile_sensor_data
         self._values = self.create_lifecycle_publisher(Values, "~/values", sensor)
@@ -71,12 +71,12 @@ class FingertipNode(LifecycleNode):
 
     @property
     def failure(self) -> str:
-        """Why the open link was given up; empty while it was not."""
-        return self._given_up if self._tip is not None else ""
+        """Why the open link has failed for good; empty while it has not."""
+        return self._failed if self._tip is not None else ""
 
     def on_configure(self, _: State) -> TransitionCallbackReturn:
         """Connect; without success the node stays unconfigured."""
-        self._given_up = self._refused = ""
+        self._failed = self._refused = ""
         try:
             self._tip = Fingertip.open(
                 self._text("url"), self._text("layout") or None, on_event=self._on_event
@@ -129,7 +129,7 @@ class FingertipNode(LifecycleNode):
     def diagnose(self) -> None:
         """Publish the state of the fingertip."""
         name, stale_s = self.get_fully_qualified_name(), self._number("stale_s")
-        status = health.status(name, self._tip, self._given_up, self._refused, stale_s)
+        status = health.status(name, self._tip, self._failed, self._refused, stale_s)
         stamp = self.get_clock().now().to_msg()
         self._diagnostics.publish(health.array(status, stamp))
 
@@ -154,7 +154,7 @@ class FingertipNode(LifecycleNode):
             self._publish_all(frame)
         except Exception as error:  # noqa: BLE001 - the thread would end without a word
             if rclpy.ok():  # else publishers are gone: the process ends
-                self._give_up(f"a frame could not be published: {error!r}")
+                self._fail(f"a frame could not be published: {error!r}")
 
     def _publish_all(self, frame: Frame) -> None:
         tip = self._tip
@@ -176,10 +176,10 @@ class FingertipNode(LifecycleNode):
         self._marked_s, reach_mm = now_s, reach_of(tip.layout)
         drawn = [markers.cells(frame, tip.layout, header)]
         lines = borders(contact, reach_mm)
-        drawn.append(markers.lines(lines, markers.PUBLISHED, "published", header))
+        drawn.append(markers.lines(lines, PUBLISHED, "published", header))
         if estimate:
             lines = described(estimate, reach_mm)["lines"]
-            drawn.append(markers.lines(lines, markers.ESTIMATE, "estimate", header))
+            drawn.append(markers.lines(lines, ESTIMATE, "estimate", header))
         self._markers.publish(MarkerArray(markers=drawn))
 
     def _tare(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
@@ -197,14 +197,14 @@ class FingertipNode(LifecycleNode):
         """Log an event of the link."""
         log = self.get_logger()
         if event.kind in ("failed", "ended"):
-            self._give_up(event.detail)
+            self._fail(event.detail)
         elif event.kind in ("lost", "restarted"):
             log.warning(event.detail)
         else:
             log.info(event.detail)
 
-    def _give_up(self, why: str) -> None:
-        self._given_up = why
+    def _fail(self, why: str) -> None:
+        self._failed = why
         self.get_logger().fatal(why)
 
     def _pause(self) -> None:
@@ -226,7 +226,7 @@ class FingertipNode(LifecycleNode):
 
 
 def main() -> None:
-    """Run until it is interrupted, or until its link is given up: exit code 1."""
+    """Run until it is interrupted, or until its link has failed for good: exit code 1."""
     rclpy.init()
     node = FingertipNode()
     executor = MultiThreadedExecutor(2)  # one thread for diagnostics
