@@ -116,9 +116,12 @@ def pytest_configure(config: pytest.Config) -> None:
 
     Where PYTHONDONTWRITEBYTECODE is set, as in many containers, each process that tests start would
     compile all that it imports. xdist would begin with the files of most tests, which are quick.
+    When a worker crashes, xdist 3.8 queues the finished files again and may then wait for ever: the
+    run ends with the crash instead.
     """
     os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
     config.option.loadscopereorder = False
+    config.option.maxworkerrestart = "0"
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
 

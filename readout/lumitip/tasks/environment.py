@@ -1,8 +1,12 @@
 """`TraceEnv`: a task as a Gymnasium environment; needs the extra `gym`.
 
-env = TraceEnv(layout, Settings("cable"))
+env = gymnasium.make("lumitip.tasks.environment:Lumitip/TraceCable-v0", layout=layout)
 values, info = env.reset(seed=1)
 values, reward, terminated, truncated, info = env.step(action)
+
+`gymnasium.make_vec` with `num_envs` and `vectorization_mode="vector_entry_point"` gives
+`TraceVectorEnv`. The ids are `Lumitip/TraceCable-v0`, `Lumitip/TraceCloth-v0` and
+`Lumitip/TraceCorner-v0`.
 
 The observation is a frame. The action is forward, lateral and turning velocity as shares of
 `limits`. The reward is the distance along the line (mm) minus the squared error of the line's
@@ -17,7 +21,10 @@ from numpy.typing import NDArray
 from lumitip import arguments
 from lumitip.control import Command, Limits
 from lumitip.errors import MissingExtra
+from lumitip.grid import Floats
 from lumitip.layout import Layout
+from lumitip.links.twin import published_layout
+from lumitip.tasks.picture import Image, Picture
 from lumitip.tasks.task import Settings, Task, TaskError
 from lumitip.twin import Twin
 from lumitip.values import shown
@@ -29,35 +36,42 @@ except ImportError as error:
 
 Observation = NDArray[np.float32]
 LIMITS = Limits(forward_mm_s=250.0, lateral_mm_s=150.0, rotation_rad_s=6.0)
-_LOST = -100.0
+LOST_REWARD = -100.0
 
 
 class TraceEnv(gymnasium.Env[Observation, Observation]):
     """A task: one step is one frame of the sensor."""
 
-    metadata = {"render_modes": []}  # noqa: RUF012 (Gymnasium's own attribute)
+    metadata = {"render_modes": ["rgb_array"], "render_fps": 55}  # noqa: RUF012 (Gymnasium's own)
 
     def __init__(
         self,
-        layout: Layout,
+        layout: Layout | None = None,
         settings: Settings | None = None,
         limits: Limits = LIMITS,
         most_frames: int = 2000,
         twin: Twin | None = None,
+        render_mode: str | None = None,
     ) -> None:
         """An environment; `reset` begins an episode.
 
         Args:
-            layout: the cells.
+            layout: the cells; by default those of the published sensor.
             settings: of the task.
             limits: velocities of an action of 1.
             most_frames: an episode is truncated after this number of frames.
             twin: simulates the sensor.
+            render_mode: `"rgb_array"`: `render` returns the cells and the true line as an image.
 
         Raises:
             LayoutError, TaskError: if an argument is invalid.
         """
+        layout = published_layout() if layout is None else layout
         self.task = Task(layout, settings, twin)
+        if render_mode not in (None, *self.metadata["render_modes"]):
+            raise TaskError(f"render_mode is {shown(render_mode)}; allowed are rgb_array and None")
+        self.render_mode = render_mode
+        self._picture = Picture(layout) if render_mode else None
         self._limits = arguments.instance(limits, Limits, "limits", TaskError)
         self._most_frames = arguments.count(most_frames, "most_frames", error=TaskError)
         self._frames = 0
@@ -70,7 +84,7 @@ class TraceEnv(gymnasium.Env[Observation, Observation]):
         """Start on a new curve; the same seed gives the same curves."""
         super().reset(seed=seed, options=options)
         self._frames = 0
-        values = self.task.reset(int(self.np_random.integers(2**31)))
+        values = self._values = self.task.reset(int(self.np_random.integers(2**31)))
         return values.astype(np.float32), {}
 
     def step(self, action: Observation) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
@@ -82,18 +96,44 @@ class TraceEnv(gymnasium.Env[Observation, Observation]):
         shares = arguments.numbers(action, "action", TaskError)
         if shares.shape != (3,) or not np.isfinite(shares).all():
             raise TaskError(f"action is {shown(action, 60)}; three finite numbers are needed")
-        shares = np.clip(shares, -1.0, 1.0)
-        command = Command(
-            float(shares[0]) * self._limits.forward_mm_s,
-            float(shares[1]) * self._limits.lateral_mm_s,
-            float(shares[2]) * self._limits.rotation_rad_s,
-        )
+        command = Command(*velocities(shares, self._limits).tolist())
         before_mm = self.task.travelled_mm
         values, ended = self.task.step(command)
+        self._values = values
         self._frames += 1
         missed_mm = self.task.line()[0] - self.task.settings.target_mm
         reward = self.task.travelled_mm - before_mm - missed_mm**2 / self.task.settings.rate_hz
         lost = self.task.reason == "lost"
         info = {"missed_mm": missed_mm, "reason": self.task.reason}
         cut_off = not ended and self._frames >= self._most_frames
-        return values.astype(np.float32), reward + (_LOST if lost else 0.0), ended, cut_off, info
+        return (
+            values.astype(np.float32),
+            reward + (LOST_REWARD if lost else 0.0),
+            ended,
+            cut_off,
+            info,
+        )
+
+    def render(self) -> Image | None:
+        """The last frame and the true line, or None without a render mode."""
+        return self._picture(self._values, *self.task.line()) if self._picture else None
+
+
+def velocities(shares: Floats, limits: Limits) -> Floats:
+    """Velocities (mm/s, mm/s, rad/s) of actions, both of shape `(..., 3)`."""
+    most = (limits.forward_mm_s, limits.lateral_mm_s, limits.rotation_rad_s)
+    asked: Floats = np.clip(shares, -1.0, 1.0) * np.array(most)
+    return asked
+
+
+for _name, _settings in (
+    ("Cable", Settings("cable")),
+    ("Cloth", Settings("cloth")),
+    ("Corner", Settings("cloth", corner=True)),
+):
+    gymnasium.register(
+        f"Lumitip/Trace{_name}-v0",
+        "lumitip.tasks.environment:TraceEnv",
+        vector_entry_point="lumitip.tasks.vector:TraceVectorEnv",
+        kwargs={"settings": _settings},
+    )

@@ -28,9 +28,12 @@ RATE_HZ = 55.0
 """Frame rate of the published firmware (Hz)."""
 LOST_MM = 9.0
 """Error of the line's height beyond which it is lost (mm)."""
-_CORNER_SEEN_MM = 40.0
-_STRAIGHT_MM = 80.0
-_END_MM = 25.0  # the fingertip must not see the end of a curve without corner
+SEEN_MM = 40.0
+"""Distance of a corner within which the fingertip may see it (mm)."""
+STRAIGHT_MM = 80.0
+"""Length of the straight edge before a corner (mm)."""
+END_MM = 25.0
+"""Rest of a curve without corner that a trial leaves, as its end must not be seen (mm)."""
 _STILL_MM_S = 0.5
 
 
@@ -150,7 +153,7 @@ class Task:
         """
         seed = arguments.count(seed, "seed", 0, TaskError)
         s = self.settings
-        straight_mm = _STRAIGHT_MM if s.corner else 0.0
+        straight_mm = STRAIGHT_MM if s.corner else 0.0
         self.curve = Curve.random(s.length_mm, seed, straight_mm)
         self._chance = np.random.default_rng((8, seed))
         cells = np.random.default_rng((9, seed)).permutation(len(self.layout))
@@ -207,7 +210,7 @@ class Task:
         if self.settings.kind == "cable":
             return Cable(offset_mm=offset_mm, angle_deg=math.degrees(angle), curvature_per_mm=bend)
         vertex = self._vertex()
-        if vertex is not None and vertex[0] < _CORNER_SEEN_MM:
+        if vertex is not None and vertex[0] < SEEN_MM:
             turn = math.degrees(float(self.curve.heading[-1]) - self.heading)
             return Corner(x_mm=vertex[0], y_mm=vertex[1], angle_deg=turn + 135.0)
         # The sheet is left of the line, towards the tip: right of the reversed line.
@@ -241,7 +244,7 @@ class Task:
             vertex = self._vertex()
             if vertex is not None and vertex[0] < -LOST_MM:  # the edge is behind the finger
                 self.reason = "lost"
-        elif self.travelled_mm >= self.curve.length_mm - _END_MM:
+        elif self.travelled_mm >= self.curve.length_mm - END_MM:
             self.reason = "end"
 
     def _move(self, command: Command) -> None:

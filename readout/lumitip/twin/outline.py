@@ -16,9 +16,10 @@ from numpy.typing import NDArray
 
 from lumitip import arguments
 from lumitip.grid import Floats, Integers
+from lumitip.twin.lines import Numbers
 from lumitip.twin.optics import TwinError
 from lumitip.twin.raster import Plane
-from lumitip.twin.scene import PIXEL_MM, Numbers, Shape, Singles, Thing
+from lumitip.twin.scene import PIXEL_MM, Shape, Singles, Thing
 
 _STEP_PIXELS = 0.5  # between points along the outline
 _MOST_NUMBERS = 20_000_000  # of a table

@@ -15,9 +15,10 @@ import numpy as np
 from lumitip import arguments
 from lumitip.grid import Floats, Integers
 from lumitip.layout import Layout
+from lumitip.twin.lines import Numbers
 from lumitip.twin.optics import Model, TwinError
 from lumitip.twin.rays import ACROSS, REACH_MM, Bundle, bundle
-from lumitip.twin.scene import PIXEL_MM, Cable, Numbers, Thing
+from lumitip.twin.scene import PIXEL_MM, Cable, Thing
 
 _FEW_ACROSS = 3  # points across half of a hole where fewer rays suffice
 _MANY = 60  # bundles, beyond which all get fewer rays

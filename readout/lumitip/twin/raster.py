@@ -13,10 +13,11 @@ from numpy.typing import NDArray
 
 from lumitip.grid import Floats, Integers
 from lumitip.layout import Layout
+from lumitip.twin.lines import Numbers
 from lumitip.twin.optics import Model
 from lumitip.twin.pairs import Emitter, Pairs, spread, tally
 from lumitip.twin.rays import REACH_MM, hole_points, in_hole
-from lumitip.twin.scene import PIXEL_MM, Numbers, Singles
+from lumitip.twin.scene import PIXEL_MM, Singles
 
 _DENSE_CELLS = 64  # with more cells, gathering the pixels of each is faster
 _PATCH_MM = 8.0  # around an LED or detector, beyond which scattered light is neglected

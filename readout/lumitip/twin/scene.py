@@ -12,17 +12,15 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lumitip import arguments
+from lumitip.twin.lines import Numbers, beside_arc, from_arc, from_foot
 from lumitip.twin.optics import TwinError
 from lumitip.values import shown
 
-Numbers = NDArray[np.floating[Any]]
-"""Floats of any precision: rasters are single, tables double."""
 Singles = NDArray[np.float32]
 PIXEL_MM = 0.5
 """Pixel of the rasters (mm)."""
@@ -108,33 +106,21 @@ class Line(Shape):
     def left_of(self, x_mm: Numbers, y_mm: Numbers) -> tuple[Numbers, Numbers]:
         """Signed distance of places from the line along its left normal (mm), and the direction
         of the line beside each place (degrees)."""
-        left, x, y = self._from_foot(x_mm, y_mm)
+        left, x, y = from_foot(x_mm, y_mm, self.offset_mm, *self._way)
         bend = self.curvature_per_mm
         if not bend:
             return left, np.full(np.shape(left), float(self.angle_deg))
-        angle = math.radians(self.angle_deg)
-        across, up = bend * x + math.sin(angle), math.cos(angle) - bend * y
-        return self._bent(left, x, y), np.degrees(np.arctan2(across, up))
+        return from_arc(left, x, y, bend), beside_arc(x, y, bend, *self._way)
 
     def left_mm(self, x_mm: Numbers, y_mm: Numbers) -> Numbers:
         """The distance of `left_of` alone (mm)."""
-        left, x, y = self._from_foot(x_mm, y_mm)
-        return self._bent(left, x, y) if self.curvature_per_mm else left
+        left, x, y = from_foot(x_mm, y_mm, self.offset_mm, *self._way)
+        return from_arc(left, x, y, self.curvature_per_mm) if self.curvature_per_mm else left
 
-    def _from_foot(self, x_mm: Numbers, y_mm: Numbers) -> tuple[Numbers, Numbers, Numbers]:
-        """Distance left of the line, and x and y from its point nearest the origin (mm)."""
+    @property
+    def _way(self) -> tuple[float, float]:
         angle = math.radians(self.angle_deg)
-        cos, sin = math.cos(angle), math.sin(angle)
-        left = y_mm * cos - x_mm * sin - self.offset_mm
-        return left, x_mm + self.offset_mm * sin, y_mm - self.offset_mm * cos
-
-    def _bent(self, left: Numbers, x: Numbers, y: Numbers) -> Numbers:
-        """Distance from the circle, in a form that stays exact for large radii."""
-        bend = self.curvature_per_mm
-        square = x * x + y * y
-        rest = np.sqrt(np.maximum(1.0 - 2.0 * bend * left + (bend * bend) * square, 0.0))
-        away: Numbers = (2.0 * left - bend * square) / (1.0 + rest)
-        return away
+        return math.cos(angle), math.sin(angle)
 
 
 @dataclass(frozen=True)

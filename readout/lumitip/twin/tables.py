@@ -12,8 +12,10 @@ from functools import cached_property
 import numpy as np
 
 from lumitip.grid import Floats, Integers
+from lumitip.layout import Layout
+from lumitip.twin.lines import Numbers, beside_arc, from_arc, from_foot
 from lumitip.twin.pairs import Pairs, tally
-from lumitip.twin.scene import PIXEL_MM, Numbers, Singles
+from lumitip.twin.scene import PIXEL_MM, Singles
 from lumitip.values import one_line
 
 STEP_MM = 0.05
@@ -69,6 +71,22 @@ class LineTable:
         low = flat[one] + right * below[one]
         share: Floats = low + down * (flat[other] + right * below[other] - low)
         return share
+
+    def of_lines(
+        self, layout: Layout, offset_mm: Floats, angle_deg: Floats, bend_per_mm: Floats
+    ) -> Floats:
+        """Share of light that many lines or arcs take from each cell, shape `(n, cells)`.
+
+        Args:
+            layout: the cells.
+            offset_mm, angle_deg, bend_per_mm: of the lines, see `Line`; each of shape `(n,)`.
+        """
+        beside, bend = angle_deg[:, None], bend_per_mm[:, None]
+        way = np.cos(np.radians(beside)), np.sin(np.radians(beside))
+        left, x, y = from_foot(layout.x_mm, layout.y_mm, offset_mm[:, None], *way)
+        if bend.any():
+            return self(beside_arc(x, y, bend, *way), from_arc(left, x, y, bend))
+        return self(beside, left)
 
     @cached_property
     def _begin(self) -> Integers:

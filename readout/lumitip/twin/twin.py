@@ -16,12 +16,13 @@ from lumitip import arguments
 from lumitip.frame import Codes
 from lumitip.grid import Floats
 from lumitip.layout import Layout
-from lumitip.protocol.packet import BITS
+from lumitip.twin.inputs import cell_gains, code_bits, height_in_gap, same_shape
+from lumitip.twin.lines import Numbers
 from lumitip.twin.optics import FULL, Model, TwinError, values_of_drive
 from lumitip.twin.outline import Outline, Polygon
 from lumitip.twin.pairs import Emitter, Misregistration, Mixed, Pairs
 from lumitip.twin.raster import Plane, blended, direct_plane, scattered_plane
-from lumitip.twin.scene import Cable, Line, Numbers, Scene, Singles, Thing, things
+from lumitip.twin.scene import Cable, Line, Scene, Singles, Thing, things
 from lumitip.twin.tables import LineTable, cable_table, edge_table
 from lumitip.values import shown
 
@@ -68,11 +69,8 @@ class Twin:
         deviation = Misregistration() if misregistration is None else misregistration
         arguments.instance(deviation, Misregistration, "misregistration", TwinError)
         self.emitter = Emitter(self.model, deviation)
-        self.gains = _gains(gains, len(layout))
-        self.bits = arguments.count(bits, "bits", error=TwinError)
-        if self.bits not in BITS:
-            allowed = ", ".join(map(str, BITS))
-            raise TwinError(f"bits is {shown(bits)}; one of {allowed} is needed")
+        self.gains = cell_gains(gains, len(layout))
+        self.bits = code_bits(bits)
         self.seed = arguments.count(seed, "seed", 0, TwinError)
         self.ambient, self.noise, self.warm_up = (
             arguments.number(of, name, 0.0, error=TwinError)
@@ -100,8 +98,7 @@ class Twin:
         """Values of many scenes, shape `(n, cells)`.
 
         Args:
-            scenes: scenes, or the coverage of an opaque object on `plane(height)`, shape
-                `(n, pixels)`.
+            scenes: scenes, or coverage of an opaque object on `plane(height)`, `(n, pixels)`.
             height: of that coverage in the gap.
 
         Raises:
@@ -136,39 +133,67 @@ class Twin:
             return self._of_flat(found)
         return self._mixed.light(found)
 
-    def edges(self, offset_mm: ArrayLike, angle_deg: ArrayLike, clear: ArrayLike = 0.0) -> Floats:
-        """Values of many straight edges, shape `(n, cells)`, from the table.
+    def edges(
+        self,
+        offset_mm: ArrayLike,
+        angle_deg: ArrayLike,
+        clear: ArrayLike = 0.0,
+        curvature_per_mm: ArrayLike = 0.0,
+    ) -> Floats:
+        """Values of many edges, shape `(n, cells)`, from the table.
 
         Args:
             offset_mm: signed distance of each edge from the origin along its left normal, shape
                 `(n,)`; the right of it is covered.
             angle_deg: its direction, shape `(n,)`.
             clear: transmittance of each sheet, shape `(n,)` or one for all.
+            curvature_per_mm: of each edge, positive to the left, shape `(n,)` or one for all.
 
         Raises:
             TwinError: if they are no finite numbers of one shape, or `clear` is not 0 to 1.
         """
-        offset, angle, through = _same_shape(offset_mm=offset_mm, angle_deg=angle_deg, clear=clear)
-        if not ((through >= 0.0) & (through <= 1.0)).all():
+        offset, angle, bend, through = same_shape(
+            offset_mm=offset_mm, angle_deg=angle_deg, curvature_per_mm=curvature_per_mm, clear=clear
+        )
+        if through.min(initial=0.0) < 0.0 or through.max(initial=1.0) > 1.0:
             raise TwinError(f"clear is {shown(clear)}; numbers from 0 to 1 are needed")
-        turn = np.radians(angle)[:, None]
-        left = self.layout.y_mm * np.cos(turn) - self.layout.x_mm * np.sin(turn) - offset[:, None]
-        share = self.edge_table()(angle[:, None], left)
-        return self.calibrated(1.0 - (1.0 - through[:, None]) * share)
+        taken = self.edge_table().of_lines(self.layout, offset, angle, bend)
+        return self.calibrated(1.0 - (1.0 - through[:, None]) * taken)
+
+    def cables(
+        self,
+        offset_mm: ArrayLike,
+        angle_deg: ArrayLike,
+        curvature_per_mm: ArrayLike = 0.0,
+        diameter_mm: float = 3.0,
+    ) -> Floats:
+        """Values of many opaque cables of one diameter, shape `(n, cells)`, from the table.
+
+        Args:
+            offset_mm, angle_deg, curvature_per_mm: of each axis, as of an edge.
+            diameter_mm: of all.
+
+        Raises:
+            TwinError: if they are no finite numbers of one shape.
+        """
+        lines = same_shape(
+            offset_mm=offset_mm, angle_deg=angle_deg, curvature_per_mm=curvature_per_mm
+        )
+        return self.calibrated(1.0 - self.cable_table(diameter_mm).of_lines(self.layout, *lines))
 
     def edge_table(self, height: float = 0.5) -> LineTable:
         """Share of light that an opaque half-plane takes from each cell, by direction and signed
         distance of its edge."""
-        return self._edges(_height(height))
+        return self._edges(height_in_gap(height))
 
     def cable_table(self, diameter_mm: float = 3.0, height: float = 0.5) -> LineTable:
         """The same for an opaque round cable, by the distance from its axis."""
         diameter_mm = Cable(diameter_mm=diameter_mm).diameter_mm
-        return self._cables(diameter_mm, _height(height))
+        return self._cables(diameter_mm, height_in_gap(height))
 
     def plane(self, height: float = 0.5) -> Plane:
         """The raster at a height in the gap."""
-        return self._direct(_height(height))
+        return self._direct(height_in_gap(height))
 
     def calibrated(self, light: Numbers) -> Floats:
         """Values of shares of light, both of shape `(..., cells)`; 255 is the empty grasp."""
@@ -273,28 +298,3 @@ class Twin:
             return None
         scattered = self._scatter(height) if diffuse else replace(at, weights=0.0 * at.weights)
         return Outline(blended(at, scattered, clear, diffuse))
-
-
-def _gains(gains: ArrayLike | None, cells: int) -> Floats:
-    if gains is None:
-        return np.ones(cells)
-    values = arguments.numbers(gains, "gains", TwinError)
-    if values.shape != (cells,) or not (np.isfinite(values) & (values >= 0.0)).all():
-        raise TwinError(f"gains is {shown(gains)}; {cells} numbers from 0 on are needed")
-    return values.copy()
-
-
-def _height(height: float) -> float:
-    return arguments.number(height, "height", 0.0, 1.0, error=TwinError)
-
-
-def _same_shape(**arrays: ArrayLike) -> Sequence[Floats]:
-    """Arrays of one shape `(n,)`, from such arrays and single numbers."""
-    values = {
-        name: np.atleast_1d(arguments.numbers(of, name, TwinError)) for name, of in arrays.items()
-    }
-    shapes = {of.shape for of in values.values()} - {(1,)}
-    if len(shapes) > 1 or any(of.ndim != 1 or not np.isfinite(of).all() for of in values.values()):
-        found = ", ".join(f"{name} of shape {of.shape}" for name, of in values.items())
-        raise TwinError(f"{found}: arrays of one length, of finite numbers, are needed")
-    return np.broadcast_arrays(*values.values())
