@@ -60,6 +60,7 @@ ALLOWED_READOUT = {
     "face": "core health links session",
     "robots": "core control",
     "foxglove": "core estimation processing recording twin view",
+    "mujoco": "core twin",
     "view": "core estimation face links processing recording session twin",
     "tasks": "control core estimation face links processing protocol session twin view",
     "commands": (

@@ -9,6 +9,9 @@ import pytest
 import xacro
 import yourdfpy
 
+from lumitip import Layout
+from lumitip.mujoco import LightSensor, fingers
+from lumitip.twin import Cable, Model, Twin
 from lumitip_fab.design.encoding import read_design
 
 FINGERS = ("receiver", "emitter")
@@ -69,6 +72,35 @@ def test_fingers_touch_when_they_are_closed_and_not_before(outputs: Path) -> Non
         data.qpos[:] = (opened_mm - 0.02) / 2000
         mujoco.mj_forward(loaded, data)
         assert (data.ncon > 0) == touch, opened_mm
+
+
+def test_the_light_between_these_fingers_in_mujoco(outputs: Path) -> None:
+    """The gap of the model is that of the light, and the file's own bodies shade nothing."""
+    layout = Layout.load(outputs / "layout.json")
+    spec = fingers(layout, outputs / "robot/lumitip.urdf")
+    model, data = _at_gap(spec.compile(), 3.0)
+    assert (LightSensor(model, layout).values(data) > 255.0 - 1e-9).all()
+    receiver, emitter = (model.body(f"lumitip_{name}").id for name in FINGERS)
+    turn, place = data.xmat[receiver].reshape(3, 3), data.xpos[receiver]
+    x_mm, y_mm, gap_mm = 1e3 * turn.T @ (data.xpos[emitter] - place)
+    # The fingers lean, and the opening is the smallest distance: in the middle there is more.
+    assert abs(x_mm) < 1e-6 and abs(y_mm) < 0.2 and 3.0 < gap_mm < 4.5
+    half_m = gap_mm / 2e3
+    ends = place + np.array([[-0.08, 0.002, half_m], [0.08, 0.002, half_m]]) @ turn.T
+    spec.worldbody.add_geom(
+        type=mujoco.mjtGeom.mjGEOM_CAPSULE, fromto=ends.ravel(), size=[0.0015, 0.0, 0.0]
+    )
+    model, data = _at_gap(spec.compile(), 3.0)
+    twin = Twin(layout, Model.from_layout(layout, gap_mm=gap_mm))
+    expected = twin.values(Cable(offset_mm=2.0))
+    assert np.abs(LightSensor(model, layout).values(data) - expected).max() <= 2.0
+
+
+def _at_gap(model: mujoco.MjModel, gap_mm: float) -> tuple[mujoco.MjModel, mujoco.MjData]:
+    data = mujoco.MjData(model)
+    data.qpos[:2] = gap_mm / 2000.0
+    mujoco.mj_forward(model, data)
+    return model, data
 
 
 def test_a_macro_hangs_a_finger_on_another_gripper(outputs: Path, tmp_path: Path) -> None:

@@ -18,6 +18,7 @@ def _python(code: str) -> str:
     [
         ("mcap", "recording", "record"),
         ("zstandard", "recording", "record"),
+        ("mujoco", "mujoco", "mujoco"),
         ("mcap", "foxglove", "foxglove"),
         ("mcap_protobuf", "foxglove", "foxglove"),
         ("foxglove_schemas_protobuf", "foxglove", "foxglove"),

@@ -1,0 +1,131 @@
+"""`fingers`: both fingers as a MuJoCo model, to which a user adds a scene."""
+
+from pathlib import Path
+
+import mujoco
+import numpy as np
+
+from lumitip import arguments
+from lumitip.errors import LumitipError
+from lumitip.layout import Layout
+from lumitip.values import shown
+
+SENSOR = "lumitip_light"
+"""Name of the user sensor that has a value for each cell."""
+FINGERS = ("lumitip_receiver", "lumitip_emitter")
+"""Bodies whose frames are the sensor frames."""
+_BORDER_MM, _THICK_MM = 4.0, 4.0
+_TRAVEL_M = 0.05
+_DENSITY_KG_M3 = 1270.0  # PETG
+_TURNED = (0.0, 0.0, 1.0, 0.0)  # half a turn about y: the fingers face each other
+_STIFFNESS_N_M, _DAMPING_N_S_M = 4000.0, 80.0
+_DRIVE_KG = 0.2  # of the gripper's drive, felt at a finger: assumed
+_TIMESTEP_S = 0.001
+# A cable of a gram between fingers that press with newtons: softer contacts would let it through.
+_STIFF = ([0.004, 1.0], [0.999, 0.9999, 1e-4, 0.5, 2.0])  # solref and solimp
+
+
+class MujocoError(LumitipError, ValueError):
+    """A model or argument that the sensor in MuJoCo cannot use."""
+
+
+def fingers(
+    layout: Layout,
+    urdf: str | Path | None = None,
+    opening_mm: float = 3.0,
+    force_n: float = 20.0,
+) -> mujoco.MjSpec:
+    """A model of both fingers: slide joints, an actuator of the opening, the sensor `SENSOR`.
+
+    Args:
+        layout: the cells.
+        urdf: `robot/lumitip.urdf` of the design's outputs; without it the fingers are two plates.
+        opening_mm: of the fingers, skin to skin, in the key frame `start` (mm).
+        force_n: largest force of a finger (N).
+
+    Returns:
+        The specification, to be extended and compiled. The actuator `lumitip_opening` sets the
+        travel of each finger (m), 0 where they touch.
+
+    Raises:
+        LayoutError: if `layout` is no layout.
+        MujocoError: if the file cannot be read, or has no such fingers.
+    """
+    layout = arguments.layout(layout)
+    force_n = arguments.number(force_n, "force_n", above=0.0, error=MujocoError)
+    opening_mm = arguments.number(opening_mm, "opening_mm", 0.0, 2e3 * _TRAVEL_M, error=MujocoError)
+    spec = _plates(layout) if urdf is None else _of_file(urdf)
+    joints = [f"{name}_joint" for name in FINGERS]
+    for name in joints:
+        joint = spec.joint(name)
+        joint.damping = [_DAMPING_N_S_M, 0.0, 0.0]
+        joint.armature = _DRIVE_KG
+    equal = spec.add_equality(type=mujoco.mjtEq.mjEQ_JOINT, objtype=mujoco.mjtObj.mjOBJ_JOINT)
+    equal.name1, equal.name2 = joints[1], joints[0]
+    equal.data[:5] = (0.0, 1.0, 0.0, 0.0, 0.0)
+    equal.solref, equal.solimp = _STIFF
+    actuator = spec.add_actuator(name="lumitip_opening", target=joints[0])
+    actuator.trntype = mujoco.mjtTrn.mjTRN_JOINT
+    actuator.set_to_position(kp=_STIFFNESS_N_M)
+    actuator.ctrlrange, actuator.ctrllimited = [0.0, _TRAVEL_M], True
+    actuator.forcerange, actuator.forcelimited = [-force_n, force_n], True
+    travel_m = opening_mm / 2000.0
+    spec.add_key(name="start", qpos=[travel_m] * 2, ctrl=[travel_m])
+    spec.option.timestep = _TIMESTEP_S
+    for name in FINGERS:
+        for geom in spec.body(name).geoms:
+            geom.priority = 1
+            geom.solref, geom.solimp = _STIFF
+    spec.add_sensor(
+        name=SENSOR,
+        type=mujoco.mjtSensor.mjSENS_USER,
+        datatype=mujoco.mjtDataType.mjDATATYPE_REAL,
+        needstage=mujoco.mjtStage.mjSTAGE_POS,
+        dim=len(layout),
+    )
+    return spec
+
+
+def _of_file(urdf: str | Path) -> mujoco.MjSpec:
+    try:
+        spec = mujoco.MjSpec.from_file(str(urdf))
+    except (ValueError, OSError, mujoco.FatalError) as problem:
+        raise MujocoError(f"urdf is {shown(str(urdf))}; MuJoCo cannot read it: {problem}") from None
+    there = {body.name for body in spec.bodies}
+    missing = [name for name in FINGERS if name not in there]
+    if missing:
+        raise MujocoError(
+            f"{urdf} has no body {' and no '.join(missing)}; the file robot/lumitip.urdf of a "
+            "design's outputs is needed"
+        )
+    for name in FINGERS:
+        spec.joint(f"{name}_joint").range = [0.0, _TRAVEL_M]
+    for equality in list(spec.equalities):
+        spec.delete(equality)  # the two joints are joined anew, under their own names
+    return spec
+
+
+def _plates(layout: Layout) -> mujoco.MjSpec:
+    """Two plates as large as the grid, in place of the printed fingers."""
+    spec = mujoco.MjSpec()
+    spec.modelname = "lumitip"
+    half_mm = [
+        float(np.abs(place).max()) + layout.pitch_mm / 2.0 + _BORDER_MM
+        for place in (layout.x_mm, layout.y_mm)
+    ]
+    for name, quat in zip(FINGERS, ((1.0, 0.0, 0.0, 0.0), _TURNED), strict=True):
+        body = spec.worldbody.add_body(name=name, quat=quat)
+        body.add_joint(
+            name=f"{name}_joint",
+            type=mujoco.mjtJoint.mjJNT_SLIDE,
+            axis=[0.0, 0.0, -1.0],
+            range=[0.0, _TRAVEL_M],
+            limited=True,
+        )
+        body.add_geom(
+            type=mujoco.mjtGeom.mjGEOM_BOX,
+            size=[half_mm[0] / 1e3, half_mm[1] / 1e3, _THICK_MM / 2e3],
+            pos=[0.0, 0.0, -_THICK_MM / 2e3],
+            density=_DENSITY_KG_M3,
+        )
+    return spec
