@@ -13,8 +13,14 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
-from lumitip.robots import ArmError
+import pytest
 
+from lumitip.control import Command
+from lumitip.robots import ArmError, ArmLimits, ArmStopped, Mount, URArm
+
+MOUNT = Mount(x=(1, 0, 0), y=(0, 0, 1), origin_mm=(0.0, 0.0, 80.0))
+# A machine with more to do than it can must not look like a lost sensor here.
+CALM = ArmLimits(stale_s=0.5, watchdog_hz=2.0)
 STAND_IN = Path(__file__).with_name("ur_stand_in.py")
 _numbers = count(1)
 WAIT_S = 20.0
@@ -77,6 +83,25 @@ class Peer:
         self._process.wait(WAIT_S)
         self._reader.join(WAIT_S)
         self._process.stdout.close()
+
+
+def follow(arm: URArm, command: Command, seconds: float) -> None:
+    """Give an arm a command with fresh frames for a time."""
+    until_s = time.monotonic() + seconds
+    while time.monotonic() < until_s:
+        arm.move(command, time.monotonic())
+        time.sleep(0.01)
+
+
+def until_stopped(arm: URArm, command: Command | None, most_s: float = 15.0) -> str:
+    """Give an arm a command, or none, until it is stopped: the reason."""
+    until_s = time.monotonic() + most_s
+    with pytest.raises(ArmStopped) as stopped:
+        while time.monotonic() < until_s:
+            if command or arm.stopped:
+                arm.move(command or Command(), time.monotonic())
+            time.sleep(0.01)
+    return stopped.value.reason
 
 
 def patient(test: Callable[..., None]) -> Callable[..., None]:

@@ -1,47 +1,31 @@
 """`URArm`: a Universal Robots arm through RTDE, with ur_rtde (extra `[ur]`).
 
-A thread sends the current command at `RATE_HZ`, checks the arm before each and stops it for any
-reason of `WHY`. A stop is final: somebody must look at the arm and open it again.
-
-ur_rtde's script repeats the last speed for ever, whatever its time was, and ur_rtde restores a lost
-connection by itself. Therefore the watchdog of the controller stops the program if no register is
-written, and an arm that was silent once is not moved again.
+A process of its own (`ur_process`) drives the arm and stops it for any reason of `WHY`. A stop is
+final: somebody must look at the arm and open it again.
 """
 
+import json
 import logging
-import math
-import socket
+import signal
+import subprocess
 import threading
 import time
+from contextlib import suppress
+from dataclasses import asdict
 from types import TracebackType
 from typing import Any
 
 import numpy as np
 
-from lumitip import arguments
+from lumitip import arguments, child_process
 from lumitip.control import Command
 from lumitip.errors import MissingExtra
-from lumitip.grid import Floats
-from lumitip.robots.guard import ArmLimits, ArmState, ArmStopped, Guard
-from lumitip.robots.mount import ArmError, Mount, in_base, in_tool
+from lumitip.robots.guard import ArmLimits, ArmStopped
+from lumitip.robots.mount import ArmError, Mount, in_tool
 
-RATE_HZ = 125.0
-"""Rate of commands and states (Hz)."""
-_PORT = 30004
-_PLAYING = 2  # RTDE's runtime_state; ur_rtde has no name for it in Python
-_VARIABLES = [
-    "timestamp",
-    "actual_TCP_pose",
-    "actual_TCP_speed",
-    "actual_TCP_force",
-    "runtime_state",
-    "safety_status_bits",
-]
-_STILL = 1e-3  # m/s or rad/s
-_REFUSAL_STATES = 10
-_BRAKING_MORE_S = 0.5
 _LONGEST_S = 600.0
-_ENDING_S = 10.0  # braking takes 5 s where the limits are extreme
+_UNOPENED_S = 5.0  # an arm that was not opened does not move; its process may be killed
+_SIGNALS = {-number: number.name for number in signal.Signals}
 _log = logging.getLogger(__name__)
 
 
@@ -54,8 +38,7 @@ class URArm:
         """Connect, send the controller its script and set the watchdog; nothing moves yet.
 
         The arm must be on, in remote control and free to move, with payload and tool centre point
-        set. ur_rtde blocks all other Python threads while it connects: open the arm before the
-        fingertip.
+        set.
 
         Args:
             host: address of the controller.
@@ -65,28 +48,28 @@ class URArm:
 
         Raises:
             MissingExtra: if ur_rtde is not installed.
-            ArmError: if the controller does not answer or does not run the script, or an argument
-                is invalid.
+            ArmError: if the controller does not answer or does not run the script, if ur_rtde
+                fails, or an argument is invalid.
         """
         self.host = arguments.instance(host, str, "host", ArmError)
         self.mount = arguments.instance(mount, Mount, "mount", ArmError)
         limits = ArmLimits() if limits is None else limits
         self.limits = arguments.instance(limits, ArmLimits, "limits", ArmError)
         within_s = arguments.number(timeout, "timeout", most=_LONGEST_S, above=0.0, error=ArmError)
-        self._control, self._receive = _connected(host, within_s)
-        self._asked: tuple[Command, float] | None = None
         self._stop: ArmStopped | None = None
-        self._closing = threading.Event()
+        self._lock = threading.Lock()  # of the process's input
+        self._process = _started()
         try:
-            if not self._control.setWatchdog(self.limits.watchdog_hz):
-                raise ArmError(f"{host}: the controller accepts no watchdog, so nothing moves")
-            self._guard = Guard(self.limits, mount, self._state(), time.monotonic())
+            place = {name: [float(v) for v in axis] for name, axis in asdict(mount).items()}
+            limits_of = asdict(self.limits)
+            self._say(host=host, timeout_s=within_s, mount=place, limits=limits_of)
+            self._state = self._first_state()
+            # No daemon: any program that ends waits until the arm stands still.
+            self._thread = threading.Thread(target=self._listen, name="lumitip-ur")
+            self._thread.start()
         except BaseException:
-            self._leave()
+            self._end(_UNOPENED_S)
             raise
-        # No daemon: any program that ends waits until the arm stands still.
-        self._thread = threading.Thread(target=self._run, name="lumitip-ur")
-        self._thread.start()
 
     @property
     def stopped(self) -> str:
@@ -113,116 +96,94 @@ class URArm:
         arguments.finite_fields(arguments.instance(command, Command, "command", ArmError), ArmError)
         seen_s = arguments.number(seen_s, "seen_s", error=ArmError)
         # A time in the future would keep the arm moving without any frame until then.
-        self._asked = (command, min(seen_s, time.monotonic()))
+        self._say(command=asdict(command), seen_s=min(seen_s, time.monotonic()))
         if command.state == "stop":
             self._thread.join()
 
     def measured(self) -> Command:
         """Motion of the fingertip now, as reported by the arm's controller."""
-        state = self._state()
-        return self.mount.command(in_tool(state.pose, state.twist))
+        pose, twist = self._state
+        return self.mount.command(in_tool(pose, twist))
 
     def close(self) -> None:
         """Stop the arm, wait until it stands still, and disconnect. May be called repeatedly."""
-        self._closing.set()
+        self._hang_up()
         self._thread.join()
 
-    def _run(self) -> None:
+    def _first_state(self) -> tuple[Any, Any]:
+        assert self._process.stdout
+        answer = json.loads(self._process.stdout.readline() or "null")
+        if answer is None:
+            raise ArmError(
+                f"host is {self.host}; {self._crash()} while it connected. Look at what it "
+                "printed, and try again"
+            )
+        if "missing" in answer:
+            raise MissingExtra("ur", "a UR arm")
+        if "failed" in answer:
+            raise ArmError(answer["failed"])
+        return _state(answer)
+
+    def _listen(self) -> None:
+        """Take what the process says, at the rate of the arm's states, until it has ended."""
+        assert self._process.stdout
         try:
-            reason, detail = self._drive()
-        except Exception as problem:  # noqa: BLE001 - whatever goes wrong must stop the arm
-            reason, detail = "error", str(problem)
-            _log.debug("reason of the stop:", exc_info=True)
+            for line in self._process.stdout:
+                self._take(json.loads(line))
+                if not threading.main_thread().is_alive():
+                    self._hang_up()
+        finally:
+            self._end()
+            if not self._stop:
+                self._set_stop("connection", f"{self._crash()}; the watchdog stops the arm")
+            elif self._process.returncode:
+                _log.warning("%s while stopping; the watchdog stops the arm", self._crash())
+
+    def _take(self, message: dict[str, Any]) -> None:
+        if "pose" in message:
+            self._state = _state(message)
+        elif "stopped" in message:
+            if message["trace"]:
+                _log.debug("reason of the stop: %s", message["trace"])
+            self._set_stop(message["stopped"], message["detail"])
+        else:
+            _log.warning("%s", message["warning"])
+
+    def _set_stop(self, reason: str, detail: str) -> None:
         self._stop = ArmStopped(reason, detail)
         _log.log(logging.INFO if reason == "closed" else logging.WARNING, "%s", self._stop)
-        # Without a connection ur_rtde may wait for ever: then its thread is left behind.
-        ending = threading.Thread(target=self._end, args=(reason,), name="lumitip-ur-end")
-        ending.daemon = True
-        ending.start()
-        ending.join(_ENDING_S)
-        if ending.is_alive():
-            _log.warning("%s: no answer while stopping; the watchdog stops the arm", self.host)
 
-    def _drive(self) -> tuple[str, str]:
-        """Send the current command until there is a reason to stop: that, and its figures."""
-        due_s = time.monotonic()
-        while not self._closing.wait(max(0.0, due_s - time.monotonic())):
-            if not threading.main_thread().is_alive():
-                break
-            state, asked, now_s = self._state(), self._asked, time.monotonic()
-            reason, detail = self._guard.reason(state, now_s, asked[1] if asked else None)
-            if reason:
-                return reason, detail
-            if asked and asked[0].state == "stop":
-                return asked[0].reason or "closed", ""
-            if not self._follow(asked[0] if asked else None, state):
-                return self._refusal()
-            due_s = max(due_s + 1.0 / RATE_HZ, now_s)
-        return "closed", ""
+    def _crash(self) -> str:
+        """How the process of ur_rtde ended without a word."""
+        code = self._process.wait()
+        return f"ur_rtde crashed or hung ({_SIGNALS.get(code, f'exit code {code}')})"
 
-    def _refusal(self) -> tuple[str, str]:
-        """Reason why the controller took no command; its state shows it a little later."""
-        for _ in range(_REFUSAL_STATES):
-            reason, detail = self._guard.reason(self._state(), time.monotonic(), None)
-            if reason:
-                return reason, detail
-            time.sleep(1.0 / RATE_HZ)
-        return "error", "the controller took no command"
+    def _say(self, **message: object) -> None:
+        """Send a line to the process, unless it has ended: `_listen` finds out why."""
+        assert self._process.stdin
+        with self._lock, suppress(BrokenPipeError):
+            if not self._process.stdin.closed:
+                self._process.stdin.write(json.dumps(message) + "\n")
+                self._process.stdin.flush()
 
-    def _follow(self, command: Command | None, state: ArmState) -> bool:
-        if command is None:
-            return bool(self._control.kickWatchdog())
-        twist = self.mount.tool_twist(command)
-        fingertip_mm_s = math.hypot(command.forward_mm_s, command.lateral_mm_s)
-        tool_mm_s = float(np.linalg.norm(twist[:3])) * 1000.0
-        twist *= self.limits.share(max(fingertip_mm_s, tool_mm_s), abs(command.rotation_rad_s))
-        return self._send(in_base(state.pose, twist))
+    def _hang_up(self) -> None:
+        """Let the process stop the arm and end."""
+        # Closing is not enough where a process that this one forked holds the pipe open.
+        self._say(close=True)
+        assert self._process.stdin
+        with self._lock, suppress(BrokenPipeError):
+            self._process.stdin.close()
 
-    def _send(self, twist: Floats) -> bool:
-        """Send a twist in the base; whether the controller took it."""
-        speed = twist.tolist()
-        return bool(self._control.speedL(speed, self._acceleration_m_s2, 1.0 / RATE_HZ))
-
-    @property
-    def _acceleration_m_s2(self) -> float:
-        return self.limits.acceleration_mm_s2 / 1000.0
-
-    def _end(self, reason: str) -> None:
-        """Brake, end the script and disconnect; each is tried even if another fails."""
-        if reason != "connection":
-            _try(self._brake)
-            _try(self._control.speedStop, self._acceleration_m_s2)
-            _try(self._control.stopScript)
-        elif self._control.isConnected():
-            # Calls that wait for an answer could wait for minutes; the watchdog does the rest.
-            _try(self._send, np.zeros(6))
-        self._leave()
-
-    def _brake(self) -> None:
-        """Send zero speed until the arm stands: with `speedStop` alone the watchdog would act."""
-        speed_m_s = float(np.linalg.norm(self._state().twist[:3]))
-        until_s = time.monotonic() + speed_m_s / self._acceleration_m_s2 + _BRAKING_MORE_S
-        while time.monotonic() < until_s and self._send(np.zeros(6)):
-            if float(np.abs(self._state().twist).max()) < _STILL:
-                return
-            time.sleep(1.0 / RATE_HZ)
-
-    def _leave(self) -> None:
-        _try(self._control.disconnect)
-        _try(self._receive.disconnect)
-
-    def _state(self) -> ArmState:
-        arm = self._receive
-        return ArmState(
-            time_s=arm.getTimestamp(),
-            pose=np.array(arm.getActualTCPPose()),
-            twist=np.array(arm.getActualTCPSpeed()),
-            force_n=np.array(arm.getActualTCPForce()[:3]),
-            connected=arm.isConnected(),
-            runs=arm.getRuntimeState() == _PLAYING,
-            protective=arm.isProtectiveStopped(),
-            emergency=arm.isEmergencyStopped(),
-        )
+    def _end(self, within_s: float | None = None) -> None:
+        """Let the process end, and wait for it; kill it then."""
+        assert self._process.stdout
+        self._hang_up()
+        try:
+            self._process.wait(within_s)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+        self._process.stdout.close()
 
     def __enter__(self) -> "URArm":
         return self
@@ -233,26 +194,13 @@ class URArm:
         self.close()
 
 
-def _connected(host: str, timeout_s: float) -> tuple[Any, Any]:
-    """Control and state interfaces; first a plain connection, since ur_rtde's has no timeout."""
+def _started() -> "subprocess.Popen[str]":
     try:
-        from rtde_control import RTDEControlInterface
-        from rtde_receive import RTDEReceiveInterface
-    except ImportError:
-        raise MissingExtra("ur", "a UR arm") from None
-    try:
-        socket.create_connection((host, _PORT), timeout_s).close()
-        receive = RTDEReceiveInterface(host, RATE_HZ, _VARIABLES)
-        return RTDEControlInterface(host, RATE_HZ), receive
-    except (OSError, RuntimeError) as problem:
-        raise ArmError(
-            f"host is {host}; no arm there takes commands at port {_PORT} ({problem}). Switch it "
-            "on, unlock the brakes, enable remote control and check the address"
-        ) from None
+        return child_process.start("lumitip.robots.ur_process")
+    except OSError as problem:
+        raise ArmError(f"the process that drives the arm does not start: {problem}") from None
 
 
-def _try(call: Any, *arguments: Any) -> None:
-    try:
-        call(*arguments)
-    except Exception as problem:  # noqa: BLE001 - the next steps must be tried anyway
-        _log.warning("while stopping the arm: %s", problem)
+def _state(message: dict[str, Any]) -> tuple[Any, Any]:
+    """Pose and twist of the tool centre point in the base, each `(6,)`."""
+    return np.array(message["pose"]), np.array(message["twist"])

@@ -4,9 +4,7 @@ After an estimate the process rests for as long as it took, so it uses half a co
 """
 
 import json
-import os
 import subprocess
-import sys
 import threading
 import time
 from collections.abc import Callable
@@ -14,7 +12,7 @@ from contextlib import suppress
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from lumitip import arguments
+from lumitip import arguments, child_process
 from lumitip.errors import ViewError
 from lumitip.estimation.estimator import DIAMETER_MM, LEAST_DIAMETER_MM
 from lumitip.frame import Frame
@@ -25,8 +23,6 @@ from lumitip.twin.scene import MOST_DIAMETER_MM
 
 MOST_HZ = 30.0
 """Largest rate of estimates: more are not readable."""
-# Without -P a file of the current folder could stand in for a module.
-_COMMAND = (sys.executable, "-P", "-m", "lumitip.view.pose_process")
 
 
 @dataclass(frozen=True)
@@ -120,7 +116,7 @@ class Estimates:
             with self._lock:
                 if self._stopping.is_set():
                     return
-                self._process = _started()
+                self._process = child_process.start("lumitip.view.pose_process")
             try:
                 self._run(self._process)
             finally:
@@ -144,18 +140,6 @@ class Estimates:
             self._changed()
             took_s = time.monotonic() - begun
             self._stopping.wait(max(1.0 / MOST_HZ - took_s, took_s))
-
-
-def _started() -> "subprocess.Popen[str]":
-    ours = {"PYTHONPATH": os.pathsep.join(filter(None, sys.path)), "OPENBLAS_NUM_THREADS": "1"}
-    return subprocess.Popen(
-        _COMMAND,
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        encoding="utf-8",
-        env=os.environ | ours,
-        start_new_session=True,  # Ctrl-C is for the live view, which ends the process
-    )
 
 
 def _end(process: "subprocess.Popen[str]") -> None:

@@ -2,7 +2,6 @@
 
 import math
 import re
-import signal
 import subprocess
 import sys
 import time
@@ -13,23 +12,12 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from lumitip.control import Command
-from lumitip.errors import MissingExtra
-from lumitip.robots import ArmError, ArmLimits, ArmStopped, Mount, URArm
-from ur_peer import Peer, patient
+from lumitip.robots import ArmError, ArmLimits, ArmStopped, URArm
+from ur_peer import CALM, MOUNT, Peer, follow, patient, until_stopped
 
 pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).parents[3]
-MOUNT = Mount(x=(1, 0, 0), y=(0, 0, 1), origin_mm=(0.0, 0.0, 80.0))
-# A machine with more to do than it can must not look like a lost sensor here.
-CALM = ArmLimits(stale_s=0.5, watchdog_hz=2.0)
-
-
-def _follow(arm: URArm, command: Command, seconds: float) -> None:
-    until_s = time.monotonic() + seconds
-    while time.monotonic() < until_s:
-        arm.move(command, time.monotonic())
-        time.sleep(0.01)
 
 
 def _fingertip(pose: list[float]) -> tuple[np.ndarray, Rotation]:
@@ -40,7 +28,7 @@ def _fingertip(pose: list[float]) -> tuple[np.ndarray, Rotation]:
 @patient
 def test_it_moves_along_the_sensors_axes_and_stands_at_the_end(peer: Peer) -> None:
     with URArm(peer.host, MOUNT, CALM) as arm:
-        _follow(arm, Command(forward_mm_s=40.0, lateral_mm_s=-15.0), 0.6)
+        follow(arm, Command(forward_mm_s=40.0, lateral_mm_s=-15.0), 0.6)
         measured = arm.measured()
     assert (measured.forward_mm_s, measured.lateral_mm_s) == pytest.approx((40, -15), abs=1.0)
     first, last = peer.wait("speedl"), peer.wait("stands")
@@ -61,7 +49,7 @@ def test_it_moves_along_the_sensors_axes_and_stands_at_the_end(peer: Peer) -> No
 def test_a_turn_leaves_the_fingertip_where_it_is(peer: Peer) -> None:
     limits = ArmLimits(acceleration_mm_s2=2000.0, stale_s=0.5, watchdog_hz=2.0)
     with URArm(peer.host, MOUNT, limits) as arm:
-        _follow(arm, Command(rotation_rad_s=0.8), 0.6)
+        follow(arm, Command(rotation_rad_s=0.8), 0.6)
     begin, turned = _fingertip(peer.wait("speedl")["pose"])
     end, turn = _fingertip(peer.wait("stands")["pose"])
     spin = (turned.inv() * turn).as_rotvec()
@@ -78,10 +66,10 @@ def test_a_turn_leaves_the_fingertip_where_it_is(peer: Peer) -> None:
 def test_commands_that_are_too_fast_are_slowed_down_as_a_whole(peer: Peer) -> None:
     limits = ArmLimits(speed_mm_s=50.0, rotation_rad_s=0.4, stale_s=0.5, watchdog_hz=2.0)
     with URArm(peer.host, MOUNT, limits) as arm:
-        _follow(arm, Command(300.0, -400.0, 0.0), 0.2)
+        follow(arm, Command(300.0, -400.0, 0.0), 0.2)
         straight = peer.wait("speedl", 3)
         number = len(peer.of("speedl"))
-        _follow(arm, Command(10.0, 0.0, 5.0), 0.2)
+        follow(arm, Command(10.0, 0.0, 5.0), 0.2)
         turning = peer.wait("speedl", number + 10)
     assert np.linalg.norm(straight["twist"][:3]) == pytest.approx(0.050)
     assert straight["acceleration"] == 0.5
@@ -97,21 +85,11 @@ def test_it_stands_still_until_its_first_command(peer: Peer) -> None:
     assert not [e for e in peer.of("speedl") if any(e["twist"])]
 
 
-def _until_stopped(arm: URArm, command: Command | None, most_s: float = 15.0) -> str:
-    until_s = time.monotonic() + most_s
-    with pytest.raises(ArmStopped) as stopped:
-        while time.monotonic() < until_s:
-            if command or arm.stopped:
-                arm.move(command or Command(), time.monotonic())
-            time.sleep(0.01)
-    return stopped.value.reason
-
-
 @patient
 def test_it_stops_when_no_fresh_frame_comes(peer: Peer) -> None:
     with URArm(peer.host, MOUNT, ArmLimits(stale_s=0.2, watchdog_hz=2.0)) as arm:
         arm.move(Command(forward_mm_s=30.0), time.monotonic())
-        assert _until_stopped(arm, None) == "stale"
+        assert until_stopped(arm, None) == "stale"
     assert peer.wait("stands") and peer.wait("program ended")["why"] == "script"
 
 
@@ -119,7 +97,7 @@ def test_it_stops_when_no_fresh_frame_comes(peer: Peer) -> None:
 def test_frames_that_claim_to_be_of_later_do_not_move_it_on(peer: Peer) -> None:
     with URArm(peer.host, MOUNT, ArmLimits(stale_s=0.2, watchdog_hz=2.0)) as arm:
         arm.move(Command(forward_mm_s=30.0), time.monotonic() + 60.0)
-        assert _until_stopped(arm, None) == "stale"
+        assert until_stopped(arm, None) == "stale"
 
 
 @pytest.mark.parametrize(
@@ -138,9 +116,9 @@ def test_it_stops_whatever_happens_to_the_arm(
     peer: Peer, mishap: str, reason: str, why: str
 ) -> None:
     with URArm(peer.host, MOUNT, CALM) as arm:
-        _follow(arm, Command(forward_mm_s=20.0), 0.3)
+        follow(arm, Command(forward_mm_s=20.0), 0.3)
         peer.does(mishap)
-        assert _until_stopped(arm, Command(forward_mm_s=20.0)) in reason.split(" or ")
+        assert until_stopped(arm, Command(forward_mm_s=20.0)) in reason.split(" or ")
         assert arm.stopped in reason.split(" or ")
     assert peer.wait("program ended")["why"] == why
     assert peer.wait("stands")
@@ -151,13 +129,13 @@ def test_it_stops_whatever_happens_to_the_arm(
 @patient
 def test_it_stops_beyond_its_travel(peer: Peer) -> None:
     with URArm(peer.host, MOUNT, ArmLimits(travel_mm=10.0, stale_s=0.5, watchdog_hz=2.0)) as arm:
-        assert _until_stopped(arm, Command(forward_mm_s=40.0)) == "travel"
+        assert until_stopped(arm, Command(forward_mm_s=40.0)) == "travel"
 
 
 @patient
 def test_a_tracer_that_stops_waits_until_the_arm_stands(peer: Peer) -> None:
     with URArm(peer.host, MOUNT, CALM) as arm:
-        _follow(arm, Command(forward_mm_s=40.0), 0.2)
+        follow(arm, Command(forward_mm_s=40.0), 0.2)
         arm.move(Command(state="stop", reason="lost"), time.monotonic())
         assert arm.stopped == "lost"
         assert peer.wait("program ended")["why"] == "script" and peer.of("stands")
@@ -166,7 +144,7 @@ def test_a_tracer_that_stops_waits_until_the_arm_stands(peer: Peer) -> None:
 @patient
 def test_an_error_in_the_program_stops_it(peer: Peer) -> None:
     with pytest.raises(ZeroDivisionError), URArm(peer.host, MOUNT, CALM) as arm:
-        _follow(arm, Command(forward_mm_s=40.0), 0.2)
+        follow(arm, Command(forward_mm_s=40.0), 0.2)
         _ = 1 / 0
     assert peer.of("stands") and peer.wait("program ended")["why"] == "script"
 
@@ -178,45 +156,9 @@ def test_numbers_that_are_none_are_refused_and_stop_it(peer: Peer) -> None:
     assert arm.stopped == "closed"
 
 
-ENDLESS = """
-import sys, time
-from lumitip.control import Command
-from lumitip.robots import ArmLimits, Mount, URArm
-with URArm(sys.argv[1], Mount((1, 0, 0), (0, 0, 1)), ArmLimits(stale_s=0.5, watchdog_hz=4.0)) as a:
-    while True:
-        a.move(Command(forward_mm_s=30.0), time.monotonic())
-        time.sleep(0.01)
-"""
-
-
-@pytest.mark.parametrize(
-    ("by", "why"),
-    [(signal.SIGINT, "script"), (signal.SIGTERM, "watchdog"), (signal.SIGKILL, "watchdog")],
-)
-@patient
-def test_it_stops_when_the_program_is_interrupted_or_killed(
-    peer: Peer, by: signal.Signals, why: str
-) -> None:
-    program = subprocess.Popen(
-        [sys.executable, "-c", ENDLESS, peer.host], stderr=subprocess.PIPE, text=True
-    )
-    peer.wait("speedl", 20)
-    program.send_signal(by)
-    assert peer.wait("program ended")["why"] == why
-    assert peer.wait("stands")
-    _, errors = program.communicate(timeout=30.0)
-    assert ("KeyboardInterrupt" in errors) == (by is signal.SIGINT)
-
-
 def test_no_arm_is_told_in_time() -> None:
     with pytest.raises(ArmError, match="; no arm there takes commands at port 30004"):
         URArm("127.0.0.77", MOUNT, CALM, timeout=2.0)
-
-
-def test_without_ur_rtde_it_tells_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "rtde_control", None)
-    with pytest.raises(MissingExtra, match=r"'\.\[ur\]'"):
-        URArm("127.0.0.77", MOUNT)
 
 
 @patient
