@@ -2,6 +2,7 @@
 
 import shutil
 from pathlib import Path
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -10,7 +11,7 @@ import xacro
 import yourdfpy
 
 from lumitip import Layout
-from lumitip.mujoco import LightSensor, fingers
+from lumitip.mujoco import LightSensor, fingers, open_fingers
 from lumitip.twin import Cable, Model, Twin
 from lumitip_fab.design.encoding import read_design
 
@@ -96,10 +97,24 @@ def test_the_light_between_these_fingers_in_mujoco(outputs: Path) -> None:
     assert np.abs(LightSensor(model, layout).values(data) - expected).max() <= 2.0
 
 
+def test_the_program_of_the_page_on_mujoco(
+    outputs: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    page = (Path(__file__).parents[2] / "docs/mujoco.md").read_text(encoding="utf-8")
+    (tmp_path / "outputs").symlink_to(outputs)
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, Any] = {}
+    exec(page.partition("```python\n")[2].partition("```")[0], names)
+    values, layout = names["values"], names["layout"]
+    assert values.min() < 60.0, "the rod was lost"
+    assert layout.y_mm[values < 100.0].mean() == pytest.approx(2.0, abs=2.0)
+    filled = names["data"].sensor("lumitip_light").data
+    assert np.allclose(filled, values, atol=1.0)
+
+
 def _at_gap(model: mujoco.MjModel, gap_mm: float) -> tuple[mujoco.MjModel, mujoco.MjData]:
     data = mujoco.MjData(model)
-    data.qpos[:2] = gap_mm / 2000.0
-    mujoco.mj_forward(model, data)
+    open_fingers(model, data, gap_mm)
     return model, data
 
 

@@ -1,55 +1,68 @@
-"""What lies between the fingers of a MuJoCo model, as lines and outlines in the sensor frame."""
+"""`Bodies`: the objects between the fingers of a MuJoCo model, in the receiver's sensor frame."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Literal
 
 import mujoco
 import numpy as np
 
 from lumitip.grid import Floats
-from lumitip.mujoco.outlines import hull, sheet_outlines
+from lumitip.mujoco.materials import Material, Materials
+from lumitip.mujoco.outlines import clipped, hull, runs, sheet_outlines
 
 _RIM = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)
+_RING = np.stack([np.cos(_RIM), np.sin(_RIM)], axis=1)
+_CUBE = np.array([(x, y, z) for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
 _FLAT = 0.5  # share of a cylinder's direction along z up to which it lies like a cable
 _UPRIGHT = 0.999  # the same, from which on it is a disc
-_UNSEEN = (int(mujoco.mjtGeom.mjGEOM_PLANE), int(mujoco.mjtGeom.mjGEOM_HFIELD))
-_ROUND = (int(mujoco.mjtGeom.mjGEOM_CAPSULE), int(mujoco.mjtGeom.mjGEOM_CYLINDER))
+_BOX, _MESH = int(mujoco.mjtGeom.mjGEOM_BOX), int(mujoco.mjtGeom.mjGEOM_MESH)
+_BALLS = (int(mujoco.mjtGeom.mjGEOM_SPHERE), int(mujoco.mjtGeom.mjGEOM_ELLIPSOID))
+_CAPSULE, _CYLINDER = int(mujoco.mjtGeom.mjGEOM_CAPSULE), int(mujoco.mjtGeom.mjGEOM_CYLINDER)
+_SEEN = (*_BALLS, _BOX, _MESH, _CAPSULE, _CYLINDER)
 
 
 @dataclass(frozen=True, eq=False)
 class Body:
-    """An object between the fingers, in the receiver's sensor frame."""
+    """An object between the fingers."""
 
-    name: str
+    form: Literal["outline", "line", "disc"]
     points_mm: Floats
-    """Corners of an outline, points of a line, or the middle of a disc, shape `(n, 2)`."""
+    """Corners of an outline counter-clockwise, points of a line, or the middle of a disc, shape
+    `(n, 2)`."""
     z_mm: float
-    """Mean height above the receiver."""
+    """Mean height above the receiver of what is between the fingers."""
+    material: Material
     radius_mm: float = 0.0
-    """Of a line or a disc; 0 for an outline."""
+    """Of a line or a disc."""
 
 
 class Bodies:
-    """Reads the objects of a model between its fingers; `ROUND` solids that lie are lines."""
+    """Reads the objects of a model, but not those that are fixed to its fingers."""
 
-    def __init__(self, model: mujoco.MjModel, fingers: tuple[int, int]) -> None:
-        """Find what can lie there.
+    def __init__(
+        self, model: mujoco.MjModel, fingers: tuple[int, int], materials: Materials
+    ) -> None:
+        """Find what can lie between the fingers.
 
         Args:
             model: with the fingers.
             fingers: ids of their bodies.
+            materials: of geoms and flexes.
         """
-        self._model = model
-        self._geoms = np.array(
-            [
-                geom
-                for geom in range(model.ngeom)
-                if model.geom_type[geom] not in _UNSEEN
-                and not _belongs(model, int(model.geom_bodyid[geom]), fingers)
-            ],
-            np.int64,
-        )
-        self._solids = {int(geom): _solid(model, int(geom)) for geom in self._geoms}
+        self._model, self._materials = model, materials
+        seen = [
+            geom
+            for geom in range(model.ngeom)
+            if int(model.geom_type[geom]) in _SEEN
+            and not _fixed(model, int(model.geom_bodyid[geom]), fingers)
+        ]
+        self._geoms = np.array(seen, np.int64)
+        self._meshes = {
+            geom: _mesh(model, int(model.geom_dataid[geom]))
+            for geom in seen
+            if int(model.geom_type[geom]) == _MESH
+        }
 
     def between(self, data: mujoco.MjData, frame: Floats, box_mm: Floats) -> Iterator[Body]:
         """The objects of which some part is within a box.
@@ -59,30 +72,53 @@ class Bodies:
             frame: from the world to the sensor frame, shape `(4, 4)` (m).
             box_mm: lower and upper corner of the box in the sensor frame, shape `(2, 3)`.
         """
-        yield from self._lying(data, frame, box_mm)
+        yield from self._solids(data, frame, box_mm)
         for flex in range(self._model.nflex):
             yield from self._flexible(flex, data, frame, box_mm)
 
-    def _lying(self, data: mujoco.MjData, frame: Floats, box_mm: Floats) -> Iterator[Body]:
+    def _solids(self, data: mujoco.MjData, frame: Floats, box_mm: Floats) -> Iterator[Body]:
         model, geoms = self._model, self._geoms
         centre_mm = _to(frame, data.geom_xpos[geoms])
         reach_mm = 1e3 * model.geom_rbound[geoms, None]
         near = ((centre_mm + reach_mm > box_mm[0]) & (centre_mm - reach_mm < box_mm[1])).all(axis=1)
-        lines: list[tuple[str, Floats, float]] = []
+        lines: list[tuple[Material, Floats, float]] = []
         for geom, middle in zip(geoms[near].tolist(), centre_mm[near], strict=True):
+            if not self._materials.visible(geom):
+                continue
             turn = frame[:3, :3] @ data.geom_xmat[geom].reshape(3, 3)
-            name = model.geom(geom).name
-            if model.geom_type[geom] in _ROUND and abs(turn[2, 2]) < _FLAT:
-                radius_mm, half_mm = 1e3 * model.geom_size[geom, :2]
-                ends = middle + np.outer((-half_mm, half_mm), turn[:, 2])
-                lines.append((name, ends, float(radius_mm)))
-            elif _is_disc(int(model.geom_type[geom]), turn):
-                yield Body(name, middle[None, :2], middle[2], 1e3 * float(model.geom_size[geom, 0]))
+            size_mm = 1e3 * model.geom_size[geom]
+            kind, material = int(model.geom_type[geom]), self._materials.of_geom(geom)
+            if kind in (_CAPSULE, _CYLINDER) and abs(turn[2, 2]) < _FLAT:
+                ends = middle + np.outer((-size_mm[1], size_mm[1]), turn[:, 2])
+                lines.append((material, ends, float(size_mm[0])))
+                continue
+            points = middle + self._points(geom, kind, size_mm, turn)
+            if not _within(points, box_mm):
+                continue
+            z_mm = float(np.clip(points[:, 2], *box_mm[:, 2]).mean())
+            if kind == _BALLS[0] or (kind == _CYLINDER and abs(turn[2, 2]) > _UPRIGHT):
+                yield Body("disc", middle[None, :2], z_mm, material, float(size_mm[0]))
             else:
-                points = middle + self._solids[geom] @ turn.T
-                if _within(points, box_mm):
-                    yield from _outline(name, hull(points[:, :2]), middle[2])
-        yield from _chains(lines)
+                yield from _outline(hull(points[:, :2]), z_mm, material)
+        yield from _chains(lines, box_mm)
+
+    def _points(self, geom: int, kind: int, size_mm: Floats, turn: Floats) -> Floats:
+        """Points whose hull along z is the outline of a solid around its middle, `(n, 3)` (mm)."""
+        if kind == _MESH:
+            points: Floats = self._meshes[geom] @ turn.T
+        elif kind == _BOX:
+            points = (_CUBE * size_mm) @ turn.T
+        elif kind == _CYLINDER:
+            points = np.concatenate(
+                [np.insert(size_mm[0] * _RING, 2, z, axis=1) for z in (-size_mm[1], size_mm[1])]
+            )
+            points = points @ turn.T
+        elif kind == _CAPSULE:
+            ball = _rim(np.full(3, size_mm[0]), turn)
+            points = np.concatenate([ball + z * turn[:, 2] for z in (-size_mm[1], size_mm[1])])
+        else:
+            points = _rim(size_mm if kind == _BALLS[1] else np.full(3, size_mm[0]), turn)
+        return points
 
     def _flexible(
         self, flex: int, data: mujoco.MjData, frame: Floats, box_mm: Floats
@@ -90,40 +126,35 @@ class Bodies:
         model = self._model
         first, number = int(model.flex_vertadr[flex]), int(model.flex_vertnum[flex])
         points = _to(frame, data.flexvert_xpos[first : first + number])
-        inside = ((points > box_mm[0]) & (points < box_mm[1])).all(axis=1)
-        if not inside.any():
-            return
-        name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_FLEX, flex) or ""
-        size = int(model.flex_dim[flex]) + 1
+        size, radius_mm = int(model.flex_dim[flex]) + 1, 1e3 * float(model.flex_radius[flex])
         begin = int(model.flex_elemdataadr[flex])
         parts = model.flex_elem[begin : begin + size * int(model.flex_elemnum[flex])]
         parts = parts.reshape(-1, size)
-        near = parts[inside[parts].any(axis=1)]
-        z_mm = float(points[inside, 2].mean())
+        corners = points[parts]
+        low, high = corners.min(axis=1) - radius_mm, corners.max(axis=1) + radius_mm
+        near = parts[((high > box_mm[0]) & (low < box_mm[1])).all(axis=1)]
+        if not len(near):
+            return
+        material = self._materials.of_flex(flex)
+        z_mm = float(np.clip(points[np.unique(near), 2], *box_mm[:, 2]).mean())
         if size == 2:
-            radius_mm = 1e3 * float(model.flex_radius[flex])
-            yield from _chains([(name, points[pair], radius_mm) for pair in near])
-            return
-        if size == 4:  # the skin of a solid
-            near = np.concatenate([near[:, face] for face in ([0, 1, 2], [0, 1, 3])])
-            yield from _outline(name, hull(points[np.unique(near), :2]), z_mm)
-            return
-        for outline in sheet_outlines(points[:, :2], near):
-            yield from _outline(name, outline, z_mm)
+            yield from _chains([(material, points[pair], radius_mm) for pair in near], box_mm)
+        elif size == 3:
+            for outline in sheet_outlines(points[:, :2], near):
+                yield from _outline(clipped(outline, *box_mm[:, :2]), z_mm, material)
+        else:
+            yield from _outline(hull(points[np.unique(near), :2]), z_mm, material)
 
 
-def _belongs(model: mujoco.MjModel, body: int, fingers: tuple[int, int]) -> bool:
-    """Whether a body is a part of a finger."""
-    while body and body not in fingers:
-        body = int(model.body_parentid[body])
-    return body in fingers
-
-
-def _is_disc(kind: int, turn: Floats) -> bool:
-    """Whether a geom, turned into the sensor frame, is seen as a disc."""
-    if kind == mujoco.mjtGeom.mjGEOM_SPHERE:
-        return True
-    return kind in _ROUND and abs(turn[2, 2]) > _UPRIGHT
+def _fixed(model: mujoco.MjModel, body: int, fingers: tuple[int, int]) -> bool:
+    """Whether a body is a finger or fixed to one."""
+    for finger in fingers:
+        if body == finger or int(model.body_weldid[finger]) == int(model.body_weldid[body]) != 0:
+            return True
+    parent = int(model.body_parentid[body])
+    # Of fingers that are fixed to the world, the bodies fixed below them.
+    still = int(model.body_weldid[body]) == 0
+    return bool(body) and still and _fixed(model, parent, fingers)
 
 
 def _to(frame: Floats, points_m: Floats) -> Floats:
@@ -136,27 +167,52 @@ def _within(points: Floats, box: Floats) -> bool:
     return bool((points.max(axis=0) > box[0]).all() and (points.min(axis=0) < box[1]).all())
 
 
-def _outline(name: str, points: Floats, z_mm: float) -> Iterator[Body]:
+def _outline(points: Floats, z_mm: float, material: Material) -> Iterator[Body]:
     if len(points) > 2:
-        yield Body(name, points, float(z_mm))
+        yield Body("outline", points, z_mm, material)
 
 
-def _chains(parts: list[tuple[str, Floats, float]]) -> Iterator[Body]:
-    """Lines from parts, shape `(2, 3)`, of which each may begin where another ends (mm)."""
+def _rim(size_mm: Floats, turn: Floats) -> Floats:
+    """Rim of an ellipsoid as seen along z, and its top and bottom, shape `(n, 3)` (mm)."""
+    spread = (turn * size_mm**2) @ turn.T
+    flat = np.linalg.cholesky(spread[:2, :2])
+    up = np.sqrt(spread[2, 2])
+    return np.concatenate(
+        [np.insert(_RING @ flat.T, 2, 0.0, axis=1), [[0.0, 0.0, -up], [0.0, 0.0, up]]]
+    )
+
+
+def _mesh(model: mujoco.MjModel, mesh: int) -> Floats:
+    """Points of the convex hull of a mesh, or all if MuJoCo has made none, `(n, 3)` (mm)."""
+    first, number = int(model.mesh_vertadr[mesh]), int(model.mesh_vertnum[mesh])
+    points = 1e3 * model.mesh_vert[first : first + number].astype(np.float64)
+    graph = int(model.mesh_graphadr[mesh])
+    if graph < 0:
+        return np.asarray(points)
+    corners = int(model.mesh_graph[graph])
+    return np.asarray(points[model.mesh_graph[graph + 2 + corners : graph + 2 + 2 * corners]])
+
+
+def _chains(parts: list[tuple[Material, Floats, float]], box_mm: Floats) -> Iterator[Body]:
+    """Lines within a box, from parts, shape `(2, 3)`, that may begin where others end (mm)."""
     left = list(parts)
     while left:
-        name, line, radius = left.pop(0)
-        grown = True
-        while grown:
-            grown = False
-            for place, (_, ends, other) in enumerate(left):
-                joined = _joined(line, ends, radius) if other == radius else None
-                if joined is not None:
-                    line, grown = joined, True
-                    del left[place]
+        material, line, radius = left.pop(0)
+        place: int | None = 0
+        while place is not None:
+            place = None
+            for number, (of_other, ends, other) in enumerate(left):
+                joined = _joined(line, ends, radius)
+                if (of_other, other) == (material, radius) and joined is not None:
+                    line, place = joined, number
                     break
-        if np.linalg.norm(np.diff(line[:, :2], axis=0), axis=1).max() > 1e-6:
-            yield Body(name, line[:, :2], float(line[:, 2].mean()), radius)
+            if place is not None:
+                del left[place]
+        grown = np.array([-radius, radius])[:, None] + box_mm
+        for run in runs(line, *grown):
+            if np.linalg.norm(run[0, :2] - run[-1, :2]) + np.ptp(run[:, :2]) > 1e-6:
+                z_mm = float(np.clip(run[:, 2], *box_mm[:, 2]).mean())
+                yield Body("line", run[:, :2], z_mm, material, radius)
 
 
 def _joined(line: Floats, ends: Floats, radius: float) -> Floats | None:
@@ -168,31 +224,3 @@ def _joined(line: Floats, ends: Floats, radius: float) -> Floats | None:
         if np.linalg.norm(part[1] - line[0]) < near:
             return np.concatenate([part[:1], line])
     return None
-
-
-def _solid(model: mujoco.MjModel, geom: int) -> Floats:
-    """Points whose convex hull is the body of a geom, in its own frame, shape `(n, 3)` (mm)."""
-    kind, size = int(model.geom_type[geom]), 1e3 * model.geom_size[geom]
-    ring = np.stack([np.cos(_RIM), np.sin(_RIM)], axis=1)
-    if kind == mujoco.mjtGeom.mjGEOM_MESH:
-        mesh = int(model.geom_dataid[geom])
-        first = int(model.mesh_vertadr[mesh])
-        vertices = model.mesh_vert[first : first + int(model.mesh_vertnum[mesh])]
-        return np.asarray(1e3 * vertices, np.float64)
-    if kind == mujoco.mjtGeom.mjGEOM_BOX:
-        signs: Floats = np.array(np.meshgrid(*[(-1.0, 1.0)] * 3)).reshape(3, -1).T
-        corners: Floats = signs * size
-        return corners
-    if kind == mujoco.mjtGeom.mjGEOM_CYLINDER:
-        return np.concatenate(
-            [np.insert(size[0] * ring, 2, z, axis=1) for z in (-size[1], size[1])]
-        )
-    half = size if kind == mujoco.mjtGeom.mjGEOM_ELLIPSOID else size[[0, 0, 0]]
-    rises = np.linspace(-np.pi / 2.0, np.pi / 2.0, 25)
-    ball = np.concatenate(
-        [np.insert(np.cos(rise) * ring, 2, np.sin(rise), axis=1) for rise in rises]
-    )
-    points: Floats = ball * half
-    if kind == mujoco.mjtGeom.mjGEOM_CAPSULE:
-        points[:, 2] += size[1] * np.sign(ball[:, 2])
-    return points

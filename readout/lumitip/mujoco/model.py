@@ -14,38 +14,36 @@ SENSOR = "lumitip_light"
 """Name of the user sensor that has a value for each cell."""
 FINGERS = ("lumitip_receiver", "lumitip_emitter")
 """Bodies whose frames are the sensor frames."""
+ACTUATOR = "lumitip_opening"
+"""Name of the actuator: its target is the travel of each finger from where they touch (m)."""
+_JOINTS = tuple(f"{name}_joint" for name in FINGERS)
 _BORDER_MM, _THICK_MM = 4.0, 4.0
-_TRAVEL_M = 0.05
+_TRAVEL_M = 0.05  # of the plates
 _DENSITY_KG_M3 = 1270.0  # PETG
 _TURNED = (0.0, 0.0, 1.0, 0.0)  # half a turn about y: the fingers face each other
-_STIFFNESS_N_M, _DAMPING_N_S_M = 4000.0, 80.0
+_STIFFNESS_N_M, _DAMPING_N_S_M = 8000.0, 80.0
 _DRIVE_KG = 0.2  # of the gripper's drive, felt at a finger: assumed
 _TIMESTEP_S = 0.001
 # A cable of a gram between fingers that press with newtons: softer contacts would let it through.
-_STIFF = ([0.004, 1.0], [0.999, 0.9999, 1e-4, 0.5, 2.0])  # solref and solimp
+_STIFF = ([0.002, 1.0], [0.999, 0.9999, 1e-4, 0.5, 2.0])  # solref and solimp
 
 
 class MujocoError(LumitipError, ValueError):
     """A model or argument that the sensor in MuJoCo cannot use."""
 
 
-def fingers(
-    layout: Layout,
-    urdf: str | Path | None = None,
-    opening_mm: float = 3.0,
-    force_n: float = 20.0,
-) -> mujoco.MjSpec:
-    """A model of both fingers: slide joints, an actuator of the opening, the sensor `SENSOR`.
+def fingers(layout: Layout, urdf: str | Path | None = None, force_n: float = 20.0) -> mujoco.MjSpec:
+    """A model of both fingers: slide joints, the actuator `ACTUATOR`, the sensor `SENSOR`.
 
     Args:
         layout: the cells.
-        urdf: `robot/lumitip.urdf` of the design's outputs; without it the fingers are two plates.
-        opening_mm: of the fingers, skin to skin, in the key frame `start` (mm).
-        force_n: largest force of a finger (N).
+        urdf: `robot/lumitip.urdf` of the design's outputs; without it the fingers are two plates
+            that touch in z = 0.
+        force_n: force of each finger on a body that is gripped, with the target at its lower limit
+            (N).
 
     Returns:
-        The specification, to be extended and compiled. The actuator `lumitip_opening` sets the
-        travel of each finger (m), 0 where they touch.
+        The specification, to be extended and compiled.
 
     Raises:
         LayoutError: if `layout` is no layout.
@@ -53,24 +51,25 @@ def fingers(
     """
     layout = arguments.layout(layout)
     force_n = arguments.number(force_n, "force_n", above=0.0, error=MujocoError)
-    opening_mm = arguments.number(opening_mm, "opening_mm", 0.0, 2e3 * _TRAVEL_M, error=MujocoError)
     spec = _plates(layout) if urdf is None else _of_file(urdf)
-    joints = [f"{name}_joint" for name in FINGERS]
-    for name in joints:
+    for name in _JOINTS:
         joint = spec.joint(name)
         joint.damping = [_DAMPING_N_S_M, 0.0, 0.0]
         joint.armature = _DRIVE_KG
     equal = spec.add_equality(type=mujoco.mjtEq.mjEQ_JOINT, objtype=mujoco.mjtObj.mjOBJ_JOINT)
-    equal.name1, equal.name2 = joints[1], joints[0]
+    equal.name1, equal.name2 = _JOINTS[1], _JOINTS[0]
     equal.data[:5] = (0.0, 1.0, 0.0, 0.0, 0.0)
     equal.solref, equal.solimp = _STIFF
-    actuator = spec.add_actuator(name="lumitip_opening", target=joints[0])
+    # One actuator moves both fingers, so each has half of its force.
+    most_n = 2.0 * force_n
+    actuator = spec.add_actuator(name=ACTUATOR, target=_JOINTS[0])
     actuator.trntype = mujoco.mjtTrn.mjTRN_JOINT
     actuator.set_to_position(kp=_STIFFNESS_N_M)
-    actuator.ctrlrange, actuator.ctrllimited = [0.0, _TRAVEL_M], True
-    actuator.forcerange, actuator.forcelimited = [-force_n, force_n], True
-    travel_m = opening_mm / 2000.0
-    spec.add_key(name="start", qpos=[travel_m] * 2, ctrl=[travel_m])
+    # With the target this far below 0 the force is whole, even where the fingers touch.
+    lowest_m = -most_n / _STIFFNESS_N_M
+    actuator.ctrlrange = [lowest_m, float(spec.joint(_JOINTS[0]).range[1])]
+    actuator.forcerange = [-most_n, most_n]
+    actuator.ctrllimited = actuator.forcelimited = True
     spec.option.timestep = _TIMESTEP_S
     for name in FINGERS:
         for geom in spec.body(name).geoms:
@@ -86,22 +85,45 @@ def fingers(
     return spec
 
 
+def open_fingers(model: mujoco.MjModel, data: mujoco.MjData, opening_mm: float) -> None:
+    """Open the fingers and hold them so: positions, target, and all that follows from them.
+
+    Args:
+        model: of `fingers`.
+        data: its state.
+        opening_mm: skin to skin (mm).
+
+    Raises:
+        MujocoError: if the model has no such joints, or they do not open so far.
+    """
+    numbers = [mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, name) for name in _JOINTS]
+    if min(numbers) < 0:
+        raise MujocoError(f"the model has no joints {' and '.join(_JOINTS)}; `fingers` makes them")
+    most_mm = 2e3 * float(model.jnt_range[numbers, 1].min())
+    opening_mm = arguments.number(
+        opening_mm, "opening_mm", 0.0, most=most_mm + 1e-9, error=MujocoError
+    )
+    data.qpos[model.jnt_qposadr[numbers]] = opening_mm / 2e3
+    data.qvel[model.jnt_dofadr[numbers]] = 0.0
+    data.ctrl[model.actuator(ACTUATOR).id] = opening_mm / 2e3
+    mujoco.mj_forward(model, data)
+
+
 def _of_file(urdf: str | Path) -> mujoco.MjSpec:
     try:
         spec = mujoco.MjSpec.from_file(str(urdf))
     except (ValueError, OSError, mujoco.FatalError) as problem:
         raise MujocoError(f"urdf is {shown(str(urdf))}; MuJoCo cannot read it: {problem}") from None
-    there = {body.name for body in spec.bodies}
-    missing = [name for name in FINGERS if name not in there]
+    missing = [name for name in FINGERS if spec.body(name) is None]
+    missing += [name for name in _JOINTS if spec.joint(name) is None]
     if missing:
         raise MujocoError(
-            f"{urdf} has no body {' and no '.join(missing)}; the file robot/lumitip.urdf of a "
-            "design's outputs is needed"
+            f"{urdf} has no {' and no '.join(missing)}; the file robot/lumitip.urdf of a design's "
+            "outputs is needed"
         )
-    for name in FINGERS:
-        spec.joint(f"{name}_joint").range = [0.0, _TRAVEL_M]
     for equality in list(spec.equalities):
-        spec.delete(equality)  # the two joints are joined anew, under their own names
+        if {equality.name1, equality.name2} == set(_JOINTS):
+            spec.delete(equality)  # made anew, stiffer
     return spec
 
 

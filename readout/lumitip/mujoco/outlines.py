@@ -1,4 +1,4 @@
-"""Outlines of what lies between the fingers, seen along z, in mm."""
+"""Plane geometry of outlines and lines, in any unit of length."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -81,6 +81,28 @@ def _encloses(loop: Floats) -> bool:
     return len(loop) > 2 and float(x @ np.roll(y, -1) - y @ np.roll(x, -1)) > 0.0
 
 
+def clipped(outline: Floats, low: Floats, high: Floats) -> Floats:
+    """The part of an outline within a rectangle, by Sutherland and Hodgman: parts that hang
+    together outside are joined along the rectangle.
+
+    Args:
+        outline: shape `(corners, 2)`.
+        low, high: corners of the rectangle.
+    """
+    points = outline
+    for axis, limit, sign in ((0, low, 1.0), (1, low, 1.0), (0, high, -1.0), (1, high, -1.0)):
+        if not len(points):
+            break
+        inward = sign * (points[:, axis] - limit[axis])
+        before, was = np.roll(points, 1, axis=0), np.roll(inward, 1)
+        crosses = (inward >= 0.0) != (was >= 0.0)
+        share = np.where(crosses, was / np.where(crosses, was - inward, 1.0), 0.0)[:, None]
+        both = np.stack([before + share * (points - before), points], axis=1)
+        kept = np.stack([crosses, inward >= 0.0], axis=1)
+        points = both[kept]
+    return points
+
+
 def border(outline: Floats, low: Floats, high: Floats) -> Floats | None:
     """The part of an outline within a rectangle, if it crosses it once.
 
@@ -93,11 +115,42 @@ def border(outline: Floats, low: Floats, high: Floats) -> Floats | None:
         None if the outline crosses the rectangle several times, or not at all.
     """
     turned = outline[::-1]
-    inside = _touches(turned, np.roll(turned, -1, axis=0), low, high)
+    inside = touches(turned, np.roll(turned, -1, axis=0), low, high)
     begins = np.flatnonzero(inside & ~np.roll(inside, 1))
     if len(begins) != 1:
         return None
     return np.roll(turned, -begins[0], axis=0)[: int(inside.sum()) + 1]
+
+
+def runs(line: Floats, low: Floats, high: Floats) -> list[Floats]:
+    """The parts of a line that reach into a box.
+
+    Args:
+        line: points along it, shape `(n, dimensions)`.
+        low, high: corners of the box.
+    """
+    inside = touches(line[:-1], line[1:], low, high)
+    changes = np.flatnonzero(np.diff(np.concatenate([[0], inside.astype(np.int8), [0]])))
+    return [line[begin : end + 1] for begin, end in changes.reshape(-1, 2)]
+
+
+def touches(begin: Floats, end: Floats, low: Floats, high: Floats) -> NDArray[np.bool_]:
+    """Whether each segment reaches into a box, in any number of dimensions (Liang-Barsky).
+
+    Args:
+        begin, end: of the segments, shape `(n, dimensions)`.
+        low, high: corners of the box.
+    """
+    way = end - begin
+    with np.errstate(divide="ignore", invalid="ignore"):
+        one, other = (low - begin) / way, (high - begin) / way
+    still = way == 0.0
+    beyond = still & ((begin < low) | (begin > high))
+    first = np.where(still, -np.inf, np.minimum(one, other)).max(axis=1)
+    last = np.where(still, np.inf, np.maximum(one, other)).min(axis=1)
+    reaches: NDArray[np.bool_] = np.maximum(first, 0.0) < np.minimum(last, 1.0)
+    reaches &= ~beyond.any(axis=1)
+    return reaches
 
 
 def turns(line: Floats) -> Floats:
@@ -106,33 +159,6 @@ def turns(line: Floats) -> Floats:
     across = way[:-1, 0] * way[1:, 1] - way[:-1, 1] * way[1:, 0]
     turn: Floats = np.arctan2(across, (way[:-1] * way[1:]).sum(axis=1))
     return turn
-
-
-def _touches(begin: Floats, end: Floats, low: Floats, high: Floats) -> NDArray[np.bool_]:
-    """Whether each side, from `begin` to `end`, reaches into a rectangle (Liang-Barsky)."""
-    way = end - begin
-    with np.errstate(divide="ignore", invalid="ignore"):
-        one, other = (low - begin) / way, (high - begin) / way
-    still = way == 0.0
-    beyond = still & ((begin < low) | (begin > high))
-    first = np.where(still, -np.inf, np.minimum(one, other)).max(axis=1)
-    last = np.where(still, np.inf, np.maximum(one, other)).min(axis=1)
-    touches: NDArray[np.bool_] = (np.maximum(first, 0.0) < np.minimum(last, 1.0)) & ~beyond.any(
-        axis=1
-    )
-    return touches
-
-
-def band(line: Floats, half: float) -> Floats:
-    """Outline of a line with flat ends, shape `(2 n, 2)`.
-
-    Args:
-        line: points along it, shape `(n, 2)`.
-        half: half of its width.
-    """
-    way = tangents(line)
-    left = half * np.stack([-way[:, 1], way[:, 0]], axis=1)
-    return np.concatenate([line + left, (line - left)[::-1]])
 
 
 def tangents(line: Floats) -> Floats:

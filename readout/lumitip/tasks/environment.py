@@ -37,12 +37,13 @@ except ImportError as error:
 Observation = NDArray[np.float32]
 LIMITS = Limits(forward_mm_s=250.0, lateral_mm_s=150.0, rotation_rad_s=6.0)
 LOST_REWARD = -100.0
+METADATA: dict[str, Any] = {"render_modes": ["rgb_array"]}
 
 
 class TraceEnv(gymnasium.Env[Observation, Observation]):
     """A task: one step is one frame of the sensor."""
 
-    metadata = {"render_modes": ["rgb_array"], "render_fps": 55}  # noqa: RUF012 (Gymnasium's own)
+    metadata = METADATA
 
     def __init__(
         self,
@@ -68,10 +69,10 @@ class TraceEnv(gymnasium.Env[Observation, Observation]):
         """
         layout = published_layout() if layout is None else layout
         self.task = Task(layout, settings, twin)
-        if render_mode not in (None, *self.metadata["render_modes"]):
-            raise TaskError(f"render_mode is {shown(render_mode)}; allowed are rgb_array and None")
+        self.metadata = {**METADATA, "render_fps": round(self.task.settings.rate_hz)}
         self.render_mode = render_mode
-        self._picture = Picture(layout) if render_mode else None
+        self._picture = picture_in(render_mode, layout)
+        self._values: Floats | None = None
         self._limits = arguments.instance(limits, Limits, "limits", TaskError)
         self._most_frames = arguments.count(most_frames, "most_frames", error=TaskError)
         self._frames = 0
@@ -91,8 +92,10 @@ class TraceEnv(gymnasium.Env[Observation, Observation]):
         """Advance by one frame.
 
         Raises:
-            TaskError: if the action is not three finite numbers.
+            TaskError: if the action is not three finite numbers, or `reset` was not called.
         """
+        if self._values is None:
+            raise TaskError("step: the environment has no episode; call reset first")
         shares = arguments.numbers(action, "action", TaskError)
         if shares.shape != (3,) or not np.isfinite(shares).all():
             raise TaskError(f"action is {shown(action, 60)}; three finite numbers are needed")
@@ -115,8 +118,25 @@ class TraceEnv(gymnasium.Env[Observation, Observation]):
         )
 
     def render(self) -> Image | None:
-        """The last frame and the true line, or None without a render mode."""
+        """The last frame and the true line, or None without a render mode.
+
+        Raises:
+            TaskError: if `reset` was not called.
+        """
+        if self._values is None:
+            raise TaskError("render: the environment has no episode; call reset first")
         return self._picture(self._values, *self.task.line()) if self._picture else None
+
+
+def picture_in(render_mode: str | None, layout: Layout) -> Picture | None:
+    """What draws in a render mode.
+
+    Raises:
+        TaskError: if there is no such mode.
+    """
+    if render_mode not in (None, *METADATA["render_modes"]):
+        raise TaskError(f"render_mode is {shown(render_mode)}; allowed are rgb_array and None")
+    return Picture(layout) if render_mode else None
 
 
 def velocities(shares: Floats, limits: Limits) -> Floats:

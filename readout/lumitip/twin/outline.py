@@ -49,10 +49,12 @@ class Polygon(Shape):
 
     def signed_distance_mm(self, x_mm: Numbers, y_mm: Numbers) -> Numbers:
         """See `Shape`; inside is where a ray to the right crosses an odd number of edges."""
-        begin: Floats = np.asarray(self.points_mm)
-        nearest = np.full(np.broadcast_shapes(np.shape(x_mm), np.shape(y_mm)), np.inf)
+        # Plain numbers: with numpy's own, single precision would become double.
+        begin = np.asarray(self.points_mm).tolist()
+        shape = np.broadcast_shapes(np.shape(x_mm), np.shape(y_mm))
+        nearest = np.full(shape, np.inf, np.result_type(x_mm, y_mm, np.float32))
         inside = np.zeros(nearest.shape, dtype=bool)
-        for (ax, ay), (bx, by) in zip(begin, np.roll(begin, -1, axis=0), strict=True):
+        for (ax, ay), (bx, by) in zip(begin, begin[1:] + begin[:1], strict=True):
             dx, dy, x, y = bx - ax, by - ay, x_mm - ax, y_mm - ay
             share = np.clip((x * dx + y * dy) / max(dx * dx + dy * dy, 1e-18), 0.0, 1.0)
             nearest = np.minimum(nearest, (x - share * dx) ** 2 + (y - share * dy) ** 2)

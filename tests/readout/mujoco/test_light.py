@@ -8,8 +8,8 @@ import pytest
 
 from lumitip.grid import Floats
 from lumitip.links.twin import published_layout
-from lumitip.mujoco import SENSOR, LightSensor, MujocoError, fingers
-from lumitip.twin import Cable, Corner, Disc, HalfPlane, Polygon, Scene, Twin
+from lumitip.mujoco import ACTUATOR, SENSOR, LightSensor, MujocoError, fingers, open_fingers
+from lumitip.twin import Cable, Corner, Disc, HalfPlane, Model, Polygon, Scene, Twin
 
 GEOM = mujoco.mjtGeom
 LAYOUT = published_layout()
@@ -24,9 +24,16 @@ def state(add: Add, gap_mm: float = 3.0) -> tuple[mujoco.MjModel, mujoco.MjData]
     add(spec)
     model = spec.compile()
     data = mujoco.MjData(model)
-    data.qpos[:2] = gap_mm / 2000.0
-    mujoco.mj_forward(model, data)
+    open_fingers(model, data, gap_mm)
     return model, data
+
+
+def both(*adds: Add) -> Add:
+    def add(spec: mujoco.MjSpec) -> None:
+        for each in adds:
+            each(spec)
+
+    return add
 
 
 def values(add: Add, gap_mm: float = 3.0) -> Floats:
@@ -43,11 +50,11 @@ def direction(angle_deg: float) -> Floats:
     return np.array([np.cos(np.radians(angle_deg)), np.sin(np.radians(angle_deg))])
 
 
-def sheet(offset_mm: float, angle_deg: float) -> Add:
+def sheet(offset_mm: float, angle_deg: float, z_mm: float = 0.0) -> Add:
     """A large thin box right of a line."""
     x, y = (offset_mm - 50.0) * direction(angle_deg + 90.0) / 1e3
     return lambda spec: spec.worldbody.add_geom(
-        type=GEOM.mjGEOM_BOX, size=[0.1, 0.05, 2e-4], pos=[x, y, 0.0], quat=quat(angle_deg)
+        type=GEOM.mjGEOM_BOX, size=[0.1, 0.05, 2e-4], pos=[x, y, z_mm / 1e3], quat=quat(angle_deg)
     )
 
 
@@ -68,9 +75,10 @@ def rod(offset_mm: float, angle_deg: float, kind: int, z_mm: float = 0.0) -> Add
     )
 
 
-def disc(x_mm: float, y_mm: float) -> Add:
+def disc(x_mm: float, y_mm: float, z_mm: float = 0.0) -> Add:
+    place = [x_mm / 1e3, y_mm / 1e3, z_mm / 1e3]
     return lambda spec: spec.worldbody.add_geom(
-        type=GEOM.mjGEOM_CYLINDER, size=[0.006, 5e-4, 0.0], pos=[x_mm / 1e3, y_mm / 1e3, 0.0]
+        type=GEOM.mjGEOM_CYLINDER, size=[0.006, 2e-4, 0.0], pos=place
     )
 
 
@@ -105,25 +113,70 @@ def test_a_small_plate_and_two_bodies_are_outlines() -> None:
     def plate(spec: mujoco.MjSpec) -> None:
         spec.worldbody.add_geom(type=GEOM.mjGEOM_BOX, size=[0.004, 0.003, 2e-4])
 
-    def both(spec: mujoco.MjSpec) -> None:
-        plate(spec)
-        disc(12.0, 4.0)(spec)
-
     assert np.abs(values(plate) - TWIN.values(Polygon(points))).max() <= MOST_COUNTS
     scene = [Polygon(points), Disc(x_mm=12.0, y_mm=4.0, diameter_mm=12.0)]
-    assert np.abs(values(both) - TWIN.values(scene)).max() <= MOST_COUNTS
+    assert np.abs(values(both(plate, disc(12.0, 4.0))) - TWIN.values(scene)).max() <= MOST_COUNTS
 
 
-def test_the_gap_and_the_height_in_it_count() -> None:
-    for gap_mm in (2.0, 5.0):
-        wide = Twin(LAYOUT, TWIN.model.__class__.from_layout(LAYOUT, gap_mm=gap_mm))
-        found = values(sheet(1.0, 20.0), gap_mm)
-        assert np.abs(found - wide.values(HalfPlane(1.0, 20.0))).max() <= MOST_COUNTS
-    high = values(rod(1.0, 20.0, GEOM.mjGEOM_CAPSULE, z_mm=1.0), 6.0)
-    wide = Twin(LAYOUT, TWIN.model.__class__.from_layout(LAYOUT, gap_mm=6.0))
-    expected = wide.values(Cable(offset_mm=1.0, angle_deg=20.0, height=4.0 / 6.0))
-    assert np.abs(high - expected).max() <= MOST_COUNTS
-    assert np.abs(high - wide.values(Cable(offset_mm=1.0, angle_deg=20.0))).max() > MOST_COUNTS
+@pytest.mark.parametrize("seed", range(6))
+def test_any_gap_and_any_height(seed: int) -> None:
+    chance = np.random.default_rng(seed)
+    gap_mm = chance.uniform(2.0, 9.0)
+    z_mm = chance.uniform(-0.3, 0.3) * gap_mm
+    offset, angle = chance.uniform(-6.0, 6.0), chance.uniform(-90.0, 90.0)
+    twin = Twin(LAYOUT, Model.from_layout(LAYOUT, gap_mm=gap_mm))
+    height = 0.5 + z_mm / gap_mm
+    line = {"offset_mm": offset, "angle_deg": angle, "height": height}
+    for add, scene in (
+        (rod(offset, angle, GEOM.mjGEOM_CAPSULE, z_mm), Cable(**line)),
+        (sheet(offset, angle, z_mm), HalfPlane(**line)),
+        (disc(offset, 2.0, z_mm), Disc(x_mm=offset, y_mm=2.0, diameter_mm=12.0, height=height)),
+    ):
+        error = np.abs(values(add, gap_mm) - twin.values(scene)).max()
+        assert error <= 1.5 * MOST_COUNTS, (gap_mm, z_mm, scene)
+
+
+def test_what_is_not_between_the_fingers_shades_nothing() -> None:
+    """Links of a robot: capsules and discs behind and beside the fingers."""
+    for add in (
+        rod(0.0, 0.0, GEOM.mjGEOM_CAPSULE, -50.0),
+        rod(0.0, 0.0, GEOM.mjGEOM_CAPSULE, 50.0),
+        lambda spec: spec.worldbody.add_geom(
+            type=GEOM.mjGEOM_CYLINDER, size=[0.04, 1e-3, 0.0], pos=[0.0, 0.0, -0.03]
+        ),
+        disc(45.0, 0.0),
+        lambda spec: spec.worldbody.add_geom(type=GEOM.mjGEOM_BOX, size=[0.01] * 3, rgba=[0] * 4),
+    ):
+        assert (values(add) > 255.0 - 1e-9).all()
+    partly = values(disc(21.0, 4.0))
+    assert np.abs(partly - TWIN.values(Disc(x_mm=21.0, y_mm=4.0, diameter_mm=12.0))).max() <= 2.0
+    assert partly.min() < 150.0
+
+
+def test_several_cables_stay_round() -> None:
+    pair = both(rod(3.0, 0.0, GEOM.mjGEOM_CAPSULE), rod(-3.0, 0.0, GEOM.mjGEOM_CAPSULE))
+    scene = [Cable(offset_mm=3.0), Cable(offset_mm=-3.0)]
+    assert np.abs(values(pair) - TWIN.values(scene)).max() <= MOST_COUNTS
+    crossing = both(rod(0.0, 20.0, GEOM.mjGEOM_CAPSULE), rod(0.0, -50.0, GEOM.mjGEOM_CAPSULE))
+    scene = [Cable(angle_deg=20.0), Cable(angle_deg=-50.0)]
+    assert np.abs(values(crossing) - TWIN.values(scene)).max() <= MOST_COUNTS
+
+
+@pytest.mark.parametrize("turn_deg", [90.0, 150.0])
+def test_a_sharp_bend_has_two_legs(turn_deg: float) -> None:
+    """Two capsules that meet: each shades as alone, away from the bend."""
+
+    def leg(angle_deg: float) -> Add:
+        ends = [0.0, 0.0, 0.0, *(0.08 * direction(angle_deg)), 0.0]
+        return lambda spec: spec.worldbody.add_geom(
+            type=GEOM.mjGEOM_CAPSULE, fromto=ends, size=[0.0015, 0.0, 0.0]
+        )
+
+    bent = values(both(leg(0.0), leg(180.0 - turn_deg)))
+    for angle in (0.0, 180.0 - turn_deg):
+        alone = values(leg(angle))
+        darkest = int(alone.argmin())
+        assert bent[darkest] <= alone[darkest] + MOST_COUNTS
 
 
 def test_nothing_between_the_fingers_is_full_light() -> None:
@@ -201,47 +254,131 @@ def test_a_bent_rope_is_an_arc() -> None:
     assert np.abs(found - expected).max() <= 3.0  # chords of 2 mm instead of the arc
 
 
-def test_mujoco_fills_the_sensor_in_each_step() -> None:
+def test_a_coarse_cloth_and_a_solid_that_yields() -> None:
+    """No point of theirs is between the fingers, yet they are."""
+
+    def coarse(spec: mujoco.MjSpec) -> None:
+        body = spec.worldbody.add_body(name="cloth_body")
+        body.make_flex(
+            "cloth", type="grid", dim=2, count=[2, 2, 1], spacing=[0.1] * 3, radius=2e-4,
+            mass=0.01, equality=1,
+        )  # fmt: skip
+
+    def foam(spec: mujoco.MjSpec) -> None:
+        body = spec.worldbody.add_body(name="foam_body")
+        body.make_flex(
+            "foam", type="grid", dim=3, count=[5, 5, 2], spacing=[0.004] * 3, radius=2e-4,
+            mass=0.01, equality=1,
+        )  # fmt: skip
+
+    assert (values(coarse) < 5.0).all()
+    assert values(foam, 4.0).min() < 5.0
+
+
+def test_an_ellipsoid_is_the_ellipse_that_is_seen() -> None:
+    def ellipsoid(spec: mujoco.MjSpec) -> None:
+        spec.worldbody.add_geom(type=GEOM.mjGEOM_ELLIPSOID, size=[8e-3, 4e-3, 1e-3], quat=quat(30))
+
+    turn = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)
+    rim = np.stack([8.0 * np.cos(turn), 4.0 * np.sin(turn)], axis=1)
+    way = np.stack([direction(30.0), direction(120.0)])
+    assert np.abs(values(ellipsoid) - TWIN.values(Polygon(rim @ way))).max() <= MOST_COUNTS
+
+
+def test_sizes_that_change_are_followed() -> None:
+    model, data = state(sheet(0.0, 0.0))
+    sensor = LightSensor(model, LAYOUT)
+    wide = sensor.values(data)
+    model.geom_size[0, 1] = 1e-3
+    mujoco.mj_forward(model, data)
+    assert (sensor.values(data) - wide).max() > 200.0
+
+
+def moving_rod() -> mujoco.MjSpec:
+    """Fingers and a rod without weight that moves towards the tip."""
     spec = fingers(LAYOUT)
     body = spec.worldbody.add_body(name="rod", pos=[0.0, -0.005, 0.0])
-    body.add_joint(type=mujoco.mjtJoint.mjJNT_SLIDE, axis=[0.0, 1.0, 0.0])
+    body.add_joint(name="slide", type=mujoco.mjtJoint.mjJNT_SLIDE, axis=[0.0, 1.0, 0.0])
     body.add_geom(type=GEOM.mjGEOM_CAPSULE, fromto=[-0.08, 0, 0, 0.08, 0, 0], size=[0.001, 0, 0])
     spec.option.gravity = [0.0, 0.0, 0.0]
-    model = spec.compile()
+    return spec
+
+
+def test_mujoco_fills_the_sensor_in_each_step() -> None:
+    model = moving_rod().compile()
     data = mujoco.MjData(model)
-    data.qpos[:2], data.ctrl[0] = 0.0015, 0.0015
-    data.qvel[2] = 0.5
-    sensor = LightSensor(model, LAYOUT)
+    open_fingers(model, data, 3.0)
+    data.joint("slide").qvel = 0.5
     heights = []
-    with sensor.installed():
+    with LightSensor(model, LAYOUT).installed():
         for _ in range(20):
             mujoco.mj_step(model, data)
             light = 255.0 - data.sensor(SENSOR).data
             heights.append(float(light @ LAYOUT.y_mm / light.sum()))
-        with pytest.raises(MujocoError, match="callback is set already"), sensor.installed():
-            pass
     assert mujoco.get_mjcb_sensor() is None
     assert np.all(np.diff(heights) > 0.0), "the shadow does not follow the rod"
     assert heights[-1] - heights[0] == pytest.approx(19 * 0.5, rel=0.2)  # 0.5 mm in a step
 
 
-def test_the_fingers_close_on_a_body_and_hold_it() -> None:
-    spec = fingers(LAYOUT, opening_mm=6.0)
+def test_two_pairs_in_one_model_and_a_callback_of_ones_own() -> None:
+    spec = mujoco.MjSpec()
+    spec.option.timestep, spec.option.gravity = 0.001, [0.0, 0.0, 0.0]
+    for name, place in (("left/", -0.2), ("right/", 0.2)):
+        pair = moving_rod()
+        spec.worldbody.add_frame(pos=[place, 0.0, 0.0]).attach_body(pair.worldbody, name, "")
+    model = spec.compile()
+    data = mujoco.MjData(model)
+    for name in ("left/", "right/"):
+        for side in ("receiver", "emitter"):
+            data.joint(f"{name}lumitip_{side}_joint").qpos = 0.0015
+    data.joint("right/slide").qpos = 0.008
+    mujoco.mj_forward(model, data)
+    calls = []
+    mujoco.set_mjcb_sensor(lambda *_: calls.append(1))
+    try:
+        sensors = [
+            LightSensor(
+                model,
+                LAYOUT,
+                fingers=(f"{name}lumitip_receiver", f"{name}lumitip_emitter"),
+                sensor=f"{name}{SENSOR}",
+            )
+            for name in ("left/", "right/")
+        ]
+        with sensors[0].installed(), sensors[1].installed():
+            mujoco.mj_forward(model, data)
+        assert calls and mujoco.get_mjcb_sensor() is not None
+    finally:
+        mujoco.set_mjcb_sensor(None)
+    left, right = (data.sensor(f"{name}{SENSOR}").data for name in ("left/", "right/"))
+    assert left.min() < 150.0 and np.abs(left - right).max() > 50.0
+
+
+@pytest.mark.parametrize("radius_mm", [0.5, 2.0])
+def test_the_fingers_close_on_a_body_with_their_force(radius_mm: float) -> None:
+    spec = fingers(LAYOUT, force_n=10.0)
     spec.option.gravity = [0.0, 0.0, 0.0]
     body = spec.worldbody.add_body(name="rod")
     body.add_freejoint()
-    body.add_geom(type=GEOM.mjGEOM_CAPSULE, fromto=[-0.03, 0, 0, 0.03, 0, 0], size=[0.002, 0, 0])
+    ends, radius_m = [-0.03, 0, 0, 0.03, 0, 0], radius_mm / 1e3
+    body.add_geom(type=GEOM.mjGEOM_CAPSULE, fromto=ends, size=[radius_m, 0, 0])
     model = spec.compile()
     data = mujoco.MjData(model)
-    mujoco.mj_resetDataKeyframe(model, data, 0)
+    open_fingers(model, data, 6.0)
     assert 2e3 * data.qpos[0] == pytest.approx(6.0)
-    data.ctrl[0] = 0.0
+    data.ctrl[model.actuator(ACTUATOR).id] = model.actuator(ACTUATOR).ctrlrange[0]
     mujoco.mj_step(model, data, 1000)
-    assert data.ncon >= 2
-    gap_mm = 2e3 * data.qpos[0]
-    assert gap_mm == pytest.approx(4.0, abs=0.1)
-    assert data.qpos[0] == pytest.approx(data.qpos[1], abs=1e-4)
-    assert LightSensor(model, LAYOUT).values(data).min() < 60.0
+    assert 2e3 * data.qpos[0] == pytest.approx(2.0 * radius_mm, abs=0.2)
+    assert data.qpos[0] == pytest.approx(data.qpos[1], abs=2e-4)
+    pressed = dict.fromkeys(("receiver", "emitter"), 0.0)
+    for number in range(data.ncon):
+        force = np.zeros(6)
+        mujoco.mj_contactForce(model, data, number, force)
+        bodies = {model.body(int(model.geom_bodyid[g])).name for g in data.contact[number].geom}
+        for side in pressed:
+            pressed[side] += force[0] if f"lumitip_{side}" in bodies else 0.0
+    assert pressed == pytest.approx({"receiver": 10.0, "emitter": 10.0}, rel=0.1)
+    assert LightSensor(model, LAYOUT).values(data).min() < 200.0
 
 
 def test_a_model_can_be_saved_as_mjcf() -> None:
@@ -251,28 +388,61 @@ def test_a_model_can_be_saved_as_mjcf() -> None:
     again = mujoco.MjModel.from_xml_string(spec.to_xml())
     assert again.nsensordata == before.nsensordata == len(LAYOUT)
     data = mujoco.MjData(again)
-    data.qpos[:2] = 0.0015
-    mujoco.mj_forward(again, data)
+    open_fingers(again, data, 3.0)
     assert LightSensor(again, LAYOUT).values(data).min() < 60.0
 
 
+def test_materials_by_geom_body_and_chain() -> None:
+    def chain(spec: mujoco.MjSpec) -> None:
+        body = spec.worldbody.add_body(name="hose")
+        for number in range(8):
+            begin = -0.08 + 0.02 * number
+            body.add_geom(
+                name=f"part{number}",
+                type=GEOM.mjGEOM_CAPSULE,
+                fromto=[begin, 0.0, 0.0, begin + 0.02, 0.0, 0.0],
+                size=[0.0015, 0.0, 0.0],
+            )
+
+    model, data = state(chain)
+    clear = LightSensor(model, LAYOUT, materials={"hose": (0.9, 0.0)}).values(data)
+    assert np.abs(clear - TWIN.values(Cable(clear=0.9))).max() <= MOST_COUNTS
+    part = LightSensor(model, LAYOUT, materials={"part4": (0.9, 0.0)}).values(data)
+    opaque = LightSensor(model, LAYOUT).values(data)
+    darker = part < clear - 50.0
+    assert darker.any() and (part > opaque + 50.0).any()
+
+
 def test_wrong_arguments_are_named() -> None:
-    model, _ = state(sheet(0.0, 0.0))
-    with pytest.raises(MujocoError, match="the model has no body of such a name"):
-        LightSensor(model, LAYOUT, fingers=("left", "right"))
-    with pytest.raises(MujocoError, match="materials has 'silk'; the model has no such"):
-        LightSensor(model, LAYOUT, materials={"silk": (0.1, 0.1)})
-    spec = fingers(LAYOUT)
-    spec.worldbody.add_geom(name="foil", type=GEOM.mjGEOM_BOX, size=[0.01, 0.01, 0.001])
-    with pytest.raises(MujocoError, match=r"materials\['foil'\] is .*sum is 1 at most"):
-        LightSensor(spec.compile(), LAYOUT, materials={"foil": (0.8, 0.4)})
+    model, data = state(sheet(0.0, 0.0))
+    for names in (("left", "right"), ("world", "lumitip_emitter"), ("lumitip_emitter",) * 2):
+        with pytest.raises(MujocoError, match="two bodies of the model are needed"):
+            LightSensor(model, LAYOUT, fingers=names)
+    for materials, words in (
+        ({"silk": (0.1, 0.1)}, "materials has 'silk'; the model has no such"),
+        ({"lumitip_receiver": (0.8, 0.4)}, "whose sum is 1 at most"),
+        ({"lumitip_receiver": 0.3}, "whose sum is 1 at most"),
+        (["lumitip_receiver"], "names with two numbers are needed"),
+    ):
+        with pytest.raises(MujocoError, match=words):
+            LightSensor(model, LAYOUT, materials=materials)  # type: ignore[arg-type]
     with pytest.raises(MujocoError, match=r"'none\.urdf'; MuJoCo cannot read it"):
         fingers(LAYOUT, "none.urdf")
+    with pytest.raises(MujocoError, match="opening_mm is 200"):
+        open_fingers(model, data, 200.0)
     bare = mujoco.MjSpec()
     for name in ("lumitip_receiver", "lumitip_emitter"):
         bare.worldbody.add_body(name=name)
+    other = bare.compile()
     with (
-        pytest.raises(MujocoError, match=f"no sensor {SENSOR} of 32 values"),
-        LightSensor(bare.compile(), LAYOUT).installed(),
+        pytest.raises(MujocoError, match=f"no sensor '{SENSOR}' of 32 values"),
+        LightSensor(other, LAYOUT).installed(),
     ):
         pass
+    with pytest.raises(MujocoError, match="data is of another model"):
+        LightSensor(other, LAYOUT).values(data)
+    with pytest.raises(MujocoError, match="the fingers do not face"):
+        LightSensor(other, LAYOUT).values(mujoco.MjData(other))
+    data.qpos[0] = np.nan
+    with pytest.raises(MujocoError, match="not finite"):
+        LightSensor(model, LAYOUT).values(data)

@@ -18,6 +18,7 @@ def _python(code: str) -> str:
     [
         ("mcap", "recording", "record"),
         ("zstandard", "recording", "record"),
+        ("gymnasium", "tasks.vector", "gym"),
         ("mujoco", "mujoco", "mujoco"),
         ("mcap", "foxglove", "foxglove"),
         ("mcap_protobuf", "foxglove", "foxglove"),

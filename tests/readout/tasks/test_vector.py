@@ -27,9 +27,9 @@ def test_they_give_what_single_environments_give(name: str) -> None:
     from lumitip.tasks.environment import TraceEnv
     from lumitip.tasks.vector import TraceVectorEnv
 
-    given = {"layout": published_layout(), "settings": SETTINGS[name], "most_frames": 60}
-    single = gymnasium.vector.SyncVectorEnv([partial(TraceEnv, **given)] * NUMBER)
-    many = TraceVectorEnv(NUMBER, **given)
+    arguments = {"layout": published_layout(), "settings": SETTINGS[name], "most_frames": 60}
+    single = gymnasium.vector.SyncVectorEnv([partial(TraceEnv, **arguments)] * NUMBER)
+    many = TraceVectorEnv(NUMBER, **arguments)
     assert np.array_equal(single.reset(seed=3)[0], many.reset(seed=3)[0], equal_nan=True)
     chance = np.random.default_rng(4)
     ends = np.zeros(3)
@@ -74,14 +74,47 @@ def test_seeds_of_single_tasks_and_none() -> None:
         many.reset(seed=[1, 2])
 
 
-@pytest.mark.parametrize("actions", [np.zeros((2, 3)), np.full((3, 3), np.nan), np.zeros(3)])
-def test_actions_of_another_shape_are_refused(actions: Any) -> None:
+@pytest.mark.parametrize("actions", [np.zeros((2, 3)), np.zeros(3)])
+def test_actions_of_another_shape_are_rejected(actions: Any) -> None:
     from lumitip.tasks.vector import TraceVectorEnv
 
     many = TraceVectorEnv(3)
     many.reset(seed=1)
-    with pytest.raises(TaskError, match=r"actions has shape .*shape \(3, 3\) are needed"):
+    with pytest.raises(TaskError, match=r"actions has shape .*\(3, 3\) is needed"):
         many.step(actions)
+    with pytest.raises(TaskError, match=r"actions\[1\] is .*nan.*; finite numbers are needed"):
+        many.step(np.array([[0.0] * 3, [0.0, np.nan, 0.0], [0.0] * 3]))
+
+
+def test_a_mask_resets_some() -> None:
+    """As Gymnasium's `SyncVectorEnv` does."""
+    from lumitip.tasks.environment import TraceEnv
+    from lumitip.tasks.vector import TraceVectorEnv
+
+    single, many = gymnasium.vector.SyncVectorEnv([TraceEnv] * 3), TraceVectorEnv(3)
+    mask = np.array([True, False, True])
+    with pytest.raises(TaskError, match="no episodes; reset all first"):
+        many.reset(options={"reset_mask": mask})
+    actions = np.tile(np.array([0.4, 0.1, 0.0], np.float32), (3, 1))
+    for envs in (single, many):
+        envs.reset(seed=5)
+        for _ in range(5):
+            envs.step(actions)
+    found = [envs.reset(seed=9, options={"reset_mask": mask})[0] for envs in (single, many)]
+    assert np.array_equal(*found)
+    assert np.array_equal(single.step(actions)[0], many.step(actions)[0])
+    with pytest.raises(TaskError, match="3 booleans, one of them true, are needed"):
+        many.reset(options={"reset_mask": [True]})
+
+
+def test_without_an_episode_there_is_no_step_and_no_picture() -> None:
+    from lumitip.tasks.environment import TraceEnv
+    from lumitip.tasks.vector import TraceVectorEnv
+
+    for env, shape in ((TraceEnv(), (3,)), (TraceVectorEnv(2), (2, 3))):
+        for call in (lambda env=env, shape=shape: env.step(np.zeros(shape)), env.render):
+            with pytest.raises(TaskError, match="call reset first"):
+                call()
 
 
 @pytest.mark.parametrize("kind", ["Cable", "Cloth", "Corner"])
@@ -103,12 +136,14 @@ def test_ids_make_one_or_many_and_draw_them(kind: str) -> None:
     assert many.unwrapped.num_envs == 2
 
 
-def test_a_render_mode_that_there_is_not_is_refused() -> None:
+def test_a_render_mode_that_there_is_not_is_rejected() -> None:
     from lumitip.tasks.environment import TraceEnv
     from lumitip.tasks.vector import TraceVectorEnv
 
     for make in (TraceEnv, partial(TraceVectorEnv, 2)):
-        assert make().render() is None
+        env = make()
+        env.reset()
+        assert env.render() is None
         with pytest.raises(TaskError, match="render_mode is 'ansi'; allowed are rgb_array"):
             make(render_mode="ansi")
 
