@@ -8,13 +8,14 @@ from numpy.typing import NDArray
 
 from lumitip.grid import Floats, Integers
 from lumitip.layout import Layout
-from lumitip.tasks.curve import STEP_MM, Curve
+from lumitip.tasks.curve import REACH_MM, STEP_MM, Curve
+from lumitip.tasks.motion import advance, in_sensor
 from lumitip.tasks.task import END_MM, LOST_MM, SEEN_MM, STRAIGHT_MM, Settings, Task
 from lumitip.twin import Corner, Twin
 from lumitip.twin.lines import Numbers
 
 Flags = NDArray[np.bool_]
-_REACH = round(30.0 / STEP_MM)  # search for the nearest point, as `Curve.nearest` does
+_REACH = round(REACH_MM / STEP_MM)
 _FRAMES = 64  # frames of noise that are drawn at once
 
 
@@ -110,15 +111,8 @@ class TaskBatch:
         return offset_mm / np.cos(angle), angle
 
     def _move(self, asked: Floats) -> None:
-        dt, lag = 1.0 / self.settings.rate_hz, self.settings.lag_s
-        kept = math.exp(-dt / lag) if lag else 0.0
-        moved = asked * dt + (self._velocity - asked) * lag * (1.0 - kept)
-        self._velocity = asked + (self._velocity - asked) * kept
-        middle = self.pose[:, 2] + 0.5 * moved[:, 2]
-        cos, sin = np.cos(middle), np.sin(middle)
-        self.pose[:, 0] += moved[:, 0] * cos - moved[:, 1] * sin
-        self.pose[:, 1] += moved[:, 0] * sin + moved[:, 1] * cos
-        self.pose[:, 2] += moved[:, 2]
+        dt_s, lag_s = 1.0 / self.settings.rate_hz, self.settings.lag_s
+        self.pose, self._velocity = advance(self.pose, self._velocity, asked, dt_s, lag_s)
 
     def _nearest(self) -> Integers:
         near = self._at[:, None] + np.arange(-_REACH, _REACH + 1)
@@ -138,13 +132,10 @@ class TaskBatch:
             length_mm = (self._curve_x.shape[1] - 1) * STEP_MM
             self.ended = self.lost | (self.travelled_mm >= length_mm - END_MM)
 
-    def _in_sensor(self, tasks: Integers, at: Integers) -> tuple[Floats, Floats]:
-        x, y, heading = self.pose[tasks].T
-        x, y = self._curve_x[tasks, at] - x, self._curve_y[tasks, at] - y
-        cos, sin = np.cos(heading), np.sin(heading)
-        return x * cos + y * sin, y * cos - x * sin
+    def _in_sensor(self, tasks: Integers, at: Integers) -> tuple[Numbers, Numbers]:
+        return in_sensor(self._curve_x[tasks, at], self._curve_y[tasks, at], self.pose[tasks])
 
-    def _tangent(self, tasks: Integers) -> tuple[Floats, Floats]:
+    def _tangent(self, tasks: Integers) -> tuple[Numbers, Numbers]:
         at = self._at[tasks]
         x, y = self._in_sensor(tasks, at)
         angle = self._curve_heading[tasks, at] - self.pose[tasks, 2]

@@ -11,6 +11,8 @@ from lumitip.values import one_line
 STEP_MM = 0.25
 LONGEST_MM = 1e6
 """Longest curve (mm)."""
+REACH_MM = 30.0
+"""Distance along a curve within which its nearest point is searched (mm)."""
 BEND_DEG = 30.0
 """Largest deviation of a curve's direction from its mean."""
 _WAVES, _SHORTEST_MM, _LONGEST_MM = 4, 150.0, 450.0
@@ -69,7 +71,7 @@ class Curve:
         """Length along the curve (mm)."""
         return (self.x_mm.size - 1) * STEP_MM
 
-    def nearest(self, x_mm: float, y_mm: float, near: int, reach_mm: float = 30.0) -> int:
+    def nearest(self, x_mm: float, y_mm: float, near: int, reach_mm: float = REACH_MM) -> int:
         """Index of the point nearest to a place, searched around an index."""
         reach = round(reach_mm / STEP_MM)
         low, high = max(near - reach, 0), min(near + reach + 1, self.x_mm.size)

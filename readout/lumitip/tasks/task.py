@@ -20,6 +20,7 @@ from lumitip.errors import LumitipError
 from lumitip.grid import Floats
 from lumitip.layout import Layout
 from lumitip.tasks.curve import LONGEST_MM, STEP_MM, Curve
+from lumitip.tasks.motion import advance, in_sensor
 from lumitip.twin import Cable, Corner, HalfPlane, Scene, Twin
 from lumitip.values import shown
 
@@ -248,21 +249,18 @@ class Task:
             self.reason = "end"
 
     def _move(self, command: Command) -> None:
-        """Follow the command with the actuator's lag; velocities are exact over the step."""
-        dt, lag = 1.0 / self.settings.rate_hz, self.settings.lag_s
         asked = np.array([command.forward_mm_s, command.lateral_mm_s, command.rotation_rad_s])
-        kept = math.exp(-dt / lag) if lag else 0.0
-        moved = asked * dt + (self._velocity - asked) * lag * (1.0 - kept)
-        self._velocity = asked + (self._velocity - asked) * kept
-        middle = self.heading + 0.5 * moved[2]
-        self.x_mm += float(moved[0] * math.cos(middle) - moved[1] * math.sin(middle))
-        self.y_mm += float(moved[0] * math.sin(middle) + moved[1] * math.cos(middle))
-        self.heading += float(moved[2])
+        dt_s, lag_s = 1.0 / self.settings.rate_hz, self.settings.lag_s
+        pose, self._velocity = advance(self._pose, self._velocity, asked, dt_s, lag_s)
+        self.x_mm, self.y_mm, self.heading = pose.tolist()
+
+    @property
+    def _pose(self) -> Floats:
+        return np.array([self.x_mm, self.y_mm, self.heading])
 
     def _in_sensor(self, at: int) -> tuple[float, float]:
-        x, y = float(self.curve.x_mm[at]) - self.x_mm, float(self.curve.y_mm[at]) - self.y_mm
-        cos, sin = math.cos(self.heading), math.sin(self.heading)
-        return x * cos + y * sin, y * cos - x * sin
+        x_mm, y_mm = in_sensor(self.curve.x_mm[at], self.curve.y_mm[at], self._pose)
+        return float(x_mm), float(y_mm)
 
     def _tangent(self) -> tuple[float, float]:
         """Signed distance (mm) and direction (rad) of the curve at its point nearest the origin."""
