@@ -38,7 +38,7 @@ class LumitipConfig(RobotConfig):
     """Folder for an MCAP recording of each finger, with every frame; default: none."""
     timeout_s: float = 10.0
     """Longest wait for the connection of a finger, and for its first frame (s)."""
-    max_silence_s: float = 1.0
+    max_silence_s: float = 3.0
     """Age of a finger's newest frame that is an error (s)."""
 
     def __post_init__(self) -> None:

@@ -87,8 +87,8 @@ class Finger:
         missed = 0
         if frames:
             newest = frames[-1].seq
-            first = newest - len(frames) if self._last_seq is None else self._last_seq
-            missed, self._last_seq = newest - first - len(frames), newest
+            before = frames[0].seq - 1 if self._last_seq is None else self._last_seq
+            missed, self._last_seq = newest - before - len(frames), newest
         values = self._features.values(frames, now_s, missed, self._tip.calibration)
         return dict(zip(self._names, values, strict=True))
 
