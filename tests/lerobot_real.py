@@ -19,7 +19,6 @@ import signal
 import subprocess
 import sys
 import tempfile
-import time
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
@@ -34,7 +33,7 @@ from lumitip.recording import Reader
 TESTS = Path(__file__).parent
 BIN = Path(sys.executable).parent
 PORT = 8655
-EPISODES, EPISODE_S, RESET_S = 3, 8, 2
+EPISODES, EPISODE_S, RESET_S = 3, 6, 2
 MOST_AGE_ERROR_S = 1e-5
 
 
@@ -141,7 +140,7 @@ def record(folder: Path) -> None:
         "--robot.robot={type: small_arm, id: follower}",
         f"--robot.recordings={folder / 'recordings'}",
         "--robot.window=16",
-        "--robot.max_silence_s=10",  # this process may wait for others
+        "--robot.max_silence_s=600",  # this process may wait for others
         "--teleop.type=small_leader",
         "--dataset.repo_id=lumitip/check",
         f"--dataset.root={folder / 'dataset'}",
@@ -153,17 +152,19 @@ def record(folder: Path) -> None:
         "--play_sounds=false",
     ]
     with ExitStack() as stack:
-        stack.enter_context(_running(serve, 5.0))
-        stack.enter_context(_running(other, 2.0))
+        stack.enter_context(_running(serve, "shared at"))
+        stack.enter_context(_running(other, "recording to"))
         subprocess.run(lerobot, env=program, check=True)
 
 
 @contextmanager
-def _running(command: list[Any], first_s: float) -> Iterator[None]:
-    """A process that is ended by Ctrl-C."""
-    with subprocess.Popen(command) as process:
+def _running(command: list[Any], ready: str) -> Iterator[None]:
+    """A process that has printed that it is ready; ended by Ctrl-C."""
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
         try:
-            time.sleep(first_s)
+            assert process.stdout is not None
+            line = process.stdout.readline()
+            assert ready in line, f"{command[0]} has printed {line!r}"
             yield
         finally:
             process.send_signal(signal.SIGINT)
