@@ -80,7 +80,11 @@ class Peer:
         """Let it end by itself."""
         assert self._process.stdin and self._process.stdout
         self._process.stdin.close()
-        self._process.wait(WAIT_S)
+        try:
+            self._process.wait(WAIT_S)
+        except subprocess.TimeoutExpired:  # on a machine too busy for it: it would slow the next
+            self._process.kill()
+            self._process.wait()
         self._reader.join(WAIT_S)
         self._process.stdout.close()
 

@@ -7,7 +7,9 @@ script (30003), of which it does the main loop: speed, stop and watchdog command
 arm is a free body that takes on the speed it is told with the acceleration it is told. Each line
 it prints is an event as JSON; each line it reads is a mishap:
 
-    force X | protective | emergency | pause | freeze | drop
+    force X | protective | emergency | pause | freeze | drop | cut
+
+`drop` ends the connections and takes no more, `cut` takes new ones.
 """
 
 import asyncio
@@ -247,9 +249,9 @@ class StandIn:
         writer.close()
 
     def take(self, line: str) -> None:
-        if line.strip() == "drop":
-            say("mishap", line="drop")
-            for server in self.servers:
+        if line.strip() in ("drop", "cut"):
+            say("mishap", line=line.strip())
+            for server in self.servers if line.strip() == "drop" else ():
                 server.close()
             for writer in self.writers:
                 writer.transport.abort()
@@ -259,12 +261,12 @@ class StandIn:
     async def run(self) -> None:
         for serve, port in ((self.rtde, 30004), (self.dashboard, 29999), (self.scripts, 30003)):
             self.servers.append(await asyncio.start_server(serve, self.host, port))
-        loop, ended = asyncio.get_running_loop(), asyncio.Event()
+        loop, ended = asyncio.get_running_loop(), threading.Event()
 
         def listen() -> None:
             for line in sys.stdin:
                 loop.call_soon_threadsafe(self.take, line)
-            loop.call_soon_threadsafe(ended.set)  # the test is over
+            ended.set()  # the test is over
 
         threading.Thread(target=listen, daemon=True).start()
         say("listens")
@@ -272,7 +274,7 @@ class StandIn:
         while not ended.is_set():
             if time.monotonic() - done_s > 0.1:
                 say("late", seconds=time.monotonic() - done_s)
-            while done_s < time.monotonic():
+            while done_s < time.monotonic() and not ended.is_set():
                 self.arm.step()
                 done_s += STEP_S
             await asyncio.sleep(STEP_S)

@@ -20,9 +20,10 @@ when the arm stands, `_ENDING_S` after the stop at most.
 so since 3.5, on macOS since 3.10. It counts from the computer's start, by `CLOCK_MONOTONIC` on
 Linux, `mach_absolute_time` on macOS, `GetTickCount64` or `QueryPerformanceCounter` on Windows.
 
-ur_rtde's script repeats the last speed for ever, whatever its time was, and ur_rtde restores a lost
-connection by itself. Therefore the watchdog of the controller stops the program if no register is
-written, and an arm that was silent once is not moved again.
+ur_rtde's script repeats the last speed for ever, whatever its time was. Therefore the watchdog of
+the controller stops the program if no register is written. ur_rtde would restore a lost connection
+by itself, start its script anew, which has no watchdog then, and send the last speed again.
+Therefore this process can open no sockets once it is connected; Windows has no limit for that.
 """
 
 import faulthandler
@@ -30,6 +31,7 @@ import math
 import os
 import signal
 import socket
+import sys
 import time
 import traceback
 from pathlib import Path
@@ -56,6 +58,7 @@ _VARIABLES = [
     "runtime_state",
     "safety_status_bits",
 ]
+_FIRST_STATE_S = 2.0
 _STILL = 1e-3  # m/s or rad/s
 _REFUSAL_STATES = 10
 _BRAKING_MORE_S = 0.5
@@ -75,10 +78,11 @@ class Driver:
         """Connect, send the controller its script and set the watchdog; nothing moves yet."""
         self._parent, self._mount, self._limits = parent, mount, limits
         self._control, self._receive = _connected(host, timeout_s)
+        _open_nothing_more()
         try:
+            first = self._first_state()
             if not self._control.setWatchdog(limits.watchdog_hz):
                 raise ArmError(f"{host}: the controller accepts no watchdog, so nothing moves")
-            first = self._state()
             self._guard = Guard(limits, mount, first, time.monotonic())
             parent.show(first)
         except BaseException:
@@ -94,13 +98,14 @@ class Driver:
             reason, detail, trace = "error", str(problem), traceback.format_exc()
         self._parent.say(stopped=reason, detail=detail, trace=trace)
         _end_in(_ENDING_S)
-        if reason != "connection":
-            self._try(self._brake)
-            self._try(self._control.speedStop, self._acceleration_m_s2)
-            self._try(self._control.stopScript)
-        elif self._control.isConnected():
-            # Calls that wait for an answer could wait for minutes; the watchdog does the rest.
+        if not self._control.isConnected():
+            return  # calls would wait for an answer, some for minutes: the watchdog stops the arm
+        if reason == "connection":
             self._try(self._send, np.zeros(6))
+            return
+        self._try(self._brake)
+        self._try(self._control.speedStop, self._acceleration_m_s2)
+        self._try(self._control.stopScript)
         self._leave()
 
     def _drive(self) -> tuple[str, str]:
@@ -175,6 +180,15 @@ class Driver:
         self._parent.show(state)
         return state
 
+    def _first_state(self) -> ArmState:
+        """The state, once one has arrived: until then poses are empty."""
+        until_s = time.monotonic() + _FIRST_STATE_S
+        while not ((state := self._state()).pose.size and state.twist.size and state.force_n.size):
+            if time.monotonic() > until_s:
+                raise ArmError("the controller sends no states, so nothing moves; restart it")
+            time.sleep(1.0 / RATE_HZ)
+        return state
+
     def _state(self) -> ArmState:
         arm = self._receive
         return ArmState(
@@ -207,6 +221,16 @@ def _connected(host: str, timeout_s: float) -> tuple[Any, Any]:
         ) from None
 
 
+def _open_nothing_more() -> None:
+    """Let this process open no more sockets, so that ur_rtde cannot restore a connection."""
+    if sys.platform != "win32":
+        import resource
+
+        _, most = resource.getrlimit(resource.RLIMIT_NOFILE)
+        # Below 1 there is only descriptor 0, which is in use; poll() needs the 1.
+        resource.setrlimit(resource.RLIMIT_NOFILE, (1, most))
+
+
 def _end_in(seconds: float) -> None:
     """End this process then, whatever call of ur_rtde it waits in; a later call counts anew."""
     faulthandler.dump_traceback_later(seconds, exit=True, file=_NOWHERE)
@@ -234,7 +258,7 @@ def main() -> None:
         mount, limits = Mount(**settings["mount"]), ArmLimits(**settings["limits"])
         _serve(parent, settings["host"], settings["timeout_s"], mount, limits)
     parent.close()
-    os._exit(0)  # threads of ur_rtde may wait for ever
+    os._exit(0)  # cuts a connection that is left, and leaves threads of ur_rtde that wait
 
 
 if __name__ == "__main__":

@@ -109,6 +109,7 @@ def test_frames_that_claim_to_be_of_later_do_not_move_it_on(peer: Peer) -> None:
         ("pause", "program", "pause"),
         pytest.param("freeze", "connection", "watchdog", marks=pytest.mark.slow),
         ("drop", "connection or error", "watchdog"),  # by who sees it first: reader or sender
+        ("cut", "connection or error", "watchdog"),
     ],
 )
 @patient
