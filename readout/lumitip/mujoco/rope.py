@@ -7,7 +7,7 @@ import numpy as np
 
 from lumitip.grid import Floats
 from lumitip.twin import Shape
-from lumitip.twin.lines import Numbers
+from lumitip.twin.lines import Numbers, square_from_segment
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -25,10 +25,7 @@ class Rope(Shape):
         """See `Shape`."""
         shape = np.broadcast_shapes(np.shape(x_mm), np.shape(y_mm))
         nearest = np.full(shape, np.inf, np.result_type(x_mm, y_mm, np.float32))
-        points = self.points_mm.tolist()  # plain numbers keep single precision
-        for (ax, ay), (bx, by) in pairwise(points):
-            dx, dy, x, y = bx - ax, by - ay, x_mm - ax, y_mm - ay
-            share = np.clip((x * dx + y * dy) / max(dx * dx + dy * dy, 1e-18), 0.0, 1.0)
-            nearest = np.minimum(nearest, (x - share * dx) ** 2 + (y - share * dy) ** 2)
+        for begin, end in pairwise(self.points_mm.tolist()):
+            nearest = np.minimum(nearest, square_from_segment(x_mm, y_mm, begin, end))
         away: Numbers = np.sqrt(nearest) - self.diameter_mm / 2.0
         return away

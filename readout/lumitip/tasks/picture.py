@@ -7,12 +7,13 @@ from numpy.typing import NDArray
 
 from lumitip.grid import Floats
 from lumitip.layout import Layout
+from lumitip.view.drawn import ESTIMATE, MISSING
 
 Image = NDArray[np.uint8]
 _PIXELS_PER_MM = 8.0
 _MARGIN_MM = 1.0
 _LINE_MM = 0.25  # half the width of the line as it is drawn
-_GROUND, _LINE, _MISSING = (190, 196, 202), (232, 89, 12), (204, 26, 26)
+_GROUND = (190, 196, 202)
 
 
 class Picture:
@@ -41,9 +42,9 @@ class Picture:
         """
         seen = np.isfinite(values)
         grey = np.repeat(np.where(seen, values, 0.0).astype(np.uint8)[:, None], 3, axis=1)
-        grey[~seen] = _MISSING
+        grey[~seen] = MISSING
         image: Image = grey[self._cell]
         image[self._outside] = _GROUND
         left_mm = (self._y_mm - height_mm) * math.cos(angle) - self._x_mm * math.sin(angle)
-        image[np.abs(left_mm) < _LINE_MM] = _LINE
+        image[np.abs(left_mm) < _LINE_MM] = ESTIMATE
         return image

@@ -39,6 +39,22 @@ def from_arc(left: Numbers, x: Numbers, y: Numbers, bend: Each) -> Numbers:
     return away
 
 
+def square_from_segment(
+    x_mm: Numbers, y_mm: Numbers, begin: tuple[float, float], end: tuple[float, float]
+) -> Numbers:
+    """Square of the distance of places from a segment (mm²). Its ends are plain numbers: with
+    numpy's own, places in single precision would become double.
+
+    Args:
+        x_mm, y_mm: places (mm).
+        begin, end: of the segment (mm).
+    """
+    dx, dy, x, y = end[0] - begin[0], end[1] - begin[1], x_mm - begin[0], y_mm - begin[1]
+    share = np.clip((x * dx + y * dy) / max(dx * dx + dy * dy, 1e-18), 0.0, 1.0)
+    square: Numbers = (x - share * dx) ** 2 + (y - share * dy) ** 2
+    return square
+
+
 def beside_arc(x: Numbers, y: Numbers, bend: Each, cos: Each, sin: Each) -> Numbers:
     """Direction of that arc beside each place (degrees)."""
     beside: Numbers = np.degrees(np.arctan2(bend * x + sin, cos - bend * y))

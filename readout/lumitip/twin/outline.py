@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from lumitip import arguments
 from lumitip.grid import Floats, Integers
-from lumitip.twin.lines import Numbers
+from lumitip.twin.lines import Numbers, square_from_segment
 from lumitip.twin.optics import TwinError
 from lumitip.twin.raster import Plane
 from lumitip.twin.scene import PIXEL_MM, Shape, Singles, Thing
@@ -49,17 +49,15 @@ class Polygon(Shape):
 
     def signed_distance_mm(self, x_mm: Numbers, y_mm: Numbers) -> Numbers:
         """See `Shape`; inside is where a ray to the right crosses an odd number of edges."""
-        # Plain numbers: with numpy's own, single precision would become double.
         begin = np.asarray(self.points_mm).tolist()
         shape = np.broadcast_shapes(np.shape(x_mm), np.shape(y_mm))
         nearest = np.full(shape, np.inf, np.result_type(x_mm, y_mm, np.float32))
         inside = np.zeros(nearest.shape, dtype=bool)
         for (ax, ay), (bx, by) in zip(begin, begin[1:] + begin[:1], strict=True):
-            dx, dy, x, y = bx - ax, by - ay, x_mm - ax, y_mm - ay
-            share = np.clip((x * dx + y * dy) / max(dx * dx + dy * dy, 1e-18), 0.0, 1.0)
-            nearest = np.minimum(nearest, (x - share * dx) ** 2 + (y - share * dy) ** 2)
+            nearest = np.minimum(nearest, square_from_segment(x_mm, y_mm, (ax, ay), (bx, by)))
             if ay != by:
-                inside ^= ((y_mm < ay) != (y_mm < by)) & (x < dx * y / dy)
+                crossing = (bx - ax) * (y_mm - ay) / (by - ay)
+                inside ^= ((y_mm < ay) != (y_mm < by)) & (x_mm - ax < crossing)
         distance: Numbers = np.sqrt(nearest)
         return np.where(inside, -distance, distance)
 
