@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 INTERRUPTED = 128 + signal.SIGINT
 """Exit status of a command that Ctrl-C ended."""
 _AGAIN_S = 0.05
+_IMPORT = "<frozen importlib._bootstrap>"
 
 
 def leave_on_interrupt() -> None:
@@ -30,19 +31,23 @@ def _leave(_: int = 0, __: "FrameType | None" = None) -> None:
 class InterruptGuard:
     """Raises `KeyboardInterrupt` on the first SIGINT, and ends the process on the second.
 
-    A context manager for the main thread; on other threads it does nothing.
+    A context manager for the main thread; on other threads it does nothing. During an import it
+    waits for the end of that: modules written in C may drop an exception, and the command would
+    go on.
     """
 
     def __init__(self) -> None:
         self.interrupted = False
         """Whether SIGINT came: other exceptions may follow from it."""
         self._before: Any = None
+        self._outside: FrameType | None = None
         self._hook = sys.unraisablehook
 
     def __enter__(self) -> "InterruptGuard":
         import threading
 
         if threading.current_thread() is threading.main_thread():
+            self._outside = sys._getframe(1)
             self._hook, sys.unraisablehook = sys.unraisablehook, self._unraisable
             self._before = signal.signal(signal.SIGINT, self._interrupt)
         return self
@@ -53,20 +58,35 @@ class InterruptGuard:
         if self._before is not None:
             signal.signal(signal.SIGINT, self._before)
             sys.unraisablehook = self._hook
+        self._outside = None
 
-    def _interrupt(self, _: int, __: "FrameType | None") -> None:
+    def _interrupt(self, _: int, frame: "FrameType | None") -> None:
         if self.interrupted:
             _leave()
+        if self._is_importing(frame):
+            _interrupt_again()
+            return
         self.interrupted = True
         raise KeyboardInterrupt
+
+    def _is_importing(self, frame: "FrameType | None") -> bool:
+        while frame is not None and frame is not self._outside:
+            if frame.f_code.co_filename == _IMPORT:
+                return True
+            frame = frame.f_back
+        return False
 
     def _unraisable(self, problem: "sys.UnraisableHookArgs") -> None:
         if not self.interrupted:
             self._hook(problem)
         elif problem.exc_type is KeyboardInterrupt:
             # Raised in a destructor, where Python drops it: raise it again after that.
-            import _thread
-            import threading
-
             self.interrupted = False
-            threading.Timer(_AGAIN_S, _thread.interrupt_main).start()
+            _interrupt_again()
+
+
+def _interrupt_again() -> None:
+    import _thread
+    import threading
+
+    threading.Timer(_AGAIN_S, _thread.interrupt_main).start()

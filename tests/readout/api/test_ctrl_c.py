@@ -152,3 +152,38 @@ cli.run()
         [sys.executable, "-c", program], capture_output=True, text=True, timeout=60, check=False
     )
     assert (done.returncode, done.stdout, done.stderr) == (130, "ready\n", "")
+
+
+def test_an_import_that_drops_an_interrupt_does_not_keep_the_command(tmp_path: Path) -> None:
+    (tmp_path / "drops.py").write_text(
+        """
+import os, signal, time
+try:
+    os.kill(os.getpid(), signal.SIGINT)
+    time.sleep(0.2)
+except BaseException:
+    print("dropped", flush=True)
+""",
+        encoding="utf-8",
+    )
+    program = """
+import time
+from lumitip import cli
+
+def run(_):
+    import drops
+    while True:
+        time.sleep(0.01)
+
+cli._run_command = run
+cli.run()
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", program],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", "")
