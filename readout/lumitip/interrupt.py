@@ -86,7 +86,18 @@ class InterruptGuard:
 
 
 def _interrupt_again() -> None:
-    import _thread
     import threading
 
-    threading.Timer(_AGAIN_S, _thread.interrupt_main).start()
+    threading.Timer(_AGAIN_S, _interrupt_main).start()
+
+
+def _interrupt_main() -> None:
+    """A signal to the main thread, which also wakes it while it waits for a lock."""
+    import threading
+
+    if hasattr(signal, "pthread_kill"):
+        ident = threading.main_thread().ident
+        assert ident is not None
+        signal.pthread_kill(ident, signal.SIGINT)
+    else:  # Windows
+        signal.raise_signal(signal.SIGINT)

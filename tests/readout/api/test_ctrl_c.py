@@ -154,26 +154,29 @@ cli.run()
     assert (done.returncode, done.stdout, done.stderr) == (130, "ready\n", "")
 
 
-def test_an_import_that_drops_an_interrupt_does_not_keep_the_command(tmp_path: Path) -> None:
+@pytest.mark.parametrize("then", ["time.sleep(100)", "threading.Event().wait()"])
+def test_an_import_that_drops_an_interrupt_does_not_keep_the_command(
+    tmp_path: Path, then: str
+) -> None:
     (tmp_path / "drops.py").write_text(
         """
-import os, signal, time
+import os, signal
 try:
     os.kill(os.getpid(), signal.SIGINT)
-    time.sleep(0.2)
+    for _ in range(1000):
+        pass
 except BaseException:
     print("dropped", flush=True)
 """,
         encoding="utf-8",
     )
-    program = """
-import time
+    program = f"""
+import threading, time
 from lumitip import cli
 
 def run(_):
     import drops
-    while True:
-        time.sleep(0.01)
+    {then}
 
 cli._run_command = run
 cli.run()
