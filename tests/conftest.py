@@ -127,8 +127,8 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """`--slow` runs the tests marked `slow` too; so does `LUMITIP_REQUIRE=all`."""
-    parser.addoption("--slow", action="store_true", help="run the tests marked slow too")
+    """`--slow` runs all tests and all their cases; so does `LUMITIP_REQUIRE=all`."""
+    parser.addoption("--slow", action="store_true", help="run slow tests and slow cases too")
 
 
 def _whole(config: pytest.Config) -> bool:
@@ -140,9 +140,20 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     rank = {TESTS / file: place for place, file in enumerate(LONGEST)}
     items.sort(key=lambda item: rank.get(item.path, len(rank)))
     if not _whole(config):
-        slow = {item for item in items if item.get_closest_marker("slow")}
+        slow = set(_left_out(items))
         config.hook.pytest_deselected(items=[item for item in items if item in slow])
         items[:] = [item for item in items if item not in slow]
+
+
+def _left_out(items: list[pytest.Item]) -> Iterator[pytest.Item]:
+    begun = set()
+    for item in items:
+        test = item.nodeid.partition("[")[0]
+        if item.get_closest_marker("slow") or (
+            item.get_closest_marker("slow_cases") and test in begun
+        ):
+            yield item
+        begun.add(test)
 
 
 def pytest_terminal_summary(

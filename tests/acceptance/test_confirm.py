@@ -48,6 +48,7 @@ def test_silicone_thinner_than_the_parts_is_confirmed(monkeypatch: pytest.Monkey
     assert verdict.text.startswith("confirmed: cover: 0.8 mm of silicone")
 
 
+@pytest.mark.slow
 def test_a_groove_deeper_than_the_plate_allows_is_confirmed(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

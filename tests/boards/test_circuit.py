@@ -49,6 +49,7 @@ def _pins(parts: tuple[Component, ...]) -> dict[str, list[tuple[str, str]]]:
     return found
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize("preset", PRESETS)
 def test_current_passes_every_led_of_a_string_once(designs: dict[str, Design], preset: str) -> None:
     design = designs[preset]
@@ -162,6 +163,7 @@ def test_each_detector_has_a_pull_up_of_its_own_beside_its_multiplexer(
     assert not any(part.kind == "resistor" for part in plan)
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize("preset", PRESETS)
 @pytest.mark.parametrize("finger", ["emitter", "receiver"])
 def test_every_signal_has_a_test_point_and_a_class(

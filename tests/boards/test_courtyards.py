@@ -34,6 +34,7 @@ def overlap(a: Box, b: Box) -> bool:
     return max(beside, b.y_min_mm - a.y_max_mm, a.y_min_mm - b.y_max_mm) <= 0
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize("preset", ["published", "dense", "integrated", "mux16"])
 def test_courtyards_are_apart_and_never_less_than_placement_had(
     designs: Callable[[str], Design], preset: str

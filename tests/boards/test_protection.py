@@ -189,6 +189,7 @@ REFUSED = [
 ]
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize(("text", "field", "says"), REFUSED)
 def test_parts_that_do_not_protect_or_have_no_room_are_refused(
     design_dir: Path, tmp_path: Path, text: str, field: str, says: str

@@ -94,6 +94,7 @@ def _types(sheet: Path) -> dict[str, dict[str, str]]:
     }
 
 
+@pytest.mark.slow_cases
 @every
 def test_the_nets_are_those_of_the_circuit(drawn: Drawn, board: tuple[str, str]) -> None:
     _, placed, sheet = drawn(board)
@@ -104,11 +105,13 @@ def test_the_nets_are_those_of_the_circuit(drawn: Drawn, board: tuple[str, str])
     assert read_sheet(sheet).nets == dict(wanted)
 
 
+@pytest.mark.slow_cases
 @every
 def test_no_text_is_over_another_a_symbol_or_a_wire(drawn: Drawn, board: tuple[str, str]) -> None:
     assert overlaps(drawn(board)[2]) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("old", "new", "found"),
     [
@@ -131,6 +134,7 @@ def test_a_text_that_collides_is_found(
     assert any(found in text for text in overlaps(damaged)), overlaps(damaged)
 
 
+@pytest.mark.slow
 def test_each_block_has_its_title(drawn: Drawn) -> None:
     path = ["Contacts of the tool", "Reverse supply and plug-in"]
     buck, linear = "Buck regulator 24 V to 5 V", "Linear regulator 5 V to 3.3 V"
@@ -146,6 +150,7 @@ def test_each_block_has_its_title(drawn: Drawn) -> None:
     assert breakout == ["Controller", *wires, "From the supply", "Power flags"]
 
 
+@pytest.mark.slow
 def test_pins_have_their_types(drawn: Drawn) -> None:
     types = _types(drawn(("integrated", "flange"))[2])
     assert types["Regulator_U1"] == {
@@ -166,6 +171,7 @@ def test_pins_have_their_types(drawn: Drawn) -> None:
     )
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize("board", AUXILIARY, ids="-".join)
 def test_what_is_ordered_has_its_numbers(drawn: Drawn, board: tuple[str, str]) -> None:
     """The data sheet stays empty: the catalogue names sources, and has no addresses."""

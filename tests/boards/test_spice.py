@@ -48,6 +48,7 @@ def _netlist(
     return made.data.decode()
 
 
+@pytest.mark.slow_cases
 @needs_ngspice
 @pytest.mark.parametrize("preset", PRESETS)
 def test_a_string_draws_its_nominal_current(
@@ -124,6 +125,7 @@ def test_a_detector_without_gain_or_base_settles_as_computed(
     assert abs(found["wrong_100"]) < SETTLED_COUNTS
 
 
+@pytest.mark.slow_cases
 @needs_ngspice
 @pytest.mark.parametrize("step", STEPS)
 def test_a_phototransistor_of_the_published_circuit_does_not_settle_in_the_dark(
@@ -153,6 +155,7 @@ HALF_LIT = {
 }
 
 
+@pytest.mark.slow_cases
 @needs_ngspice
 @pytest.mark.parametrize("step", [*STEPS, *HALF_LIT])
 @pytest.mark.parametrize("preset", OWN_PULL_UPS)

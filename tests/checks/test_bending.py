@@ -103,6 +103,7 @@ def test_a_short_cable_is_cut_longer() -> None:
     assert found.radius_mm >= found.least_mm == 8 * outer_mm(0.25)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("preset", ["flex", "wsg50", "integrated"])
 def test_cables_of_other_designs(built: Callable[[str], Path], preset: str) -> None:
     folder = built(preset)

@@ -134,6 +134,7 @@ def _with(config: Input, material: str, **filament: Any) -> Input:
     return dataclasses.replace(compliant, catalogue=catalogue)
 
 
+@pytest.mark.slow
 def test_what_must_not_bend_is_printed_from_another_filament(config: Input, tmp_path: Path) -> None:
     design = derive(_with(config, "TPU 98A"))
     told = design.slicing
@@ -154,6 +155,7 @@ def test_what_must_not_bend_is_printed_from_another_filament(config: Input, tmp_
     assert re.search(r"emitter_mould.3mf` \| `print/petg_mould.ini", note)
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize("other", ["TPU 98A", "wood"])
 def test_a_filament_for_rigid_parts_must_be_one(config: Input, other: str) -> None:
     with pytest.raises(InputError, match=f"whose rigid_parts is '{other}'; the name of a filament"):

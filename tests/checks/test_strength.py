@@ -42,6 +42,7 @@ def figures(out: Path) -> dict[str, float]:
     return {m.check: float(m.measured) for m in found if m.subject == PART}
 
 
+@pytest.mark.slow_cases
 def test_both_kinds_of_finger_bear_their_load(fingers: Path) -> None:
     design = read_design(fingers / "design.json")
     assert not failed(fingers)
@@ -69,11 +70,13 @@ def published(design_dir: Path) -> Design:
     return derive(load(design_dir / "presets" / "published.toml"))
 
 
+@pytest.mark.slow
 def test_a_thin_flare_is_found(published: Design, tmp_path: Path) -> None:
     out = written(published, thin(published), tmp_path / "thin")
     assert {"strength.bend", "strength.board"} <= failed(out)
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize(
     ("check", "size_mm", "at_mm"),
     [
@@ -95,6 +98,7 @@ def test_a_cut_is_found(
     assert check in failed(out)
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize(
     ("check", "diameter_mm", "low_mm", "high_mm"),
     [
@@ -123,6 +127,7 @@ def test_a_weak_seat_of_a_bolt_is_found(
     assert check in failed(out)
 
 
+@pytest.mark.slow
 def test_light_leaves_the_apertures_of_a_finger_that_bends_far(
     published: Design, tmp_path: Path
 ) -> None:
@@ -130,6 +135,7 @@ def test_light_leaves_the_apertures_of_a_finger_that_bends_far(
     assert "strength.light_path" in failed(written(strong, published, tmp_path / "bent"))
 
 
+@pytest.mark.slow_cases
 def test_a_plate_with_a_neck_twists_and_shades(fingers: Path, tmp_path: Path) -> None:
     """Saw cuts from both sides, between interface and tip; a rigid finger has its board there."""
     out = Path(shutil.copytree(fingers, tmp_path / "neck"))
@@ -151,6 +157,7 @@ def test_a_missing_part_is_named(fingers: Path, tmp_path: Path) -> None:
     assert failed(out) == {"strength.readable"}
 
 
+@pytest.mark.slow
 def test_the_level_end_of_a_pocket_is_a_long_span(published: Design, tmp_path: Path) -> None:
     """As issue 15 measured it: a strand as long as the pocket is wide, under the tip."""
     out = written(published, upright(published), tmp_path / "level")

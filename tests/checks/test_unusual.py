@@ -87,6 +87,7 @@ def test_an_unusual_design_passes_every_check(
     assert [f"{m.check} {m.subject}: {m.measured} {m.limit}" for m in failed] == []
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize(
     ("changes", "told"),
     [

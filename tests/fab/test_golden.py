@@ -40,6 +40,7 @@ def figures(design: Design) -> Iterator[str]:
         yield f"cable {cable.name}: {cable.length_mm:g} mm, {signals}"
 
 
+@pytest.mark.slow_cases
 @pytest.mark.golden
 @pytest.mark.parametrize("preset", PRESETS)
 def test_a_preset_derives_as_recorded(preset: str, design_dir: Path) -> None:

@@ -242,6 +242,7 @@ def test_a_key_follows_what_was_read_and_nothing_else(design_dir: Path) -> None:
 _MASK = re.compile(r"mask/(emitter|receiver)_(?!sheet|wrapping)")
 
 
+@pytest.mark.slow
 def test_only_the_steps_asked_for_run(design_dir: Path, damaged: Path) -> None:
     before = manifest.read(damaged)
     file = design_dir / "presets" / "dense.toml"

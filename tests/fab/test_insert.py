@@ -23,6 +23,7 @@ def filmed(inputs: dict[str, Input], vary: Any) -> Input:
     return varied
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("preset", PRESETS)
 def test_every_preset_has_room_for_a_film(preset: str, inputs: dict[str, Input], vary: Any) -> None:
     config = inputs[preset]

@@ -30,6 +30,7 @@ def with_limits(config: Input, **limits: Any) -> Input:
     return dataclasses.replace(config, catalogue=config.catalogue.model_copy(update={"fabs": fabs}))
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize("preset", ["published", "dense", "flex", "integrated"])
 def test_no_preset_has_panels(inputs: dict[str, Input], preset: str) -> None:
     assert derive(inputs[preset]).panels == ()

@@ -49,6 +49,7 @@ def _notes(design: Design) -> dict[str, str]:
     return notes | {"mask/receiver_wrapping.md": wrapping_note(d, d.receiver, facts)}
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize("name", NAMES)
 def test_notes_show_a_name_as_it_is_written(name: str, designs: dict[str, Design]) -> None:
     named = dataclasses.replace(designs["published"], title=Title(name, "A"))

@@ -128,6 +128,7 @@ def test_serial_works_where_bluetooth_does_not_start(played: Callable[..., Seen]
     assert flashes(seen, "alone") == flashes(seen, "serial") == 3
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize(
     ("preset", "defines", "pin"),
     [("published", ("-DLUMITIP_EMITTER_PIN=9",), "9"), ("flex", (), "5")],

@@ -88,6 +88,7 @@ FAULTS: dict[str, tuple[dict[str, Any], str]] = {
 }
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_fault_of_the_answers_is_refused_and_nothing_is_written(
     fault: str, fill: Any, config: Input, capsys: pytest.CaptureFixture[str]

@@ -97,6 +97,7 @@ def test_the_light_between_these_fingers_in_mujoco(outputs: Path) -> None:
     assert np.abs(LightSensor(model, layout).values(data) - expected).max() <= 2.0
 
 
+@pytest.mark.slow
 def test_the_program_of_the_page_on_mujoco(
     outputs: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -240,6 +240,7 @@ def test_without_lugs_the_wires_go_straight_on(outputs: Path) -> None:
     assert tied.count('stroke-width=".8"') == free.count('stroke-width=".8"') >= 18
 
 
+@pytest.mark.slow
 def test_without_a_clamp_step_and_drawing_name_none(outputs: Path) -> None:
     design = read_design(outputs / "design.json")
     bare = replace(design, clamps=())

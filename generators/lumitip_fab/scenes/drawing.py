@@ -152,6 +152,9 @@ PIECE_MM = 0.6  # of an edge that is seen or not as a whole
 BEHIND_MM = 0.4  # by which a line may lie behind what is nearest: the buffer's own error
 SHARP_DEG = 25.0  # between two faces, to be drawn as an edge
 _NEAR_MM = 0.02  # of a simplified line from what it stands for
+_EDGE_ON = 1e-2  # sine of the angle of a face to the line of sight, at most
+_FLAT = 1e-9  # twice the area of a triangle that covers nothing, in pixels
+_SLIT_MM = 0.01  # half the width of a slit in a silhouette that is closed
 
 
 @dataclass(frozen=True, eq=False)
@@ -195,8 +198,8 @@ def silhouette(mesh: Mesh, seen_by: View) -> list[Points]:
     pieces = shapely.get_parts(shapely.polygonize([contour]))
     triangles = shapely.STRtree(shapely.polygons(flat[mesh.triangles[front]]))
     covered, _ = triangles.query(shapely.point_on_surface(pieces), predicate="intersects")
-    whole = shapely.union_all(pieces[np.unique(covered)], grid_size=0.001)
-    whole = whole.buffer(0.01, join_style="mitre").buffer(-0.01, join_style="mitre")
+    whole = shapely.simplify(shapely.coverage_union_all(pieces[np.unique(covered)]), _SLIT_MM / 2)
+    whole = whole.buffer(_SLIT_MM, join_style="mitre").buffer(-_SLIT_MM, join_style="mitre")
     whole = shapely.simplify(whole, _NEAR_MM)
     return [
         np.array(ring.coords)
@@ -221,7 +224,9 @@ def _depths(meshes: list[Mesh], seen: list[Points], low: Points, high: Points) -
     for mesh, points in zip(meshes, seen, strict=True):
         corners = points[mesh.triangles]
         corners[:, :, :2] = (corners[:, :, :2] - low) / PIXEL_MM
-        for corner in corners:
+        first, last = np.ceil(corners.min(axis=1)), np.floor(corners.max(axis=1))
+        covers = (first <= last)[:, :2].all(axis=1) & (np.cross(*_sides(corners))[:, 2] > _FLAT)
+        for corner in corners[covers]:
             _fill(depths, corner)
     return depths
 
@@ -230,12 +235,8 @@ def _fill(depths: Points, corner: Points) -> None:
     """Raise a buffer to a triangle that looks to the viewer."""
     (x0, y0, z0), (x1, y1, z1), (x2, y2, z2) = corner.tolist()
     area = (x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0)
-    if area <= 1e-9:
-        return
     left, right = math.ceil(min(x0, x1, x2)), math.floor(max(x0, x1, x2))
     bottom, top = math.ceil(min(y0, y1, y2)), math.floor(max(y0, y1, y2))
-    if left > right or bottom > top:
-        return
     x = np.arange(left, right + 1)[None, :]
     y = np.arange(bottom, top + 1)[:, None]
     one = ((x - x0) * (y2 - y0) - (y - y0) * (x2 - x0)) / area
@@ -265,7 +266,8 @@ def _lines(mesh: Mesh, seen: Points, depths: Points, low: Points) -> list[Points
     pieces = np.round(np.stack([first, last], axis=1)[shown][:, :, :2], 4)
     pieces = pieces[np.abs(pieces[:, 0] - pieces[:, 1]).max(axis=1) > 1e-3]
     joined = shapely.line_merge(shapely.union_all(shapely.linestrings(pieces), grid_size=0.001))
-    return [np.array(line.coords) for line in shapely.get_parts(shapely.simplify(joined, _NEAR_MM))]
+    lines = shapely.simplify(shapely.get_parts(joined), _NEAR_MM)
+    return [np.array(line.coords) for line in lines]
 
 
 def _edges(mesh: Mesh, seen: Points) -> tuple[Points, Points]:
@@ -279,7 +281,12 @@ def _edges(mesh: Mesh, seen: Points) -> tuple[Points, Points]:
 
 
 def _front(mesh: Mesh, seen: Points) -> NDArray[np.bool_]:
-    """Whether each triangle looks to the viewer."""
-    corners = seen[mesh.triangles]
-    a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0] > 1e-9)
+    """Whether each triangle looks to the viewer; one that is seen edge-on does not: which way it
+    turns is rounding, and every edge of an upright wall would be drawn."""
+    normal = np.cross(*_sides(seen[mesh.triangles]))
+    return np.asarray(normal[:, 2] > _EDGE_ON * np.linalg.norm(normal, axis=1))
+
+
+def _sides(corners: Points) -> tuple[Points, Points]:
+    """Two sides of each triangle, from its first corner."""
+    return corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]

@@ -92,6 +92,7 @@ def _interrupted(
     return process.returncode, errors
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize("name", COMMANDS)
 @pytest.mark.parametrize("delay_s", [0.02, 0.2, 0.6, 2.0])
 def test_ctrl_c_ends_a_command_in_silence(folder: Path, name: str, delay_s: float) -> None:
@@ -105,6 +106,7 @@ def test_ctrl_c_ends_a_command_in_silence(folder: Path, name: str, delay_s: floa
         assert status in (0, 1, 130, -signal.SIGINT), errors
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize("command", ["doctor", "record", "view", "serve"])
 @pytest.mark.parametrize("knows_layout", [True, False])
 def test_ctrl_c_ends_a_command_that_connects(

@@ -29,6 +29,7 @@ def test_the_edge_lies_where_it_lies_at_any_gap(
     assert found.angle_deg == pytest.approx(2.5, abs=0.6)
 
 
+@pytest.mark.slow_cases
 def test_the_cable_has_its_angle_and_width_at_any_gap(
     estimator: PoseEstimator, published_values: Values
 ) -> None:
@@ -47,6 +48,7 @@ def test_the_corner_has_a_right_angle_or_a_flag(
     assert "misfit" in found.flags
 
 
+@pytest.mark.slow
 def test_the_width_of_the_real_cable_is_mostly_what_is_expected(
     cells: Layout, published_values: Values
 ) -> None:

@@ -25,6 +25,7 @@ from mujoco_bodies import (
 )
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize("seed", range(8))
 def test_rigid_shapes_give_the_light_of_the_twin(seed: int) -> None:
     chance = np.random.default_rng(seed)
@@ -55,6 +56,7 @@ def test_a_small_plate_and_two_bodies_are_outlines() -> None:
     assert np.abs(values(both(plate, disc(12.0, 4.0))) - TWIN.values(scene)).max() <= MOST_COUNTS
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize("seed", range(6))
 def test_any_gap_and_any_height(seed: int) -> None:
     chance = np.random.default_rng(seed)

@@ -4,6 +4,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 EXAMPLES = Path(__file__).parents[3] / "examples"
 
 
@@ -20,6 +22,7 @@ def test_processing_tells_what_is_between_the_fingers() -> None:
     assert any("cable at" in line and "mm wide" in line for line in lines)
 
 
+@pytest.mark.slow
 def test_a_recording_is_made_read_and_processed_as_a_whole(tmp_path: Path) -> None:
     path = str(tmp_path / "run.mcap")
     said = _run("record_and_read.py", "twin://edge?rate=100", path)

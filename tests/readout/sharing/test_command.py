@@ -75,6 +75,7 @@ def test_view_recorder_and_controller_use_one_finger(start: Start, tmp_path: Pat
     assert [frame.dropped_before for frame in reader][1:] == [0] * 149
 
 
+@pytest.mark.slow
 def test_a_taken_port_is_one_line_that_says_what_to_do(
     capsys: pytest.CaptureFixture[str],
 ) -> None:

@@ -52,6 +52,7 @@ def _request(server: FingertipServer, receive_bytes: int) -> socket.socket:
     return client
 
 
+@pytest.mark.slow
 def test_a_slow_client_loses_the_oldest_and_slows_nobody(serve, until, caplog) -> None:
     server = serve("twin://disc?rate=2000&speed=0&noise=0", buffer=4096)
     with (

@@ -22,6 +22,7 @@ SETTINGS = {
 }
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize("name", SETTINGS)
 def test_they_give_what_single_environments_give(name: str) -> None:
     from lumitip.tasks.environment import TraceEnv

@@ -90,6 +90,7 @@ def test_expected_gap_and_diameter_are_those_of_the_twin_unless_asked() -> None:
     assert Expected.of("replay://a?b.mcap") == Expected()
 
 
+@pytest.mark.slow
 def test_reading_goes_on_at_full_rate_while_tables_and_fits_are_computed(
     wait_for: WaitFor,
 ) -> None:

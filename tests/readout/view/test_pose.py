@@ -48,6 +48,7 @@ def test_a_cable_has_its_width_with_an_error(layout: Layout) -> None:
     assert 0.0 < shown["error"]["width_mm"] < 1.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", SCENES)
 def test_bands_hold_95_of_100_lines_drawn_from_the_covariance(layout: Layout, kind: str) -> None:
     estimate, _ = seen(layout, SCENES[kind])
