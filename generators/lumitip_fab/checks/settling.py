@@ -111,7 +111,7 @@ class _Cell:
             fed = (channel.supply_v - line) / at_line_ohm
             return [(fed + through) / line_f, float(rise), float(base_rise)]
 
-        end = solve_ivp(slope, (0.0, seconds), start, method="BDF", rtol=1e-6, atol=1e-7)
+        end = solve_ivp(slope, (0.0, seconds), start, method="LSODA", rtol=1e-6, atol=1e-7)
         return np.asarray(end.y[:, -1], dtype=np.float64)
 
 
