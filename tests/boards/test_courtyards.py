@@ -54,6 +54,7 @@ def test_courtyards_are_apart_and_never_less_than_placement_had(
             assert apart, (name, one, other)
 
 
+@pytest.mark.slow
 def test_courtyards_have_the_usual_width_where_there_is_room(
     designs: Callable[[str], Design],
 ) -> None:
@@ -65,6 +66,7 @@ def test_courtyards_have_the_usual_width_where_there_is_room(
     assert around_mm(resistor.courtyard, land(resistor.footprint)) == pytest.approx(PART_MM)
 
 
+@pytest.mark.slow
 def test_a_part_under_a_shroud_is_refused(designs: Callable[[str], Design]) -> None:
     board = boards_of(designs("published"))["flange"]
     parts = {part.ref: part for part in board.components}

@@ -103,6 +103,7 @@ def _drive(design_dir: Path, tmp_path: Path, text: str) -> tuple[str, str]:
     return resolved.config.parameters.emitter.drive, reasons.get("emitter.drive", "")
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize(
     ("text", "drive", "reason"),
     [

@@ -98,7 +98,7 @@ def test_a_cut_is_found(
     assert check in failed(out)
 
 
-@pytest.mark.slow_cases
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("check", "diameter_mm", "low_mm", "high_mm"),
     [
@@ -135,7 +135,7 @@ def test_light_leaves_the_apertures_of_a_finger_that_bends_far(
     assert "strength.light_path" in failed(written(strong, published, tmp_path / "bent"))
 
 
-@pytest.mark.slow_cases
+@pytest.mark.slow
 def test_a_plate_with_a_neck_twists_and_shades(fingers: Path, tmp_path: Path) -> None:
     """Saw cuts from both sides, between interface and tip; a rigid finger has its board there."""
     out = Path(shutil.copytree(fingers, tmp_path / "neck"))

@@ -45,6 +45,7 @@ def _entries(field: str) -> dict[str, Any]:
 CASES = [(field, name) for field in FIELDS for name in _entries(field)]
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize(("field", "name"), CASES)
 def test_every_entry_derives_in_the_published_design(
     inputs: dict[str, Input],

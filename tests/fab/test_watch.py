@@ -7,6 +7,8 @@ import sys
 import time
 from pathlib import Path
 
+import pytest
+
 from lumitip_fab.cli import main
 from lumitip_fab.cli.watch import differences
 
@@ -17,6 +19,7 @@ def test_differences_name_what_changed() -> None:
     assert list(differences(before, after)) == ["new: None → 1", "grid.pitch_mm: 6.0 → 5.0"]
 
 
+@pytest.mark.slow
 def test_saving_rebuilds_and_a_fault_is_waited_out(outputs: Path, tmp_path: Path) -> None:
     main(["init", str(tmp_path / "design"), "--quiet"])
     file = tmp_path / "design" / "presets" / "published.toml"

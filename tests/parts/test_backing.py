@@ -68,6 +68,7 @@ def test_files_carry_the_way_back_to_the_sensor_frame(design_dir: Path) -> None:
     assert (made[0].to_sensor == np.eye(4)).all()
 
 
+@pytest.mark.slow
 def test_each_board_has_its_own_pins(design_dir: Path) -> None:
     design = derive(load(design_dir / "presets" / "asymmetric.toml"))
     emitter, receiver = solid_of(design, 0), solid_of(design, 1)

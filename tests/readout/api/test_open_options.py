@@ -33,6 +33,7 @@ WRONG = {7: "arg-type", 8: "arg-type", 9: "call-arg", 10: "call-arg", 11: "arg-t
 """The lines of the program with errors, and their kinds."""
 
 
+@pytest.mark.slow
 def test_mypy_shows_wrong_options(tmp_path: Path) -> None:
     program = tmp_path / "program.py"
     program.write_text(PROGRAM.lstrip(), encoding="utf-8")

@@ -43,6 +43,7 @@ def test_the_published_law_holds_the_dark_centre() -> None:
     assert law(Sight(height_mm=2.0)) is None
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize(
     "scene", [HalfPlane(offset_mm=-2.0, angle_deg=160.0), Cable(offset_mm=2.0, angle_deg=-20.0)]
 )

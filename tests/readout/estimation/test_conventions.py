@@ -65,6 +65,7 @@ def test_an_edge_is_told_by_its_left_normal_and_where_the_dark_is(
     assert darker_left == (told.dark_side == "left")
 
 
+@pytest.mark.slow
 def test_width_transmittance_and_gain(estimator: PoseEstimator, twin: Twin) -> None:
     cable = estimator(twin.values(Cable(offset_mm=1.0, angle_deg=12.0, diameter_mm=3.6)), "cable")
     assert cable.width_mm == pytest.approx(3.6, abs=0.15)
@@ -94,6 +95,7 @@ def test_nothing_and_a_covered_finger_have_no_line(estimator: PoseEstimator, twi
         assert np.isnan([told.offset_mm, told.angle_deg, told.width_mm]).all()
 
 
+@pytest.mark.slow
 def test_what_is_no_line_is_flagged(estimator: PoseEstimator, twin: Twin) -> None:
     blob = Polygon(points_mm=[(-3, -3), (3, -3), (3, 3), (-3, 3)])
     other = Polygon(points_mm=[(8, 5), (13, 5), (13, 10), (8, 10)])

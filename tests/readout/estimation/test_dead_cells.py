@@ -19,6 +19,7 @@ def lit_and_dark(twin: Twin, scene: Scene) -> tuple[list[int], list[int]]:
     return np.flatnonzero(values > 250.0).tolist(), np.flatnonzero(values < 5.0).tolist()
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize(("kind", "scene"), [("edge", EDGE), ("cable", CABLE)])
 def test_stuck_cells_are_left_out_by_name(
     estimator: PoseEstimator, twin: Twin, wrong_twins: list[Twin], kind: str, scene: Scene

@@ -83,6 +83,7 @@ def test_the_published_method_draws_the_cable_wider_than_it_is(
     assert drawn is not None and drawn.width_mm == pytest.approx(4.7, abs=0.1)
 
 
+@pytest.mark.slow_cases
 def test_another_frame_does_not_have_the_cable(
     estimator: PoseEstimator, published_values: Values
 ) -> None:

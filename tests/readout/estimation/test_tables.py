@@ -110,6 +110,7 @@ def test_a_wider_cable_takes_a_strip_more_at_each_border(
     np.testing.assert_allclose(share[0], plain + strip(width_mm) - strip(DIAMETER_MM), atol=2e-6)
 
 
+@pytest.mark.slow
 def test_cells_inside_a_large_grid_share_a_row_of_the_table(cells: Layout) -> None:
     large, small = (
         layout_of(tuple(rows + i % 2 for i in range(rows)), 3.0, cells.optics) for rows in (31, 13)
@@ -127,6 +128,7 @@ def test_cells_inside_a_large_grid_share_a_row_of_the_table(cells: Layout) -> No
     np.testing.assert_allclose(*rows, atol=1e-6)
 
 
+@pytest.mark.slow
 def test_nothing_is_made_while_frames_come(
     twin: Twin, wrong_twins: list[Twin], monkeypatch: pytest.MonkeyPatch
 ) -> None:

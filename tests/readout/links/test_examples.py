@@ -80,6 +80,7 @@ def layout_file(layout: Layout, tmp_path: Path) -> str:
     return str(path)
 
 
+@pytest.mark.slow
 def test_read_bluetooth(bluez: FakeBluez, device, layout_file: str) -> None:
     peer = add_fingertip(bluez, device)
     with _sending(lambda n: send(bluez, peer, device.packet(n))):

@@ -52,6 +52,7 @@ def _address(process: "subprocess.Popen[str]") -> str:
     return found[0]
 
 
+@pytest.mark.slow
 def test_view_recorder_and_controller_use_one_finger(start: Start, tmp_path: Path) -> None:
     server = start("serve", "twin://cable?rate=200", "--port", "0")
     address = _address(server)

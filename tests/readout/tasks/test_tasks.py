@@ -89,6 +89,7 @@ def test_the_same_seed_gives_the_same_trial(cloth: Bench) -> None:
     assert first.lateral_rms_mm == again.lateral_rms_mm and first.reason == "end"
 
 
+@pytest.mark.slow
 def test_cloth_tracing_ends_at_the_corner() -> None:
     bench = Bench(Task(LAYOUT, Settings("cloth", length_mm=200.0, corner=True)))
     for controller in ("line", "pose"):

@@ -31,6 +31,7 @@ def rms(one: np.ndarray, other: np.ndarray) -> float:
     return float(np.sqrt(np.mean((one - other) ** 2)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("gap_mm", [2.0, 3.0, 6.0])
 def test_table_raster_and_rays_agree(twin_at: TwinAt, gap_mm: float) -> None:
     twin = twin_at(gap_mm)

@@ -23,6 +23,7 @@ def seen(layout: Layout, thing: Thing) -> tuple[Estimate, dict[str, Any]]:
     return estimate, described(estimate, reach_of(layout))
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize("kind", SCENES)
 def test_numbers_and_lines_are_those_of_the_object(layout: Layout, kind: str) -> None:
     estimate, shown = seen(layout, SCENES[kind])
@@ -84,6 +85,7 @@ def test_the_ellipse_of_a_vertex_holds_95_of_100(layout: Layout) -> None:
     np.testing.assert_allclose(square, 5.99, rtol=0.08)  # -2 ln 0.05; points are rounded to 1 µm
 
 
+@pytest.mark.slow
 def test_what_no_shape_explains_is_said_in_words(layout: Layout) -> None:
     values = Twin(layout).values()
     values[::3] = 5.0

@@ -45,6 +45,7 @@ def _first(row: tuple[int, Any]) -> int:
     return row[0]
 
 
+@pytest.mark.slow
 def test_file_holds_what_the_view_shows(
     tmp_path: Path, layout: Layout, still: Callable[[Layout, np.ndarray], Finger]
 ) -> None:
