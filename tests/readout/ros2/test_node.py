@@ -28,8 +28,8 @@ def wait_for(node: Any, topic: str, count: int, timeout_s: float = 10.0) -> list
 
 @pytest.fixture
 def active(make_node: Make) -> Any:
-    """A node that publishes a cable."""
-    node = make_node(url="twin://cable?seed=3")
+    """A node that publishes a cable, which stays on the cells for some seconds."""
+    node = make_node(url="twin://cable?seed=3&speed=1")
     assert node.on_configure(None) is Returned.SUCCESS
     assert node.on_activate(None) is Returned.SUCCESS
     return node
