@@ -151,6 +151,7 @@ def test_a_plate_with_a_neck_twists_and_shades(fingers: Path, tmp_path: Path) ->
     assert ("strength.light_path" in failed(out)) == compliant
 
 
+@pytest.mark.slow
 def test_a_missing_part_is_named(fingers: Path, tmp_path: Path) -> None:
     out = Path(shutil.copytree(fingers, tmp_path / "missing"))
     (out / PART).unlink()

@@ -27,6 +27,7 @@ def test_the_payload_is_both_fingers(outputs: Path) -> None:
     )
 
 
+@pytest.mark.slow
 def test_flange_and_holder_weigh_what_their_filament_and_boards_do(outputs: Path) -> None:
     rows = {
         r.quantity: r.computed for r in built_rows(outputs, read_design(outputs / "design.json"))
@@ -45,6 +46,7 @@ def test_flange_and_holder_weigh_what_their_filament_and_boards_do(outputs: Path
         assert told == pytest.approx(solid + area_mm2 * g_mm2, abs=0.2)
 
 
+@pytest.mark.slow
 def test_the_flanges_safety_is_told_as_an_estimate(outputs: Path) -> None:
     rows = {r.quantity: r for r in built_rows(outputs, read_design(outputs / "design.json"))}
     layers, heads = (
@@ -77,6 +79,7 @@ def test_boards_outside_compliant_fingers_weigh_what_stiff_ones_do(
     assert flex == pytest.approx(rigid, abs=0.11)
 
 
+@pytest.mark.slow
 def test_a_printed_part_that_is_missing_is_told(damaged: Path) -> None:
     design = read_design(damaged / "design.json")
     (damaged / "flange/flange_upper.stl").unlink()
@@ -92,6 +95,7 @@ def test_files_of_another_design_are_refused(
     assert "not built from these values: run lumitip-fab build first" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_the_command_adds_the_rows(
     outputs: Path, design_dir: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -102,6 +106,7 @@ def test_the_command_adds_the_rows(
     assert "payload of both fingers" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_a_model_that_is_missing_is_told(damaged: Path) -> None:
     design = read_design(damaged / "design.json")
     (damaged / "flange/flange_lower.stl").unlink()

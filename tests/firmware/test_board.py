@@ -153,6 +153,7 @@ def test_an_emitter_that_is_switched_takes_ambient_light_off(
     assert all(np.array_equal(values, wanted) for p in packets for values in p.values)
 
 
+@pytest.mark.slow
 def test_a_switched_emitter_may_stay_on_for_the_full_rate(
     host_program: Callable[..., Path], run: Callable[..., Any]
 ) -> None:

@@ -49,6 +49,7 @@ def sketch_for(design_dir: Path, tmp_path: Path) -> Callable[[str], Path]:
     return write
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize("chip", CORES)
 @pytest.mark.parametrize("preset", ["published", "dense"])
 def test_the_core_compiles_for_the_chip(
@@ -78,6 +79,7 @@ def test_the_core_compiles_for_the_chip(
     assert struct.unpack_from("<H", out.read_bytes(), 18) == (machine,)
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize(("board", "options"), CASES)
 def test_the_sketch_fits_the_boards_interfaces(
     board: str,

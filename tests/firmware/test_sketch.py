@@ -49,6 +49,7 @@ def copied(sketch: Callable[[str], Path], tmp_path: Path) -> Path:
     return Path(shutil.copytree(sketch("published"), tmp_path / "firmware"))
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize("preset", PRESETS)
 @pytest.mark.parametrize("compiler", ["g++", "arm-none-eabi-g++"])
 def test_the_sketch_fits_the_interfaces(
@@ -92,6 +93,7 @@ def test_a_channel_out_of_reach_does_not_compile(copied: Path, compiled: Compile
     assert "on an input that no multiplexer has" in compiled(copied).stderr
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize(
     "defined", ["BITS=9", "PERIOD_US=70000", "SAMPLES=0", "RADIO_US=-1", "CONVERSION_US=0"]
 )
@@ -109,6 +111,7 @@ def test_settings_out_of_range_do_not_compile(
     assert name in verdict.stderr
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize(
     "given",
     ["".join(map(chr, range(0x20, 0x7F))) + "??/ \\", "Größe 7", "Палец2", "指尖", "😀1"],

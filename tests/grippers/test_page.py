@@ -57,6 +57,7 @@ def names(svg: str) -> Iterator[tuple[str, Box]]:
 GRIPPERS = ["example", "robotiq_2f85", "wsg50", "onrobot_rg2", "franka_hand", "two_hole_jaw"]
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize("name", GRIPPERS)
 def test_every_figure_is_named_once_and_no_names_overlap(name: str, config: Input) -> None:
     found: list[str] = []

@@ -77,6 +77,7 @@ def test_width_transmittance_and_gain(estimator: PoseEstimator, twin: Twin) -> N
     assert edge.offset_mm == pytest.approx(1.3, abs=0.1)
 
 
+@pytest.mark.slow_cases
 @pytest.mark.parametrize("pose", [(0.0, 0.0, 135.0), (3.0, -2.0, 100.0), (-4.0, 3.0, -60.0)])
 def test_a_corner_has_a_vertex(
     estimator: PoseEstimator, twin: Twin, pose: tuple[float, float, float]

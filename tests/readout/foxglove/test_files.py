@@ -14,7 +14,7 @@ from lumitip.recording import Reader, RecordingError, Writer, export, summarise
 Sources = dict[str, tuple[Path, list[Frame]]]
 
 
-@pytest.mark.slow_cases
+@pytest.mark.slow
 def test_the_same_recordings_give_the_same_bytes(
     scene: Path, sources: Sources, tmp_path: Path
 ) -> None:

@@ -42,7 +42,7 @@ def made(fit: RealFit) -> Own:
     return _own(fit, {name: PLAIN[name] | MADE.get(name, {}) for name in NAMES})
 
 
-@pytest.mark.slow_cases
+@pytest.mark.slow
 @pytest.mark.parametrize("objects", ["plain", "made"])
 def test_gains_of_two_frames_lower_the_misfit_of_the_third(
     fit: RealFit, objects: str, request: pytest.FixtureRequest

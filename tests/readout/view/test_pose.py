@@ -43,6 +43,7 @@ def test_numbers_and_lines_are_those_of_the_object(layout: Layout, kind: str) ->
     assert (shown["vertex_mm"] is None) == (kind != "corner")
 
 
+@pytest.mark.slow
 def test_a_cable_has_its_width_with_an_error(layout: Layout) -> None:
     _, shown = seen(layout, SCENES["cable"])
     assert shown["width_mm"] == pytest.approx(3.0, abs=0.2)
