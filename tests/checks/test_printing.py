@@ -155,7 +155,7 @@ def test_what_must_not_bend_is_printed_from_another_filament(config: Input, tmp_
     assert re.search(r"emitter_mould.3mf` \| `print/petg_mould.ini", note)
 
 
-@pytest.mark.slow_cases
+@pytest.mark.slow
 @pytest.mark.parametrize("other", ["TPU 98A", "wood"])
 def test_a_filament_for_rigid_parts_must_be_one(config: Input, other: str) -> None:
     with pytest.raises(InputError, match=f"whose rigid_parts is '{other}'; the name of a filament"):

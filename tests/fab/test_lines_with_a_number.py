@@ -24,7 +24,7 @@ SOLD = {
 """An LED that LCSC sells, by preset; the resistors of the published one suit its own LED."""
 
 
-@pytest.mark.slow_cases
+@pytest.mark.slow
 @pytest.mark.parametrize(("preset", "led"), SOLD.items())
 def test_all_but_the_spring_contacts_have_a_number(
     inputs: dict[str, Input], vary: Callable[..., Input], preset: str, led: str

@@ -7,6 +7,7 @@ from lumitip_fab import derived
 from lumitip_fab.design.encoding import canonical
 
 
+@pytest.mark.slow
 def test_another_source_does_not_route_the_boards_again(design_dir: Path, tmp_path: Path) -> None:
     folder = Path(shutil.copytree(design_dir, tmp_path / "design"))
     file = folder / "presets/published.toml"

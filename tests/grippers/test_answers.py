@@ -123,6 +123,7 @@ def test_the_weakest_source_of_a_table_is_that_of_the_table(fill: Any, config: I
     assert read.pins == jaw.pins
 
 
+@pytest.mark.slow
 def test_a_design_is_derived_with_the_new_entry(
     fill: Any, config: Input, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -72,6 +72,7 @@ def test_feet_of_a_compliant_finger_stand_beside_its_interface(
     assert ["hold its tip on its stop with a strip" in note for note in notes] == [True, False]
 
 
+@pytest.mark.slow
 def test_a_longer_finger_has_a_thicker_clamp(changed: Callable[..., Design]) -> None:
     columns = ", ".join(["13", "12"] * 3 + ["13"])
     long = changed(f"[grid]\ncolumns = [{columns}]\npitch_mm = 6.0\n").clamps

@@ -29,7 +29,7 @@ def test_a_cut_keeps_what_is_hollow() -> None:
     assert len(rings_of(area)) == 2
 
 
-@pytest.mark.slow_cases
+@pytest.mark.slow
 @pytest.mark.parametrize("angles", [(0.0, 0.0), (32.0, 38.0), (35.0, 24.0)])
 def test_a_silhouette_is_all_that_the_triangles_cover(
     angles: tuple[float, float], outputs: Path

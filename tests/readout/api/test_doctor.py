@@ -70,6 +70,7 @@ def test_swapped_cells_are_named(twin: Layout, pair: tuple[int, int], shape: str
     assert "in both halves of the recording" in finding.detail
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("speed_mm_s", [12.0, 60.0])
 @pytest.mark.parametrize("diameter_mm", [2.0, 3.0, 6.0])
 def test_under_a_thin_cable_sound_cells_do_not_look_swapped(

@@ -84,7 +84,7 @@ class Hands:
         )
 
 
-@pytest.mark.slow_cases
+@pytest.mark.slow
 @pytest.mark.parametrize(("coupon", "verdict", "code"), [(0.0, "opaque", 0), (0.3, "NOT", 1)])
 def test_the_command_asks_for_three_states(
     coupon: float,

@@ -48,6 +48,7 @@ def test_cells_without_a_value_are_named(estimator: PoseEstimator, twin: Twin) -
     assert (estimator(values).kind, estimator(values).left_out) == ("none", (5,))
 
 
+@pytest.mark.slow
 def test_a_tracker_goes_on_without_stuck_cells(twin: Twin) -> None:
     tracker = PoseEstimator(twin.layout, tracking=True)
     stuck = lit_and_dark(twin, CABLE)[0][:3]

@@ -114,6 +114,7 @@ def recording(path: Path, numbers: list[int]) -> str:
     return f"replay://{path}"
 
 
+@pytest.mark.slow
 def test_lost_frames_and_the_end_are_visible(plugin: Any, make_robot: Make, tmp_path: Path) -> None:
     numbers = [n for n in range(200) if n % 7 and not 60 <= n < 70]
     url = recording(tmp_path / "kept.mcap", numbers)

@@ -166,6 +166,7 @@ def test_closing_wakes_a_reader(bluez: FakeBluez, device, until: Until) -> None:
     until(lambda: not bluez.connected(peer))
 
 
+@pytest.mark.slow
 def test_a_program_that_ends_without_closing_disconnects(
     bluez: FakeBluez, device, until: Until, tmp_path: Path
 ) -> None:

@@ -56,7 +56,7 @@ def test_a_small_plate_and_two_bodies_are_outlines() -> None:
     assert np.abs(values(both(plate, disc(12.0, 4.0))) - TWIN.values(scene)).max() <= MOST_COUNTS
 
 
-@pytest.mark.slow_cases
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(6))
 def test_any_gap_and_any_height(seed: int) -> None:
     chance = np.random.default_rng(seed)

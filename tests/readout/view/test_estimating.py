@@ -24,6 +24,7 @@ def frame(values: np.ndarray, seq: int = 0) -> Frame:
     return Frame(seq, 0.0, 0.0, 0.0, 0.0, raw, 8, values.astype(np.float32), 0, "test")
 
 
+@pytest.mark.slow
 def test_answers_are_those_of_the_estimator(layout: Layout) -> None:
     values = Twin(layout).values(Cable(offset_mm=1.0, angle_deg=20.0, diameter_mm=5.0))
     first = {"layout": json.loads(layout.to_json()), "gap_mm": 3.0, "diameter_mm": 5.0}
