@@ -3,6 +3,8 @@
 import shutil
 from pathlib import Path
 
+import pytest
+
 from lumitip_fab import derived
 from lumitip_fab.design.encoding import canonical
 
