@@ -115,6 +115,11 @@ def test_the_end_names_what_the_fingers_bear(
     assert f"rated force: 40 N at each tip, {text}" in lines_of(folder, WEB)
 
 
+def test_what_rounding_puts_beyond_its_limit_has_no_margin(folder: Path) -> None:
+    lines = lines_of(folder, replace(WEB, measured=0.4 - 1e-12))
+    assert next(line for line in lines if "mask.web" in line).split()[0] == "0.0"
+
+
 def test_a_failure_names_the_parameter_to_change(folder: Path) -> None:
     lines = lines_of(folder, WEB, THIN, DRAFT)
     at = lines.index("  FAIL  mask.web  0.1 mm, ≥ 0.4  d.pdf")

@@ -90,7 +90,8 @@ def print_summary(outcome: Outcome, out: Path, report: Path | None, console: Con
         _print(console, line, style)
     _print(console, "tightest margins, as a share of the limit or of half the tolerance:")
     for share, m in tightest(outcome.measurements, TIGHTEST):
-        _print(console, f"{100 * share:6.1f} %  {_described(m)}")
+        at_least_0 = max(share, 0.0)  # rounding may put what is at its limit a hair beyond
+        _print(console, f"{100 * at_least_0:6.1f} %  {_described(m)}")
     for line in _force(out):
         console.print(line, soft_wrap=True)
     console.print(_price(out), soft_wrap=True)
