@@ -88,6 +88,15 @@ def tilted(part: Manifold) -> Manifold:
     return part.transform([[1, 0, 0.1, -0.39], [0, 1, 0, 0], [0, 0, 1, 0]])
 
 
+def grip_higher(part: Manifold) -> Manifold:
+    """The gap of one side reaches 0.2 mm farther down; its bottom is 1.02 mm over the rim."""
+    return part - box((20, 2.5, 4.72), (40, 19.5, 6))
+
+
+def grip_shallower(part: Manifold) -> Manifold:
+    return part + box((-26.4, 8, 4.0), (-24.35, 12, 5.05))
+
+
 def letter_filled(part: Manifold) -> Manifold:
     return part + box((-3, 41, 0.5), (3, 42.38, 3.7))
 
@@ -111,8 +120,10 @@ SOLID = {
     island_added: OTHER_FILES | {"bodies"},
     sprue_added: OTHER_FILES | {"fits_bed"},
     post_added: OTHER_FILES | {"seat"},
-    squashed: OTHER_FILES | {"thickness", "tip_thickness", "stops", "volume"},
+    squashed: OTHER_FILES | {"thickness", "tip_thickness", "stops", "volume", "grip"},
     tilted: OTHER_FILES | {"stops", "draft", "undercut", "letter"},
+    grip_higher: {"grip"},
+    grip_shallower: {"grip"},
     letter_filled: {"letter"},
     lifted: {"fits_bed"},
 }

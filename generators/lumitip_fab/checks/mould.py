@@ -12,6 +12,7 @@ import numpy as np
 import shapely
 from shapely.errors import GEOSException
 
+from lumitip_fab.checks.mould_grip import measure_grip
 from lumitip_fab.checks.mould_note import measure_note, measure_volume
 from lumitip_fab.checks.printed import measure_boxes
 from lumitip_fab.checks.readers import solids
@@ -39,6 +40,7 @@ NAMES = (
     "mould.masses",
     "mould.note",
     "mould.clamped",
+    "mould.grip",
     "mould.seat",
     "mould.letter",
 )
@@ -86,6 +88,7 @@ def _measured(
     yield _thickness(probe, file)
     yield _tip_thickness(probe, file)
     yield from _stops(probe, file)
+    yield from measure_grip(probe.depths_mm, file, design)
     yield from _walls(mesh, file, design, finger.notch)
     letter = design.mould.letter
     yield measure_relief("mould.letter", file, mesh, finger, letter)

@@ -52,7 +52,7 @@ from lumitip_fab.design.making import (
     Sheet,
     Slicing,
 )
-from lumitip_fab.design.mould import Mould
+from lumitip_fab.design.mould import Grip, Mould
 from lumitip_fab.design.mount import (
     Closing,
     Fastener,

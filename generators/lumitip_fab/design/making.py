@@ -11,10 +11,6 @@ LEDGE_MM = 0.5
 TIP_LAND_FRACTION = 1 / 3
 """Of the straight tip edge, on which a finger stands in its mould; the rest keeps its silicone."""
 
-GRIP_AT = 0.4
-"""Of a finger's length from its gripper end: the middle of the gaps in the mould's walls, in which
-the plate is taken between two fingers."""
-
 FOOT_CHAMFER_MM = 0.4
 """Of mould and clamp where they stand on the bed: the first layer spreads."""
 

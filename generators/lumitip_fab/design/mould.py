@@ -13,6 +13,24 @@ MOULDS = 2
 
 
 @dataclass(frozen=True)
+class Grip:
+    """The gaps in both side walls, in which the plate is taken between two fingers."""
+
+    y_min_mm: float
+    y_max_mm: float
+    """Ends of their flat bottoms, in the sensor frame; they open wider upward."""
+    bottom_mm: float
+    """Over the rim plane."""
+    over_level_mm: float
+    """From the silicone's level to a bottom, at least: it creeps up the slit round the plate."""
+
+    @property
+    def centre_y_mm(self) -> float:
+        """Their middle, in the sensor frame."""
+        return (self.y_min_mm + self.y_max_mm) / 2
+
+
+@dataclass(frozen=True)
 class Mould:
     """The silicone mould and what is poured into it."""
 
@@ -28,6 +46,7 @@ class Mould:
     """The smooth film on its floor; none if the file names none, or there is no room for it."""
     props: tuple[Prop, ...]
     """Tilts it for a skin that is wrapped round the tip; none for another."""
+    grip: Grip
     pads: tuple[Point, ...]
     """Hard stops on the plate's rim, beside the board."""
     pad_mm: float

@@ -17,7 +17,7 @@ from lumitip_fab.design import (
     Stack,
 )
 from lumitip_fab.design.frames import mould_bed_to_sensor
-from lumitip_fab.design.making import FOOT_CHAMFER_MM, GRIP_AT, LEDGE_MM
+from lumitip_fab.design.making import FOOT_CHAMFER_MM, LEDGE_MM
 from lumitip_fab.parts import export, skin
 from lumitip_fab.parts.clamp import CHANGED, rails
 from lumitip_fab.parts.letters import letter_cutter
@@ -28,8 +28,6 @@ from lumitip_fab.pipeline.artefact import Artefact
 CHORD_MM = 0.002  # finer than other parts: the draft is measured on walls 1.6 mm high
 WEIR_FRACTION = 0.8  # of the wire notch, through which wires and surplus leave
 WEIR_DRAFT_DEG = 15.0
-GRIP_MM = 14.0  # gap in both walls to take the plate between two fingers
-GRIP_ABOVE_RIM_MM = 0.4
 GRIP_SLOPE_DEG = 45.0
 BEYOND_MM = 1.0
 
@@ -163,17 +161,16 @@ def _recess(insert: Insert, stack: Stack) -> Solid:
 
 
 def _grip(stack: Stack, outline: Outline, mould: Mould, outside_mm: float) -> Solid:
-    """The gaps in both side walls, as one cutter across the mould, above the silicone's level."""
-    centre_y, half = outline.end_y_mm + GRIP_AT * outline.length_mm, GRIP_MM / 2
-    level = mould.level_mm(centre_y + half)
-    bottom, over = stack.face_z_mm - level - GRIP_ABOVE_RIM_MM, stack.back_z_mm
-    wider = half + (bottom - over) * math.tan(math.radians(GRIP_SLOPE_DEG))
+    """The gaps in both side walls, as one cutter across the mould."""
+    grip = mould.grip
+    bottom, over = stack.face_z_mm - grip.bottom_mm, stack.back_z_mm
+    wider = (bottom - over) * math.tan(math.radians(GRIP_SLOPE_DEG))
     far = float(np.abs(outline.polygon()[:, 0]).max()) + outside_mm + BEYOND_MM
     corners = [
-        (centre_y - half, bottom),
-        (centre_y - wider, over),
-        (centre_y + wider, over),
-        (centre_y + half, bottom),
+        (grip.y_min_mm, bottom),
+        (grip.y_min_mm - wider, over),
+        (grip.y_max_mm + wider, over),
+        (grip.y_max_mm, bottom),
     ]
     return side_prism(corners, -far, far)
 

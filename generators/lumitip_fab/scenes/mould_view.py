@@ -6,7 +6,7 @@ import numpy as np
 import shapely
 
 from lumitip_fab.design import Board, Box, Clamp, Mould, Outline, Point
-from lumitip_fab.design.making import GRIP_AT, TIP_LAND_FRACTION
+from lumitip_fab.design.making import TIP_LAND_FRACTION
 from lumitip_fab.parts.surface import Mesh
 from lumitip_fab.scenes.cut import rings_of
 from lumitip_fab.scenes.drawing import Points, Sheet, View, silhouette, visible_lines
@@ -78,7 +78,7 @@ def _filled(outline: Outline, mould: Mould) -> shapely.Geometry:
 def _stops(outline: Outline, mould: Mould) -> list[Label]:
     """What the plate rests on, and where it is taken out: on the left of the page, which is +x."""
     tip_half = outline.tip_width_mm * TIP_LAND_FRACTION / 2
-    gap_y = outline.end_y_mm + GRIP_AT * outline.length_mm
+    gap_y = mould.grip.centre_y_mm
     plate_y = (outline.tip_y_mm + gap_y) / 2
     wall = outline.half_width_at(gap_y) + mould.wall_gap_mm + mould.wall_mm / 2
     labels = [

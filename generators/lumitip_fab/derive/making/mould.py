@@ -10,7 +10,7 @@ from lumitip_fab.derive.diagnostics import Diagnostics
 from lumitip_fab.derive.finger.outline import DEPTH_MM, least_letter_mm, letter_on
 from lumitip_fab.derive.making.insert import derive_inserts
 from lumitip_fab.derive.making.prop import derive_prop
-from lumitip_fab.design import Board, Letter, Mould, Outline, Point, Prop, Stack, Tip
+from lumitip_fab.design import Board, Grip, Letter, Mould, Outline, Point, Prop, Stack, Tip
 from lumitip_fab.design.making import LEDGE_MM
 
 PAD_MM = 2.0
@@ -22,6 +22,9 @@ TROUGH_MM = 4.0  # along y
 LETTER_OVER_BED_MM = 0.6  # or a printed line, which is clear of the chamfer at the foot
 LETTER_UNDER_RIM_MM = 0.5  # or a printed line
 LEAST_LAYER_MM = 0.05
+GRIP_AT = 0.4  # of a finger's length from its gripper end: the middle of the gaps for the grip
+GRIP_MM = 14.0  # along y: two fingers
+GRIP_OVER_LEVEL_MM = 0.4  # of silicone that creeps up between plate and wall (assumed)
 WHOLE_MM = 1e-6
 
 
@@ -79,6 +82,7 @@ def derive_mould(
         wall_mm=p.mould.wall_mm,
         inserts=inserts,
         props=tuple(props),
+        grip=_grip(outline, props),
         pads=pads,
         pad_mm=PAD_MM,
         letter=letter,
@@ -187,6 +191,14 @@ def _prop(
     ends = _weir_y_mm(config, outline, stack), end_y_mm, tip_y
     half = max(finger.notch.x_max_mm for finger in (plan.emitter, plan.receiver))
     return derive_prop(config.parameters.mould.tip_lip_mm, outline, tip, ends, half, layer_mm)
+
+
+def _grip(outline: Outline, props: list[Prop]) -> Grip:
+    """The gaps for the grip, over the silicone's level at their higher end."""
+    centre_y = outline.end_y_mm + GRIP_AT * outline.length_mm
+    low, high = centre_y - GRIP_MM / 2, centre_y + GRIP_MM / 2
+    level_mm = sum(prop.level_mm(high) for prop in props)
+    return Grip(low, high, level_mm + GRIP_OVER_LEVEL_MM, GRIP_OVER_LEVEL_MM)
 
 
 def _flat(
