@@ -3,6 +3,7 @@
 import re
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -11,6 +12,7 @@ from lumitip_fab.config.load import Input
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
 from lumitip_fab.docs.mounting import mounting
+from lumitip_fab.docs.spec import choice_rows, rows
 from lumitip_fab.docs.wiring import wiring_note
 
 Written = Callable[..., Design]
@@ -99,3 +101,19 @@ def test_a_bench_supply_is_needed_where_a_light_shows_it(written: Written) -> No
     bare = replace(design, electrical=replace(design.electrical, indicators=()))
     lit = [bool(d.electrical.indicators) for d in (design, bare)]
     assert [("a bench supply" in mounting(d)) for d in (design, bare)] == lit
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("preset", ["wsg50", "franka_hand"])
+def test_other_grippers_have_no_word_of_the_flange(
+    preset: str, inputs: dict[str, Input], built: Callable[[str], Path]
+) -> None:
+    design = derive(inputs[preset])
+    assert not design.flanges and not design.system.coupling_mm
+    made = [(r.quantity, r.computed, r.reason) for r in (*rows(design), *choice_rows(design))]
+    texts = [" ".join(part) for part in made]
+    out = built(preset)
+    for file in ("manual/manual.html", "wiring/cables.md", "assembly/system.svg", "bom.csv"):
+        texts.append((out / file).read_text(encoding="utf-8"))
+    found = re.findall(r".{0,40}(?:flange|Robotiq).{0,40}", "\n".join(texts), re.IGNORECASE)
+    assert found == []

@@ -67,10 +67,14 @@ def _work(design: Design) -> Iterator[str]:
         yield _passed_on(design)
     for header, cable in _plugs(design):
         yield _text("plugged", cable=cable, header=header)
-    wires = (wire for cable in design.cabling.cables for wire in cable.wires)
-    ends = [f"{wire.number} to {wire.signal}" for wire in wires if wire.end.board == "supply"]
+    wires = [wire for cable in design.cabling.cables for wire in cable.wires]
+    led_net = f"{design.wiring.supply_v:g}V"
+    ends = [wire for wire in wires if wire.end.board == "supply"]
+    own = [wire.number for wire in ends if wire.signal == "5V" != led_net]
     if ends:
-        yield _text("supplied", ends=", ".join(ends))
+        listed_ends = ", ".join(f"{wire.number} to {wire.signal}" for wire in ends)
+        free = "".join(_text("supplied_free", wire=number) for number in own)
+        yield _text("supplied", ends=listed_ends, free=free)
     yield _text("moved")
 
 

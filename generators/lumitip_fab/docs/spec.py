@@ -136,8 +136,9 @@ def rows(design: Design) -> tuple[Row, ...]:
 
 
 def choice_rows(design: Design) -> tuple[Row, ...]:
-    """Every automatic value with its reason."""
-    return tuple(Row(c.field, "", c.value, c.reason) for c in design.choices)
+    """Every automatic value with its reason, but for those of a flange that is not made."""
+    chosen = [c for c in design.choices if design.flanges or not c.field.startswith("flange.")]
+    return tuple(Row(c.field, "", c.value, c.reason) for c in chosen)
 
 
 def _sizes(design: Design) -> dict[str, Any]:
@@ -257,9 +258,8 @@ def _further(design: Design) -> dict[str, Any]:
         "slant": design.outline.tip_y_mm - design.tip.slant_start_y_mm,
         "tcp_mm": float(gripper_to_base(stack, mount, closing)[2, 3]),
         "tool_mm": float(gripper_to_tool(stack, mount, closing, system)[2, 3]),
-        "before": f"coupling {system.coupling_mm:g}, flange {added:g}"
-        if design.flanges
-        else "without a coupling: from the gripper's own face",
+        "face": "the robot's flange" if design.flanges else "the gripper's own face",
+        "before": f"coupling {system.coupling_mm:g}, flange {added:g}, " if design.flanges else "",
         "skin": (mount.stroke_mm - closing.max_opening_mm) / 2,
         "shape": shape,
         "across": "diameter" if shape == "circle" else "across flats",
