@@ -11,6 +11,7 @@ import pytest
 from lumitip_fab.config.load import Input
 from lumitip_fab.derive import derive
 from lumitip_fab.design import Design
+from lumitip_fab.docs.bring_up import first_test
 from lumitip_fab.docs.mounting import mounting
 from lumitip_fab.docs.spec import choice_rows, rows
 from lumitip_fab.docs.wiring import wiring_note
@@ -101,6 +102,15 @@ def test_a_bench_supply_is_needed_where_a_light_shows_it(written: Written) -> No
     bare = replace(design, electrical=replace(design.electrical, indicators=()))
     lit = [bool(d.electrical.indicators) for d in (design, bare)]
     assert [("a bench supply" in mounting(d)) for d in (design, bare)] == lit
+
+
+@pytest.mark.parametrize("preset", ["published", "integrated"])
+def test_firmware_and_program_are_named_with_their_place(preset: str, written: Written) -> None:
+    test = words(first_test(written({}, preset)))
+    assert "in the folder `firmware` of the outputs" in test and "`firmware/firmware.ino`" in test
+    assert "`lumitip`" in test and "with `pyproject.toml`" in test
+    assert test.index("`pip install '.[ble,serial]'`") < test.index("`lumitip scan`")
+    assert re.findall(r"`lumitip (?!scan)\w+`", test) == []
 
 
 @pytest.mark.slow

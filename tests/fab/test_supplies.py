@@ -1,5 +1,6 @@
 """Glue, tape, primer, thread and ties that a design uses follow from its geometry."""
 
+import re
 from dataclasses import replace
 from typing import Any
 
@@ -40,6 +41,43 @@ def test_each_wire_has_a_colour_of_the_set_or_a_mark(inputs: dict[str, Input], p
     others = [wire.number for wire in wires if wire.colour not in pack.colours]
     assert [each.split()[0] for each in marked.split("; ") if each] == others
     assert (preset == "published") == (marked == "W3.3 white, marked pink")
+
+
+LINES = ("GND", "CASING", "Von", "485+", "485-", "3V3_out", "485GND")
+BEHIND = ("REGULATED", "REGULATED", "SUPPLY", "SUPPLY", "GND", "GND", "GND")
+CLOSED = ("GND", "GND", "SUPPLY", *["NC"] * 7)
+
+
+@pytest.mark.parametrize(
+    ("preset", "changes", "sockets", "cable"),
+    [
+        ("published", {}, ["J2", "J3"], ["J2", "J3"]),
+        ("integrated", {}, ["J2", "J3"], ["J2", "J3"]),
+        ("published", {"flange.headers": (LINES, BEHIND)}, ["J2", "J3"], ["J2"]),
+        (
+            "published",
+            {"flange.headers": (("GND",) * 7, BEHIND), "flange.signals": CLOSED},
+            ["J3"],
+            [],
+        ),
+        ("wsg50", {}, [], []),
+    ],
+)
+def test_the_grippers_own_cable_is_in_the_bill(
+    preset: str,
+    changes: dict[str, Any],
+    sockets: list[str],
+    cable: list[str],
+    inputs: dict[str, Input],
+    vary: Any,
+) -> None:
+    pieces = derive(vary(inputs[preset], changes)).purchase.pieces
+    mates = [p for p in pieces if p.pack.endswith("mate")]
+    assert [re.findall(r"J\d", p.where) for p in mates] == [sockets] * bool(sockets)
+    assert [p.quantity for p in mates] == [len(sockets)] * bool(sockets)
+    own = [p for p in pieces if p.item == "gripper's own cable"]
+    assert [re.findall(r"J\d", p.where) for p in own] == [cable] * bool(cable)
+    assert [(p.quantity, p.each) for p in own] == [(1, None)] * bool(cable)
 
 
 def test_wires_of_two_sections_are_two_sets(inputs: dict[str, Input]) -> None:

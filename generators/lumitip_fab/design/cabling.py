@@ -24,6 +24,8 @@ COLOURS = {
 """Name and ink of each colour, by its code."""
 
 
+INPUT_END = "_IN"
+"""Ends the name of the net of the contacts' supply before the fuse, such as `24V_IN`."""
 INSULATION_MM = ((1.31, 0.38), (math.inf, 0.51))
 """Thickness up to a section (mm²): 15 mils of PVC to AWG 16, 20 beyond, as in UL's AWM style 10236.
 That the wire is of such a kind is assumed."""
@@ -150,6 +152,19 @@ class Cabling:
     """Least bend radius of a moving wire, by its outer diameter."""
     most_drop: float
     """Largest drop of voltage over the wires, both ways, as a share of the LEDs' supply."""
+
+
+def gripper_headers(auxiliary_boards: Iterable[AuxiliaryBoard]) -> list[str]:
+    """References of the flange's headers that have a line of the robot, or its supply before the
+    fuse: what the gripper's own cable starts at, sorted."""
+    return sorted(
+        part.ref
+        for board in auxiliary_boards
+        if board.name == "flange"
+        for part in board.components
+        if part.kind == "header" and part.side == "front"
+        if any(net not in board.supplies or net.endswith(INPUT_END) for _, net in part.nets)
+    )
 
 
 def plugged_headers(

@@ -4,12 +4,11 @@ bolts must be."""
 from collections.abc import Iterator
 
 from lumitip_fab.design import AuxiliaryBoard, Design, Flange
-from lumitip_fab.design.cabling import plugged_headers
+from lumitip_fab.design.cabling import INPUT_END, plugged_headers
 from lumitip_fab.design.mount import BOLTS_MM, SHORTER_MM, standard_bolt_mm
 from lumitip_fab.docs.wiring import listed
 from lumitip_fab.text import passage
 
-_INPUT = "_IN"  # ends the name of the contacts' supply
 OWN_MM = (12, 16, 20, 25)
 """Lengths of a gripper's own bolts, as examples."""
 
@@ -85,7 +84,7 @@ def _flanged(design: Design, flange: Flange) -> Iterator[str]:
     yield _text("contacts", flange=flange)
     for lit in design.electrical.indicators:
         output = f"{lit.output_v:g}V"
-        raw = next(name for name in _probed(design) if name.endswith(_INPUT))
+        raw = next(name for name in _probed(design) if name.endswith(INPUT_END))
         yield _text("indicator", lit=lit, supply=_volts(raw), raw=raw, output=output)
     yield _text("closed", flange=flange, glue=design.strength.glue)
     yield _text("flange", flange=flange, bolts=len(flange.bolts))
@@ -97,7 +96,7 @@ def _passed_on(design: Design) -> str:
     """Where the gripper's supply and lines are: on the headers of the flange's board."""
     board = _flange(design)
     headers = [part for part in board.components if part.kind == "header" and part.side == "front"]
-    raw = next(name for name in _probed(design) if name.endswith(_INPUT))
+    raw = next(name for name in _probed(design) if name.endswith(INPUT_END))
     pads = [f"{part.ref}.{number}" for part in headers for number, net in part.nets if net == raw]
     supply = _text("from_robot", pads=listed(pads), volts=_volts(raw)) if pads else ""
     own = [part.ref for part in headers if {net for _, net in part.nets} - {*board.supplies}]
@@ -107,7 +106,7 @@ def _passed_on(design: Design) -> str:
 
 def _volts(raw: str) -> str:
     """Voltage of the contacts' supply, such as `"24 V"`."""
-    return raw.removesuffix(_INPUT).replace("V", " V")
+    return raw.removesuffix(INPUT_END).replace("V", " V")
 
 
 def _flange(design: Design) -> AuxiliaryBoard:

@@ -23,7 +23,7 @@ from lumitip_fab.design import (
     Point,
     Stack,
 )
-from lumitip_fab.design.cabling import plugged_headers
+from lumitip_fab.design.cabling import gripper_headers, plugged_headers
 
 GLUE_FILM_MM = 0.1
 """Thin film of glue between board and floor, or pad and plate (assumed)."""
@@ -124,11 +124,16 @@ def _held(of: Assembled) -> Iterator[Used]:
 
 
 def _plugged(config: Input, of: Assembled) -> Iterator[Used]:
-    """A mating connector for each header of the flange that a cable ends at."""
+    """A mating connector for each header of the flange that a cable ends at, and the gripper's own
+    cable, which starts there: its other plug and its current are the gripper's."""
     plugs = plugged_headers(of.cabling.cables, of.auxiliary_boards)
-    mate = config.parts.flange.header.mate
-    if mate and plugs:
-        yield Used(mate, f"plug at {', '.join(plugs)} of the flange", len(plugs), "piece")
+    lines = gripper_headers(of.auxiliary_boards)
+    headers, mate = sorted({*plugs, *lines}), config.parts.flange.header.mate
+    if mate and headers:
+        yield Used(mate, f"plug at {', '.join(headers)} of the flange", len(headers), "piece")
+    if lines:
+        where = f"from {', '.join(lines)} of the flange: its maker's, or wires for its current"
+        yield Used("gripper's own cable", where, 1, "piece")
 
 
 def _cast(config: Input, of: Assembled) -> Iterator[Used]:
