@@ -113,6 +113,34 @@ def test_firmware_and_program_are_named_with_their_place(preset: str, written: W
     assert re.findall(r"`lumitip (?!scan)\w+`", test) == []
 
 
+@pytest.mark.parametrize(
+    ("preset", "changes", "said", "unsaid"),
+    [
+        (
+            "flex",
+            {},
+            [
+                "On the breakout board the ESD diodes Z1 to Z10",
+                "the resistors R1 to R8 in series",
+                "that wire has failed",
+                "On the flange board the TVS diode D1 (SMBJ24A)",
+                "the fuse F1 melts",
+            ],
+            [],
+        ),
+        ("wsg50", {}, ["ESD diodes Z1 to Z10"], ["TVS", "fuse"]),
+        ("published", {}, ["TVS diode D1"], ["ESD", "diode test"]),
+        ("published", {"flange.enabled": False}, [], ["ESD", "TVS", "fuse", "diode test"]),
+    ],
+)
+def test_protection_is_said_where_a_design_has_it(
+    preset: str, changes: dict[str, Any], said: list[str], unsaid: list[str], written: Written
+) -> None:
+    test = words(first_test(written(changes, preset)))
+    assert [text for text in said if text not in test] == []
+    assert [text for text in unsaid if text in test] == []
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("preset", ["wsg50", "franka_hand"])
 def test_other_grippers_have_no_word_of_the_flange(

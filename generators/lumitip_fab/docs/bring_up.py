@@ -3,6 +3,7 @@
 import math
 
 from lumitip_fab.design import Cabling, Design
+from lumitip_fab.docs.protection import protection_note, protection_signs
 from lumitip_fab.text import passage
 
 
@@ -11,6 +12,8 @@ def first_test(design: Design) -> str:
     switched = design.wiring.emitter_pin is not None
     return _text(
         "tested",
+        protection=protection_note(design),
+        protection_signs=protection_signs(design),
         loading=_loading(design),
         limit_ma=_limit_ma(design),
         poles=_poles(design.cabling, f"{design.wiring.supply_v:g}V"),
