@@ -200,6 +200,7 @@ def _refuse(config: Input, faults: Diagnostics) -> None:
     cables = {*p.headers[0], *p.headers[1]}
     lost = sorted((set(p.signals) ^ cables) - BUILT_IN)
     faults.unless(not lost, "signal_at_one_end", lost=", ".join(lost))
+    _refuse_unfed(config, faults)
     absent = sorted({"SUPPLY", "GND"} - set(p.signals))
     faults.unless(
         not absent and "REGULATED" not in p.signals, "signals_needed", signals=", ".join(p.signals)
@@ -212,6 +213,20 @@ def _refuse(config: Input, faults: Diagnostics) -> None:
         most=most,
         parts=parts,
     )
+
+
+def _refuse_unfed(config: Input, faults: Diagnostics) -> None:
+    """Refuse headers of which none has every net that the breakout is fed with by one cable."""
+    p, regulated = config.parameters, flange_circuit.is_regulated(config)
+    if not p.breakout.enabled or config.parts.controller.board.plug is None:
+        return
+    needed = ("GND", "SUPPLY", *["REGULATED"] * regulated)
+    as_one = {} if regulated else {"REGULATED": "SUPPLY"}
+    missing = min(
+        ([s for s in needed if s not in {as_one.get(n, n) for n in h}] for h in p.flange.headers),
+        key=len,
+    )
+    faults.unless(not missing, "header_unfed", missing=", ".join(missing), needed=", ".join(needed))
 
 
 def _refuse_lines(config: Input, parts: tuple[Component, ...], faults: Diagnostics) -> None:
