@@ -14,6 +14,7 @@ from lumitip_fab.derive import derive
 from lumitip_fab.derive.making.mould import whole_layers
 from lumitip_fab.design import Box, Design, Insert, Mould
 from lumitip_fab.design.encoding import read_design
+from lumitip_fab.design.making import LEDGE_MM
 from lumitip_fab.docs import casting
 from lumitip_fab.parts import mould, skin
 
@@ -55,6 +56,27 @@ def test_the_mould_is_one_piece_round_the_finger(preset: str, built: Callable[[s
     assert mesh.extents[2] == pytest.approx(
         shape.mould.wall_mm + shape.stack.silicone_mm + shape.stack.pcb_mm
     )
+
+
+def test_the_wall_ends_and_the_trough_begins_where_the_design_has_them(
+    outputs: Path,
+) -> None:
+    shape = read_design(outputs / "design.json")
+    cast, outline = shape.mould, shape.outline
+    ends_mm = outline.end_y_mm - cast.outside_mm - LEDGE_MM
+    assert cast.weir_y_mm == pytest.approx(ends_mm, abs=1e-6)
+    assert [prop.weir_y_mm for prop in shape.props] == [cast.weir_y_mm]
+    mesh = trimesh.load(outputs / "mould/receiver_mould.stl", force="mesh")
+    rim = cast.stops_mm(shape.stack.cover_mm)
+    # The weir is level with the rim plane up to its edge; beyond it is the slope of the trough.
+    ys = [-cast.weir_y_mm - 0.02, -cast.weir_y_mm + 0.02]
+    down = trimesh.ray.ray_triangle.RayMeshIntersector(mesh)
+    above = [(1.0, y, mesh.bounds[1, 2] + 1) for y in ys]
+    places, rays, _ = down.intersects_location(above, [(0, 0, -1)] * 2, multiple_hits=False)
+    heights = dict(zip(rays.tolist(), places[:, 2].tolist(), strict=True))
+    assert heights[0] == pytest.approx(rim, abs=1e-4) and heights[1] < rim - 0.05
+    wall = mesh.slice_plane((0, 0, rim + 0.3), (0, 0, 1)).bounds[0, 1]
+    assert wall == pytest.approx(-(outline.tip_y_mm + cast.outside_mm), abs=1e-3)
 
 
 def test_offset_wires_keep_their_distance(design: Design) -> None:

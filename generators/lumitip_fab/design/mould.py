@@ -42,6 +42,10 @@ class Mould:
     draft_deg: float
     wall_mm: float
     """Thickness of its walls, and of its floor, under an insert too."""
+    outside_mm: float
+    """From the outline to the outside of its wall, where it ends."""
+    weir_y_mm: float
+    """Outer edge of the weir, where the trough begins, in the sensor frame."""
     inserts: tuple[Insert, ...]
     """The smooth film on its floor; none if the file names none, or there is no room for it."""
     props: tuple[Prop, ...]

@@ -82,11 +82,10 @@ def mould_solid(
         BuildError: if the kernel does not make one valid solid of it.
     """
     top_z = stack.face_z_mm - stack.guided_mm
-    outside = skin.wall_offset_mm(stack, mould, top_z) + mould.wall_mm
+    outside = mould.outside_mm
     weir_half = WEIR_FRACTION * finger.notch.x_max_mm
-    catch_y = outline.end_y_mm - outside - LEDGE_MM
     end_y = mould.wall_mm - mould.letter.wall_mm
-    catch = Box(-weir_half - LEDGE_MM, weir_half + LEDGE_MM, end_y, catch_y)
+    catch = Box(-weir_half - LEDGE_MM, weir_half + LEDGE_MM, end_y, mould.weir_y_mm)
     block = _footed(stack, outline, mould, top_z, outside) + _trough_block(
         stack, mould, catch, outside
     )

@@ -82,7 +82,7 @@ class _Plan:
         stack, mould = self.body.stack, self.mould
         ends = foot.y_min_mm, foot.y_max_mm
         beside_mm = min(map(self.body.outline.half_width_at, ends)) - foot.x_max_mm
-        wall_mm = beside_mm + mould.wall_gap_mm + _lean_mm(self)
+        wall_mm = beside_mm + mould.outside_mm - mould.wall_mm
         off_mm = math.hypot(wall_mm, stack.plate_mm - stack.guided_mm)
         return beside_mm >= 0 and off_mm >= OFF_WALL_MM + self.printing.fit_mm
 
@@ -228,13 +228,8 @@ def _sides_mm(plan: _Plan, low_mm: float, high_mm: float) -> Point:
     along a rail."""
     mould, outline = plan.mould, plan.body.outline
     halves = [outline.half_width_at(y) for y in np.linspace(low_mm, high_mm, 60)]
-    inside = mould.wall_gap_mm + _lean_mm(plan)
-    return round(min(halves) + inside + mould.wall_mm / 2, 3), max(halves) + inside + mould.wall_mm
-
-
-def _lean_mm(plan: _Plan) -> float:
-    """From the plate's gap to the top of the mould's wall, by the draft."""
-    return plan.body.stack.guided_mm * math.tan(math.radians(plan.mould.draft_deg))
+    middle_mm = mould.outside_mm - mould.wall_mm / 2
+    return round(min(halves) + middle_mm, 3), max(halves) + mould.outside_mm
 
 
 def _stiffened(clamp: Clamp, thickness_mm: float) -> Clamp:

@@ -69,10 +69,11 @@ def derive_mould(
         (p.mould.wall_mm, floor_mm, floor_mm + stack.cover_mm),
         recess_mm,
     )
-    letter = _letter(config, outline, stack, floor_mm, faults)
-    props = [
-        _prop(config, outline, plan, stack, tip, -letter.wall_mm, layer_mm) for _ in tip.slots[:1]
-    ]
+    outside_mm = _outside_mm(config, stack)
+    weir_y_mm = outline.end_y_mm - outside_mm - LEDGE_MM
+    letter = _letter(config, weir_y_mm, stack, floor_mm, faults)
+    ends = weir_y_mm, -letter.wall_mm, outline.tip_y_mm + outside_mm
+    props = [_prop(config, outline, plan, tip, ends, layer_mm) for _ in tip.slots[:1]]
     return Mould(
         taper_length_mm=p.mould.taper_length_mm,
         tip_silicone_mm=p.mould.tip_silicone_mm,
@@ -80,6 +81,8 @@ def derive_mould(
         wall_gap_mm=p.mould.wall_gap_mm,
         draft_deg=p.mould.draft_deg,
         wall_mm=p.mould.wall_mm,
+        outside_mm=outside_mm,
+        weir_y_mm=weir_y_mm,
         inserts=inserts,
         props=tuple(props),
         grip=_grip(outline, props),
@@ -144,7 +147,7 @@ def _off_layer_mm(layer_mm: float, heights_mm: tuple[float, ...]) -> float:
 
 
 def _letter(
-    config: Input, outline: Outline, stack: Stack, floor_mm: float, faults: Diagnostics
+    config: Input, weir_y_mm: float, stack: Stack, floor_mm: float, faults: Diagnostics
 ) -> Letter:
     """On the outside of the trough's end, whose wall is as high as the cavity and its floor."""
     p = config.parameters
@@ -161,7 +164,7 @@ def _letter(
         room_mm=high - low,
         wall_mm=wall + least - (high - low),
     )
-    end_mm = wall + TROUGH_MM - _weir_y_mm(config, outline, stack)
+    end_mm = wall + TROUGH_MM - weir_y_mm
     return letter_on(low, high, min(DEPTH_MM, wall - p.printer.min_wall_mm), end_mm, line_mm)
 
 
@@ -172,25 +175,17 @@ def _outside_mm(config: Input, stack: Stack) -> float:
     return mould.wall_gap_mm + rise + mould.wall_mm
 
 
-def _weir_y_mm(config: Input, outline: Outline, stack: Stack) -> float:
-    """Outer edge of the weir, where the trough begins."""
-    return outline.end_y_mm - _outside_mm(config, stack) - LEDGE_MM
-
-
 def _prop(
     config: Input,
     outline: Outline,
     plan: Plan,
-    stack: Stack,
     tip: Tip,
-    end_y_mm: float,
+    ends_mm: tuple[float, float, float],
     layer_mm: float,
 ) -> Prop:
-    """The prop under the mould's end at `end_y_mm`; as wide as the wire notch."""
-    tip_y = outline.tip_y_mm + _outside_mm(config, stack)
-    ends = _weir_y_mm(config, outline, stack), end_y_mm, tip_y
+    """The prop under the mould, by the ends of `derive_prop`; as wide as the wire notch."""
     half = max(finger.notch.x_max_mm for finger in (plan.emitter, plan.receiver))
-    return derive_prop(config.parameters.mould.tip_lip_mm, outline, tip, ends, half, layer_mm)
+    return derive_prop(config.parameters.mould.tip_lip_mm, outline, tip, ends_mm, half, layer_mm)
 
 
 def _grip(outline: Outline, props: list[Prop]) -> Grip:
