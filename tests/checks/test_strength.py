@@ -128,6 +128,16 @@ def test_a_weak_seat_of_a_bolt_is_found(
 
 
 @pytest.mark.slow
+def test_a_seat_that_ends_near_the_bolts_pulls_their_heads_in(
+    published: Design, tmp_path: Path
+) -> None:
+    near = replace(published.mount, seat_back_w_mm=published.mount.bolt_w_mm + 1.0)
+    short = replace(published, mount=near)
+    found = failed(written(short, published, tmp_path / "short"))
+    assert "strength.bolt_head" in found or "strength.bolt_seat" in found
+
+
+@pytest.mark.slow
 def test_light_leaves_the_apertures_of_a_finger_that_bends_far(
     published: Design, tmp_path: Path
 ) -> None:

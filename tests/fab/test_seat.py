@@ -26,6 +26,15 @@ def test_one_bolt_pulls_two_thirds_of_its_way_from_the_edge(mount: Mount) -> Non
     assert pull_n(40.0, 51.7, mount, narrow) == pytest.approx(40.0 * 51.7 / (2 / 3 * 4.0))
 
 
+def test_a_seat_that_ends_before_the_block_pulls_the_bolt_harder(mount: Mount) -> None:
+    assert mount.seat_back_w_mm == mount.block_back_w_mm  # of the catalogue, assumed
+    assert "seat_back_w_mm" in mount.unsure
+    short = designed_foot(replace(mount, seat_back_w_mm=mount.bolt_w_mm + 3.0))
+    assert pull_n(40.0, 51.7, mount, short) == pytest.approx(40.0 * 51.7 / (2 / 3 * 3.0))
+    long = designed_foot(replace(mount, seat_back_w_mm=mount.block_back_w_mm + 3.0))
+    assert long == designed_foot(mount)
+
+
 def test_of_two_bolts_the_farther_pulls_more(mount: Mount) -> None:
     two, far = replace(mount, bolt_u_mm=(-6.0, 6.0)), Foot(mount.bolt_w_mm + 90.0, 9.0)
     assert pull_n(1.0, 30.0, two, far) == pytest.approx(30.0 * 14.0 / (14.0**2 + 2.0**2))

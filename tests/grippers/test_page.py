@@ -92,6 +92,7 @@ def test_dimensions_are_drawn_to_scale(config: Input) -> None:
     assert gripper.nose
     assert gripper.pins
     assert gripper.bolt_spacing_mm
+    assert gripper.seat_back_w_mm
     drawn = drawings("example", config)
     flat = sorted(lengths(drawn["coupling"]).values())
     asked = [
@@ -99,6 +100,7 @@ def test_dimensions_are_drawn_to_scale(config: Input) -> None:
         *(gripper.nose.front_width_mm, gripper.nose.front_w_mm, gripper.nose.height_mm),
         *(gripper.block_width_mm, gripper.seat_width_mm, gripper.land_mm),
         *(gripper.bolt_w_mm, gripper.block_back_w_mm, gripper.pad_w_mm),
+        gripper.seat_back_w_mm,
     ]
     assert flat == pytest.approx(sorted(SCALE * size for size in asked), abs=0.02)
     body = gripper.envelope

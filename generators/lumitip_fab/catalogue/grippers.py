@@ -114,6 +114,9 @@ class Gripper(Entry):
     """Material between counterbore and mount plane, on a bolt's axis."""
     seat_width_mm: Length
     """Width of the gripper's finger where the fingertip stands on it."""
+    seat_back_w_mm: Length | None = None
+    """Distance behind the rim plane to which the gripper's finger bears the fingertip; left out, as
+    far as the block."""
     pins: Pins | None = None
     """Its locating pins, if it has some."""
     nose: Nose | None = None
@@ -134,6 +137,17 @@ class Gripper(Entry):
             if (self.origin[name].confidence if name in self.origin else self.confidence)
             not in trusted
         )
+
+    @model_validator(mode="after")
+    def _seat_behind_bolts(self) -> Self:
+        back = self.seat_back_w_mm
+        if back is not None and back <= self.bolt_w_mm:
+            raise ValueError(
+                f"seat_back_w_mm is {back:g}; more than bolt_w_mm = {self.bolt_w_mm:g} is needed, "
+                "for the seat holds the finger upright behind the bolts. Measure it, or leave it "
+                "out where the seat reaches as far as the block"
+            )
+        return self
 
     @model_validator(mode="after")
     def _origins_of_figures(self) -> Self:

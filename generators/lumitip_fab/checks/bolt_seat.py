@@ -45,7 +45,7 @@ def _seated(held: Any, design: Design, arm_mm: float) -> Seated:
     if base.is_empty:
         return Seated(math.inf, math.inf, math.inf)
     low_u, _, high_u, back = base.bounds
-    foot = Foot(back, min(-low_u, high_u, mount.seat_width_mm / 2))
+    foot = Foot(min(back, mount.seat_back_w_mm), min(-low_u, high_u, mount.seat_width_mm / 2))
     pull = pull_n(design.strength.rated_force_n, arm_mm, mount, foot)
     levels = np.arange(INSIDE_MM, mount.land_mm - INSIDE_MM, STEP_MM)
     cuts = [section(held, float(h)) for h in (*levels, mount.land_mm - INSIDE_MM)]

@@ -55,6 +55,8 @@ class Mount:
     pin_u_mm: tuple[float, ...]
     pin_depth_mm: float
     seat_width_mm: float
+    seat_back_w_mm: float
+    """To which the gripper bears the foot."""
     nose: Nose | None
     stroke_mm: float
     pad_w_mm: float

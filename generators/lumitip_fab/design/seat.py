@@ -2,9 +2,9 @@
 
 Lever model: the rated force turns the finger about a line near the edge of its foot. There plastic
 presses on the gripper in a triangle, from nothing at the nearest bolt to most at the edge, whose
-middle is a third of the way in; bolts pull by their distance from that line. The foot is
-taken to lie on the gripper up to its back edge. Neither pre-load, nor pins and nose, take part.
-Heads are the catalogue's, by ISO 4762.
+middle is a third of the way in; bolts pull by their distance from that line. The foot lies on the
+gripper up to its back edge, or to that of the gripper's seat. Neither pre-load, nor pins and nose,
+take part. Heads are the catalogue's, by ISO 4762.
 """
 
 import math
@@ -18,7 +18,7 @@ class Foot:
     """Face of a finger that stands on the gripper, in the mount frame."""
 
     back_mm: float
-    """Greatest w."""
+    """Greatest w, no farther than the gripper's seat."""
     half_mm: float
     """Half width, no wider than the gripper's finger."""
 
@@ -36,7 +36,8 @@ class Seated:
 
 def designed_foot(mount: Mount) -> Foot:
     """The foot by the coupling's figures."""
-    return Foot(mount.block_back_w_mm, min(mount.block_width_mm, mount.seat_width_mm) / 2)
+    back = min(mount.block_back_w_mm, mount.seat_back_w_mm)
+    return Foot(back, min(mount.block_width_mm, mount.seat_width_mm) / 2)
 
 
 def pull_n(force_n: float, arm_mm: float, mount: Mount, foot: Foot) -> float:

@@ -80,11 +80,12 @@ def _face(sheet: Sheet, g: Gripper, gauge: Mesh, wide: float) -> None:
     draw_body(sheet, gauge, FROM_GRIPPER, SCALE)
     bolt, back, end = g.bolt_w_mm, g.block_back_w_mm, wide + 1.5
     pad, seat, bolts = bolt - g.pad_w_mm, g.seat_width_mm / 2, _bolts_u(g)
+    rear = g.seat_back_w_mm or back
     sheet.lines(
         [
             line(_page(-end, 0), _page(end, 0)),
             line(_page(-end, bolt), _page(end, bolt)),
-            line(_page(-seat, back), _page(-seat, pad), _page(seat, pad), _page(seat, back)),
+            line(_page(-seat, rear), _page(-seat, pad), _page(seat, pad), _page(seat, rear)),
             *(line(_page(u, bolt - 6), _page(u, bolt + 6)) for u in bolts),
         ],
         "axis",
@@ -122,6 +123,8 @@ def _depths(g: Gripper, pad: float, end: float) -> list[Span]:
         ),
         ("pad_w_mm", bolt, _page(-g.seat_width_mm / 2, pad)),
     ]
+    if g.seat_back_w_mm:
+        spans.append(("seat_back_w_mm", _page(-g.seat_width_mm / 2, g.seat_back_w_mm), zero))
     if g.nose:
         front = _page(-g.nose.front_width_mm / 2, g.nose.front_w_mm)
         spans.append(("nose.front_w_mm", front, zero))

@@ -55,7 +55,8 @@ def with_figures(base: Gripper, values: Mapping[str, Any]) -> Gripper:
     """
     pins = {name.removeprefix("pins."): v for name, v in values.items() if "pins." in name}
     figures = {name: value for name, value in values.items() if "." not in name}
-    own = {"pins": Pins(**pins) if pins else None, "nose": None, "bolt_spacing_mm": None}
+    own = {"pins": Pins(**pins) if pins else None, "nose": None}
+    own |= {"bolt_spacing_mm": None, "seat_back_w_mm": None}
     return base.model_copy(update={**own, **figures})
 
 

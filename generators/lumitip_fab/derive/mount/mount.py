@@ -63,6 +63,7 @@ def derive_mount(config: Input, outline: Outline, plan: Plan, faults: Diagnostic
         pin_u_mm=_side_by_side(pins.spacing_mm if pins else None),
         pin_depth_mm=pins.depth_mm if pins else 0.0,
         seat_width_mm=gripper.seat_width_mm,
+        seat_back_w_mm=gripper.seat_back_w_mm or gripper.block_back_w_mm,
         nose=fits.nose,
         stroke_mm=gripper.stroke_mm,
         pad_w_mm=gripper.pad_w_mm,
