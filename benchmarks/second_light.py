@@ -27,7 +27,7 @@ from second_specimen import Specimen
 from second_tips import Tips
 from second_trace import trace
 
-STRAIGHT, WALKS = 6000, 40_000
+STRAIGHT, WALKS = 8000, 60_000
 _CAPACITY = 1_000_000
 
 

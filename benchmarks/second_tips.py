@@ -7,7 +7,7 @@ import numpy as np
 from second_connect import TABLE_DEG
 from second_optics import Floats, Stack
 
-_LEAST = 5e-8  # weight of most stored rays: a cell receives about 1e-3
+_LEAST = 4e-8  # weight of most stored rays: a cell receives about 1e-3
 _ROLL = 4.0  # exponent of the fall of a detector's response
 
 

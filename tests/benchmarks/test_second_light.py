@@ -8,8 +8,10 @@ import pytest
 
 pytest.importorskip("numba")
 
+import second_bench
 import second_light
 from lumitip.links.twin import published_layout
+from second_bench import Bound, fingers, trials
 from second_light import Light
 from second_optics import connected, henyey, henyey_cosine, refracted, transmitted
 from second_specimen import Electronics, Specimen, drawn_electronics
@@ -173,3 +175,22 @@ def test_fingertips_are_drawn_around_the_nominal_ones() -> None:
         values = np.array([getattr(tips, name) for tips in many])
         assert values.std() == pytest.approx(deviation, rel=0.25)
         assert abs(values - getattr(Tips(), name)).max() <= 2.0 * deviation + 1e-12
+
+
+def test_frames_are_tared_and_the_bound_grows_with_what_is_unknown(
+    lit: Light, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    chance = np.random.default_rng(2)
+    (finger,) = fingers([lit], 1, 0.0)
+    empty = finger.values(Specimen("edge", offset_mm=-60.0, passed=0.0, albedo=0.0), chance)
+    assert np.median(empty) > 251.0 and empty.std() < 3.0
+    (drifted,) = fingers([lit], 1, 0.06)
+    changed = drifted.values(Specimen("edge", offset_mm=-60.0, passed=0.0, albedo=0.0), chance)
+    assert changed.std() > 2.0 * empty.std()
+    shown = trials([finger, drifted], "cable", 4, 1)
+    assert all(trial.values.shape == (len(LAYOUT),) for trial in shown)
+    monkeypatch.setattr(second_bench, "DEVIATIONS", {"gap_mm": 0.3})
+    monkeypatch.setattr(second_light.Light.of.__func__, "__defaults__", (0, *FEW.values()))
+    known, unknown = Bound(LAYOUT)("edge", (0.7, 12.0), (0.0, 0.06))
+    assert (known > 0.0).all() and (unknown > 1.2 * known).all()
+    assert unknown[0] < 1.0 and unknown[1] < 5.0  # below the priors
