@@ -95,6 +95,7 @@ def search(  # noqa: PLR0912, PLR0915 - one loop; calls would hand on a score of
     turn: int,
     keys: NDArray[np.float64],
     queue: Ints,
+    work: NDArray[np.int64],
 ) -> Ints:
     """The cheapest path between two parts of a net, or nothing (length 0).
 
@@ -120,6 +121,7 @@ def search(  # noqa: PLR0912, PLR0915 - one loop; calls would hand on a score of
         reached, came, seen: scratch of `2 * H * W`: cost, direction, and turn of last use.
         turn: number of this search, above all before it.
         keys, queue: scratch of the heap.
+        work: `(1,)`: nodes visited so far by all searches, counted on.
 
     Returns:
         Nodes from start to target.
@@ -151,6 +153,7 @@ def search(  # noqa: PLR0912, PLR0915 - one loop; calls would hand on a score of
         so_far = reached[node]
         if key > so_far + _left(y, x, box) + 1e-3:
             continue
+        work[0] += 1
         if target[node]:
             end = node
             break

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from lumitip_fab.boards.model import SIDES, Placement, Routing, Track, Via
 from lumitip_fab.boards.placed import PlacedPad, placed_pads
 from lumitip_fab.boards.route import stamps
+from lumitip_fab.boards.route.fewer_vias import lower_via_count, polish
 from lumitip_fab.boards.route.kernels import Ints
 from lumitip_fab.boards.route.obstacles import Obstacles, TightError, Wanted, wanted
 from lumitip_fab.boards.route.rules import Grid, Rules
@@ -60,6 +61,8 @@ class Pressure:
     """More for each round that a node is fought for."""
     via_mm: float = 0.7
     """Cost of a via, as a length of track."""
+    via_decay: float = 1.0
+    """Factor of that cost for a net with each round that it fights."""
     rounds: int = sys.maxsize
     """After this many, the next try begins."""
     backwards: bool = False
@@ -67,6 +70,7 @@ class Pressure:
 
 
 TRIES = (
+    Pressure(1.6, 0.2, via_mm=14.0, via_decay=0.97, rounds=30),
     Pressure(1.35, 0.5, via_mm=3.0, rounds=40),
     Pressure(1.35, 0.5),
     Pressure(1.35, 0.5, backwards=True),
@@ -78,8 +82,9 @@ TRIES = (
 """One after the other, until all nets have room. Whether a crowded board is routed at last hangs on
 chance: two boards of 124 and 128 cells on the area of the published 32 failed with the first of
 these at cheap vias, and were routed at other growths; one of 55 cells that bends, with no vias in
-the bend, was routed only with its nets in the other order. Vias are dear at first: where there is
-room, a fifth of them goes."""
+the bend, was routed only with its nets in the other order. Vias are very dear at first, then
+dear, where there is room for that: with a slow history the nets have time to find it."""
+LEAST_VIA_MM = 0.7  # the cost of a via does not fall below it
 FIRST_PRICE = 0.6  # of a net in the way, in the first round
 TOP_PRICE = 30.0
 HISTORY_REACH = 1  # nodes round it
@@ -92,11 +97,7 @@ where a board bends, two nets cannot cross each other, and the way round may be 
 FEW = 3  # nets that still fight, on a small board
 STUCK_PRICE = 1000.0
 STUCK_WIDER_MM = 2.0
-DEAR = 1e5  # price that no net pays when another way is left
 PATIENCE = 60  # rounds without progress, before the router gives up
-POLISHES = 2
-
-COSMETIC = CostWeights(DEAR, via_mm=4.0, bend_mm=0.5, across=1.2)
 
 
 def negotiate(state: State, nets: list[Wanted], pressure: Pressure) -> tuple[int, dict[str, Ints]]:
@@ -111,6 +112,7 @@ def negotiate(state: State, nets: list[Wanted], pressure: Pressure) -> tuple[int
         Number of rounds, and the nodes that are still fought for, by net: empty on success.
     """
     weights = CostWeights(FIRST_PRICE, margin_mm=2.5, via_mm=pressure.via_mm)
+    via_mm = {net.name: pressure.via_mm for net in nets}
     for net in nets:
         state.routed[net.name] = connect(state, net, [], weights)
         state.count(net, 1)
@@ -141,8 +143,10 @@ def negotiate(state: State, nets: list[Wanted], pressure: Pressure) -> tuple[int
                 continue  # another net has given way in this round
             paths = [] if sweep else state.routed[net.name]
             free = [path for path in paths if not state.contested(net, path).size]
+            via_mm[net.name] = max(via_mm[net.name] * pressure.via_decay, LEAST_VIA_MM)
+            own = dataclasses.replace(weights, via_mm=via_mm[net.name])
             state.count(net, -1)
-            state.routed[net.name] = connect(state, net, supported(net, free), weights)
+            state.routed[net.name] = connect(state, net, supported(net, free), own)
             state.count(net, 1)
 
 
@@ -162,21 +166,6 @@ def negotiate_until_free(state: State, nets: list[Wanted]) -> tuple[int, dict[st
             return rounds, {}
         nearest = min(nearest or fought, fought, key=len)
     return rounds, nearest or {}
-
-
-def polish(state: State, nets: list[Wanted]) -> None:
-    """Route every net anew through the room that the others leave, for looks alone."""
-    state.history[:] = 0
-    for _ in range(POLISHES):
-        for net in nets:
-            before = state.routed[net.name]
-            state.count(net, -1)
-            state.routed[net.name] = connect(state, net, [], COSMETIC)
-            state.count(net, 1)
-            if state.contested(net).size:
-                state.count(net, -1)
-                state.routed[net.name] = before
-                state.count(net, 1)
 
 
 PLACES_NAMED = 5
@@ -232,7 +221,8 @@ def _routed(placement: Placement, rules: Rules, pitch_mm: float) -> Routing:
         ) from None
     if fought:
         raise BuildError(_unfinished(placement, grid, fought, rounds))
-    polish(state, nets)
+    lower_via_count(state, nets, placement.ground)
+    polish(state, nets, placement.ground)
     tracks, vias = [], []
     for net in nets:
         some_tracks, some_vias = copper(grid, rules, net, state.paths(net))

@@ -42,6 +42,8 @@ class State:
         self.target = np.zeros(count, dtype=np.uint8)
         self.keys = np.empty(4 * count, dtype=np.float64)
         self.queue = np.empty(4 * count, dtype=np.int32)
+        self.joined: dict[str, tuple[list[Ints], Ints]] = {}
+        self.work = np.zeros(1, dtype=np.int64)
         self.near_via = np.zeros((grid.height, grid.width), dtype=np.uint8)
 
     def clear(self) -> None:
@@ -52,7 +54,12 @@ class State:
 
     def paths(self, net: Wanted) -> Ints:
         """Paths of a net in a row, each ended by -1."""
-        return np.concatenate([part for path in self.routed[net.name] for part in (path, _END)])
+        paths = self.routed[net.name]
+        known = self.joined.get(net.name)
+        if known is None or known[0] is not paths:  # a list of paths never changes
+            nodes = np.concatenate([part for path in paths for part in (path, _END)])
+            known = self.joined[net.name] = paths, nodes
+        return known[1]
 
     def count(self, net: Wanted, add: int) -> None:
         """Put a net's copper on the map, or take it off."""
@@ -134,27 +141,29 @@ def connect(state: State, net: Wanted, kept: list[Ints], weights: CostWeights) -
     Raises:
         Unreachable: a pad is walled in by what is fixed.
     """
-    for terminal in net.terminals:
-        state.tree[terminal.nodes] |= INSIDE_PAD
-    for path in kept:
-        _grow(state, path)
-    paths = list(kept)
-    tree, *rest = _pieces(net, kept)
-    nearest = {i: _nearest(tree.terminals, piece) for i, piece in enumerate(rest)}
-    while nearest:
-        which = min(nearest, key=lambda i: nearest[i][0])
-        _, near, far = nearest.pop(which)
-        goal = rest[which]
-        path = _path(state, net, tree, goal, (near, far), weights)
-        paths.append(path)
-        _grow(state, path)
-        tree.terminals += goal.terminals
-        tree.nodes += [path, *goal.nodes]
-        for i, found in nearest.items():
-            nearest[i] = min(found, _nearest(goal.terminals, rest[i]), key=lambda f: f[0])
-    for nodes in tree.nodes:
-        state.tree[nodes] = 0
-    state.near_via[:] = 0
+    touched = [t.nodes for t in net.terminals]
+    for nodes in touched:
+        state.tree[nodes] |= INSIDE_PAD
+    paths: list[Ints] = []
+    try:
+        for path in kept:
+            _join(state, path, paths)
+        tree, *rest = _pieces(net, kept)
+        nearest = {i: _nearest(tree.terminals, piece) for i, piece in enumerate(rest)}
+        while nearest:
+            which = min(nearest, key=lambda i: nearest[i][0])
+            _, near, far = nearest.pop(which)
+            goal = rest[which]
+            path = _path(state, net, tree, goal, (near, far), weights)
+            _join(state, path, paths)
+            tree.terminals += goal.terminals
+            tree.nodes += [path, *goal.nodes]
+            for i, found in nearest.items():
+                nearest[i] = min(found, _nearest(goal.terminals, rest[i]), key=lambda f: f[0])
+    finally:  # also where a pad is out of reach
+        for nodes in (*touched, *paths):
+            state.tree[nodes] = 0
+        state.near_via[:] = 0
     return paths
 
 
@@ -253,6 +262,7 @@ def _path(
             state.turn,
             state.keys,
             state.queue,
+            state.work,
         )
         if path.size:
             break
@@ -263,8 +273,9 @@ def _path(
     return path
 
 
-def _grow(state: State, path: Ints) -> None:
-    """Mark a path of the net at hand."""
+def _join(state: State, path: Ints, paths: list[Ints]) -> None:
+    """Mark a path of the net at hand, and add it to the others."""
+    paths.append(path)
     grid = state.grid
     for a, b in zip(path[:-1].tolist(), path[1:].tolist(), strict=True):
         (ay, ax), (by, bx) = (divmod(n % grid.plane, grid.width) for n in (a, b))
