@@ -62,7 +62,11 @@ class Pressure:
     via_mm: float = 0.7
     """Cost of a via, as a length of track."""
     via_decay: float = 1.0
-    """Factor of that cost for a net with each round that it fights."""
+    """Factor of that cost for a net with each round that it fights,"""
+    late_via_decay: float = 1.0
+    """and from round `LATE` on, when few nets still fight."""
+    late_history: float | None = None
+    """`history` from round `LATE` on, if another."""
     rounds: int = sys.maxsize
     """After this many, the next try begins."""
     backwards: bool = False
@@ -70,8 +74,9 @@ class Pressure:
 
 
 TRIES = (
-    Pressure(1.6, 0.2, via_mm=14.0, via_decay=0.97, rounds=30),
-    Pressure(1.35, 0.5, via_mm=3.0, rounds=40),
+    Pressure(
+        1.6, 0.2, via_mm=14.0, via_decay=0.97, late_via_decay=0.7, late_history=0.5, rounds=50
+    ),
     Pressure(1.35, 0.5),
     Pressure(1.35, 0.5, backwards=True),
     Pressure(1.2, 0.5),
@@ -82,8 +87,10 @@ TRIES = (
 """One after the other, until all nets have room. Whether a crowded board is routed at last hangs on
 chance: two boards of 124 and 128 cells on the area of the published 32 failed with the first of
 these at cheap vias, and were routed at other growths; one of 55 cells that bends, with no vias in
-the bend, was routed only with its nets in the other order. Vias are very dear at first, then
-dear, where there is room for that: with a slow history the nets have time to find it."""
+the bend, was routed only with its nets in the other order. Vias are dear at first, with a slow
+history, so that nets have time to find a way without; the few that still fight late get them
+cheaper with each round."""
+LATE = 13
 LEAST_VIA_MM = 0.7  # the cost of a via does not fall below it
 FIRST_PRICE = 0.6  # of a net in the way, in the first round
 TOP_PRICE = 30.0
@@ -126,10 +133,12 @@ def negotiate(state: State, nets: list[Wanted], pressure: Pressure) -> tuple[int
         if not fought or turn - best > PATIENCE or turn == pressure.rounds:
             return turn, fought
         state.turn += 1
+        late = turn >= LATE
+        more = pressure.history
+        if late and pressure.late_history is not None:
+            more = pressure.late_history
         for nodes in fought.values():
-            stamps.remember(
-                nodes, state.history, state.marked[0], state.turn, pressure.history, HISTORY_REACH
-            )
+            stamps.remember(nodes, state.history, state.marked[0], state.turn, more, HISTORY_REACH)
         few = len(fought) <= max(FEW, SWEEP_SHARE * len(nets))
         stuck = few and turn - best > STUCK
         weights = dataclasses.replace(
@@ -143,7 +152,8 @@ def negotiate(state: State, nets: list[Wanted], pressure: Pressure) -> tuple[int
                 continue  # another net has given way in this round
             paths = [] if sweep else state.routed[net.name]
             free = [path for path in paths if not state.contested(net, path).size]
-            via_mm[net.name] = max(via_mm[net.name] * pressure.via_decay, LEAST_VIA_MM)
+            decay = pressure.late_via_decay if late else pressure.via_decay
+            via_mm[net.name] = max(via_mm[net.name] * decay, LEAST_VIA_MM)
             own = dataclasses.replace(weights, via_mm=via_mm[net.name])
             state.count(net, -1)
             state.routed[net.name] = connect(state, net, supported(net, free), own)

@@ -8,7 +8,17 @@ the grid: `(own class, other class, 2 planes kinds, 2)`, where the plane kind is
 import numpy as np
 from numpy.typing import NDArray
 
-from lumitip_fab.boards.route.kernels import DX, DY, VIA, Bytes, Ints, Reals, Shorts, kernel
+from lumitip_fab.boards.route.kernels import (
+    DX,
+    DY,
+    INSIDE_PAD,
+    VIA,
+    Bytes,
+    Ints,
+    Reals,
+    Shorts,
+    kernel,
+)
 
 Radii = NDArray[np.float64]
 
@@ -140,6 +150,20 @@ def stamp(
                     tracks[own, c, kind],
                 )
         i = j
+
+
+@kernel
+def mark(path: Ints, tree: Shorts, plane: int, width: int) -> None:
+    """Note at a path's nodes which ways its tracks go, and where it has vias: see `search`."""
+    for i in range(path.size - 1):
+        a, b = path[i], path[i + 1]
+        way = way_of(b % plane // width - a % plane // width, b % width - a % width)
+        if way == VIA:
+            tree[a] |= INSIDE_PAD
+            tree[b] |= INSIDE_PAD
+        else:
+            tree[a] |= 1 << way
+            tree[b] |= 1 << ((way + 4) & 7)
 
 
 @kernel

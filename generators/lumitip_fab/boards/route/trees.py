@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumitip_fab.boards.route import kernels, stamps
-from lumitip_fab.boards.route.kernels import INSIDE_PAD, VIA, Ints
+from lumitip_fab.boards.route.kernels import INSIDE_PAD, Ints
 from lumitip_fab.boards.route.obstacles import Terminal, Wanted
 from lumitip_fab.boards.route.rules import HOLE_TO_HOLE_MM, Grid, Rules
 
@@ -189,15 +189,17 @@ def supported(net: Wanted, paths: list[Ints]) -> list[Ints]:
 def _pieces(net: Wanted, kept: list[Ints]) -> list[Piece]:
     """Connected parts of a net, the largest first."""
     pieces = [Piece([t], [t.nodes]) for t in net.terminals]
-    of: dict[int, Piece] = {int(n): p for p in pieces for nodes in p.nodes for n in nodes}
+    labelled = list(pieces)
+    label = {int(n): i for i, p in enumerate(pieces) for nodes in p.nodes for n in nodes}
     for path in kept:
-        met = {id(p): p for p in (of.get(n) for n in path.tolist()) if p is not None}
+        on_path = path.tolist()
+        met = {id(p): p for p in (labelled[label[n]] for n in on_path if n in label)}
         one = Piece([], [path])
         for piece in met.values():
             one.terminals += piece.terminals
             one.nodes += piece.nodes
-        for nodes in one.nodes:
-            of.update((n, one) for n in nodes.tolist())
+        labelled = [one if id(p) in met else p for p in labelled] + [one]
+        label.update(dict.fromkeys(on_path, len(labelled) - 1))
         pieces = [p for p in pieces if id(p) not in met] + [one]
     return sorted(pieces, key=lambda p: -len(p.terminals))
 
@@ -276,20 +278,13 @@ def _path(
 def _join(state: State, path: Ints, paths: list[Ints]) -> None:
     """Mark a path of the net at hand, and add it to the others."""
     paths.append(path)
-    grid = state.grid
-    for a, b in zip(path[:-1].tolist(), path[1:].tolist(), strict=True):
-        (ay, ax), (by, bx) = (divmod(n % grid.plane, grid.width) for n in (a, b))
-        way = stamps.way_of(by - ay, bx - ax)
-        if way == VIA:
-            state.tree[a] |= INSIDE_PAD
-            state.tree[b] |= INSIDE_PAD
-            at, reach = grid.at(a), _via_reach_mm(state)
-            where = grid.near(*at, reach)
-            x, y = grid.offsets(where, *at)
-            state.near_via[where][np.hypot(x, y) < reach] = 1
-        else:
-            state.tree[a] |= 1 << way
-            state.tree[b] |= 1 << ((way + 4) & 7)
+    grid, reach = state.grid, _via_reach_mm(state)
+    stamps.mark(path, state.tree, grid.plane, grid.width)
+    for a in path[:-1][np.abs(np.diff(path)) == grid.plane].tolist():
+        at = grid.at(a)
+        where = grid.near(*at, reach)
+        x, y = grid.offsets(where, *at)
+        state.near_via[where][np.hypot(x, y) < reach] = 1
 
 
 def _via_reach_mm(state: State) -> float:
