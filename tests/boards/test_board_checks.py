@@ -150,6 +150,8 @@ RECEIVER_DAMAGES: dict[Damage, set[str]] = {
     capacitor_far: {
         "bypass_supply",
         "bypass_ground",
+        "channels",
+        "names",
         "open",
         "short",
         "clearance",
