@@ -67,10 +67,9 @@ def verify(model: BoardModel) -> tuple[Fault, ...]:
     classes = {c.name: c.clearance_mm for c in model.placement.classes}
     of_net = {n.name: classes[n.net_class] for n in model.placement.nets}
     gaps = np.array([of_net.get(c.net, min(classes.values())) for c in copper])
-    tree = shapely.STRtree(cores)
-    first, second = tree.query(
-        cores, predicate="dwithin", distance=radii + radii.max() + gaps.max()
-    )
+    # By their boxes alone: the pour, which is last, is measured from once it is prepared.
+    around = (radii + radii.max() + gaps.max())[:, None] * (-1, -1, 1, 1)
+    first, second = shapely.STRtree(cores).query(shapely.box(*(shapely.bounds(cores) + around).T))
     layers = np.array([sum(1 << SIDES.index(s) for s in c.sides) for c in copper])
     ordered = (first < second) & (layers[first] & layers[second] > 0)
     first, second = first[ordered], second[ordered]
@@ -116,7 +115,7 @@ def _too_near(
 ) -> list[Fault]:
     needed = np.maximum(gaps[first], gaps[second])
     reach = radii[first] + radii[second]
-    bad = shapely.dwithin(cores[first], cores[second], reach + needed - _NOISE_MM)
+    bad = shapely.dwithin(cores[second], cores[first], reach + needed - _NOISE_MM)
     faults = []
     for i, j, r, need in zip(first[bad], second[bad], reach[bad], needed[bad], strict=True):
         line = shapely.shortest_line(cores[i], cores[j])
@@ -136,7 +135,7 @@ def _in_pieces(
     second: NDArray[np.int64],
 ) -> list[Fault]:
     """Every piece of a net but its largest: with a pad it is open, without one it floats."""
-    touch = shapely.dwithin(cores[first], cores[second], radii[first] + radii[second])
+    touch = shapely.dwithin(cores[second], cores[first], radii[first] + radii[second])
     graph = nx.Graph()
     graph.add_nodes_from(i for i, c in enumerate(copper) if c.net)
     graph.add_edges_from(zip(first[touch].tolist(), second[touch].tolist(), strict=True))

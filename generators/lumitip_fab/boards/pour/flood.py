@@ -2,17 +2,18 @@
 
 import dataclasses
 import math
-from collections.abc import Iterable, Sequence
-from functools import partial
+from collections.abc import Sequence
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 from shapely import Geometry
 
 from lumitip_fab.boards.model import SIDES, Fill, NetClass, Placement, Routing, Track, Via
 from lumitip_fab.boards.placed import PlacedPad, placed_pads
 from lumitip_fab.boards.pour.ground import Kept, needed
 from lumitip_fab.boards.pour.room import MARGIN_MM, Sheet, room, sheet, via_room
+from lumitip_fab.boards.route.kernels import kernel
 from lumitip_fab.boards.verify import DRILL_WALL_MM
 from lumitip_fab.design import Point, Side
 
@@ -45,28 +46,42 @@ def candidates(placement: Placement, room: Geometry, front: Geometry, back: Geom
     ]
 
 
-def spread(places: Iterable[Point], taken: Iterable[Point], apart_mm: float) -> list[Point]:
+def spread(places: Sequence[Point], taken: Sequence[Point], apart_mm: float) -> list[Point]:
     """Places in their order, without those too near to one before them or to a taken one."""
-    grid: dict[tuple[int, int], list[Point]] = {}
+    every = np.array([*taken, *places]).reshape(-1, 2)
+    if not every.size:
+        return []
+    kept = _thinned(every, np.floor((every - every.min(axis=0)) / apart_mm), len(taken), apart_mm)
+    return [at for at, keeps in zip(places, kept[len(taken) :].tolist(), strict=True) if keeps]
 
-    def cell(at: Point) -> tuple[int, int]:
-        return math.floor(at[0] / apart_mm), math.floor(at[1] / apart_mm)
 
-    for at in taken:
-        grid.setdefault(cell(at), []).append(at)
-    found = []
-    for at in places:
-        column, row = cell(at)
-        near = (
-            other
-            for u in (column - 1, column, column + 1)
-            for v in (row - 1, row, row + 1)
-            for other in grid.get((u, v), ())
-        )
-        if all(math.dist(at, other) >= apart_mm for other in near):
-            grid.setdefault((column, row), []).append(at)
-            found.append(at)
-    return found
+@kernel
+def _thinned(
+    places: NDArray[np.float64], cells: NDArray[np.float64], taken: int, apart_mm: float
+) -> NDArray[np.bool_]:
+    """Which places stay, the first ones in any case.
+
+    Args:
+        places: `(n, 2)`, in mm.
+        cells: `(n, 2)`: column and row of the square of `apart_mm` that each is in, from 0.
+        taken: number of those that stay in any case.
+        apart_mm: least distance.
+    """
+    width, height = int(cells[:, 0].max()) + 3, int(cells[:, 1].max()) + 3
+    last = np.full(width * height, -1)  # place of each square, and the one in it before each place
+    before = np.full(len(places), -1)
+    kept = np.ones(len(places), dtype=np.bool_)
+    for i in range(len(places)):
+        square = (int(cells[i, 1]) + 1) * width + int(cells[i, 0]) + 1
+        for near in (square - width, square, square + width):
+            for j in (last[near - 1], last[near], last[near + 1]):
+                while j >= 0 and i >= taken and kept[i]:
+                    dx, dy = places[j, 0] - places[i, 0], places[j, 1] - places[i, 1]
+                    kept[i] = dx * dx + dy * dy >= apart_mm * apart_mm
+                    j = before[j]  # noqa: PLW2901 - on to the next one in the square
+        if kept[i]:
+            before[i], last[square] = last[square], i
+    return kept
 
 
 def _kind(placement: Placement) -> NetClass:
@@ -230,16 +245,16 @@ def _beside(pads: list[PlacedPad], possible: list[Via], present: list[Via]) -> l
     """The nearest via for each pad that has none beside it yet, where one is near."""
     added: list[Via] = []
     for pad in pads:
-        away_mm = partial(_away_mm, pad)
-        has = min(map(away_mm, (*present, *added)), default=math.inf)
-        found = min(possible, key=away_mm, default=None)
-        if found and away_mm(found) <= BYPASS_MM < has:
-            added.append(found)
+        away_mm = _away_mm(pad, possible)
+        has = _away_mm(pad, [*present, *added]).min(initial=math.inf)
+        if away_mm.min(initial=math.inf) <= BYPASS_MM < has:
+            added.append(possible[int(away_mm.argmin())])
     return added
 
 
-def _away_mm(pad: PlacedPad, via: Via) -> float:
-    return round(float(pad.area.distance(shapely.Point(via.x_mm, via.y_mm))), 6)
+def _away_mm(pad: PlacedPad, vias: Sequence[Via]) -> NDArray[np.float64]:
+    places = np.array([(v.x_mm, v.y_mm) for v in vias]).reshape(-1, 2)
+    return np.asarray(shapely.distance(pad.area, shapely.points(places)), np.float64).round(6)
 
 
 def _stitched(

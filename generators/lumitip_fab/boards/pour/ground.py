@@ -79,7 +79,7 @@ def needed(
     _pads(net, pads, sheets)
     _copper(net, pads, sheets, routing)
     _vias(net, sheets, routing.vias, VIA_MM)
-    _vias(net, sheets, tuple(stitches), STITCH_MM)
+    _vias(net, sheets, _one_for_each_pair(sheets, tuple(stitches)), STITCH_MM)
     whole = nx.node_connected_component(net.graph, terminals[0])
     for pad, terminal in zip(pads, terminals, strict=True):
         if terminal not in whole:
@@ -134,6 +134,17 @@ def _vias(net: Net, sheets: dict[Side, Sheet], vias: tuple[Via, ...], length_mm:
         for at, found in zip(places, sheets[side].pieces_at(places), strict=True):
             if found >= 0:
                 net.join((side, at), (side, found), 0.0)
+
+
+def _one_for_each_pair(sheets: dict[Side, Sheet], vias: tuple[Via, ...]) -> tuple[Via, ...]:
+    """The first of all vias that join the same two pieces of pour: the others do no more."""
+    places = [(v.x_mm, v.y_mm) for v in vias]
+    pairs = zip(*(sheets[side].pieces_at(places) for side in SIDES), strict=True)
+    first: dict[tuple[int, ...], Via] = {}
+    for via, pair in zip(vias, pairs, strict=True):
+        if min(pair) >= 0:
+            first.setdefault(pair, via)
+    return tuple(first.values())
 
 
 def _over(pads: list[PlacedPad], side: Side, places: list[Point]) -> list[list[int]]:

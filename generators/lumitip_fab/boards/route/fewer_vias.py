@@ -21,8 +21,8 @@ HISTORY_REACH = 1  # nodes round it
 ROUNDS = 10
 MOST_NETS = 5  # that are routed anew at once
 PASSES = 4
-LEAST_WORK = 3_000_000
-"""Nodes that the searches may visit before no further attempt begins, about 1.5 s,"""
+LEAST_WORK = 1_000_000
+"""Nodes that the searches may visit before no further attempt begins, about half a second,"""
 WORK_SHARE = 0.1
 """or this share of those visited before. The same board gets the same copper by such a bound, which
 it would not by one in seconds."""

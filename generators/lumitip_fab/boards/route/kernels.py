@@ -89,6 +89,7 @@ def search(  # noqa: PLR0912, PLR0915 - one loop; calls would hand on a score of
     crowded: float,
     grain: NDArray[np.float64],
     costs: NDArray[np.float64],
+    to_layer: NDArray[np.float64],
     reached: NDArray[np.float64],
     came: Bytes,
     seen: Ints,
@@ -118,6 +119,7 @@ def search(  # noqa: PLR0912, PLR0915 - one loop; calls would hand on a score of
         crowded: present cost of each net in the way.
         grain: `(2, 8)`: length of a step, more across the grain of a layer.
         costs: of a via, of a bend of 45° and of one of 90°, in steps of the grid.
+        to_layer: `(2,)`: the least that vias still cost from each layer, 0 on one with a target.
         reached, came, seen: scratch of `2 * H * W`: cost, direction, and turn of last use.
         turn: number of this search, above all before it.
         keys, queue: scratch of the heap.
@@ -138,7 +140,7 @@ def search(  # noqa: PLR0912, PLR0915 - one loop; calls would hand on a score of
         if size >= capacity:
             break
         seen[node], reached[node], came[node] = turn, 0.0, SOURCE
-        keys[size], queue[size] = _left(y, x, box), node
+        keys[size], queue[size] = _left(y, x, box) + to_layer[node // plane], node
         _sift_up(keys, queue, size)
         size += 1
     end = -1
@@ -151,7 +153,7 @@ def search(  # noqa: PLR0912, PLR0915 - one loop; calls would hand on a score of
         layer, rest = node // plane, node % plane
         y, x = rest // width, rest % width
         so_far = reached[node]
-        if key > so_far + _left(y, x, box) + 1e-3:
+        if key > so_far + _left(y, x, box) + to_layer[layer] + 1e-3:
             continue
         work[0] += 1
         if target[node]:
@@ -196,7 +198,8 @@ def search(  # noqa: PLR0912, PLR0915 - one loop; calls would hand on a score of
             )
             if seen[there] != turn or cost < reached[there] - 1e-4:
                 seen[there], reached[there], came[there] = turn, cost, way
-                keys[size], queue[size] = cost + _left(ny, nx, box), there
+                keys[size] = cost + _left(ny, nx, box) + to_layer[layer]
+                queue[size] = there
                 _sift_up(keys, queue, size)
                 size += 1
         if before == VIA or near_via[y, x]:
@@ -213,7 +216,7 @@ def search(  # noqa: PLR0912, PLR0915 - one loop; calls would hand on a score of
         )
         if seen[there] != turn or cost < reached[there] - 1e-4:
             seen[there], reached[there], came[there] = turn, cost, VIA
-            keys[size], queue[size] = cost + _left(y, x, box), there
+            keys[size], queue[size] = cost + _left(y, x, box) + to_layer[1 - layer], there
             _sift_up(keys, queue, size)
             size += 1
     if end < 0:

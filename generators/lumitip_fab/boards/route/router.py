@@ -75,7 +75,7 @@ class Pressure:
 
 TRIES = (
     Pressure(
-        1.6, 0.2, via_mm=14.0, via_decay=0.97, late_via_decay=0.7, late_history=0.5, rounds=50
+        1.6, 0.2, via_mm=12.0, via_decay=0.98, late_via_decay=0.6, late_history=0.5, rounds=90
     ),
     Pressure(1.35, 0.5),
     Pressure(1.35, 0.5, backwards=True),

@@ -237,6 +237,9 @@ def _path(
     near = _box(state.grid, [ends[0].nodes, *goal.nodes]) + margin * np.array([-1, 1, -1, 1])
     near = np.clip(near, 0, everywhere[[1, 1, 3, 3]]).astype(np.int32)
     starts = np.unique(np.concatenate(tree.nodes))
+    costs = weights.costs(state.grid.pitch_mm)
+    to_layer = np.full(2, costs[0])
+    to_layer[np.unique(np.concatenate(goal.nodes) // state.grid.plane)] = 0.0
     via_reach = (_via_reach_mm(state) / state.grid.pitch_mm) ** 2
     for window in (near, everywhere):
         state.turn += 1
@@ -257,7 +260,8 @@ def _path(
             state.rules.narrow,
             weights.price,
             weights.grain(),
-            weights.costs(state.grid.pitch_mm),
+            costs,
+            to_layer,
             state.reached,
             state.came,
             state.seen,

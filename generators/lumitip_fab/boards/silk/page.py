@@ -3,6 +3,7 @@
 import itertools
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 
 import numpy as np
 import shapely
@@ -77,11 +78,15 @@ class Clear:
 
     def clipped(self, lines: Sequence[LineString]) -> list[LineString]:
         """The free pieces of lines that are long enough to see."""
-        keep_out = shapely.union_all(
-            shapely.buffer(np.array(self.taken, dtype=object), self.gap_mm + self.line_mm / 2)
-        )
+        reach_mm = self.gap_mm + self.line_mm / 2
+        whole, taken = np.array(lines, dtype=object), np.array(self.taken, dtype=object)
+        tree = shapely.STRtree(taken)
+        # What is near each line alone: one area of all that is taken has many corners.
+        line, shape = tree.query(whole, predicate="dwithin", distance=reach_mm)
+        around = shapely.buffer(taken, reach_mm)
+        keep_out = [shapely.union_all(around[shape[line == i]]) for i in range(whole.size)]
         rest = shapely.intersection(
-            shapely.difference(np.array(lines, dtype=object), keep_out),
+            shapely.difference(whole, np.array(keep_out, dtype=object)),
             self.inside.buffer(-self.line_mm / 2),
         )
         pieces = [p for p in shapely.get_parts(rest) if p.length >= _SHORTEST_MM]
@@ -90,12 +95,19 @@ class Clear:
 
 def extent(text: Text, side: Side) -> Polygon:
     """The upright rectangle round a text as it will be drawn."""
-    at, angle = (text.x_mm, text.y_mm), upright(text.angle_deg, side)
-    strokes = text_strokes(text.text, text, at, angle, side)
-    points = [point for stroke in strokes for point in stroke.points]
-    x, y = zip(*points, strict=True)
+    centred = replace(text, x_mm=0.0, y_mm=0.0, angle_deg=upright(text.angle_deg, side))
+    left, low, right, high = _bounds_mm(centred, side)
+    x, y = text.x_mm, text.y_mm
+    return shapely.box(x + left, y + low, x + right, y + high)
+
+
+@lru_cache(maxsize=4096)
+def _bounds_mm(text: Text, side: Side) -> tuple[float, float, float, float]:
+    """Least and greatest x and y of a text: it is tried at many places."""
+    strokes = text_strokes(text.text, text, (text.x_mm, text.y_mm), text.angle_deg, side)
+    x, y = zip(*(point for stroke in strokes for point in stroke.points), strict=True)
     half = text.width_mm / 2
-    return shapely.box(min(x) - half, min(y) - half, max(x) + half, max(y) + half)
+    return min(x) - half, min(y) - half, max(x) + half, max(y) + half
 
 
 _STROKE = 0.15  # of a text's height
@@ -151,7 +163,8 @@ class Page:
     def first_free(self, side: Side, choices: Iterable[Text], apart_mm: float = 0.0) -> bool:
         """Print a text at the first of some places that is free, and this much more round it."""
         for text in choices:
-            if self.sides[side].free(extent(text, side).buffer(apart_mm)):
+            room = extent(text, side)
+            if self.sides[side].free(room.buffer(apart_mm) if apart_mm else room):
                 self.put(side, [text])
                 return True
         return False
