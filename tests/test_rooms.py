@@ -36,10 +36,11 @@ ALLOWED = {
     "checks.readers": "design",
     "checks": "checks.readers design pipeline",
     "explore": "boards catalogue checks config derive design pipeline",
+    "tolerance": "catalogue config derive design pipeline",
     "grippers": "catalogue config derive design docs parts scenes",
     "cli": (
         "boards catalogue checks checks.readers config derive design docs explore grippers parts "
-        "pipeline"
+        "pipeline tolerance"
     ),
     "__init__": "checks cli config derive design parts pipeline",
     "__main__": "cli",

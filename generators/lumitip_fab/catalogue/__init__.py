@@ -23,6 +23,7 @@ from lumitip_fab.catalogue.materials import (
 )
 from lumitip_fab.catalogue.ordering import Fab, Pack, Prices
 from lumitip_fab.catalogue.record import Name, Strict
+from lumitip_fab.catalogue.tolerances import MaskShifts, Tolerances
 
 
 class Catalogue(Strict):
@@ -61,3 +62,5 @@ class Catalogue(Strict):
     packs: Mapping[Name, Pack]
     laminates: Laminates
     prices: Prices
+    tolerances: Tolerances
+    mask_shifts: MaskShifts

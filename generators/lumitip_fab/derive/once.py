@@ -1,7 +1,7 @@
 """Concrete parameters to `Design`: each quantity is derived once, here, and nowhere else."""
 
 import hashlib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from lumitip.layout import Layout, Optics
 from lumitip_fab.config.load import Input
@@ -29,6 +29,7 @@ from lumitip_fab.derive.making.panels import derive_panels
 from lumitip_fab.derive.making.printing import derive_heat, derive_slicing
 from lumitip_fab.derive.making.purchase import derive_purchase
 from lumitip_fab.derive.making.supplies import Assembled, derive_supplies
+from lumitip_fab.derive.making.tolerances import known_mask_shift_mm
 from lumitip_fab.derive.mount import mount
 from lumitip_fab.derive.mount.fasteners import derive_fasteners
 from lumitip_fab.derive.mount.flange_body import derive_flange_body, derive_system
@@ -172,7 +173,7 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
             packages=derive_packages(config),
             rules=rules,
             electrical=figures,
-            mask=sheet,
+            mask=replace(sheet, most_shift_mm=known_mask_shift_mm(config, layout)),
             mould=casting,
             clamps=clamps,
             printing=printing,

@@ -61,6 +61,8 @@ class Mask:
     sheet: Sheet
     coupon: Box
     """A piece of the mask's material without holes that covers all cells of the receiver."""
+    most_shift_mm: float | None = None
+    """How far each mask may be off its finger, simulated; none where it was not computed."""
 
     @property
     def material(self) -> str:

@@ -112,6 +112,11 @@ def _lip(design: Design, facts: Facts) -> str:
     return passage(_TEXTS, name).format(lip_mm=lip_mm, from_mm=math.ceil(lip_mm + _BEYOND_MM))
 
 
+def _off(most_mm: float | None) -> str:
+    """How far the mask may be off, of a design that it was computed for."""
+    return "" if most_mm is None else passage(_TEXTS, "off").format(most_mm=most_mm)
+
+
 def _what(design: Design) -> str:
     return "sheet" if design.mask.route == "tpu" else "film"
 
@@ -136,6 +141,7 @@ def _values(design: Design, facts: Facts, name: str) -> dict[str, object]:
         "fold": fold,
         "held": passage(_TEXTS, "held").format(tape=design.mould.tape),
         "lip": _lip(design, facts),
+        "off": _off(mask.most_shift_mm),
         "tape": design.mould.tape,
         **(_printed(design) if mask.route == "tpu" else _creased(design)),
     }

@@ -140,7 +140,7 @@ class PoseEstimator:
             self._last = None
             left_out = np.flatnonzero(~usable).tolist()
             return without_contact("covered" if is_covered(known) else "none", left_out)
-        frame = self._frame(read, usable)
+        frame = self.frame(read, usable)
         name, found = self._found(frame, kind)
         shape = self._search.shape(name)
         free = drifting(shape, found, self._search.drifts)
@@ -203,7 +203,7 @@ class PoseEstimator:
                 f"{np.count_nonzero(usable)} cells have finite values; at least "
                 f"{LEAST_CELLS} are needed"
             )
-        frame = self._frame(read, usable)
+        frame = self.frame(read, usable)
         found = self._search.best(kind, frame)
         frame = frame.without(found.frame.scale == 0.0)
         return (self._search.free if free else self._search.expected)(kind, found, frame)
@@ -223,10 +223,16 @@ class PoseEstimator:
         """Forget the frame before."""
         self._last = None
 
-    def _frame(self, values: Floats, usable: NDArray[np.bool_]) -> Frame:
+    @property
+    def search(self) -> Search:
+        """Tables and shapes of the expected optics."""
+        return self._search
+
+    def frame(self, values: Floats, usable: NDArray[np.bool_]) -> Frame:
+        """Values of one frame or of several, shape `(..., cells)`, as a fit needs them."""
         values = np.clip(np.where(usable, values, FULL), 0.0, FULL)
         whole = np.minimum(values.astype(np.int64), int(FULL) - 1)
-        each = np.arange(values.size)
+        each = np.arange(values.shape[-1])
         low = self._light[whole, each]
         light = low + (values - whole) * (self._light[whole + 1, each] - low)
         rise = self._rise[whole, each]

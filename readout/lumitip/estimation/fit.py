@@ -20,7 +20,7 @@ _SETTLED = 1e-3  # expected gain of loss below which the fit has converged
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """One frame for the fit; arrays of shape `(cells,)`."""
+    """One frame for the fit; arrays of shape `(cells,)`, or `(n, cells)` of several frames."""
 
     light: Floats
     """Shares of the empty grasp's light."""
@@ -43,6 +43,13 @@ class Frame:
     def without(self, cells: NDArray[np.bool_]) -> "Frame":
         """The frame without some cells."""
         return replace(self, scale=np.where(cells, 0.0, self.scale))
+
+    def some(self, at: Integers | NDArray[np.bool_] | int) -> "Frame":
+        """Those of several frames at some places; one frame as it is."""
+        if self.light.ndim == 1:
+            return self
+        names = ("light", "scale", "counts", "full", "stuck")
+        return replace(self, **{name: getattr(self, name)[at] for name in names})
 
     def misses(self, model: Floats) -> Floats:
         """How far the cells are from shares of light `(..., cells)`, in standard deviations."""
@@ -83,33 +90,42 @@ def fit(shape: Shape, start: Floats, frame: Frame, rounds: int = ROUNDS) -> Fit:
     return fits(shape, np.asarray(start, dtype=np.float64)[None], frame, rounds)[0]
 
 
-def fits(shape: Shape, starts: Floats, frame: Frame, rounds: int = ROUNDS) -> list[Fit]:
+def fits(
+    shape: Shape,
+    starts: Floats,
+    frame: Frame,
+    rounds: int = ROUNDS,
+    prior: "Prior | None" = None,
+) -> list[Fit]:
     """The poses of least loss near several starts, all at once.
 
     Args:
         shape: the object.
         starts: initial poses, shape `(n, p)`; with drifts the optics are free.
-        frame: the values.
+        frame: the values of one frame, or of one for each start.
         rounds: largest number of steps.
+        prior: of the poses; by default that of the shape.
     """
     count, size = starts.shape
-    prior = _Prior.of(shape, size)
+    prior = prior or Prior.of(shape, size)
     now = _Points.at(shape, starts.copy(), frame, prior)
     damping, converged = np.full(count, 1e-3), np.zeros(count, bool)
     left = np.arange(count)  # not converged yet
     for _ in range(rounds):
-        here = now if left.size == count else now.some(left)
+        whole = left.size == count
+        here = now if whole else now.some(left)
         matrix = here.normal.copy()
         # The floor keeps the matrix regular if no cell sees the line.
         diagonal = matrix.reshape(left.size, -1)[:, :: size + 1]
         diagonal += damping[left, None] * diagonal + _FLOOR
         step = np.linalg.solve(matrix, here.slope[..., None])[..., 0]
-        then = _Points.at(shape, here.pose + step, frame, prior)
+        values, expected = (frame, prior) if whole else (frame.some(left), prior.some(left))
+        then = _Points.at(shape, here.pose + step, values, expected)
         gained = here.cost - then.cost
         better = gained >= 0.0
         done = (step * here.slope).sum(axis=1) < _SETTLED
         done |= better & (gained < 5e-3 * here.cost)
-        now = then if better.all() and left.size == count else now.but(left[better], then, better)
+        now = then if better.all() and whole else now.but(left[better], then, better)
         worse = 20.0 * np.maximum(damping[left], 1e-4)
         damping[left] = np.where(better, 0.1 * damping[left], worse)
         converged[left[done]] = True
@@ -118,9 +134,9 @@ def fits(shape: Shape, starts: Floats, frame: Frame, rounds: int = ROUNDS) -> li
             break
     drifts = size - len(shape.names) - 2
     return [
-        Fit(frame, pose, float(cost), normal, model, bool(is_so), drifts)
-        for pose, cost, normal, model, is_so in zip(
-            now.pose, now.cost, now.normal, now.model, converged, strict=True
+        Fit(frame.some(number), pose, float(cost), normal, model, bool(is_so), drifts)
+        for number, (pose, cost, normal, model, is_so) in enumerate(
+            zip(now.pose, now.cost, now.normal, now.model, converged, strict=True)
         )
     ]
 
@@ -147,20 +163,21 @@ def drifting(shape: Shape, found: Fit, drifts: int) -> Fit:
     if found.pose.size > names + 2 or not drifts:
         return found
     pose = np.concatenate([found.pose[:names], np.zeros(drifts), found.pose[names:]])
-    at = _Points.at(shape, pose[None], found.frame, _Prior.of(shape, pose.size))
+    at = _Points.at(shape, pose[None], found.frame, Prior.of(shape, pose.size))
     return replace(found, pose=pose, normal=at.normal[0], drifts=drifts)
 
 
 @dataclass(frozen=True, eq=False)
-class _Prior:
+class Prior:
     """Prior of a pose."""
 
     known: Floats
+    """Expected pose, shape `(p,)`, or `(n, p)` for each of several."""
     normal: Floats
     """Its contribution to the normal equations, shape `(p, p)`."""
 
     @classmethod
-    def of(cls, shape: Shape, size: int) -> "_Prior":
+    def of(cls, shape: Shape, size: int) -> "Prior":
         means, deviations = shape.priors()
         # Light beside the object is that of the empty grasp but for drift.
         strength = np.ones(size)
@@ -171,6 +188,10 @@ class _Prior:
         known = np.zeros(size)
         known[: means.size], known[-2:] = means, 1.0
         return cls(known, normal)
+
+    def some(self, at: Integers) -> "Prior":
+        """Those of several poses at some places; one for all as it is."""
+        return self if self.known.ndim == 1 else Prior(self.known[at], self.normal)
 
 
 _LIGHT_SD = 0.1
@@ -189,7 +210,7 @@ class _Points:
     cost: Floats
 
     @classmethod
-    def at(cls, shape: Shape, pose: Floats, frame: Frame, prior: _Prior) -> "_Points":
+    def at(cls, shape: Shape, pose: Floats, frame: Frame, prior: Prior) -> "_Points":
         share, slopes = shape.slopes(pose)
         size, light, taken = pose.shape[1], pose[:, -2:-1], pose[:, -1:]
         model = light - taken * share
@@ -200,7 +221,7 @@ class _Points:
         rows[:, size - 2] = 1.0
         np.negative(share, out=rows[:, size - 1])
         np.subtract(frame.light, model, out=rows[:, size])
-        rows *= frame.scale
+        rows *= frame.scale[..., None, :]
         miss = rows[:, size]
         weight = frame.huber / np.maximum(np.abs(miss), frame.huber)
         weight[frame.full & (miss <= 0.0)] = 0.0  # a saturated cell would read the same

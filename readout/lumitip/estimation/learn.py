@@ -86,9 +86,9 @@ def learn(
     for _ in range(_ROUNDS):
         fits = _fitted(estimator, rows, kinds)
         misfits.append(_misfit(fits))
-        gains = _gains(fits, gains)
+        gains = gains_from(fits, gains)
         free = _fitted(estimator.with_gains(gains), rows, kinds, free=True)
-        estimator = PoseEstimator(layout, estimator.optics_at(_drift(free)), gains=gains)
+        estimator = PoseEstimator(layout, estimator.optics_at(drift_from(free)), gains=gains)
     left = _misfit(_fitted(estimator, rows, kinds))
     return Learned(gains, estimator.model, left, misfits[0], len(rows))
 
@@ -103,8 +103,8 @@ def _misfit(fits: Sequence[Fit]) -> float:
     return float(np.median([rms_counts(found) for found in fits]))
 
 
-def _gains(fits: Sequence[Fit], before: Floats) -> Floats:
-    """Gains from fits that used the gains before."""
+def gains_from(fits: Sequence[Fit], before: Floats) -> Floats:
+    """Gains of the cells from fits that used the gains before, shape `(cells,)`."""
     light = np.stack([found.frame.light for found in fits]) * before
     shares = np.stack([found.model for found in fits])
     full = np.stack([found.frame.full for found in fits])
@@ -116,7 +116,7 @@ def _gains(fits: Sequence[Fit], before: Floats) -> Floats:
     return np.asarray(gains / gains.mean())
 
 
-def _drift(fits: Sequence[Fit]) -> Floats:
+def drift_from(fits: Sequence[Fit]) -> Floats:
     """Drift of the optics from all fits, in standard deviations of each parameter.
 
     The prior, which every fit has, counts once.

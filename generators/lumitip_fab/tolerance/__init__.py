@@ -1,0 +1,10 @@
+"""Tolerances: how many fingers meet the goals as they are really made.
+
+draws     deviations of built fingers, from the catalogue's distributions
+light     the twin's rays, with every part of a finger at its own place
+estimate  the pose estimator on many frames at once
+bench     errors of fingers as built, after a tare, after self-calibration
+sobol     which deviation matters
+study     yield, percentiles, sensitivities, and how far a mask may be off
+report    tables, JSON and picture
+"""

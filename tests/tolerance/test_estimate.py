@@ -1,0 +1,75 @@
+"""The estimates of a study against `PoseEstimator`, and its self-calibration against `learn`."""
+
+import numpy as np
+import pytest
+
+from lumitip.estimation.learn import learn
+from lumitip.estimation.search import ALPHA_SD, GAP_SD_MM
+from lumitip.twin import Model
+from lumitip_fab.derive.auto.resolve import Resolved
+from lumitip_fab.derive.making.tolerances import spreads
+from lumitip_fab.tolerance.bench import AGREED, Bench
+from lumitip_fab.tolerance.draws import Draws, draw
+from lumitip_fab.tolerance.light import Lines
+
+
+def drawn(design: Resolved, fingers: int, seed: int) -> Draws:
+    cells = len(design.design.layout)
+    return draw(design.config.catalogue.tolerances, spreads(design.config), cells, fingers, seed)
+
+
+def test_errors_of_many_frames_are_those_of_the_pose_estimator(
+    design: Resolved, tried: Bench
+) -> None:
+    frames = tried.frames(drawn(design, 12, 5), tried.lines)
+    known = tried.estimates.nothing_known(12)
+    for kind, lines in tried.lines.items():
+        values = frames[kind].tared
+        own = tried.estimates.errors(values, lines, known)
+        theirs, ambiguous = tried.estimates.searched(values, lines)
+        assert ambiguous.mean() < 0.25
+        both = [np.abs(errors[~ambiguous]) for errors in (own, theirs)]
+        same = (np.abs(own - theirs)[~ambiguous] <= AGREED).all(axis=1)
+        assert same.mean() > 0.95, kind
+        percentiles = [np.percentile(errors, [50, 75, 90], axis=0) for errors in both]
+        assert np.allclose(*percentiles, rtol=0.1), kind
+        rms = [np.sqrt((errors**2).mean(axis=1)) for errors in (own, theirs)]
+        assert np.allclose(*(np.median(errors, axis=0) for errors in rms), rtol=0.1), "and all"
+
+
+def test_an_estimate_follows_a_gross_error_to_its_limit(tried: Bench) -> None:
+    lines = Lines("edge", np.array([[0.1, 0.0]]))
+    dark = np.full((1, 1, 32), 255.0)
+    dark[..., :4] = 0.0
+    errors = tried.estimates.errors(dark, lines, tried.estimates.nothing_known(1))
+    assert np.isfinite(errors).all()
+    assert np.all(np.abs(errors) <= (2.0, 10.0))
+
+
+@pytest.mark.slow
+def test_self_calibration_finds_what_learning_finds(design: Resolved, tried: Bench) -> None:
+    layout, fingers = design.design.layout, drawn(design, 3, 8)
+    frames = tried.frames(fingers, tried.use)["use"].tared
+    found = tried.estimates.learned(frames, tried.use["use"])
+    model = Model.from_layout(layout)
+    for number, values in enumerate(frames):
+        learned = learn(layout, values, "edge", most_frames=len(values))
+        assert np.sqrt(np.mean((learned.gains - found.gains[number]) ** 2)) < 0.015
+        gap_mm, alpha = found.drift[number] * (GAP_SD_MM, ALPHA_SD)
+        assert learned.model.gap_mm - model.gap_mm == pytest.approx(gap_mm, abs=0.15)
+        assert learned.model.alpha - model.alpha == pytest.approx(alpha, abs=0.08)
+
+
+def test_self_calibration_lowers_the_misfit_of_an_uneven_finger(
+    design: Resolved, tried: Bench
+) -> None:
+    fingers = {name: 0.0 * of for name, of in drawn(design, 4, 2).items()}
+    gains = 0.06 * np.random.default_rng(1).standard_normal((4, 32))
+    uneven = {**fingers, "drift": gains, "gap": np.full((4, 1), 0.5)}
+    tared, learned = tried.errors(uneven, ("after tare", "after self-calibration"))
+    assert np.all(learned.mean(axis=0) < 0.9 * tared.mean(axis=0))
+    assert learned.sum() < 0.75 * tared.sum()
+    known = tried.estimates.learned(tried.frames(uneven, tried.use)["use"].tared, tried.use["use"])
+    off = known.gains / known.gains.mean(axis=1, keepdims=True) - 1.0 - gains
+    assert np.sqrt(np.mean(off**2)) < 0.05
+    assert np.allclose(known.drift[:, 0] * GAP_SD_MM, 0.5, atol=0.25)
