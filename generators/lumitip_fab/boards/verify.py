@@ -67,7 +67,8 @@ def verify(model: BoardModel) -> tuple[Fault, ...]:
     classes = {c.name: c.clearance_mm for c in model.placement.classes}
     of_net = {n.name: classes[n.net_class] for n in model.placement.nets}
     gaps = np.array([of_net.get(c.net, min(classes.values())) for c in copper])
-    # By their boxes alone: the pour, which is last, is measured from once it is prepared.
+    # By their boxes alone. `dwithin` uses the prepared geometry of its first argument: below, the
+    # later piece goes first, for the pour is last and has the most corners.
     around = (radii + radii.max() + gaps.max())[:, None] * (-1, -1, 1, 1)
     first, second = shapely.STRtree(cores).query(shapely.box(*(shapely.bounds(cores) + around).T))
     layers = np.array([sum(1 << SIDES.index(s) for s in c.sides) for c in copper])

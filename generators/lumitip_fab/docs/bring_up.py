@@ -3,7 +3,6 @@
 import math
 
 from lumitip_fab.design import Cabling, Design
-from lumitip_fab.docs.protection import protection_note, protection_signs
 from lumitip_fab.text import passage
 
 
@@ -12,8 +11,6 @@ def first_test(design: Design) -> str:
     switched = design.wiring.emitter_pin is not None
     return _text(
         "tested",
-        protection=protection_note(design),
-        protection_signs=protection_signs(design),
         loading=_loading(design),
         limit_ma=_limit_ma(design),
         poles=_poles(design.cabling, f"{design.wiring.supply_v:g}V"),
@@ -30,7 +27,7 @@ def _poles(cabling: Cabling, net: str) -> str:
     ends = {wire.signal: wire.number for wire in away}
     if not {net, "GND"} <= ends.keys():
         return _text("poles_board", net=f"{net}_IN")  # before fuse and reverse protection
-    free = [number for signal, number in ends.items() if signal == "5V" != net]
+    free = [number for signal, number in ends.items() if signal == "5V" and net != "5V"]
     spared = "".join(_text("poles_free", wire=wire) for wire in free)
     return _text("poles", plus=ends[net], minus=ends["GND"], free=spared)
 

@@ -19,6 +19,7 @@ from lumitip_fab.docs.casting import (
 from lumitip_fab.docs.mounting import mounting
 from lumitip_fab.docs.orders import amount, money
 from lumitip_fab.docs.page import html_page
+from lumitip_fab.docs.protection import protection_note
 from lumitip_fab.docs.sheet import pdf_sheets
 from lumitip_fab.docs.spec_circuit import pulled_up
 from lumitip_fab.docs.wrapping import mask_facts, wrapping_steps
@@ -171,6 +172,7 @@ def _boards(design: Design, files: Files) -> str:
         zips="\n".join(f"- `boards/{name}/order/`: {name}" for name in names),
         panels=_panels(design),
         polarity=polarity_test(design.packages),
+        protection=protection_note(design),
         last=", then the string resistors on the back of the emitter" if behind else "",
         pictures="\n".join(pictures),
     )

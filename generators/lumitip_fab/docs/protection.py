@@ -1,6 +1,7 @@
 """What the manual says of the parts that protect controller and supply, where a design has them."""
 
 from collections.abc import Iterator, Sequence
+from string import ascii_letters, digits
 
 from lumitip_fab.design import AuxiliaryBoard, Component, Design
 from lumitip_fab.text import passage
@@ -14,32 +15,30 @@ def protection_note(design: Design) -> str:
     return "".join(f"\n\n{text}" for board in design.auxiliary_boards for text in _of(board))
 
 
-def protection_signs(design: Design) -> str:
-    """Rows of the table of signs for the measurement in these paragraphs."""
-    names = {part.kind for board in design.auxiliary_boards for part in board.components}
-    return _text("protected_signs") if ESD in names else ""
-
-
 def _of(board: AuxiliaryBoard) -> Iterator[str]:
     kinds = {kind: [c for c in board.components if c.kind == kind] for kind in (ESD, TVS, FUSE)}
     if diodes := kinds[ESD]:
-        lines = {net for diode in diodes for _, net in diode.nets} - {*board.supplies, "GND"}
+        lines = {net for diode in diodes for _, net in diode.nets} - {*board.supplies}
         held = [
             part
             for part in board.components
             if part.kind == "resistor" and {net for _, net in part.nets} & lines
         ]
-        limited = _text("protected_series", resistors=span(held)) if held else ""
-        yield _text("protected_esd", board=board.name, diodes=span(diodes), limited=limited)
+        limited = _text("protected_series", resistors=listed(held)) if held else ""
+        yield _text("protected_esd", board=board.name, diodes=listed(diodes), limited=limited)
     for part in kinds[TVS]:
         melts = "".join(_text("protected_fuse", fuse=fuse) for fuse in kinds[FUSE])
         yield _text("protected_tvs", board=board.name, part=part, melts=melts)
 
 
-def span(parts: Sequence[Component]) -> str:
-    """References of parts in the order of the board, such as `"Z1 to Z10"`; one alone by itself."""
-    first, last = parts[0].ref, parts[-1].ref
-    return first if first == last else f"{first} to {last}"
+def listed(parts: Sequence[Component]) -> str:
+    """References of parts in the order of the board: a run of numbers as `"Z1 to Z10"`."""
+    refs = [part.ref for part in parts]
+    first = int(refs[0].strip(ascii_letters))
+    run = [refs[0].rstrip(digits) + str(first + i) for i in range(len(refs))]
+    if refs == run and len(refs) > 2:
+        return f"{refs[0]} to {refs[-1]}"
+    return " and ".join(filter(None, (", ".join(refs[:-1]), refs[-1])))
 
 
 def _text(name: str, /, **values: object) -> str:

@@ -68,8 +68,8 @@ def _thinned(
         apart_mm: least distance.
     """
     width, height = int(cells[:, 0].max()) + 3, int(cells[:, 1].max()) + 3
-    last = np.full(width * height, -1)  # place of each square, and the one in it before each place
-    before = np.full(len(places), -1)
+    last = np.full(width * height, -1)  # last kept place of each square
+    before = np.full(len(places), -1)  # kept place before it in the same square
     kept = np.ones(len(places), dtype=np.bool_)
     for i in range(len(places)):
         square = (int(cells[i, 1]) + 1) * width + int(cells[i, 0]) + 1

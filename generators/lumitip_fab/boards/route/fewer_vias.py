@@ -24,8 +24,8 @@ PASSES = 4
 LEAST_WORK = 1_000_000
 """Nodes that the searches may visit before no further attempt begins, about half a second,"""
 WORK_SHARE = 0.1
-"""or this share of those visited before. The same board gets the same copper by such a bound, which
-it would not by one in seconds."""
+"""or this share of those visited before, whichever is more; an attempt that has begun ends. The same
+board gets the same copper by such a bound, which it would not by one in seconds."""
 LEAST_GAIN_MM = 1e-3
 POLISHES = 2
 DEAR = 1e5  # price that no net pays when another way is left
@@ -78,19 +78,19 @@ class Attempt:
             kept: its paths that stay.
 
         Returns:
-            Whether these nets cost less now, without more vias; if not, they need `restore`.
+            Whether these nets cost less now, without more signal vias; if not, they need `restore`.
         """
         weights = CostWeights(FIRST_PRICE, via_mm=VIA_MM + 2.0)
         try:
             self._again(net, kept, weights)
-            for _ in range(ROUNDS):
+            for turn in range(ROUNDS):
                 if not self._gains():
                     return False
                 fought = {n.name: f for n in self.nets if (f := self.state.contested(n)).size}
-                if len(self.before.keys() | fought) > MOST_NETS:
-                    return False
                 if not fought:
                     return True
+                if turn == ROUNDS - 1 or len(self.before.keys() | fought) > MOST_NETS:
+                    return False
                 self._remember(fought)
                 weights = dataclasses.replace(weights, price=min(weights.price * GROWTH, TOP_PRICE))
                 in_the_way = [n for n in self.nets if n.name in fought]
@@ -99,7 +99,7 @@ class Attempt:
                     free = [p for p in paths if not self.state.contested(other, p).size]
                     if len(free) < len(paths):
                         self._again(other, supported(other, free), weights)
-        except Unreachable:  # of the paths that stay, a bend too sharp or a via too near
+        except Unreachable:  # a bend too sharp or a via too near
             return False
         return False
 
@@ -206,8 +206,12 @@ def polish(state: State, nets: list[Wanted], ground: str) -> None:
             before, vias = state.routed[net.name], Copper.of(state, net).vias
             weights = GROUND_COSMETIC if net.name == ground else COSMETIC
             state.count(net, -1)
-            state.routed[net.name] = connect(state, net, [], weights)
-            state.count(net, 1)
+            try:
+                state.routed[net.name] = connect(state, net, [], weights)
+            except Unreachable:  # a bend too sharp or a via too near: it stays as it was
+                continue
+            finally:
+                state.count(net, 1)
             more = net.name != ground and Copper.of(state, net).vias > vias
             if more or state.contested(net).size:
                 state.count(net, -1)

@@ -118,7 +118,7 @@ def search(  # noqa: PLR0912, PLR0915 - one loop; calls would hand on a score of
         narrow: its class beside pads narrower than its tracks.
         crowded: present cost of each net in the way.
         grain: `(2, 8)`: length of a step, more across the grain of a layer.
-        costs: of a via, of a bend of 45° and of one of 90°, in steps of the grid.
+        costs: of a via, and of bends of 45°, 90° and 135°, in steps of the grid.
         to_layer: `(2,)`: the least that vias still cost from each layer, 0 on one with a target.
         reached, came, seen: scratch of `2 * H * W`: cost, direction, and turn of last use.
         turn: number of this search, above all before it.

@@ -51,6 +51,9 @@ def _necked(net: Wanted, grid: Grid, *nodes: int) -> bool:
     return any(net.neck[divmod(node % grid.plane, grid.width)] for node in nodes)
 
 
+LEAST_VIA_MM = 0.7  # the cost of a via does not fall below it
+
+
 @dataclass(frozen=True)
 class Pressure:
     """How fast a place that several nets want becomes dear."""
@@ -59,10 +62,10 @@ class Pressure:
     """Factor of the price with each round."""
     history: float
     """More for each round that a node is fought for."""
-    via_mm: float = 0.7
+    via_mm: float = LEAST_VIA_MM
     """Cost of a via, as a length of track."""
     via_decay: float = 1.0
-    """Factor of that cost for a net with each round that it fights,"""
+    """Factor of that cost for a net each time that it is routed anew,"""
     late_via_decay: float = 1.0
     """and from round `LATE` on, when few nets still fight."""
     late_history: float | None = None
@@ -91,7 +94,6 @@ the bend, was routed only with its nets in the other order. Vias are dear at fir
 history, so that nets have time to find a way without; the few that still fight late get them
 cheaper with each round."""
 LATE = 13
-LEAST_VIA_MM = 0.7  # the cost of a via does not fall below it
 FIRST_PRICE = 0.6  # of a net in the way, in the first round
 TOP_PRICE = 30.0
 HISTORY_REACH = 1  # nodes round it

@@ -95,8 +95,8 @@ class Clear:
 
 def extent(text: Text, side: Side) -> Polygon:
     """The upright rectangle round a text as it will be drawn."""
-    centred = replace(text, x_mm=0.0, y_mm=0.0, angle_deg=upright(text.angle_deg, side))
-    left, low, right, high = _bounds_mm(centred, side)
+    at_origin = replace(text, x_mm=0.0, y_mm=0.0, angle_deg=upright(text.angle_deg, side))
+    left, low, right, high = _bounds_mm(at_origin, side)
     x, y = text.x_mm, text.y_mm
     return shapely.box(x + left, y + low, x + right, y + high)
 
