@@ -107,11 +107,9 @@ def connector_reversed(text: str) -> str:
 
 
 def track_added_near_another(text: str) -> str:
-    """A short piece with its edge 0.15 mm from one that there is."""
-    found = re.search(
-        r"\(segment \(start (\S+) (\S+)\) \(end \1 (\S+)\) \(width 0.2\)(.*?)\)\n", text
-    )
-    assert found
+    """A short piece with its edge 0.15 mm from the longest upright one that there is."""
+    upright = r"\(segment \(start (\S+) (\S+)\) \(end \1 (\S+)\) \(width 0.2\)(.*?)\)\n"
+    found = max(re.finditer(upright, text), key=lambda f: abs(float(f[2]) - float(f[3])))
     x, y = float(found[1]) + 0.35, (float(found[2]) + float(found[3])) / 2
     layer = re.search(r'\(layer "\S+"\)', found[4])
     assert layer

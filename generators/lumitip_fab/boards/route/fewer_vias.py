@@ -24,7 +24,7 @@ PASSES = 4
 LEAST_WORK = 1_000_000
 """Nodes that the searches may visit before no further attempt begins, about half a second,"""
 WORK_SHARE = 0.1
-"""or this share of those visited before, whichever is more; an attempt that has begun ends. The same
+"""or this share of those visited before if that is more; an attempt that has begun ends. The same
 board gets the same copper by such a bound, which it would not by one in seconds."""
 LEAST_GAIN_MM = 1e-3
 POLISHES = 2
