@@ -17,7 +17,8 @@ from lumitip_fab.derive import resolve
 from lumitip_fab.derive.making.tolerances import spreads
 from lumitip_fab.tolerance.bench import COLUMNS, bench
 from lumitip_fab.tolerance.draws import draw
-from lumitip_fab.tolerance.study import Options, case_of, on_cores
+from lumitip_fab.tolerance.options import Options
+from lumitip_fab.tolerance.study import case_of, on_cores
 
 FINGERS_A_MINUTE = 500
 CORES = 2

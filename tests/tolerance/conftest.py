@@ -8,7 +8,8 @@ from lumitip_fab.config.load import load
 from lumitip_fab.derive import resolve
 from lumitip_fab.derive.auto.resolve import Resolved
 from lumitip_fab.tolerance.bench import Bench
-from lumitip_fab.tolerance.study import Options, case_of
+from lumitip_fab.tolerance.options import Options
+from lumitip_fab.tolerance.study import case_of
 
 
 @pytest.fixture(scope="session")

@@ -9,7 +9,9 @@ import pytest
 from lumitip_fab.config.load import load
 from lumitip_fab.derive.auto.resolve import Resolved
 from lumitip_fab.derive.making.tolerances import spreads
+from lumitip_fab.errors import InputError
 from lumitip_fab.tolerance.draws import FACTORS, draw
+from lumitip_fab.tolerance.streams import Stream, generator
 
 
 @pytest.mark.parametrize("name", FACTORS)
@@ -54,5 +56,44 @@ def test_ones_own_figures_replace_those_of_the_catalogue(design_dir: Path, tmp_p
     (tmp_path / "parts").mkdir()
     text = (design_dir / "parts" / "tolerances.toml").read_text(encoding="utf-8")
     own = tmp_path / "parts" / "tolerances.toml"
-    own.write_text(text.replace('spread = 0.25\nmeasure = "look', 'spread = 0.1\nmeasure = "look'))
+    own.write_text(text.replace('spread = 0.25\nmeasure = "with', 'spread = 0.1\nmeasure = "with'))
     assert spreads(load(file))["mask_shift"] == 0.1
+
+
+@pytest.mark.parametrize(
+    ("name", "line", "place"),
+    [
+        ("mask_turn", 'unit = "mm"', r"mask_turn\.unit is 'mm'"),
+        ("gap", 'unit = "deg"', r"gap\.unit is 'deg'"),
+        ("led", 'unit = "mm"', r"led\.unit is 'mm'"),
+        ("hole", 'of = "pin"', r"hole\.of is 'pin'"),
+        ("print", 'of = "layer"', r"print\.of is 'layer'"),
+    ],
+)
+def test_each_deviation_has_its_unit_and_length(
+    design_dir: Path, tmp_path: Path, name: str, line: str, place: str
+) -> None:
+    file = tmp_path / "fingertip.toml"
+    file.write_bytes((design_dir / "fingertip.toml").read_bytes())
+    (tmp_path / "parts").mkdir()
+    text = (design_dir / "parts" / "tolerances.toml").read_text(encoding="utf-8")
+    before, after = text.split(f"[{name}]\n")
+    entry, *rest = after.split("\n\n")
+    key = line.split(" ", maxsplit=1)[0]
+    kept = [one for one in entry.split("\n") if not one.startswith(f"{key} =")]
+    changed = "\n\n".join(["\n".join([line, *kept]), *rest])
+    own = tmp_path / "parts" / "tolerances.toml"
+    own.write_text(f"{before}[{name}]\n{changed}", encoding="utf-8")
+    with pytest.raises(InputError, match=rf"tolerances\.toml:\d+: {place}"):
+        load(file)
+
+
+def test_no_two_uses_of_random_numbers_share_a_stream(design: Resolved) -> None:
+    table = design.config.catalogue.tolerances
+    ones = dict.fromkeys(FACTORS, 1.0)
+    first, other = (draw(table, ones, 32, 40, 2, part) for part in (0, 1))
+    begins = [
+        *(tuple(draws[name].ravel()[:2]) for draws in (first, other) for name in FACTORS),
+        *(tuple(generator(2, stream).standard_normal(2)) for stream in Stream),
+    ]
+    assert len(set(begins)) == len(begins)

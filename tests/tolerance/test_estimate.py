@@ -8,9 +8,12 @@ from lumitip.estimation.search import ALPHA_SD, GAP_SD_MM
 from lumitip.twin import Model
 from lumitip_fab.derive.auto.resolve import Resolved
 from lumitip_fab.derive.making.tolerances import spreads
-from lumitip_fab.tolerance.bench import AGREED, Bench
+from lumitip_fab.tolerance.bench import AGREED, COLUMNS, Bench
 from lumitip_fab.tolerance.draws import Draws, draw
+from lumitip_fab.tolerance.estimate import gross
 from lumitip_fab.tolerance.light import Lines
+from lumitip_fab.tolerance.options import Goals
+from lumitip_fab.tolerance.study import yield_of
 
 
 def drawn(design: Resolved, fingers: int, seed: int) -> Draws:
@@ -66,10 +69,20 @@ def test_self_calibration_lowers_the_misfit_of_an_uneven_finger(
     fingers = {name: 0.0 * of for name, of in drawn(design, 4, 2).items()}
     gains = 0.06 * np.random.default_rng(1).standard_normal((4, 32))
     uneven = {**fingers, "drift": gains, "gap": np.full((4, 1), 0.5)}
-    tared, learned = tried.errors(uneven, ("after tare", "after self-calibration"))
+    tared, learned = tried.errors(uneven, ("after tare", "after self-calibration"))[..., :4]
     assert np.all(learned.mean(axis=0) < 0.9 * tared.mean(axis=0))
     assert learned.sum() < 0.75 * tared.sum()
     known = tried.estimates.learned(tried.frames(uneven, tried.use)["use"].tared, tried.use["use"])
     off = known.gains / known.gains.mean(axis=1, keepdims=True) - 1.0 - gains
     assert np.sqrt(np.mean(off**2)) < 0.05
     assert np.allclose(known.drift[:, 0] * GAP_SD_MM, 0.5, atol=0.25)
+
+
+def test_a_finger_with_a_gross_error_is_never_good(design: Resolved, tried: Bench) -> None:
+    assert gross(np.array([[2.0, 0.0], [0.0, -10.0], [1.9, 9.0]])).tolist() == [True, True, False]
+    fingers = {name: 0.0 * of for name, of in drawn(design, 2, 2).items()}
+    far = {**fingers, "mask_shift": np.array([[0.0, 0.0, 4.0, 4.0], [0.0] * 4])}
+    rows = tried.errors(far, COLUMNS[1:2])[0]
+    assert rows[0, 4] > 0.0
+    assert rows[1, 4] == 0.0
+    assert yield_of(rows, Goals(2.0, 10.0)) == 0.5

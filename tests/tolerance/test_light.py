@@ -136,3 +136,10 @@ def test_a_tare_takes_away_the_spread_of_the_detectors(tried: Bench, exact: Draw
     with_spread, without = (tried.frames(one, tried.lines)["edge"] for one in (uneven, exact))
     assert np.abs(with_spread.raw - without.raw).max() > 25.0
     assert np.abs(with_spread.tared - without.tared).max() <= 4.0, "but for saturation"
+
+
+def test_a_tare_corrects_the_spread_of_the_leds_only_in_part(tried: Bench, exact: Draws) -> None:
+    uneven = changed(exact, led=0.3 * np.sin(2.0 * np.arange(32.0)))
+    with_spread, without = (tried.frames(one, tried.lines)["edge"] for one in (uneven, exact))
+    left = np.abs(with_spread.tared - without.tared).max()
+    assert 4.0 < left < np.abs(with_spread.raw - without.raw).max()

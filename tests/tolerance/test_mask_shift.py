@@ -1,16 +1,20 @@
 """How far a mask may be off: the figure in the manual, and where it comes from."""
 
+from dataclasses import replace
 from functools import partial
 
 import pytest
 
 from lumitip_fab.derive import derive
 from lumitip_fab.derive.auto.resolve import Resolved
-from lumitip_fab.derive.making.tolerances import fingerprint, spreads
+from lumitip_fab.derive.making.tolerances import fingerprint, known_mask_shift, spreads
+from lumitip_fab.design.making import MaskShift
 from lumitip_fab.docs.wrapping import wrapping_steps
 from lumitip_fab.tolerance.bench import bench
 from lumitip_fab.tolerance.draws import draw
-from lumitip_fab.tolerance.study import MASK_FINGERS, Options, case_of, mask_allowance_mm
+from lumitip_fab.tolerance.options import Goals, Options
+from lumitip_fab.tolerance.report import mask_line
+from lumitip_fab.tolerance.study import case_of, mask_allowance_mm
 
 MASK = {
     "flaps": [{"number": 1, "reach_mm": 5.0}],
@@ -27,15 +31,60 @@ def test_the_figure_of_the_catalogue_is_what_a_study_finds(design: Resolved) -> 
     table = config.catalogue.tolerances
     take = partial(draw, table, spreads(config), len(layout))
     errors = bench(case_of(config, layout, options)).errors
-    found = mask_allowance_mm(errors, take(MASK_FINGERS, options.seed), options.goals)
-    assert found == design.design.mask.most_shift_mm
+    found = mask_allowance_mm(
+        errors, take(options.mask_conditions.fingers, options.seed), options.goals
+    )
+    assert design.design.mask.shift is not None
+    assert found == design.design.mask.shift.most_mm
 
 
 def test_the_manual_quotes_it_where_the_mask_is_laid(design: Resolved) -> None:
     steps = {step.title: step.text for step in wrapping_steps(design.design, MASK, "receiver")}
-    most_mm = design.design.mask.most_shift_mm
-    assert f"The mask may be {most_mm:g} mm off" in steps["Wrap the finger"]
-    assert "simulated" in steps["Wrap the finger"]
+    shift = design.design.mask.shift
+    assert shift is not None
+    text = " ".join(steps["Wrap the finger"].split())
+    assert f"Both masks may be off their fingers by {shift.most_mm:g} mm, in any direction" in text
+    assert "simulated" in text
+    assert "The parts below are no reference" in text
+
+
+def test_the_manual_quotes_the_goals_of_the_stored_record(design: Resolved) -> None:
+    shift = MaskShift(0.3, 90.0, 0.4, 1.5)
+    other = replace(design.design, mask=replace(design.design.mask, shift=shift))
+    steps = {step.title: step.text for step in wrapping_steps(other, MASK, "receiver")}
+    text = " ".join(steps["Wrap the finger"].split())
+    assert "90 % of such fingers then find edges and cables to 0.4 mm and 1.5°" in text
+
+
+def test_the_stored_record_is_of_the_default_options(design: Resolved) -> None:
+    assert design.config.catalogue.mask_shifts.conditions == Options().mask_conditions
+
+
+def test_goals_poses_and_the_version_of_the_model_change_the_fingerprint(
+    design: Resolved, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    config, layout = design.config, design.design.layout
+    changed = (Options(Goals(0.5)), Options(poses=8), Options(seed=1), Options(gap_mm=4.0))
+    of = partial(fingerprint, config, layout)
+    found = {of(options.mask_conditions) for options in (Options(), *changed)}
+    assert len(found) == 5
+    monkeypatch.setattr("lumitip_fab.derive.making.tolerances.MODEL_VERSION", 1_000)
+    assert of(Options().mask_conditions) not in found
+    assert known_mask_shift(config, layout) is None
+
+
+@pytest.mark.parametrize(
+    ("mm", "more", "text"),
+    [
+        (1.55, True, "by 1.55 mm or more against their fingers, in any direction: 95 % of 200"),
+        (0.45, False, "by 0.45 mm against"),
+        (None, False, "Fewer than 95 % of 200 fingers are good"),
+    ],
+)
+def test_the_line_has_the_number_of_fingers_and_says_when_the_shift_saturates(
+    mm: float | None, more: bool, text: str
+) -> None:
+    assert text in mask_line({"mm": mm, "or_more": more, "fingers": 200})
 
 
 @pytest.mark.parametrize(
@@ -50,12 +99,13 @@ def test_it_says_nothing_of_a_design_that_was_not_studied(
     design: Resolved, field: str, value: object
 ) -> None:
     other = derive(design.config.with_values({field: value}))
-    assert other.mask.most_shift_mm is None
+    assert other.mask.shift is None
     texts = [step.text for step in wrapping_steps(other, MASK, "receiver")]
-    assert not any("mm off" in text for text in texts)
+    assert not any("off their fingers" in text for text in texts)
 
 
 def test_a_gripper_and_a_mould_change_nothing_of_it(design: Resolved) -> None:
     other = design.config.with_values({"coupling.gripper": "wsg50", "mould.wall_mm": 3.0})
     layout = design.design.layout
-    assert fingerprint(other, layout) == fingerprint(design.config, layout)
+    conditions = Options().mask_conditions
+    assert fingerprint(other, layout, conditions) == fingerprint(design.config, layout, conditions)

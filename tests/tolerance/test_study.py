@@ -1,23 +1,30 @@
 """Whole studies: their figures, their files, what makes the yield fall, and bad options."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from rich.console import Console
 
 from lumitip_fab.cli import main
 from lumitip_fab.config.load import load
+from lumitip_fab.derive import derive
 from lumitip_fab.derive.auto.resolve import Resolved
 from lumitip_fab.derive.making.tolerances import spreads
-from lumitip_fab.errors import InputError
+from lumitip_fab.errors import InputError, OutputError
+from lumitip_fab.tolerance import report
 from lumitip_fab.tolerance.bench import COLUMNS, Bench
 from lumitip_fab.tolerance.draws import FACTORS, draw
+from lumitip_fab.tolerance.options import Goals, Options
 from lumitip_fab.tolerance.study import (
-    Goals,
-    Options,
+    MOST_SHIFT_MM,
+    case_of,
+    draws_of,
     mask_allowance_mm,
+    sensitivities,
     study,
     wilson,
     yield_of,
@@ -46,15 +53,15 @@ def test_a_study_has_all_figures_and_says_what_they_are_worth(alone: dict[str, A
         assert entry["confidence"] in ("datasheet", "measured", "inferred", "assumed")
         assert entry["source"] and entry["measure"] and entry["spread"] > 0.0
     assert alone["evidence"] == "simulated with our own model"
-    assert set(alone["yield_if_exact"]) <= set(FACTORS)
+    assert not any("total" in entry for entry in alone["tolerances"].values())
+    assert alone["sobol_draws"] == 0, "16 fingers are too few for indices"
+    assert alone["yield_if_exact"] == {}
     assert alone["pose_estimator"]["agree_percent"] > 60.0
 
 
 def test_the_command_writes_the_same_bytes_on_all_cores_and_on_one(
     alone: dict[str, Any], design_dir: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from lumitip_fab.tolerance import report
-
     file, out = str(design_dir / "fingertip.toml"), tmp_path / "cores"
     assert main(["tolerance", file, "--out", str(out), *COMMAND]) == 0
     report.write(alone, tmp_path / "one")
@@ -64,7 +71,15 @@ def test_the_command_writes_the_same_bytes_on_all_cores_and_on_one(
         assert (out / name).read_bytes() == (tmp_path / "one" / name).read_bytes(), name
     assert json.loads((out / "tolerance.json").read_text(encoding="utf-8")) == alone
     printed = " ".join(capsys.readouterr().out.split())
-    for text in (*COLUMNS, "simulated with our own model", "assumed", "tolerance.png"):
+    for text in (
+        *COLUMNS,
+        "simulated with our own model",
+        "No Sobol indices: they need 64 draws or more. Use --fingers 128 or more.",
+        "for these poses",
+        "gross errors",
+        "Optimistic:",
+        "tolerance.png",
+    ):
         assert text in printed
 
 
@@ -79,7 +94,7 @@ def test_the_yield_falls_when_a_tolerance_grows_or_the_goals_tighten(
         yields.append(yield_of(rows, Goals()))
         assert yield_of(rows, Goals(0.2, 1.0)) <= yields[-1] <= yield_of(rows, Goals(1.0, 5.0))
     assert yields == sorted(yields, reverse=True)
-    assert yields[0] > 0.9
+    assert yields[0] > 0.8
     assert yields[-1] < 0.5
 
 
@@ -93,7 +108,7 @@ def test_the_mask_may_be_less_off_where_the_goals_are_tighter(
     )
     assert narrow is None
     assert wide is not None and default is not None
-    assert 0.0 <= default < wide
+    assert 0.0 <= default <= wide, "gross errors count with wide goals, too"
 
 
 def test_the_interval_of_a_yield_narrows_with_more_fingers() -> None:
@@ -107,8 +122,10 @@ def test_the_interval_of_a_yield_narrows_with_more_fingers() -> None:
     [
         (["--fingers", "2"], "--fingers: is 2 fingers; 16 to 100000 is allowed"),
         (["--poses", "0"], "--poses: is 0 poses; 4 to 1000 is allowed"),
-        (["--position", "nan"], "--position: is nan mm; 0.01 to 2 is allowed"),
-        (["--angle", "-1"], "--angle: is -1 degrees; 0.05 to 10 is allowed"),
+        (["--position", "nan"], "--position: is nan mm; 0.01 to 1 is allowed"),
+        (["--angle", "-1"], "--angle: is -1 degrees; 0.05 to 5 is allowed"),
+        (["--position", "2"], "--position: is 2 mm; 0.01 to 1 is allowed"),
+        (["--angle", "10"], "--angle: is 10 degrees; 0.05 to 5 is allowed"),
         (["--gap", "0"], "--gap: is 0 mm; 1 to 10 is allowed"),
         (["--seed", "-3"], "--seed: is -3; 0 to 4294967295 is allowed"),
     ],
@@ -131,3 +148,72 @@ def test_a_tolerance_that_cannot_be_is_rejected_with_its_place(
     (tmp_path / "parts" / "tolerances.toml").write_text(wrong, encoding="utf-8")
     with pytest.raises(InputError, match=r"tolerances\.toml:\d+: gap\.spread is -0\.4"):
         load(file)
+
+
+def linear(drawn: dict[str, Any], _: tuple[str, ...]) -> Any:
+    """Errors that only the gap changes."""
+    away = np.abs(drawn["gap"])
+    return np.concatenate([1.0 + away] * 4 + [0.0 * away], axis=1)[None]
+
+
+def test_indices_are_printed_with_their_draws_and_deviation(
+    design: Resolved, alone: dict[str, Any], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert [draws_of(count) for count in (127, 128, 500)] == [0, 64, 128]
+    table, ones = design.config.catalogue.tolerances, dict.fromkeys(FACTORS, 1.0)
+
+    def take(count: int, seed: int, part: int = 0) -> Any:
+        return draw(table, ones, 4, count, seed, part)
+
+    found = sensitivities(linear, take, 64, 0)
+    assert found["gap"]["total"]["position"] == pytest.approx(1.0, abs=0.3)
+    assert found["hole"]["total"]["position"] == 0.0
+    entries = {"gap": {**alone["tolerances"]["gap"], **found["gap"]}}
+    report.print_tables({**alone, "sobol_draws": 64, "tolerances": entries}, Console(width=200))
+    printed = " ".join(capsys.readouterr().out.split())
+    of = found["gap"]
+    assert f"{of['total']['angle']:.2f} ± {of['total_sd']['angle']:.2f}" in printed
+    assert "n = 64" in printed
+
+
+def test_the_shift_of_the_masks_saturates(design: Resolved) -> None:
+    drawn = draw(design.config.catalogue.tolerances, dict.fromkeys(FACTORS, 1.0), 32, 4, 0)
+    assert mask_allowance_mm(linear, {**drawn, "gap": 0.0 * drawn["gap"]}, Goals(9, 9)) == 1.55
+    assert MOST_SHIFT_MM == 1.55
+
+
+@pytest.mark.parametrize("place", ["file", "file/below", "/proc/study"])
+def test_a_folder_that_cannot_be_written_is_rejected_before_the_study(
+    place: str,
+    design_dir: Path,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("lumitip_fab.cli.tolerance.study", None)
+    (tmp_path / "file").write_text("kept", encoding="utf-8")
+    out = tmp_path / place
+    assert main(["tolerance", str(design_dir / "fingertip.toml"), "--out", str(out)]) == 2
+    text = capsys.readouterr().err
+    assert text.startswith(f"--out: is {out}, which cannot be written (")
+    assert text.rstrip().endswith("Choose another folder.")
+    assert (tmp_path / "file").read_text(encoding="utf-8") == "kept"
+
+
+def test_a_file_that_cannot_be_replaced_is_one_error(alone: dict[str, Any], tmp_path: Path) -> None:
+    (tmp_path / "tolerance.json").mkdir()
+    with pytest.raises(OutputError, match="cannot be written"):
+        report.write(alone, tmp_path)
+
+
+def test_cells_on_one_line_are_rejected(design: Resolved) -> None:
+    layout = design.design.layout
+    line = replace(layout, y_mm=np.zeros(len(layout)))
+    with pytest.raises(InputError, match=r"grid\.columns is \[5, 4.*all cells lie on one line"):
+        case_of(design.config, line, FEW)
+
+
+def test_compliant_fingers_are_rejected(design_dir: Path) -> None:
+    flex = load(design_dir / "presets" / "flex.toml")
+    with pytest.raises(InputError, match=r'backing\.variant is "flex"; .* allows "rigid" alone'):
+        case_of(flex, derive(flex).layout, FEW)

@@ -1,4 +1,4 @@
-"""`lumitip-fab tolerance`: how many fingers meet the goals as they are really made."""
+"""`lumitip-fab tolerance`: share of built fingers that meet the goals."""
 
 import argparse
 import json
@@ -8,13 +8,16 @@ from lumitip_fab.cli.screen import ERR, OUT
 from lumitip_fab.config.load import load
 from lumitip_fab.derive import resolve
 from lumitip_fab.tolerance import report
-from lumitip_fab.tolerance.study import Goals, Options, study
+from lumitip_fab.tolerance.options import Goals, Options
+from lumitip_fab.tolerance.study import study
 
 
 def run(options: argparse.Namespace) -> int:
     """Run a study of tolerances."""
     goals = Goals(options.position, options.angle)
     asked = Options(goals, options.gap, options.fingers, options.poses, options.seed)
+    if options.out:
+        report.prepare(options.out)
     resolved = resolve(load(options.file))
     silent = options.quiet or options.json
     with nullcontext() if silent else ERR.status("building and trying fingers …"):

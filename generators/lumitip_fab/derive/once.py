@@ -29,7 +29,7 @@ from lumitip_fab.derive.making.panels import derive_panels
 from lumitip_fab.derive.making.printing import derive_heat, derive_slicing
 from lumitip_fab.derive.making.purchase import derive_purchase
 from lumitip_fab.derive.making.supplies import Assembled, derive_supplies
-from lumitip_fab.derive.making.tolerances import known_mask_shift_mm
+from lumitip_fab.derive.making.tolerances import known_mask_shift
 from lumitip_fab.derive.mount import mount
 from lumitip_fab.derive.mount.fasteners import derive_fasteners
 from lumitip_fab.derive.mount.flange_body import derive_flange_body, derive_system
@@ -173,7 +173,7 @@ def derive_once(config: Input, faults: Diagnostics) -> Design:
             packages=derive_packages(config),
             rules=rules,
             electrical=figures,
-            mask=replace(sheet, most_shift_mm=known_mask_shift_mm(config, layout)),
+            mask=replace(sheet, shift=known_mask_shift(config, layout)),
             mould=casting,
             clamps=clamps,
             printing=printing,

@@ -41,6 +41,19 @@ class Sheet:
 
 
 @dataclass(frozen=True)
+class MaskShift:
+    """Largest shift of both masks against their fingers, in any direction; simulated."""
+
+    most_mm: float
+    good_percent: float
+    """Share of the fingers that then meet the goals (%)."""
+    position_mm: float
+    """Goal of the position of edges and cables, rms (mm)."""
+    angle_deg: float
+    """Goal of their angle (degrees)."""
+
+
+@dataclass(frozen=True)
 class Mask:
     """The mask in the finger's frame, but for the page that it is printed on."""
 
@@ -61,8 +74,8 @@ class Mask:
     sheet: Sheet
     coupon: Box
     """A piece of the mask's material without holes that covers all cells of the receiver."""
-    most_shift_mm: float | None = None
-    """How far each mask may be off its finger, simulated; none where it was not computed."""
+    shift: MaskShift | None = None
+    """How far both masks may be off their fingers; none where it was not computed."""
 
     @property
     def material(self) -> str:

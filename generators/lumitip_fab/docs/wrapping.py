@@ -5,6 +5,7 @@ import math
 from typing import Any
 
 from lumitip_fab.design import Design, Finger
+from lumitip_fab.design.making import MaskShift
 from lumitip_fab.docs.steps import WorkStep
 from lumitip_fab.pipeline.artefact import Artefact, Facts, Files
 from lumitip_fab.text import as_written, passage
@@ -112,9 +113,9 @@ def _lip(design: Design, facts: Facts) -> str:
     return passage(_TEXTS, name).format(lip_mm=lip_mm, from_mm=math.ceil(lip_mm + _BEYOND_MM))
 
 
-def _off(most_mm: float | None) -> str:
-    """How far the mask may be off, of a design that it was computed for."""
-    return "" if most_mm is None else passage(_TEXTS, "off").format(most_mm=most_mm)
+def _off(shift: MaskShift | None) -> str:
+    """How far both masks may be off, of a design that it was computed for."""
+    return "" if shift is None else passage(_TEXTS, "off").format(**vars(shift))
 
 
 def _what(design: Design) -> str:
@@ -141,7 +142,7 @@ def _values(design: Design, facts: Facts, name: str) -> dict[str, object]:
         "fold": fold,
         "held": passage(_TEXTS, "held").format(tape=design.mould.tape),
         "lip": _lip(design, facts),
-        "off": _off(mask.most_shift_mm),
+        "off": _off(mask.shift),
         "tape": design.mould.tape,
         **(_printed(design) if mask.route == "tpu" else _creased(design)),
     }

@@ -1,5 +1,7 @@
-"""Tolerances: how many fingers meet the goals as they are really made.
+"""Tolerances: how many fingers meet the goals as they are built.
 
+options   settings and their limits
+streams   random numbers from one seed
 draws     deviations of built fingers, from the catalogue's distributions
 light     the twin's rays, with every part of a finger at its own place
 estimate  the pose estimator on many frames at once

@@ -6,20 +6,19 @@ from functools import lru_cache
 import numpy as np
 from scipy.stats import qmc
 
-from lumitip.estimation.estimator import DIAMETER_MM
+from lumitip.estimation.estimator import DIAMETER_MM, NOISE
 from lumitip.grid import Floats
 from lumitip.layout import Layout
 from lumitip.twin import Model, Twin
 from lumitip.twin.optics import FULL, values_of_drive
 from lumitip_fab.tolerance.draws import Draws, built
-from lumitip_fab.tolerance.estimate import MOST_DEG, MOST_MM, Estimates
+from lumitip_fab.tolerance.estimate import Estimates, gross
 from lumitip_fab.tolerance.light import Lines, Rays
+from lumitip_fab.tolerance.streams import Stream, generator
 
 COLUMNS = ("as built", "after tare", "after self-calibration")
 """What is done with a finger before its errors count; the drawing says what is expected."""
 KINDS = ("edge", "cable")
-NOISE = 1.5
-"""Standard deviation of a value (counts of 255)."""
 LEARNING = 40
 """Edges by which a finger calibrates itself."""
 AGREED = (0.05, 0.2)
@@ -61,7 +60,7 @@ class Bench:
         """True poses."""
         self.use = {"use": lines(case, "edge", LEARNING, 1)}
         """Edges of self-calibration."""
-        chance = np.random.default_rng((case.seed, len(KINDS)))
+        chance = generator(case.seed, Stream.NOISE)
         # The same noise for every finger: what differs between fingers is how they are built.
         self._noise = {
             name: NOISE * chance.standard_normal((len(of.poses), len(case.layout)))
@@ -69,8 +68,8 @@ class Bench:
         }
 
     def errors(self, draws: Draws, columns: tuple[str, ...] = COLUMNS) -> Floats:
-        """Rms errors of fingers over their poses, shape `(columns, fingers, 4)`: offset (mm) and
-        angle (degrees) of edges, then of cables.
+        """Errors of fingers over their poses, shape `(columns, fingers, 5)`: rms of offset (mm)
+        and angle (degrees) of edges, then of cables, and the share of the poses with a gross error.
 
         Args:
             draws: deviations of the fingers.
@@ -91,7 +90,9 @@ class Bench:
                 )
                 for kind in KINDS
             ]
-            rows.append(np.hstack([np.sqrt((one**2).mean(axis=1)) for one in missed]))
+            rms = [np.sqrt((one**2).mean(axis=1)) for one in missed]
+            share = np.mean([gross(one).mean(axis=1) for one in missed], axis=0)
+            rows.append(np.column_stack([*rms, share]))
         return np.array(rows)
 
     def compared(self, draws: Draws) -> dict[str, float]:
@@ -103,15 +104,15 @@ class Bench:
             gross error.
         """
         frames, known = self.frames(draws, self.lines), self.estimates.nothing_known
-        agreed, flagged, gross = [], [], []
+        agreed, flagged, unseen = [], [], []
         for kind, of in self.lines.items():
             tared = frames[kind].tared
             own = self.estimates.errors(tared, of, known(len(tared)))
             whole, ambiguous = self.estimates.searched(tared, of)
             agreed.append((np.abs(own - whole) <= AGREED).all(axis=2) & ~ambiguous)
             flagged.append(ambiguous)
-            gross.append((np.abs(whole) >= (MOST_MM, MOST_DEG)).any(axis=2) & ~ambiguous)
-        shares = {"agree": agreed, "ambiguous": flagged, "gross": gross}
+            unseen.append(gross(whole) & ~ambiguous)
+        shares = {"agree": agreed, "ambiguous": flagged, "gross": unseen}
         percent = {f"{name}_percent": 100.0 * float(np.mean(of)) for name, of in shares.items()}
         return {"frames": float(np.size(agreed)), **percent}
 
@@ -145,7 +146,7 @@ def lines(case: Case, kind: str, count: int, draw: int = 0) -> Lines:
     """Lines in any direction over the middle of the grid, evenly spread at places that the seed
     shifts."""
     reach_mm = _REACH * min(float(np.ptp(case.layout.x_mm)), float(np.ptp(case.layout.y_mm)))
-    shift = np.random.default_rng((case.seed, KINDS.index(kind), draw)).random(2)
+    shift = generator(case.seed, Stream.POSES, KINDS.index(kind), draw).random(2)
     even = (qmc.Halton(2, scramble=False).random(count) + shift) % 1.0
     places = (2.0 * even - 1.0) * (np.pi / 2.0, reach_mm)
     return Lines(kind, places, DIAMETER_MM)

@@ -9,6 +9,7 @@ from lumitip.layout import Layout
 from lumitip.twin import Model
 from lumitip_fab.catalogue.tolerances import Tolerances
 from lumitip_fab.tolerance.light import Built
+from lumitip_fab.tolerance.streams import Stream, generator
 
 FACTORS = tuple(Tolerances.model_fields)
 """Names of the deviations."""
@@ -39,7 +40,12 @@ Draws = Mapping[str, Floats]
 
 
 def draw(
-    tolerances: Tolerances, spread: Mapping[str, float], cells: int, fingers: int, seed: int
+    tolerances: Tolerances,
+    spread: Mapping[str, float],
+    cells: int,
+    fingers: int,
+    seed: int,
+    part: int = 0,
 ) -> Draws:
     """Draw deviations of many fingers; more fingers begin with the same ones.
 
@@ -48,11 +54,12 @@ def draw(
         spread: of each, see `spreads`.
         cells: of a finger.
         fingers: pairs of them.
-        seed: of the random numbers; each deviation has its own.
+        seed: of the random numbers; each deviation has its own stream.
+        part: which of several independent sets of fingers.
     """
     drawn = {}
     for number, name in enumerate(FACTORS):
-        chance = np.random.default_rng((seed, number))
+        chance = generator(seed, Stream.DEVIATIONS, part, number)
         shape = (fingers, _EACH[name] * cells if name in _EACH else _WHOLE[name])
         uniform = getattr(tolerances, name).distribution == "uniform"
         of = chance.uniform(-1.0, 1.0, shape) if uniform else chance.standard_normal(shape)

@@ -31,7 +31,7 @@ from lumitip.twin import Model
 from lumitip_fab.tolerance.light import Lines
 
 MOST_MM, MOST_DEG = 2.0, 10.0
-"""A larger error is a gross one, and counts as this one."""
+"""An error of this size or more is gross. It counts as this one in rms errors."""
 _STARTS, _KEPT = 8, 3  # poses of the bank that a doubtful fit is tried from, and kept
 _GLANCE, _ROUNDS = 2, 8  # steps of all of them, and of the kept ones
 _LEARNED = 3  # rounds of self-calibration
@@ -200,6 +200,15 @@ def _moved(found: Fit, drift: Floats) -> Fit:
     pose = found.pose.copy()
     pose[-2 - drift.size : -2] += drift
     return replace(found, pose=pose)
+
+
+def gross(errors: Floats) -> NDArray[np.bool_]:
+    """Which estimates have a gross error of offset or angle.
+
+    Args:
+        errors: clipped offset (mm) and angle (degrees), shape `(..., 2)`.
+    """
+    return np.asarray((np.abs(errors) >= (MOST_MM, MOST_DEG)).any(axis=-1))
 
 
 def _errors(poses: Floats, lines: Lines) -> Floats:

@@ -2,6 +2,9 @@
 
 import io
 import json
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -9,24 +12,37 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from lumitip_fab.errors import OutputError
 from lumitip_fab.pipeline.manifest import write_file
+from lumitip_fab.tolerance.estimate import MOST_DEG, MOST_MM
+from lumitip_fab.tolerance.options import GOOD_PERCENT
+from lumitip_fab.tolerance.study import LEAST_DRAWS
 
 _DOTS_PER_INCH = 150
 _SHOWN = 6  # tolerances in the terminal; the files have all
 _FIGURES = ("position", "angle")
+_NO_INDICES = (
+    f"No Sobol indices: they need {LEAST_DRAWS} draws or more. Use --fingers {2 * LEAST_DRAWS} or "
+    "more."
+)
+OPTIMISTIC = (
+    "Optimistic: self-calibration learns in the gap that it is tested in, fits begin near the true "
+    "pose or at the bank's, and frames that PoseEstimator flags as ambiguous count as found."
+)
 _UNITS = {"mm": " mm", "deg": "°", "share": " %"}
 
 
 def print_tables(study: dict[str, Any], console: Console) -> None:
     """Print yield, errors, and the tolerances that matter most."""
-    goals, mask = study["goals"], study["mask_shift_mm"]
+    goals = study["goals"]
     table = Table(
         title=f"{study['fingers']} built pairs of fingers, {study['poses']['edge']} edges and "
         f"{study['poses']['cable']} cables each, gap {study['gap_mm']:g} mm; "
-        f"{study['evidence']}"
+        f"{study['evidence']}",
+        caption="Intervals: for these poses; other poses are not in them.",
     )
     table.add_column("")
-    for heading in ("good", "95 % interval", "edge mm, °", "cable mm, °"):
+    for heading in ("good", "95 % interval", "gross errors", "edge mm, °", "cable mm, °"):
         table.add_column(heading, justify="right")
     for name, column in study["columns"].items():
         low, high = column["yield_95"]
@@ -35,15 +51,20 @@ def print_tables(study: dict[str, Any], console: Console) -> None:
             for kind in ("edge", "cable")
         )
         interval = f"{100 * low:.0f} to {100 * high:.0f} %"
-        table.add_row(name, f"{100 * column['yield']:.1f} %", interval, edge, cable)
+        good, gross = f"{100 * column['yield']:.1f} %", f"{100 * column['gross_errors']:.2f} %"
+        table.add_row(name, good, interval, gross, edge, cable)
     console.print(table)
     console.print(
-        f"Good: rms errors within {goals['position_mm']:g} mm and {goals['angle_deg']:g}°. "
-        "Errors: 95 % of the fingers have less, rms over their poses.",
+        f"Good: rms errors within {goals['position_mm']:g} mm and {goals['angle_deg']:g}°, and no "
+        f"gross error ({MOST_MM:g} mm or {MOST_DEG:g}°). Errors: 95 % of the fingers have less, "
+        "rms over their poses.",
         soft_wrap=True,
     )
-    console.print(_mask_line(mask), soft_wrap=True)
-    console.print(_sensitive(study))
+    console.print(mask_line(study["mask_shift"]), soft_wrap=True)
+    if study["sobol_draws"]:
+        console.print(_sensitive(study))
+    else:
+        console.print(_NO_INDICES, soft_wrap=True)
     compared = study["pose_estimator"]
     console.print(
         "Frames are estimated many at once. PoseEstimator gives the same pose in "
@@ -51,19 +72,26 @@ def print_tables(study: dict[str, Any], console: Console) -> None:
         f"flags {compared['ambiguous_percent']:.0f} % as ambiguous.",
         soft_wrap=True,
     )
+    console.print(OPTIMISTIC, soft_wrap=True)
 
 
-def _mask_line(mask_mm: float | None) -> str:
-    if mask_mm is None:
-        return "Fewer than 95 % of the fingers are good even with every mask in its place."
+def mask_line(shift: dict[str, Any]) -> str:
+    """How far both masks may be off, from `mask_shift` of a study."""
+    share = f"{GOOD_PERCENT:g} % of {shift['fingers']} fingers"
+    if shift["mm"] is None:
+        return f"Fewer than {share} are good even with every mask in its place."
+    more = " or more" if shift["or_more"] else ""
     return (
-        f"Each mask may be {mask_mm:g} mm off: 95 % of the fingers are then good after a tare, all "
-        "else as it is made."
+        f"Both masks may be off by {shift['mm']:g} mm{more} against their fingers, in any "
+        f"direction: {share} are then good after a tare, with their other deviations."
     )
 
 
 def _sensitive(study: dict[str, Any]) -> Table:
-    table = Table(title="tolerances that matter most, by their total Sobol index after a tare")
+    table = Table(
+        title="tolerances that matter most, by their total Sobol index after a tare "
+        f"(± standard deviation, n = {study['sobol_draws']})"
+    )
     for heading in ("tolerance", "spread", "position", "angle", "level", "measure"):
         table.add_column(heading, justify="right" if heading in ("spread", *_FIGURES) else "left")
     for name, entry in list(study["tolerances"].items())[:_SHOWN]:
@@ -73,11 +101,38 @@ def _sensitive(study: dict[str, Any]) -> Table:
         table.add_row(
             entry["title"],
             f"{times * entry['spread']:.3g}{_UNITS[entry['unit']]}",
-            *(f"{entry['total'][figure]:.2f}" for figure in _FIGURES),
+            *(_index(entry, figure) for figure in _FIGURES),
             entry["confidence"],
             entry["measure"] + by,
         )
     return table
+
+
+def _index(entry: dict[str, Any], figure: str) -> str:
+    return f"{entry['total'][figure]:.2f} ± {entry['total_sd'][figure]:.2f}"
+
+
+def prepare(folder: Path) -> None:
+    """Create the folder of the files, and test that it can be written.
+
+    Raises:
+        OutputError: if it cannot be created or written.
+    """
+    with _writing(folder):
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+
+
+@contextmanager
+def _writing(folder: Path) -> Iterator[None]:
+    try:
+        yield
+    except OSError as error:
+        raise OutputError(
+            f"--out: is {folder}, which cannot be written ({error.strerror}); a folder that can be "
+            "written is allowed, and is created where it does not exist. Choose another folder."
+        ) from error
 
 
 def write(study: dict[str, Any], folder: Path) -> list[Path]:
@@ -91,8 +146,9 @@ def write(study: dict[str, Any], folder: Path) -> list[Path]:
     """
     text = json.dumps(study, indent=1, ensure_ascii=False) + "\n"
     files = {"tolerance.json": text.encode(), "tolerance.png": picture(study)}
-    for name, data in files.items():
-        write_file(folder / name, data)
+    with _writing(folder):
+        for name, data in files.items():
+            write_file(folder / name, data)
     return [folder / name for name in files]
 
 
@@ -114,9 +170,9 @@ def picture(study: dict[str, Any]) -> bytes:
         left.text(place, top + 1.0, f"{share:.1f}", ha="center")
     left.set(ylim=(0.0, 110.0), yticks=range(0, 101, 20))
     left.set_ylabel(
-        f"good fingers (%): {goals['position_mm']:g} mm, {goals['angle_deg']:g}°, rms over poses"
+        f"good fingers (%): {goals['position_mm']:g} mm, {goals['angle_deg']:g}°, for these poses"
     )
-    entries = list(study["tolerances"].values())
+    entries = [entry for entry in study["tolerances"].values() if "total" in entry]
     rows = np.arange(len(entries))
     for shift, figures, colour in zip((-0.2, 0.2), _FIGURES, ("#4c78a8", "#f58518"), strict=True):
         right.barh(
@@ -129,9 +185,15 @@ def picture(study: dict[str, Any]) -> bytes:
             label=figures,
         )
     right.set(yticks=rows, yticklabels=[entry["title"] for entry in entries])
-    right.invert_yaxis()
-    right.set_xlabel("total Sobol index of the error after a tare, ± standard deviation")
-    right.legend(frameon=False, loc="lower right")
+    right.set_xlabel(
+        f"total Sobol index after a tare, ± standard deviation, n = {study['sobol_draws']}"
+    )
+    if entries:
+        right.invert_yaxis()
+        right.legend(frameon=False, loc="lower right")
+    else:
+        right.set(xticks=[])
+        right.set_xlabel(_NO_INDICES)
     for axis in (left, right):
         axis.spines[["top", "right"]].set_visible(False)
     figure.suptitle(f"{study['design']}: {study['fingers']} built pairs, {study['evidence']}")

@@ -7,6 +7,7 @@ import numpy as np
 from scipy.stats import sobol_indices
 
 from lumitip.grid import Floats, Integers
+from lumitip_fab.tolerance.streams import Stream, generator
 
 _RESAMPLED = 200
 
@@ -38,7 +39,7 @@ def indices(of_a: Floats, of_b: Floats, of_mixed: Floats, seed: int = 0) -> Indi
         of_mixed: figures of `mixed(a, b, factor)`, shape `(factors, figures, n)`.
         seed: of the bootstrap.
     """
-    chance, count = np.random.default_rng(seed), of_a.shape[1]
+    chance, count = generator(seed, Stream.BOOTSTRAP), of_a.shape[1]
 
     def found(at: Integers | slice) -> Floats:
         values = {"f_A": of_a[:, at], "f_B": of_b[:, at], "f_AB": of_mixed[:, :, at]}

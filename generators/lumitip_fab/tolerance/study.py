@@ -4,7 +4,6 @@ import math
 from collections.abc import Callable, Iterator
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -17,62 +16,26 @@ from lumitip.tasks.bench import workers
 from lumitip.twin import Model, TwinError
 from lumitip_fab.config.load import Input
 from lumitip_fab.config.messages import shown_path
-from lumitip_fab.derive.making.tolerances import fingerprint, spreads
+from lumitip_fab.derive.making.tolerances import MODEL_VERSION, fingerprint, spreads
 from lumitip_fab.errors import BuildError, InputError, Problem
 from lumitip_fab.tolerance.bench import COLUMNS, Case, bench
 from lumitip_fab.tolerance.draws import FACTORS, Draws, draw
+from lumitip_fab.tolerance.options import GOOD_PERCENT, MASK_FINGERS, Goals, Options
 from lumitip_fab.tolerance.sobol import indices, mixed
 
 EVIDENCE = "simulated with our own model"
 _TARED = COLUMNS[1:2]
 _CHUNK = 20  # fingers
-_NINE = (50, 90, 95)  # percentiles of the errors
-MASK_FINGERS = 200
-"""Fingers by which it is found how far a mask may be off."""
-_MASK_YIELD = 0.95
-_MASK_STEPS, _MASK_STEP_MM = 32, 0.05
+_PERCENTILES = (50, 90, 95)  # of the errors
+LEAST_DRAWS = 64
+"""With fewer draws there are no Sobol indices."""
+_MASK_STEPS, _MASK_STEP_MM = 31, 0.05
+MOST_SHIFT_MM = round(_MASK_STEPS * _MASK_STEP_MM, 2)
+"""Largest shift of the masks that is tried."""
 _BEST = 3  # deviations of which the yield without them is computed
 _SEARCHED = 10  # fingers that the whole estimator is compared on
 _DIGITS = 4
-
-
-@dataclass(frozen=True)
-class Goals:
-    """A finger is good if edges and cables are both estimated within these, rms over its poses."""
-
-    position_mm: float = 0.6
-    angle_deg: float = 2.5
-
-
-@dataclass(frozen=True)
-class Options:
-    """Settings of a study."""
-
-    goals: Goals = Goals()
-    gap_mm: float = 3.0
-    """Expected gap of a grasp (mm)."""
-    fingers: int = 500
-    """Built pairs of fingers."""
-    poses: int = 16
-    """Of edges, and as many of cables, with each."""
-    seed: int = 0
-
-    def __post_init__(self) -> None:
-        limits = {
-            "--position": (self.goals.position_mm, 0.01, 2.0, " mm"),
-            "--angle": (self.goals.angle_deg, 0.05, 10.0, " degrees"),
-            "--gap": (self.gap_mm, 1.0, 10.0, " mm"),
-            "--fingers": (self.fingers, 16, 100_000, " fingers"),
-            "--poses": (self.poses, 4, 1000, " poses"),
-            "--seed": (self.seed, 0, 2**32 - 1, ""),
-        }
-        wrong = [
-            Problem(name, 0, "", f"is {value:g}{unit}; {least:.10g} to {most:.10g} is allowed")
-            for name, (value, least, most, unit) in limits.items()
-            if not least <= value <= most
-        ]
-        if wrong:
-            raise InputError(wrong)
+_LEAST_EXTENT_MM = 0.1
 
 
 Errors = Callable[[Draws, tuple[str, ...]], Floats]
@@ -91,7 +54,7 @@ def study(
         cores: processes at most; all cores by default.
 
     Raises:
-        InputError: if the layout has too few cells.
+        InputError: if the fingers are compliant, or no pose can be estimated with the cells.
         BuildError: if a worker is stopped.
     """
     case = case_of(config, layout, options)
@@ -100,8 +63,9 @@ def study(
     drawn = take(options.fingers, options.seed)
     with on_cores(case, cores) as errors:
         columns = errors(drawn, COLUMNS)
-        sensitive = _sensitivities(errors, take, options)
-        names = sorted(FACTORS, key=lambda name: -max(sensitive[name]["total"].values()))
+        draws = draws_of(options.fingers)
+        sensitive = sensitivities(errors, take, draws, options.seed) if draws else {}
+        names = sorted(sensitive, key=lambda name: -max(sensitive[name]["total"].values()))
         without = {
             name: yield_of(errors({**drawn, name: 0.0 * drawn[name]}, _TARED)[0], options.goals)
             for name in names[:_BEST]
@@ -117,13 +81,14 @@ def study(
             "confidence": entry.confidence,
             "source": entry.source,
             "measure": entry.measure,
-            **sensitive[name],
+            **sensitive.get(name, {}),
         }
-        for name, entry in ((name, getattr(table, name)) for name in names)
+        for name, entry in ((name, getattr(table, name)) for name in names or FACTORS)
     }
     return {
         "design": config.parameters.name,
-        "fingerprint": fingerprint(config, layout),
+        "fingerprint": fingerprint(config, layout, options.mask_conditions),
+        "model_version": MODEL_VERSION,
         "evidence": EVIDENCE,
         "goals": vars(options.goals),
         "gap_mm": options.gap_mm,
@@ -133,9 +98,14 @@ def study(
         "columns": {
             name: _column(rows, options.goals) for name, rows in zip(COLUMNS, columns, strict=True)
         },
+        "sobol_draws": draws,
         "tolerances": entries,
         "yield_if_exact": {name: _rounded(value) for name, value in without.items()},
-        "mask_shift_mm": mask_mm,
+        "mask_shift": {
+            "mm": mask_mm,
+            "or_more": mask_mm == MOST_SHIFT_MM,
+            "fingers": len(few["gap"]),
+        },
         "pose_estimator": bench(case).compared(take(_SEARCHED, options.seed)),
     }
 
@@ -144,45 +114,74 @@ def case_of(config: Input, layout: Layout, options: Options) -> Case:
     """The case of a design.
 
     Raises:
-        InputError: if no pose can be estimated with its cells.
+        InputError: if its fingers are compliant, or no pose can be estimated with its cells.
     """
+    file, variant = shown_path(config.sources[0].path), config.parameters.backing.variant
+    if variant != "rigid":
+        text = (
+            f'is "{variant}"; a study of tolerances allows "rigid" alone, because its fingers do '
+            "not bend. Study the same cells on a rigid backing."
+        )
+        raise InputError([Problem(file, 0, "backing.variant", text)])
+    if min(np.ptp(layout.x_mm), np.ptp(layout.y_mm)) < _LEAST_EXTENT_MM:
+        text = (
+            f"is {list(config.parameters.grid.columns)}; all cells lie on one line, and a study "
+            "allows grids of two columns and two rows or more. Add cells."
+        )
+        raise InputError([Problem(file, 0, "grid.columns", text)])
     case = Case(layout, Model.from_layout(layout, options.gap_mm), options.poses, options.seed)
     try:
         bench(case)
     except (EstimationError, TwinError) as error:
-        file = shown_path(config.sources[0].path)
         raise InputError([Problem(file, 0, "grid.columns", str(error))]) from error
     return case
 
 
 def mask_allowance_mm(errors: Errors, drawn: Draws, goals: Goals) -> float | None:
-    """How far both masks may be off: the largest shift, in a random direction each, with which 95 %
-    of the fingers meet the goals after a tare, all else as drawn; none if not even 0 does."""
+    """The largest shift of both masks, each in a random direction, with which `GOOD_PERCENT` of the
+    fingers drawn meet the goals after a tare, all their other deviations unchanged.
+
+    Returns:
+        A multiple of 0.05 mm; at `MOST_SHIFT_MM` the masks may be off by more. None if too few
+        fingers are good without any shift.
+    """
     way = drawn["mask_shift"].reshape(-1, 2, 2)
     way = way / np.maximum(np.linalg.norm(way, axis=2, keepdims=True), 1e-9)
 
     def holds(steps: int) -> bool:
         shifted = {**drawn, "mask_shift": (steps * _MASK_STEP_MM * way).reshape(len(way), 4)}
-        return yield_of(errors(shifted, _TARED)[0], goals) >= _MASK_YIELD
+        return yield_of(errors(shifted, _TARED)[0], goals) >= GOOD_PERCENT / 100.0
 
-    low, high = -1, _MASK_STEPS
+    low, high = -1, _MASK_STEPS + 1
     while high - low > 1:
         middle = (low + high) // 2
         low, high = (middle, high) if holds(middle) else (low, middle)
     return round(low * _MASK_STEP_MM, 2) if low >= 0 else None
 
 
-def _sensitivities(
-    errors: Errors, take: Callable[[int, int], Draws], options: Options
+def draws_of(fingers: int) -> int:
+    """Draws of each set of the Sobol indices: a power of 2; 0 if these fingers are too few."""
+    count = 2 ** int(math.log2(fingers / 2))
+    return count if count >= LEAST_DRAWS else 0
+
+
+def sensitivities(
+    errors: Errors, take: Callable[..., Draws], count: int, seed: int
 ) -> dict[str, dict[str, dict[str, float]]]:
-    """Sobol indices of every deviation for the errors after a tare."""
-    count = 2 ** int(math.log2(options.fingers / 2))
-    a, b = take(count, options.seed), take(count, options.seed + 1)
+    """Sobol indices of every deviation for the errors after a tare.
+
+    Args:
+        errors: of fingers.
+        take: draws fingers by count, seed and part.
+        count: draws of each of the two sets, a power of 2.
+        seed: of the study.
+    """
+    a, b = take(count, seed), take(count, seed, 1)
     sets = [a, b, *(mixed(a, b, name) for name in FACTORS)]
     together = {name: np.concatenate([one[name] for one in sets]) for name in FACTORS}
     worst = worst_of(errors(together, _TARED)[0]).T
     of_a, of_b, *others = np.split(worst, len(sets), axis=1)
-    found = indices(of_a, of_b, np.array(others), options.seed)
+    found = indices(of_a, of_b, np.array(others), seed)
     return {
         name: {
             kind: {
@@ -198,13 +197,14 @@ def _sensitivities(
 def worst_of(rows: Floats) -> Floats:
     """Errors of position (mm) and angle (degrees), the worse of edges and cables, from those of
     both kinds, shape `(fingers, 2)`."""
-    return np.maximum(rows[:, :2], rows[:, 2:])
+    return np.maximum(rows[:, :2], rows[:, 2:4])
 
 
 def yield_of(rows: Floats, goals: Goals) -> float:
-    """Share of fingers whose errors, as `Bench.errors` has them, meet the goals."""
-    worst = worst_of(rows)
-    return float(np.mean((worst[:, 0] <= goals.position_mm) & (worst[:, 1] <= goals.angle_deg)))
+    """Share of fingers whose errors (see `Bench.errors`) meet the goals and are not gross."""
+    position, angle = worst_of(rows).T
+    good = (position <= goals.position_mm) & (angle <= goals.angle_deg) & (rows[:, 4] == 0.0)
+    return float(np.mean(good))
 
 
 def _column(rows: Floats, goals: Goals) -> dict[str, Any]:
@@ -213,9 +213,12 @@ def _column(rows: Floats, goals: Goals) -> dict[str, Any]:
     return {
         "yield": _rounded(share),
         "yield_95": [_rounded(end) for end in wilson(share, len(rows))],
+        "gross_errors": _rounded(float(rows[:, 4].mean())),
         **{
-            name: {str(p): _rounded(value) for p, value in zip(_NINE, values, strict=True)}
-            for name, values in zip(names, np.percentile(rows, _NINE, axis=0).T, strict=True)
+            name: {str(p): _rounded(value) for p, value in zip(_PERCENTILES, values, strict=True)}
+            for name, values in zip(
+                names, np.percentile(rows[:, :4], _PERCENTILES, axis=0).T, strict=True
+            )
         },
     }
 

@@ -5,9 +5,14 @@ from collections.abc import Mapping
 
 from lumitip.layout import Layout
 from lumitip.twin import Model
+from lumitip_fab.catalogue.tolerances import MaskConditions
 from lumitip_fab.config.load import Input
 from lumitip_fab.design.encoding import canonical
+from lumitip_fab.design.making import MaskShift
 
+MODEL_VERSION = 2
+"""Version of the model of built fingers and their estimates. Increase it with every change of
+`lumitip_fab.tolerance` that moves figures: it makes the stored shifts of masks invalid."""
 _LENGTH = 12
 
 
@@ -23,14 +28,37 @@ def spreads(config: Input) -> Mapping[str, float]:
     return {name: entry.spread * lengths[entry.of] for name, entry in config.catalogue.tolerances}
 
 
-def fingerprint(config: Input, layout: Layout) -> str:
-    """Identifies what a study of tolerances depends on: cells, optics, backing and tolerances."""
+def fingerprint(config: Input, layout: Layout, conditions: MaskConditions) -> str:
+    """Identifies what the largest shift of the masks depends on.
+
+    Args:
+        config: for backing and tolerances.
+        layout: for cells and optics.
+        conditions: goals, gap, poses, fingers and seed.
+
+    Returns:
+        12 hexadecimal digits, which `MODEL_VERSION` changes as well.
+    """
     kinds = {name: entry.distribution for name, entry in config.catalogue.tolerances}
-    places, model = (layout.x_mm.tolist(), layout.y_mm.tolist()), Model.from_layout(layout)
-    inputs = [places, model, config.parameters.backing.variant, spreads(config), kinds]
+    places = (layout.x_mm.tolist(), layout.y_mm.tolist())
+    model = Model.from_layout(layout, conditions.gap_mm)
+    inputs = [
+        MODEL_VERSION,
+        conditions,
+        places,
+        model,
+        config.parameters.backing.variant,
+        spreads(config),
+        kinds,
+    ]
     return hashlib.sha256(canonical(inputs).encode()).hexdigest()[:_LENGTH]
 
 
-def known_mask_shift_mm(config: Input, layout: Layout) -> float | None:
-    """How far each mask may be off (mm); none of a design that it was not computed for."""
-    return config.catalogue.mask_shifts.each.get(fingerprint(config, layout))
+def known_mask_shift(config: Input, layout: Layout) -> MaskShift | None:
+    """How far both masks may be off; none of a design that it was not computed for."""
+    stored = config.catalogue.mask_shifts
+    most_mm = stored.each.get(fingerprint(config, layout, stored.conditions))
+    if most_mm is None:
+        return None
+    conditions = stored.conditions
+    return MaskShift(most_mm, conditions.good_percent, conditions.position_mm, conditions.angle_deg)
