@@ -1,8 +1,10 @@
 """The ground pour reaches every ground pad, keeps clear of the rest, and replaces ground tracks."""
 
 import dataclasses
+import math
 from pathlib import Path
 
+import numpy as np
 import pytest
 import shapely
 
@@ -20,7 +22,7 @@ from lumitip_fab.boards.model import (
 )
 from lumitip_fab.boards.placed import placed_pads
 from lumitip_fab.boards.pour import pour
-from lumitip_fab.boards.pour.flood import BYPASS_MM
+from lumitip_fab.boards.pour.flood import BYPASS_MM, spread
 from lumitip_fab.boards.route import route
 from lumitip_fab.boards.verify import summary, verify
 from lumitip_fab.errors import BuildError
@@ -153,3 +155,19 @@ def test_a_board_that_is_not_routed_is_refused() -> None:
     tracks = tuple(Track("A", s, (-0.8, -4.9), (-0.8, 4.9), 2.0) for s in SIDES)
     with pytest.raises(BuildError, match=r"R2\.2 .* is not joined to net GND"):
         pour(wall, Routing(tracks, (), 1))
+
+
+def test_places_are_spread_in_their_order() -> None:
+    """As by comparing each one with all that stay."""
+    chance = np.random.default_rng(5)
+    places, taken = (
+        [(float(x), float(y)) for x, y in chance.uniform(-9.0, 9.0, (n, 2)).round(1)]
+        for n in (300, 20)
+    )
+    for apart_mm in (0.53, 2.0, 6.0):
+        kept: list[tuple[float, float]] = []
+        for at in places:
+            if all(math.dist(at, other) >= apart_mm for other in [*taken, *kept]):
+                kept.append(at)
+        assert spread(places, taken, apart_mm) == kept
+    assert spread([], [], 1.0) == []
