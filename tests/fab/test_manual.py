@@ -246,3 +246,12 @@ def test_a_step_that_fits_on_a_page_is_not_broken(copied: Path) -> None:
     for title, end in (("Lower the finger", "the plate rocks"), ("Wrap the finger", "comes loose")):
         (page,) = [words for words in sheets if title.replace(" ", "") in words]
         assert end.replace(" ", "") in page
+
+
+def test_protection_is_tested_before_the_wires_go_in(outputs: Path) -> None:
+    sheets, _ = read_pdf(outputs / PDF)
+    text = "".join(sheets)
+    at = [
+        text.rindex(w.replace(" ", "")) for w in ("no short.", "peaks of the supply.", "1. Measure")
+    ]
+    assert at == sorted(at)
