@@ -10,7 +10,15 @@ from lumitip.grid import Floats
 from lumitip.layout import Layout
 from poses import ANGLE_DEG, OFFSET_MM, Trial
 from second_light import Light
-from second_specimen import Electronics, Specimen, drawn_electronics
+from second_specimen import (
+    EXPONENT,
+    EXPONENT_SD,
+    LEVEL,
+    LEVEL_SD,
+    Electronics,
+    Specimen,
+    drawn_electronics,
+)
 from second_tips import DEVIATIONS, Tips, drawn
 
 TARE_FRAMES = 50
@@ -178,8 +186,8 @@ class Bound:
             )
         circuit = self._electronics
         for low, high in (
-            (replace(circuit, level=0.87), replace(circuit, level=0.93)),
-            (replace(circuit, exponent=1.013), replace(circuit, exponent=1.047)),
+            tuple(replace(circuit, level=LEVEL + sd) for sd in (-LEVEL_SD, LEVEL_SD)),
+            tuple(replace(circuit, exponent=EXPONENT + sd) for sd in (-EXPONENT_SD, EXPONENT_SD)),
         ):
             yield self._values(self._nominal, of, low), self._values(self._nominal, of, high)
         for below, above in self._either:

@@ -86,15 +86,32 @@ def shade(
         kind = pairs.detector[pair]
         for ray in range(begin[kind], begin[kind + 1]):
             left = weight[ray]
-            for at in range(0, passes.shape[1], 4):
-                x = passes[ray, at]
-                if math.isnan(x):
-                    break
-                y, slant_x, slant_y = passes[ray, at + 1], passes[ray, at + 2], passes[ray, at + 3]
-                if blocked(of, x + px, y + py, slant_x, slant_y):
-                    left *= clear
+            for _ in range(_times_blocked(passes, ray, 0, of, px, py)):
+                left *= clear
             light += left
         found[pairs.cell[pair]] += light
+
+
+@kernel
+def _times_blocked(passes: Singles, ray: int, first: int, of: Shape, px: float, py: float) -> int:
+    """How often a ray is blocked where it passes the specimen's height.
+
+    Args:
+        passes: x, y and both slants of each pass of a ray, ended by NaN.
+        ray: its row.
+        first: column of its first pass.
+        of: the specimen.
+        px, py: what is added to x and y.
+    """
+    times = 0
+    for at in range(first, passes.shape[1], 4):
+        x = passes[ray, at]
+        if math.isnan(x):
+            break
+        y, slant_x, slant_y = passes[ray, at + 1], passes[ray, at + 2], passes[ray, at + 3]
+        if blocked(of, x + px, y + py, slant_x, slant_y):
+            times += 1
+    return times
 
 
 @kernel
@@ -122,15 +139,6 @@ def cover(
         for ray in range(begin[kind], begin[kind + 1]):
             if not blocked(of, places[ray, 0] + px, places[ray, 1] + py, 0.0, 0.0):
                 continue
-            free = True
-            for at in range(2, places.shape[1], 4):
-                x = places[ray, at]
-                if math.isnan(x):
-                    break
-                y, slant_x, slant_y = places[ray, at + 1], places[ray, at + 2], places[ray, at + 3]
-                if blocked(of, x + px, y + py, slant_x, slant_y):
-                    free = False
-                    break
-            if free:
+            if not _times_blocked(places, ray, 2, of, px, py):
                 light += share * weight[ray]
         found[pairs.cell[pair]] += light

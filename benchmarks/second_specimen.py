@@ -39,6 +39,12 @@ class Specimen:
         return np.array([(np.cos(np.radians(a)), np.sin(np.radians(a)), o) for a, o in lines])
 
 
+LEVEL, LEVEL_SD = 0.9, 0.03
+"""Nominal level and its spread from fingertip to fingertip, see `Electronics`."""
+EXPONENT, EXPONENT_SD = 1.03, 0.017
+"""The same of the exponent."""
+
+
 @dataclass(frozen=True, eq=False)
 class Electronics:
     """Detectors, pull-ups and converter of a fingertip; arrays of shape `(cells,)`."""
@@ -47,9 +53,9 @@ class Electronics:
     """Tolerance of each cell's LED and detector, 1 on average."""
     drift: Floats
     """Change of each cell's gain since the empty grasp was measured, 1 for none."""
-    level: float = 0.9
+    level: float = LEVEL
     """Current of the brightest cell as a share of the largest current of its pull-up."""
-    exponent: float = 1.03
+    exponent: float = EXPONENT
     """A phototransistor amplifies strong light a little more."""
     sharpness: float = 8.0
     """Of the onset of saturation."""
@@ -85,6 +91,6 @@ def drawn_electronics(chance: np.random.Generator, cells: int, drift: float) -> 
     return Electronics(
         1.0 + 0.06 * tolerance[0],
         1.0 + drift * tolerance[1],
-        level=0.9 + 0.05 * float(chance.uniform(-1.0, 1.0)),
-        exponent=1.03 + 0.03 * float(chance.uniform(-1.0, 1.0)),
+        level=LEVEL + 0.05 * float(chance.uniform(-1.0, 1.0)),
+        exponent=EXPONENT + 0.03 * float(chance.uniform(-1.0, 1.0)),
     )

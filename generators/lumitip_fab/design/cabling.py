@@ -5,7 +5,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from lumitip_fab.design.pcb import AuxiliaryBoard
+from lumitip_fab.design.pcb import AuxiliaryBoard, Component
 
 COLOURS = {
     "BK": ("black", "#1a1a1a"),
@@ -161,10 +161,14 @@ def gripper_headers(auxiliary_boards: Iterable[AuxiliaryBoard]) -> list[str]:
         part.ref
         for board in auxiliary_boards
         if board.name == "flange"
-        for part in board.components
-        if part.kind == "header" and part.side == "front"
+        for part in front_headers(board)
         if any(net not in board.supplies or net.endswith(INPUT_END) for _, net in part.nets)
     )
+
+
+def front_headers(board: AuxiliaryBoard) -> list[Component]:
+    """Headers of a board that cables are plugged into."""
+    return [part for part in board.components if part.kind == "header" and part.side == "front"]
 
 
 def plugged_headers(

@@ -43,7 +43,7 @@ class Mould:
     wall_mm: float
     """Thickness of its walls, and of its floor, under an insert too."""
     outside_mm: float
-    """From the outline to the outside of its wall, where it ends."""
+    """From the outline to the outside of its wall, at its top."""
     weir_y_mm: float
     """Outer edge of the weir, where the trough begins, in the sensor frame."""
     inserts: tuple[Insert, ...]

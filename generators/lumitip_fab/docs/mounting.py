@@ -4,7 +4,7 @@ bolts must be."""
 from collections.abc import Iterator
 
 from lumitip_fab.design import AuxiliaryBoard, Design, Flange
-from lumitip_fab.design.cabling import INPUT_END, plugged_headers
+from lumitip_fab.design.cabling import INPUT_END, front_headers, plugged_headers
 from lumitip_fab.design.mount import BOLTS_MM, SHORTER_MM, standard_bolt_mm
 from lumitip_fab.docs.wiring import listed
 from lumitip_fab.text import passage
@@ -69,7 +69,7 @@ def _work(design: Design) -> Iterator[str]:
     wires = [wire for cable in design.cabling.cables for wire in cable.wires]
     led_net = f"{design.wiring.supply_v:g}V"
     ends = [wire for wire in wires if wire.end.board == "supply"]
-    own = [wire.number for wire in ends if wire.signal == "5V" != led_net]
+    own = [wire.number for wire in ends if wire.signal == "5V" and led_net != "5V"]
     if ends:
         listed_ends = ", ".join(f"{wire.number} to {wire.signal}" for wire in ends)
         free = "".join(_text("supplied_free", wire=number) for number in own)
@@ -95,7 +95,7 @@ def _flanged(design: Design, flange: Flange) -> Iterator[str]:
 def _passed_on(design: Design) -> str:
     """Where the gripper's supply and lines are: on the headers of the flange's board."""
     board = _flange(design)
-    headers = [part for part in board.components if part.kind == "header" and part.side == "front"]
+    headers = front_headers(board)
     raw = next(name for name in _probed(design) if name.endswith(INPUT_END))
     pads = [f"{part.ref}.{number}" for part in headers for number, net in part.nets if net == raw]
     supply = _text("from_robot", pads=listed(pads), volts=_volts(raw)) if pads else ""

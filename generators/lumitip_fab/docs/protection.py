@@ -1,9 +1,10 @@
-"""What the manual says of the parts that protect controller and supply, where a design has them."""
+"""The parts that protect controller and supply, as the manual has them where a design has them."""
 
 from collections.abc import Iterator, Sequence
 from string import ascii_letters, digits
 
 from lumitip_fab.design import AuxiliaryBoard, Component, Design
+from lumitip_fab.docs.wiring import listed
 from lumitip_fab.text import passage
 
 ESD, TVS, FUSE = "esd diode", "tvs diode", "fuse"
@@ -24,21 +25,21 @@ def _of(board: AuxiliaryBoard) -> Iterator[str]:
             for part in board.components
             if part.kind == "resistor" and {net for _, net in part.nets} & lines
         ]
-        limited = _text("protected_series", resistors=listed(held)) if held else ""
-        yield _text("protected_esd", board=board.name, diodes=listed(diodes), limited=limited)
+        limited = _text("protected_series", resistors=_references(held)) if held else ""
+        yield _text("protected_esd", board=board.name, diodes=_references(diodes), limited=limited)
     for part in kinds[TVS]:
         melts = "".join(_text("protected_fuse", fuse=fuse) for fuse in kinds[FUSE])
         yield _text("protected_tvs", board=board.name, part=part, melts=melts)
 
 
-def listed(parts: Sequence[Component]) -> str:
-    """References of parts in the order of the board: a run of numbers as `"Z1 to Z10"`."""
+def _references(parts: Sequence[Component]) -> str:
+    """References of parts in the order of the board; a run of numbers as `"Z1 to Z10"`."""
     refs = [part.ref for part in parts]
     first = int(refs[0].strip(ascii_letters))
     run = [refs[0].rstrip(digits) + str(first + i) for i in range(len(refs))]
     if refs == run and len(refs) > 2:
         return f"{refs[0]} to {refs[-1]}"
-    return " and ".join(filter(None, (", ".join(refs[:-1]), refs[-1])))
+    return listed(refs)
 
 
 def _text(name: str, /, **values: object) -> str:

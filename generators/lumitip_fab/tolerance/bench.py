@@ -17,7 +17,7 @@ from lumitip_fab.tolerance.light import Lines, Rays
 from lumitip_fab.tolerance.streams import Stream, generator
 
 COLUMNS = ("as built", "after tare", "after self-calibration")
-"""What is done with a finger before its errors count; the drawing says what is expected."""
+"""States of a finger that its errors are counted in."""
 KINDS = ("edge", "cable")
 LEARNING = 40
 """Edges by which a finger calibrates itself."""

@@ -218,5 +218,5 @@ def _errors(poses: Floats, lines: Lines) -> Floats:
     away = np.stack([poses[..., 0], reversed_mm], axis=-1) - lines.poses
     turn_deg = np.degrees((away[..., 0] + np.pi / 2.0) % np.pi - np.pi / 2.0)
     most = np.array([MOST_MM, MOST_DEG])
-    missed: Floats = np.clip(np.stack([away[..., 1], turn_deg], axis=-1), -most, most)
-    return np.nan_to_num(missed, nan=MOST_DEG).clip(-most, most)
+    missed: Floats = np.nan_to_num(np.stack([away[..., 1], turn_deg], axis=-1), nan=MOST_DEG)
+    return missed.clip(-most, most)

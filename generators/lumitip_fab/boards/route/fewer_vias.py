@@ -12,6 +12,8 @@ from lumitip_fab.boards.route.obstacles import Wanted
 from lumitip_fab.boards.route.trees import CostWeights, State, Unreachable, connect, supported
 
 VIA_MM = 10.0  # of track that a via is worth
+SEARCHED_VIA_MM = 12.0  # the same while ways with fewer are looked for
+GROUND_COSMETIC_VIA_MM = 4.0
 GROUND_VIA_MM = 1.0  # the pour has vias of its own, and takes away those that it makes needless
 FIRST_PRICE = 1.0  # of a net in the way
 GROWTH = 1.6  # of that price with each round
@@ -30,7 +32,7 @@ LEAST_GAIN_MM = 1e-3
 POLISHES = 2
 DEAR = 1e5  # price that no net pays when another way is left
 COSMETIC = CostWeights(DEAR, via_mm=VIA_MM, bend_mm=0.5, across=1.2)
-GROUND_COSMETIC = dataclasses.replace(COSMETIC, via_mm=4.0)
+GROUND_COSMETIC = dataclasses.replace(COSMETIC, via_mm=GROUND_COSMETIC_VIA_MM)
 
 
 @dataclass(frozen=True)
@@ -80,7 +82,7 @@ class Attempt:
         Returns:
             Whether these nets cost less now, without more signal vias; if not, they need `restore`.
         """
-        weights = CostWeights(FIRST_PRICE, via_mm=VIA_MM + 2.0)
+        weights = CostWeights(FIRST_PRICE, via_mm=SEARCHED_VIA_MM)
         try:
             self._again(net, kept, weights)
             for turn in range(ROUNDS):
