@@ -85,6 +85,35 @@ class InterruptGuard:
             _interrupt_again()
 
 
+class InterruptsHeld:
+    """Keeps a SIGINT until the end of a block, which must not be left half-done.
+
+    A context manager for the main thread; on other threads it does nothing. Blocking the signal is
+    not enough: threads of numpy's library may take it, and Python then raises in the main thread.
+    """
+
+    def __init__(self) -> None:
+        self._came = False
+        self._before: Any = None
+
+    def __enter__(self) -> None:
+        import threading
+
+        if threading.current_thread() is threading.main_thread():
+            self._before = signal.signal(signal.SIGINT, self._keep)
+
+    def __exit__(
+        self, _: type[BaseException] | None, __: BaseException | None, ___: "TracebackType | None"
+    ) -> None:
+        if self._before is not None:
+            signal.signal(signal.SIGINT, self._before)
+            if self._came:
+                signal.raise_signal(signal.SIGINT)
+
+    def _keep(self, _: int, __: "FrameType | None") -> None:
+        self._came = True
+
+
 def _interrupt_again() -> None:
     import threading
 

@@ -4,11 +4,13 @@ import math
 import os
 import signal
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import Future, ProcessPoolExecutor
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
 from multiprocessing.context import SpawnContext, SpawnProcess
+from typing import ParamSpec, TypeVar
 
+from lumitip.interrupt import InterruptsHeld
 from lumitip.layout import Layout
 from lumitip.tasks.task import Settings, Task
 from lumitip.tasks.trial import (
@@ -25,6 +27,8 @@ from lumitip.tasks.trial import (
 )
 from lumitip.tasks.trial import SPEEDS_MM_S as TUNED_AT_MM_S
 
+_P = ParamSpec("_P")
+_T = TypeVar("_T")
 _THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 
 
@@ -47,6 +51,14 @@ class _WorkerContext(SpawnContext):
     Process = _Worker
 
 
+class _Pool(ProcessPoolExecutor):
+    """Ctrl-C waits until a worker has started: one that is half started would print a traceback."""
+
+    def submit(self, fn: Callable[_P, _T], /, *args: _P.args, **kwargs: _P.kwargs) -> Future[_T]:
+        with InterruptsHeld():
+            return super().submit(fn, *args, **kwargs)
+
+
 @contextmanager
 def workers(most: int) -> Iterator[ProcessPoolExecutor]:
     """A pool of new processes, one for each core but at most `most`; unfinished work is cancelled.
@@ -56,7 +68,7 @@ def workers(most: int) -> Iterator[ProcessPoolExecutor]:
     """
     context = _WorkerContext()
     with _single_threaded():
-        pool = ProcessPoolExecutor(min(most, os.cpu_count() or 1), mp_context=context)
+        pool = _Pool(min(most, os.cpu_count() or 1), mp_context=context)
         try:
             yield pool
         finally:

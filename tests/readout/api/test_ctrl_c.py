@@ -192,3 +192,38 @@ cli.run()
         check=False,
     )
     assert (done.returncode, done.stdout, done.stderr) == (130, "", "")
+
+
+def test_an_interrupt_while_a_worker_starts_waits_until_it_has_started(tmp_path: Path) -> None:
+    program = tmp_path / "start.py"
+    program.write_text(
+        """
+import multiprocessing.util as util, os, signal, threading, time
+from lumitip.tasks.bench import workers
+
+spawn = util.spawnv_passfds
+
+def spawn_and_interrupt(*arguments):
+    ident = spawn(*arguments)
+    os.kill(os.getpid(), signal.SIGINT)  # The worker has not yet been sent what it is to do.
+    time.sleep(0.2)
+    return ident
+
+if __name__ == "__main__":
+    # As a thread of numpy's library does: it takes a signal that the main thread blocks.
+    threading.Thread(target=time.sleep, args=(3.0,), daemon=True).start()
+    with workers(1) as pool:
+        util.spawnv_passfds = spawn_and_interrupt
+        try:
+            pool.submit(abs, -1)
+        except KeyboardInterrupt:
+            print("interrupted", flush=True)
+        util.spawnv_passfds = spawn
+        print(pool.submit(abs, -2).result())
+""",
+        encoding="utf-8",
+    )
+    done = subprocess.run(
+        [sys.executable, str(program)], capture_output=True, text=True, timeout=60, check=False
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (0, "interrupted\n2\n", "")
