@@ -58,6 +58,7 @@ ALLOWED_READOUT = {
     "session": "core links protocol",
     "sharing": "core links protocol session",
     "health": "core",
+    "acceptance": "core estimation health twin",
     "face": "core health links session",
     "robots": "core control",
     "foxglove": "core estimation processing recording twin view",
@@ -65,7 +66,8 @@ ALLOWED_READOUT = {
     "view": "core estimation face links processing recording session twin",
     "tasks": "control core estimation face links processing protocol session twin view",
     "commands": (
-        "core face foxglove health links processing recording session sharing tasks twin view"
+        "acceptance core face foxglove health links processing recording session sharing tasks "
+        "twin view"
     ),
 }
 """The rooms of `lumitip`: `core` is its root, `face` what opens fingertips."""

@@ -6,12 +6,12 @@ import pytest
 from lumitip.estimation.learn import learn
 from lumitip.estimation.search import ALPHA_SD, GAP_SD_MM
 from lumitip.twin import Model
+from lumitip.twin.built import Lines
 from lumitip_fab.derive.auto.resolve import Resolved
 from lumitip_fab.derive.making.tolerances import spreads
 from lumitip_fab.tolerance.bench import AGREED, COLUMNS, Bench
 from lumitip_fab.tolerance.draws import Draws, draw
 from lumitip_fab.tolerance.estimate import gross
-from lumitip_fab.tolerance.light import Lines
 from lumitip_fab.tolerance.options import Goals
 from lumitip_fab.tolerance.study import yield_of
 

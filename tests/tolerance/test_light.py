@@ -6,11 +6,11 @@ import pytest
 from lumitip.grid import Floats
 from lumitip.layout import Layout
 from lumitip.twin import Misregistration, Model, Twin
+from lumitip.twin.built import Lines, Rays
 from lumitip_fab.derive.auto.resolve import Resolved
 from lumitip_fab.derive.making.tolerances import spreads
 from lumitip_fab.tolerance.bench import Bench, Case
 from lumitip_fab.tolerance.draws import FACTORS, Draws, built, draw
-from lumitip_fab.tolerance.light import Lines, Rays
 
 ANGLES, OFFSETS = np.radians([5.0, -20.0, 40.0, -65.0, 85.0]), np.array([0.3, -3.0, 5.0, 1.0, -6.0])
 EDGES, CABLES = (Lines(kind, np.stack([ANGLES, OFFSETS], axis=1)) for kind in ("edge", "cable"))

@@ -3,7 +3,6 @@
 options   settings and their limits
 streams   random numbers from one seed
 draws     deviations of built fingers, from the catalogue's distributions
-light     the twin's rays, with every part of a finger at its own place
 estimate  the pose estimator on many frames at once
 bench     errors of fingers as built, after a tare, after self-calibration
 sobol     which deviation matters

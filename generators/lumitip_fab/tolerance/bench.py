@@ -10,10 +10,10 @@ from lumitip.estimation.estimator import DIAMETER_MM, NOISE
 from lumitip.grid import Floats
 from lumitip.layout import Layout
 from lumitip.twin import Model, Twin
+from lumitip.twin.built import Lines, Rays
 from lumitip.twin.optics import FULL, values_of_drive
 from lumitip_fab.tolerance.draws import Draws, built
 from lumitip_fab.tolerance.estimate import Estimates, gross
-from lumitip_fab.tolerance.light import Lines, Rays
 from lumitip_fab.tolerance.streams import Stream, generator
 
 COLUMNS = ("as built", "after tare", "after self-calibration")

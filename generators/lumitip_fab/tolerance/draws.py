@@ -7,8 +7,8 @@ import numpy as np
 from lumitip.grid import Floats
 from lumitip.layout import Layout
 from lumitip.twin import Model
+from lumitip.twin.built import Built
 from lumitip_fab.catalogue.tolerances import Tolerances
-from lumitip_fab.tolerance.light import Built
 from lumitip_fab.tolerance.streams import Stream, generator
 
 FACTORS = tuple(Tolerances.model_fields)

@@ -28,7 +28,7 @@ from lumitip.estimation.search import LOOSE
 from lumitip.grid import Floats
 from lumitip.layout import Layout
 from lumitip.twin import Model
-from lumitip_fab.tolerance.light import Lines
+from lumitip.twin.built import Lines
 
 MOST_MM, MOST_DEG = 2.0, 10.0
 """An error of this size or more is gross. It counts as this one in rms errors."""

@@ -1,9 +1,9 @@
 """Light of built fingers: the twin's rays, with every LED, hole and detector at its own place.
 
-`lumitip.twin` moves the emitter as a whole, and gives all cells one hole, depth and gap. Here each
-ray begins at the place of its own LED or hole and ends at that of its own detector or hole, with
-the twin's weights. Of the rays between two holes a fixed sample is taken. Borders of holes are as
-soft as an LED's width makes them, so that the light changes steadily as a mask moves.
+`Twin` moves the emitter as a whole, and gives all cells one hole, depth and gap. Here each ray
+begins at the place of its own LED or hole and ends at that of its own detector or hole, with the
+twin's weights. Of the rays between two holes a fixed sample is taken. Borders of holes are as soft
+as an LED's width makes them, so that the light changes steadily as a mask moves.
 """
 
 from dataclasses import dataclass
@@ -36,6 +36,21 @@ class Lines:
     """Angle (rad) and offset (mm) of each line, shape `(n, 2)`."""
     diameter_mm: float = 3.0
     """Of the cables (mm)."""
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A flat opaque piece with straight borders, somewhere in the gap."""
+
+    kind: str
+    """`"edge"`: it covers everything right of its line; `"strip"`: it lies along it."""
+    offset_mm: float
+    angle_deg: float
+    low_mm: float
+    """Its faces above the receiver's skin."""
+    high_mm: float
+    width_mm: float = 0.0
+    """Of a strip (mm)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,6 +138,7 @@ class Rays:
             slope.reshape(2, -1).astype(np.float32),
             weight.ravel().astype(np.float32),
             self._begin * weight.shape[1],
+            gap.ravel().astype(np.float32),
         )
 
     def _inside(self, place: Floats, hole_mm: float, deep: Floats) -> Floats:
@@ -145,6 +161,8 @@ class Light:
     _weight: Singles
     _begin: NDArray[np.intp]
     """First ray of each cell, and the end."""
+    _gap_mm: Singles
+    """Between the skins, of each pair of an LED and a cell, shape `(pairs,)`."""
 
     @cached_property
     def full(self) -> Floats:
@@ -169,3 +187,21 @@ class Light:
         parts = zip(self._begin[:-1], self._begin[1:], strict=True)
         taken = np.stack([self._weight[a:b] @ left[a:b] for a, b in parts], axis=1)
         return 1.0 - taken / self.full
+
+    def behind(self, piece: Piece) -> Floats:
+        """Share of it that passes a piece, shape `(cells,)`."""
+        angle = np.radians(piece.angle_deg)
+        across = np.array([-np.sin(angle), np.cos(angle)], np.float32)
+        slope = across @ self._slope
+        gap = np.repeat(self._gap_mm, slope.size // self._gap_mm.size)
+        skin = across @ self._middle_mm - np.float32(piece.offset_mm) - slope * gap / 2
+        # A ray is taken where it meets either face, or a side between them.
+        low, high = (skin + slope * np.float32(z) for z in (piece.low_mm, piece.high_mm))
+        if piece.kind == "edge":
+            outside = np.minimum(low, high)
+        else:
+            beside = np.maximum(np.minimum(low, high), -np.maximum(low, high))
+            outside = beside - np.float32(piece.width_mm / 2.0)
+        taken = np.clip(0.5 - outside / np.float32(PIXEL_MM), 0.0, 1.0) * self._weight
+        lost = np.add.reduceat(taken.astype(np.float64), self._begin[:-1])
+        return np.asarray(1.0 - lost / self.full)

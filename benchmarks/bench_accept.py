@@ -1,0 +1,138 @@
+"""Acceptance of built fingers: faults that are caught and named, and false alarms.
+
+Half of the fingers have one injected fault; all have the spread of `tolerances.toml`, and the gauge
+lies 0.1 mm beside its place. A finger is out of tolerance if a true deviation is beyond the limits
+of `lumitip.acceptance.verdict`, injected or not. It is named rightly if the first finding is what
+is wrong. The scattered share is compared with the mean of eight good fingers.
+
+These fingers are drawn with the rays that the verdict is built on. `--second N` tries good fingers
+of the second optical model instead (`second_light`), which shares nothing with them.
+
+Run by `make bench`; exits 1 if a goal is missed.
+"""
+
+import argparse
+import sys
+from collections import Counter
+from concurrent.futures import Executor
+from functools import lru_cache, partial
+from pathlib import Path
+
+import numpy as np
+
+from accept_faults import KINDS, NAMED, drawn, out_of_tolerance
+from accept_fingers import Fault, Workshop, example_gauge
+from accept_second import second_frames
+from common import Goals
+from lumitip.acceptance.verdict import Judge, Verdict
+from lumitip.tasks.bench import workers
+from lumitip_fab.config.load import load
+from lumitip_fab.derive import resolve
+from lumitip_fab.derive.making.tolerances import spreads
+
+CAUGHT, FALSE = 95.0, 2.0
+GOOD = 8
+"""Good fingers, whose mean scattered share is the reference."""
+PUBLISHED = Path(__file__).parents[1] / "design" / "presets" / "published.toml"
+_REFERENCE_SEED = 10_000
+
+
+class Trials:
+    """Fingers of the published sensor, and their judge."""
+
+    def __init__(self) -> None:
+        resolved = resolve(load(PUBLISHED))
+        config, self.layout = resolved.config, resolved.design.layout
+        self.gauge = example_gauge(self.layout)
+        self._workshop = Workshop(
+            self.layout, self.gauge, config.catalogue.tolerances, spreads(config)
+        )
+        self.judge = Judge(self.layout, self.gauge)
+        good = self._workshop.draws(GOOD, _REFERENCE_SEED)
+        each = [
+            self.judge(self._workshop.frames(good, number, Fault(), 0)).deviations
+            for number in range(GOOD)
+        ]
+        self._reference = {name: float(np.mean([of[name] for of in each])) for name in each[0]}
+
+    def __call__(self, seed: int, number: int) -> tuple[set[str], list[str]]:
+        """What is out of tolerance in a finger, and the findings in their order."""
+        chance = np.random.default_rng((seed, number))
+        fault, own = drawn(self.layout, chance), int(chance.integers(2**32))
+        draws = self._workshop.draws(1, own)
+        frames = self._workshop.frames(draws, 0, fault, own)
+        verdict = self.judge(frames, self._reference)
+        return out_of_tolerance(draws, 0, fault), _kinds(verdict)
+
+    def second(self, seed: int, number: int) -> tuple[set[str], list[str]]:
+        """The same of a good finger of the second optical model."""
+        return set(), _kinds(self.judge(second_frames(self.layout, self.gauge, seed + number)))
+
+
+def _kinds(verdict: Verdict) -> list[str]:
+    return [f.kind for f in verdict.findings] + (["unseen"] if verdict.unseen else [])
+
+
+@lru_cache(maxsize=1)
+def trials() -> Trials:
+    """Those of a process."""
+    return Trials()
+
+
+def tried(seed: int, number: int) -> tuple[set[str], list[str]]:
+    """A finger with or without a fault."""
+    return trials()(seed, number)
+
+
+def tried_second(seed: int, number: int) -> tuple[set[str], list[str]]:
+    """A good finger of the second optical model."""
+    return trials().second(seed, number)
+
+
+def table(found: list[tuple[set[str], list[str]]], goals: Goals) -> None:
+    """Print the rates, by what is out of tolerance."""
+    fingers, caught, right = Counter[str](), Counter[str](), Counter[str]()
+    for out, kinds in found:
+        if not out:
+            continue
+        name = min(out) if len(out) == 1 else "several"
+        fingers[name] += 1
+        caught[name] += bool(kinds)
+        names = set().union(*(NAMED.get(kind, {kind}) for kind in out))
+        right[name] += bool(kinds) and kinds[0] in names
+    print(f"  {'out of tolerance':<18}{'fingers':>9}{'caught':>9}{'named rightly':>15}")
+    for name in (*KINDS[1:], "holes", "several"):
+        if fingers[name]:
+            print(f"  {name:<18}{fingers[name]:>9}{caught[name]:>9}{right[name]:>15}")
+    good = [kinds for out, kinds in found if not out]
+    alarms = Counter(kinds[0] for kinds in good if kinds)
+    print(f"  {'none':<18}{len(good):>9}; false alarms: {dict(alarms) or 'none'}")
+    if fingers:
+        share = 100.0 * sum(right.values()) / sum(fingers.values())
+        goals.at_least("out of tolerance, caught and named rightly", share, CAUGHT, "%")
+    goals.at_most("false alarms", 100.0 * sum(alarms.values()) / max(len(good), 1), FALSE, "%")
+
+
+def main() -> int:
+    """Print the tables; the exit code."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--count", type=int, default=1000, help="fingers")
+    parser.add_argument("--second", type=int, default=0, help="fingers of the second model instead")
+    parser.add_argument("--seed", type=int, default=17)
+    parser.add_argument("--jobs", type=int, default=2, help="processes")
+    options = parser.parse_args()
+    goals = Goals()
+    with workers(options.jobs) as pool:
+        found = _all(pool, options)
+    table(found, goals)
+    return goals.exit_code()
+
+
+def _all(pool: Executor, options: argparse.Namespace) -> list[tuple[set[str], list[str]]]:
+    count, one = (options.second, tried_second) if options.second else (options.count, tried)
+    chunk = max(1, min(20, count // (2 * options.jobs)))
+    return list(pool.map(partial(one, options.seed), range(count), chunksize=chunk))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,98 @@
+"""Swapped cells, found while the straight edge of a sheet moves over all cells.
+
+In each frame the edge is estimated from all cells; each cell then fits the light expected at its
+own place better than at any other, unless its channel is another's.
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from lumitip.estimation import PoseEstimator
+from lumitip.frame import Values
+from lumitip.grid import Floats
+from lumitip.health.swaps import Mask
+from lumitip.layout import Layout
+from lumitip.twin import Twin
+
+MOST_FRAMES = 150
+_LEAST_FRAMES = 20
+_LEAST_GAIN = 5.0
+"""Least improvement of two cells in each other's places, of a frame on average (counts of 255)."""
+_LEAST_RATIO = 0.5  # of their misfit in their own places, which the change takes away
+_SUSPECT = 3.0  # times the median misfit of cells in their own places
+_MOST_SWAPS = 8
+_MOST_MISFIT = 40.0  # of a frame that an edge explains, swapped cells included (counts)
+
+
+class Places:
+    """Finds swapped cells of a layout."""
+
+    def __init__(self, layout: Layout, gap_mm: float) -> None:
+        """Prepare estimator and tables.
+
+        Args:
+            layout: the cells.
+            gap_mm: between the skins.
+        """
+        self._estimate = PoseEstimator(layout, gap_mm=gap_mm).prepare("edge")
+        self._twin = Twin(layout, self._estimate.model)
+
+    def swapped(self, values: Values, usable: Mask) -> list[tuple[int, int]]:
+        """Pairs of cells that are swapped, the clearest first.
+
+        Args:
+            values: calibrated, of the sheet that moves, shape `(n, cells)`.
+            usable: cells without another fault, shape `(cells,)`.
+        """
+        misfit = self._misfit(values, usable)
+        if misfit is None:
+            return []
+        own = np.diag(misfit)
+        # Cells in other places bend the edge; without them the others show it as it is.
+        trusted = usable & (own < _SUSPECT * np.median(own[usable]))
+        again = self._misfit(values, trusted)
+        return [] if again is None else list(_exchanges(again, usable))
+
+    def _misfit(self, values: Values, trusted: Mask) -> Floats | None:
+        """Mean difference of what channel a read from the light at place i, shape `(a, i)`; None
+        if too few frames show an edge.
+
+        Args:
+            values: of the moving sheet.
+            trusted: cells by which the edge is estimated.
+        """
+        rows = list(self._explained(values, trusted))
+        if len(rows) < _LEAST_FRAMES:
+            return None
+        measured, expected = (np.array(part) for part in zip(*rows, strict=True))
+        return np.asarray(np.abs(measured[:, :, None] - expected[:, None, :]).mean(axis=0))
+
+    def _explained(self, values: Values, trusted: Mask) -> Iterator[tuple[Floats, Floats]]:
+        """Frames with an edge, and the light that is expected of it."""
+        every = max(1, len(values) // MOST_FRAMES)
+        for row in values[::every].astype(np.float64):
+            found = self._estimate(np.where(trusted, row, np.nan), "edge")
+            if not np.isfinite(found.offset_mm):
+                continue
+            sides = self._twin.edges(
+                [found.offset_mm, -found.offset_mm], [found.angle_deg, found.angle_deg + 180.0]
+            )
+            off = np.abs(sides - row)[:, trusted].mean(axis=1)
+            if off.min() < _MOST_MISFIT:
+                yield row, sides[int(off.argmin())]
+
+
+def _exchanges(misfit: Floats, usable: Mask) -> Iterator[tuple[int, int]]:
+    own = np.diag(misfit)
+    before = own[:, None] + own
+    gain = before - misfit - misfit.T
+    gain[~usable] = gain[:, ~usable] = 0.0
+    clear = (gain > 2.0 * _LEAST_GAIN) & (gain > _LEAST_RATIO * before)
+    gain[~clear] = 0.0
+    for _ in range(_MOST_SWAPS):
+        one, two = np.unravel_index(int(gain.argmax()), gain.shape)
+        if gain[one, two] <= 0.0:
+            return
+        yield (min(int(one), int(two)), max(int(one), int(two)))
+        gain[[one, two]] = gain[:, [one, two]] = 0.0
