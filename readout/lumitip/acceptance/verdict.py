@@ -215,8 +215,9 @@ def _whole(fitted: Fitted, reference: Mapping[str, float] | None) -> list[Findin
         x, y, turn = (of[f"{finger}_{way}"] for way in ("x", "y", "turn"))
         times = max(math.hypot(x, y) / MASK_MM, abs(turn) / MASK_DEG)
         text = (
-            f"{finger}'s mask: {_way(x, y)}, turned by {turn:+.1f}° (to the left, seen on the "
-            f"receiver); at most {MASK_MM:g} mm and {MASK_DEG:g}°. Lay it anew"
+            f"{finger}'s mask: {_way(x, y)}, turned by {abs(turn):.1f}° to the "
+            f"{'left' if turn > 0 else 'right'}, seen on the receiver with the tip up; at most "
+            f"{MASK_MM:g} mm and {MASK_DEG:g}°. Lay it anew"
         )
         findings.append(Finding(f"{finger} mask", text, times_limit=times))
     findings.append(

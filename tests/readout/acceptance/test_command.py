@@ -1,0 +1,127 @@
+"""`lumitip accept`: its steps, its report, its exit codes."""
+
+import hashlib
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from acceptance_frames import Bench, record
+from lumitip.calibration import Calibration
+from lumitip.cli import main
+from lumitip.links import twin
+from lumitip.links.twin import Scene, packet_at, published_layout
+
+LAYOUT = published_layout()
+
+
+class Hands:
+    """A builder who follows the steps: each Enter changes what the fingertip reads."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, bench: Bench, **off: float) -> None:
+        frames = bench.frames(off)
+        self._states = [frames.empty, frames.sheet, frames.moving, *frames.gauge]
+        self.asked: list[str] = []
+        monkeypatch.setattr("builtins.input", self._enter)
+        monkeypatch.setattr(twin, "packet_at", self._packet)
+
+    def _enter(self, text: str) -> str:
+        self.asked.append(text)
+        return ""
+
+    def _packet(self, _: object, scene: Scene, first: int, count: int) -> object:
+        made = packet_at(LAYOUT, scene, first, count)
+        light = self._states[max(len(self.asked) - 1, 0)]
+        rows = light[(first + np.arange(count)) % len(light)]
+        object.__setattr__(made, "values", (255.0 - rows).astype(np.uint8))
+        return made
+
+
+@pytest.fixture
+def gauge_file(tmp_path: Path) -> Path:
+    file = tmp_path / "gauge.json"
+    file.write_text(json.dumps(record()), encoding="utf-8")
+    return file
+
+
+@pytest.fixture(autouse=True)
+def data(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
+
+
+def arguments(gauge: Path, out: Path) -> list[str]:
+    url = "twin://empty?rate=500"
+    return ["accept", url, "--gauge", str(gauge), "--out", str(out), "--seconds", "1"]
+
+
+@pytest.mark.slow
+def test_good_fingers_are_accepted_reported_and_calibrated(
+    gauge_file: Path, tmp_path: Path, bench: Bench, monkeypatch, capsys
+) -> None:
+    hands = Hands(monkeypatch, bench)
+    out = tmp_path / "report"
+    assert main(arguments(gauge_file, out)) == 0
+    assert len(hands.asked) == 7
+    assert "end S of the gauge between the fingers, its rails round the emitter" in hands.asked[6]
+    assert "ACCEPTED" in capsys.readouterr().out.splitlines()
+    told = json.loads((out / "acceptance.json").read_text())
+    assert told["accepted"] is True
+    assert told["design_hash"] == LAYOUT.design_hash
+    assert told["gauge_sha256"] == hashlib.sha256(gauge_file.read_bytes()).hexdigest()
+    data = (out / "frames.npz").read_bytes()
+    assert told["frames"]["sha256"] == hashlib.sha256(data).hexdigest()
+    with np.load(out / "frames.npz") as kept:
+        for name, step in told["frames"]["steps"].items():
+            assert step["frames"] == len(kept[name])
+            assert step["sha256"] == hashlib.sha256(kept[name].tobytes()).hexdigest()
+    assert {"lumitip", "numpy", "python"} <= set(told["versions"])
+    saved = Calibration.kept(told["device_id"], LAYOUT.design_hash, 32)
+    assert saved.empty is not None
+    assert saved.empty.tolist() == pytest.approx(told["calibration"]["empty"], abs=0.01)
+    assert saved.dark is not None
+    page = (out / "acceptance.html").read_text()
+    assert page.count("<circle") == 32
+    assert "accepted" in page
+    assert "http" not in page, "it needs no other file"
+
+
+@pytest.mark.slow
+def test_fingers_that_are_not_accepted_are_not_calibrated(
+    gauge_file: Path, tmp_path: Path, bench: Bench, monkeypatch, capsys
+) -> None:
+    Hands(monkeypatch, bench, receiver_x=1.4)
+    out = tmp_path / "report"
+    assert main(arguments(gauge_file, out)) == 1
+    printed = capsys.readouterr().out
+    assert "receiver's mask: 1." in printed
+    assert "NOT accepted" in printed.splitlines()
+    told = json.loads((out / "acceptance.json").read_text())
+    assert [finding["kind"] for finding in told["findings"]] == ["receiver mask"]
+    assert told["deviations"]["receiver_x"]["value"] == pytest.approx(1.4, abs=0.15)
+    assert Calibration.kept(told["device_id"], LAYOUT.design_hash, 32).empty is None
+    assert "not accepted" in (out / "acceptance.html").read_text()
+    # Its report is no reference with deviations of another kind of file.
+    assert main([*arguments(gauge_file, out), "--reference", str(gauge_file)]) == 2
+    assert "cannot be read as the report of accepted fingers" in capsys.readouterr().err
+
+
+def test_the_gauge_of_another_design_is_refused_before_the_first_step(
+    gauge_file: Path, tmp_path: Path, capsys
+) -> None:
+    gauge_file.write_text(json.dumps(record() | {"design_hash": "0" * 64}), encoding="utf-8")
+    assert main(arguments(gauge_file, tmp_path / "report")) == 2
+    assert "the gauge is of design 0000" in capsys.readouterr().err
+    assert not (tmp_path / "report").exists()
+
+
+def test_without_a_keyboard_nothing_is_written(
+    gauge_file: Path, tmp_path: Path, monkeypatch, capsys
+) -> None:
+    def closed(_: str) -> str:
+        raise EOFError
+
+    monkeypatch.setattr("builtins.input", closed)
+    assert main(arguments(gauge_file, tmp_path / "report")) == 2
+    assert "run it in a terminal" in capsys.readouterr().err
+    assert not (tmp_path / "report").exists()
